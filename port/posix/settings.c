@@ -96,22 +96,31 @@ static int set(int fd, const struct termios *tty)
     return result;
 }
 
+/* Its rate; NULL where they are no setting, after saying so. */
+static const rate_t *checked(fathom_posix_uart_t *port, const fathom_line_settings_t *settings)
+{
+    const rate_t *const rate = rate_of_baud(settings->baud);
+    if (settings->parity > FATHOM_PARITY_ODD || settings->stop_bits < 1 || settings->stop_bits > 2) {
+        (void)fathom_posix_fail(port, FATHOM_POSIX_ERR_ARGUMENT,
+                                "parity %u (0 none, 1 even, 2 odd) or %u stop bits (1 or 2) is no setting",
+                                settings->parity, settings->stop_bits);
+        return NULL;
+    }
+    if (rate == NULL)
+        (void)fathom_posix_fail(port, FATHOM_POSIX_ERR_ARGUMENT, "%lu baud is not a standard rate",
+                                (unsigned long)settings->baud);
+    return rate;
+}
+
 fathom_posix_status_t fathom_posix_check(fathom_posix_uart_t *port, const fathom_line_settings_t *settings)
 {
-    if (settings->parity > FATHOM_PARITY_ODD || settings->stop_bits < 1 || settings->stop_bits > 2)
-        return fathom_posix_fail(port, FATHOM_POSIX_ERR_ARGUMENT,
-                                 "parity %u (0 none, 1 even, 2 odd) or %u stop bits (1 or 2) is no setting",
-                                 settings->parity, settings->stop_bits);
-    if (rate_of_baud(settings->baud) == NULL)
-        return fathom_posix_fail(port, FATHOM_POSIX_ERR_ARGUMENT, "%lu baud is not a standard rate",
-                                 (unsigned long)settings->baud);
-    return FATHOM_POSIX_OK;
+    return checked(port, settings) == NULL ? port->error : FATHOM_POSIX_OK;
 }
 
 fathom_posix_status_t fathom_posix_apply(fathom_posix_uart_t *port, const fathom_line_settings_t *settings)
 {
-    if (fathom_posix_check(port, settings) != FATHOM_POSIX_OK) return port->error;
-    const rate_t *const rate = rate_of_baud(settings->baud);
+    const rate_t *const rate = checked(port, settings);
+    if (rate == NULL) return port->error;
 
     struct termios before;
     if (tcgetattr(port->fd, &before) != 0)

@@ -3,8 +3,8 @@
 """clang-tidy (.clang-tidy says which checks) and cppcheck find nothing in the library, the ports and the
 examples.
 
-    lint.py              all but clang's analyzer, which takes twenty times as long as the rest
-    lint.py --analyze    all
+    lint.py              all but the analyzers, which take twenty times as long as the rest
+    lint.py --analyze    all: clang's, which scan-build runs, and gcc's (-fanalyzer)
 """
 import os
 import re
@@ -30,11 +30,30 @@ def tidy(root, path):
     return found or ([] if good else [f'{path}: clang-tidy failed: {said}'])
 
 
+def compiler(path):
+    machine = path.split('/')[1]
+    if machine in ('rp2040', 'mps2', 'nrf51', 'stm32f4'):
+        return ['arm-none-eabi-gcc', '-mcpu=cortex-m3', '-mthumb']
+    if machine == 'virt':
+        return ['riscv64-unknown-elf-gcc', '-march=rv32imac_zicsr', '-mabi=ilp32', '-ffreestanding']
+    return ['gcc']
+
+
+def analyze(root, path):
+    """By gcc's analyzer, inlined as the library mostly is."""
+    good, said = run([*compiler(path), '-std=c99', '-O1', '-fanalyzer', *WARNINGS, *INCLUDE, LIBMODBUS, '-c', path, '-o',
+                      os.devnull], root)
+    found = sorted(set(re.findall(r'^(\S+ (?:error|warning): .*)$', said, re.M)))
+    return found or ([] if good else [f'{path}: {said}'])
+
+
 def check(root, only):
     paths = [path for path in files(root, 'src', 'port', 'examples', ends='.c')
              if not FOREIGN.match(path) and (not only or path in only)]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         results = list(pool.map(lambda path: tidy(root, path), paths))
+        if not IS_QUICK:
+            results += pool.map(lambda path: analyze(root, path), paths)
     problems = sorted({problem.replace(root + os.sep, '') for result in results for problem in result})
     good, said = run(['cppcheck', '--quiet', '--std=c99', '--enable=warning,style,performance,portability',
                       '--inline-suppr', '--error-exitcode=1', '--suppress=missingIncludeSystem', *INCLUDE,
@@ -47,6 +66,8 @@ FAULTS = [
     (LINE, None, 'int fathom_x(const int *p);\nint fathom_x(const int *p) { return p == NULL ? *p : 1; }\n',
      'Dereference of null pointer'),
     (LINE, None, 'int fathom_x(int n);\nint fathom_x(int n) { int x; if (n > 1) x = 2; return x; }\n', 'clang-analyzer'),
+    (LINE, None, 'int fathom_x(int n);\nint fathom_x(int n) { int a[2]; a[0] = n; return a[n > 0]; }\n',
+     'Wanalyzer-use-of-uninitialized-value'),
     (LINE, None, 'int fathom_x(int n);\nint fathom_x(int n) { if (n = 1) return 2; return 3; }\n', 'clang-diagnostic-parentheses'),
     (LINE, None, 'int fathom_x(int n);\nint fathom_x(int n) { if (n == 1) return 2; else return 3; }\n',
      'readability-else-after-return'),
