@@ -82,10 +82,12 @@ void fathom_line_scan_responses(fathom_line_t *line, bool over)
             line->need = (uint8_t)-judged;
             return;
         }
-        if (judged >= TAKEN)
-            line->known = (uint8_t)((line->known & ~(unsigned)UNASKED) | LATE);
-        else
+        if (judged >= TAKEN) {
+            line->known = (uint8_t)((line->known & ~(unsigned)UNASKED) | LATE | AFTER_GAP);
+            fathom_line_leave(line, 0); /* what stood before it and behind it did not stand together */
+        } else {
             leave(line, (uint8_t)judged);
+        }
         fathom_line_drop(line, (uint8_t)judged);
     }
 }
