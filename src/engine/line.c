@@ -56,7 +56,6 @@ void fathom_line_leave(fathom_line_t *line, uint8_t length)
 void fathom_line_drop(fathom_line_t *line, uint8_t length)
 {
     uint8_t *to = line->config->frame;
-    forget(line, AFTER_GAP);
     line->need = 0;
     line->have = (uint8_t)(line->have - length);
     for (uint8_t i = line->have; i != 0u; i--) {

@@ -33,7 +33,7 @@ enum {
 enum {
     ECHO = 3,      /* fathom_line_echo() */
     ECHO_DUE = 4,  /* the request that was cancelled may still come back */
-    AFTER_GAP = 8, /* of the listener's; before the first byte in the frame */
+    AFTER_GAP = 8, /* of the listener: before the first byte in the frame there was a gap, or a response */
     LATE = 16,     /* since the last byte there has been time for a request: a frame may come any time */
     ONE_UNASKED = 32,
     UNASKED = 96, /* so many bytes since the last response belonged to no transaction */

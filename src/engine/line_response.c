@@ -83,10 +83,11 @@ void fathom_line_scan_responses(fathom_line_t *line, bool over)
             return;
         }
         if (judged >= TAKEN) {
+            /* What the listener has heard has ended where this began. */
             line->known = (uint8_t)((line->known & ~(unsigned)UNASKED) | LATE | AFTER_GAP);
-            fathom_line_leave(line, 0); /* what stood before it and behind it did not stand together */
         } else {
             leave(line, (uint8_t)judged);
+            forget(line, AFTER_GAP);
         }
         fathom_line_drop(line, (uint8_t)judged);
     }

@@ -17,6 +17,9 @@ enum { QUIET_US = UINT16_MAX, SHORT = 200, IS_QUIET = 255, IS_LONG = 255 };
 /* fathom_line_t.state is a phase in these bits; there no time-out runs (src/engine/line_internal.h). */
 enum { LEAVING_ON = 3 };
 
+/* Of fathom_line_t.known, what the listener alone is told (src/engine/line_internal.h). */
+enum { AFTER_GAP = 8 };
+
 /* Silence beyond all that it is compared with, but 65 ms. */
 static int most_silence(void)
 {
@@ -41,7 +44,7 @@ void pack(uint8_t *at)
     *at++ = line->state;
     *at++ = line->have;
     *at++ = line->need;
-    *at++ = line->known;
+    *at++ = options.stream ? line->known : (uint8_t)(line->known & ~AFTER_GAP);
     *at++ = line->sent;
     *at++ = (uint8_t)line->quarantined; /* units 1 and 2 */
     *at++ = (uint8_t)(line->quarantined >> 8);

@@ -43,8 +43,7 @@ TEST_IN(asked, a_silence_behind_bytes_that_are_held_back_is_none_before_them)
     run(100);
     expect_mm(754);
     expect_heard(response_1_754, 4, NULL, 0);
-    assert_int_equal(bench_listener.gaps, 1); /* where the response was, behind them */
-    assert_int_equal(bench_listener.gap_at, 4);
+    assert_int_equal(bench_listener.gaps, 0);
 }
 
 TEST_IN(asked, with_time_stamps_the_next_request_need_not_wait_for_the_loop)
@@ -121,7 +120,7 @@ TEST(unasked_bytes_around_a_response_go_to_the_listener_and_the_response_does_no
 }
 
 /* FF before the response and 00 00 FF behind it are no FF 00 00 FF. */
-TEST(a_listener_is_told_where_a_response_was_taken_out_of_what_it_hears)
+TEST(what_comes_behind_a_response_does_not_follow_what_came_before_it)
 {
     listen_for(5000);
     ask_1_and_send(0);
@@ -131,8 +130,6 @@ TEST(a_listener_is_told_where_a_response_was_taken_out_of_what_it_hears)
     expect_after(200, FATHOM_READY);
     run(2 * GAP_US);
     expect_heard(auto_frame, 1, auto_frame + 1, 3);
-    assert_int_equal(bench_listener.losses, 1);
-    assert_int_equal(bench_listener.lost_at, 1);
     assert_int_equal(bench_listener.gaps, 1);
     assert_int_equal(bench_listener.gap_at, 1);
 }

@@ -387,20 +387,6 @@ TEST(no_frame_is_built_across_a_lost_byte)
     }
 }
 
-TEST(where_a_transaction_was_taken_out_a_frame_ends_and_another_one_begins)
-{
-    feed(mm_1953, 1, true, 10);
-    feed(NULL, 0, true, 20);
-    feed(mm_1953 + 1, 3, false, 30); /* FF before and the rest behind it */
-    expect(5030, FATHOM_PENDING);
-    begin(4);
-    feed_first(10);
-    feed(NULL, 0, true, 20);
-    expect_frame(20, mm_1953, 10);
-    feed_frame(30);
-    expect_frame(5030, mm_1953, 30);
-}
-
 TEST(a_frame_that_waits_for_its_successor_is_dropped_when_bytes_are_lost)
 {
     feed_frame(10);

@@ -136,12 +136,11 @@ struct fathom_transaction {
 typedef struct fathom_listener fathom_listener_t;
 struct fathom_listener {
     /*
-     * `count` bytes in the order in which they came. after_gap: the line was seen to be silent for at least gap_us
-     * before the first of them. count is 0 where bytes are missing: they were lost, as the port reports; or, with
-     * after_gap, they were a response to a transaction, or the echo of its request, which is a boundary as a silence
-     * is. time_us: the clock when the last of them came, as exact as the port or the polling; of bytes that were held
-     * back, because they could have begun a response, when the last byte of all came. Called within fathom_line_poll;
-     * it may not call the line.
+     * `count` bytes in the order in which they came; 0: the port reports that bytes were lost here. after_gap: what
+     * came before the first of them has ended, since the line was seen to be silent for at least gap_us, or a response
+     * to a transaction, or the echo of its request, stood there. time_us: the clock when the last of them came, as
+     * exact as the port or the polling; of bytes that were held back, because they could have begun a response, when
+     * the last byte of all came. Called within fathom_line_poll; it may not call the line.
      */
     void (*receive)(fathom_listener_t *listener, const uint8_t *bytes, uint8_t count, bool after_gap,
                     uint32_t time_us);

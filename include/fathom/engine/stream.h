@@ -104,9 +104,8 @@ fathom_status_t fathom_stream_init(fathom_stream_t *stream, const fathom_stream_
 void fathom_stream_begin(fathom_stream_t *stream, uint32_t now_us);
 
 /*
- * Takes `count` bytes; 0: bytes are missing here. after_gap: the line was seen to be silent for gap_us before the
- * first, or what is missing is known to begin and to end there. time_us: when the last one came. A stream that listens
- * to a line is fed by it, as fathom_listener_t says.
+ * Takes `count` bytes; 0: bytes were lost here. after_gap: the line was seen to be silent for gap_us before the
+ * first, or what came before is known to have ended. time_us: when the last one came. A stream that listens to a line is fed by it.
  * fathom_stream_receive: `listener` is that of a stream.
  */
 void fathom_stream_receive(fathom_listener_t *listener, const uint8_t *bytes, uint8_t count, bool after_gap,
