@@ -38,7 +38,7 @@ TACTICS = {'bits': 'wp:range', 'words': 'wp:bitshift,wp:bitwised,wp:split,wp:ran
 UNITS = ('bits', 'words', 'dyp_stream', 'dyp_55aa', 'pulse_width', 'crc16', 'crc16_small', 'modbus_rtu',
          'round_dyp')
 UNDER_WAY = ('hps167s_registers', 'round_modbus')  # run when they are named
-QUICK = {'bits': '', 'dyp_stream': '', 'dyp_55aa': '', 'pulse_width': 'fathom_pulse_width_mm_in_air', 'crc16': '',
+QUICK = {'dyp_55aa': '', 'pulse_width': 'fathom_pulse_width_mm_in_air', 'crc16': '',
          'crc16_small': ''}  # and the functions that are left out
 PROVERS = ('cvc4', 'z3')
 STEPS = {'cvc4': 450000, 'z3': 1500000}  # about twice, and four times, what any goal needed
