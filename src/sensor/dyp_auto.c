@@ -42,7 +42,8 @@ uint32_t fathom_dyp_auto_due_us(const fathom_dyp_auto_t *sensor)
 {
     const fathom_line_t *const line = sensor->line;
     const fathom_stream_t *const stream = &sensor->stream;
-    if (stream->fresh && !is_followed(sensor)) return 0;
+    if (is_followed(sensor)) return fathom_line_due_us(line);
+    if (stream->fresh) return 0;
     /* The line knows when the silence behind a frame is over: it is the listener's gap. */
     const uint32_t passed_us = fathom_elapsed_us(clock_us(line->config->clock), stream->since_us);
     return least_us(fathom_line_due_us(line), rest_us(stream->stale_us, passed_us));

@@ -93,11 +93,12 @@ TEST(with_a_part_of_a_late_response_the_next_request_is_due_after_the_gap)
 
 /* sensor.h: "how long from now until any of the sensors has something to do": a frame that waits cannot be given while
  * the line holds back what came behind it, which may begin the response. */
-TEST(a_frame_that_waits_behind_bytes_that_are_held_is_due_with_their_gap)
+/* An A16 that sends by itself, which has sent two frames and four bytes that may be a response. */
+static fathom_sensor_t held(uint32_t stale_us)
 {
     static const uint8_t came[] = {0xFF, 0x07, 0xA1, 0xA7, 0xFF, 0x07, 0xA1, 0xA7, 0x01, 0x03, 0x02, 0x02};
     static fathom_a16_auto_t automatic;
-    const fathom_a16_auto_config_t config = {.line = &bench.line};
+    const fathom_a16_auto_config_t config = {.line = &bench.line, .stale_us = stale_us};
     fathom_sample_t sample;
     send();
     assert_int_equal(fathom_a16_auto_init(&automatic, &config), FATHOM_READY);
@@ -105,8 +106,22 @@ TEST(a_frame_that_waits_behind_bytes_that_are_held_is_due_with_their_gap)
     after(10000);
     receive(came, sizeof came);
     assert_int_equal(fathom_poll(&sensor, &sample), FATHOM_PENDING);
+    return sensor;
+}
+
+TEST(a_frame_that_waits_behind_bytes_that_are_held_is_due_with_their_gap)
+{
+    const fathom_sensor_t sensor = held(0);
+    fathom_sample_t sample;
     assert_int_equal(fathom_due_us(&sensor, 1), GAP_US);
     bench.fake.now_us += GAP_US;
     assert_int_equal(fathom_poll(&sensor, &sample), FATHOM_READY);
     assert_int_equal(sample.raw, 1953);
+}
+
+/* Nor can it be stale meanwhile. */
+TEST(a_frame_that_waits_beyond_its_deadline_is_due_with_the_gap_too)
+{
+    const fathom_sensor_t sensor = held(5000);
+    assert_int_equal(fathom_due_us(&sensor, 1), GAP_US);
 }
