@@ -67,7 +67,7 @@ FAULTS = [
      'Dereference of null pointer'),
     (LINE, None, 'int fathom_x(int n);\nint fathom_x(int n) { int x; if (n > 1) x = 2; return x; }\n', 'clang-analyzer'),
     (LINE, None, 'int fathom_x(int n);\nint fathom_x(int n) { int *p = NULL; if (n > 1) p = &n; return *p; }\n',
-     'Wanalyzer-null-dereference'),
+     '=analyzer-null-dereference'),
     (LINE, None, 'int fathom_x(int n);\nint fathom_x(int n) { if (n = 1) return 2; return 3; }\n', 'clang-diagnostic-parentheses'),
     (LINE, None, 'int fathom_x(int n);\nint fathom_x(int n) { if (n == 1) return 2; else return 3; }\n',
      'readability-else-after-return'),
