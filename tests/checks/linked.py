@@ -109,9 +109,9 @@ def check(root, only):
 
 
 FAULTS = [
-    ('src/engine/line_listening.c', '    fathom_line_leave(line, have);', '    fathom_line_leave(line, have);\n'
+    ('src/engine/line_listening.c', '    fathom_line_leave(line, line->have);', '    fathom_line_leave(line, line->have);\n'
      '    fathom_line_submit(line, line->head);', 'fathom_line_submit of'),
-    ('src/engine/line_listening.c', '    fathom_line_leave(line, have);', '    fathom_line_leave(line, have);\n'
+    ('src/engine/line_listening.c', '    fathom_line_leave(line, line->have);', '    fathom_line_leave(line, line->have);\n'
      '    extern const char fathom_crc16;\n    fathom_line_leave(line, (uint8_t)(uintptr_t)&fathom_crc16);',
      'src/codec/crc16.c is in the image'),
     ('src/engine/contact.c', '    settle(contact);\n    return FATHOM_READY;', '    extern int fathom_line_poll(void *line);\n'
