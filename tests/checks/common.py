@@ -9,7 +9,7 @@ import tempfile
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 
-# The same as in CMakeLists.txt; a C++ compiler has no use for the last two.
+# The same as in port/fathom_add_port.cmake; a C++ compiler has no use for the last two.
 CXX_WARNINGS = ['-Wall', '-Wextra', '-Wpedantic', '-Wconversion', '-Wsign-conversion', '-Wshadow',
                 '-Wmissing-declarations', '-Wcast-align', '-Wvla', '-Werror']
 WARNINGS = [*CXX_WARNINGS, '-Wstrict-prototypes']

@@ -1,4 +1,6 @@
+# SPDX-License-Identifier: MIT
 include("${CMAKE_CURRENT_LIST_DIR}/fathom-targets.cmake")
+include("${CMAKE_CURRENT_LIST_DIR}/fathom_add_port.cmake")
 
 # The port over libmodbus, if it was built: without libmodbus here there is no fathom::libmodbus.
 set(fathom_libmodbus_targets "${CMAKE_CURRENT_LIST_DIR}/fathom-libmodbus-targets.cmake")
