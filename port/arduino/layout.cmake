@@ -9,7 +9,6 @@
 #     src/core/                    src/, with one of the two CRCs (fathom_arduino.h says why that one)
 #     examples/                    examples/arduino
 #     library.properties           which is not at the top of this repository, so that no tool takes that for a library
-cmake_minimum_required(VERSION 3.20)
 if(NOT TO MATCHES "/Fathom$")
     message(FATAL_ERROR "TO is \"${TO}\"; it has to be a path that ends in /Fathom")
 endif()

@@ -16,7 +16,7 @@ WARNINGS = [*CXX_WARNINGS, '-Wstrict-prototypes']
 
 LIBMODBUS = '-isystem/usr/include/modbus'  # what the port over libmodbus includes
 
-COPIED = ('include', 'src', 'port', 'examples', '.clang-tidy', '.clang-format')
+COPIED = ('include', 'src', 'port', 'examples', 'CMakeLists.txt', 'CMakePresets.json', '.clang-tidy', '.clang-format')
 
 
 def files(root, *folders, ends=('.c', '.h')):

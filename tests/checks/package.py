@@ -3,12 +3,17 @@
 """Programs of others use Fathom in each way that the README names; each is really built and run.
 
     package.py find_package BUILD    installed, moved elsewhere, and found by CMake
-    package.py pkg_config BUILD      installed, moved elsewhere, and found by pkg-config
+    package.py pkg_config BUILD      installed, moved elsewhere, and found by pkg-config: each port by its own .pc
+    package.py layouts BUILD         the same with DESTDIR, and with folders of other names
     package.py libmodbus BUILD       the port over libmodbus, in both ways, and without libmodbus the rest of it
     package.py subproject BUILD      by add_subdirectory, which builds the library and nothing else
+    package.py ports BUILD           by add_subdirectory, with one port or another
+    package.py outside BUILD         a port that stands elsewhere, on Fathom in both ways
     package.py version BUILD         the version comes from one place
+    package.py --self-test           each of them fails when the project's CMake files have a fault
 
 BUILD is the build folder of the project, which has been built."""
+import contextlib
 import json
 import os
 import re
@@ -17,9 +22,24 @@ import subprocess
 import sys
 import tempfile
 
-from common import ROOT, files
+from common import ROOT, files, plant
 
 CONSUMER = os.path.join(ROOT, 'tests', 'checks', 'consumer')
+OUTSIDE = os.path.join(ROOT, 'tests', 'checks', 'outside')
+# What each program of consumer/ prints. %s: the version.
+SAYS = {
+    'main': '%s works\n',
+    'conformance': 'not seen, 25 items\n',
+    'gpio': '/dev/null, line 17: not a GPIO chip\n',
+    'libmodbus': 'over libmodbus it works\n',
+    'posix': '/dev/null: not a serial port\n',
+    'serial': '1 byte, 55\n',
+    'sim': '1234 mm\n',
+}
+# What a port brings besides itself, and the project without any.
+BRINGS = {'gpio': {'fathom_posix'}}
+# The project without what is not installed for programs.
+LIBRARIES = ('-DFATHOM_TESTS=OFF', '-DFATHOM_EXAMPLES=OFF', '-DCMAKE_BUILD_TYPE=Release')
 
 
 def run(*command, good=True, **options):
@@ -46,69 +66,112 @@ def installed(build, work):
     first, prefix = os.path.join(work, 'first'), os.path.join(work, 'moved')
     run('cmake', '--install', build, '--prefix', first)
     os.rename(first, prefix)
+    names_no_place(build, prefix, first)
+    return prefix
+
+
+def names_no_place(build, prefix, first):
     for path in files(prefix, '.', ends=('.cmake', '.pc')):
         with open(os.path.join(prefix, path), encoding='utf-8') as file:
             for place in (first, ROOT, build):
                 if place in file.read():
                     sys.exit(f'{path} names {place}')
                 file.seek(0)
-    return prefix
 
 
-def configure(build, folder, *options, good=True):
-    return run('cmake', '-S', CONSUMER, '-B', folder, '-DCMAKE_C_COMPILER=' + project(build, 'CMAKE_C_COMPILER'),
-               '-DCMAKE_EXPORT_COMPILE_COMMANDS=ON', *options, good=good)
+def configure(build, folder, *options, source=CONSUMER, good=True, **more):
+    return run('cmake', '-S', source, '-B', folder, '-DCMAKE_C_COMPILER=' + project(build, 'CMAKE_C_COMPILER'),
+               '-DCMAKE_EXPORT_COMPILE_COMMANDS=ON', *options, good=good, **more)
+
+
+def compiled(folder):
+    """{path: command} of what the build in that folder compiles."""
+    with open(os.path.join(folder, 'compile_commands.json'), encoding='utf-8') as file:
+        return {os.path.realpath(entry['file']): entry['command'] for entry in json.load(file)}
+
+
+def says(build, name):
+    return SAYS[name].replace('%s', project(build, 'CMAKE_PROJECT_VERSION'))
+
+
+def expect_consumers(build, folder, ports):
+    """The programs of consumer/ for these ports, and no others, built there; each works."""
+    run('cmake', '--build', folder)
+    expect(run(os.path.join(folder, 'consumer')), says(build, 'main'))
+    made = {name[len('consumer_'):] for name in os.listdir(folder) if name.startswith('consumer_')}
+    expect(sorted(made), sorted(ports))
+    for name in made:
+        expect(run(os.path.join(folder, 'consumer_' + name)), says(build, name))
+
+
+def found_by_cmake(build, prefix, work, *options, ports=frozenset(SAYS) - {'main'}):
+    folder = os.path.join(work, 'found')
+    shutil.rmtree(folder, ignore_errors=True)
+    wanted = '-DFATHOM_WANTED=' + project(build, 'CMAKE_PROJECT_VERSION')
+    configure(build, folder, '-DCMAKE_PREFIX_PATH=' + prefix, wanted, *options)
+    expect_consumers(build, folder, ports)
+
+
+def found_by_pkg_config(build, prefix, work):
+    """Each program with what the .pc file of its port says, and two examples."""
+    found = files(prefix, '.', ends='.pc')
+    expect([os.path.basename(path) for path in found],
+           sorted(['fathom.pc', *(f'fathom_{name}.pc' for name in SAYS if name not in ('main', 'serial'))]))
+    environment = dict(os.environ, PKG_CONFIG_PATH=os.path.dirname(os.path.join(prefix, found[0])))
+
+    def build_with(source, *modules):
+        flags = run('pkg-config', '--cflags', '--libs', *modules, env=environment).split()
+        program = os.path.join(work, 'program')
+        run(project(build, 'CMAKE_C_COMPILER'), '-std=c99', source, *flags, '-o', program)
+        return program
+    for path in found:
+        module = os.path.basename(path)[:-len('.pc')]
+        expect(run('pkg-config', '--modversion', module, env=environment).strip(), project(build, 'CMAKE_PROJECT_VERSION'))
+        name = module[len('fathom_'):] or 'main'
+        expect(run(build_with(os.path.join(CONSUMER, name + '.c'), module)), says(build, name))
+    expect(run(build_with(os.path.join(CONSUMER, 'serial.c'), 'fathom')), says(build, 'serial'))
+    build_with(os.path.join(ROOT, 'examples', 'bus.c'), 'fathom_posix', 'fathom_sim')
+    build_with(os.path.join(ROOT, 'examples', 'site.c'), 'fathom_gpio')
 
 
 def find_package(build, work):
-    version = project(build, 'CMAKE_PROJECT_VERSION')
     prefix = installed(build, work)
-    folder = os.path.join(work, 'build')
-    configure(build, folder, '-DCMAKE_PREFIX_PATH=' + prefix, '-DFATHOM_WANTED=' + version)
-    run('cmake', '--build', folder)
-    expect(run(os.path.join(folder, 'consumer')), f'{version} works\n')
-    run(os.path.join(folder, 'ports'))
-    expect(run(os.path.join(folder, 'pins')), '/dev/null, line 17: not a GPIO chip\n')
-    said = configure(build, folder + '2', '-DCMAKE_PREFIX_PATH=' + prefix, '-DFATHOM_WANTED=99.0', good=False)
+    found_by_cmake(build, prefix, work)
+    said = configure(build, os.path.join(work, 'other'), '-DCMAKE_PREFIX_PATH=' + prefix, '-DFATHOM_WANTED=99.0',
+                     good=False)
     expect('compatible with requested version "99.0"' in ' '.join(said.split()), True)
 
 
 def pkg_config(build, work):
-    version = project(build, 'CMAKE_PROJECT_VERSION')
-    prefix = installed(build, work)
-    folders = [os.path.dirname(os.path.join(prefix, path)) for path in files(prefix, '.', ends='.pc')]
-    environment = dict(os.environ, PKG_CONFIG_PATH=os.pathsep.join(folders))
-    expect(run('pkg-config', '--modversion', 'fathom', env=environment), version + '\n')
-    flags = run('pkg-config', '--cflags', '--libs', 'fathom', env=environment).split()
-    program = os.path.join(work, 'consumer')
-    run(project(build, 'CMAKE_C_COMPILER'), '-std=c99', os.path.join(CONSUMER, 'main.c'), *flags, '-o', program)
-    expect(run(program), f'{version} works\n')
+    found_by_pkg_config(build, installed(build, work), work)
+
+
+def layouts(build, work):
+    staged = os.path.join(work, 'staged')
+    run('cmake', '--install', build, '--prefix', '/opt/fathom', env=dict(os.environ, DESTDIR=staged))
+    prefix = os.path.join(staged, 'opt', 'fathom')
+    names_no_place(build, prefix, staged)
+    found_by_cmake(build, prefix, work)
+    found_by_pkg_config(build, prefix, work)
+
+    folder, prefix = os.path.join(work, 'build'), os.path.join(work, 'prefix')
+    for libraries, headers in (('lib/a/b', 'headers'), (prefix + '/full/lib', prefix + '/full/headers'),
+                               ('lib', prefix + '/full/headers'), (prefix + '/full/lib', 'headers')):
+        configure(build, folder, *LIBRARIES, '-DCMAKE_INSTALL_LIBDIR=' + libraries,
+                  '-DCMAKE_INSTALL_INCLUDEDIR=' + headers, '-DCMAKE_INSTALL_PREFIX=' + prefix, source=ROOT)
+        run('cmake', '--build', folder)
+        run('cmake', '--install', folder)
+        found_by_cmake(build, prefix, work, f'-Dfathom_DIR={os.path.join(prefix, libraries)}/cmake/fathom')
+        found_by_pkg_config(build, prefix, work)
+        shutil.rmtree(prefix)
 
 
 def libmodbus(build, work):
     prefix = installed(build, work)
-    works = 'over libmodbus it works\n'
-    folder = os.path.join(work, 'build')
-    options = ['-DCMAKE_PREFIX_PATH=' + prefix, '-DFATHOM_WANTED=' + project(build, 'CMAKE_PROJECT_VERSION')]
-    configure(build, folder, *options)
-    run('cmake', '--build', folder)
-    expect(run(os.path.join(folder, 'over_libmodbus')), works)
-
-    folders = [os.path.dirname(os.path.join(prefix, path)) for path in files(prefix, '.', ends='.pc')]
-    environment = dict(os.environ, PKG_CONFIG_PATH=os.pathsep.join(folders))
-    flags = run('pkg-config', '--cflags', '--libs', 'fathom_libmodbus', env=environment).split()
-    program = os.path.join(work, 'over_libmodbus')
-    run(project(build, 'CMAKE_C_COMPILER'), '-std=c99', os.path.join(CONSUMER, 'over_libmodbus.c'), *flags, '-o',
-        program)
-    expect(run(program), works)
-
     # A consumer that has no libmodbus: everything but that port.
     without = ['-DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=ON']
-    folder = os.path.join(work, 'consumer_without')
-    configure(build, folder, *options, *without)
-    run('cmake', '--build', folder)
-    run(os.path.join(folder, 'ports'))
-    expect(os.path.exists(os.path.join(folder, 'over_libmodbus')), False)
+    ports = set(SAYS) - {'main', 'libmodbus'}
+    found_by_cmake(build, prefix, work, *without, ports=ports)
 
     # A build that had none says so, and so does its tool; what it installs is whole without it.
     folder = os.path.join(work, 'built_without')
@@ -123,28 +186,115 @@ def libmodbus(build, work):
     prefix = os.path.join(work, 'installed_without')
     run('cmake', '--install', folder, '--prefix', prefix)
     expect([path for path in files(prefix, '.', ends=('.h', '.a', '.pc', '.cmake')) if 'libmodbus' in path], [])
-    folder = os.path.join(work, 'consumer_of_without')
-    configure(build, folder, '-DCMAKE_PREFIX_PATH=' + prefix, options[1])
-    run('cmake', '--build', folder)
-    run(os.path.join(folder, 'ports'))
+    found_by_cmake(build, prefix, work, ports=ports)
 
 
 def subproject(build, work):
     folder = os.path.join(work, 'build')
     for crc in ('256', '16'):
         configure(build, folder, '-DFATHOM_ROOT=' + ROOT, '-DFATHOM_CRC16=' + crc)
-        run('cmake', '--build', folder)
-        expect(run(os.path.join(folder, 'consumer')), f'{project(build, "CMAKE_PROJECT_VERSION")} works\n')
-        with open(os.path.join(folder, 'compile_commands.json'), encoding='utf-8') as file:
-            commands = json.load(file)
-        names = {os.path.relpath(entry['file'], ROOT) for entry in commands}
+        expect_consumers(build, folder, ())
+        names = {os.path.relpath(path, ROOT) for path in compiled(folder)}
         other = 'crc16_small.c' if crc == '256' else 'crc16.c'
         wanted = set(files(ROOT, 'src', ends='.c')) - {'src/codec/' + other} | {'tests/checks/consumer/main.c'}
         expect(sorted(names), sorted(wanted))
-        imposed = [entry['command'] for entry in commands if '-W' in entry['command']]
+        imposed = [command for command in compiled(folder).values() if '-W' in command]
         expect(imposed, [])
     made = [name for _, _, names in os.walk(folder) for name in names if name.endswith(('.a', '.so'))]
     expect(made, ['libfathom.a'])
+
+
+def ports(build, work):
+    every = set(SAYS) - {'main'}
+    of_the_system = {'fathom_conformance_host', 'arduino-library'}
+    cases = [((f'FATHOM_{name.upper()}=ON',), {name}, BRINGS.get(name, set())) for name in sorted(every)] + [
+        (('FATHOM_POSIX=AUTO', 'FATHOM_GPIO=OFF'), set(), set()),
+        (('FATHOM_POSIX=ON', 'FATHOM_SIM=ON'), {'posix', 'sim'}, set()),
+        (('FATHOM_PORTS=ON',), every, of_the_system),
+        (('FATHOM_PORTS=ON', 'FATHOM_GPIO=OFF', 'FATHOM_SERIAL=OFF'), every - {'gpio', 'serial'}, of_the_system)]
+    folder = os.path.join(work, 'build')  # one for all of them, which compiles the library once
+    for settings, wanted, more in cases:
+        for name in every:
+            with contextlib.suppress(FileNotFoundError):
+                os.remove(os.path.join(folder, 'consumer_' + name))
+        said = configure(build, folder, '-DFATHOM_ROOT=' + ROOT, '-DSETTINGS=' + ';'.join(settings))
+        expect(set(re.findall('^-- brought (.*)$', said, re.M)), {'fathom'} | {'fathom_' + name for name in wanted} | more)
+        if len(settings) == 1:
+            have = wanted | {name[len('fathom_'):] for name in more - of_the_system}
+            expect_consumers(build, folder, have)
+            expect([path for path, command in compiled(folder).items() if '-W' in command], [])
+
+    # What cannot be built, and is asked for: the end, and what to do. Not asked for: the rest is built.
+    empty, old = os.path.join(work, 'empty'), os.path.join(work, 'old')
+    os.makedirs(empty)
+    os.makedirs(os.path.join(old, 'linux'))
+    with open(os.path.join(old, 'linux', 'gpio.h'), 'w', encoding='utf-8') as file:
+        file.write('#define GPIO_GET_LINEHANDLE_IOCTL 1\n')
+    no_modules = dict(os.environ, PKG_CONFIG_LIBDIR=empty, PKG_CONFIG_PATH='')
+    cannot = [('LIBMODBUS', [], no_modules, 'pkg-config did not find libmodbus: install it (Debian: libmodbus-dev)'),
+              ('LIBMODBUS', ['-DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=ON'], None,
+               'is not there: install both (Debian: pkg-config libmodbus-dev)'),
+              ('GPIO', ['-DCMAKE_C_FLAGS=-isystem ' + old], None,
+               'install the headers of Linux 5.10 or later (Debian: linux-libc-dev)'),
+              ('GPIO', ['-DFATHOM_POSIX=OFF'], None, 'FATHOM_POSIX is OFF, and this port needs that one: turn it on'),
+              ('POSIX', ['-DCMAKE_SYSTEM_NAME=Generic'], None, 'Generic is no POSIX system')]
+    for number, (name, options, environment, why) in enumerate(cannot):
+        folder = os.path.join(work, f'cannot{number}')
+        said = ' '.join(configure(build, folder, '-DFATHOM_ROOT=' + ROOT, f'-DSETTINGS=FATHOM_{name}=ON', *options,
+                                  good=False, env=environment).split())
+        expect((f'FATHOM_{name} is ON, but' in said, why in said), (True, True))
+        said = configure(build, folder, '-DFATHOM_ROOT=' + ROOT, '-DSETTINGS=FATHOM_PORTS=ON', *options,
+                         env=environment)
+        expect(f'The port {name.lower()} is not built:' in said, True)
+        expect('brought fathom_' + name.lower() in said, False)
+        # And once it is there, the same folder will do.
+        if not name == 'POSIX':
+            said = configure(build, folder, '-DFATHOM_ROOT=' + ROOT, '-DCMAKE_C_FLAGS=', '-DFATHOM_POSIX=AUTO',
+                             '-DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=OFF', f'-DSETTINGS=FATHOM_{name}=ON')
+            expect('brought fathom_' + name.lower() in said, True)
+
+    # A variable of the parent holds, from the first time on.
+    folder = os.path.join(work, 'crc16')
+    configure(build, folder, '-DFATHOM_ROOT=' + ROOT, '-DSETTINGS=FATHOM_CRC16=16')
+    expect(os.path.join(ROOT, 'src/codec/crc16_small.c') in compiled(folder), True)
+
+
+def outside(build, work):
+    prefix = installed(build, work)
+    for number, way in enumerate(('-DCMAKE_PREFIX_PATH=' + prefix, '-DFATHOM_ROOT=' + ROOT)):
+        folder = os.path.join(work, str(number))
+        for warnings, wanted in (('', (True, False)), ('off', (False, False)), ('on', (True, False)),
+                                 ('errors', (True, True))):
+            configure(build, folder, way, '-DWARNINGS=' + warnings, source=OUTSIDE)
+            command = compiled(folder)[os.path.join(OUTSIDE, 'port/loopback.c')]
+            expect(('-Wconversion' in command, '-Werror' in command), wanted)
+            expect('-W' in compiled(folder)[os.path.join(OUTSIDE, 'main.c')], False)
+        run('cmake', '--build', folder)
+        expect(run(os.path.join(folder, 'outside')), 'NO_RESPONSE\n')
+        for path, old, new, words in REFUSED:
+            copy = os.path.join(work, 'copy')
+            shutil.copytree(OUTSIDE, copy)
+            plant(copy, path, old, new)
+            said = configure(build, os.path.join(work, 'refused'), way, source=copy, good=False)
+            expect((words, words in ' '.join(said.split())), (words, True))
+            shutil.rmtree(copy)
+            shutil.rmtree(os.path.join(work, 'refused'))
+
+
+# What a port that stands elsewhere may not do: where, what it has, what it has instead, what CMake says.
+REFUSED = [
+    ('port/loopback.c', '#include "loopback.h"', '#include "loopback.h"\n#include "fathom/fathom.h"',
+     'includes fathom/fathom.h. A port is below the drivers'),
+    ('port/loopback.h', '#include "fathom/hal.h"', '# include <fathom/sensor/a16_pwm.h>', 'includes fathom/sensor/a16_pwm.h'),
+    ('port/internal/more.h', None, '#include "line_internal.h"\n', 'line_internal.h, which is no public header'),
+    ('port/loopback.c', '#include "loopback.h"', '#include "../fathom/src/common.h"', 'which is no public header'),
+    ('CMakeLists.txt', 'fathom_add_port(loopback', 'fathom_add_port(serial', 'there is fathom::serial already'),
+    ('CMakeLists.txt', 'fathom_add_port(loopback', 'fathom_add_port(Loop-back', 'a name is small letters'),
+    ('CMakeLists.txt', 'SOURCES port/loopback.c', 'SOURCES', 'SOURCES has no file'),
+    ('CMakeLists.txt', 'SOURCES port/loopback.c', 'SOURCES port/lop.c', 'there is no'),
+    ('CMakeLists.txt', 'SOURCES port', 'FILES port', 'is not understood'),
+    ('CMakeLists.txt', 'WARNINGS ${WARNINGS}', 'WARNINGS perhaps', 'it may be off, on or errors'),
+]
 
 
 def version(build, work):
@@ -164,8 +314,66 @@ def version(build, work):
         expect('version.h says' in said, True)
 
 
+# The way that has to fail, for a fault in a file of the project.
+FAULTS = [
+    ('find_package', 'port/install/CMakeLists.txt', '        INCLUDES DESTINATION ${include})', '        )'),
+    ('find_package', 'port/install/CMakeLists.txt', 'COMPATIBILITY SameMinorVersion', 'COMPATIBILITY AnyNewerVersion'),
+    ('pkg_config', 'port/install/CMakeLists.txt', 'set(requires fathom ${links})', 'set(requires fathom)'),
+    ('pkg_config', 'port/install/CMakeLists.txt', 'list(APPEND requires ${modules})', ''),
+    ('pkg_config', 'port/install/CMakeLists.txt', '"\\${pcfiledir}/${up}"', '${CMAKE_INSTALL_PREFIX}'),
+    ('layouts', 'port/install/CMakeLists.txt', 'if(IS_ABSOLUTE ${CMAKE_INSTALL_${folder}})', 'if(OFF)'),
+    ('layouts', 'port/install/fathom_port.pc.in', '@FATHOM_PC_INCLUDEDIR@', '${prefix}/include'),
+    ('subproject', 'CMakeLists.txt', 'if(FATHOM_STRICT)', 'if(TRUE)'),
+    ('ports', 'CMakeLists.txt', 'project(fathom', 'cmake_policy(SET CMP0126 OLD)\nproject(fathom'),
+    ('ports', 'CMakeLists.txt', '    ${FATHOM_TOP_LEVEL})\noption(FATHOM_EX', '    ON)\noption(FATHOM_EX'),
+    ('ports', 'port/CMakeLists.txt', 'message(FATAL_ERROR "FATHOM_${upper}', 'message(STATUS "FATHOM_${upper}'),
+    ('ports', 'port/CMakeLists.txt', 'unset(FATHOM_HAS_GPIO CACHE)', ''),
+    ('ports', 'port/CMakeLists.txt', 'if(FATHOM_MACHINE OR NOT FATHOM_PORTS)', 'if(FATHOM_MACHINE)'),
+    ('ports', 'port/CMakeLists.txt', 'set(warnings off)', 'set(warnings on)'),
+    ('ports', 'port/CMakeLists.txt', ' LINK fathom::posix)', ')'),
+    ('outside', 'port/install/fathom-config.cmake', 'include("${CMAKE_CURRENT_LIST_DIR}/fathom_add_port.cmake")', ''),
+    ('outside', 'port/fathom_add_port.cmake', 'fathom::fathom ${port_LINK}', 'fathom::fathom'),
+    ('outside', 'port/fathom_add_port.cmake', '    fathom_check_port_layer(${name} ${paths})', ''),
+    ('outside', 'port/fathom_add_port.cmake', 'fathom_warn(${target} -Werror)', 'fathom_warn(${target})'),
+    ('version', 'CMakeLists.txt', 'message(FATAL_ERROR "include/', 'message(STATUS "include/'),
+]
+COPIED = ('CMakeLists.txt', 'LICENSE', 'include', 'src', 'port', 'examples', os.path.join('tests', 'checks'))
+
+
+def self_test(work):
+    copy, build = os.path.join(work, 'copy'), os.path.join(work, 'build')
+    for name in COPIED:
+        source, target = os.path.join(ROOT, name), os.path.join(copy, name)
+        os.makedirs(os.path.dirname(target), exist_ok=True)
+        (shutil.copytree if os.path.isdir(source) else shutil.copy)(source, target)
+    script = os.path.join(copy, 'tests', 'checks', 'package.py')
+
+    def fails(way):
+        for step in (['cmake', '-S', copy, '-B', build, *LIBRARIES], ['cmake', '--build', build],
+                     [sys.executable, script, way, build]):
+            done = subprocess.run(step, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+            if done.returncode != 0:
+                return step[0] == sys.executable or done.stdout
+        return False
+    missed = 0
+    for way, path, old, new in FAULTS:
+        with open(os.path.join(copy, path), encoding='utf-8') as file:
+            text = file.read()
+        plant(copy, path, old, new)
+        if fails(way) is not True:
+            print(f'not found: {new!r} in {path}, by {way}')
+            missed += 1
+        with open(os.path.join(copy, path), 'w', encoding='utf-8') as file:
+            file.write(text)
+    print(f'{len(FAULTS)} planted faults, {len(FAULTS) - missed} found')
+    return 1 if missed else 0
+
+
 if __name__ == '__main__':
     with tempfile.TemporaryDirectory() as folder_of_all:
-        {'find_package': find_package, 'pkg_config': pkg_config, 'libmodbus': libmodbus, 'subproject': subproject,
+        if sys.argv[1:] == ['--self-test']:
+            sys.exit(self_test(folder_of_all))
+        {'find_package': find_package, 'pkg_config': pkg_config, 'layouts': layouts, 'libmodbus': libmodbus,
+         'subproject': subproject, 'ports': ports, 'outside': outside,
          'version': version}[sys.argv[1]](os.path.abspath(sys.argv[2]), folder_of_all)
     print(sys.argv[1], 'works')

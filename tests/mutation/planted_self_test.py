@@ -44,7 +44,7 @@ int main(int argc, char **argv)
 }
 ''',
     'tests/unit/test_b.c': '',
-    'CMakeLists.txt': '''cmake_minimum_required(VERSION 3.20)
+    'CMakeLists.txt': '''cmake_minimum_required(VERSION 3.21)
 project(a C)
 enable_testing()
 add_library(a STATIC src/a.c)

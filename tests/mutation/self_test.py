@@ -62,7 +62,7 @@ int tiny_limit(int x) { return x > 9 ? 9 : x; }
 '''
 PROJECT = {
     'CMakeLists.txt': '''\
-cmake_minimum_required(VERSION 3.20)
+cmake_minimum_required(VERSION 3.21)
 project(tiny C)
 enable_testing()
 include_directories(include)
