@@ -266,6 +266,13 @@ WRONG = [
         ('hps167s --port /nowhere baud 9600', '57600'),
         ('a05 --mode modbus --port /nowhere every-address 5', '--mode dyp'),
     ]),
+    *(('options_that_one_request_has_no_use_for_are_no_options', command, [
+        (f'{words} --port /nowhere {option}', f'there is no option {option.split()[0]}')
+        for option in ('--reconnect', '--interval 5', '--duration 5')])
+      for command, words in (('info', 'a16'), ('get', 'a16 address'), ('set', 'a16 address 5'),
+                             ('commission', 'a16 --addresses 2-3 --record /nowhere/record'),
+                             ('calibrate', 'hps167s --known 2000'), ('save', 'a16'), ('restore', 'a16 --file /nowhere/file'),
+                             ('reset', 'hps167s --yes-restore-factory-settings'))),
     ('wrong_words_are_usage_errors', 'reset', [
         ('a16 --port /nowhere --yes-restore-factory-settings', 'only an hps167s'),
         ('hps167s --port /nowhere', '--yes-restore-factory-settings'),

@@ -25,6 +25,18 @@ static bool check_modes(const sensor_options_t *options, const char *command)
     return true;
 }
 
+/* Rows of what reads again and again, of no use to what asks once. */
+static bool check_repetition(const char **values, const char *command)
+{
+    static const int rows[] = {OPTION_INTERVAL, OPTION_RECONNECT, OPTION_DURATION};
+    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
+        if (values[rows[i]] == NULL) continue;
+        (void)usage_error(command, "there is no option --%s", session_table[rows[i]].name);
+        return false;
+    }
+    return true;
+}
+
 /* The same as session_options, of so many of the words, if there are that many. */
 static bool take_options(session_t *session, const char *command, int argc, char **argv,
                          const struct option *table, const char **values, int most, char ***words, int *count,
@@ -37,7 +49,8 @@ static bool take_options(session_t *session, const char *command, int argc, char
     if (*wants_help) return true;
     const int taken = argc - rest < most ? argc - rest : most;
     session->options.asks_all = true;
-    if (!option_json(command, values[SESSION_FORMAT], &session->is_json) ||
+    if (!check_repetition(values, command) ||
+        !option_json(command, values[SESSION_FORMAT], &session->is_json) ||
         !sensor_options(&session->options, command, argv + rest, taken, values, values[SESSION_ADDRESS],
                         values[SESSION_MODE]) ||
         !check_modes(&session->options, command))
