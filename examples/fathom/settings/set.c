@@ -56,6 +56,7 @@ static void help(FILE *to)
         "  --all-units       tell every hps167s on the line at once, whatever its address; for termination "
         "and\n"
         "                    measure-after-power-on, and with --yes only\n"
+        "  --yes             says so, of --all-units\n"
         "  --may-not-be-found-again   for address 0 of an a16 or a05, at which it can be read and not set\n"
         "\nA new address is asked first whether a device is there. What the device does not tell is written "
         "without a look.\n"
