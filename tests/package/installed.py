@@ -36,7 +36,7 @@ def works(copy, version):
         yield said_of('fathom sim and fathom read', done)
 
 
-def manual(copy):
+def manual(copy, _):
     for page in ('fathom', 'fathom-read', 'fathom read'):
         done = copy.run(f'MANPAGER=cat MANWIDTH=80 man {page}')
         if done[0] != 0 or 'EXIT STATUS' not in done[1]:
@@ -46,14 +46,14 @@ def manual(copy):
         yield said_of('apropos fathom', done)
 
 
-def completes(copy):
+def completes(copy, _):
     done = copy.run('bash', '-c', '. /usr/share/bash-completion/bash_completion; _completion_loader fathom; '
                     'complete -p fathom')
     if done != (0, 'complete -F _fathom fathom\n'):
         yield said_of('bash-completion', done)
 
 
-def unit(copy):
+def unit(copy, _):
     done = copy.run('systemd-analyze', 'verify', '--man=no', 'fathom-publish.service')
     if done != (0, ''):
         yield said_of('systemd-analyze verify', done)
@@ -103,24 +103,23 @@ def paths(copy):
 
 def in_clean_system(base, packages, version, checks=None):
     """All of it: installed, looked at (by the checks that are named, or all), removed."""
-    wanted = (lambda name: checks is None or name in checks)
     with Copy(base, os.path.join(base.folder, 'copy')) as copy:
         copy.put(*packages)
         before = paths(copy)
-        done = copy.apt('install', *(f'/srv/{os.path.basename(package)}' for package in packages))
+        tool, library = (f'/srv/{os.path.basename(package)}' for package in packages)
+        done = copy.apt('install', tool)
         if done[0] != 0:
             yield said_of('apt-get install', done)
             return
-        if wanted('works'):
-            yield from works(copy, version)
-        if wanted('manual'):
-            yield from manual(copy)
-        if wanted('completes'):
-            yield from completes(copy)
-        if wanted('unit'):
-            yield from unit(copy)
-        if wanted('compiles'):
-            yield from compiles(copy, version)
+        for check in (works, manual, completes, unit):
+            if checks is None or check.__name__ in checks:
+                yield from check(copy, version)
+        if checks is None or 'compiles' in checks:
+            done = copy.apt('install', library)
+            if done[0] == 0:
+                yield from compiles(copy, version)
+            else:
+                yield said_of('apt-get install', done)
         done = copy.apt('purge', 'fathom', 'libfathom-dev', '--auto-remove')
         if done[0] != 0:
             yield said_of('apt-get purge', done)

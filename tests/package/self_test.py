@@ -36,7 +36,7 @@ FAULTS = [  # what; the package; a script of sh in its tree; the check; words th
     ('a unit with an unknown key', TOOL, f'sed -i s/^ExecReload/ExecReloads/ {UNIT}', 'unit', 'systemd-analyze verify'),
     ('a unit of a program that is not there', TOOL, f'sed -i s,/usr/bin/fathom,/usr/bin/phathom, {UNIT}', 'unit',
      'systemd-analyze verify'),
-    ('a unit that is enabled', TOOL, 'echo "deb-systemd-helper enable fathom-publish.service" >>DEBIAN/postinst', 'unit',
+    ('a unit that is enabled', TOOL, f'd=etc/systemd/system/multi-user.target.wants; mkdir -p $d && ln -s /{UNIT} $d', 'unit',
      'systemctl is-enabled'),
     ('a dependency of the tool is missing', TOOL, 'sed -i "s/, libmodbus5[^,]*//" DEBIAN/control', 'works',
      'fathom --version: exit status 127'),

@@ -12,16 +12,6 @@ _fathom_port() {{
     _files "$@"
 }}
 
-_fathom_word() {{  # WORD... before what _arguments adds, behind a --
-    local -a taken
-    while [[ $1 != -- ]]; do
-        taken+=("$1")
-        shift
-    done
-    shift
-    compadd "$@" -- $taken
-}}
-
 _fathom_setting() {{
     case ${{line[1]%%[:@]*}} in
 {settings}
@@ -61,8 +51,8 @@ def quoted(text):
 
 
 def words(names):
-    """An action of _arguments: one of these words."""
-    return '_fathom_word ' + ' '.join(name.replace(':', '\\:') for name in names) + ' --'
+    """An action of _arguments, which puts options of its own behind compadd: one of these words."""
+    return 'compadd -- ' + ' '.join(name.replace(':', '\\:') for name in names)
 
 
 def action(option):

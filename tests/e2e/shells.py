@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: MIT
+"""Shells that complete a command line of `fathom`: each gives the words that may stand in place of the last one."""
+import os
+import pty
+import re
+import subprocess
+import time
+
+import e2e
+
+PAGES = os.path.join(os.environ.get('FATHOM_BUILD') or os.path.dirname(e2e.FATHOM), 'examples/fathom/install/pages')
+ENVIRONMENT = {'PATH': '/usr/bin:/bin', 'LC_ALL': 'C.UTF-8', 'TERM': 'dumb', 'HOME': '/nonexistent'}
+
+BASH = r'''
+. /usr/share/bash-completion/bash_completion
+. "$1"
+COMP_LINE=$2 COMP_POINT=${#2} COMP_TYPE=9 COMP_KEY=9
+shift 2
+COMP_WORDS=("$@") COMP_CWORD=$(($# - 1))
+_fathom fathom "${COMP_WORDS[COMP_CWORD]}" "${COMP_WORDS[COMP_CWORD - 1]}" 2>/dev/null
+printf '%s\n' "${COMPREPLY[@]}"
+'''
+# What completion adds is written down, and then END.
+ZSH = r'''
+fpath=(%(folder)s $fpath)
+autoload -Uz compinit && compinit -u -D
+compadd() {
+    if [[ ${@[1,(i)(-|--)]} == *-[OAD]\ * ]]; then
+        builtin compadd "$@"
+        return
+    fi
+    local -a hits
+    builtin compadd -A hits "$@"
+    (( $#hits )) && print -rl -- $hits >>%(taken)s
+    builtin compadd "$@"
+}
+complete-and-tell() {
+    zle complete-word
+    print END >>%(taken)s
+}
+zle -N complete-and-tell
+bindkey '^I' complete-and-tell
+setopt no_beep
+unset zle_bracketed_paste
+print READY >>%(taken)s
+'''
+
+
+def run(*command, **options):
+    return subprocess.run(command, env=ENVIRONMENT, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True,
+                          check=True, timeout=e2e.PATIENCE, **options).stdout.split('\n')
+
+
+def by_bash(line, folder):
+    """With the words as bash cuts them: what is in COMP_WORDBREAKS is a word of its own."""
+    words = [part for word in line.split(' ') for part in (re.findall(r'[:=@]+|[^:=@]+', word) or [''])]
+    if re.search('[:=@]$', line):
+        words.append('')
+    kept = re.search(r'[^ ]*[:=@]$|$', line[:len(line) - len(words[-1])])[0]  # what bash leaves as it is
+    found = run('bash', '--norc', '-c', BASH, 'bash', f'{PAGES}/bash/fathom', line, *words, cwd=folder)
+    return {kept + word for word in found if word}
+
+
+def by_fish(line, folder):
+    found = run('fish', '--no-config', '-c', f'source {PAGES}/fish/fathom.fish; complete -C $argv[1]', line, cwd=folder)
+    return {word.split('\t')[0] for word in found if word}
+
+
+def by_zsh(line, folder):
+    """Typed into a shell at a terminal."""
+    taken, script = os.path.join(folder, 'taken'), os.path.join(folder, 'script')
+    with open(script, 'w', encoding='ascii') as file:
+        file.write(ZSH % {'folder': f'{PAGES}/zsh', 'taken': taken})
+    pid, terminal = pty.fork()
+    if pid == 0:
+        os.chdir(folder)
+        os.execve('/usr/bin/zsh', ['zsh', '-f', '-i'], ENVIRONMENT)
+    try:
+        os.write(terminal, f' . {script}\n'.encode())
+        wait_for('READY', taken, terminal)
+        os.write(terminal, line.encode() + b'\t')
+        words = wait_for('END', taken, terminal)
+    finally:
+        os.close(terminal)  # which hangs it up
+        os.waitpid(pid, 0)
+    kept = re.search(r'[^ ]*=$|$', line[:line.rfind('=') + 1])[0] if '=' in line.split(' ')[-1] else ''
+    return {kept + word.strip() for word in words[1:-1]}
+
+
+def wait_for(word, path, terminal):
+    """The lines of the file, of which the last one is the word. What the terminal shows is thrown away."""
+    deadline = time.monotonic() + e2e.PATIENCE
+    shown = b''
+    while time.monotonic() < deadline:
+        if e2e.is_ready(terminal, 0.05):
+            shown += os.read(terminal, 4096)
+        if os.path.exists(path):
+            with open(path, encoding='utf-8') as file:
+                lines = file.read().split('\n')
+            if lines[-2:] == [word, '']:
+                return lines[:-1]
+    raise AssertionError(f'{word} did not come: {shown.decode(errors="replace")}')
+
+
+SHELLS = {'bash': by_bash, 'zsh': by_zsh, 'fish': by_fish}
