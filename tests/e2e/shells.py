@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Shells that complete a command line of `fathom`: each gives the words that may stand in place of the last one."""
+"""Shells that complete command lines of `fathom`: each gives for every line the words that may stand in place of its
+last one."""
 import os
 import pty
 import re
@@ -40,7 +41,7 @@ complete-and-tell() {
 }
 zle -N complete-and-tell
 bindkey '^I' complete-and-tell
-setopt no_beep
+setopt no_beep no_auto_list
 unset zle_bracketed_paste
 print READY >>%(taken)s
 '''
@@ -51,22 +52,24 @@ def run(*command, **options):
                           check=True, timeout=e2e.PATIENCE, **options).stdout.split('\n')
 
 
-def by_bash(line, folder):
+def by_bash(lines, folder):
     """With the words as bash cuts them: what is in COMP_WORDBREAKS is a word of its own."""
-    words = [part for word in line.split(' ') for part in (re.findall(r'[:=@]+|[^:=@]+', word) or [''])]
-    if re.search('[:=@]$', line):
-        words.append('')
-    kept = re.search(r'[^ ]*[:=@]$|$', line[:len(line) - len(words[-1])])[0]  # what bash leaves as it is
-    found = run('bash', '--norc', '-c', BASH, 'bash', f'{PAGES}/bash/fathom', line, *words, cwd=folder)
-    return {kept + word for word in found if word}
+    for line in lines:
+        words = [part for word in line.split(' ') for part in (re.findall(r'[:=@]+|[^:=@]+', word) or [''])]
+        if re.search('[:=@]$', line):
+            words.append('')
+        kept = re.search(r'[^ ]*[:=@]$|$', line[:len(line) - len(words[-1])])[0]  # what bash leaves as it is
+        found = run('bash', '--norc', '-c', BASH, 'bash', f'{PAGES}/bash/fathom', line, *words, cwd=folder)
+        yield {kept + word for word in found if word}
 
 
-def by_fish(line, folder):
-    found = run('fish', '--no-config', '-c', f'source {PAGES}/fish/fathom.fish; complete -C $argv[1]', line, cwd=folder)
-    return {word.split('\t')[0] for word in found if word}
+def by_fish(lines, folder):
+    for line in lines:
+        found = run('fish', '--no-config', '-c', f'source {PAGES}/fish/fathom.fish; complete -C $argv[1]', line, cwd=folder)
+        yield {word.split('\t')[0] for word in found if word}
 
 
-def by_zsh(line, folder):
+def by_zsh(lines, folder):
     """Typed into a shell at a terminal."""
     taken, script = os.path.join(folder, 'taken'), os.path.join(folder, 'script')
     with open(script, 'w', encoding='ascii') as file:
@@ -78,13 +81,14 @@ def by_zsh(line, folder):
     try:
         os.write(terminal, f' . {script}\n'.encode())
         wait_for('READY', taken, terminal)
-        os.write(terminal, line.encode() + b'\t')
-        words = wait_for('END', taken, terminal)
+        for line in lines:
+            os.remove(taken)
+            os.write(terminal, b'\x15' + line.encode() + b'\t')  # Ctrl-U takes away the line before
+            kept = re.search(r'[^ ]*=|$', line[line.rfind(' ') + 1:])[0]
+            yield {kept + word.strip() for word in wait_for('END', taken, terminal)[:-1]}
     finally:
         os.close(terminal)  # which hangs it up
         os.waitpid(pid, 0)
-    kept = re.search(r'[^ ]*=$|$', line[:line.rfind('=') + 1])[0] if '=' in line.split(' ')[-1] else ''
-    return {kept + word.strip() for word in words[1:-1]}
 
 
 def wait_for(word, path, terminal):

@@ -30,8 +30,12 @@ class Option(Item):
         self.long = match[1]
         self.value, self.is_optional = match[3] or match[4], match[3] is not None
         self.choices = []  # words that it takes, if those are few
-        also = re.search(r'\bAlso (-\w) ', item.text)
-        self.short = also[1] if also else match[5]
+        self._short = match[5]
+
+    @property
+    def short(self):
+        also = re.search(r'\bAlso (-\w) ', self.text)
+        return also[1] if also else self._short
 
     @property
     def is_path(self):

@@ -87,6 +87,8 @@ def operands(command):
             yield quoted('3:VALUE:_fathom_value')
     elif command.sensors:
         yield quoted(f'{"*" if command.takes_several else "1"}:SENSOR:{words(command.sensors)}')
+    else:
+        yield quoted('*: : ')  # words that it has no list of; options may follow them
 
 
 def case(command):
