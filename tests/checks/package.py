@@ -41,6 +41,11 @@ BRINGS = {'gpio': {'fathom_posix'}}
 # The project without what is not installed for programs.
 LIBRARIES = ('-DFATHOM_TESTS=OFF', '-DFATHOM_EXAMPLES=OFF', '-DCMAKE_BUILD_TYPE=Release')
 
+# Beside the library and the tool.
+INSTALLED = ('share/doc/fathom/LICENSE', 'share/man/man1/fathom.1.gz', 'share/man/man1/fathom-read.1.gz',
+             'share/bash-completion/completions/fathom', 'share/zsh/site-functions/_fathom',
+             'share/fish/vendor_completions.d/fathom.fish', 'lib/systemd/system/fathom-publish.service')
+
 
 def run(*command, good=True, **options):
     done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False,
@@ -66,6 +71,8 @@ def installed(build, work):
     first, prefix = os.path.join(work, 'first'), os.path.join(work, 'moved')
     run('cmake', '--install', build, '--prefix', first)
     os.rename(first, prefix)
+    for path in INSTALLED:
+        expect((path, os.path.exists(os.path.join(prefix, path))), (path, True))
     names_no_place(build, prefix, first)
     return prefix
 

@@ -33,8 +33,11 @@ exec chroot "$root" "$@"
 
 def run(command, **options):
     """(exit status, what it printed)"""
-    done = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                          errors='replace', check=False, **options)
+    try:
+        done = subprocess.run(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              text=True, errors='replace', check=False, **options)
+    except subprocess.TimeoutExpired as error:
+        return 124, f'it went on for {error.timeout:g} s'
     return done.returncode, done.stdout
 
 

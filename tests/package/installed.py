@@ -29,7 +29,7 @@ def works(copy, version):
         yield said_of('fathom --version', done)
     # A simulated sensor and the tool that reads it, over a pseudo terminal of the copy.
     done = copy.run('fathom sim a16 --link /tmp/tank --distance 1234 >/dev/null & '
-                    'until [ -e /tmp/tank ]; do sleep 0.1; done; '
+                    'for try in $(seq 100); do [ -e /tmp/tank ] || sleep 0.1; done; '
                     'fathom read a16 --port /tmp/tank --count 3 --format csv --no-header 2>&1; '
                     'status=$?; kill %1; exit $status', seconds=30)
     if done[0] != 0 or len(re.findall(r',target,.*\b1234\b', done[1])) != 3:

@@ -12,7 +12,6 @@ import csv
 import os
 import re
 import shutil
-import subprocess
 import sys
 import time
 
@@ -145,7 +144,4 @@ def main():
 
 if __name__ == '__main__':
     sys.dont_write_bytecode = True
-    try:
-        sys.exit(main())
-    except subprocess.TimeoutExpired as error:
-        sys.exit(str(error))
+    sys.exit(main())
