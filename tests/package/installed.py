@@ -54,7 +54,8 @@ def completes(copy, _):
 
 
 def unit(copy, _):
-    done = copy.run('systemd-analyze', 'verify', '--man=no', 'fathom-publish.service')
+    has_page = copy.run('man', '-w', 'fathom-publish')[0] == 0  # which the unit names
+    done = copy.run('systemd-analyze', 'verify', f'--man={"yes" if has_page else "no"}', 'fathom-publish.service')
     if done != (0, ''):
         yield said_of('systemd-analyze verify', done)
     done = copy.run('systemctl', 'is-enabled', 'fathom-publish.service')

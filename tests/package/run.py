@@ -6,8 +6,8 @@
     run.py --update       keeps the figures
     run.py --self-test    plants faults in the packages, and sees that each is found
 
-It needs root, for the clean system (sudo, if it is not), and the packages lintian, debootstrap, mandoc, groff and
-systemd."""
+It needs root, for the clean system (sudo, if it is not), and the packages lintian, debootstrap, mandoc, groff, man-db,
+strace, dpkg-dev and systemd."""
 import csv
 import os
 import re
@@ -16,6 +16,7 @@ import sys
 import time
 
 import installed
+import syscalls
 import unpacked
 from clean import Base, must
 
@@ -37,7 +38,7 @@ def report(name, problems, began):
 
 
 def build():
-    """By the command that port/README.md names."""
+    """By the command that the page of the tool names."""
     for package in [name for name in os.listdir(PACKAGES) if name.endswith('.deb')] if os.path.isdir(PACKAGES) else []:
         os.remove(os.path.join(PACKAGES, package))
     must(['cmake', '--preset', 'debian'], cwd=ROOT)
@@ -116,6 +117,8 @@ def check(packages):
     report('places and modes', unpacked.places(packages), began)
     began = time.monotonic()
     report('man pages', unpacked.pages(root), began)
+    began = time.monotonic()
+    report("the unit's filter", syscalls.problems(root, unpacked.UNIT), began)
     began = time.monotonic()
     base = Base(WORK)
     base.make()

@@ -5,6 +5,7 @@ import shutil
 import time
 
 import run as runner
+import syscalls
 import unpacked
 from clean import Base, must
 from installed import in_clean_system
@@ -31,6 +32,10 @@ FAULTS = [  # what; the package; a script of sh in its tree; the check; words th
     ('no completion of fish', TOOL, 'rm -r usr/share/fish', 'places', 'no file is usr/share/fish'),
     ('no copyright', DEV, f'rm usr/share/doc/{DEV}/copyright', 'tags', 'E no-copyright-file'),
     ('a unit that is less locked', TOOL, f'sed -i /^SystemCallFilter/d {UNIT}', 'figures', 'exposure'),
+    ('a unit without a call that the tool needs', TOOL, f'sed -i "/^SystemCallErrorNumber/i SystemCallFilter=~flock" {UNIT}',
+     'syscalls', 'does not let flock through'),
+    ('a unit without sockets', TOOL, f'sed -i "s/^RestrictAddressFamilies=.*/RestrictAddressFamilies=AF_UNIX/" {UNIT}',
+     'syscalls', 'the unit has no AF_INET'),
     ('a larger package', DEV, 'dd if=/dev/urandom of=usr/include/fathom/large.h bs=1k count=20 2>&1', 'figures',
      f'size_bytes {DEV}'),
     ('a unit with an unknown key', TOOL, f'sed -i s/^ExecReload/ExecReloads/ {UNIT}', 'unit', 'systemd-analyze verify'),
@@ -78,6 +83,8 @@ def found_by(check, packages, base, version):
     if check == 'tags':
         return list(runner.compared_tags(unpacked.tags(packages)))
     root = runner.extracted(packages, os.path.join(base.folder, 'extracted'))
+    if check == 'syscalls':
+        return list(syscalls.problems(root, UNIT))
     return list(unpacked.pages(root) if check == 'pages' else runner.compared(runner.measured(packages, root)))
 
 

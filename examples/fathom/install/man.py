@@ -129,7 +129,7 @@ def command_page(tool, command, version, date):
                                        *(f'`{line}'.replace(': ', '`: ', 1) for line in more), *rest])),
         section('OPTIONS', blocks(said.options)),
         section('NOTES', blocks(said.after)),
-        section('EXIT STATUS', filled(said.status)),
+        section('EXIT STATUS', filled(said.status) if said.status else []),
         section('EXAMPLES', examples(said.examples)),
         section('SEE ALSO', see_also(['fathom(1)', *others]))])
 
@@ -144,7 +144,7 @@ def main_page(tool, version, date):
         section('SYNOPSIS', synopsis([*said.usage, *(Item(item.tag, '') for item in options)])),
         section('DESCRIPTION', blocks([intro, *options, *(block for block in rest if isinstance(block, str))])),
         section('COMMANDS', blocks(commands)),
-        section('EXIT STATUS', filled(said.status)),
+        section('EXIT STATUS', filled(said.status) if said.status else []),
         section('FILES', blocks([Item(*file) for file in FILES])),
         section('EXAMPLES', [*filled(said.examples_title), *examples(said.examples)]),
         section('SEE ALSO', see_also([*SEE_ALSO, *(f'fathom-{command.name}(1)' for command in tool.commands)]))])
