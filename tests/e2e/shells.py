@@ -65,7 +65,8 @@ def by_bash(lines, folder):
 
 def by_fish(lines, folder):
     for line in lines:
-        found = run('fish', '--no-config', '-c', f'source {PAGES}/fish/fathom.fish; complete -C $argv[1]', line, cwd=folder)
+        script = f'source {PAGES}/fish/fathom.fish; complete -C $argv[1]'
+        found = run('fish', '--no-config', '-c', script, line, cwd=folder)
         yield {word.split('\t')[0] for word in found if word}
 
 

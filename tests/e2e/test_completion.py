@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The completions of bash, zsh and fish: each shell offers what the tool takes, no more and no less, in every command."""
+"""The completions of bash, zsh and fish: each shell offers what the tool takes, no more and no less, in every
+command."""
 import glob
 import os
 import re
@@ -74,7 +75,7 @@ class Completion(e2e.Case):
         told = self.run_fathom(command, '--help').out
         # What one request has no use for is refused behind the sensor only.
         behind = ['a16'] if command in ASKS_ONCE else []
-        taken = {name for name in names_of_options() if takes(name) and (not behind or takes(*behind, name, '1'))}
+        taken = {name for name in names_of_options() if takes(*behind, name, *(['1'] if behind else []))}
         begins = {name for name in taken if not re.search(rf'{name}(?![\w-])', told) and
                   any(other.startswith(name) and other != name for other in taken)}
         return taken - begins - REFUSED.get(command, set())

@@ -58,6 +58,9 @@ def unit(copy, _):
     done = copy.run('systemd-analyze', 'verify', f'--man={"yes" if has_page else "no"}', 'fathom-publish.service')
     if done != (0, ''):
         yield said_of('systemd-analyze verify', done)
+    done = copy.run('dpkg -i /srv/fathom_*.deb')  # as an update is
+    if done[0] != 0:
+        yield said_of('installed once more', done)
     done = copy.run('systemctl', 'is-enabled', 'fathom-publish.service')
     if done != (1, 'disabled\n'):
         yield said_of('systemctl is-enabled', done)
@@ -79,7 +82,7 @@ def compiles(copy, version):
         if done[0] != 0:
             yield said_of(f'{source} by pkg-config {module}', done)
     done = copy.run('cd /srv/consumer && cmake -DFATHOM_WANTED= -S . -B /tmp/build && cmake --build /tmp/build && '
-                    'for program in /tmp/build/*; do [ ! -f "$program" ] || [ ! -x "$program" ] || "$program" || exit; done')
+                    'for program in $(find /tmp/build -maxdepth 1 -type f -perm -u=x); do "$program" || exit; done')
     if done[0] != 0:
         yield said_of('the programs by find_package', done)
     done = copy.run('cd /srv/consumer && cc bus.c $(pkg-config --cflags --libs fathom_posix fathom_sim) -o /tmp/bus && '

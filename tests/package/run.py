@@ -97,7 +97,8 @@ def update(figures, found):
     with open(FIGURES, 'w', encoding='utf-8', newline='') as file:
         rows = csv.writer(file, lineterminator='\n')
         rows.writerow(['what', 'of', 'value', 'why'])
-        rows.writerows([*name, f'{value:g}' if name[0] == 'exposure' else int(value), ''] for name, value in figures.items())
+        rows.writerows([*name, f'{value:g}' if name[0] == 'exposure' else int(value), '']
+                       for name, value in figures.items())
         rows.writerows(['lintian', *row, named.get(row, '')] for row in found)
 
 

@@ -77,7 +77,8 @@ def case(command):
         lines.append(f"        sensors='{' '.join(command.sensors)}'")
     if settings:
         lines.append(f'        settings={settings}')
-    rows = [f"        {' | '.join(option.names)}) takes='{takes(option)}' ;;" for option in command.options if takes(option)]
+    rows = [f"        {' | '.join(option.names)}) takes='{takes(option)}' ;;"
+            for option in command.options if takes(option)]
     lines += ['        case $prev in', *rows, '        esac', '        ;;'] if rows else ['        ;;']
     return lines
 

@@ -71,7 +71,8 @@ def operand_rows(tool, command):
     if command.takes_files:
         yield f'{when} -F'
     elif command.takes_settings:
-        yield f'complete -c fathom -n {quoted(f"__fathom_operand {command.name} 0")} -a {quoted(" ".join(command.sensors))}'
+        yield (f'complete -c fathom -n {quoted(f"__fathom_operand {command.name} 0")} '
+               f'-a {quoted(" ".join(command.sensors))}')
         for model, names in tool.settings.items():
             yield (f'complete -c fathom -n {quoted(f"__fathom_model {command.name} 1 {model}")} '
                    f'-a {quoted(" ".join(names))}')

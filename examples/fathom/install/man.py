@@ -6,7 +6,7 @@ from tool_help import Item, Option
 
 FILES = [
     ('/dev/ttyUSB0', 'A serial port. It belongs to the group dialout on Debian.'),
-    ('/dev/serial/by-id/', 'The same ports by the names of their adapters, which stay when one is plugged in elsewhere.'),
+    ('/dev/serial/by-id/', 'The same ports by the names of their adapters, which stay in another socket.'),
     ('/dev/gpiochip0', 'The lines of a board.'),
 ]
 SEE_ALSO = ['mbpoll(1)', 'gpioinfo(1)']
@@ -110,7 +110,8 @@ def see_also(names):
 
 
 def page(title, version, date, name, sections):
-    lines = [f'.\\" Made from the help of fathom {version}.', f'.TH {title.upper()} 1 {date} "fathom {version}" "User Commands"',
+    lines = [f'.\\" Made from the help of fathom {version}.',
+             f'.TH {title.upper()} 1 {date} "fathom {version}" "User Commands"',
              '.nh', '.ad l', '.SH NAME', f'{literal(title)} \\- {plain(name)}']
     for one in sections:
         lines += one

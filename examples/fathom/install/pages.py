@@ -4,8 +4,8 @@
 
     pages.py TOOL VERSION CHANGES FOLDER
 
-TOOL is the built program, CHANGES the file that has the day of VERSION in a heading, if it is there. In FOLDER there are man1/*.1.gz
-and bash/fathom, zsh/_fathom, fish/fathom.fish then, byte for byte the same each time."""
+TOOL is the built program, CHANGES the file that has the day of VERSION in a heading, if it is there. In FOLDER there
+are man1/*.1.gz and bash/fathom, zsh/_fathom, fish/fathom.fish then, byte for byte the same each time."""
 import gzip
 import os
 import re

@@ -149,7 +149,8 @@ class Tool:
             if isinstance(row, Item) and 'modes: ' in row.text:
                 self.models[row.tag] = row.text.split('modes: ')[1].split(', ')
         self.settings = {model: self.settings_of(model) for model in self.models}
-        self.commands = [Command(self, *row) for row in re.findall(r'^  (\w+) +(\S.*)$', overview.split('\n\n')[2], re.M)]
+        rows = re.findall(r'^  (\w+) +(\S.*)$', overview.split('\n\n')[2], re.M)
+        self.commands = [Command(self, *row) for row in rows]
 
     def run(self, *words):
         environment = {name: value for name, value in os.environ.items() if name != 'FATHOM_PORT'}
@@ -181,7 +182,8 @@ class Tool:
             return []
         found = []
         port = ['--port', '/nowhere'] if any(other.long == '--port' for other in command.options) else []
-        for words in [[model] for model in command.models] + [['a05::modbus']] if command.models else [['1', '3', '0'], []]:
+        sensors = [[model] for model in command.models] + [['a05::modbus']]
+        for words in sensors if command.models else [['1', '3', '0'], []]:
             said = self.run(command.name, *words, *port, option.long, '').stderr
             found += [word for word in named(said, option.long) if word not in found]
             if found and option.long != '--mode':
