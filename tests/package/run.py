@@ -15,6 +15,7 @@ import shutil
 import sys
 import time
 
+import booted
 import installed
 import syscalls
 import unpacked
@@ -127,6 +128,8 @@ def check(packages):
     report('the clean system', [], began)
     began = time.monotonic()
     report('installed, used, compiled with, removed', installed.in_clean_system(base, packages, version()), began)
+    began = time.monotonic()
+    report('the service under systemd', booted.problems(base, packages, version()), began)
 
 
 def main():

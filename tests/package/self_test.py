@@ -4,6 +4,7 @@ import os
 import shutil
 import time
 
+import booted
 import run as runner
 import syscalls
 import unpacked
@@ -56,6 +57,8 @@ FAULTS = [  # what; the package; a script of sh in its tree; the check; words th
     ('a completion of another name', TOOL, 'sed -i "s/_fathom fathom$/_fathom phathom/" '
      'usr/share/bash-completion/completions/fathom', 'completes', 'bash-completion'),
     ('an update that fails', TOOL, 'echo "test -z \\"\\$2\\"" >>DEBIAN/postinst', 'unit', 'installed once more'),
+    ('a service without its password', TOOL, f'sed -i /^LoadCredential/d {UNIT}', 'booted', "['password: ', "),
+    ('a service that may not open ports', TOOL, f'sed -i /^SupplementaryGroups/d {UNIT}', 'booted', "'group: ', "),
     ('a file that stays', TOOL,
      'echo "mkdir -p /etc/fathom; touch /etc/fathom/publish.yaml" >>DEBIAN/postinst', 'leaves',
      'left behind: f644 /etc/fathom/publish.yaml'),
@@ -84,6 +87,8 @@ def planted(packages, which, script, folder):
 def found_by(check, packages, base, version):
     if check in IN_CLEAN_SYSTEM:
         return list(in_clean_system(base, packages, version, {check}))
+    if check == 'booted':
+        return list(booted.problems(base, packages, version))
     if check == 'places':
         return list(unpacked.places(packages))
     if check == 'tags':
