@@ -45,8 +45,8 @@ sleep 60
 '''
 DROP_IN = '[Service]\nType=exec\nExecStart=\nExecStart=/bin/sh /srv/try.sh\nStandardOutput=file:/run/told\n'
 NONE = '0000000000000000'
-TOLD = ['password: {}', 'group: read by dialout', f'CapEff:\t{NONE}', f'CapBnd:\t{NONE}', 'NoNewPrivs:\t1', 'Seccomp:\t2',
-        'fathom {}']
+TOLD = ['password: {}', 'group: read by dialout', f'CapEff:\t{NONE}', f'CapBnd:\t{NONE}', 'NoNewPrivs:\t1',
+        'Seccomp:\t2', 'fathom {}']
 START = ('rm -f /run/told; systemctl daemon-reload; systemctl start fathom-publish.service || exit; '
          'for try in $(seq 50); do grep -q ^fathom /run/told || sleep 0.1; done; cat /run/told; '
          'systemctl stop fathom-publish.service')
@@ -76,8 +76,8 @@ def problems(base, packages, version):
         for has_password in (True, False):
             if not has_password:
                 os.remove(password)
-            with subprocess.Popen(['unshare', '--mount', '--pid', '--ipc', '--uts', '--net', '--cgroup', '--fork',
-                                   '--kill-child', 'sh', '-c', BOOT, 'boot', copy.root, base.root, copy.upper, copy.work],
+            apart = ['unshare', '--mount', '--pid', '--ipc', '--uts', '--net', '--cgroup', '--fork', '--kill-child']
+            with subprocess.Popen([*apart, 'sh', '-c', BOOT, 'boot', copy.root, base.root, copy.upper, copy.work],
                                   stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT) as init:
                 try:
                     status, said = inside(init.pid, START)
