@@ -11,7 +11,7 @@ import zipfile
 import build
 
 OUT = sys.argv[1]
-LIBRARY = os.path.join(OUT, 'Fathom')
+LIBRARY = build.library(OUT)
 WARNINGS = ['-Wall', '-Wextra', '-Wpedantic', '-Wconversion', '-Wsign-conversion', '-Wshadow',
             '-Wmissing-declarations']
 
@@ -101,9 +101,19 @@ def test_the_top_of_the_repository_is_not_taken_for_a_library():
     assert not os.path.exists(os.path.join(build.ROOT, 'library.properties'))
 
 
+def test_the_builder_finds_the_library_by_its_header_for_each_sketch():
+    """And so does a user's sketch: nothing but the folder with the library is given to it."""
+    for said in read(OUT, 'builder.txt').split('== ')[1:]:
+        name = said.split('\n', 1)[0]
+        used = re.findall(r'^Using library (\S+) at version (\S+) in folder: (\S+)', said, re.M)
+        assert ('Fathom', properties()['version'], LIBRARY) in used, name
+        # What it thinks of a manifest that it does not like.
+        assert not re.search(r'^(WARNING|Invalid)', said, re.M | re.I), name
+
+
 def test_the_port_compiles_without_a_warning():
     # The core's headers have some, and as system headers avr-gcc takes them for C.
-    command = ['avr-g++', '-std=c++11', '-Os', *WARNINGS, *build.BOARD, '-DDECIMAL_DIG=__DECIMAL_DIG__',
+    command = ['avr-g++', '-std=c++11', '-Os', *WARNINGS, *build.BOARD, build.CORE_NEEDS,
                *build.INCLUDE, '-I' + os.path.join(LIBRARY, 'src'), '-c',
                os.path.join(LIBRARY, 'src/fathom_arduino.cpp'), '-o', '/dev/null']
     done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
@@ -127,7 +137,7 @@ def test_the_header_compiles_alone_and_twice_and_on_a_mega_and_a_leonardo():
                 sketch = ['-include', 'Arduino.h', '-x', 'c++'] if path.endswith('.ino') else []
                 build.run(['avr-g++', '-c', '-Os', '-w', '-std=gnu++11', '-fpermissive', '-fno-exceptions', '-mmcu=' + chip,
                            '-DF_CPU=16000000L', '-DARDUINO=10819', '-DARDUINO_AVR_' + board, '-DARDUINO_ARCH_AVR',
-                           *usb, '-DDECIMAL_DIG=__DECIMAL_DIG__', '-I' + build.CORE,
+                           *usb, build.CORE_NEEDS, '-I' + build.CORE,
                            '-I' + build.AVR + '/variants/' + variant, '-I' + os.path.join(LIBRARY, 'src'), *sketch,
                            path, '-o', '/dev/null'])
 
