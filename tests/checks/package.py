@@ -218,21 +218,34 @@ def ports(build, work):
     cases = [((f'FATHOM_{name.upper()}=ON',), {name}, BRINGS.get(name, set())) for name in sorted(every)] + [
         (('FATHOM_POSIX=AUTO', 'FATHOM_GPIO=OFF'), set(), set()),
         (('FATHOM_POSIX=ON', 'FATHOM_SIM=ON'), {'posix', 'sim'}, set()),
-        (('FATHOM_PORTS=ON',), every, of_the_system),
-        (('FATHOM_PORTS=ON', 'FATHOM_GPIO=OFF', 'FATHOM_SERIAL=OFF'), every - {'gpio', 'serial'}, of_the_system)]
+        (('FATHOM_PORTS=ON', 'FATHOM_GPIO=OFF', 'FATHOM_SERIAL=OFF'), every - {'gpio', 'serial'}, of_the_system),
+        (('FATHOM_PORTS=ON',), every, of_the_system)]
     folder = os.path.join(work, 'build')  # one for all of them, which compiles the library once
-    for settings, wanted, more in cases:
-        for name in every:
-            with contextlib.suppress(FileNotFoundError):
-                os.remove(os.path.join(folder, 'consumer_' + name))
-        said = configure(build, folder, '-DFATHOM_ROOT=' + ROOT, '-DSETTINGS=' + ';'.join(settings))
-        expect(set(re.findall('^-- brought (.*)$', said, re.M)), {'fathom'} | {'fathom_' + name for name in wanted} | more)
-        if len(settings) == 1:
-            have = wanted | {name[len('fathom_'):] for name in more - of_the_system}
-            expect_consumers(build, folder, have)
-            expect([path for path, command in compiled(folder).items() if '-W' in command], [])
 
-    # What cannot be built, and is asked for: the end, and what to do. Not asked for: the rest is built.
+    def configure_case(settings):
+        said = configure(build, folder, '-DFATHOM_ROOT=' + ROOT, '-DSETTINGS=' + ';'.join(settings))
+        expect([path for path, command in compiled(folder).items() if '-W' in command], [])
+        return set(re.findall('^-- brought (.*)$', said, re.M))
+    for settings, wanted, more in cases:
+        expect(configure_case(settings), {'fathom'} | {'fathom_' + name for name in wanted} | more)
+    ports_that_cannot_be_built(build, work)
+
+    # A variable of the parent holds, from the first time on.
+    first = os.path.join(work, 'first')
+    configure(build, first, '-DFATHOM_ROOT=' + ROOT, '-DSETTINGS=FATHOM_CRC16=16')
+    expect(os.path.join(ROOT, 'src/codec/crc16_small.c') in compiled(first), True)
+
+    for settings, wanted, more in cases:
+        if len(settings) == 1:
+            for name in every:
+                with contextlib.suppress(FileNotFoundError):
+                    os.remove(os.path.join(folder, 'consumer_' + name))
+            configure_case(settings)
+            expect_consumers(build, folder, wanted | {name[len('fathom_'):] for name in more - of_the_system})
+
+
+def ports_that_cannot_be_built(build, work):
+    """Asked for: the end, and what to do. Not asked for: the rest is built."""
     empty, old = os.path.join(work, 'empty'), os.path.join(work, 'old')
     os.makedirs(empty)
     os.makedirs(os.path.join(old, 'linux'))
@@ -253,18 +266,11 @@ def ports(build, work):
         expect((f'FATHOM_{name} is ON, but' in said, why in said), (True, True))
         said = configure(build, folder, '-DFATHOM_ROOT=' + ROOT, '-DSETTINGS=FATHOM_PORTS=ON', *options,
                          env=environment)
-        expect(f'The port {name.lower()} is not built:' in said, True)
-        expect('brought fathom_' + name.lower() in said, False)
-        # And once it is there, the same folder will do.
-        if not name == 'POSIX':
+        expect((f'The port {name.lower()} is not built:' in said, 'brought fathom_' + name.lower() in said), (True, False))
+        if name != 'POSIX':  # once it is there, the same folder will do
             said = configure(build, folder, '-DFATHOM_ROOT=' + ROOT, '-DCMAKE_C_FLAGS=', '-DFATHOM_POSIX=AUTO',
                              '-DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=OFF', f'-DSETTINGS=FATHOM_{name}=ON')
             expect('brought fathom_' + name.lower() in said, True)
-
-    # A variable of the parent holds, from the first time on.
-    folder = os.path.join(work, 'crc16')
-    configure(build, folder, '-DFATHOM_ROOT=' + ROOT, '-DSETTINGS=FATHOM_CRC16=16')
-    expect(os.path.join(ROOT, 'src/codec/crc16_small.c') in compiled(folder), True)
 
 
 def outside(build, work):
