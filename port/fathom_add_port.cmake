@@ -10,8 +10,9 @@
 #   LINK      what it needs more, another port or a library of the system; its users get that, too
 #   WARNINGS  Fathom's own, of GCC and Clang; on, or as errors, or off: those of the project alone. Without it on
 #
-# A port is below no driver, so its sources, and the headers beside and below HEADERS, include fathom/hal.h, codecs and
-# engines, but not fathom/fathom.h and not fathom/sensor/, and nothing of Fathom's src/: that is refused when CMake runs.
+# A port is below the drivers: its sources, and the headers beside them and in their internal/, include fathom/hal.h,
+# codecs and engines, but not fathom/fathom.h and not fathom/sensor/, and nothing of Fathom's src/. That is refused when
+# CMake runs.
 
 # What the sources are kept free of, on every compiler that CI uses; fathom_strict() makes them errors.
 set_property(GLOBAL PROPERTY FATHOM_WARNINGS -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow
@@ -32,11 +33,11 @@ function(fathom_check_port_layer name)
         foreach(line IN LISTS includes)
             string(REGEX REPLACE "^[^<\"]*[<\"]([^>\"]*)[>\"].*$" "\\1" header "${line}")
             if(header MATCHES "^fathom/(fathom\\.h|sensor/)")
-                message(FATAL_ERROR "The port ${name}, ${path}: includes ${header}. A port is below the drivers: it may "
-                    "include fathom/hal.h, fathom/codec/ and fathom/engine/")
+                message(FATAL_ERROR "The port ${name}, ${path}: includes ${header}. A port is below the drivers: it "
+                    "may include fathom/hal.h, fathom/codec/ and fathom/engine/")
             elseif(header MATCHES "(^|/)src/(common\\.h|codec/|engine/|sensor/)" OR header MATCHES "_internal\\.h$")
-                message(FATAL_ERROR "The port ${name}, ${path}: includes ${header}, which is no public header of Fathom. "
-                    "A port may include what is below include/")
+                message(FATAL_ERROR "The port ${name}, ${path}: includes ${header}, which is no public header of "
+                    "Fathom. A port may include what is below include/")
             endif()
         endforeach()
     endforeach()

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The oldest CMake that will do is said once, in CMakeLists.txt. A project of its own has to say a version too, and says
-that one; nothing else says any: no preset, no script, no page."""
+"""The oldest CMake that will do is said once, in CMakeLists.txt. A project of its own has to say a version too, and it
+says that one; nothing else says any: no preset, no script, no page."""
 import os
 import re
 
@@ -42,7 +42,8 @@ FAULTS = [
     (SOURCE, 'cmake_minimum_required(VERSION', 'cmake_minimum_required(VERSION 3.5)\ncmake_minimum_required(VERSION',
      'says 2 versions'),
     (SOURCE, 'cmake_minimum_required(VERSION', '# cmake_minimum(VERSION', 'says 0 versions'),
-    ('examples/nrf51/CMakeLists.txt', 'cmake_minimum_required(VERSION 3.', 'cmake_minimum_required(VERSION 2.', 'requires CMake 2.'),
+    ('examples/nrf51/CMakeLists.txt', 'cmake_minimum_required(VERSION 3.', 'cmake_minimum_required(VERSION 2.',
+     'requires CMake 2.'),
     ('port/arduino/layout.cmake', None, 'cmake_minimum_required(VERSION 3.21)\n', 'is no project of its own'),
     ('CMakePresets.json', '"version": 3,', '"version": 3, "cmakeMinimumRequired": {},', 'cmakeMinimumRequired'),
     ('README.md', None, 'It needs CMake 3.21.\n', 'names CMake 3.21'),

@@ -7,7 +7,7 @@
     package.py layouts BUILD         the same with DESTDIR, and with folders of other names
     package.py libmodbus BUILD       the port over libmodbus, in both ways, and without libmodbus the rest of it
     package.py subproject BUILD      by add_subdirectory, which builds the library and nothing else
-    package.py ports BUILD           by add_subdirectory, with one port or another
+    package.py ports BUILD           by add_subdirectory or FetchContent, with one port or another
     package.py outside BUILD         a port that stands elsewhere, on Fathom in both ways
     package.py version BUILD         the version comes from one place
     package.py --self-test           each of them fails when the project's CMake files have a fault
@@ -22,7 +22,8 @@ import subprocess
 import sys
 import tempfile
 
-from common import ROOT, files, plant
+from common import ROOT, files, plant, read
+from package_faults import self_test
 
 CONSUMER = os.path.join(ROOT, 'tests', 'checks', 'consumer')
 OUTSIDE = os.path.join(ROOT, 'tests', 'checks', 'outside')
@@ -41,7 +42,7 @@ BRINGS = {'gpio': {'fathom_posix'}}
 # The project without what is not installed for programs.
 LIBRARIES = ('-DFATHOM_TESTS=OFF', '-DFATHOM_EXAMPLES=OFF', '-DCMAKE_BUILD_TYPE=Release')
 
-# Beside the library and the tool.
+# Beside the library, with the tool.
 INSTALLED = ('share/doc/fathom/LICENSE', 'share/man/man1/fathom.1.gz', 'share/man/man1/fathom-read.1.gz',
              'share/bash-completion/completions/fathom', 'share/zsh/site-functions/_fathom',
              'share/fish/vendor_completions.d/fathom.fish', 'lib/systemd/system/fathom-publish.service')
@@ -71,7 +72,7 @@ def installed(build, work):
     first, prefix = os.path.join(work, 'first'), os.path.join(work, 'moved')
     run('cmake', '--install', build, '--prefix', first)
     os.rename(first, prefix)
-    for path in INSTALLED:
+    for path in INSTALLED if project(build, 'FATHOM_EXAMPLES') == 'ON' else ():
         expect((path, os.path.exists(os.path.join(prefix, path))), (path, True))
     names_no_place(build, prefix, first)
     return prefix
@@ -133,7 +134,8 @@ def found_by_pkg_config(build, prefix, work):
         return program
     for path in found:
         module = os.path.basename(path)[:-len('.pc')]
-        expect(run('pkg-config', '--modversion', module, env=environment).strip(), project(build, 'CMAKE_PROJECT_VERSION'))
+        version_told = run('pkg-config', '--modversion', module, env=environment)
+        expect(version_told, project(build, 'CMAKE_PROJECT_VERSION') + '\n')
         name = module[len('fathom_'):] or 'main'
         expect(run(build_with(os.path.join(CONSUMER, name + '.c'), module)), says(build, name))
     expect(run(build_with(os.path.join(CONSUMER, 'serial.c'), 'fathom')), says(build, 'serial'))
@@ -145,8 +147,8 @@ def find_package(build, work):
     prefix = installed(build, work)
     found_by_cmake(build, prefix, work)
     for other in ('99.0', '0.3'):  # before 1.0 each minor version may differ
-        said = configure(build, os.path.join(work, 'other'), '-DCMAKE_PREFIX_PATH=' + prefix, '-DFATHOM_WANTED=' + other,
-                         good=False)
+        said = configure(build, os.path.join(work, 'other'), '-DCMAKE_PREFIX_PATH=' + prefix,
+                         '-DFATHOM_WANTED=' + other, good=False)
         expect(f'compatible with requested version "{other}"' in ' '.join(said.split()), True)
 
 
@@ -225,10 +227,13 @@ def ports(build, work):
     def configure_case(settings):
         said = configure(build, folder, '-DFATHOM_ROOT=' + ROOT, '-DSETTINGS=' + ';'.join(settings))
         expect([path for path, command in compiled(folder).items() if '-W' in command], [])
-        return set(re.findall('^-- brought (.*)$', said, re.M))
+        return sorted(re.findall('^-- brought (.*)$', said, re.M))
     for settings, wanted, more in cases:
-        expect(configure_case(settings), {'fathom'} | {'fathom_' + name for name in wanted} | more)
+        expect(configure_case(settings), sorted({'fathom'} | {'fathom_' + name for name in wanted} | more))
     ports_that_cannot_be_built(build, work)
+    said = configure(build, os.path.join(work, 'fetched'), '-DFATHOM_ROOT=' + ROOT, '-DFETCH=ON',
+                     '-DSETTINGS=FATHOM_SIM=ON')
+    expect(re.findall('^-- brought (.*)$', said, re.M), ['fathom', 'fathom_sim'])
 
     # A variable of the parent holds, from the first time on.
     first = os.path.join(work, 'first')
@@ -266,7 +271,8 @@ def ports_that_cannot_be_built(build, work):
         expect((f'FATHOM_{name} is ON, but' in said, why in said), (True, True))
         said = configure(build, folder, '-DFATHOM_ROOT=' + ROOT, '-DSETTINGS=FATHOM_PORTS=ON', *options,
                          env=environment)
-        expect((f'The port {name.lower()} is not built:' in said, 'brought fathom_' + name.lower() in said), (True, False))
+        expect((f'The port {name.lower()} is not built:' in said, 'brought fathom_' + name.lower() in said),
+               (True, False))
         if name != 'POSIX':  # once it is there, the same folder will do
             said = configure(build, folder, '-DFATHOM_ROOT=' + ROOT, '-DCMAKE_C_FLAGS=', '-DFATHOM_POSIX=AUTO',
                              '-DCMAKE_DISABLE_FIND_PACKAGE_PkgConfig=OFF', f'-DSETTINGS=FATHOM_{name}=ON')
@@ -293,13 +299,37 @@ def outside(build, work):
             expect((words, words in ' '.join(said.split())), (words, True))
             shutil.rmtree(copy)
             shutil.rmtree(os.path.join(work, 'refused'))
+    page(build, work)
+
+
+def page(build, work):
+    """What port/README.md has for CMake, with Fathom in a folder and installed."""
+    block = re.search(r'^```cmake\n(.*?)^```', read(ROOT, 'port/README.md'), re.M | re.S)[1]
+    first = ''.join(block.splitlines(keepends=True)[:2])
+    expect(first.startswith('set(FATHOM_SERIAL ON)\nadd_subdirectory(fathom)'), True)
+    os.makedirs(os.path.join(work, 'page'))
+    os.symlink(ROOT, os.path.join(work, 'page', 'fathom'))
+    for name in ('main', 'clock', 'uart', 'idle'):
+        with open(os.path.join(work, 'page', name + '.c'), 'w', encoding='utf-8') as file:
+            file.write(f'#include "fathom_serial.h"\nint {name}(void);\nint {name}(void) {{ return 0; }}\n')
+    for text in (block, block.replace(first, 'find_package(fathom REQUIRED)\n')):
+        with open(os.path.join(work, 'page', 'CMakeLists.txt'), 'w', encoding='utf-8') as file:
+            file.write(f'cmake_minimum_required(VERSION {project(build, "CMAKE_CACHE_MAJOR_VERSION")}.'
+                       f'{project(build, "CMAKE_CACHE_MINOR_VERSION")})\nproject(page C)\n{text}')
+        folder = os.path.join(work, 'page', 'build')
+        configure(build, folder, '-DCMAKE_PREFIX_PATH=' + os.path.join(work, 'moved'),
+                  source=os.path.join(work, 'page'))
+        run('cmake', '--build', folder)
+        run(os.path.join(folder, 'firmware'))
+        shutil.rmtree(folder)
 
 
 # What a port that stands elsewhere may not do: where, what it has, what it has instead, what CMake says.
 REFUSED = [
     ('port/loopback.c', '#include "loopback.h"', '#include "loopback.h"\n#include "fathom/fathom.h"',
      'includes fathom/fathom.h. A port is below the drivers'),
-    ('port/loopback.h', '#include "fathom/hal.h"', '# include <fathom/sensor/a16_pwm.h>', 'includes fathom/sensor/a16_pwm.h'),
+    ('port/loopback.h', '#include "fathom/hal.h"', '# include <fathom/sensor/a16_pwm.h>',
+     'includes fathom/sensor/a16_pwm.h'),
     ('port/internal/more.h', None, '#include "line_internal.h"\n', 'line_internal.h, which is no public header'),
     ('port/loopback.c', '#include "loopback.h"', '#include "../fathom/src/common.h"', 'which is no public header'),
     ('CMakeLists.txt', 'fathom_add_port(loopback', 'fathom_add_port(serial', 'there is fathom::serial already'),
@@ -328,65 +358,10 @@ def version(build, work):
         expect('version.h says' in said, True)
 
 
-# The way that has to fail, for a fault in a file of the project.
-FAULTS = [
-    ('find_package', 'port/install/CMakeLists.txt', '        INCLUDES DESTINATION ${include})', '        )'),
-    ('find_package', 'port/install/CMakeLists.txt', 'COMPATIBILITY SameMinorVersion', 'COMPATIBILITY AnyNewerVersion'),
-    ('pkg_config', 'port/install/CMakeLists.txt', 'set(requires fathom ${links})', 'set(requires fathom)'),
-    ('pkg_config', 'port/install/CMakeLists.txt', 'list(APPEND requires ${modules})', ''),
-    ('pkg_config', 'port/install/CMakeLists.txt', '"\\${pcfiledir}/${up}"', '${CMAKE_INSTALL_PREFIX}'),
-    ('layouts', 'port/install/CMakeLists.txt', 'if(IS_ABSOLUTE ${CMAKE_INSTALL_${folder}})', 'if(OFF)'),
-    ('layouts', 'port/install/fathom_port.pc.in', '@FATHOM_PC_INCLUDEDIR@', '${prefix}/include'),
-    ('subproject', 'CMakeLists.txt', 'if(FATHOM_STRICT)', 'if(TRUE)'),
-    ('ports', 'CMakeLists.txt', 'project(fathom', 'cmake_policy(SET CMP0126 OLD)\nproject(fathom'),
-    ('ports', 'CMakeLists.txt', '    ${FATHOM_TOP_LEVEL})\noption(FATHOM_EX', '    ON)\noption(FATHOM_EX'),
-    ('ports', 'port/CMakeLists.txt', 'message(FATAL_ERROR "FATHOM_${upper}', 'message(STATUS "FATHOM_${upper}'),
-    ('ports', 'port/CMakeLists.txt', 'unset(FATHOM_HAS_GPIO CACHE)', ''),
-    ('ports', 'port/CMakeLists.txt', 'if(FATHOM_MACHINE OR NOT FATHOM_PORTS)', 'if(FATHOM_MACHINE)'),
-    ('ports', 'port/CMakeLists.txt', 'set(warnings off)', 'set(warnings on)'),
-    ('ports', 'port/CMakeLists.txt', ' LINK fathom::posix)', ')'),
-    ('outside', 'port/install/fathom-config.cmake', 'include("${CMAKE_CURRENT_LIST_DIR}/fathom_add_port.cmake")', ''),
-    ('outside', 'port/CMakeLists.txt', '$<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/serial>', ''),
-    ('outside', 'port/fathom_add_port.cmake', '    fathom_check_port_layer(${name} ${paths})', ''),
-    ('outside', 'port/fathom_add_port.cmake', 'fathom_warn(${target} -Werror)', 'fathom_warn(${target})'),
-    ('version', 'CMakeLists.txt', 'message(FATAL_ERROR "include/', 'message(STATUS "include/'),
-]
-COPIED = ('CMakeLists.txt', 'LICENSE', 'include', 'src', 'port', 'examples', os.path.join('tests', 'checks'))
-
-
-def self_test(work):
-    copy, build = os.path.join(work, 'copy'), os.path.join(work, 'build')
-    for name in COPIED:
-        source, target = os.path.join(ROOT, name), os.path.join(copy, name)
-        os.makedirs(os.path.dirname(target), exist_ok=True)
-        (shutil.copytree if os.path.isdir(source) else shutil.copy)(source, target)
-    script = os.path.join(copy, 'tests', 'checks', 'package.py')
-
-    def fails(way):
-        for step in (['cmake', '-S', copy, '-B', build, *LIBRARIES], ['cmake', '--build', build],
-                     [sys.executable, script, way, build]):
-            done = subprocess.run(step, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
-            if done.returncode != 0:
-                return step[0] == sys.executable or done.stdout
-        return False
-    missed = 0
-    for way, path, old, new in FAULTS:
-        with open(os.path.join(copy, path), encoding='utf-8') as file:
-            text = file.read()
-        plant(copy, path, old, new)
-        if fails(way) is not True:
-            print(f'not found: {new!r} in {path}, by {way}')
-            missed += 1
-        with open(os.path.join(copy, path), 'w', encoding='utf-8') as file:
-            file.write(text)
-    print(f'{len(FAULTS)} planted faults, {len(FAULTS) - missed} found')
-    return 1 if missed else 0
-
-
 if __name__ == '__main__':
     with tempfile.TemporaryDirectory() as folder_of_all:
         if sys.argv[1:] == ['--self-test']:
-            sys.exit(self_test(folder_of_all))
+            sys.exit(self_test(folder_of_all, LIBRARIES))
         {'find_package': find_package, 'pkg_config': pkg_config, 'layouts': layouts, 'libmodbus': libmodbus,
          'subproject': subproject, 'ports': ports, 'outside': outside,
          'version': version}[sys.argv[1]](os.path.abspath(sys.argv[2]), folder_of_all)

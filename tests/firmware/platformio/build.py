@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""build.py OUT: PlatformIO packs Fathom into OUT/Fathom.tar.gz by library.json, unpacks that into projects,
-finds out what of it has to be compiled, and compiles them, each an environment of project.ini. OUT/images/NAME.elf, and what it said
-in OUT/said/NAME.txt. OUT/venv has PlatformIO, by requirements.txt.
+"""build.py OUT: PlatformIO packs Fathom into OUT/Fathom.tar.gz by library.json, unpacks that into projects, each an
+environment of project.ini, finds out what of it has to be compiled, and builds them: OUT/images/NAME.elf, and what it
+said in OUT/said/NAME.txt. OUT/venv has PlatformIO, by requirements.txt.
 
 Its compilers come as packages from its own registry; instead, platform/ has those of this system. The rest is its own:
 manifest, package, search for dependencies, build by SCons."""
