@@ -37,9 +37,9 @@ static void take(const char *text, const char *const *values)
 
 static void expect_station(size_t i, const char *name, const char *mode, size_t port)
 {
-    assert_string_equal(options.stations[i].name, name);
-    assert_string_equal(options.stations[i].mode->name, mode);
-    assert_int_equal(options.stations[i].port, port);
+    assert_string_equal(options.stations[i]->name, name);
+    assert_string_equal(options.stations[i]->mode->name, mode);
+    assert_int_equal(options.stations[i]->port, port);
 }
 
 static void expect_line(const fathom_line_settings_t *line, uint32_t baud, uint8_t parity, uint8_t stop_bits)
@@ -71,7 +71,7 @@ TEST(the_port_of_an_option_is_the_same_as_one_behind_a_sensor)
     /* 9600 8N1 and 19200 8E1: opened at the slower */
     assert_true(options.ports[0].has_mixed_lines);
     expect_line(&options.ports[0].line, 9600, FATHOM_PARITY_NONE, 1);
-    expect_line(&options.stations[1].line, 19200, FATHOM_PARITY_EVEN, 1);
+    expect_line(&options.stations[1]->line, 19200, FATHOM_PARITY_EVEN, 1);
 }
 
 TEST(names_that_are_the_same_have_the_port_behind_them)
@@ -92,10 +92,10 @@ TEST(a_port_s_own_keys_win_over_the_options)
 {
     TAKE("hps167s@x,baud=57600,rs485=off,echo=off hps167s@y hps167s@tcp:h", [OPTION_BAUD] = "115200",
          [OPTION_PARITY] = "odd", [OPTION_ECHO] = "on", [OPTION_RS485] = "");
-    expect_line(&options.stations[0].line, 57600, FATHOM_PARITY_ODD, 1);
+    expect_line(&options.stations[0]->line, 57600, FATHOM_PARITY_ODD, 1);
     assert_false(options.ports[0].rs485);
     assert_int_equal(options.ports[0].echo, 1);
-    expect_line(&options.stations[1].line, 115200, FATHOM_PARITY_ODD, 1);
+    expect_line(&options.stations[1]->line, 115200, FATHOM_PARITY_ODD, 1);
     assert_true(options.ports[1].rs485);
     assert_int_equal(options.ports[1].echo, 2);
     /* of no serial port */
@@ -107,17 +107,17 @@ TEST(a_port_s_own_keys_win_over_the_options)
 TEST(two_stop_bits_take_the_place_of_the_parity_unless_it_is_given_too)
 {
     TAKE("hps167s@x,stop=2 hps167s@y,stop=2,parity=even", NULL);
-    expect_line(&options.stations[0].line, 19200, FATHOM_PARITY_NONE, 2);
-    expect_line(&options.stations[1].line, 19200, FATHOM_PARITY_EVEN, 2);
+    expect_line(&options.stations[0]->line, 19200, FATHOM_PARITY_NONE, 2);
+    expect_line(&options.stations[1]->line, 19200, FATHOM_PARITY_EVEN, 2);
     TAKE("hps167s@x hps167s@y,stop=1", [OPTION_STOP_BITS] = "2");
-    expect_line(&options.stations[0].line, 19200, FATHOM_PARITY_NONE, 2);
-    expect_line(&options.stations[1].line, 19200, FATHOM_PARITY_EVEN, 1);
+    expect_line(&options.stations[0]->line, 19200, FATHOM_PARITY_NONE, 2);
+    expect_line(&options.stations[1]->line, 19200, FATHOM_PARITY_EVEN, 1);
 }
 
 TEST(keys_behind_one_sensor_go_for_all_at_the_port)
 {
     TAKE("hps167s:1@x hps167s:2@x,baud=57600 hps167s:3@x,baud=57600,echo=on", NULL);
-    for (size_t i = 0; i != 3; i++) expect_line(&options.stations[i].line, 57600, FATHOM_PARITY_EVEN, 1);
+    for (size_t i = 0; i != 3; i++) expect_line(&options.stations[i]->line, 57600, FATHOM_PARITY_EVEN, 1);
     assert_false(options.ports[0].has_mixed_lines);
     assert_int_equal(options.ports[0].echo, 2);
 }

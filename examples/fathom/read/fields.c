@@ -5,6 +5,7 @@
 
 #include "shared/options.h"
 #include "shared/timestamp.h"
+#include "stations/status_word.h"
 
 typedef struct {
     const char *name;
@@ -15,25 +16,6 @@ typedef struct {
     uint8_t needs;                                                   /* COLUMNS_...; 0: it is always there */
     void (*format)(const reading_t *reading, char text[VALUE_TEXT]); /* leaves text empty for null */
 } field_t;
-
-/* FATHOM_NEAR of a contact. */
-enum { KIND_NEAR = FATHOM_UNKNOWN + 1 };
-
-/* What a sample can be, as `status` has it. */
-static const struct {
-    const char *name;
-    const char *what;
-} kinds[] = {
-    [FATHOM_TARGET] = {"target", "there is a distance"},
-    [FATHOM_NO_TARGET] = {"no_target", "nothing in range"},
-    [FATHOM_NEAR] = {"too_near", "something nearer than it can measure"},
-    [KIND_NEAR] = {"near", "a switch or a relay says that something is nearer than its threshold"},
-    [FATHOM_FAR] = {"far", "a switch or a relay says that nothing is"},
-    [FATHOM_UNKNOWN] = {"unknown",
-                        "a value that means no distance, and nothing else that is known (--means)"},
-    [FATHOM_FAULT] = {"fault", "the sensor says that it has failed"},
-};
-enum { KINDS = sizeof kinds / sizeof kinds[0] };
 
 static void put_number(char text[VALUE_TEXT], uint64_t number)
 {
@@ -88,9 +70,8 @@ static void put_utc(const reading_t *reading, char text[VALUE_TEXT])
 
 static void put_status(const reading_t *reading, char text[VALUE_TEXT])
 {
-    const uint8_t kind = reading->sample->kind;
-    const bool is_near = kind == FATHOM_NEAR && fields_is_contact(reading);
-    put_string(text, reading->failure != NULL ? reading->failure : kinds[is_near ? KIND_NEAR : kind].name);
+    put_string(text, reading->failure != NULL ? reading->failure
+                                              : status_word(reading->mode, reading->sample->kind));
 }
 
 static void put_interference(const reading_t *reading, char text[VALUE_TEXT])
@@ -143,11 +124,7 @@ static void put_temperature(const reading_t *reading, char text[VALUE_TEXT])
 
 static void put_alarm(const reading_t *reading, char text[VALUE_TEXT])
 {
-    static const char *const names[] = {[FATHOM_ALARM_ON] = "on",
-                                        [FATHOM_ALARM_OFF] = "off",
-                                        [FATHOM_ALARM_UNKNOWN] = "unknown",
-                                        [FATHOM_ALARM_NO_RESPONSE] = "no_response"};
-    put_string(text, names[reading->result->alarm]);
+    put_string(text, alarm_word(reading->result->alarm));
 }
 
 static void put_is_on(const reading_t *reading, char text[VALUE_TEXT])
@@ -253,15 +230,9 @@ void fields_csv(FILE *to, const reading_t *reading)
 
 void fields_help(FILE *to)
 {
-    char member[COUNTERS_MEMBER];
     (void)fputs("\nfields of json and csv, in this order, and their units; null is empty in csv:\n", to);
     for (size_t i = 0; i != FIELDS; i++)
         (void)fprintf(to, "  %-17s %-6s  %s\n", fields[i].name, fields[i].unit, fields[i].what);
     (void)fputs("\nstatus of a reading, and of an attempt that has failed:\n", to);
-    for (size_t i = 0; i != KINDS; i++)
-        if (kinds[i].name != NULL) (void)fprintf(to, "  %-17s %s\n", kinds[i].name, kinds[i].what);
-    for (size_t i = 0; i != FAILURE_KINDS; i++)
-        if (counters_failure_name(i) != NULL)
-            (void)fprintf(to, "  %-17s %s\n", counters_member(counters_failure_name(i), member),
-                          counters_failure_what(i));
+    status_words_help(to);
 }

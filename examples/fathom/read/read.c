@@ -8,6 +8,7 @@
 #include "read/read_options.h"
 #include "stations/poll_loop.h"
 #include "stations/results.h"
+#include "stations/status_word.h"
 
 /* In place of an errno: the file has rows, and its header is another one. */
 enum { OTHER_COLUMNS = -1 };
@@ -40,8 +41,8 @@ static uint8_t own_columns(const reading_run_t *run, const station_t *station)
     const results_config_t *const results = &run->options.results;
     const uint8_t level = results->has_level ? COLUMNS_LEVEL : 0;
     if (results->has_alarm) return COLUMNS_ALARM | level;
-    const bool has_temperature = run->loop.options.reading.temperature_us != 0 &&
-                                 (station->mode->takes & READER_TAKES_TEMPERATURE) != 0;
+    const bool has_temperature =
+        station->settings.temperature_us != 0 && (station->mode->takes & READER_TAKES_TEMPERATURE) != 0;
     return (uint8_t)(COLUMNS_READING | level | (station->model->has_optics ? COLUMNS_OPTICS : 0) |
                      (has_temperature ? COLUMNS_TEMPERATURE : 0));
 }
@@ -50,7 +51,7 @@ static uint8_t all_columns(const reading_run_t *run)
 {
     const sensor_options_t *const options = &run->loop.options;
     uint8_t columns = 0;
-    for (size_t i = 0; i != options->station_count; i++) columns |= own_columns(run, &options->stations[i]);
+    for (size_t i = 0; i != options->station_count; i++) columns |= own_columns(run, options->stations[i]);
     return columns;
 }
 
@@ -127,7 +128,7 @@ static void write_failure_row(reading_run_t *run, const station_t *station, size
                                         .address = station->address,
                                         .probe = station->model->probes == 1 ? 1 : probe}};
     if (run->options.results.has_alarm || !run->options.format->has_failures) return;
-    write_row(run, station, &result, counters_member(counters_failure_name(kind), word));
+    write_row(run, station, &result, status_word_of_failure(kind, word));
 }
 
 static bool take_sample(void *ctx, const station_t *station, const fathom_sample_t *sample)
@@ -190,7 +191,7 @@ static void tell_stats(reading_run_t *run, const account_t *account)
         counters_print_all(account, stderr);
     if (!is_json) results_print_dropped(&run->results, stderr);
     for (size_t i = 0; i != run->loop.options.station_count; i++) {
-        station_t *const station = &run->loop.options.stations[i];
+        station_t *const station = run->loop.options.stations[i];
         if ((station->mode->pins & MODEL_PIN_ECHO) == 0) continue;
         if (is_json)
             pulses_print_json(&station->pulses, station->name, stderr);
@@ -275,7 +276,9 @@ static int run_read(const host_t *host, int argc, char **argv)
     if (run.options.wants_help) return command_help(&read_command);
     if (!host->begin(host->ctx)) return STATUS_FAILED;
     run.stats_us = run.options.stats_us;
-    results_begin(&run.results, &run.options.results, loop, write_result, &run);
+    results_begin(&run.results, loop, write_result, &run);
+    for (size_t i = 0; i != loop->options.station_count; i++)
+        results_add(&run.results, loop->options.stations[i], &run.options.results);
     if (run.options.file.path != NULL) begin_output(&run, host->utc_us(host->ctx));
     if (run.output_error != 0) return finish(&run);
     int status = STATUS_FAILED;

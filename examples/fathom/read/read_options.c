@@ -43,7 +43,7 @@ static const struct option table[OPTIONS + 1] = {
     [HELP] = {"help", no_argument, NULL, 256},
 };
 
-enum { MAX_COUNT = 1000000000, MAX_STATS_S = 4000, TEMPERATURE_S = 10, MAX_TEMPERATURE_S = 1000 };
+enum { MAX_COUNT = 1000000000, MAX_STATS_S = 4000 };
 
 static bool take_stats(read_options_t *options, const char *text)
 {
@@ -52,17 +52,6 @@ static bool take_stats(read_options_t *options, const char *text)
     if (text == NULL || text[0] == '\0') return true;
     if (!option_number(command, "stats", text, 1, MAX_STATS_S, &seconds)) return false;
     options->stats_us = seconds * 1000000u;
-    return true;
-}
-
-static bool take_temperature(sensor_options_t *sensors, const char *text)
-{
-    uint32_t seconds = TEMPERATURE_S;
-    if (text == NULL) return true;
-    if (!reading_option_suits(sensors, command, "temperature", READER_TAKES_TEMPERATURE) ||
-        !option_number(command, "temperature", text[0] != '\0' ? text : NULL, 1, MAX_TEMPERATURE_S, &seconds))
-        return false;
-    sensors->reading.temperature_us = seconds * 1000000u;
     return true;
 }
 
@@ -107,8 +96,9 @@ bool read_options(read_options_t *options, sensor_options_t *sensors, int argc, 
     options->wants_help = values[HELP] != NULL;
     if (options->wants_help) return true;
     if (!sensor_options(sensors, command, argv + rest, argc - rest, values, values[ADDRESS], values[MODE]) ||
-        !reading_options(sensors, command, values) || !take_temperature(sensors, values[TEMPERATURE]) ||
-        !result_options(&options->results, sensors, command, values) ||
+        !reading_options(sensors->stations, sensors->station_count, command, values) ||
+        !temperature_option(sensors->stations, sensors->station_count, command, values[TEMPERATURE]) ||
+        !result_options(&options->results, sensors->stations[0]->settings.period_us, command, values) ||
         !take_until_alarm(options, values[UNTIL_ALARM]))
         return false;
     options->format = format_find(command, values[FORMAT]);

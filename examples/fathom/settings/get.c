@@ -43,7 +43,7 @@ static void begin(void)
             station->name, station->model->name, station->address, station->mode->name, line);
     else
         (void)printf("%s%s%s%s, %s, asked at address %u, %s\n",
-                     station != session.options.stations ? "\n" : "", has_name() ? station->name : "",
+                     station != session.options.stations[0] ? "\n" : "", has_name() ? station->name : "",
                      has_name() ? ": " : "", station->model->name, station->model->what, station->address,
                      line);
 }
@@ -179,7 +179,7 @@ static int run_info(const host_t *host, int argc, char **argv)
     status = STATUS_OK;
     for (size_t i = 0; i != options->station_count; i++) {
         if (i != 0 && host->has_ended(host->ctx)) return STATUS_FAILED;
-        session.station = &options->stations[i];
+        session.station = options->stations[i];
         if (tell_on_port(host, session_settings(&session), SIZE_MAX) != STATUS_OK) status = STATUS_FAILED;
     }
     return status;

@@ -53,7 +53,7 @@ typedef struct {
 static bool has_some(const account_t *account, bool is_asked)
 {
     for (size_t i = 0; i != account->station_count; i++)
-        if (account->stations[i].mode->is_asked == is_asked) return true;
+        if (account->stations[i]->mode->is_asked == is_asked) return true;
     return false;
 }
 
@@ -119,7 +119,7 @@ void counters_print(const account_t *account, FILE *to)
     print_attempts(&account->sum, to, "", "");
     (void)fputs("\n", to);
     for (size_t i = 0; i != account->station_count && account->station_count > 1; i++) {
-        const station_t *const station = &account->stations[i];
+        const station_t *const station = account->stations[i];
         print_attempts(&station->counters, to, station->name, ": ");
         if (timeouts_in_row(station) != 0) print_back_off(station, to);
         (void)fputs("\n", to);
@@ -174,7 +174,7 @@ void counters_print_all(const account_t *account, FILE *to)
         (void)fputs("\n", to);
     }
     for (size_t i = 0; i != account->station_count; i++)
-        if (account->stations[i].mode->is_asked) print_unit(&account->stations[i], to);
+        if (account->stations[i]->mode->is_asked) print_unit(account->stations[i], to);
 }
 
 /* ---- for programs ---- */
@@ -252,9 +252,9 @@ void counters_print_json(const account_t *account, FILE *to)
     (void)fputs(",\"units\":[", to);
     const char *gap = "";
     for (size_t i = 0; i != account->station_count; i++) {
-        if (!account->stations[i].mode->is_asked) continue;
+        if (!account->stations[i]->mode->is_asked) continue;
         (void)fputs(gap, to);
-        print_json_unit(&account->stations[i], to);
+        print_json_unit(account->stations[i], to);
         gap = ",";
     }
     (void)fputs("]}\n", to);

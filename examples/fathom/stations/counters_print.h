@@ -9,7 +9,7 @@
 /* All that has been counted, to be told. */
 typedef struct {
     counters_t sum; /* of all sensors */
-    const station_t *stations;
+    station_t *const *stations;
     size_t station_count;
     uint64_t requests; /* that were sent */
     uint64_t reconnects;

@@ -19,8 +19,6 @@ bool poll_is_over(const poll_loop_t *loop)
 
 bool poll_is_shared(const poll_port_t *port) { return port->station_count > 1; }
 
-station_t *poll_end(poll_loop_t *loop) { return loop->options.stations + loop->options.station_count; }
-
 /* ---- what was heard, and of whom ---- */
 
 listener_t *poll_whose(void *ctx)
@@ -73,9 +71,9 @@ static void judge(const poll_port_t *port, const station_t *station, evidence_t 
 /* ---- attempts ---- */
 
 /* Does more than one probe of this sensor speak? */
-static bool has_probes(const poll_loop_t *loop, const station_t *station)
+static bool has_probes(const station_t *station)
 {
-    const uint8_t probes = loop->options.reading.probes;
+    const uint8_t probes = station->settings.probes;
     return station->model->probes > 1 && (probes == 0 || (probes & (probes - 1)) != 0);
 }
 
@@ -102,7 +100,7 @@ static void report_failure(poll_port_t *port, station_t *station, const outcome_
         .has_address = station->mode->has_address,
         .others_answer = others_answer(port, station),
         .waits = port->waits,
-        .is_whole = outcome->is_first && !reader_has_more(&station->reader) && has_probes(loop, station),
+        .is_whole = outcome->is_first && !reader_has_more(&station->reader) && has_probes(station),
         .is_told = outcome->is_told,
     };
     counters_failure(&station->counters, outcome->status, &station->reader);
@@ -124,7 +122,7 @@ static void end_attempt(const poll_loop_t *loop, station_t *station)
     if (station->has_failed) station->counters.failed++;
     station->has_failed = false;
     station->answering = false;
-    station->next_us += loop->options.interval_us;
+    station->next_us += station->settings.period_us;
     if (station->next_us < now) station->next_us = now; /* what is late is not made up for */
     poll_begin_attempt(station);
 }

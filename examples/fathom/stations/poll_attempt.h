@@ -9,8 +9,7 @@
 /* The clock of the host. */
 uint64_t poll_now_us(const poll_loop_t *loop);
 
-/* Behind the last station of all ports; and has this one more than one? */
-station_t *poll_end(poll_loop_t *loop);
+/* Has it more than one station? */
 bool poll_is_shared(const poll_port_t *port);
 
 /* Is there nothing more to be read, or is the command to end? */

@@ -57,7 +57,7 @@ void poll_loop_begin(poll_loop_t *loop, const host_t *host, const poll_loop_user
 static void share_out(poll_loop_t *loop)
 {
     for (size_t i = loop->options.station_count; i != 0; i--) {
-        station_t *const station = &loop->options.stations[i - 1];
+        station_t *const station = loop->options.stations[i - 1];
         poll_port_t *const port = &loop->ports[station->port];
         station->next = port->stations;
         port->stations = station;
@@ -118,7 +118,7 @@ bool poll_loop_is_good(const poll_loop_t *loop)
     const sensor_options_t *const options = &loop->options;
     const bool is_over_time = options->duration_us != 0 && poll_loop_time_us(loop) >= options->duration_us;
     for (size_t i = 0; i != options->station_count; i++) {
-        const station_t *const station = &options->stations[i];
+        const station_t *const station = options->stations[i];
         const bool is_late = is_over_time && !loop->ports[station->port].is_lost;
         if (station->counters.failed != 0) return false;
         if (!station->has_good && (station->counters.readings != 0 || is_late)) return false;
@@ -130,7 +130,8 @@ void poll_loop_account(poll_loop_t *loop, account_t *account)
 {
     const sensor_options_t *const options = &loop->options;
     *account = (account_t){.stations = options->stations, .station_count = options->station_count};
-    for (station_t *station = loop->options.stations; station != poll_end(loop); station++) {
+    for (size_t i = 0; i != options->station_count; i++) {
+        station_t *const station = options->stations[i];
         poll_port_t *const port = &loop->ports[station->port];
         /* The first station takes what the line has counted; the sums are right all the same. */
         if (station->reader.sequence != NULL)

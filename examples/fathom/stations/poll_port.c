@@ -52,21 +52,17 @@ static bool begin_station(poll_port_t *port, station_t *station)
 {
     char text[TEXT];
     poll_loop_t *const loop = port->loop;
-    const sensor_options_t *const options = &loop->options;
-    reader_settings_t settings = options->reading;
-    settings.timeout_us = options->timeout_us;
-    settings.period_us = options->interval_us;
+    reader_settings_t settings = station->settings;
     settings.line = port->options->has_mixed_lines ? &station->line : NULL;
     settings.backoff_us = poll_is_shared(port) ? 0 : READER_BACKOFF_US;
     settings.address = station->address;
-    settings.retries = options->retries;
     const uint16_t sequence = station->reader.sequence != NULL ? *station->reader.sequence : 0;
     if (!station_begin(station, &port->channel, &settings)) {
         station_refusal(station, text, sizeof text);
         tell(port, text, POLL_PORT_GIVEN_UP);
         return false;
     }
-    if (!port->was_open && station_is_raised(station, options->interval_us, text, sizeof text))
+    if (!port->was_open && station_is_raised(station, text, sizeof text))
         loop->user->remark(loop->ctx, station, text);
     /* Goes on after a loss, so that the gap is not taken for a new start. */
     *station->reader.sequence = sequence;

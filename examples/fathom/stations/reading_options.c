@@ -28,15 +28,15 @@ static void takers(uint8_t takes, char list[MAX_LIST])
     }
 }
 
-bool reading_option_suits(const sensor_options_t *options, const char *command, const char *name,
+bool reading_option_suits(station_t *const *stations, size_t count, const char *command, const char *name,
                           uint8_t takes)
 {
     char list[MAX_LIST];
-    for (size_t i = 0; i != options->station_count; i++)
-        if ((options->stations[i].mode->takes & takes) != 0) return true;
+    for (size_t i = 0; i != count; i++)
+        if ((stations[i]->mode->takes & takes) != 0) return true;
     takers(takes, list);
     (void)usage_error(command, "--%s is for %s; it has no effect on %s (%s)", name, list,
-                      options->stations[0].model->name, options->stations[0].mode->name);
+                      stations[0]->model->name, stations[0]->mode->name);
     return false;
 }
 
@@ -167,15 +167,28 @@ static const struct {
     {"first-register", OPTION_FIRST_REGISTER, READER_TAKES_REGISTERS, take_first_register},
 };
 
-bool reading_options(sensor_options_t *options, const char *command, const char *const *values)
+bool reading_options(station_t *const *stations, size_t count, const char *command, const char *const *values)
 {
     for (size_t i = 0; i != sizeof readings / sizeof readings[0]; i++) {
         const char *const text = values[readings[i].row];
         if (text == NULL) continue;
-        if (!reading_option_suits(options, command, readings[i].name, readings[i].takes) ||
-            !readings[i].take(&options->reading, command, text))
+        if (!reading_option_suits(stations, count, command, readings[i].name, readings[i].takes))
             return false;
+        for (size_t n = 0; n != count; n++)
+            if (!readings[i].take(&stations[n]->settings, command, text)) return false;
     }
+    return true;
+}
+
+bool temperature_option(station_t *const *stations, size_t count, const char *command, const char *text)
+{
+    enum { DEFAULT_S = 10, MAX_S = 1000 };
+    uint32_t seconds = DEFAULT_S;
+    if (text == NULL) return true;
+    if (!reading_option_suits(stations, count, command, "temperature", READER_TAKES_TEMPERATURE) ||
+        !option_number(command, "temperature", text[0] != '\0' ? text : NULL, 1, MAX_S, &seconds))
+        return false;
+    for (size_t i = 0; i != count; i++) stations[i]->settings.temperature_us = seconds * 1000000u;
     return true;
 }
 

@@ -34,11 +34,11 @@ static bool check_interval(const char *command, const char *what, uint32_t unkno
     return false;
 }
 
-bool result_options(results_config_t *config, const sensor_options_t *sensors, const char *command,
+bool result_options(results_config_t *config, uint32_t interval_us, const char *command,
                     const char *const *values)
 {
     enum { INTERVALS = 3 };
-    const uint64_t intervals_us = (uint64_t)INTERVALS * sensors->interval_us;
+    const uint64_t intervals_us = (uint64_t)INTERVALS * interval_us;
     const uint32_t most_us = MAX_UNKNOWN_MS * 1000u;
     config->unknown_us = intervals_us < most_us ? (uint32_t)intervals_us : most_us;
     if (config->unknown_us < FATHOM_MEDIAN_DEFAULT_UNKNOWN_US)
@@ -48,10 +48,8 @@ bool result_options(results_config_t *config, const sensor_options_t *sensors, c
         (values[OPTION_ALARM] != NULL && !alarm_option(config, command, values[OPTION_ALARM])))
         return false;
     if (config->alarm.unknown_us == 0) config->alarm.unknown_us = config->unknown_us;
-    return (config->median == 0 ||
-            check_interval(command, "--median", config->unknown_us, sensors->interval_us)) &&
-           (!config->has_alarm ||
-            check_interval(command, "--alarm", config->alarm.unknown_us, sensors->interval_us));
+    return (config->median == 0 || check_interval(command, "--median", config->unknown_us, interval_us)) &&
+           (!config->has_alarm || check_interval(command, "--alarm", config->alarm.unknown_us, interval_us));
 }
 
 void result_options_help(FILE *to)

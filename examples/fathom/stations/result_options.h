@@ -17,8 +17,8 @@ enum { OPTION_MEDIAN = READING_OPTIONS, OPTION_GATE, OPTION_LEVEL, OPTION_ALARM,
 /* The longest time without a distance that can be asked for; the library's is 35 minutes. */
 enum { MAX_UNKNOWN_MS = 2000000 };
 
-/* After sensor_options: values as there; *config is all zeros. False after saying what is wrong. */
-bool result_options(results_config_t *config, const sensor_options_t *sensors, const char *command,
+/* For sensors with this interval: values as of sensor_options; *config is all zeros. False after saying what is wrong. */
+bool result_options(results_config_t *config, uint32_t interval_us, const char *command,
                     const char *const *values);
 
 /* The values of --level and --alarm; for result_options. False after saying what is wrong. */

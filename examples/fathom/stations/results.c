@@ -11,13 +11,13 @@ enum { TICK_US = 100000 };
 
 static result_probe_t *probe_of(results_t *results, const station_t *station, uint8_t probe)
 {
-    return &results->probes[station - results->loop->options.stations][probe - 1];
+    return &results->probes[station->slot][probe - 1];
 }
 
 /* Is this one of its probes, and wanted? */
-static bool has_probe(const results_t *results, const station_t *station, uint8_t probe)
+static bool has_probe(const station_t *station, uint8_t probe)
 {
-    const uint8_t wanted = results->loop->options.reading.probes;
+    const uint8_t wanted = station->settings.probes;
     return probe <= station->model->probes &&
            (station->model->probes == 1 || wanted == 0 || (wanted >> (probe - 1) & 1) != 0);
 }
@@ -35,22 +35,29 @@ static void begin_probe(const results_config_t *config, result_probe_t *probe, u
     (void)fathom_alarm_status(&probe->alarm, FATHOM_PENDING, now_us);
 }
 
-void results_begin(results_t *results, const results_config_t *config, poll_loop_t *loop, results_tell_t tell,
-                   void *ctx)
+void results_begin(results_t *results, poll_loop_t *loop, results_tell_t tell, void *ctx)
 {
-    memset(results, 0, sizeof *results);
-    results->config = config;
     results->loop = loop;
     results->tell = tell;
     results->ctx = ctx;
-    for (size_t i = 0; i != loop->options.station_count; i++)
-        for (size_t p = 0; p != FATHOM_DYP_PROBES; p++)
-            begin_probe(config, &results->probes[i][p], (uint32_t)poll_now_us(loop));
+}
+
+void results_add(results_t *results, const station_t *station, const results_config_t *config)
+{
+    results->configs[station->slot] = config;
+    memset(results->probes[station->slot], 0, sizeof results->probes[station->slot]);
+    for (size_t p = 0; p != FATHOM_DYP_PROBES; p++)
+        begin_probe(config, &results->probes[station->slot][p], (uint32_t)poll_now_us(results->loop));
+}
+
+static const results_config_t *config_of(const results_t *results, const station_t *station)
+{
+    return results->configs[station->slot];
 }
 
 static bool tell(const results_t *results, const station_t *station, result_t *result)
 {
-    const results_config_t *const config = results->config;
+    const results_config_t *const config = config_of(results, station);
     const fathom_sample_t *const sample = &result->sample;
     result->has_level = config->has_level && sample->kind == FATHOM_TARGET &&
                         fathom_level(&config->tank, sample->distance_mm, &result->level) == FATHOM_READY;
@@ -94,7 +101,7 @@ static bool take_median(result_probe_t *probe, fathom_sample_t *sample)
 
 bool results_sample(results_t *results, const station_t *station, const fathom_sample_t *sample)
 {
-    const results_config_t *const config = results->config;
+    const results_config_t *const config = config_of(results, station);
     result_probe_t *const probe = probe_of(results, station, sample->probe);
     result_t result = {.sample = *sample};
     const bool is_there = config->median == 0 || take_median(probe, &result.sample);
@@ -109,28 +116,34 @@ static void take_status_of_all(results_t *results, const station_t *station, fat
 {
     const uint32_t now_us = (uint32_t)poll_now_us(results->loop);
     for (uint8_t probe = 1; probe <= FATHOM_DYP_PROBES; probe++)
-        if (has_probe(results, station, probe)) (void)take_status(results, station, probe, status, now_us);
+        if (has_probe(station, probe)) (void)take_status(results, station, probe, status, now_us);
 }
 
 void results_failure(results_t *results, const station_t *station, fathom_status_t status)
 {
-    if (results->config->has_alarm) take_status_of_all(results, station, status);
+    if (config_of(results, station)->has_alarm) take_status_of_all(results, station, status);
 }
 
 uint32_t results_tick(results_t *results)
 {
-    poll_loop_t *const loop = results->loop;
-    if (!results->config->has_alarm) return FATHOM_NO_DEADLINE;
-    for (station_t *station = loop->options.stations; station != poll_end(loop); station++)
-        if (!poll_is_done(loop, station)) take_status_of_all(results, station, FATHOM_PENDING);
-    return TICK_US;
+    const sensor_options_t *const options = &results->loop->options;
+    bool has_alarm = false;
+    for (size_t i = 0; i != options->station_count; i++) {
+        const station_t *const station = options->stations[i];
+        if (!config_of(results, station)->has_alarm) continue;
+        has_alarm = true;
+        if (!poll_is_done(results->loop, station)) take_status_of_all(results, station, FATHOM_PENDING);
+    }
+    return has_alarm ? TICK_US : FATHOM_NO_DEADLINE;
 }
 
 uint64_t results_dropped(const results_t *results)
 {
     uint64_t dropped = 0;
-    for (size_t i = 0; i != results->loop->options.station_count; i++)
-        for (size_t p = 0; p != FATHOM_DYP_PROBES; p++) dropped += results->probes[i][p].dropped;
+    const sensor_options_t *const options = &results->loop->options;
+    for (size_t i = 0; i != options->station_count; i++)
+        for (size_t p = 0; p != FATHOM_DYP_PROBES; p++)
+            dropped += results->probes[options->stations[i]->slot][p].dropped;
     return dropped;
 }
 
@@ -138,9 +151,9 @@ void results_print_dropped(const results_t *results, FILE *to)
 {
     const sensor_options_t *const options = &results->loop->options;
     for (size_t i = 0; i != options->station_count; i++) {
-        const station_t *const station = &options->stations[i];
+        const station_t *const station = options->stations[i];
         for (size_t p = 0; p != FATHOM_DYP_PROBES; p++) {
-            const uint64_t dropped = results->probes[i][p].dropped;
+            const uint64_t dropped = results->probes[station->slot][p].dropped;
             if (dropped == 0) continue;
             (void)fprintf(to, "fathom: %s", station->name);
             if (station->model->probes > 1) (void)fprintf(to, " probe %u", (unsigned)p + 1);

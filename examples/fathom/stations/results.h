@@ -11,8 +11,8 @@
 
 enum { RESULTS_POINTS = 32 };
 
-/* What the user wants, for all probes of all sensors; nothing: each sample is told as it came. It stays where it is,
- * since `tank` points at `points`. */
+/* What the user wants, for all probes of a sensor; nothing: each sample is told as it came. It stays where it is, since
+ * `tank` points at `points`. */
 typedef struct {
     fathom_level_config_t tank;
     fathom_level_point_t points[RESULTS_POINTS];
@@ -48,16 +48,18 @@ typedef struct {
 } result_probe_t;
 
 typedef struct {
-    const results_config_t *config;
     poll_loop_t *loop;
     results_tell_t tell;
     void *ctx;
-    result_probe_t probes[MAX_STATIONS][FATHOM_DYP_PROBES];
+    const results_config_t *configs[STATION_SLOTS];
+    result_probe_t probes[STATION_SLOTS][FATHOM_DYP_PROBES];
 } results_t;
 
-/* The options of the loop have been read, and so has the config. */
-void results_begin(results_t *results, const results_config_t *config, poll_loop_t *loop, results_tell_t tell,
-                   void *ctx);
+void results_begin(results_t *results, poll_loop_t *loop, results_tell_t tell, void *ctx);
+
+/* From now on this is made of the samples of this station, from the beginning; several may have the same config. To be
+ * called for each one before the first sample. */
+void results_add(results_t *results, const station_t *station, const results_config_t *config);
 
 /*
  * For poll_loop_user_t's reading, failure and tick, which returns how long it may be until it is called again. The first

@@ -9,20 +9,28 @@
 /* The longest ones keep every sum of times below the 32 bits of the library's clock. */
 enum { MAX_INTERVAL_MS = 3600000, MAX_TIMEOUT_MS = 600000, MAX_RETRIES = 254, MAX_DURATION_S = 1000000000 };
 
-static bool take_numbers(sensor_options_t *options, const char *command, const char *const *values)
+bool station_options(station_t *const *stations, size_t count, const char *command, const char *const *values)
 {
     uint32_t interval_ms = 0;
     uint32_t timeout_ms = 0;
     uint32_t retries = 0;
-    uint32_t duration_s = 0;
     if (!option_number(command, "interval", values[OPTION_INTERVAL], 0, MAX_INTERVAL_MS, &interval_ms) ||
         !option_number(command, "timeout", values[OPTION_TIMEOUT], 1, MAX_TIMEOUT_MS, &timeout_ms) ||
-        !option_number(command, "retries", values[OPTION_RETRIES], 0, MAX_RETRIES, &retries) ||
-        !option_number(command, "duration", values[OPTION_DURATION], 1, MAX_DURATION_S, &duration_s))
+        !option_number(command, "retries", values[OPTION_RETRIES], 0, MAX_RETRIES, &retries))
         return false;
-    options->interval_us = interval_ms * 1000u;
-    options->timeout_us = timeout_ms * 1000u;
-    options->retries = (uint8_t)retries;
+    for (size_t i = 0; i != count; i++) {
+        stations[i]->settings.period_us = interval_ms * 1000u;
+        stations[i]->settings.timeout_us = timeout_ms * 1000u;
+        stations[i]->settings.retries = (uint8_t)retries;
+    }
+    return true;
+}
+
+static bool take_duration(sensor_options_t *options, const char *command, const char *const *values)
+{
+    uint32_t duration_s = 0;
+    if (!option_number(command, "duration", values[OPTION_DURATION], 1, MAX_DURATION_S, &duration_s))
+        return false;
     options->duration_us = (uint64_t)duration_s * 1000000u;
     return true;
 }
@@ -125,15 +133,15 @@ static bool take_defaults(port_keys_t *keys, const char *command, const char *co
 static void take_lines(sensor_options_t *options, const port_keys_t *defaults)
 {
     for (size_t i = 0; i != options->station_count; i++) {
-        fathom_line_settings_t *const line = &options->stations[i].line;
-        port_options_t *const port = &options->ports[options->stations[i].port];
-        *line = options->stations[i].model->line;
+        fathom_line_settings_t *const line = &options->stations[i]->line;
+        port_options_t *const port = &options->ports[options->stations[i]->port];
+        *line = options->stations[i]->model->line;
         port_options_line(port, defaults, line);
         if (port->line.baud == 0 || line->baud < port->line.baud) port->line = *line;
     }
     for (size_t i = 0; i != options->station_count; i++) {
-        const fathom_line_settings_t *const line = &options->stations[i].line;
-        port_options_t *const port = &options->ports[options->stations[i].port];
+        const fathom_line_settings_t *const line = &options->stations[i]->line;
+        port_options_t *const port = &options->ports[options->stations[i]->port];
         if (line->baud != port->line.baud || line->parity != port->line.parity) port->has_mixed_lines = true;
     }
 }
@@ -158,7 +166,7 @@ static bool take_places(sensor_options_t *options, const char *command, char **w
     for (size_t i = 0; i != options->station_count; i++)
         if (!place_parse(&places[i], command, words[i])) return false;
     for (size_t i = 0; i != options->station_count; i++)
-        if (!take_port(options, command, &options->stations[i], &places[i], path)) return false;
+        if (!take_port(options, command, options->stations[i], &places[i], path)) return false;
     return true;
 }
 
@@ -168,7 +176,7 @@ static bool take_stations(sensor_options_t *options, const char *command, char *
     static sensor_place_t places[MAX_STATIONS]; /* too large for a small stack */
     if (!take_places(options, command, words, path, places)) return false;
     for (size_t i = 0; i != options->station_count; i++) {
-        station_t *const station = &options->stations[i];
+        station_t *const station = options->stations[i];
         const port_options_t *const port = &options->ports[station->port];
         if (!station_take(station, command, &places[i], address, mode,
                           options->asks_all || port->station_count > 1))
@@ -192,25 +200,41 @@ static bool check_count(const char *command, int count, bool has_options)
     return false;
 }
 
+/* So many stations, all zeros, of which options->beside has none. */
+static void take_slots(sensor_options_t *options, size_t count)
+{
+    static station_t slots[STATION_SLOTS];
+    const sensor_options_t *const beside = options->beside;
+    bool is_taken[STATION_SLOTS] = {false};
+    for (size_t i = 0; beside != NULL && i != beside->station_count; i++)
+        is_taken[beside->stations[i]->slot] = true;
+    size_t slot = 0;
+    for (options->station_count = 0; options->station_count != count; slot++) {
+        if (is_taken[slot]) continue;
+        memset(&slots[slot], 0, sizeof slots[slot]);
+        slots[slot].slot = slot;
+        options->stations[options->station_count++] = &slots[slot];
+    }
+}
+
 /* In the order in which a user mends it. */
 bool sensor_options(sensor_options_t *options, const char *command, char **words, int word_count,
                     const char *const *values, const char *address, const char *mode)
 {
-    static station_t stations[MAX_STATIONS];
+    station_t *const *const stations = options->stations;
     if (!check_count(command, word_count, address != NULL || mode != NULL)) return false;
-    options->stations = stations;
-    options->station_count = (size_t)word_count;
+    take_slots(options, (size_t)word_count);
     options->port_count = 0;
-    memset(stations, 0, options->station_count * sizeof stations[0]);
     if (!take_stations(options, command, words, values[OPTION_PORT], address, mode) ||
         !take_ports(options, command, values) ||
         !stations_check(stations, options->station_count, options->ports, command) ||
         !stations_name(stations, options->station_count, options->ports, command) ||
-        !take_numbers(options, command, values))
+        !station_options(stations, options->station_count, command, values) ||
+        !take_duration(options, command, values))
         return false;
     options->reconnect = values[OPTION_RECONNECT] != NULL;
     for (size_t i = 0; i != options->station_count; i++)
-        if (!station_suits(&stations[i], &options->ports[stations[i].port], command)) return false;
+        if (!station_suits(stations[i], &options->ports[stations[i]->port], command)) return false;
     return true;
 }
 
@@ -227,7 +251,7 @@ void sensor_options_tell_useless(const sensor_options_t *options, const char *ad
                                  const char *const *values)
 {
     for (size_t i = 0; i != options->station_count; i++) {
-        const station_t *const station = &options->stations[i];
+        const station_t *const station = options->stations[i];
         const model_mode_t *const mode = station->mode;
         const bool has_key = port_keys_has(&options->ports[station->port].keys, KEY_ECHO);
         tell_useless(options, station, mode->has_address, "--address", address);

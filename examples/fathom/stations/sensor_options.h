@@ -40,20 +40,18 @@ enum {
 enum { MAX_PORTS = MAX_STATIONS };
 
 /* What a command was asked to read. */
-typedef struct {
+typedef struct sensor_options {
     /* Without a MODE each is asked, also one that is alone at its port: to be set before. */
     bool asks_all;
-    station_t *stations; /* the tool has one set of them, since it runs one command at a time */
+    /* Options whose stations are being read meanwhile, and are left alone: to be set before. NULL: none, for the tool runs
+     * one command at a time. */
+    const struct sensor_options *beside;
+    station_t *stations[MAX_STATIONS]; /* in the order of the words */
     size_t station_count;
     port_options_t ports[MAX_PORTS];
     size_t port_count;
-    uint32_t count; /* attempts of each sensor; 0: endless */
-    uint32_t interval_us;
-    uint32_t timeout_us;
+    uint32_t count;       /* attempts of each sensor; 0: endless */
     uint64_t duration_us; /* 0: endless */
-    /* What reading_options.h sets, of all that take it; the rest is each sensor's. */
-    reader_settings_t reading;
-    uint8_t retries;
     bool reconnect;
 } sensor_options_t;
 
@@ -63,6 +61,10 @@ typedef struct {
  */
 bool sensor_options(sensor_options_t *options, const char *command, char **words, int word_count,
                     const char *const *values, const char *address, const char *mode);
+
+/* Those of the above that each sensor has for itself, of these: --interval, --timeout and --retries. */
+bool station_options(station_t *const *stations, size_t count, const char *command,
+                     const char *const *values);
 
 /* Says which of these options, and keys, have no effect on a sensor because nothing is asked. */
 void sensor_options_tell_useless(const sensor_options_t *options, const char *address,

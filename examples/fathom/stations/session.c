@@ -17,7 +17,7 @@ const struct option session_table[SESSION_OPTIONS + 1] = {
 static bool check_modes(const sensor_options_t *options, const char *command)
 {
     for (size_t i = 0; i != options->station_count; i++) {
-        const model_mode_t *const mode = options->stations[i].mode;
+        const model_mode_t *const mode = options->stations[i]->mode;
         if (mode->is_asked && mode->pins == 0) continue;
         (void)usage_error(command, "in mode %s nothing is asked; leave it out", mode->name);
         return false;
@@ -55,7 +55,7 @@ static bool take_options(session_t *session, const char *command, int argc, char
                         values[SESSION_MODE]) ||
         !check_modes(&session->options, command))
         return false;
-    session->station = session->options.stations;
+    session->station = session->options.stations[0];
     *words = argv + rest + taken;
     *count = argc - rest - taken;
     return true;
@@ -126,14 +126,11 @@ void session_listen(session_t *session, uint32_t for_us) { channel_listen(&sessi
 /* Its driver, from the beginning. */
 static bool begin(session_t *session)
 {
-    const sensor_options_t *const options = &session->options;
     station_t *const station = session->station;
-    const reader_settings_t settings = {.timeout_us = options->timeout_us,
-                                        .period_us = options->interval_us,
-                                        .line = &station->line,
-                                        .backoff_us = READER_BACKOFF_US,
-                                        .address = station->address,
-                                        .retries = options->retries};
+    reader_settings_t settings = station->settings;
+    settings.line = &station->line;
+    settings.backoff_us = READER_BACKOFF_US;
+    settings.address = station->address;
     if (!station_begin(station, &session->channel, &settings)) {
         char text[256];
         station_refusal(station, text, sizeof text);

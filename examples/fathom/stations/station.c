@@ -137,11 +137,11 @@ void station_name(station_t *station)
                    station->model->name, station->address);
 }
 
-static bool has_namesake(const station_t *stations, size_t count, const station_t *station, bool elsewhere)
+static bool has_namesake(station_t *const *stations, size_t count, const station_t *station, bool elsewhere)
 {
     for (size_t i = 0; i != count; i++) {
-        if (elsewhere && stations[i].port == station->port) continue;
-        if (strcmp(stations[i].name, station->name) == 0) return true;
+        if (elsewhere && stations[i]->port == station->port) continue;
+        if (strcmp(stations[i]->name, station->name) == 0) return true;
     }
     return false;
 }
@@ -155,17 +155,17 @@ static void add_port(station_t *station, const char *path)
         if (*at == '"' || *at == '\\' || *at == ',' || (unsigned char)*at < ' ') *at = '_';
 }
 
-bool stations_name(station_t *stations, size_t count, const port_options_t *ports, const char *command)
+bool stations_name(station_t *const *stations, size_t count, const port_options_t *ports, const char *command)
 {
     bool is_ambiguous[MAX_STATIONS];
     for (size_t i = 0; i != count; i++)
-        is_ambiguous[i] = !stations[i].has_own_name && has_namesake(stations, count, &stations[i], true);
+        is_ambiguous[i] = !stations[i]->has_own_name && has_namesake(stations, count, stations[i], true);
     for (size_t i = 0; i != count; i++)
-        if (is_ambiguous[i]) add_port(&stations[i], ports[stations[i].port].path);
+        if (is_ambiguous[i]) add_port(stations[i], ports[stations[i]->port].path);
     for (size_t i = 0; i != count; i++) {
-        if (!has_namesake(stations, i, &stations[i], false)) continue;
+        if (!has_namesake(stations, i, stations[i], false)) continue;
         (void)usage_error(command, "two sensors have the name %s; give each one of its own, such as one=%s",
-                          stations[i].name, stations[i].model->name);
+                          stations[i]->name, stations[i]->model->name);
         return false;
     }
     return true;
@@ -215,15 +215,16 @@ static bool suits_line(const station_t *station, const port_options_t *port, con
     return false;
 }
 
-bool stations_check(const station_t *stations, size_t count, const port_options_t *ports, const char *command)
+bool stations_check(station_t *const *stations, size_t count, const port_options_t *ports,
+                    const char *command)
 {
     for (size_t i = 0; i != count; i++) {
-        const station_t *const one = &stations[i];
+        const station_t *const one = stations[i];
         const port_options_t *const port = &ports[one->port];
         if (!suits_line(one, port, command)) return false;
         for (size_t j = 0; j != i; j++)
-            if (stations[j].port == one->port &&
-                !check_two(&stations[j], one, command, !tcp_names(port->path)))
+            if (stations[j]->port == one->port &&
+                !check_two(stations[j], one, command, !tcp_names(port->path)))
                 return false;
     }
     return true;
@@ -241,8 +242,9 @@ void station_refusal(const station_t *station, char *text, size_t capacity)
                    refusal != NULL ? refusal : "its driver does not take these settings");
 }
 
-bool station_is_raised(station_t *station, uint32_t interval_us, char *text, size_t capacity)
+bool station_is_raised(station_t *station, char *text, size_t capacity)
 {
+    const uint32_t interval_us = station->settings.period_us;
     const uint32_t *const period_us = station->reader.period_us;
     if (period_us == NULL || interval_us == 0 || interval_us >= *period_us || station->is_raise_told)
         return false;

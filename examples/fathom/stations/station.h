@@ -11,7 +11,7 @@
 enum { MAX_STATIONS = 256, MAX_STATIONS_ON_A_LINE = 32 };
 
 /* One sensor at a port, as a command reads it. */
-enum { STATION_NAME = 80 };
+enum { STATION_NAME = 80, STATION_SLOTS = 2 * MAX_STATIONS };
 
 typedef struct station station_t;
 struct station {
@@ -19,6 +19,9 @@ struct station {
     const model_mode_t *mode;
     fathom_line_settings_t line; /* at which it is asked */
     size_t port;                 /* its row in sensor_options_t.ports */
+    size_t slot;                 /* which station of the tool it is: less than STATION_SLOTS */
+    /* What the user wants of it; line, backoff_us and address are set when it begins. */
+    reader_settings_t settings;
     reader_t reader;
     counters_t counters;
     pulses_t pulses;
@@ -57,10 +60,11 @@ bool station_port_example(const sensor_place_t *place, char text[STATION_PORT]);
 void station_name(station_t *station);
 
 /* Names that several have are told apart by the ports. False after a usage error: some are the same all the same. */
-bool stations_name(station_t *stations, size_t count, const port_options_t *ports, const char *command);
+bool stations_name(station_t *const *stations, size_t count, const port_options_t *ports,
+                   const char *command);
 
 /* Can they be read at their ports, those of a port together? False after a usage error. */
-bool stations_check(const station_t *stations, size_t count, const port_options_t *ports,
+bool stations_check(station_t *const *stations, size_t count, const port_options_t *ports,
                     const char *command);
 
 /* Begins to read it through an open channel. False: its driver, or the port, does not take the settings, for which
@@ -68,7 +72,7 @@ bool stations_check(const station_t *stations, size_t count, const port_options_
 bool station_begin(station_t *station, channel_t *channel, const reader_settings_t *settings);
 void station_refusal(const station_t *station, char *text, size_t capacity);
 
-/* Has its driver raised the interval that the user has given (0: none)? Then *text says so, the first time. */
-bool station_is_raised(station_t *station, uint32_t interval_us, char *text, size_t capacity);
+/* Has its driver raised the interval that the user has given? Then *text says so, the first time. */
+bool station_is_raised(station_t *station, char *text, size_t capacity);
 
 #endif

@@ -32,9 +32,9 @@ typedef struct {
     uint64_t next_us;      /* when the next picture or line is due */
     char message[MESSAGE]; /* the last failure, or what has happened to the port */
     uint64_t message_end_us;
-    char loss[MESSAGE];                     /* what was said of a port that was lost last */
-    fathom_status_t reported[MAX_STATIONS]; /* for lines: what was printed of each sensor's last failure */
-    bool draws;                             /* pictures, else lines */
+    char loss[MESSAGE];                      /* what was said of a port that was lost last */
+    fathom_status_t reported[STATION_SLOTS]; /* for lines: what was printed of each sensor's last failure */
+    bool draws;                              /* pictures, else lines */
     bool wants_all;   /* of the next picture, because something else may have written to the terminal */
     int output_error; /* errno */
     lanes_t lanes;    /* last: only those of them that are used are ever touched */
@@ -53,7 +53,7 @@ static bool take_reading(void *ctx, const station_t *station, const fathom_sampl
     lanes_reading(&watch->lanes, station, sample);
     const uint64_t end_us = poll_loop_time_us(&watch->loop) + MESSAGE_US;
     if (watch->message_end_us > end_us) watch->message_end_us = end_us;
-    watch->reported[station - watch->loop.options.stations] = FATHOM_READY;
+    watch->reported[station->slot] = FATHOM_READY;
     return true;
 }
 
@@ -71,7 +71,7 @@ static void get_advice(char text[MESSAGE], const failure_t *failure, const stati
 static void take_failure(void *ctx, const failure_t *failure, const station_t *station)
 {
     watch_t *const watch = ctx;
-    fathom_status_t *const reported = &watch->reported[station - watch->loop.options.stations];
+    fathom_status_t *const reported = &watch->reported[station->slot];
     char text[MESSAGE] = "";
     lanes_pass(&watch->lanes, poll_loop_time_us(&watch->loop));
     lanes_failure(&watch->lanes, failure, station);
@@ -253,9 +253,10 @@ static bool take_options(sensor_options_t *options, int argc, char **argv, bool 
     *wants_help = rest >= 0 && values[HELP] != NULL;
     if (rest < 0 || *wants_help) return rest >= 0;
     if (!sensor_options(options, command, argv + rest, argc - rest, values, NULL, NULL) ||
-        !reading_options(options, command, values))
+        !reading_options(options->stations, options->station_count, command, values))
         return false;
-    options->reading.repeat_us = 250000; /* a column */
+    for (size_t i = 0; i != options->station_count; i++)
+        options->stations[i]->settings.repeat_us = 250000; /* a column */
     sensor_options_tell_useless(options, NULL, values);
     return true;
 }

@@ -42,18 +42,18 @@ static bool is_contact(const station_t *station) { return (station->mode->pins &
 
 void lanes_begin(lanes_t *lanes, const sensor_options_t *options)
 {
-    lanes->step_us = options->interval_us > LEAST_STEP_US ? options->interval_us : LEAST_STEP_US;
+    const uint32_t interval_us = options->stations[0]->settings.period_us; /* which all have */
+    lanes->step_us = interval_us > LEAST_STEP_US ? interval_us : LEAST_STEP_US;
     lanes->count = 0;
     lanes->name_width = LEAST_NAME;
     lanes->now_us = 0;
     lanes->seen = 0;
     for (size_t i = 0; i != options->station_count; i++) {
-        const station_t *const station = &options->stations[i];
+        const station_t *const station = options->stations[i];
         const uint8_t probes = is_contact(station) ? 1 : station->model->probes;
         for (uint8_t probe = 1; probe <= probes; probe++) {
-            if (probes > 1 && options->reading.probes != 0 &&
-                (options->reading.probes >> (probe - 1) & 1) == 0)
-                continue;
+            const uint8_t wanted = station->settings.probes;
+            if (probes > 1 && wanted != 0 && (wanted >> (probe - 1) & 1) == 0) continue;
             lane_t *const lane = &lanes->lane[lanes->count++];
             memset(lane, 0, sizeof *lane);
             lane->station = station;
