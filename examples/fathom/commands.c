@@ -7,9 +7,9 @@
 #include "shared/options.h"
 
 static const command_t *const commands[] = {
-    &scan_command,  &read_command,       &watch_command,     &info_command, &get_command,
-    &set_command,   &commission_command, &calibrate_command, &save_command, &restore_command,
-    &reset_command, &request_command,    &decode_command,    &sim_command,
+    &scan_command,    &read_command,  &watch_command,      &publish_command,   &info_command,
+    &get_command,     &set_command,   &commission_command, &calibrate_command, &save_command,
+    &restore_command, &reset_command, &request_command,    &decode_command,    &sim_command,
 };
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
 

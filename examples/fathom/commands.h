@@ -8,6 +8,7 @@
 extern const command_t scan_command;
 extern const command_t read_command;
 extern const command_t watch_command;
+extern const command_t publish_command;
 extern const command_t info_command;
 extern const command_t get_command;
 extern const command_t set_command;

@@ -110,6 +110,8 @@ bool port_keys_has(const port_keys_t *keys, port_key_t key) { return (keys->give
 
 const char *port_key_name(port_key_t key) { return rows[key].name; }
 
+const char *port_key_takes(port_key_t key) { return rows[key].takes; }
+
 static void set(port_keys_t *keys, size_t key, uint32_t value)
 {
     keys->value[key] = value;

@@ -56,8 +56,9 @@ bool port_keys_has(const port_keys_t *keys, port_key_t key);
 /* Do a comma, a key and "=" follow in it? Then they were meant to stand behind a sensor. */
 bool port_path_has_keys(const char *path);
 
-/* As a user writes it. */
+/* As a user writes it, and what its value may be, in words. */
 const char *port_key_name(port_key_t key);
+const char *port_key_takes(port_key_t key);
 
 /* Reads "key=value,key=value". word: what the user has written, for messages. False after a usage error. */
 bool port_keys_parse(port_keys_t *keys, const char *command, const char *word, port_kind_t kind,

@@ -151,9 +151,11 @@ static bool take_ports(sensor_options_t *options, const char *command, const cha
     port_keys_t defaults = {.given = 0};
     if (!take_defaults(&defaults, command, values)) return false;
     take_lines(options, &defaults);
-    for (size_t i = 0; i != options->port_count; i++) {
-        port_options_take(&options->ports[i], &defaults);
-        if (options->ports[i].is_chip && !check_pins(options, command, &options->ports[i])) return false;
+    for (size_t i = 0; i != options->port_count; i++) port_options_take(&options->ports[i], &defaults);
+    for (size_t i = 0; i != options->station_count; i++) {
+        const port_options_t *const port = &options->ports[options->stations[i]->port];
+        usage_of_word(i);
+        if (port->is_chip && !check_pins(options, command, port)) return false;
     }
     return true;
 }
@@ -163,10 +165,14 @@ static bool take_ports(sensor_options_t *options, const char *command, const cha
 static bool take_places(sensor_options_t *options, const char *command, char **words, const char *path,
                         sensor_place_t *places)
 {
-    for (size_t i = 0; i != options->station_count; i++)
+    for (size_t i = 0; i != options->station_count; i++) {
+        usage_of_word(i);
         if (!place_parse(&places[i], command, words[i])) return false;
-    for (size_t i = 0; i != options->station_count; i++)
+    }
+    for (size_t i = 0; i != options->station_count; i++) {
+        usage_of_word(i);
         if (!take_port(options, command, options->stations[i], &places[i], path)) return false;
+    }
     return true;
 }
 
@@ -178,6 +184,7 @@ static bool take_stations(sensor_options_t *options, const char *command, char *
     for (size_t i = 0; i != options->station_count; i++) {
         station_t *const station = options->stations[i];
         const port_options_t *const port = &options->ports[station->port];
+        usage_of_word(i);
         if (!station_take(station, command, &places[i], address, mode,
                           options->asks_all || port->station_count > 1))
             return false;
@@ -233,8 +240,10 @@ bool sensor_options(sensor_options_t *options, const char *command, char **words
         !take_duration(options, command, values))
         return false;
     options->reconnect = values[OPTION_RECONNECT] != NULL;
-    for (size_t i = 0; i != options->station_count; i++)
+    for (size_t i = 0; i != options->station_count; i++) {
+        usage_of_word(i);
         if (!station_suits(stations[i], &options->ports[stations[i]->port], command)) return false;
+    }
     return true;
 }
 

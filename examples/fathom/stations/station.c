@@ -163,6 +163,7 @@ bool stations_name(station_t *const *stations, size_t count, const port_options_
     for (size_t i = 0; i != count; i++)
         if (is_ambiguous[i]) add_port(stations[i], ports[stations[i]->port].path);
     for (size_t i = 0; i != count; i++) {
+        usage_of_word(i);
         if (!has_namesake(stations, i, stations[i], false)) continue;
         (void)usage_error(command, "two sensors have the name %s; give each one of its own, such as one=%s",
                           stations[i]->name, stations[i]->model->name);
@@ -221,6 +222,7 @@ bool stations_check(station_t *const *stations, size_t count, const port_options
     for (size_t i = 0; i != count; i++) {
         const station_t *const one = stations[i];
         const port_options_t *const port = &ports[one->port];
+        usage_of_word(i);
         if (!suits_line(one, port, command)) return false;
         for (size_t j = 0; j != i; j++)
             if (stations[j]->port == one->port &&

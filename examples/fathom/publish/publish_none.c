@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: MIT */
+#include "commands.h"
+
+/* What the build did not find: FATHOM_PUBLISH_LACKS, "libmosquitto" for one. */
+
+static void help(FILE *to)
+{
+    (void)fputs("fathom publish publishes what sensors say to an MQTT broker. This fathom was built "
+                "without " FATHOM_PUBLISH_LACKS ", which that needs.\n",
+                to);
+}
+
+static int run(const host_t *host, int argc, char **argv)
+{
+    (void)host;
+    (void)argc;
+    (void)argv;
+    return usage_error("publish", "this fathom was built without " FATHOM_PUBLISH_LACKS
+                                  "; install its development files and build it again");
+}
+
+const command_t publish_command = {"publish", "publishes sensors to an MQTT broker (not in this build)", help,
+                                   run};
