@@ -224,6 +224,7 @@ static bool take_options(const sensors_t *sensors, results_config_t *results, si
     }
     usage_at(&lines);
     memset(results, 0, sizeof *results);
+    results->has_readings = true;
     return station_options(station, 1, sensors->command, values) &&
            reading_options(station, 1, sensors->command, values) &&
            temperature_option(station, 1, sensors->command, temperature) &&
@@ -242,6 +243,7 @@ static bool take_sensors(sensors_t *sensors, config_results_t results)
     for (size_t i = 0; i != config->word_count; i++)
         if (!take_options(sensors, &results[config->sensors.stations[i]->slot], i)) return false;
     config->sensors.reconnect = true;
+    config->sensors.persists = true;
     return true;
 }
 

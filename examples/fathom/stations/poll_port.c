@@ -117,8 +117,8 @@ static void tell_away(const poll_port_t *port)
 static void take_absence(poll_port_t *port)
 {
     const sensor_options_t *const options = &port->loop->options;
-    const bool may_come =
-        fathom_posix_error(&port->channel.port) == FATHOM_POSIX_ERR_NOT_FOUND || options->port_count > 1;
+    const bool may_come = fathom_posix_error(&port->channel.port) == FATHOM_POSIX_ERR_NOT_FOUND ||
+                          options->port_count > 1 || options->persists;
     char text[TEXT];
     port->is_lost = true;
     port->waits = options->reconnect && may_come;

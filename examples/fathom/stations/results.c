@@ -105,7 +105,9 @@ bool results_sample(results_t *results, const station_t *station, const fathom_s
     result_probe_t *const probe = probe_of(results, station, sample->probe);
     result_t result = {.sample = *sample};
     const bool is_there = config->median == 0 || take_median(probe, &result.sample);
-    if (!config->has_alarm) return is_there ? tell(results, station, &result) : true;
+    const bool is_told = is_there && (!config->has_alarm || config->has_readings);
+    if (is_told && !tell(results, station, &result)) return false;
+    if (!config->has_alarm) return true;
     if (!is_there) return take_status(results, station, sample->probe, FATHOM_READY, sample->time_us);
     if (!fathom_alarm_sample(&probe->alarm, &result.sample)) return true;
     return tell_change(results, station, probe, &result);

@@ -21,7 +21,8 @@ typedef struct {
     uint16_t gate_mm;
     uint8_t median; /* of so many samples; 0: none */
     bool has_level;
-    bool has_alarm; /* its changes are told, and no readings */
+    bool has_alarm;    /* its changes are told, and no readings, ... */
+    bool has_readings; /* ... unless this is set too */
 } results_config_t;
 
 /* A reading, or the change of an alarm. */

@@ -53,6 +53,7 @@ typedef struct sensor_options {
     uint32_t count;       /* attempts of each sensor; 0: endless */
     uint64_t duration_us; /* 0: endless */
     bool reconnect;
+    bool persists; /* with reconnect: also where a port is there and cannot be opened, now; to be set after */
 } sensor_options_t;
 
 /*

@@ -1,0 +1,279 @@
+/* SPDX-License-Identifier: MIT */
+#include "publish/publisher.h"
+
+#include <string.h>
+
+#include "publish/discovery.h"
+#include "shared/command.h"
+
+enum { FAILURES = 3, NEWS_US = 1000000, PAYLOAD = DISCOVERY_TEXT };
+
+static uint64_t now_us(const publisher_t *publisher) { return publisher->host->now_us(publisher->host->ctx); }
+
+/* ---- what is retained ---- */
+
+static bool send_status(publisher_t *publisher)
+{
+    char topic[TOPIC];
+    topic_of_site(publisher->config, "status", topic);
+    publisher->has_status = !broker_send(&publisher->broker, topic, "online", true);
+    return true;
+}
+
+static bool send_discovery(publisher_t *publisher, publisher_sensor_t *sensor)
+{
+    char topic[DISCOVERY_TOPIC];
+    char payload[PAYLOAD];
+    for (unsigned bit = 0; bit != FATHOM_DYP_PROBES * TOPICS; bit++) {
+        const uint8_t probe = (uint8_t)(bit / TOPICS + 1);
+        if ((sensor->undiscovered >> bit & 1) == 0) continue;
+        sensor->undiscovered &= (uint16_t) ~(1u << bit);
+        discovery_topic(publisher->config, sensor->station, probe, bit % TOPICS, topic);
+        discovery_payload(publisher->config, sensor->station, &publisher->results[sensor->station->slot],
+                          probe, bit % TOPICS, payload);
+        return broker_send(&publisher->broker, topic, payload, true);
+    }
+    return false;
+}
+
+static bool send_availability(publisher_t *publisher, publisher_sensor_t *sensor)
+{
+    char topic[TOPIC];
+    if (!sensor->has_news) return false;
+    topic_of_sensor(publisher->config, sensor->station, "availability", topic);
+    sensor->has_news =
+        !broker_send(&publisher->broker, topic, sensor->is_available ? "online" : "offline", true);
+    return true;
+}
+
+/* The first sensor that has one of these to be sent. */
+static bool send_first(publisher_t *publisher,
+                       bool (*send)(publisher_t *publisher, publisher_sensor_t *sensor))
+{
+    for (size_t slot = 0; slot != STATION_SLOTS; slot++)
+        if (publisher->sensors[slot].station != NULL && send(publisher, &publisher->sensors[slot]))
+            return true;
+    return false;
+}
+
+static bool has_counters(const publisher_t *publisher)
+{
+    const bool is_due = publisher->told_us == 0 || now_us(publisher) - publisher->told_us >= NEWS_US;
+    return is_due && publisher->queue.dropped != publisher->told_dropped;
+}
+
+static bool send_counters(publisher_t *publisher)
+{
+    char topic[TOPIC];
+    char payload[STATE_TEXT];
+    size_t sensors = 0;
+    for (size_t slot = 0; slot != STATION_SLOTS; slot++)
+        if (publisher->sensors[slot].station != NULL) sensors++;
+    const publisher_state_t state = {publisher->boot,
+                                     publisher->host->utc_us(publisher->host->ctx),
+                                     now_us(publisher) - publisher->start_us,
+                                     publisher->queue.dropped,
+                                     publisher->queue.count,
+                                     sensors};
+    topic_of_site(publisher->config, "publisher", topic);
+    state_of_publisher(&state, payload);
+    if (!broker_send(&publisher->broker, topic, payload, true)) return false;
+    publisher->told_dropped = state.dropped;
+    publisher->told_us = now_us(publisher);
+    return true;
+}
+
+/* Who has just connected is told all of it, whatever the broker still knows. */
+static void take_connected(void *ctx)
+{
+    publisher_t *const publisher = ctx;
+    for (size_t slot = 0; slot != STATION_SLOTS; slot++) {
+        publisher_sensor_t *const sensor = &publisher->sensors[slot];
+        if (sensor->station == NULL) continue;
+        sensor->has_news = true;
+        sensor->undiscovered = discovery_all(publisher->config, sensor->station, &publisher->results[slot]);
+    }
+    publisher->has_status = true;
+    publisher->has_facts = true;
+    publisher->told_us = 0;
+    publisher->told_dropped = UINT64_MAX;
+}
+
+/* ---- one after another ---- */
+
+static bool send_fact(publisher_t *publisher)
+{
+    if (publisher->has_status) return send_status(publisher);
+    if (has_counters(publisher) && send_counters(publisher)) return true;
+    if (!publisher->has_facts) return false;
+    if (send_first(publisher, send_discovery) || send_first(publisher, send_availability)) return true;
+    publisher->has_facts = false;
+    return false;
+}
+
+static void send_next(publisher_t *publisher)
+{
+    message_t message;
+    char text[STATE_TEXT];
+    if (!broker_is_free(&publisher->broker) || send_fact(publisher)) return;
+    if (!queue_take(&publisher->queue, &message, text)) return;
+    state_finish(text, now_us(publisher) - message.time_us, message.stream->dropped);
+    if (broker_send(&publisher->broker, message.stream->topic, text, message.stream->is_retained)) return;
+    message.stream->dropped++;
+    publisher->queue.dropped++;
+}
+
+static void take_acknowledged(void *ctx) { send_next(ctx); }
+
+static void take_lost(void *ctx) { (void)ctx; }
+
+static void tell(void *ctx, const char *text)
+{
+    (void)ctx;
+    (void)fprintf(stderr, "fathom: %s\n", text);
+}
+
+/* ---- what is measured ---- */
+
+static void put(publisher_t *publisher, state_t *state, topic_t topic, uint8_t probe, uint64_t time_us)
+{
+    char text[QUEUE_TEXT];
+    stream_t *const stream = publisher->sensors[state->station->slot].streams[probe - 1][topic];
+    if (stream == NULL) return;
+    state->boot = publisher->boot;
+    state->seq = ++stream->seq;
+    const message_t message = {stream, time_us, state_begin(state, topic, text)};
+    queue_put(&publisher->queue, &message, text);
+    send_next(publisher);
+}
+
+static void set_available(publisher_t *publisher, const station_t *station, bool is_available)
+{
+    publisher_sensor_t *const sensor = &publisher->sensors[station->slot];
+    if (sensor->is_available == is_available) return;
+    sensor->is_available = is_available;
+    sensor->has_news = true;
+    publisher->has_facts = true;
+    send_next(publisher);
+}
+
+static uint64_t utc_of(const publisher_t *publisher, uint64_t time_us)
+{
+    const host_t *const host = publisher->host;
+    return host->utc_us(host->ctx) - (now_us(publisher) - time_us);
+}
+
+void publisher_result(publisher_t *publisher, const station_t *station, const result_t *result,
+                      uint64_t time_us)
+{
+    const uint8_t probe = topic_has_probes(station) ? result->sample.probe : 1;
+    state_t state = {.station = station, .result = result, .utc_us = utc_of(publisher, time_us)};
+    if (result->alarm != 0) {
+        put(publisher, &state, TOPIC_ALARM, probe, time_us);
+        return;
+    }
+    publisher->sensors[station->slot].failures = 0;
+    set_available(publisher, station, true);
+    put(publisher, &state, TOPIC_STATE, probe, time_us);
+    put(publisher, &state, TOPIC_LEVEL, probe, time_us);
+}
+
+void publisher_failure(publisher_t *publisher, const station_t *station, const char *word, uint8_t probe,
+                       bool is_grave)
+{
+    const uint64_t time_us = now_us(publisher);
+    const result_t none = {.has_level = false};
+    state_t state = {.station = station,
+                     .result = &none,
+                     .failure = word,
+                     .utc_us = publisher->host->utc_us(publisher->host->ctx)};
+    publisher_sensor_t *const sensor = &publisher->sensors[station->slot];
+    if (sensor->failures != FAILURES) sensor->failures++;
+    if (is_grave || sensor->failures == FAILURES) set_available(publisher, station, false);
+    for (uint8_t i = 1; i <= FATHOM_DYP_PROBES; i++) {
+        if (!topic_wants_probe(station, i) || (probe != 0 && topic_has_probes(station) && probe != i))
+            continue;
+        put(publisher, &state, TOPIC_STATE, i, time_us);
+        put(publisher, &state, TOPIC_LEVEL, i, time_us);
+    }
+}
+
+/* ---- begin and end ---- */
+
+bool publisher_add(publisher_t *publisher, const station_t *station)
+{
+    publisher_sensor_t *const sensor = &publisher->sensors[station->slot];
+    memset(sensor, 0, sizeof *sensor);
+    for (uint8_t probe = 1; probe <= FATHOM_DYP_PROBES; probe++)
+        for (topic_t topic = 0; topic != TOPICS; topic++) {
+            char text[TOPIC];
+            if (!topic_wants_probe(station, probe) ||
+                !topic_is_there(&publisher->results[station->slot], topic))
+                continue;
+            topic_of_probe(publisher->config, station, probe, topic, text);
+            stream_t *const stream = streams_get(&publisher->streams, text);
+            if (stream == NULL) return false;
+            stream->is_retained = topic == TOPIC_ALARM;
+            sensor->streams[probe - 1][topic] = stream;
+        }
+    sensor->station = station;
+    return true;
+}
+
+bool publisher_begin(publisher_t *publisher, const host_t *host, const config_t *config,
+                     config_results_t results)
+{
+    memset(publisher, 0, sizeof *publisher);
+    publisher->host = host;
+    publisher->config = config;
+    publisher->results = results;
+    publisher->start_us = now_us(publisher);
+    state_boot(publisher->boot);
+    if (queue_begin(&publisher->queue, config->queue_messages, config->queue_bytes)) return true;
+    tell(NULL, "there is no memory left for the queue; make bytes: less");
+    return false;
+}
+
+bool publisher_connect(publisher_t *publisher, fathom_loop_t *loop)
+{
+    static const broker_user_t user = {take_connected, take_lost, take_acknowledged, tell};
+    char topic[TOPIC];
+    topic_of_site(publisher->config, "status", topic);
+    return broker_begin(&publisher->broker, publisher->host, loop, publisher->config, topic, &user,
+                        publisher);
+}
+
+uint32_t publisher_tick(publisher_t *publisher)
+{
+    const uint32_t broker_us = broker_tick(&publisher->broker);
+    send_next(publisher);
+    return broker_us < NEWS_US ? broker_us : NEWS_US;
+}
+
+/* What still waits is sent, as far as that goes in END_US, and at last that it is offline. */
+static void say_goodbye(publisher_t *publisher)
+{
+    enum { END_US = 2000000, TURN_US = 100000 };
+    broker_t *const broker = &publisher->broker;
+    const uint64_t until_us = now_us(publisher) + END_US;
+    char topic[TOPIC];
+    send_next(publisher);
+    while (now_us(publisher) < until_us && !broker_is_free(broker))
+        if (!broker_wait(broker, TURN_US)) return;
+    if (!broker_is_connected(broker)) return;
+    topic_of_site(publisher->config, "status", topic);
+    if (!broker_send(broker, topic, "offline", true)) return;
+    /* Nothing more is sent when that is acknowledged. */
+    publisher->has_facts = publisher->has_status = false;
+    publisher->told_us = now_us(publisher);
+    while (now_us(publisher) < until_us && !broker_is_free(broker))
+        if (!broker_wait(broker, TURN_US)) return;
+}
+
+void publisher_end(publisher_t *publisher)
+{
+    say_goodbye(publisher);
+    broker_end(&publisher->broker);
+    queue_end(&publisher->queue);
+    streams_end(&publisher->streams);
+}

@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef PUBLISHER_H
+#define PUBLISHER_H
+
+#include "publish/broker.h"
+#include "publish/state.h"
+
+/*
+ * What goes to the broker, and in which order. First what is retained, of which only the last word counts: that the publisher
+ * is online, how the sensors are found, which of them are available, and the publisher's counters. Then the messages of the
+ * queue, one after another.
+ */
+
+/* What is known of a sensor, by its station's slot. */
+typedef struct {
+    stream_t *streams[FATHOM_DYP_PROBES][TOPICS];
+    const station_t *station; /* NULL: none is read there */
+    uint16_t undiscovered;    /* bits TOPICS * (probe - 1) + topic: Home Assistant is still to be told */
+    uint8_t failures;         /* in a row */
+    bool is_available;
+    bool has_news; /* that it is, or is not */
+} publisher_sensor_t;
+
+typedef struct {
+    const config_t *config;
+    results_config_t *results; /* by slot */
+    const host_t *host;
+    uint64_t start_us;
+    broker_t broker;
+    queue_t queue;
+    streams_t streams;
+    char boot[BOOT];
+    publisher_sensor_t sensors[STATION_SLOTS];
+    uint64_t told_dropped; /* in what was told of the publisher last, ... */
+    uint64_t told_us;      /* ... and when */
+    bool has_status;       /* "online" is still to be told */
+    bool has_facts;        /* there may be something before the queue */
+} publisher_t;
+
+/* config stays where it is. What is measured waits in the queue until publisher_connect was called. False after saying why. */
+bool publisher_begin(publisher_t *publisher, const host_t *host, const config_t *config,
+                     config_results_t results);
+bool publisher_connect(publisher_t *publisher, fathom_loop_t *loop);
+
+/* For each station that is read. False: there is no memory left. */
+bool publisher_add(publisher_t *publisher, const station_t *station);
+
+/* A reading, or a change of an alarm. */
+void publisher_result(publisher_t *publisher, const station_t *station, const result_t *result,
+                      uint64_t time_us);
+
+/* An attempt that has failed, or is not even made since the port is away. word: of status_word.h; probe: 0: it is not of one
+ * alone. is_grave: the sensor is not available any more; else it is not after a few in a row. */
+void publisher_failure(publisher_t *publisher, const station_t *station, const char *word, uint8_t probe,
+                       bool is_grave);
+
+/* From outside of the loop's steps, before each sleep. Returns how long that may take. */
+uint32_t publisher_tick(publisher_t *publisher);
+
+/* Tells that it goes offline, if it can, and waits a little for that. */
+void publisher_end(publisher_t *publisher);
+
+#endif
