@@ -39,15 +39,28 @@ static bool take_result(void *ctx, const station_t *station, const result_t *res
     return true;
 }
 
+/* Only what makes a sensor unavailable: each failure is a state, and a sensor may be away for weeks. */
+static void tell_failure(const failure_t *failure, const station_t *station)
+{
+    if (failure->status == FATHOM_ERR_PORT)
+        (void)fputs("fathom: ", stderr);
+    else
+        (void)fprintf(stderr, "fathom: %s: ", station->name);
+    advice_print(stderr, failure);
+    (void)fputs("\n", stderr);
+}
+
 static void take_failure(void *ctx, const failure_t *failure, const station_t *station)
 {
     publish_t *const publish = ctx;
     const fathom_status_t status = failure->status;
     const uint8_t probe = status == FATHOM_ERR_MALFORMED ? reader_refused_probe(&station->reader) : 0;
     char word[COUNTERS_MEMBER];
-    publisher_failure(&publish->publisher, station,
-                      status_word_of_failure(counters_failure_kind(status, &station->reader), word), probe,
-                      status == FATHOM_ERR_PORT || status == FATHOM_ERR_STALE);
+    (void)status_word_of_failure(counters_failure_kind(status, &station->reader), word);
+    if (publisher_failure(&publish->publisher, station, word, probe,
+                          status == FATHOM_ERR_PORT || status == FATHOM_ERR_STALE) &&
+        !failure->is_told)
+        tell_failure(failure, station);
     results_failure(&publish->results, station, status);
 }
 

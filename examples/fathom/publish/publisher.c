@@ -147,14 +147,18 @@ static void put(publisher_t *publisher, state_t *state, topic_t topic, uint8_t p
     send_next(publisher);
 }
 
-static void set_available(publisher_t *publisher, const station_t *station, bool is_available)
+/* True: that is new. */
+static bool set_away(publisher_t *publisher, const station_t *station, bool is_away)
 {
     publisher_sensor_t *const sensor = &publisher->sensors[station->slot];
-    if (sensor->is_available == is_available) return;
-    sensor->is_available = is_available;
+    const bool is_new = sensor->is_away != is_away;
+    sensor->is_away = is_away;
+    if (sensor->is_available != is_away) return is_new;
+    sensor->is_available = !is_away;
     sensor->has_news = true;
     publisher->has_facts = true;
     send_next(publisher);
+    return is_new;
 }
 
 static uint64_t utc_of(const publisher_t *publisher, uint64_t time_us)
@@ -163,22 +167,23 @@ static uint64_t utc_of(const publisher_t *publisher, uint64_t time_us)
     return host->utc_us(host->ctx) - (now_us(publisher) - time_us);
 }
 
-void publisher_result(publisher_t *publisher, const station_t *station, const result_t *result,
+bool publisher_result(publisher_t *publisher, const station_t *station, const result_t *result,
                       uint64_t time_us)
 {
     const uint8_t probe = topic_has_probes(station) ? result->sample.probe : 1;
     state_t state = {.station = station, .result = result, .utc_us = utc_of(publisher, time_us)};
     if (result->alarm != 0) {
         put(publisher, &state, TOPIC_ALARM, probe, time_us);
-        return;
+        return false;
     }
     publisher->sensors[station->slot].failures = 0;
-    set_available(publisher, station, true);
+    const bool is_new = set_away(publisher, station, false);
     put(publisher, &state, TOPIC_STATE, probe, time_us);
     put(publisher, &state, TOPIC_LEVEL, probe, time_us);
+    return is_new;
 }
 
-void publisher_failure(publisher_t *publisher, const station_t *station, const char *word, uint8_t probe,
+bool publisher_failure(publisher_t *publisher, const station_t *station, const char *word, uint8_t probe,
                        bool is_grave)
 {
     const uint64_t time_us = now_us(publisher);
@@ -189,13 +194,14 @@ void publisher_failure(publisher_t *publisher, const station_t *station, const c
                      .utc_us = publisher->host->utc_us(publisher->host->ctx)};
     publisher_sensor_t *const sensor = &publisher->sensors[station->slot];
     if (sensor->failures != FAILURES) sensor->failures++;
-    if (is_grave || sensor->failures == FAILURES) set_available(publisher, station, false);
+    const bool is_new = (is_grave || sensor->failures == FAILURES) && set_away(publisher, station, true);
     for (uint8_t i = 1; i <= FATHOM_DYP_PROBES; i++) {
         if (!topic_wants_probe(station, i) || (probe != 0 && topic_has_probes(station) && probe != i))
             continue;
         put(publisher, &state, TOPIC_STATE, i, time_us);
         put(publisher, &state, TOPIC_LEVEL, i, time_us);
     }
+    return is_new;
 }
 
 /* ---- begin and end ---- */

@@ -18,7 +18,8 @@ typedef struct {
     uint16_t undiscovered;    /* bits TOPICS * (probe - 1) + topic: Home Assistant is still to be told */
     uint8_t failures;         /* in a row */
     bool is_available;
-    bool has_news; /* that it is, or is not */
+    bool is_away;  /* by a failure; before the first reading it is neither */
+    bool has_news; /* that it is available, or is not */
 } publisher_sensor_t;
 
 typedef struct {
@@ -45,13 +46,13 @@ bool publisher_connect(publisher_t *publisher, fathom_loop_t *loop);
 /* For each station that is read. False: there is no memory left. */
 bool publisher_add(publisher_t *publisher, const station_t *station);
 
-/* A reading, or a change of an alarm. */
-void publisher_result(publisher_t *publisher, const station_t *station, const result_t *result,
+/* A reading, or a change of an alarm. True: its sensor was away, and is not any more. */
+bool publisher_result(publisher_t *publisher, const station_t *station, const result_t *result,
                       uint64_t time_us);
 
 /* An attempt that has failed, or is not even made since the port is away. word: of status_word.h; probe: 0: it is not of one
- * alone. is_grave: the sensor is not available any more; else it is not after a few in a row. */
-void publisher_failure(publisher_t *publisher, const station_t *station, const char *word, uint8_t probe,
+ * alone. is_grave: the sensor is not available any more; else it is not after a few in a row. True: it was not away before. */
+bool publisher_failure(publisher_t *publisher, const station_t *station, const char *word, uint8_t probe,
                        bool is_grave);
 
 /* From outside of the loop's steps, before each sleep. Returns how long that may take. */
