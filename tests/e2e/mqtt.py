@@ -10,6 +10,7 @@ import e2e
 
 
 READY = 'ready'
+KEY = ('-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1', '-nodes')
 
 
 def free_port():
@@ -114,10 +115,10 @@ def certificates(folder, *, days='365', name='localhost', ca='ca'):
     def openssl(*words):
         subprocess.run(['openssl', *words], check=True, cwd=folder, stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
     if not os.path.exists(os.path.join(folder, f'{ca}.crt')):
-        openssl('req', '-x509', '-newkey', 'rsa:2048', '-nodes', '-days', '3650', '-subj', f'/CN=Fathom test {ca}',
+        openssl('req', '-x509', *KEY, '-days', '3650', '-subj', f'/CN=Fathom test {ca}',
                 '-keyout', f'{ca}.key', '-out', f'{ca}.crt')
     own = f'{name}-{days.strip("-")}-{ca}'
-    openssl('req', '-newkey', 'rsa:2048', '-nodes', '-subj', f'/CN={name}', '-keyout', f'{own}.key', '-out', f'{own}.csr')
+    openssl('req', *KEY, '-subj', f'/CN={name}', '-keyout', f'{own}.key', '-out', f'{own}.csr')
     with open(os.path.join(folder, 'extension'), 'w', encoding='ascii') as file:
         kind = 'IP' if re.fullmatch(r'[\d.]+', name) else 'DNS'
         print(f'subjectAltName = {kind}:{name}', file=file)

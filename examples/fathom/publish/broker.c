@@ -85,6 +85,16 @@ static void read_all(broker_t *broker)
     }
 }
 
+static void take_readiness(broker_t *broker)
+{
+    const broker_config_t *const config = &broker->config->broker;
+    char text[BROKER_TEXT];
+    (void)snprintf(text, sizeof text, "broker %s port %u: connected", config->host, config->port);
+    if (broker->is_told) broker->user->tell(broker->ctx, text);
+    broker->is_told = false;
+    broker->user->connected(broker->ctx);
+}
+
 static bool poll_socket(fathom_loop_source_t *source)
 {
     broker_t *const broker = broker_of(source);
@@ -100,7 +110,7 @@ static bool poll_socket(fathom_loop_source_t *source)
     /* A handshake of TLS does not tell libmosquitto of its end. */
     if (broker->phase == BROKER_GREETING && source->is_hung_up) take_result(broker, MOSQ_ERR_CONN_LOST);
     if (broker->is_lost) return true;
-    if (!was_ready && broker->phase == BROKER_READY) broker->user->connected(broker->ctx);
+    if (!was_ready && broker->phase == BROKER_READY) take_readiness(broker);
     if (had_message && !broker->has_message) broker->user->acknowledged(broker->ctx);
     return true;
 }
@@ -234,6 +244,7 @@ static void begin_connecting(broker_t *broker)
 {
     broker->reason[0] = broker->log[0] = '\0';
     broker->is_lost = false;
+    broker->tls_error = 0;
     broker->began_us = now_us(broker);
     make_client(broker);
     if (broker->mosq == NULL || !broker_login(broker)) {

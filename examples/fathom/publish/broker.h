@@ -61,7 +61,8 @@ struct broker {
     bool has_changed; /* the config: the client is another one */
     bool is_lost;     /* for `reason` */
     bool thread_has_ended;
-    bool is_told; /* that it is away, for `told` */
+    bool is_told;  /* that it is away, for `told` */
+    int tls_error; /* what is wrong with its certificate; 0: nothing that is known */
     char will[CONFIG_PATH];
     char reason[BROKER_TEXT];
     char told[BROKER_TEXT];
@@ -103,7 +104,12 @@ void broker_explain(broker_t *broker, int result, int error);
 /* Why the broker did not accept the client: the return code of MQTT 3.1.1. */
 void broker_explain_refusal(broker_t *broker, int code);
 
-/* What is wrong with the certificate of the far end; "" where that is not known. */
-const char *tls_reason(struct mosquitto *mosq);
+/* Secures the client as the config says. *error has what is wrong with the certificate of the far end, whenever that is found
+ * out. False, with what is wrong with the files. */
+bool tls_set(struct mosquitto *mosq, const broker_config_t *config, int *error, char *reason,
+             size_t capacity);
+
+/* In words; "" where it is not known. */
+const char *tls_reason(int error);
 
 #endif

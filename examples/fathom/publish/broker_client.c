@@ -11,8 +11,6 @@
 
 enum { PASSWORD = 1024 };
 
-static const char authorities[] = "/etc/ssl/certs";
-
 static void explain(broker_t *broker, const char *format, ...) __attribute__((format(printf, 2, 3)));
 static void explain(broker_t *broker, const char *format, ...)
 {
@@ -27,13 +25,9 @@ static const char *or_null(const char *text) { return text[0] != '\0' ? text : N
 static bool set_tls(broker_t *broker, struct mosquitto *mosq)
 {
     const broker_config_t *const config = &broker->config->broker;
-    if (!config->has_tls) return true;
-    const char *const ca_file = or_null(config->ca_file);
-    const int result = mosquitto_tls_set(mosq, ca_file, ca_file == NULL ? authorities : NULL,
-                                         or_null(config->certificate_file), or_null(config->key_file), NULL);
-    if (result == MOSQ_ERR_SUCCESS) return true;
-    explain(broker, "%s:%u: tls: %s", broker->config->path, config->tls_line,
-            result == MOSQ_ERR_INVAL ? "one of the files cannot be read" : mosquitto_strerror(result));
+    char reason[BROKER_TEXT / 2];
+    if (!config->has_tls || tls_set(mosq, config, &broker->tls_error, reason, sizeof reason)) return true;
+    explain(broker, "%s:%u: tls: %s", broker->config->path, config->tls_line, reason);
     return false;
 }
 
@@ -82,18 +76,13 @@ bool broker_login(broker_t *broker)
 static void explain_tls(broker_t *broker)
 {
     const broker_config_t *const config = &broker->config->broker;
-    const char *const reason = tls_reason(broker->mosq);
-    const bool is_name = strstr(broker->log, "host name verification") != NULL;
-    if (is_name)
+    const char *const reason = tls_reason(broker->tls_error);
+    if (reason[0] != '\0')
         explain(broker,
-                "%s:%u: its certificate is for another name than host: %s; write the name that it is for",
-                broker->config->path, broker->config->broker.line, config->host);
-    else if (reason[0] != '\0')
-        explain(
-            broker,
-            "%s:%u: tls: its certificate is not accepted: %s; the broker needs another one, or ca-file: the "
-            "authority that has signed it",
-            broker->config->path, config->tls_line, reason);
+                "%s:%u: tls: its certificate is not accepted: %s; the broker needs another one, or ca-file: "
+                "the authority "
+                "that has signed it, or host: the name that it is for",
+                broker->config->path, config->tls_line, reason);
     else
         explain(broker, "%s:%u: tls: no secure connection: %s", broker->config->path, config->tls_line,
                 broker->log[0] != '\0' ? broker->log : "the broker has ended it; does this port speak TLS?");

@@ -73,8 +73,9 @@ static bool check_word(const sensors_t *sensors, const config_values_t *values)
         return false;
     }
     config_file_at(sensors->file, values->at[SENSOR_NAME]);
-    if (strpbrk(name, "@=") == NULL && strlen(name) <= WORD / 8) return true;
-    (void)usage_error(sensors->command, "name: takes %s", config_rows[SENSOR_NAME].takes);
+    if (place_is_name(name, strlen(name))) return true;
+    (void)usage_error(sensors->command, "name: takes %s, the first a letter or digit; not '%.60s'",
+                      config_rows[SENSOR_NAME].takes, name);
     return false;
 }
 

@@ -31,7 +31,8 @@ void usage_of_word(size_t number)
 
 static size_t option_length(const char *text)
 {
-    return text[0] == '-' && text[1] == '-' ? strspn(text + 2, "abcdefghijklmnopqrstuvwxyz0123456789-") : 0;
+    const bool is_option = text[0] == '-' && text[1] == '-' && text[2] >= 'a' && text[2] <= 'z';
+    return is_option ? strspn(text + 2, "abcdefghijklmnopqrstuvwxyz0123456789-") : 0;
 }
 
 /* As a file has it: "median:" for "--median", also where that is followed by a colon. */

@@ -5,7 +5,7 @@
 
 #include "shared/command.h"
 
-static bool is_name(const char *text, size_t length)
+bool place_is_name(const char *text, size_t length)
 {
     static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_.";
     if (length == 0 || length >= PLACE_NAME || strchr("-_.", text[0]) != NULL) return false;
@@ -14,7 +14,7 @@ static bool is_name(const char *text, size_t length)
 
 static bool take_name(sensor_place_t *place, const char *command, const char *word, size_t length)
 {
-    if (is_name(word, length)) {
+    if (place_is_name(word, length)) {
         memcpy(place->name, word, length);
         return true;
     }

@@ -23,6 +23,9 @@ typedef struct {
     port_keys_t keys;
 } sensor_place_t;
 
+/* May the first `length` bytes of it be a NAME? */
+bool place_is_name(const char *text, size_t length);
+
 /* The word is cut behind its port, which place->port then points into. *place may not be moved. False after a usage
  * error. */
 bool place_parse(sensor_place_t *place, const char *command, char *word);

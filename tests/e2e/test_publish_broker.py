@@ -1,0 +1,193 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""fathom publish and a broker that is away, comes back, refuses it, or is not the one that it should be."""
+import os
+import signal
+import unittest
+
+import e2e
+import mqtt
+import tcp_server
+
+
+def by_boot(messages):
+    """What each stream of each start has told: {(boot, topic): [state, ...]}."""
+    found = {}
+    for one in messages:
+        if one.payload.startswith('{') and 'seq' in one.json:
+            found.setdefault((one.json['boot'], one.topic), []).append(one.json)
+    return found
+
+
+class Case(mqtt.Case):
+    def begin(self, more='', broker='', top='interval: 100', **options):
+        self.sim(f'hps167s:7 --link {self.path("bus")}')
+        return self.publish(self.config(self.line(self.path('bus'), 'gate hps167s:7 ' + more), broker=broker, top=top),
+                            **options)
+
+    def check_gaps(self, messages):
+        """What is missing in the numbers is what each state says was dropped before it."""
+        for states in by_boot(messages).values():
+            for number, state in enumerate(states, 1):
+                self.assertEqual(state['seq'], number + state['dropped'], states)
+
+
+class Away(Case):
+    def test_what_was_measured_before_it_was_there_comes_in_order(self):
+        publisher = self.begin()
+        publisher.expect(r'broker 127\.0\.0\.1 port \d+: Connection refused; it is tried again and again', 'err')
+        self.broker()
+        subscriber = self.subscribe()
+        got = self.wait_for(subscriber, '/gate/state', lambda one: one.json['age_ms'] < 50, 3)
+        publisher.expect(r'broker 127\.0\.0\.1 port \d+: connected', 'err')
+        states = mqtt.states(got)
+        if states[0]['seq'] == 1:  # it was there before the subscriber else
+            self.assertGreater(states[0]['age_ms'], 100)
+        self.assertEqual([state['seq'] for state in states], list(range(states[0]['seq'], states[-1]['seq'] + 1)))
+        self.assertEqual({state['dropped'] for state in states}, {0})
+        self.assertEqual([state['time'] for state in states], sorted(state['time'] for state in states))
+
+    def test_what_is_too_much_for_the_queue_is_dropped_counted_and_told(self):
+        publisher = self.begin(top='interval: 100\nqueue: {messages: 5}')
+        publisher.expect('Connection refused', 'err')
+        publisher.has_ended(2)
+        self.broker()
+        subscriber = self.subscribe()
+        self.wait_for(subscriber, '/gate/state', lambda one: one.json['age_ms'] < 50, 3)
+        self.wait_for(subscriber, '/publisher', lambda one: one.json['dropped'] > 0)
+        counters = self.messages(subscriber, '/publisher')[-1].json
+        state = self.messages(subscriber, '/gate/state')[-1].json
+        self.assertEqual(list(counters), ['time', 'version', 'boot', 'uptime_s', 'sensors', 'queued', 'dropped'])
+        self.assertEqual((counters['boot'], counters['dropped']), (state['boot'], state['dropped']))
+
+    def test_one_that_is_killed_and_comes_back_gets_all_of_it(self):
+        broker = self.broker()
+        subscriber = self.subscribe()
+        publisher = self.begin()
+        self.wait_for(subscriber, '/gate/state', count=5)
+        broker.end(signal.SIGKILL)
+        publisher.expect(r'broker .*: the connection is lost; it is tried again and again', 'err')
+        before = mqtt.states(self.messages(subscriber, '/gate/state'))
+        broker = self.broker()
+        again = self.subscribe()
+        self.wait_for(again, '/gate/state', lambda one: one.json['age_ms'] < 50, 3)
+        after = mqtt.states(self.messages(again, '/gate/state'))
+        self.assertGreater(after[0]['seq'], 0)
+        self.assertEqual(len({state['boot'] for state in before + after}), 1)
+        self.assertEqual([state['seq'] for state in after], list(range(after[0]['seq'], after[-1]['seq'] + 1)))
+        self.assertEqual({state['dropped'] for state in after}, {0})
+
+    def test_readings_are_not_late_while_it_says_nothing(self):
+        """A host that takes a connection and is silent."""
+        server = tcp_server.Server(number=self.number)
+        self.addCleanup(server.socket.close)
+        publisher = self.begin()
+        server.accept()
+        self.addCleanup(lambda: server.client.close())
+        publisher.has_ended(2)
+        server.client.close()
+        server.socket.close()
+        self.broker()
+        subscriber = self.subscribe()
+        got = mqtt.states(self.wait_for(subscriber, '/gate/state', lambda one: one.json['age_ms'] < 50, 3))
+        self.assertEqual([state['seq'] for state in got], list(range(got[0]['seq'], got[-1]['seq'] + 1)))
+
+    def test_a_name_that_is_not_known_is_told(self):
+        path = self.config(self.line(self.path('bus'), 'gate hps167s:7'))
+        with open(path, encoding='utf-8') as file:
+            text = file.read()
+        with open(path, 'w', encoding='utf-8') as file:
+            file.write(text.replace('host: 127.0.0.1', 'host: no-such-broker.invalid'))
+        self.publish(path).expect(r'broker no-such-broker\.invalid port \d+: its name is not known: ', 'err')
+
+
+class Login(Case):
+    def passwords(self):
+        path = self.path('passwords')
+        e2e.subprocess.run(['mosquitto_passwd', '-b', '-c', path, 'reader', 'right'], check=True)
+        return self.broker(f'password_file {path}', anonymous=False)
+
+    def secret(self, text):
+        with open(self.path('secret'), 'w', encoding='ascii') as file:
+            print(text, file=file)
+        return self.path('secret')
+
+    def test_a_password_from_a_file_is_right_once_it_is_changed(self):
+        self.passwords()
+        path = self.secret('wrong')
+        publisher = self.begin(broker=f'user: reader\npassword-file: {path}')
+        publisher.expect(rf'broker .*: {self.path("site.yaml")}:6: it refuses the user reader with the password of {path}; '
+                         r'mend that, .*; it is tried again and again$', 'err')
+        self.secret('right')
+        subscriber = self.subscribe(options=['-u', 'reader', '-P', 'right'])
+        self.wait_for(subscriber, '/gate/state', count=2)
+
+    def test_a_password_as_a_credential(self):
+        self.passwords()
+        self.secret('right')
+        self.begin(broker='user: reader\npassword-credential: secret',
+                   env={**os.environ, 'CREDENTIALS_DIRECTORY': self.folder})
+        self.wait_for(self.subscribe(options=['-u', 'reader', '-P', 'right']), '/gate/state', count=2)
+
+    def test_without_a_name_it_says_that_one_is_wanted(self):
+        self.passwords()
+        self.begin().expect(r'it refuses a client without a name; write user: and password-file:', 'err')
+
+    def test_the_password_stands_on_no_command_line_and_is_told_nowhere(self):
+        self.passwords()
+        publisher = self.begin(broker=f'user: reader\npassword-file: {self.secret("secret-word")}')
+        publisher.expect('it refuses the user', 'err')
+        with open(f'/proc/{publisher.process.pid}/cmdline', encoding='ascii') as file:
+            self.assertNotIn('secret-word', file.read())
+        done = publisher.end()
+        self.assertNotIn('secret-word', done.out + done.err)
+
+
+class Secure(Case):
+    def secure(self, **options):
+        ca, certificate, key = mqtt.certificates(self.folder, **options)
+        self.broker(f'certfile {certificate}', f'keyfile {key}')
+        return ca
+
+    def begin_secure(self, ca):
+        return self.begin(broker=f'tls: {{ca-file: {ca}}}')
+
+    def test_states_go_by_tls(self):
+        ca = self.secure(name='127.0.0.1')
+        self.begin_secure(ca)
+        self.wait_for(self.subscribe(options=['--cafile', ca]), '/gate/state', count=3)
+
+    def refused(self, ca, words):
+        publisher = self.begin_secure(ca)
+        publisher.expect(rf'broker .*: {self.path("site.yaml")}:\d+: {words}.*; it is tried again and again$', 'err')
+        publisher.has_ended(2)
+        self.assertIsNone(publisher.done)
+        self.assertEqual(publisher.said['err'].count(b'tried again'), 1, publisher.said['err'].decode())
+
+    def test_an_expired_certificate(self):
+        self.refused(self.secure(name='127.0.0.1', days='-1'),
+                     'tls: its certificate is not accepted: certificate has expired; the broker needs another one')
+
+    def test_an_authority_that_is_not_trusted(self):
+        self.secure(name='127.0.0.1')
+        other = mqtt.certificates(self.folder, ca='other')[0]
+        self.refused(other, 'tls: its certificate is not accepted: ')
+
+    def test_a_certificate_for_another_name(self):
+        self.refused(self.secure(name='another.example'), r'tls: its certificate is not accepted: (IP address|hostname) mismatch; ')
+
+    def test_a_broker_that_speaks_no_tls(self):
+        ca = mqtt.certificates(self.folder)[0]
+        self.broker()
+        self.refused(ca, 'tls: no secure connection: ')
+
+    def test_a_client_certificate(self):
+        ca, certificate, key = mqtt.certificates(self.folder, name='127.0.0.1')
+        self.broker(f'certfile {certificate}', f'keyfile {key}', f'cafile {ca}', 'require_certificate true')
+        self.begin(broker=f'tls: {{ca-file: {ca}, certificate-file: {certificate}, key-file: {key}}}')
+        options = ['--cafile', ca, '--cert', certificate, '--key', key]
+        self.wait_for(self.subscribe(options=options), '/gate/state', count=3)
+
+
+if __name__ == '__main__':
+    e2e.main()

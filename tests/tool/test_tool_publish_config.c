@@ -1,0 +1,246 @@
+/* SPDX-License-Identifier: MIT */
+/* The configuration file of fathom publish: what it means, and what is said of what is wrong in it. */
+#include "backup_desk.h"
+#include "tool_bench.h"
+
+#include <stdio.h>
+#include <string.h>
+
+EACH_BEGINS((bench_begin(), desk_begin()))
+
+static const suite_t suite = {.set_up = begins, .tear_down = desk_end};
+
+enum { LINES = 32, TEXT = 4096 };
+
+/* A configuration in which all is right; a test changes a line of it. */
+static const char *const right[LINES] = {
+    "site: mill/north",
+    "interval: 500",
+    "broker:",
+    "  host: mill.lan",
+    "  user: reader",
+    "  port: 1884",
+    "queue: {messages: 500}",
+    "lines:",
+    "  - port: /dev/ttyUSB0",
+    "    baud: 9600",
+    "    sensors:",
+    "      - name: tank",
+    "        sensor: a16:1:modbus",
+    "        median: 5",
+    "        level: {mounting: 2300, height: 2000, capacity: 5000}",
+    "      - name: bumper",
+    "        sensor: a05:2:modbus",
+    "        probes: 1,2",
+    "  - port: tcp:10.0.0.7",
+    "    sensors:",
+    "      - name: gate",
+    "        sensor: hps167s:7",
+    "        interval: 1000",
+    "        alarm: {when: near<500/600, unknown: on, no-response: off}",
+};
+
+/* Line `number`, from 1, is this one instead; 0: none is. */
+static const tool_run_t *check(unsigned number, const char *line)
+{
+    char text[TEXT] = "";
+    for (unsigned i = 0; i != LINES && right[i] != NULL; i++) {
+        (void)strcat(text, i + 1 == number ? line : right[i]);
+        (void)strcat(text, "\n");
+    }
+    desk_write("site.yaml", text);
+    return tool_run(&bench.tool, "publish --check %s", desk_path("site.yaml"));
+}
+
+static void expect_refusal(unsigned number, const char *line, unsigned at, const char *words)
+{
+    char expected[1200];
+    const tool_run_t *const run = check(number, line);
+    (void)snprintf(expected, sizeof expected, "fathom publish: %s:%u: %s", desk_path("site.yaml"), at, words);
+    if (run->status != 2 || strncmp(run->err, expected, strlen(expected)) != 0)
+        fail_msg("'%s': exit status %d\n%sinstead of\n%s", line, run->status, run->err, expected);
+    assert_string_equal(run->out, "");
+    assert_ptr_equal(strchr(run->err, '\n'), run->err + strlen(run->err) - 1);
+}
+
+/* ---- what it means ---- */
+
+TEST(what_is_right_is_explained)
+{
+    static const char *const said[] = {
+        "site.yaml: 3 sensors at 2 ports\n",
+        "broker mill.lan port 1884, client fathom-mill-north, user reader, no TLS\n",
+        "up to 500 messages and 4194304 bytes are kept\n",
+        "Home Assistant finds the sensors below homeassistant/\n",
+        "  fathom/mill/north/status\n",
+        "tank: a16 in mode modbus, address 1, at /dev/ttyUSB0 (9600 8N1), every 500 ms, median of 5, level "
+        "in a tank of "
+        "2000 mm under 2300 mm\n  fathom/mill/north/tank/state\n  fathom/mill/north/tank/level\n"
+        "  fathom/mill/north/tank/availability\n",
+        "bumper: a05 in mode modbus, address 2, at /dev/ttyUSB0 (9600 8N1), every 500 ms\n"
+        "  fathom/mill/north/bumper/1/state\n  fathom/mill/north/bumper/2/state\n"
+        "  fathom/mill/north/bumper/availability\n",
+        "gate: hps167s in mode modbus, address 7, at tcp:10.0.0.7, every 1000 ms, alarm on below 500 mm and "
+        "off above "
+        "600 mm, on without a distance and off without a response\n"
+        "  fathom/mill/north/gate/state\n  fathom/mill/north/gate/alarm\n  "
+        "fathom/mill/north/gate/availability\n",
+        "\nNothing was opened or sent.\n",
+    };
+    const tool_run_t *const run = check(0, "");
+    assert_int_equal(run->status, 0);
+    assert_string_equal(run->err, "");
+    for (size_t i = 0; i != sizeof said / sizeof said[0]; i++)
+        if (strstr(run->out, said[i]) == NULL) fail_msg("%sinstead of\n%s", run->out, said[i]);
+}
+
+TEST(a_level_and_an_alarm_may_be_written_as_on_a_command_line)
+{
+    assert_int_equal(check(15, "        level: mounting=2300,height=2000,capacity=5000")->status, 0);
+    const tool_run_t *const run = check(24, "        alarm: near<500/600,unknown=on,no-response=off");
+    assert_int_equal(run->status, 0);
+    assert_non_null(strstr(run->out, "alarm on below 500 mm and off above 600 mm, on without"));
+}
+
+TEST(discovery_may_be_off)
+{
+    assert_non_null(strstr(check(2, "discovery: off")->out, "Home Assistant is not told of the sensors\n"));
+    assert_non_null(strstr(check(2, "discovery: ha/x")->out, "finds the sensors below ha/x/\n"));
+}
+
+TEST(without_an_interval_a_sensor_is_read_each_second)
+{
+    assert_non_null(strstr(check(2, "prefix: p")->out, "(9600 8N1), every 1000 ms"));
+}
+
+TEST(a_broker_with_tls_is_at_8883)
+{
+    const tool_run_t *const run = check(6, "  tls: {}");
+    assert_int_equal(run->status, 0);
+    assert_non_null(strstr(run->out,
+                           "broker mill.lan port 8883, client fathom-mill-north, user reader, TLS with the "
+                           "system's authorities\n"));
+}
+
+/* ---- what is wrong in it ---- */
+
+#define NAMES_OF_SITE                                                                                        \
+    "takes the second level of all topics: letters, digits, - _ . and / between them, 100 characters at "    \
+    "most; default: the host's name"
+
+static const struct {
+    const char *name;
+    unsigned number;
+    const char *line;
+    unsigned at;
+    const char *words;
+} rows[] = {
+    {"an unknown key at the top", 2, "intervall: 500", 2,
+     "intervall: is no key; did you mean interval: ? There are site, "},
+    {"an unknown key of the broker", 4, "  hots: mill.lan", 4,
+     "hots: is no key of broker:; did you mean host: ? "},
+    {"an unknown key of a line", 10, "    boud: 9600", 10,
+     "boud: is no key of lines:; did you mean baud: ? There are port, "},
+    {"an unknown key of a sensor", 14, "        medain: 5", 14,
+     "medain: is no key of sensors:; did you mean median: ? "},
+    {"an unknown key of a level", 15, "        level: {mounting: 2300, hight: 2000, capacity: 5000}", 15,
+     "level: there is no key 'hight', only mounting, height, capacity, shape, points, offset"},
+    {"a password in the file", 6, "  password: secret", 6,
+     "no password stands in this file; write it into one that only this user can read, and its path here: "
+     "password-file: "},
+    {"a text for a map", 7, "queue: 500", 7,
+     "queue: takes a map with messages: or bytes:, what is kept while the broker "
+     "is away, not a text"},
+    {"a list for a text", 1, "site: [mill]", 1, "site: " NAMES_OF_SITE ", not a list"},
+    {"a map for a text", 14, "        median: {of: 5}", 14, "median: takes as median:, not a map"},
+    {"a text for a list", 8, "lines: none\nx:", 8,
+     "lines: takes a list of maps, each with port: and sensors:, not a text"},
+    {"nothing at all", 2, "interval:", 2,
+     "interval: takes ms from one attempt to the next, of sensors without their own; "
+     "default: 1000, not nothing"},
+    {"a word for a number", 14, "        median: five", 14,
+     "median: takes a whole number from 3 to 15, not 'five'"},
+    {"a number that is too large", 14, "        median: 16", 14,
+     "median: takes a whole number from 3 to 15, not '16'"},
+    {"an interval of all that is wrong", 2, "interval: -1", 2,
+     "interval: takes a whole number from 0 to 3600000, not '-1'"},
+    {"a port of the broker", 6, "  port: 65536", 6,
+     "port: takes a whole number from 1 to 65535; default: 1883, with tls: "
+     "8883; not '65536'"},
+    {"a gate without a median", 14, "        gate: 5", 14,
+     "gate: is the median's: it takes median: too, such as median: 5"},
+    {"a rate that there is not", 10, "    baud: 12", 10, "/dev/ttyUSB0: baud takes 9600, 19200, "},
+    {"a key of another kind of port", 10, "    bias: up", 10,
+     "/dev/ttyUSB0: a serial port has no key 'bias', only "},
+    {"a model that there is not", 13, "        sensor: a17", 13,
+     "there is no sensor 'a17', only a16, a05, hps167s"},
+    {"a mode that there is not", 13, "        sensor: a16:1:telnet", 13,
+     "there is no mode 'telnet' for a16, only auto, modbus, "},
+    {"an option of another sensor", 14, "        probes: 1,2", 14, "probes: is for a05 "},
+    {"two sensors at one place", 17, "        sensor: a05:1:modbus", 17,
+     "tank and bumper have the same address, so both would answer at once"},
+    {"two of the same name", 16, "      - name: tank", 17, "two sensors have the name tank; "},
+    {"a name that no topic may have", 12, "      - name: a/b", 12,
+     "name: takes the sensor's level in the topics: up to 31 letters, digits, - _ and ., the first a letter "
+     "or digit; not "
+     "'a/b'\n"},
+    {"a site that no topic may have", 1, "site: mill/#", 1, "site: " NAMES_OF_SITE "; not 'mill/#'"},
+    {"the same key twice", 14, "        sensor: a16", 14,
+     "sensor: stands there twice, in line 13 too; leave one of them "
+     "out"},
+    {"a sensor without a name", 12, "      -", 13,
+     "sensors: name: is missing; it takes the sensor's level in the topics: "},
+    {"no broker", 3, "x:", 3, "x: is no key; "},
+    {"a file that is not there", 6, "  password-file: /nowhere/pw", 6,
+     "password-file: /nowhere/pw cannot be read: No such file or directory"},
+    {"a credential without systemd", 6, "  password-credential: mqtt", 6,
+     "password-credential: no CREDENTIALS_DIRECTORY is set; the unit needs a line LoadCredential=mqtt:"},
+    {"no YAML", 8, "lines: {", 9, "this is no YAML: "},
+    {"an alarm that does not say all", 24, "        alarm: {when: near<500, unknown: on}", 24,
+     "alarm: no-response= is missing; it takes on or off"},
+    {"a second document", 7, "---", 7, "a second document begins; put all into one, without a line of ---\n"},
+    {"keys behind a port", 9, "  - port: /dev/ttyUSB0,baud=9600", 9,
+     "port: keys stand in lines of their own, such as baud: 9600"},
+};
+
+TEST(what_is_wrong_is_told_with_its_line_and_what_to_write)
+{
+    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++)
+        expect_refusal(rows[i].number, rows[i].line, rows[i].at, rows[i].words);
+}
+
+/* A kilobyte. */
+TEST(a_topic_that_is_too_long_is_refused)
+{
+    char line[1100] = "site: ";
+    memset(line + strlen(line), 'x', 1024);
+    expect_refusal(1, line, 1, "site: " NAMES_OF_SITE "; not 'xxxxxxxx");
+    assert_null(strstr(check(1, "site: x")->err, "site"));
+}
+
+TEST(a_file_that_is_empty_or_not_there_is_told)
+{
+    desk_write("empty.yaml", "# nothing\n");
+    const tool_run_t *run = tool_run(&bench.tool, "publish --check %s", desk_path("empty.yaml"));
+    assert_int_equal(run->status, 2);
+    assert_non_null(strstr(run->err, "empty.yaml is empty; it takes at least broker: and lines:"));
+    run = tool_run(&bench.tool, "publish --check %s", desk_path("none.yaml"));
+    assert_int_equal(run->status, 2);
+    assert_non_null(strstr(run->err, "none.yaml cannot be read: No such file or directory"));
+}
+
+TEST(one_file_is_named)
+{
+    ASSERT_RUN(2, "publish");
+    ASSERT_RUN(2, "publish one two");
+    assert_non_null(strstr(tool_run(&bench.tool, "publish")->err, "which configuration file? One, such as "));
+}
+
+/* What a file has said does not hang over the next command line. */
+TEST(a_command_line_is_told_as_one_afterwards)
+{
+    expect_refusal(14, "        median: 16", 14, "median: ");
+    assert_non_null(strstr(
+        tool_run(&bench.tool, "read a16 --port line --median 16")->err,
+        "fathom read: --median takes a whole number from 3 to 15, not '16'; try: fathom read --help\n"));
+}
