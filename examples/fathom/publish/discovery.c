@@ -7,56 +7,89 @@
 #include "fathom/version.h"
 #include "publish/text.h"
 
-uint16_t discovery_all(const config_t *config, const station_t *station, const results_config_t *results)
+#define ADD(text, ...) text_add(text, DISCOVERY_TEXT, __VA_ARGS__)
+
+enum { ID = 320 };
+
+#define DEGREES "\xC2\xB0\x43" /* the sign for degrees in UTF-8, and C */
+
+/* template: of what the topic tells. Where it is null, Home Assistant knows no value. */
+static const struct {
+    const char *component;
+    const char *name;
+    topic_t topic;
+    const char *device_class; /* NULL: none fits */
+    const char *unit;
+    const char *template;
+} entities[ENTITIES] = {
+    [ENTITY_DISTANCE] = {"sensor", "distance", TOPIC_STATE, "distance", "mm", "{{ value_json.distance_mm }}"},
+    [ENTITY_TEMPERATURE] = {"sensor", "temperature", TOPIC_STATE, "temperature", DEGREES,
+                            "{{ value_json.temperature_degc }}"},
+    [ENTITY_LEVEL] = {"sensor", "level", TOPIC_LEVEL, "distance", "mm", "{{ value_json.level_mm }}"},
+    [ENTITY_FILLED] =
+        {"sensor", "filled", TOPIC_LEVEL, NULL, "%",
+         "{{ value_json.level_per_mille / 10 if value_json.level_per_mille is number else 'None' }}"},
+    [ENTITY_ALARM] = {"binary_sensor", "alarm", TOPIC_ALARM, "problem", NULL,
+                      "{{ 'ON' if value_json.is_on else 'OFF' }}"},
+};
+
+static uint8_t probe_of(unsigned bit) { return (uint8_t)(bit / ENTITIES + 1); }
+
+static bool is_contact(const station_t *station) { return (station->mode->pins & MODEL_PIN_IN) != 0; }
+
+static bool has_entity(const station_t *station, const results_config_t *results, entity_t entity)
 {
-    uint16_t bits = 0;
-    for (unsigned bit = 0; bit != FATHOM_DYP_PROBES * TOPICS && config->discovery[0] != '\0'; bit++)
-        if (topic_wants_probe(station, (uint8_t)(bit / TOPICS + 1)) && topic_is_there(results, bit % TOPICS))
-            bits |= (uint16_t)(1u << bit);
+    if (entity == ENTITY_TEMPERATURE && station->settings.temperature_us == 0) return false;
+    return topic_is_there(results, entities[entity].topic);
+}
+
+uint32_t discovery_all(const config_t *config, const station_t *station, const results_config_t *results)
+{
+    uint32_t bits = 0;
+    for (unsigned bit = 0; bit != DISCOVERY_BITS && config->discovery[0] != '\0'; bit++)
+        if (topic_wants_probe(station, probe_of(bit)) && has_entity(station, results, bit % ENTITIES))
+            bits |= UINT32_C(1) << bit;
     return bits;
 }
 
+/* ---- what they are called ---- */
+
 /* Of letters, digits, - and _ alone, as Home Assistant wants it. */
-static void add_id(char *text, size_t capacity, const char *word)
+static void add_id(char id[ID], const char *word)
 {
-    const size_t before = strlen(text);
-    text_add(text, capacity, "%s%s", before != 0 ? "_" : "", word);
-    for (char *at = text + before; *at != '\0'; at++)
+    const size_t before = strlen(id);
+    text_add(id, ID, "%s%s", before != 0 ? "_" : "", word);
+    for (char *at = id + before; *at != '\0'; at++)
         if (*at == '/' || *at == '.') *at = '_';
 }
-
-enum { ID = 320 };
 
 static void device_id(const config_t *config, const station_t *station, char id[ID])
 {
     id[0] = '\0';
-    add_id(id, ID, config->prefix);
-    add_id(id, ID, config->site);
-    add_id(id, ID, station->name);
+    add_id(id, config->prefix);
+    add_id(id, config->site);
+    add_id(id, station->name);
 }
 
-static void entity_id(const config_t *config, const station_t *station, uint8_t probe, topic_t topic,
-                      char id[ID])
+static void entity_id(const config_t *config, const station_t *station, unsigned bit, char id[ID])
 {
     char number[4];
-    (void)snprintf(number, sizeof number, "%u", probe);
+    (void)snprintf(number, sizeof number, "%u", probe_of(bit));
     device_id(config, station, id);
-    if (topic_has_probes(station)) add_id(id, ID, number);
-    add_id(id, ID, topic_words[topic]);
+    if (topic_has_probes(station)) add_id(id, number);
+    add_id(id, entities[bit % ENTITIES].name);
 }
 
-void discovery_topic(const config_t *config, const station_t *station, uint8_t probe, topic_t topic,
+void discovery_topic(const config_t *config, const station_t *station, unsigned bit,
                      char text[DISCOVERY_TOPIC])
 {
     char id[ID];
-    entity_id(config, station, probe, topic, id);
+    entity_id(config, station, bit, id);
     (void)snprintf(text, DISCOVERY_TOPIC, "%s/%s/%s/config", config->discovery,
-                   topic == TOPIC_ALARM ? "binary_sensor" : "sensor", id);
+                   entities[bit % ENTITIES].component, id);
 }
 
-/* ---- the payload ---- */
-
-#define ADD(text, ...) text_add(text, DISCOVERY_TEXT, __VA_ARGS__)
+/* ---- what they are ---- */
 
 /* A value that does not come for so long is none any more: three intervals, and the pause before a port is tried again. */
 static uint32_t expire_s(const station_t *station)
@@ -84,43 +117,37 @@ static void add_device(const config_t *config, const station_t *station, char *t
     ADD(text, ",\"origin\":{\"name\":\"fathom\",\"sw_version\":\"" FATHOM_VERSION_STRING "\"}");
 }
 
-static void add_kind(const station_t *station, topic_t topic, char *text)
+/* A contact says near or far in words. */
+static void add_value(const station_t *station, entity_t entity, char *text)
 {
-    if (topic == TOPIC_ALARM) {
-        ADD(text,
-            ",\"device_class\":\"problem\",\"value_template\":\"{{ 'ON' if value_json.is_on else 'OFF' }}\"");
+    if (entity == ENTITY_DISTANCE && is_contact(station)) {
+        ADD(text, ",\"value_template\":\"{{ value_json.status }}\"");
         return;
     }
-    const bool is_contact = (station->mode->pins & MODEL_PIN_IN) != 0;
-    if (is_contact)
-        ADD(text, ",\"value_template\":\"{{ value_json.status }}\"");
-    else
-        ADD(text,
-            ",\"device_class\":\"distance\",\"state_class\":\"measurement\",\"unit_of_measurement\":\"mm\""
-            ",\"value_template\":\"{{ value_json.%s }}\"",
-            topic == TOPIC_LEVEL ? "level_mm" : "distance_mm");
-    ADD(text, ",\"expire_after\":%" PRIu32, expire_s(station));
+    ADD(text, ",\"value_template\":\"%s\"", entities[entity].template);
+    if (entities[entity].device_class != NULL)
+        ADD(text, ",\"device_class\":\"%s\"", entities[entity].device_class);
+    if (entities[entity].unit != NULL)
+        ADD(text, ",\"unit_of_measurement\":\"%s\",\"state_class\":\"measurement\"", entities[entity].unit);
 }
 
-void discovery_payload(const config_t *config, const station_t *station, const results_config_t *results,
-                       uint8_t probe, topic_t topic, char text[DISCOVERY_TEXT])
+void discovery_payload(const config_t *config, const station_t *station, unsigned bit,
+                       char text[DISCOVERY_TEXT])
 {
-    static const char *const names[TOPICS] = {
-        [TOPIC_STATE] = "distance", [TOPIC_LEVEL] = "level", [TOPIC_ALARM] = "alarm"};
+    const entity_t entity = bit % ENTITIES;
     char id[ID];
-    char state[TOPIC];
-    char number[16] = "";
-    (void)results;
-    entity_id(config, station, probe, topic, id);
-    topic_of_probe(config, station, probe, topic, state);
-    if (topic_has_probes(station)) (void)snprintf(number, sizeof number, " %u", probe);
+    char topic[TOPIC];
+    char probe[16] = "";
+    entity_id(config, station, bit, id);
+    topic_of_probe(config, station, probe_of(bit), entities[entity].topic, topic);
+    if (topic_has_probes(station)) (void)snprintf(probe, sizeof probe, " %u", probe_of(bit));
+    const bool is_word = entity == ENTITY_DISTANCE && is_contact(station);
     text[0] = '\0';
-    ADD(text,
-        "{\"name\":\"%s%s\",\"unique_id\":\"%s\",\"object_id\":\"%s\",\"state_topic\":\"%s\",\"json_"
-        "attributes_topic\":"
-        "\"%s\",\"qos\":1",
-        names[topic], number, id, id, state, state);
-    add_kind(station, topic, text);
+    ADD(text, "{\"name\":\"%s%s\",\"unique_id\":\"%s\",\"state_topic\":\"%s\",\"qos\":1",
+        is_word ? "contact" : entities[entity].name, probe, id, topic);
+    add_value(station, entity, text);
+    /* Of an alarm only the changes are told. */
+    if (entity != ENTITY_ALARM) ADD(text, ",\"expire_after\":%" PRIu32, expire_s(station));
     add_availability(config, station, text);
     add_device(config, station, text);
     ADD(text, "}");

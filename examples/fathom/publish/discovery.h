@@ -4,17 +4,28 @@
 
 #include "publish/topics.h"
 
-/* Home Assistant's discovery messages: one for each topic of each probe, retained, by which it finds an entity.
+/* Home Assistant's discovery messages: retained, one for each of its entities, which it finds by them.
  * https://www.home-assistant.io/integrations/mqtt/#mqtt-discovery */
 
-enum { DISCOVERY_TOPIC = 512, DISCOVERY_TEXT = 3072 };
+/* What a probe is for Home Assistant; several may be told by one topic. */
+typedef enum {
+    ENTITY_DISTANCE,
+    ENTITY_TEMPERATURE,
+    ENTITY_LEVEL,
+    ENTITY_FILLED,
+    ENTITY_ALARM,
+    ENTITIES
+} entity_t;
 
-/* All that are to be told of this sensor: bits TOPICS * (probe - 1) + topic; none where discovery is off. */
-uint16_t discovery_all(const config_t *config, const station_t *station, const results_config_t *results);
+enum { DISCOVERY_BITS = FATHOM_DYP_PROBES * ENTITIES, DISCOVERY_TOPIC = 512, DISCOVERY_TEXT = 3072 };
 
-void discovery_topic(const config_t *config, const station_t *station, uint8_t probe, topic_t topic,
+/* Which there are of this sensor: bits ENTITIES * (probe - 1) + entity; none where discovery is off. */
+uint32_t discovery_all(const config_t *config, const station_t *station, const results_config_t *results);
+
+/* Of one of these bits. */
+void discovery_topic(const config_t *config, const station_t *station, unsigned bit,
                      char text[DISCOVERY_TOPIC]);
-void discovery_payload(const config_t *config, const station_t *station, const results_config_t *results,
-                       uint8_t probe, topic_t topic, char text[DISCOVERY_TEXT]);
+void discovery_payload(const config_t *config, const station_t *station, unsigned bit,
+                       char text[DISCOVERY_TEXT]);
 
 #endif

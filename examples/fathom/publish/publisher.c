@@ -6,7 +6,7 @@
 #include "publish/discovery.h"
 #include "shared/command.h"
 
-enum { FAILURES = 3, NEWS_US = 1000000, PAYLOAD = DISCOVERY_TEXT };
+enum { FAILURES = 3, NEWS_US = 1000000 };
 
 static uint64_t now_us(const publisher_t *publisher) { return publisher->host->now_us(publisher->host->ctx); }
 
@@ -23,17 +23,14 @@ static bool send_status(publisher_t *publisher)
 static bool send_discovery(publisher_t *publisher, publisher_sensor_t *sensor)
 {
     char topic[DISCOVERY_TOPIC];
-    char payload[PAYLOAD];
-    for (unsigned bit = 0; bit != FATHOM_DYP_PROBES * TOPICS; bit++) {
-        const uint8_t probe = (uint8_t)(bit / TOPICS + 1);
-        if ((sensor->undiscovered >> bit & 1) == 0) continue;
-        sensor->undiscovered &= (uint16_t) ~(1u << bit);
-        discovery_topic(publisher->config, sensor->station, probe, bit % TOPICS, topic);
-        discovery_payload(publisher->config, sensor->station, &publisher->results[sensor->station->slot],
-                          probe, bit % TOPICS, payload);
-        return broker_send(&publisher->broker, topic, payload, true);
-    }
-    return false;
+    char payload[DISCOVERY_TEXT];
+    unsigned bit = 0;
+    if (sensor->undiscovered == 0) return false;
+    while ((sensor->undiscovered >> bit & 1) == 0) bit++;
+    discovery_topic(publisher->config, sensor->station, bit, topic);
+    discovery_payload(publisher->config, sensor->station, bit, payload);
+    if (broker_send(&publisher->broker, topic, payload, true)) sensor->undiscovered &= ~(UINT32_C(1) << bit);
+    return true;
 }
 
 static bool send_availability(publisher_t *publisher, publisher_sensor_t *sensor)

@@ -15,7 +15,7 @@
 typedef struct {
     stream_t *streams[FATHOM_DYP_PROBES][TOPICS];
     const station_t *station; /* NULL: none is read there */
-    uint16_t undiscovered;    /* bits TOPICS * (probe - 1) + topic: Home Assistant is still to be told */
+    uint32_t undiscovered;    /* bits of discovery.h: Home Assistant is still to be told */
     uint8_t failures;         /* in a row */
     bool is_available;
     bool is_away;  /* by a failure; before the first reading it is neither */
