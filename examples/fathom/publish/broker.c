@@ -92,6 +92,10 @@ static void take_readiness(broker_t *broker)
     (void)snprintf(text, sizeof text, "broker %s port %u: connected", config->host, config->port);
     if (broker->is_told) broker->user->tell(broker->ctx, text);
     broker->is_told = false;
+    /* That another client had under way. One that is the same sends it again by itself. */
+    if (broker->is_other && broker->has_message)
+        (void)broker_send(broker, broker->sent_topic, broker->sent_payload, broker->is_sent_retained);
+    broker->is_other = false;
     broker->user->connected(broker->ctx);
 }
 
@@ -150,11 +154,10 @@ static void remove_socket(broker_t *broker)
 static void *connect_in_thread(void *ctx)
 {
     broker_t *const broker = ctx;
-    const broker_config_t *const config = &broker->config->broker;
     const uint64_t one = 1;
     errno = 0;
     broker->connect_result =
-        mosquitto_connect(broker->mosq, config->host, config->port, config->keep_alive_s);
+        mosquitto_connect(broker->mosq, broker->connect_host, broker->connect_port, broker->keep_alive_s);
     broker->connect_errno = errno;
     if (write(broker->thread.fd, &one, sizeof one) < 0) broker->connect_errno = errno;
     return NULL;
@@ -231,8 +234,8 @@ static void make_client(broker_t *broker)
 {
     if (broker->mosq != NULL && !broker->has_changed) return;
     if (broker->mosq != NULL) mosquitto_destroy(broker->mosq);
+    broker->is_other = true;
     broker->has_changed = false;
-    broker->has_message = false;
     broker->mosq = broker_client(broker);
     if (broker->mosq == NULL) return;
     mosquitto_connect_callback_set(broker->mosq, on_connect);
@@ -242,6 +245,10 @@ static void make_client(broker_t *broker)
 
 static void begin_connecting(broker_t *broker)
 {
+    const broker_config_t *const config = &broker->config->broker;
+    (void)snprintf(broker->connect_host, sizeof broker->connect_host, "%s", config->host);
+    broker->connect_port = config->port;
+    broker->keep_alive_s = config->keep_alive_s;
     broker->reason[0] = broker->log[0] = '\0';
     broker->is_lost = false;
     broker->tls_error = 0;
@@ -262,6 +269,10 @@ static void end_connecting(broker_t *broker)
 {
     broker->thread_has_ended = false;
     (void)pthread_join(broker->connecting, NULL);
+    if (broker->has_changed) {
+        begin_connecting(broker);
+        return;
+    }
     broker->phase = BROKER_GREETING;
     broker->began_us = now_us(broker);
     if (broker->connect_result != MOSQ_ERR_SUCCESS) {
@@ -315,15 +326,39 @@ bool broker_is_connected(const broker_t *broker) { return broker->phase == BROKE
 
 bool broker_is_free(const broker_t *broker) { return broker_is_connected(broker) && !broker->has_message; }
 
+static void keep(broker_t *broker, const char *topic, const char *payload, bool is_retained)
+{
+    if (topic == broker->sent_topic) return;
+    (void)snprintf(broker->sent_topic, sizeof broker->sent_topic, "%s", topic);
+    (void)snprintf(broker->sent_payload, sizeof broker->sent_payload, "%s", payload);
+    broker->is_sent_retained = is_retained;
+}
+
 bool broker_send(broker_t *broker, const char *topic, const char *payload, bool is_retained)
 {
-    const int result = mosquitto_publish(broker->mosq, &broker->message, topic, (int)strlen(payload), payload,
-                                         QOS, is_retained);
+    const int length = (int)strlen(payload);
+    const int result =
+        mosquitto_publish(broker->mosq, &broker->message, topic, length, payload, QOS, is_retained);
     /* What libmosquitto has in its list it sends again by itself. */
     broker->has_message = result != MOSQ_ERR_INVAL && result != MOSQ_ERR_NOMEM &&
                           result != MOSQ_ERR_PAYLOAD_SIZE && result != MOSQ_ERR_MALFORMED_UTF8;
+    if (broker->has_message) keep(broker, topic, payload, is_retained);
     if (mosquitto_want_write(broker->mosq)) fathom_loop_wake(&broker->socket.source);
     return broker->has_message;
+}
+
+void broker_change(broker_t *broker, const char *will)
+{
+    (void)snprintf(broker->will, sizeof broker->will, "%s", will);
+    broker->has_changed = true;
+    broker->is_told = false;
+    if (broker->phase == BROKER_CONNECTING) return;
+    if (broker->phase == BROKER_READY) (void)mosquitto_disconnect(broker->mosq);
+    remove_socket(broker);
+    broker->phase = BROKER_PAUSE;
+    broker->is_lost = false;
+    broker->pause_us = 0;
+    broker->next_us = now_us(broker);
 }
 
 bool broker_wait(broker_t *broker, uint32_t max_us)

@@ -30,7 +30,7 @@ typedef struct {
 
 typedef enum { BROKER_PAUSE, BROKER_CONNECTING, BROKER_GREETING, BROKER_READY } broker_phase_t;
 
-enum { BROKER_TEXT = 512 };
+enum { BROKER_TEXT = 512, BROKER_PAYLOAD = 3072 };
 
 typedef struct broker broker_t;
 
@@ -53,12 +53,19 @@ struct broker {
     int connect_result; /* the thread's */
     int connect_errno;
     broker_phase_t phase;
-    uint64_t next_us;  /* when it is tried again */
-    uint64_t began_us; /* when it was tried last */
-    uint32_t pause_us; /* the last one */
-    int message;       /* under way, by its number */
+    uint64_t next_us;               /* when it is tried again */
+    uint64_t began_us;              /* when it was tried last */
+    uint32_t pause_us;              /* the last one */
+    char connect_host[CONFIG_HOST]; /* for the thread, which may outlive a config */
+    int connect_port;
+    int keep_alive_s;
+    int message; /* under way, by its number; and what it is, for another client */
+    char sent_topic[BROKER_TEXT];
+    char sent_payload[BROKER_PAYLOAD];
+    bool is_sent_retained;
     bool has_message;
-    bool has_changed; /* the config: the client is another one */
+    bool has_changed; /* the config: the client is to be another one, ... */
+    bool is_other;    /* ... and is, than the one that was connected last */
     bool is_lost;     /* for `reason` */
     bool thread_has_ended;
     bool is_told;  /* that it is away, for `told` */
@@ -76,6 +83,9 @@ bool broker_begin(broker_t *broker, const host_t *host, fathom_loop_t *loop, con
 
 /* From outside of the loop's steps, before each sleep. Returns how long that may take. */
 uint32_t broker_tick(broker_t *broker);
+
+/* The config is another one, and so may the will be: connects anew. */
+void broker_change(broker_t *broker, const char *will);
 
 /* Is it connected, with no message under way? */
 bool broker_is_free(const broker_t *broker);

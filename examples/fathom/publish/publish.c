@@ -1,9 +1,13 @@
 /* SPDX-License-Identifier: MIT */
+#include <signal.h>
 #include <string.h>
 
 #include "commands.h"
 #include "publish/explain.h"
+#include "publish/notify.h"
 #include "publish/publisher.h"
+#include "publish/reload.h"
+#include "shared/events.h"
 #include "shared/options.h"
 #include "stations/poll_loop.h"
 #include "stations/status_word.h"
@@ -23,6 +27,9 @@ typedef struct {
     results_t results;
     poll_loop_t loop;
     publisher_t publisher;
+    notify_t notify;
+    reload_t reload;
+    uint64_t status_us; /* when the status was told last */
 } publish_t;
 
 static bool take_sample(void *ctx, const station_t *station, const fathom_sample_t *sample)
@@ -85,12 +92,43 @@ static void tell_port(void *ctx, const char *text, poll_port_state_t state)
     (void)fprintf(stderr, "fathom: %s\n", text);
 }
 
+static void tell_status(publish_t *publish, uint64_t now_us)
+{
+    enum { STATUS_US = 1000000 };
+    char text[NOTIFY_TEXT];
+    if (publish->notify.fd < 0 || (publish->status_us != 0 && now_us - publish->status_us < STATUS_US))
+        return;
+    publish->status_us = now_us;
+    publisher_status(&publish->publisher, text, sizeof text);
+    notify_status(&publish->notify, text);
+}
+
+/* What was wrong in the file was told, and the one before goes on. */
+static void take_hangup(publish_t *publish, uint64_t now_us)
+{
+    notify_reloading(&publish->notify, now_us);
+    if (reload_begin(&publish->reload, command)) return;
+    (void)fprintf(stderr, "fathom: nothing has changed\n");
+    notify_ready(&publish->notify);
+}
+
 static uint32_t tick(void *ctx)
 {
+    enum { AGAIN_US = 5000 };
     publish_t *const publish = ctx;
+    const uint64_t now_us = publish->loop.host->now_us(publish->loop.host->ctx);
+    uint32_t this_us = notify_tick(&publish->notify, now_us);
+    if (events_noted()) take_hangup(publish, now_us);
+    if (reload_tick(&publish->reload, now_us)) {
+        (void)fprintf(stderr, "fathom: %s was read anew\n", publish->config.path);
+        notify_ready(&publish->notify);
+    }
     const uint32_t results_us = results_tick(&publish->results);
     const uint32_t publisher_us = publisher_tick(&publish->publisher);
-    return results_us < publisher_us ? results_us : publisher_us;
+    if (publish->reload.is_waiting && this_us > AGAIN_US) this_us = AGAIN_US;
+    if (results_us < this_us) this_us = results_us;
+    tell_status(publish, now_us);
+    return publisher_us < this_us ? publisher_us : this_us;
 }
 
 static bool is_over(const void *ctx)
@@ -115,7 +153,13 @@ static bool begin(publish_t *publish, const host_t *host)
     if (!host->begin(host->ctx) ||
         !publisher_begin(&publish->publisher, host, &publish->config, publish->results_configs))
         return false;
+    events_note(SIGHUP);
     results_begin(&publish->results, loop, take_result, publish);
+    publish->reload = (reload_t){.config = &publish->config,
+                                 .configs = publish->results_configs,
+                                 .results = &publish->results,
+                                 .loop = loop,
+                                 .publisher = &publish->publisher};
     for (size_t i = 0; i != loop->options.station_count; i++) {
         const station_t *const station = loop->options.stations[i];
         results_add(&publish->results, station, &publish->results_configs[station->slot]);
@@ -128,13 +172,17 @@ static int publish_all(publish_t *publish, const host_t *host)
 {
     poll_loop_t *const loop = &publish->loop;
     int status = STATUS_FAILED;
+    notify_begin(&publish->notify);
     if (!begin(publish, host)) return STATUS_FAILED;
     if (poll_loop_open(loop) && publisher_connect(&publish->publisher, &loop->sources)) {
+        notify_ready(&publish->notify);
         poll_loop_run(loop);
+        notify_stopping(&publish->notify);
         if (host->has_ended(host->ctx)) status = STATUS_OK;
     }
     publisher_end(&publish->publisher);
     poll_loop_close(loop);
+    notify_end(&publish->notify);
     return status;
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "publish/publisher.h"
 
+#include <inttypes.h>
 #include <string.h>
 
 #include "publish/discovery.h"
@@ -17,6 +18,14 @@ static bool send_status(publisher_t *publisher)
     char topic[TOPIC];
     topic_of_site(publisher->config, "status", topic);
     publisher->has_status = !broker_send(&publisher->broker, topic, "online", true);
+    return true;
+}
+
+static bool send_deletion(publisher_t *publisher)
+{
+    char topic[DISCOVERY_TOPIC];
+    (void)snprintf(topic, sizeof topic, "%s", publisher->gone->topic);
+    if (broker_send(&publisher->broker, topic, "", true)) retained_remove(&publisher->gone, topic);
     return true;
 }
 
@@ -88,7 +97,7 @@ static void take_connected(void *ctx)
         publisher_sensor_t *const sensor = &publisher->sensors[slot];
         if (sensor->station == NULL) continue;
         sensor->has_news = true;
-        sensor->undiscovered = discovery_all(publisher->config, sensor->station, &publisher->results[slot]);
+        sensor->undiscovered = sensor->discovered;
     }
     publisher->has_status = true;
     publisher->has_facts = true;
@@ -101,6 +110,7 @@ static void take_connected(void *ctx)
 static bool send_fact(publisher_t *publisher)
 {
     if (publisher->has_status) return send_status(publisher);
+    if (publisher->gone != NULL) return send_deletion(publisher);
     if (has_counters(publisher) && send_counters(publisher)) return true;
     if (!publisher->has_facts) return false;
     if (send_first(publisher, send_discovery) || send_first(publisher, send_availability)) return true;
@@ -206,7 +216,8 @@ bool publisher_failure(publisher_t *publisher, const station_t *station, const c
 bool publisher_add(publisher_t *publisher, const station_t *station)
 {
     publisher_sensor_t *const sensor = &publisher->sensors[station->slot];
-    memset(sensor, 0, sizeof *sensor);
+    if (sensor->station != station) memset(sensor, 0, sizeof *sensor);
+    memset(sensor->streams, 0, sizeof sensor->streams);
     for (uint8_t probe = 1; probe <= FATHOM_DYP_PROBES; probe++)
         for (topic_t topic = 0; topic != TOPICS; topic++) {
             char text[TOPIC];
@@ -220,6 +231,10 @@ bool publisher_add(publisher_t *publisher, const station_t *station)
             sensor->streams[probe - 1][topic] = stream;
         }
     sensor->station = station;
+    sensor->discovered = discovery_all(publisher->config, station, &publisher->results[station->slot]);
+    sensor->undiscovered = sensor->discovered;
+    sensor->has_news = true;
+    publisher->has_facts = true;
     return true;
 }
 
@@ -246,11 +261,81 @@ bool publisher_connect(publisher_t *publisher, fathom_loop_t *loop)
                         publisher);
 }
 
+/* ---- another config ---- */
+
+/* Of a sensor, and of each of its probes. */
+static bool each_of_sensor(publisher_t *publisher, size_t slot,
+                           bool (*take)(retained_t **list, const char *topic))
+{
+    const publisher_sensor_t *const sensor = &publisher->sensors[slot];
+    char topic[DISCOVERY_TOPIC];
+    topic_of_sensor(publisher->config, sensor->station, "availability", topic);
+    if (!take(&publisher->gone, topic)) return false;
+    for (size_t i = 0; i != FATHOM_DYP_PROBES * (size_t)TOPICS; i++) {
+        const stream_t *const stream = sensor->streams[i / TOPICS][i % TOPICS];
+        if (stream != NULL && stream->is_retained && !take(&publisher->gone, stream->topic)) return false;
+    }
+    for (unsigned bit = 0; bit != DISCOVERY_BITS; bit++) {
+        if ((sensor->discovered >> bit & 1) == 0) continue;
+        discovery_topic(publisher->config, sensor->station, bit, topic);
+        if (!take(&publisher->gone, topic)) return false;
+    }
+    return true;
+}
+
+static bool each_retained(publisher_t *publisher, bool (*take)(retained_t **list, const char *topic))
+{
+    char topic[TOPIC];
+    topic_of_site(publisher->config, "status", topic);
+    if (!take(&publisher->gone, topic)) return false;
+    topic_of_site(publisher->config, "publisher", topic);
+    if (!take(&publisher->gone, topic)) return false;
+    for (size_t slot = 0; slot != STATION_SLOTS; slot++)
+        if (publisher->sensors[slot].station != NULL && !each_of_sensor(publisher, slot, take)) return false;
+    return true;
+}
+
+static bool is_still_there(retained_t **list, const char *topic)
+{
+    retained_remove(list, topic);
+    return true;
+}
+
+bool publisher_begin_change(publisher_t *publisher) { return each_retained(publisher, retained_add); }
+
+void publisher_remove(publisher_t *publisher, size_t slot) { publisher->sensors[slot].station = NULL; }
+
+void publisher_end_change(publisher_t *publisher, bool is_other_broker)
+{
+    char topic[TOPIC];
+    topic_of_site(publisher->config, "status", topic);
+    (void)each_retained(publisher, is_still_there);
+    if (!queue_resize(&publisher->queue, publisher->config->queue_messages, publisher->config->queue_bytes))
+        tell(NULL, "there is no memory left for another queue; it stays as it was");
+    publisher->has_facts = true;
+    publisher->told_dropped = UINT64_MAX;
+    if (is_other_broker) broker_change(&publisher->broker, topic);
+}
+
 uint32_t publisher_tick(publisher_t *publisher)
 {
     const uint32_t broker_us = broker_tick(&publisher->broker);
     send_next(publisher);
     return broker_us < NEWS_US ? broker_us : NEWS_US;
+}
+
+void publisher_status(const publisher_t *publisher, char *text, size_t capacity)
+{
+    size_t sensors = 0;
+    size_t away = 0;
+    for (size_t slot = 0; slot != STATION_SLOTS; slot++) {
+        if (publisher->sensors[slot].station == NULL) continue;
+        sensors++;
+        if (publisher->sensors[slot].is_away) away++;
+    }
+    (void)snprintf(text, capacity, "%zu sensors, %zu away; broker %s %s; dropped %" PRIu64, sensors, away,
+                   publisher->config->broker.host,
+                   broker_is_connected(&publisher->broker) ? "connected" : "away", publisher->queue.dropped);
 }
 
 /* What still waits is sent, as far as that goes in END_US, and at last that it is offline. */
@@ -279,4 +364,5 @@ void publisher_end(publisher_t *publisher)
     broker_end(&publisher->broker);
     queue_end(&publisher->queue);
     streams_end(&publisher->streams);
+    retained_end(&publisher->gone);
 }

@@ -3,6 +3,7 @@
 #define PUBLISHER_H
 
 #include "publish/broker.h"
+#include "publish/retained.h"
 #include "publish/state.h"
 
 /*
@@ -15,7 +16,8 @@
 typedef struct {
     stream_t *streams[FATHOM_DYP_PROBES][TOPICS];
     const station_t *station; /* NULL: none is read there */
-    uint32_t undiscovered;    /* bits of discovery.h: Home Assistant is still to be told */
+    uint32_t discovered;      /* bits of discovery.h: what Home Assistant knows or gets to know, ... */
+    uint32_t undiscovered;    /* ... and is still to be told */
     uint8_t failures;         /* in a row */
     bool is_available;
     bool is_away;  /* by a failure; before the first reading it is neither */
@@ -32,6 +34,7 @@ typedef struct {
     streams_t streams;
     char boot[BOOT];
     publisher_sensor_t sensors[STATION_SLOTS];
+    retained_t *gone;      /* topics at which nothing is retained any more */
     uint64_t told_dropped; /* in what was told of the publisher last, ... */
     uint64_t told_us;      /* ... and when */
     bool has_status;       /* "online" is still to be told */
@@ -46,6 +49,14 @@ bool publisher_connect(publisher_t *publisher, fathom_loop_t *loop);
 /* For each station that is read. False: there is no memory left. */
 bool publisher_add(publisher_t *publisher, const station_t *station);
 
+/*
+ * The config is about to be another one: to be called with the one before, then with the other, of which all stations that are
+ * read have been added, and removed what are not read any more. What is retained and told no more is deleted.
+ */
+bool publisher_begin_change(publisher_t *publisher);
+void publisher_remove(publisher_t *publisher, size_t slot);
+void publisher_end_change(publisher_t *publisher, bool is_other_broker);
+
 /* A reading, or a change of an alarm. True: its sensor was away, and is not any more. */
 bool publisher_result(publisher_t *publisher, const station_t *station, const result_t *result,
                       uint64_t time_us);
@@ -57,6 +68,9 @@ bool publisher_failure(publisher_t *publisher, const station_t *station, const c
 
 /* From outside of the loop's steps, before each sleep. Returns how long that may take. */
 uint32_t publisher_tick(publisher_t *publisher);
+
+/* How things are, in a line. */
+void publisher_status(const publisher_t *publisher, char *text, size_t capacity);
 
 /* Tells that it goes offline, if it can, and waits a little for that. */
 void publisher_end(publisher_t *publisher);

@@ -58,10 +58,7 @@ static void share_out(poll_loop_t *loop)
 {
     for (size_t i = loop->options.station_count; i != 0; i--) {
         station_t *const station = loop->options.stations[i - 1];
-        poll_port_t *const port = &loop->ports[station->port];
-        station->next = port->stations;
-        port->stations = station;
-        port->station_count++;
+        poll_port_add(&loop->ports[station->port], station);
     }
 }
 

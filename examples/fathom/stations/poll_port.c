@@ -315,6 +315,13 @@ static uint32_t due_us(fathom_loop_source_t *source)
 
 /* ---- begin and end ---- */
 
+void poll_port_add(poll_port_t *port, station_t *station)
+{
+    station->next = port->stations;
+    port->stations = station;
+    port->station_count++;
+}
+
 void poll_port_begin(poll_port_t *port, poll_loop_t *loop, const port_options_t *options)
 {
     static const fathom_loop_kind_t kind = {open_port, close_port, port_fd, port_events,

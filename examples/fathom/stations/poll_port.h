@@ -6,6 +6,9 @@
 
 /* A port of the poll loop: opens it, polls its sensors, and says why it is lost. */
 
+/* A station of it, before the others that it has; before poll_port_begin. */
+void poll_port_add(poll_port_t *port, station_t *station);
+
 /* Adds it to the loop's sources, and tries to open it. */
 void poll_port_begin(poll_port_t *port, poll_loop_t *loop, const port_options_t *options);
 

@@ -9,6 +9,42 @@
 /* So late it may be noticed that an alarm has had no distance for unknown_us. */
 enum { TICK_US = 100000 };
 
+static bool is_same_tank(const results_config_t *one, const results_config_t *other)
+{
+    const fathom_level_config_t *const tank = &one->tank;
+    const fathom_level_config_t *const that = &other->tank;
+    for (size_t i = 0; i != tank->point_count; i++)
+        if (one->points[i].level_mm != other->points[i].level_mm ||
+            one->points[i].volume != other->points[i].volume)
+            return false;
+    return tank->volume == that->volume && tank->point_count == that->point_count &&
+           tank->capacity == that->capacity && tank->mounting_mm == that->mounting_mm &&
+           tank->height_mm == that->height_mm && tank->offset_mm == that->offset_mm;
+}
+
+static bool is_same_alarm(const fathom_alarm_config_t *one, const fathom_alarm_config_t *other)
+{
+    return one->when == other->when && one->on_mm == other->on_mm && one->off_mm == other->off_mm &&
+           one->on_hold_us == other->on_hold_us && one->off_hold_us == other->off_hold_us &&
+           one->unknown_us == other->unknown_us && one->if_unknown == other->if_unknown &&
+           one->if_no_response == other->if_no_response &&
+           one->no_target_is_unknown == other->no_target_is_unknown;
+}
+
+bool results_config_is_same(const results_config_t *one, const results_config_t *other)
+{
+    return one->median == other->median && one->gate_mm == other->gate_mm &&
+           one->unknown_us == other->unknown_us && one->has_level == other->has_level &&
+           one->has_alarm == other->has_alarm && one->has_readings == other->has_readings &&
+           is_same_tank(one, other) && is_same_alarm(&one->alarm, &other->alarm);
+}
+
+void results_config_copy(results_config_t *to, const results_config_t *from)
+{
+    *to = *from;
+    if (from->tank.points != NULL) to->tank.points = to->points;
+}
+
 static result_probe_t *probe_of(results_t *results, const station_t *station, uint8_t probe)
 {
     return &results->probes[station->slot][probe - 1];

@@ -25,6 +25,10 @@ typedef struct {
     bool has_readings; /* ... unless this is set too */
 } results_config_t;
 
+/* Do both want the same? And takes another one's place. */
+bool results_config_is_same(const results_config_t *one, const results_config_t *other);
+void results_config_copy(results_config_t *to, const results_config_t *from);
+
 /* A reading, or the change of an alarm. */
 typedef struct {
     /* As it came, or with the kind and the distance of the median. A change that no sample has brought: its time and its

@@ -172,12 +172,35 @@ bool stations_name(station_t *const *stations, size_t count, const port_options_
     return true;
 }
 
-/* ---- what can be read together ---- */
-
 static bool is_same_line(const station_t *one, const station_t *other)
 {
     return one->line.baud == other->line.baud && one->line.parity == other->line.parity;
 }
+
+static bool is_same_window(const fathom_dyp_window_t *one, const fathom_dyp_window_t *other)
+{
+    return one->min_mm == other->min_mm && one->max_mm == other->max_mm &&
+           one->value_fffd == other->value_fffd && one->value_fffe == other->value_fffe &&
+           one->value_ffff == other->value_ffff && one->value_0 == other->value_0;
+}
+
+static bool is_same_reading(const reader_settings_t *one, const reader_settings_t *other)
+{
+    return one->timeout_us == other->timeout_us && one->period_us == other->period_us &&
+           one->repeat_us == other->repeat_us && is_same_window(&one->window, &other->window) &&
+           one->temperature_us == other->temperature_us && one->registers == other->registers &&
+           one->probes == other->probes && one->value == other->value && one->has_value == other->has_value &&
+           one->retries == other->retries;
+}
+
+bool station_is_same(const station_t *one, const station_t *other)
+{
+    return strcmp(one->name, other->name) == 0 && one->model == other->model && one->mode == other->mode &&
+           one->address == other->address && one->line.stop_bits == other->line.stop_bits &&
+           is_same_line(one, other) && is_same_reading(&one->settings, &other->settings);
+}
+
+/* ---- what can be read together ---- */
 
 static bool is_a05_dyp(const station_t *station) { return strcmp(station->mode->name, "dyp") == 0; }
 

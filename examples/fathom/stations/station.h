@@ -63,6 +63,9 @@ void station_name(station_t *station);
 bool stations_name(station_t *const *stations, size_t count, const port_options_t *ports,
                    const char *command);
 
+/* Are both named and read in the same way? Their ports are not looked at. */
+bool station_is_same(const station_t *one, const station_t *other);
+
 /* Can they be read at their ports, those of a port together? False after a usage error. */
 bool stations_check(station_t *const *stations, size_t count, const port_options_t *ports,
                     const char *command);

@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef POLL_CHANGE_H
+#define POLL_CHANGE_H
+
+#include "stations/poll.h"
+
+/*
+ * From now on the loop reads what `next` names, whose stations are others than the loop's (sensor_options_t.beside). A port
+ * of which nothing has changed, nor of its sensors, is not touched. Any other one is closed, and opened anew when no request
+ * of it is under way; a sensor that is named as it was before stays the same station then too, and goes on.
+ *
+ * Only between two steps of the loop. False: a port is in the middle of a request, and nothing has changed; to be called
+ * again, soon. is_urgent: what is under way is given up. `next` has the stations that are read, when it is done, and its ports
+ * are the loop's; it may be forgotten, but what their paths point into.
+ */
+bool poll_loop_change(poll_loop_t *loop, const sensor_options_t *next, bool is_urgent);
+
+#endif
