@@ -67,7 +67,7 @@ static void expect_refusal(unsigned number, const char *line, unsigned at, const
 
 TEST(what_is_right_is_explained)
 {
-    static const char *const said[] = {
+    static const char *const lines[] = {
         "site.yaml: 3 sensors at 2 ports\n",
         "broker mill.lan port 1884, client fathom-mill-north, user reader, no TLS\n",
         "up to 500 messages and 4194304 bytes are kept\n",
@@ -90,8 +90,8 @@ TEST(what_is_right_is_explained)
     const tool_run_t *const run = check(0, "");
     assert_int_equal(run->status, 0);
     assert_string_equal(run->err, "");
-    for (size_t i = 0; i != sizeof said / sizeof said[0]; i++)
-        if (strstr(run->out, said[i]) == NULL) fail_msg("%sinstead of\n%s", run->out, said[i]);
+    for (size_t i = 0; i != sizeof lines / sizeof lines[0]; i++)
+        if (strstr(run->out, lines[i]) == NULL) fail_msg("%sinstead of\n%s", run->out, lines[i]);
 }
 
 TEST(a_level_and_an_alarm_may_be_written_as_on_a_command_line)

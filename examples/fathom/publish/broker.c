@@ -198,9 +198,9 @@ static void tell_away(broker_t *broker)
 {
     const broker_config_t *const config = &broker->config->broker;
     char text[2 * BROKER_TEXT];
-    if (broker->is_told && strcmp(broker->told, broker->reason) == 0) return;
+    if (broker->is_told && strcmp(broker->told_reason, broker->reason) == 0) return;
     broker->is_told = true;
-    memcpy(broker->told, broker->reason, sizeof broker->told);
+    memcpy(broker->told_reason, broker->reason, sizeof broker->told_reason);
     (void)snprintf(text, sizeof text, "broker %s port %u: %s; it is tried again and again", config->host,
                    config->port, broker->reason);
     broker->user->tell(broker->ctx, text);

@@ -68,11 +68,11 @@ struct broker {
     bool is_other;    /* ... and is, than the one that was connected last */
     bool is_lost;     /* for `reason` */
     bool thread_has_ended;
-    bool is_told;  /* that it is away, for `told` */
+    bool is_told;  /* that it is away, for `told_reason` */
     int tls_error; /* what is wrong with its certificate; 0: nothing that is known */
     char will[CONFIG_PATH];
     char reason[BROKER_TEXT];
-    char told[BROKER_TEXT];
+    char told_reason[BROKER_TEXT];
     char log[BROKER_TEXT]; /* libmosquitto's last error */
 };
 
