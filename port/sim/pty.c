@@ -201,6 +201,8 @@ static int take_from_client(fathom_sim_pty_t *pty, uint32_t now_us)
         const ssize_t count = read(pty->master, bytes, space);
         if (count < 0) return nothing_now() ? 0 : -1;
         if (count == 0) return 0;
+        /* It has set its rate before it wrote, perhaps since that was looked at last. */
+        if (follow_baud(pty) < 0) return -1;
         (void)fathom_sim_receive(pty->line, bytes, (size_t)count, now_us);
     }
 }
