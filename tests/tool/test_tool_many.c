@@ -314,6 +314,21 @@ TEST(each_port_has_its_own_settings_and_its_own_stations)
     assert_int_equal(times(run->err, "time to answer"), 3);
 }
 
+/* A request is stuck after 10 s and twice its time-out (channel.h): here one leaves every 33 ms, and another one always
+ * waits behind it. */
+TEST(a_line_on_which_a_request_always_waits_is_not_stuck)
+{
+    ports(1);
+    hps167s(0, (fathom_sim_hps167s_config_t){.no_auto_output = true});
+    fathom_sim_hps167s_init(
+        &many.hps167s[1], &(fathom_sim_hps167s_config_t){
+                              .address = 2, .no_auto_output = true, .scene = fathom_sim_fixed(&many.scene)});
+    fathom_sim_attach(&many.lines[0], &many.hps167s[1].device, many.clock.now_us);
+    RUN(0, "read hps167s:1@p0 hps167s:2@p0 --duration 30 --stats");
+    assert_true(readings_of(run, "hps167s:2").count > 400);
+    expect_err(run, "failed 0, ");
+}
+
 TEST(a_silent_one_among_others_is_told_by_its_own_line)
 {
     ports(2);

@@ -70,7 +70,7 @@ static void begin(channel_t *channel)
     (void)fathom_line_init(&channel->line, &channel->config); /* all of it is there */
     channel->modbus = fathom_modbus_client_with_zero(&channel->line);
     channel->dyp = fathom_dyp_client(&channel->line);
-    channel->requests = 0;
+    channel->requests = channel->listener.passed;
     channel->moved_us = channel->host->now_us(channel->host->ctx);
 }
 
@@ -166,9 +166,9 @@ bool channel_is_stuck(channel_t *channel)
     const bool is_waiting = first != NULL && channel->line.quarantined == 0;
     const uint64_t most_us = is_waiting ? STUCK_US + 2ull * first->timeout_us : 0;
     const bool is_stuck =
-        is_waiting && channel->listener.requests == channel->requests && now - channel->moved_us > most_us;
-    if (!is_stuck && is_waiting && channel->listener.requests == channel->requests) return false;
+        is_waiting && channel->listener.passed == channel->requests && now - channel->moved_us > most_us;
+    if (!is_stuck && is_waiting && channel->listener.passed == channel->requests) return false;
     channel->moved_us = now;
-    channel->requests = channel->listener.requests;
+    channel->requests = channel->listener.passed;
     return is_stuck;
 }

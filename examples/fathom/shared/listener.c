@@ -32,6 +32,7 @@ static int listener_write(void *ctx, const uint8_t *bytes, size_t length)
     const uint32_t asked_us = now_us(tap); /* a response may be there before the write returns */
     const int n = tap->inner.write(tap->inner.ctx, bytes, length);
     if (n <= 0 || length > sizeof tap->request) return n;
+    tap->passed++;
     if (tap->whose != NULL) tap->now = tap->whose(tap->ctx);
     listener_t *const listener = tap->now != NULL ? tap->now : tap;
     memcpy(listener->request, bytes, length);

@@ -30,6 +30,7 @@ struct listener {
     uint8_t request_length;            /* 0: none has been sent */
     uint32_t asked_us;
     uint64_t requests; /* since the start */
+    uint64_t passed;   /* those of all listeners, by the one that stands before the port */
 };
 
 /* What is in the window. */
