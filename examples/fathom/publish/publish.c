@@ -119,7 +119,7 @@ static uint32_t tick(void *ctx)
     const uint64_t now_us = publish->loop.host->now_us(publish->loop.host->ctx);
     uint32_t this_us = notify_tick(&publish->notify, now_us);
     if (events_noted()) take_hangup(publish, now_us);
-    if (reload_tick(&publish->reload, now_us)) {
+    if (reload_tick(&publish->reload)) {
         (void)fprintf(stderr, "fathom: %s was read anew\n", publish->config.path);
         notify_ready(&publish->notify);
     }

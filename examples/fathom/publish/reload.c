@@ -5,6 +5,8 @@
 
 #include "stations/poll_change.h"
 
+static uint64_t now_us(const reload_t *reload) { return reload->loop->host->now_us(reload->loop->host->ctx); }
+
 bool reload_begin(reload_t *reload, const char *command)
 {
     char path[CONFIG_PATH];
@@ -14,7 +16,7 @@ bool reload_begin(reload_t *reload, const char *command)
     reload->next.sensors.beside = &reload->loop->options;
     if (!config_load(&reload->next, reload->configs, command, path)) return false;
     reload->is_waiting = true;
-    reload->since_us = reload->loop->host->now_us(reload->loop->host->ctx);
+    reload->since_us = now_us(reload);
     return true;
 }
 
@@ -68,11 +70,12 @@ static void take_config(reload_t *reload)
     publisher_end_change(reload->publisher, is_other);
 }
 
-bool reload_tick(reload_t *reload, uint64_t now_us)
+bool reload_tick(reload_t *reload)
 {
     enum { PATIENCE_US = 2000000 };
     if (!reload->is_waiting) return false;
-    if (!poll_loop_change(reload->loop, &reload->next.sensors, now_us - reload->since_us > PATIENCE_US))
+    if (!poll_loop_change(reload->loop, &reload->next.sensors,
+                          now_us(reload) - reload->since_us > PATIENCE_US))
         return false;
     reload->is_waiting = false;
     take_config(reload);

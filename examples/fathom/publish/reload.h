@@ -22,6 +22,6 @@ typedef struct {
 bool reload_begin(reload_t *reload, const char *command);
 
 /* From outside of the loop's steps, before each sleep. True: what the file says holds now. */
-bool reload_tick(reload_t *reload, uint64_t now_us);
+bool reload_tick(reload_t *reload);
 
 #endif
