@@ -51,6 +51,9 @@ typedef struct {
  * does: its user may be looking for the loose wire. */
 enum { READER_BACKOFF_US = 1 };
 
+/* For one of several: the longest that there is, which is the driver's default. */
+#define READER_BACKOFF_SHARED_US 0x80000000u
+
 /* A temperature that is read between measurements. */
 typedef struct {
     fathom_sensor_t measuring; /* the driver's */

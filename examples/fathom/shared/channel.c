@@ -28,6 +28,14 @@ static void suit_tcp(channel_t *channel)
     channel->config.echo = FATHOM_LINE_ECHO_OFF;
 }
 
+void channel_suit(channel_t *channel, const fathom_line_settings_t *settings)
+{
+    if (channel->tcp != NULL)
+        suit_tcp(channel);
+    else
+        suit_serial(channel, settings);
+}
+
 static uint32_t now_us(void *ctx)
 {
     const channel_t *const channel = ctx;
@@ -82,10 +90,7 @@ bool channel_open(channel_t *channel, const host_t *host, const char *path,
         tell_environment(&channel->port, path);
         return false;
     }
-    if (channel->tcp != NULL)
-        suit_tcp(channel);
-    else
-        suit_serial(channel, settings);
+    channel_suit(channel, settings);
     if (channel->rs485 &&
         fathom_posix_set_rs485(&channel->port, &(fathom_posix_rs485_t){0}) != FATHOM_POSIX_OK) {
         channel_close(channel);

@@ -59,6 +59,9 @@ bool channel_open(channel_t *channel, const host_t *host, const char *path,
 bool channel_open_pins(channel_t *channel, const host_t *host, const char *chip, const pin_options_t *wanted);
 void channel_close(channel_t *channel);
 
+/* It is open, and these are the slowest settings that are used on it from now on. */
+void channel_suit(channel_t *channel, const fathom_line_settings_t *settings);
+
 /* After each poll: notices that the pins are lost, which only some drivers tell. */
 void channel_look(channel_t *channel);
 

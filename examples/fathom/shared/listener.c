@@ -82,6 +82,17 @@ void listener_begin(listener_t *listener, fathom_uart_t *uart, const fathom_cloc
     uart->ctx = listener;
 }
 
+void listener_take_over(listener_t *listener, const listener_t *other)
+{
+    memcpy(listener->window, other->window, sizeof listener->window);
+    memcpy(listener->request, other->request, sizeof listener->request);
+    listener->have = other->have;
+    listener->bytes = other->bytes;
+    listener->slowest_us = other->slowest_us;
+    listener->request_length = other->request_length;
+    listener->asked_us = other->asked_us;
+}
+
 void listener_forget(listener_t *listener)
 {
     listener->have = 0;

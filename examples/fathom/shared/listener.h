@@ -52,6 +52,9 @@ typedef struct {
 /* Stands before *uart, which is replaced; the listener may not be moved then. */
 void listener_begin(listener_t *listener, fathom_uart_t *uart, const fathom_clock_t *clock);
 
+/* Goes on with the attempt of another one. */
+void listener_take_over(listener_t *listener, const listener_t *other);
+
 /* A new attempt: forgets what was heard. */
 void listener_forget(listener_t *listener);
 

@@ -19,6 +19,16 @@ bool poll_is_over(const poll_loop_t *loop)
 
 bool poll_is_shared(const poll_port_t *port) { return port->station_count > 1; }
 
+uint32_t poll_backoff_us(const poll_port_t *port)
+{
+    return poll_is_shared(port) ? READER_BACKOFF_SHARED_US : READER_BACKOFF_US;
+}
+
+listener_t *poll_listener_of(poll_port_t *port, station_t *station)
+{
+    return poll_is_shared(port) ? &station->own_listener : &port->channel.listener;
+}
+
 /* ---- what was heard, and of whom ---- */
 
 listener_t *poll_whose(void *ctx)

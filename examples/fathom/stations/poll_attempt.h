@@ -12,6 +12,11 @@ uint64_t poll_now_us(const poll_loop_t *loop);
 /* Has it more than one station? */
 bool poll_is_shared(const poll_port_t *port);
 
+/* How long a sensor of this port that does not answer is left alone at last: a line that others share is not taken from
+ * them. And what remembers what is heard of it. */
+uint32_t poll_backoff_us(const poll_port_t *port);
+listener_t *poll_listener_of(poll_port_t *port, station_t *station);
+
 /* Is there nothing more to be read, or is the command to end? */
 bool poll_is_over(const poll_loop_t *loop);
 

@@ -3,13 +3,15 @@
 
 #include <string.h>
 
+#include "stations/poll_adapt.h"
 #include "stations/poll_port.h"
 
 /* What becomes of the ports: by the number of the loop's port, and of that of `next`. */
 typedef struct {
     poll_loop_t *loop;
     const sensor_options_t *next;
-    bool stays[MAX_PORTS];
+    bool stays[MAX_PORTS];  /* as it is */
+    bool adapts[MAX_PORTS]; /* stays open, and has other sensors */
     bool is_taken[MAX_PORTS];
     size_t place[MAX_PORTS];  /* of each of next's ports: the loop's */
     sensor_options_t options; /* the new ones */
@@ -29,11 +31,15 @@ static bool is_same_keys(const port_keys_t *one, const port_keys_t *other)
     return one->given == other->given;
 }
 
+static bool is_same_path(const port_options_t *one, const port_options_t *other)
+{
+    return strcmp(one->path, other->path) == 0 && is_same_keys(&one->keys, &other->keys);
+}
+
 static bool is_same_port(const port_options_t *one, const port_options_t *other)
 {
-    return strcmp(one->path, other->path) == 0 && is_same_keys(&one->keys, &other->keys) &&
-           is_same_line(&one->line, &other->line) && one->has_mixed_lines == other->has_mixed_lines &&
-           one->station_count == other->station_count;
+    return is_same_path(one, other) && is_same_line(&one->line, &other->line) &&
+           one->has_mixed_lines == other->has_mixed_lines && one->station_count == other->station_count;
 }
 
 static const station_t *next_station(const plan_t *plan, size_t port, size_t number)
@@ -56,17 +62,39 @@ static bool stays(const plan_t *plan, size_t here, size_t there)
     return true;
 }
 
+/* Can its sensors come and go while it is open? */
+static bool adapts(const plan_t *plan, size_t here, size_t there)
+{
+    const poll_port_t *const port = &plan->loop->ports[here];
+    if (port->is_left || plan->loop->options.ports[here].station_count == 0 || !poll_may_adapt(port) ||
+        !is_same_path(&plan->loop->options.ports[here], &plan->next->ports[there]))
+        return false;
+    for (size_t i = 0; i != plan->next->station_count; i++) {
+        const station_t *const station = plan->next->stations[i];
+        if (station->port == there && !(station->mode->is_asked && station->mode->has_address)) return false;
+    }
+    return true;
+}
+
+/* Finds the loop's port for each of next's of which that is so. */
+static void place_those(plan_t *plan, bool (*is_so)(const plan_t *plan, size_t here, size_t there),
+                        bool is_so_of[MAX_PORTS])
+{
+    for (size_t there = 0; there != plan->next->port_count; there++)
+        for (size_t here = 0; here != plan->loop->options.port_count && plan->place[there] == MAX_PORTS;
+             here++) {
+            if (plan->is_taken[here] || !is_so(plan, here, there)) continue;
+            plan->place[there] = here;
+            plan->is_taken[here] = true;
+            is_so_of[here] = true;
+        }
+}
+
 static void plan_ports(plan_t *plan)
 {
-    for (size_t there = 0; there != plan->next->port_count; there++) {
-        plan->place[there] = MAX_PORTS;
-        for (size_t here = 0; here != plan->loop->options.port_count && plan->place[there] == MAX_PORTS;
-             here++)
-            if (!plan->is_taken[here] && stays(plan, here, there)) plan->place[there] = here;
-        if (plan->place[there] == MAX_PORTS) continue;
-        plan->stays[plan->place[there]] = true;
-        plan->is_taken[plan->place[there]] = true;
-    }
+    for (size_t there = 0; there != plan->next->port_count; there++) plan->place[there] = MAX_PORTS;
+    place_those(plan, stays, plan->stays);
+    place_those(plan, adapts, plan->adapts);
     for (size_t there = 0; there != plan->next->port_count; there++) {
         if (plan->place[there] != MAX_PORTS) continue;
         plan->place[there] = 0;
@@ -74,6 +102,8 @@ static void plan_ports(plan_t *plan)
         plan->is_taken[plan->place[there]] = true;
     }
 }
+
+static bool is_open(const plan_t *plan, size_t here) { return plan->stays[here] || plan->adapts[here]; }
 
 /* ---- what is under way ---- */
 
@@ -90,7 +120,7 @@ static bool is_busy(const poll_port_t *port)
 static bool is_any_busy(const plan_t *plan)
 {
     for (size_t here = 0; here != plan->loop->options.port_count; here++)
-        if (!plan->stays[here] && is_busy(&plan->loop->ports[here])) return true;
+        if (!is_open(plan, here) && is_busy(&plan->loop->ports[here])) return true;
     return false;
 }
 
@@ -120,7 +150,7 @@ static void close_ports(plan_t *plan)
 {
     for (size_t here = 0; here != plan->loop->options.port_count; here++) {
         poll_port_t *const port = &plan->loop->ports[here];
-        if (plan->stays[here]) continue;
+        if (is_open(plan, here)) continue;
         if (port->was_open && !port->is_lost) (void)poll_port_end_stations(port);
         poll_port_end(port);
         memset(port, 0, sizeof *port);
@@ -139,7 +169,7 @@ static void place_ports(plan_t *plan)
     }
     loop->options = plan->options;
     for (size_t here = 0; here != MAX_PORTS; here++)
-        if (plan->stays[here]) loop->ports[here].adapter.path = loop->options.ports[here].path;
+        if (is_open(plan, here)) loop->ports[here].adapter.path = loop->options.ports[here].path;
 }
 
 static void open_ports(plan_t *plan)
@@ -152,11 +182,23 @@ static void open_ports(plan_t *plan)
     }
     for (size_t i = loop->options.station_count; i != 0; i--) {
         station_t *const station = loop->options.stations[i - 1];
-        if (!plan->stays[station->port]) poll_port_add(&loop->ports[station->port], station);
+        if (!is_open(plan, station->port)) poll_port_add(&loop->ports[station->port], station);
     }
     for (size_t here = 0; here != loop->options.port_count; here++)
-        if (!plan->stays[here] && loop->options.ports[here].station_count != 0)
+        if (!is_open(plan, here) && loop->options.ports[here].station_count != 0)
             poll_port_begin(&loop->ports[here], loop, &loop->options.ports[here]);
+}
+
+static void adapt_ports(plan_t *plan)
+{
+    poll_loop_t *const loop = plan->loop;
+    for (size_t here = 0; here != loop->options.port_count; here++) {
+        station_t *stations[MAX_STATIONS_ON_A_LINE];
+        size_t count = 0;
+        for (size_t i = 0; plan->adapts[here] && i != loop->options.station_count; i++)
+            if (loop->options.stations[i]->port == here) stations[count++] = loop->options.stations[i];
+        if (plan->adapts[here]) poll_adapt(&loop->ports[here], stations, count);
+    }
 }
 
 bool poll_loop_change(poll_loop_t *loop, const sensor_options_t *next, bool is_urgent)
@@ -171,6 +213,7 @@ bool poll_loop_change(poll_loop_t *loop, const sensor_options_t *next, bool is_u
     find_stations(&plan);
     close_ports(&plan);
     place_ports(&plan);
+    adapt_ports(&plan);
     open_ports(&plan);
     return true;
 }

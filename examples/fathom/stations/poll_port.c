@@ -46,15 +46,22 @@ static void end_with_counters(poll_port_t *port)
     port->loop->has_left = true;
 }
 
+void poll_port_give_up(poll_port_t *port)
+{
+    port->loop->has_failed = true;
+    end_with_counters(port);
+}
+
 /* ---- opening ---- */
 
-static bool begin_station(poll_port_t *port, station_t *station)
+bool poll_port_begin_station(poll_port_t *port, station_t *station)
 {
     char text[TEXT];
     poll_loop_t *const loop = port->loop;
     reader_settings_t settings = station->settings;
-    settings.line = port->options->has_mixed_lines ? &station->line : NULL;
-    settings.backoff_us = poll_is_shared(port) ? 0 : READER_BACKOFF_US;
+    /* Of one that persists the sensors may become others, and then their lines. */
+    settings.line = port->options->has_mixed_lines || loop->options.persists ? &station->line : NULL;
+    settings.backoff_us = poll_backoff_us(port);
     settings.address = station->address;
     const uint16_t sequence = station->reader.sequence != NULL ? *station->reader.sequence : 0;
     if (!station_begin(station, &port->channel, &settings)) {
@@ -66,7 +73,7 @@ static bool begin_station(poll_port_t *port, station_t *station)
         loop->user->remark(loop->ctx, station, text);
     /* Goes on after a loss, so that the gap is not taken for a new start. */
     *station->reader.sequence = sequence;
-    station->listener = poll_is_shared(port) ? &station->own_listener : &port->channel.listener;
+    station->listener = poll_listener_of(port, station);
     poll_begin_attempt(station);
     station->next_us = poll_now_us(loop);
     station->skipping = false;
@@ -78,7 +85,7 @@ static bool begin_station(poll_port_t *port, station_t *station)
 static bool begin_stations(poll_port_t *port)
 {
     for (station_t *station = port->stations; station != NULL; station = station->next)
-        if (!begin_station(port, station)) return false;
+        if (!poll_port_begin_station(port, station)) return false;
     port->channel.listener.whose = poll_is_shared(port) ? poll_whose : NULL;
     port->channel.listener.ctx = port;
     counters_begin_port(&port->counts, &port->channel);
@@ -125,9 +132,7 @@ static void take_absence(poll_port_t *port)
     (void)snprintf(text, sizeof text, "%s%s", fathom_posix_error_text(&port->channel.port),
                    port->waits ? "; waiting until it is there" : "");
     tell(port, text, port->waits ? POLL_PORT_WAITED_FOR : POLL_PORT_GIVEN_UP);
-    if (port->waits) return;
-    port->loop->has_failed = true;
-    end_with_counters(port);
+    if (!port->waits) poll_port_give_up(port);
 }
 
 /* What is there and cannot be opened has to be told some time. */
@@ -152,8 +157,7 @@ static bool begin_reading(poll_port_t *port)
     /* A tty; what stands in for one in a test need not. */
     port->source.reads_all = port->channel.tcp == NULL && fathom_posix_fd(&port->channel.port) >= 0;
     if (!begin_stations(port)) {
-        port->loop->has_failed = true;
-        end_with_counters(port);
+        poll_port_give_up(port);
         return false;
     }
     if (port->is_lost) {

@@ -12,6 +12,12 @@ void poll_port_add(poll_port_t *port, station_t *station);
 /* Adds it to the loop's sources, and tries to open it. */
 void poll_port_begin(poll_port_t *port, poll_loop_t *loop, const port_options_t *options);
 
+/* One of its sensors, when it is open. False after saying why: its driver does not take its settings. */
+bool poll_port_begin_station(poll_port_t *port, station_t *station);
+
+/* Nothing is read there any more, and that is a failure, which was told. */
+void poll_port_give_up(poll_port_t *port);
+
 /* Takes it out of the loop. */
 void poll_port_end(poll_port_t *port);
 
