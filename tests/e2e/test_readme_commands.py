@@ -27,6 +27,8 @@ class Commands(e2e.Case):
             sim = self.fathom(words)
             sim.expect(r'^\S*(/dev/pts/\d+)$')
             self.assertEqual(sim.end(signal.SIGINT).code, 0)
+        elif words[0] == 'publish':
+            self.check_publish(words)
         elif words[0] == 'decode':
             done = self.run_fathom(words)
             self.assertNotEqual(done.code, 2, done.err)
@@ -35,6 +37,22 @@ class Commands(e2e.Case):
             waits = '--reconnect' in words  # for the port
             self.ends([*self.at_no_port(words), *(['--duration', '1'] if waits else [])], 0 if waits else 1,
                       self.path('none'))
+
+    def check_publish(self, words):
+        """With the page's file, of which the paths are the test's."""
+        text = re.search(r'(?s)^```yaml\n(.*?)^```', text_of('examples/fathom/README.md'), re.M)[1]
+        text = re.sub('/etc/.*/|/dev/', f'{self.folder}/', text).replace('broker.lan', '127.0.0.1')
+        for name, content in (('site.yaml', text), ('password', 'secret'), ('ca-certificates.crt', '')):
+            with open(self.path(name), 'w', encoding='ascii') as file:
+                file.write(content)
+        program = self.fathom([self.path(word) if word == 'site.yaml' else word for word in words])
+        if 'not in this build' in self.run_fathom('--help').out:
+            self.ends(program, 2, 'this fathom was built without ')
+        elif '--check' in words:
+            self.ends(program, 0, out=None)
+        else:
+            program.expect('waiting until it is there', 'err')
+            self.ends(program.end(signal.SIGINT), 0)
 
     def at_no_port(self, words):
         """Each port, behind --port and behind @, is one that is not there."""
@@ -46,7 +64,7 @@ class Commands(e2e.Case):
         return there
 
     @e2e.each(those_of_the_first_page=('README.md', BLOCK, 1, 1),
-              those_of_the_manual=('examples/fathom/README.md', BLOCK, 14, 24),
+              those_of_the_manual=('examples/fathom/README.md', BLOCK, 14, 26),
               those_of_the_table_of_the_datasheets=('include/README.md', CELL, 51, 500))
     def shown(self, page, pattern, at_least, at_most):
         shown = re.findall(pattern, text_of(page), re.M)
@@ -59,7 +77,7 @@ class Commands(e2e.Case):
         manual = text_of('examples/fathom/README.md')
         first = re.findall(r'^  (\w+) +\S', self.run_fathom('--help').out, re.M)
         commands = [name for name in first if name != 'fathom']
-        self.assertEqual(len(commands), 14, first)
+        self.assertEqual(len(commands), 15, first)
         explained = {'--help'}
         for command in commands:
             self.assertIn(f'`fathom {command}`', manual)

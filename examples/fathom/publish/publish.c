@@ -139,11 +139,29 @@ static bool is_over(const void *ctx)
 
 static void help(FILE *to)
 {
-    (void)fputs(
-        "fathom publish reads all sensors of a site and publishes what they say to an MQTT broker.\n\n"
-        "usage: fathom publish [--check] FILE\n\n",
-        to);
+    (void)fputs("fathom publish reads all sensors of a site and publishes what they say to an MQTT broker, "
+                "until it is "
+                "ended.\n"
+                "It writes to no device, and subscribes to nothing.\n\n"
+                "usage: fathom publish [--check] FILE\n\n"
+                "  --check           explains the file, and says what would be published where. Nothing is "
+                "opened or sent\n"
+                "\nFILE is YAML, of these keys:\n\n",
+                to);
     config_keys_help(to);
+    (void)fputs(
+        "\nThe topics are PREFIX/SITE/status and publisher, and for each sensor PREFIX/SITE/NAME/state, "
+        "availability and,\n"
+        "where it has them, level and alarm. The manual has what is in them.\n"
+        "SIGHUP reads FILE anew: what has not changed is read on. While the broker is away, messages wait in "
+        "memory.\n"
+        "Exit status: 0 when a signal has ended it, 1 when it could not begin, 2 for wrong usage or a wrong "
+        "FILE.\n"
+        "\nexamples:\n"
+        "  fathom publish --check site.yaml               is it right, and what will be published?\n"
+        "  fathom publish site.yaml\n"
+        "  fathom publish site.yaml 2>> publish.log       what it has to tell, in a file\n",
+        to);
 }
 
 static bool begin(publish_t *publish, const host_t *host)

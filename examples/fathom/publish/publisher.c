@@ -68,6 +68,15 @@ static bool has_counters(const publisher_t *publisher)
     return is_due && publisher->queue.dropped != publisher->told_dropped;
 }
 
+static void tell_dropped(publisher_t *publisher, uint64_t dropped)
+{
+    (void)fprintf(stderr,
+                  "fathom: the queue was full: %" PRIu64 " messages were dropped, %" PRIu64
+                  " since the begin\n",
+                  dropped - publisher->said_dropped, dropped);
+    publisher->said_dropped = dropped;
+}
+
 static bool send_counters(publisher_t *publisher)
 {
     char topic[TOPIC];
@@ -84,6 +93,7 @@ static bool send_counters(publisher_t *publisher)
     topic_of_site(publisher->config, "publisher", topic);
     state_of_publisher(&state, payload);
     if (!broker_send(&publisher->broker, topic, payload, true)) return false;
+    if (state.dropped > publisher->said_dropped) tell_dropped(publisher, state.dropped);
     publisher->told_dropped = state.dropped;
     publisher->told_us = now_us(publisher);
     return true;

@@ -37,6 +37,7 @@ typedef struct {
     retained_t *gone;      /* topics at which nothing is retained any more */
     uint64_t told_dropped; /* in what was told of the publisher last, ... */
     uint64_t told_us;      /* ... and when */
+    uint64_t said_dropped; /* on the standard error */
     bool has_status;       /* "online" is still to be told */
     bool has_facts;        /* there may be something before the queue */
 } publisher_t;
