@@ -107,12 +107,26 @@ static bool is_open(const plan_t *plan, size_t here) { return plan->stays[here] 
 
 /* ---- what is under way ---- */
 
-static bool is_busy(const poll_port_t *port)
+/* Is it read there in `next` too, as it is now? */
+static bool goes_on(const plan_t *plan, size_t here, const station_t *station)
 {
+    for (size_t i = 0; i != plan->next->station_count; i++) {
+        const station_t *const wanted = plan->next->stations[i];
+        if (plan->place[wanted->port] == here && station_is_same(station, wanted)) return true;
+    }
+    return false;
+}
+
+/* Is a request of it under way that would be given up? Where the port stays open, only those that go. */
+static bool is_busy(const plan_t *plan, size_t here)
+{
+    const poll_port_t *const port = &plan->loop->ports[here];
     for (const station_t *station = port->stations; station != NULL; station = station->next) {
         if (port->is_lost || !port->was_open || station->reader.unit == NULL) continue;
         const fathom_transaction_t *const transaction = &station->reader.unit->request.transaction;
-        if (transaction->status == FATHOM_PENDING && transaction->attempts != 0) return true;
+        if (transaction->status == FATHOM_PENDING && transaction->attempts != 0 &&
+            !(plan->adapts[here] && goes_on(plan, here, station)))
+            return true;
     }
     return false;
 }
@@ -120,7 +134,7 @@ static bool is_busy(const poll_port_t *port)
 static bool is_any_busy(const plan_t *plan)
 {
     for (size_t here = 0; here != plan->loop->options.port_count; here++)
-        if (!is_open(plan, here) && is_busy(&plan->loop->ports[here])) return true;
+        if (!plan->stays[here] && is_busy(plan, here)) return true;
     return false;
 }
 

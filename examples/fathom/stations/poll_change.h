@@ -7,10 +7,10 @@
 /*
  * From now on the loop reads what `next` names, whose stations are others than the loop's (sensor_options_t.beside). A port
  * of which nothing has changed, nor of its sensors, is not touched. One that is open and whose sensors are asked by their
- * addresses stays open when some of them come or go, and a request under way goes on. Any other one is closed, and opened anew
- * when no request of it is under way. A sensor that is named as it was before stays the same station, and goes on.
+ * addresses stays open when some of them come or go, and a request of those that stay goes on. Any other one is closed, and
+ * opened anew. A sensor that is named as it was before stays the same station, and goes on.
  *
- * Only between two steps of the loop. False: a port is in the middle of a request, and nothing has changed; to be called
+ * Only between two steps of the loop. False: a request is under way that would be given up, and nothing has changed; to be called
  * again, soon. is_urgent: what is under way is given up. `next` has the stations that are read, when it is done, and its ports
  * are the loop's; it may be forgotten, but what their paths point into.
  */
