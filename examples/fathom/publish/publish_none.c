@@ -1,4 +1,6 @@
 /* SPDX-License-Identifier: MIT */
+#include <string.h>
+
 #include "commands.h"
 
 /* What the build did not find: FATHOM_PUBLISH_LACKS, "libmosquitto" for one. */
@@ -13,10 +15,9 @@ static void help(FILE *to)
 static int run(const host_t *host, int argc, char **argv)
 {
     (void)host;
-    (void)argc;
-    (void)argv;
+    if (argc > 1 && strcmp(argv[1], "--help") == 0) return command_help(&publish_command);
     return usage_error("publish", "this fathom was built without " FATHOM_PUBLISH_LACKS
-                                  "; install its development files and build it again");
+                                  "; install the development files and build it again");
 }
 
 const command_t publish_command = {"publish", "publishes sensors to an MQTT broker (not in this build)", help,
