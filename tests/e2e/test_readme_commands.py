@@ -83,6 +83,8 @@ class Commands(e2e.Case):
             self.assertIn(f'`fathom {command}`', manual)
             explained |= set(re.findall(r'^ +(--[\w-]+)', self.run_fathom(command, '--help').out, re.M))
         self.assertGreater(len(explained), 30)
+        if 'not in this build' in self.run_fathom('--help').out:
+            explained.add('--check')
         shown = set(re.findall(r'(?<![\w-])(--[a-z][\w-]+)', manual)) - {'--preset', '--build', '--install', '--now'}
         self.assertEqual(shown, explained)
 
