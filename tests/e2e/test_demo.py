@@ -9,7 +9,9 @@ import shutil
 import e2e
 
 
-class Demo(e2e.Case):
+class Case(e2e.Case):
+    """A copy of the repository, whose scripts are run."""
+
     def setUp(self):
         super().setUp()
         self.copy = self.path('repository')
@@ -24,7 +26,7 @@ class Demo(e2e.Case):
         self.environment = {**os.environ, 'TMPDIR': self.path('tmp'), 'CC': self.path('cc')}
         self.environment.pop('FATHOM', None)
 
-    def run_demo(self, path, cwd):
+    def run_script(self, path, cwd):
         return self.start(['sh', path], cwd=cwd, env=self.environment).finish(100)
 
     def processes(self):
@@ -37,8 +39,10 @@ class Demo(e2e.Case):
             except OSError:
                 pass
 
+
+class Demo(Case):
     def test_all_three_sensors_are_read_and_nothing_is_left_behind(self):
-        done = self.ends(self.run_demo('examples/demo.sh', self.copy), 0)
+        done = self.ends(self.run_script('examples/demo.sh', self.copy), 0)
         for name, count in (('a16', 10), *((f'a05 probe {probe}', 4) for probe in range(1, 5)),
                             ('hps167s', 10)):
             self.assertEqual(len(re.findall(rf'^ +\d+\.\d{{3}} s  {name} +\d+ mm', done.out, re.M)), count,
@@ -50,7 +54,7 @@ class Demo(e2e.Case):
     def test_what_fails_is_told_and_fails_the_demo(self):
         with open(os.path.join(self.copy, 'include/fathom/hal.h'), 'a', encoding='ascii') as file:
             file.write('#error planted\n')
-        done = self.run_demo(os.path.join(self.copy, 'examples', 'demo.sh'), '/')
+        done = self.run_script(os.path.join(self.copy, 'examples', 'demo.sh'), '/')
         self.ends(done, 1, '#error planted', 'demo: cmake failed')
         self.assertEqual(os.listdir(self.path('tmp')), [])
 
