@@ -38,11 +38,22 @@ static void on_connect(struct mosquitto *mosq, void *ctx, int code)
     broker->is_lost = true;
 }
 
+/* Of the messages under way, from the oldest, 0. */
+static broker_sent_t *sent_at(broker_t *broker, unsigned number)
+{
+    return &broker->sent[(broker->first + number) % BROKER_WINDOW];
+}
+
 static void on_publish(struct mosquitto *mosq, void *ctx, int number)
 {
     broker_t *const broker = ctx;
     (void)mosq;
-    if (broker->has_message && number == broker->message) broker->has_message = false;
+    for (unsigned i = 0; i != broker->count; i++)
+        if (sent_at(broker, i)->number == number) sent_at(broker, i)->is_acknowledged = true;
+    while (broker->count != 0 && sent_at(broker, 0)->is_acknowledged) {
+        broker->first = (broker->first + 1) % BROKER_WINDOW;
+        broker->count--;
+    }
 }
 
 static void on_log(struct mosquitto *mosq, void *ctx, int level, const char *text)
@@ -85,6 +96,15 @@ static void read_all(broker_t *broker)
     }
 }
 
+/* False: libmosquitto does not take it. What it has in its list it sends, and sends again, by itself. */
+static bool hand_over(broker_t *broker, broker_sent_t *sent)
+{
+    const int result = mosquitto_publish(broker->mosq, &sent->number, sent->topic, (int)strlen(sent->payload),
+                                         sent->payload, QOS, sent->is_retained);
+    return result != MOSQ_ERR_INVAL && result != MOSQ_ERR_NOMEM && result != MOSQ_ERR_PAYLOAD_SIZE &&
+           result != MOSQ_ERR_MALFORMED_UTF8;
+}
+
 static void take_readiness(broker_t *broker)
 {
     const broker_config_t *const config = &broker->config->broker;
@@ -92,9 +112,9 @@ static void take_readiness(broker_t *broker)
     (void)snprintf(text, sizeof text, "broker %s port %u: connected", config->host, config->port);
     if (broker->is_told) broker->user->tell(broker->ctx, text);
     broker->is_told = false;
-    /* That another client had under way. One that is the same sends it again by itself. */
-    if (broker->is_other && broker->has_message)
-        (void)broker_send(broker, broker->sent_topic, broker->sent_payload, broker->is_sent_retained);
+    /* That another client had under way. One that is the same sends them again by itself. */
+    for (unsigned i = 0; broker->is_other && i != broker->count; i++)
+        if (!sent_at(broker, i)->is_acknowledged) (void)hand_over(broker, sent_at(broker, i));
     broker->is_other = false;
     broker->user->connected(broker->ctx);
 }
@@ -102,7 +122,7 @@ static void take_readiness(broker_t *broker)
 static bool poll_socket(fathom_loop_source_t *source)
 {
     broker_t *const broker = broker_of(source);
-    const bool had_message = broker->has_message;
+    const unsigned count = broker->count;
     const bool was_ready = broker->phase == BROKER_READY;
     if (broker->is_lost) return true;
     if (source->is_readable) read_all(broker);
@@ -115,7 +135,7 @@ static bool poll_socket(fathom_loop_source_t *source)
     if (broker->phase == BROKER_GREETING && source->is_hung_up) take_result(broker, MOSQ_ERR_CONN_LOST);
     if (broker->is_lost) return true;
     if (!was_ready && broker->phase == BROKER_READY) take_readiness(broker);
-    if (had_message && !broker->has_message) broker->user->acknowledged(broker->ctx);
+    if (broker->count < count) broker->user->acknowledged(broker->ctx);
     return true;
 }
 
@@ -133,10 +153,7 @@ static bool add_socket(broker_t *broker)
         .fd = source_fd, .events = socket_events, .poll = poll_socket, .due_us = socket_due_us};
     const int fd = fcntl(mosquitto_socket(broker->mosq), F_DUPFD_CLOEXEC, 0);
     if (fd < 0) return false;
-    memset(&broker->socket, 0, sizeof broker->socket);
-    broker->socket.source.kind = &kind;
-    broker->socket.broker = broker;
-    broker->socket.fd = fd;
+    broker->socket = (broker_source_t){.source.kind = &kind, .broker = broker, .fd = fd};
     fathom_loop_add(broker->loop, &broker->socket.source);
     return true;
 }
@@ -324,27 +341,24 @@ bool broker_begin(broker_t *broker, const host_t *host, fathom_loop_t *loop, con
 
 bool broker_is_connected(const broker_t *broker) { return broker->phase == BROKER_READY && !broker->is_lost; }
 
-bool broker_is_free(const broker_t *broker) { return broker_is_connected(broker) && !broker->has_message; }
-
-static void keep(broker_t *broker, const char *topic, const char *payload, bool is_retained)
+bool broker_is_free(const broker_t *broker)
 {
-    if (topic == broker->sent_topic) return;
-    (void)snprintf(broker->sent_topic, sizeof broker->sent_topic, "%s", topic);
-    (void)snprintf(broker->sent_payload, sizeof broker->sent_payload, "%s", payload);
-    broker->is_sent_retained = is_retained;
+    return broker_is_connected(broker) && broker->count != BROKER_WINDOW;
 }
+
+bool broker_is_idle(const broker_t *broker) { return broker_is_connected(broker) && broker->count == 0; }
 
 bool broker_send(broker_t *broker, const char *topic, const char *payload, bool is_retained)
 {
-    const int length = (int)strlen(payload);
-    const int result =
-        mosquitto_publish(broker->mosq, &broker->message, topic, length, payload, QOS, is_retained);
-    /* What libmosquitto has in its list it sends again by itself. */
-    broker->has_message = result != MOSQ_ERR_INVAL && result != MOSQ_ERR_NOMEM &&
-                          result != MOSQ_ERR_PAYLOAD_SIZE && result != MOSQ_ERR_MALFORMED_UTF8;
-    if (broker->has_message) keep(broker, topic, payload, is_retained);
+    broker_sent_t *const sent = sent_at(broker, broker->count);
+    sent->is_acknowledged = false;
+    sent->is_retained = is_retained;
+    (void)snprintf(sent->topic, sizeof sent->topic, "%s", topic);
+    (void)snprintf(sent->payload, sizeof sent->payload, "%s", payload);
+    if (!hand_over(broker, sent)) return false;
+    broker->count++;
     if (mosquitto_want_write(broker->mosq)) fathom_loop_wake(&broker->socket.source);
-    return broker->has_message;
+    return true;
 }
 
 void broker_change(broker_t *broker, const char *will)

@@ -14,7 +14,8 @@
  * up waits, and so does libmosquitto's connect; from then on all is done by the loop, and the thread has ended. Where it is
  * lost, or the broker refuses it, it is tried again after a pause that grows from 0.5 s to a minute, by a random part shorter.
  *
- * One message is under way at a time, QoS 1, so that no message comes after a later one, whatever was lost in between.
+ * Up to BROKER_WINDOW messages are under way, QoS 1. When the connection was lost, all that were not acknowledged are sent
+ * again, in their order and before any other one: some may come twice, none comes for the first time after a later one.
  * Nothing is subscribed to.
  */
 
@@ -22,7 +23,7 @@ typedef struct {
     /* The broker has accepted the client. */
     void (*connected)(void *ctx);
     void (*lost)(void *ctx);
-    /* It has the message that was sent. */
+    /* It has a message that was sent, or more. */
     void (*acknowledged)(void *ctx);
     /* A line of text for the user. */
     void (*tell)(void *ctx, const char *text);
@@ -30,7 +31,17 @@ typedef struct {
 
 typedef enum { BROKER_PAUSE, BROKER_CONNECTING, BROKER_GREETING, BROKER_READY } broker_phase_t;
 
-enum { BROKER_TEXT = 512, BROKER_PAYLOAD = 3072 };
+/* With a round trip of 30 ms they are 500 messages a second. libmosquitto has up to 20 under way. */
+enum { BROKER_TEXT = 512, BROKER_PAYLOAD = 3072, BROKER_WINDOW = 16 };
+
+/* A message that is under way. */
+typedef struct {
+    int number; /* libmosquitto's */
+    bool is_acknowledged;
+    bool is_retained;
+    char topic[BROKER_TEXT]; /* for another client */
+    char payload[BROKER_PAYLOAD];
+} broker_sent_t;
 
 typedef struct broker broker_t;
 
@@ -59,11 +70,9 @@ struct broker {
     char connect_host[CONFIG_HOST]; /* for the thread, which may outlive a config */
     int connect_port;
     int keep_alive_s;
-    int message; /* under way, by its number; and what it is, for another client */
-    char sent_topic[BROKER_TEXT];
-    char sent_payload[BROKER_PAYLOAD];
-    bool is_sent_retained;
-    bool has_message;
+    broker_sent_t sent[BROKER_WINDOW];
+    unsigned first;   /* of them, the oldest; the others follow, round the end, */
+    unsigned count;   /* so many */
     bool has_changed; /* the config: the client is to be another one, ... */
     bool is_other;    /* ... and is, than the one that was connected last */
     bool is_lost;     /* for `reason` */
@@ -87,8 +96,9 @@ uint32_t broker_tick(broker_t *broker);
 /* The config is another one, and so may the will be: connects anew. */
 void broker_change(broker_t *broker, const char *will);
 
-/* Is it connected, with no message under way? */
+/* Is it connected, and may one more message be sent? Is it connected, with none under way? */
 bool broker_is_free(const broker_t *broker);
+bool broker_is_idle(const broker_t *broker);
 bool broker_is_connected(const broker_t *broker);
 
 /* Sends it. False: it could not be; that is no loss, it may be sent again when it is free. */

@@ -128,16 +128,24 @@ static bool send_fact(publisher_t *publisher)
     return false;
 }
 
-static void send_next(publisher_t *publisher)
+static bool send_message(publisher_t *publisher)
 {
     message_t message;
     char text[STATE_TEXT];
-    if (!broker_is_free(&publisher->broker) || send_fact(publisher)) return;
-    if (!queue_take(&publisher->queue, &message, text)) return;
+    if (!queue_take(&publisher->queue, &message, text)) return false;
     state_finish(text, now_us(publisher) - message.time_us, message.stream->dropped);
-    if (broker_send(&publisher->broker, message.stream->topic, text, message.stream->is_retained)) return;
+    if (broker_send(&publisher->broker, message.stream->topic, text, message.stream->is_retained))
+        return true;
     message.stream->dropped++;
     publisher->queue.dropped++;
+    return true;
+}
+
+/* As much as the broker takes. */
+static void send_next(publisher_t *publisher)
+{
+    for (unsigned turn = 0; turn != BROKER_WINDOW && broker_is_free(&publisher->broker); turn++)
+        if (!send_fact(publisher) && !send_message(publisher)) return;
 }
 
 static void take_acknowledged(void *ctx) { send_next(ctx); }
@@ -356,7 +364,7 @@ static void say_goodbye(publisher_t *publisher)
     const uint64_t until_us = now_us(publisher) + END_US;
     char topic[TOPIC];
     send_next(publisher);
-    while (now_us(publisher) < until_us && !broker_is_free(broker))
+    while (now_us(publisher) < until_us && !broker_is_idle(broker))
         if (!broker_wait(broker, TURN_US)) return;
     if (!broker_is_connected(broker)) return;
     topic_of_site(publisher->config, "status", topic);
@@ -364,7 +372,7 @@ static void say_goodbye(publisher_t *publisher)
     /* Nothing more is sent when that is acknowledged. */
     publisher->has_facts = publisher->has_status = false;
     publisher->told_us = now_us(publisher);
-    while (now_us(publisher) < until_us && !broker_is_free(broker))
+    while (now_us(publisher) < until_us && !broker_is_idle(broker))
         if (!broker_wait(broker, TURN_US)) return;
 }
 
