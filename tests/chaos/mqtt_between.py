@@ -46,7 +46,7 @@ class Between:
         self.listener.listen()
         self.number = self.listener.getsockname()[1]
         self.sent = []  # each time that it was: again too
-        self.target = None  # (the broker's number, its port); None: whoever comes is sent away
+        self.target = None  # (the broker's number, its port); None: a client that comes is sent away
         self.lock = threading.Lock()
         self.is_over = False
         self.sockets = ()

@@ -8,14 +8,14 @@
 #include "stations/poll_change.h"
 #include "stations/poll_loop.h"
 
-enum { WORDS = 4, TEXT = 256, TOLD = 400, CHANGES = 8 };
+enum { WORDS = 4, TEXT = 256, OUTCOMES = 400, CHANGES = 8 };
 
 /* A reading, or a failure. */
 typedef struct {
     char name[16];
     uint64_t time_us;
     fathom_status_t status;
-} told_t;
+} outcome_t;
 
 static struct {
     host_t host;
@@ -25,8 +25,8 @@ static struct {
     uint64_t end_us;
     unsigned opened;
     unsigned closed;
-    told_t told[TOLD];
-    size_t told_count;
+    outcome_t outcomes[OUTCOMES];
+    size_t outcome_count;
     /* What is to be read from when on. */
     struct {
         const char *words;
@@ -103,11 +103,11 @@ static void take(sensor_options_t *options, const sensor_options_t *beside, cons
 
 static void note(const station_t *station, fathom_status_t status)
 {
-    if (site.told_count == TOLD) return;
-    told_t *const told = &site.told[site.told_count++];
-    (void)snprintf(told->name, sizeof told->name, "%.15s", station->name);
-    told->time_us = now_us(NULL);
-    told->status = status;
+    if (site.outcome_count == OUTCOMES) return;
+    outcome_t *const outcome = &site.outcomes[site.outcome_count++];
+    (void)snprintf(outcome->name, sizeof outcome->name, "%.15s", station->name);
+    outcome->time_us = now_us(NULL);
+    outcome->status = status;
 }
 
 static bool take_sample(void *ctx, const station_t *station, const fathom_sample_t *sample)
@@ -191,8 +191,8 @@ static const suite_t suite = {.set_up = begins};
 static size_t count_of(const char *name, fathom_status_t status)
 {
     size_t count = 0;
-    for (size_t i = 0; i != site.told_count; i++)
-        if (strcmp(site.told[i].name, name) == 0 && site.told[i].status == status) count++;
+    for (size_t i = 0; i != site.outcome_count; i++)
+        if (strcmp(site.outcomes[i].name, name) == 0 && site.outcomes[i].status == status) count++;
     return count;
 }
 
@@ -200,12 +200,13 @@ static size_t count_of(const char *name, fathom_status_t status)
 static void expect_no_gap(const char *name, uint64_t longest_us)
 {
     uint64_t before_us = 0;
-    for (size_t i = 0; i != site.told_count; i++) {
-        const told_t *const told = &site.told[i];
-        if (strcmp(told->name, name) != 0) continue;
-        if (told->status != FATHOM_READY || told->time_us - before_us > longest_us)
-            fail_msg("%s: status %d after %u us", name, told->status, (unsigned)(told->time_us - before_us));
-        before_us = told->time_us;
+    for (size_t i = 0; i != site.outcome_count; i++) {
+        const outcome_t *const outcome = &site.outcomes[i];
+        if (strcmp(outcome->name, name) != 0) continue;
+        if (outcome->status != FATHOM_READY || outcome->time_us - before_us > longest_us)
+            fail_msg("%s: status %d after %u us", name, outcome->status,
+                     (unsigned)(outcome->time_us - before_us));
+        before_us = outcome->time_us;
     }
     assert_true(site.end_us - before_us <= longest_us);
 }

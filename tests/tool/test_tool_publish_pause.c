@@ -16,11 +16,11 @@ static fathom_loop_t loop;
 static broker_t broker;
 static config_t config;
 static uint64_t time_us;
-static unsigned told;
+static unsigned remarks;
 
 static uint64_t now_us(void *ctx) { return time_us; }
 static void nothing(void *ctx) {}
-static void tell(void *ctx, const char *text) { told++; }
+static void tell(void *ctx, const char *text) { remarks++; }
 
 /* Bound and not listening: none can connect, and no other program gets it. */
 static int refusing_socket(uint16_t *port)
@@ -46,7 +46,7 @@ static int set_up(void **state)
     fd = refusing_socket(&config.broker.port);
     *state = &fd;
     time_us = 1000;
-    told = 0;
+    remarks = 0;
     assert_int_equal(fathom_loop_init(&loop, NULL), FATHOM_POSIX_OK);
     assert_true(broker_begin(&broker, &host, &loop, &config, "fathom/mill/status", &user, NULL));
     return 0;
@@ -94,7 +94,7 @@ TEST(the_pause_grows_from_half_a_second_to_a_minute)
 TEST(it_is_told_once_as_long_as_the_reason_is_the_same)
 {
     for (unsigned i = 0; i != 3; i++) time_us += pause_after_a_try();
-    assert_int_equal(told, 1);
+    assert_int_equal(remarks, 1);
 }
 
 TEST(another_configuration_is_tried_at_once)
@@ -105,5 +105,5 @@ TEST(another_configuration_is_tried_at_once)
     (void)broker_tick(&broker);
     assert_int_equal(broker.phase, BROKER_CONNECTING);
     assert_in_range(pause_after_a_try(), 250000, 500000);
-    assert_int_equal(told, 2);
+    assert_int_equal(remarks, 2);
 }

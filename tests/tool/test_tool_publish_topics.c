@@ -129,16 +129,16 @@ static void expect(const state_t *state, topic_t topic, const char *expected)
 TEST(a_reading_is_a_state)
 {
     const result_t result = {.sample = {.kind = FATHOM_TARGET, .distance_mm = 1500, .probe = 1}};
-    const state_t told = state_of(BUMPER, &result);
-    expect(&told, TOPIC_STATE, BEGIN "\"status\":\"target\",\"distance_mm\":1500" END);
+    const state_t message = state_of(BUMPER, &result);
+    expect(&message, TOPIC_STATE, BEGIN "\"status\":\"target\",\"distance_mm\":1500" END);
 }
 
 TEST(what_is_no_distance_has_none)
 {
     const result_t result = {.sample = {.kind = FATHOM_NO_TARGET, .distance_mm = 1500, .probe = 1}};
-    const state_t told = state_of(TANK, &result);
-    expect(&told, TOPIC_STATE, BEGIN "\"status\":\"no_target\",\"distance_mm\":null" END);
-    expect(&told, TOPIC_LEVEL,
+    const state_t message = state_of(TANK, &result);
+    expect(&message, TOPIC_STATE, BEGIN "\"status\":\"no_target\",\"distance_mm\":null" END);
+    expect(&message, TOPIC_LEVEL,
            BEGIN "\"status\":\"no_target\",\"level_mm\":null,\"level_per_mille\":null,\"volume\":null" END);
 }
 
@@ -147,21 +147,21 @@ TEST(a_level_is_told_as_such)
     const result_t result = {.sample = {.kind = FATHOM_TARGET, .distance_mm = 1500, .probe = 1},
                              .has_level = true,
                              .level = {.level_mm = -5, .per_mille = 400, .volume = 2000}};
-    const state_t told = state_of(TANK, &result);
-    expect(&told, TOPIC_LEVEL,
+    const state_t message = state_of(TANK, &result);
+    expect(&message, TOPIC_LEVEL,
            BEGIN "\"status\":\"target\",\"level_mm\":-5,\"level_per_mille\":400,\"volume\":2000" END);
 }
 
 TEST(a_temperature_is_told_in_degrees_once_it_is_known)
 {
     const result_t result = {.sample = {.kind = FATHOM_TARGET, .distance_mm = 900, .probe = 1}};
-    const state_t told = state_of(GATE, &result);
+    const state_t message = state_of(GATE, &result);
     reader_temperature_t *const temperature = &station(GATE)->reader.temperature;
-    expect(&told, TOPIC_STATE,
+    expect(&message, TOPIC_STATE,
            BEGIN "\"status\":\"target\",\"distance_mm\":900,\"temperature_degc\":null" END);
     temperature->is_known = true;
     temperature->dc = -5;
-    expect(&told, TOPIC_STATE,
+    expect(&message, TOPIC_STATE,
            BEGIN "\"status\":\"target\",\"distance_mm\":900,\"temperature_degc\":-0.5" END);
 }
 
@@ -181,10 +181,10 @@ TEST(a_change_of_an_alarm_is_told_with_its_distance)
 TEST(an_attempt_that_has_failed_says_so_and_tells_no_value)
 {
     const result_t none = {.has_level = false};
-    state_t told = state_of(GATE, &none);
-    told.failure = "no_response";
+    state_t message = state_of(GATE, &none);
+    message.failure = "no_response";
     station(GATE)->reader.temperature.is_known = true;
-    expect(&told, TOPIC_STATE,
+    expect(&message, TOPIC_STATE,
            BEGIN "\"status\":\"no_response\",\"distance_mm\":null,\"temperature_degc\":null" END);
 }
 
@@ -194,22 +194,22 @@ TEST(the_longest_state_fits_into_a_place_of_the_queue)
     const result_t result = {.sample = {.kind = FATHOM_TARGET, .distance_mm = UINT16_MAX, .probe = 1},
                              .has_level = true,
                              .level = {.level_mm = INT32_MIN, .per_mille = UINT16_MAX, .volume = UINT32_MAX}};
-    state_t told = state_of(TANK, &result);
-    told.seq = UINT64_MAX;
-    assert_true(state_begin(&told, TOPIC_LEVEL, text) < QUEUE_TEXT / 2);
+    state_t message = state_of(TANK, &result);
+    message.seq = UINT64_MAX;
+    assert_true(state_begin(&message, TOPIC_LEVEL, text) < QUEUE_TEXT / 2);
     assert_non_null(strstr(text, "\"seq\":18446744073709551615"));
 }
 
 TEST(the_publisher_tells_of_itself)
 {
     char text[STATE_TEXT];
-    const publisher_state_t told = {.boot = "0123456789abcdef",
-                                    .utc_us = UINT64_C(1795426992345678),
-                                    .uptime_us = 61999999,
-                                    .dropped = 12,
-                                    .queued = 3,
-                                    .sensors = 5};
-    state_of_publisher(&told, text);
+    const publisher_state_t message = {.boot = "0123456789abcdef",
+                                       .utc_us = UINT64_C(1795426992345678),
+                                       .uptime_us = 61999999,
+                                       .dropped = 12,
+                                       .queued = 3,
+                                       .sensors = 5};
+    state_of_publisher(&message, text);
     assert_non_null(strstr(text, BEGIN "\"version\":\""));
     assert_non_null(strstr(text,
                            "\",\"boot\":\"0123456789abcdef\",\"uptime_s\":61,\"sensors\":5,\"queued\":3,"
