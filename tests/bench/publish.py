@@ -3,6 +3,7 @@
 """What fathom publish costs with 256 lines, each read twice a second, beside a Mosquitto and a mosquitto_sub.
 
     publish.py BUILD                 all of it, a minute and a half; BUILD: the build folder, with fathom and tests/bench_far_end
+    publish.py BUILD --soak SECONDS  memory alone, 64 lines as fast as they can: so many messages as 256 lines have in longer
     publish.py BUILD --try           a moment with 16 lines: does it work?
     publish.py --self-test           shows that this can fail
 
@@ -24,6 +25,8 @@ import time
 sys.path[:0] = [os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), 'e2e')]
 
 INTERVAL_MS = 500
+SOAK_MS, SOAK_LINES = 20, 64
+GROWTH_KIB = 256
 CPU, MEMORY_KIB, LATE_MS = 0.10, 20 * 1024, INTERVAL_MS
 FIRST_MM, RESPONSES = 1000, 16  # of a line, as lines/lines.h has them
 WARM_S = 4
@@ -124,9 +127,9 @@ class Bench:
                   'max_queued_messages 0', 'persistence true', f'persistence_location {self.folder}/', sep='\n', file=file)
         return self.start('mosquitto', '-c', self.path('broker.conf'), stderr=subprocess.DEVNULL)
 
-    def config(self, ports):
+    def config(self, ports, interval_ms=INTERVAL_MS):
         with open(self.path('site.yaml'), 'w', encoding='ascii') as file:
-            print(f'site: bench\ninterval: {INTERVAL_MS}\nqueue: {{messages: 20000, bytes: 8388608}}\n'
+            print(f'site: bench\ninterval: {interval_ms}\nqueue: {{messages: 20000, bytes: 8388608}}\n'
                   f'broker: {{host: 127.0.0.1, port: {self.number}}}\nlines:', file=file)
             for number, port in enumerate(ports):
                 print(f'  - {{port: {port}, sensors: [{{name: s{number}, sensor: "hps167s:1"}}]}}', file=file)
@@ -143,10 +146,29 @@ class Bench:
         row.memory = memory_kib(self.publisher.pid, 'VmHWM')
         self.rows.append(row)
 
-    def run(self, seconds):
-        far_end = self.start(os.path.join(self.build, 'tests/bench_far_end'), self.count, stdin=subprocess.PIPE,
+    def far_end(self):
+        """The ports of the lines."""
+        program = self.start(os.path.join(self.build, 'tests/bench_far_end'), self.count, stdin=subprocess.PIPE,
                              stdout=subprocess.PIPE, text=True)
-        self.config([far_end.stdout.readline().strip() for _ in range(self.count)])
+        return [program.stdout.readline().strip() for _ in range(self.count)]
+
+    def soak(self, seconds):
+        """(messages, KiB at the begin, KiB at the end)"""
+        self.config(self.far_end(), SOAK_MS)
+        self.broker()
+        time.sleep(0.5)
+        with open(self.path('told'), 'w', encoding='utf-8') as told:
+            self.start('mosquitto_sub', '-h', '127.0.0.1', '-p', self.number, '-F', '%q', '-t', 'fathom/bench/+/state', stdout=told,
+                       stderr=subprocess.DEVNULL)
+            self.publisher = self.start(os.path.join(self.build, 'fathom'), 'publish', self.path('site.yaml'))
+            time.sleep(WARM_S)
+            begin = memory_kib(self.publisher.pid, 'VmRSS')
+            self.measure('soak', seconds)
+            end = memory_kib(self.publisher.pid, 'VmRSS')
+        return os.path.getsize(self.path('told')) // 2, begin, end
+
+    def run(self, seconds):
+        self.config(self.far_end())
         broker = self.broker()
         with open(self.path('told'), 'w', encoding='utf-8') as told, open(self.path('log'), 'w', encoding='utf-8') as log:
             subscriber = ['mosquitto_sub', '-h', '127.0.0.1', '-p', self.number, '-q', 1, '-c', '-i', 'bench', '-F', '%t %p',
@@ -220,6 +242,7 @@ def main():
     parser.add_argument('build', metavar='BUILD', nargs='?')
     parser.add_argument('--lines', type=int, default=256)
     parser.add_argument('--seconds', type=float, default=20)
+    parser.add_argument('--soak', type=float, metavar='SECONDS', help='memory alone')
     parser.add_argument('--try', dest='is_tried', action='store_true', help='a moment with 16 lines')
     parser.add_argument('--self-test', action='store_true', help='show that this can fail')
     options = parser.parse_args()
@@ -227,6 +250,12 @@ def main():
         return self_test()
     if options.build is None:
         parser.error('BUILD is missing: a build folder')
+    if options.soak is not None:
+        with contextlib.ExitStack() as stack:
+            messages, begin, end = Bench(options.build, SOAK_LINES, stack).soak(options.soak)
+        hours = messages / (256 * 1000 / INTERVAL_MS * 3600)
+        print(f'{messages} messages, as many as 256 lines have in {hours:.2f} hours; memory {begin} KiB at the begin, {end} at the end')
+        return 1 if end > begin + GROWTH_KIB else 0
     count, seconds = (16, 4) if options.is_tried else (options.lines, options.seconds)
     try:
         with contextlib.ExitStack() as stack:
