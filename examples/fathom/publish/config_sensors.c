@@ -16,7 +16,7 @@ typedef struct {
     config_file_t *file;
     const char *command;
     const config_values_t *top;
-    const config_values_t *line;
+    config_values_t line; /* the present one */
     unsigned lines[MAX_STATIONS];
     config_values_t *values; /* of each sensor */
 } sensors_t;
@@ -25,10 +25,10 @@ typedef struct {
 
 static bool add_port_keys(sensors_t *sensors, char *word, size_t capacity)
 {
-    const char *const port = config_file_text(sensors->line->at[LINE_PORT]);
+    const char *const port = config_file_text(sensors->line.at[LINE_PORT]);
     const port_kind_t kind = port_kind(port, strlen(port));
     for (size_t i = 0; i != PORT_KEYS; i++) {
-        const yaml_node_t *const node = sensors->line->port_keys[i];
+        const yaml_node_t *const node = sensors->line.port_keys[i];
         port_keys_t keys = {.given = 0};
         char pair[WORD / 8];
         if (node == NULL) continue;
@@ -50,7 +50,7 @@ static bool add_port_keys(sensors_t *sensors, char *word, size_t capacity)
 
 static bool check_port(const sensors_t *sensors)
 {
-    const yaml_node_t *const node = sensors->line->at[LINE_PORT];
+    const yaml_node_t *const node = sensors->line.at[LINE_PORT];
     const char *const port = config_file_text(node);
     config_file_at(sensors->file, node);
     if (port_path_has_keys(port))
@@ -94,7 +94,7 @@ static bool add_word(sensors_t *sensors, const config_values_t *values)
     sensors->values[number] = *values;
     (void)snprintf(word, WORD, "%s=%s@%s", config_file_text(values->at[SENSOR_NAME]),
                    config_file_text(values->at[SENSOR_SENSOR]),
-                   config_file_text(sensors->line->at[LINE_PORT]));
+                   config_file_text(sensors->line.at[LINE_PORT]));
     return add_port_keys(sensors, word, WORD);
 }
 
@@ -110,11 +110,9 @@ static bool add_sensor(sensors_t *sensors, const yaml_node_t *map)
 
 static bool add_line(sensors_t *sensors, const yaml_node_t *map)
 {
-    config_values_t line;
-    if (!config_take(sensors->file, sensors->command, map, SECTION_LINE, &line)) return false;
-    sensors->line = &line;
+    if (!config_take(sensors->file, sensors->command, map, SECTION_LINE, &sensors->line)) return false;
     if (!check_port(sensors)) return false;
-    const yaml_node_t *const list = line.at[LINE_SENSORS];
+    const yaml_node_t *const list = sensors->line.at[LINE_SENSORS];
     for (const int *item = list->data.sequence.items.start; item != list->data.sequence.items.top; item++)
         if (!add_sensor(sensors, config_file_node(sensors->file, *item))) return false;
     return true;

@@ -27,10 +27,11 @@ static void explain_broker(const config_t *config, FILE *to)
 
 static void explain_port(const port_options_t *port, const station_t *station, FILE *to)
 {
-    char line[LINE_TEXT];
     (void)fprintf(to, " at %s", port->path);
-    if (port_kind(port->path, SIZE_MAX) == PORT_TTY)
+    if (port_kind(port->path, SIZE_MAX) == PORT_TTY) {
+        char line[LINE_TEXT];
         (void)fprintf(to, " (%s)", line_text(&station->line, line));
+    }
 }
 
 static void explain_alarm(const results_config_t *results, FILE *to)

@@ -5,6 +5,10 @@
 
 /* What the build did not find: FATHOM_PUBLISH_LACKS, "libmosquitto" for one. */
 
+#ifndef FATHOM_PUBLISH_LACKS
+#define FATHOM_PUBLISH_LACKS "libmosquitto or libyaml"
+#endif
+
 static void help(FILE *to)
 {
     (void)fputs("fathom publish publishes what sensors say to an MQTT broker. This fathom was built "

@@ -7,6 +7,7 @@ static const char authorities[] = "/etc/ssl/certs";
 
 static const char *or_null(const char *text) { return text[0] != '\0' ? text : NULL; }
 
+/* NOLINTNEXTLINE(readability-non-const-parameter): tls.c writes it */
 bool tls_set(struct mosquitto *mosq, const broker_config_t *config, int *error, char *reason, size_t capacity)
 {
     const char *const ca_file = or_null(config->ca_file);

@@ -14,7 +14,7 @@ static usage_place_t place;
 
 void usage_at(const usage_place_t *new_place)
 {
-    static const usage_place_t command_line;
+    static const usage_place_t command_line = {.file = NULL};
     place = new_place != NULL ? *new_place : command_line;
 }
 
