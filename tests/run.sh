@@ -7,9 +7,9 @@
 #     sh tests/run.sh long    before it is merged: 20 minutes more
 #     sh tests/run.sh full    once for a larger piece of work: an hour or more; keeps its figures in CSV files
 #
-# It installs what is missing. With the packages in place it needs no root, and of the network only the one npm
-# package that tests/firmware/rp2040 names and, for long, the two kernels that tests/kernel names. It ends with a table
-# of its stages: what each may take, and what it took. The last line is "N passed, 0 failed", and the exit status 0, when
+# It installs what is missing. With the packages in place it needs no root, and of the network only the npm package that
+# tests/firmware/rp2040 names, the Python one that tests/firmware/platformio names and, for long, the two kernels that
+# tests/kernel names; full needs both for the clean system of tests/package. It ends with a table of its stages: what each may take, and what it took. The last line is "N passed, 0 failed", and the exit status 0, when
 # all is well.
 set -eu
 cd "$(dirname "$0")/.."
@@ -25,9 +25,13 @@ clang-14 clang-tidy-14 clang-format-14 libclang-rt-14-dev cppcheck valgrind
 gcc-arm-none-eabi libnewlib-arm-none-eabi gcc-avr avr-libc arduino-core-avr gcc-riscv64-unknown-elf
 gcc-powerpc-linux-gnu libc6-dev-powerpc-cross gcc-s390x-linux-gnu libc6-dev-s390x-cross
 simavr libsimavr-dev qemu-system-arm qemu-system-misc qemu-user-static
-qemu-system-x86 gcc-aarch64-linux-gnu libc6-dev-arm64-cross
-frama-c-base why3 cvc4 z3 clang-19 llvm-19 libclang-rt-19-dev
-libfaketime libmodbus-dev mbpoll socat python3-pymodbus python3-serial python3-serial-asyncio'
+arduino-builder python3-venv
+libmodbus-dev mbpoll socat python3-pymodbus python3-serial python3-serial-asyncio
+libmosquitto-dev libyaml-dev libssl-dev mosquitto mosquitto-clients openssl
+bash-completion zsh fish mandoc'
+[ "$step" = short ] || packages="$packages frama-c-base why3 cvc4 z3 clang-19 llvm-19 libclang-rt-19-dev
+qemu-system-x86 gcc-aarch64-linux-gnu libc6-dev-arm64-cross libfaketime
+lintian debootstrap groff man-db strace dpkg-dev systemd"
 
 # Any node and npm will do.
 command -v node >/dev/null && command -v npm >/dev/null || packages="$packages nodejs npm"
@@ -121,6 +125,8 @@ run_long() {
     stage 60 'interrupts at each instruction' program interrupts $python tests/firmware/interrupts/run.py --quick
     stage 110 'fuzzing: 10 s a target' program fuzz $python tests/fuzz/run.py
     stage 20 'chaos: 30 rounds' program chaos env FATHOM=build-gcc/fathom $python tests/chaos/run.py
+    stage 40 'publish: 8 kills' program broker env FATHOM=build-gcc/fathom $python tests/chaos/broker.py --kills 8
+    stage 40 'Debian packages' program package $python tests/package/run.py --quick
     stage 240 'end to end, second, sanitized' run_tests clang-sanitize sanitized --label-regex 'e2e|interop|second'
     stage 60 'kernels: packages' $python tests/kernel/debian.py build-gcc/kernel
     stage 60 'kernels in QEMU' run_tests gcc kernel --label-regex kernel
@@ -164,6 +170,11 @@ run_full() {
     stage 240 'fuzzing: planted faults' program fuzz_planted $python tests/fuzz/run.py --self-test
     stage 600 'chaos: 1,000 rounds' program chaos_full env FATHOM=build-gcc/fathom $python tests/chaos/run.py --rounds 1000
     stage 240 'chaos: planted faults' program chaos_planted env FATHOM=build-gcc/fathom $python tests/chaos/run.py --self-test
+    stage 300 'publish: 100 kills' program broker_full env FATHOM=build-gcc/fathom $python tests/chaos/broker.py
+    stage 120 'publish: 256 lines' $python tests/bench/publish.py build-gcc
+    stage 650 'publish: memory' $python tests/bench/publish.py build-gcc --soak 580
+    stage 300 'Debian packages, in a clean system' program package_full $python tests/package/run.py
+    stage 420 'packages: planted faults' program package_planted $python tests/package/run.py --self-test
     stage 120 'firmware, exhaustive forms: build' build gcc # s390x is built only for them
     stage 600 'firmware, exhaustive forms' run_tests gcc firmware --label-regex 'firmware|long'
     unset FATHOM_LONG

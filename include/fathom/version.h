@@ -5,8 +5,8 @@
 /* Semantic versioning: before 1.0 a minor version may change the interface, after a deprecation;
  * CHANGELOG.md says what. */
 #define FATHOM_VERSION_MAJOR  0
-#define FATHOM_VERSION_MINOR  4
+#define FATHOM_VERSION_MINOR  5
 #define FATHOM_VERSION_PATCH  0
-#define FATHOM_VERSION_STRING "0.4.0"
+#define FATHOM_VERSION_STRING "0.5.0"
 
 #endif

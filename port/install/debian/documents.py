@@ -32,7 +32,7 @@ def changelog_of(text, maintainer):
                        f'  * Version {version}; changelog.gz of the package fathom has what changed.\n\n'
                        f' -- {maintainer}  {date}\n')
     if not entries:
-        raise SystemExit('there is no heading of a version, such as ## [0.4.0] - 2026-11-23')
+        raise SystemExit('there is no heading of a version, such as ## [0.5.0] - 2026-11-23')
     return '\n'.join(entries)
 
 
