@@ -7,21 +7,11 @@
 set -eu
 cd "$(dirname "$0")/.."
 PATH=$PATH:/usr/sbin # where Debian has the broker
-
-say() { printf '\n== %s\n' "$*"; }
-fail() { printf 'site: %s\n' "$*" >&2; exit 1; }
+name=site
+. examples/prepare.sh
 
 # ---- what it needs ----
 
-missing=
-need() { # PACKAGE COMMAND...
-    package=$1
-    shift
-    "$@" >/dev/null 2>&1 || missing="$missing $package"
-}
-need gcc command -v cc
-need make command -v make
-need cmake command -v cmake
 need pkg-config command -v pkg-config
 need libmosquitto-dev pkg-config --exists libmosquitto
 need libyaml-dev pkg-config --exists yaml-0.1
@@ -29,56 +19,20 @@ need mosquitto command -v mosquitto
 need mosquitto-clients command -v mosquitto_sub
 [ -z "$missing" ] || fail "please install:$missing (on Debian: sudo apt-get install$missing)"
 
-# ---- the tool ----
-
-folder=$(mktemp -d)
-running=
-clean_up() {
-    for pid in $running; do kill "$pid" 2>/dev/null || true; done
-    for pid in $running; do wait "$pid" 2>/dev/null || true; done
-    rm -rf "$folder"
-}
-trap clean_up EXIT
-trap 'exit 129' HUP
-trap 'exit 130' INT
-trap 'exit 143' TERM
-
-quietly() { "$@" >"$folder/log" 2>&1 || { cat "$folder/log" >&2; fail "$1 failed"; }; }
-
-say 'builds build/fathom'
-quietly cmake --preset default
-quietly cmake --build --preset default --target fathom_tool --parallel "$(nproc)"
-fathom=$PWD/build/fathom
-
-# until WHAT COMMAND...: within 10 s, as long as the program that was begun last runs
-until_so() {
-    what=$1
-    shift
-    tries=0
-    until "$@"; do
-        kill -0 "$!" 2>/dev/null || return 1
-        tries=$((tries + 1))
-        [ $tries -lt 100 ] || fail "$what within 10 s"
-        sleep 0.1
-    done
-}
+build_tool
 
 # ---- the lines ----
 
-line=0
-simulate() { # SENSOR DISTANCE
-    line=$((line + 1))
-    "$fathom" sim "$1" --distance "$2" --link "$folder/line$line" >"$folder/line$line.log" 2>&1 &
-    running="$running $!"
-    until_so "line $line has no port" test -e "$folder/line$line" || { cat "$folder/line$line.log" >&2; fail "line $line did not start"; }
-}
-
 say 'eight lines, simulated'
-simulate a16:1:modbus 1300
-simulate a16:1:modbus 2100
-simulate a05:2:modbus 900
-simulate a05:2:modbus 700
-for distance in 480 2500 3000 4000; do simulate hps167s:7 "$distance"; done
+simulate line1 a16:1:modbus --distance 1300
+simulate line2 a16:1:modbus --distance 2100
+simulate line3 a05:2:modbus --distance 900
+simulate line4 a05:2:modbus --distance 700
+line=4
+for distance in 480 2500 3000 4000; do
+    line=$((line + 1))
+    simulate line$line hps167s:7 --distance $distance
+done
 
 # ---- the broker ----
 
