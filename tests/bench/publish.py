@@ -22,6 +22,8 @@ import sys
 import tempfile
 import time
 
+import report
+
 sys.path[:0] = [os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), 'e2e')]
 
 INTERVAL_MS = 500
@@ -231,10 +233,7 @@ def self_test():
         'over': late.over() == ['late'] and Row('none', 1).over() == [],
         'a time': states_of([text, text]) == {'s0': [{'time': 1.5, 'seq': 1}]},
     }
-    for what, is_so in seen.items():
-        if not is_so:
-            print(f'not so: {what}')
-    return 0 if all(seen.values()) else 1
+    return report.judge(seen)
 
 
 def main():

@@ -232,3 +232,11 @@ def compare(lines, what, was, now, unit):
 def not_in_pages(figures, sizes):
     return [f'the table {name} of {os.path.relpath(page, ROOT)} is not what is kept: run.py --update'
             for (page, name), table in zip(PLACES, tables(figures, sizes)) if pattern(name).findall(read(page)) != [table]]
+
+
+def judge(seen):
+    """The exit status of a self-test; {what: is it so}."""
+    for what, is_so in seen.items():
+        if not is_so:
+            print(f'not so: {what}')
+    return 0 if all(seen.values()) else 1

@@ -10,6 +10,9 @@ import zipfile
 
 import build
 
+sys.path.insert(0, os.path.join(build.ROOT, 'tests', 'support'))
+import cases
+
 OUT = sys.argv[1]
 LIBRARY = build.library(OUT)
 WARNINGS = ['-Wall', '-Wextra', '-Wpedantic', '-Wconversion', '-Wsign-conversion', '-Wshadow',
@@ -154,14 +157,4 @@ def test_no_sketch_links_the_table_of_256_entries_or_floating_point():
         assert ram < 1024, name  # half of the chip's
 
 
-failed = 0
-tests = [(name, test) for name, test in list(globals().items()) if name.startswith('test_')]
-for name, test in tests:
-    try:
-        test()
-        print('ok', name)
-    except (AssertionError, SystemExit) as error:
-        failed += 1
-        print('FAILED', name, error)
-print(f'{len(tests) - failed} passed, {failed} failed')
-sys.exit(1 if failed else 0)
+cases.run(globals())

@@ -11,6 +11,9 @@ import tempfile
 
 import build
 
+sys.path.insert(0, os.path.join(build.ROOT, 'tests', 'support'))
+import cases
+
 OUT = sys.argv[1]
 PACKAGE = os.path.join(OUT, 'Fathom.tar.gz')
 
@@ -114,14 +117,4 @@ def test_platformio_looks_at_the_manifest():
             assert status != 0, (new, said)
 
 
-failed = 0
-tests = [(name, test) for name, test in list(globals().items()) if name.startswith('test_')]
-for name, test in tests:
-    try:
-        test()
-        print('ok', name)
-    except (AssertionError, SystemExit) as error:
-        failed += 1
-        print('FAILED', name, error)
-print(f'{len(tests) - failed} passed, {failed} failed')
-sys.exit(1 if failed else 0)
+cases.run(globals())
