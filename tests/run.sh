@@ -107,7 +107,7 @@ build_and_test() { # PRESET
 
 run_short() {
     stage 75 'gcc: build, firmware too' build gcc
-    stage 140 'gcc: every kind of test' run_tests gcc gcc --label-exclude 'selfcheck|faults|kernel'
+    stage 140 'gcc: every kind of test' run_tests gcc gcc --label-exclude 'selfcheck|faults|kernel|later'
     stage 35 'planted faults' run_tests gcc faults --label-regex faults
     for preset in clang clang-sanitize; do build_and_test "$preset"; done
     stage 22 'coverage: build' build coverage
@@ -130,7 +130,8 @@ run_long() {
     stage 240 'end to end, second, sanitized' run_tests clang-sanitize sanitized --label-regex 'e2e|interop|second'
     stage 60 'kernels: packages' $python tests/kernel/debian.py build-gcc/kernel
     stage 60 'kernels in QEMU' run_tests gcc kernel --label-regex kernel
-    stage 240 "the checks' own checks" run_tests gcc selfcheck --label-regex selfcheck
+    stage 120 'checks that take longer' run_tests gcc later --label-regex later
+    stage 120 "the checks' own checks" run_tests gcc selfcheck --label-regex selfcheck --label-exclude latest
     export FATHOM_LONG=1
     stage 60 'tests in C, exhaustive forms' run_tests gcc long --label-exclude "$slow"
     timeout=900
@@ -155,6 +156,7 @@ mutants() { # NAME OPTION...
 run_full() {
     run_long
     build_and_test gcc-sanitize
+    stage 150 "checks' own checks that take longer" run_tests gcc latest --label-regex latest
     stage 300 "clang's analyzer" $python tests/checks/lint.py --analyze
     stage 1800 'no run-time error: EVA, all machines' program proof_full $python tests/proof/eva.py
     stage 1800 'EVA: planted faults' program proof_planted $python tests/proof/eva.py --self-test
