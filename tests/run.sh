@@ -120,7 +120,7 @@ run_long() {
     stage 420 'mutants: changed files, 400 more' mutants sample --changed --sample 400
     stage 75 'no run-time error: EVA' program proof $python tests/proof/eva.py --quick
     stage 45 'codecs: WP' program wp $python tests/proof/wp.py --quick
-    stage 60 'coverage: each condition decides' program coverage $python tests/coverage/run.py --quick
+    stage 60 'coverage: each condition decides' program conditions $python tests/coverage/run.py --quick
     stage 30 'states of a small line' program states $python tests/states/run.py --quick
     stage 60 'interrupts at each instruction' program interrupts $python tests/firmware/interrupts/run.py --quick
     stage 110 'fuzzing: 10 s a target' program fuzz $python tests/fuzz/run.py
@@ -134,8 +134,6 @@ run_long() {
     stage 120 "the checks' own checks" run_tests gcc selfcheck --label-regex selfcheck --label-exclude latest
     export FATHOM_LONG=1
     stage 60 'tests in C, exhaustive forms' run_tests gcc long --label-exclude "$slow"
-    timeout=900
-    stage 300 'second: 1000 seeds' run_tests gcc seeds --label-regex second
 }
 build_two() { build gcc && build clang-sanitize; }
 program() { # NAME COMMAND...
@@ -178,6 +176,8 @@ run_full() {
     stage 300 'Debian packages, in a clean system' program package_full $python tests/package/run.py
     stage 420 'packages: planted faults' program package_planted $python tests/package/run.py --self-test
     stage 120 'firmware, exhaustive forms: build' build gcc # s390x is built only for them
+    timeout=900
+    stage 400 'second: 1000 seeds' run_tests gcc seeds --label-regex second
     stage 600 'firmware, exhaustive forms' run_tests gcc firmware --label-regex 'firmware|long'
     unset FATHOM_LONG
     stage 2400 'mutants: all' mutants all --all --record

@@ -59,12 +59,12 @@ def digest(path):
 
 
 def kept():
-    """The rows of the last full run."""
+    """The last row of each file."""
     if not os.path.exists(FIGURES):
         return []
     with open(FIGURES, encoding='utf-8', newline='') as file:
         rows = list(csv.DictReader(file))
-    return [row for row in rows if row['commit'] == rows[-1]['commit']]
+    return list({row['module']: row for row in rows}.values())
 
 
 def commit():
