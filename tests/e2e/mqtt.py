@@ -13,10 +13,16 @@ READY = 'ready'
 KEY = ('-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1', '-nodes')
 
 
+kept = []  # sockets
+
+
 def free_port():
-    with socket.socket() as one:
-        one.bind(('127.0.0.1', 0))
-        return one.getsockname()[1]
+    """It stays free for who sets SO_REUSEADDR, as a broker does: a socket keeps it that does not listen."""
+    one = socket.socket()
+    one.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    one.bind(('127.0.0.1', 0))
+    kept.append(one)
+    return one.getsockname()[1]
 
 
 class Message:

@@ -8,13 +8,14 @@ import e2e
 
 class Server:
     """Listens on the loopback interface, at a port that the system has chosen (or that one); as text it is
-    what the tool takes for --port."""
+    what the tool takes for --port. Without a backlog it keeps the port, and nothing listens there."""
 
     def __init__(self, backlog=1, family=socket.AF_INET, number=0):
         self.socket = socket.socket(family)
         self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         self.socket.bind(('127.0.0.1' if family == socket.AF_INET else '::1', number))
-        self.socket.listen(backlog)
+        if backlog is not None:
+            self.socket.listen(backlog)
         self.number = self.socket.getsockname()[1]
         self.host = '127.0.0.1' if family == socket.AF_INET else '[::1]'
         self.client = None

@@ -139,8 +139,7 @@ class Connections(Case):
         self.assertLess(self.longest(reader, 'one'), PAUSE)
 
     def test_a_server_that_is_not_there_is_said(self):
-        server = self.server()
-        server.close()
+        server = self.server(backlog=None)
         reader = self.begin(self.sensor('one'), f'far=hps167s@{server}', options='--count 3')
         self.ends(reader, 1, f'{server}: Connection refused: nothing serves this port')
         self.assertEqual(len(self.times(reader, 'one')), 3)

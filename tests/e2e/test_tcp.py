@@ -42,8 +42,7 @@ class NoConnection(Case):
 
     @e2e.each(refused=socket.AF_INET, refused_at_an_ipv6_address=socket.AF_INET6)
     def refused(self, family):
-        server = self.server(family=family)
-        server.close()
+        server = self.server(backlog=None, family=family)
         self.fails(str(server),
                    f'{server}: Connection refused: nothing serves this port; check it (502 is usual)')
 
@@ -272,8 +271,7 @@ class Broken(Case):
         self.reads(reader, 1, [2083, 1000], f'fathom: {server}: it is back; reading goes on')
 
     def test_with_reconnect_a_server_that_is_not_there_yet_is_waited_for(self):
-        server = self.server()
-        server.close()
+        server = self.server(backlog=None)
         reader = self.fathom(f'read hps167s --port {server} --reconnect --count 1 --format csv')
         reader.expect('Connection refused: .*; waiting until it is there', 'err')
         again = self.server(number=server.number)
