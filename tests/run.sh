@@ -3,7 +3,7 @@
 #
 # Everything that has to pass, on Debian 12, in three steps; tests/README.md says what is in each.
 #
-#     sh tests/run.sh         before a change is believed: 10 to 12 minutes on two idle cores
+#     sh tests/run.sh         before a change is believed: 8 minutes on two idle cores
 #     sh tests/run.sh long    before it is merged: 20 minutes more
 #     sh tests/run.sh full    once for a larger piece of work: an hour or more; keeps its figures in CSV files
 #
@@ -20,7 +20,7 @@ python=/usr/bin/python3
 logs=build-logs
 mkdir -p "$logs"
 
-packages='gcc g++ libc6-dev make cmake pkg-config python3 python3-clang-14 libcmocka-dev gcovr
+packages='gcc g++ libc6-dev make cmake pkg-config python3 python3-clang-14 libcmocka-dev
 clang-14 clang-tidy-14 clang-format-14 libclang-rt-14-dev cppcheck valgrind
 gcc-arm-none-eabi libnewlib-arm-none-eabi gcc-avr avr-libc arduino-core-avr gcc-riscv64-unknown-elf
 gcc-powerpc-linux-gnu libc6-dev-powerpc-cross gcc-s390x-linux-gnu libc6-dev-s390x-cross
@@ -87,53 +87,43 @@ run_tests() { # PRESET RESULTS [OPTION...]
         --output-junit "$output" "$@" || { grep -A 200 'tests failed out of\|\*\*\*Failed' "$output.log"; return 1; }
 }
 
-# Every line and every branch of src/, by the tests in C alone; what an earlier run counted is not this run's.
-measure_coverage() {
-    find build-coverage -name '*.gcda' -exec rm {} +
-    run_tests coverage coverage --label-exclude "$slow" &&
-        gcovr --root . --object-directory build-coverage --filter src/ --print-summary \
-            --fail-under-line 100 --fail-under-branch 100
-}
-
 show_costs() {
     cat build-gcc/bench.csv tests/firmware/figures.csv
 }
 
 slow='e2e|interop|second|check|selfcheck|faults|firmware|kernel' # kinds that say nothing else on another compiler
 build_and_test() { # PRESET
-    stage 42 "$1: build" build "$1"
-    stage 18 "$1: tests in C" run_tests "$1" "$1" --label-exclude "$slow"
+    stage 100 "$1: build" build "$1"
+    stage 40 "$1: tests in C" run_tests "$1" "$1" --label-exclude "$slow"
 }
 
 run_short() {
-    stage 75 'gcc: build, firmware too' build gcc
-    stage 140 'gcc: every kind of test' run_tests gcc gcc --label-exclude 'selfcheck|faults|kernel|later'
-    stage 35 'planted faults' run_tests gcc faults --label-regex faults
-    for preset in clang clang-sanitize; do build_and_test "$preset"; done
-    stage 22 'coverage: build' build coverage
-    stage 22 'coverage: tests in C, every branch' measure_coverage
-    stage 1 'what it costs' show_costs
+    stage 145 'gcc: build, firmware too' build gcc
+    stage 190 'gcc: every kind of test' run_tests gcc gcc --label-exclude 'selfcheck|faults|kernel|later'
+    build_and_test clang-sanitize
 }
 
 run_long() {
-    stage 300 'gcc and clang-sanitize: build' build_two
-    stage 420 'mutants: changed files, 400 more' mutants sample --changed --sample 400
-    stage 75 'no run-time error: EVA' program proof $python tests/proof/eva.py --quick
-    stage 45 'codecs: WP' program wp $python tests/proof/wp.py --quick
+    stage 20 'gcc and clang-sanitize: build' build_two # where the short run has built them
+    stage 60 'planted faults' run_tests gcc faults --label-regex faults
+    stage 110 'mutants: changed files, 400 more' mutants sample --changed --sample 400
+    stage 80 'no run-time error: EVA' program proof $python tests/proof/eva.py --quick
+    stage 50 'codecs: WP' program wp $python tests/proof/wp.py --quick
     stage 60 'coverage: each condition decides' program conditions $python tests/coverage/run.py --quick
-    stage 30 'states of a small line' program states $python tests/states/run.py --quick
-    stage 60 'interrupts at each instruction' program interrupts $python tests/firmware/interrupts/run.py --quick
+    stage 20 'states of a small line' program states $python tests/states/run.py --quick
+    stage 70 'interrupts at each instruction' program interrupts $python tests/firmware/interrupts/run.py --quick
     stage 110 'fuzzing: 10 s a target' program fuzz $python tests/fuzz/run.py
     stage 20 'chaos: 30 rounds' program chaos env FATHOM=build-gcc/fathom $python tests/chaos/run.py
     stage 40 'publish: 8 kills' program broker env FATHOM=build-gcc/fathom $python tests/chaos/broker.py --kills 8
     stage 40 'Debian packages' program package $python tests/package/run.py --quick
-    stage 240 'end to end, second, sanitized' run_tests clang-sanitize sanitized --label-regex 'e2e|interop|second'
-    stage 60 'kernels: packages' $python tests/kernel/debian.py build-gcc/kernel
-    stage 60 'kernels in QEMU' run_tests gcc kernel --label-regex kernel
-    stage 120 'checks that take longer' run_tests gcc later --label-regex later
-    stage 120 "the checks' own checks" run_tests gcc selfcheck --label-regex selfcheck --label-exclude latest
+    stage 210 'end to end, second, sanitized' run_tests clang-sanitize sanitized --label-regex 'e2e|interop|second'
+    stage 20 'kernels: packages' $python tests/kernel/debian.py build-gcc/kernel
+    stage 40 'kernels in QEMU' run_tests gcc kernel --label-regex kernel
+    stage 180 'checks that take longer' run_tests gcc later --label-regex later
+    stage 1 'what it costs' show_costs
+    stage 90 "the checks' own checks" run_tests gcc selfcheck --label-regex selfcheck --label-exclude latest
     export FATHOM_LONG=1
-    stage 60 'tests in C, exhaustive forms' run_tests gcc long --label-exclude "$slow"
+    stage 30 'tests in C, exhaustive forms' run_tests gcc long --label-exclude "$slow"
 }
 build_two() { build gcc && build clang-sanitize; }
 program() { # NAME COMMAND...
@@ -153,7 +143,7 @@ mutants() { # NAME OPTION...
 
 run_full() {
     run_long
-    build_and_test gcc-sanitize
+    for preset in clang gcc-sanitize; do build_and_test "$preset"; done
     stage 150 "checks' own checks that take longer" run_tests gcc latest --label-regex latest
     stage 300 "clang's analyzer" $python tests/checks/lint.py --analyze
     stage 1800 'no run-time error: EVA, all machines' program proof_full $python tests/proof/eva.py
