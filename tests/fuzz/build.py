@@ -37,10 +37,20 @@ def libmodbus():
     return sources('port/libmodbus/*.c')
 
 
+def commands(of_publish):
+    own = 'examples/fathom/publish/'
+    found = sources('examples/fathom/*.c', 'examples/fathom/*/*.c', 'examples/fathom/*/*/*.c', 'port/posix/*.c',
+                    'port/gpio/*.c', 'port/sim/*.c', without=('main.c', 'tcp_none.c', 'pins_none.c'))
+    return libmodbus() + [path for path in found if not path.startswith(own) or of_publish(path[len(own):])]
+
+
 def tool():
-    return libmodbus() + sources(
-        'examples/fathom/*.c', 'examples/fathom/*/*.c', 'examples/fathom/*/*/*.c', 'port/posix/*.c', 'port/gpio/*.c',
-        'port/sim/*.c', without=('main.c', 'tcp_none.c', 'pins_none.c'))
+    """Without publish, which would look for its broker."""
+    return commands(lambda name: name == 'publish_none.c')
+
+
+def publish():
+    return commands(lambda name: not name.endswith('_none.c'))
 
 
 def compile_one(source, to, text_at=None):

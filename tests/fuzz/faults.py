@@ -44,4 +44,6 @@ FAULTS = [
     Fault('examples/fathom/shared/options.c', 'if (sum > max) return false;', '', 'options', 'number_parse'),
     Fault('examples/fathom/commission/record.c', 'if (record_at(record, unit.address) != NULL)',
           'if (record == NULL)', 'files', 'an address stands there once'),
+    Fault('examples/fathom/publish/config_file.c', "if (text[i] < ' ' ||", 'if (text[i] == 0 ||', 'site',
+          'nothing that drives a terminal'),
 ]

@@ -138,6 +138,30 @@ def files(frames):
     return found + [b'\4' + title + b''.join(units[:count]) for count in range(4)]
 
 
+SITE = b'''site: mill/north
+broker: {host: broker.lan, port: 8883, user: mill, tls: {ca-file: ca.crt}, client-id: box, keep-alive: 60}
+queue: {messages: 100, bytes: 4096}
+lines:
+  - port: /dev/ttyUSB0
+    baud: 9600
+    sensors:
+      - {name: tank, sensor: "a16:1:modbus", median: 5, level: {mounting: 2300, height: 2000, capacity: 5000}}
+      - name: gate
+        sensor: hps167s:7
+        alarm: {when: near<500/600, unknown: on, no-response: on}
+  - port: tcp:10.0.0.7
+    sensors: [{name: bumper, sensor: "a05:2:modbus", probes: "1,2"}]
+  - {port: /dev/gpiochip0, trigger: 17, echo: 27, sensors: [{name: pit, sensor: "a16::pwm"}]}
+'''
+
+
+@makes('site')
+def site(frames):
+    """One of each kind of place, and with a line less."""
+    lines = SITE.splitlines(keepends=True)
+    return [SITE, *(b''.join(lines[:i] + lines[i + 1:]) for i in range(len(lines)))]
+
+
 def examples():
     """The command lines that the helps print."""
     for path in sorted(glob.glob(os.path.join(build.ROOT, 'examples', 'fathom', '**', '*.c'), recursive=True)):

@@ -124,6 +124,7 @@ TEST(a_broker_with_tls_is_at_8883)
 
 /* ---- what is wrong in it ---- */
 
+#define NOT_PRINTABLE "a text has a character that cannot be printed, such as a tab; leave it out\n"
 #define NAMES_OF_SITE                                                                                        \
     "takes the second level of all topics: letters, digits, - _ . and / between them, 100 characters at "    \
     "most; default: the host's name"
@@ -198,6 +199,9 @@ static const struct {
     {"no YAML", 8, "lines: {", 9, "this is no YAML: "},
     {"an alarm that does not say all", 24, "        alarm: {when: near<500, unknown: on}", 24,
      "alarm: no-response= is missing; it takes on or off"},
+    {"a key that drives a terminal", 1, "\"\\e[2J\": mill", 1, NOT_PRINTABLE},
+    {"a value that does", 6, "  password-file: \"/pw\\u009B2J\"", 6, NOT_PRINTABLE},
+    {"and one with a byte 0", 2, "discovery: \"a\\0b\"", 2, NOT_PRINTABLE},
     {"a second document", 7, "---", 7, "a second document begins; put all into one, without a line of ---\n"},
     {"keys behind a port", 9, "  - port: /dev/ttyUSB0,baud=9600", 9,
      "port: keys stand in lines of their own, such as baud: 9600"},

@@ -35,6 +35,29 @@ static bool is_last(yaml_parser_t *parser, const char *command, const char *path
     return false;
 }
 
+/* Of UTF-8, which libyaml has made sure of: C0, DEL, and C1, U+0080 to U+009F. */
+static bool is_printable(const unsigned char *text, size_t length)
+{
+    for (size_t i = 0; i != length; i++)
+        if (text[i] < ' ' || text[i] == 0x7F || (text[i] == 0xC2 && text[i + 1] < 0xA0)) return false;
+    return true;
+}
+
+/* What is wrong is printed, and what is right is explained: neither may drive a terminal. */
+static bool are_printable(const config_file_t *file, const char *command)
+{
+    for (const yaml_node_t *node = file->document.nodes.start; node != file->document.nodes.top; node++) {
+        if (node->type != YAML_SCALAR_NODE || is_printable(node->data.scalar.value, node->data.scalar.length))
+            continue;
+        config_file_at(file, node);
+        (void)usage_error(command,
+                          "a text has a character that cannot be printed, such as a tab; leave it out");
+        usage_at(NULL);
+        return false;
+    }
+    return true;
+}
+
 bool config_file_load(config_file_t *file, const char *command, const char *path)
 {
     yaml_parser_t parser;
@@ -48,7 +71,8 @@ bool config_file_load(config_file_t *file, const char *command, const char *path
     if (is_good) {
         yaml_parser_set_input_file(&parser, stream);
         is_good = yaml_parser_load(&parser, &file->document) != 0 || tell_wrong(command, path, &parser);
-        if (is_good && config_file_top(file) != NULL && !is_last(&parser, command, path)) {
+        if (is_good && config_file_top(file) != NULL &&
+            (!is_last(&parser, command, path) || !are_printable(file, command))) {
             yaml_document_delete(&file->document);
             is_good = false;
         }
@@ -74,9 +98,7 @@ unsigned config_file_line(const yaml_node_t *node) { return line_of(&node->start
 
 const char *config_file_text(const yaml_node_t *node)
 {
-    if (node->type != YAML_SCALAR_NODE) return NULL;
-    const char *const text = (const char *)node->data.scalar.value;
-    return strlen(text) == node->data.scalar.length ? text : NULL;
+    return node->type == YAML_SCALAR_NODE ? (const char *)node->data.scalar.value : NULL;
 }
 
 void config_file_at(const config_file_t *file, const yaml_node_t *node)

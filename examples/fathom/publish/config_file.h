@@ -13,7 +13,7 @@ typedef struct {
     yaml_document_t document;
 } config_file_t;
 
-/* False after saying why; then there is nothing to free. path stays where it is. */
+/* False after saying why; then there is nothing to free. A text that cannot be printed is wrong. path stays where it is. */
 bool config_file_load(config_file_t *file, const char *command, const char *path);
 void config_file_free(config_file_t *file);
 
@@ -23,7 +23,7 @@ const yaml_node_t *config_file_top(config_file_t *file);
 const yaml_node_t *config_file_node(config_file_t *file, int number);
 unsigned config_file_line(const yaml_node_t *node);
 
-/* Its text; NULL: it is none, or has a byte 0 in it. */
+/* Its text, which can be printed; NULL: it is none. */
 const char *config_file_text(const yaml_node_t *node);
 
 /* From now on wrong usage stands where this node does. */
