@@ -145,6 +145,8 @@ static fathom_status_t begin(fathom_hps167s_t *sensor, uint8_t command, uint32_t
                 fathom_hps167s_ask_once(sensor, FATHOM_HPS167S_VERSION, FATHOM_HPS167S_VERSION_COUNT);
             if (status != FATHOM_READY) return status;
         }
+        /* It has waited to be asked, and a measurement has told it: what waits on would keep all else out. */
+        if (unit->waiting == fathom_hps167s_id(FATHOM_HPS167S_VERSION)) unit->waiting = 0;
         setting->line_settings = NULL;
         setting->address = 0;
     }

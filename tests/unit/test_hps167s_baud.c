@@ -137,6 +137,19 @@ TEST(after_power_on_both_rates_are_asked_in_turns_until_it_answers)
     hps_asks(1, 19200);
 }
 
+/* The setting waits to ask where the device is, and the response to the measurement tells it. */
+TEST(a_setting_goes_on_when_a_measurement_has_told_meanwhile_where_the_device_is)
+{
+    PLAY_AT(1, &hps_factory, 115200, set_baud, OK, LATER(3, 115200));
+    fathom_hps167s_power_on(&hps);
+    fake.now_us += 6000000; /* past the warm-up */
+    hps_asks(1, 115200);
+    desk.argument = 19200;
+    assert_int_equal(set_baud(), FATHOM_PENDING);
+    hps_answers();
+    PLAY(set_baud, OK, IS(1, 3, 115200), TWO(1, SILENT, 0, 19200), RATE(1, 1, OK, 115200), IS(1, 1, 19200));
+}
+
 /* Whatever it says, it says it there. */
 TEST(any_word_of_the_device_tells_where_it_is)
 {
