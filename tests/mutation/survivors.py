@@ -114,7 +114,8 @@ ROWS = [
      'src/sensor/hps167s_auto.c | fits | name: SIZE -> DATA | if ((sensor->have > SIZE) && (bytes[SIZE] != '
      'DATA_SIZE))'),
     ('a number that no other step has; they are compared for equality alone',
-     'src/engine/modbus_setting.c |  | constant: 5 -> 6 | WRITE_UNREAD = 5'),
+     'src/engine/modbus_setting.c |  | constant: 5 -> 6 | WRITE_UNREAD = 5',
+     'src/sensor/hps167s_settings.c |  | constant: 1 -> 2 | WRITE_ONLY = 1'),
     ("no write's name: they have the highest bit",
      'src/engine/modbus_setting.c | written | constant: 0u -> 1u | unit->last_written = is_lost ? 0u : '
      'unit->setting',

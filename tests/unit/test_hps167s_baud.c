@@ -150,6 +150,24 @@ TEST(a_setting_goes_on_when_a_measurement_has_told_meanwhile_where_the_device_is
     PLAY(set_baud, OK, IS(1, 3, 115200), TWO(1, SILENT, 0, 19200), RATE(1, 1, OK, 115200), IS(1, 1, 19200));
 }
 
+/* Code 3 is 115200, which another setting has as its value. */
+TEST(a_rate_keeps_out_of_another_setting_that_is_under_way)
+{
+    hps_start_at(1, &hps_factory);
+    assert_int_equal(fathom_hps167s_set_warm_up_s(&hps, 3), FATHOM_PENDING);
+    assert_int_equal(fathom_hps167s_set_baud(&hps, 115200), FATHOM_ERR_BUSY);
+    assert_null(hps.setting.line_settings);
+}
+
+TEST(a_setting_waits_for_a_command_that_waits)
+{
+    fathom_hps167s_details_t details;
+    hps_start_at(1, &hps_factory);
+    hps_asks(1, 19200);
+    assert_int_equal(fathom_hps167s_details(&hps, &details), FATHOM_PENDING);
+    assert_int_equal(fathom_hps167s_set_warm_up_s(&hps, 3), FATHOM_ERR_BUSY);
+}
+
 /* Whatever it says, it says it there. */
 TEST(any_word_of_the_device_tells_where_it_is)
 {
