@@ -21,7 +21,7 @@ INCLUDE = ['-I' + CORE, '-I' + AVR + '/variants/standard']
 CORE_NEEDS = '-DDECIMAL_DIG=__DECIMAL_DIG__'
 
 
-def library_folder(out):
+def arduino_library(out):
     return os.path.join(out, 'sketchbook', 'libraries', 'Fathom')
 
 
@@ -35,17 +35,18 @@ def run(command):
 def builder(out, sketch, folder):
     """The builder with Debian's core and tools; the second folder of hardware tells it of arduino-ctags."""
     # A sketch of the tests includes one of the library's; a user's sketch has no such need.
-    preferences = {'compiler.cpp.extra_flags': f'{CORE_NEEDS} -I{os.path.join(library_folder(out), "examples")}'}
+    preferences = {'compiler.cpp.extra_flags': f'{CORE_NEEDS} -I{os.path.join(arduino_library(out), "examples")}'}
     preferences |= {f'runtime.tools.{tool}.path': '/usr' for tool in ('avr-gcc', 'avrdude', 'arduinoOTA')}
     return ['arduino-builder', '-compile', '-verbose', '-hardware', HARDWARE, '-hardware', '/usr/share/arduino-builder',
             '-tools', '/usr/bin', '-built-in-libraries', AVR + '/libraries',
-            '-libraries', os.path.dirname(library_folder(out)), '-fqbn', 'arduino:avr:uno', '-core-api-version', '10819',
-            '-build-path', folder, '-build-cache', os.path.join(out, 'cache'),
+            '-libraries', os.path.dirname(arduino_library(out)),
+            '-fqbn', 'arduino:avr:uno', '-core-api-version', '10819', '-build-path', folder,
+            '-build-cache', os.path.join(out, 'cache'),
             *(f'-prefs={name}={value}' for name, value in preferences.items()), sketch]
 
 
 def main(out):
-    run(['cmake', '-DTO=' + library_folder(out), '-P', os.path.join(ROOT, 'port/arduino/layout.cmake')])
+    run(['cmake', '-DTO=' + arduino_library(out), '-P', os.path.join(ROOT, 'port/arduino/layout.cmake')])
     images = os.path.join(out, 'images')
     for folder in (images, os.path.join(out, 'cache')):
         os.makedirs(folder, exist_ok=True)
@@ -61,7 +62,7 @@ def main(out):
         print(name, run(['avr-size', elf]).split('\n')[1])
         return f'== {name}\n{said}'
 
-    first, *others = [os.path.join(folder, name) for folder in (os.path.join(library_folder(out), 'examples'),
+    first, *others = [os.path.join(folder, name) for folder in (os.path.join(arduino_library(out), 'examples'),
                                                                 os.path.join(HERE, 'sketches'))
                       for name in sorted(os.listdir(folder))]
     said = [sketch(first)]  # which leaves the core in the cache

@@ -14,7 +14,7 @@ sys.path.insert(0, os.path.join(build.ROOT, 'tests', 'support'))
 import cases
 
 OUT = sys.argv[1]
-LIBRARY = build.library_folder(OUT)
+LIBRARY = build.arduino_library(OUT)
 WARNINGS = ['-Wall', '-Wextra', '-Wpedantic', '-Wconversion', '-Wsign-conversion', '-Wshadow',
             '-Wmissing-declarations']
 
