@@ -1,20 +1,24 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# Everything that has to pass, on Debian 12, in three steps; tests/README.md says what is in each.
+# Everything that has to pass, on Debian 12, in three steps, or one test by its name.
 #
-#     sh tests/run.sh         before a change is believed: 8 minutes on two idle cores
-#     sh tests/run.sh long    before it is merged: 20 minutes more
-#     sh tests/run.sh full    once for a larger piece of work: an hour or more; keeps its figures in CSV files
+#     sh tests/run.sh              before you believe a change: at most 7 minutes on two idle cores
+#     sh tests/run.sh long         before you merge it: at most 18 minutes more
+#     sh tests/run.sh full         once for a larger piece of work: some hours
+#     sh tests/run.sh KIND NAME    builds what is needed and runs the tests of tests/KIND with this name. NAME is a
+#                                  file without its ending, or a part of a test's name.
 #
-# It installs what is missing. With the packages in place it needs no root, and of the network only the npm package that
-# tests/firmware/rp2040 names, the Python one that tests/firmware/platformio names and, for long, the two kernels that
-# tests/kernel names; full needs both for the clean system of tests/package. It ends with a table of its stages: what each may take, and what it took. The last line is "N passed, 0 failed", and the exit status 0, when
-# all is well.
+# A step installs the packages that are missing. If they are in place, it needs no root, and from the network only the
+# npm package that tests/firmware/rp2040 names, the Python package that tests/firmware/platformio names and, for long,
+# the two kernels that tests/port/kernel names; full needs the network also for the clean system of tests/tool/package.
+# A step ends with a table of its stages: the seconds that each may take and took. If all tests passed, the last line
+# is "N passed, 0 failed" and the exit status is 0.
 set -eu
 cd "$(dirname "$0")/.."
 export LC_ALL=C.UTF-8 PYTHONDONTWRITEBYTECODE=1
 step=${1:-short}
+name=${2:-}
 jobs=$(nproc)
 python=/usr/bin/python3
 logs=build-logs
@@ -23,7 +27,7 @@ mkdir -p "$logs"
 packages='gcc g++ libc6-dev make cmake pkg-config python3 python3-clang-14 libcmocka-dev
 clang-14 clang-tidy-14 clang-format-14 libclang-rt-14-dev cppcheck valgrind
 gcc-arm-none-eabi libnewlib-arm-none-eabi gcc-avr avr-libc arduino-core-avr gcc-riscv64-unknown-elf
-gcc-powerpc-linux-gnu libc6-dev-powerpc-cross gcc-s390x-linux-gnu libc6-dev-s390x-cross
+gcc-powerpc-linux-gnu libc6-dev-powerpc-cross
 simavr libsimavr-dev qemu-system-arm qemu-system-misc qemu-user-static
 arduino-builder python3-venv
 libmodbus-dev mbpoll socat python3-pymodbus python3-serial python3-serial-asyncio
@@ -91,39 +95,37 @@ show_costs() {
     cat build-gcc/bench.csv tests/firmware/figures.csv
 }
 
-slow='e2e|interop|second|check|selfcheck|faults|firmware|kernel' # kinds that say nothing else on another compiler
+# Another compiler changes nothing for the other kinds.
+in_c='unit|devices|port|tool|verify' not_in_c='e2e|interop|second|long'
 build_and_test() { # PRESET
     stage 100 "$1: build" build "$1"
-    stage 40 "$1: tests in C" run_tests "$1" "$1" --label-exclude "$slow"
+    stage 40 "$1: tests in C" run_tests "$1" "$1" --label-regex "$in_c" --label-exclude "$not_in_c"
 }
 
 run_short() {
     stage 145 'gcc: build, firmware too' build gcc
-    stage 190 'gcc: every kind of test' run_tests gcc gcc --label-exclude 'selfcheck|faults|kernel|later'
+    stage 190 'gcc: every kind of test' run_tests gcc gcc --label-exclude long
     build_and_test clang-sanitize
 }
 
 run_long() {
     stage 20 'gcc and clang-sanitize: build' build_two # where the short run has built them
-    stage 60 'planted faults' run_tests gcc faults --label-regex faults
     stage 110 'mutants: changed files, 400 more' mutants sample --changed --sample 400
-    stage 80 'no run-time error: EVA' program proof $python tests/proof/eva.py --quick
-    stage 50 'codecs: WP' program wp $python tests/proof/wp.py --quick
-    stage 60 'coverage: each condition decides' program conditions $python tests/coverage/run.py --quick
-    stage 20 'states of a small line' program states $python tests/states/run.py --quick
+    stage 80 'no run-time error: EVA' program proof $python tests/verify/proof/eva.py --quick
+    stage 50 'codecs: WP' program wp $python tests/verify/proof/wp.py --quick
+    stage 60 'coverage: each condition decides' program conditions $python tests/verify/coverage/run.py --quick
+    stage 20 'states of a small line' program states $python tests/verify/states/run.py --quick
     stage 70 'interrupts at each instruction' program interrupts $python tests/firmware/interrupts/run.py --quick
-    stage 110 'fuzzing: 10 s a target' program fuzz $python tests/fuzz/run.py
-    stage 20 'chaos: 30 rounds' program chaos env FATHOM=build-gcc/fathom $python tests/chaos/run.py
-    stage 40 'publish: 8 kills' program broker env FATHOM=build-gcc/fathom $python tests/chaos/broker.py --kills 8
-    stage 40 'Debian packages' program package $python tests/package/run.py --quick
+    stage 110 'fuzzing: 10 s a target' program fuzz $python tests/verify/fuzz/run.py
+    stage 20 'chaos: 30 rounds' program chaos env FATHOM=build-gcc/fathom $python tests/tool/chaos/run.py
+    stage 40 'publish: 8 kills' program broker env FATHOM=build-gcc/fathom $python tests/tool/chaos/broker.py --kills 8
+    stage 40 'Debian packages' program package $python tests/tool/package/run.py --quick
     stage 210 'end to end, second, sanitized' run_tests clang-sanitize sanitized --label-regex 'e2e|interop|second'
-    stage 20 'kernels: packages' $python tests/kernel/debian.py build-gcc/kernel
-    stage 40 'kernels in QEMU' run_tests gcc kernel --label-regex kernel
-    stage 180 'checks that take longer' run_tests gcc later --label-regex later
+    stage 20 'kernels: packages' $python tests/port/kernel/debian.py build-gcc/kernel
+    stage 220 'tests that take longer' run_tests gcc later --label-regex long
     stage 1 'what it costs' show_costs
-    stage 90 "the checks' own checks" run_tests gcc selfcheck --label-regex selfcheck --label-exclude latest
     export FATHOM_LONG=1
-    stage 30 'tests in C, exhaustive forms' run_tests gcc long --label-exclude "$slow"
+    stage 30 'tests in C, exhaustive forms' run_tests gcc long --label-regex "$in_c" --label-exclude "$not_in_c"
 }
 build_two() { build gcc && build clang-sanitize; }
 program() { # NAME COMMAND...
@@ -138,34 +140,32 @@ program() { # NAME COMMAND...
 mutants() { # NAME OPTION...
     name=mutants_$1
     shift
-    program "$name" $python tests/mutation/run.py "$@"
+    program "$name" $python tests/verify/mutation/run.py "$@"
 }
 
 run_full() {
     run_long
     for preset in clang gcc-sanitize; do build_and_test "$preset"; done
-    stage 150 "checks' own checks that take longer" run_tests gcc latest --label-regex latest
     stage 300 "clang's analyzer" $python tests/checks/lint.py --analyze
-    stage 1800 'no run-time error: EVA, all machines' program proof_full $python tests/proof/eva.py
-    stage 1800 'EVA: planted faults' program proof_planted $python tests/proof/eva.py --self-test
-    stage 1800 'codecs: WP, both provers' program wp_full $python tests/proof/wp.py
-    stage 600 'WP: planted faults' program wp_planted $python tests/proof/wp.py --self-test
-    stage 300 'coverage of the machines' program coverage_machines $python tests/coverage/run.py --machines
-    stage 120 'coverage: planted faults' program coverage_planted $python tests/coverage/run.py --self-test
-    stage 180 'states of larger lines' program states_full $python tests/states/run.py
-    stage 120 'states: planted faults' program states_planted $python tests/states/run.py --self-test
+    stage 1800 'no run-time error: EVA, all machines' program proof_full $python tests/verify/proof/eva.py
+    stage 1800 'EVA: planted faults' program proof_planted $python tests/verify/proof/eva.py --self-test
+    stage 1800 'codecs: WP, both provers' program wp_full $python tests/verify/proof/wp.py
+    stage 600 'WP: planted faults' program wp_planted $python tests/verify/proof/wp.py --self-test
+    stage 300 'coverage of the machines' program coverage_machines $python tests/verify/coverage/run.py --machines
+    stage 120 'coverage: planted faults' program coverage_planted $python tests/verify/coverage/run.py --self-test
+    stage 180 'states of larger lines' program states_full $python tests/verify/states/run.py
+    stage 120 'states: planted faults' program states_planted $python tests/verify/states/run.py --self-test
     stage 300 'interrupts, all pairs' program interrupts_full $python tests/firmware/interrupts/run.py
     stage 60 'interrupts: planted faults' program interrupts_planted $python tests/firmware/interrupts/run.py --self-test
-    stage 3600 'fuzzing: 10^8 executions' program fuzz_full $python tests/fuzz/run.py --full
-    stage 240 'fuzzing: planted faults' program fuzz_planted $python tests/fuzz/run.py --self-test
-    stage 600 'chaos: 1,000 rounds' program chaos_full env FATHOM=build-gcc/fathom $python tests/chaos/run.py --rounds 1000
-    stage 240 'chaos: planted faults' program chaos_planted env FATHOM=build-gcc/fathom $python tests/chaos/run.py --self-test
-    stage 300 'publish: 100 kills' program broker_full env FATHOM=build-gcc/fathom $python tests/chaos/broker.py
+    stage 3600 'fuzzing: 10^8 executions' program fuzz_full $python tests/verify/fuzz/run.py --full
+    stage 240 'fuzzing: planted faults' program fuzz_planted $python tests/verify/fuzz/run.py --self-test
+    stage 600 'chaos: 1,000 rounds' program chaos_full env FATHOM=build-gcc/fathom $python tests/tool/chaos/run.py --rounds 1000
+    stage 240 'chaos: planted faults' program chaos_planted env FATHOM=build-gcc/fathom $python tests/tool/chaos/run.py --self-test
+    stage 300 'publish: 100 kills' program broker_full env FATHOM=build-gcc/fathom $python tests/tool/chaos/broker.py
     stage 120 'publish: 256 lines' $python tests/bench/publish.py build-gcc
     stage 650 'publish: memory' $python tests/bench/publish.py build-gcc --soak 580
-    stage 300 'Debian packages, in a clean system' program package_full $python tests/package/run.py
-    stage 420 'packages: planted faults' program package_planted $python tests/package/run.py --self-test
-    stage 120 'firmware, exhaustive forms: build' build gcc # s390x is built only for them
+    stage 300 'Debian packages, in a clean system' program package_full $python tests/tool/package/run.py
+    stage 420 'packages: planted faults' program package_planted $python tests/tool/package/run.py --self-test
     timeout=900
     stage 400 'second: 1000 seeds' run_tests gcc seeds --label-regex second
     stage 600 'firmware, exhaustive forms' run_tests gcc firmware --label-regex 'firmware|long'
@@ -181,13 +181,47 @@ soak() {
     return "$status"
 }
 
-install_packages
+# Runs the tests of KIND with this name: in one process, or as scripts that CTest starts.
+run_one() { # KIND NAME
+    case $1 in
+    unit | devices | port | tool)
+        cmake -S . -B build >"$logs/one.configure" 2>&1 || { tail -n 40 "$logs/one.configure"; exit 1; }
+        cmake --build build --parallel "$jobs" --target "tests_$1" >"$logs/one.build" 2>&1 ||
+            { tail -n 40 "$logs/one.build"; exit 1; }
+        found=2
+        for program in build/tests/"$1"/test_*; do
+            status=0
+            "$program" "$2" >"$logs/one.txt" 2>&1 || status=$?
+            [ "$status" -eq 2 ] && continue # no test of this program has the name
+            cat "$logs/one.txt"
+            found=$status
+            [ "$status" -eq 0 ] || break
+        done
+        [ "$found" -eq 2 ] || exit "$found"
+        [ "$1" = tool ] || [ "$1" = port ] || { echo "no test of tests/$1 has $2 in its name" >&2; exit 2; }
+        ;;
+    esac
+    install_packages
+    build gcc
+    # A test of CTest's is a file. If no file has the name, run the files that define a test with it.
+    files=$2
+    ctest --test-dir build-gcc --label-regex "^$1\$" -N --tests-regex "$2" | grep -q 'Test *#' ||
+        files=$(grep -rlE "(def|class|TEST\\() ?\\w*$2" "tests/$1" | sed 's,.*/,,; s,\..*,,' | paste -sd '|')
+    FATHOM_CASE=$2 ctest --test-dir build-gcc --label-regex "^$1\$" --tests-regex "${files:-$2}" --no-tests=error \
+        --output-on-failure
+}
+
 case $step in
-short) run_short ;;
-long) run_long ;;
-full) run_full ;;
+short) install_packages && run_short ;;
+long) install_packages && run_long ;;
+full) install_packages && run_full ;;
+unit | devices | port | firmware | tool | verify | bench | checks)
+    [ -n "$name" ] || { echo "usage: sh tests/run.sh $step NAME" >&2; exit 2; }
+    run_one "$step" "$name"
+    exit
+    ;;
 *)
-    echo "usage: sh tests/run.sh [long | full]" >&2
+    echo 'usage: sh tests/run.sh [long | full | KIND NAME]' >&2
     exit 2
     ;;
 esac

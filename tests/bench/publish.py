@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """What fathom publish costs with 256 lines, each read twice a second, beside a Mosquitto and a mosquitto_sub.
 
-    publish.py BUILD                 all of it, a minute and a half; BUILD: the build folder, with fathom and tests/bench_far_end
+    publish.py BUILD                 all of it, a minute and a half; BUILD: the build folder, with fathom and tests/bench/bench_far_end
     publish.py BUILD --soak SECONDS  memory alone, 64 lines as fast as they can: so many messages as 256 lines have in longer
     publish.py BUILD --try           a moment with 16 lines: does it work?
     publish.py --self-test           shows that this can fail
@@ -24,7 +24,7 @@ import time
 
 import report
 
-sys.path[:0] = [os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), 'e2e')]
+sys.path[:0] = [os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), 'tool', 'e2e')]
 
 INTERVAL_MS = 500
 SOAK_MS, SOAK_LINES = 20, 64
@@ -150,7 +150,7 @@ class Bench:
 
     def far_end(self):
         """The ports of the lines."""
-        program = self.start(os.path.join(self.build, 'tests/bench_far_end'), self.count, stdin=subprocess.PIPE,
+        program = self.start(os.path.join(self.build, 'tests/bench/bench_far_end'), self.count, stdin=subprocess.PIPE,
                              stdout=subprocess.PIPE, text=True)
         return [program.stdout.readline().strip() for _ in range(self.count)]
 

@@ -2,7 +2,7 @@
 /* Prints what each of three sensors gets of one pair. */
 #include <stdio.h>
 
-#include "../sim/mix.h"
+#include "../devices/sim/mix.h"
 
 enum { SECONDS = 60, ALONE_HPS = 1 << MIX_A16 | 1 << MIX_A05 };
 

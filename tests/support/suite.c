@@ -48,19 +48,33 @@ static int run_once(const char *file, const struct CMUnitTest *tests, size_t cou
     return 0;
 }
 
-/* All tests of the file that this one is of. Of its suites at most one has rounds. */
-static int run_file(const suite_test_t *one)
+/* An argument of the program names a file, or is a part of a test's name. */
+static bool is_named(const suite_test_t *test, const char *name)
+{
+    return is_file(test->file, name) || strstr(test->test.name, name) != NULL;
+}
+
+static bool is_chosen(const suite_test_t *test, int count, char *const *names)
+{
+    for (int i = 0; i != count; i++)
+        if (is_named(test, names[i])) return true;
+    return count == 0;
+}
+
+/* Runs the chosen tests of the file that `one` belongs to. At most one of the file's suites has rounds. */
+static int run_file(const suite_test_t *one, int name_count, char *const *names)
 {
     static struct CMUnitTest tests[SUITE_TESTS];
     const suite_t *rounds = one->suite;
     size_t count = 0;
     int failed = 0;
     for (const suite_test_t *test = first; test != NULL; test = test->next) {
-        if (strcmp(test->file, one->file) != 0) continue;
+        if (strcmp(test->file, one->file) != 0 || !is_chosen(test, name_count, names)) continue;
         if (count == SUITE_TESTS) return 1;
         tests[count++] = test->test;
         if (test->suite->begin_round != NULL) rounds = test->suite;
     }
+    if (count == 0) return 0;
     const unsigned most = suite_is_long && rounds->long_rounds != 0 ? rounds->long_rounds : rounds->rounds;
     for (unsigned round = 0; round == 0 || round < most; round++) {
         if (rounds->begin_round != NULL) rounds->begin_round(round);
@@ -70,7 +84,7 @@ static int run_file(const suite_test_t *one)
     return failed;
 }
 
-/* Whether an earlier test is of the same file. */
+/* Returns true if an earlier test belongs to the same file. */
 static bool is_known(const suite_test_t *test)
 {
     for (const suite_test_t *before = first; before != test; before = before->next)
@@ -78,20 +92,29 @@ static bool is_known(const suite_test_t *test)
     return false;
 }
 
+static bool is_anywhere(const char *name)
+{
+    for (const suite_test_t *test = first; test != NULL; test = test->next)
+        if (is_named(test, name)) return true;
+    return false;
+}
+
 int suite_run(int count, char *const *names)
 {
     int failed = 0;
-    for (int i = 0; i == 0 || i < count; i++) {
-        bool is_there = false;
-        for (const suite_test_t *test = first; test != NULL; test = test->next) {
-            if (is_known(test) || (count != 0 && !is_file(test->file, names[i]))) continue;
-            is_there = true;
-            failed += run_file(test);
-            if (failed != 0 && suite_ends_at_failure) return failed;
-        }
-        if (is_there) continue;
-        print_error("[  FAILED  ] there are no tests in %s\n", count != 0 ? names[i] : "this program");
-        failed++;
+    if (first == NULL) {
+        print_error("[  FAILED  ] this program has no tests\n");
+        return SUITE_HAS_NO_SUCH_TEST;
+    }
+    for (int i = 0; i != count; i++) {
+        if (is_anywhere(names[i])) continue;
+        print_error("[  FAILED  ] no file and no test of this program is called %s\n", names[i]);
+        return SUITE_HAS_NO_SUCH_TEST;
+    }
+    for (const suite_test_t *test = first; test != NULL; test = test->next) {
+        if (is_known(test)) continue;
+        failed += run_file(test, count, names);
+        if (failed != 0 && suite_ends_at_failure) break;
     }
     return failed;
 }

@@ -12,11 +12,13 @@
 #include <cmocka.h>
 
 /*
- * A file of tests is a suite, and TEST(a_sentence) {...} is one of its tests, which needs no list: it is known when the
- * program starts. All suites of a folder are one program: PROGRAM [FILE ...] runs those of the files named, without
- * ".c", or all. With FATHOM_FIRST_FAILURE in the environment the first test that fails is the last.
+ * A file of tests is a suite. TEST(a_sentence) {...} defines one of its tests and registers it before main() starts.
+ * All suites of a folder are linked into one program. PROGRAM [NAME ...] runs the tests of the files with these names
+ * (without ".c") and the tests whose own names contain one of these words. Without a NAME the program runs all tests.
+ * If FATHOM_FIRST_FAILURE is set in the environment, the program stops after the first test that fails.
  *
- * A file whose tests share a set-up says so once, before them: static const suite_t suite = {.set_up = set_up};
+ * If the tests of a file share a set-up, the file defines it before them:
+ * static const suite_t suite = {.set_up = set_up};
  */
 typedef struct {
     int (*set_up)(void **state);    /* before each test; may be NULL */
@@ -55,8 +57,10 @@ extern bool suite_ends_at_failure; /* false from the start */
 /* FATHOM_LONG is in the environment: what is thinned out, because most of it looks at the same again, runs in full. */
 extern bool suite_is_long;
 
-/* Runs the suites of these files, or all when count is 0. Returns how many tests failed, and one more for each file
- * that there is not. */
+enum { SUITE_HAS_NO_SUCH_TEST = -1 };
+
+/* Runs the tests with these names, or all if `count` is 0. Returns the number of tests that failed, or
+ * SUITE_HAS_NO_SUCH_TEST if a name stands for none. */
 int suite_run(int count, char *const *names);
 
 #define SUITE_ADD(of, name, function, row)                                                                   \

@@ -245,7 +245,7 @@ TEST(each_entity_that_a_sensor_has_is_told)
     assert_int_equal(bits_of(TANK), 0);
 }
 
-/* The keys: tests/e2e/test_publish_discovery.py. 3 intervals of 2 s, and 30 s. */
+/* The keys: tests/tool/e2e/test_publish_discovery.py. 3 intervals of 2 s, and 30 s. */
 TEST(an_entity_is_told_with_what_its_topics_have)
 {
     char topic[DISCOVERY_TOPIC];

@@ -24,7 +24,7 @@ static uint8_t sum_of(const uint8_t *bytes, unsigned count)
     return (uint8_t)(sum & 0x00FF);
 }
 
-/* A05 2(3)3 with the right sum, 2(3)5. The datasheet's frames both ways: tests/golden/test_frames.c. */
+/* A05 2(3)3 with the right sum, 2(3)5. The datasheet's frames both ways: tests/unit/test_frames.c. */
 static const uint8_t all_probes[] = {0x55, 0xAA, 0x01, 0x01, 0x03, 0xE8, 0x07,
                                      0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x62};
 static const uint8_t address_5[] = {0x55, 0xAA, 0x05, 0x03, 0x07};

@@ -5,7 +5,7 @@
 
 #include "fathom/codec/dyp_stream.h"
 
-/* A05 1(3). The datasheets' frames both ways: tests/golden/test_frames.c. */
+/* A05 1(3). The datasheets' frames both ways: tests/unit/test_frames.c. */
 static const uint8_t a05_frame[] = {0xFF, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x60};
 
 /* A16 2(4): SUM = (FF + H + L) & FF, mm = H * 256 + L. */

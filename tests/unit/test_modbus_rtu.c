@@ -6,7 +6,7 @@
 #include "fathom/codec/modbus_rtu.h"
 
 /* CRCs that no datasheet prints were worked out apart, bit by bit, and stand here as bytes. Every prefix and
- * every damaged byte of the datasheets' frames: tests/golden/test_corruption.c. */
+ * every damaged byte of the datasheets' frames: tests/unit/test_corruption.c. */
 
 enum { READ = 0x03, WRITE = 0x06, WRITE_MANY = 0x10, GUARD = 0xA5, CAPACITY = 300, VALUES = 130 };
 enum { GUARD16 = 0xA5A5 };

@@ -5,7 +5,7 @@
 #include <stdint.h>
 
 /*
- * Which instructions of an image were executed, and where each of them has led: for tests/coverage, which names a folder
+ * Which instructions of an image were executed, and where each of them has led: for tests/verify/coverage, which names a folder
  * in FATHOM_TRACE. Without that all of it does nothing. A file for each run: the image's path, then a line "FROM TO" for
  * each pair, in hex. Of one instruction two places are kept: a conditional branch has no more.
  */

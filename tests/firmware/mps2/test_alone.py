@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Images of port/mps2 that check themselves, in simulated time."""
+"""Images for the port mps2 that check themselves, in simulated time."""
 import qemu
 
 qemu.alone(

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""examples/mps2/five_lines.c on QEMU: five UARTs, five sensors, one loop."""
+"""tests/firmware/mps2/images/five_lines.c on QEMU: five UARTs, five sensors, one loop."""
 import os
 import re
 import select

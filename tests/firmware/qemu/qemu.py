@@ -10,7 +10,7 @@ import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 TESTS = os.path.dirname(os.path.dirname(HERE))
-sys.path.insert(0, os.path.join(TESTS, 'interop'))
+sys.path.insert(0, os.path.join(TESTS, 'tool', 'interop'))
 
 import interop  # noqa: E402
 from interop import e2e  # noqa: E402
@@ -45,7 +45,7 @@ class Case(interop.Case):
                 options += ['-chardev', f'serial,id=uart{number},path={port}', '-serial', f'chardev:uart{number}']
         for trace in traces:
             options += ['-trace', trace]
-        if 'FATHOM_TRACE' in os.environ:  # for tests/coverage, which builds the plugin
+        if 'FATHOM_TRACE' in os.environ:  # for tests/verify/coverage, which builds the plugin
             options += ['-plugin', f'{os.environ["FATHOM_TRACE_PLUGIN"]},image={path}']
         if shift is not None:
             options += ['-serial', 'null', '-icount', f'shift={shift},sleep=off', '-rtc', 'clock=vm']

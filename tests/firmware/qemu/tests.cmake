@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # Every test_NAME.py beside the including CMakeLists.txt is a test, firmware.MACHINE_NAME. It finds the images of its
-# machine in FATHOM_IMAGES, qemu.py in PYTHONPATH, and what tests/interop has in its own variables.
+# machine in FATHOM_IMAGES, qemu.py in PYTHONPATH, and what tests/tool/interop has in its own variables.
 file(GLOB scripts CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/test_*.py)
 get_filename_component(machine ${CMAKE_CURRENT_SOURCE_DIR} NAME)
 foreach(script IN LISTS scripts)

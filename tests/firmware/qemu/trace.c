@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A plugin of QEMU: which instructions of an image were executed, and where each has led. tests/coverage builds it and
+ * A plugin of QEMU: which instructions of an image were executed, and where each has led. tests/verify/coverage builds it and
  * names a folder in FATHOM_TRACE; ../avr/trace.h says what is kept there. An interrupt that comes after an instruction
  * is one more place to which it has led, so that some are kept of each.
  *

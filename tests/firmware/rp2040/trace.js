@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which instructions of an image were executed, and where each has led: for tests/coverage, which names a folder in
+// Which instructions of an image were executed, and where each has led: for tests/verify/coverage, which names a folder in
 // FATHOM_TRACE; ../avr/trace.h says what it keeps there. Without that it does nothing. Of one instruction four places are
 // kept.
 'use strict';

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Images of port/virt that check themselves, in simulated time."""
+"""Images for the port virt that check themselves, in simulated time."""
 import qemu
 
 qemu.alone(

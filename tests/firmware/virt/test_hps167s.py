@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""examples/virt/hps167s.c on QEMU's virt."""
+"""tests/firmware/virt/images/hps167s.c on QEMU's virt."""
 import qemu
 
 

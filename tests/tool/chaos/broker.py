@@ -1,0 +1,309 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""fathom publish under load, while its broker, its connection and it itself are killed and begun again.
+
+    broker.py [--kills 100] [--seed N]     three minutes; --kills 8 is the quick form, 20 s
+    broker.py --self-test                  shows that what is lost, out of order or miscounted is seen
+
+FATHOM is the tool, as for tests/tool/e2e; Mosquitto and its mosquitto_sub have to be there. mqtt_between.py records all that the tool
+has sent, and what each broker has acknowledged. At the end: what was acknowledged has come to the subscriber; nothing that was
+sent is missing but what a kill has left unacknowledged, 16 messages at most; the order is kept; and what is missing in the numbers
+is what was counted as dropped, and published. The last line is "N passed, M failed"."""
+import argparse
+import collections
+import json
+import os
+import random
+import signal
+import sys
+import time
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path[:0] = [HERE, os.path.join(os.path.dirname(HERE), 'e2e')]
+import e2e  # noqa: E402: from there
+import mqtt  # noqa: E402
+import mqtt_between  # noqa: E402
+
+LINES, INTERVAL_MS, QUEUE = 4, 40, 50  # of the queue: a quarter of a second of all lines' messages
+UNDER_WAY = 16  # messages that are not acknowledged yet, at most
+LONGEST_PAUSE_S = 70  # 60, and what a busy machine takes
+TOLD_S = 1.2  # so soon the tool tells that more was dropped
+
+
+class Wrong(Exception):
+    pass
+
+
+def state_of(payload):
+    """Of a message with a number: what it says. Else None."""
+    one = json.loads(payload) if payload.startswith('{') else {}
+    return one if 'seq' in one else None
+
+
+def firsts(messages):
+    """Each state's first time, {(boot, topic): [state, ...]}."""
+    streams, known = collections.defaultdict(list), set()
+    for topic, payload in messages:
+        state = state_of(payload)
+        if state is None or (state['boot'], topic, state['seq']) in known:
+            continue
+        known.add((state['boot'], topic, state['seq']))
+        streams[state['boot'], topic].append(state)
+    return streams
+
+
+def check_order_and_gaps(messages, what):
+    for (_, topic), states in firsts(messages).items():
+        numbers = [state['seq'] for state in states]
+        if numbers != sorted(numbers):
+            raise Wrong(f'{what}: {topic}: not in order: {numbers}')
+        try:
+            mqtt.check_gaps(states)
+        except AssertionError as why:
+            raise Wrong(f'{what}: {topic}: {why}') from None
+
+
+def check_acknowledged(sent):
+    """Of each start all is acknowledged, at the first or at a later time, but the last messages, so many as may be under way."""
+    acknowledged = {(one.topic, key_of(one)) for one in sent if one.is_acknowledged}
+    by_boot = collections.defaultdict(list)
+    for one in sent:
+        state = state_of(one.payload)
+        if state is not None:
+            by_boot[state['boot']].append(one)
+    for boot, messages in by_boot.items():
+        lost = [one for one in messages if (one.topic, key_of(one)) not in acknowledged]
+        last = list(dict.fromkeys((one.topic, key_of(one)) for one in reversed(messages)))[:UNDER_WAY]
+        if {(one.topic, key_of(one)) for one in lost} - set(last):
+            raise Wrong(f'boot {boot}: sent, never acknowledged, and not the last: {lost}')
+
+
+def key_of(one):
+    state = state_of(one.payload)
+    return (state['boot'], state['seq']) if state else one.payload
+
+
+def check_received(sent, received):
+    """received: by the broker's number."""
+    count = 0
+    for one in sent:
+        if not one.is_acknowledged or state_of(one.payload) is None:
+            continue
+        count += 1
+        if (one.topic, one.payload) not in received[one.broker]:
+            raise Wrong(f'broker {one.broker} has acknowledged {one}, which has not come to its subscriber')
+    return count
+
+
+def check_counters(sent):
+    """Of each start: the sum of what its topics say is what it says of itself, where it has had the time to: a second.
+    (how many could be compared, how many messages were dropped in all that is known)"""
+    last, dropped, checked = {}, collections.defaultdict(dict), 0
+    for one in sent:
+        told = json.loads(one.payload) if one.payload.startswith('{') else {}
+        if one.topic.endswith('/publisher'):
+            last[told['boot']] = (told['dropped'], one.at)
+        elif 'seq' in told:
+            dropped[told['boot']][one.topic] = (told['dropped'], one.at)
+    for boot, (total, at) in last.items():
+        its = dropped[boot].values()
+        if not its or min(when for _, when in its) < at + TOLD_S:
+            continue
+        checked += 1
+        if sum(count for count, _ in its) != total:
+            raise Wrong(f'boot {boot}: {total} were dropped, it says; its topics say {dropped[boot]}')
+    return checked, sum(count for its in dropped.values() for count, _ in its.values())
+
+
+def check(sent, received):
+    """(messages acknowledged, starts whose counters could be compared, messages dropped)"""
+    check_order_and_gaps([(one.topic, one.payload) for one in sent], 'sent')
+    for number, messages in received.items():
+        numbers = collections.defaultdict(list)
+        for topic, payload in messages:
+            state = state_of(payload)
+            if state is not None and state['seq'] not in numbers[state['boot'], topic]:
+                numbers[state['boot'], topic].append(state['seq'])
+        for (_, topic), its in numbers.items():
+            if its != sorted(its):
+                raise Wrong(f'broker {number}: {topic} has come out of order: {its}')
+    check_acknowledged(sent)
+    return (check_received(sent, {number: set(messages) for number, messages in received.items()}), *check_counters(sent))
+
+
+class Run(mqtt.Case):
+    def __init__(self, kills, seed):
+        super().__init__('runTest')
+        self.kills, self.random = kills, random.Random(seed)
+        self.brokers, self.received = 0, {}
+
+    def begin_broker(self):
+        """With a subscriber, before a publisher comes to it: of QoS 0, so that no message waits in the broker for another one's
+        acknowledgement, and none of those is lost with it, for which the system would take back what it has sent."""
+        self.number = mqtt.free_port()
+        self.mosquitto = self.broker('max_queued_messages 0', 'set_tcp_nodelay true')
+        self.brokers += 1
+        self.subscriber = self.subscribe(qos=0)
+        self.between.target = (self.brokers, self.number)
+
+    def end_broker(self, how):
+        """What it has handed over is in the subscriber's socket."""
+        self.between.target = None
+        self.mosquitto.end(how)
+        self.between.cut()
+        heard = -1
+        while heard != len(self.subscriber.said['out']):
+            heard = len(self.subscriber.said['out'])
+            self.subscriber.hear(lambda: False, 0.2)
+        self.subscriber.end()
+        self.received[self.brokers] = [(one.topic, one.payload) for one in self.messages(self.subscriber)]
+
+    def begin_tool(self):
+        self.tool = self.publish(self.site)
+        self.starts += 1
+
+    def sleep(self, seconds):
+        until = time.monotonic() + seconds
+        while time.monotonic() < until:
+            if self.tool.has_ended(0.02):
+                raise Wrong(f'it has ended: {self.tool.done}')
+            self.subscriber.hear(lambda: False, 0.001)
+
+    def happens(self):
+        what = self.random.choice(('broker', 'broker', 'tool', 'tool', 'both', 'connection'))
+        how = self.random.choice((signal.SIGKILL, signal.SIGKILL, signal.SIGTERM))
+        if what == 'connection':
+            self.between.cut()
+        if what in ('broker', 'both'):
+            self.end_broker(how)
+        if what in ('tool', 'both'):
+            self.tool.end(how)
+            self.begin_tool()
+        if what in ('broker', 'both'):
+            self.sleep(self.random.choice((0, 0.1, 1.2)))
+            self.begin_broker()
+        return what
+
+    def publishes_again(self):
+        """The pause before it connects has grown if it was cut off often."""
+        before = self.between.count()
+        self.sleep(self.random.uniform(0.05, 0.4))
+        deadline = time.monotonic() + LONGEST_PAUSE_S
+        while self.between.count() <= before + 5:
+            self.sleep(0.05)
+            if time.monotonic() >= deadline:
+                raise Wrong(f'it does not publish again: {self.tool.said}')
+
+    def runTest(self):
+        self.between = mqtt_between.Between()
+        self.addCleanup(self.between.end)
+        lines = []
+        for line in range(LINES):
+            self.sim(f'hps167s:7 --link {self.path(f"bus{line}")}')
+            lines.append(self.line(self.path(f'bus{line}'), f's{line} hps167s:7 level: {{mounting: 9000, height: 9000, capacity: 1}}'))
+        self.number, self.starts = self.between.number, 0
+        self.site = self.config(*lines, top=f'interval: {INTERVAL_MS}\nqueue: {{messages: {QUEUE}}}\ndiscovery: off')
+        self.begin_broker()
+        self.begin_tool()
+        self.told = collections.Counter()
+        for _ in range(self.kills):
+            self.publishes_again()
+            if self.random.random() < 0.3:
+                self.sleep(TOLD_S + 0.5)  # so that it has told all of its counters
+            self.told[self.happens()] += 1
+        self.publishes_again()
+        self.sleep(TOLD_S + 1)
+        self.tool.end(signal.SIGTERM)
+        self.end_broker(signal.SIGTERM)
+
+
+# ---- can it fail? ----
+
+def records(count=UNDER_WAY + 6, boot='b'):
+    """What is right."""
+    sent = [mqtt_between.Sent('fathom/mill/publisher', json.dumps({'boot': boot, 'dropped': 2}), 1, 0)]
+    for seq in range(1, count + 1):
+        one = {'boot': boot, 'seq': seq if seq < 3 else seq + 2, 'dropped': 0 if seq < 3 else 2}
+        sent.append(mqtt_between.Sent('fathom/mill/gate/state', json.dumps(one), 1, seq))
+    for one in sent:
+        one.is_acknowledged = True
+    return sent
+
+
+def self_test():
+    def lost(sent, received):
+        received[1] = received[1][:3] + received[1][4:]
+
+    def missing(sent, received):
+        del sent[4]
+
+    def swapped(sent, received):
+        sent[5], sent[6] = sent[6], sent[5]
+
+    def swapped_by_the_broker(sent, received):
+        received[1][5], received[1][6] = received[1][6], received[1][5]
+
+    def unacknowledged(sent, received):
+        sent[4].is_acknowledged = False
+
+    def miscounted(sent, received):
+        sent[0].payload = json.dumps({'boot': 'b', 'dropped': 3})
+        received[1][0] = (sent[0].topic, sent[0].payload)
+
+    def last_unacknowledged(sent, received):
+        sent[-1].is_acknowledged = False
+        del received[1][-1]
+
+    def twice(sent, received):
+        sent.insert(4, sent[3])
+
+    failed = 0
+    rows = [(lost, 'has not come'), (missing, 'dropped'), (swapped, 'not in order'), (swapped_by_the_broker, 'out of order'),
+            (unacknowledged, 'never acknowledged'), (miscounted, 'its topics say'), (last_unacknowledged, ''), (twice, '')]
+    for change, words in rows:
+        sent = records()
+        received = {1: [(one.topic, one.payload) for one in sent]}
+        change(sent, received)
+        try:
+            check(sent, received)
+            is_right = words == ''
+        except Wrong as why:
+            is_right = words != '' and words in str(why)
+        failed += not is_right
+        print(f'{change.__name__}: {"as it should be" if is_right else "NOT SEEN"}')
+    whole, rest = mqtt_between.packets(bytes([0x40, 2, 0, 7, 0x32, 0x80, 1]) + bytes(128) + bytes([0x30, 5, 0]))
+    is_right = [(first, len(body)) for first, body in whole] == [(0x40, 2), (0x32, 128)] and rest == bytes([0x30, 5, 0])
+    failed += not is_right
+    print(f'packets: {"as it should be" if is_right else "NOT SO"}')
+    print(f'{len(rows) + 1 - failed} passed, {failed} failed')
+    return 1 if failed else 0
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split('\n\n')[0])
+    parser.add_argument('--kills', type=int, default=100)
+    parser.add_argument('--seed', default='1')
+    parser.add_argument('--self-test', action='store_true')
+    options = parser.parse_args()
+    if options.self_test:
+        return self_test()
+    run = Run(options.kills, options.seed)
+    began = time.monotonic()
+    wrong = e2e.run(run)
+    if not wrong:
+        try:
+            acknowledged, compared, dropped = check(run.between.sent, run.received)
+            print(f'{dict(run.told)}; {run.starts} starts, {run.brokers} brokers, {time.monotonic() - began:.0f} s: '
+                  f'{len(run.between.sent)} messages sent, {acknowledged} states acknowledged and all of them received, '
+                  f'{dropped} dropped and all of them told; counters of {compared} starts compared')
+            if dropped == 0 or compared == 0:
+                wrong = ['nothing was dropped, or no counters could be compared: more kills show it']
+        except Wrong as why:
+            wrong = [str(why)]
+    print(*wrong, sep='\n')
+    print(f'{int(not wrong)} passed, {int(bool(wrong))} failed')
+    return 1 if wrong else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())

@@ -1,0 +1,318 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""The tool in a bad world, in real time: its sensors are killed, stopped and unplugged, it is stopped itself, its output
+fills, stalls or is closed, and the wall clock jumps.
+
+    run.py [--rounds 30] [--seed N] [--at-once 8]     another seed, other rounds; one round: --only N
+    run.py --self-test                                shows that it can fail
+
+FATHOM is the tool, as for tests/tool/e2e. Each round is a kind of output (OUTPUTS), which says how it has to end. In all of
+them: it does not hang, no reading is wrong or of a sensor that was gone, no row is half written, no descriptor is
+lost. The last line is "N passed, M failed"."""
+import argparse
+import collections
+import concurrent.futures
+import fcntl
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+sys.path[:0] = [os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), 'e2e')]
+import e2e  # noqa: E402: from there
+import faults  # noqa: E402
+from faults import Wrong  # noqa: E402
+
+CLOCK = '/usr/lib/x86_64-linux-gnu/faketime/libfaketime.so.1'
+JUMPS = ('-3600', '-86400', '+7200', '-0.5', '+0')  # seconds, of the wall clock alone
+
+
+class Round(e2e.Case):
+    """One of them; the name of its output is a method."""
+
+    def __init__(self, number, seed, tool=None):
+        super().__init__('runTest')
+        self.random = random.Random(f'{seed}/{number}')
+        self.kind = OUTPUTS[number % len(OUTPUTS)]
+        self.number, self.tool = number, tool or e2e.FATHOM
+        self.readings = 0
+
+    def id(self):
+        return f'chaos.{self.number:4} {self.kind}'
+
+    def runTest(self):
+        self.site = faults.Site(self, self.random)
+        self.is_json = self.random.random() < 0.3
+        getattr(self, self.kind)()
+
+    def reader(self, *more, limit=None, **options):
+        """fathom read of all sensors; limit: of the size of its files."""
+        self.began = time.monotonic()
+        command = ['prlimit', f'--fsize={limit}'] if limit else []
+        return self.start([*command, self.tool, 'read', *self.site.words(), '--reconnect', '--interval', '60', '--format', 'json' if self.is_json else 'csv', *more], **options)
+
+    def disturb(self, reader, seconds=faults.HOLDS):
+        until = time.monotonic() + seconds
+        while time.monotonic() < until and not reader.has_ended(self.site.happens(reader)):
+            pass
+
+    def check(self, text, **options):
+        self.readings += faults.check(faults.rows_of(text, self.is_json), self.site, self.began, **options)
+
+    def ended(self, program, codes, words=''):
+        done = program.finish()
+        if done.code not in codes or words not in done.err:
+            raise Wrong(f'it ended so: {done}')
+        return done
+
+    def each_is_read(self, read, reader):
+        """Each of the sensors that live now, within the longest pause between two tries."""
+        alive = {sim.mm for sim in self.site.sims.values()}
+
+        def all_are():
+            seen = {row['distance_mm'] for row in faults.rows_of(read(), self.is_json)[-60:] if row['status'] == 'target'}
+            return alive <= {int(mm) for mm in seen}
+        deadline = time.monotonic() + faults.BACK
+        while not all_are():
+            if reader.has_ended(0.1) or time.monotonic() > deadline:
+                raise Wrong(f'not all of {alive} are read again: {read()[-1500:]}{reader.said["err"].decode()[-1500:]}')
+
+    def goes_on(self, reader, read):
+        """Through all of it, and with no more descriptors than at first; a signal ends it."""
+        self.each_is_read(read, reader)
+        before = faults.descriptors(reader)
+        self.disturb(reader)
+        self.each_is_read(read, reader)
+        after = faults.descriptors(reader)
+        if after != before:
+            raise Wrong(f'{before} descriptors at first, {after} now')
+        done = self.ended_by_signal(reader)
+        if done.cpu > 0.25 * done.elapsed:
+            raise Wrong(f'it spins: {done.cpu:.2f} s of CPU in {done.elapsed:.2f} s')
+
+    def ended_by_signal(self, reader):
+        reader.send(self.random.choice((signal.SIGINT, signal.SIGTERM, signal.SIGHUP)))
+        return self.ended(reader, (0, 1))
+
+    # ---- what its output is ----
+
+    def pipe(self):
+        reader = self.reader()
+
+        def whole():
+            text = reader.said['out'].decode()
+            return text[:text.rfind('\n') + 1]
+        self.goes_on(reader, whole)
+        self.check(reader.done.out)
+
+    def file(self, **options):
+        log = self.path('log')
+        reader = self.reader('--output', log, **options)
+
+        def whole():
+            if not os.path.exists(log):
+                return ''
+            with open(log, encoding='ascii') as file:
+                return file.read()
+        self.goes_on(reader, whole)
+        self.check(whole())
+
+    def file_while_the_wall_clock_jumps(self):
+        clock = self.path('clock')
+
+        def jump():
+            with open(clock + '.new', 'w', encoding='ascii') as file:
+                file.write(self.random.choice(JUMPS))
+            os.replace(clock + '.new', clock)
+        jump()
+        happens = self.site.happens
+        self.site.happens = lambda reader: (jump(), happens(reader))[1]
+        self.file(env={**os.environ, 'LD_PRELOAD': CLOCK, 'FAKETIME_TIMESTAMP_FILE': clock, 'FAKETIME_NO_CACHE': '1',
+                       'FAKETIME_DONT_FAKE_MONOTONIC': '1'})
+
+    def file_that_may_not_grow(self):
+        log, limit = self.path('log'), self.random.randrange(300, 4000)
+        reader = self.reader('--output', log, limit=limit)
+        self.disturb(reader, e2e.PATIENCE)
+        self.ended(reader, (1,), 'File too large')
+        with open(log, encoding='ascii') as file:
+            text = file.read()
+        if len(text) > limit:
+            raise Wrong(f'{len(text)} bytes')
+        self.check(text)
+
+    def disk_that_is_full(self):
+        with open('/dev/full', 'w', encoding='ascii') as full:
+            reader = self.reader(stdout=full)
+            self.disturb(reader, e2e.PATIENCE)
+            self.ended(reader, (1,), 'No space left on device')
+
+    def pipe_that_is_closed(self):
+        ours, theirs = os.pipe()
+        with open(ours, 'rb') as pipe:
+            reader = self.reader(stdout=theirs)
+            os.close(theirs)
+            text = b''.join(pipe.readline() for _ in range(self.random.randrange(1, 20)))
+        self.check(text.decode())
+        self.disturb(reader, e2e.PATIENCE)
+        self.ended(reader, (0, 1))
+
+    def pipe_that_stalls(self):
+        """Nothing takes its rows for some seconds; then all that it has written is whole."""
+        reader = self.reader()
+        fcntl.fcntl(reader.process.stdout, fcntl.F_SETPIPE_SZ, 4096)  # rows of a second
+        self.disturb(reader, 0.7)
+        until = time.monotonic() + 2.5
+        while time.monotonic() < until:
+            name = self.random.choice(self.site.names)
+            self.site.unplug(name)
+            self.site.plug(name)
+            time.sleep(0.2)
+        self.ended_by_signal(reader)
+        self.check(reader.done.out)
+
+    def file_of_a_tool_that_is_killed(self):
+        """By SIGKILL and begun again, to the same file."""
+        log = self.path('log')
+        for _ in range(3):
+            reader = self.reader('--output', log)
+            self.disturb(reader, self.random.uniform(0.02, 0.9))
+            reader.end(signal.SIGKILL)
+        reader = self.reader('--output', log, '--duration', '1')
+        self.ended(reader, (0, 1))
+        with open(log, encoding='ascii') as file:
+            self.check(file.read(), is_one_run=False)
+
+    def saved_settings(self):
+        """The sensor or the tool dies meanwhile: a whole file or none."""
+        name = self.site.names[0]
+        self.site.unplug(name)
+        sensor = 'hps167s:7'
+        saved = self.path('saved')
+        whole = self.path('whole')
+        sim = self.sim(sensor)
+        self.ended(self.start([self.tool, 'save', sensor, '--port', str(sim), '--file', whole]), (0,))
+        save = self.start([self.tool, 'save', sensor, '--port', str(sim), '--file', saved])
+        save.hear(lambda: False, self.random.uniform(0, 0.12))
+        if self.random.random() < 0.5:
+            sim.end(signal.SIGKILL)
+            self.ended(save, (0, 1))
+        else:
+            save.end(signal.SIGKILL)
+        if os.path.exists(saved) and self.settings_of(saved) != self.settings_of(whole):
+            raise Wrong('half a file')
+
+    def settings_of(self, path):
+        with open(path, encoding='ascii') as file:
+            return [line for line in file if not line.startswith('#')]
+
+
+OUTPUTS = ('pipe', 'file', 'file_that_may_not_grow', 'file_while_the_wall_clock_jumps', 'pipe_that_is_closed',
+           'file_of_a_tool_that_is_killed', 'pipe_that_stalls', 'disk_that_is_full', 'pipe', 'saved_settings')
+
+
+def play(numbers, seed, at_once, tool=None):
+    """[(number, kind, what was wrong)] of the rounds."""
+    def one(number):
+        case = Round(number, seed, tool)
+        wrong = e2e.run(case)
+        return number, case.kind, ''.join(wrong), case.readings
+    with concurrent.futures.ThreadPoolExecutor(at_once) as pool:
+        return list(pool.map(one, numbers))
+
+
+# What is planted: rounds of these kinds, the file, the old text and the new one, and words that they end with.
+PLANTED = [
+    ('file_that_may_not_grow', 'examples/fathom/shared/command.c', 'ftruncate(STDOUT_FILENO, before) != 0', 'before == 0',
+     'half a row'),
+    ('file_that_may_not_grow', 'examples/fathom/shared/events.c', '(void)signal(SIGXFSZ, SIG_IGN);', '', 'status -25'),
+    ('disk_that_is_full', 'examples/fathom/shared/command.c', 'take_back(before, length);\n    return error;',
+     'take_back(before, length);\n    return 0;', 'still runs'),
+    ('pipe', 'port/posix/uart.c', '(void)close(port->fd); /* EINTR', '/* EINTR', 'descriptors at first'),
+    ('pipe', 'port/posix/loop_source.c', 'fathom_loop_due_at(source, now_us + source->pause_us);',
+     'fathom_loop_due_at(source, now_us + source->pause_us * 100);', 'read again'),
+    ('pipe', 'examples/fathom/shared/events.c', '    ended = 1;', '', 'still runs'),
+    ('pipe', 'examples/fathom/read/read.c', '    write_row(run, station, &result, counters_member(',
+     '    if (station->counters.readings != 0) {\n        static result_t first;\n'
+     '        first.sample = result.sample;\n        first.sample.kind = FATHOM_TARGET;\n'
+     '        first.sample.distance_mm = 1000;\n        first.sample.probe = 1;\n'
+     '        write_row(run, station, &first, NULL);\n        return;\n    }\n'
+     '    write_row(run, station, &result, counters_member(', 'a wrong reading'),
+    ('file_while_the_wall_clock_jumps', 'port/posix/clock.c', 'CLOCK_MONOTONIC', 'CLOCK_REALTIME', 'goes back'),
+    ('saved_settings', 'examples/fathom/backup/save.c', 'if (!backup_read(&session, &unit)) return STATUS_FAILED;',
+     '(void)backup_read(&session, &unit);', 'half a file')]
+
+ENOUGH = 10  # rounds
+
+
+def self_test(seed, only):
+    """Each planted fault is seen in some of its rounds."""
+    tree = os.path.join(e2e.ROOT, 'build-chaos', 'source')
+    build = os.path.join(e2e.ROOT, 'build-chaos', 'build')
+    shutil.rmtree(tree, ignore_errors=True)
+    for name in ('include', 'src', 'port', 'examples', 'CMakeLists.txt', 'LICENSE', 'README.md'):
+        source = os.path.join(e2e.ROOT, name)
+        (shutil.copytree if os.path.isdir(source) else shutil.copy)(source, os.path.join(tree, name))
+    subprocess.run(['cmake', '-S', tree, '-B', build, '-DCMAKE_BUILD_TYPE=Release', '-DFATHOM_TESTS=OFF',
+                    '-DFATHOM_STRICT=OFF'], check=True,
+                   stdout=subprocess.DEVNULL)
+    missed = 0
+    planted = [row for row in PLANTED if only in row[0]]
+    for kind, path, old, new, words in planted:
+        path = os.path.join(tree, path)
+        with open(path, encoding='utf-8') as file:
+            text = file.read()
+        if text.count(old) != 1:
+            sys.exit(f'{old!r} is not once in {path}')
+        for now in (text.replace(old, new), text):
+            with open(path, 'w', encoding='utf-8') as file:
+                file.write(now)
+            if now is text:
+                break
+            subprocess.run(['cmake', '--build', build, '--parallel', '2', '--target', 'fathom_tool'], check=True,
+                           stdout=subprocess.DEVNULL)
+            tool = os.path.join(build, 'fathom')
+            numbers = [number for number in range(ENOUGH * len(OUTPUTS))
+                       if OUTPUTS[number % len(OUTPUTS)] == kind][:ENOUGH]
+            wrong = [row[2] for row in play(numbers, seed, ENOUGH, tool) if row[2]]
+            is_seen = any(words in text for text in wrong)
+            missed += not is_seen
+            print(f'{"seen" if is_seen else "MISSED"} in {len(wrong)} of {len(numbers)} rounds: {words}: {new.strip()[:60]!r}')
+            if not is_seen and wrong:
+                print(wrong[0][-1500:])
+    print(f'{len(planted) - missed} passed, {missed} failed')
+    return 1 if missed or not planted else 0
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split('\n\n')[0])
+    parser.add_argument('--rounds', type=int, default=30)
+    parser.add_argument('--seed', default='1')
+    parser.add_argument('--only', type=int)
+    parser.add_argument('--at-once', type=int, default=8)
+    parser.add_argument('--self-test', nargs='?', const='', metavar='KIND', help='plants faults; or those of this kind')
+    options = parser.parse_args()
+    for needed in (e2e.FATHOM, CLOCK):
+        if not os.path.exists(needed):
+            sys.exit(f'{needed} is not there')
+    if not shutil.which('prlimit'):
+        sys.exit('prlimit is not there')
+    if options.self_test is not None:
+        return self_test(options.seed, options.self_test)
+    numbers = range(options.rounds) if options.only is None else [options.only]
+    done = play(numbers, options.seed, options.at_once)
+    of_each = collections.Counter(kind for _, kind, _, _ in done)
+    print(*(f'{kind:34} {count:4} rounds' for kind, count in sorted(of_each.items())), sep='\n')
+    print(f'{sum(readings for *_, readings in done)} readings, each of the right sensor and in its time')
+    failed = [row for row in done if row[2]]
+    for number, kind, wrong, _ in failed:
+        print(f'\nround {number}, {kind} (--seed {options.seed} --only {number}):\n{wrong}')
+    print(f'{len(done) - len(failed)} passed, {len(failed)} failed')
+    return 1 if failed or not done else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())
