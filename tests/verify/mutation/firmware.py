@@ -20,6 +20,9 @@ CONFIGURE = ['-DCMAKE_BUILD_TYPE=Release', '-DFATHOM_FIRMWARE=ON', '-DFATHOM_STR
 # What libclang calls what each compiler builds for.
 TARGETS = {'avr': 'avr', 'rp2040': 'arm-none-eabi', 'stm32f4': 'arm-none-eabi', 'mps2': 'arm-none-eabi',
            'virt': 'riscv32'}
+# The folder of each port: what only a test machine has stands with the tests.
+FOLDERS = {'avr': 'port/avr', 'rp2040': 'port/rp2040', 'stm32f4': 'port/stm32f4', 'mps2': 'tests/firmware/mps2/port',
+           'virt': 'tests/firmware/virt/port'}
 LIMIT_S = 60
 MOST_OF_USUAL = 4
 
@@ -75,7 +78,7 @@ class Machine:
         found = []
         for entry in entries:
             path = os.path.relpath(entry['file'], self.root)
-            if path.startswith(f'port/{self.name}/'):
+            if path.startswith(FOLDERS[self.name] + '/'):
                 found += mutants_of(path, ROOT, self.arguments(entry))
         return found
 

@@ -24,16 +24,16 @@ class Unit:
     files: frozenset  # that it is made of
 
     def archive(self):
-        """Of which it is a part, or ''."""
-        target = re.search(r'port/CMakeFiles/(\w+)\.dir/', self.object)
-        return f'../port/lib{target[1]}.a' if target else ''
+        """The library that the object may be a part of, relative to the build folder."""
+        place = re.match(r'(.*/)CMakeFiles/(\w+)\.dir/', self.object)
+        return f'{place[1]}lib{place[2]}.a'
 
 
 class PlantedUnits:
     """Programs of tests linked with other objects, when they are first asked for."""
 
-    def __init__(self, units, objects, scratch, options=()):
-        self.units, self.objects, self.options = units, objects, options
+    def __init__(self, build, units, objects, scratch, options=()):
+        self.build, self.units, self.objects, self.options = build, units, objects, options
         self.folder = tempfile.mkdtemp(dir=scratch)
         self.environment = {}
         self.made = {}
@@ -50,11 +50,11 @@ class PlantedUnits:
         with open(os.path.join(folder, 'CMakeFiles', f'{name}.dir', 'link.txt'), encoding='utf-8') as file:
             words = shlex.split(file.read())
         before = []
+        parts = [os.path.relpath(os.path.join(folder, word), self.build) for word in words]
         for unit, path_of_object in zip(self.units, self.objects):
-            own = unit.object.removeprefix('tests/')
-            if own in words:
-                words[words.index(own)] = path_of_object
-            elif unit.archive() in words:
+            if unit.object in parts:
+                words[parts.index(unit.object)] = path_of_object
+            elif unit.archive() in parts:
                 before.append(path_of_object)
         if not before and not set(words) & set(self.objects):
             return path
@@ -105,7 +105,7 @@ class PortBench(Bench):
         for number, unit in enumerate(units):
             objects.append(os.path.join(root, f'{number}.o'))
             command(self.words(unit, unit.source, objects[-1], ['-O0', '--coverage']), cwd=root)
-        return self.cover(root, PlantedUnits(units, objects, root, ['--coverage']))
+        return self.cover(root, PlantedUnits(self.folder, units, objects, root, ['--coverage']))
 
     @staticmethod
     def words(unit, source, target, options, *folders):
@@ -154,4 +154,4 @@ class PortBench(Bench):
         return objects
 
     def plant(self, mutant, objects, scratch):
-        return PlantedUnits(self.of(mutant), objects, scratch)
+        return PlantedUnits(self.folder, self.of(mutant), objects, scratch)

@@ -1,25 +1,24 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Tries mutants of the sources: is each of them seen by a test?
+"""Makes mutants of the sources, and reports each that no test detects.
 
-    run.py --all                     all of src/
-    run.py --changed --sample 400    those of the files that changed since the figures were kept, and some of the others
-    run.py FILE ...                  all of these; here and with --all, --record keeps the figures, in figures.csv
-    run.py --only src/engine/line.c:220     those of one line, or the one of an identity, with what sees them
-    run.py --ports [N]               some of each port, of which only the figures are told
-    run.py --list [FILE ...]         only lists them
-    run.py --self-test               shows that it can fail
+    run.py --all                     all mutants of src/
+    run.py --changed                 the mutants of the files of src/ that git reports as changed since the last tag
+    run.py --sample 400              400 mutants of src/; with --changed, half of them of the changed files
+    run.py FILE ...                  the mutants of these files
+    run.py --only src/engine/line.c:220     the mutants of one line, or of one identity, with the test that kills each
+    run.py --ports [N]               N mutants (10) of each port; survivors are printed and do not fail
+    run.py --list [FILE ...]         only lists the mutants
+    run.py --self-test               shows that a mutant that no test detects fails
 
-A mutant is killed when a test that executes its line fails, crashes or takes some times as long as it usually does. One
-whose optimised object is the same as before is not counted, and one that is no C is not made. What survives fails,
-unless survivors.py lists it with the reason why it means the same; the slow tests do not look at those. In a sample
-what survives is told, and fails where fewer than 95 % are killed: which ones it meets is chance."""
+A mutant is killed if a test that executes its line fails, crashes or takes several times its usual time. A mutant that
+compiles to the same optimised object is not counted, and neither is one that does not compile. A survivor fails, unless
+survivors.py lists it with the reason why it means the same; the slow tests do not run on listed mutants. A sample
+prints its survivors, and fails if less than 95 % are killed."""
 import argparse
 import collections
 import concurrent.futures
-import csv
 import difflib
-import hashlib
 import os
 import random
 import signal
@@ -36,10 +35,8 @@ from ports import HOST, PortBench
 from syntax import library
 from trial import KILLED, NOT_C, SAME_CODE, SURVIVED, Trial
 
-HERE = os.path.dirname(os.path.abspath(__file__))
-FIGURES = os.path.join(HERE, 'figures.csv')
-COLUMNS = ['commit', 'date', 'module', 'source', 'made', 'same_code', 'killed', 'survived', 'listed', 'seconds']
-SHARE = 95  # percent of what can be killed in src/
+SHARE = 95  # percent of the mutants of src/ that a test can kill
+SELF_TEST = 'src/engine/debounce.c'  # survivors.py lists some of its mutants
 
 
 def processor_s():
@@ -48,29 +45,29 @@ def processor_s():
 
 
 def module_of(mutant):
-    """Its file; of a port's the folder."""
-    parts = mutant.file.split('/')
-    return '/'.join(parts[:2]) if parts[0] == 'port' else mutant.file
+    """Returns the file of the library, or the folder of the port."""
+    return mutant.file if mutant.file.startswith('src/') else os.path.dirname(mutant.file)
 
 
-def digest(path):
-    with open(os.path.join(ROOT, path), 'rb') as file:
-        return hashlib.sha256(file.read()).hexdigest()[:12]
-
-
-def kept():
-    """The last row of each file."""
-    if not os.path.exists(FIGURES):
-        return []
-    with open(FIGURES, encoding='utf-8', newline='') as file:
-        rows = list(csv.DictReader(file))
-    return list({row['module']: row for row in rows}.values())
+def git(*words):
+    done = subprocess.run(['git', *words], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
+                          check=False)
+    return done.stdout.split() if done.returncode == 0 else []
 
 
 def commit():
-    done = subprocess.run(['git', 'rev-parse', 'HEAD'], cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
-                          text=True, check=False)
-    return done.stdout.strip()[:12] if done.returncode == 0 else ''
+    return ''.join(git('rev-parse', 'HEAD'))[:12]
+
+
+def changed_files():
+    """Returns the files of src/ that changed since the last tag, or in the last 20 commits if there is no tag."""
+    base = (git('describe', '--tags', '--abbrev=0') or git('rev-parse', '--verify', 'HEAD~20') or
+            git('rev-list', '--max-parents=0', 'HEAD'))
+    if not base:
+        raise Broken('--changed needs the history of git')
+    files = {*git('diff', '--name-only', base[0], '--', 'src'), *git('ls-files', '--others', 'src')} & set(library())
+    print(f'changed since {base[0][:12]}:', *(sorted(files) or ['no file of src/']))
+    return files
 
 
 def diff(mutant, text):
@@ -135,47 +132,31 @@ class Report:
             print(f'{100 * killed / possible:.1f} % of those that a test can see are killed')
         return killed, of_list, 100 * killed >= SHARE * possible
 
-    def record(self):
-        """The figures of whole files; those of the runs before stay."""
-        is_new = not os.path.exists(FIGURES)
-        with open(FIGURES, 'a', encoding='utf-8', newline='') as file:
-            writer = csv.writer(file, lineterminator='\n')
-            if is_new:
-                writer.writerow(COLUMNS)
-            today = time.strftime('%Y-%m-%d')
-            for module, row in self.figures().items():
-                writer.writerow([commit(), today, module, digest(module), *row[:5], round(row[5])])
-
 
 def seed_of(options):
     return options.seed if options.seed is not None else int(commit() or time.strftime('%Y%m%d'), 16)
 
 
 def chosen(options, mutants, listed):
-    """What the options say is to be tried."""
-    files = set(options.files)
-    if options.all:
-        files = set(library())
-    if options.changed:
-        before = {row['module']: row['source'] for row in kept()}
-        files |= {path for path in library() if before.get(path) != digest(path)}
-        print('changed since the figures were kept:', *(sorted(files) or ['nothing']))
+    """Returns the mutants that the options select."""
     if options.only:
         place = options.only.rpartition(':')
         return [mutant for mutant in mutants if options.only == mutant.identity or
                 (mutant.file == place[0] and place[2] == str(mutant.line))]
-    found = [mutant for mutant in mutants if mutant.file in files]
-    if options.sample:
-        seed = seed_of(options)
-        rest = [mutant for mutant in mutants if mutant.file not in files and mutant not in listed]
-        sample = random.Random(seed).sample(rest, min(options.sample, len(rest)))
-        print(f'a sample of {len(sample)} of {len(rest)}: --seed {seed}')
-        found += sorted(sample, key=lambda mutant: (mutant.file, mutant.start))
-    return found
+    files = set(library()) if options.all else set(options.files) | (changed_files() if options.changed else set())
+    first = [mutant for mutant in mutants if mutant.file in files]
+    if not options.sample:
+        return first
+    random_of_seed = random.Random(seed_of(options))
+    rest = [mutant for mutant in mutants if mutant.file not in files and mutant not in listed]
+    found = random_of_seed.sample(first, min(options.sample // 2, len(first)))
+    found += random_of_seed.sample(rest, min(options.sample - len(found), len(rest)))
+    print(f'a sample of {len(found)} of {len(first) + len(rest)}: --seed {seed_of(options)}')
+    return sorted(found, key=lambda mutant: (mutant.file, mutant.start))
 
 
 def try_ports(options):
-    """Some of the ports' mutants, whose figures are told and fail nothing."""
+    """Tries some mutants of each port. Survivors do not fail."""
     report = Report(Listed([]))
     seed = seed_of(options)
     print(f'{options.ports} mutants a port: --seed {seed}')
@@ -203,6 +184,27 @@ def try_ports(options):
     return 0 if report.results else 1
 
 
+def self_test(options):
+    """Returns what try_them() would for one small file if survivors.py were empty: exactly the listed mutants must
+    fail."""
+    mutants = mutants_of(SELF_TEST)
+    listed = Listed([mutant for path in library() for mutant in mutants_of(path)])
+    report = Report(Listed([]))
+    bench = Bench(os.path.abspath(options.build), options.jobs)
+    bench.prepare()
+    report.trial = Trial(bench)
+    for result in report.trial.attempt_all(mutants):
+        report.add(result)
+    report.table()
+    expected = {mutant for mutant in mutants if mutant in listed}
+    seen = {result.mutant for result in report.unlisted}
+    for mutant in expected ^ seen:
+        print(f'{"no test detects" if mutant in seen else "this mutant does not fail:"} {mutant.identity}')
+    is_right = bool(expected) and expected == seen
+    print(f'{SELF_TEST}: {len(seen)} planted survivors fail\n{int(is_right)} passed, {int(not is_right)} failed')
+    return 0 if is_right else 1
+
+
 def try_them(options):
     paths = sorted(set(library()) | set(options.files))
     all_of_them = [mutant for path in paths for mutant in mutants_of(path)]
@@ -227,12 +229,10 @@ def try_them(options):
     print(f'{len(mutants)} in {time.time() - began:.0f} s, {processor_s() - used_before:.0f} s of the processors')
     killed, of_list, is_enough = report.table()
     failed = len(report.problems)
-    if options.sample and not options.all:
+    if options.sample:
         failed += not is_enough
     else:
         failed += len(report.unlisted)
-    if options.record:
-        report.record()
     print(f'{killed + of_list} passed, {failed} failed')
     return 1 if failed or not mutants else 0
 
@@ -240,13 +240,12 @@ def try_them(options):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('--all', action='store_true', help='all of src/')
-    parser.add_argument('--changed', action='store_true', help='files that changed since their figures were kept')
-    parser.add_argument('--sample', type=int, metavar='N', default=0, help='and so many of the others')
+    parser.add_argument('--changed', action='store_true', help='files that changed since the last tag, or in 20 commits')
+    parser.add_argument('--sample', type=int, metavar='N', default=0, help='N mutants, half of them of the named files')
     parser.add_argument('--seed', type=int, help='of the sample; else the commit is')
     parser.add_argument('--only', metavar='FILE:LINE', help='these, or the one of an identity, and what sees them')
     parser.add_argument('--list', action='store_true', help='only list them')
     parser.add_argument('--quick', action='store_true', help='without the slow tests, which may see what survives')
-    parser.add_argument('--record', action='store_true', help='keep the figures of the files')
     parser.add_argument('--ports', type=int, metavar='N', nargs='?', const=10, default=0,
                         help='instead: a sample of so many a port')
     parser.add_argument('--self-test', action='store_true', help='show that it can fail')
@@ -254,14 +253,9 @@ def main():
     parser.add_argument('-j', '--jobs', type=int, default=os.cpu_count() or 1)
     parser.add_argument('files', nargs='*', metavar='FILE')
     options = parser.parse_args()
-    if options.record and (options.sample or options.only or options.ports):
-        parser.error('--record keeps the figures of whole files')
-    if options.self_test:
-        import self_test  # pylint: disable=import-outside-toplevel
-        return self_test.main()
     signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(f'ended by signal {number}'))  # and cleans up
     try:
-        return try_ports(options) if options.ports else try_them(options)
+        return (self_test if options.self_test else try_ports if options.ports else try_them)(options)
     except Broken as error:
         print(f'{error}\n0 passed, 1 failed')
         return 1

@@ -1,26 +1,26 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Shows by Frama-C's EVA that no input makes a run-time error: runs each harness on each model of a machine.
+"""Shows by Frama-C's EVA that no input causes a run-time error: runs each harness on each model of a machine.
 
-    eva.py [--quick] [--machine NAME] [--update] [HARNESS ...]   all harnesses, or those with a HARNESS in their names
-    eva.py --self-test [ROW ...]         plants the faults of faults.py, one at a time, and sees that each is found
+    eva.py [--quick] [--machine NAME] [HARNESS ...]   all harnesses, or those with HARNESS in their names
+    eva.py --self-test                                finds the planted fault
     eva.py --list
 
-A harness is a file FOLDER/NAME.c with a main() that calls what it proves with any input. The comment at its top says:
+A harness is a file FOLDER/NAME.c whose main() calls the sources that it proves with any input. The comment at its top has:
 
-    proves:  the sources of which every function is to be reached; patterns are allowed
-    with:    (may be missing) what is linked besides
-    options: (may be missing) more of Frama-C's options
-    unreached: (may be missing) functions of `proves` that another harness reaches
-    volatile: kept (may be missing: no)
-    quick:   no (may be missing: yes)
+    proves:  the sources of which every function must be reached; patterns are allowed
+    with:    (optional) further sources to link
+    options: (optional) further options of Frama-C
+    unreached: (optional) functions of `proves` that another harness reaches
+    volatile: kept (optional; no without it)
+    quick:   no (optional; yes without it)
 
-`volatile` is left out of what EVA sees where the head does not say that it is kept (see assumptions.h).
+EVA does not see `volatile`, unless the comment says that it is kept (see assumptions.h).
 
---quick: one machine, no harness that says no. --update: keeps better figures in figures.csv.
+--quick: one machine, without the harnesses that say `quick: no`.
 
-Every alarm fails but those of which remaining.py has the argument, and so does a source of src/ that no harness proves,
-but for those that remaining.py names."""
+These fail: an alarm that remaining.py does not argue, a statement that no run reaches and remaining.py does not explain,
+and a source of src/ that no harness proves."""
 import argparse
 import concurrent.futures
 import csv
@@ -33,12 +33,10 @@ import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(HERE)))
-sys.path.insert(0, os.path.join(ROOT, 'tests', 'verify', 'mutation'))
+sys.path.insert(0, os.path.dirname(HERE))
 import c_text  # noqa: E402
-import faults  # noqa: E402
 import remaining  # noqa: E402
 
-FIGURES = os.path.join(HERE, 'figures.csv')
 MACHINES = ('gcc_x86_32', 'gcc_x86_16', 'ppc_32')
 JOBS = 2
 FOLDER = os.path.join(ROOT, 'build-proof')
@@ -52,6 +50,11 @@ HEAD = re.compile(r'^ \* (proves|with|options|unreached|volatile|quick): *(.*(?:
 # stands beside the alarm whose one side it is
 DEAD = re.compile(r'^\[kernel\] .*: Warning: *\n +all target addresses were invalid.*\n', re.M)
 COVERED = re.compile(r'^ *(\w+): (\d+) stmts out of (\d+)', re.M)
+
+
+# The planted fault: the harness that detects it, and the file, the function, the old text and the new text.
+FAULT = ('pure/dyp_55aa', 'src/codec/dyp_55aa.c', 'fathom_dyp_55aa_values', 'return FATHOM_DYP_PROBES;',
+         'return FATHOM_DYP_PROBES + 1;')
 
 
 class Bad(Exception):
@@ -113,10 +116,6 @@ class Result:
         self.reached = self.statements = 0
         self.seconds = 0.0  # of one core
 
-    def figures(self):
-        return {'harness': self.name, 'machine': self.machine, 'alarms': len(self.alarms),
-                'unreached': self.statements - self.reached, 'statements': self.statements}
-
 
 class Alarm:
     def __init__(self, row, root):
@@ -154,8 +153,13 @@ def look_at_coverage(result, harness, log):
         if reached == 0 and name not in harness.unreached:
             result.wrong.append(f'{name} is never reached')
         if reached != 0 and name in harness.unreached:
-            result.wrong.append(f'{name} is reached, and said not to be')
-    result.wrong += [f'{name} is not there' for name in sorted(own - defined)]
+            result.wrong.append(f'{name} is reached, but `unreached:` names it')
+        missed, _ = remaining.UNREACHED.get((harness.name, name), (0, ''))
+        if reached != 0 and of - reached != missed:
+            result.wrong.append(f'{name}: {of - reached} of {of} statements are never reached, and UNREACHED of '
+                                f'remaining.py explains {missed}')
+    explained = {name for of_harness, name in remaining.UNREACHED if of_harness == harness.name}
+    result.wrong += [f'{name} is not there' for name in sorted((own | explained) - defined)]
 
 
 def run(harness, machine, folder):
@@ -199,28 +203,9 @@ def run_all(jobs, folder):
         yield from pool.map(lambda job: run(*job, folder), jobs)
 
 
-def kept():
-    if not os.path.exists(FIGURES):
-        return {}
-    with open(FIGURES, encoding='utf-8', newline='') as file:
-        return {(row['harness'], row['machine']): row for row in csv.DictReader(file)}
-
-
-def keep(figures):
-    with open(FIGURES, 'w', encoding='utf-8', newline='') as file:
-        table = csv.DictWriter(file, ('harness', 'machine', 'alarms', 'unreached', 'statements'), lineterminator='\n')
-        table.writeheader()
-        table.writerows(figures[key] for key in sorted(figures))
-
-
-def judge(result, before):
-    """What is wrong with it, beside what was before (None: it is new)."""
-    wrong = [alarm.text for alarm in result.alarms if not alarm.is_argued()] + result.wrong
-    now = result.figures()
-    if before is None:
-        return wrong + ['not in figures.csv: --update']
-    return wrong + [f'{name}: {now[name]}, {before[name]} before' for name in ('alarms', 'unreached')
-                    if now[name] > int(before[name])]
+def judge(result):
+    """Returns what is wrong with a result."""
+    return [alarm.text for alarm in result.alarms if not alarm.is_argued()] + result.wrong
 
 
 def struck(results):
@@ -245,27 +230,19 @@ def prove(options):
     jobs = [(each, machine) for each in chosen for machine in machines if each.quick or not options.quick]
     if not jobs:
         raise Bad('no such harness')
-    before, results, failed = kept(), [], 0
+    results, failed = [], 0
     for result in run_all(jobs, FOLDER):
         results.append(result)
-        key = (result.name, result.machine)
-        wrong = judge(result, before.get(key, result.figures() if options.update else None))
+        wrong = judge(result)
         failed += bool(wrong)
         print(f'{result.name} {result.machine}: {len(result.alarms)} alarms, {result.reached} of '
               f'{result.statements} statements, {result.seconds:.0f} s{": FAILED" if wrong else ""}')
         print(''.join(f'    {line}\n' for line in wrong), end='', flush=True)
-        if not wrong:
-            before[key] = result.figures()
-        if options.update:
-            keep(before)
     missing = [] if options.names else unproved(chosen)
     if not (options.names or options.quick or options.machine):
         missing += struck(results)
-        before = {key: row for key, row in before.items() if key in {(each.name, each.machine) for each in results}}
     print(''.join(f'{line}: FAILED\n' for line in missing), end='')
     failed += len(missing)
-    if options.update:
-        keep(before)
     print(f'{sum(len(each.alarms) for each in results)} alarms, {sum(each.reached for each in results)} of '
           f'{sum(each.statements for each in results)} statements reached, {len(remaining.ARGUED)} alarms argued, '
           f'{len(remaining.UNPROVED)} sources not proved')
@@ -273,71 +250,28 @@ def prove(options):
     return failed
 
 
-def plant(row, number):
-    """What is seen of a fault, as a list; it is planted in a copy of its own. That Frama-C gives up is seen only where
-    the row says so."""
-    _, harness, file, function, old, new, *may_end = row
-    root = os.path.join(FOLDER, 'planted', str(number))
+def self_test():
+    """Plants FAULT in a copy of the sources, and finds it."""
+    harness, file, function, old, new = FAULT
+    root = os.path.join(FOLDER, 'planted')
     shutil.rmtree(root, ignore_errors=True)
     for part in ('include', 'src', 'tests/verify/proof'):
         shutil.copytree(os.path.join(ROOT, part), os.path.join(root, part))
     path = os.path.join(root, file)
-    text = c_text.replace(read(path), [(function, old, new)])
+    text = c_text.replace(read(path), function, old, new)
     with open(path, 'w', encoding='utf-8') as out:
         out.write(text)
-    chosen = Harness(os.path.join(root, 'tests', 'verify', 'proof', harness + '.c'), root)
-    result = run(chosen, MACHINES[0], os.path.join(root, 'build'))
-    if result.is_broken and may_end != [faults.ENDS]:
-        return [], f'not seen: {result.wrong[0]}'
-    return judge(result, kept().get((harness, MACHINES[0]))), 'not seen'
-
-
-def without_fault(rows):
-    """A harness of which it was not seen that it can fail."""
-    return [f'faults.py: no fault that {each.name} sees' for each in harnesses()
-            if each.name not in {row[1] for row in rows}]
-
-
-def gates():
-    """What the runner itself says of what is wrong, without Frama-C: (what, what is seen of it)."""
-    chosen = harnesses()
-    result = Result(chosen[0], MACHINES[0])
-    before = {name: str(value) for name, value in result.figures().items()}
-    (file, function, text), _ = next(iter(remaining.ARGUED.items()))
-    kind, expression = text.split(': ', 1)
-    result.alarms = [Alarm({'directory': os.path.dirname(file), 'file': os.path.basename(file), 'line': 0, 'status': '',
-                            'function': function, 'property kind': kind, 'property': expression}, ROOT)]
-    return [('a source that no harness proves', [text for text in unproved(chosen[:-1]) if 'no harness' in text]),
-            ('an argued alarm more than before', judge(result, before)),
-            ('an argued alarm that does not come', struck([])),
-            ('a harness without figures', judge(Result(chosen[0], MACHINES[0]), None)),
-            ('a harness without a fault', without_fault(()))]
-
-
-def self_test(names):
-    rows = [row for row in faults.ROWS if not names or any(name in row[0] for name in names)]
-    own = [] if names else gates()
-    if not rows:
-        raise Bad('no such row')
-    missing = [] if names else without_fault(rows)
-    print(''.join(f'{line}: FAILED\n' for line in missing), end='')
-    failed = len(missing)
-    for name, seen in own:
-        failed += not seen
-        print(f'{name}: {seen[0] if seen else "FAILED: not seen"}', flush=True)
-    with concurrent.futures.ThreadPoolExecutor(JOBS) as pool:
-        for row, (seen, otherwise) in zip(rows, pool.map(plant, rows, range(len(rows)))):
-            failed += not seen
-            print(f'{row[0]}: {seen[0] if seen else f"FAILED: {otherwise}"}', flush=True)
-    print(f'{len(rows) + len(own) + len(missing) - failed} passed, {failed} failed')
-    return failed
+    result = run(Harness(os.path.join(root, 'tests', 'verify', 'proof', harness + '.c'), root), MACHINES[0],
+                 os.path.join(root, 'build'))
+    seen = [] if result.is_broken else judge(result)
+    print(f'planted {new!r}: {seen[0] if seen else "FAILED: not found"}\n{bool(seen):d} passed, {not seen:d} failed')
+    return not seen
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('--quick', action='store_true')
     parser.add_argument('--machine', action='append', choices=MACHINES)
-    parser.add_argument('--update', action='store_true')
     parser.add_argument('--self-test', action='store_true')
     parser.add_argument('--list', action='store_true')
     parser.add_argument('names', nargs='*')
@@ -348,7 +282,7 @@ def main():
         if options.list:
             print('\n'.join(each.name for each in harnesses()))
             return 0
-        return 1 if (self_test(options.names) if options.self_test else prove(options)) else 0
+        return 1 if (self_test() if options.self_test else prove(options)) else 0
     except (Bad, c_text.NotThere) as error:
         print(f'eva.py: {error}', file=sys.stderr)
         return 1

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""What is not proved: alarms that EVA does not discharge, each with its argument, and sources that no harness covers.
-Both lists may only get shorter.
+"""What is not proved: alarms that EVA does not discharge, each with its argument, statements that no run reaches, and
+sources that no harness covers. These lists may only get shorter.
 
 EVA knows the values of each member, not how members go together. Each argument is such a relation: it says which lines
 make it, so that it can be checked by reading them."""
@@ -94,3 +94,26 @@ ARGUED = {
 
 # Sources of which nothing is shown: their harnesses say `to prove:`, and are not run.
 UNPROVED = ()
+
+COPY = 'Frama-C copies the return behind an `||`, and nothing leads to the copy; split in two, each return is reached'
+ONE_PROBE = 'an A16 has one probe, so no value is left when it is polled; line/a05_modbus reaches this'
+A16 = 'the sensor is an A16; line/a05_modbus reaches this'
+NO_RATE = 'a setting of an A16 changes no line settings; line/hps167s_settings reaches this'
+NO_FOLLOW = 'nothing is set, so `follow` is NULL; line/hps167s_settings reaches this'
+
+# Statements that no run of a harness reaches: {(harness, function): (their number, why)}.
+UNREACHED = {
+    ('line/a05_dyp', 'fathom_a05_dyp_set_every_address'): (3, COPY),
+    ('line/a16_modbus', 'due_us'): (1, ONE_PROBE),
+    ('line/a16_modbus', 'fathom_dyp_modbus_init'): (1, A16),
+    ('line/a16_modbus', 'fathom_modbus_unit_init'): (3, COPY + '; and a transport of the harness has a clock'),
+    ('line/a16_modbus', 'moves'): (1, NO_RATE),
+    ('line/a16_modbus', 'poll'): (3, ONE_PROBE),
+    ('line/a16_modbus', 'use_new_address'): (1, NO_RATE),
+    ('line/clients', 'command_of_read'): (3, COPY + '; and the harness reads at most four registers'),
+    ('line/hps167s', 'fathom_hps167s_ask'): (1, NO_FOLLOW),
+    ('line/hps167s', 'fathom_hps167s_power_on'): (1, NO_FOLLOW),
+    ('line/hps167s_auto', 'due_us'): (1, 'the harness polls before each due_us, and the poll takes the reading'),
+    ('line/line', 'fathom_line_submit'): (3, 'the line of the harness can send, so `give_up` is not NULL'),
+    ('pure/level', 'fathom_level_check'): (3, COPY),
+}
