@@ -15,7 +15,8 @@ SANITIZE = 'address,undefined'
 COMPILER = ['clang-14', '-g', '-O1', '-fno-omit-frame-pointer', f'-fsanitize=fuzzer-no-link,{SANITIZE}',
             '-fno-sanitize-recover=all', '-std=c99', '-Wall', '-Wextra', '-Werror', '-Wno-unused-parameter',
             '-Iinclude', '-Iport', '-isystem/usr/include/modbus', '-Iexamples/fathom',
-            *[f'-Iport/{name}' for name in ('posix', 'gpio', 'sim', 'libmodbus')], '-Itests/verify/fuzz', '-Itests/support']
+            *[f'-Iport/{name}' for name in ('posix', 'gpio', 'sim', 'libmodbus')], '-Itests/verify/fuzz',
+            '-Itests/support']
 SMALL = 'src/codec/crc16_small.c'  # stands beside the other one, under another name
 OTHER_NAME = {SMALL: ['-Dfathom_crc16=fathom_crc16_small']}
 
