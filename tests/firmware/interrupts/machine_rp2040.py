@@ -7,13 +7,14 @@ PROGRAMS = ('cmake', 'node', 'npm', 'arm-none-eabi-gcc', 'arm-none-eabi-objdump'
 OBJDUMP, NM = 'arm-none-eabi-objdump', 'arm-none-eabi-nm'
 A_PROCESS = 8  # scenarios: to begin one takes as long as many a scenario
 
-# How far, as machine_avr.py has it. Alone is all that is wanted of the long ones, which divide or are as another one is.
+A_PROCESS = 8  # scenarios: starting a process takes as long as several scenarios
 QUICK = {'now': 2, 'sent_leaving': 2, 'take_one': 2, 'pin_high': 2, 'idle_nothing': 2, 'serial_write_leaving': 2}
 PAIRS = 'now sent level arm arm_high pin_low idle_nothing'.split()
 ALONE = ('read_three read_in_part read_wraps read_silent read_no_idle read_leaving read_full read_full_whole '
          'write_one write_most write_gone write_gone_more write_no_driver line_same_rate line_stop_bits line_new '
          'line_fastest line_over_fastest line_slowest line_too_fast line_too_slow line_none line_no_parity '
-         'line_no_stop idle idle_three idle_leaving idle_short idle_long idle_no_deadline').split()
+         'line_no_stop idle idle_three idle_leaving idle_short idle_long idle_no_deadline '
+         'serial_read_full').split()
 FULL = {**dict.fromkeys(PAIRS, 3), **dict.fromkeys(ALONE, 1)}
 
 # The objects whose functions are the port's, by the ends of their names.
@@ -35,6 +36,8 @@ LEFT_OUT = {
 }
 # Instructions that no input can reach: (function, instruction): why.
 UNREACHED = {}
+# The planted fault: a scenario that detects it, the file, the old text and the new text.
+FAULT = ('idle', 'port/rp2040/idle.c', '    __asm__ volatile("cpsid i" ::: "memory");\n', '')
 
 
 def build(run, tree, folder):

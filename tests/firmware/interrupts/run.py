@@ -1,17 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Breaks into the paths of a microcontroller's port at every instruction boundary: README.md here.
+"""Interrupts each call of a microcontroller's port at every instruction boundary: README.md here.
 
-    run.py [MACHINE ...]                 everything: each event alone, two together, in some all pairs
-    run.py --quick [MACHINE ...]         each event alone everywhere; together and in pairs in some scenarios
-    run.py --only NAME [--depth N]       the scenarios with NAME in theirs: 1 alone, 2 together, 3 pairs
-    run.py --update [--only NAME]        keeps the figures in figures.csv
-    run.py --self-test                   plants the faults of faults.py, and sees each of them
+    run.py [MACHINE ...]                 every event alone and two together; in some scenarios all pairs of boundaries
+    run.py --quick [MACHINE ...]         every event alone; in some scenarios more
+    run.py --only NAME [--depth N]       the scenarios with NAME in their names: 1 alone, 2 together, 3 pairs
+    run.py --self-test                   finds the planted fault of each machine
 
-MACHINE is avr or rp2040. It builds into build-interrupts. The last line is "N passed, M failed"."""
+MACHINE is avr or rp2040. run.py builds into build-interrupts. The last line is "N passed, M failed"."""
 import argparse
 import concurrent.futures
-import csv
 import os
 import re
 import shutil
@@ -19,14 +17,12 @@ import subprocess
 import sys
 
 import disassembly
-import faults
 import machine_avr
 import machine_rp2040
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(HERE)))
 BUILD = os.path.join(ROOT, 'build-interrupts')
-FIGURES = os.path.join(HERE, 'figures.csv')
 MACHINES = {machine.NAME: machine for machine in (machine_avr, machine_rp2040)}
 COLUMNS = ('boundaries', 'alone', 'deferred', 'together', 'pairs')
 COPIED = ('CMakeLists.txt', 'README.md', 'include', 'src', 'port', 'examples', 'tests/firmware', 'tests/support')
@@ -83,31 +79,16 @@ def run_scenarios(machine, host, image, depths):
             yield from done.result()
 
 
-def kept():
-    if not os.path.exists(FIGURES):
-        return {}
-    with open(FIGURES, encoding='utf-8', newline='') as file:
-        return {(row['machine'], row['scenario']): row for row in csv.DictReader(file)}
-
-
-def keep(machine, results, names):
-    rows = {key: row for key, row in kept().items() if key[0] != machine.NAME or key[1] in names}
-    for result in results:
-        rows[machine.NAME, result.name] = {'machine': machine.NAME, 'scenario': result.name, **result.figures}
-    with open(FIGURES, 'w', encoding='utf-8', newline='') as file:
-        out = csv.DictWriter(file, ('machine', 'scenario', *COLUMNS), lineterminator='\n')
-        out.writeheader()
-        out.writerows(rows[key] for key in sorted(rows))
-
-
-def compare(machine, result):
-    """What is less than it was; a form that does not go as far has less of some."""
-    row = kept().get((machine.NAME, result.name))
-    if row is None:
-        return [f'{result.name}: figures.csv does not have it; --update keeps it']
-    columns = COLUMNS[:2 + result.depth]
-    return [f'{result.name}: {result.figures[column]} {column}, and there were {row[column]}; if the code is shorter, '
-            '--update keeps that' for column in columns if result.figures.get(column, 0) < int(row[column])]
+def too_few(result):
+    """Returns what a scenario of this depth has to reach and did not."""
+    figures, wrong = result.figures, []
+    if not 0 < figures['boundaries'] <= figures['alone']:
+        wrong.append(f'{result.name}: {figures["alone"]} events came at {figures["boundaries"]} boundaries')
+    if result.depth >= 2 and not figures['together']:
+        wrong.append(f'{result.name}: no two events came together')
+    if result.depth >= 3 and not figures['pairs']:
+        wrong.append(f'{result.name}: no two events came as a pair')
+    return wrong
 
 
 def objects_of(machine, folder):
@@ -142,9 +123,7 @@ def check(machine, options):
     for result in run_scenarios(machine, host, path, depths):
         results.append(result)
         covered |= result.covered
-        wrong = [named(image, line) for line in result.wrong]
-        if not wrong and not options.update:
-            wrong = compare(machine, result)
+        wrong = [named(image, line) for line in result.wrong] or too_few(result)
         print(f'{machine.NAME} {result.name}: {said(result.figures)}', flush=True)
         print(''.join(f'    {line}\n' for line in wrong), end='')
         passed, failed = passed + (not wrong), failed + bool(wrong)
@@ -155,8 +134,6 @@ def check(machine, options):
         print(f'{machine.NAME}: {len(results)} scenarios, {count} instructions of the port, '
               f'{len(wrong)} of them not broken into; {said(total)}')
         passed, failed = passed + (not wrong), failed + bool(wrong)
-    if options.update and not failed:
-        keep(machine, results, names)
     return passed, failed
 
 
@@ -170,76 +147,34 @@ def copy_tree(tree):
             shutil.copy2(source, target)
 
 
-def plant(tree, edits):
-    """{path: text without the fault}"""
-    before = {}
-    for file, pattern, new in edits:
-        path = os.path.join(tree, file)
-        with open(path, encoding='utf-8') as source:
-            text = source.read()
-        before.setdefault(path, text)
-        changed, count = re.subn(pattern, new if '\\' in new else lambda _, new=new: new, text)
-        if count != 1 or changed == text:
-            raise Bad(f'{file}: {pattern!r} is there {count} times')
-        write(path, changed)
-    return before
-
-
-def write(path, text):
-    with open(path, 'w', encoding='utf-8') as file:
-        file.write(text)
-
-
-def gates_fail(machine, folder, path):
-    """[what does not notice that a boundary, or a figure, is missing]"""
-    image, objects = disassembly.Image(machine, path), objects_of(machine, folder)
-    covered = {address for _, code in image.functions for address in code}
-    names, _ = image.wanted(objects)
-    one = next(min(code) for name, code in image.functions if name in names)
-    name = next(iter(machine.QUICK))
-    result, = run_process(machine, machine.build_host(run, ROOT, folder), path, {name: 1})
-    whole = not compare(machine, result)
-    result.figures['alone'] -= 1
-    return [what for what, seen in (('an instruction', not image.missed(objects, covered)[1]
-                                     and len(image.missed(objects, covered - {one})[1]) == 1),
-                                    ('a figure', whole and len(compare(machine, result)) == 1)) if not seen]
-
-
 def self_test(machine):
-    folder = os.path.join(BUILD, machine.NAME)
-    tree, planted = os.path.join(BUILD, 'tree'), os.path.join(BUILD, f'planted_{machine.NAME}')
+    """Plants the machine's fault in a copy of the tree, and finds it."""
+    scenario, file, old, new = machine.FAULT
+    folder, tree = os.path.join(BUILD, machine.NAME), os.path.join(BUILD, 'tree')
     host = machine.build_host(run, ROOT, folder)
+    shutil.rmtree(tree, ignore_errors=True)
     copy_tree(tree)
-    blind = gates_fail(machine, folder, machine.build(run, ROOT, folder))
-    print(''.join(f'{what} less is not seen\n' for what in blind), end='')
-    failed = len(blind)
-    for name, what, scenarios, depth, edits in faults.FAULTS[machine.NAME]:
-        before = plant(tree, edits)
-        try:
-            path = machine.build(run, tree, planted)
-            image = disassembly.Image(machine, path)
-            seen = [line for result in run_scenarios(machine, host, path, dict.fromkeys(scenarios, depth))
-                    for line in result.wrong]
-        finally:
-            for file, text in before.items():
-                write(file, text)
-        first = next((line for line in seen if ' at ' in line), seen[0] if seen else 'NOT SEEN')
-        print(f'{name}: {what}\n    {named(image, first)}', flush=True)
-        failed += not seen
-    return len(faults.FAULTS[machine.NAME]) + 2 - failed, failed
+    with open(os.path.join(tree, file), encoding='utf-8') as source:
+        text = source.read()
+    if text.count(old) != 1:
+        raise Bad(f'{file} does not have {old!r} exactly once')
+    with open(os.path.join(tree, file), 'w', encoding='utf-8') as source:
+        source.write(text.replace(old, new))
+    path = machine.build(run, tree, os.path.join(BUILD, f'planted_{machine.NAME}'))
+    image = disassembly.Image(machine, path)
+    seen = [named(image, line) for result in run_scenarios(machine, host, path, {scenario: 1}) for line in result.wrong]
+    print(f'{machine.NAME}: planted {new!r} in {file}: {seen[0] if seen else "FAILED: not found"}', flush=True)
+    return int(bool(seen)), int(not seen)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('--quick', action='store_true')
-    parser.add_argument('--update', action='store_true')
     parser.add_argument('--self-test', action='store_true')
     parser.add_argument('--only', default='', metavar='NAME')
     parser.add_argument('--depth', type=int, choices=(1, 2, 3))
     parser.add_argument('machines', nargs='*', metavar='MACHINE')
     options = parser.parse_args()
-    if options.update and (options.quick or options.depth):
-        parser.error('--update keeps the figures of the full form')
     passed = failed = 0
     try:
         for name in options.machines or MACHINES:
