@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""What the tests in C execute of src/, of the headers and of the ports for Linux: clang-19's regions, branches and MC/DC.
+"""Measures by clang-19 which lines, branches and conditions of the library and of the ports for Linux tests execute.
 
-Only those files are instrumented (-fprofile-list), so that the tests themselves are as fast as they are."""
+Only these files are instrumented (-fprofile-list), so that the tests themselves stay fast."""
 import collections
 import json
 import os
@@ -11,7 +11,8 @@ import subprocess
 
 COMPILER, PROFDATA, COV = 'clang-19', 'llvm-profdata-19', 'llvm-cov-19'
 FOLDERS = ('include/fathom', 'src', 'port/serial', 'port/posix', 'port/gpio', 'port/libmodbus')
-KINDS = 'unit|golden|property|sim|port|libmodbus'  # whose tests execute them
+KINDS = ('unit', 'devices', 'port')  # of the tests that execute them
+LABELS = f'^({"|".join(KINDS)})$'
 MCDC = '-fprofile-instr-generate -fcoverage-mapping -fcoverage-mcdc'
 # A static function is known by its source's name; with the folder, because error.c and uart.c are there twice.
 COMPILE = ('<CMAKE_C_COMPILER> <DEFINES> <INCLUDES> <FLAGS> -Xclang -main-file-name -Xclang <SOURCE> '
@@ -48,7 +49,7 @@ def build(root, folder, jobs):
     if shutil.which('ccache'):
         environment.update(CMAKE_C_COMPILER_LAUNCHER='ccache')
     options = {'CMAKE_BUILD_TYPE': 'Debug', 'CMAKE_C_COMPILER': COMPILER, 'FATHOM_STRICT': 'OFF',
-               'FATHOM_CHECKS': 'OFF', 'FATHOM_FIRMWARE': 'OFF',
+               'FATHOM_EXAMPLES': 'OFF', 'FATHOM_FIRMWARE': 'OFF', 'FATHOM_TESTS': 'ON',
                'CMAKE_C_COMPILE_OBJECT': COMPILE,
                'CMAKE_C_FLAGS_DEBUG': f'-O1 {MCDC} -fprofile-list={allowed}'}
     code, said = run(['cmake', '-S', root, '-B', folder, *(f'-D{name}={value}' for name, value in options.items())],
@@ -61,15 +62,16 @@ def build(root, folder, jobs):
             for name in names:
                 if name.endswith('.o'):
                     os.remove(os.path.join(where, name))
-    code, said = run(['cmake', '--build', folder, '--parallel', str(jobs), '--target', 'covering_tests'])
+    code, said = run(['cmake', '--build', folder, '--parallel', str(jobs), '--target',
+                      *(f'tests_{kind}' for kind in KINDS)])
     if code != 0:
         raise Broken(f'the tests are not built: {said[-4000:]}')
     unsupported = sorted({(os.path.relpath(path, root), int(line), why)
                           for path, line, why in UNSUPPORTED.findall(said)})
     # Only now, because ctest knows no command of a program that is not there.
-    _, said = run(['ctest', '--test-dir', folder, '--show-only=json-v1', '--label-regex', f'^({KINDS})$'])
-    targets = sorted({os.path.basename(test['command'][0]) for test in json.loads(said)['tests']})
-    return targets, unsupported
+    _, said = run(['ctest', '--test-dir', folder, '--show-only=json-v1', '--label-regex', LABELS])
+    programs = sorted({test['command'][0] for test in json.loads(said)['tests']})
+    return programs, unsupported
 
 
 def run_tests(folder, jobs):
@@ -77,7 +79,7 @@ def run_tests(folder, jobs):
     profiles = os.path.join(folder, 'profiles')
     shutil.rmtree(profiles, ignore_errors=True)
     os.mkdir(profiles)
-    code, said = run(['ctest', '--test-dir', folder, '--parallel', str(2 * jobs), '--label-regex', f'^({KINDS})$',
+    code, said = run(['ctest', '--test-dir', folder, '--parallel', str(2 * jobs), '--label-regex', LABELS,
                       '--no-tests=error', '--output-on-failure', '--timeout', '300'],
                      env=dict(os.environ, LLVM_PROFILE_FILE=os.path.join(profiles, '%m.profraw')))
     if code != 0:
@@ -156,12 +158,11 @@ class File:
 def measure(root, folder, jobs):
     """({path: File}, what clang cannot instrument)"""
     programs, unsupported = build(root, folder, jobs)
-    return files_of(root, folder, programs, run_tests(folder, jobs)), unsupported
+    return files_of(root, programs, run_tests(folder, jobs)), unsupported
 
 
-def files_of(root, folder, programs, merged):
-    """{path: File} by that profile"""
-    paths = [os.path.join(folder, 'tests', program) for program in programs]
+def files_of(root, paths, merged):
+    """Returns {path: File} by the profile of these programs."""
     objects = [word for path in paths[1:] for word in ('-object', path)]
     done = subprocess.run([COV, 'export', paths[0], *objects, '-instr-profile', merged], stdout=subprocess.PIPE,
                           stderr=subprocess.PIPE, check=False)

@@ -265,8 +265,8 @@ class Bench:
         env = {**os.environ, 'FATHOM_FIRST_FAILURE': '1', **planted.environment, **(environment or {})}
         program = planted.program(os.path.join(self.folder, test.program))
         began = time.monotonic()
-        process = subprocess.Popen([program, *test.names], env=env,
-                                   cwd=os.path.dirname(os.path.join(self.folder, test.program)), stdin=subprocess.DEVNULL,
+        process = subprocess.Popen([program, *test.names], env=env, stdin=subprocess.DEVNULL,
+                                   cwd=os.path.join(self.folder, os.path.dirname(test.program)),
                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
         handle = os.pidfd_open(process.pid)
         hangs = True

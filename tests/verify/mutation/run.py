@@ -240,7 +240,7 @@ def try_them(options):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('--all', action='store_true', help='all of src/')
-    parser.add_argument('--changed', action='store_true', help='files that changed since the last tag, or in 20 commits')
+    parser.add_argument('--changed', action='store_true', help='files changed since the last tag, or in 20 commits')
     parser.add_argument('--sample', type=int, metavar='N', default=0, help='N mutants, half of them of the named files')
     parser.add_argument('--seed', type=int, help='of the sample; else the commit is')
     parser.add_argument('--only', metavar='FILE:LINE', help='these, or the one of an identity, and what sees them')

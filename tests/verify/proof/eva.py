@@ -6,7 +6,7 @@
     eva.py --self-test                                finds the planted fault
     eva.py --list
 
-A harness is a file FOLDER/NAME.c whose main() calls the sources that it proves with any input. The comment at its top has:
+A harness is a file FOLDER/NAME.c whose main() calls the sources that it proves with any input. Its first comment has:
 
     proves:  the sources of which every function must be reached; patterns are allowed
     with:    (optional) further sources to link
@@ -19,8 +19,8 @@ EVA does not see `volatile`, unless the comment says that it is kept (see assump
 
 --quick: one machine, without the harnesses that say `quick: no`.
 
-These fail: an alarm that remaining.py does not argue, a statement that no run reaches and remaining.py does not explain,
-and a source of src/ that no harness proves."""
+These fail: an alarm that remaining.py does not argue, a statement that no run reaches and remaining.py does not
+explain, and a source of src/ that no harness proves."""
 import argparse
 import concurrent.futures
 import csv

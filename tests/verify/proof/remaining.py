@@ -89,7 +89,8 @@ ARGUED = {
     ('tests/verify/proof/line/line.c', 'is_request', 'mem_access: \\valid_read(&transaction->address)'): WIRE,
     ('tests/verify/proof/line/line.c', 'is_request', 'user assertion: 1 <= have <= FRAME_SIZE'): BYTES,
     ('tests/verify/proof/line/line.c', 'length', 'user assertion: 1 <= have <= FRAME_SIZE'): BYTES,
-    ('tests/verify/proof/line/line.c', 'receive', 'user assertion: bytes == (uint8_t *)frame && of_them <= FRAME_SIZE'): BYTES,
+    ('tests/verify/proof/line/line.c', 'receive',
+     'user assertion: bytes == (uint8_t *)frame && of_them <= FRAME_SIZE'): BYTES,
 }
 
 # Sources of which nothing is shown: their harnesses say `to prove:`, and are not run.

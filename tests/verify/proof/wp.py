@@ -70,7 +70,7 @@ def write(path, text):
 
 def source_of(unit):
     path = os.path.join('src', 'codec', unit + '.c')
-    return path if os.path.exists(os.path.join(ROOT, path)) else os.path.join('tests', 'verify', 'proof', 'wp', unit + '.c')
+    return path if os.path.exists(os.path.join(ROOT, path)) else f'tests/verify/proof/wp/{unit}.c'
 
 
 def without_goal(unit, goals, left_out):

@@ -84,9 +84,8 @@ def build(name, fault=None):
     program = os.path.join(folder, 'states')
     subprocess.run([os.environ.get('FATHOM_CC', 'gcc'), '-std=c99', '-O2',
                     *(('-w',) if fault else ('-Wall', '-Wextra', '-Werror')),
-                    *(f'-I{os.path.join(ROOT, path)}' for path in ('include', 'src/engine', 'tests/verify/states')), '-o',
-                    program,
-                    *sources, *(os.path.join(ROOT, path) for path in WORLD)], check=True)
+                    *(f'-I{os.path.join(ROOT, path)}' for path in ('include', 'src/engine', 'tests/verify/states')),
+                    '-o', program, *sources, *(os.path.join(ROOT, path) for path in WORLD)], check=True)
     return program
 
 
