@@ -49,9 +49,9 @@ def functions_of(root, build, machine):
     """Returns {(source of a static function or '', name): (file, name)} of the port's objects."""
     known = {}
     for path in glob.glob(os.path.join(images_of(build, machine), '**', '*.obj'), recursive=True):
-        match = re.search(rf'/{machine.port}/(\w+\.c)\.obj$|/{os.path.basename(machine.port)}/(\w+\.c)\.obj$', path)
-        file = match and f'{machine.port}/{match[1] or match[2]}'
-        if match and '/images/' not in path and os.path.exists(os.path.join(root, file)):
+        match = re.search(rf'/fathom_{machine.name}\.dir/.*?(\w+\.c)\.obj$', path)
+        file = match and f'{machine.port}/{match[1]}'
+        if match and os.path.exists(os.path.join(root, file)):
             for local, name, _, _ in symbols(machine.tools, path):
                 known[local, name] = (file, name)
     if not known and machine.name != 'arduino':

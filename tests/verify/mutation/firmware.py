@@ -56,7 +56,8 @@ class Machine:
         names = [name for name in re.findall(r': firmware\.(\w+)$', listed, re.M) if machine_of(name) == self.name]
         if not names:
             return False
-        command(['cmake', '--build', self.build, '--target', *names, 'libmodbus_server'], error=f'{self.name}: not built', env=env)
+        command(['cmake', '--build', self.build, '--target', *names, 'libmodbus_server'],
+                error=f'{self.name}: not built', env=env)
         for name in names:
             began = time.monotonic()
             if self.fails(name, 4 * LIMIT_S):
