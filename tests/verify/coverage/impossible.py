@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What no test executes, with the reasons. An entry that a test executes, or that is gone, fails; so the lists may only
-become shorter."""
+"""What no test executes, with the reasons. These lists may only become shorter."""
 OTHER_GLIBC = 'a constant: true from glibc 2.42 on, false before'
 SNPRINTF = 'snprintf does not fail if it converts only %s'
 ONE_NUMBER = 'EAGAIN and EWOULDBLOCK are one number on Linux'
@@ -8,7 +7,7 @@ TWICE = 'untested: a port that has failed and fails again with another errno'
 MORE = 'untested: more bytes wait than the line has room for'
 SHORT = 'libmodbus reports a short write as EMBBADDATA'
 
-# Of the library and the ports for Linux: (file, what, source text): why.
+# Of the library and the ports for Linux: (file, what, source text): why. An entry that a test executes fails.
 IMPOSSIBLE = {
     ('port/posix/settings.c', 'branch true', 'B9600 == 9600'): OTHER_GLIBC,
     ('port/posix/settings.c', 'branch false', 'B9600 == 9600'): OTHER_GLIBC,

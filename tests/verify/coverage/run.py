@@ -75,8 +75,11 @@ def judge_machines(verdict, functions):
     unreached = {key for key, is_reached in functions.items() if not is_reached}
     verdict.check('an image executes every function of the ports for microcontrollers',
                   [f'{file}: no image executes {name}' for file, name in sorted(unreached - set(UNREACHED))])
-    verdict.check(f'UNREACHED of impossible.py has {len(UNREACHED)} entries, and needs each',
-                  [f'{file}: {name} is executed, or is gone' for file, name in sorted(set(UNREACHED) - unreached)])
+    verdict.check(f'UNREACHED of impossible.py has {len(UNREACHED)} entries, and knows each function',
+                  [f'{file}: {name} is gone' for file, name in sorted(set(UNREACHED) - set(functions))])
+    # The clock of QEMU is the host's, so an image may execute more in one run than in another: this must not fail.
+    for file, name in sorted(set(UNREACHED) & set(functions) - unreached):
+        print(f'    {file}: an image executes {name}, so its entry may go')
 
 
 def self_test(verdict, jobs):
