@@ -142,11 +142,6 @@ def run_all(targets, frames, limit_of):
             yield future.result()
 
 
-def show(outcome, problem):
-    print(f'{outcome.target.name:12} {outcome.runs:10} executions {outcome.edges:6} edges '
-          f'{outcome.cpu:7.1f} s of a core {outcome.runs / max(outcome.cpu, 0.001):9.0f}/s  {problem}', flush=True)
-
-
 def judge(outcomes, wanted=lambda target: 0):
     """Returns how many of the outcomes passed and failed; `wanted` is the number of executions of a target."""
     passed = failed = total = 0
