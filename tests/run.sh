@@ -228,4 +228,4 @@ unit | devices | port | firmware | tool | verify | bench | checks)
 esac
 show_stages
 # shellcheck disable=SC2086 # a list of words
-exec $python tests/checks/count.py --gates "$gates" $results # --update: keeps the numbers in tests/counts.txt
+exec $python tests/checks/count.py --gates "$gates" $results
