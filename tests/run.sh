@@ -165,6 +165,7 @@ run_full() {
     stage 120 'publish: 256 lines' $python tests/bench/publish.py build-gcc
     stage 650 'publish: memory' $python tests/bench/publish.py build-gcc --soak 580
     stage 300 'Debian packages, in a clean system' program package_full $python tests/tool/package/run.py
+    stage 120 'checks: planted faults' program checks_planted $python tests/checks/planted.py
     stage 420 'packages: planted faults' program package_planted $python tests/tool/package/run.py --self-test
     timeout=900
     stage 400 'second: 1000 seeds' run_tests gcc seeds --label-regex second

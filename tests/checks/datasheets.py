@@ -83,16 +83,7 @@ def check(root, only):
     return [problem for problem in problems if only is None or any(path in problem for path in only)]
 
 
-FAULTS = [
-    (LIST, None, 'HPS 3 #16,another command\n', 'no row for HPS 3 #16'),
-    (LIST, 'A16 1(1),', 'A16 1(0),', 'is no section of'),
-    (PAGE, '| A16 1(1) |', '| A16 1(2) |', 'stands there twice'),
-    (PAGE, '`fathom_a16_modbus_set_address`', '`fathom_a16_modbus_set_adress`', 'is not in include/fathom'),
-    (PAGE, '`modbus_rtu.h`', '`modbus_rut.h`', 'is not in include/fathom'),
-    (PAGE, '`set hps167s', '`put hps167s', 'the tool has no command put'),
-    (FIRST, '`a16_pwm.h`', '`a16_pmw.h`', 'is not in include/fathom'),
-    (FIRST, '`a16_pwm.h`', '`a16_auto.h`', 'no row for'),
-]
+FAULT = (PAGE, '`fathom_a16_modbus_set_address`', '`fathom_a16_modbus_set_adress`', 'is not in include/fathom')
 
 if __name__ == '__main__':
-    main(check, FAULTS)
+    main(check, FAULT)

@@ -11,27 +11,32 @@ import re
 import sys
 from concurrent.futures import ThreadPoolExecutor
 
-from common import LIBMODBUS, ROOT, WARNINGS, files, main, run
+from common import LIBMODBUS, ROOT, TEST_PORTS, WARNINGS, files, main, run
 
+# The machines that only tests have.
+TEST_MACHINES = tuple(os.path.dirname(port) for port in TEST_PORTS)
+FOLDERS = ('src', 'port', 'examples', *TEST_MACHINES)
 PORTS = sorted(entry.name for entry in os.scandir(os.path.join(ROOT, 'port')) if entry.is_dir())
-INCLUDE = ['-Iinclude', '-Iport', *(f'-Iport/{port}' for port in PORTS), '-Iexamples/start', '-Iexamples/fathom']
-# They need another compiler's headers.
-FOREIGN = re.compile(r'^(port|examples)/(avr|arduino)/|^tests/firmware/virt/start\.c$')
+INCLUDE = ['-Iinclude', '-Iport', *(f'-Iport/{port}' for port in PORTS), '-Iexamples/start', '-Iexamples/fathom',
+           *(f'-I{folder}' for folder in (*TEST_MACHINES, *TEST_PORTS))]
+# What needs another compiler's headers, and images of the tests.
+LEFT_OUT = re.compile(r'(port|examples)/(avr|arduino)/|tests/firmware/(virt/start\.c$|\w+/images/)')
 
 
-# The self-test plants faults for the analyzer too.
+# The self-test plants a fault for the analyzer.
 IS_QUICK = sys.argv[1:] == []
 
 
 def tidy(root, path):
     checks = ['--checks=-clang-analyzer-*'] if IS_QUICK else []
-    good, said = run(['clang-tidy-14', '--quiet', *checks, path, '--', '-std=c99', *WARNINGS, *INCLUDE, LIBMODBUS], root)
+    good, said = run(['clang-tidy-14', '--quiet', *checks, path, '--', '-std=c99', *WARNINGS, *INCLUDE, LIBMODBUS],
+                     root)
     found = sorted(set(re.findall(r'^(\S+ (?:error|warning): .*)$', said, re.M)))
     return found or ([] if good else [f'{path}: clang-tidy failed: {said}'])
 
 
 def compiler(path):
-    machine = path.split('/')[1]
+    machine = path.split('/')[2 if path.startswith('tests/') else 1]
     if machine in ('rp2040', 'mps2', 'nrf51', 'stm32f4'):
         return ['arm-none-eabi-gcc', '-mcpu=cortex-m3', '-mthumb']
     if machine == 'virt':
@@ -48,8 +53,8 @@ def analyze(root, path):
 
 
 def check(root, only):
-    paths = [path for path in files(root, 'src', 'port', 'examples', ends='.c')
-             if not FOREIGN.match(path) and (not only or path in only)]
+    paths = [path for path in files(root, *FOLDERS, ends='.c')
+             if not LEFT_OUT.match(path) and (not only or path in only)]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         results = list(pool.map(lambda path: tidy(root, path), paths))
         if not IS_QUICK:
@@ -57,28 +62,15 @@ def check(root, only):
     problems = sorted({problem.replace(root + os.sep, '') for result in results for problem in result})
     good, said = run(['cppcheck', '--quiet', '--std=c99', '--enable=warning,style,performance,portability',
                       '--inline-suppr', '--error-exitcode=1', '--suppress=missingIncludeSystem', *INCLUDE,
-                      *(only or files(root, 'src', 'port', 'examples', ends='.c'))], root)
+                      *(only or [path for path in files(root, *FOLDERS, ends='.c') if '/images/' not in path])], root)
     return problems if good else [*problems, f'cppcheck: {said}']
 
 
-LINE = 'src/engine/line.c'
-FAULTS = [
-    (LINE, None, 'int fathom_x(const int *p);\nint fathom_x(const int *p) { return p == NULL ? *p : 1; }\n',
-     'Dereference of null pointer'),
-    (LINE, None, 'int fathom_x(int n);\nint fathom_x(int n) { int x; if (n > 1) x = 2; return x; }\n', 'clang-analyzer'),
-    (LINE, None, 'int fathom_x(int n);\nint fathom_x(int n) { int *p = NULL; if (n > 1) p = &n; return *p; }\n',
-     '=analyzer-null-dereference'),
-    (LINE, None, 'int fathom_x(int n);\nint fathom_x(int n) { if (n = 1) return 2; return 3; }\n', 'clang-diagnostic-parentheses'),
-    (LINE, None, 'int fathom_x(int n);\nint fathom_x(int n) { if (n == 1) return 2; else return 3; }\n',
-     'readability-else-after-return'),
-    (LINE, None, 'int fathom_x(int n);\nint fathom_x(int n) { switch (n) { case 1: return 2; case 2: return 2; } return 3; }\n',
-     'bugprone-branch-clone'),
-    (LINE, None, 'int fathomX(int n);\nint fathomX(int n) { return n; }\n', 'readability-identifier-naming'),
-    (LINE, None, 'int fathom_x(int n);\nint fathom_x(int n) { int a[2] = {0, 1}; return n > 0 ? a[2] : 0; }\n',
-     'cppcheck'),
-]
+FAULT = ('src/engine/line.c', None,
+         'int fathom_x(const int *p);\nint fathom_x(const int *p) { return p == NULL ? *p : 1; }\n',
+         'Dereference of null pointer')
 
 if __name__ == '__main__':
     if sys.argv[1:] == ['--analyze']:
         sys.argv.pop()
-    main(check, FAULTS)
+    main(check, FAULT)

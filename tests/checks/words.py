@@ -159,46 +159,10 @@ def print_list():
     print(f'{sum(sum(row.values()) for row in counts.values()):5} in all')
 
 
-LINE = 'src/line.c'
-FAULTS = [
-    (LINE, None, '/* It owes a planted response. */\n', "'owes': use quarantined"),
-    (LINE, None, '/*\n * planted: Nobody\n * reads */\n', "'nobody': use the subject"),
-    (LINE, None, 'int a; /* whoever plants it */\n', "'whoever': use the subject"),
-    (LINE, None, 'int fathom_x; // a planted question\n', "'question': use request"),
-    (LINE, None, 'int planted_owing_us;\n', "'planted_owing_us': use quarantined"),
-    (LINE, None, 'enum { FATHOM_PLANTED_TORN = 1 };\n', "'FATHOM_PLANTED_TORN': use truncated"),
-    (LINE, None, 'typedef struct { int told; } planted_t;\n', "'told': use last_configuration"),
-    (LINE, None, 'const char *a = "a planted \\"exchange\\"";\n', "'exchange': use transaction"),
-    (LINE, None, '/* see planted_exchange_t */\n', "'planted_exchange_t': use transaction"),
-    ('port/sim/planted_tally.c', None, 'int a;\n', "'planted_tally': use counters"),
-    ('README.md', None, 'The planted seam.\n', "'seam': use transport"),
-    (CHANGES, None, '| `fathom_old` | `fathom_nowhere` |\n', 'fathom_nowhere, which is in no header'),
-    (CHANGES, None, '| `fathom_old` | `fathom_line_poll` |\n| `fathom_poll` | `fathom_line_poll` |\n', 'is there still'),
-    ('port/planted.py', None, '# for somebody\n', "'somebody': use the subject"),
-]
-
-
-def self_check():
-    """What the planted faults do not show: each row finds its word, and words that are allowed are left alone."""
-    for word, *_ in TABLE:
-        found = [*in_names([word.replace(' ', '_')]), *in_prose(f'The {word}.')]
-        if word not in (row[0] for row in found):
-            raise SystemExit(f'the row {word!r} does not find its word')
-    allowed = ['/* The years, a hearing, an early end: seamless. */', '/* It was told so, and said it. */',
-               'int fathom_early, fathom_talked, untold;', '/* Quarantine: it still owes a response. */',
-               'void plug_in(int a_question_mark, int two_silences_are_told);', 'int a; /* two silences */',
-               'const char *a = "it answers";']
-    for line in allowed:
-        code = code_of(line)
-        prose = prose_of(line, code)
-        found = [*in_names(NAME.findall(code)), *in_prose(prose)]
-        if found:
-            raise SystemExit(f'{line!r} is allowed, but was found: {found}')
-
+FAULT = ('src/line.c', None, '/* It owes a planted response. */\n', "'owes': use quarantined")
 
 if __name__ == '__main__':
     if sys.argv[1:] == ['--list']:
         print_list()
         sys.exit(0)
-    self_check()
-    main(check, FAULTS)
+    main(check, FAULT)
