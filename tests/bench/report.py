@@ -1,21 +1,27 @@
 # SPDX-License-Identifier: MIT
-"""Prints the figures beside their bounds, keeps them in figures.csv and sizes.csv and in the pages, and says what is
-worse than kept. A bound that is missed is an aim, and is printed; it fails nothing."""
+"""Prints the figures beside their bounds, compares them with those of the last release in figures.csv and sizes.csv,
+and writes these files and the tables of the pages. A bound that is missed is an aim: it is printed, and it fails
+nothing."""
 import csv
 import os
 import re
+import sys
 
 from job import COSTS, JOBS, ROWS
 from sizes import HEAD, programs, rows
 from tools import HERE, MACHINES, ROOT, versions
+
+sys.path.append(os.path.join(ROOT, 'tests', 'support'))
+from bounds import judge, names_of
 
 FIGURES = os.path.join(HERE, 'figures.csv')
 SIZES = os.path.join(HERE, 'sizes.csv')
 BOUNDS = os.path.join(HERE, 'bounds.csv')
 PEERS = os.path.join(HERE, 'peers.csv')
 VALUES = 8  # what the job reads: the user's, and counted with RAM beside the peers
-# What is kept in the pages: (page, name of the table)
-PAGE = os.path.join(HERE, 'README.md')
+KEPT = '# The figures of the last release. Only a release changes this file: tests/bench/run.py --update.'
+# The tables in the pages: (page, name of the table)
+PAGE = os.path.join(ROOT, 'include', 'COST.md')
 PLACES = [(PAGE, 'figures'), (PAGE, 'sizes'), (PAGE, 'peers'), (os.path.join(ROOT, 'README.md'), 'footprints')]
 FOOTPRINTS = ('a05_relay', 'a16_pwm', 'a16_auto', 'a05_modbus', 'hps167s')  # of the sizes, on the first page
 ANY = 'any driver'  # the worst of all drivers, in bounds.csv
@@ -176,67 +182,56 @@ def read(page):
 
 def keep(figures, sizes):
     with open(FIGURES, 'w', encoding='utf-8') as file:
-        print(f'# {versions()}', file=file)
-        print('name,figure', file=file)
-        for name in ROWS:
-            print(f'{name},{figures[name]}', file=file)
+        print(KEPT, f'# {versions()}', 'name,figure', *(f'{name},{figures[name]}' for name in ROWS), sep='\n',
+              file=file)
     with open(SIZES, 'w', encoding='utf-8') as file:
-        print(','.join(['row', *(f'{machine.name}.{what}' for machine in MACHINES for what in HEAD)]), file=file)
+        columns = ['row', *(f'{machine.name}.{what}' for machine in MACHINES for what in HEAD)]
+        print(KEPT, f'# {versions()}', ','.join(columns), sep='\n', file=file)
         for row in rows():
-            print(','.join([row, *(str(sizes[row, machine.name][what]) for machine in MACHINES for what in HEAD)]),
-                  file=file)
+            print(row, *(sizes[row, machine.name][what] for machine in MACHINES for what in HEAD), sep=',', file=file)
     for (page, name), table in zip(PLACES, tables(figures, sizes)):
         text = pattern(name).sub(lambda _, table=table: table, read(page), count=1)
         with open(page, 'w', encoding='utf-8') as file:
             file.write(text)
 
 
-def kept():
-    """Versions, figures and sizes."""
-    with open(FIGURES, encoding='utf-8') as file:
-        made_with = file.readline()[1:].strip()
-        figures = {row['name']: int(row['figure']) for row in csv.DictReader(file)}
-    with open(SIZES, encoding='utf-8') as file:
-        sizes = {(row['row'], machine.name): {what: int(row[f'{machine.name}.{what}']) for what in HEAD}
-                 for row in csv.DictReader(file) for machine in MACHINES if f'{machine.name}.flash' in row}
-    return made_with, figures, sizes
+def kept(path):
+    """Returns the compilers of a file of figures and its rows."""
+    with open(path, encoding='utf-8') as file:
+        lines = file.read().splitlines()
+    return lines[1][2:], list(csv.DictReader(lines[2:]))
 
 
-def worse(figures, before, made_with, here_is):
-    """What is worse than it was, as lines; what is better is only printed."""
-    if made_with != here_is:
-        return [f'figures.csv was made with {made_with}; here is {here_is}: nothing to compare']
-    lines = []
-    for name, (_, unit) in ROWS.items():
-        compare(lines, name, before.get(name), figures[name], unit)
-    return lines
+def kept_figures():
+    """Returns {name: figure} of the last release, of the job and of the sizes, and the compilers of both."""
+    compilers, found = kept(FIGURES)
+    compilers_of_sizes, sizes = kept(SIZES)
+    figures = {row['name']: int(row['figure']) for row in found}
+    figures.update({f'{row["row"]}.{column}': int(value) for row in sizes for column, value in row.items()
+                    if column != 'row'})
+    return figures, {compilers, compilers_of_sizes}
 
 
-def worse_sizes(sizes, before):
-    lines = []
-    for place, size in sizes.items():
-        for what in HEAD:
-            compare(lines, f'{what} of {" on ".join(place)}', before.get(place, {}).get(what), size[what], 'B')
-    lines += [f'sizes.csv has {" on ".join(place)}, which is measured no more' for place in before
-              if place not in sizes]
-    return lines
+def drivers():
+    names = sorted(os.listdir(os.path.join(ROOT, 'include', 'fathom', 'sensor')))
+    return [name[:-2] for name in names if name.startswith(('a16_', 'a05_', 'hps167s'))]
 
 
-def compare(lines, what, was, now, unit):
-    if was is None or now > was:
-        lines.append(f'WORSE: {what}: {now} {unit}, was {was}')
-    elif now < was:
-        print(f'better: {what}: {now} {unit}, was {was}; keep it with run.py --update')
+def problems(now, before, compilers, here):
+    """Returns what fails: a figure that is over, and one of the last release or of a bound that is not measured."""
+    found = [f'{name} was not measured' for name in sorted({*before, *bounds()} - set(now))]
+    found += [f'sizes/ has no program for the driver {name}' for name in drivers() if name not in rows()]
+    if compilers != {here}:
+        print(f'figures.csv and sizes.csv are of {" and of ".join(sorted(compilers))}; these figures are of {here}, so '
+              'they are not compared')
+        return found
+    units = {name: unit for name, (_, unit) in ROWS.items()}
+    return found + [f'{name} is over' for name, figure in now.items()
+                    if not name.startswith(ANY) and judge(name, figure, before.get(name), units.get(name, 'B'))]
 
 
 def not_in_pages(figures, sizes):
-    return [f'the table {name} of {os.path.relpath(page, ROOT)} is not what is kept: run.py --update'
-            for (page, name), table in zip(PLACES, tables(figures, sizes)) if pattern(name).findall(read(page)) != [table]]
-
-
-def judge(seen):
-    """The exit status of a self-test; {what: is it so}."""
-    for what, is_so in seen.items():
-        if not is_so:
-            print(f'not so: {what}')
-    return 0 if all(seen.values()) else 1
+    """Returns the tables of the pages that have other rows or columns than are measured."""
+    return [f'the table {name} of {os.path.relpath(page, ROOT)} has other rows or columns: run.py --update'
+            for (page, name), table in zip(PLACES, tables(figures, sizes))
+            if [names_of(found) for found in pattern(name).findall(read(page))] != [names_of(table)]]
