@@ -1,15 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""What fathom publish costs with 256 lines, each read twice a second, beside a Mosquitto and a mosquitto_sub.
+"""Measures what fathom publish costs with 256 lines, each read twice a second, beside a Mosquitto and a mosquitto_sub.
 
-    publish.py BUILD                 all of it, a minute and a half; BUILD: the build folder, with fathom and tests/bench/bench_far_end
-    publish.py BUILD --soak SECONDS  memory alone, 64 lines as fast as they can: so many messages as 256 lines have in longer
-    publish.py BUILD --try           a moment with 16 lines: does it work?
-    publish.py --self-test           shows that this can fail
+    publish.py BUILD                 measures everything: a minute and a half. BUILD is a build folder with fathom and
+                                     tests/bench/bench_far_end
+    publish.py BUILD --soak SECONDS  measures memory alone, with 64 lines that are read as fast as they can be
+    publish.py BUILD --try           checks with 16 lines that no reading is lost; no figure can fail
+    publish.py --self-test           plants a missing reading
 
-It is measured while the broker is there; while it has stopped without a word; while its port refuses; and while it comes back,
-which has all that has waited told at once. In each of them: CPU of one processor, memory, and how much later than the interval
-a reading came. A figure over its bound fails."""
+The script measures while the broker is there; while the broker has stopped without a word; while its port refuses; and
+while it comes back and gets all messages that have waited. In each of them it measures the CPU time of one processor,
+the memory, and how much later than the interval a reading came. A figure over its bound fails."""
 import argparse
 import collections
 import contextlib
@@ -17,12 +18,11 @@ import datetime
 import json
 import os
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
 import time
-
-import report
 
 sys.path[:0] = [os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), 'tool', 'e2e')]
 
@@ -32,6 +32,7 @@ GROWTH_KIB = 256
 CPU, MEMORY_KIB, LATE_MS = 0.10, 20 * 1024, INTERVAL_MS
 FIRST_MM, RESPONSES = 1000, 16  # of a line, as lines/lines.h has them
 WARM_S = 4
+DEADLINE_S = 60  # of each step that waits for another program; on an idle machine a step takes less than 2 s
 
 
 class Failed(Exception):
@@ -103,8 +104,8 @@ class Row:
                                                  ('late', self.late_ms, LATE_MS)) if figure >= bound]
 
     def __str__(self):
-        return f'{self.name:34} {self.seconds:3.0f} s {self.cpu * 100:5.1f} % {self.memory / 1024:6.1f} MiB {self.late_ms:7.1f} ms' \
-            + ''.join(f'  OVER: {what}' for what in self.over())
+        return f'{self.name:34} {self.seconds:3.0f} s {self.cpu * 100:5.1f} % {self.memory / 1024:6.1f} MiB ' \
+            f'{self.late_ms:7.1f} ms' + ''.join(f'  OVER: {what}' for what in self.over())
 
 
 class Bench:
@@ -126,8 +127,34 @@ class Bench:
     def broker(self):
         with open(self.path('broker.conf'), 'w', encoding='ascii') as file:
             print('log_dest none', 'user root', f'listener {self.number} 127.0.0.1', 'allow_anonymous true',
-                  'max_queued_messages 0', 'persistence true', f'persistence_location {self.folder}/', sep='\n', file=file)
-        return self.start('mosquitto', '-c', self.path('broker.conf'), stderr=subprocess.DEVNULL)
+                  'max_queued_messages 0', 'persistence true', f'persistence_location {self.folder}/', sep='\n',
+                  file=file)
+        broker = self.start('mosquitto', '-c', self.path('broker.conf'), stderr=subprocess.DEVNULL)
+        self.wait_for('the broker', self.accepts)
+        return broker
+
+    @staticmethod
+    def wait_for(what, is_so):
+        deadline = time.monotonic() + DEADLINE_S
+        while not is_so():
+            if time.monotonic() > deadline:
+                raise Failed(f'{what} did not come within {DEADLINE_S} s')
+            time.sleep(0.05)
+
+    def accepts(self):
+        """Returns True if the broker accepts a connection."""
+        with socket.socket() as client:
+            return client.connect_ex(('127.0.0.1', self.number)) == 0
+
+    def streams(self):
+        """Returns the states that the subscriber has written, without a last line that is not complete."""
+        with open(self.path('told'), encoding='utf-8') as told:
+            return states_of(told.read().rpartition('\n')[0].splitlines())
+
+    def has_all_after(self, since):
+        """Returns True if every sensor has sent a reading that was made after this time."""
+        streams = self.streams()
+        return len(streams) == self.count and all(states[-1]['time'] > since for states in streams.values())
 
     def config(self, ports, interval_ms=INTERVAL_MS):
         with open(self.path('site.yaml'), 'w', encoding='ascii') as file:
@@ -158,10 +185,9 @@ class Bench:
         """(messages, KiB at the begin, KiB at the end)"""
         self.config(self.far_end(), SOAK_MS)
         self.broker()
-        time.sleep(0.5)
         with open(self.path('told'), 'w', encoding='utf-8') as told:
-            self.start('mosquitto_sub', '-h', '127.0.0.1', '-p', self.number, '-F', '%q', '-t', 'fathom/bench/+/state', stdout=told,
-                       stderr=subprocess.DEVNULL)
+            self.start('mosquitto_sub', '-h', '127.0.0.1', '-p', self.number, '-F', '%q', '-t', 'fathom/bench/+/state',
+                       stdout=told, stderr=subprocess.DEVNULL)
             self.publisher = self.start(os.path.join(self.build, 'fathom'), 'publish', self.path('site.yaml'))
             time.sleep(WARM_S)
             begin = memory_kib(self.publisher.pid, 'VmRSS')
@@ -169,16 +195,19 @@ class Bench:
             end = memory_kib(self.publisher.pid, 'VmRSS')
         return os.path.getsize(self.path('told')) // 2, begin, end
 
-    def run(self, seconds):
+    def run(self, seconds, is_tried):
         self.config(self.far_end())
         broker = self.broker()
-        with open(self.path('told'), 'w', encoding='utf-8') as told, open(self.path('log'), 'w', encoding='utf-8') as log:
-            subscriber = ['mosquitto_sub', '-h', '127.0.0.1', '-p', self.number, '-q', 1, '-c', '-i', 'bench', '-F', '%t %p',
-                          '-t', 'fathom/bench/+/state']
-            time.sleep(0.5)
+        with open(self.path('told'), 'w', encoding='utf-8') as told, \
+                open(self.path('log'), 'w', encoding='utf-8') as log:
+            subscriber = ['mosquitto_sub', '-h', '127.0.0.1', '-p', self.number, '-q', 1, '-c', '-i', 'bench',
+                          '-F', '%t %p', '-t', 'fathom/bench/+/state']
             self.start(*subscriber, stdout=told, stderr=log)
-            self.publisher = self.start(os.path.join(self.build, 'fathom'), 'publish', self.path('site.yaml'), stderr=log)
-            time.sleep(WARM_S)
+            self.publisher = self.start(os.path.join(self.build, 'fathom'), 'publish', self.path('site.yaml'),
+                                        stderr=log)
+            self.wait_for('the first reading of each sensor', lambda: self.has_all_after(0))
+            if not is_tried:
+                time.sleep(WARM_S)
             self.measure('the broker is there', seconds)
             broker.send_signal(signal.SIGSTOP)
             self.measure('the broker has stopped', seconds / 2)
@@ -187,53 +216,35 @@ class Bench:
             broker.terminate()  # it keeps the subscription
             broker.wait()
             self.measure('its port refuses', seconds / 2)
-            broker = self.broker()
-            time.sleep(0.2)
+            self.broker()
             self.measure('it is there again', seconds)
-            time.sleep(1)
+            end = time.time()
+            self.wait_for('the last reading of each sensor', lambda: self.has_all_after(end))
             self.publisher.terminate()
             self.publisher.wait()
-            time.sleep(0.5)
-        with open(self.path('told'), encoding='utf-8') as told:
-            streams = states_of(told)
+        streams = self.streams()
         check_states(streams, self.count)
-        for row in self.rows:
+        for row in self.rows if not is_tried else ():
             row.late_ms = latest_ms(streams, row.begin, row.end)
         return streams
 
 
 def rate_of(streams):
     """Messages a second, at most, in any second in which the broker got them."""
-    seconds = collections.Counter(int(state['time'] + state['age_ms'] / 1000) for states in streams.values() for state in states)
+    seconds = collections.Counter(int(state['time'] + state['age_ms'] / 1000)
+                                  for states in streams.values() for state in states)
     return max(seconds.values())
 
 
 def self_test():
-    def state(seq, at, **more):
-        return {'seq': seq, 'status': 'target', 'distance_mm': 1000, 'dropped': 0, 'time': at, **more}
-    right = [state(number, number * 0.5) for number in range(1, 21)]
-
-    def fails(states, count=1):
-        try:
-            check_states({'s0': states}, count)
-        except Failed:
-            return True
-        return False
-    late = Row('late', 10)
-    late.late_ms = LATE_MS
-    text = 'fathom/bench/s0/state {"time":"1970-01-01T00:00:01.500000Z","seq":1}'
-    seen = {
-        'right': not fails(right),
-        'one is missing': fails(right[:4] + right[5:]),
-        'another line': fails([state(1, 0.5, distance_mm=1016)]),
-        'a failure': fails([state(1, 0.5, status='no_response')]),
-        'a sensor is missing': fails(right, count=2),
-        'on time': latest_ms({'s0': right}, 0, 10.5) == 0,
-        'late': latest_ms({'s0': right[:4] + right[5:]}, 0, 10.5) == 500,
-        'over': late.over() == ['late'] and Row('none', 1).over() == [],
-        'a time': states_of([text, text]) == {'s0': [{'time': 1.5, 'seq': 1}]},
-    }
-    return report.judge(seen)
+    states = [{'seq': seq, 'status': 'target', 'distance_mm': FIRST_MM, 'dropped': 0} for seq in (1, 2, 4)]
+    try:
+        check_states({'s0': states}, 1)
+        is_found = False
+    except Failed as why:
+        is_found = 'instead of 3' in str(why)
+    print(f'{int(is_found)} passed, {int(not is_found)} failed')
+    return 0 if is_found else 1
 
 
 def main():
@@ -242,8 +253,9 @@ def main():
     parser.add_argument('--lines', type=int, default=256)
     parser.add_argument('--seconds', type=float, default=20)
     parser.add_argument('--soak', type=float, metavar='SECONDS', help='memory alone')
-    parser.add_argument('--try', dest='is_tried', action='store_true', help='a moment with 16 lines')
-    parser.add_argument('--self-test', action='store_true', help='show that this can fail')
+    parser.add_argument('--try', dest='is_tried', action='store_true',
+                        help='check with 16 lines that no reading is lost')
+    parser.add_argument('--self-test', action='store_true', help='show that a missing reading is found')
     options = parser.parse_args()
     if options.self_test:
         return self_test()
@@ -253,22 +265,24 @@ def main():
         with contextlib.ExitStack() as stack:
             messages, begin, end = Bench(options.build, SOAK_LINES, stack).soak(options.soak)
         hours = messages / (256 * 1000 / INTERVAL_MS * 3600)
-        print(f'{messages} messages, as many as 256 lines have in {hours:.2f} hours; memory {begin} KiB at the begin, {end} at the end')
+        print(f'{messages} messages, as many as 256 lines have in {hours:.2f} hours; '
+              f'memory {begin} KiB at the start, {end} KiB at the end')
         return 1 if end > begin + GROWTH_KIB else 0
-    count, seconds = (16, 4) if options.is_tried else (options.lines, options.seconds)
+    count, seconds = (16, 2) if options.is_tried else (options.lines, options.seconds)
     try:
         with contextlib.ExitStack() as stack:
             bench = Bench(options.build, count, stack)
-            streams = bench.run(seconds)
+            streams = bench.run(seconds, options.is_tried)
     except Failed as why:
         print(why, file=sys.stderr)
         return 1
     print(f'{count} lines, each {INTERVAL_MS} ms; {sum(map(len, streams.values()))} readings, none missing; '
           f'up to {rate_of(streams)} messages a second')
+    if options.is_tried:  # the figures of a few lines on a busy machine mean little
+        return 0
     print(f'{"":34} {"":5} {"CPU":>7} {"memory":>10} {"late":>10}')
     print(*bench.rows, sep='\n')
-    # With a few lines of a busy machine the figures say little.
-    return 1 if any(row.over() for row in bench.rows) and not options.is_tried else 0
+    return 1 if any(row.over() for row in bench.rows) else 0
 
 
 if __name__ == '__main__':

@@ -322,7 +322,7 @@ class Image:
         return depth, (y + (value if op == 'subi' else value << 8)) % 0x10000
 
     def chain(self, functions):
-        """The deepest of these, and whom it calls where: [(function, bytes of its own, with its return address), ...]"""
+        """Returns the deepest path: [(function, bytes of its own with its return address), ...]"""
         function, found = max(functions, key=self.deepest, default=None), []
         while function is not None:
             frame, goes_to = self.deep[function]
