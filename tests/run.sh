@@ -19,6 +19,7 @@ cd "$(dirname "$0")/.."
 export LC_ALL=C.UTF-8 PYTHONDONTWRITEBYTECODE=1
 step=${1:-short}
 name=${2:-}
+name=${name##*/} name=${name%.c} name=${name%.py}
 jobs=$(nproc)
 python=/usr/bin/python3
 logs=build-logs
@@ -204,12 +205,26 @@ run_one() { # KIND NAME
         ;;
     esac
     install_packages
-    build gcc
+    case $1 in
+    unit | devices | port | tool) # without firmware
+        folder=build-one
+        echo "building all tests but firmware into $folder"
+        cmake -S . -B "$folder" -DFATHOM_TESTS=ALL -DFATHOM_CHECKS=OFF >"$logs/one.configure" 2>&1 ||
+            { tail -n 40 "$logs/one.configure"; exit 1; }
+        cmake --build "$folder" --parallel "$jobs" >"$logs/one.build" 2>&1 ||
+            { tail -n 40 "$logs/one.build"; exit 1; }
+        ;;
+    *)
+        folder=build-gcc
+        echo "building all tests into $folder"
+        build gcc
+        ;;
+    esac
     # A test of CTest's is a file. If no file has the name, run the files that define a test with it.
     files=$2
-    ctest --test-dir build-gcc --label-regex "^$1\$" -N --tests-regex "$2" | grep -q 'Test *#' ||
+    ctest --test-dir "$folder" --label-regex "^$1\$" -N --tests-regex "$2" | grep -q 'Test *#' ||
         files=$(grep -rlE "(def|class|TEST\\() ?\\w*$2" "tests/$1" | sed 's,.*/,,; s,\..*,,' | paste -sd '|')
-    FATHOM_CASE=$2 ctest --test-dir build-gcc --label-regex "^$1\$" --tests-regex "${files:-$2}" --no-tests=error \
+    FATHOM_CASE=$2 ctest --test-dir "$folder" --label-regex "^$1\$" --tests-regex "${files:-$2}" --no-tests=error \
         --output-on-failure
 }
 
