@@ -8,11 +8,12 @@
 
 #include "loop_fake.h"
 #include "loop_line_rig.h"
+#include "posix_time.h"
 
-/* The loop of loop_line_rig.h, in real time, and the two ends of a stream, one of them for a pin on it. Include it after
- * _DEFAULT_SOURCE. */
+/* The loop of loop_line_rig.h, and the two ends of a stream: a pin is on one of them. The clock is simulated
+ * (posix_time.h), the descriptors are real. Include this file after _DEFAULT_SOURCE. */
 
-enum { SOON_US = 30000, LONG_US = 10000000 };
+enum { SOON_US = 30000, LONG_US = 10000000, MOST_STEPS = 100000 };
 
 static fathom_loop_pin_t pin;
 static fake_sensor_t first;
@@ -32,6 +33,7 @@ static inline void ends_close(unsigned i)
 static inline int ends_set_up(void **state)
 {
     posix_start_watchdog(0);
+    posix_time_begin(true);
     line_rig_begin(NULL);
     ends_open();
     return 0;
@@ -45,13 +47,15 @@ static inline int ends_tear_down(void **state)
     return 0;
 }
 
-/* Steps for so long; how many. */
+/* Steps for `us` microseconds. Returns the number of steps. */
 static inline unsigned pass(uint64_t us)
 {
     const uint64_t until_us = fathom_posix_now_us() + us;
     const uint64_t before = rig.loop.sleeps;
-    for (uint64_t now_us; (now_us = fathom_posix_now_us()) < until_us;)
+    for (uint64_t now_us; (now_us = fathom_posix_now_us()) < until_us;) {
         fathom_loop_step(&rig.loop, (uint32_t)(until_us - now_us));
+        assert_true(rig.loop.sleeps - before < MOST_STEPS); /* a loop that never sleeps stops the clock */
+    }
     return (unsigned)(rig.loop.sleeps - before);
 }
 

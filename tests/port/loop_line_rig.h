@@ -8,7 +8,8 @@
 #include "fathom_loop.h"
 #include "loop_far_end.h"
 
-/* Lines on pseudo terminals, an HPS-167S on each, in one loop. */
+/* Lines on pseudo terminals, an HPS-167S on each, in one loop. A far end responds in less than a millisecond on an idle
+ * machine, so a time-out of 1 s is long. A unit whose port broke is quarantined for twice the time-out. */
 typedef struct {
     fathom_loop_t loop;
     unsigned count;
@@ -19,6 +20,8 @@ typedef struct {
     unsigned readings[FAR_END_MOST], errors[FAR_END_MOST], port_errors[FAR_END_MOST];
     unsigned opened, failed; /* that were told */
 } line_rig_t;
+
+enum { LINE_RIG_TIMEOUT_US = 1000000 };
 
 static line_rig_t rig;
 
@@ -48,7 +51,7 @@ static inline void line_rig_add(uint32_t baud)
     assert_int_equal(fathom_loop_add_line(&rig.loop, &rig.lines[i], rig.ptys[i].path, &settings),
                      FATHOM_POSIX_OK);
     const fathom_hps167s_config_t config = {.modbus.transport = &rig.lines[i].modbus,
-                                            .modbus.timeout_us = 1000000};
+                                            .modbus.timeout_us = LINE_RIG_TIMEOUT_US};
     assert_int_equal(fathom_hps167s_init(&rig.drivers[i], &config), FATHOM_READY);
     rig.sensors[i] =
         (fathom_loop_sensor_t){fathom_hps167s_sensor(&rig.drivers[i]), line_rig_take, &numbers[i], NULL};

@@ -1,35 +1,24 @@
 /* SPDX-License-Identifier: MIT */
-#define _GNU_SOURCE 1 /* syscall */
+#define _GNU_SOURCE 1
 #include <errno.h>
 #include <fcntl.h>
-#include <linux/time_types.h>
-#include <poll.h>
 #include <stdarg.h>
 #include <sys/epoll.h>
 #include <sys/eventfd.h>
-#include <sys/syscall.h>
 #include <unistd.h>
 
 #include "loop_fake.h"
 #include "loop_line_rig.h"
+#include "posix_time.h"
 
-/* What fathom_loop.h asks of the system: calls are counted, not times. */
-
-enum { SIXTH = 6 };
+/* The system calls of fathom_loop.h. The tests count calls, and read the time that a sleep requests; they measure no time.
+ * Tests in which a far end responds use the real clock, with a time-out of 1 s; the others use a simulated clock. */
 
 typedef struct {
-    unsigned reads, empty_reads, writes, ioctls, opens, sleeps;
-    int sleep_error;        /* of epoll_pwait2; 0: none */
-    int poll_error;         /* of ppoll(2), which takes its place */
+    unsigned reads, empty_reads, writes, ioctls, opens;
     int control_error;      /* of epoll_ctl */
     unsigned adds, changes; /* of it: calls with EPOLL_CTL_ADD, and EPOLL_CTL_MOD */
     size_t write_most;      /* bytes that one write takes; 0: all */
-    /* What the last of both was asked for. */
-    bool is_endless;
-    int64_t seconds, nanoseconds;
-    /* The longest limit of a first sleep behind a write. */
-    bool has_written;
-    int64_t longest_us;
 } calls_t;
 
 static calls_t calls;
@@ -43,24 +32,9 @@ int __real_ioctl(int fd, unsigned long request, ...);
 int __wrap_ioctl(int fd, unsigned long request, ...);
 int __real_open(const char *path, int flags, ...);
 int __wrap_open(const char *path, int flags, ...);
-long __real_syscall(long number, ...);
-long __wrap_syscall(long number, ...);
-int __real_ppoll(struct pollfd *entries, nfds_t count, const struct timespec *limit, const sigset_t *mask);
-int __wrap_ppoll(struct pollfd *entries, nfds_t count, const struct timespec *limit, const sigset_t *mask);
 
 int __real_epoll_ctl(int epoll, int operation, int fd, struct epoll_event *event);
 int __wrap_epoll_ctl(int epoll, int operation, int fd, struct epoll_event *event);
-
-static void asked_for(bool is_endless, int64_t seconds, int64_t nanoseconds)
-{
-    calls.is_endless = is_endless;
-    calls.seconds = seconds;
-    calls.nanoseconds = nanoseconds;
-    if (!calls.has_written || is_endless) return;
-    calls.has_written = false;
-    const int64_t us = seconds * 1000000 + nanoseconds / 1000;
-    if (us > calls.longest_us) calls.longest_us = us;
-}
 
 ssize_t __wrap_read(int fd, void *bytes, size_t length)
 {
@@ -73,7 +47,7 @@ ssize_t __wrap_read(int fd, void *bytes, size_t length)
 ssize_t __wrap_write(int fd, const void *bytes, size_t length)
 {
     calls.writes++;
-    calls.has_written = true;
+    posix_time.is_first = true;
     return __real_write(fd, bytes,
                         calls.write_most != 0 && length > calls.write_most ? calls.write_most : length);
 }
@@ -94,32 +68,6 @@ int __wrap_open(const char *path, int flags, ...)
     return __real_open(path, flags);
 }
 
-long __wrap_syscall(long number, ...)
-{
-    long a[SIXTH];
-    va_list arguments;
-    va_start(arguments, number);
-    for (unsigned i = 0; i != SIXTH; i++) a[i] = va_arg(arguments, long);
-    va_end(arguments);
-    calls.sleeps++;
-    const struct __kernel_timespec *const limit = (const void *)a[3];
-    asked_for(limit == NULL, limit != NULL ? limit->tv_sec : 0, limit != NULL ? limit->tv_nsec : 0);
-    if (calls.sleep_error != 0) {
-        errno = calls.sleep_error;
-        return -1;
-    }
-    return __real_syscall(number, a[0], a[1], a[2], a[3], a[4], a[5]);
-}
-
-int __wrap_ppoll(struct pollfd *entries, nfds_t count, const struct timespec *limit, const sigset_t *mask)
-{
-    assert_int_equal(count, 1);
-    asked_for(limit == NULL, limit != NULL ? limit->tv_sec : 0, limit != NULL ? limit->tv_nsec : 0);
-    if (calls.poll_error == 0) return __real_ppoll(entries, count, limit, mask);
-    errno = calls.poll_error;
-    return -1;
-}
-
 int __wrap_epoll_ctl(int epoll, int operation, int fd, struct epoll_event *event)
 {
     calls.adds += operation == EPOLL_CTL_ADD;
@@ -132,10 +80,19 @@ int __wrap_epoll_ctl(int epoll, int operation, int fd, struct epoll_event *event
 
 static pid_t far_end;
 
+/* Counts from now on. */
+static void count_calls(void)
+{
+    memset(&calls, 0, sizeof calls);
+    posix_time.epoll_count = posix_time.ppoll_count = 0;
+    posix_time.longest_first_us = 0;
+}
+
 static int set_up(void **state)
 {
     posix_start_watchdog(0);
-    memset(&calls, 0, sizeof calls);
+    posix_time_begin(false);
+    count_calls();
     line_rig_begin(NULL);
     return 0;
 }
@@ -174,7 +131,7 @@ TEST(eight_lines_ask_the_system_for_what_is_there_and_nothing_else)
     begin(8, 115200);
     line_rig_until(&rig.readings[0], 1); /* all is as it stays */
     line_rig_until(&rig.readings[7], 2);
-    memset(&calls, 0, sizeof calls);
+    count_calls();
     const unsigned before = total(rig.readings);
     line_rig_until(&rig.readings[0], 40);
     const unsigned transactions = total(rig.readings) - before;
@@ -184,60 +141,68 @@ TEST(eight_lines_ask_the_system_for_what_is_there_and_nothing_else)
     assert_in_range(calls.reads, transactions, transactions + 8);
     assert_in_range(calls.writes, transactions - 8, transactions + 8);
     assert_in_range(calls.ioctls, 0, transactions + 8); /* a response may come while the request leaves */
-    assert_in_range(calls.sleeps, 1, 4 * transactions);
+    assert_in_range(posix_time.epoll_count, 1, 4 * transactions);
 }
 
 /* What was waiting before the descriptor was watched is looked for once. */
 TEST(a_line_that_has_nothing_to_say_is_read_once)
 {
+    posix_time_stop();
     posix_pty_open(&rig.ptys[0]);
     line_rig_add(115200);
-    memset(&calls, 0, sizeof calls);
+    count_calls();
     for (unsigned i = 0; i != 50; i++) fathom_loop_step(&rig.loop, 10000);
     assert_in_range(calls.reads, 1, 1);
     assert_int_equal(calls.writes, 1);
 }
 
-/* fathom_posix.h: leaves_in_us. At 1200 baud the 80 bits of the request leave for 66.7 ms; the response comes after 100. It
- * sleeps for the silence before the request, the end of the request, and the response; and where the port does not tell
- * when that end is, a millisecond at most. How long is what it asks for: on a busy machine it sleeps longer, less often. */
+/* fathom_posix.h: leaves_in_us. At 1200 baud the 80 bits of a request leave for 66.7 ms; the response comes after 100 ms.
+ * The loop sleeps three times a request: for the silence before it, for its end, and for the response. If the port does
+ * not know when the request ends, each sleep requests at most 1 ms. If a busy machine wakes the loop late, the loop sleeps
+ * less often, and the first sleep after a write requests less; so requests go on until one has requested most of its time.
+ */
 TEST(the_loop_wakes_once_for_the_end_of_a_request)
 {
     begin_late(1, 1200, 100);
     line_rig_until(&rig.readings[0], 1);
-    memset(&calls, 0, sizeof calls);
-    line_rig_until(&rig.readings[0], 5);
-    /* 12; one more for each 100 ms that a busy machine delays a response. Each millisecond: 66 a request. */
-    assert_in_range(calls.sleeps, 4, 4 * 3 + 12);
-    assert_in_range(calls.ioctls, 1, 4 * 2); /* 4 where no other program delays it */
-    assert_in_range(calls.longest_us, 50000, 67000);
+    count_calls();
+    unsigned requests = 0;
+    while (requests < 4 || posix_time.longest_first_us < 50000) {
+        assert_in_range(++requests, 1, 100);
+        while (rig.readings[0] != 1 + requests) fathom_loop_step(&rig.loop, FATHOM_NO_DEADLINE);
+    }
+    assert_in_range(posix_time.epoll_count, requests, requests * 3 + 1);
+    assert_in_range(calls.ioctls, 1, requests + 1);
+    assert_in_range(posix_time.longest_first_us, 50000, 67000);
     rig.lines[0].uart.leaves_in_us = NULL;
-    line_rig_until(&rig.readings[0], 6);
-    memset(&calls, 0, sizeof calls);
-    line_rig_until(&rig.readings[0], 8);
+    line_rig_until(&rig.readings[0], rig.readings[0] + 1);
+    count_calls();
+    line_rig_until(&rig.readings[0], rig.readings[0] + 2);
     assert_true(calls.writes > 0);
-    assert_in_range(calls.longest_us, 1, 1000);
+    assert_in_range(posix_time.longest_first_us, 1, 1000);
     assert_int_equal(calls.empty_reads, 0);
     assert_int_equal(rig.errors[0], 0);
 }
 
-/* Pauses a hundredth of the usual ones: 5 ms, up to 80 ms; 800 ms of these are 80 s. open is tried at 5, 15, 35, 75, 155
- * ms and each 80 ms from then on: 13 times; a sleep for each, and for the test's own limit. */
+/* The pauses are a hundredth of the default ones: 5 ms, up to 80 ms. Within 800 ms the loop tries to open the port at 5, 15,
+ * 35, 75 and 155 ms and every 80 ms from then on, at 235 to 795 ms: 13 times. It sleeps once for each, and once until the
+ * test's own limit. */
 TEST(a_lost_port_costs_a_sleep_and_an_open_a_pause)
 {
     line_rig_end();
+    posix_time_stop();
     line_rig_begin(&(fathom_loop_config_t){.first_pause_us = 5000, .longest_pause_us = 80000});
     posix_pty_open(&rig.ptys[0]);
     line_rig_add(115200);
     fathom_loop_step(&rig.loop, 1000);
     posix_pty_close(&rig.ptys[0]);
     line_rig_until(&rig.failed, 1);
-    memset(&calls, 0, sizeof calls);
+    count_calls();
     const uint64_t until_us = fathom_posix_now_us() + 800000;
     for (uint64_t now_us; (now_us = fathom_posix_now_us()) < until_us;)
         fathom_loop_step(&rig.loop, (uint32_t)(until_us - now_us));
-    assert_in_range(calls.opens, 4, 13);
-    assert_in_range(calls.sleeps, calls.opens, calls.opens + 3);
+    assert_int_equal(calls.opens, 13);
+    assert_int_equal(posix_time.epoll_count, 13 + 1);
     assert_int_equal(calls.reads + calls.writes + calls.ioctls, 0);
     assert_int_equal(rig.failed, 1 + calls.opens);
     assert_int_equal(rig.port_errors[0], 1);
@@ -246,11 +211,11 @@ TEST(a_lost_port_costs_a_sleep_and_an_open_a_pause)
 /* Linux before 5.11 says ENOSYS, a sandbox that does not know it EPERM. */
 static void sleeps_without_pwait2(void **state)
 {
-    calls.sleep_error = *(const int *)*state;
+    posix_time.epoll_error = *(const int *)*state;
     begin(2, 115200);
     line_rig_until(&rig.readings[0], 5);
     line_rig_until(&rig.readings[1], 5);
-    assert_int_equal(calls.sleeps, 1);
+    assert_int_equal(posix_time.epoll_count, 1);
     assert_true(rig.loop.has_no_pwait2);
     assert_in_range(rig.loop.sleeps, 1, 300); /* it does not spin */
     assert_int_equal(total(rig.errors), 0);
@@ -259,19 +224,18 @@ static int no_such_call = ENOSYS, not_allowed = EPERM;
 TEST_ROW(a_kernel_without_epoll_pwait2_will_do, sleeps_without_pwait2, &no_such_call)
 TEST_ROW(a_sandbox_that_refuses_epoll_pwait2_will_do, sleeps_without_pwait2, &not_allowed)
 
+/* The test a_sleep_is_requested_to_the_microsecond_without_it reads the times that are requested. */
 TEST(there_too_a_sleep_ends_after_its_time_and_not_before)
 {
-    calls.sleep_error = ENOSYS;
-    uint64_t least_us = UINT64_MAX;
-    /* On a busy machine many of them are long. */
-    for (unsigned i = 0; i != 1000 && least_us > 900; i++) {
+    posix_time.epoll_error = ENOSYS;
+    for (unsigned i = 0; i != 20; i++) {
         const uint64_t begin_us = fathom_posix_now_us();
         fathom_loop_step(&rig.loop, 200);
-        const uint64_t took_us = fathom_posix_now_us() - begin_us;
-        assert_true(took_us >= 200);
-        if (took_us < least_us) least_us = took_us;
+        assert_true(fathom_posix_now_us() - begin_us >= 200);
+        assert_int_equal(posix_time.seconds, 0);
+        assert_int_equal(posix_time.nanoseconds, 200000);
     }
-    assert_in_range(least_us, 200, 900); /* not rounded up to milliseconds */
+    assert_int_equal(posix_time.ppoll_count, 20);
 }
 
 /* Signals end all of these at once. */
@@ -284,25 +248,25 @@ static void expect_limits(void)
                 {2000000, 2, 0}, {7000003, 7, 3000},     {4294967294u, 4294, 967294000}};
     for (unsigned i = 0; i != sizeof rows / sizeof rows[0]; i++) {
         fathom_loop_step(&rig.loop, rows[i].max_us);
-        assert_false(calls.is_endless);
-        assert_int_equal(calls.seconds, rows[i].seconds);
-        assert_int_equal(calls.nanoseconds, rows[i].nanoseconds);
+        assert_false(posix_time.is_endless);
+        assert_int_equal(posix_time.seconds, rows[i].seconds);
+        assert_int_equal(posix_time.nanoseconds, rows[i].nanoseconds);
     }
     fathom_loop_step(&rig.loop, FATHOM_NO_DEADLINE);
-    assert_true(calls.is_endless);
+    assert_true(posix_time.is_endless);
 }
 
-TEST(a_sleep_is_asked_for_to_the_microsecond_with_epoll_pwait2)
+TEST(a_sleep_is_requested_to_the_microsecond_with_epoll_pwait2)
 {
-    calls.sleep_error = EINTR;
+    posix_time.epoll_error = EINTR;
     expect_limits();
     assert_false(rig.loop.has_no_pwait2);
 }
 
-TEST(a_sleep_is_asked_for_to_the_microsecond_without_it)
+TEST(a_sleep_is_requested_to_the_microsecond_without_it)
 {
-    calls.sleep_error = ENOSYS;
-    calls.poll_error = EINTR;
+    posix_time.epoll_error = ENOSYS;
+    posix_time.ppoll_error = EINTR;
     expect_limits();
     assert_true(rig.loop.has_no_pwait2);
 }
@@ -310,17 +274,17 @@ TEST(a_sleep_is_asked_for_to_the_microsecond_without_it)
 /* A signal is not what has_no_pwait2 is about. */
 TEST(an_interrupted_sleep_is_over_and_no_more)
 {
-    calls.sleep_error = EINTR;
+    posix_time.epoll_error = EINTR;
     fathom_loop_step(&rig.loop, 1000000);
     assert_false(rig.loop.has_no_pwait2);
-    assert_int_equal(calls.sleeps, 1);
+    assert_int_equal(posix_time.epoll_count, 1);
 }
 
 /* 64 are what one sleep tells of; the others come with the next one. */
 static void more_than_a_sleep_tells_of(void **state)
 {
     static fake_source_t sources[100];
-    calls.sleep_error = *(const int *)*state;
+    posix_time.epoll_error = *(const int *)*state;
     for (unsigned i = 0; i != 100; i++) {
         fake_source(&sources[i]);
         sources[i].due_us = FATHOM_NO_DEADLINE;
@@ -382,8 +346,7 @@ static void leaves_in_parts(void **state)
     calls.write_most = 1; /* so that it waits for room too */
     posix_pty_open(&rig.ptys[0]);
     line_rig_add(115200);
-    for (unsigned i = 0; i != 20; i++) fathom_loop_step(&rig.loop, 10000);
-    assert_true(calls.writes > 0);
+    while (calls.writes < 8) fathom_loop_step(&rig.loop, 10000); /* a request has 8 bytes */
     assert_true(calls.adds > 0);
     assert_int_equal(calls.changes > 0, calls.control_error == 0);
 }
