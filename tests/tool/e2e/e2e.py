@@ -399,7 +399,7 @@ def run(case):
     return wrong
 
 
-def main(at_once=16):
+def main(at_once=4):
     """Runs the cases of the calling script, or those named by its arguments or by FATHOM_CASE, `at_once` at a time, and
     prints how many passed."""
     if not os.access(FATHOM, os.X_OK):

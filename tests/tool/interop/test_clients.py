@@ -319,4 +319,4 @@ class Alone(interop.Pymodbus, interop.Case):
 
 
 if __name__ == '__main__':
-    interop.main(at_once=32)
+    interop.main(at_once=8)

@@ -206,4 +206,4 @@ class Hps167s(OneDistance, Raw):
 del Raw  # which has no sensor
 
 if __name__ == '__main__':
-    interop.main(at_once=32)
+    interop.main(at_once=8)
