@@ -3,6 +3,8 @@
 
 #include "board.h"
 
+static const suite_t suite = {.tear_down = board_stop};
+
 TEST(the_adapter_keeps_what_its_header_says)
 {
     unsigned held = 0;

@@ -29,15 +29,8 @@ IMPOSSIBLE = {
 # Of the ports for microcontrollers: (file, function): why no image executes it.
 QEMU = "QEMU's STM32F4 boards have no capture unit and no pins; tests/port/test_stm32f4.c runs it on memory"
 NO_ERROR = "QEMU's UARTs report no errors and lose no byte; tests/port/test_serial.c counts them"
-UNTRACED = 'test_arduino_adapter.c executes it, but does not stop its board, which writes the trace'
-ARDUINO = 'port/arduino/fathom_arduino.cpp'
 CAPTURE, PIN = 'port/stm32f4/capture.c', 'port/stm32f4/pin.c'
 UNREACHED = {
-    (ARDUINO, '_ZN6fathom7arduino11serial_uart12leaves_in_usEPv'): UNTRACED,
-    (ARDUINO, '_ZN6fathom7arduino11serial_uart8set_lineEPvPK22fathom_line_settings_t'): UNTRACED,
-    (ARDUINO, '_ZN6fathom7arduino11stream_uart12leaves_in_usEPv'): UNTRACED,
-    (ARDUINO, '_ZN6fathom7arduino11stream_uart4sentEPv'): UNTRACED,
-    (ARDUINO, '_ZN6fathom7arduino11stream_uart5writeEPvPKhj'): UNTRACED,
     ('port/rp2040/idle.c', 'fathom_rp2040_idle_alarm'): 'fathom_rp2040_idle clears the alarm before interrupts are on',
     (CAPTURE, 'fathom_stm32f4_capture_begin'): QEMU,
     (CAPTURE, 'fathom_stm32f4_tim2_interrupt'): QEMU,
