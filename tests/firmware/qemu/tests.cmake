@@ -10,6 +10,6 @@ foreach(script IN LISTS scripts)
     if(TARGET fathom_tool)
         add_dependencies(${name} fathom_tool)
     endif()
-    set_tests_properties(firmware.${name} PROPERTIES
+    set_tests_properties(firmware.${name} PROPERTIES RESOURCE_LOCK realtime # QEMU's clock is the host's
         ENVIRONMENT "${environment};FATHOM_IMAGES=${FATHOM_IMAGES_${machine}};PYTHONPATH=${CMAKE_CURRENT_LIST_DIR}")
 endforeach()

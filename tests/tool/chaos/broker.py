@@ -3,7 +3,7 @@
 """fathom publish under load, while its broker, its connection and it itself are killed and begun again.
 
     broker.py [--kills 100] [--seed N]     three minutes; --kills 8 is the quick form, 20 s
-    broker.py --self-test                  shows that what is lost, out of order or miscounted is seen
+    broker.py --self-test                  takes a message out of a record, and sees that it is lost
 
 FATHOM is the tool, as for tests/tool/e2e; Mosquitto and its mosquitto_sub have to be there. mqtt_between.py records all that the tool
 has sent, and what each broker has acknowledged. At the end: what was acknowledged has come to the subscriber; nothing that was
@@ -231,52 +231,19 @@ def records(count=UNDER_WAY + 6, boot='b'):
 
 
 def self_test():
-    def lost(sent, received):
-        received[1] = received[1][:3] + received[1][4:]
-
-    def missing(sent, received):
-        del sent[4]
-
-    def swapped(sent, received):
-        sent[5], sent[6] = sent[6], sent[5]
-
-    def swapped_by_the_broker(sent, received):
-        received[1][5], received[1][6] = received[1][6], received[1][5]
-
-    def unacknowledged(sent, received):
-        sent[4].is_acknowledged = False
-
-    def miscounted(sent, received):
-        sent[0].payload = json.dumps({'boot': 'b', 'dropped': 3})
-        received[1][0] = (sent[0].topic, sent[0].payload)
-
-    def last_unacknowledged(sent, received):
-        sent[-1].is_acknowledged = False
-        del received[1][-1]
-
-    def twice(sent, received):
-        sent.insert(4, sent[3])
-
-    failed = 0
-    rows = [(lost, 'has not come'), (missing, 'dropped'), (swapped, 'not in order'), (swapped_by_the_broker, 'out of order'),
-            (unacknowledged, 'never acknowledged'), (miscounted, 'its topics say'), (last_unacknowledged, ''), (twice, '')]
-    for change, words in rows:
-        sent = records()
-        received = {1: [(one.topic, one.payload) for one in sent]}
-        change(sent, received)
-        try:
-            check(sent, received)
-            is_right = words == ''
-        except Wrong as why:
-            is_right = words != '' and words in str(why)
-        failed += not is_right
-        print(f'{change.__name__}: {"as it should be" if is_right else "NOT SEEN"}')
-    whole, rest = mqtt_between.packets(bytes([0x40, 2, 0, 7, 0x32, 0x80, 1]) + bytes(128) + bytes([0x30, 5, 0]))
-    is_right = [(first, len(body)) for first, body in whole] == [(0x40, 2), (0x32, 128)] and rest == bytes([0x30, 5, 0])
-    failed += not is_right
-    print(f'packets: {"as it should be" if is_right else "NOT SO"}')
-    print(f'{len(rows) + 1 - failed} passed, {failed} failed')
-    return 1 if failed else 0
+    """Takes a message out of what a subscriber received. Returns 0 if check() sees that."""
+    sent = records()
+    received = {1: [(one.topic, one.payload) for one in sent]}
+    check(sent, received)
+    del received[1][3]
+    try:
+        check(sent, received)
+        is_seen = False
+    except Wrong as why:
+        is_seen = 'has not come' in str(why)
+    print(f'the lost message is {"seen" if is_seen else "NOT SEEN"}')
+    print(f'{int(is_seen)} passed, {int(not is_seen)} failed')
+    return int(not is_seen)
 
 
 def main():

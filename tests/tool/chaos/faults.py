@@ -11,7 +11,7 @@ import time
 import e2e
 
 HOLDS = 2.5  # seconds in which things happen
-BACK = 12    # until each sensor is read again: the pause between two tries to open a port grows to 8 s
+BACK = 80    # until each sensor is read again: ten times the longest pause between two tries to open a port
 LATE = 0.4   # seconds: how long after the end of a simulated sensor a reading of it may bear its time
 SENSORS = {  # words for the tool, and whether a damaged frame is always seen, by a CRC
     'gate': ('hps167s:7', True), 'tank': ('a16:1:modbus', True), 'hall': ('a05:2:modbus', True),
