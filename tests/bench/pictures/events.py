@@ -43,12 +43,3 @@ def frames(events):
 def demand(condition, what):
     if not condition:
         raise Unexpected(what)
-
-
-def differences(kept, seen, most_us):
-    """Where two traces differ in what happened, or by more than so much in when."""
-    if [event[2:] for event in kept] != [event[2:] for event in seen]:
-        return ['other events, or in another order']
-    return [f'{a.what} {a.text}: at {b.begin_us} to {b.end_us} us, was at {a.begin_us} to {a.end_us}'
-            for a, b in zip(kept, seen)
-            if max(abs(a.begin_us - b.begin_us), abs(a.end_us - b.end_us)) > most_us]
