@@ -86,7 +86,8 @@ run_tests() { # PRESET RESULTS [OPTION...]
     folder=build-$1 output=$PWD/$logs/$2.xml
     results="$results $logs/$2.xml"
     shift 2
-    # Half of them wait for a serial line most of the time.
+    # The tests of the tool wait for a serial line most of the time, so two of them share a core. A test that needs a
+    # core for itself has the property PROCESSORS 2.
     ctest --test-dir "$folder" --parallel "$((2 * jobs))" --timeout "${timeout:-120}" --output-on-failure --no-tests=error \
         --quiet --output-log "$output.log" --test-output-size-passed 1000000 --test-output-size-failed 1000000 \
         --output-junit "$output" "$@" || { grep -A 200 'tests failed out of\|\*\*\*Failed' "$output.log"; return 1; }
