@@ -65,7 +65,7 @@ class What(Settings):
         self.assertEqual(self.json(f'info {sensor}:0 --port {sim}')['address'], 0)
         self.assertEqual({one['address'] for one in self.reads(f'{sensor}:0', sim)}, {0})
         self.ends(f'set {sensor}:0 --port {sim} address 1', 2, 'goes to all units')
-        found, = self.ends(f'scan --port {sim} --address 0 --baud 9600 --listen 1 --format json', 0).json
+        found, = self.ends(f'scan --port {sim} --address 0 --baud 9600 --listen 1 --timeout 1000 --format json', 0).json
         self.assertEqual((found['model'], found['address']), (sensor, 0))
         self.assertEqual(self.counters(sim, 'writes'), [(1,)])
 
