@@ -264,6 +264,7 @@ def main():
     parser.add_argument('--at-once', type=int, default=4)
     parser.add_argument('--self-test', action='store_true', help='plants a fault and sees it')
     options = parser.parse_args()
+    e2e.follow_hang_up()
     for needed in (e2e.FATHOM, CLOCK):
         if not os.path.exists(needed):
             sys.exit(f'{needed} is not there')

@@ -399,11 +399,17 @@ def run(case):
     return wrong
 
 
+def follow_hang_up():
+    """Under nohup(1) SIGHUP is ignored. The tool would inherit that, and a test that sends it SIGHUP would fail."""
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
+
+
 def main(at_once=4):
     """Runs the cases of the calling script, or those named by its arguments or by FATHOM_CASE, `at_once` at a time, and
     prints how many passed."""
     if not os.access(FATHOM, os.X_OK):
         sys.exit(f'{FATHOM} is not there; set FATHOM to the path of the tool')
+    follow_hang_up()
     module, names = sys.modules['__main__'], sys.argv[1:]
     loader = unittest.defaultTestLoader
     suite = loader.loadTestsFromNames(names, module) if names else loader.loadTestsFromModule(module)
