@@ -2,11 +2,15 @@
 """What the end-to-end tests share: programs that are started, watched and ended, pseudo terminals, frames.
 
 Nothing here waits for a while: every wait is for something that happens, with a deadline after which the test
-fails. Programs are ended with the test that started them. The cases of a file run side by side, because they
-mostly wait; so none may hang on another."""
+fails. Programs are ended with the test that started them. Four cases of a file run at a time, because they mostly
+wait; so none may hang on another.
+
+A case asserts order, counts and least times. A time that it may take at most is PATIENCE, or at least 10 times what it
+takes on an idle machine."""
 import concurrent.futures
 import contextlib
 import csv
+import functools
 import io
 import json
 import os
@@ -26,10 +30,9 @@ import unittest
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))))
 HERE = os.path.dirname(os.path.abspath(__file__))
 FATHOM = os.path.abspath(os.environ.get('FATHOM') or os.path.join(ROOT, 'build', 'fathom'))
-PATIENCE = 20  # seconds; far more than anything here takes on a busy machine
+PATIENCE = 20  # seconds; at least 10 times what any wait here takes on an idle machine
 # Statuses of attempts that have failed, which have rows too.
 FAILURES = ['impossible_values', 'port', 'no_response', 'damaged', 'exception', 'other_response', 'stale', 'other']
-LITTLE = 0.3  # seconds of CPU; a program that spins takes ten times as much in these tests
 
 
 def is_ready(fd, seconds):
@@ -184,6 +187,22 @@ class Program:
             self.fail(f'still runs after {seconds} s')
         return self.done
 
+    def _switches(self):
+        """What the system says of it: its state, and how often it has been switched to and from."""
+        with open(f'/proc/{self.process.pid}/status', encoding='ascii') as file:
+            text = file.read()
+        return re.search(r'State:\s+(\w)', text)[1], re.findall(r'ctxt_switches:\s+(\d+)', text)
+
+    def until_asleep(self, seconds=0.05):
+        """Waits until it has slept for this long without a break: what it had to do is done."""
+        deadline = time.monotonic() + PATIENCE
+        before = None
+        while (now := self._switches()) != before or now[0] != 'S':
+            if time.monotonic() > deadline:
+                self.fail('does not sleep')
+            before = now
+            time.sleep(seconds)
+
     def end(self, number=signal.SIGTERM):
         """The terminal of one that is gone may be another test's at once. So no link leads there any more."""
         if self.done is None:
@@ -192,6 +211,12 @@ class Program:
                     os.unlink(self.link)
             self.send(number)
         return self.finish()
+
+
+@functools.lru_cache(None)
+def start_cpu():
+    """Seconds of CPU that the tool needs to start and to end, as it was built, on this machine."""
+    return max(Program([FATHOM, '--version']).finish().cpu for _ in range(3))
 
 
 class Device:
@@ -313,6 +338,12 @@ class Case(unittest.TestCase):
     def read_json(self, *line, code=0, **options):
         """fathom read to the end: the objects."""
         return self.ends(self.run_fathom('read --format json', *line, **options), code).json
+
+    def needs_little(self, *programs):
+        """They have ended, and needed at most 0.3 s of CPU more than ten starts of the tool. A program that spins for the
+        seconds that these tests wait needs ten times as much."""
+        for done in programs:
+            self.assertLess(done.cpu, 0.3 + 10 * start_cpu(), done)
 
     def preload(self, source, **more):
         """The environment for a program with some function of the system replaced."""

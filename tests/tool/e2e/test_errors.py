@@ -9,7 +9,6 @@ import signal
 import time
 
 import e2e
-from e2e import LITTLE
 
 FOUR = '1000,2000,1953,3562'
 FRAME, FRAME_OF_FOUR = e2e.frame(1953), e2e.frame(1000, 2000, 1953, 3562)
@@ -215,7 +214,7 @@ class HangUp(e2e.Case):
         done = self.ends(reader, 1, re.compile(
             rf'(?m)^fathom: attempt \d+: {sim}: the device was unplugged or its far end closed \(.*\); '
             rf'connect it again'), re.compile(r'attempts \d+, failed 1, '))
-        self.assertLess(done.cpu, LITTLE)
+        self.needs_little(done)
 
     def test_a_port_that_hangs_up_before_the_first_response(self):
         device, reader = self.beside('read a05 --mode modbus')
@@ -236,10 +235,7 @@ class Signals(e2e.Case):
         reader = self.fathom(f'read hps167s --address 2 --port {self.sim("hps167s:2 --distance 754")} '
                              f'--stats {options}')
         reader.expect(expect, stream)
-        began = time.monotonic()
-        done = reader.end(number)
-        self.assertLess(time.monotonic() - began, 2)
-        self.ends(done, code, re.compile(r'(?m)^fathom: attempts [1-9]\d*, failed \d+, readings \d+$'))
+        self.ends(reader.end(number), code, re.compile(r'(?m)^fathom: attempts [1-9]\d*, failed \d+, readings \d+$'))
 
     def test_in_the_middle_of_an_attempt(self):
         device, reader = self.beside('read a16 --mode modbus --timeout 600000')
@@ -305,7 +301,7 @@ class Output(e2e.Case):
         reader = self.into(pipe, f'read a16 --mode modbus --port {device} --timeout 600000')
         device.read(8)
         os.close(out)
-        self.assertLess(self.leaves(reader).cpu, LITTLE)
+        self.needs_little(self.leaves(reader))
 
     def test_a_full_disk_is_told(self):
         sim = self.sim('hps167s --distance 754')
@@ -333,14 +329,13 @@ class Idle(e2e.Case):
                  (('a16', 'a16'), ('a05', 'a05 --mode modbus'))})
     def dead(self, line):
         done = self.ends(f'read {line} --port {self.device()} --timeout 3000 --count 1', 1)
-        self.assertLess(done.cpu, LITTLE)
+        self.needs_little(done)
 
     def test_a_pause_between_readings_takes_next_to_no_cpu(self):
         sim = self.sim('hps167s --distance 754')
         done = self.ends(f'read hps167s --port {sim} --interval 1500 --count 3', 0)
-        self.assertLess(done.cpu, LITTLE)
-        self.assertLess(sim.end().cpu, LITTLE)
+        self.needs_little(done, sim.end())
 
 
 if __name__ == '__main__':
-    e2e.main()
+    e2e.main(at_once=8)  # they wait for time-outs

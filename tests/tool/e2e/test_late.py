@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Late responses: one of the right shape that comes in the next request of the same unit is never shown as that
-request's reading."""
+request's reading. It needs real time: CTest runs one such file at a time."""
 import re
 
 import e2e

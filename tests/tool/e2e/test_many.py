@@ -1,18 +1,16 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """fathom read with sensors on several ports: one of them is killed and started again, or is a connection to nothing,
-and the others do not pause."""
+and the others do not pause. It needs real time: CTest runs one such file at a time."""
 import os
 import re
 import signal
-import time
 
 import e2e
 import tcp_server
 
 INTERVAL = 0.1
-# A machine under load lets a program wait; a port that is waited for would make it half a second at least.
-PAUSE = 0.4
+PAUSE = 4  # seconds; a connection that is waited for would make it 5 s
 
 
 class Case(tcp_server.Case):
@@ -27,7 +25,7 @@ class Case(tcp_server.Case):
         return f'{name}={sensor}@{link}'
 
     def begin(self, *words, options=''):
-        return self.fathom('read', list(words), f'--interval {int(INTERVAL * 1000)} --timeout 500 {options}')
+        return self.fathom('read', list(words), f'--interval {int(INTERVAL * 1000)} --timeout 2000 {options}')
 
     def times(self, program, name):
         """When there were readings of this sensor, in seconds; of what has come so far."""
@@ -62,7 +60,10 @@ class Lost(Case):
         for name in ('one', 'three'):
             self.assertLess(self.longest(reader, name), PAUSE, name)
             self.assertRegex(done.err, rf'{name}: attempts \d+, failed 0, ')
-        self.assertGreater(self.longest(reader, 'two'), 2 - INTERVAL)
+        # The pauses of a port that is waited for are 0.5, 1, 2, 4, 8, ... s: one reading in each would take too long above.
+        times = self.times(reader, 'two')
+        between = [one for one in self.times(reader, 'one') if times[before - 1] < one < times[before]]
+        self.assertGreaterEqual(len(between), 20)
         self.assertEqual(done.err.count('waiting until'), 1)
 
     def test_without_reconnect_the_others_are_read_on(self):
@@ -76,7 +77,7 @@ class Lost(Case):
     def test_a_port_that_is_away_takes_next_to_no_cpu(self):
         reader = self.fathom('read', [self.sensor('one'), f'a16@{self.path("nowhere")}'],
                              '--interval 1000 --reconnect --duration 4')
-        self.assertLess(self.ends(reader, 0, 'nowhere: no such device').cpu, e2e.LITTLE)
+        self.needs_little(self.ends(reader, 0, 'nowhere: no such device'))
 
     def test_all_that_can_end_it_end_it(self):
         words = [self.sensor('one'), self.sensor('two')]
@@ -84,9 +85,7 @@ class Lost(Case):
             reader = self.begin(*words, options='--interval 60000')
             self.has(reader, 'two', 1)
             self.has(reader, 'one', 1 - len(self.times(reader, 'one')))
-            began = time.monotonic()
-            self.ends(reader.end(end), code)
-            self.assertLess(time.monotonic() - began, 2)
+            self.ends(reader.end(end), code)  # in 20 s, and not after its minute
 
     def test_an_output_without_a_reader_ends_it(self):
         out, pipe = os.pipe()
@@ -119,11 +118,12 @@ class Paths(Case):
 
 class Connections(Case):
     def test_a_connection_that_does_not_come_to_stand_does_not_keep_the_others_waiting(self):
-        reader = self.begin(self.sensor('one'), f'far=hps167s@{self.full()}', options='--reconnect --duration 7 --stats')
-        done = self.ends(reader, 0, 'Connection timed out: nothing answers at this address')
+        reader = self.begin(self.sensor('one'), f'far=hps167s@{self.full()}', options='--reconnect --stats')
+        reader.expect('Connection timed out: nothing answers at this address', 'err')  # after 5 s
+        self.assertGreater(len(self.times(reader, 'one')), 5)  # some 50 on an idle machine
+        self.has(reader, 'one', 5)
+        self.ends(reader.end(signal.SIGINT), 0, 'one: attempts ')
         self.assertLess(self.longest(reader, 'one'), PAUSE)
-        self.assertGreater(len(self.times(reader, 'one')), 50)
-        self.assertIn('one: attempts ', done.err)
 
     def test_a_connection_is_read_beside_a_port_and_again_after_it_was_lost(self):
         server = self.server()
@@ -135,6 +135,7 @@ class Connections(Case):
             reader.expect(f' far +{mm} mm')
             server.reset()
         reader.expect('waiting until it is back', 'err')
+        self.has(reader, 'one', 10)
         self.ends(reader.end(signal.SIGINT), 1, 'it is back; reading goes on')
         self.assertLess(self.longest(reader, 'one'), PAUSE)
 

@@ -32,7 +32,7 @@ class States(mqtt.Case):
             self.assertEqual(list(state), ['time', 'status', 'distance_mm', 'boot', 'seq', 'age_ms', 'dropped'])
             self.assertEqual((state['status'], state['distance_mm'], state['dropped']), ('target', 1500, 0))
             self.assertRegex(state['boot'], '^[0-9a-f]{16}$')
-            self.assertLess(state['age_ms'], 1000)
+            self.assertLess(state['age_ms'], 10000)
             then = datetime.datetime.strptime(state['time'], '%Y-%m-%dT%H:%M:%S.%fZ')
             now = datetime.datetime.now(datetime.timezone.utc).replace(tzinfo=None)
             self.assertLess(abs((now - then).total_seconds()), e2e.PATIENCE)

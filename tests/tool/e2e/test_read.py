@@ -286,4 +286,4 @@ class Clients(e2e.Case):
 
 
 if __name__ == '__main__':
-    e2e.main()
+    e2e.main(at_once=8)  # they wait for time-outs

@@ -282,4 +282,4 @@ class Trouble(Case):
 
 
 if __name__ == '__main__':
-    e2e.main()
+    e2e.main(at_once=8)  # they wait for time-outs

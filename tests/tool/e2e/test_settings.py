@@ -278,4 +278,4 @@ class Reset(Settings):
 
 
 if __name__ == '__main__':
-    e2e.main()
+    e2e.main(at_once=8)  # they wait for time-outs

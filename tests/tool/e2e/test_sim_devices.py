@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """fathom sim as a program: its path, its link, its end, and what it sends; with several devices on one line:
 who answers at which rate, who collides, what the counters say; with faults: its errors, and what a client
-sees of them. Judged in raw bytes through pyserial, and by `fathom read`."""
+sees of them. Judged in raw bytes through pyserial, and by `fathom read`. It needs real time: CTest runs one such file at a time."""
 import os
 import re
 import signal
@@ -34,9 +34,9 @@ class Case(e2e.Case):
         return port
 
     def ask(self, port, request, length, baud=None):
-        """After the silence that ends whatever a device took for the beginning of a request: 4 ms at 9600
+        """After 10 times the silence that ends whatever a device took for the beginning of a request: 4 ms at 9600
         baud."""
-        time.sleep(0.02)
+        time.sleep(0.04)
         port.baudrate = baud or port.baudrate
         port.reset_input_buffer()
         port.write(request)
@@ -146,7 +146,7 @@ class Port(Case):
     def test_it_sleeps_without_requests(self):
         sim = self.sim('hps167s')
         self.assertFalse(sim.has_ended(1.9))
-        self.assertLess(sim.end().cpu, 0.2)
+        self.needs_little(sim.end())
 
     def test_it_goes_on_when_its_stdout_is_not_read(self):
         out, pipe = os.pipe()

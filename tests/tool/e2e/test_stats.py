@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""fathom read --stats: every counter by its name, and every reading that did not come has one."""
+"""fathom read --stats: every counter by its name, and every reading that did not come has one.
+It needs real time: CTest runs one such file at a time."""
 import json
 import os
 
@@ -110,11 +111,11 @@ class Stats(e2e.Case):
         _, reader = self.beside('read a16 --mode modbus --timeout 600000 --stats=1 --format json')
         first, second = (json.loads(reader.expect('^{.*', 'err')[0]) for _ in range(2))
         self.assertEqual((first['requests'], first['attempts']), (1, 0))
-        self.assertTrue(900000 < second['time_us'] - first['time_us'] < 3000000)
-        self.assertTrue(1000000 <= first['time_us'] < 3000000)
+        self.assertTrue(1900000 <= second['time_us'] < 20000000)
+        self.assertTrue(1000000 <= first['time_us'] < 10000000)
         done = self.ends(reader.end(), 0, out='')
         self.assertGreaterEqual(len(done.told), 3)  # and at the end
-        self.assertLess(done.cpu, e2e.LITTLE)
+        self.needs_little(done)
 
     def test_also_while_a_port_is_waited_for(self):
         reader = self.fathom(f'read a16 --port {self.path("nowhere")} --reconnect --stats=1')

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """fathom read over TCP: what it says and returns when there is no connection, when it breaks, and when what
-comes is late, cut, glued, another's or no Modbus at all."""
+comes is late, cut, glued, another's or no Modbus at all. It needs real time: CTest runs one such file at a time."""
 import os
 import re
 import socket
@@ -57,8 +57,8 @@ class NoConnection(Case):
 
     def test_no_response_to_the_connection_is_given_up_after_5_seconds(self):
         done = self.fails(self.full(), ': Connection timed out: nothing answers at this address')
-        self.assertTrue(5 <= done.elapsed < 15, done.elapsed)
-        self.assertLess(done.cpu, e2e.LITTLE)
+        self.assertGreaterEqual(done.elapsed, 5)
+        self.needs_little(done)
 
     def test_a_signal_ends_the_wait_for_a_connection(self):
         reader = self.fathom(f'read hps167s --port {self.full()}')
@@ -67,9 +67,7 @@ class NoConnection(Case):
         while not self.has_socket(f'/proc/{reader.process.pid}/fd'):
             self.assertLess(time.monotonic(), deadline)
             time.sleep(0.005)
-        began = time.monotonic()
-        self.ends(reader.end(), 1)
-        self.assertLess(time.monotonic() - began, 3)
+        self.assertNotIn('timed out', self.ends(reader.end(), 1).err)
 
     @staticmethod
     def has_socket(folder):
@@ -124,10 +122,10 @@ class Responses(Case):
         server, reader = self.reader('--count 2 --timeout 60000')
         response = registers(self.asked(server), 1, *SAID)
         server.say(response[:10])
-        time.sleep(0.2)  # until the tool has seen the half; if it has not, this test shows less
+        reader.until_asleep()  # it has seen the half
         server.say(response[10:])
         transaction = self.asked(server)
-        time.sleep(0.2)  # until it sleeps
+        reader.until_asleep()
         server.say(adu(transaction, 1, 0x83, 2))
         self.reads(reader, 1, [2083], 'attempt 2: address 1 refused: exception 02')
 
@@ -136,7 +134,7 @@ class Responses(Case):
         server.say(registers(self.asked(server), 1, *SAID)[:11])
         self.reads(reader, 1, [],
                    'attempt 1: no response from address 1: the connection stands, but nothing came back; ')
-        self.assertLess(reader.done.cpu, e2e.LITTLE)
+        self.needs_little(reader.done)
 
     def test_the_rest_of_a_response_that_came_too_late_does_not_disturb(self):
         server, reader = self.reader('--count 2 --timeout 700')
@@ -203,7 +201,7 @@ class Responses(Case):
         self.reads(reader, 1, [])
         words = 'no response from address 1: the connection stands, but nothing came back; check --address, '
         self.assertEqual(reader.done.err.count(words), 3, reader.done.err)
-        self.assertLess(reader.done.cpu, e2e.LITTLE)
+        self.needs_little(reader.done)
 
     def test_an_a05_behind_a_gateway(self):
         server = self.server()

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """The tool at a Modbus TCP server that means harm: it ends or goes on in its time, shows no reading that was not
-sent to it, says why, and prints nothing that drives a terminal. Each server ends with its test."""
+sent to it, says why, and prints nothing that drives a terminal. Each server ends with its test.
+It needs real time: CTest runs one such file at a time."""
 import threading
 import time
 
@@ -46,8 +47,7 @@ class Reading(Case):
         server.say(response)
         done = self.ends(reader, 1, f'attempt 1: {server}: {NONSENSE}')
         self.assertEqual(done.mm, [])
-        self.assertLess(done.elapsed, 10)
-        self.assertLess(done.cpu, e2e.LITTLE)
+        self.needs_little(done)
 
     def test_thousands_of_responses_to_other_requests_do_not_hide_the_right_one(self):
         server, reader = self.reader('--count 1 --timeout 15000')
@@ -64,14 +64,14 @@ class Reading(Case):
               of_other_lengths=lambda asked: registers(asked, 1, *OTHER[:3]),
               to_nothing=lambda asked: registers(0, 1, *OTHER))
     def flood(self, response):
-        """Responses as fast as the connection takes them, without end. They cost processor time, and no more."""
+        """Responses as fast as the connection takes them, without end. They cost processor time, and no more: it
+        ends in 20 s. If requests cannot leave, it gives up after 10 s."""
         server, reader = self.reader('--count 2 --timeout 700')
         transaction, _, _ = server.request()
         flood = bytes(response(transaction)) * 500
         self.meanwhile(lambda: server.say(flood) is None)
         done = self.ends(reader, 1, 'attempt 1: ', 'attempt 2: ')
         self.assertEqual(done.mm, [])
-        self.assertLess(done.elapsed, 18)  # where requests are kept from leaving it gives up after 10 s
 
     def test_a_byte_a_second_of_a_long_response_is_none_and_costs_no_time_of_the_processor(self):
         server, reader = self.reader('--count 2 --timeout 1500')
@@ -81,8 +81,7 @@ class Reading(Case):
                        not time.sleep(1))
         done = self.ends(reader, 1, 'attempt 2: no response from address 1')
         self.assertEqual(done.mm, [])
-        self.assertLess(done.elapsed, 12)
-        self.assertLess(done.cpu, e2e.LITTLE)
+        self.needs_little(done)
 
     def test_what_came_before_the_request_is_no_response(self):
         server, reader = self.reader('--count 2 --timeout 1000')
@@ -103,8 +102,7 @@ class Reading(Case):
             server.accept()
             connections += 1
         done = self.ends(reader, 1, 'the server closed the connection')
-        self.assertLess(done.elapsed, 12)
-        self.assertLess(done.cpu, e2e.LITTLE)
+        self.needs_little(done)
         self.assertLess(connections, 16)
         self.assertEqual(done.mm, [])
 

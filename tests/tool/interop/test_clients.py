@@ -5,9 +5,10 @@ may not. What they have to see is worked out by hand from --distance and the dat
 with an exception ("abnormal response code"); the A16 and the A05 document none and are silent.
 
 What is set is read back where it can be: by #2 of the HPS-167S, whose eight bytes are termination, automatic
-measuring, warm-up in s, reconnect time in ms (four), code of the rate; by a measurement; by the register."""
+measuring, warm-up in s, reconnect time in ms (four), code of the rate; by a measurement; by the register.
+
+It needs real time: CTest runs one such file at a time."""
 import re
-import time
 
 import interop
 from interop import QUIET, SOON, e2e
@@ -247,7 +248,7 @@ class Damage(interop.Pymodbus, interop.Case):
     def is_silent(self, sim, data):
         port = self.connect(sim).socket
         port.write(data)
-        time.sleep(0.25)  # these take the simulator 20 ms
+        sim.until_asleep(0.1)  # these take the simulator 20 ms
         return port.read(port.in_waiting) == b''
 
     @e2e.each(
