@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: MIT
 """fathom read a16 --mode controlled: an A16 that measures once for each break (A16 3). Through a pseudo
 terminal a byte 0 stands for the break. It needs real time: CTest runs one such file at a time."""
+import re
+
 import e2e
 
 SENSOR = 'a16 --mode controlled'
@@ -9,12 +11,13 @@ SENSOR = 'a16 --mode controlled'
 
 class Controlled(e2e.Case):
     def read(self, distance, count, options=''):
-        """The readings, and how long it took. On a busy machine the simulated response may come later than 130
-        ms after the trigger, and is none then."""
+        """The readings, and how long it took. A response is one if it comes 80 to 130 ms after the trigger (A16 3(3)). On a
+        busy machine the simulated one may come later, or end later; then the attempt fails."""
         sim = self.sim(f'a16:1:controlled --distance {distance}')
         for _ in range(5):  # and not every time
             done = self.run_fathom(f'read {SENSOR} --port {sim} --count {count} --format json {options}')
-            failed = done.err.count('no response to the trigger')
+            failed = len(re.findall(r'attempt \d+: (?:no response to the trigger|what came after the trigger is no frame)',
+                                    done.err))
             self.assertEqual(len(done.json) + failed, count, done)
             self.assertEqual(done.code, 1 if failed else 0)
             if len(done.json) > count // 2:
