@@ -106,7 +106,7 @@ build_and_test() { # PRESET
 
 run_short() {
     stage 145 'gcc: build, firmware too' build gcc
-    stage 190 'gcc: every kind of test' run_tests gcc gcc --label-exclude long
+    stage 220 'gcc: every kind of test' run_tests gcc gcc --label-exclude long
     build_and_test clang-sanitize
 }
 
@@ -124,7 +124,7 @@ run_long() {
     stage 40 'Debian packages' program package $python tests/tool/package/run.py --quick
     stage 210 'end to end, second, sanitized' run_tests clang-sanitize sanitized --label-regex 'e2e|interop|second'
     stage 20 'kernels: packages' $python tests/port/kernel/debian.py build-gcc/kernel
-    stage 220 'tests that take longer' run_tests gcc later --label-regex long
+    stage 240 'tests that take longer' run_tests gcc later --label-regex long
     stage 1 'what it costs' show_costs
     export FATHOM_LONG=1
     stage 30 'tests in C, exhaustive forms' run_tests gcc long --label-regex "$in_c" --label-exclude "$not_in_c"
