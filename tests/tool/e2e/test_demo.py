@@ -27,7 +27,7 @@ class Case(e2e.Case):
         self.environment.pop('FATHOM', None)
 
     def run_script(self, path, cwd):
-        return self.start(['sh', path], cwd=cwd, env=self.environment).finish(100)
+        return self.start(['sh', path], cwd=cwd, env=self.environment).finish(300)  # it builds the tool: 25 s on an idle machine
 
     def processes(self):
         """Those that run the copy's tool."""
