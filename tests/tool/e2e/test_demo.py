@@ -27,7 +27,8 @@ class Case(e2e.Case):
         self.environment.pop('FATHOM', None)
 
     def run_script(self, path, cwd):
-        return self.start(['sh', path], cwd=cwd, env=self.environment).finish(300)  # it builds the tool: 25 s on an idle machine
+        """The script builds the tool, which takes 25 s on an idle machine."""
+        return self.start(['sh', path], cwd=cwd, env=self.environment).finish(300)
 
     def processes(self):
         """Those that run the copy's tool."""
