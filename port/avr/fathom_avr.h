@@ -85,7 +85,7 @@ typedef struct {
  * set_line    within 2.5 %: at 16 MHz up to 115200 baud (off by 2.1 %), no 230400; at 8 MHz no 115200 either; < 0
  *             beyond.
  * set_break   the transmitter lets go of TXD (PD1), which is driven low; `driver` is high as long.
- * Cost: a receive interrupt of at most 60 cycles, see tests/bench/README.md.
+ * Cost: a receive interrupt of at most 60 cycles, see include/COST.md.
  */
 extern const fathom_uart_t fathom_avr_usart0;
 extern fathom_avr_usart_counters_t fathom_avr_usart0_counters;
