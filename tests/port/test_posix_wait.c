@@ -91,7 +91,7 @@ TEST(the_time_ends_the_wait_and_not_earlier)
     }
 }
 
-/* ppoll(2) sleeps for the time that it is asked for, without the processor. */
+/* ppoll(2) sleeps for the requested time, without the processor. */
 TEST(an_idle_wait_is_one_sleep_and_is_not_rounded_up_to_milliseconds)
 {
     static const struct {
