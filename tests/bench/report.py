@@ -154,7 +154,7 @@ def peers_table(figures):
     for row in peers():
         cells = [row[column] or '–' for column in ('m0_flash', 'm0_ram', 'avr_flash', 'x86')]
         lines.append(f'| {row["name"]} | {row["version"]} | {" | ".join(cells)} | {row["what"]} |')
-    whats = {'job': 'polled; a queue, retries, told echo, broadcast, break, any unit, quarantine',
+    whats = {'job': 'polled; a queue, retries, an announced echo, broadcast, break, any unit, quarantine',
              'job_counters': 'the same with counters',
              'job_all': 'echo found out, a listener, marks of the port, settings of a transaction, counters, unit 0'}
     for job, what in whats.items():

@@ -194,7 +194,7 @@ class Program:
         return re.search(r'State:\s+(\w)', text)[1], re.findall(r'ctxt_switches:\s+(\d+)', text)
 
     def until_asleep(self, seconds=0.05):
-        """Waits until it has slept for this long without a break: what it had to do is done."""
+        """Waits until the program has slept for `seconds` without a break, so that its work is done."""
         deadline = time.monotonic() + PATIENCE
         before = None
         while (now := self._switches()) != before or now[0] != 'S':

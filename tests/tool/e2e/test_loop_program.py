@@ -100,7 +100,7 @@ class Site(e2e.Case):
         self.gate(2084)
         site.expect('^gate: 2084 mm$')
 
-    def test_a_lost_port_takes_little_of_a_processor_and_is_opened_again(self):
+    def test_a_lost_port_takes_less_than_a_hundredth_of_a_processor_and_is_opened_again(self):
         gate = self.gate(2083)
         self.tank(1953)
         site = self.site()
@@ -114,9 +114,9 @@ class Site(e2e.Case):
         share = (self.cpu(site) - used) / passed
         away = site.lines()[rows:]
         print(f'one of its ports lost: {100 * share:.2f} % of a processor over {passed:.1f} s')
-        self.assertLess(share, 0.1)  # 0.1 % on an idle machine; a program that spins has what the others leave it
+        self.assertLess(share, 0.01)  # 0.04 % on an idle machine
         self.assertGreaterEqual(passed, 5)
-        self.assertGreaterEqual(away.count('tank: 1953 mm'), 2)  # the others go on
+        self.assertGreaterEqual(away.count('tank: 1953 mm'), 5)  # the others go on; 10 on an idle machine
         self.assertFalse([line for line in away if line.startswith('gate')])
         # at most one error a pause: after 0.5, 1, 2 and 4 s
         self.assertLessEqual(site.said['err'].decode().count('gate: '), 1 + 4)

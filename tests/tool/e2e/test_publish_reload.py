@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""fathom publish reads its file anew at SIGHUP, and what has not changed goes on; and what it tells systemd.
+"""At SIGHUP fathom publish reads its file again, and sensors that have not changed go on; and its messages to systemd.
 It needs real time: CTest runs one such file at a time."""
 import os
 import re

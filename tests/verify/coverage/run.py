@@ -49,7 +49,7 @@ def missed(files):
     return {(path, part.what, part.text): part.line for path, file in sorted(files.items()) for part in file.missed()}
 
 
-def told(found):
+def lines_of(found):
     return [f'{path}:{line}: no test executes the {what} of: {text}' for (path, what, text), line in found.items()]
 
 
@@ -62,7 +62,7 @@ def judge_c(verdict, files, unsupported):
     verdict.check('clang instruments every decision', [f'{path}:{line}: {why}' for path, line, why in unsupported])
     found = missed(files)
     verdict.check('the tests execute every line, branch and condition',
-                  told({key: line for key, line in found.items() if key not in IMPOSSIBLE}))
+                  lines_of({key: line for key, line in found.items() if key not in IMPOSSIBLE}))
     verdict.check(f'IMPOSSIBLE of impossible.py has {len(IMPOSSIBLE)} entries, and needs each',
                   [f'{" | ".join(key)}: is executed, or is gone' for key in IMPOSSIBLE if key not in found])
 
@@ -99,7 +99,7 @@ def self_test(verdict, jobs):
     with open(os.path.join(tree, path), 'w', encoding='utf-8') as file:
         file.write(text.replace(old, new))
     files, _ = c_code.measure(tree, os.path.join(folder, 'build'), jobs)
-    found = [problem for problem in told(missed(files)) if path in problem and expected in problem]
+    found = [problem for problem in lines_of(missed(files)) if path in problem and expected in problem]
     verdict.check(f'planted {new!r}: {found[0] if found else ""}', [] if found else ['the fault is not found'])
 
 
