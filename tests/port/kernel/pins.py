@@ -16,7 +16,7 @@ class Pins:
         self.device, self.link = None, None
         self.lock, self.answers = threading.Lock(), queue.Queue()
         self.trigger = None
-        self.jobs = queue.Queue()
+        self.triggers = queue.Queue()
         self.play = None  # what follows a falling edge of the trigger
 
     def begin(self, device):
@@ -34,12 +34,15 @@ class Pins:
                 self.answers.put(line)
                 continue
             number, level = int(words[2]), int(words[1] == 'raise')
-            if number == self.trigger and level == 0 and self.play is not None:
-                self.jobs.put(self.play)
+            if number == self.trigger and level == 0:
+                self.triggers.put(None)
 
     def perform(self):
         while True:
-            self.jobs.get()()
+            self.triggers.get()
+            if self.play is not None:
+                self.play()
+            self.triggers.task_done()
 
     def order(self, text):
         with self.lock:
@@ -65,7 +68,8 @@ class Pins:
 
     def a16(self, line, kind, width_s):
         """What an A16 with PWM output sends after each trigger: a pulse; one whose edges bounce; a level that stays
-        high; or nothing."""
+        high; or nothing. Returns when no response of the former kind can follow: a late one would overwrite the level
+        that the test sets next."""
         def play():
             time.sleep(0.005)  # the datasheet's 110 ms are no promise
             if kind == 'bounce':
@@ -78,3 +82,4 @@ class Pins:
             elif kind == 'pulse':
                 self.pulse(line, width_s)
         self.play = play if kind != 'nothing' else None
+        self.triggers.join()
