@@ -34,10 +34,10 @@ static bool is_setting(const setting_t *setting, const backup_row_t *row)
 
 static bool is_not_readable(const setting_t *setting, const backup_row_t *row)
 {
-    (void)setting;
-    return row->held == HELD_NOT_READABLE;
+    return !is_identity(setting, row) && !is_place(setting, row) && row->held == HELD_NOT_READABLE;
 }
 
+/* Invariant: a row is in at most one group, or the printed file has a line twice and cannot be read. */
 static const struct {
     const char *heading;
     is_in_t is_in;
