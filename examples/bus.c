@@ -53,8 +53,10 @@ static bool bus_init(bus_t *bus, const fathom_uart_t *uart, const fathom_clock_t
         .frame = bus->frame,
         .frame_size = sizeof bus->frame,
         .find_echo = fathom_line_find_echo,
-        .marks = fathom_line_marks,
-        /* The silence that the slowest of them needs to see that a frame has ended. */
+        /* With factory settings an HPS-167S sends measurements unasked, and a Modbus master may share the pair. */
+        .senders = &fathom_line_senders,
+        .masters = &fathom_line_masters,
+        /* The silence after which the slowest of the three recognises the end of a frame. */
         .silence_us = FATHOM_T3_5_US(9600, 10),
         /* A frame that broke off is given up after this; a USB adapter holds bytes back for up to 16 ms. */
         .gap_us = 25000,

@@ -5,11 +5,34 @@
 #include "fathom/engine/sensor.h"
 #include "fathom/hal.h"
 
+/*
+ * A check of a programming mistake, for those who compile the sources: for example
+ * -include assert.h -DFATHOM_ASSERT=assert. Empty by default. The function returns its error all the same.
+ */
+#ifndef FATHOM_ASSERT
+#define FATHOM_ASSERT(condition) ((void)0)
+#endif
+
 /* What several sources need and no user does. Inline: each is less code than a call of it. */
 
 static inline uint32_t clock_us(const fathom_clock_t *clock) { return clock->now_us(clock->ctx); }
 
 static inline uint32_t least_us(uint32_t a, uint32_t b) { return (a < b) ? a : b; }
+
+/*
+ * Returns the time from `since_us` to `now_us`. A clock that was set back by up to 100 ms counts as a clock that stood
+ * still: without this rule the difference would be 71 minutes, and every wait would be over.
+ */
+static inline uint32_t time_since_us(uint32_t now_us, uint32_t since_us)
+{
+    const uint32_t passed_us = fathom_elapsed_us(now_us, since_us);
+    return (passed_us > (UINT32_MAX - 100000u)) ? 0u : passed_us;
+}
+
+static inline bool is_clock(const fathom_clock_t *clock)
+{
+    return (clock != NULL) && (clock->now_us != NULL);
+}
 
 /* How much of `us` is left when so much of it has passed. */
 static inline uint32_t rest_us(uint32_t us, uint32_t passed_us)

@@ -44,6 +44,8 @@ static const fathom_line_config_t line_config = {.uart = &fathom_avr_usart0,
                                                  .frame_size = sizeof frame,
                                                  .echo = FATHOM_LINE_ECHO_OFF,
                                                  .marks = fathom_line_marks,
+                                                 /* With factory settings it sends measurements unasked. */
+                                                 .senders = &fathom_line_senders,
                                                  .silence_us = FATHOM_T3_5_US(BAUD, CHARACTER_BITS)};
 static const fathom_debounce_config_t rule = {.threshold_mm = 1500, .near_count = 3, .far_count = 5};
 

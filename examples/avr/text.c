@@ -58,6 +58,9 @@ void text_error(text_t *text, fathom_status_t status)
     case FATHOM_ERR_MALFORMED:
         text_say(text, PSTR(": not plausible"));
         break;
+    case FATHOM_ERR_CHECKSUM:
+        text_say(text, PSTR(": damaged"));
+        break;
     case FATHOM_ERR_STALE:
         text_say(text, PSTR(": silent"));
         break;

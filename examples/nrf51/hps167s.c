@@ -24,7 +24,8 @@ int main(void)
         .frame = frame,
         .frame_size = sizeof frame,
         .echo = FATHOM_LINE_ECHO_OFF,
-        .marks = fathom_line_marks,
+        .marks = fathom_line_marks,      /* the UART reports parity errors, framing errors and overruns */
+        .senders = &fathom_line_senders, /* with factory settings the sensor sends measurements unasked */
         .silence_us = FATHOM_T3_5_US(19200, 11),
         /* QEMU's far end is a program of an operating system, which pauses as it likes; on a wire: 0, the default. */
         .gap_us = 25000,

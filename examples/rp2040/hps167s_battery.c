@@ -84,6 +84,7 @@ int main(void)
         .frame_size = sizeof frame,
         .echo = FATHOM_LINE_ECHO_OFF,
         .marks = fathom_line_marks,
+        .senders = &fathom_line_senders, /* with factory settings the sensor sends measurements unasked */
         .silence_us = FATHOM_T3_5_US(19200, 11),
     };
     if (fathom_line_init(&line, &line_config) != FATHOM_READY) return 3;
@@ -98,11 +99,14 @@ int main(void)
         fathom_sample_t sample;
         fathom_status_t status;
         power.set(power.ctx, true);
-        fathom_hps167s_power_on(&hps); /* whatever was before the sleep is forgotten, too */
+        fathom_line_flush(
+            &line); /* drops what arrived during the sleep, a glitch of the switch for example */
+        fathom_hps167s_power_on(&hps); /* also forgets a request from before the sleep */
         do status = fathom_wait(&sensor, &sample, fathom_rp2040_idle, &idle);
         while (status == FATHOM_ERR_WARMING_UP); /* which ends by itself */
         power.set(power.ctx, false);
         report(&out, status, &sample);
         sleep(BATTERY_MINUTES, &since_us);
+        fathom_line_flush(&line); /* Bytes that arrived during the sleep are no response of now. */
     }
 }

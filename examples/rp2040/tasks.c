@@ -62,6 +62,14 @@ static void tell(tasks_reading_t *reading, fathom_status_t status, const fathom_
     task_give(&news);
 }
 
+/* Reports a configuration that `init` refused, and ends the task: it waits for a semaphore that nothing gives. */
+static void end(tasks_reading_t *reading, fathom_status_t status)
+{
+    static task_semaphore_t never;
+    tell(reading, status, NULL);
+    for (;;) task_take(&never, FATHOM_NO_DEADLINE);
+}
+
 static void read_tank(void)
 {
     const fathom_uart_t uart = fathom_rp2040_uart(&tank_uart);
@@ -76,15 +84,17 @@ static void read_tank(void)
         .marks = fathom_line_marks,
         .silence_us = FATHOM_T3_5_US(9600, 10),
     };
-    (void)fathom_line_init(&line, &line_config);
+    fathom_status_t status = fathom_line_init(&line, &line_config);
+    if (status != FATHOM_READY) end(&tank, status);
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
     fathom_a16_modbus_t a16;
     const fathom_a16_modbus_config_t config = {.modbus.transport = &modbus, .value = FATHOM_REAL_TIME};
-    (void)fathom_a16_modbus_init(&a16, &config);
+    status = fathom_a16_modbus_init(&a16, &config);
+    if (status != FATHOM_READY) end(&tank, status);
     const fathom_sensor_t sensor = fathom_a16_modbus_sensor(&a16);
     for (;;) {
         fathom_sample_t sample;
-        const fathom_status_t status = fathom_wait(&sensor, &sample, task_take, &tank_came);
+        status = fathom_wait(&sensor, &sample, task_take, &tank_came);
         tell(&tank, status, &sample);
     }
 }
@@ -101,17 +111,20 @@ static void read_gate(void)
         .frame_size = sizeof frame,
         .echo = FATHOM_LINE_ECHO_OFF,
         .marks = fathom_line_marks,
+        .senders = &fathom_line_senders, /* with factory settings the sensor sends measurements unasked */
         .silence_us = FATHOM_T3_5_US(19200, 11),
     };
-    (void)fathom_line_init(&line, &line_config);
+    fathom_status_t status = fathom_line_init(&line, &line_config);
+    if (status != FATHOM_READY) end(&gate, status);
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
     fathom_hps167s_t hps;
     const fathom_hps167s_config_t config = {.modbus.transport = &modbus};
-    (void)fathom_hps167s_init(&hps, &config);
+    status = fathom_hps167s_init(&hps, &config);
+    if (status != FATHOM_READY) end(&gate, status);
     const fathom_sensor_t sensor = fathom_hps167s_sensor(&hps);
     for (;;) {
         fathom_sample_t sample;
-        const fathom_status_t status = fathom_wait(&sensor, &sample, task_take, &gate_came);
+        status = fathom_wait(&sensor, &sample, task_take, &gate_came);
         tell(&gate, status, &sample);
     }
 }

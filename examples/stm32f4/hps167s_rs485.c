@@ -39,6 +39,7 @@ int main(void)
         .frame_size = sizeof frame,
         .echo = FATHOM_LINE_ECHO_OFF,
         .marks = fathom_line_marks,
+        .senders = &fathom_line_senders, /* with factory settings the sensor sends measurements unasked */
         .silence_us = FATHOM_T3_5_US(19200, 11),
     };
     fathom_line_t line;

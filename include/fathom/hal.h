@@ -126,6 +126,10 @@ typedef struct {
 /* "Nothing will happen without new bytes": what the due_us functions return instead of a time. */
 #define FATHOM_NO_DEADLINE UINT32_MAX
 
+/** @brief Longest time that a configuration may name, in microseconds: 2^31 - 1, which is 35 minutes and half of what the
+ * clock counts. */
+#define FATHOM_MAX_DURATION_US 0x7FFFFFFFuL
+
 /* The only way in which Fathom compares times: correct across the wrap, for spans up to 71.6 minutes. So
  * whatever is polled must be polled at least that often. */
 static inline uint32_t fathom_elapsed_us(uint32_t now_us, uint32_t since_us)

@@ -15,9 +15,10 @@ typedef enum {
     FATHOM_NO_TARGET = 2, /* the device works and sees nothing in range */
     /* the device reports that it is broken (HPS-167S #5), or its output does what that of a working one cannot */
     FATHOM_FAULT = 3,
-    FATHOM_NEAR = 4,   /* a switch or a contact: something is nearer than its threshold; no distance */
-    FATHOM_FAR = 5,    /* the same: nothing is; no distance */
-    FATHOM_UNKNOWN = 6 /* a value without a known meaning: it is in raw. No distance */
+    FATHOM_NEAR = 4, /* a switch or a contact: something is nearer than its threshold; no distance */
+    FATHOM_FAR = 5,  /* the same: nothing is; no distance */
+    /* a value without a known meaning, or only pulses below the range: it is in raw. No distance */
+    FATHOM_UNKNOWN = 6
 } fathom_sample_kind_t;
 
 typedef enum { FATHOM_A16 = 1, FATHOM_A05 = 2, FATHOM_HPS167S = 3 } fathom_model_t;

@@ -6,43 +6,140 @@
 extern "C" {
 #endif
 
-/*
- * What every call that can be unfinished or fail returns. An error is below zero, so `status < 0` asks
- * for one. None of these is ever a reading: "nothing in range" and "the sensor reports that it is broken"
- * are samples (sample.h), because the device did respond.
+/**
+ * @file
+ * @brief The result of any call that can fail or take time.
  *
- * The numbers are part of the interface: they fit an int8_t and new ones are only added.
+ * Errors are negative, so test for them with `status < 0`. No status is a reading: "no target" and "the sensor reports a
+ * fault" are samples (sample.h), because the sensor did respond.
+ *
+ * The numbers are part of the interface. They fit an int8_t, and later versions only add numbers.
+ *
+ * **Precedence.** Several things can go wrong in one attempt, and an attempt has one status. The first line of this
+ * table that applies is the status of the attempt. Every driver keeps this order, and reports the status of the last
+ * attempt if the request was retried.
+ *
+ * |    | what was observed                                                   | status                   |
+ * |----|---------------------------------------------------------------------|--------------------------|
+ * |  1 | The unit refused the request.                                       | FATHOM_ERR_EXCEPTION     |
+ * |  2 | The attempt was not sent, or was sent without silence before it.    | FATHOM_ERR_LINE_BUSY     |
+ * |  3 | Another master sent the unit a request while ours was in progress.  | FATHOM_ERR_OTHER_MASTER  |
+ * |  4 | A response of the unit was damaged or broke off.                    | FATHOM_ERR_CHECKSUM      |
+ * |  5 | The unit sent a frame with a right checksum that is not the response. | FATHOM_ERR_MALFORMED   |
+ * |  6 | Only one copy of a write arrived, and it is not known if the line echoes. | FATHOM_ERR_ECHO    |
+ * |  7 | None of these.                                                      | FATHOM_ERR_NO_RESPONSE   |
+ *
+ * A response that is accepted ends the attempt with FATHOM_READY, whatever was observed before. A driver may refuse an
+ * accepted response because of its values; that is FATHOM_ERR_MALFORMED too. A sensor that sends without a request has
+ * two such errors: FATHOM_ERR_CHECKSUM if bytes arrived but no valid frame, else FATHOM_ERR_STALE.
+ *
+ * A broken port, a cancelled request and an argument out of range come before the table: in these cases there is no
+ * attempt to judge. FATHOM_ERR_WARMING_UP replaces lines 1, 4 and 7 directly after power-on.
+ *
+ * **What proves that no unit is there.** Only FATHOM_ERR_NO_RESPONSE does. FATHOM_ERR_LINE_BUSY and
+ * FATHOM_ERR_OTHER_MASTER say nothing about the unit: repeat the request.
  */
-typedef enum {
-    FATHOM_READY = 1,   /* finished; the outputs are new */
-    FATHOM_PENDING = 0, /* not finished: nothing was written, call again */
 
-    FATHOM_ERR_ARGUMENT = -1,    /* the caller's values are outside what the function's comment allows */
-    FATHOM_ERR_PORT = -2,        /* the HAL reports a broken port, took part of a write, or cannot send */
-    FATHOM_ERR_NO_RESPONSE = -3, /* nothing that could be the response came in time */
-    FATHOM_ERR_CHECKSUM = -4,    /* a response began and its CRC was wrong, or it broke off */
-    FATHOM_ERR_EXCEPTION = -5,   /* the device refused with a Modbus exception; its number is beside it */
-    /* a response with a right checksum that does not fit the request, or a value that this device cannot mean */
+/**
+ * @def FATHOM_ASSERT
+ * @brief A check of a programming mistake in the sources, empty by default.
+ *
+ * If you compile the sources, you can stop at such a mistake: `-include assert.h -DFATHOM_ASSERT=assert`. The checks
+ * are: a driver is used before its init function returned FATHOM_READY, and a driver is initialised while its request
+ * is queued. In both cases the function also returns its error.
+ */
+
+/** @brief The result of a call. */
+typedef enum {
+    /** @brief The call is finished, and its outputs are new. */
+    FATHOM_READY = 1,
+
+    /** @brief The call is not finished and has written nothing. Call again. */
+    FATHOM_PENDING = 0,
+
+    /**
+     * @brief An argument or a member of a config is outside its range, or the object is not initialised.
+     *
+     * Correct the program. Nothing was sent.
+     */
+    FATHOM_ERR_ARGUMENT = -1,
+
+    /** @brief The port is broken: it reported an error, accepted a part of a write, or did not send. Continue to poll. */
+    FATHOM_ERR_PORT = -2,
+
+    /** @brief The unit did not respond within the time-out, and the line was silent and free of other masters. */
+    FATHOM_ERR_NO_RESPONSE = -3,
+
+    /**
+     * @brief A response was damaged or broke off; or a sensor that sends without a request sent only damaged frames.
+     *
+     * Check baud rate, parity, termination and ground.
+     */
+    FATHOM_ERR_CHECKSUM = -4,
+
+    /** @brief The unit refused the request with a Modbus exception. The driver has a function for its number. */
+    FATHOM_ERR_EXCEPTION = -5,
+
+    /** @brief A frame with a right checksum is not the response, or has a value that this sensor cannot mean. */
     FATHOM_ERR_MALFORMED = -6,
-    FATHOM_ERR_STALE = -7,     /* a sensor that sends by itself has sent nothing good for too long */
-    FATHOM_ERR_CANCELLED = -8, /* ended by cancel */
-    FATHOM_ERR_BUSY = -9,      /* this object is already at work; try again when it has finished */
-    FATHOM_ERR_CAPACITY = -10, /* the memory that the caller gave is too small for this request */
-    /* a write: all that came equals the request; whether that is the response or an echo is not known (line.h) */
+
+    /** @brief A sensor that sends without a request has sent nothing for too long. */
+    FATHOM_ERR_STALE = -7,
+
+    /** @brief The request was cancelled, or the line was initialised again while the request was queued. */
+    FATHOM_ERR_CANCELLED = -8,
+
+    /** @brief The object is in use: a request, command or setting is not finished. Nothing changed; try again later. */
+    FATHOM_ERR_BUSY = -9,
+
+    /** @brief The caller's memory is too small for this request or its response. Nothing was sent. */
+    FATHOM_ERR_CAPACITY = -10,
+
+    /**
+     * @brief A write: the only received bytes equal the request, and it is not known whether the line echoes (line.h).
+     *
+     * Submit a read first, or state `echo` in the config of the line.
+     */
     FATHOM_ERR_ECHO = -11,
-    FATHOM_ERR_UNSUPPORTED = -12, /* the port, or what carries the request, cannot do this */
-    FATHOM_ERR_WARMING_UP = -13,  /* no reading yet, so soon after power-on (..._power_on was called) */
-    FATHOM_ERR_UNCONFIRMED = -14, /* a setting was sent and could not be read back: it may be set, or not */
-    FATHOM_ERR_IN_USE = -15,      /* a unit responds at the address that was to be set; nothing was changed */
-    FATHOM_ERR_DIFFERS = -16      /* a setting was acknowledged, and reads back as another value */
+
+    /** @brief The port or the protocol cannot do this. Nothing was sent. */
+    FATHOM_ERR_UNSUPPORTED = -12,
+
+    /** @brief There is no reading yet so soon after power-on; reported only after `..._power_on()` was called. */
+    FATHOM_ERR_WARMING_UP = -13,
+
+    /** @brief A setting was sent and could not be read back: it may be set or not. Read it again. */
+    FATHOM_ERR_UNCONFIRMED = -14,
+
+    /** @brief A unit responds at the address that was to be set. Nothing was changed. */
+    FATHOM_ERR_IN_USE = -15,
+
+    /** @brief A setting was acknowledged, and reads back as another value. */
+    FATHOM_ERR_DIFFERS = -16,
+
+    /**
+     * @brief The line was never silent for `busy_us` (line.h).
+     *
+     * The request was not sent, or it was sent without the silence before it and was not answered. Another device sends
+     * without pause, the pair has no bias resistors, or the program polls too seldom. Says nothing about the unit.
+     */
+    FATHOM_ERR_LINE_BUSY = -17,
+
+    /**
+     * @brief Another master sent the same unit a request, so a response cannot be assigned to ours.
+     *
+     * Let one master poll this unit, or repeat the request. Says nothing about the unit.
+     */
+    FATHOM_ERR_OTHER_MASTER = -18
 } fathom_status_t;
 
-/*
- * Its name as it stands above, without FATHOM_ and ERR_: "READY", "NO_RESPONSE"; "?" for any other number. For messages
- * and logs; it is never NULL and lies in the program's constants.
+/**
+ * @brief Returns the name of a status without FATHOM_ and ERR_, for messages and logs.
  *
- * 202 bytes of flash on a Cortex-M0+. On an AVR constants lie in RAM: 154 bytes of it; print the number there.
- * What a program does not call is not in its image.
+ * For example "READY" or "NO_RESPONSE". The function costs 227 bytes of flash on a Cortex-M0+. On an AVR constants lie
+ * in RAM: 179 bytes of it; print the number there. If a program does not call the function, it is not linked.
+ *
+ * @return A constant string, never NULL. "?" for any other number.
  */
 const char *fathom_status_name(fathom_status_t status);
 

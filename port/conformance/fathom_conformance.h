@@ -15,7 +15,8 @@ extern "C" {
  * Does a HAL keep what fathom/hal.h says? Link the C files of this folder with it, but host.c, which is a program for
  * Linux; join TX and RX (an RS-485 transceiver hears itself where its receiver stays on), and look at what is reported.
  *
- * It can be seen so that bytes are lost, early, late, truncated or out of order. A loop-back has the same rate and
+ * It can be seen so that bytes are lost, early, late, truncated or out of order, and that bytes which waited in the
+ * port look new. A loop-back has the same rate and
  * the same parity at both ends, so it cannot show that the rate is the right one, nor what another's wrong parity does:
  * for that, `damage`, a sensor, or an oscilloscope.
  *
@@ -60,7 +61,7 @@ typedef struct {
     void *ctx;
 } fathom_conformance_t;
 
-enum { FATHOM_CONFORMANCE_ITEMS = 25 };
+enum { FATHOM_CONFORMANCE_ITEMS = 26 };
 
 /* Returns how many of the items are not kept. */
 unsigned fathom_conformance_run(const fathom_conformance_t *bench);

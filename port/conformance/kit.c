@@ -27,6 +27,8 @@ static const struct {
     [READ_SILENCE] = {"read_silence", "no read spans a silence; FATHOM_RX_SILENCE", "bytes before the mark"},
     [READ_STAMP] = {"read_stamp", "last_us: the clock at the end of the last byte",
                     "us behind the last stop bit"},
+    [READ_AGE] = {"read_age", "read returns 0 only if no byte waits; last_us of bytes that waited",
+                  "old bytes that look new"},
     [MARK_PARITY] = {"mark_parity", "FATHOM_RX_PARITY: no read spans an error", "bytes with it"},
     [MARK_FRAMING] = {"mark_framing", "FATHOM_RX_FRAMING: no read spans an error", "bytes with it"},
     [WRITE_WHEN_FULL] = {"write_when_full", "write is busy only while bytes leave",

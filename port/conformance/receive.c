@@ -3,6 +3,8 @@
 
 #include "internal/kit.h"
 
+static const uint32_t age_us =
+    1000000; /* more than FATHOM_LINE_LATE_US and a usual time-out (line.h, rule 14) */
 enum { WORD = 5, PAUSE = 20 /* characters */, PAUSE_US = 5000 /* at least; t3.5 is 1750 us at high rates */ };
 
 static bool tells(const kit_t *kit, uint8_t mark) { return (kit->bench->marks & mark) != 0; }
@@ -59,6 +61,40 @@ static void read_stamp(kit_t *kit)
             kit_kept_if(late_us <= most_us && fathom_elapsed_us(kit->stamp_us, begins_us[word]) < INT32_MAX);
     }
     kit_tell(kit, READ_STAMP, verdict, late_us);
+}
+
+/*
+ * Bytes wait in the port for longer than age_us while nothing reads. The line can tell that they are old in two ways:
+ *
+ *     sent      no read for age_us            read  read  read
+ *     #####.....................................2     3     0     later bytes are new
+ *
+ *   - the port dates them: then a stamp may not be later than their arrival; or
+ *   - the port does not, and the line drops all bytes until a read returns 0: then no old byte may come after that.
+ */
+static void read_age(kit_t *kit)
+{
+    const uint32_t unseen = BIT_OF(SENT_NOT_EARLY) | BIT_OF(READ_STAMP);
+    const uint32_t most_us = kit->character_us + kit->bench->late_us + 2 * kit->step_us;
+    uint32_t young_count = 0;
+    uint16_t before;
+    kit_begin(kit);
+    if (!kit_has_wire(kit) || kit_lacks(kit, unseen) || !kit_send(kit, WORD) || !kit_await_sent(kit)) {
+        kit_tell(kit, READ_AGE, FATHOM_NOT_SEEN, 0);
+        return;
+    }
+    const uint32_t end_us = kit_now(kit);
+    kit_wait(kit, age_us + kit_patience_us(kit, WORD));
+    do {
+        before = kit->got;
+        kit->stamp_us = end_us;
+        kit_read(kit);
+        const uint32_t late_us = fathom_elapsed_us(kit->stamp_us, end_us);
+        if (late_us > most_us && late_us <= INT32_MAX) young_count += (uint32_t)(kit->got - before);
+    } while (kit->got != before);
+    (void)kit_await(kit, WORD);
+    young_count += (uint32_t)(kit->got - before);
+    kit_tell(kit, READ_AGE, kit->got == WORD ? kit_kept_if(young_count == 0) : FATHOM_NOT_SEEN, young_count);
 }
 
 /* Three bytes of the far end, the second one with the mark and in a read of its own. */
@@ -130,6 +166,7 @@ void kit_receiving(kit_t *kit)
 {
     read_silence(kit);
     read_stamp(kit);
+    read_age(kit);
     mark(kit, MARK_PARITY, FATHOM_RX_PARITY);
     mark(kit, MARK_FRAMING, FATHOM_RX_FRAMING);
     full(kit);

@@ -60,8 +60,8 @@ static void feed(fathom_gpio_t *gpio, const struct gpio_v2_line_event *event)
     if (lost != 0) {
         gpio->lost_events += lost;
         /* High with a rise of which the time is not known: nothing counts before the next fall (edges.h). */
-        gpio->edges.high = true;
-        gpio->edges.timed = false;
+        gpio->edges.is_high = true;
+        gpio->edges.is_timed = false;
     }
     fathom_edges_feed(&gpio->edges, event->id == GPIO_V2_LINE_EVENT_RISING_EDGE,
                       (uint32_t)(event->timestamp_ns / 1000u));
@@ -83,11 +83,6 @@ static int feed_one(fathom_gpio_t *gpio)
     return -1;
 }
 
-static bool has_place(const fathom_edges_t *edges)
-{
-    return (uint8_t)(edges->written - edges->taken) < FATHOM_EDGES_PULSES;
-}
-
 static void arm(void *ctx)
 {
     fathom_gpio_t *const gpio = ctx;
@@ -96,8 +91,8 @@ static void arm(void *ctx)
     for (unsigned left = MOST_EVENTS; left != 0 && feed_one(gpio) > 0; left--)
         capture.arm(capture.ctx); /* so that the place of each pulse is free again */
     /* A fall may have been missed. A rise from here on is one, whatever the events say. */
-    gpio->edges.high = get_level(gpio);
-    gpio->edges.timed = false;
+    gpio->edges.is_high = get_level(gpio);
+    gpio->edges.is_timed = false;
     capture.arm(capture.ctx);
 }
 
@@ -107,7 +102,7 @@ static int take(void *ctx, fathom_pulse_t *pulse)
     const fathom_capture_t capture = fathom_edges_capture(&gpio->edges);
     int fed = is_usable(gpio) ? 1 : -1;
     /* What finds no place among the pulses stays in the kernel's queue. */
-    for (unsigned left = MOST_EVENTS; left != 0 && fed > 0 && has_place(&gpio->edges); left--)
+    for (unsigned left = MOST_EVENTS; left != 0 && fed > 0 && !fathom_edges_is_full(&gpio->edges); left--)
         fed = feed_one(gpio);
     if (fed < 0) return -1;
     const int taken = capture.take(capture.ctx, pulse);

@@ -14,7 +14,7 @@ enum {
     RTU_GAP_US = 25000,
     /* A TCP response comes whole, and no silence has to be kept: as little as the line can do with. */
     TCP_GAP_US = 1000,
-    TCP_SILENCE_US = 1,
+    TCP_SILENCE_US = 100,
     /* Far from where libmodbus begins to count for the program's own requests, so that a late response to one of those
      * is not taken for one of ours. */
     FIRST_TRANSACTION = 0xF000

@@ -121,9 +121,11 @@ fathom_posix_status_t fathom_loop_add_line(fathom_loop_t *loop, fathom_loop_line
     line->config.frame = line->frame;
     line->config.frame_size = sizeof line->frame;
     line->config.find_echo = fathom_line_find_echo;
+    line->config.senders = &fathom_line_senders;
+    line->config.masters = &fathom_line_masters;
     line->config.silence_us = FATHOM_T3_5_US(settings->baud, fathom_posix_bits(settings));
     line->config.gap_us = GAP_US;
-    (void)fathom_line_init(&line->line, &line->config); /* all of it is there */
+    if (fathom_line_init(&line->line, &line->config) != FATHOM_READY) return FATHOM_POSIX_ERR_ARGUMENT;
     line->modbus = fathom_modbus_client(&line->line);
     fathom_loop_add(loop, &line->source);
     return FATHOM_POSIX_OK;

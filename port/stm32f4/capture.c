@@ -39,7 +39,7 @@ void fathom_stm32f4_tim2_interrupt(void)
     fathom_stm32f4_happened = 1;
     /* With both in the same us the level before tells which was first. */
     const bool is_fall_first =
-        (rise_us == fall_us) ? captured->high : ((rise_us - fall_us) < (UINT32_MAX / 2u));
+        (rise_us == fall_us) ? captured->is_high : ((rise_us - fall_us) < (UINT32_MAX / 2u));
     const bool fall_first = ((why & (CC1 | CC2)) == (CC1 | CC2)) && is_fall_first;
     if (fall_first) feed(false, fall_us);
     if ((why & CC1) != 0u) feed(true, rise_us);

@@ -79,6 +79,7 @@ void fathom_modbus_read_holding_registers(fathom_modbus_message_t *message, uint
 {
     set(message, address, READ, first, count);
     message->values = values;
+    message->has_effect = false;
 }
 
 void fathom_modbus_write_single_register(fathom_modbus_message_t *message, uint8_t address, uint16_t first,

@@ -3,6 +3,20 @@
 
 #include "../common.h"
 
+/*
+ * One poll is one look at the pin:
+ *
+ *   level   ______|~|_|~~~~~~~~~~~~~~~~~~~~~~~~~~~
+ *   looks    .  .  .  .  .  .  .  .  .  .  .  .  .
+ *                     |<-settle_us->|               since_us is the first of these looks
+ *                                   sample          the level counts
+ *                                   |<-period_us->|
+ *                                                 sample (the same level again)
+ *
+ * A level counts while it was equal at every look for settle_us, and no guard or hold forbade one of the looks. Two
+ * limits end every wait: period_us while the level counts, and stale_us while it does not.
+ */
+
 static bool is_high_now(const fathom_contact_t *contact)
 {
     const fathom_pin_t *const pin = contact->pin;
@@ -15,21 +29,41 @@ static void settle(fathom_contact_t *contact)
     contact->settle_us = contact->timing.settle_us;
 }
 
-fathom_status_t fathom_contact_init(fathom_contact_t *contact, const fathom_contact_timing_t *timing)
+static bool is_initialised(const fathom_contact_t *contact) { return contact->timing.interval_us != 0u; }
+
+static bool can_be_read(const fathom_contact_t *contact)
 {
-    fathom_contact_timing_t *const own = &contact->timing;
-    if ((contact->pin == NULL) || (contact->pin->get == NULL) || (contact->clock == NULL))
-        return FATHOM_ERR_ARGUMENT;
+    const fathom_pin_t *const pin = contact->pin;
+    const fathom_contact_guard_t *const guard = contact->guard;
+    return (pin != NULL) && (pin->get != NULL) && is_clock(contact->clock) &&
+           ((guard == NULL) ||
+            ((guard->poll != NULL) && (guard->is_clear != NULL) && (guard->due_us != NULL)));
+}
+
+/* Copies the timing. Returns true if each member is inside its range. */
+static bool configure(fathom_contact_timing_t *own, const fathom_contact_timing_t *timing)
+{
     own->settle_us = or_default(timing->settle_us, FATHOM_CONTACT_DEFAULT_SETTLE_US);
-    own->period_us = timing->period_us;
+    own->period_us = or_default(timing->period_us, FATHOM_CONTACT_DEFAULT_PERIOD_US);
     own->interval_us = or_default(timing->interval_us, FATHOM_CONTACT_DEFAULT_INTERVAL_US);
     own->stale_us = or_default(timing->stale_us, FATHOM_CONTACT_DEFAULT_STALE_US);
+    return (own->settle_us < own->stale_us) && (own->period_us <= FATHOM_MAX_DURATION_US) &&
+           (own->stale_us <= FATHOM_MAX_DURATION_US) &&
+           ((own->interval_us <= FATHOM_MAX_DURATION_US) || (own->interval_us == FATHOM_NO_DEADLINE));
+}
+
+fathom_status_t fathom_contact_init(fathom_contact_t *contact, const fathom_contact_timing_t *timing)
+{
+    if (!can_be_read(contact) || !configure(&contact->timing, timing)) {
+        clear(contact, sizeof *contact);
+        return FATHOM_ERR_ARGUMENT;
+    }
     contact->sampled_us = clock_us(contact->clock);
     contact->is_high = is_high_now(contact);
     contact->is_clear = contact->guard == NULL;
     contact->is_held = false;
-    contact->period_us = own->period_us;
-    contact->stale_us = own->stale_us;
+    contact->period_us = contact->timing.period_us;
+    contact->stale_us = contact->timing.stale_us;
     contact->sequence = 0;
     contact->last_kind = 0;
     settle(contact);
@@ -44,14 +78,14 @@ void fathom_contact_set_near_is_high(fathom_contact_t *contact, bool near_is_hig
 
 void fathom_contact_hold(fathom_contact_t *contact, bool hold) { contact->is_held = hold; }
 
-/* Does the level mean anything now? */
+/* Returns true if the level at this look has a meaning. */
 static bool is_clear(const fathom_contact_t *contact)
 {
     const fathom_contact_guard_t *const guard = contact->guard;
     return !contact->is_held && ((guard == NULL) || guard->is_clear(guard->ctx, contact->sampled_us));
 }
 
-/* Does the level count? */
+/* Reads the pin. Returns true if the level counts. */
 static bool look(fathom_contact_t *contact, uint32_t passed_us)
 {
     const bool was_clear = contact->is_clear;
@@ -64,9 +98,17 @@ static bool look(fathom_contact_t *contact, uint32_t passed_us)
     return false;
 }
 
+/* The time at which this level was first seen, unless that is too long ago or the level was reported then. */
+static uint32_t time_of(const fathom_contact_t *contact, uint8_t kind)
+{
+    const bool is_repeated = kind == contact->last_kind;
+    const bool is_old = time_since_us(contact->sampled_us, contact->since_us) > contact->timing.stale_us;
+    return (is_repeated || is_old) ? contact->sampled_us : contact->since_us;
+}
+
 static void set_sample(fathom_contact_t *contact, uint8_t kind, fathom_sample_t *sample)
 {
-    sample->time_us = (kind == contact->last_kind) ? contact->sampled_us : contact->since_us;
+    sample->time_us = time_of(contact, kind);
     sample->magnitude = 0;
     sample->raw = contact->is_high;
     contact->sequence++;
@@ -86,44 +128,43 @@ static void set_sample(fathom_contact_t *contact, uint8_t kind, fathom_sample_t 
 static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
 {
     fathom_contact_t *const contact = ctx;
-    const fathom_contact_timing_t *const timing = &contact->timing;
     const fathom_contact_guard_t *const guard = contact->guard;
-    const fathom_status_t beside = (guard != NULL) ? guard->poll(guard->ctx) : FATHOM_PENDING;
+    if (!is_initialised(contact)) return FATHOM_ERR_ARGUMENT;
+    const fathom_status_t guarded = (guard != NULL) ? guard->poll(guard->ctx) : FATHOM_PENDING;
     const uint32_t now_us = clock_us(contact->clock);
-    const uint32_t passed_us = fathom_elapsed_us(now_us, contact->sampled_us);
-    /* The level counted until the look before this one; when it ceased to is not known. */
+    const uint32_t passed_us = time_since_us(now_us, contact->sampled_us);
+    /* The level counted until the previous look. When it changed between the two looks is not known. */
     const bool counted = contact->settle_us == 0u;
-    const bool repeats = fathom_count_down(&contact->period_us, passed_us) && (timing->period_us != 0u);
+    const bool is_period_over = fathom_count_down(&contact->period_us, passed_us);
     contact->sampled_us = now_us;
-    if (counted) contact->stale_us = timing->stale_us;
+    if (counted) contact->stale_us = contact->timing.stale_us;
     if (look(contact, passed_us)) {
         const uint8_t kind = (contact->is_high == contact->near_is_high) ? FATHOM_NEAR : FATHOM_FAR;
-        if ((kind != contact->last_kind) || repeats) {
+        if ((kind != contact->last_kind) || is_period_over) {
             set_sample(contact, kind, sample);
             return FATHOM_READY;
         }
     } else if (!counted && fathom_count_down(&contact->stale_us, passed_us)) {
-        contact->stale_us = timing->stale_us;
+        contact->stale_us = contact->timing.stale_us;
         return FATHOM_ERR_STALE;
     }
-    return beside;
+    return guarded;
 }
 
 static uint32_t due_us(void *ctx)
 {
     const fathom_contact_t *const contact = ctx;
-    const fathom_contact_timing_t *const timing = &contact->timing;
     const fathom_contact_guard_t *const guard = contact->guard;
-    uint32_t us = timing->interval_us;
+    uint32_t until_us = contact->timing.interval_us;
+    if (!is_initialised(contact)) return 0;
     if (!contact->is_clear)
-        us = least_us(us, FATHOM_CONTACT_QUIET_US);
+        until_us = least_us(until_us, FATHOM_CONTACT_QUIET_US);
     else if (contact->settle_us != 0u)
-        us = least_us(us, contact->settle_us);
-    else if (timing->period_us != 0u)
-        us = least_us(us, contact->period_us);
-    if (us != FATHOM_NO_DEADLINE)
-        us = rest_us(us, fathom_elapsed_us(clock_us(contact->clock), contact->sampled_us));
-    return (guard != NULL) ? least_us(us, guard->due_us(guard->ctx)) : us;
+        until_us = least_us(until_us, contact->settle_us);
+    else
+        until_us = least_us(until_us, contact->period_us);
+    until_us = rest_us(until_us, time_since_us(clock_us(contact->clock), contact->sampled_us));
+    return (guard != NULL) ? least_us(until_us, guard->due_us(guard->ctx)) : until_us;
 }
 
 fathom_sensor_t fathom_contact_sensor(fathom_contact_t *contact) { return sensor_of(poll, due_us, contact); }

@@ -1,36 +1,34 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/engine/debounce.h"
 
-#include "fathom/hal.h"
+#include "../common.h"
 
 enum { NEITHER = 0 };
 
 fathom_status_t fathom_debounce_init(fathom_debounce_t *debounce, const fathom_debounce_config_t *config)
 {
     fathom_debounce_config_t *const own = &debounce->config;
+    const uint32_t unknown_us = or_default(config->unknown_us, FATHOM_DEBOUNCE_DEFAULT_UNKNOWN_US);
+    clear(debounce, sizeof *debounce);
+    if ((config->hold_us > FATHOM_MAX_DURATION_US) || (config->equal > FATHOM_EQUAL_IS_FAR) ||
+        ((unknown_us > FATHOM_MAX_DURATION_US) && (unknown_us != FATHOM_NO_DEADLINE)))
+        return FATHOM_ERR_ARGUMENT;
     own->hold_us = config->hold_us;
-    own->unknown_us = (config->unknown_us != 0u) ? config->unknown_us : FATHOM_DEBOUNCE_DEFAULT_UNKNOWN_US;
-    own->threshold_mm =
-        (config->threshold_mm != 0u) ? config->threshold_mm : (uint16_t)FATHOM_DEBOUNCE_DEFAULT_THRESHOLD_MM;
-    own->near_count =
-        (config->near_count != 0u) ? config->near_count : (uint8_t)FATHOM_DEBOUNCE_DEFAULT_NEAR_COUNT;
-    own->far_count =
-        (config->far_count != 0u) ? config->far_count : (uint8_t)FATHOM_DEBOUNCE_DEFAULT_FAR_COUNT;
+    own->unknown_us = unknown_us;
+    own->threshold_mm = (uint16_t)or_default(config->threshold_mm, FATHOM_DEBOUNCE_DEFAULT_THRESHOLD_MM);
+    own->near_count = (uint8_t)or_default(config->near_count, FATHOM_DEBOUNCE_DEFAULT_NEAR_COUNT);
+    own->far_count = (uint8_t)or_default(config->far_count, FATHOM_DEBOUNCE_DEFAULT_FAR_COUNT);
     own->equal = config->equal;
-    debounce->fed_us = 0;
-    debounce->left_us = 0;
-    debounce->level = NEITHER;
-    debounce->verdict = NEITHER;
-    debounce->row = 0;
-    debounce->is_fed = false;
-    return (config->equal > FATHOM_EQUAL_IS_FAR) ? FATHOM_ERR_ARGUMENT : FATHOM_READY;
+    return FATHOM_READY;
 }
+
+static bool is_initialised(const fathom_debounce_t *debounce) { return debounce->config.near_count != 0u; }
 
 bool fathom_debounce_time(fathom_debounce_t *debounce, uint32_t now_us)
 {
     const uint32_t passed_us = fathom_elapsed_us(now_us, debounce->fed_us);
     const uint8_t before = debounce->level;
-    /* Half a turn of the clock and more: it is a time before the measurement. */
+    /* A difference above half of what the clock counts is a time before the measurement. */
     if (!debounce->is_fed || (passed_us <= debounce->config.unknown_us) || (passed_us > (UINT32_MAX / 2u)))
         return false;
     debounce->level = FATHOM_UNKNOWN;
@@ -42,8 +40,9 @@ bool fathom_debounce_time(fathom_debounce_t *debounce, uint32_t now_us)
 bool fathom_debounce_verdict(fathom_debounce_t *debounce, uint8_t verdict, uint32_t now_us)
 {
     const uint8_t before = debounce->level;
+    if (!is_initialised(debounce)) return false;
     (void)fathom_debounce_time(debounce, now_us);
-    const bool is_over = fathom_count_down(&debounce->left_us, fathom_elapsed_us(now_us, debounce->fed_us));
+    const bool is_over = fathom_count_down(&debounce->left_us, time_since_us(now_us, debounce->fed_us));
     debounce->fed_us = now_us;
     debounce->is_fed = true;
     if (debounce->verdict != verdict) debounce->row = 0;

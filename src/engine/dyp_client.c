@@ -63,8 +63,13 @@ static fathom_status_t parse_response(fathom_transaction_t *transaction, const u
     return FATHOM_READY;
 }
 
-static const fathom_protocol_t protocol = {
-    encode, fathom_dyp_55aa_length, check, is_request, parse_response, ADDRESS, false};
+/* No request may collide: with an 8-bit sum, a damaged request can become the command that sets the address. */
+static const fathom_protocol_t protocol = {.encode = encode,
+                                           .length = fathom_dyp_55aa_length,
+                                           .check = check,
+                                           .is_request = is_request,
+                                           .parse_response = parse_response,
+                                           .address_offset = ADDRESS};
 
 static fathom_status_t start(fathom_line_t *line, fathom_modbus_request_t *request)
 {

@@ -3,174 +3,385 @@
 
 #include "line_internal.h"
 
-enum { MAX_READS = 16, LEAST_FRAME = 8, SEND_POLL_US = 1000 };
+/*
+ * What every line does: it reads the port, measures silence, feeds the listener, holds breaks and computes the next
+ * deadline. What a line does with the received bytes depends on its kind: line_request.c or line_listening.c.
+ */
+
+enum { MAX_READS = 16, MIN_FRAME_SIZE = 8, SEND_POLL_US = 1000, MIN_GAP_US = 100 };
+
+/* A value of `awaited_left_us`: the wait for the answer to another master is over. The bytes that this poll reads may
+ * have arrived before, so for them it is not. */
+enum { ENDS_WITH_THIS_POLL = 1 };
+
+/* ---- The optional parts ---- */
+
+void fathom_line_add(fathom_line_t *line, uint8_t which, uint8_t by)
+{
+    const fathom_line_config_t *const config = line->config;
+    if (config->count != NULL) config->count(line, which, by);
+}
+
+void fathom_line_note_sender(fathom_line_t *line, uint8_t event, uint32_t amount)
+{
+    const fathom_line_senders_t *const senders = line->config->senders;
+    if (senders != NULL) senders->note(line, event, amount);
+}
+
+/* ---- Initialisation ---- */
+
+static bool is_initialised(const fathom_line_t *line) { return line->kind != NULL; }
+
+/* 65535 is what FATHOM_T3_5_US() returns if the silence does not fit. */
+static bool is_silence(uint16_t us) { return us != UINT16_MAX; }
+
+static bool is_usable(const fathom_line_config_t *config)
+{
+    if ((config->uart == NULL) || (config->uart->read == NULL) || (config->clock == NULL) ||
+        (config->clock->now_us == NULL) || (config->frame == NULL) || (config->frame_size < MIN_FRAME_SIZE))
+        return false;
+    if ((config->count != NULL) && (config->counters == NULL)) return false;
+    if ((config->gap_us != 0u) && (config->gap_us < MIN_GAP_US)) return false;
+    return is_silence(config->gap_us) && is_silence(config->silence_us);
+}
 
 fathom_status_t fathom_line_begin(fathom_line_t *line, const fathom_line_config_t *config,
                                   const fathom_line_kind_t *kind)
 {
-    if ((config->uart == NULL) || (config->clock == NULL) || (config->frame == NULL) ||
-        (config->frame_size < LEAST_FRAME))
-        return FATHOM_ERR_ARGUMENT;
-    /* volatile: or compilers make it a call of memset, which costs more than all of this. */
-    for (volatile uint8_t *byte = (uint8_t *)line; byte != (uint8_t *)(line + 1); byte++) *byte = 0;
+    clear(line, sizeof *line);
+    if (!is_usable(config)) return FATHOM_ERR_ARGUMENT;
     line->config = config;
     line->kind = kind;
-    line->known = config->echo;
+    line->echo = config->echo;
     line->polled_us = clock_us(config->clock);
+    line->age = AGE_OLD;
     return FATHOM_READY;
 }
 
-void fathom_line_listen(fathom_line_t *line, fathom_listener_t *listener) { line->listener = listener; }
+/* ---- Time ---- */
 
-static inline uint32_t look(fathom_line_t *line)
+/*
+ * Moves all deadlines on to `now_us`.
+ *
+ * A quarantine is counted from the end of the request, so it does not run while a cancelled request still leaves.
+ */
+static void move_to(fathom_line_t *line, uint32_t now_us)
 {
-    const uint32_t now_us = clock_us(line->config->clock);
-    const uint32_t passed_us = fathom_elapsed_us(now_us, line->polled_us);
+    const uint32_t passed_us = time_since_us(now_us, line->polled_us);
     line->polled_us = now_us;
-    /* It lasts from the end of the request. */
-    if ((line->quarantined != 0u) && (line->state != LEAVING) &&
-        fathom_count_down(&line->quarantine_left_us, passed_us))
-        line->quarantined = 0;
-    (void)fathom_count_down(&line->left_us, passed_us);
-    return passed_us;
+    (void)fathom_count_down(&line->phase_left_us, passed_us);
+    if (line->awaited_left_us != 0u) {
+        line->awaited_left_us = rest_us(line->awaited_left_us, passed_us);
+        if (line->awaited_left_us == 0u) line->awaited_left_us = ENDS_WITH_THIS_POLL;
+    }
+    if ((line->phase != FATHOM_LINE_DRAINING) && fathom_count_down(&line->quarantine_left_us, passed_us))
+        line->quarantined_units = 0;
 }
 
-uint32_t fathom_line_look(fathom_line_t *line) { return look(line); }
+uint32_t fathom_line_heard_us(const fathom_line_t *line) { return line->polled_us - line->silent_us; }
 
-/* Has the line been silent for the listener's gap? */
+/* ---- The listener ---- */
+
+fathom_listener_t *fathom_line_replace_listener(fathom_line_t *line, fathom_listener_t *listener)
+{
+    fathom_listener_t *const previous = line->listener;
+    line->listener = listener;
+    return previous;
+}
+
+fathom_status_t fathom_line_listen(fathom_line_t *line, fathom_listener_t *listener)
+{
+    if ((listener != NULL) && (line->listener != NULL) && (line->listener != listener))
+        return FATHOM_ERR_BUSY;
+    line->listener = listener;
+    return FATHOM_READY;
+}
+
 static bool is_listeners_gap(const fathom_line_t *line)
 {
     return (line->listener != NULL) && (line->silent_us >= line->listener->gap_us);
 }
 
-void fathom_line_leave(fathom_line_t *line, uint8_t length)
+void fathom_line_pass(fathom_line_t *line, uint8_t from, uint8_t length)
 {
     fathom_listener_t *const listener = line->listener;
-    if (listener != NULL)
-        listener->receive(listener, line->config->frame, length, (line->known & AFTER_GAP) != 0,
-                          fathom_line_heard_us(line));
+    if (listener == NULL)
+        fathom_line_add(line, FATHOM_LINE_DROPPED_BYTES, length);
     else
-        count(line, FATHOM_LINE_DROPPED_BYTES, length);
+        listener->receive(listener, &line->config->frame[from], length, line->is_after_gap,
+                          fathom_line_heard_us(line));
+    line->is_after_gap = false;
 }
 
-void fathom_line_drop(fathom_line_t *line, uint8_t length)
+/* ---- The age of bytes ---- */
+
+/* Returns true if a response may arrive that a transaction would accept. */
+static bool may_respond(const fathom_line_t *line)
 {
-    uint8_t *to = line->config->frame;
-    line->need = 0;
-    line->have = (uint8_t)(line->have - length);
-    for (uint8_t i = line->have; i != 0u; i--) {
-        *to = to[length];
-        to++;
-    }
+    return (line->head != NULL) && (is_busy(line) || (line->quarantined_units != 0u));
 }
+
+/*
+ * Bytes that wait in the port may be as old as the pause since the previous poll.
+ *
+ *     polls      |  |  |                                    |  |
+ *     port             . [response]  . . . nobody reads . . .
+ *                      |<-- pause: more than the limit? --->| drop all bytes until the port is empty
+ *
+ *  - The limit is the time-out of the request on the wire, or of the one that waits for a late response, and the
+ *    `stale_us` of the listener, whichever is less. A program that sleeps for due_us polls a little after the limit, so
+ *    FATHOM_LINE_LATE_US comes on top.
+ *  - A time stamp of the port (FATHOM_RX_TIMED) dates the bytes, so that young bytes behind a long pause are kept.
+ *  - After the initialisation and after a read that failed, the age of the bytes is not known, so they count as old.
+ *  - Dropped bytes are counted, and they still show that a device sends by itself.
+ */
+bool fathom_line_is_old(const fathom_line_t *line, uint32_t age_us)
+{
+    uint32_t limit_us = FATHOM_NO_DEADLINE;
+    if (may_respond(line)) limit_us = line->head->timeout_us;
+    if ((line->listener != NULL) && (line->listener->stale_us != 0u))
+        limit_us = least_us(limit_us, line->listener->stale_us);
+    return rest_us(age_us, FATHOM_LINE_LATE_US) > limit_us;
+}
+
+/* Drops all bytes until the port was seen empty. What is in the frame buffer arrived before the last poll: this function
+ * passes it on, and its time is right as long as `polled_us` is that of the last poll. */
+static void drop_port(fathom_line_t *line)
+{
+    line->kind->scan(line, true);
+    line->age = (line->age == AGE_KNOWN) ? AGE_OLD : AGE_DROPPED;
+}
+
+/* Reads the clock and moves all deadlines on. Returns the time since the previous call, in microseconds. */
+static uint32_t begin_turn(fathom_line_t *line)
+{
+    const uint32_t now_us = clock_us(line->config->clock);
+    const uint32_t pause_us = time_since_us(now_us, line->polled_us);
+    if (fathom_line_is_old(line, pause_us)) drop_port(line);
+    move_to(line, now_us);
+    return pause_us;
+}
+
+void fathom_line_flush(fathom_line_t *line)
+{
+    if (!is_initialised(line)) return;
+    drop_port(line);
+    if (line->listener != NULL) fathom_line_pass(line, 0, 0); /* A frame of before is no reading of now. */
+}
+
+/* The next bytes are young. */
+static void end_dropping(fathom_line_t *line)
+{
+    if (line->age == AGE_OLD) line->age = AGE_KNOWN;
+    if (line->age == AGE_DROPPED) line->age = AGE_LOST;
+}
+
+/* Sets the silence from the port's time stamp. A stamp that is later than the clock counts as "now" (hal.h). */
+static void apply_time_stamp(fathom_line_t *line, uint32_t last_us)
+{
+    uint32_t age_us = fathom_elapsed_us(line->polled_us, last_us);
+    if (age_us > (UINT32_MAX / 2u)) age_us = 0;
+    set_silent(line, age_us);
+    if (!fathom_line_is_old(line, age_us)) end_dropping(line);
+}
+
+/* ---- Polling ---- */
 
 fathom_status_t fathom_line_broken(fathom_line_t *line)
 {
-    count(line, FATHOM_LINE_PORT_ERRORS, 1);
-    line->have = 0;
-    line->need = 0;
-    line->known = line->config->echo;                  /* it may come back as another port */
-    if (line->state == ENDING) line->state = IN_BREAK; /* the port gets its second again */
-    if (line->kind->give_up != NULL) line->kind->give_up(line);
+    fathom_line_add(line, FATHOM_LINE_PORT_ERRORS, 1);
+    line->received_count = 0;
+    line->passed_count = 0;
+    /* The port may return as another device, so nothing that was learnt from received bytes remains valid. */
+    line->echo = line->config->echo;
+    line->attempt.copy = COPY_PAST;
+    line->is_after_gap = false;
+    line->slot = SLOT_OPEN;
+    line->sender = SENDER_NONE;
+    line->unsolicited_count = 0;
+    line->unrequested_count = 0;
+    /* The port has FATHOM_LINE_SEND_US again to end the break. */
+    if (line->phase == FATHOM_LINE_ENDING_BREAK) line->phase = FATHOM_LINE_IN_BREAK;
+    if (line->kind->fail_all != NULL) line->kind->fail_all(line);
     return FATHOM_ERR_PORT;
+}
+
+static void drop(fathom_line_t *line, uint8_t new_count)
+{
+    line->age = AGE_DROPPED;
+    line->is_after_gap = false;
+    fathom_line_add(line, FATHOM_LINE_OLD_BYTES, new_count);
+    fathom_line_note_sender(line, SENDER_BYTES, new_count);
+    if (line->config->masters != NULL) line->config->masters->note_lost_bytes(line);
+}
+
+/* For the listener, dropped bytes are lost bytes: no frame continues across them. The line reports the loss with the next
+ * bytes, so that a pause of the program alone is no damage. */
+static void report_loss(fathom_line_t *line)
+{
+    const bool is_after_gap = line->is_after_gap;
+    line->age = AGE_KNOWN;
+    if (line->listener != NULL) fathom_line_pass(line, 0, 0);
+    line->is_after_gap = is_after_gap;
+}
+
+/* Adds `new_count` bytes, which the port has written behind the received bytes, and scans all of them. */
+static void receive(fathom_line_t *line, uint8_t new_count, const fathom_rx_t *rx)
+{
+    if (!holds_bytes(line) && is_listeners_gap(line)) line->is_after_gap = true;
+    line->slot = SLOT_OPEN;
+    line->silent_us = 0;
+    move_to(line, clock_us(line->config->clock));
+    if ((rx->flags & FATHOM_RX_TIMED) != 0) apply_time_stamp(line, rx->last_us);
+    if (line->config->marks != NULL) new_count = line->config->marks(line, rx, new_count);
+    if (line->age >= AGE_OLD) {
+        drop(line, new_count);
+        return;
+    }
+    if (line->age == AGE_LOST) report_loss(line);
+    line->received_count = (uint8_t)(line->received_count + new_count);
+    line->kind->scan(line, false);
+}
+
+/*
+ * Reads the port until it has no more bytes, at most MAX_READS times.
+ *
+ * Silence is counted only where a read returned nothing: bytes that wait in the port are no silence. The clock is read
+ * before the first read and after each read that returned bytes, so `silent_us` is the silence up to the next read.
+ */
+static fathom_status_t read_port(fathom_line_t *line)
+{
+    const fathom_uart_t *const uart = line->config->uart;
+    const uint32_t pause_us = begin_turn(line);
+    uint32_t silent_us = pause_us + line->silent_us;
+    if (line->slot == SLOT_BEHIND_FRAME) {
+        fathom_line_note_sender(line, SENDER_PAUSE, pause_us);
+        line->slot = SLOT_OPEN;
+    }
+    for (uint8_t reads_left = MAX_READS; reads_left != 0u; reads_left--) {
+        fathom_rx_t rx;
+        rx.last_us = 0;
+        rx.flags = 0;
+        const int new_count = uart->read(uart->ctx, &line->config->frame[line->received_count],
+                                         (size_t)(line->config->frame_size - line->received_count), &rx);
+        if (new_count <= 0) {
+            set_silent(line, silent_us);
+            end_dropping(line);
+            if (new_count == 0) return FATHOM_PENDING;
+            line->age = AGE_DROPPED; /* Bytes may wait in a port that cannot be read. */
+            return fathom_line_broken(line);
+        }
+        receive(line, (uint8_t)new_count, &rx);
+        silent_us = line->silent_us;
+    }
+    line->silent_us = 0; /* The port may hold bytes that are newer than the time stamp of the last read. */
+    line->slot = SLOT_OPEN;
+    return FATHOM_PENDING;
+}
+
+/*
+ * Returns the time until the bytes in the frame buffer are over, counted from the last poll. Bytes that may be a
+ * response end at a gap. All others end at the silence: a gap may be longer than the pause between two frames.
+ */
+static uint32_t frame_over_in_us(const fathom_line_t *line)
+{
+    if (line->received_count == 0u) return FATHOM_NO_DEADLINE;
+    return rest_us(holds_bytes(line) ? gap_us(line) : silence_us(line), line->silent_us);
 }
 
 fathom_status_t fathom_line_poll(fathom_line_t *line)
 {
-    const fathom_line_config_t *const config = line->config;
-    const fathom_uart_t *const uart = config->uart;
-    uint8_t reads = MAX_READS;
-    uint8_t came = 0;
-    fathom_rx_t rx;
-    for (;;) {
-        /* The clock is read before each read of the port, and after one with bytes, which may be newer than it. */
-        uint32_t silent_us = look(line) + line->silent_us;
-        if (came != 0u) {
-            line->silent_us = 0;
-            if (config->marks != NULL) came = config->marks(line, &rx, came);
-            line->have = (uint8_t)(line->have + came);
-            if (line->have >= line->need) line->kind->scan(line, false);
-            silent_us = line->silent_us;
-            if (--reads == 0u) { /* the port may hold newer bytes than those of the stamp */
-                line->silent_us = 0;
-                break;
-            }
-        }
-        rx.last_us = 0;
-        rx.flags = 0;
-        const uint8_t had = line->have;
-        const int n = uart->read(uart->ctx, &config->frame[had], (size_t)(config->frame_size - had), &rx);
-        if (n <= 0) {
-            set_silent(line, silent_us);
-            if (n < 0) return fathom_line_broken(line);
-            break;
-        }
-        if ((had == 0u) && is_listeners_gap(line)) line->known |= AFTER_GAP;
-        forget(line, LATE);
-        came = (uint8_t)n;
-    }
-    if ((line->have != 0u) && (line->silent_us >= gap_us(line))) line->kind->scan(line, true);
-    return line->kind->go_on(line);
+    if (!is_initialised(line)) return FATHOM_ERR_ARGUMENT;
+    const fathom_status_t status = read_port(line);
+    if (status != FATHOM_PENDING) return status;
+    if (line->awaited_left_us == ENDS_WITH_THIS_POLL) line->awaited_left_us = 0;
+    if (frame_over_in_us(line) == 0u) line->kind->scan(line, true);
+    return line->kind->advance(line);
 }
 
 bool fathom_line_is_idle(const fathom_line_t *line)
 {
-    return !is_busy(line) && (line->state != LEAVING) && (line->have == 0u);
+    return !is_busy(line) && (line->phase != FATHOM_LINE_DRAINING) && (line->received_count == 0u);
+}
+
+/* ---- Breaks ---- */
+
+/* The port did not release TX. Like a port that does not send, it has FATHOM_LINE_SEND_US to do so. */
+static void begin_ending(fathom_line_t *line)
+{
+    if (line->phase == FATHOM_LINE_IN_BREAK) line->phase_left_us = FATHOM_LINE_SEND_US;
+    line->phase = FATHOM_LINE_ENDING_BREAK;
+    line->wait = WAIT_NONE;
+}
+
+/* TX is high again. The silence before a request starts here; the listener's silence was not interrupted. */
+static void release(fathom_line_t *line)
+{
+    line->phase = FATHOM_LINE_IDLE;
+    line->wait = WAIT_NONE;
+    if ((line->received_count == 0u) && is_listeners_gap(line)) line->is_after_gap = true;
+    line->silent_us = 0;
 }
 
 fathom_status_t fathom_line_break(fathom_line_t *line, bool on)
 {
+    if (!is_initialised(line)) return FATHOM_ERR_ARGUMENT;
     const fathom_uart_t *const uart = line->config->uart;
     if (uart->set_break == NULL) return FATHOM_ERR_UNSUPPORTED;
-    if (is_busy(line)) return on ? FATHOM_ERR_BUSY : FATHOM_READY; /* what is sent is no break */
-    const int is_set = uart->set_break(uart->ctx, on);
-    (void)fathom_line_look(line);
-    if (is_set <= 0) {
-        /* A port that does not end a break gets as much time as one that does not take a request. */
-        if (!on && ((line->state == IN_BREAK) || (line->state == ENDING))) {
-            if (line->state == IN_BREAK) line->left_us = FATHOM_LINE_SEND_US;
-            line->state = ENDING;
-            if ((is_set < 0) || (line->left_us == 0u)) return fathom_line_broken(line);
+    if (is_busy(line)) return on ? FATHOM_ERR_BUSY : FATHOM_READY; /* TX is not low while a request leaves. */
+    const int result = uart->set_break(uart->ctx, on);
+    (void)begin_turn(line);
+    if (result > 0) {
+        if (!on)
+            release(line);
+        else if (line->phase != FATHOM_LINE_IN_BREAK) {
+            line->phase = FATHOM_LINE_IN_BREAK;
+            line->wait = WAIT_NONE;
         }
-        return (is_set < 0) ? FATHOM_ERR_PORT : FATHOM_PENDING;
+        return FATHOM_READY;
     }
-    line->state = IN_BREAK;
-    if (!on) {
-        line->state = IDLE; /* a port that refused a request gets its time anew */
-        /* the silence before a request begins here; the listener's has gone on */
-        if ((line->have == 0u) && is_listeners_gap(line)) line->known |= AFTER_GAP;
-        line->silent_us = 0;
+    if (!on && is_in_break(line)) {
+        begin_ending(line);
+        if ((result < 0) || (line->phase_left_us == 0u)) return fathom_line_broken(line);
     }
-    return FATHOM_READY;
+    return (result < 0) ? FATHOM_ERR_PORT : FATHOM_PENDING;
 }
 
-uint32_t fathom_line_heard_us(const fathom_line_t *line) { return line->polled_us - line->silent_us; }
+/* ---- The next deadline ---- */
 
-/* How long from the last poll until the port may have sent the request, or may take it. The port counts from now on. */
+/*
+ * Returns when the port may have sent the request, or may accept it, in microseconds after the last poll. The port
+ * counts from now, which is `passed_us` after the last poll.
+ */
 static uint32_t port_due_us(const fathom_line_t *line, uint32_t passed_us)
 {
     const fathom_uart_t *const uart = line->config->uart;
     const uint32_t us = (uart->leaves_in_us != NULL) ? uart->leaves_in_us(uart->ctx) : 0u;
-    if (us == 0u) return SEND_POLL_US;
-    return us + passed_us;
+    return (us != 0u) ? (us + passed_us) : SEND_POLL_US;
+}
+
+/* Returns when the present phase may end, in microseconds after the last poll. */
+static uint32_t phase_due_us(const fathom_line_t *line, uint32_t passed_us)
+{
+    switch (line->phase) {
+    case FATHOM_LINE_DRAINING:
+    case FATHOM_LINE_PORT_BUSY:
+    case FATHOM_LINE_SENDING:
+        return port_due_us(line, passed_us);
+    case FATHOM_LINE_WAITING:
+        return attempt_left_us(line);
+    case FATHOM_LINE_ENDING_BREAK:
+        return (line->head != NULL) ? line->phase_left_us : FATHOM_NO_DEADLINE;
+    default:
+        return (line->head != NULL) ? line->kind->due_us(line) : FATHOM_NO_DEADLINE;
+    }
 }
 
 uint32_t fathom_line_due_us(const fathom_line_t *line)
 {
-    const uint32_t passed_us = fathom_elapsed_us(clock_us(line->config->clock), line->polled_us);
-    uint32_t due_us;
-    if ((uint8_t)(phase(line) - LEAVING) <= (SENDING - LEAVING)) {
-        due_us = port_due_us(line, passed_us);
-    } else {
-        /* With part of a frame there neither a time-out nor the next request comes before the end of it. */
-        due_us = FATHOM_NO_DEADLINE;
-        if ((line->have == 0u) && is_busy(line))
-            due_us = line->left_us;
-        else if ((line->have == 0u) && (line->state == IDLE) && (line->head != NULL))
-            due_us = line->kind->due_us(line);
-    }
-    if ((line->have != 0u) || ((line->state & RESPONSE_BAD) != 0))
-        due_us = least_us(due_us, rest_us(gap_us(line), line->silent_us));
+    if (!is_initialised(line)) return FATHOM_NO_DEADLINE;
+    const uint32_t passed_us = time_since_us(clock_us(line->config->clock), line->polled_us);
+    uint32_t due_us = least_us(phase_due_us(line, passed_us), frame_over_in_us(line));
     if ((line->listener != NULL) && (line->silent_us < line->listener->gap_us))
         due_us = least_us(due_us, rest_us(line->listener->gap_us, line->silent_us));
     return (due_us == FATHOM_NO_DEADLINE) ? due_us : rest_us(due_us, passed_us);

@@ -6,49 +6,112 @@
 #include "fathom/engine/line_turns.h"
 
 /*
- * What the sources of a line share, and no user needs. line.c is every line's, and line_listening.c that of one which
- * only listens. line_request.c has the queue, line_send.c what goes out, line_response.c what comes in. The others are
- * what a config names: line_marks.c, line_find_echo.c, line_count.c.
+ * What the sources of the line share. Programs do not include this file. src/engine/README.md lists the sources and
+ * what each of them calls.
  */
 
-/* What the line does; and what has gone wrong with the response to the transaction at the head of the queue. */
-enum {
-    IDLE = 0,
-    IN_BREAK = 1,             /* the host holds the line low */
-    ENDING = 2,               /* no longer, but for the port, which has left_us to let it go */
-    LEAVING = 3,              /* a request that was cancelled still leaves */
-    REFUSED = 4,              /* the port was too busy to take the request */
-    SENDING = 5,              /* the port has taken it: from here on a transaction is on the wire */
-    LISTENING = 7,            /* it has left; the response may come */
-    PHASE = 7,                /* these bits */
-    RESPONSE_CORRUPT = 8,     /* a response came and was wrong from end to end */
-    RESPONSE_TRUNCATED = 16,  /* a response seemed to begin and broke off */
-    RESPONSE_BAD = 24,        /* either: nothing more is expected than the rest of it */
-    RESPONSE_UNEXPECTED = 32, /* the unit sent something else; the response may still come */
-    NOISY = 64,               /* bytes came that were not taken */
-    ECHOED = 128              /* the request came back, or is known not to */
+/* The worst fault of what the unit has sent in an attempt, in increasing order. */
+enum fault {
+    FAULT_NONE = 0,
+    FAULT_UNEXPECTED =
+        1, /* A frame with a right checksum that is not the response. The response may still arrive. */
+    FAULT_TRUNCATED = 2, /* A response seemed to begin and broke off. It may have been noise. */
+    FAULT_CORRUPT = 3,   /* A response was complete, but its checksum was wrong. */
+    FAULT_LOST = 4,      /* Bytes were dropped, and another master's request may have been among them. */
+    FAULT_CLAIMED =
+        5 /* Another master has sent the unit a request. From FAULT_LOST on no frame can be assigned. */
 };
 
-/* fathom_line_t.known */
-enum {
-    ECHO = 3,      /* fathom_line_echo() */
-    ECHO_DUE = 4,  /* the request that was cancelled may still come back */
-    AFTER_GAP = 8, /* of the listener: before the first byte in the frame there was a gap, or a response */
-    LATE = 16,     /* since the last byte there has been time for a request: a frame may come any time */
-    ONE_UNASKED = 32,
-    UNASKED = 96, /* so many bytes since the last response belonged to no transaction */
-    /* There were four, no glitch but the shortest frame of all protocols here: a device sends by itself; forgotten
-     * after a silence of QUIET_US. */
-    OTHERS_SEND = 128
+/* What has arrived of the echo of the newest request. */
+enum copy {
+    COPY_DUE = 0,      /* Neither the echo nor anything else has arrived. */
+    COPY_HIDDEN = 1,   /* Bytes arrived that belong to no frame. The echo may be among them. */
+    COPY_PAST = 2,     /* The echo has arrived, or it is known that there is none. */
+    COPY_CANCELLED = 3 /* No request is on the wire, but the echo of a cancelled one may still arrive. */
 };
 
-/* As much as silent_us can hold. */
+/* Whether the bytes in the port may be too old, and what the listener knows of dropped bytes. */
+enum age {
+    AGE_KNOWN = 0, /* The bytes are not older than the pause between two polls. */
+    AGE_LOST =
+        1, /* The same, but bytes before them were dropped, and the listener has not been notified yet. */
+    AGE_OLD = 2,    /* All bytes are dropped until the port was seen empty. */
+    AGE_DROPPED = 3 /* The same, and bytes were dropped. */
+};
+
+/* The silence before the next request, or before the request on the wire. */
+enum wait {
+    WAIT_NONE = 0,   /* No transaction waits, or the request on the wire was sent in a measured silence. */
+    WAIT_NOISE = 1,  /* A transaction waits for silence, and no complete frame was heard since. */
+    WAIT_FRAMES = 2, /* A transaction waits for silence, and a complete frame was heard since. */
+    WAIT_SKIPPED = 3 /* The request on the wire was sent without a measured silence. */
+};
+
+/* Where in the present silence the line is. Only line_senders.c looks at this. */
+enum slot {
+    SLOT_OPEN = 0,         /* Nothing was sent in this silence. */
+    SLOT_BEHIND_FRAME = 1, /* The last byte of this poll completed a frame, so a silence has begun. */
+    SLOT_OVER = 2 /* A request could have been sent in this silence. Another device may start at any time. */
+};
+
+/* Whether a device sends by itself, and whether the program polls often enough to measure the silence behind it. */
+enum sender {
+    SENDER_NONE = 0,   /* No such device is known. */
+    SENDER_QUICK = 1,  /* The program measures the silence. */
+    SENDER_SLOW = 2,   /* The program polls too seldom to measure the silence. */
+    SENDER_LOST_1 = 3, /* The same, and the last request behind a frame was lost. */
+    SENDER_LOST_2 = 4  /* The same, and the last two or more requests behind a frame were lost. */
+};
+
+/* What the part for devices that send by themselves is notified of. */
+enum sender_event {
+    SENDER_BYTES,    /* `amount` bytes that belong to no transaction arrived. */
+    SENDER_FRAME,    /* A complete frame that belongs to no transaction arrived, and no byte after it. */
+    SENDER_ECHO,     /* The echo of our request arrived. */
+    SENDER_RESPONSE, /* A transaction has accepted a frame. */
+    SENDER_LOSS,     /* A request that was sent without a measured silence was not answered. */
+    SENDER_PAUSE     /* The previous poll ended with SENDER_FRAME, and this poll comes `amount` us later. */
+};
+
+/* The part for devices that send by themselves (line_senders.c). */
+struct fathom_line_senders {
+    void (*note)(fathom_line_t *line, uint8_t event, uint32_t amount);
+
+    /* Returns the time until a request may leave if no byte arrives, counted from the last poll. */
+    uint32_t (*slot_in_us)(const fathom_line_t *line);
+
+    /* Uses up the slot of this silence. Returns false if `transaction`, which may be NULL, shall not use it. */
+    bool (*take_slot)(fathom_line_t *line, const fathom_transaction_t *transaction);
+};
+
+/* The part for other masters (line_masters.c). */
+struct fathom_line_masters {
+    /* Looks for another master's request at the beginning of the frame buffer. `is_response` is true if a complete
+     * response with a right checksum begins there. Returns the length of the request; more than `received_count` if
+     * more bytes are needed; 0 if no such request begins there. */
+    uint8_t (*find_request)(fathom_line_t *line, bool is_response);
+
+    /* Bytes were dropped, and another master's request may have been among them. */
+    void (*note_lost_bytes)(fathom_line_t *line);
+
+    /* A complete frame of a unit arrived. Returns true if it may belong to another master. */
+    bool (*take_answer)(fathom_line_t *line, uint8_t address);
+
+    /* A complete frame arrived that nobody had requested. */
+    void (*note_unrequested)(fathom_line_t *line);
+};
+
+/* The largest value of `silent_us`. After this silence nothing is known about devices that send by themselves. */
 enum { QUIET_US = UINT16_MAX };
 
-static inline uint8_t phase(const fathom_line_t *line) { return line->state & PHASE; }
+/* Returns true if a transaction is on the wire. */
+static inline bool is_busy(const fathom_line_t *line) { return line->phase >= FATHOM_LINE_SENDING; }
 
-/* Is a transaction on the wire? */
-static inline bool is_busy(const fathom_line_t *line) { return line->state >= SENDING; }
+/* Returns true if the caller holds TX low, or the port has not released it yet. */
+static inline bool is_in_break(const fathom_line_t *line)
+{
+    return (line->phase == FATHOM_LINE_IN_BREAK) || (line->phase == FATHOM_LINE_ENDING_BREAK);
+}
 
 static inline uint16_t gap_us(const fathom_line_t *line)
 {
@@ -60,74 +123,142 @@ static inline uint16_t silence_us(const fathom_line_t *line)
     return (uint16_t)or_default(line->config->silence_us, FATHOM_LINE_DEFAULT_SILENCE_US);
 }
 
+static inline uint32_t busy_us(const fathom_line_t *line)
+{
+    return or_default(line->config->busy_us, FATHOM_LINE_DEFAULT_BUSY_US);
+}
+
+/* Returns true if the attempt ends at the next gap, because the response is damaged. */
+static inline bool ends_at_gap(const fathom_line_t *line)
+{
+    return (line->attempt.fault == FAULT_TRUNCATED) || (line->attempt.fault == FAULT_CORRUPT);
+}
+
+/* Returns true if the frame buffer holds bytes that the listener has not received, because they may be a response. */
+static inline bool holds_bytes(const fathom_line_t *line)
+{
+    return line->received_count != line->passed_count;
+}
+
+/* Returns true if a transaction waits for silence. */
+static inline bool is_waiting(const fathom_line_t *line)
+{
+    return (line->wait == WAIT_NOISE) || (line->wait == WAIT_FRAMES);
+}
+
+static inline bool is_silent(const fathom_line_t *line) { return line->silent_us >= silence_us(line); }
+
+/*
+ * In WAITING, `phase_left_us` is the time until a response that has begun must be complete:
+ *
+ *     [request]|<-------- timeout_us -------->|<-- FATHOM_LINE_FINISH_US -->|
+ *              | a response may begin         | it may go on                | phase_left_us is 0
+ */
+static inline uint32_t response_left_us(const fathom_line_t *line)
+{
+    return rest_us(line->phase_left_us, FATHOM_LINE_FINISH_US);
+}
+
+/* Returns true if the time-out of the request on the wire has passed. */
+static inline bool is_overtime(const fathom_line_t *line)
+{
+    return (line->phase == FATHOM_LINE_WAITING) && (response_left_us(line) == 0u);
+}
+
+/* Returns the time until the attempt ends if no byte arrives, counted from the last poll. The phase is WAITING. */
+static inline uint32_t attempt_left_us(const fathom_line_t *line)
+{
+    if (line->received_count != 0u) return line->phase_left_us;
+    if (!ends_at_gap(line)) return response_left_us(line);
+    return least_us(response_left_us(line), rest_us(gap_us(line), line->silent_us));
+}
+
+/* Returns true if the request may be sent into noise. */
+static inline bool may_collide(const fathom_transaction_t *transaction)
+{
+    const fathom_protocol_t *const protocol = transaction->protocol;
+    return (protocol->may_collide != NULL) && protocol->may_collide(transaction);
+}
+
 static inline void set_silent(fathom_line_t *line, uint32_t us)
 {
-    line->silent_us = (us > UINT16_MAX) ? UINT16_MAX : (uint16_t)us;
+    line->silent_us = (us > QUIET_US) ? QUIET_US : (uint16_t)us;
 }
 
-static inline void count(fathom_line_t *line, uint8_t which, uint8_t by)
+/* Returns the members of `quarantined_units` for an address. FATHOM_LINE_ANY_UNIT stands for all units. */
+static inline uint16_t units_of(uint8_t address)
 {
-    if (line->config->count != NULL) line->config->count(line, which, by);
+    return (uint16_t)((address == FATHOM_LINE_ANY_UNIT) ? UINT16_MAX : (1u << (address % 16u)));
 }
 
-static inline void forget(fathom_line_t *line, unsigned what) { line->known &= (uint8_t)~what; }
+/* Returns true if a request is on the wire to which a unit responds. */
+static inline bool expects_response(const fathom_line_t *line) { return line->attempt.request_length != 0u; }
 
-/* Is the transaction at the head on the wire, and one that a unit responds to? */
-static inline bool expects_response(const fathom_line_t *line) { return line->sent != 0u; }
-
-/* The bits of `quarantined` for a unit; all of them for any unit. */
-static inline uint16_t quarantine_bits(uint8_t address)
+static inline bool is_quarantined(const fathom_line_t *line, uint8_t address)
 {
-    return (uint16_t)((address == FATHOM_LINE_ANY_UNIT) ? UINT16_MAX : (1u << (address & 15u)));
+    return (line->quarantined_units & units_of(address)) != 0u;
 }
 
-/* A device sends by itself, and there has been time for a request. */
-static inline bool is_late(const fathom_line_t *line)
+static inline bool is_from_unit_of(const fathom_transaction_t *transaction, uint8_t address)
 {
-    return (line->known & (LATE | OTHERS_SEND)) == (LATE | OTHERS_SEND);
+    return (transaction->address == address) || (transaction->address == FATHOM_LINE_ANY_UNIT);
 }
 
-/* Looks at the clock and lets the time since the look before pass; returns how long that was. */
-uint32_t fathom_line_look(fathom_line_t *line);
+static inline bool is_echo_due(const fathom_line_t *line) { return line->attempt.copy == COPY_CANCELLED; }
 
-/* fathom_line_init and _init_listening, but for what the two do not share. */
+/* Returns true if the request on the wire was sent to this unit. */
+static inline bool expects_unit(const fathom_line_t *line, uint8_t address)
+{
+    return expects_response(line) && is_from_unit_of(line->head, address);
+}
+
+/* Keeps the worst fault of an attempt. */
+static inline void note_fault(fathom_line_t *line, uint8_t fault)
+{
+    if (line->attempt.fault < fault) line->attempt.fault = fault;
+}
+
+/* ---- line.c ---- */
+
+/* Adds to a counter, if the config names fathom_line_count(). */
+void fathom_line_add(fathom_line_t *line, uint8_t which, uint8_t by);
+
+/* Notifies the part for devices that send by themselves, if the config names it: an enum sender_event. */
+void fathom_line_note_sender(fathom_line_t *line, uint8_t event, uint32_t amount);
+
+/* Initialises all members that both kinds of lines share. Returns FATHOM_ERR_ARGUMENT if the config is refused. */
 fathom_status_t fathom_line_begin(fathom_line_t *line, const fathom_line_config_t *config,
                                   const fathom_line_kind_t *kind);
 
-/* The first `length` bytes leave the frame, to the listener; with 0 it is called for lost bytes. */
-void fathom_line_leave(fathom_line_t *line, uint8_t length);
+/* Passes `length` bytes to the listener, or counts them if there is none. A length of 0 reports lost bytes. */
+void fathom_line_pass(fathom_line_t *line, uint8_t from, uint8_t length);
 
-/* The first `length` bytes of the frame are done with. */
-void fathom_line_drop(fathom_line_t *line, uint8_t length);
+/* Returns true if a byte of this age is no reading any more. */
+bool fathom_line_is_old(const fathom_line_t *line, uint32_t age_us);
 
+/* Handles a broken port: forgets the received bytes and ends all transactions. Always returns FATHOM_ERR_PORT. */
 fathom_status_t fathom_line_broken(fathom_line_t *line);
 
-/* Where the transaction is linked, or the end of the queue. */
+/* ---- line_attempt.c ---- */
+
+/* Returns the link that points to the transaction. If the transaction is not queued, returns the end of the queue. */
 fathom_transaction_t **fathom_line_find(fathom_line_t *line, const fathom_transaction_t *transaction);
 
-/* *link leaves the queue; if it was on the wire, the wire is free. */
+/* Ends the attempt on the wire, or the wait for a busy port. Keeps the invariant of `attempt` (line.h). */
+void fathom_line_free_wire(fathom_line_t *line, uint8_t next_phase);
+
+/* Removes a transaction from the queue and writes its result. If the transaction uses the wire, the wire is free. */
 void fathom_line_finish(fathom_line_t *line, fathom_transaction_t **link, fathom_status_t status);
 
-/* The line is free and has been silent: the next transaction leaves. A source of its own, so that a poll which sends
- * nothing saves no registers for it. What poll returns. */
-fathom_status_t fathom_line_send(fathom_line_t *line);
+/* Keeps the unit of the request on the wire in quarantine until its late response can no longer arrive. */
+void fathom_line_quarantine(fathom_line_t *line);
 
-/* fathom_line_kind_t.scan of a line for requests. */
-void fathom_line_scan_responses(fathom_line_t *line, bool over);
-
-/* Is a response of this unit waited for? */
-bool fathom_line_expects_unit(const fathom_line_t *line, uint8_t address);
-
-/*
- * A whole frame: is it taken? By the transaction on the wire as its response; or, from a quarantined unit, by a
- * transaction that waits for a retry. A response with nothing but whole frames before it shows that there is no echo.
- */
-bool fathom_line_deliver(fathom_line_t *line);
-
-/* The attempt on the wire is over: it has failed, but for a broadcast. */
+/* Ends an attempt without a response. */
 void fathom_line_end_attempt(fathom_line_t *line);
 
-/* What has come shows whether there is an echo. */
-void fathom_line_learn(fathom_line_t *line, uint8_t echo);
+/* ---- line_response.c ---- */
+
+/* fathom_line_kind_t::scan of a line that sends requests. */
+void fathom_line_scan(fathom_line_t *line, bool is_over);
 
 #endif

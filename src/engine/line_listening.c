@@ -3,24 +3,26 @@
 
 #include "line_internal.h"
 
-/* A line that only listens: all that comes is the listener's. */
+/*
+ * A line that only listens: the listener receives all bytes at once. A program that uses only this kind of line links
+ * nothing of line_request.c.
+ */
 
-static void scan(fathom_line_t *line, bool over)
+static void scan(fathom_line_t *line, bool is_over)
 {
-    (void)over;
-    if (line->have == 0u) return;
-    fathom_line_leave(line, line->have);
-    forget(line, AFTER_GAP);
-    line->have = 0; /* `need` is that already: no frame is waited for */
+    (void)is_over;
+    if (line->received_count == 0u) return;
+    fathom_line_pass(line, 0, line->received_count);
+    line->received_count = 0;
 }
 
-static fathom_status_t go_on(fathom_line_t *line)
+static fathom_status_t advance(fathom_line_t *line)
 {
     (void)line;
     return FATHOM_PENDING;
 }
 
-static const fathom_line_kind_t listening = {scan, go_on, NULL, NULL, NULL};
+static const fathom_line_kind_t listening = {scan, advance, NULL, NULL, NULL};
 
 fathom_status_t fathom_line_init_listening(fathom_line_t *line, const fathom_line_config_t *config)
 {

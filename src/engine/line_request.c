@@ -3,190 +3,268 @@
 
 #include "line_internal.h"
 
-/* The queue, when a transaction of it may leave, and which of them a response ends. */
+/*
+ * A line that sends requests: when a request may leave, how it leaves, and the public functions of such a line.
+ *
+ *                  port accepts the request          last bit has left
+ *       +------+ ---------------------------> SENDING ---------------> WAITING
+ *       | IDLE |                               ^   |                      |
+ *       |      | --port is busy--> PORT_BUSY --+   | cancel               | response, time-out,
+ *       |      |                       |           v                      | damage and gap, cancel
+ *       |      | <-----cancel----------+        DRAINING                  |
+ *       |      | <--------------last bit has left--+                      |
+ *       |      | <--------------------------------------------------------+
+ *       |      |
+ *       |      | --set break--> IN_BREAK --release, port is not ready--> ENDING_BREAK
+ *       +------+ <---TX released---+-------------------TX released------------+
+ *
+ * src/engine/README.md has all transitions.
+ */
 
-fathom_transaction_t **fathom_line_find(fathom_line_t *line, const fathom_transaction_t *transaction)
-{
-    fathom_transaction_t **link = &line->head;
-    while ((*link != NULL) && (*link != transaction)) link = &(*link)->link.next;
-    return link;
-}
-
-void fathom_line_finish(fathom_line_t *line, fathom_transaction_t **link, fathom_status_t status)
-{
-    fathom_transaction_t *const transaction = *link;
-    if ((link == &line->head) && (line->state >= REFUSED)) {
-        line->state = IDLE;
-        line->sent = 0;
-    }
-    *link = transaction->link.next;
-    transaction->link.heard_us = fathom_line_heard_us(line);
-    transaction->status = (int8_t)status;
-}
+/* ---- When a request may leave ---- */
 
 /*
- * A response to the transaction on the wire may still come (fathom_line_is_quarantined). What broke off may have been
- * noise, and the response late; what was damaged from end to end hardly was, so that after it the rest of the time-out
- * is enough.
+ * Returns the transaction that is sent next: the first in the queue whose unit is not in quarantine, or NULL.
+ *
+ * Retry policy: other units first. A failed transaction with retries left stays at the head of the queue, and its unit
+ * is in quarantine, so this function skips it until the quarantine is over. To retry at once, return here the head of
+ * the queue if its `attempts` are not 0. A policy of line_turns.h replaces this function.
  */
-static void quarantine(fathom_line_t *line)
-{
-    const fathom_transaction_t *const transaction = line->head;
-    if (!expects_response(line)) return;
-    uint32_t longest_us = (phase(line) == SENDING) ? transaction->timeout_us : line->left_us;
-    if ((line->state & RESPONSE_CORRUPT) == 0) longest_us += transaction->timeout_us;
-    if ((line->quarantined == 0u) || (line->quarantine_left_us < longest_us))
-        line->quarantine_left_us = longest_us;
-    line->quarantined |= quarantine_bits(transaction->address);
-}
-
-void fathom_line_end_attempt(fathom_line_t *line)
-{
-    fathom_status_t error = FATHOM_ERR_NO_RESPONSE;
-    if (!expects_response(line)) {
-        fathom_line_finish(line, &line->head, FATHOM_READY);
-        return;
-    }
-    if ((line->state & RESPONSE_BAD) != 0)
-        error = FATHOM_ERR_CHECKSUM;
-    else if ((line->state & RESPONSE_UNEXPECTED) != 0)
-        error = FATHOM_ERR_MALFORMED;
-    count(line, (uint8_t)-error, 1);
-    quarantine(line);
-    if (((line->state & (ECHOED | RESPONSE_BAD | RESPONSE_UNEXPECTED)) == ECHOED) &&
-        ((line->known & ECHO) == 0))
-        error = FATHOM_ERR_ECHO;
-    line->state = IDLE;
-    line->sent = 0;
-    if (line->head->attempts > line->head->retries) fathom_line_finish(line, &line->head, error);
-}
-
-/* ---- what comes in ---- */
-
-/* Does a frame from this address concern the transaction? */
-static bool is_of(const fathom_transaction_t *transaction, uint8_t address)
-{
-    return (transaction->address == address) || (transaction->address == FATHOM_LINE_ANY_UNIT);
-}
-
-bool fathom_line_expects_unit(const fathom_line_t *line, uint8_t address)
-{
-    return expects_response(line) && is_of(line->head, address);
-}
-
-bool fathom_line_deliver(fathom_line_t *line)
-{
-    const fathom_protocol_t *const protocol = line->protocol;
-    const uint8_t *const frame = line->config->frame;
-    const uint8_t address = frame[protocol->address_at];
-    uint8_t before = NOISY;
-    if (fathom_line_expects_unit(line, address)) {
-        if (line->head->address == FATHOM_LINE_ANY_UNIT) quarantine(line);
-        before = line->state & (uint8_t) ~(unsigned)(PHASE | RESPONSE_UNEXPECTED);
-        line->state |= RESPONSE_UNEXPECTED;
-    } else {
-        const uint16_t quarantined = line->quarantined & (uint16_t)~quarantine_bits(address);
-        const bool is_outstanding = (quarantined != line->quarantined) && ((line->known & ECHO_DUE) == 0);
-        forget(line, ECHO_DUE);
-        count(line, is_outstanding ? FATHOM_LINE_LATE_RESPONSES : FATHOM_LINE_STRAYS, 1);
-        if (!is_outstanding) return false;
-        line->quarantined = quarantined;
-    }
-    for (fathom_transaction_t **link = &line->head; *link != NULL; link = &(*link)->link.next) {
-        fathom_transaction_t *const x = *link;
-        if ((x->attempts == 0u) || !is_of(x, address) ||
-            (x->protocol->parse_response != protocol->parse_response))
-            continue;
-        const fathom_status_t status = protocol->parse_response(x, frame);
-        if ((status != FATHOM_READY) && (status != FATHOM_ERR_EXCEPTION)) continue;
-        count(line, (status > 0) ? FATHOM_LINE_RESPONSES : FATHOM_LINE_EXCEPTIONS, 1);
-        fathom_line_finish(line, link, status);
-        if (before == 0u) fathom_line_learn(line, FATHOM_LINE_ECHO_OFF);
-        return true;
-    }
-    return false;
-}
-
-/* ---- when one may leave ---- */
-
-/* The first in the queue whose unit is not quarantined. */
 static fathom_transaction_t *next(const fathom_line_t *line)
 {
-    fathom_transaction_t *x = line->head;
-    while ((x != NULL) && ((line->quarantined & quarantine_bits(x->address)) != 0u)) x = x->link.next;
-    return x;
+    fathom_transaction_t *transaction = line->head;
+    while ((transaction != NULL) && is_quarantined(line, transaction->address))
+        transaction = transaction->link.next;
+    return transaction;
 }
 
+/* Returns the time until the silence before a request is kept if no byte arrives, counted from the last poll. */
+static uint32_t silence_in_us(const fathom_line_t *line)
+{
+    if (is_in_break(line) || holds_bytes(line))
+        return FATHOM_NO_DEADLINE; /* Wait for the end of the frame. */
+    if (line->awaited_left_us != 0u) return line->awaited_left_us;
+    if (line->config->senders != NULL) return line->config->senders->slot_in_us(line);
+    return rest_us(silence_us(line), line->silent_us);
+}
+
+/* Returns true if `transaction` may leave in this silence. Without a transaction the slot passes unused. */
+static bool take_slot(fathom_line_t *line, const fathom_transaction_t *transaction)
+{
+    const fathom_line_senders_t *const senders = line->config->senders;
+    if (silence_in_us(line) != 0u) return false;
+    return (senders == NULL) || senders->take_slot(line, transaction);
+}
+
+/* Returns the time until the next request may leave, or until its wait is over. The queue is not empty, and no request
+ * is on the wire. */
 static uint32_t due_us(const fathom_line_t *line)
 {
     if (next(line) == NULL) return line->quarantine_left_us;
-    return rest_us(is_late(line) ? QUIET_US : silence_us(line), line->silent_us);
+    const uint32_t left_us = silence_in_us(line);
+    if (is_waiting(line)) return least_us(left_us, line->phase_left_us);
+    return is_in_break(line) ? 0u : left_us; /* The next poll begins the wait for the end of the break. */
 }
 
-/* Has the line been silent for long enough? Among frames that a device sends by itself a request fits right behind a
- * frame and nowhere else: not behind a response, which a frame may have waited for, nor later in a silence. */
-static bool may_send(fathom_line_t *line)
+/*
+ * The wait for silence is bounded, so that every transaction ends.
+ *
+ *     bytes    ###  ## #  ###  #  ####   # #   never `silence_us` without one
+ *     wait     |<------------- busy_us ------------->|
+ *              | a transaction may be sent           | a read, and no complete frame was heard: it leaves all the same
+ *                                                    | else: FATHOM_ERR_LINE_BUSY, and it was not sent
+ *
+ *  - Noise without frames comes from a cable without bias or from a motor. It may leave enough of a read and of its
+ *    response intact, and a damaged read changes nothing.
+ *  - A write stays away from noise: with an 8-bit sum, a damaged write can become another command.
+ *  - Complete frames come from other devices, and a request would damage them.
+ *  - While the caller holds TX low, nothing leaves, and the wait goes on. While the port does not accept a request, or
+ *    does not release TX, `phase_left_us` is the time that the port has, and the wait ends with it.
+ *  - The wait begins when a transaction may be sent, and begins anew after each attempt. Only the transaction that
+ *    would be sent next ends; the next one begins a wait of its own.
+ */
+static bool is_ports_time(const fathom_line_t *line)
 {
-    if (line->silent_us < silence_us(line)) return false;
-    if (line->silent_us == QUIET_US) forget(line, UNASKED | OTHERS_SEND);
-    if (is_late(line)) return false;
-    line->known |= LATE;
-    return true;
+    return (line->phase == FATHOM_LINE_PORT_BUSY) || (line->phase == FATHOM_LINE_ENDING_BREAK);
 }
 
-static fathom_status_t go_on(fathom_line_t *line)
+static void begin_wait(fathom_line_t *line)
 {
-    if ((phase(line) == SENDING) || (line->state == LEAVING)) {
-        const fathom_uart_t *const uart = line->config->uart;
-        line->silent_us = 0;
-        if (uart->sent(uart->ctx)) {
-            if (line->state == LEAVING) {
-                line->state = IDLE;
-            } else {
-                line->state |= LISTENING;
-                line->left_us = line->head->timeout_us;
-            }
-        } else if (line->left_us == 0u) {
-            return fathom_line_broken(line);
-        }
+    line->wait = (line->awaited_left_us != 0u) ? WAIT_FRAMES : WAIT_NOISE;
+    line->phase_left_us = busy_us(line);
+}
+
+/* The wait is over. Returns true if the transaction leaves without silence; else ends it. */
+static bool leaves_into_noise(fathom_line_t *line, fathom_transaction_t *transaction)
+{
+    if ((line->wait != WAIT_FRAMES) && !is_in_break(line) && may_collide(transaction)) return true;
+    fathom_line_add(line, FATHOM_LINE_BUSY_ATTEMPTS, 1);
+    line->wait = WAIT_NONE;
+    fathom_line_finish(line, fathom_line_find(line, transaction), FATHOM_ERR_LINE_BUSY);
+    return false;
+}
+
+/* Returns the transaction that leaves now, or NULL. */
+static fathom_transaction_t *choose(fathom_line_t *line)
+{
+    fathom_transaction_t *const transaction = line->kind->next(line);
+    if (take_slot(line, transaction) && (transaction != NULL)) return transaction;
+
+    if (transaction == NULL) { /* The queue is empty, or all units in it are in quarantine. */
+        line->wait = WAIT_NONE;
+        return NULL;
+    }
+    if (!is_ports_time(line) && !is_waiting(line)) begin_wait(line);
+    if (line->phase_left_us != 0u) return NULL;
+    return leaves_into_noise(line, transaction) ? transaction : NULL;
+}
+
+/* ---- Sending ---- */
+
+static void move_to_front(fathom_line_t *line, fathom_transaction_t *transaction)
+{
+    *fathom_line_find(line, transaction) = transaction->link.next;
+    transaction->link.next = line->head;
+    line->head = transaction;
+}
+
+/* The port has accepted the request of the transaction at the head of the queue. */
+static void begin_attempt(fathom_line_t *line, uint8_t length)
+{
+    fathom_transaction_t *const transaction = line->head;
+    const fathom_protocol_t *const protocol = transaction->protocol;
+    const bool is_broadcast =
+        (transaction->address == FATHOM_LINE_ALL_UNITS) && !protocol->is_unit_0_ordinary;
+    transaction->attempts++;
+    line->protocol = protocol;
+    line->attempt.request_length = is_broadcast ? 0u : length;
+    line->attempt.copy = (line->echo == FATHOM_LINE_ECHO_OFF) ? COPY_PAST : COPY_DUE;
+    line->wait = is_silent(line) ? WAIT_NONE : WAIT_SKIPPED;
+    line->phase = FATHOM_LINE_SENDING;
+    line->phase_left_us = FATHOM_LINE_SEND_US;
+}
+
+/* The port accepts no request now, perhaps because of the settings. Each poll tries again for FATHOM_LINE_SEND_US. */
+static fathom_status_t wait_for_port(fathom_line_t *line)
+{
+    if (line->phase == FATHOM_LINE_PORT_BUSY)
+        return (line->phase_left_us != 0u) ? FATHOM_PENDING : fathom_line_broken(line);
+    line->phase = FATHOM_LINE_PORT_BUSY;
+    line->phase_left_us = FATHOM_LINE_SEND_US;
+    return FATHOM_PENDING;
+}
+
+/* Sets the line settings of a transaction. Returns > 0: they are in force; 0: try again; < 0: not possible (hal.h). */
+static int apply_settings(const fathom_line_t *line, const fathom_transaction_t *transaction)
+{
+    const fathom_uart_t *const uart = line->config->uart;
+    if (transaction->line_settings == NULL) return 1;
+    if (uart->set_line == NULL) return -1;
+    return uart->set_line(uart->ctx, transaction->line_settings);
+}
+
+/* Sends the request of the next transaction, if one may leave now. */
+static fathom_status_t send_next(fathom_line_t *line)
+{
+    const fathom_uart_t *const uart = line->config->uart;
+    fathom_transaction_t *const transaction = choose(line);
+    if (transaction == NULL) return FATHOM_PENDING;
+    if (line->received_count != 0u) line->kind->scan(line, true); /* The request needs the frame buffer. */
+    move_to_front(line, transaction);
+
+    const int settings = apply_settings(line, transaction);
+    if (settings == 0) return wait_for_port(line);
+    if (settings < 0) {
+        fathom_line_finish(line, &line->head, FATHOM_ERR_UNSUPPORTED);
         return FATHOM_PENDING;
     }
-    if (line->have != 0u) return FATHOM_PENDING;
-    if (is_busy(line)) {
-        if ((line->left_us != 0u) &&
-            (((line->state & RESPONSE_BAD) == 0) || (line->silent_us < gap_us(line))))
-            return FATHOM_PENDING;
-        fathom_line_end_attempt(line);
-    }
-    if ((line->state == IN_BREAK) || (line->state == ENDING) || !may_send(line)) return FATHOM_PENDING;
-    return fathom_line_send(line);
+    const uint8_t length = transaction->protocol->encode(transaction, line->config->frame);
+    const int accepted = uart->write(uart->ctx, line->config->frame, length);
+    if (accepted == 0) return wait_for_port(line);
+    if (accepted != (int)length) return fathom_line_broken(line);
+    begin_attempt(line, length);
+    return FATHOM_PENDING;
 }
 
-static void give_up(fathom_line_t *line)
+/* Follows a request that leaves the port until its last bit has left. */
+static fathom_status_t follow_request(fathom_line_t *line)
+{
+    const fathom_uart_t *const uart = line->config->uart;
+    line->silent_us = 0;
+    if (!uart->sent(uart->ctx))
+        return (line->phase_left_us != 0u) ? FATHOM_PENDING : fathom_line_broken(line);
+    if (line->phase == FATHOM_LINE_DRAINING) {
+        line->phase = FATHOM_LINE_IDLE;
+    } else {
+        line->phase = FATHOM_LINE_WAITING;
+        line->phase_left_us = line->head->timeout_us + FATHOM_LINE_FINISH_US;
+    }
+    return FATHOM_PENDING;
+}
+
+/* The last step of each poll: ends the phase if its time has come, and sends the next request if the wire is free. */
+static fathom_status_t advance(fathom_line_t *line)
+{
+    switch (line->phase) {
+    case FATHOM_LINE_SENDING:
+    case FATHOM_LINE_DRAINING:
+        return follow_request(line);
+    case FATHOM_LINE_WAITING:
+        if (attempt_left_us(line) != 0u) return FATHOM_PENDING;
+        if (line->received_count != 0u) line->kind->scan(line, true); /* The frame took too long. */
+        if (is_busy(line)) fathom_line_end_attempt(line);
+        break;
+    default: /* IDLE, IN_BREAK, ENDING_BREAK, PORT_BUSY */
+        if (is_echo_due(line) && (line->silent_us >= gap_us(line))) line->attempt.copy = COPY_PAST;
+        break;
+    }
+    return send_next(line);
+}
+
+/* The port is broken: all transactions end. The request on the wire may have left, so its unit may still respond. */
+static void fail_all(fathom_line_t *line)
 {
     if (is_busy(line)) {
-        quarantine(line);
+        fathom_line_quarantine(line);
         line->silent_us = 0;
     }
     while (line->head != NULL) fathom_line_finish(line, &line->head, FATHOM_ERR_PORT);
 }
 
-static const fathom_line_kind_t requesting = {fathom_line_scan_responses, go_on, next, due_us, give_up};
+static const fathom_line_kind_t requesting = {fathom_line_scan, advance, next, due_us, fail_all};
 
-/* ---- the queue ---- */
+/* ---- Public functions ---- */
+
+static bool can_send(const fathom_line_config_t *config)
+{
+    if ((config->uart->write == NULL) || (config->uart->sent == NULL) ||
+        (config->echo > FATHOM_LINE_ECHO_ON) ||
+        ((config->echo == FATHOM_LINE_ECHO_AUTO) && (config->find_echo == NULL)))
+        return false;
+    if (config->busy_us == 0u) return true;
+    return (config->busy_us > or_default(config->silence_us, FATHOM_LINE_DEFAULT_SILENCE_US)) &&
+           (config->busy_us <= FATHOM_MAX_DURATION_US);
+}
 
 fathom_status_t fathom_line_init(fathom_line_t *line, const fathom_line_config_t *config)
 {
-    if ((config->echo == FATHOM_LINE_ECHO_AUTO) && (config->find_echo == NULL)) return FATHOM_ERR_ARGUMENT;
-    return fathom_line_begin(line, config, &requesting);
+    const fathom_status_t status = fathom_line_begin(line, config, &requesting);
+    if ((status != FATHOM_READY) || can_send(config)) return status;
+    line->kind = NULL;
+    line->config = NULL;
+    return FATHOM_ERR_ARGUMENT;
 }
 
 fathom_status_t fathom_line_submit(fathom_line_t *line, fathom_transaction_t *transaction)
 {
     fathom_transaction_t **const link = fathom_line_find(line, transaction);
     if (*link != NULL) return FATHOM_ERR_BUSY;
-    if (transaction->timeout_us > (UINT32_MAX / 2u)) return FATHOM_ERR_ARGUMENT;
-    if (line->kind->give_up == NULL) return FATHOM_ERR_UNSUPPORTED;
+    if ((line->kind == NULL) || (transaction->timeout_us > FATHOM_MAX_DURATION_US) ||
+        (transaction->retries == UINT8_MAX))
+        return FATHOM_ERR_ARGUMENT;
+    if (line->kind->fail_all == NULL) return FATHOM_ERR_UNSUPPORTED; /* This line only listens. */
+    if (line->protocol == NULL)
+        line->protocol = transaction->protocol; /* From now on it recognises frames. */
     *link = transaction;
     transaction->link.next = NULL;
     transaction->attempts = 0;
@@ -194,36 +272,39 @@ fathom_status_t fathom_line_submit(fathom_line_t *line, fathom_transaction_t *tr
     return FATHOM_PENDING;
 }
 
+/* The transaction on the wire is cancelled: its request leaves completely, and its echo and response may still come. */
+static void abandon_attempt(fathom_line_t *line)
+{
+    fathom_line_quarantine(line);
+    if (line->attempt.copy != COPY_PAST) line->attempt.copy = COPY_CANCELLED;
+    fathom_line_free_wire(line,
+                          (line->phase == FATHOM_LINE_SENDING) ? FATHOM_LINE_DRAINING : FATHOM_LINE_IDLE);
+}
+
 void fathom_line_cancel(fathom_line_t *line, fathom_transaction_t *transaction)
 {
     fathom_transaction_t **const link = fathom_line_find(line, transaction);
     if (*link == NULL) return;
-    if ((link == &line->head) && is_busy(line)) {
-        quarantine(line);
-        if ((line->state & ECHOED) == 0) line->known |= ECHO_DUE;
-        if (phase(line) == SENDING) {
-            line->state = LEAVING;
-            line->sent = 0;
-        }
-    }
+    if ((link == &line->head) && is_busy(line)) abandon_attempt(line);
     fathom_line_finish(line, link, FATHOM_ERR_CANCELLED);
 }
 
 void fathom_line_cancel_unit(fathom_line_t *line, uint8_t address)
 {
-    fathom_transaction_t *x = line->head;
-    while (x != NULL) {
-        fathom_transaction_t *const after = x->link.next;
-        if (x->address == address) fathom_line_cancel(line, x);
-        x = after;
+    fathom_transaction_t *transaction = line->head;
+    while (transaction != NULL) {
+        fathom_transaction_t *const after =
+            transaction->link.next; /* fathom_line_cancel() overwrites the link. */
+        if (transaction->address == address) fathom_line_cancel(line, transaction);
+        transaction = after;
     }
 }
 
 bool fathom_line_has(const fathom_line_t *line, const fathom_transaction_t *transaction)
 {
-    const fathom_transaction_t *x = line->head;
-    while ((x != NULL) && (x != transaction)) x = x->link.next;
-    return x != NULL;
+    const fathom_transaction_t *queued = line->head;
+    while ((queued != NULL) && (queued != transaction)) queued = queued->link.next;
+    return queued != NULL;
 }
 
-uint8_t fathom_line_echo(const fathom_line_t *line) { return line->known & ECHO; }
+uint8_t fathom_line_echo(const fathom_line_t *line) { return line->echo; }

@@ -12,6 +12,11 @@ static fathom_status_t poll(void *ctx) { return fathom_line_poll(ctx); }
 
 static uint32_t due_us(void *ctx) { return fathom_line_due_us(ctx); }
 
+static bool has(void *ctx, const fathom_modbus_request_t *request)
+{
+    return fathom_line_has(ctx, &request->transaction);
+}
+
 fathom_modbus_t fathom_modbus_over_line(fathom_line_t *line,
                                         fathom_status_t (*submit)(void *line,
                                                                   fathom_modbus_request_t *request))
@@ -22,7 +27,13 @@ fathom_modbus_t fathom_modbus_over_line(fathom_line_t *line,
     modbus.cancel_unit = cancel_unit;
     modbus.poll = poll;
     modbus.due_us = due_us;
-    modbus.clock = line->config->clock;
+    modbus.clock = NULL;
     modbus.ctx = line;
+    modbus.has = has;
+    modbus.frame_size = 0;
+    if (line->config != NULL) {
+        modbus.clock = line->config->clock;
+        modbus.frame_size = line->config->frame_size;
+    }
     return modbus;
 }

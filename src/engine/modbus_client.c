@@ -16,6 +16,12 @@ bool fathom_modbus_client_is_request(const fathom_transaction_t *transaction, co
                                         have);
 }
 
+bool fathom_modbus_client_may_collide(const fathom_transaction_t *transaction)
+{
+    const fathom_modbus_message_t *const message = &((const fathom_modbus_request_t *)transaction)->message;
+    return (message->head[1] == FATHOM_MODBUS_READ_HOLDING_REGISTERS) && !message->has_effect;
+}
+
 fathom_status_t fathom_modbus_client_parse_response(fathom_transaction_t *transaction, const uint8_t *frame)
 {
     return fathom_modbus_rtu_parse_response(&((fathom_modbus_request_t *)transaction)->message, frame);
@@ -27,9 +33,12 @@ static uint8_t length(const uint8_t *frame, uint8_t have)
     return (frame[0] != FATHOM_MODBUS_BROADCAST) ? fathom_modbus_rtu_response_length(frame, have) : 0u;
 }
 
-static const fathom_protocol_t protocol = {
-    fathom_modbus_client_encode,         length, fathom_crc16, fathom_modbus_client_is_request,
-    fathom_modbus_client_parse_response, 0,      false};
+static const fathom_protocol_t protocol = {.encode = fathom_modbus_client_encode,
+                                           .length = length,
+                                           .check = fathom_crc16,
+                                           .is_request = fathom_modbus_client_is_request,
+                                           .parse_response = fathom_modbus_client_parse_response,
+                                           .may_collide = fathom_modbus_client_may_collide};
 
 fathom_status_t fathom_modbus_client_start(fathom_line_t *line, fathom_modbus_request_t *request,
                                            const fathom_protocol_t *with)

@@ -9,6 +9,7 @@
 uint8_t fathom_modbus_client_encode(const fathom_transaction_t *transaction, uint8_t *frame);
 bool fathom_modbus_client_is_request(const fathom_transaction_t *transaction, const uint8_t *frame,
                                      uint8_t have);
+bool fathom_modbus_client_may_collide(const fathom_transaction_t *transaction);
 fathom_status_t fathom_modbus_client_parse_response(fathom_transaction_t *transaction, const uint8_t *frame);
 
 fathom_status_t fathom_modbus_client_start(fathom_line_t *line, fathom_modbus_request_t *request,

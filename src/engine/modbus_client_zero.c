@@ -4,13 +4,13 @@
 #include "fathom/codec/crc16.h"
 #include "modbus_client_internal.h"
 
-static const fathom_protocol_t protocol = {fathom_modbus_client_encode,
-                                           fathom_modbus_rtu_response_length,
-                                           fathom_crc16,
-                                           fathom_modbus_client_is_request,
-                                           fathom_modbus_client_parse_response,
-                                           0,
-                                           true};
+static const fathom_protocol_t protocol = {.encode = fathom_modbus_client_encode,
+                                           .length = fathom_modbus_rtu_response_length,
+                                           .check = fathom_crc16,
+                                           .is_request = fathom_modbus_client_is_request,
+                                           .parse_response = fathom_modbus_client_parse_response,
+                                           .may_collide = fathom_modbus_client_may_collide,
+                                           .is_unit_0_ordinary = true};
 
 fathom_status_t fathom_modbus_client_submit_with_zero(fathom_line_t *line, fathom_modbus_request_t *request)
 {

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/engine/modbus_setting.h"
 
-enum { READ_OLD = 0, PROBE_NEW = 1, WRITE = 2, CONFIRM_NEW = 3, CONFIRM_OLD = 4, WRITE_UNREAD = 5, STEP = 7 };
-enum { IN_SETTING = FATHOM_MODBUS_UNIT_IN_SETTING, ONCE = FATHOM_MODBUS_UNIT_ONCE };
+enum { READ_OLD = 0, PROBE_NEW = 1, WRITE = 2, CONFIRM_NEW = 3, CONFIRM_OLD = 4, WRITE_UNREAD = 5 };
 
 static void use_new_address(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting)
 {
@@ -19,7 +18,7 @@ static void restore_address(fathom_modbus_unit_t *unit)
 /* Two settings whose ids are equal modulo 16 share one: then one is written without need, once. */
 static uint16_t setting_bit(const fathom_modbus_unit_t *unit)
 {
-    return (uint16_t)(1u << (unit->setting & 15u));
+    return (uint16_t)(1u << (unit->setting % 16u));
 }
 
 static bool moves(const fathom_modbus_setting_t *setting)
@@ -49,7 +48,10 @@ static fathom_status_t old_was_read(fathom_modbus_unit_t *unit, const fathom_mod
     return FATHOM_PENDING;
 }
 
-/* At the new address: silence shows that it is free. */
+/*
+ * A read at the new address: only silence shows that it is free. A busy line and another master prove nothing about
+ * it: the setting ends with that error, and nothing is written.
+ */
 static fathom_status_t new_was_probed(fathom_modbus_unit_t *unit, fathom_status_t status)
 {
     restore_address(unit);
@@ -60,11 +62,19 @@ static fathom_status_t new_was_probed(fathom_modbus_unit_t *unit, fathom_status_
     return is_heard ? FATHOM_ERR_IN_USE : status;
 }
 
+/* The write was submitted and ended before it was sent. A broken port may have sent a part of it. */
+static bool has_not_left(const fathom_modbus_unit_t *unit, fathom_status_t status)
+{
+    if (status == FATHOM_ERR_UNSUPPORTED) return true;
+    return ((status == FATHOM_ERR_LINE_BUSY) || (status == FATHOM_ERR_CANCELLED)) &&
+           (unit->request.transaction.attempts == 0u);
+}
+
 static fathom_status_t written(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting,
                                fathom_status_t status)
 {
     unit->outcome = (int8_t)status;
-    if (status == FATHOM_ERR_UNSUPPORTED) unit->is_written = false; /* submitted, and it could not leave */
+    if (has_not_left(unit, status)) unit->is_written = false;
     if (!unit->is_written || (status == FATHOM_ERR_EXCEPTION)) return status;
     unit->unconfirmed |= setting_bit(unit);
     /* The value may have read so before: only the acknowledgement shows that it was taken. */
@@ -116,7 +126,8 @@ static fathom_status_t go_on(fathom_modbus_unit_t *unit, const fathom_modbus_set
 
 fathom_status_t fathom_modbus_next_is_blind(fathom_modbus_unit_t *unit)
 {
-    if (unit->setting != 0u) return FATHOM_ERR_BUSY;
+    if (unit->transport == NULL) return FATHOM_ERR_ARGUMENT;
+    if ((unit->setting != 0u) && !fathom_modbus_unit_give_way(unit)) return FATHOM_ERR_BUSY;
     unit->is_blind = true;
     return FATHOM_READY;
 }
@@ -124,22 +135,24 @@ fathom_status_t fathom_modbus_next_is_blind(fathom_modbus_unit_t *unit)
 fathom_status_t fathom_modbus_set(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting)
 {
     fathom_status_t status;
+    if ((unit->setting != 0u) && (unit->setting != setting->write.id) && !fathom_modbus_unit_give_way(unit))
+        return FATHOM_ERR_BUSY;
     if (unit->setting == 0u) {
         unit->setting = setting->write.id;
         unit->is_written = false;
         unit->step = ((setting->read != NULL) && !unit->is_blind) ? READ_OLD : WRITE_UNREAD;
         unit->known_address = unit->address;
         unit->known_line_settings = unit->line_settings;
-    } else if (unit->setting != setting->write.id) {
-        return FATHOM_ERR_BUSY;
+    } else {
+        fathom_modbus_unit_keep(unit);
     }
     do {
         const bool is_write =
             (setting->read == NULL) || (unit->step == WRITE) || (unit->step == WRITE_UNREAD);
         uint32_t value = 0;
-        unit->step = (uint8_t)(unit->step | (is_write ? (IN_SETTING | ONCE) : IN_SETTING));
+        unit->is_in_setting = true;
         status = is_write ? fathom_modbus_unit_ask(unit, &setting->write) : setting->read(setting, &value);
-        unit->step &= STEP;
+        unit->is_in_setting = false;
         if (status == FATHOM_PENDING) return status;
         status = go_on(unit, setting, status, value);
     } while (status == FATHOM_PENDING);

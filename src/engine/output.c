@@ -4,6 +4,7 @@
 fathom_status_t fathom_output_set_pin(const void *ctx, uint8_t level)
 {
     const fathom_pin_t *const pin = ctx;
+    if ((pin == NULL) || (pin->set == NULL)) return FATHOM_ERR_UNSUPPORTED;
     if (level != FATHOM_OUTPUT_FREE) pin->set(pin->ctx, level != FATHOM_OUTPUT_LOW);
     return FATHOM_READY;
 }
@@ -11,7 +12,7 @@ fathom_status_t fathom_output_set_pin(const void *ctx, uint8_t level)
 fathom_status_t fathom_output_set_break(const void *ctx, uint8_t level)
 {
     const fathom_uart_t *const uart = ctx;
-    if (uart->set_break == NULL) return FATHOM_ERR_UNSUPPORTED;
+    if ((uart == NULL) || (uart->set_break == NULL)) return FATHOM_ERR_UNSUPPORTED;
     if (level == FATHOM_OUTPUT_REST) return FATHOM_READY;
     const int is_set = uart->set_break(uart->ctx, level == FATHOM_OUTPUT_LOW);
     if (is_set < 0) return FATHOM_ERR_PORT;

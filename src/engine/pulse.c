@@ -3,8 +3,22 @@
 
 #include "../common.h"
 
-/* A poll takes no more pulses than this: noise may come faster than it is read. */
-enum { MAX_TAKES = 8 };
+/*
+ * One cycle:
+ *
+ *   trigger  ____          __________________________          ____
+ *                |________|                          |________|
+ *   capture    arm                  ____           arm
+ *   output   ______________________|    |_________________________
+ *                |<---------------- cycle_us ------->|
+ *                |<- is_waiting ------->|
+ *
+ * A pulse of at least noise_us ends the wait. Otherwise the end of the cycle ends it, whatever the capture holds: noise
+ * may arrive faster than polls take it.
+ */
+
+/* A poll takes at most this number of pulses. */
+enum { MAX_TAKES = 16 };
 
 static uint8_t kind_of(const fathom_pulse_meter_t *meter, uint32_t width_us)
 {
@@ -12,53 +26,78 @@ static uint8_t kind_of(const fathom_pulse_meter_t *meter, uint32_t width_us)
     return (width_us < meter->no_target_us) ? FATHOM_TARGET : FATHOM_NO_TARGET;
 }
 
+static fathom_status_t set_reading(fathom_pulse_reading_t *reading, uint8_t kind, uint32_t width_us,
+                                   uint32_t time_us)
+{
+    reading->width_us = width_us;
+    reading->time_us = time_us;
+    reading->kind = kind;
+    return FATHOM_READY;
+}
+
+/* The cycle is over and no pulse has ended the wait. */
+static fathom_status_t end_cycle(fathom_pulse_meter_t *meter, bool is_high, fathom_pulse_reading_t *reading)
+{
+    const uint32_t now_us = meter->trigger.polled_us;
+    meter->is_waiting = false;
+    if (meter->short_us != 0u) return set_reading(reading, FATHOM_UNKNOWN, meter->short_us, now_us);
+    return is_high ? set_reading(reading, FATHOM_FAULT, 0, now_us) : FATHOM_ERR_NO_RESPONSE;
+}
+
+static void note_short(fathom_pulse_meter_t *meter, uint32_t width_us)
+{
+    count_one(&meter->noises);
+    if ((width_us >= FATHOM_PULSE_SHORT_US) && (width_us > meter->short_us))
+        meter->short_us = (uint16_t)width_us;
+}
+
 static fathom_status_t take(fathom_pulse_meter_t *meter, fathom_pulse_reading_t *reading)
 {
     const fathom_capture_t *const capture = meter->capture;
     fathom_pulse_t pulse;
     for (uint8_t left = MAX_TAKES; left != 0u; left--) {
-        const int has = capture->take(capture->ctx, &pulse);
-        if (has < 0) return FATHOM_ERR_PORT;
-        if (has == 0) {
-            if (meter->trigger.left_us != 0u) return FATHOM_PENDING;
-            meter->waiting = false;
-            if (!pulse.is_high) return FATHOM_ERR_NO_RESPONSE;
-            reading->width_us = 0;
-            reading->time_us = meter->trigger.polled_us;
-            reading->kind = FATHOM_FAULT;
-            return FATHOM_READY;
+        const int taken = capture->take(capture->ctx, &pulse);
+        if (taken < 0) return FATHOM_ERR_PORT;
+        if (taken == 0) break;
+        if (time_since_us(clock_us(meter->trigger.clock), pulse.end_us) > FATHOM_PULSE_STALE_US) {
+            count_one(&meter->stales);
+            meter->is_waiting = false;
+            return FATHOM_ERR_STALE;
         }
         if (pulse.width_us >= meter->noise_us) {
-            meter->waiting = false;
-            reading->width_us = pulse.width_us;
-            reading->time_us = pulse.end_us;
-            reading->kind = kind_of(meter, pulse.width_us);
-            return FATHOM_READY;
+            meter->is_waiting = false;
+            return set_reading(reading, kind_of(meter, pulse.width_us), pulse.width_us, pulse.end_us);
         }
-        count_one(&meter->noises);
+        note_short(meter, pulse.width_us);
     }
-    return FATHOM_PENDING;
+    return (meter->trigger.left_us != 0u) ? FATHOM_PENDING : end_cycle(meter, pulse.is_high, reading);
+}
+
+/* Copies the configuration. Returns true if each member is inside its range. */
+static bool configure(fathom_pulse_meter_t *meter, const fathom_pulse_config_t *config)
+{
+    fathom_trigger_t *const trigger = &meter->trigger;
+    const fathom_capture_t *const capture = config->capture;
+    meter->capture = capture;
+    meter->no_target_us = or_default(config->no_target_us, FATHOM_PULSE_DEFAULT_NO_TARGET_US);
+    meter->stuck_us = or_default(config->stuck_us, FATHOM_PULSE_DEFAULT_STUCK_US);
+    meter->noise_us = (uint16_t)or_default(config->noise_us, FATHOM_PULSE_DEFAULT_NOISE_US);
+    trigger->output = config->trigger;
+    trigger->clock = config->clock;
+    trigger->period_us = or_default(config->cycle_us, FATHOM_PULSE_DEFAULT_CYCLE_US);
+    trigger->low_us = config->low_us;
+    return (capture != NULL) && (capture->arm != NULL) && (capture->take != NULL) &&
+           (trigger->period_us >= FATHOM_PULSE_DEFAULT_CYCLE_US) && (meter->noise_us < meter->no_target_us) &&
+           (meter->no_target_us <= meter->stuck_us) && (meter->stuck_us <= trigger->period_us);
 }
 
 fathom_status_t fathom_pulse_init(fathom_pulse_meter_t *meter, const fathom_pulse_config_t *config)
 {
-    fathom_trigger_t *const trigger = &meter->trigger;
-    const uint32_t cycle_us = config->cycle_us;
-    meter->capture = config->capture;
-    meter->no_target_us = or_default(config->no_target_us, FATHOM_PULSE_DEFAULT_NO_TARGET_US);
-    meter->stuck_us = or_default(config->stuck_us, FATHOM_PULSE_DEFAULT_STUCK_US);
-    meter->noise_us = (uint16_t)or_default(config->noise_us, FATHOM_PULSE_DEFAULT_NOISE_US);
-    meter->noises = 0;
-    meter->waiting = false;
-    trigger->output = config->trigger;
-    trigger->clock = config->clock;
-    trigger->period_us =
-        (cycle_us > FATHOM_PULSE_DEFAULT_CYCLE_US) ? cycle_us : FATHOM_PULSE_DEFAULT_CYCLE_US;
-    trigger->low_us = config->low_us;
-    if ((config->clock == NULL) || (meter->capture == NULL) || (meter->noise_us >= meter->no_target_us) ||
-        (meter->no_target_us > meter->stuck_us))
-        return FATHOM_ERR_ARGUMENT;
-    return fathom_trigger_init(trigger);
+    fathom_status_t status = FATHOM_ERR_ARGUMENT;
+    clear(meter, sizeof *meter);
+    if (configure(meter, config)) status = fathom_trigger_init(&meter->trigger);
+    if (status != FATHOM_READY) clear(meter, sizeof *meter);
+    return status;
 }
 
 fathom_status_t fathom_pulse_poll(fathom_pulse_meter_t *meter, fathom_pulse_reading_t *reading)
@@ -66,21 +105,27 @@ fathom_status_t fathom_pulse_poll(fathom_pulse_meter_t *meter, fathom_pulse_read
     fathom_trigger_t *const trigger = &meter->trigger;
     const fathom_capture_t *const capture = meter->capture;
     fathom_status_t status = FATHOM_PENDING;
+    if (capture == NULL) return FATHOM_ERR_ARGUMENT;
     fathom_trigger_look(trigger);
-    if (meter->waiting) status = take(meter, reading);
-    if (!meter->waiting && fathom_trigger_is_due(trigger)) capture->arm(capture->ctx);
-    const fathom_status_t driven = fathom_trigger_drive(trigger, !meter->waiting);
-    if (driven == FATHOM_READY) meter->waiting = true;
-    return ((status != FATHOM_PENDING) || (driven == FATHOM_READY)) ? status : driven;
+    if (meter->is_waiting) status = take(meter, reading);
+    if (!meter->is_waiting && fathom_trigger_is_due(trigger)) capture->arm(capture->ctx);
+    const fathom_status_t driven = fathom_trigger_drive(trigger, !meter->is_waiting);
+    if (driven == FATHOM_READY) {
+        meter->is_waiting = true;
+        meter->short_us = 0;
+        return status;
+    }
+    return (status != FATHOM_PENDING) ? status : driven;
 }
 
 uint32_t fathom_pulse_due_us(const fathom_pulse_meter_t *meter)
 {
+    if (meter->capture == NULL) return 0;
     return fathom_trigger_due_us(&meter->trigger, meter->trigger.left_us);
 }
 
 fathom_status_t fathom_pulse_deinit(fathom_pulse_meter_t *meter)
 {
-    meter->waiting = false;
+    meter->is_waiting = false;
     return fathom_trigger_deinit(&meter->trigger);
 }

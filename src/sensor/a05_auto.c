@@ -8,23 +8,25 @@ enum { ALL_PROBES = 0x0F, AGAIN_US = 1000 };
 fathom_status_t fathom_a05_auto_init(fathom_a05_auto_t *sensor, const fathom_a05_auto_config_t *config)
 {
     fathom_dyp_auto_t *const base = &sensor->base;
-    if (config->probes > ALL_PROBES) return FATHOM_ERR_ARGUMENT;
+    fathom_status_t status = FATHOM_ERR_ARGUMENT;
+    clear(sensor, sizeof *sensor);
     base->stream.length = FATHOM_DYP_A05_LENGTH;
     base->stream.listener.gap_us = config->gap_us;
     base->stream.storage = sensor->storage;
-    base->stream.stale_us = config->stale_us;
+    base->stream.listener.stale_us = config->stale_us;
     base->measurement.values = sensor->values;
     fathom_dyp_window_copy(&base->measurement.window, &config->window);
     base->measurement.model = FATHOM_A05;
-    base->measurement.address = 0;
     base->measurement.first = 1;
     base->line = config->line;
     sensor->probes = (uint8_t)or_default(config->probes, ALL_PROBES);
     sensor->was_odd = true; /* before the first frame there is none that was not */
     sensor->select = config->select;
-    sensor->selecting = false;
-    const fathom_status_t status = fathom_dyp_auto_init(base, FATHOM_A05_MAX_MM);
-    if (status == FATHOM_READY) fathom_line_listen(base->line, &base->stream.listener);
+    if (config->probes <= ALL_PROBES) status = fathom_dyp_auto_init(base, FATHOM_A05_MAX_MM);
+    if (status != FATHOM_READY) {
+        fathom_dyp_auto_deinit(base);
+        clear(sensor, sizeof *sensor);
+    }
     return status;
 }
 
@@ -33,7 +35,7 @@ fathom_status_t fathom_a05_auto_init(fathom_a05_auto_t *sensor, const fathom_a05
 fathom_status_t fathom_a05_auto_select(fathom_a05_auto_t *sensor, fathom_dyp_value_t value)
 {
     fathom_dyp_auto_t *const base = &sensor->base;
-    if ((unsigned)value > FATHOM_REAL_TIME) return FATHOM_ERR_ARGUMENT;
+    if ((base->line == NULL) || ((unsigned)value > FATHOM_REAL_TIME)) return FATHOM_ERR_ARGUMENT;
     const bool low = value == FATHOM_REAL_TIME;
     uint8_t level = FATHOM_OUTPUT_REST;
     if (low)
@@ -47,8 +49,7 @@ fathom_status_t fathom_a05_auto_select(fathom_a05_auto_t *sensor, fathom_dyp_val
     sensor->select_left_us = FATHOM_A05_SELECT_US;
     sensor->polled_us = clock_us(base->line->config->clock);
     base->measurement.left = 0;
-    fathom_stream_begin(&base->stream, sensor->polled_us);
-    return FATHOM_READY;
+    return fathom_stream_start(&base->stream, sensor->polled_us);
 }
 
 static fathom_status_t end_selection(fathom_a05_auto_t *sensor)
@@ -94,7 +95,7 @@ static uint8_t odd_probe(const fathom_a05_auto_t *sensor)
 static uint8_t believed(fathom_a05_auto_t *sensor)
 {
     const uint8_t odd = odd_probe(sensor);
-    const bool is_whole = (odd == 0u) || (sensor->base.stream.sure && sensor->was_odd);
+    const bool is_whole = (odd == 0u) || (sensor->base.stream.is_sure && sensor->was_odd);
     sensor->was_odd = odd != 0u;
     return is_whole ? sensor->probes : odd;
 }
@@ -103,6 +104,7 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
 {
     fathom_a05_auto_t *const sensor = ctx;
     fathom_dyp_measurement_t *const measurement = &sensor->base.measurement;
+    if (sensor->base.line == NULL) return FATHOM_ERR_ARGUMENT;
     const fathom_status_t rx = release(sensor);
     fathom_status_t status = fathom_dyp_measurement_next(measurement, sample);
     if (status != FATHOM_PENDING) return status;

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/sensor/a05_dyp.h"
 
+#include "fathom/codec/dyp_55aa.h"
+
 /* The response comes after 200..210 or 65..75 ms (A05 2(3)1). */
 #define ALL_PROBES_TIMEOUT_US 500000uL
 #define ONE_PROBE_TIMEOUT_US  200000uL
@@ -9,11 +11,21 @@ enum { ALL_PROBES = 0x0F };
 
 static bool is_one(uint8_t probes) { return (probes & (probes - 1u)) == 0u; }
 
+/* The line accepts no request of this protocol unless its frame buffer has room for the longest response. */
+static bool has_room(const fathom_modbus_t *transport)
+{
+    return (transport == NULL) || (transport->frame_size == 0u) ||
+           (transport->frame_size >= FATHOM_DYP_MAX_RESPONSE);
+}
+
 fathom_status_t fathom_a05_dyp_init(fathom_a05_dyp_t *sensor, const fathom_a05_dyp_config_t *config)
 {
     fathom_dyp_modbus_t *const base = &sensor->base;
+    const fathom_status_t status = fathom_dyp_modbus_begin(base, sizeof *sensor, &config->modbus);
+    if (status < 0) return status;
     const uint8_t probes = (config->probes != 0u) ? config->probes : ALL_PROBES;
     if (config->modbus.address_zero || (probes > ALL_PROBES)) return FATHOM_ERR_ARGUMENT;
+    if (!has_room(config->modbus.transport)) return FATHOM_ERR_ARGUMENT;
 
     const bool is_single = is_one(probes);
     uint8_t first = 0;
@@ -70,7 +82,8 @@ fathom_status_t fathom_a05_dyp_set_every_address(fathom_a05_dyp_t *sensor, uint8
     fathom_modbus_unit_t *const unit = &sensor->base.unit;
     const fathom_modbus_t *const transport = unit->transport;
     fathom_modbus_setting_t setting;
-    if ((address == FATHOM_LINE_ALL_UNITS) || (address == FATHOM_LINE_ANY_UNIT) || unit->is_blind)
+    if ((address == FATHOM_LINE_ALL_UNITS) || (address == FATHOM_LINE_ANY_UNIT) || unit->is_blind ||
+        (transport == NULL))
         return FATHOM_ERR_ARGUMENT;
     fathom_modbus_unit_poll(unit);
     const fathom_modbus_t either = fathom_modbus_over_line(transport->ctx, submit_either);
@@ -94,8 +107,11 @@ fathom_status_t fathom_a05_dyp_find(fathom_a05_dyp_find_t *find, fathom_line_t *
         if (status != FATHOM_PENDING) return status;
         find->is_asked = true;
     }
-    (void)fathom_line_poll(line); /* a broken port ends the request */
-    if (request->transaction.status == FATHOM_PENDING) return FATHOM_PENDING;
+    (void)fathom_line_poll(line); /* A broken port ends the request. */
+    if (request->transaction.status == FATHOM_PENDING) {
+        if (fathom_line_has(line, &request->transaction)) return FATHOM_PENDING;
+        request->transaction.status = FATHOM_ERR_CANCELLED; /* The line was initialised again. */
+    }
     find->is_asked = false;
     if (request->transaction.status == FATHOM_READY) *address = request->message.head[0];
     return (fathom_status_t)request->transaction.status;

@@ -8,6 +8,8 @@ enum { ALL_PROBES = 0x0F };
 fathom_status_t fathom_a05_modbus_init(fathom_a05_modbus_t *sensor, const fathom_a05_modbus_config_t *config)
 {
     fathom_dyp_modbus_t *const base = &sensor->base;
+    const fathom_status_t status = fathom_dyp_modbus_begin(base, sizeof *sensor, &config->modbus);
+    if (status < 0) return status;
     const uint16_t registers = (config->registers != 0u) ? config->registers : FATHOM_A05_REGISTERS;
     const uint8_t probes = (config->probes != 0u) ? config->probes : ALL_PROBES;
     if (probes > ALL_PROBES) return FATHOM_ERR_ARGUMENT;

@@ -1,19 +1,20 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/sensor/a05_relay.h"
 
+#include "../common.h"
+
 fathom_status_t fathom_a05_relay_init(fathom_a05_relay_t *sensor, const fathom_a05_relay_config_t *config)
 {
     fathom_contact_t *const base = &sensor->base;
-    base->pin = config->pin;
-    base->clock = config->clock;
-    base->guard = NULL;
-    base->near_is_high = (config->wiring == FATHOM_A05_RELAY_NORMALLY_CLOSED) !=
-                         (config->level == FATHOM_A05_RELAY_CONDUCTS_HIGH);
-    base->model = FATHOM_A05;
-    base->address = 0;
+    clear(sensor, sizeof *sensor);
     if ((config->wiring > FATHOM_A05_RELAY_NORMALLY_CLOSED) ||
         (config->level > FATHOM_A05_RELAY_CONDUCTS_HIGH))
         return FATHOM_ERR_ARGUMENT;
+    base->pin = config->pin;
+    base->clock = config->clock;
+    base->near_is_high = (config->wiring == FATHOM_A05_RELAY_NORMALLY_CLOSED) !=
+                         (config->level == FATHOM_A05_RELAY_CONDUCTS_HIGH);
+    base->model = FATHOM_A05;
     return fathom_contact_init(base, &config->timing);
 }
 

@@ -1,27 +1,28 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/sensor/a05_relay_rule.h"
 
+#include "../common.h"
+
 enum { ALL_PROBES = 0x0F };
 
 fathom_status_t fathom_a05_relay_rule_init(fathom_a05_relay_rule_t *rule,
                                            const fathom_a05_relay_rule_config_t *config)
 {
     fathom_debounce_config_t own;
-    own.hold_us = (config->hold_us != 0u) ? config->hold_us : FATHOM_A05_RELAY_HOLD_US;
+    own.hold_us = or_default(config->hold_us, FATHOM_A05_RELAY_HOLD_US);
     own.unknown_us = config->unknown_us;
-    own.threshold_mm =
-        (config->threshold_mm != 0u) ? config->threshold_mm : (uint16_t)FATHOM_A05_RELAY_DEFAULT_MM;
+    own.threshold_mm = (uint16_t)or_default(config->threshold_mm, FATHOM_A05_RELAY_DEFAULT_MM);
     own.near_count = 1; /* A05 4 knows no rows */
     own.far_count = 1;
     own.equal = config->equal;
-    rule->sequence = 0;
+    clear(rule, sizeof *rule);
+    if ((own.threshold_mm < FATHOM_A05_RELAY_MIN_MM) || (own.threshold_mm > FATHOM_A05_RELAY_MAX_MM) ||
+        (config->probes > ALL_PROBES) || (fathom_debounce_init(&rule->debounce, &own) != FATHOM_READY))
+        return FATHOM_ERR_ARGUMENT;
     rule->probes = (config->probes != 0u) ? config->probes : (uint8_t)ALL_PROBES;
     rule->missing = rule->probes;
     rule->verdict = FATHOM_FAR;
-    if ((own.threshold_mm < FATHOM_A05_RELAY_MIN_MM) || (own.threshold_mm > FATHOM_A05_RELAY_MAX_MM) ||
-        (config->probes > ALL_PROBES))
-        return FATHOM_ERR_ARGUMENT;
-    return fathom_debounce_init(&rule->debounce, &own);
+    return FATHOM_READY;
 }
 
 /* The verdict of one probe; 0: it stands at the threshold; FATHOM_UNKNOWN: none. */

@@ -6,31 +6,31 @@
 fathom_status_t fathom_a16_auto_init(fathom_a16_auto_t *sensor, const fathom_a16_auto_config_t *config)
 {
     fathom_dyp_auto_t *const base = &sensor->base;
+    clear(sensor, sizeof *sensor);
     base->stream.length = FATHOM_DYP_A16_LENGTH;
     base->stream.listener.gap_us = config->gap_us;
     base->stream.storage = sensor->storage;
-    base->stream.stale_us = config->stale_us;
+    base->stream.listener.stale_us = config->stale_us;
     fathom_dyp_window_copy(&base->measurement.window, &config->window);
     base->measurement.values = sensor->values;
     base->measurement.model = FATHOM_A16;
-    base->measurement.address = 0;
     base->measurement.first = 1;
     base->line = config->line;
     sensor->select = config->select;
     sensor->value = FATHOM_PROCESSED;
     fathom_status_t status = fathom_dyp_auto_init(base, FATHOM_A16_MAX_MM);
-    if (status < 0) return status;
-    if ((sensor->select.set != NULL) || (config->value != FATHOM_PROCESSED)) {
+    if ((status == FATHOM_READY) && ((sensor->select.set != NULL) || (config->value != FATHOM_PROCESSED)))
         status = fathom_a16_auto_select(sensor, (fathom_dyp_value_t)config->value);
-        if (status != FATHOM_READY) return (status == FATHOM_PENDING) ? FATHOM_ERR_BUSY : status;
+    if (status != FATHOM_READY) {
+        fathom_dyp_auto_deinit(base);
+        clear(sensor, sizeof *sensor);
     }
-    fathom_line_listen(base->line, &base->stream.listener);
-    return FATHOM_READY;
+    return (status == FATHOM_PENDING) ? FATHOM_ERR_BUSY : status;
 }
 
 fathom_status_t fathom_a16_auto_select(fathom_a16_auto_t *sensor, fathom_dyp_value_t value)
 {
-    if ((unsigned)value > FATHOM_REAL_TIME) return FATHOM_ERR_ARGUMENT;
+    if ((sensor->base.line == NULL) || ((unsigned)value > FATHOM_REAL_TIME)) return FATHOM_ERR_ARGUMENT;
     /* FATHOM_OUTPUT_HIGH or _LOW; a TX that was not held low is left alone */
     const bool is_driven = (value != FATHOM_PROCESSED) || (sensor->value != FATHOM_PROCESSED);
     const uint8_t level = (uint8_t)(is_driven ? (unsigned)value : (unsigned)FATHOM_OUTPUT_REST);

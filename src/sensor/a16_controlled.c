@@ -3,10 +3,22 @@
 
 #include "../common.h"
 
-/* Did what came last, between came_us and time_us, come in time? What came before the edge is far beyond latest_us. */
+/* The greatest time from the trigger to a response that can be told from a time before the trigger. */
+#define MAX_RESPONSE_US FATHOM_MAX_DURATION_US
+
+/*
+ * Returns true if bytes that arrived between `came_us` and `time_us` can be the response to the trigger.
+ *
+ *     trigger   |edge   earliest_us      latest_us
+ *     in time   |       |<------------------>|         one time of came_us .. time_us is in here
+ *     before  x |                                      time_us is before the edge: never
+ *
+ * Differences of times wrap, so a time before the edge appears as more than MAX_RESPONSE_US after the edge.
+ */
 static bool is_in_time(const fathom_a16_controlled_t *sensor, uint32_t time_us)
 {
-    return sensor->waiting && (fathom_elapsed_us(time_us, sensor->edge_us) >= sensor->earliest_us) &&
+    const uint32_t after_us = fathom_elapsed_us(time_us, sensor->edge_us);
+    return sensor->waiting && (after_us >= sensor->earliest_us) && (after_us <= MAX_RESPONSE_US) &&
            (fathom_elapsed_us(sensor->came_us, sensor->edge_us) <= sensor->latest_us);
 }
 
@@ -43,13 +55,15 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
 {
     fathom_a16_controlled_t *const sensor = ctx;
     fathom_trigger_t *const trigger = &sensor->trigger;
+    if (sensor->line == NULL) return FATHOM_ERR_ARGUMENT; /* init did not run, or failed */
     fathom_status_t status = fathom_line_poll(sensor->line);
     fathom_trigger_look(trigger);
     if (status < 0) return status;
-    /* its deadline means nothing here: without a trigger the sensor is silent */
+    /* Of the stream only frames count: without a trigger the sensor is silent, so the stream turns stale. */
     if (fathom_stream_poll(&sensor->stream, trigger->polled_us) == FATHOM_READY)
         status = judge(sensor, sample);
-    if (sensor->waiting && (sensor->stream.candidate == 0u) && (response_left_us(sensor) == 0u)) {
+    if (sensor->waiting && (sensor->stream.candidate == FATHOM_STREAM_NOWHERE) &&
+        (response_left_us(sensor) == 0u)) {
         sensor->waiting = false;
         status = sensor->heard ? FATHOM_ERR_CHECKSUM : FATHOM_ERR_NO_RESPONSE;
     }
@@ -58,6 +72,8 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
         sensor->edge_us = trigger->polled_us;
         sensor->waiting = true;
         sensor->heard = false;
+        /* What arrived before the edge is read now, and is too early to be the response. */
+        (void)fathom_line_poll(sensor->line);
     }
     return ((status != FATHOM_PENDING) || (driven == FATHOM_READY)) ? status : driven;
 }
@@ -66,56 +82,73 @@ static uint32_t due_us(void *ctx)
 {
     const fathom_a16_controlled_t *const sensor = ctx;
     const fathom_trigger_t *const trigger = &sensor->trigger;
+    if (sensor->line == NULL) return 0;
     const uint32_t until_us = sensor->waiting ? response_left_us(sensor) : trigger->left_us;
-    if (sensor->stream.fresh) return 0;
+    if (sensor->stream.is_new) return 0;
     /* The line knows when the silence behind a frame is over: it is the listener's gap. */
     return least_us(fathom_trigger_due_us(trigger, until_us), fathom_line_due_us(sensor->line));
 }
 
 /* ---- setting up ---- */
 
-fathom_status_t fathom_a16_controlled_init(fathom_a16_controlled_t *sensor,
-                                           const fathom_a16_controlled_config_t *config)
+static void stop_listening(fathom_a16_controlled_t *sensor)
+{
+    fathom_line_t *const line = sensor->line;
+    if ((line != NULL) && (line->listener == &sensor->stream.listener)) (void)fathom_line_listen(line, NULL);
+}
+
+/* Copies the configuration. Returns true if each member is inside its range. */
+static bool configure(fathom_a16_controlled_t *sensor, const fathom_a16_controlled_config_t *config)
 {
     fathom_line_t *const line = config->line;
     fathom_stream_t *const stream = &sensor->stream;
     fathom_trigger_t *const trigger = &sensor->trigger;
     fathom_dyp_measurement_t *const measurement = &sensor->measurement;
-    const uint32_t period_us = config->period_us;
     sensor->line = line;
     sensor->earliest_us = or_default(config->earliest_us, FATHOM_A16_CONTROLLED_DEFAULT_EARLIEST_US);
     sensor->latest_us = or_default(config->latest_us, FATHOM_A16_CONTROLLED_DEFAULT_LATEST_US);
     fathom_dyp_window_copy(&measurement->window, &config->window);
     measurement->values = sensor->values;
     measurement->model = FATHOM_A16;
-    measurement->address = 0;
     measurement->first = 1;
-    if ((fathom_dyp_measurement_init(measurement, FATHOM_A16_MAX_MM) < 0) || (line == NULL) ||
-        (sensor->earliest_us > sensor->latest_us))
-        return FATHOM_ERR_ARGUMENT;
-    sensor->late = 0;
-    sensor->waiting = false;
     trigger->output = config->trigger;
-    trigger->clock = line->config->clock;
-    trigger->period_us = (period_us > FATHOM_A16_CONTROLLED_DEFAULT_PERIOD_US)
-                             ? period_us
-                             : FATHOM_A16_CONTROLLED_DEFAULT_PERIOD_US;
+    trigger->period_us = FATHOM_A16_CONTROLLED_DEFAULT_PERIOD_US;
+    if (config->period_us > trigger->period_us) trigger->period_us = config->period_us;
     trigger->low_us = config->low_us;
-    const fathom_status_t status = fathom_trigger_init(trigger);
-    if (status < 0) return status;
     stream->length = FATHOM_DYP_A16_LENGTH;
     stream->listener.gap_us = config->gap_us;
     stream->storage = sensor->storage;
-    stream->stale_us = UINT32_MAX;
-    fathom_stream_begin(stream, trigger->polled_us);
-    stream->listener.receive = receive;
-    fathom_line_listen(line, &stream->listener);
-    return FATHOM_READY;
+    stream->listener.stale_us = sensor->latest_us; /* The line drops bytes that are older. */
+    if ((line == NULL) || (line->config == NULL)) return false;
+    trigger->clock = line->config->clock;
+    return (trigger->output.set != NULL) && (trigger->period_us <= MAX_RESPONSE_US) &&
+           (sensor->earliest_us <= sensor->latest_us) &&
+           (fathom_dyp_measurement_init(measurement, FATHOM_A16_MAX_MM) == FATHOM_READY) &&
+           (fathom_stream_start(stream, clock_us(trigger->clock)) == FATHOM_READY);
+}
+
+fathom_status_t fathom_a16_controlled_init(fathom_a16_controlled_t *sensor,
+                                           const fathom_a16_controlled_config_t *config)
+{
+    fathom_status_t status = FATHOM_ERR_ARGUMENT;
+    clear(sensor, sizeof *sensor);
+    if (configure(sensor, config)) {
+        sensor->stream.listener.receive = receive;
+        status = fathom_line_listen(sensor->line, &sensor->stream.listener);
+    }
+    if (status == FATHOM_READY) status = fathom_trigger_init(&sensor->trigger);
+    if (status < 0) {
+        stop_listening(sensor);
+        clear(sensor, sizeof *sensor);
+        return status;
+    }
+    return FATHOM_READY; /* The trigger is at rest, or will be: FATHOM_PENDING is no error. */
 }
 
 fathom_status_t fathom_a16_controlled_deinit(fathom_a16_controlled_t *sensor)
 {
-    if (sensor->line->listener == &sensor->stream.listener) fathom_line_listen(sensor->line, NULL);
+    if (sensor->line == NULL) return FATHOM_READY;
+    stop_listening(sensor);
     return fathom_trigger_deinit(&sensor->trigger);
 }
 

@@ -4,18 +4,27 @@
 #include "../common.h"
 #include "fathom/codec/pulse_width.h"
 
-fathom_status_t fathom_a16_pwm_init(fathom_a16_pwm_t *sensor, const fathom_a16_pwm_config_t *config)
+/* Copies the configuration. Returns true if each member is inside its range. */
+static bool configure(fathom_a16_pwm_t *sensor, const fathom_a16_pwm_config_t *config)
 {
-    sensor->window.min_mm = (uint16_t)or_default(config->window.min_mm, 1);
-    sensor->window.max_mm = config->window.max_mm;
-    if (sensor->window.max_mm == 0u)
-        sensor->window.max_mm = config->in_air ? FATHOM_A16_PWM_MAX_MM_IN_AIR : FATHOM_A16_MAX_MM;
-    sensor->sequence = 0;
-    sensor->implausible = 0;
+    const uint16_t default_max_mm =
+        config->in_air ? (uint16_t)FATHOM_A16_PWM_MAX_MM_IN_AIR : (uint16_t)FATHOM_A16_MAX_MM;
+    fathom_dyp_window_t *const window = &sensor->window;
+    window->min_mm = (uint16_t)or_default(config->window.min_mm, 1);
+    window->max_mm = (uint16_t)or_default(config->window.max_mm, default_max_mm);
     sensor->air_dc = config->air_dc;
     sensor->in_air = config->in_air;
-    if (sensor->window.min_mm > sensor->window.max_mm) return FATHOM_ERR_ARGUMENT;
-    return fathom_pulse_init(&sensor->meter, &config->pulse);
+    return (window->min_mm <= window->max_mm) && (config->air_dc >= FATHOM_PULSE_WIDTH_MIN_AIR_DC) &&
+           (config->air_dc <= FATHOM_PULSE_WIDTH_MAX_AIR_DC);
+}
+
+fathom_status_t fathom_a16_pwm_init(fathom_a16_pwm_t *sensor, const fathom_a16_pwm_config_t *config)
+{
+    fathom_status_t status = FATHOM_ERR_ARGUMENT;
+    clear(sensor, sizeof *sensor);
+    if (configure(sensor, config)) status = fathom_pulse_init(&sensor->meter, &config->pulse);
+    if (status != FATHOM_READY) clear(sensor, sizeof *sensor);
+    return status;
 }
 
 fathom_status_t fathom_a16_pwm_deinit(fathom_a16_pwm_t *sensor)

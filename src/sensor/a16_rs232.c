@@ -15,12 +15,29 @@ void fathom_a16_rs232_init(fathom_a16_rs232_t *rs232, fathom_a16_modbus_t *modbu
     rs232->automatic = automatic;
     rs232->return_us = FATHOM_A16_RS232_DEFAULT_RETURN_US;
     rs232->since_us = 0;
+    rs232->polled_us = 0;
     rs232->is_listening = false;
 }
 
 static bool is_since(const fathom_a16_rs232_t *rs232, uint32_t time_us)
 {
     return fathom_elapsed_us(time_us, rs232->since_us) <= (UINT32_MAX / 2u);
+}
+
+/*
+ * Of a pause between two calls in which the line dropped what it heard, only the stale limit counts as waiting: the
+ * sensor may have sent frames that were dropped, so the driver waits for a frame of now.
+ *
+ *     calls     | | | |  . . . 11 s without a call . . .  | | |
+ *     counted   |<--->|<---2 s--->|                       |<-----> ... return_us
+ */
+static void discount_pause(fathom_a16_rs232_t *rs232)
+{
+    const uint32_t stale_us = rs232->automatic->base.stream.listener.stale_us;
+    const uint32_t now = now_us(rs232);
+    const uint32_t pause_us = time_since_us(now, rs232->polled_us);
+    rs232->polled_us = now;
+    if (rest_us(pause_us, FATHOM_LINE_LATE_US) > stale_us) rs232->since_us += pause_us - stale_us;
 }
 
 fathom_status_t fathom_a16_rs232_return_to_automatic(fathom_a16_rs232_t *rs232, fathom_sample_t *sample)
@@ -33,7 +50,9 @@ fathom_status_t fathom_a16_rs232_return_to_automatic(fathom_a16_rs232_t *rs232, 
         if ((status != FATHOM_READY) && (status != FATHOM_ERR_UNCONFIRMED)) return status;
         rs232->is_listening = true;
         rs232->since_us = now_us(rs232);
+        rs232->polled_us = rs232->since_us;
     }
+    discount_pause(rs232);
     status = fathom_dyp_auto_take(automatic);
     /* A frame from before the command may have waited to be taken; it proves nothing. */
     if ((status == FATHOM_READY) && is_since(rs232, automatic->measurement.time_us))

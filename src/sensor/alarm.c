@@ -19,18 +19,26 @@ static uint16_t farther_mm(const fathom_alarm_config_t *config)
     return (config->when == FATHOM_NEAR) ? config->off_mm : config->on_mm;
 }
 
+static bool is_configuration(const fathom_alarm_config_t *config)
+{
+    return ((config->when == FATHOM_NEAR) || (config->when == FATHOM_FAR)) && is_side(config->if_unknown) &&
+           is_side(config->if_no_response) && (nearer_mm(config) <= farther_mm(config)) &&
+           (config->on_hold_us <= FATHOM_MAX_DURATION_US) &&
+           (config->off_hold_us <= FATHOM_MAX_DURATION_US) && (config->unknown_us <= FATHOM_MAX_DURATION_US);
+}
+
 fathom_status_t fathom_alarm_init(fathom_alarm_t *alarm, const fathom_alarm_config_t *config)
 {
     clear(alarm, sizeof *alarm);
+    if (!is_configuration(config)) return FATHOM_ERR_ARGUMENT;
     copy(&alarm->config, config, sizeof alarm->config);
     alarm->config.unknown_us = or_default(config->unknown_us, FATHOM_ALARM_DEFAULT_UNKNOWN_US);
     alarm->state = FATHOM_ALARM_UNKNOWN;
     alarm->was = config->if_unknown;
-    return (((config->when == FATHOM_NEAR) || (config->when == FATHOM_FAR)) && is_side(config->if_unknown) &&
-            is_side(config->if_no_response) && (nearer_mm(config) <= farther_mm(config)))
-               ? FATHOM_READY
-               : FATHOM_ERR_ARGUMENT;
+    return FATHOM_READY;
 }
+
+static bool is_initialised(const fathom_alarm_t *alarm) { return alarm->state != 0u; }
 
 /* The side on which a sample is; FATHOM_ALARM_UNKNOWN: it tells no distance. */
 static uint8_t side_of(const fathom_alarm_config_t *config, const fathom_sample_t *sample)
@@ -56,7 +64,7 @@ static bool is_too_long(fathom_alarm_t *alarm, uint32_t now_us)
     if (!alarm->is_fed) alarm->fed_us = now_us;
     alarm->is_fed = true;
     const uint32_t passed_us = fathom_elapsed_us(now_us, alarm->fed_us);
-    /* Half a turn of the clock and more: it is a time before the distance. */
+    /* A difference above half of what the clock counts is a time before the distance. */
     return (passed_us > alarm->config.unknown_us) && (passed_us <= (UINT32_MAX / 2u));
 }
 
@@ -70,7 +78,11 @@ static void look_at_time(fathom_alarm_t *alarm, uint32_t now_us)
 bool fathom_alarm_status(fathom_alarm_t *alarm, fathom_status_t status, uint32_t now_us)
 {
     const uint8_t before = alarm->state;
-    if (status != FATHOM_PENDING)
+    if (!is_initialised(alarm)) return false;
+    /* A busy line and another master prove nothing about the device, as little as time that passes. */
+    const bool is_of_device =
+        (status != FATHOM_PENDING) && (status != FATHOM_ERR_LINE_BUSY) && (status != FATHOM_ERR_OTHER_MASTER);
+    if (is_of_device)
         alarm->responds = (status == FATHOM_READY) || (status == FATHOM_ERR_MALFORMED) ||
                           (status == FATHOM_ERR_EXCEPTION) || (status == FATHOM_ERR_WARMING_UP);
     look_at_time(alarm, now_us);
@@ -82,6 +94,7 @@ bool fathom_alarm_sample(fathom_alarm_t *alarm, const fathom_sample_t *sample)
     const uint32_t now_us = sample->time_us;
     const uint8_t before = alarm->state;
     const uint8_t side = side_of(&alarm->config, sample);
+    if (!is_initialised(alarm)) return false;
     if (side == FATHOM_ALARM_UNKNOWN) return fathom_alarm_status(alarm, FATHOM_READY, now_us);
     look_at_time(alarm, now_us); /* by what came before this sample */
     alarm->fed_us = now_us;
@@ -91,7 +104,7 @@ bool fathom_alarm_sample(fathom_alarm_t *alarm, const fathom_sample_t *sample)
     const uint32_t hold_us = (side == FATHOM_ALARM_ON) ? alarm->config.on_hold_us : alarm->config.off_hold_us;
     if (side == BETWEEN) {
         alarm->state = alarm->was;
-    } else if (fathom_elapsed_us(now_us, alarm->since_us) >= hold_us) {
+    } else if (time_since_us(now_us, alarm->since_us) >= hold_us) {
         alarm->was = side;
         alarm->state = side;
     }

@@ -67,6 +67,17 @@ void fathom_dyp_window_copy(fathom_dyp_window_t *to, const fathom_dyp_window_t *
     }
 }
 
+/* Returns true if a value may mean this: any fathom_meaning_t. */
+static bool is_meaning(uint8_t meaning)
+{
+    enum {
+        ALL = (1 << FATHOM_MEANS_DEFAULT) | (1 << FATHOM_MEANS_UNKNOWN) | (1 << FATHOM_MEANS_NO_TARGET) |
+              (1 << FATHOM_MEANS_TOO_NEAR) | (1 << FATHOM_MEANS_FAULT) | (1 << FATHOM_MEANS_INTERFERENCE) |
+              (1 << FATHOM_MEANS_REFUSED)
+    };
+    return (meaning <= FATHOM_MEANS_REFUSED) && (((ALL >> meaning) & 1) != 0);
+}
+
 fathom_status_t fathom_dyp_measurement_init(fathom_dyp_measurement_t *measurement, uint16_t default_max_mm)
 {
     fathom_dyp_window_t *const window = &measurement->window;
@@ -76,5 +87,8 @@ fathom_status_t fathom_dyp_measurement_init(fathom_dyp_measurement_t *measuremen
     measurement->implausible = 0;
     measurement->refused_raw = 0;
     measurement->refused_probe = 0;
-    return (window->min_mm > window->max_mm) ? FATHOM_ERR_ARGUMENT : FATHOM_READY;
+    const bool is_valid = (window->min_mm <= window->max_mm) && is_meaning(window->value_fffd) &&
+                          is_meaning(window->value_fffe) && is_meaning(window->value_ffff) &&
+                          is_meaning(window->value_0);
+    return is_valid ? FATHOM_READY : FATHOM_ERR_ARGUMENT;
 }

@@ -7,27 +7,32 @@
 fathom_status_t fathom_dyp_auto_init(fathom_dyp_auto_t *sensor, uint16_t default_max_mm)
 {
     fathom_line_t *const line = sensor->line;
-    const fathom_status_t status = fathom_dyp_measurement_init(&sensor->measurement, default_max_mm);
-    if (line == NULL) return FATHOM_ERR_ARGUMENT;
-    fathom_stream_begin(&sensor->stream, clock_us(line->config->clock));
-    return status;
+    if ((fathom_dyp_measurement_init(&sensor->measurement, default_max_mm) < 0) || (line == NULL) ||
+        (line->config == NULL) || (fathom_stream_start(&sensor->stream, clock_us(line->config->clock)) < 0))
+        return FATHOM_ERR_ARGUMENT;
+    return fathom_line_listen(line, &sensor->stream.listener);
 }
 
 void fathom_dyp_auto_deinit(fathom_dyp_auto_t *sensor)
 {
-    if (sensor->line->listener == &sensor->stream.listener) fathom_line_listen(sensor->line, NULL);
+    fathom_line_t *const line = sensor->line;
+    if ((line != NULL) && (line->listener == &sensor->stream.listener)) (void)fathom_line_listen(line, NULL);
 }
 
-/* A transaction that is open makes the line hold bytes back. They are newer than the frame: no silence has ended it. */
+/* Returns true if the line holds back bytes that are newer than the candidate, because they may be a response. Then no
+ * silence has ended the candidate. */
 static bool is_followed(const fathom_dyp_auto_t *sensor)
 {
-    return (sensor->stream.candidate != 0u) && (sensor->line->have != 0u);
+    const fathom_line_t *const line = sensor->line;
+    return (sensor->stream.candidate != FATHOM_STREAM_NOWHERE) &&
+           (line->received_count != line->passed_count);
 }
 
 fathom_status_t fathom_dyp_auto_take(fathom_dyp_auto_t *sensor)
 {
     fathom_stream_t *const stream = &sensor->stream;
     fathom_dyp_measurement_t *const measurement = &sensor->measurement;
+    if (sensor->line == NULL) return FATHOM_ERR_ARGUMENT; /* init did not run, or failed */
     fathom_status_t status = fathom_line_poll(sensor->line);
     if ((status < 0) || is_followed(sensor)) return status;
     status = fathom_stream_poll(stream, sensor->line->polled_us);
@@ -42,9 +47,10 @@ uint32_t fathom_dyp_auto_due_us(const fathom_dyp_auto_t *sensor)
 {
     const fathom_line_t *const line = sensor->line;
     const fathom_stream_t *const stream = &sensor->stream;
+    if (line == NULL) return 0;
     if (is_followed(sensor)) return fathom_line_due_us(line);
-    if (stream->fresh) return 0;
-    /* The line knows when the silence behind a frame is over: it is the listener's gap. */
-    const uint32_t passed_us = fathom_elapsed_us(clock_us(line->config->clock), stream->since_us);
-    return least_us(fathom_line_due_us(line), rest_us(stream->stale_us, passed_us));
+    if (stream->is_new) return 0;
+    /* The line knows when the silence after a frame is over: the silence is the listener's gap. */
+    const uint32_t passed_us = time_since_us(clock_us(line->config->clock), stream->since_us);
+    return least_us(fathom_line_due_us(line), rest_us(stream->listener.stale_us, passed_us));
 }

@@ -6,16 +6,38 @@
 enum { ZERO_ADDRESS = 256 };       /* fathom_modbus_setting_t */
 enum { MEASURE = 1, WRITES = 64 }; /* ids of requests */
 
+/* ---- Initialisation ---- */
+
+fathom_status_t fathom_dyp_modbus_begin(fathom_dyp_modbus_t *sensor, size_t size,
+                                        const fathom_modbus_config_t *config)
+{
+    if (fathom_modbus_unit_is_queued(&sensor->unit, config)) return FATHOM_ERR_BUSY;
+    clear(sensor, size);
+    return FATHOM_READY;
+}
+
+/* A response has five bytes beside its registers: address, function, byte count and CRC. */
+static bool has_room(const fathom_dyp_modbus_t *sensor, const fathom_modbus_t *transport)
+{
+    enum { OVERHEAD = 5 };
+    return (transport == NULL) || (transport->frame_size == 0u) ||
+           ((OVERHEAD + (2u * sensor->request.last)) <= transport->frame_size);
+}
+
 fathom_status_t fathom_dyp_modbus_init(fathom_dyp_modbus_t *sensor, const fathom_modbus_config_t *config,
                                        uint32_t timeout_us, uint32_t pace_us)
 {
     const uint16_t max_mm = (sensor->measurement.model == FATHOM_A16) ? FATHOM_A16_MAX_MM : FATHOM_A05_MAX_MM;
-    const fathom_status_t status = fathom_dyp_measurement_init(&sensor->measurement, max_mm);
     sensor->request.values = sensor->measurement.values;
     sensor->request.function = FATHOM_MODBUS_READ_HOLDING_REGISTERS;
     sensor->request.id = MEASURE;
     sensor->start_us = or_default(sensor->start_us, FATHOM_DYP_DEFAULT_START_US);
-    return (status < 0) ? status : fathom_modbus_unit_init(&sensor->unit, config, timeout_us, pace_us);
+    if ((fathom_dyp_measurement_init(&sensor->measurement, max_mm) == FATHOM_READY) &&
+        (sensor->start_us <= FATHOM_MAX_DURATION_US) && has_room(sensor, config->transport) &&
+        (fathom_modbus_unit_init(&sensor->unit, config, timeout_us, pace_us) == FATHOM_READY))
+        return FATHOM_READY;
+    clear(sensor, sizeof *sensor);
+    return FATHOM_ERR_ARGUMENT;
 }
 
 void fathom_dyp_modbus_deinit(fathom_dyp_modbus_t *sensor) { fathom_modbus_unit_cancel(&sensor->unit); }
@@ -144,9 +166,12 @@ fathom_status_t fathom_dyp_modbus_find(fathom_dyp_modbus_find_t *find, const fat
         if (status != FATHOM_PENDING) return status;
         find->is_asked = true;
     }
-    (void)transport->poll(transport->ctx); /* a broken port ends the request */
-    const fathom_status_t status = (fathom_status_t)request->transaction.status;
-    if (status == FATHOM_PENDING) return status;
+    (void)transport->poll(transport->ctx); /* A broken port ends the request. */
+    fathom_status_t status = (fathom_status_t)request->transaction.status;
+    if (status == FATHOM_PENDING) {
+        if ((transport->has == NULL) || transport->has(transport->ctx, request)) return status;
+        status = FATHOM_ERR_CANCELLED; /* The line was initialised again. */
+    }
     find->is_asked = false;
     if (status != FATHOM_READY) return status;
     const uint16_t found =

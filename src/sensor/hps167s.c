@@ -3,16 +3,25 @@
 
 #include "hps167s_internal.h"
 
-enum { MAX_SAME_RESPONSES = 8 };
+/* The response to #5: address, function, byte count, 4 registers, CRC. */
+enum { MAX_SAME_RESPONSES = 8, MEASUREMENT_LENGTH = 5 + (2 * FATHOM_HPS167S_MEASUREMENT_COUNT) };
 
 #define MEASURE_TIMEOUT_US 500000uL
 
+static bool is_valid(const fathom_hps167s_config_t *config)
+{
+    const fathom_modbus_t *const transport = config->modbus.transport;
+    return (config->modbus.address <= FATHOM_HPS167S_MAX_ADDRESS) && !config->modbus.address_zero &&
+           (config->same_responses <= MAX_SAME_RESPONSES) &&
+           ((transport == NULL) || (transport->frame_size == 0u) ||
+            (transport->frame_size >= MEASUREMENT_LENGTH));
+}
+
 fathom_status_t fathom_hps167s_init(fathom_hps167s_t *sensor, const fathom_hps167s_config_t *config)
 {
-    if ((config->modbus.address > FATHOM_HPS167S_MAX_ADDRESS) || config->modbus.address_zero ||
-        (config->same_responses > MAX_SAME_RESPONSES))
-        return FATHOM_ERR_ARGUMENT;
+    if (fathom_modbus_unit_is_queued(&sensor->unit, &config->modbus)) return FATHOM_ERR_BUSY;
     clear(sensor, sizeof *sensor);
+    if (!is_valid(config)) return FATHOM_ERR_ARGUMENT;
     sensor->warm_up_s = config->warm_up_s;
     if ((config->warm_up_s == 0u) && !config->no_warm_up)
         sensor->warm_up_s = FATHOM_HPS167S_FACTORY_WARM_UP_S;
@@ -20,8 +29,10 @@ fathom_status_t fathom_hps167s_init(fathom_hps167s_t *sensor, const fathom_hps16
     sensor->steps_per_degree = config->steps_per_degree;
     sensor->low_word_first = config->low_word_first;
     sensor->reset_response = FATHOM_HPS167S_NO_RESET_RESPONSE;
-    return fathom_modbus_unit_init(&sensor->unit, &config->modbus, MEASURE_TIMEOUT_US,
-                                   FATHOM_HPS167S_MIN_PERIOD_US);
+    const fathom_status_t status = fathom_modbus_unit_init(&sensor->unit, &config->modbus, MEASURE_TIMEOUT_US,
+                                                           FATHOM_HPS167S_MIN_PERIOD_US);
+    if (status < 0) clear(sensor, sizeof *sensor);
+    return status;
 }
 
 fathom_status_t fathom_hps167s_use_limits(fathom_hps167s_t *sensor, fathom_hps167s_limits_t *limits)

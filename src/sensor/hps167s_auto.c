@@ -8,31 +8,33 @@
 enum { ADDRESS = 0, FUNCTION = 1, SIZE = 2, DATA = 3, LENGTH = FATHOM_HPS167S_FRAME_LENGTH };
 enum { DATA_SIZE = 8 };
 
-#define STALE_US 2000000uL
+/* ---- Received bytes ---- */
 
-/* Can what has come be a frame, or the beginning of one? */
-static bool fits(const fathom_hps167s_auto_t *sensor)
+/* Returns true if the held bytes can be the beginning of a frame. */
+static bool has_head(const fathom_hps167s_auto_t *sensor)
 {
     const uint8_t *const bytes = sensor->bytes;
+    const uint8_t held_count = sensor->held_count;
     if (bytes[ADDRESS] != *sensor->from) return false;
-    if ((sensor->have > FUNCTION) && (bytes[FUNCTION] != FATHOM_MODBUS_READ_HOLDING_REGISTERS)) return false;
-    if ((sensor->have > SIZE) && (bytes[SIZE] != DATA_SIZE)) return false;
-    return (sensor->have != LENGTH) || (fathom_crc16(bytes, LENGTH) == 0u);
+    if ((held_count > FUNCTION) && (bytes[FUNCTION] != FATHOM_MODBUS_READ_HOLDING_REGISTERS)) return false;
+    return (held_count <= SIZE) || (bytes[SIZE] == DATA_SIZE);
 }
 
-/* The first byte begins nothing: the next may. volatile: or compilers make it a call of memmove. */
-static void slip(fathom_hps167s_auto_t *sensor)
+/* Drops the first held byte; the next may begin a frame. volatile: or compilers make it a call of memmove. */
+static void drop_first(fathom_hps167s_auto_t *sensor)
 {
     volatile uint8_t *to = sensor->bytes;
     const uint8_t *from = sensor->bytes;
-    sensor->have--;
-    for (uint8_t left = sensor->have; left != 0u; left--) {
+    count_one(&sensor->dropped_bytes);
+    sensor->held_count--;
+    for (uint8_t left = sensor->held_count; left != 0u; left--) {
         from++;
         *to = *from;
         to++;
     }
 }
 
+/* The held bytes are a frame. */
 static void take(fathom_hps167s_auto_t *sensor, uint32_t time_us)
 {
     const uint8_t *at = &sensor->bytes[DATA];
@@ -41,7 +43,7 @@ static void take(fathom_hps167s_auto_t *sensor, uint32_t time_us)
         registers[i] = (uint16_t)((at[0] * 256u) + at[1]);
         at += 2;
     }
-    sensor->have = 0;
+    sensor->held_count = 0;
     if ((sensor->driver != NULL) && !sensor->heard(sensor->driver, registers, time_us)) {
         count_one(&sensor->implausible);
         return;
@@ -57,31 +59,58 @@ static void receive(fathom_listener_t *listener, const uint8_t *bytes, uint8_t l
                     uint32_t time_us)
 {
     fathom_hps167s_auto_t *const sensor = (fathom_hps167s_auto_t *)listener;
-    (void)after_gap; /* the CRC decides */
-    if (length == 0u) sensor->have = 0;
+    (void)after_gap; /* The CRC decides what is a frame. */
+    sensor->is_heard = true;
+    if (length == 0u) /* Bytes were lost: no frame reaches across this place. */
+        while (sensor->held_count != 0u) drop_first(sensor);
     for (; length != 0u; length--) {
-        sensor->bytes[sensor->have] = *bytes;
-        sensor->have++;
+        sensor->bytes[sensor->held_count] = *bytes;
+        sensor->held_count++;
         bytes++;
-        while ((sensor->have != 0u) && !fits(sensor)) slip(sensor);
-        if (sensor->have == LENGTH) take(sensor, time_us);
+        if ((sensor->held_count == LENGTH) && (fathom_crc16(sensor->bytes, LENGTH) != 0u)) {
+            count_one(&sensor->damaged);
+            drop_first(sensor);
+        }
+        while ((sensor->held_count != 0u) && !has_head(sensor)) drop_first(sensor);
+        if (sensor->held_count == LENGTH) take(sensor, time_us);
     }
+}
+
+/* ---- Initialisation ---- */
+
+/* Returns true if each member is inside its range. */
+static bool is_in_range(const fathom_hps167s_auto_config_t *config)
+{
+    const fathom_line_t *const line = config->line;
+    return (line != NULL) && (line->config != NULL) && (line->config->frame_size >= LENGTH) &&
+           (config->address <= FATHOM_HPS167S_MAX_ADDRESS) && (config->stale_us <= FATHOM_MAX_DURATION_US);
+}
+
+static void stop_listening(fathom_hps167s_auto_t *sensor)
+{
+    fathom_line_t *const line = sensor->line;
+    if ((line != NULL) && (line->listener == &sensor->listener)) (void)fathom_line_listen(line, NULL);
 }
 
 fathom_status_t fathom_hps167s_auto_init(fathom_hps167s_auto_t *sensor,
                                          const fathom_hps167s_auto_config_t *config)
 {
-    if ((config->line == NULL) || (config->address > FATHOM_HPS167S_MAX_ADDRESS)) return FATHOM_ERR_ARGUMENT;
+    fathom_status_t status = FATHOM_ERR_ARGUMENT;
     clear(sensor, sizeof *sensor);
     sensor->listener.receive = receive;
     sensor->line = config->line;
-    sensor->stale_us = or_default(config->stale_us, STALE_US);
-    sensor->left_us = sensor->stale_us;
-    sensor->polled_us = clock_us(sensor->line->config->clock);
+    sensor->listener.stale_us = or_default(config->stale_us, FATHOM_HPS167S_AUTO_DEFAULT_STALE_US);
     sensor->address = (config->address != 0u) ? config->address : 1u;
     sensor->from = &sensor->address;
-    fathom_line_listen(sensor->line, &sensor->listener);
-    return FATHOM_READY;
+    if (is_in_range(config)) {
+        sensor->since_us = clock_us(sensor->line->config->clock);
+        status = fathom_line_listen(sensor->line, &sensor->listener);
+    }
+    if (status != FATHOM_READY) {
+        stop_listening(sensor);
+        clear(sensor, sizeof *sensor);
+    }
+    return status;
 }
 
 void fathom_hps167s_auto_beside(fathom_hps167s_auto_t *sensor, fathom_hps167s_t *driver)
@@ -98,47 +127,57 @@ fathom_status_t fathom_hps167s_auto_use_limits(fathom_hps167s_auto_t *sensor, fa
     return status;
 }
 
-void fathom_hps167s_auto_deinit(fathom_hps167s_auto_t *sensor)
+void fathom_hps167s_auto_deinit(fathom_hps167s_auto_t *sensor) { stop_listening(sensor); }
+
+/* ---- Polling ---- */
+
+static fathom_status_t return_frame(fathom_hps167s_auto_t *sensor, fathom_sample_t *sample, uint32_t now_us)
 {
-    if (sensor->line->listener == &sensor->listener) fathom_line_listen(sensor->line, NULL);
+    const fathom_status_t status = fathom_hps167s_decode_within(sensor->limits, sensor->registers, sample);
+    if (status != FATHOM_READY) {
+        count_one(&sensor->implausible);
+        return status;
+    }
+    sensor->since_us = now_us;
+    sensor->is_heard = sensor->held_count != 0u;
+    sample->time_us = sensor->time_us;
+    sensor->sequence++;
+    sample->sequence = sensor->sequence;
+    sample->model = FATHOM_HPS167S;
+    sample->address = sensor->frame_address;
+    sample->probe = 1;
+    return FATHOM_READY;
 }
 
 static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
 {
     fathom_hps167s_auto_t *const sensor = ctx;
+    if (sensor->line == NULL) return FATHOM_ERR_ARGUMENT; /* init did not run, or failed */
     const fathom_status_t port = fathom_line_poll(sensor->line);
-    const uint32_t now = clock_us(sensor->line->config->clock);
-    const bool is_stale = fathom_count_down(&sensor->left_us, fathom_elapsed_us(now, sensor->polled_us));
-    sensor->polled_us = now;
+    const uint32_t now_us = clock_us(sensor->line->config->clock);
+    const uint32_t stale_us = sensor->listener.stale_us;
     if (sensor->is_new) {
         sensor->is_new = false;
-        const fathom_status_t status =
-            fathom_hps167s_decode_within(sensor->limits, sensor->registers, sample);
-        if (status != FATHOM_READY) {
-            count_one(&sensor->implausible);
-            return status;
-        }
-        sensor->left_us = sensor->stale_us;
-        sample->time_us = sensor->time_us;
-        sensor->sequence++;
-        sample->sequence = sensor->sequence;
-        sample->model = FATHOM_HPS167S;
-        sample->address = sensor->frame_address;
-        sample->probe = 1;
-        return FATHOM_READY;
+        if (rest_us(time_since_us(now_us, sensor->time_us), FATHOM_LINE_LATE_US) <= stale_us)
+            return return_frame(sensor, sample, now_us);
+        count_one(&sensor->missed);
+        sensor->is_heard = false; /* What arrived is too old, and no damage. */
     }
     if (port < 0) return port;
-    if (!is_stale) return FATHOM_PENDING;
-    sensor->left_us = sensor->stale_us;
-    return FATHOM_ERR_STALE;
+    if (time_since_us(now_us, sensor->since_us) < stale_us) return FATHOM_PENDING;
+    const fathom_status_t status = sensor->is_heard ? FATHOM_ERR_CHECKSUM : FATHOM_ERR_STALE;
+    sensor->since_us = now_us;
+    sensor->is_heard = false;
+    return status;
 }
 
 static uint32_t due_us(void *ctx)
 {
     const fathom_hps167s_auto_t *const sensor = ctx;
+    if (sensor->line == NULL) return 0;
     const uint32_t line_us = fathom_line_due_us(sensor->line);
-    const uint32_t passed_us = fathom_elapsed_us(clock_us(sensor->line->config->clock), sensor->polled_us);
-    return sensor->is_new ? 0u : least_us(line_us, rest_us(sensor->left_us, passed_us));
+    const uint32_t passed_us = time_since_us(clock_us(sensor->line->config->clock), sensor->since_us);
+    return sensor->is_new ? 0u : least_us(line_us, rest_us(sensor->listener.stale_us, passed_us));
 }
 
 fathom_sensor_t fathom_hps167s_auto_sensor(fathom_hps167s_auto_t *sensor)

@@ -3,7 +3,10 @@
 
 #include "hps167s_internal.h"
 
-enum { SAME_RESPONSES = 2, MAX_RESPONSES = 8, RESPONSES_AMONG_UNASKED = 3 };
+enum { SAME_RESPONSES = 2, RESPONSES_AMONG_UNASKED = 3 };
+
+/* The number of reads after which #2 is given up; among unsolicited frames most reads meet one of these. */
+enum { MAX_RESPONSES = 8, MAX_RESPONSES_AMONG_UNASKED = 32 };
 
 /* For so long after an unasked frame another one is to be expected. */
 #define UNASKED_US 2000000uL
@@ -74,6 +77,18 @@ bool fathom_hps167s_heard(fathom_hps167s_t *sensor, const uint16_t registers[4],
     return true;
 }
 
+/*
+ * The pause before the next read among unsolicited frames, up to 131 ms.
+ *
+ * An unsolicited frame that is mistaken for a response is no loss for the line. If the pauses had a rule, the turns of a
+ * slow loop and the period of the device could keep step, so that each request would leave just before a frame. So the
+ * pause follows from the low bits of the clock (40503 is 2^16 divided by the golden ratio, and odd).
+ */
+static uint32_t drawn_pause_us(const fathom_modbus_unit_t *unit)
+{
+    return ((unit->polled_us * 40503u) & UINT16_MAX) * 2u;
+}
+
 /* A frame of the right shape has come: do enough agree now? One that is a measurement counts neither way. */
 static bool is_believed(fathom_hps167s_t *sensor)
 {
@@ -94,31 +109,50 @@ static bool is_believed(fathom_hps167s_t *sensor)
         sensor->is_among_unasked = false;
     if (sensor->is_among_unasked && (needed < RESPONSES_AMONG_UNASKED)) needed = RESPONSES_AMONG_UNASKED;
     if (sensor->agreed >= needed) return true;
-    /* A request in step with what the device sends by itself would get an unasked frame each time. */
-    if (sensor->is_among_unasked)
-        unit->pause_us += (uint32_t)(((2u * sensor->responses) + 1u) * (FATHOM_HPS167S_MIN_PERIOD_US / 2u));
+    if (sensor->is_among_unasked) unit->pause_us += drawn_pause_us(unit);
     return false;
 }
 
-/* It gives up. Where an unasked frame was taken for a response, a response is still to come, and has the shape of a
- * measurement: until it cannot come any more there is no outcome, or another driver's next request would meet it. */
-static fathom_status_t give_up(const fathom_hps167s_t *sensor)
+static bool is_given_up(const fathom_hps167s_t *sensor)
 {
-    return (sensor->is_outstanding && (sensor->unit.pause_us != 0u)) ? FATHOM_PENDING : FATHOM_ERR_MALFORMED;
+    return sensor->responses >= (sensor->is_among_unasked ? MAX_RESPONSES_AMONG_UNASKED : MAX_RESPONSES);
+}
+
+enum { CONFIGURATION = FATHOM_MODBUS_COMMAND | FATHOM_HPS167S_CONFIGURATION };
+
+/*
+ * The read is given up. If an unsolicited frame was mistaken for a response, the response may still arrive, and it has
+ * the shape of a measurement. Until it can no longer arrive the read stays in progress, or the next request would meet
+ * it. Measurements wait meanwhile, or the pause after each of them would put off the end.
+ */
+static fathom_status_t give_up(fathom_hps167s_t *sensor)
+{
+    fathom_modbus_unit_t *const unit = &sensor->unit;
+    unit->waiting = 0;
+    if (!sensor->is_outstanding || (unit->pause_us == 0u)) return FATHOM_ERR_MALFORMED;
+    unit->waiting = CONFIGURATION;
+    fathom_modbus_unit_keep(unit);
+    return FATHOM_PENDING;
+}
+
+/* Invariant: while a read is in progress, the unit waits for its next request or has one. Else it was abandoned. */
+static bool is_in_progress(const fathom_modbus_unit_t *unit)
+{
+    return (unit->waiting == CONFIGURATION) || ((unit->state != 0u) && (unit->current == CONFIGURATION));
 }
 
 fathom_status_t fathom_hps167s_read_configuration(fathom_hps167s_t *sensor)
 {
     fathom_status_t status;
     be_wary(sensor);
+    if (!is_in_progress(&sensor->unit)) sensor->responses = 0;
     for (;;) {
-        status = (sensor->responses == MAX_RESPONSES)
-                     ? give_up(sensor)
-                     : fathom_hps167s_ask_once(sensor, FATHOM_HPS167S_CONFIGURATION,
-                                               FATHOM_HPS167S_CONFIGURATION_COUNT);
+        status = is_given_up(sensor) ? give_up(sensor)
+                                     : fathom_hps167s_ask_once(sensor, FATHOM_HPS167S_CONFIGURATION,
+                                                               FATHOM_HPS167S_CONFIGURATION_COUNT);
         if ((status == FATHOM_PENDING) || (status == FATHOM_ERR_BUSY)) return status;
         if ((status != FATHOM_READY) || is_believed(sensor)) break;
-        if (sensor->responses == MAX_RESPONSES) sensor->unit.pause_us = sensor->unit.command_timeout_us;
+        if (is_given_up(sensor)) sensor->unit.pause_us = sensor->unit.command_timeout_us;
     }
     sensor->responses = 0;
     return status;

@@ -45,8 +45,9 @@ static void follow(fathom_hps167s_t *sensor, fathom_status_t status)
     if (status == FATHOM_ERR_WARMING_UP) status = (fathom_status_t)sensor->unit.request.transaction.status;
     if ((status == FATHOM_READY) || (status == FATHOM_ERR_EXCEPTION) || (status == FATHOM_ERR_MALFORMED))
         sensor->is_seeking = false;
-    else if ((status == FATHOM_ERR_NO_RESPONSE) || (status == FATHOM_ERR_CHECKSUM))
-        change_over(sensor);
+    else if ((status == FATHOM_ERR_NO_RESPONSE) || (status == FATHOM_ERR_CHECKSUM) ||
+             (status == FATHOM_ERR_LINE_BUSY) || (status == FATHOM_ERR_OTHER_MASTER))
+        change_over(sensor); /* At the wrong rate a device that sends by itself is noise: a busy line. */
 }
 
 /* ---- what is read back ---- */

@@ -7,19 +7,27 @@
 enum { NEARER = 0 };
 #define FARTHER UINT16_MAX
 
+static bool is_configuration(const fathom_median_config_t *config)
+{
+    return (config->window != NULL) && (config->count >= FATHOM_MEDIAN_MIN_COUNT) &&
+           (config->count <= FATHOM_MEDIAN_MAX_COUNT) &&
+           ((config->unknown_us <= FATHOM_MAX_DURATION_US) || (config->unknown_us == FATHOM_NO_DEADLINE));
+}
+
 fathom_status_t fathom_median_init(fathom_median_t *median, const fathom_median_config_t *config)
 {
     fathom_median_config_t *const own = &median->config;
     clear(median, sizeof *median);
+    if (!is_configuration(config)) return FATHOM_ERR_ARGUMENT;
     copy(own, config, sizeof *own);
-    own->window = config->window; /* whole: of its bytes no analyser sees where it points */
+    own->window =
+        config->window; /* again, as a pointer: an analyser does not see what a copy of its bytes points to */
     own->unknown_us = or_default(own->unknown_us, FATHOM_MEDIAN_DEFAULT_UNKNOWN_US);
     if (own->gate_row == 0u) own->gate_row = FATHOM_MEDIAN_DEFAULT_GATE_ROW;
-    return ((own->window == NULL) || (own->count < FATHOM_MEDIAN_MIN_COUNT) ||
-            (own->count > FATHOM_MEDIAN_MAX_COUNT))
-               ? FATHOM_ERR_ARGUMENT
-               : FATHOM_READY;
+    return FATHOM_READY;
 }
+
+static bool is_initialised(const fathom_median_t *median) { return median->config.window != NULL; }
 
 static bool is_full(const fathom_median_t *median) { return median->have == median->config.count; }
 
@@ -53,7 +61,7 @@ static uint16_t middle_of(const fathom_median_t *median)
 bool fathom_median_time(fathom_median_t *median, uint32_t now_us)
 {
     const uint32_t passed_us = fathom_elapsed_us(now_us, median->fed_us);
-    /* Half a turn of the clock and more: it is a time before the sample. */
+    /* A difference above half of what the clock counts is a time before the sample. */
     if ((median->have == 0u) || (passed_us <= median->config.unknown_us) || (passed_us > (UINT32_MAX / 2u)))
         return false;
     median->have = 0;
@@ -87,6 +95,7 @@ bool fathom_median_sample(fathom_median_t *median, const fathom_sample_t *sample
 {
     uint16_t mm = NEARER;
     uint8_t kind = FATHOM_TARGET;
+    if (!is_initialised(median)) return false;
     if (sample->kind == FATHOM_TARGET)
         mm = sample->distance_mm;
     else if ((sample->kind == FATHOM_NO_TARGET) || (sample->kind == FATHOM_FAR))

@@ -2,7 +2,8 @@
 #include "job.h"
 
 /*
- * JOB_COUNTERS: the line counts what happens. JOB_ALL: and finds out whether it echoes, heeds what the port says of the
+ * JOB_SENDERS, JOB_MASTERS: the line knows devices that send by themselves, and other masters. JOB_COUNTERS: the line
+ * counts what happens. JOB_ALL: and finds out whether it echoes, heeds what the port says of the
  * bytes, has a listener, changes the line settings, and may read unit 0. Without either it is told that there is no
  * echo; what the library always has are retries, broadcast, break, any unit, and the quarantine of late responses.
  */
@@ -31,6 +32,12 @@ static const fathom_line_config_t config = {.uart = &uart,
 #else
                                             .echo = FATHOM_LINE_ECHO_OFF,
 #endif
+#ifdef JOB_SENDERS
+                                            .senders = &fathom_line_senders,
+#endif
+#ifdef JOB_MASTERS
+                                            .masters = &fathom_line_masters,
+#endif
                                             .silence_us = FATHOM_T3_5_US(19200, 11)};
 
 #ifdef JOB_ALL
@@ -52,7 +59,7 @@ void job_begin(void)
 #ifdef JOB_ALL
     listener.receive = job_receive;
     listener.gap_us = 2005;
-    fathom_line_listen(&line, &listener);
+    (void)fathom_line_replace_listener(&line, &listener);
     request.transaction.line_settings = &settings;
 #endif
     request.transaction.timeout_us = 100000;

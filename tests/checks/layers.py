@@ -19,7 +19,11 @@ ANYWHERE = TOOL_FOLDER + 'commands.h'  # declares the commands
 
 STANDARD = {'stdbool.h', 'stddef.h', 'stdint.h'}
 MAX_LINES = 400
-LONGER = {}  # path: lines, with the reason beside it
+# path: lines, with the reason beside it
+LONGER = {'include/fathom/engine/line.h': 640}  # the manual of the line: 16 rules, and each member with its range
+
+# Headers without a source of their own name, and why.
+WITHOUT_SOURCE = ('include/fathom/engine/transaction.h',)  # types and constants; line.h has the functions
 
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.M)
 
@@ -88,7 +92,8 @@ def check(root, only):
                 problems.append(f'{path}: there is no header of its name in {folder}')
             elif includes(text)[:1] != [('"', max(names, key=len)[8:])]:
                 problems.append(f'{path}: its own header comes first, which proves that it is complete')
-        elif path in headers and room(path) and f'src/{path[15:-2]}.c' not in sources:
+        elif path in headers and room(path) and f'src/{path[15:-2]}.c' not in sources and \
+                path not in WITHOUT_SOURCE:
             problems.append(f'{path}: there is no src/{path[15:-2]}.c')
     tool = files(root, 'examples/fathom')
     for path in tool:

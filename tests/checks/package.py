@@ -29,7 +29,7 @@ OUTSIDE = os.path.join(ROOT, 'tests', 'checks', 'outside')
 # What each program of consumer/ prints. %s: the version.
 SAYS = {
     'main': '%s works\n',
-    'conformance': 'not seen, 25 items\n',
+    'conformance': 'not seen, 26 items\n',
     'gpio': '/dev/null, line 17: not a GPIO chip\n',
     'libmodbus': 'over libmodbus it works\n',
     'posix': '/dev/null: not a serial port\n',

@@ -47,6 +47,8 @@ typedef enum {
     READ_MAKES_SILENCE,
     STAMP_OF_THE_READ,
     STAMP_OF_BEFORE,
+    STAMP_OF_THE_READ_AFTER_A_PAUSE,
+    READ_NOTHING_AFTER_A_PAUSE,
     PARITY_UNTOLD,
     PARITY_ON_ALL,
     FRAMING_UNTOLD,
@@ -61,7 +63,7 @@ typedef enum {
     FAULTS
 } fault_t;
 
-enum { CHARACTER_US = 573, NAMES = 4 }; /* 19200 8E1: 11 bits of 52.08 us */
+enum { LONG_PAUSE_US = 500000, CHARACTER_US = 573, NAMES = 4 }; /* 19200 8E1: 11 bits of 52.08 us */
 
 static struct {
     fathom_sim_line_t line;
@@ -75,6 +77,8 @@ static struct {
     fault_t fault;
 
     unsigned looks, taken, unread;
+    uint32_t read_us;    /* the clock at the last read */
+    uint32_t pause_us;   /* between the last read and the one before */
     const uint8_t *held; /* what leaves later */
     uint8_t half[255], held_length;
     uint8_t injected, mark; /* bytes that the far end still has to send */
@@ -220,6 +224,9 @@ static void corrupt(uint8_t *bytes, int *count, fathom_rx_t *rx)
     case STAMP_OF_THE_READ:
         rx->last_us = rig.time.now_us + rig.time.ahead_us;
         break;
+    case STAMP_OF_THE_READ_AFTER_A_PAUSE:
+        if (rig.pause_us > LONG_PAUSE_US) rx->last_us = rig.time.now_us + rig.time.ahead_us;
+        break;
     case STAMP_OF_BEFORE:
         rx->last_us -= 1000000;
         break;
@@ -238,6 +245,9 @@ static int rig_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
 {
     let_go();
     if (rig.injected != 0) return read_injected(bytes, rx);
+    rig.pause_us = rig.time.now_us - rig.read_us;
+    rig.read_us = rig.time.now_us;
+    if (rig.fault == READ_NOTHING_AFTER_A_PAUSE && rig.pause_us > LONG_PAUSE_US) return 0;
     if (rig.fault == READ_BEYOND && capacity < 255) capacity++;
     if (rig.fault == READ_MAKES_SILENCE && capacity > 3) capacity = 3;
     int count = rig.real.read(rig.real.ctx, bytes, capacity, rx);
@@ -400,6 +410,8 @@ TEST(each_fault_is_found_by_one_item_and_no_other)
                                                  [READ_MAKES_SILENCE] = "read_silence",
                                                  [STAMP_OF_THE_READ] = "read_stamp",
                                                  [STAMP_OF_BEFORE] = "read_stamp",
+                                                 [STAMP_OF_THE_READ_AFTER_A_PAUSE] = "read_age",
+                                                 [READ_NOTHING_AFTER_A_PAUSE] = "read_age",
                                                  [PARITY_UNTOLD] = "mark_parity",
                                                  [PARITY_ON_ALL] = "mark_parity",
                                                  [FRAMING_UNTOLD] = "mark_framing",

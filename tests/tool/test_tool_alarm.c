@@ -124,13 +124,13 @@ TEST(a_device_that_tells_no_distance_is_another_one)
         "0 a16: alarm off, 700 mm\n2 a16: not known (on)\n");
 }
 
-/* The time alone tells it, 5 s after the last frame; the reader gives up 10 s after it. */
+/* The time alone tells it, 5 s after the last frame; the reader gives up 10 s after it, as --timeout says. */
 TEST(a_sensor_that_sends_nothing_any_more_is_noticed_by_the_time)
 {
     const int32_t sees = 700;
     steps_a16(FATHOM_SIM_A16_AUTO, &sees, 1);
     steps.off_us = 3500000;
-    expect_text(alarm_of("a16", "near<500,unknown=on,no-response=off", "--duration 15"),
+    expect_text(alarm_of("a16", "near<500,unknown=on,no-response=off", "--duration 15 --timeout 10000"),
                 "0 a16: alarm off, 700 mm\n8 a16: not known (on)\n13 a16: no response (off)\n");
 }
 

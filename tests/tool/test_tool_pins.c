@@ -69,12 +69,14 @@ TEST(a_distance_outside_the_window_is_refused)
     expect_err("a pulse came that is no distance from 2000 to 3000 mm");
 }
 
-static void spike(void)
+static void spike_of(uint32_t width_us)
 {
     fathom_sim_tx_wire(&pins, FATHOM_SIM_WIRE_HIGH);
-    fathom_sim_clock_advance(&bench.clock, 100);
+    fathom_sim_clock_advance(&bench.clock, width_us);
     fathom_sim_tx_wire(&pins, FATHOM_SIM_WIRE_WHOLE);
 }
+
+static void spike(void) { spike_of(99); }
 
 TEST(noise_is_rejected_and_counted)
 {
@@ -98,6 +100,21 @@ TEST(noise_alone_is_told_as_such)
     happens = cut_with_noise;
     EXPECT(1, 0, "mm", "read " PWM " --count 1");
     expect_err("no pulse of the sensor came back, but 1 shorter ones: noise");
+}
+
+static void cut_with_short_pulse(void)
+{
+    spike_of(1500);
+    fathom_sim_tx_wire(&pins, FATHOM_SIM_WIRE_LOW);
+}
+
+TEST(a_pulse_that_is_too_short_is_unknown)
+{
+    with_a16(FATHOM_SIM_A16_PWM);
+    at_us = 50000;
+    happens = cut_with_short_pulse;
+    EXPECT(1, 1, "unknown: only pulses shorter than the sensor's; the longest has 1500 us",
+           "read " PWM " --count 1");
 }
 
 /* ---- how exact they are ---- */

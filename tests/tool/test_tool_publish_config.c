@@ -164,7 +164,7 @@ static const struct {
     {"a number that is too large", 14, "        median: 16", 14,
      "median: takes a whole number from 3 to 15, not '16'"},
     {"an interval of all that is wrong", 2, "interval: -1", 2,
-     "interval: takes a whole number from 0 to 3600000, not '-1'"},
+     "interval: takes a whole number from 0 to 2147483, not '-1'"},
     {"a port of the broker", 6, "  port: 65536", 6,
      "port: takes a whole number from 1 to 65535; default: 1883, with tls: "
      "8883; not '65536'"},

@@ -72,7 +72,9 @@ TEST(what_comes_back_is_told)
         {"1 3 0x0101", "01 04 02 02 EF F9 DC", 1, "heard     01 04 02 02 EF F9 DC\n",
          "unit 1 answered something else than was asked"},
         {"1 3 0x0101 2", "01 03 02 02 EF F8 A8", 1, "", "unit 1 answered something else than was asked"},
-        {"1 6 0x0200 5 --yes", "01 06 02 05 00 01 59 B3", 1, "", "unit 1 answered something else"},
+        /* a write of one register that is not ours: the acknowledgement equals the request of another master */
+        {"1 6 0x0200 5 --yes", "01 06 02 05 00 01 59 B3", 1, "",
+         "another master sent a request to address 1 at the same time"},
         {"1 5 00 00 ff 00 --yes", "01 05 00 01 FF 00 DD FA", 1, "", "unit 1 answered something else"},
         /* no frame, and nothing */
         {"1 3 0x0101", "55 FE 80", 1, "heard     55 FE 80\n", "bytes were heard, but no Modbus frame; "},
@@ -134,13 +136,31 @@ TEST(the_user_can_end_it)
     assert_in_range(far_end.now_us, 200000, 210000);
 }
 
-/* It waits for a silence for 10 s and twice the time-out. */
-TEST(a_line_that_is_never_silent_is_given_up)
+/* line.h, rule of the busy line: 66 ms of listening, 1 s of waiting for a silence, 8.3 ms of the request, 1 s. */
+TEST(a_read_leaves_after_1_s_on_a_line_that_is_never_silent)
 {
     far_end.babbles = true;
-    far_run(1, "", "the line was not silent; nothing was sent\n", "1 3 0x0101");
+    far_run(1, "sent ", "fathom: no request to address 1 could be sent safely: the line was never silent; ",
+            "1 3 0x0101");
+    assert_int_equal(far_end.writes, 1);
+    assert_in_range(far_end.now_us, 2074000, 2180000);
+}
+
+TEST(a_write_does_not_leave_on_a_line_that_is_never_silent)
+{
+    far_end.babbles = true;
+    far_run(1, "", "fathom: no request to address 1 could be sent safely: the line was never silent; ",
+            "--yes 1 6 0x0200 2");
     assert_int_equal(far_end.writes, 0);
-    assert_in_range(far_end.now_us, 12000000, 12200000);
+    assert_in_range(far_end.now_us, 1066000, 1180000);
+}
+
+/* A read of 0x0009 resets an HPS-167S. */
+TEST(a_read_that_resets_does_not_leave_on_a_line_that_is_never_silent)
+{
+    far_end.babbles = true;
+    far_run(1, "", "the line was never silent; ", "--yes 1 3 0x0009");
+    assert_int_equal(far_end.writes, 0);
 }
 
 /* The RS232 variant sends every 100 ms until it is asked. */

@@ -11,17 +11,16 @@ void rig_start(uint32_t now_us)
     fake_init(&rig.fake);
     rig.fake.now_us = now_us;
     rig.fake.busy_until_us = now_us;
-    rig.line_config = (fathom_line_config_t){&rig.fake.uart,
-                                             &rig.fake.clock,
-                                             rig.frame,
-                                             sizeof rig.frame,
-                                             FATHOM_LINE_ECHO_AUTO,
-                                             T3_5_US,
-                                             GAP_US,
-                                             fathom_line_find_echo,
-                                             fathom_line_marks,
-                                             NULL,
-                                             NULL};
+    rig.line_config = (fathom_line_config_t){.uart = &rig.fake.uart,
+                                             .clock = &rig.fake.clock,
+                                             .frame = rig.frame,
+                                             .frame_size = sizeof rig.frame,
+                                             .echo = FATHOM_LINE_ECHO_AUTO,
+                                             .silence_us = T3_5_US,
+                                             .gap_us = GAP_US,
+                                             .find_echo = fathom_line_find_echo,
+                                             .marks = fathom_line_marks,
+                                             .senders = &fathom_line_senders};
     assert_int_equal(fathom_line_init(&rig.line, &rig.line_config), FATHOM_READY);
 }
 
@@ -34,6 +33,7 @@ fathom_status_t rig_poll(void)
         rig.samples++;
     }
     rig.stales += status == FATHOM_ERR_STALE;
+    rig.damaged += status == FATHOM_ERR_CHECKSUM;
     rig.malformed += status == FATHOM_ERR_MALFORMED;
     rig.ports += status == FATHOM_ERR_PORT;
     return status;

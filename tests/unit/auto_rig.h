@@ -26,6 +26,7 @@ typedef struct {
     uint32_t silent_us;      /* of the next period, which rig_send has used up */
     unsigned samples;
     unsigned stales;
+    unsigned damaged; /* FATHOM_ERR_CHECKSUM */
     unsigned malformed;
     unsigned ports;
 } rig_t;

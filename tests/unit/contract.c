@@ -54,6 +54,8 @@ uint32_t contract_slack_us;
         .what = #its, .member = &d##_config.its, .from = value, .to = value, .size = sizeof d##_config.its,  \
         .also = &d##_config.other, .also_is = other_value                                                    \
     }
+#define STALE(d)        IS(d, stale_us, 0x80000000), IS(d, stale_us, 0xFFFFFFFE)
+#define STREAM(d)       STALE(d), IS(d, gap_us, 1), IS(d, gap_us, 1041) /* a character at 9600 8N1: 1041.7 us */
 #define WINDOW(d, most) IS(d, window.min_mm, most + 1), BOTH(d, window.min_mm, 500, window.max_mm, 499)
 
 /* ---- on the transport of Modbus ---- */
@@ -232,10 +234,10 @@ static const contract_kind_t listening = LINE_KIND(has_sent, line_is_at_work);
 DRIVER(a16_auto, .line = &rig.line)
 CAN(a16_auto, deinit)
 
-const contract_driver_t contract_a16_auto = {LISTENS(a16_auto), .gap_us = &a16_auto_config.gap_us,
-                                             DYP(a16_auto, a16_auto.base.measurement, 16350, FATHOM_A16, 0),
-                                             .frame = a16_frame,
-                                             .wrong = {NONE(a16_auto, line), WINDOW(a16_auto, 16350)}};
+const contract_driver_t contract_a16_auto = {
+    LISTENS(a16_auto), .gap_us = &a16_auto_config.gap_us,
+    DYP(a16_auto, a16_auto.base.measurement, 16350, FATHOM_A16, 0), .frame = a16_frame,
+    .wrong = {NONE(a16_auto, line), STREAM(a16_auto), WINDOW(a16_auto, 16350)}};
 
 DRIVER(a05_auto, .line = &rig.line, .probes = 1)
 CAN(a05_auto, deinit)
@@ -243,16 +245,21 @@ CAN(a05_auto, deinit)
 const contract_driver_t contract_a05_auto = {
     LISTENS(a05_auto), .gap_us = &a05_auto_config.gap_us,
     DYP(a05_auto, a05_auto.base.measurement, 6000, FATHOM_A05, 0), .frame = a05_frame,
-    .wrong = {NONE(a05_auto, line), RANGE(a05_auto, probes, 16, 255), WINDOW(a05_auto, 6000)}};
+    .wrong = {NONE(a05_auto, line), STREAM(a05_auto), RANGE(a05_auto, probes, 16, 255),
+              WINDOW(a05_auto, 6000)}};
 
 DRIVER(hps167s_auto, .line = &rig.line)
 CAN(hps167s_auto, deinit)
 
 const contract_driver_t contract_hps167s_auto = {
-    LISTENS(hps167s_auto), .frame = hps_frame,
-    .good = 2083,          .other = 511,
-    .refused = 31000,      .sample = {HPS_FIGURES},
-    COUNTS(hps167s_auto),  .wrong = {NONE(hps167s_auto, line), RANGE(hps167s_auto, address, 33, 255)}};
+    LISTENS(hps167s_auto),
+    .frame = hps_frame,
+    .good = 2083,
+    .other = 511,
+    .refused = 31000,
+    .sample = {HPS_FIGURES},
+    COUNTS(hps167s_auto),
+    .wrong = {NONE(hps167s_auto, line), STALE(hps167s_auto), RANGE(hps167s_auto, address, 33, 255)}};
 
 /* It is asked with 55 AA; the response is there at once. */
 static fathom_status_t is_asked(const contract_driver_t *driver, uint16_t value)
@@ -325,7 +332,10 @@ const contract_driver_t contract_a16_controlled = {
     ITSELF(a16_controlled, triggered), DYP(a16_controlled, a16_controlled.measurement, 16350, FATHOM_A16, 0),
     .deinit = a16_controlled_deinit, .frame = a16_frame,
     .wrong = {NONE(a16_controlled, line), NONE(a16_controlled, trigger.set),
-              IS(a16_controlled, earliest_us, 131 * MS), WINDOW(a16_controlled, 16350)}};
+              IS(a16_controlled, earliest_us, 131 * MS), IS(a16_controlled, latest_us, 79 * MS),
+              IS(a16_controlled, latest_us, 0x80000000), IS(a16_controlled, latest_us, 0xFFFFFFFE),
+              IS(a16_controlled, period_us, 0x80000000), IS(a16_controlled, gap_us, 1),
+              IS(a16_controlled, gap_us, 1041), WINDOW(a16_controlled, 16350)}};
 
 /* A pulse so wide, 110 ms after the trigger. */
 static fathom_status_t has_pulsed(const contract_driver_t *driver, uint16_t value)

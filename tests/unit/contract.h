@@ -59,7 +59,7 @@ struct contract_driver {
     fathom_dyp_window_t *window;
     fathom_contact_timing_t *timing;
     uint16_t *gap_us;
-    contract_wrong_t wrong[12];
+    contract_wrong_t wrong[16];
 
     /* Of those that are asked: which registers, and the defaults. */
     uint16_t first;

@@ -77,6 +77,12 @@ static fathom_status_t fake_poll(void *ctx)
 
 static uint32_t fake_due_us(void *ctx) { return ((const fake_modbus_t *)ctx)->due_us; }
 
+static bool fake_has(void *ctx, const fathom_modbus_request_t *request)
+{
+    const fake_modbus_t *const fake = ctx;
+    return request != NULL && fake->request == request;
+}
+
 static uint32_t fake_now_us(void *ctx) { return ((const fake_modbus_t *)ctx)->now_us; }
 
 void fake_modbus_init(fake_modbus_t *fake)
@@ -84,8 +90,14 @@ void fake_modbus_init(fake_modbus_t *fake)
     memset(fake, 0, sizeof *fake);
     fake->now_us = 5000;
     fake->due_us = FATHOM_NO_DEADLINE;
-    fake->modbus = (fathom_modbus_t){fake_submit,  fake_cancel, fake_cancel_unit, fake_poll, fake_due_us,
-                                     &fake->clock, fake};
+    fake->modbus = (fathom_modbus_t){.submit = fake_submit,
+                                     .cancel = fake_cancel,
+                                     .cancel_unit = fake_cancel_unit,
+                                     .poll = fake_poll,
+                                     .due_us = fake_due_us,
+                                     .clock = &fake->clock,
+                                     .ctx = fake,
+                                     .has = fake_has};
     fake->clock = (fathom_clock_t){fake_now_us, fake};
 }
 
@@ -120,6 +132,20 @@ void fake_modbus_fail(fake_modbus_t *fake, fathom_status_t status)
 {
     assert_non_null(fake->request);
     if (fake->request->transaction.attempts == 0) fake_modbus_send(fake);
+    fake->ends = status;
+}
+
+void fake_modbus_forget(fake_modbus_t *fake)
+{
+    assert_non_null(fake->request);
+    fake->request = NULL;
+    fake->is_sent = false;
+    fake->ends = FATHOM_PENDING;
+}
+
+void fake_modbus_end_unsent(fake_modbus_t *fake, fathom_status_t status)
+{
+    assert_non_null(fake->request);
     fake->ends = status;
 }
 

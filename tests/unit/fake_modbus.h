@@ -52,6 +52,12 @@ void fake_modbus_acknowledge(fake_modbus_t *fake); /* a write */
 void fake_modbus_refuse(fake_modbus_t *fake, uint8_t exception);
 void fake_modbus_fail(fake_modbus_t *fake, fathom_status_t status);
 
+/* The next poll ends the request, and no attempt has left. */
+void fake_modbus_end_unsent(fake_modbus_t *fake, fathom_status_t status);
+
+/* The transport is initialised again: it has forgotten the request, which never ends. */
+void fake_modbus_forget(fake_modbus_t *fake);
+
 /* The last request was a read of `count` registers from `first` of `unit`, asked `submits`-th. */
 void fake_modbus_assert_asked(const fake_modbus_t *fake, unsigned submits, uint8_t unit, uint16_t first,
                               uint16_t count);

@@ -58,6 +58,8 @@ void run_in_steps(uint32_t for_us, uint32_t step_us);
 void set_up_echo(uint8_t echo);
 
 void run(uint32_t for_us);
+/* After an init the line drops all bytes until a poll has found the port empty. This is that poll. */
+void show_empty_port(void);
 fathom_status_t poll_line(void);
 uint32_t due(void);
 

@@ -247,7 +247,7 @@ TEST(who_sleeps_as_long_as_it_is_due_gets_a_sample_a_trigger)
     assert_int_equal(controlled.a16.late, 0);
 }
 
-/* Its stream has a deadline of its own, 71 minutes, which is no concern of the user's. */
+/* The stream turns stale without a trigger, which is no error of the driver. */
 TEST(hours_without_a_response_are_one_no_response_a_trigger)
 {
     unsigned no_responses = 0;
@@ -260,8 +260,6 @@ TEST(hours_without_a_response_are_one_no_response_a_trigger)
     }
     assert_true(no_responses > 15000);
     assert_int_equal(rig.stales, 0);
-    assert_int_equal(controlled.a16.stream.counters[FATHOM_STREAM_STALES],
-                     0); /* who is not asked is silent */
     assert_int_equal(controlled.a16.late, 0);
 }
 
@@ -327,4 +325,76 @@ TEST(without_a_pin_or_a_break_nothing_listens_and_deinit_ends_a_break)
     controlled.config.trigger = fathom_output_pin(&controlled.pin.trigger);
     assert_int_equal(fathom_a16_controlled_init(&other, &controlled.config), FATHOM_READY);
     assert_ptr_equal(rig.line.listener, &other.stream.listener);
+}
+
+/* ---- what was in the port before the trigger ---- */
+
+/* A trigger and its response, and then 5 ms until the next trigger is due; the line has seen a silence. */
+static void run_to_second_trigger(void)
+{
+    controlled_start();
+    controlled_run_to_break(1, 100);
+    controlled_response(controlled_511, 100 * MS);
+    assert_int_equal(controlled_outcome(100), FATHOM_READY);
+    rig_run(12 * MS, 100);
+    assert_int_equal(rig.samples, 1);
+}
+
+/* A frame that is read by the poll that triggers, in loops so slow that no silence is seen behind it. The clock goes on
+ * within a poll, so the frame is some microseconds older than the edge. */
+TEST(a_frame_of_before_the_trigger_is_not_the_response)
+{
+    for (uint32_t step_us = 0; step_us != 20; step_us++) {
+        run_to_second_trigger();
+        rig.fake.step_us = step_us;
+        fake_receive(&rig.fake, 0, controlled_1953, 4);
+        rig.fake.now_us += 5 * MS;
+        PENDS(rig_poll());
+        assert_int_equal(rig.fake.breaks, 2);
+        controlled_response(controlled_511, 100 * MS);
+        rig.fake.now_us += 102 * MS;
+        PENDS(rig_poll());
+        rig.fake.now_us += 5 * MS;
+        assert_int_equal(rig_poll(), FATHOM_READY);
+        assert_int_equal(rig.sample.distance_mm, 511);
+        assert_int_equal(controlled.a16.late, 1);
+    }
+}
+
+/* A frame that arrives between the read and the edge of one poll, as on a machine that does something else there. */
+TEST(a_frame_that_arrives_while_the_poll_triggers_is_not_the_response)
+{
+    unsigned tried = 0;
+    for (uint32_t after_us = 0; after_us <= 20 * MS; after_us += 500) {
+        run_to_second_trigger();
+        rig.fake.now_us += 5 * MS;
+        const uint32_t arrives_us = rig.fake.now_us + after_us;
+        fake_receive(&rig.fake, after_us, controlled_1953, 4);
+        rig.fake.step_us = 2 * MS; /* each look at the clock */
+        PENDS(rig_poll());
+        rig.fake.step_us = 0;
+        assert_int_equal(rig.fake.breaks, 2);
+        if (arrives_us > controlled.a16.edge_us) break;
+        tried++;
+        rig_run(100 * MS, 100 * MS);
+        rig_run(10 * MS, 10 * MS);
+        assert_int_equal(rig.samples, 1);
+    }
+    assert_in_range(tried, 5, 40);
+}
+
+/* line.h, rule 13: the response waits for 300 s in the port, and would be a sample of now. */
+TEST(a_response_that_waited_in_the_port_is_no_sample)
+{
+    for (uint32_t sleep_us = 500 * MS; sleep_us <= 300000 * MS; sleep_us *= 10) {
+        const bool is_old = sleep_us > 130 * MS + FATHOM_LINE_LATE_US;
+        controlled_start();
+        controlled_run_to_break(1, 100);
+        controlled_response(controlled_1953, 100 * MS);
+        rig_run(20 * MS, 1 * MS);
+        rig.fake.now_us += sleep_us;
+        assert_int_equal(rig_poll(), is_old ? FATHOM_ERR_NO_RESPONSE : FATHOM_PENDING);
+        rig_run(20 * MS, 1000);
+        assert_int_equal(rig.samples, !is_old);
+    }
 }

@@ -136,7 +136,7 @@ TEST(the_temperature_of_the_air_is_an_option_that_may_change)
 TEST(the_options_of_the_pulse_are_the_drivers)
 {
     config.pulse.noise_us = 11000;
-    measures(10000, FATHOM_ERR_NO_RESPONSE);
+    reads(10000, FATHOM_UNKNOWN, 0);
     assert_int_equal(a16.meter.noises, 1);
     config.pulse.noise_us = 0;
     config.pulse.no_target_us = 9000;

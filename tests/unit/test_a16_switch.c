@@ -29,9 +29,16 @@ static void start_at(uint32_t now_us, bool level)
     pins.level = level;
     pins.fake.byte_us = BYTE_US;
     memset(counters, 0, sizeof counters);
-    line_config = (fathom_line_config_t){
-        &pins.fake.uart,   &pins.fake.clock,  frame,   sizeof frame, FATHOM_LINE_ECHO_OFF, 3646, 5000, NULL,
-        fathom_line_marks, fathom_line_count, counters};
+    line_config = (fathom_line_config_t){.uart = &pins.fake.uart,
+                                         .clock = &pins.fake.clock,
+                                         .frame = frame,
+                                         .frame_size = sizeof frame,
+                                         .echo = FATHOM_LINE_ECHO_OFF,
+                                         .silence_us = 3646,
+                                         .gap_us = 5000,
+                                         .marks = fathom_line_marks,
+                                         .count = fathom_line_count,
+                                         .counters = counters};
     assert_int_equal(fathom_line_init(&line, &line_config), FATHOM_READY);
     config.pin = &pins.pin;
     config.clock = &pins.fake.clock;

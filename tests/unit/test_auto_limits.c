@@ -91,7 +91,7 @@ TEST(after_power_on_no_sample_of_before_is_handed_over)
     assert_int_equal(rig.sample.probe, 1);
     assert_int_equal(fathom_a05_auto_select(&a05, FATHOM_PROCESSED), FATHOM_READY);
     assert_int_equal(poll_after(100), FATHOM_PENDING);
-    assert_int_equal(due_us(), 10000000 - 100);
+    assert_int_equal(due_us(), 2000000 - 100);
 }
 
 /* FATHOM_A05_SELECT_US, some time after the last poll too. */

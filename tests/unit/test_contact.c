@@ -39,6 +39,7 @@ static void start(void) { start_at(START_US, false); }
 static int set_up(void **state)
 {
     memset(&timing, 0, sizeof timing);
+    timing.period_us = FATHOM_MAX_DURATION_US; /* changes alone */
     near_is_high = true;
     start();
     return 0;
@@ -283,14 +284,14 @@ TEST(the_next_look_is_due_in_10_ms_or_when_the_level_has_settled)
     expect_due(0);
 }
 
-TEST(where_an_interrupt_wakes_the_program_nothing_is_due_while_the_level_stands)
+TEST(if_an_interrupt_wakes_the_program_only_the_period_is_due_while_the_level_stands)
 {
     timing.interval_us = FATHOM_NO_DEADLINE;
     start();
     expect_due(20000);
     pins_run(20 * MS, 20000);
     assert_int_equal(pins.samples, 1);
-    expect_due(FATHOM_NO_DEADLINE);
+    expect_due(FATHOM_MAX_DURATION_US);
     pins_turn(0);
     pins_poll();
     expect_due(20000);
@@ -322,18 +323,36 @@ TEST(a_loop_that_sleeps_until_it_is_due_misses_nothing)
 
 /* ---- init ---- */
 
-TEST(init_refuses_what_it_cannot_read)
+static void expect_refused(const fathom_pin_t *pin, const fathom_clock_t *clock,
+                           const fathom_contact_guard_t *guard)
+{
+    const fathom_contact_t zeroed = {0};
+    memset(&contact, 0x5A, sizeof contact);
+    contact.pin = pin;
+    contact.clock = clock;
+    contact.guard = guard;
+    expect_init(FATHOM_ERR_ARGUMENT);
+    assert_memory_equal(&contact, &zeroed, sizeof zeroed);
+}
+
+static fathom_status_t guard_poll(void *ctx) { return (void)ctx, FATHOM_PENDING; }
+static bool guard_is_clear(void *ctx, uint32_t now_us) { return (void)ctx, (void)now_us, true; }
+static uint32_t guard_due_us(void *ctx) { return (void)ctx, FATHOM_NO_DEADLINE; }
+
+TEST(init_refuses_what_it_cannot_read_and_leaves_the_contact_zeroed)
 {
     const fathom_pin_t output = {NULL, NULL, NULL};
-    contact.pin = NULL;
-    expect_init(FATHOM_ERR_ARGUMENT);
-    contact.pin = &output;
-    expect_init(FATHOM_ERR_ARGUMENT);
-    contact.pin = &pins.pin;
-    contact.clock = NULL;
-    expect_init(FATHOM_ERR_ARGUMENT);
-    contact.clock = &pins.fake.clock;
-    expect_init(FATHOM_READY);
+    const fathom_clock_t still = {NULL, NULL};
+    const fathom_contact_guard_t guards[] = {
+        {NULL, guard_is_clear, guard_due_us, NULL},
+        {guard_poll, NULL, guard_due_us, NULL},
+        {guard_poll, guard_is_clear, NULL, NULL},
+    };
+    expect_refused(NULL, &pins.fake.clock, NULL);
+    expect_refused(&output, &pins.fake.clock, NULL);
+    expect_refused(&pins.pin, NULL, NULL);
+    expect_refused(&pins.pin, &still, NULL);
+    for (unsigned i = 0; i != COUNT_OF(guards); i++) expect_refused(&pins.pin, &pins.fake.clock, &guards[i]);
 }
 
 /* ---- everything, against a slow reference ---- */

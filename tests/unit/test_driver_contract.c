@@ -386,11 +386,70 @@ CONTRACT(it_works_across_the_wrap_of_the_clock, LISTENERS)
     }
 }
 
+/* stream.h, rule 5; hps167s_auto.h: FATHOM_ERR_CHECKSUM if bytes arrived. Zeros are in no frame. */
+CONTRACT(zeros_for_8_s_are_damage_and_silence_is_stale, LISTENERS)
+{
+    static const uint8_t zeros[10];
+    start();
+    rig_poll(); /* the port is seen empty */
+    for (unsigned ms = 0; ms != 8000; ms += 10) {
+        fake_receive(&rig.fake, 0, zeros, sizeof zeros);
+        rig.fake.now_us += 10 * MS;
+        rig_poll();
+    }
+    assert_int_equal(rig.damaged, 4); /* once each 2 s */
+    assert_int_equal(rig.stales, 0);
+    rig_run(2000 * MS, 5000); /* nothing */
+    assert_int_equal(rig.stales, 1);
+    reads(driver->good);
+    rig_run(2000 * MS, 5000);
+    assert_int_equal(rig.stales, 2);
+}
+
+/* line.h, rule 13: what waited in the port in a pause may be as old as the pause. */
+CONTRACT(a_frame_that_waited_in_the_port_for_300_s_is_no_sample, LISTENERS)
+{
+    uint8_t frame[RIG_HPS_LENGTH];
+    const size_t length = driver->frame(frame, driver->good);
+    for (unsigned is_initialised_again = 0; is_initialised_again != 2; is_initialised_again++) {
+        begin_at(START_US);
+        start();
+        reads(driver->good);
+        fake_receive(&rig.fake, 0, frame, length);
+        rig.fake.now_us += 300000000;
+        if (is_initialised_again != 0) start();
+        assert_int_equal(kind->poll(), is_initialised_again != 0 ? FATHOM_PENDING : FATHOM_ERR_STALE);
+        rig_run(20000, 1000);
+        assert_int_equal(rig.samples, 1);
+        rig.silent_us = 0;
+        reads(driver->other);
+        assert_int_equal(rig.sample.time_us, contract_came_us);
+    }
+}
+
+/* stream.h, rule 6: the same in the driver, where another user of the line has polled the line meanwhile. */
+CONTRACT(a_frame_that_waited_in_the_driver_is_a_sample_until_2500_ms, LISTENERS)
+{
+    uint8_t frame[RIG_HPS_LENGTH];
+    const size_t length = driver->frame(frame, driver->good);
+    for (uint32_t waits_us = 2500 * MS; waits_us <= 2510 * MS; waits_us += 10 * MS) {
+        begin_at(START_US);
+        start();
+        rig_run(20000, 1000);
+        fake_receive(&rig.fake, 0, frame, length);
+        (void)fathom_line_poll(&rig.line);
+        for (uint32_t us = 0; us < waits_us; us += 10 * MS) {
+            rig.fake.now_us += 10 * MS;
+            (void)fathom_line_poll(&rig.line);
+        }
+        assert_int_equal(kind->poll(), waits_us == 2500 * MS ? FATHOM_READY : FATHOM_ERR_STALE);
+    }
+}
+
 CONTRACT(it_is_stale_in_time_or_as_the_config_says_and_once_each_time, LISTENERS)
 {
     static const uint32_t starts_us[] = {START_US, UINT32_MAX - 50000, UINT32_MAX - 1000000};
-    /* First contact 8: the ultrasonic sensors' datasheets print no period, so that they have 10 s. */
-    const uint32_t deadlines_us[][2] = {{0, driver->window != NULL ? 10000000 : 2000000}, {700000, 700000}};
+    static const uint32_t deadlines_us[][2] = {{0, 2000000}, {700000, 700000}};
     for (unsigned i = 0; i != 2 * COUNT(starts_us); i++) {
         const uint32_t step_us = i % 2 != 0 ? 20000 : 5000;
         const uint32_t stale_us = deadlines_us[i % 2][1];
@@ -414,18 +473,30 @@ CONTRACT(it_is_stale_in_time_or_as_the_config_says_and_once_each_time, LISTENERS
 
 #define LISTENING(promise) LISTENERS(promise) OF(promise, a16_controlled)
 
-CONTRACT(it_listens_until_deinit_or_until_another_does, LISTENING)
+CONTRACT(it_listens_until_deinit_or_until_it_is_replaced, LISTENING)
 {
-    fathom_listener_t other;
+    fathom_listener_t other = {.receive = NULL};
     start();
     assert_true(rig.line.listener != NULL && rig.line.listener != &other);
-    fathom_line_listen(&rig.line, &other);
+    (void)fathom_line_replace_listener(&rig.line, &other);
     driver->deinit();
     assert_ptr_equal(rig.line.listener, &other);
+    (void)fathom_line_replace_listener(&rig.line, NULL);
     start();
-    assert_true(rig.line.listener != &other);
+    assert_non_null(rig.line.listener);
+    start(); /* the same listener again */
     driver->deinit();
     assert_null(rig.line.listener);
+}
+
+CONTRACT(init_refuses_a_line_with_another_listener_and_does_not_use_the_port, LISTENING)
+{
+    fathom_listener_t other = {.receive = NULL};
+    (void)fathom_line_replace_listener(&rig.line, &other);
+    assert_int_equal(driver->init(), FATHOM_ERR_BUSY);
+    assert_ptr_equal(rig.line.listener, &other);
+    (void)fathom_line_replace_listener(&rig.line, NULL);
+    assert_false(kind->is_used());
 }
 
 #define BY_SUM(promise) OF(promise, a05_auto) OF(promise, a16_auto)

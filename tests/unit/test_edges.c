@@ -83,8 +83,16 @@ TEST(widths_are_right_across_the_wrap_and_up_to_71_minutes)
 {
     feed(UINT32_MAX - 4999, 5000);
     assert_pulse(10000, 5000);
+    feed(106000, 5999); /* 2^32 - 100001 us */
+    assert_pulse(UINT32_MAX - 100000, 5999);
+}
+
+TEST(a_clock_that_is_set_back_within_a_pulse_makes_a_width_of_0)
+{
     feed(6000, 5999);
-    assert_pulse(UINT32_MAX, 5999);
+    assert_pulse(0, 5999);
+    feed(205999, 106000); /* by 99999 us */
+    assert_pulse(0, 106000);
 }
 
 TEST(many_pulses_go_through_as_the_counts_wrap)
@@ -140,13 +148,43 @@ TEST(a_pulse_that_began_before_257_arms_does_not_count)
     }
 }
 
-/* 128 rises after arm cannot be told from what was before it: they are lost, never wrong. */
-TEST(after_127_rises_without_arm_pulses_are_lost)
+TEST(pulses_need_no_further_arm)
 {
     for (uint32_t i = 1; i <= 300; i++) {
         feed(i * 100, i * 100 + 50);
-        assert_int_equal(take(), i % 256 >= 1 && i % 256 <= 127);
+        assert_pulse(50, i * 100 + 50);
     }
+}
+
+TEST(a_pulse_that_rose_before_arm_is_void_though_its_rise_is_seen_again)
+{
+    rise(100);
+    arm();
+    rise(110);
+    fall(20100);
+    expect_none();
+    feed(30000, 30010);
+    assert_pulse(10, 30010);
+}
+
+TEST(a_pin_without_get_is_no_pin)
+{
+    const fathom_pin_t output = {NULL, NULL, NULL};
+    fathom_edges_init(&edges, &output);
+    rise(100);
+    expect_none();
+    assert_true(pulse.is_high);
+}
+
+TEST(it_is_full_when_the_next_pulse_would_be_lost)
+{
+    for (uint32_t i = 1; i <= FATHOM_EDGES_PULSES; i++) {
+        assert_false(fathom_edges_is_full(&edges));
+        feed(i * 1000, i * 1000 + i);
+    }
+    assert_true(fathom_edges_is_full(&edges));
+    assert_int_equal(take(), 1);
+    assert_false(fathom_edges_is_full(&edges));
 }
 
 /* ---- doubled and missed edges ---- */

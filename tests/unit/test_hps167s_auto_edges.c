@@ -21,6 +21,7 @@ static int begin(void **state)
     memset(&hps, 0x01, sizeof hps);
     assert_int_equal(fathom_hps167s_auto_init(&hps, &config), FATHOM_READY);
     sensor = fathom_hps167s_auto_sensor(&hps);
+    assert_int_equal(fathom_poll(&sensor, &sample), FATHOM_PENDING); /* the port is seen empty */
     return 0;
 }
 
@@ -64,6 +65,42 @@ TEST(nothing_is_due_but_the_deadline)
 {
     assert_int_equal(fathom_line_due_us(&bench.line), FATHOM_NO_DEADLINE);
     assert_int_equal(sensor.due_us(sensor.ctx), 2000000);
+}
+
+/* A line whose buffer holds no frame is refused. */
+TEST(the_buffer_of_the_line_holds_13_bytes)
+{
+    bench.config.frame_size = 12;
+    assert_int_equal(fathom_hps167s_auto_init(&hps, &config), FATHOM_ERR_ARGUMENT);
+    bench.config.frame_size = 13;
+    assert_int_equal(fathom_hps167s_auto_init(&hps, &config), FATHOM_READY);
+}
+
+/* 12 bytes of a frame without the first: none can be in a frame, but the last 01 may begin one; a wrong CRC: 41 for 42.
+ * Each byte ends in a frame, is dropped, or is held. */
+TEST(dropped_bytes_and_damaged_frames_are_counted)
+{
+    static const uint8_t wrong[] = {0x01, 0x03, 0x08, 0x08, 0x23, 0xDC, 0xB2,
+                                    0x07, 0x01, 0x00, 0x00, 0xFD, 0x42};
+    assert_int_equal(comes(example, 13), FATHOM_READY);
+    assert_int_equal(hps.dropped_bytes, 0);
+    assert_int_equal(comes(example + 1, 12), FATHOM_PENDING);
+    assert_int_equal(hps.dropped_bytes, 12);
+    assert_int_equal(hps.damaged, 0);
+    for (unsigned i = 1; i <= 3; i++) {
+        assert_int_equal(comes(wrong, 13), FATHOM_PENDING);
+        assert_int_equal(hps.damaged, i);
+        assert_int_equal(hps.dropped_bytes, 12 + 13 * i);
+    }
+    assert_int_equal(comes(example, 5), FATHOM_PENDING);
+    assert_int_equal(hps.dropped_bytes, 12 + 13 * 3); /* 5 are held */
+    fake_receive_rx(&bench.fake, 0, example, 13, (fathom_rx_t){0, FATHOM_RX_OVERRUN});
+    assert_int_equal(poll_after(100), FATHOM_READY);
+    assert_int_equal(hps.dropped_bytes, 12 + 13 * 3 + 5);
+    hps.dropped_bytes = hps.damaged = UINT16_MAX;
+    assert_int_equal(comes(wrong, 13), FATHOM_PENDING);
+    assert_int_equal(hps.damaged, UINT16_MAX);
+    assert_int_equal(hps.dropped_bytes, UINT16_MAX);
 }
 
 /* "stale_us; 0: 2 s". */

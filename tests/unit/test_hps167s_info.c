@@ -138,20 +138,39 @@ TEST(after_eight_responses_without_agreement_it_gives_up)
     PLAY(configuration, OK, TELLS(RATE_2));
 }
 
+/* Among unsolicited frames it is read 32 times: this row each time, and then the next call sees the last response. */
+static void reads_32(const row_t *row)
+{
+    row_t rows[32];
+    for (unsigned i = 0; i != COUNT(rows); i++) memcpy(&rows[i], row, sizeof *row);
+    desk_part(configuration, rows, COUNT(rows));
+}
+
+static void never_believes(const row_t *row)
+{
+    reads_32(row);
+    fathom_status_t status;
+    while ((status = configuration()) == FATHOM_PENDING) {
+        fake.now_us += 1000;
+        assert_int_equal(fake.submits, 0);
+    }
+    assert_int_equal(status, FATHOM_ERR_MALFORMED);
+}
+
 /* The one response that is still to come has a measurement's shape: until the command's time-out (1 s) has passed there
  * is no outcome, and nothing is asked. */
 TEST(where_unasked_frames_were_taken_for_it_it_gives_up_when_no_response_can_come_any_more)
 {
     const row_t row = HPS_2(1, OK, 0, MEASURES);
-    PART(configuration, row, row, row, row, row, row, row, row);
+    reads_32(&row);
     PENDS(configuration());
     fake.now_us += 999999;
     PENDS(configuration());
-    desk_waits(0);
+    desk_waits(0); /* nor is measured: that would put off the end */
     assert_int_equal(fathom_due_us(&desk.sensor, 1), 1);
     fake.now_us++;
     assert_int_equal(configuration(), FATHOM_ERR_MALFORMED);
-    assert_int_equal(fake.submits, 0); /* since the eighth */
+    assert_int_equal(fake.submits, 0); /* since the last */
     /* and where there are none, at once */
     hps_set_up(NULL);
     PART(configuration, TWICE, TWICE, TWICE, TWICE);
@@ -176,7 +195,7 @@ TEST(what_cannot_be_a_response_to_2_never_counts)
         const row_t row = HPS_2(1, OK, 0, r[0], r[1], r[2], r[3]);
         hps_set_up(NULL);
         assert_false(fathom_hps167s_may_be_configuration(r));
-        PLAY(configuration, FATHOM_ERR_MALFORMED, row, row, row, row, row, row, row, row);
+        never_believes(&row);
     }
 }
 
@@ -200,10 +219,10 @@ TEST(what_was_measured_last_is_no_configuration)
     PLAY(desk_poll, OK, HPS_5(OK, 0x00FF, 0x0000, 0x0000, 0xB401));
     assert_int_equal(desk.sample.distance_mm, 255);
     assert_true(fathom_hps167s_may_be_configuration(near));
-    PLAY(configuration, FATHOM_ERR_MALFORMED, row, row, row, row, row, row, row, row);
+    never_believes(&row);
     PLAY(configuration, OK, HPS_2(1, OK, 0, MEASURES), row, row, row); /* it is not the last any more */
     PLAY(desk_poll, OK, HPS_5(OK, 0x00FF, 0x0000, 0x0000, 0xB402));
-    PLAY(configuration, FATHOM_ERR_MALFORMED, next, next, next, next, next, next, next, next);
+    never_believes(&next);
 }
 
 /* An unasked frame was taken for the response, and the response comes when a measurement is being waited for:
@@ -218,6 +237,40 @@ TEST(what_was_told_last_is_no_measurement)
     PLAY(desk_poll, OK, HPS_5(OK, 0x00FF, 0x0500, 0x0000, 0xB402));
     assert_int_equal(desk.sample.distance_mm, 255);
     assert_false(fathom_hps167s_heard(&hps, registers, fake.now_us));
+}
+
+/* A program that measures in each turn, more slowly than the period of 18519 us: each measurement would begin a new
+ * pause, and the wait for the last response would never end. */
+TEST(a_program_that_measures_meanwhile_does_not_put_off_the_end)
+{
+    const row_t row = HPS_2(1, OK, 0, MEASURES);
+    reads_32(&row);
+    fathom_status_t status = FATHOM_PENDING;
+    for (unsigned turns = 0; status == FATHOM_PENDING; turns++) {
+        assert_true(turns <= 51); /* 1 s in turns of 20 ms */
+        PENDS(desk_poll_after(20000));
+        status = configuration();
+    }
+    assert_int_equal(status, FATHOM_ERR_MALFORMED);
+}
+
+/* modbus_unit.h, rule 5: the responses of a read that was abandoned do not count for the next one. */
+TEST(the_responses_of_an_abandoned_configuration_do_not_count)
+{
+    PART(configuration, HPS_2(1, OK, 0, RATE_2));
+    PENDS(configuration());
+    fake.now_us += 20000; /* more than the pace */
+    PENDS(configuration());
+    assert_non_null(fake.request); /* the second read, for which the program does not call again */
+    for (unsigned i = 0; fake.cancels == 0; i++) {
+        assert_true(i != 51);
+        PENDS(desk_poll_after(100000));
+    }
+    desk_waits(20000);
+    fake_modbus_response(&fake, hps_measured, 4);
+    assert_int_equal(desk_poll(), OK);
+    fake.submits = 0;
+    PLAY(configuration, OK, TELLS(RATE_2));
 }
 
 TEST(the_configuration_given_up_begins_anew)

@@ -53,7 +53,7 @@ TEST(zero_in_the_config_means_the_default_silence_and_gap)
     run(8 * BYTE_US);
     receive(response_1_754, 4);
     run_in_steps(4990, 10);
-    assert_int_equal(bench.line.have, 4); /* the gap has not passed yet */
+    assert_int_equal(bench.line.received_count, 4); /* the gap has not passed yet */
     run_in_steps(30, 10);
     expect(FATHOM_ERR_CHECKSUM);
 }

@@ -25,15 +25,31 @@ TEST(nothing_is_sent_in_a_break_and_the_silence_is_kept_after_it)
     run(100000);
     hold(true);
     ask_1(0);
-    run(2000000); /* longer than a port may refuse */
+    run(FATHOM_LINE_DEFAULT_BUSY_US - 1000);
     expect_written(0);
     expect(FATHOM_PENDING);
-    expect_due(FATHOM_NO_DEADLINE);
     hold(false);
     expect_due(T3_5_US);
     expect_sent(T3_5_US - 100, 200);
     run(8 * BYTE_US);
     response_1(111);
+}
+
+/* line.h, rule 13: each of them waits for `busy_us`, and then the next one. */
+TEST(a_transaction_ends_unsent_if_the_break_lasts_too_long)
+{
+    run(100000);
+    hold(true);
+    ask_1(2);
+    expect_due(0); /* The next poll begins the wait. */
+    run(FATHOM_LINE_DEFAULT_BUSY_US - 1000);
+    expect(FATHOM_PENDING);
+    expect_due(1100); /* The wait began with the poll after the request, 100 us later. */
+    run(1200);
+    expect(FATHOM_ERR_LINE_BUSY);
+    expect_written(0);
+    assert_true(bench.fake.in_break);
+    expect_due(FATHOM_NO_DEADLINE);
 }
 
 TEST(with_a_transaction_on_the_wire_it_is_busy_and_nothing_changes)
@@ -97,7 +113,7 @@ TEST(the_end_of_a_break_is_no_gap_within_what_has_come)
     assert_int_equal(bench_listener.length, 0);
     receive_hex("55 01 03 02");
     run(1000);
-    assert_int_equal(bench.line.have, 3);
+    assert_int_equal(bench.line.received_count, 3);
     assert_int_equal(bench_listener.length, 1);
     assert_int_equal(bench_listener.gaps, 1);
     hold(true);

@@ -78,10 +78,10 @@ static uint8_t storage[20];
 TEST(an_overrun_after_a_silence_does_not_permute_the_probes)
 {
     static const uint8_t good[] = {0xFF, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xFF, 0x05, 0x3B, 0x07};
-    static const fathom_stream_config_t config = {storage, 0, 0, 10};
+    static const fathom_stream_config_t config = {.storage = storage, .length = 10};
     fathom_stream_t stream;
     assert_int_equal(fathom_stream_init(&stream, &config, 0), FATHOM_READY);
-    fathom_line_listen(&bench.line, &stream.listener);
+    (void)fathom_line_replace_listener(&bench.line, &stream.listener);
     run(10000);
     receive_rx(good + 6, 4, FATHOM_RX_OVERRUN); /* six were lost */
     deliver(good, 10);

@@ -99,12 +99,12 @@ static void hear(fathom_listener_t *listener, const uint8_t *bytes, uint8_t coun
 TEST(the_first_bytes_are_after_a_gap_only_if_it_was_seen)
 {
     static const uint8_t bytes[] = {1, 2};
-    fathom_listener_t listener = {hear, GAP_US};
+    fathom_listener_t listener = {.receive = hear, .gap_us = GAP_US};
     for (unsigned i = 0; i != FILLS; i++)
         for (unsigned is_gap = 0; is_gap != 2; is_gap++) {
             set_up_on(fills[i]);
             heard = 0;
-            fathom_line_listen(&bench.line, &listener);
+            (void)fathom_line_replace_listener(&bench.line, &listener);
             after(is_gap != 0 ? GAP_US : GAP_US - 1);
             receive(bytes, sizeof bytes);
             after(1);

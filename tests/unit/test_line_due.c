@@ -67,7 +67,7 @@ TEST(bytes_that_come_while_the_request_leaves_do_not_put_off_the_next_look)
     ask_1(0);
     expect_written_after(T3_5_US + 200, 1);
     deliver(response_1_754, 4);
-    assert_int_equal(bench.line.have, 4);
+    assert_int_equal(bench.line.received_count, 4);
     expect_due(1000);
 }
 
@@ -189,6 +189,6 @@ TEST(a_port_that_takes_no_request_is_asked_again_when_it_has_sent)
 TEST_IN(leaving, the_gap_behind_what_has_come_is_due_before_the_request_has_left)
 {
     deliver(response_1_754, 4);
-    assert_int_equal(bench.line.have, 4);
+    assert_int_equal(bench.line.received_count, 4);
     expect_due(GAP_US);
 }

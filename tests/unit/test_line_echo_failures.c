@@ -84,7 +84,7 @@ static void echoed_write(void **state, fathom_listener_t *listener, uint8_t echo
 {
     write_on(state, echo);
     heard = 0;
-    fathom_line_listen(&bench.line, listener);
+    (void)fathom_line_replace_listener(&bench.line, listener);
     come_at_once(set_address_5, sizeof set_address_5);
     assert_int_equal(status_of(&bench.request), FATHOM_PENDING);
     assert_int_equal(counter(FATHOM_LINE_DROPPED_BYTES), 0);
@@ -103,7 +103,7 @@ TEST(no_byte_of_a_writes_echo_is_dropped)
 
 TEST(no_byte_of_a_writes_echo_goes_to_the_listener)
 {
-    fathom_listener_t listener = {hear, 2000};
+    fathom_listener_t listener = {.receive = hear, .gap_us = 2000};
     echoed_write(state, &listener, FATHOM_LINE_ECHO_AUTO);
     echoed_write(state, &listener, FATHOM_LINE_ECHO_ON);
 }

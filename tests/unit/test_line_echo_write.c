@@ -64,7 +64,7 @@ static void one_copy(const way_t *way)
             expect_count(FATHOM_LINE_RESPONSES, 0);
             run_in_steps(60000, way->step_us);
             expect(of_one_copy(way->mode));
-            expect_count(FATHOM_LINE_NO_RESPONSES, 1);
+            expect_count(way->mode == FATHOM_LINE_ECHO_ON ? FATHOM_LINE_NO_RESPONSES : FATHOM_LINE_ECHOES, 1);
             expect_count(FATHOM_LINE_RESPONSES, 0);
             expect_echo(way->mode); /* it proves nothing */
         }
@@ -86,7 +86,10 @@ static void two_copies(const way_t *way)
             run_in_steps(80000, way->step_us);
             expect(FATHOM_READY);
             expect_count(FATHOM_LINE_RESPONSES, 1);
-            assert_int_equal(counter(FATHOM_LINE_STRAYS) + counter(FATHOM_LINE_LATE_RESPONSES), 0);
+            /* Without an echo the first copy is the response. The second belongs to no transaction: it is a stray,
+             * unless a silence or a slow loop has cut it in two. */
+            assert_in_range(counter(FATHOM_LINE_STRAYS), 0, way->mode == FATHOM_LINE_ECHO_OFF ? 1 : 0);
+            expect_count(FATHOM_LINE_LATE_RESPONSES, 0);
         }
 }
 
@@ -167,7 +170,7 @@ TEST(the_last_attempt_of_an_unknown_echo_says_echo)
         copy_in(BY_BYTE, 0);
     }
     expect_after(TIMEOUT_US + 10000, FATHOM_ERR_ECHO);
-    expect_count(FATHOM_LINE_NO_RESPONSES, 3);
+    expect_count(FATHOM_LINE_ECHOES, 3);
 }
 
 TEST(a_late_second_copy_serves_the_retry_of_a_write)

@@ -187,7 +187,7 @@ TEST(a_stray_while_nothing_is_asked_is_dropped)
 {
     deliver_response(1, 111);
     expect_count(FATHOM_LINE_DROPPED_BYTES, 7);
-    assert_int_equal(bench.line.have, 0);
+    assert_int_equal(bench.line.received_count, 0);
 }
 
 /* ---- a port that fails ---- */

@@ -7,17 +7,52 @@ static const suite_t asked = {.set_up = set_up_asked};
 
 enum { FRAME = sizeof bench.frame };
 
-TEST(while_the_line_is_never_silent_no_request_leaves_and_then_it_does)
+/* A byte in each poll for `for_us`: no silence. 00 begins no frame of Modbus. */
+static void jam(uint32_t for_us)
 {
-    ask_1(0);
-    for (uint32_t us = 0; us < 60000000; us += BYTE_US) {
+    for (uint32_t us = 0; us < for_us; us += BYTE_US) {
         receive_hex("00");
         run_in_steps(BYTE_US, BYTE_US);
-        expect(FATHOM_PENDING);
     }
+}
+
+/* busy_us is 1 s. Of 65 ms of silence, T3_5_US suffice. */
+TEST(while_noise_leaves_no_silence_a_read_leaves_after_a_second_and_the_line_is_said_to_be_busy)
+{
+    ask_1(0);
+    jam(1000000 - 2 * BYTE_US);
+    expect(FATHOM_PENDING);
     expect_written(0);
-    expect_written_after(65536 + T3_5_US, 1);
+    jam(4 * BYTE_US);
+    expect_written(1);
+    jam(8 * BYTE_US + TIMEOUT_US + 2 * BYTE_US);
+    expect_failed(FATHOM_ERR_LINE_BUSY);
+    expect_count(FATHOM_LINE_BUSY_ATTEMPTS, 1);
+    expect_count(FATHOM_LINE_NO_RESPONSES, 0);
+}
+
+TEST(while_noise_leaves_no_silence_a_write_ends_after_a_second_and_was_not_sent)
+{
+    ask_to_write(&bench.request, 1);
+    jam(1000000 - 2 * BYTE_US);
+    expect(FATHOM_PENDING);
+    jam(4 * BYTE_US);
+    expect(FATHOM_ERR_LINE_BUSY);
+    expect_written(0);
+    expect_count(FATHOM_LINE_BUSY_ATTEMPTS, 1);
+    ask_to_write(&bench.request, 1); /* the wait begins anew; now the line falls silent */
+    expect_written_after(T3_5_US + BYTE_US, 1);
+    deliver_all(set_address_5);
+}
+
+TEST(a_response_that_survives_noise_is_taken_although_the_line_was_busy)
+{
+    ask_1(0);
+    jam(1000000 + 2 * BYTE_US);
+    expect_written(1);
+    jam(8 * BYTE_US);
     response_1(754);
+    expect_count(FATHOM_LINE_BUSY_ATTEMPTS, 0);
 }
 
 /* line.h: a response that has begun in time may end later: the longest frame, with gaps that are nearly gap_us. */

@@ -138,7 +138,7 @@ static void serve_a_retry(fathom_listener_t *listener)
     run(TIMEOUT_US);
     assert_int_equal(status_of(&bench.request), FATHOM_PENDING); /* the retry waits for the quarantine */
     assert_int_equal(bench.fake.written, 1);
-    fathom_line_listen(&bench.line, listener);
+    (void)fathom_line_replace_listener(&bench.line, listener);
     receive(response_1_754, sizeof response_1_754);
     run(100);
     assert_int_equal(status_of(&bench.request), FATHOM_READY);
@@ -155,7 +155,7 @@ TEST(no_byte_of_a_late_response_that_is_taken_is_dropped)
 
 TEST(no_byte_of_a_late_response_that_is_taken_goes_to_the_listener)
 {
-    fathom_listener_t listener = {hear, 2000};
+    fathom_listener_t listener = {.receive = hear, .gap_us = 2000};
     serve_a_retry(&listener);
     assert_int_equal(heard, 0);
 }
@@ -199,9 +199,9 @@ static void hear_gaps(fathom_listener_t *listener, const uint8_t *bytes, uint8_t
 TEST(a_pause_within_bytes_that_were_held_back_is_no_gap_before_them)
 {
     static const uint8_t wrong[] = {0, 0, 0};
-    fathom_listener_t listener = {hear_gaps, 2000};
+    fathom_listener_t listener = {.receive = hear_gaps, .gap_us = 2000};
     heard = gaps = 0;
-    fathom_line_listen(&bench.line, &listener);
+    (void)fathom_line_replace_listener(&bench.line, &listener);
     ask_1_and_send(0);
     receive(response_1_754, 4);
     run(3000);

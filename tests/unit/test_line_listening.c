@@ -18,6 +18,7 @@ static int set_up_listening(void **state)
     keep_only_what_is_needed();
     bench.config.echo = FATHOM_LINE_ECHO_AUTO; /* "nothing needs to be said of echo" */
     assert_int_equal(fathom_line_init_listening(&bench.line, &bench.config), FATHOM_READY);
+    show_empty_port();
     return 0;
 }
 
@@ -26,6 +27,7 @@ static int set_up_bare(void **state)
     set_up(state);
     keep_only_what_is_needed();
     assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_READY);
+    show_empty_port();
     return 0;
 }
 

@@ -38,7 +38,11 @@ static fathom_status_t response_of(fathom_transaction_t *asked, const uint8_t *f
     return frame[1] == 9 ? FATHOM_ERR_MALFORMED : FATHOM_READY;
 }
 
-static const fathom_protocol_t protocol = {encode, length_of, check, is_request, response_of, 0, false};
+static const fathom_protocol_t protocol = {.encode = encode,
+                                           .length = length_of,
+                                           .check = check,
+                                           .is_request = is_request,
+                                           .parse_response = response_of};
 
 static void start(void)
 {

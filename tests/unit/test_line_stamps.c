@@ -183,8 +183,8 @@ static void hear(fathom_listener_t *listener, const uint8_t *bytes, uint8_t coun
 
 TEST(a_listener_is_told_the_stamp_and_of_no_silence_that_was_not)
 {
-    fathom_listener_t listener = {hear, 5000};
-    fathom_line_listen(&bench.line, &listener);
+    fathom_listener_t listener = {.receive = hear, .gap_us = 5000};
+    (void)fathom_line_replace_listener(&bench.line, &listener);
     heard = gaps = 0;
     between_us = 2 * GAP_US;
     poll_with(response_1_754);
@@ -213,8 +213,8 @@ TEST(the_time_that_a_read_takes_counts_against_the_time_out)
     /* and against the quarantine: another time-out from here */
     assert_in_range(bench.line.quarantine_left_us, TIMEOUT_US - 2 * BYTE_US, TIMEOUT_US);
     for (unsigned i = 0; i != TIMEOUT_US / (2 * BYTE_US) + 1; i++) {
-        assert_true(bench.line.quarantined != 0);
+        assert_true(bench.line.quarantined_units != 0);
         poll_with(&noise);
     }
-    assert_int_equal(bench.line.quarantined, 0);
+    assert_int_equal(bench.line.quarantined_units, 0);
 }

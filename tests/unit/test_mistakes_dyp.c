@@ -73,7 +73,12 @@ static fathom_status_t poll(void *ctx) { return (void)ctx, FATHOM_PENDING; }
 static uint8_t probe_of(uint8_t wanted, uint16_t registers)
 {
     const fathom_clock_t clock = {zero, NULL};
-    const fathom_modbus_t modbus = {submit, cancel, cancel_unit, poll, zero, &clock, NULL};
+    const fathom_modbus_t modbus = {.submit = submit,
+                                    .cancel = cancel,
+                                    .cancel_unit = cancel_unit,
+                                    .poll = poll,
+                                    .due_us = zero,
+                                    .clock = &clock};
     const fathom_a05_modbus_config_t config = {
         .modbus.transport = &modbus, .probes = wanted, .registers = registers};
     fathom_a05_modbus_t sensor;

@@ -301,6 +301,39 @@ TEST(an_address_that_answers_is_in_use)
         SETS(FATHOM_ERR_IN_USE, HERE, IS(HERE, OLD), FAILS(THERE, responses[i]));
 }
 
+/* modbus_setting.h, rule 2: a busy line and another master prove nothing about the new address. */
+TEST(an_address_that_could_not_be_asked_is_neither_free_nor_in_use)
+{
+    static const fathom_status_t errors[] = {FATHOM_ERR_LINE_BUSY, FATHOM_ERR_OTHER_MASTER};
+    setting.address = THERE;
+    for (size_t i = 0; i != COUNT(errors); i++) {
+        SETS(errors[i], HERE, IS(HERE, OLD), FAILS(THERE, errors[i]));
+        was_written(false);
+        SETS(errors[i], HERE, FAILS(HERE, errors[i]));
+        was_written(false);
+    }
+}
+
+TEST(a_write_that_a_busy_line_kept_from_leaving_was_not_written)
+{
+    PART(set, IS(HERE, OLD));
+    PENDS(set());
+    fake_modbus_end_unsent(&fake, FATHOM_ERR_LINE_BUSY);
+    assert_int_equal(set(), FATHOM_ERR_LINE_BUSY);
+    was_written(false);
+    fake.submits = 0;
+    SETS(OK, HERE, IS(HERE, OLD), PUT(OK), IS(HERE, NEW));
+    was_written(true);
+}
+
+TEST(a_write_that_left_into_a_busy_line_is_read_back)
+{
+    SETS(OK, HERE, IS(HERE, OLD), PUT(FATHOM_ERR_LINE_BUSY), IS(HERE, NEW));
+    was_written(true);
+    SETS(FATHOM_ERR_LINE_BUSY, HERE, IS(HERE, OLD), PUT(FATHOM_ERR_LINE_BUSY), IS(HERE, OLD));
+    was_written(true);
+}
+
 SETTING(a_port_that_breaks_before_the_write_is_told_and_nothing_was_changed, THERE, FATHOM_ERR_PORT, HERE,
         IS(HERE, OLD), FAILS(THERE, FATHOM_ERR_PORT))
 
@@ -407,6 +440,18 @@ TEST(after_power_on_silence_refusal_and_damage_are_warming_up)
         fake.now_us += 50000;
         SETS(errors[i], HERE, FAILS(HERE, errors[i]));
         assert_false(fathom_modbus_unit_is_warming_up(&unit));
+    }
+}
+
+/* A unit that starts keeps no line busy and is no master: to wait would cure neither. */
+TEST(after_power_on_a_busy_line_and_another_master_are_told_as_they_are)
+{
+    static const fathom_status_t errors[] = {FATHOM_ERR_LINE_BUSY, FATHOM_ERR_OTHER_MASTER};
+    for (size_t i = 0; i != COUNT(errors); i++) {
+        fathom_modbus_unit_power_on(&unit, 10000000);
+        PENDS(asks(&measure));
+        fake_modbus_fail(&fake, errors[i]);
+        assert_int_equal(asks(&measure), errors[i]);
     }
 }
 

@@ -119,8 +119,8 @@ CAP(a_cap_of_less_than_the_pace_does_not_shorten_it, 300000, 1, 1000000, 700000,
     700000, 700000)
 CAP(a_pause_shorter_than_the_pace_keeps_the_pace, 300000, 1200000, 1000000, 700000, 700000, 700000, 700000,
     1200000, 1200000)
-CAP(the_longest_pause_is_half_the_clock, 300000000, 0x80000000u, PACE_US, 0, 0, 300000000, 600000000,
-    1200000000, 0x80000000u)
+CAP(the_longest_pause_is_half_the_clock, 300000000, 0x7FFFFFFFu, PACE_US, 0, 0, 300000000, 600000000,
+    1200000000, 0x7FFFFFFFu)
 
 TEST(the_first_thing_that_it_says_ends_that)
 {
@@ -138,6 +138,28 @@ TEST(the_first_thing_that_it_says_ends_that)
             assert_paused_for(0);
             silence();
             assert_paused_for(TIMEOUT_US);
+        }
+}
+
+/* They prove nothing about the unit: the count of its time-outs stays, and so does the length of the pause. */
+TEST(a_busy_line_and_another_master_leave_the_back_off_as_it_is)
+{
+    static const fathom_status_t outcomes[] = {FATHOM_ERR_LINE_BUSY, FATHOM_ERR_OTHER_MASTER};
+    for (unsigned i = 0; i != COUNT(outcomes); i++)
+        for (unsigned before = 0; before != 8; before++) {
+            set_up(state);
+            if (before == 0)
+                ask_first();
+            else
+                timeouts_in_row(before, time_outs_us, COUNT(time_outs_us));
+            const uint32_t pause_us = before == 0 ? 0 : time_outs_us[before - 1];
+            const uint32_t next_us = time_outs_us[before > 6 ? 6 : before];
+            for (unsigned n = 0; n != 3; n++) {
+                end_with(&measure, outcomes[i]);
+                assert_paused_for(pause_us);
+            }
+            silence(); /* counts on from there */
+            assert_paused_for(next_us);
         }
 }
 

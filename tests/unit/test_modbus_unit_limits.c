@@ -69,11 +69,11 @@ TEST(a_new_unit_has_heard_nothing_and_may_be_asked_at_once)
     }
 }
 
-/* "backoff_us ... 0: 16 time-outs; up to 2^31": 16 of 2^28 would be 2^32. Half of that is the longest. */
-TEST(without_a_cap_the_longest_back_off_is_2_to_the_31)
+/* "backoff_us ... up to 2^31 - 1. 0: 16 time-outs": 16 of 2^28 would be 2^32. 2^31 - 1 is the longest. */
+TEST(without_a_cap_the_longest_back_off_is_2_to_the_31_less_1)
 {
     static const uint32_t backoff_left_us[] = {0,          0,          0x10000000, 0x20000000,
-                                               0x40000000, 0x80000000, 0x80000000};
+                                               0x40000000, 0x7FFFFFFF, 0x7FFFFFFF};
     unit.timeout_us = 0x10000000;
     for (unsigned n = 0; n != sizeof backoff_left_us / sizeof *backoff_left_us; n++) {
         assert_int_equal(ask_after(0), FATHOM_PENDING);

@@ -30,6 +30,8 @@ static const char *name_in_the_header(fathom_status_t status)
         ERROR_NAMED(UNCONFIRMED);
         ERROR_NAMED(IN_USE);
         ERROR_NAMED(DIFFERS);
+        ERROR_NAMED(LINE_BUSY);
+        ERROR_NAMED(OTHER_MASTER);
     }
     return "?";
 }
@@ -43,6 +45,6 @@ TEST(each_status_has_its_name_and_any_other_number_a_question_mark)
         assert_string_equal(name, name_in_the_header((fathom_status_t)number));
         named += name[0] != '?';
     }
-    assert_int_equal(named, 18);
+    assert_int_equal(named, 20);
     assert_string_equal(fathom_status_name(FATHOM_ERR_NO_RESPONSE), "NO_RESPONSE");
 }

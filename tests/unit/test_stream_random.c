@@ -97,8 +97,12 @@ static outcome_t run(uint32_t pause_us, uint32_t loop_us, unsigned lose, unsigne
     static const fathom_uart_t uart = {.read = world_read, .write = world_write, .sent = world_sent};
     static const fathom_clock_t clock = {world_now_us, NULL};
     uint8_t frame[16];
-    const fathom_line_config_t line_config = {
-        &uart, &clock, frame, sizeof frame, FATHOM_LINE_ECHO_OFF, 0, 0, NULL, fathom_line_marks, NULL, NULL};
+    const fathom_line_config_t line_config = {.uart = &uart,
+                                              .clock = &clock,
+                                              .frame = frame,
+                                              .frame_size = sizeof frame,
+                                              .echo = FATHOM_LINE_ECHO_OFF,
+                                              .marks = fathom_line_marks};
     fathom_line_t line;
     fathom_a05_auto_t sensor;
     outcome_t outcome = {0, 0};

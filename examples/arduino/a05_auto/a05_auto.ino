@@ -10,10 +10,14 @@
 #include <SoftwareSerial.h>
 static SoftwareSerial soft_serial(10, 11); // RX, TX
 static fathom::arduino::stream_uart port(soft_serial, 9600);
-static void begin_port() { soft_serial.begin(9600); }
+static bool begin_port()
+{
+    soft_serial.begin(9600);
+    return true;
+}
 #else
 static fathom::arduino::serial_uart port(Serial1);
-static void begin_port() { port.begin(9600); }
+static bool begin_port() { return port.begin(9600); }
 #endif
 
 static fathom_uart_t uart;
@@ -23,21 +27,29 @@ static fathom_line_t line;
 static fathom_a05_auto_t bumper;
 static fathom_sensor_t sensor;
 
+// Stops with a message: a setup that failed is an error in this sketch.
+static void stop(const __FlashStringHelper *why)
+{
+    Serial.println(why);
+    for (;;) {
+    }
+}
+
 void setup()
 {
     Serial.begin(115200);
-    begin_port();
+    if (!begin_port()) stop(F("this port cannot do 9600 8N1"));
     uart = port.hal();
 
     line_config.uart = &uart;
     line_config.clock = &fathom::arduino::clock;
     line_config.frame = frame;
     line_config.frame_size = sizeof frame;
-    fathom_line_init_listening(&line, &line_config);
+    if (fathom_line_init_listening(&line, &line_config) != FATHOM_READY) stop(F("wrong config of the line"));
 
     fathom_a05_auto_config_t config = {};
     config.line = &line;
-    if (fathom_a05_auto_init(&bumper, &config) != FATHOM_READY) Serial.println(F("wrong config"));
+    if (fathom_a05_auto_init(&bumper, &config) != FATHOM_READY) stop(F("wrong config of the sensor"));
     sensor = fathom_a05_auto_sensor(&bumper);
 }
 
@@ -53,7 +65,7 @@ void loop()
         else
             Serial.println(F("nothing in range"));
     } else if (status < 0) {
-        Serial.print(F("error ")); // -7 is "stale": no good frame for 2 s; status.h has them all
+        Serial.print(F("error ")); // -7: silent for 2 s; -4: bytes for 2 s, but no frame
         Serial.println(status);
     }
     // Other work goes here: fathom_poll never waits. Within 60 ms, or the core's buffer is full and bytes are lost.

@@ -15,6 +15,14 @@ static fathom_sensor_t sensor;
 
 static void echo_changed() { echo.changed(); }
 
+// Stops with a message: a setup that failed is an error in this sketch.
+static void stop(const __FlashStringHelper *why)
+{
+    Serial.println(why);
+    for (;;) {
+    }
+}
+
 void setup()
 {
     Serial.begin(115200);
@@ -27,7 +35,7 @@ void setup()
     config.pulse.clock = &fathom::arduino::clock;
     config.pulse.capture = &capture;
     config.pulse.trigger = fathom_output_pin(&trigger);
-    if (fathom_a16_pwm_init(&tank, &config) != FATHOM_READY) Serial.println(F("wrong config"));
+    if (fathom_a16_pwm_init(&tank, &config) != FATHOM_READY) stop(F("wrong config of the sensor"));
     sensor = fathom_a16_pwm_sensor(&tank);
 }
 

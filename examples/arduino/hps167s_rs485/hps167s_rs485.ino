@@ -29,13 +29,26 @@ static fathom_modbus_t modbus;
 static fathom_hps167s_t gate;
 static fathom_sensor_t sensor;
 
+// Stops with a message: a setup that failed is an error in this sketch. The LED stays on.
+static void stop(const __FlashStringHelper *why)
+{
+    digitalWrite(LED_BUILTIN, HIGH);
+#ifdef PRINT_TO
+    PRINT_TO.println(why);
+#else
+    (void)why;
+#endif
+    for (;;) {
+    }
+}
+
 void setup()
 {
 #ifdef PRINT_TO
     PRINT_TO.begin(115200);
 #endif
     pinMode(LED_BUILTIN, OUTPUT);
-    port.begin(19200, FATHOM_PARITY_EVEN);
+    if (!port.begin(19200, FATHOM_PARITY_EVEN)) stop(F("this port cannot do 19200 8E1"));
     uart = port.hal();
 
     line_config.uart = &uart;
@@ -43,13 +56,14 @@ void setup()
     line_config.frame = frame;
     line_config.frame_size = sizeof frame;
     line_config.silence_us = FATHOM_T3_5_US(19200, 11); // 8E1: 11 bits a character
-    line_config.echo = FATHOM_LINE_ECHO_OFF; // FATHOM_LINE_ECHO_ON where the transceiver hears itself
-    fathom_line_init(&line, &line_config);
+    line_config.echo = FATHOM_LINE_ECHO_OFF;    // FATHOM_LINE_ECHO_ON where the transceiver hears itself
+    line_config.senders = &fathom_line_senders; // with factory settings the sensor sends measurements unasked
+    if (fathom_line_init(&line, &line_config) != FATHOM_READY) stop(F("wrong config of the line"));
     modbus = fathom_modbus_client(&line);
 
     fathom_hps167s_config_t config = {};
     config.modbus.transport = &modbus;
-    fathom_hps167s_init(&gate, &config);
+    if (fathom_hps167s_init(&gate, &config) != FATHOM_READY) stop(F("wrong config of the sensor"));
     sensor = fathom_hps167s_sensor(&gate);
 }
 

@@ -48,7 +48,9 @@ static fathom_status_t read_patiently(session_t *session, const setting_t *setti
     fathom_status_t status = FATHOM_ERR_NO_RESPONSE;
     for (unsigned times = 0; times != TIMES; times++) {
         status = session_get(session, setting, text);
-        if (setting_reason(status) == NULL && status != FATHOM_ERR_CHECKSUM) break;
+        if (setting_reason(status) == NULL && status != FATHOM_ERR_CHECKSUM &&
+            status != FATHOM_ERR_LINE_BUSY && status != FATHOM_ERR_OTHER_MASTER)
+            break;
     }
     return status;
 }

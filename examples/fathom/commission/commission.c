@@ -59,7 +59,8 @@ static bool is_same(const record_unit_t *unit, const presence_t *presence)
 static commission_end_t settle(commission_t *run, const record_unit_t *unit, bool may_be_new)
 {
     presence_t presence = presence_ask(&run->session, unit->address, 2);
-    if (presence.what == PRESENT_UNCLEAR) presence = presence_ask(&run->session, unit->address, 2);
+    if (presence.what == PRESENT_UNCLEAR || presence.what == PRESENT_UNKNOWN)
+        presence = presence_ask(&run->session, unit->address, 2);
     if (is_same(unit, &presence))
         return commission_is_restarted(run, unit) ? commission_unit(run, unit, unit->address)
                                                   : COMMISSION_LATER;
@@ -92,6 +93,15 @@ static bool are_there(commission_t *run)
         if (unit->model != run->model || unit->state != RECORD_DONE) continue;
         const presence_t presence = presence_ask(&run->session, unit->address, 2);
         if (presence.what == PRESENT_STOPPED) return false;
+        if (presence.what == PRESENT_UNKNOWN) {
+            (void)fprintf(
+                stderr,
+                "fathom: address %u is done by the record, and could not be asked: nothing was written; ",
+                unit->address);
+            presence_explain(&run->session, &presence);
+            (void)fputc('\n', stderr);
+            return false;
+        }
         if (presence.what != PRESENT_NONE) continue;
         (void)fprintf(stderr,
                       "fathom: address %u is done by the record, and no unit answers there: nothing was "
@@ -145,6 +155,11 @@ static commission_end_t look(commission_t *run, uint8_t address, uint32_t *turn)
     case PRESENT_NONE:
         commission_tell(run, "connect the next unit, which becomes address %u", address);
         return look_for_open(run, turn);
+    case PRESENT_UNKNOWN:
+        commission_tell(run, "address 1 could not be asked: %s; disconnect what else sends on this line",
+                        presence.status == FATHOM_ERR_OTHER_MASTER ? "another master asks there"
+                                                                   : "the line is never silent");
+        return COMMISSION_LATER;
     case PRESENT_UNCLEAR:
         commission_tell(run, "two units at address 1, or a loose wire: what answers is %s; connect one alone",
                         presence.is_two ? "two responses" : "damaged");

@@ -89,6 +89,13 @@ static commission_end_t look_around(commission_t *run, const record_unit_t *plan
     /* Once; right before the write the driver asks there again (modbus_setting.h). */
     const presence_t target = presence_ask(&run->session, plan->address, 1);
     if (target.what == PRESENT_STOPPED) return COMMISSION_STOPPED;
+    if (target.what == PRESENT_UNKNOWN) {
+        commission_tell(run,
+                        "address %u, which the unit at address %u is to get, could not be asked: nothing was "
+                        "written; disconnect what else sends on this line",
+                        plan->address, at);
+        return COMMISSION_LATER;
+    }
     if (target.what != PRESENT_NONE) {
         commission_tell(
             run,

@@ -30,13 +30,19 @@ static bool fail_by(commission_t *run, const record_unit_t *unit, const char *wh
 static bool is_it(commission_t *run, const record_unit_t *unit)
 {
     presence_t presence = {.what = PRESENT_UNCLEAR};
-    for (unsigned i = 0; i != TRIES && presence.what == PRESENT_UNCLEAR; i++)
+    for (unsigned i = 0; i != TRIES && (presence.what == PRESENT_UNCLEAR || presence.what == PRESENT_UNKNOWN);
+         i++)
         presence = presence_ask(&run->session, unit->address, 2);
     switch (presence.what) {
     case PRESENT_STOPPED:
         return false;
     case PRESENT_NONE:
         return fail(unit, "it does not answer any more; see that it is connected, and run the command again");
+    case PRESENT_UNKNOWN:
+        (void)fprintf(stderr, "fathom: %s at address %u: ", unit->model->name, unit->address);
+        presence_explain(&run->session, &presence);
+        (void)fputs("; run the command again then\n", stderr);
+        return false;
     case PRESENT_UNCLEAR:
         (void)fprintf(stderr, "fathom: %s at address %u: ", unit->model->name, unit->address);
         presence_explain(&run->session, &presence);

@@ -45,6 +45,12 @@ static fathom_status_t ask_number(session_t *session, char number[SETTING_TEXT])
     return status;
 }
 
+/* The line was busy, or another master asked the same unit: that proves nothing about the unit. */
+static bool is_of_line(fathom_status_t status)
+{
+    return status == FATHOM_ERR_LINE_BUSY || status == FATHOM_ERR_OTHER_MASTER;
+}
+
 static bool has_stopped(const session_t *session, fathom_status_t status)
 {
     const host_t *const host = session->channel.host;
@@ -58,6 +64,7 @@ static present_t find(session_t *session, unsigned times, presence_t *presence)
         presence->status = ask_number(session, presence->number);
         if (has_stopped(session, presence->status)) return PRESENT_STOPPED;
         if (presence->status == FATHOM_READY) return PRESENT_ONE;
+        if (is_of_line(presence->status)) return PRESENT_UNKNOWN;
         if (presence->status != FATHOM_ERR_NO_RESPONSE || !is_silent(session)) return PRESENT_UNCLEAR;
     }
     return PRESENT_NONE;
@@ -73,6 +80,7 @@ static present_t ask(session_t *session, unsigned times, presence_t *presence)
         char number[SETTING_TEXT];
         if (i != 0) presence->status = ask_number(session, number);
         if (has_stopped(session, presence->status)) return PRESENT_STOPPED;
+        if (is_of_line(presence->status)) return PRESENT_UNKNOWN;
         if (presence->status != FATHOM_READY) return PRESENT_UNCLEAR;
         session_listen(session, listen_us);
         presence->is_two =

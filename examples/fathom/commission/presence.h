@@ -9,6 +9,7 @@ typedef enum {
     PRESENT_NONE,
     PRESENT_ONE,     /* unit, as far as three reads can tell */
     PRESENT_UNCLEAR, /* something does, and it is damaged, refused, or two that differ */
+    PRESENT_UNKNOWN, /* the line was busy, or another master asked there: nothing is known about the address */
     PRESENT_STOPPED  /* the user has ended it, or the port is lost */
 } present_t;
 
@@ -27,7 +28,7 @@ typedef struct {
  */
 presence_t presence_ask(session_t *session, uint8_t address, unsigned times);
 
-/* Of what is PRESENT_UNCLEAR: on stderr, without a line feed. */
+/* Of what is PRESENT_UNCLEAR or PRESENT_UNKNOWN: on stderr, without a line feed. */
 void presence_explain(session_t *session, const presence_t *presence);
 
 #endif

@@ -48,10 +48,11 @@ fathom_modbus_config_t reader_config(const channel_t *channel, const reader_sett
 
 fathom_contact_timing_t reader_contact_timing(const channel_t *channel, const reader_settings_t *settings)
 {
-    enum { UNTOLD_US = 1000000 }; /* so late a change is seen of which no event came */
-    return (fathom_contact_timing_t){.period_us =
-                                         settings->period_us != 0 ? settings->period_us : settings->repeat_us,
-                                     .interval_us = channel->pins.wakes ? UNTOLD_US : 0,
+    enum { WITHOUT_EVENT_US = 1000000 }; /* A change without an event is seen within this time. */
+    /* Without an interval, changes alone are readings, as far as the library allows. */
+    const uint32_t repeat_us = settings->repeat_us != 0 ? settings->repeat_us : FATHOM_MAX_DURATION_US;
+    return (fathom_contact_timing_t){.period_us = settings->period_us != 0 ? settings->period_us : repeat_us,
+                                     .interval_us = channel->pins.wakes ? WITHOUT_EVENT_US : 0,
                                      .stale_us = settings->timeout_us};
 }
 

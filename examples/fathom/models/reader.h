@@ -33,8 +33,7 @@ enum {
 typedef struct {
     uint32_t timeout_us; /* of a response; of a sensor that sends by itself: until it is stale */
     uint32_t period_us;  /* between two requests */
-    uint32_t
-        repeat_us; /* without a period: of a contact, from one sample of the same state to the next; 0: never */
+    uint32_t repeat_us;  /* of a contact without a period: between two samples of one state; 0: 35 minutes */
     const fathom_line_settings_t *line; /* for each request; NULL: the line's own */
     uint32_t backoff_us;                /* how long a unit that does not answer is left alone at last */
     fathom_dyp_window_t window;         /* of A16 and A05; of an HPS-167S its ends */
@@ -52,7 +51,7 @@ typedef struct {
 enum { READER_BACKOFF_US = 1 };
 
 /* For one of several: the longest that there is, which is the driver's default. */
-#define READER_BACKOFF_SHARED_US 0x80000000u
+#define READER_BACKOFF_SHARED_US 0x7FFFFFFFu
 
 /* A temperature that is read between measurements. */
 typedef struct {

@@ -64,9 +64,10 @@ static void take_failure(void *ctx, const failure_t *failure, const station_t *s
     const uint8_t probe = status == FATHOM_ERR_MALFORMED ? reader_refused_probe(&station->reader) : 0;
     char word[COUNTERS_MEMBER];
     (void)status_word_of_failure(counters_failure_kind(status, &station->reader), word);
-    if (publisher_failure(&publish->publisher, station, word, probe,
-                          status == FATHOM_ERR_PORT || status == FATHOM_ERR_STALE) &&
-        !failure->is_told)
+    /* A sensor that sends by itself and is damaged for --timeout has sent no reading, as if it were silent. */
+    const bool is_grave = status == FATHOM_ERR_PORT || status == FATHOM_ERR_STALE ||
+                          (status == FATHOM_ERR_CHECKSUM && !station->mode->is_asked);
+    if (publisher_failure(&publish->publisher, station, word, probe, is_grave) && !failure->is_told)
         tell_failure(failure, station);
     results_failure(&publish->results, station, status);
 }

@@ -19,6 +19,9 @@ static void write_kind(FILE *to, const reading_t *reading)
         (void)fputs(fields_is_contact(reading) ? "near" : "nearer than it can measure", to);
     else if (sample->kind == FATHOM_FAR)
         (void)fputs("far", to);
+    else if (sample->kind == FATHOM_UNKNOWN && reading->reader->meter != NULL)
+        (void)fprintf(to, "unknown: only pulses shorter than the sensor's; the longest has %" PRIu32 " us",
+                      sample->raw);
     else if (sample->kind == FATHOM_UNKNOWN)
         (void)fprintf(to, "unknown: the value %" PRIu32 "%s", sample->raw,
                       reading->model->has_optics ? "" : " has been given no meaning (--means)");

@@ -5,6 +5,7 @@
 
 #include "fathom/codec/crc16.h"
 #include "fathom/codec/modbus_rtu.h"
+#include "request/request_effects.h"
 #include "shared/line_text.h"
 
 enum { FUNCTION = 1, SIZE = 2, FIRST = 2, COUNT = 5 };
@@ -97,16 +98,41 @@ static fathom_status_t parse_response(fathom_transaction_t *transaction, const u
     return is_exception ? FATHOM_ERR_EXCEPTION : FATHOM_READY;
 }
 
+static bool may_collide(const fathom_transaction_t *transaction)
+{
+    return request_may_collide(request_of(transaction));
+}
+
 static const fathom_protocol_t *protocol_of(const request_t *request)
 {
-    static const fathom_protocol_t known = {encode, known_length, fathom_crc16, is_request, parse_response,
-                                            0,      false};
-    static const fathom_protocol_t known_with_zero = {
-        encode, known_length_with_zero, fathom_crc16, is_request, parse_response, 0, true};
-    static const fathom_protocol_t any = {encode,         any_length, fathom_crc16, is_request,
-                                          parse_response, 0,          false};
-    static const fathom_protocol_t any_with_zero = {
-        encode, any_length_with_zero, fathom_crc16, is_request, parse_response, 0, true};
+    static const fathom_protocol_t known = {.encode = encode,
+                                            .length = known_length,
+                                            .check = fathom_crc16,
+                                            .is_request = is_request,
+                                            .parse_response = parse_response,
+                                            .may_collide = may_collide,
+                                            .is_unit_0_ordinary = false};
+    static const fathom_protocol_t known_with_zero = {.encode = encode,
+                                                      .length = known_length_with_zero,
+                                                      .check = fathom_crc16,
+                                                      .is_request = is_request,
+                                                      .parse_response = parse_response,
+                                                      .may_collide = may_collide,
+                                                      .is_unit_0_ordinary = true};
+    static const fathom_protocol_t any = {.encode = encode,
+                                          .length = any_length,
+                                          .check = fathom_crc16,
+                                          .is_request = is_request,
+                                          .parse_response = parse_response,
+                                          .may_collide = may_collide,
+                                          .is_unit_0_ordinary = false};
+    static const fathom_protocol_t any_with_zero = {.encode = encode,
+                                                    .length = any_length_with_zero,
+                                                    .check = fathom_crc16,
+                                                    .is_request = is_request,
+                                                    .parse_response = parse_response,
+                                                    .may_collide = may_collide,
+                                                    .is_unit_0_ordinary = true};
     const uint8_t unit = request->frame[REQUEST_UNIT];
     const bool has_zero =
         unit == FATHOM_MODBUS_ANY_UNIT || (unit == FATHOM_MODBUS_BROADCAST && !request_is_broadcast(request));
@@ -157,6 +183,10 @@ static request_outcome_t outcome_of(const request_ask_t *ask, const channel_t *c
         return equals_acknowledgement(ask->request) ? judge_copy(ask, channel) : REQUEST_NO_RESPONSE;
     case FATHOM_ERR_NO_RESPONSE:
         return REQUEST_NO_RESPONSE;
+    case FATHOM_ERR_LINE_BUSY:
+        return REQUEST_LINE_BUSY;
+    case FATHOM_ERR_OTHER_MASTER:
+        return REQUEST_OTHER_MASTER;
     default:
         return REQUEST_FAILED;
     }
@@ -169,7 +199,7 @@ static fathom_status_t wait_for_response(request_ask_t *ask, channel_t *channel)
     for (;;) {
         (void)fathom_line_poll(&channel->line); /* a broken port ends the transaction */
         if (transaction->status != FATHOM_PENDING) return transaction->status;
-        if (host->has_ended(host->ctx) || channel_is_stuck(channel)) {
+        if (host->has_ended(host->ctx)) {
             fathom_line_cancel(&channel->line, transaction);
             return transaction->status;
         }

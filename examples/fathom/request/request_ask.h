@@ -13,7 +13,9 @@ typedef enum {
     REQUEST_UNEXPECTED, /* the unit has answered something else */
     REQUEST_DAMAGED,
     REQUEST_NO_RESPONSE,
-    REQUEST_FAILED, /* the port did, or the user has ended it */
+    REQUEST_LINE_BUSY,    /* the line was never silent */
+    REQUEST_OTHER_MASTER, /* another master asked the same unit meanwhile */
+    REQUEST_FAILED,       /* the port did, or the user has ended it */
 } request_outcome_t;
 
 /* The request on a line, and what came of it. */

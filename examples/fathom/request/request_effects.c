@@ -71,6 +71,11 @@ static void say_write(const request_t *request)
     if (function == 10) say("the function 10 that the datasheets print is in hex: 0x10, which is 16");
 }
 
+bool request_may_collide(const request_t *request)
+{
+    return request_is_read(request) && !touches_reset(request);
+}
+
 bool request_effects(const request_t *request)
 {
     const uint8_t unit = request->frame[REQUEST_UNIT];

@@ -116,10 +116,11 @@ static void put_registers(const request_ask_t *ask)
 static void print_json(const request_ask_t *ask, const channel_t *channel, const decode_frame_t *frame)
 {
     static const char *const names[] = {
-        [REQUEST_ANSWERED] = "answered",       [REQUEST_SENT] = "sent",
-        [REQUEST_ECHO] = "answered_or_echo",   [REQUEST_REFUSED] = "exception",
-        [REQUEST_UNEXPECTED] = "unexpected",   [REQUEST_DAMAGED] = "damaged",
-        [REQUEST_NO_RESPONSE] = "no_response", [REQUEST_FAILED] = "failed"};
+        [REQUEST_ANSWERED] = "answered",         [REQUEST_SENT] = "sent",
+        [REQUEST_ECHO] = "answered_or_echo",     [REQUEST_REFUSED] = "exception",
+        [REQUEST_UNEXPECTED] = "unexpected",     [REQUEST_DAMAGED] = "damaged",
+        [REQUEST_NO_RESPONSE] = "no_response",   [REQUEST_LINE_BUSY] = "line_busy",
+        [REQUEST_OTHER_MASTER] = "other_master", [REQUEST_FAILED] = "failed"};
     const request_t *const request = ask->request;
     const bool was_sent = channel->listener.request_length != 0;
     (void)printf("{\"unit\":%u,\"function\":%u,\"status\":\"%s\"", request->frame[REQUEST_UNIT],
@@ -169,13 +170,26 @@ static void tell_refused(const request_ask_t *ask)
         (void)fprintf(stderr, "; no exceptions are in the datasheet of %s", model->name);
 }
 
+static fathom_status_t status_of(request_outcome_t outcome)
+{
+    switch (outcome) {
+    case REQUEST_DAMAGED:
+        return FATHOM_ERR_CHECKSUM;
+    case REQUEST_LINE_BUSY:
+        return FATHOM_ERR_LINE_BUSY;
+    case REQUEST_OTHER_MASTER:
+        return FATHOM_ERR_OTHER_MASTER;
+    default:
+        return FATHOM_ERR_NO_RESPONSE;
+    }
+}
+
 static void advise(const request_ask_t *ask, const channel_t *channel, const counters_t *counters)
 {
     /* Not named: it has the line that was told, and can have any address. */
     const model_t any = {.name = "sensor of these", .line = ask->request->line, .max_address = UINT8_MAX};
     const reader_t reader = {.protocol = reader_modbus};
-    failure_t failure = {.status =
-                             ask->outcome == REQUEST_DAMAGED ? FATHOM_ERR_CHECKSUM : FATHOM_ERR_NO_RESPONSE,
+    failure_t failure = {.status = status_of(ask->outcome),
                          .model = ask->request->model != NULL ? ask->request->model : &any,
                          .reader = &reader,
                          .channel = channel,

@@ -178,7 +178,9 @@ static void advise_on_nothing(const scan_t *scan)
 {
     const scan_heard_t *const heard = &scan->walk.heard;
     (void)fputs("fathom: no sensor was found: ", stderr);
-    if (heard->bytes != 0)
+    if (heard->not_asked != 0)
+        (void)fputs("not all addresses could be asked", stderr);
+    else if (heard->bytes != 0)
         (void)fputs(
             "bytes were heard, but no response; check A and B swapped, --baud and --parity, and for noise",
             stderr);
@@ -203,6 +205,14 @@ static void conclude_walk(const scan_t *scan)
                       "fathom: requests of another master were heard (it asked address %u); disconnect it or "
                       "stop its program, and scan again\n",
                       heard->master_address);
+    if (heard->not_asked != 0)
+        (void)fprintf(
+            stderr,
+            "fathom: %" PRIu32 " addresses could not be asked, because %s; disconnect %s, and scan again\n",
+            heard->not_asked,
+            heard->has_other_master ? "another master asked there at the same time"
+                                    : "the line was never silent",
+            heard->has_other_master ? "it" : "what else sends on this line, check bias and termination");
     if (heard->outside != 0)
         (void)fprintf(stderr,
                       "fathom: a frame of address %u was heard, which was not asked; try --address %u\n",

@@ -52,7 +52,9 @@ static bool ask(inquiry_t *inquiry, uint16_t first, uint8_t count, uint32_t time
         inquiry->values = identification->response.values;
         if (status == FATHOM_READY || status == FATHOM_ERR_EXCEPTION) return status == FATHOM_READY;
         if (status == FATHOM_ERR_CANCELLED || status == FATHOM_ERR_PORT) identification->failed = status;
-        if (status != FATHOM_ERR_CHECKSUM && status != FATHOM_ERR_MALFORMED && --silence_tries == 0) break;
+        const bool is_of_line = status == FATHOM_ERR_LINE_BUSY || status == FATHOM_ERR_OTHER_MASTER;
+        const bool is_damaged = status == FATHOM_ERR_CHECKSUM || status == FATHOM_ERR_MALFORMED;
+        if (!is_of_line && !is_damaged && --silence_tries == 0) break;
     }
     return false;
 }

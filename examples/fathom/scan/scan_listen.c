@@ -61,9 +61,9 @@ static fathom_status_t hear(const scan_wire_t *wire, const fathom_line_settings_
     for (size_t i = 0; i != MODELS; i++)
         if (models[i]->scan.frame_length != 0)
             begin_stream(&streams->of[i], models[i]->scan.frame_length, now_us);
-    fathom_line_listen(wire->line, &streams->listener);
+    (void)fathom_line_listen(wire->line, &streams->listener);
     const fathom_status_t status = scan_hear(wire, line, us, poll_streams, streams);
-    fathom_line_listen(wire->line, NULL);
+    (void)fathom_line_listen(wire->line, NULL);
     return status;
 }
 

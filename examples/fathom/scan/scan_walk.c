@@ -7,10 +7,14 @@
 #include "scan/scan_identify.h"
 
 /* What is known of an address at the present settings. */
-enum { NOT_ASKED = 0, SILENT, ANSWERED, LATE, GARBLED, DAMAGED };
+enum { NOT_ASKED = 0, SILENT, ANSWERED, LATE, GARBLED, DAMAGED, BUSY };
 
 /* A damaged response is asked for again so often; once only, where most addresses are answered like that. */
 enum { DAMAGED_REPEATS = 3, FEW_GARBLED = 3 };
+
+/* A request that a busy line or another master ended is repeated so often; once only, after BUSY_LINE addresses in a row
+ * could not be asked. */
+enum { BUSY_REPEATS = 2, BUSY_LINE = 4 };
 
 /* For those that have been late. */
 enum { LATE_TIMEOUT_US = 1000000 };
@@ -46,6 +50,12 @@ static bool is_troubled(const scan_response_t *response)
     return response->evidence.rest != 0;
 }
 
+/* The line was busy, or another master asked the same unit: that proves nothing about the address. */
+static bool is_of_line(fathom_status_t status)
+{
+    return status == FATHOM_ERR_LINE_BUSY || status == FATHOM_ERR_OTHER_MASTER;
+}
+
 /* How often an address is asked again after so many damaged responses. */
 static uint8_t repeats(const scan_walk_t *walk, uint8_t troubles)
 {
@@ -59,6 +69,7 @@ static fathom_status_t probe(scan_walk_t *walk, const scan_request_t *request, s
     uint8_t *const state = &walk->states[request->address];
     uint8_t timeouts = 0;
     uint8_t troubles = 0;
+    uint8_t busy = 0;
     bool has_checksum = false;
     for (;;) {
         scan_ask(walk->wire, request, response);
@@ -67,6 +78,16 @@ static fathom_status_t probe(scan_walk_t *walk, const scan_request_t *request, s
         note(walk, &response->evidence);
         *state = ANSWERED;
         if (scan_is_answered(status)) return FATHOM_READY;
+        if (is_of_line(status)) {
+            *state = BUSY;
+            if (status == FATHOM_ERR_OTHER_MASTER) walk->heard.has_other_master = true;
+            if (++busy > (walk->busy_in_row < BUSY_LINE ? BUSY_REPEATS : 1)) {
+                walk->busy_in_row++;
+                return FATHOM_READY;
+            }
+            continue;
+        }
+        walk->busy_in_row = 0;
         if (is_troubled(response)) {
             troubles++;
             if (status == FATHOM_ERR_CHECKSUM) has_checksum = true;
@@ -144,6 +165,7 @@ static fathom_status_t ask_any_a05(scan_walk_t *walk)
     if (has_ended(response.status)) return response.status;
     finding.address = response.address;
     finding.value = response.values[0];
+    if (is_of_line(response.status)) walk->heard.not_asked++;
     if (response.status != FATHOM_READY) return FATHOM_READY;
     walk->has_a05 = true;
     walk->tell->found(walk->tell->ctx, &finding);
@@ -165,6 +187,8 @@ static fathom_status_t walk_line(scan_walk_t *walk, const fathom_line_settings_t
     for (unsigned address = plan->first; address <= plan->last && status == FATHOM_READY; address++)
         if (walk->states[address] == LATE) status = visit(walk, line, (uint8_t)address, LATE_TIMEOUT_US);
     if (status != FATHOM_READY) return status;
+    for (unsigned address = plan->first; address <= plan->last; address++)
+        if (walk->states[address] == BUSY) walk->heard.not_asked++;
     judge_damaged(walk, line);
     if (!scan_is_dyp_line(line)) return FATHOM_READY;
     if (!walk->has_a05) status = ask_any_a05(walk);

@@ -24,6 +24,9 @@ typedef struct {
     uint8_t outside;        /* an address beyond the plan's from which a frame came; 0: none */
     uint8_t master_address; /* another master asks it, ... */
     bool has_master;        /* ... if there is one */
+    /* Addresses, counted at each line setting, that could not be asked: the line was busy, or another master asked. */
+    uint32_t not_asked;
+    bool has_other_master; /* it asked one of these */
 } scan_heard_t;
 
 enum { SCAN_ADDRESSES = 256 };
@@ -40,6 +43,7 @@ typedef struct {
     bool has_a05;
     uint32_t found_baud[SCAN_ADDRESSES]; /* of the device found at an address; 0: none */
     uint8_t states[SCAN_ADDRESSES];      /* at the present line settings */
+    uint16_t busy_in_row;                /* addresses that a busy line kept from being asked, in a row */
     uint16_t garbled;                    /* of these, ... */
     uint16_t asked;                      /* ... and so many were asked */
 } scan_walk_t;
@@ -51,6 +55,8 @@ typedef struct {
  *    time-out.
  *  - Bytes that are no frame, or a damaged one, make it ask again; if that happens each time, the address is
  *    DAMAGED. If more than half of the addresses are, and no response was whole, it is NOT_MODBUS.
+ *  - A request that a busy line or another master ended is repeated. An address for which that goes on is counted in
+ *    heard.not_asked: nothing is known about it.
  *  - Where a device was found, other parities of the same rate are not tried.
  *  - On the line of A16 and A05, if no A05 was found, any A05 is asked by 55 AA: one with an address beyond the plan's
  *    is found by that, if it is alone.

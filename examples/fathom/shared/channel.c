@@ -18,14 +18,18 @@ static void suit_serial(channel_t *channel, const fathom_line_settings_t *settin
     channel->config.silence_us = FATHOM_T3_5_US(baud, line_bits(settings));
     channel->config.gap_us = CHANNEL_RESPONSE_GAP_US;
     channel->config.echo = channel->echo;
+    channel->config.senders = &fathom_line_senders;
+    channel->config.masters = &fathom_line_masters;
 }
 
 /* ... and of a connection, where responses come whole and need no silence between them. */
 static void suit_tcp(channel_t *channel)
 {
-    channel->config.silence_us = 1;
+    channel->config.silence_us = 100; /* the least (line.h) */
     channel->config.gap_us = 1000;
     channel->config.echo = FATHOM_LINE_ECHO_OFF;
+    channel->config.senders = NULL; /* The server assigns each response to its request. */
+    channel->config.masters = NULL;
 }
 
 void channel_suit(channel_t *channel, const fathom_line_settings_t *settings)
@@ -78,8 +82,6 @@ static void begin(channel_t *channel)
     (void)fathom_line_init(&channel->line, &channel->config); /* all of it is there */
     channel->modbus = fathom_modbus_client_with_zero(&channel->line);
     channel->dyp = fathom_dyp_client(&channel->line);
-    channel->requests = channel->listener.passed;
-    channel->moved_us = channel->host->now_us(channel->host->ctx);
 }
 
 bool channel_open(channel_t *channel, const host_t *host, const char *path,
@@ -161,19 +163,4 @@ void channel_listen(channel_t *channel, uint32_t for_us)
 bool channel_has_break(const channel_t *channel)
 {
     return channel->uart.set_break != NULL && !channel->port.is_pty;
-}
-
-bool channel_is_stuck(channel_t *channel)
-{
-    enum { STUCK_US = 10000000 };
-    const fathom_transaction_t *const first = channel->line.head;
-    const uint64_t now = channel->host->now_us(channel->host->ctx);
-    const bool is_waiting = first != NULL && channel->line.quarantined == 0;
-    const uint64_t most_us = is_waiting ? STUCK_US + 2ull * first->timeout_us : 0;
-    const bool is_stuck =
-        is_waiting && channel->listener.passed == channel->requests && now - channel->moved_us > most_us;
-    if (!is_stuck && is_waiting && channel->listener.passed == channel->requests) return false;
-    channel->moved_us = now;
-    channel->requests = channel->listener.passed;
-    return is_stuck;
 }

@@ -17,8 +17,6 @@
  * that talks to sensors needs. */
 typedef struct {
     const host_t *host;
-    uint64_t moved_us; /* when a request has left last, or none waited, */
-    uint64_t requests; /* and how many had left then */
     fathom_posix_uart_t port;
     tcp_t *tcp;   /* then `port` stands in for it (tcp.h); NULL: a serial port, or ... */
     bool is_chip; /* ... pins, for which `port` stands in too: then there are no line and no client */
@@ -74,9 +72,5 @@ void channel_listen(channel_t *channel, uint32_t for_us);
 
 /* Can it hold its TX low? A pseudo terminal has no wire, and a byte stands for each break. */
 bool channel_has_break(const channel_t *channel);
-
-/* Has a request waited for more than 10 s, and its time-out twice, without finding a silence to leave in? Said once in
- * so long. To be asked whenever the line was polled. */
-bool channel_is_stuck(channel_t *channel);
 
 #endif

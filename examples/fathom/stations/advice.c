@@ -171,6 +171,36 @@ static void print_no_response(FILE *to, const failure_t *failure)
     }
 }
 
+/* The line was never silent: says nothing about the unit, only about what was heard. */
+static void print_line_busy(FILE *to, const failure_t *failure)
+{
+    const evidence_t *const evidence = &failure->evidence;
+    (void)fprintf(to, "no request to address %u could be sent safely: the line was never silent; ",
+                  failure->address);
+    if (print_unasked(to, failure) || print_others(to, failure)) return;
+    if (evidence->own != 0) {
+        (void)fprintf(to, "frames of address %u were heard all the time; let it send less often",
+                      failure->address);
+        return;
+    }
+    (void)fputs(
+        "the bytes form no frames; check the bias and termination resistors and the wiring (A, B, ground), "
+        "disconnect other devices one by one, and ",
+        to);
+    print_settings(to, failure);
+}
+
+static void print_other_master(FILE *to, const failure_t *failure)
+{
+    (void)fprintf(to,
+                  "another master sent a request to address %u at the same time, so the response cannot be "
+                  "assigned; disconnect the other master or stop its program, or try again",
+                  failure->address);
+    if (failure->is_request)
+        (void)fputs("; a unit that acknowledges another write of function 06 than it was sent looks the same",
+                    to);
+}
+
 static void print_damaged(FILE *to, const failure_t *failure)
 {
     const counters_t *const counters = failure->counters;
@@ -187,6 +217,15 @@ static void print_damaged(FILE *to, const failure_t *failure)
     else
         (void)fputs("check --parity, the cable and its termination, and that no other unit has this address",
                     to);
+}
+
+/* Of a sensor that sends by itself: what the driver dropped in this attempt. */
+static void print_dropped(FILE *to, const failure_t *failure)
+{
+    const uint64_t *const stream = failure->counters->attempt.stream;
+    if (stream[FATHOM_STREAM_DROPPED_BYTES] == 0) return;
+    (void)fprintf(to, " (damaged frames: %" PRIu64 "; bytes in no frame: %" PRIu64 ")",
+                  stream[FATHOM_STREAM_DAMAGED], stream[FATHOM_STREAM_DROPPED_BYTES]);
 }
 
 /* Of a sensor that is heard at an address and not asked. */
@@ -210,6 +249,7 @@ static void print_unheard(FILE *to, const failure_t *failure)
         (void)fprintf(to, "bytes were heard, but no frame of %s; ", failure->model->name);
         print_settings(to, failure);
         (void)fputs("; A and B swapped and noise look like this too", to);
+        print_dropped(to, failure);
     }
 }
 
@@ -236,11 +276,22 @@ static void print_stale(FILE *to, const failure_t *failure)
             "bytes were heard that look like frames of %s, but not where one begins; check that nothing else "
             "sends on this line, and for noise",
             failure->model->name);
+        print_dropped(to, failure);
     } else {
         (void)fprintf(to, "bytes were heard, but no frame of %s; ", failure->model->name);
         print_settings(to, failure);
         (void)fprintf(to, ", that it is an %s, and for noise", failure->model->name);
+        print_dropped(to, failure);
     }
+}
+
+/* A sensor that sends by itself has sent no good frame. */
+static void print_silence(FILE *to, const failure_t *failure)
+{
+    if (failure->has_address)
+        print_unheard(to, failure);
+    else
+        print_stale(to, failure);
 }
 
 /* Which value of an A16 or A05 was refused and why, and what became of the other probes. */
@@ -300,16 +351,15 @@ void advice_print(FILE *to, const failure_t *failure)
     }
     switch (failure->status) {
     case FATHOM_ERR_CHECKSUM:
-        if (is_only_echo(&failure->evidence))
+        if (failure->reader->frames != NULL)
+            print_silence(to, failure);
+        else if (is_only_echo(&failure->evidence))
             print_no_response(to, failure);
         else
             print_damaged(to, failure);
         break;
     case FATHOM_ERR_STALE:
-        if (failure->has_address)
-            print_unheard(to, failure);
-        else
-            print_stale(to, failure);
+        print_silence(to, failure);
         break;
     case FATHOM_ERR_MALFORMED:
         if (print_unasked(to, failure)) break;
@@ -340,6 +390,12 @@ void advice_print(FILE *to, const failure_t *failure)
                       line_text(failure->line, settings));
         break;
     }
+    case FATHOM_ERR_LINE_BUSY:
+        print_line_busy(to, failure);
+        break;
+    case FATHOM_ERR_OTHER_MASTER:
+        print_other_master(to, failure);
+        break;
     default: /* FATHOM_ERR_NO_RESPONSE, and that only the echo came */
         print_no_response(to, failure);
         break;

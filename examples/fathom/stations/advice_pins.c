@@ -36,6 +36,11 @@ bool advice_print_pins(FILE *to, fathom_status_t status, const reader_t *reader,
             window->min_mm, window->max_mm);
         return true;
     case FATHOM_ERR_STALE:
+        if (reader->meter != NULL) {
+            (void)fputs(
+                "a pulse was read more than 2.5 s after its end; the machine is too busy, or it slept", to);
+            return true;
+        }
         (void)fputs(
             "the level does not stand still; check for a loose wire or a worn contact, that something pulls "
             "the "

@@ -12,10 +12,12 @@ static const struct {
                        "a value that can be no distance, or that --window or --means refuses"},
     [-FATHOM_ERR_PORT] = {"port", "the port is lost, or it is waited for"},
     [-FATHOM_ERR_NO_RESPONSE] = {"no response", "nothing that was asked for came within --timeout"},
-    [-FATHOM_ERR_CHECKSUM] = {"damaged", "what came has a wrong checksum"},
+    [-FATHOM_ERR_CHECKSUM] = {"damaged", "what came has a wrong checksum, or is no frame of the sensor"},
     [-FATHOM_ERR_EXCEPTION] = {"exception", "the sensor has refused the request by a Modbus exception"},
     [-FATHOM_ERR_MALFORMED] = {"other response", "a response that does not fit the request"},
-    [-FATHOM_ERR_STALE] = {"stale", "no good frame of a sensor that sends by itself within --timeout"},
+    [-FATHOM_ERR_STALE] = {"stale", "a sensor that sends by itself sent nothing within --timeout"},
+    [-FATHOM_ERR_LINE_BUSY] = {"line busy", "the line was never silent, so no request could be sent safely"},
+    [-FATHOM_ERR_OTHER_MASTER] = {"other master", "another master asked the same sensor at the same time"},
     [FAILURE_KINDS - 1] = {"other", "anything else"},
 };
 

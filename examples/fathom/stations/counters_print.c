@@ -16,6 +16,11 @@ static const char *const line_names[FATHOM_LINE_COUNTERS] = {
     [FATHOM_LINE_LATE_RESPONSES] = "late responses",
     [FATHOM_LINE_STRAYS] = "unasked frames",
     [FATHOM_LINE_BAD_BYTES] = "bad bytes",
+    [FATHOM_LINE_OLD_BYTES] = "old bytes",
+    [FATHOM_LINE_BUSY_ATTEMPTS] = "busy lines",
+    [FATHOM_LINE_OTHER_MASTERS] = "attempts disturbed by another master",
+    [FATHOM_LINE_FOREIGN_REQUESTS] = "requests of other masters",
+    [FATHOM_LINE_MAYBE_UNSOLICITED] = "responses that may be unasked",
 };
 
 static const char *const stream_names[FATHOM_STREAM_COUNTERS] = {
@@ -25,6 +30,8 @@ static const char *const stream_names[FATHOM_STREAM_COUNTERS] = {
     [FATHOM_STREAM_UNSURE] = "unsure frames",
     [FATHOM_STREAM_STALES] = "stale",
     [FATHOM_STREAM_BYTES] = "bytes",
+    [FATHOM_STREAM_DROPPED_BYTES] = "dropped bytes",
+    [FATHOM_STREAM_DAMAGED] = "damaged frames",
 };
 
 static const char *const unit_names[UNIT_COUNTERS] = {
@@ -81,7 +88,7 @@ static void get_failure_names(const char *names[FAILURE_KINDS])
 static bool print(FILE *to, const uint64_t *counts, const char *const *names, size_t count, bool is_first)
 {
     for (size_t i = 0; i != count; i++) {
-        if (counts[i] == 0) continue;
+        if (counts[i] == 0 || names[i] == NULL) continue;
         (void)fprintf(to, "%s%s %" PRIu64, is_first ? "fathom: line: " : ", ", names[i], counts[i]);
         is_first = false;
     }

@@ -147,7 +147,8 @@ static bool is_early(const poll_loop_t *loop, station_t *station, fathom_status_
     const bool is_first = !station->skipping;
     if (is_first) station->skipping = poll_now_us(loop) < station->next_us;
     if (!station->skipping) return false;
-    if (is_first && status != FATHOM_ERR_STALE) station->counters.skipped++;
+    const bool is_late = status == FATHOM_ERR_STALE || status == FATHOM_ERR_CHECKSUM;
+    if (is_first && !is_late) station->counters.skipped++;
     station->skipping = reader_has_more(&station->reader);
     poll_begin_attempt(station);
     return true;

@@ -255,15 +255,13 @@ static bool poll_station(poll_port_t *port, station_t *station)
 {
     do {
         fathom_sample_t sample;
-        fathom_status_t status = fathom_poll(&station->reader.sensor, &sample);
+        const fathom_status_t status = fathom_poll(&station->reader.sensor, &sample);
         tell_remark(port->loop, station);
         poll_take_late(port);
         channel_look(&port->channel);
         /* Between two requests a driver does not tell it, and waiting for the port would not wait. */
         port->is_lost = fathom_posix_error(&port->channel.port) == FATHOM_POSIX_ERR_LOST;
         if (port->is_lost && (status == FATHOM_PENDING || status == FATHOM_ERR_PORT)) return true;
-        if (status == FATHOM_PENDING && station->reader.unit != NULL && channel_is_stuck(&port->channel))
-            status = FATHOM_ERR_NO_RESPONSE;
         if (status == FATHOM_PENDING) return false;
         poll_take_outcome(port, station, status, &sample);
     } while (reader_has_more(&station->reader));

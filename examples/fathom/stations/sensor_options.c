@@ -6,8 +6,13 @@
 #include "shared/command.h"
 #include "shared/options.h"
 
-/* The longest ones keep every sum of times below the 32 bits of the library's clock. */
-enum { MAX_INTERVAL_MS = 3600000, MAX_TIMEOUT_MS = 600000, MAX_RETRIES = 254, MAX_DURATION_S = 1000000000 };
+/* The longest interval is the longest duration that the library accepts, 35 minutes. */
+enum {
+    MAX_INTERVAL_MS = FATHOM_MAX_DURATION_US / 1000,
+    MAX_TIMEOUT_MS = 600000,
+    MAX_RETRIES = 254,
+    MAX_DURATION_S = 1000000000
+};
 
 bool station_options(station_t *const *stations, size_t count, const char *command, const char *const *values)
 {

@@ -186,8 +186,6 @@ fathom_status_t session_call(session_t *session, session_call_t call, void *ctx)
         const fathom_status_t status = call(reader, ctx);
         if (status != FATHOM_PENDING) return status;
         if (fathom_posix_error(port) == FATHOM_POSIX_ERR_LOST) return FATHOM_ERR_PORT;
-        if (channel_is_stuck(&session->channel))
-            return reader->unit->is_written ? FATHOM_ERR_UNCONFIRMED : FATHOM_ERR_NO_RESPONSE;
         host->wait(host->ctx, port, fathom_due_us(&reader->sensor, 1), false);
     }
     return FATHOM_ERR_CANCELLED;
@@ -213,7 +211,10 @@ static fathom_status_t call_set(reader_t *reader, void *ctx)
     return what->setting->set(reader, what->value);
 }
 
-/* Calls again what has written nothing, where a frame that the device sent unasked may have met request or response. */
+/*
+ * Calls again after a failure that wrote nothing. A busy line and another master prove nothing about the unit. If the
+ * device sends by itself, one of its frames may have met the request or the response.
+ */
 static fathom_status_t call_again(session_t *session, session_call_t call, what_t *what)
 {
     enum { TIMES = 4 };
@@ -226,7 +227,8 @@ static fathom_status_t call_again(session_t *session, session_call_t call, what_
                             status == FATHOM_ERR_MALFORMED;
         const bool is_among_unasked =
             model->has_unasked != NULL && model->has_unasked(&session->station->reader);
-        if (!is_met || unit->is_written || !is_among_unasked) break;
+        const bool is_of_line = status == FATHOM_ERR_LINE_BUSY || status == FATHOM_ERR_OTHER_MASTER;
+        if (unit->is_written || !(is_of_line || (is_met && is_among_unasked))) break;
     }
     return status;
 }

@@ -17,7 +17,7 @@ static const struct {
     [KIND_NEAR] = {"near", "a switch or a relay says that something is nearer than its threshold"},
     [FATHOM_FAR] = {"far", "a switch or a relay says that nothing is"},
     [FATHOM_UNKNOWN] = {"unknown",
-                        "a value that means no distance, and nothing else that is known (--means)"},
+                        "a value without a known meaning (--means), or only pulses that are too short"},
     [FATHOM_FAULT] = {"fault", "the sensor says that it has failed"},
 };
 enum { KINDS = sizeof kinds / sizeof kinds[0] };

@@ -27,6 +27,8 @@ static const struct {
     [MARK_NEAR] = {'N', false, "near"},
     [MARK_STALE] = {'s', true, "stale"},
     [MARK_NO_RESPONSE] = {'x', true, "no response"},
+    [MARK_LINE_BUSY] = {'b', true, "line busy"},
+    [MARK_OTHER_MASTER] = {'m', true, "other master"},
     [MARK_BAD_RESPONSE] = {'!', true, "unusable"},
     [MARK_FAULT] = {'F', false, "fault"},
     [MARK_PORT] = {'P', true, "port lost"},
@@ -130,6 +132,8 @@ void lanes_failure(lanes_t *lanes, const failure_t *failure, const station_t *st
     const uint8_t probe = is_of_one ? reader_refused_probe(&station->reader) : 0;
     mark_t mark = MARK_BAD_RESPONSE;
     if (status == FATHOM_ERR_NO_RESPONSE || status == FATHOM_ERR_ECHO) mark = MARK_NO_RESPONSE;
+    if (status == FATHOM_ERR_LINE_BUSY) mark = MARK_LINE_BUSY;
+    if (status == FATHOM_ERR_OTHER_MASTER) mark = MARK_OTHER_MASTER;
     if (status == FATHOM_ERR_STALE) mark = MARK_STALE;
     if (status == FATHOM_ERR_PORT) mark = MARK_PORT;
     for (size_t i = 0; i != lanes->count; i++)

@@ -17,6 +17,8 @@ typedef enum {
     MARK_NEAR,
     MARK_STALE,
     MARK_NO_RESPONSE,
+    MARK_LINE_BUSY,
+    MARK_OTHER_MASTER,
     MARK_BAD_RESPONSE, /* damaged, refused, or with a value that cannot be */
     MARK_FAULT,
     MARK_PORT, /* it is lost */

@@ -12,89 +12,126 @@
 extern "C" {
 #endif
 
-/*
- * A level that a sensor drives: what a16_switch.h and a05_relay.h are built on, and what reads any other switch.
+/**
+ * @file
+ * @brief Reads a level that a sensor drives. a16_switch.h and a05_relay.h are built on this file, and any other switch
+ * can be read with it.
  *
- * Each poll reads the pin once, which is a look; what the level does between two looks is not seen. A level counts
- * when it was the same at every look for settle_us; then, if it is new, there is a sample. Between two looks less than
- * 71 minutes pass.
+ * Each poll reads the pin once, which is a *look*. What the level does between two looks is not seen. A level *counts*
+ * while it was equal at every look for `settle_us`.
+ *
+ * **What a program gets.** The first level that counts is a sample, and so is each new one. A level that does not
+ * change is a sample again after each `period_us` (default 1 s), so that a program can tell a contact that stands
+ * still from one that is not read any more. A level that does not count for `stale_us` (default 2 s) is
+ * FATHOM_ERR_STALE.
+ *
+ * **How long a program can be without an outcome.** If the longest time between two polls is P, each sample or error
+ * follows the one before, or the initialisation, within
+ *
+ *     period_us + stale_us + 2 * P                 by default 3 s + 2 * P
+ *
+ * by the clock of the configuration, whatever the pin and the guard do. If the clock stands still, the time stands
+ * still with it. If the clock is set back by up to 100 ms, the bound grows by that amount.
+ *
+ * **Age.** `raw` and `kind` are always the level at the look of the poll that returns the sample. At most 71 minutes
+ * may pass between two looks, because the clock wraps: call fathom_contact_init() again after a longer pause.
  */
 
-/* Zero-valued members of the timing mean these. */
-#define FATHOM_CONTACT_DEFAULT_SETTLE_US   20000u
+/** Default of `settle_us`. */
+#define FATHOM_CONTACT_DEFAULT_SETTLE_US 20000u
+/** Default of `period_us`. */
+#define FATHOM_CONTACT_DEFAULT_PERIOD_US 1000000u
+/** Default of `interval_us`. */
 #define FATHOM_CONTACT_DEFAULT_INTERVAL_US 10000u
-#define FATHOM_CONTACT_DEFAULT_STALE_US    2000000u
+/** Default of `stale_us`. */
+#define FATHOM_CONTACT_DEFAULT_STALE_US 2000000u
 
-/* After the last byte of a line on the same pin. More than a character at 9600 baud, which a look could hit. Where the
- * guard is not clear, the next look is due in as long. */
+/** Silence after the last byte of a line on the same pin, in microseconds: more than a character at 9600 baud, which a
+ * look could hit. While the guard is not clear, the next look is due after this time. */
 #define FATHOM_CONTACT_QUIET_US 5000u
 
-/* Members that are 0 mean their defaults. */
+/** @brief The times of a contact. A member that is 0 takes its default. */
 typedef struct {
-    /* How long a level stands before it counts: longer than a contact bounces, and than a response on the pin takes.
-     * 0: 20 ms; 1: two looks are enough. */
+    /** Time for which a level must be equal before it counts: 1..stale_us - 1; 0 selects 20000 us. Choose more than a
+     * contact bounces, and more than a response on the pin takes. With 1, two equal looks are enough. */
     uint32_t settle_us;
-    /* A sample that repeats the level, so long after the last one. 0: changes alone. */
+    /** Time after which a level that does not change is a sample again: 1..FATHOM_MAX_DURATION_US; 0 selects 1 s. A
+     * program that needs changes only chooses a long time, and compares `kind` with that of the previous sample. */
     uint32_t period_us;
-    /* The longest that due_us advises between looks; FATHOM_NO_DEADLINE where an interrupt of the pin wakes the
-     * program. 0: 10 ms. */
+    /** Longest time that fathom_due_us() returns while a level counts: 1..FATHOM_MAX_DURATION_US; 0 selects 10000 us.
+     * If an interrupt of the pin wakes the program, FATHOM_NO_DEADLINE leaves `period_us` as the only limit. */
     uint32_t interval_us;
-    /* FATHOM_ERR_STALE when no level has counted for so long. 0: 2 s. */
+    /** Time without a level that counts after which the error is FATHOM_ERR_STALE: settle_us +
+     * 1..FATHOM_MAX_DURATION_US; 0 selects 2 s. It cannot be disabled. */
     uint32_t stale_us;
 } fathom_contact_timing_t;
 
-/* What else uses the pin, and when its level means nothing; line_pins.h makes one of a line. Outlives the contact. */
+/** @brief What else uses the pin, and when its level has no meaning. fathom_contact_line_guard() makes one of a line.
+ * All functions are required. The guard must stay valid as long as the contact. */
 typedef struct {
-    /* Before each look; FATHOM_PENDING, or the error that the contact's poll returns where it has nothing else. */
+    /** Called before each look. Returns FATHOM_PENDING, or an error that the contact's poll returns if it has neither a
+     * sample nor an error of its own. */
     fathom_status_t (*poll)(void *ctx);
-    bool (*is_clear)(void *ctx, uint32_t now_us); /* does the level mean anything now? */
-    uint32_t (*due_us)(void *ctx);                /* until poll has something to do, as fathom_due_us */
-    void *ctx;
+    bool (*is_clear)(void *ctx, uint32_t now_us); /**< Returns true if the level has a meaning now. */
+    uint32_t (*due_us)(void *ctx); /**< Returns the time until `poll` must be called, as fathom_due_us(). */
+    void *ctx;                     /**< Passed to the functions. */
 } fathom_contact_guard_t;
 
+/** @brief A contact. The caller owns the memory and sets the first six members before fathom_contact_init(). */
 typedef struct {
-    /* Set by the caller before init, which keeps the pointers. */
-    const fathom_pin_t *pin; /* an input */
-    const fathom_clock_t *clock;
-    const fathom_contact_guard_t *guard; /* NULL: nothing else stands on the pin */
-    bool near_is_high;                   /* what a high level means: FATHOM_NEAR, or FATHOM_FAR */
-    uint8_t model;                       /* of the samples; fathom_model_t */
-    uint8_t address;                     /* of the samples */
+    const fathom_pin_t *pin;             /**< An input, with `get`. Must stay valid as long as the contact. */
+    const fathom_clock_t *clock;         /**< With `now_us`. Must stay valid as long as the contact. */
+    const fathom_contact_guard_t *guard; /**< NULL: nothing else uses the pin. */
+    bool near_is_high;                   /**< A high level is FATHOM_NEAR; else it is FATHOM_FAR. */
+    uint8_t model;                       /**< Of the samples; fathom_model_t. */
+    uint8_t address;                     /**< Of the samples. */
 
-    /* The engine's. */
-    fathom_contact_timing_t timing;
-    uint32_t sampled_us;
-    uint32_t since_us;  /* the first look at which the present level stood */
-    uint32_t settle_us; /* until it counts */
-    uint32_t period_us; /* until the next sample */
-    uint32_t stale_us;  /* until it is stale */
-    uint16_t sequence;
-    uint8_t last_kind; /* kind of the last sample; 0: none yet */
-    bool is_high;      /* the level at the last look */
-    bool is_clear;     /* the guard was clear then */
-    bool is_held;
+    /* Members of the contact. They may be read. */
+    fathom_contact_timing_t timing; /**< Invariant: `interval_us` is 0 unless the initialisation succeeded. */
+    uint32_t sampled_us;            /**< Time of the last look. */
+    uint32_t since_us;              /**< Time of the first look that saw the present level. */
+    uint32_t settle_us;             /**< Time until the level counts; 0: it counts. */
+    uint32_t period_us;             /**< Time until the level is a sample again. */
+    uint32_t stale_us;              /**< Time until the level is stale. */
+    uint16_t sequence;              /**< Number of the last sample; wraps. */
+    uint8_t last_kind;              /**< Kind of the last sample; 0: there was none. */
+    bool is_high;                   /**< The level at the last look. */
+    bool is_clear;                  /**< The level at the last look had a meaning. */
+    bool is_held;                   /**< fathom_contact_hold() is in force. */
 } fathom_contact_t;
 
-/* FATHOM_READY, or FATHOM_ERR_ARGUMENT: no clock, or no pin that can be read. It reads the pin once, and copies
- * timing. */
+/**
+ * @brief Initialises a contact and reads the pin once. Copies `timing`.
+ *
+ * If it fails, the contact is zeroed: set its members again before the next try.
+ *
+ * @retval FATHOM_READY         The contact is ready.
+ * @retval FATHOM_ERR_ARGUMENT  There is no pin that can be read, no clock, a guard without one of its functions, or a
+ *                              time outside its range.
+ */
 fathom_status_t fathom_contact_init(fathom_contact_t *contact, const fathom_contact_timing_t *timing);
 
-/* What a high level means from now on. The level settles anew; without a new meaning there is no sample. */
+/** @brief Changes what a high level means. The level must settle again. If its kind is the same then, there is no
+ * sample before `period_us` is over. */
 void fathom_contact_set_near_is_high(fathom_contact_t *contact, bool near_is_high);
 
-/* While it is held (true) the level does not count: it is about to mean something else. Then it settles anew. */
+/** @brief Stops the level from counting while `hold` is true, because its meaning is about to change. After that, the
+ * level must settle again. A hold that does not end is FATHOM_ERR_STALE after each `stale_us`. */
 void fathom_contact_hold(fathom_contact_t *contact, bool hold);
 
-/*
- * For fathom_poll. Each poll is one look, and one poll of the guard.
- * FATHOM_READY       a sample: the first level that counts, a new one, or the period is over. raw is the level, 1
- *                    for high; time_us is the look at which it was first seen, or the present one when it repeats
- * FATHOM_PENDING     nothing new; the level may be settling, or the guard at work
- * FATHOM_ERR_STALE   no level has counted for stale_us: it never stands still, the guard is never clear, or it is
- *                    held; returned once every stale_us
- * FATHOM_ERR_PORT    the port of the guard's line is broken; returned by every poll that has nothing else
- * A cut wire is no error: it reads as the level that the board pulls it to. fathom_due_us says when the next look
- * makes sense: in interval_us at the latest, sooner while a level settles.
+/**
+ * @brief Returns the sensor for fathom_poll() and fathom_due_us(). Each poll is one look, and one poll of the guard.
+ *
+ * - FATHOM_READY: a sample. `raw` is the level, 1 for high. `time_us` is the first look that saw this level if the kind
+ *   is new and that look was at most `stale_us` ago, and the present look otherwise.
+ * - FATHOM_PENDING: nothing new; the level may be settling.
+ * - FATHOM_ERR_STALE: no level counted for `stale_us`, because the level never stands still, the guard is never clear,
+ *   or the contact is held. Returned after each further `stale_us`.
+ * - FATHOM_ERR_PORT: the port of the guard's line is broken. Returned by every poll that has neither a sample nor
+ *   FATHOM_ERR_STALE.
+ * - FATHOM_ERR_ARGUMENT: the initialisation failed or never ran, and the memory is zeroed. fathom_due_us() is 0 then.
+ *
+ * A cut wire is no error: it reads as the level that the board pulls the pin to.
  */
 fathom_sensor_t fathom_contact_sensor(fathom_contact_t *contact);
 

@@ -11,72 +11,89 @@
 extern "C" {
 #endif
 
-/*
- * Makes a fathom_capture_t out of a pin interrupt, for boards without capture hardware on that pin: the interrupt
- * feeds each edge with its time, the main loop takes the pulses.
+/**
+ * @file
+ * @brief Measures pulses with a pin interrupt, for boards without capture hardware on that pin.
  *
- * An interrupt can miss an edge, when two come before it runs, or see one twice, when a slow edge bounces. So that no
- * wrong width comes of that:
- *   high, when it was high   within same_us of the rise: the same edge again, and the first one counts. Later: the
- *                            fall before it was missed, and with it the width; the pulse is given up and counted,
- *                            and so is what lasts until the next fall, which may be the end of either
- *   low, when it was low     the same edge again, or the rise before it was missed: there is no pulse
- * A pulse whose last edge was missed goes on until the next one; the level that take() reports is the pin's, if the
- * pin is given, and not that of the last edge.
+ * The interrupt passes each edge with its time to fathom_edges_feed(). The main loop takes the pulses through the
+ * fathom_capture_t that fathom_edges_capture() returns.
  *
- * Times are differences of a clock that wraps: widths are right up to 71 minutes. A pulse that begins before arm()
- * never counts, however long it lasts. What a bounce within same_us hides is a pulse shorter than that.
+ * An interrupt can miss an edge, if two edges come before it runs. An interrupt can see an edge twice, if a slow edge
+ * bounces. These rules keep a wrong width from being measured:
  *
- * Safe on 8-bit machines without a lock: there is one writer, the interrupt (or interrupts of one priority, which
- * cannot interrupt each other), and one reader, the main loop, on one core. Both sides write different members; what
- * both look at is single bytes, volatile, which no machine reads in halves; a pulse is in place before the byte that
- * announces it, and is not written to again before the reader has marked it as taken.
+ * | edge | line was | rule |
+ * |---|---|---|
+ * | rise | high, for at most `same_us` | The edge is the same rise again. The time of the first one counts. |
+ * | rise | high, for longer | A fall was missed. The pulse is discarded up to the next fall, and `missed` counts it. |
+ * | fall | low | The edge is the same fall again, or a rise was missed. There is no pulse. |
+ *
+ * A pulse shorter than `same_us` within a bounce is not seen. A pulse that began before `arm` never counts, however
+ * long it lasts. A pulse whose last edge was missed lasts until the next edge.
+ *
+ * Widths are correct up to 71 minutes, also across the wrap of the clock. If the clock was set back by up to 100 ms
+ * between the two edges, the width is 0, which is noise to pulse.h.
+ *
+ * No lock is needed, also on 8-bit machines. There is one writer (the interrupt, or several interrupts of one priority)
+ * and one reader (the main loop) on one core. What both sides access is single bytes, which every machine reads and
+ * writes whole.
  */
 enum {
-    FATHOM_EDGES_PULSES = 4, /* that wait to be taken; more are dropped and counted. A power of two */
-    FATHOM_EDGES_DEFAULT_SAME_US = 50
+    FATHOM_EDGES_PULSES = 4, /**< Pulses that can wait to be taken. Later pulses are lost and counted. */
+    FATHOM_EDGES_DEFAULT_SAME_US = 50 /**< Default of `same_us`. */
 };
 
+/** @brief A place in the ring of pulses. */
 typedef struct {
-    uint32_t width_us;
-    uint32_t end_us;
-    uint8_t rise; /* the number of its rise */
+    uint32_t width_us; /**< From its rising to its falling edge. */
+    uint32_t end_us;   /**< Time of its falling edge. */
+    bool is_full;      /**< A pulse waits here. Written last by either side. */
 } fathom_edges_pulse_t;
 
+/** @brief The state of one pin. The caller owns the memory; all members but `same_us` belong to the functions below. */
 typedef struct {
-    /* The interrupt's. */
+    /* Written by the interrupt. */
     volatile fathom_edges_pulse_t pulses[FATHOM_EDGES_PULSES];
-    uint32_t rise_us;
-    volatile uint8_t written; /* pulses so far; wraps */
-    volatile uint8_t rises;   /* so far; wraps */
-    volatile uint8_t lost;    /* pulses that found no free place; stops at 255 */
-    volatile uint8_t missed;  /* edges that must have been missed; stops at 255 */
-    volatile uint8_t high;    /* 1, or 0: low */
-    bool timed;               /* rise_us is the time of the rise */
+    uint32_t rise_us;        /**< Time of the last rise, if `is_timed`. */
+    volatile uint8_t lost;   /**< Pulses that found no free place; stops at 255. May be read. */
+    volatile uint8_t missed; /**< Edges that must have been missed; stops at 255. May be read. */
+    volatile bool is_high;   /**< Level after the last edge. */
+    bool is_timed;           /**< A pulse is in progress and `rise_us` is the time of its rise. */
+    uint8_t write_at;        /**< The place of the next pulse. */
+    volatile bool
+        was_armed; /**< `arm` was called since the last edge: set by the reader, reset by the interrupt. */
 
-    /* The reader's. */
-    const fathom_pin_t *pin;
-    volatile uint8_t taken; /* pulses so far; wraps */
-    uint8_t armed;          /* `rises` at arm */
+    /* Written by the reader. */
+    uint8_t read_at;         /**< The place of the oldest pulse, if there is one. */
+    const fathom_pin_t *pin; /**< NULL: the level is that of the last edge. */
 
-    /* The caller's to change before the interrupt is enabled. */
+    /** Time within which a second rise is the same rise, 0..65535 us. The caller may change it between
+     * fathom_edges_init() and the start of the interrupt. */
     uint16_t same_us;
 } fathom_edges_t;
 
-/*
- * Makes it ready. pin: where `get` tells the level at any time, or NULL; it outlives the edges. Without it the line
- * is taken as low until the first edge. To be called before the interrupt is enabled.
+/**
+ * @brief Initialises the state of a pin. Call it before the interrupt is enabled.
+ * @param edges  The memory; must stay valid while the interrupt is enabled.
+ * @param pin    A pin whose `get` reads the level at any time; must stay valid as long as `edges`. If `pin` is NULL, or
+ *               has no `get`, the line counts as low until the first edge, and later as the last edge left it.
  */
 void fathom_edges_init(fathom_edges_t *edges, const fathom_pin_t *pin);
 
-/*
- * An edge, for the interrupt to call: the level after it (of an interrupt on both edges: what the pin is when it is
- * read), and when it was, by the clock of the HAL or a counter of the hardware that agrees with it.
+/**
+ * @brief Stores an edge. Call it from the interrupt.
+ * @param high     The level after the edge. For an interrupt on both edges: the level that the pin has when it is read.
+ * @param time_us  Time of the edge, by the clock of the HAL or a counter that agrees with it.
  */
 void fathom_edges_feed(fathom_edges_t *edges, bool high, uint32_t time_us);
 
-/* For a fathom_pulse_config_t. arm and take belong to the main loop. */
+/** @brief Returns the capture for a fathom_pulse_config_t. Its functions must be called from the main loop only. */
 fathom_capture_t fathom_edges_capture(fathom_edges_t *edges);
+
+/** @brief Returns true if the next pulse would find no free place. For the writer. */
+static inline bool fathom_edges_is_full(const fathom_edges_t *edges)
+{
+    return edges->pulses[edges->write_at].is_full;
+}
 
 #ifdef __cplusplus
 }

@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "fathom/engine/transaction.h"
 #include "fathom/hal.h"
 #include "fathom/status.h"
 
@@ -12,290 +13,578 @@
 extern "C" {
 #endif
 
-/*
- * The one owner of a UART: a request is handed to it as a transaction, what only listens is registered as its listener,
- * and nothing else reads the port. Silence before a request, time-outs, damaged, late and foreign responses, echo, line
- * settings, retries, broadcasts and counters are kept here, once, for every protocol.
+/**
+ * @file
+ * @brief Owns one UART: sends requests one at a time and matches each response to its request.
  *
- * An image holds what a program names: fathom_line_init_listening makes a line without queue, transactions and
- * quarantine; the search for an echo, the port's marks and time stamps, and the counters are named by the config.
+ * A line carries the requests of any number of sensors, units and protocols over one UART. The line passes all bytes
+ * that belong to no request to a listener. The line never waits, never allocates memory, and keeps no state outside the
+ * structs that the caller passes to it. include/COST.md has its size and its time.
  *
- * It never waits, never allocates and keeps no state but in the structs below, which the caller owns. One
- * context only: no function of a line may be called from an interrupt, or from two tasks at once.
+ * @code
+ * static uint8_t frame[32];                                 // the line's as long as the line is used
+ * static const fathom_line_config_t config = {.uart = &uart, .clock = &clock,
+ *                                             .frame = frame, .frame_size = sizeof frame,
+ *                                             .echo = FATHOM_LINE_ECHO_OFF,
+ *                                             .silence_us = FATHOM_T3_5_US(9600, 10)};
+ * fathom_line_init(&line, &config);
+ * fathom_modbus_client_submit(&line, &request);             // modbus_client.h: puts the request in the queue
+ * while (request.transaction.status == FATHOM_PENDING) fathom_line_poll(&line);
+ * @endcode
  *
- * What it does with what comes in:
- *  - A response is complete by its length, at once; noise before it is dropped byte by byte.
- *  - A damaged response ends the attempt at the first gap after it.
- *  - A unit that did not respond in time is quarantined (line_turns.h), also one whose response was damaged or whose
- *    transaction was cancelled; other units are served meanwhile. A late response is counted and never taken for
- *    another's; it does serve a retry of the same transaction.
- *  - A transaction that has failed with retries left stays in the queue; other units come first.
- *  - Local echo: many RS-485 adapters hand back what they send. The config says whether this one does, or names
- *    find_echo: then the first transaction whose response cannot equal its request, a read, shows it. Until then a
- *    single copy of a write whose response equals its request (Modbus function 06, 55 AA 03) acknowledges nothing:
- *    FATHOM_ERR_ECHO. Where there is echo, such a write needs two copies. With a wrong config reads still succeed.
- *  - Among frames that a device sends by itself, requests leave in the silence right behind a frame. Once four bytes or
- *    more have come that belong to no transaction (those of a late response too), they leave only there: neither behind
- *    a response, for which the device may have delayed a frame, nor later in a silence, where they would meet the next
- *    frame. 65 ms of silence end that. So an HPS-167S that sends every 18.5 ms at 19200 8E1 can be read where bytes
- *    come in at once and silence_us is 2006: 7.4 ms of frame, 2 ms, 4.6 ms of request. Poll the line for 65 ms before
- *    the first request, and it has heard such a device.
+ * @note Call all functions of one line from one context: never from an interrupt, never from two tasks at once.
  *
- * The echo of a broadcast belongs to no transaction, and goes where such bytes go.
+ * Rules of behaviour:
  *
- * What cannot be told apart on a wire, and so is taken for the response: one that comes later than twice the
- * time-out; an unasked frame of exactly the shape that is waited for. Choose time-outs accordingly.
+ * 1. **Silence.** The line sends a request only after `silence_us` without a byte in either direction. The first
+ *    silence counts from fathom_line_init(). Rules 10 and 13 have the two exceptions.
+ *
+ * 2. **Response.** The line accepts a response as soon as its last byte arrives, without waiting for a gap. If noise
+ *    precedes the response, the line discards the noise byte by byte and still finds the response.
+ *
+ * 3. **Time-out.** A response must begin within `timeout_us` after the end of the request. A response that has begun
+ *    may finish within FATHOM_LINE_FINISH_US after that. If other bytes begin after the time-out, the attempt ends.
+ *
+ * 4. **Damage.** If a response of the unit is damaged or breaks off, the attempt ends at the first gap after it. The
+ *    line does not wait for the rest of the time-out. One or two bytes are noise: they end nothing.
+ *
+ * 5. **Quarantine.** After a time-out, a damaged response or a cancelled request, the response of the unit may still
+ *    arrive. The line sends that unit nothing until the response has arrived, or until twice the time-out has passed
+ *    since the end of the request. The line serves other units in the meantime. If several units are in quarantine,
+ *    all quarantines end with the latest of them.
+ *
+ * 6. **Late response.** If a response arrives during the quarantine, the line counts it. If the transaction that
+ *    requested it waits for a retry, the response ends that transaction with success. No other transaction gets it.
+ *
+ * 7. **Retries.** A failed transaction with retries left stays in the queue, and other units come first. Each retry is
+ *    an attempt of its own, with its own silence, time-out and counters.
+ *
+ * 8. **Echo.** Many RS-485 adapters return every byte that is sent through them. The config states whether this adapter
+ *    does, or names fathom_line_find_echo(), which learns it from the response to the first read. Reads succeed even if
+ *    the config is wrong; the echo of a broadcast goes to the listener.
+ *
+ * 9. **Echo of a write.** The response to some writes equals the request (Modbus function 06, `55 AA` command 03). If
+ *    the adapter echoes, such a write needs two copies. If it is not known whether the adapter echoes, one copy ends
+ *    the transaction with FATHOM_ERR_ECHO: the unit may have executed the write, and it is in quarantine. Submit a read
+ *    next: its response shows what was written, and the line learns from it whether the adapter echoes.
+ *
+ * 10. **Unsolicited frames.** If the config names `senders`: four or more bytes that no transaction accepts show that a
+ *     device sends by itself. From then on the line sends a request only in the silence directly after such a frame:
+ *     not after a response, and not later in a silence, where the request would collide with the next frame. If the
+ *     program polls too seldom to measure that silence, the line sends at once behind a complete frame. 65 ms of
+ *     silence end this rule. An unsolicited frame of the unit that has the shape of the response to the request on the
+ *     wire is accepted as that response; the counter FATHOM_LINE_MAYBE_UNSOLICITED counts such responses.
+ *
+ * 11. **Broken port.** If the port reports an error, all queued transactions end with FATHOM_ERR_PORT, whatever retries
+ *     they have left. Continue to call fathom_line_poll(): the line works again as soon as the port does.
+ *
+ * 12. **Limits.** Two kinds of frames cannot be distinguished from the response: a response that arrives later than
+ *     twice the time-out, and an unsolicited frame with exactly the shape of the response. Choose the time-out so that
+ *     no unit can respond after twice that time.
+ *
+ * 13. **Busy line.** A transaction waits for silence at most `busy_us`; each retry waits anew. After that, a read leaves
+ *     without silence if only noise was heard. If a complete frame was heard, or if the request changes something, the
+ *     transaction ends with FATHOM_ERR_LINE_BUSY and was not sent. If an attempt was sent without a measured silence
+ *     and fails, its error is FATHOM_ERR_LINE_BUSY too. While the caller holds TX low, the wait goes on.
+ *
+ * 14. **Age.** What a poll reads may be as old as the pause since the previous poll, unless the port dates the bytes
+ *     (FATHOM_RX_TIMED). If the pause exceeds the time-out of the request on the wire, or the `stale_us` of the
+ *     listener, by more than FATHOM_LINE_LATE_US, the line drops and counts what waits in the port. After
+ *     fathom_line_init() the line drops all bytes until the port was seen empty. Pauses of more than 71 minutes cannot
+ *     be seen: call fathom_line_flush() after them.
+ *
+ * 15. **Other masters.** If the config names `masters`: after another master's request the line sends nothing until the
+ *     unit has answered, at most for the time-out of the first transaction in the queue and at most for `busy_us`. If
+ *     the unit also owes us a response, or if it sends by itself, only the time ends this. If our own request to the
+ *     unit is on the wire, no frame can be assigned to it any more: the attempt ends with its time-out and
+ *     FATHOM_ERR_OTHER_MASTER. If only this line does not hear the foreign request, its answer can become our response.
+ *
+ * 16. **Bound.** If the program polls, each transaction ends. Alone on its line it ends within
+ *     (`retries` + 1) x (`busy_us` + 2 x FATHOM_LINE_SEND_US + `timeout_us` + FATHOM_LINE_FINISH_US) + `retries` x
+ *     `timeout_us`, plus one polling interval for each of these steps. The two FATHOM_LINE_SEND_US are for a port that
+ *     is busy and for one that does not finish sending. Behind n other transactions, add their bounds.
+ *
+ * A program contains only the parts that it names. A line of fathom_line_init_listening() links no queue, no
+ * transactions and no quarantine. Each part that the config names by a pointer is linked only then.
  */
 
-/* Zero-valued members of fathom_line_config_t mean these. */
-#define FATHOM_LINE_DEFAULT_SILENCE_US 4011 /* 3.5 characters of 11 bits at 9600 baud */
-#define FATHOM_LINE_DEFAULT_GAP_US     5000
+/** @brief Default of fathom_line_config_t::silence_us: 3.5 characters of 11 bits at 9600 baud, in microseconds. */
+#define FATHOM_LINE_DEFAULT_SILENCE_US 4011
 
-/* A port that refuses a request or the end of a break, or does not finish sending, for so long counts as broken. */
+/** @brief Default of fathom_line_config_t::gap_us, in microseconds. */
+#define FATHOM_LINE_DEFAULT_GAP_US 5000
+
+/** @brief Default of fathom_line_config_t::busy_us, in microseconds. */
+#define FATHOM_LINE_DEFAULT_BUSY_US 1000000u
+
+/**
+ * @brief Time in microseconds after which a port that does not respond counts as broken.
+ *
+ * The limit applies to a port that refuses a request, that does not finish sending, or that does not end a break.
+ */
 #define FATHOM_LINE_SEND_US 1000000u
 
-/*
- * The silence that ends a frame, t3.5 (MODBUS over Serial Line V1.02, 2.5.1.1; HPS-167S 2.2.3): 3.5
- * characters up to 19200 baud, 1750 us above. `bits` of a character, start, parity and stop bits included:
- * 10 for 8N1, 11 for 8E1, 8O1 and 8N2. Constant when its arguments are.
+/**
+ * @brief Time in microseconds for which a response that has begun may go on after the time-out (rule 3).
+ *
+ * The longest frame, 255 characters of 11 bits, takes 292 ms at 9600 baud.
+ */
+#define FATHOM_LINE_FINISH_US 300000u
+
+/** @brief How much later than fathom_line_due_us() a program may poll and loses nothing, in microseconds (rule 14). */
+#define FATHOM_LINE_LATE_US 500000u
+
+/**
+ * @brief Returns the silence that ends a frame (t3.5), in microseconds.
+ *
+ * The silence is 3.5 characters up to 19200 baud and 1750 us above (MODBUS over Serial Line V1.02, 2.5.1.1; HPS-167S
+ * 2.2.3). The result is a constant expression if both arguments are constants. Below 588 baud (11 bits a character) the
+ * silence does not fit into 16 bits: the result is 65535, and fathom_line_init() refuses it.
+ *
+ * @param baud  Baud rate in bits per second.
+ * @param bits  Bits of one character, including start, parity and stop bits: 10 for 8N1; 11 for 8E1, 8O1 and 8N2.
  */
 #define FATHOM_T3_5_US(baud, bits)                                                                           \
-    ((uint16_t)((baud) > 19200 ? 1750 : ((bits)*3500000uL + (baud)-1uL) / (baud)))
+    ((uint16_t)((baud) > 19200 ? 1750                                                                        \
+                               : (((bits)*3500000uL + (baud)-1uL) / (baud) > 65535uL                         \
+                                      ? 65535uL                                                              \
+                                      : ((bits)*3500000uL + (baud)-1uL) / (baud))))
 
-typedef struct fathom_transaction fathom_transaction_t;
+/** @brief A line (struct fathom_line). */
 typedef struct fathom_line fathom_line_t;
 
-/* Whether a line sends requests or only listens (line_turns.h). */
+/** @brief The functions in which a line that sends requests and a line that only listens differ (line_turns.h). */
 typedef struct fathom_line_kind fathom_line_kind_t;
 
-/*
- * What the line has to know of a protocol: pure functions. `transaction` is one
- * that names this protocol, `frame` the line's memory (frame_size bytes), `have` >= 1 how many received bytes stand at
- * its front. None changes a received byte. The table is const and outlives every line that has used it.
- */
-typedef struct {
-    /* Writes the request to `frame`; returns its length, 1..255. */
-    uint8_t (*encode)(const fathom_transaction_t *transaction, uint8_t *frame);
-    /* The length of the frame that begins here, 0: none does. More than `have`: so many bytes are needed to know. */
-    uint8_t (*length)(const uint8_t *frame, uint8_t have);
-    /* 0: the checksum of the `length` bytes, a whole frame or as many as the request has, is right. */
-    uint16_t (*check)(const uint8_t *frame, uint8_t length);
-    /* Do these bytes begin like the request, as a line with local echo brings it back? Where as many have come as the
-     * request has, the checksum decides. */
-    bool (*is_request)(const fathom_transaction_t *transaction, const uint8_t *frame, uint8_t have);
-    /* A whole frame with a right checksum, from the unit of the request: FATHOM_READY or FATHOM_ERR_EXCEPTION, it is
-     * the response, and the results are written; else it is not, and nothing is. */
-    fathom_status_t (*parse_response)(fathom_transaction_t *transaction, const uint8_t *frame);
-    uint8_t address_at; /* offset of the unit's address in a frame */
-    bool zero_answers;  /* unit 0 is a unit like the others, and not all of them */
-} fathom_protocol_t;
+/** @brief The part of a line for devices that send by themselves (rule 10). */
+typedef struct fathom_line_senders fathom_line_senders_t;
 
-/* Addresses with a meaning of their own. */
-enum {
-    FATHOM_LINE_ALL_UNITS = 0, /* a broadcast: no unit responds */
-    /* the first response is taken, whichever unit it is from; then all units are quarantined, as after a time-out */
-    FATHOM_LINE_ANY_UNIT = 255
-};
+/** @brief The part of a line for other masters (rule 15). */
+typedef struct fathom_line_masters fathom_line_masters_t;
 
-/*
- * One request and the response to it, in the caller's memory. Set the first five members and submit it; then
- * leave it alone until its status is no longer FATHOM_PENDING. It may be submitted again at once.
- */
-struct fathom_transaction {
-    const fathom_protocol_t *protocol;
-    /* Set before the request leaves; NULL: as they are. On a line where one transaction names them, all have to. */
-    const fathom_line_settings_t *line_settings;
-    /* From the end of the request to the first byte of the response. To all units: the turnaround, which they need
-     * before the next request; then it is READY. Up to 2^31 - 1, 35 minutes: a quarantine lasts twice that. */
-    uint32_t timeout_us;
-    /* Of the unit. Units whose addresses are equal modulo 16 share a quarantine: they may delay, never confuse, each
-     * other. */
-    uint8_t address;
-    uint8_t retries; /* further attempts after a failed one; 0..254 */
+/** @brief Name it in fathom_line_config_t::senders. */
+extern const fathom_line_senders_t fathom_line_senders;
 
-    uint8_t attempts; /* the line's: how often it was sent */
-    /*
-     * The line's: FATHOM_PENDING while it is queued, then FATHOM_READY, or
-     * FATHOM_ERR_NO_RESPONSE  nothing that could be the response came in time
-     * FATHOM_ERR_CHECKSUM     a response from the unit was damaged or broke off
-     * FATHOM_ERR_MALFORMED    the unit sent something else with a right checksum
-     * FATHOM_ERR_EXCEPTION    the unit refused; the number is in the request
-     * FATHOM_ERR_ECHO         one copy of the request came, and echo is not known yet; counts as NO_RESPONSE
-     * FATHOM_ERR_CANCELLED    by fathom_line_cancel
-     * FATHOM_ERR_UNSUPPORTED  the port cannot do line_settings; nothing was sent
-     * FATHOM_ERR_PORT         the HAL reported an error or did not send
-     */
-    int8_t status;
-    union {
-        fathom_transaction_t *next; /* the line's, while it is queued */
-        uint32_t heard_us;          /* when it has ended with a response: the clock when the last byte came */
-    } link;
-};
+/** @brief Name it in fathom_line_config_t::masters. */
+extern const fathom_line_masters_t fathom_line_masters;
 
-/* Takes the bytes that belong to no transaction. A node in the caller's memory. */
+/** @brief A listener (struct fathom_listener). */
 typedef struct fathom_listener fathom_listener_t;
+
+/** @brief Receives the bytes that belong to no transaction. In the caller's memory. */
 struct fathom_listener {
-    /*
-     * `count` bytes in the order in which they came; 0: the port reports that bytes were lost here. after_gap: what
-     * came before the first of them has ended, since the line was seen to be silent for at least gap_us, or a response
-     * to a transaction, or the echo of its request, stood there. time_us: the clock when the last of them came, as
-     * exact as the port or the polling; of bytes that were held back, because they could have begun a response, when
-     * the last byte of all came. Called within fathom_line_poll; it may not call the line.
+    /**
+     * @brief Called by fathom_line_poll() with received bytes. Must not call the line.
+     *
+     * @param listener   This listener.
+     * @param bytes      The received bytes in order of arrival. Valid only during the call.
+     * @param count      Number of bytes. 0 if the port reports that bytes were lost at this point; `time_us` is then
+     *                   the clock, and `after_gap` is false.
+     * @param after_gap  True if the bytes before `bytes[0]` belong to another frame. This is so if the line saw at
+     *                   least the listener's `gap_us` of silence there, or if a response or the echo of a request
+     *                   stood there.
+     * @param time_us    Clock at the arrival of `bytes[count - 1]`, in microseconds, as exact as the port's time stamps
+     *                   or the polling. If the line held the bytes back because they could have begun a response, this
+     *                   is the clock at the arrival of the newest byte.
      */
     void (*receive)(fathom_listener_t *listener, const uint8_t *bytes, uint8_t count, bool after_gap,
                     uint32_t time_us);
-    uint16_t gap_us; /* the silence that it needs to see; fathom_line_due_us() reckons with it */
-};
 
-/* Counters; each stops at 65535, and the user may set it to 0. A failed attempt counts at -status; a retry is an
- * attempt of its own. */
-enum {
-    FATHOM_LINE_RESPONSES = 0,
-    FATHOM_LINE_DROPPED_BYTES = 1, /* belonged to no frame, and no listener was there */
-    FATHOM_LINE_PORT_ERRORS = 2,
-    FATHOM_LINE_NO_RESPONSES = 3,
-    FATHOM_LINE_CHECKSUM_ERRORS = 4,
-    FATHOM_LINE_EXCEPTIONS = 5,
-    FATHOM_LINE_MALFORMED = 6,
-    FATHOM_LINE_LATE_RESPONSES = 7, /* from a quarantined unit */
-    FATHOM_LINE_STRAYS = 8,         /* whole frames that are no transaction's: another client's traffic */
-    /* dropped because the port had marked them: parity, framing. An overrun, whose bytes cannot be counted, is one */
-    FATHOM_LINE_BAD_BYTES = 9,
-    FATHOM_LINE_COUNTERS = 10
-};
-
-/* Whether the line hands back what is sent on it. */
-enum {
-    FATHOM_LINE_ECHO_AUTO = 0, /* not known */
-    FATHOM_LINE_ECHO_OFF = 1,
-    FATHOM_LINE_ECHO_ON = 2
-};
-
-/*
- * Const and the caller's; read at every call, so it outlives the line. The members from find_echo on name what a line
- * can do besides, NULL: it does not, and the image does not hold it.
- */
-typedef struct {
-    const fathom_uart_t *uart;
-    const fathom_clock_t *clock;
-    uint8_t *frame; /* where requests are built and responses gathered; the line's alone */
-    /* 8..255 bytes: the longest frame on this line. 13 for A16, A05 and HPS-167S distances; 27 for HPS-167S details;
-     * more lets longer foreign frames pass whole. */
-    uint8_t frame_size;
-    uint8_t echo; /* FATHOM_LINE_ECHO_OFF or _ON; _AUTO: find_echo finds it out. Read by init */
-    /* Kept before a request: FATHOM_T3_5_US(baud, bits) of the slowest settings that are used on the line; 0: 4011. */
-    uint16_t silence_us;
-    /* A frame is over when nothing came for so long. At least 1.5 characters, and more than a slow sender or port
-     * pauses: 25000 behind an operating system, whose USB adapters hold bytes back for 16 ms. 0: 5000. */
+    /** @brief Silence in microseconds that separates two frames for this listener. fathom_line_due_us() includes it. */
     uint16_t gap_us;
 
-    /* fathom_line_find_echo: the line finds out whether it echoes. */
-    void (*find_echo)(fathom_line_t *line, uint8_t echo);
-    /* fathom_line_marks: what the port reports with the bytes (fathom_rx_t) is used: when they came, a silence
-     * before them, wrong parity, a missing stop bit, an overrun. */
-    uint8_t (*marks)(fathom_line_t *line, const fathom_rx_t *rx, uint8_t count);
-    /* fathom_line_count: the line counts what happens in `counters`, FATHOM_LINE_COUNTERS of them, the caller's. */
-    void (*count)(fathom_line_t *line, uint8_t which, uint8_t by);
-    uint16_t *counters;
-} fathom_line_config_t;
-
-struct fathom_line {
-    uint8_t state;
-    uint8_t have;         /* bytes in the frame */
-    uint8_t need;         /* with fewer there is nothing to find */
-    uint8_t known;        /* of gaps, echo and frames of other senders, bit by bit */
-    uint8_t sent;         /* bytes of the request on the wire that a unit responds to; 0: there is none */
-    uint16_t quarantined; /* bit address % 16 (line_turns.h) */
-    uint16_t silent_us;   /* known silence since the last byte either way; stops at 65535 */
-    const fathom_line_config_t *config;
-    fathom_transaction_t *head; /* the queue; the one on the wire is first */
-    fathom_listener_t *listener;
-    const fathom_protocol_t *protocol; /* last used */
-    const fathom_line_kind_t *kind;
-    uint32_t polled_us;          /* the clock at the last poll */
-    uint32_t left_us;            /* of the present time-out */
-    uint32_t quarantine_left_us; /* until all quarantines end, where there are any */
+    /** @brief Greatest age of a byte in microseconds, at most 2^31 - 1 (rule 14). 0: any age. */
+    uint32_t stale_us;
 };
 
-/* What a config may name. They are the line's to call. */
+/**
+ * @brief Indices of the counters in fathom_line_config_t::counters.
+ *
+ * Each counter stops at 65535. The caller may set a counter to 0. A failed attempt increments the counter with the index
+ * `-status`. Each retry is an attempt of its own.
+ */
+enum {
+    FATHOM_LINE_RESPONSES = 0,       /**< Accepted responses. */
+    FATHOM_LINE_DROPPED_BYTES = 1,   /**< Bytes that belonged to no frame while no listener was set. */
+    FATHOM_LINE_PORT_ERRORS = 2,     /**< Errors of the port. */
+    FATHOM_LINE_NO_RESPONSES = 3,    /**< Attempts without a response. */
+    FATHOM_LINE_CHECKSUM_ERRORS = 4, /**< Attempts with a damaged or incomplete response. */
+    FATHOM_LINE_EXCEPTIONS = 5,      /**< Requests that a unit refused. */
+    FATHOM_LINE_MALFORMED = 6,       /**< Attempts in which the unit sent a frame that is not the response. */
+    FATHOM_LINE_LATE_RESPONSES = 7,  /**< Frames from a unit in quarantine. */
+    FATHOM_LINE_STRAYS = 8,          /**< Complete frames that belong to no transaction. */
+    FATHOM_LINE_BAD_BYTES = 9,  /**< Bytes with a parity or framing error. An overrun counts as one byte. */
+    FATHOM_LINE_OLD_BYTES = 10, /**< Bytes that were dropped because they may be too old (rule 14). */
+    FATHOM_LINE_ECHOES = 11,    /**< Attempts of which only one copy of a write arrived (rule 9). */
+    FATHOM_LINE_FOREIGN_REQUESTS = 12, /**< Requests of other masters (rule 15). */
+    FATHOM_LINE_MAYBE_UNSOLICITED =
+        13, /**< Those of the accepted responses that may be unsolicited (rule 10). */
+    FATHOM_LINE_BUSY_ATTEMPTS =
+        17, /**< Attempts that ended with FATHOM_ERR_LINE_BUSY, sent or not (rule 13). */
+    FATHOM_LINE_OTHER_MASTERS = 18, /**< Attempts that ended with FATHOM_ERR_OTHER_MASTER (rule 15). */
+    FATHOM_LINE_COUNTERS = 19       /**< Number of counters. 14 to 16 are unused. */
+};
+
+/** @brief What is known about local echo: whether the adapter returns the bytes that are sent. */
+enum {
+    FATHOM_LINE_ECHO_AUTO = 0, /**< Not known. In the config: fathom_line_find_echo() finds out. */
+    FATHOM_LINE_ECHO_OFF = 1,  /**< The adapter does not echo. */
+    FATHOM_LINE_ECHO_ON = 2    /**< The adapter echoes. */
+};
+
+/**
+ * @brief Configuration of a line. Const, in the caller's memory.
+ *
+ * The line reads the config at every call, so the config must stay valid as long as the line. A member that is 0 takes
+ * its default. The members from `find_echo` on, except for `counters` and `busy_us`, name optional parts: a part that
+ * is NULL is not linked.
+ */
+typedef struct {
+    /** @brief The UART that the line owns. Nothing else may read it or write to it. Needs `read`, `write`, `sent`. */
+    const fathom_uart_t *uart;
+
+    /** @brief The clock of the line. */
+    const fathom_clock_t *clock;
+
+    /** @brief Buffer for requests and responses, `frame_size` bytes. Only the line may use it, as long as the line. */
+    uint8_t *frame;
+
+    /**
+     * @brief Size of `frame` in bytes, 8 to 255: the longest frame on this line.
+     *
+     * 13 bytes suffice for the distances of A16, A05 and HPS-167S. 27 bytes suffice for the details of an HPS-167S. A
+     * larger buffer lets longer foreign frames pass undivided.
+     */
+    uint8_t frame_size;
+
+    /** @brief FATHOM_LINE_ECHO_OFF or _ON, or _AUTO together with `find_echo`. Read by fathom_line_init() and after an
+     * error of the port. */
+    uint8_t echo;
+
+    /**
+     * @brief Silence before a request, in microseconds, 1 to 65534. 0 selects FATHOM_LINE_DEFAULT_SILENCE_US.
+     *
+     * Use FATHOM_T3_5_US() with the slowest settings that are used on the line.
+     */
+    uint16_t silence_us;
+
+    /**
+     * @brief Silence that ends an incomplete frame, in microseconds, 100 to 65534. 0 selects
+     * FATHOM_LINE_DEFAULT_GAP_US.
+     *
+     * Choose at least 1.5 characters, and more than the pauses of a slow sender or port. Behind an operating system
+     * choose 25000, because USB adapters hold bytes back for 16 ms.
+     */
+    uint16_t gap_us;
+
+    /** @brief fathom_line_find_echo to find out whether the adapter echoes; else NULL. */
+    void (*find_echo)(fathom_line_t *line, uint8_t echo);
+
+    /**
+     * @brief fathom_line_marks to use what the port reports about the bytes (fathom_rx_t); else NULL.
+     *
+     * The port can report silence before the bytes, parity errors, framing errors and overruns. The line uses the time
+     * stamps of the port in any case.
+     */
+    uint8_t (*marks)(fathom_line_t *line, const fathom_rx_t *rx, uint8_t count);
+
+    /** @brief fathom_line_count to count events in `counters`; else NULL. */
+    void (*count)(fathom_line_t *line, uint8_t which, uint8_t by);
+
+    /** @brief Array of FATHOM_LINE_COUNTERS counters in the caller's memory. Needed if `count` is set. */
+    uint16_t *counters;
+
+    /**
+     * @brief The longest wait for silence before an attempt, in microseconds (rule 13): more than `silence_us`, at most
+     * 2^31 - 1. 0 selects FATHOM_LINE_DEFAULT_BUSY_US.
+     */
+    uint32_t busy_us;
+
+    /** @brief &fathom_line_senders if a device on this line may send by itself (rule 10); else NULL. */
+    const fathom_line_senders_t *senders;
+
+    /** @brief &fathom_line_masters if another master may use this line (rule 15); else NULL. */
+    const fathom_line_masters_t *masters;
+} fathom_line_config_t;
+
+/**
+ * @brief A phase of a line. A line is in exactly one phase at a time.
+ *
+ * src/engine/README.md has the transitions. Phases from FATHOM_LINE_PORT_BUSY on use the transaction at the head of the
+ * queue. Phases from FATHOM_LINE_SENDING on have that transaction on the wire.
+ */
+typedef enum {
+    FATHOM_LINE_IDLE = 0,         /**< No request is in progress. */
+    FATHOM_LINE_IN_BREAK = 1,     /**< The caller holds TX low. */
+    FATHOM_LINE_ENDING_BREAK = 2, /**< The break has ended, but the port has not released TX yet. */
+    FATHOM_LINE_DRAINING = 3,     /**< A cancelled request is still leaving the port. */
+    FATHOM_LINE_PORT_BUSY = 4, /**< The port was too busy to accept the request; the next poll tries again. */
+    FATHOM_LINE_SENDING = 5,   /**< The port has accepted the request and is sending it. */
+    FATHOM_LINE_WAITING = 6,   /**< The request has left; the response may arrive. */
+    FATHOM_LINE_FINISHING = 7 /**< The time-out has passed, but a frame had begun that may be the response. */
+} fathom_line_phase_t;
+
+/**
+ * @brief A line, in the caller's memory.
+ *
+ * All members are private. The one exception is a policy of line_turns.h, which may read `head`, `polled_us` and
+ * `quarantine_left_us`.
+ */
+struct fathom_line {
+    /* private: */
+
+    uint8_t phase;          /**< A fathom_line_phase_t. */
+    uint8_t received_count; /**< Number of received bytes at the beginning of the frame buffer. */
+    uint8_t passed_count;   /**< Number of these bytes that the listener has received already. */
+
+    /** @brief The attempt on the wire. Invariant: `request_length` and `fault` are 0 unless SENDING or WAITING. */
+    struct {
+        uint8_t
+            request_length; /**< Length of the request in bytes. 0 if no unit responds to it (a broadcast). */
+        uint8_t fault;      /**< The worst fault of what the unit has sent: enum fault of line_internal.h. */
+        uint8_t copy;       /**< What has arrived of the echo: enum copy of line_internal.h. */
+    } attempt;
+
+    /**
+     * @brief The silence before the next request, or before the request on the wire: enum wait of line_internal.h.
+     *
+     * Invariant: while a transaction waits in IDLE or IN_BREAK, `phase_left_us` is the rest of its wait.
+     */
+    uint8_t wait;
+
+    uint8_t echo;      /**< FATHOM_LINE_ECHO_AUTO, _OFF or _ON: what is known about local echo. */
+    bool is_after_gap; /**< For the listener: true if the next byte that it receives begins a new frame. */
+    uint8_t age;       /**< Whether the port may hold old bytes: enum age of line_internal.h. */
+
+    uint8_t slot;              /**< Where in the present silence the line is: enum slot of line_internal.h. */
+    uint8_t sender;            /**< Whether a device sends by itself: enum sender of line_internal.h. */
+    uint8_t unsolicited_count; /**< Bytes since the last response that belong to no transaction, 0 to 4. */
+
+    /** @brief The unit that owes another master an answer; FATHOM_LINE_ANY_UNIT: only the time ends this. Meaningless if
+     * `awaited_left_us` is 0. */
+    uint8_t awaited_unit;
+    bool is_answered;          /**< True if a frame arrived since the newest request of another master. */
+    uint8_t unrequested_count; /**< Frames in a row that no master had requested, 0 to 2. */
+
+    uint16_t quarantined_units; /**< Set of units in quarantine: bit (address modulo 16). */
+    uint16_t silent_us; /**< Silence since the last byte in either direction, in us; stops at 65535. */
+
+    const fathom_line_config_t *config; /**< NULL until the line is initialised. */
+    fathom_transaction_t *head;  /**< The queue. Invariant: the transaction on the wire is the first. */
+    fathom_listener_t *listener; /**< The listener, or NULL. */
+    const fathom_protocol_t
+        *protocol; /**< Of the newest request. Invariant: not NULL if a response can arrive. */
+    const fathom_line_kind_t *kind; /**< NULL until the line is initialised. */
+    uint32_t polled_us;             /**< The clock at the last poll. */
+
+    /** @brief Time left in the present phase, in us: the time-out, the time that the port has, or the wait. */
+    uint32_t phase_left_us;
+    /** @brief Time until all quarantines end, in us. */
+    uint32_t quarantine_left_us;
+    /** @brief Time until no unit owes another master an answer, in us. */
+    uint32_t awaited_left_us;
+};
+
+/**
+ * @brief Finds out whether the adapter echoes. Name it in fathom_line_config_t::find_echo; only the line calls it.
+ *
+ * @param line  The line.
+ * @param echo  FATHOM_LINE_ECHO_OFF or FATHOM_LINE_ECHO_ON, as the received bytes show.
+ */
 void fathom_line_find_echo(fathom_line_t *line, uint8_t echo);
+
+/**
+ * @brief Applies what the port reports with received bytes. Name it in fathom_line_config_t::marks; only the line
+ * calls it.
+ *
+ * @param line   The line.
+ * @param rx     The port's report on these bytes.
+ * @param count  Number of new bytes, which stand behind the bytes in the frame buffer.
+ * @return Number of the new bytes that remain; 0 if the port marked the bytes as bad.
+ */
 uint8_t fathom_line_marks(fathom_line_t *line, const fathom_rx_t *rx, uint8_t count);
+
+/**
+ * @brief Counts an event. Name it in fathom_line_config_t::count; only the line calls it.
+ *
+ * @param line   The line.
+ * @param which  Index of the counter, 0 to FATHOM_LINE_COUNTERS - 1.
+ * @param by     Amount that is added. The counter stops at 65535.
+ */
 void fathom_line_count(fathom_line_t *line, uint8_t which, uint8_t by);
 
-/*
- * Makes a line ready. FATHOM_READY, or FATHOM_ERR_ARGUMENT: uart, clock or frame is NULL, or frame_size under 8. The
- * first request waits for one silence.
+/**
+ * @brief Initialises a line that sends requests.
  *
- * init: a line for requests. The config says whether it echoes, or names find_echo, else FATHOM_ERR_ARGUMENT.
- * init_listening: a line that only listens: echo does not matter, and nothing that sends is linked.
+ * Any previous contents of `*line` are overwritten, and the line does not know what was in its queue before. End the
+ * transactions of a line with fathom_line_cancel() before you initialise it a second time.
+ *
+ * @param line    The line. Must stay valid until its last use.
+ * @param config  The configuration. Must stay valid as long as the line.
+ * @retval FATHOM_READY         The line can be used.
+ * @retval FATHOM_ERR_ARGUMENT  A member of the config or of its `uart` is outside its range, or `echo` is
+ *                              FATHOM_LINE_ECHO_AUTO and `find_echo` is NULL. Correct the config. Until then every
+ *                              function of this line returns FATHOM_ERR_ARGUMENT, false or FATHOM_NO_DEADLINE.
  */
 fathom_status_t fathom_line_init(fathom_line_t *line, const fathom_line_config_t *config);
+
+/**
+ * @brief Initialises a line that only listens: the listener receives all bytes.
+ *
+ * The program links nothing that sends. The member `echo` of the config has no effect.
+ *
+ * @param line    The line. Must stay valid until its last use.
+ * @param config  The configuration. Must stay valid as long as the line.
+ * @retval FATHOM_READY         The line can be used. Next, call fathom_line_listen().
+ * @retval FATHOM_ERR_ARGUMENT  A member of the config is outside its range. Correct the config.
+ */
 fathom_status_t fathom_line_init_listening(fathom_line_t *line, const fathom_line_config_t *config);
 
-/*
- * Puts a transaction at the end of the queue. FATHOM_PENDING: it is queued, and transaction->status tells the
- * rest. Nothing changed: FATHOM_ERR_BUSY, it is queued already; FATHOM_ERR_ARGUMENT, its timeout_us is over 2^31 - 1;
- * FATHOM_ERR_UNSUPPORTED, this line only listens.
+/**
+ * @brief Puts a transaction at the end of the queue.
+ *
+ * @param line         The line.
+ * @param transaction  The transaction. The line uses it until its status differs from FATHOM_PENDING.
+ * @retval FATHOM_PENDING          The transaction is queued. Call fathom_line_poll() until its status changes.
+ * @retval FATHOM_ERR_BUSY         The transaction is already queued. Nothing has changed.
+ * @retval FATHOM_ERR_ARGUMENT     `timeout_us` is above 2^31 - 1, `retries` is 255, or the line is not initialised.
+ *                                 Nothing has changed.
+ * @retval FATHOM_ERR_UNSUPPORTED  The line only listens. Nothing has changed.
  */
 fathom_status_t fathom_line_submit(fathom_line_t *line, fathom_transaction_t *transaction);
 
-/*
- * Takes a transaction out of the queue: it ends with FATHOM_ERR_CANCELLED, and its memory is the caller's
- * again. In flight too: the unit is then quarantined. Does nothing to one that is not queued.
+/**
+ * @brief Ends a transaction with FATHOM_ERR_CANCELLED and returns its memory to the caller.
+ *
+ * If the transaction is on the wire, the request still leaves the port completely, and the unit is quarantined because
+ * its response may still arrive. If the transaction is not queued, this function does nothing.
+ *
+ * @param line         The line.
+ * @param transaction  The transaction. The caller may reuse or free it after the call.
  */
 void fathom_line_cancel(fathom_line_t *line, fathom_transaction_t *transaction);
 
-/* The same for every transaction with this unit. */
+/**
+ * @brief Cancels every transaction with one unit, as fathom_line_cancel() does.
+ *
+ * @param line     The line.
+ * @param address  The address in the transactions, 0 to 255. FATHOM_LINE_ANY_UNIT cancels only the transactions with
+ *                 exactly that address.
+ */
 void fathom_line_cancel_unit(fathom_line_t *line, uint8_t address);
 
-/* Is it queued or in flight? */
+/**
+ * @brief Returns whether a transaction is queued or on the wire.
+ *
+ * @param line         The line.
+ * @param transaction  The transaction. The function compares only the pointer.
+ * @retval true   The transaction is the line's: do not change or free it.
+ * @retval false  The transaction is the caller's.
+ */
 bool fathom_line_has(const fathom_line_t *line, const fathom_transaction_t *transaction);
 
-/* Was nothing on the wire at the last poll: no request leaving, no response to come in its time, no part of a frame?
- * What is queued does not count. */
+/**
+ * @brief Returns whether nothing was on the wire at the last poll.
+ *
+ * @param line  The line.
+ * @retval true   No request was leaving, no response could arrive in time, and no part of a frame had arrived. Queued
+ *                transactions do not count.
+ * @retval false  At least one of these was the case. Poll again.
+ */
 bool fathom_line_is_idle(const fathom_line_t *line);
 
-/* Registers the listener, instead of the one before; NULL: none. It is the caller's, and outlives its registration. */
-void fathom_line_listen(fathom_line_t *line, fathom_listener_t *listener);
+/**
+ * @brief Sets the listener of a line that has none, or removes the listener.
+ *
+ * @param line      The line.
+ * @param listener  The listener, or NULL to remove the listener. Must stay valid until the line has another or none.
+ * @retval FATHOM_READY     The line has this listener, or none.
+ * @retval FATHOM_ERR_BUSY  The line has another listener, and nothing changed. Remove that one, or call
+ *                          fathom_line_replace_listener().
+ */
+fathom_status_t fathom_line_listen(fathom_line_t *line, fathom_listener_t *listener);
 
-/*
- * Holds TX low (true), or lets it go high again: the trigger, or the mode select, of a module whose input is our TX.
- * While it is low nothing is sent and transactions wait in the queue; after it the silence before a request is kept. It
- * is low until its end is FATHOM_READY, whatever fails meanwhile: also where a poll returned FATHOM_ERR_PORT and the
- * port works again, perhaps as another one whose TX is high.
- * FATHOM_READY: it is so now, also where it was.
- * FATHOM_PENDING: bytes of the port are still leaving; call again, 1 ms later say: no due_us reckons with it.
- * FATHOM_ERR_BUSY: it cannot begin, a transaction is on the wire.
- * FATHOM_ERR_UNSUPPORTED: the port has no set_break.
- * FATHOM_ERR_PORT: it is broken, or it has refused to end the break for FATHOM_LINE_SEND_US. Where a break does not end
- * that is an error of the line: every queued transaction has ended with it. Call again all the same, or TX stays low.
- * After all but READY it is as it was.
+/**
+ * @brief Sets the listener, whether the line has another one or not.
+ *
+ * @param line      The line.
+ * @param listener  The listener, or NULL for none. Must stay valid until the line has another or none.
+ * @return The previous listener, or NULL.
+ */
+fathom_listener_t *fathom_line_replace_listener(fathom_line_t *line, fathom_listener_t *listener);
+
+/**
+ * @brief Drops all bytes that have arrived so far, in the port and in the frame buffer.
+ *
+ * Call this function before the first poll after a sleep during which the clock may have wrapped or stood still.
+ *
+ * @param line  The line.
+ */
+void fathom_line_flush(fathom_line_t *line);
+
+/**
+ * @brief Holds TX low, or releases it.
+ *
+ * Some modules use our TX as a trigger or mode-select input. While TX is low, the line sends nothing. Transactions wait
+ * in the queue, at most for `busy_us` each (rule 13). After TX is released, the line keeps the silence before the next request. Once a break has begun,
+ * it lasts until a call with `on` false returns FATHOM_READY. This holds even if fathom_line_poll() returns
+ * FATHOM_ERR_PORT in between and the port returns as another device whose TX is high.
+ *
+ * @param line  The line.
+ * @param on    True to hold TX low, false to release it.
+ * @retval FATHOM_READY            TX is in the requested state.
+ * @retval FATHOM_PENDING          The port is still sending. Call again, for example after 1 ms; fathom_line_due_us()
+ *                                 does not include this.
+ * @retval FATHOM_ERR_BUSY         A transaction is on the wire, so the break cannot begin. Call again after it.
+ * @retval FATHOM_ERR_UNSUPPORTED  The port has no `set_break`.
+ * @retval FATHOM_ERR_PORT         The port is broken, or it did not release TX within FATHOM_LINE_SEND_US. If TX was to
+ *                                 be released, all queued transactions have ended with this error too. Continue to call
+ *                                 this function, or TX stays low.
  */
 fathom_status_t fathom_line_break(fathom_line_t *line, bool on);
 
-/*
- * Does all that can be done without waiting: reads what has come (at most 16 reads of the port), ends and
- * begins transactions. Call it often; at the latest every 71 minutes. Several users of one line may each call it.
- * Where a device sends by itself, sleep by due_us, and poll when bytes come: a loop that is slower than the pause
- * behind a frame sends into the next frame; and one in step with the device, whose every call comes right after a
- * frame, sees no silence at all and sends nothing.
- * FATHOM_PENDING, or FATHOM_ERR_PORT: the port is broken; every queued transaction has ended with that. Go on
- * polling and it works again when the port does.
+/**
+ * @brief Does all work that can be done without waiting: reads received bytes, ends and starts transactions.
+ *
+ * Call this function often, and at least every 71 minutes. One call reads the port at most 16 times. Several users of
+ * one line may each call it. A program that sleeps calls it when a byte arrives and after fathom_line_due_us().
+ *
+ * @param line  The line.
+ * @retval FATHOM_PENDING   The line works. The results are in the transactions.
+ * @retval FATHOM_ERR_ARGUMENT  The line is not initialised.
+ * @retval FATHOM_ERR_PORT  The port is broken, and every queued transaction has ended with this error. Continue to
+ *                          poll: the line works again as soon as the port does.
  */
 fathom_status_t fathom_line_poll(fathom_line_t *line);
 
-/*
- * How long from now until poll has something to do if no byte comes, in microseconds; FATHOM_NO_DEADLINE
- * when only a byte or a submit can bring that. While the port is sending, or takes no request, it is the port's
- * leaves_in_us (hal.h); where that is not known, 1000 after the last poll: not every port can report the end of sending
- * by an event.
+/**
+ * @brief Returns the time in microseconds until fathom_line_poll() must be called again if no byte arrives.
+ *
+ * While the port sends, or is too busy to accept a request, the time is the port's `leaves_in_us` (hal.h). If the port
+ * does not know that time, this function returns the time until 1 ms after the last poll.
+ *
+ * @param line  The line.
+ * @retval FATHOM_NO_DEADLINE  Only a received byte or a new transaction can change anything. Poll at least every 71
+ *                             minutes all the same.
  */
 uint32_t fathom_line_due_us(const fathom_line_t *line);
 
-/* What is known of local echo: what the config says or what was found out last; FATHOM_LINE_ECHO_AUTO: nothing yet. */
+/**
+ * @brief Returns what is known about local echo.
+ *
+ * @param line  The line.
+ * @retval FATHOM_LINE_ECHO_AUTO  Not known yet.
+ * @retval FATHOM_LINE_ECHO_OFF   The adapter does not echo: by the config, or as received bytes showed.
+ * @retval FATHOM_LINE_ECHO_ON    The adapter echoes: by the config, or as received bytes showed.
+ */
 uint8_t fathom_line_echo(const fathom_line_t *line);
 
-/* The clock when the last byte came, exact to the port's time stamps or to the polling, for 65 ms after it. */
+/**
+ * @brief Returns the clock at the arrival of the last byte, in microseconds.
+ *
+ * @param line  The line.
+ * @return The clock, as exact as the port's time stamps or the polling. Valid for 65 ms after that byte.
+ */
 uint32_t fathom_line_heard_us(const fathom_line_t *line);
 
 #ifdef __cplusplus

@@ -15,6 +15,8 @@ extern "C" {
  *  1. The value is read. If it is the wanted one, nothing is written: flash wears. But where the last write of this
  *     setting did not read back, it is written: until the next power-on a device may report the value that it works
  *     with, and keep another.
+ *     FATHOM_ERR_LINE_BUSY and FATHOM_ERR_OTHER_MASTER prove nothing: before the write they end the setting, and nothing
+ *     is written. After the write they are no confirmation.
  *  2. Where the setting has an address (the new one, or with new line settings also the present one), a read there
  *     shows whether a unit responds already, and whether the port can do the line settings; that costs a time-out.
  *  3. The value is written, once: a write is never retried.
@@ -25,7 +27,14 @@ extern "C" {
  * A blind setting (fathom_modbus_next_is_blind) is the third step alone: for a device whose responses cannot be
  * understood. The one after it is not blind, however this one ends.
  *
- * The measurement rests meanwhile: fathom_poll is FATHOM_PENDING.
+ * The measurement rests meanwhile: fathom_poll is FATHOM_PENDING. If the setting is begun and never called again, it gives
+ * way to the next call of another function after FATHOM_MODBUS_ABANDONED_US (modbus_unit.h, rule 5); the value may then be
+ * set or not.
+ *
+ * A setting has at most 5 requests: the read, the probe, the write, and the read at the new and at the old place. With the
+ * time C of one command (modbus_unit.h) and a `read` of one request it ends at the latest after
+ *
+ *     4 C + period_us + B(command_timeout_us, 0) + S + P
  */
 typedef struct fathom_modbus_setting fathom_modbus_setting_t;
 struct fathom_modbus_setting {

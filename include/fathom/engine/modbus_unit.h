@@ -11,155 +11,313 @@
 extern "C" {
 #endif
 
-/* How a driver reaches its sensor: what the configs of all Modbus drivers have in common. Read by init only; the
- * transport, its clock and the line settings outlive the sensor. Members that are 0 mean their defaults. */
-typedef struct {
-    const fathom_modbus_t *transport; /* modbus_client.h, dyp_client.h, or a port's */
-    /* Where those on one line differ (line.h); NULL: as they are. */
-    const fathom_line_settings_t *line_settings;
-    uint32_t period_us;  /* from one measurement to the next; 0 and anything less: the driver's least */
-    uint32_t timeout_us; /* of a measurement; 0: the driver's */
-    uint32_t command_timeout_us; /* of all other requests; 0: 1 s */
-    uint32_t backoff_us;         /* the longest back-off; 0: 16 time-outs; up to 2^31 */
-    uint8_t address;             /* 1..254; 0: 1, the factory's */
-    /* It is at address 0 and responds there; `address` is 0. It can be read, not set. For A16 and A05 by Modbus. */
-    bool address_zero;
-    uint8_t retries; /* after a failed attempt, of what only reads; 0: none */
-} fathom_modbus_config_t;
+/**
+ * @file
+ * @brief One Modbus unit as a driver uses it: one request at a time, paced, each result delivered once.
+ *
+ * The Modbus drivers are built on this file. A program needs only fathom_modbus_config_t and the rules below.
+ *
+ * Rules of behaviour:
+ *
+ * 1. **Two kinds of request.** The repeated request (a measurement, of fathom_poll()) is sent again and again, and a
+ *    newer result may replace an older one. A command (a function such as fathom_hps167s_details()) is sent once, and
+ *    its result waits for its caller. modbus_setting.h builds settings from several commands.
+ *
+ * 2. **Pace.** `period_us` or the driver's least period passes from one request to the next. A retry leaves when the
+ *    line sends it; the period counts from the last retry.
+ *
+ * 3. **Back-off.** After the third time-out in a row the repeated request pauses for one time-out, then for two, four,
+ *    eight and sixteen, at most `backoff_us`. A dead unit then takes little time from the others. Any response of the
+ *    unit, even a damaged one, ends the back-off. FATHOM_ERR_LINE_BUSY and FATHOM_ERR_OTHER_MASTER prove nothing about
+ *    the unit: the count of time-outs stays, and the same pause follows again. A command is sent in spite of a back-off.
+ *
+ * 4. **Power-on.** After `..._power_on()`, FATHOM_ERR_NO_RESPONSE, FATHOM_ERR_CHECKSUM and FATHOM_ERR_EXCEPTION are
+ *    reported as FATHOM_ERR_WARMING_UP until the start-up time has passed. FATHOM_ERR_LINE_BUSY and
+ *    FATHOM_ERR_OTHER_MASTER are reported unchanged: a starting unit causes neither, so waiting would not cure them.
+ *
+ * 5. **An abandoned command ends.** While a command or setting is unfinished, or its result was not fetched,
+ *    fathom_poll() returns FATHOM_PENDING and other commands return FATHOM_ERR_BUSY. If its function is not called for
+ *    FATHOM_MODBUS_ABANDONED_US and for FATHOM_MODBUS_ABANDONED_POLLS calls of other functions of the driver, the next
+ *    call of another function cancels it (fathom_modbus_unit_cancel()) and proceeds. The abandoned function starts
+ *    again when it is called the next time.
+ *
+ * 6. **A forgotten request ends.** If the line is initialised again while a request of the driver is queued, the request
+ *    ends with FATHOM_ERR_CANCELLED.
+ *
+ * The longest time until an outcome, if the program polls every P microseconds:
+ *
+ *     B(t, r)   bound of one transaction with the time-out t and r retries, alone on its line (line.h)
+ *     S         sum of the bounds of the line's n other queued transactions; other drivers have one each
+ *
+ *     fathom_poll()   period_us + least(16 * timeout_us, backoff_us) + B(timeout_us, retries) + S + P
+ *     a command       period_us + B(timeout_us, retries) + B(command_timeout_us, retries) + 2 S + 2 P
+ *
+ * A command waits for a measurement that is on the wire. While commands or settings run, fathom_poll() waits for them
+ * as well. If one is abandoned, that adds greatest(FATHOM_MODBUS_ABANDONED_US, FATHOM_MODBUS_ABANDONED_POLLS * P).
+ */
 
+/** @brief Default of fathom_modbus_config_t::command_timeout_us: 1 s. */
 #define FATHOM_MODBUS_DEFAULT_COMMAND_TIMEOUT_US 1000000uL
 
-/*
- * One Modbus unit as a driver deals with it: one request at a time, no faster than the device can, and each
- * outcome handed over once. The Modbus drivers are built on it; their users need not know it.
+/** @brief Time in microseconds after which a command whose caller does not call may be cancelled (rule 5): 5 s. */
+#define FATHOM_MODBUS_ABANDONED_US 5000000uL
+
+/** @brief Number of calls of other functions that must also have passed, so that slow loops keep their command. */
+#define FATHOM_MODBUS_ABANDONED_POLLS 16u
+
+/**
+ * @brief Connection of a Modbus driver to its sensor: the part of the config that all Modbus drivers share.
  *
- * Back-off: a silent unit gets fewer and fewer requests, so that it does not take the line from the others. After the
- * third time-out in a row the repeated request pauses for one time-out, then for two, four, eight, sixteen. The first
- * response, whatever it is, ends that. A command is sent at once all the same.
- *
- * There are two kinds of request, told apart by their id. The repeated one (a measurement) comes again and again, and
- * its outcome may be replaced by a newer one. A command is sent once, and its outcome waits for its caller. Both may be
- * reads or writes; modbus_setting.h has the settings of a device, which take several of them. From one request to the
- * next passes the period at least; retries come when the line sends them, and the period counts from the last of them.
+ * The driver's init function copies the config. The transport, its clock and the line settings must stay valid as long
+ * as the driver. A member that is 0 takes its default. The init function returns FATHOM_ERR_ARGUMENT if a member is
+ * outside its range.
  */
 typedef struct {
-    /* The driver's: registers of a read are written on FATHOM_READY only, those of a write of many read when it leaves.
-     * NULL: there are none, as of a write of one. */
+    /** @brief The transport: fathom_modbus_client(), fathom_dyp_client(), or that of a port. Not NULL. */
+    const fathom_modbus_t *transport;
+
+    /** @brief Line settings of this unit, if those of the units on one line differ (line.h); NULL: unchanged. */
+    const fathom_line_settings_t *line_settings;
+
+    /** @brief Time from one measurement to the next in microseconds, 0 to 2^31 - 1. At least the driver's period. */
+    uint32_t period_us;
+
+    /** @brief Time-out of a measurement in microseconds, 1 to 2^31 - 1. 0 selects the driver's default. */
+    uint32_t timeout_us;
+
+    /** @brief Time-out of all other requests in microseconds, 1 to 2^31 - 1. 0 selects 1 s. */
+    uint32_t command_timeout_us;
+
+    /** @brief Longest back-off in microseconds, 1 to 2^31 - 1. 0 selects 16 time-outs. */
+    uint32_t backoff_us;
+
+    /** @brief Address of the unit, 1 to 254. 0 selects 1, the factory setting. HPS-167S: 1 to 32. */
+    uint8_t address;
+
+    /**
+     * @brief True if the unit is at address 0 and responds there; `address` is 0 then.
+     *
+     * Such a unit can be read but not set. For A16 and A05 by Modbus only.
+     */
+    bool address_zero;
+
+    /** @brief Number of retries after a failed read, 0 to 254. Writes are never retried. */
+    uint8_t retries;
+} fathom_modbus_config_t;
+
+/** @brief A request of a driver. */
+typedef struct {
+    /**
+     * @brief The registers, in the driver's memory.
+     *
+     * The registers of a read are written on FATHOM_READY only. Those of function 10 are read when the request leaves.
+     * NULL for function 06.
+     */
     uint16_t *values;
-    uint16_t first;   /* address of the first register */
-    uint16_t last;    /* how many registers, 1..125, to write many 1..123; or the value to write one */
-    uint8_t function; /* FATHOM_MODBUS_READ_HOLDING_REGISTERS or one of the two that write */
-    uint8_t id; /* tells a driver's requests apart: 1..127 repeated, from FATHOM_MODBUS_COMMAND a command */
+    /** @brief Address of the first register. */
+    uint16_t first;
+    /** @brief Number of registers: 1 to 125 to read, 1 to 123 to write. Function 06: the value. */
+    uint16_t last;
+    /** @brief FATHOM_MODBUS_READ_HOLDING_REGISTERS or one of the two functions that write. */
+    uint8_t function;
+    /** @brief Identifies the request within its driver: 1 to 127 repeated, from FATHOM_MODBUS_COMMAND a command. */
+    uint8_t id;
 } fathom_modbus_unit_request_t;
 
+/** @brief The least id of a command. */
 enum { FATHOM_MODBUS_COMMAND = 0x80 };
 
-/* The bytes first, where small machines reach them best. */
+/**
+ * @brief One Modbus unit, in the driver's memory. Initialise with fathom_modbus_unit_init().
+ *
+ * The bytes come first, where small machines reach them best. In zeroed memory `transport` is NULL, and each function
+ * returns FATHOM_ERR_ARGUMENT or does nothing.
+ */
 typedef struct {
+    /** @brief 0: no request; 1: a request is queued or on the wire; 2: its result was not fetched. */
     uint8_t state;
-    uint8_t current;         /* id of the present request; 0: none yet */
-    uint8_t waiting;         /* id of the command that waits for its turn; 0: none */
-    int8_t transport_status; /* of its last poll */
-    uint8_t attempts;        /* of the present request that were seen to leave */
-    uint8_t timeouts_in_row; /* outcomes in a row that were FATHOM_ERR_NO_RESPONSE, as far as they matter */
-    uint8_t retries;         /* as in fathom_modbus_config_t */
-    uint8_t address;         /* 0..254; what is written to 0 goes to all units */
+    /** @brief Id of the newest request; 0: none yet. */
+    uint8_t current;
+    /** @brief Id of the command that waits until it may be sent; 0: none. */
+    uint8_t waiting;
+    /** @brief Result of the last call of the transport's `poll`. */
+    int8_t transport_status;
+    /** @brief Number of attempts of the present request at the last poll. */
+    uint8_t attempts;
+    /** @brief Number of time-outs in a row, 0 to 7. */
+    uint8_t timeouts_in_row;
+    /** @brief As in fathom_modbus_config_t. */
+    uint8_t retries;
+    /** @brief Address of the unit, 0 to 254. A write to address 0 reaches all units. */
+    uint8_t address;
 
-    /* modbus_setting.h: */
-    uint8_t setting; /* the id of the write that is carried out; 0: none */
-    uint8_t step;    /* with FATHOM_MODBUS_UNIT_IN_SETTING, FATHOM_MODBUS_UNIT_ONCE */
-    int8_t outcome;  /* of the write */
+    /** @brief Id of the write of the setting in progress; 0: none. This and the next members: modbus_setting.h. */
+    uint8_t setting;
+    /** @brief Step of the setting in progress (modbus_setting.c). */
+    uint8_t step;
+    /** @brief True while a call belongs to the setting in progress. Invariant: false between two calls of the driver. */
+    bool is_in_setting;
+    /** @brief Result of the write. */
+    int8_t outcome;
+    /** @brief Address of the unit when the setting began. */
     uint8_t known_address;
-    /* Id of the setting that was written last, and was acknowledged or read as another value before; 0: none. */
+    /** @brief Id of the newest setting that was acknowledged or read as another value before; 0: none. */
     uint8_t last_written;
-    bool is_written;             /* the write of the last setting has been handed to the line */
-    bool is_blind;               /* the next setting is, or the present one */
-    uint16_t last_written_value; /* of it */
-    uint16_t unconfirmed;        /* bit id % 16: was written and has not read back since; until power-on */
+    /** @brief True if the write of the newest setting was passed to the line. */
+    bool is_written;
+    /** @brief True if the next setting, or the setting in progress, is blind. */
+    bool is_blind;
+    /** @brief The value of `last_written`. */
+    uint16_t last_written_value;
+    /** @brief Bit (id modulo 16): this setting was written and has not read back since, until power-on. */
+    uint16_t unconfirmed;
 
-    uint16_t responses; /* outcomes that are FATHOM_READY; stops at 65535 */
-    uint16_t failures;  /* the others; stops at 65535 */
+    /** @brief Number of requests that ended with FATHOM_READY; stops at 65535. */
+    uint16_t responses;
+    /** @brief Number of requests that failed, retries included; stops at 65535. */
+    uint16_t failures;
+    /** @brief The transport. Invariant: NULL unless init has returned FATHOM_READY. */
     const fathom_modbus_t *transport;
-    const fathom_line_settings_t *line_settings;       /* where the device is now; NULL: as the line is */
-    const fathom_line_settings_t *known_line_settings; /* where it was, while a setting moves it */
+    /** @brief Present line settings of the unit; NULL: those of the line. */
+    const fathom_line_settings_t *line_settings;
+    /** @brief Line settings of the unit when the setting began. */
+    const fathom_line_settings_t *known_line_settings;
+    /** @brief The clock at the last poll, in microseconds. */
     uint32_t polled_us;
-    uint32_t pause_us;        /* until the next request may be sent */
-    uint32_t backoff_left_us; /* until the repeated request may be sent again */
-    uint32_t warm_us;         /* after power-on: until silence is an error */
-    uint32_t timeout_us;      /* this and the next three as in fathom_modbus_config_t, without zeros */
-    uint32_t command_timeout_us;
-    uint32_t pace_us;
-    uint32_t backoff_us;
+    /** @brief Time until the next request may be sent, in microseconds. */
+    uint32_t pause_us;
+    /** @brief Time until the repeated request may be sent again, in microseconds. */
+    uint32_t backoff_left_us;
+    /** @brief Rest of the start-up time after power-on, in microseconds. */
+    uint32_t warm_us;
+    /**
+     * @brief Time until the present command counts as abandoned, in microseconds (rule 5).
+     *
+     * One poll takes at most 1/16 of FATHOM_MODBUS_ABANDONED_US off it. Meaningless if there is no command.
+     */
+    uint32_t abandoned_in_us;
+    /** @brief As in fathom_modbus_config_t, with the defaults filled in. */
+    uint32_t timeout_us;
+    uint32_t command_timeout_us; /**< @copydoc timeout_us */
+    uint32_t pace_us;            /**< @copydoc timeout_us */
+    uint32_t backoff_us;         /**< @copydoc timeout_us */
+    /** @brief The request of the transport. */
     fathom_modbus_request_t request;
 } fathom_modbus_unit_t;
 
-/* In `step`: the present request belongs to the setting that is carried out; it is its write, sent once. */
-enum { FATHOM_MODBUS_UNIT_IN_SETTING = 8, FATHOM_MODBUS_UNIT_ONCE = 16 };
-
-/* timeout_us and pace_us: the driver's time-out where the config says 0, and its least period. FATHOM_READY, or
- * FATHOM_ERR_ARGUMENT: no transport, or it has no clock; the address is 255 (any unit), or is set beside
- * address_zero. */
+/**
+ * @brief Initialises a unit.
+ *
+ * On FATHOM_ERR_ARGUMENT the unit is zeroed. On FATHOM_ERR_BUSY nothing has changed.
+ *
+ * @param unit        The unit.
+ * @param config      The config, copied.
+ * @param timeout_us  Default of `config->timeout_us`.
+ * @param pace_us     The driver's least period in microseconds.
+ * @retval FATHOM_READY         The unit can be used.
+ * @retval FATHOM_ERR_ARGUMENT  A member of the config is outside its range, or the transport has no clock.
+ * @retval FATHOM_ERR_BUSY      The request of this unit is still queued. Call the driver's deinit function first.
+ */
 fathom_status_t fathom_modbus_unit_init(fathom_modbus_unit_t *unit, const fathom_modbus_config_t *config,
                                         uint32_t timeout_us, uint32_t pace_us);
 
-/*
- * Lets time pass and the transport work. Each function of a driver that sends requests calls it first, once and not
- * from within others: below it the stack is deepest.
+/**
+ * @brief Returns true if the request of this unit is still queued, so that its memory must not be changed.
+ *
+ * `*unit` may be uninitialised: the function compares only its address.
+ */
+bool fathom_modbus_unit_is_queued(const fathom_modbus_unit_t *unit, const fathom_modbus_config_t *config);
+
+/**
+ * @brief Polls the transport and advances all deadlines.
+ *
+ * Each function of a driver that sends requests calls this function first and once, because the stack is deepest in it.
  */
 void fathom_modbus_unit_poll(fathom_modbus_unit_t *unit);
 
-/*
- * Sends the request, or goes on with it, after fathom_modbus_unit_poll: call both, with a request of the same id, until
- * it is not FATHOM_PENDING.
- * FATHOM_READY or the error with which the request ended (fathom_transaction_t), each outcome once: where two callers
- * have the same request, also as the first one of a setting, the one that calls next gets it, and the other begins
- * anew.
- * FATHOM_ERR_BUSY: another command or setting is not finished, or its outcome was not taken.
- * FATHOM_ERR_WARMING_UP: so soon after power-on the unit was silent, was not understood or refused.
- * FATHOM_ERR_ARGUMENT, FATHOM_ERR_CAPACITY: as fathom_modbus_t.submit. FATHOM_ERR_PORT: the last poll returned
- * it, and nothing was sent.
+/**
+ * @brief Sends a request, or continues with it. Call fathom_modbus_unit_poll() before.
+ *
+ * Call both functions with a request of the same id until the result differs from FATHOM_PENDING. Each result is
+ * delivered once. If two callers have the same request, the first to call receives the result, and the other starts
+ * again.
+ *
+ * @retval FATHOM_READY           The unit responded. `values` are written.
+ * @retval FATHOM_PENDING         The request is not finished, or may not be sent yet.
+ * @retval FATHOM_ERR_BUSY        Another command or setting is unfinished, or its result was not fetched (rule 5).
+ * @retval FATHOM_ERR_WARMING_UP  The unit failed so soon after power-on (rule 4).
+ * @retval FATHOM_ERR_ARGUMENT    The unit is not initialised, or as fathom_modbus_t::submit.
+ * @retval FATHOM_ERR_CAPACITY    As fathom_modbus_t::submit.
+ * @retval FATHOM_ERR_PORT        The port is broken. Nothing was sent.
+ * @return All other values: the error with which the request ended (fathom_transaction_t).
  */
 fathom_status_t fathom_modbus_unit_ask(fathom_modbus_unit_t *unit,
                                        const fathom_modbus_unit_request_t *request);
 
-/* Forgets the request and any outcome; a request under way is cancelled. A setting that was under way may be set or
- * not; the unit is looked for where it was before. */
+/**
+ * @brief Cancels the request and forgets its result.
+ *
+ * A setting in progress may be set or not; the unit uses its former address and line settings again.
+ */
 void fathom_modbus_unit_cancel(fathom_modbus_unit_t *unit);
 
-/* The device gets power now: the request is forgotten, and for warm_us (up to 2^31) its silence, damaged responses
- * and exceptions are FATHOM_ERR_WARMING_UP. */
+/**
+ * @brief Records that another setting or command waits no longer for an abandoned one (rule 5).
+ *
+ * @retval true   There is no unfinished command or setting, or it was abandoned and is cancelled now.
+ * @retval false  A command or setting is in progress.
+ */
+bool fathom_modbus_unit_give_way(fathom_modbus_unit_t *unit);
+
+/** @brief Records that the caller of the present command or setting has called (rule 5). */
+static inline void fathom_modbus_unit_keep(fathom_modbus_unit_t *unit)
+{
+    unit->abandoned_in_us = FATHOM_MODBUS_ABANDONED_US;
+}
+
+/**
+ * @brief Records that the sensor is powered now: cancels the request and starts the start-up time.
+ *
+ * @param unit     The unit.
+ * @param warm_us  The start-up time in microseconds, at most 2^32 - 1 (rule 4).
+ */
 void fathom_modbus_unit_power_on(fathom_modbus_unit_t *unit, uint32_t warm_us);
 
-/* Is it so soon after power-on? As of the last call. */
+/** @brief Returns true if the start-up time had not passed at the last call. */
 static inline bool fathom_modbus_unit_is_warming_up(const fathom_modbus_unit_t *unit)
 {
     return unit->warm_us != 0u;
 }
 
-/* The exception code of the response that came last, FATHOM_MODBUS_ILLEGAL_FUNCTION or another; 0: it was none. Valid
- * after FATHOM_ERR_EXCEPTION, until the next request. */
+/** @brief Returns the exception code of the last response, valid after FATHOM_ERR_EXCEPTION until the next request. */
 static inline uint8_t fathom_modbus_unit_exception(const fathom_modbus_unit_t *unit)
 {
     return unit->request.message.exception;
 }
 
-/* How many requests ended with FATHOM_READY, and how many otherwise, retries included; each stops at 65535. */
+/** @brief Returns the number of requests that ended with FATHOM_READY; stops at 65535. */
 static inline uint16_t fathom_modbus_unit_responses(const fathom_modbus_unit_t *unit)
 {
     return unit->responses;
 }
+
+/** @brief Returns the number of requests that failed, retries included; stops at 65535. */
 static inline uint16_t fathom_modbus_unit_failures(const fathom_modbus_unit_t *unit)
 {
     return unit->failures;
 }
 
-/* The clock when the last byte of the response came; until the next request. */
+/** @brief Returns the clock at the last byte of the response, in microseconds. Valid until the next request. */
 static inline uint32_t fathom_modbus_unit_heard_us(const fathom_modbus_unit_t *unit)
 {
     return unit->request.transaction.link.heard_us;
 }
 
-/* How long, in us, until poll has something to do without a new byte, given that the request is repeated. */
+/**
+ * @brief Returns the time in microseconds until the driver must be polled again if no byte arrives.
+ *
+ * The time assumes that the repeated request is sent again. 0 for a unit that is not initialised.
+ */
 uint32_t fathom_modbus_unit_due_us(const fathom_modbus_unit_t *unit);
 
 #ifdef __cplusplus

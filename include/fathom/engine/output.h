@@ -2,7 +2,6 @@
 #ifndef FATHOM_OUTPUT_H
 #define FATHOM_OUTPUT_H
 
-#include <stddef.h>
 #include <stdint.h>
 
 #include "fathom/hal.h"
@@ -12,36 +11,50 @@
 extern "C" {
 #endif
 
-/*
- * What drives the RX pin of a module, its trigger or its mode select: a pin, a break on the TX of a UART that is used
- * for nothing else, or a break of a line (line_pins.h). A driver takes it by value:
+/**
+ * @file
+ * @brief An output that drives the RX pin of a module: its trigger or its mode select.
  *
- *   config.trigger = fathom_output_pin(&pin);
- *   static const fathom_a16_auto_config_t config = {.line = &line, .select = {fathom_output_set_pin, &pin}};
+ * The output is a pin, a break on the TX of a UART that has no other use, or a break of a line (line_pins.h). A driver
+ * copies the fathom_output_t:
+ *
+ *     config.trigger = fathom_output_pin(&pin);
+ *     static const fathom_a16_auto_config_t config = {.line = &line, .select = {fathom_output_set_pin, &pin}};
  */
+
+/** @brief What an output is set to. */
 enum {
-    FATHOM_OUTPUT_HIGH = 0,
-    FATHOM_OUTPUT_LOW = 1,
-    /* High, before anything was low: a pin is set. Of a TX, which is
-     * high where no break holds it, it is only checked that it can be held low. */
+    FATHOM_OUTPUT_HIGH = 0, /**< High. A break ends. */
+    FATHOM_OUTPUT_LOW = 1,  /**< Low. A break begins. */
+    /** High, at initialisation. A pin is driven high. A TX is high without a break, so the function only checks that
+     * the port has `set_break`. */
     FATHOM_OUTPUT_REST = 2,
-    FATHOM_OUTPUT_FREE = 3 /* a break ends; a pin stays as it is */
+    FATHOM_OUTPUT_FREE = 3 /**< A break ends. A pin keeps its level. */
 };
 
+/** @brief An output. */
 typedef struct {
-    /*
-     * Sets the level, FATHOM_OUTPUT_... FATHOM_READY: it is so now, always where it is a pin. FATHOM_PENDING: the port
-     * still sends, call again. FATHOM_ERR_UNSUPPORTED: the port has no set_break. FATHOM_ERR_PORT: it is broken. Of a
-     * line: what fathom_line_break returns. NULL: there is no output.
+    /**
+     * Sets the level, FATHOM_OUTPUT_..., and returns at once. NULL: there is no output.
+     *
+     * - FATHOM_READY: the level is set. A pin always returns this.
+     * - FATHOM_PENDING: the port still sends bytes. Call it again. This may last for ever, so the caller needs a limit;
+     *   fathom_trigger_drive() has one.
+     * - FATHOM_ERR_PORT: the port is broken.
+     * - FATHOM_ERR_UNSUPPORTED: the UART has no `set_break`, or the pin has no `set`.
+     * - Of a line: what fathom_line_break() returns.
      */
     fathom_status_t (*set)(const void *ctx, uint8_t level);
-    const void *ctx; /* outlives the driver */
+    const void *ctx; /**< Passed to `set`; must stay valid as long as the driver. */
 } fathom_output_t;
 
-/* `set` of a fathom_pin_t and of a fathom_uart_t. */
+/** @brief `set` of an output that is a pin. `ctx` is the fathom_pin_t. */
 fathom_status_t fathom_output_set_pin(const void *ctx, uint8_t level);
+
+/** @brief `set` of an output that is a break. `ctx` is the fathom_uart_t. */
 fathom_status_t fathom_output_set_break(const void *ctx, uint8_t level);
 
+/** @brief Returns the output that drives `pin`, which must stay valid. */
 static inline fathom_output_t fathom_output_pin(const fathom_pin_t *pin)
 {
     fathom_output_t output;
@@ -50,6 +63,7 @@ static inline fathom_output_t fathom_output_pin(const fathom_pin_t *pin)
     return output;
 }
 
+/** @brief Returns the output that holds the TX of `uart` low by a break. `uart` must stay valid. */
 static inline fathom_output_t fathom_output_break(const fathom_uart_t *uart)
 {
     fathom_output_t output;
@@ -58,7 +72,7 @@ static inline fathom_output_t fathom_output_break(const fathom_uart_t *uart)
     return output;
 }
 
-/* As output->set; FATHOM_ERR_UNSUPPORTED where there is no output. */
+/** @brief Sets the level of an output. Returns what `output->set` returns, or FATHOM_ERR_UNSUPPORTED if it is NULL. */
 static inline fathom_status_t fathom_output_set(const fathom_output_t *output, uint8_t level)
 {
     return (output->set != NULL) ? output->set(output->ctx, level) : FATHOM_ERR_UNSUPPORTED;

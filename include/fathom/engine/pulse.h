@@ -14,96 +14,148 @@
 extern "C" {
 #endif
 
-/*
- * Triggers a sensor and measures the one high pulse that comes back, over and over (A16 1). The pulse is measured by
- * a fathom_capture_t, so a slow loop loses time and no precision. It never waits, and keeps no state but in the
- * struct below, which the caller owns. One context only.
+/**
+ * @file
+ * @brief Triggers a sensor repeatedly and measures the high pulse that it sends back (A16 1).
  *
- * A cycle begins with the falling edge of the trigger. What the pulse means, by its width:
- *   under noise_us                noise: it is forgotten, and the capture goes on looking
- *   noise_us .. no_target_us      a target. Wherever after the trigger the pulse stands: the 110 ms of the datasheet
- *                                 are information only
- *   no_target_us .. stuck_us      nothing in range; the datasheet has one fixed pulse of about 94 ms for that
- *   more, or high when the cycle is over     FATHOM_FAULT: no pulse of a working sensor, a line that is stuck
- *   none when the cycle is over, and low     FATHOM_ERR_NO_RESPONSE: no supply, a cut wire; never "nothing in range"
- * The first that is no noise decides; the rest of its cycle is not looked at.
+ * A fathom_capture_t measures the pulse, so a slow loop costs time and no precision. No function waits, and the only
+ * state is in the fathom_pulse_meter_t. All functions of one meter must be called from one context.
  *
- * What it cannot do: a pulse of another source, between noise_us and stuck_us long, looks like the sensor's.
+ * A cycle begins with the falling edge of the trigger. It has one outcome:
+ *
+ * | what the capture reports | outcome |
+ * |---|---|
+ * | a pulse of `noise_us` to below `no_target_us` | FATHOM_TARGET |
+ * | a pulse of `no_target_us` to `stuck_us` | FATHOM_NO_TARGET: the datasheet has a fixed pulse of about 94 ms |
+ * | a longer pulse | FATHOM_FAULT: no working sensor sends this |
+ * | until the end of the cycle only shorter pulses, one of them 100 us or more | FATHOM_UNKNOWN: its longest width |
+ * | until the end of the cycle no pulse of 100 us or more, and the line is high | FATHOM_FAULT: width 0, a stuck line |
+ * | the same, and the line is low then | FATHOM_ERR_NO_RESPONSE: no supply, a cut wire, another mode |
+ *
+ * The first pulse of at least `noise_us` decides, wherever it is in the cycle: the 110 ms of the datasheet are
+ * information only. The rest of its cycle is not evaluated. All shorter pulses are counted in `noises`.
+ *
+ * **How long a program can be without an outcome.** If the longest time between two polls is P, each reading or error
+ * follows the one before, or the initialisation, within
+ *
+ *     2 * cycle_us + low_us + 3 * P                if a pin is the trigger
+ *     2 * cycle_us + low_us + 2 s + 5 * P          if a break is the trigger
+ *
+ * by the clock of the configuration, whatever the output, the capture and the line do. If the clock stands still, the
+ * time stands still with it. If the clock is set back by up to 100 ms, the bound grows by that amount.
+ *
+ * **Age.** A pulse that ended more than 2.5 s (FATHOM_PULSE_STALE_US) before the poll that takes it is no reading: the
+ * outcome is FATHOM_ERR_STALE, and `stales` counts it. A program that sleeps longer than that after a trigger should
+ * poll until the outcome of the next cycle. A pause of 71 minutes or more cannot be seen, because the clock wraps: call
+ * fathom_pulse_init() again after such a pause.
+ *
+ * A pulse of another source that is between `noise_us` and `stuck_us` long cannot be told from the sensor's.
  */
 
-/* Zero-valued members of fathom_pulse_config_t mean these. */
-#define FATHOM_PULSE_DEFAULT_CYCLE_US     221000uL
-#define FATHOM_PULSE_DEFAULT_NOISE_US     2700u
+/** Default and least `cycle_us`. */
+#define FATHOM_PULSE_DEFAULT_CYCLE_US 221000uL
+/** Default of `noise_us`. */
+#define FATHOM_PULSE_DEFAULT_NOISE_US 2700u
+/** Default of `no_target_us`. */
 #define FATHOM_PULSE_DEFAULT_NO_TARGET_US 92000uL
-#define FATHOM_PULSE_DEFAULT_STUCK_US     105000uL
+/** Default of `stuck_us`. */
+#define FATHOM_PULSE_DEFAULT_STUCK_US 105000uL
 
-/* Read by init only; what it points at outlives the meter. */
+/** Shorter pulses are interference on the wire. From this width on, a pulse shows that a device responds. */
+#define FATHOM_PULSE_SHORT_US 100u
+
+/** A pulse that ended longer ago than this is no reading: 2 s, and half a second for a slow loop. */
+#define FATHOM_PULSE_STALE_US 2500000uL
+
+/**
+ * @brief The configuration of a meter. fathom_pulse_init() copies it; what it points to must stay valid as long as the
+ * meter. A member that is 0 takes its default.
+ */
 typedef struct {
-    const fathom_clock_t *clock;
-    const fathom_capture_t *capture; /* of the sensor's output; the meter's alone */
-    /* The sensor's input: a pin, or the break of a UART whose TX it is and which has no other user. */
+    const fathom_clock_t *clock; /**< Required, with `now_us`. */
+    const fathom_capture_t
+        *capture; /**< Captures the sensor's output. Required, with `arm` and `take`; not shared. */
+    /** Drives the sensor's input: a pin, or the break of a UART that has no other use. Required. */
     fathom_output_t trigger;
-    /* From one falling edge to the next, at least. It "must be greater than 220ms" (A16 1(2)), also by a clock that
-     * counts in ms; 0 and anything less: 221 ms. */
+    /** Time between two falling edges, at least: 221000 us..FATHOM_MAX_DURATION_US; 0 selects 221000 us. The period
+     * "must be greater than 220ms" (A16 1(2)), and a clock may count in milliseconds. */
     uint32_t cycle_us;
-    /* How long the trigger is low, at least, and how long high before it falls; 0: 2 ms (trigger.h). */
+    /** Time for which the trigger is low, and high before the next edge, at least: 1..60000 us; 0 selects 2000 us. */
     uint16_t low_us;
-    /* Pulses below it are noise. The shortest one is 3 ms (A16 1(3)), of which 10 % are left for the clocks of both
-     * sides; 0: 2.7 ms. */
+    /** Shorter pulses are noise: 1..65535 us, below `no_target_us`; 0 selects 2700 us. The shortest pulse of the sensor
+     * is 3 ms (A16 1(3)), less 10 % for the clocks of both sides. */
     uint16_t noise_us;
-    /* Pulses from it on are "nothing in range": "about 94ms" (A16 1(2)); 0: 92 ms. */
+    /** Pulses from this width on mean that nothing is in range: noise_us + 1..stuck_us; 0 selects 92000 us, because the
+     * datasheet has "about 94ms" (A16 1(2)). */
     uint32_t no_target_us;
-    /* Pulses over it are a fault; 0: 105 ms, 94 and 10 % and some. */
+    /** Longer pulses are a fault: no_target_us..cycle_us; 0 selects 105000 us, 94 ms and a little over 10 %. */
     uint32_t stuck_us;
 } fathom_pulse_config_t;
 
-/* What came of one cycle. */
+/** @brief The reading of one cycle. */
 typedef struct {
-    uint32_t width_us; /* 0: there was none, the line is high and stays so */
-    uint32_t time_us;  /* the clock at the end of the pulse, or of the cycle where the line stays high */
-    uint8_t kind;      /* FATHOM_TARGET, FATHOM_NO_TARGET or FATHOM_FAULT */
+    uint32_t width_us; /**< Width of the pulse; 0 if the line is stuck. */
+    /** Time of the end of the pulse. With FATHOM_UNKNOWN and with a width of 0: time of the poll that ended the
+     * cycle. */
+    uint32_t time_us;
+    uint8_t kind; /**< FATHOM_TARGET, FATHOM_NO_TARGET, FATHOM_FAULT or FATHOM_UNKNOWN. */
 } fathom_pulse_reading_t;
 
+/** @brief A meter. The caller owns the memory. Members without a remark may be read only. */
 typedef struct {
     fathom_trigger_t trigger;
-    const fathom_capture_t *capture;
+    const fathom_capture_t *capture; /**< Invariant: NULL unless the initialisation succeeded. */
     uint32_t no_target_us;
     uint32_t stuck_us;
     uint16_t noise_us;
-    uint16_t noises; /* pulses that were too short; stops at 65535, and the user may set it to 0 */
-    bool waiting;    /* for a pulse */
+    uint16_t short_us; /**< Longest pulse of this cycle of 100 us..noise_us; 0: none. */
+    uint16_t noises;   /**< Pulses shorter than `noise_us`; stops at 65535. The caller may set it to 0. */
+    uint16_t stales;   /**< Pulses that were too old; stops at 65535. The caller may set it to 0. */
+    bool is_waiting;   /**< A cycle has no outcome yet. */
 } fathom_pulse_meter_t;
 
-/*
- * Makes a meter ready and the trigger pin high; the first trigger comes low_us later.
- * FATHOM_READY, or FATHOM_ERR_ARGUMENT: no clock, no capture, no trigger, or widths that are not in order;
- * FATHOM_ERR_UNSUPPORTED: the UART has no set_break.
+/**
+ * @brief Initialises a meter and makes the trigger high. The first falling edge may come `low_us` later.
+ *
+ * If it fails, the meter is zeroed. It may be called again at any time; the cycle in progress is then forgotten.
+ *
+ * @retval FATHOM_READY            The meter is ready.
+ * @retval FATHOM_ERR_ARGUMENT     A required member is missing, or a member is outside its range.
+ * @retval FATHOM_ERR_UNSUPPORTED  The UART has no `set_break`, or the pin no `set`.
  */
 fathom_status_t fathom_pulse_init(fathom_pulse_meter_t *meter, const fathom_pulse_config_t *config);
 
-/*
- * Does all that can be done without waiting: it triggers when a cycle is over and takes pulses.
- * FATHOM_READY: *reading is new. The next cycle has begun, if it was time.
- * FATHOM_PENDING: nothing new. *reading is untouched, as after every error:
- * FATHOM_ERR_NO_RESPONSE: a cycle without a pulse.
- * FATHOM_ERR_PORT: the capture or the break failed; returned by every poll until it works again. Or the UART has
- * refused for a second to begin or to end the break; it is tried on, and that is returned once a second.
- * Correct across the wrap of the clock, if it is called once in 71 minutes. In a slow loop cycles are longer, and the
- * trigger is low until the call after low_us.
+/**
+ * @brief Takes captured pulses, and triggers the next cycle if it is time to. A poll takes at most 16 pulses.
+ *
+ * In a slow loop the cycles are longer, and the trigger is low until the poll after `low_us`. Poll at least once in 71
+ * minutes.
+ *
+ * @param reading  Written with FATHOM_READY only.
+ * @retval FATHOM_READY            `*reading` is the outcome of a cycle. The next cycle has begun if it was time.
+ * @retval FATHOM_PENDING          There is no outcome yet.
+ * @retval FATHOM_ERR_NO_RESPONSE  The cycle ended without a pulse.
+ * @retval FATHOM_ERR_STALE        A pulse was captured, and the program polled too late for it.
+ * @retval FATHOM_ERR_PORT         The capture or the output failed; each poll returns this until it works again. Or the
+ *                                 output refused for 1 s; this is returned once a second. The meter tries again.
+ * @retval FATHOM_ERR_ARGUMENT     The initialisation failed or never ran, and the memory is zeroed.
  */
 fathom_status_t fathom_pulse_poll(fathom_pulse_meter_t *meter, fathom_pulse_reading_t *reading);
 
-/* How long from now until poll has something to do if no pulse ends, in microseconds; never FATHOM_NO_DEADLINE. The
- * end of a pulse should wake a program that sleeps so long; if it does not, the reading comes when the cycle is
- * over. */
+/**
+ * @brief Returns the time in microseconds until fathom_pulse_poll() must be called again if no pulse ends; never
+ * FATHOM_NO_DEADLINE. If the end of a pulse does not wake the program, the reading is returned at the end of the cycle.
+ * Returns 0 for a meter in zeroed memory.
+ */
 uint32_t fathom_pulse_due_us(const fathom_pulse_meter_t *meter);
 
-/*
- * Lets the trigger go high again, if a cycle had made it low; the memory is the caller's. Call it again, and not poll,
- * unless it returns
- * FATHOM_READY: the trigger is high, always where it is a pin.
- * FATHOM_PENDING: the UART has refused to end the break; the trigger is low until a later call.
- * FATHOM_ERR_PORT: the break failed, or the UART has refused for a second. If the caller gives up here, it stays low.
+/**
+ * @brief Makes the trigger high, if it is low. Call it again, and do not poll, unless it returns FATHOM_READY. The
+ * memory belongs to the caller again after that.
+ * @retval FATHOM_READY     The trigger is high. A pin, and a meter in zeroed memory, always have this result.
+ * @retval FATHOM_PENDING   The UART refused to end the break. The trigger is low until a later call succeeds.
+ * @retval FATHOM_ERR_PORT  The break failed, or the UART has refused for 1 s. If the caller gives up, the trigger stays
+ *                          low.
  */
 fathom_status_t fathom_pulse_deinit(fathom_pulse_meter_t *meter);
 

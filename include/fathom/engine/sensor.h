@@ -12,27 +12,39 @@
 extern "C" {
 #endif
 
-/*
- * Any sensor in any mode: what fathom_a16_auto_sensor() and its like return, so that one loop reads them all.
- * By value; it points to the driver, which must outlive it.
+/**
+ * @brief Any sensor in any mode, so that one loop reads all of them. fathom_a16_auto_sensor() and its counterparts
+ * return it by value. It points to the driver, which must stay valid.
  */
 typedef struct {
-    fathom_status_t (*poll)(void *ctx, fathom_sample_t *sample);
-    uint32_t (*due_us)(void *ctx);
-    void *ctx;
+    fathom_status_t (*poll)(void *ctx, fathom_sample_t *sample); /**< Called by fathom_poll(). */
+    uint32_t (*due_us)(void *ctx);                               /**< Called by fathom_due_us(). */
+    void *ctx;                                                   /**< The driver. */
 } fathom_sensor_t;
 
-/*
- * Does all that can be done for a sensor without waiting.
- * FATHOM_READY: *sample is a new reading, one probe's; call again at once for the next one.
- * FATHOM_PENDING, or an error (< 0) of the attempt that has just failed: *sample is untouched. The sensor
- * goes on by itself after an error; each driver's header says which errors it has.
+/**
+ * @brief Does everything for a sensor that can be done without waiting.
+ *
+ * The sensor continues after an error. Each driver's header lists its errors, and states within which time a program
+ * that polls gets a sample or an error.
+ *
+ * @param sensor  The sensor.
+ * @param sample  Written with FATHOM_READY only.
+ * @retval FATHOM_READY         `*sample` is a new reading of one probe. Call again at once for the next one.
+ * @retval FATHOM_PENDING       There is nothing new.
+ * @retval FATHOM_ERR_ARGUMENT  The driver's initialisation failed or never ran, or `*sensor` is zeroed.
+ * @return Other errors: an attempt failed.
  */
 fathom_status_t fathom_poll(const fathom_sensor_t *sensor, fathom_sample_t *sample);
 
-/*
- * How long from now until any of the `count` sensors has something to do if no byte comes, in microseconds;
- * FATHOM_NO_DEADLINE when none has. A device that is woken by received bytes may sleep that long.
+/**
+ * @brief Returns the time in microseconds until one of `count` sensors must be polled if no byte arrives and no pin
+ * changes. Returns FATHOM_NO_DEADLINE if there is no such time. A program that received bytes wake may sleep that long.
+ *
+ * A zeroed sensor, or a driver in zeroed memory, is due in 0 us: the next poll returns FATHOM_ERR_ARGUMENT.
+ *
+ * @param sensors  The sensors.
+ * @param count    How many there are.
  */
 uint32_t fathom_due_us(const fathom_sensor_t *sensors, size_t count);
 

@@ -13,63 +13,89 @@
 extern "C" {
 #endif
 
-/*
- * The falling edges that a sensor is triggered by (A16 1, 3): low for low_us at least, high for as long at least, and
- * period_us at least from edge to edge. What pulse.h and a16_controlled.h are built on. It never waits; one context
- * only.
+/**
+ * @file
+ * @brief Makes the falling edges that trigger a sensor (A16 1, 3).
  *
- * Each call tries an output that is busy again. When it has refused for FATHOM_TRIGGER_REFUSED_US to begin or to end a
- * low level that is FATHOM_ERR_PORT, once in as long; shorter refusals are never added up.
+ *     high ____          __________________          ____
+ *              |________|                  |________|
+ *              |<low_us>|<---- >= low_us -->|
+ *              |<------- >= period_us ----->|
+ *
+ * pulse.h and a16_controlled.h are built on this file. No function waits. All functions of one trigger must be called
+ * from one context.
+ *
+ * The functions are meant for a driver, which checks first that its own initialisation succeeded. A trigger whose
+ * fathom_trigger_init() failed must not be passed to them, except to fathom_trigger_deinit().
  */
 
-/* A low_us of 0 means this. The datasheet wants an edge and gives no time; no input misses 2 ms. */
+/** Default of `low_us`. The datasheet asks for an edge and names no time; no input misses 2 ms. */
 #define FATHOM_TRIGGER_DEFAULT_LOW_US 2000u
 
+/** Longest `low_us`: half of the shortest period, 120 ms (A16 3(2)). */
+#define FATHOM_TRIGGER_MAX_LOW_US 60000u
+
+/** An output that refuses to begin or to end the low level for this time is reported with FATHOM_ERR_PORT. */
 #define FATHOM_TRIGGER_REFUSED_US 1000000uL
 
+/** @brief A trigger. The caller owns the memory and sets the first four members before fathom_trigger_init(). */
 typedef struct {
-    /* Set by the caller before init. */
-    fathom_output_t output;
-    const fathom_clock_t *clock; /* outlives the trigger */
-    uint32_t period_us;          /* more than low_us */
-    uint16_t low_us;
+    fathom_output_t output;      /**< The sensor's input. */
+    const fathom_clock_t *clock; /**< Must stay valid as long as the trigger. */
+    uint32_t period_us; /**< Between two falling edges, at least: low_us + 1..FATHOM_MAX_DURATION_US. */
+    uint16_t low_us;    /**< Low, and high before the next edge, at least: 1..60000 us; 0 selects 2000 us. */
 
-    /* The engine's; may be read. */
-    bool low;            /* held low, or its end is not yet done */
-    bool refused;        /* the last call of the output was */
-    uint32_t refused_us; /* the clock when that began, or was last reported */
-    uint32_t polled_us;  /* the clock at the last look, which an edge is */
-    uint32_t left_us;    /* of the period */
+    /* Members of the trigger. They may be read. */
+    bool low;            /**< The output is low. A low level whose end the output refuses counts too. */
+    bool refused;        /**< The output refused the last call. */
+    uint32_t refused_us; /**< Time of the first refusal, or of the last report of it. */
+    uint32_t polled_us;  /**< Time of the last fathom_trigger_look(), or of a later falling edge. */
+    uint32_t left_us;    /**< Rest of the period at `polled_us`. */
 } fathom_trigger_t;
 
-/* Makes the output high; the first edge comes low_us later. FATHOM_READY, or FATHOM_ERR_ARGUMENT: no output;
- * FATHOM_ERR_UNSUPPORTED: a port without set_break. */
+/**
+ * @brief Initialises a trigger and makes the output high. The first falling edge may come `low_us` later.
+ * @retval FATHOM_READY            The trigger is ready.
+ * @retval FATHOM_ERR_ARGUMENT     There is no output or no clock, or a time is outside its range.
+ * @retval FATHOM_ERR_UNSUPPORTED  The port has no `set_break`, or the pin no `set`.
+ */
 fathom_status_t fathom_trigger_init(fathom_trigger_t *trigger);
 
-/* Looks at the clock: the first thing of a poll. */
+/** @brief Reads the clock. Call it first in each poll. */
 void fathom_trigger_look(fathom_trigger_t *trigger);
 
-/* Would fathom_trigger_drive begin, if it may? */
+/** @brief Returns true if fathom_trigger_drive() would begin a cycle. */
 static inline bool fathom_trigger_is_due(const fathom_trigger_t *trigger)
 {
     return !trigger->low && (trigger->left_us == 0u);
 }
 
-/*
- * Drives the output where it is time to; `may_begin`: the next falling edge may come.
- * FATHOM_READY    it has come; polled_us is a look at the clock after it, so that no period is too short, whatever
- *                 interrupts the two
- * FATHOM_PENDING  nothing of note; perhaps the rising edge has come
- * FATHOM_ERR_PORT the output is broken, or refuses
+/**
+ * @brief Sets the output if it is time to.
+ *
+ * An output that refuses is tried again in each call. If it refuses for 1 s to begin or to end the low level, the
+ * function returns FATHOM_ERR_PORT, and again after each further second. Shorter refusals are not added up.
+ *
+ * @param may_begin  The next falling edge may come.
+ * @retval FATHOM_READY     The falling edge was made. `polled_us` is the clock after it, so no period is too short.
+ * @retval FATHOM_PENDING   It is not time yet, the output refuses for less than 1 s, or the output went high.
+ * @retval FATHOM_ERR_PORT  The output is broken, or refuses.
  */
 fathom_status_t fathom_trigger_drive(fathom_trigger_t *trigger, bool may_begin);
 
-/* How long from now until drive has something to do, or until `until_us` after the last look has passed, if that is
- * sooner; 1 ms where that time has come, for an output that refuses. */
+/**
+ * @brief Returns the time in microseconds until fathom_trigger_drive() must be called again.
+ * @param until_us  A time after `polled_us` at which the caller has something to do. If it is 0, 1 ms is used, because
+ *                  an output may have refused.
+ */
 uint32_t fathom_trigger_due_us(const fathom_trigger_t *trigger, uint32_t until_us);
 
-/* Lets the output go high, if an edge had made it low. FATHOM_READY: it is high. FATHOM_PENDING, FATHOM_ERR_PORT: not
- * yet, to be called again. */
+/**
+ * @brief Makes the output high, if it is low. Call it again unless it returns FATHOM_READY.
+ * @retval FATHOM_READY     The output is high. A zeroed trigger has this result too.
+ * @retval FATHOM_PENDING   The output refused.
+ * @retval FATHOM_ERR_PORT  The output is broken, or has refused for 1 s.
+ */
 fathom_status_t fathom_trigger_deinit(fathom_trigger_t *trigger);
 
 #ifdef __cplusplus

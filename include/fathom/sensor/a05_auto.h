@@ -20,8 +20,10 @@ extern "C" {
  * Four samples a frame, one a fitted probe, with one sequence number and one time, which is when its last byte
  * came. They are given when the line has been silent for gap_us behind it or the next frame begins. FATHOM_TARGET,
  * or what the window makes of the values 0, FFFD, FFFE and FFFF (dyp.h). The errors of fathom_poll:
- *   FATHOM_ERR_STALE      no good frame for stale_us: not wired, no supply, not in this mode, another rate, or
- *                         noise; stream.counters tell these apart. Returned once every stale_us.
+ *   FATHOM_ERR_STALE      Nothing was received for `stale_us`: no wire, no supply, or another mode. Returned once every
+ *                         `stale_us`. Also returned if the newest frame is too old (stream.h, rule 6).
+ *   FATHOM_ERR_CHECKSUM   Bytes were received for `stale_us`, but no frame: damage, noise, another rate, or another
+ *                         device. `base.stream.counters` show which (stream.h). Returned once every `stale_us`.
  *   FATHOM_ERR_MALFORMED  this probe's value is refused: outside the window, or FFFF. The other probes' samples are
  *                         given, but where the frame's place is not sure (stream.h) and in the first frame with a
  *                         refused value, which may be damaged: then all of it is refused.
@@ -33,11 +35,13 @@ extern "C" {
 
 /* Read by init only. Members that are 0 mean their defaults. */
 typedef struct {
-    fathom_line_t *line; /* the line it is on, to itself or with Modbus; it becomes the line's listener */
-    /* 0: 10 s, as the A16; the datasheet prints no period. Where the period of a unit is known, set less: some 6
-     * frames. Up to 35 minutes (stream.h). */
+    /* The line, whose listener the driver becomes. The line may also carry Modbus. */
+    fathom_line_t *line;
+    /* Time without a frame after which fathom_poll() returns an error, in microseconds: 1 to 2^31 - 1. 0 selects 2 s.
+     * The datasheet prints no period of the frames. If a unit sends less often than every 2 s, choose more. */
     uint32_t stale_us;
-    /* A silence of so much starts and ends a frame (stream.h); behind an operating system 25000; 0: 5000. */
+    /* Silence that starts and ends a frame (stream.h), in microseconds: 1042 to 65535. Behind an operating system
+     * choose 25000. 0 selects 5000. */
     uint16_t gap_us;
     fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 6000 mm */
     /* Bit probe - 1: fitted; 0: all four. A probe that is not fitted gives neither a sample nor an error. */
@@ -62,7 +66,13 @@ typedef struct {
     bool was_odd;   /* the frame before had a fitted probe whose value was refused, or there was none */
 } fathom_a05_auto_t;
 
-/* Begins to listen. FATHOM_READY, or FATHOM_ERR_ARGUMENT: no line, or min_mm over max_mm, or a probe over 4. */
+/*
+ * Initialises the driver and makes it the listener of the line.
+ *   FATHOM_READY         The driver listens.
+ *   FATHOM_ERR_ARGUMENT  `line` is NULL, or a member is outside its range: `stale_us` above 2^31 - 1, `gap_us` of 1 to
+ *                        1041, `min_mm` above `max_mm`, or `probes` above 15.
+ *   FATHOM_ERR_BUSY      The line has another listener, which stays.
+ */
 fathom_status_t fathom_a05_auto_init(fathom_a05_auto_t *sensor, const fathom_a05_auto_config_t *config);
 
 /*
@@ -77,8 +87,8 @@ fathom_status_t fathom_a05_auto_init(fathom_a05_auto_t *sensor, const fathom_a05
 fathom_status_t fathom_a05_auto_select(fathom_a05_auto_t *sensor, fathom_dyp_value_t value);
 
 /*
- * Stops listening and lets RX go high, if it is still held low; the memory is the caller's again. Call it again, and
- * not poll, unless it returns
+ * Stops listening, if the driver is the listener of the line, and lets RX go high, if it is still held low; the memory
+ * is the caller's again. Call it again, and not poll, unless it returns
  * FATHOM_READY: RX is high, always where it is a pin.
  * FATHOM_PENDING, FATHOM_ERR_PORT: as fathom_line_break(line, false). If the caller gives up here, TX stays low, and
  * the line sends nothing until that is FATHOM_READY.

@@ -24,7 +24,7 @@ extern "C" {
  * address to every other A05 that hears it. So use these frames with one A05 on the line.
  *
  * Samples and errors of fathom_poll are those of a05_modbus.h, but for FATHOM_ERR_EXCEPTION, which this protocol
- * does not have. FATHOM_ERR_CHECKSUM stands for a wrong sum.
+ * does not have. FATHOM_ERR_CHECKSUM stands for a wrong sum. The longest time until an outcome is the same formula.
  */
 
 /* From one command to the next, at least (A05 2(3)1). */
@@ -47,7 +47,11 @@ typedef struct {
     uint16_t values[FATHOM_DYP_PROBES];
 } fathom_a05_dyp_t;
 
-/* FATHOM_READY, or FATHOM_ERR_ARGUMENT: no transport, address 255, address_zero, a probe over 4, min_mm over max_mm. */
+/* FATHOM_READY, or FATHOM_ERR_ARGUMENT: no transport, address 255, address_zero, a probe over 4, min_mm over max_mm, or a
+ * member outside its range; a frame buffer of the line below 13 bytes.
+ * Ranges: `modbus` as in fathom_modbus_config_t, `start_us` 0 to 2^31 - 1, `window` as in fathom_dyp_window_t. A refused
+ * init zeroes *sensor; then each poll and command returns FATHOM_ERR_ARGUMENT. FATHOM_ERR_BUSY: a request of this driver is
+ * still queued; nothing changed. Call the deinit function first. */
 fathom_status_t fathom_a05_dyp_init(fathom_a05_dyp_t *sensor, const fathom_a05_dyp_config_t *config);
 
 /* Cancels what is under way; the memory is the caller's again. */

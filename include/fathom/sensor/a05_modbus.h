@@ -23,6 +23,17 @@ extern "C" {
  *   FATHOM_ERR_MALFORMED    it sent something else, or this probe's value is refused: outside the window, or FFFF;
  *                           base.measurement.refused_probe and refused_raw tell which, and it is counted
  *   FATHOM_ERR_PORT         the HAL's port is broken; returned by every poll until it works again
+ *   FATHOM_ERR_LINE_BUSY    the line was never silent. Says nothing about the unit (status.h)
+ *   FATHOM_ERR_OTHER_MASTER another master asked the same unit. Says nothing about the unit
+ *   FATHOM_ERR_CANCELLED    the line was initialised again, or another driver moved the unit
+ *   FATHOM_ERR_ARGUMENT     the driver is not initialised
+ *
+ * The longest time until fathom_poll() returns an outcome is that of modbus_unit.h:
+ *
+ *     period_us + least(16 * timeout_us, backoff_us) + B(timeout_us, retries) + S + P
+ *
+ * Here B is the bound of a transaction alone on its line (line.h), S the sum of the bounds of the line's other
+ * transactions, and P the polling interval. While a command or setting of this driver is in progress, its time is added.
  */
 
 /* From one request to the next, at least, for each probe that it reads. */
@@ -48,7 +59,11 @@ typedef struct {
 } fathom_a05_modbus_t;
 
 /* FATHOM_READY, or FATHOM_ERR_ARGUMENT: no transport, address 255 or one beside address_zero,
- * other registers, a probe over 4, min_mm over max_mm. */
+ * other registers, a probe over 4, min_mm over max_mm, or a member outside its range; a frame buffer of the line that is
+ * too small for the probes: 5 bytes and 2 for each register from the first to the last wanted probe.
+ * Ranges: `modbus` as in fathom_modbus_config_t, `start_us` 0 to 2^31 - 1, `window` as in fathom_dyp_window_t. A refused
+ * init zeroes *sensor; then each poll and command returns FATHOM_ERR_ARGUMENT. FATHOM_ERR_BUSY: a request of this driver is
+ * still queued; nothing changed. Call the deinit function first. */
 fathom_status_t fathom_a05_modbus_init(fathom_a05_modbus_t *sensor, const fathom_a05_modbus_config_t *config);
 
 /* Cancels what is under way; the memory is the caller's again. */

@@ -19,8 +19,10 @@ extern "C" {
  * One sample a frame, given when the line has been silent for gap_us behind it or the next frame begins;
  * time_us is when its last byte came. FATHOM_TARGET, or what the window makes of the values 0, FFFD, FFFE and FFFF
  * (dyp.h). The errors of fathom_poll:
- *   FATHOM_ERR_STALE      no good frame for stale_us: not wired, no supply, not in this mode, another rate, or
- *                         noise; stream.counters tell these apart. Returned once every stale_us.
+ *   FATHOM_ERR_STALE      Nothing was received for `stale_us`: no wire, no supply, or another mode. Returned once every
+ *                         `stale_us`. Also returned if the newest frame is too old (stream.h, rule 6).
+ *   FATHOM_ERR_CHECKSUM   Bytes were received for `stale_us`, but no frame: damage, noise, another rate, or another
+ *                         device. `base.stream.counters` show which (stream.h). Returned once every `stale_us`.
  *   FATHOM_ERR_MALFORMED  a good frame with a value that is refused: outside the window, or FFFF; it is in
  *                         base.measurement.refused_raw, and counted
  *   FATHOM_ERR_PORT       the HAL's port is broken; returned by every poll until it works again
@@ -28,13 +30,16 @@ extern "C" {
 
 /* Read by init only. Members that are 0 mean their defaults. */
 typedef struct {
-    fathom_line_t *line; /* the line it is on, to itself or with Modbus; it becomes the line's listener */
+    /* The line, whose listener the driver becomes. The line may also carry Modbus. */
+    fathom_line_t *line;
     /* What drives the module's RX pin: a pin, or a break of the line whose TX it is (fathom_output_line_break). None:
      * it is open, or nothing is selected. */
     fathom_output_t select;
-    /* 0: 10 s: the datasheet prints no period, and 7.5 s for the processed value to settle. Up to 35 minutes. */
+    /* Time without a frame after which fathom_poll() returns an error, in microseconds: 1 to 2^31 - 1. 0 selects 2 s.
+     * The datasheet prints no period of the frames. If a unit sends less often than every 2 s, choose more. */
     uint32_t stale_us;
-    /* A silence of so much starts and ends a frame (stream.h); behind an operating system 25000; 0: 5000. */
+    /* Silence that starts and ends a frame (stream.h), in microseconds: 1042 to 65535. Behind an operating system
+     * choose 25000. 0 selects 5000. */
     uint16_t gap_us;
     fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 16350 mm */
     uint8_t value;              /* fathom_dyp_value_t: what fathom_a16_auto_select selects at init */
@@ -48,9 +53,16 @@ typedef struct {
     uint8_t storage[FATHOM_STREAM_STORAGE(FATHOM_DYP_A16_LENGTH)];
 } fathom_a16_auto_t;
 
-/* Begins to listen. FATHOM_READY, or FATHOM_ERR_ARGUMENT: no line, min_mm over max_mm, or no such value;
- * FATHOM_ERR_UNSUPPORTED: FATHOM_REAL_TIME without `select`, or a port that has no break; with it also the other errors
- * of fathom_a16_auto_select, FATHOM_ERR_BUSY where that returns FATHOM_PENDING. */
+/*
+ * Initialises the driver and makes it the listener of the line. After an error, the driver does not listen.
+ *   FATHOM_READY            The driver listens.
+ *   FATHOM_ERR_ARGUMENT     `line` is NULL, or a member is outside its range: `stale_us` above 2^31 - 1, `gap_us` of 1
+ *                           to 1041, `min_mm` above `max_mm`, or an unknown `value`.
+ *   FATHOM_ERR_BUSY         The line has another listener; or the port is still sending, so that the break that selects
+ *                           the value cannot begin.
+ *   FATHOM_ERR_UNSUPPORTED  FATHOM_REAL_TIME without `select`, or the port has no break.
+ *   others                  As fathom_a16_auto_select().
+ */
 fathom_status_t fathom_a16_auto_init(fathom_a16_auto_t *sensor, const fathom_a16_auto_config_t *config);
 
 /*
@@ -63,8 +75,8 @@ fathom_status_t fathom_a16_auto_init(fathom_a16_auto_t *sensor, const fathom_a16
 fathom_status_t fathom_a16_auto_select(fathom_a16_auto_t *sensor, fathom_dyp_value_t value);
 
 /*
- * Stops listening and ends a break that selected; the memory is the caller's again. Call it again, and not poll,
- * unless it returns
+ * Stops listening, if the driver is the listener of the line, and ends a break that selected; the memory is the
+ * caller's again. Call it again, and not poll, unless it returns
  * FATHOM_READY: no break is held, always where there is a pin, which stays as it is.
  * FATHOM_PENDING, FATHOM_ERR_PORT: as fathom_line_break(line, false). If the caller gives up here, TX stays low, and
  * the line sends nothing until that is FATHOM_READY.

@@ -34,6 +34,15 @@ extern "C" {
  * either side a margin for the clocks and the frame's own 4 ms. Where the port has no time stamps a byte may have come
  * at any time since the poll before, and both ends are stretched by that much. All other frames are counted in `late`
  * and dropped. What cannot be told apart: the response to the trigger before, if it comes 200 ms or more after that.
+ *
+ * No frame from before the trigger is a response. The driver reads the port once more directly after the edge, so that
+ * bytes that waited in the port are known to be too early. If the program does not poll for more than latest_us and
+ * FATHOM_LINE_LATE_US, the line drops what waits in the port (line.h, rule 13), and the trigger has no response.
+ *
+ *     polls     |        |                                      |
+ *     trigger            |edge  earliest_us      latest_us
+ *     wire      [frame]  |      |<-- [response] -->|
+ *     result    `late`                                          one sample
  */
 
 /* Zero-valued members of fathom_a16_controlled_config_t mean these. */
@@ -48,12 +57,13 @@ typedef struct {
     fathom_output_t trigger;
     /* From trigger to trigger, at least. It "must be greater than 120ms" (A16 3(2)), also by a clock that counts in
      * ms; 0 and anything less: 121 ms. */
-    uint32_t period_us;
-    uint32_t earliest_us; /* 0: 80 ms */
-    uint32_t latest_us;   /* 0: 130 ms */
+    uint32_t period_us;   /* At most 2^31 - 1. */
+    uint32_t earliest_us; /* 1 to latest_us. 0 selects 80 ms. */
+    uint32_t latest_us;   /* earliest_us to 2^31 - 1. 0 selects 130 ms. */
     /* How long the trigger is low, at least, and how long high before it falls; 0: 2 ms (trigger.h). */
     uint16_t low_us;
-    /* A silence of so much ends a frame (stream.h); behind an operating system 25000; 0: 5000. */
+    /* Silence that ends a frame (stream.h), in microseconds: 1042 to 65535. Behind an operating system choose 25000. 0
+     * selects 5000. */
     uint16_t gap_us;
     fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 16350 mm */
 } fathom_a16_controlled_config_t;
@@ -74,15 +84,19 @@ typedef struct {
     uint8_t storage[FATHOM_STREAM_STORAGE(FATHOM_DYP_A16_LENGTH)];
 } fathom_a16_controlled_t;
 
-/* Makes the pin high and begins to listen; the first trigger comes low_us later. FATHOM_READY, or FATHOM_ERR_ARGUMENT:
- * no line, no trigger, min_mm over max_mm, earliest_us over latest_us; FATHOM_ERR_UNSUPPORTED: the line's port, whose
- * break is to trigger, has no set_break. */
+/*
+ * Makes the pin high and makes the driver the listener of the line. The first trigger comes low_us later.
+ *   FATHOM_READY            The driver listens.
+ *   FATHOM_ERR_ARGUMENT     `line` or `trigger.set` is NULL, or a member is outside its range.
+ *   FATHOM_ERR_BUSY         The line has another listener, which stays. The trigger was not touched.
+ *   FATHOM_ERR_UNSUPPORTED  The port, whose break is the trigger, has no set_break.
+ */
 fathom_status_t fathom_a16_controlled_init(fathom_a16_controlled_t *sensor,
                                            const fathom_a16_controlled_config_t *config);
 
 /*
- * Stops listening and lets the trigger go high; the memory is the caller's again. Call it again, and not poll,
- * unless it returns
+ * Stops listening, if the driver is the listener of the line, and lets the trigger go high; the memory is the caller's
+ * again. Call it again, and not poll, unless it returns
  * FATHOM_READY: the trigger is high, always where it is a pin.
  * FATHOM_PENDING, FATHOM_ERR_PORT: as fathom_line_break(line, false). If the caller gives up here, TX stays low, and
  * the line sends nothing until that is FATHOM_READY.

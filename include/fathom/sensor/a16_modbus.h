@@ -21,6 +21,17 @@ extern "C" {
  *   FATHOM_ERR_MALFORMED    it sent something else, or a value that is refused: outside the window, or FFFF;
  *                           then it is in base.measurement.refused_raw, and counted
  *   FATHOM_ERR_PORT         the HAL's port is broken; returned by every poll until it works again
+ *   FATHOM_ERR_LINE_BUSY    the line was never silent. Says nothing about the unit (status.h)
+ *   FATHOM_ERR_OTHER_MASTER another master asked the same unit. Says nothing about the unit
+ *   FATHOM_ERR_CANCELLED    the line was initialised again, or another driver moved the unit
+ *   FATHOM_ERR_ARGUMENT     the driver is not initialised
+ *
+ * The longest time until fathom_poll() returns an outcome is that of modbus_unit.h:
+ *
+ *     period_us + least(16 * timeout_us, backoff_us) + B(timeout_us, retries) + S + P
+ *
+ * Here B is the bound of a transaction alone on its line (line.h), S the sum of the bounds of the line's other
+ * transactions, and P the polling interval. While a command or setting of this driver is in progress, its time is added.
  * The other registers are in a16_settings.h.
  */
 
@@ -46,7 +57,10 @@ typedef struct {
 } fathom_a16_modbus_t;
 
 /* FATHOM_READY, or FATHOM_ERR_ARGUMENT: no transport, address 255 or one beside address_zero,
- * no such value, min_mm over max_mm. */
+ * no such value, min_mm over max_mm, or a member outside its range; `value` is 0 or 1.
+ * Ranges: `modbus` as in fathom_modbus_config_t, `start_us` 0 to 2^31 - 1, `window` as in fathom_dyp_window_t. A refused
+ * init zeroes *sensor; then each poll and command returns FATHOM_ERR_ARGUMENT. FATHOM_ERR_BUSY: a request of this driver is
+ * still queued; nothing changed. Call the deinit function first. */
 fathom_status_t fathom_a16_modbus_init(fathom_a16_modbus_t *sensor, const fathom_a16_modbus_config_t *config);
 
 /* Cancels what is under way; the memory is the caller's again. */

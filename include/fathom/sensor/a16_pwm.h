@@ -13,53 +13,75 @@
 extern "C" {
 #endif
 
-/*
- * A16 with PWM output (A16 1): each falling edge at its RX pin makes it measure and respond with one high pulse on TX,
- * whose width is the time of flight. pulse.h does the timing, and has what each width means.
+/**
+ * @file
+ * @brief A16 with PWM output (A16 1): each falling edge at its RX pin starts a measurement, and the module responds
+ * with one high pulse on TX whose width is the time of flight. pulse.h does the timing and states what each width
+ * means.
  *
- * One sample a cycle of 221 ms; raw is the width of the pulse in us, time_us its end:
- *   FATHOM_TARGET      distance_mm by the datasheet's formula, or with the temperature of the air (pulse_width.h)
- *   FATHOM_NO_TARGET   the pulse of about 94 ms
- *   FATHOM_FAULT       a longer one, or the line stays high, when raw is 0
- * The errors of fathom_poll:
- *   FATHOM_ERR_NO_RESPONSE  no pulse in the cycle: no supply, a cut wire, not in this mode
- *   FATHOM_ERR_MALFORMED    a distance outside the window; refused and counted
- *   FATHOM_ERR_PORT         the capture or the break failed; returned by every poll until it works again
- * In the blind zone, nearer than 50 cm, a module may send any value; the shortest pulse, 3 ms, is 522 mm.
+ * There is one sample per cycle of 221 ms. `raw` is the width of the pulse in us, and `time_us` is its end.
+ *
+ * | kind | cause |
+ * |---|---|
+ * | FATHOM_TARGET | `distance_mm` by the datasheet's formula, or by the temperature of the air (pulse_width.h) |
+ * | FATHOM_NO_TARGET | the pulse of about 94 ms |
+ * | FATHOM_FAULT | a longer pulse; or the line stays high, then `raw` is 0 |
+ * | FATHOM_UNKNOWN | only shorter pulses; `raw` is the longest width, `time_us` the end of the cycle |
+ *
+ * | error of fathom_poll() | cause |
+ * |---|---|
+ * | FATHOM_ERR_NO_RESPONSE | no pulse in the cycle: no supply, a cut wire, not in this mode |
+ * | FATHOM_ERR_MALFORMED | a distance outside the window; `implausible` counts it |
+ * | FATHOM_ERR_STALE | the program polled more than 2.5 s after the end of the pulse |
+ * | FATHOM_ERR_PORT | the capture or the output fails (in every poll), or the output refuses (once a second) |
+ * | FATHOM_ERR_ARGUMENT | the initialisation failed or never ran, and the memory is zeroed; fathom_due_us() is 0 then |
+ *
+ * A program that polls gets a sample or an error within `2 * cycle_us + low_us + 3 * P`, where P is the longest time
+ * between two polls: 444 ms + 3 * P by default. If a break is the trigger, add 2 s + 2 * P. pulse.h has the conditions.
+ *
+ * Nearer than 50 cm, in the blind zone, a module may send any value. The shortest pulse of the datasheet, 3 ms, is
+ * 522 mm.
  */
 
-/* The longest pulse in the hottest air, 94 ms at 85 degC, in mm and rounded up. */
+/** Longest distance with `in_air`, in mm: the longest pulse, 94 ms, in the hottest air, 85 degrees C, rounded up. */
 enum { FATHOM_A16_PWM_MAX_MM_IN_AIR = 18000 };
 
-/* Read by init only. Members that are 0 mean their defaults. */
+/** @brief The configuration. fathom_a16_pwm_init() copies it. A member that is 0 takes its default. */
 typedef struct {
-    /* The clock, the capture of the module's TX pin (a timer's, or of edges.h) and the trigger, its RX pin; and the
-     * widths, which have defaults. */
+    /** The clock, the capture of the module's TX pin, and the trigger, which is its RX pin; the times have defaults. */
     fathom_pulse_config_t pulse;
-    fathom_dyp_window_t window; /* min_mm and max_mm alone; 0: 1 and 16350 mm, 18000 with in_air */
-    /* false: the datasheet's formula. true: with air_dc, which is not in the datasheet; off by default, since the
-     * module may compensate by itself. */
+    /** Distances outside are refused. `min_mm`: 1..max_mm, 0 selects 1. `max_mm`: min_mm..65535, 0 selects 16350, or
+     * 18000 with `in_air`. The other members are not used. */
+    fathom_dyp_window_t window;
+    /** Compute the distance with the speed of sound at `air_dc`; else by the datasheet's formula. The datasheet does
+     * not say whether the module compensates for the temperature itself, so false is the default. */
     bool in_air;
-    int16_t air_dc; /* with in_air: tenths of a degree C, -400..850 */
+    int16_t air_dc; /**< Temperature of the air with `in_air`, in tenths of a degree C: -400..850. */
 } fathom_a16_pwm_config_t;
 
+/** @brief The driver. The caller owns the memory. Members without a remark may be read only. */
 typedef struct {
     fathom_pulse_meter_t meter;
     fathom_dyp_window_t window;
     uint16_t sequence;
-    uint16_t implausible; /* distances that were refused; stops at 65535 */
-    int16_t air_dc;       /* the caller's to change at any time */
+    uint16_t implausible; /**< Refused distances; stops at 65535. */
+    int16_t air_dc;       /**< The caller may change it at any time, -400..850. */
     bool in_air;
 } fathom_a16_pwm_t;
 
-/* FATHOM_READY, or FATHOM_ERR_ARGUMENT: min_mm over max_mm; else what fathom_pulse_init returns. */
+/**
+ * @brief Initialises the driver and makes the trigger high. If it fails, the driver is zeroed.
+ * @retval FATHOM_READY            The driver is ready.
+ * @retval FATHOM_ERR_ARGUMENT     A member of the configuration is missing or outside its range.
+ * @retval FATHOM_ERR_UNSUPPORTED  The UART has no `set_break`, or the pin no `set`.
+ */
 fathom_status_t fathom_a16_pwm_init(fathom_a16_pwm_t *sensor, const fathom_a16_pwm_config_t *config);
 
-/* Lets the trigger go high; the memory is the caller's again. What it returns, and when to call it again: as
- * fathom_pulse_deinit. */
+/** @brief Makes the trigger high. Returns what fathom_pulse_deinit() returns: call it again unless that is
+ * FATHOM_READY. The memory belongs to the caller again after that. */
 fathom_status_t fathom_a16_pwm_deinit(fathom_a16_pwm_t *sensor);
 
-/* For fathom_poll. */
+/** @brief Returns the sensor for fathom_poll() and fathom_due_us(). */
 fathom_sensor_t fathom_a16_pwm_sensor(fathom_a16_pwm_t *sensor);
 
 #ifdef __cplusplus

@@ -23,7 +23,8 @@ typedef struct {
     fathom_a16_auto_t *automatic;
     /* How long frames may take to begin after the acknowledgement: 10 s; the caller may change it after init. */
     uint32_t return_us;
-    uint32_t since_us;
+    uint32_t since_us;  /* the acknowledgement, and the time that does not count since */
+    uint32_t polled_us; /* the clock at the last call */
     bool is_listening;
 } fathom_a16_rs232_t;
 
@@ -41,7 +42,9 @@ void fathom_a16_rs232_init(fathom_a16_rs232_t *rs232, fathom_a16_modbus_t *modbu
  * meanwhile.
  *   FATHOM_READY            *sample is the first reading that the sensor has sent by itself. From now on poll the
  *                           automatic driver only
- *   FATHOM_ERR_UNCONFIRMED  it was written, and there was no frame in return_us
+ *   FATHOM_ERR_UNCONFIRMED  it was written, and there was no frame in return_us. Of a pause between two calls that is
+ *                           longer than the stale limit of `automatic` and FATHOM_LINE_LATE_US, only the stale limit
+ *                           counts: the line drops what it heard in the pause, so a frame of now confirms the return
  *   FATHOM_ERR_EXCEPTION    refused: it is no RS232 variant?
  *   FATHOM_ERR_BUSY         another command is not finished
  *   FATHOM_ERR_PORT         the port is broken

@@ -15,11 +15,16 @@ extern "C" {
  *
  * Each function returns at once: call it with the same arguments, with the loop going on in
  * between, until it is not FATHOM_PENDING. One at a time; fathom_poll rests as long as a setting is being changed.
- * A response takes command_timeout_us (1 s) at most.
+ * The longest time of a read is C, that of a setting 5 C, in the terms of modbus_unit.h:
+ *
+ *     C = period_us + B(timeout_us, retries) + B(command_timeout_us, retries) + 2 S + 2 P
+ *
+ * A command or setting that is begun and never called again gives way after FATHOM_MODBUS_ABANDONED_US.
  *
  * Reading: FATHOM_READY with *out written, or
  *   FATHOM_ERR_NO_RESPONSE, _CHECKSUM, _EXCEPTION, _PORT   as fathom_poll (a16_modbus.h). Where a register is not for
  *                           this variant, silence is likely: the datasheet knows no exceptions
+ *   FATHOM_ERR_LINE_BUSY, _OTHER_MASTER   as fathom_poll; they say nothing about the unit: try again
  *   FATHOM_ERR_MALFORMED    a value that the register cannot have
  *   FATHOM_ERR_BUSY         another command is not finished, or its outcome was not taken
  * Setting: the value is read first, written only if it is another one (flash wears), and read back.

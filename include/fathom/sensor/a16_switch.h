@@ -10,64 +10,87 @@
 extern "C" {
 #endif
 
-/*
- * A16 with switch output (A16 4): a level on its TX pin says whether something is nearer than its threshold, 1 m
- * from the factory. It measures every 500 ms and changes the level after 3 measurements in a row below the threshold,
- * or 5 above it: 1.5 and 2.5 s. The pin has no driving capability: an input of 3 V logic reads it, no load hangs on
- * it. debounce.h is the same rule in software, for any sensor in any mode.
+/**
+ * @file
+ * @brief A16 with switch output (A16 4): the level of its TX pin reports whether something is nearer than its
+ * threshold, which is 1 m with factory settings.
  *
- * A sample for the first level and for each new one: FATHOM_NEAR or FATHOM_FAR, without a distance; time_us is when
- * the level was first seen, raw is the level. The datasheet leaves open what the level is before the module's first
- * decision. A switch cannot say "no response": a cut wire reads as the level that the board pulls it to, so pull it to
- * the harmless one. The errors of fathom_poll:
- *   FATHOM_ERR_STALE  no level stood still for settle_us in stale_us: noise, or a line that is never silent
- *   FATHOM_ERR_PORT   the port of the line on the same pins is broken; returned by every poll that has no sample
+ * The module measures every 500 ms. It changes the level after 3 measurements in a row below the threshold (1.5 s),
+ * or 5 above it (2.5 s). The pin cannot drive a load: read it with an input of 3 V logic. debounce.h is the same rule
+ * in software, for any sensor in any mode.
  *
- * Threshold and polarity are set by Modbus on the same pins, 9600 8N1 (A16 4(1), 6(3)), with a16_settings.h on a
- * fathom_a16_modbus_t beside this driver, which need not be polled otherwise. The module receives on RX and responds on
- * TX: with a `guard` in the config (line_pins.h), the level does not count while a request is under way there, nor
- * until 5 ms after the last byte. To the host's UART a low level is a break: bytes with framing errors may stand before
- * a response and behind it, which the line drops and counts (FATHOM_LINE_BAD_BYTES). They keep it from finding out that
- * it has no echo, so configure FATHOM_LINE_ECHO_OFF: there is a wire each way. A UART that reports a break again and
- * again while it lasts makes the line look busy for ever; switch its receiver off while no request is under way.
+ * The samples are FATHOM_NEAR or FATHOM_FAR, without a distance. contact.h states when there is a sample, what its
+ * `time_us` and `raw` are, and within which time a program that polls gets a sample or an error: 3 s + 2 * P by
+ * default, where P is the longest time between two polls. The datasheet does not say what the level is before the
+ * module's first decision.
+ *
+ * A switch cannot report "no response". A cut wire reads as the level that the board pulls the pin to, so pull it to
+ * the safe level.
+ *
+ * | error of fathom_poll() | cause |
+ * |---|---|
+ * | FATHOM_ERR_STALE | no level was equal for `settle_us` within `stale_us`: noise, or a line that is never silent |
+ * | FATHOM_ERR_PORT | the port of the line on the same pins is broken; returned by every poll that has nothing else |
+ * | FATHOM_ERR_ARGUMENT | the initialisation failed or never ran, and the memory is zeroed |
+ *
+ * **Settings on the same pins.** Modbus sets the threshold and the polarity, 9600 8N1 (A16 4(1), 6(3)): use
+ * a16_settings.h with a fathom_a16_modbus_t beside this driver. That driver needs no other polls. The module receives
+ * on RX and responds on TX. With a `guard` (line_pins.h) the level does not count while a request is in progress, nor
+ * until 5 ms after the last byte.
+ *
+ * A low level is a break to the host's UART. Bytes with framing errors may stand before and behind a response; the
+ * line drops and counts them (FATHOM_LINE_BAD_BYTES). They keep the line from finding out that it has no echo, so
+ * configure FATHOM_LINE_ECHO_OFF: there is a wire in each direction. If a UART reports a break repeatedly while it
+ * lasts, the line looks busy; switch the receiver off while no request is in progress.
  */
 
-/* Read by init only; what it points to outlives the sensor. Members that are 0 mean their defaults. */
+/** @brief The configuration. fathom_a16_switch_init() copies it; what it points to must stay valid as long as the
+ * driver. A member that is 0 takes its default. */
 typedef struct {
-    const fathom_pin_t *pin; /* reads TX */
-    const fathom_clock_t *clock;
-    /* Of the line on the same pins (fathom_contact_line_guard), which this driver polls too. NULL: there is none, and
-     * the module gets no requests. */
+    const fathom_pin_t *pin;     /**< Reads the module's TX. Required, with `get`. */
+    const fathom_clock_t *clock; /**< Required, with `now_us`. */
+    /** The guard of the line on the same pins (fathom_contact_line_guard()). This driver polls that line too. NULL:
+     * there is no line, and the module gets no requests. */
     const fathom_contact_guard_t *guard;
-    fathom_contact_timing_t timing; /* contact.h: how long a level stands, and so on */
-    /* Low is FATHOM_NEAR: register 0x0205 is 0. false: high is, as from the factory, where "less than 1 meter" is a
-     * high level (A16 4(2)). */
+    fathom_contact_timing_t timing; /**< The times; contact.h has their ranges. */
+    /** A low level is FATHOM_NEAR: register 0x0205 is 0. False: a high level is, as with factory settings, where "less
+     * than 1 meter" is a high level (A16 4(2)). */
     bool negative;
-    uint8_t address; /* its Modbus address, of the samples; 0: without Modbus */
+    uint8_t
+        address; /**< Modbus address for the samples, 0..255; 0: without Modbus. It is copied and not used. */
 } fathom_a16_switch_config_t;
 
+/** @brief The driver. The caller owns the memory. */
 typedef struct {
     fathom_contact_t base;
 } fathom_a16_switch_t;
 
-/* FATHOM_READY, or FATHOM_ERR_ARGUMENT: no clock, or no pin that can be read. */
+/**
+ * @brief Initialises the driver and reads the pin once. If it fails, the driver is zeroed.
+ * @retval FATHOM_READY         The driver is ready.
+ * @retval FATHOM_ERR_ARGUMENT  There is no clock, no pin that can be read, a guard without one of its functions, or a
+ *                              time outside its range.
+ */
 fathom_status_t fathom_a16_switch_init(fathom_a16_switch_t *sensor, const fathom_a16_switch_config_t *config);
 
-/*
- * Sets the polarity by Modbus: as fathom_a16_modbus_set_switch_polarity of `modbus`, the driver of the same module on
- * the same line, with the same return values; call it until it is not FATHOM_PENDING. Meanwhile the level does not
- * count, since it turns somewhere on the way; after FATHOM_READY it is read by the new polarity, after anything else
- * by the one before. After FATHOM_ERR_UNCONFIRMED it may be either: read it with fathom_a16_modbus_switch_polarity, and
- * call fathom_a16_switch_polarity_is.
+/**
+ * @brief Sets the polarity by Modbus. Call it until it does not return FATHOM_PENDING.
+ *
+ * The level does not count meanwhile, because it turns during the change. After FATHOM_READY the level has its new
+ * meaning, after an error its previous one. After FATHOM_ERR_UNCONFIRMED it may be either: read it with
+ * fathom_a16_modbus_switch_polarity() and call fathom_a16_switch_polarity_is().
+ *
+ * @param modbus  The driver of the same module on the line that shares the pins.
+ * @return What fathom_a16_modbus_set_switch_polarity() returns.
  */
 fathom_status_t fathom_a16_switch_set_polarity(fathom_a16_switch_t *sensor, fathom_a16_modbus_t *modbus,
                                                fathom_a16_polarity_t polarity);
 
-/* The level is read by this polarity from now on: it was set or read without this driver; or setting it was given up
- * (fathom_a16_modbus_cancel). */
+/** @brief Sets the meaning of the level without Modbus. Call it if the polarity was set or read without this driver, or
+ * if fathom_a16_modbus_cancel() stopped the setting of it. */
 void fathom_a16_switch_polarity_is(fathom_a16_switch_t *sensor, fathom_a16_polarity_t polarity);
 
-/* For fathom_poll. There is nothing to undo: forget the sensor when it is no longer polled. */
+/** @brief Returns the sensor for fathom_poll() and fathom_due_us(). There is no deinit: stop polling. */
 fathom_sensor_t fathom_a16_switch_sensor(fathom_a16_switch_t *sensor);
 
 #ifdef __cplusplus

@@ -40,6 +40,8 @@ typedef enum {
 
 /* The distances that are believed, in mm, both included, and what each of the four values is that may be no distance;
  * those are never distances, whatever the window. In a driver's config 0 stands for a member's default. */
+/* Ranges: min_mm 0 to max_mm; max_mm 0 to 65535, of which 65533 to 65535 are never distances; the others are a
+ * fathom_meaning_t, 0 or one of its values. 1 (FATHOM_TARGET), 5 (FATHOM_FAR) and values above 8 are FATHOM_ERR_ARGUMENT. */
 typedef struct {
     uint16_t min_mm;
     uint16_t max_mm;

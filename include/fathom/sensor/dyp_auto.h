@@ -19,18 +19,21 @@ typedef struct {
 } fathom_dyp_auto_t;
 
 /*
- * Makes it ready; then the driver makes the stream's listener that of the line. The caller has set the line, what
- * fathom_stream_begin wants, and values, window, model, address and first of the measurement. FATHOM_READY, or
- * FATHOM_ERR_ARGUMENT: no line, or min_mm over max_mm.
+ * Initialises what both drivers share and makes the stream the listener of the line. The driver has set `line`, the
+ * members that fathom_stream_start() needs, and `values`, `window`, `model`, `address` and `first` of the measurement.
+ *   FATHOM_READY         The stream listens.
+ *   FATHOM_ERR_ARGUMENT  `line` is NULL, or a member of the window or the stream is outside its range.
+ *   FATHOM_ERR_BUSY      The line has another listener, which stays.
  */
 fathom_status_t fathom_dyp_auto_init(fathom_dyp_auto_t *sensor, uint16_t default_max_mm);
 
-/* Stops listening. */
+/* Stops listening, if the stream is the listener of the line. */
 void fathom_dyp_auto_deinit(fathom_dyp_auto_t *sensor);
 
 /*
  * Polls the line and takes the newest frame. FATHOM_READY: its values are those of the measurement, of which probe 1
- * waits to be handed over. FATHOM_PENDING: none has come. FATHOM_ERR_STALE, FATHOM_ERR_PORT: as in a16_auto.h.
+ * waits to be returned. FATHOM_PENDING: there is no new frame. FATHOM_ERR_STALE, FATHOM_ERR_CHECKSUM, FATHOM_ERR_PORT:
+ * as in a16_auto.h.
  */
 fathom_status_t fathom_dyp_auto_take(fathom_dyp_auto_t *sensor);
 

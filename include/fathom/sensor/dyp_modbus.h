@@ -28,6 +28,10 @@ enum { FATHOM_DYP_REGISTER_ADDRESS = 0x0200 };
  * known of sister models; it is not in the datasheets. */
 #define FATHOM_DYP_DEFAULT_START_US 1500000uL
 
+/** @brief First step of a driver's init: clears `size` bytes, or returns FATHOM_ERR_BUSY if the request is queued. */
+fathom_status_t fathom_dyp_modbus_begin(fathom_dyp_modbus_t *sensor, size_t size,
+                                        const fathom_modbus_config_t *config);
+
 /* The caller has set first and last of the request, the probes, start_us (0: its default), and values, window, model
  * and first of the measurement; timeout_us and pace_us are the driver's, as of fathom_modbus_unit_init.
  * FATHOM_READY, or FATHOM_ERR_ARGUMENT: as fathom_modbus_unit_init, or min_mm over max_mm. */

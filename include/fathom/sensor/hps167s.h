@@ -35,6 +35,17 @@ extern "C" {
  *                           A distance of all ones in any other packet is one of them
  *   FATHOM_ERR_WARMING_UP   one of the first three, or the abnormal packet, so soon after fathom_hps167s_power_on
  *   FATHOM_ERR_PORT         the HAL's port is broken; returned by every poll until it works again
+ *   FATHOM_ERR_LINE_BUSY    the line was never silent. Says nothing about the unit (status.h)
+ *   FATHOM_ERR_OTHER_MASTER another master asked the same unit. Says nothing about the unit
+ *   FATHOM_ERR_CANCELLED    the line was initialised again, or another driver moved the unit
+ *   FATHOM_ERR_ARGUMENT     the driver is not initialised
+ *
+ * The longest time until fathom_poll() returns an outcome is that of modbus_unit.h:
+ *
+ *     period_us + least(16 * timeout_us, backoff_us) + B(timeout_us, retries) + S + P
+ *
+ * Here B is the bound of a transaction alone on its line (line.h), S the sum of the bounds of the line's other
+ * transactions, and P the polling interval. While a command or setting of this driver is in progress, its time is added.
  */
 
 /* From one measurement to the next, at least: 54 a second (table 1). */
@@ -98,8 +109,11 @@ struct fathom_hps167s {
     uint16_t words[FATHOM_HPS167S_RECONNECT_COUNT]; /* what #15 writes */
 };
 
-/* FATHOM_READY, or FATHOM_ERR_ARGUMENT: no transport, an address over 32, address_zero, more than 8
- * same_responses. */
+/* FATHOM_READY, or FATHOM_ERR_ARGUMENT: no transport, an address over 32, address_zero, more than 8 same_responses, a
+ * member of `modbus` outside its range (fathom_modbus_config_t), or a frame buffer of the line below 13 bytes. All values
+ * of the other members are accepted. A refused init zeroes *sensor; then each poll and command returns
+ * FATHOM_ERR_ARGUMENT. FATHOM_ERR_BUSY: a request of this driver is still queued; nothing changed. Call
+ * fathom_hps167s_deinit() first. */
 fathom_status_t fathom_hps167s_init(fathom_hps167s_t *sensor, const fathom_hps167s_config_t *config);
 
 /* Other limits of distances than the defaults, from now on. Fills in the defaults where *limits is 0; it is the

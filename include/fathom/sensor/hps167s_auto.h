@@ -9,73 +9,162 @@
 extern "C" {
 #endif
 
-/*
- * HPS-167S that sends measurements without a request. The datasheet contradicts itself: 2.2.1 says that a slave cannot,
- * and #5 that to measure continuously is to repeat the request, while table 12, #10 and #15 speak of "continuous
- * output". hps167s.h sends requests; this is for a unit that sends by itself, or for listening to another client.
+/**
+ * @file
+ * @brief Reads an HPS-167S that sends measurements without a request.
  *
- * It is the listener of a line and looks for frames of the shape of #5's response from one address: ADDRESS 03 08,
- * 8 bytes, CRC. It gets back into step byte by byte, and the CRC decides. Requests to the same device on the same line
- * work meanwhile: a response goes to its request, a frame that no request waits for comes here.
+ * The datasheet contradicts itself. Section 2.2.1 states that a slave cannot send without a request, and #5 states that
+ * a master repeats the request to measure continuously. Table 12, #10 and #15 describe a "continuous output". hps167s.h
+ * sends requests. This driver is for a unit that sends by itself, or for a program that listens to another master.
  *
- * One sample a frame, as from hps167s.h. Where several frames came between two polls, the newest; the others are
- * counted. The errors of fathom_poll:
- *   FATHOM_ERR_STALE      no good frame for stale_us; returned once every stale_us
- *   FATHOM_ERR_MALFORMED  a frame with values that it cannot mean; counted
- *   FATHOM_ERR_PORT       the HAL's port is broken; returned by every poll until it works again
+ * The driver is the listener of a line. It searches the received bytes for frames of the shape of the response to #5
+ * from one address: ADDRESS 03 08, 8 bytes, CRC. If a byte cannot belong to such a frame, the driver drops this byte
+ * and continues with the next. So the driver needs no silence: the CRC decides what is a frame.
+ *
+ *     bytes   01 01 03 08 | 01 03 08 08 23 DC B2 07 01 00 00 FD 41 | 01 03 08 08 23 DC ...
+ *             dropped     | a frame                                | held: may become a frame
+ *
+ * Requests to the same device on the same line work at the same time. A response goes to its request, and a frame
+ * that no request waits for comes to this driver.
+ *
+ * Each frame is one sample, as from hps167s.h. If several frames arrive between two polls, the driver returns the
+ * newest and counts the others. A frame that is older than `stale_us` and FATHOM_LINE_LATE_US is no sample, whether it
+ * waited in the port (line.h, rule 13) or in the driver. The errors of fathom_poll() are:
+ *
+ * | error                | cause                                                                                  |
+ * |----------------------|----------------------------------------------------------------------------------------|
+ * | FATHOM_ERR_STALE     | Nothing was received for `stale_us`. Returned once every `stale_us`.                   |
+ * | FATHOM_ERR_CHECKSUM  | Bytes were received for `stale_us`, but no sample of this address: damage, noise,      |
+ * |                      | another rate, or another device. Returned once every `stale_us`.                       |
+ * | FATHOM_ERR_MALFORMED | A frame has values that cannot be a measurement. Counted in `implausible`.             |
+ * | FATHOM_ERR_PORT      | The port is broken. Returned by every poll until the port works again.                 |
+ *
+ * The CRC sees one and two wrong bits in a frame, and all errors within 16 bits in a row. Of frames whose bytes were
+ * replaced at random, one in 65536 passes.
  */
 
-/* Read by init only; the line outlives this. Members that are 0 mean their defaults. */
-typedef struct {
-    fathom_line_t *line; /* it becomes the line's listener; its frame holds 13 bytes or more */
-    uint32_t stale_us;   /* 0: 2 s; the slowest rate is 6 a second */
-    uint8_t address;     /* 1..32; 0: 1 */
-} fathom_hps167s_auto_config_t;
-
+/** @brief Length of a frame in bytes. */
 enum { FATHOM_HPS167S_FRAME_LENGTH = 13 };
 
+/** @brief Default of fathom_hps167s_auto_config_t::stale_us in microseconds. The slowest rate is 6 frames a second. */
+#define FATHOM_HPS167S_AUTO_DEFAULT_STALE_US 2000000uL
+
+/** @brief Configuration. Copied by fathom_hps167s_auto_init(). A member that is 0 takes its default. */
 typedef struct {
-    fathom_listener_t listener; /* first, so that one pointer is both */
+    /** @brief The line, whose listener the driver becomes. Must outlive the driver. Its frame buffer has at least 13
+     * bytes. */
     fathom_line_t *line;
-    fathom_hps167s_t *driver; /* NULL: none is beside it */
-    bool (*heard)(fathom_hps167s_t *driver, const uint16_t registers[4], uint32_t time_us);
-    const fathom_hps167s_limits_t *limits;
+
+    /** @brief Time without a sample after which fathom_poll() returns an error, in microseconds: 1 to 2^31 - 1. 0
+     * selects 2 s. */
     uint32_t stale_us;
-    uint32_t left_us; /* until it is stale */
-    uint32_t polled_us;
-    uint32_t time_us; /* of the frame */
-    uint16_t registers[4];
-    uint16_t sequence;
-    uint16_t implausible; /* frames that were refused for their values; this and the next stop at 65535 */
-    uint16_t missed;      /* frames that a newer one replaced before they were polled */
-    const uint8_t *from;  /* the address whose frames are taken */
+
+    /** @brief Address of the unit: 1 to 32. 0 selects 1. */
     uint8_t address;
-    uint8_t frame_address; /* of the frame */
-    uint8_t have;
+} fathom_hps167s_auto_config_t;
+
+/**
+ * @brief A driver, in the caller's memory.
+ *
+ * The caller may read the members from `sequence` to `damaged`, and set these counters to 0. All others are private.
+ */
+typedef struct {
+    /** @brief The listener. Invariant: the first member, so that one pointer is both. */
+    fathom_listener_t listener;
+
+    /** @brief The line. */
+    fathom_line_t *line;
+
+    /** @brief The driver that sends requests to the same device (fathom_hps167s_auto_beside()), or NULL. */
+    fathom_hps167s_t *driver;
+
+    /** @brief Returns false if a frame may be a late response to a request of `driver`. Not NULL if `driver` is not. */
+    bool (*heard)(fathom_hps167s_t *driver, const uint16_t registers[4], uint32_t time_us);
+
+    /** @brief The distance limits, or NULL for the default limits. */
+    const fathom_hps167s_limits_t *limits;
+
+    /** @brief Clock at the last sample or stale error, in microseconds. */
+    uint32_t since_us;
+
+    /** @brief Clock at the last byte of the newest frame, in microseconds. */
+    uint32_t time_us;
+
+    /** @brief The four registers of the newest frame. */
+    uint16_t registers[4];
+
+    /** @brief Sequence number of the newest sample. */
+    uint16_t sequence;
+
+    /** @brief Frames that were refused because of their values. This and the next counters stop at 65535. */
+    uint16_t implausible;
+
+    /** @brief Frames that were not returned: a newer frame arrived before the poll, or the poll came too late. */
+    uint16_t missed;
+
+    /** @brief Received bytes that belong to no frame of this address. */
+    uint16_t dropped_bytes;
+
+    /** @brief Frames of this address with a wrong CRC: 13 bytes that begin with ADDRESS 03 08. */
+    uint16_t damaged;
+
+    /** @brief The address whose frames count: `address`, or that of `driver`. */
+    const uint8_t *from;
+
+    /** @brief The address of the configuration. */
+    uint8_t address;
+
+    /** @brief The address in the newest frame. */
+    uint8_t frame_address;
+
+    /** @brief Number of bytes in `bytes`. Invariant: they can be the beginning of a frame. */
+    uint8_t held_count;
+
+    /** @brief True if the newest frame has not been returned yet. */
     bool is_new;
+
+    /** @brief True if bytes arrived, or were lost, since the last sample or stale error. */
+    bool is_heard;
+
+    /** @brief The beginning of the next frame. */
     uint8_t bytes[FATHOM_HPS167S_FRAME_LENGTH];
 } fathom_hps167s_auto_t;
 
-/* Begins to listen, instead of the listener before. FATHOM_READY, or FATHOM_ERR_ARGUMENT: no line, or address > 32. */
+/**
+ * @brief Initialises a driver and makes it the listener of the line.
+ *
+ * @param sensor  The driver. Must stay valid until fathom_hps167s_auto_deinit().
+ * @param config  The configuration. Not used after the call.
+ * @retval FATHOM_READY         The driver listens. Next, pass fathom_hps167s_auto_sensor() to fathom_poll().
+ * @retval FATHOM_ERR_ARGUMENT  `line` is NULL, its frame buffer has less than 13 bytes, `address` is above 32, or
+ *                              `stale_us` is above 2^31 - 1. Correct the config.
+ * @retval FATHOM_ERR_BUSY      The line has another listener, which stays. Remove that one first.
+ */
 fathom_status_t fathom_hps167s_auto_init(fathom_hps167s_auto_t *sensor,
                                          const fathom_hps167s_auto_config_t *config);
 
-/*
- * `driver` sends requests to the same device on this line, and outlives this. From now on frames are looked for from
- * its address, wherever that moves, and each is passed to fathom_hps167s_heard. A response to its #2 has the same shape
- * and may come after another frame was taken for it: a frame that equals the last #2 is no measurement, nor, from #2
- * until the next request, one that could be #2; both are counted as implausible. Of distances that is 255 mm alone.
+/**
+ * @brief Names a driver that sends requests to the same device on the same line.
+ *
+ * From now on the driver searches for frames from the address of `driver`, also after that address changes, and passes
+ * each frame to fathom_hps167s_heard(). The response to command #2 has the same shape as a measurement and may arrive
+ * late. So two kinds of frames are no measurement and are counted in `implausible`: a frame that equals the last
+ * response to #2, and between #2 and the next request, a frame that could be the response to #2. Of all distances, this
+ * concerns only 255 mm.
+ *
+ * @param sensor  The driver that listens.
+ * @param driver  The driver that sends requests. Must outlive `sensor`.
  */
 void fathom_hps167s_auto_beside(fathom_hps167s_auto_t *sensor, fathom_hps167s_t *driver);
 
-/* As fathom_hps167s_use_limits. */
+/** @brief Replaces the default distance limits, as fathom_hps167s_use_limits(). */
 fathom_status_t fathom_hps167s_auto_use_limits(fathom_hps167s_auto_t *sensor,
                                                fathom_hps167s_limits_t *limits);
 
-/* Stops listening; the memory is the caller's again. */
+/** @brief Stops listening, if the driver is the listener of the line. The memory is the caller's again. */
 void fathom_hps167s_auto_deinit(fathom_hps167s_auto_t *sensor);
 
-/* For fathom_poll. */
+/** @brief Returns the driver as a sensor for fathom_poll(). */
 fathom_sensor_t fathom_hps167s_auto_sensor(fathom_hps167s_auto_t *sensor);
 
 #ifdef __cplusplus

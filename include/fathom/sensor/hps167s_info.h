@@ -16,7 +16,13 @@ extern "C" {
  * was taken fathom_poll is FATHOM_PENDING; fathom_hps167s_cancel gives it up. The errors are those of fathom_poll, and
  *   FATHOM_ERR_BUSY       another command or setting is not finished, or its outcome was not taken
  *   FATHOM_ERR_CAPACITY   the line's frame buffer is too small (27 bytes for the details)
- * A response takes command_timeout_us (1 s) at most.
+ * A command ends at the latest after C, in the terms of modbus_unit.h:
+ *
+ *     C = period_us + B(timeout_us, retries) + B(command_timeout_us, retries) + 2 S + 2 P
+ *
+ * The configuration (#2) is read at most 32 times, with a pause of at most 131 ms before each, and may then wait for one
+ * command_timeout_us: 32 * (C + 131 ms) + command_timeout_us. Without unsolicited frames it is read at most 8 times.
+ * A command that is begun and never called again gives way after FATHOM_MODBUS_ABANDONED_US.
  */
 
 /* Command #4, table 16: of the analog front end, not of the air. The datasheet gives degrees Fahrenheit, and neither
@@ -33,9 +39,9 @@ fathom_status_t fathom_hps167s_interface_version(fathom_hps167s_t *sensor, fatho
  * #2. The response has the shape of a measurement's, and an unasked one may come instead. So it counts only if the
  * first two bytes are 00 or FF, if it is not the abnormal packet nor what was measured or heard last, and if two such
  * in succession agree (config.same_responses). Its baud code and reconnect time may have any value.
- * A frame that does not count came unasked. For 2 s after it three responses have to agree, and the requests come at
- * intervals that are no multiple of 18519 us, or they would be in step with what the device sends by itself.
- * It is read up to 8 times; FATHOM_ERR_MALFORMED: that was not enough. Where an unasked frame was taken for a response,
+ * A frame that does not count came unasked. For 2 s after it three responses have to agree, and the requests leave at
+ * irregular intervals, up to 131 ms apart beyond the period, or they would keep step with what the device sends by itself.
+ * It is read up to 8 times, among unasked frames 32 times; FATHOM_ERR_MALFORMED: that was not enough. Where an unasked frame was taken for a response,
  * that is returned command_timeout_us later, when no response can come any more: it would be taken for the next
  * measurement. Of measured distances only exactly 255 mm can pass the first test.
  */

@@ -17,7 +17,7 @@ extern "C" {
  * config.modbus.retries is for reading alone.
  *
  * With read-back (#7 to #11, #15): the configuration (#2) is read, the value is written only if it is another one,
- * since flash wears, and it is read again. 17 responses at most, some ms each. Then fathom_hps167s_is_written tells
+ * since flash wears, and it is read again. At most 65 requests: twice #2 (hps167s_info.h) and the write. Then fathom_hps167s_is_written tells
  * whether it was written:
  *   FATHOM_READY            it was read back; not written: it was so before
  *   FATHOM_ERR_DIFFERS      it acknowledged the value, and it reads back as another
@@ -26,6 +26,11 @@ extern "C" {
  *   FATHOM_ERR_BUSY         another command or setting is not finished, or this one with another value
  *   others                  of fathom_poll. Not written: nothing was changed; FATHOM_ERR_MALFORMED: #2 was not
  *                           believed. Written: the write failed so, and another value was read back
+ * The longest time is twice that of #2 and one command; where a setting moves the device, four reads of #2 instead of two
+ * at most, since the new place is probed and both are tried afterwards. FATHOM_ERR_LINE_BUSY and FATHOM_ERR_OTHER_MASTER:
+ * fathom_hps167s_is_written tells whether the write left. A write leaves only into a silence.
+ * #10 (measures after power-on) acts at the next power-on: until then the device goes on as before.
+ *
  * WRITE-ONLY (#12, #13, #14): #1 is read first, so that nothing is written to a device that is not there and an echo of
  * the line is known, and then it is written. Nothing can be read back.
  *   FATHOM_READY            it was acknowledged, which is all that can be known

@@ -11,74 +11,88 @@
 extern "C" {
 #endif
 
-/*
- * From the distance of a sensor that looks down into a tank to the level in it, per mille of the height, and the volume
- * by the tank's shape: whole numbers. It has no state.
+/**
+ * @file
+ * @brief Converts the distance of a sensor that looks down into a tank to the level in the tank, in mm and per mille of
+ * the height, and to the volume, by the tank's shape. It uses whole numbers and has no state.
  *
- *   static const fathom_level_config_t tank = {
- *       .volume = fathom_tank_horizontal_cylinder, .mounting_mm = 2100, .height_mm = 2000, .capacity = 5000};
- *   fathom_level_t level;
- *   if (sample.kind == FATHOM_TARGET && fathom_level(&tank, sample.distance_mm, &level) == FATHOM_READY)
- *       show(level.level_mm, level.volume);
+ *     static const fathom_level_config_t tank = {
+ *         .volume = fathom_tank_horizontal_cylinder, .mounting_mm = 2100, .height_mm = 2000, .capacity = 5000};
+ *     fathom_level_t level;
+ *     if (sample.kind == FATHOM_TARGET && fathom_level(&tank, sample.distance_mm, &level) == FATHOM_READY)
+ *         show(level.level_mm, level.volume);
  *
- * A sample that is no distance is no level: "no target" may be an empty tank, or one whose surface is too near.
+ * A sample of another kind than FATHOM_TARGET has no distance, so it has no level. FATHOM_NO_TARGET may be an empty
+ * tank, or a tank whose surface is too near.
  *
- * Level = mounting_mm - (distance + offset_mm). What is below the bottom counts as at the bottom, and what is over
- * height_mm as full; level_mm alone says how far. "To the nearest" is exact; of two that are as near it is the upper
- * one.
+ * Level = mounting_mm - (distance + offset_mm). A level below the bottom counts as 0, and a level above `height_mm` as
+ * full; `level_mm` alone shows by how much. "To the nearest" is exact; of two equally near values it is the upper one.
  */
 
 typedef struct fathom_level_config fathom_level_config_t;
 
-/* The volume at a level of 0..height_mm: one of those below, which alone is then in the image, or the caller's own. It
- * does not shrink when the level grows. */
+/** @brief Returns the volume at a level of 0..height_mm. One of the functions below, which alone is then linked, or the
+ * caller's own. The volume must not shrink if the level grows. */
 typedef uint32_t (*fathom_tank_volume_t)(const fathom_level_config_t *tank, uint16_t level_mm);
 
-/* The volume grows with the level, to the nearest: an upright cylinder, a box, a sump. */
+/** @brief The volume of an upright tank: a cylinder, a box, a sump. It grows with the level, to the nearest. */
 uint32_t fathom_tank_upright(const fathom_level_config_t *tank, uint16_t level_mm);
 
-/*
- * It lies, with flat ends; height_mm is its inner diameter. The error is at most 0.0431 per mille of the capacity and half
- * a unit, at any height and level; empty is 0, and half full and full are exact. (Where the ends bulge, as those of
- * most tanks, a table is nearer.)
+/**
+ * @brief The volume of a lying cylinder with flat ends; `height_mm` is its inner diameter.
+ *
+ * The error is at most 0.0431 per mille of the capacity and half a unit, at any height and level. Empty is 0; half full
+ * and full are exact. The ends of most tanks bulge; a table is more exact for them.
  */
 uint32_t fathom_tank_horizontal_cylinder(const fathom_level_config_t *tank, uint16_t level_mm);
 
-/* By points, between which the volume grows with the level, to the nearest. Below the first one it grows so from 0 at the
- * bottom; over the last one it is that of the last one. */
+/** @brief The volume by a table of points, between which it grows with the level, to the nearest. Below the first
+ * point it grows from 0 at the bottom; above the last point it is that of the last point. */
 uint32_t fathom_tank_table(const fathom_level_config_t *tank, uint16_t level_mm);
 
-/* At this level the tank has this volume. */
+/** @brief A point of a table: at this level the tank has this volume. */
 typedef struct {
     uint32_t volume;
     uint16_t level_mm;
 } fathom_level_point_t;
 
+/** @brief The configuration of a tank. */
 struct fathom_level_config {
-    fathom_tank_volume_t volume; /* the tank's shape */
-    /* For fathom_tank_table: both members grow from point to point; the first one may be at a level of 0 or have a volume
-     * of 0. */
+    fathom_tank_volume_t volume; /**< The tank's shape. Required. */
+    /** For fathom_tank_table(): `point_count` points. Both members grow from point to point; the first point may have a
+     * level of 0 or a volume of 0. NULL only if `point_count` is 0. */
     const fathom_level_point_t *points;
-    size_t point_count;
-    uint32_t capacity;    /* volume of the full tank, in any unit: litres; not for fathom_tank_table */
-    uint16_t mounting_mm; /* from the tank's bottom to the face of the sensor, 1..65535 */
-    uint16_t height_mm;   /* the level at which the tank is full, 1..65535 */
-    int16_t offset_mm;    /* added to each distance */
+    size_t point_count; /**< Number of points. */
+    uint32_t
+        capacity; /**< Volume of the full tank in any unit, 1..4294967295. Not used by fathom_tank_table(). */
+    uint16_t mounting_mm; /**< From the tank's bottom to the face of the sensor, 1..65535 mm. */
+    uint16_t height_mm;   /**< Level at which the tank is full, 1..65535 mm. */
+    int16_t offset_mm;    /**< Added to each distance, -32768..32767 mm. */
 };
 
+/** @brief The result of fathom_level(). */
 typedef struct {
-    uint32_t volume; /* in the unit of the config */
-    /* from the bottom; below 0 and over height_mm: the sensor sees farther or nearer than that */
-    int32_t level_mm;
-    uint16_t per_mille; /* of height_mm, to the nearest, 0..1000 */
+    uint32_t volume; /**< In the unit of the configuration. */
+    int32_t
+        level_mm; /**< From the bottom; below 0 or above `height_mm` if the distance is beyond the tank. */
+    uint16_t per_mille; /**< Of `height_mm`, to the nearest, 0..1000. */
 } fathom_level_t;
 
-/* FATHOM_READY, or FATHOM_ERR_ARGUMENT: no volume function, a mounting or a height of 0, points that do not grow, or a
- * full tank whose volume is 0: without a capacity, or without points. To be called once, for a config that is not
- * written by hand. */
+/**
+ * @brief Checks a configuration. Call it once for a configuration that is not written by hand.
+ * @retval FATHOM_READY         Each member is inside its range.
+ * @retval FATHOM_ERR_ARGUMENT  There is no volume function, `mounting_mm` or `height_mm` is 0, the points do not
+ *                              grow, or the volume of the full tank is 0 because there is no capacity, or there are
+ *                              no points.
+ */
 fathom_status_t fathom_level_check(const fathom_level_config_t *config);
 
-/* FATHOM_READY, or FATHOM_ERR_ARGUMENT: no volume function, or a height of 0; then *out is untouched. */
+/**
+ * @brief Converts a distance, 0..65535 mm.
+ * @param out  Written with FATHOM_READY only.
+ * @retval FATHOM_READY         `*out` is the level.
+ * @retval FATHOM_ERR_ARGUMENT  There is no volume function, or `height_mm` is 0, as in zeroed memory.
+ */
 fathom_status_t fathom_level(const fathom_level_config_t *config, uint16_t distance_mm, fathom_level_t *out);
 
 #ifdef __cplusplus

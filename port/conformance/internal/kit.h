@@ -21,6 +21,7 @@ typedef enum {
     DRIVER,
     READ_SILENCE,
     READ_STAMP,
+    READ_AGE,
     MARK_PARITY,
     MARK_FRAMING,
     WRITE_WHEN_FULL,

@@ -176,7 +176,7 @@ static fathom_status_t explained(void)
 {
     static const fathom_status_t statuses[] = {FATHOM_ERR_EXCEPTION, FATHOM_ERR_NO_RESPONSE,
                                                FATHOM_ERR_CHECKSUM,  FATHOM_ERR_MALFORMED,
-                                               FATHOM_ERR_STALE,     FATHOM_PENDING};
+                                               FATHOM_ERR_STALE,     FATHOM_ERR_LINE_BUSY};
     for (size_t i = 0; i < sizeof statuses / sizeof statuses[0]; i++) {
         if (judge_why(statuses[i]) != BECAUSE_NOTHING) return statuses[i];
     }

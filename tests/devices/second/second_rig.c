@@ -24,6 +24,7 @@ static void receive(void *context, const second_byte_t *byte)
 {
     rig_t *rig = context;
     if (is_pair(rig) && byte->start_us < rig->sent_us) return;
+    if (rig->is_asleep && rig->count == RIG_BYTES) return; /* a ring that keeps its oldest bytes */
     assert_true(rig->count < RIG_BYTES);
     size_t at = (rig->first + rig->count++) % RIG_BYTES;
     uint32_t off =
@@ -31,6 +32,7 @@ static void receive(void *context, const second_byte_t *byte)
     rig->bytes[at].value = byte->value;
     rig->bytes[at].flags = 0;
     rig->bytes[at].end_us = byte->end_us;
+    rig->heard_us = byte->end_us;
     if (off * 40u > rig->set.baud) {
         rig->bytes[at].value = (uint8_t)(byte->value * 5 + 3);
         rig->bytes[at].flags = FATHOM_RX_FRAMING;
@@ -129,8 +131,9 @@ void rig_open(rig_t *rig, const second_config_t *config)
 {
     static const uint32_t begins_us[] = {0, 4294000000u, 4200000000u, 2147483000u};
     assert_true(second_init(&rig->device, config));
-    rig->now_us = rig->sent_us = 0;
+    rig->now_us = rig->sent_us = rig->heard_us = 0;
     rig->in_break = false;
+    rig->is_asleep = false;
     rig->first = rig->count = rig->last_len = 0;
     rig->writes = rig->to_all = 0;
     rig->loop = config->seed % 3 == 2 ? RIG_EVERY_20_MS : config->seed % 24 == 1 ? RIG_EVERY_1_MS : RIG_WOKEN;
@@ -161,6 +164,8 @@ void rig_open(rig_t *rig, const second_config_t *config)
                                               .frame_size = sizeof rig->frame,
                                               .find_echo = fathom_line_find_echo,
                                               .marks = fathom_line_marks,
+                                              .senders = &fathom_line_senders,
+                                              .masters = &fathom_line_masters,
                                               .echo = config->seed / 12 % 2 == 0 ? FATHOM_LINE_ECHO_OFF : 0,
                                               .gap_us = rig->loop == RIG_EVERY_20_MS ? 25000 : 0};
     assert_int_equal(fathom_line_init(&rig->line, &rig->line_config), FATHOM_READY);
@@ -208,6 +213,29 @@ void rig_power(rig_t *rig, bool on)
 void rig_scene(rig_t *rig, int32_t mm1, int32_t mm2, int32_t mm3, int32_t mm4)
 {
     second_scene(&rig->device, &(second_scene_t){{mm1, mm2, mm3, mm4}}, rig->now_us);
+}
+
+void rig_sleep(rig_t *rig, uint64_t us)
+{
+    rig->is_asleep = true;
+    run_to(rig, rig->now_us + us);
+    rig->is_asleep = false;
+}
+
+void rig_foreign_request(rig_t *rig, const uint8_t *bytes, size_t length)
+{
+    const uint64_t bits = 9U + (rig->set.parity != 'N' ? 1U : 0U) + rig->set.stop_bits;
+    enum { SILENCE_US = 4011 }; /* 3.5 characters at 9600 baud */
+    if (rig->now_us < rig->sent_us || rig->now_us < rig->heard_us + SILENCE_US) return;
+    for (size_t i = 0; i < length; i++) {
+        const second_byte_t byte = {.value = bytes[i],
+                                    .start_us = rig->now_us,
+                                    .end_us = rig->now_us + bits * 1000000 / rig->set.baud,
+                                    .line = rig->set};
+        second_host_byte(&rig->device, byte.value, byte.start_us, byte.end_us, rig->set);
+        run_to(rig, byte.end_us);
+        receive(rig, &byte);
+    }
 }
 
 void rig_wait(rig_t *rig, uint64_t us)

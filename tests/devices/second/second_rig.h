@@ -26,6 +26,8 @@ typedef struct {
     second_line_t set;    /* the host's UART */
     uint64_t sent_us;     /* when all that was written has left */
     bool in_break;
+    bool is_asleep;
+    uint64_t heard_us; /* when the last byte ended that the device sent */
     struct {
         uint8_t value, flags;
         uint64_t end_us;
@@ -50,6 +52,10 @@ void rig_scene(rig_t *rig, int32_t mm1, int32_t mm2, int32_t mm3, int32_t mm4);
 
 /* Time passes: once round the loop, of which something is due in due_us at the latest. */
 void rig_pass(rig_t *rig, uint32_t due_us);
+/* The host sleeps that long: nothing is polled, and the port keeps what fits into it. */
+void rig_sleep(rig_t *rig, uint64_t us);
+/* Another master on the wire sends this request, unless it hears that the wire is not silent. */
+void rig_foreign_request(rig_t *rig, const uint8_t *bytes, size_t length);
 /* So long, with the line polled and nothing asked. */
 void rig_wait(rig_t *rig, uint64_t us);
 

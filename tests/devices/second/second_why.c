@@ -138,7 +138,10 @@ reason_t judge_why(fathom_status_t status)
     if (status == FATHOM_ERR_EXCEPTION && f.exception)
         return is_warming_up() ? BECAUSE_WARM_UP : BECAUSE_EXCEPTION;
     if (status == FATHOM_ERR_WARMING_UP) return BECAUSE_WARM_UP;
-    if (status == FATHOM_PENDING) return leaves_no_room() ? BECAUSE_FULL : BECAUSE_NOTHING;
+    if (status == FATHOM_PENDING) return BECAUSE_NOTHING; /* every wait ends */
+    if (status == FATHOM_ERR_LINE_BUSY && leaves_no_room()) return BECAUSE_FULL;
+    if (status == FATHOM_ERR_LINE_BUSY) return f.unasked && f.noise ? BECAUSE_HIT : BECAUSE_NOTHING;
+    if (status == FATHOM_ERR_OTHER_MASTER) return BECAUSE_NOTHING; /* there is none */
     if (judge_is_queued()) return BECAUSE_QUEUED;
     bool is_measured = status == FATHOM_ERR_MALFORMED || (status == FATHOM_ERR_STALE && f.unasked);
     if (is_measured && is_hps() && chose(CHOICE_hps_magnitude_exp) > 16) return BECAUSE_STRENGTH;
@@ -153,8 +156,9 @@ reason_t judge_why(fathom_status_t status)
     if (is_misprint(status)) return BECAUSE_MISPRINT;
     bool has_switched = !d->automatic && (kind() == SECOND_A16_RS232 || kind() == SECOND_A05_UART);
     if (status == FATHOM_ERR_STALE && has_switched) return BECAUSE_SWITCHED;
-    if (status == FATHOM_ERR_STALE && (d->automatic || is_hps()) &&
-        judge.rig->now_us >= f.unasked_us + 1900000)
+    /* stream.h, rule 5: bytes may have arrived meanwhile, as the first ones of the frame that comes too late. */
+    const bool is_stale = status == FATHOM_ERR_STALE || (status == FATHOM_ERR_CHECKSUM && !is_hps());
+    if (is_stale && (d->automatic || is_hps()) && judge.rig->now_us >= f.unasked_us + 1900000)
         return early ? BECAUSE_STARTING : BECAUSE_RARE;
     if (status == FATHOM_ERR_NO_RESPONSE && (f.silent || is_unanswered())) {
         if (is_warming_up()) return BECAUSE_WARM_UP;

@@ -100,6 +100,7 @@ void mix_run(const mix_t *mix, uint32_t seconds, mix_share_t shares[MIX_SENSORS]
 
     const fathom_clock_t clock = fathom_sim_clock(&seen.clock);
     const fathom_line_config_t config = {.uart = &uart,
+                                         .senders = &fathom_line_senders,
                                          .clock = &clock,
                                          .frame = frame,
                                          .frame_size = sizeof frame,

@@ -42,6 +42,7 @@ void stage_begin(const fathom_line_settings_t *settings, bool full_duplex, uint3
                              .leaves_in_us = port_leaves_in_us};
     s.hal_clock = fathom_sim_clock(&s.clock);
     s.config = (fathom_line_config_t){.uart = &s.uart,
+                                      .senders = &fathom_line_senders,
                                       .clock = &s.hal_clock,
                                       .frame = s.frame,
                                       .frame_size = sizeof s.frame,
@@ -84,7 +85,7 @@ void set_echo(uint8_t echo)
     fathom_listener_t *const listener = s.line.listener;
     s.config.echo = echo;
     assert_int_equal(fathom_line_init(&s.line, &s.config), FATHOM_READY);
-    fathom_line_listen(&s.line, listener);
+    (void)fathom_line_replace_listener(&s.line, listener);
 }
 
 void set_up(model_t model, uint8_t unit, uint32_t loop_us, uint8_t echo)

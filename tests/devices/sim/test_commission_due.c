@@ -114,7 +114,7 @@ TEST(bytes_that_the_line_holds_back_are_no_silence_behind_a_frame)
     hear_frame(LITERAL(0xFF, 0x02, 0xEF, 0xF0, 0x01, 0x03));
     /* What comes next may be the response, and is held; it is no beginning of another frame of the stream. */
     come(3 * MS, LITERAL(0x02));
-    assert_int_equal(line.have, 3);
+    assert_int_equal(line.received_count, 3);
     fake.now_us += 2 * MS; /* 5 ms after the frame, 2 ms after the last byte */
     assert_int_equal(fathom_poll(&sensor, &sample), FATHOM_PENDING);
     assert_int_equal(fathom_due_us(&sensor, 1), 3 * MS);

@@ -164,9 +164,26 @@ TEST(another_commands_outcome_comes_first)
 TEST(due_is_never_later_than_the_end_of_the_wait)
 {
     go_until_it_listens();
-    pass_us(9999 * MS);
+    for (unsigned second = 1; second != 10; second++) {
+        pass_us(1000 * MS);
+        assert_int_equal(once(), FATHOM_PENDING);
+    }
+    pass_us(999 * MS);
     assert_true(fathom_a16_rs232_due_us(&rs232) <= 1 * MS);
     pass_us(1 * MS);
     assert_int_equal(fathom_a16_rs232_due_us(&rs232), 0);
+    assert_int_equal(once(), FATHOM_ERR_UNCONFIRMED);
+}
+
+/* a16_rs232.h: of a pause in which the line drops what it heard, only the stale limit of 2 s counts. So polls each 3 s
+ * end the wait of 10 s with the fifth. */
+TEST(pauses_that_nothing_was_heard_in_do_not_prolong_the_wait_without_end)
+{
+    go_until_it_listens();
+    for (unsigned pause = 1; pause != 5; pause++) {
+        pass_us(3000 * MS);
+        assert_int_equal(once(), FATHOM_PENDING);
+    }
+    pass_us(3000 * MS);
     assert_int_equal(once(), FATHOM_ERR_UNCONFIRMED);
 }

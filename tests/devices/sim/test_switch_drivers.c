@@ -102,7 +102,7 @@ TEST(a_port_that_knows_nothing_will_do)
     run(4000 * MS, 20000);
     expect_kinds("FNF");
     assert_true(s.counters[FATHOM_LINE_DROPPED_BYTES] >= 4);
-    assert_int_equal(s.counters[FATHOM_LINE_NO_RESPONSES], 1);
+    assert_int_equal(s.counters[FATHOM_LINE_ECHOES], 1);
 }
 
 static fathom_status_t set_polarity(fathom_a16_polarity_t polarity, uint32_t step_us)

@@ -90,13 +90,16 @@ static void account_stream(rig_unit_t *unit)
     const uint16_t *const of_line = unit->rig->counters;
     const uint16_t *const counters = stream->counters;
     const uint64_t read = unit->totals.readings / soak_facts[unit->setting].probes + unit->refused;
-    uint32_t seen = counters[FATHOM_STREAM_MISSED];
+    uint32_t seen = (uint32_t)counters[FATHOM_STREAM_MISSED] + of_line[FATHOM_LINE_OLD_BYTES];
     if (soak_facts[unit->setting].proof == SOAK_NO_GAP)
         seen += (uint32_t)counters[FATHOM_STREAM_AMBIGUOUS] + counters[FATHOM_STREAM_UNSURE];
     differ(unit, counters[FATHOM_STREAM_FRAMES], read + counters[FATHOM_STREAM_MISSED]);
     differ(unit, unit->rig->bytes_read + unit->rig->overruns_reported,
            (uint64_t)counters[FATHOM_STREAM_BYTES] + of_line[FATHOM_LINE_BAD_BYTES] +
-               of_line[FATHOM_LINE_DROPPED_BYTES]);
+               of_line[FATHOM_LINE_DROPPED_BYTES] + of_line[FATHOM_LINE_OLD_BYTES]);
+    differ(unit, counters[FATHOM_STREAM_BYTES],
+           (uint64_t)counters[FATHOM_STREAM_FRAMES] * stream->length + counters[FATHOM_STREAM_DROPPED_BYTES] +
+               stream->undecided_count);
     exceed(unit, unit->clean_lost, seen);
     unit->totals.lost = unit->totals.transactions > read ? unit->totals.transactions - read : 0;
 }
@@ -109,6 +112,7 @@ static void account_line(rig_t *rig)
     uint64_t failures = counters[FATHOM_LINE_NO_RESPONSES];
     failures += (uint64_t)counters[FATHOM_LINE_CHECKSUM_ERRORS] + counters[FATHOM_LINE_EXCEPTIONS];
     failures += (uint64_t)counters[FATHOM_LINE_MALFORMED] + counters[FATHOM_LINE_PORT_ERRORS];
+    failures += (uint64_t)counters[FATHOM_LINE_BUSY_ATTEMPTS] + counters[FATHOM_LINE_OTHER_MASTERS];
     for (uint8_t i = 0; i < rig->count; i++) {
         requests += rig->units[i].requests;
         responses += rig->units[i].responses;

@@ -166,6 +166,8 @@ void rig_init(rig_t *rig, uint8_t setting, uint32_t loop_us, uint8_t knows, cons
         .frame_size = RIG_FRAME,
         .find_echo = fathom_line_find_echo,
         .marks = fathom_line_marks,
+        .senders = &fathom_line_senders,
+        .masters = &fathom_line_masters,
         .count = fathom_line_count,
         .counters = rig->counters,
         .echo = options->echo,

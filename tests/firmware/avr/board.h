@@ -38,7 +38,7 @@
  * synchroniser (2 cycles) and the noise canceller.
  */
 enum { BOARD_HZ = 16000000, BOARD_CYCLES_PER_US = 16, BOARD_ENTRY_CYCLES = 4 };
-enum { BOARD_RECORD = 32, BOARD_RECORDS = 64, BOARD_BYTES = 4096, BOARD_EDGES = 512, BOARD_LINE = 80 };
+enum { BOARD_RECORD = 40, BOARD_RECORDS = 64, BOARD_BYTES = 4096, BOARD_EDGES = 512, BOARD_LINE = 80 };
 enum { BOARD_WATCHES = 8, BOARD_PLANNED = 16 };
 
 /* What the image has reported. */

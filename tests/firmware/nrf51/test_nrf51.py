@@ -70,7 +70,7 @@ class Nrf51(qemu.Transaction, qemu.Case):
             device.write(os.read(device.master, 4096))
         done = self.end_well(image)
         found = re.findall(r'^(\w+): (kept|NOT KEPT|not seen), (\d+) ', done.out, re.M)
-        self.assertEqual(len(found), 25)
+        self.assertEqual(len(found), 26)
         # On a busy machine all bytes have left before the settings are changed.
         unseen = [name for name, verdict, _ in found if verdict != 'kept' and name != 'set_line_waits']
         self.assertEqual(unseen, NOT_SEEN)

@@ -54,10 +54,10 @@ test('the trigger is low for 2 ms, once every 221 ms', () => {
     assertCycle(triggers[i - 1], triggers[i]);
 });
 
-test('a pulse of 1 ms, out of the blind zone, is noise', () => {
+test('a pulse of 1 ms, below the range, is an unknown distance', () => {
   const bench = start([1000, 3000]);
   const said = lines(bench, 2);
-  assert.strictEqual(said[0], NO_RESPONSE);
+  assert.strictEqual(said[0], 'unknown, raw 1000');
   assertTarget(said[1], 3000);
 });
 

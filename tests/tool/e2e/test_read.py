@@ -223,7 +223,7 @@ class Pace(e2e.Case):
         self.ends(reader.end(), 0)
 
     def test_lines_are_flushed_at_once_to_a_pipe(self):
-        reader = self.fathom(f'read a16 --port {self.sim("a16 --distance 500")} --interval 3600000')
+        reader = self.fathom(f'read a16 --port {self.sim("a16 --distance 500")} --interval 2100000')
         reader.expect('500 mm')
         self.assertFalse(reader.has_ended())
 

@@ -10,7 +10,8 @@ import e2e
 LINE = ['responses', 'bytes_of_no_frame', 'port_errors', 'requests_without_a_response', 'damaged_responses',
         'exceptions',
         'responses_that_do_not_fit', 'late_responses', 'unasked_frames', 'bad_bytes']
-STREAM = ['frames', 'missed_frames', 'ambiguous_frames', 'unsure_frames', 'stale', 'bytes']
+STREAM = ['frames', 'missed_frames', 'ambiguous_frames', 'unsure_frames', 'stale', 'bytes', 'dropped_bytes',
+          'damaged_frames']
 JSON = '--stats --format json'
 GOOD = e2e.SAYS_754
 

@@ -47,7 +47,7 @@ WRONG = [
         ('--duration 0', f'--duration takes a whole number from {COUNTED}'),
         ('--address 0', '--address takes a whole number from 1 to 254'),
         *told('--address', '255'),
-        ('--interval 3600001', '--interval takes a whole number from 0 to 3600000'),
+        ('--interval 2147484', '--interval takes a whole number from 0 to 2147483'),
         ('--timeout 0', '--timeout takes a whole number from 1 to 600000'),
         *told('--timeout', '600001'),
         ('--retries 255', '--retries takes a whole number from 0 to 254'),

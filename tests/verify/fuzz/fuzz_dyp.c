@@ -158,9 +158,9 @@ static fathom_status_t poll(void)
 {
     const fathom_status_t status = fathom_stream_poll(&world.stream, world.now_us);
     if (status == FATHOM_READY) check_frame();
-    if (status == FATHOM_ERR_STALE)
+    if (status == FATHOM_ERR_STALE || status == FATHOM_ERR_CHECKSUM)
         PROMISE(fathom_elapsed_us(world.now_us, world.since_us) >= world.stale_us,
-                "stream.h: stale after stale_us");
+                "stream.h: an error after stale_us");
     else
         PROMISE(status == FATHOM_READY || status == FATHOM_PENDING, "stream.h: what poll returns");
     if (status != FATHOM_PENDING) world.since_us = world.now_us;
@@ -207,7 +207,7 @@ static void wait_for_outcome(void)
 
 static void engine(uint8_t part)
 {
-    static const uint32_t stale_us[] = {100000, 10000000};
+    static const uint32_t stale_us[] = {100000, FATHOM_STREAM_DEFAULT_STALE_US};
     world.length = (part & 4) != 0 ? 10 : 4;
     world.stale_us = stale_us[part >> 3 & 1];
     world.count = world.given = 0;

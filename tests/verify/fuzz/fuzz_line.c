@@ -200,9 +200,9 @@ static void call(uint8_t op)
         fathom_line_cancel_unit(&line, how >> 4);
         break;
     case 2:
-        listened = wire.count >= line.have ? wire.count - line.have : 0;
+        listened = wire.count >= line.received_count ? wire.count - line.received_count : 0;
         listener = (fathom_listener_t){.receive = receive, .gap_us = (how & 16) != 0 ? 5000 : 0};
-        fathom_line_listen(&line, (how & 8) != 0 ? &listener : NULL);
+        (void)fathom_line_replace_listener(&line, (how & 8) != 0 ? &listener : NULL);
         break;
     default: {
         const fathom_status_t status = fathom_line_break(&line, (how & 4) != 0);

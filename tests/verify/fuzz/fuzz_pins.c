@@ -55,7 +55,8 @@ static void edge(bool high, bool is_seen)
 static void check_pulse(const fathom_sample_t *sample)
 {
     const bool is_pulse = sample->kind == FATHOM_TARGET || sample->kind == FATHOM_NO_TARGET;
-    PROMISE(is_pulse || sample->kind == FATHOM_FAULT, "a16_pwm.h: the kinds");
+    PROMISE(is_pulse || sample->kind == FATHOM_FAULT || sample->kind == FATHOM_UNKNOWN,
+            "a16_pwm.h: the kinds");
     PROMISE(sample->model == FATHOM_A16 && sample->probe == 1 && sample->address == 0, "sample.h: who it is");
     /* pulse.h: by its width */
     if (sample->kind == FATHOM_TARGET)
@@ -68,6 +69,8 @@ static void check_pulse(const fathom_sample_t *sample)
         PROMISE(sample->raw >= 92000 && sample->raw <= 105000, "pulse.h: no_target_us .. stuck_us");
     if (sample->kind == FATHOM_FAULT)
         PROMISE(sample->raw == 0 || sample->raw > 105000, "pulse.h: more, or high when the cycle is over");
+    if (sample->kind == FATHOM_UNKNOWN)
+        PROMISE(sample->raw >= FATHOM_PULSE_SHORT_US && sample->raw < 2700, "pulse.h: 100 us .. noise_us");
     for (unsigned i = 0; is_pulse && i != count; i++)
         if (widths[i] == sample->raw && ends[i] == sample->time_us) return;
     PROMISE(!is_pulse, "a16_pwm.h: raw is the width of the pulse, time_us its end");
@@ -92,7 +95,7 @@ static bool poll(const fathom_sensor_t *sensors)
         if (i == 0) {
             has_outcome = true;
             PROMISE(status == FATHOM_READY || status == FATHOM_ERR_NO_RESPONSE ||
-                        status == FATHOM_ERR_MALFORMED,
+                        status == FATHOM_ERR_MALFORMED || status == FATHOM_ERR_STALE,
                     "a16_pwm.h: the errors of fathom_poll");
             if (status == FATHOM_READY) check_pulse(&sample);
         } else {

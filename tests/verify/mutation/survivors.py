@@ -26,8 +26,7 @@ ROWS = [
      'src/engine/line.c | fathom_line_drop | constant: 0 -> 1 | line->need = 0',
      'src/engine/line.c | fathom_line_broken | constant: 0 -> 1 | line->need = 0'),
     ('a number that no other state has; they are compared for equality alone',
-     'src/engine/modbus_unit.c |  | constant: 2 -> 3 | ANSWERED = 2',
-     'src/engine/stream.c |  | constant: 2 -> 3 | STEP = 2'),
+     'src/engine/modbus_unit.c |  | constant: 2 -> 3 | ANSWERED = 2'),
     ('writes the byte behind the head, which is set right after; the bounds check of the sanitizer builds ends '
      'there',
      'src/codec/modbus_rtu.c | fathom_modbus_rtu_parse_request | name: HEAD -> DATA | for (uint8_t i = 0; i != '
@@ -109,10 +108,8 @@ ROWS = [
      'src/codec/hps167s_registers.c | fathom_hps167s_temperature_dc | constant: 0 -> 1 | return ((dividend >= 0) ?'
      ' (dividend + (divisor / 2)) : (dividend - (divisor / 2))) / divisor'),
     ('looks at the byte when the next one has come; what is taken is the same',
-     'src/sensor/hps167s_auto.c | fits | name: FUNCTION -> SIZE | if ((sensor->have > FUNCTION) && '
-     '(bytes[FUNCTION] != FATHOM_MODBUS_READ_HOLDING_REGISTERS))',
-     'src/sensor/hps167s_auto.c | fits | name: SIZE -> DATA | if ((sensor->have > SIZE) && (bytes[SIZE] != '
-     'DATA_SIZE))'),
+     'src/sensor/hps167s_auto.c | has_head | name: FUNCTION -> SIZE | if ((held_count > FUNCTION) && '
+     '(bytes[FUNCTION] != FATHOM_MODBUS_READ_HOLDING_REGISTERS))'),
     ('a number that no other step has; they are compared for equality alone',
      'src/engine/modbus_setting.c |  | constant: 5 -> 6 | WRITE_UNREAD = 5',
      'src/sensor/hps167s_settings.c |  | constant: 1 -> 2 | WRITE_ONLY = 1'),
@@ -194,7 +191,9 @@ ROWS = [
      'src/engine/edges.c | fathom_edges_init | constant: 0 -> 1 | edges->rise_us = 0'),
     ('looked at only while it listens, and is set when that begins',
      'src/sensor/a16_rs232.c | fathom_a16_rs232_init | statement dropped: it -> nothing | rs232->since_us = 0',
-     'src/sensor/a16_rs232.c | fathom_a16_rs232_init | constant: 0 -> 1 | rs232->since_us = 0'),
+     'src/sensor/a16_rs232.c | fathom_a16_rs232_init | constant: 0 -> 1 | rs232->since_us = 0',
+     'src/sensor/a16_rs232.c | fathom_a16_rs232_init | statement dropped: it -> nothing | rs232->polled_us = 0',
+     'src/sensor/a16_rs232.c | fathom_a16_rs232_init | constant: 0 -> 1 | rs232->polled_us = 0'),
     ('the callers give a variable of their own, and copy it where the status, which is told either way, is READY',
      'src/sensor/a16_settings.c | get_choice | condition: status != FATHOM_READY -> 0 | if (status != '
      'FATHOM_READY)',
@@ -214,7 +213,7 @@ ROWS = [
      'src/codec/pulse_width.c | fathom_pulse_width_mm_in_air | constant: 10000000u -> 10000001u | return '
      'bounded_mm(mm + ((rest + 10000000u) / 20000000u))'),
     ('looked at only while there is a candidate, which sets it',
-     'src/engine/stream.c | fathom_stream_begin | statement dropped: it -> nothing | stream->candidate_us = now_us'),
+     'src/engine/stream.c | fathom_stream_start | statement dropped: it -> nothing | stream->candidate_us = now_us'),
     ("a setting without a read begins at WRITE_UNREAD; it is asked where clang's analyzer sees that no null is "
      'called',
      'src/engine/modbus_setting.c | fathom_modbus_set | logical: (setting->read == NULL) || (unit->step == WRITE) '
@@ -243,9 +242,6 @@ ROWS = [
      '((size & 1u) == 0u) && ((uint8_t) (size - 1u) < (2u * FATHOM_MODBUS_MAX_READ)) | 2',
      'src/codec/modbus_rtu.c | fathom_modbus_rtu_response_length | relational: < -> <= | const bool is_size = '
      '((size & 1u) == 0u) && ((uint8_t) (size - 1u) < (2u * FATHOM_MODBUS_MAX_READ))'),
-    ('counted down by the next byte, before it is looked at',
-     'src/engine/stream.c | fathom_stream_receive | constant: 0 -> 1 | stream->to_step = 0',
-     'src/engine/stream.c | fathom_stream_begin | constant: 0 -> 1 | stream->to_step = 0'),
     ('a number that no other request has; they are compared for equality alone',
      'src/sensor/dyp_modbus.c |  | constant: 1 -> 2 | MEASURE = 1',
      'src/sensor/dyp_modbus.c |  | constant: 1 -> 0 | MEASURE = 1',
@@ -287,8 +283,6 @@ ROWS = [
      'src/engine/line_internal.h |  | constant: 64 -> 65 | NOISY = 64'),
     ('a microsecond of the silence',
      'src/engine/line_request.c | give_up | constant: 0 -> 1 | line->silent_us = 0'),
-    ('what is not 0 is high',
-     'src/engine/edges.c | rise | constant: 1 -> 2 | edges->high = 1'),
     ('as wide as an int at least, either way',
      'src/sensor/a05_modbus.c | fathom_a05_modbus_init | type: unsigned -> uint8_t | while ((((unsigned) probes >>'
      ' first) & 1u) == 0u)'),

@@ -50,10 +50,10 @@ static void describe_step(int step, const world_t *before, FILE *out)
         if (before->leaving != 0 && world.leaving == 0) say(out, ": the last bit of the request leaves");
     } else if (step == PAUSE || step == PAUSE_STAYS) {
         say(out, "a second%s, poll", step == PAUSE ? "" : " with a busy port");
-    } else if (step < SUBMIT) {
+    } else if (step < SUBMIT || step == POLL_DRAWN) {
         static const char *const polls[] = {
             "", ", read fails", ", write fails", ", write is busy", ", set_line is busy", ", set_line fails"};
-        say(out, "poll%s", polls[step - POLL]);
+        say(out, "poll%s", step == POLL_DRAWN ? ", the slot is drawn" : polls[step - POLL]);
     } else if (step < CANCEL) {
         say(out, "submit %s", name_of(step - SUBMIT));
     } else if (step < CANCEL_UNIT) {
@@ -64,6 +64,10 @@ static void describe_step(int step, const world_t *before, FILE *out)
         say(out, "unit 3 responds to another host");
     } else if (step == STREAM) {
         say(out, "a device sends by itself");
+    } else if (step > STREAM) {
+        static const char *const others[] = {"unit 1 sends by itself", "a byte of noise",
+                                             "another master asks unit 1", "unit 1 answers the other master"};
+        say(out, "%s", others[step - OWN]);
     } else {
         const ticket_t *const ticket = &before->tickets[step % TICKETS];
         const char *const whose = (ticket->flags & ENDED) != 0    ? "given up"
@@ -92,9 +96,9 @@ void describe(int step, const world_t *before, FILE *out)
     for (const fathom_transaction_t *x = world.line.head; x != NULL; x = x->link.next) {
         const int i = (int)((const fathom_modbus_request_t *)x - world.requests);
         fprintf(out, " %s%s", name_of(i),
-                x == world.line.head && world.line.sent != 0 ? " on the wire"
-                : x->attempts != 0                           ? " waits for a retry"
-                                                             : " waits");
+                x == world.line.head && world.line.attempt.request_length != 0 ? " on the wire"
+                : x->attempts != 0                                             ? " waits for a retry"
+                                                                               : " waits");
         if (x->link.next != NULL) fprintf(out, ",");
     }
     for (int unit = 1; unit <= UNITS; unit++)

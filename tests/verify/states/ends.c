@@ -4,9 +4,9 @@
 #include <stdlib.h>
 
 /*
- * Does each transaction end? Where the line is left alone (nothing more is submitted or cancelled, the port works, no
- * other unit sends) the states in which something is queued must form no circle; then the longest way through them is
- * how long it takes at most.
+ * Does each transaction end, whatever is on the wire? If nothing more is submitted or cancelled, the port works and the
+ * program polls, the states in which something is queued must form no circle. Then the longest way through them is the
+ * time that a transaction takes at most.
  */
 
 enum { UNSEEN, OPEN, DONE };

@@ -35,6 +35,12 @@ static const word_t words[] = {{"dyp", &options.dyp},
                                {"halves", &options.halves},
                                {"foreign", &options.foreign},
                                {"stream", &options.stream},
+                               {"own", &options.own},
+                               {"noise", &options.noise},
+                               {"asks", &options.asks},
+                               {"senders", &options.senders},
+                               {"masters", &options.masters},
+                               {"busy", &options.busy},
                                {"cancel", &options.cancel},
                                {"cancel_unit", &options.cancel_unit},
                                {"read_fails", &options.read_fails},
@@ -72,7 +78,7 @@ int main(int argc, char **argv)
            (unsigned long)figures.states, (unsigned long long)figures.transitions,
            (unsigned long)figures.levels, (unsigned long)figures.longest, figures.others,
            (unsigned long long)figures.requests, (unsigned long long)figures.late);
-    for (int i = 0; i != 18; i++)
+    for (int i = 0; i != ENDS; i++)
         if (figures.ends[i] != 0)
             printf(" %s %llu", fathom_status_name((fathom_status_t)(1 - i)),
                    (unsigned long long)figures.ends[i]);

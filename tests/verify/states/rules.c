@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "world.h"
 
+#include "line_internal.h"
+
 #include <string.h>
 
 /* What the headers promise, seen at each step. */
@@ -58,7 +60,18 @@ static const char *judge_end(int step, const world_t *before, int transaction)
         step == POLL_READ_FAILS || step == POLL_WRITE_FAILS || step == PAUSE || step == PAUSE_STAYS;
     const int status = effect.ended[transaction];
     if (is_cancel != (status == FATHOM_ERR_CANCELLED)) return "CANCELLED, and it was not, or not, and it was";
+    if ((before->came & (CLAIMED | SKIPPED)) == CLAIMED && transaction == effect.queue[0] &&
+        status <= FATHOM_ERR_NO_RESPONSE && status != FATHOM_ERR_EXCEPTION &&
+        status != FATHOM_ERR_OTHER_MASTER && !is_cancel && !is_fault)
+        return "another master had asked the unit, and the status does not tell";
     switch (status) {
+    case FATHOM_ERR_LINE_BUSY:
+        return (before->came & SKIPPED) != 0 || before->waited >= options.busy || step == PAUSE ||
+                       step == PAUSE_STAYS
+                   ? NULL
+                   : "LINE_BUSY, and the line was silent";
+    case FATHOM_ERR_OTHER_MASTER:
+        return (before->came & CLAIMED) != 0 ? NULL : "OTHER_MASTER, and there was none";
     case FATHOM_READY:
     case FATHOM_ERR_EXCEPTION:
         return judge_delivery(transaction);
@@ -91,7 +104,15 @@ static bool is_first_that_may(int transaction)
     return true;
 }
 
-static const char *judge_sending(int transaction)
+/* A request leaves without the silence before it behind a frame in a slow loop, or after a wait in which no frame came. */
+static bool is_without_silence(const world_t *before)
+{
+    if (world.line.wait != WAIT_SKIPPED) return false;
+    if (options.senders && world.line.sender >= SENDER_SLOW && before->is_news) return true;
+    return before->waited >= options.busy && !before->has_frame;
+}
+
+static const char *judge_sending(int transaction, const world_t *before)
 {
     if (!was_queued(transaction)) return "a request has left whose transaction was not queued";
     for (int i = 0; i != TICKETS; i++) {
@@ -105,7 +126,10 @@ static const char *judge_sending(int transaction)
         if (!options.over && unit_of(ticket->transaction) == unit_of(transaction))
             return "a unit was asked whose late response may still come";
     }
-    if (world.quiet < options.silence) return "a request was sent without the silence before it";
+    if (world.asked != 0 && world.line.wait != WAIT_SKIPPED)
+        return "a request was sent while the answer to another master is due";
+    if (world.quiet < options.silence && !is_without_silence(before))
+        return "a request was sent without the silence before it";
     if (!is_first_that_may(transaction)) return "a request was sent before one that could have been";
     const int watched = options.watched;
     if (watched < TRANSACTIONS && watched != transaction && is_queued(watched) &&
@@ -114,13 +138,11 @@ static const char *judge_sending(int transaction)
     return NULL;
 }
 
-/* fathom_line_t.state: nothing is on the wire; .known: a device sends by itself, among whose frames requests wait. */
-enum { IDLE = 0, OTHERS_SEND = 128 };
-
 static bool stands_idle(int step)
 {
-    if (step != POLL || effect.sent >= 0 || world.line.state != IDLE || world.line.have != 0 ||
-        (world.line.known & OTHERS_SEND) != 0 || world.line.silent_us < options.silence)
+    if (step != POLL || effect.sent >= 0 || world.line.phase != FATHOM_LINE_IDLE ||
+        world.line.received_count != 0 || world.line.sender != SENDER_NONE ||
+        world.line.awaited_left_us != 0 || world.line.silent_us < options.silence * TICK_US)
         return false;
     for (int i = 0; i != TRANSACTIONS; i++)
         if (is_queued(i) && !fathom_line_is_quarantined(&world.line, address_of(i))) return true;
@@ -143,20 +165,20 @@ static const char *judge_times(int step, const world_t *before)
     if (step == POLL && !before->is_news && before->due != 0 && before->due != NEVER &&
         (effect.sent >= 0 || has_ended))
         return "the line had something to do before it was due";
-    if (step == POLL && world.due == 0 && world.leaving == 0 && world.line.have == 0 &&
-        (world.line.quarantined == 0 || world.line.quarantine_left_us != 0))
+    if (step == POLL && world.due == 0 && world.leaving == 0 && world.line.received_count == 0 &&
+        (world.line.quarantined_units == 0 || world.line.quarantine_left_us != 0))
         return "the line is due at once, and did nothing";
     if (stands_idle(step)) return "a request that could leave was not sent";
     for (int unit = 0; unit != UNITS; unit++) {
         if (fathom_line_is_quarantined(&before->line, (uint8_t)(unit + 1)) ||
             !fathom_line_is_quarantined(&world.line, (uint8_t)(unit + 1)))
             continue;
-        const bool is_asked = before->line.sent != 0 && unit_of(effect.queue[0]) == unit;
+        const bool is_asked = before->line.attempt.request_length != 0 && unit_of(effect.queue[0]) == unit;
         if (!is_asked) return "a unit is quarantined that was not asked";
     }
-    if (world.line.quarantined != 0) {
+    if (world.line.quarantined_units != 0) {
         const int longest = options.timeout[0] > options.timeout[1] ? options.timeout[0] : options.timeout[1];
-        if (world.line.quarantine_left_us > (uint32_t)(2 * longest))
+        if (world.line.quarantine_left_us > (uint32_t)(2 * longest * TICK_US))
             return "a quarantine lasts longer than twice the longest time-out";
     }
     return NULL;
@@ -167,7 +189,7 @@ const char *judge(int step, const world_t *before)
     const char *broken = judge_memory(step);
     for (int i = 0; i != TRANSACTIONS && broken == NULL; i++)
         if (effect.ended[i] != FATHOM_PENDING) broken = judge_end(step, before, i);
-    if (broken == NULL && effect.sent >= 0) broken = judge_sending(effect.sent);
+    if (broken == NULL && effect.sent >= 0) broken = judge_sending(effect.sent, before);
     if (broken == NULL) broken = judge_times(step, before);
     return broken;
 }

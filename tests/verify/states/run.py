@@ -4,7 +4,7 @@
 
     run.py              all worlds
     run.py --quick      the worlds that take some seconds
-    run.py --self-test  finds the planted fault, and a broken promise if an assumption is dropped
+    run.py --self-test  finds the planted faults, and a broken promise if an assumption is dropped
     run.py --only NAME  one world
 
 run.py compiles into build-states/ with FATHOM_CC, or with gcc. A world with fewer states than its least number fails:
@@ -22,38 +22,48 @@ sys.path.insert(0, os.path.dirname(HERE))
 import c_text  # noqa: E402
 
 LIBRARY = [f'src/engine/{name}.c' for name in (
-    'line', 'line_request', 'line_send', 'line_response', 'line_turns', 'line_find_echo', 'modbus', 'modbus_client',
-    'dyp_client')] + [f'src/codec/{name}.c' for name in ('crc16', 'modbus_rtu', 'dyp_55aa', 'dyp_stream')] + [
+    'line', 'line_attempt', 'line_request', 'line_response', 'line_senders', 'line_masters', 'line_options',
+    'line_turns', 'modbus', 'modbus_client', 'dyp_client')] + [f'src/codec/{name}.c' for name in ('crc16', 'modbus_rtu', 'dyp_55aa', 'dyp_stream')] + [
     'src/status_name.c']
 WORLD = [f'tests/verify/states/{name}.c' for name in (
     'main', 'search', 'ends', 'world', 'packed', 'steps', 'rules', 'described')]
 
 # What is as it is where a world does not say otherwise: world.c has the same.
 DEFAULTS = dict(transactions=15, retries1a=0, retries1b=1, retries2a=0, retries2b=0, timeout1=3, timeout2=3, silence=2,
-                gap=2, leave=1, poll=1)
+                gap=2, leave=1, poll=1, busy=6)
 WRONG = dict(exception=1, damaged=1, unexpected=1)
 PORT = dict(read_fails=1, write_fails=1, write_busy=1, set_line=1)
 TWO = dict(transactions=5)  # one of each unit
 QUICK = {  # a world: the least number of its states, four fifths of today's, and its words
-    'two of each unit, cancelled': (700000, dict(cancel=1, watched=3)),
-    'wrong responses and noise': (720000, dict({**TWO, **WRONG}, cancel=1, piece=1, leave=2)),
-    'a port with faults': (74000, dict({**TWO, **PORT}, cancel=1, cancel_unit=1, retries1a=1)),
-    'a port with a queue': (14000, dict(TWO, cancel=1, takes=1, leave=2, retries2a=1)),
-    'another host': (250000, dict(TWO, foreign=1, cancel=1, piece=1)),
-    'a device that sends by itself': (110000, dict(TWO, stream=1, retries1a=1)),
-    'an adapter that echoes': (32000, dict(TWO, echo=1, cancel=1, retries1a=1)),
-    'an adapter of unknown echo': (38000, dict(TWO, echo=2, cancel=1, retries1a=1)),
-    '55 AA': (300000, dict(TWO, dyp=1, cancel=1, damaged=1, unexpected=1, retries1a=1)),
-    '55 AA, echoed': (39000, dict(TWO, dyp=1, echo=2, cancel=1)),
-    'time-outs that differ': (420000, dict(TWO, timeout1=2, timeout2=4, cancel=1, damaged=1, retries1a=1)),
+    'two of each unit, cancelled': (440000, dict(cancel=1, watched=3)),
+    'wrong responses and noise': (120000, dict({**TWO, **WRONG}, cancel=1, piece=1, leave=2)),
+    'a port with faults': (59000, dict({**TWO, **PORT}, cancel=1, cancel_unit=1, retries1a=1)),
+    'a port with a queue': (8900, dict(TWO, cancel=1, takes=1, leave=2, retries2a=1)),
+    'another host': (93000, dict(TWO, foreign=1, cancel=1, piece=1)),
+    'a device that sends by itself': (150000, dict(TWO, stream=1, senders=1, retries1a=1)),
+    'a unit that sends by itself': (24000, dict(TWO, own=1, senders=1)),
+    'a slow loop among frames': (190000, dict(TWO, own=1, senders=1, poll=2, silence=1)),
+    'noise without end': (100000, dict(TWO, noise=1, retries1a=1, cancel=1)),
+    'another master': (110000, dict(TWO, asks=1, masters=1, retries1a=1)),
+    'an adapter that echoes': (18000, dict(TWO, echo=1, cancel=1, retries1a=1)),
+    'an adapter of unknown echo': (26000, dict(TWO, echo=2, cancel=1, retries1a=1)),
+    '55 AA among frames': (290000, dict(TWO, dyp=1, cancel=1, damaged=1, unexpected=1, retries1a=1, senders=1)),
+    '55 AA': (89000, dict(TWO, dyp=1, cancel=1, damaged=1, unexpected=1, retries1a=1)),
+    '55 AA, echoed': (27000, dict(TWO, dyp=1, echo=2, cancel=1)),
+    'time-outs that differ': (85000, dict(TWO, timeout1=2, timeout2=4, cancel=1, damaged=1, retries1a=1)),
 }
 FULL = {
-    'three, wrong responses': (630000, dict(WRONG, transactions=7, watched=2)),
-    'two of each unit, retries': (350000, dict(retries1a=1, retries2a=1, retries2b=1, exception=1, watched=3)),
-    'a slow loop': (940000, dict(TWO, poll=2, cancel=1, damaged=1)),
-    'in halves': (19000, dict(transactions=3, halves=1, timeout1=2, leave=1)),
-    'two of each unit, 55 AA': (1070000, dict(dyp=1, damaged=1, watched=3)),
-    'two of each unit, port': (1360000, dict(read_fails=1, write_fails=1, watched=3)),
+    'three, wrong responses': (150000, dict(WRONG, transactions=7, watched=2)),
+    'two of each unit, retries': (320000, dict(retries1a=1, retries2a=1, retries2b=1, exception=1, watched=3)),
+    'a slow loop and another master': (240000, dict(TWO, asks=1, masters=1, poll=2, retries1a=1)),
+    'another master and unsolicited frames': (
+        31000, dict(transactions=1, asks=1, masters=1, own=1, senders=1, retries1a=1)),
+    'a slow loop, noise and frames': (
+        170000, dict(transactions=1, own=1, senders=1, noise=1, poll=2, silence=1, retries1a=1)),
+    'a slow loop': (180000, dict(TWO, poll=2, cancel=1, damaged=1)),
+    'in halves': (9200, dict(transactions=3, halves=1, timeout1=2, leave=1)),
+    'two of each unit, 55 AA': (410000, dict(dyp=1, damaged=1, watched=3)),
+    'two of each unit, port': (1200000, dict(read_fails=1, write_fails=1, watched=3)),
 }
 
 SMALL = dict(transactions=3, cancel=1, damaged=1)
@@ -62,9 +72,20 @@ ASSUMPTIONS = {  # a dropped assumption: a world without it, and the promise tha
     'a gap behind noise that begins like a response': (
         dict(TWO, piece=1, crowd=1, foreign=1), 'late response may still come'),
 }
-# The planted fault: a world, the promise that breaks, and the file, the function, the old text and the new text.
-FAULT = (SMALL, 'late response may still come', 'src/engine/line_request.c', 'quarantine',
-         'longest_us += transaction->timeout_us;', 'longest_us += transaction->timeout_us / 2;')
+# The planted faults, each with its name: a world, the promise that breaks, and the file, the function, the old text and
+# the new text.
+FAULTS = {
+    'a quarantine of half the time': (
+        SMALL, 'late response may still come', 'src/engine/line_attempt.c', 'fathom_line_quarantine',
+        'duration_us += transaction->timeout_us;', 'duration_us += transaction->timeout_us / 2;'),
+    'a wait that begins anew in each poll': (
+        dict(transactions=1, noise=1), 'never ends', 'src/engine/line_request.c', 'choose',
+        'if (!is_ports_time(line) && !is_waiting(line)) begin_wait(line);',
+        'if (!is_ports_time(line)) begin_wait(line);'),
+    'a request of another master that claims nothing': (
+        dict(TWO, asks=1, masters=1), 'another master', 'src/engine/line_masters.c', 'note_foreign_request',
+        'if (is_outstanding) note_fault(line, FAULT_CLAIMED);', ''),
+}
 
 
 def build(name, fault=None):
@@ -96,12 +117,13 @@ def run(program, words, most=24000000):
 
 
 def bound_of_ticks(words):
-    """Until all have ended: each attempt waits for a quarantine, a silence, its request, a time-out, and a gap where
-    something damaged came at the end of it; and each poll may be late for each of these."""
+    """Until all have ended (line.h, rule 16): each attempt waits for a quarantine, at most busy_us for a silence, its
+    request, a time-out, and a gap where something damaged came at the end of it; and each poll may be late for each of
+    these."""
     world = {**DEFAULTS, **words}
     longest = max(world['timeout1'], world['timeout2'])
     late = world['poll'] - 1
-    attempt = 2 * longest + world['silence'] + world['leave'] + longest + 2 * world['gap'] + 5 * late
+    attempt = 2 * longest + world['busy'] + world['leave'] + longest + 2 * world['gap'] + 5 * late
     names = [name for bit, name in enumerate(('1a', '1b', '2a', '2b')) if world['transactions'] >> bit & 1]
     return sum(1 + world[f'retries{name}'] for name in names) * attempt + 2 * longest
 
@@ -137,7 +159,7 @@ def go_through(worlds):
 
 def self_test():
     rows = [(f'without: {name}', words, text, None) for name, (words, text) in ASSUMPTIONS.items()]
-    rows.append(('planted: a quarantine of half the time', *FAULT[:2], FAULT[2:]))
+    rows += [(f'planted: {name}', *fault[:2], fault[2:]) for name, fault in FAULTS.items()]
     failed = 0
     for name, words, text, fault in rows:
         status, output = run(build(name, fault), words, 3000000)

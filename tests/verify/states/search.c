@@ -66,10 +66,11 @@ static uint32_t find(const uint8_t *state, bool *is_new)
     return index;
 }
 
-/* Steps after which the line goes on by itself: time, polls, and what the units that were asked send. */
+/* Steps that no program and no broken port takes: time, polls, and all that is on the wire. */
 static bool is_left_alone(int step)
 {
-    return step == TICK || step == POLL || step == PAUSE || (step >= RESPOND && step < FOREIGN);
+    return step == TICK || step == POLL || step == POLL_DRAWN || step == PAUSE ||
+           (step >= RESPOND && step <= ANSWER);
 }
 
 static void add_edge(uint32_t to, int step)

@@ -4,14 +4,16 @@
 
 #include "world.h"
 
+enum { ENDS = 2 - FATHOM_ERR_OTHER_MASTER };
+
 typedef struct {
     uint32_t states, levels;
     uint64_t transitions;
-    uint64_t requests; /* transitions with which a request left */
-    uint64_t late;     /* and with which a late response was counted */
-    uint64_t ends[18]; /* by 1 - status */
-    unsigned others;   /* requests of others before that of the watched transaction, at most */
-    uint32_t longest;  /* ticks until all have ended, where the line is left alone, at most */
+    uint64_t requests;   /* transitions with which a request left */
+    uint64_t late;       /* and with which a late response was counted */
+    uint64_t ends[ENDS]; /* by 1 - status */
+    unsigned others;     /* requests of others before that of the watched transaction, at most */
+    uint32_t longest;    /* ticks until all have ended, where the line is left alone, at most */
 } figures_t;
 
 extern figures_t figures;

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "world.h"
 
+#include "line_internal.h"
+
 #include <string.h>
 
 #include "fathom/codec/dyp_55aa.h"
@@ -17,9 +19,11 @@ static bool stands_still(void)
 {
     for (int i = 0; i != TICKETS; i++)
         if (world.tickets[i].stage != NONE) return false;
-    return world.passed == 0 && world.due == NEVER && world.leaving == 0 && world.rx_length == 0 &&
-           world.line.have == 0 && world.line.quarantined == 0 && world.quiet >= options.silence &&
-           world.line.silent_us > options.silence && world.line.silent_us > options.gap;
+    return world.passed == 0 && world.asked == 0 && !world.has_spoken && world.line.awaited_left_us == 0 &&
+           world.due == NEVER && world.leaving == 0 && world.rx_length == 0 &&
+           world.line.received_count == 0 && world.line.quarantined_units == 0 &&
+           world.quiet >= options.silence && world.line.silent_us > options.silence * TICK_US &&
+           world.line.silent_us > options.gap * TICK_US;
 }
 
 /* A unit ends one response before it begins another. */
@@ -44,6 +48,29 @@ static bool is_piece_possible(int ticket)
     return is_due(ticket) && (world.tickets[ticket].flags & PIECE) == 0;
 }
 
+/* A unit whose response is late, or will be when the program polls, sends nothing by itself (README.md). */
+static bool owes_late_response(int unit)
+{
+    for (int i = 0; i != TICKETS; i++) {
+        const ticket_t *const ticket = &world.tickets[i];
+        const int x = ticket->transaction;
+        if (ticket->stage == NONE || unit_of(x) != unit) continue;
+        if ((ticket->flags & CLOSED) != 0 || ticket->age + options.poll >= timeout_of(x)) return true;
+    }
+    return false;
+}
+
+/* One device sends in a tick, into an empty port. */
+static bool may_speak(void) { return has_space() && world.rx_length == 0 && !world.has_spoken; }
+
+/* Ticks after another master's request within which the unit answers, so that the program still reads the answer before
+ * the line ends its wait for it. */
+static int answer_limit(void)
+{
+    const int least = options.timeout[0] < options.timeout[1] ? options.timeout[0] : options.timeout[1];
+    return (options.busy < least ? options.busy : least) - options.poll;
+}
+
 static bool is_unit_queued(int unit) { return is_queued(2 * unit) || is_queued(2 * unit + 1); }
 
 bool is_possible(int step)
@@ -66,7 +93,7 @@ bool is_possible(int step)
             return is_due(ticket) && options.unexpected;
         case SEND_PIECE:
             return is_piece_possible(ticket) && options.piece && world.rx_length == 0 &&
-                   (options.crowd || world.line.have == 0);
+                   (options.crowd || world.line.received_count == 0);
         case BEGIN:
             return is_due(ticket) && options.halves;
         default:
@@ -77,7 +104,7 @@ bool is_possible(int step)
     case TICK:
         return world.passed < options.poll && !stands_still();
     case PAUSE:
-        return world.rx_length == 0 && world.line.have == 0 && !is_any_due();
+        return world.rx_length == 0 && world.line.received_count == 0 && !is_any_due();
     case PAUSE_STAYS:
         return options.write_busy && is_possible(PAUSE);
     case POLL:
@@ -91,10 +118,21 @@ bool is_possible(int step)
     case POLL_SET_BUSY:
     case POLL_SET_FAILS:
         return options.set_line;
+    case POLL_DRAWN:
+        return world.line.sender == SENDER_LOST_2;
     case FOREIGN:
-        return options.foreign && has_space() && world.rx_length == 0;
+        return options.foreign && may_speak();
     case STREAM:
-        return options.stream && has_space() && world.rx_length == 0;
+        return options.stream && may_speak();
+    case OWN:
+        return options.own && may_speak() && !owes_late_response(0);
+    case NOISE:
+        return options.noise && may_speak();
+    case ASK:
+        return options.asks && may_speak() && world.asked == 0 && world.leaving == 0 &&
+               world.line.protocol != NULL;
+    case ANSWER:
+        return world.asked != 0 && has_space();
     default:
         return false;
     }
@@ -129,8 +167,11 @@ static void age(ticket_t *ticket)
 
 static void tick(void)
 {
-    world.now_us++;
+    world.now_us += TICK_US;
     world.passed++;
+    world.has_spoken = 0;
+    if (is_waiting(&world.line) && world.waited < options.busy) world.waited++;
+    if (world.asked != 0 && ++world.asked_age >= answer_limit()) world.asked = world.asked_age = 0;
     if (world.due != 0 && world.due != NEVER) world.due--;
     if (world.quiet < options.silence) world.quiet++;
     if (world.leaving != 0) {
@@ -143,7 +184,10 @@ static void tick(void)
 static void look_when_due(void)
 {
     const uint32_t us = fathom_line_due_us(&world.line);
-    world.due = us < NEVER ? (uint8_t)us : NEVER;
+    /* A port that does not tell when it is ready is tried again at each poll. */
+    const bool is_unknown = world.line.phase >= FATHOM_LINE_DRAINING &&
+                            world.line.phase <= FATHOM_LINE_SENDING && world.leaving == 0;
+    world.due = us / TICK_US < NEVER && !is_unknown ? (uint8_t)(us / TICK_US) : NEVER;
 }
 
 /* Of a port that is broken nothing more leaves. */
@@ -155,9 +199,27 @@ static void lose_request(void)
         if (world.tickets[i].stage == LEAVING) forget(&world.tickets[i]);
 }
 
+/* Where the line draws by the clock, the clock decides. */
+static void set_draw(bool is_drawn)
+{
+    const uint32_t by_us = (is_drawn ? 0u : 1u) - world.now_us;
+    world.now_us += by_us;
+    world.line.polled_us += by_us;
+}
+
 static void poll(void)
 {
+    if (options.senders) set_draw(false);
     if (fathom_line_poll(&world.line) == FATHOM_ERR_PORT) lose_request();
+    world.passed = 0;
+    world.is_news = 0;
+    look_when_due();
+}
+
+static void poll_drawn(void)
+{
+    set_draw(true);
+    (void)fathom_line_poll(&world.line);
     world.passed = 0;
     world.is_news = 0;
     look_when_due();
@@ -170,6 +232,8 @@ static void pause(void)
     world.quiet = (uint8_t)options.silence;
     for (int i = 0; i != TICKETS; i++)
         if (world.leaving == 0) forget(&world.tickets[i]);
+    world.asked = world.asked_age = world.has_spoken = 0;
+    if (is_waiting(&world.line)) world.waited = (uint8_t)options.busy;
     world.due = 0;
     poll();
 }
@@ -185,8 +249,9 @@ static void come(int step)
     const int number = step % TICKETS;
     ticket_t *const ticket = &world.tickets[number];
     const bool is_open = (ticket->flags & CLOSED) == 0;
-    const bool is_first = world.rx_length == 0 && world.line.have == 0;
-    const bool is_in_time = is_first && ticket->age < timeout_of(ticket->transaction);
+    const bool is_first = world.rx_length == 0 && world.line.received_count == 0;
+    const bool is_in_time =
+        is_first && ticket->age < timeout_of(ticket->transaction) && (world.came & CLAIMED) == 0;
     uint8_t length = response(number, bytes);
     switch (step - number) {
     case RESPOND:
@@ -230,18 +295,64 @@ static void come(int step)
         return;
     default:
         put(bytes + FIRST_BYTES, (uint8_t)(length - FIRST_BYTES));
+        world.has_frame = 1;
         ticket->stage = CAME;
         return;
     }
     put(bytes, length);
+    if (step - number != DAMAGED) world.has_frame = 1;
     ticket->stage = CAME;
+}
+
+static bool is_asked(int unit)
+{
+    return world.line.attempt.request_length != 0 &&
+           unit_of((int)((const fathom_modbus_request_t *)world.line.head - world.requests)) == unit;
+}
+
+/* A read of `count` registers from `first` on of a unit, as another master sends it. */
+static void put_read(uint8_t address, uint16_t first, uint16_t *values, uint8_t count, bool is_response)
+{
+    uint8_t bytes[13];
+    fathom_modbus_message_t message;
+    fathom_modbus_read_holding_registers(&message, address, first, count, values);
+    put(bytes, is_response ? fathom_modbus_rtu_encode_response(&message, bytes)
+                           : fathom_modbus_rtu_encode_request(&message, bytes));
+}
+
+static void speak(int step)
+{
+    uint16_t values[2] = {OTHERS_VALUE, OTHERS_VALUE};
+    const uint8_t noise = 0x07; /* two of them begin no frame: 7 is no function of Modbus */
+    world.has_spoken = 1;
+    switch (step) {
+    case OWN:
+        put_read(1, 0x0106, values, 2, true);
+        if (is_asked(0)) note(OTHER, false);
+        break;
+    case NOISE:
+        put(&noise, 1);
+        return;
+    case ASK:
+        put_read(1, 0x0107, values, 1, false);
+        world.asked = 1;
+        world.asked_age = 0;
+        if (is_asked(0)) world.came |= CLAIMED;
+        break;
+    default:
+        put_read(1, 0x0107, values, 1, true);
+        world.asked = world.asked_age = 0;
+    }
+    world.has_frame = 1;
 }
 
 static void come_unasked(int step)
 {
     static const uint8_t stream[4] = {0xFF, 0x07, 0xA1, 0xA7}; /* A16 2(4): 1953 mm */
     uint8_t bytes[8];
-    uint16_t value = 0x0666;
+    uint16_t value = OTHERS_VALUE;
+    world.has_spoken = 1;
+    world.has_frame |= step == FOREIGN;
     if (step == STREAM) {
         put(stream, sizeof stream);
         return;
@@ -286,6 +397,10 @@ static void call(int step)
         pause();
     else if (step < SUBMIT)
         poll();
+    else if (step == POLL_DRAWN)
+        poll_drawn();
+    else if (step > STREAM)
+        speak(step);
     else if (step >= FOREIGN)
         come_unasked(step);
     else if (step >= RESPOND)
@@ -322,6 +437,7 @@ static bool send(int transaction)
         world.leaving = (uint8_t)(world.leaving + options.leave);
         world.quiet = 0;
         world.came &= ALONE;
+        if (world.line.wait == WAIT_SKIPPED) world.came |= SKIPPED;
         return true;
     }
     return false;
@@ -334,12 +450,17 @@ static const char *settle(void)
         ticket_t *const ticket = &world.tickets[i];
         if (ticket->stage == NONE) continue;
         if (effect.ended[ticket->transaction] != FATHOM_PENDING) ticket->flags |= ENDED;
-        if (world.line.sent == 0) ticket->flags |= CLOSED;
+        if (world.line.attempt.request_length == 0) ticket->flags |= CLOSED;
         if ((ticket->flags & ENDED) != 0) ticket->flags = (ticket->flags | CLOSED) & (uint8_t)~SURE;
-        if (ticket->stage == CAME && world.rx_length == 0 && world.line.have == 0) forget(ticket);
+        if (ticket->stage == CAME && world.rx_length == 0 && world.line.received_count == 0) forget(ticket);
     }
-    if (world.line.sent == 0) world.came &= ALONE;
-    if (world.rx_length == 0 && world.line.have == 0) world.came &= (uint8_t)~ALONE;
+    if (world.line.attempt.request_length == 0) world.came &= ALONE;
+    if (world.rx_length == 0 && world.line.received_count == 0) world.came &= (uint8_t)~ALONE;
+    bool has_ended = effect.sent >= 0;
+    for (int i = 0; i != TRANSACTIONS; i++)
+        if (effect.ended[i] != FATHOM_PENDING)
+            has_ended = has_ended || i == effect.queue[0] || effect.ended[i] != FATHOM_ERR_CANCELLED;
+    if (has_ended || !is_waiting(&world.line)) world.waited = world.has_frame = 0;
     for (int i = 0; i != TRANSACTIONS; i++) {
         if (effect.ended[i] == FATHOM_PENDING) continue;
         memset(&world.requests[i], 0xA5, sizeof world.requests[i]);

@@ -13,6 +13,7 @@ options_t options = {.transactions = 15,
                      .gap = 2,
                      .leave = 1,
                      .poll = 1,
+                     .busy = 6,
                      .watched = TRANSACTIONS};
 world_t world;
 effect_t effect;
@@ -56,7 +57,7 @@ static int port_set_line(void *ctx, const fathom_line_settings_t *settings)
 static uint32_t port_leaves_in_us(void *ctx)
 {
     (void)ctx;
-    return world.leaving;
+    return world.leaving * (uint32_t)TICK_US;
 }
 
 static uint32_t clock_now_us(void *ctx)
@@ -86,6 +87,7 @@ static const fathom_uart_t uart = {.read = port_read,
 static const fathom_clock_t line_clock = {.now_us = clock_now_us};
 static const fathom_line_settings_t settings = {9600, FATHOM_PARITY_NONE, 1};
 static fathom_line_config_t config;
+static uint16_t counters[FATHOM_LINE_COUNTERS]; /* required beside `count`, which does without */
 static fathom_listener_t listener = {.receive = receive};
 
 void world_begin(void)
@@ -97,16 +99,20 @@ void world_begin(void)
     config.echo = options.echo == 2   ? FATHOM_LINE_ECHO_AUTO
                   : options.echo == 1 ? FATHOM_LINE_ECHO_ON
                                       : FATHOM_LINE_ECHO_OFF;
-    config.silence_us = (uint16_t)options.silence;
-    config.gap_us = (uint16_t)options.gap;
+    config.silence_us = (uint16_t)(options.silence * TICK_US);
+    config.gap_us = (uint16_t)(options.gap * TICK_US);
     config.count = count;
+    config.counters = counters;
+    config.busy_us = (uint32_t)options.busy * TICK_US;
+    config.senders = options.senders ? &fathom_line_senders : NULL;
+    config.masters = options.masters ? &fathom_line_masters : NULL;
     if (options.echo == 2) config.find_echo = fathom_line_find_echo;
     memset(&world, 0, sizeof world);
     world.now_us = UINT32_MAX; /* the next tick is over the wrap */
     if (fathom_line_init(&world.line, &config) != FATHOM_READY) fprintf(stderr, "no line\n");
     if (options.stream) {
-        listener.gap_us = (uint16_t)(options.gap + 1);
-        fathom_line_listen(&world.line, &listener);
+        listener.gap_us = (uint16_t)((options.gap + 1) * TICK_US);
+        (void)fathom_line_replace_listener(&world.line, &listener);
     }
     memset(world.requests, 0xA5, sizeof world.requests);
     memset(world.values, 0xA5, sizeof world.values);
@@ -131,7 +137,7 @@ void fill_in(int transaction)
     fathom_modbus_request_t *const request = &world.requests[transaction];
     memset(request, 0, sizeof *request);
     world.values[transaction] = 0xDEAD;
-    request->transaction.timeout_us = (uint32_t)timeout_of(transaction);
+    request->transaction.timeout_us = (uint32_t)timeout_of(transaction) * TICK_US;
     request->transaction.retries = (uint8_t)options.retries[transaction];
     if (options.set_line) request->transaction.line_settings = &settings;
     fathom_modbus_read_holding_registers(&request->message, address_of(transaction), 0x0106, 1,

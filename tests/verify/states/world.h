@@ -12,10 +12,10 @@
 
 /*
  * A small world: one line, two units, two transactions of each, a port, and what is known besides of who was asked what.
- * Its clock ticks in microseconds, and silence, gap and time-outs are a few of them, so that each moment is a state of
+ * Its clock goes on by ticks of TICK_US, and silence, gap and time-outs are a few of them, so that each moment is a state of
  * its own: "exactly then", "one before" and "one after" are all there.
  */
-enum { UNITS = 2, TRANSACTIONS = 4, TICKETS = 4, FRAME = 13, RX = 23 };
+enum { UNITS = 2, TRANSACTIONS = 4, TICKETS = 4, FRAME = 13, RX = 23, OTHERS_VALUE = 0x0666 };
 
 /* What a world has and what may happen in it. Each is a word of the command line. */
 typedef struct {
@@ -30,10 +30,15 @@ typedef struct {
     int takes;                 /* the port takes a request while another leaves; else it is busy */
     int echo; /* the adapter hands back what is sent: 1; and the line has to find it out: 2 */
     int exception, damaged, unexpected; /* what a unit may send in place of its response */
-    int piece;           /* noise that begins like a response; the response itself still comes */
-    int crowd;           /* other bytes may come right behind that noise */
-    int halves;          /* a response may come in two pieces with time between them */
-    int foreign, stream; /* frames of a third unit; a device that sends by itself, with a listener */
+    int piece;            /* noise that begins like a response; the response itself still comes */
+    int crowd;            /* other bytes may come right behind that noise */
+    int halves;           /* a response may come in two pieces with time between them */
+    int foreign, stream;  /* frames of a third unit; a device that sends by itself, with a listener */
+    int own;              /* unit 1 sends frames by itself, of another shape than its responses */
+    int noise;            /* single bytes that begin no frame */
+    int asks;             /* another master asks unit 1 for what our requests ask */
+    int senders, masters; /* the optional parts of the line */
+    int busy;             /* ticks of busy_us; 0: the default */
     int cancel, cancel_unit;
     int read_fails, write_fails, write_busy, set_line; /* of the port */
     int watched; /* the transaction whose place in the queue is looked at; 4: none */
@@ -58,8 +63,9 @@ typedef struct {
 } ticket_t;
 
 /* What has come since the request on the wire; IN_TIME: before the time-out, and with nothing before it.
- * ALONE: noise, behind which there will be a gap. */
-enum { BAD = 1, OTHER = 2, IN_TIME = 4, ALONE = 8 };
+ * ALONE: noise, behind which there will be a gap. CLAIMED: another master has asked the unit. SKIPPED: the request left
+ * without the silence before it. */
+enum { BAD = 1, OTHER = 2, IN_TIME = 4, ALONE = 8, CLAIMED = 16, SKIPPED = 32 };
 
 typedef struct {
     fathom_line_t line;
@@ -77,10 +83,16 @@ typedef struct {
     uint8_t passed;  /* ticks since the last poll */
     uint8_t
         others; /* requests of others since the watched transaction was queued and its unit not quarantined */
+    uint8_t waited;     /* ticks for which a request has waited, up to busy_us */
+    uint8_t asked;      /* the unit that owes another master an answer, 0 if none does */
+    uint8_t asked_age;  /* ticks since that master asked */
+    uint8_t has_spoken; /* another device has sent in this tick */
+    uint8_t has_frame;  /* a whole frame came while a request waited */
     uint32_t now_us;
 } world_t;
 
-enum { NEVER = 250, LONG_US = 1000001 };
+/* A tick: the least gap that line.h admits. A pause is longer than FATHOM_LINE_SEND_US. */
+enum { NEVER = 250, TICK_US = 100, LONG_US = 1000000 + TICK_US };
 
 extern world_t world;
 
@@ -124,7 +136,7 @@ void fill_in(int transaction);
 
 /* ---- packed.c: a state as bytes; what differs in them behaves differently ---- */
 
-enum { PACKED = 80 };
+enum { PACKED = 96 };
 void pack(uint8_t *bytes);
 void unpack(const uint8_t *bytes);
 
@@ -152,6 +164,11 @@ enum {
     UNEXPECTED = 48,
     FOREIGN = 52,
     STREAM,
+    OWN,
+    NOISE,
+    ASK,
+    ANSWER,
+    POLL_DRAWN,
     STEPS
 };
 

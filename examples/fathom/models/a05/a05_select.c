@@ -34,7 +34,9 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     (void)sample;
     const fathom_status_t status = fathom_poll(&selection->listening, &unselected);
     const uint32_t now = now_us(reader);
-    const bool is_silent = status == FATHOM_PENDING || status == FATHOM_ERR_STALE;
+    /* Bytes that form no frame may be noise of a module without power. */
+    const bool is_silent =
+        status == FATHOM_PENDING || status == FATHOM_ERR_STALE || status == FATHOM_ERR_CHECKSUM;
     if (status == FATHOM_ERR_PORT) return status;
     if (fathom_elapsed_us(now, selection->heard_us) >= OFF_US) selection->has_been_off = true;
     if (is_silent) return FATHOM_PENDING;

@@ -8,10 +8,11 @@ bool a16_read_pwm(reader_t *reader, channel_t *channel, const reader_settings_t 
 {
     fathom_a16_pwm_t *const driver = &reader->driver.a16_pwm;
     const pins_t *const pins = &channel->pins;
+    const uint32_t cycle_us = settings->period_us > FATHOM_PULSE_DEFAULT_CYCLE_US ? settings->period_us : 0;
     const fathom_a16_pwm_config_t config = {.pulse = {.clock = &channel->clock,
                                                       .capture = &pins->capture,
                                                       .trigger = fathom_output_pin(&pins->trigger),
-                                                      .cycle_us = settings->period_us},
+                                                      .cycle_us = cycle_us},
                                             .window = settings->window};
     reader_begin(reader, channel);
     if (fathom_a16_pwm_init(driver, &config) != FATHOM_READY) return false;

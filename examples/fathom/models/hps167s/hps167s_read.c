@@ -45,6 +45,13 @@ static void count(reader_t *reader, uint8_t counter, uint32_t more)
     *frames = (uint16_t)(more < (uint32_t)(UINT16_MAX - *frames) ? *frames + more : UINT16_MAX);
 }
 
+/* Moves a counter of the driver into a counter of a stream. */
+static void take(reader_t *reader, uint8_t counter, uint16_t *from)
+{
+    count(reader, counter, *from);
+    *from = 0;
+}
+
 /* The driver, with the counters of a stream. */
 static fathom_status_t poll_auto(void *ctx, fathom_sample_t *sample)
 {
@@ -53,11 +60,14 @@ static fathom_status_t poll_auto(void *ctx, fathom_sample_t *sample)
     const fathom_sensor_t sensor = fathom_hps167s_auto_sensor(driver);
     const fathom_status_t status = fathom_poll(&sensor, sample);
     const bool is_frame = status == FATHOM_READY || status == FATHOM_ERR_MALFORMED;
-    count(reader, FATHOM_STREAM_FRAMES, driver->missed + (is_frame ? 1u : 0u));
-    count(reader, FATHOM_STREAM_BYTES, FATHOM_HPS167S_FRAME_LENGTH * (driver->missed + (is_frame ? 1u : 0u)));
-    count(reader, FATHOM_STREAM_MISSED, driver->missed);
-    count(reader, FATHOM_STREAM_STALES, status == FATHOM_ERR_STALE ? 1u : 0u);
-    driver->missed = 0;
+    const bool is_late = status == FATHOM_ERR_STALE || status == FATHOM_ERR_CHECKSUM;
+    const uint32_t frames = driver->missed + (is_frame ? 1u : 0u);
+    count(reader, FATHOM_STREAM_FRAMES, frames);
+    count(reader, FATHOM_STREAM_BYTES, FATHOM_HPS167S_FRAME_LENGTH * frames + driver->dropped_bytes);
+    count(reader, FATHOM_STREAM_STALES, is_late ? 1u : 0u);
+    take(reader, FATHOM_STREAM_MISSED, &driver->missed);
+    take(reader, FATHOM_STREAM_DROPPED_BYTES, &driver->dropped_bytes);
+    take(reader, FATHOM_STREAM_DAMAGED, &driver->damaged);
     return status;
 }
 

@@ -111,6 +111,8 @@ void rig_begin(uint32_t start_us)
                                         .frame_size = sizeof rig.frame,
                                         .find_echo = fathom_line_find_echo,
                                         .marks = fathom_line_marks,
+                                        .senders = &fathom_line_senders,
+                                        .masters = &fathom_line_masters,
                                         .gap_us = 60000};
     rig.config.silence_us = scan_silence_us(&rig.plan);
     assert_int_equal(fathom_line_init(&rig.line, &rig.config), FATHOM_READY);

@@ -133,7 +133,7 @@ static void any_call(void)
         fathom_line_cancel_unit(&line, any_8());
         break;
     case 6:
-        fathom_line_listen(&line, any_bool() ? &listener : NULL);
+        (void)fathom_line_replace_listener(&line, any_bool() ? &listener : NULL);
         break;
     case 7:
         (void)fathom_line_break(&line, any_bool());
@@ -160,10 +160,10 @@ static void borrow(void)
     its_transaction.timeout_us = any_32() & INT32_MAX;
     its_transaction.address = any_8();
     its_transaction.retries = 0;
-    fathom_line_listen(&line, &its_listener);
+    (void)fathom_line_replace_listener(&line, &its_listener);
     (void)fathom_line_submit(&line, &its_transaction);
     fathom_line_cancel(&line, &its_transaction);
-    fathom_line_listen(&line, NULL);
+    (void)fathom_line_replace_listener(&line, NULL);
 }
 
 /* Without what it needs a line is not touched. */

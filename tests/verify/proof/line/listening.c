@@ -51,7 +51,7 @@ static void any_call(void)
         (void)fathom_line_poll(&line);
         break;
     case 1:
-        fathom_line_listen(&line, any_bool() ? &listener : NULL);
+        (void)fathom_line_replace_listener(&line, any_bool() ? &listener : NULL);
         break;
     case 2:
         (void)fathom_line_break(&line, any_bool());

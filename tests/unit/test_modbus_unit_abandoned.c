@@ -1,0 +1,255 @@
+/* SPDX-License-Identifier: MIT */
+#include "desk.h"
+#include "fathom/engine/modbus_setting.h"
+
+/* A command or setting that its caller begins and never calls again (modbus_unit.h, rules 5 and 6). */
+
+enum {
+    UNIT = 9,
+    OTHER = 5,
+    TIMEOUT_US = 300000,
+    ABANDONED_US = 5000000,
+    STEP_US = 100000,
+    SLOW_US = 7000000
+};
+
+static fathom_modbus_unit_t unit;
+static uint16_t value;
+
+static const fathom_modbus_unit_request_t measure = {&value, 0x0100, 1, 3, 1};
+static const fathom_modbus_unit_request_t version = {&value, 0x0001, 1, 3, 0x81};
+static const fathom_modbus_unit_request_t details = {&value, 0x0003, 1, 3, 0x83};
+
+static fathom_status_t look(const fathom_modbus_setting_t *setting, uint32_t *is)
+{
+    const fathom_status_t status = fathom_modbus_unit_ask(setting->driver, &version);
+    if (status == FATHOM_READY) *is = value;
+    return status;
+}
+
+static const fathom_modbus_setting_t move = {look, &unit, {NULL, 0x0200, OTHER, 6, 0xC8}, OTHER, NULL, OTHER};
+static const fathom_modbus_setting_t other_setting = {look, &unit, {NULL, 0x0201, 1, 6, 0xC9}, 1, NULL, 0};
+
+static const fathom_modbus_config_t config = {.transport = &fake.modbus, .address = UNIT};
+
+static int set_up(void **state)
+{
+    desk_begin(0xFFFFF000u); /* the clock wraps soon */
+    memset(&unit, 0x5A, sizeof unit);
+    assert_int_equal(fathom_modbus_unit_init(&unit, &config, TIMEOUT_US, 0), FATHOM_READY);
+    return 0;
+}
+
+static const suite_t suite = {.set_up = set_up};
+
+static fathom_status_t asks(const fathom_modbus_unit_request_t *request)
+{
+    fake.submits = 0;
+    fathom_modbus_unit_poll(&unit);
+    return fathom_modbus_unit_ask(&unit, request);
+}
+
+static fathom_status_t sets(const fathom_modbus_setting_t *setting)
+{
+    fake.submits = 0;
+    fathom_modbus_unit_poll(&unit);
+    return fathom_modbus_set(&unit, setting);
+}
+
+static void responds(uint16_t with) { fake_modbus_response(&fake, &with, 1); }
+
+/* Measures every STEP_US until the measurement is on the wire, and returns how long that took. */
+static uint32_t until_measuring(void)
+{
+    uint32_t took_us = 0;
+    for (; fake.request == NULL || unit.current != measure.id; took_us += STEP_US) {
+        assert_true(took_us < 2 * ABANDONED_US);
+        fake.now_us += STEP_US;
+        PENDS(asks(&measure));
+    }
+    return took_us;
+}
+
+static void measures(void)
+{
+    responds(754);
+    assert_int_equal(asks(&measure), FATHOM_READY);
+}
+
+TEST(an_outcome_that_is_not_fetched_keeps_the_measurement_out_for_5_s)
+{
+    PENDS(asks(&version));
+    responds(7);
+    assert_int_equal(until_measuring(), ABANDONED_US);
+    measures();
+}
+
+TEST(a_command_that_waits_for_its_turn_and_is_abandoned_keeps_the_measurement_out_for_5_s)
+{
+    PENDS(asks(&measure));
+    PENDS(asks(&version)); /* waits for the measurement */
+    measures();
+    assert_int_equal(until_measuring(), ABANDONED_US);
+    measures();
+}
+
+TEST(a_command_on_the_wire_that_is_abandoned_is_cancelled)
+{
+    PENDS(asks(&version)); /* the line never ends it */
+    assert_int_equal(until_measuring(), ABANDONED_US);
+    assert_int_equal(fake.cancels, 1);
+    measures();
+}
+
+TEST(an_abandoned_command_gives_way_to_another_command)
+{
+    PENDS(asks(&version));
+    responds(7);
+    for (unsigned i = 1; i != ABANDONED_US / STEP_US; i++) {
+        fake.now_us += STEP_US;
+        assert_int_equal(asks(&details), FATHOM_ERR_BUSY);
+    }
+    fake.now_us += STEP_US;
+    PENDS(asks(&details));
+    responds(8);
+    assert_int_equal(asks(&details), FATHOM_READY);
+    assert_int_equal(value, 8);
+}
+
+TEST(an_abandoned_setting_gives_way_and_the_driver_stays_where_it_was)
+{
+    PENDS(sets(&move));
+    responds(UNIT); /* it has another value: the new address is probed next */
+    PENDS(sets(&move));
+    assert_int_equal(unit.address, OTHER);
+    assert_int_equal(until_measuring(), ABANDONED_US);
+    assert_int_equal(fake.request->message.head[0], UNIT);
+    measures();
+}
+
+TEST(an_abandoned_setting_gives_way_to_another_setting)
+{
+    PENDS(sets(&move));
+    responds(UNIT);
+    PENDS(sets(&move));
+    for (unsigned i = 1; i != ABANDONED_US / STEP_US; i++) {
+        fake.now_us += STEP_US;
+        assert_int_equal(sets(&other_setting), FATHOM_ERR_BUSY);
+    }
+    fake.now_us += STEP_US;
+    PENDS(sets(&other_setting));
+    assert_int_equal(fake.request->message.head[0], UNIT);
+    responds(1);
+    assert_int_equal(sets(&other_setting), FATHOM_READY);
+    assert_int_equal(unit.address, UNIT);
+}
+
+TEST(a_setting_that_begins_behind_an_abandoned_command_is_carried_out_whole)
+{
+    PENDS(asks(&details));
+    responds(8);
+    for (unsigned i = 0; i != ABANDONED_US / STEP_US; i++) {
+        fake.now_us += STEP_US;
+        PENDS(asks(&measure));
+        if (unit.current == measure.id) break;
+    }
+    /* Abandoned again: this time the setting is the next to call. */
+    responds(754);
+    assert_int_equal(asks(&measure), FATHOM_READY);
+    PENDS(asks(&details));
+    responds(8);
+    fathom_modbus_unit_poll(&unit);
+    unit.abandoned_in_us = 0;
+    PENDS(sets(&other_setting));
+    assert_int_equal(unit.setting, other_setting.write.id);
+    responds(0);
+    PENDS(sets(&other_setting)); /* the write */
+    assert_true(unit.is_written);
+    fake_modbus_acknowledge(&fake);
+    PENDS(sets(&other_setting)); /* the read back */
+    responds(1);
+    assert_int_equal(sets(&other_setting), FATHOM_READY);
+}
+
+/* In a loop of 7 s both are called in each turn: nothing is abandoned. */
+TEST(a_slow_loop_completes_its_commands)
+{
+    PENDS(asks(&version));
+    responds(7);
+    fake.now_us += SLOW_US;
+    PENDS(asks(&measure));
+    assert_int_equal(asks(&version), FATHOM_READY);
+    PENDS(sets(&other_setting));
+    responds(0);
+    fake.now_us += SLOW_US;
+    PENDS(asks(&measure));
+    PENDS(sets(&other_setting));
+    fake_modbus_acknowledge(&fake);
+    fake.now_us += SLOW_US;
+    PENDS(asks(&measure));
+    PENDS(sets(&other_setting));
+    responds(1);
+    fake.now_us += SLOW_US;
+    PENDS(asks(&measure));
+    assert_int_equal(sets(&other_setting), FATHOM_READY);
+}
+
+TEST(a_command_that_is_called_at_least_every_5_s_is_never_abandoned)
+{
+    PENDS(asks(&version)); /* the line does not end it for a minute */
+    for (unsigned i = 1; i != 600; i++) {
+        fake.now_us += STEP_US;
+        PENDS(asks(&measure));
+        if (i % 48 == 0) PENDS(asks(&version));
+    }
+    assert_int_equal(fake.cancels, 0);
+    responds(7);
+    assert_int_equal(asks(&version), FATHOM_READY);
+}
+
+/* modbus_unit.h, fathom_modbus_unit_due_us(): a program that sleeps for it is not kept out longer than another. */
+TEST(a_program_that_sleeps_until_it_is_due_meets_the_limit)
+{
+    uint32_t slept_us = 0;
+    fake.due_us = 1000;
+    PENDS(asks(&version));
+    responds(7);
+    for (unsigned polls = 0; fake.request == NULL || unit.current != measure.id; polls++) {
+        assert_true(polls < 40000);
+        const uint32_t due_us = fathom_modbus_unit_due_us(&unit);
+        assert_true(due_us <= ABANDONED_US);
+        fake.now_us += due_us + 100; /* a poll takes its time */
+        slept_us += due_us + 100;
+        PENDS(asks(&measure));
+    }
+    assert_in_range(slept_us, ABANDONED_US, ABANDONED_US + 2200);
+}
+
+TEST(a_request_that_the_line_has_forgotten_is_cancelled_and_the_next_one_follows)
+{
+    PENDS(asks(&measure));
+    fake_modbus_forget(&fake);
+    assert_int_equal(asks(&measure), FATHOM_ERR_CANCELLED);
+    PENDS(asks(&measure));
+    assert_int_equal(fake.submits, 1);
+    measures();
+}
+
+TEST(a_transport_that_cannot_tell_what_it_has_is_trusted)
+{
+    fake.modbus.has = NULL;
+    PENDS(asks(&measure));
+    for (unsigned i = 0; i != 100; i++) PENDS(asks(&measure));
+    measures();
+    assert_int_equal(fathom_modbus_unit_init(&unit, &config, TIMEOUT_US, 0), FATHOM_READY);
+}
+
+TEST(a_second_init_is_refused_while_the_request_is_queued_and_changes_nothing)
+{
+    PENDS(asks(&measure));
+    const fathom_modbus_unit_t before = unit;
+    assert_int_equal(fathom_modbus_unit_init(&unit, &config, TIMEOUT_US, 0), FATHOM_ERR_BUSY);
+    assert_memory_equal(&unit, &before, sizeof unit);
+    measures();
+    assert_int_equal(fathom_modbus_unit_init(&unit, &config, TIMEOUT_US, 0), FATHOM_READY);
+}
