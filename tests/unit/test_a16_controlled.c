@@ -383,7 +383,7 @@ TEST(a_frame_that_arrives_while_the_poll_triggers_is_not_the_response)
     assert_in_range(tried, 5, 40);
 }
 
-/* line.h, rule 13: the response waits for 300 s in the port, and would be a sample of now. */
+/* line.h, rule 14: the response waits for 300 s in the port, and would be a sample of now. */
 TEST(a_response_that_waited_in_the_port_is_no_sample)
 {
     for (uint32_t sleep_us = 500 * MS; sleep_us <= 300000 * MS; sleep_us *= 10) {

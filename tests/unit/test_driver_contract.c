@@ -406,7 +406,7 @@ CONTRACT(zeros_for_8_s_are_damage_and_silence_is_stale, LISTENERS)
     assert_int_equal(rig.stales, 2);
 }
 
-/* line.h, rule 13: what waited in the port in a pause may be as old as the pause. */
+/* line.h, rule 14: what waited in the port in a pause may be as old as the pause. */
 CONTRACT(a_frame_that_waited_in_the_port_for_300_s_is_no_sample, LISTENERS)
 {
     uint8_t frame[RIG_HPS_LENGTH];

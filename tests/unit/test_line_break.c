@@ -35,7 +35,7 @@ TEST(nothing_is_sent_in_a_break_and_the_silence_is_kept_after_it)
     response_1(111);
 }
 
-/* line.h, rule 13: each of them waits for `busy_us`, and then the next one. */
+/* line.h, rule 3: each of them waits for `busy_us`, and then the next one. */
 TEST(a_transaction_ends_unsent_if_the_break_lasts_too_long)
 {
     run(100000);

@@ -22,7 +22,7 @@ extern "C" {
  * structs that the caller passes to it. include/COST.md has its size and its time.
  *
  * @code
- * static uint8_t frame[32];                                 // the line's as long as the line is used
+ * static uint8_t frame[32];                                 // must stay valid as long as the line is used
  * static const fathom_line_config_t config = {.uart = &uart, .clock = &clock,
  *                                             .frame = frame, .frame_size = sizeof frame,
  *                                             .echo = FATHOM_LINE_ECHO_OFF,
@@ -34,75 +34,95 @@ extern "C" {
  *
  * @note Call all functions of one line from one context: never from an interrupt, never from two tasks at once.
  *
- * Rules of behaviour:
+ * Words: an **attempt** is one request on the wire and the wait for its response. A **frame** has the length that its
+ * protocol gives it and a right checksum; all other bytes are **noise**. A **unit** is what has an address.
  *
- * 1. **Silence.** The line sends a request only after `silence_us` without a byte in either direction. The first
- *    silence counts from fathom_line_init(). Rules 10 and 13 have the two exceptions.
+ * When a request leaves:
  *
- * 2. **Response.** The line accepts a response as soon as its last byte arrives, without waiting for a gap. If noise
+ * 1. **Order.** The line sends one request at a time: the first in the queue whose unit is not in quarantine (rule 6). A
+ *    policy of line_turns.h can choose another one.
+ *
+ * 2. **Silence.** The request leaves after `silence_us` without a byte in either direction. The first silence counts from
+ *    fathom_line_init(). While the caller holds TX low (fathom_line_break()), nothing leaves.
+ *
+ * 3. **Busy line.** A transaction waits for this silence at most `busy_us`; each retry waits again. After that, if only
+ *    noise was heard, a request that its protocol allows to (`may_collide`: a Modbus read without a side effect) leaves
+ *    without silence. In all other cases the transaction ends with FATHOM_ERR_LINE_BUSY, whatever retries are left, and
+ *    this attempt was not sent. An attempt that left without a measured silence and failed has the same error, and is
+ *    retried. `attempts` is the number of attempts that were sent: if it is 0, no unit has received the request.
+ *
+ * What happens to a response:
+ *
+ * 4. **Response.** The line accepts a response as soon as its last byte arrives, without waiting for a gap. If noise
  *    precedes the response, the line discards the noise byte by byte and still finds the response.
  *
- * 3. **Time-out.** A response must begin within `timeout_us` after the end of the request. A response that has begun
- *    may finish within FATHOM_LINE_FINISH_US after that. If other bytes begin after the time-out, the attempt ends.
+ * 5. **Time-out and damage.** A response must begin within `timeout_us` after the end of the request. A response that has
+ *    begun may finish within FATHOM_LINE_FINISH_US after that. If a frame with the address of the unit is damaged or
+ *    breaks off, the attempt ends at the first gap after it, without waiting for the time-out. One or two bytes are noise:
+ *    they end nothing.
  *
- * 4. **Damage.** If a response of the unit is damaged or breaks off, the attempt ends at the first gap after it. The
- *    line does not wait for the rest of the time-out. One or two bytes are noise: they end nothing.
+ * 6. **Quarantine.** After each attempt without an accepted response, and after a cancelled one, the response may still
+ *    arrive. The line sends that unit nothing until a frame of the unit has arrived, or until twice the time-out has
+ *    passed since the end of the request. The line serves other units in the meantime. One deadline, the latest, serves
+ *    all quarantined units. A broadcast waits for no quarantine and causes none.
  *
- * 5. **Quarantine.** After a time-out, a damaged response or a cancelled request, the response of the unit may still
- *    arrive. The line sends that unit nothing until the response has arrived, or until twice the time-out has passed
- *    since the end of the request. The line serves other units in the meantime. If several units are in quarantine,
- *    all quarantines end with the latest of them.
+ * 7. **Late response.** A response that arrives during the quarantine is counted. If the transaction that requested it
+ *    waits for a retry, the response ends that transaction with success. No other transaction gets it.
  *
- * 6. **Late response.** If a response arrives during the quarantine, the line counts it. If the transaction that
- *    requested it waits for a retry, the response ends that transaction with success. No other transaction gets it.
+ * 8. **Retries.** A failed transaction with retries left stays in the queue; its unit is in quarantine, so other units
+ *    come first. The errors FATHOM_ERR_NO_RESPONSE, _CHECKSUM, _MALFORMED, _ECHO, _OTHER_MASTER, and _LINE_BUSY of an
+ *    attempt that was sent, are retried. All other errors end the transaction at once.
  *
- * 7. **Retries.** A failed transaction with retries left stays in the queue, and other units come first. Each retry is
- *    an attempt of its own, with its own silence, time-out and counters.
- *
- * 8. **Echo.** Many RS-485 adapters return every byte that is sent through them. The config states whether this adapter
+ * 9. **Echo.** Many RS-485 adapters return every byte that is sent through them. The config states whether this adapter
  *    does, or names fathom_line_find_echo(), which learns it from the response to the first read. Reads succeed even if
- *    the config is wrong; the echo of a broadcast goes to the listener.
+ *    the config is wrong. The response to some writes equals the request (Modbus function 06, `55 AA` command 03):
  *
- * 9. **Echo of a write.** The response to some writes equals the request (Modbus function 06, `55 AA` command 03). If
- *    the adapter echoes, such a write needs two copies. If it is not known whether the adapter echoes, one copy ends
- *    the transaction with FATHOM_ERR_ECHO: the unit may have executed the write, and it is in quarantine. Submit a read
- *    next: its response shows what was written, and the line learns from it whether the adapter echoes.
+ *    | echo in the config | adapter echoes | such a write ends with |
+ *    |---|---|---|
+ *    | right | no, or yes | FATHOM_READY, if the unit acknowledges it |
+ *    | OFF | yes | FATHOM_READY even without a unit: its echo is mistaken for the acknowledgement |
+ *    | ON | no | FATHOM_ERR_NO_RESPONSE |
+ *    | AUTO, not known yet | no, or no unit | FATHOM_ERR_ECHO: the unit may have executed the write |
  *
- * 10. **Unsolicited frames.** If the config names `senders`: four or more bytes that no transaction accepts show that a
- *     device sends by itself. From then on the line sends a request only in the silence directly after such a frame:
- *     not after a response, and not later in a silence, where the request would collide with the next frame. If the
- *     program polls too seldom to measure that silence, the line sends at once behind a complete frame. 65 ms of
- *     silence end this rule. An unsolicited frame of the unit that has the shape of the response to the request on the
- *     wire is accepted as that response; the counter FATHOM_LINE_MAYBE_UNSOLICITED counts such responses.
+ *    After FATHOM_ERR_ECHO submit a read: its response shows what was written, and whether the adapter echoes.
  *
- * 11. **Broken port.** If the port reports an error, all queued transactions end with FATHOM_ERR_PORT, whatever retries
- *     they have left. Continue to call fathom_line_poll(): the line works again as soon as the port does.
+ * 10. **Limits.** Two kinds of frames cannot be distinguished from the response: one that arrives later than twice the
+ *     time-out, and an unsolicited frame with exactly the shape of the response. Choose the time-out so that no unit can
+ *     respond after twice that time.
  *
- * 12. **Limits.** Two kinds of frames cannot be distinguished from the response: a response that arrives later than
- *     twice the time-out, and an unsolicited frame with exactly the shape of the response. Choose the time-out so that
- *     no unit can respond after twice that time.
+ * Who else uses the wire:
  *
- * 13. **Busy line.** A transaction waits for silence at most `busy_us`; each retry waits anew. After that, a read leaves
- *     without silence if only noise was heard. If a complete frame was heard, or if the request changes something, the
- *     transaction ends with FATHOM_ERR_LINE_BUSY and was not sent. If an attempt was sent without a measured silence
- *     and fails, its error is FATHOM_ERR_LINE_BUSY too. While the caller holds TX low, the wait goes on.
+ * 11. **Unsolicited frames.** If the config names `senders`: four or more bytes that no transaction accepts show that a
+ *     device sends by itself. From then on a request leaves only in the pause directly behind such a frame, after
+ *     `silence_us`: not behind a response, and not later in a pause, where the next frame may begin at any time. If the
+ *     program polls too seldom to measure that silence (twice `silence_us` or later), the request leaves directly behind a
+ *     complete frame. 65 ms without a byte end this rule. An unsolicited frame with the shape of the response is accepted
+ *     as the response and counted (FATHOM_LINE_MAYBE_UNSOLICITED). Without `senders`, requests and such frames collide.
+ *
+ * 12. **Other masters.** If the config names `masters`: after another master's request (Modbus RTU or `55 AA`) the line
+ *     sends nothing until the unit has answered that master, at most for the time-out of the first transaction in the
+ *     queue and at most for `busy_us`. If it is unclear which frame is that answer, only the time ends this. If our own
+ *     request to the unit is on the wire, no frame can be assigned to it any more: the attempt ends with its time-out and
+ *     FATHOM_ERR_OTHER_MASTER. A foreign request that only this line does not hear is not noticed, and without `masters`
+ *     none is: then the answer to another master can become our response.
+ *
+ * What a program can rely on:
+ *
+ * 13. **Bound.** If the program polls, each transaction ends, alone on its line within (`retries` + 1) x (`busy_us` + 2 x
+ *     FATHOM_LINE_SEND_US + 2 x `timeout_us` + FATHOM_LINE_FINISH_US + 5 polling intervals). The two FATHOM_LINE_SEND_US
+ *     are for a port that is busy and for one that does not finish sending; the second `timeout_us` is the quarantine of
+ *     the attempt before. Add the bounds of the transactions that are queued, and of one of each other unit that is
+ *     submitted meanwhile.
  *
  * 14. **Age.** What a poll reads may be as old as the pause since the previous poll, unless the port dates the bytes
- *     (FATHOM_RX_TIMED). If the pause exceeds the time-out of the request on the wire, or the `stale_us` of the
- *     listener, by more than FATHOM_LINE_LATE_US, the line drops and counts what waits in the port. After
- *     fathom_line_init() the line drops all bytes until the port was seen empty. Pauses of more than 71 minutes cannot
- *     be seen: call fathom_line_flush() after them.
+ *     (FATHOM_RX_TIMED of hal.h). If that age exceeds the time-out of the request on the wire, or the `stale_us` of the
+ *     listener, by more than FATHOM_LINE_LATE_US, the line drops and counts the bytes. After fathom_line_init() and after
+ *     an error of the port, it drops all bytes until the port was seen empty. Pauses of more than 71 minutes cannot be
+ *     seen: call fathom_line_flush() after them.
  *
- * 15. **Other masters.** If the config names `masters`: after another master's request the line sends nothing until the
- *     unit has answered, at most for the time-out of the first transaction in the queue and at most for `busy_us`. If
- *     the unit also owes us a response, or if it sends by itself, only the time ends this. If our own request to the
- *     unit is on the wire, no frame can be assigned to it any more: the attempt ends with its time-out and
- *     FATHOM_ERR_OTHER_MASTER. If only this line does not hear the foreign request, its answer can become our response.
- *
- * 16. **Bound.** If the program polls, each transaction ends. Alone on its line it ends within
- *     (`retries` + 1) x (`busy_us` + 2 x FATHOM_LINE_SEND_US + `timeout_us` + FATHOM_LINE_FINISH_US) + `retries` x
- *     `timeout_us`, plus one polling interval for each of these steps. The two FATHOM_LINE_SEND_US are for a port that
- *     is busy and for one that does not finish sending. Behind n other transactions, add their bounds.
+ * 15. **Broken port.** If the port reports an error, or needs more than FATHOM_LINE_SEND_US, all queued transactions end
+ *     with FATHOM_ERR_PORT, whatever retries they have left. Continue to call fathom_line_poll(): the line works again as
+ *     soon as the port does.
  *
  * A program contains only the parts that it names. A line of fathom_line_init_listening() links no queue, no
  * transactions and no quarantine. Each part that the config names by a pointer is linked only then.
@@ -125,7 +145,7 @@ extern "C" {
 #define FATHOM_LINE_SEND_US 1000000u
 
 /**
- * @brief Time in microseconds for which a response that has begun may go on after the time-out (rule 3).
+ * @brief Time in microseconds for which a response that has begun may go on after the time-out (rule 5).
  *
  * The longest frame, 255 characters of 11 bits, takes 292 ms at 9600 baud.
  */
@@ -156,10 +176,10 @@ typedef struct fathom_line fathom_line_t;
 /** @brief The functions in which a line that sends requests and a line that only listens differ (line_turns.h). */
 typedef struct fathom_line_kind fathom_line_kind_t;
 
-/** @brief The part of a line for devices that send by themselves (rule 10). */
+/** @brief The part of a line for devices that send by themselves (rule 11). */
 typedef struct fathom_line_senders fathom_line_senders_t;
 
-/** @brief The part of a line for other masters (rule 15). */
+/** @brief The part of a line for other masters (rule 12). */
 typedef struct fathom_line_masters fathom_line_masters_t;
 
 /** @brief Name it in fathom_line_config_t::senders. */
@@ -216,12 +236,12 @@ enum {
     FATHOM_LINE_BAD_BYTES = 9,  /**< Bytes with a parity or framing error. An overrun counts as one byte. */
     FATHOM_LINE_OLD_BYTES = 10, /**< Bytes that were dropped because they may be too old (rule 14). */
     FATHOM_LINE_ECHOES = 11,    /**< Attempts of which only one copy of a write arrived (rule 9). */
-    FATHOM_LINE_FOREIGN_REQUESTS = 12, /**< Requests of other masters (rule 15). */
+    FATHOM_LINE_FOREIGN_REQUESTS = 12, /**< Requests of other masters (rule 12). */
     FATHOM_LINE_MAYBE_UNSOLICITED =
-        13, /**< Those of the accepted responses that may be unsolicited (rule 10). */
+        13, /**< Those of the accepted responses that may be unsolicited (rule 11). */
     FATHOM_LINE_BUSY_ATTEMPTS =
-        17, /**< Attempts that ended with FATHOM_ERR_LINE_BUSY, sent or not (rule 13). */
-    FATHOM_LINE_OTHER_MASTERS = 18, /**< Attempts that ended with FATHOM_ERR_OTHER_MASTER (rule 15). */
+        17, /**< Attempts that ended with FATHOM_ERR_LINE_BUSY, sent or not (rule 3). */
+    FATHOM_LINE_OTHER_MASTERS = 18, /**< Attempts that ended with FATHOM_ERR_OTHER_MASTER (rule 12). */
     FATHOM_LINE_COUNTERS = 19       /**< Number of counters. 14 to 16 are unused. */
 };
 
@@ -246,7 +266,8 @@ typedef struct {
     /** @brief The clock of the line. */
     const fathom_clock_t *clock;
 
-    /** @brief Buffer for requests and responses, `frame_size` bytes. Only the line may use it, as long as the line. */
+    /** @brief Buffer for requests and responses, `frame_size` bytes. Only the line may use it. It must stay valid as
+     * long as the line is used. */
     uint8_t *frame;
 
     /**
@@ -295,15 +316,15 @@ typedef struct {
     uint16_t *counters;
 
     /**
-     * @brief The longest wait for silence before an attempt, in microseconds (rule 13): more than `silence_us`, at most
+     * @brief The longest wait for silence before an attempt, in microseconds (rule 3): more than `silence_us`, at most
      * 2^31 - 1. 0 selects FATHOM_LINE_DEFAULT_BUSY_US.
      */
     uint32_t busy_us;
 
-    /** @brief &fathom_line_senders if a device on this line may send by itself (rule 10); else NULL. */
+    /** @brief &fathom_line_senders if a device on this line may send by itself (rule 11); else NULL. */
     const fathom_line_senders_t *senders;
 
-    /** @brief &fathom_line_masters if another master may use this line (rule 15); else NULL. */
+    /** @brief &fathom_line_masters if another master may use this line (rule 12); else NULL. */
     const fathom_line_masters_t *masters;
 } fathom_line_config_t;
 
@@ -526,7 +547,7 @@ void fathom_line_flush(fathom_line_t *line);
  * @brief Holds TX low, or releases it.
  *
  * Some modules use our TX as a trigger or mode-select input. While TX is low, the line sends nothing. Transactions wait
- * in the queue, at most for `busy_us` each (rule 13). After TX is released, the line keeps the silence before the next request. Once a break has begun,
+ * in the queue, at most for `busy_us` each (rule 3). After TX is released, the line keeps the silence before the next request. Once a break has begun,
  * it lasts until a call with `on` false returns FATHOM_READY. This holds even if fathom_line_poll() returns
  * FATHOM_ERR_PORT in between and the port returns as another device whose TX is high.
  *

@@ -83,7 +83,7 @@ extern "C" {
  *
  * 6. **Age.** A frame is at most `stale_us` and FATHOM_LINE_LATE_US old when fathom_stream_poll() returns it. A poll
  *    that comes later drops the frame and returns FATHOM_ERR_STALE. The line drops bytes that may be older than
- *    `stale_us` in the same way, because a port does not know when a byte arrived (line.h, rule 13).
+ *    `stale_us` in the same way, because a port does not know when a byte arrived (line.h, rule 14).
  *
  *        wire      [frame]
  *        polls     |   |     . . . the program sleeps . . .       |       |

@@ -127,7 +127,7 @@ struct fathom_transaction {
     /** @brief Number of further attempts after a failed attempt, 0 to 254. */
     uint8_t retries;
 
-    /** @brief Number of attempts so far. Written by the line. */
+    /** @brief Number of attempts that were sent. 0: no unit has received the request. Written by the line. */
     uint8_t attempts;
 
     /**
@@ -138,8 +138,8 @@ struct fathom_transaction {
      * | FATHOM_PENDING          | The transaction is queued or on the wire.                                      |
      * | FATHOM_READY            | The response arrived and its results are written; or the broadcast is finished. |
      * | FATHOM_ERR_EXCEPTION    | The unit refused the request. The exception number is in the request.          |
-     * | FATHOM_ERR_LINE_BUSY    | The line was not silent for `busy_us` (rule 13).                               |
-     * | FATHOM_ERR_OTHER_MASTER | Another master sent this unit a request during the attempt (rule 15).          |
+     * | FATHOM_ERR_LINE_BUSY    | No silence came within `busy_us` (rule 3). See `attempts`.                     |
+     * | FATHOM_ERR_OTHER_MASTER | Another master sent this unit a request during the attempt (rule 12).          |
      * | FATHOM_ERR_CHECKSUM     | A response of the unit was damaged or broke off.                               |
      * | FATHOM_ERR_MALFORMED    | The unit sent a frame with a right checksum that is not the response.          |
      * | FATHOM_ERR_ECHO         | Only one copy of a write arrived, and echo is not known (rule 9).              |

@@ -37,7 +37,7 @@ extern "C" {
  *
  * No frame from before the trigger is a response. The driver reads the port once more directly after the edge, so that
  * bytes that waited in the port are known to be too early. If the program does not poll for more than latest_us and
- * FATHOM_LINE_LATE_US, the line drops what waits in the port (line.h, rule 13), and the trigger has no response.
+ * FATHOM_LINE_LATE_US, the line drops what waits in the port (line.h, rule 14), and the trigger has no response.
  *
  *     polls     |        |                                      |
  *     trigger            |edge  earliest_us      latest_us

@@ -29,7 +29,7 @@ extern "C" {
  *
  * Each frame is one sample, as from hps167s.h. If several frames arrive between two polls, the driver returns the
  * newest and counts the others. A frame that is older than `stale_us` and FATHOM_LINE_LATE_US is no sample, whether it
- * waited in the port (line.h, rule 13) or in the driver. The errors of fathom_poll() are:
+ * waited in the port (line.h, rule 14) or in the driver. The errors of fathom_poll() are:
  *
  * | error                | cause                                                                                  |
  * |----------------------|----------------------------------------------------------------------------------------|

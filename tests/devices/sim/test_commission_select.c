@@ -119,7 +119,7 @@ TEST(a_request_of_meanwhile_is_answered_afterwards)
         fathom_status_t status;
         const uint32_t start_us = s.clock.now_us;
         while ((status = fathom_a05_modbus_address(driver, &address)) != FATHOM_READY) {
-            if (status != FATHOM_PENDING) { /* TX is low for longer than the line waits (line.h, rule 13). */
+            if (status != FATHOM_PENDING) { /* TX is low for longer than the line waits (line.h, rule 3). */
                 assert_int_equal(status, FATHOM_ERR_LINE_BUSY);
                 assert_true(bench.line.in_break);
             }

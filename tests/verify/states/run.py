@@ -117,7 +117,7 @@ def run(program, words, most=24000000):
 
 
 def bound_of_ticks(words):
-    """Until all have ended (line.h, rule 16): each attempt waits for a quarantine, at most busy_us for a silence, its
+    """Until all have ended (line.h, rule 13): each attempt waits for a quarantine, at most busy_us for a silence, its
     request, a time-out, and a gap where something damaged came at the end of it; and each poll may be late for each of
     these."""
     world = {**DEFAULTS, **words}
