@@ -10,7 +10,7 @@
 
 enum { MAX_READS = 16, MIN_FRAME_SIZE = 8, SEND_POLL_US = 1000, MIN_GAP_US = 100 };
 
-/* A value of `awaited_left_us`: the wait for the answer to another master is over. The bytes that this poll reads may
+/* A value of `awaited_left_us`: the wait for the response to another master is over. The bytes that this poll reads may
  * have arrived before, so for them it is not. */
 enum { ENDS_WITH_THIS_POLL = 1 };
 
@@ -125,7 +125,7 @@ static bool may_respond(const fathom_line_t *line)
  * Bytes that wait in the port may be as old as the pause since the previous poll.
  *
  *     polls      |  |  |                                    |  |
- *     port             . [response]  . . . nobody reads . . .
+ *     port             . [response]  . . . no poll . . . . .
  *                      |<-- pause: more than the limit? --->| drop all bytes until the port is empty
  *
  *  - The limit is the time-out of the request on the wire, or of the one that waits for a late response, and the

@@ -97,7 +97,7 @@ struct fathom_line_masters {
     /* A complete frame of a unit arrived. Returns true if it may belong to another master. */
     bool (*take_answer)(fathom_line_t *line, uint8_t address);
 
-    /* A complete frame arrived that nobody had requested. */
+    /* A complete frame arrived that no master had requested. */
     void (*note_unrequested)(fathom_line_t *line);
 };
 

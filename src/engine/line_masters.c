@@ -7,22 +7,22 @@
 #include "line_internal.h"
 
 /*
- * The part of a line for other masters. Another master's request makes the unit respond, and that answer may look like
- * the response to a request of ours.
+ * The part of a line for other masters. Another master's request makes the unit respond, and that response may look
+ * like the response to a request of ours.
  *
- *     wire     [foreign request]      [answer to it]            [our request]
+ *     wire     [foreign request]      [response to it]          [our request]
  *     line                     |<- sends nothing ->|<- silence ->|
  *
  *     wire     [our request]   [foreign request]   [a response to either]
  *     attempt               |<------------- timeout_us -------------->| FATHOM_ERR_OTHER_MASTER
  *
  *  - A foreign request is a whole, plausible request frame with a right checksum that is not an echo of ours.
- *  - While the answer is due the line sends nothing, at most for the time-out of the first transaction in the queue,
- *    and at most for `busy_us`. The next frame of the unit ends this earlier, because it is the answer.
- *  - It can be unclear which frame is the answer: our request to the unit is on the wire; or the unit is in quarantine,
- *    so it owes us a response too; or it has not answered the foreign request before; or a unit sends by itself. Then
+ *  - While the response is due the line sends nothing, at most for the time-out of the first transaction in the queue,
+ *    and at most for `busy_us`. The next frame of the unit ends this earlier, because it is the response.
+ *  - It can be unclear which frame is the response: our request to the unit is on the wire; or the unit is in quarantine,
+ *    so our response may come too; or it has not responded to the foreign request before; or a unit sends by itself. Then
  *    `awaited_unit` is FATHOM_LINE_ANY_UNIT, and only the time ends the wait.
- *  - A unit sends by itself if two frames in a row were requested by nobody. One such frame may be the response to a
+ *  - A unit sends by itself if two frames in a row were requested by no master. One such frame may be the response to a
  *    request that was damaged on its way to us.
  *  - A write of one register (06) is acknowledged by its copy. It counts as a request only while our own, different
  *    request to the unit is on the wire. At other times it counts as nothing.
@@ -99,7 +99,7 @@ static form_t form_of(const uint8_t *frame, uint8_t have)
 
 /* ---- A foreign request ---- */
 
-/* From now on the unit owes another master an answer. */
+/* From now on the unit has to respond to another master. */
 static void await(fathom_line_t *line, uint8_t address)
 {
     line->awaited_unit = address;
@@ -122,7 +122,7 @@ static void note_foreign_request(fathom_line_t *line, uint8_t address)
 }
 
 /* Returns true if a frame with a right checksum that has the form of a request, and perhaps of a response, is ours:
- * the echo of the request on the wire or of a cancelled one, a response to us, or the answer to another master. */
+ * the echo of the request on the wire or of a cancelled one, a response to us, or the response to another master. */
 static bool is_ours(fathom_line_t *line, uint8_t address, bool is_response)
 {
     const uint8_t *const frame = line->config->frame;
@@ -157,7 +157,7 @@ static void note_lost_bytes(fathom_line_t *line)
 }
 
 /* The acknowledgement of a write of one register equals the request, so it proves nothing: it neither ends the
- * quarantine of the unit nor is it the answer that another master waits for. */
+ * quarantine of the unit nor is it the response that another master waits for. */
 static bool is_ambiguous(const fathom_line_t *line)
 {
     const form_t form = form_of(line->config->frame, line->received_count);

@@ -236,7 +236,7 @@ static void remove_bytes(fathom_line_t *line, uint8_t length)
     for (uint8_t i = 0; i != line->received_count; i++) frame[i] = frame[i + length];
 }
 
-/* Passes bytes on before it is known whether a frame of somebody else begins with them. Only bytes that may be a
+/* Passes bytes on before it is known whether a foreign frame begins with them. Only bytes that may be a
  * response to us are held back from the listener. */
 static void pass_early(fathom_line_t *line)
 {

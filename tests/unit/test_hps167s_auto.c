@@ -280,7 +280,8 @@ TEST(a_held_value_is_never_taken_for_the_configuration)
         status = run_both(100000, ask_2);
     }
     assert_int_equal(status, FATHOM_ERR_MALFORMED);
-    assert_int_equal(fathom_modbus_unit_responses(fathom_hps167s_unit(&driver)), 32); /* hps167s_info.c: the most. */
+    assert_int_equal(fathom_modbus_unit_responses(fathom_hps167s_unit(&driver)),
+                     32); /* hps167s_info.c: the most. */
 }
 
 /* Command #5: "If a sensor failure occurs during continuous measurement, an abnormal data packet will be returned". */
@@ -295,7 +296,8 @@ TEST(a_faulted_sensor_that_sends_never_yields_a_configuration)
         status = run_both(100000, ask_2);
     }
     assert_int_equal(status, FATHOM_ERR_MALFORMED);
-    assert_int_equal(fathom_modbus_unit_responses(fathom_hps167s_unit(&driver)), 32); /* hps167s_info.c: the most. */
+    assert_int_equal(fathom_modbus_unit_responses(fathom_hps167s_unit(&driver)),
+                     32); /* hps167s_info.c: the most. */
 }
 
 TEST(commands_are_answered_while_frames_arrive)

@@ -233,7 +233,7 @@ TEST(of_496_pairs_of_wrong_bits_in_4_bytes_13_and_a_half_pass_and_no_single_one)
     uint8_t frame[4];
     const unsigned step = suite_is_long ? 1 : 7; /* coprime to 65536 */
     unsigned tried = 0;
-    for (unsigned mm = 0; mm < 65536; mm += step) {
+    for (uint32_t mm = 0; mm < 65536; mm += step) {
         const uint16_t value = (uint16_t)mm;
         rig_make_frame(frame, 4, &value);
         for (unsigned bit = 0; bit != 32; bit++) assert_false(is_valid_with(frame, 4, bit, bit));

@@ -53,7 +53,8 @@ typedef struct {
     uint16_t *values;  /* registers: a read fills them on success, a write of many sends them */
     uint8_t head[6];   /* unit, function, address (high, low), count or value (high, low) */
     uint8_t exception; /* the code, once FATHOM_ERR_EXCEPTION was returned */
-    bool has_effect;   /* true if this read changes something in the unit, so that it is sent only into a silence */
+    bool
+        has_effect; /* true if this read changes something in the unit, so that it is sent only into a silence */
 } fathom_modbus_message_t;
 
 /*

@@ -64,7 +64,7 @@ extern "C" {
  * 6. **Quarantine.** After each attempt without an accepted response, and after a cancelled one, the response may still
  *    arrive. The line sends that unit nothing until a frame of the unit has arrived, or until twice the time-out has
  *    passed since the end of the request. The line serves other units in the meantime. One deadline, the latest, serves
- *    all quarantined units. A broadcast waits for no quarantine and causes none.
+ *    all quarantined units. A broadcast causes none.
  *
  * 7. **Late response.** A response that arrives during the quarantine is counted. If the transaction that requested it
  *    waits for a retry, the response ends that transaction with success. No other transaction gets it.
@@ -100,11 +100,11 @@ extern "C" {
  *     as the response and counted (FATHOM_LINE_MAYBE_UNSOLICITED). Without `senders`, requests and such frames collide.
  *
  * 12. **Other masters.** If the config names `masters`: after another master's request (Modbus RTU or `55 AA`) the line
- *     sends nothing until the unit has answered that master, at most for the time-out of the first transaction in the
- *     queue and at most for `busy_us`. If it is unclear which frame is that answer, only the time ends this. If our own
+ *     sends nothing until the unit has responded to that master, at most for the time-out of the first transaction in the
+ *     queue and at most for `busy_us`. If it is unclear which frame is that response, only the time ends this. If our own
  *     request to the unit is on the wire, no frame can be assigned to it any more: the attempt ends with its time-out and
  *     FATHOM_ERR_OTHER_MASTER. A foreign request that only this line does not hear is not noticed, and without `masters`
- *     none is: then the answer to another master can become our response.
+ *     none is: then the response to another master can become ours.
  *
  * What a program can rely on:
  *
@@ -381,7 +381,7 @@ struct fathom_line {
     uint8_t sender;            /**< Whether a device sends by itself: enum sender of line_internal.h. */
     uint8_t unsolicited_count; /**< Bytes since the last response that belong to no transaction, 0 to 4. */
 
-    /** @brief The unit that owes another master an answer; FATHOM_LINE_ANY_UNIT: only the time ends this. Meaningless if
+    /** @brief The unit that has to respond to another master; FATHOM_LINE_ANY_UNIT: only the time ends this. Meaningless if
      * `awaited_left_us` is 0. */
     uint8_t awaited_unit;
     bool is_answered;          /**< True if a frame arrived since the newest request of another master. */
@@ -402,7 +402,7 @@ struct fathom_line {
     uint32_t phase_left_us;
     /** @brief Time until all quarantines end, in us. */
     uint32_t quarantine_left_us;
-    /** @brief Time until no unit owes another master an answer, in us. */
+    /** @brief Time until no unit has to respond to another master, in us. */
     uint32_t awaited_left_us;
 };
 

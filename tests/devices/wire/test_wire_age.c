@@ -193,7 +193,6 @@ TEST(a_clock_that_runs_back_by_50_ms_each_second_makes_no_stream_stale)
     }
 }
 
-
 /* fathom_line_break() reads the clock too, and must not hide the pause from the next poll. */
 TEST(after_a_sleep_and_a_break_no_reading_is_of_the_time_before_it)
 {

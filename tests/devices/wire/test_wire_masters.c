@@ -319,7 +319,7 @@ TEST(a_foreign_request_to_a_unit_in_quarantine_holds_us_for_its_whole_time)
     assert_true(wire.host_start_us >= asked_us + 217000);
 }
 
-/* What a poll reads may have arrived while the answer to the other master was still due. */
+/* What a poll reads may have arrived while the response to the other master was still due. */
 TEST(a_response_that_a_slow_loop_reads_late_is_judged_by_the_time_before_the_poll)
 {
     for (unsigned offset_us = 0; offset_us != 200000; offset_us += 1000) {
@@ -335,7 +335,8 @@ TEST(a_response_that_a_slow_loop_reads_late_is_judged_by_the_time_before_the_pol
             desk_turn();
             (void)fathom_line_poll(&desk.line);
         }
-        (void)wire_send(WIRE_MASTER, wire.host_end_us + offset_us, frame, wire_frame_of("01 03 01 00 00 01", frame));
+        (void)wire_send(WIRE_MASTER, wire.host_end_us + offset_us, frame,
+                        wire_frame_of("01 03 01 00 00 01", frame));
         assert_int_not_equal(desk_wait(&request, desk_bound_us(TIMEOUT_US, 1, 0)), FATHOM_PENDING);
         note(&result, &request);
         assert_int_equal(result.wrong, 0);
@@ -343,7 +344,7 @@ TEST(a_response_that_a_slow_loop_reads_late_is_judged_by_the_time_before_the_pol
 }
 
 /*
- * An HPS-167S that sends by itself: the frame after a foreign request is unsolicited, and the answer comes behind it. The
+ * An HPS-167S that sends by itself: the frame after a foreign request is unsolicited, and the response comes behind it. The
  * response to command #2 has the shape of a measurement.
  */
 TEST(beside_a_unit_that_sends_by_itself_an_answer_is_not_our_measurement)
