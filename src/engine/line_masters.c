@@ -91,7 +91,7 @@ static form_t form_of(const uint8_t *frame, uint8_t have)
     form.length = is_dyp ? dyp_length(frame, have) : modbus_length(frame, have);
     form.address_offset = is_dyp ? (uint8_t)DYP_ADDRESS : 0u;
     form.is_sum_right = false;
-    if (form.length <= have)
+    if ((form.length != 0u) && (form.length <= have))
         form.is_sum_right =
             is_dyp ? fathom_dyp_55aa_valid(frame, form.length) : (fathom_crc16(frame, form.length) == 0u);
     return form;

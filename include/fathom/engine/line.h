@@ -34,8 +34,9 @@ extern "C" {
  *
  * @note Call all functions of one line from one context: never from an interrupt, never from two tasks at once.
  *
- * Words: an **attempt** is one request on the wire and the wait for its response. A **frame** has the length that its
- * protocol gives it and a right checksum; all other bytes are **noise**. A **unit** is what has an address.
+ * Words: an **attempt** is the wait for silence, one request on the wire and the wait for its response. A **complete
+ * frame** has the length that its protocol gives it and a right checksum; all other bytes are **noise**. A **unit** is
+ * what has an address.
  *
  * When a request leaves:
  *
@@ -82,9 +83,10 @@ extern "C" {
  *    | right | no, or yes | FATHOM_READY, if the unit acknowledges it |
  *    | OFF | yes | FATHOM_READY even without a unit: its echo is mistaken for the acknowledgement |
  *    | ON | no | FATHOM_ERR_NO_RESPONSE |
- *    | AUTO, not known yet | no, or no unit | FATHOM_ERR_ECHO: the unit may have executed the write |
+ *    | AUTO, not known yet | yes or no | FATHOM_READY after two copies, FATHOM_ERR_ECHO after one |
  *
- *    After FATHOM_ERR_ECHO submit a read: its response shows what was written, and whether the adapter echoes.
+ *    After FATHOM_ERR_ECHO the unit may have executed the write. Submit a read: its response shows what was written, and
+ *    whether the adapter echoes. Give a write that must not be executed twice no retries.
  *
  * 10. **Limits.** Two kinds of frames cannot be distinguished from the response: one that arrives later than twice the
  *     time-out, and an unsolicited frame with exactly the shape of the response. Choose the time-out so that no unit can
@@ -96,7 +98,8 @@ extern "C" {
  *     device sends by itself. From then on a request leaves only in the pause directly behind such a frame, after
  *     `silence_us`: not behind a response, and not later in a pause, where the next frame may begin at any time. If the
  *     program polls too seldom to measure that silence (twice `silence_us` or later), the request leaves directly behind a
- *     complete frame. 65 ms without a byte end this rule. An unsolicited frame with the shape of the response is accepted
+ *     complete frame, a write too; it then counts as sent without a measured silence (rule 3). 65 ms without a byte end
+ *     this rule. An unsolicited frame with the shape of the response is accepted
  *     as the response and counted (FATHOM_LINE_MAYBE_UNSOLICITED). Without `senders`, requests and such frames collide.
  *
  * 12. **Other masters.** If the config names `masters`: after another master's request (Modbus RTU or `55 AA`) the line
@@ -255,8 +258,8 @@ enum {
 /**
  * @brief Configuration of a line. Const, in the caller's memory.
  *
- * The line reads the config at every call, so the config must stay valid as long as the line. A member that is 0 takes
- * its default. The members from `find_echo` on, except for `counters` and `busy_us`, name optional parts: a part that
+ * The line reads the config at every call, so the config must stay valid as long as the line. A member whose
+ * comment names a default takes it if the member is 0. The members from `find_echo` on, except for `counters` and `busy_us`, name optional parts: a part that
  * is NULL is not linked.
  */
 typedef struct {
