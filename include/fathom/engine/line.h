@@ -258,9 +258,9 @@ enum {
 /**
  * @brief Configuration of a line. Const, in the caller's memory.
  *
- * The line reads the config at every call, so the config must stay valid as long as the line. A member whose
- * comment names a default takes it if the member is 0. The members from `find_echo` on, except for `counters` and `busy_us`, name optional parts: a part that
- * is NULL is not linked.
+ * The line reads the config at every call, so the config must stay valid as long as the line. A member whose comment
+ * names a default takes it if the member is 0. The members from `find_echo` on, except for `counters` and `busy_us`,
+ * name optional parts: a part that is NULL is not linked.
  */
 typedef struct {
     /** @brief The UART that the line owns. Nothing else may read it or write to it. Needs `read`, `write`, `sent`. */
