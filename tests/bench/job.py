@@ -37,7 +37,7 @@ ROWS = {f'{job}.{name}': (what, unit) for job in JOBS for name, what, unit in CO
 # What the user provides: for job_all also what the library writes to, but not the listener, which is the user's own.
 RAM = ('line', 'request', 'frame', 'counters', 'modbus')
 CORE = source(*sorted(name for name in LIBRARY
-                      if re.match(r'(line|modbus_client)\w*\.c$|modbus(_rtu)?\.c$', name)))
+                      if re.match(r'(line|modbus_client)\w*\.c$|(modbus|modbus_rtu|dyp_55aa|dyp_stream)\.c$', name)))
 JOB = here('job.c', 'job_main.c', 'mcu.c')
 GC = ['-ffunction-sections', '-Wl,--gc-sections']
 TIMES = 1000

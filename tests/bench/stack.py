@@ -19,6 +19,7 @@ INDIRECT = {
     'transport->cancel_unit': ('modbus.c:cancel_unit',),
     'transport->poll': ('modbus.c:poll',),
     'transport->due_us': ('modbus.c:due_us',),
+    'transport->has': ('modbus.c:has',),
 }
 # The same for those that may also lead to the user's code, or nowhere; then nothing is added.
 PERHAPS = {
@@ -36,9 +37,13 @@ PERHAPS = {
     'protocol->parse_response': ('modbus_client.c:fathom_modbus_client_parse_response', 'dyp_client.c:parse_response'),
     'kind->scan': ('line_request.c:scan', 'line_listening.c:scan'),
     'kind->advance': ('line_request.c:advance', 'line_turns.c:advance', 'line_listening.c:advance'),
-    'config->find_request': ('line_options.c:fathom_line_find_request',),
+    'senders->note': ('line_senders.c:note',),
+    'senders->slot_in_us': ('line_senders.c:slot_in_us',),
+    'senders->take_slot': ('line_senders.c:take_slot',),
+    'masters->find_request': ('line_masters.c:find_request',),
+    'masters->take_answer': ('line_masters.c:take_answer',),
+    'masters->note_unrequested': ('line_masters.c:note_unrequested',),
     'protocol->may_collide': ('modbus_client.c:fathom_modbus_client_may_collide',),
-    'protocol->request_length': ('modbus_client.c:fathom_modbus_client_request_length',),
     'config->find_echo': ('line_options.c:fathom_line_find_echo',),
     'config->marks': ('line_options.c:fathom_line_marks',),
     'config->count': ('line_options.c:fathom_line_count',),

@@ -20,8 +20,10 @@ TABLE = r'(?s)(?<=<!-- {}: kept by tests/checks/file_lists.py --update -->\n).*?
 # What a program may name beside a driver that asks, HPS-167S for one: what that takes is given beside what both take.
 BESIDE = {
     'fathom_line_find_echo': 'a line that finds its echo out',
-    'fathom_line_marks': 'a line that uses the marks and time stamps of the port',
+    'fathom_line_marks': 'a line that uses the silence and the error flags of the port',
     'fathom_line_count': 'a line that counts',
+    'fathom_line_senders': 'a line with devices that send unsolicited frames',
+    'fathom_line_masters': 'a line that other masters use',
     'fathom_fair_share': 'the share of time instead of turns',
     'fathom_modbus_client_with_zero': 'a unit at address 0',
     'fathom_output_set_line_break': 'trigger or select by a break (`fathom_output_line_break`)',

@@ -17,7 +17,9 @@ static const fathom_line_config_t line_config = {.uart = &uart,
                                                  .find_echo = fathom_line_find_echo,
                                                  .marks = fathom_line_marks,
                                                  .count = fathom_line_count,
-                                                 .counters = counters};
+                                                 .counters = counters,
+                                                 .senders = &fathom_line_senders,
+                                                 .masters = &fathom_line_masters};
 
 fathom_sensor_t everything_begin(void)
 {
