@@ -43,6 +43,7 @@ PERHAPS = {
     'masters->find_request': ('line_masters.c:find_request',),
     'masters->take_answer': ('line_masters.c:take_answer',),
     'masters->note_unrequested': ('line_masters.c:note_unrequested',),
+    'masters->note_lost_bytes': ('line_masters.c:note_lost_bytes',),
     'protocol->may_collide': ('modbus_client.c:fathom_modbus_client_may_collide',),
     'config->find_echo': ('line_options.c:fathom_line_find_echo',),
     'config->marks': ('line_options.c:fathom_line_marks',),
