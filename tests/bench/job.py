@@ -20,9 +20,12 @@ JOBS = {'job': [], 'job_senders': ['-DJOB_SENDERS'], 'job_masters': ['-DJOB_SEND
 COSTS = [
     ('m0_flash_256', 'Cortex-M0+ flash, CRC table of 256', 'B'),
     ('m0_flash_16', 'Cortex-M0+ flash, CRC table of 16', 'B'),
+    ('m0_flash_256_lto', 'the same with -flto, CRC table of 256', 'B'),
+    ('m0_flash_16_lto', 'the same with -flto, CRC table of 16', 'B'),
     ('m0_ram', 'Cortex-M0+ RAM', 'B'),
     ('m0_stack', 'Cortex-M0+ stack below fathom_line_poll', 'B'),
     ('avr_flash', 'ATmega328P flash, port/avr/crc16.c', 'B'),
+    ('avr_flash_lto', 'the same with -flto', 'B'),
     ('avr_ram', 'ATmega328P RAM', 'B'),
     ('avr_const', 'ATmega328P RAM for the const structs, apart', 'B'),
     ('avr_stack', 'ATmega328P stack below fathom_line_poll, seen', 'B'),
@@ -62,6 +65,9 @@ def measure_arm(work, figures, functions):
             elf = os.path.join(work, f'm0_{job}_{entries}.elf')
             M0.build(elf, '-g', *flags, *M0.link, *M0.registers, *JOB, *CORE, *source(crc), '-lgcc')
             figures[f'{job}.m0_flash_{entries}'] = M0.flash(elf) - M0.flash(empty)
+            lto = os.path.join(work, f'm0_{job}_{entries}_lto.elf')
+            M0.build(lto, '-flto', *flags, *M0.link, *M0.registers, *JOB, *CORE, *source(crc), '-lgcc')
+            figures[f'{job}.m0_flash_{entries}_lto'] = M0.flash(lto) - M0.flash(empty)
         note_sizes(functions, f'{job}.m0', M0.symbols(elf))
         figures[f'{job}.m0_ram'] = ram(M0.symbols(elf))
         image = Image(M0.prefix, elf)
@@ -78,6 +84,9 @@ def measure_avr(work, figures, functions):
         table = AVR.symbols(elf)
         note_sizes(functions, f'{job}.avr', table)
         figures[f'{job}.avr_flash'] = AVR.flash(elf) - AVR.flash(empty)
+        lto = os.path.join(work, f'avr_{job}_lto.elf')
+        AVR.build(lto, '-flto', *flags, *AVR.registers, *JOB, *CORE, AVR.crc)
+        figures[f'{job}.avr_flash_lto'] = AVR.flash(lto) - AVR.flash(empty)
         figures[f'{job}.avr_ram'] = ram(table)
         figures[f'{job}.avr_const'] = sum(size for _, size, kind in table.values() if kind in 'dD')
         users = []

@@ -122,7 +122,7 @@ def beside_bound(value, unit, bound):
 def figures_table(figures, sizes):
     """The jobs; then what of the sizes has a bound."""
     aims, found = bounds(), all_figures(figures, sizes)
-    lines = ['| | the least | with counters | all |', '|---|---|---|---|']
+    lines = ['| | the least | and senders | and masters | the least with counters | all |', '|---' * 6 + '|']
     for cost, what, unit in COSTS:
         cells = ' | '.join(beside_bound(figures[f'{job}.{cost}'], unit, aims.get(f'{job}.{cost}')) for job in JOBS)
         lines.append(f'| {what} | {cells} |')
@@ -149,17 +149,22 @@ def peers():
 
 
 def peers_table(figures):
-    lines = ['| | version | M0+ flash | M0+ RAM | ATmega328P flash | x86-64 instructions | what it is |',
-             '|---' * 7 + '|']
+    lines = ['| | version | M0+ flash | with -flto | M0+ RAM | ATmega328P flash | with -flto | x86-64 instructions '
+             '| what it is |', '|---' * 9 + '|']
     for row in peers():
-        cells = [row[column] or '–' for column in ('m0_flash', 'm0_ram', 'avr_flash', 'x86')]
+        cells = [row[column] or '–' for column in ('m0_flash', 'm0_flash_lto', 'm0_ram', 'avr_flash', 'avr_flash_lto', 'x86')]
         lines.append(f'| {row["name"]} | {row["version"]} | {" | ".join(cells)} | {row["what"]} |')
     whats = {'job': 'polled; a queue, retries, an announced echo, broadcast, break, any unit, quarantine',
-             'job_counters': 'the same with counters',
-             'job_all': 'echo found out, a listener, marks of the port, settings of a transaction, counters, unit 0'}
+             'job_senders': 'the same and devices that send unsolicited frames, slow main loops',
+             'job_masters': 'the same and other masters',
+             'job_counters': '`job` with counters',
+             'job_all': '`job_masters`, echo detection, a listener, error flags of the port, settings of a transaction, '
+                        'counters, unit 0'}
     for job, what in whats.items():
         cells = [f'{figures[f"{job}.m0_flash_256"]} / {figures[f"{job}.m0_flash_16"]}',
+                 f'{figures[f"{job}.m0_flash_256_lto"]} / {figures[f"{job}.m0_flash_16_lto"]}',
                  f'{figures[f"{job}.m0_ram"] + VALUES}', f'{figures[f"{job}.avr_flash"]}',
+                 f'{figures[f"{job}.avr_flash_lto"]}',
                  f'{figures[f"{job}.x86_transaction"]}']
         lines.append(f'| **Fathom**, `{job}` | this | {" | ".join(cells)} | {what} |')
     return '\n'.join(lines) + '\n'
