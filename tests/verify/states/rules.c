@@ -127,7 +127,7 @@ static const char *judge_sending(int transaction, const world_t *before)
             return "a unit was asked whose late response may still come";
     }
     if (world.asked != 0 && world.line.wait != WAIT_SKIPPED)
-        return "a request was sent while the answer to another master is due";
+        return "a request was sent while the response to another master is due";
     if (world.quiet < options.silence && !is_without_silence(before))
         return "a request was sent without the silence before it";
     if (!is_first_that_may(transaction)) return "a request was sent before one that could have been";

@@ -49,7 +49,7 @@ static bool is_piece_possible(int ticket)
 }
 
 /* A unit whose response is late, or will be when the program polls, sends nothing by itself (README.md). */
-static bool owes_late_response(int unit)
+static bool has_late_response(int unit)
 {
     for (int i = 0; i != TICKETS; i++) {
         const ticket_t *const ticket = &world.tickets[i];
@@ -63,8 +63,8 @@ static bool owes_late_response(int unit)
 /* One device sends in a tick, into an empty port. */
 static bool may_speak(void) { return has_space() && world.rx_length == 0 && !world.has_spoken; }
 
-/* Ticks after another master's request within which the unit answers, so that the program still reads the answer before
- * the line ends its wait for it. */
+/* Ticks after another master's request within which the unit responds, so that the program still reads the response
+ * before the line ends its wait for it. */
 static int answer_limit(void)
 {
     const int least = options.timeout[0] < options.timeout[1] ? options.timeout[0] : options.timeout[1];
@@ -125,7 +125,7 @@ bool is_possible(int step)
     case STREAM:
         return options.stream && may_speak();
     case OWN:
-        return options.own && may_speak() && !owes_late_response(0);
+        return options.own && may_speak() && !has_late_response(0);
     case NOISE:
         return options.noise && may_speak();
     case ASK:

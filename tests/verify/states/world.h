@@ -84,7 +84,7 @@ typedef struct {
     uint8_t
         others; /* requests of others since the watched transaction was queued and its unit not quarantined */
     uint8_t waited;     /* ticks for which a request has waited, up to busy_us */
-    uint8_t asked;      /* the unit that owes another master an answer, 0 if none does */
+    uint8_t asked;      /* the unit that has to respond to another master, 0: none */
     uint8_t asked_age;  /* ticks since that master asked */
     uint8_t has_spoken; /* another device has sent in this tick */
     uint8_t has_frame;  /* a whole frame came while a request waited */
