@@ -50,8 +50,10 @@ void loop()
         Serial.println(F(" us"));
     } else if (status == FATHOM_READY && sample.kind == FATHOM_NO_TARGET) {
         Serial.println(F("nothing in range"));
-    } else if (status == FATHOM_READY) {
+    } else if (status == FATHOM_READY && sample.kind == FATHOM_FAULT) {
         Serial.println(F("stuck line"));
+    } else if (status == FATHOM_READY) {
+        Serial.println(F("unknown")); // only pulses below the range
     } else if (status < 0) {
         Serial.print(F("error ")); // -3 is "no response"; status.h has them all
         Serial.println(status);

@@ -134,8 +134,8 @@ TEST(nothing_in_range_no_response_and_a_stuck_line_are_told_apart)
     assert_string_equal(line(), "nothing in range");
     bench.width_cycles = 0;
     assert_string_equal(line(), "error -3");         /* FATHOM_ERR_NO_RESPONSE */
-    bench.width_cycles = 1000 * BOARD_CYCLES_PER_US; /* noise */
-    assert_string_equal(line(), "error -3");
+    bench.width_cycles = 1000 * BOARD_CYCLES_PER_US; /* below the range */
+    assert_string_equal(line(), "unknown");
     bench.width_cycles = 120000 * BOARD_CYCLES_PER_US;
     assert_string_equal(line(), "stuck line");
     bench.width_cycles = 10000 * BOARD_CYCLES_PER_US;
