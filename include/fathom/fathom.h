@@ -42,6 +42,7 @@
 #include "fathom/engine/line_pins.h"     /* a line whose TX triggers or selects, or whose RX is a switch */
 #include "fathom/engine/modbus_client.h" /* the transport of the Modbus drivers over a line (line.h) */
 #include "fathom/engine/sensor.h"        /* fathom_poll, for all of them */
+#include "fathom/engine/transaction.h"   /* a request, its response, and a protocol's table for a line */
 #include "fathom/engine/wait.h"          /* fathom_wait, which blocks */
 #include "fathom/version.h"              /* which Fathom this is */
 
