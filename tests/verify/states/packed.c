@@ -21,21 +21,20 @@ enum { MOST_SILENCE_US = UINT16_MAX, SHORT = 200, IS_QUIET = 255, IS_LONG = 255,
 enum { TIME_OUT_ENDS = 100 };
 
 /* The facts of the line, one bit each. */
-enum { AFTER_GAP = 1, OLD = 2, ANSWERED = 4 };
+enum { AFTER_GAP = 1, ANSWERED = 2, AGE = 4 };
 
 static uint8_t facts_of(const fathom_line_t *line)
 {
     int facts = 0;
     if (line->is_after_gap && options.stream) facts |= AFTER_GAP; /* Only the listener gets it. */
-    if (line->is_port_old) facts |= OLD;
     if (line->is_answered && line->awaited_left_us != 0u) facts |= ANSWERED;
-    return (uint8_t)facts;
+    return (uint8_t)(facts | line->age * AGE);
 }
 
 static void set_facts(fathom_line_t *line, uint8_t facts)
 {
     line->is_after_gap = (facts & AFTER_GAP) != 0;
-    line->is_port_old = (facts & OLD) != 0;
+    line->age = facts / AGE;
     line->is_answered = (facts & ANSWERED) != 0;
 }
 

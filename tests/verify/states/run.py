@@ -37,15 +37,15 @@ TWO = dict(transactions=5)  # one of each unit
 QUICK = {  # a world: the least number of its states, four fifths of today's, and its words
     'two of each unit, cancelled': (440000, dict(cancel=1, watched=3)),
     'wrong responses and noise': (120000, dict({**TWO, **WRONG}, cancel=1, piece=1, leave=2)),
-    'a port with faults': (59000, dict({**TWO, **PORT}, cancel=1, cancel_unit=1, retries1a=1)),
+    'a port with faults': (92000, dict({**TWO, **PORT}, cancel=1, cancel_unit=1, retries1a=1)),
     'a port with a queue': (8900, dict(TWO, cancel=1, takes=1, leave=2, retries2a=1)),
-    'another host': (93000, dict(TWO, foreign=1, cancel=1, piece=1)),
-    'a device that sends by itself': (150000, dict(TWO, stream=1, senders=1, retries1a=1)),
-    'a unit that sends by itself': (24000, dict(TWO, own=1, senders=1)),
+    'another host': (110000, dict(TWO, foreign=1, cancel=1, piece=1)),
+    'a device that sends by itself': (160000, dict(TWO, stream=1, senders=1, retries1a=1)),
+    'a unit that sends by itself': (27000, dict(TWO, own=1, senders=1)),
     'a slow loop among frames': (190000, dict(TWO, own=1, senders=1, poll=2, silence=1)),
-    'noise without end': (100000, dict(TWO, noise=1, retries1a=1, cancel=1)),
-    'another master': (110000, dict(TWO, asks=1, masters=1, retries1a=1)),
-    'an adapter that echoes': (18000, dict(TWO, echo=1, cancel=1, retries1a=1)),
+    'noise without end': (110000, dict(TWO, noise=1, retries1a=1, cancel=1)),
+    'another master': (140000, dict(TWO, asks=1, masters=1, retries1a=1)),
+    'an adapter that echoes': (17000, dict(TWO, echo=1, cancel=1, retries1a=1)),
     'an adapter of unknown echo': (26000, dict(TWO, echo=2, cancel=1, retries1a=1)),
     '55 AA among frames': (290000, dict(TWO, dyp=1, cancel=1, damaged=1, unexpected=1, retries1a=1, senders=1)),
     '55 AA': (89000, dict(TWO, dyp=1, cancel=1, damaged=1, unexpected=1, retries1a=1)),
@@ -55,15 +55,15 @@ QUICK = {  # a world: the least number of its states, four fifths of today's, an
 FULL = {
     'three, wrong responses': (150000, dict(WRONG, transactions=7, watched=2)),
     'two of each unit, retries': (320000, dict(retries1a=1, retries2a=1, retries2b=1, exception=1, watched=3)),
-    'a slow loop and another master': (240000, dict(TWO, asks=1, masters=1, poll=2, retries1a=1)),
+    'a slow loop and another master': (340000, dict(TWO, asks=1, masters=1, poll=2, retries1a=1)),
     'another master and unsolicited frames': (
-        31000, dict(transactions=1, asks=1, masters=1, own=1, senders=1, retries1a=1)),
+        47000, dict(transactions=1, asks=1, masters=1, own=1, senders=1, retries1a=1)),
     'a slow loop, noise and frames': (
         170000, dict(transactions=1, own=1, senders=1, noise=1, poll=2, silence=1, retries1a=1)),
     'a slow loop': (180000, dict(TWO, poll=2, cancel=1, damaged=1)),
     'in halves': (9200, dict(transactions=3, halves=1, timeout1=2, leave=1)),
     'two of each unit, 55 AA': (410000, dict(dyp=1, damaged=1, watched=3)),
-    'two of each unit, port': (1200000, dict(read_fails=1, write_fails=1, watched=3)),
+    'two of each unit, port': (1600000, dict(read_fails=1, write_fails=1, watched=3)),
 }
 
 SMALL = dict(transactions=3, cancel=1, damaged=1)
