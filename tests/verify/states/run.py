@@ -83,7 +83,7 @@ FAULTS = {
         'if (!is_ports_time(line) && !is_waiting(line)) begin_wait(line);',
         'if (!is_ports_time(line)) begin_wait(line);'),
     'a request of another master that claims nothing': (
-        dict(TWO, asks=1, masters=1), 'another master', 'src/engine/line_masters.c', 'note_foreign_request',
+        dict(TWO, asks=1, masters=1), 'has not come', 'src/engine/line_masters.c', 'note_foreign_request',
         'if (is_outstanding) note_fault(line, FAULT_CLAIMED);', ''),
 }
 
