@@ -174,3 +174,20 @@ TEST(each_that_asks_is_told_once)
     expect_call(ASKED, 16, 0);
     expect_no_more();
 }
+
+/* A transaction that the policy lets go waits for its silence; then the policy holds it back, for 12345 us. */
+TEST(a_transaction_that_waited_for_silence_is_due_when_its_policy_or_busy_us_says_so)
+{
+    holds_1 = false;
+    ask_1(0);
+    run(100);
+    holds_1 = true;
+    expect_due(12345);
+    bench.config.busy_us = 12000;
+    cancel(&bench.request);
+    holds_1 = false;
+    ask_1(0);
+    run(100);
+    holds_1 = true;
+    expect_due(12000);
+}
