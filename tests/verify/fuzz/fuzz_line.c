@@ -52,7 +52,8 @@ static void check_status(const asked_t *one)
     const bool is_read = one->kind == IS_READ || one->kind == IS_DYP;
     PROMISE(status == FATHOM_READY || (status <= FATHOM_ERR_PORT && status >= FATHOM_ERR_MALFORMED) ||
                 status == FATHOM_ERR_CANCELLED || status == FATHOM_ERR_ECHO ||
-                status == FATHOM_ERR_UNSUPPORTED,
+                status == FATHOM_ERR_UNSUPPORTED || status == FATHOM_ERR_LINE_BUSY ||
+                (status == FATHOM_ERR_OTHER_MASTER && config.masters != NULL),
             "line.h: the outcomes of a transaction");
     PROMISE(transaction->attempts <= transaction->retries + 1u, "line.h: retries: further attempts");
     PROMISE(transaction->attempts == 0 || one->has_left, "line.h: attempts: how often it was sent");
@@ -197,11 +198,16 @@ static void call(uint8_t op)
         fathom_line_cancel(&line, &asked[how / 4 % REQUESTS].request.transaction);
         break;
     case 1:
-        fathom_line_cancel_unit(&line, how >> 4);
+        if (how == 0xFD)
+            fathom_line_flush(&line);
+        else
+            fathom_line_cancel_unit(&line, how >> 4);
         break;
     case 2:
         listened = wire.count >= line.received_count ? wire.count - line.received_count : 0;
-        listener = (fathom_listener_t){.receive = receive, .gap_us = (how & 16) != 0 ? 5000 : 0};
+        listener = (fathom_listener_t){.receive = receive,
+                                       .gap_us = (how & 16) != 0 ? 5000 : 0,
+                                       .stale_us = (how & 32) != 0 ? 100000 : 0};
         (void)fathom_line_replace_listener(&line, (how & 8) != 0 ? &listener : NULL);
         break;
     default: {
@@ -222,7 +228,8 @@ static void drain(void)
     uint64_t most_us = 3000000;
     unsigned zeros = 0;
     wire_drain();
-    /* A request that leaves, its time-out, and twice that of quarantine; what the line keeps between frames. */
+    /* A request that leaves, its time-out, and twice that of quarantine; what the line keeps between frames, or waits for
+     * another master at most. */
     for (int i = 0; i != REQUESTS; i++) most_us += 4u * (3u * MOST_TIMEOUT_US + 500000u);
     PROMISE(fathom_line_break(&line, false) == FATHOM_READY, "line.h: break: the port works");
     poll();
@@ -268,6 +275,9 @@ static bool begin(uint8_t **frame)
         config.echo = FATHOM_LINE_ECHO_AUTO;
         config.find_echo = fathom_line_find_echo;
     }
+    if ((more & 2) != 0) config.senders = &fathom_line_senders;
+    if ((more & 4) != 0) config.masters = &fathom_line_masters;
+    if ((more & 8) != 0) config.busy_us = 40000;
     if ((how & 16) != 0) config.marks = fathom_line_marks;
     if ((how & 32) != 0) config.count = fathom_line_count;
     config.counters = counters;

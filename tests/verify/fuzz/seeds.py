@@ -69,7 +69,7 @@ def line(frames):
     found = []
     for kind in range(5):
         for respond in (b'\x01', b'\x12', b'\x22\x02', b'\x42\x05\1', b'\x52\x05\1'):
-            begin = bytes([0x70, 0, 0, 0])
+            begin = bytes([0x70, len(found) % 8 * 2, 0, 0])
             ask = bytes([0x0c, kind | 16, 3]) + b'\x0f\x0f'
             found.append(begin + ask + respond + b'\1\2' + b'\x0f' * 2 + ask + b'\x0f' * 2 + respond)
     return found + [b'\x30\0\0\0' + b'\x0c\x10\2\x0f\x0f\x0e\0\x0e\7\x0f\x0e\3', b'\0' * 8]
