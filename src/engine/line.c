@@ -74,7 +74,8 @@ static void move_to(fathom_line_t *line, uint32_t now_us)
         line->awaited_left_us = rest_us(line->awaited_left_us, passed_us);
         if (line->awaited_left_us == 0u) line->awaited_left_us = ENDS_WITH_THIS_POLL;
     }
-    if ((line->phase != FATHOM_LINE_DRAINING) && fathom_count_down(&line->quarantine_left_us, passed_us))
+    if ((line->quarantined_units != 0u) && (line->phase != FATHOM_LINE_DRAINING) &&
+        fathom_count_down(&line->quarantine_left_us, passed_us))
         line->quarantined_units = 0;
 }
 
@@ -157,7 +158,7 @@ static uint32_t begin_turn(fathom_line_t *line)
 {
     const uint32_t now_us = clock_us(line->config->clock);
     const uint32_t pause_us = time_since_us(now_us, line->polled_us);
-    if (fathom_line_is_old(line, pause_us)) drop_port(line);
+    if ((pause_us > FATHOM_LINE_LATE_US) && fathom_line_is_old(line, pause_us)) drop_port(line);
     move_to(line, now_us);
     return pause_us;
 }
