@@ -358,7 +358,8 @@ static uint32_t port_due_us(const fathom_line_t *line, uint32_t passed_us)
 {
     const fathom_uart_t *const uart = line->config->uart;
     const uint32_t us = (uart->leaves_in_us != NULL) ? uart->leaves_in_us(uart->ctx) : 0u;
-    return (us != 0u) ? (us + passed_us) : SEND_POLL_US;
+    if (us == 0u) return SEND_POLL_US;
+    return us + passed_us;
 }
 
 /* Returns when the present phase may end, in microseconds after the last poll. */

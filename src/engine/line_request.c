@@ -43,7 +43,8 @@ static uint32_t silence_in_us(const fathom_line_t *line)
 {
     if (is_in_break(line) || holds_bytes(line))
         return FATHOM_NO_DEADLINE; /* Wait for the end of the frame. */
-    if (line->awaited_left_us != 0u) return line->awaited_left_us - 1u; /* It ends at 1, with a poll (line.c). */
+    if (line->awaited_left_us != 0u)
+        return line->awaited_left_us - 1u; /* It ends at 1, with a poll (line.c). */
     if (line->config->senders != NULL) return line->config->senders->slot_in_us(line);
     return rest_us(silence_us(line), line->silent_us);
 }

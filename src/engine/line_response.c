@@ -58,7 +58,7 @@ static bool can_be_echo(const fathom_line_t *line, uint8_t response_length)
     if (!expects_response(line)) return false;
     if (response_length == 0u) return true;
     return (line->attempt.copy != COPY_PAST) && ((response_length == line->attempt.request_length) ||
-                                                 (response_length + 1 == line->attempt.request_length));
+                                                 ((response_length + 1) == line->attempt.request_length));
 }
 
 /*
