@@ -89,7 +89,7 @@ static void begin_wire(const fathom_line_settings_t *settings)
 
 /* ---- a late response ---- */
 
-enum { UNITS = 2, TIMEOUT_US = 30000, LATE_US = 45000, QUARANTINE_END_US = 180000 };
+enum { UNITS = 2, TIMEOUT_US = 30000, LATE_US = 45000, QUARANTINE_END_US = 159500 };
 
 static fathom_sim_hps167s_t devices[UNITS];
 static fathom_hps167s_t drivers[UNITS];
