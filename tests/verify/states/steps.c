@@ -63,12 +63,11 @@ static bool has_late_response(int unit)
 /* One device sends in a tick, into an empty port. */
 static bool may_speak(void) { return has_space() && world.rx_length == 0 && !world.has_spoken; }
 
-/* Ticks after another master's request within which the unit responds, so that the program still reads the response
- * before the line ends its wait for it. */
+/* Ticks after another master's request within which the unit responds: the line waits so long for it. */
 static int answer_limit(void)
 {
     const int least = options.timeout[0] < options.timeout[1] ? options.timeout[0] : options.timeout[1];
-    return (options.busy < least ? options.busy : least) - options.poll;
+    return options.busy < least ? options.busy : least;
 }
 
 static bool is_unit_queued(int unit) { return is_queued(2 * unit) || is_queued(2 * unit + 1); }
@@ -129,8 +128,7 @@ bool is_possible(int step)
     case NOISE:
         return options.noise && may_speak();
     case ASK:
-        return options.asks && may_speak() && world.asked == 0 && world.leaving == 0 &&
-               world.line.protocol != NULL;
+        return options.asks && may_speak() && world.asked == 0 && world.leaving == 0;
     case ANSWER:
         return world.asked != 0 && has_space();
     default:
@@ -187,7 +185,8 @@ static void look_when_due(void)
     /* A port that does not tell when it is ready is tried again at each poll. */
     const bool is_unknown = world.line.phase >= FATHOM_LINE_DRAINING &&
                             world.line.phase <= FATHOM_LINE_SENDING && world.leaving == 0;
-    world.due = us / TICK_US < NEVER && !is_unknown ? (uint8_t)(us / TICK_US) : NEVER;
+    const uint32_t ticks = us / TICK_US + (us % TICK_US != 0);
+    world.due = ticks < NEVER && !is_unknown ? (uint8_t)ticks : NEVER;
 }
 
 /* Of a port that is broken nothing more leaves. */
