@@ -49,7 +49,12 @@ void main(void)
     config.stale_us = any_32();
     config.gap_us = any_16();
     any_window(&config.window);
-    config.probes = any_8_in(0, 16); /* from 16 on they are refused */
+    config.probes = any_8_in(16, UINT8_MAX);
+    const fathom_status_t status = fathom_a05_auto_init(&sensor, &config);
+    /*@ assert status == FATHOM_ERR_ARGUMENT; */
+    config.probes = any_8_in(0, 15);
+    const fathom_sensor_t none = fathom_a05_auto_sensor(&sensor);
+    any_call(&none); /* in zeroed memory */
     if (fathom_a05_auto_init(&sensor, &config) != FATHOM_READY) return;
     run();
 }

@@ -53,7 +53,6 @@ static void run(void)
 {
     const fathom_sensor_t handle = fathom_a05_dyp_sensor(&sensor);
     while (any_bool()) any_call(&handle);
-    fathom_a05_dyp_deinit(&sensor);
 }
 
 void main(void)
@@ -61,6 +60,8 @@ void main(void)
     fathom_a05_dyp_config_t config;
     any_line_init();
     transport = fathom_dyp_client(&any_line);
+    const fathom_sensor_t none = fathom_a05_dyp_sensor(&sensor);
+    any_call(&none); /* in zeroed memory */
     any_modbus_config(&config.modbus);
     config.modbus.transport = &transport;
     config.start_us = any_32();
@@ -73,4 +74,6 @@ void main(void)
     /*@ merge config.probes; */
     /*@ slevel merge; */
     run();
+    (void)fathom_a05_dyp_init(&sensor, &config); /* again, perhaps while a request is queued */
+    fathom_a05_dyp_deinit(&sensor);
 }

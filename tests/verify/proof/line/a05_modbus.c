@@ -4,8 +4,8 @@
  * with:   src/sensor/dyp_modbus.c src/sensor/dyp.c src/engine/modbus_unit.c src/engine/modbus_setting.c
  *          src/engine/sensor.c
  * options: -eva-precision 0 -eva-ilevel 16
- *          -eva-slevel-function fathom_modbus_unit_init:400,fathom_dyp_modbus_init:20,fathom_dyp_window_copy:40,main:200,any_probes:20,fathom_dyp_measurement_next:20,run:1,fathom_a05_modbus_init:50
- *          -eva-split-return-function fathom_modbus_unit_init:1,fathom_dyp_modbus_init:1,fathom_a05_modbus_init:1
+ *          -eva-slevel-function fathom_modbus_unit_init:400,is_valid:50,fathom_dyp_modbus_init:20,fathom_dyp_window_copy:40,main:200,any_probes:20,fathom_dyp_measurement_next:20,run:1,fathom_a05_modbus_init:50
+ *          -eva-split-return-function fathom_modbus_unit_init:1,is_valid:1,fathom_dyp_modbus_init:1,fathom_a05_modbus_init:1
  * quick:   no
  *
  * The A05 by Modbus: any calls in any order. Which probes it has is told apart, so that a value stands beside its room.
@@ -51,7 +51,6 @@ static void run(void)
 {
     const fathom_sensor_t handle = fathom_a05_modbus_sensor(&sensor);
     while (any_bool()) any_call(&handle);
-    fathom_a05_modbus_deinit(&sensor);
 }
 
 void main(void)
@@ -64,6 +63,10 @@ void main(void)
     const uint8_t which = any_8_in(0, 5);
     /*@ split which; */
     config.probes = any_probes(which);
+    const fathom_sensor_t none = fathom_a05_modbus_sensor(&sensor);
+    any_call(&none); /* in zeroed memory */
     if (fathom_a05_modbus_init(&sensor, &config) != FATHOM_READY) return;
     run();
+    (void)fathom_a05_modbus_init(&sensor, &config); /* again, perhaps while a request is queued */
+    fathom_a05_modbus_deinit(&sensor);
 }

@@ -47,8 +47,9 @@ void main(void)
     config.gap_us = any_16();
     config.value = any_8();
     any_window(&config.window);
-    if (fathom_a16_auto_init(&sensor, &config) != FATHOM_READY) return;
     const fathom_sensor_t handle = fathom_a16_auto_sensor(&sensor);
+    any_call(&handle); /* in zeroed memory */
+    if (fathom_a16_auto_init(&sensor, &config) != FATHOM_READY) return;
     while (any_bool()) any_call(&handle);
     (void)fathom_a16_auto_deinit(&sensor);
 }

@@ -44,8 +44,9 @@ void main(void)
     config.low_us = any_16();
     config.gap_us = any_16();
     any_window(&config.window);
-    if (fathom_a16_controlled_init(&sensor, &config) != FATHOM_READY) return;
     const fathom_sensor_t handle = fathom_a16_controlled_sensor(&sensor);
+    any_call(&handle); /* in zeroed memory */
+    if (fathom_a16_controlled_init(&sensor, &config) != FATHOM_READY) return;
     while (any_bool()) any_call(&handle);
     (void)fathom_a16_controlled_deinit(&sensor);
 }

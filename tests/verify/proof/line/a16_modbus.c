@@ -4,8 +4,8 @@
  *          src/engine/modbus_setting.c src/sensor/dyp_modbus.c
  * with:   src/sensor/dyp.c src/engine/sensor.c src/codec/modbus_rtu.c src/codec/crc16.c
  * options: -eva-precision 0
- *          -eva-slevel-function fathom_modbus_unit_init:400,fathom_dyp_modbus_init:20,fathom_dyp_window_copy:40,main:5,fathom_a16_modbus_init:50
- *          -eva-split-return-function fathom_modbus_unit_init:1,fathom_dyp_modbus_init:1,fathom_a16_modbus_init:1
+ *          -eva-slevel-function fathom_modbus_unit_init:400,is_valid:50,fathom_dyp_modbus_init:20,fathom_dyp_window_copy:40,main:5,fathom_a16_modbus_init:50
+ *          -eva-split-return-function fathom_modbus_unit_init:1,is_valid:1,fathom_dyp_modbus_init:1,fathom_a16_modbus_init:1
  * quick:   yes
  *
  * The A16 by Modbus, with all that can be set, and the search for its address: any calls in any order.
@@ -100,8 +100,10 @@ void main(void)
     config.start_us = any_32();
     any_window(&config.window);
     config.value = any_8();
-    if (fathom_a16_modbus_init(&sensor, &config) != FATHOM_READY) return;
     const fathom_sensor_t handle = fathom_a16_modbus_sensor(&sensor);
+    any_call(&handle); /* in zeroed memory */
+    if (fathom_a16_modbus_init(&sensor, &config) != FATHOM_READY) return;
     while (any_bool()) any_call(&handle);
+    (void)fathom_a16_modbus_init(&sensor, &config); /* again, perhaps while a request is queued */
     fathom_a16_modbus_deinit(&sensor);
 }

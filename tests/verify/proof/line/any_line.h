@@ -36,7 +36,7 @@ static void any_line_look(fathom_line_t *line)
     /*@ assert line == &any_line; */
     line->polled_us = any_32();
     line->silent_us = any_16();
-    line->have = any_8();
+    line->received_count = any_8();
 }
 
 static void any_line_end(int8_t status)
@@ -52,7 +52,7 @@ static void any_line_go_on(void)
     any_line_queued->attempts = any_8();
     if (any_bool()) return;
     any_line_end(
-        (int8_t)(any_bool() ? FATHOM_READY : Frama_C_interval(FATHOM_ERR_UNSUPPORTED, FATHOM_ERR_PORT)));
+        (int8_t)(any_bool() ? FATHOM_READY : Frama_C_interval(FATHOM_ERR_OTHER_MASTER, FATHOM_ERR_PORT)));
 }
 
 /* All that the protocol may be asked while the transaction is queued. What it writes may be there from the beginning:
@@ -116,10 +116,26 @@ fathom_status_t fathom_line_poll(fathom_line_t *line)
     return any_bool() ? FATHOM_PENDING : FATHOM_ERR_PORT;
 }
 
-void fathom_line_listen(fathom_line_t *line, fathom_listener_t *listener)
+fathom_status_t fathom_line_listen(fathom_line_t *line, fathom_listener_t *listener)
 {
     /*@ assert line == &any_line; */
+    if (listener != NULL && line->listener != NULL && line->listener != listener) return FATHOM_ERR_BUSY;
     line->listener = listener;
+    return FATHOM_READY;
+}
+
+fathom_listener_t *fathom_line_replace_listener(fathom_line_t *line, fathom_listener_t *listener)
+{
+    /*@ assert line == &any_line; */
+    fathom_listener_t *const previous = line->listener;
+    line->listener = listener;
+    return previous;
+}
+
+void fathom_line_flush(fathom_line_t *line)
+{
+    /*@ assert line == &any_line; */
+    any_line_look(line);
 }
 
 uint32_t fathom_line_due_us(const fathom_line_t *line)
@@ -134,10 +150,10 @@ fathom_status_t fathom_line_break(fathom_line_t *line, bool on)
     /*@ assert line == &any_line; */
     /*@ assert on == 0 || on == 1; */
     any_line_look(line);
-    return (fathom_status_t)Frama_C_interval(FATHOM_ERR_UNSUPPORTED, FATHOM_READY);
+    return (fathom_status_t)Frama_C_interval(FATHOM_ERR_OTHER_MASTER, FATHOM_READY);
 }
 
-bool fathom_line_is_idle(const fathom_line_t *line) { return line->have == 0 && any_bool(); }
+bool fathom_line_is_idle(const fathom_line_t *line) { return line->received_count == 0 && any_bool(); }
 
 uint32_t fathom_line_heard_us(const fathom_line_t *line) { return line->polled_us - line->silent_us; }
 

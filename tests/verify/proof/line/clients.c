@@ -64,9 +64,10 @@ static void look_at(const fathom_protocol_t *protocol, uint8_t have, bool is_dyp
     if (!is_dyp) any_function(frame, have, which);
     if (!is_dyp && which == READ) any_size(frame, have, size);
     (void)protocol->is_request(&request.transaction, frame, have);
+    if (protocol->may_collide != NULL) (void)protocol->may_collide(&request.transaction);
     if (protocol->length(frame, have) != have) return;
     if (protocol->check(frame, have) != 0) return;
-    (void)frame[protocol->address_at];
+    (void)frame[protocol->address_offset];
     (void)protocol->parse_response(&request.transaction, frame);
 }
 
@@ -79,6 +80,7 @@ static void go_on(const fathom_modbus_t *transport)
     }
     (void)transport->poll(&any_line);
     (void)transport->due_us(&any_line);
+    (void)transport->has(&any_line, &request);
     if (any_bool()) transport->cancel(&any_line, &request);
     if (any_bool()) transport->cancel_unit(&any_line, any_8());
     if (any_bool()) fathom_modbus_client_cancel(&any_line, &request);

@@ -11,7 +11,8 @@
 
 static void any_modbus_config(fathom_modbus_config_t *config)
 {
-    config->transport = any_bool() ? &assumed_transport : NULL;
+    assumed_transport.frame_size = any_8();
+    config->transport = any_bool() ? &assumed_transport : any_bool() ? &assumed_bare_transport : NULL;
     config->line_settings = any_bool() ? &assumed_settings : NULL;
     config->period_us = any_32();
     config->timeout_us = any_32();

@@ -3,8 +3,8 @@
  * proves: src/sensor/hps167s.c src/sensor/hps167s_info.c
  * with:   src/codec/hps167s_registers.c src/engine/modbus_unit.c src/engine/modbus_setting.c src/engine/sensor.c
  * options: -eva-precision 0 -eva-auto-loop-unroll 700
- *          -eva-slevel-function fathom_modbus_unit_init:400,fathom_hps167s_init:50,main:5
- *          -eva-split-return-function fathom_modbus_unit_init:1,fathom_hps167s_init:1
+ *          -eva-slevel-function fathom_modbus_unit_init:400,is_valid:50,is_valid_0:50,fathom_hps167s_init:50,main:5
+ *          -eva-split-return-function fathom_modbus_unit_init:1,is_valid:1,is_valid_0:1,fathom_hps167s_init:1
  * quick:   yes
  *
  * The HPS-167S, measuring and asked what it is: any calls in any order.
@@ -66,8 +66,10 @@ void main(void)
 {
     fathom_hps167s_config_t config;
     any_hps167s_config(&config);
-    if (fathom_hps167s_init(&sensor, &config) != FATHOM_READY) return;
     const fathom_sensor_t handle = fathom_hps167s_sensor(&sensor);
+    any_call(&handle); /* in zeroed memory */
+    if (fathom_hps167s_init(&sensor, &config) != FATHOM_READY) return;
     while (any_bool()) any_call(&handle);
+    (void)fathom_hps167s_init(&sensor, &config); /* again, perhaps while a request is queued */
     fathom_hps167s_deinit(&sensor);
 }

@@ -1,17 +1,19 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * proves: src/engine/line.c src/engine/line_count.c src/engine/line_find_echo.c src/engine/line_marks.c
- *          src/engine/line_request.c src/engine/line_response.c src/engine/line_send.c
- * options: -eva-precision 0
- *          -eva-slevel-function fathom_line_begin:100,main:5,fathom_line_poll:3,fathom_line_marks:30
+ * proves: src/engine/line.c src/engine/line_attempt.c src/engine/line_masters.c src/engine/line_options.c
+ *          src/engine/line_request.c src/engine/line_response.c src/engine/line_senders.c
+ * with:   src/codec/dyp_55aa.c src/codec/dyp_stream.c
+ * options: -eva-precision 0 -eva-auto-loop-unroll 128
+ *          -eva-slevel-function fathom_line_begin:100,fathom_line_init:20,can_send:20,is_usable:20,main:5,fathom_line_poll:3,fathom_line_marks:30
  *          -eva-split-return-function fathom_line_begin:1,fathom_line_init:1
  * quick:   yes
  *
- * A line with up to three transactions of any protocol that keeps to line.h, a listener that comes and goes, breaks:
- * any calls in any order, any bytes, marks and times.
+ * A line with up to three transactions of any protocol that keeps to transaction.h, with or without each optional part,
+ * with a listener that comes and goes, and with breaks and flushes: any calls in any order, any bytes, receive flags and
+ * times.
  */
 #include "fathom/engine/line.h"
-#include "assumptions.h"
+#include "contracts.h"
 #include "fathom/engine/fair_share.h"
 
 enum { FRAME_SIZE = 13 };
@@ -70,8 +72,15 @@ static fathom_status_t parse_other(fathom_transaction_t *transaction, const uint
     return parse_response(transaction, bytes);
 }
 
-static const fathom_protocol_t protocols[2] = {{encode, length, check, is_request, parse_response, 0, true},
-                                               {encode, length, check, is_request, parse_other, 2, false}};
+static bool may_collide(const fathom_transaction_t *transaction)
+{
+    (void)transaction->address;
+    return any_bool();
+}
+
+static const fathom_protocol_t protocols[2] = {
+    {encode, length, check, is_request, parse_response, 0, true, may_collide},
+    {encode, length, check, is_request, parse_other, 2, false, NULL}};
 
 /* ---- any listener ---- */
 
@@ -84,7 +93,7 @@ static void receive(fathom_listener_t *listener, const uint8_t *bytes, uint8_t o
     (void)time_us;
 }
 
-static fathom_listener_t listener = {receive, 0};
+static fathom_listener_t listener = {receive, 0, 0};
 
 /* ---- any calls ---- */
 
@@ -101,7 +110,7 @@ static void submit(fathom_transaction_t *transaction)
     transaction->line_settings = any_bool() ? &settings : NULL;
     transaction->timeout_us = any_32();
     transaction->address = any_8();
-    transaction->retries = any_8_in(0, 254);
+    transaction->retries = any_8();
     (void)fathom_line_submit(&line, transaction);
 }
 
@@ -113,7 +122,7 @@ static fathom_transaction_t *any_transaction(void)
 
 static void any_call(void)
 {
-    switch (any_8_in(0, 9)) {
+    switch (any_8_in(0, 11)) {
     case 0:
         (void)fathom_line_poll(&line);
         break;
@@ -141,6 +150,12 @@ static void any_call(void)
     case 8:
         (void)fathom_line_due_us(&line);
         break;
+    case 9:
+        (void)fathom_line_listen(&line, any_bool() ? &listener : NULL);
+        break;
+    case 10:
+        fathom_line_flush(&line);
+        break;
     default:
         (void)fathom_line_is_idle(&line);
         (void)fathom_line_heard_us(&line);
@@ -155,37 +170,87 @@ static void borrow(void)
     fathom_transaction_t its_transaction;
     its_listener.receive = receive;
     its_listener.gap_us = any_16();
+    its_listener.stale_us = any_32();
     its_transaction.protocol = &protocols[0];
     its_transaction.line_settings = NULL;
     its_transaction.timeout_us = any_32() & INT32_MAX;
     its_transaction.address = any_8();
     its_transaction.retries = 0;
     (void)fathom_line_replace_listener(&line, &its_listener);
+    const fathom_status_t status = fathom_line_listen(&line, &listener);
+    /*@ assert status == FATHOM_ERR_BUSY; */
     (void)fathom_line_submit(&line, &its_transaction);
     fathom_line_cancel(&line, &its_transaction);
     (void)fathom_line_replace_listener(&line, NULL);
 }
 
-/* Without what it needs a line is not touched. */
+/* A line whose config was refused refuses all calls. */
+static void refuse(const fathom_line_config_t *wrong)
+{
+    fathom_status_t status = fathom_line_init(&line, wrong);
+    /*@ assert status == FATHOM_ERR_ARGUMENT; */
+    status = fathom_line_poll(&line);
+    /*@ assert status == FATHOM_ERR_ARGUMENT; */
+    status = fathom_line_break(&line, any_bool());
+    /*@ assert status == FATHOM_ERR_ARGUMENT; */
+    status = fathom_line_submit(&line, &a);
+    /*@ assert status == FATHOM_ERR_ARGUMENT; */
+    const uint32_t due_us = fathom_line_due_us(&line);
+    /*@ assert due_us == FATHOM_NO_DEADLINE; */
+    fathom_line_flush(&line);
+    fathom_line_cancel(&line, &a);
+}
+
 static void refused(void)
 {
     static uint8_t short_frame[7];
+    static const fathom_clock_t no_time = {NULL, &assumed_ctx};
     fathom_line_config_t wrong = config;
+    fathom_uart_t uart = assumed_uart;
     wrong.uart = NULL;
-    fathom_status_t status = fathom_line_init(NULL, &wrong);
-    /*@ assert status == FATHOM_ERR_ARGUMENT; */
+    refuse(&wrong);
+    wrong.uart = &uart;
+    uart.read = NULL;
+    refuse(&wrong);
+    uart = assumed_uart;
+    uart.write = NULL;
+    refuse(&wrong);
+    uart = assumed_uart;
+    uart.sent = NULL;
+    refuse(&wrong);
     wrong = config;
     wrong.clock = NULL;
-    status = fathom_line_init(NULL, &wrong);
-    /*@ assert status == FATHOM_ERR_ARGUMENT; */
+    refuse(&wrong);
+    wrong.clock = &no_time;
+    refuse(&wrong);
     wrong = config;
     wrong.frame = NULL;
-    status = fathom_line_init(NULL, &wrong);
-    /*@ assert status == FATHOM_ERR_ARGUMENT; */
+    refuse(&wrong);
     wrong.frame = short_frame;
     wrong.frame_size = any_8_in(0, sizeof short_frame);
-    status = fathom_line_init(NULL, &wrong);
-    /*@ assert status == FATHOM_ERR_ARGUMENT; */
+    refuse(&wrong);
+    wrong = config;
+    wrong.count = fathom_line_count;
+    wrong.counters = NULL;
+    refuse(&wrong);
+    wrong = config;
+    wrong.echo = any_8_in(3, UINT8_MAX);
+    refuse(&wrong);
+    wrong = config;
+    wrong.echo = FATHOM_LINE_ECHO_AUTO;
+    wrong.find_echo = NULL;
+    refuse(&wrong);
+    wrong = config;
+    wrong.silence_us = UINT16_MAX;
+    refuse(&wrong);
+    wrong = config;
+    wrong.gap_us = any_8_in(1, 99);
+    refuse(&wrong);
+    wrong.gap_us = UINT16_MAX;
+    refuse(&wrong);
+    wrong = config;
+    wrong.busy_us = 1;
+    refuse(&wrong);
 }
 
 void main(void)
@@ -201,7 +266,11 @@ void main(void)
     config.marks = any_bool() ? fathom_line_marks : NULL;
     config.count = any_bool() ? fathom_line_count : NULL;
     config.counters = counters;
+    config.busy_us = any_32();
+    config.senders = any_bool() ? &fathom_line_senders : NULL;
+    config.masters = any_bool() ? &fathom_line_masters : NULL;
     listener.gap_us = any_16();
+    listener.stale_us = any_32();
     refused();
     if (fathom_line_init(&line, &config) != FATHOM_READY) return;
 #ifdef FAIR_SHARE

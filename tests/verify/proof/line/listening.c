@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * proves: src/engine/line_listening.c
- * with:   src/engine/line.c src/engine/line_count.c src/engine/line_marks.c src/engine/line_request.c
- *          src/engine/line_response.c src/engine/line_send.c
- * unreached: go_on_0
+ * with:   src/engine/line.c src/engine/line_attempt.c src/engine/line_options.c src/engine/line_request.c
+ *          src/engine/line_response.c
+ * unreached: advance_0
  * options: -eva-precision 0
  *          -eva-slevel-function fathom_line_begin:100,main:5,fathom_line_poll:3,fathom_line_marks:30
  *          -eva-split-return-function fathom_line_begin:1,fathom_line_init_listening:1
  * quick:   yes
  *
- * A line that only listens: any calls in any order, any bytes, marks and times. What sends is refused.
+ * A line that only listens: any calls in any order, any bytes, receive flags and times. What sends is refused.
  */
 #include "assumptions.h"
 #include "fathom/engine/line.h"
@@ -30,7 +30,7 @@ static void receive(fathom_listener_t *listener, const uint8_t *bytes, uint8_t o
     (void)time_us;
 }
 
-static fathom_listener_t listener = {receive, 0};
+static fathom_listener_t listener = {receive, 0, 0};
 
 static void submit(void)
 {
@@ -46,7 +46,7 @@ static void submit(void)
 
 static void any_call(void)
 {
-    switch (any_8_in(0, 5)) {
+    switch (any_8_in(0, 6)) {
     case 0:
         (void)fathom_line_poll(&line);
         break;
@@ -61,6 +61,9 @@ static void any_call(void)
         break;
     case 4:
         submit();
+        break;
+    case 5:
+        fathom_line_flush(&line);
         break;
     default:
         (void)fathom_line_is_idle(&line);
@@ -80,7 +83,9 @@ void main(void)
     config.marks = any_bool() ? fathom_line_marks : NULL;
     config.count = any_bool() ? fathom_line_count : NULL;
     config.counters = counters;
+    config.busy_us = any_32();
     listener.gap_us = any_16();
+    listener.stale_us = any_32();
     if (fathom_line_init_listening(&line, &config) != FATHOM_READY) return;
     while (any_bool()) any_call();
 }

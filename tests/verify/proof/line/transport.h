@@ -31,7 +31,7 @@ static fathom_status_t assumed_submit(void *ctx, fathom_modbus_request_t *reques
     if (request->transaction.line_settings != NULL)
         (void)assumed_set_line(ctx, request->transaction.line_settings);
     if (assumed_request == request) return FATHOM_ERR_BUSY;
-    if (any_bool()) return (fathom_status_t)Frama_C_interval(FATHOM_ERR_UNSUPPORTED, FATHOM_ERR_ARGUMENT);
+    if (any_bool()) return (fathom_status_t)Frama_C_interval(FATHOM_ERR_OTHER_MASTER, FATHOM_ERR_ARGUMENT);
     if (head[1] == FATHOM_MODBUS_READ_HOLDING_REGISTERS) {
         assumed_registers(&request->message);
     } else if (head[1] == FATHOM_MODBUS_WRITE_MULTIPLE_REGISTERS) {
@@ -62,7 +62,7 @@ static void assumed_go_on(void)
     assumed_request->message.exception = any_8();
     if (any_bool()) return;
     assumed_end(
-        (int8_t)(any_bool() ? FATHOM_READY : Frama_C_interval(FATHOM_ERR_UNSUPPORTED, FATHOM_ERR_PORT)));
+        (int8_t)(any_bool() ? FATHOM_READY : Frama_C_interval(FATHOM_ERR_OTHER_MASTER, FATHOM_ERR_PORT)));
 }
 
 static void assumed_cancel(void *ctx, fathom_modbus_request_t *request)
@@ -92,9 +92,26 @@ static uint32_t assumed_due_us(void *ctx)
     return any_32();
 }
 
-static const fathom_modbus_t assumed_transport = {assumed_submit, assumed_cancel, assumed_cancel_unit,
-                                                  assumed_poll,   assumed_due_us, &assumed_clock,
-                                                  &assumed_ctx};
+/* The transport was initialised again and has forgotten its requests. */
+static void assumed_forget(void)
+{
+    if (any_bool()) assumed_request = NULL;
+}
+
+static bool assumed_has(void *ctx, const fathom_modbus_request_t *request)
+{
+    /*@ assert ctx == &assumed_ctx; */
+    assumed_forget();
+    return assumed_request == request;
+}
+
+/* One that knows its queue and limits the frame, which driver.h sets to any length, and one that does neither. */
+static fathom_modbus_t assumed_transport = {assumed_submit, assumed_cancel, assumed_cancel_unit,
+                                            assumed_poll,   assumed_due_us, &assumed_clock,
+                                            &assumed_ctx,   assumed_has,    13};
+static const fathom_modbus_t assumed_bare_transport = {assumed_submit, assumed_cancel, assumed_cancel_unit,
+                                                       assumed_poll,   assumed_due_us, &assumed_clock,
+                                                       &assumed_ctx,   NULL,           0};
 
 /* ---- what every config of a driver has ---- */
 

@@ -5,7 +5,8 @@
  *
  * proves: src/engine/contact.c src/sensor/a05_relay.c src/sensor/a16_switch.c
  * with: src/engine/sensor.c
- * options: -eva-split-return-function poll:1,fathom_poll:1
+ * options: -eva-split-return-function poll:1,fathom_poll:1,can_be_read:1
+ *         -eva-split-return-function fathom_contact_init:1,fathom_a05_relay_init:1,fathom_a16_switch_init:1
  */
 #include "assumptions.h"
 #include "fathom/sensor/a05_relay.h"
@@ -59,13 +60,17 @@ static void look(const fathom_sensor_t *sensor)
 
 static void relay(const fathom_pin_t *pin)
 {
-    static fathom_a05_relay_t relay;
+    static fathom_a05_relay_t relay, blank;
     fathom_a05_relay_config_t config;
     config.pin = pin;
-    config.clock = any_bool() ? &assumed_clock : NULL;
+    const bool has_clock = any_bool();
+    /*@ split has_clock; */
+    config.clock = has_clock ? &assumed_clock : NULL;
     config.timing = any_timing();
     config.wiring = any_8();
     config.level = any_8();
+    const fathom_sensor_t none = fathom_a05_relay_sensor(&blank);
+    look(&none); /* in zeroed memory */
     if (fathom_a05_relay_init(&relay, &config) != FATHOM_READY) return;
     const fathom_sensor_t sensor = fathom_a05_relay_sensor(&relay);
     while (any_bool()) look(&sensor);
@@ -73,15 +78,19 @@ static void relay(const fathom_pin_t *pin)
 
 static void a_switch(const fathom_pin_t *pin)
 {
-    static fathom_a16_switch_t object;
+    static fathom_a16_switch_t object, blank;
     static fathom_a16_modbus_t modbus;
     fathom_a16_switch_config_t config;
     config.pin = pin;
-    config.clock = any_bool() ? &assumed_clock : NULL;
+    const bool has_clock = any_bool();
+    /*@ split has_clock; */
+    config.clock = has_clock ? &assumed_clock : NULL;
     config.guard = any_bool() ? &guard : NULL;
     config.timing = any_timing();
     config.negative = any_bool();
     config.address = any_8();
+    const fathom_sensor_t none = fathom_a16_switch_sensor(&blank);
+    look(&none); /* in zeroed memory */
     if (fathom_a16_switch_init(&object, &config) != FATHOM_READY) return;
     const fathom_sensor_t sensor = fathom_a16_switch_sensor(&object);
     while (any_bool()) {

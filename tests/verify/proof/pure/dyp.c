@@ -8,7 +8,7 @@
 #include "assumptions.h"
 #include "fathom/codec/dyp_stream.h"
 
-static uint8_t any_meaning(void) { return any_8_in(FATHOM_MEANS_DEFAULT, FATHOM_MEANS_REFUSED); }
+static uint8_t any_meaning(void) { return any_8(); }
 
 /* Values of the probes from `first` to `last`. */
 static void probes(uint8_t first, uint8_t last)

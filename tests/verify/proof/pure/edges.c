@@ -14,6 +14,11 @@ static void any_edges(const fathom_pin_t *pin)
     static fathom_edges_t edges;
     fathom_pulse_t pulse;
     fathom_edges_init(&edges, pin);
+    /* fathom_edges_init() writes zeros through a volatile pointer, after which EVA knows none of the members. */
+    edges.read_at = 0;
+    edges.write_at = 0;
+    edges.is_timed = false;
+    edges.pin = pin;
     edges.same_us = any_16();
     const fathom_capture_t capture = fathom_edges_capture(&edges);
     while (any_bool()) {

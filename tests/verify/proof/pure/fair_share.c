@@ -15,21 +15,23 @@ static fathom_fair_share_t share;
 static fathom_transaction_t transactions[3];
 
 static void plain_scan(fathom_line_t *object, bool over) {}
-static fathom_status_t plain_go_on(fathom_line_t *object)
+static fathom_status_t plain_advance(fathom_line_t *object)
 {
     return any_bool() ? FATHOM_PENDING : FATHOM_ERR_PORT;
 }
 static fathom_transaction_t *plain_next(const fathom_line_t *object) { return object->head; }
 static uint32_t plain_due_us(const fathom_line_t *object) { return any_32(); }
-static void plain_give_up(fathom_line_t *object) {}
+static void plain_fail_all(fathom_line_t *object) {}
 
-static const fathom_line_kind_t plain = {plain_scan, plain_go_on, plain_next, plain_due_us, plain_give_up};
+static const fathom_line_kind_t plain = {plain_scan, plain_advance, plain_next, plain_due_us, plain_fail_all};
 
 /* A queue of 0 to 3, of any units. */
 static void any_line(void)
 {
-    line.state = any_8();
-    line.quarantined = any_16();
+    line.phase = any_8_in(FATHOM_LINE_IDLE, FATHOM_LINE_WAITING);
+    line.wait = any_8_in(0, 3);
+    line.phase_left_us = any_32();
+    line.quarantined_units = any_16();
     line.polled_us = any_32();
     line.quarantine_left_us = any_32();
     line.head = NULL;
@@ -50,7 +52,7 @@ int main(void)
     fathom_fair_share(&share, &line);
     while (any_bool()) {
         any_line();
-        (void)line.kind->go_on(&line);
+        (void)line.kind->advance(&line);
         (void)line.kind->next(&line);
         (void)line.kind->due_us(&line);
     }

@@ -3,7 +3,9 @@
  * Any samples at any times, through a window of each length, behind which there is no memory.
  *
  * proves: src/sensor/median.c
- * options: -eva-auto-loop-unroll 12 -eva-slevel 1 -eva-widening-delay 20
+ * options: -eva-auto-loop-unroll 64 -eva-slevel 1 -eva-widening-delay 20
+ *         -eva-slevel-function fathom_median_init:80,is_configuration:20
+ *         -eva-split-return-function is_configuration:1,fathom_median_init:1
  */
 #include "fathom/sensor/median.h"
 #include "any_sample.h"

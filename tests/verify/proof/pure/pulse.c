@@ -7,8 +7,8 @@
  *         src/engine/wait.c
  * with: src/codec/pulse_width.c
  * options: -eva-precision 1
- *         -eva-slevel-function polls:1,look:100,fathom_poll:100,poll:100,fathom_pulse_poll:100,take:100
- *         -eva-split-return-function assumed_take:0:1,take:1,fathom_pulse_poll:1,poll:1,fathom_poll:1
+ *         -eva-slevel-function polls:1,look:100,fathom_poll:100,poll:100,fathom_pulse_poll:100,take:100,end_cycle:20
+ *         -eva-split-return-function assumed_take:0:1,take:1,end_cycle:1,fathom_pulse_poll:1,poll:1,fathom_poll:1
  *         -eva-split-return-function fathom_trigger_drive:1,fathom_trigger_init:1
  *         -eva-split-return-function fathom_pulse_init:1,fathom_a16_pwm_init:1
  */
@@ -36,7 +36,9 @@ static void polls(fathom_a16_pwm_t *pwm)
 
 static void any_pwm(const fathom_clock_t *clock, const fathom_capture_t *capture, fathom_output_t output)
 {
-    static fathom_a16_pwm_t pwm;
+    static fathom_a16_pwm_t pwm, blank;
+    const fathom_sensor_t none = fathom_a16_pwm_sensor(&blank);
+    look(&none); /* in zeroed memory */
     fathom_a16_pwm_config_t config;
     config.pulse.clock = clock;
     config.pulse.capture = capture;
