@@ -75,12 +75,13 @@ static void take_the_rest(uint8_t which)
     } while (calls->result > 0);
 }
 
-/* As avr-gcc lays fathom_edges_t out: 4 pulses of 9 bytes, a time of 4, and then written, rises, lost, missed. */
+/* avr-gcc lays fathom_edges_t out without padding: 4 pulses of 9 bytes, a time of 4, then lost, missed and is_high. A rise
+ * that was fed and has not fallen again shows in is_high. */
 static void look_at_edges(uint8_t which)
 {
-    enum { SIDE = 52 + 250, RISES = 41, LOST = 42, MISSED = 43 };
+    enum { SIDE = 51 + 250, LOST = 40, MISSED = 41, IS_HIGH = 42 };
     const uint8_t *const edges = board_data("sides") + which * SIDE;
-    run.outcome.rises[which] = edges[RISES];
+    run.outcome.rises[which] = edges[IS_HIGH];
     run.outcome.lost[which] = edges[LOST];
     run.outcome.missed[which] = edges[MISSED];
 }

@@ -153,7 +153,7 @@ static void stale_and_one_0(void)
 }
 static void without_pin_0(void)
 {
-    enum { PIN = 46 }; /* as outcome.c has the rest of fathom_edges_t */
+    enum { PIN = 47 }; /* as outcome.c has the rest of fathom_edges_t */
     memset(board_data("sides") + PIN, 0, 2);
 }
 static void one_without_pin_0(void)
