@@ -136,12 +136,20 @@ A16 = 'the sensor is an A16; line/a05_modbus reaches this'
 NO_RATE = 'a setting of an A16 changes no line settings; line/hps167s_settings reaches this'
 NO_FOLLOW = 'nothing is set, so `follow` is NULL; line/hps167s_settings reaches this'
 
+CLOCK = 'a transport of the harness has a clock'
+LINES_FRAME = 'the transport is that of a line, whose frame buffer has 8 bytes or more; line/a05_modbus reaches this'
+
 # Statements that no run of a harness reaches: {(harness, function): (their number, why)}.
 UNREACHED = {
     ('line/a05_dyp', 'fathom_a05_dyp_set_every_address'): (3, COPY),
+    ('line/a05_dyp', 'has_room'): (2, LINES_FRAME),
+    ('line/a05_dyp', 'has_room_0'): (2, LINES_FRAME),
+    ('line/a16_controlled', 'configure'): (3, COPY),
     ('line/a16_modbus', 'due_us'): (1, ONE_PROBE),
     ('line/a16_modbus', 'fathom_dyp_modbus_init'): (1, A16),
-    ('line/a16_modbus', 'fathom_modbus_unit_init'): (3, COPY + '; and a transport of the harness has a clock'),
+    ('line/a16_modbus', 'fathom_dyp_modbus_find'): (3, COPY),
+    ('line/a16_modbus', 'fathom_modbus_unit_is_queued'): (1, CLOCK),
+    ('line/a16_modbus', 'is_valid'): (1, CLOCK),
     ('line/a16_modbus', 'moves'): (1, NO_RATE),
     ('line/a16_modbus', 'poll'): (3, ONE_PROBE),
     ('line/a16_modbus', 'use_new_address'): (1, NO_RATE),

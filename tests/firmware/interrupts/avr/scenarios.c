@@ -156,6 +156,14 @@ static void without_pin_0(void)
     enum { PIN = 47 }; /* as outcome.c has the rest of fathom_edges_t */
     memset(board_data("sides") + PIN, 0, 2);
 }
+/* The next pulse goes to the last place of the ring, behind which the first one follows. */
+static void last_place_0(void)
+{
+    enum { WRITE_AT = 44, READ_AT = 46, LAST = 3 };
+    board_data("sides")[WRITE_AT] = LAST;
+    board_data("sides")[READ_AT] = LAST;
+    pulses(0, 1);
+}
 static void one_without_pin_0(void)
 {
     without_pin_0();
@@ -319,6 +327,8 @@ const scenario_t scenarios[] = {
     PULSE("take_int0_high", CALL_TAKE, 0, high_0, EVENT_INT0),
     PULSE("take_int0_one", CALL_TAKE, 0, one_0, EVENT_INT0),
     PULSE("take_int0_without_pin", CALL_TAKE, 0, one_without_pin_0, EVENT_INT0),
+    PULSE("take_int0_last_place", CALL_TAKE, 0, last_place_0, EVENT_INT0),
+    PULSE("arm_int0_last_place", CALL_ARM, 0, last_place_0, EVENT_INT0),
     PULSE("take_int0_high_without_pin", CALL_TAKE, 0, high_without_pin_0, EVENT_INT0),
     PULSE("take_int0_stale", CALL_TAKE, 0, stale_0, EVENT_INT0),
     PULSE("take_int0_stale_and_one", CALL_TAKE, 0, stale_and_one_0, EVENT_INT0),

@@ -74,6 +74,6 @@ void main(void)
     /*@ merge config.probes; */
     /*@ slevel merge; */
     run();
+    if (any_bool()) fathom_a05_dyp_deinit(&sensor);
     (void)fathom_a05_dyp_init(&sensor, &config); /* again, perhaps while a request is queued */
-    fathom_a05_dyp_deinit(&sensor);
 }

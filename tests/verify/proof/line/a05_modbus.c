@@ -67,6 +67,6 @@ void main(void)
     any_call(&none); /* in zeroed memory */
     if (fathom_a05_modbus_init(&sensor, &config) != FATHOM_READY) return;
     run();
+    if (any_bool()) fathom_a05_modbus_deinit(&sensor);
     (void)fathom_a05_modbus_init(&sensor, &config); /* again, perhaps while a request is queued */
-    fathom_a05_modbus_deinit(&sensor);
 }

@@ -104,6 +104,6 @@ void main(void)
     any_call(&handle); /* in zeroed memory */
     if (fathom_a16_modbus_init(&sensor, &config) != FATHOM_READY) return;
     while (any_bool()) any_call(&handle);
+    if (any_bool()) fathom_a16_modbus_deinit(&sensor);
     (void)fathom_a16_modbus_init(&sensor, &config); /* again, perhaps while a request is queued */
-    fathom_a16_modbus_deinit(&sensor);
 }

@@ -95,6 +95,6 @@ void main(void)
     any_call(&handle); /* in zeroed memory */
     if (fathom_hps167s_init(&sensor, &config) != FATHOM_READY) return;
     while (any_bool()) any_call(&handle);
+    if (any_bool()) fathom_hps167s_deinit(&sensor);
     (void)fathom_hps167s_init(&sensor, &config); /* again, perhaps while a request is queued */
-    fathom_hps167s_deinit(&sensor);
 }
