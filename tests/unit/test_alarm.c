@@ -315,6 +315,20 @@ TEST(each_status_shows_that_the_device_responds_or_that_it_does_not)
     }
 }
 
+/* status.h: "FATHOM_ERR_LINE_BUSY and FATHOM_ERR_OTHER_MASTER say nothing about the unit". */
+TEST(a_busy_line_and_another_master_leave_it_open_whether_the_device_responds)
+{
+    static const fathom_status_t statuses[] = {FATHOM_ERR_LINE_BUSY, FATHOM_ERR_OTHER_MASTER};
+    for (unsigned i = 0; i != sizeof statuses / sizeof *statuses; i++) {
+        start();
+        expect_mm(0, 499, ON);
+        expect_kind(6 * S, FATHOM_FAULT, 0, UNKNOWN);
+        expect_status(7 * S, statuses[i], UNKNOWN);
+        expect_status(8 * S, FATHOM_ERR_NO_RESPONSE, NONE);
+        expect_status(9 * S, statuses[i], NONE);
+    }
+}
+
 TEST(samples_without_a_distance_show_that_the_device_responds)
 {
     static const uint8_t kinds[] = {FATHOM_FAULT, FATHOM_UNKNOWN, FATHOM_NO_TARGET, 0, 7};

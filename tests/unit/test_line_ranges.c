@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "line_bench.h"
 
-#include "fathom/engine/line_turns.h"
+#include "fathom/sensor/a16_auto.h"
+#include "fathom/sensor/a16_controlled.h"
+#include "fathom/sensor/hps167s_auto.h"
 
 /* line.h: the range of each member of the configuration, and the calls of a line that is not initialised. */
 
@@ -114,4 +116,22 @@ TEST(a_read_with_an_effect_is_not_sent_into_noise)
     }
     expect(FATHOM_ERR_LINE_BUSY);
     expect_written(0);
+}
+
+static void set_nothing(void *ctx, bool high) { (void)ctx, (void)high; }
+
+TEST(a_driver_that_listens_refuses_a_line_that_is_not_initialised)
+{
+    static fathom_line_t line;
+    static fathom_a16_auto_t automatic;
+    static fathom_a16_controlled_t controlled;
+    static fathom_hps167s_auto_t hps167s;
+    const fathom_pin_t pin = {.set = set_nothing};
+    const fathom_a16_auto_config_t automatic_config = {.line = &line};
+    const fathom_a16_controlled_config_t controlled_config = {.line = &line,
+                                                              .trigger = fathom_output_pin(&pin)};
+    const fathom_hps167s_auto_config_t hps167s_config = {.line = &line, .address = 1};
+    assert_int_equal(fathom_a16_auto_init(&automatic, &automatic_config), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_a16_controlled_init(&controlled, &controlled_config), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_hps167s_auto_init(&hps167s, &hps167s_config), FATHOM_ERR_ARGUMENT);
 }

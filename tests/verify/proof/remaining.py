@@ -156,6 +156,7 @@ UNREACHED = {
     ('line/clients', 'command_of_read'): (3, COPY + '; and the harness reads at most four registers'),
     ('line/hps167s', 'fathom_hps167s_ask'): (1, NO_FOLLOW),
     ('line/hps167s', 'fathom_hps167s_power_on'): (1, NO_FOLLOW),
+    ('line/hps167s', 'is_valid_0'): (4, COPY + '; and ' + CLOCK),
     ('line/hps167s_auto', 'due_us'): (1, 'the harness polls before each due_us, and the poll takes the reading'),
     ('line/line', 'fathom_line_submit'): (3, 'the line of the harness can send, so `fail_all` is not NULL'),
     ('pure/level', 'fathom_level_check'): (3, COPY),

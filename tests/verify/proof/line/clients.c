@@ -103,6 +103,7 @@ static void submit(uint16_t *values, uint8_t count)
     if (function == 1) fathom_modbus_write_single_register(&request.message, any_8(), any_16(), any_16());
     if (function == 2)
         fathom_modbus_write_multiple_registers(&request.message, any_8(), any_16(), count, values);
+    if (function == 0) request.message.has_effect = any_bool();
     request.transaction.timeout_us = any_32();
     request.transaction.line_settings = NULL;
     const fathom_status_t status = client == 3
