@@ -128,7 +128,7 @@ static void go_on_with_command(void)
     if (command == NULL) return;
     wire_poll_begins();
     const fathom_status_t status = command(argument);
-    PROMISE(status <= FATHOM_READY && status >= FATHOM_ERR_DIFFERS && status != FATHOM_ERR_STALE,
+    PROMISE(status <= FATHOM_READY && status >= FATHOM_ERR_LINE_BUSY && status != FATHOM_ERR_STALE,
             "what a command or a setting returns");
     if (status != FATHOM_READY)
         PROMISE(fuzz_is_guard(&out, sizeof out),
@@ -215,8 +215,10 @@ static bool poll_one(const fathom_sensor_t *sensor)
         if (status == FATHOM_PENDING || status < 0)
             PROMISE(fuzz_is_guard(&sample, sizeof sample),
                     "sensor.h: PENDING or an error: *sample is untouched");
-        PROMISE(status <= FATHOM_READY && status >= FATHOM_ERR_WARMING_UP && status != FATHOM_ERR_ARGUMENT,
-                "the errors of fathom_poll");
+        PROMISE(
+            status == FATHOM_ERR_LINE_BUSY ||
+                (status <= FATHOM_READY && status >= FATHOM_ERR_WARMING_UP && status != FATHOM_ERR_ARGUMENT),
+            "the errors of fathom_poll");
         if (is_asked)
             PROMISE(status != FATHOM_ERR_STALE || sensor != sensors, "STALE is for what sends by itself");
         if (status == FATHOM_PENDING) break;
