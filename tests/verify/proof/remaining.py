@@ -38,7 +38,7 @@ called. Where config has some: fathom_modbus_set keeps them in known_line_settin
 bring those back, and change_over puts other in their place, which seek has set to what with_baud returned."""
 
 FLAG = """EVA reads a volatile member as any byte. is_high, is_full and was_armed hold what edges.c and the clear() of
-fathom_edges_init() store there, which is true, false or 0, and nobody else writes to them (edges.h)."""
+fathom_edges_init() store there, which is true, false or 0, and nothing else writes to them (edges.h)."""
 
 # {(file, function, 'kind: property' as eva.py prints it): why it cannot be, which a reader can check}
 ARGUED = {
