@@ -98,6 +98,13 @@ fathom_status_t fathom_line_listen(fathom_line_t *line, fathom_listener_t *liste
     return FATHOM_READY;
 }
 
+void fathom_line_unlisten(fathom_line_t *line, fathom_listener_t *listener)
+{
+    if (line->listener == listener) line->listener = NULL;
+}
+
+bool fathom_line_holds_bytes(const fathom_line_t *line) { return holds_bytes(line); }
+
 static bool is_listeners_gap(const fathom_line_t *line)
 {
     return (line->listener != NULL) && (line->silent_us >= line->listener->gap_us);

@@ -94,7 +94,7 @@ static uint32_t due_us(void *ctx)
 static void stop_listening(fathom_a16_controlled_t *sensor)
 {
     fathom_line_t *const line = sensor->line;
-    if ((line != NULL) && (line->listener == &sensor->stream.listener)) (void)fathom_line_listen(line, NULL);
+    if (line != NULL) fathom_line_unlisten(line, &sensor->stream.listener);
 }
 
 /* Copies the configuration. Returns true if each member is inside its range. */

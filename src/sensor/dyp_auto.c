@@ -16,16 +16,14 @@ fathom_status_t fathom_dyp_auto_init(fathom_dyp_auto_t *sensor, uint16_t default
 void fathom_dyp_auto_deinit(fathom_dyp_auto_t *sensor)
 {
     fathom_line_t *const line = sensor->line;
-    if ((line != NULL) && (line->listener == &sensor->stream.listener)) (void)fathom_line_listen(line, NULL);
+    if (line != NULL) fathom_line_unlisten(line, &sensor->stream.listener);
 }
 
 /* Returns true if the line holds back bytes that are newer than the candidate, because they may be a response. Then no
  * silence has ended the candidate. */
 static bool is_followed(const fathom_dyp_auto_t *sensor)
 {
-    const fathom_line_t *const line = sensor->line;
-    return (sensor->stream.candidate != FATHOM_STREAM_NOWHERE) &&
-           (line->received_count != line->passed_count);
+    return (sensor->stream.candidate != FATHOM_STREAM_NOWHERE) && fathom_line_holds_bytes(sensor->line);
 }
 
 fathom_status_t fathom_dyp_auto_take(fathom_dyp_auto_t *sensor)

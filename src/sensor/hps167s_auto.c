@@ -89,7 +89,7 @@ static bool is_in_range(const fathom_hps167s_auto_config_t *config)
 static void stop_listening(fathom_hps167s_auto_t *sensor)
 {
     fathom_line_t *const line = sensor->line;
-    if ((line != NULL) && (line->listener == &sensor->listener)) (void)fathom_line_listen(line, NULL);
+    if (line != NULL) fathom_line_unlisten(line, &sensor->listener);
 }
 
 fathom_status_t fathom_hps167s_auto_init(fathom_hps167s_auto_t *sensor,

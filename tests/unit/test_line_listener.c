@@ -172,6 +172,39 @@ TEST(whole_foreign_frames_go_to_the_listener)
     expect_count(FATHOM_LINE_DROPPED_BYTES, 7);
 }
 
+TEST(only_the_listener_of_the_line_can_be_removed)
+{
+    fathom_listener_t other = bench_listener.base;
+    listen_for(5000);
+    fathom_line_unlisten(&bench.line, &other);
+    deliver(auto_frame, 4);
+    assert_int_equal(bench_listener.length, 4);
+    fathom_line_unlisten(&bench.line, &bench_listener.base);
+    deliver(auto_frame, 4);
+    assert_int_equal(bench_listener.length, 4);
+    expect_count(FATHOM_LINE_DROPPED_BYTES, 4);
+    assert_int_equal(fathom_line_listen(&bench.line, &other), FATHOM_READY);
+}
+
+TEST(the_line_holds_bytes_that_may_begin_a_response_until_it_knows)
+{
+    listen_for(5000);
+    ask_1_and_send(0);
+    receive(response_1_754, 3);
+    run(200);
+    assert_true(fathom_line_holds_bytes(&bench.line));
+    assert_int_equal(bench_listener.length, 0);
+    receive(response_1_754 + 3, sizeof response_1_754 - 3);
+    expect_after(200, FATHOM_READY);
+    assert_false(fathom_line_holds_bytes(&bench.line));
+    run(2 * GAP_US);
+    receive(response_1_754,
+            3); /* No response is expected: the frame buffer has the bytes, and the listener too. */
+    run(200);
+    assert_false(fathom_line_holds_bytes(&bench.line));
+    assert_int_equal(bench_listener.length, 3);
+}
+
 /* ---- bytes that the port knows to be wrong or missing ---- */
 
 TEST(a_listener_is_told_where_bytes_were_lost_and_never_gets_a_marked_one)

@@ -538,6 +538,26 @@ fathom_status_t fathom_line_listen(fathom_line_t *line, fathom_listener_t *liste
 fathom_listener_t *fathom_line_replace_listener(fathom_line_t *line, fathom_listener_t *listener);
 
 /**
+ * @brief Removes a listener, if it is the listener of the line. Else nothing changes.
+ *
+ * @param line      The line.
+ * @param listener  The listener. The function compares only the pointer. The caller may reuse or free it after the call.
+ */
+void fathom_line_unlisten(fathom_line_t *line, fathom_listener_t *listener);
+
+/**
+ * @brief Returns whether the line holds received bytes back from the listener.
+ *
+ * The line holds bytes back while they may be the beginning of a response. Then no silence stands behind the bytes that
+ * the listener has received, however long ago the last of them arrived.
+ *
+ * @param line  The line.
+ * @retval true   The frame buffer contains bytes that the listener has not received.
+ * @retval false  The listener has received all bytes that are for it, up to the last poll.
+ */
+bool fathom_line_holds_bytes(const fathom_line_t *line);
+
+/**
  * @brief Drops all bytes that have arrived so far, in the port and in the frame buffer.
  *
  * Call this function before the first poll after a sleep during which the clock may have wrapped or stood still.
