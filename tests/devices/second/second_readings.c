@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Readings. */
+#include "second_damage.h"
 #include "second_why.h"
 
 bool judge_was_sent(uint16_t value)
@@ -13,8 +14,9 @@ bool judge_was_sent(uint16_t value)
     return false;
 }
 
-/* Is this the value of that probe in a frame which came at that time? */
-static const second_event_t *source(const fathom_sample_t *sample)
+/* Returns the frame that arrived at the time of the sample with its value. A damaged frame counts only if the checksum
+ * does not show the damage. */
+static const second_event_t *source(const fathom_sample_t *sample, frame_state_t *state)
 {
     const rig_t *rig = judge.rig;
     uint32_t slack_us = rig->has_stamps ? 2 : rig->loop == RIG_EVERY_1_MS ? 3000 : 45000;
@@ -23,7 +25,11 @@ static const second_event_t *source(const fathom_sample_t *sample)
         if (e == NULL || e->time_us + 20000000 < rig->now_us) return NULL;
         if (e->kind != SECOND_EVENT_MEASUREMENT || (e->probes >> (sample->probe - 1) & 1U) == 0) continue;
         uint32_t later_us = fathom_elapsed_us(sample->time_us + 2, rig_clock_us(rig, e->end_us));
-        if (later_us <= slack_us + 2 && e->sent[sample->probe - 1] == sample->raw) return e;
+        if (later_us > slack_us + 2) continue;
+        uint8_t bytes[SECOND_FRAME_MAX];
+        *state = rig->damage == RIG_UNHARMED && rig->zeros_until_us == 0 ? FRAME_CLEAN : damage_of(e, bytes);
+        if (*state == FRAME_UNSEEN && damage_value(bytes, sample->probe) == sample->raw) return e;
+        if (*state == FRAME_CLEAN && e->sent[sample->probe - 1] == sample->raw) return e;
     }
     return NULL;
 }
@@ -109,9 +115,14 @@ void judge_sample(const fathom_sample_t *sample)
         if (wrong != NULL) judge_finding(wrong, (int)sample->raw);
         return;
     }
-    const second_event_t *e = source(sample);
+    frame_state_t state;
+    const second_event_t *e = source(sample, &state);
     if (e == NULL) {
         judge_finding("a reading that was not sent", (int)sample->raw);
+        return;
+    }
+    if (state == FRAME_UNSEEN) {
+        damage_heard.unseen_readings++;
         return;
     }
     const char *wrong = is_hps() ? wrong_hps(sample, e) : wrong_ultrasonic(sample, e);

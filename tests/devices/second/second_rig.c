@@ -19,26 +19,70 @@ static bool is_pair(const rig_t *rig)
     return kind == SECOND_A16_RS485 || kind == SECOND_A05_RS485 || kind == SECOND_HPS167S;
 }
 
+static uint32_t random_below(rig_t *rig, uint32_t below)
+{
+    rig->random = rig->random * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+    return (uint32_t)((rig->random >> 33) % below);
+}
+
+static bool is_drawn(rig_t *rig) { return random_below(rig, 1000) < rig->damage_of_1000; }
+
+/* Returns the mask of the bit that is to be wrong in this byte of the device, or 0. */
+static uint8_t wrong_bit(rig_t *rig, const second_byte_t *byte)
+{
+    const second_device_t *d = &rig->device;
+    const second_event_t *frame = NULL;
+    if (rig->damage == RIG_UNHARMED || rig->damage == RIG_LOSSES) return 0;
+    const uint8_t bit = (uint8_t)(1u << random_below(rig, 8));
+    if (rig->damage == RIG_SOFT_UART) return is_drawn(rig) ? bit : 0;
+    for (uint64_t i = second_log_count(d); i-- > 0 && frame == NULL;) {
+        const second_event_t *e = second_log_at(d, i);
+        if (e == NULL) break;
+        if (e->kind == SECOND_EVENT_MEASUREMENT && e->start_us <= byte->start_us) frame = e;
+    }
+    if (frame == NULL || byte->end_us > frame->end_us) return 0;
+    if (frame->start_us != rig->frame_start_us) {
+        rig->frame_start_us = frame->start_us;
+        rig->bytes_to_damage = is_drawn(rig) ? (uint8_t)(1 + random_below(rig, frame->raw_len)) : 0;
+    }
+    if (rig->bytes_to_damage == 0) return 0;
+    return --rig->bytes_to_damage == 0 ? bit : 0;
+}
+
+static void add(rig_t *rig, uint8_t value, uint8_t flags, uint64_t end_us)
+{
+    assert_true(rig->count < RIG_BYTES);
+    size_t at = (rig->first + rig->count++) % RIG_BYTES;
+    rig->received_count++;
+    if (flags != 0) rig->marked_count++;
+    rig->bytes[at].value = value;
+    rig->bytes[at].flags = flags;
+    rig->bytes[at].is_foreign = rig->bytes[at].is_wrong = false;
+    rig->bytes[at].end_us = end_us;
+    rig->heard_us = end_us;
+}
+
 /* A byte of the device. A receiver of a pair is off while its own driver is on. */
 static void receive(void *context, const second_byte_t *byte)
 {
     rig_t *rig = context;
     if (is_pair(rig) && byte->start_us < rig->sent_us) return;
     if (rig->is_asleep && rig->count == RIG_BYTES) return; /* a ring that keeps its oldest bytes */
-    assert_true(rig->count < RIG_BYTES);
-    size_t at = (rig->first + rig->count++) % RIG_BYTES;
+    if (byte->start_us < rig->zeros_until_us) return;
+    if (rig->damage == RIG_LOSSES && is_drawn(rig)) return;
     uint32_t off =
         rig->set.baud > byte->line.baud ? rig->set.baud - byte->line.baud : byte->line.baud - rig->set.baud;
-    rig->bytes[at].value = byte->value;
-    rig->bytes[at].flags = 0;
-    rig->bytes[at].end_us = byte->end_us;
-    rig->heard_us = byte->end_us;
+    const uint8_t wrong = wrong_bit(rig, byte);
+    uint8_t value = byte->value ^ wrong;
+    uint8_t flags = wrong != 0 && rig->sees_parity ? FATHOM_RX_PARITY : 0;
     if (off * 40u > rig->set.baud) {
-        rig->bytes[at].value = (uint8_t)(byte->value * 5 + 3);
-        rig->bytes[at].flags = FATHOM_RX_FRAMING;
+        value = (uint8_t)(byte->value * 5 + 3);
+        flags = FATHOM_RX_FRAMING;
     } else if (byte->line.parity != rig->set.parity) {
-        rig->bytes[at].flags = rig->set.parity == 'N' ? FATHOM_RX_FRAMING : FATHOM_RX_PARITY;
+        flags = rig->set.parity == 'N' ? FATHOM_RX_FRAMING : FATHOM_RX_PARITY;
     }
+    add(rig, value, flags, byte->end_us);
+    rig->bytes[(rig->first + rig->count - 1) % RIG_BYTES].is_wrong = wrong != 0;
 }
 
 static int uart_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
@@ -135,6 +179,15 @@ void rig_open(rig_t *rig, const second_config_t *config)
     rig->in_break = false;
     rig->is_asleep = false;
     rig->first = rig->count = rig->last_len = 0;
+    rig->received_count = 0;
+    rig->marked_count = 0;
+    rig->damage = RIG_UNHARMED;
+    rig->damage_of_1000 = 0;
+    rig->sees_parity = false;
+    rig->random = config->seed;
+    rig->frame_start_us = SECOND_NEVER;
+    rig->bytes_to_damage = 0;
+    rig->zero_us = rig->zeros_until_us = 0;
     rig->writes = rig->to_all = 0;
     rig->loop = config->seed % 3 == 2 ? RIG_EVERY_20_MS : config->seed % 24 == 1 ? RIG_EVERY_1_MS : RIG_WOKEN;
     /* A loop in step with what a device sends unasked may never see a silence to ask in (line.h). */
@@ -173,6 +226,11 @@ void rig_open(rig_t *rig, const second_config_t *config)
     rig->dyp = fathom_dyp_client(&rig->line);
 }
 
+/* Returns the time of a character of 11 bits. */
+static uint64_t character_us(const rig_t *rig) { return 11000000 / rig->set.baud; }
+
+static bool is_sending_zeros(const rig_t *rig) { return rig->zero_us < rig->zeros_until_us; }
+
 static void run_to(rig_t *rig, uint64_t until_us)
 {
     bool has_level = rig->device.config.kind >= SECOND_TALKERS;
@@ -183,6 +241,10 @@ static void run_to(rig_t *rig, uint64_t until_us)
         if (is_high != was_high) fathom_edges_feed(&rig->edges, is_high, rig_clock_us(rig, next_us));
     }
     second_run(&rig->device, until_us, receive, rig);
+    for (; rig->zero_us <= until_us && is_sending_zeros(rig); rig->zero_us += character_us(rig)) {
+        add(rig, 0x00, 0, rig->zero_us);
+        rig->bytes[(rig->first + rig->count - 1) % RIG_BYTES].is_foreign = true;
+    }
     rig->now_us = until_us;
 }
 
@@ -198,6 +260,7 @@ void rig_pass(rig_t *rig, uint32_t due_us)
     size_t before = rig->count;
     while (rig->now_us < until_us && rig->count == before) {
         uint64_t next_us = second_next_us(&rig->device);
+        if (is_sending_zeros(rig) && rig->zero_us < next_us) next_us = rig->zero_us;
         if (next_us > until_us) next_us = until_us;
         if (next_us < rig->now_us) next_us = rig->now_us;
         run_to(rig, next_us);
@@ -213,6 +276,18 @@ void rig_power(rig_t *rig, bool on)
 void rig_scene(rig_t *rig, int32_t mm1, int32_t mm2, int32_t mm3, int32_t mm4)
 {
     second_scene(&rig->device, &(second_scene_t){{mm1, mm2, mm3, mm4}}, rig->now_us);
+}
+
+void rig_damage(rig_t *rig, rig_damage_t damage, uint32_t of_1000)
+{
+    rig->damage = damage;
+    rig->damage_of_1000 = of_1000;
+}
+
+void rig_zeros(rig_t *rig, uint64_t us)
+{
+    rig->zero_us = rig->now_us + character_us(rig);
+    rig->zeros_until_us = rig->now_us + us;
 }
 
 void rig_sleep(rig_t *rig, uint64_t us)

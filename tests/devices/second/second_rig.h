@@ -12,6 +12,14 @@ enum { RIG_BYTES = 4096, RIG_FRAME = 32 };
  * stamps of the port. */
 typedef enum { RIG_WOKEN, RIG_EVERY_1_MS, RIG_EVERY_7_MS, RIG_EVERY_20_MS, RIG_LOOPS } rig_loop_t;
 
+/* The damage that the rig does to the bytes of the device. */
+typedef enum {
+    RIG_UNHARMED,
+    RIG_ONE_BIT,   /* some frames have one wrong bit */
+    RIG_SOFT_UART, /* some bytes have one wrong bit, as behind a UART that samples in software */
+    RIG_LOSSES     /* some bytes do not arrive, and the port does not report it */
+} rig_damage_t;
+
 typedef struct {
     second_device_t device;
     uint64_t now_us;
@@ -30,9 +38,23 @@ typedef struct {
     uint64_t heard_us; /* when the last byte ended that the device sent */
     struct {
         uint8_t value, flags;
+        bool is_foreign; /* the device did not send it */
+        bool is_wrong;   /* the device sent it with another value */
         uint64_t end_us;
-    } bytes[RIG_BYTES];
+    } bytes[RIG_BYTES]; /* A ring. The bytes that were read remain in it until newer bytes replace them. */
     size_t first, count;
+    uint64_t received_count;
+    unsigned marked_count; /* of these: bytes with a flag of the port */
+
+    rig_damage_t damage;
+    uint32_t damage_of_1000; /* of 1000 frames or bytes, as `damage` says */
+    bool sees_parity;        /* the port marks each byte that has a wrong bit */
+    uint64_t random;
+    uint64_t frame_start_us; /* of the newest frame of the device */
+    uint8_t
+        bytes_to_damage; /* number of bytes up to the wrong one of this frame; 0: no byte is left to damage */
+    uint64_t zero_us;    /* end of the next zero */
+    uint64_t zeros_until_us; /* 0: no zeros have been sent */
 
     uint32_t writes; /* requests on the wire that change something */
     uint32_t to_all; /* of them: to unit 0 or 255, but for HPS-167S #10 and #11 */
@@ -56,6 +78,10 @@ void rig_pass(rig_t *rig, uint32_t due_us);
 void rig_sleep(rig_t *rig, uint64_t us);
 /* Another master on the wire sends this request, unless it hears that the wire is not silent. */
 void rig_foreign_request(rig_t *rig, const uint8_t *bytes, size_t length);
+/* Damages `of_1000` of 1000 frames or bytes from now on. */
+void rig_damage(rig_t *rig, rig_damage_t damage, uint32_t of_1000);
+/* Replaces the bytes of the device by zeros without a pause for `us`. */
+void rig_zeros(rig_t *rig, uint64_t us);
 /* So long, with the line polled and nothing asked. */
 void rig_wait(rig_t *rig, uint64_t us);
 
