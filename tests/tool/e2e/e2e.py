@@ -32,7 +32,8 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 FATHOM = os.path.abspath(os.environ.get('FATHOM') or os.path.join(ROOT, 'build', 'fathom'))
 PATIENCE = 20  # seconds; at least 10 times what any wait here takes on an idle machine
 # Statuses of attempts that have failed, which have rows too.
-FAILURES = ['impossible_values', 'port', 'no_response', 'damaged', 'exception', 'other_response', 'stale', 'other']
+FAILURES = ['impossible_values', 'port', 'no_response', 'damaged', 'exception', 'other_response', 'stale', 'line_busy',
+            'other_master', 'other']
 
 
 def is_ready(fd, seconds):

@@ -9,7 +9,9 @@ import e2e
 
 LINE = ['responses', 'bytes_of_no_frame', 'port_errors', 'requests_without_a_response', 'damaged_responses',
         'exceptions',
-        'responses_that_do_not_fit', 'late_responses', 'unasked_frames', 'bad_bytes']
+        'responses_that_do_not_fit', 'late_responses', 'unasked_frames', 'bad_bytes', 'old_bytes',
+        'requests_of_other_masters', 'responses_that_may_be_unasked', 'busy_lines',
+        'attempts_disturbed_by_another_master']
 STREAM = ['frames', 'missed_frames', 'ambiguous_frames', 'unsure_frames', 'stale', 'bytes', 'dropped_bytes',
           'damaged_frames']
 JSON = '--stats --format json'
@@ -45,10 +47,10 @@ class Stats(e2e.Case):
                          (e2e.FAILURES, LINE, ['responses', 'failures']))
         self.assertEqual([one[name] for name in ('attempts', 'failed', 'readings', 'requests', 'reconnects')],
                          [8, 6, 2, 8, 0])
-        self.assertEqual(one['failures'], dict(zip(e2e.FAILURES, (1, 0, 2, 1, 1, 1, 0, 0))))
+        self.assertEqual(one['failures'], dict(zip(e2e.FAILURES, (1, 0, 2, 1, 1, 1, 0, 0, 0, 0))))
         # 754, 754 and 40000 were responses; the foreign frame was dropped: 7 bytes, and the damaged and the
         # long one
-        self.assertEqual(one['line'], dict(zip(LINE, (3, 7 + 9 + 7, 0, 2, 1, 1, 1, 0, 1, 0))))
+        self.assertEqual(one['line'], dict(zip(LINE, (3, 7 + 9 + 7, 0, 2, 1, 1, 1, 0, 1, 0, 0, 0, 0, 0, 0))))
         self.assertEqual(one['unit'], {'responses': 3, 'failures': 5})
         self.assertEqual([unit['name'] for unit in one['units']], ['a16:1'])
         self.assertEqual((one['stream'], one['port']), (None, None))
@@ -72,11 +74,12 @@ class Stats(e2e.Case):
         self.assertEqual(lines[:5], [
             'fathom: attempts 2, failed 1, readings 1', 'fathom: requests 2, skipped frames 0, reconnects 0',
             'fathom: failures: impossible values 0, port 0, no response 1, damaged 0, exception 0, other '
-            'response 0, stale 0, other 0',
+            'response 0, stale 0, line busy 0, other master 0, other 0',
             'fathom: line: responses 1, bytes of no frame 0, port errors 0, requests without a response 1, '
             'damaged '
             'responses 0, exceptions 0, responses that do not fit 0, late responses 0, unasked frames 0, '
-            'bad bytes 0', 'fathom: unit: responses 1, failures 1'])
+            'bad bytes 0, old bytes 0, requests of other masters 0, responses that may be unasked 0, busy lines 0, '
+            'attempts disturbed by another master 0', 'fathom: unit: responses 1, failures 1'])
         self.assertRegex(lines[5], r'^fathom: a16:1: attempts 2, failed 1, readings 1, responses 1, failures '
                                    r'1, time-outs in a row 1, left alone for 0\.0 s, '
                                    r'time to answer: shortest [\d.]+ ms, mean [\d.]+ ms, longest [\d.]+ ms$')
