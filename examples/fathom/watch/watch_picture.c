@@ -136,12 +136,18 @@ static void draw_axis(picture_t *picture, const lanes_t *lanes, uint16_t row, ui
     (void)put_text(picture, row, (uint16_t)(picture->columns - 4), " now", COLOUR_PLAIN);
 }
 
-/* Those that most sensors never say stand there from when they have come. */
+/* Returns true if most sensors never have this mark. */
+static bool is_rare(mark_t mark)
+{
+    return (mark >= MARK_UNKNOWN && mark <= MARK_NEAR) || mark == MARK_LINE_BUSY || mark == MARK_OTHER_MASTER;
+}
+
+/* A rare mark appears in the legend after its first use: all marks together need more than 80 columns. */
 static void draw_legend(picture_t *picture, const lanes_t *lanes, uint16_t row)
 {
     uint16_t column = 0;
     for (mark_t mark = MARK_NO_TARGET; mark != MARKS; mark++) {
-        if ((mark >= MARK_UNKNOWN && mark <= MARK_NEAR) && (lanes->seen >> mark & 1) == 0) continue;
+        if (is_rare(mark) && (lanes->seen >> mark & 1) == 0) continue;
         put(picture, row, column, (uint8_t)mark_character(mark), colour_of(mark));
         column =
             (uint16_t)(put_text(picture, row, (uint16_t)(column + 2), mark_name(mark), COLOUR_PLAIN) + 1);

@@ -147,6 +147,17 @@ class Picture(Case):
         it.wait(lambda screen: '~ interference ? unknown s stale' in screen.text() and
                 re.search(r'(?m)^a16:1 +unknown ', screen.text()) and '?' in foot_of(screen, 'a16:1'))
 
+    def test_another_master_has_a_mark_that_is_in_the_legend_from_then_on(self):
+        device = self.device()
+        it = self.watch(f'a16:1 --port {device} --interval 300 --timeout 500')
+        device.asked(e2e.ASK_A16, e2e.registers(1, 1000))
+        it.wait(lambda screen: '1.000 m' in screen.text())
+        self.assertNotIn('other master', it.screen.text())
+        device.asked(e2e.ASK_A16, e2e.adu(1, 3, 2, 0, 0, 1))  # it reads register 0x0200
+        it.wait(lambda screen: 'x no response m other master ! unusable' in screen.text() and
+                re.search(r'(?m)^a16:1 +other master ', screen.text()) and 'm' in foot_of(screen, 'a16:1'))
+        self.assertNotIn('line busy', it.screen.text())
+
     def test_a_frame_in_which_a_probe_turns_odd_is_lost_for_all(self):
         device = self.device()
         it = self.watch(f'a05 --port {device}')
