@@ -177,6 +177,12 @@ static void print_line_busy(FILE *to, const failure_t *failure)
     const evidence_t *const evidence = &failure->evidence;
     (void)fprintf(to, "no request to address %u could be sent safely: the line was never silent; ",
                   failure->address);
+    if (failure->channel->tcp != NULL) {
+        (void)fputs(
+            "the server sends without a pause; check that the server is one of Modbus TCP, and restart it",
+            to);
+        return;
+    }
     if (print_unasked(to, failure) || print_others(to, failure)) return;
     if (evidence->own != 0) {
         (void)fprintf(to, "frames of address %u were heard all the time; let it send less often",

@@ -72,6 +72,8 @@ class Reading(Case):
         self.meanwhile(lambda: server.say(flood) is None)
         done = self.ends(reader, 1, 'attempt 1: ', 'attempt 2: ')
         self.assertEqual(done.mm, [])
+        for words in ('wiring', 'resistor', '--baud'):  # of which a connection has none
+            self.assertNotIn(words, done.err)
 
     def test_a_byte_a_second_of_a_long_response_is_none_and_costs_no_time_of_the_processor(self):
         server, reader = self.reader('--count 2 --timeout 1500')
