@@ -33,6 +33,9 @@ typedef struct {
     int32_t most;             /* to here, */
     int32_t step;             /* a multiple of this */
     setting_kind_t kind;
+    /* Number of the command whose response has the values of several rows. 0: the response has only this value, or the
+     * rows fail for different reasons. */
+    uint8_t shared_command;
     bool has_zero;       /* 0 is a value too, at which it may not be found again */
     bool moves;          /* from then on the device is elsewhere: its address, ... */
     bool is_baud;        /* ... or its line settings */

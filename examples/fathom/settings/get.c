@@ -69,21 +69,43 @@ static void tell_remark(const setting_t *setting, const char *text)
     setting->remark(stderr, text);
 }
 
+/* How far `tell` has come with the values of one device. */
+typedef struct {
+    bool is_known;    /* The device has sent a response to at least one request. */
+    unsigned printed; /* Number of values that were read. */
+    /* The shared command that failed last and its error. Its other values are not requested again: one failure can take
+     * several seconds. */
+    uint8_t failed_command;
+    fathom_status_t failure;
+} progress_t;
+
+static fathom_status_t get_one(const setting_t *setting, progress_t *progress, char text[SETTING_TEXT])
+{
+    if (setting->shared_command != 0 && setting->shared_command == progress->failed_command)
+        return progress->failure;
+    const fathom_status_t status = session_get(&session, setting, text);
+    if (status != FATHOM_READY) {
+        progress->failed_command = setting->shared_command;
+        progress->failure = status;
+    }
+    return status;
+}
+
 /* False: nothing further can be told, for a reason that was said. */
-static bool print_one(const setting_t *setting, bool *is_known, unsigned *printed)
+static bool print_one(const setting_t *setting, progress_t *progress)
 {
     char text[SETTING_TEXT];
-    const fathom_status_t status = session_get(&session, setting, text);
-    if (status != FATHOM_READY && (!*is_known || setting_reason(status) == NULL)) {
+    const fathom_status_t status = get_one(setting, progress, text);
+    if (status != FATHOM_READY && (!progress->is_known || setting_reason(status) == NULL)) {
         say_whose();
         (void)fprintf(stderr, "%s: ", setting->name);
         session_explain(&session, status);
         (void)fputs("\n", stderr);
         return false;
     }
-    if (!*is_known) begin();
-    *is_known = true;
-    *printed += status == FATHOM_READY;
+    if (!progress->is_known) begin();
+    progress->is_known = true;
+    progress->printed += status == FATHOM_READY;
     if (session.is_json)
         print_json(setting, status, text);
     else
@@ -94,25 +116,24 @@ static bool print_one(const setting_t *setting, bool *is_known, unsigned *printe
 
 static int tell(const setting_t *settings, size_t count)
 {
-    bool is_known = false;
+    progress_t progress = {0};
     bool is_good = true;
-    unsigned printed = 0;
     unsigned all = 0;
     for (size_t i = 0; i != count && settings[i].name != NULL; i++) {
         if (!can_be_printed(&settings[i])) continue;
-        if (is_good) is_good = print_one(&settings[i], &is_known, &printed);
+        if (is_good) is_good = print_one(&settings[i], &progress);
         all++;
     }
-    if (is_known && session.is_json) (void)puts("}");
+    if (progress.is_known && session.is_json) (void)puts("}");
     if (fflush(stdout) != 0 || ferror(stdout)) {
         (void)fputs("fathom: the output cannot be written\n", stderr);
         is_good = false;
     }
-    if (is_known && printed != all) {
+    if (progress.is_known && progress.printed != all) {
         say_whose();
-        (void)fprintf(stderr, "%u of %u values could not be read\n", all - printed, all);
+        (void)fprintf(stderr, "%u of %u values could not be read\n", all - progress.printed, all);
     }
-    return is_good && printed == all ? STATUS_OK : STATUS_FAILED;
+    return is_good && progress.printed == all ? STATUS_OK : STATUS_FAILED;
 }
 
 static void help(FILE *to, bool is_info)

@@ -137,7 +137,7 @@ class Terminal(Case):
         'read hps167s --count 3 --format json', 'request 1 3 0x0100 120 --sensor hps167s',
         'request 1 3 0x0100 120 --format json', 'get a16 address', 'set a16 switch-threshold 900')})
     def harm(self, command):
-        for offset in (0, 11)[command == 'info hps167s':]:  # that takes 10 s
+        for offset in (0, 11):
             server = self.server()
             self.answers(server, offset)
             done = self.run_fathom(f'{command} --port {server} --timeout 300')
