@@ -56,22 +56,58 @@ static bool is_of_line(fathom_status_t status)
     return status == FATHOM_ERR_LINE_BUSY || status == FATHOM_ERR_OTHER_MASTER;
 }
 
-/* How often an address is asked again after so many damaged responses. */
+/* Returns how often an address is asked again after this number of damaged responses. */
 static uint8_t repeats(const scan_walk_t *walk, uint8_t troubles)
 {
     if (troubles == 0) return walk->plan->repeats;
     return walk->has_sender || walk->garbled >= FEW_GARBLED ? 1 : DAMAGED_REPEATS;
 }
 
-/* Asks one address until it is clear what becomes of it; FATHOM_READY unless the scan is over or the port cannot. */
+/* What the requests to one address have ended with. */
+typedef struct {
+    uint8_t timeouts;
+    uint8_t troubles; /* damaged responses, and bytes that are neither a frame nor an echo */
+    uint8_t busy;     /* a busy line, or another master */
+    bool has_checksum;
+} attempts_t;
+
+/* The line was busy. Returns true if the address is asked no more. */
+static bool is_too_busy(scan_walk_t *walk, attempts_t *attempts, const scan_response_t *response)
+{
+    if (response->status == FATHOM_ERR_OTHER_MASTER) walk->heard.has_other_master = true;
+    attempts->busy++;
+    if (attempts->busy <= (walk->busy_in_row < BUSY_LINE ? BUSY_REPEATS : 1)) return false;
+    walk->busy_in_row++;
+    return true;
+}
+
+/* The unit did not respond well. Returns true if the address is asked no more. */
+static bool is_silent(scan_walk_t *walk, attempts_t *attempts, const scan_response_t *response)
+{
+    walk->busy_in_row = 0;
+    if (!is_troubled(response)) {
+        attempts->timeouts++;
+    } else {
+        attempts->troubles++;
+        if (response->status == FATHOM_ERR_CHECKSUM) attempts->has_checksum = true;
+    }
+    return attempts->timeouts + attempts->troubles > repeats(walk, attempts->troubles);
+}
+
+/* One piece of trouble may be noise, and more may be what a device sends by itself. */
+static uint8_t conclude(const scan_walk_t *walk, const attempts_t *attempts)
+{
+    if (attempts->troubles < 2 || walk->has_sender) return SILENT;
+    return attempts->has_checksum ? DAMAGED : GARBLED;
+}
+
+/* Asks one address until its state is clear. Returns FATHOM_READY unless the scan is over or the port cannot. */
 static fathom_status_t probe(scan_walk_t *walk, const scan_request_t *request, scan_response_t *response)
 {
     uint8_t *const state = &walk->states[request->address];
-    uint8_t timeouts = 0;
-    uint8_t troubles = 0;
-    uint8_t busy = 0;
-    bool has_checksum = false;
-    for (;;) {
+    attempts_t attempts = {0};
+    bool is_over = false;
+    while (!is_over) {
         scan_ask(walk->wire, request, response);
         const fathom_status_t status = response->status;
         if (has_ended(status) || status == FATHOM_ERR_UNSUPPORTED) return status;
@@ -80,25 +116,12 @@ static fathom_status_t probe(scan_walk_t *walk, const scan_request_t *request, s
         if (scan_is_answered(status)) return FATHOM_READY;
         if (is_of_line(status)) {
             *state = BUSY;
-            if (status == FATHOM_ERR_OTHER_MASTER) walk->heard.has_other_master = true;
-            if (++busy > (walk->busy_in_row < BUSY_LINE ? BUSY_REPEATS : 1)) {
-                walk->busy_in_row++;
-                return FATHOM_READY;
-            }
-            continue;
-        }
-        walk->busy_in_row = 0;
-        if (is_troubled(response)) {
-            troubles++;
-            if (status == FATHOM_ERR_CHECKSUM) has_checksum = true;
+            if (is_too_busy(walk, &attempts, response)) return FATHOM_READY;
         } else {
-            timeouts++;
+            is_over = is_silent(walk, &attempts, response);
         }
-        if (timeouts + troubles > repeats(walk, troubles)) break;
     }
-    /* Once may be noise, and more may be what a device sends by itself. */
-    *state = SILENT;
-    if (troubles >= 2 && !walk->has_sender) *state = has_checksum ? DAMAGED : GARBLED;
+    *state = conclude(walk, &attempts);
     if (*state == GARBLED) walk->garbled++;
     return FATHOM_READY;
 }
