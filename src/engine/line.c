@@ -98,7 +98,7 @@ fathom_status_t fathom_line_listen(fathom_line_t *line, fathom_listener_t *liste
     return FATHOM_READY;
 }
 
-void fathom_line_unlisten(fathom_line_t *line, fathom_listener_t *listener)
+void fathom_line_unlisten(fathom_line_t *line, const fathom_listener_t *listener)
 {
     if (line->listener == listener) line->listener = NULL;
 }

@@ -543,7 +543,7 @@ fathom_listener_t *fathom_line_replace_listener(fathom_line_t *line, fathom_list
  * @param line      The line.
  * @param listener  The listener. The function compares only the pointer. The caller may reuse or free it after the call.
  */
-void fathom_line_unlisten(fathom_line_t *line, fathom_listener_t *listener);
+void fathom_line_unlisten(fathom_line_t *line, const fathom_listener_t *listener);
 
 /**
  * @brief Returns whether the line holds received bytes back from the listener.
