@@ -12,8 +12,8 @@ enum { NOT_ASKED = 0, SILENT, ANSWERED, LATE, GARBLED, DAMAGED, BUSY };
 /* A damaged response is asked for again so often; once only, where most addresses are answered like that. */
 enum { DAMAGED_REPEATS = 3, FEW_GARBLED = 3 };
 
-/* A request that a busy line or another master ended is repeated so often; once only, after BUSY_LINE addresses in a row
- * could not be asked. */
+/* If a busy line or another master ended a request, the scan repeats it BUSY_REPEATS times. After BUSY_LINE addresses in a
+ * row that could not be asked, it repeats once. */
 enum { BUSY_REPEATS = 2, BUSY_LINE = 4 };
 
 /* For those that have been late. */
@@ -71,7 +71,7 @@ typedef struct {
     bool has_checksum;
 } attempts_t;
 
-/* The line was busy. Returns true if the address is asked no more. */
+/* The line was busy. Returns true if the address gets no further request. */
 static bool is_too_busy(scan_walk_t *walk, attempts_t *attempts, const scan_response_t *response)
 {
     if (response->status == FATHOM_ERR_OTHER_MASTER) walk->heard.has_other_master = true;
@@ -81,7 +81,7 @@ static bool is_too_busy(scan_walk_t *walk, attempts_t *attempts, const scan_resp
     return true;
 }
 
-/* The unit did not respond well. Returns true if the address is asked no more. */
+/* The unit did not respond well. Returns true if the address gets no further request. */
 static bool is_silent(scan_walk_t *walk, attempts_t *attempts, const scan_response_t *response)
 {
     walk->busy_in_row = 0;
