@@ -78,7 +78,6 @@ static bool is_kept_out(const fathom_modbus_unit_t *unit)
 
 bool fathom_modbus_unit_give_way(fathom_modbus_unit_t *unit)
 {
-    if (!is_occupied(unit)) return true;
     if (unit->abandoned_in_us != 0u) return false;
     drop_request(unit);
     if (is_kept_out(unit)) drop_setting(unit);
@@ -223,7 +222,8 @@ fathom_status_t fathom_modbus_unit_ask(fathom_modbus_unit_t *unit,
     const uint8_t id = request->id;
     const bool is_command = id >= FATHOM_MODBUS_COMMAND;
     /* If another caller has the same command, it would take the result away from the setting. */
-    if ((unit->state != IDLE) && (unit->current == id) && !(is_command && is_kept_out(unit))) {
+    const bool is_of_setting = is_command && is_kept_out(unit);
+    if ((unit->state != IDLE) && (unit->current == id) && !is_of_setting) {
         if (unit->state == ASKED) {
             if (is_command) fathom_modbus_unit_keep(unit);
             return FATHOM_PENDING;

@@ -262,10 +262,12 @@ fathom_status_t fathom_modbus_unit_ask(fathom_modbus_unit_t *unit,
 void fathom_modbus_unit_cancel(fathom_modbus_unit_t *unit);
 
 /**
- * @brief Records that another setting or command waits no longer for an abandoned one (rule 5).
+ * @brief Cancels the unfinished command or setting if its caller has abandoned it (rule 5).
  *
- * @retval true   There is no unfinished command or setting, or it was abandoned and is cancelled now.
- * @retval false  A command or setting is in progress.
+ * Call it only if a command or setting is unfinished and another one waits for it.
+ *
+ * @retval true   The command or setting was abandoned, and is cancelled now.
+ * @retval false  The command or setting is in progress.
  */
 bool fathom_modbus_unit_give_way(fathom_modbus_unit_t *unit);
 
