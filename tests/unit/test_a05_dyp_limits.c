@@ -152,3 +152,13 @@ TEST(who_is_there_is_waited_for_200_ms)
     is_sent(find_address);
     is_silent_for(200000, find_address);
 }
+
+TEST(finding_ends_if_the_line_is_initialised_again)
+{
+    memset(&find, 0, sizeof find);
+    is_sent(find_address);
+    assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_READY);
+    assert_int_equal(find_address(), FATHOM_ERR_CANCELLED);
+    is_sent(find_address); /* again */
+    is_silent_for(200000, find_address);
+}

@@ -197,6 +197,28 @@ TEST_IN(finding, each_outcome_of_finding_comes_once)
     assert_int_equal(address, 0xA5);
 }
 
+TEST_IN(finding, a_line_that_is_initialised_again_ends_it)
+{
+    seek(0);
+    assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_READY);
+    assert_int_equal(find(), FATHOM_ERR_CANCELLED);
+    assert_int_equal(address, 0xA5);
+    show_empty_port();
+    seek(1);
+    receive_response(7, 0xFFFF);
+    assert_int_equal(find_after(100), FATHOM_READY);
+    assert_int_equal(address, 7);
+}
+
+TEST_IN(finding, a_transport_that_cannot_tell_what_it_has_is_trusted)
+{
+    client.has = NULL;
+    seek(0);
+    receive_response(7, 0xFFFF);
+    assert_int_equal(find_after(100), FATHOM_READY);
+    assert_int_equal(address, 7);
+}
+
 TEST_IN(finding, what_the_transport_refuses_is_said)
 {
     bench.line.config = &(const fathom_line_config_t){

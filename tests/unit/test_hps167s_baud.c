@@ -137,6 +137,22 @@ TEST(after_power_on_both_rates_are_asked_in_turns_until_it_answers)
     hps_asks(1, 19200);
 }
 
+/* At the wrong rate a device that sends by itself keeps the line busy. */
+TEST(after_power_on_a_busy_line_and_another_master_lead_to_the_other_rate_too)
+{
+    static const fathom_status_t failures[] = {FATHOM_ERR_LINE_BUSY, FATHOM_ERR_OTHER_MASTER};
+    PLAY_AT(1, &hps_factory, 115200, set_baud, OK, LATER(3, 115200));
+    fathom_hps167s_power_on(&hps);
+    fake.now_us += 6000000; /* past the warm-up */
+    for (unsigned i = 0; i != 4; i++) {
+        hps_asks(1, i % 2 == 0 ? 115200 : 19200);
+        fake_modbus_fail(&fake, failures[i / 2]);
+        assert_int_equal(desk_poll(), failures[i / 2]);
+    }
+    hps_asks(1, 115200);
+    hps_answers();
+}
+
 /* The setting waits to ask where the device is, and the response to the measurement tells it. */
 TEST(a_setting_goes_on_when_a_measurement_has_told_meanwhile_where_the_device_is)
 {

@@ -186,6 +186,15 @@ TEST(only_the_listener_of_the_line_can_be_removed)
     assert_int_equal(fathom_line_listen(&bench.line, &other), FATHOM_READY);
 }
 
+TEST(listening_with_null_removes_the_listener)
+{
+    listen_for(5000);
+    assert_int_equal(fathom_line_listen(&bench.line, NULL), FATHOM_READY);
+    deliver(auto_frame, 4);
+    assert_int_equal(bench_listener.length, 0);
+    expect_count(FATHOM_LINE_DROPPED_BYTES, 4);
+}
+
 TEST(the_line_holds_bytes_that_may_begin_a_response_until_it_knows)
 {
     listen_for(5000);

@@ -144,6 +144,24 @@ TEST(an_abandoned_setting_gives_way_to_another_setting)
     assert_int_equal(unit.address, UNIT);
 }
 
+TEST(an_abandoned_setting_gives_way_to_a_blind_setting)
+{
+    PENDS(sets(&move));
+    responds(UNIT);
+    PENDS(sets(&move));
+    assert_int_equal(fathom_modbus_next_is_blind(&unit), FATHOM_ERR_BUSY);
+    for (unsigned i = 0; i != ABANDONED_US / STEP_US; i++) {
+        fake.now_us += STEP_US;
+        fathom_modbus_unit_poll(&unit);
+    }
+    assert_int_equal(fathom_modbus_next_is_blind(&unit), FATHOM_READY);
+    assert_int_equal(unit.address, UNIT);
+    PENDS(sets(&other_setting)); /* the write at once */
+    assert_int_equal(fake.request->message.head[1], 6);
+    fake_modbus_acknowledge(&fake);
+    assert_int_equal(sets(&other_setting), FATHOM_ERR_UNCONFIRMED);
+}
+
 TEST(a_setting_that_begins_behind_an_abandoned_command_is_carried_out_whole)
 {
     PENDS(asks(&details));
@@ -223,6 +241,27 @@ TEST(a_program_that_sleeps_until_it_is_due_meets_the_limit)
         PENDS(asks(&measure));
     }
     assert_in_range(slept_us, ABANDONED_US, ABANDONED_US + 2200);
+}
+
+/* Halfway to the limit a poll is due after 1 ms at least, and after a sixteenth of the limit at most. */
+TEST(while_an_abandoned_command_is_on_the_wire_a_poll_is_due_when_the_line_is)
+{
+    static const struct {
+        uint32_t line_us, due_us;
+    } rows[] = {{0, 1000}, {1000, 1000}, {1001, 1001}, {312500, 312500}, {312501, 312500}};
+    PENDS(asks(&version));
+    for (unsigned i = 0; i != 25; i++) {
+        fake.now_us += STEP_US;
+        PENDS(asks(&measure));
+    }
+    fake.due_us = 312501;
+    assert_int_equal(fathom_modbus_unit_due_us(&unit), 312501); /* 2.5 s are left */
+    fake.now_us += 1;
+    PENDS(asks(&measure));
+    for (unsigned i = 0; i != sizeof rows / sizeof rows[0]; i++) {
+        fake.due_us = rows[i].line_us;
+        assert_int_equal(fathom_modbus_unit_due_us(&unit), rows[i].due_us);
+    }
 }
 
 TEST(a_request_that_the_line_has_forgotten_is_cancelled_and_the_next_one_follows)

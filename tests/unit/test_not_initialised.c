@@ -211,6 +211,8 @@ TEST(power_on_cancel_and_deinit_of_a_zeroed_driver_do_nothing)
     fathom_hps167s_power_on(&hps167s);
     fathom_hps167s_cancel(&hps167s);
     fathom_hps167s_deinit(&hps167s);
+    memset(&a16_controlled, 0, sizeof a16_controlled);
+    assert_int_equal(fathom_a16_controlled_deinit(&a16_controlled), FATHOM_READY);
     refuses_everything(&of_a05_dyp);
     refuses_everything(&of_a05_modbus);
     refuses_everything(&of_a16_modbus);

@@ -163,6 +163,26 @@ TEST(a_pulse_that_ends_while_the_trigger_is_low_counts_and_the_low_time_is_kept)
     assert_int_equal(stand.pin.least_us, 221 * MS);
 }
 
+/* trigger.h: "period_us: low_us + 1..FATHOM_MAX_DURATION_US". */
+TEST(the_period_of_a_trigger_is_longer_than_its_low_time)
+{
+    static const struct {
+        uint32_t period_us;
+        fathom_status_t status;
+    } rows[] = {{0, FATHOM_ERR_ARGUMENT},
+                {30000, FATHOM_ERR_ARGUMENT},
+                {30001, FATHOM_READY},
+                {FATHOM_MAX_DURATION_US, FATHOM_READY},
+                {FATHOM_MAX_DURATION_US + 1, FATHOM_ERR_ARGUMENT}};
+    for (unsigned i = 0; i != COUNT_OF(rows); i++) {
+        fathom_trigger_t trigger = {.output = fathom_output_pin(&stand.pin.trigger),
+                                    .clock = &stand.fake.clock,
+                                    .period_us = rows[i].period_us,
+                                    .low_us = 30000};
+        assert_int_equal(fathom_trigger_init(&trigger), rows[i].status);
+    }
+}
+
 /* ---- the break ---- */
 
 static void trigger_by_break(void)
