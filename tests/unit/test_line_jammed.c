@@ -55,6 +55,48 @@ TEST(a_response_that_survives_noise_is_taken_although_the_line_was_busy)
     expect_count(FATHOM_LINE_BUSY_ATTEMPTS, 0);
 }
 
+/* They are no part of the response: after them the unit is waited for until its time-out. */
+TEST(a_read_that_leaves_into_noise_discards_the_bytes_before_it)
+{
+    ask_1(0);
+    jam(1000000 - 2 * BYTE_US);
+    receive_hex("02 03 02"); /* a response of another unit begins and breaks off */
+    run_in_steps(3 * BYTE_US, BYTE_US);
+    expect_written(1);
+    run(8 * BYTE_US);
+    run(TIMEOUT_US - 2 * BYTE_US);
+    expect(FATHOM_PENDING);
+    run(4 * BYTE_US);
+    expect_failed(FATHOM_ERR_LINE_BUSY);
+}
+
+/* The port has FATHOM_LINE_SEND_US, a second, for it; the wait for silence is another. */
+TEST(noise_does_not_prolong_the_time_of_a_busy_port)
+{
+    bench.fake.write_busy = true;
+    ask_1(0);
+    run(T3_5_US + 500000);
+    jam(500000 - 2 * BYTE_US);
+    expect(FATHOM_PENDING);
+    jam(4 * BYTE_US);
+    expect_failed(FATHOM_ERR_PORT);
+}
+
+/* Rule 5: FATHOM_LINE_FINISH_US after the time-out. 26 bytes of data, 19 ms from byte to byte. */
+TEST(a_response_that_goes_on_300_ms_after_the_time_out_is_damaged)
+{
+    bench.config.gap_us = 20000;
+    set_up_echo(FATHOM_LINE_ECHO_OFF);
+    ask_1_and_send(0);
+    run(90000);
+    receive_hex("01 03 1A");
+    for (unsigned i = 0; i != 16; i++) {
+        expect_after(19000, FATHOM_PENDING);
+        receive_hex("00");
+    }
+    expect_after(19000, FATHOM_ERR_CHECKSUM);
+}
+
 /* line.h: a response that has begun in time may end later: the longest frame, with gaps that are nearly gap_us. */
 TEST_IN(asked, bytes_just_within_the_gap_hold_a_transaction_for_a_frame_longer_than_its_time_out)
 {

@@ -53,3 +53,84 @@ TEST(a_response_that_could_also_begin_a_request_is_a_response)
     expect_count(FATHOM_LINE_STRAYS, 1);
     expect(FATHOM_PENDING);
 }
+
+/* A read of one register of unit 2, and a write of many; 55 AA 01 01 with its sum. */
+TEST(a_foreign_request_that_arrives_byte_by_byte_counts_before_the_first_request_of_the_line)
+{
+    static const uint8_t read[] = {0x02, 0x03, 0x01, 0x00, 0x00, 0x01, 0x85, 0xC5};
+    static const uint8_t write[] = {0x02, 0x10, 0x00, 0x20, 0x00, 0x01, 0x02, 0x00, 0x05, 0x75, 0xC3};
+    static const uint8_t dyp[] = {0x55, 0xAA, 0x01, 0x01, 0x01};
+    static const struct {
+        const uint8_t *bytes;
+        uint8_t length;
+    } rows[] = {{read, sizeof read}, {write, sizeof write}, {dyp, sizeof dyp}};
+    for (unsigned i = 0; i != COUNT_OF(rows); i++) {
+        set_up_masters(state);
+        for (unsigned at = 0; at != rows[i].length; at++) {
+            expect_count(FATHOM_LINE_FOREIGN_REQUESTS, 0);
+            receive(rows[i].bytes + at, 1);
+            run_in_steps(BYTE_US, BYTE_US);
+        }
+        expect_count(FATHOM_LINE_FOREIGN_REQUESTS, 1);
+    }
+}
+
+/* Noise without a silence for a second; 00 begins no frame. */
+static void jam(uint32_t for_us)
+{
+    for (uint32_t us = 0; us < for_us; us += BYTE_US) {
+        receive_hex("00");
+        run_in_steps(BYTE_US, BYTE_US);
+    }
+}
+
+/* Rule 3: a read leaves into noise, but not if a frame was heard. */
+TEST(a_foreign_request_before_the_wait_keeps_a_read_out_of_the_noise)
+{
+    deliver_hex("02 03 01 00 00 01 85 C5");
+    ask_1(0);
+    jam(1000000 - 2 * BYTE_US);
+    expect(FATHOM_PENDING);
+    jam(4 * BYTE_US);
+    expect(FATHOM_ERR_LINE_BUSY);
+    expect_written(0);
+}
+
+TEST(a_foreign_request_during_the_wait_keeps_a_read_out_of_the_noise)
+{
+    ask_1(0);
+    jam(100000);
+    receive_hex("02 03 01 00 00 01 85 C5");
+    jam(900000 - 2 * BYTE_US);
+    expect(FATHOM_PENDING);
+    jam(4 * BYTE_US);
+    expect(FATHOM_ERR_LINE_BUSY);
+    expect_written(0);
+}
+
+/* Rule 14: a foreign request may have been among the dropped bytes. */
+TEST(after_dropped_bytes_no_frame_is_a_response_to_the_request_on_the_wire)
+{
+    ask_1_and_send(0);
+    fathom_line_flush(&bench.line);
+    deliver_hex("00");
+    expect_count(FATHOM_LINE_OLD_BYTES, 1);
+    run(100);
+    deliver(response_1_754, sizeof response_1_754);
+    expect(FATHOM_PENDING);
+    run(TIMEOUT_US);
+    expect_failed(FATHOM_ERR_NO_RESPONSE);
+}
+
+TEST(after_dropped_bytes_the_line_sends_nothing_for_a_second_and_the_next_response_counts)
+{
+    fathom_line_flush(&bench.line);
+    deliver_hex("00");
+    run(100);
+    ask_1(0);
+    expect_written_after(1000000 - 500, 0);
+    expect_written_after(1000, 1);
+    run(8 * BYTE_US);
+    deliver(response_1_754, sizeof response_1_754);
+    expect_mm(754);
+}
