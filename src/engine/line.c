@@ -174,7 +174,7 @@ void fathom_line_flush(fathom_line_t *line)
 {
     if (!is_initialised(line)) return;
     drop_port(line);
-    if (line->listener != NULL) fathom_line_pass(line, 0, 0); /* A frame of before is no reading of now. */
+    fathom_line_pass(line, 0, 0); /* A frame of before is no reading of now. */
 }
 
 /* The next bytes are young. */
@@ -204,7 +204,6 @@ fathom_status_t fathom_line_broken(fathom_line_t *line)
     line->echo = line->config->echo;
     line->attempt.copy = COPY_PAST;
     line->is_after_gap = false;
-    line->slot = SLOT_OPEN;
     line->sender = SENDER_NONE;
     line->unsolicited_count = 0;
     line->unrequested_count = 0;
@@ -229,7 +228,7 @@ static void report_loss(fathom_line_t *line)
 {
     const bool is_after_gap = line->is_after_gap;
     line->age = AGE_KNOWN;
-    if (line->listener != NULL) fathom_line_pass(line, 0, 0);
+    fathom_line_pass(line, 0, 0);
     line->is_after_gap = is_after_gap;
 }
 

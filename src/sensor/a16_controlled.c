@@ -121,8 +121,7 @@ static bool configure(fathom_a16_controlled_t *sensor, const fathom_a16_controll
     stream->listener.stale_us = sensor->latest_us; /* The line drops bytes that are older. */
     if ((line == NULL) || (line->config == NULL)) return false;
     trigger->clock = line->config->clock;
-    return (trigger->output.set != NULL) && (trigger->period_us <= MAX_RESPONSE_US) &&
-           (sensor->earliest_us <= sensor->latest_us) &&
+    return (trigger->output.set != NULL) && (sensor->earliest_us <= sensor->latest_us) &&
            (fathom_dyp_measurement_init(measurement, FATHOM_A16_MAX_MM) == FATHOM_READY) &&
            (fathom_stream_start(stream, clock_us(trigger->clock)) == FATHOM_READY);
 }
@@ -147,7 +146,6 @@ fathom_status_t fathom_a16_controlled_init(fathom_a16_controlled_t *sensor,
 
 fathom_status_t fathom_a16_controlled_deinit(fathom_a16_controlled_t *sensor)
 {
-    if (sensor->line == NULL) return FATHOM_READY;
     stop_listening(sensor);
     return fathom_trigger_deinit(&sensor->trigger);
 }
