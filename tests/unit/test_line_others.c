@@ -163,3 +163,12 @@ TEST(a_device_that_has_gone_to_another_rate_holds_up_nothing)
     run(100);
     expect_sent(T3_5_US - 200, 400);
 }
+
+/* Rule 11: the device that sends by itself may have sent the frame. */
+TEST(a_response_on_a_line_with_unsolicited_bytes_counts_once_as_perhaps_unsolicited)
+{
+    deliver(auto_frame, 4);
+    ask_1_and_send(0);
+    response_1(754);
+    expect_count(FATHOM_LINE_MAYBE_UNSOLICITED, 1);
+}

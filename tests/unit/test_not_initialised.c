@@ -148,11 +148,11 @@ static bool is_zeroed(const driver_t *driver)
 static void refuses_everything(const driver_t *driver)
 {
     const fathom_sensor_t sensor = driver->sensor();
-    (void)fathom_due_us(&sensor, 1);
+    assert_int_equal(fathom_due_us(&sensor, 1), 0); /* The error is due at once. */
     for (unsigned times = 0; times != 2; times++) { /* what was refused changes nothing */
         fathom_sample_t last;
         assert_int_equal(checked_poll(&sensor, &last), FATHOM_ERR_ARGUMENT);
-        (void)fathom_due_us(&sensor, 1);
+        assert_int_equal(fathom_due_us(&sensor, 1), 0); /* The error is due at once. */
         for (unsigned i = 0; i != CALLS && driver->commands[i] != NULL; i++)
             if (driver->commands[i]() != FATHOM_ERR_ARGUMENT) fail_msg("command %u", i);
     }
