@@ -28,9 +28,12 @@ fathom_line_finish makes a phase of PORT_BUSY or more IDLE, and request_length 0
 fathom_line_end_attempt has called fathom_line_free_wire right before. fathom_line_break changes only phases below
 SENDING, where request_length is 0. is_old reads head where it has seen that it is not NULL."""
 
-PROTOCOL = """line->protocol is not NULL where request_length or quarantined_units is not 0, and where examine has gone on:
-examine returns first if it is NULL. fathom_line_submit sets it, begin_attempt sets it beside request_length, and nothing
-resets it. quarantined_units get bits only where request_length is not 0."""
+PROTOCOL = """line->protocol is not NULL where request_length is not 0: fathom_line_submit sets it before a request can
+leave, begin_attempt sets it with request_length, and nothing resets it. is_ours and is_echo read it only if
+expects_response() is true, that is, if request_length is not 0. examine sets its length to 0 if line->protocol is NULL.
+Without a length nothing is complete and nothing is a frame: examine calls check only if is_complete is true,
+accept_frame only if is_frame is true, and is_damaged_response reads the protocol only if frame_length, which is this
+length, is not 0."""
 
 RATE = """unit.line_settings of the HPS-167S's driver is NULL for ever or never. Where config has none: set_baud refuses
 before it begins, so that no command is BAUD, and move_to_baud and expect_baud do nothing, so that with_baud is not
@@ -94,6 +97,7 @@ ARGUED = {
     ('src/engine/line_response.c', 'accept_frame',
      'mem_access: \\valid_read(&(line_0->protocol)->address_offset)'): PROTOCOL,
     ('src/engine/line_response.c', 'accept_response', 'mem_access: \\valid_read(&(line_0->head)->address)'): WIRE,
+    ('src/engine/line_response.c', 'examine', 'mem_access: \\valid_read(&protocol->check)'): PROTOCOL,
     ('src/engine/line_response.c', 'is_damaged_response',
      'mem_access: \\valid_read(&(line_0->protocol)->address_offset)'): PROTOCOL,
     ('src/engine/line_response.c', 'is_echo', 'mem_access: \\valid_read(&protocol->is_request)'): PROTOCOL,
@@ -144,7 +148,6 @@ UNREACHED = {
     ('line/a05_dyp', 'fathom_a05_dyp_set_every_address'): (3, COPY),
     ('line/a05_dyp', 'has_room'): (2, LINES_FRAME),
     ('line/a05_dyp', 'has_room_0'): (2, LINES_FRAME),
-    ('line/a16_controlled', 'configure'): (3, COPY),
     ('line/a16_modbus', 'due_us'): (1, ONE_PROBE),
     ('line/a16_modbus', 'fathom_dyp_modbus_init'): (1, A16),
     ('line/a16_modbus', 'fathom_dyp_modbus_find'): (3, COPY),

@@ -50,9 +50,13 @@ void main(void)
     config.gap_us = any_16();
     any_window(&config.window);
     config.probes = any_8_in(16, UINT8_MAX);
-    const fathom_status_t status = fathom_a05_auto_init(&sensor, &config);
+    fathom_status_t status = fathom_a05_auto_init(&sensor, &config);
     /*@ assert status == FATHOM_ERR_ARGUMENT; */
     config.probes = any_8_in(0, 15);
+    config.line = &blank_line;
+    status = fathom_a05_auto_init(&sensor, &config);
+    /*@ assert status == FATHOM_ERR_ARGUMENT; */
+    config.line = any_bool() ? &any_line : NULL;
     const fathom_sensor_t none = fathom_a05_auto_sensor(&sensor);
     any_call(&none); /* in zeroed memory */
     if (fathom_a05_auto_init(&sensor, &config) != FATHOM_READY) return;

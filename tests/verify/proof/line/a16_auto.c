@@ -41,7 +41,6 @@ void main(void)
     const uint8_t which = any_8_in(0, 4);
     /*@ split which; */
     any_line_init();
-    config.line = any_bool() ? &any_line : NULL;
     config.select = output_of(which);
     config.stale_us = any_32();
     config.gap_us = any_16();
@@ -49,6 +48,10 @@ void main(void)
     any_window(&config.window);
     const fathom_sensor_t handle = fathom_a16_auto_sensor(&sensor);
     any_call(&handle); /* in zeroed memory */
+    config.line = &blank_line;
+    const fathom_status_t status = fathom_a16_auto_init(&sensor, &config);
+    /*@ assert status == FATHOM_ERR_ARGUMENT; */
+    config.line = any_bool() ? &any_line : NULL;
     if (fathom_a16_auto_init(&sensor, &config) != FATHOM_READY) return;
     while (any_bool()) any_call(&handle);
     (void)fathom_a16_auto_deinit(&sensor);

@@ -17,6 +17,7 @@ enum { ANY_FRAME_SIZE = 27, ANY_CALL_SIZE = 3 };
 static uint8_t any_line_frame[ANY_FRAME_SIZE];
 static fathom_line_config_t any_line_config;
 static fathom_line_t any_line;
+static fathom_line_t blank_line; /* not initialised; a driver refuses it */
 static fathom_transaction_t *any_line_queued; /* NULL: none */
 
 static void any_line_init(void)
@@ -130,6 +131,20 @@ fathom_listener_t *fathom_line_replace_listener(fathom_line_t *line, fathom_list
     fathom_listener_t *const previous = line->listener;
     line->listener = listener;
     return previous;
+}
+
+/* A driver that refuses its config may call this function too. */
+void fathom_line_unlisten(fathom_line_t *line, fathom_listener_t *listener)
+{
+    /*@ assert line == &any_line || line == &blank_line; */
+    if (line->listener == listener) line->listener = NULL;
+}
+
+/* The line may hold bytes or not, at each call. */
+bool fathom_line_holds_bytes(const fathom_line_t *line)
+{
+    /*@ assert line == &any_line; */
+    return any_bool();
 }
 
 void fathom_line_flush(fathom_line_t *line)

@@ -56,10 +56,15 @@ void main(void)
     fathom_hps167s_auto_config_t config;
     fathom_hps167s_config_t config_beside;
     any_line_init();
-    config.line = any_bool() ? &any_line : NULL;
     config.stale_us = any_32();
     config.address = any_8();
+    config.line = &blank_line;
+    const fathom_status_t status = fathom_hps167s_auto_init(&sensor, &config);
+    /*@ assert status == FATHOM_ERR_ARGUMENT; */
+    config.line = any_bool() ? &any_line : NULL;
     any_hps167s_config(&config_beside);
+    const fathom_sensor_t handle = fathom_hps167s_auto_sensor(&sensor);
+    any_poll(&handle); /* in zeroed memory */
     const bool is_beside = any_bool();
     /*@ split is_beside; */
     if (fathom_hps167s_init(&beside, &config_beside) != FATHOM_READY) return;

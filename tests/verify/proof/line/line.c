@@ -152,6 +152,7 @@ static void any_call(void)
         break;
     case 9:
         (void)fathom_line_listen(&line, any_bool() ? &listener : NULL);
+        fathom_line_unlisten(&line, any_bool() ? &listener : NULL);
         break;
     case 10:
         fathom_line_flush(&line);
@@ -159,6 +160,7 @@ static void any_call(void)
     default:
         (void)fathom_line_is_idle(&line);
         (void)fathom_line_heard_us(&line);
+        (void)fathom_line_holds_bytes(&line);
         (void)fathom_line_echo(&line);
     }
 }
@@ -181,7 +183,7 @@ static void borrow(void)
     /*@ assert status == FATHOM_ERR_BUSY; */
     (void)fathom_line_submit(&line, &its_transaction);
     fathom_line_cancel(&line, &its_transaction);
-    (void)fathom_line_replace_listener(&line, NULL);
+    fathom_line_unlisten(&line, &its_listener);
 }
 
 /* A line whose config was refused refuses all calls. */

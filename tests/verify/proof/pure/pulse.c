@@ -63,8 +63,19 @@ static void idle(void *ctx, uint32_t max_us)
 static fathom_status_t any_poll(void *ctx, fathom_sample_t *sample)
 {
     /*@ assert ctx == &assumed_ctx; */
-    if (any_bool()) return (fathom_status_t)-any_8_in(1, 16);
+    if (any_bool()) return (fathom_status_t)Frama_C_interval(FATHOM_ERR_OTHER_MASTER, FATHOM_ERR_ARGUMENT);
     return any_bool() ? FATHOM_READY : FATHOM_PENDING;
+}
+
+/* A sensor in zeroed memory. */
+static void no_sensor(void)
+{
+    static const fathom_sensor_t none;
+    fathom_sample_t sample;
+    const fathom_status_t status = fathom_poll(&none, &sample);
+    /*@ assert status == FATHOM_ERR_ARGUMENT; */
+    const uint32_t due_us = fathom_due_us(&none, 1);
+    /*@ assert due_us == 0; */
 }
 
 /* Of any sensors, so many; and the blocking form. */
@@ -84,15 +95,23 @@ static void any_sensors(void)
 
 int main(void)
 {
+    static const fathom_capture_t no_arm = {NULL, assumed_take, &assumed_ctx};
+    static const fathom_capture_t no_take = {assumed_arm, NULL, &assumed_ctx};
     fathom_output_t none;
     none.set = NULL;
     none.ctx = NULL;
     any_pwm(NULL, &assumed_capture, fathom_output_pin(&assumed_output));
     any_pwm(&assumed_clock, NULL, fathom_output_pin(&assumed_output));
+    any_pwm(&assumed_clock, &no_arm, fathom_output_pin(&assumed_output));
+    any_pwm(&assumed_clock, &no_take, fathom_output_pin(&assumed_output));
     any_pwm(&assumed_clock, &assumed_capture, none);
+    any_pwm(&assumed_clock, &assumed_capture, fathom_output_pin(NULL));
+    any_pwm(&assumed_clock, &assumed_capture, fathom_output_pin(&assumed_input));
+    any_pwm(&assumed_clock, &assumed_capture, fathom_output_break(NULL));
     any_pwm(&assumed_clock, &assumed_capture, fathom_output_pin(&assumed_output));
     any_pwm(&assumed_clock, &assumed_capture, fathom_output_break(&assumed_uart));
     any_pwm(&assumed_clock, &assumed_capture, fathom_output_break(&assumed_bare_uart));
+    no_sensor();
     any_sensors();
     return 0;
 }
