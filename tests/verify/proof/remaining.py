@@ -162,7 +162,4 @@ UNREACHED = {
     ('line/hps167s', 'is_valid_0'): (4, COPY + '; and ' + CLOCK),
     ('line/hps167s_auto', 'due_us'): (1, 'the harness polls before each due_us, and the poll takes the reading'),
     ('line/line', 'fathom_line_submit'): (3, 'the line of the harness can send, so `fail_all` is not NULL'),
-    ('pure/contact', 'can_be_read'): (3, COPY),
-    ('pure/edges', 'fathom_edges_init'): (2, COPY),
-    ('pure/level', 'fathom_level_check'): (3, COPY),
 }

@@ -17,7 +17,7 @@ enum { ANY_FRAME_SIZE = 27, ANY_CALL_SIZE = 3 };
 static uint8_t any_line_frame[ANY_FRAME_SIZE];
 static fathom_line_config_t any_line_config;
 static fathom_line_t any_line;
-static fathom_line_t blank_line; /* not initialised; a driver refuses it */
+static fathom_line_t blank_line;              /* not initialised; a driver refuses it */
 static fathom_transaction_t *any_line_queued; /* NULL: none */
 
 static void any_line_init(void)

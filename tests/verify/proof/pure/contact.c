@@ -14,7 +14,7 @@
 
 static fathom_status_t any_status(void)
 {
-    if (any_bool()) return (fathom_status_t)-any_8_in(1, 16);
+    if (any_bool()) return (fathom_status_t)Frama_C_interval(FATHOM_ERR_OTHER_MASTER, FATHOM_ERR_ARGUMENT);
     return any_bool() ? FATHOM_READY : FATHOM_PENDING;
 }
 
@@ -76,6 +76,35 @@ static void relay(const fathom_pin_t *pin)
     while (any_bool()) look(&sensor);
 }
 
+/* A guard or a clock without one of its functions is refused. */
+static void refused(void)
+{
+    static const fathom_contact_guard_t no_poll = {NULL, guard_is_clear, assumed_now_us, &assumed_ctx};
+    static const fathom_contact_guard_t no_is_clear = {guard_poll, NULL, assumed_now_us, &assumed_ctx};
+    static const fathom_contact_guard_t no_due_us = {guard_poll, guard_is_clear, NULL, &assumed_ctx};
+    static const fathom_clock_t no_time = {NULL, &assumed_ctx};
+    static fathom_a16_switch_t object;
+    fathom_a16_switch_config_t config;
+    config.pin = &assumed_input;
+    config.clock = &assumed_clock;
+    config.timing = any_timing();
+    config.negative = any_bool();
+    config.address = any_8();
+    config.guard = &no_poll;
+    fathom_status_t status = fathom_a16_switch_init(&object, &config);
+    /*@ assert status == FATHOM_ERR_ARGUMENT; */
+    config.guard = &no_is_clear;
+    status = fathom_a16_switch_init(&object, &config);
+    /*@ assert status == FATHOM_ERR_ARGUMENT; */
+    config.guard = &no_due_us;
+    status = fathom_a16_switch_init(&object, &config);
+    /*@ assert status == FATHOM_ERR_ARGUMENT; */
+    config.guard = NULL;
+    config.clock = &no_time;
+    status = fathom_a16_switch_init(&object, &config);
+    /*@ assert status == FATHOM_ERR_ARGUMENT; */
+}
+
 static void a_switch(const fathom_pin_t *pin)
 {
     static fathom_a16_switch_t object, blank;
@@ -106,6 +135,7 @@ int main(void)
     relay(NULL);
     relay(&assumed_output);
     relay(&assumed_input);
+    refused();
     a_switch(NULL);
     a_switch(&assumed_output);
     a_switch(&assumed_input);

@@ -31,6 +31,21 @@ static void any_tank(fathom_tank_volume_t volume, uint16_t height_mm)
     }
 }
 
+/* Points are missing, although there is a number of them. */
+static void no_points(void)
+{
+    fathom_level_config_t tank;
+    tank.volume = fathom_tank_table;
+    tank.points = NULL;
+    tank.point_count = Frama_C_unsigned_short_interval(1, POINTS);
+    tank.capacity = any_32();
+    tank.mounting_mm = any_16();
+    tank.height_mm = any_height();
+    tank.offset_mm = Frama_C_short_interval(INT16_MIN, INT16_MAX);
+    const fathom_status_t status = fathom_level_check(&tank);
+    /*@ assert status == FATHOM_ERR_ARGUMENT; */
+}
+
 int main(void)
 {
     any_memory(points, sizeof points);
@@ -39,5 +54,6 @@ int main(void)
     any_tank(fathom_tank_upright, any_height());
     any_tank(fathom_tank_horizontal_cylinder, any_height());
     any_tank(fathom_tank_table, any_height());
+    no_points();
     return 0;
 }

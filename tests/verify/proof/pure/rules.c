@@ -66,7 +66,8 @@ static void alarm(void)
         const fathom_sample_t sample = any_sample();
         if (any_bool()) (void)fathom_alarm_sample(&alarm, &sample);
         if (any_bool())
-            (void)fathom_alarm_status(&alarm, (fathom_status_t)Frama_C_interval(FATHOM_ERR_OTHER_MASTER, FATHOM_READY), any_32());
+            (void)fathom_alarm_status(
+                &alarm, (fathom_status_t)Frama_C_interval(FATHOM_ERR_OTHER_MASTER, FATHOM_READY), any_32());
         (void)fathom_alarm_is_on(&alarm);
     }
 }
