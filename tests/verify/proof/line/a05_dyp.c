@@ -21,7 +21,7 @@ static fathom_a05_dyp_find_t find;
 static void any_call(const fathom_sensor_t *handle)
 {
     uint8_t address;
-    switch (any_8_in(0, 7)) {
+    switch (any_8_in(0, 8)) {
     case 0:
         any_poll(handle);
         break;
@@ -42,6 +42,9 @@ static void any_call(const fathom_sensor_t *handle)
         break;
     case 6:
         (void)fathom_a05_dyp_find(&find, &any_line, &address);
+        break;
+    case 7:
+        (void)fathom_modbus_next_is_blind(&sensor.base.unit);
         break;
     default:
         fathom_a05_dyp_find_cancel(&find, &any_line);

@@ -63,7 +63,7 @@ static void read_or_set(void)
 
 static void any_call(const fathom_sensor_t *handle)
 {
-    static fathom_dyp_modbus_find_t find;
+    static fathom_dyp_modbus_find_t find, find_over_bare;
     uint8_t address;
     switch (any_8_in(0, 7)) {
     case 0:
@@ -84,9 +84,11 @@ static void any_call(const fathom_sensor_t *handle)
         break;
     case 5:
         (void)fathom_dyp_modbus_find(&find, &assumed_transport, &address);
+        (void)fathom_dyp_modbus_find(&find_over_bare, &assumed_bare_transport, &address);
         break;
     case 6:
         fathom_dyp_modbus_find_cancel(&find, &assumed_transport);
+        fathom_dyp_modbus_find_cancel(&find_over_bare, &assumed_bare_transport);
         break;
     default:
         read_or_set();
