@@ -266,7 +266,7 @@ TEST(of_3160_pairs_of_wrong_bits_in_10_bytes_162_pass)
 }
 
 typedef struct {
-    unsigned sent, seen, wrong;
+    uint32_t sent, seen, wrong;
 } damage_t;
 
 enum { INDEPENDENT_BITS, BIT_3_OF_EACH_BYTE, BIT_7_OF_EACH_BYTE, RANDOM_BYTES };
@@ -288,7 +288,7 @@ static damage_t damage(unsigned way, unsigned q, uint8_t length)
     damage_t damage = {suite_is_long ? 1000000 : 100000, 0, 0};
     rig_seed(7);
     begin(length);
-    for (unsigned n = 0; n != damage.sent; n++) {
+    for (uint32_t n = 0; n != damage.sent; n++) {
         uint8_t frame[10];
         uint8_t sent[10];
         uint16_t values[4];
