@@ -58,7 +58,10 @@ TEST(a_response_that_survives_noise_is_taken_although_the_line_was_busy)
 /* They are no part of the response: after them the unit is waited for until its time-out. */
 TEST(a_read_that_leaves_into_noise_discards_the_bytes_before_it)
 {
-    ask_1(0);
+    /* 01 03 02: in place of the discarded bytes the request would look like a response that broke off. */
+    fathom_modbus_read_holding_registers(&bench.request.message, 1, 0x0200, 1, &bench.value);
+    bench.request.transaction.timeout_us = TIMEOUT_US;
+    assert_int_equal(fathom_modbus_client_submit(&bench.line, &bench.request), FATHOM_PENDING);
     jam(1000000 - 2 * BYTE_US);
     receive_hex("02 03 02"); /* a response of another unit begins and breaks off */
     run_in_steps(3 * BYTE_US, BYTE_US);
@@ -67,15 +70,16 @@ TEST(a_read_that_leaves_into_noise_discards_the_bytes_before_it)
     run(TIMEOUT_US - 2 * BYTE_US);
     expect(FATHOM_PENDING);
     run(4 * BYTE_US);
-    expect_failed(FATHOM_ERR_LINE_BUSY);
+    expect(FATHOM_ERR_LINE_BUSY);
 }
 
 /* The port has FATHOM_LINE_SEND_US, a second, for it; the wait for silence is another. */
 TEST(noise_does_not_prolong_the_time_of_a_busy_port)
 {
     bench.fake.write_busy = true;
+    run(10000); /* a request may leave at once, so no wait for silence begins */
     ask_1(0);
-    run(T3_5_US + 500000);
+    run(500000);
     jam(500000 - 2 * BYTE_US);
     expect(FATHOM_PENDING);
     jam(4 * BYTE_US);
