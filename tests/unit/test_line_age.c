@@ -106,3 +106,59 @@ TEST(after_an_error_of_the_port_during_a_request_the_whole_silence_is_kept)
     ask_other(2);
     expect_due(T3_5_US);
 }
+
+TEST(bytes_that_the_port_dates_are_as_old_as_their_time_stamp)
+{
+    for (unsigned is_older = 0; is_older != 2; is_older++) {
+        set_up(state);
+        listen_stale();
+        bench.fake.now_us += 1000000;
+        const uint32_t age_us = STALE_US + FATHOM_LINE_LATE_US + is_older;
+        fake_receive_rx(&bench.fake, 0, auto_frame, 4,
+                        (fathom_rx_t){bench.fake.now_us - age_us, FATHOM_RX_TIMED});
+        (void)poll_line();
+        expect_count(FATHOM_LINE_OLD_BYTES, is_older != 0 ? 4 : 0);
+        assert_int_equal(bench_listener.length, is_older != 0 ? 0 : 4);
+    }
+}
+
+TEST(a_flush_is_a_loss_for_the_listener_at_once)
+{
+    listen_for(GAP_US);
+    deliver(auto_frame, 2);
+    fathom_line_flush(&bench.line);
+    assert_int_equal(bench_listener.losses, 1);
+    assert_int_equal(bench_listener.lost_at, 2);
+}
+
+TEST(a_flush_before_the_port_was_seen_empty_drops_its_bytes_too)
+{
+    assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_READY);
+    fathom_line_flush(&bench.line);
+    deliver(auto_frame, 4);
+    expect_count(FATHOM_LINE_OLD_BYTES, 4);
+}
+
+/* Rule 15: nothing that was learnt before the error remains valid. */
+TEST(bytes_before_and_after_an_error_of_the_port_do_not_add_up_to_a_device_that_sends_by_itself)
+{
+    deliver_hex("00 00 00");
+    break_port();
+    run(100);
+    deliver_hex("00");
+    run(T3_5_US + 1000);
+    ask_1(0);
+    expect_written_after(1000, 1);
+}
+
+TEST(the_end_of_a_response_before_an_error_of_the_port_is_no_gap_after_it)
+{
+    listen_for(GAP_US);
+    ask_1_and_send(0);
+    response_1(754);
+    break_port();
+    run(100);
+    deliver(auto_frame, 4);
+    assert_int_equal(bench_listener.length, 4);
+    assert_int_equal(bench_listener.gaps, 0);
+}

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The mutants that mean the same as the code without them, so that no test can see them. A row: why it means the same,
 and the identities of those of which this is true, as run.py prints them; space does not count."""
-COUNT = 102  # of the identities; a row that is added changes it
+COUNT = 105  # of the identities; a row that is added changes it
 
 ROWS = [
     ('it costs time alone',
@@ -16,6 +16,12 @@ ROWS = [
      'FATHOM_LINE_LATE_US) && fathom_line_is_old(line, pause_us))',
      'src/engine/line.c | begin_turn | constant: FATHOM_LINE_LATE_US -> 0 | if ((pause_us > FATHOM_LINE_LATE_US) && '
      'fathom_line_is_old(line, pause_us))'),
+    ('no byte is passed, so it does not matter from where',
+     'src/engine/line.c | fathom_line_flush | constant: 0 -> 1 | fathom_line_pass(line, 0, 0)',
+     'src/engine/line.c | report_loss | constant: 0 -> 1 | fathom_line_pass(line, 0, 0)'),
+    ('no pause is as long as that',
+     'src/engine/line.c | fathom_line_is_old | constant: FATHOM_NO_DEADLINE -> (FATHOM_NO_DEADLINE - 1) | uint32_t '
+     'limit_us = FATHOM_NO_DEADLINE'),
     ('the length that goes with NEED_MORE is not used',
      'src/engine/line_response.c | examine | constant: 0 -> 1 | return result(NEED_MORE, 0)',
      'src/engine/line_response.c | examine | constant: 0 -> 1 | return result(NEED_MORE, 0) | 2',
