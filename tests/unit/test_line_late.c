@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include "fathom/engine/line_turns.h"
 #include "line_bench.h"
 
 /* line.h: whose response is late, whose is a stray, and until when a unit is asked nothing. */
@@ -210,4 +211,13 @@ TEST(a_pause_within_bytes_that_were_held_back_is_no_gap_before_them)
     assert_int_equal(heard, 7);
     assert_int_equal(gaps, 0);
     assert_int_equal(status_of(&bench.request), FATHOM_ERR_CHECKSUM);
+}
+
+/* line_attempt.c: units with equal addresses modulo 16 share a bit. Unit 255 stands for all. */
+TEST(a_quarantine_of_unit_1_concerns_the_units_with_the_same_address_modulo_16_and_no_others)
+{
+    (void)set_up_quarantined(state);
+    for (unsigned unit = 0; unit != 255; unit++)
+        assert_int_equal(fathom_line_is_quarantined(&bench.line, (uint8_t)unit), unit % 16 == 1);
+    assert_true(fathom_line_is_quarantined(&bench.line, 255));
 }

@@ -134,3 +134,13 @@ TEST(after_dropped_bytes_the_line_sends_nothing_for_a_second_and_the_next_respon
     deliver(response_1_754, sizeof response_1_754);
     expect_mm(754);
 }
+
+/* MODBUS over Serial Line V1.02, 2.2: addresses 248 to 255 are reserved. */
+TEST(a_foreign_request_is_to_a_unit_up_to_247)
+{
+    deliver_hex("F7 03 01 00 00 01 91 60");
+    expect_count(FATHOM_LINE_FOREIGN_REQUESTS, 1);
+    run(10000);
+    deliver_hex("F8 03 01 00 00 01 91 9F");
+    expect_count(FATHOM_LINE_FOREIGN_REQUESTS, 1);
+}

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The mutants that mean the same as the code without them, so that no test can see them. A row: why it means the same,
 and the identities of those of which this is true, as run.py prints them; space does not count."""
-COUNT = 105  # of the identities; a row that is added changes it
+COUNT = 112  # of the identities; a row that is added changes it
 
 ROWS = [
     ('it costs time alone',
@@ -19,6 +19,19 @@ ROWS = [
     ('no byte is passed, so it does not matter from where',
      'src/engine/line.c | fathom_line_flush | constant: 0 -> 1 | fathom_line_pass(line, 0, 0)',
      'src/engine/line.c | report_loss | constant: 0 -> 1 | fathom_line_pass(line, 0, 0)'),
+    ('the amount of this event is not used',
+     'src/engine/line_attempt.c | fathom_line_end_attempt | constant: 0 -> 1 | fathom_line_note_sender(line, '
+     'SENDER_LOSS, 0)',
+     'src/engine/line_response.c | serve | constant: 0 -> 1 | fathom_line_note_sender(line, SENDER_RESPONSE, 0)',
+     'src/engine/line_response.c | take_echo | constant: 0 -> 1 | fathom_line_note_sender(line, SENDER_ECHO, 0)',
+     'src/engine/line_response.c | fathom_line_scan | constant: 0 -> 1 | fathom_line_note_sender(line, '
+     'SENDER_FRAME, 0)'),
+    ('without a protocol nothing was submitted that could leave behind the frame',
+     'src/engine/line_response.c | examine | name: DISCARD -> FOREIGN_FRAME | return result(DISCARD, '
+     'received_count)'),
+    ('more than one byte is needed either way',
+     'src/engine/line_masters.c | form_of | logical: (frame[0] == DYP_START) && (have > 1u) -> (frame[0] == '
+     'DYP_START) | const bool is_dyp = (frame[0] == DYP_START) && (have > 1u) && (frame[1] == DYP_SECOND_START)'),
     ('no pause is as long as that',
      'src/engine/line.c | fathom_line_is_old | constant: FATHOM_NO_DEADLINE -> (FATHOM_NO_DEADLINE - 1) | uint32_t '
      'limit_us = FATHOM_NO_DEADLINE'),
@@ -33,7 +46,8 @@ ROWS = [
      'silence_us)',
      'src/engine/trigger.c | fathom_trigger_drive | relational: < -> <= | if (trigger->left_us < trigger->low_us)'),
     ('a number that no other state has; they are compared for equality alone',
-     'src/engine/modbus_unit.c |  | constant: 2 -> 3 | ANSWERED = 2'),
+     'src/engine/modbus_unit.c |  | constant: 2 -> 3 | ANSWERED = 2',
+     'src/engine/line_internal.h |  | constant: 2 -> 3 | SLOT_OVER = 2'),
     ('writes the byte behind the head, which is set right after; the bounds check of the sanitizer builds ends there',
      'src/codec/modbus_rtu.c | fathom_modbus_rtu_parse_request | name: HEAD -> DATA | for (uint8_t i = 0; i != '
      'HEAD; i ++)'),
