@@ -264,6 +264,18 @@ TEST(while_an_abandoned_command_is_on_the_wire_a_poll_is_due_when_the_line_is)
     }
 }
 
+TEST(a_command_that_has_ended_delays_no_poll)
+{
+    PENDS(asks(&version));
+    responds(7);
+    assert_int_equal(asks(&version), FATHOM_READY);
+    for (unsigned i = 0; i != 30; i++) {
+        fake.now_us += STEP_US;
+        fathom_modbus_unit_poll(&unit);
+        assert_int_equal(fathom_modbus_unit_due_us(&unit), 0);
+    }
+}
+
 TEST(a_request_that_the_line_has_forgotten_is_cancelled_and_the_next_one_follows)
 {
     PENDS(asks(&measure));
