@@ -82,7 +82,7 @@ TEST(dropped_bytes_still_show_that_a_device_sends_by_itself)
     }
 }
 
-/* Without a listener there is nobody to notify: the gap before the next bytes remains one. */
+/* A line without a listener counts the bytes as old, not as dropped. */
 TEST(a_flush_drops_what_the_port_holds)
 {
     receive(auto_frame, 4);
