@@ -162,6 +162,19 @@ TEST(an_abandoned_setting_gives_way_to_a_blind_setting)
     assert_int_equal(sets(&other_setting), FATHOM_ERR_UNCONFIRMED);
 }
 
+TEST(the_setting_after_an_abandoned_blind_setting_is_not_blind)
+{
+    assert_int_equal(fathom_modbus_next_is_blind(&unit), FATHOM_READY);
+    PENDS(sets(&other_setting));
+    assert_int_equal(fake.request->message.head[1], 6);
+    for (unsigned i = 0; i != ABANDONED_US / STEP_US; i++) {
+        fake.now_us += STEP_US;
+        fathom_modbus_unit_poll(&unit);
+    }
+    PENDS(sets(&move));
+    assert_int_equal(fake.request->message.head[1], 3); /* its present value is read first */
+}
+
 TEST(a_setting_that_begins_behind_an_abandoned_command_is_carried_out_whole)
 {
     PENDS(asks(&details));
