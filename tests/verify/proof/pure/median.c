@@ -4,8 +4,8 @@
  *
  * proves: src/sensor/median.c
  * options: -eva-auto-loop-unroll 64 -eva-slevel 1 -eva-widening-delay 20
- *         -eva-slevel-function fathom_median_init:80,is_configuration:20
- *         -eva-split-return-function is_configuration:1,fathom_median_init:1
+ *         -eva-slevel-function fathom_median_init:80,is_configuration:20,init:80,any_median:80
+ *         -eva-split-return-function is_configuration:1,fathom_median_init:1,init:1
  */
 #include "fathom/sensor/median.h"
 #include "any_sample.h"
@@ -24,9 +24,8 @@ static fathom_status_t init(uint16_t *first, uint8_t count)
     return fathom_median_init(&median, &config);
 }
 
-static void any_samples(uint8_t count)
+static void any_samples(void)
 {
-    if (init(window + FATHOM_MEDIAN_MAX_COUNT - count, count) != FATHOM_READY) return;
     while (any_bool()) {
         static fathom_sample_t out;
         fathom_sample_t sample = any_sample();
@@ -38,12 +37,17 @@ static void any_samples(uint8_t count)
     }
 }
 
+static void any_median(uint8_t count)
+{
+    if (init(window + FATHOM_MEDIAN_MAX_COUNT - count, count) == FATHOM_READY) any_samples();
+}
+
 int main(void)
 {
     any_memory(window, sizeof window);
     /*@ loop unroll 13; */
     for (uint8_t count = FATHOM_MEDIAN_MIN_COUNT; count <= FATHOM_MEDIAN_MAX_COUNT; count++)
-        any_samples(count);
+        any_median(count);
     fathom_status_t status = init(NULL, any_8());
     /*@ assert status == FATHOM_ERR_ARGUMENT; */
     status = init(window, any_8_in(0, FATHOM_MEDIAN_MIN_COUNT - 1));
