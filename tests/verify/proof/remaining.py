@@ -5,16 +5,16 @@ sources that no harness covers. These lists may only get shorter.
 EVA knows the values of each member, not how members go together. Each argument is such a relation: it says which lines
 make it, so that it can be checked by reading them."""
 
-BYTES = """passed_count <= received_count <= frame_size, and received_count >= 1 where a protocol or the part for masters
-reads the buffer: fathom_line_scan calls examine only then. read_port gives read the room that is left, frame_size -
-received_count, and receive adds what read returns, which is no more, or nothing of it. What leaves the buffer is
-received_count at most: examine returns received_count, or 1, or a length that it has compared with received_count, of a
-frame, of a request of another master, or of our own request. discard passes on from passed_count up to that length, and
-remove_bytes takes it from both counts. form_of reads no byte before it has compared received_count with its index.
-fathom_line_marks moves the new bytes to the front after a scan with is_over, which leaves nothing there: NEED_MORE is
-returned only if is_over is false. NEED_MORE is returned only for a frame, an echo or a request of at most frame_size
-bytes of which some are missing, so that a full buffer is never left: the room is never 0. (Of a line that only listens
-EVA sees all this: there received_count is 0 whenever the port is read.)"""
+BYTES = """passed_count <= received_count <= frame_size, and received_count >= 1 where a protocol or the part for
+masters reads the buffer: fathom_line_scan calls examine only then. read_port gives read the room that is left,
+frame_size - received_count, and receive adds what read returns, which is no more, or nothing of it. What leaves the
+buffer is received_count at most: examine returns received_count, or 1, or a length that it has compared with
+received_count, of a frame, of a request of another master, or of our own request. discard passes on from passed_count
+up to that length, and remove_bytes takes it from both counts. form_of reads no byte before it has compared
+received_count with its index. fathom_line_marks moves the new bytes to the front after a scan with is_over, which
+leaves nothing there: NEED_MORE is returned only if is_over is false. NEED_MORE is returned only for a frame, an echo or
+a request of at most frame_size bytes of which some are missing, so that a full buffer is never left: the room is never
+0. (Of a line that only listens EVA sees all this: there received_count is 0 whenever the port is read.)"""
 
 QUEUE = """link.next is a pointer in each transaction of the queue: fathom_line_submit sets it to NULL as it appends the
 transaction, and only fathom_line_finish writes heard_us in its place, after the transaction was unlinked. All walks
