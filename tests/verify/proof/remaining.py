@@ -11,10 +11,12 @@ frame_size - received_count, and receive adds what read returns, which is no mor
 buffer is received_count at most: examine returns received_count, or 1, or a length that it has compared with
 received_count, of a frame, of a request of another master, or of our own request. discard passes on from passed_count
 up to that length, and remove_bytes takes it from both counts. form_of reads no byte before it has compared
-received_count with its index. fathom_line_marks moves the new bytes to the front after a scan with is_over, which
-leaves nothing there: NEED_MORE is returned only if is_over is false. NEED_MORE is returned only for a frame, an echo or
-a request of at most frame_size bytes of which some are missing, so that a full buffer is never left: the room is never
-0. (Of a line that only listens EVA sees all this: there received_count is 0 whenever the port is read.)"""
+received_count with its index. is_ours passes request_length to is_request: it is not 0 there, and encode, which has
+written that number of bytes to the buffer, returned it. fathom_line_marks moves the new bytes to the front after a scan
+with is_over, which leaves nothing there: NEED_MORE is returned only if is_over is false. NEED_MORE is returned only for
+a frame, an echo or a request of at most frame_size bytes of which some are missing, so that a full buffer is never
+left: the room is never 0. (Of a line that only listens EVA sees all this: there received_count is 0 whenever the port
+is read.)"""
 
 QUEUE = """link.next is a pointer in each transaction of the queue: fathom_line_submit sets it to NULL as it appends the
 transaction, and only fathom_line_finish writes heard_us in its place, after the transaction was unlinked. All walks
