@@ -50,6 +50,9 @@ int main(void)
         any_median(count);
     fathom_status_t status = init(NULL, any_8());
     /*@ assert status == FATHOM_ERR_ARGUMENT; */
+    fathom_sample_t sample = any_sample();
+    const bool is_median = fathom_median_sample(&median, &sample, &sample); /* in zeroed memory */
+    /*@ assert is_median == 0; */
     status = init(window, any_8_in(0, FATHOM_MEDIAN_MIN_COUNT - 1));
     /*@ assert status == FATHOM_ERR_ARGUMENT; */
     status = init(window, any_8_in(FATHOM_MEDIAN_MAX_COUNT + 1, UINT8_MAX));
