@@ -56,7 +56,7 @@ void fathom_line_finish(fathom_line_t *line, fathom_transaction_t **link, fathom
  *    request that could extend it. Units with equal addresses modulo 16 share one bit. Both can only delay a request.
  *  - If the response was complete but damaged, it will hardly arrive again: only the rest of the time-out remains. If
  *    it only seemed to begin, it may have been noise, and the real response may still be late: the full time applies.
- *  - While a cancelled request still leaves, the time does not run (update_time() in line.c).
+ *  - While a cancelled request still leaves, the time does not run (move_to() in line.c).
  */
 void fathom_line_quarantine(fathom_line_t *line)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "line_bench.h"
 
-/* line.h, rule 15: what the line concludes from frames of other masters that are no simple requests. */
+/* line.h, rule 12: what the line concludes from frames of other masters that are no simple requests. */
 
 static int set_up_masters(void **state)
 {
