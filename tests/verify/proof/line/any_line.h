@@ -134,7 +134,7 @@ fathom_listener_t *fathom_line_replace_listener(fathom_line_t *line, fathom_list
 }
 
 /* A driver that refuses its config may call this function too. */
-void fathom_line_unlisten(fathom_line_t *line, fathom_listener_t *listener)
+void fathom_line_unlisten(fathom_line_t *line, const fathom_listener_t *listener)
 {
     /*@ assert line == &any_line || line == &blank_line; */
     if (line->listener == listener) line->listener = NULL;
