@@ -148,7 +148,7 @@ static void under(const listener_t *listener, rig_damage_t damage)
 {
     const char *from = getenv("FATHOM_SEED");
     uint64_t seed = from != NULL ? strtoull(from, NULL, 10) : 0;
-    const uint64_t last = from != NULL ? seed : suite_is_long ? 1000 : 60;
+    const uint64_t last = from != NULL ? seed : suite_is_long ? 1000 : 30;
     unsigned damaged_frames = 0, damage_errors = 0, stale_errors = 0;
     judge = (judge_t){.rig = &rig};
     for (; seed <= last; seed++) {
