@@ -69,7 +69,7 @@ static void tell_remark(const setting_t *setting, const char *text)
     setting->remark(stderr, text);
 }
 
-/* How far `tell` has come with the values of one device. */
+/* The progress of `tell` through the values of one device. */
 typedef struct {
     bool is_known;    /* The device has sent a response to at least one request. */
     unsigned printed; /* Number of values that were read. */

@@ -12,7 +12,7 @@ static const struct {
                        "a value that can be no distance, or that --window or --means refuses"},
     [-FATHOM_ERR_PORT] = {"port", "the port is lost, or it is waited for"},
     [-FATHOM_ERR_NO_RESPONSE] = {"no response", "nothing that was asked for came within --timeout"},
-    [-FATHOM_ERR_CHECKSUM] = {"damaged", "what came has a wrong checksum, or is no frame of the sensor"},
+    [-FATHOM_ERR_CHECKSUM] = {"damaged", "the received bytes have a wrong checksum, or form no frame"},
     [-FATHOM_ERR_EXCEPTION] = {"exception", "the sensor has refused the request by a Modbus exception"},
     [-FATHOM_ERR_MALFORMED] = {"other response", "a response that does not fit the request"},
     [-FATHOM_ERR_STALE] = {"stale", "a sensor that sends by itself sent nothing within --timeout"},

@@ -21,8 +21,8 @@ extern "C" {
  * while it was equal at every look for `settle_us`.
  *
  * **What a program gets.** The first level that counts is a sample, and so is each new one. A level that does not
- * change is a sample again after each `period_us` (default 1 s), so that a program can tell a contact that stands
- * still from one that is not read any more. A level that does not count for `stale_us` (default 2 s) is
+ * change is a sample again after each `period_us` (default 1 s), so that a program can distinguish a contact that
+ * stands still from one that is not read any more. A level that does not count for `stale_us` (default 2 s) is
  * FATHOM_ERR_STALE.
  *
  * **How long a program can be without an outcome.** If the longest time between two polls is P, each sample or error

@@ -49,7 +49,8 @@ extern "C" {
  * poll until the outcome of the next cycle. A pause of 71 minutes or more cannot be seen, because the clock wraps: call
  * fathom_pulse_init() again after such a pause.
  *
- * A pulse of another source that is between `noise_us` and `stuck_us` long cannot be told from the sensor's.
+ * A pulse of another source that is between `noise_us` and `stuck_us` long cannot be distinguished from one of the
+ * sensor.
  */
 
 /** Default and least `cycle_us`. */
