@@ -142,8 +142,22 @@ class Terminal:
     def send(self, number):
         signal.pidfd_send_signal(self.pidfd, number)
 
+    def take_the_rest(self):
+        """Reads all that an ended program wrote. The kernel passes bytes from the slave to the master some time
+        after the write has returned, so the end of the program does not mean that its last bytes can be read. A
+        mark that is written behind them passes the same queue."""
+        mark = b'\x1b[31999m'
+        termios.tcflow(self.slave, termios.TCOON)  # writing would block if Ctrl-S is in force
+        os.write(self.slave, mark)
+        deadline = time.monotonic() + e2e.PATIENCE
+        while not self.bytes.endswith(mark):
+            assert e2e.is_ready(self.master, deadline - time.monotonic()), self.bytes
+            self.take()
+        self.bytes = self.bytes[:-len(mark)]
+        self.screen.colours.discard(31999)
+
     def finish(self):
-        """Waits for its end, and takes the rest of what it said."""
+        """Waits for the end of the program, and reads the rest of its output."""
         poller = select.poll()
         poller.register(self.master, select.POLLIN)
         poller.register(self.pidfd, select.POLLIN)
@@ -155,6 +169,7 @@ class Terminal:
             if not ready:
                 raise AssertionError(f'it still runs; the screen is\n{self.screen.text()}')
             self.take()
+        self.take_the_rest()
         return self.process.wait()
 
     def discard(self):
