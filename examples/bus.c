@@ -61,7 +61,7 @@ static bool bus_init(bus_t *bus, const fathom_uart_t *uart, const fathom_clock_t
         /* A frame that broke off is given up after this; a USB adapter holds bytes back for up to 16 ms. */
         .gap_us = 25000,
     };
-    if (fathom_line_init(&bus->line, &bus->config) != FATHOM_READY) return false;
+    if (fathom_line_init(&bus->line, &bus->config) != FATHOM_OK) return false;
     /* In turns, the HPS-167S would be asked once for each request of the slow ones: twice a second. */
     fathom_fair_share(&bus->share, &bus->line);
     bus->modbus = fathom_modbus_client(&bus->line);
@@ -84,9 +84,9 @@ static bool bus_init(bus_t *bus, const fathom_uart_t *uart, const fathom_clock_t
         .modbus.line_settings = &infrared,
         .modbus.address = 7,
     };
-    if (fathom_a16_modbus_init(&bus->a16, &a16) != FATHOM_READY ||
-        fathom_a05_modbus_init(&bus->a05, &a05) != FATHOM_READY ||
-        fathom_hps167s_init(&bus->hps, &hps) != FATHOM_READY)
+    if (fathom_a16_modbus_init(&bus->a16, &a16) != FATHOM_OK ||
+        fathom_a05_modbus_init(&bus->a05, &a05) != FATHOM_OK ||
+        fathom_hps167s_init(&bus->hps, &hps) != FATHOM_OK)
         return false;
 
     bus->sensors[A16] = fathom_a16_modbus_sensor(&bus->a16);

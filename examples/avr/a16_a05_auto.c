@@ -64,7 +64,7 @@ static bool begin_receiver(receiver_t *receiver)
     receiver->config.frame = receiver->frame;
     receiver->config.frame_size = sizeof receiver->frame;
     receiver->config.marks = fathom_line_marks;
-    return fathom_line_init_listening(&receiver->line, &receiver->config) == FATHOM_READY;
+    return fathom_line_init_listening(&receiver->line, &receiver->config) == FATHOM_OK;
 }
 
 static void turn_to(uint8_t next)
@@ -76,15 +76,15 @@ static void turn_to(uint8_t next)
 
 static bool begin(void)
 {
-    fathom_avr_clock_begin();
+    fathom_avr_clock_init();
     select = fathom_avr_output(&select_at);
-    if (!fathom_avr_usart0_begin(&usart)) return false;
+    if (!fathom_avr_usart0_init(&usart)) return false;
     sei();
     if (!begin_receiver(&receivers[A16]) || !begin_receiver(&receivers[A05])) return false;
     const fathom_a16_auto_config_t one = {.line = &receivers[A16].line, .stale_us = STALE_US};
     const fathom_a05_auto_config_t four = {.line = &receivers[A05].line, .stale_us = STALE_US};
-    if (fathom_a16_auto_init(&a16, &one) != FATHOM_READY) return false;
-    if (fathom_a05_auto_init(&a05, &four) != FATHOM_READY) return false;
+    if (fathom_a16_auto_init(&a16, &one) != FATHOM_OK) return false;
+    if (fathom_a05_auto_init(&a05, &four) != FATHOM_OK) return false;
     sensors[A16] = fathom_a16_auto_sensor(&a16);
     sensors[A05] = fathom_a05_auto_sensor(&a05);
     turn_to(A16);
@@ -100,7 +100,7 @@ static printed_t print(text_t *text, uint8_t which)
     const fathom_status_t status = fathom_poll(&sensors[which], &sample);
     if (status == FATHOM_PENDING) return NOTHING;
     text_say(text, which == A16 ? PSTR("A16 ") : PSTR("A05 "));
-    if (status == FATHOM_READY) {
+    if (status == FATHOM_OK) {
         if (which == A05) {
             text_number(text, sample.probe);
             text_say(text, PSTR(" "));
@@ -110,7 +110,7 @@ static printed_t print(text_t *text, uint8_t which)
         text_error(text, status);
     }
     text_say(text, PSTR("\r\n"));
-    return status == FATHOM_READY && which == A05 && sample.probe != PROBES ? MORE : ALL;
+    return status == FATHOM_OK && which == A05 && sample.probe != PROBES ? MORE : ALL;
 }
 
 /* How long nothing but a byte can bring anything. */

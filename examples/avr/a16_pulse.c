@@ -34,19 +34,19 @@ static fathom_a16_pwm_t tank;
 
 static bool begin(void)
 {
-    fathom_avr_clock_begin();
+    fathom_avr_clock_init();
     trigger = fathom_avr_output(&trigger_at);
     pulse = fathom_avr_input(&pulse_at, false);
     fathom_edges_init(&edges, &pulse);
     capture = fathom_edges_capture(&edges);
-    fathom_avr_icp1_begin(&edges);
-    const bool is_ready = fathom_avr_usart0_begin(&usart);
+    fathom_avr_icp1_init(&edges);
+    const bool is_ready = fathom_avr_usart0_init(&usart);
     sei();
     return is_ready &&
            fathom_a16_pwm_init(&tank, &(fathom_a16_pwm_config_t){
                                           .pulse = {.clock = &fathom_avr_clock,
                                                     .capture = &capture,
-                                                    .trigger = fathom_output_pin(&trigger)}}) == FATHOM_READY;
+                                                    .trigger = fathom_output_pin(&trigger)}}) == FATHOM_OK;
 }
 
 /* Nothing is sent to it; but a byte of noise that is not read would keep it awake. */
@@ -72,7 +72,7 @@ int main(void)
     for (;;) {
         fathom_sample_t sample;
         const fathom_status_t status = fathom_wait(&sensor, &sample, idle, NULL);
-        if (status == FATHOM_READY)
+        if (status == FATHOM_OK)
             text_sample(&text, &sample);
         else
             text_error(&text, status);

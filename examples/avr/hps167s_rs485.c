@@ -17,9 +17,9 @@
 #include <avr/interrupt.h>
 #include <avr/io.h>
 
-#include "fathom/engine/debounce.h"
 #include "fathom/engine/modbus_client.h"
 #include "fathom/engine/wait.h"
+#include "fathom/processing/debounce.h"
 #include "fathom/sensor/hps167s.h"
 #include "fathom_avr.h"
 
@@ -59,19 +59,19 @@ static fathom_debounce_t level;
 
 static bool begin(void)
 {
-    fathom_avr_clock_begin();
+    fathom_avr_clock_init();
     near_led = fathom_avr_output(&near_at); /* high, dark */
     far_led = fathom_avr_output(&far_at);
     error_led = fathom_avr_output(&error_at);
-    if (!fathom_avr_usart0_begin(&usart)) return false;
+    if (!fathom_avr_usart0_init(&usart)) return false;
     sei();
-    if (fathom_line_init(&line, &line_config) != FATHOM_READY) return false;
+    if (fathom_line_init(&line, &line_config) != FATHOM_OK) return false;
     modbus = fathom_modbus_client(&line);
     /* One retry: a single hit on the wire is no error yet. */
     const fathom_hps167s_config_t config = {.modbus.transport = &modbus, .modbus.retries = 1};
-    if (fathom_hps167s_init(&gate, &config) != FATHOM_READY) return false;
+    if (fathom_hps167s_init(&gate, &config) != FATHOM_OK) return false;
     fathom_hps167s_power_on(&gate); /* it gets its supply together with this board */
-    return fathom_debounce_init(&level, &rule) == FATHOM_READY;
+    return fathom_debounce_init(&level, &rule) == FATHOM_OK;
 }
 
 static void light(const fathom_pin_t *led, bool is_lit) { led->set(led->ctx, !is_lit); }
@@ -84,9 +84,9 @@ int main(void)
         fathom_sample_t sample;
         const fathom_status_t status = fathom_wait(&sensor, &sample, fathom_avr_idle, NULL);
         const bool is_good =
-            status == FATHOM_READY && (sample.kind == FATHOM_TARGET || sample.kind == FATHOM_NO_TARGET);
+            status == FATHOM_OK && (sample.kind == FATHOM_TARGET || sample.kind == FATHOM_NO_TARGET);
         if (is_good)
-            fathom_debounce_sample(&level, &sample);
+            fathom_debounce_add_sample(&level, &sample);
         else
             fathom_debounce_init(&level, &rule); /* no level, until a new row makes one */
         light(&near_led, level.level == FATHOM_NEAR);

@@ -39,9 +39,9 @@ int main(void)
         .channel = CHANNEL,
         .idle = &idle,
     };
-    fathom_rp2040_clock_begin(BOARD_CLK_REF_HZ);
-    fathom_rp2040_idle_begin(&idle);
-    if (!fathom_rp2040_uart_begin(&text, &text_config)) return 1;
+    fathom_rp2040_clock_init(BOARD_CLK_REF_HZ);
+    fathom_rp2040_idle_init(&idle);
+    if (!fathom_rp2040_uart_init(&text, &text_config)) return 1;
     if (!dma_uart_begin(&a16_line, &dma_config)) return 2;
     const fathom_uart_t out = fathom_rp2040_uart(&text);
     const fathom_uart_t wire = dma_uart(&a16_line);
@@ -57,10 +57,10 @@ int main(void)
                                               .marks = fathom_line_marks,
                                               .count = fathom_line_count,
                                               .counters = counters};
-    if (fathom_line_init_listening(&line, &line_config) != FATHOM_READY) return 3;
+    if (fathom_line_init_listening(&line, &line_config) != FATHOM_OK) return 3;
     fathom_a16_auto_t a16;
     const fathom_a16_auto_config_t config = {.line = &line};
-    if (fathom_a16_auto_init(&a16, &config) != FATHOM_READY) return 4;
+    if (fathom_a16_auto_init(&a16, &config) != FATHOM_OK) return 4;
     const fathom_sensor_t sensor = fathom_a16_auto_sensor(&a16);
     for (;;) {
         fathom_sample_t sample;

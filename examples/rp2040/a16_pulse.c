@@ -30,9 +30,9 @@ int main(void)
         .request = line_of_text,
         .request_size = sizeof line_of_text,
     };
-    fathom_rp2040_clock_begin(BOARD_CLK_REF_HZ);
-    fathom_rp2040_idle_begin(&idle);
-    if (!fathom_rp2040_uart_begin(&text, &text_config)) return 1;
+    fathom_rp2040_clock_init(BOARD_CLK_REF_HZ);
+    fathom_rp2040_idle_init(&idle);
+    if (!fathom_rp2040_uart_init(&text, &text_config)) return 1;
     const fathom_uart_t out = fathom_rp2040_uart(&text);
 
     /* The edges first: all others one step below the highest priority, which is where they start. */
@@ -43,14 +43,14 @@ int main(void)
     const fathom_pin_t level = fathom_rp2040_input(ECHO, false);
     fathom_edges_t edges;
     fathom_edges_init(&edges, &level);
-    fathom_rp2040_edges_begin(&echo, &edges, ECHO, &idle);
+    fathom_rp2040_edges_init(&echo, &edges, ECHO, &idle);
     const fathom_capture_t capture = fathom_edges_capture(&edges);
 
     fathom_a16_pwm_t a16;
     const fathom_a16_pwm_config_t config = {.pulse = {.clock = &fathom_rp2040_clock,
                                                       .capture = &capture,
                                                       .trigger = fathom_output_pin(&trigger)}};
-    if (fathom_a16_pwm_init(&a16, &config) != FATHOM_READY) return 2;
+    if (fathom_a16_pwm_init(&a16, &config) != FATHOM_OK) return 2;
     const fathom_sensor_t sensor = fathom_a16_pwm_sensor(&a16);
     for (;;) {
         fathom_sample_t sample;

@@ -46,10 +46,10 @@ int main(void)
         .request_size = sizeof request,
         .idle = &idle,
     };
-    fathom_rp2040_clock_begin(BOARD_CLK_REF_HZ);
-    fathom_rp2040_idle_begin(&idle);
-    if (!fathom_rp2040_uart_begin(&text, &text_config)) return 1;
-    if (!fathom_rp2040_uart_begin(&rs485, &rs485_config)) return 2;
+    fathom_rp2040_clock_init(BOARD_CLK_REF_HZ);
+    fathom_rp2040_idle_init(&idle);
+    if (!fathom_rp2040_uart_init(&text, &text_config)) return 1;
+    if (!fathom_rp2040_uart_init(&rs485, &rs485_config)) return 2;
     const fathom_uart_t out = fathom_rp2040_uart(&text);
     const fathom_uart_t wire = fathom_rp2040_uart(&rs485);
 
@@ -65,12 +65,12 @@ int main(void)
         .senders = &fathom_line_senders, /* with factory settings the sensor sends measurements unasked */
         .silence_us = FATHOM_T3_5_US(19200, 11),
     };
-    if (fathom_line_init(&line, &line_config) != FATHOM_READY) return 3;
+    if (fathom_line_init(&line, &line_config) != FATHOM_OK) return 3;
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
 
     fathom_hps167s_t hps;
     const fathom_hps167s_config_t config = {.modbus.transport = &modbus};
-    if (fathom_hps167s_init(&hps, &config) != FATHOM_READY) return 4;
+    if (fathom_hps167s_init(&hps, &config) != FATHOM_OK) return 4;
     const fathom_sensor_t sensor = fathom_hps167s_sensor(&hps);
     for (;;) {
         fathom_sample_t sample;

@@ -51,7 +51,7 @@ void timer_irq_3(void) { fathom_rp2040_idle_alarm(&idle); }
 
 static void tell(tasks_reading_t *reading, fathom_status_t status, const fathom_sample_t *sample)
 {
-    if (status == FATHOM_READY) {
+    if (status == FATHOM_OK) {
         reading->readings++;
         reading->distance_mm = sample->kind == FATHOM_TARGET ? sample->distance_mm : UINT16_MAX;
     } else {
@@ -85,12 +85,12 @@ static void read_tank(void)
         .silence_us = FATHOM_T3_5_US(9600, 10),
     };
     fathom_status_t status = fathom_line_init(&line, &line_config);
-    if (status != FATHOM_READY) end(&tank, status);
+    if (status != FATHOM_OK) end(&tank, status);
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
     fathom_a16_modbus_t a16;
     const fathom_a16_modbus_config_t config = {.modbus.transport = &modbus, .value = FATHOM_REAL_TIME};
     status = fathom_a16_modbus_init(&a16, &config);
-    if (status != FATHOM_READY) end(&tank, status);
+    if (status != FATHOM_OK) end(&tank, status);
     const fathom_sensor_t sensor = fathom_a16_modbus_sensor(&a16);
     for (;;) {
         fathom_sample_t sample;
@@ -115,12 +115,12 @@ static void read_gate(void)
         .silence_us = FATHOM_T3_5_US(19200, 11),
     };
     fathom_status_t status = fathom_line_init(&line, &line_config);
-    if (status != FATHOM_READY) end(&gate, status);
+    if (status != FATHOM_OK) end(&gate, status);
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
     fathom_hps167s_t hps;
     const fathom_hps167s_config_t config = {.modbus.transport = &modbus};
     status = fathom_hps167s_init(&hps, &config);
-    if (status != FATHOM_READY) end(&gate, status);
+    if (status != FATHOM_OK) end(&gate, status);
     const fathom_sensor_t sensor = fathom_hps167s_sensor(&hps);
     for (;;) {
         fathom_sample_t sample;
@@ -172,10 +172,10 @@ int main(void)
     };
     static task_t tank_task, gate_task, lamp_task;
     tank.distance_mm = gate.distance_mm = UINT16_MAX;
-    fathom_rp2040_clock_begin(BOARD_CLK_REF_HZ);
-    fathom_rp2040_idle_begin(&idle);
-    if (!fathom_rp2040_uart_begin(&tank_uart, &tank_config)) return 1;
-    if (!fathom_rp2040_uart_begin(&gate_uart, &gate_config)) return 2;
+    fathom_rp2040_clock_init(BOARD_CLK_REF_HZ);
+    fathom_rp2040_idle_init(&idle);
+    if (!fathom_rp2040_uart_init(&tank_uart, &tank_config)) return 1;
+    if (!fathom_rp2040_uart_init(&gate_uart, &gate_config)) return 2;
     task_start(&tank_task, read_tank);
     task_start(&gate_task, read_gate);
     task_start(&lamp_task, blink);

@@ -21,24 +21,24 @@ int main(void)
     static const fathom_stm32f4_pin_t trigger_pin = {'B', 1};
     static const fathom_stm32f4_pin_t pulse_pin = {'A', 0};
     const board_clocks_t *const clocks = board_begin();
-    fathom_stm32f4_clock_begin(clocks->timer_hz);
+    fathom_stm32f4_clock_init(clocks->timer_hz);
     const fathom_pin_t trigger = fathom_stm32f4_output(&trigger_pin);
     const fathom_pin_t level = fathom_stm32f4_input(&pulse_pin, FATHOM_STM32F4_DOWN);
     fathom_edges_init(&edges, &level);
-    if (!fathom_stm32f4_capture_begin(&pulse_pin, &edges)) return 2;
+    if (!fathom_stm32f4_capture_init(&pulse_pin, &edges)) return 2;
     const fathom_capture_t capture = fathom_edges_capture(&edges);
 
     fathom_a16_pwm_t tank;
     const fathom_a16_pwm_config_t config = {.pulse = {.clock = &fathom_stm32f4_clock,
                                                       .capture = &capture,
                                                       .trigger = fathom_output_pin(&trigger)}};
-    if (fathom_a16_pwm_init(&tank, &config) != FATHOM_READY) return 2;
+    if (fathom_a16_pwm_init(&tank, &config) != FATHOM_OK) return 2;
     const fathom_sensor_t sensor = fathom_a16_pwm_sensor(&tank);
     fathom_stm32f4_idle_t idle = {NULL, 0};
     for (;;) {
         fathom_sample_t sample;
         const fathom_status_t status = fathom_wait(&sensor, &sample, fathom_stm32f4_idle, &idle);
-        if (status == FATHOM_READY)
+        if (status == FATHOM_OK)
             board_use(&sample);
         else
             board_fail(status);

@@ -19,7 +19,7 @@ void tim5_interrupt(void) { fathom_stm32f4_tim5_interrupt(); }
 int main(void)
 {
     const board_clocks_t *const clocks = board_begin();
-    fathom_stm32f4_clock_begin(clocks->timer_hz);
+    fathom_stm32f4_clock_init(clocks->timer_hz);
     const fathom_stm32f4_usart_config_t port = {
         .request = request,
         .request_size = sizeof request,
@@ -30,7 +30,7 @@ int main(void)
         .rx = {'A', 3},
         .driver = {'A', 1},
     };
-    if (!fathom_stm32f4_usart_begin(&usart, &port)) return 2;
+    if (!fathom_stm32f4_usart_init(&usart, &port)) return 2;
     const fathom_uart_t uart = fathom_stm32f4_usart(&usart);
     const fathom_line_config_t config = {
         .uart = &uart,
@@ -43,18 +43,18 @@ int main(void)
         .silence_us = FATHOM_T3_5_US(19200, 11),
     };
     fathom_line_t line;
-    if (fathom_line_init(&line, &config) != FATHOM_READY) return 2;
+    if (fathom_line_init(&line, &config) != FATHOM_OK) return 2;
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
     fathom_hps167s_t gate;
     const fathom_hps167s_config_t gate_config = {.modbus.transport = &modbus};
-    if (fathom_hps167s_init(&gate, &gate_config) != FATHOM_READY) return 2;
+    if (fathom_hps167s_init(&gate, &gate_config) != FATHOM_OK) return 2;
 
     const fathom_sensor_t sensor = fathom_hps167s_sensor(&gate);
     fathom_stm32f4_idle_t idle = {&usart, 1};
     for (int readings = 0; readings != 10;) {
         fathom_sample_t sample;
         const fathom_status_t status = fathom_wait(&sensor, &sample, fathom_stm32f4_idle, &idle);
-        if (status == FATHOM_READY) {
+        if (status == FATHOM_OK) {
             readings++;
             board_use(&sample);
         } else {

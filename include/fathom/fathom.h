@@ -31,12 +31,11 @@
 #include "fathom/sensor/hps167s_settings.h" /* what can be set: commands #6 to #15 */
 
 /* What is made of their readings */
-#include "fathom/sensor/alarm.h" /* thresholds, hold times, and a safe side where the distance is not known */
-#include "fathom/sensor/level.h" /* a tank's level and volume */
-#include "fathom/sensor/median.h" /* a median, and a gate that drops spikes */
+#include "fathom/processing/alarm.h" /* thresholds, hold times, and a safe side where the distance is not known */
+#include "fathom/processing/level.h"  /* a tank's level and volume */
+#include "fathom/processing/median.h" /* a median, and a gate that drops spikes */
 
 /* What goes with them */
-#include "fathom/engine/debounce.h"      /* a switch made of distances, by the A16's rule */
 #include "fathom/engine/edges.h"         /* pulses by a pin interrupt, without capture hardware */
 #include "fathom/engine/fair_share.h"    /* sensors of different speed on one line */
 #include "fathom/engine/line_pins.h"     /* a line whose TX triggers or selects, or whose RX is a switch */
@@ -44,6 +43,7 @@
 #include "fathom/engine/sensor.h"        /* fathom_poll, for all of them */
 #include "fathom/engine/transaction.h"   /* a request, its response, and a protocol's table for a line */
 #include "fathom/engine/wait.h"          /* fathom_wait, which blocks */
+#include "fathom/processing/debounce.h"  /* a switch made of distances, by the A16's rule */
 #include "fathom/version.h"              /* which Fathom this is */
 
 #endif

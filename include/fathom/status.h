@@ -10,7 +10,8 @@ extern "C" {
  * @file
  * @brief The result of any call that can fail or take time.
  *
- * Errors are negative, so test for them with `status < 0`. No status is a reading: "no target" and "the sensor reports a
+ * Success is 0, a call that is not finished is positive, and errors are negative: test for them with `status < 0`. No
+ * status is a reading: "no target" and "the sensor reports a
  * fault" are samples (sample.h), because the sensor did respond.
  *
  * The numbers are part of the interface. They fit an int8_t, and later versions only add numbers.
@@ -29,7 +30,7 @@ extern "C" {
  * |  6 | Only one copy of a write arrived, and it is not known if the line echoes. | FATHOM_ERR_ECHO    |
  * |  7 | None of these.                                                      | FATHOM_ERR_NO_RESPONSE   |
  *
- * A response that is accepted ends the attempt with FATHOM_READY, whatever was observed before. A driver may refuse an
+ * A response that is accepted ends the attempt with FATHOM_OK, whatever was observed before. A driver may refuse an
  * accepted response because of its values; that is FATHOM_ERR_MALFORMED too. A sensor that sends without a request has
  * two such errors: FATHOM_ERR_CHECKSUM if bytes arrived but no valid frame, else FATHOM_ERR_STALE.
  *
@@ -45,17 +46,17 @@ extern "C" {
  * @brief A check of a programming mistake in the sources, empty by default.
  *
  * If you compile the sources, you can stop at such a mistake: `-include assert.h -DFATHOM_ASSERT=assert`. The checks
- * are: a driver is used before its init function returned FATHOM_READY, and a driver is initialised while its request
+ * are: a driver is used before its init function returned FATHOM_OK, and a driver is initialised while its request
  * is queued. In both cases the function also returns its error.
  */
 
 /** @brief The result of a call. */
 typedef enum {
-    /** @brief The call is finished, and its outputs are new. */
-    FATHOM_READY = 1,
+    /** @brief The call succeeded: it is finished, and its outputs are new. */
+    FATHOM_OK = 0,
 
     /** @brief The call is not finished and has written nothing. Call again. */
-    FATHOM_PENDING = 0,
+    FATHOM_PENDING = 1,
 
     /**
      * @brief An argument or a member of a config is outside its range, or the object is not initialised.
@@ -136,7 +137,7 @@ typedef enum {
 /**
  * @brief Returns the name of a status without FATHOM_ and ERR_, for messages and logs.
  *
- * For example "READY" or "NO_RESPONSE". The function costs 227 bytes of flash on a Cortex-M0+. On an AVR constants lie
+ * For example "OK" or "NO_RESPONSE". The function costs 227 bytes of flash on a Cortex-M0+. On an AVR constants lie
  * in RAM: 179 bytes of it; print the number there. If a program does not call the function, it is not linked.
  *
  * @return A constant string, never NULL. "?" for any other number.

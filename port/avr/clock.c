@@ -11,7 +11,7 @@ static volatile uint32_t periods_us; /* the clock when Timer1 was last 0 */
 
 ISR(TIMER1_OVF_vect) { periods_us += PERIOD_US; }
 
-void fathom_avr_clock_begin(void)
+void fathom_avr_clock_init(void)
 {
     TCCR1A = 0; /* it counts to 65535 and drives no pin */
     TCCR1B = _BV(CS11);

@@ -35,7 +35,7 @@ extern "C" {
  */
 
 /* Timer1 runs from here on, from 0; the program uses it for nothing else. Called before all the others. */
-void fathom_avr_clock_begin(void);
+void fathom_avr_clock_init(void);
 
 /* us since then; wraps as hal.h has it. Right as long as interrupts are never off for longer than half a period of
  * Timer1: 16 ms at 16 MHz, 32 ms at 8 MHz. */
@@ -92,7 +92,7 @@ extern fathom_avr_usart_counters_t fathom_avr_usart0_counters;
 
 /* Makes it ready. `config` and its memory outlive the use of the port. false: these line settings cannot be reached,
  * or there is no memory for a request; nothing has changed then. */
-bool fathom_avr_usart0_begin(const fathom_avr_usart_config_t *config);
+bool fathom_avr_usart0_init(const fathom_avr_usart_config_t *config);
 
 /*
  * Edges for a pulse, each fed to `edges`, which has been initialised (a pin for it: fathom_avr_input). Both may be
@@ -104,8 +104,8 @@ bool fathom_avr_usart0_begin(const fathom_avr_usart_config_t *config);
  * int0: the time is that of the interrupt, so an edge is late by what else runs with interrupts off: the longest of
  * the other interrupts, if several are in use.
  */
-void fathom_avr_icp1_begin(fathom_edges_t *edges);
-void fathom_avr_int0_begin(fathom_edges_t *edges);
+void fathom_avr_icp1_init(fathom_edges_t *edges);
+void fathom_avr_int0_init(fathom_edges_t *edges);
 
 /*
  * For fathom_wait, or a main loop that has nothing to do: sleeps (idle mode) until a byte has been received or an

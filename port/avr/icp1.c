@@ -26,7 +26,7 @@ ISR(TIMER1_CAPT_vect)
     fathom_avr_happened = 1;
 }
 
-void fathom_avr_icp1_begin(fathom_edges_t *edges)
+void fathom_avr_icp1_init(fathom_edges_t *edges)
 {
     DDRB &= (uint8_t)~_BV(DDB0);
     const uint8_t sreg = SREG;

@@ -10,7 +10,7 @@ ISR(INT0_vect)
     fathom_avr_happened = 1;
 }
 
-void fathom_avr_int0_begin(fathom_edges_t *edges)
+void fathom_avr_int0_init(fathom_edges_t *edges)
 {
     EIMSK &= (uint8_t)~_BV(INT0); /* a pointer is stored in halves */
     seen = edges;

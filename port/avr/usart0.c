@@ -245,7 +245,7 @@ const fathom_uart_t fathom_avr_usart0 = {
     .leaves_in_us = usart_leaves_in_us,
 };
 
-bool fathom_avr_usart0_begin(const fathom_avr_usart_config_t *new_config)
+bool fathom_avr_usart0_init(const fathom_avr_usart_config_t *new_config)
 {
     const uint16_t divisor = divisor_of(&new_config->line);
     if ((new_config->request == NULL) || (new_config->request_size == 0) || (divisor == 0)) return false;

@@ -22,7 +22,7 @@ extern "C" {
  *     const fathom_clock_t clock = fathom_posix_clock();
  *     const fathom_libmodbus_config_t config = {.clock = &clock};
  *     static fathom_libmodbus_t port;
- *     if (fathom_libmodbus_init(&port, modbus, &config) != FATHOM_READY) return 1;
+ *     if (fathom_libmodbus_init(&port, modbus, &config) != FATHOM_OK) return 1;
  *     const fathom_modbus_t transport = fathom_libmodbus(&port);
  *     ... .modbus = &transport in the configs of as many drivers as there are sensors ...
  *     ... fathom_wait(&sensor, &sample, fathom_libmodbus_wait, &port) ...
@@ -123,7 +123,7 @@ typedef struct {
  * Makes a port ready. Sets the modbus_t to MODBUS_ERROR_RECOVERY_NONE: with any other, libmodbus sleeps and connects
  * again when sending fails. Whether the modbus_t is connected is not looked at.
  *
- * Returns FATHOM_READY; FATHOM_ERR_ARGUMENT: a pointer is NULL, the clock's too; FATHOM_ERR_UNSUPPORTED: libmodbus is
+ * Returns FATHOM_OK; FATHOM_ERR_ARGUMENT: a pointer is NULL, the clock's too; FATHOM_ERR_UNSUPPORTED: libmodbus is
  * to switch a transceiver with RTS.
  */
 fathom_status_t fathom_libmodbus_init(fathom_libmodbus_t *port, modbus_t *modbus,

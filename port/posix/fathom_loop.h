@@ -50,7 +50,7 @@ typedef struct fathom_loop_sensor fathom_loop_sensor_t;
 struct fathom_loop_sensor {
     fathom_sensor_t sensor;
     /*
-     * What fathom_poll has returned, whatever it is but FATHOM_PENDING. sample: NULL unless that is FATHOM_READY.
+     * What fathom_poll has returned, whatever it is but FATHOM_PENDING. sample: NULL unless that is FATHOM_OK.
      * FATHOM_ERR_PORT comes once when the port was lost, to each of its sensors, and not again before the port was
      * back; the source's error_text has the reason. What a sensor has to say right when its port is back, of the time
      * in which it was away, is dropped. It may stop the loop and add to it; it removes nothing, and a step or a run

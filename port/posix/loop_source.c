@@ -65,7 +65,7 @@ static bool is_well(const fathom_loop_source_t *source)
 {
     fathom_sample_t sample;
     for (const fathom_loop_sensor_t *node = source->sensors; node != NULL; node = node->next) {
-        fathom_status_t status = FATHOM_READY;
+        fathom_status_t status = FATHOM_OK;
         for (unsigned turn = 0; turn != TURNS && status != FATHOM_PENDING; turn++) {
             status = fathom_poll(&node->sensor, &sample);
             if (status == FATHOM_ERR_PORT) return false;
@@ -107,8 +107,8 @@ static void lose(fathom_loop_source_t *source)
     source->is_open = false;
     for (const fathom_loop_sensor_t *node = source->sensors; node != NULL; node = node->next) {
         fathom_sample_t sample;
-        for (unsigned turn = 0; turn != TURNS && fathom_poll(&node->sensor, &sample) == FATHOM_READY; turn++)
-            node->take(node->ctx, FATHOM_READY, &sample);
+        for (unsigned turn = 0; turn != TURNS && fathom_poll(&node->sensor, &sample) == FATHOM_OK; turn++)
+            node->take(node->ctx, FATHOM_OK, &sample);
         node->take(node->ctx, FATHOM_ERR_PORT, NULL);
     }
     if (now_us - source->opened_us >= STEADY_US) source->pause_us = 0;
@@ -119,16 +119,16 @@ static void lose(fathom_loop_source_t *source)
 
 /* ---- polling ---- */
 
-/* FATHOM_PENDING: all is done; FATHOM_READY: there may be more; FATHOM_ERR_PORT: it is lost. */
+/* FATHOM_PENDING: all is done; FATHOM_OK: there may be more; FATHOM_ERR_PORT: it is lost. */
 static fathom_status_t poll_sensor(const fathom_loop_sensor_t *node)
 {
     fathom_sample_t sample;
     for (unsigned turn = 0; turn != TURNS; turn++) {
         const fathom_status_t status = fathom_poll(&node->sensor, &sample);
         if (status == FATHOM_PENDING || status == FATHOM_ERR_PORT) return status;
-        node->take(node->ctx, status, status == FATHOM_READY ? &sample : NULL);
+        node->take(node->ctx, status, status == FATHOM_OK ? &sample : NULL);
     }
-    return FATHOM_READY;
+    return FATHOM_OK;
 }
 
 /* The same of all that is there. */
@@ -139,7 +139,7 @@ static fathom_status_t poll_source(fathom_loop_source_t *source)
     for (const fathom_loop_sensor_t *node = source->sensors; node != NULL; node = node->next) {
         const fathom_status_t its = poll_sensor(node);
         if (its == FATHOM_ERR_PORT) return its;
-        if (its == FATHOM_READY) status = its;
+        if (its == FATHOM_OK) status = its;
     }
     return status;
 }
@@ -180,7 +180,7 @@ void fathom_loop_turn(fathom_loop_source_t *source)
         if (source->is_watched) (void)control(source, EPOLL_CTL_MOD);
     }
     if (source->is_due) return; /* one of its sensors has woken it */
-    uint32_t us = status == FATHOM_READY ? 0 : due_us(source);
+    uint32_t us = status == FATHOM_OK ? 0 : due_us(source);
     /* What is never done is not let take all of a processor. */
     if (us != 0)
         source->zeros = 0;

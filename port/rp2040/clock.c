@@ -4,7 +4,7 @@
 
 enum { HZ_PER_MHZ = 1000000 };
 
-void fathom_rp2040_clock_begin(uint32_t ref_hz)
+void fathom_rp2040_clock_init(uint32_t ref_hz)
 {
     if (ref_hz != 0u) RP2040_WATCHDOG_TICK = (ref_hz / HZ_PER_MHZ) | RP2040_WATCHDOG_TICK_ENABLE;
     rp2040_clear(&RP2040_RESETS_RESET, RP2040_RESETS_TIMER);

@@ -2,8 +2,8 @@
 #include "fathom_rp2040.h"
 #include "rp2040.h"
 
-void fathom_rp2040_edges_begin(fathom_rp2040_edges_t *pin, fathom_edges_t *edges, unsigned gpio,
-                               fathom_rp2040_idle_t *idle)
+void fathom_rp2040_edges_init(fathom_rp2040_edges_t *pin, fathom_edges_t *edges, unsigned gpio,
+                              fathom_rp2040_idle_t *idle)
 {
     pin->edges = edges;
     pin->idle = idle;

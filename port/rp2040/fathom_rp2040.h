@@ -39,7 +39,7 @@ enum { FATHOM_RP2040_GPIOS = 30, FATHOM_RP2040_ALARMS = 4 };
  * Starts TIMER and its ticks of 1 us. ref_hz: clk_ref, whole MHz up to 511 (12000000 from the usual crystal); 0: the
  * ticks run already, as they do after the start-up of the maker's SDK. Called before all the others.
  */
-void fathom_rp2040_clock_begin(uint32_t ref_hz);
+void fathom_rp2040_clock_init(uint32_t ref_hz);
 
 /* us; wraps as hal.h has it. One load. It stands still while a debugger halts a core (TIMER's DBGPAUSE). */
 extern const fathom_clock_t fathom_rp2040_clock;
@@ -53,7 +53,7 @@ typedef struct {
     volatile bool has_news;
 } fathom_rp2040_idle_t;
 
-void fathom_rp2040_idle_begin(fathom_rp2040_idle_t *idle);
+void fathom_rp2040_idle_init(fathom_rp2040_idle_t *idle);
 
 /*
  * ctx: a fathom_rp2040_idle_t. Sleeps (WFI) until an interrupt comes or max_us have passed, at most 2^31 - 1, and
@@ -130,7 +130,7 @@ typedef struct {
  * cannot be reached, a pin is not one of this UART's, there is no memory for a request, or the UART does not leave
  * reset, since it has no clock. Then it is not to be used.
  */
-bool fathom_rp2040_uart_begin(fathom_rp2040_uart_t *uart, const fathom_rp2040_uart_config_t *config);
+bool fathom_rp2040_uart_init(fathom_rp2040_uart_t *uart, const fathom_rp2040_uart_config_t *config);
 
 /*
  * The HAL's view of it. Errors are reported byte by byte: a read ends before and after such a byte. No
@@ -182,8 +182,8 @@ typedef struct {
  * Feeds `edges` from both edges of a pin (made by fathom_rp2040_input, edges initialised with it or without). All three
  * outlive the use. Enables IO_IRQ_BANK0.
  */
-void fathom_rp2040_edges_begin(fathom_rp2040_edges_t *pin, fathom_edges_t *edges, unsigned gpio,
-                               fathom_rp2040_idle_t *idle);
+void fathom_rp2040_edges_init(fathom_rp2040_edges_t *pin, fathom_edges_t *edges, unsigned gpio,
+                              fathom_rp2040_idle_t *idle);
 
 /*
  * For IO_IRQ_BANK0, once for each pin. The time of an edge is that of the interrupt, so an edge is late by whatever

@@ -2,7 +2,7 @@
 #include "fathom_rp2040.h"
 #include "internal/alarm.h"
 
-void fathom_rp2040_idle_begin(fathom_rp2040_idle_t *idle)
+void fathom_rp2040_idle_init(fathom_rp2040_idle_t *idle)
 {
     idle->has_news = true;
     fathom_rp2040_alarm_enable(idle->alarm);

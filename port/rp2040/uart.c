@@ -222,7 +222,7 @@ void fathom_rp2040_uart_interrupt(fathom_rp2040_uart_t *uart)
     if ((pending & RP2040_UART_INT_TX) != 0u) feed(uart);
 }
 
-bool fathom_rp2040_uart_begin(fathom_rp2040_uart_t *uart, const fathom_rp2040_uart_config_t *config)
+bool fathom_rp2040_uart_init(fathom_rp2040_uart_t *uart, const fathom_rp2040_uart_config_t *config)
 {
     if ((config->request == NULL) || (config->request_size == 0u)) return false;
     uart->config = config;

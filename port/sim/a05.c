@@ -61,7 +61,7 @@ static uint32_t command(fathom_sim_device_t *device, uint8_t address, uint8_t co
 {
     const fathom_sim_a05_t *const a05 = fathom_sim_a05_of(device);
     const uint32_t spread_us = 10000;
-    switch (fathom_dyp_55aa_values(code)) {
+    switch (fathom_dyp_55aa_value_count(code)) {
     case PROBES:
         return fathom_sim_device_between_us(device, a05->all_us - spread_us, a05->all_us);
     case 1:

@@ -142,7 +142,7 @@ static bool deaf(const fathom_sim_device_t *device, bool full_duplex)
     return !device->listens || device->busy || sending || starting || device->alarms[POWER].set;
 }
 
-void fathom_sim_device_hear_begin(fathom_sim_device_t *device, uint32_t now_us)
+void fathom_sim_device_receive_start(fathom_sim_device_t *device, uint32_t now_us)
 {
     /* Several bytes may be on the line at once: they garble each other, which the line reports at their end. */
     device->others_on_wire++;
@@ -151,8 +151,8 @@ void fathom_sim_device_hear_begin(fathom_sim_device_t *device, uint32_t now_us)
         device->is_invalid = true;
 }
 
-void fathom_sim_device_hear_end(fathom_sim_device_t *device, const fathom_line_settings_t *settings,
-                                uint8_t byte, bool good, bool full_duplex, uint32_t now_us)
+void fathom_sim_device_receive_end(fathom_sim_device_t *device, const fathom_line_settings_t *settings,
+                                   uint8_t byte, bool good, bool full_duplex, uint32_t now_us)
 {
     device->others_on_wire--;
     if (deaf(device, full_duplex)) {

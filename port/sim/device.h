@@ -228,10 +228,10 @@ struct fathom_sim_device {
 /* What the line calls. Times never go back. */
 void fathom_sim_device_power_on(fathom_sim_device_t *device, uint32_t now_us);
 void fathom_sim_device_power_off(fathom_sim_device_t *device, uint32_t for_us, uint32_t now_us);
-void fathom_sim_device_hear_begin(fathom_sim_device_t *device, uint32_t now_us);
+void fathom_sim_device_receive_start(fathom_sim_device_t *device, uint32_t now_us);
 /* good: false for a byte that collided with another. full_duplex: hearing and sending have a wire each. */
-void fathom_sim_device_hear_end(fathom_sim_device_t *device, const fathom_line_settings_t *settings,
-                                uint8_t byte, bool good, bool full_duplex, uint32_t now_us);
+void fathom_sim_device_receive_end(fathom_sim_device_t *device, const fathom_line_settings_t *settings,
+                                   uint8_t byte, bool good, bool full_duplex, uint32_t now_us);
 /* One of those that hold the RX pin low begins or ceases to; by: FATHOM_SIM_HELD_BY_... */
 void fathom_sim_device_hold_rx(fathom_sim_device_t *device, uint8_t by, bool low, uint32_t now_us);
 void fathom_sim_device_sent(fathom_sim_device_t *device, uint32_t now_us); /* a byte of it has left */

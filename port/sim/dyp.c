@@ -10,7 +10,7 @@ static bool hear(fathom_sim_device_t *device, const uint8_t *frame, uint8_t leng
 {
     (void)now_us;
     if (length < 2 || frame[0] != START_1 || frame[1] != START_2) return false;
-    if (length < FATHOM_DYP_REQUEST_LENGTH || !fathom_dyp_55aa_valid(frame, length)) {
+    if (length < FATHOM_DYP_REQUEST_LENGTH || !fathom_dyp_55aa_is_valid(frame, length)) {
         device->counters.crc_errors++;
         return true;
     }
@@ -40,7 +40,7 @@ static bool hear(fathom_sim_device_t *device, const uint8_t *frame, uint8_t leng
 static uint8_t measure(fathom_sim_device_t *device, uint8_t command, uint8_t *bytes, uint32_t now_us)
 {
     uint16_t values[4];
-    const uint8_t count = fathom_dyp_55aa_values(command);
+    const uint8_t count = fathom_dyp_55aa_value_count(command);
     const uint8_t first =
         command == FATHOM_DYP_ALL_PROBES ? 1 : (uint8_t)(command - FATHOM_DYP_FIRST_PROBE + 1);
     for (uint8_t i = 0; i < count; i++)

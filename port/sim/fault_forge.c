@@ -27,7 +27,7 @@ static void finish(fathom_sim_frame_t *frame, uint8_t length)
         frame->bytes[length + 1] = (uint8_t)(crc >> 8);
         frame->length = (uint8_t)(length + CRC);
     } else {
-        frame->bytes[length] = fathom_dyp_sum(frame->bytes, length);
+        frame->bytes[length] = fathom_dyp_checksum(frame->bytes, length);
         frame->length = (uint8_t)(length + SUM);
     }
 }

@@ -87,7 +87,7 @@ static void byte_begins(fathom_sim_line_t *line, fathom_sim_sender_t *sender,
     }
     sender->on_wire = true;
     for (fathom_sim_device_t *at = line->devices; at != NULL; at = at->next)
-        if (hears(line, at, device)) fathom_sim_device_hear_begin(at, line->now_us);
+        if (hears(line, at, device)) fathom_sim_device_receive_start(at, line->now_us);
     if (device == NULL) hold_rx(line, FATHOM_SIM_HELD_BY_BYTE, true);
 }
 
@@ -101,9 +101,9 @@ static void byte_ends(fathom_sim_line_t *line, fathom_sim_sender_t *sender, fath
     if (device != NULL || line->echo) arrive(line, sender, byte, mark);
     for (fathom_sim_device_t *at = line->devices; at != NULL; at = at->next)
         if (hears(line, at, device))
-            fathom_sim_device_hear_end(at, &sender->settings, byte,
-                                       !sender->corrupted && (mark & BYTE_ERRORS) == 0, line->full_duplex,
-                                       line->now_us);
+            fathom_sim_device_receive_end(at, &sender->settings, byte,
+                                          !sender->corrupted && (mark & BYTE_ERRORS) == 0, line->full_duplex,
+                                          line->now_us);
     if (device == NULL) hold_rx(line, FATHOM_SIM_HELD_BY_BYTE, false);
     if (device != NULL) fathom_sim_device_sent(device, line->now_us);
 }
@@ -248,9 +248,9 @@ void fathom_sim_break(fathom_sim_line_t *line, bool on, uint32_t now_us)
     line->in_break = on;
     for (fathom_sim_device_t *at = line->devices; at != NULL; at = at->next) {
         if (on)
-            fathom_sim_device_hear_begin(at, line->now_us);
+            fathom_sim_device_receive_start(at, line->now_us);
         else
-            fathom_sim_device_hear_end(at, &line->settings, 0, false, line->full_duplex, line->now_us);
+            fathom_sim_device_receive_end(at, &line->settings, 0, false, line->full_duplex, line->now_us);
     }
     hold_rx(line, FATHOM_SIM_HELD_BY_BREAK, on);
 }

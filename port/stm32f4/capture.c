@@ -46,14 +46,14 @@ void fathom_stm32f4_tim2_interrupt(void)
     if (((why & CC2) != 0u) && !fall_first) feed(false, fall_us);
 }
 
-bool fathom_stm32f4_capture_begin(const fathom_stm32f4_pin_t *pin, fathom_edges_t *edges)
+bool fathom_stm32f4_capture_init(const fathom_stm32f4_pin_t *pin, fathom_edges_t *edges)
 {
     if ((pin->port != 'A') || ((pin->number != 0u) && (pin->number != 5u) && (pin->number != 15u)))
         return false;
     TIM2[TIM_DIER] = 0;
     captured = edges;
     fed_us = TIM2[TIM_CNT];
-    (void)fathom_stm32f4_pin_begin(pin, GPIO_ALTERNATE, FATHOM_STM32F4_DOWN, TIM2_ALTERNATE);
+    (void)fathom_stm32f4_pin_init(pin, GPIO_ALTERNATE, FATHOM_STM32F4_DOWN, TIM2_ALTERNATE);
     TIM2[TIM_CCER] = 0; /* the selection can be written while it is off */
     TIM2[TIM_CCMR1] = CCMR1_IC1_TI1 | CCMR1_IC2_TI1 | CCMR1_IC1F_8 | CCMR1_IC2F_8;
     TIM2[TIM_CCER] = CCER_CC1E | CCER_CC2E | CCER_CC2P;

@@ -12,7 +12,7 @@ static void begin_timer(volatile uint32_t *timer, uint32_t timer_hz)
     timer[TIM_EGR] = TIM_EGR_UG; /* the prescaler holds from an update on, which also sets CNT to 0 */
 }
 
-void fathom_stm32f4_clock_begin(uint32_t timer_hz)
+void fathom_stm32f4_clock_init(uint32_t timer_hz)
 {
     RCC_APB1ENR |= RCC_TIM2 | RCC_TIM5;
     (void)RCC_APB1ENR;

@@ -53,7 +53,7 @@ fathom_pin_t fathom_stm32f4_input(const fathom_stm32f4_pin_t *pin, fathom_stm32f
 /* TIM2 counts us from here on, from 0, and the program does not set it up. It wraps at 2^32 by itself. timer_hz: what
  * TIM2 and TIM5 are clocked with, a whole number of MHz; twice PCLK1 where APB1 is divided, else PCLK1 (RM0090 7.2).
  * Called before all the others. */
-void fathom_stm32f4_clock_begin(uint32_t timer_hz);
+void fathom_stm32f4_clock_init(uint32_t timer_hz);
 extern const fathom_clock_t fathom_stm32f4_clock;
 
 /* Read by begin, but for the pins, which outlive the use of the UART. */
@@ -88,7 +88,7 @@ typedef struct {
  * Makes it ready, with its pins, and enables its interrupt in the NVIC. false, and nothing has changed: no such
  * number, these settings cannot be reached, no memory for a request, tx or rx is no pin.
  */
-bool fathom_stm32f4_usart_begin(fathom_stm32f4_usart_t *usart, const fathom_stm32f4_usart_config_t *config);
+bool fathom_stm32f4_usart_init(fathom_stm32f4_usart_t *usart, const fathom_stm32f4_usart_config_t *config);
 
 /* For the interrupt of this USART: 37, 38, 39, 52, 53, 71 for 1..6. */
 void fathom_stm32f4_usart_interrupt(fathom_stm32f4_usart_t *usart);
@@ -114,7 +114,7 @@ fathom_uart_t fathom_stm32f4_usart(fathom_stm32f4_usart_t *usart);
  * pin: one of TIM2_CH1: PA0, PA5 or PA15; false: it is none of them. There is one capture: a second begin replaces it.
  * NEVER RUN but on memory: no simulator here has TIM2's captures.
  */
-bool fathom_stm32f4_capture_begin(const fathom_stm32f4_pin_t *pin, fathom_edges_t *edges);
+bool fathom_stm32f4_capture_init(const fathom_stm32f4_pin_t *pin, fathom_edges_t *edges);
 
 /* For interrupt 28, TIM2's, which capture_begin enables. */
 void fathom_stm32f4_tim2_interrupt(void);

@@ -26,8 +26,8 @@ void fathom_stm32f4_pin_mode(const fathom_stm32f4_pin_t *pin, uint32_t mode)
     set_field(&registers_of(pin)[MODER], 2u * pin->number, 3, mode);
 }
 
-bool fathom_stm32f4_pin_begin(const fathom_stm32f4_pin_t *pin, uint32_t mode, fathom_stm32f4_pull_t pull,
-                              uint32_t alternate)
+bool fathom_stm32f4_pin_init(const fathom_stm32f4_pin_t *pin, uint32_t mode, fathom_stm32f4_pull_t pull,
+                             uint32_t alternate)
 {
     if (!fathom_stm32f4_is_pin(pin)) return false;
     volatile uint32_t *const gpio = registers_of(pin);
@@ -61,7 +61,7 @@ fathom_pin_t fathom_stm32f4_output(const fathom_stm32f4_pin_t *pin)
         RCC_AHB1ENR |= 1u << (pin->port - 'A');
         (void)RCC_AHB1ENR;
         fathom_stm32f4_pin_set(pin, true); /* before it is driven */
-        (void)fathom_stm32f4_pin_begin(pin, GPIO_OUTPUT, FATHOM_STM32F4_FLOATS, 0);
+        (void)fathom_stm32f4_pin_init(pin, GPIO_OUTPUT, FATHOM_STM32F4_FLOATS, 0);
     }
     return hal;
 }
@@ -69,6 +69,6 @@ fathom_pin_t fathom_stm32f4_output(const fathom_stm32f4_pin_t *pin)
 fathom_pin_t fathom_stm32f4_input(const fathom_stm32f4_pin_t *pin, fathom_stm32f4_pull_t pull)
 {
     const fathom_pin_t hal = {NULL, pin_get, (void *)pin};
-    (void)fathom_stm32f4_pin_begin(pin, GPIO_INPUT, pull, 0);
+    (void)fathom_stm32f4_pin_init(pin, GPIO_INPUT, pull, 0);
     return hal;
 }

@@ -141,7 +141,7 @@ static int usart_set_break(void *ctx, bool on)
     return 1;
 }
 
-bool fathom_stm32f4_usart_begin(fathom_stm32f4_usart_t *usart, const fathom_stm32f4_usart_config_t *config)
+bool fathom_stm32f4_usart_init(fathom_stm32f4_usart_t *usart, const fathom_stm32f4_usart_config_t *config)
 {
     if ((config->number < 1u) || (config->number > PLACES) || (config->request == NULL) ||
         (config->request_size == 0u) || !fathom_stm32f4_is_pin(&config->tx) ||
@@ -159,11 +159,11 @@ bool fathom_stm32f4_usart_begin(fathom_stm32f4_usart_t *usart, const fathom_stm3
     usart->driver = config->driver;
     usart->noise = 0;
     usart->is_break = false;
-    if (fathom_stm32f4_pin_begin(&config->driver, GPIO_OUTPUT, FATHOM_STM32F4_DOWN, 0))
+    if (fathom_stm32f4_pin_init(&config->driver, GPIO_OUTPUT, FATHOM_STM32F4_DOWN, 0))
         fathom_stm32f4_pin_set(&config->driver, false);
     set_up(usart, &config->line, by);
-    (void)fathom_stm32f4_pin_begin(&config->tx, GPIO_ALTERNATE, FATHOM_STM32F4_UP, place->alternate);
-    (void)fathom_stm32f4_pin_begin(&config->rx, GPIO_ALTERNATE, FATHOM_STM32F4_UP, place->alternate);
+    (void)fathom_stm32f4_pin_init(&config->tx, GPIO_ALTERNATE, FATHOM_STM32F4_UP, place->alternate);
+    (void)fathom_stm32f4_pin_init(&config->rx, GPIO_ALTERNATE, FATHOM_STM32F4_UP, place->alternate);
     fathom_stm32f4_enable_interrupt(place->interrupt);
     return true;
 }

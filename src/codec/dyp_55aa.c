@@ -8,7 +8,7 @@ enum { COMMAND = 3, OVERHEAD = 5 };
 
 enum { START = 0x55, SECOND_START = 0xAA };
 
-uint8_t fathom_dyp_55aa_values(uint8_t command)
+uint8_t fathom_dyp_55aa_value_count(uint8_t command)
 {
     if (command == FATHOM_DYP_ALL_PROBES) return FATHOM_DYP_PROBES;
     return ((uint8_t)(command - FATHOM_DYP_FIRST_PROBE) < FATHOM_DYP_PROBES) ? 1 : 0;
@@ -16,7 +16,7 @@ uint8_t fathom_dyp_55aa_values(uint8_t command)
 
 uint8_t fathom_dyp_55aa_response_length(uint8_t command)
 {
-    const uint8_t values = fathom_dyp_55aa_values(command);
+    const uint8_t values = fathom_dyp_55aa_value_count(command);
     return ((values != 0u) || (command == FATHOM_DYP_SET_ADDRESS)) ? (uint8_t)(OVERHEAD + (2u * values)) : 0u;
 }
 
@@ -32,7 +32,7 @@ static uint8_t *put_head(uint8_t *frame, uint8_t address, uint8_t command)
 static uint8_t seal(uint8_t *frame, uint8_t *end)
 {
     const uint8_t length = (uint8_t)(end - frame);
-    *end = fathom_dyp_sum(frame, length);
+    *end = fathom_dyp_checksum(frame, length);
     return (uint8_t)(length + 1u);
 }
 
@@ -41,28 +41,28 @@ uint8_t fathom_dyp_55aa_encode_request(uint8_t *frame, uint8_t address, uint8_t 
     return seal(frame, put_head(frame, address, command));
 }
 
-uint8_t fathom_dyp_55aa_length(const uint8_t *bytes, uint8_t have)
+uint8_t fathom_dyp_55aa_frame_length(const uint8_t *bytes, uint8_t have)
 {
     if ((bytes[0] != START) || ((have > 1u) && (bytes[1] != SECOND_START))) return 0;
     return (have > COMMAND) ? fathom_dyp_55aa_response_length(bytes[COMMAND]) : (COMMAND + 1);
 }
 
-bool fathom_dyp_55aa_valid(const uint8_t *frame, uint8_t length)
+bool fathom_dyp_55aa_is_valid(const uint8_t *frame, uint8_t length)
 {
     const uint8_t last = (uint8_t)(length - 1u);
-    return fathom_dyp_sum(frame, last) == frame[last];
+    return fathom_dyp_checksum(frame, last) == frame[last];
 }
 
 void fathom_dyp_55aa_decode(const uint8_t *frame, uint16_t *values)
 {
-    fathom_dyp_stream_decode(&frame[COMMAND], values, fathom_dyp_55aa_values(frame[COMMAND]));
+    fathom_dyp_stream_decode(&frame[COMMAND], values, fathom_dyp_55aa_value_count(frame[COMMAND]));
 }
 
 uint8_t fathom_dyp_55aa_encode_response(uint8_t *frame, uint8_t address, uint8_t command,
                                         const uint16_t *values)
 {
     uint8_t *at = put_head(frame, address, command);
-    for (uint8_t left = fathom_dyp_55aa_values(command); left != 0u; left--) {
+    for (uint8_t left = fathom_dyp_55aa_value_count(command); left != 0u; left--) {
         at[0] = (uint8_t)(*values >> 8);
         at[1] = (uint8_t)*values;
         at += 2;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/codec/dyp_stream.h"
 
-uint8_t fathom_dyp_sum(const uint8_t *bytes, uint8_t length)
+uint8_t fathom_dyp_checksum(const uint8_t *bytes, uint8_t length)
 {
     uint8_t sum = 0;
     for (; length != 0u; length--) {
@@ -11,7 +11,7 @@ uint8_t fathom_dyp_sum(const uint8_t *bytes, uint8_t length)
     return sum;
 }
 
-bool fathom_dyp_stream_valid(const uint8_t *frame, uint8_t length)
+bool fathom_dyp_stream_is_valid(const uint8_t *frame, uint8_t length)
 {
     const uint8_t start = *frame;
     uint8_t sum = 0;
@@ -42,6 +42,6 @@ uint8_t fathom_dyp_stream_encode(uint8_t *frame, const uint16_t *values, uint8_t
         length++;
         values++;
     }
-    frame[length] = fathom_dyp_sum(frame, length);
+    frame[length] = fathom_dyp_checksum(frame, length);
     return (uint8_t)(length + 1u);
 }

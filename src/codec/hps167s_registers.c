@@ -11,7 +11,7 @@ enum { MIN_MM = 80, MAX_MM = 30000 };
 #define MIN_OVER_RANGE 65530u
 #define FAILURE        65535u
 
-static uint8_t byte(const uint16_t *registers, uint8_t n) { return fathom_hps167s_byte(registers, n); }
+static uint8_t byte(const uint16_t *registers, uint8_t n) { return fathom_hps167s_get_byte(registers, n); }
 
 /* ---- #1, #3, #9 ---- */
 
@@ -63,7 +63,7 @@ bool fathom_hps167s_may_be_details(const uint16_t registers[11])
 
 /* ---- #2, #15 ---- */
 
-uint32_t fathom_hps167s_reconnect_time_ms(uint16_t first, uint16_t second, bool low_word_first)
+uint32_t fathom_hps167s_decode_reconnect_time(uint16_t first, uint16_t second, bool low_word_first)
 {
     return low_word_first ? (((uint32_t)second << 16) | first) : (((uint32_t)first << 16) | second);
 }
@@ -74,10 +74,10 @@ void fathom_hps167s_encode_reconnect_time(uint32_t ms, bool low_word_first, uint
     registers[low_word_first ? 0 : 1] = (uint16_t)ms;
 }
 
-uint32_t fathom_hps167s_told_reconnect_time_ms(const uint16_t registers[4], bool low_word_first)
+uint32_t fathom_hps167s_configured_reconnect_time_ms(const uint16_t registers[4], bool low_word_first)
 {
     enum { FIRST = FATHOM_HPS167S_RECONNECT_BYTE };
-    return fathom_hps167s_reconnect_time_ms(
+    return fathom_hps167s_decode_reconnect_time(
         (uint16_t)((byte(registers, FIRST) * 256u) + byte(registers, FIRST + 1)),
         (uint16_t)((byte(registers, FIRST + 2) * 256u) + byte(registers, FIRST + 3)), low_word_first);
 }
@@ -88,7 +88,7 @@ void fathom_hps167s_decode_configuration(const uint16_t registers[4], bool low_w
     configuration->termination = byte(registers, FATHOM_HPS167S_TERMINATION_BYTE) != 0u;
     configuration->measures_after_power_on = byte(registers, FATHOM_HPS167S_MEASURES_BYTE) != 0u;
     configuration->warm_up_s = byte(registers, FATHOM_HPS167S_WARM_UP_BYTE);
-    configuration->reconnect_time_ms = fathom_hps167s_told_reconnect_time_ms(registers, low_word_first);
+    configuration->reconnect_time_ms = fathom_hps167s_configured_reconnect_time_ms(registers, low_word_first);
     configuration->baud_code = byte(registers, FATHOM_HPS167S_BAUD_BYTE);
     configuration->baud = fathom_hps167s_baud(configuration->baud_code);
 }
@@ -120,7 +120,7 @@ fathom_status_t fathom_hps167s_complete_limits(fathom_hps167s_limits_t *limits)
     if (limits->min_mm == 0u) limits->min_mm = MIN_MM;
     const bool is_good = (limits->min_mm <= limits->max_mm) && (limits->max_mm < limits->over_range_mm) &&
                          (limits->over_range_mm < FAILURE);
-    return is_good ? FATHOM_READY : FATHOM_ERR_ARGUMENT;
+    return is_good ? FATHOM_OK : FATHOM_ERR_ARGUMENT;
 }
 
 bool fathom_hps167s_is_abnormal(const uint16_t registers[4])
@@ -166,7 +166,7 @@ fathom_status_t fathom_hps167s_decode_within(const fathom_hps167s_limits_t *limi
     sample->ambient = (uint8_t)registers[2];
     sample->precision = registers[3];
     sample->interference = false;
-    return FATHOM_READY;
+    return FATHOM_OK;
 }
 
 fathom_status_t fathom_hps167s_decode(const uint16_t registers[4], fathom_sample_t *sample)

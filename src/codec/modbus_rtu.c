@@ -172,7 +172,7 @@ fathom_status_t fathom_modbus_rtu_parse_response(fathom_modbus_message_t *messag
         get_values(message->values, &frame[SIZE + 1], count);
     }
     head[UNIT] = frame[UNIT];
-    return FATHOM_READY;
+    return FATHOM_OK;
 }
 
 /* ---- the server's side ---- */
@@ -192,7 +192,7 @@ fathom_status_t fathom_modbus_rtu_parse_request(fathom_modbus_message_t *message
     message->exception = 0;
     const uint8_t function = frame[FUNCTION];
     const uint8_t count = frame[COUNT];
-    if (function == WRITE) return FATHOM_READY;
+    if (function == WRITE) return FATHOM_OK;
     if ((function != READ) && (function != WRITE_MANY)) {
         message->exception = FATHOM_MODBUS_ILLEGAL_FUNCTION;
         return FATHOM_ERR_EXCEPTION;
@@ -203,7 +203,7 @@ fathom_status_t fathom_modbus_rtu_parse_request(fathom_modbus_message_t *message
         return FATHOM_ERR_EXCEPTION;
     }
     if (function == WRITE_MANY) get_values(message->values, frame + DATA, count);
-    return FATHOM_READY;
+    return FATHOM_OK;
 }
 
 uint8_t fathom_modbus_rtu_encode_response(const fathom_modbus_message_t *message, uint8_t *frame)

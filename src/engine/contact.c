@@ -67,7 +67,7 @@ fathom_status_t fathom_contact_init(fathom_contact_t *contact, const fathom_cont
     contact->sequence = 0;
     contact->last_kind = 0;
     settle(contact);
-    return FATHOM_READY;
+    return FATHOM_OK;
 }
 
 void fathom_contact_set_near_is_high(fathom_contact_t *contact, bool near_is_high)
@@ -76,7 +76,7 @@ void fathom_contact_set_near_is_high(fathom_contact_t *contact, bool near_is_hig
     settle(contact);
 }
 
-void fathom_contact_hold(fathom_contact_t *contact, bool hold) { contact->is_held = hold; }
+void fathom_contact_set_hold(fathom_contact_t *contact, bool hold) { contact->is_held = hold; }
 
 /* Returns true if the level at this look has a meaning. */
 static bool is_clear(const fathom_contact_t *contact)
@@ -142,7 +142,7 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
         const uint8_t kind = (contact->is_high == contact->near_is_high) ? FATHOM_NEAR : FATHOM_FAR;
         if ((kind != contact->last_kind) || is_period_over) {
             set_sample(contact, kind, sample);
-            return FATHOM_READY;
+            return FATHOM_OK;
         }
     } else if (!counted && fathom_count_down(&contact->stale_us, passed_us)) {
         contact->stale_us = contact->timing.stale_us;

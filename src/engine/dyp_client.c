@@ -43,9 +43,9 @@ static uint8_t encode(const fathom_transaction_t *transaction, uint8_t *frame)
 static uint16_t check(const uint8_t *frame, uint8_t length)
 {
     if ((length == FATHOM_DYP_MAX_RESPONSE) && (frame[NEXT] == frame[0]) && (frame[NEXT + 1] == frame[1]) &&
-        fathom_dyp_55aa_valid(frame, NEXT))
+        fathom_dyp_55aa_is_valid(frame, NEXT))
         return 1;
-    return !fathom_dyp_55aa_valid(frame, length);
+    return !fathom_dyp_55aa_is_valid(frame, length);
 }
 
 static bool is_request(const fathom_transaction_t *transaction, const uint8_t *frame, uint8_t have)
@@ -60,12 +60,12 @@ static fathom_status_t parse_response(fathom_transaction_t *transaction, const u
     if (frame[COMMAND] != command_of(message->head)) return FATHOM_ERR_MALFORMED;
     fathom_dyp_55aa_decode(frame, message->values);
     message->head[0] = frame[ADDRESS];
-    return FATHOM_READY;
+    return FATHOM_OK;
 }
 
 /* No request may collide: with an 8-bit sum, a damaged request can become the command that sets the address. */
 static const fathom_protocol_t protocol = {.encode = encode,
-                                           .length = fathom_dyp_55aa_length,
+                                           .length = fathom_dyp_55aa_frame_length,
                                            .check = check,
                                            .is_request = is_request,
                                            .parse_response = parse_response,
@@ -87,11 +87,11 @@ fathom_status_t fathom_dyp_client_submit(fathom_line_t *line, fathom_modbus_requ
     return (head[0] != FATHOM_LINE_ALL_UNITS) ? start(line, request) : FATHOM_ERR_ARGUMENT;
 }
 
-fathom_status_t fathom_dyp_client_set_every_address(fathom_line_t *line, fathom_modbus_request_t *request,
+fathom_status_t fathom_dyp_client_broadcast_address(fathom_line_t *line, fathom_modbus_request_t *request,
                                                     uint8_t address)
 {
     if ((address == FATHOM_LINE_ALL_UNITS) || (address == FATHOM_LINE_ANY_UNIT)) return FATHOM_ERR_ARGUMENT;
-    if (fathom_line_has(line, &request->transaction)) return FATHOM_ERR_BUSY;
+    if (fathom_line_is_queued(line, &request->transaction)) return FATHOM_ERR_BUSY;
     fathom_modbus_write_single_register(&request->message, address, ADDRESS_REGISTER, address);
     return start(line, request);
 }

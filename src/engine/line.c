@@ -55,7 +55,7 @@ fathom_status_t fathom_line_begin(fathom_line_t *line, const fathom_line_config_
     line->echo = config->echo;
     line->polled_us = clock_us(config->clock);
     line->age = AGE_OLD;
-    return FATHOM_READY;
+    return FATHOM_OK;
 }
 
 /* ---- Time ---- */
@@ -79,7 +79,7 @@ static void move_to(fathom_line_t *line, uint32_t now_us)
         line->quarantined_units = 0;
 }
 
-uint32_t fathom_line_heard_us(const fathom_line_t *line) { return line->polled_us - line->silent_us; }
+uint32_t fathom_line_last_byte_us(const fathom_line_t *line) { return line->polled_us - line->silent_us; }
 
 /* ---- The listener ---- */
 
@@ -95,7 +95,7 @@ fathom_status_t fathom_line_listen(fathom_line_t *line, fathom_listener_t *liste
     if ((listener != NULL) && (line->listener != NULL) && (line->listener != listener))
         return FATHOM_ERR_BUSY;
     line->listener = listener;
-    return FATHOM_READY;
+    return FATHOM_OK;
 }
 
 void fathom_line_unlisten(fathom_line_t *line, const fathom_listener_t *listener)
@@ -117,7 +117,7 @@ void fathom_line_pass(fathom_line_t *line, uint8_t from, uint8_t length)
         fathom_line_add(line, FATHOM_LINE_DROPPED_BYTES, length);
     else
         listener->receive(listener, &line->config->frame[from], length, line->is_after_gap,
-                          fathom_line_heard_us(line));
+                          fathom_line_last_byte_us(line));
     line->is_after_gap = false;
 }
 
@@ -335,7 +335,7 @@ fathom_status_t fathom_line_break(fathom_line_t *line, bool on)
     if (!is_initialised(line)) return FATHOM_ERR_ARGUMENT;
     const fathom_uart_t *const uart = line->config->uart;
     if (uart->set_break == NULL) return FATHOM_ERR_UNSUPPORTED;
-    if (is_busy(line)) return on ? FATHOM_ERR_BUSY : FATHOM_READY; /* TX is not low while a request leaves. */
+    if (is_busy(line)) return on ? FATHOM_ERR_BUSY : FATHOM_OK; /* TX is not low while a request leaves. */
     const int result = uart->set_break(uart->ctx, on);
     (void)begin_turn(line);
     if (result > 0) {
@@ -345,7 +345,7 @@ fathom_status_t fathom_line_break(fathom_line_t *line, bool on)
             line->phase = FATHOM_LINE_IN_BREAK;
             line->wait = WAIT_NONE;
         }
-        return FATHOM_READY;
+        return FATHOM_OK;
     }
     if (!on && is_in_break(line)) {
         begin_ending(line);

@@ -32,7 +32,7 @@ void fathom_line_finish(fathom_line_t *line, fathom_transaction_t **link, fathom
         if (line->phase >= FATHOM_LINE_PORT_BUSY) fathom_line_free_wire(line, FATHOM_LINE_IDLE);
     }
     *link = transaction->link.next;
-    transaction->link.heard_us = fathom_line_heard_us(line);
+    transaction->link.heard_us = fathom_line_last_byte_us(line);
     transaction->status = (int8_t)status;
 }
 
@@ -89,7 +89,7 @@ static fathom_status_t error_of_attempt(const fathom_line_t *line)
 void fathom_line_end_attempt(fathom_line_t *line)
 {
     if (!expects_response(line)) {
-        fathom_line_finish(line, &line->head, FATHOM_READY);
+        fathom_line_finish(line, &line->head, FATHOM_OK);
         return;
     }
     const fathom_status_t error = error_of_attempt(line);

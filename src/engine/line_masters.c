@@ -93,7 +93,7 @@ static form_t form_of(const uint8_t *frame, uint8_t have)
     form.is_sum_right = false;
     if ((form.length != 0u) && (form.length <= have))
         form.is_sum_right =
-            is_dyp ? fathom_dyp_55aa_valid(frame, form.length) : (fathom_crc16(frame, form.length) == 0u);
+            is_dyp ? fathom_dyp_55aa_is_valid(frame, form.length) : (fathom_crc16(frame, form.length) == 0u);
     return form;
 }
 

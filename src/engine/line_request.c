@@ -250,7 +250,7 @@ static bool can_send(const fathom_line_config_t *config)
 fathom_status_t fathom_line_init(fathom_line_t *line, const fathom_line_config_t *config)
 {
     const fathom_status_t status = fathom_line_begin(line, config, &requesting);
-    if ((status != FATHOM_READY) || can_send(config)) return status;
+    if ((status != FATHOM_OK) || can_send(config)) return status;
     line->kind = NULL;
     line->config = NULL;
     return FATHOM_ERR_ARGUMENT;
@@ -301,11 +301,11 @@ void fathom_line_cancel_unit(fathom_line_t *line, uint8_t address)
     }
 }
 
-bool fathom_line_has(const fathom_line_t *line, const fathom_transaction_t *transaction)
+bool fathom_line_is_queued(const fathom_line_t *line, const fathom_transaction_t *transaction)
 {
     const fathom_transaction_t *queued = line->head;
     while ((queued != NULL) && (queued != transaction)) queued = queued->link.next;
     return queued != NULL;
 }
 
-uint8_t fathom_line_echo(const fathom_line_t *line) { return line->echo; }
+uint8_t fathom_line_get_echo(const fathom_line_t *line) { return line->echo; }

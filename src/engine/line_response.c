@@ -95,8 +95,8 @@ static bool serve(fathom_line_t *line, uint8_t address)
             (transaction->protocol->parse_response != protocol->parse_response))
             continue;
         const fathom_status_t status = protocol->parse_response(transaction, line->config->frame);
-        if ((status != FATHOM_READY) && (status != FATHOM_ERR_EXCEPTION)) continue;
-        fathom_line_add(line, (status == FATHOM_READY) ? FATHOM_LINE_RESPONSES : FATHOM_LINE_EXCEPTIONS, 1);
+        if ((status != FATHOM_OK) && (status != FATHOM_ERR_EXCEPTION)) continue;
+        fathom_line_add(line, (status == FATHOM_OK) ? FATHOM_LINE_RESPONSES : FATHOM_LINE_EXCEPTIONS, 1);
         fathom_line_note_sender(line, SENDER_RESPONSE, 0);
         if (line->sender != SENDER_NONE) fathom_line_add(line, FATHOM_LINE_MAYBE_UNSOLICITED, 1);
         fathom_line_finish(line, link, status);

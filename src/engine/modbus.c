@@ -14,7 +14,7 @@ static uint32_t due_us(void *ctx) { return fathom_line_due_us(ctx); }
 
 static bool has(void *ctx, const fathom_modbus_request_t *request)
 {
-    return fathom_line_has(ctx, &request->transaction);
+    return fathom_line_is_queued(ctx, &request->transaction);
 }
 
 fathom_modbus_t fathom_modbus_over_line(fathom_line_t *line,

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "fathom/engine/modbus_setting.h"
+#include "fathom/engine/internal/modbus_setting.h"
 
 enum { READ_OLD = 0, PROBE_NEW = 1, WRITE = 2, CONFIRM_NEW = 3, CONFIRM_OLD = 4, WRITE_UNREAD = 5 };
 
@@ -57,7 +57,7 @@ static fathom_status_t new_was_probed(fathom_modbus_unit_t *unit, fathom_status_
     restore_address(unit);
     unit->step = WRITE;
     if (status == FATHOM_ERR_NO_RESPONSE) return FATHOM_PENDING;
-    const bool is_heard = (status == FATHOM_READY) || (status == FATHOM_ERR_EXCEPTION) ||
+    const bool is_heard = (status == FATHOM_OK) || (status == FATHOM_ERR_EXCEPTION) ||
                           (status == FATHOM_ERR_CHECKSUM) || (status == FATHOM_ERR_MALFORMED);
     return is_heard ? FATHOM_ERR_IN_USE : status;
 }
@@ -95,9 +95,9 @@ static fathom_status_t written(fathom_modbus_unit_t *unit, const fathom_modbus_s
 static fathom_status_t confirmed(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting,
                                  fathom_status_t status, uint32_t value)
 {
-    if ((status == FATHOM_READY) && (value == setting->value)) {
+    if ((status == FATHOM_OK) && (value == setting->value)) {
         unit->unconfirmed &= (uint16_t)~setting_bit(unit);
-        return FATHOM_READY;
+        return FATHOM_OK;
     }
     if (unit->step == CONFIRM_NEW) {
         unit->step = CONFIRM_OLD;
@@ -124,12 +124,12 @@ static fathom_status_t go_on(fathom_modbus_unit_t *unit, const fathom_modbus_set
     }
 }
 
-fathom_status_t fathom_modbus_next_is_blind(fathom_modbus_unit_t *unit)
+fathom_status_t fathom_modbus_write_next_unchecked(fathom_modbus_unit_t *unit)
 {
     if (unit->transport == NULL) return FATHOM_ERR_ARGUMENT;
     if ((unit->setting != 0u) && !fathom_modbus_unit_give_way(unit)) return FATHOM_ERR_BUSY;
     unit->is_blind = true;
-    return FATHOM_READY;
+    return FATHOM_OK;
 }
 
 fathom_status_t fathom_modbus_set(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting)

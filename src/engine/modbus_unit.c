@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "fathom/engine/modbus_unit.h"
+#include "fathom/engine/internal/modbus_unit.h"
 
 #include "../common.h"
 
@@ -122,7 +122,7 @@ void fathom_modbus_unit_poll(fathom_modbus_unit_t *unit)
     unit->attempts = transaction->attempts;
     if (transaction->status == FATHOM_PENDING) return;
     unit->state = ANSWERED;
-    count_one((transaction->status == FATHOM_READY) ? &unit->responses : &unit->failures);
+    count_one((transaction->status == FATHOM_OK) ? &unit->responses : &unit->failures);
     back_off(unit);
 }
 
@@ -193,7 +193,7 @@ fathom_status_t fathom_modbus_unit_init(fathom_modbus_unit_t *unit, const fathom
     unit->retries = config->retries;
     unit->address = ((address != 0u) || config->address_zero) ? address : 1u;
     unit->polled_us = clock_us(config->transport->clock);
-    return FATHOM_READY;
+    return FATHOM_OK;
 }
 
 /* ---- Requests ---- */

@@ -32,7 +32,7 @@ static fathom_status_t set_reading(fathom_pulse_reading_t *reading, uint8_t kind
     reading->width_us = width_us;
     reading->time_us = time_us;
     reading->kind = kind;
-    return FATHOM_READY;
+    return FATHOM_OK;
 }
 
 /* The cycle is over and no pulse has ended the wait. */
@@ -96,7 +96,7 @@ fathom_status_t fathom_pulse_init(fathom_pulse_meter_t *meter, const fathom_puls
     fathom_status_t status = FATHOM_ERR_ARGUMENT;
     clear(meter, sizeof *meter);
     if (configure(meter, config)) status = fathom_trigger_init(&meter->trigger);
-    if (status != FATHOM_READY) clear(meter, sizeof *meter);
+    if (status != FATHOM_OK) clear(meter, sizeof *meter);
     return status;
 }
 
@@ -106,11 +106,11 @@ fathom_status_t fathom_pulse_poll(fathom_pulse_meter_t *meter, fathom_pulse_read
     const fathom_capture_t *const capture = meter->capture;
     fathom_status_t status = FATHOM_PENDING;
     if (capture == NULL) return FATHOM_ERR_ARGUMENT;
-    fathom_trigger_look(trigger);
+    fathom_trigger_update(trigger);
     if (meter->is_waiting) status = take(meter, reading);
     if (!meter->is_waiting && fathom_trigger_is_due(trigger)) capture->arm(capture->ctx);
     const fathom_status_t driven = fathom_trigger_drive(trigger, !meter->is_waiting);
-    if (driven == FATHOM_READY) {
+    if (driven == FATHOM_OK) {
         meter->is_waiting = true;
         meter->short_us = 0;
         return status;

@@ -134,7 +134,7 @@ static void take(fathom_stream_t *stream, uint8_t byte, uint32_t time_us)
         stream->undecided_count++;
     const bool is_due = stream->is_expected && (stream->undecided_count == length);
     if (is_due) stream->is_expected = false;
-    if ((stream->run_count >= length) && fathom_dyp_stream_valid(stream->storage, length))
+    if ((stream->run_count >= length) && fathom_dyp_stream_is_valid(stream->storage, length))
         judge(stream, is_due, time_us);
     else if (is_due)
         count(stream, FATHOM_STREAM_DAMAGED);
@@ -176,7 +176,7 @@ fathom_status_t fathom_stream_start(fathom_stream_t *stream, uint32_t now_us)
     stream->is_expected = false;
     stream->is_heard = false;
     stream->is_new = false;
-    return FATHOM_READY;
+    return FATHOM_OK;
 }
 
 fathom_status_t fathom_stream_init(fathom_stream_t *stream, const fathom_stream_config_t *config,
@@ -209,7 +209,7 @@ static uint32_t left_us(uint32_t us, uint32_t since_us, uint32_t now_us)
 fathom_status_t fathom_stream_poll(fathom_stream_t *stream, uint32_t now_us)
 {
     const uint32_t stale_us = stream->listener.stale_us;
-    fathom_status_t status = FATHOM_READY;
+    fathom_status_t status = FATHOM_OK;
     if (left_us(stream->listener.gap_us, stream->candidate_us, now_us) == 0u)
         accept(stream, FATHOM_STREAM_AFTER_SILENCE);
     if (stream->is_new && is_too_old(time_since_us(now_us, stream->time_us), stale_us)) {
@@ -223,7 +223,7 @@ fathom_status_t fathom_stream_poll(fathom_stream_t *stream, uint32_t now_us)
         status = stream->is_heard ? FATHOM_ERR_CHECKSUM : FATHOM_ERR_STALE;
     }
     stream->since_us = now_us;
-    stream->is_heard = (status == FATHOM_READY) && (stream->undecided_count != 0u);
+    stream->is_heard = (status == FATHOM_OK) && (stream->undecided_count != 0u);
     stream->is_new = false;
     return status;
 }

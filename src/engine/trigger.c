@@ -11,7 +11,7 @@ static fathom_status_t set_level(fathom_trigger_t *trigger, uint8_t level)
     const fathom_output_t *const output = &trigger->output;
     const fathom_status_t status = output->set(output->ctx, level);
     const bool was_refused = trigger->refused;
-    trigger->refused = (status != FATHOM_READY) && (status != FATHOM_ERR_PORT);
+    trigger->refused = (status != FATHOM_OK) && (status != FATHOM_ERR_PORT);
     if (!trigger->refused) return status;
     const uint32_t now_us = clock_us(trigger->clock);
     if (was_refused && (time_since_us(now_us, trigger->refused_us) < FATHOM_TRIGGER_REFUSED_US))
@@ -34,7 +34,7 @@ fathom_status_t fathom_trigger_init(fathom_trigger_t *trigger)
     return output->set(output->ctx, FATHOM_OUTPUT_REST);
 }
 
-void fathom_trigger_look(fathom_trigger_t *trigger)
+void fathom_trigger_update(fathom_trigger_t *trigger)
 {
     const uint32_t now_us = clock_us(trigger->clock);
     (void)fathom_count_down(&trigger->left_us, time_since_us(now_us, trigger->polled_us));
@@ -53,12 +53,12 @@ fathom_status_t fathom_trigger_drive(fathom_trigger_t *trigger, bool may_begin)
     const bool is_due = was_low ? (low_left_us(trigger) == 0u) : (may_begin && (trigger->left_us == 0u));
     if (!is_due) return FATHOM_PENDING;
     const fathom_status_t status = set_level(trigger, was_low ? FATHOM_OUTPUT_HIGH : FATHOM_OUTPUT_LOW);
-    if (status != FATHOM_READY) return status;
+    if (status != FATHOM_OK) return status;
     trigger->low = !was_low;
     if (!was_low) {
         trigger->polled_us = clock_us(trigger->clock);
         trigger->left_us = trigger->period_us;
-        return FATHOM_READY;
+        return FATHOM_OK;
     }
     /* The sensor could miss the next falling edge without a high time in front of it. */
     if (trigger->left_us < trigger->low_us) trigger->left_us = trigger->low_us;
@@ -74,7 +74,7 @@ uint32_t fathom_trigger_due_us(const fathom_trigger_t *trigger, uint32_t until_u
 
 fathom_status_t fathom_trigger_deinit(fathom_trigger_t *trigger)
 {
-    const fathom_status_t status = trigger->low ? set_level(trigger, FATHOM_OUTPUT_HIGH) : FATHOM_READY;
-    if (status == FATHOM_READY) trigger->low = false;
+    const fathom_status_t status = trigger->low ? set_level(trigger, FATHOM_OUTPUT_HIGH) : FATHOM_OK;
+    if (status == FATHOM_OK) trigger->low = false;
     return status;
 }

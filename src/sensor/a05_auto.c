@@ -23,7 +23,7 @@ fathom_status_t fathom_a05_auto_init(fathom_a05_auto_t *sensor, const fathom_a05
     sensor->was_odd = true; /* before the first frame there is none that was not */
     sensor->select = config->select;
     if (config->probes <= ALL_PROBES) status = fathom_dyp_auto_init(base, FATHOM_A05_MAX_MM);
-    if (status != FATHOM_READY) {
+    if (status != FATHOM_OK) {
         fathom_dyp_auto_deinit(base);
         clear(sensor, sizeof *sensor);
     }
@@ -43,8 +43,8 @@ fathom_status_t fathom_a05_auto_select(fathom_a05_auto_t *sensor, fathom_dyp_val
     else if (sensor->selecting)
         level = FATHOM_OUTPUT_HIGH;
     const bool is_needed = low || (sensor->select.set != NULL);
-    const fathom_status_t status = is_needed ? fathom_output_set(&sensor->select, level) : FATHOM_READY;
-    if (status != FATHOM_READY) return (status == FATHOM_PENDING) ? FATHOM_ERR_BUSY : status;
+    const fathom_status_t status = is_needed ? fathom_output_set(&sensor->select, level) : FATHOM_OK;
+    if (status != FATHOM_OK) return (status == FATHOM_PENDING) ? FATHOM_ERR_BUSY : status;
     sensor->selecting = low;
     sensor->select_left_us = FATHOM_A05_SELECT_US;
     sensor->polled_us = clock_us(base->line->config->clock);
@@ -55,7 +55,7 @@ fathom_status_t fathom_a05_auto_select(fathom_a05_auto_t *sensor, fathom_dyp_val
 static fathom_status_t end_selection(fathom_a05_auto_t *sensor)
 {
     const fathom_status_t status = fathom_output_set(&sensor->select, FATHOM_OUTPUT_HIGH);
-    if (status == FATHOM_READY) sensor->selecting = false;
+    if (status == FATHOM_OK) sensor->selecting = false;
     return status;
 }
 
@@ -67,13 +67,13 @@ static fathom_status_t release(fathom_a05_auto_t *sensor)
     sensor->polled_us = now_us;
     if (!sensor->selecting || !fathom_count_down(&sensor->select_left_us, passed_us)) return FATHOM_PENDING;
     const fathom_status_t status = end_selection(sensor);
-    return (status == FATHOM_READY) ? FATHOM_PENDING : status;
+    return (status == FATHOM_OK) ? FATHOM_PENDING : status;
 }
 
 fathom_status_t fathom_a05_auto_deinit(fathom_a05_auto_t *sensor)
 {
     fathom_dyp_auto_deinit(&sensor->base);
-    return sensor->selecting ? end_selection(sensor) : FATHOM_READY;
+    return sensor->selecting ? end_selection(sensor) : FATHOM_OK;
 }
 
 /* ---- reading ---- */
@@ -109,7 +109,7 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     fathom_status_t status = fathom_dyp_measurement_next(measurement, sample);
     if (status != FATHOM_PENDING) return status;
     status = fathom_dyp_auto_take(&sensor->base);
-    if (status == FATHOM_READY) {
+    if (status == FATHOM_OK) {
         measurement->left = believed(sensor);
         status = fathom_dyp_measurement_next(measurement, sample);
     }

@@ -64,7 +64,7 @@ static fathom_status_t submit_either(void *ctx, fathom_modbus_request_t *request
     const uint8_t *const head = request->message.head;
     if (head[1] != FATHOM_MODBUS_WRITE_SINGLE_REGISTER) return fathom_dyp_client_submit(ctx, request);
     request->transaction.timeout_us = ONE_PROBE_TIMEOUT_US;
-    return fathom_dyp_client_set_every_address(ctx, request, head[5]);
+    return fathom_dyp_client_broadcast_address(ctx, request, head[5]);
 }
 
 /* Measures the first probe; the unit that responds is at the address of the request. */
@@ -77,7 +77,7 @@ static fathom_status_t read_address(const fathom_modbus_setting_t *setting, uint
     return status;
 }
 
-fathom_status_t fathom_a05_dyp_set_every_address(fathom_a05_dyp_t *sensor, uint8_t address)
+fathom_status_t fathom_a05_dyp_broadcast_address(fathom_a05_dyp_t *sensor, uint8_t address)
 {
     fathom_modbus_unit_t *const unit = &sensor->base.unit;
     const fathom_modbus_t *const transport = unit->transport;
@@ -109,11 +109,11 @@ fathom_status_t fathom_a05_dyp_find(fathom_a05_dyp_find_t *find, fathom_line_t *
     }
     (void)fathom_line_poll(line); /* A broken port ends the request. */
     if (request->transaction.status == FATHOM_PENDING) {
-        if (fathom_line_has(line, &request->transaction)) return FATHOM_PENDING;
+        if (fathom_line_is_queued(line, &request->transaction)) return FATHOM_PENDING;
         request->transaction.status = FATHOM_ERR_CANCELLED; /* The line was initialised again. */
     }
     find->is_asked = false;
-    if (request->transaction.status == FATHOM_READY) *address = request->message.head[0];
+    if (request->transaction.status == FATHOM_OK) *address = request->message.head[0];
     return (fathom_status_t)request->transaction.status;
 }
 

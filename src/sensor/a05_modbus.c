@@ -41,9 +41,9 @@ void fathom_a05_modbus_cancel(fathom_a05_modbus_t *sensor) { fathom_dyp_modbus_d
 
 void fathom_a05_modbus_power_on(fathom_a05_modbus_t *sensor) { fathom_dyp_modbus_power_on(&sensor->base); }
 
-fathom_status_t fathom_a05_modbus_address(fathom_a05_modbus_t *sensor, uint8_t *address)
+fathom_status_t fathom_a05_modbus_get_address(fathom_a05_modbus_t *sensor, uint8_t *address)
 {
-    return fathom_dyp_modbus_address(&sensor->base, address);
+    return fathom_dyp_modbus_get_address(&sensor->base, address);
 }
 
 fathom_status_t fathom_a05_modbus_set_address(fathom_a05_modbus_t *sensor, uint8_t address)
@@ -51,9 +51,9 @@ fathom_status_t fathom_a05_modbus_set_address(fathom_a05_modbus_t *sensor, uint8
     return fathom_dyp_modbus_set_address(&sensor->base, address);
 }
 
-fathom_status_t fathom_a05_modbus_set_address_to_0_perhaps_for_ever(fathom_a05_modbus_t *sensor)
+fathom_status_t fathom_a05_modbus_set_address_0(fathom_a05_modbus_t *sensor)
 {
-    return fathom_dyp_modbus_set_address_to_0(&sensor->base);
+    return fathom_dyp_modbus_set_address_0(&sensor->base);
 }
 
 fathom_sensor_t fathom_a05_modbus_sensor(fathom_a05_modbus_t *sensor)

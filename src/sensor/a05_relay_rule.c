@@ -17,12 +17,12 @@ fathom_status_t fathom_a05_relay_rule_init(fathom_a05_relay_rule_t *rule,
     own.equal = config->equal;
     clear(rule, sizeof *rule);
     if ((own.threshold_mm < FATHOM_A05_RELAY_MIN_MM) || (own.threshold_mm > FATHOM_A05_RELAY_MAX_MM) ||
-        (config->probes > ALL_PROBES) || (fathom_debounce_init(&rule->debounce, &own) != FATHOM_READY))
+        (config->probes > ALL_PROBES) || (fathom_debounce_init(&rule->debounce, &own) != FATHOM_OK))
         return FATHOM_ERR_ARGUMENT;
     rule->probes = (config->probes != 0u) ? config->probes : (uint8_t)ALL_PROBES;
     rule->missing = rule->probes;
     rule->verdict = FATHOM_FAR;
-    return FATHOM_READY;
+    return FATHOM_OK;
 }
 
 /* The verdict of one probe; 0: it stands at the threshold; FATHOM_UNKNOWN: none. */
@@ -33,7 +33,7 @@ static uint8_t verdict_of(const fathom_a05_relay_rule_t *rule, const fathom_samp
     return (sample->kind == FATHOM_NEAR) ? (uint8_t)FATHOM_NEAR : (uint8_t)FATHOM_UNKNOWN;
 }
 
-bool fathom_a05_relay_rule_sample(fathom_a05_relay_rule_t *rule, const fathom_sample_t *sample)
+bool fathom_a05_relay_rule_add_sample(fathom_a05_relay_rule_t *rule, const fathom_sample_t *sample)
 {
     const uint8_t bit = (uint8_t)(1u << ((sample->probe - 1u) & 7u));
     const uint8_t verdict = verdict_of(rule, sample);
@@ -42,10 +42,11 @@ bool fathom_a05_relay_rule_sample(fathom_a05_relay_rule_t *rule, const fathom_sa
         rule->missing = rule->probes;
         rule->verdict = FATHOM_FAR;
     }
-    if (verdict == FATHOM_UNKNOWN) return fathom_debounce_time(&rule->debounce, sample->time_us);
+    if (verdict == FATHOM_UNKNOWN) return fathom_debounce_advance(&rule->debounce, sample->time_us);
     if ((rule->missing & bit) == 0u) return false;
     rule->missing &= (uint8_t)~bit;
     if (verdict != FATHOM_FAR) rule->verdict = verdict;
     if (verdict == FATHOM_NEAR) rule->missing = 0; /* the others cannot change that */
-    return (rule->missing == 0u) && fathom_debounce_verdict(&rule->debounce, rule->verdict, sample->time_us);
+    return (rule->missing == 0u) &&
+           fathom_debounce_add_verdict(&rule->debounce, rule->verdict, sample->time_us);
 }

@@ -19,9 +19,9 @@ fathom_status_t fathom_a16_auto_init(fathom_a16_auto_t *sensor, const fathom_a16
     sensor->select = config->select;
     sensor->value = FATHOM_PROCESSED;
     fathom_status_t status = fathom_dyp_auto_init(base, FATHOM_A16_MAX_MM);
-    if ((status == FATHOM_READY) && ((sensor->select.set != NULL) || (config->value != FATHOM_PROCESSED)))
+    if ((status == FATHOM_OK) && ((sensor->select.set != NULL) || (config->value != FATHOM_PROCESSED)))
         status = fathom_a16_auto_select(sensor, (fathom_dyp_value_t)config->value);
-    if (status != FATHOM_READY) {
+    if (status != FATHOM_OK) {
         fathom_dyp_auto_deinit(base);
         clear(sensor, sizeof *sensor);
     }
@@ -35,16 +35,16 @@ fathom_status_t fathom_a16_auto_select(fathom_a16_auto_t *sensor, fathom_dyp_val
     const bool is_driven = (value != FATHOM_PROCESSED) || (sensor->value != FATHOM_PROCESSED);
     const uint8_t level = (uint8_t)(is_driven ? (unsigned)value : (unsigned)FATHOM_OUTPUT_REST);
     const fathom_status_t status = fathom_output_set(&sensor->select, level);
-    if (status == FATHOM_READY) sensor->value = (uint8_t)value;
+    if (status == FATHOM_OK) sensor->value = (uint8_t)value;
     return status;
 }
 
 fathom_status_t fathom_a16_auto_deinit(fathom_a16_auto_t *sensor)
 {
     fathom_dyp_auto_deinit(&sensor->base);
-    if (sensor->value == FATHOM_PROCESSED) return FATHOM_READY;
+    if (sensor->value == FATHOM_PROCESSED) return FATHOM_OK;
     const fathom_status_t status = fathom_output_set(&sensor->select, FATHOM_OUTPUT_FREE);
-    if (status == FATHOM_READY) sensor->value = FATHOM_PROCESSED;
+    if (status == FATHOM_OK) sensor->value = FATHOM_PROCESSED;
     return status;
 }
 
@@ -52,7 +52,7 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
 {
     fathom_a16_auto_t *const sensor = ctx;
     const fathom_status_t status = fathom_dyp_auto_take(&sensor->base);
-    return (status == FATHOM_READY) ? fathom_dyp_measurement_next(&sensor->base.measurement, sample) : status;
+    return (status == FATHOM_OK) ? fathom_dyp_measurement_next(&sensor->base.measurement, sample) : status;
 }
 
 static uint32_t due_us(void *ctx)

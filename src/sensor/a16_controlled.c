@@ -57,25 +57,24 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     fathom_trigger_t *const trigger = &sensor->trigger;
     if (sensor->line == NULL) return FATHOM_ERR_ARGUMENT; /* init did not run, or failed */
     fathom_status_t status = fathom_line_poll(sensor->line);
-    fathom_trigger_look(trigger);
+    fathom_trigger_update(trigger);
     if (status < 0) return status;
     /* Of the stream only frames count: without a trigger the sensor is silent, so the stream turns stale. */
-    if (fathom_stream_poll(&sensor->stream, trigger->polled_us) == FATHOM_READY)
-        status = judge(sensor, sample);
+    if (fathom_stream_poll(&sensor->stream, trigger->polled_us) == FATHOM_OK) status = judge(sensor, sample);
     if (sensor->waiting && (sensor->stream.candidate == FATHOM_STREAM_NOWHERE) &&
         (response_left_us(sensor) == 0u)) {
         sensor->waiting = false;
         status = sensor->heard ? FATHOM_ERR_CHECKSUM : FATHOM_ERR_NO_RESPONSE;
     }
     const fathom_status_t driven = fathom_trigger_drive(trigger, !sensor->waiting);
-    if (driven == FATHOM_READY) {
+    if (driven == FATHOM_OK) {
         sensor->edge_us = trigger->polled_us;
         sensor->waiting = true;
         sensor->heard = false;
         /* What arrived before the edge is read now, and is too early to be the response. */
         (void)fathom_line_poll(sensor->line);
     }
-    return ((status != FATHOM_PENDING) || (driven == FATHOM_READY)) ? status : driven;
+    return ((status != FATHOM_PENDING) || (driven == FATHOM_OK)) ? status : driven;
 }
 
 static uint32_t due_us(void *ctx)
@@ -122,8 +121,8 @@ static bool configure(fathom_a16_controlled_t *sensor, const fathom_a16_controll
     if ((line == NULL) || (line->config == NULL)) return false;
     trigger->clock = line->config->clock;
     return (trigger->output.set != NULL) && (sensor->earliest_us <= sensor->latest_us) &&
-           (fathom_dyp_measurement_init(measurement, FATHOM_A16_MAX_MM) == FATHOM_READY) &&
-           (fathom_stream_start(stream, clock_us(trigger->clock)) == FATHOM_READY);
+           (fathom_dyp_measurement_init(measurement, FATHOM_A16_MAX_MM) == FATHOM_OK) &&
+           (fathom_stream_start(stream, clock_us(trigger->clock)) == FATHOM_OK);
 }
 
 fathom_status_t fathom_a16_controlled_init(fathom_a16_controlled_t *sensor,
@@ -135,13 +134,13 @@ fathom_status_t fathom_a16_controlled_init(fathom_a16_controlled_t *sensor,
         sensor->stream.listener.receive = receive;
         status = fathom_line_listen(sensor->line, &sensor->stream.listener);
     }
-    if (status == FATHOM_READY) status = fathom_trigger_init(&sensor->trigger);
+    if (status == FATHOM_OK) status = fathom_trigger_init(&sensor->trigger);
     if (status < 0) {
         stop_listening(sensor);
         clear(sensor, sizeof *sensor);
         return status;
     }
-    return FATHOM_READY; /* The trigger is at rest, or will be: FATHOM_PENDING is no error. */
+    return FATHOM_OK; /* The trigger is at rest, or will be: FATHOM_PENDING is no error. */
 }
 
 fathom_status_t fathom_a16_controlled_deinit(fathom_a16_controlled_t *sensor)

@@ -23,7 +23,7 @@ fathom_status_t fathom_a16_pwm_init(fathom_a16_pwm_t *sensor, const fathom_a16_p
     fathom_status_t status = FATHOM_ERR_ARGUMENT;
     clear(sensor, sizeof *sensor);
     if (configure(sensor, config)) status = fathom_pulse_init(&sensor->meter, &config->pulse);
-    if (status != FATHOM_READY) clear(sensor, sizeof *sensor);
+    if (status != FATHOM_OK) clear(sensor, sizeof *sensor);
     return status;
 }
 
@@ -38,7 +38,7 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     fathom_pulse_reading_t reading;
     uint16_t mm = 0;
     const fathom_status_t status = fathom_pulse_poll(&sensor->meter, &reading);
-    if (status != FATHOM_READY) return status;
+    if (status != FATHOM_OK) return status;
     if (reading.kind == FATHOM_TARGET) {
         mm = sensor->in_air ? fathom_pulse_width_mm_in_air(reading.width_us, sensor->air_dc)
                             : fathom_pulse_width_mm(reading.width_us);
@@ -60,7 +60,7 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     sample->probe = 1;
     sample->ambient = 0;
     sample->interference = false;
-    return FATHOM_READY;
+    return FATHOM_OK;
 }
 
 static uint32_t due_us(void *ctx)

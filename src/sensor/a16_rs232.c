@@ -47,7 +47,7 @@ fathom_status_t fathom_a16_rs232_return_to_automatic(fathom_a16_rs232_t *rs232, 
     if (!rs232->is_listening) {
         status = fathom_a16_modbus_set_operating_mode(rs232->modbus, FATHOM_A16_AUTOMATIC);
         /* where it was not acknowledged it may be set all the same */
-        if ((status != FATHOM_READY) && (status != FATHOM_ERR_UNCONFIRMED)) return status;
+        if ((status != FATHOM_OK) && (status != FATHOM_ERR_UNCONFIRMED)) return status;
         rs232->is_listening = true;
         rs232->since_us = now_us(rs232);
         rs232->polled_us = rs232->since_us;
@@ -55,11 +55,11 @@ fathom_status_t fathom_a16_rs232_return_to_automatic(fathom_a16_rs232_t *rs232, 
     discount_pause(rs232);
     status = fathom_dyp_auto_take(automatic);
     /* A frame from before the command may have waited to be taken; it proves nothing. */
-    if ((status == FATHOM_READY) && is_since(rs232, automatic->measurement.time_us))
+    if ((status == FATHOM_OK) && is_since(rs232, automatic->measurement.time_us))
         status = fathom_dyp_measurement_next(&automatic->measurement, sample);
-    else if (status == FATHOM_READY)
+    else if (status == FATHOM_OK)
         status = FATHOM_PENDING;
-    if ((status != FATHOM_READY) && (status != FATHOM_ERR_PORT)) {
+    if ((status != FATHOM_OK) && (status != FATHOM_ERR_PORT)) {
         if (fathom_elapsed_us(now_us(rs232), rs232->since_us) < rs232->return_us) return FATHOM_PENDING;
         status = FATHOM_ERR_UNCONFIRMED;
     }

@@ -5,9 +5,9 @@ void fathom_a16_modbus_cancel(fathom_a16_modbus_t *sensor) { fathom_dyp_modbus_d
 
 bool fathom_a16_modbus_is_written(const fathom_a16_modbus_t *sensor) { return sensor->base.unit.is_written; }
 
-fathom_status_t fathom_a16_modbus_next_is_blind(fathom_a16_modbus_t *sensor)
+fathom_status_t fathom_a16_modbus_write_next_unchecked(fathom_a16_modbus_t *sensor)
 {
-    return fathom_modbus_next_is_blind(&sensor->base.unit);
+    return fathom_modbus_write_next_unchecked(&sensor->base.unit);
 }
 
 fathom_status_t fathom_a16_modbus_measure(fathom_a16_modbus_t *sensor, fathom_dyp_value_t value,
@@ -16,16 +16,16 @@ fathom_status_t fathom_a16_modbus_measure(fathom_a16_modbus_t *sensor, fathom_dy
     if ((unsigned)value > FATHOM_REAL_TIME) return FATHOM_ERR_ARGUMENT;
     const uint16_t address =
         (value == FATHOM_REAL_TIME) ? FATHOM_A16_REGISTER_REAL_TIME : FATHOM_A16_REGISTER_PROCESSED;
-    const fathom_status_t status = fathom_dyp_modbus_get(&sensor->base, address, sensor->values);
-    if (status != FATHOM_READY) return status;
+    const fathom_status_t status = fathom_dyp_modbus_get_register(&sensor->base, address, sensor->values);
+    if (status != FATHOM_OK) return status;
     sensor->base.measurement.address = sensor->base.unit.address;
     fathom_dyp_measurement_set(&sensor->base.measurement, 1, fathom_modbus_unit_heard_us(&sensor->base.unit));
     return fathom_dyp_measurement_next(&sensor->base.measurement, sample);
 }
 
-fathom_status_t fathom_a16_modbus_address(fathom_a16_modbus_t *sensor, uint8_t *address)
+fathom_status_t fathom_a16_modbus_get_address(fathom_a16_modbus_t *sensor, uint8_t *address)
 {
-    return fathom_dyp_modbus_address(&sensor->base, address);
+    return fathom_dyp_modbus_get_address(&sensor->base, address);
 }
 
 fathom_status_t fathom_a16_modbus_set_address(fathom_a16_modbus_t *sensor, uint8_t address)
@@ -33,24 +33,25 @@ fathom_status_t fathom_a16_modbus_set_address(fathom_a16_modbus_t *sensor, uint8
     return fathom_dyp_modbus_set_address(&sensor->base, address);
 }
 
-fathom_status_t fathom_a16_modbus_set_address_to_0_perhaps_for_ever(fathom_a16_modbus_t *sensor)
+fathom_status_t fathom_a16_modbus_set_address_0(fathom_a16_modbus_t *sensor)
 {
-    return fathom_dyp_modbus_set_address_to_0(&sensor->base);
+    return fathom_dyp_modbus_set_address_0(&sensor->base);
 }
 
 fathom_status_t fathom_a16_modbus_set_operating_mode(fathom_a16_modbus_t *sensor,
                                                      fathom_a16_operating_mode_t mode)
 {
     if ((unsigned)mode > FATHOM_A16_AUTOMATIC) return FATHOM_ERR_ARGUMENT;
-    return fathom_dyp_modbus_write(&sensor->base, FATHOM_A16_REGISTER_OPERATING_MODE, (uint16_t)mode);
+    return fathom_dyp_modbus_write_register(&sensor->base, FATHOM_A16_REGISTER_OPERATING_MODE,
+                                            (uint16_t)mode);
 }
 
 /* A register that is 0 or 1. */
 static fathom_status_t get_choice(fathom_a16_modbus_t *sensor, uint16_t address, uint16_t *value)
 {
     uint16_t found = 0;
-    const fathom_status_t status = fathom_dyp_modbus_get(&sensor->base, address, &found);
-    if (status != FATHOM_READY) return status;
+    const fathom_status_t status = fathom_dyp_modbus_get_register(&sensor->base, address, &found);
+    if (status != FATHOM_OK) return status;
     if (found > 1u) return FATHOM_ERR_MALFORMED;
     *value = found;
     return status;
@@ -59,15 +60,15 @@ static fathom_status_t get_choice(fathom_a16_modbus_t *sensor, uint16_t address,
 static fathom_status_t set_choice(fathom_a16_modbus_t *sensor, uint16_t address, unsigned value)
 {
     if (value > 1u) return FATHOM_ERR_ARGUMENT;
-    return fathom_dyp_modbus_set(&sensor->base, address, (uint16_t)value);
+    return fathom_dyp_modbus_set_register(&sensor->base, address, (uint16_t)value);
 }
 
-fathom_status_t fathom_a16_modbus_switch_polarity(fathom_a16_modbus_t *sensor,
-                                                  fathom_a16_polarity_t *polarity)
+fathom_status_t fathom_a16_modbus_get_switch_polarity(fathom_a16_modbus_t *sensor,
+                                                      fathom_a16_polarity_t *polarity)
 {
     uint16_t value = 0;
     const fathom_status_t status = get_choice(sensor, FATHOM_A16_REGISTER_SWITCH_POLARITY, &value);
-    if (status == FATHOM_READY) *polarity = (fathom_a16_polarity_t)value;
+    if (status == FATHOM_OK) *polarity = (fathom_a16_polarity_t)value;
     return status;
 }
 
@@ -77,22 +78,22 @@ fathom_status_t fathom_a16_modbus_set_switch_polarity(fathom_a16_modbus_t *senso
     return set_choice(sensor, FATHOM_A16_REGISTER_SWITCH_POLARITY, (unsigned)polarity);
 }
 
-fathom_status_t fathom_a16_modbus_switch_threshold_mm(fathom_a16_modbus_t *sensor, uint16_t *threshold_mm)
+fathom_status_t fathom_a16_modbus_get_switch_threshold_mm(fathom_a16_modbus_t *sensor, uint16_t *threshold_mm)
 {
-    return fathom_dyp_modbus_get(&sensor->base, FATHOM_A16_REGISTER_SWITCH_THRESHOLD, threshold_mm);
+    return fathom_dyp_modbus_get_register(&sensor->base, FATHOM_A16_REGISTER_SWITCH_THRESHOLD, threshold_mm);
 }
 
 fathom_status_t fathom_a16_modbus_set_switch_threshold_mm(fathom_a16_modbus_t *sensor, uint16_t threshold_mm)
 {
     if ((threshold_mm == 0u) || (threshold_mm > FATHOM_A16_MAX_MM)) return FATHOM_ERR_ARGUMENT;
-    return fathom_dyp_modbus_set(&sensor->base, FATHOM_A16_REGISTER_SWITCH_THRESHOLD, threshold_mm);
+    return fathom_dyp_modbus_set_register(&sensor->base, FATHOM_A16_REGISTER_SWITCH_THRESHOLD, threshold_mm);
 }
 
-fathom_status_t fathom_a16_modbus_automatic_value(fathom_a16_modbus_t *sensor, fathom_dyp_value_t *value)
+fathom_status_t fathom_a16_modbus_get_automatic_value(fathom_a16_modbus_t *sensor, fathom_dyp_value_t *value)
 {
     uint16_t found = 0;
     const fathom_status_t status = get_choice(sensor, FATHOM_A16_REGISTER_AUTOMATIC_VALUE, &found);
-    if (status == FATHOM_READY) *value = (fathom_dyp_value_t)found;
+    if (status == FATHOM_OK) *value = (fathom_dyp_value_t)found;
     return status;
 }
 

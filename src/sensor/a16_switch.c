@@ -17,14 +17,14 @@ fathom_status_t fathom_a16_switch_set_polarity(fathom_a16_switch_t *sensor, fath
                                                fathom_a16_polarity_t polarity)
 {
     const fathom_status_t status = fathom_a16_modbus_set_switch_polarity(modbus, polarity);
-    fathom_contact_hold(&sensor->base, status == FATHOM_PENDING);
-    if (status == FATHOM_READY) fathom_a16_switch_polarity_is(sensor, polarity);
+    fathom_contact_set_hold(&sensor->base, status == FATHOM_PENDING);
+    if (status == FATHOM_OK) fathom_a16_switch_note_polarity(sensor, polarity);
     return status;
 }
 
-void fathom_a16_switch_polarity_is(fathom_a16_switch_t *sensor, fathom_a16_polarity_t polarity)
+void fathom_a16_switch_note_polarity(fathom_a16_switch_t *sensor, fathom_a16_polarity_t polarity)
 {
-    fathom_contact_hold(&sensor->base, false);
+    fathom_contact_set_hold(&sensor->base, false);
     fathom_contact_set_near_is_high(&sensor->base, polarity == FATHOM_A16_POSITIVE);
 }
 

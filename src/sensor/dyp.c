@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "fathom/sensor/dyp.h"
+#include "fathom/sensor/internal/dyp.h"
 
 #include <stddef.h>
 
@@ -54,7 +54,7 @@ fathom_status_t fathom_dyp_measurement_next(fathom_dyp_measurement_t *measuremen
     sample->address = measurement->address;
     sample->probe = probe;
     sample->ambient = 0;
-    return FATHOM_READY;
+    return FATHOM_OK;
 }
 
 void fathom_dyp_window_copy(fathom_dyp_window_t *to, const fathom_dyp_window_t *from)
@@ -90,5 +90,5 @@ fathom_status_t fathom_dyp_measurement_init(fathom_dyp_measurement_t *measuremen
     const bool is_valid = (window->min_mm <= window->max_mm) && is_meaning(window->value_fffd) &&
                           is_meaning(window->value_fffe) && is_meaning(window->value_ffff) &&
                           is_meaning(window->value_0);
-    return is_valid ? FATHOM_READY : FATHOM_ERR_ARGUMENT;
+    return is_valid ? FATHOM_OK : FATHOM_ERR_ARGUMENT;
 }

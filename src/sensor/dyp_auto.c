@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "fathom/sensor/dyp_auto.h"
+#include "fathom/sensor/internal/dyp_auto.h"
 
 #include "../common.h"
 #include "fathom/codec/dyp_stream.h"
@@ -34,11 +34,11 @@ fathom_status_t fathom_dyp_auto_take(fathom_dyp_auto_t *sensor)
     fathom_status_t status = fathom_line_poll(sensor->line);
     if ((status < 0) || is_followed(sensor)) return status;
     status = fathom_stream_poll(stream, sensor->line->polled_us);
-    if (status != FATHOM_READY) return status;
+    if (status != FATHOM_OK) return status;
     fathom_dyp_stream_decode(fathom_stream_frame(stream), measurement->values,
                              (uint8_t)((stream->length / 2u) - 1u));
     fathom_dyp_measurement_set(measurement, 1, stream->time_us);
-    return FATHOM_READY;
+    return FATHOM_OK;
 }
 
 uint32_t fathom_dyp_auto_due_us(const fathom_dyp_auto_t *sensor)

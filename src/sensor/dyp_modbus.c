@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "fathom/sensor/dyp_modbus.h"
+#include "fathom/sensor/internal/dyp_modbus.h"
 
 #include "../common.h"
 
@@ -13,7 +13,7 @@ fathom_status_t fathom_dyp_modbus_begin(fathom_dyp_modbus_t *sensor, size_t size
 {
     if (fathom_modbus_unit_is_queued(&sensor->unit, config)) return FATHOM_ERR_BUSY;
     clear(sensor, size);
-    return FATHOM_READY;
+    return FATHOM_OK;
 }
 
 /* A response has five bytes beside its registers: address, function, byte count and CRC. */
@@ -32,10 +32,10 @@ fathom_status_t fathom_dyp_modbus_init(fathom_dyp_modbus_t *sensor, const fathom
     sensor->request.function = FATHOM_MODBUS_READ_HOLDING_REGISTERS;
     sensor->request.id = MEASURE;
     sensor->start_us = or_default(sensor->start_us, FATHOM_DYP_DEFAULT_START_US);
-    if ((fathom_dyp_measurement_init(&sensor->measurement, max_mm) == FATHOM_READY) &&
+    if ((fathom_dyp_measurement_init(&sensor->measurement, max_mm) == FATHOM_OK) &&
         (sensor->start_us <= FATHOM_MAX_DURATION_US) && has_room(sensor, config->transport) &&
-        (fathom_modbus_unit_init(&sensor->unit, config, timeout_us, pace_us) == FATHOM_READY))
-        return FATHOM_READY;
+        (fathom_modbus_unit_init(&sensor->unit, config, timeout_us, pace_us) == FATHOM_OK))
+        return FATHOM_OK;
     clear(sensor, sizeof *sensor);
     return FATHOM_ERR_ARGUMENT;
 }
@@ -65,21 +65,22 @@ fathom_status_t fathom_dyp_modbus_look(fathom_dyp_modbus_t *sensor, uint16_t add
     request.function = FATHOM_MODBUS_READ_HOLDING_REGISTERS;
     request.id = id_of(address);
     const fathom_status_t status = fathom_modbus_unit_ask(&sensor->unit, &request);
-    if (status == FATHOM_READY) *value = sensor->found;
+    if (status == FATHOM_OK) *value = sensor->found;
     return status;
 }
 
-fathom_status_t fathom_dyp_modbus_get(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t *value)
+fathom_status_t fathom_dyp_modbus_get_register(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t *value)
 {
     fathom_modbus_unit_poll(&sensor->unit);
     return fathom_dyp_modbus_look(sensor, address, value);
 }
 
-fathom_status_t fathom_dyp_modbus_address(fathom_dyp_modbus_t *sensor, uint8_t *address)
+fathom_status_t fathom_dyp_modbus_get_address(fathom_dyp_modbus_t *sensor, uint8_t *address)
 {
     uint16_t value = 0;
-    const fathom_status_t status = fathom_dyp_modbus_get(sensor, FATHOM_DYP_REGISTER_ADDRESS, &value);
-    if (status != FATHOM_READY) return status;
+    const fathom_status_t status =
+        fathom_dyp_modbus_get_register(sensor, FATHOM_DYP_REGISTER_ADDRESS, &value);
+    if (status != FATHOM_OK) return status;
     if (value > UINT8_MAX) return FATHOM_ERR_MALFORMED;
     *address = (uint8_t)value;
     return status;
@@ -122,20 +123,21 @@ static fathom_status_t set(fathom_dyp_modbus_t *sensor, uint16_t address, uint16
     return fathom_modbus_set(&sensor->unit, &setting);
 }
 
-fathom_status_t fathom_dyp_modbus_set(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t value)
+fathom_status_t fathom_dyp_modbus_set_register(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t value)
 {
     fathom_modbus_unit_poll(&sensor->unit);
     return set(sensor, address, value, read);
 }
 
-fathom_status_t fathom_dyp_modbus_write(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t value)
+fathom_status_t fathom_dyp_modbus_write_register(fathom_dyp_modbus_t *sensor, uint16_t address,
+                                                 uint16_t value)
 {
     fathom_modbus_unit_poll(&sensor->unit);
     if ((sensor->unit.setting == 0u) && !sensor->unit.is_blind) {
         sensor->unit.is_written = false; /* nor will it be before this read has ended */
         const fathom_status_t status =
             fathom_dyp_modbus_look(sensor, FATHOM_DYP_REGISTER_ADDRESS, &sensor->found);
-        if (status != FATHOM_READY) return status;
+        if (status != FATHOM_OK) return status;
     }
     return set(sensor, address, value, NULL);
 }
@@ -144,12 +146,12 @@ fathom_status_t fathom_dyp_modbus_set_address(fathom_dyp_modbus_t *sensor, uint8
 {
     if ((address == FATHOM_MODBUS_BROADCAST) || (address == FATHOM_MODBUS_ANY_UNIT))
         return FATHOM_ERR_ARGUMENT;
-    return fathom_dyp_modbus_set(sensor, FATHOM_DYP_REGISTER_ADDRESS, address);
+    return fathom_dyp_modbus_set_register(sensor, FATHOM_DYP_REGISTER_ADDRESS, address);
 }
 
-fathom_status_t fathom_dyp_modbus_set_address_to_0(fathom_dyp_modbus_t *sensor)
+fathom_status_t fathom_dyp_modbus_set_address_0(fathom_dyp_modbus_t *sensor)
 {
-    return fathom_dyp_modbus_set(sensor, FATHOM_DYP_REGISTER_ADDRESS, 0);
+    return fathom_dyp_modbus_set_register(sensor, FATHOM_DYP_REGISTER_ADDRESS, 0);
 }
 
 /* ---- the address of the one device on a line ---- */
@@ -173,7 +175,7 @@ fathom_status_t fathom_dyp_modbus_find(fathom_dyp_modbus_find_t *find, const fat
         status = FATHOM_ERR_CANCELLED; /* The line was initialised again. */
     }
     find->is_asked = false;
-    if (status != FATHOM_READY) return status;
+    if (status != FATHOM_OK) return status;
     const uint16_t found =
         (request->message.head[0] != FATHOM_MODBUS_ANY_UNIT) ? request->message.head[0] : find->value;
     if (found >= FATHOM_MODBUS_ANY_UNIT) return FATHOM_ERR_MALFORMED;
@@ -196,7 +198,7 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     if (next != FATHOM_PENDING) return next;
     fathom_modbus_unit_poll(&sensor->unit);
     const fathom_status_t status = fathom_modbus_unit_ask(&sensor->unit, &sensor->request);
-    if (status != FATHOM_READY) return status;
+    if (status != FATHOM_OK) return status;
     sensor->measurement.address =
         sensor->unit.address; /* it may have moved, and a move may have been given up */
     fathom_dyp_measurement_set(&sensor->measurement, sensor->probes,

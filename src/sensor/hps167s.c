@@ -35,10 +35,10 @@ fathom_status_t fathom_hps167s_init(fathom_hps167s_t *sensor, const fathom_hps16
     return status;
 }
 
-fathom_status_t fathom_hps167s_use_limits(fathom_hps167s_t *sensor, fathom_hps167s_limits_t *limits)
+fathom_status_t fathom_hps167s_set_limits(fathom_hps167s_t *sensor, fathom_hps167s_limits_t *limits)
 {
     const fathom_status_t status = fathom_hps167s_complete_limits(limits);
-    if (status == FATHOM_READY) sensor->limits = limits;
+    if (status == FATHOM_OK) sensor->limits = limits;
     return status;
 }
 
@@ -78,7 +78,7 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     fathom_modbus_unit_poll(&sensor->unit);
     const fathom_status_t status =
         fathom_hps167s_ask(sensor, FATHOM_HPS167S_MEASUREMENT, FATHOM_HPS167S_MEASUREMENT_COUNT);
-    if (status != FATHOM_READY) return status;
+    if (status != FATHOM_OK) return status;
     if (fathom_modbus_unit_is_warming_up(&sensor->unit) && fathom_hps167s_is_abnormal(response))
         return FATHOM_ERR_WARMING_UP;
     if (((sensor->is_new != NULL) && !sensor->is_new(sensor)) ||
@@ -92,7 +92,7 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     sample->model = FATHOM_HPS167S;
     sample->address = sensor->unit.address;
     sample->probe = 1;
-    return FATHOM_READY;
+    return FATHOM_OK;
 }
 
 static uint32_t due_us(void *ctx)

@@ -106,24 +106,24 @@ fathom_status_t fathom_hps167s_auto_init(fathom_hps167s_auto_t *sensor,
         sensor->since_us = clock_us(sensor->line->config->clock);
         status = fathom_line_listen(sensor->line, &sensor->listener);
     }
-    if (status != FATHOM_READY) {
+    if (status != FATHOM_OK) {
         stop_listening(sensor);
         clear(sensor, sizeof *sensor);
     }
     return status;
 }
 
-void fathom_hps167s_auto_beside(fathom_hps167s_auto_t *sensor, fathom_hps167s_t *driver)
+void fathom_hps167s_auto_follow(fathom_hps167s_auto_t *sensor, fathom_hps167s_t *driver)
 {
     sensor->driver = driver;
-    sensor->heard = fathom_hps167s_heard;
+    sensor->heard = fathom_hps167s_accept_unsolicited;
     sensor->from = &driver->unit.address;
 }
 
-fathom_status_t fathom_hps167s_auto_use_limits(fathom_hps167s_auto_t *sensor, fathom_hps167s_limits_t *limits)
+fathom_status_t fathom_hps167s_auto_set_limits(fathom_hps167s_auto_t *sensor, fathom_hps167s_limits_t *limits)
 {
     const fathom_status_t status = fathom_hps167s_complete_limits(limits);
-    if (status == FATHOM_READY) sensor->limits = limits;
+    if (status == FATHOM_OK) sensor->limits = limits;
     return status;
 }
 
@@ -134,7 +134,7 @@ void fathom_hps167s_auto_deinit(fathom_hps167s_auto_t *sensor) { stop_listening(
 static fathom_status_t return_frame(fathom_hps167s_auto_t *sensor, fathom_sample_t *sample, uint32_t now_us)
 {
     const fathom_status_t status = fathom_hps167s_decode_within(sensor->limits, sensor->registers, sample);
-    if (status != FATHOM_READY) {
+    if (status != FATHOM_OK) {
         count_one(&sensor->implausible);
         return status;
     }
@@ -146,7 +146,7 @@ static fathom_status_t return_frame(fathom_hps167s_auto_t *sensor, fathom_sample
     sample->model = FATHOM_HPS167S;
     sample->address = sensor->frame_address;
     sample->probe = 1;
-    return FATHOM_READY;
+    return FATHOM_OK;
 }
 
 static fathom_status_t poll(void *ctx, fathom_sample_t *sample)

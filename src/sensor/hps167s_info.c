@@ -20,10 +20,10 @@ static fathom_status_t read_command(fathom_hps167s_t *sensor, uint8_t command, u
     return fathom_hps167s_ask_once(sensor, command, count);
 }
 
-fathom_status_t fathom_hps167s_interface_version(fathom_hps167s_t *sensor, fathom_hps167s_version_t *out)
+fathom_status_t fathom_hps167s_get_interface_version(fathom_hps167s_t *sensor, fathom_hps167s_version_t *out)
 {
     const fathom_status_t status = read_command(sensor, FATHOM_HPS167S_VERSION, FATHOM_HPS167S_VERSION_COUNT);
-    if (status == FATHOM_READY) fathom_hps167s_decode_version(sensor->values, out);
+    if (status == FATHOM_OK) fathom_hps167s_decode_version(sensor->values, out);
     return status;
 }
 
@@ -60,7 +60,8 @@ static void be_among_unasked(fathom_hps167s_t *sensor, uint32_t time_us)
     sensor->is_among_unasked = true;
 }
 
-bool fathom_hps167s_heard(fathom_hps167s_t *sensor, const uint16_t registers[4], uint32_t time_us)
+bool fathom_hps167s_accept_unsolicited(fathom_hps167s_t *sensor, const uint16_t registers[4],
+                                       uint32_t time_us)
 {
     be_wary(sensor);
     be_among_unasked(sensor, time_us);
@@ -151,42 +152,42 @@ fathom_status_t fathom_hps167s_read_configuration(fathom_hps167s_t *sensor)
                                      : fathom_hps167s_ask_once(sensor, FATHOM_HPS167S_CONFIGURATION,
                                                                FATHOM_HPS167S_CONFIGURATION_COUNT);
         if ((status == FATHOM_PENDING) || (status == FATHOM_ERR_BUSY)) return status;
-        if ((status != FATHOM_READY) || is_believed(sensor)) break;
+        if ((status != FATHOM_OK) || is_believed(sensor)) break;
         if (is_given_up(sensor)) sensor->unit.pause_us = sensor->unit.command_timeout_us;
     }
     sensor->responses = 0;
     return status;
 }
 
-fathom_status_t fathom_hps167s_configuration(fathom_hps167s_t *sensor, fathom_hps167s_configuration_t *out)
+fathom_status_t fathom_hps167s_get_configuration(fathom_hps167s_t *sensor,
+                                                 fathom_hps167s_configuration_t *out)
 {
     fathom_modbus_unit_poll(&sensor->unit);
     const fathom_status_t status = fathom_hps167s_read_configuration(sensor);
-    if (status == FATHOM_READY)
-        fathom_hps167s_decode_configuration(sensor->values, sensor->low_word_first, out);
+    if (status == FATHOM_OK) fathom_hps167s_decode_configuration(sensor->values, sensor->low_word_first, out);
     return status;
 }
 
 /* ---- #3, #4 ---- */
 
-fathom_status_t fathom_hps167s_details(fathom_hps167s_t *sensor, fathom_hps167s_details_t *out)
+fathom_status_t fathom_hps167s_get_details(fathom_hps167s_t *sensor, fathom_hps167s_details_t *out)
 {
     const fathom_status_t status = read_command(sensor, FATHOM_HPS167S_DETAILS, FATHOM_HPS167S_DETAILS_COUNT);
-    if (status != FATHOM_READY) return status;
+    if (status != FATHOM_OK) return status;
     if (!fathom_hps167s_may_be_details(sensor->values)) return FATHOM_ERR_MALFORMED;
     fathom_hps167s_decode_details(sensor->values, out);
-    return FATHOM_READY;
+    return FATHOM_OK;
 }
 
-fathom_status_t fathom_hps167s_temperature(fathom_hps167s_t *sensor, fathom_hps167s_temperature_t *out)
+fathom_status_t fathom_hps167s_get_temperature(fathom_hps167s_t *sensor, fathom_hps167s_temperature_t *out)
 {
     const fathom_status_t status = read_command(sensor, FATHOM_HPS167S_TEMPERATURE, 1);
-    if (status != FATHOM_READY) return status;
-    const int16_t raw = fathom_hps167s_signed(sensor->values[0]);
+    if (status != FATHOM_OK) return status;
+    const int16_t raw = fathom_hps167s_to_signed(sensor->values[0]);
     const int32_t temperature_dc =
         fathom_hps167s_temperature_dc(raw, (sensor->steps_per_degree != 0u) ? sensor->steps_per_degree : 1u);
     if ((temperature_dc > INT16_MAX) || (temperature_dc < INT16_MIN)) return FATHOM_ERR_MALFORMED;
     out->fahrenheit = raw;
     out->temperature_dc = (int16_t)temperature_dc;
-    return FATHOM_READY;
+    return FATHOM_OK;
 }

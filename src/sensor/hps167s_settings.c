@@ -43,7 +43,7 @@ static void follow(fathom_hps167s_t *sensor, fathom_status_t status)
     }
     if (!sensor->is_seeking) return;
     if (status == FATHOM_ERR_WARMING_UP) status = (fathom_status_t)sensor->unit.request.transaction.status;
-    if ((status == FATHOM_READY) || (status == FATHOM_ERR_EXCEPTION) || (status == FATHOM_ERR_MALFORMED))
+    if ((status == FATHOM_OK) || (status == FATHOM_ERR_EXCEPTION) || (status == FATHOM_ERR_MALFORMED))
         sensor->is_seeking = false;
     else if ((status == FATHOM_ERR_NO_RESPONSE) || (status == FATHOM_ERR_CHECKSUM) ||
              (status == FATHOM_ERR_LINE_BUSY) || (status == FATHOM_ERR_OTHER_MASTER))
@@ -68,7 +68,7 @@ static fathom_status_t look_for_reset(fathom_hps167s_t *sensor, uint32_t *value)
     sensor->is_looked_at = true;
     if (!is_done && !is_first && (sensor->unit.address == 1u)) return FATHOM_ERR_UNCONFIRMED;
     *value = is_done ? FATHOM_HPS167S_RESET_DONE : 0;
-    return FATHOM_READY;
+    return FATHOM_OK;
 }
 
 static bool is_reset_refused(const fathom_hps167s_t *sensor)
@@ -80,7 +80,7 @@ static bool is_reset_refused(const fathom_hps167s_t *sensor)
 /* The code of the rate; for a code without a rate of its own, that at which the response came. */
 static uint8_t baud_code(const fathom_hps167s_t *sensor)
 {
-    const uint8_t code = fathom_hps167s_byte(sensor->values, FATHOM_HPS167S_BAUD_BYTE);
+    const uint8_t code = fathom_hps167s_get_byte(sensor->values, FATHOM_HPS167S_BAUD_BYTE);
     const bool has_rate = fathom_hps167s_baud_code(fathom_hps167s_baud(code)) == code;
     return has_rate ? code : fathom_hps167s_baud_code(sensor->unit.line_settings->baud);
 }
@@ -99,23 +99,23 @@ static fathom_status_t look(const fathom_modbus_setting_t *setting, uint32_t *va
     /* It reported that it was not reset, so it is where it was: nothing is to be read. */
     if ((command == FATHOM_HPS167S_RESET) && is_reset_refused(sensor)) return FATHOM_ERR_EXCEPTION;
     status = fathom_hps167s_read_configuration(sensor);
-    if (status != FATHOM_READY) return status;
+    if (status != FATHOM_OK) return status;
     switch (command) {
     case FATHOM_HPS167S_WARM_UP:
-        sensor->warm_up_s = fathom_hps167s_byte(values, FATHOM_HPS167S_WARM_UP_BYTE);
+        sensor->warm_up_s = fathom_hps167s_get_byte(values, FATHOM_HPS167S_WARM_UP_BYTE);
         *value = sensor->warm_up_s;
         break;
     case FATHOM_HPS167S_BAUD:
         *value = baud_code(sensor);
         break;
     case FATHOM_HPS167S_MEASURES:
-        *value = fathom_hps167s_byte(values, FATHOM_HPS167S_MEASURES_BYTE);
+        *value = fathom_hps167s_get_byte(values, FATHOM_HPS167S_MEASURES_BYTE);
         break;
     case FATHOM_HPS167S_TERMINATION:
-        *value = fathom_hps167s_byte(values, FATHOM_HPS167S_TERMINATION_BYTE);
+        *value = fathom_hps167s_get_byte(values, FATHOM_HPS167S_TERMINATION_BYTE);
         break;
     case FATHOM_HPS167S_RECONNECT:
-        *value = fathom_hps167s_told_reconnect_time_ms(values, sensor->low_word_first);
+        *value = fathom_hps167s_configured_reconnect_time_ms(values, sensor->low_word_first);
         break;
     default:
         status = look_for_reset(sensor, value);
@@ -127,7 +127,7 @@ static fathom_status_t look(const fathom_modbus_setting_t *setting, uint32_t *va
 /* ---- what is set ---- */
 
 /*
- * FATHOM_READY: sensor->setting is this setting and may go on, or begin; the caller adds what is special to it. Where
+ * FATHOM_OK: sensor->setting is this setting and may go on, or begin; the caller adds what is special to it. Where
  * the rate of the device is not known, or where nothing else would be read, that takes a read of #1 first.
  */
 static fathom_status_t begin(fathom_hps167s_t *sensor, uint8_t command, uint32_t value, uint8_t kind)
@@ -144,7 +144,7 @@ static fathom_status_t begin(fathom_hps167s_t *sensor, uint8_t command, uint32_t
         if (!unit->is_blind && (sensor->is_seeking || (kind == WRITE_ONLY))) {
             const fathom_status_t status =
                 fathom_hps167s_ask_once(sensor, FATHOM_HPS167S_VERSION, FATHOM_HPS167S_VERSION_COUNT);
-            if (status != FATHOM_READY) return status;
+            if (status != FATHOM_OK) return status;
         }
         /* It has waited to be asked, and a measurement has told it: what waits on would keep all else out. */
         if (unit->waiting == fathom_hps167s_id(FATHOM_HPS167S_VERSION)) unit->waiting = 0;
@@ -159,7 +159,7 @@ static fathom_status_t begin(fathom_hps167s_t *sensor, uint8_t command, uint32_t
     setting->write.last = (uint16_t)value;
     setting->write.function = FATHOM_MODBUS_WRITE_SINGLE_REGISTER;
     setting->write.id = id;
-    return FATHOM_READY;
+    return FATHOM_OK;
 }
 
 static fathom_status_t go_on(fathom_hps167s_t *sensor)
@@ -170,12 +170,12 @@ static fathom_status_t go_on(fathom_hps167s_t *sensor)
 static fathom_status_t set(fathom_hps167s_t *sensor, uint8_t command, uint16_t value, uint8_t kind)
 {
     const fathom_status_t status = begin(sensor, command, value, kind);
-    return (status == FATHOM_READY) ? go_on(sensor) : status;
+    return (status == FATHOM_OK) ? go_on(sensor) : status;
 }
 
-fathom_status_t fathom_hps167s_next_is_blind(fathom_hps167s_t *sensor)
+fathom_status_t fathom_hps167s_write_next_unchecked(fathom_hps167s_t *sensor)
 {
-    return fathom_modbus_next_is_blind(&sensor->unit);
+    return fathom_modbus_write_next_unchecked(&sensor->unit);
 }
 
 bool fathom_hps167s_is_written(const fathom_hps167s_t *sensor) { return sensor->unit.is_written; }
@@ -224,7 +224,7 @@ fathom_status_t fathom_hps167s_set_reconnect_time_ms(fathom_hps167s_t *sensor, u
     fathom_modbus_unit_request_t *const write = &sensor->setting.write;
     if ((reconnect_time_ms % FATHOM_HPS167S_RECONNECT_STEP_MS) != 0u) return FATHOM_ERR_ARGUMENT;
     const fathom_status_t status = begin(sensor, FATHOM_HPS167S_RECONNECT, reconnect_time_ms, READ_BACK);
-    if (status != FATHOM_READY) return status;
+    if (status != FATHOM_OK) return status;
     fathom_hps167s_encode_reconnect_time(reconnect_time_ms, sensor->low_word_first, sensor->words);
     write->values = sensor->words;
     write->last = FATHOM_HPS167S_RECONNECT_COUNT;
@@ -240,7 +240,7 @@ static fathom_status_t set_all(fathom_hps167s_t *sensor, uint8_t command, bool i
     const uint8_t home = unit->address;
     if (unit->setting == 0u) unit->is_blind = true;
     fathom_status_t status = begin(sensor, command, switch_of(is_on), TO_ALL);
-    if (status != FATHOM_READY) return status;
+    if (status != FATHOM_OK) return status;
     unit->address = FATHOM_MODBUS_BROADCAST;
     status = go_on(sensor);
     unit->address = home;
@@ -249,13 +249,12 @@ static fathom_status_t set_all(fathom_hps167s_t *sensor, uint8_t command, bool i
     return status;
 }
 
-fathom_status_t fathom_hps167s_set_measures_after_power_on_of_all_units(fathom_hps167s_t *sensor,
-                                                                        bool measures)
+fathom_status_t fathom_hps167s_broadcast_measures_after_power_on(fathom_hps167s_t *sensor, bool measures)
 {
     return set_all(sensor, FATHOM_HPS167S_MEASURES, measures);
 }
 
-fathom_status_t fathom_hps167s_set_termination_of_all_units(fathom_hps167s_t *sensor, bool termination)
+fathom_status_t fathom_hps167s_broadcast_termination(fathom_hps167s_t *sensor, bool termination)
 {
     return set_all(sensor, FATHOM_HPS167S_TERMINATION, termination);
 }
@@ -266,7 +265,7 @@ fathom_status_t fathom_hps167s_set_address(fathom_hps167s_t *sensor, uint8_t add
 {
     if ((address == 0u) || (address > FATHOM_HPS167S_MAX_ADDRESS)) return FATHOM_ERR_ARGUMENT;
     const fathom_status_t status = begin(sensor, FATHOM_HPS167S_ADDRESS, address, READ_BACK);
-    if (status != FATHOM_READY) return status;
+    if (status != FATHOM_OK) return status;
     sensor->setting.address = address;
     return go_on(sensor);
 }
@@ -294,10 +293,10 @@ fathom_status_t fathom_hps167s_set_baud(fathom_hps167s_t *sensor, uint32_t baud)
     const uint8_t code = fathom_hps167s_baud_code(baud);
     if ((code == 0u) || (sensor->unit.line_settings == NULL)) return FATHOM_ERR_ARGUMENT;
     fathom_status_t status = begin(sensor, FATHOM_HPS167S_BAUD, code, READ_BACK);
-    if (status != FATHOM_READY) return status;
+    if (status != FATHOM_OK) return status;
     move_to_baud(sensor, baud, sensor->unit.address);
     status = go_on(sensor);
-    if (status == FATHOM_READY) expect_baud(sensor, baud);
+    if (status == FATHOM_OK) expect_baud(sensor, baud);
     if ((status == FATHOM_ERR_UNCONFIRMED) && (sensor->setting.line_settings != NULL)) {
         seek(sensor, sensor->setting.line_settings);
         sensor->follow = follow;
@@ -310,7 +309,7 @@ fathom_status_t fathom_hps167s_restore_factory_settings(fathom_hps167s_t *sensor
     fathom_modbus_setting_t *const setting = &sensor->setting;
     if (sensor->unit.is_blind) return FATHOM_ERR_ARGUMENT;
     fathom_status_t status = begin(sensor, FATHOM_HPS167S_RESET, FATHOM_HPS167S_RESET_DONE, READ_BACK);
-    if (status != FATHOM_READY) return status;
+    if (status != FATHOM_OK) return status;
     if (sensor->unit.setting == 0u) {
         move_to_baud(sensor, FATHOM_HPS167S_FACTORY_BAUD, 1);
         if (sensor->unit.address != 1u) setting->address = 1;
@@ -320,7 +319,7 @@ fathom_status_t fathom_hps167s_restore_factory_settings(fathom_hps167s_t *sensor
     setting->write.values = &sensor->reset_response;
     setting->write.function = FATHOM_MODBUS_READ_HOLDING_REGISTERS;
     status = go_on(sensor);
-    if (status == FATHOM_READY) {
+    if (status == FATHOM_OK) {
         expect_baud(sensor, FATHOM_HPS167S_FACTORY_BAUD);
         sensor->warm_up_s = FATHOM_HPS167S_FACTORY_WARM_UP_S;
     }

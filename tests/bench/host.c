@@ -52,7 +52,7 @@ int main(int argc, char **argv)
     job_begin();
     for (int i = atoi(argv[1]); i > 0; i--) {
         reads = -1;
-        if (job_read() != FATHOM_READY) return EXIT_FAILURE;
+        if (job_read() != FATHOM_OK) return EXIT_FAILURE;
     }
     return EXIT_SUCCESS;
 }

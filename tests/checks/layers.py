@@ -7,9 +7,10 @@ import re
 
 from common import files, main, read
 
-# From the bottom up, in include/fathom/ and in src/ alike. What stands in a folder may include what stands there and in
-# the folders before it; '' is the words that all share. fathom.h is above them all, and nothing includes it.
-LAYERS = ('', 'codec', 'engine', 'sensor')
+# From the bottom up, in include/fathom/ and in src/ alike. A file may include files of its own folder and of the folders
+# before it; '' is the words that all share. No file includes fathom.h. Headers that only other headers need stand in a
+# folder internal/ of their layer.
+LAYERS = ('', 'codec', 'engine', 'processing', 'sensor')
 MAP = 'include/fathom/fathom.h'
 COMMON = 'src/common.h'  # what the sources of engine/ and sensor/ share
 # The same for the tool. Every other folder of it is a command, which may include these and itself.
@@ -30,8 +31,14 @@ INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.M)
 
 def room(path):
     """The folder of a file of the library; None: it stands where none may."""
-    found = re.fullmatch(r'(?:include/fathom|src)/(?:(\w+)/)?\w+\.[ch]', path)
-    return None if found is None or (found[1] or '') not in LAYERS else found[1] or ''
+    found = re.fullmatch(r'(?:include/fathom/(?:(\w+)/(?:internal/)?)?|src/(?:(\w+)/)?)\w+\.[ch]', path)
+    layer = found and (found[1] or found[2] or '')
+    return layer if layer in LAYERS else None
+
+
+def stem(path):
+    """The layer and the name of a file, which its header and its sources share: engine/line."""
+    return re.sub(r'^(include/fathom|src)/|internal/|\.[ch]$', '', path)
 
 
 def includes(text):
@@ -86,13 +93,13 @@ def check(root, only):
         if path.startswith('src/') and path.endswith('.c'):
             # Further sources of X.h are X_SOMETHING.c.
             names = [header for header in headers
-                     if header[15:-2] == path[4:-2] or path[4:-2].startswith(header[15:-2] + '_')]
+                     if stem(header) == stem(path) or stem(path).startswith(stem(header) + '_')]
             if not names:
                 folder = os.path.dirname('include/fathom/' + path[4:])
                 problems.append(f'{path}: there is no header of its name in {folder}')
             elif includes(text)[:1] != [('"', max(names, key=len)[8:])]:
                 problems.append(f'{path}: its own header comes first, which proves that it is complete')
-        elif path in headers and room(path) and f'src/{path[15:-2]}.c' not in sources and \
+        elif path in headers and room(path) and f'src/{stem(path)}.c' not in sources and \
                 path not in WITHOUT_SOURCE:
             problems.append(f'{path}: there is no src/{path[15:-2]}.c')
     tool = files(root, 'examples/fathom')

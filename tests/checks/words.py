@@ -51,7 +51,7 @@ TABLE = [  # the word, as it is in names (None: allowed there), as it is in pros
     ('answer', None, r'(an?|the|its|late|whole|first|good) answers?', 'response'),
 ]
 CHANGES = 'CHANGELOG.md'
-RENAMED = re.compile(r'^\| `(fathom/\w+\.h|\w+)` \| `(fathom[\w/.]+|FATHOM_\w+)` \|$', re.M)
+RENAMED = re.compile(r'^\| `(fathom/[\w/]+\.h|\w+)` \| `(fathom[\w/.]+|FATHOM_\w+)` \|$', re.M)
 # The one definition of quarantine may say what a unit owes.
 DEFINITION = ('owes', 'quarantine')
 
@@ -126,16 +126,19 @@ def prose_of(line, code):
 
 
 def renamed(root):
-    """Of the table of names in CHANGELOG.md: no old one is left in a header, and each new one is there."""
+    """Checks the tables of renamed names in CHANGELOG.md: no header has an old name, and a new name stands in a header
+    or was renamed again."""
     if not os.path.exists(os.path.join(root, CHANGES)):
         return
     headers = files(root, 'include', 'port', ends='.h')
     names = {name for path in headers for name in NAME.findall(code_of(read(root, path)))}
     names |= {path[len('include/'):] for path in headers}
-    for old, new in RENAMED.findall(read(root, CHANGES)):
+    rows = RENAMED.findall(read(root, CHANGES))
+    renamed_again = {old for old, _ in rows}
+    for old, new in rows:
         if old in names:
             yield f'{CHANGES}: {old} has become {new}, and is there still'
-        if new not in names:
+        if new not in names | renamed_again:
             yield f'{CHANGES}: {old} has become {new}, which is in no header'
 
 

@@ -97,7 +97,7 @@ static fathom_status_t poll_sensor(void *ctx, fathom_sample_t *sample)
 {
     fake_sensor_t *const sensor = ctx;
     sensor->polls++;
-    if (sensor->at == FAKE_SCRIPT || sensor->script[sensor->at] == 0) return sensor->for_ever;
+    if (sensor->at == FAKE_SCRIPT || sensor->script[sensor->at] == FATHOM_PENDING) return sensor->for_ever;
     return sensor->script[sensor->at++];
 }
 
@@ -106,8 +106,8 @@ static uint32_t sensor_due_us(void *ctx) { return ((const fake_sensor_t *)ctx)->
 static void take(void *ctx, fathom_status_t status, const fathom_sample_t *sample)
 {
     fake_sensor_t *const sensor = ctx;
-    assert_int_equal(sample != NULL, status == FATHOM_READY);
-    if (status == FATHOM_READY)
+    assert_int_equal(sample != NULL, status == FATHOM_OK);
+    if (status == FATHOM_OK)
         sensor->readings++;
     else if (status == FATHOM_ERR_PORT)
         sensor->port_errors++;
@@ -123,6 +123,7 @@ void fake_sensor(fake_sensor_t *sensor, fake_source_t *on)
     sensor->node.take = take;
     sensor->node.ctx = sensor;
     sensor->on = on;
+    for (unsigned i = 0; i != FAKE_SCRIPT; i++) sensor->script[i] = FATHOM_PENDING;
     sensor->for_ever = FATHOM_PENDING;
     sensor->due_us = FATHOM_NO_DEADLINE;
     fathom_loop_add_sensor(&on->source, &sensor->node);

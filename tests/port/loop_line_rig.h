@@ -33,7 +33,7 @@ static void line_rig_tell(void *ctx, const fathom_loop_source_t *source, bool is
 static void line_rig_take(void *ctx, fathom_status_t status, const fathom_sample_t *sample)
 {
     const unsigned i = *(const unsigned *)ctx;
-    if (status != FATHOM_READY) {
+    if (status != FATHOM_OK) {
         *(status == FATHOM_ERR_PORT ? &rig.port_errors[i] : &rig.errors[i]) += 1;
         return;
     }
@@ -52,7 +52,7 @@ static inline void line_rig_add(uint32_t baud)
                      FATHOM_POSIX_OK);
     const fathom_hps167s_config_t config = {.modbus.transport = &rig.lines[i].modbus,
                                             .modbus.timeout_us = LINE_RIG_TIMEOUT_US};
-    assert_int_equal(fathom_hps167s_init(&rig.drivers[i], &config), FATHOM_READY);
+    assert_int_equal(fathom_hps167s_init(&rig.drivers[i], &config), FATHOM_OK);
     rig.sensors[i] =
         (fathom_loop_sensor_t){fathom_hps167s_sensor(&rig.drivers[i]), line_rig_take, &numbers[i], NULL};
     fathom_loop_add_sensor(&rig.lines[i].source, &rig.sensors[i]);

@@ -77,7 +77,7 @@ static int begins(void **state)
     hal_clock.now_us = read_clock;
     const fathom_a16_pwm_config_t config = {
         .pulse = {.clock = &hal_clock, .capture = &capture, .trigger = fathom_output_pin(&trigger_pin)}};
-    assert_int_equal(fathom_a16_pwm_init(&sensor, &config), FATHOM_READY);
+    assert_int_equal(fathom_a16_pwm_init(&sensor, &config), FATHOM_OK);
     return 0;
 }
 
@@ -107,7 +107,7 @@ TEST(pulses_are_read_to_the_millimetre)
     };
     for (unsigned i = 0; i != sizeof rows / sizeof rows[0]; i++) {
         width_us = rows[i].us;
-        assert_int_equal(measure(), FATHOM_READY);
+        assert_int_equal(measure(), FATHOM_OK);
         assert_int_equal(sample.kind, FATHOM_TARGET);
         assert_int_equal(sample.raw, rows[i].us);
         assert_int_equal(sample.distance_mm, rows[i].mm);
@@ -119,7 +119,7 @@ TEST(pulses_are_read_to_the_millimetre)
 TEST(the_pulse_of_94_ms_is_nothing_in_range)
 {
     width_us = 94000;
-    assert_int_equal(measure(), FATHOM_READY);
+    assert_int_equal(measure(), FATHOM_OK);
     assert_int_equal(sample.kind, FATHOM_NO_TARGET);
 }
 
@@ -127,7 +127,7 @@ TEST(a_line_that_stays_high_is_a_fault)
 {
     width_us = 3000;
     never_falls = true;
-    assert_int_equal(measure(), FATHOM_READY);
+    assert_int_equal(measure(), FATHOM_OK);
     assert_int_equal(sample.kind, FATHOM_FAULT);
     assert_int_equal(sample.raw, 0);
 }
@@ -136,7 +136,7 @@ TEST(no_pulse_is_no_response)
 {
     assert_int_equal(measure(), FATHOM_ERR_NO_RESPONSE);
     width_us = 10000;
-    assert_int_equal(measure(), FATHOM_READY);
+    assert_int_equal(measure(), FATHOM_OK);
     assert_int_equal(sample.distance_mm, 1739);
 }
 
@@ -152,7 +152,7 @@ TEST(noise_is_rejected_and_counted_and_the_pulse_is_read)
         chip_edge(&chip.lines[ECHO], true, now_us + 1000 * i);
         chip_edge(&chip.lines[ECHO], false, now_us + 1000 * i + 100);
     }
-    assert_int_equal(measure(), FATHOM_READY);
+    assert_int_equal(measure(), FATHOM_OK);
     assert_int_equal(sample.distance_mm, 1739);
     assert_int_equal(sensor.meter.noises, 6);
 }
@@ -171,14 +171,14 @@ TEST(a_pulse_of_which_an_edge_was_lost_is_no_reading)
     assert_int_equal(measure(), FATHOM_ERR_NO_RESPONSE);
     assert_int_equal(echo.lost_events, 2);
     width_us = 10000;
-    assert_int_equal(measure(), FATHOM_READY);
+    assert_int_equal(measure(), FATHOM_OK);
     assert_int_equal(sample.distance_mm, 1739);
 }
 
 TEST(a_chip_that_goes_in_mid_run_is_a_broken_port)
 {
     width_us = 10000;
-    assert_int_equal(measure(), FATHOM_READY);
+    assert_int_equal(measure(), FATHOM_OK);
     chip.read_error = ENODEV;
     assert_int_equal(measure(), FATHOM_ERR_PORT);
     assert_int_equal(fathom_gpio_error(&echo), FATHOM_GPIO_ERR_LOST);
@@ -188,6 +188,6 @@ TEST(a_chip_that_goes_in_mid_run_is_a_broken_port)
     fathom_gpio_close(&echo);
     (void)begins(NULL);
     width_us = 23000;
-    assert_int_equal(measure(), FATHOM_READY);
+    assert_int_equal(measure(), FATHOM_OK);
     assert_int_equal(sample.distance_mm, 4000);
 }

@@ -162,7 +162,7 @@ TEST(a_reading_that_it_still_had_comes_first)
     add(&one);
     fake_sensor(&first, &one);
     step();
-    memcpy(first.script, (fathom_status_t[]){FATHOM_READY, FATHOM_READY, FATHOM_ERR_PORT},
+    memcpy(first.script, (fathom_status_t[]){FATHOM_OK, FATHOM_OK, FATHOM_ERR_PORT},
            3 * sizeof first.script[0]);
     one.is_lost = true;
     step();
@@ -176,7 +176,7 @@ TEST(readings_without_end_do_not_put_the_loss_off)
     add(&one);
     fake_sensor(&first, &one);
     step();
-    first.for_ever = FATHOM_READY;
+    first.for_ever = FATHOM_OK;
     one.is_lost = true;
     step();
     assert_int_equal(first.port_errors, 1);
@@ -240,7 +240,7 @@ TEST(what_they_have_to_say_of_the_time_away_is_dropped)
     step();
     one.is_lost = false;
     first.at = 0;
-    memcpy(first.script, (fathom_status_t[]){FATHOM_ERR_STALE, FATHOM_READY, FATHOM_PENDING},
+    memcpy(first.script, (fathom_status_t[]){FATHOM_ERR_STALE, FATHOM_OK, FATHOM_PENDING},
            3 * sizeof first.script[0]);
     fake_pass(600000);
     assert_true(one.source.is_open);

@@ -12,7 +12,7 @@ TEST(a_sensor_is_polled_until_it_has_nothing_more_and_all_is_taken)
 {
     add(&one);
     fake_sensor(&first, &one);
-    memcpy(first.script, (fathom_status_t[]){FATHOM_READY, FATHOM_READY, FATHOM_ERR_CHECKSUM, FATHOM_READY},
+    memcpy(first.script, (fathom_status_t[]){FATHOM_OK, FATHOM_OK, FATHOM_ERR_CHECKSUM, FATHOM_OK},
            4 * sizeof first.script[0]);
     step();
     assert_int_equal(first.readings, 3);
@@ -26,8 +26,8 @@ TEST(one_that_never_ends_keeps_no_other_waiting)
     add(&two);
     fake_sensor(&first, &one);
     fake_sensor(&second, &one);
-    first.for_ever = FATHOM_READY;
-    second.script[0] = FATHOM_READY;
+    first.for_ever = FATHOM_OK;
+    second.script[0] = FATHOM_OK;
     fake_pass(1000000);
     assert_int_equal(second.readings, 1);
     assert_int_equal(two.polls, 2);
@@ -50,7 +50,7 @@ TEST(many_readings_at_once_are_all_taken_without_waiting)
 {
     add(&one);
     fake_sensor(&first, &one);
-    for (unsigned i = 0; i != 40; i++) first.script[i] = FATHOM_READY;
+    for (unsigned i = 0; i != 40; i++) first.script[i] = FATHOM_OK;
     fake_pass(1);
     assert_int_equal(first.readings, 40);
 }
@@ -60,7 +60,7 @@ TEST(a_sensor_that_is_added_later_is_polled_in_the_next_step)
     add(&one);
     step();
     fake_sensor(&first, &one);
-    first.script[0] = FATHOM_READY;
+    first.script[0] = FATHOM_OK;
     step();
     assert_int_equal(fake_elapsed_us(), 0);
     assert_int_equal(first.readings, 1);
@@ -94,7 +94,7 @@ TEST(what_else_is_in_a_sensor_that_is_added_does_not_matter)
     fake_source(&two);
     add(&two);
     fathom_loop_add_sensor(&two.source, &node);
-    first.script[0] = FATHOM_READY;
+    first.script[0] = FATHOM_OK;
     step();
     assert_int_equal(first.readings, 1);
     fathom_loop_remove(&two.source);
@@ -107,7 +107,7 @@ TEST(fathom_loop_read_is_the_same_in_one_line)
     memset(&node, 0xA5, sizeof node);
     add(&two);
     fathom_loop_read(&two.source, &node, first.node.sensor, first.node.take, &first);
-    first.script[0] = FATHOM_READY;
+    first.script[0] = FATHOM_OK;
     first.script[1] = FATHOM_ERR_CHECKSUM;
     step();
     assert_int_equal(first.readings, 1);
@@ -120,7 +120,7 @@ TEST(sensors_may_be_there_before_their_source)
 {
     fake_sensor(&first, &one);
     add(&one);
-    first.script[0] = FATHOM_READY;
+    first.script[0] = FATHOM_OK;
     step();
     assert_int_equal(first.readings, 1);
 }
@@ -131,9 +131,9 @@ static void stop(fathom_status_t status) { fathom_loop_stop(&fake.loop); }
 
 static void add_more(fathom_status_t status)
 {
-    if (status != FATHOM_READY || second.on != NULL) return;
+    if (status != FATHOM_OK || second.on != NULL) return;
     fake_sensor(&second, &one);
-    second.script[0] = FATHOM_READY;
+    second.script[0] = FATHOM_OK;
     second.when_taken = stop;
     add(&two);
     add(&three);
@@ -144,7 +144,7 @@ TEST(a_callback_may_add_to_the_loop_and_stop_it)
     memset(&second, 0, sizeof second);
     add(&one);
     fake_sensor(&first, &one);
-    first.script[0] = FATHOM_READY;
+    first.script[0] = FATHOM_OK;
     first.when_taken = add_more;
     fathom_loop_run(&fake.loop);
     assert_int_equal(second.readings, 1);
@@ -160,7 +160,7 @@ TEST(a_callback_may_wake_its_own_source)
 {
     add(&one);
     fake_sensor(&first, &one);
-    first.script[0] = FATHOM_READY;
+    first.script[0] = FATHOM_OK;
     first.when_taken = wake_one;
     step();
     const unsigned before = one.polls;
@@ -179,7 +179,7 @@ TEST(a_callback_that_wakes_what_this_step_polls_anyway_adds_no_poll)
     add(&two);
     fake_sensor(&first, &one);
     step();
-    first.script[first.at] = FATHOM_READY;
+    first.script[first.at] = FATHOM_OK;
     first.when_taken = wake_two;
     fake.now_us += 5000; /* both are due, `two` after `one` */
     step();
@@ -194,7 +194,7 @@ static void add_sensor_to_two(fathom_status_t status)
 {
     if (second.on != NULL) return;
     fake_sensor(&second, &two);
-    second.script[0] = FATHOM_READY;
+    second.script[0] = FATHOM_OK;
 }
 
 TEST(a_callback_may_add_a_sensor_to_another_source)
@@ -204,7 +204,7 @@ TEST(a_callback_may_add_a_sensor_to_another_source)
     add(&two);
     step();
     fake_sensor(&first, &one);
-    first.script[0] = FATHOM_READY;
+    first.script[0] = FATHOM_OK;
     first.when_taken = add_sensor_to_two;
     step();
     step();
@@ -222,7 +222,7 @@ TEST(a_step_within_a_step_does_nothing)
 {
     add(&one);
     fake_sensor(&first, &one);
-    first.script[0] = FATHOM_READY;
+    first.script[0] = FATHOM_OK;
     first.when_taken = step_inside;
     step();
     assert_int_equal(fake.loop.sleeps, 1);
@@ -238,7 +238,7 @@ TEST(a_stop_ends_the_run_and_the_loop_can_be_run_again)
     first.when_taken = stop;
     for (unsigned n = 1; n != 4; n++) {
         first.at = 0;
-        first.script[0] = FATHOM_READY;
+        first.script[0] = FATHOM_OK;
         fathom_loop_run(&fake.loop);
         assert_int_equal(first.readings, n);
     }

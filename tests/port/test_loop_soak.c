@@ -121,9 +121,9 @@ static void take(void *ctx, fathom_status_t status, const fathom_sample_t *sampl
     transactions++;
     if (status == FATHOM_ERR_PORT)
         place->port_errors++;
-    else if (status != FATHOM_READY)
+    else if (status != FATHOM_OK)
         place->errors++;
-    if (status != FATHOM_READY) return;
+    if (status != FATHOM_OK) return;
     place->readings++;
     if (now_us - place->heard_us > place->longest_us) place->longest_us = now_us - place->heard_us;
     place->heard_us = now_us;
@@ -222,7 +222,7 @@ static void add_place(unsigned number)
                                            .find_echo = fathom_line_find_echo,
                                            .silence_us = 4011,
                                            .gap_us = 25000};
-    assert_int_equal(fathom_line_init(&place->line, &place->config), FATHOM_READY);
+    assert_int_equal(fathom_line_init(&place->line, &place->config), FATHOM_OK);
     place->modbus = fathom_modbus_client(&place->line);
     fathom_sensor_t sensor;
     if (is_a16(place)) {
@@ -231,13 +231,13 @@ static void add_place(unsigned number)
                                    &(fathom_a16_modbus_config_t){.modbus.transport = &place->modbus,
                                                                  .modbus.timeout_us = A16_TIMEOUT_US,
                                                                  .value = FATHOM_REAL_TIME}),
-            FATHOM_READY);
+            FATHOM_OK);
         sensor = fathom_a16_modbus_sensor(&place->a16_driver);
     } else {
         assert_int_equal(fathom_hps167s_init(&place->hps_driver,
                                              &(fathom_hps167s_config_t){.modbus.transport = &place->modbus,
                                                                         .modbus.timeout_us = HPS_TIMEOUT_US}),
-                         FATHOM_READY);
+                         FATHOM_OK);
         sensor = fathom_hps167s_sensor(&place->hps_driver);
     }
     fathom_loop_add(&loop, &place->source);

@@ -445,10 +445,10 @@ static void read_sensor(const fathom_uart_t *uart, uint32_t us, uint32_t round_u
     (void)start(NULL);
     chip.is_event = uart == &event_uart;
     begin_at(us);
-    assert_int_equal(fathom_line_init(&line, &line_config), FATHOM_READY);
+    assert_int_equal(fathom_line_init(&line, &line_config), FATHOM_OK);
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
     const fathom_a16_modbus_config_t config = {.modbus.transport = &modbus, .value = FATHOM_REAL_TIME};
-    assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_READY);
+    assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_OK);
     const fathom_sensor_t sensor = fathom_a16_modbus_sensor(&a16);
     fathom_sample_t sample;
     fathom_status_t status = FATHOM_PENDING;
@@ -458,7 +458,7 @@ static void read_sensor(const fathom_uart_t *uart, uint32_t us, uint32_t round_u
         status = fathom_poll(&sensor, &sample);
         run(round_us);
     }
-    assert_int_equal(status, FATHOM_READY);
+    assert_int_equal(status, FATHOM_OK);
     assert_int_equal(sample.kind, FATHOM_TARGET);
     assert_int_equal(sample.distance_mm, 751);
 }

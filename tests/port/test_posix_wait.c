@@ -258,7 +258,7 @@ TEST(a_transaction_wakes_the_program_four_times_at_most)
     unsigned wakes = 0;
     pthread_t thread;
     assert_int_equal(fathom_posix_set_line(&rig.port, &usual), FATHOM_POSIX_OK);
-    assert_int_equal(fathom_line_init(&line, &config), FATHOM_READY);
+    assert_int_equal(fathom_line_init(&line, &config), FATHOM_OK);
     fathom_modbus_read_holding_registers(&request.message, 1, 0x0100, 1, &mm);
     assert_int_equal(fathom_modbus_client_submit(&line, &request), FATHOM_PENDING);
     assert_int_equal(pthread_create(&thread, NULL, response_once, &line), 0);
@@ -269,7 +269,7 @@ TEST(a_transaction_wakes_the_program_four_times_at_most)
         wakes++;
     }
     assert_int_equal(pthread_join(thread, NULL), 0);
-    assert_int_equal(request.transaction.status, FATHOM_READY);
+    assert_int_equal(request.transaction.status, FATHOM_OK);
     assert_int_equal(mm, 754);
     assert_in_range(wakes, 1, 4);
 }

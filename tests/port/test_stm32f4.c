@@ -47,7 +47,7 @@ static int begin_capture(void **state)
     fathom_stm32f4_happened = 0;
     fathom_edges_init(&edges, NULL);
     capture = fathom_edges_capture(&edges);
-    if (!fathom_stm32f4_capture_begin(&pa0, &edges)) return -1;
+    if (!fathom_stm32f4_capture_init(&pa0, &edges)) return -1;
     capture.arm(capture.ctx);
     return 0;
 }
@@ -86,9 +86,9 @@ TEST(only_the_pins_of_tim2_ch1_are_taken)
     static const fathom_stm32f4_pin_t pa5 = {'A', 5};
     static const fathom_stm32f4_pin_t pa15 = {'A', 15};
     for (size_t i = 0; i != sizeof others / sizeof others[0]; i++)
-        assert_false(fathom_stm32f4_capture_begin(&others[i], &edges));
-    assert_true(fathom_stm32f4_capture_begin(&pa5, &edges));
-    assert_true(fathom_stm32f4_capture_begin(&pa15, &edges));
+        assert_false(fathom_stm32f4_capture_init(&others[i], &edges));
+    assert_true(fathom_stm32f4_capture_init(&pa5, &edges));
+    assert_true(fathom_stm32f4_capture_init(&pa15, &edges));
     assert_int_equal(GPIOA_AT(AFRL + 4) >> 28, 1);
 }
 
@@ -185,7 +185,7 @@ TEST_IN(clear_suite, an_output_is_high_before_it_is_driven_and_an_input_has_its_
 
 TEST_IN(clear_suite, the_clock_is_tim2_divided_to_1_mhz)
 {
-    fathom_stm32f4_clock_begin(84000000);
+    fathom_stm32f4_clock_init(84000000);
     assert_int_equal(TIM2_AT(0x28), 83);         /* PSC */
     assert_int_equal(TIM2_AT(0x2C), 0xFFFFFFFF); /* ARR */
     assert_int_equal(TIM2_AT(0x00) & 1, 1);      /* CR1: CEN */
@@ -211,7 +211,7 @@ static int begin_with_driver(char driver)
                                                   .tx = {'A', 2},
                                                   .rx = {'A', 3},
                                                   .driver = {driver, 1}};
-    if (!fathom_stm32f4_usart_begin(&usart, &config)) return -1;
+    if (!fathom_stm32f4_usart_init(&usart, &config)) return -1;
     uart = fathom_stm32f4_usart(&usart);
     return 0;
 }

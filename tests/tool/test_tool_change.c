@@ -112,7 +112,7 @@ static void note(const station_t *station, fathom_status_t status)
 
 static bool take_sample(void *ctx, const station_t *station, const fathom_sample_t *sample)
 {
-    note(station, FATHOM_READY);
+    note(station, FATHOM_OK);
     return true;
 }
 
@@ -203,7 +203,7 @@ static void expect_no_gap(const char *name, uint64_t longest_us)
     for (size_t i = 0; i != site.outcome_count; i++) {
         const outcome_t *const outcome = &site.outcomes[i];
         if (strcmp(outcome->name, name) != 0) continue;
-        if (outcome->status != FATHOM_READY || outcome->time_us - before_us > longest_us)
+        if (outcome->status != FATHOM_OK || outcome->time_us - before_us > longest_us)
             fail_msg("%s: status %d after %u us", name, outcome->status,
                      (unsigned)(outcome->time_us - before_us));
         before_us = outcome->time_us;
@@ -219,8 +219,8 @@ TEST(a_sensor_that_stays_is_read_in_time_and_its_line_stays_open)
                i % 2 == 0 ? "gate=hps167s:7@line door=hps167s:8@line" : "gate=hps167s:7@line");
     run("gate=hps167s:7@line", 2000000);
     expect_no_gap("gate", 150000);
-    assert_in_range(count_of("gate", FATHOM_READY), 19, 21);
-    assert_true(count_of("door", FATHOM_READY) >= 4);
+    assert_in_range(count_of("gate", FATHOM_OK), 19, 21);
+    assert_true(count_of("door", FATHOM_OK) >= 4);
     assert_int_equal(count_of("door", FATHOM_ERR_NO_RESPONSE), 0);
     assert_int_equal(site.opened, 1);
 }
@@ -233,7 +233,7 @@ TEST(one_at_other_line_settings_comes_and_goes_in_the_middle_of_a_request)
                i % 2 == 0 ? "gate=hps167s:7@line tank=a16:1:modbus@line" : "gate=hps167s:7@line");
     run("gate=hps167s:7@line", 7000000);
     expect_no_gap("gate", 700000);
-    assert_true(count_of("tank", FATHOM_READY) >= 4);
+    assert_true(count_of("tank", FATHOM_OK) >= 4);
     assert_int_equal(count_of("tank", FATHOM_ERR_NO_RESPONSE), 0);
     assert_int_equal(site.opened, 1);
 }
@@ -245,8 +245,8 @@ TEST(one_that_is_asked_otherwise_begins_anew_and_the_others_go_on)
     change(2520000, "gate=hps167s:7@line pit=a16:1:modbus@line");
     run("gate=hps167s:7@line", 5000000);
     expect_no_gap("gate", 700000);
-    assert_true(count_of("tank", FATHOM_READY) >= 2);
-    assert_true(count_of("pit", FATHOM_READY) >= 2);
+    assert_true(count_of("tank", FATHOM_OK) >= 2);
+    assert_true(count_of("pit", FATHOM_OK) >= 2);
     assert_int_equal(count_of("pit", FATHOM_ERR_NO_RESPONSE), 0);
     assert_int_equal(site.opened, 1);
 }
@@ -259,7 +259,7 @@ TEST(a_port_that_is_named_no_more_is_closed_when_no_request_is_under_way)
     /* The A16 takes half a second at each. */
     assert_true(site.changed_us > 1000000 && site.changed_us < 1600000);
     assert_int_equal(count_of("tank", FATHOM_ERR_NO_RESPONSE), 0);
-    assert_true(count_of("door", FATHOM_READY) >= 3);
+    assert_true(count_of("door", FATHOM_OK) >= 3);
 }
 
 TEST(an_urgent_change_does_not_wait)

@@ -21,13 +21,13 @@ void rig_start(uint32_t now_us)
                                              .find_echo = fathom_line_find_echo,
                                              .marks = fathom_line_marks,
                                              .senders = &fathom_line_senders};
-    assert_int_equal(fathom_line_init(&rig.line, &rig.line_config), FATHOM_READY);
+    assert_int_equal(fathom_line_init(&rig.line, &rig.line_config), FATHOM_OK);
 }
 
 fathom_status_t rig_poll(void)
 {
     const fathom_status_t status = checked_poll(&rig.sensor, &rig.sample);
-    if (status == FATHOM_READY) {
+    if (status == FATHOM_OK) {
         assert_in_range(rig.sample.probe, 1, 4);
         rig.last[rig.sample.probe - 1] = rig.sample;
         rig.samples++;
@@ -45,7 +45,7 @@ void rig_run(uint32_t for_us, uint32_t step_us)
         rig.fake.now_us += step_us;
         fathom_status_t status;
         do status = rig_poll();
-        while (status == FATHOM_READY || status == FATHOM_ERR_MALFORMED);
+        while (status == FATHOM_OK || status == FATHOM_ERR_MALFORMED);
     }
 }
 
@@ -75,7 +75,7 @@ fathom_status_t rig_send(const uint8_t *frame, size_t length, uint32_t step_us)
     fake_trickle(&rig.fake, period_us - (uint32_t)length * RIG_BYTE_US, RIG_BYTE_US, frame, length);
     rig.silent_us = RIG_GAP_US;
     rig_run(period_us + RIG_GAP_US, step_us);
-    if (rig.samples != samples) return FATHOM_READY;
+    if (rig.samples != samples) return FATHOM_OK;
     return rig.malformed != malformed ? FATHOM_ERR_MALFORMED : FATHOM_PENDING;
 }
 

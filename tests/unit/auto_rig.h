@@ -49,7 +49,7 @@ fathom_status_t rig_transaction(fathom_status_t (*call)(void), const uint8_t *re
                                 const uint8_t *response, size_t length);
 
 /* One period of 100 ms: silence, with a frame at its end, byte by byte; and the first 5 ms of the next one, which end
- * the frame. Returns what comes of it: FATHOM_READY, FATHOM_ERR_MALFORMED, or FATHOM_PENDING. */
+ * the frame. Returns what comes of it: FATHOM_OK, FATHOM_ERR_MALFORMED, or FATHOM_PENDING. */
 fathom_status_t rig_send(const uint8_t *frame, size_t length, uint32_t step_us);
 
 /* FF, each value high byte first, the low byte of the sum of all before it (A16 2(3), A05 1(2)). Returns the length. */

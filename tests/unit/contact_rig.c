@@ -37,7 +37,7 @@ fathom_status_t pins_poll(void)
     memset(&sample, GUARD, sizeof sample);
     memset(untouched, GUARD, sizeof untouched);
     const fathom_status_t status = fathom_poll(&pins.sensor, &sample);
-    if (status == FATHOM_READY) {
+    if (status == FATHOM_OK) {
         pins.sample = sample;
         pins.samples++;
         assert_int_equal(sample.sequence, (uint16_t)pins.samples);

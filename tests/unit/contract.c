@@ -104,7 +104,7 @@ TELLS(a16_modbus)
 static fathom_status_t a16_modbus_command(void)
 {
     uint8_t address;
-    return fathom_a16_modbus_address(&a16_modbus, &address);
+    return fathom_a16_modbus_get_address(&a16_modbus, &address);
 }
 
 const contract_driver_t contract_a16_modbus = {
@@ -128,7 +128,7 @@ TELLS(a05_modbus)
 static fathom_status_t a05_modbus_command(void)
 {
     uint8_t address;
-    return fathom_a05_modbus_address(&a05_modbus, &address);
+    return fathom_a05_modbus_get_address(&a05_modbus, &address);
 }
 
 const contract_driver_t contract_a05_modbus = {
@@ -153,7 +153,7 @@ TELLS(hps167s)
 static fathom_status_t hps167s_command(void)
 {
     fathom_hps167s_version_t version;
-    return fathom_hps167s_interface_version(&hps167s, &version);
+    return fathom_hps167s_get_interface_version(&hps167s, &version);
 }
 
 /* Command #5: 2.083 m, (DCB2 << 7) / 10000 = 723.1744, ambient 1, precision 0. */

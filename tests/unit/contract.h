@@ -4,8 +4,8 @@
 
 #include "drivers.h"
 #include "fathom/engine/contact.h"
-#include "fathom/engine/modbus_unit.h"
-#include "fathom/sensor/dyp.h"
+#include "fathom/engine/internal/modbus_unit.h"
+#include "fathom/sensor/internal/dyp.h"
 
 /* What test_driver_contract.c has to know of a driver, and of the way in which its device speaks. */
 

@@ -12,7 +12,7 @@ void controlled_start_at(uint32_t now_us)
     fake_pin_init(&controlled.pin, &rig.fake);
     controlled.config.line = &rig.line;
     memset(&controlled.a16, 0x5A, sizeof controlled.a16);
-    assert_int_equal(fathom_a16_controlled_init(&controlled.a16, &controlled.config), FATHOM_READY);
+    assert_int_equal(fathom_a16_controlled_init(&controlled.a16, &controlled.config), FATHOM_OK);
     rig.sensor = fathom_a16_controlled_sensor(&controlled.a16);
 }
 

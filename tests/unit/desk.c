@@ -40,7 +40,7 @@ void desk_response(const row_t *row)
     if (row->head[1] == 0x10) assert_memory_equal(fake.request->message.values, row->values, 4);
     if (row->ends == FATHOM_ERR_EXCEPTION)
         fake_modbus_refuse(&fake, (uint8_t)row->values[0]);
-    else if (row->ends != FATHOM_READY)
+    else if (row->ends != FATHOM_OK)
         fake_modbus_fail(&fake, row->ends);
     else if (row->head[1] == 0x03)
         fake_modbus_response(&fake, row->values, row->head[5]);

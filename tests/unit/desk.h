@@ -18,7 +18,7 @@ typedef struct {
 extern fake_modbus_t fake;
 extern desk_t desk;
 
-/* One request as it has to be, and how it ends: FATHOM_READY with the registers of `values` (of a write: acknowledged),
+/* One request as it has to be, and how it ends: FATHOM_OK with the registers of `values` (of a write: acknowledged),
  * FATHOM_ERR_EXCEPTION with values[0], or another error. A write of many has to carry `values`. */
 typedef struct {
     uint8_t head[6]; /* unit, function, address, count or value */

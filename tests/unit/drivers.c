@@ -6,7 +6,7 @@ fathom_status_t checked_poll(const fathom_sensor_t *sensor, fathom_sample_t *las
     fathom_sample_t sample;
     memset(&sample, GUARD, sizeof sample);
     const fathom_status_t status = fathom_poll(sensor, &sample);
-    if (status == FATHOM_READY)
+    if (status == FATHOM_OK)
         *last = sample;
     else
         assert_guard(&sample, sizeof sample);

@@ -60,6 +60,6 @@ void read_once(bool echoes)
     expect_mm(754);
 }
 
-uint8_t known_echo(void) { return fathom_line_echo(&bench.line); }
+uint8_t known_echo(void) { return fathom_line_get_echo(&bench.line); }
 
 void expect_learned(uint8_t mode, uint8_t echo) { expect_echo(mode == FATHOM_LINE_ECHO_AUTO ? echo : mode); }

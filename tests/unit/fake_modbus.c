@@ -66,7 +66,7 @@ static fathom_status_t fake_poll(void *ctx)
     if (fake->is_sent) request->transaction.attempts++;
     fake->is_sent = false;
     if (fake->ends == FATHOM_PENDING) return fake->transport;
-    if (fake->ends == FATHOM_READY && request->message.head[1] == FATHOM_MODBUS_READ_HOLDING_REGISTERS) {
+    if (fake->ends == FATHOM_OK && request->message.head[1] == FATHOM_MODBUS_READ_HOLDING_REGISTERS) {
         assert_int_equal(request->message.head[5], fake->response_count);
         memcpy(request->message.values, fake->response, fake->response_count * sizeof *fake->response);
     }
@@ -89,6 +89,8 @@ void fake_modbus_init(fake_modbus_t *fake)
 {
     memset(fake, 0, sizeof *fake);
     fake->now_us = 5000;
+    fake->ends = FATHOM_PENDING;
+    fake->transport = FATHOM_PENDING;
     fake->due_us = FATHOM_NO_DEADLINE;
     fake->modbus = (fathom_modbus_t){.submit = fake_submit,
                                      .cancel = fake_cancel,
@@ -112,14 +114,14 @@ void fake_modbus_response(fake_modbus_t *fake, const uint16_t *values, uint8_t c
     assert_in_range(count, 1, sizeof fake->response / sizeof *fake->response);
     memcpy(fake->response, values, count * sizeof *values);
     fake->response_count = count;
-    fake_modbus_fail(fake, FATHOM_READY);
+    fake_modbus_fail(fake, FATHOM_OK);
 }
 
 void fake_modbus_acknowledge(fake_modbus_t *fake)
 {
     assert_non_null(fake->request);
     assert_int_not_equal(fake->request->message.head[1], FATHOM_MODBUS_READ_HOLDING_REGISTERS);
-    fake_modbus_fail(fake, FATHOM_READY);
+    fake_modbus_fail(fake, FATHOM_OK);
 }
 
 void fake_modbus_refuse(fake_modbus_t *fake, uint8_t exception)

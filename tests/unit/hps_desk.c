@@ -23,7 +23,7 @@ int hps_set_up(void **state)
 
 void hps_start(void)
 {
-    assert_int_equal(fathom_hps167s_init(&hps, &hps_config), FATHOM_READY);
+    assert_int_equal(fathom_hps167s_init(&hps, &hps_config), FATHOM_OK);
     desk.sensor = fathom_hps167s_sensor(&hps);
 }
 
@@ -46,7 +46,7 @@ void hps_asks(uint8_t unit, uint32_t baud)
 void hps_answers(void)
 {
     fake_modbus_response(&fake, hps_measured, 4);
-    assert_int_equal(desk_poll(), FATHOM_READY);
+    assert_int_equal(desk_poll(), FATHOM_OK);
     assert_int_equal(desk.sample.distance_mm, 2083);
 }
 

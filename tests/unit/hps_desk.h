@@ -50,7 +50,7 @@ void hps_is_silent(fathom_status_t as);
     }
 /* A response to #2 whose rate has this code; and two that agree. */
 #define TWO(unit, ends, code, baud) HPS_2(unit, ends, baud, 0xFFFF, 0x0500, 0x0000, 0xB400 + code)
-#define IS(unit, code, baud)        TWO(unit, FATHOM_READY, code, baud), TWO(unit, FATHOM_READY, code, baud)
+#define IS(unit, code, baud)        TWO(unit, FATHOM_OK, code, baud), TWO(unit, FATHOM_OK, code, baud)
 /* Two of unit 1 with these registers; table 12: termination FF, automatic FF, warm-up 5 s, reconnect 180 ms, rate 1. */
 #define TELLS(...) HPS_2(1, OK, 0, __VA_ARGS__), HPS_2(1, OK, 0, __VA_ARGS__)
 #define FACTORY    TELLS(0xFFFF, 0x0500, 0x0000, 0xB401)
@@ -71,7 +71,7 @@ void hps_is_silent(fathom_status_t as);
         hps_asks(then_unit, then_baud);                                                                      \
     }
 
-#define OK     FATHOM_READY
+#define OK     FATHOM_OK
 #define SILENT FATHOM_ERR_NO_RESPONSE
 
 /* In a fine loop and in one that comes round every 20 ms, and across the wrap of the clock. */

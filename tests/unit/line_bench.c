@@ -26,7 +26,7 @@ void show_empty_port(void)
 
 static void begin_line(void)
 {
-    assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_READY);
+    assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_OK);
     show_empty_port();
 }
 
@@ -201,7 +201,7 @@ void response_1(uint16_t value)
 void response_other(uint8_t unit, uint16_t value)
 {
     deliver_response(unit, value);
-    expect_other(FATHOM_READY);
+    expect_other(FATHOM_OK);
     assert_int_equal(bench.other_value, value);
 }
 
@@ -224,7 +224,7 @@ unsigned counter(unsigned which) { return bench.counters[which]; }
 
 void expect_mm(uint16_t value)
 {
-    expect(FATHOM_READY);
+    expect(FATHOM_OK);
     assert_int_equal(bench.value, value);
 }
 

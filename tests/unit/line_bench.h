@@ -141,7 +141,7 @@ unsigned counter(unsigned which);
         expect_written(n);                                                                                   \
     } while (0)
 
-/* bench.request is READY with this value. */
+/* bench.request is OK with this value. */
 void expect_mm(uint16_t value);
 
 /* It has ended so, or is PENDING, and its value is as it was. */

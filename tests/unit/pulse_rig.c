@@ -18,7 +18,7 @@ void start_meter_at(uint32_t now_us)
     memset(&stand.meter, 0x5A, sizeof stand.meter);
     stand.readings = 0;
     stand.no_responses = stand.port_errors = 0;
-    assert_int_equal(fathom_pulse_init(&stand.meter, &stand.config), FATHOM_READY);
+    assert_int_equal(fathom_pulse_init(&stand.meter, &stand.config), FATHOM_OK);
 }
 
 void start_meter(void) { start_meter_at(1000); }
@@ -44,7 +44,7 @@ fathom_status_t poll_meter(void)
     memset(&reading, GUARD, sizeof reading);
     memset(untouched, GUARD, sizeof untouched);
     const fathom_status_t status = fathom_pulse_poll(&stand.meter, &reading);
-    if (status == FATHOM_READY) {
+    if (status == FATHOM_OK) {
         stand.last = reading;
         stand.readings++;
     } else {

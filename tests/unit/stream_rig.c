@@ -69,7 +69,7 @@ static struct {
 static void judge(unsigned end, uint32_t now_us)
 {
     const uint8_t *const frame = fathom_stream_frame(&rig.stream);
-    if (fathom_stream_poll(&rig.stream, now_us) != FATHOM_READY) return;
+    if (fathom_stream_poll(&rig.stream, now_us) != FATHOM_OK) return;
     const unsigned whole = (rig.gaps ? end : end - 1) / rig.length;
     const unsigned oldest = rig.gaps && whole > rig.next ? whole - 1 : rig.next;
     for (unsigned at = whole; at-- > oldest;) {
@@ -134,7 +134,7 @@ rig_outcome_t rig_feed(const uint8_t *sent, unsigned frames, uint8_t length, uin
     rig.outcome = (rig_outcome_t){0, 0, UINT_MAX, 0, rig.stream.counters};
     memset(rig.storage, 0xFF, sizeof rig.storage);
     assert_in_range(frames, 1, RIG_MAX_FRAMES);
-    assert_int_equal(fathom_stream_init(&rig.stream, &rig.config, 0), FATHOM_READY);
+    assert_int_equal(fathom_stream_init(&rig.stream, &rig.config, 0), FATHOM_OK);
     if (way == RIG_EVERY_20_MS)
         feed_every_20_ms(start, end);
     else

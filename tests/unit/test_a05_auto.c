@@ -23,7 +23,7 @@ static void start_at(uint32_t now_us, bool by_pin)
     config.line = &rig.line;
     config.select = by_pin ? fathom_output_pin(&pin.trigger) : fathom_output_line_break(&rig.line);
     memset(&a05, memory, sizeof a05);
-    assert_int_equal(fathom_a05_auto_init(&a05, &config), FATHOM_READY);
+    assert_int_equal(fathom_a05_auto_init(&a05, &config), FATHOM_OK);
     rig.sensor = fathom_a05_auto_sensor(&a05);
 }
 
@@ -56,7 +56,7 @@ static void example_is_there(void)
 
 static void takes(unsigned probe, uint16_t mm, uint16_t sequence)
 {
-    assert_int_equal(rig_poll(), FATHOM_READY);
+    assert_int_equal(rig_poll(), FATHOM_OK);
     assert_int_equal(rig.sample.probe, probe);
     assert_int_equal(rig.sample.distance_mm, mm);
     assert_int_equal(rig.sample.sequence, sequence);
@@ -291,7 +291,7 @@ TEST(rx_is_low_for_a_second_and_a_half_for_real_time_values)
     for (unsigned i = 0; i != 4; i++) {
         start_at(starts_us[i / 2], i % 2 == 0);
         rig_run(10000, 1000); /* the silence that begins a frame has been seen */
-        power_on(FATHOM_REAL_TIME, FATHOM_READY);
+        power_on(FATHOM_REAL_TIME, FATHOM_OK);
         assert_true(is_low());
         assert_int_equal(fathom_due_us(&rig.sensor, 1), LOW_US);
         rig_run(LOW_US - 1000, 1000);
@@ -305,29 +305,29 @@ TEST(rx_is_low_for_a_second_and_a_half_for_real_time_values)
 
 TEST(rx_is_high_for_processed_values)
 {
-    power_on(FATHOM_PROCESSED, FATHOM_READY);
+    power_on(FATHOM_PROCESSED, FATHOM_OK);
     assert_int_equal(rig.fake.breaks, 0);
     start_at(RIG_START_US, true);
     pin.level = false;
-    power_on(FATHOM_PROCESSED, FATHOM_READY);
+    power_on(FATHOM_PROCESSED, FATHOM_OK);
     assert_true(pin.level);
 }
 
 TEST(a_second_power_on_begins_anew)
 {
     for (unsigned i = 0; i != 2; i++) {
-        power_on(FATHOM_REAL_TIME, FATHOM_READY);
+        power_on(FATHOM_REAL_TIME, FATHOM_OK);
         rig_run(1000000, 1000);
     }
     assert_true(rig.fake.in_break);
-    power_on(FATHOM_PROCESSED, FATHOM_READY);
+    power_on(FATHOM_PROCESSED, FATHOM_OK);
     assert_false(rig.fake.in_break);
 }
 
 TEST(the_deadline_for_a_frame_begins_with_power_and_what_came_before_is_forgotten)
 {
     rig_run(1900000, 1000);
-    power_on(FATHOM_PROCESSED, FATHOM_READY);
+    power_on(FATHOM_PROCESSED, FATHOM_OK);
     rig_run(1999000, 1000);
     assert_int_equal(rig.stales, 0);
     rig_run(1000, 1000);
@@ -342,12 +342,12 @@ TEST(a_port_that_cannot_is_said_and_a_pin_helps)
     power_on(FATHOM_REAL_TIME, FATHOM_ERR_UNSUPPORTED);
     power_on(FATHOM_PROCESSED, FATHOM_ERR_UNSUPPORTED);
     config.select.set = NULL;
-    assert_int_equal(fathom_a05_auto_init(&a05, &config), FATHOM_READY);
+    assert_int_equal(fathom_a05_auto_init(&a05, &config), FATHOM_OK);
     power_on(FATHOM_REAL_TIME, FATHOM_ERR_UNSUPPORTED);
-    power_on(FATHOM_PROCESSED, FATHOM_READY);
+    power_on(FATHOM_PROCESSED, FATHOM_OK);
     start_at(RIG_START_US, true);
     rig.fake.uart.set_break = NULL;
-    power_on(FATHOM_REAL_TIME, FATHOM_READY);
+    power_on(FATHOM_REAL_TIME, FATHOM_OK);
     assert_int_equal(pin.sets, 1);
 }
 
@@ -357,13 +357,13 @@ TEST(a_line_that_sends_is_busy_and_another_value_is_none)
     power_on(FATHOM_REAL_TIME, FATHOM_ERR_BUSY);
     assert_false(rig.fake.in_break);
     rig.fake.now_us += 1000;
-    power_on(FATHOM_REAL_TIME, FATHOM_READY);
+    power_on(FATHOM_REAL_TIME, FATHOM_OK);
     power_on((fathom_dyp_value_t)2, FATHOM_ERR_ARGUMENT);
 }
 
 TEST(who_stops_listening_lets_rx_go)
 {
-    power_on(FATHOM_REAL_TIME, FATHOM_READY);
+    power_on(FATHOM_REAL_TIME, FATHOM_OK);
     for (unsigned i = 0; i != 2; i++) {
         fathom_a05_auto_deinit(&a05);
         assert_false(rig.fake.in_break);
@@ -374,7 +374,7 @@ TEST(who_stops_listening_lets_rx_go)
 
 TEST(in_a_slow_loop_rx_is_low_for_longer_and_never_for_less)
 {
-    power_on(FATHOM_REAL_TIME, FATHOM_READY);
+    power_on(FATHOM_REAL_TIME, FATHOM_OK);
     rig_run(1480000, 20000);
     assert_true(rig.fake.in_break);
     rig.fake.now_us += 100000; /* one turn that takes longer */

@@ -22,7 +22,7 @@ static void set_up_at(uint32_t now_us)
     rig_start(now_us);
     rig.line_config.echo = FATHOM_LINE_ECHO_OFF;
     rig.fake.byte_us = RIG_BYTE_US;
-    assert_int_equal(fathom_line_init(&rig.line, &rig.line_config), FATHOM_READY);
+    assert_int_equal(fathom_line_init(&rig.line, &rig.line_config), FATHOM_OK);
     dyp = fathom_dyp_client(&rig.line);
     config = (fathom_a05_dyp_config_t){.modbus.transport = &dyp};
     memset(&a05, 0x5A, sizeof a05);
@@ -30,7 +30,7 @@ static void set_up_at(uint32_t now_us)
 
 static void start(void)
 {
-    assert_int_equal(fathom_a05_dyp_init(&a05, &config), FATHOM_READY);
+    assert_int_equal(fathom_a05_dyp_init(&a05, &config), FATHOM_OK);
     rig.sensor = fathom_a05_dyp_sensor(&a05);
 }
 
@@ -89,7 +89,7 @@ static void tell(size_t written, const uint8_t *bytes, size_t length)
 
 static void takes(unsigned probe)
 {
-    assert_int_equal(rig_poll(), FATHOM_READY);
+    assert_int_equal(rig_poll(), FATHOM_OK);
     assert_int_equal(rig.sample.probe, probe);
     assert_int_equal(rig.sample.distance_mm, four_mm[probe - 1]);
 }
@@ -142,7 +142,7 @@ TEST(one_probe_is_measured_alone)
         assert_memory_equal(rig.fake.writes[0].bytes, request, sizeof request);
         nothing_for(70000);
         receive(response, sizeof response);
-        assert_int_equal(rig_poll(), FATHOM_READY);
+        assert_int_equal(rig_poll(), FATHOM_OK);
         assert_int_equal(rig.sample.probe, probe);
         assert_int_equal(rig.sample.distance_mm, 1953);
         nothing_for(1000);
@@ -158,7 +158,7 @@ TEST(a_value_that_cannot_be_is_refused_alone)
                                   0xFE, 0x00, 0x00, 0x17, 0x71, 0x82};
     tell(0, odd, sizeof odd);
     for (unsigned i = 0; i != 3; i++) {
-        assert_int_equal(rig_poll(), FATHOM_READY);
+        assert_int_equal(rig_poll(), FATHOM_OK);
         assert_int_equal(rig.sample.kind, i != 2 ? FATHOM_NO_TARGET : FATHOM_UNKNOWN);
         assert_int_equal(rig.sample.interference, i == 1);
     }
@@ -191,7 +191,7 @@ static void assert_period(uint32_t expected_us)
             receive(four, sizeof four);
         else
             receive(first_1953, sizeof first_1953);
-        for (unsigned i = config.probes == 0 ? 4 : 1; i != 0; i--) assert_int_equal(rig_poll(), FATHOM_READY);
+        for (unsigned i = config.probes == 0 ? 4 : 1; i != 0; i--) assert_int_equal(rig_poll(), FATHOM_OK);
         nothing_for(STEP_US);
         assert_in_range(fathom_due_us(&rig.sensor, 1), expected_us - 12000, expected_us - 10000);
     }
@@ -354,7 +354,7 @@ static void finds(size_t written, const uint8_t *response, uint8_t where)
 {
     until_asked(written);
     receive(response, sizeof from_5);
-    finds_within(STEP_US, FATHOM_READY);
+    finds_within(STEP_US, FATHOM_OK);
     assert_int_equal(address, where);
 }
 
@@ -393,7 +393,7 @@ TEST_IN(finding, of_two_responses_the_first_is_taken)
     memcpy(glued + sizeof from_254, from_5, sizeof from_5);
     until_asked(1);
     receive(glued, sizeof glued);
-    finds_within(STEP_US, FATHOM_READY);
+    finds_within(STEP_US, FATHOM_OK);
     assert_int_equal(address, 254);
     assert_int_equal(sought.value, 1953);
 }
@@ -401,13 +401,13 @@ TEST_IN(finding, of_two_responses_the_first_is_taken)
 TEST_IN(finding, on_an_echoing_line_the_echo_is_no_device)
 {
     rig.line_config.echo = FATHOM_LINE_ECHO_AUTO;
-    assert_int_equal(fathom_line_init(&rig.line, &rig.line_config), FATHOM_READY);
+    assert_int_equal(fathom_line_init(&rig.line, &rig.line_config), FATHOM_OK);
     while (rig.fake.written == 0) finds_within(STEP_US, FATHOM_PENDING);
     fake_trickle(&rig.fake, 0, RIG_BYTE_US, ask_any, sizeof ask_any);
     fake_trickle(&rig.fake, 70000, RIG_BYTE_US, from_5, sizeof from_5);
-    finds_within(100000, FATHOM_READY);
+    finds_within(100000, FATHOM_OK);
     assert_int_equal(address, 5);
-    assert_int_equal(fathom_line_echo(&rig.line), FATHOM_LINE_ECHO_ON);
+    assert_int_equal(fathom_line_get_echo(&rig.line), FATHOM_LINE_ECHO_ON);
 }
 
 TEST_IN(finding, it_can_be_given_up)
@@ -449,11 +449,11 @@ static void assert_refused(void)
     const size_t written = rig.fake.written;
     fathom_modbus_write_single_register(&other.message, 9, 0x0200, 9);
     assert_int_equal(transport->submit(transport->ctx, &other), FATHOM_ERR_UNSUPPORTED);
-    assert_false(fathom_line_has(&rig.line, &other.transaction));
+    assert_false(fathom_line_is_queued(&rig.line, &other.transaction));
     assert_int_equal(rig.fake.written, written);
 }
 
-static fathom_status_t set_7(void) { return fathom_a05_dyp_set_every_address(&a05, 7); }
+static fathom_status_t set_7(void) { return fathom_a05_dyp_broadcast_address(&a05, 7); }
 
 /* 55 AA 01 10 and 0x75B mm: 55 + AA + 01 + 10 + 07 + 5B = 172, so that the sum is 72; and at address 7: 78. 55 + AA +
  * 07 + 03 = 109. */
@@ -481,7 +481,7 @@ TEST(a_write_through_the_transport_is_refused_at_every_time)
         if (steps[seen].length != 0) fake_receive(&rig.fake, 70000, steps[seen].response, steps[seen].length);
         seen++;
     }
-    assert_int_equal(status, FATHOM_READY);
+    assert_int_equal(status, FATHOM_OK);
     assert_true(fathom_a05_dyp_is_written(&a05));
     assert_int_equal(seen, COUNT(steps));
     assert_refused();
@@ -489,11 +489,11 @@ TEST(a_write_through_the_transport_is_refused_at_every_time)
 
 TEST(what_was_refused_or_given_up_leaves_the_transport_closed)
 {
-    assert_int_equal(fathom_a05_dyp_set_every_address(&a05, 0), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_a05_dyp_broadcast_address(&a05, 0), FATHOM_ERR_ARGUMENT);
     assert_refused();
-    assert_int_equal(fathom_a05_dyp_set_every_address(&a05, 255), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_a05_dyp_broadcast_address(&a05, 255), FATHOM_ERR_ARGUMENT);
     assert_refused();
-    assert_int_equal(fathom_modbus_next_is_blind(&a05.base.unit), FATHOM_READY); /* an address never is */
+    assert_int_equal(fathom_modbus_write_next_unchecked(&a05.base.unit), FATHOM_OK); /* an address never is */
     assert_int_equal(set_7(), FATHOM_ERR_ARGUMENT);
     fathom_a05_dyp_cancel(&a05);
     assert_int_equal(set_7(), FATHOM_PENDING);

@@ -25,12 +25,12 @@ static const suite_t suite = {.set_up = set_up_a05};
 static void start(void)
 {
     memset(&a05, 0xA5, sizeof a05);
-    assert_int_equal(fathom_a05_dyp_init(&a05, &config), FATHOM_READY);
+    assert_int_equal(fathom_a05_dyp_init(&a05, &config), FATHOM_OK);
     sensor = fathom_a05_dyp_sensor(&a05);
 }
 
 static fathom_status_t measure(void) { return fathom_poll(&sensor, &sample); }
-static fathom_status_t set_address(void) { return fathom_a05_dyp_set_every_address(&a05, 7); }
+static fathom_status_t set_address(void) { return fathom_a05_dyp_broadcast_address(&a05, 7); }
 
 static fathom_a05_dyp_find_t find;
 
@@ -89,8 +89,8 @@ static void is_asked_every(uint32_t us, const uint8_t *response, size_t length)
     start();
     is_sent(measure);
     receive(response, length);
-    assert_int_equal(after(0, measure), FATHOM_READY);
-    while (measure() == FATHOM_READY) {
+    assert_int_equal(after(0, measure), FATHOM_OK);
+    while (measure() == FATHOM_OK) {
     }
     /* what one call submits the line sends in the next */
     assert_int_equal(after(us - 5 * BYTE_US - 1, measure), FATHOM_PENDING);
@@ -157,7 +157,7 @@ TEST(finding_ends_if_the_line_is_initialised_again)
 {
     memset(&find, 0, sizeof find);
     is_sent(find_address);
-    assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_READY);
+    assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_OK);
     assert_int_equal(find_address(), FATHOM_ERR_CANCELLED);
     is_sent(find_address); /* again */
     is_silent_for(200000, find_address);

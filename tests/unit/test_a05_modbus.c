@@ -21,7 +21,7 @@ static const suite_t suite = {.set_up = set_up};
 
 static void start(void)
 {
-    assert_int_equal(fathom_a05_modbus_init(&a05, &config), FATHOM_READY);
+    assert_int_equal(fathom_a05_modbus_init(&a05, &config), FATHOM_OK);
     desk.sensor = fathom_a05_modbus_sensor(&a05);
 }
 
@@ -52,7 +52,7 @@ static void take_samples(uint8_t probes, uint16_t sequence)
     for (uint8_t probe = 1; probe <= 4; probe++) {
         if ((probes >> (probe - 1) & 1) == 0) continue;
         if (taken++ != 0) assert_int_equal(fathom_due_us(&desk.sensor, 1), 0);
-        assert_int_equal(desk_poll(), FATHOM_READY);
+        assert_int_equal(desk_poll(), FATHOM_OK);
         assert_sample(&desk.sample, (fathom_sample_t){.time_us = fake.heard_us,
                                                       .raw = 1000u * probe + 1,
                                                       .distance_mm = (uint16_t)(1000 * probe + 1),
@@ -122,7 +122,7 @@ TEST(the_samples_of_one_response_share_sequence_and_time)
     }
     IS_TOLD(1000, 0xFFFD, 0xFFFE, 3562);
     for (unsigned probe = 1; probe <= 4; probe++) {
-        assert_int_equal(desk_poll_after(7000), FATHOM_READY);
+        assert_int_equal(desk_poll_after(7000), FATHOM_OK);
         assert_int_equal(desk.sample.time_us, 3000);
         assert_int_equal(desk.sample.kind, probe == 2 || probe == 3 ? FATHOM_NO_TARGET : FATHOM_TARGET);
         assert_int_equal(desk.sample.interference, probe == 3);
@@ -136,7 +136,7 @@ TEST(a_value_that_cannot_be_is_refused_alone)
     start();
     IS_TOLD(249, 250, 4501, 4500);
     for (unsigned probe = 1; probe <= 4; probe++) {
-        assert_int_equal(desk_poll(), probe % 2 != 0 ? FATHOM_ERR_MALFORMED : FATHOM_READY);
+        assert_int_equal(desk_poll(), probe % 2 != 0 ? FATHOM_ERR_MALFORMED : FATHOM_OK);
         assert_int_equal(a05.base.measurement.refused_probe, probe < 3 ? 1 : 3);
         assert_int_equal(a05.base.measurement.refused_raw, probe < 3 ? 249 : 4501);
         if (probe % 2 == 0) assert_int_equal(desk.sample.probe, probe);
@@ -162,13 +162,13 @@ static fathom_status_t move(void) { return fathom_a05_modbus_set_address(&a05, 5
 TEST(an_a05_that_has_moved_measures_at_its_new_address)
 {
     start();
-    PLAY(move, FATHOM_READY, READ(1, 0x0200, FATHOM_READY, 1), READ(5, 0x0200, FATHOM_ERR_NO_RESPONSE, 0),
-         WRITE(1, 0x0200, 5, FATHOM_READY), READ(5, 0x0200, FATHOM_READY, 5));
+    PLAY(move, FATHOM_OK, READ(1, 0x0200, FATHOM_OK, 1), READ(5, 0x0200, FATHOM_ERR_NO_RESPONSE, 0),
+         WRITE(1, 0x0200, 5, FATHOM_OK), READ(5, 0x0200, FATHOM_OK, 5));
     assert_true(fathom_a05_modbus_is_written(&a05));
     IS_TOLD(1001, 2001, 3001, 4001);
     fake_modbus_assert_asked(&fake, 1, 5, 0x0106, 4);
     for (unsigned probe = 1; probe <= 4; probe++) {
-        assert_int_equal(desk_poll(), FATHOM_READY);
+        assert_int_equal(desk_poll(), FATHOM_OK);
         assert_int_equal(desk.sample.address, 5);
     }
 }
@@ -185,10 +185,10 @@ TEST(the_example_of_the_datasheet_goes_over_a_line)
     config.probes = 0xE;
     start();
     rig.sensor = desk.sensor;
-    assert_int_equal(rig_transaction(rig_poll, request, 8, response, 11), FATHOM_READY);
+    assert_int_equal(rig_transaction(rig_poll, request, 8, response, 11), FATHOM_OK);
     for (unsigned i = 0; i != 3; i++) {
         assert_int_equal(rig.sample.probe, i + 2);
         assert_int_equal(rig.sample.distance_mm, distances[i]);
-        if (i != 2) assert_int_equal(rig_poll(), FATHOM_READY);
+        if (i != 2) assert_int_equal(rig_poll(), FATHOM_OK);
     }
 }

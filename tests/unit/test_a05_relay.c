@@ -16,7 +16,7 @@ static void start(uint8_t wiring, uint8_t level_of_it, bool level)
     const fathom_a05_relay_config_t config = {
         .pin = &pins.pin, .clock = &pins.fake.clock, .wiring = wiring, .level = level_of_it};
     memset(&relay, 0x5A, sizeof relay);
-    assert_int_equal(fathom_a05_relay_init(&relay, &config), FATHOM_READY);
+    assert_int_equal(fathom_a05_relay_init(&relay, &config), FATHOM_OK);
     pins.sensor = fathom_a05_relay_sensor(&relay);
 }
 

@@ -12,7 +12,7 @@ static uint16_t sequence;
 static void start(void)
 {
     memset(&rule, 0x5A, sizeof rule);
-    assert_int_equal(fathom_a05_relay_rule_init(&rule, &config), FATHOM_READY);
+    assert_int_equal(fathom_a05_relay_rule_init(&rule, &config), FATHOM_OK);
     assert_int_equal(rule.debounce.level, 0);
 }
 
@@ -33,7 +33,7 @@ static bool give(uint8_t probe, uint8_t kind, uint16_t mm)
 {
     const fathom_sample_t sample = {
         .time_us = now_us, .sequence = sequence, .kind = kind, .probe = probe, .distance_mm = mm};
-    return fathom_a05_relay_rule_sample(&rule, &sample);
+    return fathom_a05_relay_rule_add_sample(&rule, &sample);
 }
 
 /* The next measurement, 500 ms after the last; a distance of NONE is no target. True: the level has changed. */
@@ -205,8 +205,8 @@ TEST(an_unknown_probe_neither_opens_it_nor_holds_it_for_ever)
 TEST(without_samples_the_loop_finds_it_unknown)
 {
     all(999, true);
-    assert_false(fathom_debounce_time(&rule.debounce, now_us + 5000000));
-    assert_true(fathom_debounce_time(&rule.debounce, now_us + 5000001));
+    assert_false(fathom_debounce_advance(&rule.debounce, now_us + 5000000));
+    assert_true(fathom_debounce_advance(&rule.debounce, now_us + 5000001));
     is(FATHOM_UNKNOWN);
 }
 
@@ -275,7 +275,7 @@ TEST(a_config_without_sense_is_refused)
     config.probes = 0x10;
     assert_int_equal(fathom_a05_relay_rule_init(&rule, &config), FATHOM_ERR_ARGUMENT);
     config.probes = 0x0F;
-    assert_int_equal(fathom_a05_relay_rule_init(&rule, &config), FATHOM_READY);
+    assert_int_equal(fathom_a05_relay_rule_init(&rule, &config), FATHOM_OK);
     config.equal = FATHOM_EQUAL_IS_FAR + 1;
     assert_int_equal(fathom_a05_relay_rule_init(&rule, &config), FATHOM_ERR_ARGUMENT);
 }

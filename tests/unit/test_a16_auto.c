@@ -19,7 +19,7 @@ static void start_at(uint32_t now_us)
     fake_pin_init(&pin, &rig.fake);
     config.line = &rig.line;
     memset(&a16, 0x5A, sizeof a16);
-    assert_int_equal(fathom_a16_auto_init(&a16, &config), FATHOM_READY);
+    assert_int_equal(fathom_a16_auto_init(&a16, &config), FATHOM_OK);
     rig.sensor = fathom_a16_auto_sensor(&a16);
 }
 
@@ -49,7 +49,7 @@ TEST(a_sample_is_there_5_ms_after_its_last_byte_and_says_when_that_came)
     assert_int_equal(fathom_due_us(&rig.sensor, 1), 1);
     rig.fake.now_us += 1;
     assert_int_equal(fathom_due_us(&rig.sensor, 1), 0);
-    assert_int_equal(rig_poll(), FATHOM_READY);
+    assert_int_equal(rig_poll(), FATHOM_OK);
     assert_int_equal(rig.sample.time_us, came_us);
     assert_int_equal(rig.sample.distance_mm, 1953);
     PENDS(rig_poll());
@@ -110,7 +110,7 @@ TEST(a_frame_that_a_poll_of_the_line_has_brought_is_due_at_once)
     fake_receive(&rig.fake, 0, and_more, 5);
     PENDS(fathom_line_poll(&rig.line));
     assert_int_equal(fathom_due_us(&rig.sensor, 1), 0);
-    assert_int_equal(rig_poll(), FATHOM_READY);
+    assert_int_equal(rig_poll(), FATHOM_OK);
     assert_true(fathom_due_us(&rig.sensor, 1) > 0);
 }
 
@@ -157,7 +157,7 @@ static void selects(fathom_dyp_value_t value, fathom_status_t status)
 TEST(by_default_nothing_is_driven)
 {
     rig.fake.uart.set_break = NULL;
-    inits(FATHOM_READY);
+    inits(FATHOM_OK);
     fathom_a16_auto_deinit(&a16);
     assert_int_equal(rig.fake.breaks, 0);
     assert_int_equal(pin.sets, 0);
@@ -166,14 +166,14 @@ TEST(by_default_nothing_is_driven)
 TEST(a_pin_is_driven_at_init_and_when_told)
 {
     config.select = fathom_output_pin(&pin.trigger);
-    inits(FATHOM_READY);
+    inits(FATHOM_OK);
     assert_true(pin.level);
     config.value = FATHOM_REAL_TIME;
-    inits(FATHOM_READY);
+    inits(FATHOM_OK);
     assert_false(pin.level);
-    selects(FATHOM_PROCESSED, FATHOM_READY);
+    selects(FATHOM_PROCESSED, FATHOM_OK);
     assert_true(pin.level);
-    selects(FATHOM_REAL_TIME, FATHOM_READY);
+    selects(FATHOM_REAL_TIME, FATHOM_OK);
     assert_false(pin.level);
     fathom_a16_auto_deinit(&a16);
     assert_int_equal(rig.fake.breaks, 0);
@@ -184,11 +184,11 @@ TEST(a_break_selects_until_deinit)
 {
     config.select = fathom_output_line_break(&rig.line);
     config.value = FATHOM_REAL_TIME;
-    inits(FATHOM_READY);
+    inits(FATHOM_OK);
     assert_true(rig.fake.in_break);
-    selects(FATHOM_PROCESSED, FATHOM_READY);
+    selects(FATHOM_PROCESSED, FATHOM_OK);
     assert_false(rig.fake.in_break);
-    selects(FATHOM_REAL_TIME, FATHOM_READY);
+    selects(FATHOM_REAL_TIME, FATHOM_OK);
     fathom_a16_auto_deinit(&a16);
     assert_false(rig.fake.in_break);
     assert_null(rig.line.listener);
@@ -198,7 +198,7 @@ TEST(frames_are_read_in_a_break)
 {
     config.select = fathom_output_line_break(&rig.line);
     config.value = FATHOM_REAL_TIME;
-    inits(FATHOM_READY);
+    inits(FATHOM_OK);
     rig.sensor = fathom_a16_auto_sensor(&a16);
     rig_send(mm_1953, 4, 500);
     assert_true(rig.fake.in_break);
@@ -229,7 +229,7 @@ TEST(no_other_value_is_selected)
     inits(FATHOM_ERR_ARGUMENT);
     assert_null(rig.line.listener);
     config.value = FATHOM_REAL_TIME;
-    inits(FATHOM_READY);
+    inits(FATHOM_OK);
     const unsigned sets = pin.sets;
     selects((fathom_dyp_value_t)2, FATHOM_ERR_ARGUMENT);
     selects((fathom_dyp_value_t)256, FATHOM_ERR_ARGUMENT);
@@ -238,7 +238,7 @@ TEST(no_other_value_is_selected)
 
 TEST(without_anything_that_drives_rx_nothing_is_selected)
 {
-    inits(FATHOM_READY);
+    inits(FATHOM_OK);
     selects(FATHOM_REAL_TIME, FATHOM_ERR_UNSUPPORTED);
     selects(FATHOM_PROCESSED, FATHOM_ERR_UNSUPPORTED);
     config.value = FATHOM_REAL_TIME;
@@ -248,11 +248,11 @@ TEST(without_anything_that_drives_rx_nothing_is_selected)
 TEST(a_selection_that_failed_has_changed_nothing)
 {
     config.select = fathom_output_line_break(&rig.line);
-    inits(FATHOM_READY);
+    inits(FATHOM_OK);
     rig.fake.never_sent = true;
     selects(FATHOM_REAL_TIME, FATHOM_PENDING);
     assert_int_equal(a16.value, FATHOM_PROCESSED);
     rig.fake.never_sent = false;
-    selects(FATHOM_REAL_TIME, FATHOM_READY);
+    selects(FATHOM_REAL_TIME, FATHOM_OK);
     assert_int_equal(a16.value, FATHOM_REAL_TIME);
 }

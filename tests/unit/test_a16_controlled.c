@@ -91,7 +91,7 @@ static void comes(fathom_status_t status) { assert_int_equal(controlled_outcome(
 
 TEST(a_sample_is_told_5_ms_after_its_last_byte)
 {
-    assert_int_equal(answered_after(controlled_1953, 100 * MS, 100), FATHOM_READY);
+    assert_int_equal(answered_after(controlled_1953, 100 * MS, 100), FATHOM_OK);
     assert_int_equal(rig.sample.distance_mm, 1953);
     assert_in_range(rig.fake.now_us, rig.sample.time_us + 5000, rig.sample.time_us + 5100);
 }
@@ -102,16 +102,20 @@ TEST(a_frame_answers_80_to_130_ms_after_the_edge_and_is_late_else)
     static const struct {
         uint32_t after_us;
         fathom_status_t status;
-    } times[] = {{30 * MS, FATHOM_ERR_NO_RESPONSE}, {79900, FATHOM_ERR_NO_RESPONSE},
-                 {80 * MS, FATHOM_READY},           {94 * MS, FATHOM_READY},
-                 {114 * MS, FATHOM_READY},          {130 * MS, FATHOM_READY},
-                 {130200, FATHOM_ERR_CHECKSUM},     {133 * MS, FATHOM_ERR_CHECKSUM},
+    } times[] = {{30 * MS, FATHOM_ERR_NO_RESPONSE},
+                 {79900, FATHOM_ERR_NO_RESPONSE},
+                 {80 * MS, FATHOM_OK},
+                 {94 * MS, FATHOM_OK},
+                 {114 * MS, FATHOM_OK},
+                 {130 * MS, FATHOM_OK},
+                 {130200, FATHOM_ERR_CHECKSUM},
+                 {133 * MS, FATHOM_ERR_CHECKSUM},
                  {134 * MS, FATHOM_ERR_NO_RESPONSE}};
     for (unsigned i = 0; i != COUNT(times); i++) {
         assert_int_equal(answered_after(controlled_1953, times[i].after_us, 50), times[i].status);
         rig_run(20 * MS, 50);
-        assert_int_equal(controlled.a16.late, times[i].status != FATHOM_READY);
-        assert_int_equal(rig.samples, times[i].status == FATHOM_READY);
+        assert_int_equal(controlled.a16.late, times[i].status != FATHOM_OK);
+        assert_int_equal(rig.samples, times[i].status == FATHOM_OK);
     }
 }
 
@@ -121,7 +125,7 @@ TEST(both_ends_of_the_time_are_options)
     controlled.config.earliest_us = 40 * MS;
     controlled.config.latest_us = 60 * MS;
     for (unsigned i = 0; i != 4; i++)
-        assert_int_equal(answered_after(controlled_1953, after_us[i], 50) == FATHOM_READY, i == 1 || i == 2);
+        assert_int_equal(answered_after(controlled_1953, after_us[i], 50) == FATHOM_OK, i == 1 || i == 2);
 }
 
 TEST(no_response_is_said_at_130_ms_and_the_next_trigger_follows)
@@ -144,7 +148,7 @@ TEST(a_damaged_response_is_a_wrong_checksum_and_noise_right_after_the_trigger_is
     comes(FATHOM_ERR_NO_RESPONSE);
     controlled_response(wrong_sum, 20 * MS);
     controlled_response(controlled_1953, 100 * MS);
-    comes(FATHOM_READY);
+    comes(FATHOM_OK);
 }
 
 TEST(a_late_response_is_not_that_of_the_next_trigger_and_the_count_stops)
@@ -159,7 +163,7 @@ TEST(a_late_response_is_not_that_of_the_next_trigger_and_the_count_stops)
     assert_int_equal(rig.samples, 0);
     assert_int_equal(controlled.a16.late, UINT16_MAX);
     controlled_response(controlled_1953, 100 * MS);
-    comes(FATHOM_READY);
+    comes(FATHOM_OK);
     assert_int_equal(rig.sample.distance_mm, 1953);
 }
 
@@ -169,7 +173,7 @@ TEST(a_second_frame_to_one_trigger_is_late)
     controlled_run_to_break(1, 100);
     controlled_response(controlled_1953, 90 * MS);
     controlled_response(controlled_511, 105 * MS);
-    comes(FATHOM_READY);
+    comes(FATHOM_OK);
     rig_run(24 * MS, 100);
     assert_int_equal(rig.samples, 1);
     assert_int_equal(controlled.a16.late, 1);
@@ -186,7 +190,7 @@ TEST(the_ports_time_stamps_decide_where_there_are_any)
         rig_run(119 * MS, 1 * MS);
         fake_receive_rx(&rig.fake, 20 * MS, controlled_1953, 4,
                         (fathom_rx_t){edge_us + came_us, FATHOM_RX_TIMED});
-        assert_int_equal(controlled_outcome(20 * MS), in_time ? FATHOM_READY : FATHOM_ERR_NO_RESPONSE);
+        assert_int_equal(controlled_outcome(20 * MS), in_time ? FATHOM_OK : FATHOM_ERR_NO_RESPONSE);
         if (in_time) assert_int_equal(rig.sample.time_us, edge_us + came_us);
         assert_int_equal(controlled.a16.late, !in_time);
     }
@@ -211,8 +215,8 @@ TEST(every_trigger_is_one_sample_in_loops_from_100_us_to_300_ms_and_across_the_w
             while (rig.samples != 6) {
                 rig.fake.now_us += steps_us[s];
                 const fathom_status_t status = rig_poll();
-                assert_true(status == FATHOM_PENDING || status == FATHOM_READY);
-                if (status == FATHOM_READY)
+                assert_true(status == FATHOM_PENDING || status == FATHOM_OK);
+                if (status == FATHOM_OK)
                     assert_int_equal(rig.sample.distance_mm, rig.samples % 2 != 0 ? 1953 : 511);
                 assert_in_range(rig.fake.breaks, rig.samples, rig.samples + 1);
                 if (rig.fake.breaks == triggers) continue;
@@ -323,7 +327,7 @@ TEST(without_a_pin_or_a_break_nothing_listens_and_deinit_ends_a_break)
     controlled.config.trigger.set = NULL;
     assert_int_equal(fathom_a16_controlled_init(&other, &controlled.config), FATHOM_ERR_ARGUMENT);
     controlled.config.trigger = fathom_output_pin(&controlled.pin.trigger);
-    assert_int_equal(fathom_a16_controlled_init(&other, &controlled.config), FATHOM_READY);
+    assert_int_equal(fathom_a16_controlled_init(&other, &controlled.config), FATHOM_OK);
     assert_ptr_equal(rig.line.listener, &other.stream.listener);
 }
 
@@ -335,7 +339,7 @@ static void run_to_second_trigger(void)
     controlled_start();
     controlled_run_to_break(1, 100);
     controlled_response(controlled_511, 100 * MS);
-    assert_int_equal(controlled_outcome(100), FATHOM_READY);
+    assert_int_equal(controlled_outcome(100), FATHOM_OK);
     rig_run(12 * MS, 100);
     assert_int_equal(rig.samples, 1);
 }
@@ -355,7 +359,7 @@ TEST(a_frame_of_before_the_trigger_is_not_the_response)
         rig.fake.now_us += 102 * MS;
         PENDS(rig_poll());
         rig.fake.now_us += 5 * MS;
-        assert_int_equal(rig_poll(), FATHOM_READY);
+        assert_int_equal(rig_poll(), FATHOM_OK);
         assert_int_equal(rig.sample.distance_mm, 511);
         assert_int_equal(controlled.a16.late, 1);
     }

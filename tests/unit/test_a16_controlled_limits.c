@@ -54,7 +54,7 @@ TEST(a_frame_answers_from_80_to_130_ms_after_the_edge)
         controlled_set_up(state);
         trigger();
         const fathom_status_t status = answered_after(rows[i].after_us, controlled_1953);
-        assert_int_equal(status == FATHOM_READY, rows[i].responses);
+        assert_int_equal(status == FATHOM_OK, rows[i].responses);
         assert_int_equal(controlled.a16.late, !rows[i].responses);
     }
 }
@@ -63,7 +63,7 @@ TEST(a_frame_answers_from_80_to_130_ms_after_the_edge)
 TEST(the_next_trigger_comes_121_ms_after_the_last)
 {
     trigger();
-    assert_int_equal(answered_after(100 * MS, controlled_1953), FATHOM_READY);
+    assert_int_equal(answered_after(100 * MS, controlled_1953), FATHOM_OK);
     poll_after(121 * MS - 105 * MS - 1);
     assert_int_equal(rig.fake.breaks, 1);
     poll_after(1);
@@ -75,7 +75,7 @@ TEST(a_period_of_1_us_more_than_the_default_is_kept)
     controlled.config.period_us = 121 * MS + 1;
     controlled_start();
     trigger();
-    assert_int_equal(answered_after(100 * MS, controlled_1953), FATHOM_READY);
+    assert_int_equal(answered_after(100 * MS, controlled_1953), FATHOM_OK);
     poll_after(121 * MS - 105 * MS);
     assert_int_equal(rig.fake.breaks, 1);
     poll_after(1);
@@ -88,7 +88,7 @@ TEST(distances_up_to_16350_mm_are_believed)
     static const uint8_t mm_16350[] = {0xFF, 0x3F, 0xDE, 0x1C};
     static const uint8_t mm_16351[] = {0xFF, 0x3F, 0xDF, 0x1D};
     trigger();
-    assert_int_equal(answered_after(100 * MS, mm_16350), FATHOM_READY);
+    assert_int_equal(answered_after(100 * MS, mm_16350), FATHOM_OK);
     assert_int_equal(rig.sample.distance_mm, 16350);
     controlled_start();
     trigger();
@@ -101,7 +101,7 @@ TEST(a_refused_frame_takes_a_number)
 {
     static const uint8_t mm_16351[] = {0xFF, 0x3F, 0xDF, 0x1D};
     trigger();
-    assert_int_equal(answered_after(100 * MS, controlled_1953), FATHOM_READY);
+    assert_int_equal(answered_after(100 * MS, controlled_1953), FATHOM_OK);
     assert_int_equal(rig.sample.sequence, 1);
     poll_after(16 * MS);
     assert_int_equal(rig.fake.breaks, 2);
@@ -110,7 +110,7 @@ TEST(a_refused_frame_takes_a_number)
     assert_int_equal(rig.fake.breaks, 3);
     assert_int_equal(controlled.a16.measurement.refused_raw, 16351);
     assert_int_equal(controlled.a16.measurement.refused_probe, 1);
-    assert_int_equal(answered_after(100 * MS, controlled_1953), FATHOM_READY);
+    assert_int_equal(answered_after(100 * MS, controlled_1953), FATHOM_OK);
     assert_int_equal(rig.sample.sequence, 3);
 }
 
@@ -119,7 +119,7 @@ TEST(earliest_and_latest_may_be_the_same)
 {
     controlled.config.earliest_us = 100000;
     controlled.config.latest_us = 100000;
-    assert_int_equal(fathom_a16_controlled_init(&controlled.a16, &controlled.config), FATHOM_READY);
+    assert_int_equal(fathom_a16_controlled_init(&controlled.a16, &controlled.config), FATHOM_OK);
     controlled.config.latest_us = 99999;
     assert_int_equal(fathom_a16_controlled_init(&controlled.a16, &controlled.config), FATHOM_ERR_ARGUMENT);
 }
@@ -167,7 +167,7 @@ TEST(between_two_triggers_it_is_due_at_the_next_one)
     for (unsigned fill = 0; fill != 2; fill++) {
         rig_start(RIG_START_US);
         memset(&controlled.a16, fill != 0 ? 0xFF : 0, sizeof controlled.a16);
-        assert_int_equal(fathom_a16_controlled_init(&controlled.a16, &controlled.config), FATHOM_READY);
+        assert_int_equal(fathom_a16_controlled_init(&controlled.a16, &controlled.config), FATHOM_OK);
         rig.sensor = fathom_a16_controlled_sensor(&controlled.a16);
         trigger();
         poll_after(2 * MS);
@@ -190,7 +190,7 @@ TEST(a_frame_that_a_poll_of_the_line_has_brought_is_due_at_once)
     rig.fake.now_us += 90 * MS;
     assert_int_equal(fathom_line_poll(&rig.line), FATHOM_PENDING);
     assert_int_equal(due_us(), 0);
-    assert_int_equal(poll_after(0), FATHOM_READY);
+    assert_int_equal(poll_after(0), FATHOM_OK);
 }
 
 /* ---- what it leaves alone ---- */
@@ -210,11 +210,11 @@ TEST(a_break_is_ended_only_where_one_has_begun)
     uart.set_break = counted_set_break;
     set_breaks = 0;
     rig.line_config.uart = &uart;
-    assert_int_equal(fathom_a16_controlled_init(&controlled.a16, &controlled.config), FATHOM_READY);
+    assert_int_equal(fathom_a16_controlled_init(&controlled.a16, &controlled.config), FATHOM_OK);
     assert_int_equal(set_breaks, 0);
     fathom_a16_controlled_deinit(&controlled.a16);
     assert_int_equal(set_breaks, 0);
-    assert_int_equal(fathom_a16_controlled_init(&controlled.a16, &controlled.config), FATHOM_READY);
+    assert_int_equal(fathom_a16_controlled_init(&controlled.a16, &controlled.config), FATHOM_OK);
     trigger();
     assert_int_equal(set_breaks, 1);
     fathom_a16_controlled_deinit(&controlled.a16);

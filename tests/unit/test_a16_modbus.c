@@ -22,7 +22,7 @@ static const suite_t suite = {.set_up = set_up};
 static fathom_sensor_t start(fathom_a16_modbus_t *sensor)
 {
     memset(sensor, 0x5A, sizeof *sensor);
-    assert_int_equal(fathom_a16_modbus_init(sensor, &config), FATHOM_READY);
+    assert_int_equal(fathom_a16_modbus_init(sensor, &config), FATHOM_OK);
     return fathom_a16_modbus_sensor(sensor);
 }
 
@@ -37,7 +37,7 @@ TEST(the_real_time_value_is_asked_with_300_ms)
         assert_int_equal(fake.request->transaction.timeout_us, 300000);
         config.value = FATHOM_PROCESSED; /* read by init only */
         desk_says(751);
-        assert_int_equal(desk_poll(), FATHOM_READY);
+        assert_int_equal(desk_poll(), FATHOM_OK);
     }
 }
 
@@ -63,7 +63,7 @@ TEST(the_examples_of_the_datasheet_go_over_a_line)
         config.value = i;
         config.modbus.timeout_us = 1000000;
         rig.sensor = start(&a16);
-        assert_int_equal(rig_transaction(rig_poll, requests[i], 8, responses[i], 7), FATHOM_READY);
+        assert_int_equal(rig_transaction(rig_poll, requests[i], 8, responses[i], 7), FATHOM_OK);
         assert_int_equal(rig.sample.distance_mm, i == 0 ? 754 : 751);
     }
 }
@@ -94,7 +94,7 @@ TEST(the_time_is_the_responses_own_when_anothers_poll_brought_it)
     assert_int_equal(rig.fake.written, 2); /* the other's turn */
     rig.fake.now_us += 10000;
     rig.sensor = first;
-    assert_int_equal(rig_poll(), FATHOM_READY);
+    assert_int_equal(rig_poll(), FATHOM_OK);
     assert_int_equal(rig.sample.distance_mm, 754);
     assert_int_equal(rig.sample.time_us, came_us);
 }

@@ -18,7 +18,7 @@ static void start(void)
     fake_pin_init(&pin, &fake);
     pin.response_after_us = 110 * MS;
     memset(&a16, 0x5A, sizeof a16);
-    assert_int_equal(fathom_a16_pwm_init(&a16, &config), FATHOM_READY);
+    assert_int_equal(fathom_a16_pwm_init(&a16, &config), FATHOM_OK);
     sensor = fathom_a16_pwm_sensor(&a16);
 }
 
@@ -48,7 +48,7 @@ static fathom_status_t cycle(uint32_t width_us)
 
 static void is(fathom_status_t status, uint8_t kind, uint32_t raw, uint16_t mm)
 {
-    assert_int_equal(status, FATHOM_READY);
+    assert_int_equal(status, FATHOM_OK);
     assert_int_equal(last.kind, kind);
     assert_int_equal(last.raw, raw);
     assert_int_equal(last.distance_mm, mm);
@@ -89,7 +89,7 @@ TEST(samples_are_numbered_and_errors_are_not)
     for (unsigned i = 1; i <= 4; i++) {
         fathom_status_t status;
         while ((status = cycle(10000)) == FATHOM_ERR_NO_RESPONSE) no_responses++;
-        assert_int_equal(status, FATHOM_READY);
+        assert_int_equal(status, FATHOM_OK);
         assert_int_equal(last.sequence, i);
         if (i != 1) assert_int_equal(cycle(0), FATHOM_ERR_NO_RESPONSE);
     }
@@ -100,12 +100,12 @@ TEST(a_window_of_the_users_own_is_kept_and_refusals_are_counted)
 {
     config.window.min_mm = 1739;
     config.window.max_mm = 1740;
-    measures(10000, FATHOM_READY);
-    measures(10003, FATHOM_READY);         /* 1739.65 */
+    measures(10000, FATHOM_OK);
+    measures(10003, FATHOM_OK);            /* 1739.65 */
     measures(9996, FATHOM_ERR_MALFORMED);  /* 1738.4 */
     measures(10009, FATHOM_ERR_MALFORMED); /* 1740.7 */
     assert_int_equal(a16.implausible, 1);
-    measures(94000, FATHOM_READY); /* no distance */
+    measures(94000, FATHOM_OK); /* no distance */
     a16.implausible = UINT16_MAX;
     while (cycle(10009) != FATHOM_ERR_MALFORMED) assert_true(pin.falls < 5);
     assert_int_equal(a16.implausible, UINT16_MAX);
@@ -182,7 +182,7 @@ TEST(in_air_a_window_may_be_wider)
 {
     config.in_air = true;
     config.window.min_mm = 16351;
-    assert_int_equal(fathom_a16_pwm_init(&a16, &config), FATHOM_READY);
+    assert_int_equal(fathom_a16_pwm_init(&a16, &config), FATHOM_OK);
     config.window.min_mm = 18001;
     assert_int_equal(fathom_a16_pwm_init(&a16, &config), FATHOM_ERR_ARGUMENT);
 }

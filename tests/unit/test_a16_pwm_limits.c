@@ -36,7 +36,7 @@ static const suite_t suite = {.set_up = set_up};
 /* What comes of a pulse of this width. */
 static fathom_status_t pulse_of(uint32_t width_us)
 {
-    assert_int_equal(init(), FATHOM_READY);
+    assert_int_equal(init(), FATHOM_OK);
     sensor = fathom_a16_pwm_sensor(&a16);
     pin.response_width_us = width_us;
     for (unsigned polls = 0; polls != 100; polls++) {
@@ -54,7 +54,7 @@ TEST(distances_from_1_mm_are_believed)
 {
     assert_int_equal(pulse_of(2), FATHOM_ERR_MALFORMED);
     assert_int_equal(a16.implausible, 1);
-    assert_int_equal(pulse_of(3), FATHOM_READY);
+    assert_int_equal(pulse_of(3), FATHOM_OK);
     assert_int_equal(sample.distance_mm, 1);
 }
 
@@ -63,7 +63,7 @@ TEST(the_nearest_distance_is_an_option)
 {
     config.window.min_mm = 100;
     assert_int_equal(pulse_of(572), FATHOM_ERR_MALFORMED);
-    assert_int_equal(pulse_of(573), FATHOM_READY);
+    assert_int_equal(pulse_of(573), FATHOM_OK);
     assert_int_equal(sample.distance_mm, 100);
 }
 
@@ -72,7 +72,7 @@ TEST(a_window_of_one_distance_is_one)
 {
     config.window.min_mm = 100;
     config.window.max_mm = 100;
-    assert_int_equal(pulse_of(573), FATHOM_READY);
+    assert_int_equal(pulse_of(573), FATHOM_OK);
     config.window.max_mm = 99;
     assert_int_equal(init(), FATHOM_ERR_ARGUMENT);
 }
@@ -80,6 +80,6 @@ TEST(a_window_of_one_distance_is_one)
 TEST(a_sample_is_without_interference)
 {
     const bool no = false;
-    assert_int_equal(pulse_of(10000), FATHOM_READY);
+    assert_int_equal(pulse_of(10000), FATHOM_OK);
     assert_memory_equal(&sample.interference, &no, sizeof no);
 }

@@ -39,10 +39,10 @@ static int set_up_listening(void **state)
     const fathom_a16_auto_config_t listening = {.line = &bench.line, .stale_us = 100000000};
     set_up(state);
     if (begins_us != 0) bench.fake.now_us = bench.fake.busy_until_us = begins_us;
-    assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_READY);
+    assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_OK);
     transport = fathom_modbus_client(&bench.line);
-    assert_int_equal(fathom_a16_modbus_init(&modbus, &config), FATHOM_READY);
-    assert_int_equal(fathom_a16_auto_init(&automatic, &listening), FATHOM_READY);
+    assert_int_equal(fathom_a16_modbus_init(&modbus, &config), FATHOM_OK);
+    assert_int_equal(fathom_a16_auto_init(&automatic, &listening), FATHOM_OK);
     memset(&rs232, 0x01, sizeof rs232);
     fathom_a16_rs232_init(&rs232, &modbus, &automatic);
     response_when_sent(1, address_is_1, sizeof address_is_1);
@@ -53,7 +53,7 @@ static int set_up_listening(void **state)
 
 static const suite_t suite = {.set_up = set_up_listening};
 
-/* "FATHOM_READY: *sample is the first reading that the sensor has sent by itself". The frame is A16 2(4). */
+/* "FATHOM_OK: *sample is the first reading that the sensor has sent by itself". The frame is A16 2(4). */
 static void expect_first_reading(void)
 {
     static const uint8_t mm_1953[] = {0xFF, 0x07, 0xA1, 0xA7};
@@ -61,7 +61,7 @@ static void expect_first_reading(void)
     assert_int_equal(after(100000), FATHOM_PENDING);
     receive(mm_1953, sizeof mm_1953);
     assert_int_equal(after(100), FATHOM_PENDING);
-    assert_int_equal(after(GAP_US), FATHOM_READY);
+    assert_int_equal(after(GAP_US), FATHOM_OK);
     assert_int_equal(sample.kind, FATHOM_TARGET);
     assert_int_equal(sample.distance_mm, 1953);
     assert_int_equal(sample.model, FATHOM_A16);

@@ -11,17 +11,17 @@ static int set_up(void **state)
     desk_begin(5000);
     const fathom_a16_modbus_config_t config = {.modbus.transport = &fake.modbus};
     memset(&a16, 0, sizeof a16); /* 0 is something that each output could be given by mistake */
-    assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_READY);
+    assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_OK);
     desk.sensor = fathom_a16_modbus_sensor(&a16);
     return 0;
 }
 
 static const suite_t suite = {.set_up = set_up};
 
-#define OK     FATHOM_READY
+#define OK     FATHOM_OK
 #define SILENT FATHOM_ERR_NO_RESPONSE
 
-/* ---- one register a row, in the caller's own variable, which keeps what no device has told until FATHOM_READY ---- */
+/* ---- one register a row, in the caller's own variable, which keeps what no device has told until FATHOM_OK ---- */
 
 static struct {
     uint8_t address;
@@ -30,13 +30,16 @@ static struct {
     fathom_dyp_value_t value;
 } is;
 
-static fathom_status_t get_address(void) { return fathom_a16_modbus_address(&a16, &is.address); }
-static fathom_status_t get_polarity(void) { return fathom_a16_modbus_switch_polarity(&a16, &is.polarity); }
+static fathom_status_t get_address(void) { return fathom_a16_modbus_get_address(&a16, &is.address); }
+static fathom_status_t get_polarity(void)
+{
+    return fathom_a16_modbus_get_switch_polarity(&a16, &is.polarity);
+}
 static fathom_status_t get_threshold(void)
 {
-    return fathom_a16_modbus_switch_threshold_mm(&a16, &is.threshold_mm);
+    return fathom_a16_modbus_get_switch_threshold_mm(&a16, &is.threshold_mm);
 }
-static fathom_status_t get_automatic(void) { return fathom_a16_modbus_automatic_value(&a16, &is.value); }
+static fathom_status_t get_automatic(void) { return fathom_a16_modbus_get_automatic_value(&a16, &is.value); }
 
 static fathom_status_t set_address(void)
 {
@@ -196,14 +199,14 @@ TEST(the_address_is_read_and_followed_when_it_is_set)
 TEST(each_setting_can_be_written_blind_but_the_address)
 {
     desk.argument = 1;
-    assert_int_equal(fathom_a16_modbus_next_is_blind(&a16), OK);
+    assert_int_equal(fathom_a16_modbus_write_next_unchecked(&a16), OK);
     PLAY(set_polarity, FATHOM_ERR_UNCONFIRMED, WRITE(1, 0x0205, 1, OK));
     assert_true(fathom_a16_modbus_is_written(&a16));
     PLAY(set_polarity, OK, READ(1, 0x0205, OK, 1)); /* that was the last one */
     assert_false(fathom_a16_modbus_is_written(&a16));
-    assert_int_equal(fathom_a16_modbus_next_is_blind(&a16), OK);
+    assert_int_equal(fathom_a16_modbus_write_next_unchecked(&a16), OK);
     PLAY(set_mode, FATHOM_ERR_UNCONFIRMED, WRITE(1, 0x0202, 1, SILENT));
-    assert_int_equal(fathom_a16_modbus_next_is_blind(&a16), OK);
+    assert_int_equal(fathom_a16_modbus_write_next_unchecked(&a16), OK);
     assert_int_equal(set_address(), FATHOM_ERR_ARGUMENT);
     assert_null(fake.request);
 }

@@ -39,11 +39,11 @@ static void start_at(uint32_t now_us, bool level)
                                          .marks = fathom_line_marks,
                                          .count = fathom_line_count,
                                          .counters = counters};
-    assert_int_equal(fathom_line_init(&line, &line_config), FATHOM_READY);
+    assert_int_equal(fathom_line_init(&line, &line_config), FATHOM_OK);
     config.pin = &pins.pin;
     config.clock = &pins.fake.clock;
     memset(&a16, 0x5A, sizeof a16);
-    assert_int_equal(fathom_a16_switch_init(&a16, &config), FATHOM_READY);
+    assert_int_equal(fathom_a16_switch_init(&a16, &config), FATHOM_OK);
     pins.sensor = fathom_a16_switch_sensor(&a16);
 }
 
@@ -148,7 +148,7 @@ TEST(a_response_on_the_pin_is_no_change_in_any_loop)
                 while (pins.fake.written == 0) pins_run(step_us, step_us);
                 response(30 * MS + offset_us, level != 0, threshold_2000);
                 pins_run(200 * MS, step_us);
-                assert_int_equal(status(), FATHOM_READY);
+                assert_int_equal(status(), FATHOM_OK);
                 assert_int_equal(pins.samples, 1);
                 assert_int_equal(pins.stales, 0);
             }
@@ -166,7 +166,7 @@ TEST(a_level_that_turns_during_a_transaction_is_a_sample_after_it)
     response(0, true, threshold_2000);
     const uint32_t ended_us = pins.fake.now_us + 8 * BYTE_US;
     while (pins.samples == 1) pins_run(100, 100);
-    assert_int_equal(status(), FATHOM_READY);
+    assert_int_equal(status(), FATHOM_OK);
     pins_expect(2, FATHOM_NEAR);
     /* 5 ms of silence, and 20 ms in which the level stood */
     assert_in_range(pins.fake.now_us - ended_us, 25000, 25300);
@@ -198,7 +198,7 @@ TEST(garbage_with_framing_errors_around_a_response_or_unmarked_before_it_is_drop
         fake_trickle(&pins.fake, 31 * MS, BYTE_US, threshold_2000, 8);
         if (marked != 0) fake_receive_rx(&pins.fake, damaged_us[3], &nothing, 1, rx);
         pins_run(100 * MS, 1000);
-        assert_int_equal(status(), FATHOM_READY);
+        assert_int_equal(status(), FATHOM_OK);
         assert_int_equal(counters[FATHOM_LINE_BAD_BYTES], 4 * marked);
         assert_int_equal(counters[FATHOM_LINE_DROPPED_BYTES], !marked);
         assert_int_equal(counters[FATHOM_LINE_RESPONSES], 1);
@@ -276,12 +276,12 @@ TEST(polarity_that_is_set_and_told_is_no_change)
         asks(negative);
         fake_trickle(&pins.fake, 30 * MS, BYTE_US, negative, 8);
         until_ended();
-        fathom_a16_switch_polarity_is(&a16, FATHOM_A16_NEGATIVE);
+        fathom_a16_switch_note_polarity(&a16, FATHOM_A16_NEGATIVE);
         pins_turn(10 * MS);
         after_ms(200, 1, before);
         pins_turn(0);
         after_ms(50, 2, after);
-        fathom_a16_switch_polarity_is(&a16, FATHOM_A16_POSITIVE);
+        fathom_a16_switch_note_polarity(&a16, FATHOM_A16_POSITIVE);
         after_ms(50, 3, before);
     }
 }

@@ -89,7 +89,7 @@ TEST(what_is_written_to_unit_0_is_a_broadcast_as_ever)
     ask_to_write(&bench.request, 0);
     run(REQUEST_US);
     expect_written(1);
-    expect_after(TIMEOUT_US + 1000, FATHOM_READY); /* that is the time that the units need */
+    expect_after(TIMEOUT_US + 1000, FATHOM_OK); /* that is the time that the units need */
 }
 
 TEST(a_unit_0_that_does_not_answer_is_quarantined_and_asked_again)
@@ -145,7 +145,7 @@ TEST_IN(finding, the_one_device_on_a_line_is_found_at_any_address)
         set_up_find(state);
         seek(0);
         receive_response((uint8_t)from, 0xFFFF); /* what it says is not looked at */
-        assert_int_equal(find_after(100), FATHOM_READY);
+        assert_int_equal(find_after(100), FATHOM_OK);
         assert_int_equal(address, from);
     }
 }
@@ -155,9 +155,9 @@ TEST_IN(finding, one_that_answers_from_255_says_where_it_is)
     static const struct {
         uint16_t says;
         fathom_status_t status;
-    } rows[] = {{7, FATHOM_READY},
-                {0, FATHOM_READY},
-                {254, FATHOM_READY},
+    } rows[] = {{7, FATHOM_OK},
+                {0, FATHOM_OK},
+                {254, FATHOM_OK},
                 {255, FATHOM_ERR_MALFORMED},
                 {256, FATHOM_ERR_MALFORMED}};
     for (unsigned i = 0; i != COUNT_OF(rows); i++) {
@@ -165,7 +165,7 @@ TEST_IN(finding, one_that_answers_from_255_says_where_it_is)
         seek(0);
         receive_response(255, rows[i].says);
         assert_int_equal(find_after(100), rows[i].status);
-        assert_int_equal(address, rows[i].status == FATHOM_READY ? rows[i].says : 0xA5);
+        assert_int_equal(address, rows[i].status == FATHOM_OK ? rows[i].says : 0xA5);
     }
 }
 
@@ -200,13 +200,13 @@ TEST_IN(finding, each_outcome_of_finding_comes_once)
 TEST_IN(finding, a_line_that_is_initialised_again_ends_it)
 {
     seek(0);
-    assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_READY);
+    assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_OK);
     assert_int_equal(find(), FATHOM_ERR_CANCELLED);
     assert_int_equal(address, 0xA5);
     show_empty_port();
     seek(1);
     receive_response(7, 0xFFFF);
-    assert_int_equal(find_after(100), FATHOM_READY);
+    assert_int_equal(find_after(100), FATHOM_OK);
     assert_int_equal(address, 7);
 }
 
@@ -215,7 +215,7 @@ TEST_IN(finding, a_transport_that_cannot_tell_what_it_has_is_trusted)
     client.has = NULL;
     seek(0);
     receive_response(7, 0xFFFF);
-    assert_int_equal(find_after(100), FATHOM_READY);
+    assert_int_equal(find_after(100), FATHOM_OK);
     assert_int_equal(address, 7);
 }
 
@@ -229,7 +229,7 @@ TEST_IN(finding, what_the_transport_refuses_is_said)
 
 /* ---- the drivers ---- */
 
-enum { OK = FATHOM_READY, SILENT = FATHOM_ERR_NO_RESPONSE };
+enum { OK = FATHOM_OK, SILENT = FATHOM_ERR_NO_RESPONSE };
 
 static fathom_a16_modbus_t a16;
 static fathom_a05_modbus_t a05;
@@ -238,9 +238,9 @@ static int set_up_drivers(void **state)
 {
     desk_begin(5000);
     const fathom_a16_modbus_config_t config = {.modbus.transport = &fake.modbus};
-    assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_READY);
+    assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_OK);
     const fathom_a05_modbus_config_t its = {.modbus.transport = &fake.modbus, .probes = 1};
-    assert_int_equal(fathom_a05_modbus_init(&a05, &its), FATHOM_READY);
+    assert_int_equal(fathom_a05_modbus_init(&a05, &its), FATHOM_OK);
     desk.sensor = fathom_a16_modbus_sensor(&a16);
     return 0;
 }
@@ -248,15 +248,15 @@ static int set_up_drivers(void **state)
 static const suite_t driving = {.set_up = set_up_drivers};
 
 static uint8_t read_address;
-static fathom_status_t get_a16(void) { return fathom_a16_modbus_address(&a16, &read_address); }
-static fathom_status_t move_a16(void) { return fathom_a16_modbus_set_address_to_0_perhaps_for_ever(&a16); }
-static fathom_status_t move_a05(void) { return fathom_a05_modbus_set_address_to_0_perhaps_for_ever(&a05); }
+static fathom_status_t get_a16(void) { return fathom_a16_modbus_get_address(&a16, &read_address); }
+static fathom_status_t move_a16(void) { return fathom_a16_modbus_set_address_0(&a16); }
+static fathom_status_t move_a05(void) { return fathom_a05_modbus_set_address_0(&a05); }
 
 TEST_IN(driving, a_sensor_at_address_0_is_read_and_never_written)
 {
     read_address = 0xA5;
     fathom_a16_modbus_config_t config = {.modbus.transport = &fake.modbus, .modbus.address_zero = true};
-    assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_READY);
+    assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_OK);
     PLAY(desk_poll, OK, READ(0, 0x0100, OK, 754));
     assert_int_equal(desk.sample.address, 0);
     assert_int_equal(desk.sample.distance_mm, 754);
@@ -271,7 +271,7 @@ TEST_IN(driving, a_sensor_at_address_0_is_read_and_never_written)
     assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_ERR_ARGUMENT);
     const fathom_a05_modbus_config_t its = {
         .modbus.transport = &fake.modbus, .probes = 1, .modbus.address_zero = true};
-    assert_int_equal(fathom_a05_modbus_init(&a05, &its), FATHOM_READY);
+    assert_int_equal(fathom_a05_modbus_init(&a05, &its), FATHOM_OK);
     desk.sensor = fathom_a05_modbus_sensor(&a05);
     PLAY(desk_poll, OK, READ(0, 0x0106, OK, 1000));
 }

@@ -3,7 +3,7 @@
 
 #include "suite.h"
 
-#include "fathom/sensor/alarm.h"
+#include "fathom/processing/alarm.h"
 
 enum {
     ON = FATHOM_ALARM_ON,
@@ -20,7 +20,7 @@ static uint32_t start_us;
 static void start(void)
 {
     memset(&alarm, 0x5A, sizeof alarm);
-    assert_int_equal(fathom_alarm_init(&alarm, &config), FATHOM_READY);
+    assert_int_equal(fathom_alarm_init(&alarm, &config), FATHOM_OK);
     assert_int_equal(alarm.state, UNKNOWN);
 }
 
@@ -42,7 +42,7 @@ static void expect_kind(uint32_t at_us, uint8_t kind, uint16_t mm, uint8_t state
 {
     const fathom_sample_t sample = {.time_us = start_us + at_us, .kind = kind, .distance_mm = mm};
     const uint8_t before = alarm.state;
-    assert_int_equal(fathom_alarm_sample(&alarm, &sample), state != before);
+    assert_int_equal(fathom_alarm_add_sample(&alarm, &sample), state != before);
     assert_int_equal(alarm.state, state);
 }
 
@@ -54,7 +54,7 @@ static void expect_mm(uint32_t at_us, uint16_t mm, uint8_t state)
 static void expect_status(uint32_t at_us, fathom_status_t status, uint8_t state)
 {
     const uint8_t before = alarm.state;
-    assert_int_equal(fathom_alarm_status(&alarm, status, start_us + at_us), state != before);
+    assert_int_equal(fathom_alarm_add_status(&alarm, status, start_us + at_us), state != before);
     assert_int_equal(alarm.state, state);
 }
 
@@ -123,8 +123,8 @@ TEST(a_config_without_sense_is_refused)
         other.off_mm = other.on_mm;
         other.when = (uint8_t)value;
         assert_int_equal(fathom_alarm_init(&alarm, &other),
-                         value == FATHOM_NEAR || value == FATHOM_FAR ? FATHOM_READY : FATHOM_ERR_ARGUMENT);
-        const fathom_status_t is_side = value == ON || value == OFF ? FATHOM_READY : FATHOM_ERR_ARGUMENT;
+                         value == FATHOM_NEAR || value == FATHOM_FAR ? FATHOM_OK : FATHOM_ERR_ARGUMENT);
+        const fathom_status_t is_side = value == ON || value == OFF ? FATHOM_OK : FATHOM_ERR_ARGUMENT;
         other = config;
         other.if_unknown = (uint8_t)value;
         assert_int_equal(fathom_alarm_init(&alarm, &other), is_side);
@@ -145,12 +145,12 @@ static void expect_init(uint8_t when, uint16_t on_mm, uint16_t off_mm, fathom_st
 TEST(off_on_the_wrong_side_of_on_is_refused)
 {
     expect_init(FATHOM_NEAR, 500, 499, FATHOM_ERR_ARGUMENT);
-    expect_init(FATHOM_NEAR, 500, 500, FATHOM_READY);
-    expect_init(FATHOM_NEAR, 0, 65535, FATHOM_READY);
+    expect_init(FATHOM_NEAR, 500, 500, FATHOM_OK);
+    expect_init(FATHOM_NEAR, 0, 65535, FATHOM_OK);
     expect_init(FATHOM_NEAR, 65535, 0, FATHOM_ERR_ARGUMENT);
     expect_init(FATHOM_FAR, 500, 501, FATHOM_ERR_ARGUMENT);
-    expect_init(FATHOM_FAR, 500, 500, FATHOM_READY);
-    expect_init(FATHOM_FAR, 65535, 0, FATHOM_READY);
+    expect_init(FATHOM_FAR, 500, 500, FATHOM_OK);
+    expect_init(FATHOM_FAR, 65535, 0, FATHOM_OK);
     expect_init(FATHOM_FAR, 0, 65535, FATHOM_ERR_ARGUMENT);
 }
 
@@ -280,7 +280,7 @@ typedef struct {
 } response_row_t;
 
 static const response_row_t responses[] = {
-    {FATHOM_READY, true}, /* of another probe */
+    {FATHOM_OK, true}, /* of another probe */
     {FATHOM_ERR_MALFORMED, true},
     {FATHOM_ERR_EXCEPTION, true},
     {FATHOM_ERR_WARMING_UP, true},

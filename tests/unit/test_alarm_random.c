@@ -3,7 +3,7 @@
 
 #include "suite.h"
 
-#include "fathom/sensor/alarm.h"
+#include "fathom/processing/alarm.h"
 #include "stream_rig.h"
 
 /*
@@ -78,12 +78,12 @@ static void distance(uint64_t at_us)
     } else {
         refer_distance(side_of(sample.kind, sample.distance_mm), at_us);
     }
-    demand(fathom_alarm_sample(&alarm, &sample) == (reference.state != before));
+    demand(fathom_alarm_add_sample(&alarm, &sample) == (reference.state != before));
 }
 
 static void other(uint64_t at_us)
 {
-    static const fathom_status_t statuses[] = {FATHOM_PENDING, FATHOM_PENDING, FATHOM_READY,
+    static const fathom_status_t statuses[] = {FATHOM_PENDING, FATHOM_PENDING, FATHOM_OK,
                                                FATHOM_ERR_NO_RESPONSE, FATHOM_ERR_EXCEPTION};
     const uint8_t before = reference.state;
     const uint32_t which = rig_random_below(6);
@@ -93,9 +93,9 @@ static void other(uint64_t at_us)
     refer_silence(at_us);
     if (which == 5) {
         const fathom_sample_t fault = {.time_us = (uint32_t)at_us, .kind = FATHOM_FAULT};
-        changes = fathom_alarm_sample(&alarm, &fault);
+        changes = fathom_alarm_add_sample(&alarm, &fault);
     } else {
-        changes = fathom_alarm_status(&alarm, statuses[which], (uint32_t)at_us);
+        changes = fathom_alarm_add_status(&alarm, statuses[which], (uint32_t)at_us);
     }
     demand(changes == (reference.state != before));
 }
@@ -118,7 +118,7 @@ static void start(void)
     config.no_target_is_unknown = rig_random_below(2) == 0;
     config.if_unknown = any_side();
     config.if_no_response = any_side();
-    assert_int_equal(fathom_alarm_init(&alarm, &config), FATHOM_READY);
+    assert_int_equal(fathom_alarm_init(&alarm, &config), FATHOM_OK);
     memset(&reference, 0, sizeof reference);
     reference.state = FATHOM_ALARM_UNKNOWN;
     reference.known = config.if_unknown;

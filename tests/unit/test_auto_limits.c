@@ -48,7 +48,7 @@ static void start_a05(bool by_pin)
 {
     const fathom_a05_auto_config_t config = {.line = &rig.line, .select = select_by(by_pin)};
     memset(&a05, 0xFF, sizeof a05);
-    assert_int_equal(fathom_a05_auto_init(&a05, &config), FATHOM_READY);
+    assert_int_equal(fathom_a05_auto_init(&a05, &config), FATHOM_OK);
     rig.sensor = fathom_a05_auto_sensor(&a05);
 }
 
@@ -57,7 +57,7 @@ static void start_a16(uint8_t fill, bool by_pin, uint32_t stale_us)
     const fathom_a16_auto_config_t config = {
         .line = &rig.line, .select = select_by(by_pin), .stale_us = stale_us};
     memset(&a16, fill, sizeof a16);
-    assert_int_equal(fathom_a16_auto_init(&a16, &config), FATHOM_READY);
+    assert_int_equal(fathom_a16_auto_init(&a16, &config), FATHOM_OK);
     rig.sensor = fathom_a16_auto_sensor(&a16);
 }
 
@@ -87,9 +87,9 @@ TEST(after_power_on_no_sample_of_before_is_handed_over)
     poll_after(10000);
     fake_receive(&rig.fake, 0, four, sizeof four);
     assert_int_equal(poll_after(100), FATHOM_PENDING);
-    assert_int_equal(poll_after(RIG_GAP_US), FATHOM_READY);
+    assert_int_equal(poll_after(RIG_GAP_US), FATHOM_OK);
     assert_int_equal(rig.sample.probe, 1);
-    assert_int_equal(fathom_a05_auto_select(&a05, FATHOM_PROCESSED), FATHOM_READY);
+    assert_int_equal(fathom_a05_auto_select(&a05, FATHOM_PROCESSED), FATHOM_OK);
     assert_int_equal(poll_after(100), FATHOM_PENDING);
     assert_int_equal(due_us(), 2000000 - 100);
 }
@@ -98,7 +98,7 @@ TEST(after_power_on_no_sample_of_before_is_handed_over)
 TEST(the_end_of_selecting_is_due_after_1500_ms)
 {
     start_a05(false);
-    assert_int_equal(fathom_a05_auto_select(&a05, FATHOM_REAL_TIME), FATHOM_READY);
+    assert_int_equal(fathom_a05_auto_select(&a05, FATHOM_REAL_TIME), FATHOM_OK);
     assert_int_equal(due_us(), RIG_GAP_US); /* before that the line is to see a silence */
     assert_int_equal(poll_after(10000), FATHOM_PENDING);
     assert_int_equal(due_us(), 1490000);
@@ -116,7 +116,7 @@ TEST(after_selecting_nothing_is_driven_when_the_sensor_is_given_up)
     for (unsigned has_pin = 0; has_pin != 2; has_pin++) {
         set_up(state);
         start_a05(has_pin != 0);
-        assert_int_equal(fathom_a05_auto_select(&a05, FATHOM_REAL_TIME), FATHOM_READY);
+        assert_int_equal(fathom_a05_auto_select(&a05, FATHOM_REAL_TIME), FATHOM_OK);
         poll_after(FATHOM_A05_SELECT_US);
         const unsigned driven = set_breaks + pin.sets;
         assert_int_equal(driven, 2); /* low, and high again */
@@ -142,7 +142,7 @@ TEST(without_a_selection_an_a16_leaves_tx_alone)
 TEST(a_break_that_selected_is_ended_once)
 {
     start_a16(0, false, 0);
-    assert_int_equal(fathom_a16_auto_select(&a16, FATHOM_REAL_TIME), FATHOM_READY);
+    assert_int_equal(fathom_a16_auto_select(&a16, FATHOM_REAL_TIME), FATHOM_OK);
     assert_true(rig.fake.in_break);
     fathom_a16_auto_deinit(&a16);
     assert_false(rig.fake.in_break);
@@ -155,7 +155,7 @@ TEST(a_pin_that_selected_is_left_as_it_is)
     for (unsigned value = FATHOM_PROCESSED; value != 2; value++) {
         set_up(state);
         start_a16(0, true, 0);
-        assert_int_equal(fathom_a16_auto_select(&a16, (fathom_dyp_value_t)value), FATHOM_READY);
+        assert_int_equal(fathom_a16_auto_select(&a16, (fathom_dyp_value_t)value), FATHOM_OK);
         const unsigned sets = pin.sets;
         fathom_a16_auto_deinit(&a16);
         assert_int_equal(pin.sets, sets);

@@ -19,9 +19,9 @@ static void select_a05(void)
     const fathom_a05_auto_config_t config = {
         .line = &rig.line, .stale_us = 60000000, .select = fathom_output_line_break(&rig.line)};
     rig_start(RIG_START_US);
-    assert_int_equal(fathom_a05_auto_init(&a05, &config), FATHOM_READY);
+    assert_int_equal(fathom_a05_auto_init(&a05, &config), FATHOM_OK);
     rig.sensor = fathom_a05_auto_sensor(&a05);
-    assert_int_equal(fathom_a05_auto_select(&a05, FATHOM_REAL_TIME), FATHOM_READY);
+    assert_int_equal(fathom_a05_auto_select(&a05, FATHOM_REAL_TIME), FATHOM_OK);
 }
 
 static void select_a16(void)
@@ -29,7 +29,7 @@ static void select_a16(void)
     const fathom_a16_auto_config_t config = {
         .line = &rig.line, .value = FATHOM_REAL_TIME, .select = fathom_output_line_break(&rig.line)};
     rig_start(RIG_START_US);
-    assert_int_equal(fathom_a16_auto_init(&a16, &config), FATHOM_READY);
+    assert_int_equal(fathom_a16_auto_init(&a16, &config), FATHOM_OK);
 }
 
 static void start_controlled(void)
@@ -90,10 +90,10 @@ TEST(deinit_tells_whether_rx_is_high)
             assert_true(fake->in_break);
             if (fake == &rig.fake) assert_null(rig.line.listener);
         }
-        assert_int_equal(sensors[i / 2].deinit(), FATHOM_READY);
+        assert_int_equal(sensors[i / 2].deinit(), FATHOM_OK);
         assert_false(fake->in_break);
         refuse(fake, FOR_EVER, how);
-        assert_int_equal(sensors[i / 2].deinit(), FATHOM_READY);
+        assert_int_equal(sensors[i / 2].deinit(), FATHOM_OK);
     }
 }
 
@@ -162,7 +162,7 @@ TEST(a_selection_of_an_a05_that_does_not_end_is_said_once_a_second_beside_the_sa
     rig_run(5000, 1000);
     assert_int_equal(rig.ports, 5);
     rig.fake.now_us += 1000;
-    for (unsigned i = 0; i != 4; i++) assert_int_equal(rig_poll(), FATHOM_READY);
+    for (unsigned i = 0; i != 4; i++) assert_int_equal(rig_poll(), FATHOM_OK);
     assert_int_equal(rig_poll(), FATHOM_ERR_PORT);
 }
 
@@ -173,13 +173,13 @@ TEST(a_selection_that_has_not_ended_is_not_forgotten)
     rig_run(SELECT_US, 1000);
     assert_true(rig.fake.in_break);
     assert_int_equal(fathom_a05_auto_select(&a05, FATHOM_PROCESSED), FATHOM_ERR_BUSY);
-    assert_int_equal(fathom_a05_auto_select(&a05, FATHOM_PROCESSED), FATHOM_READY);
+    assert_int_equal(fathom_a05_auto_select(&a05, FATHOM_PROCESSED), FATHOM_OK);
     assert_false(rig.fake.in_break);
 
     select_a16();
     refuse(&rig.fake, 1, 0);
     assert_int_equal(fathom_a16_auto_select(&a16, FATHOM_PROCESSED), FATHOM_PENDING);
-    assert_int_equal(fathom_a16_auto_deinit(&a16), FATHOM_READY);
+    assert_int_equal(fathom_a16_auto_deinit(&a16), FATHOM_OK);
     assert_false(rig.fake.in_break);
 }
 
@@ -197,7 +197,7 @@ TEST(a_trigger_of_an_a16_ends_although_the_port_refused_that_once)
         rig_run(1000, 1000);
         assert_false(rig.fake.in_break);
         controlled_response(controlled_1953, 97 * MS);
-        assert_int_equal(controlled_outcome(1000), FATHOM_READY);
+        assert_int_equal(controlled_outcome(1000), FATHOM_OK);
         assert_int_equal(rig.sample.distance_mm, 1953);
     }
 }
@@ -219,7 +219,7 @@ TEST(a_trigger_of_an_a16_that_does_not_end_is_said_once_a_second)
     assert_false(rig.fake.in_break);
     controlled_run_to_break(2, 1000);
     controlled_response(controlled_511, 100 * MS);
-    assert_int_equal(controlled_outcome(1000), FATHOM_READY);
+    assert_int_equal(controlled_outcome(1000), FATHOM_OK);
 }
 
 /* Something else is sent there without end, or what is sent does not leave. */
@@ -237,7 +237,7 @@ TEST(a_trigger_of_an_a16_that_cannot_begin_is_said_once_a_second)
     rig.fake.never_sent = false;
     controlled_run_to_break(1, 1000);
     controlled_response(controlled_511, 100 * MS);
-    assert_int_equal(controlled_outcome(1000), FATHOM_READY);
+    assert_int_equal(controlled_outcome(1000), FATHOM_OK);
 
     /* Nor is what was left of the time for the last response, 30 ms of it here, taken for that second. */
     rig.fake.never_sent = true;
@@ -251,7 +251,7 @@ TEST(a_trigger_of_an_a16_that_cannot_begin_is_said_once_a_second)
     /* In a slow loop the refusal is the first thing after the response. */
     controlled_run_to_break(3, 1000);
     controlled_response(controlled_511, 100 * MS);
-    assert_int_equal(controlled_outcome(1000), FATHOM_READY);
+    assert_int_equal(controlled_outcome(1000), FATHOM_OK);
     rig.fake.never_sent = true;
     rig.fake.now_us += 200 * MS;
     assert_int_equal(rig_poll(), FATHOM_PENDING);

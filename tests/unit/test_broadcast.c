@@ -25,10 +25,10 @@ static union {
 #define COMMAND(name, call)                                                                                  \
     static fathom_status_t name(void) { return call; }
 
-COMMAND(hps_version, fathom_hps167s_interface_version(&hps, &out.version))
-COMMAND(hps_configuration, fathom_hps167s_configuration(&hps, &out.configuration))
-COMMAND(hps_details, fathom_hps167s_details(&hps, &out.details))
-COMMAND(hps_temperature, fathom_hps167s_temperature(&hps, &out.temperature))
+COMMAND(hps_version, fathom_hps167s_get_interface_version(&hps, &out.version))
+COMMAND(hps_configuration, fathom_hps167s_get_configuration(&hps, &out.configuration))
+COMMAND(hps_details, fathom_hps167s_get_details(&hps, &out.details))
+COMMAND(hps_temperature, fathom_hps167s_get_temperature(&hps, &out.temperature))
 COMMAND(hps_reset, fathom_hps167s_restore_factory_settings(&hps))
 COMMAND(hps_warm_up, fathom_hps167s_set_warm_up_s(&hps, 9))
 COMMAND(hps_address, fathom_hps167s_set_address(&hps, 5))
@@ -41,22 +41,22 @@ COMMAND(hps_user, fathom_hps167s_load_user_settings(&hps))
 COMMAND(hps_factory_settings, fathom_hps167s_load_factory_settings(&hps))
 COMMAND(hps_filter, fathom_hps167s_set_filter_sensitivity(&hps, 7))
 COMMAND(hps_reconnect, fathom_hps167s_set_reconnect_time_ms(&hps, 18))
-COMMAND(hps_measures_all, fathom_hps167s_set_measures_after_power_on_of_all_units(&hps, false))
-COMMAND(hps_measures_all_on, fathom_hps167s_set_measures_after_power_on_of_all_units(&hps, true))
-COMMAND(hps_termination_all, fathom_hps167s_set_termination_of_all_units(&hps, false))
-COMMAND(hps_termination_all_on, fathom_hps167s_set_termination_of_all_units(&hps, true))
+COMMAND(hps_measures_all, fathom_hps167s_broadcast_measures_after_power_on(&hps, false))
+COMMAND(hps_measures_all_on, fathom_hps167s_broadcast_measures_after_power_on(&hps, true))
+COMMAND(hps_termination_all, fathom_hps167s_broadcast_termination(&hps, false))
+COMMAND(hps_termination_all_on, fathom_hps167s_broadcast_termination(&hps, true))
 COMMAND(a16_measure, fathom_a16_modbus_measure(&a16, FATHOM_REAL_TIME, &out.sample))
-COMMAND(a16_address, fathom_a16_modbus_address(&a16, &out.byte))
+COMMAND(a16_address, fathom_a16_modbus_get_address(&a16, &out.byte))
 COMMAND(a16_set_address, fathom_a16_modbus_set_address(&a16, 5))
 COMMAND(a16_no_address, fathom_a16_modbus_set_address(&a16, 0))
 COMMAND(a16_mode, fathom_a16_modbus_set_operating_mode(&a16, FATHOM_A16_AUTOMATIC))
-COMMAND(a16_polarity, fathom_a16_modbus_switch_polarity(&a16, &out.polarity))
+COMMAND(a16_polarity, fathom_a16_modbus_get_switch_polarity(&a16, &out.polarity))
 COMMAND(a16_set_polarity, fathom_a16_modbus_set_switch_polarity(&a16, FATHOM_A16_NEGATIVE))
-COMMAND(a16_threshold, fathom_a16_modbus_switch_threshold_mm(&a16, &out.word))
+COMMAND(a16_threshold, fathom_a16_modbus_get_switch_threshold_mm(&a16, &out.word))
 COMMAND(a16_set_threshold, fathom_a16_modbus_set_switch_threshold_mm(&a16, 2000))
-COMMAND(a16_value, fathom_a16_modbus_automatic_value(&a16, &out.value))
+COMMAND(a16_value, fathom_a16_modbus_get_automatic_value(&a16, &out.value))
 COMMAND(a16_set_value, fathom_a16_modbus_set_automatic_value(&a16, FATHOM_PROCESSED))
-COMMAND(a05_address, fathom_a05_modbus_address(&a05, &out.byte))
+COMMAND(a05_address, fathom_a05_modbus_get_address(&a05, &out.byte))
 COMMAND(a05_set_address, fathom_a05_modbus_set_address(&a05, 5))
 COMMAND(a05_no_address, fathom_a05_modbus_set_address(&a05, 0))
 
@@ -105,8 +105,8 @@ static int set_up(void **state)
     hps_set_up(state);
     const fathom_a16_modbus_config_t a16_config = {.modbus.transport = &fake.modbus};
     const fathom_a05_modbus_config_t a05_config = {.modbus.transport = &fake.modbus};
-    assert_int_equal(fathom_a16_modbus_init(&a16, &a16_config), FATHOM_READY);
-    assert_int_equal(fathom_a05_modbus_init(&a05, &a05_config), FATHOM_READY);
+    assert_int_equal(fathom_a16_modbus_init(&a16, &a16_config), FATHOM_OK);
+    assert_int_equal(fathom_a05_modbus_init(&a05, &a05_config), FATHOM_OK);
     hps_config.modbus.line_settings = &hps_factory;
     hps_start();
     return 0;
@@ -153,8 +153,8 @@ TEST(two_settings_of_the_hps167s_are_all_that_is_ever_sent_to_all_units)
             for (unsigned i = 0; i != COUNT(commands); i++) {
                 set_up(state);
                 if (is_blind != 0) {
-                    assert_int_equal(fathom_hps167s_next_is_blind(&hps), FATHOM_READY);
-                    assert_int_equal(fathom_a16_modbus_next_is_blind(&a16), FATHOM_READY);
+                    assert_int_equal(fathom_hps167s_write_next_unchecked(&hps), FATHOM_OK);
+                    assert_int_equal(fathom_a16_modbus_write_next_unchecked(&a16), FATHOM_OK);
                 }
                 run(commands[i], is_there != 0, &listed);
             }

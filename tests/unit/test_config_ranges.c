@@ -138,8 +138,8 @@ static void each_member_has_its_range(void **state)
 {
     const driver_t *const driver = *state;
     for (const range_t *range = driver->ranges; range->what != NULL; range++) {
-        expect(driver, range, range->least, FATHOM_READY);
-        expect(driver, range, range->greatest, FATHOM_READY);
+        expect(driver, range, range->least, FATHOM_OK);
+        expect(driver, range, range->greatest, FATHOM_OK);
         if (range->refused[0] + range->refused[1] == 0) continue;
         expect(driver, range, range->refused[0], FATHOM_ERR_ARGUMENT);
         expect(driver, range, range->refused[1], FATHOM_ERR_ARGUMENT);
@@ -154,7 +154,7 @@ static void the_greatest_times_work(void **state)
     fathom_sample_t sample;
     for (const range_t *range = driver->ranges; range->what != NULL; range++)
         if (range->greatest == LONGEST) put(range, LONGEST);
-    assert_int_equal(driver->init(), FATHOM_READY);
+    assert_int_equal(driver->init(), FATHOM_OK);
     const fathom_sensor_t sensor = driver->sensor();
     for (unsigned n = 0; n != 8; n++) {
         fake.submits = 0;
@@ -176,9 +176,9 @@ static void a_line_whose_frames_are_too_short_is_refused(void **state)
     fake.modbus.frame_size = (uint8_t)(driver->frame_size - 1);
     assert_int_equal(driver->init(), FATHOM_ERR_ARGUMENT);
     fake.modbus.frame_size = driver->frame_size;
-    assert_int_equal(driver->init(), FATHOM_READY);
+    assert_int_equal(driver->init(), FATHOM_OK);
     fake.modbus.frame_size = 0; /* there is no limit */
-    assert_int_equal(driver->init(), FATHOM_READY);
+    assert_int_equal(driver->init(), FATHOM_OK);
 }
 
 static void a_missing_transport_or_clock_is_refused(void **state)
@@ -196,7 +196,7 @@ static void a_second_init_is_refused_while_a_request_is_queued(void **state)
     static uint8_t before[sizeof(fathom_hps167s_t) + sizeof(fathom_a05_modbus_t)];
     const driver_t *const driver = *state;
     fathom_sample_t sample;
-    assert_int_equal(driver->init(), FATHOM_READY);
+    assert_int_equal(driver->init(), FATHOM_OK);
     const fathom_sensor_t sensor = driver->sensor();
     PENDS(checked_poll(&sensor, &sample));
     assert_non_null(fake.request);
@@ -206,7 +206,7 @@ static void a_second_init_is_refused_while_a_request_is_queued(void **state)
     assert_memory_equal(driver->memory, before, driver->size);
     driver->deinit();
     assert_null(fake.request);
-    assert_int_equal(driver->init(), FATHOM_READY);
+    assert_int_equal(driver->init(), FATHOM_OK);
 }
 
 #define OF(promise, name) TEST_ROW(promise##_of_##name, promise, (void *)&of_##name)

@@ -30,7 +30,7 @@ static void start_at(uint32_t now_us, bool level)
     contact.near_is_high = near_is_high;
     contact.model = FATHOM_A05;
     contact.address = 7;
-    expect_init(FATHOM_READY);
+    expect_init(FATHOM_OK);
     pins.sensor = fathom_contact_sensor(&contact);
 }
 
@@ -69,7 +69,7 @@ TEST(the_first_level_is_a_sample_when_it_has_stood_for_20_ms)
     pins.fake.now_us += SETTLE_US - 1;
     assert_int_equal(pins_poll(), FATHOM_PENDING);
     pins.fake.now_us += 1;
-    assert_int_equal(pins_poll(), FATHOM_READY);
+    assert_int_equal(pins_poll(), FATHOM_OK);
     assert_int_equal(pins.sample.kind, FATHOM_FAR);
     assert_int_equal(pins.sample.raw, 0);
     assert_int_equal(pins.sample.time_us, START_US);
@@ -278,7 +278,7 @@ TEST(the_next_look_is_due_in_10_ms_or_when_the_level_has_settled)
     expect_due(4000);
     pins.fake.now_us += 5000;
     expect_due(0);
-    assert_int_equal(pins_poll(), FATHOM_READY);
+    assert_int_equal(pins_poll(), FATHOM_OK);
     expect_due(10000);
     pins.fake.now_us += 20000;
     expect_due(0);
@@ -384,7 +384,7 @@ TEST(every_sequence_of_levels_at_14_looks_is_right)
                 pins.level = (levels >> n & 1) != 0;
                 pins.fake.now_us += step_us;
                 const uint8_t kind = refer(levels, n, step_us);
-                if (pins_poll() != (kind != 0 ? FATHOM_READY : FATHOM_PENDING)) fail();
+                if (pins_poll() != (kind != 0 ? FATHOM_OK : FATHOM_PENDING)) fail();
                 if (kind != 0 && pins.sample.kind != kind) fail();
             }
         }

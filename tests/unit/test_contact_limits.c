@@ -17,7 +17,7 @@ static void start_on(uint8_t fill, const fathom_contact_guard_t *guard)
     contact.near_is_high = true;
     contact.model = FATHOM_A16;
     contact.address = 0;
-    assert_int_equal(fathom_contact_init(&contact, &timing), FATHOM_READY);
+    assert_int_equal(fathom_contact_init(&contact, &timing), FATHOM_OK);
     pins.sensor = fathom_contact_sensor(&contact);
 }
 
@@ -42,12 +42,12 @@ static uint32_t due_us(void) { return pins.sensor.due_us(pins.sensor.ctx); }
 /* "stale_us ... 0: 2 s": "no level has counted for so long ... or it is held". */
 TEST(without_a_level_that_counts_it_is_stale_after_2_s)
 {
-    fathom_contact_hold(&contact, true);
+    fathom_contact_set_hold(&contact, true);
     assert_int_equal(poll_after(1999999), FATHOM_PENDING);
     assert_int_equal(poll_after(1), FATHOM_ERR_STALE);
 }
 
-/* "FATHOM_READY: a sample: the first level that counts", whatever the memory held: of a sample that was FATHOM_NEAR,
+/* "FATHOM_OK: a sample: the first level that counts", whatever the memory held: of a sample that was FATHOM_NEAR,
  * too. */
 TEST(the_first_level_is_told_whatever_stood_in_the_memory)
 {
@@ -58,7 +58,7 @@ TEST(the_first_level_is_told_whatever_stood_in_the_memory)
             pins.level = level != 0;
             start_on(fills[i], NULL);
             poll_after(10000);
-            assert_int_equal(poll_after(10000), FATHOM_READY);
+            assert_int_equal(poll_after(10000), FATHOM_OK);
             pins_expect(1, level != 0 ? FATHOM_NEAR : FATHOM_FAR);
         }
 }
@@ -69,7 +69,7 @@ TEST(a_sample_has_a_level_and_nothing_that_is_measured)
     const bool no = false;
     pins.level = true;
     poll_after(10000);
-    assert_int_equal(poll_after(20000), FATHOM_READY);
+    assert_int_equal(poll_after(20000), FATHOM_OK);
     assert_int_equal(pins.sample.kind, FATHOM_NEAR);
     assert_int_equal(pins.sample.raw, 1);
     assert_int_equal(pins.sample.distance_mm, 0);
@@ -101,12 +101,12 @@ TEST(a_level_that_repeats_has_the_time_of_its_look)
     timing.period_us = 70000;
     timing.interval_us = 1000000;
     start_on(0, NULL);
-    assert_int_equal(poll_after(20000), FATHOM_READY);
+    assert_int_equal(poll_after(20000), FATHOM_OK);
     assert_int_equal(pins.sample.time_us, START_US);
     assert_int_equal(due_us(), 70000);
     assert_int_equal(poll_after(69999), FATHOM_PENDING);
     assert_int_equal(due_us(), 1);
-    assert_int_equal(poll_after(1), FATHOM_READY);
+    assert_int_equal(poll_after(1), FATHOM_OK);
     assert_int_equal(pins.sample.time_us, START_US + 90000);
     assert_int_equal(pins.sample.sequence, 2);
 }
@@ -114,11 +114,11 @@ TEST(a_level_that_repeats_has_the_time_of_its_look)
 /* fathom_contact_set_near_is_high(): "The level has to settle anew". */
 TEST(a_level_settles_anew_when_it_means_something_else)
 {
-    assert_int_equal(poll_after(20000), FATHOM_READY);
+    assert_int_equal(poll_after(20000), FATHOM_OK);
     pins_expect(1, FATHOM_FAR);
     fathom_contact_set_near_is_high(&contact, false);
     assert_int_equal(poll_after(19999), FATHOM_PENDING);
-    assert_int_equal(poll_after(1), FATHOM_READY);
+    assert_int_equal(poll_after(1), FATHOM_OK);
     pins_expect(2, FATHOM_NEAR);
     assert_int_equal(pins.sample.time_us, START_US + 20000);
 }
@@ -130,7 +130,7 @@ TEST(if_an_interrupt_wakes_the_program_only_the_period_is_due_once_the_level_cou
     timing.period_us = FATHOM_MAX_DURATION_US;
     start_on(0, NULL);
     assert_int_equal(due_us(), 20000);
-    assert_int_equal(poll_after(20000), FATHOM_READY);
+    assert_int_equal(poll_after(20000), FATHOM_OK);
     assert_int_equal(due_us(), FATHOM_MAX_DURATION_US);
     pins.fake.now_us += 10;
     assert_int_equal(due_us(), FATHOM_MAX_DURATION_US - 10);
@@ -143,7 +143,7 @@ TEST(the_next_look_is_due_look_us_after_the_last_one)
 {
     timing.interval_us = 100000;
     start_on(0, NULL);
-    assert_int_equal(poll_after(20000), FATHOM_READY);
+    assert_int_equal(poll_after(20000), FATHOM_OK);
     assert_int_equal(due_us(), 100000);
     pins.fake.now_us += 70000;
     assert_int_equal(due_us(), 30000);
@@ -166,13 +166,13 @@ TEST(a_level_counts_again_5_ms_after_the_last_byte_on_its_line)
                                     .frame_size = sizeof frame,
                                     .echo = FATHOM_LINE_ECHO_OFF,
                                     .marks = fathom_line_marks};
-    assert_int_equal(fathom_line_init(&line, &config), FATHOM_READY);
+    assert_int_equal(fathom_line_init(&line, &config), FATHOM_OK);
     timing.settle_us = 1;
     start_on(0, &guard);
     fake_receive(&pins.fake, 100, byte, 1);
     assert_int_equal(poll_after(100), FATHOM_PENDING);
     assert_int_equal(poll_after(4999), FATHOM_PENDING);
     assert_int_equal(poll_after(1), FATHOM_PENDING);
-    assert_int_equal(poll_after(1), FATHOM_READY);
+    assert_int_equal(poll_after(1), FATHOM_OK);
     assert_int_equal(pins.sample.time_us, START_US + 100 + 5000);
 }

@@ -33,7 +33,7 @@ static void start_with(const fathom_contact_guard_t *with, uint32_t now_us)
     contact.clock = &pins.fake.clock;
     contact.guard = with;
     contact.near_is_high = true;
-    assert_int_equal(fathom_contact_init(&contact, &timing), FATHOM_READY);
+    assert_int_equal(fathom_contact_init(&contact, &timing), FATHOM_OK);
     pins.sensor = fathom_contact_sensor(&contact);
 }
 
@@ -80,7 +80,7 @@ TEST(by_default_a_level_that_does_not_change_is_a_sample_each_second)
 TEST(polls_every_10_minutes_each_have_an_outcome)
 {
     for (unsigned n = 1; n != 10; n++) {
-        assert_int_equal(poll_after(600 * SECOND), FATHOM_READY);
+        assert_int_equal(poll_after(600 * SECOND), FATHOM_OK);
         assert_int_equal(pins.sample.time_us, pins.fake.now_us);
     }
 }
@@ -113,13 +113,13 @@ TEST(the_error_of_a_guard_is_returned_if_there_is_nothing_else)
     for (unsigned n = 0; n != 3; n++) assert_int_equal(poll_after(1 * MS), FATHOM_ERR_PORT);
     /* The first look found the guard clear, and 2 ms have passed since. */
     assert_int_equal(poll_after(18 * MS - 1), FATHOM_ERR_PORT);
-    assert_int_equal(poll_after(1), FATHOM_READY);
+    assert_int_equal(poll_after(1), FATHOM_OK);
 }
 
 TEST(a_hold_that_does_not_end_is_stale_every_2_s)
 {
     pins_run(20 * MS, 1 * MS);
-    fathom_contact_hold(&contact, true);
+    fathom_contact_set_hold(&contact, true);
     pins_run(10 * SECOND, 1 * MS);
     assert_int_equal(pins.stales, 4); /* the level counted until the look before the hold */
     assert_int_equal(pins.samples, 1);
@@ -134,7 +134,7 @@ TEST(a_level_that_counts_after_a_sleep_is_of_now)
     pins_expect(1, FATHOM_FAR);
     pins.level = true;
     pins_run(1 * MS, 1 * MS);
-    assert_int_equal(poll_after(300 * SECOND), FATHOM_READY);
+    assert_int_equal(poll_after(300 * SECOND), FATHOM_OK);
     pins_expect(2, FATHOM_NEAR);
     assert_int_equal(pins.sample.time_us, pins.fake.now_us);
 }
@@ -145,7 +145,7 @@ TEST(a_level_that_changed_in_a_sleep_is_not_the_old_one)
     pins_expect(1, FATHOM_FAR);
     pins.level = true;
     assert_int_equal(poll_after(300 * SECOND), FATHOM_PENDING);
-    assert_int_equal(poll_after(20 * MS), FATHOM_READY);
+    assert_int_equal(poll_after(20 * MS), FATHOM_OK);
     pins_expect(2, FATHOM_NEAR);
     assert_int_equal(pins.sample.raw, 1);
     assert_int_equal(pins.sample.time_us, pins.fake.now_us - 20 * MS);
@@ -156,7 +156,7 @@ TEST(the_first_look_is_the_time_of_a_sample_for_up_to_2_s)
 {
     for (uint32_t late_us = 0; late_us != 2; late_us++) {
         start_with(NULL, START_US);
-        assert_int_equal(poll_after(2 * SECOND + late_us), FATHOM_READY);
+        assert_int_equal(poll_after(2 * SECOND + late_us), FATHOM_OK);
         assert_int_equal(pins.sample.time_us, late_us == 0 ? START_US : pins.fake.now_us);
     }
 }
@@ -172,13 +172,13 @@ TEST(a_clock_that_is_set_back_by_100_ms_does_not_make_a_level_count)
         assert_int_equal(pins_poll(), FATHOM_PENDING);
         assert_int_equal(poll_after(1 * MS), FATHOM_PENDING);
     }
-    assert_int_equal(poll_after(1 * MS), FATHOM_READY);
+    assert_int_equal(poll_after(1 * MS), FATHOM_OK);
 }
 
 TEST(a_clock_that_stands_still_costs_its_time_and_no_more)
 {
     for (uint32_t n = 0; n != 1000; n++) assert_int_equal(pins_poll(), FATHOM_PENDING);
-    assert_int_equal(poll_after(20 * MS), FATHOM_READY);
+    assert_int_equal(poll_after(20 * MS), FATHOM_OK);
 }
 
 /* ---- any of it ---- */
@@ -208,7 +208,7 @@ static void run_world(uint32_t world)
         }
         if (below(world % 7 + 1) == 0) pins.level = !pins.level;
         if (below(20) == 0) is_guard_clear = !is_guard_clear;
-        if (below(50) == 0) fathom_contact_hold(&contact, is_held = !is_held);
+        if (below(50) == 0) fathom_contact_set_hold(&contact, is_held = !is_held);
         if (pins_poll() != FATHOM_PENDING) since_us = 0;
         if (pins.samples != 0 && since_us == 0) assert_true(pins.sample.raw <= 1);
         if (since_us > bound_us + 2 * longest_us)
@@ -246,7 +246,7 @@ TEST(wait_returns_for_a_contact_that_never_changes)
     timing.interval_us = FATHOM_NO_DEADLINE;
     timing.period_us = FATHOM_MAX_DURATION_US;
     start_with(NULL, START_US);
-    for (unsigned n = 0; n != 5; n++) assert_int_equal(wait_for(stand_still), FATHOM_READY);
+    for (unsigned n = 0; n != 5; n++) assert_int_equal(wait_for(stand_still), FATHOM_OK);
     /* 20 ms and 4 times 35 minutes */
     assert_true(pins.fake.now_us == (uint32_t)(START_US + 20 * MS + 4ull * FATHOM_MAX_DURATION_US));
 }
@@ -263,7 +263,7 @@ TEST(wait_returns_for_a_contact_that_bounces)
 {
     for (unsigned n = 0; n != 1000; n++) {
         const fathom_status_t status = wait_for(sleep_for);
-        assert_true(status == FATHOM_READY || status == FATHOM_ERR_STALE);
+        assert_true(status == FATHOM_OK || status == FATHOM_ERR_STALE);
     }
 }
 
@@ -278,7 +278,7 @@ TEST(a_contact_without_init_has_an_error_in_each_poll_and_no_function_is_called)
     contact.pin = &pins.pin; /* and without the clock that it would read */
     assert_int_equal(pins_poll(), FATHOM_ERR_ARGUMENT);
     assert_int_equal(fathom_due_us(&pins.sensor, 1), 0);
-    fathom_contact_hold(&contact, true);
+    fathom_contact_set_hold(&contact, true);
     fathom_contact_set_near_is_high(&contact, true);
     static fathom_a05_relay_t relay;
     static fathom_a16_switch_t switch_of_a16;

@@ -19,8 +19,8 @@ typedef bool receiver_t(const vector_t *sent, const uint8_t *bytes, uint8_t have
 
 static bool takes_any(const uint8_t *bytes, uint8_t have)
 {
-    const uint8_t length = fathom_dyp_55aa_length(bytes, have);
-    return length != 0 && length <= have && fathom_dyp_55aa_valid(bytes, length);
+    const uint8_t length = fathom_dyp_55aa_frame_length(bytes, have);
+    return length != 0 && length <= have && fathom_dyp_55aa_is_valid(bytes, length);
 }
 
 /* Takes any response: who only listens, or sets an address and does not look at which. */
@@ -61,7 +61,7 @@ static bool hears_a_request(const vector_t *sent, const uint8_t *bytes, uint8_t 
 static bool takes_its_frame(const vector_t *sent, const uint8_t *bytes, uint8_t have)
 {
     (void)sent;
-    return fathom_dyp_stream_valid(bytes, have);
+    return fathom_dyp_stream_is_valid(bytes, have);
 }
 
 /* A wrong byte that leaves something to be taken. A list of them ends with END. */
@@ -298,5 +298,5 @@ TEST(what_an_8_bit_sum_cannot_see_is_this_list)
         {0xFF, 0x08, 0xA0, 0xA7}, /* one more and one less: 2208 mm */
         {0xFF, 0x87, 0x21, 0xA7}, /* bit 7 of both: 34593 mm */
     };
-    for (unsigned i = 0; i != 3; i++) assert_true(fathom_dyp_stream_valid(unseen[i], 4));
+    for (unsigned i = 0; i != 3; i++) assert_true(fathom_dyp_stream_is_valid(unseen[i], 4));
 }

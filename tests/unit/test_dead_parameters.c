@@ -24,7 +24,7 @@ TEST(a_setting_over_modbus_keeps_no_pointer_to_its_parameter)
     fathom_a16_modbus_t a16;
     const fathom_a16_modbus_config_t config = {.modbus.transport = &modbus.modbus};
     fake_modbus_init(&modbus);
-    assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_READY);
+    assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_OK);
     assert_int_equal(fathom_a16_modbus_set_switch_threshold_mm(&a16, 500), FATHOM_PENDING);
     fake_modbus_response(&modbus, is_10000, 1);
     for (unsigned i = 0; modbus.submits != 2; i++) {
@@ -44,7 +44,7 @@ TEST(the_address_of_every_a05_is_set_without_a_pointer_to_a_parameter)
     (void)set_up(state);
     const fathom_modbus_t transport = fathom_dyp_client(&bench.line);
     const fathom_a05_dyp_config_t config = {.modbus.transport = &transport, .probes = 1};
-    assert_int_equal(fathom_a05_dyp_init(&a05, &config), FATHOM_READY);
+    assert_int_equal(fathom_a05_dyp_init(&a05, &config), FATHOM_OK);
     bool is_answered = false;
     for (unsigned i = 0; bench.fake.written != 3; i++) {
         assert_true(i != 10000);
@@ -52,7 +52,7 @@ TEST(the_address_of_every_a05_is_set_without_a_pointer_to_a_parameter)
             fake_receive(&bench.fake, 65000, one_754, sizeof one_754);
         is_answered = bench.fake.written != 0;
         bench.fake.now_us += 1000;
-        assert_int_equal(fathom_a05_dyp_set_every_address(&a05, 2), FATHOM_PENDING);
+        assert_int_equal(fathom_a05_dyp_broadcast_address(&a05, 2), FATHOM_PENDING);
     }
     static const uint8_t set_2[] = {0x55, 0xAA, 0x02, 0x03, 0x04}; /* the sum is 104 */
     assert_int_equal(bench.fake.writes[2].length, sizeof set_2);

@@ -3,7 +3,7 @@
 
 #include "suite.h"
 
-#include "fathom/engine/debounce.h"
+#include "fathom/processing/debounce.h"
 
 enum { HALF_S = 500000 };
 
@@ -14,7 +14,7 @@ static uint32_t now_us;
 static void start(void)
 {
     memset(&gate, 0x5A, sizeof gate);
-    assert_int_equal(fathom_debounce_init(&gate, &config), FATHOM_READY);
+    assert_int_equal(fathom_debounce_init(&gate, &config), FATHOM_OK);
     assert_int_equal(gate.level, 0);
 }
 
@@ -37,14 +37,14 @@ static void start_with(fathom_debounce_config_t other)
 /* Does a measurement so long after the start change the level? */
 static void expect_at(uint32_t after_us, uint16_t mm, bool changes)
 {
-    assert_int_equal(fathom_debounce_distance(&gate, mm, now_us + after_us), changes);
+    assert_int_equal(fathom_debounce_add_distance(&gate, mm, now_us + after_us), changes);
 }
 
 /* A measurement every 500 ms, as the A16's (A16 4(2)). */
 static bool distance(uint16_t mm)
 {
     now_us += HALF_S;
-    return fathom_debounce_distance(&gate, mm, now_us);
+    return fathom_debounce_add_distance(&gate, mm, now_us);
 }
 
 /* A character a measurement: n nearer than the threshold, f farther, e equal; a capital letter where the level changes
@@ -170,7 +170,7 @@ TEST(a_level_that_has_lasted_for_a_turn_of_the_clock_is_not_held_again)
 static void expect_sample(uint8_t kind, uint16_t mm, bool changes)
 {
     const fathom_sample_t sample = {.time_us = now_us += HALF_S, .kind = kind, .distance_mm = mm};
-    assert_int_equal(fathom_debounce_sample(&gate, &sample), changes);
+    assert_int_equal(fathom_debounce_add_sample(&gate, &sample), changes);
 }
 
 TEST(samples_of_every_kind_count_as_the_header_says)
@@ -189,7 +189,7 @@ TEST(samples_of_every_kind_count_as_the_header_says)
 TEST(interference_counts_as_farther)
 {
     const fathom_sample_t disturbed = {.kind = FATHOM_NO_TARGET, .interference = true};
-    for (int i = 1; i <= 5; i++) assert_int_equal(fathom_debounce_sample(&gate, &disturbed), i == 5);
+    for (int i = 1; i <= 5; i++) assert_int_equal(fathom_debounce_add_sample(&gate, &disturbed), i == 5);
     assert_int_equal(gate.level, FATHOM_FAR);
 }
 
@@ -216,7 +216,7 @@ TEST(a_fault_or_an_unknown_value_holds_the_level_and_the_row_goes_on_behind_it)
 
 static void expect_time(uint32_t after_us, bool changes)
 {
-    assert_int_equal(fathom_debounce_time(&gate, now_us + after_us), changes);
+    assert_int_equal(fathom_debounce_advance(&gate, now_us + after_us), changes);
 }
 
 /* The loop tells the time when nothing comes at all. */
@@ -353,7 +353,7 @@ static void go_on(const fathom_debounce_t *before, const reference_t *until, uns
         const fathom_sample_t s = {
             .time_us = (uint32_t)next_us, .kind = words[i].kind, .distance_mm = words[i].mm};
         const bool changes = refer(&reference, words[i].verdict, next_us);
-        if (fathom_debounce_sample(&own, &s) != changes) fail();
+        if (fathom_debounce_add_sample(&own, &s) != changes) fail();
         const uint8_t known = reference.level == 'n' ? FATHOM_NEAR : FATHOM_FAR;
         const uint8_t level = reference.level == 'u' ? (uint8_t)FATHOM_UNKNOWN : known;
         if (own.level != (reference.level == 0 ? 0 : level)) fail();

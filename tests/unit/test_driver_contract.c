@@ -21,7 +21,7 @@ static void begin_at(uint32_t now_us)
 
 static void start(void)
 {
-    assert_int_equal(driver->init(), FATHOM_READY);
+    assert_int_equal(driver->init(), FATHOM_OK);
     *kind->sensor = driver->sensor();
 }
 
@@ -54,7 +54,7 @@ static const suite_t suite = {.set_up = set_up};
 
 static fathom_status_t says(uint16_t value) { return kind->says(driver, value); }
 
-static void reads(uint16_t value) { assert_int_equal(says(value), FATHOM_READY); }
+static void reads(uint16_t value) { assert_int_equal(says(value), FATHOM_OK); }
 static void refuses(uint16_t value) { assert_int_equal(says(value), FATHOM_ERR_MALFORMED); }
 
 static fathom_status_t poll_after(uint32_t us)
@@ -226,7 +226,7 @@ CONTRACT(a_broken_port_is_said_by_every_poll_until_it_works_again, REFUSING)
     kind->breaks(true);
     for (unsigned i = 0; i != 5; i++) assert_int_equal(poll_after(100 * MS), FATHOM_ERR_PORT);
     kind->breaks(false);
-    for (unsigned tries = 0; status != FATHOM_READY; tries++) {
+    for (unsigned tries = 0; status != FATHOM_OK; tries++) {
         assert_true(tries < TRIES);
         status = says(driver->other); /* an error may be of what was under way */
     }
@@ -442,7 +442,7 @@ CONTRACT(a_frame_that_waited_in_the_driver_is_a_sample_until_2500_ms, LISTENERS)
             rig.fake.now_us += 10 * MS;
             (void)fathom_line_poll(&rig.line);
         }
-        assert_int_equal(kind->poll(), waits_us == 2500 * MS ? FATHOM_READY : FATHOM_ERR_STALE);
+        assert_int_equal(kind->poll(), waits_us == 2500 * MS ? FATHOM_OK : FATHOM_ERR_STALE);
     }
 }
 

@@ -3,7 +3,7 @@
 
 #include "suite.h"
 
-#include "fathom/sensor/dyp.h"
+#include "fathom/sensor/internal/dyp.h"
 
 enum { GUARD = 0xA5 };
 
@@ -21,7 +21,7 @@ static int set_up(void **state)
     response.model = FATHOM_A05;
     response.address = 7;
     response.first = 1;
-    assert_int_equal(fathom_dyp_measurement_init(&response, FATHOM_A05_MAX_MM), FATHOM_READY);
+    assert_int_equal(fathom_dyp_measurement_init(&response, FATHOM_A05_MAX_MM), FATHOM_OK);
     assert_int_equal(response.refused_raw | response.refused_probe, 0); /* none yet */
     return 0;
 }
@@ -39,13 +39,13 @@ static void expect_next(fathom_status_t status)
 {
     memset(&sample, GUARD, sizeof sample);
     assert_int_equal(fathom_dyp_measurement_next(&response, &sample), status);
-    if (status != FATHOM_READY) assert_sample_untouched();
+    if (status != FATHOM_OK) assert_sample_untouched();
 }
 
 /* The next one is of this probe. */
 static void expect_mm(uint8_t probe, uint16_t mm)
 {
-    expect_next(FATHOM_READY);
+    expect_next(FATHOM_OK);
     assert_int_equal(sample.probe, probe);
     assert_int_equal(sample.distance_mm, mm);
 }
@@ -74,7 +74,7 @@ static void assert_next_means(uint32_t value, meaning_t meaning)
     values[0] = (uint16_t)value;
     response.implausible = 0;
     fathom_dyp_measurement_set(&response, 1, 123456);
-    expect_next(meaning == CANNOT_BE ? FATHOM_ERR_MALFORMED : FATHOM_READY);
+    expect_next(meaning == CANNOT_BE ? FATHOM_ERR_MALFORMED : FATHOM_OK);
     assert_int_equal(response.implausible, meaning == CANNOT_BE);
     if (meaning != CANNOT_BE) {
         assert_int_equal(sample.raw, value);
@@ -113,7 +113,7 @@ TEST(every_value_means_what_the_rule_says)
         unsigned targets = 0;
         response.window.min_mm = w->min_mm;
         response.window.max_mm = w->max_mm;
-        assert_int_equal(fathom_dyp_measurement_init(&response, w->default_max_mm), FATHOM_READY);
+        assert_int_equal(fathom_dyp_measurement_init(&response, w->default_max_mm), FATHOM_OK);
         for (uint32_t value = 0; value != 65536; value++) {
             const meaning_t meaning = meaning_of(value, w->rule_min_mm, w->rule_max_mm);
             assert_next_means(value, meaning);
@@ -142,13 +142,13 @@ TEST(each_of_the_four_values_takes_each_meaning_and_no_other_value_does)
         for (unsigned m = 0; m != 6; m++) {
             memset(&response.window, 0, sizeof response.window);
             *members[v] = meanings[m].meaning;
-            assert_int_equal(fathom_dyp_measurement_init(&response, 65535), FATHOM_READY);
+            assert_int_equal(fathom_dyp_measurement_init(&response, 65535), FATHOM_OK);
             for (unsigned other = 0; other != 4; other++) {
                 if (other != v) assert_next_means(four[other], meaning_of(four[other], 1, 65535));
             }
             values[0] = four[v];
             fathom_dyp_measurement_set(&response, 1, 123456);
-            expect_next(meanings[m].kind != 0 ? FATHOM_READY : FATHOM_ERR_MALFORMED);
+            expect_next(meanings[m].kind != 0 ? FATHOM_OK : FATHOM_ERR_MALFORMED);
             if (meanings[m].kind == 0) continue;
             assert_int_equal(sample.kind, meanings[m].kind);
             assert_int_equal(sample.raw, four[v]);
@@ -186,7 +186,7 @@ TEST(a_response_gives_one_sample_a_probe_in_their_order)
     values[3] = 0xFFFE;
     fathom_dyp_measurement_set(&response, 0x0B, 777);
     for (unsigned i = 0; i != 3; i++) {
-        expect_next(FATHOM_READY);
+        expect_next(FATHOM_OK);
         assert_int_equal(sample.probe, order[i]);
         assert_int_equal(sample.raw, values[order[i] - 1]);
         assert_int_equal(sample.time_us, 777);
@@ -225,9 +225,9 @@ TEST(a_new_response_replaces_what_was_left_of_the_old_one)
     values[0] = 1000;
     values[1] = 2000;
     fathom_dyp_measurement_set(&response, 0x03, 1);
-    expect_next(FATHOM_READY);
+    expect_next(FATHOM_OK);
     fathom_dyp_measurement_set(&response, 0x01, 2);
-    expect_next(FATHOM_READY);
+    expect_next(FATHOM_OK);
     assert_int_equal(sample.probe, 1);
     assert_int_equal(sample.sequence, 2);
     assert_int_equal(sample.time_us, 2);

@@ -38,7 +38,7 @@ TEST(every_command_has_the_length_and_the_values_of_the_datasheet)
         const uint8_t length = length_by_the_datasheet(command);
         const uint8_t values = length == 13 ? 4 : length == 7 ? 1 : 0;
         assert_int_equal(fathom_dyp_55aa_response_length((uint8_t)command), length);
-        assert_int_equal(fathom_dyp_55aa_values((uint8_t)command), values);
+        assert_int_equal(fathom_dyp_55aa_value_count((uint8_t)command), values);
         known += length != 0;
     }
     assert_int_equal(known, 6);
@@ -71,12 +71,12 @@ static uint8_t length_of(const uint8_t *bytes, uint8_t have)
     uint8_t behind[MOST + 1];
     assert_non_null(alone);
     memcpy(alone, bytes, have);
-    const uint8_t length = fathom_dyp_55aa_length(alone, have);
+    const uint8_t length = fathom_dyp_55aa_frame_length(alone, have);
     free(alone);
     for (unsigned filling = 0; filling != BYTES; filling++) {
         memset(behind, (int)filling, sizeof behind);
         memcpy(behind, bytes, have);
-        assert_int_equal(fathom_dyp_55aa_length(behind, have), length);
+        assert_int_equal(fathom_dyp_55aa_frame_length(behind, have), length);
     }
     return length;
 }
@@ -102,7 +102,7 @@ TEST(no_address_changes_the_length)
         memcpy(bytes, all_probes, MOST);
         bytes[2] = (uint8_t)address;
         for (uint8_t have = 1; have <= MOST; have++)
-            assert_int_equal(fathom_dyp_55aa_length(bytes, have), have < 4 ? 4 : 13);
+            assert_int_equal(fathom_dyp_55aa_frame_length(bytes, have), have < 4 ? 4 : 13);
     }
 }
 
@@ -138,7 +138,7 @@ TEST(of_256_last_bytes_one_is_the_sum_at_every_length)
         memcpy(frame, all_probes, MOST);
         for (unsigned last = 0; last != BYTES; last++) {
             frame[length - 1] = (uint8_t)last;
-            const bool is_valid = fathom_dyp_55aa_valid(frame, length);
+            const bool is_valid = fathom_dyp_55aa_is_valid(frame, length);
             assert_int_equal(is_valid, last == sum_of(frame, length - 1u));
             right += is_valid;
         }
@@ -151,13 +151,13 @@ TEST(what_lies_behind_a_frame_does_not_count)
     uint8_t *const alone = malloc(sizeof address_5);
     assert_non_null(alone);
     memcpy(alone, address_5, sizeof address_5);
-    assert_true(fathom_dyp_55aa_valid(alone, sizeof address_5));
+    assert_true(fathom_dyp_55aa_is_valid(alone, sizeof address_5));
     free(alone);
     for (unsigned filling = 0; filling != BYTES; filling++) {
         uint8_t frame[MOST];
         memset(frame, (int)filling, sizeof frame);
         memcpy(frame, address_5, sizeof address_5);
-        assert_true(fathom_dyp_55aa_valid(frame, sizeof address_5));
+        assert_true(fathom_dyp_55aa_is_valid(frame, sizeof address_5));
     }
 }
 
@@ -187,7 +187,7 @@ TEST(every_command_from_every_address_goes_both_ways)
             assert_int_equal(fathom_dyp_55aa_encode_response(frame, (uint8_t)address, commands[i], sent),
                              length);
             assert_memory_equal(frame, expected, length + 1u);
-            assert_true(fathom_dyp_55aa_valid(expected, length));
+            assert_true(fathom_dyp_55aa_is_valid(expected, length));
             memset(values, GUARD, sizeof values);
             fathom_dyp_55aa_decode(expected, values);
             assert_memory_equal(values, sent, count * sizeof *sent);
@@ -209,7 +209,7 @@ TEST(every_value_of_one_probe_goes_both_ways)
         uint8_t frame[7];
         assert_int_equal(fathom_dyp_55aa_encode_response(frame, 1, FATHOM_DYP_FIRST_PROBE, &value), 7);
         assert_memory_equal(frame, expected, 7);
-        assert_true(fathom_dyp_55aa_valid(expected, 7));
+        assert_true(fathom_dyp_55aa_is_valid(expected, 7));
         fathom_dyp_55aa_decode(expected, &decoded);
         assert_int_equal(decoded, mm);
     }

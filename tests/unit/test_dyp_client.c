@@ -22,7 +22,7 @@ static void expect_submitted(fathom_status_t expected)
 static void expect_set_address(uint8_t address, fathom_status_t expected)
 {
     bench.request.transaction.timeout_us = TIMEOUT_US;
-    assert_int_equal(fathom_dyp_client_set_every_address(&bench.line, &bench.request, address), expected);
+    assert_int_equal(fathom_dyp_client_broadcast_address(&bench.line, &bench.request, address), expected);
 }
 
 static void send_request(void)
@@ -46,7 +46,7 @@ static void expect_untouched(size_t from)
 static void expect_four(void)
 {
     static const uint16_t four[] = {1000, 2000, 1953, 3562};
-    expect(FATHOM_READY);
+    expect(FATHOM_OK);
     assert_memory_equal(values, four, sizeof four);
     expect_untouched(4);
 }
@@ -96,7 +96,7 @@ TEST(each_probe_is_answered_by_its_own_command)
             send_request();
             deliver_all(response);
             if (command == 0x10 + probe) {
-                expect(FATHOM_READY);
+                expect(FATHOM_OK);
                 assert_int_equal(values[0], 1953);
                 expect_untouched(1);
                 continue;
@@ -123,7 +123,7 @@ TEST(setting_the_address_is_acknowledged_by_its_own_words)
     deliver_all(dyp_first_1953);
     expect(FATHOM_PENDING);
     deliver_all(address_5);
-    expect(FATHOM_READY);
+    expect(FATHOM_OK);
 }
 
 /* ---- refusals ---- */
@@ -177,7 +177,7 @@ TEST(a_line_without_room_for_the_longest_response_is_refused)
         bench.config.frame_size = size;
         fill(1, 0x0106, 1);
         expect_submitted(expected);
-        assert_int_equal(fathom_dyp_client_set_every_address(&bench.line, &bench.other, 5), expected);
+        assert_int_equal(fathom_dyp_client_broadcast_address(&bench.line, &bench.other, 5), expected);
     }
 }
 
@@ -312,7 +312,7 @@ TEST(a_late_response_serves_the_retry_and_no_other_request)
         }
         deliver_all(dyp_four);
         expect_count(FATHOM_LINE_LATE_RESPONSES, 1);
-        expect(retries != 0 ? FATHOM_READY : FATHOM_PENDING);
+        expect(retries != 0 ? FATHOM_OK : FATHOM_PENDING);
         assert_int_equal(values[0], retries != 0 ? 1000 : 0xA5A5);
         expect_written(1);
     }
@@ -332,7 +332,7 @@ TEST(a_late_response_of_another_unit_is_known_as_such)
     receive_all(dyp_four);
     deliver_all(of_unit_2);
     expect_count(FATHOM_LINE_LATE_RESPONSES, 1);
-    expect(FATHOM_READY);
+    expect(FATHOM_OK);
     assert_int_equal(values[0], 1953);
 }
 

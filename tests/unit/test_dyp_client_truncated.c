@@ -37,7 +37,7 @@ TEST(another_masters_request_to_the_unit_is_no_echo)
     ask_all();
     receive(others, sizeof others);
     run(2 * GAP_US);
-    assert_int_equal(fathom_line_echo(&bench.line), FATHOM_LINE_ECHO_AUTO);
+    assert_int_equal(fathom_line_get_echo(&bench.line), FATHOM_LINE_ECHO_AUTO);
     assert_int_equal(status_of(&bench.request), FATHOM_ERR_CHECKSUM);
 }
 
@@ -53,7 +53,7 @@ TEST(a_response_that_breaks_off_writes_nothing_though_the_same_came_before)
         ask_all();
         receive(four, sizeof four);
         run(100);
-        assert_int_equal(status_of(&bench.request), FATHOM_READY);
+        assert_int_equal(status_of(&bench.request), FATHOM_OK);
         assert_int_equal(values[3], 0x0404);
         ask_all();
         receive(four, length);
@@ -72,13 +72,13 @@ TEST(two_copies_of_a_set_address_in_one_read_show_no_echo)
 {
     static const uint8_t copies[] = {0x55, 0xAA, 0x05, 0x03, 0x07, 0x55, 0xAA, 0x05, 0x03, 0x07};
     bench.request.transaction.timeout_us = TIMEOUT_US;
-    assert_int_equal(fathom_dyp_client_set_every_address(&bench.line, &bench.request, 5), FATHOM_PENDING);
+    assert_int_equal(fathom_dyp_client_broadcast_address(&bench.line, &bench.request, 5), FATHOM_PENDING);
     run(T3_5_US + 200);
     run(5 * BYTE_US);
     receive(copies, sizeof copies);
     run(100);
-    assert_int_equal(status_of(&bench.request), FATHOM_READY);
-    assert_int_equal(fathom_line_echo(&bench.line), FATHOM_LINE_ECHO_AUTO);
+    assert_int_equal(status_of(&bench.request), FATHOM_OK);
+    assert_int_equal(fathom_line_get_echo(&bench.line), FATHOM_LINE_ECHO_AUTO);
 }
 
 /* Behind five bytes that are the request 55 AA begins another frame; behind others it is the first probe's low and the
@@ -89,7 +89,7 @@ TEST(a_response_that_does_not_begin_as_its_request_is_taken_whatever_it_says)
     ask_all();
     receive(four, sizeof four);
     run(100);
-    assert_int_equal(status_of(&bench.request), FATHOM_READY);
+    assert_int_equal(status_of(&bench.request), FATHOM_OK);
     assert_int_equal(values[0], 0x0355);
     assert_int_equal(values[1], 0xAA00);
 }

@@ -21,7 +21,7 @@ static void start_a05(uint32_t backoff_us)
                                                .modbus.backoff_us = backoff_us};
     fake_modbus_init(&fake);
     memset(&a05, 0x5A, sizeof a05);
-    assert_int_equal(fathom_a05_modbus_init(&a05, &config), FATHOM_READY);
+    assert_int_equal(fathom_a05_modbus_init(&a05, &config), FATHOM_OK);
     sensor = fathom_a05_modbus_sensor(&a05);
 }
 
@@ -31,7 +31,7 @@ static void start_a16(uint32_t backoff_us)
                                                .modbus.backoff_us = backoff_us};
     fake_modbus_init(&fake);
     memset(&a16, 0x5A, sizeof a16);
-    assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_READY);
+    assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_OK);
     sensor = fathom_a16_modbus_sensor(&a16);
 }
 
@@ -93,7 +93,7 @@ TEST(after_power_on_no_sample_of_before_is_handed_over)
     start_a05(0);
     is_asked_and_sent();
     fake_modbus_response(&fake, four, 4);
-    assert_int_equal(poll_after(0), FATHOM_READY);
+    assert_int_equal(poll_after(0), FATHOM_OK);
     assert_int_equal(sample.distance_mm, 1000);
     fathom_a05_modbus_power_on(&a05);
     assert_int_equal(poll_after(0), FATHOM_PENDING);
@@ -107,14 +107,14 @@ TEST(an_address_register_says_up_to_255)
     static const uint16_t is_256[] = {256};
     uint8_t address = 0;
     start_a05(0);
-    assert_int_equal(fathom_a05_modbus_address(&a05, &address), FATHOM_PENDING);
+    assert_int_equal(fathom_a05_modbus_get_address(&a05, &address), FATHOM_PENDING);
     fake_modbus_response(&fake, is_255, 1);
-    assert_int_equal(fathom_a05_modbus_address(&a05, &address), FATHOM_READY);
+    assert_int_equal(fathom_a05_modbus_get_address(&a05, &address), FATHOM_OK);
     assert_int_equal(address, 255);
     fake.now_us += 1000000;
-    assert_int_equal(fathom_a05_modbus_address(&a05, &address), FATHOM_PENDING);
+    assert_int_equal(fathom_a05_modbus_get_address(&a05, &address), FATHOM_PENDING);
     fake_modbus_response(&fake, is_256, 1);
-    assert_int_equal(fathom_a05_modbus_address(&a05, &address), FATHOM_ERR_MALFORMED);
+    assert_int_equal(fathom_a05_modbus_get_address(&a05, &address), FATHOM_ERR_MALFORMED);
     assert_int_equal(address, 255);
 }
 
@@ -124,21 +124,21 @@ TEST(a_register_that_is_0_or_1_is_not_0100)
     static const uint16_t is_0100[] = {0x0100};
     fathom_a16_polarity_t polarity = FATHOM_A16_POSITIVE;
     start_a16(0);
-    assert_int_equal(fathom_a16_modbus_switch_polarity(&a16, &polarity), FATHOM_PENDING);
+    assert_int_equal(fathom_a16_modbus_get_switch_polarity(&a16, &polarity), FATHOM_PENDING);
     fake_modbus_response(&fake, is_0100, 1);
-    assert_int_equal(fathom_a16_modbus_switch_polarity(&a16, &polarity), FATHOM_ERR_MALFORMED);
+    assert_int_equal(fathom_a16_modbus_get_switch_polarity(&a16, &polarity), FATHOM_ERR_MALFORMED);
     assert_int_equal(polarity, FATHOM_A16_POSITIVE);
 }
 
-/* "FATHOM_READY with *out written, or" an error, without. */
+/* "FATHOM_OK with *out written, or" an error, without. */
 TEST(a_register_that_cannot_be_read_writes_nothing)
 {
     fathom_a16_polarity_t polarity = FATHOM_A16_POSITIVE;
     start_a16(0);
-    assert_int_equal(fathom_a16_modbus_switch_polarity(&a16, &polarity), FATHOM_PENDING);
+    assert_int_equal(fathom_a16_modbus_get_switch_polarity(&a16, &polarity), FATHOM_PENDING);
     assert_int_equal(polarity, FATHOM_A16_POSITIVE);
     fake_modbus_fail(&fake, FATHOM_ERR_NO_RESPONSE);
-    assert_int_equal(fathom_a16_modbus_switch_polarity(&a16, &polarity), FATHOM_ERR_NO_RESPONSE);
+    assert_int_equal(fathom_a16_modbus_get_switch_polarity(&a16, &polarity), FATHOM_ERR_NO_RESPONSE);
     assert_int_equal(polarity, FATHOM_A16_POSITIVE);
 }
 
@@ -166,8 +166,8 @@ TEST(commands_of_two_registers_are_told_apart)
     for (unsigned i = 0; i != 4; i++)
         for (unsigned j = 0; j != 4; j++) {
             start_a16(0);
-            assert_int_equal(fathom_dyp_modbus_get(&a16.base, registers[i], &value), FATHOM_PENDING);
-            assert_int_equal(fathom_dyp_modbus_get(&a16.base, registers[j], &value),
+            assert_int_equal(fathom_dyp_modbus_get_register(&a16.base, registers[i], &value), FATHOM_PENDING);
+            assert_int_equal(fathom_dyp_modbus_get_register(&a16.base, registers[j], &value),
                              i == j ? FATHOM_PENDING : FATHOM_ERR_BUSY);
         }
 }
@@ -178,9 +178,9 @@ TEST(a_blind_write_has_to_wait_for_a_read_of_its_register)
     static const uint16_t is_0[] = {0};
     fathom_a16_polarity_t polarity = FATHOM_A16_POSITIVE;
     start_a16(0);
-    assert_int_equal(fathom_a16_modbus_switch_polarity(&a16, &polarity), FATHOM_PENDING);
+    assert_int_equal(fathom_a16_modbus_get_switch_polarity(&a16, &polarity), FATHOM_PENDING);
     fake_modbus_response(&fake, is_0, 1);
-    assert_int_equal(fathom_a16_modbus_next_is_blind(&a16), FATHOM_READY);
+    assert_int_equal(fathom_a16_modbus_write_next_unchecked(&a16), FATHOM_OK);
     assert_int_equal(fathom_a16_modbus_set_switch_polarity(&a16, FATHOM_A16_POSITIVE), FATHOM_ERR_BUSY);
     assert_int_equal(fake.submits, 1);
 }

@@ -19,7 +19,7 @@ TEST(every_value_of_an_A16_goes_both_ways)
         uint8_t frame[4];
         assert_int_equal(fathom_dyp_stream_encode(frame, &value, 1), 4);
         assert_memory_equal(frame, expected, 4);
-        assert_true(fathom_dyp_stream_valid(expected, 4));
+        assert_true(fathom_dyp_stream_is_valid(expected, 4));
         fathom_dyp_stream_decode(expected, &decoded, 1);
         assert_int_equal(decoded, mm);
     }
@@ -39,7 +39,7 @@ TEST(every_value_of_every_probe_of_an_A05_goes_both_ways)
             expected[9] = (uint8_t)((255 + mm / 256 + mm % 256) % 256);
             assert_int_equal(fathom_dyp_stream_encode(frame, values, 4), 10);
             assert_memory_equal(frame, expected, 10);
-            assert_true(fathom_dyp_stream_valid(expected, 10));
+            assert_true(fathom_dyp_stream_is_valid(expected, 10));
             fathom_dyp_stream_decode(expected, decoded, 4);
             assert_memory_equal(decoded, values, sizeof values);
         }
@@ -55,9 +55,9 @@ TEST(every_other_start_and_every_other_sum_is_refused)
         uint8_t sum_of_ten[10];
         memcpy(sum_of_ten, a05_frame, 10);
         sum_of_ten[9] = (uint8_t)byte;
-        assert_true(fathom_dyp_stream_valid(start, 4) == (byte == 0xFF));
-        assert_true(fathom_dyp_stream_valid(sum, 4) == (byte == 0xA7));
-        assert_true(fathom_dyp_stream_valid(sum_of_ten, 10) == (byte == 0x60));
+        assert_true(fathom_dyp_stream_is_valid(start, 4) == (byte == 0xFF));
+        assert_true(fathom_dyp_stream_is_valid(sum, 4) == (byte == 0xA7));
+        assert_true(fathom_dyp_stream_is_valid(sum_of_ten, 10) == (byte == 0x60));
     }
 }
 
@@ -66,10 +66,10 @@ TEST(the_sum_of_0_to_255_bytes_is_the_low_byte)
 {
     uint8_t bytes[256];
     memset(bytes, 0xFF, sizeof bytes);
-    assert_int_equal(fathom_dyp_sum(bytes, 0), 0);
-    for (unsigned n = 1; n != 256; n++) assert_int_equal(fathom_dyp_sum(bytes, (uint8_t)n), 256 - n);
-    assert_int_equal(fathom_dyp_sum(bytes, 255), 0x01);
-    assert_int_equal(fathom_dyp_sum(a05_frame, 9), 0x60);
+    assert_int_equal(fathom_dyp_checksum(bytes, 0), 0);
+    for (unsigned n = 1; n != 256; n++) assert_int_equal(fathom_dyp_checksum(bytes, (uint8_t)n), 256 - n);
+    assert_int_equal(fathom_dyp_checksum(bytes, 255), 0x01);
+    assert_int_equal(fathom_dyp_checksum(a05_frame, 9), 0x60);
 }
 
 /* Why stream.h has further rules. Each of these is a valid frame that no sensor sent. */
@@ -83,11 +83,11 @@ TEST(a_good_sum_does_not_prove_where_a_frame_begins)
     static const uint8_t shifted_by_six[] = {0xFF, 0x05, 0x3B, 0x07, 0xFF, 0x03, 0xE8, 0x07, 0xD0, 0x07};
     static const uint16_t permuted[] = {1339, 2047, 1000, 2000};
     uint16_t values[4];
-    assert_true(fathom_dyp_stream_valid(shifted_by_one, 4));
+    assert_true(fathom_dyp_stream_is_valid(shifted_by_one, 4));
     fathom_dyp_stream_decode(shifted_by_one, values, 1);
     assert_int_equal(values[0], 65281);
-    assert_true(fathom_dyp_stream_valid(right, 10));
-    assert_true(fathom_dyp_stream_valid(shifted_by_six, 10));
+    assert_true(fathom_dyp_stream_is_valid(right, 10));
+    assert_true(fathom_dyp_stream_is_valid(shifted_by_six, 10));
     fathom_dyp_stream_decode(shifted_by_six, values, 4);
     assert_memory_equal(values, permuted, sizeof permuted);
 }
@@ -97,7 +97,7 @@ TEST(FF_may_follow_the_start)
 {
     static const uint8_t frame[] = {0xFF, 0xFF, 0xFD, 0xFB};
     uint16_t value = 0;
-    assert_true(fathom_dyp_stream_valid(frame, 4));
+    assert_true(fathom_dyp_stream_is_valid(frame, 4));
     fathom_dyp_stream_decode(frame, &value, 1);
     assert_int_equal(value, 0xFFFD);
 }

@@ -42,7 +42,7 @@ static void start_at(uint32_t now_us)
     memset(askers, 0, sizeof askers);
     memset(&share, 0x5A, sizeof share);
     orders = 0;
-    assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_READY);
+    assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_OK);
     fathom_fair_share(&share, &bench.line);
 }
 
@@ -149,7 +149,7 @@ TEST(a_fast_one_is_asked_many_times_between_two_requests_of_a_slow_one)
 
 TEST(without_it_they_take_turns)
 {
-    assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_READY);
+    assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_OK);
     asker_t *const fast = add(7, 2 * MS, 4 * MS);
     asker_t *const slow = add(2, 400 * MS, 0);
     play(60 * SECOND);
@@ -266,7 +266,7 @@ TEST(what_goes_next_is_due_after_the_silence)
     askers[0].is_left_alone = false;
     while (askers[1].left == 0) play(STEP_US);
     while (askers[1].has_left) play(STEP_US);
-    expect_due(T3_5_US - (bench.fake.now_us - fathom_line_heard_us(&bench.line)));
+    expect_due(T3_5_US - (bench.fake.now_us - fathom_line_last_byte_us(&bench.line)));
 }
 
 /* ---- what is kept, and what is not ---- */

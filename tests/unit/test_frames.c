@@ -57,8 +57,7 @@ static void request_row(const modbus_vector_t *row)
     assert_length_and_crc(&row->frame, fathom_modbus_rtu_request_length);
     memset(&message, GUARD, sizeof message);
     message.values = values;
-    assert_int_equal(fathom_modbus_rtu_parse_request(&message, row->frame.bytes, VECTOR_VALUES),
-                     FATHOM_READY);
+    assert_int_equal(fathom_modbus_rtu_parse_request(&message, row->frame.bytes, VECTOR_VALUES), FATHOM_OK);
     assert_head(&message, &row->meaning);
     assert_int_equal(message.exception, 0);
 }
@@ -73,7 +72,7 @@ static void response_row(const modbus_vector_t *row)
     assert_length_and_crc(&row->frame, fathom_modbus_rtu_response_length);
     fill_in(&message, meaning, values);
     assert_int_equal(fathom_modbus_rtu_parse_response(&message, row->frame.bytes),
-                     meaning->exception != 0 ? FATHOM_ERR_EXCEPTION : FATHOM_READY);
+                     meaning->exception != 0 ? FATHOM_ERR_EXCEPTION : FATHOM_OK);
     assert_int_equal(message.exception, meaning->exception);
     assert_memory_equal(values, meaning->values, sizeof values);
     assert_head(&message, meaning);
@@ -101,7 +100,7 @@ static void auto_row(void **state)
     uint8_t frame[FATHOM_DYP_MAX_LENGTH + 1];
     uint16_t values[FATHOM_DYP_PROBES] = {0};
 
-    assert_true(fathom_dyp_stream_valid(row->frame.bytes, row->frame.length));
+    assert_true(fathom_dyp_stream_is_valid(row->frame.bytes, row->frame.length));
     fathom_dyp_stream_decode(row->frame.bytes, values, row->probes);
     assert_memory_equal(values, row->values, sizeof values);
 
@@ -150,10 +149,11 @@ TEST(every_55_AA_frame_goes_both_ways)
         }
         if ((row->frame.direction & VECTOR_RESPONSE) == 0) continue;
         uint16_t values[5] = {GUARD, GUARD, GUARD, GUARD, GUARD};
-        const uint8_t count = fathom_dyp_55aa_values(row->command);
+        const uint8_t count = fathom_dyp_55aa_value_count(row->command);
         assert_int_equal(fathom_dyp_55aa_response_length(row->command), row->frame.length);
-        assert_int_equal(fathom_dyp_55aa_length(row->frame.bytes, row->frame.length), row->frame.length);
-        assert_true(fathom_dyp_55aa_valid(row->frame.bytes, row->frame.length));
+        assert_int_equal(fathom_dyp_55aa_frame_length(row->frame.bytes, row->frame.length),
+                         row->frame.length);
+        assert_true(fathom_dyp_55aa_is_valid(row->frame.bytes, row->frame.length));
         fathom_dyp_55aa_decode(row->frame.bytes, values);
         assert_memory_equal(values, row->values, count * sizeof *values);
         assert_int_equal(values[count], GUARD);
@@ -263,8 +263,8 @@ TEST(a16_a_frame_begins_with_one_FF)
 {
     static const uint8_t example[] = {0xFF, 0x07, 0xA1, 0xA7};
     static const uint8_t as_printed[] = {0xFF, 0xFF, 0x07, 0xA1, 0xA7};
-    assert_true(fathom_dyp_stream_valid(example, 4));
-    assert_false(fathom_dyp_stream_valid(as_printed, 4));
+    assert_true(fathom_dyp_stream_is_valid(example, 4));
+    assert_false(fathom_dyp_stream_is_valid(as_printed, 4));
 }
 
 /* ---- all of them ---- */

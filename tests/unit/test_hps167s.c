@@ -35,16 +35,16 @@ static const suite_t suite = {.set_up = hps_set_up, .tear_down = nothing_else_wa
 static fathom_status_t ask_version(void)
 {
     memset(&version, GUARD, sizeof version);
-    const fathom_status_t status = fathom_hps167s_interface_version(&hps, &version);
-    if (status != FATHOM_READY) assert_guard(&version, sizeof version);
+    const fathom_status_t status = fathom_hps167s_get_interface_version(&hps, &version);
+    if (status != FATHOM_OK) assert_guard(&version, sizeof version);
     return status;
 }
 
 static fathom_status_t ask_details(void)
 {
     memset(&details, GUARD, sizeof details);
-    const fathom_status_t status = fathom_hps167s_details(&hps, &details);
-    if (status != FATHOM_READY) assert_guard(&details, sizeof details);
+    const fathom_status_t status = fathom_hps167s_get_details(&hps, &details);
+    if (status != FATHOM_OK) assert_guard(&details, sizeof details);
     return status;
 }
 

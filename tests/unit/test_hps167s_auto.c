@@ -21,7 +21,7 @@ static const uint8_t example[LENGTH] = {0x01, 0x03, 0x08, 0x08, 0x23, 0xDC, 0xB2
 
 static void begin(void)
 {
-    assert_int_equal(fathom_hps167s_auto_init(&hps, &config), FATHOM_READY);
+    assert_int_equal(fathom_hps167s_auto_init(&hps, &config), FATHOM_OK);
     rig.sensor = fathom_hps167s_auto_sensor(&hps);
 }
 
@@ -52,15 +52,15 @@ static void hears(fathom_status_t status, uint8_t address, uint16_t a, uint16_t 
     assert_int_equal(rig_send(frame, LENGTH, loop_us), status);
 }
 
-static void hears_example(void) { assert_int_equal(rig_send(example, LENGTH, loop_us), FATHOM_READY); }
+static void hears_example(void) { assert_int_equal(rig_send(example, LENGTH, loop_us), FATHOM_OK); }
 
 /* The driver that asks the same device. */
 static void ask_too(void)
 {
     modbus = fathom_modbus_client(&rig.line);
     const fathom_hps167s_config_t asked = {.modbus.transport = &modbus, .modbus.timeout_us = 300000};
-    assert_int_equal(fathom_hps167s_init(&driver, &asked), FATHOM_READY);
-    fathom_hps167s_auto_beside(&hps, &driver);
+    assert_int_equal(fathom_hps167s_init(&driver, &asked), FATHOM_OK);
+    fathom_hps167s_auto_follow(&hps, &driver);
 }
 
 /* ---- frames ---- */
@@ -69,14 +69,14 @@ TEST(no_target_and_the_abnormal_packet_are_samples_too_and_the_limits_are_option
 {
     fathom_hps167s_limits_t limits = {.max_mm = 18000, .over_range_mm = 65500};
     fathom_hps167s_limits_t wrong = {.over_range_mm = 65535};
-    hears(FATHOM_READY, 1, 65530, 0, 0, 0);
+    hears(FATHOM_OK, 1, 65530, 0, 0, 0);
     assert_int_equal(rig.sample.kind, FATHOM_NO_TARGET);
-    hears(FATHOM_READY, 1, 0xFFFF, 0, 0x00FF, 0xFFFF);
+    hears(FATHOM_OK, 1, 0xFFFF, 0, 0x00FF, 0xFFFF);
     assert_int_equal(rig.sample.kind, FATHOM_FAULT);
-    assert_int_equal(fathom_hps167s_auto_use_limits(&hps, &limits), FATHOM_READY);
-    assert_int_equal(fathom_hps167s_auto_use_limits(&hps, &wrong), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_hps167s_auto_set_limits(&hps, &limits), FATHOM_OK);
+    assert_int_equal(fathom_hps167s_auto_set_limits(&hps, &wrong), FATHOM_ERR_ARGUMENT);
     hears(FATHOM_ERR_MALFORMED, 1, 18001, 0, 0, 0);
-    hears(FATHOM_READY, 1, 65500, 0, 0, 0);
+    hears(FATHOM_OK, 1, 65500, 0, 0, 0);
     assert_int_equal(rig.sample.kind, FATHOM_NO_TARGET);
 }
 
@@ -86,7 +86,7 @@ TEST(only_its_address_counts)
     begin();
     hears(FATHOM_PENDING, 31, 1000, 0, 0, 0);
     hears(FATHOM_PENDING, 1, 1000, 0, 0, 0);
-    hears(FATHOM_READY, 32, 2000, 0, 0, 0);
+    hears(FATHOM_OK, 32, 2000, 0, 0, 0);
     assert_int_equal(rig.sample.address, 32);
 }
 
@@ -109,7 +109,7 @@ TEST(no_single_wrong_bit_makes_a_sample)
         memcpy(frame, example, LENGTH);
         frame[bit / 8] ^= (uint8_t)(1u << bit % 8);
         PENDS(rig_send(frame, LENGTH, 5000));
-        assert_int_equal(rig_send(example, LENGTH, 5000), FATHOM_READY);
+        assert_int_equal(rig_send(example, LENGTH, 5000), FATHOM_OK);
     }
 }
 
@@ -120,7 +120,7 @@ TEST(a_frame_is_found_behind_the_beginning_of_another)
         uint8_t bytes[2 * LENGTH];
         memcpy(bytes, example, truncated);
         memcpy(bytes + truncated, example, LENGTH);
-        assert_int_equal(rig_send(bytes, truncated + LENGTH, loop_us), FATHOM_READY);
+        assert_int_equal(rig_send(bytes, truncated + LENGTH, loop_us), FATHOM_OK);
     }
 }
 
@@ -133,7 +133,7 @@ TEST(a_frame_is_found_behind_noise_that_looks_like_its_head)
         uint8_t bytes[4 + LENGTH];
         memcpy(bytes, noises[i], 4);
         memcpy(bytes + 4, example, LENGTH);
-        assert_int_equal(rig_send(bytes, sizeof bytes, loop_us), FATHOM_READY);
+        assert_int_equal(rig_send(bytes, sizeof bytes, loop_us), FATHOM_OK);
     }
 }
 
@@ -195,7 +195,7 @@ TEST(the_deadline_is_an_option_and_due_tells_it)
     fake_receive(&rig.fake, 0, example, LENGTH);
     fathom_line_poll(&rig.line); /* another driver's poll brings a frame */
     assert_int_equal(fathom_due_us(&rig.sensor, 1), 0);
-    assert_int_equal(rig_poll(), FATHOM_READY);
+    assert_int_equal(rig_poll(), FATHOM_OK);
 }
 
 TEST(a_request_of_another_is_due_before_it_is_stale)
@@ -213,10 +213,10 @@ TEST(a_request_of_another_is_due_before_it_is_stale)
 TEST(its_address_is_that_of_the_driver_that_asks)
 {
     ask_too();
-    hears(FATHOM_READY, 1, 1000, 0, 0, 0);
+    hears(FATHOM_OK, 1, 1000, 0, 0, 0);
     driver.unit.address = 7;
     hears(FATHOM_PENDING, 1, 1000, 0, 0, 0);
-    hears(FATHOM_READY, 7, 1000, 0, 0, 0);
+    hears(FATHOM_OK, 7, 1000, 0, 0, 0);
     assert_int_equal(rig.sample.address, 7);
 }
 
@@ -230,41 +230,41 @@ static fathom_status_t run_both(uint32_t for_us, fathom_status_t (*command)(void
     for (uint32_t passed_us = 0; passed_us < for_us; passed_us += loop_us) {
         rig.fake.now_us += loop_us;
         if (status == FATHOM_PENDING) status = command();
-        while (rig_poll() == FATHOM_READY) {
+        while (rig_poll() == FATHOM_OK) {
         }
     }
     return status;
 }
 
 static fathom_hps167s_configuration_t is;
-static fathom_status_t ask_2(void) { return fathom_hps167s_configuration(&driver, &is); }
+static fathom_status_t ask_2(void) { return fathom_hps167s_get_configuration(&driver, &is); }
 
 static fathom_hps167s_version_t version;
-static fathom_status_t ask_1(void) { return fathom_hps167s_interface_version(&driver, &version); }
+static fathom_status_t ask_1(void) { return fathom_hps167s_get_interface_version(&driver, &version); }
 
 TEST(a_response_to_2_that_comes_by_itself_is_no_measurement)
 {
     ask_too();
-    hears(FATHOM_READY, 1, LOOKS_LIKE_2); /* 255 mm, while no driver asks */
+    hears(FATHOM_OK, 1, LOOKS_LIKE_2); /* 255 mm, while no driver asks */
     assert_int_equal(run_both(2000000, ask_2), FATHOM_ERR_NO_RESPONSE);
     hears(FATHOM_PENDING, 1, LOOKS_LIKE_2); /* asked and not answered: this may be the response */
     assert_int_equal(hps.implausible, 1);
     hears(FATHOM_PENDING, 1, 0x00FF, 0x0500, 0x0003, 0xE800); /* whatever its rate and reconnect time are */
     assert_int_equal(hps.implausible, 2);
-    hears(FATHOM_READY, 1, 0xFFFF, 0x0000, 0x00FF, 0xFFFF); /* but not the abnormal packet */
+    hears(FATHOM_OK, 1, 0xFFFF, 0x0000, 0x00FF, 0xFFFF); /* but not the abnormal packet */
     assert_int_equal(run_both(2000000, ask_1), FATHOM_ERR_NO_RESPONSE);
-    hears(FATHOM_READY, 1, LOOKS_LIKE_2); /* there was another request */
+    hears(FATHOM_OK, 1, LOOKS_LIKE_2); /* there was another request */
 }
 
 TEST(what_was_told_last_is_no_measurement_at_any_time)
 {
     static const uint16_t registers[4] = {LOOKS_LIKE_2};
     ask_too();
-    hears(FATHOM_READY, 1, 1000, 0, 0, 0);
+    hears(FATHOM_OK, 1, 1000, 0, 0, 0);
     memcpy(driver.last_configuration, registers, sizeof registers);
     hears(FATHOM_PENDING, 1, LOOKS_LIKE_2);
     assert_int_equal(hps.implausible, 1);
-    hears(FATHOM_READY, 1, 0x00FF, 0x0500, 0x0000, 0xB402);
+    hears(FATHOM_OK, 1, 0x00FF, 0x0500, 0x0000, 0xB402);
 }
 
 /* A target that stays at 255 mm, with figures that stay as well, sent every 100 ms while #2 is asked. */
@@ -273,7 +273,7 @@ TEST(a_held_value_is_never_taken_for_the_configuration)
     uint8_t frame[LENGTH];
     fathom_status_t status = FATHOM_PENDING;
     ask_too();
-    hears(FATHOM_READY, 1, LOOKS_LIKE_2);
+    hears(FATHOM_OK, 1, LOOKS_LIKE_2);
     rig_hps_frame(frame, 1, LOOKS_LIKE_2);
     for (unsigned i = 0; i != 60 && status == FATHOM_PENDING; i++) {
         fake_trickle(&rig.fake, 60000, RIG_BYTE_US, frame, LENGTH);
@@ -310,7 +310,7 @@ TEST(commands_are_answered_while_frames_arrive)
     fake_trickle(&rig.fake, 0, RIG_BYTE_US, example, LENGTH);
     fake_trickle(&rig.fake, 20000, RIG_BYTE_US, response_1, sizeof response_1);
     fake_trickle(&rig.fake, 50000, RIG_BYTE_US, example, LENGTH);
-    assert_int_equal(run_both(100000, ask_1), FATHOM_READY);
+    assert_int_equal(run_both(100000, ask_1), FATHOM_OK);
     assert_int_equal(version.year, 2020);
     assert_int_equal(rig.samples, 2);
 }

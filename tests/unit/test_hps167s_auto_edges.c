@@ -19,7 +19,7 @@ static int begin(void **state)
     set_up(state);
     config = (fathom_hps167s_auto_config_t){.line = &bench.line};
     memset(&hps, 0x01, sizeof hps);
-    assert_int_equal(fathom_hps167s_auto_init(&hps, &config), FATHOM_READY);
+    assert_int_equal(fathom_hps167s_auto_init(&hps, &config), FATHOM_OK);
     sensor = fathom_hps167s_auto_sensor(&hps);
     assert_int_equal(fathom_poll(&sensor, &sample), FATHOM_PENDING); /* the port is seen empty */
     return 0;
@@ -42,14 +42,14 @@ static fathom_status_t comes(const uint8_t *bytes, size_t length)
 TEST(the_first_frame_needs_its_address_whatever_stood_in_the_memory)
 {
     assert_int_equal(comes(example + 1, 12), FATHOM_PENDING);
-    assert_int_equal(comes(example, 13), FATHOM_READY);
+    assert_int_equal(comes(example, 13), FATHOM_OK);
 }
 
 TEST(every_frame_needs_its_own_address)
 {
-    assert_int_equal(comes(example, 13), FATHOM_READY);
+    assert_int_equal(comes(example, 13), FATHOM_OK);
     assert_int_equal(comes(example + 1, 12), FATHOM_PENDING);
-    assert_int_equal(comes(example, 13), FATHOM_READY);
+    assert_int_equal(comes(example, 13), FATHOM_OK);
 }
 
 TEST(after_lost_bytes_a_frame_needs_its_address)
@@ -57,7 +57,7 @@ TEST(after_lost_bytes_a_frame_needs_its_address)
     assert_int_equal(comes(example, 5), FATHOM_PENDING);
     fake_receive_rx(&bench.fake, 0, example + 1, 12, (fathom_rx_t){0, FATHOM_RX_OVERRUN});
     assert_int_equal(poll_after(100), FATHOM_PENDING);
-    assert_int_equal(comes(example, 13), FATHOM_READY);
+    assert_int_equal(comes(example, 13), FATHOM_OK);
 }
 
 /* It asks the line for no silence: the CRC tells where a frame is. Then only the deadline is due. */
@@ -73,7 +73,7 @@ TEST(the_buffer_of_the_line_holds_13_bytes)
     bench.config.frame_size = 12;
     assert_int_equal(fathom_hps167s_auto_init(&hps, &config), FATHOM_ERR_ARGUMENT);
     bench.config.frame_size = 13;
-    assert_int_equal(fathom_hps167s_auto_init(&hps, &config), FATHOM_READY);
+    assert_int_equal(fathom_hps167s_auto_init(&hps, &config), FATHOM_OK);
 }
 
 /* 12 bytes of a frame without the first: none can be in a frame, but the last 01 may begin one; a wrong CRC: 41 for 42.
@@ -82,7 +82,7 @@ TEST(dropped_bytes_and_damaged_frames_are_counted)
 {
     static const uint8_t wrong[] = {0x01, 0x03, 0x08, 0x08, 0x23, 0xDC, 0xB2,
                                     0x07, 0x01, 0x00, 0x00, 0xFD, 0x42};
-    assert_int_equal(comes(example, 13), FATHOM_READY);
+    assert_int_equal(comes(example, 13), FATHOM_OK);
     assert_int_equal(hps.dropped_bytes, 0);
     assert_int_equal(comes(example + 1, 12), FATHOM_PENDING);
     assert_int_equal(hps.dropped_bytes, 12);
@@ -95,7 +95,7 @@ TEST(dropped_bytes_and_damaged_frames_are_counted)
     assert_int_equal(comes(example, 5), FATHOM_PENDING);
     assert_int_equal(hps.dropped_bytes, 12 + 13 * 3); /* 5 are held */
     fake_receive_rx(&bench.fake, 0, example, 13, (fathom_rx_t){0, FATHOM_RX_OVERRUN});
-    assert_int_equal(poll_after(100), FATHOM_READY);
+    assert_int_equal(poll_after(100), FATHOM_OK);
     assert_int_equal(hps.dropped_bytes, 12 + 13 * 3 + 5);
     hps.dropped_bytes = hps.damaged = UINT16_MAX;
     assert_int_equal(comes(wrong, 13), FATHOM_PENDING);

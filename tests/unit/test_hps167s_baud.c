@@ -80,7 +80,7 @@ TEST(a_rate_that_was_written_blind_is_sought_at_both)
 {
     hps_start_at(1, &hps_factory);
     desk.argument = 57600;
-    assert_int_equal(fathom_hps167s_next_is_blind(&hps), OK);
+    assert_int_equal(fathom_hps167s_write_next_unchecked(&hps), OK);
     PLAY(set_baud, FATHOM_ERR_UNCONFIRMED, RATE(1, 2, OK, 19200));
     hps_asks(1, 19200);
     hps_is_silent(SILENT);
@@ -180,7 +180,7 @@ TEST(a_setting_waits_for_a_command_that_waits)
     fathom_hps167s_details_t details;
     hps_start_at(1, &hps_factory);
     hps_asks(1, 19200);
-    assert_int_equal(fathom_hps167s_details(&hps, &details), FATHOM_PENDING);
+    assert_int_equal(fathom_hps167s_get_details(&hps, &details), FATHOM_PENDING);
     assert_int_equal(fathom_hps167s_set_warm_up_s(&hps, 3), FATHOM_ERR_BUSY);
 }
 

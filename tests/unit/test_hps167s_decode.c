@@ -37,7 +37,7 @@ TEST(every_distance_is_what_the_rule_says)
         memset(&sample, GUARD, sizeof sample);
         counted[kind]++;
         assert_int_equal(fathom_hps167s_decode(registers, &sample),
-                         kind == 0 ? FATHOM_ERR_MALFORMED : FATHOM_READY);
+                         kind == 0 ? FATHOM_ERR_MALFORMED : FATHOM_OK);
         if (kind == 0) {
             assert_guard(&sample, sizeof sample);
             continue;
@@ -59,7 +59,7 @@ TEST(every_distance_is_what_the_rule_says)
 TEST(a_distance_beside_the_other_figures_of_the_abnormal_packet_is_a_distance)
 {
     static const uint16_t registers[4] = {2083, 0x0000, 0x00FF, 0xFFFF};
-    assert_int_equal(fathom_hps167s_decode(registers, &sample), FATHOM_READY);
+    assert_int_equal(fathom_hps167s_decode(registers, &sample), FATHOM_OK);
     assert_int_equal(sample.kind, FATHOM_TARGET);
     assert_int_equal(sample.distance_mm, 2083);
 }
@@ -67,7 +67,7 @@ TEST(a_distance_beside_the_other_figures_of_the_abnormal_packet_is_a_distance)
 TEST(decode_leaves_the_members_that_are_not_the_devices)
 {
     memset(&sample, GUARD, sizeof sample);
-    assert_int_equal(fathom_hps167s_decode(measured, &sample), FATHOM_READY);
+    assert_int_equal(fathom_hps167s_decode(measured, &sample), FATHOM_OK);
     assert_int_equal(sample.time_us, 0xA5A5A5A5);
     assert_int_equal(sample.sequence, 0xA5A5);
     assert_int_equal(sample.model, GUARD);
@@ -80,7 +80,7 @@ TEST(the_magnitude_is_exact_up_to_an_exponent_of_16_and_refused_beyond)
     for (unsigned exponent = 0; exponent != 256; exponent++) {
         const uint16_t registers[4] = {2083, 0xFFFF, (uint16_t)(exponent * 256), 0};
         const uint16_t over_range[4] = {65530, 0, (uint16_t)(exponent * 256), 0};
-        const fathom_status_t expected = exponent <= 16 ? FATHOM_READY : FATHOM_ERR_MALFORMED;
+        const fathom_status_t expected = exponent <= 16 ? FATHOM_OK : FATHOM_ERR_MALFORMED;
         uint32_t magnitude = 65535;
         for (unsigned i = 0; i != exponent && i != 16; i++) magnitude *= 2;
         memset(&sample, GUARD, sizeof sample);

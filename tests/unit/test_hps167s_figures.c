@@ -41,7 +41,7 @@ static void start(uint8_t steps_per_degree)
 {
     const fathom_hps167s_config_t config = {.modbus.transport = &modbus,
                                             .steps_per_degree = steps_per_degree};
-    assert_int_equal(fathom_hps167s_init(&hps, &config), FATHOM_READY);
+    assert_int_equal(fathom_hps167s_init(&hps, &config), FATHOM_OK);
 }
 
 /* Whatever the other bytes are: some of each. */
@@ -54,7 +54,7 @@ TEST(of_all_distances_only_255_mm_can_look_like_a_configuration)
             const bool is_two_switches = raw % 256 % 255 == 0 && raw / 256 % 255 == 0;
             fathom_sample_t sample;
             assert_int_equal(fathom_hps167s_may_be_configuration(registers), is_two_switches);
-            if (is_two_switches && fathom_hps167s_decode(registers, &sample) == FATHOM_READY)
+            if (is_two_switches && fathom_hps167s_decode(registers, &sample) == FATHOM_OK)
                 assert_int_equal(raw, 255);
         }
     }
@@ -82,10 +82,10 @@ TEST(the_abnormal_packet_is_never_a_configuration)
 static fathom_status_t ask(uint16_t raw, fathom_hps167s_temperature_t *out)
 {
     clock_us += 20000;
-    assert_int_equal(fathom_hps167s_temperature(&hps, out), FATHOM_PENDING);
+    assert_int_equal(fathom_hps167s_get_temperature(&hps, out), FATHOM_PENDING);
     *pending->message.values = raw;
-    pending->transaction.status = FATHOM_READY;
-    return fathom_hps167s_temperature(&hps, out);
+    pending->transaction.status = FATHOM_OK;
+    return fathom_hps167s_get_temperature(&hps, out);
 }
 
 /* tenths * 9 * steps is (raw - 32 * steps) * 50, rounded to the nearest: they differ by half of 9 * steps at most. */
@@ -104,7 +104,7 @@ TEST(every_temperature_is_exact_to_half_a_tenth_or_refused)
             const long exact = (raw - 32 * steps) * 50;
             memset(&out, 0xA5, sizeof out);
             const fathom_status_t status = ask((uint16_t)(raw & 0xFFFF), &out);
-            if (status != FATHOM_READY) {
+            if (status != FATHOM_OK) {
                 assert_int_equal(status, FATHOM_ERR_MALFORMED);
                 assert_true(labs(exact) * 2 > (2 * 32767 + 1) * 9 * steps);
                 assert_int_equal((uint16_t)out.fahrenheit, 0xA5A5);

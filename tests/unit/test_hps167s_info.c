@@ -9,16 +9,16 @@ static fathom_hps167s_temperature_t temperature;
 static fathom_status_t configuration(void)
 {
     memset(&is, GUARD, sizeof is);
-    const fathom_status_t status = fathom_hps167s_configuration(&hps, &is);
-    if (status != FATHOM_READY) assert_guard(&is, sizeof is);
+    const fathom_status_t status = fathom_hps167s_get_configuration(&hps, &is);
+    if (status != FATHOM_OK) assert_guard(&is, sizeof is);
     return status;
 }
 
 static fathom_status_t read_temperature(void)
 {
     memset(&temperature, GUARD, sizeof temperature);
-    const fathom_status_t status = fathom_hps167s_temperature(&hps, &temperature);
-    if (status != FATHOM_READY) assert_guard(&temperature, sizeof temperature);
+    const fathom_status_t status = fathom_hps167s_get_temperature(&hps, &temperature);
+    if (status != FATHOM_OK) assert_guard(&temperature, sizeof temperature);
     return status;
 }
 
@@ -97,7 +97,7 @@ TEST(after_an_unsolicited_frame_three_responses_have_to_agree_for_2_s)
         hps_set_up(NULL);
         hps_config.same_responses = rows[i].same_responses;
         hps_start();
-        assert_true(fathom_hps167s_heard(&hps, frame, fake.now_us));
+        assert_true(fathom_hps167s_accept_unsolicited(&hps, frame, fake.now_us));
         fake.now_us += rows[i].after_us;
         assert_int_equal(desk_play(configuration, four, rows[i].needed), OK);
     }
@@ -109,17 +109,18 @@ TEST(what_is_heard_unasked_between_two_responses_takes_away_their_agreement)
     static const uint16_t registers[4] = {RATE_1};
     PART(configuration, HPS_2(1, OK, 0, RATE_1));
     PENDS(configuration());
-    assert_false(fathom_hps167s_heard(&hps, registers, fake.now_us));
+    assert_false(fathom_hps167s_accept_unsolicited(&hps, registers, fake.now_us));
     PLAY(configuration, OK, TELLS(RATE_1), HPS_2(1, OK, 0, RATE_1));
     /* but not the one response that is still to come, where a measurement was taken for it */
     PART(configuration, HPS_2(1, OK, 0, RATE_1), HPS_2(1, OK, 0, MEASURES));
     PENDS(configuration());
-    assert_false(fathom_hps167s_heard(&hps, registers, fake.now_us));
+    assert_false(fathom_hps167s_accept_unsolicited(&hps, registers, fake.now_us));
     PLAY(configuration, OK, TELLS(RATE_1));
     /* and only one: what comes after it takes it away */
     PART(configuration, HPS_2(1, OK, 0, RATE_1), HPS_2(1, OK, 0, MEASURES));
     PENDS(configuration());
-    for (unsigned i = 0; i != 2; i++) assert_false(fathom_hps167s_heard(&hps, registers, fake.now_us));
+    for (unsigned i = 0; i != 2; i++)
+        assert_false(fathom_hps167s_accept_unsolicited(&hps, registers, fake.now_us));
     PLAY(configuration, OK, TELLS(RATE_1), HPS_2(1, OK, 0, RATE_1));
 }
 
@@ -236,7 +237,7 @@ TEST(what_was_told_last_is_no_measurement)
     assert_int_equal(hps.implausible, 1);
     PLAY(desk_poll, OK, HPS_5(OK, 0x00FF, 0x0500, 0x0000, 0xB402));
     assert_int_equal(desk.sample.distance_mm, 255);
-    assert_false(fathom_hps167s_heard(&hps, registers, fake.now_us));
+    assert_false(fathom_hps167s_accept_unsolicited(&hps, registers, fake.now_us));
 }
 
 /* A program that measures in each turn, more slowly than the period of 18519 us: each measurement would begin a new

@@ -10,8 +10,8 @@ static const uint16_t tells[4] = {0xFF00, 0x0500, 0x0000, 0xB401}; /* table 12: 
 static fathom_hps167s_configuration_t is;
 static fathom_hps167s_temperature_t temperature;
 
-static fathom_status_t configuration(void) { return fathom_hps167s_configuration(&hps, &is); }
-static fathom_status_t read_temperature(void) { return fathom_hps167s_temperature(&hps, &temperature); }
+static fathom_status_t configuration(void) { return fathom_hps167s_get_configuration(&hps, &is); }
+static fathom_status_t read_temperature(void) { return fathom_hps167s_get_temperature(&hps, &temperature); }
 static fathom_status_t set_termination(void) { return fathom_hps167s_set_termination(&hps, false); }
 static fathom_status_t set_baud(void) { return fathom_hps167s_set_baud(&hps, 115200); }
 
@@ -122,7 +122,7 @@ TEST(after_a_measurement_in_the_place_of_a_response_the_intervals_keep_no_step_w
 
 TEST(among_measured_frames_that_were_heard_it_is_asked_out_of_step_from_the_first_response_on)
 {
-    assert_true(fathom_hps167s_heard(&hps, hps_measured, fake.now_us));
+    assert_true(fathom_hps167s_accept_unsolicited(&hps, hps_measured, fake.now_us));
     asks(configuration);
     fake_modbus_response(&fake, tells, 4);
     PENDS(configuration());
@@ -151,7 +151,8 @@ TEST(for_2_s_to_the_microsecond_one_response_is_not_enough_and_a_new_driver_has_
     hps_config.same_responses = 1;
     for (unsigned i = 0; i != 3; i++) {
         hps_start();
-        if (i != 2) assert_true(fathom_hps167s_heard(&hps, hps_measured, fake.now_us - before_us[i]));
+        if (i != 2)
+            assert_true(fathom_hps167s_accept_unsolicited(&hps, hps_measured, fake.now_us - before_us[i]));
         asks(configuration);
         fake_modbus_response(&fake, tells, 4);
         assert_int_equal(configuration(), i == 0 ? FATHOM_PENDING : OK);

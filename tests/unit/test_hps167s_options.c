@@ -111,7 +111,7 @@ TEST(a_warm_up_that_was_set_counts_from_then_on)
 TEST(power_forgets_what_was_under_way)
 {
     fathom_hps167s_configuration_t is;
-    PENDS(fathom_hps167s_configuration(&hps, &is));
+    PENDS(fathom_hps167s_get_configuration(&hps, &is));
     fathom_hps167s_power_on(&hps);
     assert_null(fake.request);
     assert_int_equal(says(hps_measured), OK);
@@ -132,7 +132,7 @@ static void kinds_as_in(void **state)
     const limits_t *const row = *state;
     hps_set_up(NULL);
     fathom_hps167s_limits_t limits = row->limits;
-    assert_int_equal(fathom_hps167s_use_limits(&hps, &limits), OK);
+    assert_int_equal(fathom_hps167s_set_limits(&hps, &limits), OK);
     for (unsigned i = 0; i != 4; i++) {
         const uint16_t registers[4] = {row->is[i].raw, 0xDCB2, 0x0701, 0x0000};
         const uint16_t refused = hps.implausible;
@@ -171,7 +171,7 @@ TEST(limits_that_are_out_of_order_are_refused_and_change_nothing)
 {
     fathom_hps167s_limits_t wrong = {.over_range_mm = 30000};
     static const uint16_t largest[4] = {30000, 0xDCB2, 0x0701, 0x0003};
-    assert_int_equal(fathom_hps167s_use_limits(&hps, &wrong), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_hps167s_set_limits(&hps, &wrong), FATHOM_ERR_ARGUMENT);
     assert_int_equal(says(largest), OK);
     assert_int_equal(desk.sample.kind, FATHOM_TARGET);
 }

@@ -115,9 +115,9 @@ TEST(it_is_not_looked_for_either_when_the_configuration_has_been_answered_before
     PLAY_AT(7, NULL, 0, set_address_1, OK, HPS_1(7, OK, 0), HPS_1(1, SILENT, 0), HPS_WRITE(7, 0x10, 1, OK, 0),
             HPS_1(1, OK, 0));
     for (unsigned n = 0; n != 2; n++) {
-        PENDS(fathom_hps167s_configuration(&hps, &configuration));
+        PENDS(fathom_hps167s_get_configuration(&hps, &configuration));
         fake.now_us += 20000;
-        PENDS(fathom_hps167s_configuration(&hps, &configuration));
+        PENDS(fathom_hps167s_get_configuration(&hps, &configuration));
         fake_modbus_response(&fake, is, 4);
     }
     PLAY(reset, OK, HPS_6(1, OK, 1, 0), IS_OF(1, 5, 1, 0));

@@ -144,11 +144,11 @@ TEST(the_reconnect_time_goes_as_two_words_either_way_round)
     fathom_hps167s_encode_reconnect_time(0x00010012, false, words);
     assert_int_equal(words[0], 0x0001);
     assert_int_equal(words[1], 0x0012);
-    assert_int_equal(fathom_hps167s_reconnect_time_ms(words[0], words[1], false), 0x00010012);
+    assert_int_equal(fathom_hps167s_decode_reconnect_time(words[0], words[1], false), 0x00010012);
     fathom_hps167s_encode_reconnect_time(0x00010012, true, words);
     assert_int_equal(words[0], 0x0012);
     assert_int_equal(words[1], 0x0001);
-    assert_int_equal(fathom_hps167s_reconnect_time_ms(words[0], words[1], true), 0x00010012);
+    assert_int_equal(fathom_hps167s_decode_reconnect_time(words[0], words[1], true), 0x00010012);
 }
 
 /* The example of #3: B0, the UUID, 13 09 17, 03 09. */
@@ -174,10 +174,10 @@ TEST(the_details_are_those_of_the_example)
 
 TEST(a_register_with_a_sign_is_int16)
 {
-    assert_int_equal(fathom_hps167s_signed(0xFFF1), -15); /* the example of #12 */
-    assert_int_equal(fathom_hps167s_signed(0x7FFF), 32767);
-    assert_int_equal(fathom_hps167s_signed(0x8000), -32768);
-    assert_int_equal(fathom_hps167s_signed(0), 0);
+    assert_int_equal(fathom_hps167s_to_signed(0xFFF1), -15); /* the example of #12 */
+    assert_int_equal(fathom_hps167s_to_signed(0x7FFF), 32767);
+    assert_int_equal(fathom_hps167s_to_signed(0x8000), -32768);
+    assert_int_equal(fathom_hps167s_to_signed(0), 0);
 }
 
 /* (F - 32) * 50 / 9 tenths: 77 F are 25 C; (32767 - 32) * 50 / 9 = 181861.1; (-32768 - 32) * 50 / 9 = -182222.2; of
@@ -197,12 +197,12 @@ TEST(limits_that_are_0_get_their_defaults)
 {
     static const fathom_hps167s_limits_t all = {18000, 65000, 100};
     fathom_hps167s_limits_t limits = {0, 0, 0};
-    assert_int_equal(fathom_hps167s_complete_limits(&limits), FATHOM_READY);
+    assert_int_equal(fathom_hps167s_complete_limits(&limits), FATHOM_OK);
     assert_int_equal(limits.max_mm, 30000);
     assert_int_equal(limits.over_range_mm, 65530);
     assert_int_equal(limits.min_mm, 80);
     limits = all;
-    assert_int_equal(fathom_hps167s_complete_limits(&limits), FATHOM_READY);
+    assert_int_equal(fathom_hps167s_complete_limits(&limits), FATHOM_OK);
     assert_memory_equal(&limits, &all, sizeof limits);
 }
 

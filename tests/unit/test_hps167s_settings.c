@@ -175,14 +175,14 @@ TEST(each_setting_can_be_written_blind_but_the_offset_and_the_reset)
                 {filter, PUTS(0x16, 1, OK)}};
     desk.argument = 1;
     for (unsigned i = 0; i != COUNT(rows); i++) {
-        assert_int_equal(fathom_hps167s_next_is_blind(&hps), OK);
+        assert_int_equal(fathom_hps167s_write_next_unchecked(&hps), OK);
         assert_int_equal(desk_play(rows[i].set, &rows[i].write, 1), FATHOM_ERR_UNCONFIRMED);
         assert_true(fathom_hps167s_is_written(&hps));
     }
     desk.argument = 18;
-    assert_int_equal(fathom_hps167s_next_is_blind(&hps), OK);
+    assert_int_equal(fathom_hps167s_write_next_unchecked(&hps), OK);
     PLAY(reconnect, FATHOM_ERR_UNCONFIRMED, RECONNECT(0, 18));
-    assert_int_equal(fathom_hps167s_next_is_blind(&hps), OK);
+    assert_int_equal(fathom_hps167s_write_next_unchecked(&hps), OK);
     assert_int_equal(offset(), FATHOM_ERR_ARGUMENT);
     assert_int_equal(reset(), FATHOM_ERR_ARGUMENT);
     assert_null(fake.request);
@@ -192,11 +192,11 @@ TEST(each_setting_can_be_written_blind_but_the_offset_and_the_reset)
 
 static fathom_status_t measures_all(void)
 {
-    return fathom_hps167s_set_measures_after_power_on_of_all_units(&hps, desk.argument != 0);
+    return fathom_hps167s_broadcast_measures_after_power_on(&hps, desk.argument != 0);
 }
 static fathom_status_t termination_all(void)
 {
-    return fathom_hps167s_set_termination_of_all_units(&hps, desk.argument != 0);
+    return fathom_hps167s_broadcast_termination(&hps, desk.argument != 0);
 }
 
 /* 2.2.1: "For the request sent by the host in broadcast mode, the slave does not respond": the line ends it as sent. */
@@ -253,7 +253,7 @@ TEST(what_goes_to_all_and_is_given_up_may_have_been_taken)
 TEST(while_another_command_is_asked_nothing_goes_to_all)
 {
     fathom_hps167s_version_t version;
-    PENDS(fathom_hps167s_interface_version(&hps, &version));
+    PENDS(fathom_hps167s_get_interface_version(&hps, &version));
     assert_int_equal(termination_all(), FATHOM_ERR_BUSY);
     assert_false(fathom_hps167s_is_written(&hps));
     assert_int_equal(hps.unit.address, 1);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "suite.h"
 
-#include "fathom/sensor/level.h"
+#include "fathom/processing/level.h"
 
 static fathom_level_config_t tank;
 
@@ -19,7 +19,7 @@ static fathom_level_t level_at(uint16_t distance_mm)
 {
     fathom_level_t level;
     memset(&level, 0xA5, sizeof level);
-    assert_int_equal(fathom_level(&tank, distance_mm, &level), FATHOM_READY);
+    assert_int_equal(fathom_level_from_distance(&tank, distance_mm, &level), FATHOM_OK);
     return level;
 }
 
@@ -105,7 +105,7 @@ static void expect_refused(void)
     fathom_level_t level, before;
     memset(&level, 0xA5, sizeof level);
     memset(&before, 0xA5, sizeof before);
-    assert_int_equal(fathom_level(&tank, 600, &level), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_level_from_distance(&tank, 600, &level), FATHOM_ERR_ARGUMENT);
     assert_memory_equal(&level, &before, sizeof level);
 }
 
@@ -301,19 +301,19 @@ static void expect_checked(fathom_status_t status) { assert_int_equal(fathom_lev
 
 TEST(a_config_of_each_shape_is_good)
 {
-    expect_checked(FATHOM_READY);
+    expect_checked(FATHOM_OK);
     tank.volume = fathom_tank_horizontal_cylinder;
-    expect_checked(FATHOM_READY);
+    expect_checked(FATHOM_OK);
     tank.mounting_mm = tank.height_mm = 1;
     tank.capacity = 1;
-    expect_checked(FATHOM_READY);
+    expect_checked(FATHOM_OK);
     tank.mounting_mm = tank.height_mm = 65535;
-    expect_checked(FATHOM_READY);
+    expect_checked(FATHOM_OK);
     tank.capacity = 0;
     use_points(cone, 3);
-    expect_checked(FATHOM_READY);
+    expect_checked(FATHOM_OK);
     use_points(cone, 1);
-    expect_checked(FATHOM_READY);
+    expect_checked(FATHOM_OK);
 }
 
 TEST(a_config_without_a_shape_a_mounting_a_height_or_a_volume_is_refused)
@@ -345,11 +345,11 @@ TEST(points_whose_levels_or_volumes_do_not_grow_are_refused)
 {
     typedef fathom_level_point_t p;
     const p a = {10, 100}, b = {20, 200}, c = {30, 300};
-    expect_points(FATHOM_READY, a, b, c);
-    expect_points(FATHOM_READY, (p){0, 0}, b, c);
-    expect_points(FATHOM_READY, (p){10, 0}, b, c);
-    expect_points(FATHOM_READY, (p){0, 100}, b, c);
-    expect_points(FATHOM_READY, (p){19, 199}, b, (p){21, 201});
+    expect_points(FATHOM_OK, a, b, c);
+    expect_points(FATHOM_OK, (p){0, 0}, b, c);
+    expect_points(FATHOM_OK, (p){10, 0}, b, c);
+    expect_points(FATHOM_OK, (p){0, 100}, b, c);
+    expect_points(FATHOM_OK, (p){19, 199}, b, (p){21, 201});
     expect_points(FATHOM_ERR_ARGUMENT, (p){10, 200}, b, c);
     expect_points(FATHOM_ERR_ARGUMENT, (p){20, 100}, b, c);
     expect_points(FATHOM_ERR_ARGUMENT, (p){10, 201}, b, c);

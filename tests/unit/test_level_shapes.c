@@ -3,7 +3,7 @@
 
 #include "suite.h"
 
-#include "fathom/sensor/level.h"
+#include "fathom/processing/level.h"
 
 /* Every level of tanks of these heights and capacities. */
 static const uint16_t heights_mm[] = {1, 2, 3, 7, 100, 999, 1000, 2000, 2016, 5008, 32767, 65535};
@@ -20,7 +20,8 @@ static uint64_t to_nearest(uint64_t n, uint64_t d) { return (2 * n + d) / (2 * d
 static fathom_level_t level_of(const fathom_level_config_t *tank, uint32_t level_mm)
 {
     fathom_level_t level;
-    assert_int_equal(fathom_level(tank, (uint16_t)(tank->mounting_mm - level_mm), &level), FATHOM_READY);
+    assert_int_equal(fathom_level_from_distance(tank, (uint16_t)(tank->mounting_mm - level_mm), &level),
+                     FATHOM_OK);
     assert_int_equal(level.level_mm, level_mm);
     return level;
 }
@@ -29,7 +30,7 @@ static fathom_level_config_t tank_of(fathom_tank_volume_t volume, uint16_t heigh
 {
     const fathom_level_config_t tank = {
         .volume = volume, .capacity = capacity, .mounting_mm = height_mm, .height_mm = height_mm};
-    assert_int_equal(fathom_level_check(&tank), FATHOM_READY);
+    assert_int_equal(fathom_level_check(&tank), FATHOM_OK);
     return tank;
 }
 
@@ -64,7 +65,7 @@ TEST(every_level_of_a_table_is_the_nearest_volume_on_the_line_between_its_points
             tank.points = points;
             tank.point_count = 2;
             if (from == all) continue;
-            assert_int_equal(fathom_level_check(&tank), FATHOM_READY);
+            assert_int_equal(fathom_level_check(&tank), FATHOM_OK);
             for (uint64_t mm = 0; mm <= height_mm; mm++) {
                 const uint64_t right =
                     mm < from_mm ? to_nearest(from * mm, from_mm)
@@ -85,7 +86,7 @@ TEST(a_table_may_have_hundreds_of_points)
     tank.volume = fathom_tank_table;
     tank.points = points;
     tank.point_count = COUNT;
-    assert_int_equal(fathom_level_check(&tank), FATHOM_READY);
+    assert_int_equal(fathom_level_check(&tank), FATHOM_OK);
     for (uint32_t mm = 0; mm <= 1000; mm++)
         assert_int_equal(level_of(&tank, mm).volume, mm < 598 ? (mm + 1) / 2 : 299);
     points[COUNT - 1].volume = 298;

@@ -7,7 +7,7 @@ static void set_clock(uint32_t now_us)
 {
     bench.fake.now_us = now_us;
     bench.fake.busy_until_us = now_us;
-    assert_int_equal(init(), FATHOM_READY);
+    assert_int_equal(init(), FATHOM_OK);
 }
 
 static const suite_t suite = {.set_up = set_up};
@@ -30,7 +30,7 @@ TEST(a_config_without_uart_clock_or_frame_is_refused)
     bench.config.frame_size = 7;
     assert_int_equal(init(), FATHOM_ERR_ARGUMENT);
     bench.config.frame_size = 8;
-    assert_int_equal(init(), FATHOM_READY);
+    assert_int_equal(init(), FATHOM_OK);
 }
 
 TEST(t3_5_is_three_and_a_half_characters_up_to_19200_baud_and_1750_us_above)
@@ -131,7 +131,7 @@ TEST(a_write_is_acknowledged_by_its_own_words)
     run(20000);
     expect_bytes(0, set_address_5, sizeof set_address_5);
     deliver_all(set_address_5);
-    expect(FATHOM_READY);
+    expect(FATHOM_OK);
 }
 
 TEST(an_exception_ends_the_transaction_and_keeps_its_number)
@@ -229,16 +229,16 @@ TEST_IN(asked, a_late_poll_finds_the_response_before_it_looks_at_the_time)
 {
     receive_all(response_1_754);
     run_in_steps(3 * TIMEOUT_US, 3 * TIMEOUT_US);
-    expect(FATHOM_READY);
+    expect(FATHOM_OK);
 }
 
 /* ---- cancel ---- */
 
 TEST(cancelling_what_is_not_queued_does_nothing)
 {
-    bench.request.transaction.status = FATHOM_READY;
+    bench.request.transaction.status = FATHOM_OK;
     cancel(&bench.request);
-    expect(FATHOM_READY);
+    expect(FATHOM_OK);
     ask_1(0);
     cancel(&bench.request);
     cancel(&bench.request);
@@ -340,7 +340,7 @@ TEST(a_broadcast_is_ready_after_its_turn_round_and_expects_no_response)
     expect_written_after(REQUEST_US - 200, 1);
     expect_after(TIMEOUT_US - 1000, FATHOM_PENDING);
     expect_written(1);
-    expect_after(2000, FATHOM_READY);
+    expect_after(2000, FATHOM_OK);
     expect_written(2);
 }
 

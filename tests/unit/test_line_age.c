@@ -133,7 +133,7 @@ TEST(a_flush_is_a_loss_for_the_listener_at_once)
 
 TEST(a_flush_before_the_port_was_seen_empty_drops_its_bytes_too)
 {
-    assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_READY);
+    assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_OK);
     fathom_line_flush(&bench.line);
     deliver(auto_frame, 4);
     expect_count(FATHOM_LINE_OLD_BYTES, 4);

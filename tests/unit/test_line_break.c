@@ -5,7 +5,7 @@
 
 static fathom_status_t hold_low(void) { return fathom_line_break(&bench.line, true); }
 
-static void hold(bool low) { assert_int_equal(fathom_line_break(&bench.line, low), FATHOM_READY); }
+static void hold(bool low) { assert_int_equal(fathom_line_break(&bench.line, low), FATHOM_OK); }
 
 static const suite_t suite = {.set_up = set_up};
 

@@ -34,7 +34,7 @@ TEST(all_that_wait_for_a_unit_end_and_the_others_go_out_in_their_order)
     receive_response(2, 222);
     run(REQUEST_US);
     deliver_response(4, 444);
-    assert_statuses(FATHOM_ERR_CANCELLED, FATHOM_READY, FATHOM_ERR_CANCELLED, FATHOM_READY);
+    assert_statuses(FATHOM_ERR_CANCELLED, FATHOM_OK, FATHOM_ERR_CANCELLED, FATHOM_OK);
     assert_int_equal(values[1], 222);
     assert_int_equal(values[3], 444);
     expect_written(2);
@@ -55,7 +55,7 @@ TEST(one_on_its_way_ends_too_and_its_response_is_late)
     expect_written(2);
     receive_response(2, 222);
     run(400);
-    assert_int_equal(status_of(&requests[2]), FATHOM_READY);
+    assert_int_equal(status_of(&requests[2]), FATHOM_OK);
     assert_int_equal(values[0], 0xDEAD);
 }
 
@@ -68,7 +68,7 @@ TEST(one_on_its_way_to_another_is_answered)
     assert_statuses(FATHOM_PENDING, FATHOM_ERR_CANCELLED, FATHOM_ERR_CANCELLED, FATHOM_ERR_CANCELLED);
     receive_all(response_1_754);
     run(400);
-    assert_int_equal(status_of(&requests[0]), FATHOM_READY);
+    assert_int_equal(status_of(&requests[0]), FATHOM_OK);
     assert_int_equal(values[0], 754);
     expect_due(FATHOM_NO_DEADLINE);
 }

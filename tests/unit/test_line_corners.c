@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "echo_bench.h"
 #include "fake_modbus.h"
-#include "fathom/engine/modbus_unit.h"
+#include "fathom/engine/internal/modbus_unit.h"
 #include "fathom/engine/stream.h"
 
 static uint16_t values[4];
@@ -11,7 +11,7 @@ static const suite_t asked = {.set_up = set_up_asked};
 
 static void refuse_set_address(void)
 {
-    assert_int_equal(fathom_dyp_client_set_every_address(&bench.line, &bench.request, 5), FATHOM_ERR_BUSY);
+    assert_int_equal(fathom_dyp_client_broadcast_address(&bench.line, &bench.request, 5), FATHOM_ERR_BUSY);
 }
 
 /* dyp_client.h: FATHOM_ERR_BUSY; line.h: "it is queued already; nothing changed". */
@@ -33,7 +33,7 @@ TEST(a_refused_set_address_leaves_the_response_of_a_read_under_way_alone)
     refuse_set_address();
     run(20000);
     deliver_all(dyp_four);
-    expect(FATHOM_READY);
+    expect(FATHOM_OK);
 }
 
 /* line.h: "A late response does serve a retry of the same transaction." */
@@ -45,7 +45,7 @@ TEST(a_late_response_serves_the_retry_of_a_request_to_unit_255)
     run(TIMEOUT_US + 10000);
     deliver_hex("55 AA 05 10 07 A1 BC");
     expect_count(FATHOM_LINE_LATE_RESPONSES, 1);
-    expect(FATHOM_READY);
+    expect(FATHOM_OK);
 }
 
 /* line.h: FATHOM_LINE_ANY_UNIT: "the first response is taken, whosever it is"; A16 6(3), A05 3(3): FF is the broadcast
@@ -80,12 +80,12 @@ TEST(an_overrun_after_a_silence_does_not_permute_the_probes)
     static const uint8_t good[] = {0xFF, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xFF, 0x05, 0x3B, 0x07};
     static const fathom_stream_config_t config = {.storage = storage, .length = 10};
     fathom_stream_t stream;
-    assert_int_equal(fathom_stream_init(&stream, &config, 0), FATHOM_READY);
+    assert_int_equal(fathom_stream_init(&stream, &config, 0), FATHOM_OK);
     (void)fathom_line_replace_listener(&bench.line, &stream.listener);
     run(10000);
     receive_rx(good + 6, 4, FATHOM_RX_OVERRUN); /* six were lost */
     deliver(good, 10);
-    if (fathom_stream_poll(&stream, 0) == FATHOM_READY)
+    if (fathom_stream_poll(&stream, 0) == FATHOM_OK)
         assert_memory_equal(fathom_stream_frame(&stream), good, 10);
 }
 
@@ -99,7 +99,7 @@ TEST_IN(asked, after_a_broken_port_a_response_is_complete_at_once)
     run(9 * BYTE_US);
     receive_response(2, 222);
     poll_line();
-    expect_other(FATHOM_READY);
+    expect_other(FATHOM_OK);
 }
 
 /* A write on an echoing line, whose request has been handed over. */
@@ -151,7 +151,7 @@ TEST(a_command_goes_out_at_once_when_the_pace_has_passed)
     assert_int_equal(
         fathom_modbus_unit_init(&unit, &(fathom_modbus_config_t){.transport = &fake.modbus, .address = 9},
                                 300000, 100000),
-        FATHOM_READY);
+        FATHOM_OK);
     for (unsigned n = 0; n != 3; n++) {
         assert_int_equal(asks(&unit, &measure), FATHOM_PENDING);
         fake_modbus_send(&fake);
@@ -185,7 +185,7 @@ TEST(the_second_response_to_unit_255_is_not_the_next_requests)
     run_until_written(1, 100);
     run(65000);
     deliver_hex("55 AA 05 10 07 A1 BC");
-    expect(FATHOM_READY);
+    expect(FATHOM_OK);
     ask_dyp(&bench.other, 254, 1, &bench.other_value);
     run(10000);
     deliver_hex("55 AA FE 10 07 A1 B5");

@@ -13,7 +13,7 @@ static void set_up_on(uint8_t fill)
     set_up(&state);
     bench.config.echo = FATHOM_LINE_ECHO_AUTO;
     memset(&bench.line, fill, sizeof bench.line);
-    assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_READY);
+    assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_OK);
 }
 
 static void after(uint32_t us)
@@ -28,10 +28,10 @@ TEST(a_new_line_knows_of_nothing)
         set_up_on(fills[i]);
         for (unsigned c = 0; c != FATHOM_LINE_COUNTERS; c++) assert_int_equal(counter(c), 0);
         assert_true(fathom_line_is_idle(&bench.line));
-        assert_false(fathom_line_has(&bench.line, &bench.request.transaction));
-        assert_int_equal(fathom_line_echo(&bench.line), FATHOM_LINE_ECHO_AUTO);
+        assert_false(fathom_line_is_queued(&bench.line, &bench.request.transaction));
+        assert_int_equal(fathom_line_get_echo(&bench.line), FATHOM_LINE_ECHO_AUTO);
         assert_int_equal(fathom_line_due_us(&bench.line), FATHOM_NO_DEADLINE);
-        assert_int_equal(fathom_line_heard_us(&bench.line), bench.fake.now_us);
+        assert_int_equal(fathom_line_last_byte_us(&bench.line), bench.fake.now_us);
     }
 }
 
@@ -59,9 +59,9 @@ TEST(the_first_response_is_complete_with_its_last_byte_and_shows_that_there_is_n
         ask_1_and_send(0);
         receive(response_1_754, sizeof response_1_754);
         after(0);
-        assert_int_equal(status_of(&bench.request), FATHOM_READY);
+        assert_int_equal(status_of(&bench.request), FATHOM_OK);
         assert_int_equal(bench.value, 754);
-        assert_int_equal(fathom_line_echo(&bench.line), FATHOM_LINE_ECHO_OFF);
+        assert_int_equal(fathom_line_get_echo(&bench.line), FATHOM_LINE_ECHO_OFF);
         assert_int_equal(counter(FATHOM_LINE_DROPPED_BYTES), 0);
     }
 }

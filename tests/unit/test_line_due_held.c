@@ -101,7 +101,7 @@ static fathom_sensor_t held(uint32_t stale_us)
     const fathom_a16_auto_config_t config = {.line = &bench.line, .stale_us = stale_us};
     fathom_sample_t sample;
     send();
-    assert_int_equal(fathom_a16_auto_init(&automatic, &config), FATHOM_READY);
+    assert_int_equal(fathom_a16_auto_init(&automatic, &config), FATHOM_OK);
     const fathom_sensor_t sensor = fathom_a16_auto_sensor(&automatic);
     after(10000);
     receive(came, sizeof came);
@@ -115,7 +115,7 @@ TEST(a_frame_that_waits_behind_bytes_that_are_held_is_due_with_their_gap)
     fathom_sample_t sample;
     assert_int_equal(fathom_due_us(&sensor, 1), GAP_US);
     bench.fake.now_us += GAP_US;
-    assert_int_equal(fathom_poll(&sensor, &sample), FATHOM_READY);
+    assert_int_equal(fathom_poll(&sensor, &sample), FATHOM_OK);
     assert_int_equal(sample.raw, 1953);
 }
 

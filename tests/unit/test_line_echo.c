@@ -174,7 +174,7 @@ TEST(the_longest_response_is_no_echo_and_shows_whether_there_is_one)
         run(8 * BYTE_US);
         receive(response, 200);
         deliver(response + 200, 55);
-        expect(FATHOM_READY);
+        expect(FATHOM_OK);
         for (unsigned i = 0; i != 125; i++) assert_int_equal(values[i], 256 * i + 255 - i);
         expect_echo(echoes != 0 ? FATHOM_LINE_ECHO_ON : FATHOM_LINE_ECHO_OFF);
         expect_count(FATHOM_LINE_DROPPED_BYTES, 0);
@@ -195,7 +195,7 @@ TEST(a_damaged_echo_never_shows_that_there_is_none)
             come_all(0, echo);
             come_all(8 * BYTE_US + pauses_us[p], response_1_754);
             run(60000);
-            if (status_of(&bench.request) != FATHOM_READY) {
+            if (status_of(&bench.request) != FATHOM_OK) {
                 expect_failed(FATHOM_ERR_CHECKSUM);
             } else {
                 expect_mm(754);

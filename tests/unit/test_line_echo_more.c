@@ -62,7 +62,7 @@ static void dyp_read(const way_t *way)
             if (echoes != 0) come(way->seed, 0, probes[i].request, 5);
             come(way->seed, 5 * BYTE_US + way->pause_us, probes[i].response, probes[i].length);
             run_in_steps(80000, way->step_us);
-            expect(FATHOM_READY);
+            expect(FATHOM_OK);
             assert_memory_equal(values, probes[i].values, probes[i].count * sizeof *values);
             expect_learned(way->mode, echoes != 0 ? FATHOM_LINE_ECHO_ON : FATHOM_LINE_ECHO_OFF);
             expect_count(FATHOM_LINE_RESPONSES, 1);
@@ -150,7 +150,7 @@ TEST(an_echo_that_comes_in_parts_behind_noise_is_an_echo)
     ask_1_and_send(0);
     deliver_all(noise_and_part);
     deliver(ask_1_processed + 5, 3);
-    assert_int_equal(fathom_line_echo(&bench.line), FATHOM_LINE_ECHO_ON);
+    assert_int_equal(fathom_line_get_echo(&bench.line), FATHOM_LINE_ECHO_ON);
     deliver_all(response_1_754);
     expect_mm(754);
     expect_count(FATHOM_LINE_DROPPED_BYTES, 1);
@@ -211,7 +211,7 @@ TEST(a_broadcast_on_an_echoing_line_is_over_when_its_time_is)
         expect_bytes(0, tell_all, sizeof tell_all);
         come_all(0, tell_all);
         expect_after(TIMEOUT_US + 8 * BYTE_US - 1000, FATHOM_PENDING);
-        expect_after(2000, FATHOM_READY);
+        expect_after(2000, FATHOM_OK);
         expect_echo(modes[m]);
         run_until_written(2, 100);
         come_all(0, ask_1_processed);

@@ -4,8 +4,8 @@
 /*
  * Random traffic with one unit, on lines with and without echo, which the driver is not told: reads and writes in both
  * protocols, with retries; echoes and responses with a wrong bit, responses that are late or missing. Whatever comes:
- *  - a write is READY only if the unit has answered it,
- *  - a read is READY only with the unit's value,
+ *  - a write is OK only if the unit has answered it,
+ *  - a read is OK only with the unit's value,
  *  - a line with echo is never believed to have none.
  */
 enum { RUNS = 300, TRANSACTIONS = 8, KINDS = 4 };
@@ -38,7 +38,7 @@ static void ask_for(kind_t kind, uint16_t value)
     else
         fathom_modbus_write_single_register(&request->message, 1, 0x0205, value);
     if (kind == DYP_SET_ADDRESS)
-        status = fathom_dyp_client_set_every_address(&bench.line, request, (uint8_t)(value % 254 + 1));
+        status = fathom_dyp_client_broadcast_address(&bench.line, request, (uint8_t)(value % 254 + 1));
     else if (kind == DYP_READ)
         status = fathom_dyp_client_submit(&bench.line, request);
     else
@@ -107,7 +107,7 @@ static void transaction(bool echoes, uint32_t step_us)
         if (bench.fake.written == seen) continue;
         if (follow(kind, value, echoes, &bench.fake.writes[seen++])) is_answered = true;
     }
-    if (status_of(&bench.request) == FATHOM_READY) {
+    if (status_of(&bench.request) == FATHOM_OK) {
         assert_true(is_answered);
         if (kind == READ || kind == DYP_READ) assert_int_equal(values[0], value);
         ready[kind]++;

@@ -30,7 +30,7 @@ static void start_write(uint8_t retries, uint32_t step_us)
     bench.request.transaction.timeout_us = TIMEOUT_US;
     bench.request.transaction.retries = retries;
     if (wanted->is_dyp)
-        assert_int_equal(fathom_dyp_client_set_every_address(&bench.line, &bench.request, 5), FATHOM_PENDING);
+        assert_int_equal(fathom_dyp_client_broadcast_address(&bench.line, &bench.request, 5), FATHOM_PENDING);
     else
         ask_to_write(&bench.request, 1);
     run_until_written(before + 1, step_us);
@@ -44,7 +44,7 @@ static void copy_in(unsigned seed, uint32_t in_us) { come(seed, in_us, wanted->b
 /* What one copy of the request means where nothing else comes. */
 static fathom_status_t of_one_copy(uint8_t mode)
 {
-    if (mode == FATHOM_LINE_ECHO_OFF) return FATHOM_READY;
+    if (mode == FATHOM_LINE_ECHO_OFF) return FATHOM_OK;
     return mode == FATHOM_LINE_ECHO_ON ? FATHOM_ERR_NO_RESPONSE : FATHOM_ERR_ECHO;
 }
 
@@ -57,7 +57,7 @@ static void one_copy(const way_t *way)
             copy_in(way->seed, is_response != 0 ? leaves_us() + way->pause_us : 0);
             run_in_steps(80000, way->step_us);
             if (way->mode == FATHOM_LINE_ECHO_OFF) {
-                expect(FATHOM_READY);
+                expect(FATHOM_OK);
                 continue;
             }
             expect(FATHOM_PENDING);
@@ -84,7 +84,7 @@ static void two_copies(const way_t *way)
             copy_in(way->seed, 0);
             copy_in(way->seed, leaves_us() + way->pause_us);
             run_in_steps(80000, way->step_us);
-            expect(FATHOM_READY);
+            expect(FATHOM_OK);
             expect_count(FATHOM_LINE_RESPONSES, 1);
             /* Without an echo the first copy is the response. The second belongs to no transaction: it is a stray,
              * unless a silence or a slow loop has cut it in two. */
@@ -111,7 +111,7 @@ TEST(after_a_read_without_echo_one_copy_acknowledges_a_write)
     read_once(false);
     start_write(0, 100);
     copy_in(BY_BYTE, 20000);
-    expect_after(30000, FATHOM_READY);
+    expect_after(30000, FATHOM_OK);
 }
 
 TEST(a_write_that_nothing_answers_is_no_response_whatever_is_known)
@@ -137,7 +137,7 @@ TEST(a_damaged_copy_does_not_count)
                 start_write(0, 100);
                 come(BY_BYTE, 0, damaged, wanted->length);
                 run(2 * TIMEOUT_US);
-                assert_int_not_equal(status_of(&bench.request), FATHOM_READY);
+                assert_int_not_equal(status_of(&bench.request), FATHOM_OK);
                 assert_int_not_equal(status_of(&bench.request), FATHOM_ERR_ECHO);
                 expect_count(FATHOM_LINE_RESPONSES, 0);
                 expect_echo(modes[m]);
@@ -155,7 +155,7 @@ TEST(each_attempt_of_a_write_needs_its_own_two_copies)
     copy_in(BY_BYTE, 0);
     expect_after(9 * BYTE_US, FATHOM_PENDING);
     copy_in(BY_BYTE, 0);
-    expect_after(9 * BYTE_US, FATHOM_READY);
+    expect_after(9 * BYTE_US, FATHOM_OK);
     assert_int_equal(bench.request.transaction.attempts, 2);
     expect_count(FATHOM_LINE_NO_RESPONSES, 1);
 }
@@ -181,7 +181,7 @@ TEST(a_late_second_copy_serves_the_retry_of_a_write)
     run(TIMEOUT_US + 20000);
     expect_count(FATHOM_LINE_NO_RESPONSES, 1);
     copy_in(BY_BYTE, 0);
-    expect_after(9 * BYTE_US, FATHOM_READY);
+    expect_after(9 * BYTE_US, FATHOM_OK);
     expect_count(FATHOM_LINE_LATE_RESPONSES, 1);
     expect_written(1);
 }
@@ -218,7 +218,7 @@ static void write_of_many(const way_t *way)
         if (echoes != 0) come(way->seed, 0, set_36_ms, sizeof set_36_ms);
         come(way->seed, sizeof set_36_ms * BYTE_US + way->pause_us, set_ms_done, sizeof set_ms_done);
         run_in_steps(80000, way->step_us);
-        expect(FATHOM_READY);
+        expect(FATHOM_OK);
         expect_learned(way->mode, echoes != 0 ? FATHOM_LINE_ECHO_ON : FATHOM_LINE_ECHO_OFF);
         expect_count(FATHOM_LINE_DROPPED_BYTES, 0);
     }

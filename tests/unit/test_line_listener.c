@@ -52,9 +52,9 @@ TEST_IN(asked, with_time_stamps_the_next_request_need_not_wait_for_the_loop)
     const fathom_rx_t rx = {bench.fake.now_us + 1000, FATHOM_RX_TIMED};
     fake_receive_rx(&bench.fake, 1000, response_1_754, sizeof response_1_754, rx);
     run_in_steps(20000, 20000); /* one late poll: the response was in 19 ms ago, and the line silent since */
-    expect(FATHOM_READY);
+    expect(FATHOM_OK);
     expect_written(2);
-    assert_int_equal(fathom_line_heard_us(&bench.line), rx.last_us);
+    assert_int_equal(fathom_line_last_byte_us(&bench.line), rx.last_us);
 }
 
 /* ---- the listener ---- */
@@ -115,7 +115,7 @@ TEST(unasked_bytes_around_a_response_go_to_the_listener_and_the_response_does_no
     receive_all(response_1_754);
     run(GAP_US + 200);
     receive_all(auto_frame);
-    expect_after(200, FATHOM_READY);
+    expect_after(200, FATHOM_OK);
     expect_heard(auto_frame, 4, auto_frame, 4);
 }
 
@@ -127,7 +127,7 @@ TEST(what_comes_behind_a_response_does_not_follow_what_came_before_it)
     receive(auto_frame, 1);
     receive_all(response_1_754);
     receive(auto_frame + 1, 3);
-    expect_after(200, FATHOM_READY);
+    expect_after(200, FATHOM_OK);
     run(2 * GAP_US);
     expect_heard(auto_frame, 1, auto_frame + 1, 3);
     assert_int_equal(bench_listener.gaps, 1);
@@ -183,13 +183,13 @@ TEST(only_the_listener_of_the_line_can_be_removed)
     deliver(auto_frame, 4);
     assert_int_equal(bench_listener.length, 4);
     expect_count(FATHOM_LINE_DROPPED_BYTES, 4);
-    assert_int_equal(fathom_line_listen(&bench.line, &other), FATHOM_READY);
+    assert_int_equal(fathom_line_listen(&bench.line, &other), FATHOM_OK);
 }
 
 TEST(listening_with_null_removes_the_listener)
 {
     listen_for(5000);
-    assert_int_equal(fathom_line_listen(&bench.line, NULL), FATHOM_READY);
+    assert_int_equal(fathom_line_listen(&bench.line, NULL), FATHOM_OK);
     deliver(auto_frame, 4);
     assert_int_equal(bench_listener.length, 0);
     expect_count(FATHOM_LINE_DROPPED_BYTES, 4);
@@ -204,7 +204,7 @@ TEST(the_line_holds_bytes_that_may_begin_a_response_until_it_knows)
     assert_true(fathom_line_holds_bytes(&bench.line));
     assert_int_equal(bench_listener.length, 0);
     receive(response_1_754 + 3, sizeof response_1_754 - 3);
-    expect_after(200, FATHOM_READY);
+    expect_after(200, FATHOM_OK);
     assert_false(fathom_line_holds_bytes(&bench.line));
     run(2 * GAP_US);
     receive(response_1_754,

@@ -17,7 +17,7 @@ static int set_up_listening(void **state)
     set_up(state);
     keep_only_what_is_needed();
     bench.config.echo = FATHOM_LINE_ECHO_AUTO; /* "nothing needs to be said of echo" */
-    assert_int_equal(fathom_line_init_listening(&bench.line, &bench.config), FATHOM_READY);
+    assert_int_equal(fathom_line_init_listening(&bench.line, &bench.config), FATHOM_OK);
     show_empty_port();
     return 0;
 }
@@ -26,7 +26,7 @@ static int set_up_bare(void **state)
 {
     set_up(state);
     keep_only_what_is_needed();
-    assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_READY);
+    assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_OK);
     show_empty_port();
     return 0;
 }
@@ -93,9 +93,9 @@ TEST(a_line_that_only_listens_lives_through_a_broken_port)
 
 TEST(a_line_that_only_listens_can_hold_its_output_low)
 {
-    assert_int_equal(fathom_line_break(&bench.line, true), FATHOM_READY);
+    assert_int_equal(fathom_line_break(&bench.line, true), FATHOM_OK);
     assert_true(bench.fake.in_break);
-    assert_int_equal(fathom_line_break(&bench.line, false), FATHOM_READY);
+    assert_int_equal(fathom_line_break(&bench.line, false), FATHOM_OK);
     assert_false(bench.fake.in_break);
 }
 
@@ -121,9 +121,9 @@ TEST_IN(bare, what_is_told_of_an_echo_stays)
     receive_all(ask_1_processed);
     deliver_all(response_1_754);
     expect_mm(754);
-    assert_int_equal(fathom_line_echo(&bench.line), FATHOM_LINE_ECHO_OFF);
+    assert_int_equal(fathom_line_get_echo(&bench.line), FATHOM_LINE_ECHO_OFF);
     break_port();
-    assert_int_equal(fathom_line_echo(&bench.line), FATHOM_LINE_ECHO_OFF);
+    assert_int_equal(fathom_line_get_echo(&bench.line), FATHOM_LINE_ECHO_OFF);
 }
 
 TEST_IN(bare, a_write_is_acknowledged_by_one_copy_without_echo_and_by_two_with_it)
@@ -135,10 +135,10 @@ TEST_IN(bare, a_write_is_acknowledged_by_one_copy_without_echo_and_by_two_with_i
         ask_to_write(&bench.request, 1);
         run(REQUEST_US);
         deliver_all(set_address_5);
-        expect(echoes != 0 ? FATHOM_PENDING : FATHOM_READY);
+        expect(echoes != 0 ? FATHOM_PENDING : FATHOM_OK);
         if (echoes == 0) continue;
         deliver_all(set_address_5);
-        expect(FATHOM_READY);
+        expect(FATHOM_OK);
     }
 }
 

@@ -103,7 +103,7 @@ TEST(a_glitch_behind_each_response_delays_nothing)
 TEST(a_glitch_before_the_first_request_delays_nothing)
 {
     memset(&bench.line, 0x5A, sizeof bench.line);
-    assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_READY);
+    assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_OK);
     deliver_hex("00");
     deliver_hex("00 00");
     run(T3_5_US + 1000);

@@ -35,7 +35,7 @@ static bool is_request(const fathom_transaction_t *asked, const uint8_t *frame, 
 static fathom_status_t response_of(fathom_transaction_t *asked, const uint8_t *frame)
 {
     assert_int_equal(frame[0], asked->address);
-    return frame[1] == 9 ? FATHOM_ERR_MALFORMED : FATHOM_READY;
+    return frame[1] == 9 ? FATHOM_ERR_MALFORMED : FATHOM_OK;
 }
 
 static const fathom_protocol_t protocol = {.encode = encode,
@@ -65,7 +65,7 @@ TEST(a_request_may_be_one_byte)
     assert_int_equal(bench.fake.writes[0].bytes[0], '?');
     receive(response, sizeof response);
     run(100);
-    assert_int_equal(transaction.status, FATHOM_READY);
+    assert_int_equal(transaction.status, FATHOM_OK);
 }
 
 TEST(a_part_of_a_frame_is_no_response)
@@ -93,7 +93,7 @@ TEST(bytes_that_begin_no_frame_are_noise)
     assert_int_equal(counter(FATHOM_LINE_DROPPED_BYTES), 3);
     receive(response, sizeof response);
     run(100);
-    assert_int_equal(transaction.status, FATHOM_READY);
+    assert_int_equal(transaction.status, FATHOM_OK);
     assert_int_equal(counter(FATHOM_LINE_RESPONSES), 1);
     assert_int_equal(counter(FATHOM_LINE_DROPPED_BYTES), 3);
 }
@@ -131,18 +131,18 @@ TEST(a_response_that_comes_byte_by_byte_is_over_with_the_last)
         receive(response + i, 1);
         run(1000);
     }
-    assert_int_equal(transaction.status, FATHOM_READY);
+    assert_int_equal(transaction.status, FATHOM_OK);
 }
 
 /* A line that only listens has no room for it. */
 TEST(nothing_is_submitted_to_a_line_that_only_listens)
 {
-    assert_int_equal(fathom_line_init_listening(&bench.line, &bench.config), FATHOM_READY);
+    assert_int_equal(fathom_line_init_listening(&bench.line, &bench.config), FATHOM_OK);
     memset(&transaction, 0, sizeof transaction);
     transaction.protocol = &protocol;
     transaction.address = 1;
     assert_int_equal(fathom_line_submit(&bench.line, &transaction), FATHOM_ERR_UNSUPPORTED);
-    assert_false(fathom_line_has(&bench.line, &transaction));
+    assert_false(fathom_line_is_queued(&bench.line, &transaction));
     run(100000);
     expect_written(0);
 }
@@ -156,7 +156,7 @@ TEST(a_line_that_asks_is_told_of_its_echo_or_finds_it_out)
             bench.config.find_echo = finds != 0 ? fathom_line_find_echo : NULL;
             const bool is_right = echo != FATHOM_LINE_ECHO_AUTO || finds != 0;
             assert_int_equal(fathom_line_init(&bench.line, &bench.config),
-                             is_right ? FATHOM_READY : FATHOM_ERR_ARGUMENT);
-            if (is_right) assert_int_equal(fathom_line_echo(&bench.line), echo);
+                             is_right ? FATHOM_OK : FATHOM_ERR_ARGUMENT);
+            if (is_right) assert_int_equal(fathom_line_get_echo(&bench.line), echo);
         }
 }

@@ -180,7 +180,7 @@ static outcome_t run(const weather_t *weather, unsigned transactions, uint8_t re
                 asked[id] = false;
                 const uint32_t took_us = world.now_us - since_us[id];
                 if (took_us > outcome.longest_us) outcome.longest_us = took_us;
-                if (transaction->status != FATHOM_READY)
+                if (transaction->status != FATHOM_OK)
                     outcome.failed++, assert_int_equal(values[id], 0xDEAD);
                 else
                     outcome.ready++, outcome.wrong += values[id] != world.numbers[id];

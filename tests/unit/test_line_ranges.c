@@ -20,7 +20,7 @@ static fathom_status_t init_config(fathom_line_config_t config)
     return fathom_line_init(&line, &config);
 }
 
-#define expect_accepted(member, new_value) assert_int_equal(init_with(member, new_value), FATHOM_READY)
+#define expect_accepted(member, new_value) assert_int_equal(init_with(member, new_value), FATHOM_OK)
 #define expect_refused(member, new_value)  assert_int_equal(init_with(member, new_value), FATHOM_ERR_ARGUMENT)
 
 TEST(a_config_with_a_time_out_of_its_range_is_refused)
@@ -96,7 +96,7 @@ TEST(a_transaction_has_at_most_254_retries)
 TEST(a_line_whose_port_does_not_release_tx_is_due_when_the_port_counts_as_broken)
 {
     run(100000);
-    assert_int_equal(fathom_line_break(&bench.line, true), FATHOM_READY);
+    assert_int_equal(fathom_line_break(&bench.line, true), FATHOM_OK);
     ask_1(0);
     bench.fake.refusals = -1;
     assert_int_equal(fathom_line_break(&bench.line, false), FATHOM_PENDING);

@@ -56,7 +56,7 @@ static void begin_at(uint32_t now_us, void **state)
     (void)set_up_late(state);
     bench.fake.now_us = now_us;
     bench.fake.busy_until_us = now_us;
-    assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_READY);
+    assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_OK);
 }
 
 /* At 9600 baud a byte takes 1042 us; the interrupt of any of the seven may come so late. */
@@ -73,11 +73,11 @@ TEST(a_time_stamp_from_the_future_leaves_a_good_response_whole)
             ahead_us = at == i / 2 % 7 && i % 2 != 0 ? 3 : 0;
             poll_with(response_1_754 + at);
         }
-        assert_int_equal(status_of(&bench.request), FATHOM_READY);
+        assert_int_equal(status_of(&bench.request), FATHOM_OK);
         assert_int_equal(bench.value, 754);
         /* the sample's time: the stamp, or the clock where the stamp is later than that */
         assert_int_equal(bench.request.transaction.link.heard_us, stamp_us - ahead_us);
-        assert_int_equal(fathom_line_heard_us(&bench.line), stamp_us - ahead_us);
+        assert_int_equal(fathom_line_last_byte_us(&bench.line), stamp_us - ahead_us);
     }
 }
 
@@ -88,7 +88,7 @@ TEST(a_time_stamp_in_the_past_is_believed)
     bench.fake.now_us += 9000;
     receive(response_1_754, 7);
     (void)fathom_line_poll(&bench.line);
-    assert_int_equal(status_of(&bench.request), FATHOM_READY);
+    assert_int_equal(status_of(&bench.request), FATHOM_OK);
     assert_int_equal(bench.request.transaction.link.heard_us, bench.fake.now_us - 700);
 }
 
@@ -101,7 +101,7 @@ TEST(a_time_stamp_half_way_round_the_clock_is_in_the_future)
         receive(response_1_754, 7);
         (void)fathom_line_poll(&bench.line);
         const uint32_t told_us = ago_us == INT32_MAX ? UINT16_MAX : 0;
-        assert_int_equal(bench.fake.now_us - fathom_line_heard_us(&bench.line), told_us);
+        assert_int_equal(bench.fake.now_us - fathom_line_last_byte_us(&bench.line), told_us);
     }
 }
 
@@ -137,7 +137,7 @@ TEST(the_silence_before_a_request_is_counted_from_a_byte_that_came_after_the_loo
         fake_receive(&bench.fake, between_us, response_1_754, 7);
         (void)fathom_line_poll(&bench.line);
         between_us = 0;
-        assert_int_equal(status_of(&bench.request), FATHOM_READY);
+        assert_int_equal(status_of(&bench.request), FATHOM_OK);
         run(T3_5_US - 100);
         assert_int_equal(bench.fake.written, 1);
         run(200);
@@ -162,7 +162,7 @@ TEST(a_frame_is_not_split_where_its_first_bytes_came_after_the_look_at_the_clock
         assert_true(fathom_line_due_us(&bench.line) <= GAP_US - 1000);
         receive(response_1_754 + 4, 3);
         run(100);
-        assert_int_equal(status_of(&bench.request), FATHOM_READY);
+        assert_int_equal(status_of(&bench.request), FATHOM_OK);
         assert_int_equal(bench.value, 754);
     }
 }

@@ -41,10 +41,10 @@ TEST(a_time_out_over_the_longest_is_refused_and_not_cut)
 {
     static const uint32_t too_long_us[] = {LONGEST_US + 1, UINT32_C(0x90000000), UINT32_MAX};
     for (unsigned i = 0; i != 3; i++) {
-        bench.request.transaction.status = FATHOM_READY;
+        bench.request.transaction.status = FATHOM_OK;
         assert_int_equal(ask_for(too_long_us[i]), FATHOM_ERR_ARGUMENT);
-        assert_int_equal(status_of(&bench.request), FATHOM_READY);
-        assert_false(fathom_line_has(&bench.line, &bench.request.transaction));
+        assert_int_equal(status_of(&bench.request), FATHOM_OK);
+        assert_false(fathom_line_is_queued(&bench.line, &bench.request.transaction));
     }
     run(T3_5_US + 200);
     assert_int_equal(bench.fake.written, 0);

@@ -93,7 +93,7 @@ TEST(a_request_to_all_quarantines_none)
     receive_response(3, 333); /* a unit that answers all the same is not heard */
     expect_after(TIMEOUT_US - 1000, FATHOM_PENDING);
     expect_written(1);
-    expect_after(1500, FATHOM_READY);
+    expect_after(1500, FATHOM_OK);
     expect_written(2);
     assert_int_equal(counter(FATHOM_LINE_NO_RESPONSES) + counter(FATHOM_LINE_RESPONSES), 0);
 }

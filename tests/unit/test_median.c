@@ -3,7 +3,7 @@
 
 #include "suite.h"
 
-#include "fathom/sensor/median.h"
+#include "fathom/processing/median.h"
 
 enum { MAX = FATHOM_MEDIAN_MAX_COUNT, UNTOUCHED = 0xA5 };
 
@@ -17,7 +17,7 @@ static void start(void)
 {
     memset(&median, 0x5A, sizeof median);
     memset(window, 0x5A, sizeof window);
-    assert_int_equal(fathom_median_init(&median, &config), FATHOM_READY);
+    assert_int_equal(fathom_median_init(&median, &config), FATHOM_OK);
     assert_int_equal(median.dropped, 0);
 }
 
@@ -46,7 +46,7 @@ static bool next(uint8_t kind, uint16_t mm)
     static const fathom_sample_t none;
     const fathom_sample_t sample = {.time_us = now_us += 100000, .kind = kind, .distance_mm = mm};
     out = none;
-    const bool is_there = fathom_median_sample(&median, &sample, &out);
+    const bool is_there = fathom_median_add_sample(&median, &sample, &out);
     if (!is_there) assert_memory_equal(&out, &none, sizeof out);
     return is_there;
 }
@@ -129,7 +129,7 @@ TEST(a_config_without_a_window_or_with_another_count_than_3_to_15_is_refused)
     for (unsigned count = 0; count <= 255; count++) {
         config.count = (uint8_t)count;
         assert_int_equal(fathom_median_init(&median, &config),
-                         count >= 3 && count <= 15 ? FATHOM_READY : FATHOM_ERR_ARGUMENT);
+                         count >= 3 && count <= 15 ? FATHOM_OK : FATHOM_ERR_ARGUMENT);
     }
     config.count = 3;
     config.window = NULL;
@@ -225,7 +225,7 @@ TEST(the_rest_of_the_sample_stays_and_out_may_be_the_sample_itself)
         fill(700, 1);
         memset(&out, UNTOUCHED, sizeof out);
         fathom_sample_t *const to = same != 0 ? &sample : &out;
-        assert_true(fathom_median_sample(&median, &sample, to));
+        assert_true(fathom_median_add_sample(&median, &sample, to));
         assert_memory_equal(to, &expected, sizeof expected);
     }
 }
@@ -233,7 +233,7 @@ TEST(the_rest_of_the_sample_stays_and_out_may_be_the_sample_itself)
 static void expect_mark(uint8_t kind, uint8_t middle_kind, bool is_marked)
 {
     const fathom_sample_t sample = {.time_us = now_us, .kind = kind, .interference = true};
-    assert_true(fathom_median_sample(&median, &sample, &out));
+    assert_true(fathom_median_add_sample(&median, &sample, &out));
     assert_int_equal(out.kind, middle_kind);
     assert_int_equal(out.interference, is_marked);
 }
@@ -375,7 +375,7 @@ TEST(dropped_stops_at_65535_and_may_be_set_to_0)
 /* So long after the last sample. */
 static void expect_time(uint32_t after_us, bool empties)
 {
-    assert_int_equal(fathom_median_time(&median, now_us + after_us), empties);
+    assert_int_equal(fathom_median_advance(&median, now_us + after_us), empties);
 }
 
 static bool next_after(uint32_t after_us, uint8_t kind, uint16_t mm)

@@ -3,7 +3,7 @@
 
 #include "suite.h"
 
-#include "fathom/sensor/median.h"
+#include "fathom/processing/median.h"
 #include "stream_rig.h"
 
 /*
@@ -35,7 +35,7 @@ static void start(uint8_t count)
     memset(&reference, 0, sizeof reference);
     config.window = window;
     config.count = count;
-    assert_int_equal(fathom_median_init(&median, &config), FATHOM_READY);
+    assert_int_equal(fathom_median_init(&median, &config), FATHOM_OK);
 }
 
 static int32_t middle(void)
@@ -91,7 +91,7 @@ static void compare(int32_t mm, uint64_t at_us)
     const uint8_t kind = mm == 0 ? FATHOM_NEAR : mm == FARTHER ? FATHOM_NO_TARGET : FATHOM_TARGET;
     fathom_sample_t sample = {.time_us = (uint32_t)at_us, .kind = kind};
     if (kind == FATHOM_TARGET) sample.distance_mm = (uint16_t)mm;
-    demand(fathom_median_sample(&median, &sample, &sample) == (expected >= 0));
+    demand(fathom_median_add_sample(&median, &sample, &sample) == (expected >= 0));
     demand(median.dropped == reference.dropped);
     if (expected < 0) return;
     const uint8_t is = expected == 0 ? FATHOM_NEAR : expected == FARTHER ? FATHOM_NO_TARGET : FATHOM_TARGET;
@@ -144,7 +144,7 @@ static void run(void)
         if (dice == 52) { /* nothing came; at once, or 17 minutes later, it is asked for the time */
             at_us += rig_random_below(2000000) + (i % 2) * 1000000000u;
             const bool empties = reference.have != 0 && at_us - reference.last_us > config.unknown_us;
-            demand(fathom_median_time(&median, (uint32_t)at_us) == empties);
+            demand(fathom_median_advance(&median, (uint32_t)at_us) == empties);
             if (empties) reference.have = reference.row = 0;
         }
         compare(mm, at_us);

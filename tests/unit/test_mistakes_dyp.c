@@ -15,9 +15,9 @@ TEST(a05_2_3_3_prints_60_as_the_sum_of_the_response_which_is_62)
 {
     /* 55 + AA + 01 + 01 + 03 + E8 + 07 + D0 + 07 + A1 + 0D + EA = 462; 60 is the sum of the frame of 1(3) */
     uint8_t response[] = {0x55, 0xAA, 0x01, 0x01, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x60};
-    assert_false(fathom_dyp_55aa_valid(response, sizeof response));
+    assert_false(fathom_dyp_55aa_is_valid(response, sizeof response));
     response[12] = 0x62;
-    assert_true(fathom_dyp_55aa_valid(response, sizeof response));
+    assert_true(fathom_dyp_55aa_is_valid(response, sizeof response));
 }
 
 TEST(a05_2_3_5_prints_command_10_for_setting_the_address_which_is_03)
@@ -34,9 +34,9 @@ TEST(a05_2_3_5_prints_a_response_with_a_distance_and_it_has_none)
 {
     static const uint8_t example[] = {0x55, 0xAA, 0x05, 0x03, 0x07};
     assert_int_equal(fathom_dyp_55aa_response_length(FATHOM_DYP_SET_ADDRESS), 5);
-    assert_int_equal(fathom_dyp_55aa_values(FATHOM_DYP_SET_ADDRESS), 0);
-    assert_int_equal(fathom_dyp_55aa_length(example, 4), 5);
-    assert_true(fathom_dyp_55aa_valid(example, sizeof example));
+    assert_int_equal(fathom_dyp_55aa_value_count(FATHOM_DYP_SET_ADDRESS), 0);
+    assert_int_equal(fathom_dyp_55aa_frame_length(example, 4), 5);
+    assert_true(fathom_dyp_55aa_is_valid(example, sizeof example));
 }
 
 TEST(a05_2_3_prints_data_1h_twice_and_the_second_is_data_1l)
@@ -60,7 +60,7 @@ static fathom_status_t submit(void *ctx, fathom_modbus_request_t *request)
     memcpy(head, request->message.head, sizeof head);
     for (uint8_t i = 0; i != head[5]; i++) request->message.values[i] = (uint16_t)(1000u + head[3] + i);
     request->transaction.attempts = 1;
-    request->transaction.status = FATHOM_READY;
+    request->transaction.status = FATHOM_OK;
     request->transaction.link.heard_us = 0;
     return FATHOM_PENDING;
 }
@@ -83,10 +83,10 @@ static uint8_t probe_of(uint8_t wanted, uint16_t registers)
         .modbus.transport = &modbus, .probes = wanted, .registers = registers};
     fathom_a05_modbus_t sensor;
     fathom_sample_t sample;
-    assert_int_equal(fathom_a05_modbus_init(&sensor, &config), FATHOM_READY);
+    assert_int_equal(fathom_a05_modbus_init(&sensor, &config), FATHOM_OK);
     const fathom_sensor_t driver = fathom_a05_modbus_sensor(&sensor);
     assert_int_equal(fathom_poll(&driver, &sample), FATHOM_PENDING);
-    assert_int_equal(fathom_poll(&driver, &sample), FATHOM_READY);
+    assert_int_equal(fathom_poll(&driver, &sample), FATHOM_OK);
     return sample.probe;
 }
 

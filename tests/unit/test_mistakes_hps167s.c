@@ -63,10 +63,10 @@ TEST(command_3_says_19_09_27_and_ver_2_1_and_its_bytes_2019_09_23_and_3_9)
     fathom_hps167s_details_t details;
     fathom_hps167s_t hps;
     assert_int_equal(bitwise(example, 27), 0); /* so the bytes are what the device said */
-    assert_int_equal(fathom_hps167s_init(&hps, &config), FATHOM_READY);
-    assert_int_equal(fathom_hps167s_details(&hps, &details), FATHOM_PENDING);
+    assert_int_equal(fathom_hps167s_init(&hps, &config), FATHOM_OK);
+    assert_int_equal(fathom_hps167s_get_details(&hps, &details), FATHOM_PENDING);
     end_with(example);
-    assert_int_equal(fathom_hps167s_details(&hps, &details), FATHOM_READY);
+    assert_int_equal(fathom_hps167s_get_details(&hps, &details), FATHOM_OK);
     assert_int_equal(details.year, 2019);
     assert_int_equal(details.month, 9);
     assert_int_equal(details.day, 23); /* 0x17, not 27 */
@@ -132,7 +132,7 @@ TEST(note_2_says_20_meters_where_the_range_ends_at_18)
     fathom_sample_t sample;
     for (unsigned i = 0; i != 4; i++) {
         const uint16_t registers[4] = {believed[i], 0xDCB2, 0x0701, 0};
-        assert_int_equal(fathom_hps167s_decode(registers, &sample), FATHOM_READY);
+        assert_int_equal(fathom_hps167s_decode(registers, &sample), FATHOM_OK);
         assert_int_equal(sample.kind, FATHOM_TARGET);
         assert_int_equal(sample.distance_mm, believed[i]);
     }

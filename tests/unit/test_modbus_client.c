@@ -48,7 +48,7 @@ TEST(several_registers_are_read_in_one_transaction)
     run(20000);
     expect_bytes(0, request, sizeof request);
     deliver_all(response_1_three);
-    expect(FATHOM_READY);
+    expect(FATHOM_OK);
     assert_memory_equal(values, expected, sizeof expected);
 }
 
@@ -58,7 +58,7 @@ TEST(a_write_of_many_is_acknowledged_by_start_and_count)
     run(30000);
     expect_bytes(0, set_36_ms, sizeof set_36_ms);
     deliver_all(set_ms_done);
-    expect(FATHOM_READY);
+    expect(FATHOM_OK);
 }
 
 TEST(every_byte_of_an_acknowledgement_counts)

@@ -65,9 +65,9 @@ static void is_answered_at_once(void **state)
     send();
     receive(response, sizeof response);
     run(100);
-    assert_int_equal(status_of(&bench.request), FATHOM_READY);
+    assert_int_equal(status_of(&bench.request), FATHOM_OK);
     assert_memory_equal(values, row->values, sizeof values);
-    assert_int_equal(fathom_line_echo(&bench.line), FATHOM_LINE_ECHO_OFF);
+    assert_int_equal(fathom_line_get_echo(&bench.line), FATHOM_LINE_ECHO_OFF);
 }
 
 TEST_ROW(a_response_whose_size_alone_differs_from_the_request_is_a_response, is_answered_at_once, &third)

@@ -102,7 +102,7 @@ TEST(a_write_of_one_carries_0000_8000_and_FFFF)
     for (unsigned i = 0; i != 3; i++) {
         fathom_modbus_write_single_register(&message, 1, 0x0014, written[i]);
         expect_encoded_request(expected[i], 8);
-        expect_response(expected[i], FATHOM_READY);
+        expect_response(expected[i], FATHOM_OK);
     }
 }
 
@@ -113,7 +113,7 @@ static const uint8_t write_three[] = {0x01, 0x10, 0x00, 0x20, 0x00, 0x03, 0x06, 
 TEST(a_response_brings_0000_8000_and_FFFF)
 {
     ask(READ, 3);
-    expect_response(three_values, FATHOM_READY);
+    expect_response(three_values, FATHOM_OK);
     assert_int_equal(values[0], 0x0000);
     assert_int_equal(values[1], 0x8000);
     assert_int_equal(values[2], 0xFFFF);
@@ -128,10 +128,10 @@ TEST(a_write_of_many_carries_0000_8000_and_FFFF)
     static const uint8_t response[] = {0x01, 0x10, 0x00, 0x20, 0x00, 0x03, 0x00, 0x00};
     fathom_modbus_write_multiple_registers(&message, 1, 0x0020, 3, written);
     expect_encoded_request(write_three, sizeof write_three);
-    expect_response(response, FATHOM_READY);
+    expect_response(response, FATHOM_OK);
     expect_request(write_three, 2, FATHOM_ERR_EXCEPTION);
     message.values = values;
-    expect_request(write_three, 3, FATHOM_READY);
+    expect_request(write_three, 3, FATHOM_OK);
     assert_memory_equal(values, written, sizeof written);
     assert_values_untouched_from(3);
 }
@@ -172,7 +172,7 @@ TEST(the_largest_response_is_255_bytes_and_fits)
     assert_memory_equal(frame, head, sizeof head);
     assert_pattern(frame + 3, 125, 0xEB, 0x7C);
     assert_int_equal(fathom_modbus_rtu_response_length(frame, 255), 255);
-    expect_response(frame, FATHOM_READY);
+    expect_response(frame, FATHOM_OK);
     assert_values(125);
 }
 
@@ -185,7 +185,7 @@ TEST(the_largest_request_is_255_bytes_and_fits)
     assert_memory_equal(frame, head, sizeof head);
     assert_pattern(frame + 7, 123, 0x25, 0x87);
     assert_int_equal(fathom_modbus_rtu_request_length(frame, 255), 255);
-    expect_request(frame, 123, FATHOM_READY);
+    expect_request(frame, 123, FATHOM_OK);
     assert_values(123);
 }
 
@@ -225,7 +225,7 @@ TEST(a_response_to_any_unit_says_whose_it_is)
     for (unsigned unit = 1; unit != 256; unit++) {
         const uint8_t response[] = {(uint8_t)unit, 0x03, 0x02, 0x02, 0xF2, 0x00, 0x00};
         fathom_modbus_read_holding_registers(&message, FATHOM_MODBUS_ANY_UNIT, 0x0100, 1, values);
-        expect_response(response, FATHOM_READY);
+        expect_response(response, FATHOM_OK);
         assert_int_equal(message.head[0], unit);
         assert_int_equal(values[0], 754);
     }
@@ -340,9 +340,9 @@ TEST(a_request_as_long_as_the_capacity_is_served)
     static const uint8_t read_five[] = {0x01, 0x03, 0x00, 0x20, 0x00, 5};
     static const uint8_t write_one[] = {0x01, 0x06, 0x00, 0x20, 0xFF, 0xFF};
     message.values = values;
-    expect_request(read_five, 5, FATHOM_READY);
+    expect_request(read_five, 5, FATHOM_OK);
     assert_int_equal(message.exception, 0);
-    expect_request(write_one, 0, FATHOM_READY);
+    expect_request(write_one, 0, FATHOM_OK);
     assert_int_equal(message.exception, 0);
     assert_int_equal(values[0], GUARD16);
 }

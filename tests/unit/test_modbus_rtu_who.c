@@ -12,7 +12,7 @@ TEST(after_a_response_to_a_request_to_any_unit_its_address_stands_in_the_head)
     fathom_modbus_message_t message;
     fathom_modbus_read_holding_registers(&message, FATHOM_MODBUS_ANY_UNIT, 0x0100, 1, &value);
     assert_int_equal(message.head[0], 255);
-    assert_int_equal(fathom_modbus_rtu_parse_response(&message, response), FATHOM_READY);
+    assert_int_equal(fathom_modbus_rtu_parse_response(&message, response), FATHOM_OK);
     assert_int_equal(message.head[0], 5);
     assert_int_equal(value, 754);
 }

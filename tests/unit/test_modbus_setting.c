@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "desk.h"
-#include "fathom/engine/modbus_setting.h"
+#include "fathom/engine/internal/modbus_setting.h"
 
 /* A device with a setting in register 0x020F, as a driver sees it; the transport plays the device. The id of the write
  * has the last of the 16 doubts. */
@@ -27,7 +27,7 @@ static fathom_status_t asks(const fathom_modbus_unit_request_t *request)
 static fathom_status_t read_it(const fathom_modbus_setting_t *of, uint32_t *value)
 {
     const fathom_status_t status = fathom_modbus_unit_ask(of->driver, &look);
-    if (status == FATHOM_READY) *value = found;
+    if (status == FATHOM_OK) *value = found;
     return status;
 }
 
@@ -40,7 +40,7 @@ static int set_up(void **state)
             &unit,
             &(fathom_modbus_config_t){.transport = &fake.modbus, .address = HERE, .command_timeout_us = 1000},
             1000, 0),
-        FATHOM_READY);
+        FATHOM_OK);
     setting = (fathom_modbus_setting_t){.read = read_it, .driver = &unit, .write = put, .value = NEW};
     found = 0;
     return 0;
@@ -54,7 +54,7 @@ static fathom_status_t set(void)
     return fathom_modbus_set(&unit, &setting);
 }
 
-#define OK            FATHOM_READY
+#define OK            FATHOM_OK
 #define SILENT        FATHOM_ERR_NO_RESPONSE
 #define IS(at, value) READ(at, REGISTER, OK, value)
 #define FAILS(at, as) READ(at, REGISTER, as, 2)
@@ -171,14 +171,14 @@ TEST(a_value_that_was_written_and_did_not_show_is_taken_back_by_writing)
     want(OLD);
     SETS(OK, HERE, IS(HERE, NEW), PUTS(OLD), IS(HERE, OLD));
     want(NEW); /* or that was written blind */
-    assert_int_equal(fathom_modbus_next_is_blind(&unit), OK);
+    assert_int_equal(fathom_modbus_write_next_unchecked(&unit), OK);
     SETS(FATHOM_ERR_UNCONFIRMED, HERE, PUT(OK));
     want(OLD);
     SETS(OK, HERE, IS(HERE, OLD), PUTS(OLD), IS(HERE, OLD));
     want(NEW);
     SETS(FATHOM_ERR_DIFFERS, HERE, IS(HERE, OLD), PUT(OK), IS(HERE, OLD));
     want(OLD); /* nor does a blind write that was lost take anything back: it said OLD all the time */
-    assert_int_equal(fathom_modbus_next_is_blind(&unit), OK);
+    assert_int_equal(fathom_modbus_write_next_unchecked(&unit), OK);
     SETS(FATHOM_ERR_UNCONFIRMED, HERE, WRITE(HERE, REGISTER, OLD, SILENT));
     SETS(FATHOM_ERR_UNCONFIRMED, HERE, IS(HERE, OLD), WRITE(HERE, REGISTER, OLD, SILENT));
     fathom_modbus_unit_power_on(&unit, 0);
@@ -251,11 +251,11 @@ TEST(a_blind_setting_is_written_once_and_nothing_is_read)
                                            FATHOM_ERR_PORT};
     for (size_t i = 0; i != COUNT(ends); i++) {
         setting.address = i % 2 != 0 ? THERE : 0;
-        assert_int_equal(fathom_modbus_next_is_blind(&unit), OK);
+        assert_int_equal(fathom_modbus_write_next_unchecked(&unit), OK);
         SETS(FATHOM_ERR_UNCONFIRMED, HERE, PUT(ends[i]));
         was_written(true);
     }
-    assert_int_equal(fathom_modbus_next_is_blind(&unit), OK);
+    assert_int_equal(fathom_modbus_write_next_unchecked(&unit), OK);
     SETS(FATHOM_ERR_EXCEPTION, HERE, PUT(FATHOM_ERR_EXCEPTION));
     setting.address = 0;
     SETS(OK, HERE, IS(HERE, OLD), PUT(OK), IS(HERE, NEW)); /* the next is none */
@@ -264,14 +264,14 @@ TEST(a_blind_setting_is_written_once_and_nothing_is_read)
 TEST(what_is_under_way_cannot_become_blind)
 {
     PART(set, IS(HERE, OLD));
-    assert_int_equal(fathom_modbus_next_is_blind(&unit), FATHOM_ERR_BUSY);
+    assert_int_equal(fathom_modbus_write_next_unchecked(&unit), FATHOM_ERR_BUSY);
     SETS(OK, HERE, PUT(OK), IS(HERE, NEW));
 }
 
 TEST(cancelling_and_power_forget_that_the_next_is_blind)
 {
     for (unsigned is_power = 0; is_power != 2; is_power++) {
-        assert_int_equal(fathom_modbus_next_is_blind(&unit), OK);
+        assert_int_equal(fathom_modbus_write_next_unchecked(&unit), OK);
         if (is_power != 0)
             fathom_modbus_unit_power_on(&unit, 0);
         else

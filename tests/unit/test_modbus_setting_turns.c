@@ -4,7 +4,7 @@
 #include "suite.h"
 
 #include "fake_modbus.h"
-#include "fathom/engine/modbus_setting.h"
+#include "fathom/engine/internal/modbus_setting.h"
 
 /* modbus_setting.h, beside other requests to the same unit and after another setting. The value is in register
  * 0x0206. */
@@ -26,7 +26,7 @@ static const fathom_modbus_unit_request_t measure = {&found, 0x0100, 1, 3, 1};
 static fathom_status_t read_it(const fathom_modbus_setting_t *of, uint32_t *value)
 {
     const fathom_status_t status = fathom_modbus_unit_ask(of->driver, &look);
-    if (status == FATHOM_READY) *value = found;
+    if (status == FATHOM_OK) *value = found;
     return status;
 }
 
@@ -39,7 +39,7 @@ static int set_up(void **state)
             &unit,
             &(fathom_modbus_config_t){.transport = &fake.modbus, .address = HERE, .command_timeout_us = 1000},
             1000, PACE_US),
-        FATHOM_READY);
+        FATHOM_OK);
     setting = (fathom_modbus_setting_t){.read = read_it, .driver = &unit, .write = put, .value = NEW};
     found = 0;
     return 0;
@@ -95,7 +95,7 @@ TEST(a_measurement_on_the_wire_when_a_setting_begins_is_handed_over)
     fake_modbus_send(&fake);
     assert_int_equal(set_after(0), FATHOM_PENDING);
     fake_modbus_response(&fake, old_value, 1);
-    assert_int_equal(ask(&measure), FATHOM_READY);
+    assert_int_equal(ask(&measure), FATHOM_OK);
     assert_int_equal(found, OLD);
     assert_int_equal(ask(&measure), FATHOM_PENDING);
     asks(HERE, NULL);
@@ -111,7 +111,7 @@ TEST(a_new_address_is_confirmed_with_the_line_settings_that_the_device_has_by_no
     fake_modbus_acknowledge(&fake);
     asks(HERE, &fast);
     fake_modbus_response(&fake, new_value, 1);
-    assert_int_equal(set_after(0), FATHOM_READY);
+    assert_int_equal(set_after(0), FATHOM_OK);
 
     setting.line_settings = NULL;
     setting.address = THERE;
@@ -123,7 +123,7 @@ TEST(a_new_address_is_confirmed_with_the_line_settings_that_the_device_has_by_no
     fake_modbus_acknowledge(&fake);
     asks(THERE, &fast);
     fake_modbus_response(&fake, new_value, 1);
-    assert_int_equal(set_after(0), FATHOM_READY);
+    assert_int_equal(set_after(0), FATHOM_OK);
     assert_int_equal(unit.address, THERE);
     assert_ptr_equal(unit.line_settings, &fast);
 }

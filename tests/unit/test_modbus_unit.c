@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "desk.h"
-#include "fathom/engine/modbus_unit.h"
+#include "fathom/engine/internal/modbus_unit.h"
 
 enum { UNIT = 9, PACE_US = 100000, TIMEOUT_US = 300000, GUARD16 = 0xA5A5 };
 
@@ -22,7 +22,7 @@ static void set_up_at(uint32_t now_us)
                          &unit,
                          &(fathom_modbus_config_t){.transport = &fake.modbus, .address = UNIT, .retries = 2},
                          TIMEOUT_US, PACE_US),
-                     FATHOM_READY);
+                     FATHOM_OK);
 }
 
 static int set_up(void **state)
@@ -50,11 +50,10 @@ typedef struct {
     (step_t) { NULL, 0, FATHOM_PENDING, 0 }
 #define ENDS(status)                                                                                         \
     (step_t) { NULL, 0, status, 0 }
-#define ANSWERED ENDS(FATHOM_READY)
+#define ANSWERED ENDS(FATHOM_OK)
 /* It is asked and on the wire; and the response has been taken, so long after. */
-#define ON_WIRE(request, submits) P(0, request, submits), SENT, P(0, request, submits)
-#define TAKEN(us, request, submits)                                                                          \
-    ON_WIRE(request, submits), ANSWERED, IS(FATHOM_READY, us, request, submits)
+#define ON_WIRE(request, submits)   P(0, request, submits), SENT, P(0, request, submits)
+#define TAKEN(us, request, submits) ON_WIRE(request, submits), ANSWERED, IS(FATHOM_OK, us, request, submits)
 /* It is asked in exactly so long. */
 #define ASKED_IN(us, request, submits) P((us)-1, request, (submits)-1), P(1, request, submits)
 
@@ -79,7 +78,7 @@ static void go(const step_t *steps, unsigned count)
             assert_int_equal(head[4] * 256u + head[5], asked->last);
         } else if (step->is == FATHOM_PENDING) {
             fake_modbus_send(&fake);
-        } else if (step->is == FATHOM_READY && fake.request->message.head[1] == 3) {
+        } else if (step->is == FATHOM_OK && fake.request->message.head[1] == 3) {
             const uint8_t asked = fake.request->message.head[5];
             fake_modbus_response(&fake, asked == 1 ? one_value : three_values, asked);
         } else {
@@ -110,11 +109,11 @@ TEST(a_unit_needs_a_transport_a_clock_and_an_address_of_one_device)
         config.address = (uint8_t)address;
         config.address_zero = false;
         assert_int_equal(fathom_modbus_unit_init(&other, &config, 1000, 0),
-                         is_good ? FATHOM_READY : FATHOM_ERR_ARGUMENT);
+                         is_good ? FATHOM_OK : FATHOM_ERR_ARGUMENT);
         if (is_good) assert_int_equal(other.address, address != 0 ? address : 1);
         config.address_zero = true;
         assert_int_equal(fathom_modbus_unit_init(&other, &config, 1000, 0),
-                         address == 0 ? FATHOM_READY : FATHOM_ERR_ARGUMENT);
+                         address == 0 ? FATHOM_OK : FATHOM_ERR_ARGUMENT);
         if (address == 0) assert_int_equal(other.address, 0);
     }
     assert_int_equal(fake.polls + fake.submits, 0);
@@ -195,22 +194,22 @@ TEST(the_counters_stop_at_65535)
 TEST(the_pace_counts_from_the_request_on_the_wire)
 {
     for (unsigned i = 0; i != 100; i++) GO(P(PACE_US, measure, 1)); /* in a long queue */
-    GO(SENT, P(20, measure, 1), ANSWERED, IS(FATHOM_READY, 40000, measure, 1),
+    GO(SENT, P(20, measure, 1), ANSWERED, IS(FATHOM_OK, 40000, measure, 1),
        ASKED_IN(PACE_US - 40000, measure, 2));
 }
 
 /* A slow loop: sent and answered since the last poll. */
 STEPS(the_pace_does_not_count_what_passed_before_the_poll_that_sent_it, P(0, measure, 1), ANSWERED,
-      IS(FATHOM_READY, 3 * PACE_US, measure, 1), ASKED_IN(PACE_US, measure, 2))
+      IS(FATHOM_OK, 3 * PACE_US, measure, 1), ASKED_IN(PACE_US, measure, 2))
 
 /* It was sent since the last poll, and so was the one before. */
 STEPS(the_pace_of_the_second_request_counts_from_the_poll_that_found_it_sent, TAKEN(PACE_US, measure, 1),
-      P(0, measure, 2), SENT, P(40000, measure, 2), ANSWERED, IS(FATHOM_READY, 0, measure, 2),
+      P(0, measure, 2), SENT, P(40000, measure, 2), ANSWERED, IS(FATHOM_OK, 0, measure, 2),
       ASKED_IN(PACE_US, measure, 3))
 
 /* modbus_unit.h: "from this request to the next one to the unit, at least"; a retry is a request too. */
 STEPS(the_pace_counts_from_the_last_attempt, ON_WIRE(measure, 1), P(6 * PACE_US, measure, 1), SENT,
-      P(0, measure, 1), ANSWERED, IS(FATHOM_READY, 25000, measure, 1), ASKED_IN(PACE_US - 25000, measure, 2))
+      P(0, measure, 1), ANSWERED, IS(FATHOM_OK, 25000, measure, 1), ASKED_IN(PACE_US - 25000, measure, 2))
 
 STEPS(a_response_slower_than_the_pace_is_followed_at_once, TAKEN(PACE_US, measure, 1), P(0, measure, 2))
 
@@ -239,7 +238,7 @@ TEST(a_command_waits_for_a_measurement_and_takes_its_place)
     GO(ON_WIRE(measure, 1), P(10, version, 1), ANSWERED, P(10, version, 1),
        ASKED_IN(PACE_US - 20, version, 2));
     assert_int_equal(fathom_modbus_unit_responses(&unit), 1);
-    GO(ANSWERED, IS(FATHOM_READY, 10, version, 2));
+    GO(ANSWERED, IS(FATHOM_OK, 10, version, 2));
     assert_memory_equal(values, three_values, sizeof three_values);
 }
 
@@ -251,7 +250,7 @@ TEST(a_measurement_waits_until_the_outcome_of_a_command_was_taken)
         assert_int_equal(due(), 0); /* with an outcome to take */
     }
     assert_memory_equal(values, three_values, sizeof three_values);
-    GO(IS(FATHOM_READY, 10, version, 1), P(0, measure, 2));
+    GO(IS(FATHOM_OK, 10, version, 1), P(0, measure, 2));
     assert_int_equal(fathom_modbus_unit_responses(&unit), 1);
 }
 
@@ -260,7 +259,7 @@ STEPS(an_error_of_a_command_waits_for_who_asked_too, ON_WIRE(version, 1), ENDS(F
 
 STEPS(a_second_command_is_told_busy_until_the_first_was_taken, ON_WIRE(version, 1),
       IS(FATHOM_ERR_BUSY, 10, details, 1), ANSWERED, IS(FATHOM_ERR_BUSY, 10, details, 1),
-      IS(FATHOM_ERR_BUSY, PACE_US, details, 1), IS(FATHOM_READY, 10, version, 1), P(10, details, 2))
+      IS(FATHOM_ERR_BUSY, PACE_US, details, 1), IS(FATHOM_OK, 10, version, 1), P(10, details, 2))
 
 static const fathom_modbus_unit_request_t at_0000 = {values, 0x0000, 1, 3, 0x7F};
 static const fathom_modbus_unit_request_t at_ffff = {values, 0xFFFF, 1, 3, 0x81};
@@ -269,7 +268,7 @@ STEPS(another_repeated_request_replaces_the_first_when_that_has_ended, ON_WIRE(m
       P(PACE_US, at_0000, 1), ANSWERED, P(PACE_US, at_0000, 2))
 
 STEPS(any_register_can_be_asked_for, ON_WIRE(at_ffff, 1), ANSWERED, P(PACE_US, at_0000, 1),
-      IS(FATHOM_READY, 0, at_ffff, 1), P(0, at_0000, 2))
+      IS(FATHOM_OK, 0, at_ffff, 1), P(0, at_0000, 2))
 
 STEPS(a_command_that_waits_for_the_pace_comes_before_the_repeated_request, TAKEN(1000, measure, 1),
       P(1000, version, 1), P(PACE_US, measure, 1), /* the pause is over, but a command waits */
@@ -347,7 +346,7 @@ TEST(what_was_under_way_when_the_transport_broke_has_its_own_outcome_first)
 {
     GO(ON_WIRE(measure, 1));
     fake.transport = FATHOM_ERR_PORT;
-    GO(ANSWERED, IS(FATHOM_READY, 0, measure, 1), IS(FATHOM_ERR_PORT, 0, measure, 1));
+    GO(ANSWERED, IS(FATHOM_OK, 0, measure, 1), IS(FATHOM_ERR_PORT, 0, measure, 1));
 }
 
 /* ---- requests about one register that are not the same request: a read, a write, a measurement ---- */
@@ -361,10 +360,10 @@ static const fathom_modbus_unit_request_t two_written = {wanted, REGISTER, 2, 16
 /* The read does not take the outcome of the write. */
 STEPS(while_a_register_is_written_a_read_is_told_busy_and_a_measurement_waits, P(0, one_write, 1),
       IS(FATHOM_ERR_BUSY, 0, reading, 1), P(0, measurement, 1), ANSWERED, IS(FATHOM_ERR_BUSY, 0, reading, 1),
-      P(0, measurement, 1), IS(FATHOM_READY, 0, one_write, 1), P(PACE_US, measurement, 2), ANSWERED,
-      IS(FATHOM_READY, 0, measurement, 2), P(PACE_US, reading, 3))
+      P(0, measurement, 1), IS(FATHOM_OK, 0, one_write, 1), P(PACE_US, measurement, 2), ANSWERED,
+      IS(FATHOM_OK, 0, measurement, 2), P(PACE_US, reading, 3))
 
 /* A reading is no acknowledgement. */
 STEPS(a_write_of_a_register_that_is_being_read_is_told_busy, P(0, reading, 1),
       IS(FATHOM_ERR_BUSY, 0, one_write, 1), IS(FATHOM_ERR_BUSY, 0, two_written, 1), ANSWERED,
-      IS(FATHOM_ERR_BUSY, 0, one_write, 1), IS(FATHOM_READY, 0, reading, 1), P(PACE_US, two_written, 2))
+      IS(FATHOM_ERR_BUSY, 0, one_write, 1), IS(FATHOM_OK, 0, reading, 1), P(PACE_US, two_written, 2))

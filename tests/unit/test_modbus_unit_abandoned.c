@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "desk.h"
-#include "fathom/engine/modbus_setting.h"
+#include "fathom/engine/internal/modbus_setting.h"
 
 /* A command or setting that its caller begins and never calls again (modbus_unit.h, rules 5 and 6). */
 
@@ -23,7 +23,7 @@ static const fathom_modbus_unit_request_t details = {&value, 0x0003, 1, 3, 0x83}
 static fathom_status_t look(const fathom_modbus_setting_t *setting, uint32_t *is)
 {
     const fathom_status_t status = fathom_modbus_unit_ask(setting->driver, &version);
-    if (status == FATHOM_READY) *is = value;
+    if (status == FATHOM_OK) *is = value;
     return status;
 }
 
@@ -36,7 +36,7 @@ static int set_up(void **state)
 {
     desk_begin(0xFFFFF000u); /* the clock wraps soon */
     memset(&unit, 0x5A, sizeof unit);
-    assert_int_equal(fathom_modbus_unit_init(&unit, &config, TIMEOUT_US, 0), FATHOM_READY);
+    assert_int_equal(fathom_modbus_unit_init(&unit, &config, TIMEOUT_US, 0), FATHOM_OK);
     return 0;
 }
 
@@ -73,7 +73,7 @@ static uint32_t until_measuring(void)
 static void measures(void)
 {
     responds(754);
-    assert_int_equal(asks(&measure), FATHOM_READY);
+    assert_int_equal(asks(&measure), FATHOM_OK);
 }
 
 TEST(an_outcome_that_is_not_fetched_keeps_the_measurement_out_for_5_s)
@@ -112,7 +112,7 @@ TEST(an_abandoned_command_gives_way_to_another_command)
     fake.now_us += STEP_US;
     PENDS(asks(&details));
     responds(8);
-    assert_int_equal(asks(&details), FATHOM_READY);
+    assert_int_equal(asks(&details), FATHOM_OK);
     assert_int_equal(value, 8);
 }
 
@@ -140,7 +140,7 @@ TEST(an_abandoned_setting_gives_way_to_another_setting)
     PENDS(sets(&other_setting));
     assert_int_equal(fake.request->message.head[0], UNIT);
     responds(1);
-    assert_int_equal(sets(&other_setting), FATHOM_READY);
+    assert_int_equal(sets(&other_setting), FATHOM_OK);
     assert_int_equal(unit.address, UNIT);
 }
 
@@ -149,12 +149,12 @@ TEST(an_abandoned_setting_gives_way_to_a_blind_setting)
     PENDS(sets(&move));
     responds(UNIT);
     PENDS(sets(&move));
-    assert_int_equal(fathom_modbus_next_is_blind(&unit), FATHOM_ERR_BUSY);
+    assert_int_equal(fathom_modbus_write_next_unchecked(&unit), FATHOM_ERR_BUSY);
     for (unsigned i = 0; i != ABANDONED_US / STEP_US; i++) {
         fake.now_us += STEP_US;
         fathom_modbus_unit_poll(&unit);
     }
-    assert_int_equal(fathom_modbus_next_is_blind(&unit), FATHOM_READY);
+    assert_int_equal(fathom_modbus_write_next_unchecked(&unit), FATHOM_OK);
     assert_int_equal(unit.address, UNIT);
     PENDS(sets(&other_setting)); /* the write at once */
     assert_int_equal(fake.request->message.head[1], 6);
@@ -164,7 +164,7 @@ TEST(an_abandoned_setting_gives_way_to_a_blind_setting)
 
 TEST(the_setting_after_an_abandoned_blind_setting_is_not_blind)
 {
-    assert_int_equal(fathom_modbus_next_is_blind(&unit), FATHOM_READY);
+    assert_int_equal(fathom_modbus_write_next_unchecked(&unit), FATHOM_OK);
     PENDS(sets(&other_setting));
     assert_int_equal(fake.request->message.head[1], 6);
     for (unsigned i = 0; i != ABANDONED_US / STEP_US; i++) {
@@ -186,7 +186,7 @@ TEST(a_setting_that_begins_behind_an_abandoned_command_is_carried_out_whole)
     }
     /* Abandoned again: this time the setting is the next to call. */
     responds(754);
-    assert_int_equal(asks(&measure), FATHOM_READY);
+    assert_int_equal(asks(&measure), FATHOM_OK);
     PENDS(asks(&details));
     responds(8);
     fathom_modbus_unit_poll(&unit);
@@ -199,7 +199,7 @@ TEST(a_setting_that_begins_behind_an_abandoned_command_is_carried_out_whole)
     fake_modbus_acknowledge(&fake);
     PENDS(sets(&other_setting)); /* the read back */
     responds(1);
-    assert_int_equal(sets(&other_setting), FATHOM_READY);
+    assert_int_equal(sets(&other_setting), FATHOM_OK);
 }
 
 /* In a loop of 7 s both are called in each turn: nothing is abandoned. */
@@ -209,7 +209,7 @@ TEST(a_slow_loop_completes_its_commands)
     responds(7);
     fake.now_us += SLOW_US;
     PENDS(asks(&measure));
-    assert_int_equal(asks(&version), FATHOM_READY);
+    assert_int_equal(asks(&version), FATHOM_OK);
     PENDS(sets(&other_setting));
     responds(0);
     fake.now_us += SLOW_US;
@@ -222,7 +222,7 @@ TEST(a_slow_loop_completes_its_commands)
     responds(1);
     fake.now_us += SLOW_US;
     PENDS(asks(&measure));
-    assert_int_equal(sets(&other_setting), FATHOM_READY);
+    assert_int_equal(sets(&other_setting), FATHOM_OK);
 }
 
 TEST(a_command_that_is_called_at_least_every_5_s_is_never_abandoned)
@@ -235,7 +235,7 @@ TEST(a_command_that_is_called_at_least_every_5_s_is_never_abandoned)
     }
     assert_int_equal(fake.cancels, 0);
     responds(7);
-    assert_int_equal(asks(&version), FATHOM_READY);
+    assert_int_equal(asks(&version), FATHOM_OK);
 }
 
 /* modbus_unit.h, fathom_modbus_unit_due_us(): a program that sleeps for it is not kept out longer than another. */
@@ -281,7 +281,7 @@ TEST(a_command_that_has_ended_delays_no_poll)
 {
     PENDS(asks(&version));
     responds(7);
-    assert_int_equal(asks(&version), FATHOM_READY);
+    assert_int_equal(asks(&version), FATHOM_OK);
     for (unsigned i = 0; i != 30; i++) {
         fake.now_us += STEP_US;
         fathom_modbus_unit_poll(&unit);
@@ -305,7 +305,7 @@ TEST(a_transport_that_cannot_tell_what_it_has_is_trusted)
     PENDS(asks(&measure));
     for (unsigned i = 0; i != 100; i++) PENDS(asks(&measure));
     measures();
-    assert_int_equal(fathom_modbus_unit_init(&unit, &config, TIMEOUT_US, 0), FATHOM_READY);
+    assert_int_equal(fathom_modbus_unit_init(&unit, &config, TIMEOUT_US, 0), FATHOM_OK);
 }
 
 TEST(a_second_init_is_refused_while_the_request_is_queued_and_changes_nothing)
@@ -315,5 +315,5 @@ TEST(a_second_init_is_refused_while_the_request_is_queued_and_changes_nothing)
     assert_int_equal(fathom_modbus_unit_init(&unit, &config, TIMEOUT_US, 0), FATHOM_ERR_BUSY);
     assert_memory_equal(&unit, &before, sizeof unit);
     measures();
-    assert_int_equal(fathom_modbus_unit_init(&unit, &config, TIMEOUT_US, 0), FATHOM_READY);
+    assert_int_equal(fathom_modbus_unit_init(&unit, &config, TIMEOUT_US, 0), FATHOM_OK);
 }

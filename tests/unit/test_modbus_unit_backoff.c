@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "desk.h"
-#include "fathom/engine/modbus_unit.h"
+#include "fathom/engine/internal/modbus_unit.h"
 
 /* A unit that does not answer is asked less and less often. */
 enum { UNIT = 9, PACE_US = 100000, TIMEOUT_US = 300000 };
@@ -18,7 +18,7 @@ static void set_up_at(uint32_t now_us)
     assert_int_equal(
         fathom_modbus_unit_init(&unit, &(fathom_modbus_config_t){.transport = &fake.modbus, .address = UNIT},
                                 TIMEOUT_US, PACE_US),
-        FATHOM_READY);
+        FATHOM_OK);
 }
 
 static int set_up(void **state)
@@ -58,7 +58,7 @@ static void end_with(const fathom_modbus_unit_request_t *request, fathom_status_
     static const uint16_t says[3];
     fake_modbus_send(&fake);
     PENDS(read_after(0, request));
-    if (status == FATHOM_READY)
+    if (status == FATHOM_OK)
         fake_modbus_response(&fake, says, (uint8_t)request->last);
     else
         fake_modbus_fail(&fake, status);
@@ -124,7 +124,7 @@ CAP(the_longest_pause_is_half_the_clock, 300000000, 0x7FFFFFFFu, PACE_US, 0, 0, 
 
 TEST(the_first_thing_that_it_says_ends_that)
 {
-    static const fathom_status_t outcomes[] = {FATHOM_READY, FATHOM_ERR_EXCEPTION, FATHOM_ERR_CHECKSUM,
+    static const fathom_status_t outcomes[] = {FATHOM_OK, FATHOM_ERR_EXCEPTION, FATHOM_ERR_CHECKSUM,
                                                FATHOM_ERR_MALFORMED};
     for (unsigned i = 0; i != COUNT(outcomes); i++)
         for (unsigned before = 1; before != 8; before++) {
@@ -180,7 +180,7 @@ TEST(a_command_is_not_held_back)
     assert_int_equal(fake.submits, 7);
     PENDS(read_after(0, &version));
     fake_modbus_assert_asked(&fake, 8, UNIT, 0x0001, 3);
-    end_with(&version, FATHOM_READY);
+    end_with(&version, FATHOM_OK);
     assert_paused_for(0); /* it has answered */
 }
 

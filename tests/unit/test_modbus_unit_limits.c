@@ -4,7 +4,7 @@
 #include "suite.h"
 
 #include "fake_modbus.h"
-#include "fathom/engine/modbus_unit.h"
+#include "fathom/engine/internal/modbus_unit.h"
 
 /* modbus_unit.h: memory that is not zero, the longest back-off, and power-on. */
 enum { UNIT = 9 };
@@ -22,7 +22,7 @@ static void set_up_on(uint8_t fill)
     assert_int_equal(
         fathom_modbus_unit_init(&unit, &(fathom_modbus_config_t){.transport = &fake.modbus, .address = UNIT},
                                 100000, 0),
-        FATHOM_READY);
+        FATHOM_OK);
 }
 
 static int set_up(void **state)
@@ -129,5 +129,5 @@ TEST(after_power_on_three_time_outs_in_a_row_are_needed_again)
     assert_int_equal(ask_after(100000), FATHOM_PENDING);
     assert_int_equal(fake.submits, 7);
     fake_modbus_response(&fake, response, 1);
-    assert_int_equal(ask_after(0), FATHOM_READY);
+    assert_int_equal(ask_after(0), FATHOM_OK);
 }

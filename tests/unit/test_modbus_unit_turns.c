@@ -4,7 +4,7 @@
 #include "suite.h"
 
 #include "fake_modbus.h"
-#include "fathom/engine/modbus_unit.h"
+#include "fathom/engine/internal/modbus_unit.h"
 
 /* modbus_unit.h: whose turn it is, and when, where requests are cancelled, wait behind others, or the port breaks. */
 enum { UNIT = 9, PACE_US = 100000, TIMEOUT_US = 300000, WRITE = FATHOM_MODBUS_WRITE_SINGLE_REGISTER };
@@ -28,7 +28,7 @@ static int set_up(void **state)
     assert_int_equal(
         fathom_modbus_unit_init(&unit, &(fathom_modbus_config_t){.transport = &fake.modbus, .address = UNIT},
                                 TIMEOUT_US, PACE_US),
-        FATHOM_READY);
+        FATHOM_OK);
     return 0;
 }
 
@@ -111,7 +111,7 @@ TEST(the_repeated_request_lets_every_command_pass_that_waits)
         ask_and_send(&measure);
         pending_after(0, commands[i]);
         fake_modbus_response(&fake, response, 1);
-        assert_int_equal(ask_after(PACE_US, &measure), FATHOM_READY);
+        assert_int_equal(ask_after(PACE_US, &measure), FATHOM_OK);
         pending_after(0, &measure);
         assert_int_equal(fake.submits, 1);
         pending_after(0, commands[i]);
@@ -133,7 +133,7 @@ TEST(writes_of_neighbouring_registers_are_two_commands)
     assert_int_equal(ask_after(0, &write_201), FATHOM_ERR_BUSY);
     fake_modbus_acknowledge(&fake);
     assert_int_equal(ask_after(0, &write_201), FATHOM_ERR_BUSY);
-    assert_int_equal(ask_after(0, &write_200), FATHOM_READY);
+    assert_int_equal(ask_after(0, &write_200), FATHOM_OK);
     pending_after(PACE_US, &write_201);
     assert_int_equal(fake.submits, 2);
 }

@@ -77,37 +77,37 @@ DRIVER(hps167s_auto)
 COMMAND(a05_auto_choose, fathom_a05_auto_select(&a05_auto, FATHOM_REAL_TIME))
 COMMAND(a16_auto_choose, fathom_a16_auto_select(&a16_auto, FATHOM_REAL_TIME))
 
-COMMAND(a05_dyp_every_address, fathom_a05_dyp_set_every_address(&a05_dyp, 2))
+COMMAND(a05_dyp_every_address, fathom_a05_dyp_broadcast_address(&a05_dyp, 2))
 
-COMMAND(a05_modbus_get_address, fathom_a05_modbus_address(&a05_modbus, &byte))
+COMMAND(a05_modbus_get_address, fathom_a05_modbus_get_address(&a05_modbus, &byte))
 COMMAND(a05_modbus_put_address, fathom_a05_modbus_set_address(&a05_modbus, 2))
-COMMAND(a05_modbus_put_0, fathom_a05_modbus_set_address_to_0_perhaps_for_ever(&a05_modbus))
+COMMAND(a05_modbus_put_0, fathom_a05_modbus_set_address_0(&a05_modbus))
 
-COMMAND(a16_get_address, fathom_a16_modbus_address(&a16_modbus, &byte))
+COMMAND(a16_get_address, fathom_a16_modbus_get_address(&a16_modbus, &byte))
 COMMAND(a16_put_address, fathom_a16_modbus_set_address(&a16_modbus, 2))
-COMMAND(a16_put_0, fathom_a16_modbus_set_address_to_0_perhaps_for_ever(&a16_modbus))
+COMMAND(a16_put_0, fathom_a16_modbus_set_address_0(&a16_modbus))
 COMMAND(a16_measure, fathom_a16_modbus_measure(&a16_modbus, FATHOM_REAL_TIME, &sample))
-COMMAND(a16_blind, fathom_a16_modbus_next_is_blind(&a16_modbus))
+COMMAND(a16_blind, fathom_a16_modbus_write_next_unchecked(&a16_modbus))
 COMMAND(a16_put_mode, fathom_a16_modbus_set_operating_mode(&a16_modbus, FATHOM_A16_AUTOMATIC))
-COMMAND(a16_get_polarity, fathom_a16_modbus_switch_polarity(&a16_modbus, &polarity))
+COMMAND(a16_get_polarity, fathom_a16_modbus_get_switch_polarity(&a16_modbus, &polarity))
 COMMAND(a16_put_polarity, fathom_a16_modbus_set_switch_polarity(&a16_modbus, FATHOM_A16_NEGATIVE))
-COMMAND(a16_get_threshold, fathom_a16_modbus_switch_threshold_mm(&a16_modbus, &word))
+COMMAND(a16_get_threshold, fathom_a16_modbus_get_switch_threshold_mm(&a16_modbus, &word))
 COMMAND(a16_put_threshold, fathom_a16_modbus_set_switch_threshold_mm(&a16_modbus, 500))
-COMMAND(a16_get_value, fathom_a16_modbus_automatic_value(&a16_modbus, &value))
+COMMAND(a16_get_value, fathom_a16_modbus_get_automatic_value(&a16_modbus, &value))
 COMMAND(a16_put_value, fathom_a16_modbus_set_automatic_value(&a16_modbus, FATHOM_REAL_TIME))
 
-COMMAND(hps_version, fathom_hps167s_interface_version(&hps167s, &version))
-COMMAND(hps_configuration, fathom_hps167s_configuration(&hps167s, &configuration))
-COMMAND(hps_details, fathom_hps167s_details(&hps167s, &details))
-COMMAND(hps_temperature, fathom_hps167s_temperature(&hps167s, &temperature))
-COMMAND(hps_blind, fathom_hps167s_next_is_blind(&hps167s))
+COMMAND(hps_version, fathom_hps167s_get_interface_version(&hps167s, &version))
+COMMAND(hps_configuration, fathom_hps167s_get_configuration(&hps167s, &configuration))
+COMMAND(hps_details, fathom_hps167s_get_details(&hps167s, &details))
+COMMAND(hps_temperature, fathom_hps167s_get_temperature(&hps167s, &temperature))
+COMMAND(hps_blind, fathom_hps167s_write_next_unchecked(&hps167s))
 COMMAND(hps_warm_up, fathom_hps167s_set_warm_up_s(&hps167s, 9))
 COMMAND(hps_address, fathom_hps167s_set_address(&hps167s, 2))
 COMMAND(hps_baud, fathom_hps167s_set_baud(&hps167s, 57600))
 COMMAND(hps_measures, fathom_hps167s_set_measures_after_power_on(&hps167s, false))
 COMMAND(hps_termination, fathom_hps167s_set_termination(&hps167s, false))
-COMMAND(hps_measures_all, fathom_hps167s_set_measures_after_power_on_of_all_units(&hps167s, false))
-COMMAND(hps_termination_all, fathom_hps167s_set_termination_of_all_units(&hps167s, false))
+COMMAND(hps_measures_all, fathom_hps167s_broadcast_measures_after_power_on(&hps167s, false))
+COMMAND(hps_termination_all, fathom_hps167s_broadcast_termination(&hps167s, false))
 COMMAND(hps_offset, fathom_hps167s_set_distance_offset_mm(&hps167s, 1))
 COMMAND(hps_load_user, fathom_hps167s_load_user_settings(&hps167s))
 COMMAND(hps_load_factory, fathom_hps167s_load_factory_settings(&hps167s))
@@ -212,7 +212,7 @@ TEST(power_on_cancel_and_deinit_of_a_zeroed_driver_do_nothing)
     fathom_hps167s_cancel(&hps167s);
     fathom_hps167s_deinit(&hps167s);
     memset(&a16_controlled, 0, sizeof a16_controlled);
-    assert_int_equal(fathom_a16_controlled_deinit(&a16_controlled), FATHOM_READY);
+    assert_int_equal(fathom_a16_controlled_deinit(&a16_controlled), FATHOM_OK);
     refuses_everything(&of_a05_dyp);
     refuses_everything(&of_a05_modbus);
     refuses_everything(&of_a16_modbus);

@@ -90,7 +90,7 @@ TEST(more_noise_than_one_poll_takes_is_taken_by_the_next_ones)
     stand.fake.now_us += 200 * MS;
     expect_poll(FATHOM_PENDING); /* 16 of them */
     assert_int_equal(stand.meter.noises, 16);
-    expect_poll(FATHOM_READY);
+    expect_poll(FATHOM_OK);
     expect_last(FATHOM_TARGET, 10 * MS);
 }
 

@@ -123,14 +123,14 @@ TEST(an_a16_with_short_pulses_is_unknown)
     const fathom_a16_pwm_config_t config = {.pulse = stand.config};
     fathom_sample_t sample;
     response_with(110 * MS, 1500);
-    assert_int_equal(fathom_a16_pwm_init(&a16, &config), FATHOM_READY);
+    assert_int_equal(fathom_a16_pwm_init(&a16, &config), FATHOM_OK);
     const fathom_sensor_t sensor = fathom_a16_pwm_sensor(&a16);
     fathom_status_t status = FATHOM_PENDING;
     for (unsigned polls = 0; polls != 1000 && status == FATHOM_PENDING; polls++) {
         stand.fake.now_us += 1 * MS;
         status = fathom_poll(&sensor, &sample);
     }
-    assert_int_equal(status, FATHOM_READY);
+    assert_int_equal(status, FATHOM_OK);
     assert_int_equal(sample.kind, FATHOM_UNKNOWN);
     assert_int_equal(sample.raw, 1500);
     assert_int_equal(sample.distance_mm, 0);
@@ -225,7 +225,7 @@ TEST(a_pulse_may_be_2500_ms_old)
         response_with(110 * MS, 10 * MS);
         run_to_trigger();
         stand.fake.now_us += 120 * MS + 2500000u + late_us;
-        expect_poll(late_us == 0 ? FATHOM_READY : FATHOM_ERR_STALE);
+        expect_poll(late_us == 0 ? FATHOM_OK : FATHOM_ERR_STALE);
     }
 }
 
@@ -251,7 +251,7 @@ TEST(init_forgets_the_pulse_of_the_cycle_before)
     run_to_trigger();
     pulse_in(5 * MS, 10 * MS);
     stand.fake.now_us += 20 * MS;
-    assert_int_equal(fathom_pulse_init(&stand.meter, &stand.config), FATHOM_READY);
+    assert_int_equal(fathom_pulse_init(&stand.meter, &stand.config), FATHOM_OK);
     run_meter(240 * MS);
     expect_readings(0);
     expect_no_responses(1);
@@ -350,11 +350,11 @@ static fathom_status_t wait_for_a16(uint8_t kind)
     static fathom_a16_pwm_t a16;
     const fathom_a16_pwm_config_t config = {.pulse = stand.config};
     fathom_sample_t sample;
-    assert_int_equal(fathom_a16_pwm_init(&a16, &config), FATHOM_READY);
+    assert_int_equal(fathom_a16_pwm_init(&a16, &config), FATHOM_OK);
     const fathom_sensor_t sensor = fathom_a16_pwm_sensor(&a16);
     fathom_status_t status = FATHOM_PENDING;
     for (unsigned n = 0; n != 5; n++) status = fathom_wait(&sensor, &sample, sleep_for, NULL);
-    if (status == FATHOM_READY) assert_int_equal(sample.kind, kind);
+    if (status == FATHOM_OK) assert_int_equal(sample.kind, kind);
     return status;
 }
 
@@ -362,13 +362,13 @@ TEST(wait_returns_whatever_the_line_does)
 {
     assert_int_equal(wait_for_a16(0), FATHOM_ERR_NO_RESPONSE);
     stand.pin.stuck_high = true;
-    assert_int_equal(wait_for_a16(FATHOM_FAULT), FATHOM_READY);
+    assert_int_equal(wait_for_a16(FATHOM_FAULT), FATHOM_OK);
     stand.pin.stuck_high = false;
     noise_us = 99;
     stand.pin.capture.take = always_noise;
     assert_int_equal(wait_for_a16(0), FATHOM_ERR_NO_RESPONSE);
     noise_us = 2699;
-    assert_int_equal(wait_for_a16(FATHOM_UNKNOWN), FATHOM_READY);
+    assert_int_equal(wait_for_a16(FATHOM_UNKNOWN), FATHOM_OK);
 }
 
 TEST_IN(with_uart, wait_returns_for_a_port_that_refuses_the_break)
@@ -385,7 +385,7 @@ TEST(a_meter_in_zeroed_memory_has_an_error_in_each_poll_and_no_function_is_calle
     memset(&stand.meter, 0, sizeof stand.meter);
     expect_poll(FATHOM_ERR_ARGUMENT);
     expect_due(0);
-    assert_int_equal(fathom_pulse_deinit(&stand.meter), FATHOM_READY);
+    assert_int_equal(fathom_pulse_deinit(&stand.meter), FATHOM_OK);
 }
 
 TEST(an_init_that_fails_leaves_the_meter_zeroed)

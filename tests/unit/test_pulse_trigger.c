@@ -171,8 +171,8 @@ TEST(the_period_of_a_trigger_is_longer_than_its_low_time)
         fathom_status_t status;
     } rows[] = {{0, FATHOM_ERR_ARGUMENT},
                 {30000, FATHOM_ERR_ARGUMENT},
-                {30001, FATHOM_READY},
-                {FATHOM_MAX_DURATION_US, FATHOM_READY},
+                {30001, FATHOM_OK},
+                {FATHOM_MAX_DURATION_US, FATHOM_OK},
                 {FATHOM_MAX_DURATION_US + 1, FATHOM_ERR_ARGUMENT}};
     for (unsigned i = 0; i != COUNT_OF(rows); i++) {
         fathom_trigger_t trigger = {.output = fathom_output_pin(&stand.pin.trigger),
@@ -287,7 +287,7 @@ TEST(a_capture_that_fails_is_said_by_every_poll_until_it_works_again)
         expect_poll(FATHOM_ERR_PORT);
     }
     stand.pin.take_fails = false;
-    expect_poll(FATHOM_READY);
+    expect_poll(FATHOM_OK);
     expect_last(FATHOM_TARGET, 10 * MS);
 }
 
@@ -311,7 +311,7 @@ TEST(a_config_without_what_it_needs_is_refused)
     stand.config.trigger.set = NULL;
     expect_init(FATHOM_ERR_ARGUMENT);
     stand.config.trigger = fathom_output_break(&uart);
-    expect_init(FATHOM_READY);
+    expect_init(FATHOM_OK);
     uart.set_break = NULL;
     expect_init(FATHOM_ERR_UNSUPPORTED);
     stand.config = good;
@@ -319,11 +319,11 @@ TEST(a_config_without_what_it_needs_is_refused)
     stand.config.no_target_us = 50000;
     expect_init(FATHOM_ERR_ARGUMENT);
     stand.config.noise_us = 49999;
-    expect_init(FATHOM_READY);
+    expect_init(FATHOM_OK);
     stand.config.stuck_us = 49999;
     expect_init(FATHOM_ERR_ARGUMENT);
     stand.config.stuck_us = 50000;
-    expect_init(FATHOM_READY);
+    expect_init(FATHOM_OK);
 }
 
 TEST(deinit_lets_the_trigger_go_high)

@@ -4,13 +4,13 @@
 #include "suite.h"
 
 #include "fake_pin.h"
+#include "fathom/processing/alarm.h"
+#include "fathom/processing/level.h"
+#include "fathom/processing/median.h"
 #include "fathom/sensor/a05_relay.h"
 #include "fathom/sensor/a05_relay_rule.h"
 #include "fathom/sensor/a16_pwm.h"
 #include "fathom/sensor/a16_switch.h"
-#include "fathom/sensor/alarm.h"
-#include "fathom/sensor/level.h"
-#include "fathom/sensor/median.h"
 
 /*
  * The range of each member of the configurations of pulses, contacts and of what is made of readings, as the headers
@@ -204,8 +204,8 @@ TEST(each_member_has_a_range_that_init_keeps)
 {
     for (unsigned i = 0; i != COUNT_OF(ranges); i++) {
         const range_t *const range = &ranges[i];
-        expect_of(range, range->least, FATHOM_READY);
-        expect_of(range, range->greatest, FATHOM_READY);
+        expect_of(range, range->least, FATHOM_OK);
+        expect_of(range, range->greatest, FATHOM_OK);
         for (unsigned n = 0; n != range->refused_count; n++) {
             expect_of(range, range->refused[n], FATHOM_ERR_ARGUMENT);
             expect_zeroed(range->init);
@@ -217,7 +217,7 @@ TEST(every_default_is_inside_its_range)
 {
     for (unsigned i = 0; i != COUNT_OF(objects); i++) {
         set_up(NULL);
-        assert_int_equal(objects[i].init(), FATHOM_READY);
+        assert_int_equal(objects[i].init(), FATHOM_OK);
     }
 }
 
@@ -226,7 +226,7 @@ TEST(noise_is_below_no_target)
 {
     pwm.pulse.no_target_us = 50000;
     pwm.pulse.noise_us = 49999;
-    assert_int_equal(init_pulse(), FATHOM_READY);
+    assert_int_equal(init_pulse(), FATHOM_OK);
     pwm.pulse.noise_us = 50000;
     assert_int_equal(init_pulse(), FATHOM_ERR_ARGUMENT);
     pwm.pulse.noise_us = UINT16_MAX;
@@ -237,7 +237,7 @@ TEST(the_farthest_distance_is_not_nearer_than_the_nearest)
 {
     pwm.window.min_mm = 100;
     pwm.window.max_mm = 100;
-    assert_int_equal(init_pwm(), FATHOM_READY);
+    assert_int_equal(init_pwm(), FATHOM_OK);
     pwm.window.max_mm = 99;
     assert_int_equal(init_pwm(), FATHOM_ERR_ARGUMENT);
     pwm.window.max_mm = 1;
@@ -249,7 +249,7 @@ TEST(an_alarm_of_something_far_has_its_thresholds_the_other_way_round)
     alarm.when = FATHOM_FAR;
     assert_int_equal(init_alarm(), FATHOM_ERR_ARGUMENT);
     alarm.off_mm = 500;
-    assert_int_equal(init_alarm(), FATHOM_READY);
+    assert_int_equal(init_alarm(), FATHOM_OK);
 }
 
 TEST(a_missing_function_is_refused)
@@ -280,31 +280,31 @@ TEST(what_is_made_of_readings_does_nothing_in_zeroed_memory)
     fathom_sample_t sample = {.kind = FATHOM_TARGET, .distance_mm = 300, .probe = 1, .sequence = 1};
     memset(&driver, 0, sizeof driver);
     for (unsigned n = 0; n != 20; n++) {
-        assert_false(fathom_debounce_sample(&driver.debounce, &sample));
-        assert_false(fathom_debounce_time(&driver.debounce, n));
+        assert_false(fathom_debounce_add_sample(&driver.debounce, &sample));
+        assert_false(fathom_debounce_advance(&driver.debounce, n));
     }
     assert_int_equal(driver.debounce.level, 0);
     memset(&driver, 0, sizeof driver);
     for (unsigned n = 0; n != 20; n++) {
         sample.sequence = (uint16_t)n;
-        assert_false(fathom_a05_relay_rule_sample(&driver.rule, &sample));
+        assert_false(fathom_a05_relay_rule_add_sample(&driver.rule, &sample));
     }
     assert_int_equal(driver.rule.debounce.level, 0);
     memset(&driver, 0, sizeof driver);
     for (unsigned n = 0; n != 20; n++) {
-        assert_false(fathom_alarm_sample(&driver.alarm, &sample));
-        assert_false(fathom_alarm_status(&driver.alarm, FATHOM_ERR_NO_RESPONSE, n));
+        assert_false(fathom_alarm_add_sample(&driver.alarm, &sample));
+        assert_false(fathom_alarm_add_status(&driver.alarm, FATHOM_ERR_NO_RESPONSE, n));
     }
     assert_int_equal(driver.alarm.state, 0);
     assert_false(fathom_alarm_is_on(&driver.alarm));
     memset(&driver, 0, sizeof driver);
     for (unsigned n = 0; n != 20; n++) {
-        assert_false(fathom_median_sample(&driver.median, &sample, &sample));
-        assert_false(fathom_median_time(&driver.median, n));
+        assert_false(fathom_median_add_sample(&driver.median, &sample, &sample));
+        assert_false(fathom_median_advance(&driver.median, n));
     }
     const fathom_level_config_t none = {0};
     fathom_level_t level;
-    assert_int_equal(fathom_level(&none, 300, &level), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_level_from_distance(&none, 300, &level), FATHOM_ERR_ARGUMENT);
     assert_int_equal(fathom_level_check(&none), FATHOM_ERR_ARGUMENT);
 }
 
@@ -315,7 +315,7 @@ TEST(an_a16_in_zeroed_memory_has_an_error_in_each_poll)
     const fathom_sensor_t sensor = fathom_a16_pwm_sensor(&driver.pwm);
     assert_int_equal(fathom_poll(&sensor, &sample), FATHOM_ERR_ARGUMENT);
     assert_int_equal(fathom_due_us(&sensor, 1), 0);
-    assert_int_equal(fathom_a16_pwm_deinit(&driver.pwm), FATHOM_READY);
+    assert_int_equal(fathom_a16_pwm_deinit(&driver.pwm), FATHOM_OK);
 }
 
 /* ---- a clock that is set back ---- */
@@ -324,16 +324,16 @@ TEST(a_clock_that_is_set_back_does_not_end_a_hold_time)
 {
     debounce.hold_us = 1000000;
     debounce.near_count = debounce.far_count = 1;
-    assert_int_equal(init_debounce(), FATHOM_READY);
-    assert_true(fathom_debounce_verdict(&driver.debounce, FATHOM_NEAR, 500000));
-    assert_false(fathom_debounce_verdict(&driver.debounce, FATHOM_FAR, 400000));
+    assert_int_equal(init_debounce(), FATHOM_OK);
+    assert_true(fathom_debounce_add_verdict(&driver.debounce, FATHOM_NEAR, 500000));
+    assert_false(fathom_debounce_add_verdict(&driver.debounce, FATHOM_FAR, 400000));
     set_up(NULL);
     alarm.on_hold_us = 1000000;
-    assert_int_equal(init_alarm(), FATHOM_READY);
+    assert_int_equal(init_alarm(), FATHOM_OK);
     fathom_sample_t near = {.kind = FATHOM_NEAR, .time_us = 500000};
-    assert_false(fathom_alarm_sample(&driver.alarm, &near));
+    assert_false(fathom_alarm_add_sample(&driver.alarm, &near));
     near.time_us = 400000;
-    assert_false(fathom_alarm_sample(&driver.alarm, &near));
+    assert_false(fathom_alarm_add_sample(&driver.alarm, &near));
     near.time_us = 1500000;
-    assert_true(fathom_alarm_sample(&driver.alarm, &near));
+    assert_true(fathom_alarm_add_sample(&driver.alarm, &near));
 }

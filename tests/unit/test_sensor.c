@@ -21,7 +21,7 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     driver->polls++;
     driver->sample = sample;
     if (driver->polls <= driver->pendings) return FATHOM_PENDING;
-    if (driver->status == FATHOM_READY) sample->distance_mm = 1953;
+    if (driver->status == FATHOM_OK) sample->distance_mm = 1953;
     return driver->status;
 }
 
@@ -49,12 +49,23 @@ static void idle(void *ctx, uint32_t max_us)
 
 /* ---- fathom_poll and fathom_due_us ---- */
 
-static const fathom_status_t all[] = {FATHOM_READY,           FATHOM_PENDING,         FATHOM_ERR_ARGUMENT,
-                                      FATHOM_ERR_PORT,        FATHOM_ERR_NO_RESPONSE, FATHOM_ERR_CHECKSUM,
-                                      FATHOM_ERR_EXCEPTION,   FATHOM_ERR_MALFORMED,   FATHOM_ERR_STALE,
-                                      FATHOM_ERR_CANCELLED,   FATHOM_ERR_BUSY,        FATHOM_ERR_CAPACITY,
-                                      FATHOM_ERR_ECHO,        FATHOM_ERR_UNSUPPORTED, FATHOM_ERR_WARMING_UP,
-                                      FATHOM_ERR_UNCONFIRMED, FATHOM_ERR_IN_USE};
+static const fathom_status_t all[] = {FATHOM_OK,
+                                      FATHOM_PENDING,
+                                      FATHOM_ERR_ARGUMENT,
+                                      FATHOM_ERR_PORT,
+                                      FATHOM_ERR_NO_RESPONSE,
+                                      FATHOM_ERR_CHECKSUM,
+                                      FATHOM_ERR_EXCEPTION,
+                                      FATHOM_ERR_MALFORMED,
+                                      FATHOM_ERR_STALE,
+                                      FATHOM_ERR_CANCELLED,
+                                      FATHOM_ERR_BUSY,
+                                      FATHOM_ERR_CAPACITY,
+                                      FATHOM_ERR_ECHO,
+                                      FATHOM_ERR_UNSUPPORTED,
+                                      FATHOM_ERR_WARMING_UP,
+                                      FATHOM_ERR_UNCONFIRMED,
+                                      FATHOM_ERR_IN_USE};
 
 TEST(poll_hands_on_what_the_driver_says)
 {
@@ -67,7 +78,7 @@ TEST(poll_hands_on_what_the_driver_says)
         assert_ptr_equal(driver.sample, &sample);
         assert_int_equal(driver.polls, 1);
         assert_int_equal(driver.dues, 0);
-        if (all[i] == FATHOM_READY)
+        if (all[i] == FATHOM_OK)
             assert_int_equal(sample.distance_mm, 1953);
         else
             assert_guard(&sample, sizeof sample);
@@ -123,14 +134,14 @@ TEST(a_count_down_stops_at_0)
 
 /* ---- fathom_wait ---- */
 
-/* What it returns when the driver has been pending so often; without READY it writes nothing. */
+/* What it returns when the driver has been pending so often; without OK it writes nothing. */
 static fathom_status_t waits(driver_t *driver, void (*hook)(void *ctx, uint32_t max_us))
 {
     const fathom_sensor_t sensor = {poll, changing_us, driver};
     fathom_sample_t sample;
     memset(&sample, GUARD, sizeof sample);
     const fathom_status_t status = fathom_wait(&sensor, &sample, hook, hook != NULL ? driver : NULL);
-    if (status == FATHOM_READY)
+    if (status == FATHOM_OK)
         assert_int_equal(sample.distance_mm, 1953);
     else
         assert_guard(&sample, sizeof sample);
@@ -141,14 +152,14 @@ static fathom_status_t waits(driver_t *driver, void (*hook)(void *ctx, uint32_t 
 
 TEST(a_reading_that_is_there_is_returned_without_idling)
 {
-    driver_t driver = {.status = FATHOM_READY};
-    assert_int_equal(waits(&driver, idle), FATHOM_READY);
+    driver_t driver = {.status = FATHOM_OK};
+    assert_int_equal(waits(&driver, idle), FATHOM_OK);
 }
 
 TEST(it_idles_until_the_driver_is_due_and_no_longer)
 {
-    driver_t driver = {.pendings = 3, .status = FATHOM_READY, .due_us = 1000};
-    assert_int_equal(waits(&driver, idle), FATHOM_READY);
+    driver_t driver = {.pendings = 3, .status = FATHOM_OK, .due_us = 1000};
+    assert_int_equal(waits(&driver, idle), FATHOM_OK);
     assert_true(driver.told_us[0] == FATHOM_NO_DEADLINE);
     assert_int_equal(driver.told_us[1], 1002);
     assert_int_equal(driver.told_us[2], 1003);
@@ -164,6 +175,6 @@ TEST(every_error_ends_it_and_leaves_the_sample_alone)
 
 TEST(without_an_idle_hook_it_spins)
 {
-    driver_t driver = {.pendings = 1000, .status = FATHOM_READY};
-    assert_int_equal(waits(&driver, NULL), FATHOM_READY);
+    driver_t driver = {.pendings = 1000, .status = FATHOM_OK};
+    assert_int_equal(waits(&driver, NULL), FATHOM_OK);
 }

@@ -10,8 +10,8 @@ static const char *name_in_the_header(fathom_status_t status)
     case FATHOM_ERR_##name:                                                                                  \
         return #name
     switch (status) {
-    case FATHOM_READY:
-        return "READY";
+    case FATHOM_OK:
+        return "OK";
     case FATHOM_PENDING:
         return "PENDING";
         ERROR_NAMED(ARGUMENT);

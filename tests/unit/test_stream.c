@@ -25,7 +25,7 @@ static void begin_with(uint8_t length, uint32_t now_us, uint16_t gap_us)
         (fathom_stream_config_t){.storage = storage, .length = length, .gap_us = gap_us, .stale_us = 2000000};
     memset(&stream, 0xA5, sizeof stream);
     memset(storage, 0xFF, sizeof storage);
-    assert_int_equal(fathom_stream_init(&stream, &config, now_us), FATHOM_READY);
+    assert_int_equal(fathom_stream_init(&stream, &config, now_us), FATHOM_OK);
 }
 
 static void begin(uint8_t length) { begin_with(length, 0, 0); }
@@ -56,7 +56,7 @@ static fathom_status_t poll_at(uint32_t now_us) { return fathom_stream_poll(&str
 /* A poll gives this frame, whose last byte came then. */
 static void expect_frame(uint32_t now_us, const uint8_t *bytes, uint32_t came_us)
 {
-    expect(now_us, FATHOM_READY);
+    expect(now_us, FATHOM_OK);
     assert_memory_equal(fathom_stream_frame(&stream), bytes, config.length);
     assert_int_equal(stream.time_us, came_us);
 }
@@ -82,10 +82,10 @@ TEST(a_config_without_storage_or_with_another_length_is_refused)
     config = (fathom_stream_config_t){.storage = storage, .length = 5};
     expect_init(FATHOM_ERR_ARGUMENT);
     config.length = 10;
-    expect_init(FATHOM_READY);
+    expect_init(FATHOM_OK);
     assert_int_equal(stream.listener.gap_us, 5000);
     config.gap_us = 25000;
-    expect_init(FATHOM_READY);
+    expect_init(FATHOM_OK);
     assert_int_equal(stream.listener.gap_us, 25000);
 }
 
@@ -107,16 +107,16 @@ TEST(the_first_frame_after_a_gap_is_believed_when_a_gap_follows_it)
 TEST(a_place_is_sure_between_two_silences)
 {
     feed_first(1500);
-    expect(6500, FATHOM_READY);
+    expect(6500, FATHOM_OK);
     assert_true(stream.is_sure);
     feed_first(100000);
     feed_first(200000); /* the silence was told with the bytes behind it */
-    expect(200000, FATHOM_READY);
+    expect(200000, FATHOM_OK);
     assert_true(stream.is_sure);
     begin(4);
     feed_first(10);
     feed_start(10);
-    expect(10, FATHOM_READY);
+    expect(10, FATHOM_OK);
     assert_false(stream.is_sure);
 }
 
@@ -127,7 +127,7 @@ TEST(a_place_is_sure_from_the_third_frame_in_step)
         feed(mm_1953, 4, with_gap != 0, 10);
         for (unsigned n = 2; n <= 300; n++) {
             feed_frame(10 * n);
-            expect(10 * n, with_gap != 0 || n > 2 ? FATHOM_READY : FATHOM_PENDING);
+            expect(10 * n, with_gap != 0 || n > 2 ? FATHOM_OK : FATHOM_PENDING);
             if (stream.counters[FATHOM_STREAM_FRAMES] != 0) assert_int_equal(stream.is_sure, n > 3);
         }
     }
@@ -146,11 +146,11 @@ TEST(a_run_that_is_broken_begins_anew)
         (void)poll_at(5);
         for (unsigned n = 0; n <= 4; n++) {
             feed_frame(6 + n);
-            assert_int_equal(poll_at(6 + n), n > 1 ? FATHOM_READY : FATHOM_PENDING);
+            assert_int_equal(poll_at(6 + n), n > 1 ? FATHOM_OK : FATHOM_PENDING);
             if (n > 1) assert_int_equal(stream.is_sure, n > 2);
         }
         feed_start(20);
-        expect(20, FATHOM_READY);
+        expect(20, FATHOM_OK);
         assert_true(stream.is_sure);
     }
 }
@@ -201,7 +201,7 @@ TEST(a_right_sum_that_no_frame_follows_is_not_believed)
 {
     feed_first(10);
     feed_hex("FF 80 80", false, 20);
-    expect(20, FATHOM_READY);
+    expect(20, FATHOM_OK);
     feed_frame(30);
     expect(30, FATHOM_PENDING);
     assert_true(stream.counters[FATHOM_STREAM_UNSURE] + stream.counters[FATHOM_STREAM_AMBIGUOUS] >= 1);
@@ -215,7 +215,7 @@ TEST(frames_that_follow_without_a_pause_are_believed_while_they_stay_in_step)
     feed_frame(20);
     expect_frame(20, mm_1953, 10);
     feed_start(25); /* the rest of this frame is lost */
-    expect(25, FATHOM_READY);
+    expect(25, FATHOM_OK);
     feed_frame(30);
     expect(30, FATHOM_PENDING); /* in step with nothing */
     feed_frame(40);
@@ -296,7 +296,7 @@ TEST(a_silent_stream_is_stale_once_every_deadline)
 TEST(the_deadline_is_two_seconds_by_default)
 {
     config.stale_us = 0;
-    expect_init(FATHOM_READY);
+    expect_init(FATHOM_OK);
     expect(1999999, FATHOM_PENDING);
     expect(2000000, FATHOM_ERR_STALE);
 }
@@ -309,7 +309,7 @@ TEST(only_a_good_frame_moves_the_deadline)
     }
     expect(2000000, FATHOM_ERR_CHECKSUM); /* bytes arrived */
     feed_first(2995000);
-    expect(3000000, FATHOM_READY);
+    expect(3000000, FATHOM_OK);
     expect(4999999, FATHOM_PENDING);
     expect(5000000, FATHOM_ERR_STALE);
 }
@@ -318,7 +318,7 @@ TEST(only_a_good_frame_moves_the_deadline)
 TEST(a_frame_that_waits_comes_before_the_deadline_until_it_is_too_old)
 {
     feed_first(10);
-    expect(2500010, FATHOM_READY);
+    expect(2500010, FATHOM_OK);
     feed_first(3000000);
     expect(5500001, FATHOM_ERR_STALE);
     expect(5500002, FATHOM_PENDING);
@@ -345,7 +345,7 @@ TEST(due_is_the_deadline_or_when_a_silence_ends_the_frame_or_at_once)
     expect_due(9000, 0);
     feed_start(2000);
     expect_due(2000, 0);
-    expect(2000, FATHOM_READY);
+    expect(2000, FATHOM_OK);
     expect_due(2000, 2000000);
     feed(mm_1953 + 1, 3, false, 1999000); /* the deadline, at 2002000, is nearer than 2004000 */
     expect_due(1999000, 3000);
@@ -357,7 +357,7 @@ TEST(counters_stop_at_their_end)
     stream.counters[FATHOM_STREAM_FRAMES] = 65535;
     feed_first(10);
     expect_counted(FATHOM_STREAM_BYTES, 65535);
-    expect(5010, FATHOM_READY);
+    expect(5010, FATHOM_OK);
     expect_counted(FATHOM_STREAM_FRAMES, 65535);
 }
 
@@ -409,17 +409,17 @@ TEST(a_frame_that_waits_for_its_successor_is_dropped_when_bytes_are_lost)
 TEST(after_a_loss_two_frames_in_step_or_a_silence_are_needed_again)
 {
     feed_first(10);
-    expect(5010, FATHOM_READY);
+    expect(5010, FATHOM_OK);
     feed_loss(6020);
     feed_frame(6020);
     feed_start(6025);
     expect(6025, FATHOM_PENDING);
     feed(mm_1953 + 1, 3, false, 6030);
     feed_start(6035);
-    expect(6035, FATHOM_READY);
+    expect(6035, FATHOM_OK);
     feed_loss(6040);
     feed_first(6050);
-    expect(11050, FATHOM_READY);
+    expect(11050, FATHOM_OK);
 }
 
 /* 511 mm held still, FF 01 FF FF: without the two bytes FF 01 it reads FF FF FF 01, FF FF 01 FF. */
@@ -442,12 +442,12 @@ TEST(a_loss_in_a_value_that_is_valid_twice_shows_no_wrong_value)
     for (uint8_t lost = 0; lost != 4; lost++) {
         begin(4);
         feed(mm_511, 4, true, 0);
-        expect(5000, FATHOM_READY);
+        expect(5000, FATHOM_OK);
         feed_loss(10);
         feed(mm_511 + lost, (uint8_t)(4 - lost), false, 10);
         for (uint32_t i = 0; i != 20; i++) {
             feed(mm_511, 4, false, 20 + i);
-            if (poll_at(20 + i) == FATHOM_READY) assert_memory_equal(fathom_stream_frame(&stream), mm_511, 4);
+            if (poll_at(20 + i) == FATHOM_OK) assert_memory_equal(fathom_stream_frame(&stream), mm_511, 4);
         }
     }
 }
@@ -482,7 +482,7 @@ TEST(of_all_bytes_behind_a_frame_only_FF_lets_it_pass)
         begin(4);
         feed_first(10);
         feed(&byte, 1, false, 20);
-        expect(20, next == 0xFF ? FATHOM_READY : FATHOM_PENDING);
+        expect(20, next == 0xFF ? FATHOM_OK : FATHOM_PENDING);
         expect(20 + GAP_US, FATHOM_PENDING);
         expect_counted(FATHOM_STREAM_UNSURE, next != 0xFF);
         if (next == 0xFF) assert_int_equal(stream.time_us, 10);
@@ -505,13 +505,13 @@ TEST(where_gap_us_is_longer_than_the_pauses_the_next_frame_decides)
     begin_with(4, 0, 25000);
     for (uint32_t now_us = 0; now_us != 200000; now_us += 20000) {
         feed(mm_1953, 4, now_us == 0, now_us);
-        const bool is_ready = poll_at(now_us) == FATHOM_READY;
+        const bool is_ready = poll_at(now_us) == FATHOM_OK;
         readings += is_ready;
         if (is_ready) assert_int_equal(stream.time_us, now_us - 20000);
         expect(now_us + 19999, FATHOM_PENDING);
     }
     assert_int_equal(readings, 9); /* of ten, all but the last */
-    expect(180000 + 25000, FATHOM_READY);
+    expect(180000 + 25000, FATHOM_OK);
 }
 
 TEST(the_silence_is_measured_across_the_wrap_of_the_clock)
@@ -532,7 +532,7 @@ TEST(who_sleeps_as_long_as_it_may_has_the_frame_when_it_wakes)
     expect(2500, FATHOM_PENDING);
     const uint32_t wake_us = 2500 + fathom_stream_due_us(&stream, 2500);
     assert_int_equal(wake_us, 1000 + GAP_US);
-    expect(wake_us, FATHOM_READY);
+    expect(wake_us, FATHOM_OK);
     expect_due(wake_us, 2000000);
 }
 

@@ -16,7 +16,7 @@ static int set_up(void **state)
 {
     const fathom_stream_config_t config = {.storage = storage, .length = FATHOM_DYP_A16_LENGTH};
     memset(&stream, 0xA5, sizeof stream);
-    assert_int_equal(fathom_stream_init(&stream, &config, start_us), FATHOM_READY);
+    assert_int_equal(fathom_stream_init(&stream, &config, start_us), FATHOM_OK);
     return 0;
 }
 
@@ -41,7 +41,7 @@ static void expect(uint32_t us, fathom_status_t status)
 TEST(a_frame_is_returned_until_it_is_older_than_the_stale_limit_and_half_a_second)
 {
     feed(mm_1953, 4, true, 10);
-    expect(10 + STALE_US + LATE_US, FATHOM_READY);
+    expect(10 + STALE_US + LATE_US, FATHOM_OK);
     assert_int_equal(stream.time_us, start_us + 10);
     feed(mm_1953, 4, true, 5000000);
     expect(5000000 + STALE_US + LATE_US + 1, FATHOM_ERR_STALE);
@@ -56,7 +56,7 @@ TEST(a_frame_of_300_s_ago_is_stale_and_the_next_one_is_read)
     expect(300000000, FATHOM_ERR_STALE);
     expect(300000001, FATHOM_PENDING);
     feed(mm_1953, 4, true, 300100000);
-    expect(300105000, FATHOM_READY);
+    expect(300105000, FATHOM_OK);
     assert_int_equal(stream.time_us, start_us + 300100000);
 }
 
@@ -75,10 +75,10 @@ TEST(a_loss_that_the_caller_reports_keeps_the_halves_of_a_frame_apart)
 TEST(after_a_start_nothing_of_before_a_pause_beyond_the_wrap_is_left)
 {
     feed(mm_1953, 4, true, 10);
-    assert_int_equal(fathom_stream_start(&stream, start_us + 2000), FATHOM_READY);
+    assert_int_equal(fathom_stream_start(&stream, start_us + 2000), FATHOM_OK);
     expect(20000, FATHOM_PENDING);
     feed(mm_1953, 4, true, 30000);
-    expect(35000, FATHOM_READY);
+    expect(35000, FATHOM_OK);
     assert_int_equal(stream.counters[FATHOM_STREAM_FRAMES], 1);
 }
 
@@ -88,7 +88,7 @@ TEST(a_clock_that_was_set_back_a_little_costs_no_frame)
     feed(mm_1953, 4, true, 200000);
     expect(200000 - 99000, FATHOM_PENDING); /* nor is the silence over */
     assert_int_equal(fathom_stream_due_us(&stream, start_us + 200000 - 99000), 5000);
-    expect(205000, FATHOM_READY);
+    expect(205000, FATHOM_OK);
     expect(205000 - 99000, FATHOM_PENDING);
     assert_int_equal(fathom_stream_due_us(&stream, start_us + 205000 - 99000), STALE_US);
 }
@@ -100,9 +100,9 @@ TEST(the_ranges_of_the_config_are_kept)
         uint16_t gap_us;
         fathom_status_t status;
     } rows[] = {
-        {0, 0, FATHOM_READY},
-        {1, 1042, FATHOM_READY},
-        {0x7FFFFFFF, 65535, FATHOM_READY},
+        {0, 0, FATHOM_OK},
+        {1, 1042, FATHOM_OK},
+        {0x7FFFFFFF, 65535, FATHOM_OK},
         {0x80000000, 0, FATHOM_ERR_ARGUMENT},
         {UINT32_MAX, 0, FATHOM_ERR_ARGUMENT},
         {0, 1, FATHOM_ERR_ARGUMENT},
@@ -123,7 +123,7 @@ static void begin_a16(void)
 {
     rig_start(start_us);
     const fathom_a16_auto_config_t config = {.line = &rig.line};
-    assert_int_equal(fathom_a16_auto_init(&a16, &config), FATHOM_READY);
+    assert_int_equal(fathom_a16_auto_init(&a16, &config), FATHOM_OK);
     rig.sensor = fathom_a16_auto_sensor(&a16);
 }
 
@@ -145,13 +145,13 @@ TEST(a_sleeping_logger_gets_no_sample_of_before_its_sleep)
         const fathom_status_t first = poll_after(sleeps_us[i]);
         if (sleeps_us[i] <= STALE_US + LATE_US) {
             assert_int_equal(first, sleeps_us[i] < STALE_US ? FATHOM_PENDING : FATHOM_ERR_CHECKSUM);
-            assert_int_equal(poll_after(5000), FATHOM_READY);
+            assert_int_equal(poll_after(5000), FATHOM_OK);
         } else {
             assert_int_equal(first, FATHOM_ERR_STALE);
             PENDS(poll_after(5000));
             fake_receive(&rig.fake, 0, mm_1953, 4);
             PENDS(poll_after(1000));
-            assert_int_equal(poll_after(5000), FATHOM_READY);
+            assert_int_equal(poll_after(5000), FATHOM_OK);
             assert_in_range(rig.fake.now_us - rig.sample.time_us, 5000, 6000);
         }
     }

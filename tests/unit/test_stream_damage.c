@@ -78,7 +78,7 @@ static void start(const run_t *run)
 {
     config = (fathom_stream_config_t){.storage = receiver.storage, .length = run->length};
     receiver.next = receiver.right = receiver.wrong = 0;
-    assert_int_equal(fathom_stream_init(&receiver.stream, &config, 0), FATHOM_READY);
+    assert_int_equal(fathom_stream_init(&receiver.stream, &config, 0), FATHOM_OK);
 }
 
 static bool is_frame(const run_t *run, const uint8_t *frame, unsigned which)
@@ -91,7 +91,7 @@ static bool is_frame(const run_t *run, const uint8_t *frame, unsigned which)
 static void poll(const run_t *run, unsigned i, uint32_t now_us)
 {
     const uint8_t *const frame = fathom_stream_frame(&receiver.stream);
-    if (fathom_stream_poll(&receiver.stream, now_us) != FATHOM_READY) return;
+    if (fathom_stream_poll(&receiver.stream, now_us) != FATHOM_OK) return;
     unsigned at = run->gaps ? wire.frame_of[i] : RUN - 1;
     while (!run->gaps && at > receiver.next && (wire.end[at] > i || !is_frame(run, frame, at))) at--;
     if (at >= receiver.next && (run->gaps || wire.end[at] <= i) && is_frame(run, frame, at)) {

@@ -18,7 +18,7 @@ static void begin(uint8_t length)
     const fathom_stream_config_t config = {.storage = storage, .length = length};
     memset(&stream, 0xA5, sizeof stream);
     memset(storage, 0xFF, sizeof storage);
-    assert_int_equal(fathom_stream_init(&stream, &config, 0), FATHOM_READY);
+    assert_int_equal(fathom_stream_init(&stream, &config, 0), FATHOM_OK);
 }
 
 static void feed_hex(const char *hex, bool after_gap, uint32_t time_us)
@@ -137,7 +137,7 @@ TEST(every_frame_with_a_wrong_bit_is_counted_and_no_other_is_lost)
                 damaged++;
             }
             fathom_stream_feed(&stream, frame, 4, true, n * PERIOD_US);
-            read += poll(n * PERIOD_US + GAP_US) == FATHOM_READY;
+            read += poll(n * PERIOD_US + GAP_US) == FATHOM_OK;
         }
         assert_int_equal(damaged, 32);
         assert_int_equal(read, 32 * (each - 1));
@@ -176,7 +176,7 @@ TEST(a_deadline_with_bytes_is_damage_and_without_is_stale)
     assert_int_equal(poll(now_us + STALE_US), FATHOM_ERR_STALE);
     assert_int_equal(poll(now_us + 2 * STALE_US), FATHOM_ERR_STALE);
     feed_hex("FF 07 A1 A7", true, now_us + 2 * STALE_US);
-    assert_int_equal(poll(now_us + 2 * STALE_US + GAP_US), FATHOM_READY);
+    assert_int_equal(poll(now_us + 2 * STALE_US + GAP_US), FATHOM_OK);
     assert_int_equal(poll(now_us + 3 * STALE_US + GAP_US), FATHOM_ERR_STALE); /* the frame was no damage */
 }
 
@@ -194,7 +194,7 @@ TEST(a_frame_that_broke_off_behind_a_good_one_is_damage)
 {
     begin(4);
     feed_hex("FF 07 A1 A7 FF", true, 1000);
-    assert_int_equal(poll(1000), FATHOM_READY);
+    assert_int_equal(poll(1000), FATHOM_OK);
     assert_int_equal(poll(1000 + STALE_US), FATHOM_ERR_CHECKSUM);
 }
 
@@ -206,7 +206,7 @@ static bool is_valid_with(const uint8_t *frame, uint8_t length, unsigned one, un
     memcpy(bytes, frame, length);
     bytes[one / 8] ^= (uint8_t)(1u << one % 8);
     if (other != one) bytes[other / 8] ^= (uint8_t)(1u << other % 8);
-    return fathom_dyp_stream_valid(bytes, length);
+    return fathom_dyp_stream_is_valid(bytes, length);
 }
 
 /* How many of the pairs of wrong bits leave the frame valid. */
@@ -302,7 +302,7 @@ static damage_t damage(unsigned way, unsigned q, uint8_t length)
                 sent[i] = (uint8_t)rig_random_below(256);
         }
         fathom_stream_feed(&stream, sent, length, true, n * PERIOD_US);
-        if (poll(n * PERIOD_US + GAP_US) == FATHOM_READY)
+        if (poll(n * PERIOD_US + GAP_US) == FATHOM_OK)
             damage.wrong += memcmp(fathom_stream_frame(&stream), frame, length) != 0;
         damage.seen += stream.counters[FATHOM_STREAM_DAMAGED];
         stream.counters[FATHOM_STREAM_DAMAGED] = 0;

@@ -16,7 +16,7 @@ static fathom_stream_t stream;
 static int set_up(void **state)
 {
     memset(&stream, 0xA5, sizeof stream);
-    assert_int_equal(fathom_stream_init(&stream, &config, 0), FATHOM_READY);
+    assert_int_equal(fathom_stream_init(&stream, &config, 0), FATHOM_OK);
     return 0;
 }
 
@@ -29,7 +29,7 @@ static void feed(const uint8_t *bytes, uint8_t count, bool after_gap, uint32_t t
 
 static void assert_1953(uint32_t now_us, uint32_t time_us)
 {
-    assert_int_equal(fathom_stream_poll(&stream, now_us), FATHOM_READY);
+    assert_int_equal(fathom_stream_poll(&stream, now_us), FATHOM_OK);
     assert_memory_equal(fathom_stream_frame(&stream), mm_1953, 4);
     assert_int_equal(stream.time_us, time_us);
 }
@@ -87,7 +87,7 @@ TEST(the_first_frame_without_a_silence_is_unsure_whatever_stood_in_the_memory)
     static const uint8_t fills[] = {0x00, 0x01, 0x04, 0xFF};
     for (unsigned i = 0; i != sizeof fills; i++) {
         memset(&stream, fills[i], sizeof stream);
-        assert_int_equal(fathom_stream_init(&stream, &config, 0), FATHOM_READY);
+        assert_int_equal(fathom_stream_init(&stream, &config, 0), FATHOM_OK);
         feed(mm_1953, 4, false, 1500);
         assert_int_equal(fathom_stream_poll(&stream, 9000), FATHOM_PENDING);
         assert_int_equal(stream.counters[FATHOM_STREAM_UNSURE], 1);

@@ -114,8 +114,8 @@ static outcome_t run(uint32_t pause_us, uint32_t loop_us, unsigned lose, unsigne
     world.lose = lose;
     world.flip = flip;
     world.lost = LENGTH;
-    assert_int_equal(fathom_line_init(&line, &line_config), FATHOM_READY);
-    assert_int_equal(fathom_a05_auto_init(&sensor, &(fathom_a05_auto_config_t){.line = &line}), FATHOM_READY);
+    assert_int_equal(fathom_line_init(&line, &line_config), FATHOM_OK);
+    assert_int_equal(fathom_a05_auto_init(&sensor, &(fathom_a05_auto_config_t){.line = &line}), FATHOM_OK);
     const fathom_sensor_t handle = fathom_a05_auto_sensor(&sensor);
     while (world.sent < frames(loop_us)) {
         fathom_sample_t sample;
@@ -123,7 +123,7 @@ static outcome_t run(uint32_t pause_us, uint32_t loop_us, unsigned lose, unsigne
         uint16_t probes[4] = {0};
         live(world.now_us + 1 + rig_random_below(2 * loop_us));
         while ((status = fathom_poll(&handle, &sample)) != FATHOM_PENDING) {
-            if (status != FATHOM_READY) continue;
+            if (status != FATHOM_OK) continue;
             probes[sample.probe - 1] = sample.distance_mm;
             if (sample.probe != 4) continue;
             if (was_sent(probes))

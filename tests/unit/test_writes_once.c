@@ -52,8 +52,8 @@ TEST(over_modbus_reads_are_repeated_and_writes_are_not)
                                                        .modbus.retries = RETRIES};
         const fathom_a05_modbus_config_t a05_config = {.modbus.transport = &fake.modbus,
                                                        .modbus.retries = RETRIES};
-        assert_int_equal(fathom_a16_modbus_init(&a16, &a16_config), FATHOM_READY);
-        assert_int_equal(fathom_a05_modbus_init(&a05, &a05_config), FATHOM_READY);
+        assert_int_equal(fathom_a16_modbus_init(&a16, &a16_config), FATHOM_OK);
+        assert_int_equal(fathom_a05_modbus_init(&a05, &a05_config), FATHOM_OK);
         for (unsigned asks = 0; asks != 3 && asked(settings[i], retries) == 3; asks++) {
             if (fake.request->message.head[0] == 1)
                 fake_modbus_response(&fake, one, 1);
@@ -86,11 +86,11 @@ TEST(over_55_aa_requests_are_repeated_and_the_command_to_all_is_not)
     const fathom_a05_dyp_config_t config = {.modbus.transport = &transport, .modbus.retries = RETRIES};
     fathom_status_t status = FATHOM_PENDING;
     bool is_answered = false;
-    assert_int_equal(fathom_a05_dyp_init(&dyp, &config), FATHOM_READY);
+    assert_int_equal(fathom_a05_dyp_init(&dyp, &config), FATHOM_OK);
     for (unsigned ms = 0; status == FATHOM_PENDING; ms++) {
         assert_true(ms < 30000);
         bench.fake.now_us += 1000;
-        status = fathom_a05_dyp_set_every_address(&dyp, 7);
+        status = fathom_a05_dyp_broadcast_address(&dyp, 7);
         if (!is_answered && bench.fake.written == 1) {
             fake_receive(&bench.fake, 70000, probe_1_of_1, sizeof probe_1_of_1);
             is_answered = true;

@@ -45,11 +45,11 @@ void setup()
     line_config.clock = &fathom::arduino::clock;
     line_config.frame = frame;
     line_config.frame_size = sizeof frame;
-    if (fathom_line_init_listening(&line, &line_config) != FATHOM_READY) stop(F("wrong config of the line"));
+    if (fathom_line_init_listening(&line, &line_config) != FATHOM_OK) stop(F("wrong config of the line"));
 
     fathom_a05_auto_config_t config = {};
     config.line = &line;
-    if (fathom_a05_auto_init(&bumper, &config) != FATHOM_READY) stop(F("wrong config of the sensor"));
+    if (fathom_a05_auto_init(&bumper, &config) != FATHOM_OK) stop(F("wrong config of the sensor"));
     sensor = fathom_a05_auto_sensor(&bumper);
 }
 
@@ -57,7 +57,7 @@ void loop()
 {
     fathom_sample_t sample;
     const fathom_status_t status = fathom_poll(&sensor, &sample);
-    if (status == FATHOM_READY) {
+    if (status == FATHOM_OK) {
         Serial.print(sample.probe);
         Serial.print(F(": "));
         if (sample.kind == FATHOM_TARGET)

@@ -35,7 +35,7 @@ void setup()
     config.pulse.clock = &fathom::arduino::clock;
     config.pulse.capture = &capture;
     config.pulse.trigger = fathom_output_pin(&trigger);
-    if (fathom_a16_pwm_init(&tank, &config) != FATHOM_READY) stop(F("wrong config of the sensor"));
+    if (fathom_a16_pwm_init(&tank, &config) != FATHOM_OK) stop(F("wrong config of the sensor"));
     sensor = fathom_a16_pwm_sensor(&tank);
 }
 
@@ -43,16 +43,16 @@ void loop()
 {
     fathom_sample_t sample;
     const fathom_status_t status = fathom_poll(&sensor, &sample);
-    if (status == FATHOM_READY && sample.kind == FATHOM_TARGET) {
+    if (status == FATHOM_OK && sample.kind == FATHOM_TARGET) {
         Serial.print(sample.distance_mm);
         Serial.print(F(" mm, "));
         Serial.print(sample.raw);
         Serial.println(F(" us"));
-    } else if (status == FATHOM_READY && sample.kind == FATHOM_NO_TARGET) {
+    } else if (status == FATHOM_OK && sample.kind == FATHOM_NO_TARGET) {
         Serial.println(F("nothing in range"));
-    } else if (status == FATHOM_READY && sample.kind == FATHOM_FAULT) {
+    } else if (status == FATHOM_OK && sample.kind == FATHOM_FAULT) {
         Serial.println(F("stuck line"));
-    } else if (status == FATHOM_READY) {
+    } else if (status == FATHOM_OK) {
         Serial.println(F("unknown")); // only pulses below the range
     } else if (status < 0) {
         Serial.print(F("error ")); // -3 is "no response"; status.h has them all

@@ -58,12 +58,12 @@ void setup()
     line_config.silence_us = FATHOM_T3_5_US(19200, 11); // 8E1: 11 bits a character
     line_config.echo = FATHOM_LINE_ECHO_OFF;    // FATHOM_LINE_ECHO_ON where the transceiver hears itself
     line_config.senders = &fathom_line_senders; // with factory settings the sensor sends measurements unasked
-    if (fathom_line_init(&line, &line_config) != FATHOM_READY) stop(F("wrong config of the line"));
+    if (fathom_line_init(&line, &line_config) != FATHOM_OK) stop(F("wrong config of the line"));
     modbus = fathom_modbus_client(&line);
 
     fathom_hps167s_config_t config = {};
     config.modbus.transport = &modbus;
-    if (fathom_hps167s_init(&gate, &config) != FATHOM_READY) stop(F("wrong config of the sensor"));
+    if (fathom_hps167s_init(&gate, &config) != FATHOM_OK) stop(F("wrong config of the sensor"));
     sensor = fathom_hps167s_sensor(&gate);
 }
 
@@ -71,7 +71,7 @@ void loop()
 {
     fathom_sample_t sample;
     const fathom_status_t status = fathom_poll(&sensor, &sample);
-    if (status == FATHOM_READY) {
+    if (status == FATHOM_OK) {
         digitalWrite(LED_BUILTIN, sample.kind == FATHOM_TARGET && sample.distance_mm < near_mm ? HIGH : LOW);
 #ifdef PRINT_TO
         PRINT_TO.println(sample.kind == FATHOM_TARGET ? static_cast<long>(sample.distance_mm) : -1L);

@@ -66,14 +66,14 @@ static fathom_status_t read_row(session_t *session, const setting_t *setting, ba
     } else {
         row->status = read_patiently(session, setting, row->text);
         const bool may_be_missing = setting->is_of_variant || setting->set == NULL;
-        if (row->status != FATHOM_READY && (!may_be_missing || setting_reason(row->status) == NULL))
+        if (row->status != FATHOM_OK && (!may_be_missing || setting_reason(row->status) == NULL))
             return row->status;
-        if (row->status != FATHOM_READY)
+        if (row->status != FATHOM_OK)
             row->held = HELD_NOT_THERE;
         else if (setting->set != NULL && !backup_value(setting, row->text, &row->value))
             row->held = HELD_NOT_SETTABLE;
     }
-    return FATHOM_READY;
+    return FATHOM_OK;
 }
 
 static bool failed(session_t *session, const setting_t *setting, fathom_status_t status)
@@ -96,7 +96,7 @@ bool backup_read(session_t *session, backup_t *unit)
         backup_row_t *const row = &unit->rows[i];
         if (!backup_has(&settings[i])) continue;
         const fathom_status_t status = read_row(session, &settings[i], row);
-        if (status != FATHOM_READY) return failed(session, &settings[i], status);
+        if (status != FATHOM_OK) return failed(session, &settings[i], status);
         if (row->held == HELD_NOT_THERE) missing = &settings[i];
         if (known == NULL && settings[i].get != NULL && row->held != HELD_NOT_THERE) known = &settings[i];
     }
@@ -104,5 +104,5 @@ bool backup_read(session_t *session, backup_t *unit)
     if (known == NULL) return failed(session, missing, FATHOM_ERR_NO_RESPONSE);
     char text[SETTING_TEXT]; /* and does it still? Else that another one is not there means nothing */
     const fathom_status_t status = read_patiently(session, known, text);
-    return status == FATHOM_READY || failed(session, known, status);
+    return status == FATHOM_OK || failed(session, known, status);
 }

@@ -32,7 +32,7 @@ static bool is_silent(session_t *session, const place_t *place)
         (void)fflush(stdout);
         (void)fprintf(stderr, "fathom: nothing was written: at address %u, %s, ", place->address,
                       session_line_text(session, line));
-        if (status == FATHOM_READY || status == FATHOM_ERR_EXCEPTION || is_garbage)
+        if (status == FATHOM_OK || status == FATHOM_ERR_EXCEPTION || is_garbage)
             (void)fputs("a device answers already; two at one address would answer at once", stderr);
         else
             session_explain(session, status);

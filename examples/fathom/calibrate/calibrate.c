@@ -38,7 +38,7 @@ static calibrate_outcome_t write_offset(const setting_t *setting, int32_t offset
     const fathom_status_t status = session_set(&session, setting, offset_mm);
     const fathom_modbus_unit_t *const unit = session.station->reader.unit;
     const bool is_refused = status == FATHOM_ERR_EXCEPTION && is_refusal(fathom_modbus_unit_exception(unit));
-    if (status == FATHOM_READY) return CALIBRATE_ACKNOWLEDGED;
+    if (status == FATHOM_OK) return CALIBRATE_ACKNOWLEDGED;
     if (unit->is_written && !is_refused) return CALIBRATE_UNANSWERED;
     (void)fflush(stdout);
     (void)fprintf(stderr, "fathom: %s: offset %d mm was not written: ", session.station->name,

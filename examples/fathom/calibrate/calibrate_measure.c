@@ -32,7 +32,7 @@ static bool take_sample(session_t *session, fathom_sample_t *sample)
 {
     for (unsigned failures = 0;;) {
         const fathom_status_t status = session_call(session, poll, sample);
-        if (status == FATHOM_READY) return true;
+        if (status == FATHOM_OK) return true;
         const bool is_over = status == FATHOM_ERR_CANCELLED || status == FATHOM_ERR_PORT;
         if (!is_over && ++failures != MOST_FAILURES_IN_ROW) continue;
         begin_why(session);

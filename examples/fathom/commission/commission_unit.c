@@ -37,13 +37,13 @@ static bool announce(const commission_t *run, const change_t *change)
 /* Is this so already? Where it cannot be read: no. */
 static fathom_status_t look(commission_t *run, change_t *change, bool *is_so)
 {
-    fathom_status_t status = FATHOM_READY;
+    fathom_status_t status = FATHOM_OK;
     change->was[0] = '\0';
     for (unsigned i = 0; i != READS && change->setting->get != NULL; i++) {
         status = session_get(&run->session, change->setting, change->was);
-        if (status == FATHOM_READY || commission_has_ended(run)) break;
+        if (status == FATHOM_OK || commission_has_ended(run)) break;
     }
-    *is_so = status == FATHOM_READY && strcmp(change->was, change->wanted) == 0;
+    *is_so = status == FATHOM_OK && strcmp(change->was, change->wanted) == 0;
     return status;
 }
 
@@ -70,7 +70,7 @@ static commission_end_t set(commission_t *run, const char *name, int32_t value)
     setting_print_value(change.setting, value, change.wanted);
     fathom_status_t status = look(run, &change, &is_so);
     if (is_so) return COMMISSION_DONE;
-    if (status != FATHOM_READY) return not_set(run, &change, CHANGE_NOT_WRITTEN, status);
+    if (status != FATHOM_OK) return not_set(run, &change, CHANGE_NOT_WRITTEN, status);
     if (!announce(run, &change)) return COMMISSION_STOPPED;
     run->writes++;
     status = session_set(&run->session, change.setting, value);

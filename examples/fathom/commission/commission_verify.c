@@ -61,15 +61,15 @@ static fathom_status_t read_termination(commission_t *run, const record_unit_t *
 {
     const setting_t *const setting = setting_of(unit->model->settings, "termination");
     char wanted[SETTING_TEXT];
-    fathom_status_t status = FATHOM_READY;
+    fathom_status_t status = FATHOM_OK;
     *is_so = true;
     if (setting == NULL) return status;
     setting_print_value(setting, unit->address == run->options.terminated, wanted);
     for (unsigned i = 0; i != TRIES; i++) {
         status = session_get(&run->session, setting, text);
-        if (status == FATHOM_READY || commission_has_ended(run)) break;
+        if (status == FATHOM_OK || commission_has_ended(run)) break;
     }
-    *is_so = status == FATHOM_READY && strcmp(text, wanted) == 0;
+    *is_so = status == FATHOM_OK && strcmp(text, wanted) == 0;
     return status;
 }
 
@@ -84,7 +84,7 @@ bool commission_is_restarted(commission_t *run, const record_unit_t *unit)
 static bool has_termination(commission_t *run, const record_unit_t *unit, commission_proof_t *proof)
 {
     const fathom_status_t status = read_termination(run, unit, proof->termination, &proof->is_complete);
-    if (status != FATHOM_READY) return fail_by(run, unit, "its termination cannot be read", status);
+    if (status != FATHOM_OK) return fail_by(run, unit, "its termination cannot be read", status);
     return proof->is_complete || unit->state == RECORD_RESTART ||
            fail(unit, "its termination reads otherwise than it was set");
 }
@@ -100,12 +100,12 @@ static fathom_status_t measure(commission_t *run, fathom_sample_t *best)
 {
     fathom_sample_t sample;
     fathom_status_t status = session_call(&run->session, call_measure, &sample);
-    if (status != FATHOM_READY && status != FATHOM_ERR_MALFORMED) return status;
+    if (status != FATHOM_OK && status != FATHOM_ERR_MALFORMED) return status;
     fathom_status_t found = FATHOM_ERR_MALFORMED;
     for (;;) {
-        const bool is_better = found != FATHOM_READY || best->kind != FATHOM_TARGET;
-        if (status == FATHOM_READY && is_better) *best = sample;
-        if (status == FATHOM_READY) found = FATHOM_READY;
+        const bool is_better = found != FATHOM_OK || best->kind != FATHOM_TARGET;
+        if (status == FATHOM_OK && is_better) *best = sample;
+        if (status == FATHOM_OK) found = FATHOM_OK;
         if (!reader_has_more(&run->session.station->reader)) return found;
         status = session_call(&run->session, call_measure, &sample);
     }
@@ -118,10 +118,10 @@ static bool measures(commission_t *run, const record_unit_t *unit, fathom_sample
     fathom_status_t status = FATHOM_PENDING;
     do {
         status = measure(run, sample);
-        if (status == FATHOM_READY && sample->kind != FATHOM_FAULT) return true;
+        if (status == FATHOM_OK && sample->kind != FATHOM_FAULT) return true;
         if (status == FATHOM_ERR_PORT) break;
     } while (!commission_has_ended(run) && host->now_us(host->ctx) - begin_us < MEASURED_WITHIN_US);
-    if (status == FATHOM_READY)
+    if (status == FATHOM_OK)
         return fail(unit, "it reports a fault; it has its address, and does not measure");
     return fail_by(run, unit, "it has its address, and no measurement came", status);
 }

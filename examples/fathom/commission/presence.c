@@ -37,7 +37,7 @@ static fathom_status_t ask_number(session_t *session, char number[SETTING_TEXT])
     const setting_t *const uuid = setting_of(settings, "uuid");
     const fathom_status_t status =
         session_get(session, uuid != NULL ? uuid : setting_of(settings, "address"), number);
-    if (status != FATHOM_READY || uuid != NULL) return status;
+    if (status != FATHOM_OK || uuid != NULL) return status;
     char address[SETTING_TEXT];
     (void)snprintf(address, sizeof address, "%u", session->station->address);
     if (strcmp(number, address) != 0) return FATHOM_ERR_MALFORMED;
@@ -63,7 +63,7 @@ static present_t find(session_t *session, unsigned times, presence_t *presence)
     for (unsigned i = 0; i != times; i++) {
         presence->status = ask_number(session, presence->number);
         if (has_stopped(session, presence->status)) return PRESENT_STOPPED;
-        if (presence->status == FATHOM_READY) return PRESENT_ONE;
+        if (presence->status == FATHOM_OK) return PRESENT_ONE;
         if (is_of_line(presence->status)) return PRESENT_UNKNOWN;
         if (presence->status != FATHOM_ERR_NO_RESPONSE || !is_silent(session)) return PRESENT_UNCLEAR;
     }
@@ -81,13 +81,13 @@ static present_t ask(session_t *session, unsigned times, presence_t *presence)
         if (i != 0) presence->status = ask_number(session, number);
         if (has_stopped(session, presence->status)) return PRESENT_STOPPED;
         if (is_of_line(presence->status)) return PRESENT_UNKNOWN;
-        if (presence->status != FATHOM_READY) return PRESENT_UNCLEAR;
+        if (presence->status != FATHOM_OK) return PRESENT_UNCLEAR;
         session_listen(session, listen_us);
         presence->is_two =
             evidence_of(session).fitting > 1 || (i != 0 && strcmp(number, presence->number) != 0);
         if (presence->is_two) return PRESENT_UNCLEAR;
     }
-    return has_stopped(session, FATHOM_READY) ? PRESENT_STOPPED : PRESENT_ONE;
+    return has_stopped(session, FATHOM_OK) ? PRESENT_STOPPED : PRESENT_ONE;
 }
 
 presence_t presence_ask(session_t *session, uint8_t address, unsigned times)

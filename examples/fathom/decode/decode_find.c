@@ -142,13 +142,13 @@ static void offer_dyp(view_t *view)
     const uint8_t *const bytes = view->bytes;
     if (view->have < FATHOM_DYP_REQUEST_LENGTH || bytes[0] != 0x55 || bytes[1] != 0xAA) return;
     const uint8_t response = fathom_dyp_55aa_response_length(bytes[3]);
-    const bool is_good = fathom_dyp_55aa_valid(bytes, FATHOM_DYP_REQUEST_LENGTH);
+    const bool is_good = fathom_dyp_55aa_is_valid(bytes, FATHOM_DYP_REQUEST_LENGTH);
     if (is_good || response != 0)
         offer(view, FATHOM_DYP_REQUEST_LENGTH, DECODE_DYP,
               response == FATHOM_DYP_REQUEST_LENGTH ? DECODE_BOTH : DECODE_REQUEST, is_good,
               is_good ? COST_SHORT_SUM : COST_DAMAGED);
     if (response <= FATHOM_DYP_REQUEST_LENGTH || response > view->have) return;
-    const bool is_response = fathom_dyp_55aa_valid(bytes, response);
+    const bool is_response = fathom_dyp_55aa_is_valid(bytes, response);
     offer(view, response, DECODE_DYP, DECODE_RESPONSE, is_response,
           is_response ? COST_LONG_SUM : COST_DAMAGED);
 }
@@ -156,7 +156,7 @@ static void offer_dyp(view_t *view)
 static void offer_stream(view_t *view, uint8_t length, uint8_t protocol, uint32_t cost)
 {
     if (view->have < length || view->bytes[0] != FATHOM_DYP_START) return;
-    const bool is_good = fathom_dyp_stream_valid(view->bytes, length);
+    const bool is_good = fathom_dyp_stream_is_valid(view->bytes, length);
     offer(view, length, protocol, DECODE_RESPONSE, is_good, is_good ? cost : COST_DAMAGED_STREAM);
 }
 

@@ -7,7 +7,7 @@
 static void decode_sum(decode_frame_t *frame)
 {
     frame->checksum_length = 1;
-    frame->checksum[0] = fathom_dyp_sum(frame->bytes, (uint8_t)(frame->piece->length - 1));
+    frame->checksum[0] = fathom_dyp_checksum(frame->bytes, (uint8_t)(frame->piece->length - 1));
     for (size_t i = 0; i != MODELS; i++)
         if ((models[i]->protocols & frame->piece->protocol) != 0) models[i]->decode_sum(frame);
 }

@@ -37,12 +37,12 @@ bool dyp_begin_asked(reader_t *reader, fathom_dyp_modbus_t *base, fathom_sensor_
 
 void dyp_put_number(char text[SETTING_TEXT], fathom_status_t status, uint32_t number)
 {
-    if (status == FATHOM_READY) (void)snprintf(text, SETTING_TEXT, "%" PRIu32, number);
+    if (status == FATHOM_OK) (void)snprintf(text, SETTING_TEXT, "%" PRIu32, number);
 }
 
 void dyp_put_distance(char text[SETTING_TEXT], fathom_status_t status, const fathom_sample_t *sample)
 {
-    if (status != FATHOM_READY) return;
+    if (status != FATHOM_OK) return;
     if (sample->kind == FATHOM_TARGET)
         dyp_put_number(text, status, sample->distance_mm);
     else if (sample->kind == FATHOM_NO_TARGET)

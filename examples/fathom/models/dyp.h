@@ -28,7 +28,7 @@ bool dyp_begin_asked(reader_t *reader, fathom_dyp_modbus_t *base, fathom_sensor_
 
 #define DYP_KEPT_UNSAID "at once; whether it is kept over power-off is not in the datasheet"
 
-/* Into `text` if the status is READY, else nothing is done. */
+/* Into `text` if the status is OK, else nothing is done. */
 void dyp_put_number(char text[SETTING_TEXT], fathom_status_t status, uint32_t number);
 void dyp_put_distance(char text[SETTING_TEXT], fathom_status_t status, const fathom_sample_t *sample);
 

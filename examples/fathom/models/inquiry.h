@@ -9,7 +9,7 @@
 typedef struct inquiry inquiry_t;
 struct inquiry {
     /* Reads so many registers. What is damaged, or does not fit (perhaps a measurement that came unasked), is asked
-     * again; silence too, if silence_tries > 1. True: status is FATHOM_READY. */
+     * again; silence too, if silence_tries > 1. True: status is FATHOM_OK. */
     bool (*ask)(inquiry_t *inquiry, uint16_t first, uint8_t count, uint32_t timeout_us,
                 uint8_t silence_tries);
     fathom_status_t status;  /* of the last response; at first of the one to model_t.scan.first */

@@ -95,7 +95,7 @@ static fathom_status_t parse_response(fathom_transaction_t *transaction, const u
         return FATHOM_ERR_MALFORMED;
     ask->length = transaction->protocol->length(frame, MAX_LENGTH);
     memcpy(ask->response, frame, ask->length);
-    return is_exception ? FATHOM_ERR_EXCEPTION : FATHOM_READY;
+    return is_exception ? FATHOM_ERR_EXCEPTION : FATHOM_OK;
 }
 
 static bool may_collide(const fathom_transaction_t *transaction)
@@ -171,7 +171,7 @@ static request_outcome_t outcome_of(const request_ask_t *ask, const channel_t *c
                                     fathom_status_t status)
 {
     switch (status) {
-    case FATHOM_READY:
+    case FATHOM_OK:
         return request_is_broadcast(ask->request) ? REQUEST_SENT : REQUEST_ANSWERED;
     case FATHOM_ERR_EXCEPTION:
         return REQUEST_REFUSED;
@@ -210,7 +210,8 @@ static fathom_status_t wait_for_response(request_ask_t *ask, channel_t *channel)
 /* What came besides the response and the echo: another unit at the same address, for one. */
 static uint32_t count_more(const request_ask_t *ask, const channel_t *channel)
 {
-    const uint32_t echo = fathom_line_echo(&channel->line) == FATHOM_LINE_ECHO_ON ? ask->request->length : 0;
+    const uint32_t echo =
+        fathom_line_get_echo(&channel->line) == FATHOM_LINE_ECHO_ON ? ask->request->length : 0;
     const uint32_t known = ask->length + echo;
     return ask->length != 0 && ask->evidence.bytes > known ? ask->evidence.bytes - known : 0;
 }

@@ -133,7 +133,7 @@ static fathom_status_t scan_line(scan_t *scan)
     scan->wire.wait = wait_and_show;
     const fathom_status_t status = scan_listen(&scan->wire, plan->listen_us, &scan->unasked);
     scan->wire.wait = wait_for;
-    if (status != FATHOM_READY || (scan->unasked.is_heard && !scan->options.wake)) return status;
+    if (status != FATHOM_OK || (scan->unasked.is_heard && !scan->options.wake)) return status;
     scan->walk.wire = &scan->wire;
     scan->walk.plan = plan;
     scan->walk.tell = &tell;

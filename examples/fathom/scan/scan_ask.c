@@ -11,7 +11,7 @@ enum { SET_LINE_POLL_US = 1000 };
 
 bool scan_is_answered(fathom_status_t status)
 {
-    return status == FATHOM_READY || status == FATHOM_ERR_EXCEPTION || status == FATHOM_ERR_MALFORMED;
+    return status == FATHOM_OK || status == FATHOM_ERR_EXCEPTION || status == FATHOM_ERR_MALFORMED;
 }
 
 static uint32_t now_us(const scan_wire_t *wire) { return wire->clock->now_us(wire->clock->ctx); }
@@ -30,7 +30,7 @@ static fathom_status_t listen(const scan_wire_t *wire, uint32_t us, void (*each)
         if (fathom_line_poll(wire->line) != FATHOM_PENDING) return FATHOM_ERR_PORT;
         if (each != NULL) each(ctx);
         const uint32_t passed_us = fathom_elapsed_us(now_us(wire), began_us);
-        if (passed_us >= us) return FATHOM_READY;
+        if (passed_us >= us) return FATHOM_OK;
         if (!wait_for_line(wire, us - passed_us)) return FATHOM_ERR_CANCELLED;
     }
 }
@@ -88,7 +88,7 @@ void scan_ask(const scan_wire_t *wire, const scan_request_t *request, scan_respo
     response->address = pending.message.head[0];
     if (scan_is_answered(response->status) && request->linger_us != 0) {
         const fathom_status_t heard = listen(wire, request->linger_us, NULL, NULL);
-        if (heard != FATHOM_READY) response->status = heard;
+        if (heard != FATHOM_OK) response->status = heard;
     }
     listener_judge(wire->listener, request->address, &response->evidence);
 }

@@ -35,7 +35,7 @@ typedef struct {
     /* As fathom_transaction_t.status. FATHOM_ERR_CANCELLED: the scan is to end. FATHOM_ERR_ARGUMENT: a request that may
      * not be asked. */
     fathom_status_t status;
-    uint8_t address; /* of FATHOM_READY: who answered */
+    uint8_t address; /* of FATHOM_OK: who answered */
     uint16_t values[SCAN_REGISTERS];
     evidence_t evidence; /* what was heard since the request */
 } scan_response_t;
@@ -52,7 +52,7 @@ void scan_ask(const scan_wire_t *wire, const scan_request_t *request, scan_respo
 bool scan_is_answered(fathom_status_t status);
 
 /* Sets the line, asks nothing, and listens for so long; what came is in wire->listener and with the line's listener.
- * `each`, unless NULL, is called after every poll. FATHOM_READY; FATHOM_ERR_CANCELLED, _PORT, _UNSUPPORTED. */
+ * `each`, unless NULL, is called after every poll. FATHOM_OK; FATHOM_ERR_CANCELLED, _PORT, _UNSUPPORTED. */
 fathom_status_t scan_hear(const scan_wire_t *wire, const fathom_line_settings_t *line, uint32_t us,
                           void (*each)(void *ctx), void *ctx);
 

@@ -34,7 +34,7 @@ typedef struct {
     const scan_wire_t *wire;
     const scan_request_t *request; /* the first one: to whom, with which settings */
     scan_response_t response;
-    fathom_status_t failed; /* FATHOM_READY, or why it cannot go on */
+    fathom_status_t failed; /* FATHOM_OK, or why it cannot go on */
 } identification_t;
 
 static bool ask(inquiry_t *inquiry, uint16_t first, uint8_t count, uint32_t timeout_us, uint8_t silence_tries)
@@ -45,12 +45,12 @@ static bool ask(inquiry_t *inquiry, uint16_t first, uint8_t count, uint32_t time
     request.count = count;
     request.linger_us = 0;
     if (request.timeout_us < timeout_us) request.timeout_us = timeout_us;
-    for (uint8_t tries = DAMAGED_TRIES; tries != 0 && identification->failed == FATHOM_READY; tries--) {
+    for (uint8_t tries = DAMAGED_TRIES; tries != 0 && identification->failed == FATHOM_OK; tries--) {
         scan_ask(identification->wire, &request, &identification->response);
         const fathom_status_t status = identification->response.status;
         inquiry->status = status;
         inquiry->values = identification->response.values;
-        if (status == FATHOM_READY || status == FATHOM_ERR_EXCEPTION) return status == FATHOM_READY;
+        if (status == FATHOM_OK || status == FATHOM_ERR_EXCEPTION) return status == FATHOM_OK;
         if (status == FATHOM_ERR_CANCELLED || status == FATHOM_ERR_PORT) identification->failed = status;
         const bool is_of_line = status == FATHOM_ERR_LINE_BUSY || status == FATHOM_ERR_OTHER_MASTER;
         const bool is_damaged = status == FATHOM_ERR_CHECKSUM || status == FATHOM_ERR_MALFORMED;
@@ -103,7 +103,7 @@ static const model_t *find_model(identification_t *identification)
     }
     /* The first read of those that are told apart by a register of their own is of the address, in the low byte; so a
      * device that answers something else is none of them. */
-    if (inquiry->status != FATHOM_READY || inquiry->values[0] != request->address) return NULL;
+    if (inquiry->status != FATHOM_OK || inquiry->values[0] != request->address) return NULL;
     return tell_apart(inquiry, model->scan.first);
 }
 
@@ -114,7 +114,7 @@ fathom_status_t scan_identify(const scan_wire_t *wire, const scan_request_t *req
         .base = {.ask = ask, .status = first->status, .values = first->values, .finding = finding},
         .wire = wire,
         .request = request,
-        .failed = FATHOM_READY};
+        .failed = FATHOM_OK};
     memset(finding, 0, sizeof *finding);
     finding->line = *request->line;
     finding->address = request->address;

@@ -25,7 +25,7 @@ void scan_first_request(const fathom_line_settings_t *line, uint8_t address, sca
  * A device that answers all of these, or none, is another Modbus device. timeout_us: of the first request; the others
  * wait at least 300 ms, since an ultrasonic one has to measure.
  *
- * FATHOM_READY: *finding is set. FATHOM_ERR_CANCELLED, FATHOM_ERR_PORT: it could not be asked to the end.
+ * FATHOM_OK: *finding is set. FATHOM_ERR_CANCELLED, FATHOM_ERR_PORT: it could not be asked to the end.
  */
 fathom_status_t scan_identify(const scan_wire_t *wire, const scan_request_t *request,
                               const scan_response_t *first, scan_finding_t *finding);

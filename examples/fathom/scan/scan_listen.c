@@ -109,12 +109,12 @@ static fathom_status_t try_rates(const scan_wire_t *wire, streams_t *streams, sc
             const fathom_line_settings_t line = {*rate, models[i]->line.parity, 1};
             const fathom_status_t status = hear(wire, &line, OTHER_RATE_US, streams);
             if (status == FATHOM_ERR_UNSUPPORTED) continue; /* a port that cannot do this rate */
-            if (status != FATHOM_READY || understand(wire, &line, streams, finding)) return status;
+            if (status != FATHOM_OK || understand(wire, &line, streams, finding)) return status;
         }
     }
     finding->kind = SCAN_SENDER;
     finding->line = scan_dyp_line;
-    return FATHOM_READY;
+    return FATHOM_OK;
 }
 
 fathom_status_t scan_listen(const scan_wire_t *wire, uint32_t listen_us, scan_unasked_t *unasked)
@@ -123,7 +123,7 @@ fathom_status_t scan_listen(const scan_wire_t *wire, uint32_t listen_us, scan_un
     memset(unasked, 0, sizeof *unasked);
     const fathom_status_t status = hear(wire, &scan_dyp_line, listen_us, &streams);
     unasked->is_heard = wire->listener->bytes >= LEAST_BYTES;
-    if (status != FATHOM_READY || !unasked->is_heard) return status;
-    if (understand(wire, &scan_dyp_line, &streams, &unasked->finding)) return FATHOM_READY;
+    if (status != FATHOM_OK || !unasked->is_heard) return status;
+    if (understand(wire, &scan_dyp_line, &streams, &unasked->finding)) return FATHOM_OK;
     return try_rates(wire, &streams, &unasked->finding);
 }

@@ -18,7 +18,7 @@ typedef struct {
  * another rate, so that each that an HPS-167S can have is listened to as well, for a second. Fewer bytes than two
  * frames of an A16 have are taken for noise.
  *
- * FATHOM_READY: *unasked is set. FATHOM_ERR_CANCELLED, FATHOM_ERR_PORT.
+ * FATHOM_OK: *unasked is set. FATHOM_ERR_CANCELLED, FATHOM_ERR_PORT.
  */
 fathom_status_t scan_listen(const scan_wire_t *wire, uint32_t listen_us, scan_unasked_t *unasked);
 

@@ -101,7 +101,7 @@ static uint8_t conclude(const scan_walk_t *walk, const attempts_t *attempts)
     return attempts->has_checksum ? DAMAGED : GARBLED;
 }
 
-/* Asks one address until its state is clear. Returns FATHOM_READY unless the scan is over or the port cannot. */
+/* Asks one address until its state is clear. Returns FATHOM_OK unless the scan is over or the port cannot. */
 static fathom_status_t probe(scan_walk_t *walk, const scan_request_t *request, scan_response_t *response)
 {
     uint8_t *const state = &walk->states[request->address];
@@ -113,17 +113,17 @@ static fathom_status_t probe(scan_walk_t *walk, const scan_request_t *request, s
         if (has_ended(status) || status == FATHOM_ERR_UNSUPPORTED) return status;
         note(walk, &response->evidence);
         *state = ANSWERED;
-        if (scan_is_answered(status)) return FATHOM_READY;
+        if (scan_is_answered(status)) return FATHOM_OK;
         if (is_of_line(status)) {
             *state = BUSY;
-            if (is_too_busy(walk, &attempts, response)) return FATHOM_READY;
+            if (is_too_busy(walk, &attempts, response)) return FATHOM_OK;
         } else {
             is_over = is_silent(walk, &attempts, response);
         }
     }
     *state = conclude(walk, &attempts);
     if (*state == GARBLED) walk->garbled++;
-    return FATHOM_READY;
+    return FATHOM_OK;
 }
 
 static fathom_status_t identify(scan_walk_t *walk, const scan_request_t *request,
@@ -131,11 +131,11 @@ static fathom_status_t identify(scan_walk_t *walk, const scan_request_t *request
 {
     scan_finding_t finding;
     const fathom_status_t status = scan_identify(walk->wire, request, response, &finding);
-    if (status != FATHOM_READY) return status;
+    if (status != FATHOM_OK) return status;
     walk->found_baud[request->address] = request->line->baud;
     if (finding.model == FATHOM_A05) walk->has_a05 = true;
     walk->tell->found(walk->tell->ctx, &finding);
-    return FATHOM_READY;
+    return FATHOM_OK;
 }
 
 /* Asks an address, and who is there. timeout_us: 0, or longer than the plan's. */
@@ -149,7 +149,7 @@ static fathom_status_t visit(scan_walk_t *walk, const fathom_line_settings_t *li
     if (request.timeout_us < timeout_us) request.timeout_us = timeout_us;
     walk->asked++;
     const fathom_status_t status = probe(walk, &request, &response);
-    if (status != FATHOM_READY || walk->states[address] != ANSWERED) return status;
+    if (status != FATHOM_OK || walk->states[address] != ANSWERED) return status;
     return identify(walk, &request, &response);
 }
 
@@ -189,31 +189,31 @@ static fathom_status_t ask_any_a05(scan_walk_t *walk)
     finding.address = response.address;
     finding.value = response.values[0];
     if (is_of_line(response.status)) walk->heard.not_asked++;
-    if (response.status != FATHOM_READY) return FATHOM_READY;
+    if (response.status != FATHOM_OK) return FATHOM_OK;
     walk->has_a05 = true;
     walk->tell->found(walk->tell->ctx, &finding);
-    return FATHOM_READY;
+    return FATHOM_OK;
 }
 
 static fathom_status_t walk_line(scan_walk_t *walk, const fathom_line_settings_t *line)
 {
     const scan_plan_t *const plan = walk->plan;
-    fathom_status_t status = FATHOM_READY;
+    fathom_status_t status = FATHOM_OK;
     memset(walk->states, NOT_ASKED, sizeof walk->states);
     walk->garbled = 0;
     walk->asked = 0;
-    for (unsigned address = plan->first; address <= plan->last && status == FATHOM_READY; address++) {
+    for (unsigned address = plan->first; address <= plan->last && status == FATHOM_OK; address++) {
         walk->tell->progress(walk->tell->ctx, walk->done_us, line, (uint8_t)address);
         if (walk->found_baud[address] != line->baud) status = visit(walk, line, (uint8_t)address, 0);
         walk->done_us += scan_probe_us(plan, line);
     }
-    for (unsigned address = plan->first; address <= plan->last && status == FATHOM_READY; address++)
+    for (unsigned address = plan->first; address <= plan->last && status == FATHOM_OK; address++)
         if (walk->states[address] == LATE) status = visit(walk, line, (uint8_t)address, LATE_TIMEOUT_US);
-    if (status != FATHOM_READY) return status;
+    if (status != FATHOM_OK) return status;
     for (unsigned address = plan->first; address <= plan->last; address++)
         if (walk->states[address] == BUSY) walk->heard.not_asked++;
     judge_damaged(walk, line);
-    if (!scan_is_dyp_line(line)) return FATHOM_READY;
+    if (!scan_is_dyp_line(line)) return FATHOM_OK;
     if (!walk->has_a05) status = ask_any_a05(walk);
     walk->done_us += scan_any_us(plan);
     return status;
@@ -227,10 +227,10 @@ fathom_status_t scan_walk(scan_walk_t *walk)
         const uint64_t began_us = walk->done_us;
         const fathom_status_t status = walk_line(walk, line);
         if (has_ended(status)) return status;
-        if (status != FATHOM_READY) {
+        if (status != FATHOM_OK) {
             walk->tell->unsupported(walk->tell->ctx, line);
             walk->done_us = began_us + (uint64_t)scan_probe_us(plan, line) * scan_addresses(plan);
         }
     }
-    return FATHOM_READY;
+    return FATHOM_OK;
 }

@@ -61,7 +61,7 @@ typedef struct {
  *  - On the line of A16 and A05, if no A05 was found, any A05 is asked by 55 AA: one with an address beyond the plan's
  *    is found by that, if it is alone.
  *
- * wire, plan and tell are the caller's; the rest begins as zeros. FATHOM_READY; FATHOM_ERR_CANCELLED: wire->wait has
+ * wire, plan and tell are the caller's; the rest begins as zeros. FATHOM_OK; FATHOM_ERR_CANCELLED: wire->wait has
  * ended it; FATHOM_ERR_PORT.
  */
 fathom_status_t scan_walk(scan_walk_t *walk);

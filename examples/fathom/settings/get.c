@@ -13,7 +13,7 @@ static session_t session;
 static void print_text(const setting_t *setting, fathom_status_t status, const char *text)
 {
     const bool has_unit = setting->unit != NULL && strspn(text, "0123456789-., ") == strlen(text);
-    if (status == FATHOM_READY)
+    if (status == FATHOM_OK)
         (void)printf("%-26s %s%s%s\n", setting->name, text, has_unit ? " " : "",
                      has_unit ? setting->unit : "");
     else
@@ -23,7 +23,7 @@ static void print_text(const setting_t *setting, fathom_status_t status, const c
 static void print_json(const setting_t *setting, fathom_status_t status, const char *text)
 {
     (void)printf(", \"%s\": ", setting->name);
-    if (status == FATHOM_READY)
+    if (status == FATHOM_OK)
         session_print_json(stdout, text);
     else
         (void)fputs("null", stdout);
@@ -84,7 +84,7 @@ static fathom_status_t get_one(const setting_t *setting, progress_t *progress, c
     if (setting->shared_command != 0 && setting->shared_command == progress->failed_command)
         return progress->failure;
     const fathom_status_t status = session_get(&session, setting, text);
-    if (status != FATHOM_READY) {
+    if (status != FATHOM_OK) {
         progress->failed_command = setting->shared_command;
         progress->failure = status;
     }
@@ -96,7 +96,7 @@ static bool print_one(const setting_t *setting, progress_t *progress)
 {
     char text[SETTING_TEXT];
     const fathom_status_t status = get_one(setting, progress, text);
-    if (status != FATHOM_READY && (!progress->is_known || setting_reason(status) == NULL)) {
+    if (status != FATHOM_OK && (!progress->is_known || setting_reason(status) == NULL)) {
         say_whose();
         (void)fprintf(stderr, "%s: ", setting->name);
         session_explain(&session, status);
@@ -105,12 +105,12 @@ static bool print_one(const setting_t *setting, progress_t *progress)
     }
     if (!progress->is_known) begin();
     progress->is_known = true;
-    progress->printed += status == FATHOM_READY;
+    progress->printed += status == FATHOM_OK;
     if (session.is_json)
         print_json(setting, status, text);
     else
         print_text(setting, status, text);
-    if (setting->remark != NULL && status == FATHOM_READY) tell_remark(setting, text);
+    if (setting->remark != NULL && status == FATHOM_OK) tell_remark(setting, text);
     return true;
 }
 

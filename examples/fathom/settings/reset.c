@@ -36,7 +36,7 @@ static fathom_status_t load(reader_t *reader, void *ctx)
 static int finish(bool is_restore, fathom_status_t status)
 {
     const station_t *const station = session.station;
-    if (status == FATHOM_READY) {
+    if (status == FATHOM_OK) {
         if (is_restore)
             (void)printf("%s: the interface has its factory settings: address 1, "
                          "19200 8E1, termination on\n"

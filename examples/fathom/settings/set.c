@@ -32,10 +32,10 @@ static int set(change_t *change)
     change->was[0] = '\0';
     if (change->is_for_all) return set_report(change, session_call(&session, call_all, change));
     if (change->is_blind) {
-        (void)fathom_modbus_next_is_blind(session.station->reader.unit);
+        (void)fathom_modbus_write_next_unchecked(session.station->reader.unit);
     } else if (change->setting->get != NULL) {
         const fathom_status_t status = session_get(&session, change->setting, change->was);
-        if (status != FATHOM_READY) return set_report(change, status);
+        if (status != FATHOM_OK) return set_report(change, status);
     }
     return set_report(change, session_set(&session, change->setting, change->value));
 }

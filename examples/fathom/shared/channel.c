@@ -132,10 +132,10 @@ fathom_status_t channel_go_on(channel_t *channel)
 {
     const fathom_status_t status = tcp_go_on(channel->tcp, &channel->uart);
     if (status == FATHOM_ERR_PORT) tell_environment(&channel->port, channel->port.path);
-    if (status != FATHOM_READY) return status;
+    if (status != FATHOM_OK) return status;
     suit_tcp(channel);
     begin(channel);
-    return FATHOM_READY;
+    return FATHOM_OK;
 }
 
 void channel_close(channel_t *channel)

@@ -119,7 +119,7 @@ static uint16_t streamed(const listener_t *listener, uint16_t at, uint8_t length
     uint16_t end = at;
     uint32_t in_a_row = 0;
     while (listener->have - end >= length && listener->window[end] == FATHOM_DYP_START &&
-           fathom_dyp_stream_valid(listener->window + end, length)) {
+           fathom_dyp_stream_is_valid(listener->window + end, length)) {
         end = (uint16_t)(end + length);
         in_a_row++;
     }
@@ -153,14 +153,14 @@ static bool is_fitting(const listener_t *listener, const uint8_t *response, uint
 static uint8_t account_dyp(const uint8_t *bytes, uint8_t have, uint8_t address, evidence_t *evidence)
 {
     enum { ADDRESS = 2, COMMAND = 3 };
-    const uint8_t length = fathom_dyp_55aa_length(bytes, have);
+    const uint8_t length = fathom_dyp_55aa_frame_length(bytes, have);
     if (length == 0 || have < FATHOM_DYP_REQUEST_LENGTH) return 0;
-    if (length <= have && fathom_dyp_55aa_valid(bytes, length)) {
+    if (length <= have && fathom_dyp_55aa_is_valid(bytes, length)) {
         note_response(evidence, bytes[ADDRESS], address);
         return length;
     }
-    if (fathom_dyp_55aa_values(bytes[COMMAND]) == 0 ||
-        !fathom_dyp_55aa_valid(bytes, FATHOM_DYP_REQUEST_LENGTH))
+    if (fathom_dyp_55aa_value_count(bytes[COMMAND]) == 0 ||
+        !fathom_dyp_55aa_is_valid(bytes, FATHOM_DYP_REQUEST_LENGTH))
         return 0;
     note_request(evidence, bytes[ADDRESS]);
     return FATHOM_DYP_REQUEST_LENGTH;

@@ -147,7 +147,7 @@ fathom_status_t tcp_go_on(tcp_t *tcp, fathom_uart_t *uart)
     int error = tcp_connect_look(tcp->port->fd);
     if (error == EINPROGRESS && fathom_posix_now_us() < tcp->deadline_us) return FATHOM_PENDING;
     if (error == EINPROGRESS) error = ETIMEDOUT;
-    if (error == 0 && begin(tcp, uart)) return FATHOM_READY;
+    if (error == 0 && begin(tcp, uart)) return FATHOM_OK;
     tcp_connect_text(error != 0 ? error : ENOMEM, text, sizeof text);
     say(tcp->port, FATHOM_POSIX_ERR_NOT_FOUND, text);
     return FATHOM_ERR_PORT;

@@ -26,7 +26,7 @@ void tcp_close(tcp_t *tcp);
 
 /*
  * The same without waiting: tcp_begin, and then tcp_go_on when `port`'s descriptor can be written, and in TCP_CONNECT_S.
- * Returns FATHOM_READY; FATHOM_PENDING; or FATHOM_ERR_PORT, and *port has the error. turn: so often it was tried.
+ * Returns FATHOM_OK; FATHOM_PENDING; or FATHOM_ERR_PORT, and *port has the error. turn: so often it was tried.
  */
 tcp_t *tcp_begin(const char *path, unsigned turn, fathom_posix_uart_t *port);
 fathom_status_t tcp_go_on(tcp_t *tcp, fathom_uart_t *uart);

@@ -106,7 +106,7 @@ bool alarm_option(results_config_t *config, const char *command, const char *tex
         return false;
     }
     if (!key_list(command, name, rest, keys, sizeof keys / sizeof keys[0], config)) return false;
-    if (fathom_alarm_init(&alarm, &config->alarm) == FATHOM_READY) return true;
+    if (fathom_alarm_init(&alarm, &config->alarm) == FATHOM_OK) return true;
     (void)usage_error(command,
                       "--%s %s: it goes off farther away than on with near, and nearer than on with far",
                       name, word);

@@ -23,9 +23,9 @@ change_outcome_t change_outcome(const change_t *change, fathom_status_t status)
 {
     const fathom_modbus_unit_t *const unit = change->session->station->reader.unit;
     const bool has_ended = unit->setting == 0;
-    if (!unit->is_written) return status == FATHOM_READY ? CHANGE_UNCHANGED : CHANGE_NOT_WRITTEN;
-    if (status == FATHOM_READY) return CHANGE_DONE;
-    if (change->is_for_all) return unit->outcome == FATHOM_READY ? CHANGE_SENT : CHANGE_UNCONFIRMED;
+    if (!unit->is_written) return status == FATHOM_OK ? CHANGE_UNCHANGED : CHANGE_NOT_WRITTEN;
+    if (status == FATHOM_OK) return CHANGE_DONE;
+    if (change->is_for_all) return unit->outcome == FATHOM_OK ? CHANGE_SENT : CHANGE_UNCONFIRMED;
     if (status == FATHOM_ERR_EXCEPTION) return CHANGE_REFUSED;
     const bool is_unknown =
         !has_ended || status == FATHOM_ERR_UNCONFIRMED || change->setting->confirmed != NULL;
@@ -38,7 +38,7 @@ static void print_unknown(FILE *to, const change_t *change)
     const station_t *const station = change->session->station;
     const setting_t *const setting = change->setting;
     const bool is_acknowledged =
-        station->reader.unit->setting == 0 && station->reader.unit->outcome == FATHOM_READY;
+        station->reader.unit->setting == 0 && station->reader.unit->outcome == FATHOM_OK;
     (void)fputs(is_acknowledged ? "it was acknowledged; " : "no acknowledgement came; ", to);
     if (setting->is_baud) {
         const uint32_t was = station->line.baud;
@@ -87,7 +87,7 @@ void change_explain(const change_t *change, change_outcome_t outcome, fathom_sta
         break;
     case CHANGE_DIFFERS:
         (void)fprintf(stderr, "%s, and the device tells another value; perhaps this variant does not have it",
-                      unit->outcome == FATHOM_READY ? "it was acknowledged" : "no acknowledgement came");
+                      unit->outcome == FATHOM_OK ? "it was acknowledged" : "no acknowledgement came");
         break;
     case CHANGE_REFUSED:
         session_explain(change->session, status);

@@ -29,7 +29,7 @@ typedef enum {
 /* As words, by outcome. */
 extern const char *const change_outcomes[];
 
-/* status: of the last call, FATHOM_READY if all went well. */
+/* status: of the last call, FATHOM_OK if all went well. */
 change_outcome_t change_outcome(const change_t *change, fathom_status_t status);
 
 /* Is its value read back, so that CHANGE_DONE is more than an acknowledgement? */

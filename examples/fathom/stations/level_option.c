@@ -102,7 +102,7 @@ static bool check_points(const results_config_t *config, const char *command)
     for (tank.point_count = tank.point_count > 1 ? 2 : 1; tank.point_count <= config->tank.point_count;
          tank.point_count++) {
         const fathom_level_point_t *const last = &config->points[tank.point_count - 1];
-        if (fathom_level_check(&tank) == FATHOM_READY) continue;
+        if (fathom_level_check(&tank) == FATHOM_OK) continue;
         (void)usage_error(command,
                           "--%s: points= at %u:%" PRIu32
                           ": level and volume grow from point to point, and a full tank has a volume",

@@ -159,13 +159,13 @@ void poll_take_outcome(poll_port_t *port, station_t *station, fathom_status_t st
 {
     const poll_loop_t *const loop = port->loop;
     counters_take(&station->counters, &port->counts, &port->channel, &station->reader);
-    pulses_take(&station->pulses, &station->reader, status == FATHOM_READY ? sample : NULL);
+    pulses_take(&station->pulses, &station->reader, status == FATHOM_OK ? sample : NULL);
     if (status != FATHOM_ERR_PORT && is_early(loop, station, status)) return;
-    if (status == FATHOM_READY && station->reader.unit != NULL && !station->answering)
+    if (status == FATHOM_OK && station->reader.unit != NULL && !station->answering)
         counters_time(&station->counters, fathom_elapsed_us(sample->time_us, station->listener->asked_us));
     const outcome_t outcome = {.status = status, .is_first = !station->answering};
     station->answering = true;
-    if (status == FATHOM_READY) {
+    if (status == FATHOM_OK) {
         if (loop->user->reading(loop->ctx, station, sample)) station->counters.readings++;
         if (sample->kind != FATHOM_UNKNOWN) station->has_good = true;
     } else {

@@ -99,7 +99,7 @@ static fathom_status_t connect_port(poll_port_t *port)
     const poll_loop_t *const loop = port->loop;
     const port_options_t *const options = port->options;
     if (options->is_chip)
-        return channel_open_pins(&port->channel, loop->host, options->path, &options->pins) ? FATHOM_READY
+        return channel_open_pins(&port->channel, loop->host, options->path, &options->pins) ? FATHOM_OK
                                                                                             : FATHOM_ERR_PORT;
     port->channel.echo = port->options->echo;
     port->channel.rs485 = port->options->rs485;
@@ -109,7 +109,7 @@ static fathom_status_t connect_port(poll_port_t *port)
                    ? FATHOM_PENDING
                    : FATHOM_ERR_PORT;
     return usb_adapter_try(&port->adapter, &port->channel, loop->host, &port->options->line)
-               ? FATHOM_READY
+               ? FATHOM_OK
                : FATHOM_ERR_PORT;
 }
 
@@ -179,7 +179,7 @@ static bool open_port(fathom_loop_source_t *source)
     const fathom_status_t status = connect_port(port);
     port->is_waiting = status == FATHOM_PENDING;
     if (status == FATHOM_ERR_PORT) take_failed_try(port);
-    if (status != FATHOM_READY || begin_reading(port)) return status != FATHOM_ERR_PORT;
+    if (status != FATHOM_OK || begin_reading(port)) return status != FATHOM_ERR_PORT;
     channel_close(&port->channel);
     return false;
 }
@@ -190,7 +190,7 @@ static bool wait_for_connection(poll_port_t *port)
     const fathom_status_t status = channel_go_on(&port->channel);
     port->is_waiting = status == FATHOM_PENDING;
     if (status == FATHOM_ERR_PORT) take_failed_try(port);
-    return status == FATHOM_READY ? begin_reading(port) : status == FATHOM_PENDING;
+    return status == FATHOM_OK ? begin_reading(port) : status == FATHOM_PENDING;
 }
 
 static void close_port(fathom_loop_source_t *source) { channel_close(&port_of(source)->channel); }

@@ -22,7 +22,7 @@ typedef struct {
     uint32_t attempt_noises; /* of the last attempt */
 } pulses_t;
 
-/* An attempt of a sensor that has pulses has ended. sample: NULL unless the status is FATHOM_READY. */
+/* An attempt of a sensor that has pulses has ended. sample: NULL unless the status is FATHOM_OK. */
 void pulses_take(pulses_t *pulses, reader_t *reader, const fathom_sample_t *sample);
 
 /* A line, and then it begins anew. */

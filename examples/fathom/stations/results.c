@@ -68,7 +68,7 @@ static void begin_probe(const results_config_t *config, result_probe_t *probe, u
     if (!config->has_alarm) return;
     (void)fathom_alarm_init(&probe->alarm, &config->alarm);
     probe->began_us = now_us;
-    (void)fathom_alarm_status(&probe->alarm, FATHOM_PENDING, now_us);
+    (void)fathom_alarm_add_status(&probe->alarm, FATHOM_PENDING, now_us);
 }
 
 void results_begin(results_t *results, poll_loop_t *loop, results_tell_t tell, void *ctx)
@@ -95,8 +95,9 @@ static bool tell(const results_t *results, const station_t *station, result_t *r
 {
     const results_config_t *const config = config_of(results, station);
     const fathom_sample_t *const sample = &result->sample;
-    result->has_level = config->has_level && sample->kind == FATHOM_TARGET &&
-                        fathom_level(&config->tank, sample->distance_mm, &result->level) == FATHOM_READY;
+    result->has_level =
+        config->has_level && sample->kind == FATHOM_TARGET &&
+        fathom_level_from_distance(&config->tank, sample->distance_mm, &result->level) == FATHOM_OK;
     return results->tell(results->ctx, station, result);
 }
 
@@ -119,7 +120,7 @@ static bool take_status(results_t *results, const station_t *station, uint8_t nu
                                   .model = (uint8_t)station->model->id,
                                   .address = station->address,
                                   .probe = number}};
-    const bool has_changed = fathom_alarm_status(&probe->alarm, status, now_us);
+    const bool has_changed = fathom_alarm_add_status(&probe->alarm, status, now_us);
     const bool is_late =
         !probe->is_known && fathom_elapsed_us(now_us, probe->began_us) > probe->alarm.config.unknown_us;
     return !has_changed && !is_late ? true : tell_change(results, station, probe, &result);
@@ -129,7 +130,7 @@ static bool take_status(results_t *results, const station_t *station, uint8_t nu
 static bool take_median(result_probe_t *probe, fathom_sample_t *sample)
 {
     if (sample->kind == FATHOM_UNKNOWN || sample->kind == FATHOM_FAULT) return true;
-    const bool has_median = fathom_median_sample(&probe->median, sample, sample);
+    const bool has_median = fathom_median_add_sample(&probe->median, sample, sample);
     probe->dropped += probe->median.dropped;
     probe->median.dropped = 0;
     return has_median;
@@ -144,8 +145,8 @@ bool results_sample(results_t *results, const station_t *station, const fathom_s
     const bool is_told = is_there && (!config->has_alarm || config->has_readings);
     if (is_told && !tell(results, station, &result)) return false;
     if (!config->has_alarm) return true;
-    if (!is_there) return take_status(results, station, sample->probe, FATHOM_READY, sample->time_us);
-    if (!fathom_alarm_sample(&probe->alarm, &result.sample)) return true;
+    if (!is_there) return take_status(results, station, sample->probe, FATHOM_OK, sample->time_us);
+    if (!fathom_alarm_add_sample(&probe->alarm, &result.sample)) return true;
     return tell_change(results, station, probe, &result);
 }
 

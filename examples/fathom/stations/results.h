@@ -2,9 +2,9 @@
 #ifndef RESULTS_H
 #define RESULTS_H
 
-#include "fathom/sensor/alarm.h"
-#include "fathom/sensor/level.h"
-#include "fathom/sensor/median.h"
+#include "fathom/processing/alarm.h"
+#include "fathom/processing/level.h"
+#include "fathom/processing/median.h"
 #include "stations/poll.h"
 
 /* What is made of the samples of each probe before they are told: a median, then a level or an alarm. */

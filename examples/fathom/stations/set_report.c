@@ -76,7 +76,7 @@ static bool is_done_blind(const change_t *change, change_outcome_t outcome)
 {
     const int8_t response = change->session->station->reader.unit->outcome;
     /* what came back is its acknowledgement, or may be: nothing was read that could tell an echo from one */
-    const bool is_answered = response == FATHOM_READY || response == FATHOM_ERR_ECHO;
+    const bool is_answered = response == FATHOM_OK || response == FATHOM_ERR_ECHO;
     return outcome == CHANGE_SENT || (change->is_blind && outcome == CHANGE_UNCONFIRMED && is_answered);
 }
 

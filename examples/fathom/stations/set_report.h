@@ -4,7 +4,7 @@
 
 #include "stations/change.h"
 
-/* Says what has become of it; status: of the last call, FATHOM_READY if all went well. Returns the exit status. */
+/* Says what has become of it; status: of the last call, FATHOM_OK if all went well. Returns the exit status. */
 int set_report(const change_t *change, fathom_status_t status);
 
 #endif

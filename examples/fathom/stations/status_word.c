@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "stations/status_word.h"
 
-#include "fathom/sensor/alarm.h"
+#include "fathom/processing/alarm.h"
 #include "stations/counters.h"
 
 /* FATHOM_NEAR of a contact. */

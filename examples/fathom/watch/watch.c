@@ -53,7 +53,7 @@ static bool take_reading(void *ctx, const station_t *station, const fathom_sampl
     lanes_reading(&watch->lanes, station, sample);
     const uint64_t end_us = poll_loop_time_us(&watch->loop) + MESSAGE_US;
     if (watch->message_end_us > end_us) watch->message_end_us = end_us;
-    watch->reported[station->slot] = FATHOM_READY;
+    watch->reported[station->slot] = FATHOM_OK;
     return true;
 }
 

@@ -43,7 +43,7 @@ enum {
 uint8_t fathom_dyp_55aa_response_length(uint8_t command);
 
 /* How many distances the response to a command carries: 4, 1 or 0. */
-uint8_t fathom_dyp_55aa_values(uint8_t command);
+uint8_t fathom_dyp_55aa_value_count(uint8_t command);
 
 /* Writes the request of 5 bytes to `frame` and returns 5. address: 1..254, FATHOM_DYP_ANY_ADDRESS, or the new
  * one with FATHOM_DYP_SET_ADDRESS. */
@@ -55,10 +55,10 @@ uint8_t fathom_dyp_55aa_encode_request(uint8_t *frame, uint8_t address, uint8_t 
  *   > have     so many bytes are needed to know more (4 until the command is there)
  *   <= have    the response is here, with its sum still to be checked
  */
-uint8_t fathom_dyp_55aa_length(const uint8_t *bytes, uint8_t have);
+uint8_t fathom_dyp_55aa_frame_length(const uint8_t *bytes, uint8_t have);
 
 /* Do these `length` (>= 1) bytes end in the sum of those before? */
-bool fathom_dyp_55aa_valid(const uint8_t *frame, uint8_t length);
+bool fathom_dyp_55aa_is_valid(const uint8_t *frame, uint8_t length);
 
 /* Copies the distances out of a valid response, as they were sent: 4, 1 or none. */
 void fathom_dyp_55aa_decode(const uint8_t *frame, uint16_t *values);

@@ -31,10 +31,10 @@ enum {
 };
 
 /* The low byte of the sum of `length` (0..255) bytes. */
-uint8_t fathom_dyp_sum(const uint8_t *bytes, uint8_t length);
+uint8_t fathom_dyp_checksum(const uint8_t *bytes, uint8_t length);
 
 /* Do these `length` (4 or 10) bytes begin with FF and end in their sum? */
-bool fathom_dyp_stream_valid(const uint8_t *frame, uint8_t length);
+bool fathom_dyp_stream_is_valid(const uint8_t *frame, uint8_t length);
 
 /* The distances of a valid frame, as they were sent: `probes` (1 or 4) values. */
 void fathom_dyp_stream_decode(const uint8_t *frame, uint16_t *values, uint8_t probes);

@@ -66,7 +66,7 @@ enum {
 };
 #define FATHOM_HPS167S_FACTORY_BAUD 19200uL
 
-/* Bytes of a response, for fathom_hps167s_byte: of #2, of #3 and of #5. */
+/* Bytes of a response, for fathom_hps167s_get_byte: of #2, of #3 and of #5. */
 enum {
     FATHOM_HPS167S_TERMINATION_BYTE = 0,
     FATHOM_HPS167S_MEASURES_BYTE = 1,
@@ -78,13 +78,13 @@ enum {
 };
 
 /* Byte n of a response's registers, 0 the first, in the order of the wire. */
-static inline uint8_t fathom_hps167s_byte(const uint16_t *registers, uint8_t n)
+static inline uint8_t fathom_hps167s_get_byte(const uint16_t *registers, uint8_t n)
 {
     return (uint8_t)(((n % 2u) == 0u) ? (registers[n / 2u] >> 8) : registers[n / 2u]);
 }
 
 /* A register that has a sign: #4, #12, #14. */
-static inline int16_t fathom_hps167s_signed(uint16_t value)
+static inline int16_t fathom_hps167s_to_signed(uint16_t value)
 {
     return (int16_t)((value < 0x8000u) ? (int32_t)value : ((int32_t)value - 0x10000));
 }
@@ -130,11 +130,11 @@ void fathom_hps167s_decode_configuration(const uint16_t registers[4], bool low_w
 bool fathom_hps167s_may_be_configuration(const uint16_t registers[4]);
 
 /* The reconnect time, ms, in a response to #2. */
-uint32_t fathom_hps167s_told_reconnect_time_ms(const uint16_t registers[4], bool low_word_first);
+uint32_t fathom_hps167s_configured_reconnect_time_ms(const uint16_t registers[4], bool low_word_first);
 
 /* The two registers of #15, and what they mean. The device takes multiples of FATHOM_HPS167S_RECONNECT_STEP_MS. */
 void fathom_hps167s_encode_reconnect_time(uint32_t ms, bool low_word_first, uint16_t registers[2]);
-uint32_t fathom_hps167s_reconnect_time_ms(uint16_t first, uint16_t second, bool low_word_first);
+uint32_t fathom_hps167s_decode_reconnect_time(uint16_t first, uint16_t second, bool low_word_first);
 
 /* ---- #3, table 14 ---- */
 
@@ -168,7 +168,7 @@ typedef struct {
     uint16_t min_mm;        /* 1..min_mm - 1 is FATHOM_UNKNOWN; up to max_mm; 0: 80 */
 } fathom_hps167s_limits_t;
 
-/* Fills in the defaults for what is 0. FATHOM_READY, or FATHOM_ERR_ARGUMENT: over_range_mm that is 65535 or not over
+/* Fills in the defaults for what is 0. FATHOM_OK, or FATHOM_ERR_ARGUMENT: over_range_mm that is 65535 or not over
  * max_mm, or min_mm over max_mm. */
 fathom_status_t fathom_hps167s_complete_limits(fathom_hps167s_limits_t *limits);
 
@@ -178,7 +178,7 @@ bool fathom_hps167s_is_abnormal(const uint16_t registers[4]);
 
 /*
  * Reads the four registers of a measurement's response, also one that came unasked. Sets the members of *sample that
- * come from the device: kind, raw, distance_mm, magnitude, ambient, precision, and interference (false). FATHOM_READY,
+ * come from the device: kind, raw, distance_mm, magnitude, ambient, precision, and interference (false). FATHOM_OK,
  * or FATHOM_ERR_MALFORMED, with nothing written: a distance that it cannot mean, or an exponent over 16. decode_within:
  * with other limits, of which none is 0; NULL: with the defaults.
  */

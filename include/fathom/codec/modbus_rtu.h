@@ -92,7 +92,7 @@ bool fathom_modbus_rtu_is_request(const fathom_modbus_message_t *message, const 
 
 /*
  * Reads a whole response whose CRC the caller has found right (fathom_crc16() == 0).
- *   FATHOM_READY           it is the response to `message`; the values of a read are written
+ *   FATHOM_OK           it is the response to `message`; the values of a read are written
  *   FATHOM_ERR_EXCEPTION   it refuses `message`; message->exception is set
  *   FATHOM_ERR_MALFORMED   from the unit of the request, but no response to it: another function, count,
  *                          address or value. Nothing is written.
@@ -108,7 +108,7 @@ uint8_t fathom_modbus_rtu_request_length(const uint8_t *bytes, uint8_t have);
 /*
  * Reads a whole request whose CRC is right. message->values must hold `capacity` registers (or be NULL with
  * capacity 0); a write of many fills them.
- *   FATHOM_READY           unit, function, address and count or value are in message->head
+ *   FATHOM_OK           unit, function, address and count or value are in message->head
  *   FATHOM_ERR_EXCEPTION   well framed but not to be served: message->exception says why (1 for another
  *                          function, 3 for a count out of range or beyond `capacity`); encode_response
  *                          then gives the exception response

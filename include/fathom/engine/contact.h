@@ -97,7 +97,7 @@ typedef struct {
     uint8_t last_kind;              /**< Kind of the last sample; 0: there was none. */
     bool is_high;                   /**< The level at the last look. */
     bool is_clear;                  /**< The level at the last look had a meaning. */
-    bool is_held;                   /**< fathom_contact_hold() is in force. */
+    bool is_held;                   /**< fathom_contact_set_hold() is in force. */
 } fathom_contact_t;
 
 /**
@@ -105,7 +105,7 @@ typedef struct {
  *
  * If it fails, the contact is zeroed: set its members again before the next try.
  *
- * @retval FATHOM_READY         The contact is ready.
+ * @retval FATHOM_OK         The contact is ready.
  * @retval FATHOM_ERR_ARGUMENT  There is no pin that can be read, no clock, a guard without one of its functions, or a
  *                              time outside its range.
  */
@@ -117,12 +117,12 @@ void fathom_contact_set_near_is_high(fathom_contact_t *contact, bool near_is_hig
 
 /** @brief Stops the level from counting while `hold` is true, because its meaning is about to change. After that, the
  * level must settle again. A hold that does not end is FATHOM_ERR_STALE after each `stale_us`. */
-void fathom_contact_hold(fathom_contact_t *contact, bool hold);
+void fathom_contact_set_hold(fathom_contact_t *contact, bool hold);
 
 /**
  * @brief Returns the sensor for fathom_poll() and fathom_due_us(). Each poll is one look, and one poll of the guard.
  *
- * - FATHOM_READY: a sample. `raw` is the level, 1 for high. `time_us` is the first look that saw this level if the kind
+ * - FATHOM_OK: a sample. `raw` is the level, 1 for high. `time_us` is the first look that saw this level if the kind
  *   is new and that look was at most `stale_us` ago, and the present look otherwise.
  * - FATHOM_PENDING: nothing new; the level may be settling.
  * - FATHOM_ERR_STALE: no level counted for `stale_us`, because the level never stands still, the guard is never clear,

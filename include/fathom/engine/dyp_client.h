@@ -33,7 +33,7 @@ fathom_status_t fathom_dyp_client_submit(fathom_line_t *line, fathom_modbus_requ
  * FATHOM_PENDING; FATHOM_ERR_ARGUMENT: 0 or 255; FATHOM_ERR_BUSY. The response equals the request: where the line
  * does not know yet whether it echoes, the outcome is FATHOM_ERR_ECHO. Confirm it by a read at the new address.
  */
-fathom_status_t fathom_dyp_client_set_every_address(fathom_line_t *line, fathom_modbus_request_t *request,
+fathom_status_t fathom_dyp_client_broadcast_address(fathom_line_t *line, fathom_modbus_request_t *request,
                                                     uint8_t address);
 
 /* The transport for drivers over a line that is ready, by value: keep it as long as the drivers that point to it. */

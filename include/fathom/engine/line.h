@@ -80,10 +80,10 @@ extern "C" {
  *
  *    | echo in the config | adapter echoes | such a write ends with |
  *    |---|---|---|
- *    | right | no, or yes | FATHOM_READY, if the unit acknowledges it |
- *    | OFF | yes | FATHOM_READY even without a unit: its echo is mistaken for the acknowledgement |
+ *    | right | no, or yes | FATHOM_OK, if the unit acknowledges it |
+ *    | OFF | yes | FATHOM_OK even without a unit: its echo is mistaken for the acknowledgement |
  *    | ON | no | FATHOM_ERR_NO_RESPONSE |
- *    | AUTO, not known yet | yes or no | FATHOM_READY after two copies, FATHOM_ERR_ECHO after one |
+ *    | AUTO, not known yet | yes or no | FATHOM_OK after two copies, FATHOM_ERR_ECHO after one |
  *
  *    After FATHOM_ERR_ECHO the unit may have executed the write. Submit a read: its response shows what was written, and
  *    whether the adapter echoes. Give a write that must not be executed twice no retries.
@@ -445,7 +445,7 @@ void fathom_line_count(fathom_line_t *line, uint8_t which, uint8_t by);
  *
  * @param line    The line. Must stay valid until its last use.
  * @param config  The configuration. Must stay valid as long as the line.
- * @retval FATHOM_READY         The line can be used.
+ * @retval FATHOM_OK         The line can be used.
  * @retval FATHOM_ERR_ARGUMENT  A member of the config or of its `uart` is outside its range, or `echo` is
  *                              FATHOM_LINE_ECHO_AUTO and `find_echo` is NULL. Correct the config. Until then every
  *                              function of this line returns FATHOM_ERR_ARGUMENT, false or FATHOM_NO_DEADLINE.
@@ -459,7 +459,7 @@ fathom_status_t fathom_line_init(fathom_line_t *line, const fathom_line_config_t
  *
  * @param line    The line. Must stay valid until its last use.
  * @param config  The configuration. Must stay valid as long as the line.
- * @retval FATHOM_READY         The line can be used. Next, call fathom_line_listen().
+ * @retval FATHOM_OK         The line can be used. Next, call fathom_line_listen().
  * @retval FATHOM_ERR_ARGUMENT  A member of the config is outside its range. Correct the config.
  */
 fathom_status_t fathom_line_init_listening(fathom_line_t *line, const fathom_line_config_t *config);
@@ -505,7 +505,7 @@ void fathom_line_cancel_unit(fathom_line_t *line, uint8_t address);
  * @retval true   The transaction is the line's: do not change or free it.
  * @retval false  The transaction is the caller's.
  */
-bool fathom_line_has(const fathom_line_t *line, const fathom_transaction_t *transaction);
+bool fathom_line_is_queued(const fathom_line_t *line, const fathom_transaction_t *transaction);
 
 /**
  * @brief Returns whether nothing was on the wire at the last poll.
@@ -522,7 +522,7 @@ bool fathom_line_is_idle(const fathom_line_t *line);
  *
  * @param line      The line.
  * @param listener  The listener, or NULL to remove the listener. Must stay valid until the line has another or none.
- * @retval FATHOM_READY     The line has this listener, or none.
+ * @retval FATHOM_OK     The line has this listener, or none.
  * @retval FATHOM_ERR_BUSY  The line has another listener, and nothing changed. Remove that one, or call
  *                          fathom_line_replace_listener().
  */
@@ -571,12 +571,12 @@ void fathom_line_flush(fathom_line_t *line);
  *
  * Some modules use our TX as a trigger or mode-select input. While TX is low, the line sends nothing. Transactions wait
  * in the queue, at most for `busy_us` each (rule 3). After TX is released, the line keeps the silence before the next request. Once a break has begun,
- * it lasts until a call with `on` false returns FATHOM_READY. This holds even if fathom_line_poll() returns
+ * it lasts until a call with `on` false returns FATHOM_OK. This holds even if fathom_line_poll() returns
  * FATHOM_ERR_PORT in between and the port returns as another device whose TX is high.
  *
  * @param line  The line.
  * @param on    True to hold TX low, false to release it.
- * @retval FATHOM_READY            TX is in the requested state.
+ * @retval FATHOM_OK            TX is in the requested state.
  * @retval FATHOM_PENDING          The port is still sending. Call again, for example after 1 ms; fathom_line_due_us()
  *                                 does not include this.
  * @retval FATHOM_ERR_BUSY         A transaction is on the wire, so the break cannot begin. Call again after it.
@@ -621,7 +621,7 @@ uint32_t fathom_line_due_us(const fathom_line_t *line);
  * @retval FATHOM_LINE_ECHO_OFF   The adapter does not echo: by the config, or as received bytes showed.
  * @retval FATHOM_LINE_ECHO_ON    The adapter echoes: by the config, or as received bytes showed.
  */
-uint8_t fathom_line_echo(const fathom_line_t *line);
+uint8_t fathom_line_get_echo(const fathom_line_t *line);
 
 /**
  * @brief Returns the clock at the arrival of the last byte, in microseconds.
@@ -629,7 +629,7 @@ uint8_t fathom_line_echo(const fathom_line_t *line);
  * @param line  The line.
  * @return The clock, as exact as the port's time stamps or the polling. Valid for 65 ms after that byte.
  */
-uint32_t fathom_line_heard_us(const fathom_line_t *line);
+uint32_t fathom_line_last_byte_us(const fathom_line_t *line);
 
 #ifdef __cplusplus
 }

@@ -19,7 +19,7 @@ extern "C" {
  *   while (request.transaction.status == FATHOM_PENDING) fathom_line_poll(&line);
  */
 
-/* As submit and cancel of fathom_modbus_t. A write to unit 0 is a broadcast: no unit responds, and it is READY
+/* As submit and cancel of fathom_modbus_t. A write to unit 0 is a broadcast: no unit responds, and it is OK
  * transaction.timeout_us (the turnaround; the specification advises 100 to 200 ms) after it left. A read of
  * unit 0: FATHOM_ERR_UNSUPPORTED; fathom_modbus_client_with_zero() has that. */
 fathom_status_t fathom_modbus_client_submit(fathom_line_t *line, fathom_modbus_request_t *request);

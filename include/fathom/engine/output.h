@@ -37,7 +37,7 @@ typedef struct {
     /**
      * Sets the level, FATHOM_OUTPUT_..., and returns at once. NULL: there is no output.
      *
-     * - FATHOM_READY: the level is set. A pin always returns this.
+     * - FATHOM_OK: the level is set. A pin always returns this.
      * - FATHOM_PENDING: the port still sends bytes. Call it again. This may last for ever, so the caller needs a limit;
      *   fathom_trigger_drive() has one.
      * - FATHOM_ERR_PORT: the port is broken.

@@ -120,7 +120,7 @@ typedef struct {
  *
  * If it fails, the meter is zeroed. It may be called again at any time; the cycle in progress is then forgotten.
  *
- * @retval FATHOM_READY            The meter is ready.
+ * @retval FATHOM_OK            The meter is ready.
  * @retval FATHOM_ERR_ARGUMENT     A required member is missing, or a member is outside its range.
  * @retval FATHOM_ERR_UNSUPPORTED  The UART has no `set_break`, or the pin no `set`.
  */
@@ -132,8 +132,8 @@ fathom_status_t fathom_pulse_init(fathom_pulse_meter_t *meter, const fathom_puls
  * In a slow loop the cycles are longer, and the trigger is low until the poll after `low_us`. Poll at least once in 71
  * minutes.
  *
- * @param reading  Written with FATHOM_READY only.
- * @retval FATHOM_READY            `*reading` is the outcome of a cycle. The next cycle has begun if it was time.
+ * @param reading  Written with FATHOM_OK only.
+ * @retval FATHOM_OK            `*reading` is the outcome of a cycle. The next cycle has begun if it was time.
  * @retval FATHOM_PENDING          There is no outcome yet.
  * @retval FATHOM_ERR_NO_RESPONSE  The cycle ended without a pulse.
  * @retval FATHOM_ERR_STALE        A pulse was captured, and the program polled too late for it.
@@ -151,9 +151,9 @@ fathom_status_t fathom_pulse_poll(fathom_pulse_meter_t *meter, fathom_pulse_read
 uint32_t fathom_pulse_due_us(const fathom_pulse_meter_t *meter);
 
 /**
- * @brief Makes the trigger high, if it is low. Call it again, and do not poll, unless it returns FATHOM_READY. The
+ * @brief Makes the trigger high, if it is low. Call it again, and do not poll, unless it returns FATHOM_OK. The
  * memory belongs to the caller again after that.
- * @retval FATHOM_READY     The trigger is high. A pin, and a meter in zeroed memory, always have this result.
+ * @retval FATHOM_OK     The trigger is high. A pin, and a meter in zeroed memory, always have this result.
  * @retval FATHOM_PENDING   The UART refused to end the break. The trigger is low until a later call succeeds.
  * @retval FATHOM_ERR_PORT  The break failed, or the UART has refused for 1 s. If the caller gives up, the trigger stays
  *                          low.

@@ -29,8 +29,8 @@ typedef struct {
  * that polls gets a sample or an error.
  *
  * @param sensor  The sensor.
- * @param sample  Written with FATHOM_READY only.
- * @retval FATHOM_READY         `*sample` is a new reading of one probe. Call again at once for the next one.
+ * @param sample  Written with FATHOM_OK only.
+ * @retval FATHOM_OK         `*sample` is a new reading of one probe. Call again at once for the next one.
  * @retval FATHOM_PENDING       There is nothing new.
  * @retval FATHOM_ERR_ARGUMENT  The driver's initialisation failed or never ran, or `*sensor` is zeroed.
  * @return Other errors: an attempt failed.

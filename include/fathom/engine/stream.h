@@ -28,7 +28,7 @@ extern "C" {
  * fathom_line_listen(&line, &stream.listener);
  * for (;;) {
  *     fathom_line_poll(&line);                              // feeds the stream
- *     if (fathom_stream_poll(&stream, now_us()) == FATHOM_READY)
+ *     if (fathom_stream_poll(&stream, now_us()) == FATHOM_OK)
  *         fathom_dyp_stream_decode(fathom_stream_frame(&stream), &distance_mm, 1);
  * }
  * @endcode
@@ -42,7 +42,7 @@ extern "C" {
  *     SEARCHING ----------------------> CANDIDATE ------------------------> NEW FRAME
  *         ^                                 |                                   |
  *         |<--- any other byte, a loss -----+                                   |
- *         |<-------------- fathom_stream_poll() returns FATHOM_READY -----------+
+ *         |<-------------- fathom_stream_poll() returns FATHOM_OK -----------+
  *
  * A **window** is the last `length` bytes. A window is **valid** if it begins with FF and its last byte is the sum of
  * the bytes before it. A valid window is not always a frame: FF may stand anywhere in a frame, and the sum has 8 bits.
@@ -78,7 +78,7 @@ extern "C" {
  *    wire was silent. Bytes of other devices on the line count too.
  *
  *        wire      [frame] [damaged] [damaged] [damaged]      ..............................
- *        poll      READY               CHECKSUM ^             ..............  STALE ^
+ *        poll      OK               CHECKSUM ^             ..............  STALE ^
  *                  |<-------- stale_us -------->|             |<----- stale_us ---->|
  *
  * 6. **Age.** A frame is at most `stale_us` and FATHOM_LINE_LATE_US old when fathom_stream_poll() returns it. A poll
@@ -201,7 +201,7 @@ typedef enum {
 /**
  * @brief A stream, in the caller's memory. Call fathom_stream_init() before use.
  *
- * The caller may use `listener` (for fathom_line_listen()), `counters`, and after FATHOM_READY `time_us` and `is_sure`.
+ * The caller may use `listener` (for fathom_line_listen()), `counters`, and after FATHOM_OK `time_us` and `is_sure`.
  * All other members are private to the stream and the drivers of this library.
  */
 typedef struct {
@@ -245,7 +245,7 @@ typedef struct {
     /** @brief True if the newest frame has not been returned by fathom_stream_poll() yet. */
     bool is_new;
 
-    /** @brief True if the place of the newest frame is sure (rule 4). Valid after FATHOM_READY. */
+    /** @brief True if the place of the newest frame is sure (rule 4). Valid after FATHOM_OK. */
     bool is_sure;
 
     /** @brief The counters. */
@@ -257,7 +257,7 @@ typedef struct {
     /** @brief Clock when fathom_stream_poll() last returned a frame or an error, in microseconds. */
     uint32_t since_us;
 
-    /** @brief Clock at the last byte of the newest frame, in microseconds. Valid after FATHOM_READY. */
+    /** @brief Clock at the last byte of the newest frame, in microseconds. Valid after FATHOM_OK. */
     uint32_t time_us;
 
     /** @brief Clock at the last byte of the candidate, in microseconds. */
@@ -270,7 +270,7 @@ typedef struct {
  * @param stream  The stream.
  * @param config  The configuration. Not used after the call.
  * @param now_us  The clock. `stale_us` starts here.
- * @retval FATHOM_READY         The stream can be used. Next, call fathom_line_listen() or fathom_stream_feed().
+ * @retval FATHOM_OK         The stream can be used. Next, call fathom_line_listen() or fathom_stream_feed().
  * @retval FATHOM_ERR_ARGUMENT  `storage` is NULL, `length` is neither 4 nor 10, `stale_us` is above 2^31 - 1, or
  *                              `gap_us` is 1 to 1041. Correct the config.
  */
@@ -325,7 +325,7 @@ static inline void fathom_stream_feed(fathom_stream_t *stream, const uint8_t *by
  *
  * @param stream  The stream.
  * @param now_us  The clock, not before the time of the last byte.
- * @retval FATHOM_READY         fathom_stream_frame() is a new frame; `time_us` and `is_sure` belong to this frame. Read
+ * @retval FATHOM_OK         fathom_stream_frame() is a new frame; `time_us` and `is_sure` belong to this frame. Read
  *                              the frame before more bytes are fed. Each frame is returned once.
  * @retval FATHOM_PENDING       There is no new frame.
  * @retval FATHOM_ERR_STALE     The wire was silent for `stale_us`; or the newest frame is too old (rule 6).
@@ -334,7 +334,7 @@ static inline void fathom_stream_feed(fathom_stream_t *stream, const uint8_t *by
  */
 fathom_status_t fathom_stream_poll(fathom_stream_t *stream, uint32_t now_us);
 
-/** @brief Returns the newest frame, `length` bytes. Valid after FATHOM_READY until more bytes are fed. */
+/** @brief Returns the newest frame, `length` bytes. Valid after FATHOM_OK until more bytes are fed. */
 static inline const uint8_t *fathom_stream_frame(const fathom_stream_t *stream)
 {
     return &stream->storage[stream->length];

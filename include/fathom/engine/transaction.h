@@ -58,7 +58,7 @@ typedef struct {
 
     /**
      * @brief Decodes a complete frame with a right checksum that came from the requested unit.
-     * @retval FATHOM_READY          The frame is the response. The results are written.
+     * @retval FATHOM_OK          The frame is the response. The results are written.
      * @retval FATHOM_ERR_EXCEPTION  The unit refused the request. The exception number is written.
      * @return All other values: the frame is not the response to this transaction, and nothing is written.
      */
@@ -112,7 +112,7 @@ struct fathom_transaction {
      *
      * The maximum is 35 minutes, because a quarantine lasts twice the time-out. For a broadcast this is the turnaround
      * delay: the time that the units need before the next request. After the delay the transaction ends with
-     * FATHOM_READY.
+     * FATHOM_OK.
      */
     uint32_t timeout_us;
 
@@ -136,7 +136,7 @@ struct fathom_transaction {
      * | value                   | cause                                                                          |
      * |-------------------------|--------------------------------------------------------------------------------|
      * | FATHOM_PENDING          | The transaction is queued or on the wire.                                      |
-     * | FATHOM_READY            | The response arrived and its results are written; or the broadcast is finished. |
+     * | FATHOM_OK            | The response arrived and its results are written; or the broadcast is finished. |
      * | FATHOM_ERR_EXCEPTION    | The unit refused the request. The exception number is in the request.          |
      * | FATHOM_ERR_LINE_BUSY    | No silence came within `busy_us` (rule 3). See `attempts`.                     |
      * | FATHOM_ERR_OTHER_MASTER | Another master sent this unit a request during the attempt (rule 12).          |

@@ -49,20 +49,20 @@ typedef struct {
     bool low;            /**< The output is low. A low level whose end the output refuses counts too. */
     bool refused;        /**< The output refused the last call. */
     uint32_t refused_us; /**< Time of the first refusal, or of the last report of it. */
-    uint32_t polled_us;  /**< Time of the last fathom_trigger_look(), or of a later falling edge. */
+    uint32_t polled_us;  /**< Time of the last fathom_trigger_update(), or of a later falling edge. */
     uint32_t left_us;    /**< Rest of the period at `polled_us`. */
 } fathom_trigger_t;
 
 /**
  * @brief Initialises a trigger and makes the output high. The first falling edge may come `low_us` later.
- * @retval FATHOM_READY            The trigger is ready.
+ * @retval FATHOM_OK            The trigger is ready.
  * @retval FATHOM_ERR_ARGUMENT     There is no output or no clock, or a time is outside its range.
  * @retval FATHOM_ERR_UNSUPPORTED  The port has no `set_break`, or the pin no `set`.
  */
 fathom_status_t fathom_trigger_init(fathom_trigger_t *trigger);
 
 /** @brief Reads the clock. Call it first in each poll. */
-void fathom_trigger_look(fathom_trigger_t *trigger);
+void fathom_trigger_update(fathom_trigger_t *trigger);
 
 /** @brief Returns true if fathom_trigger_drive() would begin a cycle. */
 static inline bool fathom_trigger_is_due(const fathom_trigger_t *trigger)
@@ -77,7 +77,7 @@ static inline bool fathom_trigger_is_due(const fathom_trigger_t *trigger)
  * function returns FATHOM_ERR_PORT, and again after each further second. Shorter refusals are not added up.
  *
  * @param may_begin  The next falling edge may come.
- * @retval FATHOM_READY     The falling edge was made. `polled_us` is the clock after it, so no period is too short.
+ * @retval FATHOM_OK     The falling edge was made. `polled_us` is the clock after it, so no period is too short.
  * @retval FATHOM_PENDING   It is not time yet, the output refuses for less than 1 s, or the output went high.
  * @retval FATHOM_ERR_PORT  The output is broken, or refuses.
  */
@@ -91,8 +91,8 @@ fathom_status_t fathom_trigger_drive(fathom_trigger_t *trigger, bool may_begin);
 uint32_t fathom_trigger_due_us(const fathom_trigger_t *trigger, uint32_t until_us);
 
 /**
- * @brief Makes the output high, if it is low. Call it again unless it returns FATHOM_READY.
- * @retval FATHOM_READY     The output is high. A zeroed trigger has this result too.
+ * @brief Makes the output high, if it is low. Call it again unless it returns FATHOM_OK.
+ * @retval FATHOM_OK     The output is high. A zeroed trigger has this result too.
  * @retval FATHOM_PENDING   The output refused.
  * @retval FATHOM_ERR_PORT  The output is broken, or has refused for 1 s.
  */

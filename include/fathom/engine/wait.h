@@ -37,7 +37,7 @@ typedef void (*fathom_idle_t)(void *ctx, uint32_t max_us);
  * runs, and `idle` returns within the time that it is given.
  *
  * @param sensor    The sensor.
- * @param sample    Written with FATHOM_READY only.
+ * @param sample    Written with FATHOM_OK only.
  * @param idle      Called while there is nothing to do; NULL: the function polls without pause.
  * @param idle_ctx  Passed to `idle`.
  * @return Any result of fathom_poll() but FATHOM_PENDING.

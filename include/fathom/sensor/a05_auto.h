@@ -4,7 +4,7 @@
 
 #include "fathom/engine/output.h"
 #include "fathom/engine/sensor.h"
-#include "fathom/sensor/dyp_auto.h"
+#include "fathom/sensor/internal/dyp_auto.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -68,7 +68,7 @@ typedef struct {
 
 /*
  * Initialises the driver and makes it the listener of the line.
- *   FATHOM_READY         The driver listens.
+ *   FATHOM_OK         The driver listens.
  *   FATHOM_ERR_ARGUMENT  `line` is NULL, or a member is outside its range: `stale_us` above 2^31 - 1, `gap_us` of 1 to
  *                        1041, `min_mm` above `max_mm`, or `probes` above 15.
  *   FATHOM_ERR_BUSY      The line has another listener, which stays.
@@ -78,7 +78,7 @@ fathom_status_t fathom_a05_auto_init(fathom_a05_auto_t *sensor, const fathom_a05
 /*
  * To be called right before the sensor gets power: sets its RX pin for the values that it is to send. For real-time it
  * is low for 1.5 s, after which fathom_poll makes it high again; else it is high. The deadline for a frame begins anew.
- * FATHOM_READY: switch the power on now.
+ * FATHOM_OK: switch the power on now.
  * FATHOM_ERR_ARGUMENT: no such value. FATHOM_ERR_UNSUPPORTED: real-time values without `select`, or a port
  * that cannot hold its TX low.
  * FATHOM_ERR_BUSY: something is being sent on the line, or the break of a power-on before has not ended; try again.
@@ -89,9 +89,9 @@ fathom_status_t fathom_a05_auto_select(fathom_a05_auto_t *sensor, fathom_dyp_val
 /*
  * Stops listening, if the driver is the listener of the line, and lets RX go high, if it is still held low; the memory
  * is the caller's again. Call it again, and not poll, unless it returns
- * FATHOM_READY: RX is high, always where it is a pin.
+ * FATHOM_OK: RX is high, always where it is a pin.
  * FATHOM_PENDING, FATHOM_ERR_PORT: as fathom_line_break(line, false). If the caller gives up here, TX stays low, and
- * the line sends nothing until that is FATHOM_READY.
+ * the line sends nothing until that is FATHOM_OK.
  */
 fathom_status_t fathom_a05_auto_deinit(fathom_a05_auto_t *sensor);
 

@@ -8,8 +8,8 @@
 #include "fathom/engine/dyp_client.h"
 #include "fathom/engine/line.h"
 #include "fathom/engine/sensor.h"
-#include "fathom/sensor/dyp.h"
-#include "fathom/sensor/dyp_modbus.h"
+#include "fathom/sensor/internal/dyp.h"
+#include "fathom/sensor/internal/dyp_modbus.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -47,7 +47,7 @@ typedef struct {
     uint16_t values[FATHOM_DYP_PROBES];
 } fathom_a05_dyp_t;
 
-/* FATHOM_READY, or FATHOM_ERR_ARGUMENT: no transport, address 255, address_zero, a probe over 4, min_mm over max_mm, or a
+/* FATHOM_OK, or FATHOM_ERR_ARGUMENT: no transport, address 255, address_zero, a probe over 4, min_mm over max_mm, or a
  * member outside its range; a frame buffer of the line below 13 bytes.
  * Ranges: `modbus` as in fathom_modbus_config_t, `start_us` 0 to 2^31 - 1, `window` as in fathom_dyp_window_t. A refused
  * init zeroes *sensor; then each poll and command returns FATHOM_ERR_ARGUMENT. FATHOM_ERR_BUSY: a request of this driver is
@@ -76,7 +76,7 @@ void fathom_a05_dyp_power_on(fathom_a05_dyp_t *sensor);
  * Call it, with the loop going on in between, until it is not FATHOM_PENDING; fathom_poll rests meanwhile. First the
  * driver's own address is read, then the new one, where no unit may respond; the command is sent once; then the new
  * address is read. Some 2 s.
- *   FATHOM_READY            the device was read at the address, where the driver is from now on
+ *   FATHOM_OK            the device was read at the address, where the driver is from now on
  *   FATHOM_ERR_ARGUMENT     0 or 255
  *   FATHOM_ERR_IN_USE       a unit responds there already; nothing was sent
  *   FATHOM_ERR_UNCONFIRMED  it was sent, and the device responds at neither address: it is at one of the two
@@ -85,7 +85,7 @@ void fathom_a05_dyp_power_on(fathom_a05_dyp_t *sensor);
  * is_written: has the last command, or the one under way, been handed to the line?
  * Its response equals the request, and so counts for nothing here: only the reading at the new address does.
  */
-fathom_status_t fathom_a05_dyp_set_every_address(fathom_a05_dyp_t *sensor, uint8_t address);
+fathom_status_t fathom_a05_dyp_broadcast_address(fathom_a05_dyp_t *sensor, uint8_t address);
 bool fathom_a05_dyp_is_written(const fathom_a05_dyp_t *sensor);
 
 /* Gives up what is under way, also a measurement. An address that was being set may be set or not. */
@@ -103,7 +103,7 @@ typedef struct {
 /*
  * Sends the request to measure the first probe, which changes nothing, to all units (FF), and takes the address from
  * the first response. Call it, with the loop going on in between, until it is not FATHOM_PENDING; it polls the line.
- * FATHOM_READY: *address is where the response came from. Each outcome comes once; the next call begins anew.
+ * FATHOM_OK: *address is where the response came from. Each outcome comes once; the next call begins anew.
  * FATHOM_ERR_NO_RESPONSE: nothing in 200 ms. The datasheet does not say whether a unit responds to FF (A05 2(3)2).
  * FATHOM_ERR_CHECKSUM: what came was damaged; perhaps several responded at once. Others: as fathom_transaction_t.
  */

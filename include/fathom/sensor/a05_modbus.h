@@ -3,7 +3,7 @@
 #define FATHOM_A05_MODBUS_H
 
 #include "fathom/codec/dyp_stream.h"
-#include "fathom/sensor/dyp_modbus.h"
+#include "fathom/sensor/internal/dyp_modbus.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -58,7 +58,7 @@ typedef struct {
     uint16_t values[FATHOM_DYP_PROBES];
 } fathom_a05_modbus_t;
 
-/* FATHOM_READY, or FATHOM_ERR_ARGUMENT: no transport, address 255 or one beside address_zero,
+/* FATHOM_OK, or FATHOM_ERR_ARGUMENT: no transport, address 255 or one beside address_zero,
  * other registers, a probe over 4, min_mm over max_mm, or a member outside its range; a frame buffer of the line that is
  * too small for the probes: 5 bytes and 2 for each register from the first to the last wanted probe.
  * Ranges: `modbus` as in fathom_modbus_config_t, `start_us` 0 to 2^31 - 1, `window` as in fathom_dyp_window_t. A refused
@@ -77,8 +77,8 @@ void fathom_a05_modbus_power_on(fathom_a05_modbus_t *sensor);
  * loop going on in between, until it is not FATHOM_PENDING; fathom_poll rests meanwhile. A response takes
  * command_timeout_us (1 s) at most, a change some 3 s, since a read first shows that no unit is at the new address.
  *
- * address: FATHOM_READY with *address, or an error of fathom_poll.
- * set_address: 1..254. FATHOM_READY: the device was read at the new address, where the driver is from now on. Else,
+ * address: FATHOM_OK with *address, or an error of fathom_poll.
+ * set_address: 1..254. FATHOM_OK: the device was read at the new address, where the driver is from now on. Else,
  * with the driver at the old address:
  *   FATHOM_ERR_ARGUMENT     0 or 255
  *   FATHOM_ERR_IN_USE       a unit responds there already; nothing was changed
@@ -88,14 +88,14 @@ void fathom_a05_modbus_power_on(fathom_a05_modbus_t *sensor);
  * is_written: has the last setting, or the one under way, been handed to the line?
  * Other drivers' requests that wait for the old address end with FATHOM_ERR_CANCELLED.
  */
-fathom_status_t fathom_a05_modbus_address(fathom_a05_modbus_t *sensor, uint8_t *address);
+fathom_status_t fathom_a05_modbus_get_address(fathom_a05_modbus_t *sensor, uint8_t *address);
 fathom_status_t fathom_a05_modbus_set_address(fathom_a05_modbus_t *sensor, uint8_t address);
 bool fathom_a05_modbus_is_written(const fathom_a05_modbus_t *sensor);
 
 /* Sets the address to 0, which is in the datasheet's range and is the standard's broadcast: such a unit may not be
  * found again, since it need not respond there, and what is written to it would be written to all units. The driver
  * reads it there from then on, and sets nothing of it any more. Else as set_address. */
-fathom_status_t fathom_a05_modbus_set_address_to_0_perhaps_for_ever(fathom_a05_modbus_t *sensor);
+fathom_status_t fathom_a05_modbus_set_address_0(fathom_a05_modbus_t *sensor);
 
 /* Gives up what is under way, also a measurement. An address that was being set may be set or not. */
 void fathom_a05_modbus_cancel(fathom_a05_modbus_t *sensor);

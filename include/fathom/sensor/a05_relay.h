@@ -64,7 +64,7 @@ typedef struct {
 
 /**
  * @brief Initialises the driver and reads the pin once. If it fails, the driver is zeroed.
- * @retval FATHOM_READY         The driver is ready.
+ * @retval FATHOM_OK         The driver is ready.
  * @retval FATHOM_ERR_ARGUMENT  There is no clock, no pin that can be read, or a member outside its range.
  */
 fathom_status_t fathom_a05_relay_init(fathom_a05_relay_t *sensor, const fathom_a05_relay_config_t *config);

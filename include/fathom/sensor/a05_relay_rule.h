@@ -2,7 +2,7 @@
 #ifndef FATHOM_A05_RELAY_RULE_H
 #define FATHOM_A05_RELAY_RULE_H
 
-#include "fathom/engine/debounce.h"
+#include "fathom/processing/debounce.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -13,9 +13,9 @@ extern "C" {
  * @brief The rule of the A05's relay (A05 4) in software, over the distances of an A05 in any other mode: the relay
  * closes if at least one probe has something nearer than the threshold, and each state lasts at least 1 s.
  *
- *     if (fathom_poll(&bumper, &sample) == FATHOM_READY && fathom_a05_relay_rule_sample(&rule, &sample))
+ *     if (fathom_poll(&bumper, &sample) == FATHOM_OK && fathom_a05_relay_rule_add_sample(&rule, &sample))
  *         stop_or_go(rule.debounce.level);
- *     if (fathom_debounce_time(&rule.debounce, clock.now_us(clock.ctx))) stop();
+ *     if (fathom_debounce_advance(&rule.debounce, clock.now_us(clock.ctx))) stop();
  *
  * All samples of one sequence number are one measurement:
  *
@@ -64,7 +64,7 @@ typedef struct {
 
 /**
  * @brief Initialises a rule without a level. If it fails, the rule is zeroed; it then never has a level.
- * @retval FATHOM_READY         The rule is ready.
+ * @retval FATHOM_OK         The rule is ready.
  * @retval FATHOM_ERR_ARGUMENT  A member is outside its range.
  */
 fathom_status_t fathom_a05_relay_rule_init(fathom_a05_relay_rule_t *rule,
@@ -72,7 +72,7 @@ fathom_status_t fathom_a05_relay_rule_init(fathom_a05_relay_rule_t *rule,
 
 /** @brief Adds the sensor's next sample, at its `time_us`. Returns true if the level changed, also from none to the
  * first one. */
-bool fathom_a05_relay_rule_sample(fathom_a05_relay_rule_t *rule, const fathom_sample_t *sample);
+bool fathom_a05_relay_rule_add_sample(fathom_a05_relay_rule_t *rule, const fathom_sample_t *sample);
 
 #ifdef __cplusplus
 }

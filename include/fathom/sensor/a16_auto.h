@@ -4,7 +4,7 @@
 
 #include "fathom/engine/output.h"
 #include "fathom/engine/sensor.h"
-#include "fathom/sensor/dyp_auto.h"
+#include "fathom/sensor/internal/dyp_auto.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -55,7 +55,7 @@ typedef struct {
 
 /*
  * Initialises the driver and makes it the listener of the line. After an error, the driver does not listen.
- *   FATHOM_READY            The driver listens.
+ *   FATHOM_OK            The driver listens.
  *   FATHOM_ERR_ARGUMENT     `line` is NULL, or a member is outside its range: `stale_us` above 2^31 - 1, `gap_us` of 1
  *                           to 1041, `min_mm` above `max_mm`, or an unknown `value`.
  *   FATHOM_ERR_BUSY         The line has another listener; or the port is still sending, so that the break that selects
@@ -69,7 +69,7 @@ fathom_status_t fathom_a16_auto_init(fathom_a16_auto_t *sensor, const fathom_a16
  * UART automatic (A16 2(2)) alone: which value the module sends from now on. Its RX pin goes high for the processed
  * one, low for the real-time one, by `select`; during a break of a line nothing can be sent there. Values in the
  * first 0.5 s (real-time) or 2.5 to 7.5 s (processed) may still be of the other kind; the frames do not show it.
- * FATHOM_READY, always where there is a pin; of a break what fathom_line_break returns, after which the selection is
+ * FATHOM_OK, always where there is a pin; of a break what fathom_line_break returns, after which the selection is
  * what it was: call again. FATHOM_ERR_ARGUMENT: no such value. FATHOM_ERR_UNSUPPORTED: no `select`.
  */
 fathom_status_t fathom_a16_auto_select(fathom_a16_auto_t *sensor, fathom_dyp_value_t value);
@@ -77,9 +77,9 @@ fathom_status_t fathom_a16_auto_select(fathom_a16_auto_t *sensor, fathom_dyp_val
 /*
  * Stops listening, if the driver is the listener of the line, and ends a break that selected; the memory is the
  * caller's again. Call it again, and not poll, unless it returns
- * FATHOM_READY: no break is held, always where there is a pin, which stays as it is.
+ * FATHOM_OK: no break is held, always where there is a pin, which stays as it is.
  * FATHOM_PENDING, FATHOM_ERR_PORT: as fathom_line_break(line, false). If the caller gives up here, TX stays low, and
- * the line sends nothing until that is FATHOM_READY.
+ * the line sends nothing until that is FATHOM_OK.
  */
 fathom_status_t fathom_a16_auto_deinit(fathom_a16_auto_t *sensor);
 

@@ -9,7 +9,7 @@
 #include "fathom/engine/sensor.h"
 #include "fathom/engine/stream.h"
 #include "fathom/engine/trigger.h"
-#include "fathom/sensor/dyp.h"
+#include "fathom/sensor/internal/dyp.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -86,7 +86,7 @@ typedef struct {
 
 /*
  * Makes the pin high and makes the driver the listener of the line. The first trigger comes low_us later.
- *   FATHOM_READY            The driver listens.
+ *   FATHOM_OK            The driver listens.
  *   FATHOM_ERR_ARGUMENT     `line` or `trigger.set` is NULL, or a member is outside its range.
  *   FATHOM_ERR_BUSY         The line has another listener, which stays. The trigger was not touched.
  *   FATHOM_ERR_UNSUPPORTED  The port, whose break is the trigger, has no set_break.
@@ -97,9 +97,9 @@ fathom_status_t fathom_a16_controlled_init(fathom_a16_controlled_t *sensor,
 /*
  * Stops listening, if the driver is the listener of the line, and lets the trigger go high; the memory is the caller's
  * again. Call it again, and not poll, unless it returns
- * FATHOM_READY: the trigger is high, always where it is a pin.
+ * FATHOM_OK: the trigger is high, always where it is a pin.
  * FATHOM_PENDING, FATHOM_ERR_PORT: as fathom_line_break(line, false). If the caller gives up here, TX stays low, and
- * the line sends nothing until that is FATHOM_READY.
+ * the line sends nothing until that is FATHOM_OK.
  */
 fathom_status_t fathom_a16_controlled_deinit(fathom_a16_controlled_t *sensor);
 

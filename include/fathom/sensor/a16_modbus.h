@@ -2,7 +2,7 @@
 #ifndef FATHOM_A16_MODBUS_H
 #define FATHOM_A16_MODBUS_H
 
-#include "fathom/sensor/dyp_modbus.h"
+#include "fathom/sensor/internal/dyp_modbus.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -56,7 +56,7 @@ typedef struct {
     uint16_t values[1];
 } fathom_a16_modbus_t;
 
-/* FATHOM_READY, or FATHOM_ERR_ARGUMENT: no transport, address 255 or one beside address_zero,
+/* FATHOM_OK, or FATHOM_ERR_ARGUMENT: no transport, address 255 or one beside address_zero,
  * no such value, min_mm over max_mm, or a member outside its range; `value` is 0 or 1.
  * Ranges: `modbus` as in fathom_modbus_config_t, `start_us` 0 to 2^31 - 1, `window` as in fathom_dyp_window_t. A refused
  * init zeroes *sensor; then each poll and command returns FATHOM_ERR_ARGUMENT. FATHOM_ERR_BUSY: a request of this driver is

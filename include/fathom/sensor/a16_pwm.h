@@ -7,7 +7,7 @@
 
 #include "fathom/engine/pulse.h"
 #include "fathom/engine/sensor.h"
-#include "fathom/sensor/dyp.h"
+#include "fathom/sensor/internal/dyp.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -71,14 +71,14 @@ typedef struct {
 
 /**
  * @brief Initialises the driver and makes the trigger high. If it fails, the driver is zeroed.
- * @retval FATHOM_READY            The driver is ready.
+ * @retval FATHOM_OK            The driver is ready.
  * @retval FATHOM_ERR_ARGUMENT     A member of the configuration is missing or outside its range.
  * @retval FATHOM_ERR_UNSUPPORTED  The UART has no `set_break`, or the pin no `set`.
  */
 fathom_status_t fathom_a16_pwm_init(fathom_a16_pwm_t *sensor, const fathom_a16_pwm_config_t *config);
 
 /** @brief Makes the trigger high. Returns what fathom_pulse_deinit() returns: call it again unless that is
- * FATHOM_READY. The memory belongs to the caller again after that. */
+ * FATHOM_OK. The memory belongs to the caller again after that. */
 fathom_status_t fathom_a16_pwm_deinit(fathom_a16_pwm_t *sensor);
 
 /** @brief Returns the sensor for fathom_poll() and fathom_due_us(). */

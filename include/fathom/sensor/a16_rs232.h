@@ -40,7 +40,7 @@ void fathom_a16_rs232_init(fathom_a16_rs232_t *rs232, fathom_a16_modbus_t *modbu
  * Reads the address, writes 1 to 0x0202 and waits for a frame, since a read would end automatic output again. Call
  * it, with the loop going on in between, until it is not FATHOM_PENDING; leave fathom_poll of both drivers alone
  * meanwhile.
- *   FATHOM_READY            *sample is the first reading that the sensor has sent by itself. From now on poll the
+ *   FATHOM_OK            *sample is the first reading that the sensor has sent by itself. From now on poll the
  *                           automatic driver only
  *   FATHOM_ERR_UNCONFIRMED  it was written, and there was no frame in return_us. Of a pause between two calls that is
  *                           longer than the stale limit of `automatic` and FATHOM_LINE_LATE_US, only the stale limit

@@ -21,7 +21,7 @@ extern "C" {
  *
  * A command or setting that is begun and never called again gives way after FATHOM_MODBUS_ABANDONED_US.
  *
- * Reading: FATHOM_READY with *out written, or
+ * Reading: FATHOM_OK with *out written, or
  *   FATHOM_ERR_NO_RESPONSE, _CHECKSUM, _EXCEPTION, _PORT   as fathom_poll (a16_modbus.h). Where a register is not for
  *                           this variant, silence is likely: the datasheet knows no exceptions
  *   FATHOM_ERR_LINE_BUSY, _OTHER_MASTER   as fathom_poll; they say nothing about the unit: try again
@@ -29,7 +29,7 @@ extern "C" {
  *   FATHOM_ERR_BUSY         another command is not finished, or its outcome was not taken
  * Setting: the value is read first, written only if it is another one (flash wears), and read back.
  * fathom_a16_modbus_is_written tells whether it was written:
- *   FATHOM_READY            it is so; not written: it was so before
+ *   FATHOM_OK            it is so; not written: it was so before
  *   FATHOM_ERR_ARGUMENT     out of range; nothing was sent
  *   FATHOM_ERR_DIFFERS      the device acknowledged the value, and it reads back as another
  *   FATHOM_ERR_UNCONFIRMED  it was sent, and could not be read back: it may be set or not
@@ -55,9 +55,9 @@ bool fathom_a16_modbus_is_written(const fathom_a16_modbus_t *sensor);
  * The address, 0x0200, is FATHOM_ERR_ARGUMENT then. The setting after it is not blind, however this one ends:
  * FATHOM_ERR_UNCONFIRMED: it was sent, and may be set or not, also where it was acknowledged; FATHOM_ERR_EXCEPTION: it
  * refused; others: nothing was written.
- * Here: FATHOM_READY, or FATHOM_ERR_BUSY: a setting is not finished. fathom_a16_modbus_cancel and power_on undo it.
+ * Here: FATHOM_OK, or FATHOM_ERR_BUSY: a setting is not finished. fathom_a16_modbus_cancel and power_on undo it.
  */
-fathom_status_t fathom_a16_modbus_next_is_blind(fathom_a16_modbus_t *sensor);
+fathom_status_t fathom_a16_modbus_write_next_unchecked(fathom_a16_modbus_t *sensor);
 
 /* Gives up what is under way, also a measurement. A setting that was under way may be set or not. */
 void fathom_a16_modbus_cancel(fathom_a16_modbus_t *sensor);
@@ -68,17 +68,17 @@ fathom_status_t fathom_a16_modbus_measure(fathom_a16_modbus_t *sensor, fathom_dy
 
 /*
  * The address, 0x0200. set: 1..254, from the acknowledgement on. The new address is read first, which costs a second:
- * FATHOM_ERR_IN_USE, a unit responds there. After FATHOM_READY the driver is at the new address, after any error at the
+ * FATHOM_ERR_IN_USE, a unit responds there. After FATHOM_OK the driver is at the new address, after any error at the
  * old one; after FATHOM_ERR_UNCONFIRMED the device is at one of the two. Other drivers' requests that wait for the old
  * address end with FATHOM_ERR_CANCELLED.
  */
-fathom_status_t fathom_a16_modbus_address(fathom_a16_modbus_t *sensor, uint8_t *address);
+fathom_status_t fathom_a16_modbus_get_address(fathom_a16_modbus_t *sensor, uint8_t *address);
 fathom_status_t fathom_a16_modbus_set_address(fathom_a16_modbus_t *sensor, uint8_t address);
 
 /* Sets the address to 0, which is in the datasheet's range and is the standard's broadcast: such a unit may not be
  * found again, since it need not respond there, and what is written to it would be written to all units. The driver
  * reads it there from then on, and sets nothing of it any more. Else as set_address. */
-fathom_status_t fathom_a16_modbus_set_address_to_0_perhaps_for_ever(fathom_a16_modbus_t *sensor);
+fathom_status_t fathom_a16_modbus_set_address_0(fathom_a16_modbus_t *sensor);
 
 typedef enum {
     FATHOM_A16_CONTROLLED = 0,
@@ -87,7 +87,7 @@ typedef enum {
 
 /*
  * The operating mode, 0x0202; WRITE-ONLY, not kept over power-off. The address is read before. It means something only
- * where a Modbus request has ended automatic output (RS232). FATHOM_READY is the acknowledgement and no more
+ * where a Modbus request has ended automatic output (RS232). FATHOM_OK is the acknowledgement and no more
  * (FATHOM_ERR_UNCONFIRMED: there was none): whether frames come is heard, not read, since a read would end them again:
  * a16_rs232.h.
  */
@@ -100,18 +100,19 @@ typedef enum {
 } fathom_a16_polarity_t;
 
 /* Polarity of the switch output, 0x0205; switch variant only. */
-fathom_status_t fathom_a16_modbus_switch_polarity(fathom_a16_modbus_t *sensor,
-                                                  fathom_a16_polarity_t *polarity);
+fathom_status_t fathom_a16_modbus_get_switch_polarity(fathom_a16_modbus_t *sensor,
+                                                      fathom_a16_polarity_t *polarity);
 fathom_status_t fathom_a16_modbus_set_switch_polarity(fathom_a16_modbus_t *sensor,
                                                       fathom_a16_polarity_t polarity);
 
 /* Threshold of the switch output, 0x0206; switch variant only; 1000 mm from the factory. The datasheet gives no range:
  * 1..16350 mm is taken, all that the module can measure. */
-fathom_status_t fathom_a16_modbus_switch_threshold_mm(fathom_a16_modbus_t *sensor, uint16_t *threshold_mm);
+fathom_status_t fathom_a16_modbus_get_switch_threshold_mm(fathom_a16_modbus_t *sensor,
+                                                          uint16_t *threshold_mm);
 fathom_status_t fathom_a16_modbus_set_switch_threshold_mm(fathom_a16_modbus_t *sensor, uint16_t threshold_mm);
 
 /* Which distance the automatic output sends, 0x0207; RS232 variant only. */
-fathom_status_t fathom_a16_modbus_automatic_value(fathom_a16_modbus_t *sensor, fathom_dyp_value_t *value);
+fathom_status_t fathom_a16_modbus_get_automatic_value(fathom_a16_modbus_t *sensor, fathom_dyp_value_t *value);
 fathom_status_t fathom_a16_modbus_set_automatic_value(fathom_a16_modbus_t *sensor, fathom_dyp_value_t value);
 
 #ifdef __cplusplus

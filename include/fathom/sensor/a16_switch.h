@@ -67,7 +67,7 @@ typedef struct {
 
 /**
  * @brief Initialises the driver and reads the pin once. If it fails, the driver is zeroed.
- * @retval FATHOM_READY         The driver is ready.
+ * @retval FATHOM_OK         The driver is ready.
  * @retval FATHOM_ERR_ARGUMENT  There is no clock, no pin that can be read, a guard without one of its functions, or a
  *                              time outside its range.
  */
@@ -76,9 +76,9 @@ fathom_status_t fathom_a16_switch_init(fathom_a16_switch_t *sensor, const fathom
 /**
  * @brief Sets the polarity by Modbus. Call it until it does not return FATHOM_PENDING.
  *
- * The level does not count meanwhile, because it turns during the change. After FATHOM_READY the level has its new
+ * The level does not count meanwhile, because it turns during the change. After FATHOM_OK the level has its new
  * meaning, after an error its previous one. After FATHOM_ERR_UNCONFIRMED it may be either: read it with
- * fathom_a16_modbus_switch_polarity() and call fathom_a16_switch_polarity_is().
+ * fathom_a16_modbus_get_switch_polarity() and call fathom_a16_switch_note_polarity().
  *
  * @param modbus  The driver of the same module on the line that shares the pins.
  * @return What fathom_a16_modbus_set_switch_polarity() returns.
@@ -88,7 +88,7 @@ fathom_status_t fathom_a16_switch_set_polarity(fathom_a16_switch_t *sensor, fath
 
 /** @brief Sets the meaning of the level without Modbus. Call it if the polarity was set or read without this driver, or
  * if fathom_a16_modbus_cancel() stopped the setting of it. */
-void fathom_a16_switch_polarity_is(fathom_a16_switch_t *sensor, fathom_a16_polarity_t polarity);
+void fathom_a16_switch_note_polarity(fathom_a16_switch_t *sensor, fathom_a16_polarity_t polarity);
 
 /** @brief Returns the sensor for fathom_poll() and fathom_due_us(). There is no deinit: stop polling. */
 fathom_sensor_t fathom_a16_switch_sensor(fathom_a16_switch_t *sensor);

@@ -5,7 +5,7 @@
 #include <stdint.h>
 
 #include "fathom/codec/hps167s_registers.h"
-#include "fathom/engine/modbus_setting.h"
+#include "fathom/engine/internal/modbus_setting.h"
 #include "fathom/engine/sensor.h"
 
 #ifdef __cplusplus
@@ -59,7 +59,7 @@ typedef struct {
     uint8_t warm_up_s; /* as it was set with #7, for fathom_hps167s_power_on; 0: 5, the factory's */
     bool no_warm_up;   /* it was set to 0 s */
 
-    /* How to read what the datasheet leaves open; fathom_hps167s_use_limits has more. */
+    /* How to read what the datasheet leaves open; fathom_hps167s_set_limits has more. */
 
     /* The configuration (#2) is believed when so many responses in succession agree: its frame has the shape of a
      * measurement's. 1..8; 0: 2. 3 at least for 2 s after an unasked frame was heard. */
@@ -109,7 +109,7 @@ struct fathom_hps167s {
     uint16_t words[FATHOM_HPS167S_RECONNECT_COUNT]; /* what #15 writes */
 };
 
-/* FATHOM_READY, or FATHOM_ERR_ARGUMENT: no transport, an address over 32, address_zero, more than 8 same_responses, a
+/* FATHOM_OK, or FATHOM_ERR_ARGUMENT: no transport, an address over 32, address_zero, more than 8 same_responses, a
  * member of `modbus` outside its range (fathom_modbus_config_t), or a frame buffer of the line below 13 bytes. All values
  * of the other members are accepted. A refused init zeroes *sensor; then each poll and command returns
  * FATHOM_ERR_ARGUMENT. FATHOM_ERR_BUSY: a request of this driver is still queued; nothing changed. Call
@@ -117,9 +117,9 @@ struct fathom_hps167s {
 fathom_status_t fathom_hps167s_init(fathom_hps167s_t *sensor, const fathom_hps167s_config_t *config);
 
 /* Other limits of distances than the defaults, from now on. Fills in the defaults where *limits is 0; it is the
- * driver's as long as the sensor. FATHOM_READY, or FATHOM_ERR_ARGUMENT, and the limits are as before: over_range_mm
+ * driver's as long as the sensor. FATHOM_OK, or FATHOM_ERR_ARGUMENT, and the limits are as before: over_range_mm
  * that is 65535 or not over max_mm, min_mm over max_mm. */
-fathom_status_t fathom_hps167s_use_limits(fathom_hps167s_t *sensor, fathom_hps167s_limits_t *limits);
+fathom_status_t fathom_hps167s_set_limits(fathom_hps167s_t *sensor, fathom_hps167s_limits_t *limits);
 
 /* Cancels what is under way; the memory is the caller's again. After the configuration (#2) was read among unasked
  * frames a response may still be on its way: initialise another driver for the same unit a command's time-out later. */

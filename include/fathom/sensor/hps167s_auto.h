@@ -75,7 +75,7 @@ typedef struct {
     /** @brief The line. */
     fathom_line_t *line;
 
-    /** @brief The driver that sends requests to the same device (fathom_hps167s_auto_beside()), or NULL. */
+    /** @brief The driver that sends requests to the same device (fathom_hps167s_auto_follow()), or NULL. */
     fathom_hps167s_t *driver;
 
     /** @brief Returns false if a frame may be a late response to a request of `driver`. Not NULL if `driver` is not. */
@@ -135,7 +135,7 @@ typedef struct {
  *
  * @param sensor  The driver. Must stay valid until fathom_hps167s_auto_deinit().
  * @param config  The configuration. Not used after the call.
- * @retval FATHOM_READY         The driver listens. Next, pass fathom_hps167s_auto_sensor() to fathom_poll().
+ * @retval FATHOM_OK         The driver listens. Next, pass fathom_hps167s_auto_sensor() to fathom_poll().
  * @retval FATHOM_ERR_ARGUMENT  `line` is NULL, its frame buffer has less than 13 bytes, `address` is above 32, or
  *                              `stale_us` is above 2^31 - 1. Correct the config.
  * @retval FATHOM_ERR_BUSY      The line has another listener, which stays. Remove that one first.
@@ -147,7 +147,7 @@ fathom_status_t fathom_hps167s_auto_init(fathom_hps167s_auto_t *sensor,
  * @brief Names a driver that sends requests to the same device on the same line.
  *
  * From now on the driver searches for frames from the address of `driver`, also after that address changes, and passes
- * each frame to fathom_hps167s_heard(). The response to command #2 has the same shape as a measurement and may arrive
+ * each frame to fathom_hps167s_accept_unsolicited(). The response to command #2 has the same shape as a measurement and may arrive
  * late. So two kinds of frames are no measurement and are counted in `implausible`: a frame that equals the last
  * response to #2, and between #2 and the next request, a frame that could be the response to #2. Of all distances, this
  * concerns only 255 mm.
@@ -155,10 +155,10 @@ fathom_status_t fathom_hps167s_auto_init(fathom_hps167s_auto_t *sensor,
  * @param sensor  The driver that listens.
  * @param driver  The driver that sends requests. Must outlive `sensor`.
  */
-void fathom_hps167s_auto_beside(fathom_hps167s_auto_t *sensor, fathom_hps167s_t *driver);
+void fathom_hps167s_auto_follow(fathom_hps167s_auto_t *sensor, fathom_hps167s_t *driver);
 
-/** @brief Replaces the default distance limits, as fathom_hps167s_use_limits(). */
-fathom_status_t fathom_hps167s_auto_use_limits(fathom_hps167s_auto_t *sensor,
+/** @brief Replaces the default distance limits, as fathom_hps167s_set_limits(). */
+fathom_status_t fathom_hps167s_auto_set_limits(fathom_hps167s_auto_t *sensor,
                                                fathom_hps167s_limits_t *limits);
 
 /** @brief Stops listening, if the driver is the listener of the line. The memory is the caller's again. */

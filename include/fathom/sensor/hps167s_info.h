@@ -12,7 +12,7 @@ extern "C" {
  * What can be read from an HPS-167S beside distances: commands #1 to #4. None of them changes anything.
  *
  * Each function returns at once: call it, with the loop going on in between, until it is not FATHOM_PENDING. *out is
- * written on FATHOM_READY only. A command takes its turn after a measurement that is under way, and until its outcome
+ * written on FATHOM_OK only. A command takes its turn after a measurement that is under way, and until its outcome
  * was taken fathom_poll is FATHOM_PENDING; fathom_hps167s_cancel gives it up. The errors are those of fathom_poll, and
  *   FATHOM_ERR_BUSY       another command or setting is not finished, or its outcome was not taken
  *   FATHOM_ERR_CAPACITY   the line's frame buffer is too small (27 bytes for the details)
@@ -33,7 +33,7 @@ typedef struct {
 } fathom_hps167s_temperature_t;
 
 /* #1: date and number of the interface's version. */
-fathom_status_t fathom_hps167s_interface_version(fathom_hps167s_t *sensor, fathom_hps167s_version_t *out);
+fathom_status_t fathom_hps167s_get_interface_version(fathom_hps167s_t *sensor, fathom_hps167s_version_t *out);
 
 /*
  * #2. The response has the shape of a measurement's, and an unasked one may come instead. So it counts only if the
@@ -45,18 +45,20 @@ fathom_status_t fathom_hps167s_interface_version(fathom_hps167s_t *sensor, fatho
  * that is returned command_timeout_us later, when no response can come any more: it would be taken for the next
  * measurement. Of measured distances only exactly 255 mm can pass the first test.
  */
-fathom_status_t fathom_hps167s_configuration(fathom_hps167s_t *sensor, fathom_hps167s_configuration_t *out);
+fathom_status_t fathom_hps167s_get_configuration(fathom_hps167s_t *sensor,
+                                                 fathom_hps167s_configuration_t *out);
 
 /* #3. FATHOM_ERR_MALFORMED also: without the byte B0 at its beginning. */
-fathom_status_t fathom_hps167s_details(fathom_hps167s_t *sensor, fathom_hps167s_details_t *out);
+fathom_status_t fathom_hps167s_get_details(fathom_hps167s_t *sensor, fathom_hps167s_details_t *out);
 
 /* #4. FATHOM_ERR_MALFORMED also: tenths of a degree Celsius would not fit an int16_t. */
-fathom_status_t fathom_hps167s_temperature(fathom_hps167s_t *sensor, fathom_hps167s_temperature_t *out);
+fathom_status_t fathom_hps167s_get_temperature(fathom_hps167s_t *sensor, fathom_hps167s_temperature_t *out);
 
 /* A frame of the shape of #5's response was heard from the sensor's address that no request of the sensor's waited for,
  * with these registers, at this time of its clock. False: it may be a late response to #2, and is no measurement.
  * hps167s_auto.h calls it; other listeners of the line may. */
-bool fathom_hps167s_heard(fathom_hps167s_t *sensor, const uint16_t registers[4], uint32_t time_us);
+bool fathom_hps167s_accept_unsolicited(fathom_hps167s_t *sensor, const uint16_t registers[4],
+                                       uint32_t time_us);
 
 #ifdef __cplusplus
 }

@@ -19,7 +19,7 @@ extern "C" {
  * With read-back (#7 to #11, #15): the configuration (#2) is read, the value is written only if it is another one,
  * since flash wears, and it is read again. At most 65 requests: twice #2 (hps167s_info.h) and the write. Then fathom_hps167s_is_written tells
  * whether it was written:
- *   FATHOM_READY            it was read back; not written: it was so before
+ *   FATHOM_OK            it was read back; not written: it was so before
  *   FATHOM_ERR_DIFFERS      it acknowledged the value, and it reads back as another
  *   FATHOM_ERR_UNCONFIRMED  it was sent, and could not be read back: it may be set or not
  *   FATHOM_ERR_EXCEPTION    it refused; fathom_hps167s_exception has the number
@@ -33,7 +33,7 @@ extern "C" {
  *
  * WRITE-ONLY (#12, #13, #14): #1 is read first, so that nothing is written to a device that is not there and an echo of
  * the line is known, and then it is written. Nothing can be read back.
- *   FATHOM_READY            it was acknowledged, which is all that can be known
+ *   FATHOM_OK            it was acknowledged, which is all that can be known
  *   FATHOM_ERR_UNCONFIRMED  it was sent and not acknowledged: it may be set or not
  *   FATHOM_ERR_EXCEPTION, FATHOM_ERR_BUSY   as above
  *   others                  of fathom_poll: nothing was written
@@ -49,16 +49,16 @@ bool fathom_hps167s_is_written(const fathom_hps167s_t *sensor);
  *   FATHOM_ERR_UNCONFIRMED  it was sent, and may be set or not, also where it was acknowledged
  *   FATHOM_ERR_EXCEPTION    it refused
  *   others                  nothing was written
- * Here: FATHOM_READY, or FATHOM_ERR_BUSY: a setting is not finished. fathom_hps167s_cancel and _power_on undo it.
+ * Here: FATHOM_OK, or FATHOM_ERR_BUSY: a setting is not finished. fathom_hps167s_cancel and _power_on undo it.
  */
-fathom_status_t fathom_hps167s_next_is_blind(fathom_hps167s_t *sensor);
+fathom_status_t fathom_hps167s_write_next_unchecked(fathom_hps167s_t *sensor);
 
 /* #7: seconds after power-on without measuring; from the next fathom_hps167s_power_on. */
 fathom_status_t fathom_hps167s_set_warm_up_s(fathom_hps167s_t *sensor, uint8_t warm_up_s);
 
 /*
  * #8: 1..32; in force at once. #1 is read at the driver's own address and then at the new one; the latter costs a
- * time-out of 1 s. After FATHOM_READY the driver is at the new address; other drivers' requests that wait for the old
+ * time-out of 1 s. After FATHOM_OK the driver is at the new address; other drivers' requests that wait for the old
  * one end with FATHOM_ERR_CANCELLED.
  *   FATHOM_ERR_IN_USE       a unit responds at the new address; nothing was written
  *   FATHOM_ERR_WARMING_UP   none does, so soon after fathom_hps167s_power_on, which proves nothing: try again
@@ -71,7 +71,7 @@ fathom_status_t fathom_hps167s_set_address(fathom_hps167s_t *sensor, uint8_t add
  * NULL, else FATHOM_ERR_ARGUMENT. The datasheet leaves open when it is in force. So the new rate is tried before, which
  * costs a time-out (FATHOM_ERR_UNSUPPORTED: the port cannot do it; FATHOM_ERR_IN_USE: a unit responds there), and after
  * the write first the new rate is tried, then the old one.
- *   FATHOM_READY            the driver is at the new rate; or at the old one, where the new one reads back for the next
+ *   FATHOM_OK            the driver is at the new rate; or at the old one, where the new one reads back for the next
  *                           power-on: sensor->next_baud is not 0, and fathom_hps167s_power_on moves the driver
  *   FATHOM_ERR_UNCONFIRMED  it responds at neither. From now on the driver tries both in turns until a response comes
  */
@@ -92,9 +92,8 @@ fathom_status_t fathom_hps167s_set_termination(fathom_hps167s_t *sensor, bool te
  *   others                  of fathom_poll: nothing was sent
  * Nothing else in this library is ever sent to unit 0.
  */
-fathom_status_t fathom_hps167s_set_measures_after_power_on_of_all_units(fathom_hps167s_t *sensor,
-                                                                        bool measures);
-fathom_status_t fathom_hps167s_set_termination_of_all_units(fathom_hps167s_t *sensor, bool termination);
+fathom_status_t fathom_hps167s_broadcast_measures_after_power_on(fathom_hps167s_t *sensor, bool measures);
+fathom_status_t fathom_hps167s_broadcast_termination(fathom_hps167s_t *sensor, bool termination);
 
 /* #12: is added to what it measures; real 200 and measured 215 mm make -15. WRITE-ONLY; the datasheet leaves open
  * whether it replaces the offset before or adds to it: measure afterwards. */
@@ -117,7 +116,7 @@ fathom_status_t fathom_hps167s_set_reconnect_time_ms(fathom_hps167s_t *sensor, u
  *
  * #2 is read first; then, if the device is elsewhere, a read at address 1 and 19200 shows whether a unit is there,
  * which costs a time-out. Where config.modbus.line_settings is NULL the driver follows to the address alone.
- *   FATHOM_READY            it reported success, or has moved; and was read there, where the driver is from now on
+ *   FATHOM_OK            it reported success, or has moved; and was read there, where the driver is from now on
  *   FATHOM_ERR_IN_USE       a unit responds at address 1; nothing was sent
  *   FATHOM_ERR_EXCEPTION    it refused: sensor->reset_response has the device's own error code; where that is
  *                           FATHOM_HPS167S_NO_RESET_RESPONSE it was a Modbus exception, whose number is in

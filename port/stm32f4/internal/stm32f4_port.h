@@ -37,8 +37,8 @@ void fathom_stm32f4_enable_interrupt(uint8_t number);
 enum { GPIO_INPUT = 0, GPIO_OUTPUT = 1, GPIO_ALTERNATE = 2 };
 
 /* Clocks the port and gives the pin its function; alternate: 0..15. False: there is no such pin. */
-bool fathom_stm32f4_pin_begin(const fathom_stm32f4_pin_t *pin, uint32_t mode, fathom_stm32f4_pull_t pull,
-                              uint32_t alternate);
+bool fathom_stm32f4_pin_init(const fathom_stm32f4_pin_t *pin, uint32_t mode, fathom_stm32f4_pull_t pull,
+                             uint32_t alternate);
 void fathom_stm32f4_pin_mode(const fathom_stm32f4_pin_t *pin, uint32_t mode);
 void fathom_stm32f4_pin_set(const fathom_stm32f4_pin_t *pin, bool high); /* nothing where there is none */
 bool fathom_stm32f4_is_pin(const fathom_stm32f4_pin_t *pin);

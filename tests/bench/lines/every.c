@@ -38,13 +38,13 @@ static bool add(const lines_job_t *job, unsigned n)
                                         .find_echo = fathom_line_find_echo,
                                         .silence_us = FATHOM_T3_5_US(LINES_BAUD, 11),
                                         .gap_us = 25000};
-    if (fathom_line_init(&at->line, &at->config) != FATHOM_READY) return false;
+    if (fathom_line_init(&at->line, &at->config) != FATHOM_OK) return false;
     at->modbus = fathom_modbus_client(&at->line);
     const fathom_hps167s_config_t config = {.modbus.transport = &at->modbus,
                                             .modbus.address = LINES_UNIT,
                                             .modbus.period_us = job->period_us,
                                             .modbus.timeout_us = LINES_TIMEOUT_S * 1000000u};
-    if (fathom_hps167s_init(&at->driver, &config) != FATHOM_READY) return false;
+    if (fathom_hps167s_init(&at->driver, &config) != FATHOM_OK) return false;
     sensors[n] = fathom_hps167s_sensor(&at->driver);
     return true;
 }
@@ -56,7 +56,7 @@ static void poll_until(lines_job_t *job, unsigned count, uint64_t end_us)
             fathom_sample_t sample;
             fathom_status_t status;
             while ((status = fathom_poll(&sensors[n], &sample)) != FATHOM_PENDING)
-                lines_see(&job->seen[n], status == FATHOM_READY ? sample.distance_mm : 0);
+                lines_see(&job->seen[n], status == FATHOM_OK ? sample.distance_mm : 0);
             entries[n] =
                 (struct pollfd){fathom_posix_fd(&lines[n].port), fathom_posix_poll_events(&lines[n].port), 0};
         }

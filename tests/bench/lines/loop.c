@@ -10,7 +10,7 @@ static fathom_loop_sensor_t sensors[LINES_MOST];
 
 static void take(void *ctx, fathom_status_t status, const fathom_sample_t *sample)
 {
-    lines_see(ctx, status == FATHOM_READY ? sample->distance_mm : 0);
+    lines_see(ctx, status == FATHOM_OK ? sample->distance_mm : 0);
 }
 
 static bool add(lines_job_t *job, unsigned n)
@@ -20,7 +20,7 @@ static bool add(lines_job_t *job, unsigned n)
                                       .modbus.period_us = job->period_us,
                                       .modbus.timeout_us = LINES_TIMEOUT_S * 1000000u};
     if (fathom_loop_add_line(&loop, &lines[n], job->paths[n], &lines_settings) != FATHOM_POSIX_OK ||
-        fathom_hps167s_init(&drivers[n], &config) != FATHOM_READY)
+        fathom_hps167s_init(&drivers[n], &config) != FATHOM_OK)
         return false;
     sensors[n] = (fathom_loop_sensor_t){fathom_hps167s_sensor(&drivers[n]), take, &job->seen[n], NULL};
     fathom_loop_add_sensor(&lines[n].source, &sensors[n]);

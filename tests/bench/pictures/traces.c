@@ -126,7 +126,7 @@ static void poll_unit(uint8_t i)
     char text[32];
     const fathom_status_t status = fathom_poll(&sensors[i], &sample);
     if (status == FATHOM_PENDING) return;
-    if (status == FATHOM_READY)
+    if (status == FATHOM_OK)
         snprintf(text, sizeof text, "unit %u reading %u mm", i + 1U, sample.distance_mm);
     else
         snprintf(text, sizeof text, "unit %u %s", i + 1U,
@@ -193,7 +193,7 @@ static void tell_reading(const fathom_sensor_t *sensor)
     fathom_sample_t sample;
     char text[40] = "";
     uint32_t time_us = now.now_us;
-    while (fathom_poll(sensor, &sample) == FATHOM_READY) {
+    while (fathom_poll(sensor, &sample) == FATHOM_OK) {
         const size_t at = strlen(text);
         snprintf(text + at, sizeof text - at, at == 0 ? "%u" : " %u", sample.distance_mm);
         time_us = sample.time_us;

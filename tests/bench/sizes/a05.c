@@ -20,7 +20,7 @@ void a05_modbus_use(const fathom_sample_t *sample)
     uint8_t address;
     outcome = sample->distance_mm;
     fathom_a05_modbus_power_on(&a05_modbus);
-    outcome = (uint16_t)fathom_a05_modbus_address(&a05_modbus, &address);
+    outcome = (uint16_t)fathom_a05_modbus_get_address(&a05_modbus, &address);
     outcome = (uint16_t)fathom_a05_modbus_set_address(&a05_modbus, (uint8_t)argument);
 }
 
@@ -37,7 +37,7 @@ void a05_dyp_use(const fathom_sample_t *sample)
     uint8_t address;
     outcome = sample->distance_mm;
     fathom_a05_dyp_power_on(&a05_dyp);
-    outcome = (uint16_t)fathom_a05_dyp_set_every_address(&a05_dyp, (uint8_t)argument);
+    outcome = (uint16_t)fathom_a05_dyp_broadcast_address(&a05_dyp, (uint8_t)argument);
     outcome = (uint16_t)fathom_a05_dyp_find(&a05_dyp_find, &line, &address);
 }
 
@@ -48,7 +48,7 @@ ONLY(a05_relay, kind)
 static fathom_status_t stub_poll(void *ctx, fathom_sample_t *sample)
 {
     sample->distance_mm = argument;
-    return FATHOM_READY;
+    return FATHOM_OK;
 }
 
 fathom_sensor_t a05_relay_rule_begin(void)
@@ -61,5 +61,5 @@ fathom_sensor_t a05_relay_rule_begin(void)
 
 void a05_relay_rule_use(const fathom_sample_t *sample)
 {
-    outcome = fathom_a05_relay_rule_sample(&a05_relay_rule, sample);
+    outcome = fathom_a05_relay_rule_add_sample(&a05_relay_rule, sample);
 }

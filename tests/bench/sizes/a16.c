@@ -36,15 +36,15 @@ void a16_settings_use(const fathom_sample_t *sample)
     a16_modbus_use(sample);
     outcome = (uint16_t)fathom_a16_modbus_measure(&a16_modbus, (fathom_dyp_value_t)argument, &once);
     outcome = once.distance_mm;
-    outcome = (uint16_t)fathom_a16_modbus_address(&a16_modbus, &address);
+    outcome = (uint16_t)fathom_a16_modbus_get_address(&a16_modbus, &address);
     outcome = (uint16_t)fathom_a16_modbus_set_address(&a16_modbus, (uint8_t)argument);
     outcome =
         (uint16_t)fathom_a16_modbus_set_operating_mode(&a16_modbus, (fathom_a16_operating_mode_t)argument);
-    outcome = (uint16_t)fathom_a16_modbus_switch_polarity(&a16_modbus, &polarity);
+    outcome = (uint16_t)fathom_a16_modbus_get_switch_polarity(&a16_modbus, &polarity);
     outcome = (uint16_t)fathom_a16_modbus_set_switch_polarity(&a16_modbus, (fathom_a16_polarity_t)argument);
-    outcome = (uint16_t)fathom_a16_modbus_switch_threshold_mm(&a16_modbus, &threshold_mm);
+    outcome = (uint16_t)fathom_a16_modbus_get_switch_threshold_mm(&a16_modbus, &threshold_mm);
     outcome = (uint16_t)fathom_a16_modbus_set_switch_threshold_mm(&a16_modbus, argument);
-    outcome = (uint16_t)fathom_a16_modbus_automatic_value(&a16_modbus, &value);
+    outcome = (uint16_t)fathom_a16_modbus_get_automatic_value(&a16_modbus, &value);
     outcome = (uint16_t)fathom_a16_modbus_set_automatic_value(&a16_modbus, (fathom_dyp_value_t)argument);
 }
 

@@ -37,6 +37,6 @@ void everything_use(const fathom_sample_t *sample)
     PROGRAMS(USE_ONE)
     for (uint8_t i = 0; i != SENSORS; i++) {
         fathom_sample_t another;
-        if (fathom_poll(&sensors[i], &another) == FATHOM_READY) outcome = another.distance_mm;
+        if (fathom_poll(&sensors[i], &another) == FATHOM_OK) outcome = another.distance_mm;
     }
 }

@@ -20,10 +20,10 @@ void hps167s_info_use(const fathom_sample_t *sample)
     fathom_hps167s_details_t details;
     fathom_hps167s_temperature_t temperature;
     hps167s_use(sample);
-    outcome = (uint16_t)fathom_hps167s_interface_version(&hps167s, &version);
-    outcome = (uint16_t)fathom_hps167s_configuration(&hps167s, &configuration);
-    outcome = (uint16_t)fathom_hps167s_details(&hps167s, &details);
-    outcome = (uint16_t)fathom_hps167s_temperature(&hps167s, &temperature);
+    outcome = (uint16_t)fathom_hps167s_get_interface_version(&hps167s, &version);
+    outcome = (uint16_t)fathom_hps167s_get_configuration(&hps167s, &configuration);
+    outcome = (uint16_t)fathom_hps167s_get_details(&hps167s, &details);
+    outcome = (uint16_t)fathom_hps167s_get_temperature(&hps167s, &temperature);
 }
 
 fathom_sensor_t hps167s_settings_begin(void) { return hps167s_begin(); }

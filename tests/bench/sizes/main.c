@@ -10,6 +10,6 @@ int main(void)
     const fathom_sensor_t sensor = BEGIN();
     for (;;) {
         fathom_sample_t sample;
-        if (fathom_poll(&sensor, &sample) == FATHOM_READY) USE(&sample);
+        if (fathom_poll(&sensor, &sample) == FATHOM_OK) USE(&sample);
     }
 }

@@ -21,8 +21,8 @@ fathom_sensor_t a16_auto_alarm_begin(void)
 void a16_auto_alarm_use(const fathom_sample_t *sample)
 {
     a16_auto_use(sample);
-    outcome = fathom_alarm_sample(&alarm, sample);
-    outcome = fathom_alarm_status(&alarm, FATHOM_PENDING, clock.now_us(clock.ctx));
+    outcome = fathom_alarm_add_sample(&alarm, sample);
+    outcome = fathom_alarm_add_status(&alarm, FATHOM_PENDING, clock.now_us(clock.ctx));
     outcome = fathom_alarm_is_on(&alarm);
 }
 
@@ -36,8 +36,8 @@ fathom_sensor_t a16_auto_median_begin(void)
 static bool steady(const fathom_sample_t *sample, fathom_sample_t *out)
 {
     a16_auto_use(sample);
-    outcome = fathom_median_time(&median, clock.now_us(clock.ctx));
-    return fathom_median_sample(&median, sample, out);
+    outcome = fathom_median_advance(&median, clock.now_us(clock.ctx));
+    return fathom_median_add_sample(&median, sample, out);
 }
 
 void a16_auto_median_use(const fathom_sample_t *sample)
@@ -51,7 +51,7 @@ static void show(const fathom_sample_t *sample, const fathom_level_config_t *con
     fathom_sample_t out;
     fathom_level_t tank;
     if (steady(sample, &out) && out.kind == FATHOM_TARGET &&
-        fathom_level(config, out.distance_mm, &tank) == FATHOM_READY)
+        fathom_level_from_distance(config, out.distance_mm, &tank) == FATHOM_OK)
         level = tank.volume > 4500;
 }
 

@@ -18,6 +18,6 @@ int main(void)
     modbus_t *const modbus = modbus_new_tcp("127.0.0.1", 502);
     const fathom_status_t status = fathom_libmodbus_init(&port, modbus, &config);
     modbus_free(modbus);
-    printf("over libmodbus it %s\n", status == FATHOM_READY ? "works" : "fails");
+    printf("over libmodbus it %s\n", status == FATHOM_OK ? "works" : "fails");
     return 0;
 }

@@ -165,7 +165,7 @@ static void judge_error(fathom_status_t status)
 
 static void judge_outcome(fathom_status_t status, const fathom_sample_t *sample)
 {
-    if (status == FATHOM_READY) {
+    if (status == FATHOM_OK) {
         damage_heard.readings++;
         judge_sample(sample);
     } else {

@@ -59,9 +59,8 @@ static void good(void)
 void judge_read(fathom_status_t status, bool is_right)
 {
     if (judge.rig->writes != judge.writes_begin) judge_finding("a read wrote", status);
-    if (status == FATHOM_READY && !is_right)
-        judge_finding("it told something else than the device has", status);
-    if (status == FATHOM_READY)
+    if (status == FATHOM_OK && !is_right) judge_finding("it told something else than the device has", status);
+    if (status == FATHOM_OK)
         good();
     else
         count(judge_why(status), status);
@@ -133,7 +132,7 @@ void judge_set(fathom_status_t status, bool is_written, wanted_t wanted)
     if (status != FATHOM_ERR_BUSY && status != FATHOM_PENDING && is_written != (writes > 0))
         judge_finding(is_written ? "'written', and it was not" : "'not written', and it was", status);
     switch (status) {
-    case FATHOM_READY:
+    case FATHOM_OK:
         if (writes == 0 && !holds) judge_finding("'unchanged', and it is not so", status);
         if (writes > 0 && !holds && !wanted.acknowledged) judge_finding("'made', and it is not so", status);
         if (writes > 0 && f.settings == 0 && !f.echoed && !f.reset)
@@ -187,7 +186,7 @@ void judge_report(report_t report, wanted_t wanted)
 {
     bool wrote = judge.rig->writes != judge.writes_begin;
     bool says = report.not_written || report.not_confirmed || report.otherwise || report.refused;
-    fathom_status_t status = report.made            ? FATHOM_READY
+    fathom_status_t status = report.made            ? FATHOM_OK
                              : report.not_confirmed ? FATHOM_ERR_UNCONFIRMED
                              : report.otherwise     ? FATHOM_ERR_DIFFERS
                              : report.refused       ? FATHOM_ERR_EXCEPTION
@@ -198,7 +197,7 @@ void judge_report(report_t report, wanted_t wanted)
 
 void judge_done(bool is_good, bool is_right)
 {
-    judge_read(is_good ? FATHOM_READY : explained(), is_right);
+    judge_read(is_good ? FATHOM_OK : explained(), is_right);
     if (!is_right && !is_good) judge_finding("it told something else than the device has", 1);
 }
 

@@ -58,7 +58,7 @@ typedef struct {
 extern judge_t judge;
 
 void judge_begin(const char *name);
-/* A command that changes nothing: is_right, where it says FATHOM_READY. */
+/* A command that changes nothing: is_right, where it says FATHOM_OK. */
 void judge_read(fathom_status_t status, bool is_right);
 
 /* A reading, and a command that gives one. */

@@ -21,7 +21,7 @@ static fathom_sensor_t begin_modbus(rig_t *rig, fathom_a05_modbus_t *sensor, uin
                                          .probes = probes,
                                          .registers = registers};
     config.modbus.retries = rig->device.config.seed % 5 == 0 ? 2 : 0;
-    assert_int_equal(fathom_a05_modbus_init(sensor, &config), FATHOM_READY);
+    assert_int_equal(fathom_a05_modbus_init(sensor, &config), FATHOM_OK);
     return fathom_a05_modbus_sensor(sensor);
 }
 
@@ -31,7 +31,7 @@ static void commands(rig_t *rig, fathom_a05_modbus_t *sensor)
     fathom_status_t status;
     uint8_t address = 0, wanted = rig->device.address == 7 ? 1 : 7;
     judge_begin("a05_modbus_address");
-    JUDGE_RUN(status, any, fathom_a05_modbus_address(sensor, &address));
+    JUDGE_RUN(status, any, fathom_a05_modbus_get_address(sensor, &address));
     judge_read(status, address == rig->device.address);
     judge_begin("a05_modbus_set_address");
     JUDGE_RUN(status, any, fathom_a05_modbus_set_address(sensor, wanted));
@@ -64,7 +64,7 @@ void life_a05_uart(rig_t *rig)
     config.select = fathom_output_line_break(&rig->line);
     config.probes = rig->device.config.fitted;
     config.stale_us = rig->device.config.seed % 2 == 0 ? 0 : 4 * SECOND_US;
-    assert_int_equal(fathom_a05_auto_init(&automatic, &config), FATHOM_READY);
+    assert_int_equal(fathom_a05_auto_init(&automatic, &config), FATHOM_OK);
     fathom_sensor_t by_itself = fathom_a05_auto_sensor(&automatic);
     judge_begin("a05_auto_power_on");
     JUDGE_RUN(status, by_itself,
@@ -111,7 +111,7 @@ void life_a05_rs485(rig_t *rig)
     any = begin_modbus(rig, &sensor, rig->device.config.fitted, 0);
     find_by_modbus(rig, &any);
     judge_begin("a05_modbus_set_address_to_0");
-    JUDGE_RUN(status, any, fathom_a05_modbus_set_address_to_0_perhaps_for_ever(&sensor));
+    JUDGE_RUN(status, any, fathom_a05_modbus_set_address_0(&sensor));
     judge_set(status, fathom_a05_modbus_is_written(&sensor), HOLDS(0x0200, 0));
     judge_poll("a05_modbus", &any, 3, SETTLED_US);
     fathom_a05_modbus_deinit(&sensor);
@@ -121,7 +121,7 @@ static fathom_sensor_t begin_dyp(rig_t *rig, fathom_a05_dyp_t *sensor, uint8_t p
 {
     fathom_a05_dyp_config_t config = {
         .modbus.transport = &rig->dyp, .modbus.address = rig->device.address, .probes = probes};
-    assert_int_equal(fathom_a05_dyp_init(sensor, &config), FATHOM_READY);
+    assert_int_equal(fathom_a05_dyp_init(sensor, &config), FATHOM_OK);
     return fathom_a05_dyp_sensor(sensor);
 }
 
@@ -144,7 +144,7 @@ void life_a05_dyp(rig_t *rig)
     JUDGE_RUN(status, any, fathom_a05_dyp_find(&find, &rig->line, &found));
     judge_read(status, found == rig->device.address || found == 255);
     judge_begin("a05_dyp_set_every_address");
-    JUDGE_RUN(status, any, fathom_a05_dyp_set_every_address(&sensor, 9));
+    JUDGE_RUN(status, any, fathom_a05_dyp_broadcast_address(&sensor, 9));
     judge_set(status, fathom_a05_dyp_is_written(&sensor), HOLDS(0xAA03, 9));
     fathom_a05_dyp_deinit(&sensor);
     restart(rig);

@@ -26,7 +26,7 @@ void life_a16_auto(rig_t *rig)
     config.select = fathom_output_line_break(&rig->line);
     config.value = rig->device.config.seed % 4 >= 2 ? FATHOM_REAL_TIME : FATHOM_PROCESSED;
     rig_power(rig, true);
-    assert_int_equal(fathom_a16_auto_init(&sensor, &config), FATHOM_READY);
+    assert_int_equal(fathom_a16_auto_init(&sensor, &config), FATHOM_OK);
     fathom_sensor_t any = fathom_a16_auto_sensor(&sensor);
     for (size_t i = 0; i < 5; i++) {
         show(rig, i);
@@ -49,7 +49,7 @@ void life_a16_controlled(rig_t *rig)
                                              .trigger = fathom_output_line_break(&rig->line),
                                              .gap_us = rig->line_config.gap_us};
     rig_power(rig, true);
-    assert_int_equal(fathom_a16_controlled_init(&sensor, &config), FATHOM_READY);
+    assert_int_equal(fathom_a16_controlled_init(&sensor, &config), FATHOM_OK);
     fathom_sensor_t any = fathom_a16_controlled_sensor(&sensor);
     for (size_t i = 0; i < 5; i++) {
         show(rig, i);
@@ -63,7 +63,7 @@ static fathom_sensor_t begin_modbus(rig_t *rig, fathom_a16_modbus_t *sensor, uin
     fathom_a16_modbus_config_t config = {
         .modbus.transport = &rig->modbus, .modbus.address = rig->device.address, .value = value};
     config.modbus.retries = rig->device.config.seed % 5 == 0 ? 2 : 0;
-    assert_int_equal(fathom_a16_modbus_init(sensor, &config), FATHOM_READY);
+    assert_int_equal(fathom_a16_modbus_init(sensor, &config), FATHOM_OK);
     return fathom_a16_modbus_sensor(sensor);
 }
 
@@ -83,16 +83,16 @@ static void ask_all(rig_t *rig, fathom_a16_modbus_t *sensor)
         judge_measured(status, &sample);
     }
     judge_begin("a16_address");
-    JUDGE_RUN(status, any, fathom_a16_modbus_address(sensor, &address));
+    JUDGE_RUN(status, any, fathom_a16_modbus_get_address(sensor, &address));
     judge_read(status, address == rig->device.address);
     judge_begin("a16_switch_polarity");
-    JUDGE_RUN(status, any, fathom_a16_modbus_switch_polarity(sensor, &polarity));
+    JUDGE_RUN(status, any, fathom_a16_modbus_get_switch_polarity(sensor, &polarity));
     judge_read(status, polarity == judge_held(0x0205));
     judge_begin("a16_switch_threshold_mm");
-    JUDGE_RUN(status, any, fathom_a16_modbus_switch_threshold_mm(sensor, &threshold_mm));
+    JUDGE_RUN(status, any, fathom_a16_modbus_get_switch_threshold_mm(sensor, &threshold_mm));
     judge_read(status, threshold_mm == judge_held(0x0206));
     judge_begin("a16_automatic_value");
-    JUDGE_RUN(status, any, fathom_a16_modbus_automatic_value(sensor, &value));
+    JUDGE_RUN(status, any, fathom_a16_modbus_get_automatic_value(sensor, &value));
     judge_read(status, value == judge_held(0x0207));
 }
 
@@ -154,7 +154,7 @@ void life_a16_rs485(rig_t *rig)
     ask_all(rig, &sensor);
     find_by_modbus(rig, &any);
     judge_begin("a16_set_address_to_0");
-    JUDGE_RUN(status, any, fathom_a16_modbus_set_address_to_0_perhaps_for_ever(&sensor));
+    JUDGE_RUN(status, any, fathom_a16_modbus_set_address_0(&sensor));
     judge_set(status, fathom_a16_modbus_is_written(&sensor), HOLDS(0x0200, 0));
     judge_poll("a16_modbus", &any, 3, SETTLED_US);
     fathom_a16_modbus_deinit(&sensor);
@@ -170,7 +170,7 @@ void life_a16_rs232(rig_t *rig)
     fathom_a16_auto_config_t config = {
         .line = &rig->line, .stale_us = stale_us(rig), .gap_us = rig->line_config.gap_us};
     rig_power(rig, true);
-    assert_int_equal(fathom_a16_auto_init(&automatic, &config), FATHOM_READY);
+    assert_int_equal(fathom_a16_auto_init(&automatic, &config), FATHOM_OK);
     fathom_sensor_t by_itself = fathom_a16_auto_sensor(&automatic);
     judge_poll("a16_auto RS232", &by_itself, 8, SETTLED_US);
     fathom_sensor_t any = begin_modbus(rig, &sensor, 0);
@@ -185,7 +185,7 @@ void life_a16_rs232(rig_t *rig)
     judge_begin("a16_rs232_return_to_automatic");
     while ((status = fathom_a16_rs232_return_to_automatic(&rs232, &sample)) == FATHOM_PENDING)
         rig_pass(rig, fathom_a16_rs232_due_us(&rs232));
-    if (status == FATHOM_READY) judge_sample(&sample);
+    if (status == FATHOM_OK) judge_sample(&sample);
     judge_set(status, fathom_a16_modbus_is_written(&sensor), ACKNOWLEDGED(0x0202, 1));
     judge_poll("a16_auto RS232 returned", &by_itself, 6, SETTLED_US);
     fathom_a16_auto_deinit(&automatic);

@@ -26,7 +26,7 @@ static void begin(rig_t *rig)
                                       .warm_up_s = rig->device.hps.flash.warm_s};
     config.no_warm_up = config.warm_up_s == 0;
     config.low_word_first = second_choice(&rig->device, CHOICE_hps_reconnect_order) == 2;
-    assert_int_equal(fathom_hps167s_init(&h.sensor, &config), FATHOM_READY);
+    assert_int_equal(fathom_hps167s_init(&h.sensor, &config), FATHOM_OK);
     h.any = fathom_hps167s_sensor(&h.sensor);
 }
 
@@ -47,13 +47,13 @@ static void info(rig_t *rig)
     const hps_t *d = &rig->device.hps;
     static const uint32_t rates[] = {19200, 19200, 57600, 115200, 230400};
     judge_begin("hps167s_interface_version");
-    JUDGE_RUN(status, h.any, fathom_hps167s_interface_version(&h.sensor, &version));
+    JUDGE_RUN(status, h.any, fathom_hps167s_get_interface_version(&h.sensor, &version));
     if (status == FATHOM_PENDING) fathom_hps167s_cancel(&h.sensor);
     judge_read(status, version.year == 2000 + d->version[0] && version.month == d->version[1] &&
                            version.day == d->version[2] && version.major == d->version[3] &&
                            version.minor == d->version[4] && version.revision == d->version[5]);
     judge_begin("hps167s_configuration");
-    JUDGE_RUN(status, h.any, fathom_hps167s_configuration(&h.sensor, &c));
+    JUDGE_RUN(status, h.any, fathom_hps167s_get_configuration(&h.sensor, &c));
     if (status == FATHOM_PENDING) fathom_hps167s_cancel(&h.sensor);
     const hps_settings_t *reported =
         second_choice(&rig->device, CHOICE_hps_reported) == 0 ? &d->set : &d->used;
@@ -64,12 +64,12 @@ static void info(rig_t *rig)
                            c.reconnect_time_ms == ms &&
                            c.measures_after_power_on == (reported->auto_out != 0));
     judge_begin("hps167s_details");
-    JUDGE_RUN(status, h.any, fathom_hps167s_details(&h.sensor, &details));
+    JUDGE_RUN(status, h.any, fathom_hps167s_get_details(&h.sensor, &details));
     if (status == FATHOM_PENDING) fathom_hps167s_cancel(&h.sensor);
     judge_read(status, details.uuid[0] == d->details[1] && details.uuid[15] == d->details[16] &&
                            details.year == 2000 + d->details[17]);
     judge_begin("hps167s_temperature");
-    JUDGE_RUN(status, h.any, fathom_hps167s_temperature(&h.sensor, &t));
+    JUDGE_RUN(status, h.any, fathom_hps167s_get_temperature(&h.sensor, &t));
     if (status == FATHOM_PENDING) fathom_hps167s_cancel(&h.sensor);
     judge_read(status, t.fahrenheit == (int16_t)second_choice(&rig->device, CHOICE_hps_temperature));
 }
@@ -107,24 +107,24 @@ static void set_all(rig_t *rig)
     SET("hps167s_load_factory_settings", fathom_hps167s_load_factory_settings(s), ACKNOWLEDGED(0x15, 0xFF));
     rig_wait(rig, 20000);
     find(rig);
-    assert_int_equal(fathom_hps167s_next_is_blind(s), FATHOM_READY);
+    assert_int_equal(fathom_hps167s_write_next_unchecked(s), FATHOM_OK);
     judge_begin("hps167s_next_is_blind");
     JUDGE_RUN(status, h.any, fathom_hps167s_set_termination(s, false));
     if (status == FATHOM_PENDING) fathom_hps167s_cancel(s);
     judge_set(status, fathom_hps167s_is_written(s), SENT(0x13, 0));
     judge_begin("hps167s_set_termination_of_all_units");
-    JUDGE_RUN(status, h.any, fathom_hps167s_set_termination_of_all_units(s, true));
+    JUDGE_RUN(status, h.any, fathom_hps167s_broadcast_termination(s, true));
     if (status == FATHOM_PENDING) fathom_hps167s_cancel(s);
     judge_set(status, fathom_hps167s_is_written(s), SENT(0x13, 0xFF));
     judge_begin("hps167s_set_measures_..._of_all_units");
-    JUDGE_RUN(status, h.any, fathom_hps167s_set_measures_after_power_on_of_all_units(s, true));
+    JUDGE_RUN(status, h.any, fathom_hps167s_broadcast_measures_after_power_on(s, true));
     if (status == FATHOM_PENDING) fathom_hps167s_cancel(s);
     judge_set(status, fathom_hps167s_is_written(s), SENT(0x12, 0xFF));
     SET("hps167s_set_address", fathom_hps167s_set_address(s, 12), HOLDS(0x10, 12));
-    if (status != FATHOM_READY) find(rig);
+    if (status != FATHOM_OK) find(rig);
     judge_poll("hps167s", &h.any, 4, SETTLED_US);
     SET("hps167s_set_baud", fathom_hps167s_set_baud(s, 115200), HOLDS(0x11, 3));
-    if (status != FATHOM_READY) find(rig);
+    if (status != FATHOM_OK) find(rig);
     judge_poll("hps167s", &h.any, 4, SETTLED_US);
 }
 
@@ -169,8 +169,8 @@ void life_hps167s_auto(rig_t *rig)
     fathom_hps167s_auto_t listener;
     begin(rig);
     fathom_hps167s_auto_config_t config = {.line = &rig->line};
-    assert_int_equal(fathom_hps167s_auto_init(&listener, &config), FATHOM_READY);
-    fathom_hps167s_auto_beside(&listener, &h.sensor);
+    assert_int_equal(fathom_hps167s_auto_init(&listener, &config), FATHOM_OK);
+    fathom_hps167s_auto_follow(&listener, &h.sensor);
     fathom_sensor_t any = fathom_hps167s_auto_sensor(&listener);
     rig_power(rig, true);
     for (size_t i = 0; i < THERE; i++) {

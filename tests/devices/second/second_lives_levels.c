@@ -26,7 +26,7 @@ void life_a16_pwm(rig_t *rig)
     fathom_a16_pwm_config_t config = {
         .pulse = {.clock = &rig->clock, .capture = &capture, .trigger = fathom_output_break(&rig->uart)}};
     rig_power(rig, true);
-    assert_int_equal(fathom_a16_pwm_init(&sensor, &config), FATHOM_READY);
+    assert_int_equal(fathom_a16_pwm_init(&sensor, &config), FATHOM_OK);
     fathom_sensor_t any = fathom_a16_pwm_sensor(&sensor);
     live(rig, "a16_pwm", &any);
     fathom_a16_pwm_deinit(&sensor);
@@ -38,7 +38,7 @@ void life_a16_switch(rig_t *rig)
     fathom_a16_switch_config_t config = {
         .pin = &rig->pin, .clock = &rig->clock, .timing = {.period_us = 700000}};
     rig_power(rig, true);
-    assert_int_equal(fathom_a16_switch_init(&sensor, &config), FATHOM_READY);
+    assert_int_equal(fathom_a16_switch_init(&sensor, &config), FATHOM_OK);
     fathom_sensor_t any = fathom_a16_switch_sensor(&sensor);
     live(rig, "a16_switch", &any);
 }
@@ -49,7 +49,7 @@ void life_a05_relay(rig_t *rig)
     fathom_a05_relay_config_t config = {
         .pin = &rig->pin, .clock = &rig->clock, .timing = {.period_us = 700000}};
     rig_power(rig, true);
-    assert_int_equal(fathom_a05_relay_init(&sensor, &config), FATHOM_READY);
+    assert_int_equal(fathom_a05_relay_init(&sensor, &config), FATHOM_OK);
     fathom_sensor_t any = fathom_a05_relay_sensor(&sensor);
     live(rig, "a05_relay", &any);
 }

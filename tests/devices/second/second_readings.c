@@ -131,7 +131,7 @@ void judge_sample(const fathom_sample_t *sample)
 
 void judge_measured(fathom_status_t status, const fathom_sample_t *sample)
 {
-    if (status == FATHOM_READY) judge_sample(sample);
+    if (status == FATHOM_OK) judge_sample(sample);
     judge_read(status, true);
 }
 
@@ -148,7 +148,7 @@ unsigned judge_poll(const char *name, const fathom_sensor_t *sensor, unsigned ou
             continue;
         }
         outcomes--;
-        if (status == FATHOM_READY) {
+        if (status == FATHOM_OK) {
             judge_sample(&sample);
             readings++;
         }

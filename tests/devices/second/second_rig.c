@@ -221,7 +221,7 @@ void rig_open(rig_t *rig, const second_config_t *config)
                                               .masters = &fathom_line_masters,
                                               .echo = config->seed / 12 % 2 == 0 ? FATHOM_LINE_ECHO_OFF : 0,
                                               .gap_us = rig->loop == RIG_EVERY_20_MS ? 25000 : 0};
-    assert_int_equal(fathom_line_init(&rig->line, &rig->line_config), FATHOM_READY);
+    assert_int_equal(fathom_line_init(&rig->line, &rig->line_config), FATHOM_OK);
     rig->modbus = fathom_modbus_client_with_zero(&rig->line);
     rig->dyp = fathom_dyp_client(&rig->line);
 }

@@ -35,7 +35,7 @@ static fathom_sensor_t begin_a16(void)
 {
     const fathom_a16_auto_config_t config = {
         .line = &rig.line, .stale_us = STALE_US, .gap_us = rig.line_config.gap_us};
-    assert_int_equal(fathom_a16_auto_init(&a16, &config), FATHOM_READY);
+    assert_int_equal(fathom_a16_auto_init(&a16, &config), FATHOM_OK);
     return fathom_a16_auto_sensor(&a16);
 }
 
@@ -52,7 +52,7 @@ static fathom_sensor_t begin_a05(void)
                                              .stale_us = STALE_US,
                                              .gap_us = rig.line_config.gap_us,
                                              .probes = rig.device.config.fitted};
-    assert_int_equal(fathom_a05_auto_init(&a05, &config), FATHOM_READY);
+    assert_int_equal(fathom_a05_auto_init(&a05, &config), FATHOM_OK);
     return fathom_a05_auto_sensor(&a05);
 }
 
@@ -67,7 +67,7 @@ static fathom_sensor_t begin_hps(void)
 {
     const fathom_hps167s_auto_config_t config = {
         .line = &rig.line, .stale_us = STALE_US, .address = rig.device.address};
-    assert_int_equal(fathom_hps167s_auto_init(&hps, &config), FATHOM_READY);
+    assert_int_equal(fathom_hps167s_auto_init(&hps, &config), FATHOM_OK);
     return fathom_hps167s_auto_sensor(&hps);
 }
 
@@ -84,14 +84,14 @@ static fathom_sensor_t begin_controlled(void)
 {
     const fathom_a16_controlled_config_t config = {
         .line = &rig.line, .trigger = fathom_output_line_break(&rig.line), .gap_us = rig.line_config.gap_us};
-    assert_int_equal(fathom_a16_controlled_init(&controlled, &config), FATHOM_READY);
+    assert_int_equal(fathom_a16_controlled_init(&controlled, &config), FATHOM_OK);
     return fathom_a16_controlled_sensor(&controlled);
 }
 
 static damage_counted_t end_controlled(void)
 {
     const damage_counted_t counted = counted_by(&controlled.stream);
-    assert_int_equal(fathom_a16_controlled_deinit(&controlled), FATHOM_READY);
+    assert_int_equal(fathom_a16_controlled_deinit(&controlled), FATHOM_OK);
     return counted;
 }
 
@@ -237,7 +237,7 @@ TEST(the_judge_sees_a_damaged_reading_a_false_error_and_damage_that_is_not_count
                                         .time_us = rig_clock_us(&rig, frame->end_us)};
     assert_int_equal(frame->kind, SECOND_EVENT_MEASUREMENT);
     assert_int_equal(frame->sent[0], 754);
-    IS_SEEN(outcome_after(FATHOM_READY, 0)); /* the device sent this, but a damaged frame arrived */
+    IS_SEEN(outcome_after(FATHOM_OK, 0)); /* the device sent this, but a damaged frame arrived */
     rig_power(&rig, false);
     outcome_after(FATHOM_ERR_CHECKSUM, SECOND_US);
     IS_SEEN(outcome_after(FATHOM_ERR_CHECKSUM, 3 * SECOND_US)); /* no byte arrived */

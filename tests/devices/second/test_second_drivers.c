@@ -44,11 +44,11 @@ TEST(the_judge_sees_a_wrong_reading_and_false_statements)
     judge = (judge_t){.rig = &rig};
     rig_open(&rig, &config);
     IS_SEEN(judge_sample(&never_sent));
-    IS_SEEN(judge_set(FATHOM_READY, false, HOLDS(0x0206, 2000)));          /* "unchanged": it has 1000 */
-    IS_SEEN(judge_set(FATHOM_READY, true, HOLDS(0x0206, 1000)));           /* "written" */
+    IS_SEEN(judge_set(FATHOM_OK, false, HOLDS(0x0206, 2000)));             /* "unchanged": it has 1000 */
+    IS_SEEN(judge_set(FATHOM_OK, true, HOLDS(0x0206, 1000)));              /* "written" */
     IS_SEEN(judge_set(FATHOM_ERR_UNCONFIRMED, true, HOLDS(0x0206, 2000))); /* "it was sent" */
     IS_SEEN(judge_set(FATHOM_ERR_DIFFERS, true, HOLDS(0x0206, 2000)));
-    IS_SEEN(judge_read(FATHOM_READY, false));
+    IS_SEEN(judge_read(FATHOM_OK, false));
     rig_power(&rig, true);
     rig_wait(&rig, 5000000);
     IS_SEEN(judge_read(FATHOM_ERR_EXCEPTION, true));   /* it has refused nothing, ... */
@@ -77,7 +77,7 @@ static void sleeps(second_kind_t kind, fathom_sensor_t (*begin)(rig_t *rig))
             unsigned left = READINGS;
             for (unsigned polls = 0; polls != POLLS && left != 0; polls++) {
                 fathom_sample_t sample;
-                if (fathom_poll(&sensor, &sample) != FATHOM_READY) {
+                if (fathom_poll(&sensor, &sample) != FATHOM_OK) {
                     rig_pass(&rig, fathom_due_us(&sensor, 1));
                     continue;
                 }
@@ -88,12 +88,11 @@ static void sleeps(second_kind_t kind, fathom_sensor_t (*begin)(rig_t *rig))
             for (uint64_t polls = 0; polls != seed * 3 + round;
                  polls++) { /* into the next request or frame */
                 fathom_sample_t sample;
-                if (fathom_poll(&sensor, &sample) == FATHOM_READY) judge_sample(&sample);
+                if (fathom_poll(&sensor, &sample) == FATHOM_OK) judge_sample(&sample);
                 rig_pass(&rig, 1000);
             }
             /* The other probes of a response that was received: their time is that of the response. */
-            for (fathom_sample_t sample; fathom_poll(&sensor, &sample) == FATHOM_READY;)
-                judge_sample(&sample);
+            for (fathom_sample_t sample; fathom_poll(&sensor, &sample) == FATHOM_OK;) judge_sample(&sample);
             rig_sleep(&rig, sleeps_us[round]);
             rig_scene(&rig, 800 + 100 * (int32_t)round, 900, 1000, 1100);
         }
@@ -152,7 +151,7 @@ TEST(a16_rs485_gives_no_response_to_another_master)
         for (unsigned polls = 0; polls != POLLS && left != 0; polls++) {
             fathom_sample_t sample;
             const fathom_status_t status = fathom_poll(&sensor, &sample);
-            if (status == FATHOM_READY) judge_sample(&sample);
+            if (status == FATHOM_OK) judge_sample(&sample);
             if (status == FATHOM_ERR_OTHER_MASTER) others++;
             if (status != FATHOM_PENDING) left--;
             rig_pass(&rig, 1000);

@@ -8,13 +8,13 @@ static fathom_a05_modbus_t *const a05 = &s.driver.a05;
 static fathom_a05_dyp_t *const dyp = &s.driver.dyp;
 static fathom_hps167s_t *const hps = &s.driver.hps;
 
-/* What is asked for, in `out`, is there with READY, and untouched without. */
+/* What is asked for, in `out`, is there with OK, and untouched without. */
 #define ASKS(name, type, before, ask, is_right, is_untouched)                                                \
     static fathom_status_t name(void)                                                                        \
     {                                                                                                        \
         type out = before;                                                                                   \
         const fathom_status_t status = ask;                                                                  \
-        assert_true(status == FATHOM_READY ? (is_right) : (is_untouched));                                   \
+        assert_true(status == FATHOM_OK ? (is_right) : (is_untouched));                                      \
         return status;                                                                                       \
     }
 /* Of a struct, what is not 0 before. */
@@ -40,11 +40,11 @@ static fathom_status_t a16_set_0207(void)
     return fathom_a16_modbus_set_automatic_value(a16, FATHOM_REAL_TIME);
 }
 
-ASKS(a16_0200, uint8_t, 99, fathom_a16_modbus_address(a16, &out), out == 1, out == 99)
-ASKS(a16_0205, fathom_a16_polarity_t, FATHOM_A16_NEGATIVE, fathom_a16_modbus_switch_polarity(a16, &out),
+ASKS(a16_0200, uint8_t, 99, fathom_a16_modbus_get_address(a16, &out), out == 1, out == 99)
+ASKS(a16_0205, fathom_a16_polarity_t, FATHOM_A16_NEGATIVE, fathom_a16_modbus_get_switch_polarity(a16, &out),
      out == FATHOM_A16_POSITIVE, out == FATHOM_A16_NEGATIVE)
-ASKS(a16_0206, uint16_t, 9, fathom_a16_modbus_switch_threshold_mm(a16, &out), out == 1000, out == 9)
-ASKS(a16_0207, fathom_dyp_value_t, FATHOM_REAL_TIME, fathom_a16_modbus_automatic_value(a16, &out),
+ASKS(a16_0206, uint16_t, 9, fathom_a16_modbus_get_switch_threshold_mm(a16, &out), out == 1000, out == 9)
+ASKS(a16_0207, fathom_dyp_value_t, FATHOM_REAL_TIME, fathom_a16_modbus_get_automatic_value(a16, &out),
      out == FATHOM_PROCESSED, out == FATHOM_REAL_TIME)
 ASKS(a16_0101, fathom_sample_t, WITH(.distance_mm = 9),
      fathom_a16_modbus_measure(a16, FATHOM_REAL_TIME, &out), out.distance_mm == 1234 && out.address == 1,
@@ -58,21 +58,21 @@ static uint32_t a16_automatic(void) { return bench.a16.data_type; }
 /* ---- A05 (2(3)5, 3(3)) ---- */
 
 static fathom_status_t a05_set_0200(void) { return fathom_a05_modbus_set_address(a05, 5); }
-ASKS(a05_0200, uint8_t, 99, fathom_a05_modbus_address(a05, &out), out == 1, out == 99)
-static fathom_status_t dyp_03(void) { return fathom_a05_dyp_set_every_address(dyp, 5); }
+ASKS(a05_0200, uint8_t, 99, fathom_a05_modbus_get_address(a05, &out), out == 1, out == 99)
+static fathom_status_t dyp_03(void) { return fathom_a05_dyp_broadcast_address(dyp, 5); }
 static uint32_t a05_unit(void) { return bench.a05.device.address; }
 
 /* ---- HPS-167S (3, #1 to #15) ---- */
 
-ASKS(hps_1, fathom_hps167s_version_t, WITH(.year = 9), fathom_hps167s_interface_version(hps, &out),
+ASKS(hps_1, fathom_hps167s_version_t, WITH(.year = 9), fathom_hps167s_get_interface_version(hps, &out),
      out.year == 2020 && out.month == 9 && out.day == 27 && out.major == 2, out.year == 9)
-ASKS(hps_2, fathom_hps167s_configuration_t, WITH(.baud = 9), fathom_hps167s_configuration(hps, &out),
+ASKS(hps_2, fathom_hps167s_configuration_t, WITH(.baud = 9), fathom_hps167s_get_configuration(hps, &out),
      out.baud == 19200 && out.reconnect_time_ms == 180 && out.warm_up_s == 0 && out.termination &&
          out.measures_after_power_on,
      out.baud == 9)
-ASKS(hps_3, fathom_hps167s_details_t, WITH(.year = 9), fathom_hps167s_details(hps, &out), out.year == 2019,
-     out.year == 9) /* 13 09 17 */
-ASKS(hps_4, fathom_hps167s_temperature_t, WITH(.fahrenheit = 9), fathom_hps167s_temperature(hps, &out),
+ASKS(hps_3, fathom_hps167s_details_t, WITH(.year = 9), fathom_hps167s_get_details(hps, &out),
+     out.year == 2019, out.year == 9) /* 13 09 17 */
+ASKS(hps_4, fathom_hps167s_temperature_t, WITH(.fahrenheit = 9), fathom_hps167s_get_temperature(hps, &out),
      out.fahrenheit == 77 && out.temperature_dc == 250, out.fahrenheit == 9) /* (77 - 32) * 50 / 9 */
 
 static fathom_status_t hps_6(void) { return fathom_hps167s_restore_factory_settings(hps); }

@@ -50,7 +50,7 @@ void stage_begin(const fathom_line_settings_t *settings, bool full_duplex, uint3
                                       .marks = fathom_line_marks,
                                       .count = fathom_line_count,
                                       .counters = s.counters};
-    assert_int_equal(fathom_line_init(&s.line, &s.config), FATHOM_READY);
+    assert_int_equal(fathom_line_init(&s.line, &s.config), FATHOM_OK);
     s.modbus = fathom_modbus_client_with_zero(&s.line);
     s.dyp = fathom_dyp_client(&s.line);
 }
@@ -70,7 +70,7 @@ void init_driver(driver_t *driver, model_t model, uint8_t unit, const fathom_lin
     if (model == A16) status = fathom_a16_modbus_init(&driver->a16, &a16);
     if (model == A05) status = fathom_a05_modbus_init(&driver->a05, &a05);
     if (model == A05_DYP) status = fathom_a05_dyp_init(&driver->dyp, &dyp);
-    assert_int_equal(status, FATHOM_READY);
+    assert_int_equal(status, FATHOM_OK);
 }
 
 fathom_sensor_t sensor_of(driver_t *driver, model_t model)
@@ -84,7 +84,7 @@ void set_echo(uint8_t echo)
 {
     fathom_listener_t *const listener = s.line.listener;
     s.config.echo = echo;
-    assert_int_equal(fathom_line_init(&s.line, &s.config), FATHOM_READY);
+    assert_int_equal(fathom_line_init(&s.line, &s.config), FATHOM_OK);
     (void)fathom_line_replace_listener(&s.line, listener);
 }
 
@@ -156,7 +156,7 @@ fathom_status_t measure(void)
 
 void assert_measures(uint8_t unit, uint16_t mm)
 {
-    assert_int_equal(measure(), FATHOM_READY);
+    assert_int_equal(measure(), FATHOM_OK);
     assert_int_equal(s.sample.kind, FATHOM_TARGET);
     assert_int_equal(s.sample.address, unit);
     assert_int_equal(s.sample.distance_mm, mm);
@@ -166,7 +166,7 @@ bool recovers(void)
 {
     const uint32_t start_us = s.clock.now_us;
     while (since_us(start_us) < 60 * SECOND) {
-        if (measure() == FATHOM_READY) return s.sample.address == bench.device->address;
+        if (measure() == FATHOM_OK) return s.sample.address == bench.device->address;
         pass();
     }
     return false;
@@ -199,7 +199,7 @@ fathom_status_t round_of(fathom_status_t (*command)(void))
     const fathom_status_t status = command();
     if (status != FATHOM_PENDING) return status;
     /* Samples of a response from before may be left. */
-    assert_true(fathom_poll(&s.sensor, &s.sample) >= FATHOM_PENDING);
+    assert_true(fathom_poll(&s.sensor, &s.sample) >= FATHOM_OK);
     pass();
     return FATHOM_PENDING;
 }

@@ -42,7 +42,7 @@ static inline void set_switch(int32_t mm)
                                             .guard = &guard,
                                             .timing.period_us = FATHOM_MAX_DURATION_US, /* changes alone */
                                             .address = 1};
-    assert_int_equal(fathom_a16_switch_init(&a16, &own), FATHOM_READY);
+    assert_int_equal(fathom_a16_switch_init(&a16, &own), FATHOM_OK);
     s.sensor = fathom_a16_switch_sensor(&a16);
     init_driver(&s.driver, A16, 1, NULL);
 }
@@ -56,14 +56,14 @@ static inline void set_relay(int32_t mm, a05_config_t config, uint8_t wiring)
                                            .clock = &s.hal_clock,
                                            .timing.period_us = FATHOM_MAX_DURATION_US, /* changes alone */
                                            .wiring = wiring};
-    assert_int_equal(fathom_a05_relay_init(&a05, &own), FATHOM_READY);
+    assert_int_equal(fathom_a05_relay_init(&a05, &own), FATHOM_OK);
     s.sensor = fathom_a05_relay_sensor(&a05);
 }
 
 static inline void look(void)
 {
     const fathom_status_t status = fathom_poll(&s.sensor, &s.sample);
-    if (status == FATHOM_READY) {
+    if (status == FATHOM_OK) {
         assert_true(samples < LOG);
         kinds[samples] = s.sample.kind;
         times_us[samples++] = s.sample.time_us;

@@ -11,7 +11,7 @@ static fathom_status_t set_address(uint8_t address)
     if (s.model == HPS) return fathom_hps167s_set_address(&s.driver.hps, address);
     if (s.model == A16) return fathom_a16_modbus_set_address(&s.driver.a16, address);
     if (s.model == A05) return fathom_a05_modbus_set_address(&s.driver.a05, address);
-    return fathom_a05_dyp_set_every_address(&s.driver.dyp, address);
+    return fathom_a05_dyp_broadcast_address(&s.driver.dyp, address);
 }
 static fathom_status_t set_new(void) { return set_address(NEW); }
 
@@ -33,11 +33,11 @@ TEST(an_address_that_is_set_is_followed_and_not_set_twice_also_where_the_line_ec
 {
     FOR_ALL_MODELS
     {
-        assert_int_equal(carry_out(set_new), FATHOM_READY);
+        assert_int_equal(carry_out(set_new), FATHOM_OK);
         assert_int_equal(bench.device->address, NEW);
         COUNTED(.writes = 1);
         assert_measures(NEW, 1234);
-        assert_int_equal(carry_out(set_new), FATHOM_READY); /* and once more: it is so already */
+        assert_int_equal(carry_out(set_new), FATHOM_OK); /* and once more: it is so already */
         COUNTED(.writes = 1);
     }
 }
@@ -51,7 +51,7 @@ TEST(a_sensor_may_acknowledge_from_its_old_or_its_new_address)
         {
             if (s.model == A05_DYP || bench.line.echo) continue;
             bench.device->answers_from_new = from_new != 0;
-            assert_int_equal(carry_out(set_new), FATHOM_READY);
+            assert_int_equal(carry_out(set_new), FATHOM_OK);
             assert_int_equal(bench.device->address, NEW);
             COUNTED(.writes = 1);
             assert_int_equal(s.counters[FATHOM_LINE_LATE_RESPONSES], from_new);
@@ -91,7 +91,7 @@ TEST(a_lost_acknowledgement_does_not_matter_if_the_reading_confirms)
     FOR_ALL_MODELS
     {
         silence_from(2, 1);
-        assert_int_equal(carry_out(set_new), FATHOM_READY);
+        assert_int_equal(carry_out(set_new), FATHOM_OK);
         COUNTED(.writes = 1); /* it is not written again */
     }
 }
@@ -112,7 +112,7 @@ TEST(every_a05_takes_the_address_of_55_aa_03_and_one_that_of_modbus)
         const fathom_sim_device_t *const other = add_other(9);
         const fathom_status_t status = carry_out(set_new);
         /* in 55 AA what it reads from two devices at once cannot be known */
-        if (model == A05) assert_int_equal(status, FATHOM_READY);
+        if (model == A05) assert_int_equal(status, FATHOM_OK);
         assert_int_equal(bench.device->address, NEW);
         assert_int_equal(other->address, model == A05 ? 9 : NEW);
     }
@@ -136,7 +136,7 @@ TEST(what_waits_for_the_old_address_is_cancelled)
         }
         assert_int_equal(fathom_modbus_client_submit(&s.line, &request), FATHOM_PENDING);
         assert_int_equal(fathom_modbus_client_submit(&s.line, &other), FATHOM_PENDING);
-        assert_int_equal(carry_out(set_new), FATHOM_READY);
+        assert_int_equal(carry_out(set_new), FATHOM_OK);
         assert_int_equal(request.transaction.status, FATHOM_ERR_CANCELLED);
         assert_int_equal(request.transaction.attempts, 0);
         assert_int_equal(other.transaction.status, FATHOM_ERR_NO_RESPONSE);
@@ -144,7 +144,10 @@ TEST(what_waits_for_the_old_address_is_cancelled)
 }
 
 static uint8_t told_address;
-static fathom_status_t ask_address(void) { return fathom_a05_modbus_address(&s.driver.a05, &told_address); }
+static fathom_status_t ask_address(void)
+{
+    return fathom_a05_modbus_get_address(&s.driver.a05, &told_address);
+}
 
 TEST(what_is_given_up_leaves_driver_and_device_at_the_old_address_or_unknown)
 {
@@ -155,8 +158,8 @@ TEST(what_is_given_up_leaves_driver_and_device_at_the_old_address_or_unknown)
         cancel();
         assert_measures(OLD, 1234);
         if (s.model != A05) continue;
-        while (fathom_poll(&s.sensor, &s.sample) == FATHOM_READY) continue; /* the other probes */
-        assert_int_equal(carry_out(ask_address), FATHOM_READY);
+        while (fathom_poll(&s.sensor, &s.sample) == FATHOM_OK) continue; /* the other probes */
+        assert_int_equal(carry_out(ask_address), FATHOM_OK);
         assert_int_equal(told_address, OLD);
     }
 }
@@ -188,8 +191,8 @@ TEST(after_power_on_an_a05_that_is_silent_warms_up)
 
 static fathom_status_t set_to_0(void)
 {
-    return s.model == A16 ? fathom_a16_modbus_set_address_to_0_perhaps_for_ever(&s.driver.a16)
-                          : fathom_a05_modbus_set_address_to_0_perhaps_for_ever(&s.driver.a05);
+    return s.model == A16 ? fathom_a16_modbus_set_address_0(&s.driver.a16)
+                          : fathom_a05_modbus_set_address_0(&s.driver.a05);
 }
 
 /* Those at FF are found there if the device answers it, which the datasheets leave open. */
@@ -209,14 +212,14 @@ TEST(address_0_is_set_read_and_found)
             if ((s.model != A16 && s.model != A05) || bench.line.echo) continue;
             uint8_t address = 0xA5;
             bench.device->answers_from_new = from_new != 0;
-            assert_int_equal(carry_out(set_to_0), FATHOM_READY);
+            assert_int_equal(carry_out(set_to_0), FATHOM_OK);
             assert_int_equal(bench.device->address, 0);
             COUNTED(.writes = 1);
             assert_measures(0, 1234);
             assert_int_equal(set_address(NEW), FATHOM_ERR_ARGUMENT); /* which every unit would obey */
             bench.device->answers_broadcast = n % 2 != 0;
             rest(5 * SECOND);
-            assert_int_equal(find(&address), n % 2 != 0 ? FATHOM_READY : FATHOM_ERR_NO_RESPONSE);
+            assert_int_equal(find(&address), n % 2 != 0 ? FATHOM_OK : FATHOM_ERR_NO_RESPONSE);
             assert_int_equal(address, n % 2 != 0 ? 0 : 0xA5);
             COUNTED(.writes = 1);
         }

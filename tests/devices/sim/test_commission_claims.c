@@ -17,7 +17,7 @@ static void with_a_second(const job_t *first, const job_t *second)
         assert_ends(start_us);
         pass();
     }
-    assert_int_equal(status, FATHOM_READY);
+    assert_int_equal(status, FATHOM_OK);
     assert_true(refused != 0);
     assert_int_equal(first->has(), first->wanted);
     assert_int_equal(kept_commands(), first->kind == READS ? 0 : 1);
@@ -41,7 +41,7 @@ static void one_of_the_two(const job_t *first, const job_t *second)
             if (is_over[i]) continue;
             const fathom_status_t status = both[i]->call();
             if (status == FATHOM_PENDING || status == FATHOM_ERR_BUSY) continue;
-            assert_int_equal(status, FATHOM_READY);
+            assert_int_equal(status, FATHOM_OK);
             is_over[i] = true;
             if (both[i]->kind != READS) expected++;
         }
@@ -74,7 +74,7 @@ TEST(the_clock_may_wrap_at_any_step)
         for (uint32_t before_us = 0; before_us < 3 * SECOND; before_us += 61 * MS + 7) {
             bench_start_us = (uint32_t)(0u - before_us);
             set_up_for(&jobs[j], loops_us[(before_us & 1) == 0], FATHOM_LINE_ECHO_AUTO);
-            assert_int_equal(carry_out(jobs[j].call), FATHOM_READY);
+            assert_int_equal(carry_out(jobs[j].call), FATHOM_OK);
             assert_int_equal(jobs[j].has(), jobs[j].wanted);
             assert_true(recovers());
         }
@@ -110,8 +110,8 @@ TEST(a_dead_unit_is_left_alone_for_longer_and_longer_but_for_commands)
         /* Back again: a command finds it at once, and with its response the measurement goes on as before. */
         attach(bench.device);
         rest(2 * SECOND);
-        assert_int_equal(carry_out(jobs[j].call), FATHOM_READY);
-        assert_true(time_of_next_outcome_us(FATHOM_READY) <= SECOND);
+        assert_int_equal(carry_out(jobs[j].call), FATHOM_OK);
+        assert_true(time_of_next_outcome_us(FATHOM_OK) <= SECOND);
     }
 }
 
@@ -119,8 +119,8 @@ TEST(a_broken_port_is_said_by_every_poll_until_it_works_again)
 {
     for (unsigned j = 0; j != jobs_count; j++) {
         set_up_for(&jobs[j], 1 * MS, FATHOM_LINE_ECHO_AUTO);
-        assert_int_equal(measure(), FATHOM_READY);
-        while (fathom_poll(&s.sensor, &s.sample) == FATHOM_READY) continue;
+        assert_int_equal(measure(), FATHOM_OK);
+        while (fathom_poll(&s.sensor, &s.sample) == FATHOM_OK) continue;
         s.broken = -1;
         for (unsigned i = 0; i != 50; i++) {
             assert_int_equal(fathom_poll(&s.sensor, &s.sample), FATHOM_ERR_PORT);
@@ -128,8 +128,8 @@ TEST(a_broken_port_is_said_by_every_poll_until_it_works_again)
             pass_us(1 * MS);
         }
         s.broken = 0;
-        assert_int_equal(measure(), FATHOM_READY);
-        assert_int_equal(carry_out(jobs[j].call), FATHOM_READY);
+        assert_int_equal(measure(), FATHOM_OK);
+        assert_int_equal(carry_out(jobs[j].call), FATHOM_OK);
         assert_int_equal(jobs[j].has(), jobs[j].wanted);
     }
 }

@@ -26,7 +26,7 @@ static void set_desk(void)
                                     .frame_size = sizeof frame,
                                     .find_echo = fathom_line_find_echo,
                                     .marks = fathom_line_marks};
-    assert_int_equal(fathom_line_init(&line, &config), FATHOM_READY);
+    assert_int_equal(fathom_line_init(&line, &config), FATHOM_OK);
 }
 
 /* Time passes, then these bytes come, the last of them just now, and the line looks. */
@@ -92,7 +92,7 @@ static void hear_frame(const uint8_t *bytes, size_t count)
 {
     const fathom_a16_auto_config_t automatic = {.line = &line};
     set_desk();
-    assert_int_equal(fathom_a16_auto_init(&a16, &automatic), FATHOM_READY);
+    assert_int_equal(fathom_a16_auto_init(&a16, &automatic), FATHOM_OK);
     sensor = fathom_a16_auto_sensor(&a16);
     ask();
     pass(10 * MS);
@@ -105,7 +105,7 @@ TEST(a_silence_behind_a_frame_gives_it_also_with_an_open_transaction)
     hear_frame(LITERAL(0xFF, 0x02, 0xEF, 0xF0));
     assert_int_equal(fathom_due_us(&sensor, 1), 5 * MS);
     fake.now_us += 5 * MS;
-    assert_int_equal(fathom_poll(&sensor, &sample), FATHOM_READY);
+    assert_int_equal(fathom_poll(&sensor, &sample), FATHOM_OK);
     assert_int_equal(sample.distance_mm, 751);
 }
 
@@ -132,7 +132,7 @@ TEST(a_response_right_behind_a_frame_delays_it_and_no_more)
     assert_int_equal(fathom_poll(&sensor, &sample), FATHOM_PENDING);
     /* 751 mm: 01 03 02 02 EF F8 A8 */
     come(1 * MS, LITERAL(0x02, 0xEF, 0xF8, 0xA8));
-    assert_int_equal(request.transaction.status, FATHOM_READY);
-    assert_int_equal(fathom_poll(&sensor, &sample), FATHOM_READY);
+    assert_int_equal(request.transaction.status, FATHOM_OK);
+    assert_int_equal(fathom_poll(&sensor, &sample), FATHOM_OK);
     assert_int_equal(sample.distance_mm, 751);
 }

@@ -40,7 +40,7 @@ static void judge(const job_t *job, fathom_status_t status, uint32_t kinds, cons
     if (writes > 1) problem("%u commands kept", (unsigned)writes);
     if (has != job->before && has != job->wanted) problem("has %u", (unsigned)has);
     switch (status) {
-    case FATHOM_READY:
+    case FATHOM_OK:
         if (has != job->wanted && (job->kind != WRITE_ONLY || (kinds & BIT(ECHO)) == 0))
             problem("READY, but it is not so");
         break;
@@ -77,7 +77,7 @@ static void expect_works(const job_t *job, fathom_status_t status, const char *w
     }
     if (!recovers()) problem("does not work afterwards");
     const fathom_status_t again = carry_out(job->call);
-    if (again != FATHOM_READY) problem("then %d", (int)again);
+    if (again != FATHOM_OK) problem("then %d", (int)again);
     if (job->has() != job->wanted && job->has != jobs[0].has && job->kind != WRITE_ONLY && job->before != 0)
         problem("set again, but it is not so");
     if (!recovers()) problem("set again, then it does not work");

@@ -13,14 +13,14 @@ typedef enum { GIVE_UP, POWER_ON, CANCEL_UNIT, BREAK_PORT, UNPLUG, CUT_POWER, AC
 static const char *const act_names[] = {"given up",    "power-on",         "cancel_unit",
                                         "port broken", "port broken long", "power cut"};
 
-/* READY, or an error, after which the device has what the outcome says. */
+/* OK, or an error, after which the device has what the outcome says. */
 static void judge(const job_t *job, fathom_status_t status, const char *what)
 {
     const uint32_t has = job->has();
     if (kept_commands() > 1) problem("%u commands kept", (unsigned)kept_commands());
     if (has != job->before && has != job->wanted) problem("has %u", (unsigned)has);
-    if (status == FATHOM_READY && has != job->wanted) problem("READY, but it is not so");
-    if (status == FATHOM_READY || status == FATHOM_ERR_UNCONFIRMED) return;
+    if (status == FATHOM_OK && has != job->wanted) problem("READY, but it is not so");
+    if (status == FATHOM_OK || status == FATHOM_ERR_UNCONFIRMED) return;
     if (status == FATHOM_ERR_BUSY || status == FATHOM_ERR_IN_USE || status == FATHOM_ERR_ARGUMENT)
         problem("says %s", fathom_status_name(status));
     if (has != job->before && job->kind != WRITE_ONLY)
@@ -55,7 +55,7 @@ static void expect_works(const job_t *job, bool may_move, const char *what)
     }
     if (!recovers()) problem("does not work afterwards");
     const fathom_status_t again = carry_out(job->call);
-    if (again != FATHOM_READY) problem("then %d", (int)again);
+    if (again != FATHOM_OK) problem("then %d", (int)again);
     if (job->kind == KEPT && job->has() != job->wanted) problem("then not so");
     if (kept_commands() > (job->kind == KEPT ? 1u : 2u))
         problem("%u commands kept", (unsigned)kept_commands());

@@ -7,7 +7,7 @@
 /* What one that measures beside it may say. */
 static bool is_fair(fathom_status_t status, bool moves)
 {
-    if (status == FATHOM_READY || status == FATHOM_PENDING) return true;
+    if (status == FATHOM_OK || status == FATHOM_PENDING) return true;
     return moves && (status == FATHOM_ERR_CANCELLED || status == FATHOM_ERR_NO_RESPONSE);
 }
 
@@ -21,7 +21,7 @@ static unsigned with_others(fathom_status_t (*command)(void), fathom_sensor_t be
     for (;;) {
         const fathom_status_t is_read = fathom_poll(&beside, &s.sample);
         assert_true(is_fair(is_read, moves));
-        if (is_read == FATHOM_READY) {
+        if (is_read == FATHOM_OK) {
             assert_int_equal(s.sample.distance_mm, bench.fixed.value[s.sample.probe - 1]);
             assert_true(s.sample.address == 1 || s.sample.address == 7);
             readings++;
@@ -41,7 +41,7 @@ static void beside_another_driver(const job_t *job, uint32_t loop_us, uint8_t ec
     init_driver(&other, job->model, job->unit, &s.settings);
     const fathom_sensor_t beside = sensor_of(&other, job->model);
     const unsigned readings = with_others(job->call, beside, s.sensor, job->kind == MOVES, &status);
-    if (status != FATHOM_READY)
+    if (status != FATHOM_OK)
         fail_msg("%s, loop %u: %s", job->name, (unsigned)loop_us, fathom_status_name(status));
     assert_int_equal(job->has(), job->wanted);
     assert_int_equal(kept_commands(), job->kind == READS ? 0 : 1);
@@ -86,7 +86,7 @@ TEST(a_queue_that_is_never_empty_delays_and_no_more)
                 assert_int_equal(fathom_modbus_client_submit(&s.line, &others[i]), FATHOM_PENDING);
             }
         }
-        if (status != FATHOM_READY)
+        if (status != FATHOM_OK)
             fail_msg("%s, loop %u: %s", job->name, (unsigned)s.loop_us, fathom_status_name(status));
         assert_int_equal(job->has(), job->wanted);
         assert_int_equal(kept_commands(), job->kind == READS ? 0 : 1);
@@ -94,7 +94,7 @@ TEST(a_queue_that_is_never_empty_delays_and_no_more)
 }
 
 static fathom_a05_modbus_t second;
-static fathom_status_t set_by_dyp(void) { return fathom_a05_dyp_set_every_address(&s.driver.dyp, 5); }
+static fathom_status_t set_by_dyp(void) { return fathom_a05_dyp_broadcast_address(&s.driver.dyp, 5); }
 static fathom_status_t set_by_modbus(void) { return fathom_a05_modbus_set_address(&second, 5); }
 
 TEST(an_address_is_set_in_one_protocol_while_the_other_measures)
@@ -105,19 +105,19 @@ TEST(an_address_is_set_in_one_protocol_while_the_other_measures)
         set_up(A05_DYP, 1, loops_us[n / 2], FATHOM_LINE_ECHO_AUTO);
         const fathom_a05_modbus_config_t config = {.modbus.transport = &s.modbus,
                                                    .modbus.line_settings = &s.settings};
-        assert_int_equal(fathom_a05_modbus_init(&second, &config), FATHOM_READY);
+        assert_int_equal(fathom_a05_modbus_init(&second, &config), FATHOM_OK);
         const fathom_sensor_t modbus = fathom_a05_modbus_sensor(&second);
         const unsigned readings =
             with_others(dyp_sets ? set_by_dyp : set_by_modbus, dyp_sets ? modbus : s.sensor,
                         dyp_sets ? s.sensor : modbus, true, &status);
-        assert_int_equal(status, FATHOM_READY);
+        assert_int_equal(status, FATHOM_OK);
         assert_int_equal(bench.device->address, 5);
         assert_int_equal(kept_commands(), 1);
         assert_true(readings >= 4);
     }
 }
 
-/* True: READY. */
+/* True: OK. */
 static bool among_unasked(const job_t *job, uint32_t unasked_us, uint32_t loop_us)
 {
     fathom_hps167s_auto_t listener;
@@ -125,19 +125,19 @@ static bool among_unasked(const job_t *job, uint32_t unasked_us, uint32_t loop_u
     fathom_sim_detach(&bench.line, bench.device, s.clock.now_us);
     add_hps((hps_config_t){.address = job->unit, .unasked_us = unasked_us});
     const fathom_hps167s_auto_config_t config = {.line = &s.line};
-    assert_int_equal(fathom_hps167s_auto_init(&listener, &config), FATHOM_READY);
-    fathom_hps167s_auto_beside(&listener, &s.driver.hps);
+    assert_int_equal(fathom_hps167s_auto_init(&listener, &config), FATHOM_OK);
+    fathom_hps167s_auto_follow(&listener, &s.driver.hps);
     const fathom_sensor_t heard = fathom_hps167s_auto_sensor(&listener);
     fathom_status_t status;
     while ((status = round_of(job->call)) == FATHOM_PENDING)
-        if (fathom_poll(&heard, &s.sample) == FATHOM_READY) assert_int_equal(s.sample.distance_mm, 1234);
+        if (fathom_poll(&heard, &s.sample) == FATHOM_OK) assert_int_equal(s.sample.distance_mm, 1234);
     const uint32_t has = job->has();
     assert_true(kept_commands() <= 1);
     assert_true(has == job->before || has == job->wanted);
-    if (status == FATHOM_READY) assert_int_equal(has, job->wanted);
+    if (status == FATHOM_OK) assert_int_equal(has, job->wanted);
     if (status < 0 && status != FATHOM_ERR_UNCONFIRMED && job->kind != WRITE_ONLY)
         assert_int_equal(has, job->before);
-    return status == FATHOM_READY;
+    return status == FATHOM_OK;
 }
 
 TEST(unasked_measurements_are_no_responses)
@@ -157,10 +157,10 @@ TEST(a_rate_for_the_next_power_on_is_followed_then)
     for (unsigned n = 0; n != 2 * LOOPS; n++) {
         set_up(HPS, 1, loops_us[n / 2], FATHOM_LINE_ECHO_AUTO);
         bench.hps.baud_at_power_on = true;
-        assert_int_equal(carry_out(set_230400), FATHOM_READY);
+        assert_int_equal(carry_out(set_230400), FATHOM_OK);
         assert_int_equal(s.driver.hps.next_baud, 230400);
         assert_int_equal(bench.device->settings.baud, 19200);
-        assert_int_equal(measure(), FATHOM_READY); /* still at the old rate */
+        assert_int_equal(measure(), FATHOM_OK); /* still at the old rate */
         if (n % 2 != 0) fathom_sim_power_cycle(&bench.line, bench.device, 0, s.clock.now_us);
         fathom_hps167s_power_on(&s.driver.hps);
         assert_true(recovers()); /* also where it has not had its power cut after all */

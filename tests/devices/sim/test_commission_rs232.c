@@ -22,7 +22,7 @@ static void set_up_serial(uint32_t loop_us)
     set_faults(1);
     bench.fault.clock = &s.clock;
     const fathom_a16_auto_config_t config = {.line = &s.line};
-    assert_int_equal(fathom_a16_auto_init(&automatic, &config), FATHOM_READY);
+    assert_int_equal(fathom_a16_auto_init(&automatic, &config), FATHOM_OK);
     fathom_a16_rs232_init(&rs232, &s.driver.a16, &automatic);
     s.sensor = fathom_a16_auto_sensor(&automatic);
     heard = 0;
@@ -31,7 +31,7 @@ static void set_up_serial(uint32_t loop_us)
 /* A reading of the stream is the distance that there is, and nothing else. */
 static void hear_some(void)
 {
-    while (fathom_poll(&s.sensor, &s.sample) == FATHOM_READY) {
+    while (fathom_poll(&s.sensor, &s.sample) == FATHOM_OK) {
         assert_int_equal(s.sample.kind, FATHOM_TARGET);
         assert_int_equal(s.sample.distance_mm, 1234);
         heard++;
@@ -63,7 +63,7 @@ static fathom_status_t return_to_automatic(void)
     fathom_sample_t sample = {.distance_mm = 9};
     for (;;) {
         const fathom_status_t status = fathom_a16_rs232_return_to_automatic(&rs232, &sample);
-        assert_int_equal(sample.distance_mm, status == FATHOM_READY ? 1234 : 9);
+        assert_int_equal(sample.distance_mm, status == FATHOM_OK ? 1234 : 9);
         if (status != FATHOM_PENDING) return status;
         assert_ends(start_us);
         pass_until(fathom_a16_rs232_due_us(&rs232));
@@ -88,14 +88,14 @@ TEST(settings_are_changed_while_it_sends_and_it_sends_again_afterwards)
             hear_for(350 * MS);
             assert_true(heard >= 1);
             pass_us(later_us);
-            assert_int_equal(set_threshold(750), FATHOM_READY);
+            assert_int_equal(set_threshold(750), FATHOM_OK);
             assert_int_equal(bench.a16.threshold_mm, 750);
             assert_int_equal(kept_commands(), 1);
             assert_false(is_sending());
-            assert_int_equal(return_to_automatic(), FATHOM_READY);
+            assert_int_equal(return_to_automatic(), FATHOM_OK);
             assert_true(is_sending());
-            assert_int_equal(set_threshold(750), FATHOM_READY); /* it is so already */
-            assert_int_equal(kept_commands(), 2);               /* with 0x0202 */
+            assert_int_equal(set_threshold(750), FATHOM_OK); /* it is so already */
+            assert_int_equal(kept_commands(), 2);            /* with 0x0202 */
         }
 }
 
@@ -107,18 +107,18 @@ static void with_fault(uint8_t kind, uint32_t frame, uint32_t loop_us)
     const fathom_status_t is_set = set_threshold(750);
     assert_true(kept_commands() <= 1);
     const uint16_t has = bench.a16.threshold_mm;
-    assert_true(has == 750 || (has == 1000 && is_set != FATHOM_READY));
-    if (is_set != FATHOM_READY && is_set != FATHOM_ERR_UNCONFIRMED && kind != FATHOM_SIM_FAULT_EXCEPTION)
+    assert_true(has == 750 || (has == 1000 && is_set != FATHOM_OK));
+    if (is_set != FATHOM_OK && is_set != FATHOM_ERR_UNCONFIRMED && kind != FATHOM_SIM_FAULT_EXCEPTION)
         assert_int_equal(has, 1000);
     const fathom_status_t is_back = return_to_automatic();
     /* A frame that is late or a module without power is sending, though not at once. */
-    if (is_back == FATHOM_READY && kind != FATHOM_SIM_FAULT_POWER_CYCLE && kind != FATHOM_SIM_FAULT_LATE)
+    if (is_back == FATHOM_OK && kind != FATHOM_SIM_FAULT_POWER_CYCLE && kind != FATHOM_SIM_FAULT_LATE)
         assert_true(is_sending());
     /* Whatever it was, it can be tried again. */
     fathom_sim_fault_enable(&bench.fault, false);
     hear_for(5 * SECOND);
-    assert_int_equal(set_threshold(800), FATHOM_READY);
-    assert_int_equal(return_to_automatic(), FATHOM_READY);
+    assert_int_equal(set_threshold(800), FATHOM_OK);
+    assert_int_equal(return_to_automatic(), FATHOM_OK);
     assert_true(is_sending());
 }
 
@@ -134,15 +134,15 @@ TEST(what_was_given_up_is_begun_anew)
 {
     for (unsigned step = 0; step != 120; step++) {
         set_up_serial(20 * MS);
-        assert_int_equal(set_threshold(750), FATHOM_READY);
+        assert_int_equal(set_threshold(750), FATHOM_OK);
         for (unsigned i = 0; i != step; i++) {
             if (fathom_a16_rs232_return_to_automatic(&rs232, &s.sample) != FATHOM_PENDING) break;
             pass();
         }
         fathom_a16_rs232_cancel(&rs232);
-        assert_int_equal(set_threshold(800), FATHOM_READY); /* which ends automatic output again */
+        assert_int_equal(set_threshold(800), FATHOM_OK); /* which ends automatic output again */
         hear_for(5 * SECOND);
-        assert_int_equal(return_to_automatic(), FATHOM_READY);
+        assert_int_equal(return_to_automatic(), FATHOM_OK);
         assert_true(is_sending());
     }
 }
@@ -150,10 +150,10 @@ TEST(what_was_given_up_is_begun_anew)
 TEST(a_loop_that_slept_too_long_is_due_at_once_and_hears_what_came)
 {
     set_up_serial(1 * MS);
-    assert_int_equal(set_threshold(750), FATHOM_READY);
+    assert_int_equal(set_threshold(750), FATHOM_OK);
     for (; !rs232.is_listening; pass_us(1 * MS))
         assert_int_equal(fathom_a16_rs232_return_to_automatic(&rs232, &s.sample), FATHOM_PENDING);
     pass_us(11 * SECOND); /* over FATHOM_A16_RS232_DEFAULT_RETURN_US */
     assert_int_equal(fathom_a16_rs232_due_us(&rs232), 0);
-    assert_int_equal(return_to_automatic(), FATHOM_READY);
+    assert_int_equal(return_to_automatic(), FATHOM_OK);
 }

@@ -18,7 +18,7 @@ static void set_up_start(uint32_t loop_us, bool by_pin)
     rx = fathom_sim_rx_pin(&s.pins);
     const fathom_a05_auto_config_t config = {
         .line = &s.line, .select = by_pin ? fathom_output_pin(&rx) : fathom_output_line_break(&s.line)};
-    assert_int_equal(fathom_a05_auto_init(&automatic, &config), FATHOM_READY);
+    assert_int_equal(fathom_a05_auto_init(&automatic, &config), FATHOM_OK);
     s.sensor = fathom_a05_auto_sensor(&automatic);
     init_driver(&s.driver, A05, 1, NULL);
 }
@@ -27,7 +27,7 @@ static void set_up_start(uint32_t loop_us, bool by_pin)
 static uint16_t first_probe_mm(void)
 {
     for (;;) {
-        assert_int_equal(measure(), FATHOM_READY);
+        assert_int_equal(measure(), FATHOM_OK);
         if (s.sample.probe == 1) return s.sample.distance_mm;
     }
 }
@@ -39,7 +39,7 @@ static unsigned heard_mm(void)
     unsigned mm = 0;
     while (since_us(start_us) < 3 * SECOND) {
         pass();
-        while (fathom_poll(&s.sensor, &s.sample) == FATHOM_READY) {
+        while (fathom_poll(&s.sensor, &s.sample) == FATHOM_OK) {
             assert_true(s.sample.probe != 1 || mm == 0 || mm == s.sample.distance_mm);
             if (s.sample.probe == 1) mm = s.sample.distance_mm;
         }
@@ -52,7 +52,7 @@ static void power(fathom_dyp_value_t value, uint32_t off_us)
     fathom_status_t status;
     for (; (status = fathom_a05_auto_select(&automatic, value)) == FATHOM_ERR_BUSY; pass_us(1 * MS))
         (void)fathom_line_poll(&s.line);
-    assert_int_equal(status, FATHOM_READY);
+    assert_int_equal(status, FATHOM_OK);
     fathom_sim_power_cycle(&bench.line, bench.device, off_us, s.clock.now_us);
 }
 
@@ -118,18 +118,18 @@ TEST(a_request_of_meanwhile_is_answered_afterwards)
         const fathom_sensor_t both[] = {s.sensor, fathom_a05_modbus_sensor(driver)};
         fathom_status_t status;
         const uint32_t start_us = s.clock.now_us;
-        while ((status = fathom_a05_modbus_address(driver, &address)) != FATHOM_READY) {
+        while ((status = fathom_a05_modbus_get_address(driver, &address)) != FATHOM_OK) {
             if (status != FATHOM_PENDING) { /* TX is low for longer than the line waits (line.h, rule 3). */
                 assert_int_equal(status, FATHOM_ERR_LINE_BUSY);
                 assert_true(bench.line.in_break);
             }
-            while (fathom_poll(&s.sensor, &s.sample) == FATHOM_READY)
+            while (fathom_poll(&s.sensor, &s.sample) == FATHOM_OK)
                 assert_int_equal(s.sample.distance_mm, bench.fixed.value[s.sample.probe - 1]);
             if (bench.line.in_break) COUNTED(.requests = NONE);
             assert_true(since_us(start_us) < 10 * SECOND);
             pass_until(fathom_due_us(both, 2));
         }
-        assert_int_equal(status, FATHOM_READY);
+        assert_int_equal(status, FATHOM_OK);
         assert_int_equal(address, 1);
         assert_true(since_us(start_us) >= 1500 * MS);
     }
@@ -140,7 +140,7 @@ TEST(while_a_request_is_on_its_way_it_is_busy_and_nothing_changes)
     uint8_t address = 0;
     set_up_start(1 * MS, false);
     for (pass_us(20 * MS); s.line.head == NULL || s.line.head->attempts == 0; pass_us(1 * MS))
-        assert_int_equal(fathom_a05_modbus_address(driver, &address), FATHOM_PENDING);
+        assert_int_equal(fathom_a05_modbus_get_address(driver, &address), FATHOM_PENDING);
     assert_int_equal(fathom_a05_auto_select(&automatic, FATHOM_REAL_TIME), FATHOM_ERR_BUSY);
     assert_false(bench.line.in_break);
     fathom_a05_modbus_cancel(driver);

@@ -8,7 +8,7 @@ static scan_unasked_t unasked;
 
 static void listen_for_3_s(void)
 {
-    assert_int_equal(scan_listen(&rig.wire, 3000000, &unasked), FATHOM_READY);
+    assert_int_equal(scan_listen(&rig.wire, 3000000, &unasked), FATHOM_OK);
     assert_int_equal(rig.requests, 0);
     assert_int_equal(rig.sim_line.counters.from_host, 0);
 }
@@ -130,7 +130,7 @@ TEST(test_neither_the_reset_nor_all_units_can_be_asked_whatever_the_count)
     assert_int_equal(rig.requests, 0);
     request.count = 3;
     scan_ask(&rig.wire, &request, &response);
-    assert_int_equal(response.status, FATHOM_READY);
+    assert_int_equal(response.status, FATHOM_OK);
     assert_int_equal(rig.requests, 1);
     rig_expect_unharmed();
 }

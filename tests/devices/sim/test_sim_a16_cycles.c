@@ -32,7 +32,7 @@ static void begin_pwm(bool by_break)
         .pulse = {.clock = &s.hal_clock,
                   .capture = &capture,
                   .trigger = by_break ? fathom_output_break(&s.uart) : fathom_output_pin(&trigger)}};
-    assert_int_equal(fathom_a16_pwm_init(&pwm, &config), FATHOM_READY);
+    assert_int_equal(fathom_a16_pwm_init(&pwm, &config), FATHOM_OK);
     s.sensor = fathom_a16_pwm_sensor(&pwm);
 }
 
@@ -44,14 +44,14 @@ static fathom_output_t output(bool by_break)
 static void begin_controlled(bool by_break)
 {
     const fathom_a16_controlled_config_t config = {.line = &s.line, .trigger = output(by_break)};
-    assert_int_equal(fathom_a16_controlled_init(&controlled, &config), FATHOM_READY);
+    assert_int_equal(fathom_a16_controlled_init(&controlled, &config), FATHOM_OK);
     s.sensor = fathom_a16_controlled_sensor(&controlled);
 }
 
 static void poll(void)
 {
     const fathom_status_t status = fathom_poll(&s.sensor, &s.sample);
-    if (status == FATHOM_READY) {
+    if (status == FATHOM_OK) {
         last = s.sample;
         assert_int_equal(last.sequence, ++samples);
     } else if (status == FATHOM_ERR_NO_RESPONSE) {
@@ -276,14 +276,14 @@ static void the_select_of_the_automatic_mode_reaches_the_module(bool by_break)
     bench.processed = FIXED(1000);
     set(FATHOM_SIM_A16_UART, 2000, 20000, (a16_config_t){.processed = PROCESSED});
     const fathom_a16_auto_config_t config = {.line = &s.line, .select = output(by_break)};
-    assert_int_equal(fathom_a16_auto_init(&automatic, &config), FATHOM_READY);
+    assert_int_equal(fathom_a16_auto_init(&automatic, &config), FATHOM_OK);
     s.sensor = fathom_a16_auto_sensor(&automatic);
     run(1000 * MS);
     assert_int_equal(last.distance_mm, 1000);
-    assert_int_equal(fathom_a16_auto_select(&automatic, true), FATHOM_READY);
+    assert_int_equal(fathom_a16_auto_select(&automatic, true), FATHOM_OK);
     run(300 * MS);
     assert_int_equal(last.distance_mm, 2000);
-    assert_int_equal(fathom_a16_auto_select(&automatic, false), FATHOM_READY);
+    assert_int_equal(fathom_a16_auto_select(&automatic, false), FATHOM_OK);
     run(300 * MS);
     assert_int_equal(last.distance_mm, 1000);
     assert_int_equal(errors, 0);

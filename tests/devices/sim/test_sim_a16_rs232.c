@@ -12,7 +12,7 @@ static void set(uint8_t mode, uint32_t loop_us)
     bench.fixed = FIXED(1953);
     set_echo(FATHOM_LINE_ECHO_OFF);
     const fathom_a16_auto_config_t config = {.line = &s.line};
-    assert_int_equal(fathom_a16_auto_init(&automatic, &config), FATHOM_READY);
+    assert_int_equal(fathom_a16_auto_init(&automatic, &config), FATHOM_OK);
     init_driver(&s.driver, A16, 1, NULL);
     fathom_a16_rs232_init(&rs232, &s.driver.a16, &automatic);
     add_a16(mode, (a16_config_t){0});
@@ -65,20 +65,20 @@ TEST(the_first_modbus_command_ends_automatic_output_and_0202_brings_it_back)
 {
     for (unsigned l = 0; l != 2; l++) {
         set(FATHOM_SIM_A16_AUTO, loops_us[l]);
-        assert_int_equal(listen(), FATHOM_READY);
-        assert_int_equal(ask_it(), FATHOM_READY);
+        assert_int_equal(listen(), FATHOM_OK);
+        assert_int_equal(ask_it(), FATHOM_OK);
         assert_int_equal(s.sample.distance_mm, 1953);
         assert_int_equal(s.sample.address, 1);
-        while (listen() == FATHOM_READY) continue; /* frames linger around the first response */
+        while (listen() == FATHOM_OK) continue; /* frames linger around the first response */
         const uint32_t sent = bench.device->counters.automatic;
         assert_int_equal(listen(), FATHOM_ERR_STALE);
         assert_int_equal(bench.device->counters.automatic, sent);
 
-        assert_int_equal(go_back(), FATHOM_READY);
+        assert_int_equal(go_back(), FATHOM_OK);
         assert_int_equal(s.sample.address, 0);
         assert_int_equal(s.sample.distance_mm, 1953);
         assert_int_equal(bench.device->counters.automatic, sent + 1);
-        for (unsigned i = 0; i != 10; i++) assert_int_equal(listen(), FATHOM_READY);
+        for (unsigned i = 0; i != 10; i++) assert_int_equal(listen(), FATHOM_OK);
     }
 }
 
@@ -116,7 +116,7 @@ TEST(a_refusal_and_a_broken_port_are_told_as_they_are)
     assert_int_equal(go_back(), FATHOM_ERR_PORT);
 
     set(FATHOM_SIM_A16_MODBUS, 0); /* broken while it listens */
-    assert_int_equal(ask_it(), FATHOM_READY);
+    assert_int_equal(ask_it(), FATHOM_OK);
     go_until_it_listens();
     s.broken = -1;
     assert_int_equal(go_back(), FATHOM_ERR_PORT);
@@ -147,7 +147,7 @@ TEST(an_acknowledgement_that_may_be_an_echo_leaves_it_to_the_frames)
 static uint16_t threshold_mm;
 static fathom_status_t ask_threshold(void)
 {
-    return fathom_a16_modbus_switch_threshold_mm(&s.driver.a16, &threshold_mm);
+    return fathom_a16_modbus_get_switch_threshold_mm(&s.driver.a16, &threshold_mm);
 }
 
 TEST(another_commands_outcome_comes_first)
@@ -157,8 +157,8 @@ TEST(another_commands_outcome_comes_first)
     assert_int_equal(ask_threshold(), FATHOM_PENDING);
     assert_int_equal(once(), FATHOM_ERR_BUSY);
     while ((status = ask_threshold()) == FATHOM_PENDING) pass_us(1 * MS);
-    assert_int_equal(status, FATHOM_READY);
-    assert_int_equal(go_back(), FATHOM_READY);
+    assert_int_equal(status, FATHOM_OK);
+    assert_int_equal(go_back(), FATHOM_OK);
 }
 
 TEST(due_is_never_later_than_the_end_of_the_wait)

@@ -13,10 +13,10 @@ static fathom_hps167s_details_t details;
 static fathom_hps167s_configuration_t is;
 static fathom_hps167s_temperature_t temperature;
 
-static fathom_status_t one(void) { return fathom_hps167s_interface_version(hps, &version); }
-static fathom_status_t two(void) { return fathom_hps167s_configuration(hps, &is); }
-static fathom_status_t three(void) { return fathom_hps167s_details(hps, &details); }
-static fathom_status_t four(void) { return fathom_hps167s_temperature(hps, &temperature); }
+static fathom_status_t one(void) { return fathom_hps167s_get_interface_version(hps, &version); }
+static fathom_status_t two(void) { return fathom_hps167s_get_configuration(hps, &is); }
+static fathom_status_t three(void) { return fathom_hps167s_get_details(hps, &details); }
+static fathom_status_t four(void) { return fathom_hps167s_get_temperature(hps, &temperature); }
 static fathom_status_t six(void) { return fathom_hps167s_restore_factory_settings(hps); }
 static fathom_status_t seven(void) { return fathom_hps167s_set_warm_up_s(hps, (uint8_t)argument); }
 static fathom_status_t nine(void) { return fathom_hps167s_set_baud(hps, (uint32_t)argument); }
@@ -46,7 +46,7 @@ static void set(uint32_t loop_us, hps_config_t config, const fathom_line_setting
                                             .modbus.line_settings = at,
                                             .modbus.address = config.address != 0 ? config.address : 1,
                                             .modbus.timeout_us = 100 * MS};
-    assert_int_equal(fathom_hps167s_init(hps, &driver), FATHOM_READY);
+    assert_int_equal(fathom_hps167s_init(hps, &driver), FATHOM_OK);
     s.sensor = sensor_of(&s.driver, HPS);
     add_hps(config);
     set_faults(1);
@@ -64,18 +64,18 @@ TEST(commands_1_to_4_tell_what_the_device_has)
     IN_BOTH_LOOPS
     {
         set(loops_us[l], DEFAULTS, NULL);
-        assert_int_equal(carry_out(one), FATHOM_READY);
+        assert_int_equal(carry_out(one), FATHOM_OK);
         assert_int_equal(version.year, 2020);
-        assert_int_equal(carry_out(two), FATHOM_READY);
+        assert_int_equal(carry_out(two), FATHOM_OK);
         assert_true(is.termination && is.measures_after_power_on);
         assert_int_equal(is.baud, 19200);
         assert_int_equal(is.reconnect_time_ms, 180);
-        assert_int_equal(carry_out(three), FATHOM_READY);
+        assert_int_equal(carry_out(three), FATHOM_OK);
         assert_int_equal(details.year, 2019);
-        assert_int_equal(carry_out(four), FATHOM_READY);
+        assert_int_equal(carry_out(four), FATHOM_OK);
         assert_int_equal(temperature.temperature_dc, 250);
         bench.hps.temperature_f = -40;
-        assert_int_equal(carry_out(four), FATHOM_READY);
+        assert_int_equal(carry_out(four), FATHOM_OK);
         assert_int_equal(temperature.temperature_dc, -400);
         assert_measures(1, TARGET_MM);
         COUNTED(.flash_writes = NONE, .resets = NONE, .resets_refused = NONE, .exceptions = NONE);
@@ -92,11 +92,11 @@ TEST(settings_with_read_back_are_written_once_and_kept)
     {
         set(loops_us[l], DEFAULTS, NULL);
         for (unsigned i = 0; i != 8; i++) { /* each twice: then it is so already */
-            assert_int_equal(with(settings[i / 2].set, settings[i / 2].value), FATHOM_READY);
+            assert_int_equal(with(settings[i / 2].set, settings[i / 2].value), FATHOM_OK);
             COUNTED(.flash_writes = i / 2 + 1);
         }
         cut_power();
-        assert_int_equal(carry_out(two), FATHOM_READY);
+        assert_int_equal(carry_out(two), FATHOM_OK);
         assert_int_equal(is.warm_up_s, 9);
         assert_false(is.measures_after_power_on || is.termination);
         assert_int_equal(is.reconnect_time_ms, 65556);
@@ -111,7 +111,7 @@ TEST(a_lost_confirmation_is_unconfirmed_and_a_lost_acknowledgement_is_not)
     static const struct {
         uint32_t frame, run;
         fathom_status_t status;
-    } rows[] = {{3, 1000, FATHOM_ERR_UNCONFIRMED}, {3, 1, FATHOM_READY}, {4, 1000, FATHOM_ERR_UNCONFIRMED}};
+    } rows[] = {{3, 1000, FATHOM_ERR_UNCONFIRMED}, {3, 1, FATHOM_OK}, {4, 1000, FATHOM_ERR_UNCONFIRMED}};
     for (unsigned n = 0; n != 6; n++) {
         set(loops_us[n / 3], DEFAULTS, NULL);
         silence_from(rows[n % 3].frame, rows[n % 3].run);
@@ -125,14 +125,14 @@ TEST(write_only_commands_are_acknowledged)
     IN_BOTH_LOOPS
     {
         set(loops_us[l], DEFAULTS, NULL);
-        assert_int_equal(with(twelve, -15), FATHOM_READY);
+        assert_int_equal(with(twelve, -15), FATHOM_OK);
         assert_measures(1, TARGET_MM - 15);
-        assert_int_equal(with(fourteen, -100), FATHOM_READY);
+        assert_int_equal(with(fourteen, -100), FATHOM_OK);
         assert_int_equal(bench.hps.sensor.filter, -100);
-        assert_int_equal(carry_out(thirteen_factory), FATHOM_READY);
+        assert_int_equal(carry_out(thirteen_factory), FATHOM_OK);
         COUNTED(.resets = 1);
         assert_measures(1, TARGET_MM);
-        assert_int_equal(carry_out(thirteen_user), FATHOM_READY);
+        assert_int_equal(carry_out(thirteen_user), FATHOM_OK);
         assert_measures(1, TARGET_MM - 15);
         COUNTED(.resets = 1);
     }
@@ -145,7 +145,7 @@ TEST(a_write_only_command_is_told_once_where_the_line_echoes)
         set(loops_us[l], (hps_config_t){.offset_adds = true}, NULL);
         bench.line.echo = true;
         set_faults(1); /* which keep an echo that is there */
-        assert_int_equal(with(twelve, 7), FATHOM_READY);
+        assert_int_equal(with(twelve, 7), FATHOM_OK);
         assert_measures(1, TARGET_MM + 7);
         fathom_sim_detach(&bench.line, bench.device, s.clock.now_us);
         assert_int_equal(with(twelve, 7), FATHOM_ERR_NO_RESPONSE);
@@ -163,7 +163,7 @@ TEST(silence_refusal_and_the_abnormal_packet_of_a_warm_up_are_no_error)
         unsigned warming = 0;
         for (; (status = measure()) == FATHOM_ERR_WARMING_UP; warming++)
             if (s.loop_us == 0 && says != 0) pass_us(50 * MS);
-        assert_int_equal(status, FATHOM_READY);
+        assert_int_equal(status, FATHOM_OK);
         assert_true(warming > 3);
         assert_int_equal(s.sample.kind, FATHOM_TARGET);
         assert_in_range(since_us(start_us), 5 * SECOND, 5 * SECOND + 500 * MS);
@@ -179,12 +179,12 @@ TEST(a_rate_is_followed_there_and_back)
         const int32_t baud = (int32_t)bauds[n % 3];
         set(loops_us[n / 3], DEFAULTS, &bench_19200);
         for (unsigned i = 0; i != 2; i++) { /* and once more: it is so already */
-            assert_int_equal(with(nine, baud), FATHOM_READY);
+            assert_int_equal(with(nine, baud), FATHOM_OK);
             assert_int_equal(bench.device->settings.baud, baud);
             COUNTED(.flash_writes = 1);
             assert_measures(1, TARGET_MM);
         }
-        assert_int_equal(with(nine, 19200), FATHOM_READY);
+        assert_int_equal(with(nine, 19200), FATHOM_OK);
         assert_int_equal(bench.device->settings.baud, 19200);
         assert_measures(1, TARGET_MM);
     }
@@ -202,7 +202,7 @@ TEST(without_confirmation_both_rates_are_asked_until_it_answers)
         fathom_sim_fault_enable(&bench.fault, false);
         fathom_status_t status = FATHOM_ERR_NO_RESPONSE;
         for (unsigned i = 0; i != 4 && status < 0; i++) status = measure();
-        assert_int_equal(status, FATHOM_READY);
+        assert_int_equal(status, FATHOM_OK);
         assert_measures(1, TARGET_MM);
         COUNTED(.flash_writes = 1);
     }
@@ -231,7 +231,7 @@ TEST(a_reset_device_is_followed_home)
     for (unsigned n = 0; n != 4; n++) {
         set(loops_us[n % 2], (hps_config_t){.address = 7, .baud_code = 3, .answers_from_new = n > 1}, &fast);
         assert_measures(7, TARGET_MM);
-        assert_int_equal(carry_out(six), FATHOM_READY);
+        assert_int_equal(carry_out(six), FATHOM_OK);
         COUNTED(.resets = 1, .resets_refused = NONE);
         assert_int_equal(bench.device->address, 1);
         assert_int_equal(bench.device->settings.baud, 19200);
@@ -275,7 +275,7 @@ TEST(a_late_temperature_of_1_degree_is_not_taken_for_a_reset)
             FAULT(LATE, ALWAYS, 1)->us = late_ms * MS;
             silence_from(4, 1); /* after two to #2, the response to #6 */
             const fathom_status_t first = carry_out(four);
-            assert_int_equal(first, late_ms < 1000 ? FATHOM_READY : FATHOM_ERR_NO_RESPONSE);
+            assert_int_equal(first, late_ms < 1000 ? FATHOM_OK : FATHOM_ERR_NO_RESPONSE);
             const fathom_status_t status = carry_out(six);
             assert_true(status == FATHOM_ERR_UNCONFIRMED || status == FATHOM_ERR_NO_RESPONSE ||
                         status == FATHOM_ERR_MALFORMED);

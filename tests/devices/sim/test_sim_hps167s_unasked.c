@@ -15,10 +15,10 @@ static fathom_hps167s_details_t details;
 static fathom_hps167s_configuration_t is;
 static fathom_hps167s_temperature_t temperature;
 
-static fathom_status_t one(void) { return fathom_hps167s_interface_version(hps, &version); }
-static fathom_status_t two(void) { return fathom_hps167s_configuration(hps, &is); }
-static fathom_status_t three(void) { return fathom_hps167s_details(hps, &details); }
-static fathom_status_t four(void) { return fathom_hps167s_temperature(hps, &temperature); }
+static fathom_status_t one(void) { return fathom_hps167s_get_interface_version(hps, &version); }
+static fathom_status_t two(void) { return fathom_hps167s_get_configuration(hps, &is); }
+static fathom_status_t three(void) { return fathom_hps167s_get_details(hps, &details); }
+static fathom_status_t four(void) { return fathom_hps167s_get_temperature(hps, &temperature); }
 static fathom_status_t six(void) { return fathom_hps167s_restore_factory_settings(hps); }
 static fathom_status_t seven(void) { return fathom_hps167s_set_warm_up_s(hps, 9); }
 static fathom_status_t eight(void) { return fathom_hps167s_set_address(hps, 5); }
@@ -37,8 +37,8 @@ static void begin(uint32_t loop_us, uint32_t unasked_us, bool is_asked)
     measuring = sensor_of(&s.driver, HPS);
     add_hps((hps_config_t){.unasked_us = unasked_us});
     const fathom_hps167s_auto_config_t config = {.line = &s.line};
-    assert_int_equal(fathom_hps167s_auto_init(&hears, &config), FATHOM_READY);
-    if (is_asked) fathom_hps167s_auto_beside(&hears, hps);
+    assert_int_equal(fathom_hps167s_auto_init(&hears, &config), FATHOM_OK);
+    if (is_asked) fathom_hps167s_auto_follow(&hears, hps);
     s.sensor = fathom_hps167s_auto_sensor(&hears);
     heard = 0;
     wrong = 0;
@@ -48,8 +48,8 @@ static void step(bool asks)
 {
     const fathom_sensor_t both[] = {s.sensor, measuring};
     const fathom_status_t status = fathom_poll(&s.sensor, &s.sample);
-    heard += status == FATHOM_READY;
-    wrong += status == FATHOM_READY &&
+    heard += status == FATHOM_OK;
+    wrong += status == FATHOM_OK &&
              (s.sample.distance_mm != bench.fixed.value[0] || s.sample.kind != FATHOM_TARGET);
     pass_until(fathom_due_us(both, asks ? 2 : 1));
 }
@@ -106,7 +106,7 @@ static void assert_carried_out(void)
     assert_int_equal(details.year, 2019);
     assert_int_equal(temperature.temperature_dc, 250);
     assert_int_equal(bench.device->address, 5);
-    assert_int_equal(ask_for(two), FATHOM_READY);
+    assert_int_equal(ask_for(two), FATHOM_OK);
     assert_int_equal(is.baud, 19200);
     assert_int_equal(is.warm_up_s, 9);
     assert_int_equal(is.reconnect_time_ms, 360);
@@ -123,8 +123,7 @@ TEST(every_command_works_while_frames_arrive)
             fathom_status_t status = FATHOM_ERR_NO_RESPONSE;
             /* in the slow loop a request may meet a frame and be lost: asked again */
             for (unsigned times = 0; times != 5 && status < 0; times++) status = ask_for(commands[i]);
-            if (status != FATHOM_READY)
-                fail_msg("command %u in run %u: %s", i, n, fathom_status_name(status));
+            if (status != FATHOM_OK) fail_msg("command %u in run %u: %s", i, n, fathom_status_name(status));
         }
         assert_true(heard > 5);
         assert_carried_out();
@@ -143,8 +142,7 @@ TEST(every_command_works_at_once_between_frames_every_18_5_ms)
         pass_us(n / 8 * 3 * MS);
         for (unsigned i = 0; i != sizeof commands / sizeof *commands; i++) {
             const fathom_status_t status = ask_for(commands[i]);
-            if (status != FATHOM_READY)
-                fail_msg("command %u in run %u: %s", i, n, fathom_status_name(status));
+            if (status != FATHOM_OK) fail_msg("command %u in run %u: %s", i, n, fathom_status_name(status));
         }
         assert_int_equal(bench.line.counters.collisions, 0);
         assert_carried_out();
@@ -165,7 +163,7 @@ TEST(no_held_distance_passes_for_the_configuration)
         while (heard == 0) step(false);
         pass_us(at_us);
         for (unsigned i = 0; i != 5; i++) {
-            if (ask_for(two) != FATHOM_READY) continue;
+            if (ask_for(two) != FATHOM_OK) continue;
             told_it++;
             assert_true(is.termination);      /* 00FF says that it is off */
             assert_int_equal(is.baud, 19200); /* and B402 says 57600 */
@@ -181,7 +179,7 @@ TEST(a_reset_is_done_while_frames_arrive)
         begin(0, 40 * MS, true);
         pass_us(at_us);
         const fathom_status_t status = ask_for(six);
-        if (status == FATHOM_READY)
+        if (status == FATHOM_OK)
             COUNTED(.resets = 1);
         else /* the request has met a frame, or its response has */
             assert_true(status == FATHOM_ERR_UNCONFIRMED || status == FATHOM_ERR_NO_RESPONSE ||

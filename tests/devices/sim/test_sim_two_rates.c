@@ -29,9 +29,9 @@ static void begin(const fathom_line_settings_t *slow, const fathom_line_settings
                                          .modbus.line_settings = fast,
                                          .modbus.period_us = 100 * MS,
                                          .modbus.address = 3};
-    assert_int_equal(fathom_a16_modbus_init(&drivers[0].a16, &a16), FATHOM_READY);
+    assert_int_equal(fathom_a16_modbus_init(&drivers[0].a16, &a16), FATHOM_OK);
     init_driver(&drivers[1], A05_DYP, 2, slow);
-    assert_int_equal(fathom_hps167s_init(&drivers[2].hps, &hps), FATHOM_READY);
+    assert_int_equal(fathom_hps167s_init(&drivers[2].hps, &hps), FATHOM_OK);
     for (unsigned i = 0; i != SENSORS; i++) {
         sensors[i] = sensor_of(&drivers[i], models[i]);
         readings[i] = errors[i] = 0;
@@ -44,7 +44,7 @@ static void run(uint32_t for_us)
         for (unsigned i = 0; i != SENSORS; i++) {
             const fathom_status_t status = fathom_poll(&sensors[i], &s.sample);
             if (status < 0) errors[i]++;
-            if (status != FATHOM_READY) continue;
+            if (status != FATHOM_OK) continue;
             const int32_t right_mm[] = {A16_MM, i == 1 ? probes.value[s.sample.probe - 1] : 0, HPS_MM};
             assert_int_equal(s.sample.distance_mm, right_mm[i]);
             readings[i]++;
@@ -63,7 +63,8 @@ TEST(sensors_with_different_settings_are_read_on_one_pair)
         assert_true(readings[0] >= 45);
         assert_true(readings[1] >= 4 * 45);
         assert_true(readings[2] >= 45);
-        assert_int_equal(fathom_line_echo(&s.line), echo != 0 ? FATHOM_LINE_ECHO_ON : FATHOM_LINE_ECHO_OFF);
+        assert_int_equal(fathom_line_get_echo(&s.line),
+                         echo != 0 ? FATHOM_LINE_ECHO_ON : FATHOM_LINE_ECHO_OFF);
     }
 }
 

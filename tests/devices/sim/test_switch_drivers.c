@@ -56,9 +56,9 @@ static void set_threshold(uint16_t mm, uint32_t step_us)
     fathom_status_t status;
     uint16_t read_mm = 0;
     UNTIL_ENDED(status, fathom_a16_modbus_set_switch_threshold_mm(settings, mm), step_us);
-    assert_int_equal(status, FATHOM_READY);
-    UNTIL_ENDED(status, fathom_a16_modbus_switch_threshold_mm(settings, &read_mm), step_us);
-    assert_int_equal(status, FATHOM_READY);
+    assert_int_equal(status, FATHOM_OK);
+    UNTIL_ENDED(status, fathom_a16_modbus_get_switch_threshold_mm(settings, &read_mm), step_us);
+    assert_int_equal(status, FATHOM_OK);
     assert_int_equal(read_mm, mm);
 }
 
@@ -120,13 +120,13 @@ TEST(the_polarity_is_set_and_the_driver_reads_by_it)
             set_switch(mm);
             run(3100 * MS, step_us);
             const unsigned before = samples;
-            assert_int_equal(set_polarity(FATHOM_A16_NEGATIVE, step_us), FATHOM_READY);
+            assert_int_equal(set_polarity(FATHOM_A16_NEGATIVE, step_us), FATHOM_OK);
             run(3000 * MS, step_us);
             assert_int_equal(samples, before); /* nothing has come nearer or gone */
             assert_int_equal(bench.a16.polarity, 0);
             bench.fixed.value[0] = 2000 - mm;
             run(3100 * MS, step_us);
-            assert_int_equal(set_polarity(FATHOM_A16_POSITIVE, step_us), FATHOM_READY);
+            assert_int_equal(set_polarity(FATHOM_A16_POSITIVE, step_us), FATHOM_OK);
             bench.fixed.value[0] = mm;
             run(3100 * MS, step_us);
             expect_kinds(mm == 999 ? "FNFN" : "FNF");
@@ -144,7 +144,7 @@ TEST(a_polarity_that_could_not_be_set_changes_nothing)
     run(1000 * MS, 20000);
     expect_kinds("FN");
     /* it can be told what another driver has done */
-    fathom_a16_switch_polarity_is(&a16, FATHOM_A16_NEGATIVE);
+    fathom_a16_switch_note_polarity(&a16, FATHOM_A16_NEGATIVE);
     run(100 * MS, 20000);
     expect_kinds("FNF");
 }
@@ -161,7 +161,7 @@ TEST(while_the_polarity_is_being_set_the_level_is_not_looked_at)
     run(600 * MS, 20000);
     assert_int_equal(errors, 1); /* FATHOM_ERR_STALE */
     errors = 0;
-    fathom_a16_switch_polarity_is(&a16, FATHOM_A16_POSITIVE);
+    fathom_a16_switch_note_polarity(&a16, FATHOM_A16_POSITIVE);
     run(100 * MS, 20000);
     expect_kinds("FNF");
 }

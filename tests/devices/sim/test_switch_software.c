@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "fathom/engine/debounce.h"
+#include "fathom/processing/debounce.h"
 #include "fathom/sensor/a05_auto.h"
 #include "fathom/sensor/a05_relay_rule.h"
 #include "fathom/sensor/a16_auto.h"
@@ -43,7 +43,7 @@ static void begin_beside(void)
     beside.config.uart = &beside.uart;
     beside.config.frame = beside.frame;
     beside.config.frame_size = sizeof beside.frame;
-    assert_int_equal(fathom_line_init(&beside.line, &beside.config), FATHOM_READY);
+    assert_int_equal(fathom_line_init(&beside.line, &beside.config), FATHOM_OK);
 }
 
 static const suite_t suite = {BENCH_ROUNDS};
@@ -60,8 +60,8 @@ TEST(a_debounced_a16_is_the_switch_of_one)
     fathom_sim_a16_init(&s.other.a16, &config);
     begin_beside();
     const fathom_a16_auto_config_t own = {.line = &beside.line};
-    assert_int_equal(fathom_a16_auto_init(&automatic, &own), FATHOM_READY);
-    assert_int_equal(fathom_debounce_init(&gate, &(fathom_debounce_config_t){0}), FATHOM_READY);
+    assert_int_equal(fathom_a16_auto_init(&automatic, &own), FATHOM_OK);
+    assert_int_equal(fathom_debounce_init(&gate, &(fathom_debounce_config_t){0}), FATHOM_OK);
     const fathom_sensor_t sensor = fathom_a16_auto_sensor(&automatic);
     unsigned changes = 0;
     run(100 * MS, 20 * MS); /* from here the scene changes between the measurements */
@@ -70,8 +70,8 @@ TEST(a_debounced_a16_is_the_switch_of_one)
         if (n % 6 == 0) bench.fixed.value[0] = any_distance();
         for (unsigned step = 0; step != 25; step++) {
             run(20 * MS, 20 * MS);
-            while (fathom_poll(&sensor, &sample) == FATHOM_READY)
-                changes += fathom_debounce_sample(&gate, &sample);
+            while (fathom_poll(&sensor, &sample) == FATHOM_OK)
+                changes += fathom_debounce_add_sample(&gate, &sample);
         }
         if (gate.level != 0) assert_int_equal(gate.level, kinds[samples - 1]);
         forget_old_samples();
@@ -91,9 +91,9 @@ TEST(the_rule_over_an_a05_is_the_relay_of_one)
     fathom_sim_a05_init(&s.other.a05, &config);
     begin_beside();
     const fathom_a05_auto_config_t own = {.line = &beside.line, .probes = 0x0B};
-    assert_int_equal(fathom_a05_auto_init(&automatic, &own), FATHOM_READY);
+    assert_int_equal(fathom_a05_auto_init(&automatic, &own), FATHOM_OK);
     const fathom_a05_relay_rule_config_t same = {.probes = 0x0B};
-    assert_int_equal(fathom_a05_relay_rule_init(&rule, &same), FATHOM_READY);
+    assert_int_equal(fathom_a05_relay_rule_init(&rule, &same), FATHOM_OK);
     const fathom_sensor_t sensor = fathom_a05_auto_sensor(&automatic);
     unsigned changes = 0;
     run(100 * MS, 20 * MS); /* from here the scene changes between the measurements */
@@ -103,8 +103,8 @@ TEST(the_rule_over_an_a05_is_the_relay_of_one)
             if (n % 2 == 0) bench.fixed.value[i] = n % 8 < 4 ? any_distance() : 3000;
         for (unsigned step = 0; step != 15; step++) {
             run(20 * MS, 20 * MS);
-            while (fathom_poll(&sensor, &sample) == FATHOM_READY)
-                changes += fathom_a05_relay_rule_sample(&rule, &sample);
+            while (fathom_poll(&sensor, &sample) == FATHOM_OK)
+                changes += fathom_a05_relay_rule_add_sample(&rule, &sample);
         }
         assert_int_equal(rule.debounce.level, kinds[samples - 1]);
         forget_old_samples();
@@ -125,17 +125,17 @@ TEST(an_odd_probe_neither_hides_one_that_is_near_nor_keeps_the_level_for_ever)
     fathom_sim_a05_init(&s.other.a05, &config);
     begin_beside();
     assert_int_equal(fathom_a05_auto_init(&automatic, &(fathom_a05_auto_config_t){.line = &beside.line}),
-                     FATHOM_READY);
-    assert_int_equal(fathom_a05_relay_rule_init(&rule, &(fathom_a05_relay_rule_config_t){0}), FATHOM_READY);
+                     FATHOM_OK);
+    assert_int_equal(fathom_a05_relay_rule_init(&rule, &(fathom_a05_relay_rule_config_t){0}), FATHOM_OK);
     const fathom_sensor_t sensor = fathom_a05_auto_sensor(&automatic);
     for (unsigned i = 0; i != 2; i++) {
         fathom_sample_t sample;
         bench.fixed = (fathom_sim_fixed_t){{i == 0 ? 500 : 2000, 2000, 7000, 3000}};
         for (unsigned ms = 0; ms != 6000; ms += 20) {
             run(20 * MS, 20 * MS);
-            while (fathom_poll(&sensor, &sample) == FATHOM_READY)
-                (void)fathom_a05_relay_rule_sample(&rule, &sample);
-            (void)fathom_debounce_time(&rule.debounce, s.clock.now_us);
+            while (fathom_poll(&sensor, &sample) == FATHOM_OK)
+                (void)fathom_a05_relay_rule_add_sample(&rule, &sample);
+            (void)fathom_debounce_advance(&rule.debounce, s.clock.now_us);
         }
         assert_int_equal(rule.debounce.level, levels[i]);
     }

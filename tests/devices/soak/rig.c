@@ -245,13 +245,13 @@ static void outcome(rig_unit_t *unit, fathom_status_t status, bool is_value, con
     const bool is_asked = soak_is_asked(unit->setting);
     unit->outcome_us = unit->rig->clock.now_us;
     unit->idle_turns = 0;
-    if (status == FATHOM_READY || is_value) {
+    if (status == FATHOM_OK || is_value) {
         if (unit->is_open || !is_asked) unit->response_us = unit->open_us;
         if (unit->is_open) unit->responses++;
         unit->is_open = false;
         unit->samples++;
         unit->timeouts_in_row = 0;
-        if (status != FATHOM_READY) {
+        if (status != FATHOM_OK) {
             unit->totals.errors++;
             unit->refused++;
             return;

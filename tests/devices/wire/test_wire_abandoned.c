@@ -90,9 +90,9 @@ TEST(an_abandoned_command_holds_up_no_other_sensor)
         (void)open_user(USER_HPS167S, turns_us[t]);
         wire_add(&(wire_unit_t){.kind = WIRE_HPS167S, .address = 2, .answer_us = 2000});
         const fathom_hps167s_config_t config = {.modbus = {.transport = &desk.modbus, .address = 2}};
-        assert_int_equal(fathom_hps167s_init(&abandoned, &config), FATHOM_READY);
+        assert_int_equal(fathom_hps167s_init(&abandoned, &config), FATHOM_OK);
         expect_readings();
-        assert_int_equal(fathom_hps167s_interface_version(&abandoned, &version), FATHOM_PENDING);
+        assert_int_equal(fathom_hps167s_get_interface_version(&abandoned, &version), FATHOM_PENDING);
         poll_users(60u * SECOND_US);
         expect_readings();
     }
@@ -105,7 +105,7 @@ TEST(an_abandoned_setting_holds_up_no_other_sensor)
         (void)open_user(USER_HPS167S, turns_us[t]);
         wire_add(&(wire_unit_t){.kind = WIRE_HPS167S, .address = 2, .answer_us = 2000});
         const fathom_hps167s_config_t config = {.modbus = {.transport = &desk.modbus, .address = 2}};
-        assert_int_equal(fathom_hps167s_init(&abandoned, &config), FATHOM_READY);
+        assert_int_equal(fathom_hps167s_init(&abandoned, &config), FATHOM_OK);
         for (unsigned polls = 1; polls != 40; polls++) { /* it stops in each of its steps */
             fathom_hps167s_cancel(&abandoned);
             for (unsigned i = 0; i != polls; i++) {
@@ -126,9 +126,9 @@ TEST(a_held_break_ends_each_wait)
         for (unsigned t = 0; t != TURNS; t++) {
             (void)open_user((user_kind_t)kind, turns_us[t]);
             expect_readings();
-            while (fathom_line_break(&desk.line, true) != FATHOM_READY) poll_users(turns_us[t]);
+            while (fathom_line_break(&desk.line, true) != FATHOM_OK) poll_users(turns_us[t]);
             poll_users(30u * SECOND_US);
-            assert_int_equal(fathom_line_break(&desk.line, false), FATHOM_READY);
+            assert_int_equal(fathom_line_break(&desk.line, false), FATHOM_OK);
             expect_readings();
         }
     }

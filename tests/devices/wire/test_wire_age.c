@@ -18,8 +18,8 @@ static bool has_reading(user_t *user, wire_us_t within_us)
 {
     for (const wire_us_t end_us = wire.now_us + within_us; wire.now_us < end_us;) {
         desk_turn();
-        if (user_poll(user) != FATHOM_READY) continue;
-        while (user_poll(user) == FATHOM_READY) { /* the other probes of the same response */
+        if (user_poll(user) != FATHOM_OK) continue;
+        while (user_poll(user) == FATHOM_OK) { /* the other probes of the same response */
         }
         return true;
     }
@@ -55,11 +55,11 @@ TEST(after_a_sleep_and_init_no_reading_is_of_the_time_before_it)
             user_deinit(&users[0]);
             wire_run(LONG_SLEEP_US);
             if (user_is_stream((user_kind_t)kind))
-                assert_int_equal(fathom_line_init_listening(&desk.line, &desk.config), FATHOM_READY);
+                assert_int_equal(fathom_line_init_listening(&desk.line, &desk.config), FATHOM_OK);
             else
-                assert_int_equal(fathom_line_init(&desk.line, &desk.config), FATHOM_READY);
+                assert_int_equal(fathom_line_init(&desk.line, &desk.config), FATHOM_OK);
             user_init(&users[0]);
-            assert_int_not_equal(user_poll(&users[0]), FATHOM_READY); /* there is nothing new yet */
+            assert_int_not_equal(user_poll(&users[0]), FATHOM_OK); /* there is nothing new yet */
         }
     }
 }
@@ -87,11 +87,11 @@ TEST(a_response_that_waited_longer_than_its_time_out_is_no_reading)
             wire_run(sleeps[s].sleep_us);
             (void)fathom_line_poll(&desk.line);
             if (!sleeps[s].counts) {
-                assert_int_not_equal(desk_status(&request), FATHOM_READY);
+                assert_int_not_equal(desk_status(&request), FATHOM_OK);
                 assert_true(desk_count(FATHOM_LINE_OLD_BYTES) != 0);
             }
             assert_int_equal(desk_wait(&request, 4 * TIMEOUT_US),
-                             sleeps[s].counts ? FATHOM_READY : FATHOM_ERR_NO_RESPONSE);
+                             sleeps[s].counts ? FATHOM_OK : FATHOM_ERR_NO_RESPONSE);
         }
 }
 
@@ -145,7 +145,7 @@ TEST(a_clock_that_runs_back_by_50_ms_loses_no_response)
         desk_read(&request, 0x0101, 1, TIMEOUT_US, 0);
         desk_run(20000);
         wire.skew_us = -50000;
-        assert_int_equal(desk_wait(&request, 4 * TIMEOUT_US), FATHOM_READY);
+        assert_int_equal(desk_wait(&request, 4 * TIMEOUT_US), FATHOM_OK);
     }
 }
 
@@ -201,7 +201,7 @@ TEST(after_a_sleep_and_a_break_no_reading_is_of_the_time_before_it)
     assert_true(has_reading(&users[0], 2 * SECOND_US));
     users_slept(LONG_SLEEP_US);
     wire_run(LONG_SLEEP_US);
-    assert_int_equal(fathom_line_break(&desk.line, true), FATHOM_READY);
-    assert_int_equal(fathom_line_break(&desk.line, false), FATHOM_READY);
+    assert_int_equal(fathom_line_break(&desk.line, true), FATHOM_OK);
+    assert_int_equal(fathom_line_break(&desk.line, false), FATHOM_OK);
     (void)has_reading(&users[0], SECOND_US); /* the judge compares time_us with the measurement */
 }

@@ -70,7 +70,7 @@ static void note(result_t *result, const desk_request_t *request)
     const wire_us_t took_us = wire.now_us - request->begin_us;
     if (result->longest_us < took_us) result->longest_us = took_us;
     switch (desk_status(request)) {
-    case FATHOM_READY: {
+    case FATHOM_OK: {
         const wire_issue_t *const issue = wire_issue_of(request->values[0]);
         const bool is_right = issue != NULL && issue->reg == OURS && issue->at_us >= request->begin_us;
         result->right += is_right;
@@ -240,12 +240,12 @@ TEST(a_write_is_acknowledged_by_its_own_response_alone)
                 desk_write(&request, 0x0205, 1, TIMEOUT_US);
                 const fathom_status_t status = desk_wait(&request, desk_bound_us(TIMEOUT_US, 0, 0));
                 assert_int_not_equal(status, FATHOM_PENDING);
-                if (status == FATHOM_READY) assert_true(wire.units[0].writes != writes);
-                ready += status == FATHOM_READY;
+                if (status == FATHOM_OK) assert_true(wire.units[0].writes != writes);
+                ready += status == FATHOM_OK;
                 other += status == FATHOM_ERR_OTHER_MASTER;
             }
             assert_true(ready != 0);
-            DESK_REPORT("write, forms %u, loop %u ms: READY %u, OTHER_MASTER %u\n", set, loops_ms[l], ready,
+            DESK_REPORT("write, forms %u, loop %u ms: OK %u, OTHER_MASTER %u\n", set, loops_ms[l], ready,
                         other);
         }
 }
@@ -275,8 +275,8 @@ TEST(no_55_aa_response_to_another_master_is_our_reading)
             request.begin_us = wire.now_us;
             assert_int_equal(fathom_dyp_client_submit(&desk.line, &request.request), FATHOM_PENDING);
             assert_int_not_equal(desk_wait(&request, desk_bound_us(2 * TIMEOUT_US, 0, 0)), FATHOM_PENDING);
-            if (desk_status(&request) == FATHOM_READY && wire_has_chance_of(request.values[0])) continue;
-            if (desk_status(&request) == FATHOM_READY) {
+            if (desk_status(&request) == FATHOM_OK && wire_has_chance_of(request.values[0])) continue;
+            if (desk_status(&request) == FATHOM_OK) {
                 const wire_issue_t *const issue = wire_issue_of(request.values[0]);
                 assert_non_null(issue);
                 assert_int_equal(issue->reg, 0x0106);
@@ -372,7 +372,7 @@ TEST(beside_a_unit_that_sends_by_itself_an_answer_is_not_our_measurement)
             desk_run(wire_random(100000)); /* the line hears frames that no request was heard for */
             desk_read(&request, WIRE_MEASUREMENT, 4, TIMEOUT_US, 0);
             assert_int_not_equal(desk_wait(&request, desk_bound_us(TIMEOUT_US, 0, 0)), FATHOM_PENDING);
-            if (desk_status(&request) != FATHOM_READY) continue;
+            if (desk_status(&request) != FATHOM_OK) continue;
             if (wire_issue_of(request.values[0]) == NULL) wire_print();
             assert_non_null(wire_issue_of(request.values[0]));
             measured++;

@@ -49,9 +49,9 @@ static void note(result_t *result, const desk_request_t *request)
     const fathom_status_t status = desk_status(request);
     const wire_us_t took_us = wire.now_us - request->begin_us;
     if (result->longest_us < took_us) result->longest_us = took_us;
-    result->ready += status == FATHOM_READY;
+    result->ready += status == FATHOM_OK;
     result->busy += status == FATHOM_ERR_LINE_BUSY;
-    result->others += status != FATHOM_READY && status != FATHOM_ERR_LINE_BUSY;
+    result->others += status != FATHOM_OK && status != FATHOM_ERR_LINE_BUSY;
 }
 
 /* `count` requests, all queued at once; each begins again when it has ended. */
@@ -101,8 +101,8 @@ static void run_noises(const char *name, bool is_write, uint8_t retries, unsigne
                 all.others += one.others;
                 all.sent += one.sent;
             }
-        DESK_REPORT("%s, %s: longest %.2f s; READY %u, LINE_BUSY %u, others %u, sent %u\n", noises[n].name,
-                    name, (double)all.longest_us / 1e6, all.ready, all.busy, all.others, all.sent);
+        DESK_REPORT("%s, %s: longest %.2f s; OK %u, LINE_BUSY %u, others %u, sent %u\n", noises[n].name, name,
+                    (double)all.longest_us / 1e6, all.ready, all.busy, all.others, all.sent);
     }
 }
 
@@ -130,7 +130,7 @@ TEST(after_noise_the_next_request_is_answered)
         wire.noise.next_us = WIRE_NEVER;
         wire.noise.is_in_phase = false;
         desk_read(&request, 0x0101, 1, TIMEOUT_US, 0);
-        assert_int_equal(desk_wait(&request, 65536 + 2 * TIMEOUT_US), FATHOM_READY);
+        assert_int_equal(desk_wait(&request, 65536 + 2 * TIMEOUT_US), FATHOM_OK);
     }
 }
 

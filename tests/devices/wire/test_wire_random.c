@@ -178,7 +178,7 @@ static void hold_break(void)
     const wire_us_t begin_us = wire.now_us;
     (void)fathom_line_poll(&desk.line);
     const wire_us_t end_us = wire.now_us + 1000 + wire_random(100000);
-    while (wire.now_us < end_us && fathom_line_break(&desk.line, true) != FATHOM_READY) {
+    while (wire.now_us < end_us && fathom_line_break(&desk.line, true) != FATHOM_OK) {
         desk_turn();
         (void)fathom_line_poll(&desk.line);
     }
@@ -187,7 +187,7 @@ static void hold_break(void)
         (void)fathom_line_poll(&desk.line);
     }
     wire.refuses_break = wire_one_in(2);
-    while (fathom_line_break(&desk.line, false) != FATHOM_READY) {
+    while (fathom_line_break(&desk.line, false) != FATHOM_OK) {
         if (wire_one_in(20)) (void)fathom_line_break(&desk.line, true);
         phases_sample();
         desk_turn();

@@ -33,7 +33,7 @@ static void open_sensor(unsigned loop_ms, unsigned phase, uint32_t timeout_us, w
     desk_open(DESK_ALL, loop_ms * 1000u, 100);
     const fathom_hps167s_config_t config = {
         .modbus = {.transport = &desk.modbus, .timeout_us = timeout_us, .command_timeout_us = timeout_us}};
-    assert_int_equal(fathom_hps167s_init(&sensor, &config), FATHOM_READY);
+    assert_int_equal(fathom_hps167s_init(&sensor, &config), FATHOM_OK);
 }
 
 /* The time after which the command has succeeded. A command that fails begins again. */
@@ -42,7 +42,7 @@ static wire_us_t time_of(fathom_status_t (*command)(void), wire_us_t at_most_us)
     const wire_us_t begin_us = wire.now_us;
     while (wire.now_us < begin_us + at_most_us) {
         desk_turn();
-        if (command() == FATHOM_READY) return wire.now_us - begin_us;
+        if (command() == FATHOM_OK) return wire.now_us - begin_us;
     }
     return WIRE_NEVER;
 }
@@ -50,7 +50,7 @@ static wire_us_t time_of(fathom_status_t (*command)(void), wire_us_t at_most_us)
 static fathom_status_t read_version(void)
 {
     fathom_hps167s_version_t version;
-    return fathom_hps167s_interface_version(&sensor, &version);
+    return fathom_hps167s_get_interface_version(&sensor, &version);
 }
 
 static fathom_status_t stop_measuring(void)
@@ -152,7 +152,7 @@ TEST(every_loop_has_readings)
             desk_turn();
             const fathom_status_t status = fathom_poll(&handle, &sample);
             failures += status < 0;
-            if (status != FATHOM_READY) continue;
+            if (status != FATHOM_OK) continue;
             readings++;
             const wire_issue_t *const issue = wire_issue_of(sample.distance_mm);
             assert_non_null(issue);

@@ -5,7 +5,7 @@ desk_t desk;
 
 void desk_init_line(void)
 {
-    assert_int_equal(fathom_line_init(&desk.line, &desk.config), FATHOM_READY);
+    assert_int_equal(fathom_line_init(&desk.line, &desk.config), FATHOM_OK);
     (void)fathom_line_poll(&desk.line);
 }
 

@@ -122,7 +122,7 @@ static fathom_status_t init_stream(user_t *user)
 void user_init(user_t *user)
 {
     const fathom_status_t status = user->is_stream ? init_stream(user) : init_requests(user);
-    assert_int_equal(status, FATHOM_READY);
+    assert_int_equal(status, FATHOM_OK);
     user->since_us = wire.now_us;
     user->slack_us = 0;
 }
@@ -275,7 +275,7 @@ fathom_status_t user_poll(user_t *user)
     if (user->longest_us + user->slack_us < waited_us) user->longest_us = waited_us - user->slack_us;
     user->since_us = wire.now_us;
     user->slack_us = 0;
-    if (status == FATHOM_READY) {
+    if (status == FATHOM_OK) {
         judge(user, &sample);
     } else {
         user->failed++;

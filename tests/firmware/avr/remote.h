@@ -12,7 +12,7 @@
  */
 void remote_start(void);
 
-/* fathom_avr_usart0_begin, with a driver-enable pin or none, and memory for so many bytes. */
+/* fathom_avr_usart0_init, with a driver-enable pin or none, and memory for so many bytes. */
 bool remote_begin(const fathom_line_settings_t *line, bool driver, uint8_t request_size);
 int remote_read(uint8_t *bytes, uint8_t capacity, uint8_t *flags);
 int remote_write(const uint8_t *bytes, uint8_t length);

@@ -25,7 +25,7 @@ OBJECTS = ('avr/clock.c.obj', 'avr/usart0.c.obj', 'avr/icp1.c.obj', 'avr/int0.c.
 BEFORE = 'fathom_avr.h: interrupts are enabled after the begin functions'
 INTERRUPT = 'an interrupt: nothing comes in between but at its end; its boundaries count where two events are paired'
 LEFT_OUT = {
-    'fathom_avr_clock_begin': BEFORE, 'fathom_avr_usart0_begin': BEFORE,
+    'fathom_avr_clock_init': BEFORE, 'fathom_avr_usart0_init': BEFORE,
     'fathom_avr_output': BEFORE, 'fathom_avr_input': BEFORE,
     'fathom_edges_init': 'edges.h: to be called before the interrupt is enabled',
     'fathom_edges_capture': 'it looks at nothing that an interrupt has',

@@ -26,8 +26,8 @@ BEFORE = 'called before the interrupt is enabled'
 INTERRUPT = 'an interrupt: its boundaries count where two events are paired'
 NOTHING = 'it looks at nothing that an interrupt has'
 LEFT_OUT = {
-    'fathom_rp2040_clock_begin': BEFORE, 'fathom_rp2040_uart_begin': BEFORE, 'fathom_rp2040_uart_setup': BEFORE,
-    'fathom_rp2040_idle_begin': BEFORE, 'fathom_rp2040_alarm_enable': BEFORE, 'fathom_rp2040_output': BEFORE,
+    'fathom_rp2040_clock_init': BEFORE, 'fathom_rp2040_uart_init': BEFORE, 'fathom_rp2040_uart_setup': BEFORE,
+    'fathom_rp2040_idle_init': BEFORE, 'fathom_rp2040_alarm_enable': BEFORE, 'fathom_rp2040_output': BEFORE,
     'fathom_rp2040_input': BEFORE, 'fathom_edges_init': BEFORE, 'serial_begin': BEFORE,
     'fathom_rp2040_uart': NOTHING, 'fathom_edges_capture': NOTHING,
     'fathom_rp2040_uart_interrupt': INTERRUPT, 'fathom_rp2040_uart_alarm': INTERRUPT,

@@ -30,7 +30,7 @@ static int set_up(modbus_t *modbus)
     rig.modbus = modbus;
     rig_connect();
     memset(&rig.port, 0xA5, sizeof rig.port); /* any content will do */
-    assert_int_equal(fathom_libmodbus_init(&rig.port, modbus, &config), FATHOM_READY);
+    assert_int_equal(fathom_libmodbus_init(&rig.port, modbus, &config), FATHOM_OK);
     rig.transport = fathom_libmodbus(&rig.port);
     return 0;
 }
@@ -75,7 +75,7 @@ void rig_ask_three(fathom_modbus_request_t *request, uint8_t unit, uint8_t retri
 
 void rig_expect_three(void)
 {
-    assert_int_equal(rig.request.transaction.status, FATHOM_READY);
+    assert_int_equal(rig.request.transaction.status, FATHOM_OK);
     assert_int_equal(rig.values[0], 250);
     assert_int_equal(rig.values[1], 659);
     assert_int_equal(rig.values[2], 2426);

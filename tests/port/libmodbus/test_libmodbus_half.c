@@ -80,7 +80,7 @@ TEST(half_a_response_does_not_wake_a_second_time_and_the_rest_does)
         assert_false(wakes());
         say_and_arrive(first + cut, sizeof first - cut, (int)(sizeof first - cut));
         assert_true(wakes());
-        assert_int_equal(poll_once(), FATHOM_READY);
+        assert_int_equal(poll_once(), FATHOM_OK);
         rig_expect_three();
         assert_false(wakes());
     }
@@ -99,7 +99,7 @@ TEST(after_a_header_alone_it_waits_for_all_that_the_header_tells)
     assert_false(wakes());
     say_and_arrive(first + sizeof first - 1, 1, sizeof first - HEADER);
     assert_true(wakes());
-    assert_int_equal(poll_once(), FATHOM_READY);
+    assert_int_equal(poll_once(), FATHOM_OK);
     rig_expect_three();
 }
 
@@ -109,12 +109,12 @@ TEST(the_first_byte_of_the_next_response_wakes_again)
     say_and_arrive(first, 8, 8);
     assert_int_equal(poll_once(), FATHOM_PENDING);
     say_and_arrive(first + 8, sizeof first - 8, sizeof first - 8);
-    assert_int_equal(poll_once(), FATHOM_READY);
+    assert_int_equal(poll_once(), FATHOM_OK);
     ask();
     say_and_arrive(second, 1, 1);
     assert_true(wakes());
     say_and_arrive(second + 1, sizeof second - 1, sizeof second);
-    assert_int_equal(poll_once(), FATHOM_READY);
+    assert_int_equal(poll_once(), FATHOM_OK);
     rig_expect_three();
 }
 
@@ -148,7 +148,7 @@ TEST(half_a_response_of_a_connection_before_is_none_of_this_one)
         assert_int_equal(poll_once(), FATHOM_PENDING);
         rig_connect();
         rig_say(first, sizeof first);
-        assert_int_equal(poll_once(), FATHOM_READY);
+        assert_int_equal(poll_once(), FATHOM_OK);
         rig_expect_three();
     }
 }

@@ -134,12 +134,12 @@ TEST(the_config_says_whether_there_is_an_echo)
 {
     static const uint8_t write[] = {0x01, 0x06, 0x00, 0x10, 0x00, 0x07};
     static const uint8_t outcomes[] = {FATHOM_LINE_ECHO_AUTO, FATHOM_LINE_ECHO_OFF, FATHOM_LINE_ECHO_ON};
-    static const int expected[] = {FATHOM_ERR_ECHO, FATHOM_READY, FATHOM_ERR_NO_RESPONSE};
+    static const int expected[] = {FATHOM_ERR_ECHO, FATHOM_OK, FATHOM_ERR_NO_RESPONSE};
     for (size_t i = 0; i != sizeof outcomes; i++) {
         rig_again(i == 0);
         const fathom_libmodbus_config_t config = {.clock = &rig.fake.clock, .echo = outcomes[i]};
         uint8_t sent[16];
-        assert_int_equal(fathom_libmodbus_init(&rig.port, rig.modbus, &config), FATHOM_READY);
+        assert_int_equal(fathom_libmodbus_init(&rig.port, rig.modbus, &config), FATHOM_OK);
         rig.request.transaction.timeout_us = RIG_TIMEOUT_US;
         fathom_modbus_write_single_register(&rig.request.message, 1, 0x0010, 7);
         assert_int_equal(rig.transport.submit(rig.transport.ctx, &rig.request), FATHOM_PENDING);
@@ -156,7 +156,7 @@ TEST(the_config_has_the_silence_and_the_gap)
 {
     const fathom_libmodbus_config_t config = {.clock = &rig.fake.clock, .silence_us = 1750, .gap_us = 3000};
     assert_int_equal(rig.port.config.gap_us, GAP_US); /* the default, behind an operating system */
-    assert_int_equal(fathom_libmodbus_init(&rig.port, rig.modbus, &config), FATHOM_READY);
+    assert_int_equal(fathom_libmodbus_init(&rig.port, rig.modbus, &config), FATHOM_OK);
     rig_ask_three(&rig.request, 1, 0);
     rig_run_fine(1800);
     rig_expect_sent(request, sizeof request);
@@ -202,7 +202,7 @@ TEST(a_terminal_that_hangs_up_is_broken)
     rig.far = -1;
     (void)alarm(RIG_ALARM_S);
     assert_int_equal(modbus_connect(rig.modbus), 0);
-    assert_int_equal(fathom_libmodbus_init(&rig.port, rig.modbus, &config), FATHOM_READY);
+    assert_int_equal(fathom_libmodbus_init(&rig.port, rig.modbus, &config), FATHOM_OK);
     rig.transport = fathom_libmodbus(&rig.port);
     rig_ask_three(&rig.request, 1, 0);
     rig_run_fine(SILENCE_US + FINE_US);

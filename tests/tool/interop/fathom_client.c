@@ -41,7 +41,7 @@ int main(int argc, char **argv)
         .gap_us = BEHIND_AN_OS_US,
     };
     fathom_line_t line;
-    bool is_usage = fathom_line_init(&line, &config) == FATHOM_READY;
+    bool is_usage = fathom_line_init(&line, &config) == FATHOM_OK;
     const fathom_modbus_t modbus = fathom_modbus_client_with_zero(&line);
     const transport_t transport = {&modbus, fathom_posix_wait, &port,
                                    (uint32_t)strtoul(argv[4], NULL, 10) * 1000u};

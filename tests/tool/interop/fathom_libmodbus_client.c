@@ -44,7 +44,7 @@ int main(int argc, char **argv)
         .silence_us = FATHOM_T3_5_US(baud, has_parity ? BITS_OF_8E1 : BITS_OF_8N1),
     };
     static fathom_libmodbus_t port;
-    bool is_usage = fathom_libmodbus_init(&port, modbus, &config) == FATHOM_READY;
+    bool is_usage = fathom_libmodbus_init(&port, modbus, &config) == FATHOM_OK;
     const fathom_modbus_t libmodbus = fathom_libmodbus(&port);
     const transport_t transport = {&libmodbus, fathom_libmodbus_wait, &port,
                                    (uint32_t)strtoul(argv[4], NULL, 10) * 1000u};

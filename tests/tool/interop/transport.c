@@ -8,7 +8,7 @@
 static void print_outcome(const fathom_modbus_request_t *request, const step_t *step)
 {
     switch (request->transaction.status) {
-    case FATHOM_READY:
+    case FATHOM_OK:
         if (step->kind == STEP_READ)
             step_print(step->values, step->count, 4);
         else

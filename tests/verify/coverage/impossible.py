@@ -32,7 +32,7 @@ NO_ERROR = "QEMU's UARTs report no errors and lose no byte; tests/port/test_seri
 CAPTURE, PIN = 'port/stm32f4/capture.c', 'port/stm32f4/pin.c'
 UNREACHED = {
     ('port/rp2040/idle.c', 'fathom_rp2040_idle_alarm'): 'fathom_rp2040_idle clears the alarm before interrupts are on',
-    (CAPTURE, 'fathom_stm32f4_capture_begin'): QEMU,
+    (CAPTURE, 'fathom_stm32f4_capture_init'): QEMU,
     (CAPTURE, 'fathom_stm32f4_tim2_interrupt'): QEMU,
     (CAPTURE, 'feed'): QEMU,
     (PIN, 'fathom_stm32f4_input'): QEMU,

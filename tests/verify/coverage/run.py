@@ -22,7 +22,7 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(HERE)))
 COPIED = ('CMakeLists.txt', 'LICENSE', 'README.md', 'include', 'src', 'port', 'examples', 'tests')
 # The planted fault: a condition that never decides. The file, the old text, the new text and the expected problem.
-FAULT = ('src/sensor/median.c', '|| !is_full(median)) return false;',
+FAULT = ('src/processing/median.c', '|| !is_full(median)) return false;',
          '|| !is_full(median) || (median->have > median->config.count)) return false;', 'condition 3')
 
 

@@ -15,7 +15,7 @@
 
 /*
  * Every driver on a line, one or two that go together, with its commands and settings. Each reading was heard; an
- * output is written with FATHOM_READY only; when the far end falls silent, each request and each command ends.
+ * output is written with FATHOM_OK only; when the far end falls silent, each request and each command ends.
  */
 enum { SENSORS = 2, POLLS = 8, NONE = 0xFF };
 
@@ -74,16 +74,16 @@ static unsigned commanded; /* what was heard when it began */
         (void)x; /* not all have a choice */                                                                 \
         return call;                                                                                         \
     }
-COMMAND(hps_version, fathom_hps167s_interface_version(&hps, &out.version))
-COMMAND(hps_configuration, fathom_hps167s_configuration(&hps, &out.configuration))
-COMMAND(hps_details, fathom_hps167s_details(&hps, &out.details))
-COMMAND(hps_temperature, fathom_hps167s_temperature(&hps, &out.temperature))
+COMMAND(hps_version, fathom_hps167s_get_interface_version(&hps, &out.version))
+COMMAND(hps_configuration, fathom_hps167s_get_configuration(&hps, &out.configuration))
+COMMAND(hps_details, fathom_hps167s_get_details(&hps, &out.details))
+COMMAND(hps_temperature, fathom_hps167s_get_temperature(&hps, &out.temperature))
 COMMAND(hps_warm_up, fathom_hps167s_set_warm_up_s(&hps, x))
 COMMAND(hps_address, fathom_hps167s_set_address(&hps, x % 40))
 COMMAND(hps_baud, fathom_hps167s_set_baud(&hps, fathom_hps167s_baud(x % 6)))
 COMMAND(hps_measures, fathom_hps167s_set_measures_after_power_on(&hps, x & 1))
 COMMAND(hps_termination, fathom_hps167s_set_termination(&hps, x & 1))
-COMMAND(hps_all, fathom_hps167s_set_termination_of_all_units(&hps, x & 1))
+COMMAND(hps_all, fathom_hps167s_broadcast_termination(&hps, x & 1))
 COMMAND(hps_offset, fathom_hps167s_set_distance_offset_mm(&hps, (int16_t)(x - 100)))
 COMMAND(hps_load, fathom_hps167s_load_user_settings(&hps))
 COMMAND(hps_filter, fathom_hps167s_set_filter_sensitivity(&hps, (int16_t)(x - 100)))
@@ -94,28 +94,28 @@ static const command_t hps_commands[] = {hps_version,     hps_configuration, hps
                                          hps_termination, hps_all,           hps_offset,  hps_load,
                                          hps_filter,      hps_reconnect,     hps_restore};
 
-COMMAND(a16_address, fathom_a16_modbus_address(&a16, &out.byte))
-COMMAND(a16_threshold, fathom_a16_modbus_switch_threshold_mm(&a16, &out.word))
+COMMAND(a16_address, fathom_a16_modbus_get_address(&a16, &out.byte))
+COMMAND(a16_threshold, fathom_a16_modbus_get_switch_threshold_mm(&a16, &out.word))
 COMMAND(a16_set_address, fathom_a16_modbus_set_address(&a16, x))
 COMMAND(a16_set_mode, fathom_a16_modbus_set_operating_mode(&a16, (fathom_a16_operating_mode_t)(x & 1)))
-COMMAND(a16_polarity, fathom_a16_modbus_switch_polarity(&a16, &out.polarity))
+COMMAND(a16_polarity, fathom_a16_modbus_get_switch_polarity(&a16, &out.polarity))
 COMMAND(a16_set_polarity, fathom_a16_modbus_set_switch_polarity(&a16, (fathom_a16_polarity_t)(x & 1)))
 COMMAND(a16_set_threshold, fathom_a16_modbus_set_switch_threshold_mm(&a16, (uint16_t)(x * 100)))
-COMMAND(a16_value, fathom_a16_modbus_automatic_value(&a16, &out.value))
+COMMAND(a16_value, fathom_a16_modbus_get_automatic_value(&a16, &out.value))
 COMMAND(a16_set_value, fathom_a16_modbus_set_automatic_value(&a16, (fathom_dyp_value_t)(x & 1)))
 COMMAND(a16_measure, fathom_a16_modbus_measure(&a16, (fathom_dyp_value_t)(x & 1), &out.sample))
-COMMAND(a16_zero, fathom_a16_modbus_set_address_to_0_perhaps_for_ever(&a16))
+COMMAND(a16_zero, fathom_a16_modbus_set_address_0(&a16))
 COMMAND(a16_return, fathom_a16_rs232_return_to_automatic(&rs232, &out.sample))
 static const command_t a16_commands[] = {a16_address,   a16_threshold,    a16_set_address,   a16_set_mode,
                                          a16_polarity,  a16_set_polarity, a16_set_threshold, a16_value,
                                          a16_set_value, a16_measure,      a16_zero,          a16_return};
 
-COMMAND(a05_address, fathom_a05_modbus_address(&a05, &out.byte))
+COMMAND(a05_address, fathom_a05_modbus_get_address(&a05, &out.byte))
 COMMAND(a05_set_address, fathom_a05_modbus_set_address(&a05, x))
 COMMAND(a05_find, fathom_dyp_modbus_find(&modbus_find, &transport, &out.byte))
 static const command_t a05_commands[] = {a05_address, a05_set_address, a05_find};
 
-COMMAND(dyp_set_address, fathom_a05_dyp_set_every_address(&a05_dyp, x))
+COMMAND(dyp_set_address, fathom_a05_dyp_broadcast_address(&a05_dyp, x))
 COMMAND(dyp_finds, fathom_a05_dyp_find(&dyp_find, &line, &out.byte))
 static const command_t dyp_commands[] = {dyp_set_address, dyp_finds};
 
@@ -128,22 +128,22 @@ static void go_on_with_command(void)
     if (command == NULL) return;
     wire_poll_begins();
     const fathom_status_t status = command(argument);
-    PROMISE(status <= FATHOM_READY && status >= FATHOM_ERR_LINE_BUSY && status != FATHOM_ERR_STALE,
+    PROMISE(status <= FATHOM_PENDING && status >= FATHOM_ERR_LINE_BUSY && status != FATHOM_ERR_STALE,
             "what a command or a setting returns");
-    if (status != FATHOM_READY)
+    if (status != FATHOM_OK)
         PROMISE(fuzz_is_guard(&out, sizeof out),
-                "hps167s_info.h, a16_settings.h: *out is written on READY only");
-    if (status == FATHOM_READY && (command == a16_address || command == a05_address))
+                "hps167s_info.h, a16_settings.h: *out is written on OK only");
+    if (status == FATHOM_OK && (command == a16_address || command == a05_address))
         PROMISE(wire_heard_register(commanded, 255, out.byte), "a16_settings.h: the address was read");
-    if (status == FATHOM_READY && command == a16_threshold)
+    if (status == FATHOM_OK && command == a16_threshold)
         PROMISE(wire_heard_register(commanded, 255, out.word), "a16_settings.h: the threshold was read");
-    if (status == FATHOM_READY && command == a16_set_threshold)
+    if (status == FATHOM_OK && command == a16_set_threshold)
         PROMISE(wire_heard_register(commanded, 255, (uint16_t)(argument * 100)),
-                "a16_settings.h: READY: it is so");
-    if (status == FATHOM_READY && command == hps_temperature)
+                "a16_settings.h: OK: it is so");
+    if (status == FATHOM_OK && command == hps_temperature)
         PROMISE(wire_heard_register(commanded, 255, (uint16_t)out.temperature.fahrenheit),
                 "hps167s_info.h: #4");
-    if (status == FATHOM_READY && command == a16_zero) only = 0;
+    if (status == FATHOM_OK && command == a16_zero) only = 0;
     if (status != FATHOM_PENDING && status != FATHOM_ERR_BUSY) command = NULL;
 }
 
@@ -215,15 +215,15 @@ static bool poll_one(const fathom_sensor_t *sensor)
         if (status == FATHOM_PENDING || status < 0)
             PROMISE(fuzz_is_guard(&sample, sizeof sample),
                     "sensor.h: PENDING or an error: *sample is untouched");
-        PROMISE(
-            status == FATHOM_ERR_LINE_BUSY ||
-                (status <= FATHOM_READY && status >= FATHOM_ERR_WARMING_UP && status != FATHOM_ERR_ARGUMENT),
-            "the errors of fathom_poll");
+        PROMISE(status == FATHOM_ERR_LINE_BUSY ||
+                    (status <= FATHOM_PENDING && status >= FATHOM_ERR_WARMING_UP &&
+                     status != FATHOM_ERR_ARGUMENT),
+                "the errors of fathom_poll");
         if (is_asked)
             PROMISE(status != FATHOM_ERR_STALE || sensor != sensors, "STALE is for what sends by itself");
         if (status == FATHOM_PENDING) break;
         has_outcome = true;
-        if (status != FATHOM_READY) break;
+        if (status != FATHOM_OK) break;
         check_sample(&sample);
     }
     return has_outcome;
@@ -249,25 +249,25 @@ static void add_hps(bool is_beside, uint8_t how, const fathom_modbus_config_t *m
                                         .same_responses = how % 9,
                                         .low_word_first = (how & 16) != 0,
                                         .no_warm_up = (how & 32) != 0};
-    PROMISE(fathom_hps167s_init(&hps, &of) == FATHOM_READY, "hps167s.h: init");
+    PROMISE(fathom_hps167s_init(&hps, &of) == FATHOM_OK, "hps167s.h: init");
     add(fathom_hps167s_sensor(&hps));
     COMMANDS(hps_commands);
     if (!is_beside) return;
     const fathom_hps167s_auto_config_t beside = {.line = &line};
-    PROMISE(fathom_hps167s_auto_init(&hps_auto, &beside) == FATHOM_READY, "hps167s_auto.h: init");
-    fathom_hps167s_auto_beside(&hps_auto, &hps);
+    PROMISE(fathom_hps167s_auto_init(&hps_auto, &beside) == FATHOM_OK, "hps167s_auto.h: init");
+    fathom_hps167s_auto_follow(&hps_auto, &hps);
     add(fathom_hps167s_auto_sensor(&hps_auto));
 }
 
 static void add_a16(bool is_rs232, uint8_t how, const fathom_modbus_config_t *modbus)
 {
     const fathom_a16_modbus_config_t of = {.modbus = *modbus, .value = how & 1};
-    PROMISE(fathom_a16_modbus_init(&a16, &of) == FATHOM_READY, "a16_modbus.h: init");
+    PROMISE(fathom_a16_modbus_init(&a16, &of) == FATHOM_OK, "a16_modbus.h: init");
     add(fathom_a16_modbus_sensor(&a16));
     COMMANDS(a16_commands);
     if (!is_rs232) return;
     const fathom_a16_auto_config_t automatic = {.line = &line};
-    PROMISE(fathom_a16_auto_init(&a16_auto, &automatic) == FATHOM_READY, "a16_auto.h: init");
+    PROMISE(fathom_a16_auto_init(&a16_auto, &automatic) == FATHOM_OK, "a16_auto.h: init");
     add(fathom_a16_auto_sensor(&a16_auto));
     fathom_a16_rs232_init(&rs232, &a16, &a16_auto);
 }
@@ -276,7 +276,7 @@ static void add_controlled(uint8_t how)
 {
     fathom_a16_controlled_config_t of = {.line = &line, .trigger = fathom_output_pin(&pin)};
     if ((how & 1) != 0) of.trigger = fathom_output_line_break(&line);
-    PROMISE(fathom_a16_controlled_init(&controlled, &of) == FATHOM_READY, "a16_controlled.h: init");
+    PROMISE(fathom_a16_controlled_init(&controlled, &of) == FATHOM_OK, "a16_controlled.h: init");
     add(fathom_a16_controlled_sensor(&controlled));
 }
 
@@ -300,21 +300,21 @@ static void add_world(uint8_t world, uint8_t how)
         add_a16(world == 3, how, &modbus);
         break;
     case 4:
-        PROMISE(fathom_a05_modbus_init(&a05, &of_a05) == FATHOM_READY, "a05_modbus.h: init");
+        PROMISE(fathom_a05_modbus_init(&a05, &of_a05) == FATHOM_OK, "a05_modbus.h: init");
         add(fathom_a05_modbus_sensor(&a05));
         COMMANDS(a05_commands);
         break;
     case 5:
-        PROMISE(fathom_a05_dyp_init(&a05_dyp, &of_dyp) == FATHOM_READY, "a05_dyp.h: init");
+        PROMISE(fathom_a05_dyp_init(&a05_dyp, &of_dyp) == FATHOM_OK, "a05_dyp.h: init");
         add(fathom_a05_dyp_sensor(&a05_dyp));
         COMMANDS(dyp_commands);
         break;
     case 6:
-        PROMISE(fathom_a05_auto_init(&a05_auto, &of_a05_auto) == FATHOM_READY, "a05_auto.h: init");
+        PROMISE(fathom_a05_auto_init(&a05_auto, &of_a05_auto) == FATHOM_OK, "a05_auto.h: init");
         add(fathom_a05_auto_sensor(&a05_auto));
         break;
     case 7:
-        PROMISE(fathom_hps167s_auto_init(&hps_auto, &of_hps_auto) == FATHOM_READY, "hps167s_auto.h: init");
+        PROMISE(fathom_hps167s_auto_init(&hps_auto, &of_hps_auto) == FATHOM_OK, "hps167s_auto.h: init");
         add(fathom_hps167s_auto_sensor(&hps_auto));
         break;
     default:
@@ -336,7 +336,7 @@ static void begin(void)
                                     .echo = 1 + (world >> 4) % 2,
                                     .gap_us = (world & 64) != 0 ? 25000 : 0,
                                     .marks = has_marks ? fathom_line_marks : NULL};
-    PROMISE(fathom_line_init(&line, &config) == FATHOM_READY, "line.h: init");
+    PROMISE(fathom_line_init(&line, &config) == FATHOM_OK, "line.h: init");
     transport = (world & 128) != 0 ? fathom_modbus_client_with_zero(&line) : fathom_modbus_client(&line);
     dyp_transport = fathom_dyp_client(&line);
     count = 0;

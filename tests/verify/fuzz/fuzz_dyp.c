@@ -20,7 +20,7 @@ static uint8_t length_of(uint8_t command)
 
 static void check_bytes(const uint8_t *bytes, uint8_t have)
 {
-    const uint8_t length = fathom_dyp_55aa_length(bytes, have);
+    const uint8_t length = fathom_dyp_55aa_frame_length(bytes, have);
     bool begins = bytes[0] == START && (have < 2 || bytes[1] == SECOND);
     if (begins && have >= 4) begins = length_of(bytes[3]) != 0;
     PROMISE(begins || length == 0, "dyp_55aa.h: 0: no response begins like this");
@@ -30,7 +30,7 @@ static void check_bytes(const uint8_t *bytes, uint8_t have)
     }
     PROMISE(length == length_of(bytes[3]) || bytes[2] == 0 || bytes[2] == 0xFF,
             "dyp_55aa.h: the length of a response");
-    PROMISE(fathom_dyp_55aa_valid(bytes, have) == (fuzz_sum(bytes, have - 1u) == bytes[have - 1]),
+    PROMISE(fathom_dyp_55aa_is_valid(bytes, have) == (fuzz_sum(bytes, have - 1u) == bytes[have - 1]),
             "dyp_55aa.h: do they end in the sum of those before?");
     if (length == 0 || have < length) return;
     uint16_t values[4];
@@ -40,7 +40,7 @@ static void check_bytes(const uint8_t *bytes, uint8_t have)
     memcpy(frame, bytes, length);
     frame[length - 1] = fuzz_sum(frame, length - 1u);
     fathom_dyp_55aa_decode(frame, values);
-    const uint8_t count = fathom_dyp_55aa_values(bytes[3]);
+    const uint8_t count = fathom_dyp_55aa_value_count(bytes[3]);
     PROMISE(count == (length - 5) / 2, "dyp_55aa.h: how many distances");
     for (uint8_t i = 0; i != count; i++)
         PROMISE(values[i] == fuzz_word_at(frame + 4 + 2 * i), "dyp_55aa.h: the distances, as they were sent");
@@ -85,9 +85,9 @@ static void codec_stream(uint8_t part)
     if ((part & 8) != 0) frame[0] = 0xFF;
     if ((part & 16) != 0) frame[length - 1] = fuzz_sum(frame, length - 1u);
     const bool is_valid = frame[0] == 0xFF && frame[length - 1] == fuzz_sum(frame, length - 1u);
-    PROMISE(fathom_dyp_sum(frame, length) == fuzz_sum(frame, length),
+    PROMISE(fathom_dyp_checksum(frame, length) == fuzz_sum(frame, length),
             "dyp_stream.h: the low byte of the sum");
-    PROMISE(fathom_dyp_stream_valid(frame, length) == is_valid, "dyp_stream.h: FF, and their sum");
+    PROMISE(fathom_dyp_stream_is_valid(frame, length) == is_valid, "dyp_stream.h: FF, and their sum");
     fathom_dyp_stream_decode(frame, values, probes);
     for (uint8_t i = 0; i != probes; i++)
         PROMISE(values[i] == fuzz_word_at(frame + 1 + 2 * i),
@@ -157,12 +157,12 @@ static void check_frame(void)
 static fathom_status_t poll(void)
 {
     const fathom_status_t status = fathom_stream_poll(&world.stream, world.now_us);
-    if (status == FATHOM_READY) check_frame();
+    if (status == FATHOM_OK) check_frame();
     if (status == FATHOM_ERR_STALE || status == FATHOM_ERR_CHECKSUM)
         PROMISE(fathom_elapsed_us(world.now_us, world.since_us) >= world.stale_us,
                 "stream.h: an error after stale_us");
     else
-        PROMISE(status == FATHOM_READY || status == FATHOM_PENDING, "stream.h: what poll returns");
+        PROMISE(status == FATHOM_OK || status == FATHOM_PENDING, "stream.h: what poll returns");
     if (status != FATHOM_PENDING) world.since_us = world.now_us;
     return status;
 }
@@ -202,7 +202,7 @@ static void wait_for_outcome(void)
     } else {
         world.now_us += due_us;
     }
-    PROMISE(poll() != FATHOM_PENDING, "stream.h: due_us: READY or STALE then");
+    PROMISE(poll() != FATHOM_PENDING, "stream.h: due_us: OK or STALE then");
 }
 
 static void engine(uint8_t part)
@@ -217,7 +217,7 @@ static void engine(uint8_t part)
     uint8_t *const storage = fuzz_guarded(FATHOM_STREAM_STORAGE(world.length));
     const fathom_stream_config_t config = {
         .storage = storage, .stale_us = part >> 3 & 1 ? 0 : world.stale_us, .length = world.length};
-    PROMISE(fathom_stream_init(&world.stream, &config, world.now_us) == FATHOM_READY, "stream.h: init");
+    PROMISE(fathom_stream_init(&world.stream, &config, world.now_us) == FATHOM_OK, "stream.h: init");
     while (fuzz_more()) {
         const uint8_t how = fuzz_byte();
         switch (how & 3) {

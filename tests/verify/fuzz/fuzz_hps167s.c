@@ -18,14 +18,14 @@ static fathom_status_t kind_of(const uint16_t *registers, const fathom_hps167s_l
         mm == 0xFFFF && registers[1] == 0 && byte_of(registers, 5) == 0xFF && registers[3] == 0xFFFF;
     PROMISE(fathom_hps167s_is_abnormal(registers) == is_abnormal, "hps167s_registers.h: the abnormal packet");
     *kind = FATHOM_FAULT;
-    if (is_abnormal) return FATHOM_READY;
+    if (is_abnormal) return FATHOM_OK;
     if (byte_of(registers, 4) > 16) return FATHOM_ERR_MALFORMED;
     *kind = FATHOM_UNKNOWN;
-    if (mm >= 1 && mm < limits->min_mm) return FATHOM_READY;
+    if (mm >= 1 && mm < limits->min_mm) return FATHOM_OK;
     *kind = FATHOM_TARGET;
-    if (mm >= limits->min_mm && mm <= limits->max_mm) return FATHOM_READY;
+    if (mm >= limits->min_mm && mm <= limits->max_mm) return FATHOM_OK;
     *kind = FATHOM_NO_TARGET;
-    return mm >= limits->over_range_mm && mm != 0xFFFF ? FATHOM_READY : FATHOM_ERR_MALFORMED;
+    return mm >= limits->over_range_mm && mm != 0xFFFF ? FATHOM_OK : FATHOM_ERR_MALFORMED;
 }
 
 static void check_measurement(const uint16_t *registers)
@@ -36,7 +36,7 @@ static void check_measurement(const uint16_t *registers)
                                      limits.min_mm != 0 ? limits.min_mm : 80};
     const bool is_good =
         whole.over_range_mm != 65535 && whole.over_range_mm > whole.max_mm && whole.min_mm <= whole.max_mm;
-    PROMISE(fathom_hps167s_complete_limits(&limits) == (is_good ? FATHOM_READY : FATHOM_ERR_ARGUMENT),
+    PROMISE(fathom_hps167s_complete_limits(&limits) == (is_good ? FATHOM_OK : FATHOM_ERR_ARGUMENT),
             "hps167s_registers.h: which limits are refused");
     if (!is_good) whole = (fathom_hps167s_limits_t){30000, 65530, 80};
     fathom_sample_t sample;
@@ -45,7 +45,7 @@ static void check_measurement(const uint16_t *registers)
     const fathom_status_t should = kind_of(registers, &whole, &kind);
     const fathom_status_t status = fathom_hps167s_decode_within(is_good ? &whole : NULL, registers, &sample);
     PROMISE(status == should, "hps167s_registers.h: which distance means something");
-    if (status != FATHOM_READY) {
+    if (status != FATHOM_OK) {
         PROMISE(fuzz_is_guard(&sample, sizeof sample), "hps167s_registers.h: MALFORMED, nothing written");
         return;
     }
@@ -75,7 +75,7 @@ static void check_configuration(const uint16_t *registers, bool low_word_first)
                 is.warm_up_s == byte_of(registers, 2) && is.reconnect_time_ms == ms &&
                 is.baud_code == byte_of(registers, 7),
             "hps167s_registers.h: #2, table 12");
-    PROMISE(fathom_hps167s_told_reconnect_time_ms(registers, low_word_first) == ms,
+    PROMISE(fathom_hps167s_configured_reconnect_time_ms(registers, low_word_first) == ms,
             "hps167s_registers.h: #2");
     PROMISE(fathom_hps167s_may_be_configuration(registers) ==
                 ((first == 0 || first == 255) && (second == 0 || second == 255) &&
@@ -83,7 +83,7 @@ static void check_configuration(const uint16_t *registers, bool low_word_first)
             "hps167s_registers.h: the first two bytes are 00 or FF, and it is not the abnormal packet");
     uint16_t words[2];
     fathom_hps167s_encode_reconnect_time(ms, low_word_first, words);
-    PROMISE(fathom_hps167s_reconnect_time_ms(words[0], words[1], low_word_first) == ms,
+    PROMISE(fathom_hps167s_decode_reconnect_time(words[0], words[1], low_word_first) == ms,
             "hps167s_registers.h: #15 there and back");
 }
 
@@ -140,8 +140,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     check_measurement(four);
     check_configuration(four, (part & 1) != 0);
     check_rest(registers);
-    check_temperature(fathom_hps167s_signed(registers[0]), part);
-    const int32_t is = fathom_hps167s_signed(registers[0]);
+    check_temperature(fathom_hps167s_to_signed(registers[0]), part);
+    const int32_t is = fathom_hps167s_to_signed(registers[0]);
     PROMISE((uint16_t)is == registers[0] && is >= -32768 && is <= 32767, "hps167s_registers.h: a sign");
     free(four);
     return 0;

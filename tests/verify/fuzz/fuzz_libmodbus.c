@@ -145,14 +145,14 @@ static void response(uint8_t how)
                                  ? SAME
                                  : difference(&asked, frame, status);
     if (why == SAME) {
-        PROMISE(is_ready == (status == FATHOM_READY), "both take the same responses");
+        PROMISE(is_ready == (status == FATHOM_OK), "both take the same responses");
         if (status == FATHOM_ERR_EXCEPTION)
             PROMISE(error == MODBUS_ENOBASE + parsed.exception, "both see the same exception");
     } else {
         PROMISE(!is_ready || why == FROM_UNIT_0 || why == ACKNOWLEDGEMENT,
                 "a difference that has another reason");
     }
-    if (is_ready && status == FATHOM_READY)
+    if (is_ready && status == FATHOM_OK)
         PROMISE(memcmp(ours, theirs, 2u * count) == 0, "both read the same values");
 }
 
@@ -202,14 +202,14 @@ static void request(uint8_t how)
                 "modbus_rtu.h: a count that the bytes do not have is refused");
         return;
     }
-    if (status == FATHOM_READY && first + count > 65535) return;
-    if (status == FATHOM_READY && frame[1] == READ)
+    if (status == FATHOM_OK && first + count > 65535) return;
+    if (status == FATHOM_OK && frame[1] == READ)
         for (unsigned i = 0; i != count; i++) values[i] = mapping->tab_registers[first + i];
     const uint8_t size = fathom_modbus_rtu_encode_response(&message, answer);
     sent = 0;
     (void)modbus_reply(modbus, taken, result, mapping);
     PROMISE(sent == size && memcmp(gone, answer, size) == 0, "both answer with the same bytes");
-    if (status == FATHOM_READY && frame[1] == WRITE_MANY)
+    if (status == FATHOM_OK && frame[1] == WRITE_MANY)
         PROMISE(memcmp(mapping->tab_registers + first, values, 2u * count) == 0, "both read the same values");
 }
 

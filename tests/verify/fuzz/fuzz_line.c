@@ -50,7 +50,7 @@ static void check_status(const asked_t *one)
     const int status = transaction->status;
     const uint8_t *const head = one->request.message.head;
     const bool is_read = one->kind == IS_READ || one->kind == IS_DYP;
-    PROMISE(status == FATHOM_READY || (status <= FATHOM_ERR_PORT && status >= FATHOM_ERR_MALFORMED) ||
+    PROMISE(status == FATHOM_OK || (status <= FATHOM_ERR_PORT && status >= FATHOM_ERR_MALFORMED) ||
                 status == FATHOM_ERR_CANCELLED || status == FATHOM_ERR_ECHO ||
                 status == FATHOM_ERR_UNSUPPORTED || status == FATHOM_ERR_LINE_BUSY ||
                 (status == FATHOM_ERR_OTHER_MASTER && config.masters != NULL),
@@ -59,23 +59,23 @@ static void check_status(const asked_t *one)
     PROMISE(transaction->attempts == 0 || one->has_left, "line.h: attempts: how often it was sent");
     if (status == FATHOM_ERR_UNSUPPORTED)
         PROMISE(!one->has_left || transaction->retries != 0, "line.h: nothing was sent");
-    if (is_read && status != FATHOM_READY)
+    if (is_read && status != FATHOM_OK)
         for (unsigned i = 0; i != 8; i++)
-            PROMISE(one->values[i] == GUARD, "modbus.h: values are written on READY only");
+            PROMISE(one->values[i] == GUARD, "modbus.h: values are written on OK only");
     if (status == FATHOM_ERR_EXCEPTION)
         PROMISE(wire_heard_exception(one->from, head[0], head[1], one->request.message.exception),
                 "line.h: EXCEPTION: the unit refused");
-    if (status != FATHOM_READY) return;
-    PROMISE(one->has_left, "line.h: READY: after it was sent");
+    if (status != FATHOM_OK) return;
+    PROMISE(one->has_left, "line.h: OK: after it was sent");
     const bool is_broadcast = one->unit == 0 && (one->kind == IS_WRITE || one->kind == IS_WRITE_MANY);
     if (one->kind == IS_READ)
         PROMISE(wire_heard_read(one->from, head[0], head[5], one->values),
-                "line.h: READY: its response has come");
+                "line.h: OK: its response has come");
     else if (one->kind == IS_DYP)
         PROMISE(wire_heard_sum(one->from, 0x55, head[5] == 4 ? 13 : 7, one->values[0]),
-                "line.h: READY: its response has come");
+                "line.h: OK: its response has come");
     else if (one->kind != IS_DYP_ADDRESS && !is_broadcast)
-        PROMISE(wire_heard_head(one->from, head), "line.h: READY: it was acknowledged");
+        PROMISE(wire_heard_head(one->from, head), "line.h: OK: it was acknowledged");
     if (one->unit != FATHOM_LINE_ANY_UNIT)
         PROMISE(head[0] == one->unit || one->kind == IS_DYP_ADDRESS, "the unit stays");
     if (!is_broadcast)
@@ -95,7 +95,7 @@ static void check_requests(void)
         asked_t *const one = &asked[i];
         if (!one->is_on) continue;
         const bool is_pending = one->request.transaction.status == FATHOM_PENDING;
-        PROMISE(fathom_line_has(&line, &one->request.transaction) == is_pending,
+        PROMISE(fathom_line_is_queued(&line, &one->request.transaction) == is_pending,
                 "line.h: PENDING while it is queued");
         if (is_pending) continue;
         one->is_on = false;
@@ -131,7 +131,7 @@ static fathom_status_t describe(asked_t *one, uint8_t how)
                                              count % 5 == 4 ? 4 : 1, one->values);
         return fathom_dyp_client_submit(&line, request);
     default:
-        return fathom_dyp_client_set_every_address(&line, request, count);
+        return fathom_dyp_client_broadcast_address(&line, request, count);
     }
 }
 
@@ -212,10 +212,10 @@ static void call(uint8_t op)
         break;
     default: {
         const fathom_status_t status = fathom_line_break(&line, (how & 4) != 0);
-        PROMISE(status == FATHOM_READY || status == FATHOM_PENDING || status == FATHOM_ERR_BUSY ||
+        PROMISE(status == FATHOM_OK || status == FATHOM_PENDING || status == FATHOM_ERR_BUSY ||
                     status == FATHOM_ERR_PORT,
                 "line.h: what break returns");
-        if (status == FATHOM_READY) PROMISE(wire.is_low == ((how & 4) != 0), "line.h: READY: it is so now");
+        if (status == FATHOM_OK) PROMISE(wire.is_low == ((how & 4) != 0), "line.h: OK: it is so now");
     }
     }
     check_requests();
@@ -231,7 +231,7 @@ static void drain(void)
     /* A request that leaves, its time-out, and twice that of quarantine; what the line keeps between frames, or waits for
      * another master at most. */
     for (int i = 0; i != REQUESTS; i++) most_us += 4u * (3u * MOST_TIMEOUT_US + 500000u);
-    PROMISE(fathom_line_break(&line, false) == FATHOM_READY, "line.h: break: the port works");
+    PROMISE(fathom_line_break(&line, false) == FATHOM_OK, "line.h: break: the port works");
     poll();
     while (is_under_way()) {
         const uint32_t due_us = fathom_line_due_us(&line);
@@ -284,9 +284,9 @@ static bool begin(uint8_t **frame)
     for (int i = 0; i != FATHOM_LINE_COUNTERS; i++) counters[i] = counted[i] = (more & 1) != 0 ? 65534 : 0;
     for (int i = 0; i != REQUESTS; i++) {
         asked[i].is_on = false;
-        asked[i].request.transaction.status = FATHOM_READY;
+        asked[i].request.transaction.status = FATHOM_OK;
     }
-    return fathom_line_init(&line, &config) == FATHOM_READY;
+    return fathom_line_init(&line, &config) == FATHOM_OK;
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)

@@ -45,8 +45,8 @@ static fathom_status_t meaning(const fathom_modbus_message_t *asked, const uint8
     if (asked->head[0] != 255 && frame[0] != asked->head[0]) return FATHOM_PENDING;
     if (frame[1] == asked->head[1] + EXCEPTION) return FATHOM_ERR_EXCEPTION;
     if (frame[1] != asked->head[1]) return FATHOM_ERR_MALFORMED;
-    if (frame[1] == READ) return frame[2] == 2 * asked->head[5] ? FATHOM_READY : FATHOM_ERR_MALFORMED;
-    return memcmp(frame + 2, asked->head + 2, 4) == 0 ? FATHOM_READY : FATHOM_ERR_MALFORMED;
+    if (frame[1] == READ) return frame[2] == 2 * asked->head[5] ? FATHOM_OK : FATHOM_ERR_MALFORMED;
+    return memcmp(frame + 2, asked->head + 2, 4) == 0 ? FATHOM_OK : FATHOM_ERR_MALFORMED;
 }
 
 static void parse_response(uint8_t *frame)
@@ -57,14 +57,14 @@ static void parse_response(uint8_t *frame)
     if (message.head[1] != READ || fathom_modbus_rtu_frame_size(&message) != 0) {
         const fathom_status_t status = fathom_modbus_rtu_parse_response(&message, frame);
         PROMISE(status == meaning(&before, frame), "modbus_rtu.h: what a response means");
-        const bool is_read = status == FATHOM_READY && frame[1] == READ;
+        const bool is_read = status == FATHOM_OK && frame[1] == READ;
         const uint8_t count = is_read ? message.head[5] : 0;
         for (uint8_t i = 0; i != count; i++)
             PROMISE(values[i] == fuzz_word_at(frame + 3 + 2 * i), "modbus_rtu.h: the values are the frame's");
         PROMISE(fuzz_is_guard(values + count, 2u * (size_t)(FATHOM_MODBUS_MAX_READ - count)),
                 "modbus_rtu.h: nothing else is written");
         PROMISE(memcmp(message.head + 1, before.head + 1, 5) == 0, "modbus_rtu.h: the request stays");
-        PROMISE(message.head[0] == (status == FATHOM_READY ? frame[0] : before.head[0]),
+        PROMISE(message.head[0] == (status == FATHOM_OK ? frame[0] : before.head[0]),
                 "modbus_rtu.h: a response to any unit puts its address in head[0], nothing else does");
         PROMISE(message.exception == (status == FATHOM_ERR_EXCEPTION ? frame[2] : 0),
                 "modbus_rtu.h: exception is set with FATHOM_ERR_EXCEPTION, and only then");
@@ -98,7 +98,7 @@ static void serve(const uint8_t *frame, uint8_t length)
     uint8_t answer[MOST];
     const fathom_status_t status = fathom_modbus_rtu_parse_request(&message, frame, capacity);
     PROMISE(memcmp(message.head, frame, 6) == 0, "modbus_rtu.h: the head is the request's");
-    if (status == FATHOM_READY) {
+    if (status == FATHOM_OK) {
         const uint8_t size = fathom_modbus_rtu_frame_size(&message);
         PROMISE(message.exception == 0 && size >= length, "modbus_rtu.h: what is served has a size");
         uint8_t *const again = fuzz_guarded(size);
@@ -161,8 +161,7 @@ static void there_and_back(void)
     if (asked.head[1] < EXCEPTION)
         PROMISE(length_of(fathom_modbus_rtu_request_length, frame, length) == length,
                 "modbus_rtu.h: a request has the length that it was written with");
-    PROMISE(fathom_modbus_rtu_parse_request(&served, frame, 255) == FATHOM_READY,
-            "modbus_rtu.h: it is served");
+    PROMISE(fathom_modbus_rtu_parse_request(&served, frame, 255) == FATHOM_OK, "modbus_rtu.h: it is served");
     if (asked.head[1] == WRITE_MANY)
         PROMISE(memcmp(got, sent, 2u * count) == 0, "modbus_rtu.h: a write of many carries its values");
     free(frame);
@@ -173,8 +172,7 @@ static void there_and_back(void)
             "modbus_rtu.h: the response has its length and CRC");
     memset(got, 0, sizeof got);
     asked.values = got;
-    PROMISE(fathom_modbus_rtu_parse_response(&asked, back) == FATHOM_READY,
-            "modbus_rtu.h: it is the response");
+    PROMISE(fathom_modbus_rtu_parse_response(&asked, back) == FATHOM_OK, "modbus_rtu.h: it is the response");
     if (asked.head[1] == READ)
         PROMISE(memcmp(got, sent, 2u * count) == 0, "modbus_rtu.h: the values come back");
 }

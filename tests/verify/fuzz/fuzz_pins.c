@@ -89,20 +89,20 @@ static bool poll(const fathom_sensor_t *sensors)
         fathom_sample_t sample;
         memset(&sample, FUZZ_GUARD, sizeof sample);
         const fathom_status_t status = fathom_poll(&sensors[i], &sample);
-        if (status != FATHOM_READY)
+        if (status != FATHOM_OK)
             PROMISE(fuzz_is_guard(&sample, sizeof sample), "sensor.h: *sample is untouched");
         if (status == FATHOM_PENDING) continue;
         if (i == 0) {
             has_outcome = true;
-            PROMISE(status == FATHOM_READY || status == FATHOM_ERR_NO_RESPONSE ||
+            PROMISE(status == FATHOM_OK || status == FATHOM_ERR_NO_RESPONSE ||
                         status == FATHOM_ERR_MALFORMED || status == FATHOM_ERR_STALE,
                     "a16_pwm.h: the errors of fathom_poll");
-            if (status == FATHOM_READY) check_pulse(&sample);
+            if (status == FATHOM_OK) check_pulse(&sample);
         } else {
-            PROMISE(status == FATHOM_READY || status == FATHOM_ERR_STALE,
+            PROMISE(status == FATHOM_OK || status == FATHOM_ERR_STALE,
                     "contact.h: the errors of fathom_poll");
-            if (status == FATHOM_READY) check_level(&sample, (i == 1) == (sample.raw == 1));
-            if (status == FATHOM_READY) PROMISE(sample.raw == level, "contact.h: raw is the level");
+            if (status == FATHOM_OK) check_level(&sample, (i == 1) == (sample.raw == 1));
+            if (status == FATHOM_OK) PROMISE(sample.raw == level, "contact.h: raw is the level");
         }
     }
     return has_outcome;
@@ -157,11 +157,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         .pulse = {.clock = &clock_of_pins, .capture = &capture, .trigger = fathom_output_pin(&output)},
         .in_air = (how & 2) != 0,
         .air_dc = (int16_t)(how - 50)};
-    PROMISE(fathom_a16_pwm_init(&pwm, &of_pwm) == FATHOM_READY, "a16_pwm.h: init");
+    PROMISE(fathom_a16_pwm_init(&pwm, &of_pwm) == FATHOM_OK, "a16_pwm.h: init");
     const fathom_a16_switch_config_t of_switch = {.pin = &input, .clock = &clock_of_pins};
-    PROMISE(fathom_a16_switch_init(&contact, &of_switch) == FATHOM_READY, "a16_switch.h: init");
+    PROMISE(fathom_a16_switch_init(&contact, &of_switch) == FATHOM_OK, "a16_switch.h: init");
     const fathom_a05_relay_config_t of_relay = {.pin = &input, .clock = &clock_of_pins};
-    PROMISE(fathom_a05_relay_init(&relay, &of_relay) == FATHOM_READY, "a05_relay.h: init");
+    PROMISE(fathom_a05_relay_init(&relay, &of_relay) == FATHOM_OK, "a05_relay.h: init");
     const fathom_sensor_t sensors[] = {fathom_a16_pwm_sensor(&pwm), fathom_a16_switch_sensor(&contact),
                                        fathom_a05_relay_sensor(&relay)};
     while (fuzz_more()) {

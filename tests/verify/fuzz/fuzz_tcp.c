@@ -291,14 +291,14 @@ static void poll_sensors(const fathom_sensor_t *sensors, bool has_ended[2])
         for (int polls = 0; polls != 5; polls++) {
             memset(&sample, FUZZ_GUARD, sizeof sample);
             status = fathom_poll(&sensors[i], &sample);
-            if (status != FATHOM_READY)
+            if (status != FATHOM_OK)
                 PROMISE(fuzz_is_guard(&sample, sizeof sample), "sensor.h: *sample is untouched");
             if (status == FATHOM_PENDING) break;
             has_ended[i] = true;
-            if (status != FATHOM_READY) break;
+            if (status != FATHOM_OK) break;
             PROMISE(was_sent((uint16_t)sample.raw), "a reading that was not sent");
         }
-        PROMISE(status <= FATHOM_READY && status >= FATHOM_ERR_MALFORMED && status != FATHOM_ERR_ARGUMENT,
+        PROMISE(status <= FATHOM_PENDING && status >= FATHOM_ERR_MALFORMED && status != FATHOM_ERR_ARGUMENT,
                 "the errors of fathom_poll");
         if (status == FATHOM_ERR_PORT)
             PROMISE(far.is_closed || far.is_reset || far.is_shut || far.has_refused, "PORT: it is broken");
@@ -314,8 +314,8 @@ static void play_transport(fathom_libmodbus_t *port, uint8_t how)
     const fathom_hps167s_config_t of_hps = {.modbus = {.transport = &transport, .retries = how >> 1 & 1}};
     const fathom_a05_modbus_config_t of_a05 = {.modbus = {.transport = &transport, .address = 2},
                                                .probes = how >> 3};
-    PROMISE(fathom_hps167s_init(&hps, &of_hps) == FATHOM_READY, "hps167s.h: init");
-    PROMISE(fathom_a05_modbus_init(&a05, &of_a05) == FATHOM_READY, "a05_modbus.h: init");
+    PROMISE(fathom_hps167s_init(&hps, &of_hps) == FATHOM_OK, "hps167s.h: init");
+    PROMISE(fathom_a05_modbus_init(&a05, &of_a05) == FATHOM_OK, "a05_modbus.h: init");
     const fathom_sensor_t sensors[2] = {fathom_hps167s_sensor(&hps), fathom_a05_modbus_sensor(&a05)};
     while (fuzz_more()) {
         const uint8_t op = fuzz_byte();
@@ -352,7 +352,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     far.requests = 0;
     far.late = far.refused = 0;
     const uint8_t how = fuzz_byte();
-    PROMISE(fathom_libmodbus_init(&port, modbus, &config) == FATHOM_READY, "fathom_libmodbus.h: init");
+    PROMISE(fathom_libmodbus_init(&port, modbus, &config) == FATHOM_OK, "fathom_libmodbus.h: init");
     if ((how & 1) != 0)
         play_transport(&port, how & 0x7F);
     else

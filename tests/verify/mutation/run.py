@@ -36,7 +36,7 @@ from syntax import library
 from trial import KILLED, NOT_C, SAME_CODE, SURVIVED, Trial
 
 SHARE = 95  # percent of the mutants of src/ that a test can kill
-SELF_TEST = 'src/engine/debounce.c'  # survivors.py lists some of its mutants
+SELF_TEST = 'src/processing/debounce.c'  # survivors.py lists some of its mutants
 
 
 def processor_s():

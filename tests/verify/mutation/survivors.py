@@ -60,7 +60,7 @@ ROWS = [
      'src/sensor/hps167s_settings.c | fathom_hps167s_restore_factory_settings | logical: (status == '
      'FATHOM_ERR_UNCONFIRMED) && is_reset_refused(sensor) -> is_reset_refused(sensor) | return ((status == '
      'FATHOM_ERR_UNCONFIRMED) && is_reset_refused(sensor)) ? FATHOM_ERR_EXCEPTION : status'),
-    ('it is READY, 1, or negative',
+    ('it is OK, 1, or negative',
      'src/engine/modbus_setting.c | old_was_read | relational: < -> <= | if ((status < 0) || (is_so && '
      'is_certain(unit, setting)))',
      'src/engine/modbus_setting.c | old_was_read | constant: 0 -> 1 | if ((status < 0) || (is_so && '
@@ -122,26 +122,26 @@ ROWS = [
      'src/engine/modbus_setting.c | written | constant: 0u -> 1u | unit->last_written = is_lost ? 0u : unit->setting',
      'src/sensor/hps167s_settings.c | set_all | constant: 0 -> 1 | unit->last_written = 0'),
     ('an int of 32 bits holds what is shifted; the tests on an int of 16 bits see it',
-     'src/codec/hps167s_registers.c | fathom_hps167s_reconnect_time_ms | type: uint32_t -> uint16_t | return '
+     'src/codec/hps167s_registers.c | fathom_hps167s_decode_reconnect_time | type: uint32_t -> uint16_t | return '
      'low_word_first ? (((uint32_t) second << 16) | first) : (((uint32_t) first << 16) | second)',
-     'src/codec/hps167s_registers.c | fathom_hps167s_reconnect_time_ms | type: uint32_t -> uint16_t | return '
+     'src/codec/hps167s_registers.c | fathom_hps167s_decode_reconnect_time | type: uint32_t -> uint16_t | return '
      'low_word_first ? (((uint32_t) second << 16) | first) : (((uint32_t) first << 16) | second) | 2'),
     ('an int of 32 bits holds the sum or the product',
-     'src/sensor/median.c | is_spike | type: uint32_t -> uint16_t | const uint32_t gate_mm = median->config.gate_mm',
-     'src/sensor/level.c | area_below | type: uint32_t -> uint16_t | const uint32_t square = (uint32_t) x * g | 2',
-     'src/sensor/level.c | area_below | type: uint32_t -> uint16_t | return ((uint32_t) x * root) >> 15'),
+     'src/processing/median.c | is_spike | type: uint32_t -> uint16_t | const uint32_t gate_mm = median->config.gate_mm',
+     'src/processing/level.c | area_below | type: uint32_t -> uint16_t | const uint32_t square = (uint32_t) x * g | 2',
+     'src/processing/level.c | area_below | type: uint32_t -> uint16_t | return ((uint32_t) x * root) >> 15'),
     ('every root over 0 is reached from 1 too, and one of 0 is multiplied by 0',
-     'src/sensor/level.c | area_below | constant: 0 -> 1 | uint16_t root = 0'),
+     'src/processing/level.c | area_below | constant: 0 -> 1 | uint16_t root = 0'),
     ('both ways give exactly half there',
-     'src/sensor/level.c | fathom_tank_horizontal_cylinder | relational: > -> >= | const uint32_t area = (x > HALF) '
+     'src/processing/level.c | fathom_tank_horizontal_cylinder | relational: > -> >= | const uint32_t area = (x > HALF) '
      '? (ONE - area_below((uint16_t) (ONE - x))) : area_below((uint16_t) x)',
-     'src/sensor/level.c | fathom_tank_horizontal_cylinder | constant: HALF -> (HALF - 1) | const uint32_t area = '
+     'src/processing/level.c | fathom_tank_horizontal_cylinder | constant: HALF -> (HALF - 1) | const uint32_t area = '
      '(x > HALF) ? (ONE - area_below((uint16_t) (ONE - x))) : area_below((uint16_t) x)'),
     ('the bound itself is what it is set to',
      'src/engine/modbus_unit.c | back_off | relational: < -> <= | for (uint8_t n = unit->timeouts_in_row; (n != '
      'PATIENCE) && (wait_us < unit->backoff_us); n --)',
-     'src/sensor/level.c | fathom_level | relational: > -> >= | if (level_mm > 0)',
-     'src/sensor/level.c | fathom_level | relational: < -> <= | inside_mm = (level_mm < (int32_t) height_mm) ? '
+     'src/processing/level.c | fathom_level_from_distance | relational: > -> >= | if (level_mm > 0)',
+     'src/processing/level.c | fathom_level_from_distance | relational: < -> <= | inside_mm = (level_mm < (int32_t) height_mm) ? '
      '(uint16_t) level_mm : height_mm'),
     ('set by the read, and not looked at after a write',
      'src/engine/modbus_setting.c | fathom_modbus_set | constant: 0 -> 1 | uint32_t value = 0'),
@@ -149,20 +149,20 @@ ROWS = [
      'src/engine/dyp_client.c |  | constant: 0x0200 -> 0x0000 | ADDRESS_REGISTER = 0x0200',
      'src/engine/dyp_client.c |  | constant: 0x0200 -> 0x01FF | ADDRESS_REGISTER = 0x0200',
      'src/engine/dyp_client.c |  | constant: 0x0200 -> 0x0201 | ADDRESS_REGISTER = 0x0200',
-     'src/engine/dyp_client.c | fathom_dyp_client_set_every_address | arguments: ADDRESS_REGISTER, address -> '
+     'src/engine/dyp_client.c | fathom_dyp_client_broadcast_address | arguments: ADDRESS_REGISTER, address -> '
      'address, ADDRESS_REGISTER | fathom_modbus_write_single_register(& request->message, address, '
      'ADDRESS_REGISTER, address)'),
     ('AA alone is a second probe at 43520 mm or more too, which no A05 measures',
      'src/engine/dyp_client.c | check | logical: (length == FATHOM_DYP_MAX_RESPONSE) && (frame[NEXT] == frame[0]) '
      '-> (length == FATHOM_DYP_MAX_RESPONSE) | if ((length == FATHOM_DYP_MAX_RESPONSE) && (frame[NEXT] == frame[0]) '
-     '&& (frame[NEXT + 1] == frame[1]) && fathom_dyp_55aa_valid(frame, NEXT))'),
+     '&& (frame[NEXT + 1] == frame[1]) && fathom_dyp_55aa_is_valid(frame, NEXT))'),
     ('writes a value behind the last, which no code reads; the bounds check of the sanitizer builds ends there',
      'src/sensor/a16_controlled.c | judge | constant: 1 -> 2 | fathom_dyp_stream_decode(fathom_stream_frame(& '
      'sensor->stream), response->values, 1)'),
     ('neither NEAR nor FAR',
      'src/engine/contact.c | fathom_contact_init | constant: 0 -> 1 | contact->last_kind = 0'),
     ('set before it is looked at',
-     'src/sensor/dyp_modbus.c | fathom_dyp_modbus_address | constant: 0 -> 1 | uint16_t value = 0',
+     'src/sensor/dyp_modbus.c | fathom_dyp_modbus_get_address | constant: 0 -> 1 | uint16_t value = 0',
      'src/sensor/dyp_modbus.c | read | constant: 0 -> 1 | uint16_t found = 0',
      'src/sensor/a16_settings.c | get_choice | constant: 0 -> 1 | uint16_t found = 0'),
     ('the distance is not looked at',
@@ -174,8 +174,8 @@ ROWS = [
      'src/sensor/a16_rs232.c | fathom_a16_rs232_init | statement dropped: it -> nothing | rs232->polled_us = 0',
      'src/sensor/a16_rs232.c | fathom_a16_rs232_init | constant: 0 -> 1 | rs232->polled_us = 0'),
     ('the callers give a variable of their own, and copy it where the status, which is told either way, is READY',
-     'src/sensor/a16_settings.c | get_choice | condition: status != FATHOM_READY -> 0 | if (status != FATHOM_READY)',
-     'src/sensor/a16_settings.c | get_choice | jump dropped: it -> nothing | if (status != FATHOM_READY) return '
+     'src/sensor/a16_settings.c | get_choice | condition: status != FATHOM_OK -> 0 | if (status != FATHOM_OK)',
+     'src/sensor/a16_settings.c | get_choice | jump dropped: it -> nothing | if (status != FATHOM_OK) return '
      'status'),
     ('more than 65535 mm either way, which is what is said',
      'src/codec/pulse_width.c | bounded_us | constant: LONGEST_US -> (LONGEST_US - 1) | return (width_us < '
@@ -239,12 +239,12 @@ ROWS = [
      'src/sensor/a05_modbus.c | fathom_a05_modbus_init | type: unsigned -> uint8_t | while ((((unsigned) probes >> '
      'first) & 1u) == 0u)'),
     ('copied above already; it is for analysers',
-     'src/sensor/median.c | fathom_median_init | statement dropped: it -> nothing | own->window = config->window'),
+     'src/processing/median.c | fathom_median_init | statement dropped: it -> nothing | own->window = config->window'),
     ('of one of them it is so, before the end is met',
-     'src/sensor/median.c | middle_of | arithmetic: - -> + | const uint16_t * const last = & at[count - 1u]',
-     'src/sensor/median.c | middle_of | constant: 1u -> 0u | const uint16_t * const last = & at[count - 1u]',
-     'src/sensor/median.c | middle_of | condition: at < last -> 1 | for (; at < last; at ++)',
-     'src/sensor/median.c | middle_of | relational: < -> <= | for (; at < last; at ++)'),
+     'src/processing/median.c | middle_of | arithmetic: - -> + | const uint16_t * const last = & at[count - 1u]',
+     'src/processing/median.c | middle_of | constant: 1u -> 0u | const uint16_t * const last = & at[count - 1u]',
+     'src/processing/median.c | middle_of | condition: at < last -> 1 | for (; at < last; at ++)',
+     'src/processing/median.c | middle_of | relational: < -> <= | for (; at < last; at ++)'),
 ]
 
 assert sum(len(row) - 1 for row in ROWS) == COUNT

@@ -53,7 +53,7 @@ COVERED = re.compile(r'^ *(\w+): (\d+) stmts out of (\d+)', re.M)
 
 
 # The planted fault: the harness that detects it, and the file, the function, the old text and the new text.
-FAULT = ('pure/dyp_55aa', 'src/codec/dyp_55aa.c', 'fathom_dyp_55aa_values', 'return FATHOM_DYP_PROBES;',
+FAULT = ('pure/dyp_55aa', 'src/codec/dyp_55aa.c', 'fathom_dyp_55aa_value_count', 'return FATHOM_DYP_PROBES;',
          'return FATHOM_DYP_PROBES + 1;')
 
 

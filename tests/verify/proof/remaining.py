@@ -47,8 +47,8 @@ fathom_edges_init() store there, which is true, false or 0, and nothing else wri
 
 # {(file, function, 'kind: property' as eva.py prints it): why it cannot be, which a reader can check}
 ARGUED = {
-    ('src/codec/dyp_55aa.c', 'fathom_dyp_55aa_valid', 'mem_access: \\valid_read(frame_0 + last)'): BYTES,
-    ('src/codec/dyp_stream.c', 'fathom_dyp_sum', 'mem_access: \\valid_read(bytes)'): BYTES,
+    ('src/codec/dyp_55aa.c', 'fathom_dyp_55aa_is_valid', 'mem_access: \\valid_read(frame_0 + last)'): BYTES,
+    ('src/codec/dyp_stream.c', 'fathom_dyp_checksum', 'mem_access: \\valid_read(bytes)'): BYTES,
     ('src/engine/edges.c', 'arm',
      'bool_value: edges->pulses[edges->read_at].is_full == 0 || edges->pulses[edges->read_at].is_full == 1'): FLAG,
     ('src/engine/edges.c', 'fall', 'bool_value: place->is_full == 0 || place->is_full == 1'): FLAG,
@@ -89,7 +89,7 @@ ARGUED = {
     ('src/engine/line_request.c', 'fathom_line_cancel', 'pointer_value: \\object_pointer(*link)'): QUEUE,
     ('src/engine/line_request.c', 'fathom_line_cancel_unit',
      'pointer_value: \\object_pointer(transaction->link.next)'): QUEUE,
-    ('src/engine/line_request.c', 'fathom_line_has', 'pointer_value: \\object_pointer(queued->link.next)'): QUEUE,
+    ('src/engine/line_request.c', 'fathom_line_is_queued', 'pointer_value: \\object_pointer(queued->link.next)'): QUEUE,
     ('src/engine/line_request.c', 'fathom_line_submit', 'pointer_value: \\object_pointer(*link)'): QUEUE,
     ('src/engine/line_request.c', 'follow_request', 'mem_access: \\valid_read(&(line_0->head)->timeout_us)'): WIRE,
     ('src/engine/line_request.c', 'move_to_front', 'pointer_value: \\object_pointer(transaction->link.next)'): QUEUE,

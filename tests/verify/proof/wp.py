@@ -36,7 +36,7 @@ TACTICS = {'bits': 'wp:range', 'words': 'wp:bitshift,wp:bitwised,wp:split,wp:ran
 UNITS = {'bits': 12, 'words': 4, 'dyp_stream': 83, 'dyp_55aa': 107, 'pulse_width': 30, 'crc16': 19, 'crc16_small': 20,
          'modbus_rtu': 316, 'hps167s_registers': 303, 'round_dyp': 37, 'round_modbus': 78}
 # The planted fault: a unit, its file, the function whose goals detect it, the old text and the new text.
-FAULT = ('dyp_55aa', 'src/codec/dyp_55aa.c', 'fathom_dyp_55aa_values', 'return FATHOM_DYP_PROBES;',
+FAULT = ('dyp_55aa', 'src/codec/dyp_55aa.c', 'fathom_dyp_55aa_value_count', 'return FATHOM_DYP_PROBES;',
          'return FATHOM_DYP_PROBES + 1;')
 QUICK = {'dyp_55aa': '', 'pulse_width': 'fathom_pulse_width_mm_in_air', 'crc16': '',
          'crc16_small': ''}  # and the functions that are left out

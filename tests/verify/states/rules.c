@@ -72,7 +72,7 @@ static const char *judge_end(int step, const world_t *before, int transaction)
                    : "LINE_BUSY, and the line was silent";
     case FATHOM_ERR_OTHER_MASTER:
         return (before->came & CLAIMED) != 0 ? NULL : "OTHER_MASTER, and there was none";
-    case FATHOM_READY:
+    case FATHOM_OK:
     case FATHOM_ERR_EXCEPTION:
         return judge_delivery(transaction);
     case FATHOM_ERR_PORT:

@@ -422,7 +422,7 @@ static void gather(void)
         const fathom_modbus_request_t *const request = &world.requests[i];
         effect.ended[i] = was_queued(i) && !is_queued(i) ? request->transaction.status : FATHOM_PENDING;
         effect.delivered[i] = -1;
-        if (effect.ended[i] == FATHOM_READY) effect.delivered[i] = world.values[i] - 0x0700;
+        if (effect.ended[i] == FATHOM_OK) effect.delivered[i] = world.values[i] - 0x0700;
         if (effect.ended[i] == FATHOM_ERR_EXCEPTION) effect.delivered[i] = request->message.exception - 1;
     }
 }

@@ -109,7 +109,7 @@ void world_begin(void)
     if (options.echo == 2) config.find_echo = fathom_line_find_echo;
     memset(&world, 0, sizeof world);
     world.now_us = UINT32_MAX; /* the next tick is over the wrap */
-    if (fathom_line_init(&world.line, &config) != FATHOM_READY) fprintf(stderr, "no line\n");
+    if (fathom_line_init(&world.line, &config) != FATHOM_OK) fprintf(stderr, "no line\n");
     if (options.stream) {
         listener.gap_us = (uint16_t)((options.gap + 1) * TICK_US);
         (void)fathom_line_replace_listener(&world.line, &listener);
@@ -121,7 +121,7 @@ void world_begin(void)
 
 bool is_queued(int transaction)
 {
-    return fathom_line_has(&world.line, &world.requests[transaction].transaction);
+    return fathom_line_is_queued(&world.line, &world.requests[transaction].transaction);
 }
 
 bool was_queued(int transaction)

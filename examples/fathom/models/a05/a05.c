@@ -17,7 +17,7 @@ static bool read_auto(reader_t *reader, channel_t *channel, const reader_setting
         .probes = settings->probes,
     };
     reader_begin(reader, channel);
-    if (fathom_a05_auto_init(driver, &config) != FATHOM_READY) return false;
+    if (fathom_a05_auto_init(driver, &config) != FATHOM_OK) return false;
     (void)dyp_begin_auto(reader, &driver->base, fathom_a05_auto_sensor(driver));
     return !settings->has_value || a05_select(reader, channel, settings->value);
 }
@@ -32,7 +32,7 @@ static bool read_modbus(reader_t *reader, channel_t *channel, const reader_setti
         .probes = settings->probes,
     };
     reader_begin(reader, channel);
-    return fathom_a05_modbus_init(driver, &config) == FATHOM_READY &&
+    return fathom_a05_modbus_init(driver, &config) == FATHOM_OK &&
            dyp_begin_asked(reader, &driver->base, fathom_a05_modbus_sensor(driver), reader_modbus);
 }
 
@@ -45,7 +45,7 @@ static bool read_dyp(reader_t *reader, channel_t *channel, const reader_settings
         .probes = settings->probes,
     };
     reader_begin(reader, channel);
-    return fathom_a05_dyp_init(driver, &config) == FATHOM_READY &&
+    return fathom_a05_dyp_init(driver, &config) == FATHOM_OK &&
            dyp_begin_asked(reader, &driver->base, fathom_a05_dyp_sensor(driver), "55 AA");
 }
 
@@ -65,7 +65,7 @@ static bool read_relay(reader_t *reader, channel_t *channel, const reader_settin
         .level = conducts_high ? FATHOM_A05_RELAY_CONDUCTS_HIGH : FATHOM_A05_RELAY_CONDUCTS_LOW,
     };
     reader_begin(reader, channel);
-    return fathom_a05_relay_init(driver, &config) == FATHOM_READY &&
+    return fathom_a05_relay_init(driver, &config) == FATHOM_OK &&
            reader_begin_contact(reader, channel, &driver->base, fathom_a05_relay_sensor(driver));
 }
 

@@ -110,7 +110,7 @@ static void decode_dyp(decode_frame_t *frame)
     frame->code_is = "command";
     if (frame->unit == FATHOM_DYP_ANY_ADDRESS && command != FATHOM_DYP_SET_ADDRESS)
         decode_note(frame, "FF is the broadcast address; whether a unit answers it is not in the datasheet");
-    const uint8_t count = fathom_dyp_55aa_values(command);
+    const uint8_t count = fathom_dyp_55aa_value_count(command);
     if (command == FATHOM_DYP_SET_ADDRESS) {
         decode_set_address(frame);
     } else if (count == 0) {

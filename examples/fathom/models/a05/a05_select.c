@@ -20,7 +20,7 @@ static fathom_status_t go_on(reader_t *reader)
     reader_selection_t *const selection = &reader->selection;
     const fathom_status_t status =
         fathom_a05_auto_select(&reader->driver.a05_auto, (fathom_dyp_value_t)selection->value);
-    if (status != FATHOM_READY) return status == FATHOM_ERR_BUSY ? FATHOM_PENDING : status;
+    if (status != FATHOM_OK) return status == FATHOM_ERR_BUSY ? FATHOM_PENDING : status;
     reader->sensor = selection->listening;
     reader->remark = "it has been switched on: readings begin";
     return FATHOM_PENDING;
@@ -57,7 +57,7 @@ static uint32_t due_us(void *ctx)
 static fathom_status_t end(reader_t *reader)
 {
     const fathom_status_t status = fathom_a05_auto_deinit(&reader->driver.a05_auto);
-    return status == FATHOM_READY ? fathom_output_set(&reader->selection.rx, FATHOM_OUTPUT_FREE) : status;
+    return status == FATHOM_OK ? fathom_output_set(&reader->selection.rx, FATHOM_OUTPUT_FREE) : status;
 }
 
 bool a05_select(reader_t *reader, channel_t *channel, uint8_t value)
@@ -67,7 +67,7 @@ bool a05_select(reader_t *reader, channel_t *channel, uint8_t value)
     if (is_low && !reader_has_break(reader, channel)) return false;
     reader_end_break(channel);
     selection->rx = fathom_output_line_break(reader->line);
-    if (is_low && fathom_output_set(&selection->rx, FATHOM_OUTPUT_LOW) != FATHOM_READY) return false;
+    if (is_low && fathom_output_set(&selection->rx, FATHOM_OUTPUT_LOW) != FATHOM_OK) return false;
     selection->listening = reader->sensor;
     selection->value = value;
     selection->heard_us = now_us(reader);

@@ -7,7 +7,7 @@
 static fathom_status_t get_address(reader_t *reader, char text[SETTING_TEXT])
 {
     uint8_t address = 0;
-    const fathom_status_t status = fathom_a05_modbus_address(&reader->driver.a05_modbus, &address);
+    const fathom_status_t status = fathom_a05_modbus_get_address(&reader->driver.a05_modbus, &address);
     dyp_put_number(text, status, address);
     return status;
 }
@@ -15,13 +15,13 @@ static fathom_status_t get_address(reader_t *reader, char text[SETTING_TEXT])
 static fathom_status_t set_address(reader_t *reader, int32_t value)
 {
     fathom_a05_modbus_t *const driver = &reader->driver.a05_modbus;
-    return value == 0 ? fathom_a05_modbus_set_address_to_0_perhaps_for_ever(driver)
+    return value == 0 ? fathom_a05_modbus_set_address_0(driver)
                       : fathom_a05_modbus_set_address(driver, (uint8_t)value);
 }
 
 static fathom_status_t set_every_address(reader_t *reader, int32_t value)
 {
-    return fathom_a05_dyp_set_every_address(&reader->driver.a05_dyp, (uint8_t)value);
+    return fathom_a05_dyp_broadcast_address(&reader->driver.a05_dyp, (uint8_t)value);
 }
 
 /* All probes, as they are read: the samples of one response, one after the other. */
@@ -36,10 +36,10 @@ static fathom_status_t get_distances(reader_t *reader, char text[SETTING_TEXT])
         dyp_put_distance(one, status, &sample);
         length +=
             (size_t)snprintf(text + length, SETTING_TEXT - length, "%s%s", length != 0 ? ", " : "", one);
-        if (!reader_has_more(reader)) return FATHOM_READY;
+        if (!reader_has_more(reader)) return FATHOM_OK;
         status = fathom_poll(&reader->sensor, &sample);
     } while (length < SETTING_TEXT);
-    return FATHOM_READY;
+    return FATHOM_OK;
 }
 
 const setting_t a05_settings[] = {

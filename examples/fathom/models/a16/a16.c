@@ -30,7 +30,7 @@ static bool read_auto(reader_t *reader, channel_t *channel, const reader_setting
         config.select = fathom_output_line_break(&channel->line);
     }
     if (settings->value == FATHOM_REAL_TIME && !reader_has_break(reader, channel)) return false;
-    if (fathom_a16_auto_init(driver, &config) != FATHOM_READY) return false;
+    if (fathom_a16_auto_init(driver, &config) != FATHOM_OK) return false;
     reader->end = end_auto;
     return dyp_begin_auto(reader, &driver->base, fathom_a16_auto_sensor(driver));
 }
@@ -47,7 +47,7 @@ static bool read_controlled(reader_t *reader, channel_t *channel, const reader_s
         .window = settings->window,
     };
     reader_begin(reader, channel);
-    if (fathom_a16_controlled_init(driver, &config) != FATHOM_READY) return false;
+    if (fathom_a16_controlled_init(driver, &config) != FATHOM_OK) return false;
     reader->sensor = fathom_a16_controlled_sensor(driver);
     reader->end = end_controlled;
     reader->frames = driver->stream.counters;
@@ -69,7 +69,7 @@ static bool read_modbus(reader_t *reader, channel_t *channel, const reader_setti
         .value = settings->value,
     };
     reader_begin(reader, channel);
-    return fathom_a16_modbus_init(driver, &config) == FATHOM_READY &&
+    return fathom_a16_modbus_init(driver, &config) == FATHOM_OK &&
            dyp_begin_asked(reader, &driver->base, fathom_a16_modbus_sensor(driver), reader_modbus);
 }
 

@@ -15,7 +15,7 @@ bool a16_read_pwm(reader_t *reader, channel_t *channel, const reader_settings_t 
                                                       .cycle_us = cycle_us},
                                             .window = settings->window};
     reader_begin(reader, channel);
-    if (fathom_a16_pwm_init(driver, &config) != FATHOM_READY) return false;
+    if (fathom_a16_pwm_init(driver, &config) != FATHOM_OK) return false;
     reader->sensor = fathom_a16_pwm_sensor(driver);
     reader->end = end_pwm;
     reader->sequence = &driver->sequence;
@@ -35,6 +35,6 @@ bool a16_read_switch(reader_t *reader, channel_t *channel, const reader_settings
                                                .timing = reader_contact_timing(channel, settings),
                                                .negative = channel->pins.wanted.near == PINS_NEAR_LOW};
     reader_begin(reader, channel);
-    return fathom_a16_switch_init(driver, &config) == FATHOM_READY &&
+    return fathom_a16_switch_init(driver, &config) == FATHOM_OK &&
            reader_begin_contact(reader, channel, &driver->base, fathom_a16_switch_sensor(driver));
 }

@@ -10,17 +10,17 @@ static const char *const on_only[] = {"on", NULL};
 static const char *const polarities[] = {"negative", "positive", NULL};
 static const char *const values[] = {"processed", "real-time", NULL};
 
-/* Where no word stands for it nothing is READY: the driver has refused it. */
+/* Where no word stands for it nothing is OK: the driver has refused it. */
 static void put_word(char text[SETTING_TEXT], fathom_status_t status, const char *const *words,
                      unsigned number)
 {
-    if (status == FATHOM_READY) (void)snprintf(text, SETTING_TEXT, "%s", words[number]);
+    if (status == FATHOM_OK) (void)snprintf(text, SETTING_TEXT, "%s", words[number]);
 }
 
 static fathom_status_t get_address(reader_t *reader, char text[SETTING_TEXT])
 {
     uint8_t address = 0;
-    const fathom_status_t status = fathom_a16_modbus_address(&reader->driver.a16_modbus, &address);
+    const fathom_status_t status = fathom_a16_modbus_get_address(&reader->driver.a16_modbus, &address);
     dyp_put_number(text, status, address);
     return status;
 }
@@ -28,7 +28,7 @@ static fathom_status_t get_address(reader_t *reader, char text[SETTING_TEXT])
 static fathom_status_t set_address(reader_t *reader, int32_t value)
 {
     fathom_a16_modbus_t *const driver = &reader->driver.a16_modbus;
-    return value == 0 ? fathom_a16_modbus_set_address_to_0_perhaps_for_ever(driver)
+    return value == 0 ? fathom_a16_modbus_set_address_0(driver)
                       : fathom_a16_modbus_set_address(driver, (uint8_t)value);
 }
 
@@ -48,7 +48,7 @@ static fathom_status_t send_again(reader_t *reader, int32_t value)
     (void)value;
     if (!is_begun) {
         const fathom_a16_auto_config_t config = {.line = reader->line, .gap_us = CHANNEL_STREAM_GAP_US};
-        if (fathom_a16_auto_init(&automatic, &config) != FATHOM_READY) return FATHOM_ERR_ARGUMENT;
+        if (fathom_a16_auto_init(&automatic, &config) != FATHOM_OK) return FATHOM_ERR_ARGUMENT;
         fathom_a16_rs232_init(&rs232, &reader->driver.a16_modbus, &automatic);
         is_begun = true;
     }
@@ -60,7 +60,8 @@ static fathom_status_t send_again(reader_t *reader, int32_t value)
 static fathom_status_t get_polarity(reader_t *reader, char text[SETTING_TEXT])
 {
     fathom_a16_polarity_t polarity = FATHOM_A16_NEGATIVE;
-    const fathom_status_t status = fathom_a16_modbus_switch_polarity(&reader->driver.a16_modbus, &polarity);
+    const fathom_status_t status =
+        fathom_a16_modbus_get_switch_polarity(&reader->driver.a16_modbus, &polarity);
     put_word(text, status, polarities, (unsigned)polarity);
     return status;
 }
@@ -74,7 +75,7 @@ static fathom_status_t get_threshold(reader_t *reader, char text[SETTING_TEXT])
 {
     uint16_t threshold_mm = 0;
     const fathom_status_t status =
-        fathom_a16_modbus_switch_threshold_mm(&reader->driver.a16_modbus, &threshold_mm);
+        fathom_a16_modbus_get_switch_threshold_mm(&reader->driver.a16_modbus, &threshold_mm);
     dyp_put_number(text, status, threshold_mm);
     return status;
 }
@@ -87,7 +88,7 @@ static fathom_status_t set_threshold(reader_t *reader, int32_t value)
 static fathom_status_t get_value(reader_t *reader, char text[SETTING_TEXT])
 {
     fathom_dyp_value_t value = FATHOM_PROCESSED;
-    const fathom_status_t status = fathom_a16_modbus_automatic_value(&reader->driver.a16_modbus, &value);
+    const fathom_status_t status = fathom_a16_modbus_get_automatic_value(&reader->driver.a16_modbus, &value);
     put_word(text, status, values, (unsigned)value);
     return status;
 }

@@ -12,7 +12,7 @@ static void listen_unasked(reader_t *reader)
 {
     const fathom_hps167s_auto_config_t config = {.line = reader->line};
     (void)fathom_hps167s_auto_init(&reader->unasked, &config);
-    fathom_hps167s_auto_beside(&reader->unasked, &reader->driver.hps167s);
+    fathom_hps167s_auto_follow(&reader->unasked, &reader->driver.hps167s);
 }
 
 static bool has_unasked(const reader_t *reader)

@@ -59,8 +59,9 @@ static void put_configuration(decode_meaning_t *meaning, const uint16_t *registe
 {
     fathom_hps167s_configuration_t is;
     fathom_hps167s_decode_configuration(registers, false, &is);
-    put_switch(meaning, "termination", fathom_hps167s_byte(registers, FATHOM_HPS167S_TERMINATION_BYTE));
-    put_switch(meaning, "continuous output", fathom_hps167s_byte(registers, FATHOM_HPS167S_MEASURES_BYTE));
+    put_switch(meaning, "termination", fathom_hps167s_get_byte(registers, FATHOM_HPS167S_TERMINATION_BYTE));
+    put_switch(meaning, "continuous output",
+               fathom_hps167s_get_byte(registers, FATHOM_HPS167S_MEASURES_BYTE));
     decode_number(meaning, "warm-up", is.warm_up_s, "s");
     put_reconnect(meaning, is.reconnect_time_ms);
     put_baud(meaning, is.baud_code);
@@ -73,7 +74,7 @@ static void put_details(decode_meaning_t *meaning, const uint16_t *registers)
     fathom_hps167s_decode_details(registers, &is);
     for (size_t i = 0; i != sizeof is.uuid; i++) (void)snprintf(uuid + 2 * i, 3, "%02X", is.uuid[i]);
     decode_field_t *const ack =
-        decode_string(meaning, "ACK", "%02X", fathom_hps167s_byte(registers, FATHOM_HPS167S_ACK_BYTE));
+        decode_string(meaning, "ACK", "%02X", fathom_hps167s_get_byte(registers, FATHOM_HPS167S_ACK_BYTE));
     if (!fathom_hps167s_may_be_details(registers)) ack->note = "not B0";
     decode_string(meaning, "UUID", "%s", uuid);
     put_date(meaning, is.year, is.month, is.day);
@@ -83,7 +84,7 @@ static void put_details(decode_meaning_t *meaning, const uint16_t *registers)
 /* Whole degrees; the scale is not in the datasheet. */
 static void put_temperature(decode_meaning_t *meaning, const uint16_t *registers)
 {
-    const int16_t fahrenheit = fathom_hps167s_signed(registers[0]);
+    const int16_t fahrenheit = fathom_hps167s_to_signed(registers[0]);
     decode_number(meaning, "temperature", fahrenheit, "F");
     decode_decimal(meaning, "temperature", fathom_hps167s_temperature_dc(fahrenheit, 1), 1, "C");
 }
@@ -93,7 +94,7 @@ static const char *distance_note(const uint16_t *registers)
 {
     const uint16_t apart[] = {registers[0], registers[1], registers[2] & 0x00FF, registers[3]};
     fathom_sample_t sample;
-    if (fathom_hps167s_decode(apart, &sample) != FATHOM_READY)
+    if (fathom_hps167s_decode(apart, &sample) != FATHOM_OK)
         return registers[0] == UINT16_MAX ? "no distance, and not the abnormal packet"
                                           : "no distance that it can mean";
     switch (sample.kind) {
@@ -111,7 +112,7 @@ static const char *distance_note(const uint16_t *registers)
 static void put_measurement(decode_meaning_t *meaning, const uint16_t *registers)
 {
     const uint16_t magnitude = registers[1];
-    const uint8_t exponent = fathom_hps167s_byte(registers, FATHOM_HPS167S_EXPONENT_BYTE);
+    const uint8_t exponent = fathom_hps167s_get_byte(registers, FATHOM_HPS167S_EXPONENT_BYTE);
     decode_number(meaning, "distance", registers[0], "mm")->note = distance_note(registers);
     if (exponent <= FATHOM_HPS167S_MAX_EXPONENT)
         decode_decimal(meaning, "magnitude", (int64_t)((uint64_t)magnitude << exponent), 4, "");
@@ -142,13 +143,13 @@ static bool is_version(const uint16_t *registers)
 static bool is_measurement(const uint16_t *registers)
 {
     fathom_sample_t sample;
-    return fathom_hps167s_decode(registers, &sample) == FATHOM_READY;
+    return fathom_hps167s_decode(registers, &sample) == FATHOM_OK;
 }
 
 /* Colder than -50 degrees C or hotter than 150 no sensor speaks. */
 static bool is_temperature(const uint16_t *registers)
 {
-    const int32_t temperature_dc = fathom_hps167s_temperature_dc(fathom_hps167s_signed(registers[0]), 1);
+    const int32_t temperature_dc = fathom_hps167s_temperature_dc(fathom_hps167s_to_signed(registers[0]), 1);
     return temperature_dc >= -500 && temperature_dc <= 1500;
 }
 
@@ -180,7 +181,7 @@ static void write_termination(decode_meaning_t *meaning, uint16_t value)
 
 static void write_offset(decode_meaning_t *meaning, uint16_t value)
 {
-    decode_number(meaning, "offset", fathom_hps167s_signed(value), "mm");
+    decode_number(meaning, "offset", fathom_hps167s_to_signed(value), "mm");
 }
 
 static void write_load(decode_meaning_t *meaning, uint16_t value)
@@ -194,7 +195,7 @@ static void write_load(decode_meaning_t *meaning, uint16_t value)
 
 static void write_filter(decode_meaning_t *meaning, uint16_t value)
 {
-    const int16_t sensitivity = fathom_hps167s_signed(value);
+    const int16_t sensitivity = fathom_hps167s_to_signed(value);
     decode_field_t *const field = decode_number(meaning, "filter sensitivity", sensitivity, "");
     if (sensitivity < -FATHOM_HPS167S_MAX_FILTER || sensitivity > FATHOM_HPS167S_MAX_FILTER)
         field->note = "outside the recommended -100..100";
@@ -268,7 +269,7 @@ static void command_known(decode_frame_t *frame, const command_row_t *row, const
     if (row->function == WRITE) row->write(meaning, decode_get16(frame->bytes + DECODE_AT_VALUE));
     if (row->function == WRITE_MANY && !is_response) {
         get_registers(frame->bytes + MANY_SIZE, row->registers, registers);
-        put_reconnect(meaning, fathom_hps167s_reconnect_time_ms(registers[0], registers[1], false));
+        put_reconnect(meaning, fathom_hps167s_decode_reconnect_time(registers[0], registers[1], false));
     }
     if (row->address == FATHOM_HPS167S_RESET && !is_response)
         decode_note(frame, "hps167s: resets the device");

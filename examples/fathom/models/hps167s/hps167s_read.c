@@ -23,8 +23,8 @@ bool hps167s_read_modbus(reader_t *reader, channel_t *channel, const reader_sett
     /* The driver's period is also that of the temperature. */
     if (settings->temperature_us != 0) config.modbus.period_us = 0;
     fathom_hps167s_limits_t *const limits = limits_of(reader, settings);
-    if (fathom_hps167s_init(driver, &config) != FATHOM_READY) return false;
-    if (limits != NULL && fathom_hps167s_use_limits(driver, limits) != FATHOM_READY) return false;
+    if (fathom_hps167s_init(driver, &config) != FATHOM_OK) return false;
+    if (limits != NULL && fathom_hps167s_set_limits(driver, limits) != FATHOM_OK) return false;
     reader->sensor = fathom_hps167s_sensor(driver);
     reader->protocol = reader_modbus;
     reader->is_paced = true;
@@ -59,7 +59,7 @@ static fathom_status_t poll_auto(void *ctx, fathom_sample_t *sample)
     fathom_hps167s_auto_t *const driver = &reader->unasked;
     const fathom_sensor_t sensor = fathom_hps167s_auto_sensor(driver);
     const fathom_status_t status = fathom_poll(&sensor, sample);
-    const bool is_frame = status == FATHOM_READY || status == FATHOM_ERR_MALFORMED;
+    const bool is_frame = status == FATHOM_OK || status == FATHOM_ERR_MALFORMED;
     const bool is_late = status == FATHOM_ERR_STALE || status == FATHOM_ERR_CHECKSUM;
     const uint32_t frames = driver->missed + (is_frame ? 1u : 0u);
     count(reader, FATHOM_STREAM_FRAMES, frames);
@@ -88,8 +88,8 @@ bool hps167s_read_auto(reader_t *reader, channel_t *channel, const reader_settin
     };
     reader_begin(reader, channel);
     fathom_hps167s_limits_t *const limits = limits_of(reader, settings);
-    if (fathom_hps167s_auto_init(driver, &config) != FATHOM_READY) return false;
-    if (limits != NULL && fathom_hps167s_auto_use_limits(driver, limits) != FATHOM_READY) return false;
+    if (fathom_hps167s_auto_init(driver, &config) != FATHOM_OK) return false;
+    if (limits != NULL && fathom_hps167s_auto_set_limits(driver, limits) != FATHOM_OK) return false;
     reader->sensor = (fathom_sensor_t){poll_auto, due_us_auto, reader};
     reader->frames = reader->unasked_frames;
     reader->sequence = &driver->sequence;

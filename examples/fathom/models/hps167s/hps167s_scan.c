@@ -45,7 +45,7 @@ bool hps167s_identify(inquiry_t *inquiry)
     if (inquiry->status == FATHOM_ERR_MALFORMED)
         (void)inquiry->ask(inquiry, FATHOM_HPS167S_VERSION, FATHOM_HPS167S_VERSION_COUNT, INQUIRY_MEASURE_US,
                            2);
-    if (inquiry->status != FATHOM_READY) return false;
+    if (inquiry->status != FATHOM_OK) return false;
     fathom_hps167s_decode_version(inquiry->values, version);
     finding->has_interface =
         version->year < NEXT_CENTURY && fathom_hps167s_is_date(version->month, version->day);

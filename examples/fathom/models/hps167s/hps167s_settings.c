@@ -23,8 +23,8 @@ static fathom_hps167s_t *driver(reader_t *reader) { return &reader->driver.hps16
 static fathom_status_t get_version(reader_t *reader, char text[SETTING_TEXT])
 {
     fathom_hps167s_version_t version;
-    const fathom_status_t status = fathom_hps167s_interface_version(driver(reader), &version);
-    if (status == FATHOM_READY)
+    const fathom_status_t status = fathom_hps167s_get_interface_version(driver(reader), &version);
+    if (status == FATHOM_OK)
         (void)snprintf(text, SETTING_TEXT, "%u.%u.%u of %04u-%02u-%02u", version.major, version.minor,
                        version.revision, version.year, version.month, version.day);
     return status;
@@ -33,8 +33,8 @@ static fathom_status_t get_version(reader_t *reader, char text[SETTING_TEXT])
 static fathom_status_t get_details(reader_t *reader, char text[SETTING_TEXT])
 {
     fathom_hps167s_details_t details;
-    const fathom_status_t status = fathom_hps167s_details(driver(reader), &details);
-    if (status == FATHOM_READY)
+    const fathom_status_t status = fathom_hps167s_get_details(driver(reader), &details);
+    if (status == FATHOM_OK)
         (void)snprintf(text, SETTING_TEXT, "%u.%u of %04u-%02u-%02u", details.major, details.minor,
                        details.year, details.month, details.day);
     return status;
@@ -43,8 +43,8 @@ static fathom_status_t get_details(reader_t *reader, char text[SETTING_TEXT])
 static fathom_status_t get_uuid(reader_t *reader, char text[SETTING_TEXT])
 {
     fathom_hps167s_details_t details;
-    const fathom_status_t status = fathom_hps167s_details(driver(reader), &details);
-    for (size_t i = 0; status == FATHOM_READY && i != FATHOM_HPS167S_UUID_LENGTH; i++)
+    const fathom_status_t status = fathom_hps167s_get_details(driver(reader), &details);
+    for (size_t i = 0; status == FATHOM_OK && i != FATHOM_HPS167S_UUID_LENGTH; i++)
         (void)snprintf(text + 2 * i, SETTING_TEXT - 2 * i, "%02x", details.uuid[i]);
     return status;
 }
@@ -52,8 +52,8 @@ static fathom_status_t get_uuid(reader_t *reader, char text[SETTING_TEXT])
 static fathom_status_t get_temperature(reader_t *reader, char text[SETTING_TEXT])
 {
     fathom_hps167s_temperature_t temperature;
-    const fathom_status_t status = fathom_hps167s_temperature(driver(reader), &temperature);
-    if (status == FATHOM_READY) tenths_text(text, SETTING_TEXT, temperature.temperature_dc);
+    const fathom_status_t status = fathom_hps167s_get_temperature(driver(reader), &temperature);
+    if (status == FATHOM_OK) tenths_text(text, SETTING_TEXT, temperature.temperature_dc);
     return status;
 }
 
@@ -63,8 +63,8 @@ static fathom_status_t get_number(reader_t *reader, char text[SETTING_TEXT],
                                   uint32_t (*pick)(const fathom_hps167s_configuration_t *))
 {
     fathom_hps167s_configuration_t configuration;
-    const fathom_status_t status = fathom_hps167s_configuration(driver(reader), &configuration);
-    if (status == FATHOM_READY) (void)snprintf(text, SETTING_TEXT, "%" PRIu32, pick(&configuration));
+    const fathom_status_t status = fathom_hps167s_get_configuration(driver(reader), &configuration);
+    if (status == FATHOM_OK) (void)snprintf(text, SETTING_TEXT, "%" PRIu32, pick(&configuration));
     return status;
 }
 
@@ -77,8 +77,8 @@ static fathom_status_t get_baud(reader_t *reader, char text[SETTING_TEXT])
 {
     const fathom_line_settings_t *const line = driver(reader)->unit.line_settings;
     fathom_hps167s_configuration_t is;
-    const fathom_status_t status = fathom_hps167s_configuration(driver(reader), &is);
-    if (status != FATHOM_READY) return status;
+    const fathom_status_t status = fathom_hps167s_get_configuration(driver(reader), &is);
+    if (status != FATHOM_OK) return status;
     const bool is_told = fathom_hps167s_baud_code(is.baud) == is.baud_code;
     (void)snprintf(text, SETTING_TEXT, "%" PRIu32, is_told || line == NULL ? is.baud : line->baud);
     return status;
@@ -102,16 +102,16 @@ static fathom_status_t get_reconnect(reader_t *reader, char text[SETTING_TEXT])
 static fathom_status_t get_termination(reader_t *reader, char text[SETTING_TEXT])
 {
     fathom_hps167s_configuration_t is;
-    const fathom_status_t status = fathom_hps167s_configuration(driver(reader), &is);
-    if (status == FATHOM_READY) (void)snprintf(text, SETTING_TEXT, "%s", off_on[is.termination]);
+    const fathom_status_t status = fathom_hps167s_get_configuration(driver(reader), &is);
+    if (status == FATHOM_OK) (void)snprintf(text, SETTING_TEXT, "%s", off_on[is.termination]);
     return status;
 }
 
 static fathom_status_t get_measures(reader_t *reader, char text[SETTING_TEXT])
 {
     fathom_hps167s_configuration_t is;
-    const fathom_status_t status = fathom_hps167s_configuration(driver(reader), &is);
-    if (status == FATHOM_READY) (void)snprintf(text, SETTING_TEXT, "%s", off_on[is.measures_after_power_on]);
+    const fathom_status_t status = fathom_hps167s_get_configuration(driver(reader), &is);
+    if (status == FATHOM_OK) (void)snprintf(text, SETTING_TEXT, "%s", off_on[is.measures_after_power_on]);
     return status;
 }
 
@@ -156,12 +156,12 @@ static fathom_status_t set_termination(reader_t *reader, int32_t value)
 
 static fathom_status_t set_measures_of_all(reader_t *reader, int32_t value)
 {
-    return fathom_hps167s_set_measures_after_power_on_of_all_units(driver(reader), value != 0);
+    return fathom_hps167s_broadcast_measures_after_power_on(driver(reader), value != 0);
 }
 
 static fathom_status_t set_termination_of_all(reader_t *reader, int32_t value)
 {
-    return fathom_hps167s_set_termination_of_all_units(driver(reader), value != 0);
+    return fathom_hps167s_broadcast_termination(driver(reader), value != 0);
 }
 
 static fathom_status_t set_reconnect(reader_t *reader, int32_t value)

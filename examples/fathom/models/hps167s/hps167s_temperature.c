@@ -36,7 +36,7 @@ static uint32_t until_measured_us(const reader_temperature_t *temperature, uint3
 static void take(reader_t *reader, fathom_status_t status, const fathom_hps167s_temperature_t *read)
 {
     reader_temperature_t *const temperature = &reader->temperature;
-    if (status == FATHOM_READY) {
+    if (status == FATHOM_OK) {
         temperature->dc = read->temperature_dc;
         temperature->read_us = now_us(reader);
         temperature->is_known = true;
@@ -52,7 +52,7 @@ static void take(reader_t *reader, fathom_status_t status, const fathom_hps167s_
 static bool ask(reader_t *reader)
 {
     fathom_hps167s_temperature_t read;
-    const fathom_status_t status = fathom_hps167s_temperature(&reader->driver.hps167s, &read);
+    const fathom_status_t status = fathom_hps167s_get_temperature(&reader->driver.hps167s, &read);
     if (status == FATHOM_PENDING) return false;
     take(reader, status, &read);
     reader->temperature.state = RESTING;

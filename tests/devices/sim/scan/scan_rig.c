@@ -115,7 +115,7 @@ void rig_begin(uint32_t start_us)
                                         .masters = &fathom_line_masters,
                                         .gap_us = 60000};
     rig.config.silence_us = scan_silence_us(&rig.plan);
-    assert_int_equal(fathom_line_init(&rig.line, &rig.config), FATHOM_READY);
+    assert_int_equal(fathom_line_init(&rig.line, &rig.config), FATHOM_OK);
     rig.wire =
         (scan_wire_t){.line = &rig.line, .listener = &rig.listener, .clock = &rig.clock, .wait = rig_wait};
     rig.tell = (scan_tell_t){.found = note_found, .progress = note_progress, .unsupported = note_unsupported};
@@ -160,7 +160,7 @@ void rig_plan_everything(void)
     rig.config.silence_us = scan_silence_us(&rig.plan);
 }
 
-void rig_walk(void) { assert_int_equal(scan_walk(&rig.walk), FATHOM_READY); }
+void rig_walk(void) { assert_int_equal(scan_walk(&rig.walk), FATHOM_OK); }
 
 void rig_finds(uint16_t count)
 {

@@ -119,10 +119,10 @@ static int16_t call(uint8_t what)
         PATH(output.set(output.ctx, flag));
         break;
     case CALL_ICP1_BEGIN: /* once more, for what int0 feeds too */
-        PATH(fathom_avr_icp1_begin(&sides[0].edges));
+        PATH(fathom_avr_icp1_init(&sides[0].edges));
         break;
     case CALL_INT0_BEGIN: /* and the other way round */
-        PATH(fathom_avr_int0_begin(&sides[1].edges));
+        PATH(fathom_avr_int0_init(&sides[1].edges));
         break;
     default:
         return -100;
@@ -132,16 +132,16 @@ static int16_t call(uint8_t what)
 
 int main(void)
 {
-    fathom_avr_clock_begin();
+    fathom_avr_clock_init();
     output = fathom_avr_output(&pd4);
     for (uint8_t i = 0; i < 2; i++) {
         inputs[i] = fathom_avr_input(&edge_pins[i], false);
         fathom_edges_init(&sides[i].edges, &inputs[i]);
         captures[i] = fathom_edges_capture(&sides[i].edges);
     }
-    if (!fathom_avr_usart0_begin(&config)) GPIOR2 = 1;
-    fathom_avr_int0_begin(&sides[0].edges);
-    fathom_avr_icp1_begin(&sides[1].edges);
+    if (!fathom_avr_usart0_init(&config)) GPIOR2 = 1;
+    fathom_avr_int0_init(&sides[0].edges);
+    fathom_avr_icp1_init(&sides[1].edges);
     sei();
     GPIOR1 = CALLS_READY;
     for (;;) {

@@ -3,7 +3,7 @@
  * A bare modbus_client that asks again at once, for the bus time of a poll: no driver and no pace of one. It sleeps
  * while there is nothing to do. GPIOR0, set before it starts, says what it asks: bits 0..1 the rate, 9600, 19200,
  * 57600 or 115200; bit 2 an A05 for its first probe, 8N1, else an HPS-167S for a measurement, 8E1. DE is PD3. Each
- * transaction is a record without bytes, of kind 1 when it was READY and 2 when it was not.
+ * transaction is a record without bytes, of kind 1 when it was OK and 2 when it was not.
  */
 #include <avr/interrupt.h>
 #include <avr/io.h>
@@ -42,9 +42,9 @@ static void set_up(uint8_t what)
 int main(void)
 {
     set_up(GPIOR0);
-    fathom_avr_clock_begin();
-    if (!fathom_avr_usart0_begin(&usart)) return 1;
-    if (fathom_line_init(&line, &config) != FATHOM_READY) return 1;
+    fathom_avr_clock_init();
+    if (!fathom_avr_usart0_init(&usart)) return 1;
+    if (fathom_line_init(&line, &config) != FATHOM_OK) return 1;
     sei();
     for (;;) {
         fathom_modbus_client_submit(&line, &request);
@@ -53,6 +53,6 @@ int main(void)
             if (request.transaction.status != FATHOM_PENDING) break;
             fathom_avr_idle(NULL, fathom_line_due_us(&line));
         }
-        GPIOR1 = request.transaction.status == FATHOM_READY ? 1 : 2;
+        GPIOR1 = request.transaction.status == FATHOM_OK ? 1 : 2;
     }
 }

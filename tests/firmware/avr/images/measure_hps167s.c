@@ -36,17 +36,17 @@ int main(void)
     if ((option & 1) != 0) usart.line.baud = 115200;
     if ((option & 2) != 0) gather_us = 1000;
     line_config.silence_us = FATHOM_T3_5_US(usart.line.baud, 11);
-    fathom_avr_clock_begin();
-    if (!fathom_avr_usart0_begin(&usart)) return 1;
-    if (fathom_line_init(&line, &line_config) != FATHOM_READY) return 1;
+    fathom_avr_clock_init();
+    if (!fathom_avr_usart0_init(&usart)) return 1;
+    if (fathom_line_init(&line, &line_config) != FATHOM_OK) return 1;
     modbus = fathom_modbus_client(&line);
     const fathom_hps167s_config_t config = {.modbus.transport = &modbus};
-    if (fathom_hps167s_init(&gate, &config) != FATHOM_READY) return 1;
+    if (fathom_hps167s_init(&gate, &config) != FATHOM_OK) return 1;
     sei();
     const fathom_sensor_t sensor = fathom_hps167s_sensor(&gate);
     for (;;) {
         fathom_sample_t sample;
         const fathom_status_t status = fathom_wait(&sensor, &sample, fathom_avr_idle, &gather_us);
-        GPIOR1 = status == FATHOM_READY ? 1 : 2;
+        GPIOR1 = status == FATHOM_OK ? 1 : 2;
     }
 }

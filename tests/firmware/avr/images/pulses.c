@@ -36,16 +36,16 @@ static void tell(const fathom_capture_t *capture, const fathom_edges_t *edges, u
 
 int main(void)
 {
-    fathom_avr_clock_begin();
+    fathom_avr_clock_init();
     const fathom_pin_t icp1 = fathom_avr_input(&icp1_at, false);
     const fathom_pin_t int0 = fathom_avr_input(&int0_at, false);
     fathom_edges_init(&by_icp1, &icp1);
     fathom_edges_init(&by_int0, &int0);
     const fathom_capture_t captured = fathom_edges_capture(&by_icp1);
     const fathom_capture_t seen = fathom_edges_capture(&by_int0);
-    fathom_avr_icp1_begin(&by_icp1);
-    fathom_avr_int0_begin(&by_int0);
-    if (!fathom_avr_usart0_begin(&usart)) return 1;
+    fathom_avr_icp1_init(&by_icp1);
+    fathom_avr_int0_init(&by_int0);
+    if (!fathom_avr_usart0_init(&usart)) return 1;
     sei();
     captured.arm(captured.ctx);
     seen.arm(seen.ctx);

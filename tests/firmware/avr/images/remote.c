@@ -29,7 +29,7 @@ static int16_t begin(void)
     config->driver.port = remote.flags != 0 ? &PORTD : NULL;
     config->driver.mask = _BV(PORTD3);
     config->line = settings();
-    if (!fathom_avr_usart0_begin(config)) return 0;
+    if (!fathom_avr_usart0_init(config)) return 0;
     used ^= 1;
     return 1;
 }
@@ -111,7 +111,7 @@ static void watch_clock(void)
 
 int main(void)
 {
-    fathom_avr_clock_begin();
+    fathom_avr_clock_init();
     output = fathom_avr_output(&pd4);
     sei();
     GPIOR1 = REMOTE_READY;

@@ -95,16 +95,16 @@ static uint8_t begin(uint8_t orders)
 {
     const uint8_t units = (orders & ORDER_TWO_UNITS) != 0 ? 2 : 1;
     if ((orders & ORDER_HPS167S) != 0) set_up_rs485(orders);
-    if (!fathom_avr_usart0_begin(&usart)) GPIOR2 = 1;
+    if (!fathom_avr_usart0_init(&usart)) GPIOR2 = 1;
     sei();
-    if (fathom_line_init(&line, &line_config) != FATHOM_READY) GPIOR2 = 2;
+    if (fathom_line_init(&line, &line_config) != FATHOM_OK) GPIOR2 = 2;
     if ((orders & ORDER_A16) != 0) {
         const fathom_a16_auto_config_t config = {.line = &line};
-        if (fathom_a16_auto_init(&a16, &config) != FATHOM_READY) GPIOR2 = 3;
+        if (fathom_a16_auto_init(&a16, &config) != FATHOM_OK) GPIOR2 = 3;
         sensors[0] = fathom_a16_auto_sensor(&a16);
     } else if ((orders & ORDER_A05) != 0) {
         const fathom_a05_auto_config_t config = {.line = &line};
-        if (fathom_a05_auto_init(&a05, &config) != FATHOM_READY) GPIOR2 = 4;
+        if (fathom_a05_auto_init(&a05, &config) != FATHOM_OK) GPIOR2 = 4;
         sensors[0] = fathom_a05_auto_sensor(&a05);
     } else {
         modbus = fathom_modbus_client(&line);
@@ -113,7 +113,7 @@ static uint8_t begin(uint8_t orders)
                                                     .modbus.address = (uint8_t)(1 + i),
                                                     .modbus.timeout_us = 100000,
                                                     .modbus.retries = (orders & ORDER_RETRY) != 0};
-            if (fathom_hps167s_init(&hps[i], &config) != FATHOM_READY) GPIOR2 = 5;
+            if (fathom_hps167s_init(&hps[i], &config) != FATHOM_OK) GPIOR2 = 5;
             sensors[i] = fathom_hps167s_sensor(&hps[i]);
         }
     }
@@ -134,7 +134,7 @@ static void obey(uint8_t order)
 
 int main(void)
 {
-    fathom_avr_clock_begin();
+    fathom_avr_clock_init();
     const uint8_t orders = await_orders();
     const uint8_t count = begin(orders);
     for (;;) {
@@ -142,9 +142,9 @@ int main(void)
         for (uint8_t i = 0; i < count; i++) {
             fathom_sample_t sample;
             const fathom_status_t status = fathom_poll(&sensors[i], &sample);
-            if (status == FATHOM_READY) report_sample(&sample);
+            if (status == FATHOM_OK) report_sample(&sample);
             if (status < 0) report_error(status);
-            has_sample |= status == FATHOM_READY;
+            has_sample |= status == FATHOM_OK;
         }
         if (ordered != 0) obey(ordered);
         if (has_sample && (orders & ORDER_HPS167S) == 0) continue; /* a frame of an A05 is four */

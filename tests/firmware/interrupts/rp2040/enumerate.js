@@ -115,7 +115,7 @@ class Enumeration {
     return isThere === first.canEnter ? null : 'its interrupt did not come at that boundary';
   }
 
-  // fathom_rp2040_edges_begin once more: hal.h, "what was captured before is forgotten".
+  // fathom_rp2040_edges_init once more: hal.h, "what was captured before is forgotten".
   get isForgetful() { return this.scenario.isForgetful && this.bench.run.raised.some(({event}) => event === 'edge'); }
 
   finish(figure) {

@@ -72,7 +72,7 @@ static bool begin_line(uint8_t number, uint32_t baud)
         /* QEMU's far end is a program of an operating system, which pauses as it likes; on a wire: 0, the default. */
         .gap_us = 25000,
     };
-    if (fathom_line_init(&lane->line, &lane->config) != FATHOM_READY) return false;
+    if (fathom_line_init(&lane->line, &lane->config) != FATHOM_OK) return false;
     lane->modbus = fathom_modbus_client(&lane->line);
     return true;
 }
@@ -90,11 +90,11 @@ static bool begin(fathom_sensor_t sensors[LINES])
         .line = &lanes[SILO].line, .stale_us = 2000000, .gap_us = 25000};
     lanes[REAR].modbus = fathom_dyp_client(&lanes[REAR].line); /* the same transport, with the frames 55 AA */
     const fathom_a05_dyp_config_t rear_config = {.modbus.transport = &lanes[REAR].modbus, .probes = 1};
-    if (fathom_a16_modbus_init(&tank, &tank_config) != FATHOM_READY ||
-        fathom_a05_modbus_init(&bumper, &bumper_config) != FATHOM_READY ||
-        fathom_hps167s_init(&gate, &gate_config) != FATHOM_READY ||
-        fathom_a16_auto_init(&silo, &silo_config) != FATHOM_READY ||
-        fathom_a05_dyp_init(&rear, &rear_config) != FATHOM_READY)
+    if (fathom_a16_modbus_init(&tank, &tank_config) != FATHOM_OK ||
+        fathom_a05_modbus_init(&bumper, &bumper_config) != FATHOM_OK ||
+        fathom_hps167s_init(&gate, &gate_config) != FATHOM_OK ||
+        fathom_a16_auto_init(&silo, &silo_config) != FATHOM_OK ||
+        fathom_a05_dyp_init(&rear, &rear_config) != FATHOM_OK)
         return false;
     sensors[TANK] = fathom_a16_modbus_sensor(&tank);
     sensors[BUMPER] = fathom_a05_modbus_sensor(&bumper);

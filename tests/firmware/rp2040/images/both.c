@@ -61,9 +61,9 @@ __attribute__((noinline)) fathom_status_t poll_hps167s(const fathom_sensor_t *hp
 
 int main(void)
 {
-    fathom_rp2040_clock_begin(BOARD_CLK_REF_HZ);
-    if (!fathom_rp2040_uart_begin(&text, &text_config)) return 1;
-    if (!fathom_rp2040_uart_begin(&rs485, &rs485_config)) return 2;
+    fathom_rp2040_clock_init(BOARD_CLK_REF_HZ);
+    if (!fathom_rp2040_uart_init(&text, &text_config)) return 1;
+    if (!fathom_rp2040_uart_init(&rs485, &rs485_config)) return 2;
     RP2040_NVIC_IPR(RP2040_IRQ_TIMER_0 / 4) = 0x40404040;
     RP2040_NVIC_IPR(RP2040_IRQ_UART0 / 4) = 0x40404040;
     const fathom_uart_t out = fathom_rp2040_uart(&text);
@@ -73,13 +73,13 @@ int main(void)
     const fathom_pin_t level = fathom_rp2040_input(ECHO, false);
     fathom_edges_t edges;
     fathom_edges_init(&edges, &level);
-    fathom_rp2040_edges_begin(&echo, &edges, ECHO, NULL);
+    fathom_rp2040_edges_init(&echo, &edges, ECHO, NULL);
     const fathom_capture_t capture = fathom_edges_capture(&edges);
     fathom_a16_pwm_t a16;
     const fathom_a16_pwm_config_t a16_config = {.pulse = {.clock = &fathom_rp2040_clock,
                                                           .capture = &capture,
                                                           .trigger = fathom_output_pin(&trigger)}};
-    if (fathom_a16_pwm_init(&a16, &a16_config) != FATHOM_READY) return 3;
+    if (fathom_a16_pwm_init(&a16, &a16_config) != FATHOM_OK) return 3;
 
     uint8_t frame[32];
     fathom_line_t line;
@@ -92,11 +92,11 @@ int main(void)
         .marks = fathom_line_marks,
         .silence_us = FATHOM_T3_5_US(19200, 11),
     };
-    if (fathom_line_init(&line, &line_config) != FATHOM_READY) return 4;
+    if (fathom_line_init(&line, &line_config) != FATHOM_OK) return 4;
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
     fathom_hps167s_t hps;
     const fathom_hps167s_config_t hps_config = {.modbus.transport = &modbus};
-    if (fathom_hps167s_init(&hps, &hps_config) != FATHOM_READY) return 5;
+    if (fathom_hps167s_init(&hps, &hps_config) != FATHOM_OK) return 5;
 
     const fathom_sensor_t pulse = fathom_a16_pwm_sensor(&a16);
     const fathom_sensor_t modbus_sensor = fathom_hps167s_sensor(&hps);

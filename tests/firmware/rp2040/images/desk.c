@@ -57,7 +57,7 @@ static bool begin(const uint32_t *argument)
         .idle = &idle,
     };
     config = wanted;
-    if (!fathom_rp2040_uart_begin(&port, &config)) return false;
+    if (!fathom_rp2040_uart_init(&port, &config)) return false;
     uart = fathom_rp2040_uart(&port);
     return true;
 }
@@ -110,8 +110,8 @@ static int32_t do_it(const uint32_t *argument)
 
 int main(void)
 {
-    fathom_rp2040_clock_begin(BOARD_CLK_REF_HZ);
-    fathom_rp2040_idle_begin(&idle);
+    fathom_rp2040_clock_init(BOARD_CLK_REF_HZ);
+    fathom_rp2040_idle_init(&idle);
     for (;;) {
         while (desk.ask == 0) __asm__ volatile("wfi"); /* which the test ends, too */
         desk.result = do_it(desk.argument);

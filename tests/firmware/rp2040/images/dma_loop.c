@@ -23,7 +23,7 @@ fathom_status_t __wrap_fathom_wait(const fathom_sensor_t *sensor, fathom_sample_
             idle(idle_ctx, round_us - passed_us);
         since_us = RP2040_TIMER_RAWL;
         const fathom_status_t status = fathom_poll(sensor, sample);
-        if (status == FATHOM_READY) RP2040_WATCHDOG_SCRATCH(3) = sample->time_us;
+        if (status == FATHOM_OK) RP2040_WATCHDOG_SCRATCH(3) = sample->time_us;
         RP2040_WATCHDOG_SCRATCH(4) = line->config->counters[FATHOM_LINE_BAD_BYTES];
         if (status != FATHOM_PENDING) return status;
     }

@@ -130,7 +130,7 @@ static int32_t call(uint32_t what)
         PATH(result = input.get(input.ctx));
         break;
     case CALL_EDGES_BEGIN: /* once more */
-        PATH(fathom_rp2040_edges_begin(&echo, &edges, ECHO, &idle));
+        PATH(fathom_rp2040_edges_init(&echo, &edges, ECHO, &idle));
         break;
     default:
         return -99;
@@ -159,12 +159,12 @@ int main(void)
     config.request = request;
     config.request_size = sizeof request;
     config.idle = woken;
-    fathom_rp2040_clock_begin(BOARD_CLK_REF_HZ);
-    fathom_rp2040_idle_begin(&idle);
+    fathom_rp2040_clock_init(BOARD_CLK_REF_HZ);
+    fathom_rp2040_idle_init(&idle);
     /* As the port's header advises: edges above all others. */
     RP2040_NVIC_IPR(RP2040_IRQ_TIMER_0 / 4) = 0x40404040;
     RP2040_NVIC_IPR(RP2040_IRQ_UART0 / 4) = 0x40404040;
-    if (!fathom_rp2040_uart_begin(&port, &config)) return 1;
+    if (!fathom_rp2040_uart_init(&port, &config)) return 1;
     uart = fathom_rp2040_uart(&port);
     if (!fathom_rp2040_uart_setup(&serial_wiring, &line)) return 2;
     serial_begin(RP2040_UART(0), &line);
@@ -172,7 +172,7 @@ int main(void)
     output = fathom_rp2040_output(OUTPUT, false);
     input = fathom_rp2040_input(ECHO, false);
     fathom_edges_init(&edges, (without & CALLS_NO_PIN) == 0u ? &input : NULL);
-    fathom_rp2040_edges_begin(&echo, &edges, ECHO, woken);
+    fathom_rp2040_edges_init(&echo, &edges, ECHO, woken);
     capture = fathom_edges_capture(&edges);
     REPORT = CALLS_READY;
     for (;;) {

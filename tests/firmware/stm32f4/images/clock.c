@@ -23,7 +23,7 @@ static uint32_t slept(uint32_t max_us)
 
 int main(void)
 {
-    fathom_stm32f4_clock_begin(board_begin()->timer_hz);
+    fathom_stm32f4_clock_init(board_begin()->timer_hz);
     systick_begin();
     check_within(now_us(), 0, 1000, "the clock begins at 0");
     check_within(ticks_in_50_ms(), 8380000, 8420000, "50 ms by the clock are 50 ms by SysTick");

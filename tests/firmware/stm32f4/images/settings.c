@@ -56,10 +56,9 @@ int main(void)
         const volatile uint32_t *const registers = (const volatile uint32_t *)bases[i];
         config.number = (uint8_t)(i + 1);
         check(registers[CR1] == 0, "a USART is off before its begin");
-        check(fathom_stm32f4_usart_begin(&usart, &config) && registers[BRR] == 2188,
-              "and has 19200 after it");
+        check(fathom_stm32f4_usart_init(&usart, &config) && registers[BRR] == 2188, "and has 19200 after it");
     }
-    fathom_stm32f4_clock_begin(QEMU_TIMER_HZ);
+    fathom_stm32f4_clock_init(QEMU_TIMER_HZ);
     const fathom_uart_t uart = fathom_stm32f4_usart(&usart);
     set_all(&uart, (const volatile uint32_t *)bases[USARTS - 1]);
 
@@ -76,11 +75,11 @@ int main(void)
     check(uart.set_break(uart.ctx, false) == 1 && uart.write(uart.ctx, many, 8) == 8, "until it is over");
 
     config.number = 7;
-    check(!fathom_stm32f4_usart_begin(&usart, &config), "there is no USART 7");
+    check(!fathom_stm32f4_usart_init(&usart, &config), "there is no USART 7");
     config.number = 0;
-    check(!fathom_stm32f4_usart_begin(&usart, &config), "and no USART 0");
+    check(!fathom_stm32f4_usart_init(&usart, &config), "and no USART 0");
     config.number = 1;
     config.tx.number = 16;
-    check(!fathom_stm32f4_usart_begin(&usart, &config), "and no PA16");
+    check(!fathom_stm32f4_usart_init(&usart, &config), "and no PA16");
     return check_result();
 }

@@ -41,17 +41,17 @@ int main(void)
         .gap_us = 25000,
     };
     fathom_line_t line;
-    if (fathom_line_init(&line, &config) != FATHOM_READY) return 2;
+    if (fathom_line_init(&line, &config) != FATHOM_OK) return 2;
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
     fathom_hps167s_t gate;
     const fathom_hps167s_config_t gate_config = {.modbus.transport = &modbus};
-    if (fathom_hps167s_init(&gate, &gate_config) != FATHOM_READY) return 2;
+    if (fathom_hps167s_init(&gate, &gate_config) != FATHOM_OK) return 2;
 
     const fathom_sensor_t sensor = fathom_hps167s_sensor(&gate);
     for (int readings = 0; readings != 30;) {
         fathom_sample_t sample;
         const fathom_status_t status = fathom_wait(&sensor, &sample, fathom_virt_idle, &port);
-        if (status == FATHOM_READY) {
+        if (status == FATHOM_OK) {
             readings++;
             tell_sample("gate", &sample);
         } else {

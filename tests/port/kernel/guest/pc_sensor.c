@@ -95,7 +95,7 @@ static struct {
 static void take(void *ctx, fathom_status_t status, const fathom_sample_t *sample)
 {
     (void)ctx;
-    CHECK(status == FATHOM_READY || status == FATHOM_ERR_PORT);
+    CHECK(status == FATHOM_OK || status == FATHOM_ERR_PORT);
     if (status == FATHOM_ERR_PORT) {
         rig.port_errors++;
         return;
@@ -132,7 +132,7 @@ static void the_loop_reads_loses_and_opens_it_again(void)
     begin_sensor();
     CHECK_INT(fathom_loop_add_line(&rig.loop, &rig.line, NEAR, &settings), FATHOM_POSIX_OK);
     const fathom_hps167s_config_t hps167s = {.modbus.transport = &rig.line.modbus};
-    CHECK_INT(fathom_hps167s_init(&rig.gate, &hps167s), FATHOM_READY);
+    CHECK_INT(fathom_hps167s_init(&rig.gate, &hps167s), FATHOM_OK);
     rig.sensor.take = take;
     rig.sensor.sensor = fathom_hps167s_sensor(&rig.gate);
     fathom_loop_add_sensor(&rig.line.source, &rig.sensor);

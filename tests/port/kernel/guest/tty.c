@@ -84,12 +84,12 @@ void tty_reads_2083(const fathom_uart_t *uart)
                                               .find_echo = fathom_line_find_echo,
                                               .silence_us = FATHOM_T3_5_US(19200, 11),
                                               .gap_us = 25000};
-    CHECK_INT(fathom_line_init(&line, &line_config), FATHOM_READY);
+    CHECK_INT(fathom_line_init(&line, &line_config), FATHOM_OK);
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
     const fathom_hps167s_config_t config = {.modbus.transport = &modbus};
-    CHECK_INT(fathom_hps167s_init(&gate, &config), FATHOM_READY);
+    CHECK_INT(fathom_hps167s_init(&gate, &config), FATHOM_OK);
     const fathom_sensor_t sensor = fathom_hps167s_sensor(&gate);
-    CHECK_INT(fathom_wait(&sensor, &sample, fathom_posix_wait, &tty_port), FATHOM_READY);
+    CHECK_INT(fathom_wait(&sensor, &sample, fathom_posix_wait, &tty_port), FATHOM_OK);
     tty_is_2083(&sample);
     fathom_hps167s_deinit(&gate);
 }

@@ -129,7 +129,7 @@ static fathom_sensor_t begin_tank(void)
     const fathom_a16_pwm_config_t config = {.pulse.clock = &clock_of_system,
                                             .pulse.capture = &capture,
                                             .pulse.trigger = fathom_output_pin(&trigger_pin)};
-    CHECK_INT(fathom_a16_pwm_init(&tank, &config), FATHOM_READY);
+    CHECK_INT(fathom_a16_pwm_init(&tank, &config), FATHOM_OK);
     return fathom_a16_pwm_sensor(&tank);
 }
 
@@ -147,7 +147,7 @@ static fathom_status_t wait_for(const fathom_sensor_t *sensor, fathom_sample_t *
 
 static int by_size(const void *a, const void *b) { return (int)(*(const long *)a - *(const long *)b); }
 
-/* Five readings, and errors of that kind between them (FATHOM_READY: none). What is measured differs by so much from
+/* Five readings, and errors of that kind between them (FATHOM_OK: none). What is measured differs by so much from
  * what was played: of the five, the second best, since the machine that all of this runs on may be busy. */
 static long difference_us(const fathom_sensor_t *sensor, fathom_status_t allowed)
 {
@@ -158,8 +158,8 @@ static long difference_us(const fathom_sensor_t *sensor, fathom_status_t allowed
         fathom_sample_t sample;
         const fathom_status_t status = wait_for(sensor, &sample);
         CHECK(cycles != MOST_CYCLES);
-        if (status == allowed && status != FATHOM_READY) continue;
-        CHECK_INT(status, FATHOM_READY);
+        if (status == allowed && status != FATHOM_OK) continue;
+        CHECK_INT(status, FATHOM_OK);
         CHECK_INT(sample.kind, FATHOM_TARGET);
         CHECK_INT(sample.distance_mm, (sample.raw * 4 + 11) / 23); /* SENSORS.md: us * 4 / 23, rounded */
         off[readings++] = labs((long)sample.raw - guest_ask("width %lu", (unsigned long)sample.raw));
@@ -173,10 +173,10 @@ static void an_a16_is_triggered_and_measured(void)
     const fathom_sensor_t sensor = begin_tank();
     (void)guest_ask("a16 pulse 20");
     (void)guest_ask("listen");
-    CHECK_WITHIN(difference_us(&sensor, FATHOM_READY), 0, 3000);
+    CHECK_WITHIN(difference_us(&sensor, FATHOM_OK), 0, 3000);
     (void)guest_ask("triggered 5"); /* at least so often, and as the datasheet wants it */
     CHECK_INT(echo.lost_events, 0);
-    CHECK_INT(fathom_a16_pwm_deinit(&tank), FATHOM_READY);
+    CHECK_INT(fathom_a16_pwm_deinit(&tank), FATHOM_OK);
     CHECK_INT(guest_ask("level %d", TRIGGER), 1);
 }
 
@@ -196,16 +196,16 @@ static void a_line_that_stays_high_is_a_fault(void)
     const fathom_sensor_t sensor = begin_tank();
     (void)guest_ask("a16 high 0");
     for (int i = 0; i != 2; i++) {
-        CHECK_INT(wait_for(&sensor, &sample), FATHOM_READY);
+        CHECK_INT(wait_for(&sensor, &sample), FATHOM_OK);
         CHECK_INT(sample.kind, FATHOM_FAULT);
         CHECK_INT(sample.raw, 0);
     }
     (void)guest_ask("a16 nothing 0");
     (void)guest_ask("set %d 0", ECHO);
-    while (wait_for(&sensor, &sample) == FATHOM_READY)
+    while (wait_for(&sensor, &sample) == FATHOM_OK)
         CHECK_INT(sample.kind, FATHOM_FAULT); /* of the cycle that ran */
     (void)guest_ask("a16 pulse 20");
-    while (wait_for(&sensor, &sample) != FATHOM_READY) continue;
+    while (wait_for(&sensor, &sample) != FATHOM_OK) continue;
     CHECK_INT(sample.kind, FATHOM_TARGET);
 }
 
@@ -267,7 +267,7 @@ static struct {
 static void take(void *ctx, fathom_status_t status, const fathom_sample_t *sample)
 {
     (void)ctx;
-    CHECK_INT(status, FATHOM_READY);
+    CHECK_INT(status, FATHOM_OK);
     CHECK_INT(sample->kind, FATHOM_TARGET);
     rig.readings++;
     if (rig.readings == 3) fathom_loop_stop(&rig.loop);
@@ -298,12 +298,12 @@ static void a_switch_is_read(void)
     const fathom_pin_t pin = open_edges(&echo, CONTACT);
     clock_of_system = fathom_posix_clock();
     const fathom_a16_switch_config_t config = {.pin = &pin, .clock = &clock_of_system};
-    CHECK_INT(fathom_a16_switch_init(&level, &config), FATHOM_READY);
+    CHECK_INT(fathom_a16_switch_init(&level, &config), FATHOM_OK);
     const fathom_sensor_t sensor = fathom_a16_switch_sensor(&level);
-    CHECK_INT(wait_for(&sensor, &sample), FATHOM_READY);
+    CHECK_INT(wait_for(&sensor, &sample), FATHOM_OK);
     CHECK_INT(sample.kind, FATHOM_NEAR); /* high, A16 4(2) */
     (void)guest_ask("bounce %d 0", CONTACT);
-    CHECK_INT(wait_for(&sensor, &sample), FATHOM_READY);
+    CHECK_INT(wait_for(&sensor, &sample), FATHOM_OK);
     CHECK_INT(sample.kind, FATHOM_FAR);
 }
 
@@ -315,12 +315,12 @@ static void a_relay_is_read(void)
     const fathom_pin_t pin = open_edges(&echo, RELAY);
     clock_of_system = fathom_posix_clock();
     const fathom_a05_relay_config_t config = {.pin = &pin, .clock = &clock_of_system};
-    CHECK_INT(fathom_a05_relay_init(&relay, &config), FATHOM_READY);
+    CHECK_INT(fathom_a05_relay_init(&relay, &config), FATHOM_OK);
     const fathom_sensor_t sensor = fathom_a05_relay_sensor(&relay);
-    CHECK_INT(wait_for(&sensor, &sample), FATHOM_READY);
+    CHECK_INT(wait_for(&sensor, &sample), FATHOM_OK);
     CHECK_INT(sample.kind, FATHOM_FAR); /* its contact is open and the pin pulled up */
     (void)guest_ask("bounce %d 0", RELAY);
-    CHECK_INT(wait_for(&sensor, &sample), FATHOM_READY);
+    CHECK_INT(wait_for(&sensor, &sample), FATHOM_OK);
     CHECK_INT(sample.kind, FATHOM_NEAR);
 }
 

@@ -59,6 +59,6 @@ void main(void)
     config.line = any_bool() ? &any_line : NULL;
     const fathom_sensor_t none = fathom_a05_auto_sensor(&sensor);
     any_call(&none); /* in zeroed memory */
-    if (fathom_a05_auto_init(&sensor, &config) != FATHOM_READY) return;
+    if (fathom_a05_auto_init(&sensor, &config) != FATHOM_OK) return;
     run();
 }

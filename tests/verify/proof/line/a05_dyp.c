@@ -5,7 +5,7 @@
  *          src/sensor/dyp_modbus.c src/sensor/dyp.c src/engine/modbus_unit.c src/engine/modbus_setting.c
  *          src/engine/sensor.c
  * options: -eva-precision 0 -eva-ilevel 16
- *          -eva-slevel-function fathom_modbus_unit_init:400,fathom_dyp_modbus_init:20,fathom_dyp_window_copy:40,main:200,fathom_dyp_measurement_next:20,fathom_dyp_stream_decode:10,fathom_dyp_55aa_values:5,run:1,fathom_a05_dyp_init:50,fathom_line_submit:20
+ *          -eva-slevel-function fathom_modbus_unit_init:400,fathom_dyp_modbus_init:20,fathom_dyp_window_copy:40,main:200,fathom_dyp_measurement_next:20,fathom_dyp_stream_decode:10,fathom_dyp_55aa_value_count:5,run:1,fathom_a05_dyp_init:50,fathom_line_submit:20
  *          -eva-split-return-function fathom_modbus_unit_init:1,fathom_dyp_modbus_init:1,fathom_a05_dyp_init:1
  * quick:   no
  *
@@ -38,13 +38,13 @@ static void any_call(const fathom_sensor_t *handle)
         (void)fathom_line_poll(&any_line); /* another driver has */
         break;
     case 5:
-        (void)fathom_a05_dyp_set_every_address(&sensor, any_8());
+        (void)fathom_a05_dyp_broadcast_address(&sensor, any_8());
         break;
     case 6:
         (void)fathom_a05_dyp_find(&find, &any_line, &address);
         break;
     case 7:
-        (void)fathom_modbus_next_is_blind(&sensor.base.unit);
+        (void)fathom_modbus_write_next_unchecked(&sensor.base.unit);
         break;
     default:
         fathom_a05_dyp_find_cancel(&find, &any_line);
@@ -71,7 +71,7 @@ void main(void)
     any_window(&config.window);
     config.probes = any_8_in(0, 16); /* from 16 on they are refused */
     /*@ split config.probes; */
-    if (fathom_a05_dyp_init(&sensor, &config) != FATHOM_READY) return;
+    if (fathom_a05_dyp_init(&sensor, &config) != FATHOM_OK) return;
     const uint8_t first = sensor.base.measurement.first;
     /*@ split first; */
     /*@ merge config.probes; */

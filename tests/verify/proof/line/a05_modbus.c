@@ -36,13 +36,13 @@ static void any_call(const fathom_sensor_t *handle)
         assumed_go_on(); /* another driver has polled the transport */
         break;
     case 5:
-        (void)fathom_a05_modbus_address(&sensor, &address);
+        (void)fathom_a05_modbus_get_address(&sensor, &address);
         break;
     case 6:
         (void)fathom_a05_modbus_set_address(&sensor, any_8());
         break;
     default:
-        (void)fathom_a05_modbus_set_address_to_0_perhaps_for_ever(&sensor);
+        (void)fathom_a05_modbus_set_address_0(&sensor);
     }
 }
 
@@ -65,7 +65,7 @@ void main(void)
     config.probes = any_probes(which);
     const fathom_sensor_t none = fathom_a05_modbus_sensor(&sensor);
     any_call(&none); /* in zeroed memory */
-    if (fathom_a05_modbus_init(&sensor, &config) != FATHOM_READY) return;
+    if (fathom_a05_modbus_init(&sensor, &config) != FATHOM_OK) return;
     run();
     if (any_bool()) fathom_a05_modbus_deinit(&sensor);
     (void)fathom_a05_modbus_init(&sensor, &config); /* again, perhaps while a request is queued */

@@ -49,7 +49,7 @@ void main(void)
     const fathom_status_t status = fathom_a16_controlled_init(&sensor, &config);
     /*@ assert status == FATHOM_ERR_ARGUMENT; */
     config.line = any_bool() ? &any_line : NULL;
-    if (fathom_a16_controlled_init(&sensor, &config) != FATHOM_READY) return;
+    if (fathom_a16_controlled_init(&sensor, &config) != FATHOM_OK) return;
     while (any_bool()) any_call(&handle);
     (void)fathom_a16_controlled_deinit(&sensor);
 }

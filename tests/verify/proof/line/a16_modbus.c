@@ -24,31 +24,31 @@ static void read_or_set(void)
     fathom_sample_t sample;
     switch (any_8_in(0, 11)) {
     case 0:
-        (void)fathom_a16_modbus_address(&sensor, &address);
+        (void)fathom_a16_modbus_get_address(&sensor, &address);
         break;
     case 1:
         (void)fathom_a16_modbus_set_address(&sensor, any_8());
         break;
     case 2:
-        (void)fathom_a16_modbus_set_address_to_0_perhaps_for_ever(&sensor);
+        (void)fathom_a16_modbus_set_address_0(&sensor);
         break;
     case 3:
         (void)fathom_a16_modbus_set_operating_mode(&sensor, (fathom_a16_operating_mode_t)any_8());
         break;
     case 4:
-        (void)fathom_a16_modbus_switch_polarity(&sensor, &polarity);
+        (void)fathom_a16_modbus_get_switch_polarity(&sensor, &polarity);
         break;
     case 5:
         (void)fathom_a16_modbus_set_switch_polarity(&sensor, (fathom_a16_polarity_t)any_8());
         break;
     case 6:
-        (void)fathom_a16_modbus_switch_threshold_mm(&sensor, &threshold_mm);
+        (void)fathom_a16_modbus_get_switch_threshold_mm(&sensor, &threshold_mm);
         break;
     case 7:
         (void)fathom_a16_modbus_set_switch_threshold_mm(&sensor, any_16());
         break;
     case 8:
-        (void)fathom_a16_modbus_automatic_value(&sensor, &value);
+        (void)fathom_a16_modbus_get_automatic_value(&sensor, &value);
         break;
     case 9:
         (void)fathom_a16_modbus_set_automatic_value(&sensor, (fathom_dyp_value_t)any_8());
@@ -57,7 +57,7 @@ static void read_or_set(void)
         (void)fathom_a16_modbus_measure(&sensor, (fathom_dyp_value_t)any_8(), &sample);
         break;
     default:
-        (void)fathom_a16_modbus_next_is_blind(&sensor);
+        (void)fathom_a16_modbus_write_next_unchecked(&sensor);
     }
 }
 
@@ -104,7 +104,7 @@ void main(void)
     config.value = any_8();
     const fathom_sensor_t handle = fathom_a16_modbus_sensor(&sensor);
     any_call(&handle); /* in zeroed memory */
-    if (fathom_a16_modbus_init(&sensor, &config) != FATHOM_READY) return;
+    if (fathom_a16_modbus_init(&sensor, &config) != FATHOM_OK) return;
     while (any_bool()) any_call(&handle);
     if (any_bool()) fathom_a16_modbus_deinit(&sensor);
     (void)fathom_a16_modbus_init(&sensor, &config); /* again, perhaps while a request is queued */

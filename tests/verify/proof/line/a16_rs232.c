@@ -61,8 +61,8 @@ void main(void)
     config_automatic.gap_us = any_16();
     config_automatic.value = any_8();
     any_window(&config_automatic.window);
-    if (fathom_a16_modbus_init(&modbus, &config) != FATHOM_READY) return;
-    if (fathom_a16_auto_init(&automatic, &config_automatic) != FATHOM_READY) return;
+    if (fathom_a16_modbus_init(&modbus, &config) != FATHOM_OK) return;
+    if (fathom_a16_auto_init(&automatic, &config_automatic) != FATHOM_OK) return;
     fathom_a16_rs232_init(&rs232, &modbus, &automatic);
     rs232.return_us = any_32();
     const fathom_sensor_t of_modbus = fathom_a16_modbus_sensor(&modbus);

@@ -53,7 +53,7 @@ static void any_line_go_on(void)
     any_line_queued->attempts = any_8();
     if (any_bool()) return;
     any_line_end(
-        (int8_t)(any_bool() ? FATHOM_READY : Frama_C_interval(FATHOM_ERR_OTHER_MASTER, FATHOM_ERR_PORT)));
+        (int8_t)(any_bool() ? FATHOM_OK : Frama_C_interval(FATHOM_ERR_OTHER_MASTER, FATHOM_ERR_PORT)));
 }
 
 /* All that the protocol may be asked while the transaction is queued. What it writes may be there from the beginning:
@@ -93,7 +93,7 @@ void fathom_line_cancel_unit(fathom_line_t *line, uint8_t address)
     if (any_line_queued != NULL && any_line_queued->address == address) any_line_end(FATHOM_ERR_CANCELLED);
 }
 
-bool fathom_line_has(const fathom_line_t *line, const fathom_transaction_t *transaction)
+bool fathom_line_is_queued(const fathom_line_t *line, const fathom_transaction_t *transaction)
 {
     /*@ assert line == &any_line; */
     return transaction == any_line_queued;
@@ -122,7 +122,7 @@ fathom_status_t fathom_line_listen(fathom_line_t *line, fathom_listener_t *liste
     /*@ assert line == &any_line; */
     if (listener != NULL && line->listener != NULL && line->listener != listener) return FATHOM_ERR_BUSY;
     line->listener = listener;
-    return FATHOM_READY;
+    return FATHOM_OK;
 }
 
 fathom_listener_t *fathom_line_replace_listener(fathom_line_t *line, fathom_listener_t *listener)
@@ -159,17 +159,17 @@ uint32_t fathom_line_due_us(const fathom_line_t *line)
     return any_32();
 }
 
-/* Of all that it may return the drivers tell no more apart than READY, PENDING and below zero. */
+/* Of all that it may return the drivers tell no more apart than OK, PENDING and below zero. */
 fathom_status_t fathom_line_break(fathom_line_t *line, bool on)
 {
     /*@ assert line == &any_line; */
     /*@ assert on == 0 || on == 1; */
     any_line_look(line);
-    return (fathom_status_t)Frama_C_interval(FATHOM_ERR_OTHER_MASTER, FATHOM_READY);
+    return (fathom_status_t)Frama_C_interval(FATHOM_ERR_OTHER_MASTER, FATHOM_OK);
 }
 
 bool fathom_line_is_idle(const fathom_line_t *line) { return line->received_count == 0 && any_bool(); }
 
-uint32_t fathom_line_heard_us(const fathom_line_t *line) { return line->polled_us - line->silent_us; }
+uint32_t fathom_line_last_byte_us(const fathom_line_t *line) { return line->polled_us - line->silent_us; }
 
 #endif

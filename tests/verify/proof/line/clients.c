@@ -73,9 +73,9 @@ static void look_at(const fathom_protocol_t *protocol, uint8_t have, bool is_dyp
 
 static void go_on(const fathom_modbus_t *transport)
 {
-    if (fathom_line_has(&any_line, &request.transaction)) {
+    if (fathom_line_is_queued(&any_line, &request.transaction)) {
         const fathom_status_t status =
-            fathom_dyp_client_set_every_address(&any_line, &request, any_8_in(1, 254));
+            fathom_dyp_client_broadcast_address(&any_line, &request, any_8_in(1, 254));
         /*@ assert status == FATHOM_ERR_BUSY; */
     }
     (void)transport->poll(&any_line);
@@ -107,7 +107,7 @@ static void submit(uint16_t *values, uint8_t count)
     request.transaction.timeout_us = any_32();
     request.transaction.line_settings = NULL;
     const fathom_status_t status = client == 3
-                                       ? fathom_dyp_client_set_every_address(&any_line, &request, any_8())
+                                       ? fathom_dyp_client_broadcast_address(&any_line, &request, any_8())
                                        : transports[client].submit(&any_line, &request);
     if (status != FATHOM_PENDING) return;
     /*@ slevel merge; */
@@ -127,6 +127,6 @@ void main(void)
     /*@ split count; */
     for (uint8_t i = 0; i < MOST_REGISTERS; i++) registers[i] = any_16();
     any_line_init();
-    request.transaction.status = FATHOM_READY;
+    request.transaction.status = FATHOM_OK;
     submit(registers + (MOST_REGISTERS - count), count);
 }

@@ -2,9 +2,9 @@
 #ifndef DRIVER_H
 #define DRIVER_H
 
-#include "fathom/engine/modbus_unit.h"
+#include "fathom/engine/internal/modbus_unit.h"
 #include "fathom/engine/sensor.h"
-#include "fathom/sensor/dyp.h"
+#include "fathom/sensor/internal/dyp.h"
 #include "transport.h"
 
 /* What the configs of the drivers have in common, with any value. */

@@ -23,19 +23,19 @@ static void inform(void)
     const uint16_t registers[4] = {any_16(), any_16(), any_16(), any_16()};
     switch (any_8_in(0, 4)) {
     case 0:
-        (void)fathom_hps167s_interface_version(&sensor, &version);
+        (void)fathom_hps167s_get_interface_version(&sensor, &version);
         break;
     case 1:
-        (void)fathom_hps167s_configuration(&sensor, &configuration);
+        (void)fathom_hps167s_get_configuration(&sensor, &configuration);
         break;
     case 2:
-        (void)fathom_hps167s_details(&sensor, &details);
+        (void)fathom_hps167s_get_details(&sensor, &details);
         break;
     case 3:
-        (void)fathom_hps167s_temperature(&sensor, &temperature);
+        (void)fathom_hps167s_get_temperature(&sensor, &temperature);
         break;
     default:
-        (void)fathom_hps167s_heard(&sensor, registers, any_32());
+        (void)fathom_hps167s_accept_unsolicited(&sensor, registers, any_32());
     }
 }
 
@@ -55,7 +55,7 @@ static void any_call(const fathom_sensor_t *handle)
         assumed_go_on(); /* another driver has polled the transport */
         break;
     case 4:
-        (void)fathom_hps167s_use_limits(&sensor, &any_limits);
+        (void)fathom_hps167s_set_limits(&sensor, &any_limits);
         break;
     default:
         inform();
@@ -68,7 +68,7 @@ void main(void)
     any_hps167s_config(&config);
     const fathom_sensor_t handle = fathom_hps167s_sensor(&sensor);
     any_call(&handle); /* in zeroed memory */
-    if (fathom_hps167s_init(&sensor, &config) != FATHOM_READY) return;
+    if (fathom_hps167s_init(&sensor, &config) != FATHOM_OK) return;
     while (any_bool()) any_call(&handle);
     if (any_bool()) fathom_hps167s_deinit(&sensor);
     (void)fathom_hps167s_init(&sensor, &config); /* again, perhaps while a request is queued */

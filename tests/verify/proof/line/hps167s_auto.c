@@ -32,13 +32,13 @@ static void any_call(const fathom_sensor_t *handle, const fathom_sensor_t *other
         any_poll(other);
         break;
     case 3:
-        (void)fathom_hps167s_configuration(&beside, &configuration);
+        (void)fathom_hps167s_get_configuration(&beside, &configuration);
         break;
     case 4:
         fathom_hps167s_power_on(&beside);
         break;
     default:
-        (void)fathom_hps167s_auto_use_limits(&sensor, &any_limits);
+        (void)fathom_hps167s_auto_set_limits(&sensor, &any_limits);
     }
 }
 
@@ -67,8 +67,8 @@ void main(void)
     any_poll(&handle); /* in zeroed memory */
     const bool is_beside = any_bool();
     /*@ split is_beside; */
-    if (fathom_hps167s_init(&beside, &config_beside) != FATHOM_READY) return;
-    if (fathom_hps167s_auto_init(&sensor, &config) != FATHOM_READY) return;
-    if (is_beside) fathom_hps167s_auto_beside(&sensor, &beside);
+    if (fathom_hps167s_init(&beside, &config_beside) != FATHOM_OK) return;
+    if (fathom_hps167s_auto_init(&sensor, &config) != FATHOM_OK) return;
+    if (is_beside) fathom_hps167s_auto_follow(&sensor, &beside);
     run();
 }

@@ -45,10 +45,10 @@ static void set_any(void)
         (void)fathom_hps167s_set_reconnect_time_ms(&sensor, any_32());
         break;
     case 8:
-        (void)fathom_hps167s_set_measures_after_power_on_of_all_units(&sensor, any_bool());
+        (void)fathom_hps167s_broadcast_measures_after_power_on(&sensor, any_bool());
         break;
     case 9:
-        (void)fathom_hps167s_set_termination_of_all_units(&sensor, any_bool());
+        (void)fathom_hps167s_broadcast_termination(&sensor, any_bool());
         break;
     case 10:
         (void)fathom_hps167s_set_address(&sensor, any_8());
@@ -60,7 +60,7 @@ static void set_any(void)
         (void)fathom_hps167s_restore_factory_settings(&sensor);
         break;
     default:
-        (void)fathom_hps167s_next_is_blind(&sensor);
+        (void)fathom_hps167s_write_next_unchecked(&sensor);
     }
 }
 
@@ -93,7 +93,7 @@ void main(void)
     any_hps167s_config(&config);
     const fathom_sensor_t handle = fathom_hps167s_sensor(&sensor);
     any_call(&handle); /* in zeroed memory */
-    if (fathom_hps167s_init(&sensor, &config) != FATHOM_READY) return;
+    if (fathom_hps167s_init(&sensor, &config) != FATHOM_OK) return;
     while (any_bool()) any_call(&handle);
     if (any_bool()) fathom_hps167s_deinit(&sensor);
     (void)fathom_hps167s_init(&sensor, &config); /* again, perhaps while a request is queued */

@@ -64,7 +64,7 @@ static fathom_status_t parse_response(fathom_transaction_t *transaction, const u
 {
     /*@ assert bytes == &frame[0]; */
     (void)transaction->address;
-    return (fathom_status_t)Frama_C_interval(FATHOM_ERR_MALFORMED, FATHOM_READY);
+    return (fathom_status_t)Frama_C_interval(FATHOM_ERR_MALFORMED, FATHOM_OK);
 }
 
 static fathom_status_t parse_other(fathom_transaction_t *transaction, const uint8_t *bytes)
@@ -101,8 +101,8 @@ static const fathom_line_settings_t settings = {9600, FATHOM_PARITY_NONE, 1};
 
 static void submit(fathom_transaction_t *transaction)
 {
-    if (fathom_line_has(&line,
-                        transaction)) { /* "leave it alone until its status is no longer FATHOM_PENDING" */
+    if (fathom_line_is_queued(
+            &line, transaction)) { /* "leave it alone until its status is no longer FATHOM_PENDING" */
         (void)fathom_line_submit(&line, transaction);
         return;
     }
@@ -159,9 +159,9 @@ static void any_call(void)
         break;
     default:
         (void)fathom_line_is_idle(&line);
-        (void)fathom_line_heard_us(&line);
+        (void)fathom_line_last_byte_us(&line);
         (void)fathom_line_holds_bytes(&line);
-        (void)fathom_line_echo(&line);
+        (void)fathom_line_get_echo(&line);
     }
 }
 
@@ -274,7 +274,7 @@ void main(void)
     listener.gap_us = any_16();
     listener.stale_us = any_32();
     refused();
-    if (fathom_line_init(&line, &config) != FATHOM_READY) return;
+    if (fathom_line_init(&line, &config) != FATHOM_OK) return;
 #ifdef FAIR_SHARE
     fathom_fair_share(&share, &line);
 #endif

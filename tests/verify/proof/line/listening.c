@@ -40,7 +40,7 @@ static void submit(void)
     /*@ assert status == FATHOM_ERR_UNSUPPORTED || status == FATHOM_ERR_ARGUMENT; */
     fathom_line_cancel(&line, &transaction);
     fathom_line_cancel_unit(&line, any_8());
-    const bool is_queued = fathom_line_has(&line, &transaction);
+    const bool is_queued = fathom_line_is_queued(&line, &transaction);
     /*@ assert is_queued == 0; */
 }
 
@@ -67,7 +67,7 @@ static void any_call(void)
         break;
     default:
         (void)fathom_line_is_idle(&line);
-        (void)fathom_line_heard_us(&line);
+        (void)fathom_line_last_byte_us(&line);
     }
 }
 
@@ -86,6 +86,6 @@ void main(void)
     config.busy_us = any_32();
     listener.gap_us = any_16();
     listener.stale_us = any_32();
-    if (fathom_line_init_listening(&line, &config) != FATHOM_READY) return;
+    if (fathom_line_init_listening(&line, &config) != FATHOM_OK) return;
     while (any_bool()) any_call();
 }

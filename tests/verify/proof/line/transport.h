@@ -62,7 +62,7 @@ static void assumed_go_on(void)
     assumed_request->message.exception = any_8();
     if (any_bool()) return;
     assumed_end(
-        (int8_t)(any_bool() ? FATHOM_READY : Frama_C_interval(FATHOM_ERR_OTHER_MASTER, FATHOM_ERR_PORT)));
+        (int8_t)(any_bool() ? FATHOM_OK : Frama_C_interval(FATHOM_ERR_OTHER_MASTER, FATHOM_ERR_PORT)));
 }
 
 static void assumed_cancel(void *ctx, fathom_modbus_request_t *request)

@@ -15,7 +15,7 @@
 static fathom_status_t any_status(void)
 {
     if (any_bool()) return (fathom_status_t)Frama_C_interval(FATHOM_ERR_OTHER_MASTER, FATHOM_ERR_ARGUMENT);
-    return any_bool() ? FATHOM_READY : FATHOM_PENDING;
+    return any_bool() ? FATHOM_OK : FATHOM_PENDING;
 }
 
 static fathom_status_t guard_poll(void *ctx)
@@ -52,7 +52,7 @@ static fathom_contact_timing_t any_timing(void)
 static void look(const fathom_sensor_t *sensor)
 {
     fathom_sample_t sample;
-    if (fathom_poll(sensor, &sample) == FATHOM_READY) {
+    if (fathom_poll(sensor, &sample) == FATHOM_OK) {
         /*@ assert \initialized(&sample.raw) && \initialized(&sample.kind) && \initialized(&sample.probe); */
     }
     (void)fathom_due_us(sensor, 1);
@@ -71,7 +71,7 @@ static void relay(const fathom_pin_t *pin)
     config.level = any_8();
     const fathom_sensor_t none = fathom_a05_relay_sensor(&blank);
     look(&none); /* in zeroed memory */
-    if (fathom_a05_relay_init(&relay, &config) != FATHOM_READY) return;
+    if (fathom_a05_relay_init(&relay, &config) != FATHOM_OK) return;
     const fathom_sensor_t sensor = fathom_a05_relay_sensor(&relay);
     while (any_bool()) look(&sensor);
 }
@@ -120,13 +120,13 @@ static void a_switch(const fathom_pin_t *pin)
     config.address = any_8();
     const fathom_sensor_t none = fathom_a16_switch_sensor(&blank);
     look(&none); /* in zeroed memory */
-    if (fathom_a16_switch_init(&object, &config) != FATHOM_READY) return;
+    if (fathom_a16_switch_init(&object, &config) != FATHOM_OK) return;
     const fathom_sensor_t sensor = fathom_a16_switch_sensor(&object);
     while (any_bool()) {
         look(&sensor);
         const fathom_a16_polarity_t polarity = any_bool() ? FATHOM_A16_POSITIVE : FATHOM_A16_NEGATIVE;
         if (any_bool()) (void)fathom_a16_switch_set_polarity(&object, &modbus, polarity);
-        if (any_bool()) fathom_a16_switch_polarity_is(&object, polarity);
+        if (any_bool()) fathom_a16_switch_note_polarity(&object, polarity);
     }
 }
 

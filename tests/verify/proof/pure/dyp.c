@@ -4,7 +4,7 @@
  *
  * proves: src/sensor/dyp.c
  */
-#include "fathom/sensor/dyp.h"
+#include "fathom/sensor/internal/dyp.h"
 #include "assumptions.h"
 #include "fathom/codec/dyp_stream.h"
 
@@ -29,7 +29,7 @@ static void probes(uint8_t first, uint8_t last)
     measurement.address = any_8();
     measurement.first = first;
     measurement.values = values + FATHOM_DYP_PROBES - (last - first + 1);
-    if (fathom_dyp_measurement_init(&measurement, any_16()) != FATHOM_READY) return;
+    if (fathom_dyp_measurement_init(&measurement, any_16()) != FATHOM_OK) return;
     while (any_bool()) {
         if (any_bool()) {
             const unsigned all = (1u << last) - (1u << (first - 1u));

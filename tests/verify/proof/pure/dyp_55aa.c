@@ -14,9 +14,9 @@ static void prefix(void)
     uint8_t bytes[FATHOM_DYP_MAX_RESPONSE];
     for (uint8_t have = 1; have <= FATHOM_DYP_MAX_RESPONSE; have++) {
         any_bytes(bytes, have);
-        const uint8_t length = fathom_dyp_55aa_length(bytes, have);
+        const uint8_t length = fathom_dyp_55aa_frame_length(bytes, have);
         /*@ assert length <= FATHOM_DYP_MAX_RESPONSE; */
-        (void)fathom_dyp_55aa_valid(bytes, have);
+        (void)fathom_dyp_55aa_is_valid(bytes, have);
     }
 }
 
@@ -25,7 +25,7 @@ static void response(uint8_t command)
 {
     uint8_t frame[FATHOM_DYP_MAX_RESPONSE];
     uint16_t values[FATHOM_DYP_PROBES];
-    for (uint8_t i = 0; i != fathom_dyp_55aa_values(command); i++) values[i] = any_16();
+    for (uint8_t i = 0; i != fathom_dyp_55aa_value_count(command); i++) values[i] = any_16();
     const uint8_t length = fathom_dyp_55aa_encode_response(frame, any_8(), command, values);
     /*@ assert length <= FATHOM_DYP_MAX_RESPONSE; */
     const uint8_t expected = fathom_dyp_55aa_response_length(command);

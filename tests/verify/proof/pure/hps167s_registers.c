@@ -46,9 +46,9 @@ static void reconnect(void)
 {
     uint16_t registers[FATHOM_HPS167S_RECONNECT_COUNT];
     fathom_hps167s_encode_reconnect_time(any_32(), false, registers);
-    (void)fathom_hps167s_reconnect_time_ms(registers[0], registers[1], any_bool());
+    (void)fathom_hps167s_decode_reconnect_time(registers[0], registers[1], any_bool());
     fathom_hps167s_encode_reconnect_time(any_32(), true, registers);
-    (void)fathom_hps167s_reconnect_time_ms(registers[0], registers[1], any_bool());
+    (void)fathom_hps167s_decode_reconnect_time(registers[0], registers[1], any_bool());
 }
 
 static void measurement(void)
@@ -57,7 +57,7 @@ static void measurement(void)
     fathom_sample_t sample;
     fathom_hps167s_limits_t limits;
     any_registers(registers, FATHOM_HPS167S_MEASUREMENT_COUNT);
-    if (fathom_hps167s_decode(registers, &sample) == FATHOM_READY) {
+    if (fathom_hps167s_decode(registers, &sample) == FATHOM_OK) {
         /*@ assert \initialized(&sample.kind) && \initialized(&sample.magnitude); */
     }
     limits.max_mm = any_16();
@@ -76,6 +76,6 @@ int main(void)
     measurement();
     (void)fathom_hps167s_baud(any_16());
     (void)fathom_hps167s_baud_code(any_32());
-    (void)fathom_hps167s_temperature_dc(fathom_hps167s_signed(any_16()), any_8_in(1, UINT8_MAX));
+    (void)fathom_hps167s_temperature_dc(fathom_hps167s_to_signed(any_16()), any_8_in(1, UINT8_MAX));
     return 0;
 }

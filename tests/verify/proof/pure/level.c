@@ -2,10 +2,10 @@
 /*
  * Any tank, any distance: each shape, for a table any points, which need not grow, and any number of them.
  *
- * proves: src/sensor/level.c
+ * proves: src/processing/level.c
  * options: -eva-split-return full -eva-domains-function octagon:fathom_tank_table
  */
-#include "fathom/sensor/level.h"
+#include "fathom/processing/level.h"
 #include "assumptions.h"
 
 enum { POINTS = 1000 };
@@ -26,7 +26,7 @@ static void any_tank(fathom_tank_volume_t volume, uint16_t height_mm)
     tank.height_mm = height_mm;
     tank.offset_mm = Frama_C_short_interval(INT16_MIN, INT16_MAX);
     (void)fathom_level_check(&tank);
-    if (fathom_level(&tank, any_16(), &level) == FATHOM_READY) {
+    if (fathom_level_from_distance(&tank, any_16(), &level) == FATHOM_OK) {
         /*@ assert \initialized(&level.volume) && \initialized(&level.level_mm) && \initialized(&level.per_mille); */
     }
 }

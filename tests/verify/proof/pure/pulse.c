@@ -19,7 +19,7 @@
 static void look(const fathom_sensor_t *sensor)
 {
     fathom_sample_t sample;
-    if (fathom_poll(sensor, &sample) == FATHOM_READY) {
+    if (fathom_poll(sensor, &sample) == FATHOM_OK) {
         /*@ assert \initialized(&sample.raw) && \initialized(&sample.kind) && \initialized(&sample.probe); */
     }
     (void)fathom_due_us(sensor, 1);
@@ -52,7 +52,7 @@ static void any_pwm(const fathom_clock_t *clock, const fathom_capture_t *capture
     config.window.max_mm = any_16();
     config.in_air = any_bool();
     config.air_dc = Frama_C_short_interval(INT16_MIN, INT16_MAX);
-    if (fathom_a16_pwm_init(&pwm, &config) != FATHOM_READY) return;
+    if (fathom_a16_pwm_init(&pwm, &config) != FATHOM_OK) return;
     polls(&pwm);
 }
 
@@ -64,7 +64,7 @@ static fathom_status_t any_poll(void *ctx, fathom_sample_t *sample)
 {
     /*@ assert ctx == &assumed_ctx; */
     if (any_bool()) return (fathom_status_t)Frama_C_interval(FATHOM_ERR_OTHER_MASTER, FATHOM_ERR_ARGUMENT);
-    return any_bool() ? FATHOM_READY : FATHOM_PENDING;
+    return any_bool() ? FATHOM_OK : FATHOM_PENDING;
 }
 
 /* A sensor in zeroed memory. */

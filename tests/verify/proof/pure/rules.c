@@ -3,12 +3,12 @@
  * What is made of samples without a clock of its own: the rule of the switch, that of the relay, the alarm. Any config,
  * any samples at any times, also where init has refused the config.
  *
- * proves: src/engine/debounce.c src/sensor/a05_relay_rule.c src/sensor/alarm.c
+ * proves: src/processing/debounce.c src/sensor/a05_relay_rule.c src/processing/alarm.c
  * options: -eva-slevel-function debounce:1,relay_rule:1,alarm:1
  */
 #include "any_sample.h"
+#include "fathom/processing/alarm.h"
 #include "fathom/sensor/a05_relay_rule.h"
-#include "fathom/sensor/alarm.h"
 
 static void debounce(void)
 {
@@ -23,10 +23,10 @@ static void debounce(void)
     (void)fathom_debounce_init(&debounce, &config);
     while (any_bool()) {
         const fathom_sample_t sample = any_sample();
-        (void)fathom_debounce_sample(&debounce, &sample);
-        if (any_bool()) (void)fathom_debounce_verdict(&debounce, any_8(), any_32());
-        if (any_bool()) (void)fathom_debounce_distance(&debounce, any_16(), any_32());
-        if (any_bool()) (void)fathom_debounce_time(&debounce, any_32());
+        (void)fathom_debounce_add_sample(&debounce, &sample);
+        if (any_bool()) (void)fathom_debounce_add_verdict(&debounce, any_8(), any_32());
+        if (any_bool()) (void)fathom_debounce_add_distance(&debounce, any_16(), any_32());
+        if (any_bool()) (void)fathom_debounce_advance(&debounce, any_32());
         (void)fathom_debounce_compare(&debounce, any_16());
     }
 }
@@ -40,11 +40,11 @@ static void relay_rule(void)
     config.threshold_mm = any_16();
     config.probes = any_8();
     config.equal = any_8();
-    if (fathom_a05_relay_rule_init(&rule, &config) != FATHOM_READY) return;
+    if (fathom_a05_relay_rule_init(&rule, &config) != FATHOM_OK) return;
     while (any_bool()) {
         const fathom_sample_t sample = any_sample();
-        (void)fathom_a05_relay_rule_sample(&rule, &sample);
-        if (any_bool()) (void)fathom_debounce_time(&rule.debounce, any_32());
+        (void)fathom_a05_relay_rule_add_sample(&rule, &sample);
+        if (any_bool()) (void)fathom_debounce_advance(&rule.debounce, any_32());
     }
 }
 
@@ -64,10 +64,10 @@ static void alarm(void)
     (void)fathom_alarm_init(&alarm, &config);
     while (any_bool()) {
         const fathom_sample_t sample = any_sample();
-        if (any_bool()) (void)fathom_alarm_sample(&alarm, &sample);
+        if (any_bool()) (void)fathom_alarm_add_sample(&alarm, &sample);
         if (any_bool())
-            (void)fathom_alarm_status(
-                &alarm, (fathom_status_t)Frama_C_interval(FATHOM_ERR_OTHER_MASTER, FATHOM_READY), any_32());
+            (void)fathom_alarm_add_status(
+                &alarm, (fathom_status_t)Frama_C_interval(FATHOM_ERR_OTHER_MASTER, FATHOM_OK), any_32());
         (void)fathom_alarm_is_on(&alarm);
     }
 }

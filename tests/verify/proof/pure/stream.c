@@ -29,11 +29,11 @@ static void any_stream(uint8_t length)
     config.gap_us = any_16();
     config.length = length;
     any_memory(storage, sizeof storage);
-    if (fathom_stream_init(&stream, &config, any_32()) != FATHOM_READY) return;
+    if (fathom_stream_init(&stream, &config, any_32()) != FATHOM_OK) return;
     while (any_bool()) {
         any_piece(&stream);
         (void)fathom_stream_due_us(&stream, any_32());
-        if (fathom_stream_poll(&stream, any_32()) == FATHOM_READY) {
+        if (fathom_stream_poll(&stream, any_32()) == FATHOM_OK) {
             const uint8_t *const frame = fathom_stream_frame(&stream);
             const uint8_t first = frame[0];
             const uint8_t last = frame[length - 1];

@@ -14,7 +14,7 @@
 /*@ assigns \nothing;
     ensures \result == values_of(command);
 */
-uint8_t fathom_dyp_55aa_values(uint8_t command);
+uint8_t fathom_dyp_55aa_value_count(uint8_t command);
 
 /*@ assigns \nothing;
     ensures \result == length_of(command);
@@ -51,13 +51,13 @@ uint8_t fathom_dyp_55aa_encode_request(uint8_t *frame, uint8_t address, uint8_t 
     ensures more: \result != 0 && have <= 3 ==> \result == 4;
     ensures known: \result != 0 && have > 3 ==> \result == length_of(bytes[3]);
 */
-uint8_t fathom_dyp_55aa_length(const uint8_t *bytes, uint8_t have);
+uint8_t fathom_dyp_55aa_frame_length(const uint8_t *bytes, uint8_t have);
 
 /*@ requires 1 <= length && \valid_read(frame + (0 .. length - 1));
     assigns \nothing;
     ensures \result != 0 <==> frame[length - 1] == sum_of(frame, length - 1);
 */
-bool fathom_dyp_55aa_valid(const uint8_t *frame, uint8_t length);
+bool fathom_dyp_55aa_is_valid(const uint8_t *frame, uint8_t length);
 
 /*@ requires \valid_read(frame + (0 .. 3)) && \valid_read(frame + (0 .. 3 + 2 * values_of(frame[3])));
     requires \valid(values + (0 .. values_of(frame[3]) - 1));

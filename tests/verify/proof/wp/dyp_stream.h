@@ -8,13 +8,13 @@
     assigns \nothing;
     ensures \result == sum_of(bytes, length);
 */
-uint8_t fathom_dyp_sum(const uint8_t *bytes, uint8_t length);
+uint8_t fathom_dyp_checksum(const uint8_t *bytes, uint8_t length);
 
 /*@ requires 1 <= length && \valid_read(frame + (0 .. length - 1));
     assigns \nothing;
     ensures \result != 0 <==> frame[0] == 0xFF && frame[length - 1] == sum_of(frame, length - 1);
 */
-bool fathom_dyp_stream_valid(const uint8_t *frame, uint8_t length);
+bool fathom_dyp_stream_is_valid(const uint8_t *frame, uint8_t length);
 
 /*@ requires probes <= 4 && \valid_read(frame + (0 .. 2 * probes)) && \valid(values + (0 .. probes - 1));
     requires \separated(values + (0 .. probes - 1), frame + (0 .. 2 * probes));

@@ -35,7 +35,7 @@
     assigns \nothing;
     ensures \result == byte_of((uint16_t *)registers, n);
 */
-static inline uint8_t fathom_hps167s_byte(const uint16_t *registers, uint8_t n);
+static inline uint8_t fathom_hps167s_get_byte(const uint16_t *registers, uint8_t n);
 
 /*@ requires \valid_read(registers + n / 2);
     assigns \nothing;
@@ -118,8 +118,8 @@ int32_t fathom_hps167s_temperature_dc(int16_t fahrenheit, uint8_t steps_per_degr
     ensures max: limits->max_mm == (\old(limits->max_mm) == 0 ? 30000 : \old(limits->max_mm));
     ensures over: limits->over_range_mm == (\old(limits->over_range_mm) == 0 ? 65530 : \old(limits->over_range_mm));
     ensures min: limits->min_mm == (\old(limits->min_mm) == 0 ? 80 : \old(limits->min_mm));
-    ensures results: \result == FATHOM_READY || \result == FATHOM_ERR_ARGUMENT;
-    ensures ready: \result == FATHOM_READY <==>
+    ensures results: \result == FATHOM_OK || \result == FATHOM_ERR_ARGUMENT;
+    ensures ready: \result == FATHOM_OK <==>
         limits->min_mm <= limits->max_mm < limits->over_range_mm && limits->over_range_mm != 65535;
 */
 fathom_status_t fathom_hps167s_complete_limits(fathom_hps167s_limits_t *limits);
@@ -127,24 +127,24 @@ fathom_status_t fathom_hps167s_complete_limits(fathom_hps167s_limits_t *limits);
 /*@ requires \valid_read(registers + (0 .. 3)) && \valid(sample) && \separated(sample, registers + (0 .. 3));
     requires limits == \null || (\valid_read(limits) && \separated(sample, limits));
     assigns *sample;
-    ensures results: \result == FATHOM_READY || \result == FATHOM_ERR_MALFORMED;
-    ensures kept: \result != FATHOM_READY ==> sample->kind == \old(sample->kind) && sample->raw == \old(sample->raw) &&
+    ensures results: \result == FATHOM_OK || \result == FATHOM_ERR_MALFORMED;
+    ensures kept: \result != FATHOM_OK ==> sample->kind == \old(sample->kind) && sample->raw == \old(sample->raw) &&
         sample->distance_mm == \old(sample->distance_mm) && sample->magnitude == \old(sample->magnitude) &&
         sample->ambient == \old(sample->ambient) && sample->precision == \old(sample->precision) &&
         sample->interference == \old(sample->interference);
-    ensures failed: is_abnormal((uint16_t *)registers) ==> \result == FATHOM_READY && sample->kind == FATHOM_FAULT &&
+    ensures failed: is_abnormal((uint16_t *)registers) ==> \result == FATHOM_OK && sample->kind == FATHOM_FAULT &&
         sample->distance_mm == 0 && sample->magnitude == 0;
-    ensures refused: \result != FATHOM_READY <==> !is_abnormal((uint16_t *)registers) &&
+    ensures refused: \result != FATHOM_OK <==> !is_abnormal((uint16_t *)registers) &&
         (byte_of((uint16_t *)registers, 4) > 16 ||
          (limits == \null ? !is_within(registers[0], 30000, 65530) :
                             !is_within(registers[0], limits->max_mm, limits->over_range_mm)));
-    ensures fields: \result == FATHOM_READY ==> sample->raw == registers[0] && sample->precision == registers[3] &&
+    ensures fields: \result == FATHOM_OK ==> sample->raw == registers[0] && sample->precision == registers[3] &&
         sample->ambient == byte_of((uint16_t *)registers, 5) && sample->interference == 0;
-    ensures magnitude: \result == FATHOM_READY && !is_abnormal((uint16_t *)registers) ==>
+    ensures magnitude: \result == FATHOM_OK && !is_abnormal((uint16_t *)registers) ==>
         sample->magnitude == (registers[1] << byte_of((uint16_t *)registers, 4));
-    ensures distance: \result == FATHOM_READY ==>
+    ensures distance: \result == FATHOM_OK ==>
         sample->distance_mm == (sample->kind == FATHOM_TARGET ? registers[0] : 0);
-    ensures kind: \result == FATHOM_READY && !is_abnormal((uint16_t *)registers) ==> sample->kind ==
+    ensures kind: \result == FATHOM_OK && !is_abnormal((uint16_t *)registers) ==> sample->kind ==
         (registers[0] >= (limits == \null ? 65530 : limits->over_range_mm) ? FATHOM_NO_TARGET :
          registers[0] >= (limits == \null ? 80 : limits->min_mm) ? FATHOM_TARGET : FATHOM_UNKNOWN);
 */
@@ -153,12 +153,12 @@ fathom_status_t fathom_hps167s_decode_within(const fathom_hps167s_limits_t *limi
 
 /*@ requires \valid_read(registers + (0 .. 3)) && \valid(sample) && \separated(sample, registers + (0 .. 3));
     assigns *sample;
-    ensures refused: \result != FATHOM_READY <==> !is_abnormal((uint16_t *)registers) &&
+    ensures refused: \result != FATHOM_OK <==> !is_abnormal((uint16_t *)registers) &&
         (byte_of((uint16_t *)registers, 4) > 16 || !is_within(registers[0], 30000, 65530));
     ensures failed: is_abnormal((uint16_t *)registers) ==> sample->kind == FATHOM_FAULT;
-    ensures kind: \result == FATHOM_READY && !is_abnormal((uint16_t *)registers) ==> sample->kind ==
+    ensures kind: \result == FATHOM_OK && !is_abnormal((uint16_t *)registers) ==> sample->kind ==
         (registers[0] >= 65530 ? FATHOM_NO_TARGET : registers[0] >= 80 ? FATHOM_TARGET : FATHOM_UNKNOWN);
-    ensures distance: \result == FATHOM_READY ==>
+    ensures distance: \result == FATHOM_OK ==>
         sample->distance_mm == (sample->kind == FATHOM_TARGET ? registers[0] : 0);
 */
 fathom_status_t fathom_hps167s_decode(const uint16_t registers[4], fathom_sample_t *sample);
@@ -166,7 +166,7 @@ fathom_status_t fathom_hps167s_decode(const uint16_t registers[4], fathom_sample
 /*@ assigns \nothing;
     ensures \result == ms_of(first, second, low_word_first);
 */
-uint32_t fathom_hps167s_reconnect_time_ms(uint16_t first, uint16_t second, bool low_word_first);
+uint32_t fathom_hps167s_decode_reconnect_time(uint16_t first, uint16_t second, bool low_word_first);
 
 /*@ requires \valid(registers + (0 .. 1));
     assigns registers[0 .. 1];
@@ -183,7 +183,7 @@ void fathom_hps167s_encode_reconnect_time(uint32_t ms, bool low_word_first, uint
         256 * byte_of((uint16_t *)registers, 3) + byte_of((uint16_t *)registers, 4),
         256 * byte_of((uint16_t *)registers, 5) + byte_of((uint16_t *)registers, 6), low_word_first);
 */
-uint32_t fathom_hps167s_told_reconnect_time_ms(const uint16_t registers[4], bool low_word_first);
+uint32_t fathom_hps167s_configured_reconnect_time_ms(const uint16_t registers[4], bool low_word_first);
 
 /*@ requires \valid_read(registers + (0 .. 3)) && \valid(configuration);
     requires \separated(configuration, registers + (0 .. 3));

@@ -7,8 +7,8 @@ SUM = '''loop invariant 0 <= length <= \\at(length, Pre) && bytes == \\at(bytes,
     loop variant length;'''
 
 ROWS = (
-    ('dyp_stream', 'fathom_dyp_sum', 'for (; length != 0u; length--)', SUM),
-    ('dyp_stream', 'fathom_dyp_stream_valid', 'for (length--; length != 0u;', '''
+    ('dyp_stream', 'fathom_dyp_checksum', 'for (; length != 0u; length--)', SUM),
+    ('dyp_stream', 'fathom_dyp_stream_is_valid', 'for (length--; length != 0u;', '''
     loop invariant 0 <= length < \\at(length, Pre) && frame == \\at(frame, Pre) + (\\at(length, Pre) - 1 - length);
     loop invariant sum == sum_of(\\at(frame, Pre), \\at(length, Pre) - 1 - length);
     loop assigns length, frame, sum;

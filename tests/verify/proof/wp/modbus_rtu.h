@@ -155,22 +155,22 @@ bool fathom_modbus_rtu_is_request(const fathom_modbus_message_t *message, const 
         \separated(message->values + (0 .. message->head[5] - 1), message, frame + (0 .. 259));
     requires \separated(message, frame + (0 .. 259));
     assigns message->head[0], message->exception, message->values[0 .. message->head[5] - 1];
-    ensures results: \result == FATHOM_READY || \result == FATHOM_ERR_EXCEPTION || \result == FATHOM_ERR_MALFORMED ||
+    ensures results: \result == FATHOM_OK || \result == FATHOM_ERR_EXCEPTION || \result == FATHOM_ERR_MALFORMED ||
         \result == FATHOM_PENDING;
     ensures pending: \result == FATHOM_PENDING <==> frame[0] != \old(message->head[0]) && \old(message->head[0]) != 255;
     ensures read_ready: frame[0] == \old(message->head[0]) && frame[1] == 3 && message->head[1] == 3 &&
-        frame[2] == 2 * message->head[5] ==> \result == FATHOM_READY;
+        frame[2] == 2 * message->head[5] ==> \result == FATHOM_OK;
     ensures exception: \result == FATHOM_ERR_EXCEPTION <==>
         \result != FATHOM_PENDING && frame[1] == \old(message->head[1]) + 128;
     ensures code: \result == FATHOM_ERR_EXCEPTION ==> message->exception == frame[2];
     ensures kept: \result != FATHOM_ERR_EXCEPTION ==> message->exception == \old(message->exception);
-    ensures head_kept: \result != FATHOM_READY ==> message->head[0] == \old(message->head[0]);
-    ensures values_kept: \result != FATHOM_READY || message->head[1] != 3 ==>
+    ensures head_kept: \result != FATHOM_OK ==> message->head[0] == \old(message->head[0]);
+    ensures values_kept: \result != FATHOM_OK || message->head[1] != 3 ==>
         \forall integer i; 0 <= i < message->head[5] ==> message->values[i] == \old(message->values[i]);
-    ensures unit: \result == FATHOM_READY ==> message->head[0] == frame[0] && frame[1] == message->head[1];
-    ensures read: \result == FATHOM_READY && message->head[1] == 3 ==>
+    ensures unit: \result == FATHOM_OK ==> message->head[0] == frame[0] && frame[1] == message->head[1];
+    ensures read: \result == FATHOM_OK && message->head[1] == 3 ==>
         frame[2] == 2 * message->head[5] && registers((uint8_t *)frame + 3, message->values, message->head[5]);
-    ensures write: \result == FATHOM_READY && message->head[1] != 3 ==>
+    ensures write: \result == FATHOM_OK && message->head[1] != 3 ==>
         same_six((uint8_t *)frame, &message->head[0]);
 */
 fathom_status_t fathom_modbus_rtu_parse_response(fathom_modbus_message_t *message, const uint8_t *frame);
@@ -189,16 +189,16 @@ uint8_t fathom_modbus_rtu_request_length(const uint8_t *bytes, uint8_t have);
     requires \valid(message->values + (0 .. capacity - 1));
     requires \separated(message, frame + (0 .. 263), message->values + (0 .. capacity - 1));
     assigns message->head[0 .. 5], message->exception, message->values[0 .. capacity - 1];
-    ensures results: \result == FATHOM_READY || \result == FATHOM_ERR_EXCEPTION;
+    ensures results: \result == FATHOM_OK || \result == FATHOM_ERR_EXCEPTION;
     ensures head: same_head(&message->head[0], (uint8_t *)frame, 6);
-    ensures ready: \result == FATHOM_READY <==> frame[1] == 6 ||
+    ensures ready: \result == FATHOM_OK <==> frame[1] == 6 ||
         ((frame[1] == 3 || (frame[1] == 16 && frame[6] == 2 * frame[5])) && frame[4] == 0 && frame[5] <= capacity &&
          is_count(frame[1], frame[5]));
-    ensures why: message->exception == (\result == FATHOM_READY ? 0 :
+    ensures why: message->exception == (\result == FATHOM_OK ? 0 :
         frame[1] == 3 || frame[1] == 6 || frame[1] == 16 ? 3 : 1);
-    ensures values: \result == FATHOM_READY && frame[1] == 16 ==>
+    ensures values: \result == FATHOM_OK && frame[1] == 16 ==>
         registers((uint8_t *)frame + 7, message->values, frame[5]);
-    ensures values_kept: \result != FATHOM_READY || frame[1] != 16 ==>
+    ensures values_kept: \result != FATHOM_OK || frame[1] != 16 ==>
         \forall integer i; 0 <= i < capacity ==> message->values[i] == \old(message->values[i]);
 */
 fathom_status_t fathom_modbus_rtu_parse_request(fathom_modbus_message_t *message, const uint8_t *frame,

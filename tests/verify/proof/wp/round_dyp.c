@@ -12,7 +12,7 @@
 bool stream(uint8_t *frame, const uint16_t *values, uint16_t *back, uint8_t probes)
 {
     const uint8_t length = fathom_dyp_stream_encode(frame, values, probes);
-    const bool valid = fathom_dyp_stream_valid(frame, length);
+    const bool valid = fathom_dyp_stream_is_valid(frame, length);
     fathom_dyp_stream_decode(frame, back, probes);
     return valid;
 }
@@ -26,8 +26,8 @@ bool stream(uint8_t *frame, const uint16_t *values, uint16_t *back, uint8_t prob
 bool response(uint8_t *frame, uint8_t address, uint8_t command, const uint16_t *values, uint16_t *back)
 {
     const uint8_t length = fathom_dyp_55aa_encode_response(frame, address, command, values);
-    const bool valid = fathom_dyp_55aa_valid(frame, length);
-    const uint8_t whole = fathom_dyp_55aa_length(frame, length);
+    const bool valid = fathom_dyp_55aa_is_valid(frame, length);
+    const uint8_t whole = fathom_dyp_55aa_frame_length(frame, length);
     /*@ assert whole: whole == length; */
     fathom_dyp_55aa_decode(frame, back);
     return valid;

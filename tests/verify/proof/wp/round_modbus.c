@@ -36,7 +36,7 @@ bool accepted(const uint8_t *frame, uint8_t length)
     requires \valid(got->values + (0 .. 122));
     requires \separated(frame + (0 .. 263), sent, got, sent->values + (0 .. 122), got->values + (0 .. 122));
     assigns frame[0 .. 254], got->head[0 .. 5], got->exception, got->values[0 .. 122];
-    ensures ready: \result == FATHOM_READY;
+    ensures ready: \result == FATHOM_OK;
     ensures head: same_six(&got->head[0], &sent->head[0]);
     ensures same: \forall integer i; 0 <= i < sent->head[5] ==> got->values[i] == sent->values[i];
 */
@@ -59,7 +59,7 @@ parse:
     /*@ assert head_kept: same_six(frame, &sent->head[0]) && frame[6] == 2 * frame[5]; */
     /*@ assert data_kept: registers(frame + 7, sent->values, frame[5]); */
     /*@ assert head_got: same_six(&got->head[0], frame); */
-    /*@ assert ready: status == FATHOM_READY; */
+    /*@ assert ready: status == FATHOM_OK; */
     /*@ assert data_got: registers(frame + 7, got->values, frame[5]); */
     return status;
 }
@@ -70,7 +70,7 @@ parse:
     requires \valid(got->values + (0 .. 124));
     requires \separated(frame + (0 .. 259), sent, got, sent->values + (0 .. 124), got->values + (0 .. 124));
     assigns frame[0 .. 254], got->head[0], got->exception, got->values[0 .. got->head[5] - 1];
-    ensures ready: \result == FATHOM_READY;
+    ensures ready: \result == FATHOM_OK;
     ensures same: \forall integer i; 0 <= i < sent->head[5] ==> got->values[i] == sent->values[i];
 */
 fathom_status_t read_response(const fathom_modbus_message_t *sent, uint8_t *frame,
@@ -90,7 +90,7 @@ parse:
             sent->values[i] == \at(sent->values[i], parse); */
     /*@ assert head_kept: frame[0] == sent->head[0] && frame[1] == 3 && frame[2] == 2 * sent->head[5]; */
     /*@ assert data_kept: registers(frame + 3, sent->values, sent->head[5]); */
-    /*@ assert ready: status == FATHOM_READY; */
+    /*@ assert ready: status == FATHOM_OK; */
     /*@ assert data_got: registers(frame + 3, got->values, sent->head[5]); */
     return status;
 }

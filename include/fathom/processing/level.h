@@ -19,7 +19,7 @@ extern "C" {
  *     static const fathom_level_config_t tank = {
  *         .volume = fathom_tank_horizontal_cylinder, .mounting_mm = 2100, .height_mm = 2000, .capacity = 5000};
  *     fathom_level_t level;
- *     if (sample.kind == FATHOM_TARGET && fathom_level(&tank, sample.distance_mm, &level) == FATHOM_READY)
+ *     if (sample.kind == FATHOM_TARGET && fathom_level_from_distance(&tank, sample.distance_mm, &level) == FATHOM_OK)
  *         show(level.level_mm, level.volume);
  *
  * A sample of another kind than FATHOM_TARGET has no distance, so it has no level. FATHOM_NO_TARGET may be an empty
@@ -70,7 +70,7 @@ struct fathom_level_config {
     int16_t offset_mm;    /**< Added to each distance, -32768..32767 mm. */
 };
 
-/** @brief The result of fathom_level(). */
+/** @brief The result of fathom_level_from_distance(). */
 typedef struct {
     uint32_t volume; /**< In the unit of the configuration. */
     int32_t
@@ -80,7 +80,7 @@ typedef struct {
 
 /**
  * @brief Checks a configuration. Call it once for a configuration that is not written by hand.
- * @retval FATHOM_READY         Each member is inside its range.
+ * @retval FATHOM_OK         Each member is inside its range.
  * @retval FATHOM_ERR_ARGUMENT  There is no volume function, `mounting_mm` or `height_mm` is 0, the points do not
  *                              grow, or the volume of the full tank is 0 because there is no capacity, or there are
  *                              no points.
@@ -89,11 +89,12 @@ fathom_status_t fathom_level_check(const fathom_level_config_t *config);
 
 /**
  * @brief Converts a distance, 0..65535 mm.
- * @param out  Written with FATHOM_READY only.
- * @retval FATHOM_READY         `*out` is the level.
+ * @param out  Written with FATHOM_OK only.
+ * @retval FATHOM_OK         `*out` is the level.
  * @retval FATHOM_ERR_ARGUMENT  There is no volume function, or `height_mm` is 0, as in zeroed memory.
  */
-fathom_status_t fathom_level(const fathom_level_config_t *config, uint16_t distance_mm, fathom_level_t *out);
+fathom_status_t fathom_level_from_distance(const fathom_level_config_t *config, uint16_t distance_mm,
+                                           fathom_level_t *out);
 
 #ifdef __cplusplus
 }

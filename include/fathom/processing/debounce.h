@@ -22,9 +22,9 @@ extern "C" {
  *
  *     fathom_debounce_t gate;
  *     fathom_debounce_init(&gate, &(fathom_debounce_config_t){.threshold_mm = 800});
- *     if (fathom_poll(&sensor, &sample) == FATHOM_READY && fathom_debounce_sample(&gate, &sample))
+ *     if (fathom_poll(&sensor, &sample) == FATHOM_OK && fathom_debounce_add_sample(&gate, &sample))
  *         open_or_close(gate.level);
- *     if (fathom_debounce_time(&gate, clock.now_us(clock.ctx))) warn();
+ *     if (fathom_debounce_advance(&gate, clock.now_us(clock.ctx))) warn();
  *
  * | measurement | input |
  * |---|---|
@@ -38,7 +38,7 @@ extern "C" {
  *
  * If no measurement counts for more than `unknown_us`, the level becomes FATHOM_UNKNOWN. Treat that as a broken wire.
  * A new level then needs a whole row and does not wait for `hold_us`. If samples stop, only the loop knows the time,
- * so it must call fathom_debounce_time().
+ * so it must call fathom_debounce_advance().
  *
  * Otherwise only a measurement changes the level. If `hold_us` delays a change, the first measurement after it makes
  * the change, if its row is still unbroken.
@@ -92,7 +92,7 @@ typedef struct {
 /**
  * @brief Initialises a switch without a measurement and without a level. The first level that a row makes does not wait
  * for `hold_us`. If the function fails, the switch is zeroed; it then never has a level.
- * @retval FATHOM_READY         The switch is ready.
+ * @retval FATHOM_OK         The switch is ready.
  * @retval FATHOM_ERR_ARGUMENT  A member is outside its range.
  */
 fathom_status_t fathom_debounce_init(fathom_debounce_t *debounce, const fathom_debounce_config_t *config);
@@ -107,13 +107,13 @@ fathom_status_t fathom_debounce_init(fathom_debounce_t *debounce, const fathom_d
  * @param now_us   Time of the measurement.
  * @return True if the level changed, also from none to the first one, or to unknown.
  */
-bool fathom_debounce_verdict(fathom_debounce_t *debounce, uint8_t verdict, uint32_t now_us);
+bool fathom_debounce_add_verdict(fathom_debounce_t *debounce, uint8_t verdict, uint32_t now_us);
 
-/** @brief Adds a distance, 0..65535 mm. As fathom_debounce_verdict(). */
-bool fathom_debounce_distance(fathom_debounce_t *debounce, uint16_t distance_mm, uint32_t now_us);
+/** @brief Adds a distance, 0..65535 mm. As fathom_debounce_add_verdict(). */
+bool fathom_debounce_add_distance(fathom_debounce_t *debounce, uint16_t distance_mm, uint32_t now_us);
 
-/** @brief Adds any sample, at its `time_us`. As fathom_debounce_verdict(). */
-bool fathom_debounce_sample(fathom_debounce_t *debounce, const fathom_sample_t *sample);
+/** @brief Adds any sample, at its `time_us`. As fathom_debounce_add_verdict(). */
+bool fathom_debounce_add_sample(fathom_debounce_t *debounce, const fathom_sample_t *sample);
 
 /**
  * @brief Advances the switch to `now_us` without a measurement.
@@ -123,7 +123,7 @@ bool fathom_debounce_sample(fathom_debounce_t *debounce, const fathom_sample_t *
  *
  * @return True if the level became FATHOM_UNKNOWN.
  */
-bool fathom_debounce_time(fathom_debounce_t *debounce, uint32_t now_us);
+bool fathom_debounce_advance(fathom_debounce_t *debounce, uint32_t now_us);
 
 /** @brief Compares a distance with the threshold. Returns FATHOM_NEAR, FATHOM_FAR, or 0 if it is equal and the level
  * holds. */

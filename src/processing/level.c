@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "fathom/sensor/level.h"
+#include "fathom/processing/level.h"
 
 static uint32_t to_nearest(uint32_t number, uint32_t divisor) { return (number + (divisor / 2u)) / divisor; }
 
@@ -75,10 +75,11 @@ fathom_status_t fathom_level_check(const fathom_level_config_t *config)
     for (size_t i = 1; i < config->point_count; i++)
         if ((points[i].level_mm <= points[i - 1u].level_mm) || (points[i].volume <= points[i - 1u].volume))
             return FATHOM_ERR_ARGUMENT;
-    return (config->volume(config, config->height_mm) != 0u) ? FATHOM_READY : FATHOM_ERR_ARGUMENT;
+    return (config->volume(config, config->height_mm) != 0u) ? FATHOM_OK : FATHOM_ERR_ARGUMENT;
 }
 
-fathom_status_t fathom_level(const fathom_level_config_t *config, uint16_t distance_mm, fathom_level_t *out)
+fathom_status_t fathom_level_from_distance(const fathom_level_config_t *config, uint16_t distance_mm,
+                                           fathom_level_t *out)
 {
     const uint16_t height_mm = config->height_mm;
     const int32_t level_mm = (int32_t)config->mounting_mm - (int32_t)distance_mm - config->offset_mm;
@@ -89,5 +90,5 @@ fathom_status_t fathom_level(const fathom_level_config_t *config, uint16_t dista
     out->level_mm = level_mm;
     /* 64 times both: or GCC sees that a signed division will do, of which a Cortex-M0+ has no other use: 484 bytes. */
     out->per_mille = (uint16_t)to_nearest(UINT32_C(64000) * inside_mm, UINT32_C(64) * height_mm);
-    return FATHOM_READY;
+    return FATHOM_OK;
 }

@@ -20,8 +20,8 @@ extern "C" {
  *     static const fathom_alarm_config_t bumper = {.when = FATHOM_NEAR, .on_mm = 500, .off_mm = 600,
  *         .if_unknown = FATHOM_ALARM_ON, .if_no_response = FATHOM_ALARM_ON};
  *     status = fathom_poll(&sensor, &sample);
- *     if (status == FATHOM_READY ? fathom_alarm_sample(&alarm, &sample)
- *                                : fathom_alarm_status(&alarm, status, clock.now_us(clock.ctx)))
+ *     if (status == FATHOM_OK ? fathom_alarm_add_sample(&alarm, &sample)
+ *                                : fathom_alarm_add_status(&alarm, status, clock.now_us(clock.ctx)))
  *         stop_or_go(fathom_alarm_is_on(&alarm));
  *
  * | state | when it is reached |
@@ -99,7 +99,7 @@ typedef struct {
  * If the function fails, the alarm is zeroed: its state is 0 and never changes, and fathom_alarm_is_on() is false.
  * Check the result.
  *
- * @retval FATHOM_READY         The alarm is ready.
+ * @retval FATHOM_OK         The alarm is ready.
  * @retval FATHOM_ERR_ARGUMENT  A required member is missing, or a member is outside its range.
  */
 fathom_status_t fathom_alarm_init(fathom_alarm_t *alarm, const fathom_alarm_config_t *config);
@@ -112,7 +112,7 @@ fathom_status_t fathom_alarm_init(fathom_alarm_t *alarm, const fathom_alarm_conf
  *
  * @return True if the state changed.
  */
-bool fathom_alarm_sample(fathom_alarm_t *alarm, const fathom_sample_t *sample);
+bool fathom_alarm_add_sample(fathom_alarm_t *alarm, const fathom_sample_t *sample);
 
 /**
  * @brief Adds a result without a sample. A time before that of the last sample has no effect on the state.
@@ -121,12 +121,12 @@ bool fathom_alarm_sample(fathom_alarm_t *alarm, const fathom_sample_t *sample);
  * |---|---|
  * | FATHOM_PENDING, FATHOM_ERR_LINE_BUSY, FATHOM_ERR_OTHER_MASTER | time has passed; nothing is known of the device |
  * | FATHOM_ERR_MALFORMED, FATHOM_ERR_EXCEPTION, FATHOM_ERR_WARMING_UP | the device responds without a distance |
- * | FATHOM_READY | the same: a sample of another probe, or a sample without a median |
+ * | FATHOM_OK | the same: a sample of another probe, or a sample without a median |
  * | other errors | the device does not respond |
  *
  * @return True if the state changed.
  */
-bool fathom_alarm_status(fathom_alarm_t *alarm, fathom_status_t status, uint32_t now_us);
+bool fathom_alarm_add_status(fathom_alarm_t *alarm, fathom_status_t status, uint32_t now_us);
 
 /** @brief Returns true if the alarm is on, by its state or by the side that the configuration names for the state. */
 bool fathom_alarm_is_on(const fathom_alarm_t *alarm);

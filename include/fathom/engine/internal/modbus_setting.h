@@ -2,7 +2,7 @@
 #ifndef FATHOM_MODBUS_SETTING_H
 #define FATHOM_MODBUS_SETTING_H
 
-#include "fathom/engine/modbus_unit.h"
+#include "fathom/engine/internal/modbus_unit.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -24,7 +24,7 @@ extern "C" {
  *     end with FATHOM_ERR_CANCELLED.
  *  5. The value is read back; where that fails at the new place, at the old one too.
  *
- * A blind setting (fathom_modbus_next_is_blind) is the third step alone: for a device whose responses cannot be
+ * A blind setting (fathom_modbus_write_next_unchecked) is the third step alone: for a device whose responses cannot be
  * understood. The one after it is not blind, however this one ends.
  *
  * The measurement rests meanwhile: fathom_poll is FATHOM_PENDING. If the setting is begun and never called again, it gives
@@ -39,7 +39,7 @@ extern "C" {
 typedef struct fathom_modbus_setting fathom_modbus_setting_t;
 struct fathom_modbus_setting {
     /* Reads the present value: called until it is not FATHOM_PENDING, and then with *value where it is
-     * FATHOM_READY. NULL: it cannot be read, and the acknowledgement is all there is. */
+     * FATHOM_OK. NULL: it cannot be read, and the acknowledgement is all there is. */
     fathom_status_t (*read)(const fathom_modbus_setting_t *setting, uint32_t *value);
     void *driver;                       /* for read */
     fathom_modbus_unit_request_t write; /* a command; its id tells the settings of a driver apart */
@@ -52,7 +52,7 @@ struct fathom_modbus_setting {
 /*
  * To be called after fathom_modbus_unit_poll, both with a setting of the same id until it is not FATHOM_PENDING.
  * unit->is_written tells whether anything was sent that changes the device:
- *   FATHOM_READY            not written: it was so already. Written: it was read back; where nothing can be read
+ *   FATHOM_OK            not written: it was so already. Written: it was read back; where nothing can be read
  *                           back, it was acknowledged
  *   FATHOM_ERR_IN_USE       a unit responds at the new place already, or noise comes that may be a damaged response;
  *                           nothing was written
@@ -67,8 +67,8 @@ struct fathom_modbus_setting {
  */
 fathom_status_t fathom_modbus_set(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting);
 
-/* Makes the next setting blind; cancel and power_on undo it. FATHOM_READY; FATHOM_ERR_BUSY: one is not finished. */
-fathom_status_t fathom_modbus_next_is_blind(fathom_modbus_unit_t *unit);
+/* Makes the next setting blind; cancel and power_on undo it. FATHOM_OK; FATHOM_ERR_BUSY: one is not finished. */
+fathom_status_t fathom_modbus_write_next_unchecked(fathom_modbus_unit_t *unit);
 
 #ifdef __cplusplus
 }

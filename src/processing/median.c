@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "fathom/sensor/median.h"
+#include "fathom/processing/median.h"
 
 #include "../common.h"
 
@@ -24,7 +24,7 @@ fathom_status_t fathom_median_init(fathom_median_t *median, const fathom_median_
         config->window; /* again, as a pointer: an analyser does not see what a copy of its bytes points to */
     own->unknown_us = or_default(own->unknown_us, FATHOM_MEDIAN_DEFAULT_UNKNOWN_US);
     if (own->gate_row == 0u) own->gate_row = FATHOM_MEDIAN_DEFAULT_GATE_ROW;
-    return FATHOM_READY;
+    return FATHOM_OK;
 }
 
 static bool is_initialised(const fathom_median_t *median) { return median->config.window != NULL; }
@@ -58,7 +58,7 @@ static uint16_t middle_of(const fathom_median_t *median)
     return *at; /* of one of them it is so: where of none before, of the last */
 }
 
-bool fathom_median_time(fathom_median_t *median, uint32_t now_us)
+bool fathom_median_advance(fathom_median_t *median, uint32_t now_us)
 {
     const uint32_t passed_us = fathom_elapsed_us(now_us, median->fed_us);
     /* A difference above half of what the clock counts is a time before the sample. */
@@ -71,7 +71,7 @@ bool fathom_median_time(fathom_median_t *median, uint32_t now_us)
 /* A sample that counts. Is there a median with it? */
 static bool take(fathom_median_t *median, uint16_t mm, uint32_t time_us)
 {
-    (void)fathom_median_time(median, time_us);
+    (void)fathom_median_advance(median, time_us);
     median->fed_us = time_us;
     if (is_spike(median, mm)) {
         if (median->row != median->config.gate_row) {
@@ -91,7 +91,7 @@ static bool take(fathom_median_t *median, uint16_t mm, uint32_t time_us)
     return true;
 }
 
-bool fathom_median_sample(fathom_median_t *median, const fathom_sample_t *sample, fathom_sample_t *out)
+bool fathom_median_add_sample(fathom_median_t *median, const fathom_sample_t *sample, fathom_sample_t *out)
 {
     uint16_t mm = NEARER;
     uint8_t kind = FATHOM_TARGET;

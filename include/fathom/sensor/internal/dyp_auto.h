@@ -4,7 +4,7 @@
 
 #include "fathom/engine/line.h"
 #include "fathom/engine/stream.h"
-#include "fathom/sensor/dyp.h"
+#include "fathom/sensor/internal/dyp.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -21,7 +21,7 @@ typedef struct {
 /*
  * Initialises what both drivers share and makes the stream the listener of the line. The driver has set `line`, the
  * members that fathom_stream_start() needs, and `values`, `window`, `model`, `address` and `first` of the measurement.
- *   FATHOM_READY         The stream listens.
+ *   FATHOM_OK         The stream listens.
  *   FATHOM_ERR_ARGUMENT  `line` is NULL, or a member of the window or the stream is outside its range.
  *   FATHOM_ERR_BUSY      The line has another listener, which stays.
  */
@@ -31,7 +31,7 @@ fathom_status_t fathom_dyp_auto_init(fathom_dyp_auto_t *sensor, uint16_t default
 void fathom_dyp_auto_deinit(fathom_dyp_auto_t *sensor);
 
 /*
- * Polls the line and takes the newest frame. FATHOM_READY: its values are those of the measurement, of which probe 1
+ * Polls the line and takes the newest frame. FATHOM_OK: its values are those of the measurement, of which probe 1
  * waits to be returned. FATHOM_PENDING: there is no new frame. FATHOM_ERR_STALE, FATHOM_ERR_CHECKSUM, FATHOM_ERR_PORT:
  * as in a16_auto.h.
  */

@@ -20,9 +20,9 @@ extern "C" {
  *     static uint16_t window[5];
  *     fathom_median_t median;
  *     fathom_median_init(&median, &(fathom_median_config_t){.window = window, .count = 5, .gate_mm = 300});
- *     if (fathom_poll(&sensor, &sample) == FATHOM_READY && fathom_median_sample(&median, &sample, &steady))
+ *     if (fathom_poll(&sensor, &sample) == FATHOM_OK && fathom_median_add_sample(&median, &sample, &steady))
  *         use(&steady);
- *     if (fathom_median_time(&median, clock.now_us(clock.ctx))) warn();
+ *     if (fathom_median_advance(&median, clock.now_us(clock.ctx))) warn();
  *
  * | sample | counts as |
  * |---|---|
@@ -32,7 +32,7 @@ extern "C" {
  * | FATHOM_UNKNOWN, FATHOM_FAULT, or an error, which has no sample | nothing: window and row stay as they are |
  *
  * If no sample counts for more than `unknown_us`, the window is emptied by the next sample that counts, or by
- * fathom_median_time(), which reports it. A spike counts here. There is a median when the window is full, and then
+ * fathom_median_advance(), which reports it. A spike counts here. There is a median when the window is full, and then
  * with each sample that counts and is no spike. Of an even number of samples the median is the nearer of the two in
  * the middle, so the median is always a value that was measured.
  *
@@ -80,7 +80,7 @@ typedef struct {
 
 /**
  * @brief Initialises a median with an empty window. If it fails, the median is zeroed; it then never has a value.
- * @retval FATHOM_READY         The median is ready.
+ * @retval FATHOM_OK         The median is ready.
  * @retval FATHOM_ERR_ARGUMENT  There is no window, or a member is outside its range.
  */
 fathom_status_t fathom_median_init(fathom_median_t *median, const fathom_median_config_t *config);
@@ -91,7 +91,7 @@ fathom_status_t fathom_median_init(fathom_median_t *median, const fathom_median_
  *             interference if the kind differs. Otherwise unchanged. `out` may be `sample`.
  * @return True if there is a median with this sample.
  */
-bool fathom_median_sample(fathom_median_t *median, const fathom_sample_t *sample, fathom_sample_t *out);
+bool fathom_median_add_sample(fathom_median_t *median, const fathom_sample_t *sample, fathom_sample_t *out);
 
 /**
  * @brief Advances the median to `now_us` without a new sample.
@@ -101,7 +101,7 @@ bool fathom_median_sample(fathom_median_t *median, const fathom_sample_t *sample
  *
  * @return True if this emptied a window that held samples.
  */
-bool fathom_median_time(fathom_median_t *median, uint32_t now_us);
+bool fathom_median_advance(fathom_median_t *median, uint32_t now_us);
 
 #ifdef __cplusplus
 }

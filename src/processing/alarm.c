@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "fathom/sensor/alarm.h"
+#include "fathom/processing/alarm.h"
 
 #include "../common.h"
 
@@ -35,7 +35,7 @@ fathom_status_t fathom_alarm_init(fathom_alarm_t *alarm, const fathom_alarm_conf
     alarm->config.unknown_us = or_default(config->unknown_us, FATHOM_ALARM_DEFAULT_UNKNOWN_US);
     alarm->state = FATHOM_ALARM_UNKNOWN;
     alarm->was = config->if_unknown;
-    return FATHOM_READY;
+    return FATHOM_OK;
 }
 
 static bool is_initialised(const fathom_alarm_t *alarm) { return alarm->state != 0u; }
@@ -75,7 +75,7 @@ static void look_at_time(fathom_alarm_t *alarm, uint32_t now_us)
     alarm->state = alarm->responds ? FATHOM_ALARM_UNKNOWN : FATHOM_ALARM_NO_RESPONSE;
 }
 
-bool fathom_alarm_status(fathom_alarm_t *alarm, fathom_status_t status, uint32_t now_us)
+bool fathom_alarm_add_status(fathom_alarm_t *alarm, fathom_status_t status, uint32_t now_us)
 {
     const uint8_t before = alarm->state;
     if (!is_initialised(alarm)) return false;
@@ -83,19 +83,19 @@ bool fathom_alarm_status(fathom_alarm_t *alarm, fathom_status_t status, uint32_t
     const bool is_of_device =
         (status != FATHOM_PENDING) && (status != FATHOM_ERR_LINE_BUSY) && (status != FATHOM_ERR_OTHER_MASTER);
     if (is_of_device)
-        alarm->responds = (status == FATHOM_READY) || (status == FATHOM_ERR_MALFORMED) ||
+        alarm->responds = (status == FATHOM_OK) || (status == FATHOM_ERR_MALFORMED) ||
                           (status == FATHOM_ERR_EXCEPTION) || (status == FATHOM_ERR_WARMING_UP);
     look_at_time(alarm, now_us);
     return alarm->state != before;
 }
 
-bool fathom_alarm_sample(fathom_alarm_t *alarm, const fathom_sample_t *sample)
+bool fathom_alarm_add_sample(fathom_alarm_t *alarm, const fathom_sample_t *sample)
 {
     const uint32_t now_us = sample->time_us;
     const uint8_t before = alarm->state;
     const uint8_t side = side_of(&alarm->config, sample);
     if (!is_initialised(alarm)) return false;
-    if (side == FATHOM_ALARM_UNKNOWN) return fathom_alarm_status(alarm, FATHOM_READY, now_us);
+    if (side == FATHOM_ALARM_UNKNOWN) return fathom_alarm_add_status(alarm, FATHOM_OK, now_us);
     look_at_time(alarm, now_us); /* by what came before this sample */
     alarm->fed_us = now_us;
     alarm->responds = true;

@@ -20,7 +20,7 @@ extern "C" {
  * Rules of behaviour:
  *
  * 1. **Two kinds of request.** The repeated request (a measurement, of fathom_poll()) is sent again and again, and a
- *    newer result may replace an older one. A command (a function such as fathom_hps167s_details()) is sent once, and
+ *    newer result may replace an older one. A command (a function such as fathom_hps167s_get_details()) is sent once, and
  *    its result waits for its caller. modbus_setting.h builds settings from several commands.
  *
  * 2. **Pace.** `period_us` or the driver's least period passes from one request to the next. A retry leaves when the
@@ -110,7 +110,7 @@ typedef struct {
     /**
      * @brief The registers, in the driver's memory.
      *
-     * The registers of a read are written on FATHOM_READY only. Those of function 10 are read when the request leaves.
+     * The registers of a read are written on FATHOM_OK only. Those of function 10 are read when the request leaves.
      * NULL for function 06.
      */
     uint16_t *values;
@@ -172,11 +172,11 @@ typedef struct {
     /** @brief Bit (id modulo 16): this setting was written and has not read back since, until power-on. */
     uint16_t unconfirmed;
 
-    /** @brief Number of requests that ended with FATHOM_READY; stops at 65535. */
+    /** @brief Number of requests that ended with FATHOM_OK; stops at 65535. */
     uint16_t responses;
     /** @brief Number of requests that failed, retries included; stops at 65535. */
     uint16_t failures;
-    /** @brief The transport. Invariant: NULL unless init has returned FATHOM_READY. */
+    /** @brief The transport. Invariant: NULL unless init has returned FATHOM_OK. */
     const fathom_modbus_t *transport;
     /** @brief Present line settings of the unit; NULL: those of the line. */
     const fathom_line_settings_t *line_settings;
@@ -214,7 +214,7 @@ typedef struct {
  * @param config      The config, copied.
  * @param timeout_us  Default of `config->timeout_us`.
  * @param pace_us     The driver's least period in microseconds.
- * @retval FATHOM_READY         The unit can be used.
+ * @retval FATHOM_OK         The unit can be used.
  * @retval FATHOM_ERR_ARGUMENT  A member of the config is outside its range, or the transport has no clock.
  * @retval FATHOM_ERR_BUSY      The request of this unit is still queued. Call the driver's deinit function first.
  */
@@ -242,7 +242,7 @@ void fathom_modbus_unit_poll(fathom_modbus_unit_t *unit);
  * delivered once. If two callers have the same request, the first to call receives the result, and the other starts
  * again.
  *
- * @retval FATHOM_READY           The unit responded. `values` are written.
+ * @retval FATHOM_OK           The unit responded. `values` are written.
  * @retval FATHOM_PENDING         The request is not finished, or may not be sent yet.
  * @retval FATHOM_ERR_BUSY        Another command or setting is unfinished, or its result was not fetched (rule 5).
  * @retval FATHOM_ERR_WARMING_UP  The unit failed so soon after power-on (rule 4).
@@ -297,7 +297,7 @@ static inline uint8_t fathom_modbus_unit_exception(const fathom_modbus_unit_t *u
     return unit->request.message.exception;
 }
 
-/** @brief Returns the number of requests that ended with FATHOM_READY; stops at 65535. */
+/** @brief Returns the number of requests that ended with FATHOM_OK; stops at 65535. */
 static inline uint16_t fathom_modbus_unit_responses(const fathom_modbus_unit_t *unit)
 {
     return unit->responses;

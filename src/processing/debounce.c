@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "fathom/engine/debounce.h"
+#include "fathom/processing/debounce.h"
 
 #include "../common.h"
 
@@ -19,12 +19,12 @@ fathom_status_t fathom_debounce_init(fathom_debounce_t *debounce, const fathom_d
     own->near_count = (uint8_t)or_default(config->near_count, FATHOM_DEBOUNCE_DEFAULT_NEAR_COUNT);
     own->far_count = (uint8_t)or_default(config->far_count, FATHOM_DEBOUNCE_DEFAULT_FAR_COUNT);
     own->equal = config->equal;
-    return FATHOM_READY;
+    return FATHOM_OK;
 }
 
 static bool is_initialised(const fathom_debounce_t *debounce) { return debounce->config.near_count != 0u; }
 
-bool fathom_debounce_time(fathom_debounce_t *debounce, uint32_t now_us)
+bool fathom_debounce_advance(fathom_debounce_t *debounce, uint32_t now_us)
 {
     const uint32_t passed_us = fathom_elapsed_us(now_us, debounce->fed_us);
     const uint8_t before = debounce->level;
@@ -37,11 +37,11 @@ bool fathom_debounce_time(fathom_debounce_t *debounce, uint32_t now_us)
     return before != FATHOM_UNKNOWN;
 }
 
-bool fathom_debounce_verdict(fathom_debounce_t *debounce, uint8_t verdict, uint32_t now_us)
+bool fathom_debounce_add_verdict(fathom_debounce_t *debounce, uint8_t verdict, uint32_t now_us)
 {
     const uint8_t before = debounce->level;
     if (!is_initialised(debounce)) return false;
-    (void)fathom_debounce_time(debounce, now_us);
+    (void)fathom_debounce_advance(debounce, now_us);
     const bool is_over = fathom_count_down(&debounce->left_us, time_since_us(now_us, debounce->fed_us));
     debounce->fed_us = now_us;
     debounce->is_fed = true;
@@ -68,22 +68,22 @@ uint8_t fathom_debounce_compare(const fathom_debounce_t *debounce, uint16_t dist
     return (debounce->config.equal == FATHOM_EQUAL_IS_FAR) ? FATHOM_FAR : NEITHER;
 }
 
-bool fathom_debounce_distance(fathom_debounce_t *debounce, uint16_t distance_mm, uint32_t now_us)
+bool fathom_debounce_add_distance(fathom_debounce_t *debounce, uint16_t distance_mm, uint32_t now_us)
 {
-    return fathom_debounce_verdict(debounce, fathom_debounce_compare(debounce, distance_mm), now_us);
+    return fathom_debounce_add_verdict(debounce, fathom_debounce_compare(debounce, distance_mm), now_us);
 }
 
-bool fathom_debounce_sample(fathom_debounce_t *debounce, const fathom_sample_t *sample)
+bool fathom_debounce_add_sample(fathom_debounce_t *debounce, const fathom_sample_t *sample)
 {
     switch (sample->kind) {
     case FATHOM_TARGET:
-        return fathom_debounce_distance(debounce, sample->distance_mm, sample->time_us);
+        return fathom_debounce_add_distance(debounce, sample->distance_mm, sample->time_us);
     case FATHOM_NO_TARGET:
-        return fathom_debounce_verdict(debounce, FATHOM_FAR, sample->time_us);
+        return fathom_debounce_add_verdict(debounce, FATHOM_FAR, sample->time_us);
     case FATHOM_NEAR:
     case FATHOM_FAR:
-        return fathom_debounce_verdict(debounce, sample->kind, sample->time_us);
+        return fathom_debounce_add_verdict(debounce, sample->kind, sample->time_us);
     default:
-        return fathom_debounce_time(debounce, sample->time_us);
+        return fathom_debounce_advance(debounce, sample->time_us);
     }
 }

@@ -73,7 +73,7 @@ typedef struct {
 } fathom_dyp_measurement_t;
 
 /*
- * The next probe's sample. FATHOM_READY: written. FATHOM_ERR_MALFORMED: the value is refused, and kept in
+ * The next probe's sample. FATHOM_OK: written. FATHOM_ERR_MALFORMED: the value is refused, and kept in
  * refused_probe and refused_raw; nothing written, counted, the next call goes on with the next probe.
  * FATHOM_PENDING: none is left.
  */
@@ -91,7 +91,7 @@ static inline void fathom_dyp_measurement_set(fathom_dyp_measurement_t *measurem
 /* Byte by byte: of a struct of this size compilers make a call of memcpy. */
 void fathom_dyp_window_copy(fathom_dyp_window_t *to, const fathom_dyp_window_t *from);
 
-/* Nothing has come yet. FATHOM_READY, or FATHOM_ERR_ARGUMENT: min_mm > max_mm. max_mm 0: default_max_mm. */
+/* Nothing has come yet. FATHOM_OK, or FATHOM_ERR_ARGUMENT: min_mm > max_mm. max_mm 0: default_max_mm. */
 fathom_status_t fathom_dyp_measurement_init(fathom_dyp_measurement_t *measurement, uint16_t default_max_mm);
 
 /* What a value is: FATHOM_TARGET, a distance of at most the window's max_mm; or a fathom_meaning_t. */

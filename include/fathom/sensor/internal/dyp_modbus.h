@@ -2,9 +2,9 @@
 #ifndef FATHOM_DYP_MODBUS_H
 #define FATHOM_DYP_MODBUS_H
 
-#include "fathom/engine/modbus_setting.h"
+#include "fathom/engine/internal/modbus_setting.h"
 #include "fathom/engine/sensor.h"
-#include "fathom/sensor/dyp.h"
+#include "fathom/sensor/internal/dyp.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -34,7 +34,7 @@ fathom_status_t fathom_dyp_modbus_begin(fathom_dyp_modbus_t *sensor, size_t size
 
 /* The caller has set first and last of the request, the probes, start_us (0: its default), and values, window, model
  * and first of the measurement; timeout_us and pace_us are the driver's, as of fathom_modbus_unit_init.
- * FATHOM_READY, or FATHOM_ERR_ARGUMENT: as fathom_modbus_unit_init, or min_mm over max_mm. */
+ * FATHOM_OK, or FATHOM_ERR_ARGUMENT: as fathom_modbus_unit_init, or min_mm over max_mm. */
 fathom_status_t fathom_dyp_modbus_init(fathom_dyp_modbus_t *sensor, const fathom_modbus_config_t *config,
                                        uint32_t timeout_us, uint32_t pace_us);
 
@@ -46,19 +46,21 @@ void fathom_dyp_modbus_power_on(fathom_dyp_modbus_t *sensor);
 
 /*
  * Commands, to be called until they are not FATHOM_PENDING; of registers that differ in their bits 0 to 3, 8 or 9, as
- * all of A16 and A05 do. get: FATHOM_READY with *value, or the errors of fathom_modbus_unit_ask; address: also
+ * all of A16 and A05 do. get: FATHOM_OK with *value, or the errors of fathom_modbus_unit_ask; address: also
  * FATHOM_ERR_MALFORMED, where the register has more than 255. set: as fathom_modbus_set; set_address: the same, for
  * 1..254, else FATHOM_ERR_ARGUMENT; set_address_to_0 as the functions of that name of A16 and A05. At address 0 nothing
- * is written: FATHOM_ERR_ARGUMENT, since all units would obey. write: where nothing can be read back; FATHOM_READY is
+ * is written: FATHOM_ERR_ARGUMENT, since all units would obey. write: where nothing can be read back; FATHOM_OK is
  * the acknowledgement. The address is read first, which shows the line whether it echoes: without that an
  * acknowledgement proves nothing (line.h).
  */
-fathom_status_t fathom_dyp_modbus_get(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t *value);
-fathom_status_t fathom_dyp_modbus_set(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t value);
-fathom_status_t fathom_dyp_modbus_write(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t value);
-fathom_status_t fathom_dyp_modbus_address(fathom_dyp_modbus_t *sensor, uint8_t *address);
+fathom_status_t fathom_dyp_modbus_get_register(fathom_dyp_modbus_t *sensor, uint16_t address,
+                                               uint16_t *value);
+fathom_status_t fathom_dyp_modbus_set_register(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t value);
+fathom_status_t fathom_dyp_modbus_write_register(fathom_dyp_modbus_t *sensor, uint16_t address,
+                                                 uint16_t value);
+fathom_status_t fathom_dyp_modbus_get_address(fathom_dyp_modbus_t *sensor, uint8_t *address);
 fathom_status_t fathom_dyp_modbus_set_address(fathom_dyp_modbus_t *sensor, uint8_t address);
-fathom_status_t fathom_dyp_modbus_set_address_to_0(fathom_dyp_modbus_t *sensor);
+fathom_status_t fathom_dyp_modbus_set_address_0(fathom_dyp_modbus_t *sensor);
 
 /* What get and set are made of, without fathom_modbus_unit_poll: look goes on with the read of a register; describe
  * fills in the setting of one to this value, all but its read. */
@@ -79,7 +81,7 @@ typedef struct {
  * Finds the address of the A16 or A05 that is alone on a line: reads register 0x0200 at 255, "the
  * broadcast address" (A16 6(3), A05 3(3)), which changes nothing. Call it, with the loop going on in between, until it
  * is not FATHOM_PENDING; it polls the transport. The line's settings are as they are.
- * FATHOM_READY: *address, 0..254, is where the response came from, or its value, if that is 255. Each outcome comes
+ * FATHOM_OK: *address, 0..254, is where the response came from, or its value, if that is 255. Each outcome comes
  * once; the next call begins anew. All units are quarantined for up to two seconds.
  * FATHOM_ERR_NO_RESPONSE: nothing in a second. The datasheets do not say whether a unit responds there.
  * FATHOM_ERR_CHECKSUM: what came was damaged; perhaps several responded at once. FATHOM_ERR_MALFORMED: no address.
