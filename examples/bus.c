@@ -32,7 +32,7 @@ static const fathom_line_settings_t infrared = {19200, FATHOM_PARITY_EVEN, 1};
 
 /* All memory of the bus; nothing is allocated. */
 typedef struct {
-    fathom_line_config_t config;
+    fathom_line_parts_t parts;
     uint8_t frame[32];
     fathom_line_t line;
     fathom_fair_share_t share;
@@ -47,7 +47,7 @@ typedef struct {
 
 static bool bus_init(bus_t *bus, const fathom_uart_t *uart, const fathom_clock_t *clock)
 {
-    bus->config = (fathom_line_config_t){
+    bus->parts = (fathom_line_parts_t){
         .uart = uart,
         .clock = clock,
         .frame = bus->frame,
@@ -61,7 +61,7 @@ static bool bus_init(bus_t *bus, const fathom_uart_t *uart, const fathom_clock_t
         /* A frame that broke off is given up after this; a USB adapter holds bytes back for up to 16 ms. */
         .gap_us = 25000,
     };
-    if (fathom_line_init(&bus->line, &bus->config) != FATHOM_OK) return false;
+    if (fathom_line_init(&bus->line, &bus->parts) != FATHOM_OK) return false;
     /* In turns, the HPS-167S would be asked once for each request of the slow ones: twice a second. */
     fathom_fair_share(&bus->share, &bus->line);
     bus->modbus = fathom_modbus_client(&bus->line);
@@ -115,7 +115,7 @@ static void use(uint32_t time_us, int i, fathom_status_t status, const fathom_sa
  * work needs none. */
 static void read_bus(bus_t *bus, uint32_t until_us, fathom_idle_t idle, void *idle_ctx)
 {
-    const fathom_clock_t *const clock = bus->config.clock;
+    const fathom_clock_t *const clock = bus->parts.clock;
     for (;;) {
         const uint32_t time_us = fathom_elapsed_us(clock->now_us(clock->ctx), bus->start_us);
         bool is_idle = true;

@@ -41,7 +41,7 @@ typedef struct {
     channel_t channel;
     fathom_uart_t uart;
     uint8_t frame[8]; /* the least that a line takes; nothing is requested here */
-    fathom_line_config_t config;
+    fathom_line_parts_t parts;
     fathom_line_t line;
 } receiver_t;
 
@@ -59,12 +59,12 @@ static bool begin_receiver(receiver_t *receiver)
 {
     receiver->channel.uart = &fathom_avr_usart0;
     receiver->uart = channel_uart(&receiver->channel);
-    receiver->config.uart = &receiver->uart;
-    receiver->config.clock = &fathom_avr_clock;
-    receiver->config.frame = receiver->frame;
-    receiver->config.frame_size = sizeof receiver->frame;
-    receiver->config.marks = fathom_line_marks;
-    return fathom_line_init_listening(&receiver->line, &receiver->config) == FATHOM_OK;
+    receiver->parts.uart = &receiver->uart;
+    receiver->parts.clock = &fathom_avr_clock;
+    receiver->parts.frame = receiver->frame;
+    receiver->parts.frame_size = sizeof receiver->frame;
+    receiver->parts.marks = fathom_line_marks;
+    return fathom_line_init_listening(&receiver->line, &receiver->parts) == FATHOM_OK;
 }
 
 static void turn_to(uint8_t next)

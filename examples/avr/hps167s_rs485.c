@@ -38,15 +38,15 @@ static const fathom_avr_usart_config_t usart = {.request = sending,
                                                 .line = {BAUD, FATHOM_PARITY_EVEN, 1}};
 
 static uint8_t frame[13];
-static const fathom_line_config_t line_config = {.uart = &fathom_avr_usart0,
-                                                 .clock = &fathom_avr_clock,
-                                                 .frame = frame,
-                                                 .frame_size = sizeof frame,
-                                                 .echo = FATHOM_LINE_ECHO_OFF,
-                                                 .marks = fathom_line_marks,
-                                                 /* With factory settings it sends measurements unasked. */
-                                                 .senders = &fathom_line_senders,
-                                                 .silence_us = FATHOM_T3_5_US(BAUD, CHARACTER_BITS)};
+static const fathom_line_parts_t line_parts = {.uart = &fathom_avr_usart0,
+                                               .clock = &fathom_avr_clock,
+                                               .frame = frame,
+                                               .frame_size = sizeof frame,
+                                               .echo = FATHOM_LINE_ECHO_OFF,
+                                               .marks = fathom_line_marks,
+                                               /* With factory settings it sends measurements unasked. */
+                                               .senders = &fathom_line_senders,
+                                               .silence_us = FATHOM_T3_5_US(BAUD, CHARACTER_BITS)};
 static const fathom_debounce_config_t rule = {.threshold_mm = 1500, .near_count = 3, .far_count = 5};
 
 static fathom_pin_t near_led;
@@ -65,7 +65,7 @@ static bool begin(void)
     error_led = fathom_avr_output(&error_at);
     if (!fathom_avr_usart0_init(&usart)) return false;
     sei();
-    if (fathom_line_init(&line, &line_config) != FATHOM_OK) return false;
+    if (fathom_line_init(&line, &line_parts) != FATHOM_OK) return false;
     modbus = fathom_modbus_client(&line);
     /* One retry: a single hit on the wire is no error yet. */
     const fathom_hps167s_config_t config = {.modbus.transport = &modbus, .modbus.retries = 1};

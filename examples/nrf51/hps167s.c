@@ -18,7 +18,7 @@ int main(void)
     static const fathom_line_settings_t settings = {19200, FATHOM_PARITY_EVEN, 1};
     nrf51_clock_begin();
     if (!nrf51_uart_begin(24, 25, &settings)) return 2;
-    const fathom_line_config_t config = {
+    const fathom_line_parts_t parts = {
         .uart = &nrf51_uart,
         .clock = &nrf51_clock,
         .frame = frame,
@@ -31,7 +31,7 @@ int main(void)
         .gap_us = 25000,
     };
     fathom_line_t line;
-    if (fathom_line_init(&line, &config) != FATHOM_OK) return 2;
+    if (fathom_line_init(&line, &parts) != FATHOM_OK) return 2;
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
     fathom_hps167s_t gate;
     const fathom_hps167s_config_t gate_config = {.modbus.transport = &modbus};

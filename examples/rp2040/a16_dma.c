@@ -50,14 +50,14 @@ int main(void)
     fathom_line_t line;
     /* What the UART marks as bad is counted: FATHOM_LINE_BAD_BYTES. */
     static uint16_t counters[FATHOM_LINE_COUNTERS];
-    const fathom_line_config_t line_config = {.uart = &wire,
-                                              .clock = &fathom_rp2040_clock,
-                                              .frame = frame,
-                                              .frame_size = sizeof frame,
-                                              .marks = fathom_line_marks,
-                                              .count = fathom_line_count,
-                                              .counters = counters};
-    if (fathom_line_init_listening(&line, &line_config) != FATHOM_OK) return 3;
+    const fathom_line_parts_t line_parts = {.uart = &wire,
+                                            .clock = &fathom_rp2040_clock,
+                                            .frame = frame,
+                                            .frame_size = sizeof frame,
+                                            .marks = fathom_line_marks,
+                                            .count = fathom_line_count,
+                                            .counters = counters};
+    if (fathom_line_init_listening(&line, &line_parts) != FATHOM_OK) return 3;
     fathom_a16_auto_t a16;
     const fathom_a16_auto_config_t config = {.line = &line};
     if (fathom_a16_auto_init(&a16, &config) != FATHOM_OK) return 4;

@@ -55,7 +55,7 @@ int main(void)
 
     uint8_t frame[32];
     fathom_line_t line;
-    const fathom_line_config_t line_config = {
+    const fathom_line_parts_t line_parts = {
         .uart = &wire,
         .clock = &fathom_rp2040_clock,
         .frame = frame,
@@ -65,7 +65,7 @@ int main(void)
         .senders = &fathom_line_senders, /* with factory settings the sensor sends measurements unasked */
         .silence_us = FATHOM_T3_5_US(19200, 11),
     };
-    if (fathom_line_init(&line, &line_config) != FATHOM_OK) return 3;
+    if (fathom_line_init(&line, &line_parts) != FATHOM_OK) return 3;
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
 
     fathom_hps167s_t hps;

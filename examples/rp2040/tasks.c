@@ -75,7 +75,7 @@ static void read_tank(void)
     const fathom_uart_t uart = fathom_rp2040_uart(&tank_uart);
     uint8_t frame[16];
     fathom_line_t line;
-    const fathom_line_config_t line_config = {
+    const fathom_line_parts_t line_parts = {
         .uart = &uart,
         .clock = &fathom_rp2040_clock,
         .frame = frame,
@@ -84,7 +84,7 @@ static void read_tank(void)
         .marks = fathom_line_marks,
         .silence_us = FATHOM_T3_5_US(9600, 10),
     };
-    fathom_status_t status = fathom_line_init(&line, &line_config);
+    fathom_status_t status = fathom_line_init(&line, &line_parts);
     if (status != FATHOM_OK) end(&tank, status);
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
     fathom_a16_modbus_t a16;
@@ -104,7 +104,7 @@ static void read_gate(void)
     const fathom_uart_t uart = fathom_rp2040_uart(&gate_uart);
     uint8_t frame[32];
     fathom_line_t line;
-    const fathom_line_config_t line_config = {
+    const fathom_line_parts_t line_parts = {
         .uart = &uart,
         .clock = &fathom_rp2040_clock,
         .frame = frame,
@@ -114,7 +114,7 @@ static void read_gate(void)
         .senders = &fathom_line_senders, /* with factory settings the sensor sends measurements unasked */
         .silence_us = FATHOM_T3_5_US(19200, 11),
     };
-    fathom_status_t status = fathom_line_init(&line, &line_config);
+    fathom_status_t status = fathom_line_init(&line, &line_parts);
     if (status != FATHOM_OK) end(&gate, status);
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
     fathom_hps167s_t hps;

@@ -32,7 +32,7 @@ int main(void)
     };
     if (!fathom_stm32f4_usart_init(&usart, &port)) return 2;
     const fathom_uart_t uart = fathom_stm32f4_usart(&usart);
-    const fathom_line_config_t config = {
+    const fathom_line_parts_t parts = {
         .uart = &uart,
         .clock = &fathom_stm32f4_clock,
         .frame = frame,
@@ -43,7 +43,7 @@ int main(void)
         .silence_us = FATHOM_T3_5_US(19200, 11),
     };
     fathom_line_t line;
-    if (fathom_line_init(&line, &config) != FATHOM_OK) return 2;
+    if (fathom_line_init(&line, &parts) != FATHOM_OK) return 2;
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
     fathom_hps167s_t gate;
     const fathom_hps167s_config_t gate_config = {.modbus.transport = &modbus};

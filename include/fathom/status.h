@@ -46,8 +46,9 @@ extern "C" {
  * @brief A check of a programming mistake in the sources, empty by default.
  *
  * If you compile the sources, you can stop at such a mistake: `-include assert.h -DFATHOM_ASSERT=assert`. The checks
- * are: a driver is used before its init function returned FATHOM_OK, and a driver is initialised while its request
- * is queued. In both cases the function also returns its error.
+ * are: a driver is used before its init function returned FATHOM_OK, a driver is initialised while its request is
+ * queued, and the parts of a line changed after fathom_line_init(), for example because they were a local variable of a
+ * function that has returned. In the first two cases the function also returns its error.
  */
 
 /** @brief The result of a call. */
@@ -99,7 +100,7 @@ typedef enum {
     /**
      * @brief A write: the only received bytes equal the request, and it is not known whether the line echoes (line.h).
      *
-     * Submit a read first, or state `echo` in the config of the line.
+     * Submit a read first, or state `echo` in the parts of the line.
      */
     FATHOM_ERR_ECHO = -11,
 

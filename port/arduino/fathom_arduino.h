@@ -124,7 +124,7 @@ class serial_uart
      * settings cannot be reached; nothing but that pin has changed. */
     bool begin(uint32_t baud, fathom_parity_t parity = FATHOM_PARITY_NONE, uint8_t stop_bits = 1);
 
-    /* For a fathom_line_config_t. */
+    /* For a fathom_line_parts_t. */
     fathom_uart_t hal();
 
     /* Drops driver-enable if it is time. true: nothing is leaving. Also for an interrupt, whatever the loop is doing
@@ -167,7 +167,7 @@ class stream_uart
     /* bits: of a character with its start, parity and stop bits; 10 for 8N1. */
     stream_uart(Stream &stream, uint32_t baud, uint8_t bits = 10);
 
-    /* For a fathom_line_config_t. */
+    /* For a fathom_line_parts_t. */
     fathom_uart_t hal();
 
   private:

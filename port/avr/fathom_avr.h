@@ -90,8 +90,11 @@ typedef struct {
 extern const fathom_uart_t fathom_avr_usart0;
 extern fathom_avr_usart_counters_t fathom_avr_usart0_counters;
 
-/* Makes it ready. `config` and its memory outlive the use of the port. false: these line settings cannot be reached,
- * or there is no memory for a request; nothing has changed then. */
+/**
+ * @brief Initialises USART0, its pins and its interrupts. Copies `config`; `request` must stay valid as long as the port
+ * is used.
+ * @return False if these line settings cannot be reached, or if there is no memory for a request. Then nothing changed.
+ */
 bool fathom_avr_usart0_init(const fathom_avr_usart_config_t *config);
 
 /*

@@ -13,7 +13,9 @@ static volatile uint8_t ring[RING];
 static volatile uint8_t
     dropped; /* DOR0, of a byte for which there was no place; the next one that gets in reports it */
 
-static const fathom_avr_usart_config_t *config;
+static uint8_t *request_memory;
+static uint8_t request_size;
+static fathom_avr_pin_t driver;
 static const uint8_t *volatile next; /* of the request */
 static volatile uint8_t left;        /* of its bytes, those that UDR0 has not got */
 static volatile bool sending;        /* up to its last stop bit */
@@ -77,8 +79,8 @@ ISR(USART_RX_vect, ISR_NAKED)
 
 static void drive(bool on)
 {
-    volatile uint8_t *port = config->driver.port;
-    if (port != NULL) *port = (uint8_t)(on ? (*port | config->driver.mask) : (*port & ~config->driver.mask));
+    volatile uint8_t *port = driver.port;
+    if (port != NULL) *port = (uint8_t)(on ? (*port | driver.mask) : (*port & ~driver.mask));
 }
 
 /* There is room for a byte. */
@@ -139,10 +141,10 @@ static int usart_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *r
 static int usart_write(void *ctx, const uint8_t *bytes, size_t length)
 {
     (void)ctx;
-    if ((length - 1) >= config->request_size) return -1; /* 0 bytes are too many, too */
+    if ((length - 1) >= request_size) return -1; /* 0 bytes are too many, too */
     if (sending || in_break) return 0;
-    for (size_t i = 0; i != length; i++) config->request[i] = bytes[i];
-    next = config->request;
+    for (size_t i = 0; i != length; i++) request_memory[i] = bytes[i];
+    next = request_memory;
     left = (uint8_t)length;
     sending = true;
     const uint8_t sreg = SREG;
@@ -245,16 +247,18 @@ const fathom_uart_t fathom_avr_usart0 = {
     .leaves_in_us = usart_leaves_in_us,
 };
 
-bool fathom_avr_usart0_init(const fathom_avr_usart_config_t *new_config)
+bool fathom_avr_usart0_init(const fathom_avr_usart_config_t *config)
 {
-    const uint16_t divisor = divisor_of(&new_config->line);
-    if ((new_config->request == NULL) || (new_config->request_size == 0) || (divisor == 0)) return false;
+    const uint16_t divisor = divisor_of(&config->line);
+    if ((config->request == NULL) || (config->request_size == 0) || (divisor == 0)) return false;
     UCSR0B = 0;
-    config = new_config;
+    request_memory = config->request;
+    request_size = config->request_size;
+    driver = config->driver;
     set(&config->line, divisor);
-    if (config->driver.port != NULL) {
+    if (driver.port != NULL) {
         drive(false);
-        config->driver.port[-1] |= config->driver.mask; /* DDRx stands before PORTx */
+        driver.port[-1] |= driver.mask; /* DDRx stands before PORTx */
     }
     left = 0;
     sending = in_break = false;

@@ -98,7 +98,7 @@ typedef enum {
 typedef struct {
     fathom_line_t line;                      /* first, so that one pointer is both */
     uint16_t counters[FATHOM_LINE_COUNTERS]; /* for the user */
-    fathom_line_config_t config;
+    fathom_line_parts_t parts;
     fathom_uart_t uart;
     modbus_t *modbus;
     bool is_tcp;

@@ -31,23 +31,23 @@ fathom_status_t fathom_libmodbus_init(fathom_libmodbus_t *port, modbus_t *modbus
     (void)modbus_set_error_recovery(modbus, MODBUS_ERROR_RECOVERY_NONE);
     port->transaction = FIRST_TRANSACTION;
     port->uart = fathom_libmodbus_uart(port);
-    port->config.uart = &port->uart;
-    port->config.clock = config->clock;
-    port->config.frame = port->frame;
-    port->config.frame_size = sizeof port->frame;
+    port->parts.uart = &port->uart;
+    port->parts.clock = config->clock;
+    port->parts.frame = port->frame;
+    port->parts.frame_size = sizeof port->frame;
     if (port->is_tcp) {
-        port->config.echo = FATHOM_LINE_ECHO_OFF;
-        port->config.silence_us = TCP_SILENCE_US;
-        port->config.gap_us = TCP_GAP_US;
+        port->parts.echo = FATHOM_LINE_ECHO_OFF;
+        port->parts.silence_us = TCP_SILENCE_US;
+        port->parts.gap_us = TCP_GAP_US;
     } else {
-        port->config.echo = config->echo;
-        port->config.silence_us = config->silence_us;
-        port->config.gap_us = config->gap_us != 0 ? config->gap_us : RTU_GAP_US;
+        port->parts.echo = config->echo;
+        port->parts.silence_us = config->silence_us;
+        port->parts.gap_us = config->gap_us != 0 ? config->gap_us : RTU_GAP_US;
     }
-    port->config.find_echo = fathom_line_find_echo;
-    port->config.count = fathom_line_count;
-    port->config.counters = port->counters;
-    return fathom_line_init(&port->line, &port->config);
+    port->parts.find_echo = fathom_line_find_echo;
+    port->parts.count = fathom_line_count;
+    port->parts.counters = port->counters;
+    return fathom_line_init(&port->line, &port->parts);
 }
 
 /* modbus_set_slave knows which units there are, and asking it changes the one that the program has set. */

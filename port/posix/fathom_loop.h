@@ -204,7 +204,7 @@ typedef struct {
     fathom_clock_t clock;
     /* Set by fathom_loop_add_line: it finds out whether there is echo, the silence of the settings, a gap of 25 ms, no
      * counters. May be changed before the first step, but for `echo`, which fathom_loop_add_line has read. */
-    fathom_line_config_t config;
+    fathom_line_parts_t parts;
     fathom_line_t line;
     fathom_modbus_t modbus;
     uint8_t frame[255];

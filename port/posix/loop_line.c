@@ -116,17 +116,17 @@ fathom_posix_status_t fathom_loop_add_line(fathom_loop_t *loop, fathom_loop_line
     const fathom_uart_t uart = fathom_posix_uart(&line->port);
     line->uart = fathom_loop_uart(&line->source, &uart);
     line->clock = fathom_posix_clock();
-    line->config.uart = &line->uart;
-    line->config.clock = &line->clock;
-    line->config.frame = line->frame;
-    line->config.frame_size = sizeof line->frame;
-    line->config.find_echo = fathom_line_find_echo;
-    line->config.senders = &fathom_line_senders;
-    line->config.masters = &fathom_line_masters;
-    line->config.silence_us = FATHOM_T3_5_US(settings->baud, fathom_posix_bits(settings));
-    line->config.gap_us = GAP_US;
+    line->parts.uart = &line->uart;
+    line->parts.clock = &line->clock;
+    line->parts.frame = line->frame;
+    line->parts.frame_size = sizeof line->frame;
+    line->parts.find_echo = fathom_line_find_echo;
+    line->parts.senders = &fathom_line_senders;
+    line->parts.masters = &fathom_line_masters;
+    line->parts.silence_us = FATHOM_T3_5_US(settings->baud, fathom_posix_bits(settings));
+    line->parts.gap_us = GAP_US;
     /* The line accepts each silence of 588 baud and more, and the port has no rate below 1200. */
-    (void)fathom_line_init(&line->line, &line->config);
+    (void)fathom_line_init(&line->line, &line->parts);
     line->modbus = fathom_modbus_client(&line->line);
     fathom_loop_add(loop, &line->source);
     return FATHOM_POSIX_OK;

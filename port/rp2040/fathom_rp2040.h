@@ -88,7 +88,7 @@ typedef struct {
     uint8_t alarm;        /* 0..3, used for nothing else, for the end of that */
 } fathom_rp2040_wiring_t;
 
-/* Read at every call; both it and `request` outlive the use of the port. */
+/** @brief Copied by fathom_rp2040_uart_init(). `request` and `idle` must stay valid as long as the port is used. */
 typedef struct {
     fathom_rp2040_wiring_t wiring;
     fathom_line_settings_t line; /* to begin with */
@@ -104,7 +104,7 @@ enum {
 };
 
 typedef struct {
-    const fathom_rp2040_uart_config_t *config;
+    fathom_rp2040_uart_config_t config;
 
     /* Since begin; each stops at 65535, and the caller may set them to 0. */
     uint16_t parity;   /* bytes with wrong parity */

@@ -13,13 +13,13 @@ enum {
 
 static rp2040_uart_t *hardware_of(const fathom_rp2040_uart_t *uart)
 {
-    return RP2040_UART(uart->config->wiring.number);
+    return RP2040_UART(uart->config.wiring.number);
 }
 
 static void drive(const fathom_rp2040_uart_t *uart, bool high)
 {
-    const uint32_t bit = UINT32_C(1) << uart->config->wiring.driver;
-    if (!uart->config->wiring.has_driver) return;
+    const uint32_t bit = UINT32_C(1) << uart->config.wiring.driver;
+    if (!uart->config.wiring.has_driver) return;
     if (high)
         RP2040_SIO_GPIO_OUT_SET = bit;
     else
@@ -36,7 +36,7 @@ static void keep_order(void) { __asm__ volatile("" ::: "memory"); }
 
 static void tell(const fathom_rp2040_uart_t *uart)
 {
-    if (uart->config->idle != NULL) uart->config->idle->has_news = true;
+    if (uart->config.idle != NULL) uart->config.idle->has_news = true;
 }
 
 /* ---- receiving; the main loop comes here with RECEIVE masked, so only one of the two is ever inside ---- */
@@ -124,7 +124,7 @@ static void feed(fathom_rp2040_uart_t *uart)
     const uint8_t length = uart->length;
     uint8_t given = uart->given;
     while ((given != length) && ((hardware->fr & RP2040_UART_FR_TXFF) == 0u)) {
-        hardware->dr = uart->config->request[given];
+        hardware->dr = uart->config.request[given];
         given++;
     }
     uart->given = given;
@@ -150,9 +150,9 @@ static uint32_t uart_leaves_in_us(void *ctx)
 static int uart_write(void *ctx, const uint8_t *bytes, size_t length)
 {
     fathom_rp2040_uart_t *const uart = ctx;
-    if ((length == 0u) || (length > uart->config->request_size)) return -1;
+    if ((length == 0u) || (length > uart->config.request_size)) return -1;
     if (uart->is_break || !uart_sent(uart)) return 0;
-    for (size_t i = 0; i < length; i++) uart->config->request[i] = bytes[i];
+    for (size_t i = 0; i < length; i++) uart->config.request[i] = bytes[i];
     keep_order();
     /* In this order: an alarm of the request before that comes now finds this one unsent, and leaves the driver. */
     uart->given = 0;
@@ -160,14 +160,14 @@ static int uart_write(void *ctx, const uint8_t *bytes, size_t length)
     drive(uart, true);
     feed(uart);
     const uint32_t us = time_us(uart, (uint32_t)length * fathom_rp2040_uart_bits(&uart->line));
-    if (uart->config->wiring.has_driver) fathom_rp2040_alarm_set(uart->config->wiring.alarm, us);
+    if (uart->config.wiring.has_driver) fathom_rp2040_alarm_set(uart->config.wiring.alarm, us);
     uart->end_us = RP2040_TIMER_RAWL + us + time_us(uart, 1); /* which begins with a tick of its divider */
     return (int)length;
 }
 
 void fathom_rp2040_uart_alarm(fathom_rp2040_uart_t *uart)
 {
-    const unsigned alarm = uart->config->wiring.alarm;
+    const unsigned alarm = uart->config.wiring.alarm;
     fathom_rp2040_alarm_clear(alarm);
     if (uart->is_break) return;
     if (!uart_sent(uart)) {
@@ -186,7 +186,7 @@ static int uart_set_line(void *ctx, const fathom_line_settings_t *settings)
         (line->stop_bits == settings->stop_bits))
         return 1;
     if (uart->is_break || !uart_sent(uart)) return 0;
-    if (!fathom_rp2040_uart_set_line(&uart->config->wiring, settings)) return -1;
+    if (!fathom_rp2040_uart_set_line(&uart->config.wiring, settings)) return -1;
     uart->line = *settings;
     return 1;
 }
@@ -225,7 +225,7 @@ void fathom_rp2040_uart_interrupt(fathom_rp2040_uart_t *uart)
 bool fathom_rp2040_uart_init(fathom_rp2040_uart_t *uart, const fathom_rp2040_uart_config_t *config)
 {
     if ((config->request == NULL) || (config->request_size == 0u)) return false;
-    uart->config = config;
+    uart->config = *config;
     uart->line = config->line;
     uart->parity = 0;
     uart->framing = 0;

@@ -73,7 +73,7 @@ static const fathom_protocol_t protocol = {.encode = encode,
 
 static fathom_status_t start(fathom_line_t *line, fathom_modbus_request_t *request)
 {
-    if (line->config->frame_size < FATHOM_DYP_MAX_RESPONSE) return FATHOM_ERR_CAPACITY;
+    if (line->parts->frame_size < FATHOM_DYP_MAX_RESPONSE) return FATHOM_ERR_CAPACITY;
     request->transaction.protocol = &protocol;
     request->transaction.address = request->message.head[0];
     return fathom_line_submit(line, &request->transaction);

@@ -38,7 +38,7 @@ static void ended(fathom_line_turns_t *turns, uint8_t address, uint32_t at_us)
 static void count(fathom_fair_share_t *share, const fathom_line_t *line)
 {
     const uint32_t now_us = line->polled_us;
-    uint16_t silence_us = line->config->silence_us;
+    uint16_t silence_us = line->parts->silence_us;
     if (silence_us == 0u) silence_us = FATHOM_LINE_DEFAULT_SILENCE_US;
     if (share->held_for != NULL)
         (void)bill(share, share->held_for, now_us);

@@ -18,13 +18,13 @@ enum { ENDS_WITH_THIS_POLL = 1 };
 
 void fathom_line_add(fathom_line_t *line, uint8_t which, uint8_t by)
 {
-    const fathom_line_config_t *const config = line->config;
-    if (config->count != NULL) config->count(line, which, by);
+    const fathom_line_parts_t *const parts = line->parts;
+    if (parts->count != NULL) parts->count(line, which, by);
 }
 
 void fathom_line_note_sender(fathom_line_t *line, uint8_t event, uint32_t amount)
 {
-    const fathom_line_senders_t *const senders = line->config->senders;
+    const fathom_line_senders_t *const senders = line->parts->senders;
     if (senders != NULL) senders->note(line, event, amount);
 }
 
@@ -35,25 +35,26 @@ static bool is_initialised(const fathom_line_t *line) { return line->kind != NUL
 /* 65535 is what FATHOM_T3_5_US() returns if the silence does not fit. */
 static bool is_silence(uint16_t us) { return us != UINT16_MAX; }
 
-static bool is_usable(const fathom_line_config_t *config)
+static bool is_usable(const fathom_line_parts_t *parts)
 {
-    if ((config->uart == NULL) || (config->uart->read == NULL) || (config->clock == NULL) ||
-        (config->clock->now_us == NULL) || (config->frame == NULL) || (config->frame_size < MIN_FRAME_SIZE))
+    if ((parts->uart == NULL) || (parts->uart->read == NULL) || (parts->clock == NULL) ||
+        (parts->clock->now_us == NULL) || (parts->frame == NULL) || (parts->frame_size < MIN_FRAME_SIZE))
         return false;
-    if ((config->count != NULL) && (config->counters == NULL)) return false;
-    if ((config->gap_us != 0u) && (config->gap_us < MIN_GAP_US)) return false;
-    return is_silence(config->gap_us) && is_silence(config->silence_us);
+    if ((parts->count != NULL) && (parts->counters == NULL)) return false;
+    if ((parts->gap_us != 0u) && (parts->gap_us < MIN_GAP_US)) return false;
+    return is_silence(parts->gap_us) && is_silence(parts->silence_us);
 }
 
-fathom_status_t fathom_line_begin(fathom_line_t *line, const fathom_line_config_t *config,
+fathom_status_t fathom_line_begin(fathom_line_t *line, const fathom_line_parts_t *parts,
                                   const fathom_line_kind_t *kind)
 {
     clear(line, sizeof *line);
-    if (!is_usable(config)) return FATHOM_ERR_ARGUMENT;
-    line->config = config;
+    if (!is_usable(parts)) return FATHOM_ERR_ARGUMENT;
+    line->parts = parts;
+    FATHOM_ASSERT_NOTE(line->parts_sum = sum_of_parts(parts));
     line->kind = kind;
-    line->echo = config->echo;
-    line->polled_us = clock_us(config->clock);
+    line->echo = parts->echo;
+    line->polled_us = clock_us(parts->clock);
     line->age = AGE_OLD;
     return FATHOM_OK;
 }
@@ -116,7 +117,7 @@ void fathom_line_pass(fathom_line_t *line, uint8_t from, uint8_t length)
     if (listener == NULL)
         fathom_line_add(line, FATHOM_LINE_DROPPED_BYTES, length);
     else
-        listener->receive(listener, &line->config->frame[from], length, line->is_after_gap,
+        listener->receive(listener, &line->parts->frame[from], length, line->is_after_gap,
                           fathom_line_last_byte_us(line));
     line->is_after_gap = false;
 }
@@ -163,7 +164,7 @@ static void drop_port(fathom_line_t *line)
 /* Reads the clock and moves all deadlines on. Returns the time since the previous call, in microseconds. */
 static uint32_t begin_turn(fathom_line_t *line)
 {
-    const uint32_t now_us = clock_us(line->config->clock);
+    const uint32_t now_us = clock_us(line->parts->clock);
     const uint32_t pause_us = time_since_us(now_us, line->polled_us);
     if ((pause_us > FATHOM_LINE_LATE_US) && fathom_line_is_old(line, pause_us)) drop_port(line);
     move_to(line, now_us);
@@ -201,7 +202,7 @@ fathom_status_t fathom_line_broken(fathom_line_t *line)
     line->received_count = 0;
     line->passed_count = 0;
     /* The port may return as another device, so nothing that was learnt from received bytes remains valid. */
-    line->echo = line->config->echo;
+    line->echo = line->parts->echo;
     line->attempt.copy = COPY_PAST;
     line->is_after_gap = false;
     line->sender = SENDER_NONE;
@@ -219,7 +220,7 @@ static void drop(fathom_line_t *line, uint8_t new_count)
     line->is_after_gap = false;
     fathom_line_add(line, FATHOM_LINE_OLD_BYTES, new_count);
     fathom_line_note_sender(line, SENDER_BYTES, new_count);
-    if (line->config->masters != NULL) line->config->masters->note_lost_bytes(line);
+    if (line->parts->masters != NULL) line->parts->masters->note_lost_bytes(line);
 }
 
 /* For the listener, dropped bytes are lost bytes: no frame continues across them. The line reports the loss with the next
@@ -238,9 +239,9 @@ static void receive(fathom_line_t *line, uint8_t new_count, const fathom_rx_t *r
     if (!holds_bytes(line) && is_listeners_gap(line)) line->is_after_gap = true;
     line->slot = SLOT_OPEN;
     line->silent_us = 0;
-    move_to(line, clock_us(line->config->clock));
+    move_to(line, clock_us(line->parts->clock));
     if ((rx->flags & FATHOM_RX_TIMED) != 0) apply_time_stamp(line, rx->last_us);
-    if (line->config->marks != NULL) new_count = line->config->marks(line, rx, new_count);
+    if (line->parts->marks != NULL) new_count = line->parts->marks(line, rx, new_count);
     if (line->age >= AGE_OLD) {
         drop(line, new_count);
         return;
@@ -258,7 +259,7 @@ static void receive(fathom_line_t *line, uint8_t new_count, const fathom_rx_t *r
  */
 static fathom_status_t read_port(fathom_line_t *line)
 {
-    const fathom_uart_t *const uart = line->config->uart;
+    const fathom_uart_t *const uart = line->parts->uart;
     const uint32_t pause_us = begin_turn(line);
     uint32_t silent_us = pause_us + line->silent_us;
     if (line->slot == SLOT_BEHIND_FRAME) {
@@ -269,8 +270,8 @@ static fathom_status_t read_port(fathom_line_t *line)
         fathom_rx_t rx;
         rx.last_us = 0;
         rx.flags = 0;
-        const int new_count = uart->read(uart->ctx, &line->config->frame[line->received_count],
-                                         (size_t)(line->config->frame_size - line->received_count), &rx);
+        const int new_count = uart->read(uart->ctx, &line->parts->frame[line->received_count],
+                                         (size_t)(line->parts->frame_size - line->received_count), &rx);
         if (new_count <= 0) {
             set_silent(line, silent_us);
             end_dropping(line);
@@ -299,6 +300,8 @@ static uint32_t frame_over_in_us(const fathom_line_t *line)
 fathom_status_t fathom_line_poll(fathom_line_t *line)
 {
     if (!is_initialised(line)) return FATHOM_ERR_ARGUMENT;
+    FATHOM_ASSERT(line->parts_sum ==
+                  sum_of_parts(line->parts)); /* The parts changed, or their memory was freed. */
     const fathom_status_t status = read_port(line);
     if (status != FATHOM_PENDING) return status;
     if (line->awaited_left_us == ENDS_WITH_THIS_POLL) line->awaited_left_us = 0;
@@ -333,7 +336,7 @@ static void release(fathom_line_t *line)
 fathom_status_t fathom_line_break(fathom_line_t *line, bool on)
 {
     if (!is_initialised(line)) return FATHOM_ERR_ARGUMENT;
-    const fathom_uart_t *const uart = line->config->uart;
+    const fathom_uart_t *const uart = line->parts->uart;
     if (uart->set_break == NULL) return FATHOM_ERR_UNSUPPORTED;
     if (is_busy(line)) return on ? FATHOM_ERR_BUSY : FATHOM_OK; /* TX is not low while a request leaves. */
     const int result = uart->set_break(uart->ctx, on);
@@ -362,7 +365,7 @@ fathom_status_t fathom_line_break(fathom_line_t *line, bool on)
  */
 static uint32_t port_due_us(const fathom_line_t *line, uint32_t passed_us)
 {
-    const fathom_uart_t *const uart = line->config->uart;
+    const fathom_uart_t *const uart = line->parts->uart;
     const uint32_t us = (uart->leaves_in_us != NULL) ? uart->leaves_in_us(uart->ctx) : 0u;
     if (us == 0u) return SEND_POLL_US;
     return us + passed_us;
@@ -388,7 +391,7 @@ static uint32_t phase_due_us(const fathom_line_t *line, uint32_t passed_us)
 uint32_t fathom_line_due_us(const fathom_line_t *line)
 {
     if (!is_initialised(line)) return FATHOM_NO_DEADLINE;
-    const uint32_t passed_us = time_since_us(clock_us(line->config->clock), line->polled_us);
+    const uint32_t passed_us = time_since_us(clock_us(line->parts->clock), line->polled_us);
     uint32_t due_us = least_us(phase_due_us(line, passed_us), frame_over_in_us(line));
     if ((line->listener != NULL) && (line->silent_us < line->listener->gap_us))
         due_us = least_us(due_us, rest_us(line->listener->gap_us, line->silent_us));

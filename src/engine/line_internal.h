@@ -113,19 +113,32 @@ static inline bool is_in_break(const fathom_line_t *line)
     return (line->phase == FATHOM_LINE_IN_BREAK) || (line->phase == FATHOM_LINE_ENDING_BREAK);
 }
 
+/*
+ * Returns a sum over the first members of the parts of a line: uart, clock, frame, frame_size. A build with FATHOM_ASSERT
+ * compares it at each poll, because the parts of a line are often a local variable of a set-up function by mistake.
+ */
+static inline uint16_t sum_of_parts(const fathom_line_parts_t *parts)
+{
+    const uint8_t *const bytes = (const uint8_t *)parts;
+    uint16_t sum = 0;
+    for (size_t i = 0; i != offsetof(fathom_line_parts_t, echo); i++)
+        sum = (uint16_t)((uint32_t)(sum * 31u) + bytes[i]);
+    return sum;
+}
+
 static inline uint16_t gap_us(const fathom_line_t *line)
 {
-    return (uint16_t)or_default(line->config->gap_us, FATHOM_LINE_DEFAULT_GAP_US);
+    return (uint16_t)or_default(line->parts->gap_us, FATHOM_LINE_DEFAULT_GAP_US);
 }
 
 static inline uint16_t silence_us(const fathom_line_t *line)
 {
-    return (uint16_t)or_default(line->config->silence_us, FATHOM_LINE_DEFAULT_SILENCE_US);
+    return (uint16_t)or_default(line->parts->silence_us, FATHOM_LINE_DEFAULT_SILENCE_US);
 }
 
 static inline uint32_t busy_us(const fathom_line_t *line)
 {
-    return or_default(line->config->busy_us, FATHOM_LINE_DEFAULT_BUSY_US);
+    return or_default(line->parts->busy_us, FATHOM_LINE_DEFAULT_BUSY_US);
 }
 
 /* Returns true if the attempt ends at the next gap, because the response is damaged. */
@@ -220,14 +233,14 @@ static inline void note_fault(fathom_line_t *line, uint8_t fault)
 
 /* ---- line.c ---- */
 
-/* Adds to a counter, if the config names fathom_line_count(). */
+/* Adds to a counter, if the parts name fathom_line_count(). */
 void fathom_line_add(fathom_line_t *line, uint8_t which, uint8_t by);
 
-/* Notifies the part for devices that send by themselves, if the config names it: an enum sender_event. */
+/* Notifies the part for devices that send by themselves, if the parts name it: an enum sender_event. */
 void fathom_line_note_sender(fathom_line_t *line, uint8_t event, uint32_t amount);
 
-/* Initialises all members that both kinds of lines share. Returns FATHOM_ERR_ARGUMENT if the config is refused. */
-fathom_status_t fathom_line_begin(fathom_line_t *line, const fathom_line_config_t *config,
+/* Initialises all members that both kinds of lines share. Returns FATHOM_ERR_ARGUMENT if the parts are refused. */
+fathom_status_t fathom_line_begin(fathom_line_t *line, const fathom_line_parts_t *parts,
                                   const fathom_line_kind_t *kind);
 
 /* Passes `length` bytes to the listener, or counts them if there is none. A length of 0 reports lost bytes. */

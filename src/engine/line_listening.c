@@ -24,7 +24,7 @@ static fathom_status_t advance(fathom_line_t *line)
 
 static const fathom_line_kind_t listening = {scan, advance, NULL, NULL, NULL};
 
-fathom_status_t fathom_line_init_listening(fathom_line_t *line, const fathom_line_config_t *config)
+fathom_status_t fathom_line_init_listening(fathom_line_t *line, const fathom_line_parts_t *parts)
 {
-    return fathom_line_begin(line, config, &listening);
+    return fathom_line_begin(line, parts, &listening);
 }

@@ -125,7 +125,7 @@ static void note_foreign_request(fathom_line_t *line, uint8_t address)
  * the echo of the request on the wire or of a cancelled one, a response to us, or the response to another master. */
 static bool is_ours(fathom_line_t *line, uint8_t address, bool is_response)
 {
-    const uint8_t *const frame = line->config->frame;
+    const uint8_t *const frame = line->parts->frame;
     if (expects_response(line) && line->protocol->is_request(line->head, frame, line->attempt.request_length))
         return true;
     if (is_response) return !expects_unit(line, address); /* The copy of a write of one register. */
@@ -136,11 +136,11 @@ static bool is_ours(fathom_line_t *line, uint8_t address, bool is_response)
 
 static uint8_t find_request(fathom_line_t *line, bool is_response)
 {
-    const uint8_t *const frame = line->config->frame;
+    const uint8_t *const frame = line->parts->frame;
     const uint8_t received_count = line->received_count;
     const form_t form = form_of(frame, received_count);
     if (form.length >
-        line->config->frame_size) { /* A write of many registers that is longer than the buffer. */
+        line->parts->frame_size) { /* A write of many registers that is longer than the buffer. */
         note_foreign_request(line, frame[form.address_offset]);
         return received_count;
     }
@@ -160,7 +160,7 @@ static void note_lost_bytes(fathom_line_t *line)
  * quarantine of the unit nor is it the response that another master waits for. */
 static bool is_ambiguous(const fathom_line_t *line)
 {
-    const form_t form = form_of(line->config->frame, line->received_count);
+    const form_t form = form_of(line->parts->frame, line->received_count);
     return (form.length != 0u) && (form.length <= line->received_count) && form.is_sum_right;
 }
 

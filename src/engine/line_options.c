@@ -4,27 +4,27 @@
 #include "line_internal.h"
 
 /*
- * The optional parts of a line. A config names each of them by a function pointer, and the linker drops those that no
- * config names.
+ * The optional parts of a line. fathom_line_parts_t names each of them by a function pointer, and the linker drops
+ * those that no line names.
  */
 
-/* ---- fathom_line_config_t.count ---- */
+/* ---- fathom_line_parts_t.count ---- */
 
 void fathom_line_count(fathom_line_t *line, uint8_t which, uint8_t by)
 {
-    uint16_t *const counter = &line->config->counters[which];
+    uint16_t *const counter = &line->parts->counters[which];
     const uint32_t sum = (uint32_t)*counter + by;
     *counter = (sum > UINT16_MAX) ? UINT16_MAX : (uint16_t)sum;
 }
 
-/* ---- fathom_line_config_t.find_echo ---- */
+/* ---- fathom_line_parts_t.find_echo ---- */
 
 void fathom_line_find_echo(fathom_line_t *line, uint8_t echo)
 {
-    if (line->config->echo == FATHOM_LINE_ECHO_AUTO) line->echo = echo;
+    if (line->parts->echo == FATHOM_LINE_ECHO_AUTO) line->echo = echo;
 }
 
-/* ---- fathom_line_config_t.marks ---- */
+/* ---- fathom_line_parts_t.marks ---- */
 
 enum {
     BAD_BYTES = FATHOM_RX_PARITY | FATHOM_RX_FRAMING, /* The new bytes themselves are damaged. */
@@ -44,7 +44,7 @@ static void interrupt_frame(fathom_line_t *line)
 
 uint8_t fathom_line_marks(fathom_line_t *line, const fathom_rx_t *rx, uint8_t new_count)
 {
-    uint8_t *const frame = line->config->frame;
+    uint8_t *const frame = line->parts->frame;
     const uint8_t *const new_bytes = &frame[line->received_count];
     if (((rx->flags & FATHOM_RX_SILENCE) != 0) && !holds_bytes(line)) line->is_after_gap = true;
     if ((rx->flags & MARKED) == 0) return new_count;

@@ -45,14 +45,14 @@ static uint32_t silence_in_us(const fathom_line_t *line)
         return FATHOM_NO_DEADLINE; /* Wait for the end of the frame. */
     if (line->awaited_left_us != 0u)
         return line->awaited_left_us - 1u; /* It ends at 1, with a poll (line.c). */
-    if (line->config->senders != NULL) return line->config->senders->slot_in_us(line);
+    if (line->parts->senders != NULL) return line->parts->senders->slot_in_us(line);
     return rest_us(silence_us(line), line->silent_us);
 }
 
 /* Returns true if `transaction` may leave in this silence. Without a transaction the slot passes unused. */
 static bool take_slot(fathom_line_t *line, const fathom_transaction_t *transaction)
 {
-    const fathom_line_senders_t *const senders = line->config->senders;
+    const fathom_line_senders_t *const senders = line->parts->senders;
     if (silence_in_us(line) != 0u) return false;
     return (senders == NULL) || senders->take_slot(line, transaction);
 }
@@ -158,7 +158,7 @@ static fathom_status_t wait_for_port(fathom_line_t *line)
 /* Sets the line settings of a transaction. Returns > 0: they are in force; 0: try again; < 0: not possible (hal.h). */
 static int apply_settings(const fathom_line_t *line, const fathom_transaction_t *transaction)
 {
-    const fathom_uart_t *const uart = line->config->uart;
+    const fathom_uart_t *const uart = line->parts->uart;
     if (transaction->line_settings == NULL) return 1;
     if (uart->set_line == NULL) return -1;
     return uart->set_line(uart->ctx, transaction->line_settings);
@@ -167,7 +167,7 @@ static int apply_settings(const fathom_line_t *line, const fathom_transaction_t 
 /* Sends the request of the next transaction, if one may leave now. */
 static fathom_status_t send_next(fathom_line_t *line)
 {
-    const fathom_uart_t *const uart = line->config->uart;
+    const fathom_uart_t *const uart = line->parts->uart;
     fathom_transaction_t *const transaction = choose(line);
     if (transaction == NULL) return FATHOM_PENDING;
     if (line->received_count != 0u) line->kind->scan(line, true); /* The request needs the frame buffer. */
@@ -179,8 +179,8 @@ static fathom_status_t send_next(fathom_line_t *line)
         fathom_line_finish(line, &line->head, FATHOM_ERR_UNSUPPORTED);
         return FATHOM_PENDING;
     }
-    const uint8_t length = transaction->protocol->encode(transaction, line->config->frame);
-    const int accepted = uart->write(uart->ctx, line->config->frame, length);
+    const uint8_t length = transaction->protocol->encode(transaction, line->parts->frame);
+    const int accepted = uart->write(uart->ctx, line->parts->frame, length);
     if (accepted == 0) return wait_for_port(line);
     if (accepted != (int)length) return fathom_line_broken(line);
     begin_attempt(line, length);
@@ -190,7 +190,7 @@ static fathom_status_t send_next(fathom_line_t *line)
 /* Follows a request that leaves the port until its last bit has left. */
 static fathom_status_t follow_request(fathom_line_t *line)
 {
-    const fathom_uart_t *const uart = line->config->uart;
+    const fathom_uart_t *const uart = line->parts->uart;
     line->silent_us = 0;
     if (!uart->sent(uart->ctx))
         return (line->phase_left_us != 0u) ? FATHOM_PENDING : fathom_line_broken(line);
@@ -236,23 +236,22 @@ static const fathom_line_kind_t requesting = {fathom_line_scan, advance, next, d
 
 /* ---- Public functions ---- */
 
-static bool can_send(const fathom_line_config_t *config)
+static bool can_send(const fathom_line_parts_t *parts)
 {
-    if ((config->uart->write == NULL) || (config->uart->sent == NULL) ||
-        (config->echo > FATHOM_LINE_ECHO_ON) ||
-        ((config->echo == FATHOM_LINE_ECHO_AUTO) && (config->find_echo == NULL)))
+    if ((parts->uart->write == NULL) || (parts->uart->sent == NULL) || (parts->echo > FATHOM_LINE_ECHO_ON) ||
+        ((parts->echo == FATHOM_LINE_ECHO_AUTO) && (parts->find_echo == NULL)))
         return false;
-    if (config->busy_us == 0u) return true;
-    return (config->busy_us > or_default(config->silence_us, FATHOM_LINE_DEFAULT_SILENCE_US)) &&
-           (config->busy_us <= FATHOM_MAX_DURATION_US);
+    if (parts->busy_us == 0u) return true;
+    return (parts->busy_us > or_default(parts->silence_us, FATHOM_LINE_DEFAULT_SILENCE_US)) &&
+           (parts->busy_us <= FATHOM_MAX_DURATION_US);
 }
 
-fathom_status_t fathom_line_init(fathom_line_t *line, const fathom_line_config_t *config)
+fathom_status_t fathom_line_init(fathom_line_t *line, const fathom_line_parts_t *parts)
 {
-    const fathom_status_t status = fathom_line_begin(line, config, &requesting);
-    if ((status != FATHOM_OK) || can_send(config)) return status;
+    const fathom_status_t status = fathom_line_begin(line, parts, &requesting);
+    if ((status != FATHOM_OK) || can_send(parts)) return status;
     line->kind = NULL;
-    line->config = NULL;
+    line->parts = NULL;
     return FATHOM_ERR_ARGUMENT;
 }
 

@@ -68,7 +68,7 @@ static bool can_be_echo(const fathom_line_t *line, uint8_t response_length)
 static bool is_echo(const fathom_line_t *line, uint8_t response_length)
 {
     const fathom_protocol_t *const protocol = line->protocol;
-    const uint8_t *const frame = line->config->frame;
+    const uint8_t *const frame = line->parts->frame;
     const uint8_t request_length = line->attempt.request_length;
     if (!can_be_echo(line, response_length)) return false;
     if (!protocol->is_request(line->head, frame, line->received_count)) return false;
@@ -77,7 +77,7 @@ static bool is_echo(const fathom_line_t *line, uint8_t response_length)
 
 static void learn_echo(fathom_line_t *line, uint8_t echo)
 {
-    if (line->config->find_echo != NULL) line->config->find_echo(line, echo);
+    if (line->parts->find_echo != NULL) line->parts->find_echo(line, echo);
 }
 
 /* ---- Received frames ---- */
@@ -94,7 +94,7 @@ static bool serve(fathom_line_t *line, uint8_t address)
         if ((transaction->attempts == 0u) || !is_from_unit_of(transaction, address) ||
             (transaction->protocol->parse_response != protocol->parse_response))
             continue;
-        const fathom_status_t status = protocol->parse_response(transaction, line->config->frame);
+        const fathom_status_t status = protocol->parse_response(transaction, line->parts->frame);
         if ((status != FATHOM_OK) && (status != FATHOM_ERR_EXCEPTION)) continue;
         fathom_line_add(line, (status == FATHOM_OK) ? FATHOM_LINE_RESPONSES : FATHOM_LINE_EXCEPTIONS, 1);
         fathom_line_note_sender(line, SENDER_RESPONSE, 0);
@@ -107,7 +107,7 @@ static bool serve(fathom_line_t *line, uint8_t address)
 
 static void note_unrequested(fathom_line_t *line)
 {
-    if (line->config->masters != NULL) line->config->masters->note_unrequested(line);
+    if (line->parts->masters != NULL) line->parts->masters->note_unrequested(line);
 }
 
 /* A frame from the unit that the request on the wire was sent to. Returns true if a transaction accepts the frame. */
@@ -129,7 +129,7 @@ static bool accept_response(fathom_line_t *line, uint8_t address)
  * transaction accepts the frame. The echo of a cancelled request looks like a late response, once. */
 static bool accept_late_response(fathom_line_t *line, uint8_t address)
 {
-    const fathom_line_masters_t *const masters = line->config->masters;
+    const fathom_line_masters_t *const masters = line->parts->masters;
     const bool is_claimed = (masters != NULL) && masters->take_answer(line, address);
     const bool is_late = is_quarantined(line, address) && !is_echo_due(line) && !is_claimed;
     if (is_echo_due(line)) line->attempt.copy = COPY_PAST;
@@ -144,7 +144,7 @@ static bool accept_late_response(fathom_line_t *line, uint8_t address)
 
 static bool accept_frame(fathom_line_t *line)
 {
-    const uint8_t address = line->config->frame[line->protocol->address_offset];
+    const uint8_t address = line->parts->frame[line->protocol->address_offset];
     return expects_unit(line, address) ? accept_response(line, address) : accept_late_response(line, address);
 }
 
@@ -173,7 +173,7 @@ enum { MIN_TRUNCATED = 3 };
 static bool is_damaged_response(const fathom_line_t *line, uint8_t frame_length)
 {
     return (frame_length != 0u) && (line->received_count >= MIN_TRUNCATED) &&
-           expects_unit(line, line->config->frame[line->protocol->address_offset]);
+           expects_unit(line, line->parts->frame[line->protocol->address_offset]);
 }
 
 /* Skips one byte, since no valid frame begins at the front of the buffer. */
@@ -201,9 +201,9 @@ static scan_result_t take_echo(fathom_line_t *line, bool is_response)
 static scan_result_t examine(fathom_line_t *line, bool is_over)
 {
     const fathom_protocol_t *const protocol = line->protocol;
-    const uint8_t *const frame = line->config->frame;
+    const uint8_t *const frame = line->parts->frame;
     const uint8_t received_count = line->received_count;
-    const fathom_line_masters_t *const masters = line->config->masters;
+    const fathom_line_masters_t *const masters = line->parts->masters;
     /* Without a protocol nothing was ever submitted. */
     if ((protocol == NULL) && (masters == NULL)) return result(DISCARD, received_count);
 
@@ -213,7 +213,7 @@ static scan_result_t examine(fathom_line_t *line, bool is_over)
     uint8_t request_length = 0;
     if (masters != NULL) request_length = masters->find_request(line, is_frame);
     if ((request_length != 0u) && (request_length <= received_count)) return result(DISCARD, request_length);
-    const bool can_complete = (length > received_count) && (length <= line->config->frame_size);
+    const bool can_complete = (length > received_count) && (length <= line->parts->frame_size);
     if (can_complete && !is_over) return result(NEED_MORE, 0);
 
     if (is_echo(line, is_frame ? length : 0u)) {
@@ -230,7 +230,7 @@ static scan_result_t examine(fathom_line_t *line, bool is_over)
 
 static void remove_bytes(fathom_line_t *line, uint8_t length)
 {
-    uint8_t *const frame = line->config->frame;
+    uint8_t *const frame = line->parts->frame;
     line->received_count = (uint8_t)(line->received_count - length);
     line->passed_count = (uint8_t)rest_us(line->passed_count, length);
     for (uint8_t i = 0; i != line->received_count; i++) frame[i] = frame[i + length];

@@ -31,9 +31,9 @@ fathom_modbus_t fathom_modbus_over_line(fathom_line_t *line,
     modbus.ctx = line;
     modbus.has = has;
     modbus.frame_size = 0;
-    if (line->config != NULL) {
-        modbus.clock = line->config->clock;
-        modbus.frame_size = line->config->frame_size;
+    if (line->parts != NULL) {
+        modbus.clock = line->parts->clock;
+        modbus.frame_size = line->parts->frame_size;
     }
     return modbus;
 }

@@ -45,7 +45,7 @@ fathom_status_t fathom_modbus_client_start(fathom_line_t *line, fathom_modbus_re
 {
     const uint8_t frame_size = fathom_modbus_rtu_frame_size(&request->message);
     if (frame_size == 0u) return FATHOM_ERR_ARGUMENT;
-    if (frame_size > line->config->frame_size) return FATHOM_ERR_CAPACITY;
+    if (frame_size > line->parts->frame_size) return FATHOM_ERR_CAPACITY;
     request->transaction.protocol = with;
     request->transaction.address = request->message.head[0];
     return fathom_line_submit(line, &request->transaction);

@@ -47,7 +47,7 @@ fathom_status_t fathom_a05_auto_select(fathom_a05_auto_t *sensor, fathom_dyp_val
     if (status != FATHOM_OK) return (status == FATHOM_PENDING) ? FATHOM_ERR_BUSY : status;
     sensor->selecting = low;
     sensor->select_left_us = FATHOM_A05_SELECT_US;
-    sensor->polled_us = clock_us(base->line->config->clock);
+    sensor->polled_us = clock_us(base->line->parts->clock);
     base->measurement.left = 0;
     return fathom_stream_start(&base->stream, sensor->polled_us);
 }
@@ -62,7 +62,7 @@ static fathom_status_t end_selection(fathom_a05_auto_t *sensor)
 /* FATHOM_PENDING, or what is wrong. */
 static fathom_status_t release(fathom_a05_auto_t *sensor)
 {
-    const uint32_t now_us = clock_us(sensor->base.line->config->clock);
+    const uint32_t now_us = clock_us(sensor->base.line->parts->clock);
     const uint32_t passed_us = fathom_elapsed_us(now_us, sensor->polled_us);
     sensor->polled_us = now_us;
     if (!sensor->selecting || !fathom_count_down(&sensor->select_left_us, passed_us)) return FATHOM_PENDING;
@@ -122,7 +122,7 @@ static uint32_t due_us(void *ctx)
     if (sensor->base.measurement.left != 0u) return 0;
     const uint32_t base_us = fathom_dyp_auto_due_us(&sensor->base);
     if (!sensor->selecting) return base_us;
-    const uint32_t now_us = clock_us(sensor->base.line->config->clock);
+    const uint32_t now_us = clock_us(sensor->base.line->parts->clock);
     const uint32_t left_us = or_default(sensor->select_left_us, AGAIN_US);
     return least_us(base_us, rest_us(left_us, fathom_elapsed_us(now_us, sensor->polled_us)));
 }

@@ -118,8 +118,8 @@ static bool configure(fathom_a16_controlled_t *sensor, const fathom_a16_controll
     stream->listener.gap_us = config->gap_us;
     stream->storage = sensor->storage;
     stream->listener.stale_us = sensor->latest_us; /* The line drops bytes that are older. */
-    if ((line == NULL) || (line->config == NULL)) return false;
-    trigger->clock = line->config->clock;
+    if ((line == NULL) || (line->parts == NULL)) return false;
+    trigger->clock = line->parts->clock;
     return (trigger->output.set != NULL) && (sensor->earliest_us <= sensor->latest_us) &&
            (fathom_dyp_measurement_init(measurement, FATHOM_A16_MAX_MM) == FATHOM_OK) &&
            (fathom_stream_start(stream, clock_us(trigger->clock)) == FATHOM_OK);

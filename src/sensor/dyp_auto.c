@@ -8,7 +8,7 @@ fathom_status_t fathom_dyp_auto_init(fathom_dyp_auto_t *sensor, uint16_t default
 {
     fathom_line_t *const line = sensor->line;
     if ((fathom_dyp_measurement_init(&sensor->measurement, default_max_mm) < 0) || (line == NULL) ||
-        (line->config == NULL) || (fathom_stream_start(&sensor->stream, clock_us(line->config->clock)) < 0))
+        (line->parts == NULL) || (fathom_stream_start(&sensor->stream, clock_us(line->parts->clock)) < 0))
         return FATHOM_ERR_ARGUMENT;
     return fathom_line_listen(line, &sensor->stream.listener);
 }
@@ -49,6 +49,6 @@ uint32_t fathom_dyp_auto_due_us(const fathom_dyp_auto_t *sensor)
     if (is_followed(sensor)) return fathom_line_due_us(line);
     if (stream->is_new) return 0;
     /* The line knows when the silence after a frame is over: the silence is the listener's gap. */
-    const uint32_t passed_us = time_since_us(clock_us(line->config->clock), stream->since_us);
+    const uint32_t passed_us = time_since_us(clock_us(line->parts->clock), stream->since_us);
     return least_us(fathom_line_due_us(line), rest_us(stream->listener.stale_us, passed_us));
 }

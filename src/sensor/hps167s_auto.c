@@ -82,7 +82,7 @@ static void receive(fathom_listener_t *listener, const uint8_t *bytes, uint8_t l
 static bool is_in_range(const fathom_hps167s_auto_config_t *config)
 {
     const fathom_line_t *const line = config->line;
-    return (line != NULL) && (line->config != NULL) && (line->config->frame_size >= LENGTH) &&
+    return (line != NULL) && (line->parts != NULL) && (line->parts->frame_size >= LENGTH) &&
            (config->address <= FATHOM_HPS167S_MAX_ADDRESS) && (config->stale_us <= FATHOM_MAX_DURATION_US);
 }
 
@@ -103,7 +103,7 @@ fathom_status_t fathom_hps167s_auto_init(fathom_hps167s_auto_t *sensor,
     sensor->address = (config->address != 0u) ? config->address : 1u;
     sensor->from = &sensor->address;
     if (is_in_range(config)) {
-        sensor->since_us = clock_us(sensor->line->config->clock);
+        sensor->since_us = clock_us(sensor->line->parts->clock);
         status = fathom_line_listen(sensor->line, &sensor->listener);
     }
     if (status != FATHOM_OK) {
@@ -154,7 +154,7 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     fathom_hps167s_auto_t *const sensor = ctx;
     if (sensor->line == NULL) return FATHOM_ERR_ARGUMENT; /* init did not run, or failed */
     const fathom_status_t port = fathom_line_poll(sensor->line);
-    const uint32_t now_us = clock_us(sensor->line->config->clock);
+    const uint32_t now_us = clock_us(sensor->line->parts->clock);
     const uint32_t stale_us = sensor->listener.stale_us;
     if (sensor->is_new) {
         sensor->is_new = false;
@@ -176,7 +176,7 @@ static uint32_t due_us(void *ctx)
     const fathom_hps167s_auto_t *const sensor = ctx;
     if (sensor->line == NULL) return 0;
     const uint32_t line_us = fathom_line_due_us(sensor->line);
-    const uint32_t passed_us = time_since_us(clock_us(sensor->line->config->clock), sensor->since_us);
+    const uint32_t passed_us = time_since_us(clock_us(sensor->line->parts->clock), sensor->since_us);
     return sensor->is_new ? 0u : least_us(line_us, rest_us(sensor->listener.stale_us, passed_us));
 }
 

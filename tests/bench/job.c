@@ -18,27 +18,27 @@ uint16_t counters[FATHOM_LINE_COUNTERS];
 
 static uint16_t values[4];
 
-static const fathom_line_config_t config = {.uart = &uart,
-                                            .clock = &clock,
-                                            .frame = frame,
-                                            .frame_size = sizeof frame,
+static const fathom_line_parts_t config = {.uart = &uart,
+                                           .clock = &clock,
+                                           .frame = frame,
+                                           .frame_size = sizeof frame,
 #ifdef JOB_COUNTERS
-                                            .count = fathom_line_count,
-                                            .counters = counters,
+                                           .count = fathom_line_count,
+                                           .counters = counters,
 #endif
 #ifdef JOB_ALL
-                                            .find_echo = fathom_line_find_echo,
-                                            .marks = fathom_line_marks,
+                                           .find_echo = fathom_line_find_echo,
+                                           .marks = fathom_line_marks,
 #else
-                                            .echo = FATHOM_LINE_ECHO_OFF,
+                                           .echo = FATHOM_LINE_ECHO_OFF,
 #endif
 #ifdef JOB_SENDERS
-                                            .senders = &fathom_line_senders,
+                                           .senders = &fathom_line_senders,
 #endif
 #ifdef JOB_MASTERS
-                                            .masters = &fathom_line_masters,
+                                           .masters = &fathom_line_masters,
 #endif
-                                            .silence_us = FATHOM_T3_5_US(19200, 11)};
+                                           .silence_us = FATHOM_T3_5_US(19200, 11)};
 
 #ifdef JOB_ALL
 static uint8_t unasked;

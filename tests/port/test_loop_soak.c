@@ -30,7 +30,7 @@ typedef struct {
     fathom_sim_a16_t a16;
     fathom_sim_hps167s_t hps;
     fathom_sim_fault_t fault;
-    fathom_line_config_t config;
+    fathom_line_parts_t config;
     fathom_line_t line;
     uint8_t frame[32];
     fathom_modbus_t modbus;
@@ -215,13 +215,13 @@ static void add_place(unsigned number)
     place->uart = fathom_loop_uart(&place->source, &port);
     place->source.kind = &kind;
     place->source.reads_all = true;
-    place->config = (fathom_line_config_t){.uart = &place->uart,
-                                           .clock = &clock_of_time,
-                                           .frame = place->frame,
-                                           .frame_size = sizeof place->frame,
-                                           .find_echo = fathom_line_find_echo,
-                                           .silence_us = 4011,
-                                           .gap_us = 25000};
+    place->config = (fathom_line_parts_t){.uart = &place->uart,
+                                          .clock = &clock_of_time,
+                                          .frame = place->frame,
+                                          .frame_size = sizeof place->frame,
+                                          .find_echo = fathom_line_find_echo,
+                                          .silence_us = 4011,
+                                          .gap_us = 25000};
     assert_int_equal(fathom_line_init(&place->line, &place->config), FATHOM_OK);
     place->modbus = fathom_modbus_client(&place->line);
     fathom_sensor_t sensor;

@@ -213,7 +213,7 @@ TEST(a_line_has_the_silence_of_its_settings)
         memset(&line, 0xA5, sizeof line); /* any content will do */
         assert_int_equal(fathom_loop_add_line(&fake.loop, &line, "/nowhere", &rows[i].settings),
                          FATHOM_POSIX_OK);
-        assert_int_equal(line.config.silence_us, rows[i].silence_us);
+        assert_int_equal(line.parts.silence_us, rows[i].silence_us);
         fathom_loop_remove(&line.source);
     }
 }
@@ -224,12 +224,12 @@ TEST(a_line_finds_out_about_echo_waits_25_ms_and_keeps_no_counters)
     static fathom_loop_line_t line;
     memset(&line, 0xA5, sizeof line);
     assert_int_equal(fathom_loop_add_line(&fake.loop, &line, "/nowhere", &settings), FATHOM_POSIX_OK);
-    assert_true(line.config.find_echo == fathom_line_find_echo);
-    assert_int_equal(line.config.gap_us, 25000);
-    assert_null(line.config.count);
-    assert_int_equal(line.config.echo, FATHOM_LINE_ECHO_AUTO);
-    assert_ptr_equal(line.config.uart, &line.uart);
-    assert_ptr_equal(line.config.clock, &line.clock);
+    assert_true(line.parts.find_echo == fathom_line_find_echo);
+    assert_int_equal(line.parts.gap_us, 25000);
+    assert_null(line.parts.count);
+    assert_int_equal(line.parts.echo, FATHOM_LINE_ECHO_AUTO);
+    assert_ptr_equal(line.parts.uart, &line.uart);
+    assert_ptr_equal(line.parts.clock, &line.clock);
     assert_int_equal(fake_failures((fake_source_t *)&line.source),
                      1); /* no such path, which is no failure of the call */
     fathom_loop_step(&fake.loop, FATHOM_NO_DEADLINE);

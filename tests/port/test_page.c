@@ -435,17 +435,17 @@ static void read_sensor(const fathom_uart_t *uart, uint32_t us, uint32_t round_u
 {
     uint8_t frame[16];
     fathom_line_t line;
-    const fathom_line_config_t line_config = {.uart = uart,
-                                              .clock = &port_clock,
-                                              .frame = frame,
-                                              .frame_size = sizeof frame,
-                                              .echo = FATHOM_LINE_ECHO_OFF,
-                                              .silence_us = FATHOM_T3_5_US(9600, 10)};
+    const fathom_line_parts_t line_parts = {.uart = uart,
+                                            .clock = &port_clock,
+                                            .frame = frame,
+                                            .frame_size = sizeof frame,
+                                            .echo = FATHOM_LINE_ECHO_OFF,
+                                            .silence_us = FATHOM_T3_5_US(9600, 10)};
     fathom_a16_modbus_t a16;
     (void)start(NULL);
     chip.is_event = uart == &event_uart;
     begin_at(us);
-    assert_int_equal(fathom_line_init(&line, &line_config), FATHOM_OK);
+    assert_int_equal(fathom_line_init(&line, &line_parts), FATHOM_OK);
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
     const fathom_a16_modbus_config_t config = {.modbus.transport = &modbus, .value = FATHOM_REAL_TIME};
     assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_OK);

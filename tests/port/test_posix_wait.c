@@ -247,11 +247,11 @@ TEST(a_transaction_wakes_the_program_four_times_at_most)
 {
     static uint8_t frame[16];
     const fathom_clock_t clock = fathom_posix_clock();
-    const fathom_line_config_t config = {.uart = &rig.uart,
-                                         .clock = &clock,
-                                         .frame = frame,
-                                         .frame_size = sizeof frame,
-                                         .echo = FATHOM_LINE_ECHO_OFF};
+    const fathom_line_parts_t config = {.uart = &rig.uart,
+                                        .clock = &clock,
+                                        .frame = frame,
+                                        .frame_size = sizeof frame,
+                                        .echo = FATHOM_LINE_ECHO_OFF};
     fathom_line_t line;
     fathom_modbus_request_t request = {.transaction = {.timeout_us = LONG_US}};
     uint16_t mm = 0;

@@ -11,17 +11,17 @@ void rig_start(uint32_t now_us)
     fake_init(&rig.fake);
     rig.fake.now_us = now_us;
     rig.fake.busy_until_us = now_us;
-    rig.line_config = (fathom_line_config_t){.uart = &rig.fake.uart,
-                                             .clock = &rig.fake.clock,
-                                             .frame = rig.frame,
-                                             .frame_size = sizeof rig.frame,
-                                             .echo = FATHOM_LINE_ECHO_AUTO,
-                                             .silence_us = T3_5_US,
-                                             .gap_us = GAP_US,
-                                             .find_echo = fathom_line_find_echo,
-                                             .marks = fathom_line_marks,
-                                             .senders = &fathom_line_senders};
-    assert_int_equal(fathom_line_init(&rig.line, &rig.line_config), FATHOM_OK);
+    rig.line_parts = (fathom_line_parts_t){.uart = &rig.fake.uart,
+                                           .clock = &rig.fake.clock,
+                                           .frame = rig.frame,
+                                           .frame_size = sizeof rig.frame,
+                                           .echo = FATHOM_LINE_ECHO_AUTO,
+                                           .silence_us = T3_5_US,
+                                           .gap_us = GAP_US,
+                                           .find_echo = fathom_line_find_echo,
+                                           .marks = fathom_line_marks,
+                                           .senders = &fathom_line_senders};
+    assert_int_equal(fathom_line_init(&rig.line, &rig.line_parts), FATHOM_OK);
 }
 
 fathom_status_t rig_poll(void)

@@ -18,7 +18,7 @@ enum {
 typedef struct {
     fake_t fake;
     uint8_t frame[27]; /* holds the longest response */
-    fathom_line_config_t line_config;
+    fathom_line_parts_t line_parts;
     fathom_line_t line;
     fathom_sensor_t sensor;  /* the test's, after it has started the line */
     fathom_sample_t sample;  /* the last one */

@@ -35,18 +35,18 @@ int set_up(void **state)
     memset(&bench, 0, sizeof bench);
     fake_init(&bench.fake);
     bench.fake.byte_us = BYTE_US;
-    bench.config = (fathom_line_config_t){.uart = &bench.fake.uart,
-                                          .clock = &bench.fake.clock,
-                                          .frame = bench.frame,
-                                          .frame_size = sizeof bench.frame,
-                                          .echo = FATHOM_LINE_ECHO_OFF,
-                                          .silence_us = T3_5_US,
-                                          .gap_us = GAP_US,
-                                          .find_echo = fathom_line_find_echo,
-                                          .marks = fathom_line_marks,
-                                          .count = fathom_line_count,
-                                          .counters = bench.counters,
-                                          .senders = &fathom_line_senders};
+    bench.config = (fathom_line_parts_t){.uart = &bench.fake.uart,
+                                         .clock = &bench.fake.clock,
+                                         .frame = bench.frame,
+                                         .frame_size = sizeof bench.frame,
+                                         .echo = FATHOM_LINE_ECHO_OFF,
+                                         .silence_us = T3_5_US,
+                                         .gap_us = GAP_US,
+                                         .find_echo = fathom_line_find_echo,
+                                         .marks = fathom_line_marks,
+                                         .count = fathom_line_count,
+                                         .counters = bench.counters,
+                                         .senders = &fathom_line_senders};
     begin_line();
     *state = &bench;
     return 0;

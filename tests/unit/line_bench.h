@@ -23,7 +23,7 @@ typedef struct {
     fake_t fake;
     uint8_t frame[32];
     uint16_t counters[FATHOM_LINE_COUNTERS];
-    fathom_line_config_t config;
+    fathom_line_parts_t config;
     fathom_line_t line;
     fathom_modbus_request_t request;
     fathom_modbus_request_t other;

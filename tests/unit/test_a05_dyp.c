@@ -20,9 +20,9 @@ static fathom_a05_dyp_t a05;
 static void set_up_at(uint32_t now_us)
 {
     rig_start(now_us);
-    rig.line_config.echo = FATHOM_LINE_ECHO_OFF;
+    rig.line_parts.echo = FATHOM_LINE_ECHO_OFF;
     rig.fake.byte_us = RIG_BYTE_US;
-    assert_int_equal(fathom_line_init(&rig.line, &rig.line_config), FATHOM_OK);
+    assert_int_equal(fathom_line_init(&rig.line, &rig.line_parts), FATHOM_OK);
     dyp = fathom_dyp_client(&rig.line);
     config = (fathom_a05_dyp_config_t){.modbus.transport = &dyp};
     memset(&a05, 0x5A, sizeof a05);
@@ -400,8 +400,8 @@ TEST_IN(finding, of_two_responses_the_first_is_taken)
 
 TEST_IN(finding, on_an_echoing_line_the_echo_is_no_device)
 {
-    rig.line_config.echo = FATHOM_LINE_ECHO_AUTO;
-    assert_int_equal(fathom_line_init(&rig.line, &rig.line_config), FATHOM_OK);
+    rig.line_parts.echo = FATHOM_LINE_ECHO_AUTO;
+    assert_int_equal(fathom_line_init(&rig.line, &rig.line_parts), FATHOM_OK);
     while (rig.fake.written == 0) finds_within(STEP_US, FATHOM_PENDING);
     fake_trickle(&rig.fake, 0, RIG_BYTE_US, ask_any, sizeof ask_any);
     fake_trickle(&rig.fake, 70000, RIG_BYTE_US, from_5, sizeof from_5);
@@ -432,7 +432,7 @@ TEST_IN(finding, a_broken_port_ends_it)
 
 TEST_IN(finding, a_line_without_room_says_so)
 {
-    rig.line_config.frame_size = 12;
+    rig.line_parts.frame_size = 12;
     for (unsigned i = 0; i != 2; i++) finds_within(STEP_US, FATHOM_ERR_CAPACITY);
     assert_null(rig.line.head);
 }

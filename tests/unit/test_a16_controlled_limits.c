@@ -209,7 +209,7 @@ TEST(a_break_is_ended_only_where_one_has_begun)
     uart = rig.fake.uart;
     uart.set_break = counted_set_break;
     set_breaks = 0;
-    rig.line_config.uart = &uart;
+    rig.line_parts.uart = &uart;
     assert_int_equal(fathom_a16_controlled_init(&controlled.a16, &controlled.config), FATHOM_OK);
     assert_int_equal(set_breaks, 0);
     fathom_a16_controlled_deinit(&controlled.a16);

@@ -17,7 +17,7 @@ static const uint8_t nothing = 0;
 static fathom_a16_switch_config_t config;
 static fathom_a16_switch_t a16;
 static uint8_t frame[13];
-static fathom_line_config_t line_config;
+static fathom_line_parts_t line_parts;
 static uint16_t counters[FATHOM_LINE_COUNTERS];
 static fathom_line_t line;
 static fathom_contact_guard_t guard;
@@ -29,17 +29,17 @@ static void start_at(uint32_t now_us, bool level)
     pins.level = level;
     pins.fake.byte_us = BYTE_US;
     memset(counters, 0, sizeof counters);
-    line_config = (fathom_line_config_t){.uart = &pins.fake.uart,
-                                         .clock = &pins.fake.clock,
-                                         .frame = frame,
-                                         .frame_size = sizeof frame,
-                                         .echo = FATHOM_LINE_ECHO_OFF,
-                                         .silence_us = 3646,
-                                         .gap_us = 5000,
-                                         .marks = fathom_line_marks,
-                                         .count = fathom_line_count,
-                                         .counters = counters};
-    assert_int_equal(fathom_line_init(&line, &line_config), FATHOM_OK);
+    line_parts = (fathom_line_parts_t){.uart = &pins.fake.uart,
+                                       .clock = &pins.fake.clock,
+                                       .frame = frame,
+                                       .frame_size = sizeof frame,
+                                       .echo = FATHOM_LINE_ECHO_OFF,
+                                       .silence_us = 3646,
+                                       .gap_us = 5000,
+                                       .marks = fathom_line_marks,
+                                       .count = fathom_line_count,
+                                       .counters = counters};
+    assert_int_equal(fathom_line_init(&line, &line_parts), FATHOM_OK);
     config.pin = &pins.pin;
     config.clock = &pins.fake.clock;
     memset(&a16, 0x5A, sizeof a16);

@@ -221,7 +221,7 @@ TEST_IN(finding, a_transport_that_cannot_tell_what_it_has_is_trusted)
 
 TEST_IN(finding, what_the_transport_refuses_is_said)
 {
-    bench.line.config = &(const fathom_line_config_t){
+    bench.line.parts = &(const fathom_line_parts_t){
         .uart = &bench.fake.uart, .clock = &bench.fake.clock, .frame = bench.frame, .frame_size = 7};
     assert_int_equal(find(), FATHOM_ERR_CAPACITY);
     assert_false(sought.is_asked);

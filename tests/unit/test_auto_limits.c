@@ -30,7 +30,7 @@ static int set_up(void **state)
     rig_start(RIG_START_US);
     uart = rig.fake.uart;
     uart.set_break = counted_set_break;
-    rig.line_config.uart = &uart;
+    rig.line_parts.uart = &uart;
     set_breaks = 0;
     fake_pin_init(&pin, &rig.fake);
     return 0;

@@ -157,15 +157,15 @@ TEST(a_level_counts_again_5_ms_after_the_last_byte_on_its_line)
 {
     static const uint8_t byte[] = {0x00};
     static uint8_t frame[8];
-    static fathom_line_config_t config;
+    static fathom_line_parts_t config;
     static fathom_line_t line;
     const fathom_contact_guard_t guard = fathom_contact_line_guard(&line);
-    config = (fathom_line_config_t){.uart = &pins.fake.uart,
-                                    .clock = &pins.fake.clock,
-                                    .frame = frame,
-                                    .frame_size = sizeof frame,
-                                    .echo = FATHOM_LINE_ECHO_OFF,
-                                    .marks = fathom_line_marks};
+    config = (fathom_line_parts_t){.uart = &pins.fake.uart,
+                                   .clock = &pins.fake.clock,
+                                   .frame = frame,
+                                   .frame_size = sizeof frame,
+                                   .echo = FATHOM_LINE_ECHO_OFF,
+                                   .marks = fathom_line_marks};
     assert_int_equal(fathom_line_init(&line, &config), FATHOM_OK);
     timing.settle_us = 1;
     start_on(0, &guard);

@@ -259,11 +259,11 @@ TEST(commands_3_and_5_go_over_a_line_byte_for_byte)
 TEST(a_line_with_less_room_than_a_response_says_capacity)
 {
     start_line();
-    rig.line_config.frame_size = 26;
+    rig.line_parts.frame_size = 26;
     assert_int_equal(ask_details(), FATHOM_ERR_CAPACITY);
-    rig.line_config.frame_size = 12;
+    rig.line_parts.frame_size = 12;
     assert_int_equal(rig_poll(), FATHOM_ERR_CAPACITY);
-    rig.line_config.frame_size = 13;
+    rig.line_parts.frame_size = 13;
     PENDS(rig_poll());
     PENDS(ask_version());
 }

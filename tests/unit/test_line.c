@@ -17,7 +17,7 @@ static const suite_t asked = {.set_up = set_up_asked};
 
 TEST(a_config_without_uart_clock_or_frame_is_refused)
 {
-    const fathom_line_config_t good = bench.config;
+    const fathom_line_parts_t good = bench.config;
     bench.config.uart = NULL;
     assert_int_equal(init(), FATHOM_ERR_ARGUMENT);
     bench.config = good;

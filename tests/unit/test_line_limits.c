@@ -12,7 +12,7 @@ static fathom_status_t after(uint32_t us)
     return fathom_line_poll(&bench.line);
 }
 
-/* fathom_line_config_t: "silence_us ... 0: 4011". */
+/* fathom_line_parts_t: "silence_us ... 0: 4011". */
 TEST(the_default_silence_is_4011_us)
 {
     bench.config.silence_us = 0;
@@ -50,7 +50,7 @@ TEST(a_first_poll_after_65536_us_has_seen_the_silence)
     assert_int_equal(bench.fake.written, 1);
 }
 
-/* fathom_line_config_t: "more than a slow sender or a slow port pauses: 25000 behind an operating system". */
+/* fathom_line_parts_t: "more than a slow sender or a slow port pauses: 25000 behind an operating system". */
 TEST(a_pause_shorter_than_the_gap_of_the_config_does_not_end_a_response)
 {
     bench.config.gap_us = 25000;

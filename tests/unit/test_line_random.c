@@ -152,15 +152,15 @@ static outcome_t run(const weather_t *weather, unsigned transactions, uint8_t re
     static const fathom_uart_t uart = {.read = world_read, .write = world_write, .sent = world_sent};
     static const fathom_clock_t clock = {world_now_us, NULL};
     static uint8_t frame[32];
-    const fathom_line_config_t config = {.uart = &uart,
-                                         .clock = &clock,
-                                         .frame = frame,
-                                         .frame_size = sizeof frame,
-                                         .echo = FATHOM_LINE_ECHO_OFF,
-                                         .silence_us = 2006,
-                                         .gap_us = 5000,
-                                         .marks = fathom_line_marks,
-                                         .senders = &fathom_line_senders};
+    const fathom_line_parts_t config = {.uart = &uart,
+                                        .clock = &clock,
+                                        .frame = frame,
+                                        .frame_size = sizeof frame,
+                                        .echo = FATHOM_LINE_ECHO_OFF,
+                                        .silence_us = 2006,
+                                        .gap_us = 5000,
+                                        .marks = fathom_line_marks,
+                                        .senders = &fathom_line_senders};
     fathom_modbus_request_t requests[UNITS + 1] = {0};
     uint16_t values[UNITS + 1];
     bool asked[UNITS + 1] = {false};

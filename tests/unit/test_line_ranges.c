@@ -12,7 +12,7 @@ static const suite_t suite = {.set_up = set_up};
 /* One member of the configuration has another value; returns the result of fathom_line_init(). */
 #define init_with(member, new_value) init_config((bench.config.member = (new_value), bench.config))
 
-static fathom_status_t init_config(fathom_line_config_t config)
+static fathom_status_t init_config(fathom_line_parts_t config)
 {
     static fathom_line_t line;
     void *state = NULL;

@@ -97,12 +97,12 @@ static outcome_t run(uint32_t pause_us, uint32_t loop_us, unsigned lose, unsigne
     static const fathom_uart_t uart = {.read = world_read, .write = world_write, .sent = world_sent};
     static const fathom_clock_t clock = {world_now_us, NULL};
     uint8_t frame[16];
-    const fathom_line_config_t line_config = {.uart = &uart,
-                                              .clock = &clock,
-                                              .frame = frame,
-                                              .frame_size = sizeof frame,
-                                              .echo = FATHOM_LINE_ECHO_OFF,
-                                              .marks = fathom_line_marks};
+    const fathom_line_parts_t line_parts = {.uart = &uart,
+                                            .clock = &clock,
+                                            .frame = frame,
+                                            .frame_size = sizeof frame,
+                                            .echo = FATHOM_LINE_ECHO_OFF,
+                                            .marks = fathom_line_marks};
     fathom_line_t line;
     fathom_a05_auto_t sensor;
     outcome_t outcome = {0, 0};
@@ -114,7 +114,7 @@ static outcome_t run(uint32_t pause_us, uint32_t loop_us, unsigned lose, unsigne
     world.lose = lose;
     world.flip = flip;
     world.lost = LENGTH;
-    assert_int_equal(fathom_line_init(&line, &line_config), FATHOM_OK);
+    assert_int_equal(fathom_line_init(&line, &line_parts), FATHOM_OK);
     assert_int_equal(fathom_a05_auto_init(&sensor, &(fathom_a05_auto_config_t){.line = &line}), FATHOM_OK);
     const fathom_sensor_t handle = fathom_a05_auto_sensor(&sensor);
     while (world.sent < frames(loop_us)) {

@@ -22,7 +22,7 @@ static bool begin_port() { return port.begin(9600); }
 
 static fathom_uart_t uart;
 static uint8_t frame[16];
-static fathom_line_config_t line_config;
+static fathom_line_parts_t line_parts;
 static fathom_line_t line;
 static fathom_a05_auto_t bumper;
 static fathom_sensor_t sensor;
@@ -41,11 +41,11 @@ void setup()
     if (!begin_port()) stop(F("this port cannot do 9600 8N1"));
     uart = port.hal();
 
-    line_config.uart = &uart;
-    line_config.clock = &fathom::arduino::clock;
-    line_config.frame = frame;
-    line_config.frame_size = sizeof frame;
-    if (fathom_line_init_listening(&line, &line_config) != FATHOM_OK) stop(F("wrong config of the line"));
+    line_parts.uart = &uart;
+    line_parts.clock = &fathom::arduino::clock;
+    line_parts.frame = frame;
+    line_parts.frame_size = sizeof frame;
+    if (fathom_line_init_listening(&line, &line_parts) != FATHOM_OK) stop(F("wrong config of the line"));
 
     fathom_a05_auto_config_t config = {};
     config.line = &line;

@@ -23,7 +23,7 @@ static const uint16_t near_mm = 1000;
 static fathom::arduino::serial_uart port(BUS, driver_enable_pin);
 static fathom_uart_t uart;
 static uint8_t frame[32];
-static fathom_line_config_t line_config;
+static fathom_line_parts_t line_parts;
 static fathom_line_t line;
 static fathom_modbus_t modbus;
 static fathom_hps167s_t gate;
@@ -51,14 +51,14 @@ void setup()
     if (!port.begin(19200, FATHOM_PARITY_EVEN)) stop(F("this port cannot do 19200 8E1"));
     uart = port.hal();
 
-    line_config.uart = &uart;
-    line_config.clock = &fathom::arduino::clock;
-    line_config.frame = frame;
-    line_config.frame_size = sizeof frame;
-    line_config.silence_us = FATHOM_T3_5_US(19200, 11); // 8E1: 11 bits a character
-    line_config.echo = FATHOM_LINE_ECHO_OFF;    // FATHOM_LINE_ECHO_ON where the transceiver hears itself
-    line_config.senders = &fathom_line_senders; // with factory settings the sensor sends measurements unasked
-    if (fathom_line_init(&line, &line_config) != FATHOM_OK) stop(F("wrong config of the line"));
+    line_parts.uart = &uart;
+    line_parts.clock = &fathom::arduino::clock;
+    line_parts.frame = frame;
+    line_parts.frame_size = sizeof frame;
+    line_parts.silence_us = FATHOM_T3_5_US(19200, 11); // 8E1: 11 bits a character
+    line_parts.echo = FATHOM_LINE_ECHO_OFF;    // FATHOM_LINE_ECHO_ON where the transceiver hears itself
+    line_parts.senders = &fathom_line_senders; // with factory settings the sensor sends measurements unasked
+    if (fathom_line_init(&line, &line_parts) != FATHOM_OK) stop(F("wrong config of the line"));
     modbus = fathom_modbus_client(&line);
 
     fathom_hps167s_config_t config = {};

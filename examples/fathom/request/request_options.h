@@ -15,7 +15,7 @@ typedef struct {
     const model_t *model; /* NULL: not told */
     fathom_line_settings_t line;
     uint32_t timeout_us;
-    uint8_t echo; /* fathom_line_config_t.echo */
+    uint8_t echo; /* fathom_line_parts_t.echo */
     bool rs485;   /* the kernel's driver is to drive the transceiver */
     bool is_json;
     bool is_meant;      /* --yes */

@@ -274,7 +274,7 @@ static int run(const host_t *host, int argc, char **argv)
         (void)fprintf(stderr, "fathom: %s\n", fathom_posix_error_text(&scan.channel.port));
         return STATUS_FAILED;
     }
-    scan.channel.config.silence_us = scan_silence_us(&options->plan);
+    scan.channel.parts.silence_us = scan_silence_us(&options->plan);
     scan.wire.line = &scan.channel.line;
     scan.wire.listener = &scan.channel.listener;
     scan.wire.clock = &scan.channel.clock;

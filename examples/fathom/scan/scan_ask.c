@@ -38,7 +38,7 @@ static fathom_status_t listen(const scan_wire_t *wire, uint32_t us, void (*each)
 fathom_status_t scan_hear(const scan_wire_t *wire, const fathom_line_settings_t *line, uint32_t us,
                           void (*each)(void *ctx), void *ctx)
 {
-    const fathom_uart_t *const uart = wire->line->config->uart;
+    const fathom_uart_t *const uart = wire->line->parts->uart;
     for (;;) {
         const int is_set = uart->set_line != NULL ? uart->set_line(uart->ctx, line) : -1;
         if (is_set < 0) return FATHOM_ERR_UNSUPPORTED;

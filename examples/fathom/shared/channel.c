@@ -15,21 +15,21 @@ static void suit_serial(channel_t *channel, const fathom_line_settings_t *settin
     /* An HPS-167S may move to 19200 baud, by its reset too: the slowest rate that is used counts (line.h). */
     const uint32_t baud =
         settings->baud > FATHOM_HPS167S_FACTORY_BAUD ? FATHOM_HPS167S_FACTORY_BAUD : settings->baud;
-    channel->config.silence_us = FATHOM_T3_5_US(baud, line_bits(settings));
-    channel->config.gap_us = CHANNEL_RESPONSE_GAP_US;
-    channel->config.echo = channel->echo;
-    channel->config.senders = &fathom_line_senders;
-    channel->config.masters = &fathom_line_masters;
+    channel->parts.silence_us = FATHOM_T3_5_US(baud, line_bits(settings));
+    channel->parts.gap_us = CHANNEL_RESPONSE_GAP_US;
+    channel->parts.echo = channel->echo;
+    channel->parts.senders = &fathom_line_senders;
+    channel->parts.masters = &fathom_line_masters;
 }
 
 /* ... and of a connection, where responses come whole and need no silence between them. */
 static void suit_tcp(channel_t *channel)
 {
-    channel->config.silence_us = 100; /* the least (line.h) */
-    channel->config.gap_us = 1000;
-    channel->config.echo = FATHOM_LINE_ECHO_OFF;
-    channel->config.senders = NULL; /* The server assigns each response to its request. */
-    channel->config.masters = NULL;
+    channel->parts.silence_us = 100; /* the least (line.h) */
+    channel->parts.gap_us = 1000;
+    channel->parts.echo = FATHOM_LINE_ECHO_OFF;
+    channel->parts.senders = NULL; /* The server assigns each response to its request. */
+    channel->parts.masters = NULL;
 }
 
 void channel_suit(channel_t *channel, const fathom_line_settings_t *settings)
@@ -71,15 +71,15 @@ static void begin(channel_t *channel)
     if (channel->source != NULL) channel->uart = fathom_loop_uart(channel->source, &channel->uart);
     channel->clock = (fathom_clock_t){now_us, channel};
     listener_begin(&channel->listener, &channel->uart, &channel->clock);
-    channel->config.uart = &channel->uart;
-    channel->config.clock = &channel->clock;
-    channel->config.frame = channel->frame;
-    channel->config.frame_size = sizeof channel->frame;
-    channel->config.find_echo = fathom_line_find_echo;
-    channel->config.marks = fathom_line_marks;
-    channel->config.count = fathom_line_count;
-    channel->config.counters = channel->counters;
-    (void)fathom_line_init(&channel->line, &channel->config); /* all of it is there */
+    channel->parts.uart = &channel->uart;
+    channel->parts.clock = &channel->clock;
+    channel->parts.frame = channel->frame;
+    channel->parts.frame_size = sizeof channel->frame;
+    channel->parts.find_echo = fathom_line_find_echo;
+    channel->parts.marks = fathom_line_marks;
+    channel->parts.count = fathom_line_count;
+    channel->parts.counters = channel->counters;
+    (void)fathom_line_init(&channel->line, &channel->parts); /* all of it is there */
     channel->modbus = fathom_modbus_client_with_zero(&channel->line);
     channel->dyp = fathom_dyp_client(&channel->line);
 }

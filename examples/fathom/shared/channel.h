@@ -24,13 +24,13 @@ typedef struct {
     fathom_uart_t uart;
     fathom_clock_t clock;
     listener_t listener; /* between uart and port */
-    fathom_line_config_t config;
+    fathom_line_parts_t parts;
     uint16_t counters[FATHOM_LINE_COUNTERS];
     fathom_line_t line;
     fathom_modbus_t modbus;
     fathom_modbus_t dyp;
     /* To be set before it is opened. */
-    uint8_t echo; /* fathom_line_config_t.echo */
+    uint8_t echo; /* fathom_line_parts_t.echo */
     bool rs485;   /* the kernel's driver is to drive the transceiver: RTS is on while bytes leave */
     fathom_loop_source_t
         *source; /* in a loop: it is read only where something has come; NULL: it is not in one */

@@ -61,7 +61,7 @@ static bool take_rs485(const char *text, uint32_t *value)
     return take_word(words, text, value);
 }
 
-/* In the order of fathom_line_config_t.echo: found out, told that there is none, told that there is. */
+/* In the order of fathom_line_parts_t.echo: found out, told that there is none, told that there is. */
 static bool take_echo(const char *text, uint32_t *value)
 {
     static const char *const words[] = {"auto", "off", "on", NULL};

@@ -36,7 +36,7 @@ typedef enum {
     KEY_PARITY, /* FATHOM_PARITY_... */
     KEY_STOP_BITS,
     KEY_RS485, /* 0 or 1: the kernel's driver is to drive the transceiver */
-    KEY_ECHO,  /* fathom_line_config_t.echo */
+    KEY_ECHO,  /* fathom_line_parts_t.echo */
     /* of a GPIO chip: lines, by their number on it */
     KEY_TRIGGER,
     KEY_PULSE, /* written echo= */
@@ -80,7 +80,7 @@ typedef struct {
     bool rs485;         /* the kernel's driver is to drive the transceiver */
     fathom_line_settings_t line; /* with which it is opened: the slowest of its sensors' */
     bool has_mixed_lines;        /* they differ in that */
-    uint8_t echo;                /* fathom_line_config_t.echo */
+    uint8_t echo;                /* fathom_line_parts_t.echo */
     port_keys_t keys;            /* that stood behind it */
     size_t station_count;        /* sensors at it */
 } port_options_t;

@@ -23,11 +23,11 @@ extern "C" {
  *
  * @code
  * static uint8_t frame[32];                                 // must stay valid as long as the line is used
- * static const fathom_line_config_t config = {.uart = &uart, .clock = &clock,
+ * static const fathom_line_parts_t parts = {.uart = &uart, .clock = &clock,
  *                                             .frame = frame, .frame_size = sizeof frame,
  *                                             .echo = FATHOM_LINE_ECHO_OFF,
  *                                             .silence_us = FATHOM_T3_5_US(9600, 10)};
- * fathom_line_init(&line, &config);
+ * fathom_line_init(&line, &parts);
  * fathom_modbus_client_submit(&line, &request);             // modbus_client.h: puts the request in the queue
  * while (request.transaction.status == FATHOM_PENDING) fathom_line_poll(&line);
  * @endcode
@@ -74,11 +74,11 @@ extern "C" {
  *    come first. The errors FATHOM_ERR_NO_RESPONSE, _CHECKSUM, _MALFORMED, _ECHO, _OTHER_MASTER, and _LINE_BUSY of an
  *    attempt that was sent, are retried. All other errors end the transaction at once.
  *
- * 9. **Echo.** Many RS-485 adapters return every byte that is sent through them. The config states whether this adapter
+ * 9. **Echo.** Many RS-485 adapters return every byte that is sent through them. The parts state whether this adapter
  *    does, or names fathom_line_find_echo(), which learns it from the response to the first read. Reads succeed even if
- *    the config is wrong. The response to some writes equals the request (Modbus function 06, `55 AA` command 03):
+ *    that statement is wrong. The response to some writes equals the request (Modbus function 06, `55 AA` command 03):
  *
- *    | echo in the config | adapter echoes | such a write ends with |
+ *    | `echo` in the parts | adapter echoes | such a write ends with |
  *    |---|---|---|
  *    | right | no, or yes | FATHOM_OK, if the unit acknowledges it |
  *    | OFF | yes | FATHOM_OK even without a unit: its echo is mistaken for the acknowledgement |
@@ -94,7 +94,7 @@ extern "C" {
  *
  * Who else uses the wire:
  *
- * 11. **Unsolicited frames.** If the config names `senders`: four or more bytes that no transaction accepts show that a
+ * 11. **Unsolicited frames.** If the parts name `senders`: four or more bytes that no transaction accepts show that a
  *     device sends by itself. From then on a request leaves only in the pause directly behind such a frame, after
  *     `silence_us`: not behind a response, and not later in a pause, where the next frame may begin at any time. If the
  *     program polls too seldom to measure that silence (twice `silence_us` or later), the request leaves directly behind a
@@ -102,7 +102,7 @@ extern "C" {
  *     this rule. An unsolicited frame with the shape of the response is accepted
  *     as the response and counted (FATHOM_LINE_MAYBE_UNSOLICITED). Without `senders`, requests and such frames collide.
  *
- * 12. **Other masters.** If the config names `masters`: after another master's request (Modbus RTU or `55 AA`) the line
+ * 12. **Other masters.** If the parts name `masters`: after another master's request (Modbus RTU or `55 AA`) the line
  *     sends nothing until the unit has responded to that master, at most for the time-out of the first transaction in the
  *     queue and at most for `busy_us`. If it is unclear which frame is that response, only the time ends this. If our own
  *     request to the unit is on the wire, no frame can be assigned to it any more: the attempt ends with its time-out and
@@ -128,16 +128,16 @@ extern "C" {
  *     soon as the port does.
  *
  * A program contains only the parts that it names. A line of fathom_line_init_listening() links no queue, no
- * transactions and no quarantine. Each part that the config names by a pointer is linked only then.
+ * transactions and no quarantine. Each part that the parts name by a pointer is linked only then.
  */
 
-/** @brief Default of fathom_line_config_t::silence_us: 3.5 characters of 11 bits at 9600 baud, in microseconds. */
+/** @brief Default of fathom_line_parts_t::silence_us: 3.5 characters of 11 bits at 9600 baud, in microseconds. */
 #define FATHOM_LINE_DEFAULT_SILENCE_US 4011
 
-/** @brief Default of fathom_line_config_t::gap_us, in microseconds. */
+/** @brief Default of fathom_line_parts_t::gap_us, in microseconds. */
 #define FATHOM_LINE_DEFAULT_GAP_US 5000
 
-/** @brief Default of fathom_line_config_t::busy_us, in microseconds. */
+/** @brief Default of fathom_line_parts_t::busy_us, in microseconds. */
 #define FATHOM_LINE_DEFAULT_BUSY_US 1000000u
 
 /**
@@ -185,10 +185,10 @@ typedef struct fathom_line_senders fathom_line_senders_t;
 /** @brief The part of a line for other masters (rule 12). */
 typedef struct fathom_line_masters fathom_line_masters_t;
 
-/** @brief Name it in fathom_line_config_t::senders. */
+/** @brief Name it in fathom_line_parts_t::senders. */
 extern const fathom_line_senders_t fathom_line_senders;
 
-/** @brief Name it in fathom_line_config_t::masters. */
+/** @brief Name it in fathom_line_parts_t::masters. */
 extern const fathom_line_masters_t fathom_line_masters;
 
 /** @brief A listener (struct fathom_listener). */
@@ -221,7 +221,7 @@ struct fathom_listener {
 };
 
 /**
- * @brief Indices of the counters in fathom_line_config_t::counters.
+ * @brief Indices of the counters in fathom_line_parts_t::counters.
  *
  * Each counter stops at 65535. The caller may set a counter to 0. A failed attempt increments the counter with the index
  * `-status`. Each retry is an attempt of its own.
@@ -250,16 +250,17 @@ enum {
 
 /** @brief What is known about local echo: whether the adapter returns the bytes that are sent. */
 enum {
-    FATHOM_LINE_ECHO_AUTO = 0, /**< Not known. In the config: fathom_line_find_echo() finds out. */
+    FATHOM_LINE_ECHO_AUTO = 0, /**< Not known. In the parts: fathom_line_find_echo() finds out. */
     FATHOM_LINE_ECHO_OFF = 1,  /**< The adapter does not echo. */
     FATHOM_LINE_ECHO_ON = 2    /**< The adapter echoes. */
 };
 
 /**
- * @brief Configuration of a line. Const, in the caller's memory.
+ * @brief What a line is made of: its UART, clock, buffer, timing and optional parts. In the caller's memory.
  *
- * The line reads the config at every call, so the config must stay valid as long as the line. A member whose comment
- * names a default takes it if the member is 0. The members from `find_echo` on, except for `counters` and `busy_us`,
+ * The line uses its parts at every call, so this struct and everything it points to must stay valid as long as the
+ * line. A local variable of a set-up function is a mistake; a build with FATHOM_ASSERT (status.h) stops at it. Only
+ * `silence_us` and `gap_us` may be changed while the line is used, for example after a change of the baud rate. A member whose comment names a default takes it if the member is 0. The members from `find_echo` on, except for `counters` and `busy_us`,
  * name optional parts: a part that is NULL is not linked.
  */
 typedef struct {
@@ -329,7 +330,7 @@ typedef struct {
 
     /** @brief &fathom_line_masters if another master may use this line (rule 12); else NULL. */
     const fathom_line_masters_t *masters;
-} fathom_line_config_t;
+} fathom_line_parts_t;
 
 /**
  * @brief A phase of a line. A line is in exactly one phase at a time.
@@ -391,11 +392,12 @@ struct fathom_line {
     uint8_t unrequested_count; /**< Frames in a row that no master had requested, 0 to 2. */
 
     uint16_t quarantined_units; /**< Set of units in quarantine: bit (address modulo 16). */
+    uint16_t parts_sum;         /**< A sum over the parts, for FATHOM_ASSERT; else not used. */
     uint16_t silent_us; /**< Silence since the last byte in either direction, in us; stops at 65535. */
 
-    const fathom_line_config_t *config; /**< NULL until the line is initialised. */
-    fathom_transaction_t *head;  /**< The queue. Invariant: the transaction on the wire is the first. */
-    fathom_listener_t *listener; /**< The listener, or NULL. */
+    const fathom_line_parts_t *parts; /**< NULL until the line is initialised. */
+    fathom_transaction_t *head;       /**< The queue. Invariant: the transaction on the wire is the first. */
+    fathom_listener_t *listener;      /**< The listener, or NULL. */
     const fathom_protocol_t
         *protocol; /**< Of the newest request. Invariant: not NULL if a response can arrive. */
     const fathom_line_kind_t *kind; /**< NULL until the line is initialised. */
@@ -410,7 +412,7 @@ struct fathom_line {
 };
 
 /**
- * @brief Finds out whether the adapter echoes. Name it in fathom_line_config_t::find_echo; only the line calls it.
+ * @brief Finds out whether the adapter echoes. Name it in fathom_line_parts_t::find_echo; only the line calls it.
  *
  * @param line  The line.
  * @param echo  FATHOM_LINE_ECHO_OFF or FATHOM_LINE_ECHO_ON, as the received bytes show.
@@ -418,7 +420,7 @@ struct fathom_line {
 void fathom_line_find_echo(fathom_line_t *line, uint8_t echo);
 
 /**
- * @brief Applies what the port reports with received bytes. Name it in fathom_line_config_t::marks; only the line
+ * @brief Applies what the port reports with received bytes. Name it in fathom_line_parts_t::marks; only the line
  * calls it.
  *
  * @param line   The line.
@@ -429,7 +431,7 @@ void fathom_line_find_echo(fathom_line_t *line, uint8_t echo);
 uint8_t fathom_line_marks(fathom_line_t *line, const fathom_rx_t *rx, uint8_t count);
 
 /**
- * @brief Counts an event. Name it in fathom_line_config_t::count; only the line calls it.
+ * @brief Counts an event. Name it in fathom_line_parts_t::count; only the line calls it.
  *
  * @param line   The line.
  * @param which  Index of the counter, 0 to FATHOM_LINE_COUNTERS - 1.
@@ -444,25 +446,25 @@ void fathom_line_count(fathom_line_t *line, uint8_t which, uint8_t by);
  * transactions of a line with fathom_line_cancel() before you initialise it a second time.
  *
  * @param line    The line. Must stay valid until its last use.
- * @param config  The configuration. Must stay valid as long as the line.
+ * @param parts   What the line is made of. Must stay valid as long as the line.
  * @retval FATHOM_OK         The line can be used.
- * @retval FATHOM_ERR_ARGUMENT  A member of the config or of its `uart` is outside its range, or `echo` is
- *                              FATHOM_LINE_ECHO_AUTO and `find_echo` is NULL. Correct the config. Until then every
+ * @retval FATHOM_ERR_ARGUMENT  A member of `*parts` or of its `uart` is outside its range, or `echo` is
+ *                              FATHOM_LINE_ECHO_AUTO and `find_echo` is NULL. Correct it. Until then every
  *                              function of this line returns FATHOM_ERR_ARGUMENT, false or FATHOM_NO_DEADLINE.
  */
-fathom_status_t fathom_line_init(fathom_line_t *line, const fathom_line_config_t *config);
+fathom_status_t fathom_line_init(fathom_line_t *line, const fathom_line_parts_t *parts);
 
 /**
  * @brief Initialises a line that only listens: the listener receives all bytes.
  *
- * The program links nothing that sends. The member `echo` of the config has no effect.
+ * The program links nothing that sends. The member `echo` of the parts has no effect.
  *
  * @param line    The line. Must stay valid until its last use.
- * @param config  The configuration. Must stay valid as long as the line.
+ * @param parts   What the line is made of. Must stay valid as long as the line.
  * @retval FATHOM_OK         The line can be used. Next, call fathom_line_listen().
- * @retval FATHOM_ERR_ARGUMENT  A member of the config is outside its range. Correct the config.
+ * @retval FATHOM_ERR_ARGUMENT  A member of `*parts` is outside its range. Correct it.
  */
-fathom_status_t fathom_line_init_listening(fathom_line_t *line, const fathom_line_config_t *config);
+fathom_status_t fathom_line_init_listening(fathom_line_t *line, const fathom_line_parts_t *parts);
 
 /**
  * @brief Puts a transaction at the end of the queue.
@@ -618,8 +620,8 @@ uint32_t fathom_line_due_us(const fathom_line_t *line);
  *
  * @param line  The line.
  * @retval FATHOM_LINE_ECHO_AUTO  Not known yet.
- * @retval FATHOM_LINE_ECHO_OFF   The adapter does not echo: by the config, or as received bytes showed.
- * @retval FATHOM_LINE_ECHO_ON    The adapter echoes: by the config, or as received bytes showed.
+ * @retval FATHOM_LINE_ECHO_OFF   The adapter does not echo: by the parts, or as received bytes showed.
+ * @retval FATHOM_LINE_ECHO_ON    The adapter echoes: by the parts, or as received bytes showed.
  */
 uint8_t fathom_line_get_echo(const fathom_line_t *line);
 

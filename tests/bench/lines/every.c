@@ -13,7 +13,7 @@
 typedef struct {
     fathom_posix_uart_t port;
     fathom_uart_t uart;
-    fathom_line_config_t config;
+    fathom_line_parts_t config;
     fathom_line_t line;
     fathom_modbus_t modbus;
     fathom_hps167s_t driver;
@@ -31,13 +31,13 @@ static bool add(const lines_job_t *job, unsigned n)
     if (fathom_posix_open(&at->port, job->paths[n], &lines_settings) != FATHOM_POSIX_OK) return false;
     monotonic = fathom_posix_clock();
     at->uart = fathom_posix_uart(&at->port);
-    at->config = (fathom_line_config_t){.uart = &at->uart,
-                                        .clock = &monotonic,
-                                        .frame = at->frame,
-                                        .frame_size = sizeof at->frame,
-                                        .find_echo = fathom_line_find_echo,
-                                        .silence_us = FATHOM_T3_5_US(LINES_BAUD, 11),
-                                        .gap_us = 25000};
+    at->config = (fathom_line_parts_t){.uart = &at->uart,
+                                       .clock = &monotonic,
+                                       .frame = at->frame,
+                                       .frame_size = sizeof at->frame,
+                                       .find_echo = fathom_line_find_echo,
+                                       .silence_us = FATHOM_T3_5_US(LINES_BAUD, 11),
+                                       .gap_us = 25000};
     if (fathom_line_init(&at->line, &at->config) != FATHOM_OK) return false;
     at->modbus = fathom_modbus_client(&at->line);
     const fathom_hps167s_config_t config = {.modbus.transport = &at->modbus,

@@ -29,7 +29,7 @@ static fathom_uart_t uart;
 static fathom_clock_t hal_clock;
 static uint8_t frame[16];
 static uint16_t counters[FATHOM_LINE_COUNTERS];
-static fathom_line_config_t config;
+static fathom_line_parts_t config;
 static fathom_line_t line;
 
 static void tell(uint32_t begin_us, uint32_t end_us, const char *what, const char *text)
@@ -77,14 +77,14 @@ static void begin_wire(const fathom_line_settings_t *settings)
     uart.read = read_one;
     uart.write = write_all;
     hal_clock = fathom_sim_clock(&now);
-    config = (fathom_line_config_t){.uart = &uart,
-                                    .clock = &hal_clock,
-                                    .frame = frame,
-                                    .frame_size = sizeof frame,
-                                    .echo = FATHOM_LINE_ECHO_OFF,
-                                    .marks = fathom_line_marks,
-                                    .count = fathom_line_count,
-                                    .counters = counters};
+    config = (fathom_line_parts_t){.uart = &uart,
+                                   .clock = &hal_clock,
+                                   .frame = frame,
+                                   .frame_size = sizeof frame,
+                                   .echo = FATHOM_LINE_ECHO_OFF,
+                                   .marks = fathom_line_marks,
+                                   .count = fathom_line_count,
+                                   .counters = counters};
 }
 
 /* ---- a late response ---- */

@@ -5,16 +5,16 @@ fathom_line_t line;
 fathom_modbus_t modbus;
 uint8_t frame[32];
 
-static const fathom_line_config_t line_config = {.uart = &uart,
-                                                 .clock = &clock,
-                                                 .frame = frame,
-                                                 .frame_size = sizeof frame,
-                                                 .echo = FATHOM_LINE_ECHO_OFF,
-                                                 .silence_us = FATHOM_T3_5_US(19200, 11)};
+static const fathom_line_parts_t line_parts = {.uart = &uart,
+                                               .clock = &clock,
+                                               .frame = frame,
+                                               .frame_size = sizeof frame,
+                                               .echo = FATHOM_LINE_ECHO_OFF,
+                                               .silence_us = FATHOM_T3_5_US(19200, 11)};
 
-void line_begin(void) { fathom_line_init(&line, &line_config); }
+void line_begin(void) { fathom_line_init(&line, &line_parts); }
 
-void listening_begin(void) { fathom_line_init_listening(&line, &line_config); }
+void listening_begin(void) { fathom_line_init_listening(&line, &line_parts); }
 
 void modbus_begin(void)
 {

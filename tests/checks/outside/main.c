@@ -11,11 +11,11 @@ int main(void)
     static fathom_line_t line;
     static fathom_hps167s_t hps;
     loopback_begin();
-    const fathom_line_config_t config = {.uart = &loopback_uart,
-                                         .clock = &loopback_clock,
-                                         .frame = frame,
-                                         .frame_size = sizeof frame,
-                                         .find_echo = fathom_line_find_echo};
+    const fathom_line_parts_t config = {.uart = &loopback_uart,
+                                        .clock = &loopback_clock,
+                                        .frame = frame,
+                                        .frame_size = sizeof frame,
+                                        .find_echo = fathom_line_find_echo};
     if (fathom_line_init(&line, &config) != FATHOM_OK) return 1;
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
     const fathom_hps167s_config_t hps_config = {.modbus = {.transport = &modbus}};

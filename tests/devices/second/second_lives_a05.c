@@ -60,7 +60,7 @@ void life_a05_uart(rig_t *rig)
     fathom_a05_auto_t automatic;
     fathom_a05_modbus_t sensor;
     fathom_status_t status;
-    fathom_a05_auto_config_t config = {.line = &rig->line, .gap_us = rig->line_config.gap_us};
+    fathom_a05_auto_config_t config = {.line = &rig->line, .gap_us = rig->line_parts.gap_us};
     config.select = fathom_output_line_break(&rig->line);
     config.probes = rig->device.config.fitted;
     config.stale_us = rig->device.config.seed % 2 == 0 ? 0 : 4 * SECOND_US;

@@ -22,7 +22,7 @@ void life_a16_auto(rig_t *rig)
 {
     fathom_a16_auto_t sensor;
     fathom_a16_auto_config_t config = {
-        .line = &rig->line, .stale_us = stale_us(rig), .gap_us = rig->line_config.gap_us};
+        .line = &rig->line, .stale_us = stale_us(rig), .gap_us = rig->line_parts.gap_us};
     config.select = fathom_output_line_break(&rig->line);
     config.value = rig->device.config.seed % 4 >= 2 ? FATHOM_REAL_TIME : FATHOM_PROCESSED;
     rig_power(rig, true);
@@ -47,7 +47,7 @@ void life_a16_controlled(rig_t *rig)
     fathom_a16_controlled_t sensor;
     fathom_a16_controlled_config_t config = {.line = &rig->line,
                                              .trigger = fathom_output_line_break(&rig->line),
-                                             .gap_us = rig->line_config.gap_us};
+                                             .gap_us = rig->line_parts.gap_us};
     rig_power(rig, true);
     assert_int_equal(fathom_a16_controlled_init(&sensor, &config), FATHOM_OK);
     fathom_sensor_t any = fathom_a16_controlled_sensor(&sensor);
@@ -168,7 +168,7 @@ void life_a16_rs232(rig_t *rig)
     fathom_sample_t sample;
     fathom_status_t status;
     fathom_a16_auto_config_t config = {
-        .line = &rig->line, .stale_us = stale_us(rig), .gap_us = rig->line_config.gap_us};
+        .line = &rig->line, .stale_us = stale_us(rig), .gap_us = rig->line_parts.gap_us};
     rig_power(rig, true);
     assert_int_equal(fathom_a16_auto_init(&automatic, &config), FATHOM_OK);
     fathom_sensor_t by_itself = fathom_a16_auto_sensor(&automatic);

@@ -211,17 +211,17 @@ void rig_open(rig_t *rig, const second_config_t *config)
                                 .ctx = rig};
     rig->pin = (fathom_pin_t){NULL, pin_get, rig};
     fathom_edges_init(&rig->edges, &rig->pin);
-    rig->line_config = (fathom_line_config_t){.uart = &rig->uart,
-                                              .clock = &rig->clock,
-                                              .frame = rig->frame,
-                                              .frame_size = sizeof rig->frame,
-                                              .find_echo = fathom_line_find_echo,
-                                              .marks = fathom_line_marks,
-                                              .senders = &fathom_line_senders,
-                                              .masters = &fathom_line_masters,
-                                              .echo = config->seed / 12 % 2 == 0 ? FATHOM_LINE_ECHO_OFF : 0,
-                                              .gap_us = rig->loop == RIG_EVERY_20_MS ? 25000 : 0};
-    assert_int_equal(fathom_line_init(&rig->line, &rig->line_config), FATHOM_OK);
+    rig->line_parts = (fathom_line_parts_t){.uart = &rig->uart,
+                                            .clock = &rig->clock,
+                                            .frame = rig->frame,
+                                            .frame_size = sizeof rig->frame,
+                                            .find_echo = fathom_line_find_echo,
+                                            .marks = fathom_line_marks,
+                                            .senders = &fathom_line_senders,
+                                            .masters = &fathom_line_masters,
+                                            .echo = config->seed / 12 % 2 == 0 ? FATHOM_LINE_ECHO_OFF : 0,
+                                            .gap_us = rig->loop == RIG_EVERY_20_MS ? 25000 : 0};
+    assert_int_equal(fathom_line_init(&rig->line, &rig->line_parts), FATHOM_OK);
     rig->modbus = fathom_modbus_client_with_zero(&rig->line);
     rig->dyp = fathom_dyp_client(&rig->line);
 }

@@ -61,7 +61,7 @@ typedef struct {
     uint8_t last[RIG_FRAME];
     size_t last_len;
 
-    fathom_line_config_t line_config;
+    fathom_line_parts_t line_parts;
     uint8_t frame[RIG_FRAME];
     fathom_line_t line;
     fathom_modbus_t modbus, dyp;

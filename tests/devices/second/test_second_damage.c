@@ -34,7 +34,7 @@ static damage_counted_t counted_by(const fathom_stream_t *stream)
 static fathom_sensor_t begin_a16(void)
 {
     const fathom_a16_auto_config_t config = {
-        .line = &rig.line, .stale_us = STALE_US, .gap_us = rig.line_config.gap_us};
+        .line = &rig.line, .stale_us = STALE_US, .gap_us = rig.line_parts.gap_us};
     assert_int_equal(fathom_a16_auto_init(&a16, &config), FATHOM_OK);
     return fathom_a16_auto_sensor(&a16);
 }
@@ -50,7 +50,7 @@ static fathom_sensor_t begin_a05(void)
 {
     const fathom_a05_auto_config_t config = {.line = &rig.line,
                                              .stale_us = STALE_US,
-                                             .gap_us = rig.line_config.gap_us,
+                                             .gap_us = rig.line_parts.gap_us,
                                              .probes = rig.device.config.fitted};
     assert_int_equal(fathom_a05_auto_init(&a05, &config), FATHOM_OK);
     return fathom_a05_auto_sensor(&a05);
@@ -83,7 +83,7 @@ static damage_counted_t end_hps(void)
 static fathom_sensor_t begin_controlled(void)
 {
     const fathom_a16_controlled_config_t config = {
-        .line = &rig.line, .trigger = fathom_output_line_break(&rig.line), .gap_us = rig.line_config.gap_us};
+        .line = &rig.line, .trigger = fathom_output_line_break(&rig.line), .gap_us = rig.line_parts.gap_us};
     assert_int_equal(fathom_a16_controlled_init(&controlled, &config), FATHOM_OK);
     return fathom_a16_controlled_sensor(&controlled);
 }

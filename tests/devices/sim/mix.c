@@ -99,14 +99,14 @@ void mix_run(const mix_t *mix, uint32_t seconds, mix_share_t shares[MIX_SENSORS]
     uart.read = read;
 
     const fathom_clock_t clock = fathom_sim_clock(&seen.clock);
-    const fathom_line_config_t config = {.uart = &uart,
-                                         .senders = &fathom_line_senders,
-                                         .clock = &clock,
-                                         .frame = frame,
-                                         .frame_size = sizeof frame,
-                                         .echo = FATHOM_LINE_ECHO_OFF,
-                                         .silence_us = FATHOM_T3_5_US(9600, 10),
-                                         .gap_us = 25000};
+    const fathom_line_parts_t config = {.uart = &uart,
+                                        .senders = &fathom_line_senders,
+                                        .clock = &clock,
+                                        .frame = frame,
+                                        .frame_size = sizeof frame,
+                                        .echo = FATHOM_LINE_ECHO_OFF,
+                                        .silence_us = FATHOM_T3_5_US(9600, 10),
+                                        .gap_us = 25000};
     (void)fathom_line_init(&line, &config);
     if (mix->fair) fathom_fair_share(&share, &line);
     seen.modbus = fathom_modbus_client(&line);

@@ -41,15 +41,15 @@ void stage_begin(const fathom_line_settings_t *settings, bool full_duplex, uint3
                              .set_break = port_set_break,
                              .leaves_in_us = port_leaves_in_us};
     s.hal_clock = fathom_sim_clock(&s.clock);
-    s.config = (fathom_line_config_t){.uart = &s.uart,
-                                      .senders = &fathom_line_senders,
-                                      .clock = &s.hal_clock,
-                                      .frame = s.frame,
-                                      .frame_size = sizeof s.frame,
-                                      .find_echo = fathom_line_find_echo,
-                                      .marks = fathom_line_marks,
-                                      .count = fathom_line_count,
-                                      .counters = s.counters};
+    s.config = (fathom_line_parts_t){.uart = &s.uart,
+                                     .senders = &fathom_line_senders,
+                                     .clock = &s.hal_clock,
+                                     .frame = s.frame,
+                                     .frame_size = sizeof s.frame,
+                                     .find_echo = fathom_line_find_echo,
+                                     .marks = fathom_line_marks,
+                                     .count = fathom_line_count,
+                                     .counters = s.counters};
     assert_int_equal(fathom_line_init(&s.line, &s.config), FATHOM_OK);
     s.modbus = fathom_modbus_client_with_zero(&s.line);
     s.dyp = fathom_dyp_client(&s.line);

@@ -38,7 +38,7 @@ typedef struct {
     int broken;         /* what read and write return; 0: it works */
     fathom_clock_t hal_clock;
     uint16_t counters[FATHOM_LINE_COUNTERS];
-    fathom_line_config_t config;
+    fathom_line_parts_t config;
     fathom_line_settings_t settings;
     uint8_t frame[64];
     fathom_line_t line;

@@ -10,7 +10,7 @@ enum { MS = 1000 };
 
 static fake_t fake;
 static uint8_t frame[32];
-static fathom_line_config_t config;
+static fathom_line_parts_t config;
 static fathom_line_t line;
 static uint16_t value;
 static fathom_modbus_request_t request;
@@ -20,12 +20,12 @@ static void set_desk(void)
     fake_init(&fake);
     fake.now_us = fake.busy_until_us = bench_start_us;
     memset(&request, 0, sizeof request);
-    config = (fathom_line_config_t){.uart = &fake.uart,
-                                    .clock = &fake.clock,
-                                    .frame = frame,
-                                    .frame_size = sizeof frame,
-                                    .find_echo = fathom_line_find_echo,
-                                    .marks = fathom_line_marks};
+    config = (fathom_line_parts_t){.uart = &fake.uart,
+                                   .clock = &fake.clock,
+                                   .frame = frame,
+                                   .frame_size = sizeof frame,
+                                   .find_echo = fathom_line_find_echo,
+                                   .marks = fathom_line_marks};
     assert_int_equal(fathom_line_init(&line, &config), FATHOM_OK);
 }
 

@@ -28,7 +28,7 @@ static struct {
     fathom_sim_uart_t port;
     fathom_uart_t uart;
     uint8_t frame[13];
-    fathom_line_config_t config;
+    fathom_line_parts_t config;
     fathom_line_t line;
 } beside;
 

@@ -159,7 +159,7 @@ void rig_init(rig_t *rig, uint8_t setting, uint32_t loop_us, uint8_t knows, cons
                                 .leaves_in_us = port_leaves_in_us,
                                 .ctx = rig};
     rig->hal_clock = fathom_sim_clock(&rig->clock);
-    rig->config = (fathom_line_config_t){
+    rig->config = (fathom_line_parts_t){
         .uart = &rig->uart,
         .clock = &rig->hal_clock,
         .frame = rig->frame,

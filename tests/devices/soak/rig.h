@@ -73,7 +73,7 @@ typedef struct rig {
     fathom_uart_t uart;  /* the same, with the requests noted */
     fathom_clock_t hal_clock;
     uint16_t counters[FATHOM_LINE_COUNTERS];
-    fathom_line_config_t config;
+    fathom_line_parts_t config;
     fathom_line_t line;
     fathom_modbus_t modbus, dyp;
     uint8_t frame[RIG_FRAME];

@@ -15,18 +15,18 @@ void desk_open(desk_parts_t parts, wire_us_t turn_us, wire_us_t jitter_us)
     desk.turn_us = turn_us;
     desk.jitter_us = jitter_us;
     desk.config =
-        (fathom_line_config_t){.uart = &wire.uart,
-                               .clock = &wire.clock,
-                               .frame = desk.frame,
-                               .frame_size = sizeof desk.frame,
-                               .echo = FATHOM_LINE_ECHO_OFF,
-                               .silence_us = wire.byte_us == WIRE_BYTE_19200_US ? FATHOM_T3_5_US(19200, 11)
-                                                                                : FATHOM_T3_5_US(9600, 10),
-                               .count = fathom_line_count,
-                               .counters = desk.counters,
-                               .marks = wire.has_time_stamps ? fathom_line_marks : NULL,
-                               .senders = (parts & DESK_SENDERS) != 0 ? &fathom_line_senders : NULL,
-                               .masters = (parts & DESK_MASTERS) != 0 ? &fathom_line_masters : NULL};
+        (fathom_line_parts_t){.uart = &wire.uart,
+                              .clock = &wire.clock,
+                              .frame = desk.frame,
+                              .frame_size = sizeof desk.frame,
+                              .echo = FATHOM_LINE_ECHO_OFF,
+                              .silence_us = wire.byte_us == WIRE_BYTE_19200_US ? FATHOM_T3_5_US(19200, 11)
+                                                                               : FATHOM_T3_5_US(9600, 10),
+                              .count = fathom_line_count,
+                              .counters = desk.counters,
+                              .marks = wire.has_time_stamps ? fathom_line_marks : NULL,
+                              .senders = (parts & DESK_SENDERS) != 0 ? &fathom_line_senders : NULL,
+                              .masters = (parts & DESK_MASTERS) != 0 ? &fathom_line_masters : NULL};
     desk_init_line();
     desk.modbus = fathom_modbus_client(&desk.line);
     desk.dyp = fathom_dyp_client(&desk.line);

@@ -9,7 +9,7 @@
 
 /* A program: one line on the wire. */
 typedef struct {
-    fathom_line_config_t config;
+    fathom_line_parts_t config;
     fathom_line_t line;
     fathom_modbus_t modbus, dyp;
     uint8_t frame[64];

@@ -155,7 +155,7 @@ TEST(the_config_says_whether_there_is_an_echo)
 TEST(the_config_has_the_silence_and_the_gap)
 {
     const fathom_libmodbus_config_t config = {.clock = &rig.fake.clock, .silence_us = 1750, .gap_us = 3000};
-    assert_int_equal(rig.port.config.gap_us, GAP_US); /* the default, behind an operating system */
+    assert_int_equal(rig.port.parts.gap_us, GAP_US); /* the default, behind an operating system */
     assert_int_equal(fathom_libmodbus_init(&rig.port, rig.modbus, &config), FATHOM_OK);
     rig_ask_three(&rig.request, 1, 0);
     rig_run_fine(1800);

@@ -30,7 +30,7 @@ int main(int argc, char **argv)
     static uint8_t frame[FATHOM_MODBUS_MAX_FRAME];
     const fathom_uart_t uart = fathom_posix_uart(&port);
     const fathom_clock_t clock = fathom_posix_clock();
-    const fathom_line_config_t config = {
+    const fathom_line_parts_t config = {
         .uart = &uart,
         .clock = &clock,
         .frame = frame,

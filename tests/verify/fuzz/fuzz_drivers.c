@@ -20,7 +20,7 @@
 enum { SENSORS = 2, POLLS = 8, NONE = 0xFF };
 
 static fathom_line_t line;
-static fathom_line_config_t config;
+static fathom_line_parts_t config;
 static fathom_modbus_t transport;
 static fathom_modbus_t dyp_transport;
 static fathom_sensor_t sensors[SENSORS];
@@ -329,13 +329,13 @@ static void begin(void)
     const uint8_t how = fuzz_byte();
     const bool has_marks = (how & 32) != 0;
     wire_begin((uint32_t)fuzz_word() << 16, has_marks);
-    config = (fathom_line_config_t){.uart = &wire_uart,
-                                    .clock = &wire_clock,
-                                    .frame = frame,
-                                    .frame_size = sizeof frame,
-                                    .echo = 1 + (world >> 4) % 2,
-                                    .gap_us = (world & 64) != 0 ? 25000 : 0,
-                                    .marks = has_marks ? fathom_line_marks : NULL};
+    config = (fathom_line_parts_t){.uart = &wire_uart,
+                                   .clock = &wire_clock,
+                                   .frame = frame,
+                                   .frame_size = sizeof frame,
+                                   .echo = 1 + (world >> 4) % 2,
+                                   .gap_us = (world & 64) != 0 ? 25000 : 0,
+                                   .marks = has_marks ? fathom_line_marks : NULL};
     PROMISE(fathom_line_init(&line, &config) == FATHOM_OK, "line.h: init");
     transport = (world & 128) != 0 ? fathom_modbus_client_with_zero(&line) : fathom_modbus_client(&line);
     dyp_transport = fathom_dyp_client(&line);

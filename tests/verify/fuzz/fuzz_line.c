@@ -24,7 +24,7 @@ typedef struct {
 
 static asked_t asked[REQUESTS];
 static fathom_line_t line;
-static fathom_line_config_t config;
+static fathom_line_parts_t config;
 static uint16_t counters[FATHOM_LINE_COUNTERS];
 static uint16_t counted[FATHOM_LINE_COUNTERS];
 static fathom_listener_t listener;
@@ -264,13 +264,13 @@ static bool begin(uint8_t **frame)
     wire_begin((uint32_t)fuzz_word() << 16, (how & 16) != 0);
     *frame = fuzz_guarded(size);
     memset(&line, FUZZ_GUARD, sizeof line);
-    config = (fathom_line_config_t){.uart = &wire_uart,
-                                    .clock = &wire_clock,
-                                    .frame = *frame,
-                                    .frame_size = size,
-                                    .echo = how >> 2 & 3,
-                                    .silence_us = (how & 64) != 0 ? 1750 : 0,
-                                    .gap_us = (how & 128) != 0 ? 25000 : 0};
+    config = (fathom_line_parts_t){.uart = &wire_uart,
+                                   .clock = &wire_clock,
+                                   .frame = *frame,
+                                   .frame_size = size,
+                                   .echo = how >> 2 & 3,
+                                   .silence_us = (how & 64) != 0 ? 1750 : 0,
+                                   .gap_us = (how & 128) != 0 ? 25000 : 0};
     if (config.echo == 0 || config.echo == 3) {
         config.echo = FATHOM_LINE_ECHO_AUTO;
         config.find_echo = fathom_line_find_echo;

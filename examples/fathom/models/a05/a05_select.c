@@ -10,7 +10,7 @@
 
 static uint32_t now_us(const reader_t *reader)
 {
-    const fathom_clock_t *const clock = reader->line->config->clock;
+    const fathom_clock_t *const clock = reader->line->parts->clock;
     return clock->now_us(clock->ctx);
 }
 

@@ -105,15 +105,15 @@ void rig_begin(uint32_t start_us)
     rig.uart.set_line = rig_set_line;
     rig.clock = fathom_sim_clock(&rig.sim_clock);
     listener_begin(&rig.listener, &rig.uart, &rig.clock);
-    rig.config = (fathom_line_config_t){.uart = &rig.uart,
-                                        .clock = &rig.clock,
-                                        .frame = rig.frame,
-                                        .frame_size = sizeof rig.frame,
-                                        .find_echo = fathom_line_find_echo,
-                                        .marks = fathom_line_marks,
-                                        .senders = &fathom_line_senders,
-                                        .masters = &fathom_line_masters,
-                                        .gap_us = 60000};
+    rig.config = (fathom_line_parts_t){.uart = &rig.uart,
+                                       .clock = &rig.clock,
+                                       .frame = rig.frame,
+                                       .frame_size = sizeof rig.frame,
+                                       .find_echo = fathom_line_find_echo,
+                                       .marks = fathom_line_marks,
+                                       .senders = &fathom_line_senders,
+                                       .masters = &fathom_line_masters,
+                                       .gap_us = 60000};
     rig.config.silence_us = scan_silence_us(&rig.plan);
     assert_int_equal(fathom_line_init(&rig.line, &rig.config), FATHOM_OK);
     rig.wire =

@@ -29,7 +29,7 @@ typedef struct {
     fathom_clock_t clock;
     listener_t listener;
     uint8_t frame[255];
-    fathom_line_config_t config;
+    fathom_line_parts_t config;
     fathom_line_t line;
     scan_wire_t wire;
 

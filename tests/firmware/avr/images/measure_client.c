@@ -16,11 +16,11 @@ static fathom_avr_usart_config_t usart = {
     .request = sending, .request_size = sizeof sending, .driver = {&PORTD, _BV(PD3)}};
 
 static uint8_t frame[13];
-static fathom_line_config_t config = {.uart = &fathom_avr_usart0,
-                                      .clock = &fathom_avr_clock,
-                                      .frame = frame,
-                                      .frame_size = sizeof frame,
-                                      .echo = FATHOM_LINE_ECHO_OFF};
+static fathom_line_parts_t config = {.uart = &fathom_avr_usart0,
+                                     .clock = &fathom_avr_clock,
+                                     .frame = frame,
+                                     .frame_size = sizeof frame,
+                                     .echo = FATHOM_LINE_ECHO_OFF};
 static fathom_line_t line;
 static fathom_modbus_request_t request = {.transaction = {.timeout_us = 500000}};
 static uint16_t values[4];

@@ -19,11 +19,11 @@ static fathom_avr_usart_config_t usart = {.request = sending,
                                           .driver = {&PORTD, _BV(PD3)},
                                           .line = {9600, FATHOM_PARITY_EVEN, 1}};
 static uint8_t frame[13];
-static fathom_line_config_t line_config = {.uart = &fathom_avr_usart0,
-                                           .clock = &fathom_avr_clock,
-                                           .frame = frame,
-                                           .frame_size = sizeof frame,
-                                           .echo = FATHOM_LINE_ECHO_OFF};
+static fathom_line_parts_t line_parts = {.uart = &fathom_avr_usart0,
+                                         .clock = &fathom_avr_clock,
+                                         .frame = frame,
+                                         .frame_size = sizeof frame,
+                                         .echo = FATHOM_LINE_ECHO_OFF};
 static fathom_line_t line;
 static fathom_modbus_t modbus;
 static fathom_hps167s_t gate;
@@ -35,10 +35,10 @@ int main(void)
     const uint8_t option = GPIOR0;
     if ((option & 1) != 0) usart.line.baud = 115200;
     if ((option & 2) != 0) gather_us = 1000;
-    line_config.silence_us = FATHOM_T3_5_US(usart.line.baud, 11);
+    line_parts.silence_us = FATHOM_T3_5_US(usart.line.baud, 11);
     fathom_avr_clock_init();
     if (!fathom_avr_usart0_init(&usart)) return 1;
-    if (fathom_line_init(&line, &line_config) != FATHOM_OK) return 1;
+    if (fathom_line_init(&line, &line_parts) != FATHOM_OK) return 1;
     modbus = fathom_modbus_client(&line);
     const fathom_hps167s_config_t config = {.modbus.transport = &modbus};
     if (fathom_hps167s_init(&gate, &config) != FATHOM_OK) return 1;

@@ -73,21 +73,21 @@ static fathom_avr_usart_config_t usart = {
     .request = request, .request_size = sizeof request, .line = {9600, FATHOM_PARITY_NONE, 1}};
 static uint16_t counters[FATHOM_LINE_COUNTERS];
 
-static fathom_line_config_t line_config = {.uart = &fathom_avr_usart0,
-                                           .clock = &fathom_avr_clock,
-                                           .frame = frame,
-                                           .frame_size = sizeof frame,
-                                           .find_echo = fathom_line_find_echo,
-                                           .marks = fathom_line_marks,
-                                           .count = fathom_line_count,
-                                           .counters = counters};
+static fathom_line_parts_t line_parts = {.uart = &fathom_avr_usart0,
+                                         .clock = &fathom_avr_clock,
+                                         .frame = frame,
+                                         .frame_size = sizeof frame,
+                                         .find_echo = fathom_line_find_echo,
+                                         .marks = fathom_line_marks,
+                                         .count = fathom_line_count,
+                                         .counters = counters};
 
 static void set_up_rs485(uint8_t orders)
 {
     usart.driver = (fathom_avr_pin_t){.port = &PORTD, .mask = _BV(PORTD3)};
     usart.line.baud = (orders & ORDER_115200) != 0 ? 115200 : 19200;
     usart.line.parity = FATHOM_PARITY_EVEN;
-    line_config.silence_us = FATHOM_T3_5_US(usart.line.baud, 11);
+    line_parts.silence_us = FATHOM_T3_5_US(usart.line.baud, 11);
 }
 
 /* Returns how many sensors there are. */
@@ -97,7 +97,7 @@ static uint8_t begin(uint8_t orders)
     if ((orders & ORDER_HPS167S) != 0) set_up_rs485(orders);
     if (!fathom_avr_usart0_init(&usart)) GPIOR2 = 1;
     sei();
-    if (fathom_line_init(&line, &line_config) != FATHOM_OK) GPIOR2 = 2;
+    if (fathom_line_init(&line, &line_parts) != FATHOM_OK) GPIOR2 = 2;
     if ((orders & ORDER_A16) != 0) {
         const fathom_a16_auto_config_t config = {.line = &line};
         if (fathom_a16_auto_init(&a16, &config) != FATHOM_OK) GPIOR2 = 3;

@@ -29,7 +29,7 @@ typedef struct {
     uint8_t request[8];
     uint8_t frame[32];
     fathom_uart_t uart;
-    fathom_line_config_t config;
+    fathom_line_parts_t config;
     fathom_line_t line;
     fathom_modbus_t modbus;
 } lane_t;
@@ -61,7 +61,7 @@ static bool begin_line(uint8_t number, uint32_t baud)
     };
     if (!fathom_mps2_uart_begin(&uarts[number], &config)) return false;
     lane->uart = fathom_mps2_uart(&uarts[number]);
-    lane->config = (fathom_line_config_t){
+    lane->config = (fathom_line_parts_t){
         .uart = &lane->uart,
         .clock = &fathom_mps2_clock,
         .frame = lane->frame,

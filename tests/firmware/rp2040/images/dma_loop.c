@@ -24,7 +24,7 @@ fathom_status_t __wrap_fathom_wait(const fathom_sensor_t *sensor, fathom_sample_
         since_us = RP2040_TIMER_RAWL;
         const fathom_status_t status = fathom_poll(sensor, sample);
         if (status == FATHOM_OK) RP2040_WATCHDOG_SCRATCH(3) = sample->time_us;
-        RP2040_WATCHDOG_SCRATCH(4) = line->config->counters[FATHOM_LINE_BAD_BYTES];
+        RP2040_WATCHDOG_SCRATCH(4) = line->parts->counters[FATHOM_LINE_BAD_BYTES];
         if (status != FATHOM_PENDING) return status;
     }
 }

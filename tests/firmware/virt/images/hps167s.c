@@ -29,7 +29,7 @@ int main(void)
     };
     if (!fathom_virt_uart_begin(&port, &port_config)) return 2;
     const fathom_uart_t uart = fathom_virt_uart(&port);
-    const fathom_line_config_t config = {
+    const fathom_line_parts_t config = {
         .uart = &uart,
         .clock = &fathom_virt_clock,
         .frame = frame,

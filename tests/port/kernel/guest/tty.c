@@ -77,14 +77,14 @@ void tty_reads_2083(const fathom_uart_t *uart)
     static fathom_line_t line;
     static fathom_hps167s_t gate;
     const fathom_clock_t clock = fathom_posix_clock();
-    const fathom_line_config_t line_config = {.uart = uart,
-                                              .clock = &clock,
-                                              .frame = frame,
-                                              .frame_size = sizeof frame,
-                                              .find_echo = fathom_line_find_echo,
-                                              .silence_us = FATHOM_T3_5_US(19200, 11),
-                                              .gap_us = 25000};
-    CHECK_INT(fathom_line_init(&line, &line_config), FATHOM_OK);
+    const fathom_line_parts_t line_parts = {.uart = uart,
+                                            .clock = &clock,
+                                            .frame = frame,
+                                            .frame_size = sizeof frame,
+                                            .find_echo = fathom_line_find_echo,
+                                            .silence_us = FATHOM_T3_5_US(19200, 11),
+                                            .gap_us = 25000};
+    CHECK_INT(fathom_line_init(&line, &line_parts), FATHOM_OK);
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
     const fathom_hps167s_config_t config = {.modbus.transport = &modbus};
     CHECK_INT(fathom_hps167s_init(&gate, &config), FATHOM_OK);

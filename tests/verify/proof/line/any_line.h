@@ -15,7 +15,7 @@
 enum { ANY_FRAME_SIZE = 27, ANY_CALL_SIZE = 3 };
 
 static uint8_t any_line_frame[ANY_FRAME_SIZE];
-static fathom_line_config_t any_line_config;
+static fathom_line_parts_t any_line_config;
 static fathom_line_t any_line;
 static fathom_line_t blank_line;              /* not initialised; a driver refuses it */
 static fathom_transaction_t *any_line_queued; /* NULL: none */
@@ -28,7 +28,7 @@ static void any_line_init(void)
     any_line_config.frame_size = any_8_in(8, ANY_FRAME_SIZE);
     any_line_config.silence_us = any_16();
     any_line_config.gap_us = any_16();
-    any_line.config = &any_line_config;
+    any_line.parts = &any_line_config;
 }
 
 /* What a driver may read of it. */

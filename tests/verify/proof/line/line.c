@@ -20,7 +20,7 @@ enum { FRAME_SIZE = 13 };
 
 static uint8_t frame[FRAME_SIZE];
 static fathom_line_t line;
-static fathom_line_config_t config;
+static fathom_line_parts_t config;
 static uint16_t counters[FATHOM_LINE_COUNTERS];
 static fathom_transaction_t a, b, c;
 
@@ -187,7 +187,7 @@ static void borrow(void)
 }
 
 /* A line whose config was refused refuses all calls. */
-static void refuse(const fathom_line_config_t *wrong)
+static void refuse(const fathom_line_parts_t *wrong)
 {
     fathom_status_t status = fathom_line_init(&line, wrong);
     /*@ assert status == FATHOM_ERR_ARGUMENT; */
@@ -207,7 +207,7 @@ static void refused(void)
 {
     static uint8_t short_frame[7];
     static const fathom_clock_t no_time = {NULL, &assumed_ctx};
-    fathom_line_config_t wrong = config;
+    fathom_line_parts_t wrong = config;
     fathom_uart_t uart = assumed_uart;
     wrong.uart = NULL;
     refuse(&wrong);

@@ -18,7 +18,7 @@ enum { FRAME_SIZE = 13 };
 
 static uint8_t frame[FRAME_SIZE];
 static fathom_line_t line;
-static fathom_line_config_t config;
+static fathom_line_parts_t config;
 static uint16_t counters[FATHOM_LINE_COUNTERS];
 
 static void receive(fathom_listener_t *listener, const uint8_t *bytes, uint8_t of_them, bool after_gap,

@@ -44,9 +44,9 @@ static void any_line(void)
 
 int main(void)
 {
-    static fathom_line_config_t config;
+    static fathom_line_parts_t config;
     config.silence_us = any_16();
-    line.config = &config;
+    line.parts = &config;
     line.kind = &plain;
     any_line();
     fathom_fair_share(&share, &line);
