@@ -10,11 +10,12 @@
  * -include assert.h -DFATHOM_ASSERT=assert. Empty by default. The function returns its error all the same.
  * FATHOM_ASSERT_NOTE is a statement that only such a check needs.
  */
+#ifdef FATHOM_ASSERT
+#define FATHOM_ASSERT_NOTE(statement) statement
+#endif
 #ifndef FATHOM_ASSERT
 #define FATHOM_ASSERT(condition)      ((void)0)
 #define FATHOM_ASSERT_NOTE(statement) ((void)0)
-#else
-#define FATHOM_ASSERT_NOTE(statement) statement
 #endif
 
 /* What several sources need and no user does. Inline: each is less code than a call of it. */

@@ -33,7 +33,8 @@ def directives(path, lines):
         found = DIRECTIVE.match(line)
         if found is None:
             continue
-        if (found[1], found[2]) not in (('ifndef', guard), ('ifdef', '__cplusplus'), ('ifndef', 'FATHOM_ASSERT')):
+        if (found[1], found[2]) not in (('ifndef', guard), ('ifdef', '__cplusplus'),
+                                        ('ifdef', 'FATHOM_ASSERT'), ('ifndef', 'FATHOM_ASSERT')):
             yield f'{path}:{number}: platform #if: {line.strip()}'
 
 
