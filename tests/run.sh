@@ -26,7 +26,7 @@ logs=build-logs
 mkdir -p "$logs"
 
 packages='gcc g++ libc6-dev make cmake pkg-config python3 python3-clang-14 libcmocka-dev
-clang-14 clang-tidy-14 clang-format-14 libclang-rt-14-dev cppcheck valgrind
+clang-14 clang-tidy-14 clang-format-14 libclang-rt-14-dev cppcheck doxygen valgrind
 gcc-arm-none-eabi libnewlib-arm-none-eabi gcc-avr avr-libc arduino-core-avr gcc-riscv64-unknown-elf
 gcc-powerpc-linux-gnu libc6-dev-powerpc-cross
 simavr libsimavr-dev qemu-system-arm qemu-system-misc qemu-user-static
