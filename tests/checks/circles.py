@@ -9,13 +9,18 @@
     module uses itself through others. A source with main() is a program, and nothing uses one, though start-up code
     names main and interrupt handlers. What several sources define is a hook, of which each program links one
     (start_end of the boards): to name it uses none of them.
+ 3. Calls in src/ and port/: no module refers to itself through the functions and objects of others. This rule reads the
+    relocations of the object files, so it sees each function that is called or whose address is taken. An inline
+    function belongs to its header. The Arduino port is one file of C++, which this rule does not compile.
 
-A header that has no source of its name (X_internal.h, what stands in internal/, types) is counted by the first rule
-only: what it declares is in the sources of its folder, and the second rule asks which of them define it."""
+In the third rule a header that has no source of its name (what stands in internal/, types) is a module, and
+X_internal.h belongs to X. Neither counts in the second rule: what they declare is in the sources of their folder."""
 import os
 import re
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
 
-from common import TEST_PORTS, code_of, files, main, read
+from common import LIBMODBUS, TEST_PORTS, code_of, files, main, read, run
 
 FOLDERS = ('include', 'src', 'port', 'examples', 'tests')
 WITH_MODULES = ('include/', 'src/', 'port/', 'examples/', *(port + '/' for port in TEST_PORTS))
@@ -28,6 +33,17 @@ INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"\n]+)[>"]', re.M)
 WORD = re.compile(r'(?<![\w.])(?<!->)[A-Za-z_]\w*')
 FUNCTION = re.compile(r'^(?!static\b|typedef\b)[A-Za-z_][\w \t*]*?\b(\w+)\s*\([^;{}]*\)\s*\{', re.M)
 OBJECT = re.compile(r'^(?!static\b|typedef\b|extern\b)[A-Za-z_][\w \t*]*?\b(\w+)(?:\[[^\]\n]*\])*\s*(?:=|;)', re.M)
+
+
+INLINE = re.compile(r'^static inline [\w \t*]*?\b(\w+)\s*\(', re.M)
+
+COMPILED = ('src', 'port')
+PREFIX = {'avr': 'avr-', 'rp2040': 'arm-none-eabi-', 'stm32f4': 'arm-none-eabi-'}
+FLAGS = {'': [], 'avr-': ['-mmcu=atmega328p', '-DF_CPU=16000000UL'], 'arm-none-eabi-': ['-mcpu=cortex-m3', '-mthumb']}
+# Nothing is inlined or left out, and each function and object has a section of its own.
+COMPILE = ['-O0', '-w', '-std=c99', '-fkeep-inline-functions', '-ffunction-sections', '-fdata-sections', '-Iinclude',
+           LIBMODBUS]
+SECTION = re.compile(r'^\.(?:text|rodata|data\.rel\.ro(?:\.local)?|data\.rel(?:\.local)?|data|bss)\.')
 
 
 def resolve(paths, source, bracket, name):
@@ -140,6 +156,61 @@ def uses(paths, code, includes):
     return graph, why
 
 
+def references(root, path, work):
+    """(names with external linkage, [(name of the function or object that refers, name)], what the compiler printed)"""
+    _, port, *_ = path.split('/')
+    prefix = PREFIX.get(port, '') if path.startswith('port/') else ''
+    include = ['-Iport', f'-Iport/{port}', '-Iport/serial', '-Iport/posix'] if path.startswith('port/') else []
+    target = os.path.join(work, re.sub(r'\W', '_', path) + '.o')
+    good, said = run([prefix + 'gcc', *FLAGS[prefix], *COMPILE, *include, '-c', path, '-o', target], root)
+    if not good:
+        return set(), [], said
+    _, symbols = run([prefix + 'nm', '--defined-only', '--extern-only', target], root)
+    _, relocations = run([prefix + 'objdump', '-r', target], root)
+    found, user = [], None
+    for line in relocations.split('\n'):
+        section = re.match(r'RELOCATION RECORDS FOR \[(.*)\]:', line)
+        if section:
+            user = SECTION.sub('', section[1]) if SECTION.match(section[1]) else None
+        elif user and len(line.split()) == 3:
+            found.append((user, SECTION.sub('', re.sub(r'[+-]0x[0-9a-f]+$', '', line.split()[2]))))
+    return {line.split()[-1] for line in symbols.split('\n') if line}, found, ''
+
+
+def compiled(root):
+    """{source of src/ and port/: what references() returns for it}"""
+    sources = files(root, *COMPILED, ends='.c')
+    with tempfile.TemporaryDirectory() as work, ThreadPoolExecutor(os.cpu_count()) as pool:
+        return dict(zip(sources, pool.map(lambda path: references(root, path, work), sources)))
+
+
+def calls(root, code):
+    """({module: modules that it uses}, {(module, other): ['user of FILE refers to name of FILE']}, problems)"""
+    objects = compiled(root)
+    places = {}
+    for path in (path for path in code if path.endswith('.h') and path.startswith(('include/', 'src/', 'port/'))):
+        for name in INLINE.findall(code[path]):
+            places.setdefault(name, set()).add(path)
+    inlined = set(places)
+    for path, (defined, _, _) in objects.items():
+        for name in defined:
+            places.setdefault(name, set()).add(path)
+    graph, why = {}, {}
+    for path, (_, found, _) in objects.items():
+        for user, name in found:
+            owner = min(places[user]) if user in inlined and len(places[user]) == 1 else path
+            if len(places.get(name, ())) != 1:  # a static name, the compiler's, or a hook
+                continue
+            other = min(places[name])
+            # What X_internal.h defines belongs to X.
+            module, used = (re.sub('_internal$', '', module_of(file)) for file in (owner, other))
+            if module != used:
+                graph.setdefault(module, set()).add(used)
+                graph.setdefault(used, set())
+                why.setdefault((module, used), set()).add(f'{user} of {owner} refers to {name} of {other}')
+    return graph, why, [f'{path}: does not compile:\n{said}' for path, (_, _, said) in objects.items() if said]
+
+
 def check(root, only):
     paths = files(root, *FOLDERS, ends=ENDS)
     text = {path: read(root, path) for path in paths}
@@ -155,7 +226,11 @@ def check(root, only):
         way = one_way_round(graph, circle)
         reasons = '; '.join(why[step] for step in zip(way, way[1:]))
         found.append((circle, f'a circle of {len(circle)} modules: {" ".join(circle)}: {reasons}'))
-    problems, seen = [], set()
+    graph, why, problems = calls(root, code)
+    for circle in circles(graph):
+        steps = sorted(reason for step, reasons in why.items() if set(step) <= set(circle) for reason in reasons)
+        found.append((circle, f'a circle of calls between {" ".join(circle)}:\n    ' + '\n    '.join(steps)))
+    seen = set()
     for circle, words in found:
         places = [place for place in KNOWN if all(node.startswith(place) for node in circle)]
         seen.update(places[:1])
@@ -165,7 +240,10 @@ def check(root, only):
     return problems + [f'{place}: no circle there any more; take it out of KNOWN' for place in mended]
 
 
-FAULT = ('include/fathom/hal.h', None, '#include "fathom/engine/line.h"\n', 'a circle of includes')
+FAULT = ('src/engine/line.c', None,
+         '\nvoid fathom_x(fathom_line_t *line);\nvoid fathom_x(fathom_line_t *line)\n{\n'
+         '    fathom_line_end_attempt(line);\n}\n',
+         'fathom_x of src/engine/line.c refers to fathom_line_end_attempt of src/engine/line_attempt.c')
 
 if __name__ == '__main__':
     main(check, FAULT)
