@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A terminal for tests: a pseudo terminal of a fixed size with a program in it, and a model of what its
 screen shows. The model knows the few sequences that the tool needs; any other one fails the test."""
+import contextlib
 import fcntl
 import os
 import re
@@ -147,10 +148,15 @@ class Terminal:
         after the write has returned, so the end of the program does not mean that its last bytes can be read. A
         mark that is written behind them passes the same queue."""
         mark = b'\x1b[31999m'
-        termios.tcflow(self.slave, termios.TCOON)  # writing would block if Ctrl-S is in force
-        os.write(self.slave, mark)
+        # Ctrl-S may have stopped the output. TCOON alone starts only what TCOOFF has stopped.
+        termios.tcflow(self.slave, termios.TCOOFF)
+        termios.tcflow(self.slave, termios.TCOON)
+        os.set_blocking(self.slave, False)
+        left = mark
         deadline = time.monotonic() + e2e.PATIENCE
         while not self.bytes.endswith(mark):
+            with contextlib.suppress(BlockingIOError):  # the queue is full
+                left = left[os.write(self.slave, left):] if left else left
             assert e2e.is_ready(self.master, deadline - time.monotonic()), self.bytes
             self.take()
         self.bytes = self.bytes[:-len(mark)]
