@@ -108,8 +108,8 @@ def check(root, only):
     return problems
 
 
-FAULT = ('src/engine/line_listening.c', '    fathom_line_leave(line, line->have);',
-         '    fathom_line_leave(line, line->have);\n    fathom_line_submit(line, line->head);', 'fathom_line_submit of')
+FAULT = ('src/engine/line_listening.c', '    line->received_count = 0;',
+         '    line->received_count = 0;\n    (void)fathom_line_submit(line, line->head);', 'fathom_line_submit of')
 
 if __name__ == '__main__':
     main(check, FAULT)
