@@ -104,14 +104,13 @@ enum {
 };
 
 typedef struct {
-    fathom_rp2040_uart_config_t config;
-
-    /* Since begin; each stops at 65535, and the caller may set them to 0. */
+    /* Since init; each stops at 65535, and the caller may set them to 0. */
     uint16_t parity;   /* bytes with wrong parity */
     uint16_t framing;  /* bytes without a stop bit: breaks, noise, another rate */
     uint16_t overruns; /* bytes before which others were lost: ring and FIFO were full */
 
-    /* The port's. */
+    /* private */
+    fathom_rp2040_uart_config_t config;
     fathom_line_settings_t line;
     volatile uint16_t ring[FATHOM_RP2040_RX_RING]; /* a byte, and above it DR's error bits */
     volatile uint8_t written;                      /* to the ring, so far; wraps */

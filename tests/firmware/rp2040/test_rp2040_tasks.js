@@ -49,8 +49,8 @@ test('each task reads its own sensor at its own pace, while the lamp blinks', ()
   const bench = start();
   bench.machine.run(3000);
   const [tank, gate] = both(bench);
-  assert.deepStrictEqual([tank.mm, tank.status, tank.errors], [TANK_MM, 1, 0]);
-  assert.deepStrictEqual([gate.mm, gate.status, gate.errors], [GATE_MM, 1, 0]);
+  assert.deepStrictEqual([tank.mm, tank.status, tank.errors], [TANK_MM, 0, 0]);
+  assert.deepStrictEqual([gate.mm, gate.status, gate.errors], [GATE_MM, 0, 0]);
   // One in 120 ms and one in 18.519 ms: 25 and 162 in 3 s, less one that is under way.
   assertReadings(tank, 24, 25);
   assertReadings(gate, 160, 162);
