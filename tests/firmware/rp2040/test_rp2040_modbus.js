@@ -133,7 +133,7 @@ for (const [loop, round] of Object.entries(LOOPS)) {
     new A16(machine, {rx: TRIGGER, tx: ECHO, pulses: [10100, 3000], before: round === 0 ? 20000 : 110000});
     const cost = {idle: new Map(), ready: 0};
     machine.watch('poll_hps167s', (_, result, cycles) => {
-      if (result === 1) cost.ready = Math.max(cost.ready, cycles);
+      if (result === 0) cost.ready = Math.max(cost.ready, cycles);
       else cost.idle.set(cycles, (cost.idle.get(cycles) || 0) + 1);
     });
     const crc = {bytes: 0, cycles: 0};
