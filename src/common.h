@@ -2,7 +2,10 @@
 #ifndef FATHOM_COMMON_H
 #define FATHOM_COMMON_H
 
-#include "fathom/engine/sensor.h"
+/*
+ * What the sources of engines, processing and drivers share. It includes no engine.
+ */
+
 #include "fathom/hal.h"
 
 /*
@@ -18,7 +21,7 @@
 #define FATHOM_ASSERT_NOTE(statement) ((void)0)
 #endif
 
-/* What several sources need and no user does. Inline: each is less code than a call of it. */
+/* Short functions that several sources share. They are inline, because each is smaller than a call. */
 
 static inline uint32_t clock_us(const fathom_clock_t *clock) { return clock->now_us(clock->ctx); }
 
@@ -39,26 +42,26 @@ static inline bool is_clock(const fathom_clock_t *clock)
     return (clock != NULL) && (clock->now_us != NULL);
 }
 
-/* How much of `us` is left when so much of it has passed. */
+/* Returns what is left of `us` after `passed_us`. */
 static inline uint32_t rest_us(uint32_t us, uint32_t passed_us)
 {
     if (us <= passed_us) return 0;
     return us - passed_us;
 }
 
-/* A member of a config of which 0 means its default. */
+/* Returns a member of a config, or its default if the member is 0. */
 static inline uint32_t or_default(uint32_t value, uint32_t default_value)
 {
     return (value != 0u) ? value : default_value;
 }
 
-/* A counter that stops at 65535. */
+/* Increments a counter, which stops at 65535. */
 static inline void count_one(uint16_t *counter)
 {
     *counter = (uint16_t)(*counter + (*counter != UINT16_MAX));
 }
 
-/* All bytes 0. volatile: or compilers make it a call of memset, which costs more. */
+/* Sets all bytes of an object to 0. Without volatile, compilers would call memset, which costs more flash. */
 static inline void clear(void *object, size_t size)
 {
     volatile uint8_t *at = object;
@@ -68,7 +71,7 @@ static inline void clear(void *object, size_t size)
     }
 }
 
-/* All bytes of one into another, which may be the same; volatile for the same reason. */
+/* Copies an object onto another one, which may be the same. Volatile for the same reason as in clear(). */
 static inline void copy(void *to, const void *from, size_t size)
 {
     volatile uint8_t *at = to;
@@ -78,16 +81,6 @@ static inline void copy(void *to, const void *from, size_t size)
         at++;
         of++;
     }
-}
-
-static inline fathom_sensor_t sensor_of(fathom_status_t (*poll)(void *ctx, fathom_sample_t *sample),
-                                        uint32_t (*due_us)(void *ctx), void *driver)
-{
-    fathom_sensor_t sensor;
-    sensor.poll = poll;
-    sensor.due_us = due_us;
-    sensor.ctx = driver;
-    return sensor;
 }
 
 #endif

@@ -167,4 +167,7 @@ static uint32_t due_us(void *ctx)
     return (guard != NULL) ? least_us(until_us, guard->due_us(guard->ctx)) : until_us;
 }
 
-fathom_sensor_t fathom_contact_sensor(fathom_contact_t *contact) { return sensor_of(poll, due_us, contact); }
+fathom_sensor_t fathom_contact_sensor(fathom_contact_t *contact)
+{
+    return fathom_sensor_make(poll, due_us, contact);
+}

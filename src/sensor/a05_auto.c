@@ -127,4 +127,7 @@ static uint32_t due_us(void *ctx)
     return least_us(base_us, rest_us(left_us, fathom_elapsed_us(now_us, sensor->polled_us)));
 }
 
-fathom_sensor_t fathom_a05_auto_sensor(fathom_a05_auto_t *sensor) { return sensor_of(poll, due_us, sensor); }
+fathom_sensor_t fathom_a05_auto_sensor(fathom_a05_auto_t *sensor)
+{
+    return fathom_sensor_make(poll, due_us, sensor);
+}

@@ -61,4 +61,7 @@ static uint32_t due_us(void *ctx)
     return fathom_dyp_auto_due_us(&sensor->base);
 }
 
-fathom_sensor_t fathom_a16_auto_sensor(fathom_a16_auto_t *sensor) { return sensor_of(poll, due_us, sensor); }
+fathom_sensor_t fathom_a16_auto_sensor(fathom_a16_auto_t *sensor)
+{
+    return fathom_sensor_make(poll, due_us, sensor);
+}

@@ -151,5 +151,5 @@ fathom_status_t fathom_a16_controlled_deinit(fathom_a16_controlled_t *sensor)
 
 fathom_sensor_t fathom_a16_controlled_sensor(fathom_a16_controlled_t *sensor)
 {
-    return sensor_of(poll, due_us, sensor);
+    return fathom_sensor_make(poll, due_us, sensor);
 }

@@ -69,4 +69,7 @@ static uint32_t due_us(void *ctx)
     return fathom_pulse_due_us(&sensor->meter);
 }
 
-fathom_sensor_t fathom_a16_pwm_sensor(fathom_a16_pwm_t *sensor) { return sensor_of(poll, due_us, sensor); }
+fathom_sensor_t fathom_a16_pwm_sensor(fathom_a16_pwm_t *sensor)
+{
+    return fathom_sensor_make(poll, due_us, sensor);
+}

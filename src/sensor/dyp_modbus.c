@@ -214,5 +214,5 @@ static uint32_t due_us(void *ctx)
 
 fathom_sensor_t fathom_dyp_modbus_sensor(fathom_dyp_modbus_t *sensor)
 {
-    return sensor_of(poll, due_us, sensor);
+    return fathom_sensor_make(poll, due_us, sensor);
 }

@@ -101,4 +101,7 @@ static uint32_t due_us(void *ctx)
     return fathom_modbus_unit_due_us(&sensor->unit);
 }
 
-fathom_sensor_t fathom_hps167s_sensor(fathom_hps167s_t *sensor) { return sensor_of(poll, due_us, sensor); }
+fathom_sensor_t fathom_hps167s_sensor(fathom_hps167s_t *sensor)
+{
+    return fathom_sensor_make(poll, due_us, sensor);
+}

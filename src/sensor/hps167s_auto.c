@@ -182,5 +182,5 @@ static uint32_t due_us(void *ctx)
 
 fathom_sensor_t fathom_hps167s_auto_sensor(fathom_hps167s_auto_t *sensor)
 {
-    return sensor_of(poll, due_us, sensor);
+    return fathom_sensor_make(poll, due_us, sensor);
 }

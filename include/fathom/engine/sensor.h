@@ -23,6 +23,23 @@ typedef struct {
 } fathom_sensor_t;
 
 /**
+ * @brief Returns a sensor that consists of a driver and two of its functions. For those who write a driver.
+ *
+ * @param poll    Does everything for the driver that can be done without waiting; see fathom_poll().
+ * @param due_us  Returns the time until `poll` must be called again; see fathom_due_us().
+ * @param driver  Passed to both functions. Must stay valid as long as the sensor.
+ */
+static inline fathom_sensor_t fathom_sensor_make(fathom_status_t (*poll)(void *ctx, fathom_sample_t *sample),
+                                                 uint32_t (*due_us)(void *ctx), void *driver)
+{
+    fathom_sensor_t sensor;
+    sensor.poll = poll;
+    sensor.due_us = due_us;
+    sensor.ctx = driver;
+    return sensor;
+}
+
+/**
  * @brief Does everything for a sensor that can be done without waiting.
  *
  * The sensor continues after an error. Each driver's header lists its errors, and states within which time a program
