@@ -32,11 +32,11 @@ typedef struct {
 static inline fathom_sensor_t fathom_sensor_make(fathom_status_t (*poll)(void *ctx, fathom_sample_t *sample),
                                                  uint32_t (*due_us)(void *ctx), void *driver)
 {
-    fathom_sensor_t sensor;
-    sensor.poll = poll;
-    sensor.due_us = due_us;
-    sensor.ctx = driver;
-    return sensor;
+    fathom_sensor_t made;
+    made.poll = poll;
+    made.due_us = due_us;
+    made.ctx = driver;
+    return made;
 }
 
 /**
