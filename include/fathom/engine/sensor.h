@@ -13,8 +13,15 @@ extern "C" {
 #endif
 
 /**
- * @brief Any sensor in any mode, so that one loop reads all of them. fathom_a16_auto_sensor() and its counterparts
- * return it by value. It points to the driver, which must stay valid.
+ * @file
+ * @brief One type for every sensor in every mode, so that one loop reads all of them. It does not wait and costs 12 bytes
+ * of RAM on a 32-bit machine.
+ */
+
+/**
+ * @brief A sensor in any mode, as fathom_a16_auto_sensor() and its counterparts return it by value.
+ *
+ * A copy works like the original. The driver that it points to must stay valid.
  */
 typedef struct {
     fathom_status_t (*poll)(void *ctx, fathom_sample_t *sample); /**< Called by fathom_poll(). */
