@@ -12,144 +12,258 @@
 extern "C" {
 #endif
 
-/*
- * HPS-167S, infrared time of flight on RS-485, by Modbus RTU. From the factory: address 1, 19200 8E1. Here it
- * measures; hps167s_registers.h has what its commands and values mean, hps167s_info.h what can be read,
- * hps167s_settings.h what can be set, hps167s_auto.h listens to unasked frames.
+/**
+ * @file
+ * @brief Measures with an HPS-167S, an infrared time-of-flight sensor on RS-485, by Modbus RTU.
  *
- * Its "registers" are commands, each with one right length; it is no register file, and reading in the wrong
- * place can reset it. What is declared here sends command #5 of the datasheet and nothing else.
+ * The driver sends command #5 of the datasheet again and again, and each response is one sample with a distance, the
+ * strength of the reflection, the ambient light and a figure of precision. It sends no other command, because the
+ * "registers" of this device are commands, and a read at a wrong place can reset it. It never waits and never allocates
+ * memory. include/COST.md has its flash, RAM and stack (`hps167s`). hps167s_info.h reads versions, configuration and
+ * temperature, hps167s_settings.h changes settings, and hps167s_auto.h listens to unsolicited frames.
  *
- * One sample a response, as often as polling and the pace allow:
- *   FATHOM_TARGET     80..30000 mm (the range is 80 to 18000)
- *   FATHOM_NO_TARGET  out of range or too weak: the device sends 65.53 m
- *   FATHOM_UNKNOWN    1..79 mm, below its range
- *   FATHOM_FAULT      the device reports a failure, with the abnormal packet of #5: all ones for distance, ambient
- *                     and precision, and magnitude 0. The datasheet leaves the exponent open, so any is taken
- * The errors of fathom_poll, each of one attempt:
- *   FATHOM_ERR_NO_RESPONSE  nothing from the unit in timeout_us, retries included. It is silent for some
- *                           seconds after power-on
- *   FATHOM_ERR_CHECKSUM     its response was damaged
- *   FATHOM_ERR_EXCEPTION    it refused; fathom_hps167s_exception has the number (1..4: table 39)
- *   FATHOM_ERR_MALFORMED    it sent something else, or values that it cannot mean: those are counted (implausible).
- *                           A distance of all ones in any other packet is one of them
- *   FATHOM_ERR_WARMING_UP   one of the first three, or the abnormal packet, so soon after fathom_hps167s_power_on
- *   FATHOM_ERR_PORT         the HAL's port is broken; returned by every poll until it works again
- *   FATHOM_ERR_LINE_BUSY    the line was never silent. Says nothing about the unit (status.h)
- *   FATHOM_ERR_OTHER_MASTER another master asked the same unit. Says nothing about the unit
- *   FATHOM_ERR_CANCELLED    the line was initialised again, or another driver moved the unit
- *   FATHOM_ERR_ARGUMENT     the driver is not initialised
+ * With factory settings the sensor has address 1, 19200 baud and 8E1 (datasheet 2.3).
  *
- * The longest time until fathom_poll() returns an outcome is that of modbus_unit.h:
+ * @code
+ * static uint8_t frame[32];                          // must stay valid, as all that is static here
+ * static const fathom_line_parts_t parts = {.uart = &uart, .clock = &clock,
+ *                                           .frame = frame, .frame_size = sizeof frame,
+ *                                           .echo = FATHOM_LINE_ECHO_OFF,
+ *                                           .silence_us = FATHOM_T3_5_US(19200, 11)};
+ * static fathom_line_t line;
+ * static fathom_modbus_t modbus;
+ * static fathom_hps167s_t gate;
  *
- *     period_us + least(16 * timeout_us, backoff_us) + B(timeout_us, retries) + S + P
+ * fathom_line_init(&line, &parts);
+ * modbus = fathom_modbus_client(&line);              // modbus_client.h
+ * const fathom_hps167s_config_t config = {.modbus = {.transport = &modbus, .address = 1}};
+ * fathom_hps167s_init(&gate, &config);
+ * const fathom_sensor_t sensor = fathom_hps167s_sensor(&gate);
  *
- * Here B is the bound of a transaction alone on its line (line.h), S the sum of the bounds of the line's other
- * transactions, and P the polling interval. While a command or setting of this driver is in progress, its time is added.
+ * fathom_sample_t sample;                            // in the loop:
+ * if (fathom_poll(&sensor, &sample) == FATHOM_OK && sample.kind == FATHOM_TARGET) use(sample.distance_mm);
+ * @endcode
+ *
+ * 1. **Samples.** The limits in millimetres are defaults that fathom_hps167s_set_limits() replaces.
+ *
+ *    | `kind`           | response                                                                        |
+ *    |------------------|---------------------------------------------------------------------------------|
+ *    | FATHOM_TARGET    | A distance of 80 to 30000 mm. The datasheet's range is 80 to 18000 mm (table 1). |
+ *    | FATHOM_NO_TARGET | 65530 to 65534 mm: out of range, or too weak ("65.53 meters", #5).              |
+ *    | FATHOM_UNKNOWN   | 1 to 79 mm, below the range. The value is in `raw`.                             |
+ *    | FATHOM_FAULT     | The abnormal packet: the sensor reports a failure (#5).                         |
+ *
+ *    In the abnormal packet all bits of distance, ambient light and precision are 1, and the magnitude is 0. The
+ *    datasheet leaves its exponent open, so the driver accepts any.
+ *
+ * 2. **Errors of fathom_poll().** Each is the result of one request, with its retries. The driver continues after each.
+ *
+ *    | error                   | cause                                                                     |
+ *    |-------------------------|---------------------------------------------------------------------------|
+ *    | FATHOM_ERR_NO_RESPONSE  | The unit did not respond within `timeout_us`. Check power and wiring.     |
+ *    | FATHOM_ERR_CHECKSUM     | A response was damaged. Check baud rate, parity, termination and ground.  |
+ *    | FATHOM_ERR_EXCEPTION    | The unit refused the request: see fathom_hps167s_exception().             |
+ *    | FATHOM_ERR_MALFORMED    | The unit sent another frame, or values that rule 3 refuses.               |
+ *    | FATHOM_ERR_WARMING_UP   | The unit was powered a short time ago: see fathom_hps167s_power_on().     |
+ *    | FATHOM_ERR_PORT         | The port is broken. Returned by every poll until the port works again.    |
+ *    | FATHOM_ERR_LINE_BUSY    | The line was never silent. This says nothing about the unit (status.h).   |
+ *    | FATHOM_ERR_OTHER_MASTER | Another master sent the unit a request. This says nothing about the unit. |
+ *    | FATHOM_ERR_CANCELLED    | The line was initialised again, or another driver moved the unit.         |
+ *    | FATHOM_ERR_UNSUPPORTED  | The port or the transport cannot set `line_settings`.                     |
+ *    | FATHOM_ERR_ARGUMENT     | The driver is not initialised.                                            |
+ *
+ * 3. **Refused values.** The driver refuses a distance of 0, of 30001 to 65529, and of 65535 outside the abnormal
+ *    packet. It also refuses an exponent above 16, and a response that equals the newest configuration (#2).
+ *    Each is counted in `implausible`.
+ *
+ * 4. **What `sequence` promises.** `sequence` increases by 1 with each sample and wraps after 65535. A new number means
+ *    a new response, not always a new measurement. The sensor measures 6 to 54 times a second (table 1). The datasheet
+ *    does not state what it sends if it is asked sooner than it measures: then the sample can be the previous
+ *    measurement again. If each sample must be a new measurement, set `period_us` to 167000 (6 a second) or more.
+ *
+ * 5. **Bound.** fathom_poll() returns a sample or an error at the latest after
+ *
+ *        period_us + least(16 * timeout_us, backoff_us) + B(timeout_us, retries) + S + P
+ *
+ *    B is the bound of one transaction alone on its line (line.h, rule 13). S is the sum of the bounds of the line's
+ *    other transactions. P is the longest time between two polls. While a command or a setting of this driver is in
+ *    progress, fathom_poll() returns FATHOM_PENDING, so the time of the command or setting is added. modbus_unit.h has
+ *    the rules of pace, back-off and abandoned commands.
  */
 
-/* From one measurement to the next, at least: 54 a second (table 1). */
+/** @brief Least time from one measurement to the next in microseconds: 54 measurements a second (table 1). */
 #define FATHOM_HPS167S_MIN_PERIOD_US 18519uL
 
-/* Read by init only. Members that are 0 mean their defaults: a period of 18519 us, and a time-out of 500 ms, since the
- * slowest rate is 6 a second. The datasheet gives no times of commands. */
+/** @brief Configuration. Read only during fathom_hps167s_init(). A member that is 0 takes its default. */
 typedef struct {
-    /* The address: 1..32, no address_zero. line_settings also where the baud rate is to be set. */
+    /**
+     * @brief Connection to the sensor; modbus_unit.h explains its members. `transport` is required.
+     *
+     * | member               | range here                               | 0 selects                              |
+     * |----------------------|------------------------------------------|----------------------------------------|
+     * | `address`            | 1 to 32                                  | 1                                      |
+     * | `address_zero`       | false                                    |                                        |
+     * | `period_us`          | 18519 to 2^31 - 1; less acts as 18519    | 18519 us                               |
+     * | `timeout_us`         | 1 to 2^31 - 1                            | 500 ms: the slowest period is 167 ms   |
+     * | `command_timeout_us` | 1 to 2^31 - 1                            | 1 s: the datasheet states no times     |
+     *
+     * Set `line_settings` if fathom_hps167s_set_baud() is to be used, or if the units of the line differ.
+     */
     fathom_modbus_config_t modbus;
-    uint8_t warm_up_s; /* as it was set with #7, for fathom_hps167s_power_on; 0: 5, the factory's */
-    bool no_warm_up;   /* it was set to 0 s */
 
-    /* How to read what the datasheet leaves open; fathom_hps167s_set_limits has more. */
+    /** @brief Warm-up time of the sensor in seconds, as set by #7; for fathom_hps167s_power_on(). 0 selects 5. */
+    uint8_t warm_up_s;
 
-    /* The configuration (#2) is believed when so many responses in succession agree: its frame has the shape of a
-     * measurement's. 1..8; 0: 2. 3 at least for 2 s after an unasked frame was heard. */
+    /** @brief True if the warm-up time was set to 0 s. Then `warm_up_s` is 0. */
+    bool no_warm_up;
+
+    /**
+     * @brief Equal responses in succession after which the configuration (#2) is believed: 1 to 8. 0 selects 2.
+     *
+     * A response to #2 has the shape of a measurement. For 2 s after an unsolicited frame at least 3 are needed.
+     */
     uint8_t same_responses;
-    uint8_t steps_per_degree; /* of the temperature (#4), degrees Fahrenheit: 10 for tenths; 0: 1 */
-    /* The reconnect time (#15, #2) has its low word first. False: the high word, as all integers of the device. */
+
+    /** @brief Steps of the temperature (#4) in a degree Fahrenheit: 10 if the device sends tenths. 0 selects 1. */
+    uint8_t steps_per_degree;
+
+    /**
+     * @brief True if the low word of the reconnect time (#2, #15) comes first.
+     *
+     * The datasheet leaves this open. False: the high word comes first, as in all integers of this device.
+     */
     bool low_word_first;
 } fathom_hps167s_config_t;
 
+/** @brief Value of `reset_response`: the sensor has not responded to the factory reset (#6). */
 #define FATHOM_HPS167S_NO_RESET_RESPONSE 0xFFFFu
 
+/** @brief A driver (struct fathom_hps167s). */
 typedef struct fathom_hps167s fathom_hps167s_t;
 
+/**
+ * @brief A driver, in the caller's memory. Call fathom_hps167s_init() before use.
+ *
+ * The caller may read `implausible`, `reset_response` and `next_baud`. All other members are private.
+ */
 struct fathom_hps167s {
-    uint8_t warm_up_s;
-    uint8_t same_responses;
-    uint8_t steps_per_degree;
-    bool low_word_first;
-    /* hps167s_info.h: a response to #2 is still to come, another frame was taken for it. */
+    uint8_t warm_up_s;        /**< Warm-up time in seconds. */
+    uint8_t same_responses;   /**< As in the config. */
+    uint8_t steps_per_degree; /**< As in the config. */
+    bool low_word_first;      /**< As in the config. */
+    /** @brief True if another frame was mistaken for a response to #2, so that the response may still arrive. */
     bool is_outstanding;
-    bool is_among_unasked; /* an unasked frame was heard lately */
-    uint8_t responses;     /* to #2, this time */
-    uint8_t agreed;        /* of them, in succession */
-    bool is_seeking;       /* hps167s_settings.h: it may be at `other` as well */
-    bool is_looked_at;     /* #2 was read before the factory reset */
-    uint16_t sequence;
-    uint16_t implausible; /* responses that were refused for their values; stops at 65535 */
-    /* To the last #6: 1 is success, FATHOM_HPS167S_NO_RESET_RESPONSE none, else the device's error code. */
+    bool is_among_unasked; /**< True if an unsolicited frame was received in the last 2 s. */
+    uint8_t responses;     /**< Responses to #2 in the read in progress. */
+    uint8_t agreed;        /**< The newest of them that are equal. */
+    bool is_seeking;       /**< True if the sensor may use the line settings `other` instead. */
+    bool is_looked_at;     /**< True if #2 was read before the factory reset. */
+    uint16_t sequence;     /**< Sequence number of the newest sample. */
+    /** @brief Responses to #5 that were refused because of their values; stops at 65535. */
+    uint16_t implausible;
+    /**
+     * @brief The sensor's response to the newest factory reset (#6).
+     *
+     * 1 is success, FATHOM_HPS167S_NO_RESET_RESPONSE is no response, and any other value is the sensor's error code.
+     */
     uint16_t reset_response;
-    fathom_modbus_unit_request_t request;
-    /* Responses to #2 and to #5 have one shape: neither may be what the other was last. */
-    uint16_t measurement[FATHOM_HPS167S_MEASUREMENT_COUNT]; /* to #5 */
-    uint16_t last_configuration[FATHOM_HPS167S_CONFIGURATION_COUNT];
-    uint16_t last_measurement[FATHOM_HPS167S_MEASUREMENT_COUNT];
-    uint16_t values[FATHOM_HPS167S_MAX_REGISTERS]; /* of all other responses */
-    const fathom_hps167s_limits_t *limits;         /* NULL: the defaults */
-    /* Is the response a measurement? NULL: #2 has not been read yet. */
+    fathom_modbus_unit_request_t request;                            /**< The newest request. */
+    uint16_t measurement[FATHOM_HPS167S_MEASUREMENT_COUNT];          /**< The newest response to #5. */
+    uint16_t last_configuration[FATHOM_HPS167S_CONFIGURATION_COUNT]; /**< The newest that may be of #2. */
+    uint16_t
+        last_measurement[FATHOM_HPS167S_MEASUREMENT_COUNT]; /**< The newest measurement, also unsolicited. */
+    uint16_t values[FATHOM_HPS167S_MAX_REGISTERS];          /**< The newest response to another command. */
+    const fathom_hps167s_limits_t *limits;                  /**< The limits; NULL: the defaults. */
+    /** @brief Returns true if the newest response to #5 is a measurement. NULL until #2 matters. */
     bool (*is_new)(fathom_hps167s_t *sensor);
-    /* A request has ended; FATHOM_PENDING: power_on was called. NULL: the baud rate has never been set. */
+    /**
+     * @brief Called when a request ends, or with FATHOM_PENDING by fathom_hps167s_power_on(). NULL until a baud rate is
+     * set.
+     */
     void (*follow)(fathom_hps167s_t *sensor, fathom_status_t status);
-    uint32_t unasked_us; /* the clock when an unasked frame was heard */
-    fathom_modbus_unit_t unit;
-    uint32_t next_baud; /* from the next power-on; 0: as now */
-    const fathom_line_settings_t *other;
-    fathom_line_settings_t moved[2];                /* those in force, and those that are being set */
-    fathom_modbus_setting_t setting;                /* the last one, or the one under way */
-    uint16_t words[FATHOM_HPS167S_RECONNECT_COUNT]; /* what #15 writes */
+    uint32_t unasked_us;       /**< Clock at the newest unsolicited frame, in microseconds. */
+    fathom_modbus_unit_t unit; /**< The unit. */
+    /** @brief Baud rate that the sensor uses from its next power-on (fathom_hps167s_set_baud()); 0: unchanged. */
+    uint32_t next_baud;
+    /* private */
+    const fathom_line_settings_t *other;            /* the line settings that are not in use while seeking */
+    fathom_line_settings_t moved[2];                /* those in use, and those that are being set */
+    fathom_modbus_setting_t setting;                /* the newest setting */
+    uint16_t words[FATHOM_HPS167S_RECONNECT_COUNT]; /* the registers that #15 writes */
 };
 
-/* FATHOM_OK, or FATHOM_ERR_ARGUMENT: no transport, an address over 32, address_zero, more than 8 same_responses, a
- * member of `modbus` outside its range (fathom_modbus_config_t), or a frame buffer of the line below 13 bytes. All values
- * of the other members are accepted. A refused init zeroes *sensor; then each poll and command returns
- * FATHOM_ERR_ARGUMENT. FATHOM_ERR_BUSY: a request of this driver is still queued; nothing changed. Call
- * fathom_hps167s_deinit() first. */
+/**
+ * @brief Initialises a driver. Nothing is sent before the first poll.
+ *
+ * @param sensor  The driver, in any memory. Must stay valid until fathom_hps167s_deinit().
+ * @param config  The config. Read only during the call; what it points to must stay valid as long as the driver.
+ * @retval FATHOM_OK            The driver can be used. Next, pass fathom_hps167s_sensor() to fathom_poll().
+ * @retval FATHOM_ERR_ARGUMENT  There is no transport or no clock, the address is above 32, `address_zero` is true,
+ *                              `same_responses` is above 8, another member of `modbus` is outside its range, or the
+ *                              frame buffer of the line has less than 13 bytes. The driver is zeroed: each poll and
+ *                              command returns FATHOM_ERR_ARGUMENT.
+ * @retval FATHOM_ERR_BUSY      A request of this driver is still queued. Nothing changed. Call fathom_hps167s_deinit()
+ *                              first.
+ */
 fathom_status_t fathom_hps167s_init(fathom_hps167s_t *sensor, const fathom_hps167s_config_t *config);
 
-/* Other limits of distances than the defaults, from now on. Fills in the defaults where *limits is 0; it is the
- * driver's as long as the sensor. FATHOM_OK, or FATHOM_ERR_ARGUMENT, and the limits are as before: over_range_mm
- * that is 65535 or not over max_mm, min_mm over max_mm. */
+/**
+ * @brief Replaces the default distance limits (hps167s_registers.h), from the next response on.
+ *
+ * @param sensor  The driver, initialised.
+ * @param limits  The limits. Members that are 0 are set to their defaults. Must stay valid until the driver is
+ *                deinitialised.
+ * @retval FATHOM_OK            The limits are in use.
+ * @retval FATHOM_ERR_ARGUMENT  `over_range_mm` is 65535 or not above `max_mm`, or `min_mm` is above `max_mm`. The
+ *                              driver uses the same limits as before.
+ */
 fathom_status_t fathom_hps167s_set_limits(fathom_hps167s_t *sensor, fathom_hps167s_limits_t *limits);
 
-/* Cancels what is under way; the memory is the caller's again. After the configuration (#2) was read among unasked
- * frames a response may still be on its way: initialise another driver for the same unit a command's time-out later. */
+/**
+ * @brief Cancels what is in progress. After this the memory is the caller's again.
+ *
+ * If the configuration (#2) was read among unsolicited frames, its response may still arrive. Wait for
+ * `command_timeout_us` before another driver is initialised for the same unit.
+ */
 void fathom_hps167s_deinit(fathom_hps167s_t *sensor);
 
-/*
- * To be called when the sensor gets power: what was under way is forgotten, and for warm_up_s and one time-out (of a
- * request that was sent at the end of it) silence, a damaged response, an exception and the abnormal packet are
- * FATHOM_ERR_WARMING_UP: #7 says that nothing is measured then, not what is sent. Where the program does not know
- * when the sensor gets power, leave it out, and they are what they are.
- * A baud rate that was set for the next power-on is now used, in turns with the one before, until a response comes.
+/**
+ * @brief Reports to the driver that the sensor is powered now. Call it when the supply is switched on.
+ *
+ * The driver cancels what is in progress. For `warm_up_s` and one `timeout_us` after the call, four results become
+ * FATHOM_ERR_WARMING_UP: no response, a damaged response, an exception, and the abnormal packet. The datasheet states
+ * that the sensor does not measure in its warm-up time, and not what it sends (#7).
+ *
+ * If the program does not know when the sensor is powered, do not call this function; the errors are then reported
+ * unchanged. If `next_baud` is not 0, the driver uses that rate from now on, alternately with the former rate, until
+ * the sensor responds.
  */
 void fathom_hps167s_power_on(fathom_hps167s_t *sensor);
 
-/* For fathom_poll, which measures (#5) again and again. */
+/** @brief Returns the sensor for fathom_poll() and fathom_due_us(), by value. It points to the driver. */
 fathom_sensor_t fathom_hps167s_sensor(fathom_hps167s_t *sensor);
 
-/* The exception code that came with the last FATHOM_ERR_EXCEPTION, until the next request; 0: there was none. */
+/**
+ * @brief Returns the exception code of the newest response, valid after FATHOM_ERR_EXCEPTION until the next request.
+ *
+ * Codes of table 39: 1 illegal function, 2 illegal address, 3 illegal count, 4 operation failed. 0: no exception.
+ */
 static inline uint8_t fathom_hps167s_exception(const fathom_hps167s_t *sensor)
 {
     return fathom_modbus_unit_exception(&sensor->unit);
 }
 
-/* For fathom_modbus_unit_responses and fathom_modbus_unit_failures: how many requests succeeded, and how many not. */
+/** @brief Returns the unit, whose requests fathom_modbus_unit_responses() and fathom_modbus_unit_failures() count. */
 static inline const fathom_modbus_unit_t *fathom_hps167s_unit(const fathom_hps167s_t *sensor)
 {
     return &sensor->unit;
 }
 
-/* Gives up what is under way. A setting may then be set or not; the driver stays where it was before. */
+/**
+ * @brief Cancels the measurement, command or setting in progress. The driver can be used at once.
+ *
+ * A cancelled setting may be set or not. The driver uses the address and line settings from before the setting.
+ */
 void fathom_hps167s_cancel(fathom_hps167s_t *sensor);
 
 #ifdef __cplusplus

@@ -17,6 +17,17 @@ extern "C" {
  * a master repeats the request to measure continuously. Table 12, #10 and #15 describe a "continuous output". hps167s.h
  * sends requests. This driver is for a unit that sends by itself, or for a program that listens to another master.
  *
+ * The driver sends nothing, never waits and never allocates memory. include/COST.md has its flash, RAM and stack
+ * (`hps167s_auto`).
+ *
+ * @code
+ * fathom_line_init_listening(&line, &parts);          // line.h: a line without requests
+ * const fathom_hps167s_auto_config_t config = {.line = &line, .address = 1};
+ * fathom_hps167s_auto_init(&gate, &config);
+ * const fathom_sensor_t sensor = fathom_hps167s_auto_sensor(&gate);
+ * if (fathom_poll(&sensor, &sample) == FATHOM_OK) use(&sample);       // in the loop
+ * @endcode
+ *
  * The driver is the listener of a line. It searches the received bytes for frames of the shape of the response to #5
  * from one address: ADDRESS 03 08, 8 bytes, CRC. If a byte cannot belong to such a frame, the driver drops this byte
  * and continues with the next. So the driver needs no silence: the CRC decides what is a frame.
@@ -27,9 +38,12 @@ extern "C" {
  * Requests to the same device on the same line work at the same time. A response goes to its request, and a frame
  * that no request waits for comes to this driver.
  *
- * Each frame is one sample, as from hps167s.h. If several frames arrive between two polls, the driver returns the
- * newest and counts the others. A frame that is older than `stale_us` and FATHOM_LINE_LATE_US is no sample, whether it
- * waited in the port (line.h, rule 14) or in the driver. The errors of fathom_poll() are:
+ * Each frame is one sample, with the kinds of hps167s.h (rule 1). `sequence` increases by 1 with each sample that
+ * fathom_poll() returns, and wraps. A new number means a new frame. The datasheet does not state whether a new frame is
+ * always a new measurement. `time_us` is the clock at the last byte of the frame. If several frames arrive between two
+ * polls, the driver returns the newest and counts the others in `missed`. A frame that is older than `stale_us` and
+ * FATHOM_LINE_LATE_US is no sample, whether it waited in the port (line.h, rule 14) or in the driver. The errors of
+ * fathom_poll() are:
  *
  * | error                | cause                                                                                  |
  * |----------------------|----------------------------------------------------------------------------------------|
@@ -43,20 +57,28 @@ extern "C" {
  * replaced at random, one in 65536 passes.
  */
 
-/** @brief Length of a frame in bytes. */
-enum { FATHOM_HPS167S_FRAME_LENGTH = 13 };
+/** @brief Length of a frame of the shape of a measurement. */
+enum {
+    FATHOM_HPS167S_FRAME_LENGTH = 13 /**< In bytes, with address, function, byte count and CRC. */
+};
 
 /** @brief Default of fathom_hps167s_auto_config_t::stale_us in microseconds. The slowest rate is 6 frames a second. */
 #define FATHOM_HPS167S_AUTO_DEFAULT_STALE_US 2000000uL
 
-/** @brief Configuration. Copied by fathom_hps167s_auto_init(). A member that is 0 takes its default. */
+/** @brief Configuration. Read only during fathom_hps167s_auto_init(). A member that is 0 takes its default. */
 typedef struct {
-    /** @brief The line, whose listener the driver becomes. Must outlive the driver. Its frame buffer has at least 13
-     * bytes. */
+    /**
+     * @brief The initialised line, whose listener the driver becomes. Required.
+     *
+     * Must stay valid as long as the driver. Its frame buffer has at least 13 bytes.
+     */
     fathom_line_t *line;
 
-    /** @brief Time without a sample after which fathom_poll() returns an error, in microseconds: 1 to 2^31 - 1. 0
-     * selects 2 s. */
+    /**
+     * @brief Time without a sample after which fathom_poll() returns an error, in microseconds: 1 to 2^31 - 1.
+     *
+     * 0 selects 2 s. The slowest sensor sends 6 frames a second (table 1).
+     */
     uint32_t stale_us;
 
     /** @brief Address of the unit: 1 to 32. 0 selects 1. */
@@ -66,7 +88,8 @@ typedef struct {
 /**
  * @brief A driver, in the caller's memory.
  *
- * The caller may read the members from `sequence` to `damaged`, and set these counters to 0. All others are private.
+ * The caller may read the members from `sequence` to `damaged`, and set the counters among them to 0. All others are
+ * private.
  */
 typedef struct {
     /** @brief The listener. Invariant: the first member, so that one pointer is both. */
@@ -108,33 +131,21 @@ typedef struct {
     /** @brief Frames of this address with a wrong CRC: 13 bytes that begin with ADDRESS 03 08. */
     uint16_t damaged;
 
-    /** @brief The address whose frames count: `address`, or that of `driver`. */
-    const uint8_t *from;
-
-    /** @brief The address of the configuration. */
-    uint8_t address;
-
-    /** @brief The address in the newest frame. */
-    uint8_t frame_address;
-
-    /** @brief Number of bytes in `bytes`. Invariant: they can be the beginning of a frame. */
-    uint8_t held_count;
-
-    /** @brief True if the newest frame has not been returned yet. */
-    bool is_new;
-
-    /** @brief True if bytes arrived, or were lost, since the last sample or stale error. */
-    bool is_heard;
-
-    /** @brief The beginning of the next frame. */
-    uint8_t bytes[FATHOM_HPS167S_FRAME_LENGTH];
+    /* private */
+    const uint8_t *from;   /* the address whose frames count: `address`, or that of `driver` */
+    uint8_t address;       /* the address of the config */
+    uint8_t frame_address; /* the address in the newest frame */
+    uint8_t held_count;    /* number of bytes in `bytes`. Invariant: they can be the beginning of a frame */
+    bool is_new;           /* true if the newest frame has not been returned yet */
+    bool is_heard;         /* true if bytes arrived, or were lost, since the last sample or stale error */
+    uint8_t bytes[FATHOM_HPS167S_FRAME_LENGTH]; /* the beginning of the next frame */
 } fathom_hps167s_auto_t;
 
 /**
  * @brief Initialises a driver and makes it the listener of the line.
  *
  * @param sensor  The driver. Must stay valid until fathom_hps167s_auto_deinit().
- * @param config  The configuration. Not used after the call.
+ * @param config  The config. Read only during the call.
  * @retval FATHOM_OK         The driver listens. Next, pass fathom_hps167s_auto_sensor() to fathom_poll().
  * @retval FATHOM_ERR_ARGUMENT  `line` is NULL, its frame buffer has less than 13 bytes, `address` is above 32, or
  *                              `stale_us` is above 2^31 - 1. Correct the config.
@@ -147,24 +158,35 @@ fathom_status_t fathom_hps167s_auto_init(fathom_hps167s_auto_t *sensor,
  * @brief Names a driver that sends requests to the same device on the same line.
  *
  * From now on the driver searches for frames from the address of `driver`, also after that address changes, and passes
- * each frame to fathom_hps167s_accept_unsolicited(). The response to command #2 has the same shape as a measurement and may arrive
- * late. So two kinds of frames are no measurement and are counted in `implausible`: a frame that equals the last
- * response to #2, and between #2 and the next request, a frame that could be the response to #2. Of all distances, this
- * concerns only 255 mm.
+ * each frame to fathom_hps167s_accept_unsolicited(). The response to command #2 has the same shape as a measurement and
+ * may arrive late. So two kinds of frames are no measurement and are counted in `implausible`:
+ *
+ * - a frame that equals the newest response to #2, and
+ * - between #2 and the next request, a frame that could be the response to #2. Of all distances, this concerns only
+ *   255 mm.
  *
  * @param sensor  The driver that listens.
- * @param driver  The driver that sends requests. Must outlive `sensor`.
+ * @param driver  The driver that sends requests. Must stay valid as long as `sensor`.
  */
 void fathom_hps167s_auto_follow(fathom_hps167s_auto_t *sensor, fathom_hps167s_t *driver);
 
-/** @brief Replaces the default distance limits, as fathom_hps167s_set_limits(). */
+/**
+ * @brief Replaces the default distance limits (hps167s_registers.h), from the next poll on.
+ *
+ * @param sensor  The driver, initialised.
+ * @param limits  The limits. Members that are 0 are set to their defaults. Must stay valid until
+ *                fathom_hps167s_auto_deinit().
+ * @retval FATHOM_OK            The limits are in use.
+ * @retval FATHOM_ERR_ARGUMENT  `over_range_mm` is 65535 or not above `max_mm`, or `min_mm` is above `max_mm`. The
+ *                              driver uses the same limits as before.
+ */
 fathom_status_t fathom_hps167s_auto_set_limits(fathom_hps167s_auto_t *sensor,
                                                fathom_hps167s_limits_t *limits);
 
 /** @brief Stops listening, if the driver is the listener of the line. The memory is the caller's again. */
 void fathom_hps167s_auto_deinit(fathom_hps167s_auto_t *sensor);
 
-/** @brief Returns the driver as a sensor for fathom_poll(). */
+/** @brief Returns the sensor for fathom_poll() and fathom_due_us(), by value. It points to the driver. */
 fathom_sensor_t fathom_hps167s_auto_sensor(fathom_hps167s_auto_t *sensor);
 
 #ifdef __cplusplus

@@ -8,55 +8,129 @@
 extern "C" {
 #endif
 
-/*
- * What can be read from an HPS-167S beside distances: commands #1 to #4. None of them changes anything.
+/**
+ * @file
+ * @brief Reads what an HPS-167S reports beside distances: version, configuration, details and temperature.
  *
- * Each function returns at once: call it, with the loop going on in between, until it is not FATHOM_PENDING. *out is
- * written on FATHOM_OK only. A command takes its turn after a measurement that is under way, and until its outcome
- * was taken fathom_poll is FATHOM_PENDING; fathom_hps167s_cancel gives it up. The errors are those of fathom_poll, and
- *   FATHOM_ERR_BUSY       another command or setting is not finished, or its outcome was not taken
- *   FATHOM_ERR_CAPACITY   the line's frame buffer is too small (27 bytes for the details)
- * A command ends at the latest after C, in the terms of modbus_unit.h:
+ * The functions send the commands #1 to #4 of the datasheet, and no command that changes the sensor. They share the
+ * driver, and so the unit, with the measurement of hps167s.h. No function waits: each returns FATHOM_PENDING until its
+ * response has arrived. include/COST.md has the flash of a program that uses them (`hps167s_info`).
  *
- *     C = period_us + B(timeout_us, retries) + B(command_timeout_us, retries) + 2 S + 2 P
+ * @code
+ * fathom_hps167s_configuration_t is;                 // in the loop, until the result differs from FATHOM_PENDING:
+ * const fathom_status_t status = fathom_hps167s_get_configuration(&gate, &is);
+ * if (status == FATHOM_OK && is.termination) warn("the termination resistor is on");
+ * @endcode
  *
- * The configuration (#2) is read at most 32 times, with a pause of at most 131 ms before each, and may then wait for one
- * command_timeout_us: 32 * (C + 131 ms) + command_timeout_us. Without unsolicited frames it is read at most 8 times.
- * A command that is begun and never called again gives way after FATHOM_MODBUS_ABANDONED_US.
+ * 1. **Calls.** Call a function again until its result differs from FATHOM_PENDING. `*out` is written with FATHOM_OK
+ *    only, and is used only during the call.
+ *
+ * 2. **Turn.** A command waits for a measurement that is on the wire. Until the caller has fetched its result,
+ *    fathom_poll() returns FATHOM_PENDING. fathom_hps167s_cancel() ends a command. If its caller stops calling, the
+ *    command ends after FATHOM_MODBUS_ABANDONED_US (modbus_unit.h, rule 5).
+ *
+ * 3. **Errors.** All functions return the errors of fathom_poll() (hps167s.h, rule 2), and these:
+ *
+ *    | error               | cause                                                                                |
+ *    |---------------------|--------------------------------------------------------------------------------------|
+ *    | FATHOM_ERR_BUSY     | Another command or setting is not finished, or its result was not fetched. Call later. |
+ *    | FATHOM_ERR_CAPACITY | The frame buffer of the line is too small: #1 needs 11 bytes, #2 13, #3 27, #4 8.     |
+ *
+ * 4. **Bound.** With the terms of modbus_unit.h, a command ends at the latest after
+ *
+ *        C = period_us + B(timeout_us, retries) + B(command_timeout_us, retries) + 2 S + 2 P
+ *
+ *    The configuration (#2) needs several reads. It ends at the latest after 32 * (C + 131 ms) + command_timeout_us,
+ *    and without unsolicited frames after 8 * C.
  */
 
-/* Command #4, table 16: of the analog front end, not of the air. The datasheet gives degrees Fahrenheit, and neither
- * sign nor scale: read as int16_t, in whole degrees (config.steps_per_degree). */
+/** @brief Temperature of the analog front end, not of the air (#4, table 16). */
 typedef struct {
-    int16_t fahrenheit;     /* as the device sends it */
-    int16_t temperature_dc; /* tenths of a degree Celsius, rounded to the nearest */
+    /**
+     * @brief The value as the sensor sends it, in steps of 1 / `steps_per_degree` of a degree Fahrenheit.
+     *
+     * The datasheet states neither sign nor scale. This library reads a signed value in whole degrees by default.
+     */
+    int16_t fahrenheit;
+
+    /** @brief The temperature in tenths of a degree Celsius, rounded to the nearest. */
+    int16_t temperature_dc;
 } fathom_hps167s_temperature_t;
 
-/* #1: date and number of the interface's version. */
+/**
+ * @brief Reads date and version of the interface firmware (#1, table 10).
+ *
+ * @param sensor  The driver.
+ * @param out     Written with FATHOM_OK.
+ * @retval FATHOM_OK       `*out` is written.
+ * @retval FATHOM_PENDING  Call again.
+ * @return Other values: rule 3.
+ */
 fathom_status_t fathom_hps167s_get_interface_version(fathom_hps167s_t *sensor, fathom_hps167s_version_t *out);
 
-/*
- * #2. The response has the shape of a measurement's, and an unasked one may come instead. So it counts only if the
- * first two bytes are 00 or FF, if it is not the abnormal packet nor what was measured or heard last, and if two such
- * in succession agree (config.same_responses). Its baud code and reconnect time may have any value.
- * A frame that does not count came unasked. For 2 s after it three responses have to agree, and the requests leave at
- * irregular intervals, up to 131 ms apart beyond the period, or they would keep step with what the device sends by itself.
- * It is read up to 8 times, among unasked frames 32 times; FATHOM_ERR_MALFORMED: that was not enough. Where an unasked frame was taken for a response,
- * that is returned command_timeout_us later, when no response can come any more: it would be taken for the next
- * measurement. Of measured distances only exactly 255 mm can pass the first test.
+/**
+ * @brief Reads the configuration of the interface (#2, table 12).
+ *
+ * The response has the same shape as a measurement, and an unsolicited measurement may arrive in its place. So a
+ * response counts only if all of these are true:
+ *
+ * - Its first two bytes are 00 or FF. Its baud code and reconnect time may have any value.
+ * - It is not the abnormal packet (hps167s.h).
+ * - It differs from the newest measurement of this unit, requested or unsolicited.
+ *
+ * The configuration is believed when `same_responses` (hps167s.h) of these in succession are equal. A response that
+ * does not count is an unsolicited frame. For 2 s after it three responses must be equal, and the pause before each
+ * read is irregular and up to 131 ms longer, so that the reads do not keep step with the sensor. Of all measured
+ * distances only 255 mm passes the first condition.
+ *
+ * @param sensor  The driver.
+ * @param out     Written with FATHOM_OK.
+ * @retval FATHOM_OK             `*out` is written.
+ * @retval FATHOM_PENDING        Call again.
+ * @retval FATHOM_ERR_MALFORMED  8 reads, or 32 among unsolicited frames, did not suffice. If a response may still
+ *                               arrive, this error comes `command_timeout_us` later, because the response would be
+ *                               mistaken for the next measurement.
+ * @return Other values: rule 3.
  */
 fathom_status_t fathom_hps167s_get_configuration(fathom_hps167s_t *sensor,
                                                  fathom_hps167s_configuration_t *out);
 
-/* #3. FATHOM_ERR_MALFORMED also: without the byte B0 at its beginning. */
+/**
+ * @brief Reads the details of the sensor: UUID, date and version (#3, table 14).
+ *
+ * @param sensor  The driver.
+ * @param out     Written with FATHOM_OK.
+ * @retval FATHOM_OK             `*out` is written.
+ * @retval FATHOM_PENDING        Call again.
+ * @retval FATHOM_ERR_MALFORMED  The response does not begin with the byte B0, or as in rule 3.
+ * @return Other values: rule 3.
+ */
 fathom_status_t fathom_hps167s_get_details(fathom_hps167s_t *sensor, fathom_hps167s_details_t *out);
 
-/* #4. FATHOM_ERR_MALFORMED also: tenths of a degree Celsius would not fit an int16_t. */
+/**
+ * @brief Reads the temperature of the analog front end (#4, table 16).
+ *
+ * @param sensor  The driver.
+ * @param out     Written with FATHOM_OK.
+ * @retval FATHOM_OK             `*out` is written.
+ * @retval FATHOM_PENDING        Call again.
+ * @retval FATHOM_ERR_MALFORMED  Tenths of a degree Celsius do not fit into an int16_t, or as in rule 3.
+ * @return Other values: rule 3.
+ */
 fathom_status_t fathom_hps167s_get_temperature(fathom_hps167s_t *sensor, fathom_hps167s_temperature_t *out);
 
-/* A frame of the shape of #5's response was heard from the sensor's address that no request of the sensor's waited for,
- * with these registers, at this time of its clock. False: it may be a late response to #2, and is no measurement.
- * hps167s_auto.h calls it; other listeners of the line may. */
+/**
+ * @brief Reports an unsolicited frame with the shape of a measurement to the driver.
+ *
+ * hps167s_auto.h calls this function. A listener of your own may call it, so that the driver can distinguish responses
+ * to #2 from measurements.
+ *
+ * @param sensor     The driver whose address the frame has.
+ * @param registers  The four registers of the frame, first one first. Used only during the call.
+ * @param time_us    Clock at the last byte of the frame, in microseconds.
+ * @retval true   The frame is a measurement.
+ * @retval false  The frame may be a late response to #2. It is no measurement.
+ */
 bool fathom_hps167s_accept_unsolicited(fathom_hps167s_t *sensor, const uint16_t registers[4],
                                        uint32_t time_us);
 
