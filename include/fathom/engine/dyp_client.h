@@ -9,34 +9,74 @@
 extern "C" {
 #endif
 
-/*
- * The 55 AA frames of the A05 (A05 2, dyp_55aa.h) on a line, behind the same transport as Modbus: both read the
- * same distances, and so the same driver serves both. A request is described as for Modbus, by the register
- * of its first probe:
+/**
+ * @file
+ * @brief Carries the `55 AA` frames of the A05 (datasheet A05 2) on a line, behind the transport of the Modbus drivers.
  *
- *   read 0x0106, 4 registers             command 01, all probes
- *   read 0x0106..0x0109, 1 register      command 10..13, one probe
+ * a05_dyp.h needs this file; most programs only call fathom_dyp_client(). The protocol reads the same distances as
+ * Modbus, so one interface serves both: a request is a Modbus read of the register of its first probe. The client keeps
+ * no state outside the line and the requests, never waits and never allocates memory. include/COST.md has the flash of
+ * a driver with this client (`a05_dyp`).
  *
- * Nothing else is sent through the transport. On a bad wire one in 256 of the responses that are damaged in
- * more than one byte passes the 8-bit sum; of Modbus, which the same sensors have, one in 65536.
+ * | Modbus request                    | command of the frame |
+ * |-----------------------------------|----------------------|
+ * | read 0x0106, 4 registers          | 01: all probes       |
+ * | read 0x0106 to 0x0109, 1 register | 10 to 13: one probe  |
+ *
+ * The transport sends nothing else. On a bad wire the sum of 8 bits lets one in 256 of the responses pass that are
+ * damaged in more than one byte. Modbus, which the same module speaks, lets one in 65536 pass.
+ *
+ * @code
+ * static fathom_modbus_t transport;                  // must stay valid as long as the drivers
+ * transport = fathom_dyp_client(&line);              // `line` is initialised
+ * @endcode
  */
-enum { FATHOM_DYP_FIRST_REGISTER = 0x0106 };
 
-/* As submit of fathom_modbus_t. FATHOM_ERR_UNSUPPORTED: no command for this request; nothing happened.
- * FATHOM_ERR_CAPACITY: the line's frame buffer has less than 13 bytes. To unit FATHOM_LINE_ANY_UNIT (FF) the first
- * response is taken, and message.head[0] is then the address that it came from. */
+/** @brief Registers by which a request names its probes. */
+enum {
+    FATHOM_DYP_FIRST_REGISTER = 0x0106 /**< Register of probe 1. The next three are those of probes 2 to 4. */
+};
+
+/**
+ * @brief Submits a request to the line, as fathom_modbus_t::submit.
+ *
+ * If the request is to FATHOM_LINE_ANY_UNIT (FF), the line accepts the first response, and `message.head[0]` is then
+ * the address of the unit that sent it.
+ *
+ * @param line     The line, initialised.
+ * @param request  The request. Must stay valid until `transaction.status` differs from FATHOM_PENDING.
+ * @retval FATHOM_PENDING          The request is queued.
+ * @retval FATHOM_ERR_UNSUPPORTED  There is no command for this request. Nothing changed.
+ * @retval FATHOM_ERR_ARGUMENT     The address is 0, or as fathom_line_submit(). Nothing changed.
+ * @retval FATHOM_ERR_CAPACITY     The frame buffer of the line has less than 13 bytes. Nothing changed.
+ * @retval FATHOM_ERR_BUSY         The request is queued already. Nothing changed.
+ */
 fathom_status_t fathom_dyp_client_submit(fathom_line_t *line, fathom_modbus_request_t *request);
 
-/*
- * Command 03: gives this address, 1..254, to EVERY A05 that hears it, since the frame carries the new address and
- * no old one. Have one unit on the line. transaction.timeout_us, retries and line_settings are set by the caller.
- * FATHOM_PENDING; FATHOM_ERR_ARGUMENT: 0 or 255; FATHOM_ERR_BUSY. The response equals the request: where the line
- * does not know yet whether it echoes, the outcome is FATHOM_ERR_ECHO. Confirm it by a read at the new address.
+/**
+ * @brief Submits command 03, which gives this address to EVERY A05 of the line (A05 2(3)5).
+ *
+ * The frame contains the new address and no old one, so have one A05 on the line. Set `timeout_us`, `retries` and
+ * `line_settings` of `request->transaction` before the call. The response equals the request. If the line does not know
+ * yet whether it echoes, the result is FATHOM_ERR_ECHO (line.h, rule 9). Next, read at the new address.
+ *
+ * @param line     The line, initialised.
+ * @param request  The request. Must stay valid until `transaction.status` differs from FATHOM_PENDING.
+ * @param address  The new address, 1 to 254.
+ * @retval FATHOM_PENDING       The request is queued.
+ * @retval FATHOM_ERR_ARGUMENT  The address is 0 or 255, or as fathom_line_submit(). Nothing changed.
+ * @retval FATHOM_ERR_CAPACITY  The frame buffer of the line has less than 13 bytes.
+ * @retval FATHOM_ERR_BUSY      The request is queued already. Nothing changed.
  */
 fathom_status_t fathom_dyp_client_broadcast_address(fathom_line_t *line, fathom_modbus_request_t *request,
                                                     uint8_t address);
 
-/* The transport for drivers over a line that is ready, by value: keep it as long as the drivers that point to it. */
+/**
+ * @brief Returns the transport for drivers, by value. Keep it as long as the drivers that point to it.
+ *
+ * @param line  The line, initialised. If the line is not initialised, each driver refuses the transport with
+ *              FATHOM_ERR_ARGUMENT.
+ */
 fathom_modbus_t fathom_dyp_client(fathom_line_t *line);
 
 #ifdef __cplusplus

@@ -10,95 +10,180 @@
 extern "C" {
 #endif
 
-/*
- * A05 with UART automatic output (A05 1). 9600 8N1.
- * Without a request it sends FF, four distances, SUM over and over, of processed or of real-time values. Which of
- * them is decided by its RX pin in the first second after power-on, high or open for processed, low for
- * real-time: fathom_a05_auto_select. The datasheet gives settling times of 300 to 1500 ms and of 300 ms, and no
- * frame period. The first Modbus request ends automatic output; only power-on brings it back.
+/**
+ * @file
+ * @brief Reads an A05 that sends the distances of its four ultrasonic probes without a request (datasheet A05 1).
  *
- * Four samples a frame, one a fitted probe, with one sequence number and one time, which is when its last byte
- * came. They are given when the line has been silent for gap_us behind it or the next frame begins. FATHOM_TARGET,
- * or what the window makes of the values 0, FFFD, FFFE and FFFF (dyp.h). The errors of fathom_poll:
- *   FATHOM_ERR_STALE      Nothing was received for `stale_us`: no wire, no supply, or another mode. Returned once every
- *                         `stale_us`. Also returned if the newest frame is too old (stream.h, rule 6).
- *   FATHOM_ERR_CHECKSUM   Bytes were received for `stale_us`, but no frame: damage, noise, another rate, or another
- *                         device. `base.stream.counters` show which (stream.h). Returned once every `stale_us`.
- *   FATHOM_ERR_MALFORMED  this probe's value is refused: outside the window, or FFFF. The other probes' samples are
- *                         given, but where the frame's place is not sure (stream.h) and in the first frame with a
- *                         refused value, which may be damaged: then all of it is refused.
- *                         base.measurement.refused_probe and refused_raw tell which; counted
- *   FATHOM_ERR_PORT       the HAL's port is broken; returned by every poll until it works again. Or it has refused for
- *                         a second to end the break that selects; it is tried on, that is returned once a second,
- *                         samples go on between
+ * The driver is the listener of a line at 9600 baud and 8N1. It finds the frames `FF 1H 1L 2H 2L 3H 3L 4H 4L SUM` by
+ * the rules of stream.h, and each frame is one sample for each fitted probe. The driver sends nothing; it can only hold
+ * the RX pin of the module low to select the values. It never waits and never allocates memory. include/COST.md has its
+ * flash, RAM and stack (`a05_auto`).
+ *
+ * @warning The first Modbus request on the line stops the automatic output until the module is powered off and on (A05
+ * 1(1)).
+ *
+ * @code
+ * static fathom_a05_auto_t bumper;
+ * fathom_line_init_listening(&line, &parts);         // line.h: a line without requests
+ * const fathom_a05_auto_config_t config = {.line = &line};
+ * fathom_a05_auto_init(&bumper, &config);
+ * const fathom_sensor_t sensor = fathom_a05_auto_sensor(&bumper);
+ *
+ * fathom_sample_t near;                              // in the loop: each probe is one sample
+ * while (fathom_poll(&sensor, &near) == FATHOM_OK) use(near.distance_mm);
+ * @endcode
+ *
+ * 1. **Values.** The module sends processed or real-time values. The level of its RX pin in the first second after
+ *    power-on decides which: high or open for processed, low for real-time. See fathom_a05_auto_select(). No frame says
+ *    which values it has. The datasheet gives response times of 300 to 1500 ms and of about 300 ms (A05 1(1)).
+ *
+ * 2. **Samples.** `kind` is FATHOM_TARGET if the value is inside the window (1 to 6000 mm by default). The window of
+ *    the config gives the values 0, FFFD, FFFE and FFFF their meaning (dyp.h). By default FFFD is FATHOM_NO_TARGET,
+ *    FFFE is FATHOM_NO_TARGET with `interference`, 0 is FATHOM_UNKNOWN, and FFFF is refused. A frame is returned when
+ *    the line has been silent for `gap_us` behind it, or when the next frame begins.
+ *
+ * 3. **What `sequence` promises.** The samples of one frame have one `sequence` and one `time_us`, the clock at the
+ *    last byte of the frame. `sequence` increases by 1 with each frame that is returned, and wraps after 65535. A new
+ *    number is a new frame, not always a new measurement. The datasheet prints no period of the frames. A frame that is
+ *    sent sooner than the module measures has the previous values: a processed value follows a change within 300 to
+ *    1500 ms, a real-time value within about 300 ms. The newest frame wins; older ones are counted in
+ *    `base.stream.counters`.
+ *
+ * 4. **Errors of fathom_poll().** The driver continues after each.
+ *
+ *    | error                | cause                                                                               |
+ *    |----------------------|-------------------------------------------------------------------------------------|
+ *    | FATHOM_ERR_STALE     | Nothing was received for `stale_us`: no wire, no supply, or another mode. Or the    |
+ *    |                      | newest frame is too old (stream.h, rule 6). Returned once every `stale_us`.         |
+ *    | FATHOM_ERR_CHECKSUM  | Bytes were received for `stale_us`, but no frame: damage, noise, another rate, or   |
+ *    |                      | another device. `base.stream.counters` show which. Returned once every `stale_us`.  |
+ *    | FATHOM_ERR_MALFORMED | The value of one probe is refused (rule 5).                                         |
+ *    | FATHOM_ERR_PORT      | The port is broken. Returned by every poll until the port works again.              |
+ *    |                      | Or the port does not end the break of fathom_a05_auto_select(). Then this error is  |
+ *    |                      | returned once a second, and samples continue.                                       |
+ *    | FATHOM_ERR_ARGUMENT  | The driver is not initialised.                                                      |
+ *
+ * 5. **Refused values.** A value outside the window, or FFFF, is no sample. The driver counts it in
+ *    `base.measurement.implausible` and stores it in `refused_raw` and `refused_probe` there. The other probes of the
+ *    frame are returned only if the place of the frame is sure (stream.h, rule 4) and the frame before had a refused
+ *    value too. Else the frame may be damaged or out of step, and all of it is refused. So a probe that continues to
+ *    send refused values costs the other probes one frame.
+ *
+ * 6. **Bound.** On a line that carries no requests, fathom_poll() returns a sample or an error at the latest `stale_us`
+ *    and one polling interval after the previous one.
  */
 
-/* Read by init only. Members that are 0 mean their defaults. */
+/** @brief Configuration. Read only during fathom_a05_auto_init(). A member that is 0 takes its default. */
 typedef struct {
-    /* The line, whose listener the driver becomes. The line may also carry Modbus. */
+    /**
+     * @brief The initialised line, whose listener the driver becomes. Required.
+     *
+     * Must stay valid as long as the driver. The line may also carry Modbus, which stops the automatic output.
+     */
     fathom_line_t *line;
-    /* Time without a frame after which fathom_poll() returns an error, in microseconds: 1 to 2^31 - 1. 0 selects 2 s.
-     * The datasheet prints no period of the frames. If a unit sends less often than every 2 s, choose more. */
+
+    /**
+     * @brief Time without a frame after which fathom_poll() returns an error, in microseconds: 1 to 2^31 - 1. 0 selects
+     * 2 s.
+     *
+     * The datasheet prints no period of the frames. If a unit sends less often than every 2 s, choose more.
+     */
     uint32_t stale_us;
-    /* Silence that starts and ends a frame (stream.h), in microseconds: 1042 to 65535. Behind an operating system
-     * choose 25000. 0 selects 5000. */
+
+    /**
+     * @brief Silence that starts and ends a frame (stream.h), in microseconds: 1042 to 65535. 0 selects 5000.
+     *
+     * Behind an operating system choose 25000.
+     */
     uint16_t gap_us;
-    fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 6000 mm */
-    /* Bit probe - 1: fitted; 0: all four. A probe that is not fitted gives neither a sample nor an error. */
+
+    /** @brief Distances that are believed, and the meaning of other values (dyp.h). 0 selects 1 to 6000 mm. */
+    fathom_dyp_window_t window;
+
+    /**
+     * @brief Fitted probes, bit (probe - 1): 1 to 15. 0 selects all four.
+     *
+     * A probe that is not fitted has neither a sample nor an error.
+     */
     uint8_t probes;
-    /* What drives the module's RX pin, for fathom_a05_auto_select: a pin, or a break of the line whose TX it is
-     * (fathom_output_line_break). */
+
+    /**
+     * @brief Output that drives the RX pin of the module, for fathom_a05_auto_select(). Zeroed: none.
+     *
+     * It is a pin, or a break of the line whose TX is connected to RX (fathom_output_line_break()). What it points to
+     * must stay valid as long as the driver.
+     */
     fathom_output_t select;
 } fathom_a05_auto_config_t;
 
-/* How long RX is held low for real-time values: the first second (A05 1(1)), and half of one for the supply to rise. */
+/**
+ * @brief Time for which RX is held low to select real-time values, in microseconds.
+ *
+ * The module reads the pin in its first second (A05 1(1)); half a second is for the supply to rise.
+ */
 #define FATHOM_A05_SELECT_US 1500000uL
 
+/**
+ * @brief A driver, in the caller's memory. Call fathom_a05_auto_init() before use.
+ *
+ * The caller may read `base.stream.counters`, and `implausible`, `refused_probe` and `refused_raw` of
+ * `base.measurement`. All other members are private.
+ */
 typedef struct {
-    fathom_dyp_auto_t base;
-    uint16_t values[4];
-    uint8_t storage[FATHOM_STREAM_STORAGE(FATHOM_DYP_A05_LENGTH)];
-    fathom_output_t select;
-    uint32_t select_left_us; /* RX is held low for so long */
-    uint32_t polled_us;
-    bool selecting;
-    uint8_t probes; /* bit probe - 1: fitted */
-    bool was_odd;   /* the frame before had a fitted probe whose value was refused, or there was none */
+    fathom_dyp_auto_t base; /**< The part that A16 and A05 share. */
+    /* private */
+    uint16_t values[4];                                            /* the values of the newest frame */
+    uint8_t storage[FATHOM_STREAM_STORAGE(FATHOM_DYP_A05_LENGTH)]; /* the memory of the stream */
+    fathom_output_t select;                                        /* as in the config */
+    uint32_t select_left_us; /* rest of the time for which RX is held low */
+    uint32_t polled_us;      /* clock at the last poll while RX is held low */
+    bool selecting;          /* true if RX is held low */
+    uint8_t probes;          /* fitted probes, bit (probe - 1) */
+    bool was_odd; /* true if the frame before had a refused value of a fitted probe, or there was none */
 } fathom_a05_auto_t;
 
-/*
- * Initialises the driver and makes it the listener of the line.
- *   FATHOM_OK         The driver listens.
- *   FATHOM_ERR_ARGUMENT  `line` is NULL, or a member is outside its range: `stale_us` above 2^31 - 1, `gap_us` of 1 to
- *                        1041, `min_mm` above `max_mm`, or `probes` above 15.
- *   FATHOM_ERR_BUSY      The line has another listener, which stays.
+/**
+ * @brief Initialises a driver and makes it the listener of the line. It does not change the level of RX.
+ *
+ * @param sensor  The driver, in any memory. Must stay valid until fathom_a05_auto_deinit().
+ * @param config  The config. Read only during the call; what it points to must stay valid as long as the driver.
+ * @retval FATHOM_OK            The driver listens. Next, pass fathom_a05_auto_sensor() to fathom_poll().
+ * @retval FATHOM_ERR_ARGUMENT  `line` is NULL or not initialised, `stale_us` is above 2^31 - 1, `gap_us` is 1 to 1041,
+ *                              `min_mm` is above `max_mm`, a meaning does not exist, or `probes` is above 15. The
+ *                              driver is zeroed.
+ * @retval FATHOM_ERR_BUSY      The line has another listener, which stays. The driver is zeroed.
  */
 fathom_status_t fathom_a05_auto_init(fathom_a05_auto_t *sensor, const fathom_a05_auto_config_t *config);
 
-/*
- * To be called right before the sensor gets power: sets its RX pin for the values that it is to send. For real-time it
- * is low for 1.5 s, after which fathom_poll makes it high again; else it is high. The deadline for a frame begins anew.
- * FATHOM_OK: switch the power on now.
- * FATHOM_ERR_ARGUMENT: no such value. FATHOM_ERR_UNSUPPORTED: real-time values without `select`, or a port
- * that cannot hold its TX low.
- * FATHOM_ERR_BUSY: something is being sent on the line, or the break of a power-on before has not ended; try again.
- * FATHOM_ERR_PORT: the port is broken.
+/**
+ * @brief Sets the RX pin for the values that the module is to send. Call it right before the module is powered.
+ *
+ * For real-time values RX is low for FATHOM_A05_SELECT_US; then fathom_poll() makes it high. For processed values RX is
+ * high. All received bytes and the counters of the stream are dropped, and `stale_us` starts again.
+ *
+ * @param sensor  The driver.
+ * @param value   FATHOM_PROCESSED or FATHOM_REAL_TIME.
+ * @retval FATHOM_OK               Switch the supply on now.
+ * @retval FATHOM_ERR_ARGUMENT     There is no such value, or the driver is not initialised.
+ * @retval FATHOM_ERR_UNSUPPORTED  Real-time values were selected without `select`, or the port cannot hold its TX low.
+ * @retval FATHOM_ERR_BUSY         The line still sends, or the break of an earlier power-on has not ended. Call again.
+ * @retval FATHOM_ERR_PORT         The port is broken.
  */
 fathom_status_t fathom_a05_auto_select(fathom_a05_auto_t *sensor, fathom_dyp_value_t value);
 
-/*
- * Stops listening, if the driver is the listener of the line, and lets RX go high, if it is still held low; the memory
- * is the caller's again. Call it again, and not poll, unless it returns
- * FATHOM_OK: RX is high, always where it is a pin.
- * FATHOM_PENDING, FATHOM_ERR_PORT: as fathom_line_break(line, false). If the caller gives up here, TX stays low, and
- * the line sends nothing until that is FATHOM_OK.
+/**
+ * @brief Stops listening, if the driver is the listener of the line, and makes RX high if the driver holds it low.
+ *
+ * Call this function again, and do not poll, until it returns FATHOM_OK. If the caller stops before, TX stays low, and
+ * the line sends nothing until fathom_line_break(line, false) returns FATHOM_OK.
+ *
+ * @retval FATHOM_OK        The memory is the caller's again. A pin always gives this result.
+ * @retval FATHOM_PENDING   The break has not ended (fathom_line_break()).
+ * @retval FATHOM_ERR_PORT  The port is broken, or it refused for a second to end the break.
  */
 fathom_status_t fathom_a05_auto_deinit(fathom_a05_auto_t *sensor);
 
-/* For fathom_poll. Where a fitted probe's value is refused, it is refused alone if the place of the frame is sure
- * (stream.h) and the frame before, if there was one, had a refused value too. Else all of it is refused: out of step
- * the other distances could be permuted, and after good frames damage is more likely, of which an 8-bit sum misses one
- * in 256. So only the first frame with a refused value is lost. */
+/** @brief Returns the sensor for fathom_poll() and fathom_due_us(), by value. It points to the driver. */
 fathom_sensor_t fathom_a05_auto_sensor(fathom_a05_auto_t *sensor);
 
 #ifdef __cplusplus

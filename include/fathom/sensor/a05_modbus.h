@@ -9,110 +9,231 @@
 extern "C" {
 #endif
 
-/*
- * A05 by Modbus RTU (A05 3): the RS485 variant, and the UART variant, whose automatic output ends with
- * the first request until it is powered off. 9600 8N1. Each read starts a measurement of the probes it names,
- * one after the other, about 100 ms each.
+/**
+ * @file
+ * @brief Measures with an A05, a module with four ultrasonic probes, by Modbus RTU (datasheet A05 3).
  *
- * A sample a wanted probe and response, with one sequence number and one time: FATHOM_TARGET, or what the window
- * makes of the values 0, FFFD, FFFE and FFFF (dyp.h). The errors of fathom_poll, each of one attempt:
- *   FATHOM_ERR_NO_RESPONSE  nothing from the unit in timeout_us, retries included. The datasheet documents no
- *                           exceptions: a wrong register may be silence too
- *   FATHOM_ERR_CHECKSUM     its response was damaged
- *   FATHOM_ERR_EXCEPTION    it refused; fathom_a05_modbus_exception has the number
- *   FATHOM_ERR_MALFORMED    it sent something else, or this probe's value is refused: outside the window, or FFFF;
- *                           base.measurement.refused_probe and refused_raw tell which, and it is counted
- *   FATHOM_ERR_PORT         the HAL's port is broken; returned by every poll until it works again
- *   FATHOM_ERR_LINE_BUSY    the line was never silent. Says nothing about the unit (status.h)
- *   FATHOM_ERR_OTHER_MASTER another master asked the same unit. Says nothing about the unit
- *   FATHOM_ERR_CANCELLED    the line was initialised again, or another driver moved the unit
- *   FATHOM_ERR_ARGUMENT     the driver is not initialised
+ * The driver reads the distance registers of the wanted probes again and again, and each response is one sample for
+ * each wanted probe. It is for the RS485 variant and for the UART variant, both at 9600 baud and 8N1. It never waits
+ * and never allocates memory. include/COST.md has its flash, RAM and stack (`a05_modbus`). For an A05 that sends
+ * without a request see a05_auto.h, and for its other protocol a05_dyp.h.
  *
- * The longest time until fathom_poll() returns an outcome is that of modbus_unit.h:
+ * @warning The first Modbus request stops the automatic output of the UART variant until the module is powered off and
+ * on (A05 1(1)).
  *
- *     period_us + least(16 * timeout_us, backoff_us) + B(timeout_us, retries) + S + P
+ * @code
+ * static fathom_a05_modbus_t bumper;                 // `modbus` is a transport: see hps167s.h
+ * const fathom_a05_modbus_config_t config = {.modbus = {.transport = &modbus, .address = 1}, .probes = 0x03};
+ * fathom_a05_modbus_init(&bumper, &config);
+ * const fathom_sensor_t sensor = fathom_a05_modbus_sensor(&bumper);
  *
- * Here B is the bound of a transaction alone on its line (line.h), S the sum of the bounds of the line's other
- * transactions, and P the polling interval. While a command or setting of this driver is in progress, its time is added.
+ * fathom_sample_t near;                              // in the loop: probes 1 and 2 are one sample each
+ * while (fathom_poll(&sensor, &near) == FATHOM_OK) use(near.distance_mm);
+ * @endcode
+ *
+ * 1. **Samples.** `kind` is FATHOM_TARGET if the value is inside the window (1 to 6000 mm by default). The window of
+ *    the config gives the values 0, FFFD, FFFE and FFFF their meaning (dyp.h). By default FFFD is FATHOM_NO_TARGET,
+ *    FFFE is FATHOM_NO_TARGET with `interference`, 0 is FATHOM_UNKNOWN, and FFFF is refused.
+ *
+ * 2. **Errors of fathom_poll().** Each is the result of one request, with its retries. The driver continues after each.
+ *    The datasheet documents no exceptions, so a unit may respond with silence to a register that it does not have.
+ *
+ *    | error                   | cause                                                                     |
+ *    |-------------------------|---------------------------------------------------------------------------|
+ *    | FATHOM_ERR_NO_RESPONSE  | The unit did not respond within `timeout_us`. Check power and wiring.     |
+ *    | FATHOM_ERR_CHECKSUM     | A response was damaged. Check baud rate, parity, termination and ground.  |
+ *    | FATHOM_ERR_EXCEPTION    | The unit refused the request: see fathom_a05_modbus_exception().          |
+ *    | FATHOM_ERR_MALFORMED    | The unit sent another frame, or the value of one probe is refused (rule 3). |
+ *    | FATHOM_ERR_WARMING_UP   | The unit was powered a short time ago: see fathom_a05_modbus_power_on().  |
+ *    | FATHOM_ERR_PORT         | The port is broken. Returned by every poll until the port works again.    |
+ *    | FATHOM_ERR_LINE_BUSY    | The line was never silent. This says nothing about the unit (status.h).   |
+ *    | FATHOM_ERR_OTHER_MASTER | Another master sent the unit a request. This says nothing about the unit. |
+ *    | FATHOM_ERR_CANCELLED    | The line was initialised again, or another driver moved the unit.         |
+ *    | FATHOM_ERR_UNSUPPORTED  | The port or the transport cannot set `line_settings`.                     |
+ *    | FATHOM_ERR_ARGUMENT     | The driver is not initialised.                                            |
+ *
+ * 3. **Refused values.** A value outside the window, or FFFF, is no sample. The driver counts it in
+ *    `base.measurement.implausible` and stores it in `refused_raw` and `refused_probe` there. The other probes of this
+ *    response are returned, because the CRC vouches for their place.
+ *
+ * 4. **What `sequence` promises.** All samples of one response have one `sequence` and one `time_us`. `sequence`
+ *    increases by 1 with each response and wraps after 65535. Each request starts a measurement of the probes that it
+ *    reads, one after the other, about 100 ms each (A05 3(3)). So a new number is a new measurement. If a module were
+ *    asked sooner, it could send the previous value; the driver waits 100 ms for each probe between two requests.
+ *
+ * 5. **Bound.** fathom_poll() returns a sample or an error at the latest after
+ *
+ *        period_us + least(16 * timeout_us, backoff_us) + B(timeout_us, retries) + S + P
+ *
+ *    B is the bound of one transaction alone on its line (line.h, rule 13). S is the sum of the bounds of the line's
+ *    other transactions. P is the longest time between two polls. While a command or a setting of this driver is in
+ *    progress, fathom_poll() returns FATHOM_PENDING, so the time of the command or setting is added. modbus_unit.h has
+ *    the rules of pace, back-off and abandoned commands.
  */
 
-/* From one request to the next, at least, for each probe that it reads. */
+/** @brief Least time from one request to the next, for each probe that it reads, in microseconds. */
 #define FATHOM_A05_PROBE_US 100000uL
 
-/* The first probe's register; the same four distances stand in two places (A05 3(3), remark 2). */
-enum { FATHOM_A05_REGISTERS = 0x0106, FATHOM_A05_REGISTERS_ALIAS = 0x0010 };
+/** @brief Register of the first probe. The same four distances stand in two places (A05 3(3), remark 2). */
+enum {
+    FATHOM_A05_REGISTERS = 0x0106,      /**< 0x0106 to 0x0109, the default. */
+    FATHOM_A05_REGISTERS_ALIAS = 0x0010 /**< 0x0010 to 0x0013. */
+};
 
-/* Read by init only. Members that are 0 mean their defaults: a period of 100 ms a probe, and a time-out of 200 ms more
- * than that. */
+/** @brief Configuration. Read only during fathom_a05_modbus_init(). A member that is 0 takes its default. */
 typedef struct {
+    /**
+     * @brief Connection to the sensor; modbus_unit.h explains its members. `transport` is required.
+     *
+     * With n registers from the first to the last wanted probe, `period_us` is at least n * 100 ms, and a `timeout_us`
+     * of 0 selects 200 ms + n * 100 ms.
+     */
     fathom_modbus_config_t modbus;
-    uint32_t start_us; /* after power_on silence is no error for so long; 0: 1.5 s, as sister models need */
-    fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 6000 mm */
-    uint16_t registers;         /* 0: FATHOM_A05_REGISTERS; or FATHOM_A05_REGISTERS_ALIAS */
-    /* Bit probe - 1: wanted; 0: all four. One read measures the first to the last of them. */
+
+    /**
+     * @brief Start-up time after fathom_a05_modbus_power_on(), in microseconds: 1 to 2^31 - 1. 0 selects 1.5 s.
+     *
+     * Sister models need about 900 ms; the datasheet states no time.
+     */
+    uint32_t start_us;
+
+    /** @brief Distances that are believed, and the meaning of other values (dyp.h). 0 selects 1 to 6000 mm. */
+    fathom_dyp_window_t window;
+
+    /** @brief FATHOM_A05_REGISTERS or FATHOM_A05_REGISTERS_ALIAS. 0 selects the former. */
+    uint16_t registers;
+
+    /**
+     * @brief Wanted probes, bit (probe - 1): 1 to 15. 0 selects all four.
+     *
+     * One request measures all probes from the first to the last wanted one. Leave out probes that are not fitted:
+     * their value is not defined.
+     */
     uint8_t probes;
 } fathom_a05_modbus_config_t;
 
+/**
+ * @brief A driver, in the caller's memory. Call fathom_a05_modbus_init() before use.
+ *
+ * The caller may read `implausible`, `refused_probe` and `refused_raw` of `base.measurement` (rule 3). All other
+ * members are private.
+ */
 typedef struct {
-    fathom_dyp_modbus_t base;
-    uint16_t values[FATHOM_DYP_PROBES];
+    fathom_dyp_modbus_t base; /**< The part that A16 and A05 share. */
+    /* private */
+    uint16_t values[FATHOM_DYP_PROBES]; /* the registers of the newest response */
 } fathom_a05_modbus_t;
 
-/* FATHOM_OK, or FATHOM_ERR_ARGUMENT: no transport, address 255 or one beside address_zero,
- * other registers, a probe over 4, min_mm over max_mm, or a member outside its range; a frame buffer of the line that is
- * too small for the probes: 5 bytes and 2 for each register from the first to the last wanted probe.
- * Ranges: `modbus` as in fathom_modbus_config_t, `start_us` 0 to 2^31 - 1, `window` as in fathom_dyp_window_t. A refused
- * init zeroes *sensor; then each poll and command returns FATHOM_ERR_ARGUMENT. FATHOM_ERR_BUSY: a request of this driver is
- * still queued; nothing changed. Call the deinit function first. */
+/**
+ * @brief Initialises a driver. Nothing is sent before the first poll.
+ *
+ * @param sensor  The driver, in any memory. Must stay valid until fathom_a05_modbus_deinit().
+ * @param config  The config. Read only during the call; what it points to must stay valid as long as the driver.
+ * @retval FATHOM_OK            The driver can be used. Next, pass fathom_a05_modbus_sensor() to fathom_poll().
+ * @retval FATHOM_ERR_ARGUMENT  There is no transport or no clock, the address is 255, `address_zero` is true and
+ *                              `address` is not 0, `registers` or `probes` has no such value, `min_mm` is above
+ *                              `max_mm`, another member is outside its range, or the frame buffer of the line has less
+ *                              than 5 bytes and 2 for each register. The driver is zeroed: each poll and command
+ *                              returns FATHOM_ERR_ARGUMENT.
+ * @retval FATHOM_ERR_BUSY      A request of this driver is still queued. Nothing changed. Call
+ *                              fathom_a05_modbus_deinit() first.
+ */
 fathom_status_t fathom_a05_modbus_init(fathom_a05_modbus_t *sensor, const fathom_a05_modbus_config_t *config);
 
-/* Cancels what is under way; the memory is the caller's again. */
+/** @brief Cancels what is in progress. After this the memory is the caller's again. */
 void fathom_a05_modbus_deinit(fathom_a05_modbus_t *sensor);
 
-/* To be called when the sensor gets power: for start_us its silence is FATHOM_ERR_WARMING_UP. */
+/**
+ * @brief Reports to the driver that the sensor is powered now. Call it when the supply is switched on.
+ *
+ * The driver cancels what is in progress. For `start_us` after the call, three results become FATHOM_ERR_WARMING_UP: no
+ * response, a damaged response, and an exception. If the program does not know when the sensor is powered, do not call
+ * this function; the errors are then reported unchanged.
+ */
 void fathom_a05_modbus_power_on(fathom_a05_modbus_t *sensor);
 
-/*
- * The address, register 0x0200 (A05 3(3)), read and set. Each function returns at once: call it, with the
- * loop going on in between, until it is not FATHOM_PENDING; fathom_poll rests meanwhile. A response takes
- * command_timeout_us (1 s) at most, a change some 3 s, since a read first shows that no unit is at the new address.
+/**
+ * @brief Reads the address from register 0x0200 (A05 3(3)).
  *
- * address: FATHOM_OK with *address, or an error of fathom_poll.
- * set_address: 1..254. FATHOM_OK: the device was read at the new address, where the driver is from now on. Else,
- * with the driver at the old address:
- *   FATHOM_ERR_ARGUMENT     0 or 255
- *   FATHOM_ERR_IN_USE       a unit responds there already; nothing was changed
- *   FATHOM_ERR_UNCONFIRMED  it was sent, and the device responds at neither: it is at one of the two
- *   FATHOM_ERR_BUSY         another command is not finished
- *   others                  of fathom_poll: nothing was changed
- * is_written: has the last setting, or the one under way, been handed to the line?
- * Other drivers' requests that wait for the old address end with FATHOM_ERR_CANCELLED.
+ * The call returns at once: call it again until its result differs from FATHOM_PENDING. Until then fathom_poll()
+ * returns FATHOM_PENDING. The response takes at most `command_timeout_us`.
+ *
+ * @param sensor   The driver.
+ * @param address  Written with FATHOM_OK.
+ * @retval FATHOM_OK             `*address` is written.
+ * @retval FATHOM_PENDING        Call again.
+ * @retval FATHOM_ERR_MALFORMED  The register has more than 255, or as in rule 2.
+ * @retval FATHOM_ERR_BUSY       Another command or setting is not finished.
+ * @return Other values: rule 2.
  */
 fathom_status_t fathom_a05_modbus_get_address(fathom_a05_modbus_t *sensor, uint8_t *address);
+
+/**
+ * @brief Sets the address of the sensor: register 0x0200 (A05 3(3)).
+ *
+ * The call returns at once: call it again until its result differs from FATHOM_PENDING. Until then fathom_poll()
+ * returns FATHOM_PENDING. The driver reads the present address, reads at the new one, where no unit may respond, writes
+ * once, and reads at the new address. That takes about 3 s. With FATHOM_OK the driver uses the new address. Requests of
+ * other drivers that wait for the present address end with FATHOM_ERR_CANCELLED.
+ *
+ * @param sensor   The driver.
+ * @param address  The new address, 1 to 254.
+ * @retval FATHOM_OK               The sensor responded at the new address.
+ * @retval FATHOM_PENDING          Call again with the same argument.
+ * @retval FATHOM_ERR_ARGUMENT     The address is 0 or 255, or the driver is at address 0, where all units would obey.
+ * @retval FATHOM_ERR_IN_USE       A unit responds at the new address, or noise that may be a damaged response arrived.
+ *                                 Nothing was written.
+ * @retval FATHOM_ERR_WARMING_UP   The sensor was powered a short time ago, so silence does not prove that the address
+ *                                 is free. Nothing was written. Try again later.
+ * @retval FATHOM_ERR_UNCONFIRMED  The address was sent, and the sensor responds at neither address: it has one of the
+ *                                 two. The driver uses the former one.
+ * @retval FATHOM_ERR_BUSY         Another command or setting is not finished.
+ * @return Other values: rule 2. If fathom_a05_modbus_is_written() is false, nothing was written.
+ */
 fathom_status_t fathom_a05_modbus_set_address(fathom_a05_modbus_t *sensor, uint8_t address);
+
+/**
+ * @brief Returns true if the newest setting was passed to the line to be written.
+ *
+ * The value belongs to the setting in progress, or else to the newest one.
+ */
 bool fathom_a05_modbus_is_written(const fathom_a05_modbus_t *sensor);
 
-/* Sets the address to 0, which is in the datasheet's range and is the standard's broadcast: such a unit may not be
- * found again, since it need not respond there, and what is written to it would be written to all units. The driver
- * reads it there from then on, and sets nothing of it any more. Else as set_address. */
+/**
+ * @brief Sets the address to 0, which may make the sensor UNREACHABLE.
+ *
+ * 0 is in the range of the datasheet (A05 3(3)) and is also the broadcast address of Modbus. A unit need not respond
+ * there, and what is written there reaches all units. From FATHOM_OK on the driver reads the sensor at address 0 and
+ * sets nothing any more.
+ *
+ * @param sensor  The driver.
+ * @return As fathom_a05_modbus_set_address().
+ */
 fathom_status_t fathom_a05_modbus_set_address_0(fathom_a05_modbus_t *sensor);
 
-/* Gives up what is under way, also a measurement. An address that was being set may be set or not. */
+/**
+ * @brief Cancels the measurement, command or setting in progress. The driver can be used at once.
+ *
+ * An address that was being set may be set or not. The driver uses the former one.
+ */
 void fathom_a05_modbus_cancel(fathom_a05_modbus_t *sensor);
 
-/* The exception code that came with the last FATHOM_ERR_EXCEPTION, until the next request; 0: there was none. */
+/**
+ * @brief Returns the exception code of the newest response, valid after FATHOM_ERR_EXCEPTION until the next request. 0:
+ * no exception.
+ */
 static inline uint8_t fathom_a05_modbus_exception(const fathom_a05_modbus_t *sensor)
 {
     return fathom_modbus_unit_exception(&sensor->base.unit);
 }
 
-/* For fathom_modbus_unit_responses and fathom_modbus_unit_failures: how many requests succeeded, and how many not. */
+/** @brief Returns the unit, whose requests fathom_modbus_unit_responses() and fathom_modbus_unit_failures() count. */
 static inline const fathom_modbus_unit_t *fathom_a05_modbus_unit(const fathom_a05_modbus_t *sensor)
 {
     return &sensor->base.unit;
 }
 
-/* For fathom_poll. */
+/** @brief Returns the sensor for fathom_poll() and fathom_due_us(), by value. It points to the driver. */
 fathom_sensor_t fathom_a05_modbus_sensor(fathom_a05_modbus_t *sensor);
 
 #ifdef __cplusplus

@@ -11,15 +11,34 @@ extern "C" {
 
 /**
  * @file
- * @brief A05 with relay output (A05 4): its relay closes if any of its four probes has something nearer than the
- * threshold, which is 1 m with factory settings. Each state lasts about 1 s.
+ * @brief Reads the relay of an A05 with relay output (datasheet A05 4).
+ *
+ * The relay closes if at least one of the four probes has something nearer than the threshold, which is 1 m with
+ * factory settings. Each state lasts about 1 s (A05 4(1)). The driver samples one contact at each poll; it sends
+ * nothing, never waits and never allocates memory. include/COST.md has its flash, RAM and stack (`a05_relay`).
  *
  * A user teaches the threshold on the board, with a button and a flat target in front of probe 4 (A05 4(2)). A program
  * can neither read nor set it. a05_relay_rule.h is the same rule in software, for an A05 in any other mode.
  *
- * The samples are FATHOM_NEAR or FATHOM_FAR, without a distance or a probe. contact.h states when there is a sample,
- * what its `time_us` and `raw` are, and within which time a program that polls gets a sample or an error: 3 s + 2 * P
- * by default, where P is the longest time between two polls.
+ * @code
+ * static fathom_a05_relay_t door;
+ * const fathom_a05_relay_config_t config = {.pin = &pin, .clock = &clock};
+ * fathom_a05_relay_init(&door, &config);
+ * const fathom_sensor_t sensor = fathom_a05_relay_sensor(&door);
+ *
+ * fathom_sample_t state;                             // in the loop
+ * const fathom_status_t status = fathom_poll(&sensor, &state);
+ * if (status < 0 || (status == FATHOM_OK && state.kind == FATHOM_NEAR)) stop();
+ * @endcode
+ *
+ * The samples are FATHOM_NEAR or FATHOM_FAR, without a distance, and `probe` is the same for all. contact.h states when
+ * there is a sample, and what its `time_us` and `raw` are. If P is the longest time between two polls, a program gets a
+ * sample or an error at the latest after 3 s + 2 * P by default.
+ *
+ * **What `sequence` promises.** `sequence` increases by 1 with each sample and wraps. A contact that does not change is
+ * a sample again after each `period_us`, so a new number is not always a new state. `raw` and `kind` are the level at
+ * the poll that returns the sample. The module itself keeps a state for about 1 s, so the state may be 1 s older than
+ * the distance that caused it.
  *
  * | error of fathom_poll() | cause |
  * |---|---|
@@ -47,29 +66,33 @@ typedef enum {
         2 /**< The contact goes to the supply, and a resistor pulls the pin down. */
 } fathom_a05_relay_level_t;
 
-/** @brief The configuration. fathom_a05_relay_init() copies it; what it points to must stay valid as long as the
- * driver. A member that is 0 takes its default. */
+/** @brief Configuration. Read only during fathom_a05_relay_init(). A member that is 0 takes its default. */
 typedef struct {
-    const fathom_pin_t *pin;        /**< Reads the contact. Required, with `get`. */
-    const fathom_clock_t *clock;    /**< Required, with `now_us`. */
+    const fathom_pin_t *pin; /**< The contact. Required, with `get`. Must stay valid as long as the driver. */
+    const fathom_clock_t
+        *clock; /**< The clock. Required, with `now_us`. Must stay valid as long as the driver. */
     fathom_contact_timing_t timing; /**< The times; contact.h has their ranges. */
     uint8_t wiring;                 /**< fathom_a05_relay_wiring_t; 0 selects normally open. */
     uint8_t level; /**< fathom_a05_relay_level_t; 0 selects low while the contact conducts. */
 } fathom_a05_relay_config_t;
 
-/** @brief The driver. The caller owns the memory. */
+/** @brief A driver, in the caller's memory. Call fathom_a05_relay_init() before use. */
 typedef struct {
-    fathom_contact_t base;
+    fathom_contact_t base; /**< The contact. Its members may be read. */
 } fathom_a05_relay_t;
 
 /**
- * @brief Initialises the driver and reads the pin once. If it fails, the driver is zeroed.
- * @retval FATHOM_OK         The driver is ready.
- * @retval FATHOM_ERR_ARGUMENT  There is no clock, no pin that can be read, or a member outside its range.
+ * @brief Initialises a driver and reads the pin once.
+ *
+ * @param sensor  The driver, in any memory. Must stay valid as long as it is polled.
+ * @param config  The config. Read only during the call; what it points to must stay valid as long as the driver.
+ * @retval FATHOM_OK            The driver can be used. Next, pass fathom_a05_relay_sensor() to fathom_poll().
+ * @retval FATHOM_ERR_ARGUMENT  There is no clock or no pin that can be read, or a member is outside its range. The
+ *                              driver is zeroed.
  */
 fathom_status_t fathom_a05_relay_init(fathom_a05_relay_t *sensor, const fathom_a05_relay_config_t *config);
 
-/** @brief Returns the sensor for fathom_poll() and fathom_due_us(). There is no deinit: stop polling. */
+/** @brief Returns the sensor for fathom_poll() and fathom_due_us(), by value. There is no deinit: stop polling. */
 fathom_sensor_t fathom_a05_relay_sensor(fathom_a05_relay_t *sensor);
 
 #ifdef __cplusplus
