@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * Encodes and decodes the `55 AA` frames of the A05. Requests and responses have the same head and the same sum.
+ */
 #include "fathom/codec/dyp_55aa.h"
 
 #include "fathom/codec/dyp_stream.h"
 
-/* Offsets in a frame; without values it is OVERHEAD bytes long. */
+/* Offset of the command in a frame, and the length of a frame without values. */
 enum { COMMAND = 3, OVERHEAD = 5 };
 
 enum { START = 0x55, SECOND_START = 0xAA };

@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * Decodes the registers of the HPS-167S and encodes those of #15. The sections follow the numbers of the commands.
+ */
 #include "fathom/codec/hps167s_registers.h"
 
 #include <stddef.h>
 
 enum { FIRST_YEAR = 2000, ACK = 0xB0 };
 
-/* What a distance can mean (#5). Over range is 65.53 m: the note has two decimals, so from 65530 to all ones,
- * which is the abnormal packet. */
+/* Default limits of a distance (#5), in mm. Over range is "65.53 meters": with two decimals, that is from 65530 on. A
+ * distance of all ones belongs to the abnormal packet. */
 enum { MIN_MM = 80, MAX_MM = 30000 };
 #define MIN_OVER_RANGE 65530u
 #define FAILURE        65535u
@@ -103,7 +106,7 @@ bool fathom_hps167s_may_be_configuration(const uint16_t registers[4])
 
 /* ---- #4 ---- */
 
-/* (F - 32) * 50 / 9; an odd divisor or one that is 9 times something has no halves to round. */
+/* (F - 32) * 50 / 9, rounded to the nearest: half of the divisor is added away from 0. */
 int32_t fathom_hps167s_temperature_dc(int16_t fahrenheit, uint8_t steps_per_degree)
 {
     const int32_t dividend = ((int32_t)fahrenheit - (32 * (int32_t)steps_per_degree)) * 50;

@@ -1,15 +1,19 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * The protocol `55 AA` of a line, and the transport that turns Modbus reads into its commands. The write of register
+ * 0x0200 stands for the command that sets the address.
+ */
 #include "fathom/engine/dyp_client.h"
 
 #include "fathom/codec/dyp_55aa.h"
 #include "fathom/codec/dyp_stream.h"
 
-/* Offsets in a frame; behind an echo the response stands at NEXT. */
+/* Offsets in a frame. Behind the echo of a request, the response begins at NEXT. */
 enum { ADDRESS = 2, COMMAND = 3, NEXT = FATHOM_DYP_REQUEST_LENGTH };
 
 enum { ADDRESS_REGISTER = 0x0200 };
 
-/* The command for a read; 0: there is none. */
+/* Returns the command for a Modbus read with this head, or 0 if there is none. */
 static uint8_t command_of_read(const uint8_t *head)
 {
     const uint8_t count = head[5];
@@ -36,9 +40,11 @@ static uint8_t encode(const fathom_transaction_t *transaction, uint8_t *frame)
 }
 
 /*
- * With a probe in the right place a response begins with the same five bytes as its request (1H is the request's
- * sum). If 55 AA follows these, they are the echo and the response comes: as a distance it would be 43520 mm or more
- * for the second probe, which no A05 measures.
+ * Returns 0 if the sum is right, and 1 for an echo that looks like the beginning of a response.
+ *
+ * If the high byte of the first distance equals the sum of the request, the response begins with the five bytes of its
+ * request. If 55 AA follows these bytes, they are the echo, and the response follows. In a response, AA
+ * would be the high byte of the second distance, 43520 mm or more, which no A05 measures.
  */
 static uint16_t check(const uint8_t *frame, uint8_t length)
 {

@@ -1,9 +1,16 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * The driver of an A05 that sends without a request. It selects the values by the RX pin, and decides which probes of a
+ * frame are believed.
+ */
 #include "fathom/sensor/a05_auto.h"
 
 #include "../common.h"
 
-enum { ALL_PROBES = 0x0F, AGAIN_US = 1000 };
+enum { ALL_PROBES = 0x0F };
+
+/* Time until the next attempt to end the break, in microseconds. */
+enum { AGAIN_US = 1000 };
 
 fathom_status_t fathom_a05_auto_init(fathom_a05_auto_t *sensor, const fathom_a05_auto_config_t *config)
 {
@@ -20,7 +27,7 @@ fathom_status_t fathom_a05_auto_init(fathom_a05_auto_t *sensor, const fathom_a05
     base->measurement.first = 1;
     base->line = config->line;
     sensor->probes = (uint8_t)or_default(config->probes, ALL_PROBES);
-    sensor->was_odd = true; /* before the first frame there is none that was not */
+    sensor->was_odd = true; /* No good frame precedes the first one. */
     sensor->select = config->select;
     if (config->probes <= ALL_PROBES) status = fathom_dyp_auto_init(base, FATHOM_A05_MAX_MM);
     if (status != FATHOM_OK) {
@@ -30,7 +37,7 @@ fathom_status_t fathom_a05_auto_init(fathom_a05_auto_t *sensor, const fathom_a05
     return status;
 }
 
-/* ---- the RX pin in the first second ---- */
+/* ---- The RX pin in the first second after power-on ---- */
 
 fathom_status_t fathom_a05_auto_select(fathom_a05_auto_t *sensor, fathom_dyp_value_t value)
 {
@@ -59,7 +66,7 @@ static fathom_status_t end_selection(fathom_a05_auto_t *sensor)
     return status;
 }
 
-/* FATHOM_PENDING, or what is wrong. */
+/* Makes RX high when its time is over. Returns FATHOM_PENDING, or the error of the output. */
 static fathom_status_t release(fathom_a05_auto_t *sensor)
 {
     const uint32_t now_us = clock_us(sensor->base.line->parts->clock);
@@ -76,9 +83,9 @@ fathom_status_t fathom_a05_auto_deinit(fathom_a05_auto_t *sensor)
     return sensor->selecting ? end_selection(sensor) : FATHOM_OK;
 }
 
-/* ---- reading ---- */
+/* ---- Polling ---- */
 
-/* The first odd probe, as a bit: fitted, and its value is refused; 0: none. */
+/* Returns the bit of the first fitted probe whose value is refused (it is odd), or 0 if there is none. */
 static uint8_t odd_probe(const fathom_a05_auto_t *sensor)
 {
     const uint16_t *value = sensor->values;
@@ -91,7 +98,15 @@ static uint8_t odd_probe(const fathom_a05_auto_t *sensor)
     return 0;
 }
 
-/* The probes of which the newest frame is believed: all that are fitted, or the odd one alone. */
+/*
+ * Returns the probes whose values of the newest frame are returned: all fitted probes, or only the odd one, whose value
+ * is refused.
+ *
+ * If the place of a frame is not sure, an odd value can mean that the frame is out of step and its distances are
+ * permuted. After good frames, damage is more likely than an odd probe, and the sum of 8 bits does not see one in 256
+ * of the damaged frames. So a frame with an odd value is believed if its place is sure and the frame before had an odd
+ * value too.
+ */
 static uint8_t believed(fathom_a05_auto_t *sensor)
 {
     const uint8_t odd = odd_probe(sensor);

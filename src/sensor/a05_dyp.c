@@ -1,9 +1,13 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * The driver of an A05 on RS-485 with `55 AA` frames. It describes its requests as Modbus reads, which dyp_client.c
+ * turns into frames, and adds the command that sets the address.
+ */
 #include "fathom/sensor/a05_dyp.h"
 
 #include "fathom/codec/dyp_55aa.h"
 
-/* The response comes after 200..210 or 65..75 ms (A05 2(3)1). */
+/* Time-outs. The response for all probes arrives after 200 to 210 ms, for one probe after 65 to 75 ms (A05 2(3)1). */
 #define ALL_PROBES_TIMEOUT_US 500000uL
 #define ONE_PROBE_TIMEOUT_US  200000uL
 
@@ -11,7 +15,7 @@ enum { ALL_PROBES = 0x0F };
 
 static bool is_one(uint8_t probes) { return (probes & (probes - 1u)) == 0u; }
 
-/* The line accepts no request of this protocol unless its frame buffer has room for the longest response. */
+/* Returns true if the frame buffer of the line holds the longest response. The line refuses all requests without it. */
 static bool has_room(const fathom_modbus_t *transport)
 {
     return (transport == NULL) || (transport->frame_size == 0u) ||
@@ -57,8 +61,8 @@ bool fathom_a05_dyp_is_written(const fathom_a05_dyp_t *sensor) { return sensor->
 
 void fathom_a05_dyp_cancel(fathom_a05_dyp_t *sensor) { fathom_dyp_modbus_deinit(&sensor->base); }
 
-/* The unit's transport to the line while the address is being set, and at no other time: so nothing else can send the
- * command. */
+/* Submits a request of either kind. It is the transport of the unit only during fathom_a05_dyp_broadcast_address(), so
+ * nothing else can send the command that sets the address. */
 static fathom_status_t submit_either(void *ctx, fathom_modbus_request_t *request)
 {
     const uint8_t *const head = request->message.head;
@@ -67,7 +71,7 @@ static fathom_status_t submit_either(void *ctx, fathom_modbus_request_t *request
     return fathom_dyp_client_broadcast_address(ctx, request, head[5]);
 }
 
-/* Measures the first probe; the unit that responds is at the address of the request. */
+/* Measures the first probe. If a unit responds, it is at the address of the request. */
 static fathom_status_t read_address(const fathom_modbus_setting_t *setting, uint32_t *address)
 {
     fathom_dyp_modbus_t *const base = setting->driver;

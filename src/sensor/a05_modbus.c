@@ -1,7 +1,12 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * The driver of an A05 by Modbus. It computes the registers, the time-out and the period from the wanted probes;
+ * dyp_modbus.c does the rest.
+ */
 #include "fathom/sensor/a05_modbus.h"
 
-#define RESPONSE_TIMEOUT_US 200000uL /* beside the probes' own time */
+/* Default time-out without the time that the probes need, in microseconds. */
+#define RESPONSE_TIMEOUT_US 200000uL
 
 enum { ALL_PROBES = 0x0F };
 

@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * The driver of an A05 with relay output. It computes from the wiring which level is "near"; contact.c does the rest.
+ */
 #include "fathom/sensor/a05_relay.h"
 
 #include "../common.h"

@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * The rule of the A05's relay in software. It combines the samples of one measurement into one verdict, and debounce.c
+ * makes a level of the verdicts.
+ */
 #include "fathom/sensor/a05_relay_rule.h"
 
 #include "../common.h"
@@ -12,7 +16,7 @@ fathom_status_t fathom_a05_relay_rule_init(fathom_a05_relay_rule_t *rule,
     own.hold_us = or_default(config->hold_us, FATHOM_A05_RELAY_HOLD_US);
     own.unknown_us = config->unknown_us;
     own.threshold_mm = (uint16_t)or_default(config->threshold_mm, FATHOM_A05_RELAY_DEFAULT_MM);
-    own.near_count = 1; /* A05 4 knows no rows */
+    own.near_count = 1; /* A05 4 does not require several measurements in a row. */
     own.far_count = 1;
     own.equal = config->equal;
     clear(rule, sizeof *rule);
@@ -25,7 +29,7 @@ fathom_status_t fathom_a05_relay_rule_init(fathom_a05_relay_rule_t *rule,
     return FATHOM_OK;
 }
 
-/* The verdict of one probe; 0: it stands at the threshold; FATHOM_UNKNOWN: none. */
+/* Returns the verdict on one sample: FATHOM_NEAR, FATHOM_FAR, 0 at the threshold, or FATHOM_UNKNOWN for no verdict. */
 static uint8_t verdict_of(const fathom_a05_relay_rule_t *rule, const fathom_sample_t *sample)
 {
     if (sample->kind == FATHOM_TARGET) return fathom_debounce_compare(&rule->debounce, sample->distance_mm);
@@ -46,7 +50,7 @@ bool fathom_a05_relay_rule_add_sample(fathom_a05_relay_rule_t *rule, const fatho
     if ((rule->missing & bit) == 0u) return false;
     rule->missing &= (uint8_t)~bit;
     if (verdict != FATHOM_FAR) rule->verdict = verdict;
-    if (verdict == FATHOM_NEAR) rule->missing = 0; /* the others cannot change that */
+    if (verdict == FATHOM_NEAR) rule->missing = 0; /* The other probes cannot change this verdict. */
     return (rule->missing == 0u) &&
            fathom_debounce_add_verdict(&rule->debounce, rule->verdict, sample->time_us);
 }

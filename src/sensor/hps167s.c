@@ -1,9 +1,13 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * The driver of the HPS-167S, as far as it measures: init, poll, power-on and cancel. hps167s_info.c,
+ * hps167s_settings.c and hps167s_auto.c add the other commands, the settings and the listener.
+ */
 #include "fathom/sensor/hps167s.h"
 
 #include "hps167s_internal.h"
 
-/* The response to #5: address, function, byte count, 4 registers, CRC. */
+/* MEASUREMENT_LENGTH is that of the response to #5: address, function, byte count, 4 registers and CRC. */
 enum { MAX_SAME_RESPONSES = 8, MEASUREMENT_LENGTH = 5 + (2 * FATHOM_HPS167S_MEASUREMENT_COUNT) };
 
 #define MEASURE_TIMEOUT_US 500000uL

@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * The listener for an HPS-167S that sends without a request. It searches the received bytes for frames of one address
+ * and returns each as a sample.
+ */
 #include "fathom/sensor/hps167s_auto.h"
 
 #include "fathom/codec/crc16.h"
@@ -20,7 +24,8 @@ static bool has_head(const fathom_hps167s_auto_t *sensor)
     return (held_count <= SIZE) || (bytes[SIZE] == DATA_SIZE);
 }
 
-/* Drops the first held byte; the next may begin a frame. volatile: or compilers make it a call of memmove. */
+/* Drops the first held byte, because the next one may begin a frame. Without volatile, compilers replace the loop by a
+ * call of memmove(), which costs more flash. */
 static void drop_first(fathom_hps167s_auto_t *sensor)
 {
     volatile uint8_t *to = sensor->bytes;
@@ -34,7 +39,7 @@ static void drop_first(fathom_hps167s_auto_t *sensor)
     }
 }
 
-/* The held bytes are a frame. */
+/* Stores the held bytes as the newest frame, unless the driver of the same unit refuses it. */
 static void take(fathom_hps167s_auto_t *sensor, uint32_t time_us)
 {
     const uint8_t *at = &sensor->bytes[DATA];

@@ -1,17 +1,21 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * The commands #1 to #4 of the HPS-167S. Most of this file is about #2, whose response has the shape of a measurement.
+ */
 #include "fathom/sensor/hps167s_info.h"
 
 #include "hps167s_internal.h"
 
+/* Equal responses to #2 in succession that are needed by default, and among unsolicited frames. */
 enum { SAME_RESPONSES = 2, RESPONSES_AMONG_UNASKED = 3 };
 
 /* The number of reads after which #2 is given up; among unsolicited frames most reads meet one of these. */
 enum { MAX_RESPONSES = 8, MAX_RESPONSES_AMONG_UNASKED = 32 };
 
-/* For so long after an unasked frame another one is to be expected. */
+/* Time after an unsolicited frame in which another one is expected, in microseconds. */
 #define UNASKED_US 2000000uL
 
-/* No response to #2, whose first byte is 00 or FF: nothing has been measured. */
+/* Stands for "no measurement yet": it equals no response to #2, whose first byte is 00 or FF. */
 #define NOTHING 0x0101u
 
 static fathom_status_t read_command(fathom_hps167s_t *sensor, uint8_t command, uint8_t count)
@@ -36,7 +40,8 @@ static bool same_4(const uint16_t *a, const uint16_t *b)
     return i == 4u;
 }
 
-/* Not where it equals the last response to #2: that may have come late. */
+/* Returns true if the newest response to #5 is a measurement. One that equals the newest response to #2 may be a late
+ * response to #2. */
 static bool is_new(fathom_hps167s_t *sensor)
 {
     if (same_4(sensor->measurement, sensor->last_configuration)) return false;
@@ -44,8 +49,12 @@ static bool is_new(fathom_hps167s_t *sensor)
     return true;
 }
 
-/* From the first time on that #2 matters, all measurements are compared; what was measured before is still there.
- * Without a response to #2 yet that is all 0, a distance that is refused anyway. */
+/*
+ * Compares all measurements with #2 from now on. A program that never reads #2 does not link the comparison.
+ *
+ * The newest measurement is still in `measurement`. Without a response to #2, `last_configuration` is all 0. That
+ * equals no measurement, because a distance of 0 is refused anyway.
+ */
 static void be_wary(fathom_hps167s_t *sensor)
 {
     if (sensor->is_new != NULL) return;
@@ -66,7 +75,7 @@ bool fathom_hps167s_accept_unsolicited(fathom_hps167s_t *sensor, const uint16_t 
     be_wary(sensor);
     be_among_unasked(sensor, time_us);
     if (same_4(registers, sensor->last_configuration)) {
-        /* Was this frame taken for a response before? Not if a response is still to come. */
+        /* An earlier frame like this one may have been mistaken for a response, unless a response is still to come. */
         if (!sensor->is_outstanding) sensor->agreed = 0;
         sensor->is_outstanding = false;
         return false;
@@ -81,16 +90,17 @@ bool fathom_hps167s_accept_unsolicited(fathom_hps167s_t *sensor, const uint16_t 
 /*
  * The pause before the next read among unsolicited frames, up to 131 ms.
  *
- * An unsolicited frame that is mistaken for a response is no loss for the line. If the pauses had a rule, the turns of a
- * slow loop and the period of the device could keep step, so that each request would leave just before a frame. So the
- * pause follows from the low bits of the clock (40503 is 2^16 divided by the golden ratio, and odd).
+ * With equal pauses, the period of a slow loop and that of the sensor could keep step: then each request would leave
+ * just before an unsolicited frame, and this frame would be mistaken for the response. So the pause follows from the
+ * low bits of the clock. 40503 is 2^16 divided by the golden ratio, and odd.
  */
 static uint32_t drawn_pause_us(const fathom_modbus_unit_t *unit)
 {
     return ((unit->polled_us * 40503u) & UINT16_MAX) * 2u;
 }
 
-/* A frame of the right shape has come: do enough agree now? One that is a measurement counts neither way. */
+/* Evaluates the newest frame with the shape of #2. Returns true if enough equal responses have arrived in succession. A
+ * frame that is a measurement neither counts nor starts the count again. */
 static bool is_believed(fathom_hps167s_t *sensor)
 {
     fathom_modbus_unit_t *const unit = &sensor->unit;
@@ -123,8 +133,8 @@ enum { CONFIGURATION = FATHOM_MODBUS_COMMAND | FATHOM_HPS167S_CONFIGURATION };
 
 /*
  * The read is given up. If an unsolicited frame was mistaken for a response, the response may still arrive, and it has
- * the shape of a measurement. Until it can no longer arrive the read stays in progress, or the next request would meet
- * it. Measurements wait meanwhile, or the pause after each of them would put off the end.
+ * the shape of a measurement. The read stays in progress until the response can no longer arrive; else the next
+ * request would receive it. Measurements wait meanwhile, because the pause after each of them would delay the end.
  */
 static fathom_status_t give_up(fathom_hps167s_t *sensor)
 {
@@ -136,7 +146,8 @@ static fathom_status_t give_up(fathom_hps167s_t *sensor)
     return FATHOM_PENDING;
 }
 
-/* Invariant: while a read is in progress, the unit waits for its next request or has one. Else it was abandoned. */
+/* Invariant: while a read is in progress, the unit waits for its next request or has one. If not, its caller has
+ * abandoned it. */
 static bool is_in_progress(const fathom_modbus_unit_t *unit)
 {
     return (unit->waiting == CONFIGURATION) || ((unit->state != 0u) && (unit->current == CONFIGURATION));

@@ -1,14 +1,18 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * The settings #6 to #15 of the HPS-167S. Each fills in a fathom_modbus_setting_t, and modbus_setting.c reads, writes
+ * and reads back.
+ */
 #include "fathom/sensor/hps167s_settings.h"
 
 #include "hps167s_internal.h"
 
-/* Kinds of settings. TO_ALL stands in the id too: no command's address has that bit. */
+/* Kinds of settings. TO_ALL is also a bit of the id, because no address of a command has this bit. */
 enum { READ_BACK = 0, WRITE_ONLY = 1, TO_ALL = 0x40 };
 
-/* ---- where it is ---- */
+/* ---- Where the sensor is ---- */
 
-/* The line settings with another rate, in that half of `moved` which is not in use. */
+/* Returns the line settings with another rate, stored in that element of `moved` that is not in use. */
 static const fathom_line_settings_t *with_baud(fathom_hps167s_t *sensor, uint32_t baud)
 {
     const fathom_line_settings_t *const old = sensor->unit.line_settings;
@@ -19,7 +23,7 @@ static const fathom_line_settings_t *with_baud(fathom_hps167s_t *sensor, uint32_
     return there;
 }
 
-/* Changes over to the other place where the device may be. */
+/* Swaps the present line settings with the other ones that the sensor may have. */
 static void change_over(fathom_hps167s_t *sensor)
 {
     const fathom_line_settings_t *const old = sensor->unit.line_settings;
@@ -33,7 +37,11 @@ static void seek(fathom_hps167s_t *sensor, const fathom_line_settings_t *other)
     sensor->is_seeking = true;
 }
 
-/* Power-on, or a request has ended: does it show where the device is? No setting begins before that is known. */
+/*
+ * Follows the sensor to another rate. Called at power-on with FATHOM_PENDING, and with the result of each request.
+ * While the sensor is sought, a response shows that the present rate is right, and silence or damage selects the other
+ * rate. No setting begins before the rate is known.
+ */
 static void follow(fathom_hps167s_t *sensor, fathom_status_t status)
 {
     if ((status == FATHOM_PENDING) && (sensor->next_baud != 0u)) {
@@ -47,10 +55,10 @@ static void follow(fathom_hps167s_t *sensor, fathom_status_t status)
         sensor->is_seeking = false;
     else if ((status == FATHOM_ERR_NO_RESPONSE) || (status == FATHOM_ERR_CHECKSUM) ||
              (status == FATHOM_ERR_LINE_BUSY) || (status == FATHOM_ERR_OTHER_MASTER))
-        change_over(sensor); /* At the wrong rate a device that sends by itself is noise: a busy line. */
+        change_over(sensor); /* At the wrong rate, unsolicited frames are noise, which makes the line busy. */
 }
 
-/* ---- what is read back ---- */
+/* ---- Reading back ---- */
 
 static bool is_at_home(const fathom_modbus_unit_t *unit)
 {
@@ -58,8 +66,9 @@ static bool is_at_home(const fathom_modbus_unit_t *unit)
 }
 
 /*
- * #6 was sent and the device responds to #2: was it reset? It was if it reported success, and if it has moved; it was
- * not if it still has another address than 1. The first call comes before #6.
+ * Decides from a response to #2 whether #6 has reset the sensor. It has, if the sensor reported success or has moved.
+ * It has not, if the sensor still has another address than 1. In all other cases the result is unknown. The first call
+ * comes before #6 is sent.
  */
 static fathom_status_t look_for_reset(fathom_hps167s_t *sensor, uint32_t *value)
 {
@@ -77,7 +86,7 @@ static bool is_reset_refused(const fathom_hps167s_t *sensor)
            (sensor->reset_response != FATHOM_HPS167S_RESET_DONE);
 }
 
-/* The code of the rate; for a code without a rate of its own, that at which the response came. */
+/* Returns the reported baud code. If the code has no rate of its own, returns the code of the rate of the response. */
 static uint8_t baud_code(const fathom_hps167s_t *sensor)
 {
     const uint8_t code = fathom_hps167s_get_byte(sensor->values, FATHOM_HPS167S_BAUD_BYTE);
@@ -85,7 +94,7 @@ static uint8_t baud_code(const fathom_hps167s_t *sensor)
     return has_rate ? code : fathom_hps167s_baud_code(sensor->unit.line_settings->baud);
 }
 
-/* The present value of a setting, as it would be written. */
+/* Reads the present value of a setting, in the form in which it is written. It is `read` of fathom_modbus_setting_t. */
 static fathom_status_t look(const fathom_modbus_setting_t *setting, uint32_t *value)
 {
     fathom_hps167s_t *const sensor = setting->driver;
@@ -96,7 +105,7 @@ static fathom_status_t look(const fathom_modbus_setting_t *setting, uint32_t *va
         *value = sensor->unit.address;
         return fathom_hps167s_ask_once(sensor, FATHOM_HPS167S_VERSION, FATHOM_HPS167S_VERSION_COUNT);
     }
-    /* It reported that it was not reset, so it is where it was: nothing is to be read. */
+    /* The sensor reported that it was not reset, so it is where it was, and no read is needed. */
     if ((command == FATHOM_HPS167S_RESET) && is_reset_refused(sensor)) return FATHOM_ERR_EXCEPTION;
     status = fathom_hps167s_read_configuration(sensor);
     if (status != FATHOM_OK) return status;
@@ -124,11 +133,14 @@ static fathom_status_t look(const fathom_modbus_setting_t *setting, uint32_t *va
     return status;
 }
 
-/* ---- what is set ---- */
+/* ---- Settings at one place ---- */
 
 /*
- * FATHOM_OK: sensor->setting is this setting and may go on, or begin; the caller adds what is special to it. Where
- * the rate of the device is not known, or where nothing else would be read, that takes a read of #1 first.
+ * Begins a setting, or continues the one in progress. With FATHOM_OK, sensor->setting describes the setting; the caller
+ * adds what is special to it and calls go_on().
+ *
+ * #1 is read first if the rate of the sensor is not known, and for a setting without read-back. That read shows that
+ * the sensor is there, and whether the adapter echoes.
  */
 static fathom_status_t begin(fathom_hps167s_t *sensor, uint8_t command, uint32_t value, uint8_t kind)
 {
@@ -137,21 +149,21 @@ static fathom_status_t begin(fathom_hps167s_t *sensor, uint8_t command, uint32_t
     const uint8_t id = (uint8_t)(fathom_hps167s_id(command) | (kind & TO_ALL));
     fathom_modbus_unit_poll(unit);
     if (unit->setting != 0u) {
-        /* to load the user's settings is not to load the factory's */
+        /* #13 loads the user's settings or those of the factory: the same id with another value is another setting. */
         if ((unit->setting != id) || (setting->value != value)) return FATHOM_ERR_BUSY;
     } else {
-        unit->is_written = false; /* nor will it be before this read has ended */
+        unit->is_written = false; /* Nothing is written before the following read has ended. */
         if (!unit->is_blind && (sensor->is_seeking || (kind == WRITE_ONLY))) {
             const fathom_status_t status =
                 fathom_hps167s_ask_once(sensor, FATHOM_HPS167S_VERSION, FATHOM_HPS167S_VERSION_COUNT);
             if (status != FATHOM_OK) return status;
         }
-        /* It has waited to be asked, and a measurement has told it: what waits on would keep all else out. */
+        /* #1 may still wait although a measurement has shown the rate. It would keep all other requests out. */
         if (unit->waiting == fathom_hps167s_id(FATHOM_HPS167S_VERSION)) unit->waiting = 0;
         setting->line_settings = NULL;
         setting->address = 0;
     }
-    /* Each time anew, so that what is sent follows from this call alone. */
+    /* Filled in at each call, so that the request follows from this call alone. */
     setting->read = (kind == WRITE_ONLY) ? NULL : look;
     setting->driver = sensor;
     setting->value = value;
@@ -199,7 +211,7 @@ fathom_status_t fathom_hps167s_set_termination(fathom_hps167s_t *sensor, bool te
 
 fathom_status_t fathom_hps167s_set_distance_offset_mm(fathom_hps167s_t *sensor, int16_t offset_mm)
 {
-    /* it may add to the offset that is there, so that none is ever written twice */
+    /* The offset may add to the present one, and a blind setting may be a repetition. So none is written blind. */
     if (sensor->unit.is_blind) return FATHOM_ERR_ARGUMENT;
     return set(sensor, FATHOM_HPS167S_OFFSET, (uint16_t)offset_mm, WRITE_ONLY);
 }
@@ -232,7 +244,7 @@ fathom_status_t fathom_hps167s_set_reconnect_time_ms(fathom_hps167s_t *sensor, u
     return go_on(sensor);
 }
 
-/* ---- to all units ---- */
+/* ---- Broadcasts ---- */
 
 static fathom_status_t set_all(fathom_hps167s_t *sensor, uint8_t command, bool is_on)
 {
@@ -245,7 +257,7 @@ static fathom_status_t set_all(fathom_hps167s_t *sensor, uint8_t command, bool i
     status = go_on(sensor);
     unit->address = home;
     unit->known_address = home;
-    unit->last_written = 0; /* sent is not acknowledged */
+    unit->last_written = 0; /* No unit acknowledges a broadcast. */
     return status;
 }
 
@@ -259,7 +271,7 @@ fathom_status_t fathom_hps167s_broadcast_termination(fathom_hps167s_t *sensor, b
     return set_all(sensor, FATHOM_HPS167S_TERMINATION, termination);
 }
 
-/* ---- what moves the device ---- */
+/* ---- Settings that move the sensor ---- */
 
 fathom_status_t fathom_hps167s_set_address(fathom_hps167s_t *sensor, uint8_t address)
 {
@@ -270,8 +282,8 @@ fathom_status_t fathom_hps167s_set_address(fathom_hps167s_t *sensor, uint8_t add
     return go_on(sensor);
 }
 
-/* The setting also moves the device to this rate, where it has another one; the address is for the read there first.
- * A second call while that is under way changes nothing. */
+/* If the sensor has another rate, makes the setting move it to `baud`. `address` is the one to read at the new rate. A
+ * second call while the setting is in progress changes nothing. */
 static void move_to_baud(fathom_hps167s_t *sensor, uint32_t baud, uint8_t address)
 {
     const fathom_line_settings_t *const is = sensor->unit.line_settings;
@@ -280,7 +292,7 @@ static void move_to_baud(fathom_hps167s_t *sensor, uint32_t baud, uint8_t addres
     sensor->setting.address = address;
 }
 
-/* The device was set to this rate: is it there, or will it be? */
+/* The sensor reads back with this rate. If it responds at another one, it uses the rate from its next power-on. */
 static void expect_baud(fathom_hps167s_t *sensor, uint32_t baud)
 {
     const fathom_line_settings_t *const is = sensor->unit.line_settings;
