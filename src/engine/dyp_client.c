@@ -43,8 +43,8 @@ static uint8_t encode(const fathom_transaction_t *transaction, uint8_t *frame)
  * Returns 0 if the sum is right, and 1 for an echo that looks like the beginning of a response.
  *
  * If the high byte of the first distance equals the sum of the request, the response begins with the five bytes of its
- * request. If 55 AA follows these bytes, they are the echo, and the response follows. In a response, AA
- * would be the high byte of the second distance, 43520 mm or more, which no A05 measures.
+ * request. If 55 AA follows these bytes, they are the echo, and the response follows. In a response, AA would
+ * be the high byte of the second distance, 43520 mm or more, which no A05 measures.
  */
 static uint16_t check(const uint8_t *frame, uint8_t length)
 {

@@ -30,7 +30,8 @@ extern "C" {
  * const fathom_sensor_t sensor = fathom_a05_auto_sensor(&bumper);
  *
  * fathom_sample_t near;                              // in the loop: each probe is one sample
- * while (fathom_poll(&sensor, &near) == FATHOM_OK) use(near.distance_mm);
+ * while (fathom_poll(&sensor, &near) == FATHOM_OK)
+ *     if (near.kind == FATHOM_TARGET) use(near.distance_mm);
  * @endcode
  *
  * 1. **Values.** The module sends processed or real-time values. The level of its RX pin in the first second after
@@ -43,11 +44,11 @@ extern "C" {
  *    the line has been silent for `gap_us` behind it, or when the next frame begins.
  *
  * 3. **What `sequence` promises.** The samples of one frame have one `sequence` and one `time_us`, the clock at the
- *    last byte of the frame. `sequence` increases by 1 with each frame that is returned, and wraps after 65535. A new
- *    number is a new frame, not always a new measurement. The datasheet prints no period of the frames. A frame that is
- *    sent sooner than the module measures has the previous values: a processed value follows a change within 300 to
- *    1500 ms, a real-time value within about 300 ms. The newest frame wins; older ones are counted in
- *    `base.stream.counters`.
+ *    last byte of the frame. `sequence` increases by 1 with each frame that the driver evaluates, also with a refused
+ *    one, and wraps after 65535. A new number is a new frame, not always a new measurement. The datasheet prints no
+ *    period of the frames. A frame that is sent sooner than the module measures has the previous values: a processed
+ *    value follows a change within 300 to 1500 ms, a real-time value within about 300 ms. The newest frame wins; older
+ *    ones are counted in `base.stream.counters`.
  *
  * 4. **Errors of fathom_poll().** The driver continues after each.
  *

@@ -36,7 +36,8 @@ extern "C" {
  * const fathom_sensor_t sensor = fathom_a05_dyp_sensor(&bumper);
  *
  * fathom_sample_t near;                              // in the loop: each probe is one sample
- * while (fathom_poll(&sensor, &near) == FATHOM_OK) use(near.distance_mm);
+ * while (fathom_poll(&sensor, &near) == FATHOM_OK)
+ *     if (near.kind == FATHOM_TARGET) use(near.distance_mm);
  * @endcode
  *
  * 1. **Samples, errors, refused values and bound** are those of a05_modbus.h (rules 1 to 3 and 5), with two
@@ -45,9 +46,9 @@ extern "C" {
  *
  * 2. **What `sequence` promises.** All samples of one response have one `sequence` and one `time_us`. `sequence`
  *    increases by 1 with each response and wraps after 65535. Each command starts a measurement (A05 2(3)), which takes
- *    200 to 210 ms for all probes and 65 to 75 ms for one. So a new number is a new measurement. A module that were
- *    asked sooner could send the previous value; the driver keeps the least period of the datasheet: 250 ms for all
- *    probes, 100 ms for one.
+ *    200 to 210 ms for all probes and 65 to 75 ms for one. So a new number is a new measurement. If commands
+ *    came sooner, a module could send the previous value. So the driver keeps the least period of the datasheet: 250 ms
+ *    for all probes, 100 ms for one.
  */
 
 /** @brief Least time from one command for all probes to the next, in microseconds (A05 2(3)1). */

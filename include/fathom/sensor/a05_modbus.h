@@ -28,7 +28,8 @@ extern "C" {
  * const fathom_sensor_t sensor = fathom_a05_modbus_sensor(&bumper);
  *
  * fathom_sample_t near;                              // in the loop: probes 1 and 2 are one sample each
- * while (fathom_poll(&sensor, &near) == FATHOM_OK) use(near.distance_mm);
+ * while (fathom_poll(&sensor, &near) == FATHOM_OK)
+ *     if (near.kind == FATHOM_TARGET) use(near.distance_mm);
  * @endcode
  *
  * 1. **Samples.** `kind` is FATHOM_TARGET if the value is inside the window (1 to 6000 mm by default). The window of
@@ -58,8 +59,9 @@ extern "C" {
  *
  * 4. **What `sequence` promises.** All samples of one response have one `sequence` and one `time_us`. `sequence`
  *    increases by 1 with each response and wraps after 65535. Each request starts a measurement of the probes that it
- *    reads, one after the other, about 100 ms each (A05 3(3)). So a new number is a new measurement. If a module were
- *    asked sooner, it could send the previous value; the driver waits 100 ms for each probe between two requests.
+ *    reads, one after the other, about 100 ms each (A05 3(3)). So a new number is a new measurement. If requests
+ *    came sooner, a module could send the previous value. So the driver waits 100 ms for each probe between two
+ *    requests.
  *
  * 5. **Bound.** fathom_poll() returns a sample or an error at the latest after
  *

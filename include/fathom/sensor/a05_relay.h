@@ -14,8 +14,8 @@ extern "C" {
  * @brief Reads the relay of an A05 with relay output (datasheet A05 4).
  *
  * The relay closes if at least one of the four probes has something nearer than the threshold, which is 1 m with
- * factory settings. Each state lasts about 1 s (A05 4(1)). The driver samples one contact at each poll; it sends
- * nothing, never waits and never allocates memory. include/COST.md has its flash, RAM and stack (`a05_relay`).
+ * factory settings. Each state lasts at least about 1 s (A05 4(1)). The driver samples one contact at each poll; it
+ * sends nothing, never waits and never allocates memory. include/COST.md has its flash, RAM and stack (`a05_relay`).
  *
  * A user teaches the threshold on the board, with a button and a flat target in front of probe 4 (A05 4(2)). A program
  * can neither read nor set it. a05_relay_rule.h is the same rule in software, for an A05 in any other mode.
@@ -31,7 +31,7 @@ extern "C" {
  * if (status < 0 || (status == FATHOM_OK && state.kind == FATHOM_NEAR)) stop();
  * @endcode
  *
- * The samples are FATHOM_NEAR or FATHOM_FAR, without a distance, and `probe` is the same for all. contact.h states when
+ * The samples are FATHOM_NEAR or FATHOM_FAR, without a distance, and `probe` is always 1. contact.h states when
  * there is a sample, and what its `time_us` and `raw` are. If P is the longest time between two polls, a program gets a
  * sample or an error at the latest after 3 s + 2 * P by default.
  *
@@ -42,8 +42,8 @@ extern "C" {
  *
  * | error of fathom_poll() | cause |
  * |---|---|
- * | FATHOM_ERR_STALE | the contact was not equal for `settle_us` within `stale_us`: noise, a worn or a loose contact |
- * | FATHOM_ERR_ARGUMENT | the initialisation failed or never ran, and the memory is zeroed |
+ * | FATHOM_ERR_STALE | No level lasted for `settle_us` within `stale_us`: noise, a worn or a loose contact. |
+ * | FATHOM_ERR_ARGUMENT | The driver is not initialised, and its memory is zeroed. |
  *
  * A contact cannot report "no response":
  *
@@ -61,19 +61,28 @@ typedef enum {
 
 /** @brief The level of the pin while the contact conducts. */
 typedef enum {
-    FATHOM_A05_RELAY_CONDUCTS_LOW = 1, /**< The contact goes to ground, and a resistor pulls the pin up. */
-    FATHOM_A05_RELAY_CONDUCTS_HIGH =
-        2 /**< The contact goes to the supply, and a resistor pulls the pin down. */
+    /** The contact goes to ground, and a resistor pulls the pin up. */
+    FATHOM_A05_RELAY_CONDUCTS_LOW = 1,
+    /** The contact goes to the supply, and a resistor pulls the pin down. */
+    FATHOM_A05_RELAY_CONDUCTS_HIGH = 2
 } fathom_a05_relay_level_t;
 
 /** @brief Configuration. Read only during fathom_a05_relay_init(). A member that is 0 takes its default. */
 typedef struct {
-    const fathom_pin_t *pin; /**< The contact. Required, with `get`. Must stay valid as long as the driver. */
-    const fathom_clock_t
-        *clock; /**< The clock. Required, with `now_us`. Must stay valid as long as the driver. */
-    fathom_contact_timing_t timing; /**< The times; contact.h has their ranges. */
-    uint8_t wiring;                 /**< fathom_a05_relay_wiring_t; 0 selects normally open. */
-    uint8_t level; /**< fathom_a05_relay_level_t; 0 selects low while the contact conducts. */
+    /** @brief The pin of the contact. Required, with `get`. Must stay valid as long as the driver. */
+    const fathom_pin_t *pin;
+
+    /** @brief The clock. Required, with `now_us`. Must stay valid as long as the driver. */
+    const fathom_clock_t *clock;
+
+    /** @brief The times. contact.h has their ranges and defaults. */
+    fathom_contact_timing_t timing;
+
+    /** @brief The wired contact: a fathom_a05_relay_wiring_t. 0 selects normally open. */
+    uint8_t wiring;
+
+    /** @brief The level while the contact conducts: a fathom_a05_relay_level_t. 0 selects low. */
+    uint8_t level;
 } fathom_a05_relay_config_t;
 
 /** @brief A driver, in the caller's memory. Call fathom_a05_relay_init() before use. */

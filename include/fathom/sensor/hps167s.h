@@ -78,8 +78,9 @@ extern "C" {
  *
  * 4. **What `sequence` promises.** `sequence` increases by 1 with each sample and wraps after 65535. A new number means
  *    a new response, not always a new measurement. The sensor measures 6 to 54 times a second (table 1). The datasheet
- *    does not state what it sends if it is asked sooner than it measures: then the sample can be the previous
- *    measurement again. If each sample must be a new measurement, set `period_us` to 167000 (6 a second) or more.
+ *    does not state what it sends if a request arrives before a new measurement is finished: the sample can then be the
+ *    previous measurement again. If each sample must be a new measurement, set `period_us` to 167000 (6 a second) or
+ *    more.
  *
  * 5. **Bound.** fathom_poll() returns a sample or an error at the latest after
  *
@@ -124,13 +125,13 @@ typedef struct {
      */
     uint8_t same_responses;
 
-    /** @brief Steps of the temperature (#4) in a degree Fahrenheit: 10 if the device sends tenths. 0 selects 1. */
+    /** @brief Steps of the temperature (#4) in a degree Fahrenheit: 10 if the sensor sends tenths. 0 selects 1. */
     uint8_t steps_per_degree;
 
     /**
      * @brief True if the low word of the reconnect time (#2, #15) comes first.
      *
-     * The datasheet leaves this open. False: the high word comes first, as in all integers of this device.
+     * The datasheet leaves this open. False: the high word comes first, as in all integers of this sensor.
      */
     bool low_word_first;
 } fathom_hps167s_config_t;

@@ -25,7 +25,8 @@ extern "C" {
  * const fathom_hps167s_auto_config_t config = {.line = &line, .address = 1};
  * fathom_hps167s_auto_init(&gate, &config);
  * const fathom_sensor_t sensor = fathom_hps167s_auto_sensor(&gate);
- * if (fathom_poll(&sensor, &sample) == FATHOM_OK) use(&sample);       // in the loop
+ * fathom_sample_t sample;                             // in the loop:
+ * if (fathom_poll(&sensor, &sample) == FATHOM_OK && sample.kind == FATHOM_TARGET) use(sample.distance_mm);
  * @endcode
  *
  * The driver is the listener of a line. It searches the received bytes for frames of the shape of the response to #5

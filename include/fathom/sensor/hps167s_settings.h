@@ -113,8 +113,8 @@ fathom_status_t fathom_hps167s_set_warm_up_s(fathom_hps167s_t *sensor, uint8_t w
  * @brief Sets the address of the sensor (#8). The sensor uses it at once.
  *
  * The driver reads #1 at the present address, then at the new one, where no unit may respond: that costs one time-out,
- * `command_timeout_us`. With FATHOM_OK the driver uses the new address. Requests of other drivers that wait for the
- * present address end with FATHOM_ERR_CANCELLED.
+ * `command_timeout_us`, for each attempt. With FATHOM_OK the driver uses the new address. Requests of other drivers
+ * that wait for the present address end with FATHOM_ERR_CANCELLED.
  *
  * @param sensor   The driver.
  * @param address  The new address, 1 to 32.
@@ -135,8 +135,8 @@ fathom_status_t fathom_hps167s_set_address(fathom_hps167s_t *sensor, uint8_t add
  * @brief Sets the baud rate of the sensor (#9). Parity and stop bits stay.
  *
  * The datasheet does not state when the sensor uses the new rate. So the driver reads at the new rate before the write,
- * which costs time-outs. After the write it reads at the new rate first, then at the former one. The driver's own line
- * settings follow; the struct that the config named is not changed.
+ * which costs a time-out of `command_timeout_us` for each attempt. After the write it reads at the new rate first, then
+ * at the former one. The driver's own line settings follow; the struct that the config named is not changed.
  *
  * @param sensor  The driver. Its config has named `line_settings`.
  * @param baud    19200, 57600, 115200 or 230400 bits per second.
@@ -183,8 +183,8 @@ fathom_status_t fathom_hps167s_set_termination(fathom_hps167s_t *sensor, bool te
  * @brief Sends #10 to ALL units of the line, whatever their addresses are (2.2.1).
  *
  * It also reaches several new units that share address 1. No unit responds to a broadcast. The request is sent once,
- * and nothing is read. The call takes `command_timeout_us`, which is left to the units. Only this function and
- * fathom_hps167s_broadcast_termination() send anything to address 0.
+ * and nothing is read. The transaction takes `command_timeout_us`, the time that the units have before the next
+ * request. Only this function and fathom_hps167s_broadcast_termination() send anything to address 0.
  *
  * @param sensor    Any driver of the line. It stays at its address.
  * @param measures  True to measure after power-on.
