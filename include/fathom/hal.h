@@ -10,134 +10,248 @@
 extern "C" {
 #endif
 
-/*
- * What Fathom needs from a machine: one small struct of functions a peripheral. A port fills them in once
- * and they may be const. Rules for all of them:
- *  - every function returns at once; none waits, none calls back into Fathom;
- *  - the core calls them from one context (one task or the main loop). Interrupts belong to the port,
- *    which hands over what they gathered when the core calls it;
- *  - `ctx` is the port's and is passed back untouched.
+/**
+ * @file
+ * @brief What Fathom needs from a machine: one small struct of functions for each peripheral.
+ *
+ * A port fills in the structs, which may be const. Fathom never touches a register, an interrupt or an operating system
+ * itself. This header declares types and two inline functions; it costs only what a program calls. port/README.md shows
+ * how to write a port, and fathom_conformance.h tests one.
+ *
+ * @code
+ * static uint32_t now_us(void *ctx) { (void)ctx; return TIMER->COUNT; }       // a 32-bit timer at 1 MHz
+ * static const fathom_clock_t clock = {.now_us = now_us};
+ * @endcode
+ *
+ * Rules for all functions of a port:
+ *
+ * 1. **No waiting.** Each function returns at once. No function calls Fathom.
+ *
+ * 2. **One context.** Fathom calls the functions from one context: one task or the main loop. Interrupts belong to the
+ *    port. The port stores what an interrupt received until Fathom calls it.
+ *
+ * 3. **Context.** `ctx` belongs to the port. Fathom passes `ctx` to each function of its struct and never uses it.
+ *
+ * 4. **Time.** Times wrap. Compare two times only by fathom_elapsed_us().
  */
 
-/* The settings of a line. Fathom's sensors all use 8 data bits. */
-typedef enum { FATHOM_PARITY_NONE = 0, FATHOM_PARITY_EVEN = 1, FATHOM_PARITY_ODD = 2 } fathom_parity_t;
+/** @brief The parity of a line. The sensors of Fathom all have 8 data bits. */
+typedef enum {
+    FATHOM_PARITY_NONE = 0, /**< No parity bit. A16 and A05. */
+    FATHOM_PARITY_EVEN = 1, /**< Even parity. HPS-167S with factory settings. */
+    FATHOM_PARITY_ODD = 2   /**< Odd parity. */
+} fathom_parity_t;
 
+/** @brief The settings of a line. */
 typedef struct {
-    uint32_t baud;     /* bits per second */
-    uint8_t parity;    /* fathom_parity_t */
-    uint8_t stop_bits; /* 1 or 2 */
+    /** @brief Baud rate in bits per second. */
+    uint32_t baud;
+
+    /** @brief Parity: a fathom_parity_t. */
+    uint8_t parity;
+
+    /** @brief Number of stop bits: 1 or 2. */
+    uint8_t stop_bits;
 } fathom_line_settings_t;
 
-/* What a port may know about the bytes that one read returned. All optional: no flag, no claim. */
+/** @brief Flags of fathom_rx_t: what a port knows about the bytes of one read. A flag that is not set claims nothing. */
 enum {
-    FATHOM_RX_TIMED = 1,   /* last_us is set */
-    FATHOM_RX_SILENCE = 2, /* the line was idle before the first byte (idle-line interrupt, DMA time-out) */
-    FATHOM_RX_PARITY = 4,  /* wrong parity in these bytes */
-    FATHOM_RX_FRAMING = 8, /* no stop bit where one was due in these bytes: a break, noise, another rate */
-    FATHOM_RX_OVERRUN = 16 /* bytes were lost just before these */
+    FATHOM_RX_TIMED = 1, /**< `last_us` is set. */
+    FATHOM_RX_SILENCE =
+        2,                /**< The line was idle before the first byte (idle-line interrupt, DMA time-out). */
+    FATHOM_RX_PARITY = 4, /**< At least one byte has a wrong parity. */
+    FATHOM_RX_FRAMING = 8, /**< At least one byte has no stop bit: a break, noise, or another baud rate. */
+    FATHOM_RX_OVERRUN = 16 /**< Bytes were lost directly before the first byte. */
 };
 
+/** @brief What a port reports about the bytes of one read. Fathom clears the struct before each read. */
 typedef struct {
-    /* Clock at the end of the last byte, with FATHOM_RX_TIMED. The core reads the clock after each read that brought
-     * bytes; a stamp that is later than that (another timer, rounded up), or 2^31 us or more ago, counts as "now". */
+    /**
+     * @brief Clock at the end of the last byte, in microseconds. Used with FATHOM_RX_TIMED only.
+     *
+     * Fathom reads the clock after each read that returned bytes. If `last_us` is later than that (another timer, rounded
+     * up), or 2^31 us or more before that, it counts as "now".
+     */
     uint32_t last_us;
-    uint8_t flags; /* FATHOM_RX_... */
+
+    /** @brief Flags: FATHOM_RX_... */
+    uint8_t flags;
 } fathom_rx_t;
 
-/*
- * A serial line.
+/**
+ * @brief A serial line. On RS485 the port also drives the transceiver.
  *
- * read   Copies up to `capacity` received bytes and returns how many; 0 when none is waiting; < 0 when the
- *        port is broken (unplugged, closed). `rx` comes zeroed. One call never spans a silence or an error
- *        that the port knows of: what lies beyond it is for the next call.
- * write  Takes all `length` bytes (1..255) and returns `length`, or takes none and returns 0 because it is
- *        busy; < 0 when the port is broken. Bytes that were taken leave the pin without a gap: an HPS-167S
- *        drops a frame with a silence of 1.5 characters in it (HPS-167S 2.2.3). The port may not keep the
- *        pointer. On RS-485 the port drives the transceiver.
- * sent   True when the last stop bit of all that was written has left the pin. May turn true late (a USB
- *        adapter cannot know better): bytes that were read before it counts still count as a response.
- * leaves_in_us  In how many microseconds from now, at most, the last stop bit of all that was written will have left
- *        the pin: by the bytes that are left, their settings and the clock; less than 2^31. fathom_line_due_us is that
- *        while a request leaves or is not taken, so that a program that sleeps wakes once for it; `sent` is called
- *        then. 0: they have left, or should have; as long as `sent` is false all the same, the line looks each
- *        millisecond. NULL where the port does not know: the same. Too short costs looks; too long puts off what
- *        follows the request, the end of a broadcast and the beginning of a time-out; neither loses a byte. It may be
- *        called at any time and changes nothing.
- * set_line  Changes the line settings; what was received is kept. 1: they are in force (at once, if they
- *        were before; it is called before each request that names settings). 0: bytes are still leaving, call
- *        again. < 0: this port cannot reach them within 2.5 %, and nothing changed. NULL where they are fixed.
- * set_break  Holds TX low (true), or lets it go high again: the trigger and the mode select of modules whose RX
- *        pin is our TX. 1: done. 0: bytes are still leaving, call again; after a second of that the port counts as
- *        broken. < 0: the port is broken. NULL where it cannot.
+ * `read`, `write` and `sent` are required. Each other function may be NULL.
  */
 typedef struct {
+    /**
+     * @brief Copies received bytes.
+     *
+     * One call never spans a silence or an error that the port knows of: the bytes beyond it belong to the next call.
+     *
+     * @param bytes     The memory for the bytes. Valid only during the call.
+     * @param capacity  Size of `bytes` in bytes, at least 1.
+     * @param rx        What the port knows about the bytes. All members are 0 before the call.
+     * @return The number of bytes, at most `capacity`. 0 if no byte waits. Negative if the port is broken (unplugged,
+     *         closed).
+     */
     int (*read)(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx);
+
+    /**
+     * @brief Sends all bytes or none.
+     *
+     * The bytes leave the pin without a gap, because an HPS-167S discards a frame with a silence of 1.5 characters in it
+     * (HPS-167S 2.2.3).
+     *
+     * @param bytes   The bytes. Valid only during the call, so the port copies them.
+     * @param length  Number of bytes, 1 to 255.
+     * @return `length` if the port accepted all bytes. 0 if the port is busy and accepted none. Negative if the port is
+     *         broken.
+     */
     int (*write)(void *ctx, const uint8_t *bytes, size_t length);
+
+    /**
+     * @brief Returns true if the last stop bit of all accepted bytes has left the pin.
+     *
+     * The result may become true late, because a USB adapter does not know the exact time. Bytes that are read before
+     * that still count as a response.
+     */
     bool (*sent)(void *ctx);
+
+    /**
+     * @brief Changes the line settings and keeps the received bytes. NULL: the settings are fixed.
+     *
+     * Fathom calls this function before each request that names line settings, also if they are in force already.
+     *
+     * @param settings  The new settings. Valid only during the call.
+     * @retval 1  The settings are in force.
+     * @retval 0  Bytes are still leaving. Fathom calls again.
+     * @return Negative: the port cannot make these settings within 2.5 %. Nothing has changed.
+     */
     int (*set_line)(void *ctx, const fathom_line_settings_t *settings);
+
+    /**
+     * @brief Holds TX low, or releases it. NULL: the port cannot do this.
+     *
+     * This is the trigger and the mode select of modules whose RX pin is our TX.
+     *
+     * @param on  True to hold TX low. False to release it, so that TX becomes high.
+     * @retval 1  TX has this state.
+     * @retval 0  Bytes are still leaving. Fathom calls again. After 1 s of that, the port counts as broken.
+     * @return Negative: the port is broken.
+     */
     int (*set_break)(void *ctx, bool on);
+
+    /**
+     * @brief Returns the longest time in microseconds until the last stop bit of all accepted bytes has left the pin.
+     *
+     * NULL: the port does not know. The port calculates the time from the remaining bytes, their settings and the clock.
+     * The time is less than 2^31. 0 means that the bytes have left, or should have left.
+     *
+     * fathom_line_due_us() returns this time while a request leaves or the port is busy. A program that sleeps then wakes
+     * once for it, and the line calls `sent`. If the function is NULL, or if it returns 0 while `sent` is still false,
+     * the line polls `sent` every millisecond. A time that is too short costs polls. A time that is too long delays what
+     * follows the request: the end of a broadcast, and the beginning of a time-out. Neither loses a byte. Fathom may call
+     * this function at any time; it changes nothing.
+     */
     uint32_t (*leaves_in_us)(void *ctx);
+
+    /** @brief Passed to the functions. */
     void *ctx;
 } fathom_uart_t;
 
-/*
- * A clock. now_us is monotonic, counts microseconds and wraps from 4294967295 to 0 (every 71.6 minutes).
- * It need not start at 0. Coarser steps are allowed; every deadline is then that much later.
- */
+/** @brief A clock. */
 typedef struct {
+    /**
+     * @brief Returns the time in microseconds. Wraps from 4294967295 to 0, which is every 71.6 minutes.
+     *
+     * The clock is monotonic and need not start at 0. A clock that counts in coarser steps is allowed; each deadline is
+     * then late by up to one step.
+     */
     uint32_t (*now_us)(void *ctx);
+
+    /** @brief Passed to the function. */
     void *ctx;
 } fathom_clock_t;
 
-/*
- * A digital pin: a module's trigger or mode select, its switch output, a relay's contact.
- *
- * set    Drives it: true is high. NULL: it is an input.
- * get    Its level: true is high. Of a contact: what the board's pull resistor makes of it. NULL: an output.
- */
+/** @brief A digital pin: the trigger or mode select of a module, its switch output, or the contact of a relay. */
 typedef struct {
+    /** @brief Drives the pin: true is high. NULL: the pin is an input. */
     void (*set)(void *ctx, bool high);
+
+    /**
+     * @brief Returns the level of the pin: true is high. NULL: the pin is an output.
+     *
+     * An open contact has the level to which the board pulls the pin.
+     */
     bool (*get)(void *ctx);
+
+    /** @brief Passed to the functions. */
     void *ctx;
 } fathom_pin_t;
 
-/* A high pulse as it was captured. */
+/** @brief A captured high pulse. */
 typedef struct {
-    uint32_t width_us; /* from its rising to its falling edge */
-    uint32_t end_us;   /* the clock at the falling edge */
-    bool is_high;      /* the level now, also where there was no pulse: a line that never falls again */
+    /** @brief Time from the rising to the falling edge, in microseconds. */
+    uint32_t width_us;
+
+    /** @brief Clock at the falling edge, in microseconds. */
+    uint32_t end_us;
+
+    /** @brief Level of the pin now: true is high. Set also if there is no pulse, to show a line that stays high. */
+    bool is_high;
 } fathom_pulse_t;
 
-/*
- * What measures high pulses: a timer's capture input, or the times of a pin's edges (edges.h makes one of those).
+/**
+ * @brief A device that measures high pulses: the capture input of a timer, or a pin interrupt (edges.h).
  *
- * arm    Begins to look for pulses; what was captured before is forgotten, and a pulse that has begun before does
- *        not count.
- * take   1: a pulse has ended since arm, the oldest that was not taken; *pulse is all set. 0: none has, and only
- *        pulse->is_high is set. < 0: the port is broken. It goes on looking after a pulse; one that comes while
- *        another waits to be taken may be lost.
+ * The capture continues after a pulse. If a pulse ends while another one waits to be fetched, the capture may lose it.
  */
 typedef struct {
+    /**
+     * @brief Starts to search for pulses.
+     *
+     * The capture discards all pulses from before. A pulse that began before this call does not count.
+     */
     void (*arm)(void *ctx);
+
+    /**
+     * @brief Fetches the oldest pulse that has ended since `arm`. Each pulse is returned once.
+     * @retval 1  There is a pulse. All members of `*pulse` are written.
+     * @retval 0  There is no pulse. Only `pulse->is_high` is written.
+     * @return Negative: the port is broken.
+     */
     int (*take)(void *ctx, fathom_pulse_t *pulse);
+
+    /** @brief Passed to the functions. */
     void *ctx;
 } fathom_capture_t;
 
-/* "Nothing will happen without new bytes": what the due_us functions return instead of a time. */
+/** @brief A result of the `..._due_us()` functions: without a new byte or a change of a pin, nothing will happen. */
 #define FATHOM_NO_DEADLINE UINT32_MAX
 
-/** @brief Longest time that a configuration may name, in microseconds: 2^31 - 1, which is 35 minutes and half of what the
- * clock counts. */
+/** @brief Longest time that a configuration may name, in microseconds: 2^31 - 1, which is 35 minutes. */
 #define FATHOM_MAX_DURATION_US 0x7FFFFFFFuL
 
-/* The only way in which Fathom compares times: correct across the wrap, for spans up to 71.6 minutes. So
- * whatever is polled must be polled at least that often. */
+/**
+ * @brief Returns the time from `since_us` to `now_us`, in microseconds. Correct across the wrap of the clock.
+ *
+ * Differences of up to 71.6 minutes are correct. Poll each object of Fathom at least that often.
+ *
+ * @param now_us    The later time.
+ * @param since_us  The earlier time.
+ */
 static inline uint32_t fathom_elapsed_us(uint32_t now_us, uint32_t since_us)
 {
     return (uint32_t)(now_us - since_us);
 }
 
-/* Moves a count-down on by `by_us`; it stops at 0. True when it stands at 0. */
+/**
+ * @brief Returns true if a count-down has reached 0, after it was reduced by `by_us`. The count-down stops at 0.
+ *
+ * @param left_us  The count-down in microseconds. Reduced by the call.
+ * @param by_us    The time that has passed, in microseconds.
+ */
 static inline bool fathom_count_down(uint32_t *left_us, uint32_t by_us)
 {
     *left_us = (*left_us > by_us) ? (uint32_t)(*left_us - by_us) : 0u;

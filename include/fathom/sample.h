@@ -9,38 +9,116 @@
 extern "C" {
 #endif
 
-/* What the device reported. An error of the line is no sample: it is a fathom_status_t. */
+/**
+ * @file
+ * @brief A reading of one probe: the same struct for every sensor in every mode.
+ *
+ * A driver writes a sample when fathom_poll() returns FATHOM_OK (sensor.h). A sample reports what the device sent. An
+ * error of the line is never a sample: it is a fathom_status_t (status.h). The struct has no pointers, so it can be
+ * copied and stored. This header declares types only and costs no flash.
+ *
+ * @code
+ * if (fathom_poll(&sensor, &sample) == FATHOM_OK) {
+ *     if (sample.kind == FATHOM_TARGET) show_mm(sample.distance_mm);
+ *     else if (sample.kind == FATHOM_NO_TARGET) show_nothing_in_range();
+ *     else show_no_distance();
+ * }
+ * @endcode
+ *
+ * 1. **Distance.** Only FATHOM_TARGET has a distance. Test `kind` before you use `distance_mm`.
+ *
+ * 2. **Sequence.** A new `sequence` shows a new response of the device, not a new measurement. If a program requests a
+ *    value sooner than the device measures, the device sends the previous value again, and the sample has a new
+ *    `sequence` and a new `time_us`. No response shows this. The header of each driver has the device's period.
+ *
+ * 3. **Gaps.** A response whose value the driver refuses (FATHOM_ERR_MALFORMED) may use a number of the sequence. A gap
+ *    does not prove that a sample was lost.
+ */
+
+/** @brief The kind of a sample: what the device reported. */
 typedef enum {
-    FATHOM_TARGET = 1,    /* something is distance_mm away */
-    FATHOM_NO_TARGET = 2, /* the device works and sees nothing in range */
-    /* the device reports that it is broken (HPS-167S #5), or its output does what that of a working one cannot */
+    /** @brief A target is `distance_mm` away. */
+    FATHOM_TARGET = 1,
+
+    /** @brief The device works and detects nothing in its range. No distance. */
+    FATHOM_NO_TARGET = 2,
+
+    /**
+     * @brief The device reports that it failed (HPS-167S #5), or its output is one that no working device makes.
+     *
+     * No distance.
+     */
     FATHOM_FAULT = 3,
-    FATHOM_NEAR = 4, /* a switch or a contact: something is nearer than its threshold; no distance */
-    FATHOM_FAR = 5,  /* the same: nothing is; no distance */
-    /* a value without a known meaning, or only pulses below the range: it is in raw. No distance */
+
+    /** @brief A target is nearer than the threshold of a switch or relay, or too near to measure. No distance. */
+    FATHOM_NEAR = 4,
+
+    /** @brief No target is nearer than the threshold of a switch or relay. No distance. */
+    FATHOM_FAR = 5,
+
+    /** @brief A value without a known meaning, or only pulses below the range. `raw` has the value. No distance. */
     FATHOM_UNKNOWN = 6
 } fathom_sample_kind_t;
 
-typedef enum { FATHOM_A16 = 1, FATHOM_A05 = 2, FATHOM_HPS167S = 3 } fathom_model_t;
+/** @brief The model of the sensor that sent a sample. */
+typedef enum {
+    FATHOM_A16 = 1,    /**< A16: one ultrasonic probe. */
+    FATHOM_A05 = 2,    /**< A05: four ultrasonic probes. */
+    FATHOM_HPS167S = 3 /**< HPS-167S: infrared time of flight. */
+} fathom_model_t;
 
-/*
- * One reading, the same for every sensor and every mode. The last four members are the HPS-167S's and 0
- * for the others.
+/**
+ * @brief One reading of one probe.
+ *
+ * `magnitude`, `precision` and `ambient` belong to the HPS-167S (HPS-167S #5). They are 0 for all other sensors.
  */
 typedef struct {
-    uint32_t time_us;   /* the HAL's clock when the last byte of the response came; wraps */
-    uint32_t magnitude; /* strength of the reflected light * 10000: 7231744 is 723.1744 (HPS-167S #5) */
-    /* what the device sent, whatever it means: 16 bits, the width of a pulse in us, the level of a switch */
+    /**
+     * @brief The clock of the HAL when the last byte of the response arrived, in microseconds. Wraps after 71.6 minutes.
+     *
+     * For a pulse: the end of the pulse. For a switch or a relay: see contact.h.
+     */
+    uint32_t time_us;
+
+    /** @brief Strength of the reflected light, times 10000: 7231744 is 723.1744. */
+    uint32_t magnitude;
+
+    /**
+     * @brief The value as the device sent it, whatever it means.
+     *
+     * A serial mode has 16 bits. PWM has the width of the pulse in microseconds. A switch or a relay has the level of
+     * the pin: 1 is high.
+     */
     uint32_t raw;
-    uint16_t sequence;    /* of the response; wraps; the probes of one A05 response share it */
-    uint16_t distance_mm; /* 0 unless kind is FATHOM_TARGET */
-    uint16_t precision;   /* the device's accuracy figure: the smaller the better, no unit (HPS-167S #5) */
-    uint8_t kind;         /* fathom_sample_kind_t */
-    uint8_t model;        /* fathom_model_t */
-    uint8_t address;      /* Modbus address; 0 from a sensor that sends by itself */
-    uint8_t probe;        /* 1..4; 1 where there is one */
-    uint8_t ambient;      /* infrared light of the surroundings, relative (HPS-167S #5) */
-    bool interference;    /* with FATHOM_NO_TARGET: another unit of the same frequency disturbs */
+
+    /**
+     * @brief Number of the response (rules 2 and 3). Wraps from 65535 to 0. All probes of one A05 response share it.
+     */
+    uint16_t sequence;
+
+    /** @brief Distance in millimetres, 0 to 65535. 0 unless `kind` is FATHOM_TARGET. */
+    uint16_t distance_mm;
+
+    /** @brief The device's figure of accuracy, 0 to 65535, without a unit. Smaller is better. */
+    uint16_t precision;
+
+    /** @brief Kind of the sample: a fathom_sample_kind_t. */
+    uint8_t kind;
+
+    /** @brief Model of the sensor: a fathom_model_t. */
+    uint8_t model;
+
+    /** @brief Address of the unit, 0 to 254. 0 if the sensor has no address in this mode. */
+    uint8_t address;
+
+    /** @brief Number of the probe, 1 to 4. 1 if the sensor has one probe. */
+    uint8_t probe;
+
+    /** @brief Infrared light of the surroundings, 0 to 255, relative. */
+    uint8_t ambient;
+
+    /** @brief True, with FATHOM_NO_TARGET only, if another unit of the same frequency disturbs the measurement. */
+    bool interference;
 } fathom_sample_t;
 
 #ifdef __cplusplus

@@ -11,8 +11,8 @@ extern "C" {
  * @brief The result of any call that can fail or take time.
  *
  * Success is 0, a call that is not finished is positive, and errors are negative: test for them with `status < 0`. No
- * status is a reading: "no target" and "the sensor reports a
- * fault" are samples (sample.h), because the sensor did respond.
+ * status is a reading: "no target" and "the sensor reports a fault" are samples (sample.h), because the sensor did
+ * respond.
  *
  * The numbers are part of the interface. They fit an int8_t, and later versions only add numbers.
  *
@@ -39,16 +39,15 @@ extern "C" {
  *
  * **What proves that no unit is there.** Only FATHOM_ERR_NO_RESPONSE does. FATHOM_ERR_LINE_BUSY and
  * FATHOM_ERR_OTHER_MASTER say nothing about the unit: repeat the request.
- */
-
-/**
- * @def FATHOM_ASSERT
- * @brief A check of a programming mistake in the sources, empty by default.
  *
- * If you compile the sources, you can stop at such a mistake: `-include assert.h -DFATHOM_ASSERT=assert`. The checks
- * are: a driver is used before its init function returned FATHOM_OK, a driver is initialised while its request is
- * queued, and the parts of a line changed after fathom_line_init(), for example because they were a local variable of a
- * function that has returned. In the first two cases the function also returns its error.
+ * **Programming mistakes.** If you compile the sources, the macro FATHOM_ASSERT can stop the program at a mistake. It is
+ * empty by default. Define it for all sources of Fathom, for example with `-include assert.h -DFATHOM_ASSERT=assert`. It
+ * checks three mistakes:
+ *
+ * - A driver is used before its init function returned FATHOM_OK. The function also returns its error.
+ * - A driver is initialised while its request is queued. The function also returns its error.
+ * - The parts of a line changed after fathom_line_init(), for example because they were a local variable of a function
+ *   that has returned.
  */
 
 /** @brief The result of a call. */
