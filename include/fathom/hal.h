@@ -69,8 +69,8 @@ typedef struct {
     /**
      * @brief Clock at the end of the last byte, in microseconds. Used with FATHOM_RX_TIMED only.
      *
-     * Fathom reads the clock after each read that returned bytes. If `last_us` is later than that (another timer, rounded
-     * up), or 2^31 us or more before that, it counts as "now".
+     * Fathom reads the clock after each read that returned bytes. If `last_us` is later than that (another timer,
+     * rounded up), or 2^31 us or more before that, it counts as "now".
      */
     uint32_t last_us;
 
@@ -100,8 +100,8 @@ typedef struct {
     /**
      * @brief Sends all bytes or none.
      *
-     * The bytes leave the pin without a gap, because an HPS-167S discards a frame with a silence of 1.5 characters in it
-     * (HPS-167S 2.2.3).
+     * The bytes leave the pin without a gap, because an HPS-167S discards a frame with a silence of 1.5 characters in
+     * it (HPS-167S 2.2.3).
      *
      * @param bytes   The bytes. Valid only during the call, so the port copies them.
      * @param length  Number of bytes, 1 to 255.
@@ -145,14 +145,14 @@ typedef struct {
     /**
      * @brief Returns the longest time in microseconds until the last stop bit of all accepted bytes has left the pin.
      *
-     * NULL: the port does not know. The port calculates the time from the remaining bytes, their settings and the clock.
-     * The time is less than 2^31. 0 means that the bytes have left, or should have left.
+     * NULL: the port does not know. The port calculates the time from the remaining bytes, their settings and the
+     * clock. The time is less than 2^31. 0 means that the bytes have left, or should have left.
      *
-     * fathom_line_due_us() returns this time while a request leaves or the port is busy. A program that sleeps then wakes
-     * once for it, and the line calls `sent`. If the function is NULL, or if it returns 0 while `sent` is still false,
-     * the line polls `sent` every millisecond. A time that is too short costs polls. A time that is too long delays what
-     * follows the request: the end of a broadcast, and the beginning of a time-out. Neither loses a byte. Fathom may call
-     * this function at any time; it changes nothing.
+     * fathom_line_due_us() returns this time while a request leaves or the port is busy. A program that sleeps then
+     * wakes once for it, and the line calls `sent`. If the function is NULL, or if it returns 0 while `sent` is still
+     * false, the line polls `sent` every millisecond. A time that is too short costs polls. A time that is too long
+     * delays what follows the request: the end of a broadcast, and the beginning of a time-out. Neither loses a byte.
+     * Fathom may call this function at any time; it changes nothing.
      */
     uint32_t (*leaves_in_us)(void *ctx);
 

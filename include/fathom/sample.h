@@ -74,7 +74,8 @@ typedef enum {
  */
 typedef struct {
     /**
-     * @brief The clock of the HAL when the last byte of the response arrived, in microseconds. Wraps after 71.6 minutes.
+     * @brief The clock of the HAL when the last byte of the response arrived, in microseconds. Wraps after 71.6
+     * minutes.
      *
      * For a pulse: the end of the pulse. For a switch or a relay: see contact.h.
      */

@@ -10,80 +10,146 @@
 extern "C" {
 #endif
 
-/*
- * A16 with automatic output: UART automatic (A16 2) and RS232 (A16 5) before its first Modbus request. 9600 8N1.
- * Without a request it sends FF H L SUM over and over, of the processed or of the real-time value. Which of them
- * is decided by its RX pin, high or open for processed, low for real-time; the datasheet gives settling times
- * of 2.5 to 7.5 s and of 500 ms for them, and no frame period.
+/**
+ * @file
+ * @brief Reads an A16 with automatic output: UART automatic (A16 2), and RS232 (A16 5) before its first Modbus request.
  *
- * One sample a frame, given when the line has been silent for gap_us behind it or the next frame begins;
- * time_us is when its last byte came. FATHOM_TARGET, or what the window makes of the values 0, FFFD, FFFE and FFFF
- * (dyp.h). The errors of fathom_poll:
- *   FATHOM_ERR_STALE      Nothing was received for `stale_us`: no wire, no supply, or another mode. Returned once every
- *                         `stale_us`. Also returned if the newest frame is too old (stream.h, rule 6).
- *   FATHOM_ERR_CHECKSUM   Bytes were received for `stale_us`, but no frame: damage, noise, another rate, or another
- *                         device. `base.stream.counters` show which (stream.h). Returned once every `stale_us`.
- *   FATHOM_ERR_MALFORMED  a good frame with a value that is refused: outside the window, or FFFF; it is in
- *                         base.measurement.refused_raw, and counted
- *   FATHOM_ERR_PORT       the HAL's port is broken; returned by every poll until it works again
+ * The module sends frames FF H L SUM without a request, at 9600 8N1 (A16 2(2), 2(3)). The driver listens to a line and
+ * returns one sample for each frame. The driver never sends a byte and never waits. It can select which distance the
+ * module sends, by a pin or by a break of the line. include/COST.md has its size in the row `a16_auto`.
+ *
+ * @code
+ * static const fathom_a16_auto_config_t config = {.line = &line};   // fathom_line_init_listening() is enough
+ * fathom_a16_auto_init(&a16, &config);
+ * sensor = fathom_a16_auto_sensor(&a16);
+ * for (;;)
+ *     if (fathom_poll(&sensor, &sample) == FATHOM_OK && sample.kind == FATHOM_TARGET) show_mm(sample.distance_mm);
+ * @endcode
+ *
+ * 1. **Samples.** The kind is FATHOM_TARGET, or the meaning of the values 0, FFFD, FFFE and FFFF (dyp.h). `time_us` is
+ *    the arrival of the last byte of the frame. fathom_poll() returns the sample when the next frame begins, or when
+ *    the line has been silent for `gap_us` after the frame.
+ *
+ * 2. **Sequence.** Each frame increments `sequence`, a frame with a refused value too. If the program polls too seldom,
+ *    newer frames replace older ones. The datasheet prints no period of the frames. If the module sends faster than it
+ *    measures, it repeats the old value, and neither the frame nor the sample shows this.
+ *
+ * 3. **Settling.** The processed value follows a change within 2.5 to 7.5 s, the real-time value within about 500 ms
+ *    (A16 2(2)).
+ *
+ * 4. **Errors.** While there is no frame, fathom_poll() returns an error once every `stale_us`:
+ *
+ * | error of fathom_poll() | cause |
+ * |---|---|
+ * | FATHOM_ERR_STALE | the line was silent for `stale_us`: no wire, no supply, or another mode |
+ * | FATHOM_ERR_STALE | the newest frame is too old, because the program polled too late (stream.h, rule 6) |
+ * | FATHOM_ERR_CHECKSUM | bytes, but no frame, for `stale_us`: damage, noise, another rate or device (see below) |
+ * | FATHOM_ERR_MALFORMED | a frame has a refused value: outside the window, or FFFF; see fathom_dyp_measurement_t |
+ * | FATHOM_ERR_PORT | the port is broken; returned by every poll until the port works again |
+ * | FATHOM_ERR_ARGUMENT | the initialisation failed or never ran, and the memory is zeroed |
+ *
+ * After FATHOM_ERR_CHECKSUM the counters in `base.stream.counters` show the cause (stream.h).
  */
 
-/* Read by init only. Members that are 0 mean their defaults. */
+/** @brief The configuration. A member that is 0 takes its default. */
 typedef struct {
-    /* The line, whose listener the driver becomes. The line may also carry Modbus. */
+    /**
+     * @brief The line. Required. The driver becomes its listener. Must stay valid until fathom_a16_auto_deinit().
+     *
+     * The line may also carry Modbus requests (a16_rs232.h).
+     */
     fathom_line_t *line;
-    /* What drives the module's RX pin: a pin, or a break of the line whose TX it is (fathom_output_line_break). None:
-     * it is open, or nothing is selected. */
+
+    /**
+     * @brief Drives the RX pin of the module: a pin, or a break of the line whose TX it is
+     * (fathom_output_line_break()).
+     *
+     * 0: the program selects nothing. Open, the module's RX selects the processed value (A16 2(2)). `select.ctx` must
+     * stay valid until fathom_a16_auto_deinit().
+     */
     fathom_output_t select;
-    /* Time without a frame after which fathom_poll() returns an error, in microseconds: 1 to 2^31 - 1. 0 selects 2 s.
-     * The datasheet prints no period of the frames. If a unit sends less often than every 2 s, choose more. */
+
+    /**
+     * @brief Time without a frame after which fathom_poll() returns an error, in microseconds: 1 to 2^31 - 1.
+     *
+     * 0 selects 2 s. If a module sends less often than every 2 s, choose more.
+     */
     uint32_t stale_us;
-    /* Silence that starts and ends a frame (stream.h), in microseconds: 1042 to 65535. Behind an operating system
-     * choose 25000. 0 selects 5000. */
+
+    /**
+     * @brief Silence that starts and ends a frame (stream.h), in microseconds: 1042 to 65535. 0 selects 5000.
+     *
+     * Behind an operating system choose 25000.
+     */
     uint16_t gap_us;
-    fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 16350 mm */
-    uint8_t value;              /* fathom_dyp_value_t: what fathom_a16_auto_select selects at init */
+
+    /** @brief Accepted distances, and the meaning of the other values. 0 selects 1 to 16350 mm. */
+    fathom_dyp_window_t window;
+
+    /** @brief The value that is selected by the initialisation: a fathom_dyp_value_t. 0 selects FATHOM_PROCESSED. */
+    uint8_t value;
 } fathom_a16_auto_config_t;
 
+/** @brief The driver, in the caller's memory. Call fathom_a16_auto_init() before use. */
 typedef struct {
+    /** @brief `base.stream.counters` and the refused values of `base.measurement` may be read. */
     fathom_dyp_auto_t base;
+
+    /* private */
     fathom_output_t select;
-    uint8_t value; /* fathom_dyp_value_t, as it was selected last */
+    uint8_t value; /* fathom_dyp_value_t: the selected value */
     uint16_t values[1];
     uint8_t storage[FATHOM_STREAM_STORAGE(FATHOM_DYP_A16_LENGTH)];
 } fathom_a16_auto_t;
 
-/*
- * Initialises the driver and makes it the listener of the line. After an error, the driver does not listen.
- *   FATHOM_OK            The driver listens.
- *   FATHOM_ERR_ARGUMENT     `line` is NULL, or a member is outside its range: `stale_us` above 2^31 - 1, `gap_us` of 1
- *                           to 1041, `min_mm` above `max_mm`, or an unknown `value`.
- *   FATHOM_ERR_BUSY         The line has another listener; or the port is still sending, so that the break that selects
- *                           the value cannot begin.
- *   FATHOM_ERR_UNSUPPORTED  FATHOM_REAL_TIME without `select`, or the port has no break.
- *   others                  As fathom_a16_auto_select().
+/**
+ * @brief Initialises the driver, makes it the listener of the line, and selects the value.
+ *
+ * After an error the driver does not listen, and its memory is zeroed.
+ *
+ * @param sensor  The driver. Must stay valid until fathom_a16_auto_deinit().
+ * @param config  The configuration. Not used after the call.
+ * @retval FATHOM_OK               The driver listens. Next, call fathom_poll().
+ * @retval FATHOM_ERR_ARGUMENT     `line` is NULL or not initialised, or a member is outside its range.
+ * @retval FATHOM_ERR_BUSY         The line has another listener, which stays. Or the break that selects the value
+ *                                 cannot begin yet, because the port or a transaction uses the line. Call again.
+ * @retval FATHOM_ERR_UNSUPPORTED  FATHOM_REAL_TIME needs `select`; or the port has no `set_break`, or the pin no `set`.
+ * @retval FATHOM_ERR_PORT         As fathom_a16_auto_select().
  */
 fathom_status_t fathom_a16_auto_init(fathom_a16_auto_t *sensor, const fathom_a16_auto_config_t *config);
 
-/*
- * UART automatic (A16 2(2)) alone: which value the module sends from now on. Its RX pin goes high for the processed
- * one, low for the real-time one, by `select`; during a break of a line nothing can be sent there. Values in the
- * first 0.5 s (real-time) or 2.5 to 7.5 s (processed) may still be of the other kind; the frames do not show it.
- * FATHOM_OK, always where there is a pin; of a break what fathom_line_break returns, after which the selection is
- * what it was: call again. FATHOM_ERR_ARGUMENT: no such value. FATHOM_ERR_UNSUPPORTED: no `select`.
+/**
+ * @brief Selects the value that the module sends (A16 2(2)): drives its RX pin high or low by `select`.
+ *
+ * For UART automatic only; an RS232 module has register 0x0207 instead (a16_settings.h). Frames of the first 0.5 s
+ * (real-time) or 2.5 to 7.5 s (processed) may still have the other value; the frames do not show this. While a break
+ * selects the real-time value, the line cannot send.
+ *
+ * @param sensor  The driver.
+ * @param value   FATHOM_PROCESSED (RX high) or FATHOM_REAL_TIME (RX low).
+ * @retval FATHOM_OK               The value is selected. A pin always has this result.
+ * @retval FATHOM_PENDING          As fathom_line_break(). The selection has not changed: call again.
+ * @retval FATHOM_ERR_BUSY         As fathom_line_break(). The selection has not changed: call again.
+ * @retval FATHOM_ERR_PORT         As fathom_line_break(). The selection has not changed: call again.
+ * @retval FATHOM_ERR_ARGUMENT     `value` is none of the two, or the driver is not initialised.
+ * @retval FATHOM_ERR_UNSUPPORTED  The configuration has no `select`, the port no `set_break`, or the pin no `set`.
  */
 fathom_status_t fathom_a16_auto_select(fathom_a16_auto_t *sensor, fathom_dyp_value_t value);
 
-/*
- * Stops listening, if the driver is the listener of the line, and ends a break that selected; the memory is the
- * caller's again. Call it again, and not poll, unless it returns
- * FATHOM_OK: no break is held, always where there is a pin, which stays as it is.
- * FATHOM_PENDING, FATHOM_ERR_PORT: as fathom_line_break(line, false). If the caller gives up here, TX stays low, and
- * the line sends nothing until that is FATHOM_OK.
+/**
+ * @brief Stops listening and ends a break that selects the real-time value.
+ *
+ * If the driver is no longer the listener of the line, the present listener stays. A pin keeps its level.
+ *
+ * @param sensor  The driver.
+ * @retval FATHOM_OK        No break is held. The memory belongs to the caller again. A pin always has this result.
+ * @retval FATHOM_PENDING   As fathom_line_break(). Call this function again, and do not poll.
+ * @retval FATHOM_ERR_PORT  As fathom_line_break(). Call this function again, and do not poll. If the program gives up
+ *                          here, TX stays low, and the line sends nothing until fathom_line_break() ends the break.
  */
 fathom_status_t fathom_a16_auto_deinit(fathom_a16_auto_t *sensor);
 
-/* For fathom_poll. */
+/** @brief Returns the sensor for fathom_poll() and fathom_due_us(). The sensor points to the driver. */
 fathom_sensor_t fathom_a16_auto_sensor(fathom_a16_auto_t *sensor);
 
 #ifdef __cplusplus

@@ -12,74 +12,130 @@
 extern "C" {
 #endif
 
-/*
- * What the ultrasonic sensors A16 and A05 have in common: what their 16 bits mean. Their drivers are built on
- * it; their users need no more of this page than the window and the meanings.
+/**
+ * @file
+ * @brief The common part of the ultrasonic sensors A16 and A05: the meaning of their 16-bit values.
  *
- * The datasheets print distances and no other value. Of sister models it is known that 0xFFFD is no object and
- * 0xFFFE interference by another unit of the same frequency. 0 has been seen with nothing in range and with a hand
- * on the probe, so it is unknown until the config gives it a meaning. Any other value outside the window is refused.
+ * A program needs of this header fathom_dyp_value_t, fathom_meaning_t and fathom_dyp_window_t, and for diagnosis the
+ * refused values of fathom_dyp_measurement_t. The drivers use the rest.
+ *
+ * The datasheets print distances and no other value. Sister models use two more values: 0xFFFD for no object, and
+ * 0xFFFE for interference by another unit of the same frequency. Users have seen 0 with nothing in range and with a
+ * hand on the probe, so 0 has no meaning by default. The driver refuses all other values outside the window.
  */
 
-/* Which of its distances a sensor is to give, wherever one can choose. */
+/** @brief The distance that a sensor sends, if the mode offers two. */
 typedef enum {
-    FATHOM_PROCESSED = 0, /* steady, and slow to follow */
-    FATHOM_REAL_TIME = 1  /* the last measurement */
+    FATHOM_PROCESSED = 0, /**< The filtered distance: steady, and slow to follow. */
+    FATHOM_REAL_TIME = 1  /**< The distance of the last measurement. */
 } fathom_dyp_value_t;
 
-/* What a value that is no distance means: the kind of its sample. */
+/** @brief The meaning of a value that is no distance: the kind of its sample. */
 typedef enum {
-    FATHOM_MEANS_DEFAULT = 0,
-    FATHOM_MEANS_UNKNOWN = FATHOM_UNKNOWN,
-    FATHOM_MEANS_NO_TARGET = FATHOM_NO_TARGET,
-    FATHOM_MEANS_TOO_NEAR = FATHOM_NEAR, /* something is nearer than the probe can measure */
-    FATHOM_MEANS_FAULT = FATHOM_FAULT,
-    FATHOM_MEANS_INTERFERENCE = 7, /* FATHOM_NO_TARGET with the mark of interference */
-    FATHOM_MEANS_REFUSED = 8       /* no sample: FATHOM_ERR_MALFORMED */
+    FATHOM_MEANS_DEFAULT = 0,                  /**< The default of fathom_dyp_window_t. */
+    FATHOM_MEANS_UNKNOWN = FATHOM_UNKNOWN,     /**< A sample FATHOM_UNKNOWN. */
+    FATHOM_MEANS_NO_TARGET = FATHOM_NO_TARGET, /**< A sample FATHOM_NO_TARGET. */
+    FATHOM_MEANS_TOO_NEAR = FATHOM_NEAR,       /**< A sample FATHOM_NEAR: a target is too near to measure. */
+    FATHOM_MEANS_FAULT = FATHOM_FAULT,         /**< A sample FATHOM_FAULT. */
+    FATHOM_MEANS_INTERFERENCE = 7,             /**< A sample FATHOM_NO_TARGET with `interference`. */
+    FATHOM_MEANS_REFUSED = 8                   /**< No sample: FATHOM_ERR_MALFORMED. */
 } fathom_meaning_t;
 
-/* The distances that are believed, in mm, both included, and what each of the four values is that may be no distance;
- * those are never distances, whatever the window. In a driver's config 0 stands for a member's default. */
-/* Ranges: min_mm 0 to max_mm; max_mm 0 to 65535, of which 65533 to 65535 are never distances; the others are a
- * fathom_meaning_t, 0 or one of its values. 1 (FATHOM_TARGET), 5 (FATHOM_FAR) and values above 8 are FATHOM_ERR_ARGUMENT. */
+/**
+ * @brief The accepted distances, and the meaning of four values that are never distances: FFFD, FFFE, FFFF and 0.
+ *
+ * In a driver's config a member that is 0 takes its default. The init function returns FATHOM_ERR_ARGUMENT if `min_mm`
+ * is above `max_mm`, or if a meaning is no fathom_meaning_t.
+ */
 typedef struct {
+    /** @brief Least accepted distance in millimetres, 0 to `max_mm`. 0 accepts all from 1 mm. */
     uint16_t min_mm;
+
+    /** @brief Greatest accepted distance in millimetres, `min_mm` to 65535. 0 selects 16350 (A16) or 6000 (A05). */
     uint16_t max_mm;
-    uint8_t value_fffd; /* fathom_meaning_t; 0: FATHOM_MEANS_NO_TARGET */
-    uint8_t value_fffe; /* 0: FATHOM_MEANS_INTERFERENCE */
-    uint8_t value_ffff; /* 0: FATHOM_MEANS_REFUSED */
-    uint8_t value_0;    /* 0: FATHOM_MEANS_UNKNOWN. The last of the four: in the order of value + 3 */
+
+    /** @brief Meaning of FFFD: a fathom_meaning_t. 0 selects FATHOM_MEANS_NO_TARGET. */
+    uint8_t value_fffd;
+
+    /** @brief Meaning of FFFE: a fathom_meaning_t. 0 selects FATHOM_MEANS_INTERFERENCE. */
+    uint8_t value_fffe;
+
+    /** @brief Meaning of FFFF: a fathom_meaning_t. 0 selects FATHOM_MEANS_REFUSED. */
+    uint8_t value_ffff;
+
+    /** @brief Meaning of 0: a fathom_meaning_t. 0 selects FATHOM_MEANS_UNKNOWN. */
+    uint8_t value_0; /* The last of the four, because the drivers index them by value + 3. */
 } fathom_dyp_window_t;
 
-/* The default windows. 16350 mm is the longest pulse of A16 1(3), 94 ms; 6000 mm leaves the A05 a third beyond
- * its range of 4.5 m. The near end is 1 mm. */
-enum { FATHOM_A16_MAX_MM = 16350, FATHOM_A05_MAX_MM = 6000 };
+/** @brief The default of fathom_dyp_window_t::max_mm. */
+enum {
+    FATHOM_A16_MAX_MM = 16350, /**< The longest pulse, 94 ms (A16 1(3)), in millimetres. */
+    FATHOM_A05_MAX_MM = 6000   /**< One third above the range of 4.5 m, in millimetres. */
+};
 
-/* One response: a value for each of some probes, handed over as one sample a probe. */
+/**
+ * @brief One response: the values of one to four probes, each of which becomes one sample.
+ *
+ * A program may read `refused_probe`, `refused_raw` and `implausible`.
+ */
 typedef struct {
-    uint8_t model;   /* fathom_model_t */
-    uint8_t address; /* 0 from a sensor that sends by itself */
-    uint8_t first;   /* 1..4 */
-    uint8_t left;    /* bit probe - 1: has not been handed over */
-    /* The last value that was refused, and its probe; 0: none yet. They belong to the last FATHOM_ERR_MALFORMED, if
-     * that made `implausible` grow. */
+    /** @brief Model of the samples: a fathom_model_t. */
+    uint8_t model;
+
+    /** @brief Address of the samples. 0 for a sensor with automatic output. */
+    uint8_t address;
+
+    /** @brief Number of the probe that has `values[0]`, 1 to 4. */
+    uint8_t first;
+
+    /** @brief Set of the probes that have no sample yet: bit (probe - 1). */
+    uint8_t left;
+
+    /**
+     * @brief Number of the probe whose value was refused last, 1 to 4. 0: no value was refused.
+     *
+     * This member and `refused_raw` belong to the last FATHOM_ERR_MALFORMED, if that error incremented `implausible`.
+     */
     uint8_t refused_probe;
+
+    /** @brief The value that was refused last. */
     uint16_t refused_raw;
+
+    /** @brief Number of the newest response. Wraps from 65535 to 0. */
     uint16_t sequence;
-    uint16_t implausible; /* values that were refused; stops at 65535 */
+
+    /** @brief Number of refused values. Stops at 65535. */
+    uint16_t implausible;
+
+    /** @brief The window, with `max_mm` filled in. */
     fathom_dyp_window_t window;
-    uint16_t *values; /* of probe `first` and those after it */
+
+    /** @brief The values of probe `first` and the following probes, in the driver's memory. */
+    uint16_t *values;
+
+    /** @brief Clock at the last byte of the response, in microseconds. */
     uint32_t time_us;
 } fathom_dyp_measurement_t;
 
-/*
- * The next probe's sample. FATHOM_OK: written. FATHOM_ERR_MALFORMED: the value is refused, and kept in
- * refused_probe and refused_raw; nothing written, counted, the next call goes on with the next probe.
- * FATHOM_PENDING: none is left.
+/**
+ * @brief Returns the sample of the next probe of the response.
+ *
+ * @param measurement  The response.
+ * @param sample       Written with FATHOM_OK only.
+ * @retval FATHOM_OK             `*sample` is written.
+ * @retval FATHOM_ERR_MALFORMED  The value is refused and counted; `refused_probe` and `refused_raw` are written. The
+ *                               next call continues with the next probe.
+ * @retval FATHOM_PENDING        All probes of the response are done.
  */
 fathom_status_t fathom_dyp_measurement_next(fathom_dyp_measurement_t *measurement, fathom_sample_t *sample);
 
-/* A new response has come: its values are set, and these probes (bit probe - 1) wait to be handed over. */
+/**
+ * @brief Starts a new response, whose `values` are written already.
+ *
+ * @param measurement  The response.
+ * @param probes       Set of the probes that become samples: bit (probe - 1).
+ * @param time_us      Clock at the last byte of the response, in microseconds.
+ */
 static inline void fathom_dyp_measurement_set(fathom_dyp_measurement_t *measurement, uint8_t probes,
                                               uint32_t time_us)
 {
@@ -88,13 +144,30 @@ static inline void fathom_dyp_measurement_set(fathom_dyp_measurement_t *measurem
     measurement->left = probes;
 }
 
-/* Byte by byte: of a struct of this size compilers make a call of memcpy. */
+/**
+ * @brief Copies a window byte by byte. Compilers replace an assignment of this size by a call of memcpy().
+ *
+ * @param to    The copy.
+ * @param from  The window.
+ */
 void fathom_dyp_window_copy(fathom_dyp_window_t *to, const fathom_dyp_window_t *from);
 
-/* Nothing has come yet. FATHOM_OK, or FATHOM_ERR_ARGUMENT: min_mm > max_mm. max_mm 0: default_max_mm. */
+/**
+ * @brief Initialises a response without values. `window` is set before the call.
+ *
+ * @param measurement     The response.
+ * @param default_max_mm  The `max_mm` that 0 selects, in millimetres.
+ * @retval FATHOM_OK            The response is empty.
+ * @retval FATHOM_ERR_ARGUMENT  A member of `window` is outside its range.
+ */
 fathom_status_t fathom_dyp_measurement_init(fathom_dyp_measurement_t *measurement, uint16_t default_max_mm);
 
-/* What a value is: FATHOM_TARGET, a distance of at most the window's max_mm; or a fathom_meaning_t. */
+/**
+ * @brief Returns FATHOM_TARGET if a value is an accepted distance, else its fathom_meaning_t.
+ *
+ * @param window  The window, with `max_mm` filled in.
+ * @param value   The value as the device sent it.
+ */
 uint8_t fathom_dyp_meaning(const fathom_dyp_window_t *window, uint16_t value);
 
 #ifdef __cplusplus

@@ -10,34 +10,57 @@
 extern "C" {
 #endif
 
-/* What a16_auto.h and a05_auto.h are built on: an ultrasonic sensor that sends frames by itself. Their users
- * need not know it. */
+/**
+ * @file
+ * @brief The common part of a16_auto.h and a05_auto.h: an ultrasonic sensor that sends frames without a request.
+ *
+ * A program needs of this header only the members `stream.counters` and `measurement`.
+ */
+
+/** @brief An ultrasonic sensor with automatic output, in the memory of its driver. */
 typedef struct {
+    /** @brief Finds the frames. `stream.counters` may be read and set to 0 (stream.h). */
     fathom_stream_t stream;
+
+    /** @brief The newest frame. `refused_raw`, `refused_probe` and `implausible` may be read. */
     fathom_dyp_measurement_t measurement;
+
+    /** @brief The line. Invariant: NULL unless the initialisation succeeded. */
     fathom_line_t *line;
 } fathom_dyp_auto_t;
 
-/*
- * Initialises what both drivers share and makes the stream the listener of the line. The driver has set `line`, the
- * members that fathom_stream_start() needs, and `values`, `window`, `model`, `address` and `first` of the measurement.
- *   FATHOM_OK         The stream listens.
- *   FATHOM_ERR_ARGUMENT  `line` is NULL, or a member of the window or the stream is outside its range.
- *   FATHOM_ERR_BUSY      The line has another listener, which stays.
+/**
+ * @brief Initialises the common part and makes the stream the listener of the line.
+ *
+ * The driver first sets `line`, the members that fathom_stream_start() needs, and `values`, `window`, `model`,
+ * `address` and `first` of the measurement.
+ *
+ * @param sensor          The common part.
+ * @param default_max_mm  The `max_mm` that a window of 0 selects, in millimetres.
+ * @retval FATHOM_OK            The stream listens.
+ * @retval FATHOM_ERR_ARGUMENT  `line` is NULL or not initialised, or a member is outside its range.
+ * @retval FATHOM_ERR_BUSY      The line has another listener, which stays.
  */
 fathom_status_t fathom_dyp_auto_init(fathom_dyp_auto_t *sensor, uint16_t default_max_mm);
 
-/* Stops listening, if the stream is the listener of the line. */
+/** @brief Stops listening. If the stream is not the listener of the line, the present listener stays. */
 void fathom_dyp_auto_deinit(fathom_dyp_auto_t *sensor);
 
-/*
- * Polls the line and takes the newest frame. FATHOM_OK: its values are those of the measurement, of which probe 1
- * waits to be returned. FATHOM_PENDING: there is no new frame. FATHOM_ERR_STALE, FATHOM_ERR_CHECKSUM, FATHOM_ERR_PORT:
- * as in a16_auto.h.
+/**
+ * @brief Polls the line and fetches the newest frame.
+ *
+ * @param sensor  The common part.
+ * @retval FATHOM_OK            The measurement has the values of a new frame. Probe 1 waits for
+ *                              fathom_dyp_measurement_next().
+ * @retval FATHOM_PENDING       There is no new frame.
+ * @retval FATHOM_ERR_STALE     As a16_auto.h.
+ * @retval FATHOM_ERR_CHECKSUM  As a16_auto.h.
+ * @retval FATHOM_ERR_PORT      As a16_auto.h.
+ * @retval FATHOM_ERR_ARGUMENT  The initialisation failed or never ran, and the memory is zeroed.
  */
 fathom_status_t fathom_dyp_auto_take(fathom_dyp_auto_t *sensor);
 
-/* How long, in us, until take has something to do if no byte comes. */
+/** @brief Returns the time in microseconds until fathom_dyp_auto_take() must be called again if no byte arrives. */
 uint32_t fathom_dyp_auto_due_us(const fathom_dyp_auto_t *sensor);
 
 #ifdef __cplusplus
