@@ -8,17 +8,31 @@
 extern "C" {
 #endif
 
-/*
- * CRC-16/MODBUS (MODBUS over Serial Line V1.02, 6.2.2; HPS-167S 2.2.5): polynomial 0xA001 (reflected
- * 0x8005), initial value 0xFFFF. On the wire its low byte goes first.
+/**
+ * @file
+ * @brief The checksum of Modbus RTU: CRC-16/MODBUS (MODBUS over Serial Line V1.02, 6.2.2; HPS-167S 2.2.5).
  *
- * Over a frame that ends in its own CRC the result is 0, which is how a receiver checks one.
+ * The polynomial is 0xA001 (0x8005 reflected), and the initial value is 0xFFFF. The low byte goes first on the wire.
+ * The function is pure: it has no state and needs no time or I/O. Link exactly one of these sources; include/COST.md
+ * has their sizes.
  *
- * Link exactly one of: src/codec/crc16.c (256-entry table, 512 bytes, fastest), src/codec/crc16_small.c (16 entries,
- * 32 bytes). avr-gcc would put those in RAM: on an AVR port/avr/crc16.c (no table, 30 cycles a byte) or
- * port/avr/crc16_table.c (256 entries in program memory, 24 cycles a byte).
+ * | source | table | for |
+ * |---|---|---|
+ * | src/codec/crc16.c | 256 entries, 512 bytes | fastest |
+ * | src/codec/crc16_small.c | 16 entries, 32 bytes | least flash |
+ * | port/avr/crc16.c | none; 30 cycles a byte | AVR, where avr-gcc would put a table in RAM |
+ * | port/avr/crc16_table.c | 256 entries in program memory; 24 cycles a byte | AVR |
  *
- * bytes: may be NULL when length is 0, which gives 0xFFFF.
+ * @code
+ * if (fathom_crc16(frame, length) == 0) handle(frame);      // the last two bytes of the frame are its CRC
+ * @endcode
+ */
+
+/**
+ * @brief Returns the CRC of `length` bytes. The CRC of a frame that ends in its own right CRC is 0.
+ *
+ * @param bytes   The bytes. May be NULL if `length` is 0.
+ * @param length  Number of bytes, 0 to 255. 0 returns 0xFFFF.
  */
 uint16_t fathom_crc16(const uint8_t *bytes, uint8_t length);
 

@@ -15,95 +15,181 @@
 extern "C" {
 #endif
 
-/*
- * A16 with controlled UART output (A16 3): each falling edge at its RX pin makes it measure once and send one frame
- * FF H L SUM, 90..110 ms later. 9600 8N1. The edge is made by a pin, or by a UART break of the line, so that a serial
- * adapter will do.
+/**
+ * @file
+ * @brief Reads an A16 with controlled UART output (A16 3): each trigger starts one measurement and returns one frame.
  *
- * One sample a response, given when the line has been silent for gap_us behind it; time_us is when its last byte came.
- * FATHOM_TARGET, or what the window makes of the values 0, FFFD, FFFE and FFFF (dyp.h). The errors of fathom_poll,
- * each of one trigger:
- *   FATHOM_ERR_NO_RESPONSE  nothing came in time: no supply, a cut wire, not in this mode
- *   FATHOM_ERR_CHECKSUM     something came in time, and no good frame among it
- *   FATHOM_ERR_MALFORMED    a good frame with a value that is refused: outside the window, or FFFF; it is in
- *                           measurement.refused_raw, and counted
- *   FATHOM_ERR_PORT         the HAL's port is broken; returned by every poll until it works again. Or it has refused
- *                           for a second to begin or to end the break; it is tried on; that is returned once a second
+ * Each falling edge at the RX pin of the module starts a measurement. The module sends one frame FF H L SUM, 90 to 110
+ * ms after the edge, at 9600 8N1. A pin makes the edge, or a UART break of the line, so that a serial adapter suffices.
+ * The driver triggers again and again, never sends a byte and never waits. include/COST.md has its size in the row
+ * `a16_controlled`.
  *
- * A frame is the response if its last byte comes earliest_us..latest_us after the edge: the datasheet's time, and on
- * either side a margin for the clocks and the frame's own 4 ms. Where the port has no time stamps a byte may have come
- * at any time since the poll before, and both ends are stretched by that much. All other frames are counted in `late`
- * and dropped. What cannot be told apart: the response to the trigger before, if it comes 200 ms or more after that.
+ * @code
+ * const fathom_a16_controlled_config_t config = {.line = &line, .trigger = fathom_output_pin(&pin)};
+ * fathom_a16_controlled_init(&a16, &config);
+ * sensor = fathom_a16_controlled_sensor(&a16);
+ * for (;;)
+ *     if (fathom_poll(&sensor, &sample) == FATHOM_OK && sample.kind == FATHOM_TARGET) show_mm(sample.distance_mm);
+ * @endcode
  *
- * No frame from before the trigger is a response. The driver reads the port once more directly after the edge, so that
- * bytes that waited in the port are known to be too early. If the program does not poll for more than latest_us and
- * FATHOM_LINE_LATE_US, the line drops what waits in the port (line.h, rule 14), and the trigger has no response.
+ * 1. **Samples.** There is one sample for each response. fathom_poll() returns it when the line has been silent for
+ *    `gap_us` after the frame. `time_us` is the arrival of the last byte. The kind is FATHOM_TARGET, or the meaning of
+ *    the values 0, FFFD, FFFE and FFFF (dyp.h).
  *
- *     polls     |        |                                      |
- *     trigger            |edge  earliest_us      latest_us
- *     wire      [frame]  |      |<-- [response] -->|
- *     result    `late`                                          one sample
+ * 2. **Sequence.** Each response increments `sequence`, a response with a refused value too. Each response is a new
+ *    measurement, because the period between two triggers is above the 120 ms that the module needs (A16 3(2)).
+ *
+ * 3. **Which frame is the response.** A frame is the response if its last byte arrives `earliest_us` to `latest_us`
+ *    after the edge. This is the time of the datasheet (A16 3(3)) with a margin for the clocks and for the 4 ms of the
+ *    frame. If the port has no time stamps, a byte may have arrived at any time since the previous poll; both ends are
+ *    then wider by that time. The driver counts all other frames in `late` and drops them.
+ *
+ *        polls     |        |                                      |
+ *        trigger            |edge  earliest_us      latest_us
+ *        wire      [frame]  |      |<-- [response] -->|
+ *        result    `late`                                          one sample
+ *
+ * 4. **Before the trigger.** No frame from before the trigger is a response. The driver reads the port directly after
+ *    the edge, so that bytes that waited in the port are known to be too early.
+ *
+ * 5. **Limit.** The response to the previous trigger cannot be distinguished from the response to this one, if it
+ *    arrives 200 ms or more after the previous trigger.
+ *
+ * 6. **Pauses.** If the program does not poll for more than `latest_us` and FATHOM_LINE_LATE_US together, the line
+ *    drops the bytes that wait in the port (line.h, rule 14). The trigger then has no response.
+ *
+ * 7. **Errors.** Each error belongs to one trigger. The driver continues after each error.
+ *
+ * | error of fathom_poll() | cause |
+ * |---|---|
+ * | FATHOM_ERR_NO_RESPONSE | no byte arrived in time: no supply, a cut wire, or another mode |
+ * | FATHOM_ERR_CHECKSUM | bytes arrived in time, but no valid frame |
+ * | FATHOM_ERR_MALFORMED | the frame has a refused value: outside the window, or FFFF; see `measurement` (dyp.h) |
+ * | FATHOM_ERR_PORT | the port is broken; returned by every poll until the port works again |
+ * | FATHOM_ERR_PORT | the port refused for 1 s to begin or to end the break; returned once a second (trigger.h) |
+ * | FATHOM_ERR_ARGUMENT | the initialisation failed or never ran, and the memory is zeroed |
  */
 
-/* Zero-valued members of fathom_a16_controlled_config_t mean these. */
-#define FATHOM_A16_CONTROLLED_DEFAULT_PERIOD_US   121000uL
+/** @brief Default and least fathom_a16_controlled_config_t::period_us, in microseconds. */
+#define FATHOM_A16_CONTROLLED_DEFAULT_PERIOD_US 121000uL
+/** @brief Default of fathom_a16_controlled_config_t::earliest_us, in microseconds. */
 #define FATHOM_A16_CONTROLLED_DEFAULT_EARLIEST_US 80000uL
-#define FATHOM_A16_CONTROLLED_DEFAULT_LATEST_US   130000uL
+/** @brief Default of fathom_a16_controlled_config_t::latest_us, in microseconds. */
+#define FATHOM_A16_CONTROLLED_DEFAULT_LATEST_US 130000uL
 
-/* Read by init only. Members that are 0 mean their defaults. */
+/** @brief The configuration. A member that is 0 takes its default. */
 typedef struct {
-    fathom_line_t *line; /* its own; the sensor becomes the line's listener */
-    /* What drives the module's RX pin: a pin, or a break of the line (fathom_output_line_break). */
+    /**
+     * @brief The line, which has no other sensor. Required. The driver becomes its listener.
+     *
+     * Must stay valid until fathom_a16_controlled_deinit().
+     */
+    fathom_line_t *line;
+
+    /**
+     * @brief Drives the RX pin of the module: a pin, or a break of the line (fathom_output_line_break()). Required.
+     *
+     * `trigger.ctx` must stay valid until fathom_a16_controlled_deinit().
+     */
     fathom_output_t trigger;
-    /* From trigger to trigger, at least. It "must be greater than 120ms" (A16 3(2)), also by a clock that counts in
-     * ms; 0 and anything less: 121 ms. */
-    uint32_t period_us;   /* At most 2^31 - 1. */
-    uint32_t earliest_us; /* 1 to latest_us. 0 selects 80 ms. */
-    uint32_t latest_us;   /* earliest_us to 2^31 - 1. 0 selects 130 ms. */
-    /* How long the trigger is low, at least, and how long high before it falls; 0: 2 ms (trigger.h). */
+
+    /**
+     * @brief Least time between two triggers, in microseconds, at most 2^31 - 1. 0 and all below 121000 select 121000.
+     *
+     * The period "must be greater than 120ms" (A16 3(2)), also by a clock that counts in milliseconds.
+     */
+    uint32_t period_us;
+
+    /** @brief Earliest arrival of a response after the edge, in microseconds: 1 to `latest_us`. 0 selects 80000. */
+    uint32_t earliest_us;
+
+    /** @brief Latest arrival of a response, in microseconds: `earliest_us` to 2^31 - 1. 0 selects 130000. */
+    uint32_t latest_us;
+
+    /**
+     * @brief Least time for which the trigger is low, and high before it falls, in microseconds: 1 to 60000.
+     *
+     * 0 selects 2000 (trigger.h).
+     */
     uint16_t low_us;
-    /* Silence that ends a frame (stream.h), in microseconds: 1042 to 65535. Behind an operating system choose 25000. 0
-     * selects 5000. */
+
+    /**
+     * @brief Silence that ends a frame (stream.h), in microseconds: 1042 to 65535. 0 selects 5000.
+     *
+     * Behind an operating system choose 25000.
+     */
     uint16_t gap_us;
-    fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 16350 mm */
+
+    /** @brief Accepted distances, and the meaning of the other values. 0 selects 1 to 16350 mm. */
+    fathom_dyp_window_t window;
 } fathom_a16_controlled_config_t;
 
+/** @brief The driver, in the caller's memory. Call fathom_a16_controlled_init() before use. */
 typedef struct {
-    fathom_stream_t stream; /* first: its listener is the sensor's */
+    /** @brief Finds the frames. Invariant: the first member, so that its listener is the driver. */
+    fathom_stream_t stream;
+
+    /** @brief The line. Invariant: NULL unless the initialisation succeeded. */
     fathom_line_t *line;
+
+    /** @brief Makes the edges. */
     fathom_trigger_t trigger;
+
+    /** @brief The newest response. `refused_raw` and `implausible` may be read. */
     fathom_dyp_measurement_t measurement;
+
+    /** @brief As in the configuration, with the default filled in. */
     uint32_t earliest_us;
+
+    /** @brief As in the configuration, with the default filled in. */
     uint32_t latest_us;
-    uint32_t edge_us; /* the trigger */
-    uint32_t came_us; /* the earliest time at which the newest bytes can have come */
-    uint16_t late;    /* frames that came at another time; stops at 65535, and the user may set it to 0 */
-    bool waiting;     /* for the response */
-    bool heard;       /* bytes came when the response may */
+
+    /** @brief Clock at the last trigger, in microseconds. */
+    uint32_t edge_us;
+
+    /** @brief Earliest time at which the newest bytes can have arrived, in microseconds. */
+    uint32_t came_us;
+
+    /** @brief Number of frames that were no response (rule 3). Stops at 65535. The caller may set it to 0. */
+    uint16_t late;
+
+    /* private */
+    bool waiting; /* for the response */
+    bool heard;   /* bytes arrived while the response was possible */
     uint16_t values[1];
     uint8_t storage[FATHOM_STREAM_STORAGE(FATHOM_DYP_A16_LENGTH)];
 } fathom_a16_controlled_t;
 
-/*
- * Makes the pin high and makes the driver the listener of the line. The first trigger comes low_us later.
- *   FATHOM_OK            The driver listens.
- *   FATHOM_ERR_ARGUMENT     `line` or `trigger.set` is NULL, or a member is outside its range.
- *   FATHOM_ERR_BUSY         The line has another listener, which stays. The trigger was not touched.
- *   FATHOM_ERR_UNSUPPORTED  The port, whose break is the trigger, has no set_break.
+/**
+ * @brief Initialises the driver, makes the trigger high and becomes the listener of the line.
+ *
+ * The first trigger comes `low_us` later. After an error the driver does not listen, and its memory is zeroed.
+ *
+ * @param sensor  The driver. Must stay valid until fathom_a16_controlled_deinit().
+ * @param config  The configuration. Not used after the call.
+ * @retval FATHOM_OK               The driver listens. Next, call fathom_poll().
+ * @retval FATHOM_ERR_ARGUMENT     `line` or `trigger.set` is NULL, or a member is outside its range.
+ * @retval FATHOM_ERR_BUSY         The line has another listener, which stays. The trigger was not touched.
+ * @retval FATHOM_ERR_UNSUPPORTED  The port has no `set_break`, or the pin no `set`.
  */
 fathom_status_t fathom_a16_controlled_init(fathom_a16_controlled_t *sensor,
                                            const fathom_a16_controlled_config_t *config);
 
-/*
- * Stops listening, if the driver is the listener of the line, and lets the trigger go high; the memory is the caller's
- * again. Call it again, and not poll, unless it returns
- * FATHOM_OK: the trigger is high, always where it is a pin.
- * FATHOM_PENDING, FATHOM_ERR_PORT: as fathom_line_break(line, false). If the caller gives up here, TX stays low, and
- * the line sends nothing until that is FATHOM_OK.
+/**
+ * @brief Stops listening and makes the trigger high.
+ *
+ * If the driver is no longer the listener of the line, the present listener stays.
+ *
+ * @param sensor  The driver.
+ * @retval FATHOM_OK        The trigger is high. The memory belongs to the caller again. A pin always has this result.
+ * @retval FATHOM_PENDING   The port refused to end the break. Call this function again, and do not poll.
+ * @retval FATHOM_ERR_PORT  The break failed, or the port has refused for 1 s. Call this function again, and do not
+ *                          poll. If the program gives up here, TX stays low, and the line sends nothing until
+ *                          fathom_line_break() ends the break.
  */
 fathom_status_t fathom_a16_controlled_deinit(fathom_a16_controlled_t *sensor);
 
-/* For fathom_poll. */
+/** @brief Returns the sensor for fathom_poll() and fathom_due_us(). The sensor points to the driver. */
 fathom_sensor_t fathom_a16_controlled_sensor(fathom_a16_controlled_t *sensor);
 
 #ifdef __cplusplus

@@ -8,80 +8,144 @@
 extern "C" {
 #endif
 
-/*
- * A16 by Modbus RTU (A16 6): the RS485 variant, and the RS232 variant, whose automatic output ends with
- * the first request and does not come back by itself. 9600 8N1.
+/**
+ * @file
+ * @brief Reads the distances of an A16 by Modbus RTU (A16 6): the RS485 variant, and the RS232 variant. 9600 8N1.
  *
- * One sample a response, as often as polling and the pace allow: FATHOM_TARGET, or what the window makes of the
- * values 0, FFFD, FFFE and FFFF (dyp.h). The errors of fathom_poll, each of one attempt:
- *   FATHOM_ERR_NO_RESPONSE  nothing from the unit in timeout_us, retries included. The datasheet documents no
- *                           exceptions: a wrong register may be silence too
- *   FATHOM_ERR_CHECKSUM     its response was damaged
- *   FATHOM_ERR_EXCEPTION    it refused; fathom_a16_modbus_exception has the number
- *   FATHOM_ERR_MALFORMED    it sent something else, or a value that is refused: outside the window, or FFFF;
- *                           then it is in base.measurement.refused_raw, and counted
- *   FATHOM_ERR_PORT         the HAL's port is broken; returned by every poll until it works again
- *   FATHOM_ERR_LINE_BUSY    the line was never silent. Says nothing about the unit (status.h)
- *   FATHOM_ERR_OTHER_MASTER another master asked the same unit. Says nothing about the unit
- *   FATHOM_ERR_CANCELLED    the line was initialised again, or another driver moved the unit
- *   FATHOM_ERR_ARGUMENT     the driver is not initialised
+ * The driver reads register 0x0100 (processed) or 0x0101 (real-time) again and again and returns one sample for each
+ * response. The driver never writes to the module and never waits. a16_settings.h has all other registers.
+ * include/COST.md has its size in the row `a16_modbus`.
  *
- * The longest time until fathom_poll() returns an outcome is that of modbus_unit.h:
+ * @code
+ * static fathom_modbus_t transport;                         // must stay valid as long as the driver
+ * transport = fathom_modbus_client(&line);
+ * const fathom_a16_modbus_config_t config = {.modbus = {.transport = &transport, .address = 1}};
+ * fathom_a16_modbus_init(&a16, &config);
+ * sensor = fathom_a16_modbus_sensor(&a16);
+ * for (;;)
+ *     if (fathom_poll(&sensor, &sample) == FATHOM_OK && sample.kind == FATHOM_TARGET) show_mm(sample.distance_mm);
+ * @endcode
  *
- *     period_us + least(16 * timeout_us, backoff_us) + B(timeout_us, retries) + S + P
+ * 1. **RS232.** The first Modbus request stops the automatic output of an RS232 module. The output does not return
+ *    without a power cycle or a write to register 0x0202 (A16 5). a16_rs232.h does this.
  *
- * Here B is the bound of a transaction alone on its line (line.h), S the sum of the bounds of the line's other
- * transactions, and P the polling interval. While a command or setting of this driver is in progress, its time is added.
- * The other registers are in a16_settings.h.
+ * 2. **Samples.** The kind is FATHOM_TARGET, or the meaning of the values 0, FFFD, FFFE and FFFF (dyp.h). `time_us` is
+ *    the arrival of the last byte of the response.
+ *
+ * 3. **Sequence.** Each response increments `sequence`, a response with a refused value too. A value that is read
+ *    sooner than the module measures is the old value; no response shows this. The datasheet prints no period for
+ *    Modbus. It prints 120 ms for a triggered measurement (A16 3(2)), which is the least period of the driver.
+ *
+ * 4. **Time.** The longest time until fathom_poll() returns a sample or an error is, in the terms of modbus_unit.h:
+ *
+ *        period_us + least(16 * timeout_us, backoff_us) + B(timeout_us, retries) + S + P
+ *
+ *    B is the bound of a transaction alone on its line (line.h). S is the sum of the bounds of the other transactions
+ *    of the line. P is the longest time between two polls. If a command or setting of this driver is in progress, add
+ *    its time (a16_settings.h).
+ *
+ * 5. **Errors.** Each error is the result of one request, retries included. The driver continues after each error.
+ *
+ * | error of fathom_poll() | cause |
+ * |---|---|
+ * | FATHOM_ERR_NO_RESPONSE | the unit did not respond within `timeout_us`; the datasheet documents no exceptions |
+ * | FATHOM_ERR_CHECKSUM | the response was damaged |
+ * | FATHOM_ERR_EXCEPTION | the unit refused; fathom_a16_modbus_exception() returns the exception code |
+ * | FATHOM_ERR_MALFORMED | the unit sent another frame, or a refused value: outside the window, or FFFF |
+ * | FATHOM_ERR_WARMING_UP | no reading yet so soon after fathom_a16_modbus_power_on() |
+ * | FATHOM_ERR_PORT | the port is broken; returned by every poll until the port works again |
+ * | FATHOM_ERR_LINE_BUSY | the line was never silent; says nothing about the unit (status.h) |
+ * | FATHOM_ERR_OTHER_MASTER | another master sent the unit a request; says nothing about the unit |
+ * | FATHOM_ERR_CANCELLED | the line was initialised again, or another driver moved the unit |
+ * | FATHOM_ERR_UNSUPPORTED | the port cannot set `line_settings` |
+ * | FATHOM_ERR_ARGUMENT | the driver is not initialised |
+ *
+ * A refused value increments `base.measurement.implausible` and stands in `base.measurement.refused_raw` (dyp.h).
  */
 
-/* From one request to the next, at least. The datasheet gives 120 ms for a measurement (A16 3(2)). */
+/** @brief Least time from one request to the next, in microseconds (rule 3). */
 #define FATHOM_A16_MIN_PERIOD_US 120000uL
 
-/* Register addresses (A16 6(3)). One register a read: no longer one is documented. */
-enum { FATHOM_A16_REGISTER_PROCESSED = 0x0100, FATHOM_A16_REGISTER_REAL_TIME = 0x0101 };
+/** @brief Registers of the distances (A16 6(3)). The datasheet documents reads of one register only. */
+enum {
+    FATHOM_A16_REGISTER_PROCESSED = 0x0100, /**< Processed distance, in millimetres. */
+    FATHOM_A16_REGISTER_REAL_TIME = 0x0101  /**< Real-time distance, in millimetres. */
+};
 
-/* Read by init only. Members that are 0 mean their defaults: a period of 120 ms, a time-out of 1 s for the processed
- * value and 300 ms for the real-time one. */
+/** @brief The configuration. A member that is 0 takes its default. */
 typedef struct {
+    /**
+     * @brief Transport, address and times (fathom_modbus_config_t).
+     *
+     * `timeout_us` 0 selects 1 s for the processed value and 300 ms for the real-time value. Sister models respond
+     * within 520 ms and 120 ms; the datasheet prints no time. `period_us` below 120 ms selects 120 ms.
+     */
     fathom_modbus_config_t modbus;
-    uint32_t start_us; /* after power_on silence is no error for so long; 0: 1.5 s, as sister models need */
-    fathom_dyp_window_t window; /* the distances that are believed; 0: 1 and 16350 mm */
-    /* fathom_dyp_value_t. Processed: sister models take up to 520 ms to respond; real-time: about 120 ms. */
+
+    /**
+     * @brief Start-up time after fathom_a16_modbus_power_on(), in microseconds, 1 to 2^31 - 1. 0 selects 1.5 s.
+     *
+     * Sister models need 0.9 s; the datasheet prints no time.
+     */
+    uint32_t start_us;
+
+    /** @brief Accepted distances, and the meaning of the other values. 0 selects 1 to 16350 mm. */
+    fathom_dyp_window_t window;
+
+    /** @brief The distance that the driver reads: a fathom_dyp_value_t. 0 selects FATHOM_PROCESSED. */
     uint8_t value;
 } fathom_a16_modbus_config_t;
 
+/** @brief The driver, in the caller's memory. Call fathom_a16_modbus_init() before use. */
 typedef struct {
+    /** @brief The refused values of `base.measurement` may be read (dyp.h). */
     fathom_dyp_modbus_t base;
+
+    /* private */
     uint16_t values[1];
 } fathom_a16_modbus_t;
 
-/* FATHOM_OK, or FATHOM_ERR_ARGUMENT: no transport, address 255 or one beside address_zero,
- * no such value, min_mm over max_mm, or a member outside its range; `value` is 0 or 1.
- * Ranges: `modbus` as in fathom_modbus_config_t, `start_us` 0 to 2^31 - 1, `window` as in fathom_dyp_window_t. A refused
- * init zeroes *sensor; then each poll and command returns FATHOM_ERR_ARGUMENT. FATHOM_ERR_BUSY: a request of this driver is
- * still queued; nothing changed. Call the deinit function first. */
+/**
+ * @brief Initialises the driver. Sends nothing.
+ *
+ * @param sensor  The driver. Must stay valid until fathom_a16_modbus_deinit().
+ * @param config  The configuration. Not used after the call.
+ * @retval FATHOM_OK            The driver can be used. Next, call fathom_poll().
+ * @retval FATHOM_ERR_ARGUMENT  A member is outside its range, there is no transport, or the buffer of its line is too
+ *                              small. The driver is zeroed: each poll and command then returns this error.
+ * @retval FATHOM_ERR_BUSY      A request of this driver is still queued. Nothing has changed. Call
+ *                              fathom_a16_modbus_deinit() first.
+ */
 fathom_status_t fathom_a16_modbus_init(fathom_a16_modbus_t *sensor, const fathom_a16_modbus_config_t *config);
 
-/* Cancels what is under way; the memory is the caller's again. */
+/** @brief Cancels the request in progress. After the call the memory belongs to the caller again. */
 void fathom_a16_modbus_deinit(fathom_a16_modbus_t *sensor);
 
-/* To be called when the sensor gets power: for start_us its silence is FATHOM_ERR_WARMING_UP. */
+/**
+ * @brief Records that the sensor is powered now. Cancels the request, command or setting in progress.
+ *
+ * For `start_us`, silence, damage and exceptions are FATHOM_ERR_WARMING_UP. If the program does not know when the
+ * sensor is powered, do not call this function; the errors are then reported unchanged.
+ */
 void fathom_a16_modbus_power_on(fathom_a16_modbus_t *sensor);
 
-/* The exception code that came with the last FATHOM_ERR_EXCEPTION, until the next request; 0: there was none. */
+/**
+ * @brief Returns the exception code of the last FATHOM_ERR_EXCEPTION, 1 to 255. 0: there was none.
+ *
+ * The code is valid until the next request.
+ */
 static inline uint8_t fathom_a16_modbus_exception(const fathom_a16_modbus_t *sensor)
 {
     return fathom_modbus_unit_exception(&sensor->base.unit);
 }
 
-/* For fathom_modbus_unit_responses and fathom_modbus_unit_failures: how many requests succeeded, and how many not. */
+/** @brief Returns the unit, for fathom_modbus_unit_responses() and fathom_modbus_unit_failures(). */
 static inline const fathom_modbus_unit_t *fathom_a16_modbus_unit(const fathom_a16_modbus_t *sensor)
 {
     return &sensor->base.unit;
 }
 
-/* For fathom_poll. */
+/** @brief Returns the sensor for fathom_poll() and fathom_due_us(). The sensor points to the driver. */
 fathom_sensor_t fathom_a16_modbus_sensor(fathom_a16_modbus_t *sensor);
 
 #ifdef __cplusplus
