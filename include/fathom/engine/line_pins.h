@@ -10,11 +10,31 @@
 extern "C" {
 #endif
 
-/* A line whose pins serve for something else too. What they return points to the line, which outlives it. */
+/**
+ * @file
+ * @brief Uses the pins of a line for a second purpose: TX as a trigger or select, RX as the level of a switch.
+ *
+ * The functions make an output (output.h) or a guard (contact.h) from a line. They keep no state and never wait. The
+ * line must stay valid as long as the result is used.
+ *
+ * @code
+ * const fathom_a16_controlled_config_t config = {.line = &line, .trigger = fathom_output_line_break(&line)};
+ *
+ * static fathom_contact_guard_t guard;                      // must stay valid as long as the contact
+ * guard = fathom_contact_line_guard(&line);
+ * @endcode
+ */
 
-/* Its TX triggers or selects, by a break: `set` is fathom_line_break, with its return values. */
+/**
+ * @brief The member `set` of an output that is a break of a line.
+ *
+ * @param ctx    The fathom_line_t.
+ * @param level  FATHOM_OUTPUT_...
+ * @return As fathom_line_break(). FATHOM_OUTPUT_REST only checks that the port has `set_break`.
+ */
 fathom_status_t fathom_output_set_line_break(const void *ctx, uint8_t level);
 
+/** @brief Returns the output that holds the TX of `line` low by a break. While TX is low, the line sends nothing. */
 static inline fathom_output_t fathom_output_line_break(fathom_line_t *line)
 {
     fathom_output_t output;
@@ -23,11 +43,11 @@ static inline fathom_output_t fathom_output_line_break(fathom_line_t *line)
     return output;
 }
 
-/* A contact on its RX: the level is not read while a transaction is on the line, nor until 5 ms after the last byte.
- * The contact polls the line too. For `guard`:
+/**
+ * @brief Returns the guard of a contact on the RX of `line`.
  *
- *   static fathom_contact_guard_t guard;
- *   guard = fathom_contact_line_guard(&line);
+ * The level does not count while a transaction is in progress, nor until FATHOM_CONTACT_QUIET_US (5 ms) after the last
+ * byte. The contact polls the line. Keep the guard as long as the contact.
  */
 fathom_contact_guard_t fathom_contact_line_guard(fathom_line_t *line);
 
