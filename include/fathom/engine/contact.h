@@ -14,8 +14,10 @@ extern "C" {
 
 /**
  * @file
- * @brief Reads a level that a sensor drives. a16_switch.h and a05_relay.h are built on this file, and any other switch
- * can be read with it.
+ * @brief Reads a level that a sensor drives: a switch or a relay.
+ *
+ * a16_switch.h and a05_relay.h are built on this file, and any other switch can be read with it. No function waits.
+ * Call all functions of one contact from one context. include/COST.md has the size in the rows of the two drivers.
  *
  * Each poll reads the pin once, which is a *look*. What the level does between two looks is not seen. A level *counts*
  * while it was equal at every look for `settle_us`.
@@ -35,6 +37,9 @@ extern "C" {
  *
  * **Age.** `raw` and `kind` are always the level at the look of the poll that returns the sample. At most 71 minutes
  * may pass between two looks, because the clock wraps: call fathom_contact_init() again after a longer pause.
+ *
+ * **Sequence.** Each sample increments `sequence`. A new number shows that the pin was read, not that the sensor
+ * measured again: the sensor's own period is in the header of its driver.
  */
 
 /** Default of `settle_us`. */
@@ -101,22 +106,36 @@ typedef struct {
 } fathom_contact_t;
 
 /**
- * @brief Initialises a contact and reads the pin once. Copies `timing`.
+ * @brief Initialises a contact and reads the pin once.
  *
- * If it fails, the contact is zeroed: set its members again before the next try.
+ * If the function fails, the contact is zeroed: set its members again before the next try.
  *
- * @retval FATHOM_OK         The contact is ready.
+ * @param contact  The contact, with its first six members set.
+ * @param timing   The times. Not used after the call.
+ * @retval FATHOM_OK            The contact is ready.
  * @retval FATHOM_ERR_ARGUMENT  There is no pin that can be read, no clock, a guard without one of its functions, or a
  *                              time outside its range.
  */
 fathom_status_t fathom_contact_init(fathom_contact_t *contact, const fathom_contact_timing_t *timing);
 
-/** @brief Changes what a high level means. The level must settle again. If its kind is the same then, there is no
- * sample before `period_us` is over. */
+/**
+ * @brief Changes what a high level means.
+ *
+ * The level must settle again. If its kind is the same then, there is no sample before `period_us` is over.
+ *
+ * @param contact       The contact.
+ * @param near_is_high  True if a high level is FATHOM_NEAR.
+ */
 void fathom_contact_set_near_is_high(fathom_contact_t *contact, bool near_is_high);
 
-/** @brief Stops the level from counting while `hold` is true, because its meaning is about to change. After that, the
- * level must settle again. A hold that does not end is FATHOM_ERR_STALE after each `stale_us`. */
+/**
+ * @brief Stops the level from counting while its meaning is about to change.
+ *
+ * After the hold the level must settle again. A hold that does not end is FATHOM_ERR_STALE after each `stale_us`.
+ *
+ * @param contact  The contact.
+ * @param hold     True to start the hold, false to end it.
+ */
 void fathom_contact_set_hold(fathom_contact_t *contact, bool hold);
 
 /**

@@ -33,10 +33,22 @@ extern "C" {
  * Widths are correct up to 71 minutes, also across the wrap of the clock. If the clock was set back by up to 100 ms
  * between the two edges, the width is 0, which is noise to pulse.h.
  *
+ * No function waits. The row `a16_pwm_edges` of include/COST.md has the size of a driver with this file.
+ *
+ * @code
+ * static fathom_edges_t edges;                              // the interrupt calls fathom_edges_feed(&edges, level,
+ * time) static fathom_capture_t capture;                          // must stay valid as long as the driver
+ * fathom_edges_init(&edges, &pin);
+ * capture = fathom_edges_capture(&edges);
+ * config.pulse.capture = &capture;
+ * @endcode
+ *
  * No lock is needed, also on 8-bit machines. There is one writer (the interrupt, or several interrupts of one priority)
  * and one reader (the main loop) on one core. What both sides access is single bytes, which every machine reads and
  * writes whole.
  */
+
+/** @brief Sizes and defaults. */
 enum {
     FATHOM_EDGES_PULSES = 4, /**< Pulses that can wait to be taken. Later pulses are lost and counted. */
     FATHOM_EDGES_DEFAULT_SAME_US = 50 /**< Default of `same_us`. */
@@ -52,8 +64,8 @@ typedef struct {
 /** @brief The state of one pin. The caller owns the memory; all members but `same_us` belong to the functions below. */
 typedef struct {
     /* Written by the interrupt. */
-    volatile fathom_edges_pulse_t pulses[FATHOM_EDGES_PULSES];
-    uint32_t rise_us;        /**< Time of the last rise, if `is_timed`. */
+    volatile fathom_edges_pulse_t pulses[FATHOM_EDGES_PULSES]; /**< The ring of pulses. */
+    uint32_t rise_us;                                          /**< Time of the last rise, if `is_timed`. */
     volatile uint8_t lost;   /**< Pulses that found no free place; stops at 255. May be read. */
     volatile uint8_t missed; /**< Edges that must have been missed; stops at 255. May be read. */
     volatile bool is_high;   /**< Level after the last edge. */
@@ -81,6 +93,8 @@ void fathom_edges_init(fathom_edges_t *edges, const fathom_pin_t *pin);
 
 /**
  * @brief Stores an edge. Call it from the interrupt.
+ *
+ * @param edges    The state of the pin.
  * @param high     The level after the edge. For an interrupt on both edges: the level that the pin has when it is read.
  * @param time_us  Time of the edge, by the clock of the HAL or a counter that agrees with it.
  */

@@ -15,11 +15,14 @@ extern "C" {
  * @file
  * @brief An output that drives the RX pin of a module: its trigger or its mode select.
  *
- * The output is a pin, a break on the TX of a UART that has no other use, or a break of a line (line_pins.h). A driver
- * copies the fathom_output_t:
+ * The output is a pin, a break on the TX of a UART that has no other use, or a break of a line (line_pins.h). An output
+ * has no state, so it may be copied, and drivers do so. No function waits. A program links only the kind of output that
+ * it names.
  *
- *     config.trigger = fathom_output_pin(&pin);
- *     static const fathom_a16_auto_config_t config = {.line = &line, .select = {fathom_output_set_pin, &pin}};
+ * @code
+ * config.trigger = fathom_output_pin(&pin);
+ * static const fathom_a16_auto_config_t config = {.line = &line, .select = {fathom_output_set_pin, &pin}};
+ * @endcode
  */
 
 /** @brief What an output is set to. */
@@ -48,10 +51,26 @@ typedef struct {
     const void *ctx; /**< Passed to `set`; must stay valid as long as the driver. */
 } fathom_output_t;
 
-/** @brief `set` of an output that is a pin. `ctx` is the fathom_pin_t. */
+/**
+ * @brief The member `set` of an output that is a pin.
+ *
+ * @param ctx    The fathom_pin_t.
+ * @param level  FATHOM_OUTPUT_...
+ * @retval FATHOM_OK               The pin has the level.
+ * @retval FATHOM_ERR_UNSUPPORTED  `ctx` is NULL, or the pin has no `set`.
+ */
 fathom_status_t fathom_output_set_pin(const void *ctx, uint8_t level);
 
-/** @brief `set` of an output that is a break. `ctx` is the fathom_uart_t. */
+/**
+ * @brief The member `set` of an output that is a break on the TX of a UART that has no other use.
+ *
+ * @param ctx    The fathom_uart_t.
+ * @param level  FATHOM_OUTPUT_...
+ * @retval FATHOM_OK               TX has the level.
+ * @retval FATHOM_PENDING          The port still sends bytes. Call again.
+ * @retval FATHOM_ERR_PORT         The port is broken.
+ * @retval FATHOM_ERR_UNSUPPORTED  `ctx` is NULL, or the UART has no `set_break`.
+ */
 fathom_status_t fathom_output_set_break(const void *ctx, uint8_t level);
 
 /** @brief Returns the output that drives `pin`, which must stay valid. */
@@ -72,7 +91,13 @@ static inline fathom_output_t fathom_output_break(const fathom_uart_t *uart)
     return output;
 }
 
-/** @brief Sets the level of an output. Returns what `output->set` returns, or FATHOM_ERR_UNSUPPORTED if it is NULL. */
+/**
+ * @brief Sets the level of an output.
+ *
+ * @param output  The output.
+ * @param level   FATHOM_OUTPUT_...
+ * @return The result of `output->set`, or FATHOM_ERR_UNSUPPORTED if that is NULL.
+ */
 static inline fathom_status_t fathom_output_set(const fathom_output_t *output, uint8_t level)
 {
     return (output->set != NULL) ? output->set(output->ctx, level) : FATHOM_ERR_UNSUPPORTED;

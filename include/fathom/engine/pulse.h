@@ -19,7 +19,8 @@ extern "C" {
  * @brief Triggers a sensor repeatedly and measures the high pulse that it sends back (A16 1).
  *
  * A fathom_capture_t measures the pulse, so a slow loop costs time and no precision. No function waits, and the only
- * state is in the fathom_pulse_meter_t. All functions of one meter must be called from one context.
+ * state is in the fathom_pulse_meter_t. Call all functions of one meter from one context. a16_pwm.h is built on this
+ * file, and include/COST.md has its size.
  *
  * A cycle begins with the falling edge of the trigger. It has one outcome:
  *
@@ -69,8 +70,8 @@ extern "C" {
 #define FATHOM_PULSE_STALE_US 2500000uL
 
 /**
- * @brief The configuration of a meter. fathom_pulse_init() copies it; what it points to must stay valid as long as the
- * meter. A member that is 0 takes its default.
+ * @brief The configuration of a meter. A member that is 0 takes its default. `clock`, `capture` and `trigger.ctx` must
+ * stay valid until fathom_pulse_deinit().
  */
 typedef struct {
     const fathom_clock_t *clock; /**< Required, with `now_us`. */
@@ -104,23 +105,26 @@ typedef struct {
 
 /** @brief A meter. The caller owns the memory. Members without a remark may be read only. */
 typedef struct {
-    fathom_trigger_t trigger;
+    fathom_trigger_t trigger;        /**< Makes the edges. */
     const fathom_capture_t *capture; /**< Invariant: NULL unless the initialisation succeeded. */
-    uint32_t no_target_us;
-    uint32_t stuck_us;
-    uint16_t noise_us;
-    uint16_t short_us; /**< Longest pulse of this cycle of 100 us..noise_us; 0: none. */
-    uint16_t noises;   /**< Pulses shorter than `noise_us`; stops at 65535. The caller may set it to 0. */
-    uint16_t stales;   /**< Pulses that were too old; stops at 65535. The caller may set it to 0. */
-    bool is_waiting;   /**< A cycle has no outcome yet. */
+    uint32_t no_target_us;           /**< As in the configuration, with the default filled in. */
+    uint32_t stuck_us;               /**< As in the configuration, with the default filled in. */
+    uint16_t noise_us;               /**< As in the configuration, with the default filled in. */
+    uint16_t short_us;               /**< Longest pulse of this cycle of 100 us..noise_us; 0: none. */
+    uint16_t noises; /**< Pulses shorter than `noise_us`; stops at 65535. The caller may set it to 0. */
+    uint16_t stales; /**< Pulses that were too old; stops at 65535. The caller may set it to 0. */
+    bool is_waiting; /**< A cycle has no outcome yet. */
 } fathom_pulse_meter_t;
 
 /**
  * @brief Initialises a meter and makes the trigger high. The first falling edge may come `low_us` later.
  *
- * If it fails, the meter is zeroed. It may be called again at any time; the cycle in progress is then forgotten.
+ * If the function fails, the meter is zeroed. The function may be called again at any time; it discards the cycle in
+ * progress.
  *
- * @retval FATHOM_OK            The meter is ready.
+ * @param meter   The meter. Must stay valid until fathom_pulse_deinit().
+ * @param config  The configuration. Not used after the call.
+ * @retval FATHOM_OK               The meter is ready.
  * @retval FATHOM_ERR_ARGUMENT     A required member is missing, or a member is outside its range.
  * @retval FATHOM_ERR_UNSUPPORTED  The UART has no `set_break`, or the pin no `set`.
  */
@@ -132,8 +136,9 @@ fathom_status_t fathom_pulse_init(fathom_pulse_meter_t *meter, const fathom_puls
  * In a slow loop the cycles are longer, and the trigger is low until the poll after `low_us`. Poll at least once in 71
  * minutes.
  *
+ * @param meter    The meter.
  * @param reading  Written with FATHOM_OK only.
- * @retval FATHOM_OK            `*reading` is the outcome of a cycle. The next cycle has begun if it was time.
+ * @retval FATHOM_OK               `*reading` is the outcome of a cycle. The next cycle has begun if it was time.
  * @retval FATHOM_PENDING          There is no outcome yet.
  * @retval FATHOM_ERR_NO_RESPONSE  The cycle ended without a pulse.
  * @retval FATHOM_ERR_STALE        A pulse was captured, and the program polled too late for it.
@@ -153,7 +158,7 @@ uint32_t fathom_pulse_due_us(const fathom_pulse_meter_t *meter);
 /**
  * @brief Makes the trigger high, if it is low. Call it again, and do not poll, unless it returns FATHOM_OK. The
  * memory belongs to the caller again after that.
- * @retval FATHOM_OK     The trigger is high. A pin, and a meter in zeroed memory, always have this result.
+ * @retval FATHOM_OK        The trigger is high. A pin, and a meter in zeroed memory, always have this result.
  * @retval FATHOM_PENDING   The UART refused to end the break. The trigger is low until a later call succeeds.
  * @retval FATHOM_ERR_PORT  The break failed, or the UART has refused for 1 s. If the caller gives up, the trigger stays
  *                          low.

@@ -22,8 +22,8 @@ extern "C" {
  *              |<low_us>|<---- >= low_us -->|
  *              |<------- >= period_us ----->|
  *
- * pulse.h and a16_controlled.h are built on this file. No function waits. All functions of one trigger must be called
- * from one context.
+ * pulse.h and a16_controlled.h are built on this file; a program that reads a sensor needs those only. No function
+ * waits. Call all functions of one trigger from one context. include/COST.md has the cost in the rows of the drivers.
  *
  * The functions are meant for a driver, which checks first that its own initialisation succeeded. A trigger whose
  * fathom_trigger_init() failed must not be passed to them, except to fathom_trigger_deinit().
@@ -55,7 +55,9 @@ typedef struct {
 
 /**
  * @brief Initialises a trigger and makes the output high. The first falling edge may come `low_us` later.
- * @retval FATHOM_OK            The trigger is ready.
+ *
+ * @param trigger  The trigger, with `output`, `clock`, `period_us` and `low_us` set.
+ * @retval FATHOM_OK               The trigger is ready.
  * @retval FATHOM_ERR_ARGUMENT     There is no output or no clock, or a time is outside its range.
  * @retval FATHOM_ERR_UNSUPPORTED  The port has no `set_break`, or the pin no `set`.
  */
@@ -76,8 +78,9 @@ static inline bool fathom_trigger_is_due(const fathom_trigger_t *trigger)
  * An output that refuses is tried again in each call. If it refuses for 1 s to begin or to end the low level, the
  * function returns FATHOM_ERR_PORT, and again after each further second. Shorter refusals are not added up.
  *
- * @param may_begin  The next falling edge may come.
- * @retval FATHOM_OK     The falling edge was made. `polled_us` is the clock after it, so no period is too short.
+ * @param trigger    The trigger, after fathom_trigger_update().
+ * @param may_begin  True if the next falling edge may come.
+ * @retval FATHOM_OK        The falling edge was made. `polled_us` is the clock after it, so no period is too short.
  * @retval FATHOM_PENDING   It is not time yet, the output refuses for less than 1 s, or the output went high.
  * @retval FATHOM_ERR_PORT  The output is broken, or refuses.
  */
@@ -85,6 +88,8 @@ fathom_status_t fathom_trigger_drive(fathom_trigger_t *trigger, bool may_begin);
 
 /**
  * @brief Returns the time in microseconds until fathom_trigger_drive() must be called again.
+ *
+ * @param trigger   The trigger.
  * @param until_us  A time after `polled_us` at which the caller has something to do. If it is 0, 1 ms is used, because
  *                  an output may have refused.
  */
@@ -92,7 +97,7 @@ uint32_t fathom_trigger_due_us(const fathom_trigger_t *trigger, uint32_t until_u
 
 /**
  * @brief Makes the output high, if it is low. Call it again unless it returns FATHOM_OK.
- * @retval FATHOM_OK     The output is high. A zeroed trigger has this result too.
+ * @retval FATHOM_OK        The output is high. A zeroed trigger has this result too.
  * @retval FATHOM_PENDING   The output refused.
  * @retval FATHOM_ERR_PORT  The output is broken, or has refused for 1 s.
  */

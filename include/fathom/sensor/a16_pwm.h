@@ -15,11 +15,24 @@ extern "C" {
 
 /**
  * @file
- * @brief A16 with PWM output (A16 1): each falling edge at its RX pin starts a measurement, and the module responds
- * with one high pulse on TX whose width is the time of flight. pulse.h does the timing and states what each width
- * means.
+ * @brief Reads an A16 with PWM output (A16 1): triggers the module and measures the width of its pulse.
  *
- * There is one sample per cycle of 221 ms. `raw` is the width of the pulse in us, and `time_us` is its end.
+ * Each falling edge at the RX pin of the module starts a measurement. The module responds with one high pulse on TX,
+ * whose width is the time of flight. pulse.h does the timing and states what each width means. The driver never waits.
+ * It needs no line; a capture measures the pulse (hal.h, edges.h). include/COST.md has its size in the row `a16_pwm`.
+ *
+ * @code
+ * const fathom_a16_pwm_config_t config = {
+ *     .pulse = {.clock = &clock, .capture = &capture, .trigger = fathom_output_pin(&pin)}};
+ * fathom_a16_pwm_init(&a16, &config);
+ * sensor = fathom_a16_pwm_sensor(&a16);
+ * for (;;)
+ *     if (fathom_poll(&sensor, &sample) == FATHOM_OK && sample.kind == FATHOM_TARGET) show_mm(sample.distance_mm);
+ * @endcode
+ *
+ * There is one sample per cycle, by default every 221 ms. `raw` is the width of the pulse in microseconds, and
+ * `time_us` is its end. Each sample increments `sequence`, and each is a new measurement: the cycle is longer than the
+ * 220 ms that the module needs (A16 1(2)).
  *
  * | kind | cause |
  * |---|---|
@@ -43,10 +56,13 @@ extern "C" {
  * 522 mm.
  */
 
-/** Longest distance with `in_air`, in mm: the longest pulse, 94 ms, in the hottest air, 85 degrees C, rounded up. */
-enum { FATHOM_A16_PWM_MAX_MM_IN_AIR = 18000 };
+/** @brief Default of `window.max_mm` with `in_air`. */
+enum {
+    /** @brief The longest pulse, 94 ms, in the hottest air, 85 degrees C, in millimetres, rounded up. */
+    FATHOM_A16_PWM_MAX_MM_IN_AIR = 18000
+};
 
-/** @brief The configuration. fathom_a16_pwm_init() copies it. A member that is 0 takes its default. */
+/** @brief The configuration. A member that is 0 takes its default. */
 typedef struct {
     /** The clock, the capture of the module's TX pin, and the trigger, which is its RX pin; the times have defaults. */
     fathom_pulse_config_t pulse;
@@ -59,26 +75,37 @@ typedef struct {
     int16_t air_dc; /**< Temperature of the air with `in_air`, in tenths of a degree C: -400..850. */
 } fathom_a16_pwm_config_t;
 
-/** @brief The driver. The caller owns the memory. Members without a remark may be read only. */
+/** @brief The driver, in the caller's memory. Call fathom_a16_pwm_init() before use. */
 typedef struct {
-    fathom_pulse_meter_t meter;
-    fathom_dyp_window_t window;
-    uint16_t sequence;
-    uint16_t implausible; /**< Refused distances; stops at 65535. */
-    int16_t air_dc;       /**< The caller may change it at any time, -400..850. */
-    bool in_air;
+    fathom_pulse_meter_t meter; /**< The meter. `noises` and `stales` may be read and set to 0. */
+    fathom_dyp_window_t window; /**< The window, with the defaults filled in. */
+    uint16_t sequence;          /**< Number of the last sample. */
+    uint16_t implausible;       /**< Refused distances; stops at 65535. */
+    int16_t air_dc;             /**< The caller may change it at any time, -400..850. */
+    bool in_air;                /**< As in the configuration. */
 } fathom_a16_pwm_t;
 
 /**
- * @brief Initialises the driver and makes the trigger high. If it fails, the driver is zeroed.
- * @retval FATHOM_OK            The driver is ready.
+ * @brief Initialises the driver and makes the trigger high. If the function fails, the driver is zeroed.
+ *
+ * @param sensor  The driver. Must stay valid until fathom_a16_pwm_deinit().
+ * @param config  The configuration. Not used after the call.
+ * @retval FATHOM_OK               The driver is ready. Next, call fathom_poll(). The first trigger comes `low_us`
+ *                                 later.
  * @retval FATHOM_ERR_ARGUMENT     A member of the configuration is missing or outside its range.
  * @retval FATHOM_ERR_UNSUPPORTED  The UART has no `set_break`, or the pin no `set`.
  */
 fathom_status_t fathom_a16_pwm_init(fathom_a16_pwm_t *sensor, const fathom_a16_pwm_config_t *config);
 
-/** @brief Makes the trigger high. Returns what fathom_pulse_deinit() returns: call it again unless that is
- * FATHOM_OK. The memory belongs to the caller again after that. */
+/**
+ * @brief Makes the trigger high, if it is low. Call it again, and do not poll, unless it returns FATHOM_OK.
+ *
+ * @param sensor  The driver.
+ * @retval FATHOM_OK        The trigger is high. The memory belongs to the caller again. A pin always has this result.
+ * @retval FATHOM_PENDING   The UART refused to end the break.
+ * @retval FATHOM_ERR_PORT  The break failed, or the UART has refused for 1 s. If the program gives up, the trigger
+ *                          stays low.
+ */
 fathom_status_t fathom_a16_pwm_deinit(fathom_a16_pwm_t *sensor);
 
 /** @brief Returns the sensor for fathom_poll() and fathom_due_us(). */

@@ -12,8 +12,18 @@ extern "C" {
 
 /**
  * @file
- * @brief A16 with switch output (A16 4): the level of its TX pin reports whether something is nearer than its
- * threshold, which is 1 m with factory settings.
+ * @brief Reads an A16 with switch output (A16 4): whether something is nearer than a threshold.
+ *
+ * The level of the TX pin is the result. The threshold is 1 m with factory settings. The driver reads the pin and never
+ * waits. include/COST.md has its size in the row `a16_switch`, and with settings in `a16_switch_set`.
+ *
+ * @code
+ * const fathom_a16_switch_config_t config = {.pin = &pin, .clock = &clock};
+ * fathom_a16_switch_init(&a16, &config);
+ * sensor = fathom_a16_switch_sensor(&a16);
+ * for (;;)
+ *     if (fathom_poll(&sensor, &sample) == FATHOM_OK) show_near(sample.kind == FATHOM_NEAR);
+ * @endcode
  *
  * The module measures every 500 ms. It changes the level after 3 measurements in a row below the threshold (1.5 s),
  * or 5 above it (2.5 s). The pin cannot drive a load: read it with an input of 3 V logic. debounce.h is the same rule
@@ -23,6 +33,9 @@ extern "C" {
  * `time_us` and `raw` are, and within which time a program that polls gets a sample or an error: 3 s + 2 * P by
  * default, where P is the longest time between two polls. The datasheet does not say what the level is before the
  * module's first decision.
+ *
+ * Each sample increments `sequence`. The driver repeats a level that does not change every `period_us` (1 s). Such a
+ * sample proves that the pin was read, not that the module measured again: the module measures every 500 ms.
  *
  * A switch cannot report "no response". A cut wire reads as the level that the board pulls the pin to, so pull it to
  * the safe level.
@@ -44,8 +57,8 @@ extern "C" {
  * lasts, the line looks busy; switch the receiver off while no request is in progress.
  */
 
-/** @brief The configuration. fathom_a16_switch_init() copies it; what it points to must stay valid as long as the
- * driver. A member that is 0 takes its default. */
+/** @brief The configuration. A member that is 0 takes its default. `pin`, `clock` and `guard` must stay valid as long as
+ * the driver. */
 typedef struct {
     const fathom_pin_t *pin;     /**< Reads the module's TX. Required, with `get`. */
     const fathom_clock_t *clock; /**< Required, with `now_us`. */
@@ -60,14 +73,17 @@ typedef struct {
         address; /**< Modbus address for the samples, 0..255; 0: without Modbus. It is copied and not used. */
 } fathom_a16_switch_config_t;
 
-/** @brief The driver. The caller owns the memory. */
+/** @brief The driver, in the caller's memory. Call fathom_a16_switch_init() before use. */
 typedef struct {
-    fathom_contact_t base;
+    fathom_contact_t base; /**< Reads the pin. */
 } fathom_a16_switch_t;
 
 /**
- * @brief Initialises the driver and reads the pin once. If it fails, the driver is zeroed.
- * @retval FATHOM_OK         The driver is ready.
+ * @brief Initialises the driver and reads the pin once. If the function fails, the driver is zeroed.
+ *
+ * @param sensor  The driver. Must stay valid as long as the program polls it.
+ * @param config  The configuration. Not used after the call.
+ * @retval FATHOM_OK            The driver is ready. Next, call fathom_poll().
  * @retval FATHOM_ERR_ARGUMENT  There is no clock, no pin that can be read, a guard without one of its functions, or a
  *                              time outside its range.
  */
@@ -80,14 +96,23 @@ fathom_status_t fathom_a16_switch_init(fathom_a16_switch_t *sensor, const fathom
  * meaning, after an error its previous one. After FATHOM_ERR_UNCONFIRMED it may be either: read it with
  * fathom_a16_modbus_get_switch_polarity() and call fathom_a16_switch_note_polarity().
  *
- * @param modbus  The driver of the same module on the line that shares the pins.
+ * @param sensor    The driver.
+ * @param modbus    The Modbus driver of the same module, on the line that shares the pins.
+ * @param polarity  The polarity.
  * @return What fathom_a16_modbus_set_switch_polarity() returns.
  */
 fathom_status_t fathom_a16_switch_set_polarity(fathom_a16_switch_t *sensor, fathom_a16_modbus_t *modbus,
                                                fathom_a16_polarity_t polarity);
 
-/** @brief Sets the meaning of the level without Modbus. Call it if the polarity was set or read without this driver, or
- * if fathom_a16_modbus_cancel() stopped the setting of it. */
+/**
+ * @brief Sets the meaning of the level without Modbus.
+ *
+ * Call this function if the polarity was set or read without this driver, or after fathom_a16_modbus_cancel() stopped
+ * fathom_a16_switch_set_polarity().
+ *
+ * @param sensor    The driver.
+ * @param polarity  The polarity of the module.
+ */
 void fathom_a16_switch_note_polarity(fathom_a16_switch_t *sensor, fathom_a16_polarity_t polarity);
 
 /** @brief Returns the sensor for fathom_poll() and fathom_due_us(). There is no deinit: stop polling. */
