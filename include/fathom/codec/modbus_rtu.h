@@ -66,7 +66,7 @@ enum {
 /** @brief A request and the response to it, in the caller's memory. */
 typedef struct {
     /**
-     * @brief The registers. A read writes them on success. Function 10 sends them. NULL for function 06.
+     * @brief The registers. A read writes them on success. Function 10 sends them. Function 06 does not use them.
      *
      * Must stay valid until the response is parsed.
      */
@@ -83,7 +83,11 @@ typedef struct {
     /** @brief The exception code, after FATHOM_ERR_EXCEPTION. 0: there was none. */
     uint8_t exception;
 
-    /** @brief True if this read changes something in the unit. The line then sends it only after a silence. */
+    /**
+     * @brief True if this read changes something in the unit. The line then sends it only after a silence.
+     *
+     * fathom_modbus_read_holding_registers() sets it to false. Set it after that call.
+     */
     bool has_effect;
 } fathom_modbus_message_t;
 

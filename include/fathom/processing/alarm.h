@@ -15,14 +15,18 @@ extern "C" {
 /**
  * @file
  * @brief An alarm on the distance of one probe: two thresholds, hold times, and a side for the time without a distance.
- * It works for any sensor in any mode, and behind a median. It is not a safety function.
  *
- *     static const fathom_alarm_config_t bumper = {.when = FATHOM_NEAR, .on_mm = 500, .off_mm = 600,
- *         .if_unknown = FATHOM_ALARM_ON, .if_no_response = FATHOM_ALARM_ON};
- *     status = fathom_poll(&sensor, &sample);
- *     if (status == FATHOM_OK ? fathom_alarm_add_sample(&alarm, &sample)
- *                                : fathom_alarm_add_status(&alarm, status, clock.now_us(clock.ctx)))
- *         stop_or_go(fathom_alarm_is_on(&alarm));
+ * The alarm works for any sensor in any mode, and behind a median. It is not a safety function. include/COST.md has its
+ * size in the row `alarm`.
+ *
+ * @code
+ * static const fathom_alarm_config_t bumper = {.when = FATHOM_NEAR, .on_mm = 500, .off_mm = 600,
+ *     .if_unknown = FATHOM_ALARM_ON, .if_no_response = FATHOM_ALARM_ON};
+ * status = fathom_poll(&sensor, &sample);
+ * if (status == FATHOM_OK ? fathom_alarm_add_sample(&alarm, &sample)
+ *                            : fathom_alarm_add_status(&alarm, status, clock.now_us(clock.ctx)))
+ *     stop_or_go(fathom_alarm_is_on(&alarm));
+ * @endcode
  *
  * | state | when it is reached |
  * |---|---|
@@ -60,7 +64,7 @@ typedef enum {
 /** Default of `unknown_us`. */
 #define FATHOM_ALARM_DEFAULT_UNKNOWN_US 5000000uL
 
-/** @brief The configuration. fathom_alarm_init() copies it. */
+/** @brief The configuration of an alarm. */
 typedef struct {
     /** Time for which something must be beyond `on_mm` before the alarm is on, 0..FATHOM_MAX_DURATION_US; 0: the first
      * sample switches it on. */
@@ -81,7 +85,7 @@ typedef struct {
 
 /** @brief An alarm. The caller owns the memory. Only `state` is meant to be read. */
 typedef struct {
-    fathom_alarm_config_t config;
+    fathom_alarm_config_t config; /**< The configuration, with the default filled in. */
     uint32_t fed_us;   /**< Time of the last distance; before the first distance, of the first call. */
     uint32_t since_us; /**< Time of the first distance on this side. */
     uint8_t state;     /**< fathom_alarm_state_t. Invariant: 0 unless the initialisation succeeded. */
@@ -99,7 +103,9 @@ typedef struct {
  * If the function fails, the alarm is zeroed: its state is 0 and never changes, and fathom_alarm_is_on() is false.
  * Check the result.
  *
- * @retval FATHOM_OK         The alarm is ready.
+ * @param alarm   The alarm.
+ * @param config  The configuration. Not used after the call.
+ * @retval FATHOM_OK            The alarm is ready.
  * @retval FATHOM_ERR_ARGUMENT  A required member is missing, or a member is outside its range.
  */
 fathom_status_t fathom_alarm_init(fathom_alarm_t *alarm, const fathom_alarm_config_t *config);
@@ -110,6 +116,8 @@ fathom_status_t fathom_alarm_init(fathom_alarm_t *alarm, const fathom_alarm_conf
  * Times may wrap. The time between two calls and `unknown_us` must together be below 35 minutes. A time that is up to
  * 100 ms before the previous one counts as equal to it.
  *
+ * @param alarm   The alarm.
+ * @param sample  The sample. Samples of one probe only.
  * @return True if the state changed.
  */
 bool fathom_alarm_add_sample(fathom_alarm_t *alarm, const fathom_sample_t *sample);
@@ -124,6 +132,9 @@ bool fathom_alarm_add_sample(fathom_alarm_t *alarm, const fathom_sample_t *sampl
  * | FATHOM_OK | the same: a sample of another probe, or a sample without a median |
  * | other errors | the device does not respond |
  *
+ * @param alarm   The alarm.
+ * @param status  The result of fathom_poll().
+ * @param now_us  The clock, in microseconds.
  * @return True if the state changed.
  */
 bool fathom_alarm_add_status(fathom_alarm_t *alarm, fathom_status_t status, uint32_t now_us);

@@ -20,11 +20,13 @@ extern "C" {
  * in a row farther than the threshold make it FATHOM_FAR. With `hold_us` a level also lasts for a least time, as that
  * of the A05's relay does (A05 4(1)).
  *
- *     fathom_debounce_t gate;
- *     fathom_debounce_init(&gate, &(fathom_debounce_config_t){.threshold_mm = 800});
- *     if (fathom_poll(&sensor, &sample) == FATHOM_OK && fathom_debounce_add_sample(&gate, &sample))
- *         open_or_close(gate.level);
- *     if (fathom_debounce_advance(&gate, clock.now_us(clock.ctx))) warn();
+ * @code
+ * fathom_debounce_t gate;
+ * fathom_debounce_init(&gate, &(fathom_debounce_config_t){.threshold_mm = 800});
+ * if (fathom_poll(&sensor, &sample) == FATHOM_OK && fathom_debounce_add_sample(&gate, &sample))
+ *     open_or_close(gate.level);
+ * if (fathom_debounce_advance(&gate, clock.now_us(clock.ctx))) warn();
+ * @endcode
  *
  * | measurement | input |
  * |---|---|
@@ -49,11 +51,11 @@ extern "C" {
 /** Default of `unknown_us`: twice the A16's 5 measurements of 500 ms (A16 4(2)). */
 #define FATHOM_DEBOUNCE_DEFAULT_UNKNOWN_US 5000000uL
 
-/** Defaults of the other members: the A16's factory settings (A16 4(2)). */
+/** @brief Defaults of the other members: the A16's factory settings (A16 4(2)). */
 enum {
-    FATHOM_DEBOUNCE_DEFAULT_THRESHOLD_MM = 1000,
-    FATHOM_DEBOUNCE_DEFAULT_NEAR_COUNT = 3,
-    FATHOM_DEBOUNCE_DEFAULT_FAR_COUNT = 5
+    FATHOM_DEBOUNCE_DEFAULT_THRESHOLD_MM = 1000, /**< Default of `threshold_mm`. */
+    FATHOM_DEBOUNCE_DEFAULT_NEAR_COUNT = 3,      /**< Default of `near_count`. */
+    FATHOM_DEBOUNCE_DEFAULT_FAR_COUNT = 5        /**< Default of `far_count`. */
 };
 
 /** @brief What a distance at the threshold is. The datasheet names less and greater only. */
@@ -63,7 +65,7 @@ typedef enum {
     FATHOM_EQUAL_IS_FAR = 2   /**< The distance is farther. */
 } fathom_equal_t;
 
-/** @brief The configuration. fathom_debounce_init() copies it. A member that is 0 takes its default. */
+/** @brief The configuration. A member that is 0 takes its default. */
 typedef struct {
     /** Least time that a level lasts, by the times of the measurements, 0..FATHOM_MAX_DURATION_US; 0: no such time. */
     uint32_t hold_us;
@@ -90,9 +92,14 @@ typedef struct {
 } fathom_debounce_t;
 
 /**
- * @brief Initialises a switch without a measurement and without a level. The first level that a row makes does not wait
- * for `hold_us`. If the function fails, the switch is zeroed; it then never has a level.
- * @retval FATHOM_OK         The switch is ready.
+ * @brief Initialises a switch without a measurement and without a level.
+ *
+ * The first level that a row makes does not wait for `hold_us`. If the function fails, the switch is zeroed; it then
+ * never has a level.
+ *
+ * @param debounce  The switch.
+ * @param config    The configuration. Not used after the call.
+ * @retval FATHOM_OK            The switch is ready.
  * @retval FATHOM_ERR_ARGUMENT  A member is outside its range.
  */
 fathom_status_t fathom_debounce_init(fathom_debounce_t *debounce, const fathom_debounce_config_t *config);
@@ -103,16 +110,30 @@ fathom_status_t fathom_debounce_init(fathom_debounce_t *debounce, const fathom_d
  * Times may wrap. The time between two measurements must be below 71 minutes; together with `unknown_us` it must be
  * below 35 minutes. A time that is up to 100 ms before the previous one counts as equal to it.
  *
- * @param verdict  FATHOM_NEAR: nearer. FATHOM_FAR: farther. Any other value: equal.
- * @param now_us   Time of the measurement.
+ * @param debounce  The switch.
+ * @param verdict   FATHOM_NEAR: nearer. FATHOM_FAR: farther. Any other value: equal.
+ * @param now_us    Time of the measurement, in microseconds.
  * @return True if the level changed, also from none to the first one, or to unknown.
  */
 bool fathom_debounce_add_verdict(fathom_debounce_t *debounce, uint8_t verdict, uint32_t now_us);
 
-/** @brief Adds a distance, 0..65535 mm. As fathom_debounce_add_verdict(). */
+/**
+ * @brief Adds a distance. As fathom_debounce_add_verdict().
+ *
+ * @param debounce     The switch.
+ * @param distance_mm  The distance in millimetres, 0 to 65535.
+ * @param now_us       Time of the measurement, in microseconds.
+ * @return As fathom_debounce_add_verdict().
+ */
 bool fathom_debounce_add_distance(fathom_debounce_t *debounce, uint16_t distance_mm, uint32_t now_us);
 
-/** @brief Adds any sample, at its `time_us`. As fathom_debounce_add_verdict(). */
+/**
+ * @brief Adds any sample, at its `time_us`. As fathom_debounce_add_verdict().
+ *
+ * @param debounce  The switch.
+ * @param sample    The sample. Samples of one probe only.
+ * @return As fathom_debounce_add_verdict().
+ */
 bool fathom_debounce_add_sample(fathom_debounce_t *debounce, const fathom_sample_t *sample);
 
 /**
@@ -121,12 +142,21 @@ bool fathom_debounce_add_sample(fathom_debounce_t *debounce, const fathom_sample
  * Call it often enough that the time between two calls and `unknown_us` are together below 35 minutes. A time before
  * that of the last measurement has no effect.
  *
+ * @param debounce  The switch.
+ * @param now_us    The clock, in microseconds.
  * @return True if the level became FATHOM_UNKNOWN.
  */
 bool fathom_debounce_advance(fathom_debounce_t *debounce, uint32_t now_us);
 
-/** @brief Compares a distance with the threshold. Returns FATHOM_NEAR, FATHOM_FAR, or 0 if it is equal and the level
- * holds. */
+/**
+ * @brief Compares a distance with the threshold. Changes nothing.
+ *
+ * @param debounce     The switch.
+ * @param distance_mm  The distance in millimetres, 0 to 65535.
+ * @retval FATHOM_NEAR  The distance is nearer.
+ * @retval FATHOM_FAR   The distance is farther.
+ * @retval 0            The distance is equal, and the level holds.
+ */
 uint8_t fathom_debounce_compare(const fathom_debounce_t *debounce, uint16_t distance_mm);
 
 #ifdef __cplusplus

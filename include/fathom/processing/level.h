@@ -13,14 +13,19 @@ extern "C" {
 
 /**
  * @file
- * @brief Converts the distance of a sensor that looks down into a tank to the level in the tank, in mm and per mille of
- * the height, and to the volume, by the tank's shape. It uses whole numbers and has no state.
+ * @brief Converts the distance of a sensor above a tank to the level and the volume in the tank.
  *
- *     static const fathom_level_config_t tank = {
- *         .volume = fathom_tank_horizontal_cylinder, .mounting_mm = 2100, .height_mm = 2000, .capacity = 5000};
- *     fathom_level_t level;
- *     if (sample.kind == FATHOM_TARGET && fathom_level_from_distance(&tank, sample.distance_mm, &level) == FATHOM_OK)
- *         show(level.level_mm, level.volume);
+ * The level is in millimetres and in per mille of the height. The volume follows from the shape of the tank. The
+ * functions use whole numbers and have no state. include/COST.md has the size in the row `level`; a program links only
+ * the shape that it names.
+ *
+ * @code
+ * static const fathom_level_config_t tank = {
+ *     .volume = fathom_tank_horizontal_cylinder, .mounting_mm = 2100, .height_mm = 2000, .capacity = 5000};
+ * fathom_level_t level;
+ * if (sample.kind == FATHOM_TARGET && fathom_level_from_distance(&tank, sample.distance_mm, &level) == FATHOM_OK)
+ *     show(level.level_mm, level.volume);
+ * @endcode
  *
  * A sample of another kind than FATHOM_TARGET has no distance, so it has no level. FATHOM_NO_TARGET may be an empty
  * tank, or a tank whose surface is too near.
@@ -29,34 +34,56 @@ extern "C" {
  * full; `level_mm` alone shows by how much. "To the nearest" is exact; of two equally near values it is the upper one.
  */
 
+/** @brief The configuration of a tank (struct fathom_level_config). */
 typedef struct fathom_level_config fathom_level_config_t;
 
-/** @brief Returns the volume at a level of 0..height_mm. One of the functions below, which alone is then linked, or the
- * caller's own. The volume must not shrink if the level grows. */
+/**
+ * @brief Returns the volume at a level of 0 to `height_mm`.
+ *
+ * Use one of the functions below, or your own. The volume must not shrink if the level grows.
+ */
 typedef uint32_t (*fathom_tank_volume_t)(const fathom_level_config_t *tank, uint16_t level_mm);
 
-/** @brief The volume of an upright tank: a cylinder, a box, a sump. It grows with the level, to the nearest. */
+/**
+ * @brief Returns the volume of an upright tank: a cylinder, a box, a sump. The volume grows with the level.
+ *
+ * @param tank      The configuration.
+ * @param level_mm  The level in millimetres, 0 to `height_mm`.
+ * @return The volume in the unit of `capacity`, to the nearest.
+ */
 uint32_t fathom_tank_upright(const fathom_level_config_t *tank, uint16_t level_mm);
 
 /**
- * @brief The volume of a lying cylinder with flat ends; `height_mm` is its inner diameter.
+ * @brief Returns the volume of a lying cylinder with flat ends; `height_mm` is its inner diameter.
  *
  * The error is at most 0.0431 per mille of the capacity and half a unit, at any height and level. Empty is 0; half full
  * and full are exact. The ends of most tanks bulge; a table is more exact for them.
+ *
+ * @param tank      The configuration.
+ * @param level_mm  The level in millimetres, 0 to `height_mm`.
+ * @return The volume in the unit of `capacity`.
  */
 uint32_t fathom_tank_horizontal_cylinder(const fathom_level_config_t *tank, uint16_t level_mm);
 
-/** @brief The volume by a table of points, between which it grows with the level, to the nearest. Below the first
- * point it grows from 0 at the bottom; above the last point it is that of the last point. */
+/**
+ * @brief Returns the volume by a table of points.
+ *
+ * Between two points the volume grows evenly with the level. Below the first point it grows from 0 at the bottom. Above
+ * the last point it is the volume of the last point.
+ *
+ * @param tank      The configuration.
+ * @param level_mm  The level in millimetres, 0 to `height_mm`.
+ * @return The volume in the unit of the points, to the nearest.
+ */
 uint32_t fathom_tank_table(const fathom_level_config_t *tank, uint16_t level_mm);
 
 /** @brief A point of a table: at this level the tank has this volume. */
 typedef struct {
-    uint32_t volume;
-    uint16_t level_mm;
+    uint32_t volume;   /**< The volume in any unit, the same for all points. */
+    uint16_t level_mm; /**< The level above the bottom, 0 to 65535 mm. */
 } fathom_level_point_t;
 
-/** @brief The configuration of a tank. */
+/** @brief The configuration of a tank. May be const. Each function reads it during its call only. */
 struct fathom_level_config {
     fathom_tank_volume_t volume; /**< The tank's shape. Required. */
     /** For fathom_tank_table(): `point_count` points. Both members grow from point to point; the first point may have a
@@ -80,7 +107,9 @@ typedef struct {
 
 /**
  * @brief Checks a configuration. Call it once for a configuration that is not written by hand.
- * @retval FATHOM_OK         Each member is inside its range.
+ *
+ * @param config  The configuration.
+ * @retval FATHOM_OK            Each member is inside its range.
  * @retval FATHOM_ERR_ARGUMENT  There is no volume function, `mounting_mm` or `height_mm` is 0, the points do not
  *                              grow, or the volume of the full tank is 0 because there is no capacity, or there are
  *                              no points.
@@ -88,9 +117,12 @@ typedef struct {
 fathom_status_t fathom_level_check(const fathom_level_config_t *config);
 
 /**
- * @brief Converts a distance, 0..65535 mm.
- * @param out  Written with FATHOM_OK only.
- * @retval FATHOM_OK         `*out` is the level.
+ * @brief Converts a distance to a level and a volume.
+ *
+ * @param config       The configuration.
+ * @param distance_mm  The distance in millimetres, 0 to 65535, of a sample FATHOM_TARGET.
+ * @param out          Written with FATHOM_OK only.
+ * @retval FATHOM_OK            `*out` is the level.
  * @retval FATHOM_ERR_ARGUMENT  There is no volume function, or `height_mm` is 0, as in zeroed memory.
  */
 fathom_status_t fathom_level_from_distance(const fathom_level_config_t *config, uint16_t distance_mm,

@@ -14,15 +14,18 @@ extern "C" {
 
 /**
  * @file
- * @brief The median of the last 3 to 15 samples of one probe, behind a gate that drops spikes. It works for any
- * sensor in any mode.
+ * @brief The median of the last 3 to 15 samples of one probe, behind a gate that drops spikes.
  *
- *     static uint16_t window[5];
- *     fathom_median_t median;
- *     fathom_median_init(&median, &(fathom_median_config_t){.window = window, .count = 5, .gate_mm = 300});
- *     if (fathom_poll(&sensor, &sample) == FATHOM_OK && fathom_median_add_sample(&median, &sample, &steady))
- *         use(&steady);
- *     if (fathom_median_advance(&median, clock.now_us(clock.ctx))) warn();
+ * The median works for any sensor in any mode. include/COST.md has its size in the row `median`.
+ *
+ * @code
+ * static uint16_t window[5];
+ * fathom_median_t median;
+ * fathom_median_init(&median, &(fathom_median_config_t){.window = window, .count = 5, .gate_mm = 300});
+ * if (fathom_poll(&sensor, &sample) == FATHOM_OK && fathom_median_add_sample(&median, &sample, &steady))
+ *     use(&steady);
+ * if (fathom_median_advance(&median, clock.now_us(clock.ctx))) warn();
+ * @endcode
  *
  * | sample | counts as |
  * |---|---|
@@ -47,15 +50,17 @@ extern "C" {
  * The functions use no clock but the times of the samples, may be called from any context, and do no I/O.
  */
 
-/** Range of `count`. */
-enum { FATHOM_MEDIAN_MIN_COUNT = 3, FATHOM_MEDIAN_MAX_COUNT = 15 };
+/** @brief Limits and defaults. */
+enum {
+    FATHOM_MEDIAN_MIN_COUNT = 3,       /**< Least `count`. */
+    FATHOM_MEDIAN_MAX_COUNT = 15,      /**< Greatest `count`. */
+    FATHOM_MEDIAN_DEFAULT_GATE_ROW = 2 /**< Default of `gate_row`. */
+};
 
-/** Default of `gate_row`. */
-enum { FATHOM_MEDIAN_DEFAULT_GATE_ROW = 2 };
 /** Default of `unknown_us`. */
 #define FATHOM_MEDIAN_DEFAULT_UNKNOWN_US 5000000uL
 
-/** @brief The configuration. fathom_median_init() copies it. */
+/** @brief The configuration of a median. */
 typedef struct {
     uint16_t *
         window; /**< `count` elements of the caller, which must stay valid as long as the median. Required. */
@@ -79,16 +84,24 @@ typedef struct {
 } fathom_median_t;
 
 /**
- * @brief Initialises a median with an empty window. If it fails, the median is zeroed; it then never has a value.
- * @retval FATHOM_OK         The median is ready.
+ * @brief Initialises a median with an empty window.
+ *
+ * If the function fails, the median is zeroed; it then never has a value.
+ *
+ * @param median  The median.
+ * @param config  The configuration. Not used after the call; `config->window` is.
+ * @retval FATHOM_OK            The median is ready.
  * @retval FATHOM_ERR_ARGUMENT  There is no window, or a member is outside its range.
  */
 fathom_status_t fathom_median_init(fathom_median_t *median, const fathom_median_config_t *config);
 
 /**
- * @brief Adds the probe's next sample.
- * @param out  If there is a median: this sample with the kind and the distance of the median, and without the mark of
- *             interference if the kind differs. Otherwise unchanged. `out` may be `sample`.
+ * @brief Adds the next sample of the probe.
+ *
+ * @param median  The median.
+ * @param sample  The sample.
+ * @param out     If there is a median: this sample with the kind and the distance of the median, and without the mark
+ *                of interference if the kind differs. Otherwise unchanged. `out` may be `sample`.
  * @return True if there is a median with this sample.
  */
 bool fathom_median_add_sample(fathom_median_t *median, const fathom_sample_t *sample, fathom_sample_t *out);
@@ -99,6 +112,8 @@ bool fathom_median_add_sample(fathom_median_t *median, const fathom_sample_t *sa
  * Call it often enough that the time between two calls and `unknown_us` are together below 35 minutes. A time before
  * that of the last sample has no effect.
  *
+ * @param median  The median.
+ * @param now_us  The clock, in microseconds.
  * @return True if this emptied a window that held samples.
  */
 bool fathom_median_advance(fathom_median_t *median, uint32_t now_us);

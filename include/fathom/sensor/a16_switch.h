@@ -57,8 +57,11 @@ extern "C" {
  * lasts, the line looks busy; switch the receiver off while no request is in progress.
  */
 
-/** @brief The configuration. A member that is 0 takes its default. `pin`, `clock` and `guard` must stay valid as long as
- * the driver. */
+/**
+ * @brief The configuration. A member that is 0 takes its default.
+ *
+ * `pin`, `clock` and `guard` must stay valid as long as the driver.
+ */
 typedef struct {
     const fathom_pin_t *pin;     /**< Reads the module's TX. Required, with `get`. */
     const fathom_clock_t *clock; /**< Required, with `now_us`. */
