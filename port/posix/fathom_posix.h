@@ -12,212 +12,300 @@
 extern "C" {
 #endif
 
-/*
- * Fathom's HAL on a Linux tty (/dev/ttyUSB0, /dev/ttyS1, /dev/ttyAMA0, a pseudo terminal), a clock, and a
- * wait that uses no CPU.
+/**
+ * @file
+ * @brief The HAL (hal.h) on a Linux tty, with a clock and a wait that uses no processor time.
  *
- *     fathom_posix_uart_t port;
- *     const fathom_line_settings_t settings = {19200, FATHOM_PARITY_EVEN, 1};
- *     if (fathom_posix_open(&port, "/dev/ttyUSB0", &settings) != FATHOM_POSIX_OK) {
- *         fprintf(stderr, "%s\n", fathom_posix_error_text(&port));
- *         return 1;
- *     }
- *     const fathom_uart_t uart = fathom_posix_uart(&port);
- *     const fathom_clock_t clock = fathom_posix_clock();
- *     ... fathom_wait(&sensor, &sample, fathom_posix_wait, &port) ...
- *     fathom_posix_close(&port);
+ * A port is a tty: /dev/ttyUSB0, /dev/ttyS1, /dev/ttyAMA0, or a pseudo terminal. The port never allocates memory, and
+ * keeps no state outside the struct that the caller passes to it. Only fathom_posix_wait() waits. All other functions
+ * return at once, except that the driver may need a few milliseconds to open or close a USB port. The section "Many
+ * lines" of include/COST.md has the processor time of programs with 1 to 256 ports.
  *
- * What it does not do:
- *  - It says nothing about single bytes: FATHOM_RX_... is never set. A tty has no time stamps, and its error
- *    marks (PARMRK) cannot be believed: the drivers of the commonest USB adapters (ftdi_sio, pl2303) put one
- *    mark on all bytes of a USB packet, so that a spike on the line before a response would condemn the whole
- *    response. A byte with wrong parity is delivered like any other; checksums have to find it.
- *    fathom_posix_line_errors has the driver's counts, for diagnosis.
- *  - It does not drive an RS-485 transceiver by itself. The adapter does, or the kernel's driver: as the device tree
- *    tells it (`linux,rs485-enabled-at-boot-time`), or fathom_posix_set_rs485.
- *  - It does not make a USB adapter faster. An FTDI chip holds bytes back for up to 16 ms:
- *    `setserial /dev/ttyUSB0 low_latency` makes that 1 ms.
- *  - No flow control, no modem lines, 8 data bits only.
+ * @code
+ * static fathom_posix_uart_t port;
+ * static fathom_uart_t uart;
+ * static fathom_clock_t clock;
  *
- * Memory: the port is the caller's, holds no pointer to anything else, allocates nothing and may not be
- * moved in use. Threads: one port, one thread at a time; different ports do not know of each other. Nothing
- * but fathom_posix_wait waits (opening or closing a USB port may take the driver some milliseconds).
+ * const fathom_line_settings_t settings = {19200, FATHOM_PARITY_EVEN, 1};
+ * if (fathom_posix_open(&port, "/dev/ttyUSB0", &settings) != FATHOM_POSIX_OK) {
+ *     fprintf(stderr, "%s\n", fathom_posix_error_text(&port));
+ *     return 1;
+ * }
+ * uart = fathom_posix_uart(&port);          // must stay valid as long as the line
+ * clock = fathom_posix_clock();
+ * // line and driver are initialised with &uart and &clock (line.h)
+ * status = fathom_wait(&sensor, &sample, fathom_posix_wait, &port);
+ * fathom_posix_close(&port);
+ * @endcode
+ *
+ * 1. **Threads.** Call the functions of one port from one thread at a time. Different ports are independent.
+ *
+ * 2. **Memory.** A port holds no pointer to other memory. An open port must not be moved, because fathom_posix_uart()
+ *    returns a pointer to the port.
+ *
+ * 3. **Single bytes.** The port reports nothing about single bytes: it never sets a flag `FATHOM_RX_...`. A tty has no
+ *    time stamps. Its error marks (PARMRK) cannot be trusted: the drivers of the most common USB adapters (ftdi_sio,
+ *    pl2303) give one mark to all bytes of a USB packet. A spike on the line before a response would then invalidate
+ *    the whole response. The port delivers a byte with wrong parity like any other byte, so only checksums find it. For
+ *    diagnosis, fathom_posix_line_errors() returns the counts of the driver.
+ *
+ * 4. **RS-485.** The port does not drive an RS-485 transceiver. Either the adapter does, or the driver of the kernel.
+ *    Configure that driver in the device tree (`linux,rs485-enabled-at-boot-time`) or by fathom_posix_set_rs485().
+ *
+ * 5. **USB latency.** The port does not make a USB adapter faster. An FTDI chip holds bytes back for up to 16 ms.
+ *    `setserial /dev/ttyUSB0 low_latency` reduces this to 1 ms.
+ *
+ * 6. **Settings.** The port has 8 data bits, no flow control and no modem lines.
  */
 
-/* What a call on a port came to. fathom_posix_error_text says it in words, with what to do about it. */
+/**
+ * @brief The result of a call on a port. Errors are negative.
+ *
+ * fathom_posix_error_text() returns the error in words and, for most errors, what to do about it.
+ */
 typedef enum {
-    FATHOM_POSIX_OK = 0,
-    FATHOM_POSIX_ERR_ARGUMENT = -1,     /* a NULL, or settings outside what fathom_posix_open allows */
-    FATHOM_POSIX_ERR_NOT_FOUND = -2,    /* no such path, or no device behind it (a ttyS without a UART) */
-    FATHOM_POSIX_ERR_PERMISSION = -3,   /* the text names the group to join */
-    FATHOM_POSIX_ERR_IN_USE = -4,       /* another program, or another port of this one, has it */
-    FATHOM_POSIX_ERR_NOT_A_TTY = -5,    /* a file, a folder, a device of another kind */
-    FATHOM_POSIX_ERR_REFUSED = -6,      /* the driver does not do these settings; the text has both */
-    FATHOM_POSIX_ERR_BUSY = -7,         /* bytes are still leaving */
-    FATHOM_POSIX_ERR_LOST = -8,         /* unplugged, or the far end of a pseudo terminal closed */
-    FATHOM_POSIX_ERR_CLOSED = -9,       /* the port is not open */
-    FATHOM_POSIX_ERR_UNSUPPORTED = -10, /* this kind of port cannot do that */
-    FATHOM_POSIX_ERR_SYSTEM = -11       /* anything else that the system said; the text has its words */
+    FATHOM_POSIX_OK = 0, /**< Success. */
+    FATHOM_POSIX_ERR_ARGUMENT =
+        -1, /**< A pointer is NULL, or fathom_posix_open() does not allow the settings. */
+    FATHOM_POSIX_ERR_NOT_FOUND =
+        -2, /**< The path does not exist, or there is no device behind it (a ttyS without a
+                                           UART). */
+    FATHOM_POSIX_ERR_PERMISSION =
+        -3,                       /**< The user may not open the path. The text names the group to join. */
+    FATHOM_POSIX_ERR_IN_USE = -4, /**< Another program, or another port of this program, has the tty open. */
+    FATHOM_POSIX_ERR_NOT_A_TTY = -5, /**< The path is a file, a folder or a device of another kind. */
+    FATHOM_POSIX_ERR_REFUSED =
+        -6,                     /**< The driver did not keep the settings. The text has both: those that were
+                                           requested, and those that the driver set. */
+    FATHOM_POSIX_ERR_BUSY = -7, /**< Bytes are still being sent. Try again. */
+    FATHOM_POSIX_ERR_LOST = -8, /**< The device was unplugged, or the far end of a pseudo terminal was closed.
+                                           Close the port and open it again. */
+    FATHOM_POSIX_ERR_CLOSED = -9,       /**< The port is not open. */
+    FATHOM_POSIX_ERR_UNSUPPORTED = -10, /**< This kind of port cannot do this. */
+    FATHOM_POSIX_ERR_SYSTEM = -11 /**< Any other error of the system. The text has the words of the system. */
 } fathom_posix_status_t;
 
-/* Bytes that one write may have; the HAL asks for 255. */
+/** @brief Largest number of bytes in one `write` of fathom_posix_uart(). A line writes at most 255 bytes. */
 #define FATHOM_POSIX_WRITE_MAX 256
 
-/* All fields are the port's own. A port of zeros is a closed one. */
+/** @brief A port, in the caller's memory. All members are private. A port of zeros is a closed port. */
 typedef struct {
-    int fd;
+    /* private */
+    int fd; /* -1 if the port is closed */
     bool is_open;
-    bool is_lost; /* for good, until it is opened again */
+    bool is_lost; /* stays true until the port is opened again */
     bool is_pty;
-    bool has_no_lsr; /* TIOCSERGETLSR has said that it is not there */
-    fathom_line_settings_t line;
-    uint64_t leaving_until_us; /* before it, the last byte cannot have left the pin */
-    size_t pending_at;         /* bytes of an accepted write that the kernel has not taken yet */
+    bool has_no_lsr;             /* the driver has no TIOCSERGETLSR */
+    fathom_line_settings_t line; /* the settings that are in force */
+    uint64_t leaving_until_us;   /* the last byte cannot have left the pin before this time */
+    /* The bytes of an accepted write that the kernel has not accepted yet stand from pending_at to pending_end. */
+    size_t pending_at;
     size_t pending_end;
     uint8_t pending[FATHOM_POSIX_WRITE_MAX];
-    fathom_posix_status_t error;
-    char path[64]; /* for messages; longer ones are cut there */
+    fathom_posix_status_t error; /* of the newest call that failed */
+    char path[64];               /* for messages; a longer path is cut */
     char text[320];
 } fathom_posix_uart_t;
 
-/*
- * Opens a tty for this program alone, sets it, reads the settings back, and throws away what came before.
+/**
+ * @brief Opens a tty exclusively, sets it, reads the settings back, and discards the bytes that arrived before.
  *
- * port: any content; one that is open must be closed first, or its file descriptor is lost.
- * path: used during the call only.
- * settings: baud one of 1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200, 230400, 460800, 500000, 576000,
- *   921600; all parities of hal.h; 1 or 2 stop bits.
+ * **Settings.** The port reads the settings back, because a driver may accept settings silently and not keep them: an
+ * 8250 whose clock is too slow for 230400 baud keeps its old rate and reports success. Settings that were not kept are
+ * FATHOM_POSIX_ERR_REFUSED. A rate within 2.5 % counts as kept. There is one exception: a pseudo terminal never keeps
+ * PARENB, because it has no wire with a parity bit. The port ignores that for a pseudo terminal only, which it
+ * recognises by the device number (Unix98 slaves have the majors 136 to 143). A pseudo terminal keeps baud rate and
+ * stop bits, so the port checks these.
  *
- * Settings that a driver took without a word and did not keep are an error (REFUSED): an 8250 whose clock is
- * too slow for 230400 keeps the rate that it had and reports success. A rate within 2.5 % counts as kept.
- * One exception: a pseudo terminal (found by its device number: Unix98 slaves have the majors 136..143) never
- * keeps PARENB. It has no wire on which a parity bit could be right or wrong, so it is let pass there and
- * there only; baud and stop bits are kept by a pseudo terminal and are checked.
+ * **Exclusive.** The port takes a lock by flock(2), as pyserial does with `exclusive=True`, and sets TIOCEXCL against
+ * programs that do not lock. TIOCEXCL does not stop root; the lock does. A pseudo terminal gets the lock only: TIOCEXCL
+ * would outlive a killed program there as long as the master is open. The port does not detect a program that opened
+ * the tty earlier and uses neither.
  *
- * Alone: by flock(2), which is what pyserial's exclusive=True does, and by TIOCEXCL against those that do not
- * ask for a lock. root is not stopped by TIOCEXCL, but is by the lock. On a pseudo terminal there is only
- * the lock: there TIOCEXCL would outlive a program that was killed, as long as the master is open. A program
- * that had the tty open before and knows neither is not seen.
- *
- * Returns FATHOM_POSIX_OK; or ARGUMENT, NOT_FOUND, PERMISSION, IN_USE, NOT_A_TTY, REFUSED, SYSTEM: then
- * nothing is left open and the port is closed, but has the text. The tty keeps its settings after close.
+ * @param port      The port, with any content. Close an open port first; otherwise its file descriptor leaks.
+ * @param path      Path of the tty. Used only during the call.
+ * @param settings  Baud rate 1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200, 230400, 460800, 500000, 576000 or
+ *                  921600; any parity of hal.h; 1 or 2 stop bits. Used only during the call.
+ * @return FATHOM_POSIX_OK: the port is open. The tty keeps its settings after fathom_posix_close().
+ * @return FATHOM_POSIX_ERR_ARGUMENT, _NOT_FOUND, _PERMISSION, _IN_USE, _NOT_A_TTY, _REFUSED or _SYSTEM: nothing is left
+ *         open and the port is closed. fathom_posix_error_text() has the reason.
  */
 fathom_posix_status_t fathom_posix_open(fathom_posix_uart_t *port, const char *path,
                                         const fathom_line_settings_t *settings);
 
-/* Closes it. Bytes that have not left may be lost or may still leave, as the driver likes; wait for sent() if
- * that matters. A port that is closed already, failed to open, or is all zeros: nothing happens. */
+/**
+ * @brief Closes a port.
+ *
+ * Bytes that have not left yet may be lost or may still leave; this depends on the driver. If that matters, wait until
+ * `sent` of fathom_posix_uart() is true. If the port is closed, failed to open or is all zeros, nothing happens.
+ *
+ * @param port  The port, or NULL.
+ */
 void fathom_posix_close(fathom_posix_uart_t *port);
 
-/*
- * Changes baud, parity and stop bits of an open port; what was received is kept.
+/**
+ * @brief Changes baud rate, parity and stop bits of an open port. Received bytes are kept.
  *
- * Returns FATHOM_POSIX_OK; ARGUMENT; CLOSED; LOST; BUSY while sent() is false, because the bytes that leave
- * would change in flight: try again; REFUSED or SYSTEM: the settings before were put back and hold.
+ * @param port      The port.
+ * @param settings  As for fathom_posix_open(). Used only during the call.
+ * @retval FATHOM_POSIX_OK            The new settings are in force.
+ * @retval FATHOM_POSIX_ERR_ARGUMENT  A pointer is NULL, or the settings are not allowed.
+ * @retval FATHOM_POSIX_ERR_CLOSED    The port is not open.
+ * @retval FATHOM_POSIX_ERR_LOST      The port is lost.
+ * @retval FATHOM_POSIX_ERR_BUSY      `sent` is false: the change would damage the bytes that are being sent. Try again.
+ * @retval FATHOM_POSIX_ERR_REFUSED   The driver did not keep the settings. The old settings are in force again.
+ * @retval FATHOM_POSIX_ERR_SYSTEM    The system reported another error. The old settings are in force again.
  */
 fathom_posix_status_t fathom_posix_set_line(fathom_posix_uart_t *port,
                                             const fathom_line_settings_t *settings);
 
-/*
- * How the kernel's driver drives an RS-485 transceiver whose DE hangs on RTS. Of zeros: RTS is on while bytes leave,
- * and off otherwise. Which level that is at the pin is the driver's: a PL011's is high, others differ. Where nothing
- * leaves the board, try the other one.
+/**
+ * @brief How the driver of the kernel drives an RS-485 transceiver whose DE is connected to RTS.
+ *
+ * If all members are 0, RTS is on while bytes are sent and off otherwise. The level at the pin depends on the driver: it
+ * is high for a PL011; others differ. If nothing leaves the board, try the other value of `rts_off_to_send`.
  */
 typedef struct {
-    bool rts_off_to_send; /* the other way round */
-    /* From RTS to the first start bit, and from the last stop bit to RTS. What a driver cuts off, mostly above 100, is
-     * REFUSED. */
+    /** @brief True: RTS is off while bytes are sent, and on otherwise. */
+    bool rts_off_to_send;
+    /** @brief Time from the change of RTS to the first start bit, in milliseconds. A driver may reduce a long delay,
+     * mostly one above 100 ms; the call then returns FATHOM_POSIX_ERR_REFUSED. */
     uint8_t before_ms;
+    /** @brief Time from the last stop bit to the change of RTS, in milliseconds. Limited like `before_ms`. */
     uint8_t after_ms;
 } fathom_posix_rs485_t;
 
-/*
- * Lets the driver of an open port turn the transceiver round (TIOCSRS485), and reads that back (TIOCGRS485). It holds
- * until it is set again, over fathom_posix_set_line and after close. The UART is asked not to hear what it sends (no
- * SER_RS485_RX_DURING_TX), but the driver may leave that: a line finds it out (line.h).
+/**
+ * @brief Sets how the driver of an open port drives an RS-485 transceiver (TIOCSRS485), and reads it back (TIOCGRS485).
  *
- * rs485: NULL: RTS is left alone again.
+ * The setting stays in force until the next call, also after fathom_posix_set_line() and fathom_posix_close(). The call
+ * requests that the UART does not receive what it sends (no SER_RS485_RX_DURING_TX), but the driver may ignore that. A
+ * line can find out whether there is echo (fathom_line_find_echo() of line.h).
  *
- * Returns FATHOM_POSIX_OK; ARGUMENT; CLOSED; LOST; BUSY while sent() is false; UNSUPPORTED where the driver has no
- * RS-485: those of USB adapters, of most PC ports, and pseudo terminals; the text says what to do; REFUSED when the
- * driver has made something else of it; or SYSTEM: then what was before was put back and holds.
+ * @param port   The port.
+ * @param rs485  The setting. NULL: the driver no longer changes RTS. Used only during the call.
+ * @retval FATHOM_POSIX_OK               The setting is in force.
+ * @retval FATHOM_POSIX_ERR_ARGUMENT     `port` is NULL.
+ * @retval FATHOM_POSIX_ERR_CLOSED       The port is not open.
+ * @retval FATHOM_POSIX_ERR_LOST         The port is lost.
+ * @retval FATHOM_POSIX_ERR_BUSY         `sent` is false. Try again.
+ * @retval FATHOM_POSIX_ERR_UNSUPPORTED  The driver has no RS-485, like those of USB adapters, most PC ports and pseudo
+ *                                       terminals. The text says what to do.
+ * @retval FATHOM_POSIX_ERR_REFUSED      The driver set something else. The previous setting is in force again.
+ * @retval FATHOM_POSIX_ERR_SYSTEM       The system reported another error. The previous setting is in force.
  */
 fathom_posix_status_t fathom_posix_set_rs485(fathom_posix_uart_t *port, const fathom_posix_rs485_t *rs485);
 
-/*
- * The HAL functions of an open port (hal.h); `port` must stay where it is as long as they are used. On a
- * closed port read and write return -1.
+/**
+ * @brief Returns the UART functions (hal.h) of an open port.
  *
- * read   < 0 once the tty has hung up or its device has gone, and from then on until the port is closed and
- *        opened again. Signals do not disturb it.
- * write  1..FATHOM_POSIX_WRITE_MAX bytes. When its queue is nearly full (4 KiB on most UARTs), the kernel may
- *        take only the beginning of a request. The port then keeps the rest, write has taken all, and the
- *        rest follows in the next call of read, write, sent or fathom_posix_wait that finds room; until then
- *        another write is busy (0). On the wire there is no gap as long as one of them is called before the
- *        kernel's queue runs dry. More than FATHOM_POSIX_WRITE_MAX: -1, and the port is as before.
- * sent   True when the kernel's queue is empty, a real UART's transmitter is too (TIOCSERGETLSR, where there
- *        is one), and the time that the bytes need at the set rate has passed since write. The last is
- *        there because a USB adapter's driver knows its own queue and not the chip's, and a pseudo terminal
- *        is always empty at once. What remains: an adapter begins when the next USB frame has reached it
- *        (they are 1 ms apart at full speed), and by that much sent may be early; an FTDI chip tells in its
- *        status packets, up to 16 ms late. True on a port that is lost or closed, so that no caller
- *        waits; read and write return the error.
- * leaves_in_us  The last of these three, to the microsecond; 0 where the kernel has not taken all yet, so that it is
- *        offered the rest, and where an adapter takes longer.
- * set_break  TIOCSBRK and TIOCCBRK, when all that was written has left. Not every adapter can; most drivers do not
- *        tell. On a pseudo terminal a byte 0 stands for a break, which is what one that arrives is read as.
- * set_line  fathom_posix_set_line, and nothing at all when the settings hold already; fathom_posix_error has
- *        the reason when it returns -1.
+ * If the port is closed or lost, `read` and `write` return -1.
+ *
+ * - **read** returns a negative number after the tty has hung up or its device was unplugged, until the port is closed
+ *   and opened again. Signals do not disturb a read.
+ * - **write** accepts 1 to FATHOM_POSIX_WRITE_MAX bytes. If `length` is larger, it returns -1 and changes nothing. If
+ *   the queue of the kernel (4 KiB for most UARTs) is nearly full, the kernel may accept only the beginning of a
+ *   request. The port then keeps the rest and `write` has accepted all. The next call of `read`, `write`, `sent` or
+ *   fathom_posix_wait() for which the kernel has space passes the rest on. Until then another `write` returns 0. There
+ *   is no gap on the wire if one of these calls comes before the queue of the kernel is empty.
+ * - **sent** is true when three conditions hold: the queue of the kernel is empty; the transmitter of a real UART is
+ *   empty too (TIOCSERGETLSR, if the driver has it); and the time that the bytes need at the set rate has passed since
+ *   `write`. The third condition is necessary because the driver of a USB adapter knows only its own queue, not that of
+ *   the chip, and because a pseudo terminal is always empty at once. An adapter begins only when the next USB frame has
+ *   reached it, every 1 ms at full speed: by this time `sent` may be early. An FTDI chip reports its state in status
+ *   packets, up to 16 ms late. `sent` is true for a lost or closed port, so that no caller waits; `read` and `write`
+ *   return the error.
+ * - **leaves_in_us** returns the rest of the time of the third condition. It returns 0 if the kernel has not accepted
+ *   all bytes yet, so that the caller polls soon, and if an adapter needs longer.
+ * - **set_break** calls TIOCSBRK and TIOCCBRK when all bytes have been sent. Not every adapter can send a break, and
+ *   most drivers do not report that. On a pseudo terminal the port writes a byte 0 instead, since a received break reads
+ *   as such a byte.
+ * - **set_line** calls fathom_posix_set_line(), or nothing if the settings are in force already. If it returns -1,
+ *   fathom_posix_error() has the reason.
+ *
+ * @param port  The port. It must stay valid, and must not be moved, as long as the functions are used.
+ * @return The UART, by value. A line needs it in memory that stays valid.
  */
 fathom_uart_t fathom_posix_uart(fathom_posix_uart_t *port);
 
-/* Of the last call that failed on this port, or OK: fathom_posix_open, fathom_posix_set_line, fathom_posix_set_rs485,
- * fathom_posix_line_errors, and read, write, sent and fathom_posix_wait for LOST. */
+/**
+ * @brief Returns the error of the newest call that failed on this port, or FATHOM_POSIX_OK if none failed.
+ *
+ * These calls set it: fathom_posix_open(), fathom_posix_set_line(), fathom_posix_set_rs485() and
+ * fathom_posix_line_errors(). For FATHOM_POSIX_ERR_LOST, `read`, `write`, `sent` and fathom_posix_wait() set it too.
+ * Only fathom_posix_open() clears it.
+ */
 fathom_posix_status_t fathom_posix_error(const fathom_posix_uart_t *port);
 
-/* The same in words, one line without a line feed: "/dev/ttyUSB0: permission denied: ...". "" when
- * nothing has failed. It lies in the port, until the next call that fails or fathom_posix_open. */
+/**
+ * @brief Returns the same error in words: one line without a line feed, such as
+ * "/dev/ttyUSB0: permission denied: ...".
+ *
+ * If nothing has failed, the text is "". The text stands in the port. It is valid until the next call that fails, or
+ * until fathom_posix_open().
+ */
 const char *fathom_posix_error_text(const fathom_posix_uart_t *port);
 
-/* What the driver has counted since it was loaded: take differences. They may wrap. */
+/** @brief Line errors that the driver has counted since it was loaded. Use differences. The counts may wrap. */
 typedef struct {
+    /** @brief Bytes with wrong parity. */
     uint32_t parity;
-    uint32_t framing; /* mostly: another baud rate than the device's */
-    uint32_t overrun; /* bytes lost in the UART, or because the program did not read */
+    /** @brief Bytes without a stop bit. The usual cause is another baud rate than that of the device. */
+    uint32_t framing;
+    /** @brief Losses in the UART, or because the program did not read. */
+    uint32_t overrun;
+    /** @brief Received breaks. */
     uint32_t breaks;
 } fathom_posix_line_errors_t;
 
-/* Returns FATHOM_POSIX_OK and sets `errors`; ARGUMENT, CLOSED, LOST, or UNSUPPORTED on a pseudo terminal and
- * with drivers that do not count. */
+/**
+ * @brief Reads the line errors that the driver of an open port has counted.
+ *
+ * @param port    The port.
+ * @param errors  Receives the counts, if the result is FATHOM_POSIX_OK.
+ * @retval FATHOM_POSIX_OK               `*errors` is set.
+ * @retval FATHOM_POSIX_ERR_ARGUMENT     A pointer is NULL.
+ * @retval FATHOM_POSIX_ERR_CLOSED       The port is not open.
+ * @retval FATHOM_POSIX_ERR_LOST         The port is lost.
+ * @retval FATHOM_POSIX_ERR_UNSUPPORTED  The driver does not count. Pseudo terminals do not either.
+ */
 fathom_posix_status_t fathom_posix_line_errors(fathom_posix_uart_t *port, fathom_posix_line_errors_t *errors);
 
-/* CLOCK_MONOTONIC in microseconds: for the HAL (it wraps), and in 64 bits for programs (it does not). Time in
- * which the machine was suspended does not count. */
+/** @brief Returns a clock for the HAL: CLOCK_MONOTONIC in microseconds. It wraps as hal.h describes. While the machine
+ * is suspended, the clock stands still. */
 fathom_clock_t fathom_posix_clock(void);
+
+/** @brief Returns CLOCK_MONOTONIC in microseconds, in 64 bits, which do not wrap. For programs. */
 uint64_t fathom_posix_now_us(void);
 
-/*
- * Sleeps until bytes can be read, the far end has hung up, a signal handler has run, or max_us microseconds
- * have passed (FATHOM_NO_DEADLINE: without limit). It is an idle hook for fathom_wait: ctx is the port.
+/**
+ * @brief Sleeps until bytes can be read, the far end has hung up, a signal handler has run, or `max_us` has passed.
  *
- * port: a fathom_posix_uart_t. When closed or lost it returns at once, so look at what the poll functions
- * return, or the loop spins. It also returns early when it could hand over the rest of a request.
+ * This is an idle hook for fathom_wait() (wait.h). It also returns early if the kernel had space for the rest of a
+ * request. If the port is closed or lost, it returns at once: a loop must check the status that the poll functions
+ * return, or it uses a whole processor.
  *
- * A signal that comes just before the sleep begins does not cut it short: a handler that sets a flag needs a
- * bounded max_us, or an own ppoll(2) with fathom_posix_fd. There is no event for "sent": the engines ask
- * to be called every millisecond meanwhile.
+ * A signal that arrives directly before the sleep does not shorten it. If a signal handler sets a flag, pass a bounded
+ * `max_us`, or call ppoll(2) with fathom_posix_fd(). There is no event for the end of sending. fathom_due_us()
+ * therefore returns the time of `leaves_in_us` while a request leaves, and 1 ms after that.
+ *
+ * @param port    The port, a fathom_posix_uart_t.
+ * @param max_us  Longest sleep in microseconds. FATHOM_NO_DEADLINE: without a limit.
  */
 void fathom_posix_wait(void *port, uint32_t max_us);
 
-/*
- * For a program's own poll(2), epoll(7) or select(2): the file descriptor, -1 when closed, and the events to wait for:
- * POLLIN, and POLLOUT while the port keeps the rest of a request. Not for reading or writing.
+/**
+ * @brief Returns the file descriptor for a poll(2), epoll(7) or select(2) of the program; -1 if the port is closed.
  *
- * For several ports there is such a loop, fathom_loop.h. One of your own that polls all sensors whenever one port has
- * become ready takes about twice the processor time with 32 ports: nearly all of its reads bring nothing. And a port
- * that is lost stays ready: close it when a poll returns FATHOM_ERR_PORT, or the loop spins.
+ * Do not read from it or write to it. For several ports use fathom_loop.h. A loop of your own that polls all sensors
+ * whenever one port is ready needs about twice the processor time with 32 ports, because nearly all of its reads return
+ * nothing. A lost port stays ready: when a poll returns FATHOM_ERR_PORT, close the port, or the loop uses a whole
+ * processor.
  */
 int fathom_posix_fd(const fathom_posix_uart_t *port);
+
+/** @brief Returns the events of poll(2) to wait for: POLLIN, and also POLLOUT while the port keeps the rest of a
+ * request. */
 short fathom_posix_poll_events(const fathom_posix_uart_t *port);
 
 #ifdef __cplusplus
