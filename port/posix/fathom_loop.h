@@ -19,10 +19,10 @@ extern "C" {
  * @file
  * @brief Reads any number of sensors on any number of ttys and pins, in one thread of a Linux program.
  *
- * A loop waits with one epoll(7). It polls only the sources that are ready or due, and opens a lost port again. The loop
- * never allocates memory, and waits only in fathom_loop_run() and fathom_loop_step(); the driver of a USB port may also
- * need a few milliseconds to open it. The section "Many lines" of include/COST.md has the processor time for 1 to 256
- * lines. A loop that polls everything after each event costs twice as much with 32 lines, nearly all of it in reads
+ * A loop waits with one epoll(7). It polls only the sources that are ready or due, and opens a lost port again. The
+ * loop never allocates memory, and waits only in fathom_loop_run() and fathom_loop_step(); the driver of a USB port may
+ * also need a few milliseconds to open it. The section "Many lines" of include/COST.md has the processor time for 1 to
+ * 256 lines. A loop that polls everything after each event costs twice as much with 32 lines, nearly all of it in reads
  * that return nothing.
  *
  * @code
@@ -106,8 +106,8 @@ struct fathom_loop_sensor {
  * Lines and pins have their tables already. A program needs a table only for a source of its own.
  */
 typedef struct {
-    /** @brief Opens the source. Returns false if that fails; `error_text` then has the reason, and the loop calls `open`
-     * again after a pause. NULL: the source is always open. */
+    /** @brief Opens the source. Returns false if that fails; `error_text` then has the reason, and the loop calls
+     * `open` again after a pause. NULL: the source is always open. */
     bool (*open)(fathom_loop_source_t *source);
 
     /** @brief Closes an open source. NULL: there is nothing to close. */
@@ -119,8 +119,8 @@ typedef struct {
     /** @brief Returns the events of poll(2) to wait for. Called after each poll. NULL: POLLIN. */
     short (*events)(const fathom_loop_source_t *source);
 
-    /** @brief Does what is possible without waiting. Called before the sensors of the source are polled. Returns false if
-     * the source is lost. NULL: there is nothing to do. */
+    /** @brief Does what is possible without waiting. Called before the sensors of the source are polled. Returns false
+     * if the source is lost. NULL: there is nothing to do. */
     bool (*poll)(fathom_loop_source_t *source);
 
     /** @brief Returns the time in microseconds until `poll` must be called again if nothing arrives. The sensors of the
@@ -148,8 +148,8 @@ struct fathom_loop_source {
     bool is_readable;
     /** @brief True if the descriptor has hung up. A later read reports this. May be read. */
     bool is_hung_up;
-    /** @brief Set it to true in `open`, if a read that returns less than the requested number of bytes has read all. This is
-     * so for ttys. */
+    /** @brief Set it to true in `open`, if a read that returns less than the requested number of bytes has read all.
+     * This is so for ttys. */
     bool reads_all;
     /** @brief Private: number of times in a row that the source was due at once. */
     uint8_t zeros;
@@ -180,8 +180,8 @@ struct fathom_loop_source {
 
 /** @brief Configuration of a loop. A member that is 0 takes its default. Copied by fathom_loop_init(). */
 typedef struct {
-    /** @brief First pause before a source that was lost or could not be opened is opened again, in microseconds (rule 2).
-     * 0: 500 ms. */
+    /** @brief First pause before a source that was lost or could not be opened is opened again, in microseconds (rule
+     * 2). 0: 500 ms. */
     uint32_t first_pause_us;
 
     /** @brief Longest such pause, in microseconds. 0: 8 s. */
@@ -353,7 +353,8 @@ fathom_uart_t fathom_loop_uart(fathom_loop_source_t *source, const fathom_uart_t
 /**
  * @brief A tty with a line (line.h) and a Modbus client, in the caller's memory.
  *
- * After fathom_loop_add_line(), drivers may be initialised with `modbus` or `line`, also while the port cannot be opened.
+ * After fathom_loop_add_line(), drivers may be initialised with `modbus` or `line`, also while the port cannot be
+ * opened.
  */
 typedef struct {
     /** @brief The source, for fathom_loop_add_sensor(). */
@@ -400,7 +401,8 @@ typedef struct {
  *
  * @param loop      The loop.
  * @param line      The line, with any content. It must not be part of the loop.
- * @param path      Path of the tty, as for fathom_posix_open(). Must stay valid as long as the line is part of the loop.
+ * @param path      Path of the tty, as for fathom_posix_open(). Must stay valid as long as the line is part of the
+ *                  loop.
  * @param settings  As for fathom_posix_open(). Copied.
  * @retval FATHOM_POSIX_OK            The line is part of the loop, whether or not the port could be opened.
  * @retval FATHOM_POSIX_ERR_ARGUMENT  A pointer is NULL, the settings are not allowed, or the line is part of the loop
@@ -427,8 +429,8 @@ typedef struct {
  *
  * @param loop  The loop.
  * @param pin   The pin, with any content.
- * @param fd    The descriptor, such as fathom_gpio_fd() of a pin with edges. It must stay open as long as the pin is part
- *              of the loop.
+ * @param fd    The descriptor, such as fathom_gpio_fd() of a pin with edges. It must stay open as long as the pin is
+ *              part of the loop.
  */
 void fathom_loop_add_pin(fathom_loop_t *loop, fathom_loop_pin_t *pin, int fd);
 

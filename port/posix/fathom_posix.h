@@ -162,8 +162,8 @@ fathom_posix_status_t fathom_posix_set_line(fathom_posix_uart_t *port,
 /**
  * @brief How the driver of the kernel drives an RS-485 transceiver whose DE is connected to RTS.
  *
- * If all members are 0, RTS is on while bytes are sent and off otherwise. The level at the pin depends on the driver: it
- * is high for a PL011; others differ. If nothing leaves the board, try the other value of `rts_off_to_send`.
+ * If all members are 0, RTS is on while bytes are sent and off otherwise. The level at the pin depends on the driver:
+ * it is high for a PL011; others differ. If nothing leaves the board, try the other value of `rts_off_to_send`.
  */
 typedef struct {
     /** @brief True: RTS is off while bytes are sent, and on otherwise. */
@@ -218,8 +218,8 @@ fathom_posix_status_t fathom_posix_set_rs485(fathom_posix_uart_t *port, const fa
  * - **leaves_in_us** returns the rest of the time of the third condition. It returns 0 if the kernel has not accepted
  *   all bytes yet, so that the caller polls soon, and if an adapter needs longer.
  * - **set_break** calls TIOCSBRK and TIOCCBRK when all bytes have been sent. Not every adapter can send a break, and
- *   most drivers do not report that. On a pseudo terminal the port writes a byte 0 instead, since a received break reads
- *   as such a byte.
+ *   most drivers do not report that. On a pseudo terminal the port writes a byte 0 instead, since a received break
+ *   reads as such a byte.
  * - **set_line** calls fathom_posix_set_line(), or nothing if the settings are in force already. If it returns -1,
  *   fathom_posix_error() has the reason.
  *
