@@ -13,126 +13,215 @@
 extern "C" {
 #endif
 
-/*
- * The HAL on an STM32F405 (F407, F415 and F417 are the same), on bare registers. What is used is linked, and nothing
- * else:
+/**
+ * @file
+ * @brief The HAL (hal.h) on an STM32F405, on bare registers: clock, USARTs, pins, capture and idle.
  *
- *   clock.c    TIM2, 32 bits                           the clock, from which all the times here are taken
- *   usart.c    USART1..3, 6, UART4, 5 and their interrupts   fathom_uart_t, with RS-485
- *   capture.c  TIM2's capture 1 and 2, pin TIM2_CH1    edges with the time of the hardware
- *   idle.c     TIM5 and its interrupt                  sleep until bytes come or time is up
- *   pin.c                                              triggers, selects, switch and relay contacts
+ * The STM32F407, F415 and F417 are the same. The port needs no vendor library. No function waits except
+ * fathom_stm32f4_idle(), and none allocates memory. The capture and a flag of the sleep exist once and are
+ * static; all other state is in the caller's memory.
  *
- * What has run, on QEMU's netduinoplus2, where the tests run it: the USART's reception by interrupts, its transmission
- * by the same code (QEMU 7.2 raises no interrupt for it, so that the test has to), TIM2 as the clock, the sleep (whose
- * end QEMU 7.2 delays).
- * What has NEVER run but on a test's memory in place of the registers, since no simulator here has it: the capture, all
- * pins and with them the driver-enable and the break, parity, framing and overrun errors, and the line settings on a
- * wire. Not seen on a board.
+ * | file        | uses                                           | for                                                |
+ * |-------------|------------------------------------------------|----------------------------------------------------|
+ * | `clock.c`   | TIM2, 32 bits                                  | the clock, the source of all times of this port    |
+ * | `usart.c`   | USART1 to 3, UART4, UART5, USART6, interrupts  | UARTs, with RS-485                                 |
+ * | `capture.c` | captures 1 and 2 of TIM2, pin TIM2_CH1         | edges with the time of the hardware                |
+ * | `idle.c`    | TIM5 and its interrupt                         | sleep until bytes arrive or a time has passed      |
+ * | `pin.c`     | the GPIO ports                                 | triggers, selects, contacts of switches and relays |
  *
- * Registers and sections: RM0090. The bits in RCC that these peripherals and pins need are set by the begin functions;
- * the clocks themselves are the application's. All functions but the interrupts belong to the main loop. The priorities
- * of the interrupts stay what they are, 0 after reset; under an RTOS set them to what its calls from interrupts want.
+ * A program contains only the files whose functions it calls. Section numbers are those of RM0090.
+ *
+ * @code
+ * static uint8_t request[8];
+ * static fathom_stm32f4_usart_t port;
+ * static fathom_uart_t uart;
+ * static const fathom_stm32f4_idle_t idle = {&port, 1};
+ * const fathom_stm32f4_usart_config_t config = {
+ *     .request = request, .request_size = sizeof request, .number = 2, .bus_hz = 42000000,
+ *     .line = {9600, FATHOM_PARITY_NONE, 1}, .tx = {'A', 2}, .rx = {'A', 3}};
+ * fathom_stm32f4_clock_init(84000000);
+ * if (!fathom_stm32f4_usart_init(&port, &config)) return 1;
+ * uart = fathom_stm32f4_usart(&port);       // a line (line.h) uses &uart and &fathom_stm32f4_clock
+ * status = fathom_wait(&sensor, &sample, fathom_stm32f4_idle, (void *)&idle);
+ * @endcode
+ *
+ * 1. **Clocks.** The init functions set the bits of RCC that these peripherals and pins need. The clock tree belongs to
+ *    the application.
+ *
+ * 2. **Interrupts.** The vectors belong to the application. They call the functions whose names end in `_interrupt`.
+ *    The port does not change the priorities of the interrupts, which are 0 after reset. With an RTOS, set the
+ *    priorities that its calls from interrupts require.
+ *
+ * 3. **Context.** All other functions belong to the main loop.
+ *
+ * 4. **What has run.** On the machine netduinoplus2 of QEMU: the reception of the USART by interrupts, TIM2 as the
+ *    clock, and the sleep, whose end QEMU 7.2 delays. The transmission ran with the same code, but QEMU 7.2 raises no
+ *    interrupt for it, so the test does.
+ *
+ * 5. **What has NEVER run** except on the memory of a test in place of the registers, because no available simulator
+ *    has it: the capture; all pins, with the driver enable and the break; parity, framing and overrun errors; the line
+ *    settings on a wire. Nothing has run on a board.
  */
 
-/* A pin: {'A', 2} is PA2. */
+/** @brief A pin: `{'A', 2}` is PA2. */
 typedef struct {
-    char port;      /* 'A'..'I'; 0: there is none */
-    uint8_t number; /* 0..15 */
+    /** @brief The GPIO port, 'A' to 'I'. 0: no pin. */
+    char port;
+    /** @brief The number of the pin, 0 to 15. */
+    uint8_t number;
 } fathom_stm32f4_pin_t;
 
-/* `pin` outlives what is returned. An output begins high, as triggers and selects want it. */
+/**
+ * @brief Makes a pin an output and returns it. The output starts high, which is the idle level of triggers and selects.
+ *
+ * @param pin  The pin. Must stay valid as long as the result is used.
+ * @return The pin for the HAL, by value.
+ */
 fathom_pin_t fathom_stm32f4_output(const fathom_stm32f4_pin_t *pin);
+
+/** @brief The pull resistor of an input. */
 typedef enum {
-    FATHOM_STM32F4_FLOATS = 0,
-    FATHOM_STM32F4_UP = 1,
-    FATHOM_STM32F4_DOWN = 2
+    FATHOM_STM32F4_FLOATS = 0, /**< No resistor. */
+    FATHOM_STM32F4_UP = 1,     /**< Pull-up. */
+    FATHOM_STM32F4_DOWN = 2    /**< Pull-down. */
 } fathom_stm32f4_pull_t;
+
+/**
+ * @brief Makes a pin an input and returns it.
+ *
+ * @param pin   The pin. Must stay valid as long as the result is used.
+ * @param pull  The pull resistor.
+ * @return The pin for the HAL, by value.
+ */
 fathom_pin_t fathom_stm32f4_input(const fathom_stm32f4_pin_t *pin, fathom_stm32f4_pull_t pull);
 
-/* TIM2 counts us from here on, from 0, and the program does not set it up. It wraps at 2^32 by itself. timer_hz: what
- * TIM2 and TIM5 are clocked with, a whole number of MHz; twice PCLK1 where APB1 is divided, else PCLK1 (RM0090 7.2).
- * Called before all the others. */
+/**
+ * @brief Starts TIM2 from 0 as the clock, and sets up TIM5 for the sleep. Call it before all other functions.
+ *
+ * The program must not set up TIM2 or TIM5 itself.
+ *
+ * @param timer_hz  Frequency of TIM2 and TIM5 in Hz, a multiple of 1000000: twice PCLK1 if APB1 is divided, else PCLK1
+ *                  (7.2).
+ */
 void fathom_stm32f4_clock_init(uint32_t timer_hz);
+
+/** @brief The clock: microseconds since fathom_stm32f4_clock_init(). It wraps as hal.h describes. */
 extern const fathom_clock_t fathom_stm32f4_clock;
 
-/* Read by begin, but for the pins, which outlive the use of the UART. */
+/** @brief Configuration of a USART. Read only by fathom_stm32f4_usart_init(). */
 typedef struct {
-    /* memory for the longest request; outlives the use of the UART. 8 bytes for all reads and single writes */
+    /** @brief Buffer for a copy of the longest request, which stays there while it is sent. 8 bytes suffice for all
+     * reads and single writes. Must stay valid as long as the port is used. */
     uint8_t *request;
-    uint8_t request_size;        /* 1..255 */
-    uint8_t number;              /* 1..6: USART1..3, UART4, UART5, USART6 */
-    uint32_t bus_hz;             /* PCLK2 for 1 and 6, PCLK1 for the others */
-    fathom_line_settings_t line; /* to begin with */
-    fathom_stm32f4_pin_t tx;     /* the datasheet's table of alternate functions has the choice */
-    fathom_stm32f4_pin_t rx;     /* with pull-up */
-    /* DE of an RS-485 transceiver (with /RE, if there is to be no echo), high while bytes leave; port 0: none */
+    /** @brief Size of `request` in bytes, 1 to 255. */
+    uint8_t request_size;
+    /** @brief The number of the USART, 1 to 6: USART1 to USART3, UART4, UART5, USART6. */
+    uint8_t number;
+    /** @brief Frequency of its bus in Hz: PCLK2 for 1 and 6, PCLK1 for the others. */
+    uint32_t bus_hz;
+    /** @brief The first line settings. */
+    fathom_line_settings_t line;
+    /** @brief TX. The table of alternate functions in the datasheet has the possible pins. */
+    fathom_stm32f4_pin_t tx;
+    /** @brief RX, from the same table. It gets the pull-up resistor. */
+    fathom_stm32f4_pin_t rx;
+    /** @brief Driver enable (DE) of an RS-485 transceiver, high while bytes are sent. Connect /RE to it too if there
+     * should be no echo. If its `port` is 0, there is no transceiver. */
     fathom_stm32f4_pin_t driver;
 } fathom_stm32f4_usart_config_t;
 
-/* The port's; `serial` has counters that the caller may read. */
+/** @brief A USART, in the caller's memory. The caller may read the counters of `serial`, and `noise`. */
 typedef struct {
+    /** @brief Ring, request and error counters (fathom_serial.h). */
     fathom_serial_t serial;
+    /** @brief Private: the registers. */
     volatile uint32_t *registers;
+    /** @brief Private: frequency of the bus in Hz. */
     uint32_t bus_hz;
+    /** @brief Private: the settings that are in force. */
     fathom_line_settings_t line;
+    /** @brief Private: TX. */
     fathom_stm32f4_pin_t tx;
+    /** @brief Private: the driver enable. */
     fathom_stm32f4_pin_t driver;
-    /* bytes of which the three samples of a bit differed (NE); taken for good. Stops at 65535, and the caller may
-     * set it to 0 */
+    /** @brief Bytes in which the three samples of a bit differed (NE). They are accepted as good. Stops at 65535. The
+     * caller may set it to 0. */
     volatile uint16_t noise;
+
+    /* private */
     bool is_break;
 } fathom_stm32f4_usart_t;
 
-/*
- * Makes it ready, with its pins, and enables its interrupt in the NVIC. false, and nothing has changed: no such
- * number, these settings cannot be reached, no memory for a request, tx or rx is no pin.
+/**
+ * @brief Initialises a USART and its pins, and enables its interrupt in the NVIC.
+ *
+ * @param usart   The USART, with any content. Must stay valid as long as it is used.
+ * @param config  The configuration, read only during the call; `request` must stay valid as long as the port is used.
+ * @return False if there is no such number, the line settings cannot be reached, there is no buffer for a request, or
+ *         `tx` or `rx` is no pin. Then nothing changed.
  */
 bool fathom_stm32f4_usart_init(fathom_stm32f4_usart_t *usart, const fathom_stm32f4_usart_config_t *config);
 
-/* For the interrupt of this USART: 37, 38, 39, 52, 53, 71 for 1..6. */
+/** @brief Call it from the interrupt of this USART: number 37, 38, 39, 52, 53 and 71 for USART 1 to 6. */
 void fathom_stm32f4_usart_interrupt(fathom_stm32f4_usart_t *usart);
 
-/*
- * By value; it points to `usart`. FATHOM_RX_PARITY, _FRAMING and _OVERRUN are reported byte by byte; a read ends before
- * and after such a byte. No FATHOM_RX_TIMED, no FATHOM_RX_SILENCE.
- *             While bytes leave, a parity error may be missed (errata ES0182: a write to DR can clear it).
- * write       takes 1 to request_size bytes; of none or more it returns < 0. It drives `driver` from before the first
- *             start bit until the last stop bit has left (TC), and lets it go in the interrupt.
- * sent        is exact.
- * leaves_in_us  counts bytes, and is two characters too long at most.
- * set_line    within 2.5 %: bus_hz / 65535 to bus_hz / 16 baud. 8E1 and 8O1 are words of 9 bits here (M and PCE).
- * set_break   TX becomes an output that is low, since SBK sends one character of break and no more; `driver` is high
- *             as long. Meanwhile write returns 0.
+/**
+ * @brief Returns the UART functions (hal.h) of a USART.
+ *
+ * - **read** reports FATHOM_RX_PARITY, FATHOM_RX_FRAMING and FATHOM_RX_OVERRUN for single bytes: a read ends before and
+ *   after such a byte. It never reports FATHOM_RX_TIMED or FATHOM_RX_SILENCE. While bytes are sent, a parity error may
+ *   be missed, because a write to DR can clear it (errata ES0182).
+ * - **write** accepts 1 to `request_size` bytes, and returns a negative number for any other count. `driver` is high
+ *   from before the first start bit until the last stop bit has left (TC); the interrupt ends it.
+ * - **sent** is exact.
+ * - **leaves_in_us** counts bytes. It is at most two characters too long.
+ * - **set_line** accepts rates within 2.5 %, from bus_hz / 65535 to bus_hz / 16 baud. 8E1 and 8O1 are words of 9 bits
+ *   here (M and PCE).
+ * - **set_break** makes TX an output that is low, because SBK sends only one character of break. `driver` is high
+ *   meanwhile, and `write` returns 0.
+ *
+ * @param usart  The USART. It must stay valid as long as the functions are used.
+ * @return The functions, by value. A line needs them in memory that stays valid.
  */
 fathom_uart_t fathom_stm32f4_usart(fathom_stm32f4_usart_t *usart);
 
-/*
- * Edges for a pulse, fed to `edges`, which has been initialised, with the time of the hardware: TIM2 keeps the
- * counter of the clock at the rise in CCR1 and at the fall in CCR2, whatever else runs. 1 us. A pulse is lost, and
- * none is wrong, where the next one of the same direction comes before the interrupt has run.
- * pin: one of TIM2_CH1: PA0, PA5 or PA15; false: it is none of them. There is one capture: a second begin replaces it.
- * NEVER RUN but on memory: no simulator here has TIM2's captures.
+/**
+ * @brief Feeds edges with the time of the hardware, in steps of 1 us. NEVER RUN except on memory (rule 5).
+ *
+ * TIM2 stores the clock at a rise in CCR1 and at a fall in CCR2, whatever else runs. If the next edge of the same
+ * direction comes before the interrupt has run, the pulse is lost; no width is wrong. There is one capture: a second
+ * call replaces the first.
+ *
+ * @param pin    A pin of TIM2_CH1: PA0, PA5 or PA15. Used only during the call.
+ * @param edges  Initialised edges (edges.h). Must stay valid as long as edges are fed.
+ * @return False if `pin` is no pin of TIM2_CH1. Then nothing changed.
  */
 bool fathom_stm32f4_capture_init(const fathom_stm32f4_pin_t *pin, fathom_edges_t *edges);
 
-/* For interrupt 28, TIM2's, which capture_begin enables. */
+/** @brief Call it from interrupt 28 (TIM2), which fathom_stm32f4_capture_init() enables. */
 void fathom_stm32f4_tim2_interrupt(void);
 
-/* Which USARTs end a sleep. The caller's, and outlives the sleep. */
+/** @brief The USARTs that end a sleep. Must stay valid as long as the program sleeps with it. */
 typedef struct {
+    /** @brief Array of `count` USARTs. */
     const fathom_stm32f4_usart_t *usarts;
+    /** @brief Number of USARTs. */
     uint8_t count;
 } fathom_stm32f4_idle_t;
 
-/*
- * For fathom_wait, or a main loop that has nothing to do: sleeps (WFI) until an interrupt has run or max_us have
- * passed, and returns; at once if a byte waits, or if since the last sleep an edge was fed or a request has left. What
- * comes while it goes to sleep wakes it. ctx: a fathom_stm32f4_idle_t. Interrupts are enabled afterwards.
+/**
+ * @brief Sleeps (WFI) until an interrupt has run or `max_us` has passed.
+ *
+ * This is an idle hook for fathom_wait() (wait.h), or for a main loop that has nothing to do. It returns at once if a
+ * byte waits, or if an edge was fed or a request has left since the last sleep. What happens directly before the sleep
+ * ends it too. Interrupts are enabled when the function returns, unless `max_us` is 0: then the function does nothing.
+ *
+ * @param ctx     A fathom_stm32f4_idle_t.
+ * @param max_us  Longest sleep in microseconds.
  */
 void fathom_stm32f4_idle(void *ctx, uint32_t max_us);
 
-/* For interrupt 50, TIM5's, which idle enables. */
+/** @brief Call it from interrupt 50 (TIM5), which fathom_stm32f4_idle() enables. */
 void fathom_stm32f4_tim5_interrupt(void);
 
 #ifdef __cplusplus
