@@ -6,72 +6,114 @@
 
 #include "fathom/fathom.h"
 
-/*
- * The HAL on an Arduino core, in C++11: HardwareSerial, any Stream, micros(), digital pins, and a pin interrupt for
- * the pulse. The library is installed as `cmake --build build --target arduino-library` lays it out; the sketches in
- * its examples/ are where to start.
+/**
+ * @file
+ * @brief The HAL (hal.h) on an Arduino core, in C++11: serial ports, the clock, pins and pulses.
  *
- * What has been seen: the AVR core 1.8 on an ATmega328P at 16 MHz, simulated to the cycle; for a Mega and a Leonardo it
- * compiles. Not seen on hardware, nor with another core. What else is said of "AVR" here was read in that core's
- * sources.
+ * The port uses HardwareSerial, any Stream, micros(), digital pins, and a pin interrupt for pulses.
+ * `cmake --build build --target arduino-library` makes the library for Arduino; start with the sketches in its
+ * examples/. All functions return at once, except that a SoftwareSerial blocks while it sends (stream_uart). None
+ * allocates memory.
  *
- * All functions return at once, but for what SoftwareSerial does by itself (below). They belong to setup() and loop();
- * those for interrupts say so. Objects are the caller's, may be global, do nothing before begin(), and may not be
- * moved or copied afterwards.
+ * @code
+ * fathom::arduino::serial_uart bus(Serial1, 2);            // pin 2: driver enable of an RS-485 transceiver
+ * fathom_uart_t uart;
  *
- * What is compiled in: src/codec/crc16_small.c, the CRC with 16 entries. An AVR keeps const tables in RAM, where 256
- * entries take 512 bytes of 2048; 16 take 32. It takes more time a byte, which none of these baud rates shows.
+ * void setup()
+ * {
+ *     if (!bus.begin(9600)) return;
+ *     uart = bus.hal();                                    // a line (line.h) uses &uart and &fathom::arduino::clock
+ * }
+ * @endcode
+ *
+ * 1. **Context.** Call all functions from setup() and loop(). Only functions whose comment says so may be called from
+ *    an interrupt.
+ *
+ * 2. **Objects** are in the caller's memory and may be global: they do nothing before begin(). Do not move or copy them
+ *    afterwards.
+ *
+ * 3. **CRC.** The library contains src/codec/crc16_small.c, the CRC with a table of 16 entries. An AVR keeps constant
+ *    tables in RAM: 16 entries take 32 bytes, and 256 entries would take 512 of 2048 bytes. The smaller table needs
+ *    more time for each byte, which no baud rate here shows.
+ *
+ * 4. **What has run.** The AVR core 1.8 on an ATmega328P at 16 MHz, on a simulator that is exact to the cycle. For a
+ *    Mega and a Leonardo the code compiles. It has not run on hardware, nor with another core. Other statements about
+ *    "AVR" are from the sources of that core.
  */
 namespace fathom
 {
 namespace arduino
 {
 
-/*
- * micros(): wraps as hal.h has it. In steps of 4 us on an AVR at 16 MHz and of 8 us at 8 MHz. The AVR core counts
- * wrongly at clocks that do not divide 64 MHz: by 6 % at 20 MHz. It needs an interrupt every 1.024 ms (at 16 MHz):
- * who disables them longer makes it lose time.
+/**
+ * @brief The clock: micros(). It wraps as hal.h describes.
+ *
+ * An AVR counts in steps of 4 us at 16 MHz and of 8 us at 8 MHz. The AVR core counts wrongly at clocks that do not
+ * divide 64 MHz: by 6 % at 20 MHz. It needs an interrupt every 1.024 ms (at 16 MHz). If interrupts are disabled for
+ * longer, the clock loses time.
  */
 extern const fathom_clock_t clock;
 
-/*
- * A pin by its Arduino number, stateless. To be called in setup(), since it sets the pin's mode. An output begins high,
- * as triggers and selects want it. Each set or get is one digitalWrite or digitalRead, 4 us or so on an AVR. Pull-up:
- * for a contact to ground.
+/**
+ * @brief Makes a pin an output and returns it. Call it in setup().
+ *
+ * The output starts high, which is the idle level of triggers and selects. Each `set` is one digitalWrite(), about 4 us
+ * on an AVR.
+ *
+ * @param pin  Arduino number of the pin.
+ * @return The pin for the HAL, by value. It points to no memory.
  */
 fathom_pin_t output(uint8_t pin);
+
+/**
+ * @brief Makes a pin an input and returns it. Call it in setup().
+ *
+ * Each `get` is one digitalRead(), about 4 us on an AVR.
+ *
+ * @param pin      Arduino number of the pin.
+ * @param pull_up  True to enable the pull-up resistor, for a contact to ground.
+ * @return The pin for the HAL, by value. It points to no memory.
+ */
 fathom_pin_t input(uint8_t pin, bool pull_up = false);
 
-/*
- * A pin whose high pulses are measured by its interrupt (A16 1), without pulseIn(), which blocks, and which has been
- * seen to lose 1.2 % to the interrupts of Timer0 and Serial. attachInterrupt() gives its function no argument, so
- * each pin has a function of its own, in the sketch:
+/**
+ * @brief A pin whose high pulses are measured by its interrupt (A16 1).
  *
- *     fathom::arduino::pulse_input echo;
- *     void echo_changed() { echo.changed(); }
- *     ... echo.begin(2);
- *         attachInterrupt(digitalPinToInterrupt(2), echo_changed, CHANGE);
- *         capture = echo.capture();
+ * It replaces pulseIn(), which blocks, and which lost 1.2 % to the interrupts of Timer0 and Serial in a measurement.
+ * attachInterrupt() passes no argument to its function, so the sketch has a function for each pin:
  *
- * On an AVR at 16 MHz a width is off by the 4 us steps of micros(), and at either edge by another interrupt that runs
- * when it comes: 7 us by Timer0's, 5 by Serial's. Of those that wait the pin's is first, so there is one such delay:
- * 4 us mostly, 0.7 mm, and 11 us, 1.9 mm, at worst (seen: 6). What else there is adds itself: 20 us or so of another
- * pulse_input, 1 ms of a byte of SoftwareSerial. port/avr does better, with the capture hardware of Timer1.
- * Where interrupt functions have to lie in RAM (ESP8266, ESP32), fathom_edges_feed does not.
+ * @code
+ * fathom::arduino::pulse_input echo;
+ * void echo_changed() { echo.changed(); }
+ * // in setup():
+ * echo.begin(2);
+ * attachInterrupt(digitalPinToInterrupt(2), echo_changed, CHANGE);
+ * capture = echo.capture();
+ * @endcode
+ *
+ * On an AVR at 16 MHz a width is off by the steps of micros(), 4 us, and at each edge by an interrupt that runs when
+ * the edge comes: 7 us by that of Timer0, 5 us by that of Serial. The interrupt of the pin is the first of those that
+ * wait, so there is one such delay: usually 4 us in all, which is 0.7 mm, and at worst 11 us, which is 1.9 mm (6 us
+ * were observed). Other delays add to this: about 20 us by another pulse_input, 1 ms by a byte of SoftwareSerial. The
+ * capture hardware of Timer1 is more exact (port/avr).
+ *
+ * On an ESP8266 or ESP32 interrupt functions must be in RAM; fathom_edges_feed() is not.
  */
 class pulse_input
 {
   public:
-    /* Makes the pin an input, and forgets all edges; before attachInterrupt(). */
+    /** @brief Makes `pin` an input and discards all edges. Call it before attachInterrupt(). */
     void begin(uint8_t pin);
 
-    /* An edge has come: for the interrupt, in mode CHANGE. The time is taken first, then the level. */
+    /** @brief Stores an edge: first its time, then the level. Call it from the interrupt of the pin, in mode CHANGE. */
     void changed();
 
-    /* For a fathom_a16_pwm_config_t or fathom_pulse_config_t; after begin(). */
+    /** @brief Returns the capture for a fathom_a16_pwm_config_t or fathom_pulse_config_t. Call it after begin(). This
+     * object must stay valid as long as the result is used. */
     fathom_capture_t capture();
 
-    /* Its counters: `lost`, `missed`; `same_us` may be changed between begin() and attachInterrupt(). */
+    /** @brief The edges (edges.h). Its counters `lost` and `missed` may be read. `same_us` may be changed between
+     * begin() and attachInterrupt(). */
     fathom_edges_t edges;
 
   private:
@@ -79,63 +121,96 @@ class pulse_input
     fathom_pin_t level_;
 };
 
-/* No pin. */
-enum : uint8_t { no_pin = 255 };
+/** @brief Constants of pins. */
+enum : uint8_t {
+    no_pin = 255 /**< No pin. */
+};
 
-/*
- * A HardwareSerial (Serial, Serial1, ...) that is used for nothing else, also not for printing.
+/**
+ * @brief A HardwareSerial (Serial, Serial1, ...) that is used for nothing else, not even for printing.
  *
- * read       what the core has kept: 63 bytes on an AVR with 1 KiB of RAM or more, 65 ms at 9600 baud, 36 ms at
- *            19200 8E1, 5.5 ms at 115200; what comes then is lost. The core tells nothing of single bytes: no flags.
- *            Those with wrong parity it drops, so that their frame is too short.
- * write      takes what fits into the core's buffer, all or nothing (0). Of more than the empty buffer holds it says
- *            < 0, which the line makes FATHOM_ERR_PORT: 63 bytes on an AVR, 15 on small ones. The longest request to
- *            any of the sensors has 13. On a core whose availableForWrite() tells nothing, it says < 0 always, and
- *            what sends by itself can be read.
- * sent       by time, since the core's flush() blocks: the buffer is empty, and so much time has passed since write as
- *            the frame takes, with 2.5 % more (the clock of the UART) and 2 bits. So it turns true late by that: by
- *            0.33 ms for 8 characters at 19200 8E1. It can be early if interrupts were off for longer while
- *            the frame left; in a frame of ours nothing but SoftwareSerial does that.
- * leaves_in_us  the rest of that time.
- * set_line   begin() of the core, without end(), which blocks and throws away what was received. < 0 on an AVR where
- *            no divider comes within 2.5 %: 230400 at 16 MHz, 115200 at 8 MHz. Other cores are believed.
- * set_break  NULL: cores have nothing for that. Triggers and selects take a pin, output().
+ * - **read** returns the bytes that the core has kept. An AVR with 1 KiB of RAM or more keeps 63 bytes: 65 ms at 9600
+ *   baud, 36 ms at 19200 8E1, 5.5 ms at 115200. Later bytes are lost. The core reports nothing about single bytes, so
+ *   no flag is set. The core drops bytes with wrong parity; their frame is then too short.
+ * - **write** accepts all bytes, or returns 0 if the buffer of the core has no space for all of them. It returns a
+ *   negative number for more bytes than the empty buffer holds, 63 on an AVR and 15 on small ones; the line reports
+ *   that as FATHOM_ERR_PORT. The longest request to any of the sensors has 13 bytes. If availableForWrite() of a core
+ *   reports nothing, `write` always fails; a sensor with automatic output can still be read.
+ * - **sent** uses the time, because flush() of the core blocks. It is true when the buffer is empty and the time of the
+ *   frame has passed since `write`, plus 2.5 % (for the clock of the UART) and 2 bits. It is late by this addition:
+ *   0.33 ms for 8 characters at 19200 8E1. It can be early if interrupts were disabled for longer while the frame was
+ *   sent; during a frame of this library only SoftwareSerial does that.
+ * - **leaves_in_us** returns the rest of that time.
+ * - **set_line** calls begin() of the core without end(), which blocks and discards received bytes. On an AVR it
+ *   returns a negative number if no divider is within 2.5 %: 230400 baud at 16 MHz, 115200 at 8 MHz. For other cores it
+ *   assumes that the rate can be reached.
+ * - **set_break** is NULL, because cores have no function for it. Use a pin, output(), for triggers and selects.
  *
- * RS-485: the driver-enable pin (DE, with /RE if there is to be no echo; then RX wants a pull-up) is high while a
- * request leaves. It is raised in write, and dropped by the first call of read, sent, set_line or release() after
- * `sent` is true; fathom_poll makes one each time while a request leaves. No interrupt of the core does it, so a slow
- * loop drops it late by its own period, and a device that answers meanwhile collides with it: the response is lost.
- * How long the loop may take at most: what the device waits before its response, less the lateness of `sent`:
- *     HPS-167S at 19200    1.6 ms (it keeps t3.5, 2.0 ms)          at 115200    1.6 ms
- *     A05 55 AA            60 ms (65 ms or more, A05 2(3))         A16, A05 Modbus: 3.4 ms (t3.5 at 9600)
- * If it takes longer: release() from a timer interrupt every millisecond, or a transceiver that switches by itself.
- * On an AVR the interrupt is Timer0's, which the core leaves free:
+ * **RS-485.** The driver-enable pin (DE) is high while a request is sent. Connect /RE to it too if there should be no
+ * echo; RX then needs a pull-up resistor. `write` sets the pin. The first call of `read`, `sent`, `set_line` or
+ * release() after the time of `sent` clears the pin; fathom_poll() makes such a call each time while a request is sent.
+ * No interrupt of the core does this. A slow loop therefore clears the pin late by its own period, and the response of
+ * a device that responds meanwhile is lost. The period of loop() must be shorter than the pause of the device before
+ * its response, less the delay of `sent`:
  *
- *     ISR(TIMER0_COMPA_vect) { bus.release(); }
- *     ... OCR0A = 0x80;
- *         TIMSK0 |= _BV(OCIE0A);
+ * | sensor                    | longest period of loop()                          |
+ * |---------------------------|---------------------------------------------------|
+ * | HPS-167S at 19200 baud    | 1.6 ms (the sensor keeps t3.5, 2.0 ms)            |
+ * | HPS-167S at 115200 baud   | 1.6 ms                                            |
+ * | A05, `55 AA`              | 60 ms (the sensor waits 65 ms or more, A05 2(3))  |
+ * | A16 and A05, Modbus       | 3.4 ms (t3.5 at 9600 baud)                        |
+ *
+ * If loop() takes longer, call release() from a timer interrupt every millisecond, or use a transceiver that switches
+ * by itself. An AVR has an interrupt of Timer0 for this, which the core does not use:
+ *
+ * @code
+ * ISR(TIMER0_COMPA_vect) { bus.release(); }
+ * // in setup():
+ * OCR0A = 0x80;
+ * TIMSK0 |= _BV(OCIE0A);
+ * @endcode
  */
 class serial_uart
 {
   public:
+    /**
+     * @brief Names the serial port. Does nothing with it yet.
+     *
+     * @param serial         The serial port. Must stay valid as long as this object.
+     * @param driver_enable  Arduino number of the driver-enable pin. no_pin: there is no transceiver.
+     */
     explicit serial_uart(HardwareSerial &serial, uint8_t driver_enable = no_pin);
 
-    /* begin() of the core, in setup() and before anything is written; sets the driver-enable pin low. false: these
-     * settings cannot be reached; nothing but that pin has changed. */
+    /**
+     * @brief Calls begin() of the core and sets the driver-enable pin low. Call it in setup(), before anything is
+     * written.
+     *
+     * @param baud       Baud rate.
+     * @param parity     Parity.
+     * @param stop_bits  1 or 2.
+     * @return False if these settings cannot be reached. Then nothing changed except the driver-enable pin.
+     */
     bool begin(uint32_t baud, fathom_parity_t parity = FATHOM_PARITY_NONE, uint8_t stop_bits = 1);
 
-    /* For a fathom_line_parts_t. */
+    /** @brief Returns the UART functions for a fathom_line_parts_t, by value. They point to this object. */
     fathom_uart_t hal();
 
-    /* Drops driver-enable if it is time. true: nothing is leaving. Also for an interrupt, whatever the loop is doing
-     * then; 10 us or so on an AVR while a request leaves, 1 us else. */
+    /**
+     * @brief Clears the driver-enable pin if the request has left.
+     *
+     * May be called from an interrupt, whatever loop() does at this moment. On an AVR it takes about 10 us while a
+     * request is sent, else 1 us.
+     *
+     * @return True if no request is being sent.
+     */
     bool release();
 
   private:
     HardwareSerial &serial_;
     const uint8_t driver_enable_;
     volatile bool leaving_;
-    volatile uint32_t since_us_; /* release() may be an interrupt's: set while leaving_ is false */
+    volatile uint32_t
+        since_us_; /* An interrupt may call release(), so this is set only while leaving_ is false. */
     volatile uint32_t span_us_;
     int capacity_; /* of the core's buffer when it is empty */
     fathom_line_settings_t line_;
@@ -148,26 +223,35 @@ class serial_uart
     static int set_line(void *ctx, const fathom_line_settings_t *settings);
 };
 
-/*
- * Any Stream whose begin() the sketch has called: SoftwareSerial, the USB serial of a board. It has no set_line, no
- * set_break and no driver-enable.
+/**
+ * @brief Any Stream whose begin() the sketch has called: SoftwareSerial, or the USB serial of a board.
  *
- * write      gives the Stream all at once, and takes as long as that does. SoftwareSerial sends bit by bit: a
- *            request of 8 bytes at 9600 baud blocks for 8.3 ms, in which nothing is received. < 0 if the Stream took
- *            less than all.
- * sent       when the time of the frame at `baud` has passed since write began, as above; leaves_in_us too.
+ * It has no `set_line`, no `set_break` and no driver enable.
  *
- * SoftwareSerial on an AVR keeps 63 bytes, has no parity (so no HPS-167S), hears one instance at a time, and keeps
- * interrupts off while a byte comes in: up to 57600 baud, and no pulse_input beside it. A sensor that sends by itself
- * at 9600 is what it is good for.
+ * - **write** passes all bytes to the Stream, and takes as long as the Stream does. SoftwareSerial sends bit by bit: a
+ *   request of 8 bytes at 9600 baud blocks for 8.3 ms, during which nothing is received. `write` returns a negative
+ *   number if the Stream accepted fewer bytes.
+ * - **sent** is true when the time of the frame at `baud` has passed since `write` was called, with the addition of
+ *   serial_uart.
+ * - **leaves_in_us** returns the rest of that time.
+ *
+ * SoftwareSerial on an AVR keeps 63 bytes, receives with one instance at a time, and disables interrupts while a byte
+ * arrives. It works up to 57600 baud, and not together with a pulse_input. It has no parity, so it cannot read an
+ * HPS-167S. It suits a sensor with automatic output at 9600 baud.
  */
 class stream_uart
 {
   public:
-    /* bits: of a character with its start, parity and stop bits; 10 for 8N1. */
+    /**
+     * @brief Names the Stream. Does nothing with it yet.
+     *
+     * @param stream  The Stream. Must stay valid as long as this object.
+     * @param baud    Its baud rate.
+     * @param bits    Bits of one character with start, parity and stop bits; 10 for 8N1.
+     */
     stream_uart(Stream &stream, uint32_t baud, uint8_t bits = 10);
 
-    /* For a fathom_line_parts_t. */
+    /** @brief Returns the UART functions for a fathom_line_parts_t, by value. They point to this object. */
     fathom_uart_t hal();
 
   private:
