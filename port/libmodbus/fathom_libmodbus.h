@@ -13,146 +13,198 @@
 extern "C" {
 #endif
 
-/*
- * The Modbus transport (modbus.h) over a modbus_t of libmodbus, RTU or TCP, that the program has made and connected:
- * for programs that use libmodbus already, and for sensors behind an Ethernet gateway.
+/**
+ * @file
+ * @brief The Modbus transport (modbus.h) over a modbus_t of libmodbus, RTU or TCP.
  *
- *     modbus_t *const modbus = modbus_new_tcp("192.168.1.20", 502);
- *     if (modbus == NULL || modbus_connect(modbus) != 0) return 1;
- *     const fathom_clock_t clock = fathom_posix_clock();
- *     const fathom_libmodbus_config_t config = {.clock = &clock};
- *     static fathom_libmodbus_t port;
- *     if (fathom_libmodbus_init(&port, modbus, &config) != FATHOM_OK) return 1;
- *     const fathom_modbus_t transport = fathom_libmodbus(&port);
- *     ... .modbus = &transport in the configs of as many drivers as there are sensors ...
- *     ... fathom_wait(&sensor, &sample, fathom_libmodbus_wait, &port) ...
+ * This port is for programs that use libmodbus already, and for sensors behind an Ethernet gateway. The program makes
+ * the modbus_t and connects it. Only fathom_libmodbus_wait() waits, and no function allocates memory. The rules of
+ * line.h apply here too: queue, time-outs, late and damaged responses, retries, broadcasts, counters. include/COST.md
+ * compares Fathom with libmodbus.
  *
- * What it cannot do, because libmodbus cannot (3.1.6, which Debian 12 has):
- *  - Units that modbus_set_slave refuses: submit returns FATHOM_ERR_UNSUPPORTED. These are 248..255 on RTU (so
- *    FATHOM_MODBUS_ANY_UNIT is among them) and 248..254 on TCP, where 255 is the server itself. Later versions take
- *    more of them if the program asks for it (modbus_enable_quirks), and then so does this.
- *  - Line settings of a request (fathom_transaction_t.settings): it ends with FATHOM_ERR_UNSUPPORTED, and nothing was
- *    sent. What modbus_new_rtu was given holds.
- *  - Listening to unsolicited frames: they are dropped and counted. Sensors that send by themselves, and the protocol
- *    55 AA, need fathom_posix.h.
- *  - A transceiver that libmodbus switches with RTS (modbus_rtu_set_rts): it sleeps until the request has left, so
- *    fathom_libmodbus_init refuses it. Let the adapter or the kernel switch it (TIOCSRS485).
- *  - Connecting: that is the program's, and modbus_connect waits.
+ * @code
+ * static fathom_libmodbus_t port;
+ * static fathom_clock_t clock;
+ * static fathom_modbus_t transport;
  *
- * What it uses of libmodbus. On RTU, requests leave through modbus_send_raw_request, so that a trace
- * (modbus_set_debug) shows them. What comes in is read from the descriptor as far as it is there (FIONREAD), and
- * never by modbus_receive_confirmation: that waits for what the first bytes promise, takes noise for them, and
- * throws away another unit's response without saying whose it was. On TCP the port uses the connection alone:
- * modbus_send_raw_request gives every request the transaction 0, by which a late response looks like the one that is
- * due, and modbus_receive_confirmation does not look at the length in the header, so that one response with a wrong
- * length puts all that follow out of step.
+ * modbus_t *const modbus = modbus_new_tcp("192.168.1.20", 502);
+ * if (modbus == NULL || modbus_connect(modbus) != 0) return 1;
+ * clock = fathom_posix_clock();
+ * if (fathom_libmodbus_init(&port, modbus, &(fathom_libmodbus_config_t){.clock = &clock}) != FATHOM_OK) return 1;
+ * transport = fathom_libmodbus(&port);      // .modbus.transport = &transport in the configuration of each driver
+ * status = fathom_wait(&sensor, &sample, fathom_libmodbus_wait, &port);
+ * @endcode
  *
- * What it does, besides what line.h says, which holds here too (queue, time-outs, late and damaged responses, retries,
- * broadcasts, counters):
- *  - On TCP every request has a transaction identifier of its own, and only the response to the last request that
- *    was sent is taken. A response to an earlier one is dropped and counted (late_responses), whatever it contains. A
- *    unit that did not respond in time gets no request until twice the time-out has passed, while others do; its
- *    response still counts if it comes in that time and no other unit got a request meanwhile.
- *  - On TCP a response is looked at when all of it is there; until then the port keeps what has come, and SO_RCVLOWAT
- *    of the socket keeps poll(2) from waking for less than the rest.
- *  - On TCP a gateway's exceptions 0x0A (path unavailable) and 0x0B (target silent) are no response of the unit: the
- *    request ends with FATHOM_ERR_NO_RESPONSE when its time-out is over. gateway_exception has the last one. Over RTU
- *    they are exceptions like any other.
- *  - On TCP a response from another unit than the request was for is not taken.
+ * What this port cannot do, because libmodbus (3.1.6 of Debian 12) cannot:
  *
- * A broken connection: what is under way ends with FATHOM_ERR_PORT, and so does every request until modbus_close and
- * modbus_connect have made a new one; then it goes on by itself. On TCP the port shuts the connection down
- * (shutdown(2)) where requests and responses have got out of step: the server sent what is no Modbus, or the system
- * took a part of a request.
+ * 1. **Units.** `submit` returns FATHOM_ERR_UNSUPPORTED for a unit that modbus_set_slave() refuses: 248 to 255 on RTU,
+ *    among them FATHOM_MODBUS_ANY_UNIT, and 248 to 254 on TCP, where 255 is the server itself. Later versions accept
+ *    more units if the program enables that (modbus_enable_quirks()); this port then accepts them too.
  *
- * Time-outs on TCP should be longer than the gateway's own, which is often 1 s: a gateway that still waits for a
- * dead unit does not serve the others either.
+ * 2. **Line settings** of a request (`settings` of fathom_transaction_t). Such a request ends with
+ *    FATHOM_ERR_UNSUPPORTED and is not sent. The settings of modbus_new_rtu() are in force.
  *
- * Memory: the port is the caller's, allocates nothing and may not be moved in use; modbus and clock outlive it. The
- * response and byte time-outs of the modbus_t are not used. Threads: one at a time for a port and its modbus_t. The
- * program may use the modbus_t itself (modbus_read_registers and so on, which wait) while no request is queued.
+ * 3. **Unsolicited frames.** The port drops and counts them. For sensors with automatic output and for the protocol
+ *    `55 AA`, use fathom_posix.h.
+ *
+ * 4. **A transceiver that libmodbus switches by RTS** (modbus_rtu_set_rts()). libmodbus sleeps until the request has
+ *    left, so fathom_libmodbus_init() refuses it. Let the adapter or the kernel switch the transceiver (TIOCSRS485).
+ *
+ * 5. **Connecting.** The program does this. modbus_connect() waits.
+ *
+ * What is different on TCP:
+ *
+ * 6. **Matching.** Each request has a transaction identifier of its own. The port accepts only a response to the newest
+ *    request, from the unit of that request. It drops any response to an earlier request and counts it
+ *    (`late_responses`), whatever the response contains. A unit that did not respond in time gets no request until
+ *    twice the time-out has passed; other units do. Its response still counts if it arrives in that time and no other
+ *    unit got a request meanwhile.
+ *
+ * 7. **Whole responses.** The port processes a response when it has arrived completely. Until then the port keeps the
+ *    part that has arrived, and SO_RCVLOWAT of the socket keeps poll(2) from waking for less than the rest.
+ *
+ * 8. **Gateways.** The exceptions 0x0A (path unavailable) and 0x0B (target silent) of a gateway are no response of the
+ *    unit: the request ends with FATHOM_ERR_NO_RESPONSE after its time-out. `gateway_exception` has the newest one. On
+ *    RTU they are exceptions like any other. Choose time-outs longer than that of the gateway, which is often 1 s: a
+ *    gateway that still waits for a dead unit does not serve other units either.
+ *
+ * For both:
+ *
+ * 9. **Broken connection.** The present request ends with FATHOM_ERR_PORT, and so does each later one, until
+ *    modbus_close() and modbus_connect() have made a new connection. The port then works again. On TCP the port shuts
+ *    the connection down (shutdown(2)) when requests and responses no longer match: the server sent bytes that are no
+ *    Modbus, or the system accepted only a part of a request.
+ *
+ * 10. **What the port uses of libmodbus.** On RTU, requests leave through modbus_send_raw_request(), so a trace
+ *     (modbus_set_debug()) shows them. On TCP the port uses only the socket. It reads received bytes from the
+ *     descriptor, never by modbus_receive_confirmation(). The response and byte time-outs of the modbus_t are not used.
+ *
+ * 11. **Threads.** Use a port and its modbus_t from one thread at a time. While no request is queued, the program may
+ *     use the modbus_t itself (modbus_read_registers() and so on, which wait).
  */
 
-/* Zero-valued members mean the defaults. On TCP only the clock is used. */
+/** @brief Configuration of a port. A member that is 0 takes its default. On TCP only the clock is used. Read only by
+ * fathom_libmodbus_init(). */
 typedef struct {
+    /** @brief The clock. It must stay valid as long as the port is used. */
     const fathom_clock_t *clock;
-    /* FATHOM_LINE_ECHO_...: whether the RS-485 adapter hands back what is sent. 0: the line finds out. */
+
+    /** @brief FATHOM_LINE_ECHO_OFF or _ON: whether the RS-485 adapter returns the bytes that are sent. 0: the line
+     * finds out. */
     uint8_t echo;
-    /* Kept before a request: FATHOM_T3_5_US(baud, bits). 0: that of 9600 baud, 4011. */
+
+    /** @brief Silence before a request, in microseconds: FATHOM_T3_5_US() of line.h. 0: that of 9600 baud, 4011. */
     uint16_t silence_us;
-    /* A frame is over when nothing came for so long. 0: 25000, since USB adapters hold bytes back for 16 ms. */
+
+    /** @brief Silence that ends a frame, in microseconds. 0: 25000, because USB adapters hold bytes back for 16 ms. */
     uint16_t gap_us;
 } fathom_libmodbus_config_t;
 
-/* Why the connection is broken. */
+/** @brief Why the connection is broken. */
 typedef enum {
-    FATHOM_LIBMODBUS_OK = 0,
-    FATHOM_LIBMODBUS_ERR_NOT_CONNECTED = -1, /* modbus_get_socket says -1 */
-    FATHOM_LIBMODBUS_ERR_HUNG_UP = -2,       /* the server has closed it; the adapter has gone */
-    FATHOM_LIBMODBUS_ERR_SYSTEM = -3,        /* what else the system said, such as ECONNRESET: system_error */
-    FATHOM_LIBMODBUS_ERR_NONSENSE = -4,      /* TCP: no header of Modbus stood where one should */
-    FATHOM_LIBMODBUS_ERR_TRUNCATED = -5      /* the system took a part of a request only */
+    FATHOM_LIBMODBUS_OK = 0,                 /**< It is not broken. */
+    FATHOM_LIBMODBUS_ERR_NOT_CONNECTED = -1, /**< modbus_get_socket() returns -1. */
+    FATHOM_LIBMODBUS_ERR_HUNG_UP = -2, /**< The server closed the connection, or the adapter was unplugged. */
+    FATHOM_LIBMODBUS_ERR_SYSTEM = -3, /**< Another error of the system, such as ECONNRESET: `system_error`. */
+    FATHOM_LIBMODBUS_ERR_NONSENSE = -4, /**< TCP: received bytes are no header of Modbus. */
+    FATHOM_LIBMODBUS_ERR_TRUNCATED = -5 /**< The system accepted only a part of a request. */
 } fathom_libmodbus_error_t;
 
-/* All but the counters is the port's own. */
+/** @brief A port, in the caller's memory. It must not be moved while it is used. A program may read the members whose
+ * comment does not say "Private". */
 typedef struct {
-    fathom_line_t line;                      /* first, so that one pointer is both */
-    uint16_t counters[FATHOM_LINE_COUNTERS]; /* for the user */
+    /** @brief Private: the line. The first member, so that one pointer is both. */
+    fathom_line_t line;
+    /** @brief The counters of the line (line.h). The caller may set them to 0. */
+    uint16_t counters[FATHOM_LINE_COUNTERS];
+    /** @brief Private: the parts of the line. */
     fathom_line_parts_t parts;
+    /** @brief Private: the UART of the line. */
     fathom_uart_t uart;
+    /** @brief Private: the modbus_t. */
     modbus_t *modbus;
+    /** @brief Private: true for TCP. */
     bool is_tcp;
-    int8_t error;     /* fathom_libmodbus_error_t */
-    int system_error; /* errno, with FATHOM_LIBMODBUS_ERR_SYSTEM */
+    /** @brief Private: a fathom_libmodbus_error_t; fathom_libmodbus_error() returns it. */
+    int8_t error;
+    /** @brief The errno of FATHOM_LIBMODBUS_ERR_SYSTEM. */
+    int system_error;
 
-    /* Of TCP. Counters stop at 65535 and may be set to 0. */
-    uint16_t late_responses;   /* to another transaction than the last */
-    uint16_t gateway_refusals; /* exceptions 0x0A and 0x0B */
-    uint8_t gateway_exception; /* the last of them; 0: none yet */
-    uint16_t transaction;      /* of the request that was sent last */
-    uint16_t have;             /* in adu, of the next response, while the line has read all of the last one */
-    uint64_t connection;       /* that it comes from (SO_COOKIE, Linux 4.12) */
-    uint16_t at;               /* in adu, what the line has not read yet, ... */
-    uint16_t end;              /* ... and its end */
-    uint8_t adu[6 + 1 + 253 + 2]; /* header, unit, PDU, and room for a CRC */
+    /** @brief TCP: responses to another transaction than the newest. Stops at 65535. The caller may set it to 0. */
+    uint16_t late_responses;
+    /** @brief TCP: exceptions 0x0A and 0x0B. Stops at 65535. The caller may set it to 0. */
+    uint16_t gateway_refusals;
+    /** @brief TCP: the newest of these exceptions. 0: none yet. */
+    uint8_t gateway_exception;
+
+    /* private */
+    uint16_t transaction; /* of the request that was sent last */
+    /* Count of bytes of the next response in adu. Not 0 only if the line has read all of the last response. */
+    uint16_t have;
+    uint64_t connection; /* the connection that these bytes came from (SO_COOKIE, Linux 4.12) */
+    /* The bytes that the line has not read yet stand from adu[at] to adu[end]. */
+    uint16_t at;
+    uint16_t end;
+    uint8_t adu[6 + 1 + 253 + 2]; /* header, unit, PDU, and space for a CRC */
 
     uint8_t frame[FATHOM_MODBUS_MAX_FRAME];
 } fathom_libmodbus_t;
 
-/*
- * Makes a port ready. Sets the modbus_t to MODBUS_ERROR_RECOVERY_NONE: with any other, libmodbus sleeps and connects
- * again when sending fails. Whether the modbus_t is connected is not looked at.
+/**
+ * @brief Initialises a port.
  *
- * Returns FATHOM_OK; FATHOM_ERR_ARGUMENT: a pointer is NULL, the clock's too; FATHOM_ERR_UNSUPPORTED: libmodbus is
- * to switch a transceiver with RTS.
+ * The call sets the modbus_t to MODBUS_ERROR_RECOVERY_NONE: with any other mode, libmodbus sleeps and connects again
+ * when sending fails. The modbus_t need not be connected yet.
+ *
+ * @param port    The port, with any content.
+ * @param modbus  The modbus_t. Must stay valid as long as the port is used.
+ * @param config  The configuration, read only during the call; its clock must stay valid.
+ * @retval FATHOM_OK               The port is ready.
+ * @retval FATHOM_ERR_ARGUMENT     A pointer is NULL, the clock included, or a time is out of the range of line.h.
+ * @retval FATHOM_ERR_UNSUPPORTED  libmodbus switches a transceiver by RTS (rule 4).
  */
 fathom_status_t fathom_libmodbus_init(fathom_libmodbus_t *port, modbus_t *modbus,
                                       const fathom_libmodbus_config_t *config);
 
-/* The transport over a port that is ready, by value: keep it as long as the drivers that point to it. Besides what
- * fathom_modbus_t says, submit may return FATHOM_ERR_UNSUPPORTED: modbus_set_slave refuses the unit. */
+/**
+ * @brief Returns the transport over a port, for the configurations of drivers.
+ *
+ * In addition to the results in modbus.h, `submit` may return FATHOM_ERR_UNSUPPORTED (rule 1).
+ *
+ * @param port  The port, initialised.
+ * @return The transport, by value. Keep it as long as the drivers that point to it.
+ */
 fathom_modbus_t fathom_libmodbus(fathom_libmodbus_t *port);
 
-/*
- * The HAL under that transport, for a program that polls the line (line.h) itself, as for a listener on RTU: it carries
- * RTU frames on TCP as well. Then neither port->line nor fathom_libmodbus() may be used.
+/**
+ * @brief Returns the UART functions (hal.h) under that transport, for a program that polls a line of its own.
  *
- * read   < 0 when the connection is broken. Never part of a TCP response.
- * write  A whole RTU frame with its CRC, which libmodbus computes again on RTU, and which is left out on TCP.
- * sent   RTU: the kernel's queue is empty; the UART may have some characters left. TCP: true.
- * set_line, set_break, leaves_in_us  NULL; for the last, `sent` is true too soon for a sleep to be worth it.
+ * For example, a listener on RTU needs a line of its own. The line sees RTU frames on TCP as well. The program must
+ * then use neither `port->line` nor fathom_libmodbus().
+ *
+ * - **read** returns a negative number when the connection is broken. It never returns a part of a TCP response that
+ *   has not arrived completely.
+ * - **write** accepts a whole RTU frame with its CRC. libmodbus computes the CRC again on RTU; on TCP it is left out.
+ * - **sent**: on RTU, true if the queue of the kernel is empty; the UART may still hold a few characters. On TCP, true.
+ * - **set_line**, **set_break** and **leaves_in_us** are NULL. `sent` is true too soon for a sleep to be useful.
+ *
+ * @param port  The port, initialised. It must stay valid as long as the functions are used.
+ * @return The functions, by value.
  */
 fathom_uart_t fathom_libmodbus_uart(fathom_libmodbus_t *port);
 
-/* Why the connection is broken: of the first failure since something last went out or came in. */
+/** @brief Returns why the connection is broken: the first failure since bytes were last sent or received. */
 fathom_libmodbus_error_t fathom_libmodbus_error(const fathom_libmodbus_t *port);
 
-/*
- * Sleeps until bytes can be read, the connection breaks, a signal handler has run, or max_us microseconds
- * (FATHOM_NO_DEADLINE: without limit) have passed: an idle hook for fathom_wait, ctx is the port. While the connection
- * is broken it returns at once, so look at what the poll functions return, or the loop spins.
+/**
+ * @brief Sleeps until bytes can be read, the connection breaks, a signal handler has run, or `max_us` has passed.
  *
- * A program's own poll(2) takes modbus_get_socket, POLLIN and the transport's due_us.
+ * This is an idle hook for fathom_wait() (wait.h). If the modbus_t is not connected, or the connection is broken, it
+ * returns at once: a loop must check the status that the poll functions return, or it uses a whole processor. For a
+ * poll(2) of the program, use modbus_get_socket(), POLLIN and `due_us` of the transport.
+ *
+ * @param port    The port, a fathom_libmodbus_t.
+ * @param max_us  Longest sleep in microseconds. FATHOM_NO_DEADLINE: without a limit.
  */
 void fathom_libmodbus_wait(void *port, uint32_t max_us);
 

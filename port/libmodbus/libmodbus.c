@@ -1,4 +1,13 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * Initialises a port over a modbus_t, and returns its transport and its UART. rtu.c and tcp.c have the UART functions.
+ *
+ * The port never calls modbus_receive_confirmation(). On RTU that function waits for the number of bytes that the first
+ * bytes promise, mistakes noise for them, and discards the response of another unit without reporting its address. On
+ * TCP it does not check the length in the header, so one response with a wrong length misaligns all that follow.
+ * modbus_send_raw_request() is not used on TCP, because it gives every request the transaction 0: a late response would
+ * then look like the response that is due.
+ */
 #define _GNU_SOURCE 1 /* ppoll */
 #include "fathom_libmodbus.h"
 
