@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * The HAL on the functions of an Arduino core: clock, pins, pulses, HardwareSerial and Stream. The end of a request is
+ * computed from the time, because flush() of a core blocks.
+ */
 #include "fathom_arduino.h"
 
 namespace fathom

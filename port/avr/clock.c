@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * The clock: Timer1 counts ticks, and its overflow interrupt counts periods. This file also has the flags that idle.c
+ * reads, because the clock is always linked.
+ */
 #include "internal/avr_port.h"
 
 #define PERIOD_US (65536UL / FATHOM_AVR_TICKS_PER_US)

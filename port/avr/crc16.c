@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The CRC of Modbus without a table, by the routine of avr-libc. It replaces src/codec/crc16.c. */
 #include "fathom/codec/crc16.h"
 
 #include <util/crc16.h>

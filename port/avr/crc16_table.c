@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The CRC of Modbus with a table of 256 entries in program memory. It replaces crc16.c of this folder. */
 #include "fathom/codec/crc16.h"
 
 #include <avr/pgmspace.h>

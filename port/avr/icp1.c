@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * Edges of pin ICP1 (PB0) by the input capture of Timer1. The hardware stores the time of each edge; the interrupt
+ * feeds it to edges.h.
+ */
 #include "internal/avr_port.h"
 
 static fathom_edges_t *captured;

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The sleep of the main loop, in idle mode. Compare match B of Timer1 ends it when the time has passed. */
 #include "internal/avr_port.h"
 
 #include <avr/sleep.h>

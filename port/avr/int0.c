@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Edges of pin INT0 (PD2) by its interrupt. The time of an edge is the time at which the interrupt runs. */
 #include "internal/avr_port.h"
 
 static fathom_edges_t *volatile seen; /* so that it is stored before the interrupt is enabled */

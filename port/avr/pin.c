@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Digital inputs and outputs of the HAL. A change of a port register disables interrupts meanwhile. */
 #include "internal/avr_port.h"
 
 /* PINx, DDRx and PORTx stand in this order (ATmega328P, 14.4). */

@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * USART0 with its three interrupts, and the driver enable of an RS-485 transceiver. The receive interrupt fills a ring,
+ * the main loop reads it, and two interrupts send the request.
+ */
 #include "internal/avr_port.h"
 
 /*

@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * Runs all items of the kit in order, and has those of the clock. The other items are in send.c, receive.c and
+ * settings.c.
+ */
 #include "fathom_conformance.h"
 
 #include <stddef.h>

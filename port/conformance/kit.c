@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * What the items share: the table of items, the clock with its monotony check, sending, and reading into a list of
+ * arrivals. An arrival is a byte with the time of its read and its flags.
+ */
 #include "internal/kit.h"
 
 #include <stddef.h>

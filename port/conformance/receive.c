@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * The items of reception: silence, time stamps, the age of bytes, error marks, and a full ring. Each needs the wire
+ * from TX to RX.
+ */
 #include <stddef.h>
 
 #include "internal/kit.h"

@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * The items of sending, and those of plain reading that need no marks. They compare the bytes that come back, and their
+ * times, with those that were sent.
+ */
 #include <stddef.h>
 
 #include "internal/kit.h"

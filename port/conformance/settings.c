@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The items of line settings and breaks. Each restores the first settings afterwards. */
 #include <stddef.h>
 
 #include "internal/kit.h"

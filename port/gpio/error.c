@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * The errors of a pin: each function stores an error and its text in the pin and returns the error. The texts name what
+ * failed, why, and what to try.
+ */
 #include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>

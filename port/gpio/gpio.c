@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * Opens and closes a line of a GPIO chip, and has its pin and its capture of the HAL. Edges come as events of the
+ * kernel with a time and a number, by which lost events are detected.
+ */
 #define _DEFAULT_SOURCE 1
 #include <errno.h>
 #include <fcntl.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The errors of a connection. The first reason is kept until bytes are sent or received again. */
 #include <errno.h>
 
 #include "internal/libmodbus_port.h"

@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * The UART functions of the HAL on a modbus_t of RTU. Requests leave through libmodbus; received bytes are read from
+ * the descriptor.
+ */
 #define _DEFAULT_SOURCE 1 /* FIONREAD */
 #include <errno.h>
 #include <poll.h>

@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * The UART functions of the HAL on a modbus_t of TCP. They convert the RTU frames of the line to TCP frames and back,
+ * and match responses by their transaction identifier.
+ */
 #define _DEFAULT_SOURCE 1 /* SO_COOKIE */
 #include <string.h>
 #include <sys/socket.h>

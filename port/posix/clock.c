@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The clock of the HAL and of programs, from CLOCK_MONOTONIC. The HAL gets the low 32 bits, programs get all 64. */
 #define _DEFAULT_SOURCE 1 /* clock_gettime */
 #include "fathom_posix.h"
 

@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * Error texts that the ports of Linux share. They name the words of the system, and the group or the udev rule that
+ * gives access to a device.
+ */
 #undef _GNU_SOURCE        /* with it, strerror_r is another function */
 #define _DEFAULT_SOURCE 1 /* getgrgid_r, strerror_r */
 #include "internal/describe.h"

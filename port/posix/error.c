@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * The errors of a port: each function stores an error and its text in the port and returns the error. The texts name
+ * what failed, why, and what to try.
+ */
 #include <errno.h>
 #include <stdarg.h>
 #include <stdio.h>

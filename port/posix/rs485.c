@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * Sets how the driver of the kernel drives an RS-485 transceiver (TIOCSRS485). The setting is read back, and the
+ * previous one is restored if the driver did not keep it.
+ */
 #define _DEFAULT_SOURCE 1 /* the tty ioctls */
 #include <errno.h>
 #include <linux/serial.h>

@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * The line settings of a tty: from fathom_line_settings_t to struct termios and back. Settings are read back, and the
+ * previous ones are restored if the driver did not keep them.
+ */
 #define _DEFAULT_SOURCE 1 /* CRTSCTS, rates above 38400 */
 #include <errno.h>
 #include <stdio.h>

@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * Opens and closes a tty, and has the UART functions of the HAL on it. The port keeps the part of a request that the
+ * kernel has not accepted, and passes it on with the next call.
+ */
 #define _DEFAULT_SOURCE 1 /* flock, major, the tty ioctls */
 #include <errno.h>
 #include <fcntl.h>

@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * The sleep of a port, and what a program's own poll(2) needs. The sleep ends when bytes arrive, when the port can take
+ * the rest of a request, or when the time has passed.
+ */
 #define _GNU_SOURCE 1 /* ppoll */
 #include <poll.h>
 #include <time.h>

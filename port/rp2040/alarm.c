@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The alarms of TIMER. Each alarm causes one interrupt after a time. */
 #include "internal/alarm.h"
 
 #include <stdbool.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The clock: the low word of TIMER, which counts microseconds. The init function starts TIMER and its ticks. */
 #include "fathom_rp2040.h"
 #include "rp2040.h"
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Edges of a GPIO by the interrupt of IO_BANK0. The time of an edge is the time at which the interrupt runs. */
 #include "fathom_rp2040.h"
 #include "rp2040.h"
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The sleep of the main loop (WFI). An alarm of TIMER ends it when the time has passed. */
 #include "fathom_rp2040.h"
 #include "internal/alarm.h"
 

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Digital inputs and outputs of the HAL, by SIO. The init functions take the pads and the function of the GPIO. */
 #include "fathom_rp2040.h"
 #include "rp2040.h"
 

@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * UART0 and UART1: reception by interrupt and by the main loop, sending, and the driver enable of an RS-485
+ * transceiver. The registers are set up in uart_setup.c.
+ */
 #include "fathom_rp2040.h"
 #include "internal/alarm.h"
 #include "rp2040.h"

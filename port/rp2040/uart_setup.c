@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * Sets up the registers of a UART: pins, divider, format and FIFO levels. It has no state and no interrupt, so a
+ * reception by DMA can use it alone.
+ */
 #include "fathom_rp2040.h"
 #include "rp2040.h"
 

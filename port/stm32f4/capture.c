@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-/* Never run but on memory in place of the registers: no simulator here has a timer with captures. */
+/*
+ * Edges by the captures of TIM2, with the time of the hardware. This code has never run except on memory in place of
+ * the registers: no available simulator has a timer with captures.
+ */
 #include <stddef.h>
 
 #include "internal/stm32f4_port.h"

@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * The clock: TIM2, which counts microseconds in 32 bits. The init function also sets up TIM5 for the sleep, because it
+ * knows the rate.
+ */
 #include <stddef.h>
 
 #include "internal/stm32f4_port.h"
 
-/* TIM5, for idle, is set up here as well, since the rate is known here. */
 static void begin_timer(volatile uint32_t *timer, uint32_t timer_hz)
 {
     timer[TIM_CR1] = TIM_CR1_URS; /* the next line is no reason for an interrupt */

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The sleep of the main loop (WFI). The interrupt of TIM5 ends it when the time has passed. */
 #include "internal/stm32f4_port.h"
 
 enum { DIER_UIE = 1, TIM5_INTERRUPT = 50 };

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Enables an interrupt in the NVIC. This file also has the flag by which interrupts wake the main loop. */
 #include "internal/stm32f4_port.h"
 
 #define NVIC_ISER ((volatile uint32_t *)0xE000E100u)

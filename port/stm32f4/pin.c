@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * Digital inputs and outputs of the HAL, and the functions of pins for the other files. Each output change is a single
+ * write to BSRR.
+ */
 #include <stddef.h>
 
 #include "internal/stm32f4_port.h"

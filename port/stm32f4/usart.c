@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * USART1 to 3, UART4, UART5 and USART6 with their interrupt, and the driver enable of an RS-485 transceiver. Ring and
+ * request are those of fathom_serial.h.
+ */
 #include <stddef.h>
 
 #include "internal/stm32f4_port.h"
