@@ -13,7 +13,7 @@ static inline void copy_4(volatile uint16_t *to, const uint16_t *from)
     for (uint8_t i = 0; i != 4u; i++) to[i] = from[i];
 }
 
-/* Returns the id of a command: its address with FATHOM_MODBUS_COMMAND. The id of #5, which is repeated, is its address. */
+/* Returns the id of a command: its address with FATHOM_MODBUS_COMMAND. The id of the repeated #5 is its address. */
 static inline uint8_t fathom_hps167s_id(uint8_t command)
 {
     return (uint8_t)(FATHOM_MODBUS_COMMAND | command);

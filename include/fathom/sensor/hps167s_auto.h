@@ -13,49 +13,57 @@ extern "C" {
  * @file
  * @brief Reads an HPS-167S that sends measurements without a request.
  *
- * The datasheet contradicts itself. Section 2.2.1 states that a slave cannot send without a request, and #5 states that
- * a master repeats the request to measure continuously. Table 12, #10 and #15 describe a "continuous output". hps167s.h
- * sends requests. This driver is for a unit that sends by itself, or for a program that listens to another master.
+ * The driver is the listener of a line, and each frame of one sensor is one sample. It is for a sensor that sends
+ * unsolicited frames, or for a program that listens to another master; hps167s.h sends requests. It sends nothing,
+ * never waits and never allocates memory. include/COST.md has its flash, RAM and stack (`hps167s_auto`).
  *
- * The driver sends nothing, never waits and never allocates memory. include/COST.md has its flash, RAM and stack
- * (`hps167s_auto`).
+ * @note The datasheet contradicts itself. Section 2.2.1 states that a slave cannot send without a request, and #5
+ * states that a master repeats the request to measure continuously. Table 12, #10 and #15 describe a "continuous
+ * output".
  *
  * @code
  * fathom_line_init_listening(&line, &parts);          // line.h: a line without requests
  * const fathom_hps167s_auto_config_t config = {.line = &line, .address = 1};
  * fathom_hps167s_auto_init(&gate, &config);
  * const fathom_sensor_t sensor = fathom_hps167s_auto_sensor(&gate);
+ *
  * fathom_sample_t sample;                             // in the loop:
  * if (fathom_poll(&sensor, &sample) == FATHOM_OK && sample.kind == FATHOM_TARGET) use(sample.distance_mm);
  * @endcode
  *
- * The driver is the listener of a line. It searches the received bytes for frames of the shape of the response to #5
- * from one address: ADDRESS 03 08, 8 bytes, CRC. If a byte cannot belong to such a frame, the driver drops this byte
- * and continues with the next. So the driver needs no silence: the CRC decides what is a frame.
+ * 1. **Frames.** The driver searches the received bytes for frames of the shape of the response to #5 from one address:
+ *    ADDRESS 03 08, 8 bytes, CRC. If a byte cannot belong to such a frame, the driver drops this byte and continues
+ *    with the next. So the driver needs no silence: the CRC decides what is a frame.
  *
- *     bytes   01 01 03 08 | 01 03 08 08 23 DC B2 07 01 00 00 FD 41 | 01 03 08 08 23 DC ...
- *             dropped     | a frame                                | held: may become a frame
+ *        bytes   01 01 03 08 | 01 03 08 08 23 DC B2 07 01 00 00 FD 41 | 01 03 08 08 23 DC ...
+ *                dropped     | a frame                                | held: may become a frame
  *
- * Requests to the same device on the same line work at the same time. A response goes to its request, and a frame
- * that no request waits for comes to this driver.
+ *    The CRC sees one and two wrong bits in a frame, and all errors within 16 bits in a row. Of frames whose bytes were
+ *    replaced at random, one in 65536 passes.
  *
- * Each frame is one sample, with the kinds of hps167s.h (rule 1). `sequence` increases by 1 with each sample that
- * fathom_poll() returns, and wraps. A new number means a new frame. The datasheet does not state whether a new frame is
- * always a new measurement. `time_us` is the clock at the last byte of the frame. If several frames arrive between two
- * polls, the driver returns the newest and counts the others in `missed`. A frame that is older than `stale_us` and
- * FATHOM_LINE_LATE_US is no sample, whether it waited in the port (line.h, rule 14) or in the driver. The errors of
- * fathom_poll() are:
+ * 2. **Requests** to the same sensor on the same line work at the same time. A response goes to its request, and a
+ *    frame that no request waits for comes to this driver. See fathom_hps167s_auto_follow().
  *
- * | error                | cause                                                                                  |
- * |----------------------|----------------------------------------------------------------------------------------|
- * | FATHOM_ERR_STALE     | Nothing was received for `stale_us`. Returned once every `stale_us`.                   |
- * | FATHOM_ERR_CHECKSUM  | Bytes were received for `stale_us`, but no sample of this address: damage, noise,      |
- * |                      | another rate, or another device. Returned once every `stale_us`.                       |
- * | FATHOM_ERR_MALFORMED | A frame has values that cannot be a measurement. Counted in `implausible`.             |
- * | FATHOM_ERR_PORT      | The port is broken. Returned by every poll until the port works again.                 |
+ * 3. **Samples.** Each frame is one sample, with the kinds of hps167s.h (rule 1). `time_us` is the clock at the last
+ *    byte of the frame. If several frames arrive between two polls, the driver returns the newest and counts the others
+ *    in `missed`. A frame that is older than `stale_us` and FATHOM_LINE_LATE_US is no sample, whether it waited in the
+ *    port (line.h, rule 14) or in the driver.
  *
- * The CRC sees one and two wrong bits in a frame, and all errors within 16 bits in a row. Of frames whose bytes were
- * replaced at random, one in 65536 passes.
+ * 4. **What `sequence` promises.** `sequence` increases by 1 with each sample that fathom_poll() returns, and wraps
+ *    after
+ *    65535. A new number means a new frame. The datasheet does not state whether a new frame is always a new
+ *    measurement. The sensor measures 6 to 54 times a second (table 1).
+ *
+ * 5. **Errors of fathom_poll().** The driver continues after each.
+ *
+ *    | error                | cause                                                                               |
+ *    |----------------------|-------------------------------------------------------------------------------------|
+ *    | FATHOM_ERR_STALE     | Nothing was received for `stale_us`. Returned once every `stale_us`.                |
+ *    | FATHOM_ERR_CHECKSUM  | Bytes were received for `stale_us`, but no sample of this address: damage, noise,   |
+ *    |                      | another rate, or another device. Returned once every `stale_us`.                    |
+ *    | FATHOM_ERR_MALFORMED | A frame has values that cannot be a measurement. Counted in `implausible`.          |
+ *    | FATHOM_ERR_PORT      | The port is broken. Returned by every poll until the port works again.              |
+ *    | FATHOM_ERR_ARGUMENT  | The driver is not initialised.                                                      |
  */
 
 /** @brief Length of a frame of the shape of a measurement. */

@@ -34,7 +34,7 @@ extern "C" {
  *    | error               | cause                                                                                |
  *    |---------------------|--------------------------------------------------------------------------------------|
  *    | FATHOM_ERR_BUSY     | Another command or setting is not finished, or its result was not fetched. Call later. |
- *    | FATHOM_ERR_CAPACITY | The frame buffer of the line is too small: #1 needs 11 bytes, #2 13, #3 27, #4 8.     |
+ *    | FATHOM_ERR_CAPACITY | The frame buffer of the line is too small: the details (#3) need 27 bytes.            |
  *
  * 4. **Bound.** With the terms of modbus_unit.h, a command ends at the latest after
  *

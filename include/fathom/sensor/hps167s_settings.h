@@ -81,8 +81,8 @@ bool fathom_hps167s_is_written(const fathom_hps167s_t *sensor);
  * @brief Makes the next setting blind: for a sensor whose response to #2 is not believed.
  *
  * A blind setting is written once, to this unit alone, without a read before or afterwards. So a new address is not
- * checked to be free. The setting after it is not blind, whatever its result is. fathom_hps167s_cancel() and
- * fathom_hps167s_power_on() withdraw this call.
+ * checked to be free, and the driver stays at its present address and rate. The setting after it is not blind, whatever
+ * its result is. fathom_hps167s_cancel() and fathom_hps167s_power_on() withdraw this call.
  *
  * | result of the blind setting | cause                                                                         |
  * |-----------------------------|-------------------------------------------------------------------------------|
@@ -269,10 +269,11 @@ fathom_status_t fathom_hps167s_set_reconnect_time_ms(fathom_hps167s_t *sensor, u
  *
  * The command is a read of register 0x0009. Nothing else in this library sends it, and it is sent once. The driver
  * reads #2 first. If the sensor has another address or rate, a read at address 1 and 19200 baud must then find no unit,
- * which costs time-outs. If the driver has no `line_settings`, it follows the sensor to address 1 only, and not to
- * 19200 baud.
+ * which costs a time-out for each attempt. If the driver has no `line_settings`, it follows the sensor to address 1
+ * only, and not to 19200 baud.
  *
- * @retval FATHOM_OK               The sensor reported success, or has moved, and responds where the driver is now.
+ * @retval FATHOM_OK               The sensor reported success, or has moved, and responds where the driver is now. The
+ *                                 warm-up time of the driver is 5 s.
  * @retval FATHOM_PENDING          Call again.
  * @retval FATHOM_ERR_IN_USE       A unit responds at address 1 and 19200 baud. Nothing was sent.
  * @retval FATHOM_ERR_EXCEPTION    The sensor refused. `reset_response` is its error code. If `reset_response` is
