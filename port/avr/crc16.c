@@ -4,8 +4,8 @@
 
 #include <util/crc16.h>
 
-/* avr-libc's _crc16_update is the same polynomial in 29 instructions without a table: no flash for one, and
- * no RAM, where avr-gcc would put a const table. */
+/* _crc16_update() of avr-libc has the same polynomial in 29 instructions without a table. avr-gcc would put a constant
+ * table into RAM. */
 uint16_t fathom_crc16(const uint8_t *bytes, uint8_t length)
 {
     uint16_t crc = 0xFFFFu;

@@ -4,7 +4,7 @@
 
 #include <avr/pgmspace.h>
 
-/* What eight shifts by one bit do to each low byte. It is the sum of what they do to each of its bits. */
+/* The table has the effect of eight shifts by one bit on each low byte: the sum of the effects on each of its bits. */
 #define OF_BIT(n, bit, sum) ((((n) & (bit)) != 0u) ? (sum) : 0u)
 #define OF(n)                                                                                                \
     (uint16_t)(OF_BIT(n, 1u, 0xC0C1u) ^ OF_BIT(n, 2u, 0xC181u) ^ OF_BIT(n, 4u, 0xC301u) ^                    \
@@ -14,7 +14,7 @@
 #define OF_16(n) OF_4(n), OF_4((n) + 4u), OF_4((n) + 8u), OF_4((n) + 12u)
 #define OF_64(n) OF_16(n), OF_16((n) + 16u), OF_16((n) + 32u), OF_16((n) + 48u)
 
-/* In program memory: 512 bytes of flash, and none of RAM. */
+/* The table is in program memory: 512 bytes of flash, and no RAM. */
 static const uint16_t table[256] PROGMEM = {OF_64(0u), OF_64(64u), OF_64(128u), OF_64(192u)};
 
 uint16_t fathom_crc16(const uint8_t *bytes, uint8_t length)

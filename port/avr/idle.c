@@ -4,7 +4,8 @@
 
 #include <avr/sleep.h>
 
-/* In ticks of Timer1: less than a period by what it takes to get to sleep, and more than that. */
+/* Limits of a sleep in ticks of Timer1. MOST is less than a period by more than the time that falling asleep takes;
+ * LEAST is more than that time. */
 #define MOST  65000u
 #define LEAST 40u
 
@@ -18,19 +19,19 @@ static bool is_to_sleep(bool bytes_wake)
            (!bytes_wake || (fathom_avr_rx_in == fathom_avr_rx_out));
 }
 
-/* Until the time is up, which is true, or something else has ended it. */
+/* Sleeps. Returns true if nothing but the time, or bytes if `bytes_wake`, has ended the sleep. */
 static bool doze(uint32_t max_us, bool bytes_wake)
 {
     const uint16_t ticks =
         (max_us < (MOST / FATHOM_AVR_TICKS_PER_US)) ? (uint16_t)(max_us * FATHOM_AVR_TICKS_PER_US) : MOST;
     cli();
-    time_is_up = ticks < LEAST; /* a match that is so near might be missed */
+    time_is_up = ticks < LEAST; /* A match that is this near might be missed. */
     OCR1B = (uint16_t)(TCNT1 + ticks);
     TIFR1 = _BV(OCF1B);
     TIMSK1 |= _BV(OCIE1B);
-    SMCR = _BV(SE); /* idle mode: the timers and the USART go on */
+    SMCR = _BV(SE); /* In idle mode the timers and the USART continue. */
     while (is_to_sleep(bytes_wake)) {
-        sei(); /* the instruction after it is carried out before any interrupt, so none is slept through */
+        sei(); /* The next instruction runs before any interrupt, so no interrupt is missed. */
         sleep_cpu();
         cli();
     }

@@ -6,32 +6,31 @@
 #include "internal/avr_port.h"
 
 /*
- * Bytes that wait for the main loop, each followed by UCSR0A as it was when it came. One writer, the interrupt, and
- * one reader; the indices fathom_avr_rx_in and fathom_avr_rx_out count by two and are one byte each, so that no
- * access finds half of one changed. One place stays free.
+ * The ring has the bytes that wait for the main loop, each followed by the UCSR0A with which it arrived. The interrupt
+ * is the only writer and the main loop the only reader. The indices fathom_avr_rx_in and fathom_avr_rx_out count by two
+ * and are one byte each, so no access reads a half-changed index. One place stays free.
  */
 #define RING  (2 * FATHOM_AVR_RX_RING)
 #define ERROR (_BV(FE0) | _BV(DOR0) | _BV(UPE0))
 
 static volatile uint8_t ring[RING];
-static volatile uint8_t
-    dropped; /* DOR0, of a byte for which there was no place; the next one that gets in reports it */
+static volatile uint8_t dropped; /* DOR0 if a byte found no place; the next byte in the ring reports it */
 
 static uint8_t *request_memory;
 static uint8_t request_size;
 static fathom_avr_pin_t driver;
-static const uint8_t *volatile next; /* of the request */
-static volatile uint8_t left;        /* of its bytes, those that UDR0 has not got */
-static volatile bool sending;        /* up to its last stop bit */
+static const uint8_t *volatile next; /* next byte of the request */
+static volatile uint8_t left;        /* number of its bytes that UDR0 has not got */
+static volatile bool sending;        /* true until its last stop bit has left */
 static bool in_break;
-static fathom_line_settings_t line; /* that holds */
-static uint16_t character_us;       /* of it, rounded up */
+static fathom_line_settings_t line; /* the settings that are in force */
+static uint16_t character_us;       /* time of a character, rounded up */
 
 fathom_avr_usart_counters_t fathom_avr_usart0_counters;
 
 /*
- * The one interrupt that comes with every byte, so written by hand: 58 cycles with the jump to it, 59 when there is
- * no place, where avr-gcc 5.4 needs 77. In C it would be
+ * Stores a received byte. This interrupt comes with every byte, so it is written by hand: it takes 58 cycles with the
+ * jump to it, and 59 if there is no place; avr-gcc 5.4 needs 77. In C it would be
  *     ring[in] = UDR0, ring[in + 1] = UCSR0A | dropped;      (UCSR0A is read first: ATmega328P, 20.7.3)
  *     after = (in + 2) % RING;
  *     if (after == out) dropped = DOR0; else in = after, dropped = 0;
@@ -87,19 +86,19 @@ static void drive(bool on)
     if (port != NULL) *port = (uint8_t)(on ? (*port | driver.mask) : (*port & ~driver.mask));
 }
 
-/* There is room for a byte. */
+/* UDR0 has space for a byte. */
 ISR(USART_UDRE_vect)
 {
     UDR0 = *next;
-    /* A transmit complete that is pending now is from before this byte, which came too late to be without a gap: the
-     * driver has to stay on. After it, since the last byte may end right before it. Written as 0, the errors of the
-     * receiver stay. */
+    /* If a transmit complete is pending now, this byte came too late and there was a gap. The flag is cleared, so that
+     * the driver stays enabled. It is cleared after the store to UDR0, because the byte before may end directly before
+     * that store. The error bits of the receiver are written as 0 and stay. */
     UCSR0A = (uint8_t)((UCSR0A & _BV(U2X0)) | _BV(TXC0));
     next++;
     if (--left == 0) UCSR0B &= (uint8_t)~_BV(UDRIE0);
 }
 
-/* The last stop bit has left, and nothing more is there to send. */
+/* The last stop bit has left. If the whole request was sent, the driver is disabled. */
 ISR(USART_TX_vect)
 {
     if (left != 0) return;
@@ -130,7 +129,7 @@ static int usart_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *r
     uint8_t out = fathom_avr_rx_out;
     while ((count != capacity) && (out != fathom_avr_rx_in)) {
         const uint8_t state = ring[out + 1] & ERROR;
-        if ((state != 0) && (count != 0)) break; /* for the next call */
+        if ((state != 0) && (count != 0)) break; /* The next call returns it. */
         bytes[count] = ring[out];
         count++;
         out = (uint8_t)(out + 2) & (RING - 1);
@@ -145,7 +144,7 @@ static int usart_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *r
 static int usart_write(void *ctx, const uint8_t *bytes, size_t length)
 {
     (void)ctx;
-    if ((length - 1) >= request_size) return -1; /* 0 bytes are too many, too */
+    if ((length - 1) >= request_size) return -1; /* 0 wraps, so it is refused too. */
     if (sending || in_break) return 0;
     for (size_t i = 0; i != length; i++) request_memory[i] = bytes[i];
     next = request_memory;
@@ -165,7 +164,7 @@ static bool usart_sent(void *ctx)
     return !sending;
 }
 
-/* UDR0 and the shift register hold two more, which they have got as soon as `write` has ended. */
+/* UDR0 and the shift register hold two more bytes, from the end of `write` on. */
 static uint32_t usart_leaves_in_us(void *ctx)
 {
     (void)ctx;
@@ -179,7 +178,8 @@ static uint32_t difference(uint32_t a, uint32_t b)
     return b - a;
 }
 
-/* What UBRR0 + 1 is with U2X0 set; 0 where the rate cannot be within 2.5 %, or the hardware has no such settings. */
+/* Returns UBRR0 + 1 with U2X0 set. Returns 0 if the rate cannot be reached within 2.5 %, or if the hardware does not
+ * have these settings. */
 static uint16_t divisor_of(const fathom_line_settings_t *settings)
 {
     const uint32_t eighth = F_CPU / 8;
@@ -191,12 +191,12 @@ static uint16_t divisor_of(const fathom_line_settings_t *settings)
     if (divisor > 4096) return 0;
     const uint32_t product = divisor * baud;
     const uint32_t off = difference(product, eighth);
-    return ((off * 40) > product) ? 0 : (uint16_t)divisor; /* F_CPU / 8 / divisor against baud */
+    return ((off * 40) > product) ? 0 : (uint16_t)divisor; /* compares F_CPU / 8 / divisor with baud */
 }
 
 static void set(const fathom_line_settings_t *settings, uint16_t divisor)
 {
-    /* Where the same rate is there without U2X0, the receiver looks at each bit twice as often. */
+    /* Without U2X0 the receiver samples each bit twice as often, so U2X0 is set only for an odd divisor. */
     const bool twice = (divisor % 2) != 0;
     UBRR0 = (uint16_t)((twice ? divisor : (divisor / 2)) - 1);
     UCSR0A = twice ? _BV(U2X0) : 0;
@@ -268,7 +268,8 @@ bool fathom_avr_usart0_init(const fathom_avr_usart_config_t *config)
     sending = in_break = false;
     dropped = 0;
     fathom_avr_rx_out = fathom_avr_rx_in = 0;
-    PORTD |= _BV(PORTD0); /* a pull-up for RXD: a transceiver whose receiver is off does not drive it */
+    PORTD |= _BV(
+        PORTD0); /* RXD gets a pull-up, because a transceiver with its receiver disabled does not drive it. */
     UCSR0B = _BV(RXCIE0) | _BV(TXCIE0) | _BV(RXEN0) | _BV(TXEN0);
     return true;
 }

@@ -8,7 +8,7 @@
 uint64_t fathom_posix_now_us(void)
 {
     struct timespec now = {0, 0};
-    /* Cannot fail: the clock is there since Linux 2.6 and the pointer is good. */
+    /* This cannot fail: Linux has this clock since 2.6, and the pointer is valid. */
     (void)clock_gettime(CLOCK_MONOTONIC, &now);
     return (uint64_t)now.tv_sec * 1000000u + (uint64_t)now.tv_nsec / 1000u;
 }

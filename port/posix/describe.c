@@ -12,7 +12,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
-/* strerror is not safe with threads. */
+/* strerror(3) is not safe with threads. */
 const char *fathom_posix_words(int code, char *text, size_t capacity)
 {
     if (strerror_r(code, text, capacity) != 0) (void)snprintf(text, capacity, "error %d", code);
@@ -37,7 +37,7 @@ const char *fathom_posix_describe_denied(const char *path, const char *usual_gro
     (void)snprintf(number, sizeof number, "%lu", (unsigned long)status.st_gid);
     const char *const name = found == 0 && group != NULL ? entry.gr_name : number;
 
-    /* No user should join the group root, and joining does not help where the group may not read and write either. */
+    /* No user should join the group root. If the group may not read and write, joining it does not help. */
     const unsigned mode = (unsigned)status.st_mode & 07777u;
     if (status.st_gid == 0 || (mode & (S_IRGRP | S_IWGRP)) != (S_IRGRP | S_IWGRP))
         (void)snprintf(text, capacity,

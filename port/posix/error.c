@@ -18,11 +18,11 @@ fathom_posix_status_t fathom_posix_fail(fathom_posix_uart_t *port, fathom_posix_
                                         const char *format, ...)
 {
     va_list arguments;
-    /* The path is far shorter than the text. */
+    /* The path is far shorter than the text, so `head` is less than the size. */
     const int head =
         snprintf(port->text, sizeof port->text, "%s: ", port->path[0] != 0 ? port->path : "serial port");
     va_start(arguments, format);
-    /* clang-tidy 14 forgets the line above when it is given several files. */
+    /* clang-tidy 14 forgets the line above when it checks several files. */
     /* NOLINTNEXTLINE(clang-analyzer-valist.Uninitialized) */
     (void)vsnprintf(port->text + head, sizeof port->text - (size_t)head, format, arguments);
     va_end(arguments);

@@ -12,7 +12,7 @@
 
 #include "internal/posix_port.h"
 
-/* Which level RTS has while bytes leave, and which otherwise; what a driver may do besides is its own. */
+/* The flags that must be kept: the level of RTS while bytes are sent and otherwise. A driver may add other flags. */
 #define LEVELS (SER_RS485_ENABLED | SER_RS485_RTS_ON_SEND | SER_RS485_RTS_AFTER_SEND)
 
 static bool same(const struct serial_rs485 *asked, const struct serial_rs485 *got)
@@ -23,7 +23,7 @@ static bool same(const struct serial_rs485 *asked, const struct serial_rs485 *go
            asked->delay_rts_after_send == got->delay_rts_after_send;
 }
 
-/* "RTS on while sending, from 1 ms before to 0 ms after". */
+/* Writes a text like "RTS on while sending, from 1 ms before to 0 ms after". */
 static void describe(const struct serial_rs485 *rs485, char *text, size_t capacity)
 {
     const char *const sending = (rs485->flags & SER_RS485_RTS_ON_SEND) != 0 ? "on" : "off";

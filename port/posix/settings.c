@@ -10,7 +10,7 @@
 
 #include "internal/posix_port.h"
 
-/* What a frame on the wire is made of, in c_cflag. */
+/* The bits of c_cflag that define a frame on the wire. */
 #define FRAME_BITS (CSIZE | PARENB | PARODD | CMSPAR | CSTOPB | CRTSCTS)
 
 typedef struct {
@@ -36,10 +36,10 @@ static uint32_t baud_of_speed(speed_t speed)
 {
     for (size_t i = 0; i != RATES; i++)
         if (rates[i].speed == speed) return rates[i].baud;
-    return B9600 == 9600 ? (uint32_t)speed : 0; /* since glibc 2.42 a speed_t is the rate itself */
+    return B9600 == 9600 ? (uint32_t)speed : 0; /* Since glibc 2.42 a speed_t is the rate itself. */
 }
 
-/* 2.5 %: a driver may report the rate that its divider really makes. */
+/* The limit is 2.5 %, because a driver may report the rate that its divider really makes. */
 static bool near(speed_t got, speed_t asked)
 {
     const uint32_t baud = baud_of_speed(asked);
@@ -48,7 +48,7 @@ static bool near(speed_t got, speed_t asked)
     return off <= baud / 40;
 }
 
-/* "19200 8E1"; a rate without a name, as another program can set it, is "?". */
+/* Writes a text like "19200 8E1". A rate without a name, which another program can set, is "?". */
 static void describe(const struct termios *tty, char *text, size_t capacity)
 {
     const tcflag_t bits = tty->c_cflag;
@@ -75,7 +75,8 @@ static void wanted(struct termios *tty, const fathom_line_settings_t *settings, 
     if (settings->parity != FATHOM_PARITY_NONE) tty->c_cflag |= PARENB;
     if (settings->parity == FATHOM_PARITY_ODD) tty->c_cflag |= PARODD;
     if (settings->stop_bits == 2) tty->c_cflag |= CSTOPB;
-    /* With O_NONBLOCK, VMIN 1 tells "no bytes" (EAGAIN) from a hang-up (0 bytes); VMIN 0 would not. */
+    /* With O_NONBLOCK and VMIN 1, read(2) distinguishes "no bytes" (EAGAIN) from a hang-up (0 bytes). With VMIN 0 it
+     * does not. */
     tty->c_cc[VMIN] = 1;
     tty->c_cc[VTIME] = 0;
     (void)cfsetospeed(tty, speed);
@@ -100,7 +101,7 @@ static int set(int fd, const struct termios *tty)
     return result;
 }
 
-/* Its rate; NULL where they are no setting, after saying so. */
+/* Returns the rate. If the settings are not allowed, returns NULL and stores the error. */
 static const rate_t *checked(fathom_posix_uart_t *port, const fathom_line_settings_t *settings)
 {
     const rate_t *const rate = rate_of_baud(settings->baud);
@@ -132,8 +133,8 @@ fathom_posix_status_t fathom_posix_apply(fathom_posix_uart_t *port, const fathom
     struct termios asked = before;
     wanted(&asked, settings, rate->speed);
 
-    /* glibc gives EINVAL when the tty dropped a bit and nothing else changed (8E1 after 8N1 on a pseudo
-     * terminal), and 0 when it dropped one and something else did. So what is read back counts. */
+    /* If the tty dropped a bit and nothing else changed (8E1 after 8N1 on a pseudo terminal), glibc returns EINVAL. If
+     * something else changed too, glibc returns 0. Only the settings that are read back show the result. */
     int code = set(port->fd, &asked) != 0 ? errno : 0;
     struct termios got;
     if ((code == 0 || code == EINVAL) && tcgetattr(port->fd, &got) != 0) code = errno;

@@ -25,7 +25,7 @@ static uint64_t duration_us(const fathom_line_settings_t *line, size_t length)
     return ((uint64_t)length * fathom_posix_bits(line) * 1000000u + line->baud - 1) / line->baud;
 }
 
-/* Hands bytes to the kernel. Returns how many it took; -1 when the port is lost. */
+/* Passes bytes to the kernel. Returns the number of bytes that it accepted, or -1 if the port is lost. */
 static int hand_over(fathom_posix_uart_t *port, const uint8_t *bytes, size_t length)
 {
     ssize_t n;
@@ -56,7 +56,7 @@ static int uart_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx
     if (!port->is_open || port->is_lost) return -1;
     fathom_posix_push(port);
     if (port->is_lost) return -1;
-    if (capacity == 0) return 0; /* read(2) of 0 bytes would look like a hang-up */
+    if (capacity == 0) return 0; /* A read(2) of 0 bytes would look like a hang-up. */
     if (capacity > INT16_MAX) capacity = INT16_MAX;
 
     ssize_t n;
@@ -100,7 +100,7 @@ static bool is_sent(fathom_posix_uart_t *port)
     if (port->has_no_lsr) return true;
     int status = 0;
     if (ioctl(port->fd, TIOCSERGETLSR, &status) == 0) return (status & TIOCSER_TEMT) != 0;
-    port->has_no_lsr = true; /* if it is because the device has gone, read will find that out */
+    port->has_no_lsr = true; /* If the device was unplugged, `read` will report it. */
     return true;
 }
 
@@ -109,7 +109,7 @@ static bool uart_sent(void *ctx) { return is_sent(ctx); }
 static uint32_t uart_leaves_in_us(void *ctx)
 {
     const fathom_posix_uart_t *const port = ctx;
-    /* What the kernel has not taken yet is to be offered to it soon. */
+    /* If the kernel has not accepted all bytes, the caller must poll soon, so that the port offers the rest. */
     if (!port->is_open || port->is_lost || port->pending_at != port->pending_end) return 0;
     const uint64_t now_us = fathom_posix_now_us();
     return now_us < port->leaving_until_us ? (uint32_t)(port->leaving_until_us - now_us) : 0;
@@ -117,7 +117,7 @@ static uint32_t uart_leaves_in_us(void *ctx)
 
 fathom_posix_status_t fathom_posix_idle(fathom_posix_uart_t *port)
 {
-    /* sent first: it is what finds a port that has just been lost. */
+    /* is_sent() comes first, because it finds a port that was lost just now. */
     const bool sent = is_sent(port);
     const fathom_posix_status_t status = fathom_posix_usable(port);
     if (status != FATHOM_POSIX_OK || sent) return status;
@@ -149,8 +149,8 @@ static int uart_set_break(void *ctx, bool on)
     fathom_posix_uart_t *const port = ctx;
     if (fathom_posix_usable(port) != FATHOM_POSIX_OK) return -1;
     if (!is_sent(port)) return 0;
-    /* A pseudo terminal has no wire to hold low. A break that arrives is read as a 0 (termios(3), without BRKINT and
-     * PARMRK), so that stands for it. */
+    /* A pseudo terminal has no wire to hold low. A received break reads as a byte 0 (termios(3), without BRKINT and
+     * PARMRK), so the port writes such a byte. */
     if (port->is_pty) return on ? uart_write(ctx, (const uint8_t[]){0}, 1) : 1;
     if (ioctl(port->fd, on ? TIOCSBRK : TIOCCBRK) == 0) return 1;
     (void)fathom_posix_fail_lost(port, errno);
@@ -169,7 +169,7 @@ fathom_uart_t fathom_posix_uart(fathom_posix_uart_t *port)
     return uart;
 }
 
-/* Everything that comes after open(2). */
+/* Sets up the tty after open(2): checks that it is one, locks it, applies the settings, and discards old bytes. */
 static fathom_posix_status_t take(fathom_posix_uart_t *port, const char *path,
                                   const fathom_line_settings_t *settings)
 {
@@ -182,11 +182,11 @@ static fathom_posix_status_t take(fathom_posix_uart_t *port, const char *path,
                    : fathom_posix_fail_system(port, "reading its settings", errno);
     }
     const unsigned device = major(status.st_rdev);
-    /* It is a tty, so its number is that of a character device. */
+    /* A tty is a character device, so st_rdev is its number. */
     port->is_pty = device >= PTY_MAJOR_FIRST && device <= PTY_MAJOR_LAST;
 
     if (flock(port->fd, LOCK_EX | LOCK_NB) != 0) return fathom_posix_fail_open(port, path, errno);
-    /* Its flag is the tty's and ends with the last close, which a pseudo terminal's master puts off. */
+    /* TIOCEXCL belongs to the tty and ends with its last close. The master of a pseudo terminal delays that close. */
     if (!port->is_pty && ioctl(port->fd, TIOCEXCL) != 0)
         return fathom_posix_fail_system(port, "taking it for this program alone", errno);
 
@@ -206,7 +206,7 @@ fathom_posix_status_t fathom_posix_open(fathom_posix_uart_t *port, const char *p
         return fathom_posix_fail(port, FATHOM_POSIX_ERR_ARGUMENT, "no path or no settings were given");
     strncpy(port->path, path, sizeof port->path - 1);
 
-    /* Without O_NONBLOCK a tty that waits for DCD (a modem's line) would not open. */
+    /* Without O_NONBLOCK, open(2) waits on a tty that waits for DCD (the line of a modem). */
     do port->fd = open(path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
     while (port->fd < 0 && errno == EINTR);
     if (port->fd < 0) return fathom_posix_fail_open(port, path, errno);
@@ -224,9 +224,9 @@ fathom_posix_status_t fathom_posix_open(fathom_posix_uart_t *port, const char *p
 void fathom_posix_close(fathom_posix_uart_t *port)
 {
     if (port == NULL || !port->is_open) return;
-    /* For when this is not the last close: a child or another program has the tty open too. */
+    /* If a child or another program has the tty open too, this is not the last close. */
     if (!port->is_pty) (void)ioctl(port->fd, TIOCNXCL);
-    (void)close(port->fd); /* EINTR: Linux has closed it all the same */
+    (void)close(port->fd); /* After EINTR Linux has closed the descriptor too. */
     port->fd = -1;
     port->is_open = false;
 }

@@ -23,11 +23,11 @@ void fathom_posix_wait(void *ctx, uint32_t max_us)
     fathom_posix_push(port);
     if (port->is_lost) return;
 
-    /* ppoll and not poll: in whole milliseconds a t3.5 of 1.75 ms would become 1 or 2. */
+    /* poll(2) counts whole milliseconds, in which a t3.5 of 1.75 ms would become 1 or 2. */
     const struct timespec limit = {(time_t)(max_us / 1000000u), (long)(max_us % 1000000u) * 1000};
     struct pollfd entry = {port->fd, fathom_posix_poll_events(port), 0};
     if (ppoll(&entry, 1, max_us == FATHOM_NO_DEADLINE ? NULL : &limit, NULL) > 0 &&
         (entry.revents & POLLOUT) != 0)
         fathom_posix_push(port);
-    /* A hang-up is left to read, which still delivers what came before it. */
+    /* `read` reports a hang-up, after the bytes that arrived before it. */
 }

@@ -2,7 +2,7 @@
 #ifndef FATHOM_AVR_PORT_H
 #define FATHOM_AVR_PORT_H
 
-/* What the sources of this port share. */
+/* The declarations that the files of this port share. */
 
 #include <avr/interrupt.h>
 #include <avr/io.h>
@@ -16,13 +16,15 @@
 
 enum { FATHOM_AVR_TICKS_PER_US = F_CPU / 8000000UL }; /* of Timer1 */
 
-/* For idle.c, in clock.c, which is always linked. */
-extern volatile uint8_t fathom_avr_happened; /* an interrupt that the main loop may be waiting for */
-/* Of usart0.c; bytes wait while they differ. */
+/* clock.c, which is always linked, defines these for idle.c. */
+extern volatile uint8_t
+    fathom_avr_happened; /* An interrupt has happened for which the main loop may be waiting. */
+/* The indices of the ring in usart0.c. While they differ, bytes wait. */
 extern volatile uint8_t fathom_avr_rx_in;
 extern volatile uint8_t fathom_avr_rx_out;
 
-/* The clock when Timer1 stood at `ticks`, which was less than half its period ago. Interrupts are off. */
+/* Returns the clock at the time when Timer1 was at `ticks`. That was less than half a period ago, and interrupts are
+ * disabled. */
 uint32_t fathom_avr_stamp_us(uint16_t ticks);
 
 #endif

@@ -4,13 +4,13 @@
 
 #include <stddef.h>
 
-/* What the ports of Linux say in the same words. Both write one line into text, and return it. */
+/* Error texts that the ports of Linux share. Both functions write one line into `text` and return `text`. */
 
-/* The system's words of an errno. */
+/* Writes the words of the system for an errno. */
 const char *fathom_posix_words(int code, char *text, size_t capacity);
 
-/* Why this path may not be opened, and what to do: the group to join, or, where that would not help, the udev rule that
- * gives it to usual_group. */
+/* Writes why the user may not open `path`, and what to do: the group to join, or, if that would not help, the udev rule
+ * that gives the path to `usual_group`. */
 const char *fathom_posix_describe_denied(const char *path, const char *usual_group, char *text,
                                          size_t capacity);
 

@@ -4,34 +4,34 @@
 
 #include "fathom_posix.h"
 
-/* What the files of this port share. In a folder of its own so that it is not installed. */
+/* The functions that the files of this port share. Headers in this folder are not installed. */
 
-/* error.c: all set port->error and port->text and return the error. `code` is an errno. */
+/* error.c: each function sets port->error and port->text and returns the error. `code` is an errno. */
 fathom_posix_status_t fathom_posix_fail(fathom_posix_uart_t *port, fathom_posix_status_t error,
                                         const char *format, ...) __attribute__((format(printf, 3, 4)));
 fathom_posix_status_t fathom_posix_fail_system(fathom_posix_uart_t *port, const char *what, int code);
 fathom_posix_status_t fathom_posix_fail_open(fathom_posix_uart_t *port, const char *path, int code);
 fathom_posix_status_t fathom_posix_fail_lost(fathom_posix_uart_t *port, int code);
 
-/* OK, or fails with CLOSED or LOST. */
+/* error.c: returns FATHOM_POSIX_OK, _ERR_CLOSED or _ERR_LOST. */
 fathom_posix_status_t fathom_posix_usable(fathom_posix_uart_t *port);
 
-/* Bits of a character, with its start, parity and stop bits. */
+/* Returns the number of bits of a character with its start, parity and stop bits. */
 static inline unsigned fathom_posix_bits(const fathom_line_settings_t *line)
 {
     return 9u + (line->parity != FATHOM_PARITY_NONE ? 1u : 0u) + line->stop_bits;
 }
 
-/* settings.c: OK, or fails with ARGUMENT. */
+/* settings.c: returns FATHOM_POSIX_OK or _ERR_ARGUMENT. */
 fathom_posix_status_t fathom_posix_check(fathom_posix_uart_t *port, const fathom_line_settings_t *settings);
 
-/* settings.c: sets the tty and reads it back; on failure what it was before is put back. */
+/* settings.c: sets the tty and reads the settings back. If this fails, the previous settings are restored. */
 fathom_posix_status_t fathom_posix_apply(fathom_posix_uart_t *port, const fathom_line_settings_t *settings);
 
-/* uart.c: offers the kernel the rest of an accepted write. */
+/* uart.c: offers the rest of an accepted write to the kernel. */
 void fathom_posix_push(fathom_posix_uart_t *port);
 
-/* uart.c: OK, or fails with CLOSED, LOST, or BUSY while bytes are leaving. */
+/* uart.c: returns FATHOM_POSIX_OK, _ERR_CLOSED, _ERR_LOST, or _ERR_BUSY while bytes are being sent. */
 fathom_posix_status_t fathom_posix_idle(fathom_posix_uart_t *port);
 
 #endif
