@@ -11,7 +11,7 @@
 #include "internal/gpio_port.h"
 
 #ifndef ENOTSUPP
-#define ENOTSUPP 524 /* the kernel's own, which its drivers let out */
+#define ENOTSUPP 524 /* an internal error of the kernel that its drivers return */
 #endif
 
 fathom_gpio_status_t fathom_gpio_error(const fathom_gpio_t *gpio) { return gpio->error; }
@@ -22,7 +22,7 @@ fathom_gpio_status_t fathom_gpio_fail(fathom_gpio_t *gpio, fathom_gpio_status_t 
                                       ...)
 {
     va_list arguments;
-    /* The path is far shorter than the text. */
+    /* The path is far shorter than the text, so `head` is less than the size. */
     const int head =
         snprintf(gpio->text, sizeof gpio->text, "%s, line %lu: ", gpio->path[0] != 0 ? gpio->path : "pin",
                  (unsigned long)gpio->line);
@@ -104,10 +104,10 @@ fathom_gpio_status_t fathom_gpio_fail_request(fathom_gpio_t *gpio, const char *c
     case EPERM:
         return fathom_gpio_fail(gpio, FATHOM_GPIO_ERR_PERMISSION,
                                 "this line is not for programs; take another one");
-    case EIO: /* gpiolib: a direction that the chip has not, or an output that is an interrupt too */
+    case EIO: /* gpiolib: the chip does not have this direction, or the output is an interrupt too */
         return fathom_gpio_fail(gpio, FATHOM_GPIO_ERR_UNSUPPORTED, "it cannot be an %s; take another line",
                                 is_output ? "output" : "input");
-    case ENXIO: /* gpiolib, edge_detector_setup(): there is no interrupt. The chip itself has answered before. */
+    case ENXIO: /* gpiolib, edge_detector_setup(): there is no interrupt. The chip itself has responded before. */
     case ENODEV:
         if (gpio->has_edges)
             return fathom_gpio_fail(

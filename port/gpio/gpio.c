@@ -14,8 +14,8 @@
 
 #include "internal/gpio_port.h"
 
-/* Twice the longest queue that the kernel makes (gpiolib: 16 for each of 64 lines). One call finds more only where edges
- * come as fast as they are read, and returns all the same. */
+/* Limit of events in one call: twice the longest queue of the kernel (gpiolib: 16 for each of 64 lines). A call finds
+ * more events only if edges come as fast as they are read, and must return even then. */
 enum { MOST_EVENTS = 2048 };
 
 static int control(int fd, unsigned long request, void *argument)
@@ -39,7 +39,8 @@ static void set(void *ctx, bool high)
         fathom_gpio_fail_lost(gpio, "setting it", errno);
 }
 
-/* Of one that is lost: as it was. A contact that seems to open because the chip has gone would be a reading. */
+/* Returns the level. If the pin is lost, returns the newest known level: a contact that seems to open because the chip
+ * was unplugged would be a reading. */
 static bool get_level(void *ctx)
 {
     fathom_gpio_t *const gpio = ctx;
@@ -56,14 +57,14 @@ static bool get_level(void *ctx)
 
 static void feed(fathom_gpio_t *gpio, const struct gpio_v2_line_event *event)
 {
-    /* The kernel counts the events of a line from 1; when its queue is full it drops the oldest (gpiolib,
-     * linereq_put_event()). So those that are missing came just before this one. */
+    /* The kernel counts the events of a line from 1. If its queue is full, it drops the oldest (gpiolib,
+     * linereq_put_event()). The missing events therefore came directly before this one. */
     const uint32_t lost = (uint32_t)(event->line_seqno - gpio->line_seqno - 1u);
     gpio->line_seqno = event->line_seqno;
     gpio->events++;
     if (lost != 0) {
         gpio->lost_events += lost;
-        /* High with a rise of which the time is not known: nothing counts before the next fall (edges.h). */
+        /* The level counts as high, with a rise of unknown time, so nothing counts before the next fall (edges.h). */
         gpio->edges.is_high = true;
         gpio->edges.is_timed = false;
     }
@@ -71,7 +72,7 @@ static void feed(fathom_gpio_t *gpio, const struct gpio_v2_line_event *event)
                       (uint32_t)(event->timestamp_ns / 1000u));
 }
 
-/* Feeds the oldest event. 1: there was one; 0: the queue is empty; < 0: lost. */
+/* Feeds the oldest event. Returns 1 if there was one, 0 if the queue is empty, and -1 if the pin is lost. */
 static int feed_one(fathom_gpio_t *gpio)
 {
     struct gpio_v2_line_event event;
@@ -93,8 +94,8 @@ static void arm(void *ctx)
     const fathom_capture_t capture = fathom_edges_capture(&gpio->edges);
     if (!is_usable(gpio)) return;
     for (unsigned left = MOST_EVENTS; left != 0 && feed_one(gpio) > 0; left--)
-        capture.arm(capture.ctx); /* so that the place of each pulse is free again */
-    /* A fall may have been missed. A rise from here on is one, whatever the events say. */
+        capture.arm(capture.ctx); /* This frees the places of the pulses. */
+    /* A fall may have been missed. The level shows whether the next edge is a rise. */
     gpio->edges.is_high = get_level(gpio);
     gpio->edges.is_timed = false;
     capture.arm(capture.ctx);
@@ -105,7 +106,7 @@ static int take(void *ctx, fathom_pulse_t *pulse)
     fathom_gpio_t *const gpio = ctx;
     const fathom_capture_t capture = fathom_edges_capture(&gpio->edges);
     int fed = is_usable(gpio) ? 1 : -1;
-    /* What finds no place among the pulses stays in the kernel's queue. */
+    /* Events for which there is no place among the pulses stay in the queue of the kernel. */
     for (unsigned left = MOST_EVENTS; left != 0 && fed > 0 && !fathom_edges_is_full(&gpio->edges); left--)
         fed = feed_one(gpio);
     if (fed < 0) return -1;
@@ -152,7 +153,7 @@ static uint64_t bias_flag(fathom_gpio_bias_t bias)
     }
 }
 
-/* Asks an open chip for the line. */
+/* Requests the line from an open chip. */
 static fathom_gpio_status_t take_line(fathom_gpio_t *gpio, int chip_fd, uint64_t flags, bool high)
 {
     struct gpiochip_info chip = {.lines = 0};
@@ -187,7 +188,7 @@ static fathom_gpio_status_t take_line(fathom_gpio_t *gpio, int chip_fd, uint64_t
         return fathom_gpio_fail_request(gpio, info.consumer, gpio->is_output, errno);
     }
     gpio->fd = request.fd;
-    /* A line is opened blocking, whatever the chip was. */
+    /* The descriptor of a line blocks, even if that of the chip does not. */
     if (fcntl(gpio->fd, F_SETFL, O_NONBLOCK) == 0) return FATHOM_GPIO_OK;
     const int code = errno;
     (void)close(gpio->fd);
@@ -215,7 +216,7 @@ static fathom_gpio_status_t open_line(fathom_gpio_t *gpio, const char *chip, uin
     while (chip_fd < 0 && errno == EINTR);
     if (chip_fd < 0) return fathom_gpio_fail_open(gpio, gpio->path, errno);
     const fathom_gpio_status_t status = take_line(gpio, chip_fd, flags, high);
-    (void)close(chip_fd); /* the line has a descriptor of its own */
+    (void)close(chip_fd); /* The line has its own descriptor. */
     gpio->is_open = status == FATHOM_GPIO_OK;
     return status;
 }
@@ -248,7 +249,7 @@ fathom_gpio_status_t fathom_gpio_open_edges(fathom_gpio_t *gpio, const char *chi
 void fathom_gpio_close(fathom_gpio_t *gpio)
 {
     if (gpio == NULL || !gpio->is_open) return;
-    (void)close(gpio->fd); /* EINTR: Linux has closed it all the same */
+    (void)close(gpio->fd); /* After EINTR Linux has closed the descriptor too. */
     gpio->is_open = false;
 }
 

@@ -13,7 +13,7 @@ int fathom_libmodbus_broken(fathom_libmodbus_t *port, fathom_libmodbus_error_t e
 int fathom_libmodbus_failed(fathom_libmodbus_t *port)
 {
     if (errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR) return 0;
-    /* What a tty says whose adapter was unplugged. */
+    /* A tty returns these errors if its adapter was unplugged. */
     if (errno == EIO || errno == ENXIO || errno == ENODEV)
         return fathom_libmodbus_broken(port, FATHOM_LIBMODBUS_ERR_HUNG_UP);
     if (port->error == FATHOM_LIBMODBUS_OK) port->system_error = errno;

@@ -21,11 +21,11 @@
 enum {
     RTU_HEADER_LENGTH = 1,
     RTU_GAP_US = 25000,
-    /* A TCP response comes whole, and no silence has to be kept: as little as the line can do with. */
+    /* A TCP response is complete, and no silence is needed. These are the smallest values that the line accepts. */
     TCP_GAP_US = 1000,
     TCP_SILENCE_US = 100,
-    /* Far from where libmodbus begins to count for the program's own requests, so that a late response to one of those
-     * is not taken for one of ours. */
+    /* This is far from the first number of libmodbus for requests of the program, so a late response to such a request
+     * is not mistaken for a response to a request of this port. */
     FIRST_TRANSACTION = 0xF000
 };
 
@@ -59,7 +59,8 @@ fathom_status_t fathom_libmodbus_init(fathom_libmodbus_t *port, modbus_t *modbus
     return fathom_line_init(&port->line, &port->parts);
 }
 
-/* modbus_set_slave knows which units there are, and asking it changes the one that the program has set. */
+/* modbus_set_slave() knows which units are allowed. The call changes the unit that the program has set, so that unit is
+ * restored. */
 static bool takes_unit(modbus_t *modbus, uint8_t unit)
 {
     const int before = modbus_get_slave(modbus);

@@ -14,7 +14,7 @@
 
 enum { CRC_LENGTH = 2 };
 
-/* Is one of these events there, or has it hung up? */
+/* Returns true if one of these events is pending, or if the descriptor has hung up. */
 static bool is_ready(int fd, short events)
 {
     struct pollfd entry = {fd, events, 0};
@@ -26,11 +26,11 @@ int fathom_libmodbus_rtu_read(void *ctx, uint8_t *bytes, size_t capacity, fathom
     fathom_libmodbus_t *const port = ctx;
     const int fd = modbus_get_socket(port->modbus);
     int waiting = 0;
-    (void)rx; /* nothing is known of single bytes */
+    (void)rx; /* Nothing is known about single bytes. */
     if (fd < 0) return fathom_libmodbus_broken(port, FATHOM_LIBMODBUS_ERR_NOT_CONNECTED);
     if (ioctl(fd, FIONREAD, &waiting) != 0) return fathom_libmodbus_failed(port);
-    /* Nothing is waiting: unless it has hung up, which read tells, or bytes have come in this moment. Then read does
-     * not wait either. */
+    /* If no byte waits, read(2) could block, unless the descriptor has hung up or bytes arrived just now. poll(2) shows
+     * both. */
     if (waiting == 0 && !is_ready(fd, POLLIN)) return 0;
     if (waiting != 0 && (size_t)waiting < capacity) capacity = (size_t)waiting;
     const ssize_t n = read(fd, bytes, capacity);
@@ -45,7 +45,7 @@ int fathom_libmodbus_rtu_write(void *ctx, const uint8_t *bytes, size_t length)
     fathom_libmodbus_t *const port = ctx;
     const int fd = modbus_get_socket(port->modbus);
     if (fd < 0) return fathom_libmodbus_broken(port, FATHOM_LIBMODBUS_ERR_NOT_CONNECTED);
-    if (!is_ready(fd, POLLOUT)) return 0; /* a descriptor that waits would */
+    if (!is_ready(fd, POLLOUT)) return 0; /* A blocking descriptor would wait here. */
     const int n = modbus_send_raw_request(port->modbus, bytes, (int)length - CRC_LENGTH);
     if (n == (int)length) {
         fathom_libmodbus_works(port);
@@ -59,6 +59,6 @@ bool fathom_libmodbus_rtu_sent(void *ctx)
 {
     const fathom_libmodbus_t *const port = ctx;
     int leaving = 0;
-    /* What cannot tell, or is not there any more, is not waited for; read says so. */
+    /* If the descriptor cannot report this or was closed, nothing waits for it; `read` returns the error. */
     return ioctl(modbus_get_socket(port->modbus), TIOCOUTQ, &leaving) != 0 || leaving == 0;
 }

@@ -12,15 +12,14 @@
 #include "internal/libmodbus_port.h"
 
 /*
- * The line has RTU frames; here they become TCP frames and back. Both are a unit and a PDU: RTU has a CRC behind them,
- * TCP a header before them: transaction, protocol (0), and how many bytes follow (MODBUS Messaging on TCP/IP V1.0b,
- * 3.1.3).
+ * Both frames contain a unit and a PDU. RTU has a CRC behind them. TCP has a header before them: transaction, protocol
+ * (0), and the number of bytes that follow (MODBUS Messaging on TCP/IP V1.0b, 3.1.3).
  */
 enum {
     TRANSACTION = 0,
     PROTOCOL = 2,
     LENGTH = 4,
-    UNIT = 6, /* where the header ends, as its length counts it */
+    UNIT = 6, /* the length in the header counts from here */
     FUNCTION = 7,
     EXCEPTION = 8,
     CRC_LENGTH = 2,
@@ -45,14 +44,14 @@ static void count(uint16_t *counter)
     if (*counter != UINT16_MAX) (*counter)++;
 }
 
-/* Requests and responses are out of step. What comes from now on, or is sent, would be of no use. */
+/* Shuts the connection down, because requests and responses no longer match. */
 static int out_of_step(fathom_libmodbus_t *port, fathom_libmodbus_error_t error)
 {
     (void)shutdown(modbus_get_socket(port->modbus), SHUT_RDWR);
     return fathom_libmodbus_broken(port, error);
 }
 
-/* Tells a connection from another one with the same descriptor; 0 where the system cannot. */
+/* Returns a number that distinguishes two connections with the same descriptor, or 0 if the system cannot. */
 static uint64_t connection_of(int fd)
 {
     uint64_t number = 0;
@@ -60,15 +59,17 @@ static uint64_t connection_of(int fd)
     return getsockopt(fd, SOL_SOCKET, SO_COOKIE, &number, &size) == 0 ? number : 0;
 }
 
-/* From how many bytes on poll(2) sees them: or a loop that waits for the rest of a response would never sleep. */
+/* Sets the number of bytes from which poll(2) reports them. Otherwise a loop that waits for the rest of a response
+ * would never sleep. */
 static void wake_at(int fd, int bytes)
 {
     (void)setsockopt(fd, SOL_SOCKET, SO_RCVLOWAT, &bytes, sizeof bytes);
 }
 
 /*
- * How long the next response is, as far as its beginning tells; 0: it is none. That beginning is taken out of the
- * socket, where it could hold on to the memory for what follows, and the far end would not be told of any room.
+ * Returns the length of the next response as far as its beginning shows it, or 0 if it is none. The beginning is taken
+ * out of the socket: there it could hold the memory for the following bytes, and the far end would learn of no free
+ * space.
  */
 static int needed(const fathom_libmodbus_t *port)
 {
@@ -78,8 +79,8 @@ static int needed(const fathom_libmodbus_t *port)
     return UNIT + length;
 }
 
-/* Takes the next response out of the socket: 1, 0: not all of it is there, or -1: the connection is broken. What is no
- * response stays in adu for as long as the connection is there, so that nothing behind it is read. */
+/* Takes the next response out of the socket. Returns 1; 0 if it has not arrived completely; -1 if the connection is
+ * broken. Bytes that are no response stay in adu while the connection exists, so that nothing behind them is read. */
 static int take(fathom_libmodbus_t *port)
 {
     const int fd = modbus_get_socket(port->modbus);
@@ -106,7 +107,7 @@ static int take(fathom_libmodbus_t *port)
     return 1;
 }
 
-/* Is what was taken for the line? */
+/* Returns true if the bytes in adu are a response for the line. */
 static bool is_response(fathom_libmodbus_t *port)
 {
     const uint8_t *const adu = port->adu;
@@ -126,7 +127,7 @@ static bool is_response(fathom_libmodbus_t *port)
 int fathom_libmodbus_tcp_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
 {
     fathom_libmodbus_t *const port = ctx;
-    (void)rx; /* nothing is known of single bytes */
+    (void)rx; /* Nothing is known about single bytes. */
     for (uint8_t left = MAX_DROPPED; port->at == port->end; left--) {
         const int taken = left != 0 ? take(port) : 0;
         port->at = port->end;

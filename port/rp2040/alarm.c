@@ -18,7 +18,7 @@ void fathom_rp2040_alarm_set(unsigned alarm, uint32_t in_us)
 void fathom_rp2040_alarm_clear(unsigned alarm)
 {
     const uint32_t bit = UINT32_C(1) << alarm;
-    RP2040_TIMER_ARMED = bit; /* a 1 disarms */
+    RP2040_TIMER_ARMED = bit; /* Writing a 1 disarms the alarm. */
     RP2040_TIMER_INTR = bit;
     rp2040_clear(&RP2040_TIMER_INTF, bit);
 }

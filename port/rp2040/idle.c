@@ -20,8 +20,8 @@ void fathom_rp2040_idle(void *ctx, uint32_t max_us)
         __asm__ volatile("dsb\n\twfi" ::: "memory");
         if (has_deadline) fathom_rp2040_alarm_clear(idle->alarm);
     }
-    __asm__ volatile("cpsie i\n\tisb" ::: "memory"); /* whatever waits runs here */
-    /* The caller polls next, so what has come up to now is not news any more. */
+    __asm__ volatile("cpsie i\n\tisb" ::: "memory"); /* Pending interrupts run here. */
+    /* The caller polls next, so events up to now are no longer news. */
     idle->has_news = false;
 }
 

@@ -3,7 +3,7 @@
 #include "fathom_rp2040.h"
 #include "rp2040.h"
 
-/* ctx is the pin's bit itself. */
+/* `ctx` is the bit of the pin, not an address. */
 static uint32_t mask_of(void *ctx) { return (uint32_t)(uintptr_t)ctx; }
 
 static void set(void *ctx, bool high)
@@ -31,7 +31,7 @@ fathom_pin_t fathom_rp2040_output(unsigned gpio, bool high)
     pin.ctx = begin(gpio);
     pin.set = set;
     pin.get = NULL;
-    set(pin.ctx, high); /* before SIO drives the pin */
+    set(pin.ctx, high); /* The level is set before SIO drives the pin. */
     RP2040_SIO_GPIO_OE_SET = mask_of(pin.ctx);
     RP2040_PADS(gpio) = RP2040_PADS_IE | RP2040_PADS_DRIVE_4MA | RP2040_PADS_SCHMITT;
     RP2040_IO_CTRL(gpio) = RP2040_IO_FUNCSEL_SIO;

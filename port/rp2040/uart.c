@@ -9,7 +9,7 @@
 
 enum {
     RECEIVE = RP2040_UART_INT_RX | RP2040_UART_INT_RT,
-    FRAMING = RP2040_UART_DR_FE | RP2040_UART_DR_BE, /* a break has both */
+    FRAMING = RP2040_UART_DR_FE | RP2040_UART_DR_BE, /* a break sets both */
     ERRORS = FRAMING | RP2040_UART_DR_PE | RP2040_UART_DR_OE,
     TIME_OUT_BITS = 32, /* 4.2.6.3 */
     US_PER_S = 1000000
@@ -35,7 +35,7 @@ static uint32_t time_us(const fathom_rp2040_uart_t *uart, uint32_t bits)
     return bits * US_PER_S / uart->line.baud;
 }
 
-/* Plain stores and loads before it stay before the volatile ones after it, and the other way round. */
+/* Keeps plain loads and stores before this point before the volatile ones after it, and the other way round. */
 static void keep_order(void) { __asm__ volatile("" ::: "memory"); }
 
 static void tell(const fathom_rp2040_uart_t *uart)
@@ -43,9 +43,10 @@ static void tell(const fathom_rp2040_uart_t *uart)
     if (uart->config.idle != NULL) uart->config.idle->has_news = true;
 }
 
-/* ---- receiving; the main loop comes here with RECEIVE masked, so only one of the two is ever inside ---- */
+/* ---- Receiving. The main loop masks RECEIVE here, so the main loop and the interrupt never run this at once. ---- */
 
-/* The hardware's FIFO to the ring; what finds no room stays where it is. false: the ring is full. */
+/* Moves bytes from the FIFO of the hardware to the ring. Bytes without space stay in the FIFO. Returns false if the
+ * ring is full. */
 static bool gather(fathom_rp2040_uart_t *uart)
 {
     rp2040_uart_t *const hardware = hardware_of(uart);
@@ -60,11 +61,12 @@ static bool gather(fathom_rp2040_uart_t *uart)
     return (uint8_t)(written - taken) != FATHOM_RP2040_RX_RING;
 }
 
-/* The receive time-out: the byte that was the last one ended so long ago. */
+/* Notes the receive time-out: the newest byte ended TIME_OUT_BITS ago. */
 static void note_silence(fathom_rp2040_uart_t *uart)
 {
     uart->silent_at = uart->written;
-    uart->is_silent = uart->silent_at != uart->taken; /* else the main loop was faster */
+    uart->is_silent =
+        uart->silent_at != uart->taken; /* If it is false, the main loop has read the byte already. */
     uart->silent_us = RP2040_TIMER_RAWL - time_us(uart, TIME_OUT_BITS);
 }
 
@@ -77,7 +79,7 @@ static uint8_t flags_of(fathom_rp2040_uart_t *uart, unsigned errors)
 {
     const bool parity = (errors & RP2040_UART_DR_PE) != 0u;
     const bool framing = (errors & FRAMING) != 0u;
-    /* Not of this byte: others were lost before it (PL011 TRM 2.4.2). */
+    /* The flag does not concern this byte: other bytes were lost before it (PL011 TRM 2.4.2). */
     const bool overrun = (errors & RP2040_UART_DR_OE) != 0u;
     count(&uart->parity, parity);
     count(&uart->framing, framing);
@@ -91,7 +93,7 @@ static int uart_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx
     fathom_rp2040_uart_t *const uart = ctx;
     rp2040_uart_t *const hardware = hardware_of(uart);
     uint8_t taken = uart->taken;
-    /* The FIFO first, since an interrupt moves what is there to the ring. */
+    /* The FIFO is checked first, because an interrupt moves its bytes to the ring. */
     if (((hardware->fr & RP2040_UART_FR_RXFE) != 0u) && (taken == uart->written)) return 0;
     rp2040_clear(&hardware->imsc, RECEIVE);
     keep_order();
@@ -158,14 +160,17 @@ static int uart_write(void *ctx, const uint8_t *bytes, size_t length)
     if (uart->is_break || !uart_sent(uart)) return 0;
     for (size_t i = 0; i < length; i++) uart->config.request[i] = bytes[i];
     keep_order();
-    /* In this order: an alarm of the request before that comes now finds this one unsent, and leaves the driver. */
+    /* The order matters: if the alarm of the previous request comes now, it finds this request unsent and leaves the
+     * driver enabled. */
     uart->given = 0;
     uart->length = (uint8_t)length;
     drive(uart, true);
     feed(uart);
     const uint32_t us = time_us(uart, (uint32_t)length * fathom_rp2040_uart_bits(&uart->line));
     if (uart->config.wiring.has_driver) fathom_rp2040_alarm_set(uart->config.wiring.alarm, us);
-    uart->end_us = RP2040_TIMER_RAWL + us + time_us(uart, 1); /* which begins with a tick of its divider */
+    uart->end_us =
+        RP2040_TIMER_RAWL + us +
+        time_us(uart, 1); /* One bit more, because the request begins with a tick of the divider. */
     return (int)length;
 }
 
@@ -200,7 +205,7 @@ static int uart_set_break(void *ctx, bool on)
     fathom_rp2040_uart_t *const uart = ctx;
     rp2040_uart_t *const hardware = hardware_of(uart);
     if (!uart_sent(uart)) return 0;
-    uart->is_break = on; /* before the driver: an alarm that comes now leaves it */
+    uart->is_break = on; /* Set before the driver is enabled: an alarm that comes now leaves the driver. */
     drive(uart, on);
     if (on)
         rp2040_set(&hardware->lcr_h, RP2040_UART_LCR_H_BRK);
@@ -209,15 +214,16 @@ static int uart_set_break(void *ctx, bool on)
     return 1;
 }
 
-/* ---- */
+/* ---- Interrupt and initialisation ---- */
 
 void fathom_rp2040_uart_interrupt(fathom_rp2040_uart_t *uart)
 {
     rp2040_uart_t *const hardware = hardware_of(uart);
     const uint32_t pending = hardware->mis;
     if ((pending & RECEIVE) != 0u) {
-        hardware->icr = RP2040_UART_INT_RT; /* which need not end when the main loop has emptied the FIFO */
-        /* With no room the bytes wait in the hardware, and read lets the interrupt through again. */
+        hardware->icr =
+            RP2040_UART_INT_RT; /* The main loop may empty the FIFO without ending this interrupt. */
+        /* If the ring is full, the bytes wait in the hardware, and `read` enables the interrupt again. */
         const bool has_room = gather(uart);
         if (!has_room) rp2040_clear(&hardware->imsc, RECEIVE);
         if (has_room && ((pending & RP2040_UART_INT_RT) != 0u)) note_silence(uart);

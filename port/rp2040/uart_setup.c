@@ -7,13 +7,13 @@
 #include "rp2040.h"
 
 enum {
-    FRACTIONS = 64,         /* of the divider */
+    FRACTIONS = 64,         /* in one step of the divider */
     MAX_DIVIDER = 65535,    /* with no fraction (4.2.7.1) */
     MAX_ERROR_DIVIDER = 40, /* 2.5 % */
     RESET_TRIES = 10000     /* a reset takes some cycles of clk_peri */
 };
 
-/* The divider in 64ths; 0: there is none within 2.5 %. */
+/* Returns the divider in 64ths. Returns 0 if no divider is within 2.5 %. */
 static uint32_t divider(uint32_t clk_peri_hz, uint32_t baud)
 {
     const uint32_t steps_hz = clk_peri_hz * (FRACTIONS / 16);
@@ -43,8 +43,8 @@ bool fathom_rp2040_uart_set_line(const fathom_rp2040_wiring_t *wiring, const fat
     if (line->parity == FATHOM_PARITY_EVEN) format |= RP2040_UART_LCR_H_EPS;
     if (line->stop_bits == 2u) format |= RP2040_UART_LCR_H_STP2;
 
-    /* LCR_H may not change while the UART is enabled, and its write is what makes the divider hold (4.2.7.1). FEN
-     * stays, so the FIFO keeps its bytes. */
+    /* LCR_H must not change while the UART is enabled, and the write to LCR_H makes the divider effective (4.2.7.1).
+     * FEN stays set, so the FIFO keeps its bytes. */
     rp2040_uart_t *const hardware = RP2040_UART(wiring->number);
     rp2040_clear(&hardware->cr, RP2040_UART_CR_UARTEN);
     hardware->ibrd = divide / FRACTIONS;
@@ -54,7 +54,8 @@ bool fathom_rp2040_uart_set_line(const fathom_rp2040_wiring_t *wiring, const fat
     return true;
 }
 
-/* 1.4.3, function 2: TX and RX stand at GPIO 0 and 1 of every four, which belong to UART0, 1, 1, 0 in turns. */
+/* 1.4.3, function 2: of every four GPIOs the first is TX and the second RX. These groups of four belong to UART0, 1, 1,
+ * 0, and so on. */
 static bool is_pin(const fathom_rp2040_wiring_t *wiring, unsigned gpio, unsigned of_four)
 {
     return (gpio < FATHOM_RP2040_GPIOS) && ((gpio % 4u) == of_four) &&
@@ -79,11 +80,12 @@ bool fathom_rp2040_uart_setup(const fathom_rp2040_wiring_t *wiring, const fathom
 
     if (wiring->has_driver) (void)fathom_rp2040_output(wiring->driver, false);
     hardware->imsc = 0;
-    hardware->ifls = 0; /* receive: 4 bytes or more; transmit: 4 or fewer */
+    hardware->ifls = 0; /* Interrupts come at 4 or more received bytes, and at 4 or fewer bytes to send. */
     RP2040_PADS(wiring->rx) = RP2040_PADS_IE | RP2040_PADS_PUE | RP2040_PADS_SCHMITT;
-    RP2040_IO_CTRL(wiring->rx) = RP2040_IO_FUNCSEL_UART; /* before the UART listens: low is a break */
+    RP2040_IO_CTRL(wiring->rx) =
+        RP2040_IO_FUNCSEL_UART; /* The pin is set before the UART is enabled, since a low level is a break. */
     if (!fathom_rp2040_uart_set_line(wiring, line)) return false;
     RP2040_PADS(wiring->tx) = RP2040_PADS_IE | RP2040_PADS_DRIVE_4MA | RP2040_PADS_SCHMITT;
-    RP2040_IO_CTRL(wiring->tx) = RP2040_IO_FUNCSEL_UART; /* high: the UART idles */
+    RP2040_IO_CTRL(wiring->tx) = RP2040_IO_FUNCSEL_UART; /* The level stays high, because the UART is idle. */
     return true;
 }

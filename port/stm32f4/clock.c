@@ -9,10 +9,10 @@
 
 static void begin_timer(volatile uint32_t *timer, uint32_t timer_hz)
 {
-    timer[TIM_CR1] = TIM_CR1_URS; /* the next line is no reason for an interrupt */
+    timer[TIM_CR1] = TIM_CR1_URS; /* UG below must not raise an interrupt. */
     timer[TIM_PSC] = (timer_hz / 1000000u) - 1u;
     timer[TIM_ARR] = UINT32_MAX;
-    timer[TIM_EGR] = TIM_EGR_UG; /* the prescaler holds from an update on, which also sets CNT to 0 */
+    timer[TIM_EGR] = TIM_EGR_UG; /* The update makes the prescaler effective and sets CNT to 0. */
 }
 
 void fathom_stm32f4_clock_init(uint32_t timer_hz)

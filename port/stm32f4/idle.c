@@ -21,8 +21,8 @@ static bool byte_waits(const fathom_stm32f4_idle_t *idle)
 void fathom_stm32f4_idle(void *ctx, uint32_t max_us)
 {
     if (max_us == 0u) return;
-    /* Masked before the timer runs: its interrupt would else come before WFI now and then, and nothing would be left to
-     * end it. An interrupt that is pending ends WFI, and runs afterwards. */
+    /* Interrupts are masked before the timer runs. Otherwise the interrupt of the timer could come before WFI, and
+     * nothing would end WFI. A pending interrupt ends WFI and runs afterwards. */
     __asm__ volatile("cpsid i" ::: "memory");
     if ((fathom_stm32f4_happened == 0u) && !byte_waits(ctx)) {
         TIM5[TIM_CR1] = TIM_CR1_URS;
@@ -35,6 +35,6 @@ void fathom_stm32f4_idle(void *ctx, uint32_t max_us)
         __asm__ volatile("dsb\n\twfi" ::: "memory");
         fathom_stm32f4_tim5_interrupt();
     }
-    __asm__ volatile("cpsie i\n\tisb" ::: "memory"); /* whatever waits runs here */
-    fathom_stm32f4_happened = 0; /* the caller polls next, so what was up to now is no news */
+    __asm__ volatile("cpsie i\n\tisb" ::: "memory"); /* Pending interrupts run here. */
+    fathom_stm32f4_happened = 0; /* The caller polls next, so events up to now are no longer news. */
 }

@@ -37,7 +37,8 @@ bool fathom_stm32f4_pin_init(const fathom_stm32f4_pin_t *pin, uint32_t mode, fat
     volatile uint32_t *const gpio = registers_of(pin);
     RCC_AHB1ENR |= 1u << (pin->port - 'A');
     (void)
-        RCC_AHB1ENR; /* two periods of its clock until the registers can be written (RM0090 7.2, erratum 2.1.13) */
+        RCC_AHB1ENR; /* The read takes the two clock periods until the registers can be written (RM0090 7.2, erratum
+                       2.1.13). */
     set_field(&gpio[AFRL + (pin->number / 8u)], 4u * (pin->number % 8u), 15, alternate);
     set_field(&gpio[PUPDR], 2u * pin->number, 3, pull);
     fathom_stm32f4_pin_mode(pin, mode);
@@ -46,7 +47,7 @@ bool fathom_stm32f4_pin_init(const fathom_stm32f4_pin_t *pin, uint32_t mode, fat
 
 void fathom_stm32f4_pin_set(const fathom_stm32f4_pin_t *pin, bool high)
 {
-    /* One write, which no interrupt can come between. */
+    /* This is one write, which no interrupt can divide. */
     if (pin->port != 0) registers_of(pin)[BSRR] = high ? (1u << pin->number) : (1u << (pin->number + 16u));
 }
 
@@ -64,7 +65,7 @@ fathom_pin_t fathom_stm32f4_output(const fathom_stm32f4_pin_t *pin)
     if (fathom_stm32f4_is_pin(pin)) {
         RCC_AHB1ENR |= 1u << (pin->port - 'A');
         (void)RCC_AHB1ENR;
-        fathom_stm32f4_pin_set(pin, true); /* before it is driven */
+        fathom_stm32f4_pin_set(pin, true); /* The level is set before the pin is driven. */
         (void)fathom_stm32f4_pin_init(pin, GPIO_OUTPUT, FATHOM_STM32F4_FLOATS, 0);
     }
     return hal;

@@ -43,7 +43,8 @@ static const place_t places[] = {
 };
 enum { PLACES = sizeof(places) / sizeof(places[0]) };
 
-/* With 16 samples a bit BRR is the divider itself, its sixteenths below the point. 0: not within 2.5 %. */
+/* Returns BRR. With 16 samples a bit, BRR is the divider in sixteenths. Returns 0 if the rate cannot be reached within
+ * 2.5 %. */
 static uint32_t divider(uint32_t bus_hz, const fathom_line_settings_t *line)
 {
     return fathom_serial_divider(bus_hz, line, MIN_BRR, MAX_BRR);
@@ -52,7 +53,7 @@ static uint32_t divider(uint32_t bus_hz, const fathom_line_settings_t *line)
 static void set_up(fathom_stm32f4_usart_t *usart, const fathom_line_settings_t *line, uint32_t by)
 {
     uint32_t control = CR1_UE | CR1_TE | CR1_RE | CR1_RXNEIE;
-    /* M: the word has 9 bits, the parity is one of them. */
+    /* With M the word has 9 bits; one of them is the parity. */
     if (line->parity != FATHOM_PARITY_NONE) control |= CR1_M | CR1_PCE;
     if (line->parity == FATHOM_PARITY_ODD) control |= CR1_PS;
     usart->registers[CR1] = 0;
@@ -65,14 +66,15 @@ static void set_up(fathom_stm32f4_usart_t *usart, const fathom_line_settings_t *
 static void receive(fathom_stm32f4_usart_t *usart, uint32_t why)
 {
     const uint8_t byte =
-        (uint8_t)usart->registers[DR]; /* without the parity; after SR it clears all that was told */
+        (uint8_t)usart->registers
+            [DR]; /* The cast drops the parity bit. This read after that of SR clears the flags of SR. */
     uint8_t flags = 0;
     if ((why & SR_PE) != 0u) flags |= FATHOM_RX_PARITY;
     if ((why & SR_FE) != 0u) flags |= FATHOM_RX_FRAMING;
     if ((why & SR_NE) != 0u) fathom_serial_count(&usart->noise);
     if ((why & SR_RXNE) != 0u) fathom_serial_put(&usart->serial, byte, flags);
     if ((why & SR_ORE) != 0u)
-        fathom_serial_lose(&usart->serial); /* what came after this byte (RM0090 30.3.3) */
+        fathom_serial_lose(&usart->serial); /* Bytes after this one were lost (RM0090 30.3.3). */
 }
 
 void fathom_stm32f4_usart_interrupt(fathom_stm32f4_usart_t *usart)
@@ -84,7 +86,7 @@ void fathom_stm32f4_usart_interrupt(fathom_stm32f4_usart_t *usart)
     if ((why & (SR_RXNE | SR_ORE)) != 0u) receive(usart, why);
     if (((control & CR1_TXEIE) != 0u) && ((why & SR_TXE) != 0u)) {
         if (fathom_serial_next(&usart->serial, &byte))
-            registers[DR] = byte; /* after SR, which clears TC */
+            registers[DR] = byte; /* This write after the read of SR clears TC. */
         else
             registers[CR1] = (control & ~(uint32_t)CR1_TXEIE) | CR1_TCIE;
     } else if (((control & CR1_TCIE) != 0u) && ((why & SR_TC) != 0u)) {
@@ -107,7 +109,8 @@ static int usart_write(void *ctx, const uint8_t *bytes, size_t length)
     const int loaded = fathom_serial_load(&usart->serial, bytes, length);
     if (loaded > 0) {
         fathom_stm32f4_pin_set(&usart->driver, true);
-        usart->registers[CR1] |= CR1_TXEIE; /* nothing leaves, so the interrupt does not write CR1 */
+        usart->registers[CR1] |=
+            CR1_TXEIE; /* No request is being sent, so the interrupt does not write CR1. */
     }
     return loaded;
 }

@@ -4,15 +4,15 @@
 
 #include "fathom_gpio.h"
 
-/* error.c: all set gpio->error and gpio->text and return the error. `code` is an errno. */
+/* error.c: each function sets gpio->error and gpio->text and returns the error. `code` is an errno. */
 fathom_gpio_status_t fathom_gpio_fail(fathom_gpio_t *gpio, fathom_gpio_status_t error, const char *format,
                                       ...) __attribute__((format(printf, 3, 4)));
 fathom_gpio_status_t fathom_gpio_fail_open(fathom_gpio_t *gpio, const char *path, int code);
 fathom_gpio_status_t fathom_gpio_fail_system(fathom_gpio_t *gpio, const char *what, int code);
-/* The line was refused. consumer: who has it; "": not known. */
+/* For a line that the kernel refused. `consumer` is the program or driver that uses it; "" if that is not known. */
 fathom_gpio_status_t fathom_gpio_fail_request(fathom_gpio_t *gpio, const char *consumer, bool is_output,
                                               int code);
-/* Of an open one: it is of no use any more. */
+/* For an open pin that can no longer be used. */
 void fathom_gpio_fail_lost(fathom_gpio_t *gpio, const char *what, int code);
 
 #endif

@@ -4,9 +4,9 @@
 
 #include "fathom_libmodbus.h"
 
-/* What the sources of this port share. */
+/* The functions that the files of this port share. */
 
-/* rtu.c and tcp.c: the HAL functions for either kind of modbus_t; ctx is the port. */
+/* rtu.c and tcp.c: the UART functions for each kind of modbus_t. `ctx` is the port. */
 int fathom_libmodbus_rtu_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx);
 int fathom_libmodbus_rtu_write(void *ctx, const uint8_t *bytes, size_t length);
 bool fathom_libmodbus_rtu_sent(void *ctx);
@@ -14,13 +14,13 @@ int fathom_libmodbus_tcp_read(void *ctx, uint8_t *bytes, size_t capacity, fathom
 int fathom_libmodbus_tcp_write(void *ctx, const uint8_t *bytes, size_t length);
 bool fathom_libmodbus_tcp_sent(void *ctx);
 
-/* error.c: keeps the first reason and returns -1. */
+/* error.c: stores the first reason and returns -1. */
 int fathom_libmodbus_broken(fathom_libmodbus_t *port, fathom_libmodbus_error_t error);
 
-/* After a call of the system that failed with errno: 0 when it is to be tried again, else -1. */
+/* Call it after a system call that failed with errno. Returns 0 if the call should be repeated, else -1. */
 int fathom_libmodbus_failed(fathom_libmodbus_t *port);
 
-/* Something went out or came in. */
+/* Clears the error, because bytes were sent or received. */
 void fathom_libmodbus_works(fathom_libmodbus_t *port);
 
 #endif

@@ -4,14 +4,14 @@
 
 #include <stdint.h>
 
-/* One of TIMER's four alarms. Its interrupt comes `in_us` from now, up to 2^31, at once if that has passed meanwhile:
- * the hardware compares for equality, and would come 71 minutes late. */
+/* Sets one of the four alarms of TIMER. Its interrupt comes `in_us` microseconds from now, at most 2^31. If that time
+ * has passed already, the interrupt comes at once. The hardware compares for equality and would be 71 minutes late. */
 void fathom_rp2040_alarm_set(unsigned alarm, uint32_t in_us);
 
-/* Takes back what is set or pending; the interrupt calls it too. */
+/* Cancels an alarm that is set or pending. The interrupt of the alarm calls this too. */
 void fathom_rp2040_alarm_clear(unsigned alarm);
 
-/* Lets its interrupt through to the core. */
+/* Enables the interrupt of an alarm. */
 void fathom_rp2040_alarm_enable(unsigned alarm);
 
 #endif

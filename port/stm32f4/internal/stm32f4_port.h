@@ -4,7 +4,7 @@
 
 #include "fathom_stm32f4.h"
 
-/* What the files of this port share. */
+/* The declarations that the files of this port share. */
 
 #define RCC_AHB1ENR (*(volatile uint32_t *)0x40023830u)
 #define RCC_APB1ENR (*(volatile uint32_t *)0x40023840u)
@@ -29,18 +29,21 @@ enum {
 enum { TIM_CR1_CEN = 1, TIM_CR1_URS = 4, TIM_CR1_OPM = 8, TIM_EGR_UG = 1 };
 enum { RCC_TIM2 = 1, RCC_TIM5 = 8 };
 
-/* An interrupt has done what the main loop may be waiting for, but for a byte, which the ring shows. idle clears it. */
+/* True if an interrupt has done something for which the main loop may be waiting. A received byte does not set it,
+ * because the ring shows that byte. idle.c clears it. */
 extern volatile uint8_t fathom_stm32f4_happened;
 
 void fathom_stm32f4_enable_interrupt(uint8_t number);
 
 enum { GPIO_INPUT = 0, GPIO_OUTPUT = 1, GPIO_ALTERNATE = 2 };
 
-/* Clocks the port and gives the pin its function; alternate: 0..15. False: there is no such pin. */
+/* Enables the clock of the port and selects the function of a pin. `alternate`: 0 to 15. Returns false if there is no
+ * such pin. */
 bool fathom_stm32f4_pin_init(const fathom_stm32f4_pin_t *pin, uint32_t mode, fathom_stm32f4_pull_t pull,
                              uint32_t alternate);
 void fathom_stm32f4_pin_mode(const fathom_stm32f4_pin_t *pin, uint32_t mode);
-void fathom_stm32f4_pin_set(const fathom_stm32f4_pin_t *pin, bool high); /* nothing where there is none */
+void fathom_stm32f4_pin_set(const fathom_stm32f4_pin_t *pin,
+                            bool high); /* Does nothing if there is no pin. */
 bool fathom_stm32f4_is_pin(const fathom_stm32f4_pin_t *pin);
 
 #endif
