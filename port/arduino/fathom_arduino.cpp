@@ -15,7 +15,7 @@ namespace
 
 uint32_t now_us(void *) { return micros(); }
 
-/* The number of a pin is all that it needs, and ctx has room for it. */
+/* `ctx` is the number of the pin, not an address. */
 void *ctx_of(uint8_t pin) { return reinterpret_cast<void *>(static_cast<uintptr_t>(pin)); }
 uint8_t pin_of(void *ctx) { return static_cast<uint8_t>(reinterpret_cast<uintptr_t>(ctx)); }
 
@@ -72,7 +72,8 @@ extern const fathom_clock_t clock = {now_us, NULL};
 
 fathom_pin_t output(uint8_t pin)
 {
-    /* First, so that an AVR's pin never is an output and low; some cores take no level before the mode. */
+    /* The level is set first, so that the pin of an AVR is never a low output. Some cores ignore a level before the
+     * mode, so it is set again. */
     digitalWrite(pin, HIGH);
     pinMode(pin, OUTPUT);
     digitalWrite(pin, HIGH);
@@ -130,7 +131,7 @@ fathom_uart_t serial_uart::hal()
 bool serial_uart::set(const fathom_line_settings_t &line)
 {
     if (!can_reach(line.baud)) return false;
-    /* The constants are of another type in each core. */
+    /* The constants have another type in each core, so there is no table of them. */
     switch (line.parity << 4 | line.stop_bits) {
     case FATHOM_PARITY_NONE << 4 | 1:
         serial_.begin(line.baud, SERIAL_8N1);
@@ -181,7 +182,8 @@ int serial_uart::write(void *ctx, const uint8_t *bytes, size_t length)
     self.span_us_ = span_us_of(length, bits_of(self.line_), self.line_.baud);
     if (self.driver_enable_ != no_pin) digitalWrite(self.driver_enable_, HIGH);
     const int taken = static_cast<int>(self.serial_.write(bytes, length));
-    self.since_us_ = micros(); /* behind it: the first byte may begin as late as that */
+    self.since_us_ =
+        micros(); /* The time is read after write(), because the first byte may begin that late. */
     self.leaving_ = true;
     return taken;
 }

@@ -9,7 +9,7 @@
 
 #include "internal/kit.h"
 
-static const uint32_t most_reads = 10000000; /* of a clock that stands */
+static const uint32_t most_reads = 10000000; /* After this number of equal reads the clock stands still. */
 
 const char *fathom_verdict_name(fathom_verdict_t verdict)
 {
@@ -17,7 +17,7 @@ const char *fathom_verdict_name(fathom_verdict_t verdict)
     return verdict == FATHOM_NOT_KEPT ? "NOT KEPT" : "not seen";
 }
 
-/* A look at it for 20000 steps, or for 200 ms. */
+/* Reads the clock for 20000 steps, or for 200 ms. Returns false if it stands still. */
 static bool clock_runs(kit_t *kit)
 {
     uint32_t reads = 0;
@@ -33,7 +33,7 @@ static bool clock_runs(kit_t *kit)
     return reads != most_reads;
 }
 
-/* 2 ms across the wrap, and no figure that a clock with another wrap would give. */
+/* Reads the clock for 2 ms across the wrap. A step that a clock with another wrap would make is a fault. */
 static void clock_wrap(kit_t *kit)
 {
     const fathom_conformance_t *const bench = kit->bench;
@@ -52,7 +52,8 @@ static void clock_wrap(kit_t *kit)
         is_right = fathom_elapsed_us(now, before) < 1000000;
     }
     is_right = is_right && fathom_elapsed_us(now, from_us) < 1000000;
-    for (uint32_t reads = 0; reads != 200; reads++) (void)kit_raw_now(kit); /* behind another wrap as well */
+    for (uint32_t reads = 0; reads != 200; reads++)
+        (void)kit_raw_now(kit); /* These reads pass another wrap too. */
     kit->last_us = kit_raw_now(kit);
     kit_tell(kit, CLOCK_WRAP, kit_kept_if(is_right), now);
 }

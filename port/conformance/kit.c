@@ -7,7 +7,7 @@
 
 #include <stddef.h>
 
-enum { QUIET = 12 }; /* characters */
+enum { QUIET = 12 }; /* in characters */
 
 static const struct {
     const char *name, *clause, *of;
@@ -70,7 +70,7 @@ fathom_verdict_t kit_kept_if(bool kept) { return kept ? FATHOM_KEPT : FATHOM_NOT
 
 void kit_tell(kit_t *kit, item_t item, fathom_verdict_t verdict, uint32_t figure)
 {
-    /* With a clock that goes back nothing else is proved. */
+    /* If the clock goes back, no other item proves anything. */
     if (verdict == FATHOM_NOT_KEPT && kit->back_us != 0 && item != CLOCK_FORWARD) verdict = FATHOM_NOT_SEEN;
     if (verdict == FATHOM_NOT_KEPT) {
         kit->failed++;

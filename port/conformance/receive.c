@@ -13,7 +13,7 @@ enum { WORD = 5, PAUSE = 20 /* characters */, PAUSE_US = 5000 /* at least; t3.5 
 
 static bool tells(const kit_t *kit, uint8_t mark) { return (kit->bench->marks & mark) != 0; }
 
-/* Two words with a silence between them, and then a read. *ends_us: of each, by `sent`. */
+/* Sends two words with a silence between them, and then reads. `ends_us` gets the end of each word, by `sent`. */
 static bool two_words(kit_t *kit, uint32_t begins_us[2], uint32_t ends_us[2])
 {
     kit_begin(kit);
@@ -27,7 +27,7 @@ static bool two_words(kit_t *kit, uint32_t begins_us[2], uint32_t ends_us[2])
     return true;
 }
 
-/* The mark stands at the second word, and at the first, before which there was silence too; nowhere else. */
+/* The mark must stand at both words, because there was silence before each, and nowhere else. */
 static void read_silence(kit_t *kit)
 {
     uint32_t begins_us[2], ends_us[2];
@@ -46,7 +46,7 @@ static void read_silence(kit_t *kit)
     kit_tell(kit, READ_SILENCE, kit_kept_if(is_right), at);
 }
 
-/* The stamp of the first read: not before its bytes can have come, not after they have. */
+/* The stamp of the first read must not be before its bytes can have arrived, and not after they have arrived. */
 static void read_stamp(kit_t *kit)
 {
     uint32_t begins_us[2], ends_us[2];
@@ -101,7 +101,7 @@ static void read_age(kit_t *kit)
     kit_tell(kit, READ_AGE, kit->got == WORD ? kit_kept_if(young_count == 0) : FATHOM_NOT_SEEN, young_count);
 }
 
-/* Three bytes of the far end, the second one with the mark and in a read of its own. */
+/* The far end sends three bytes. The second one must have the mark and a read of its own. */
 static void mark(kit_t *kit, item_t item, uint8_t flag)
 {
     const fathom_conformance_t *const bench = kit->bench;
@@ -120,7 +120,8 @@ static void mark(kit_t *kit, item_t item, uint8_t flag)
     kit_tell(kit, item, kit_kept_if(is_right), marked);
 }
 
-/* What was sent while nothing was read; losses are found by the values, of which less than 255 in a row are lost. */
+/* Reads the bytes that were sent while nothing was read. The values show the losses, if fewer than 255 bytes in a row
+ * are lost. */
 static uint32_t count_lost(const kit_t *kit, bool *is_marked)
 {
     uint8_t awaited = kit->awaited;
@@ -158,7 +159,7 @@ static void full(kit_t *kit)
         before = kit->got;
         kit_read(kit);
     }
-    /* The loss is told of the next byte, which has to come first. */
+    /* The next byte reports the loss, so one more byte is sent first. */
     const uint16_t had = kit->got;
     if (kit_send(kit, 8)) (void)kit_await(kit, (uint16_t)(had + 8));
     const uint32_t lost = count_lost(kit, &is_marked);

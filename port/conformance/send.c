@@ -34,7 +34,8 @@ static uint16_t poisoned(const kit_t *kit)
     return count;
 }
 
-/* One request, and three bytes while it leaves, which may be queued or refused. False: *figure is what was wrong. */
+/* Writes a request, and three bytes while it leaves, which the port may queue or refuse. If this returns false,
+ * `*figure` is what was wrong. */
 static bool writes_whole(kit_t *kit, uint8_t length, int *figure)
 {
     static const uint8_t more[3] = {POISON, POISON, POISON};
@@ -82,7 +83,7 @@ static void write_copy(kit_t *kit)
         kit_tell(kit, WRITE_COPY, kit_kept_if(poisoned(kit) == 0), poisoned(kit));
 }
 
-/* Reads of one byte, of three and of all in turn. */
+/* Reads one byte, three bytes and all bytes, one after the other. */
 static void read_order(kit_t *kit)
 {
     static const uint8_t capacities[] = {255, 1, 3, 255};
@@ -95,7 +96,7 @@ static void read_order(kit_t *kit)
     for (unsigned i = 0; i != sizeof capacities && kit_send(kit, some(kit)); i++) {
         sent = (uint16_t)(sent + some(kit));
         kit->capacity = capacities[i];
-        if (i == 2) (void)kit_await_sent(kit); /* so that more wait than a read has room for */
+        if (i == 2) (void)kit_await_sent(kit); /* Now more bytes wait than fit into a read. */
         (void)kit_await(kit, sent);
     }
     kit->has_wire = kit->got != 0;
@@ -105,7 +106,7 @@ static void read_order(kit_t *kit)
     kit->capacity = 255;
 }
 
-/* By the groups in which the bytes of one request were read. */
+/* The pace of the bytes of one request, by the groups in which they were read. */
 typedef struct {
     uint32_t us, characters; /* without the first group and the one after the longest gap */
     uint32_t gap_us;         /* the longest, beyond the time of its group */
@@ -188,7 +189,8 @@ static void write_no_gap(kit_t *kit)
              pace.gap_us);
 }
 
-/* How long after `since_us`, when `had` bytes had come, the last one of the request came. */
+/* Finds how long after `since_us` the last byte of the request arrived. `had` bytes had arrived at `since_us`. Returns
+ * false if it does not arrive. */
 static bool is_behind(kit_t *kit, uint16_t had, uint32_t since_us, uint32_t *by_us)
 {
     *by_us = 0;
@@ -238,7 +240,7 @@ static void driver(kit_t *kit)
         kit_tell(kit, DRIVER, FATHOM_NOT_SEEN, 0);
         return;
     }
-    if (bench->driver(bench->ctx)) { /* it never listens */
+    if (bench->driver(bench->ctx)) { /* The driver is always enabled, so the port never receives. */
         kit_tell(kit, DRIVER, FATHOM_NOT_KEPT, 0);
         return;
     }
@@ -253,7 +255,7 @@ static void driver(kit_t *kit)
     bool is_right = !bench->driver(bench->ctx) && by_us <= tolerance_us(kit);
     if (is_seen && by_us == 0) {
         by_us = fathom_elapsed_us(off_us, kit->arrivals[some(kit) - 1].at_us);
-        if (by_us > INT32_MAX) by_us = 0; /* both within one look */
+        if (by_us > INT32_MAX) by_us = 0; /* Both happened within one read. */
         is_right = is_right && by_us <= 2 * kit->character_us + tolerance_us(kit);
     }
     kit_tell(kit, DRIVER, is_seen ? kit_kept_if(is_right) : FATHOM_NOT_SEEN, by_us);

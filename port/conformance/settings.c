@@ -9,7 +9,7 @@ static int set(const kit_t *kit, const fathom_line_settings_t *line)
     return kit->bench->uart->set_line(kit->bench->uart->ctx, line);
 }
 
-/* Until it is no longer busy. */
+/* Sets the line as soon as the port is no longer busy. */
 static int set_at_last(kit_t *kit, const fathom_line_settings_t *line)
 {
     const uint32_t since_us = kit_now(kit);
@@ -25,7 +25,8 @@ static uint32_t character_of(const fathom_line_settings_t *line)
     return (bits * 1000000u + line->baud - 1) / line->baud;
 }
 
-/* What a character takes on the wire, by the time from the first byte to the last; 0: they did not come. */
+/* Returns the time of a character on the wire, from the times of the first byte and the last. Returns 0 if the bytes
+ * did not arrive. */
 static uint32_t takes_us(kit_t *kit)
 {
     enum { LENGTH = 8 };
@@ -47,7 +48,7 @@ static void holds(kit_t *kit)
     kit_tell(kit, SET_LINE_HOLDS, kit_kept_if(is_right && real_us + kit->step_us != 0), real_us);
 }
 
-/* Is `sent` false after it as well, it was called while bytes left. */
+/* If `sent` is false after the call too, the call came while bytes were leaving. */
 static void waits(kit_t *kit)
 {
     fathom_verdict_t verdict = FATHOM_NOT_SEEN;
@@ -75,7 +76,7 @@ static void keeps(kit_t *kit)
     kit_tell(kit, SET_LINE_KEEPS, is_sent && is_set ? kit_kept_if(right == 8) : FATHOM_NOT_SEEN, right);
 }
 
-/* Nothing has a rate of 0 or of a thousand million baud; afterwards those before still hold. */
+/* No port has a rate of 0 or of a thousand million baud. After the refusal the previous settings are still in force. */
 static void refuses(kit_t *kit)
 {
     static const uint32_t rates[] = {0, 1000000007};
@@ -93,7 +94,7 @@ static void refuses(kit_t *kit)
     kit_tell(kit, SET_LINE_REFUSES, kit_kept_if(is_right && still), taken);
 }
 
-/* While bytes leave, and when they have; afterwards bytes come back as before. */
+/* Requests a break while bytes leave, and after they have left. Afterwards bytes must come back as before. */
 static void set_break(kit_t *kit)
 {
     const fathom_uart_t *const uart = kit->bench->uart;

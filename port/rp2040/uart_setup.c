@@ -7,7 +7,7 @@
 #include "rp2040.h"
 
 enum {
-    FRACTIONS = 64,         /* in one step of the divider */
+    FRACTIONS = 64,         /* of one unit of the divider */
     MAX_DIVIDER = 65535,    /* with no fraction (4.2.7.1) */
     MAX_ERROR_DIVIDER = 40, /* 2.5 % */
     RESET_TRIES = 10000     /* a reset takes some cycles of clk_peri */

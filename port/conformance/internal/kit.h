@@ -4,7 +4,7 @@
 
 #include "../fathom_conformance.h"
 
-/* kit.c: what the items share. These are in the order in which they are reported. */
+/* kit.c: what the items share. The items stand in the order in which they are reported. */
 typedef enum {
     CLOCK_RUNS,
     CLOCK_WRAP,
@@ -35,15 +35,15 @@ typedef enum {
 } item_t;
 
 enum {
-    MOST = 360,   /* bytes that are looked at in one go */
-    FILL = 320,   /* more than any ring that is known: 128, 64, 256 */
-    POISON = 0xEE /* no byte that is sent on purpose */
+    MOST = 360,   /* bytes of one list of arrivals */
+    FILL = 320,   /* bytes that fill any known ring: 128, 64, 256 */
+    POISON = 0xEE /* a value that is never sent on purpose */
 };
 
 typedef struct {
-    uint32_t at_us; /* when the read returned that brought it */
+    uint32_t at_us; /* when its read returned */
     uint8_t byte;
-    uint8_t flags;          /* of its read, for the first byte of that */
+    uint8_t flags;          /* of its read, if it is the first byte of the read */
     bool is_first, is_last; /* of its read */
 } arrival_t;
 
@@ -52,24 +52,24 @@ typedef struct {
     unsigned failed;
     uint32_t not_kept; /* 1 << item_t */
     uint32_t character_us;
-    uint32_t step_us; /* the clock's, the coarsest that was seen */
+    uint32_t step_us; /* the coarsest step of the clock that was seen */
     uint32_t last_us, back_us;
-    bool has_wire; /* what is sent comes back */
-    bool has_time; /* and takes its time */
+    bool has_wire; /* sent bytes come back */
+    bool has_time; /* sent bytes take their time on the wire */
 
-    uint8_t next;    /* what is sent next; all values but POISON, in turn */
-    uint8_t awaited; /* the first one of `arrivals` */
+    uint8_t next;    /* the next value to send; all values but POISON in order */
+    uint8_t awaited; /* the value that arrivals[0] should have */
     uint16_t got;
-    uint32_t wrote_us, called_us; /* the last write: when it was taken, how long it took */
-    uint32_t stamp_us;            /* of the last read that was TIMED */
+    uint32_t wrote_us, called_us; /* the last write: when it was accepted, how long it took */
+    uint32_t stamp_us;            /* of the last read with FATHOM_RX_TIMED */
     arrival_t arrivals[MOST];
     uint8_t out[255];
-    uint8_t in[300]; /* more than a read is asked for */
+    uint8_t in[300]; /* larger than the capacity of any read */
     uint16_t capacity;
     uint16_t beyond; /* bytes that a read returned or wrote beyond its capacity */
 } kit_t;
 
-/* The clock, and as it is without a look at whether it goes back. */
+/* Both return the clock. Only kit_now() checks whether it goes back. */
 uint32_t kit_now(kit_t *kit);
 uint32_t kit_raw_now(const kit_t *kit);
 
@@ -77,25 +77,25 @@ void kit_tell(kit_t *kit, item_t item, fathom_verdict_t verdict, uint32_t figure
 fathom_verdict_t kit_kept_if(bool kept);
 
 #define BIT_OF(item) (UINT32_C(1) << (item))
-/* Is one of these not kept? */
+/* Returns true if one of these items is not kept. */
 bool kit_lacks(const kit_t *kit, uint32_t items);
-/* Bytes come back as they were sent: without that most items show nothing. */
+/* Returns true if bytes come back as they were sent. Otherwise most items show nothing. */
 bool kit_has_wire(const kit_t *kit);
 
-/* What `count` bytes may take, handed over late and all. */
+/* Returns the longest time of `count` bytes, including a late return of the port. */
 uint32_t kit_patience_us(const kit_t *kit, uint32_t count);
 uint32_t kit_since(kit_t *kit, uint32_t since_us);
-void kit_wait(kit_t *kit, uint32_t us); /* and read nothing */
+void kit_wait(kit_t *kit, uint32_t us); /* without a read */
 
 void kit_read(kit_t *kit);
-/* Reads until so many have come since kit_begin; false: they do not come. */
+/* Reads until `count` bytes have arrived since kit_begin(). Returns false if they do not arrive. */
 bool kit_await(kit_t *kit, uint16_t count);
-void kit_begin(kit_t *kit);                       /* nothing comes any more; what has come is forgotten */
-uint8_t kit_value(const kit_t *kit, uint16_t at); /* that arrivals[at] should have */
-uint8_t kit_after(uint8_t value);                 /* what is sent after that value */
+void kit_begin(kit_t *kit);                       /* waits until nothing arrives, and discards all arrivals */
+uint8_t kit_value(const kit_t *kit, uint16_t at); /* the value that arrivals[at] should have */
+uint8_t kit_after(uint8_t value);                 /* the value that is sent after `value` */
 
-/* Writes so many of the next bytes, as soon as they are taken, and overwrites the memory that they were in. False: they
- * never are. */
+/* Writes the next `length` bytes as soon as the port accepts them, and then overwrites their memory. Returns false if
+ * the port never accepts them. */
 bool kit_send(kit_t *kit, uint8_t length);
 bool kit_await_sent(kit_t *kit); /* without a read */
 bool kit_is_sent(const kit_t *kit);
