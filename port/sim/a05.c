@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The simulated A05: its registers, its commands, and what its four probes measure. The relay is in a05_relay.c. */
 #include "a05.h"
 
 #include <string.h>

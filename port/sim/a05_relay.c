@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The relay output of the simulated A05: measuring, the rule of the relay, and the bounces of the contact. */
 #include <string.h>
 
 #include "internal/switches.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The simulated A16: its registers, its commands, its modes and its pulses. The switch output is in a16_switch.c. */
 #include "a16.h"
 
 #include <string.h>

@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * The switch output of the simulated A16 (A16 4(2)). A number of nearer or farther measurements in a row changes its
+ * level.
+ */
 #include "internal/switches.h"
 
 /* A16 4(2) */

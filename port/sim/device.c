@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* What all simulated devices share: power, address, alarms, reception of frames, and sending of responses. */
 #include "device.h"
 
 #include <string.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* How a simulated device receives and executes requests of the protocol 55 AA. */
 #include "device.h"
 
 #include "fathom/codec/dyp_55aa.h"

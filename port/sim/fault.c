@@ -1,4 +1,8 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * Selects the frames that a fault rule damages, by number or by chance. The faults of values are here; those of frames
+ * are in fault_damage.c and fault_forge.c.
+ */
 #include "fault.h"
 
 #include <string.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Faults that change a frame, its time or its silences, but do not repair its checksum. */
 #include <string.h>
 
 #include "internal/fault_parts.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* Faults that make another frame whose CRC or sum is right. */
 #include <string.h>
 
 #include "fathom/codec/crc16.h"

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The table of the kinds of faults: their names, their texts and the protocols that they apply to. */
 #include <string.h>
 
 #include "internal/fault_parts.h"

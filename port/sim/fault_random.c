@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The random numbers of a fault rule. They are the same in every run. */
 #include "internal/fault_parts.h"
 
 /* Knuth's MMIX generator; its high half is the good one. */

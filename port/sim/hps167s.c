@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * The simulated HPS-167S: its registers, its measurements and its automatic output. Settings are in hps167s_settings.c.
+ */
 #include <string.h>
 
 #include "internal/hps167s_parts.h"

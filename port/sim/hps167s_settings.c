@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The settings of the simulated HPS-167S: commands #7 to #15 of its manual. */
 #include "internal/hps167s_parts.h"
 
 enum {

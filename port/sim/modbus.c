@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* How a simulated device receives and executes Modbus requests. */
 #include "device.h"
 
 #include "fathom/codec/crc16.h"

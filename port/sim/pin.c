@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The pins of a simulated device for the HAL: the level and the pulses of TX, and the level of RX. */
 #include "pin.h"
 
 #include <string.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* A pseudo terminal with a simulated line behind it, in real time. A program opens it like a serial port. */
 #define _DEFAULT_SOURCE /* FIONREAD, rates above 38400; harmless where unknown */
 #define _XOPEN_SOURCE   700
 

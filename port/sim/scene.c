@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* What a simulated sensor sees. A scene is fixed distances, or distances that move with the time. */
 #include "scene.h"
 
 static int32_t fixed_distance(void *ctx, uint8_t probe, uint32_t now_us)

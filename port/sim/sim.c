@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The simulated line. It moves bytes between the host and all devices, each at its time, with collisions. */
 #include "sim.h"
 
 #include <string.h>

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* The UART and the clock of the HAL on a simulated line. The clock moves when a program reads it or waits. */
 #include "uart.h"
 
 /* The lines must see the time at least every 30 minutes (sim.h). */

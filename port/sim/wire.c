@@ -1,4 +1,7 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * The time of characters and silences on the simulated wire. A sender holds bytes and the level of its pin at any time.
+ */
 #include "wire.h"
 
 #include <string.h>
