@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/status.h"
 
+/* The names of the statuses. All names are in one array, which is smaller than a table of pointers. */
+
 const char *fathom_status_name(fathom_status_t status)
 {
-    /* From PENDING down. One array is less than a table of pointers, which would be 4 bytes a name. */
+    /* In falling order of the numbers, from FATHOM_PENDING on. A table of pointers would need 4 bytes for each name. */
     static const char names[] = "PENDING\0OK\0ARGUMENT\0PORT\0NO_RESPONSE\0CHECKSUM\0EXCEPTION\0MALFORMED\0"
                                 "STALE\0CANCELLED\0BUSY\0CAPACITY\0ECHO\0UNSUPPORTED\0WARMING_UP\0"
                                 "UNCONFIRMED\0IN_USE\0DIFFERS\0LINE_BUSY\0OTHER_MASTER";

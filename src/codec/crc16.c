@@ -1,7 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/codec/crc16.h"
 
-/* What eight shifts by one bit do to each low byte. */
+/*
+ * CRC-16/MODBUS with a table of 256 entries, one step for each byte. It is the fastest of the four sources
+ * that crc16.h names.
+ */
+
+/* The result of eight shifts by one bit, for each low byte. */
 static const uint16_t table[256] = {
     0x0000, 0xC0C1, 0xC181, 0x0140, 0xC301, 0x03C0, 0x0280, 0xC241, 0xC601, 0x06C0, 0x0780, 0xC741, 0x0500,
     0xC5C1, 0xC481, 0x0440, 0xCC01, 0x0CC0, 0x0D80, 0xCD41, 0x0F00, 0xCFC1, 0xCE81, 0x0E40, 0x0A00, 0xCAC1,

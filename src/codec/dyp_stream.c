@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/codec/dyp_stream.h"
 
+/* The frames FF .. SUM of A16 and A05. Pure functions that check, decode and encode one frame. */
+
 uint8_t fathom_dyp_checksum(const uint8_t *bytes, uint8_t length)
 {
     uint8_t sum = 0;

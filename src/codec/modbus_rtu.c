@@ -5,7 +5,12 @@
 
 #include "fathom/codec/crc16.h"
 
-/* Offsets in a frame. SIZE is the byte count of a read's response. */
+/*
+ * Modbus RTU frames of the functions 03, 06 and 10. Pure functions: the messages first, then the client, then
+ * the server.
+ */
+
+/* Offsets in a frame. SIZE is the byte count in the response to a read. */
 enum { UNIT = 0, FUNCTION = 1, FIRST = 2, SIZE = 2, COUNT_HIGH = 4, COUNT = 5, HEAD = 6, DATA = 7 };
 
 enum {
@@ -92,10 +97,10 @@ void fathom_modbus_write_multiple_registers(fathom_modbus_message_t *message, ui
                                             uint8_t count, const uint16_t *values)
 {
     set(message, address, WRITE_MANY, first, count);
-    message->values = (uint16_t *)values; /* a write only reads them */
+    message->values = (uint16_t *)values; /* Function 10 only reads the values. */
 }
 
-/* ---- the client's side ---- */
+/* ---- Client ---- */
 
 uint8_t fathom_modbus_rtu_frame_size(const fathom_modbus_message_t *message)
 {
@@ -164,7 +169,7 @@ fathom_status_t fathom_modbus_rtu_parse_response(fathom_modbus_message_t *messag
     }
     if (frame[FUNCTION] != function) return FATHOM_ERR_MALFORMED;
     if (function != READ) {
-        /* A write is acknowledged with its own head. */
+        /* The acknowledgement of a write repeats the head of the request. */
         if (!is_alike(frame + FIRST, head + FIRST, HEAD - FIRST)) return FATHOM_ERR_MALFORMED;
     } else {
         const uint8_t count = head[COUNT];
@@ -175,7 +180,7 @@ fathom_status_t fathom_modbus_rtu_parse_response(fathom_modbus_message_t *messag
     return FATHOM_OK;
 }
 
-/* ---- the server's side ---- */
+/* ---- Server ---- */
 
 uint8_t fathom_modbus_rtu_request_length(const uint8_t *bytes, uint8_t have)
 {

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/codec/pulse_width.h"
 
-/* More than 65535 mm at any temperature, and little enough for the products below. */
+/* The width of a pulse as a distance. Both functions calculate with whole numbers of at most 32 bits. */
+
+/* This width is more than 65535 mm at any temperature, and the products below stay within 32 bits. */
 #define LONGEST_US 500000uL
 
 static uint32_t bounded_us(uint32_t width_us) { return (width_us < LONGEST_US) ? width_us : LONGEST_US; }
@@ -17,8 +19,9 @@ uint16_t fathom_pulse_width_mm(uint32_t width_us)
 }
 
 /*
- * The speed v, in units of 0.1 mm/s, is 3313000 and 606 for each tenth of a degree: 3070600 at -40 degC. There and
- * back, 2 * 10^7 of v * us are a mm. That product has up to 41 bits, so it is made in two parts: v = 1000 * v1 + v0.
+ * The speed v, in units of 0.1 mm/s, is 3313000 + 606 for each tenth of a degree, which is 3070600 at -40 degrees C.
+ * The sound goes there and back, so the distance in mm is v * us / (2 * 10^7). The product v * us has up to 41 bits.
+ * The function therefore calculates in two parts: v = 1000 * v1 + v0.
  */
 uint16_t fathom_pulse_width_mm_in_air(uint32_t width_us, int16_t air_dc)
 {

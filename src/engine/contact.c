@@ -4,7 +4,7 @@
 #include "../common.h"
 
 /*
- * One poll is one look at the pin:
+ * A level that a sensor drives, as samples. One poll is one look at the pin:
  *
  *   level   ______|~|_|~~~~~~~~~~~~~~~~~~~~~~~~~~~
  *   looks    .  .  .  .  .  .  .  .  .  .  .  .  .

@@ -4,7 +4,7 @@
 #include "../common.h"
 
 /*
- * The interrupt writes pulses into a ring and the main loop takes them out:
+ * Pulses from the edges of a pin. The interrupt writes pulses into a ring, and the main loop takes them out:
  *
  *   pulses   [ full ][ full ][ free ][ free ]
  *               ^               ^

@@ -1,6 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/engine/fair_share.h"
 
+/*
+ * A policy of line_turns.h that shares the time of a line fairly. It counts the time that each unit used, and
+ * holds a long request back for a fast unit.
+ */
+
 enum { NEVER_US = UINT16_MAX, HELD_PART = 8 };
 
 static fathom_fair_share_unit_t *unit_of(fathom_fair_share_t *share, uint8_t address)
@@ -10,7 +15,7 @@ static fathom_fair_share_unit_t *unit_of(fathom_fair_share_t *share, uint8_t add
 
 static uint16_t at_most_16_bits(uint32_t us) { return (us > UINT16_MAX) ? UINT16_MAX : (uint16_t)us; }
 
-/* The time since the last count is this unit's. */
+/* Adds the time since the last count to the time that the unit used. Returns that time. */
 static uint32_t bill(fathom_fair_share_t *share, fathom_fair_share_unit_t *unit, uint32_t now_us)
 {
     const uint32_t passed_us = fathom_elapsed_us(now_us, share->since_us);
@@ -33,8 +38,10 @@ static void ended(fathom_line_turns_t *turns, uint8_t address, uint32_t at_us)
     unit->ended_us = at_us;
 }
 
-/* Time goes to the unit for which the line is idle. What has passed otherwise is no unit's, but for the silence before
- * the next request. */
+/*
+ * If the line is idle for a unit, that unit used the time. Otherwise no unit used the time, except for the silence before
+ * the next request, which belongs to the unit of that request.
+ */
 static void count(fathom_fair_share_t *share, const fathom_line_t *line)
 {
     const uint32_t now_us = line->polled_us;

@@ -4,6 +4,11 @@
 #include "fathom/codec/crc16.h"
 #include "modbus_client_internal.h"
 
+/*
+ * The Modbus RTU client of a line: its protocol table and its transport. The functions that
+ * modbus_client_zero.c needs too are in modbus_client_internal.h.
+ */
+
 uint8_t fathom_modbus_client_encode(const fathom_transaction_t *transaction, uint8_t *frame)
 {
     return fathom_modbus_rtu_encode_request(&((const fathom_modbus_request_t *)transaction)->message, frame);
@@ -27,7 +32,7 @@ fathom_status_t fathom_modbus_client_parse_response(fathom_transaction_t *transa
     return fathom_modbus_rtu_parse_response(&((fathom_modbus_request_t *)transaction)->message, frame);
 }
 
-/* Zeros are what noise is made of: no frame of unit 0 is looked for. */
+/* Noise often consists of zeros, so this client searches for no frame of unit 0. */
 static uint8_t length(const uint8_t *frame, uint8_t have)
 {
     return (frame[0] != FATHOM_MODBUS_BROADCAST) ? fathom_modbus_rtu_response_length(frame, have) : 0u;

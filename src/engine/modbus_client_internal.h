@@ -4,7 +4,10 @@
 
 #include "fathom/engine/modbus_client.h"
 
-/* What the two clients share: that of modbus_client.c, and that which also reads unit 0. */
+/*
+ * The functions that modbus_client.c and modbus_client_zero.c share. The first four are members of their protocol
+ * tables.
+ */
 
 uint8_t fathom_modbus_client_encode(const fathom_transaction_t *transaction, uint8_t *frame);
 bool fathom_modbus_client_is_request(const fathom_transaction_t *transaction, const uint8_t *frame,

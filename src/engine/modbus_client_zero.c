@@ -4,6 +4,11 @@
 #include "fathom/codec/crc16.h"
 #include "modbus_client_internal.h"
 
+/*
+ * The Modbus RTU client of a line on which a unit may have the address 0. A program that does not name it
+ * does not search noise for frames of unit 0.
+ */
+
 static const fathom_protocol_t protocol = {.encode = fathom_modbus_client_encode,
                                            .length = fathom_modbus_rtu_response_length,
                                            .check = fathom_crc16,

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/engine/output.h"
 
+/* Two kinds of output: a pin, and a break of a UART. line_pins.c has the third, a break of a line. */
+
 fathom_status_t fathom_output_set_pin(const void *ctx, uint8_t level)
 {
     const fathom_pin_t *const pin = ctx;

@@ -4,7 +4,7 @@
 #include "../common.h"
 
 /*
- * One cycle:
+ * A meter triggers a sensor again and again and measures its pulse. Each cycle has one outcome:
  *
  *   trigger  ____          __________________________          ____
  *                |________|                          |________|

@@ -3,6 +3,11 @@
 
 #include "../common.h"
 
+/*
+ * The falling edges that trigger a sensor. A trigger keeps the low time, the period, and a limit on how long
+ * its output may refuse.
+ */
+
 enum { AGAIN_US = 1000 };
 
 /* Sets the output, and limits how long it may refuse. */

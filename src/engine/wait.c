@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/engine/wait.h"
 
+/* The blocking form of fathom_poll(). It polls one sensor, and sleeps in between until the sensor is due. */
+
 fathom_status_t fathom_wait(const fathom_sensor_t *sensor, fathom_sample_t *sample, fathom_idle_t idle,
                             void *idle_ctx)
 {

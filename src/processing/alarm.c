@@ -3,12 +3,17 @@
 
 #include "../common.h"
 
-/* What alarm->side may be beside FATHOM_ALARM_ON, _OFF and _UNKNOWN: a distance between the thresholds, or at one. */
+/*
+ * An alarm on a distance. Each sample is on one side of the thresholds; this file keeps the hold times and
+ * notices a time without a distance.
+ */
+
+/* A fourth value of `side`: the distance is between the thresholds, or at one of them. */
 enum { BETWEEN = 0 };
 
 static bool is_side(uint8_t state) { return (state == FATHOM_ALARM_ON) || (state == FATHOM_ALARM_OFF); }
 
-/* The two thresholds by where they are, whichever of them switches on. */
+/* Returns the nearer threshold. Which of the two switches on depends on `when`. */
 static uint16_t nearer_mm(const fathom_alarm_config_t *config)
 {
     return (config->when == FATHOM_NEAR) ? config->on_mm : config->off_mm;
@@ -40,7 +45,7 @@ fathom_status_t fathom_alarm_init(fathom_alarm_t *alarm, const fathom_alarm_conf
 
 static bool is_initialised(const fathom_alarm_t *alarm) { return alarm->state != 0u; }
 
-/* The side on which a sample is; FATHOM_ALARM_UNKNOWN: it tells no distance. */
+/* Returns the side on which a sample is, or FATHOM_ALARM_UNKNOWN if the sample has no distance. */
 static uint8_t side_of(const fathom_alarm_config_t *config, const fathom_sample_t *sample)
 {
     uint8_t kind = sample->kind;
@@ -57,10 +62,10 @@ static uint8_t side_of(const fathom_alarm_config_t *config, const fathom_sample_
     return (kind == config->when) ? FATHOM_ALARM_ON : FATHOM_ALARM_OFF;
 }
 
-/* Is it more than unknown_us since the last distance? */
+/* Returns true if the last distance is more than unknown_us ago. */
 static bool is_too_long(fathom_alarm_t *alarm, uint32_t now_us)
 {
-    if (alarm->side == FATHOM_ALARM_UNKNOWN) return true; /* it was once, and none has come since */
+    if (alarm->side == FATHOM_ALARM_UNKNOWN) return true; /* No distance has arrived since. */
     if (!alarm->is_fed) alarm->fed_us = now_us;
     alarm->is_fed = true;
     const uint32_t passed_us = fathom_elapsed_us(now_us, alarm->fed_us);
@@ -79,7 +84,7 @@ bool fathom_alarm_add_status(fathom_alarm_t *alarm, fathom_status_t status, uint
 {
     const uint8_t before = alarm->state;
     if (!is_initialised(alarm)) return false;
-    /* A busy line and another master prove nothing about the device, as little as time that passes. */
+    /* A busy line and another master prove nothing about the device, and neither does time that passes. */
     const bool is_of_device =
         (status != FATHOM_PENDING) && (status != FATHOM_ERR_LINE_BUSY) && (status != FATHOM_ERR_OTHER_MASTER);
     if (is_of_device)
@@ -96,7 +101,7 @@ bool fathom_alarm_add_sample(fathom_alarm_t *alarm, const fathom_sample_t *sampl
     const uint8_t side = side_of(&alarm->config, sample);
     if (!is_initialised(alarm)) return false;
     if (side == FATHOM_ALARM_UNKNOWN) return fathom_alarm_add_status(alarm, FATHOM_OK, now_us);
-    look_at_time(alarm, now_us); /* by what came before this sample */
+    look_at_time(alarm, now_us); /* uses the samples before this one */
     alarm->fed_us = now_us;
     alarm->responds = true;
     if (alarm->side != side) alarm->since_us = now_us;

@@ -3,6 +3,8 @@
 
 #include "../common.h"
 
+/* A switch made of distances. This file counts measurements in a row and keeps the least time of a level. */
+
 enum { NEITHER = 0 };
 
 fathom_status_t fathom_debounce_init(fathom_debounce_t *debounce, const fathom_debounce_config_t *config)

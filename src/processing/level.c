@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/processing/level.h"
 
+/* The level and the volume in a tank. All divisions round to the nearest, in 32 bits. */
+
 static uint32_t to_nearest(uint32_t number, uint32_t divisor) { return (number + (divisor / 2u)) / divisor; }
 
 /*
@@ -22,8 +24,8 @@ uint32_t fathom_tank_upright(const fathom_level_config_t *tank, uint16_t level_m
 
 /*
  * x: the level's part of the diameter, in 1/65536; the upper half is the lower one upside down. The part of the area is
- * (acos(1 - 2x) - (1 - 2x) * sqrt(4x - 4x^2)) / pi. It begins as x^1.5, which neither lines nor polynomials follow well,
- * but the square of its quotient by x is almost straight: area = x * sqrt(x * g), where with z = 1 - 2x
+ * (acos(1 - 2x) - (1 - 2x) * sqrt(4x - 4x^2)) / pi. It begins as x^1.5, which neither lines nor polynomials follow
+ * well, but the square of its quotient by x is almost straight: area = x * sqrt(x * g), where with z = 1 - 2x
  *
  *   g = 2 + z * (0.9084 - z / 32)
  *
@@ -88,7 +90,7 @@ fathom_status_t fathom_level_from_distance(const fathom_level_config_t *config, 
     if (level_mm > 0) inside_mm = (level_mm < (int32_t)height_mm) ? (uint16_t)level_mm : height_mm;
     out->volume = config->volume(config, inside_mm);
     out->level_mm = level_mm;
-    /* 64 times both: or GCC sees that a signed division will do, of which a Cortex-M0+ has no other use: 484 bytes. */
+    /* Without the factor 64 GCC uses a signed division, which costs 484 more bytes on a Cortex-M0+. */
     out->per_mille = (uint16_t)to_nearest(UINT32_C(64000) * inside_mm, UINT32_C(64) * height_mm);
     return FATHOM_OK;
 }

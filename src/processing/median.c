@@ -3,7 +3,12 @@
 
 #include "../common.h"
 
-/* In the window each sample is its millimetres, and what is no distance stands at one of the ends. */
+/*
+ * The median of a window of samples, and the gate in front of it. The window stays in order of arrival; the
+ * median is searched at each sample.
+ */
+
+/* The window has the millimetres of each sample. NEARER and FARTHER stand for samples without a distance. */
 enum { NEARER = 0 };
 #define FARTHER UINT16_MAX
 
@@ -20,8 +25,8 @@ fathom_status_t fathom_median_init(fathom_median_t *median, const fathom_median_
     clear(median, sizeof *median);
     if (!is_configuration(config)) return FATHOM_ERR_ARGUMENT;
     copy(own, config, sizeof *own);
-    own->window =
-        config->window; /* again, as a pointer: an analyser does not see what a copy of its bytes points to */
+    /* Assigned again, because an analyser does not follow a pointer through copied bytes. */
+    own->window = config->window;
     own->unknown_us = or_default(own->unknown_us, FATHOM_MEDIAN_DEFAULT_UNKNOWN_US);
     if (own->gate_row == 0u) own->gate_row = FATHOM_MEDIAN_DEFAULT_GATE_ROW;
     return FATHOM_OK;
@@ -39,7 +44,7 @@ static bool is_spike(const fathom_median_t *median, uint16_t mm)
     return ((mm == FARTHER) != (value == FARTHER)) || (mm > (value + gate_mm)) || (value > (mm + gate_mm));
 }
 
-/* The one of a full window before which there are less than half, and after which there are not more than half. */
+/* Returns the median of a full window: less than half of the samples are nearer, and not more than half are farther. */
 static uint16_t middle_of(const fathom_median_t *median)
 {
     const uint8_t count = median->config.count;
@@ -55,7 +60,7 @@ static uint16_t middle_of(const fathom_median_t *median)
         }
         if ((nearer <= before) && (as_near > before)) break;
     }
-    return *at; /* of one of them it is so: where of none before, of the last */
+    return *at; /* One sample is the median: the last one if none of the others is. */
 }
 
 bool fathom_median_advance(fathom_median_t *median, uint32_t now_us)
@@ -68,7 +73,7 @@ bool fathom_median_advance(fathom_median_t *median, uint32_t now_us)
     return true;
 }
 
-/* A sample that counts. Is there a median with it? */
+/* Adds a sample that counts. Returns true if there is a median. */
 static bool take(fathom_median_t *median, uint16_t mm, uint32_t time_us)
 {
     (void)fathom_median_advance(median, time_us);

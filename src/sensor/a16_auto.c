@@ -3,6 +3,11 @@
 
 #include "../common.h"
 
+/*
+ * The driver of an A16 with automatic output. dyp_auto.c finds the frames; this file selects the value that
+ * the module sends.
+ */
+
 fathom_status_t fathom_a16_auto_init(fathom_a16_auto_t *sensor, const fathom_a16_auto_config_t *config)
 {
     fathom_dyp_auto_t *const base = &sensor->base;
@@ -31,7 +36,7 @@ fathom_status_t fathom_a16_auto_init(fathom_a16_auto_t *sensor, const fathom_a16
 fathom_status_t fathom_a16_auto_select(fathom_a16_auto_t *sensor, fathom_dyp_value_t value)
 {
     if ((sensor->base.line == NULL) || ((unsigned)value > FATHOM_REAL_TIME)) return FATHOM_ERR_ARGUMENT;
-    /* FATHOM_OUTPUT_HIGH or _LOW; a TX that was not held low is left alone */
+    /* The level is FATHOM_OUTPUT_HIGH or _LOW. If TX was not held low, only a pin is driven. */
     const bool is_driven = (value != FATHOM_PROCESSED) || (sensor->value != FATHOM_PROCESSED);
     const uint8_t level = (uint8_t)(is_driven ? (unsigned)value : (unsigned)FATHOM_OUTPUT_REST);
     const fathom_status_t status = fathom_output_set(&sensor->select, level);

@@ -3,6 +3,11 @@
 
 #include "../common.h"
 
+/*
+ * The driver of an A16 with controlled output. A trigger makes the edges, a stream finds the frames, and this
+ * file decides which frame is the response.
+ */
+
 /* The greatest time from the trigger to a response that can be told from a time before the trigger. */
 #define MAX_RESPONSE_US FATHOM_MAX_DURATION_US
 
@@ -26,7 +31,7 @@ static void receive(fathom_listener_t *listener, const uint8_t *bytes, uint8_t c
                     uint32_t time_us)
 {
     fathom_a16_controlled_t *const sensor = (fathom_a16_controlled_t *)listener;
-    /* a port without time stamps: it is the time of the line's poll */
+    /* Without time stamps, `time_us` is the time of the line's poll. The bytes may be as old as the previous poll. */
     sensor->came_us = (time_us == sensor->line->polled_us) ? sensor->trigger.polled_us : time_us;
     if (is_in_time(sensor, time_us)) sensor->heard = true;
     fathom_stream_receive(listener, bytes, count, after_gap, time_us);
@@ -45,7 +50,7 @@ static fathom_status_t judge(fathom_a16_controlled_t *sensor, fathom_sample_t *s
     return fathom_dyp_measurement_next(measurement, sample);
 }
 
-/* Of the time for the response, at the last look. */
+/* Returns the rest of the time in which the response may arrive, at the last update of the trigger. */
 static uint32_t response_left_us(const fathom_a16_controlled_t *sensor)
 {
     return rest_us(sensor->latest_us, fathom_elapsed_us(sensor->trigger.polled_us, sensor->edge_us));
@@ -59,7 +64,7 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     fathom_status_t status = fathom_line_poll(sensor->line);
     fathom_trigger_update(trigger);
     if (status < 0) return status;
-    /* Of the stream only frames count: without a trigger the sensor is silent, so the stream turns stale. */
+    /* Only frames of the stream count. Without a trigger the sensor is silent, and the stream then reports an error. */
     if (fathom_stream_poll(&sensor->stream, trigger->polled_us) == FATHOM_OK) status = judge(sensor, sample);
     if (sensor->waiting && (sensor->stream.candidate == FATHOM_STREAM_NOWHERE) &&
         (response_left_us(sensor) == 0u)) {
@@ -84,11 +89,11 @@ static uint32_t due_us(void *ctx)
     if (sensor->line == NULL) return 0;
     const uint32_t until_us = sensor->waiting ? response_left_us(sensor) : trigger->left_us;
     if (sensor->stream.is_new) return 0;
-    /* The line knows when the silence behind a frame is over: it is the listener's gap. */
+    /* The line knows when the silence after a frame is over: the silence is the listener's gap. */
     return least_us(fathom_trigger_due_us(trigger, until_us), fathom_line_due_us(sensor->line));
 }
 
-/* ---- setting up ---- */
+/* ---- Initialisation ---- */
 
 static void stop_listening(fathom_a16_controlled_t *sensor)
 {

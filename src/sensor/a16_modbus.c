@@ -1,7 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/sensor/a16_modbus.h"
 
-/* What sister models need and some margin. */
+/*
+ * The driver that reads the distances of an A16 by Modbus. dyp_modbus.c does the work; this file has the
+ * registers and the times of an A16.
+ */
+
+/* Sister models respond within 520 ms (processed) and 120 ms (real-time). The rest is margin. */
 #define PROCESSED_TIMEOUT_US 1000000uL
 #define REAL_TIME_TIMEOUT_US 300000uL
 

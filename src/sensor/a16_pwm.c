@@ -4,6 +4,11 @@
 #include "../common.h"
 #include "fathom/codec/pulse_width.h"
 
+/*
+ * The driver of an A16 with PWM output. A pulse meter triggers and measures; this file converts the width to
+ * a sample.
+ */
+
 /* Copies the configuration. Returns true if each member is inside its range. */
 static bool configure(fathom_a16_pwm_t *sensor, const fathom_a16_pwm_config_t *config)
 {

@@ -3,6 +3,11 @@
 
 #include "../common.h"
 
+/*
+ * The return of an A16 with RS232 output from Modbus to automatic output. The Modbus driver writes the
+ * operating mode, and the automatic driver proves it by a frame.
+ */
+
 static uint32_t now_us(const fathom_a16_rs232_t *rs232)
 {
     return clock_us(rs232->modbus->base.unit.transport->clock);
@@ -46,7 +51,7 @@ fathom_status_t fathom_a16_rs232_return_to_automatic(fathom_a16_rs232_t *rs232, 
     fathom_status_t status;
     if (!rs232->is_listening) {
         status = fathom_a16_modbus_set_operating_mode(rs232->modbus, FATHOM_A16_AUTOMATIC);
-        /* where it was not acknowledged it may be set all the same */
+        /* Without an acknowledgement the mode may be set all the same. The frames decide. */
         if ((status != FATHOM_OK) && (status != FATHOM_ERR_UNCONFIRMED)) return status;
         rs232->is_listening = true;
         rs232->since_us = now_us(rs232);
@@ -54,7 +59,7 @@ fathom_status_t fathom_a16_rs232_return_to_automatic(fathom_a16_rs232_t *rs232, 
     }
     discount_pause(rs232);
     status = fathom_dyp_auto_take(automatic);
-    /* A frame from before the command may have waited to be taken; it proves nothing. */
+    /* A frame from before the command may have waited. It proves nothing. */
     if ((status == FATHOM_OK) && is_since(rs232, automatic->measurement.time_us))
         status = fathom_dyp_measurement_next(&automatic->measurement, sample);
     else if (status == FATHOM_OK)

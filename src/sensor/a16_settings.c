@@ -1,6 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/sensor/a16_settings.h"
 
+/*
+ * The commands and settings of an A16 by Modbus. Each function names its register and checks its range;
+ * dyp_modbus.c sends the requests.
+ */
+
 void fathom_a16_modbus_cancel(fathom_a16_modbus_t *sensor) { fathom_dyp_modbus_deinit(&sensor->base); }
 
 bool fathom_a16_modbus_is_written(const fathom_a16_modbus_t *sensor) { return sensor->base.unit.is_written; }
@@ -46,7 +51,7 @@ fathom_status_t fathom_a16_modbus_set_operating_mode(fathom_a16_modbus_t *sensor
                                             (uint16_t)mode);
 }
 
-/* A register that is 0 or 1. */
+/* Reads a register whose value is 0 or 1. */
 static fathom_status_t get_choice(fathom_a16_modbus_t *sensor, uint16_t address, uint16_t *value)
 {
     uint16_t found = 0;

@@ -1,6 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/sensor/a16_switch.h"
 
+/*
+ * The driver of an A16 with switch output. A contact reads the level; this file keeps the polarity in step
+ * with register 0x0205.
+ */
+
 fathom_status_t fathom_a16_switch_init(fathom_a16_switch_t *sensor, const fathom_a16_switch_config_t *config)
 {
     fathom_contact_t *const base = &sensor->base;

@@ -5,7 +5,12 @@
 
 #include "../common.h"
 
-/* Of FFFD, FFFE, FFFF and 0, four bits each, the first one last. */
+/*
+ * The meaning of the 16-bit values of A16 and A05, and the samples that they become. A window copies byte by
+ * byte, since compilers make a call of memcpy() of an assignment.
+ */
+
+/* The default meanings of FFFD, FFFE, FFFF and 0, four bits each. FFFD has the lowest four. */
 enum {
     MEANINGS = FATHOM_MEANS_NO_TARGET | (FATHOM_MEANS_INTERFERENCE << 4) | (FATHOM_MEANS_REFUSED << 8) |
                (FATHOM_MEANS_UNKNOWN << 12)
@@ -60,7 +65,7 @@ fathom_status_t fathom_dyp_measurement_next(fathom_dyp_measurement_t *measuremen
 void fathom_dyp_window_copy(fathom_dyp_window_t *to, const fathom_dyp_window_t *from)
 {
     const uint8_t *next = (const uint8_t *)from;
-    /* volatile: or compilers make this loop a call of memcpy too */
+    /* Without volatile, compilers replace this loop by a call of memcpy() too. */
     for (volatile uint8_t *byte = (uint8_t *)to; byte != (uint8_t *)(to + 1); byte++) {
         *byte = *next;
         next++;

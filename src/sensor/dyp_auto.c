@@ -4,6 +4,11 @@
 #include "../common.h"
 #include "fathom/codec/dyp_stream.h"
 
+/*
+ * The common part of a16_auto.c and a05_auto.c. A stream finds the frames; this file fetches the newest one
+ * and its errors.
+ */
+
 fathom_status_t fathom_dyp_auto_init(fathom_dyp_auto_t *sensor, uint16_t default_max_mm)
 {
     fathom_line_t *const line = sensor->line;
