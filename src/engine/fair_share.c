@@ -39,8 +39,8 @@ static void ended(fathom_line_turns_t *turns, uint8_t address, uint32_t at_us)
 }
 
 /*
- * If the line is idle for a unit, that unit used the time. Otherwise no unit used the time, except for the silence before
- * the next request, which belongs to the unit of that request.
+ * If the line is idle for a unit, that unit used the time. Otherwise no unit used the time, except for the silence
+ * before the next request, which belongs to the unit of that request.
  */
 static void count(fathom_fair_share_t *share, const fathom_line_t *line)
 {
