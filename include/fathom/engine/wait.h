@@ -12,8 +12,13 @@ extern "C" {
 
 /**
  * @file
- * @brief The blocking form of fathom_poll(), for programs that have nothing else to do. It is the only function of
- * Fathom that does not return at once, and no other function needs it.
+ * @brief The blocking form of fathom_poll(), for programs that have nothing else to do.
+ *
+ * fathom_wait() is the only function of Fathom that does not return at once. No other function needs it.
+ *
+ * @code
+ * if (fathom_wait(&sensor, &sample, NULL, NULL) == FATHOM_OK) use(&sample);
+ * @endcode
  */
 
 /**
