@@ -151,7 +151,8 @@ static bool stands_idle(int step)
 
 static const char *judge_times(int step, const world_t *before)
 {
-    const bool has_ended = memcmp(effect.ended, (int[TRANSACTIONS]){0}, sizeof effect.ended) != 0;
+    bool has_ended = false;
+    for (int i = 0; i != TRANSACTIONS; i++) has_ended = has_ended || effect.ended[i] != FATHOM_PENDING;
     for (int i = 0; i != TICKETS; i++) {
         const ticket_t *const ticket = &world.tickets[i];
         const int x = ticket->transaction;

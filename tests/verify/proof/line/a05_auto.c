@@ -5,7 +5,7 @@
  *          src/codec/dyp_stream.c src/engine/line_pins.c
  * options: -eva-precision 0 -eva-ilevel 16
  *          -eva-slevel-function fathom_a05_auto_init:50,fathom_dyp_auto_init:20,fathom_dyp_window_copy:40,main:200,run:1,odd_probe:20,fathom_dyp_measurement_next:20,output_of:10,take:40
- *          -eva-split-return-function fathom_a05_auto_init:1,fathom_dyp_auto_init:1
+ *          -eva-split-return-function fathom_a05_auto_init:0,fathom_dyp_auto_init:0
  * unreached: due_us_0 poll_0
  * quick:   no
  *

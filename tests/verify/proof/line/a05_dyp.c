@@ -6,7 +6,7 @@
  *          src/engine/sensor.c
  * options: -eva-precision 0 -eva-ilevel 16
  *          -eva-slevel-function fathom_modbus_unit_init:400,fathom_dyp_modbus_init:20,fathom_dyp_window_copy:40,main:200,fathom_dyp_measurement_next:20,fathom_dyp_stream_decode:10,fathom_dyp_55aa_value_count:5,run:1,fathom_a05_dyp_init:50,fathom_line_submit:20
- *          -eva-split-return-function fathom_modbus_unit_init:1,fathom_dyp_modbus_init:1,fathom_a05_dyp_init:1
+ *          -eva-split-return-function fathom_modbus_unit_init:0,fathom_dyp_modbus_init:0,fathom_a05_dyp_init:0
  * quick:   no
  *
  * The A05 by 55 AA, with the search for its address, over any line: any calls in any order.

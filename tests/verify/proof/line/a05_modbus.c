@@ -5,7 +5,7 @@
  *          src/engine/sensor.c
  * options: -eva-precision 0 -eva-ilevel 16
  *          -eva-slevel-function fathom_modbus_unit_init:400,is_valid:50,fathom_dyp_modbus_init:20,fathom_dyp_window_copy:40,main:200,any_probes:20,fathom_dyp_measurement_next:20,run:1,fathom_a05_modbus_init:50
- *          -eva-split-return-function fathom_modbus_unit_init:1,is_valid:1,fathom_dyp_modbus_init:1,fathom_a05_modbus_init:1
+ *          -eva-split-return-function fathom_modbus_unit_init:0,is_valid:1,fathom_dyp_modbus_init:0,fathom_a05_modbus_init:0
  * quick:   no
  *
  * The A05 by Modbus: any calls in any order. Which probes it has is told apart, so that a value stands beside its room.

@@ -5,7 +5,7 @@
  *          src/codec/dyp_stream.c
  * options: -eva-precision 0
  *          -eva-slevel-function fathom_a16_auto_init:50,fathom_dyp_auto_init:20,fathom_dyp_window_copy:40,main:30,output_of:10,take:40
- *          -eva-split-return-function fathom_a16_auto_init:1,fathom_dyp_auto_init:1
+ *          -eva-split-return-function fathom_a16_auto_init:0,fathom_dyp_auto_init:0
  * quick:   no
  *
  * The A16 that sends by itself: any calls in any order, any bytes.

@@ -5,7 +5,7 @@
  * with:   src/sensor/dyp.c src/engine/sensor.c src/codec/modbus_rtu.c src/codec/crc16.c
  * options: -eva-precision 0
  *          -eva-slevel-function fathom_modbus_unit_init:400,is_valid:50,fathom_dyp_modbus_init:20,fathom_dyp_window_copy:40,main:5,fathom_a16_modbus_init:50
- *          -eva-split-return-function fathom_modbus_unit_init:1,is_valid:1,fathom_dyp_modbus_init:1,fathom_a16_modbus_init:1
+ *          -eva-split-return-function fathom_modbus_unit_init:0,is_valid:1,fathom_dyp_modbus_init:0,fathom_a16_modbus_init:0
  * quick:   yes
  *
  * The A16 by Modbus, with all that can be set, and the search for its address: any calls in any order.

@@ -6,7 +6,7 @@
  *          src/engine/stream.c src/engine/output.c src/engine/sensor.c src/codec/dyp_stream.c
  * options: -eva-precision 0
  *          -eva-slevel-function fathom_modbus_unit_init:400,is_valid:50,fathom_dyp_modbus_init:20,fathom_dyp_window_copy:40,main:30,fathom_a16_modbus_init:50,fathom_a16_auto_init:50,fathom_dyp_auto_init:20,take:40
- *          -eva-split-return-function fathom_modbus_unit_init:1,is_valid:1,fathom_dyp_modbus_init:1,fathom_a16_modbus_init:1,fathom_a16_auto_init:1,fathom_dyp_auto_init:1
+ *          -eva-split-return-function fathom_modbus_unit_init:0,is_valid:1,fathom_dyp_modbus_init:0,fathom_a16_modbus_init:0,fathom_a16_auto_init:0,fathom_dyp_auto_init:0
  * quick:   no
  *
  * The A16 by RS232, which is told to send by itself again: both drivers and the way back, any calls in any order.

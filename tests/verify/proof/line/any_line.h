@@ -165,7 +165,7 @@ fathom_status_t fathom_line_break(fathom_line_t *line, bool on)
     /*@ assert line == &any_line; */
     /*@ assert on == 0 || on == 1; */
     any_line_look(line);
-    return (fathom_status_t)Frama_C_interval(FATHOM_ERR_OTHER_MASTER, FATHOM_OK);
+    return (fathom_status_t)Frama_C_interval(FATHOM_ERR_OTHER_MASTER, FATHOM_PENDING);
 }
 
 bool fathom_line_is_idle(const fathom_line_t *line) { return line->received_count == 0 && any_bool(); }

@@ -7,7 +7,7 @@
  *          -eva-slevel-function fathom_modbus_unit_init:400,is_valid:50,is_valid_0:50,fathom_hps167s_init:50,main:5,fathom_hps167s_baud_code:10,set:4,set_all:4
  *          -eva-slevel-function fathom_hps167s_set_address:4,fathom_hps167s_set_baud:4,fathom_hps167s_set_reconnect_time_ms:4
  *          -eva-slevel-function fathom_hps167s_restore_factory_settings:4
- *          -eva-split-return-function fathom_modbus_unit_init:1,is_valid:1,is_valid_0:1,fathom_hps167s_init:1,begin:1
+ *          -eva-split-return-function fathom_modbus_unit_init:0,is_valid:1,is_valid_0:1,fathom_hps167s_init:0,begin:0
  * quick:   no
  *
  * The HPS-167S, with all that can be set: any calls in any order.

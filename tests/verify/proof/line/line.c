@@ -5,7 +5,7 @@
  * with:   src/codec/dyp_55aa.c src/codec/dyp_stream.c
  * options: -eva-precision 0 -eva-auto-loop-unroll 128
  *          -eva-slevel-function fathom_line_begin:100,fathom_line_init:20,can_send:20,is_usable:20,main:5,fathom_line_poll:3,fathom_line_marks:30
- *          -eva-split-return-function fathom_line_begin:1,fathom_line_init:1
+ *          -eva-split-return-function fathom_line_begin:0,fathom_line_init:0
  * quick:   yes
  *
  * A line with up to three transactions of any protocol that keeps to transaction.h, with or without each optional part,

@@ -6,7 +6,7 @@
  * unreached: advance_0
  * options: -eva-precision 0
  *          -eva-slevel-function fathom_line_begin:100,main:5,fathom_line_poll:3,fathom_line_marks:30
- *          -eva-split-return-function fathom_line_begin:1,fathom_line_init_listening:1
+ *          -eva-split-return-function fathom_line_begin:0,fathom_line_init_listening:0
  * quick:   yes
  *
  * A line that only listens: any calls in any order, any bytes, receive flags and times. What sends is refused.

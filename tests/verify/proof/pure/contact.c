@@ -5,8 +5,8 @@
  *
  * proves: src/engine/contact.c src/sensor/a05_relay.c src/sensor/a16_switch.c
  * with: src/engine/sensor.c
- * options: -eva-split-return-function poll:1,fathom_poll:1,can_be_read:1
- *         -eva-split-return-function fathom_contact_init:1,fathom_a05_relay_init:1,fathom_a16_switch_init:1
+ * options: -eva-split-return-function poll:0,fathom_poll:0,can_be_read:1
+ *         -eva-split-return-function fathom_contact_init:0,fathom_a05_relay_init:0,fathom_a16_switch_init:0
  */
 #include "assumptions.h"
 #include "fathom/sensor/a05_relay.h"

@@ -5,7 +5,7 @@
  * proves: src/processing/median.c
  * options: -eva-auto-loop-unroll 64 -eva-slevel 1 -eva-widening-delay 20
  *         -eva-slevel-function fathom_median_init:80,is_configuration:20,init:80,any_median:80
- *         -eva-split-return-function is_configuration:1,fathom_median_init:1,init:1
+ *         -eva-split-return-function is_configuration:1,fathom_median_init:0,init:0
  */
 #include "fathom/processing/median.h"
 #include "any_sample.h"

@@ -8,9 +8,9 @@
  * with: src/codec/pulse_width.c
  * options: -eva-precision 1
  *         -eva-slevel-function polls:1,look:100,fathom_poll:100,poll:100,fathom_pulse_poll:100,take:100,end_cycle:20
- *         -eva-split-return-function assumed_take:0:1,take:1,end_cycle:1,fathom_pulse_poll:1,poll:1,fathom_poll:1
- *         -eva-split-return-function fathom_trigger_drive:1,fathom_trigger_init:1
- *         -eva-split-return-function fathom_pulse_init:1,fathom_a16_pwm_init:1
+ *         -eva-split-return-function assumed_take:0:1,take:0,end_cycle:0,fathom_pulse_poll:0,poll:0,fathom_poll:0
+ *         -eva-split-return-function fathom_trigger_drive:0,fathom_trigger_init:0
+ *         -eva-split-return-function fathom_pulse_init:0,fathom_a16_pwm_init:0
  */
 #include "assumptions.h"
 #include "fathom/engine/wait.h"

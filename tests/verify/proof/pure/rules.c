@@ -67,7 +67,7 @@ static void alarm(void)
         if (any_bool()) (void)fathom_alarm_add_sample(&alarm, &sample);
         if (any_bool())
             (void)fathom_alarm_add_status(
-                &alarm, (fathom_status_t)Frama_C_interval(FATHOM_ERR_OTHER_MASTER, FATHOM_OK), any_32());
+                &alarm, (fathom_status_t)Frama_C_interval(FATHOM_ERR_OTHER_MASTER, FATHOM_PENDING), any_32());
         (void)fathom_alarm_is_on(&alarm);
     }
 }
