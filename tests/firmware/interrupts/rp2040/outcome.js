@@ -4,7 +4,7 @@
 const {OUTPUT, US} = require('./bench.js');
 
 // As arm-none-eabi-gcc lays them out: fathom_rp2040_uart_t, fathom_serial_t and fathom_edges_t.
-const COUNTERS = 4, SERIAL_COUNTERS = 260, RISES = 53, LOST = 54, MISSED = 55;
+const COUNTERS = 0, SERIAL_COUNTERS = 260, RISES = 53, LOST = 54, MISSED = 55;
 const TIMELESS = ['now', 'leaves', 'serialLeaves', 'idle'];
 const BYTES = 160; // CALLS_BYTES
 const EDGE_US = 3; // the entry to its interrupt, and what of a microsecond has gone

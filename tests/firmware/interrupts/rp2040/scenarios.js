@@ -64,13 +64,13 @@ function serialFlawedSecond(bench) {
 
 // With errors of DR, the counters as they are or at their end.
 const erroneous = (errors, isCounted) => (bench) => {
-  if (!isCounted) bench.poke('port', 4, Array(6).fill(0xff));
+  if (!isCounted) bench.poke('port', 0, Array(6).fill(0xff));
   const flags = (errors & PE ? PARITY : 0) | (errors & FE ? FRAMING : 0) | (errors & OE ? OVERRUN : 0);
   receive(bench, 1, errors, flags);
 };
 
 function framingUncounted(bench) {
-  bench.poke('port', 6, [0xff, 0xff]);
+  bench.poke('port', 2, [0xff, 0xff]);
   receive(bench, 1, PE | FE | OE, FLAWED | OVERRUN);
 }
 
@@ -192,6 +192,7 @@ line('break_on', 'setBreak', () => {}, {flags: 1});
 line('break_on_leaving', 'setBreak', write(1), {flags: 1});
 line('break_on_gone', 'setBreak', gone, {flags: 1});
 line('break_off', 'setBreak', inBreak, {flags: 0});
+line('break_on_no_driver', 'setBreak', () => {}, {flags: 1}, {without: NO_DRIVER, events: ['left', 'gone', 'byte', 'edge']});
 line('pin_high', 'pin', write(1), {flags: 1});
 line('pin_low', 'pin', gone, {flags: 0});
 
