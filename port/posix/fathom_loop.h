@@ -46,6 +46,7 @@ extern "C" {
  *    `due_us` and those of its sensors returned has passed. It polls each source at least every 35 minutes. If a source
  *    is due at once 16 times in a row, the loop polls it once a millisecond from then on. If epoll does not accept the
  *    descriptor (a file, or a descriptor that another source has), the loop polls the source every 10 ms.
+ *    A turn of a line polls the line once, however many sensors it has (fathom_line_was_polled()).
  *
  * 2. **Lost sources.** When a source is lost, each of its sensors reports FATHOM_ERR_PORT once, and the loop closes the
  *    source. The loop tries to open it again after `first_pause_us`, and doubles this pause with each attempt up to

@@ -8,7 +8,10 @@ static void cancel(void *ctx, fathom_modbus_request_t *request)
 
 static void cancel_unit(void *ctx, uint8_t address) { fathom_line_cancel_unit(ctx, address); }
 
-static fathom_status_t poll(void *ctx) { return fathom_line_poll(ctx); }
+static fathom_status_t poll(void *ctx, uint32_t since_us)
+{
+    return fathom_line_was_polled(ctx, since_us) ? FATHOM_PENDING : fathom_line_poll(ctx);
+}
 
 static uint32_t due_us(void *ctx) { return fathom_line_due_us(ctx); }
 

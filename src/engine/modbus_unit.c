@@ -8,6 +8,8 @@ enum { IDLE = 0, ASKED = 1, ANSWERED = 2 };
 /* Back-off begins after PATIENCE time-outs in a row. Each of the next DOUBLINGS time-outs doubles the pause. */
 enum { PATIENCE = 3, DOUBLINGS = 4 };
 
+enum { POLLS_TO_SEARCH = 16 };
+
 /* The line never was silent, or another master asked the same unit: that proves nothing about the unit. */
 static bool is_of_unit(fathom_status_t status)
 {
@@ -86,14 +88,20 @@ bool fathom_modbus_unit_give_way(fathom_modbus_unit_t *unit)
 
 /* ---- Polling ---- */
 
-/* The transport was initialised again while it had the request, which therefore never ends. */
+/*
+ * If the transport was initialised again while it had the request, the request never ends. With many units on one line a
+ * search of the queue takes long, so only every POLLS_TO_SEARCH-th poll of a request does it.
+ */
 static void end_forgotten(fathom_modbus_unit_t *unit)
 {
     const fathom_modbus_t *const transport = unit->transport;
     fathom_transaction_t *const transaction = &unit->request.transaction;
-    if ((transaction->status == FATHOM_PENDING) && (transport->has != NULL) &&
-        !transport->has(transport->ctx, &unit->request))
-        transaction->status = FATHOM_ERR_CANCELLED;
+    unit->polls++;
+    if ((unit->polls == POLLS_TO_SEARCH) && (transaction->status == FATHOM_PENDING)) {
+        unit->polls = 0;
+        if ((transport->has != NULL) && !transport->has(transport->ctx, &unit->request))
+            transaction->status = FATHOM_ERR_CANCELLED;
+    }
 }
 
 void fathom_modbus_unit_poll(fathom_modbus_unit_t *unit)
@@ -102,7 +110,7 @@ void fathom_modbus_unit_poll(fathom_modbus_unit_t *unit)
     FATHOM_ASSERT(unit->transport != NULL); /* the driver is not initialised */
     unit->transport_status = FATHOM_ERR_ARGUMENT;
     if (unit->transport == NULL) return;
-    unit->transport_status = (int8_t)unit->transport->poll(unit->transport->ctx);
+    unit->transport_status = (int8_t)unit->transport->poll(unit->transport->ctx, unit->polled_us);
     const uint32_t now_us = clock_us(unit->transport->clock);
     const uint32_t passed_us = fathom_elapsed_us(now_us, unit->polled_us);
     unit->polled_us = now_us;
@@ -149,6 +157,7 @@ static fathom_status_t submit(fathom_modbus_unit_t *unit, const fathom_modbus_un
     if (status != FATHOM_PENDING) return status;
     unit->state = ASKED;
     unit->attempts = 0;
+    unit->polls = 0;
     unit->current = request->id;
     unit->pause_us = unit->pace_us;
     if (is_once) unit->is_written = true;

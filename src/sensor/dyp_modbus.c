@@ -168,7 +168,8 @@ fathom_status_t fathom_dyp_modbus_find(fathom_dyp_modbus_find_t *find, const fat
         if (status != FATHOM_PENDING) return status;
         find->is_asked = true;
     }
-    (void)transport->poll(transport->ctx); /* A broken port ends the request. */
+    (void)transport->poll(transport->ctx, find->polled_us); /* A broken port ends the request. */
+    find->polled_us = clock_us(transport->clock);
     fathom_status_t status = (fathom_status_t)request->transaction.status;
     if (status == FATHOM_PENDING) {
         if ((transport->has == NULL) || transport->has(transport->ctx, request)) return status;

@@ -35,8 +35,11 @@ COSTS = [
     ('x86_transaction', 'x86-64 -O2, a read of 4 registers, library only', 'instr.'),
     ('x86_two_polls', 'the same, answered before the second poll', 'instr.'),
 ]
+# Of 32 sensors on one line (units.c), each reading
+UNITS = {'units.x86_reading': ('x86-64 -O2, a reading of 32 sensors on one line, library only', 'instr.'),
+         'units.port_reads': ('how often the port is read for it', 'reads')}
 # {name: (what, unit)}
-ROWS = {f'{job}.{name}': (what, unit) for job in JOBS for name, what, unit in COSTS}
+ROWS = {**{f'{job}.{name}': (what, unit) for job in JOBS for name, what, unit in COSTS}, **UNITS}
 # What the user provides: for job_all also what the library writes to, but not the listener, which is the user's own.
 RAM = ('line', 'request', 'frame', 'counters', 'modbus')
 CORE = source(*sorted(name for name in LIBRARY
@@ -44,7 +47,7 @@ CORE = source(*sorted(name for name in LIBRARY
 JOB = here('job.c', 'job_main.c', 'mcu.c')
 GC = ['-ffunction-sections', '-Wl,--gc-sections']
 TIMES = 1000
-USER = re.compile(r'main$|job_|stub_')  # the functions that are not the library's
+USER = re.compile(r'main$|job_|stub_|units_')  # the functions that are not the library's
 
 
 def note_sizes(functions, column, table):
@@ -110,20 +113,30 @@ def measure_x86(work, figures, functions):
             functions.setdefault(name, {})[f'{job}.x86'] = cost
 
 
+def measure_units(work, figures, _):
+    program = os.path.join(work, 'x86_units')
+    run('gcc', '-std=c99', '-O2', *GC, *INCLUDE, *here('units.c'),
+        *source(*sorted(name for name in LIBRARY if name != 'crc16_small.c')), '-o', program)
+    # The first readings of the sensors differ: all 32 wait for their first request.
+    once, often = (sum(collected(work, 'fathom_poll', program, str(times)).values()) for times in (TIMES, 2 * TIMES))
+    figures['units.x86_reading'] = round((often - once) / TIMES)
+    figures['units.port_reads'] = int(run(program, str(TIMES)))
+
+
 def instructions(work, program, *how):
     """{function of the library: instructions in one transaction}; without the first, which may learn something"""
-    once, often = (collected(work, program, str(times), *how) for times in (1, 1 + TIMES))
+    once, often = (collected(work, 'job_read', program, str(times), *how) for times in (1, 1 + TIMES))
     costs = {name: cost - once.get(name, 0) for name, cost in often.items()}
     if not any(costs.values()) or any(cost % TIMES for cost in costs.values()):
         raise Failed(f'the instructions of {TIMES} transactions are not all alike: {costs}')
     return {name: cost // TIMES for name, cost in costs.items() if cost}
 
 
-def collected(work, *command):
-    """{function of the library: instructions below job_read()}"""
+def collected(work, below, *command):
+    """{function of the library: instructions in and below the function `below`}"""
     counts = os.path.join(work, 'callgrind.out')
     run('valgrind', '--quiet', '--tool=callgrind', '--compress-strings=no', '--compress-pos=no',
-        '--toggle-collect=job_read', '--callgrind-out-file=' + counts, *command)
+        f'--toggle-collect={below}', '--callgrind-out-file=' + counts, *command)
     costs, function, is_call = {}, None, False
     with open(counts, encoding='utf-8') as file:
         for line in file:

@@ -7,7 +7,7 @@ import os
 import re
 import sys
 
-from job import COSTS, JOBS, ROWS
+from job import COSTS, JOBS, ROWS, UNITS
 from sizes import HEAD, programs, rows
 from tools import HERE, MACHINES, ROOT, versions
 
@@ -126,6 +126,8 @@ def figures_table(figures, sizes):
     for cost, what, unit in COSTS:
         cells = ' | '.join(beside_bound(figures[f'{job}.{cost}'], unit, aims.get(f'{job}.{cost}')) for job in JOBS)
         lines.append(f'| {what} | {cells} |')
+    lines += ['', '| 32 sensors on one line | |', '|---|---|']
+    lines += [f'| {what} | {beside_bound(figures[name], unit, aims.get(name))} |' for name, (what, unit) in UNITS.items()]
     lines += ['', '| | ' + ' | '.join(machine.what for machine in MACHINES if machine.name in ('m0', 'avr')) + ' |',
               '|---|---|---|']
     for row, what in dict.fromkeys((name.split('.')[0], name.split('.')[2]) for name in aims if name not in ROWS):

@@ -19,7 +19,7 @@ import sys
 import tempfile
 
 import report
-from job import ROWS, measure_arm, measure_avr, measure_x86
+from job import ROWS, measure_arm, measure_avr, measure_units, measure_x86
 from sizes import measure_sizes
 from tools import Failed, versions
 
@@ -27,7 +27,7 @@ from tools import Failed, versions
 def measure(work):
     """Figures, functions, sizes, variables and chains; what could not be measured is missing."""
     figures, functions, of_sizes = {}, {}, ({}, {}, {})
-    for part in (measure_arm, measure_avr, measure_x86):
+    for part in (measure_arm, measure_avr, measure_x86, measure_units):
         try:
             part(work, figures, functions)
         except Failed as why:

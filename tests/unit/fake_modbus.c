@@ -56,8 +56,9 @@ static void fake_cancel_unit(void *ctx, uint8_t unit)
     if (fake->request != NULL && fake->request->message.head[0] == unit) end(fake, FATHOM_ERR_CANCELLED);
 }
 
-static fathom_status_t fake_poll(void *ctx)
+static fathom_status_t fake_poll(void *ctx, uint32_t since_us)
 {
+    (void)since_us;
     fake_modbus_t *const fake = ctx;
     fake->polls++;
     if (fake->request == NULL) return fake->transport;

@@ -192,6 +192,7 @@ TEST_IN(finding, each_outcome_of_finding_comes_once)
     assert_null(bench.line.head);
     client.cancel = NULL; /* there is nothing to give up */
     fathom_dyp_modbus_find_cancel(&sought, &client);
+    assert_int_equal(find(), FATHOM_PENDING); /* run() has polled the line, so this call does not */
     bench.fake.read_fails = true;
     assert_int_equal(find_after(100), FATHOM_ERR_PORT);
     assert_int_equal(address, 0xA5);

@@ -363,13 +363,13 @@ TEST(the_transport_does_what_the_functions_do)
     assert_int_equal(transport.submit(transport.ctx, &bench.request), FATHOM_PENDING);
     assert_int_equal(transport.due_us(transport.ctx), due());
     bench.fake.now_us += T3_5_US;
-    assert_int_equal(transport.poll(transport.ctx), FATHOM_PENDING);
+    assert_int_equal(transport.poll(transport.ctx, bench.fake.now_us), FATHOM_PENDING);
     bench.fake.now_us += T3_5_US;
-    assert_int_equal(transport.poll(transport.ctx), FATHOM_PENDING);
+    assert_int_equal(transport.poll(transport.ctx, bench.fake.now_us), FATHOM_PENDING);
     expect_written(1);
     transport.cancel(transport.ctx, &bench.request);
     transport.cancel(transport.ctx, &bench.request);
     expect(FATHOM_ERR_CANCELLED);
     bench.fake.read_fails = true;
-    assert_int_equal(transport.poll(transport.ctx), FATHOM_ERR_PORT);
+    assert_int_equal(transport.poll(transport.ctx, bench.fake.now_us), FATHOM_ERR_PORT);
 }

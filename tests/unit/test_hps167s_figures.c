@@ -19,8 +19,9 @@ static fathom_status_t submit(void *ctx, fathom_modbus_request_t *request)
     return FATHOM_PENDING;
 }
 
-static fathom_status_t poll(void *ctx)
+static fathom_status_t poll(void *ctx, uint32_t since_us)
 {
+    (void)since_us;
     (void)ctx;
     return FATHOM_PENDING;
 }

@@ -67,7 +67,10 @@ static fathom_status_t submit(void *ctx, fathom_modbus_request_t *request)
 static void cancel(void *ctx, fathom_modbus_request_t *request) { (void)ctx, (void)request; }
 static void cancel_unit(void *ctx, uint8_t unit) { (void)ctx, (void)unit; }
 static uint32_t zero(void *ctx) { return (void)ctx, (uint32_t)0; }
-static fathom_status_t poll(void *ctx) { return (void)ctx, FATHOM_PENDING; }
+static fathom_status_t poll(void *ctx, uint32_t since_us)
+{
+    return (void)ctx, (void)since_us, FATHOM_PENDING;
+}
 
 /* The one wanted probe of an A05 whose registers begin there: what is asked, and as which probe it comes. */
 static uint8_t probe_of(uint8_t wanted, uint16_t registers)

@@ -44,7 +44,10 @@ static fathom_status_t submit(void *ctx, fathom_modbus_request_t *request)
     return FATHOM_PENDING;
 }
 
-static fathom_status_t poll(void *ctx) { return (void)ctx, FATHOM_PENDING; }
+static fathom_status_t poll(void *ctx, uint32_t since_us)
+{
+    return (void)ctx, (void)since_us, FATHOM_PENDING;
+}
 
 static uint32_t now_us(void *ctx) { return (void)ctx, (uint32_t)0; }
 

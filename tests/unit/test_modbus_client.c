@@ -85,11 +85,11 @@ TEST(the_transport_is_the_same_client)
     fathom_modbus_read_holding_registers(&bench.request.message, 1, 0x0100, 1, &bench.value);
     assert_int_equal(modbus.submit(modbus.ctx, &bench.request), FATHOM_PENDING);
     assert_int_equal(modbus.submit(modbus.ctx, &bench.request), FATHOM_ERR_BUSY);
-    modbus.poll(modbus.ctx);
+    modbus.poll(modbus.ctx, bench.fake.now_us);
     assert_int_equal(modbus.due_us(modbus.ctx), T3_5_US);
     run(20000);
     receive_all(response_1_754);
-    modbus.poll(modbus.ctx);
+    modbus.poll(modbus.ctx, bench.fake.now_us);
     expect_mm(754);
     assert_int_equal(bench.request.transaction.link.heard_us, bench.fake.now_us);
     modbus.submit(modbus.ctx, &bench.request);

@@ -319,7 +319,7 @@ TEST(it_is_due_when_the_transport_is_while_it_waits)
 TEST(it_is_due_at_once_when_anothers_poll_has_ended_its_request)
 {
     GO(ON_WIRE(measure, 1), ANSWERED);
-    fake.modbus.poll(fake.modbus.ctx);
+    fake.modbus.poll(fake.modbus.ctx, 0);
     assert_int_equal(due(), 0);
 }
 

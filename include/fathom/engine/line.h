@@ -154,6 +154,9 @@ extern "C" {
  */
 #define FATHOM_LINE_FINISH_US 300000u
 
+/** @brief Time in microseconds after which a poll no longer serves the other users of the line. */
+#define FATHOM_LINE_ROUND_US 1000u
+
 /** @brief How much later than fathom_line_due_us() a program may poll and loses nothing, in microseconds (rule 14). */
 #define FATHOM_LINE_LATE_US 500000u
 
@@ -593,7 +596,8 @@ fathom_status_t fathom_line_break(fathom_line_t *line, bool on);
  * @brief Does all work that can be done without waiting: reads received bytes, ends and starts transactions.
  *
  * Call this function often, and at least every 71 minutes. One call reads the port at most 16 times. Several users of
- * one line may each call it. A program that sleeps calls it when a byte arrives and after fathom_line_due_us().
+ * one line may each call it, or share one poll (fathom_line_was_polled()). A program that sleeps calls it when a byte
+ * arrives and after fathom_line_due_us().
  *
  * @param line  The line.
  * @retval FATHOM_PENDING   The line works. The results are in the transactions.
@@ -602,6 +606,34 @@ fathom_status_t fathom_line_break(fathom_line_t *line, bool on);
  *                          poll: the line works again as soon as the port does.
  */
 fathom_status_t fathom_line_poll(fathom_line_t *line);
+
+/**
+ * @brief Returns whether another user has polled the line in this round, so that this user need not poll it.
+ *
+ * A round is one turn of the main loop. If each user of a line remembers when it last came here, one poll in each round
+ * suffices, however many users the line has:
+ *
+ * @code
+ * if (!fathom_line_was_polled(&line, called_us)) fathom_line_poll(&line);
+ * called_us = now_us();
+ * @endcode
+ *
+ *     round                 |         1         |         2         |
+ *     user                  |  A     B     C    |  A     B     C    |
+ *     polls the line        |  x                |  x                |
+ *
+ * The Modbus drivers do this, so a round of fathom_poll() reads the port once. A program need not do anything for it. The
+ * program may call fathom_line_poll() itself at the beginning of each round; then no driver polls. If the program forgets
+ * that in a round, the first driver polls again. A request that a driver submits leaves with the next poll of the line,
+ * in the same round or in the next one.
+ *
+ * @param line      The line.
+ * @param since_us  The clock at the previous call of this user, in microseconds.
+ * @retval true   The line was polled after `since_us` and less than FATHOM_LINE_ROUND_US ago.
+ * @retval false  Call fathom_line_poll(). This is the result also if the clock has not moved since the last poll, if the
+ *                line is not initialised, and, after an error of the port, until the port was seen empty.
+ */
+bool fathom_line_was_polled(const fathom_line_t *line, uint32_t since_us);
 
 /**
  * @brief Returns the time in microseconds until fathom_line_poll() must be called again if no byte arrives.

@@ -51,10 +51,15 @@ typedef struct {
 
     /**
      * @brief Does all work that can be done without waiting.
+     *
+     * If several drivers share the transport, one call in each round of the main loop does the work for all of them
+     * (fathom_line_was_polled()). A transport may ignore `since_us` and work at each call.
+     *
+     * @param since_us  The clock at the previous call of this driver, in microseconds.
      * @retval FATHOM_PENDING   The transport works.
      * @retval FATHOM_ERR_PORT  The port is broken, and all queued requests have ended with this error.
      */
-    fathom_status_t (*poll)(void *ctx);
+    fathom_status_t (*poll)(void *ctx, uint32_t since_us);
 
     /** @brief Returns the time in microseconds until `poll` must be called again, or FATHOM_NO_DEADLINE. */
     uint32_t (*due_us)(void *ctx);

@@ -92,14 +92,14 @@ void rig_run(uint32_t in_us, uint32_t step_us)
 {
     for (uint32_t us = 0; us < in_us; us += step_us) {
         rig.fake.now_us += step_us;
-        (void)rig.transport.poll(rig.transport.ctx);
+        (void)rig.transport.poll(rig.transport.ctx, rig.fake.now_us);
     }
 }
 
 fathom_status_t rig_poll(void)
 {
     rig.fake.now_us += FINE_US;
-    return rig.transport.poll(rig.transport.ctx);
+    return rig.transport.poll(rig.transport.ctx, rig.fake.now_us);
 }
 
 void rig_hang_up(void)

@@ -18,7 +18,7 @@ TEST(a_request_has_a_header_and_no_crc_and_its_response_is_read)
     rig_ask(0);
     rig.fake.now_us += 5000;
     rig_say_response(1);
-    assert_int_equal(rig.transport.poll(rig.transport.ctx), FATHOM_PENDING);
+    assert_int_equal(rig.transport.poll(rig.transport.ctx, rig.fake.now_us), FATHOM_PENDING);
     rig_expect_three();
     assert_int_equal(rig.request.transaction.attempts, 1);
     assert_int_equal(rig.request.transaction.link.heard_us, rig.fake.now_us);

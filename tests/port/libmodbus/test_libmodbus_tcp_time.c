@@ -48,7 +48,7 @@ TEST(a_loop_of_20_ms_has_the_response_in_the_poll_that_finds_it)
 TEST(the_wrap_of_the_clock_changes_nothing)
 {
     rig.fake.now_us = UINT32_MAX - RIG_TIMEOUT_US / 2;
-    (void)rig.transport.poll(rig.transport.ctx);
+    (void)rig.transport.poll(rig.transport.ctx, rig.fake.now_us);
     rig_ask(0);
     rig_run_fine(RIG_TIMEOUT_US - 1000);
     assert_int_equal(status(), FATHOM_PENDING);

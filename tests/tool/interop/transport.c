@@ -57,7 +57,7 @@ static bool run(const transport_t *transport, step_t *step, uint8_t unit)
         return true;
     }
     for (;;) {
-        (void)modbus->poll(modbus->ctx);
+        (void)modbus->poll(modbus->ctx, modbus->clock->now_us(modbus->clock->ctx));
         if (request.transaction.status != FATHOM_PENDING) break;
         transport->wait(transport->port, modbus->due_us(modbus->ctx));
     }

@@ -42,7 +42,7 @@ extern "C" {
  *    again when it is called the next time.
  *
  * 6. **A forgotten request ends.** If the line is initialised again while a request of the driver is queued, the request
- *    ends with FATHOM_ERR_CANCELLED.
+ *    ends with FATHOM_ERR_CANCELLED, at the latest with the 16th poll after that.
  *
  * The longest time until an outcome, if the program polls every P microseconds:
  *
@@ -144,6 +144,8 @@ typedef struct {
     int8_t transport_status;
     /** @brief Number of attempts of the present request at the last poll. */
     uint8_t attempts;
+    /** @brief Number of polls since the transport was last asked whether it has the present request, 0 to 15. */
+    uint8_t polls;
     /** @brief Number of time-outs in a row, 0 to 7. */
     uint8_t timeouts_in_row;
     /** @brief As in fathom_modbus_config_t. */

@@ -73,6 +73,7 @@ void fathom_dyp_modbus_describe(fathom_dyp_modbus_t *sensor, fathom_modbus_setti
 /* In the caller's memory, all zero before the first call. */
 typedef struct {
     fathom_modbus_request_t request;
+    uint32_t polled_us; /* the clock at the last call */
     uint16_t value;
     bool is_asked;
 } fathom_dyp_modbus_find_t;

@@ -78,7 +78,7 @@ static void go_on(const fathom_modbus_t *transport)
             fathom_dyp_client_broadcast_address(&any_line, &request, any_8_in(1, 254));
         /*@ assert status == FATHOM_ERR_BUSY; */
     }
-    (void)transport->poll(&any_line);
+    (void)transport->poll(&any_line, any_32());
     (void)transport->due_us(&any_line);
     (void)transport->has(&any_line, &request);
     if (any_bool()) transport->cancel(&any_line, &request);

@@ -79,8 +79,9 @@ static void assumed_cancel_unit(void *ctx, uint8_t address)
     if (assumed_request != NULL && any_bool()) assumed_end(FATHOM_ERR_CANCELLED);
 }
 
-static fathom_status_t assumed_poll(void *ctx)
+static fathom_status_t assumed_poll(void *ctx, uint32_t since_us)
 {
+    (void)since_us;
     /*@ assert ctx == &assumed_ctx; */
     assumed_go_on();
     return any_bool() ? FATHOM_PENDING : FATHOM_ERR_PORT;
