@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/engine/internal/modbus_setting.h"
 
+#include "modbus_unit_internal.h"
+
 enum { READ_OLD = 0, PROBE_NEW = 1, WRITE = 2, CONFIRM_NEW = 3, CONFIRM_OLD = 4, WRITE_UNREAD = 5 };
 
 static void use_new_address(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting)
@@ -127,7 +129,8 @@ static fathom_status_t go_on(fathom_modbus_unit_t *unit, const fathom_modbus_set
 fathom_status_t fathom_modbus_write_next_unchecked(fathom_modbus_unit_t *unit)
 {
     if (unit->transport == NULL) return FATHOM_ERR_ARGUMENT;
-    if ((unit->setting != 0u) && !fathom_modbus_unit_give_way(unit)) return FATHOM_ERR_BUSY;
+    if ((unit->setting != 0u) && !fathom_modbus_command_give_way(unit)) return FATHOM_ERR_BUSY;
+    unit->commands = &fathom_modbus_commands;
     unit->is_blind = true;
     return FATHOM_OK;
 }
@@ -135,23 +138,25 @@ fathom_status_t fathom_modbus_write_next_unchecked(fathom_modbus_unit_t *unit)
 fathom_status_t fathom_modbus_set(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting)
 {
     fathom_status_t status;
-    if ((unit->setting != 0u) && (unit->setting != setting->write.id) && !fathom_modbus_unit_give_way(unit))
+    if ((unit->setting != 0u) && (unit->setting != setting->write.id) &&
+        !fathom_modbus_command_give_way(unit))
         return FATHOM_ERR_BUSY;
     if (unit->setting == 0u) {
+        unit->commands = &fathom_modbus_commands;
         unit->setting = setting->write.id;
         unit->is_written = false;
         unit->step = ((setting->read != NULL) && !unit->is_blind) ? READ_OLD : WRITE_UNREAD;
         unit->known_address = unit->address;
         unit->known_line_settings = unit->line_settings;
     } else {
-        fathom_modbus_unit_keep(unit);
+        fathom_modbus_command_keep(unit);
     }
     do {
         const bool is_write =
             (setting->read == NULL) || (unit->step == WRITE) || (unit->step == WRITE_UNREAD);
         uint32_t value = 0;
         unit->is_in_setting = true;
-        status = is_write ? fathom_modbus_unit_ask(unit, &setting->write) : setting->read(setting, &value);
+        status = is_write ? fathom_modbus_command(unit, &setting->write) : setting->read(setting, &value);
         unit->is_in_setting = false;
         if (status == FATHOM_PENDING) return status;
         status = go_on(unit, setting, status, value);

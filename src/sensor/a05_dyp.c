@@ -25,7 +25,8 @@ static bool has_room(const fathom_modbus_t *transport)
 fathom_status_t fathom_a05_dyp_init(fathom_a05_dyp_t *sensor, const fathom_a05_dyp_config_t *config)
 {
     fathom_dyp_modbus_t *const base = &sensor->base;
-    const fathom_status_t status = fathom_dyp_modbus_begin(base, sizeof *sensor, &config->modbus);
+    const fathom_status_t status =
+        fathom_modbus_unit_begin(&base->unit, &config->modbus, sensor, sizeof *sensor);
     if (status < 0) return status;
     const uint8_t probes = (config->probes != 0u) ? config->probes : ALL_PROBES;
     if (config->modbus.address_zero || (probes > ALL_PROBES)) return FATHOM_ERR_ARGUMENT;
@@ -35,8 +36,8 @@ fathom_status_t fathom_a05_dyp_init(fathom_a05_dyp_t *sensor, const fathom_a05_d
     uint8_t first = 0;
     if (is_single)
         while ((((unsigned)probes >> first) & 1u) == 0u) first++;
-    base->request.first = (uint16_t)(FATHOM_DYP_FIRST_REGISTER + first);
-    base->request.last = is_single ? 1 : FATHOM_DYP_PROBES;
+    base->first = (uint16_t)(FATHOM_DYP_FIRST_REGISTER + first);
+    base->count = is_single ? 1 : FATHOM_DYP_PROBES;
     base->measurement.values = sensor->values;
     base->start_us = config->start_us;
     fathom_dyp_window_copy(&base->measurement.window, &config->window);

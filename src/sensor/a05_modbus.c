@@ -13,7 +13,8 @@ enum { ALL_PROBES = 0x0F };
 fathom_status_t fathom_a05_modbus_init(fathom_a05_modbus_t *sensor, const fathom_a05_modbus_config_t *config)
 {
     fathom_dyp_modbus_t *const base = &sensor->base;
-    const fathom_status_t status = fathom_dyp_modbus_begin(base, sizeof *sensor, &config->modbus);
+    const fathom_status_t status =
+        fathom_modbus_unit_begin(&base->unit, &config->modbus, sensor, sizeof *sensor);
     if (status < 0) return status;
     const uint16_t registers = (config->registers != 0u) ? config->registers : FATHOM_A05_REGISTERS;
     const uint8_t probes = (config->probes != 0u) ? config->probes : ALL_PROBES;
@@ -27,8 +28,8 @@ fathom_status_t fathom_a05_modbus_init(fathom_a05_modbus_t *sensor, const fathom
     uint32_t measuring_us = FATHOM_A05_PROBE_US;
     for (; (probes >> (first + count)) != 0u; count++) measuring_us += FATHOM_A05_PROBE_US;
 
-    base->request.first = (uint16_t)(registers + first);
-    base->request.last = count;
+    base->first = (uint16_t)(registers + first);
+    base->count = count;
     base->measurement.values = sensor->values;
     base->start_us = config->start_us;
     fathom_dyp_window_copy(&base->measurement.window, &config->window);

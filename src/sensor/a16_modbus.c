@@ -13,12 +13,13 @@
 fathom_status_t fathom_a16_modbus_init(fathom_a16_modbus_t *sensor, const fathom_a16_modbus_config_t *config)
 {
     fathom_dyp_modbus_t *const base = &sensor->base;
-    const fathom_status_t status = fathom_dyp_modbus_begin(base, sizeof *sensor, &config->modbus);
+    const fathom_status_t status =
+        fathom_modbus_unit_begin(&base->unit, &config->modbus, sensor, sizeof *sensor);
     if (status < 0) return status;
     if (config->value > FATHOM_REAL_TIME) return FATHOM_ERR_ARGUMENT;
     const bool is_real_time = config->value == FATHOM_REAL_TIME;
-    base->request.first = is_real_time ? FATHOM_A16_REGISTER_REAL_TIME : FATHOM_A16_REGISTER_PROCESSED;
-    base->request.last = 1;
+    base->first = is_real_time ? FATHOM_A16_REGISTER_REAL_TIME : FATHOM_A16_REGISTER_PROCESSED;
+    base->count = 1;
     base->measurement.values = sensor->values;
     base->start_us = config->start_us;
     fathom_dyp_window_copy(&base->measurement.window, &config->window);

@@ -3,34 +3,23 @@
 
 #include "../common.h"
 
-enum { ZERO_ADDRESS = 256 };       /* fathom_modbus_setting_t */
-enum { MEASURE = 1, WRITES = 64 }; /* ids of requests */
+enum { ZERO_ADDRESS = 256 }; /* fathom_modbus_setting_t */
+enum { WRITES = 64 };        /* bit of the ids of writes */
 
 /* ---- Initialisation ---- */
-
-fathom_status_t fathom_dyp_modbus_begin(fathom_dyp_modbus_t *sensor, size_t size,
-                                        const fathom_modbus_config_t *config)
-{
-    if (fathom_modbus_unit_is_queued(&sensor->unit, config)) return FATHOM_ERR_BUSY;
-    clear(sensor, size);
-    return FATHOM_OK;
-}
 
 /* A response has five bytes beside its registers: address, function, byte count and CRC. */
 static bool has_room(const fathom_dyp_modbus_t *sensor, const fathom_modbus_t *transport)
 {
     enum { OVERHEAD = 5 };
     return (transport == NULL) || (transport->frame_size == 0u) ||
-           ((OVERHEAD + (2u * sensor->request.last)) <= transport->frame_size);
+           ((OVERHEAD + (2u * sensor->count)) <= transport->frame_size);
 }
 
 fathom_status_t fathom_dyp_modbus_init(fathom_dyp_modbus_t *sensor, const fathom_modbus_config_t *config,
                                        uint32_t timeout_us, uint32_t pace_us)
 {
     const uint16_t max_mm = (sensor->measurement.model == FATHOM_A16) ? FATHOM_A16_MAX_MM : FATHOM_A05_MAX_MM;
-    sensor->request.values = sensor->measurement.values;
-    sensor->request.function = FATHOM_MODBUS_READ_HOLDING_REGISTERS;
-    sensor->request.id = MEASURE;
     sensor->start_us = or_default(sensor->start_us, FATHOM_DYP_DEFAULT_START_US);
     if ((fathom_dyp_measurement_init(&sensor->measurement, max_mm) == FATHOM_OK) &&
         (sensor->start_us <= FATHOM_MAX_DURATION_US) && has_room(sensor, config->transport) &&
@@ -64,7 +53,7 @@ fathom_status_t fathom_dyp_modbus_look(fathom_dyp_modbus_t *sensor, uint16_t add
     request.last = 1;
     request.function = FATHOM_MODBUS_READ_HOLDING_REGISTERS;
     request.id = id_of(address);
-    const fathom_status_t status = fathom_modbus_unit_ask(&sensor->unit, &request);
+    const fathom_status_t status = fathom_modbus_command(&sensor->unit, &request);
     if (status == FATHOM_OK) *value = sensor->found;
     return status;
 }
@@ -198,7 +187,8 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     const fathom_status_t next = fathom_dyp_measurement_next(&sensor->measurement, sample);
     if (next != FATHOM_PENDING) return next;
     fathom_modbus_unit_poll(&sensor->unit);
-    const fathom_status_t status = fathom_modbus_unit_ask(&sensor->unit, &sensor->request);
+    const fathom_status_t status =
+        fathom_modbus_unit_measure(&sensor->unit, sensor->first, sensor->count, sensor->measurement.values);
     if (status != FATHOM_OK) return status;
     sensor->measurement.address =
         sensor->unit.address; /* it may have moved, and a move may have been given up */

@@ -23,8 +23,8 @@ static bool is_valid(const fathom_hps167s_config_t *config)
 
 fathom_status_t fathom_hps167s_init(fathom_hps167s_t *sensor, const fathom_hps167s_config_t *config)
 {
-    if (fathom_modbus_unit_is_queued(&sensor->unit, &config->modbus)) return FATHOM_ERR_BUSY;
-    clear(sensor, sizeof *sensor);
+    fathom_status_t status = fathom_modbus_unit_begin(&sensor->unit, &config->modbus, sensor, sizeof *sensor);
+    if (status < 0) return status;
     if (!is_valid(config)) return FATHOM_ERR_ARGUMENT;
     sensor->warm_up_s = config->warm_up_s;
     if ((config->warm_up_s == 0u) && !config->no_warm_up)
@@ -33,8 +33,8 @@ fathom_status_t fathom_hps167s_init(fathom_hps167s_t *sensor, const fathom_hps16
     sensor->steps_per_degree = config->steps_per_degree;
     sensor->low_word_first = config->low_word_first;
     sensor->reset_response = FATHOM_HPS167S_NO_RESET_RESPONSE;
-    const fathom_status_t status = fathom_modbus_unit_init(&sensor->unit, &config->modbus, MEASURE_TIMEOUT_US,
-                                                           FATHOM_HPS167S_MIN_PERIOD_US);
+    status = fathom_modbus_unit_init(&sensor->unit, &config->modbus, MEASURE_TIMEOUT_US,
+                                     FATHOM_HPS167S_MIN_PERIOD_US);
     if (status < 0) clear(sensor, sizeof *sensor);
     return status;
 }
@@ -62,31 +62,18 @@ void fathom_hps167s_power_on(fathom_hps167s_t *sensor)
     if (sensor->follow != NULL) sensor->follow(sensor, FATHOM_PENDING);
 }
 
-fathom_status_t fathom_hps167s_ask(fathom_hps167s_t *sensor, uint8_t id, uint8_t count)
-{
-    fathom_modbus_unit_request_t *const request = &sensor->request;
-    request->values = (id < FATHOM_MODBUS_COMMAND) ? sensor->measurement : sensor->values;
-    request->first = id % FATHOM_MODBUS_COMMAND;
-    request->last = count;
-    request->function = FATHOM_MODBUS_READ_HOLDING_REGISTERS;
-    request->id = id;
-    const fathom_status_t status = fathom_modbus_unit_ask(&sensor->unit, request);
-    if ((status != FATHOM_PENDING) && (sensor->follow != NULL)) sensor->follow(sensor, status);
-    return status;
-}
-
 static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
 {
     fathom_hps167s_t *const sensor = ctx;
-    const uint16_t *const response = sensor->measurement;
     fathom_modbus_unit_poll(&sensor->unit);
-    const fathom_status_t status =
-        fathom_hps167s_ask(sensor, FATHOM_HPS167S_MEASUREMENT, FATHOM_HPS167S_MEASUREMENT_COUNT);
+    const fathom_status_t status = fathom_modbus_unit_measure(
+        &sensor->unit, FATHOM_HPS167S_MEASUREMENT, FATHOM_HPS167S_MEASUREMENT_COUNT, sensor->measurement);
+    fathom_hps167s_follow(sensor, status);
     if (status != FATHOM_OK) return status;
-    if (fathom_modbus_unit_is_warming_up(&sensor->unit) && fathom_hps167s_is_abnormal(response))
+    if (fathom_modbus_unit_is_warming_up(&sensor->unit) && fathom_hps167s_is_abnormal(sensor->measurement))
         return FATHOM_ERR_WARMING_UP;
     if (((sensor->is_new != NULL) && !sensor->is_new(sensor)) ||
-        (fathom_hps167s_decode_within(sensor->limits, response, sample) < 0)) {
+        (fathom_hps167s_decode_within(sensor->limits, sensor->measurement, sample) < 0)) {
         count_one(&sensor->implausible);
         return FATHOM_ERR_MALFORMED;
     }

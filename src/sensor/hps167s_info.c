@@ -18,6 +18,19 @@ enum { MAX_RESPONSES = 8, MAX_RESPONSES_AMONG_UNASKED = 32 };
 /* Stands for "no measurement yet": it equals no response to #2, whose first byte is 00 or FF. */
 #define NOTHING 0x0101u
 
+fathom_status_t fathom_hps167s_ask_once(fathom_hps167s_t *sensor, uint8_t command, uint8_t count)
+{
+    fathom_modbus_unit_request_t request;
+    request.values = sensor->values;
+    request.first = command;
+    request.last = count;
+    request.function = FATHOM_MODBUS_READ_HOLDING_REGISTERS;
+    request.id = fathom_hps167s_id(command);
+    const fathom_status_t status = fathom_modbus_command(&sensor->unit, &request);
+    fathom_hps167s_follow(sensor, status);
+    return status;
+}
+
 static fathom_status_t read_command(fathom_hps167s_t *sensor, uint8_t command, uint8_t count)
 {
     fathom_modbus_unit_poll(&sensor->unit);
@@ -139,25 +152,18 @@ enum { CONFIGURATION = FATHOM_MODBUS_COMMAND | FATHOM_HPS167S_CONFIGURATION };
 static fathom_status_t give_up(fathom_hps167s_t *sensor)
 {
     fathom_modbus_unit_t *const unit = &sensor->unit;
-    unit->waiting = 0;
+    unit->command = 0;
     if (!sensor->is_outstanding || (unit->pause_us == 0u)) return FATHOM_ERR_MALFORMED;
-    unit->waiting = CONFIGURATION;
-    fathom_modbus_unit_keep(unit);
+    unit->command = CONFIGURATION;
+    fathom_modbus_command_keep(unit);
     return FATHOM_PENDING;
-}
-
-/* Invariant: while a read is in progress, the unit waits for its next request or has one. If not, its caller has
- * abandoned it. */
-static bool is_in_progress(const fathom_modbus_unit_t *unit)
-{
-    return (unit->waiting == CONFIGURATION) || ((unit->state != 0u) && (unit->current == CONFIGURATION));
 }
 
 fathom_status_t fathom_hps167s_read_configuration(fathom_hps167s_t *sensor)
 {
     fathom_status_t status;
     be_wary(sensor);
-    if (!is_in_progress(&sensor->unit)) sensor->responses = 0;
+    if (sensor->unit.command != CONFIGURATION) sensor->responses = 0; /* The previous read was abandoned. */
     for (;;) {
         status = is_given_up(sensor) ? give_up(sensor)
                                      : fathom_hps167s_ask_once(sensor, FATHOM_HPS167S_CONFIGURATION,

@@ -159,7 +159,9 @@ static fathom_status_t begin(fathom_hps167s_t *sensor, uint8_t command, uint32_t
             if (status != FATHOM_OK) return status;
         }
         /* #1 may still wait although a measurement has shown the rate. It would keep all other requests out. */
-        if (unit->waiting == fathom_hps167s_id(FATHOM_HPS167S_VERSION)) unit->waiting = 0;
+        const uint8_t version = fathom_hps167s_id(FATHOM_HPS167S_VERSION);
+        if ((unit->command == version) && ((unit->state == 0u) || (unit->current != version)))
+            unit->command = 0;
         setting->line_settings = NULL;
         setting->address = 0;
     }

@@ -51,6 +51,7 @@ PERHAPS = {
     'sensor->poll': tuple(f'{name}.c:poll' for name in SENSORS),
     'sensors->due_us': tuple(f'{name}.c:due_us' for name in SENSORS),
     'listener->receive': ('stream.c:fathom_stream_receive', 'a16_controlled.c:receive', 'hps167s_auto.c:receive'),
+    **{f'commands->{name}': (f'modbus_command.c:{name}',) for name in ('is_occupied', 'forget', 'due_us')},
     'sensor->is_new': ('hps167s_info.c:is_new',),
     'sensor->follow': ('hps167s_settings.c:follow',),
     **{f'guard->{name}': (f'line_pins.c:{name}',) for name in ('poll', 'is_clear', 'due_us')},

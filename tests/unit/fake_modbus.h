@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "fathom/engine/modbus.h"
+#include "fathom/engine/modbus_command.h"
 
 /*
  * A transport of Modbus and a clock that do what the test says: the transport of modbus.h without a wire. Time stands
@@ -61,5 +61,11 @@ void fake_modbus_forget(fake_modbus_t *fake);
 /* The last request was a read of `count` registers from `first` of `unit`, asked `submits`-th. */
 void fake_modbus_assert_asked(const fake_modbus_t *fake, unsigned submits, uint8_t unit, uint16_t first,
                               uint16_t count);
+
+/* What a driver does with its unit: its init, and after fathom_modbus_unit_poll() its measurement or command. A request
+ * whose id is below FATHOM_MODBUS_COMMAND is the measurement. */
+fathom_status_t init_unit(fathom_modbus_unit_t *unit, const fathom_modbus_config_t *config,
+                          uint32_t timeout_us, uint32_t pace_us);
+fathom_status_t ask_unit(fathom_modbus_unit_t *unit, const fathom_modbus_unit_request_t *request);
 
 #endif

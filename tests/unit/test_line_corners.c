@@ -137,7 +137,7 @@ TEST(the_response_after_the_echo_of_a_cancelled_write_ends_the_quarantine)
 static fathom_status_t asks(fathom_modbus_unit_t *unit, const fathom_modbus_unit_request_t *request)
 {
     fathom_modbus_unit_poll(unit);
-    return fathom_modbus_unit_ask(unit, request);
+    return ask_unit(unit, request);
 }
 
 /* modbus_unit.h: "A command is asked at once all the same." The pace has long passed. */
@@ -149,8 +149,7 @@ TEST(a_command_goes_out_at_once_when_the_pace_has_passed)
     const fathom_modbus_unit_request_t version = {values, 0x0001, 3, 3, 0x81};
     fake_modbus_init(&fake);
     assert_int_equal(
-        fathom_modbus_unit_init(&unit, &(fathom_modbus_config_t){.transport = &fake.modbus, .address = 9},
-                                300000, 100000),
+        init_unit(&unit, &(fathom_modbus_config_t){.transport = &fake.modbus, .address = 9}, 300000, 100000),
         FATHOM_OK);
     for (unsigned n = 0; n != 3; n++) {
         assert_int_equal(asks(&unit, &measure), FATHOM_PENDING);

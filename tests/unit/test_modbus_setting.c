@@ -21,12 +21,12 @@ static const fathom_modbus_unit_request_t command = {&found, 0x0101, 1, 3, 0x82}
 static fathom_status_t asks(const fathom_modbus_unit_request_t *request)
 {
     fathom_modbus_unit_poll(&unit);
-    return fathom_modbus_unit_ask(&unit, request);
+    return ask_unit(&unit, request);
 }
 
 static fathom_status_t read_it(const fathom_modbus_setting_t *of, uint32_t *value)
 {
-    const fathom_status_t status = fathom_modbus_unit_ask(of->driver, &look);
+    const fathom_status_t status = ask_unit(of->driver, &look);
     if (status == FATHOM_OK) *value = found;
     return status;
 }
@@ -35,12 +35,11 @@ static int set_up(void **state)
 {
     desk_begin(0xFFFFF000u); /* the clock wraps soon */
     memset(&unit, 0x5A, sizeof unit);
-    assert_int_equal(
-        fathom_modbus_unit_init(
-            &unit,
-            &(fathom_modbus_config_t){.transport = &fake.modbus, .address = HERE, .command_timeout_us = 1000},
-            1000, 0),
-        FATHOM_OK);
+    assert_int_equal(init_unit(&unit,
+                               &(fathom_modbus_config_t){
+                                   .transport = &fake.modbus, .address = HERE, .command_timeout_us = 1000},
+                               1000, 0),
+                     FATHOM_OK);
     setting = (fathom_modbus_setting_t){.read = read_it, .driver = &unit, .write = put, .value = NEW};
     found = 0;
     return 0;

@@ -25,7 +25,7 @@ static const fathom_modbus_unit_request_t measure = {&found, 0x0100, 1, 3, 1};
 
 static fathom_status_t read_it(const fathom_modbus_setting_t *of, uint32_t *value)
 {
-    const fathom_status_t status = fathom_modbus_unit_ask(of->driver, &look);
+    const fathom_status_t status = ask_unit(of->driver, &look);
     if (status == FATHOM_OK) *value = found;
     return status;
 }
@@ -34,12 +34,11 @@ static int set_up(void **state)
 {
     fake_modbus_init(&fake);
     memset(&unit, 0, sizeof unit);
-    assert_int_equal(
-        fathom_modbus_unit_init(
-            &unit,
-            &(fathom_modbus_config_t){.transport = &fake.modbus, .address = HERE, .command_timeout_us = 1000},
-            1000, PACE_US),
-        FATHOM_OK);
+    assert_int_equal(init_unit(&unit,
+                               &(fathom_modbus_config_t){
+                                   .transport = &fake.modbus, .address = HERE, .command_timeout_us = 1000},
+                               1000, PACE_US),
+                     FATHOM_OK);
     setting = (fathom_modbus_setting_t){.read = read_it, .driver = &unit, .write = put, .value = NEW};
     found = 0;
     return 0;
@@ -57,7 +56,7 @@ static fathom_status_t set_after(uint32_t us)
 static fathom_status_t ask(const fathom_modbus_unit_request_t *request)
 {
     fathom_modbus_unit_poll(&unit);
-    return fathom_modbus_unit_ask(&unit, request);
+    return ask_unit(&unit, request);
 }
 
 /* The setting's next request is on the wire: to whom, with which line settings? */

@@ -15,10 +15,9 @@ static void set_up_at(uint32_t now_us)
 {
     desk_begin(now_us);
     memset(&unit, 0x5A, sizeof unit);
-    assert_int_equal(
-        fathom_modbus_unit_init(&unit, &(fathom_modbus_config_t){.transport = &fake.modbus, .address = UNIT},
-                                TIMEOUT_US, PACE_US),
-        FATHOM_OK);
+    assert_int_equal(init_unit(&unit, &(fathom_modbus_config_t){.transport = &fake.modbus, .address = UNIT},
+                               TIMEOUT_US, PACE_US),
+                     FATHOM_OK);
 }
 
 static int set_up(void **state)
@@ -33,7 +32,7 @@ static fathom_status_t read_after(uint32_t us, const fathom_modbus_unit_request_
 {
     fake.now_us += us;
     fathom_modbus_unit_poll(&unit);
-    return fathom_modbus_unit_ask(&unit, request);
+    return ask_unit(&unit, request);
 }
 
 /* Nothing is asked for `us` - 1, and at `us` it is; until then due says how long that is. */

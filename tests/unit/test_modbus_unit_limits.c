@@ -20,8 +20,7 @@ static void set_up_on(uint8_t fill)
     fake_modbus_init(&fake);
     memset(&unit, fill, sizeof unit);
     assert_int_equal(
-        fathom_modbus_unit_init(&unit, &(fathom_modbus_config_t){.transport = &fake.modbus, .address = UNIT},
-                                100000, 0),
+        init_unit(&unit, &(fathom_modbus_config_t){.transport = &fake.modbus, .address = UNIT}, 100000, 0),
         FATHOM_OK);
 }
 
@@ -37,7 +36,7 @@ static fathom_status_t ask_after(uint32_t us)
 {
     fake.now_us += us;
     fathom_modbus_unit_poll(&unit);
-    return fathom_modbus_unit_ask(&unit, &measure);
+    return ask_unit(&unit, &measure);
 }
 
 static void silence(void)

@@ -25,10 +25,9 @@ static int set_up(void **state)
 {
     fake_modbus_init(&fake);
     memset(&unit, 0, sizeof unit);
-    assert_int_equal(
-        fathom_modbus_unit_init(&unit, &(fathom_modbus_config_t){.transport = &fake.modbus, .address = UNIT},
-                                TIMEOUT_US, PACE_US),
-        FATHOM_OK);
+    assert_int_equal(init_unit(&unit, &(fathom_modbus_config_t){.transport = &fake.modbus, .address = UNIT},
+                               TIMEOUT_US, PACE_US),
+                     FATHOM_OK);
     return 0;
 }
 
@@ -38,7 +37,7 @@ static fathom_status_t ask_after(uint32_t us, const fathom_modbus_unit_request_t
 {
     fake.now_us += us;
     fathom_modbus_unit_poll(&unit);
-    return fathom_modbus_unit_ask(&unit, request);
+    return ask_unit(&unit, request);
 }
 
 static void pending_after(uint32_t us, const fathom_modbus_unit_request_t *request)

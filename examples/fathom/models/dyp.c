@@ -27,7 +27,7 @@ bool dyp_begin_asked(reader_t *reader, fathom_dyp_modbus_t *base, fathom_sensor_
     reader->unit = &base->unit;
     reader->period_us = &base->unit.pace_us;
     reader->values = base->measurement.values;
-    reader->value_count = (uint8_t)base->request.last;
+    reader->value_count = base->count;
     reader->response = &base->measurement;
     reader->sequence = &base->measurement.sequence;
     return true;

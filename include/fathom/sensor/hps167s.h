@@ -148,10 +148,11 @@ typedef struct fathom_hps167s fathom_hps167s_t;
  * The caller may read `implausible`, `reset_response` and `next_baud`. All other members are private.
  */
 struct fathom_hps167s {
-    uint8_t warm_up_s;        /**< Warm-up time in seconds. */
-    uint8_t same_responses;   /**< As in the config. */
-    uint8_t steps_per_degree; /**< As in the config. */
-    bool low_word_first;      /**< As in the config. */
+    uint16_t measurement[FATHOM_HPS167S_MEASUREMENT_COUNT]; /**< The newest response to #5. */
+    uint8_t warm_up_s;                                      /**< Warm-up time in seconds. */
+    uint8_t same_responses;                                 /**< As in the config. */
+    uint8_t steps_per_degree;                               /**< As in the config. */
+    bool low_word_first;                                    /**< As in the config. */
     /** @brief True if another frame was mistaken for a response to #2, so that the response may still arrive. */
     bool is_outstanding;
     bool is_among_unasked; /**< True if an unsolicited frame was received in the last 2 s. */
@@ -168,8 +169,6 @@ struct fathom_hps167s {
      * 1 is success, FATHOM_HPS167S_NO_RESET_RESPONSE is no response, and any other value is the sensor's error code.
      */
     uint16_t reset_response;
-    fathom_modbus_unit_request_t request;                            /**< The newest request. */
-    uint16_t measurement[FATHOM_HPS167S_MEASUREMENT_COUNT];          /**< The newest response to #5. */
     uint16_t last_configuration[FATHOM_HPS167S_CONFIGURATION_COUNT]; /**< The newest that may be of #2. */
     uint16_t
         last_measurement[FATHOM_HPS167S_MEASUREMENT_COUNT]; /**< The newest measurement, also unsolicited. */

@@ -152,7 +152,7 @@ UNREACHED = {
     ('line/a05_dyp', 'has_room_0'): (2, LINES_FRAME),
     ('line/a16_modbus', 'due_us'): (1, ONE_PROBE),
     ('line/a16_modbus', 'fathom_dyp_modbus_init'): (1, A16),
-    ('line/a16_modbus', 'fathom_modbus_unit_is_queued'): (1, CLOCK),
+    ('line/a16_modbus', 'fathom_modbus_unit_begin'): (1, CLOCK),
     ('line/a16_modbus', 'is_valid'): (1, CLOCK),
     ('line/a16_modbus', 'moves'): (1, NO_RATE),
     ('line/a16_modbus', 'poll'): (3, ONE_PROBE),

@@ -2,7 +2,7 @@
 #ifndef FATHOM_MODBUS_SETTING_H
 #define FATHOM_MODBUS_SETTING_H
 
-#include "fathom/engine/internal/modbus_unit.h"
+#include "fathom/engine/modbus_command.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -62,7 +62,7 @@ struct fathom_modbus_setting {
  *   FATHOM_ERR_WARMING_UP   so soon after power-on silence does not prove that the new place is free: not written
  *   FATHOM_ERR_DIFFERS      it acknowledged the value, and it reads back as another
  *   FATHOM_ERR_BUSY         another command or setting is not finished
- *   any other               of fathom_modbus_unit_ask. Not written: nothing was changed. Written: the device refused
+ *   any other               of fathom_modbus_command. Not written: nothing was changed. Written: the device refused
  *                           it (exception), or the write failed so and another value was read back
  */
 fathom_status_t fathom_modbus_set(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting);

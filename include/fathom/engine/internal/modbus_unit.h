@@ -3,6 +3,7 @@
 #define FATHOM_MODBUS_UNIT_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include "fathom/engine/modbus.h"
@@ -15,18 +16,19 @@ extern "C" {
  * @file
  * @brief One Modbus unit as a driver uses it: one request at a time, paced, each result delivered once.
  *
- * The Modbus drivers are built on this file. A program needs only fathom_modbus_config_t and the rules below.
+ * The Modbus drivers are built on this file. A program needs only fathom_modbus_config_t and the rules below. Commands
+ * stand in modbus_command.h and settings in modbus_setting.h; a program that only measures links neither.
  *
  * Rules of behaviour:
  *
- * 1. **Two kinds of request.** The repeated request (a measurement, of fathom_poll()) is sent again and again, and a
+ * 1. **Two kinds of request.** The measurement (of fathom_poll()) is sent again and again, and a
  *    newer result may replace an older one. A command (a function such as fathom_hps167s_get_details()) is sent once, and
  *    its result waits for its caller. modbus_setting.h builds settings from several commands.
  *
  * 2. **Pace.** `period_us` or the driver's least period passes from one request to the next. A retry leaves when the
  *    line sends it; the period counts from the last retry.
  *
- * 3. **Back-off.** After the third time-out in a row the repeated request pauses for one time-out, then for two, four,
+ * 3. **Back-off.** After the third time-out in a row the measurement pauses for one time-out, then for two, four,
  *    eight and sixteen, at most `backoff_us`. A dead unit then takes little time from the others. Any response of the
  *    unit, even a damaged one, ends the back-off. FATHOM_ERR_LINE_BUSY and FATHOM_ERR_OTHER_MASTER prove nothing about
  *    the unit: the count of time-outs stays, and the same pause follows again. A command is sent in spite of a back-off.
@@ -38,11 +40,11 @@ extern "C" {
  * 5. **An abandoned command ends.** While a command or setting is unfinished, or its result was not fetched,
  *    fathom_poll() returns FATHOM_PENDING and other commands return FATHOM_ERR_BUSY. If its function is not called for
  *    FATHOM_MODBUS_ABANDONED_US and for FATHOM_MODBUS_ABANDONED_POLLS calls of other functions of the driver, the next
- *    call of another function cancels it (fathom_modbus_unit_cancel()) and proceeds. The abandoned function starts
+ *    call of another function cancels it and proceeds. The abandoned function starts
  *    again when it is called the next time.
  *
  * 6. **A forgotten request ends.** If the line is initialised again while a request of the driver is queued, the request
- *    ends with FATHOM_ERR_CANCELLED, at the latest with the 16th poll after that.
+ *    ends with FATHOM_ERR_CANCELLED, at the latest with the first poll 65.5 ms after that.
  *
  * The longest time until an outcome, if the program polls every P microseconds:
  *
@@ -105,27 +107,11 @@ typedef struct {
     uint8_t retries;
 } fathom_modbus_config_t;
 
-/** @brief A request of a driver. */
-typedef struct {
-    /**
-     * @brief The registers, in the driver's memory.
-     *
-     * The registers of a read are written on FATHOM_OK only. Those of function 10 are read when the request leaves.
-     * NULL for function 06.
-     */
-    uint16_t *values;
-    /** @brief Address of the first register. */
-    uint16_t first;
-    /** @brief Number of registers: 1 to 125 to read, 1 to 123 to write. Function 06: the value. */
-    uint16_t last;
-    /** @brief FATHOM_MODBUS_READ_HOLDING_REGISTERS or one of the two functions that write. */
-    uint8_t function;
-    /** @brief Identifies the request within its driver: 1 to 127 repeated, from FATHOM_MODBUS_COMMAND a command. */
-    uint8_t id;
-} fathom_modbus_unit_request_t;
+/** @brief What the part for commands does for the measurement (modbus_command.h). NULL until the first command. */
+typedef struct fathom_modbus_commands fathom_modbus_commands_t;
 
-/** @brief The least id of a command. */
-enum { FATHOM_MODBUS_COMMAND = 0x80 };
+/** @brief Value of fathom_modbus_unit_t::current for the measurement. Commands have greater values (modbus_command.h). */
+enum { FATHOM_MODBUS_UNIT_MEASUREMENT = 1 };
 
 /**
  * @brief One Modbus unit, in the driver's memory. Initialise with fathom_modbus_unit_init().
@@ -136,16 +122,16 @@ enum { FATHOM_MODBUS_COMMAND = 0x80 };
 typedef struct {
     /** @brief 0: no request; 1: a request is queued or on the wire; 2: its result was not fetched. */
     uint8_t state;
-    /** @brief Id of the newest request; 0: none yet. */
+    /** @brief The newest request: FATHOM_MODBUS_UNIT_MEASUREMENT or the id of a command; 0: none yet. */
     uint8_t current;
-    /** @brief Id of the command that waits until it may be sent; 0: none. */
-    uint8_t waiting;
+    /** @brief Id of the command in progress, from its first call until its result was fetched; 0: none. */
+    uint8_t command;
+    /** @brief Number of calls of other functions after which the command or setting may be abandoned, 0 to 16 (rule 5). */
+    uint8_t calls_left;
     /** @brief Result of the last call of the transport's `poll`. */
     int8_t transport_status;
     /** @brief Number of attempts of the present request at the last poll. */
     uint8_t attempts;
-    /** @brief Number of polls since the transport was last asked whether it has the present request, 0 to 15. */
-    uint8_t polls;
     /** @brief Number of time-outs in a row, 0 to 7. */
     uint8_t timeouts_in_row;
     /** @brief As in fathom_modbus_config_t. */
@@ -178,6 +164,8 @@ typedef struct {
     uint16_t responses;
     /** @brief Number of requests that failed, retries included; stops at 65535. */
     uint16_t failures;
+    /** @brief NULL until the first command. */
+    const fathom_modbus_commands_t *commands;
     /** @brief The transport. Invariant: NULL unless init has returned FATHOM_OK. */
     const fathom_modbus_t *transport;
     /** @brief Present line settings of the unit; NULL: those of the line. */
@@ -188,16 +176,12 @@ typedef struct {
     uint32_t polled_us;
     /** @brief Time until the next request may be sent, in microseconds. */
     uint32_t pause_us;
-    /** @brief Time until the repeated request may be sent again, in microseconds. */
+    /** @brief Time until the measurement may be sent again, in microseconds. */
     uint32_t backoff_left_us;
     /** @brief Rest of the start-up time after power-on, in microseconds. */
     uint32_t warm_us;
-    /**
-     * @brief Time until the present command counts as abandoned, in microseconds (rule 5).
-     *
-     * One poll takes at most 1/16 of FATHOM_MODBUS_ABANDONED_US off it. Meaningless if there is no command.
-     */
-    uint32_t abandoned_in_us;
+    /** @brief The clock when the present command or setting was last called, in microseconds (rule 5). */
+    uint32_t kept_us;
     /** @brief As in fathom_modbus_config_t, with the defaults filled in. */
     uint32_t timeout_us;
     uint32_t command_timeout_us; /**< @copydoc timeout_us */
@@ -208,27 +192,34 @@ typedef struct {
 } fathom_modbus_unit_t;
 
 /**
- * @brief Initialises a unit.
+ * @brief First step of a driver's init function: clears the driver, unless its request is still queued.
  *
- * On FATHOM_ERR_ARGUMENT the unit is zeroed. On FATHOM_ERR_BUSY nothing has changed.
+ * `*unit` may be uninitialised: the function compares only its address.
+ *
+ * @param unit    The unit, a part of the driver.
+ * @param config  The config that the driver is initialised with.
+ * @param driver  The driver.
+ * @param size    Its size in bytes.
+ * @retval FATHOM_OK     All bytes of the driver are 0.
+ * @retval FATHOM_ERR_BUSY  The request of this unit is still queued. Nothing has changed. Call the driver's deinit
+ *                          function first.
+ */
+fathom_status_t fathom_modbus_unit_begin(fathom_modbus_unit_t *unit, const fathom_modbus_config_t *config,
+                                         void *driver, size_t size);
+
+/**
+ * @brief Initialises a unit, which fathom_modbus_unit_begin() has cleared.
  *
  * @param unit        The unit.
  * @param config      The config, copied.
  * @param timeout_us  Default of `config->timeout_us`.
  * @param pace_us     The driver's least period in microseconds.
  * @retval FATHOM_OK         The unit can be used.
- * @retval FATHOM_ERR_ARGUMENT  A member of the config is outside its range, or the transport has no clock.
- * @retval FATHOM_ERR_BUSY      The request of this unit is still queued. Call the driver's deinit function first.
+ * @retval FATHOM_ERR_ARGUMENT  A member of the config is outside its range, or the transport has no clock. The unit is
+ *                              still cleared.
  */
 fathom_status_t fathom_modbus_unit_init(fathom_modbus_unit_t *unit, const fathom_modbus_config_t *config,
                                         uint32_t timeout_us, uint32_t pace_us);
-
-/**
- * @brief Returns true if the request of this unit is still queued, so that its memory must not be changed.
- *
- * `*unit` may be uninitialised: the function compares only its address.
- */
-bool fathom_modbus_unit_is_queued(const fathom_modbus_unit_t *unit, const fathom_modbus_config_t *config);
 
 /**
  * @brief Polls the transport and advances all deadlines.
@@ -238,23 +229,26 @@ bool fathom_modbus_unit_is_queued(const fathom_modbus_unit_t *unit, const fathom
 void fathom_modbus_unit_poll(fathom_modbus_unit_t *unit);
 
 /**
- * @brief Sends a request, or continues with it. Call fathom_modbus_unit_poll() before.
+ * @brief Sends the measurement, or continues with it. Call fathom_modbus_unit_poll() before.
  *
- * Call both functions with a request of the same id until the result differs from FATHOM_PENDING. Each result is
- * delivered once. If two callers have the same request, the first to call receives the result, and the other starts
- * again.
+ * Each result is delivered once. The next call starts the next measurement.
  *
+ * @param unit    The unit.
+ * @param first   Address of the first register.
+ * @param count   Number of registers, 1 to 125.
+ * @param values  `count` registers in the driver's memory, written on FATHOM_OK only. Must stay valid until the
+ *                request has ended.
  * @retval FATHOM_OK           The unit responded. `values` are written.
- * @retval FATHOM_PENDING         The request is not finished, or may not be sent yet.
- * @retval FATHOM_ERR_BUSY        Another command or setting is unfinished, or its result was not fetched (rule 5).
+ * @retval FATHOM_PENDING         The request is not finished, or may not be sent yet, or a command or setting is in
+ *                                progress (rule 5).
  * @retval FATHOM_ERR_WARMING_UP  The unit failed so soon after power-on (rule 4).
  * @retval FATHOM_ERR_ARGUMENT    The unit is not initialised, or as fathom_modbus_t::submit.
  * @retval FATHOM_ERR_CAPACITY    As fathom_modbus_t::submit.
  * @retval FATHOM_ERR_PORT        The port is broken. Nothing was sent.
  * @return All other values: the error with which the request ended (fathom_transaction_t).
  */
-fathom_status_t fathom_modbus_unit_ask(fathom_modbus_unit_t *unit,
-                                       const fathom_modbus_unit_request_t *request);
+fathom_status_t fathom_modbus_unit_measure(fathom_modbus_unit_t *unit, uint16_t first, uint8_t count,
+                                           uint16_t *values);
 
 /**
  * @brief Cancels the request and forgets its result.
@@ -262,22 +256,6 @@ fathom_status_t fathom_modbus_unit_ask(fathom_modbus_unit_t *unit,
  * A setting in progress may be set or not; the unit uses its former address and line settings again.
  */
 void fathom_modbus_unit_cancel(fathom_modbus_unit_t *unit);
-
-/**
- * @brief Cancels the unfinished command or setting if its caller has abandoned it (rule 5).
- *
- * Call it only if a command or setting is unfinished and another one waits for it.
- *
- * @retval true   The command or setting was abandoned, and is cancelled now.
- * @retval false  The command or setting is in progress.
- */
-bool fathom_modbus_unit_give_way(fathom_modbus_unit_t *unit);
-
-/** @brief Records that the caller of the present command or setting has called (rule 5). */
-static inline void fathom_modbus_unit_keep(fathom_modbus_unit_t *unit)
-{
-    unit->abandoned_in_us = FATHOM_MODBUS_ABANDONED_US;
-}
 
 /**
  * @brief Records that the sensor is powered now: cancels the request and starts the start-up time.
@@ -320,7 +298,7 @@ static inline uint32_t fathom_modbus_unit_heard_us(const fathom_modbus_unit_t *u
 /**
  * @brief Returns the time in microseconds until the driver must be polled again if no byte arrives.
  *
- * The time assumes that the repeated request is sent again. 0 for a unit that is not initialised.
+ * The time assumes that the measurement is sent again. 0 for a unit that is not initialised.
  */
 uint32_t fathom_modbus_unit_due_us(const fathom_modbus_unit_t *unit);
 

@@ -14,9 +14,10 @@ extern "C" {
  * distances are read. Their users need not know it. */
 typedef struct {
     uint8_t probes; /* bit probe - 1: wanted of those that are read */
+    uint8_t count;  /* of the registers that a measurement reads */
+    uint16_t first; /* of these registers */
     uint16_t found; /* the register that a command reads */
     fathom_dyp_measurement_t measurement;
-    fathom_modbus_unit_request_t request;
     uint32_t start_us;
     fathom_modbus_unit_t unit;
 } fathom_dyp_modbus_t;
@@ -28,11 +29,7 @@ enum { FATHOM_DYP_REGISTER_ADDRESS = 0x0200 };
  * known of sister models; it is not in the datasheets. */
 #define FATHOM_DYP_DEFAULT_START_US 1500000uL
 
-/** @brief First step of a driver's init: clears `size` bytes, or returns FATHOM_ERR_BUSY if the request is queued. */
-fathom_status_t fathom_dyp_modbus_begin(fathom_dyp_modbus_t *sensor, size_t size,
-                                        const fathom_modbus_config_t *config);
-
-/* The caller has set first and last of the request, the probes, start_us (0: its default), and values, window, model
+/* After fathom_modbus_unit_begin(), the caller has set first, count, the probes, start_us (0: its default), and values, window, model
  * and first of the measurement; timeout_us and pace_us are the driver's, as of fathom_modbus_unit_init.
  * FATHOM_OK, or FATHOM_ERR_ARGUMENT: as fathom_modbus_unit_init, or min_mm over max_mm. */
 fathom_status_t fathom_dyp_modbus_init(fathom_dyp_modbus_t *sensor, const fathom_modbus_config_t *config,
@@ -46,7 +43,7 @@ void fathom_dyp_modbus_power_on(fathom_dyp_modbus_t *sensor);
 
 /*
  * Commands, to be called until they are not FATHOM_PENDING; of registers that differ in their bits 0 to 3, 8 or 9, as
- * all of A16 and A05 do. get: FATHOM_OK with *value, or the errors of fathom_modbus_unit_ask; address: also
+ * all of A16 and A05 do. get: FATHOM_OK with *value, or the errors of fathom_modbus_command; address: also
  * FATHOM_ERR_MALFORMED, where the register has more than 255. set: as fathom_modbus_set; set_address: the same, for
  * 1..254, else FATHOM_ERR_ARGUMENT; set_address_to_0 as the functions of that name of A16 and A05. At address 0 nothing
  * is written: FATHOM_ERR_ARGUMENT, since all units would obey. write: where nothing can be read back; FATHOM_OK is

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * proves: src/sensor/a16_modbus.c src/sensor/a16_settings.c src/engine/modbus_unit.c
+ * proves: src/sensor/a16_modbus.c src/sensor/a16_settings.c src/engine/modbus_command.c src/engine/modbus_unit.c
  *          src/engine/modbus_setting.c src/sensor/dyp_modbus.c
  * with:   src/sensor/dyp.c src/engine/sensor.c src/codec/modbus_rtu.c src/codec/crc16.c
  * options: -eva-precision 0
