@@ -2,7 +2,7 @@
 #include "job.h"
 
 /*
- * JOB_SENDERS, JOB_MASTERS: the line knows devices that send by themselves, and other masters. JOB_COUNTERS: the line
+ * JOB_SLEEP: the program sleeps by fathom_line_due_us() and cancels. JOB_SENDERS, JOB_MASTERS: the line knows devices that send by themselves, and other masters. JOB_COUNTERS: the line
  * counts what happens. JOB_ALL: and finds out whether it echoes, heeds what the port says of the
  * bytes, has a listener, changes the line settings, and may read unit 0. Without either it is told that there is no
  * echo; what the library always has are retries, broadcast, break, any unit, and the quarantine of late responses.
@@ -74,7 +74,13 @@ static fathom_status_t job_run(void)
     const fathom_status_t status = fathom_modbus_client_submit(&line, &request);
 #endif
     if (status != FATHOM_PENDING) return status;
-    while (request.transaction.status == FATHOM_PENDING) fathom_line_poll(&line);
+    while (request.transaction.status == FATHOM_PENDING) {
+        fathom_line_poll(&line);
+#ifdef JOB_SLEEP
+        /* Here a program sleeps for this time. If nothing can change any more, it cancels. */
+        if (fathom_line_due_us(&line) == FATHOM_NO_DEADLINE) fathom_line_cancel(&line, &request.transaction);
+#endif
+    }
     return (fathom_status_t)request.transaction.status;
 }
 

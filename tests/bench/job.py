@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Measures the job of job.c: functions 03 (4 registers), 06 and 16 with modbus_client on line, over a stub UART
 (mcu.c), -Os, unused sections dropped, the user's code included. Flash is text + data less that of an empty main. With
-the five sets of promises of the job: what the library always has; the same and devices that send by themselves; these
+six variants of the job: what the library always has; the same for a program that sleeps and cancels; the first and devices that send by themselves; these
 and other masters; the first with counters; and all.
 
 Each measure_ function writes to figures {name: number} and functions {function: {column: cost}}.
@@ -13,7 +13,7 @@ from stack import Image
 from tools import AVR, AVR_TIMER, INCLUDE, LIBRARY, M0, Failed, here, run, source
 
 # What job.c is compiled with.
-JOBS = {'job': [], 'job_senders': ['-DJOB_SENDERS'], 'job_masters': ['-DJOB_SENDERS', '-DJOB_MASTERS'],
+JOBS = {'job': [], 'job_sleep': ['-DJOB_SLEEP'], 'job_senders': ['-DJOB_SENDERS'], 'job_masters': ['-DJOB_SENDERS', '-DJOB_MASTERS'],
         'job_counters': ['-DJOB_COUNTERS'],
         'job_all': ['-DJOB_SENDERS', '-DJOB_MASTERS', '-DJOB_COUNTERS', '-DJOB_ALL']}
 # Of each: name, what, unit

@@ -122,7 +122,8 @@ def beside_bound(value, unit, bound):
 def figures_table(figures, sizes):
     """The jobs; then what of the sizes has a bound."""
     aims, found = bounds(), all_figures(figures, sizes)
-    lines = ['| | the least | and senders | and masters | the least with counters | all |', '|---' * 6 + '|']
+    lines = ['| | the least | sleeps and cancels | and senders | and masters | the least with counters | all |',
+             '|---' * 7 + '|']
     for cost, what, unit in COSTS:
         cells = ' | '.join(beside_bound(figures[f'{job}.{cost}'], unit, aims.get(f'{job}.{cost}')) for job in JOBS)
         lines.append(f'| {what} | {cells} |')
@@ -157,7 +158,8 @@ def peers_table(figures):
         cells = [row[column] or '–' for column in ('m0_flash', 'm0_flash_lto', 'm0_ram', 'avr_flash', 'avr_flash_lto', 'x86')]
         lines.append(f'| {row["name"]} | {row["version"]} | {" | ".join(cells)} | {row["what"]} |')
     whats = {'job': 'polled; a queue, retries, an announced echo, broadcast, break, any unit, quarantine',
-             'job_senders': 'the same and devices that send unsolicited frames, slow main loops',
+             'job_sleep': 'the same in a program that sleeps by `due_us` and cancels',
+             'job_senders': '`job` and devices that send unsolicited frames, slow main loops',
              'job_masters': 'the same and other masters',
              'job_counters': '`job` with counters',
              'job_all': '`job_masters`, echo detection, a listener, error flags of the port, settings of a transaction, '
