@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "fathom/engine/modbus_command.h"
+#include "fathom/engine/internal/modbus_command.h"
 
 #include "modbus_unit_internal.h"
 

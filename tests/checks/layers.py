@@ -21,7 +21,7 @@ ANYWHERE = TOOL_FOLDER + 'commands.h'  # declares the commands
 STANDARD = {'stdbool.h', 'stddef.h', 'stdint.h'}
 MAX_LINES = 400
 # path: lines, with the reason beside it
-LONGER = {'include/fathom/engine/line.h': 640}  # the manual of the line: 16 rules, and each member with its range
+LONGER = {'include/fathom/engine/line.h': 680}  # the manual of the line: 13 rules, and each member with its range
 
 # Headers without a source of their own name, and why.
 WITHOUT_SOURCE = ('include/fathom/engine/transaction.h',)  # types and constants; line.h has the functions

@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "fathom/engine/modbus_command.h"
+#include "fathom/engine/internal/modbus_command.h"
 
 /*
  * A transport of Modbus and a clock that do what the test says: the transport of modbus.h without a wire. Time stands

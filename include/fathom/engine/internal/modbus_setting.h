@@ -2,7 +2,7 @@
 #ifndef FATHOM_MODBUS_SETTING_H
 #define FATHOM_MODBUS_SETTING_H
 
-#include "fathom/engine/modbus_command.h"
+#include "fathom/engine/internal/modbus_command.h"
 
 #ifdef __cplusplus
 extern "C" {
