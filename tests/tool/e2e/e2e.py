@@ -239,6 +239,16 @@ class Device:
         """Nothing comes for so long."""
         return not is_ready(self.master, seconds)
 
+    def rest(self):
+        """Reads all that an ended program wrote. The kernel passes bytes from the slave of a pseudo terminal to its
+        master some time after the write has returned. A mark that is written behind them passes the same queue."""
+        mark = b'the end of what was written'
+        os.write(self.slave, mark)
+        got = b''
+        while not got.endswith(mark):
+            got += self.read(1)
+        return got[:-len(mark)]
+
     def write(self, data):
         os.write(self.master, bytes(data))
 

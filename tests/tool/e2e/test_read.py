@@ -195,7 +195,7 @@ class Choices(e2e.Case):
         """A byte 0 would stand for a break."""
         device, reader = self.beside(f'read {line} --count 1')
         self.ends(reader, 1, said, out='')
-        self.assertTrue(device.is_silent())
+        self.assertEqual(device.rest(), b'')
 
     def test_what_an_hps167s_says_to_another_client_is_no_measurement(self):
         device, reader = self.beside('read hps167s:1:auto --count 1 --timeout 1000 --format csv')
