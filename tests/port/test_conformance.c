@@ -454,12 +454,9 @@ static pid_t join_wires(const posix_pty_t *pty)
     }
 }
 
-/* A pseudo terminal takes no time, and this port marks no bytes: so much is not seen. */
-TEST(the_posix_port_keeps_what_can_be_seen_on_a_pseudo_terminal)
+/* Runs the items over a pseudo terminal whose bytes come back at most `late_us` late. Returns the number of failed items. */
+static unsigned run_posix_port(uint32_t late_us)
 {
-    static const char *const not_seen[] = {"clock_wrap",  "clock_us",     "write_no_gap",
-                                           "driver",      "read_silence", "read_stamp",
-                                           "mark_parity", "mark_framing", "read_overrun"};
     posix_pty_t pty;
     fathom_posix_uart_t port;
     const fathom_line_settings_t line = {19200, FATHOM_PARITY_NONE, 1};
@@ -475,20 +472,40 @@ TEST(the_posix_port_keeps_what_can_be_seen_on_a_pseudo_terminal)
                                        .line = line,
                                        .other = {57600, FATHOM_PARITY_NONE, 1},
                                        .longest = 255,
-                                       .late_us = 100000,
+                                       .late_us = late_us,
                                        .report = report};
-    assert_int_equal(fathom_conformance_run(&rig.bench), 0);
+    const unsigned failed = fathom_conformance_run(&rig.bench);
     assert_int_equal(kill(child, SIGKILL), 0);
     assert_int_equal(waitpid(child, NULL, 0), child);
     fathom_posix_close(&port);
     posix_pty_close(&pty);
-    assert_int_equal(rig.findings, FATHOM_CONFORMANCE_ITEMS);
+    return failed;
+}
+
+/* A pseudo terminal takes no time, and this port marks no bytes: so much is not seen. */
+static bool keeps_what_can_be_seen(uint32_t late_us)
+{
+    static const char *const not_seen[] = {"clock_wrap",  "clock_us",     "write_no_gap",
+                                           "driver",      "read_silence", "read_stamp",
+                                           "mark_parity", "mark_framing", "read_overrun"};
+    bool is_right = run_posix_port(late_us) == 0 && rig.findings == FATHOM_CONFORMANCE_ITEMS;
     unsigned at = 0;
-    for (unsigned i = 0; i != FATHOM_CONFORMANCE_ITEMS; i++) {
+    for (unsigned i = 0; i != rig.findings; i++) {
         if (rig.each[i] == FATHOM_KEPT) continue;
         /* Where this process was stopped until all had left. */
-        if (strcmp(rig.names[i], "set_line_waits") == 0) continue;
-        assert_string_equal(rig.names[i], not_seen[at++]);
+        if (strcmp(rig.names[i], "set_line_waits") == 0 && rig.each[i] == FATHOM_NOT_SEEN) continue;
+        if (at != sizeof not_seen / sizeof not_seen[0] && strcmp(rig.names[i], not_seen[at]) == 0) {
+            at++;
+            continue;
+        }
+        print_error("at most %u us late: %s is not kept or not seen\n", late_us, rig.names[i]);
+        is_right = false;
     }
-    assert_int_equal(at, sizeof not_seen / sizeof not_seen[0]);
+    return is_right && at == sizeof not_seen / sizeof not_seen[0];
+}
+
+/* Where the machine is so busy that bytes come back after more than 100 ms, 1 s is allowed. */
+TEST(the_posix_port_keeps_what_can_be_seen_on_a_pseudo_terminal)
+{
+    assert_true(keeps_what_can_be_seen(100000) || keeps_what_can_be_seen(1000000));
 }

@@ -207,10 +207,12 @@ static void no_more_signals(void)
     posix_start_watchdog(0);
 }
 
+/* Nothing is on the loop, so it sleeps until it is stopped. */
 TEST(a_signal_handler_stops_the_run)
 {
     signal_soon(on_signal);
-    fathom_loop_run(&rig.loop); /* nothing is on it: it would sleep for any time */
+    do fathom_loop_run(&rig.loop);
+    while (rig.loop.sleeps == 0); /* a busy machine may stop the loop before it sleeps, but not every time */
     no_more_signals();
     assert_in_range(rig.loop.sleeps, 1, 10);
 }
@@ -245,12 +247,12 @@ static void *stop_soon(void *arg)
 
 TEST(another_thread_stops_the_run_again_and_again)
 {
-    for (unsigned i = 0; i != 3; i++) {
+    for (unsigned i = 0; i < 3 || rig.loop.sleeps == 0; i++) {
         pthread_t thread;
         assert_int_equal(pthread_create(&thread, NULL, stop_soon, &rig.loop), 0);
         fathom_loop_run(&rig.loop);
         assert_int_equal(pthread_join(thread, NULL), 0);
-        assert_in_range(rig.loop.sleeps, 1, 3 * (i + 1));
+        assert_true(rig.loop.sleeps <= 3 * (i + 1));
     }
 }
 
