@@ -39,10 +39,11 @@ class Case(e2e.Case):
 
 
 def rows_of(screen, name):
-    """The rows of a lane: its words, and the plot below them."""
+    """The rows of a lane: its words, and the plot below them. None while the first picture is drawn, of which the
+    terminal may pass on a part alone."""
     lines = screen.text().split('\n')
-    axis = next(n for n, line in enumerate(lines) if ' ago ' in line)
-    first = next(n for n, line in enumerate(lines) if line.startswith(name + ' '))
+    axis = next((n for n, line in enumerate(lines) if ' ago ' in line), 0)
+    first = next((n for n, line in enumerate(lines[:axis]) if line.startswith(name + ' ')), axis)
     last = next((n for n in range(first + 1, axis) if lines[n][:1].strip()), axis)
     return lines[first:last]
 
