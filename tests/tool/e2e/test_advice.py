@@ -19,7 +19,7 @@ class Asked(e2e.Case):
     def ask(self, *responses, sensor=A16, code=1):
         """One request is answered with each of these; then it ends."""
         request = e2e.ASK_HPS if sensor.startswith(HPS) else e2e.ASK_A16
-        return self.ends(self.play(f'read {sensor} --timeout 400', request,
+        return self.ends(self.play(f'read {sensor} --timeout 1200', request,
                                    *([response] for response in responses)), code)
 
     def advised(self, done, attempt, *words, never='no such words'):

@@ -67,7 +67,7 @@ class Sending(e2e.Case):
         for shift in range(len(frame)):
             if (shift, len(frame)) == (6, 10):
                 continue  # a valid frame at the very beginning, which may be a pause
-            device, reader = self.beside(f'read {sensor} --count 1 --timeout 400 --format csv')
+            device, reader = self.beside(f'read {sensor} --count 1 --timeout 1000 --format csv')
             self.assertFalse(reader.has_ended(0.1))  # bytes of before the first poll are dropped
             device.write(frame[shift:] + frame * 12)
             done = reader.finish()

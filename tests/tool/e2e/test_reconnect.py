@@ -24,7 +24,7 @@ class Plug(e2e.Case):
         os.replace(self.path('new'), self.port)
         return device
 
-    def begin(self, options='', sensor='a16 --mode modbus', timeout=400):
+    def begin(self, options='', sensor='a16 --mode modbus', timeout=2000):
         return self.fathom(f'read {sensor} --port {self.port} --timeout {timeout} --format csv --reconnect '
                            f'{options}')
 
