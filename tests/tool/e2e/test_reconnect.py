@@ -77,13 +77,14 @@ class Plug(e2e.Case):
 
     def test_what_came_before_the_loss_is_not_joined_to_what_comes_after_it(self):
         device = self.plug_in()
-        reader = self.begin('--count 2')
+        reader = self.begin(timeout=400)
         response = e2e.registers(1, 2222)
         device.asked(e2e.ASK_A16, response[:4])
         time.sleep(0.02)
         self.pull(device, reader)
         self.plug_in().asked(e2e.ASK_A16, response[4:])
-        self.assertEqual(self.ends(reader, 1).rows, [])
+        reader.expect(r'attempt \d: ', 'err')
+        self.assertEqual(self.ends(reader.end(signal.SIGINT), 1).rows, [])
 
     def test_it_is_lost_again_and_again(self):
         reader = self.lose('--stats', 1000)
