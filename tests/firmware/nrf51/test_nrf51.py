@@ -58,8 +58,8 @@ class Nrf51(qemu.Transaction, qemu.Case):
     def test_what_the_makefile_makes_reads_too(self):
         self.check(self.sim('hps167s', *self.sim_options, '--distance', '2083').port, 'made/hps167s')
 
-    def test_the_conformance_kit_finds_nothing_on_joined_wires(self):
-        """What QEMU's wire does not show: bytes take no time, and none has an error."""
+    def conformance(self):
+        """Runs the kit on joined wires. Returns the ended image, and (item, verdict, figure) of each item."""
         device = self.device()
         image = self.boot('conformance', device.port)
         while True:
@@ -68,12 +68,21 @@ class Nrf51(qemu.Transaction, qemu.Case):
             if device.master not in ready:
                 break
             device.write(os.read(device.master, 4096))
-        done = self.end_well(image)
+        done = image.finish(qemu.PATIENCE)
         found = re.findall(r'^(\w+): (kept|NOT KEPT|not seen), (\d+) ', done.out, re.M)
-        self.assertEqual(len(found), 26)
-        # On a busy machine all bytes have left before the settings are changed.
-        unseen = [name for name, verdict, _ in found if verdict != 'kept' and name != 'set_line_waits']
-        self.assertEqual(unseen, NOT_SEEN)
+        self.assertEqual(len(found), 26, done)
+        return done, found
+
+    def test_the_conformance_kit_finds_nothing_on_joined_wires(self):
+        """What QEMU's wire does not show: bytes take no time, and none has an error. A busy machine may join the wires
+        later than the kit allows, but not three times."""
+        for _ in range(3):
+            done, found = self.conformance()
+            # On a busy machine all bytes have left before the settings are changed.
+            unseen = [name for name, verdict, _ in found if verdict != 'kept' and name != 'set_line_waits']
+            if done.code == 0 and unseen == NOT_SEEN:
+                break
+        self.assertEqual((done.code, unseen), (0, NOT_SEEN), done)
         # 40 requests of 8 bytes, of which the ring has kept 128.
         self.assertIn(('read_overrun', 'kept', '192'), found)
 
