@@ -138,7 +138,7 @@ typedef enum {
  * @brief Returns the name of a status without FATHOM_ and ERR_, for messages and logs.
  *
  * For example "OK" or "NO_RESPONSE". The function costs 227 bytes of flash on a Cortex-M0+. On an AVR constants lie
- * in RAM: 179 bytes of it; print the number there. If a program does not call the function, it is not linked.
+ * in RAM: 176 bytes of it; print the number there. If a program does not call the function, it is not linked.
  *
  * @return A constant string, never NULL. "?" for any other number.
  */

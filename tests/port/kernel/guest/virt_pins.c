@@ -147,8 +147,9 @@ static fathom_status_t wait_for(const fathom_sensor_t *sensor, fathom_sample_t *
 
 static int by_size(const void *a, const void *b) { return (int)(*(const long *)a - *(const long *)b); }
 
-/* Five readings, and errors of that kind between them (FATHOM_OK: none). What is measured differs by so much from
- * what was played: of the five, the second best, since the machine that all of this runs on may be busy. */
+/* Takes five readings and returns by how much the second best differs from what was played, because the machine may be
+ * busy. Between the readings, errors of the kind `allowed` and readings without a distance are accepted; with FATHOM_OK,
+ * none is. */
 static long difference_us(const fathom_sensor_t *sensor, fathom_status_t allowed)
 {
     enum { READINGS = 5, MOST_CYCLES = 20 };
@@ -160,8 +161,10 @@ static long difference_us(const fathom_sensor_t *sensor, fathom_status_t allowed
         CHECK(cycles != MOST_CYCLES);
         if (status == allowed && status != FATHOM_OK) continue;
         CHECK_INT(status, FATHOM_OK);
+        /* If the long pulse was missed among bounces, only the short ones are left, and they have no distance. */
+        if (allowed != FATHOM_OK && sample.kind == FATHOM_UNKNOWN) continue;
         CHECK_INT(sample.kind, FATHOM_TARGET);
-        CHECK_INT(sample.distance_mm, (sample.raw * 4 + 11) / 23); /* SENSORS.md: us * 4 / 23, rounded */
+        CHECK_INT(sample.distance_mm, (sample.raw * 4 + 11) / 23); /* us * 4 / 23, rounded */
         off[readings++] = labs((long)sample.raw - guest_ask("width %lu", (unsigned long)sample.raw));
     }
     qsort(off, READINGS, sizeof off[0], by_size);
