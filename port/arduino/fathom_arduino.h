@@ -102,14 +102,19 @@ fathom_pin_t input(uint8_t pin, bool pull_up = false);
 class pulse_input
 {
   public:
-    /** @brief Makes `pin` an input and discards all edges. Call it before attachInterrupt(). */
+    /**
+     * @brief Makes a pin an input and discards all edges. Call it before attachInterrupt().
+     * @param pin  Arduino number of the pin.
+     */
     void begin(uint8_t pin);
 
     /** @brief Stores an edge: first its time, then the level. Call it from the interrupt of the pin, in mode CHANGE. */
     void changed();
 
-    /** @brief Returns the capture for a fathom_a16_pwm_config_t or fathom_pulse_config_t. Call it after begin(). This
-     * object must stay valid as long as the result is used. */
+    /**
+     * @brief Returns the capture for a fathom_a16_pwm_config_t or fathom_pulse_config_t. Call it after begin().
+     * @return The capture, by value. This object must stay valid as long as the capture is used.
+     */
     fathom_capture_t capture();
 
     /** @brief The edges (edges.h). Its counters `lost` and `missed` may be read. `same_us` may be changed between
@@ -192,7 +197,10 @@ class serial_uart
      */
     bool begin(uint32_t baud, fathom_parity_t parity = FATHOM_PARITY_NONE, uint8_t stop_bits = 1);
 
-    /** @brief Returns the UART functions for a fathom_line_parts_t, by value. They point to this object. */
+    /**
+     * @brief Returns the UART functions for a fathom_line_parts_t.
+     * @return The functions, by value. This object must stay valid as long as they are used.
+     */
     fathom_uart_t hal();
 
     /**
@@ -251,7 +259,10 @@ class stream_uart
      */
     stream_uart(Stream &stream, uint32_t baud, uint8_t bits = 10);
 
-    /** @brief Returns the UART functions for a fathom_line_parts_t, by value. They point to this object. */
+    /**
+     * @brief Returns the UART functions for a fathom_line_parts_t.
+     * @return The functions, by value. This object must stay valid as long as they are used.
+     */
     fathom_uart_t hal();
 
   private:

@@ -16,8 +16,8 @@ extern "C" {
  * stand in modbus_unit.h: at most one command or setting is in progress, and one that its caller has abandoned ends.
  */
 
-/** @brief The least id of a command. */
-enum { FATHOM_MODBUS_COMMAND = 0x80 };
+/** @brief Ids of requests. */
+enum { FATHOM_MODBUS_COMMAND = 0x80 /**< The least id of a command. */ };
 
 /** @brief A command: one request of a driver. */
 typedef struct {

@@ -8,66 +8,97 @@
 extern "C" {
 #endif
 
-/*
- * A setting of a device, read, written once and read back. The set functions of the drivers are built on it, and share
- * these rules:
+/**
+ * @file
+ * @brief A setting of a device: it is read, written once, and read back. The set functions of the drivers are built on
+ * this file, and share these rules; users of a driver need not know the file.
  *
- *  1. The value is read. If it is the wanted one, nothing is written: flash wears. But where the last write of this
- *     setting did not read back, it is written: until the next power-on a device may report the value that it works
- *     with, and keep another.
- *     FATHOM_ERR_LINE_BUSY and FATHOM_ERR_OTHER_MASTER prove nothing: before the write they end the setting, and nothing
- *     is written. After the write they are no confirmation.
- *  2. Where the setting has an address (the new one, or with new line settings also the present one), a read there
- *     shows whether a unit responds already, and whether the port can do the line settings; that costs a time-out.
- *  3. The value is written, once: a write is never retried.
- *  4. The driver follows the device to its new address or line settings. Other drivers' requests that wait for the unit
- *     end with FATHOM_ERR_CANCELLED.
- *  5. The value is read back; where that fails at the new place, at the old one too.
+ * 1. **Read.** The value is read first. If it is the wanted value, nothing is written, because flash wears. There is one
+ *    exception: if the previous write of this setting did not read back, the value is written again, because until the
+ *    next power-on a device may report the value that it works with and keep another one. If the line is busy or another
+ *    master interferes before the write, the setting ends with that error and nothing is written. After the write these
+ *    errors are no confirmation.
  *
- * A blind setting (fathom_modbus_write_next_unchecked) is the third step alone: for a device whose responses cannot be
- * understood. The one after it is not blind, however this one ends.
+ * 2. **Probe.** If the setting changes the address or the line settings, a read at the new place shows whether a unit
+ *    responds there already, and whether the port can do the line settings. The probe costs one time-out.
  *
- * The measurement rests meanwhile: fathom_poll is FATHOM_PENDING. If the setting is begun and never called again, it gives
- * way to the next call of another function after FATHOM_MODBUS_ABANDONED_US (modbus_unit.h, rule 5); the value may then be
- * set or not.
+ * 3. **Write.** The value is written once. A write is never retried.
  *
- * A setting has at most 5 requests: the read, the probe, the write, and the read at the new and at the old place. With the
- * time C of one command (modbus_unit.h) and a `read` of one request it ends at the latest after
+ * 4. **Follow.** The driver uses the new address or line settings from now on. Requests of other drivers that wait for
+ *    the unit end with FATHOM_ERR_CANCELLED.
+ *
+ * 5. **Confirm.** The value is read back. If that fails at the new place, it is read at the old place too.
+ *
+ * A blind setting (fathom_modbus_write_next_unchecked()) consists of rule 3 alone. It is for a device whose responses
+ * cannot be understood. The setting after it is not blind, however the blind one ends.
+ *
+ * While a setting is in progress there is no measurement: fathom_poll() returns FATHOM_PENDING. If a setting is started
+ * and not called again, it gives way to the next call of another function after FATHOM_MODBUS_ABANDONED_US
+ * (modbus_unit.h, rule 5). The value may then be set or not.
+ *
+ * A setting has at most 5 requests: the read, the probe, the write, and the reads at the new and at the old place. With
+ * the terms of modbus_unit.h, and if `read` has one request, it ends at the latest after
  *
  *     4 C + period_us + B(command_timeout_us, 0) + S + P
  */
+
+/** @brief A setting (struct fathom_modbus_setting). */
 typedef struct fathom_modbus_setting fathom_modbus_setting_t;
+
+/** @brief A setting, in the driver's memory. It must stay valid and unchanged until it is finished. */
 struct fathom_modbus_setting {
-    /* Reads the present value: called until it is not FATHOM_PENDING, and then with *value where it is
-     * FATHOM_OK. NULL: it cannot be read, and the acknowledgement is all there is. */
+    /**
+     * @brief Reads the present value. NULL: the value cannot be read, and the acknowledgement of the write is the result.
+     *
+     * Called until it does not return FATHOM_PENDING. On FATHOM_OK it has written `*value`.
+     */
     fathom_status_t (*read)(const fathom_modbus_setting_t *setting, uint32_t *value);
-    void *driver;                       /* for read */
-    fathom_modbus_unit_request_t write; /* a command; its id tells the settings of a driver apart */
-    uint32_t value;                     /* what is wanted, as read gives it */
-    /* Where the device is once it has taken the value. The settings are kept by the caller as long as the unit. */
-    const fathom_line_settings_t *line_settings; /* NULL: as before */
-    uint16_t address;                            /* 1..254; 0: as before; 256: address 0 */
+    /** @brief The driver; for `read`. */
+    void *driver;
+    /** @brief The request that writes, a command. Its id distinguishes the settings of one driver. */
+    fathom_modbus_unit_request_t write;
+    /** @brief The wanted value, as `read` returns it. */
+    uint32_t value;
+    /** @brief Line settings of the device after the write; NULL: unchanged. Must stay valid as long as the unit. */
+    const fathom_line_settings_t *line_settings;
+    /** @brief Address of the device after the write: 1 to 254; 256 for address 0; 0: unchanged. */
+    uint16_t address;
 };
 
-/*
- * To be called after fathom_modbus_unit_poll, both with a setting of the same id until it is not FATHOM_PENDING.
- * unit->is_written tells whether anything was sent that changes the device:
- *   FATHOM_OK            not written: it was so already. Written: it was read back; where nothing can be read
- *                           back, it was acknowledged
- *   FATHOM_ERR_IN_USE       a unit responds at the new place already, or noise comes that may be a damaged response;
- *                           nothing was written
- *   FATHOM_ERR_UNCONFIRMED  it was written, or the port broke during that, and then the device could be read neither
- *                           at the new place nor at the old: it is at one of the two, and the driver stays at the old
- *                           one. Where nothing can be read back: it was not acknowledged. Blind: acknowledged or not
- *   FATHOM_ERR_WARMING_UP   so soon after power-on silence does not prove that the new place is free: not written
- *   FATHOM_ERR_DIFFERS      it acknowledged the value, and it reads back as another
- *   FATHOM_ERR_BUSY         another command or setting is not finished
- *   any other               of fathom_modbus_command. Not written: nothing was changed. Written: the device refused
- *                           it (exception), or the write failed so and another value was read back
+/**
+ * @brief Starts a setting, or continues with it. Call fathom_modbus_unit_poll() before.
+ *
+ * Call both functions with a setting of the same id until the result differs from FATHOM_PENDING. After that,
+ * `unit->is_written` states whether the write was sent.
+ *
+ * @param unit     The unit.
+ * @param setting  The setting.
+ * @retval FATHOM_OK               The value was right before and nothing was written; or it was written and read back; or
+ *                                 it cannot be read back and was acknowledged.
+ * @retval FATHOM_PENDING          The setting is not finished.
+ * @retval FATHOM_ERR_IN_USE       A unit responds at the new place, or noise there may be a damaged response. Nothing was
+ *                                 written.
+ * @retval FATHOM_ERR_UNCONFIRMED  The value was written, or the port broke during the write, and the device could be read
+ *                                 neither at the new place nor at the old one. The device is at one of the two; the
+ *                                 driver uses the old one. For a setting without `read`: there was no acknowledgement.
+ *                                 For a blind setting: the write was sent, acknowledged or not.
+ * @retval FATHOM_ERR_WARMING_UP   So soon after power-on, no response does not prove that the new place is free. Nothing
+ *                                 was written.
+ * @retval FATHOM_ERR_DIFFERS      The device acknowledged the value, and another value reads back.
+ * @retval FATHOM_ERR_BUSY         Another command or setting is not finished. Nothing was written.
+ * @return Other errors are those of fathom_modbus_command(). If `unit->is_written` is false, nothing changed. Otherwise
+ *         the device refused the value, or the write failed with this error and another value was read back.
  */
 fathom_status_t fathom_modbus_set(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting);
 
-/* Makes the next setting blind; cancel and power_on undo it. FATHOM_OK; FATHOM_ERR_BUSY: one is not finished. */
+/**
+ * @brief Makes the next setting blind. Cancelling and power-on undo this.
+ *
+ * @param unit  The unit.
+ * @retval FATHOM_OK            The next setting is blind.
+ * @retval FATHOM_ERR_BUSY      A setting is not finished. Nothing changed.
+ * @retval FATHOM_ERR_ARGUMENT  The unit is not initialised.
+ */
 fathom_status_t fathom_modbus_write_next_unchecked(fathom_modbus_unit_t *unit);
 
 #ifdef __cplusplus

@@ -110,8 +110,8 @@ typedef struct {
 /** @brief What the part for commands does for the measurement (modbus_command.h). NULL until the first command. */
 typedef struct fathom_modbus_commands fathom_modbus_commands_t;
 
-/** @brief Value of fathom_modbus_unit_t::current for the measurement. Commands have greater values (modbus_command.h). */
-enum { FATHOM_MODBUS_UNIT_MEASUREMENT = 1 };
+/** @brief Values of fathom_modbus_unit_t::current. Commands have greater values (modbus_command.h). */
+enum { FATHOM_MODBUS_UNIT_MEASUREMENT = 1 /**< The newest request was the measurement. */ };
 
 /**
  * @brief One Modbus unit, in the driver's memory. Initialise with fathom_modbus_unit_init().
