@@ -14,7 +14,9 @@ enum { START = 0x55, SECOND_START = 0xAA };
 uint8_t fathom_dyp_55aa_value_count(uint8_t command)
 {
     if (command == FATHOM_DYP_ALL_PROBES) return FATHOM_DYP_PROBES;
-    return ((uint8_t)(command - FATHOM_DYP_FIRST_PROBE) < FATHOM_DYP_PROBES) ? 1 : 0;
+    const bool is_one_probe =
+        (command >= FATHOM_DYP_FIRST_PROBE) && (command < (FATHOM_DYP_FIRST_PROBE + FATHOM_DYP_PROBES));
+    return is_one_probe ? 1 : 0;
 }
 
 uint8_t fathom_dyp_55aa_response_length(uint8_t command)

@@ -112,7 +112,7 @@ uint8_t fathom_modbus_rtu_frame_size(const fathom_modbus_message_t *message)
         most = FATHOM_MODBUS_MAX_WRITE;
         overhead = WRITE_MANY_OVERHEAD;
     }
-    if ((uint8_t)(count - 1u) >= most) return 0;
+    if ((count == 0u) || (count > most)) return 0;
     const uint8_t frame_size = (uint8_t)((2u * count) + overhead);
     return (frame_size > FIXED_LENGTH) ? frame_size : FIXED_LENGTH;
 }
@@ -141,11 +141,11 @@ static bool is_alike(const uint8_t *a, const uint8_t *b, uint8_t count)
 uint8_t fathom_modbus_rtu_response_length(const uint8_t *bytes, uint8_t have)
 {
     if (have <= SIZE) return SIZE + 1;
-    const uint8_t function = bytes[FUNCTION] & (uint8_t) ~(unsigned)EXCEPTION;
+    const uint8_t function = bytes[FUNCTION] % EXCEPTION; /* Without the highest bit. */
     const uint8_t size = bytes[SIZE];
     uint8_t length = FIXED_LENGTH;
     if (function == READ) {
-        const bool is_size = ((size & 1u) == 0u) && ((uint8_t)(size - 1u) < (2u * FATHOM_MODBUS_MAX_READ));
+        const bool is_size = ((size & 1u) == 0u) && (size != 0u) && (size <= (2u * FATHOM_MODBUS_MAX_READ));
         length = is_size ? (uint8_t)(size + READ_OVERHEAD) : 0u;
     } else if ((function != WRITE) && (function != WRITE_MANY)) {
         return 0;

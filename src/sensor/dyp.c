@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/sensor/internal/dyp.h"
 
-#include <stddef.h>
-
 #include "../common.h"
 
 /*
@@ -10,30 +8,34 @@
  * byte, since compilers make a call of memcpy() of an assignment.
  */
 
-/* The default meanings of FFFD, FFFE, FFFF and 0, four bits each. FFFD has the lowest four. */
-enum {
-    MEANINGS = FATHOM_MEANS_NO_TARGET | (FATHOM_MEANS_INTERFERENCE << 4) | (FATHOM_MEANS_REFUSED << 8) |
-               (FATHOM_MEANS_UNKNOWN << 12)
-};
-
 uint8_t fathom_dyp_meaning(const fathom_dyp_window_t *window, uint16_t value)
 {
-    const uint16_t special = (uint16_t)(value + 3u);
-    if (special > 3u)
-        return ((value >= window->min_mm) && (value <= window->max_mm)) ? (uint8_t)FATHOM_TARGET
-                                                                        : (uint8_t)FATHOM_MEANS_REFUSED;
-    const uint8_t meaning = ((const uint8_t *)window)[offsetof(fathom_dyp_window_t, value_fffd) + special];
-    if (meaning != FATHOM_MEANS_DEFAULT) return meaning;
-    return (uint8_t)((MEANINGS >> (4u * special)) & 15);
+    switch (value) {
+    case 0:
+        return window->value_0;
+    case 0xFFFD:
+        return window->value_fffd;
+    case 0xFFFE:
+        return window->value_fffe;
+    case 0xFFFF:
+        return window->value_ffff;
+    default:
+        break;
+    }
+    if ((value < window->min_mm) || (value > window->max_mm)) return FATHOM_MEANS_REFUSED;
+    return FATHOM_TARGET;
 }
 
 fathom_status_t fathom_dyp_measurement_next(fathom_dyp_measurement_t *measurement, fathom_sample_t *sample)
 {
-    uint8_t left = measurement->left;
     uint8_t probe = 1;
-    if (left == 0u) return FATHOM_PENDING;
-    measurement->left = left & (uint8_t)(left - 1u);
-    for (; (left & 1u) == 0u; left >>= 1) probe++;
+    uint8_t bit = 1;
+    if (measurement->left == 0u) return FATHOM_PENDING;
+    while ((measurement->left & bit) == 0u) {
+        probe++;
+        bit = (uint8_t)(bit << 1);
+    }
+    measurement->left &= (uint8_t)~bit;
     const uint16_t value = measurement->values[probe - measurement->first];
     uint8_t kind = fathom_dyp_meaning(&measurement->window, value);
     if (kind == FATHOM_MEANS_REFUSED) {
@@ -72,15 +74,21 @@ void fathom_dyp_window_copy(fathom_dyp_window_t *to, const fathom_dyp_window_t *
     }
 }
 
-/* Returns true if a value may mean this: any fathom_meaning_t. */
-static bool is_meaning(uint8_t meaning)
+/* Replaces FATHOM_MEANS_DEFAULT. Returns false if the meaning is none that a value may have. */
+static bool complete(uint8_t *meaning, uint8_t default_meaning)
 {
-    enum {
-        ALL = (1 << FATHOM_MEANS_DEFAULT) | (1 << FATHOM_MEANS_UNKNOWN) | (1 << FATHOM_MEANS_NO_TARGET) |
-              (1 << FATHOM_MEANS_TOO_NEAR) | (1 << FATHOM_MEANS_FAULT) | (1 << FATHOM_MEANS_INTERFERENCE) |
-              (1 << FATHOM_MEANS_REFUSED)
-    };
-    return (meaning <= FATHOM_MEANS_REFUSED) && (((ALL >> meaning) & 1) != 0);
+    if (*meaning == FATHOM_MEANS_DEFAULT) *meaning = default_meaning;
+    switch (*meaning) {
+    case FATHOM_MEANS_UNKNOWN:
+    case FATHOM_MEANS_NO_TARGET:
+    case FATHOM_MEANS_TOO_NEAR:
+    case FATHOM_MEANS_FAULT:
+    case FATHOM_MEANS_INTERFERENCE:
+    case FATHOM_MEANS_REFUSED:
+        return true;
+    default:
+        return false;
+    }
 }
 
 fathom_status_t fathom_dyp_measurement_init(fathom_dyp_measurement_t *measurement, uint16_t default_max_mm)
@@ -92,8 +100,10 @@ fathom_status_t fathom_dyp_measurement_init(fathom_dyp_measurement_t *measuremen
     measurement->implausible = 0;
     measurement->refused_raw = 0;
     measurement->refused_probe = 0;
-    const bool is_valid = (window->min_mm <= window->max_mm) && is_meaning(window->value_fffd) &&
-                          is_meaning(window->value_fffe) && is_meaning(window->value_ffff) &&
-                          is_meaning(window->value_0);
+    const bool is_valid = (window->min_mm <= window->max_mm) &&
+                          complete(&window->value_fffd, FATHOM_MEANS_NO_TARGET) &&
+                          complete(&window->value_fffe, FATHOM_MEANS_INTERFERENCE) &&
+                          complete(&window->value_ffff, FATHOM_MEANS_REFUSED) &&
+                          complete(&window->value_0, FATHOM_MEANS_UNKNOWN);
     return is_valid ? FATHOM_OK : FATHOM_ERR_ARGUMENT;
 }

@@ -4,7 +4,7 @@
 #include "../common.h"
 
 enum { ZERO_ADDRESS = 256 }; /* fathom_modbus_setting_t */
-enum { WRITES = 64 };        /* bit of the ids of writes */
+enum { WRITES = 64 };        /* Added to the id of a register: the id of its write. */
 
 /* ---- Initialisation ---- */
 
@@ -91,7 +91,7 @@ void fathom_dyp_modbus_describe(fathom_dyp_modbus_t *sensor, fathom_modbus_setti
     setting->write.first = address;
     setting->write.last = value;
     setting->write.function = FATHOM_MODBUS_WRITE_SINGLE_REGISTER;
-    setting->write.id = id_of(address) | WRITES;
+    setting->write.id = (uint8_t)(id_of(address) + WRITES);
     setting->value = value;
     setting->line_settings = NULL;
     setting->address = 0;

@@ -1,19 +1,19 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The engine keeps its state in enums and bools that a reader can name: no state is packed into bits, and no cast
+"""The library keeps its state in enums and bools that a reader can name: no state is packed into bits, and no cast
 hides a comparison.
 
-    engine.py     each line of src/engine with one of the patterns below: file, line, the pattern, what to use instead
+    engine.py     each line of src and include with one of the patterns below: file, line, the pattern, what to use instead
 
 The patterns are read in the code without comments and strings."""
 import re
 
 from common import code_of, files, main, read
 
-FOLDER = 'src/engine'
+FOLDERS = ('src', 'include')
 
-# Sets of units or settings: each bit is a member, and all bits mean the same.
-SETS = ('quarantined_units', 'unconfirmed', 'waiting')
+# Sets of units, settings or probes: each bit is a member, and all bits mean the same.
+SETS = ('quarantined_units', 'unconfirmed', 'waiting', 'left', 'missing', 'probes')
 # What a port reports about bytes (hal.h) is a word of flags.
 FLAGS = ('flags',)
 
@@ -24,7 +24,7 @@ PATTERNS = [  # pattern; the group that names the member, if any; what is wrong;
     (rf'{MEMBER}\s*=(?!=)\s*[^;]*(?<!\|)\|(?!\|)[^;]*;', 'stores combined bits in a member', 'a bool for each fact'),
     (rf'{MEMBER}\s*&\s*(?:\([^()]*\)\s*)?~?[A-Za-z0-9]', 'reads bits of a member', 'an enum or a bool'),
     (r'&\s*\(u?int(?:8|16|32)_t\)\s*~', 'clears bits by a mask', 'a bool for each fact'),
-    (r'\b0x1(?:00|0000)u?\b', 'encodes a second value above a byte or a word', 'a struct with both values'),
+    (r'(?<!- )\b0x1(?:00|0000)u?\b', 'encodes a second value above a byte or a word', 'a struct with both values'),
     (r'\(u?int(?:8|16)_t\)\s*\([^()]*-[^()]*\)\s*(?:<|>|<=|>=)(?![<>])', 'compares a wrapped difference',
      'a predicate with a name'),
     (r'\breturn\s+(?:\([a-z0-9_]+\)\s*)?-\s*\w*(?:count|length)\w*\s*;', 'returns a negative count',
@@ -45,7 +45,7 @@ def faults(text):
 
 def check(root, only):
     problems = []
-    for path in only or files(root, FOLDER):
+    for path in only or files(root, *FOLDERS, ends=('.c', '.h')):
         problems += [f'{path}:{line}: {wrong}; use {instead}' for line, wrong, instead in faults(read(root, path))]
     return problems
 
