@@ -30,9 +30,10 @@ extern "C" {
  * 2. **One context.** Fathom calls the functions from one context: one task or the main loop. Interrupts belong to the
  *    port. The port stores what an interrupt received until Fathom calls it.
  *
- * 3. **Context.** `ctx` belongs to the port. Fathom passes `ctx` to each function of its struct and never uses it.
+ * 3. **Context and lifetime.** `ctx` belongs to the port. Fathom passes `ctx` to each function of its struct and never
+ *    uses it. Fathom keeps pointers to the structs, so a struct must stay valid as long as an object uses it.
  *
- * 4. **Time.** Times wrap. Compare two times only by fathom_elapsed_us().
+ * 4. **Time.** Times wrap. Compare two times only by fathom_elapsed_us(), a function without state.
  */
 
 /** @brief The parity of a line. The sensors of Fathom all have 8 data bits. */
@@ -59,9 +60,10 @@ enum {
     FATHOM_RX_TIMED = 1, /**< `last_us` is set. */
     FATHOM_RX_SILENCE =
         2,                /**< The line was idle before the first byte (idle-line interrupt, DMA time-out). */
-    FATHOM_RX_PARITY = 4, /**< At least one byte has a wrong parity. */
-    FATHOM_RX_FRAMING = 8, /**< At least one byte has no stop bit: a break, noise, or another baud rate. */
-    FATHOM_RX_OVERRUN = 16 /**< Bytes were lost directly before the first byte. */
+    FATHOM_RX_PARITY = 4, /**< A byte of this read has a wrong parity. All bytes of the read count as bad. */
+    FATHOM_RX_FRAMING =
+        8, /**< A byte of this read has no stop bit: a break, noise, or another baud rate. The same. */
+    FATHOM_RX_OVERRUN = 16 /**< Bytes were lost directly before the first byte of this read. */
 };
 
 /** @brief What a port reports about the bytes of one read. Fathom clears the struct before each read. */
@@ -87,7 +89,10 @@ typedef struct {
     /**
      * @brief Copies received bytes.
      *
-     * One call never spans a silence or an error that the port knows of: the bytes beyond it belong to the next call.
+     * One call never spans a silence that the port knows of: it returns the bytes before the silence, and the next call
+     * returns the bytes after it, with FATHOM_RX_SILENCE. A byte that the port knows to be bad is returned alone. For
+     * example, if the third of five bytes has a wrong parity, three calls return 2 bytes, 1 byte with FATHOM_RX_PARITY,
+     * and 2 bytes.
      *
      * @param bytes     The memory for the bytes. Valid only during the call.
      * @param capacity  Size of `bytes` in bytes, at least 1.
@@ -114,7 +119,8 @@ typedef struct {
      * @brief Returns true if the last stop bit of all accepted bytes has left the pin.
      *
      * The result may become true late, because a USB adapter does not know the exact time. Bytes that are read before
-     * that still count as a response.
+     * that still count as a response. A port that drives a transceiver lets it receive again at the latest 3 characters
+     * after the last stop bit, because a unit may respond then.
      */
     bool (*sent)(void *ctx);
 

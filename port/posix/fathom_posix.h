@@ -22,9 +22,9 @@ extern "C" {
  * lines" of include/COST.md has the processor time of programs with 1 to 256 ports.
  *
  * @code
- * static fathom_posix_uart_t port;
+ * static fathom_posix_uart_t port;          // these three at file scope
  * static fathom_uart_t uart;
- * static fathom_clock_t clock;
+ * static fathom_clock_t hal_clock;
  *
  * const fathom_line_settings_t settings = {19200, FATHOM_PARITY_EVEN, 1};
  * if (fathom_posix_open(&port, "/dev/ttyUSB0", &settings) != FATHOM_POSIX_OK) {
@@ -32,16 +32,16 @@ extern "C" {
  *     return 1;
  * }
  * uart = fathom_posix_uart(&port);          // must stay valid as long as the line
- * clock = fathom_posix_clock();
- * // line and driver are initialised with &uart and &clock (line.h)
+ * hal_clock = fathom_posix_clock();
+ * // line and driver are initialised with &uart and &hal_clock (line.h)
  * status = fathom_wait(&sensor, &sample, fathom_posix_wait, &port);
  * fathom_posix_close(&port);
  * @endcode
  *
  * 1. **Threads.** Call the functions of one port from one thread at a time. Different ports are independent.
  *
- * 2. **Memory.** A port holds no pointer to other memory. An open port must not be moved, because fathom_posix_uart()
- *    returns a pointer to the port.
+ * 2. **Memory.** A port holds no pointer to other memory. An open port must not be moved, because the result of
+ *    fathom_posix_uart() contains a pointer to the port.
  *
  * 3. **Single bytes.** The port reports nothing about single bytes: it never sets a flag `FATHOM_RX_...`. A tty has no
  *    time stamps. Its error marks (PARMRK) cannot be trusted: the drivers of the most common USB adapters (ftdi_sio,
@@ -50,12 +50,20 @@ extern "C" {
  *    diagnosis, fathom_posix_line_errors() returns the counts of the driver.
  *
  * 4. **RS-485.** The port does not drive an RS-485 transceiver. Either the adapter does, or the driver of the kernel.
- *    Configure that driver in the device tree (`linux,rs485-enabled-at-boot-time`) or by fathom_posix_set_rs485().
+ *    Configure that driver in the device tree (`linux,rs485-enabled-at-boot-time`) or by fathom_posix_set_rs485(). An
+ *    adapter that needs RTS to switch its direction, at a driver without this function, cannot be used.
  *
  * 5. **USB latency.** The port does not make a USB adapter faster. An FTDI chip holds bytes back for up to 16 ms.
  *    `setserial /dev/ttyUSB0 low_latency` reduces this to 1 ms.
  *
- * 6. **Settings.** The port has 8 data bits, no flow control and no modem lines.
+ * 6. **Settings.** The port has 8 data bits and no flow control. It ignores the modem lines and does not set RTS and DTR;
+ *    most drivers switch both on when the tty is opened. fathom_posix_close() does not restore the former settings of
+ *    the tty.
+ *
+ * 7. **An unplugged adapter.** The polls of line and driver return FATHOM_ERR_PORT, and fathom_posix_error() returns
+ *    FATHOM_POSIX_ERR_LOST. Call fathom_posix_close(), and fathom_posix_open() on the same struct until it succeeds. The
+ *    result of fathom_posix_uart() stays valid, and the line and its drivers continue without a new initialisation. An
+ *    adapter can come back under another name: a path in /dev/serial/by-id keeps its name. fathom_loop.h does all this.
  */
 
 /**
@@ -71,8 +79,9 @@ typedef enum {
         -2, /**< The path does not exist, or there is no device behind it (a ttyS without a
                                            UART). */
     FATHOM_POSIX_ERR_PERMISSION =
-        -3,                       /**< The user may not open the path. The text names the group to join. */
-    FATHOM_POSIX_ERR_IN_USE = -4, /**< Another program, or another port of this program, has the tty open. */
+        -3, /**< The user may not open the path. The text names the group to join. */
+    FATHOM_POSIX_ERR_IN_USE =
+        -4, /**< Another program, or another port of this program, has locked the tty. */
     FATHOM_POSIX_ERR_NOT_A_TTY = -5, /**< The path is a file, a folder or a device of another kind. */
     FATHOM_POSIX_ERR_REFUSED =
         -6,                     /**< The driver did not keep the settings. The text has both: those that were
@@ -118,7 +127,7 @@ typedef struct {
  * stop bits, so the port checks these.
  *
  * **Exclusive.** The port takes a lock by flock(2), as pyserial does with `exclusive=True`, and sets TIOCEXCL against
- * programs that do not lock. TIOCEXCL does not stop root; the lock does. A pseudo terminal gets the lock only: TIOCEXCL
+ * programs that do not lock. TIOCEXCL does not stop a program of root; the lock stops it only if it locks too. A pseudo terminal gets the lock only: TIOCEXCL
  * would outlive a killed program there as long as the master is open. The port does not detect a program that opened
  * the tty earlier and uses neither.
  *
@@ -199,13 +208,13 @@ fathom_posix_status_t fathom_posix_set_rs485(fathom_posix_uart_t *port, const fa
 /**
  * @brief Returns the UART functions (hal.h) of an open port.
  *
- * If the port is closed or lost, `read` and `write` return -1.
+ * If the port is closed or lost, `read` and `write` return -1. Line and drivers report that as FATHOM_ERR_PORT.
  *
- * - **read** returns a negative number after the tty has hung up or its device was unplugged, until the port is closed
- *   and opened again. Signals do not disturb a read.
+ * - **read** returns -1 after the tty has hung up or its device was unplugged, until the port is closed and opened again
+ *   (rule 7). Signals do not disturb a read.
  * - **write** accepts 1 to FATHOM_POSIX_WRITE_MAX bytes. If `length` is larger, it returns -1 and changes nothing. If
  *   the queue of the kernel (4 KiB for most UARTs) is nearly full, the kernel may accept only the beginning of a
- *   request. The port then keeps the rest and `write` has accepted all. The next call of `read`, `write`, `sent` or
+ *   request. The port then keeps the rest, and `write` returns `length`. The next call of `read`, `write`, `sent` or
  *   fathom_posix_wait() for which the kernel has space passes the rest on. Until then another `write` returns 0. There
  *   is no gap on the wire if one of these calls comes before the queue of the kernel is empty.
  * - **sent** is true when three conditions hold: the queue of the kernel is empty; the transmitter of a real UART is
@@ -217,7 +226,8 @@ fathom_posix_status_t fathom_posix_set_rs485(fathom_posix_uart_t *port, const fa
  *   return the error.
  * - **leaves_in_us** returns the rest of the time of the third condition. It returns 0 if the kernel has not accepted
  *   all bytes yet, so that the caller polls soon, and if an adapter needs longer.
- * - **set_break** calls TIOCSBRK and TIOCCBRK when all bytes have been sent. Not every adapter can send a break, and
+ * - **set_break** returns at once: 0 while bytes are still being sent, so the caller calls it again; after that it calls
+ *   TIOCSBRK or TIOCCBRK. The caller ends the break by a second call. Not every adapter can send a break, and
  *   most drivers do not report that. On a pseudo terminal the port writes a byte 0 instead, since a received break
  *   reads as such a byte.
  * - **set_line** calls fathom_posix_set_line(), or nothing if the settings are in force already. If it returns -1,

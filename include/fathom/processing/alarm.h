@@ -16,49 +16,73 @@ extern "C" {
  * @file
  * @brief An alarm on the distance of one probe: two thresholds, hold times, and a side for the time without a distance.
  *
- * The alarm works for any sensor in any mode, and behind a median. It is not a safety function. include/COST.md has its
- * size in the row `alarm`.
+ * The alarm works for any sensor in any mode, and behind a median. It is not a safety function. It never waits, has no
+ * clock of its own and does no I/O. include/COST.md has its size in the row `alarm`.
  *
  * @code
  * static const fathom_alarm_config_t bumper = {.when = FATHOM_NEAR, .on_mm = 500, .off_mm = 600,
  *     .if_unknown = FATHOM_ALARM_ON, .if_no_response = FATHOM_ALARM_ON};
- * status = fathom_poll(&sensor, &sample);
- * if (status == FATHOM_OK ? fathom_alarm_add_sample(&alarm, &sample)
- *                            : fathom_alarm_add_status(&alarm, status, clock.now_us(clock.ctx)))
- *     stop_or_go(fathom_alarm_is_on(&alarm));
+ * static fathom_alarm_t alarm;
+ *
+ * if (fathom_alarm_init(&alarm, &bumper) != FATHOM_OK) fail();
+ * stop_or_go(fathom_alarm_is_on(&alarm));                           // the side before the first distance
+ * for (;;) {
+ *     const fathom_status_t status = fathom_poll(&sensor, &sample);
+ *     const bool has_changed = status == FATHOM_OK ? fathom_alarm_add_sample(&alarm, &sample)
+ *                                                  : fathom_alarm_add_status(&alarm, status, clock.now_us(clock.ctx));
+ *     if (has_changed) stop_or_go(fathom_alarm_is_on(&alarm));
+ * }
  * @endcode
  *
- * | state | when it is reached |
- * |---|---|
- * | FATHOM_ALARM_ON | something is nearer than `on_mm` (`when` FATHOM_NEAR) or farther (FATHOM_FAR) for `on_hold_us` |
- * | FATHOM_ALARM_OFF | something is farther than `off_mm`, or nearer, for `off_hold_us` |
- * | FATHOM_ALARM_UNKNOWN | no distance for more than `unknown_us`, and the device responds; also at first |
- * | FATHOM_ALARM_NO_RESPONSE | no distance for more than `unknown_us`, and the device does not respond, or never did |
+ * 1. **Thresholds.** If `when` is FATHOM_NEAR, a distance below `on_mm` is beyond the threshold of on, and a distance
+ *    above `off_mm` is beyond the threshold of off. If `when` is FATHOM_FAR, it is the reverse: above `on_mm` and below
+ *    `off_mm`. A sample of the kind FATHOM_NEAR counts as 0 mm. A sample of the kind FATHOM_FAR or FATHOM_NO_TARGET is
+ *    farther than every threshold. With `no_target_is_unknown`, FATHOM_NO_TARGET has no distance (rule 5); an ultrasonic
+ *    sensor can detect nothing in foam, or if the surface is too near.
  *
- * Whether a device responds is decided by the last call before. FATHOM_UNKNOWN, FATHOM_FAULT, a refused value and a
- * warm-up are responses without a distance. From the initialisation on, `unknown_us` begins with the first call.
+ * 2. **States.**
  *
- * Between the thresholds, and at them, the state holds. In the last two states the caller's `if_unknown` and
- * `if_no_response` decide whether the alarm is on. There is no default, because a bumper, a tank and a pit differ. A
- * distance beyond a threshold ends these states after its hold time. A distance between the thresholds ends them at
- * once: the state is then the one before them, or `if_unknown` if there was none.
+ *    | state | reached when |
+ *    |---|---|
+ *    | FATHOM_ALARM_ON | distances are beyond the threshold of on for at least `on_hold_us` |
+ *    | FATHOM_ALARM_OFF | distances are beyond the threshold of off for at least `off_hold_us` |
+ *    | FATHOM_ALARM_UNKNOWN | after init; or there was no distance for more than `unknown_us`, and the device responds |
+ *    | FATHOM_ALARM_NO_RESPONSE | there was no distance for more than `unknown_us`, and the device does not respond |
  *
- * A hold time runs from the first sample beyond the threshold to the sample that ends it. Time alone switches neither
- * on nor off. A distance that is not beyond the threshold begins the hold time again, and so does a time of
- * `unknown_us` without a distance; a shorter time without a distance does not.
+ *    Distances between the thresholds, or equal to one of them, do not change FATHOM_ALARM_ON or _OFF.
  *
- * FATHOM_NO_TARGET and FATHOM_FAR are farther than every threshold, FATHOM_NEAR is nearer. With `no_target_is_unknown`,
- * FATHOM_NO_TARGET is no distance: an ultrasonic sensor may detect nothing in foam, or too near.
+ * 3. **Hold times.** A hold time runs from the first sample beyond the threshold to the sample that completes it; time
+ *    alone switches neither on nor off. A distance that is not beyond that threshold starts the hold time again. A time
+ *    without a distance starts it again only if it is longer than `unknown_us`.
  *
- * The functions use no clock but the times that they are given, may be called from any context, and do no I/O.
+ * 4. **Which side without a distance.** In the last two states, `if_unknown` and `if_no_response` decide whether the
+ *    alarm is on. There is no default, because a bumper, a tank and a pit differ. A distance beyond a threshold ends
+ *    these states after its hold time; until then the state stays. A distance between the thresholds ends them at once:
+ *    the state is then FATHOM_ALARM_ON or _OFF, whichever was the last of the two, or `if_unknown` if there was none.
+ *
+ * 5. **Whether the device responds.** The newest call that says something about the device decides this (the table of
+ *    fathom_alarm_add_status()). FATHOM_PENDING, for example, changes nothing. Samples of the kinds FATHOM_UNKNOWN and
+ *    FATHOM_FAULT are responses without a distance. A device that was never heard counts as not responding. Before the
+ *    first distance, `unknown_us` counts from the first call.
+ *
+ * 6. **Several probes.** Each probe needs an alarm of its own. Pass a sample only to the alarm of its probe
+ *    (`sample.probe`). You may call fathom_alarm_add_status() with FATHOM_OK for the other alarms, to show that the
+ *    device responds.
+ *
+ * 7. **Times.** `now_us` and the `time_us` of the samples must be from the same clock. They may wrap. The time between two
+ *    calls and `unknown_us` must together be below 35 minutes; after a longer pause initialise the alarm again. A sample
+ *    that is up to 100 ms older than the sample before it counts as equally old.
+ *
+ * 8. **Contexts.** The functions may be called from an interrupt. Two contexts must not use the same alarm at once.
  */
 
 /** @brief The state of an alarm. */
 typedef enum {
-    FATHOM_ALARM_ON = 1,         /**< Beyond `on_mm`. */
-    FATHOM_ALARM_OFF = 2,        /**< Beyond `off_mm`. */
-    FATHOM_ALARM_UNKNOWN = 3,    /**< No distance; the device responds. */
-    FATHOM_ALARM_NO_RESPONSE = 4 /**< No distance; the device does not respond. */
+    FATHOM_ALARM_ON = 1,  /**< Distances are beyond the threshold of on. */
+    FATHOM_ALARM_OFF = 2, /**< Distances are beyond the threshold of off. */
+    FATHOM_ALARM_UNKNOWN =
+        3, /**< There is no distance; the device responds, or this is the state after init. */
+    FATHOM_ALARM_NO_RESPONSE = 4 /**< There is no distance; the device does not respond, or never did. */
 } fathom_alarm_state_t;
 
 /** Default of `unknown_us`. */
@@ -101,7 +125,7 @@ typedef struct {
  * @brief Initialises an alarm in the state FATHOM_ALARM_UNKNOWN.
  *
  * If the function fails, the alarm is zeroed: its state is 0 and never changes, and fathom_alarm_is_on() is false.
- * Check the result.
+ * Check the result: a bumper that is never on is dangerous.
  *
  * @param alarm   The alarm.
  * @param config  The configuration. Not used after the call.
@@ -111,10 +135,7 @@ typedef struct {
 fathom_status_t fathom_alarm_init(fathom_alarm_t *alarm, const fathom_alarm_config_t *config);
 
 /**
- * @brief Adds a sample of the probe, at its `time_us`.
- *
- * Times may wrap. The time between two calls and `unknown_us` must together be below 35 minutes. A time that is up to
- * 100 ms before the previous one counts as equal to it.
+ * @brief Adds a sample of the probe, at its `time_us` (rule 7).
  *
  * @param alarm   The alarm.
  * @param sample  The sample. Samples of one probe only.
@@ -123,14 +144,17 @@ fathom_status_t fathom_alarm_init(fathom_alarm_t *alarm, const fathom_alarm_conf
 bool fathom_alarm_add_sample(fathom_alarm_t *alarm, const fathom_sample_t *sample);
 
 /**
- * @brief Adds a result without a sample. A time before that of the last sample has no effect on the state.
+ * @brief Adds a result without a sample, or time that has passed.
  *
  * | status | meaning |
  * |---|---|
- * | FATHOM_PENDING, FATHOM_ERR_LINE_BUSY, FATHOM_ERR_OTHER_MASTER | time has passed; nothing is known of the device |
+ * | FATHOM_PENDING, FATHOM_ERR_LINE_BUSY, FATHOM_ERR_OTHER_MASTER | time has passed; the device may respond or not |
  * | FATHOM_ERR_MALFORMED, FATHOM_ERR_EXCEPTION, FATHOM_ERR_WARMING_UP | the device responds without a distance |
- * | FATHOM_OK | the same: a sample of another probe, or a sample without a median |
+ * | FATHOM_OK | the device responds without a distance: the sample was of another probe, or the median has no value yet |
  * | other errors | the device does not respond |
+ *
+ * If only results of the first line arrive from the start, the state is FATHOM_ALARM_NO_RESPONSE after `unknown_us`. A
+ * time before that of the newest sample does not change the state.
  *
  * @param alarm   The alarm.
  * @param status  The result of fathom_poll().

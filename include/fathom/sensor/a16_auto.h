@@ -19,36 +19,41 @@ extern "C" {
  * module sends, by a pin or by a break of the line. include/COST.md has its size in the row `a16_auto`.
  *
  * @code
- * static const fathom_a16_auto_config_t config = {.line = &line};   // fathom_line_init_listening() is enough
+ * // `uart` is set to 9600 8N1. fathom_line_init_listening(&line, &parts) initialises a line without requests (line.h).
+ * static const fathom_a16_auto_config_t config = {.line = &line};
  * fathom_a16_auto_init(&a16, &config);
  * sensor = fathom_a16_auto_sensor(&a16);
  * for (;;)
  *     if (fathom_poll(&sensor, &sample) == FATHOM_OK && sample.kind == FATHOM_TARGET) show_mm(sample.distance_mm);
  * @endcode
  *
- * 1. **Samples.** The kind is FATHOM_TARGET, or the meaning of the values 0, FFFD, FFFE and FFFF (dyp.h). `time_us` is
+ * 1. **Samples.** The kind is FATHOM_TARGET, or the meaning of a value that is no distance: by default FFFD is
+ *    FATHOM_NO_TARGET, FFFE is FATHOM_NO_TARGET with `interference`, 0 is FATHOM_UNKNOWN, and FFFF is refused. `window`
+ *    changes these meanings. `distance_mm` is 0 unless the kind is FATHOM_TARGET. `time_us` is
  *    the arrival of the last byte of the frame. fathom_poll() returns the sample when the next frame begins, or when
  *    the line has been silent for `gap_us` after the frame.
  *
- * 2. **Sequence.** Each frame increments `sequence`, a frame with a refused value too. If the program polls too seldom,
- *    newer frames replace older ones. The datasheet prints no period of the frames. If the module sends faster than it
+ * 2. **Sequence.** Each valid frame increments `sequence`, a frame with a refused value too. If the program polls less
+ *    often than the module sends, newer frames replace older ones. The datasheet prints no period of the frames. If the module sends faster than it
  *    measures, it repeats the old value, and neither the frame nor the sample shows this.
  *
- * 3. **Settling.** The processed value follows a change within 2.5 to 7.5 s, the real-time value within about 500 ms
+ * 3. **Settling.** The processed value needs 2.5 to 7.5 s to follow a change, the real-time value about 500 ms
  *    (A16 2(2)).
  *
- * 4. **Errors.** While there is no frame, fathom_poll() returns an error once every `stale_us`:
+ * 4. **Errors.** fathom_poll() returns FATHOM_PENDING if there is nothing new. FATHOM_ERR_STALE and FATHOM_ERR_CHECKSUM
+ *    are returned once every `stale_us` while there is no valid frame:
  *
  * | error of fathom_poll() | cause |
  * |---|---|
  * | FATHOM_ERR_STALE | the line was silent for `stale_us`: no wire, no supply, or another mode |
- * | FATHOM_ERR_STALE | the newest frame is too old, because the program polled too late (stream.h, rule 6) |
- * | FATHOM_ERR_CHECKSUM | bytes, but no frame, for `stale_us`: damage, noise, another rate or device (see below) |
- * | FATHOM_ERR_MALFORMED | a frame has a refused value: outside the window, or FFFF; see fathom_dyp_measurement_t |
+ * | FATHOM_ERR_STALE | the program paused for longer than `stale_us` and 0.5 s, so waiting frames are too old (stream.h) |
+ * | FATHOM_ERR_CHECKSUM | bytes, but no valid frame, for `stale_us`: damage, noise, another rate or another device |
+ * | FATHOM_ERR_MALFORMED | once for each frame with a refused value: outside the window, or FFFF by default |
  * | FATHOM_ERR_PORT | the port is broken; returned by every poll until the port works again |
  * | FATHOM_ERR_ARGUMENT | the initialisation failed or never ran, and the memory is zeroed |
  *
- * After FATHOM_ERR_CHECKSUM the counters in `base.stream.counters` show the cause (stream.h).
+ * After FATHOM_ERR_CHECKSUM the counters in `base.stream.counters` show the cause (stream.h). After
+ * FATHOM_ERR_MALFORMED, `base.measurement.refused_raw` is the refused value.
  */
 
 /** @brief The configuration. A member that is 0 takes its default. */
@@ -61,11 +66,11 @@ typedef struct {
     fathom_line_t *line;
 
     /**
-     * @brief Drives the RX pin of the module: a pin, or a break of the line whose TX it is
-     * (fathom_output_line_break()).
+     * @brief The output that drives the RX pin of the module: fathom_output_pin(), or fathom_output_line_break() if the
+     * TX of the line is wired to it.
      *
-     * 0: the program selects nothing. Open, the module's RX selects the processed value (A16 2(2)). `select.ctx` must
-     * stay valid until fathom_a16_auto_deinit().
+     * All members 0: the program selects nothing. A module whose RX is not connected sends the processed value (A16
+     * 2(2)). `select.ctx` must stay valid until fathom_a16_auto_deinit().
      */
     fathom_output_t select;
 

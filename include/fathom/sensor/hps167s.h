@@ -17,19 +17,20 @@ extern "C" {
  * @brief Measures with an HPS-167S, an infrared time-of-flight sensor on RS-485, by Modbus RTU.
  *
  * The driver sends command #5 of the datasheet again and again, and each response is one sample with a distance, the
- * strength of the reflection, the ambient light and a figure of precision. It sends no other command, because the
- * "registers" of this device are commands, and a read at a wrong place can reset it. It never waits and never allocates
+ * strength of the reflection, the ambient light and a figure of precision. Polling sends no other command, because
+ * the "registers" of this device are commands, and a read at a wrong place can reset it. The driver never waits and never allocates
  * memory. include/COST.md has its flash, RAM and stack (`hps167s`). hps167s_info.h reads versions, configuration and
  * temperature, hps167s_settings.h changes settings, and hps167s_auto.h listens to unsolicited frames.
  *
  * With factory settings the sensor has address 1, 19200 baud and 8E1 (datasheet 2.3).
  *
  * @code
- * static uint8_t frame[32];                          // must stay valid, as all that is static here
+ * static uint8_t frame[32];                          // static objects must stay valid as long as `gate`
  * static const fathom_line_parts_t parts = {.uart = &uart, .clock = &clock,
  *                                           .frame = frame, .frame_size = sizeof frame,
  *                                           .echo = FATHOM_LINE_ECHO_OFF,
- *                                           .silence_us = FATHOM_T3_5_US(19200, 11)};
+ *                                           .senders = &fathom_line_senders,          // rule 6
+ *                                           .silence_us = FATHOM_T3_5_US(19200, 11)}; // 11 bits in a character
  * static fathom_line_t line;
  * static fathom_modbus_t modbus;
  * static fathom_hps167s_t gate;
@@ -44,26 +45,28 @@ extern "C" {
  * if (fathom_poll(&sensor, &sample) == FATHOM_OK && sample.kind == FATHOM_TARGET) use(sample.distance_mm);
  * @endcode
  *
- * 1. **Samples.** The limits in millimetres are defaults that fathom_hps167s_set_limits() replaces.
+ * 1. **Samples.** fathom_hps167s_set_limits() replaces the limits 80, 30000 and 65530. `raw` has the 16 bits of the
+ *    distance as they were sent. `distance_mm` is 0 unless the kind is FATHOM_TARGET.
  *
  *    | `kind`           | response                                                                        |
  *    |------------------|---------------------------------------------------------------------------------|
  *    | FATHOM_TARGET    | A distance of 80 to 30000 mm. The datasheet's range is 80 to 18000 mm (table 1). |
  *    | FATHOM_NO_TARGET | 65530 to 65534 mm: out of range, or too weak ("65.53 meters", #5).              |
- *    | FATHOM_UNKNOWN   | 1 to 79 mm, below the range. The value is in `raw`.                             |
+ *    | FATHOM_UNKNOWN   | 1 to 79 mm, below the range.                                                    |
  *    | FATHOM_FAULT     | The abnormal packet: the sensor reports a failure (#5).                         |
  *
  *    In the abnormal packet all bits of distance, ambient light and precision are 1, and the magnitude is 0. The
  *    datasheet leaves its exponent open, so the driver accepts any.
  *
- * 2. **Errors of fathom_poll().** Each is the result of one request, with its retries. The driver continues after each.
+ * 2. **Errors of fathom_poll().** FATHOM_PENDING means that there is nothing new. Each error is the result of one request,
+ *    with its retries. Continue to poll after an error.
  *
  *    | error                   | cause                                                                     |
  *    |-------------------------|---------------------------------------------------------------------------|
  *    | FATHOM_ERR_NO_RESPONSE  | The unit did not respond within `timeout_us`. Check power and wiring.     |
  *    | FATHOM_ERR_CHECKSUM     | A response was damaged. Check baud rate, parity, termination and ground.  |
  *    | FATHOM_ERR_EXCEPTION    | The unit refused the request: see fathom_hps167s_exception().             |
- *    | FATHOM_ERR_MALFORMED    | The unit sent another frame, or values that rule 3 refuses.               |
+ *    | FATHOM_ERR_MALFORMED    | The unit sent a frame of another shape, or values that rule 3 refuses.    |
  *    | FATHOM_ERR_WARMING_UP   | The unit was powered a short time ago: see fathom_hps167s_power_on().     |
  *    | FATHOM_ERR_PORT         | The port is broken. Returned by every poll until the port works again.    |
  *    | FATHOM_ERR_LINE_BUSY    | The line was never silent. This says nothing about the unit (status.h).   |
@@ -90,6 +93,15 @@ extern "C" {
  *    other transactions. P is the longest time between two polls. While a command or a setting of this driver is in
  *    progress, fathom_poll() returns FATHOM_PENDING, so the time of the command or setting is added. modbus_unit.h has
  *    the rules of pace, back-off and abandoned commands.
+ *
+ *    For example: with the defaults, alone on its line and polled each millisecond, an unplugged sensor is
+ *    FATHOM_ERR_NO_RESPONSE after 0.51 s. Because of the back-off, later errors are up to 8.5 s apart.
+ *
+ * 6. **Unsolicited frames.** With factory settings the sensor may send measurements without a request after power-on
+ *    (#10). Name `senders` in the parts of the line (line.h, rule 11), so that requests leave between these frames. An
+ *    unsolicited frame is no sample, unless it arrives while a response is due and has its shape; its values are then
+ *    as new as those of the response. fathom_hps167s_set_measures_after_power_on() of hps167s_settings.h switches the
+ *    frames off from the next power-on.
  */
 
 /** @brief Least time from one measurement to the next in microseconds: 54 measurements a second (table 1). */
@@ -107,6 +119,8 @@ typedef struct {
      * | `period_us`          | 18519 to 2^31 - 1; less acts as 18519    | 18519 us                               |
      * | `timeout_us`         | 1 to 2^31 - 1                            | 500 ms: the slowest period is 167 ms   |
      * | `command_timeout_us` | 1 to 2^31 - 1                            | 1 s: the datasheet states no times     |
+     * | `retries`            | 0 to 254                                 | no retry                               |
+     * | `backoff_us`         | 1 to 2^31 - 1                            | 2^31 - 1 us: rule 5 limits it to 8 s   |
      *
      * Set `line_settings` if fathom_hps167s_set_baud() is to be used, or if the units of the line differ.
      */
@@ -195,7 +209,7 @@ struct fathom_hps167s {
 /**
  * @brief Initialises a driver. Nothing is sent before the first poll.
  *
- * @param sensor  The driver, in any memory. Must stay valid until fathom_hps167s_deinit().
+ * @param sensor  The driver. Its memory may have any content. Must stay valid until fathom_hps167s_deinit().
  * @param config  The config. Read only during the call; what it points to must stay valid as long as the driver.
  * @retval FATHOM_OK            The driver can be used. Next, pass fathom_hps167s_sensor() to fathom_poll().
  * @retval FATHOM_ERR_ARGUMENT  There is no transport or no clock, the address is above 32, `address_zero` is true,
@@ -211,8 +225,8 @@ fathom_status_t fathom_hps167s_init(fathom_hps167s_t *sensor, const fathom_hps16
  * @brief Replaces the default distance limits (hps167s_registers.h), from the next response on.
  *
  * @param sensor  The driver, initialised.
- * @param limits  The limits. Members that are 0 are set to their defaults. Must stay valid until the driver is
- *                deinitialised.
+ * @param limits  The limits, in memory that stays valid until the driver is deinitialised. The function sets members of
+ *                `*limits` that are 0 to their defaults, also if it fails.
  * @retval FATHOM_OK            The limits are in use.
  * @retval FATHOM_ERR_ARGUMENT  `over_range_mm` is 65535 or not above `max_mm`, or `min_mm` is above `max_mm`. The
  *                              driver uses the same limits as before.

@@ -10,23 +10,28 @@ extern "C" {
 
 /**
  * @file
- * @brief Changes settings of an HPS-167S: address, baud rate, warm-up, termination and others (#6 to #15).
+ * @brief Changes settings of an HPS-167S: address, baud rate, warm-up, termination and others.
  *
- * The sensor keeps all of these settings in its flash, so the functions read a value first and write it only if it
- * differs. Each write is sent once and is never retried. No function waits: each returns FATHOM_PENDING until it is
- * finished. Nothing but fathom_hps167s_restore_factory_settings() and fathom_hps167s_load_factory_settings() resets a
+ * #1 to #15 are the numbers of the commands in the datasheet: #1 reads the version, #2 the configuration, #5 measures.
+ * The sensor keeps its settings in flash, so a setting that can be read is read first and written only if it differs.
+ * Each write is sent once and is never retried. No function waits: each returns FATHOM_PENDING until it is finished.
+ * Nothing but fathom_hps167s_restore_factory_settings() and fathom_hps167s_load_factory_settings() resets a
  * sensor. include/COST.md has the flash of a program that uses all settings (`hps167s_settings`).
  *
  * @code
- * const fathom_status_t status = fathom_hps167s_set_termination(&gate, false);     // in the loop
- * if (status == FATHOM_OK) say(fathom_hps167s_is_written(&gate) ? "changed" : "it was off");
- * else if (status != FATHOM_PENDING) say(fathom_status_name(status));
+ * if (!is_done) {                                                                  // in the loop
+ *     const fathom_status_t status = fathom_hps167s_set_termination(&gate, false);
+ *     is_done = status != FATHOM_PENDING;
+ *     if (status == FATHOM_OK) say(fathom_hps167s_is_written(&gate) ? "changed" : "it was off");
+ *     else if (is_done) say(fathom_status_name(status));
+ * }
  * @endcode
  *
  * 1. **Calls.** Call a function with the same argument until its result differs from FATHOM_PENDING. Until then
  *    fathom_poll() returns FATHOM_PENDING, and other commands and settings return FATHOM_ERR_BUSY.
- *    fathom_hps167s_cancel() ends a setting: the value may then be set or not. A setting whose caller stops calling
- *    ends as an abandoned command does (modbus_unit.h, rule 5).
+ *    fathom_hps167s_cancel() ends a setting: the value may then be set or not. If the program stops to call the
+ *    function, measurements stay FATHOM_PENDING for 5 s and 16 polls; then they continue, and the value may be set or
+ *    not. After the end of a setting, another call starts a new one.
  *
  * 2. **Arguments.** A function checks its argument before anything is sent: FATHOM_ERR_ARGUMENT. It also returns this
  *    error if the driver is not initialised. `retries` of the config concerns the reads only.
@@ -38,7 +43,8 @@ extern "C" {
  *
  *    | result                     | cause                                                                         |
  *    |----------------------------|-------------------------------------------------------------------------------|
- *    | FATHOM_OK                  | The value was read back. Not written: the sensor already had this value.      |
+ *    | FATHOM_OK, not written     | The sensor already had this value.                                            |
+ *    | FATHOM_OK, written         | The value was read back.                                                      |
  *    | FATHOM_ERR_DIFFERS         | The sensor acknowledged the value, and reads back as another one.             |
  *    | FATHOM_ERR_UNCONFIRMED     | The value was sent and could not be read back: it may be set or not.          |
  *    | FATHOM_ERR_EXCEPTION       | The sensor refused: see fathom_hps167s_exception().                           |
@@ -58,13 +64,13 @@ extern "C" {
  *    | FATHOM_ERR_UNCONFIRMED     | The value was sent and not acknowledged: it may be set or not.                |
  *    | FATHOM_ERR_EXCEPTION       | The sensor refused: see fathom_hps167s_exception().                           |
  *    | FATHOM_ERR_BUSY            | Another command or setting is not finished, or this one with another value.   |
- *    | other                      | Nothing was written. The errors are those of fathom_poll().                   |
+ *    | other                      | Not written; the errors are those of fathom_poll(). Rule 5 has an exception.  |
  *
- * 5. **Busy lines.** After FATHOM_ERR_LINE_BUSY and FATHOM_ERR_OTHER_MASTER, fathom_hps167s_is_written() returns
- *    whether the write was sent. A write is sent into a silence only (line.h, rule 3).
+ * 5. **Busy lines.** After FATHOM_ERR_LINE_BUSY and FATHOM_ERR_OTHER_MASTER the write may have been sent:
+ *    fathom_hps167s_is_written() returns whether it was. If it was, the value may be set or not: call the function again.
  *
  * 6. **Bound.** A setting with read-back takes at most two reads of #2 and one command (hps167s_info.h, rule 4): at
- *    most 65 requests. A setting that moves the sensor takes at most four reads, because the new place is read first,
+ *    most 65 requests, because one read of #2 takes up to 32 requests beside unsolicited frames. A setting that moves the sensor takes at most four reads, because the new place is read first,
  *    and both places may be read afterwards. A WRITE-ONLY setting takes two commands. While the driver searches for the
  *    sensor after a change of the baud rate, one read of #1 is added.
  */
@@ -89,7 +95,8 @@ bool fathom_hps167s_is_written(const fathom_hps167s_t *sensor);
  * | FATHOM_ERR_UNCONFIRMED      | The value was sent, acknowledged or not: it may be set or not.                |
  * | FATHOM_ERR_EXCEPTION        | The sensor refused.                                                           |
  * | FATHOM_ERR_ARGUMENT         | #6 and #12 cannot be blind, because #12 may add to the present offset.        |
- * | other                       | Nothing was written.                                                          |
+ * | FATHOM_PENDING              | Call again.                                                                   |
+ * | other                       | Nothing was written, unless rule 5 applies.                                   |
  *
  * @retval FATHOM_OK            The next setting is blind.
  * @retval FATHOM_ERR_BUSY      A setting is not finished.
@@ -110,10 +117,10 @@ fathom_status_t fathom_hps167s_write_next_unchecked(fathom_hps167s_t *sensor);
 fathom_status_t fathom_hps167s_set_warm_up_s(fathom_hps167s_t *sensor, uint8_t warm_up_s);
 
 /**
- * @brief Sets the address of the sensor (#8). The sensor uses it at once.
+ * @brief Sets the address of the sensor (#8). The sensor uses the new address at once.
  *
- * The driver reads #1 at the present address, then at the new one, where no unit may respond: that costs one time-out,
- * `command_timeout_us`, for each attempt. With FATHOM_OK the driver uses the new address. Requests of other drivers
+ * The driver reads #1 at the present address, then at the new one. There no unit must respond, so this read costs one
+ * time-out, `command_timeout_us`, for each attempt. With FATHOM_OK the driver uses the new address. Requests of other drivers
  * that wait for the present address end with FATHOM_ERR_CANCELLED.
  *
  * @param sensor   The driver.
@@ -125,8 +132,9 @@ fathom_status_t fathom_hps167s_set_warm_up_s(fathom_hps167s_t *sensor, uint8_t w
  *                                 Nothing was written.
  * @retval FATHOM_ERR_WARMING_UP   The sensor was powered a short time ago, so silence does not prove that the address
  *                                 is free. Nothing was written. Try again later.
- * @retval FATHOM_ERR_UNCONFIRMED  The sensor responds at neither address: it has one of the two. The driver uses the
- *                                 former one.
+ * @retval FATHOM_ERR_UNCONFIRMED  The sensor responded at neither address, so it has one of the two. The driver uses the
+ *                                 former one. Poll it: if it does not respond, initialise the driver with the new
+ *                                 address.
  * @return Other values: rules 3 and 5.
  */
 fathom_status_t fathom_hps167s_set_address(fathom_hps167s_t *sensor, uint8_t address);
