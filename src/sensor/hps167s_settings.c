@@ -160,8 +160,7 @@ static fathom_status_t begin(fathom_hps167s_t *sensor, uint8_t command, uint32_t
         }
         /* #1 may still wait although a measurement has shown the rate. It would keep all other requests out. */
         const uint8_t version = fathom_hps167s_id(FATHOM_HPS167S_VERSION);
-        if ((unit->command == version) && ((unit->state == 0u) || (unit->current != version)))
-            unit->command = 0;
+        if ((unit->command == version) && (unit->state == 0u)) unit->command = 0;
         setting->line_settings = NULL;
         setting->address = 0;
     }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * proves: src/sensor/hps167s_auto.c
- * with:   src/sensor/hps167s.c src/sensor/hps167s_info.c src/codec/hps167s_registers.c src/codec/crc16.c
+ * with:   src/codec/modbus_rtu.c src/sensor/hps167s.c src/sensor/hps167s_info.c src/codec/hps167s_registers.c src/codec/crc16.c
  *          src/engine/modbus_command.c src/engine/modbus_unit.c src/engine/sensor.c
  * options: -eva-precision 0 -eva-auto-loop-unroll 700 -eva-widening-delay 20
  *          -eva-slevel-function fathom_modbus_unit_init:400,is_valid:50,is_valid_0:50,fathom_hps167s_init:50,fathom_hps167s_auto_init:50,main:200,run:1,receive:20,drop_first:20,fathom_crc16:20

@@ -199,6 +199,8 @@ static void refuse(const fathom_line_parts_t *wrong)
     /*@ assert status == FATHOM_ERR_ARGUMENT; */
     const uint32_t due_us = fathom_line_due_us(&line);
     /*@ assert due_us == FATHOM_NO_DEADLINE; */
+    const bool was_polled = fathom_line_was_polled(&line, any_32());
+    /*@ assert was_polled == 0; */
     fathom_line_flush(&line);
     fathom_line_cancel(&line, &a);
 }
