@@ -14,6 +14,7 @@
  * FATHOM_ASSERT_NOTE is a statement that only such a check needs.
  */
 #ifdef FATHOM_ASSERT
+#define FATHOM_HAS_ASSERT
 #define FATHOM_ASSERT_NOTE(statement) statement
 #endif
 #ifndef FATHOM_ASSERT

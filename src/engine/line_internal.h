@@ -113,7 +113,7 @@ static inline bool is_in_break(const fathom_line_t *line)
     return (line->phase == FATHOM_LINE_IN_BREAK) || (line->phase == FATHOM_LINE_ENDING_BREAK);
 }
 
-#ifdef FATHOM_ASSERT
+#ifdef FATHOM_HAS_ASSERT
 /*
  * Returns a sum over the first members of the parts of a line: uart, clock, frame, frame_size. A build with FATHOM_ASSERT
  * compares it at each poll, because the parts of a line are often a local variable of a set-up function by mistake.

@@ -34,7 +34,7 @@ def directives(path, lines):
         if found is None:
             continue
         if (found[1], found[2]) not in (('ifndef', guard), ('ifdef', '__cplusplus'),
-                                        ('ifdef', 'FATHOM_ASSERT'), ('ifndef', 'FATHOM_ASSERT')):
+                                        ('ifdef', 'FATHOM_ASSERT'), ('ifdef', 'FATHOM_HAS_ASSERT'), ('ifndef', 'FATHOM_ASSERT')):
             yield f'{path}:{number}: platform #if: {line.strip()}'
 
 
