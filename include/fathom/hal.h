@@ -15,7 +15,7 @@ extern "C" {
  * @brief What Fathom needs from a machine: one small struct of functions for each peripheral.
  *
  * A port fills in the structs, which may be const. Fathom never touches a register, an interrupt or an operating system
- * itself. This header declares types and two inline functions; it costs only what a program calls. port/README.md shows
+ * itself. This header declares types and three inline functions; it costs only what a program calls. port/README.md shows
  * how to write a port, and fathom_conformance.h tests one.
  *
  * @code
@@ -54,6 +54,12 @@ typedef struct {
     /** @brief Number of stop bits: 1 or 2. */
     uint8_t stop_bits;
 } fathom_line_settings_t;
+
+/** @brief Returns the number of bits of a character: start, 8 data, parity and stop bits. 10 for 8N1, 11 for 8E1. */
+static inline uint8_t fathom_character_bits(const fathom_line_settings_t *settings)
+{
+    return (uint8_t)(9u + ((settings->parity != FATHOM_PARITY_NONE) ? 1u : 0u) + settings->stop_bits);
+}
 
 /** @brief Flags of fathom_rx_t: what a port knows about the bytes of one read. A flag that is not set claims nothing. */
 enum {

@@ -30,12 +30,6 @@ int read_from(Stream &stream, uint8_t *bytes, size_t capacity)
     return static_cast<int>(count);
 }
 
-uint8_t bits_of(const fathom_line_settings_t &line)
-{
-    const uint8_t parity_bits = line.parity == FATHOM_PARITY_NONE ? 0 : 1;
-    return static_cast<uint8_t>(1 + 8 + parity_bits + line.stop_bits);
-}
-
 /* How long `length` characters may take to leave: 2.5 % for a slow baud generator, one bit until it has its next
  * tick, one for the interrupts between the bytes, and two steps of an AVR's micros(). 255 characters of 12 bits at
  * 1 us a bit still fit 32 bits. */
@@ -179,7 +173,7 @@ int serial_uart::write(void *ctx, const uint8_t *bytes, size_t length)
     serial_uart &self = *static_cast<serial_uart *>(ctx);
     if (static_cast<int>(length) > self.capacity_) return -1;
     if (!self.release() || self.serial_.availableForWrite() < static_cast<int>(length)) return 0;
-    self.span_us_ = span_us_of(length, bits_of(self.line_), self.line_.baud);
+    self.span_us_ = span_us_of(length, fathom_character_bits(&self.line_), self.line_.baud);
     if (self.driver_enable_ != no_pin) digitalWrite(self.driver_enable_, HIGH);
     const int taken = static_cast<int>(self.serial_.write(bytes, length));
     self.since_us_ =

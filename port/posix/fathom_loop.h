@@ -352,49 +352,28 @@ fathom_uart_t fathom_loop_uart(fathom_loop_source_t *source, const fathom_uart_t
 /* ---- lines and pins ---- */
 
 /**
- * @brief A tty with a line (line.h) and a Modbus client, in the caller's memory.
+ * @brief A tty with a line (line.h) that is part of a loop, in the caller's memory.
  *
- * After fathom_loop_add_line(), drivers may be initialised with `modbus` or `line`, also while the port cannot be
+ * After fathom_loop_add_line(), drivers may be initialised with `bus.modbus` or `bus.line`, also while the port cannot be
  * opened.
  */
 typedef struct {
     /** @brief The source, for fathom_loop_add_sensor(). */
     fathom_loop_source_t source;
 
-    /** @brief The port. While `source.is_open` is true, fathom_posix_set_rs485() and fathom_posix_line_errors() may use
-     * it. */
-    fathom_posix_uart_t port;
-
-    /** @brief Private: the path, in the caller's memory. */
-    const char *path;
-
-    /** @brief Private: the settings with which the port is opened. */
-    fathom_line_settings_t settings;
-
-    /** @brief Private: the UART of `line`. */
-    fathom_uart_t uart;
-
-    /** @brief The clock of `line`. A driver may use it too. */
-    fathom_clock_t clock;
-
     /**
-     * @brief The parts of `line`, set by fathom_loop_add_line().
+     * @brief Port, line and transport (fathom_posix.h). Do not open or close it: the loop does.
      *
-     * The parts find out whether there is echo, and name `senders` and `masters`. The silence is that of the settings,
-     * and the gap is 25 ms. There are no counters. If the program needs other parts, it changes them before the first
-     * step and before a driver uses the line, and then calls fathom_line_init() with `&line` and `&parts` again. Only
-     * `silence_us` and `gap_us` may be changed without that call.
+     * While `source.is_open` is true, fathom_posix_set_rs485() and fathom_posix_line_errors() may use the port. If the
+     * program needs other parts, it changes `bus.parts` before the first step and before a driver uses the line, and then
+     * calls fathom_line_init() with `&bus.line` and `&bus.parts` again. Only `silence_us` and `gap_us` may be changed
+     * without that call.
      */
-    fathom_line_parts_t parts;
+    fathom_posix_bus_t bus;
 
-    /** @brief The line, for drivers that listen and for requests of the program. */
-    fathom_line_t line;
-
-    /** @brief The Modbus transport over `line`, for the configurations of drivers. */
-    fathom_modbus_t modbus;
-
-    /** @brief Private: the frame buffer of `line`. */
-    uint8_t frame[255];
+    /* private */
+    const char *path;
+    fathom_line_settings_t settings; /* with which the port is opened */
 } fathom_loop_line_t;
 
 /**

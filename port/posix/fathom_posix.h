@@ -6,7 +6,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "fathom/hal.h"
+#include "fathom/engine/modbus.h"
+#include "fathom/engine/wait.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -317,6 +318,73 @@ int fathom_posix_fd(const fathom_posix_uart_t *port);
 /** @brief Returns the events of poll(2) to wait for: POLLIN, and also POLLOUT while the port keeps the rest of a
  * request. */
 short fathom_posix_poll_events(const fathom_posix_uart_t *port);
+
+/* ---- a port with a line ---- */
+
+/**
+ * @brief A tty with a line on it, in the caller's memory: all that a driver needs.
+ *
+ * Pass `modbus` to the drivers that send Modbus requests, and `line` to those that listen or use the protocol `55 AA`.
+ * Several drivers may share one bus. The line is made of parts (line.h) that suit a tty and an unknown adapter: it finds
+ * out whether the adapter echoes, names `senders` and `masters`, keeps fathom_silence_us() before a request, ends an
+ * incomplete frame after 25 ms, because USB adapters hold bytes back, and counts events in `counters`. A program that needs other parts changes `parts` and
+ * calls fathom_line_init() with `&line` and `&parts`, before it initialises a driver.
+ *
+ * Do not move or copy a bus, because its members point to each other.
+ */
+typedef struct {
+    /** @brief The port. fathom_posix_set_rs485() and fathom_posix_line_errors() may use it. */
+    fathom_posix_uart_t port;
+    /** @brief The line, initialised. */
+    fathom_line_t line;
+    /** @brief The Modbus RTU transport over `line`. */
+    fathom_modbus_t modbus;
+    /** @brief The clock, for drivers that use a pin. */
+    fathom_clock_t clock;
+    /** @brief The parts of `line`. */
+    fathom_line_parts_t parts;
+    /** @brief The counters of the line (line.h). The caller may set them to 0. */
+    uint16_t counters[FATHOM_LINE_COUNTERS];
+    /* private */
+    fathom_uart_t uart;
+    uint8_t frame[255];
+} fathom_posix_bus_t;
+
+/**
+ * @brief Opens a tty and makes a line of it.
+ *
+ * @param bus       The bus, with any content. Close an open bus first; otherwise its file descriptor leaks. Drivers of a
+ *                  bus that is opened again continue, and the requests that were queued end with FATHOM_ERR_CANCELLED.
+ * @param path      Path of the tty, such as "/dev/ttyUSB0". Used only during the call.
+ * @param settings  The settings with which the sensors leave the factory (factory_line.h), or those that were set. As for
+ *                  fathom_posix_open(). Copied.
+ * @return As fathom_posix_open(); FATHOM_POSIX_ERR_ARGUMENT also if `bus` is NULL. If it is not FATHOM_POSIX_OK, the bus
+ *         is closed, each driver's init function refuses it with FATHOM_ERR_ARGUMENT, and fathom_posix_bus_error() has
+ *         the reason.
+ */
+fathom_posix_status_t fathom_posix_bus_open(fathom_posix_bus_t *bus, const char *path,
+                                            const fathom_line_settings_t *settings);
+
+/** @brief Closes the port of a bus, as fathom_posix_close(). `bus` may be NULL, closed, or all zeros. */
+void fathom_posix_bus_close(fathom_posix_bus_t *bus);
+
+/** @brief Returns the newest error of the port in words, as fathom_posix_error_text(). */
+const char *fathom_posix_bus_error(const fathom_posix_bus_t *bus);
+
+/**
+ * @brief Waits for the next reading or error of a sensor, as fathom_wait(). Uses no processor time while it waits.
+ *
+ * The driver's header states the longest wait. With several sensors on one bus, read them in turns, or poll all of them
+ * with fathom_poll() and sleep by fathom_posix_wait(). If the port is closed, or was lost before the call, the call takes
+ * one second, so that a program that reads on does not use a whole processor.
+ *
+ * @param bus     The bus of the sensor.
+ * @param sensor  The sensor, such as the result of fathom_hps167s_sensor().
+ * @param sample  Written with FATHOM_OK only.
+ * @return Any result of fathom_poll() but FATHOM_PENDING. With FATHOM_ERR_PORT, fathom_posix_bus_error() has the reason.
+ */
+fathom_status_t fathom_posix_bus_read(fathom_posix_bus_t *bus, fathom_sensor_t sensor,
+                                      fathom_sample_t *sample);
 
 #ifdef __cplusplus
 }

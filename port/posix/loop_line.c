@@ -5,8 +5,6 @@
 #include "internal/posix_loop.h"
 #include "internal/posix_port.h"
 
-enum { GAP_US = 25000 };
-
 /* ---- a read that asks only where something has come ---- */
 
 static int gated_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
@@ -69,34 +67,34 @@ static fathom_loop_line_t *line_of(fathom_loop_source_t *source) { return (fatho
 static bool open_line(fathom_loop_source_t *source)
 {
     fathom_loop_line_t *const line = line_of(source);
-    return fathom_posix_open(&line->port, line->path, &line->settings) == FATHOM_POSIX_OK;
+    return fathom_posix_open(&line->bus.port, line->path, &line->settings) == FATHOM_POSIX_OK;
 }
 
-static void close_line(fathom_loop_source_t *source) { fathom_posix_close(&line_of(source)->port); }
+static void close_line(fathom_loop_source_t *source) { fathom_posix_close(&line_of(source)->bus.port); }
 
 static int line_fd(const fathom_loop_source_t *source)
 {
-    return fathom_posix_fd(&((const fathom_loop_line_t *)source)->port);
+    return fathom_posix_fd(&((const fathom_loop_line_t *)source)->bus.port);
 }
 
 static short line_events(const fathom_loop_source_t *source)
 {
-    return fathom_posix_poll_events(&((const fathom_loop_line_t *)source)->port);
+    return fathom_posix_poll_events(&((const fathom_loop_line_t *)source)->bus.port);
 }
 
 static bool poll_line(fathom_loop_source_t *source)
 {
-    return fathom_line_poll(&line_of(source)->line) != FATHOM_ERR_PORT;
+    return fathom_line_poll(&line_of(source)->bus.line) != FATHOM_ERR_PORT;
 }
 
 static uint32_t line_due_us(fathom_loop_source_t *source)
 {
-    return fathom_line_due_us(&line_of(source)->line);
+    return fathom_line_due_us(&line_of(source)->bus.line);
 }
 
 static const char *line_error_text(const fathom_loop_source_t *source)
 {
-    return fathom_posix_error_text(&((const fathom_loop_line_t *)source)->port);
+    return fathom_posix_error_text(&((const fathom_loop_line_t *)source)->bus.port);
 }
 
 fathom_posix_status_t fathom_loop_add_line(fathom_loop_t *loop, fathom_loop_line_t *line, const char *path,
@@ -108,26 +106,14 @@ fathom_posix_status_t fathom_loop_add_line(fathom_loop_t *loop, fathom_loop_line
         fathom_loop_has(loop, &line->source))
         return FATHOM_POSIX_ERR_ARGUMENT;
     memset(line, 0, sizeof *line);
-    if (fathom_posix_check(&line->port, settings) != FATHOM_POSIX_OK) return FATHOM_POSIX_ERR_ARGUMENT;
+    if (fathom_posix_check(&line->bus.port, settings) != FATHOM_POSIX_OK) return FATHOM_POSIX_ERR_ARGUMENT;
     line->source.kind = &kind;
     line->source.reads_all = true;
     line->path = path;
     line->settings = *settings;
-    const fathom_uart_t uart = fathom_posix_uart(&line->port);
-    line->uart = fathom_loop_uart(&line->source, &uart);
-    line->clock = fathom_posix_clock();
-    line->parts.uart = &line->uart;
-    line->parts.clock = &line->clock;
-    line->parts.frame = line->frame;
-    line->parts.frame_size = sizeof line->frame;
-    line->parts.find_echo = fathom_line_find_echo;
-    line->parts.senders = &fathom_line_senders;
-    line->parts.masters = &fathom_line_masters;
-    line->parts.silence_us = FATHOM_T3_5_US(settings->baud, fathom_posix_bits(settings));
-    line->parts.gap_us = GAP_US;
-    /* The line accepts each silence of 588 baud and more, and the port has no rate below 1200. */
-    (void)fathom_line_init(&line->line, &line->parts);
-    line->modbus = fathom_modbus_client(&line->line);
+    const fathom_uart_t uart = fathom_posix_uart(&line->bus.port);
+    const fathom_uart_t gated = fathom_loop_uart(&line->source, &uart);
+    fathom_posix_bus_set_up(&line->bus, &gated, settings);
     fathom_loop_add(loop, &line->source);
     return FATHOM_POSIX_OK;
 }

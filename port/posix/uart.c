@@ -22,7 +22,7 @@ enum { PTY_MAJOR_FIRST = 136, PTY_MAJOR_LAST = 143 };
 
 static uint64_t duration_us(const fathom_line_settings_t *line, size_t length)
 {
-    return ((uint64_t)length * fathom_posix_bits(line) * 1000000u + line->baud - 1) / line->baud;
+    return ((uint64_t)length * fathom_character_bits(line) * 1000000u + line->baud - 1) / line->baud;
 }
 
 /* Passes bytes to the kernel. Returns the number of bytes that it accepted, or -1 if the port is lost. */

@@ -264,9 +264,6 @@ bool fathom_rp2040_uart_setup(const fathom_rp2040_wiring_t *wiring, const fathom
  */
 bool fathom_rp2040_uart_set_line(const fathom_rp2040_wiring_t *wiring, const fathom_line_settings_t *line);
 
-/** @brief Returns the number of bits of a character with these settings: 10 for 8N1, 11 for 8E1. */
-unsigned fathom_rp2040_uart_bits(const fathom_line_settings_t *line);
-
 /* ---- pulses ---- */
 
 /** @brief A pin whose edges are fed to a fathom_edges_t, in the caller's memory. All members are private. */

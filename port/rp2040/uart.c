@@ -166,7 +166,7 @@ static int uart_write(void *ctx, const uint8_t *bytes, size_t length)
     uart->length = (uint8_t)length;
     drive(uart, true);
     feed(uart);
-    const uint32_t us = time_us(uart, (uint32_t)length * fathom_rp2040_uart_bits(&uart->line));
+    const uint32_t us = time_us(uart, (uint32_t)length * fathom_character_bits(&uart->line));
     if (uart->config.wiring.has_driver) fathom_rp2040_alarm_set(uart->config.wiring.alarm, us);
     uart->end_us =
         RP2040_TIMER_RAWL + us +

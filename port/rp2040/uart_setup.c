@@ -28,11 +28,6 @@ static uint32_t divider(uint32_t clk_peri_hz, uint32_t baud)
     return (off_hz > (hz / MAX_ERROR_DIVIDER)) ? 0u : result;
 }
 
-unsigned fathom_rp2040_uart_bits(const fathom_line_settings_t *line)
-{
-    return 9u + ((line->parity != FATHOM_PARITY_NONE) ? 1u : 0u) + line->stop_bits;
-}
-
 bool fathom_rp2040_uart_set_line(const fathom_rp2040_wiring_t *wiring, const fathom_line_settings_t *line)
 {
     const uint32_t divide = divider(wiring->clk_peri_hz, line->baud);

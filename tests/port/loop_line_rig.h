@@ -50,7 +50,7 @@ static inline void line_rig_add(uint32_t baud)
     numbers[i] = i;
     assert_int_equal(fathom_loop_add_line(&rig.loop, &rig.lines[i], rig.ptys[i].path, &settings),
                      FATHOM_POSIX_OK);
-    const fathom_hps167s_config_t config = {.modbus.transport = &rig.lines[i].modbus,
+    const fathom_hps167s_config_t config = {.modbus.transport = &rig.lines[i].bus.modbus,
                                             .modbus.timeout_us = LINE_RIG_TIMEOUT_US};
     assert_int_equal(fathom_hps167s_init(&rig.drivers[i], &config), FATHOM_OK);
     rig.sensors[i] =

@@ -174,7 +174,7 @@ TEST(the_loop_wakes_once_for_the_end_of_a_request)
     assert_in_range(posix_time.epoll_count, requests, requests * 3 + 1);
     assert_in_range(calls.ioctls, 1, requests + 1);
     assert_in_range(posix_time.longest_first_us, 50000, 67000);
-    rig.lines[0].uart.leaves_in_us = NULL;
+    rig.lines[0].bus.uart.leaves_in_us = NULL;
     line_rig_until(&rig.readings[0], rig.readings[0] + 1);
     count_calls();
     line_rig_until(&rig.readings[0], rig.readings[0] + 2);

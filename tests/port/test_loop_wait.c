@@ -123,7 +123,7 @@ TEST(a_hang_up_right_behind_the_last_bytes_is_seen)
 static size_t write_all(void)
 {
     static const uint8_t bytes[251];
-    const fathom_uart_t *const uart = &rig.lines[0].uart;
+    const fathom_uart_t *const uart = &rig.lines[0].bus.uart;
     size_t total = 0;
     while (uart->write(uart->ctx, bytes, sizeof bytes) > 0) total += sizeof bytes;
     return total;

@@ -150,7 +150,7 @@ static const fathom_protocol_t *protocol_of(const request_t *request)
 static request_outcome_t judge_copy(const request_ask_t *ask, const channel_t *channel)
 {
     const request_t *const request = ask->request;
-    const uint64_t bits = line_bits(&request->line);
+    const uint64_t bits = fathom_character_bits(&request->line);
     const uint64_t wire_us = request->length * bits * 1000000u / request->line.baud;
     const uint64_t silence_us = FATHOM_T3_5_US(request->line.baud, bits);
     const uint64_t took_us = ask->evidence.slowest_us;

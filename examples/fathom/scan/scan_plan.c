@@ -35,7 +35,7 @@ uint16_t scan_silence_us(const scan_plan_t *plan)
     uint16_t longest_us = 0;
     for (uint8_t i = 0; i != plan->setting_count; i++) {
         const fathom_line_settings_t *const line = &plan->settings[i];
-        const uint16_t us = FATHOM_T3_5_US(line->baud, line_bits(line));
+        const uint16_t us = fathom_silence_us(line);
         if (us > longest_us) longest_us = us;
     }
     return longest_us;
@@ -43,7 +43,7 @@ uint16_t scan_silence_us(const scan_plan_t *plan)
 
 static uint32_t request_us(const fathom_line_settings_t *line)
 {
-    return (uint32_t)(REQUEST_BYTES * line_bits(line) * UINT32_C(1000000) / line->baud);
+    return (uint32_t)(REQUEST_BYTES * fathom_character_bits(line) * UINT32_C(1000000) / line->baud);
 }
 
 uint32_t scan_addresses(const scan_plan_t *plan) { return (uint32_t)(plan->last - plan->first + 1); }

@@ -4,7 +4,6 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "fathom/codec/hps167s_registers.h"
 #include "shared/line_text.h"
 #include "shared/options.h"
 #include "shared/tcp_address.h"
@@ -12,10 +11,7 @@
 /* What the line has to know of a serial port, ... */
 static void suit_serial(channel_t *channel, const fathom_line_settings_t *settings)
 {
-    /* An HPS-167S may move to 19200 baud, by its reset too: the slowest rate that is used counts (line.h). */
-    const uint32_t baud =
-        settings->baud > FATHOM_HPS167S_FACTORY_BAUD ? FATHOM_HPS167S_FACTORY_BAUD : settings->baud;
-    channel->parts.silence_us = FATHOM_T3_5_US(baud, line_bits(settings));
+    channel->parts.silence_us = fathom_silence_us(settings);
     channel->parts.gap_us = CHANNEL_RESPONSE_GAP_US;
     channel->parts.echo = channel->echo;
     channel->parts.senders = &fathom_line_senders;

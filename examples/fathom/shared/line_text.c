@@ -15,11 +15,6 @@ const char *line_text(const fathom_line_settings_t *settings, char text[LINE_TEX
     return text;
 }
 
-unsigned line_bits(const fathom_line_settings_t *settings)
-{
-    return 9u + (settings->parity != FATHOM_PARITY_NONE ? 1u : 0u) + settings->stop_bits;
-}
-
 const char *parity_name(uint8_t parity)
 {
     static const char *const names[] = {

@@ -12,9 +12,6 @@
 enum { LINE_TEXT = 24 };
 const char *line_text(const fathom_line_settings_t *settings, char text[LINE_TEXT]);
 
-/* Bits of a character, with its start, parity and stop bits. */
-unsigned line_bits(const fathom_line_settings_t *settings);
-
 /* "none", "even" or "odd". */
 const char *parity_name(uint8_t parity);
 

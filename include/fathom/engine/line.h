@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "fathom/engine/silence.h"
 #include "fathom/engine/transaction.h"
 #include "fathom/hal.h"
 #include "fathom/status.h"
@@ -159,22 +160,6 @@ extern "C" {
 
 /** @brief How much later than fathom_line_due_us() a program may poll and loses nothing, in microseconds (rule 14). */
 #define FATHOM_LINE_LATE_US 500000u
-
-/**
- * @brief Returns the silence that ends a frame (t3.5), in microseconds.
- *
- * The silence is 3.5 characters up to 19200 baud and 1750 us above (MODBUS over Serial Line V1.02, 2.5.1.1; HPS-167S
- * 2.2.3). The result is a constant expression if both arguments are constants. Below 588 baud (11 bits a character) the
- * silence does not fit into 16 bits: the result is 65535, and fathom_line_init() refuses it.
- *
- * @param baud  Baud rate in bits per second.
- * @param bits  Bits of one character, including start, parity and stop bits: 10 for 8N1; 11 for 8E1, 8O1 and 8N2.
- */
-#define FATHOM_T3_5_US(baud, bits)                                                                           \
-    ((uint16_t)((baud) > 19200 ? 1750                                                                        \
-                               : (((bits)*3500000uL + (baud)-1uL) / (baud) > 65535uL                         \
-                                      ? 65535uL                                                              \
-                                      : ((bits)*3500000uL + (baud)-1uL) / (baud))))
 
 /** @brief A line (struct fathom_line). */
 typedef struct fathom_line fathom_line_t;

@@ -34,15 +34,15 @@ typedef struct {
  *
  * @param poll    Does everything for the driver that can be done without waiting; see fathom_poll().
  * @param due_us  Returns the time until `poll` must be called again; see fathom_due_us().
- * @param driver  Passed to both functions. Must stay valid as long as the sensor.
+ * @param ctx     The driver, passed to both functions. Must stay valid as long as the sensor.
  */
 static inline fathom_sensor_t fathom_sensor_make(fathom_status_t (*poll)(void *ctx, fathom_sample_t *sample),
-                                                 uint32_t (*due_us)(void *ctx), void *driver)
+                                                 uint32_t (*due_us)(void *ctx), void *ctx)
 {
     fathom_sensor_t made;
     made.poll = poll;
     made.due_us = due_us;
-    made.ctx = driver;
+    made.ctx = ctx;
     return made;
 }
 

@@ -16,12 +16,6 @@ fathom_posix_status_t fathom_posix_fail_lost(fathom_posix_uart_t *port, int code
 /* error.c: returns FATHOM_POSIX_OK, _ERR_CLOSED or _ERR_LOST. */
 fathom_posix_status_t fathom_posix_usable(fathom_posix_uart_t *port);
 
-/* Returns the number of bits of a character with its start, parity and stop bits. */
-static inline unsigned fathom_posix_bits(const fathom_line_settings_t *line)
-{
-    return 9u + (line->parity != FATHOM_PARITY_NONE ? 1u : 0u) + line->stop_bits;
-}
-
 /* settings.c: returns FATHOM_POSIX_OK or _ERR_ARGUMENT. */
 fathom_posix_status_t fathom_posix_check(fathom_posix_uart_t *port, const fathom_line_settings_t *settings);
 
@@ -33,5 +27,9 @@ void fathom_posix_push(fathom_posix_uart_t *port);
 
 /* uart.c: returns FATHOM_POSIX_OK, _ERR_CLOSED, _ERR_LOST, or _ERR_BUSY while bytes are being sent. */
 fathom_posix_status_t fathom_posix_idle(fathom_posix_uart_t *port);
+
+/* bus.c: makes the line of a bus whose port has these settings. `uart` is that of the port, perhaps wrapped. */
+void fathom_posix_bus_set_up(fathom_posix_bus_t *bus, const fathom_uart_t *uart,
+                             const fathom_line_settings_t *settings);
 
 #endif

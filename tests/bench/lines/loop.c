@@ -15,7 +15,7 @@ static void take(void *ctx, fathom_status_t status, const fathom_sample_t *sampl
 
 static bool add(lines_job_t *job, unsigned n)
 {
-    fathom_hps167s_config_t config = {.modbus.transport = &lines[n].modbus,
+    fathom_hps167s_config_t config = {.modbus.transport = &lines[n].bus.modbus,
                                       .modbus.address = LINES_UNIT,
                                       .modbus.period_us = job->period_us,
                                       .modbus.timeout_us = LINES_TIMEOUT_S * 1000000u};

@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef FATHOM_SILENCE_H
+#define FATHOM_SILENCE_H
+
+#include <stdint.h>
+
+#include "fathom/hal.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/**
+ * @file
+ * @brief Computes the silence between two frames of Modbus RTU from the settings of a line.
+ *
+ * The bus of each port calls fathom_silence_us(). A program that names the parts of a line (line.h) uses
+ * FATHOM_T3_5_US(), which costs no code.
+ */
+
+/**
+ * @brief Returns the silence that ends a frame (t3.5), in microseconds.
+ *
+ * The silence is 3.5 characters up to 19200 baud and 1750 us above (MODBUS over Serial Line V1.02, 2.5.1.1; HPS-167S
+ * 2.2.3). The result is a constant expression if both arguments are constants. Below 588 baud (11 bits a character) the
+ * silence does not fit into 16 bits: the result is 65535, and fathom_line_init() refuses it.
+ *
+ * @param baud  Baud rate in bits per second.
+ * @param bits  Bits of one character, including start, parity and stop bits: 10 for 8N1; 11 for 8E1, 8O1 and 8N2.
+ */
+#define FATHOM_T3_5_US(baud, bits)                                                                           \
+    ((uint16_t)(((baud) > 19200uL) ? 1750uL                                                                  \
+                : (((((bits)*3500000uL) + ((baud)-1uL)) / (baud)) > 65535uL)                                 \
+                    ? 65535uL                                                                                \
+                    : ((((bits)*3500000uL) + ((baud)-1uL)) / (baud))))
+
+/**
+ * @brief Returns the silence before a request on a line with these settings, in microseconds: t3.5.
+ *
+ * A rate above 19200 baud counts as 19200, because an HPS-167S that was set to such a rate returns to 19200 baud by its
+ * factory reset (#6), and the silence has to be right for the slowest rate that is used on the line.
+ *
+ * @param settings  The settings.
+ */
+static inline uint16_t fathom_silence_us(const fathom_line_settings_t *settings)
+{
+    const uint32_t baud = (settings->baud > 19200u) ? 19200u : settings->baud;
+    return FATHOM_T3_5_US(baud, fathom_character_bits(settings));
+}
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
