@@ -6,7 +6,8 @@
 #include <stdint.h>
 
 #include "fathom/engine/edges.h"
-#include "fathom/hal.h"
+#include "fathom/engine/modbus.h"
+#include "fathom/engine/wait.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -194,6 +195,65 @@ void fathom_avr_int0_init(fathom_edges_t *edges);
  * @param max_us  Longest sleep in microseconds.
  */
 void fathom_avr_idle(void *ctx, uint32_t max_us);
+
+/**
+ * @brief USART0 with a line on it, in the caller's memory: all that a driver needs. There is one, as there is one USART.
+ *
+ * Pass `modbus` to the drivers that send Modbus requests, and `line` to those that listen or use the protocol `55 AA`.
+ * Several drivers may share the bus. The line is made of parts (line.h) for a transceiver of unknown kind: it finds out
+ * whether there is an echo, names `senders`, uses the error flags of the USART, and keeps fathom_silence_us() before a
+ * request. A program that needs other parts changes `parts` and calls fathom_line_init() with `&line` and `&parts`, before
+ * it initialises a driver.
+ *
+ * Do not move or copy a bus, because its members point to each other.
+ */
+typedef struct {
+    /** @brief The line, initialised. */
+    fathom_line_t line;
+    /** @brief The Modbus RTU transport over `line`; not set by fathom_avr_bus_init_listening(). */
+    fathom_modbus_t modbus;
+    /** @brief The parts of `line`. */
+    fathom_line_parts_t parts;
+    /* private */
+    uint8_t frame[32];   /* the longest frame of any sensor is the details of an HPS-167S, 27 bytes */
+    uint8_t request[16]; /* the longest request is that of the reconnect time of an HPS-167S, 13 bytes */
+} fathom_avr_bus_t;
+
+/**
+ * @brief Initialises USART0 and makes a line of it, for sensors that are asked. Call fathom_avr_clock_init() before, and
+ * `sei()` after it.
+ *
+ * @param bus       The bus, with any content. Must stay valid as long as its drivers.
+ * @param driver    Driver enable (DE) of an RS-485 transceiver, as in fathom_avr_usart_config_t. NULL: none. Copied.
+ * @param settings  The settings with which the sensors leave the factory (factory_line.h), or those that were set.
+ *                  Copied.
+ * @return False if the settings cannot be reached, or are slower than 588 baud. Do not use the bus then.
+ */
+bool fathom_avr_bus_init(fathom_avr_bus_t *bus, const fathom_avr_pin_t *driver,
+                         const fathom_line_settings_t *settings);
+
+/**
+ * @brief Initialises USART0 and makes a line of it that only listens, for sensors that send by themselves.
+ *
+ * The program links nothing that sends. It may print by `fathom_avr_usart0.write`, since TX is free: 1 to 16 bytes at
+ * once.
+ *
+ * @param bus       As for fathom_avr_bus_init().
+ * @param settings  As for fathom_avr_bus_init().
+ * @return As fathom_avr_bus_init().
+ */
+bool fathom_avr_bus_init_listening(fathom_avr_bus_t *bus, const fathom_line_settings_t *settings);
+
+/**
+ * @brief Waits for the next reading or error of a sensor, as fathom_wait(). Sleeps while it waits (fathom_avr_idle()).
+ *
+ * The driver's header states the longest wait.
+ *
+ * @param sensor  The sensor, such as the result of fathom_hps167s_sensor().
+ * @param sample  Written with FATHOM_OK only.
+ * @return Any result of fathom_poll() but FATHOM_PENDING.
+ */
+fathom_status_t fathom_avr_bus_read(fathom_sensor_t sensor, fathom_sample_t *sample);
 
 #ifdef __cplusplus
 }

@@ -205,7 +205,7 @@ static void set(const fathom_line_settings_t *settings, uint16_t divisor)
                         : (settings->parity == FATHOM_PARITY_EVEN) ? _BV(UPM01)
                                                                    : (_BV(UPM01) | _BV(UPM00))));
     line = *settings;
-    const uint8_t bits = (uint8_t)(9 + (line.parity != FATHOM_PARITY_NONE) + line.stop_bits);
+    const uint8_t bits = fathom_character_bits(&line);
     character_us = (uint16_t)(((bits * 1000000u) + line.baud - 1) / line.baud);
 }
 

@@ -6,7 +6,8 @@
 #include <stdint.h>
 
 #include "fathom/engine/edges.h"
-#include "fathom/hal.h"
+#include "fathom/engine/modbus.h"
+#include "fathom/engine/wait.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -297,6 +298,81 @@ void fathom_rp2040_edges_init(fathom_rp2040_edges_t *pin, fathom_edges_t *edges,
  * shorter than the delay.
  */
 void fathom_rp2040_edges_interrupt(fathom_rp2040_edges_t *pin);
+
+/* ---- a bus ---- */
+
+/**
+ * @brief A UART with a line on it, in the caller's memory: all that a driver needs.
+ *
+ * Pass `modbus` to the drivers that send Modbus requests, and `line` to those that listen or use the protocol `55 AA`.
+ * Several drivers may share the bus. The line is made of parts (line.h) for a transceiver of unknown kind: it finds out
+ * whether there is an echo, names `senders`, uses the error flags of the UART, and keeps fathom_silence_us() before a
+ * request. A program that needs other parts changes `parts` and calls fathom_line_init() with `&line` and `&parts`, before
+ * it initialises a driver.
+ *
+ * The interrupts call the functions of the members: UARTn_IRQ calls fathom_rp2040_uart_interrupt(&bus.port), the alarm of
+ * `wiring` calls fathom_rp2040_uart_alarm(&bus.port) if there is a transceiver, and the next alarm, (`alarm` + 1) % 4, calls
+ * fathom_rp2040_idle_alarm(&bus.idle).
+ *
+ * Do not move or copy a bus, because its members point to each other.
+ */
+typedef struct {
+    /** @brief The line, initialised. */
+    fathom_line_t line;
+    /** @brief The Modbus RTU transport over `line`; not set by fathom_rp2040_bus_init_listening(). */
+    fathom_modbus_t modbus;
+    /** @brief The parts of `line`. */
+    fathom_line_parts_t parts;
+    /** @brief The UART, for its interrupts. */
+    fathom_rp2040_uart_t port;
+    /** @brief The sleep of fathom_rp2040_bus_read(), for its alarm. */
+    fathom_rp2040_idle_t idle;
+    /* private */
+    fathom_uart_t uart;
+    uint8_t frame[32];   /* the longest frame of any sensor is the details of an HPS-167S, 27 bytes */
+    uint8_t request[16]; /* the longest request is that of the reconnect time of an HPS-167S, 13 bytes */
+} fathom_rp2040_bus_t;
+
+/**
+ * @brief Initialises the UART and makes a line of it, for sensors that are asked.
+ *
+ * Call fathom_rp2040_clock_init() before.
+ *
+ * @param bus       The bus, with any content. Must stay valid as long as its drivers.
+ * @param wiring    Pins, clock and alarm of the UART. Copied.
+ * @param settings  The settings with which the sensors leave the factory (factory_line.h), or those that were set.
+ *                  Copied.
+ * @return False if the wiring is not possible, or if the settings cannot be reached or are slower than 588 baud. Do not
+ *         use the bus then.
+ */
+bool fathom_rp2040_bus_init(fathom_rp2040_bus_t *bus, const fathom_rp2040_wiring_t *wiring,
+                            const fathom_line_settings_t *settings);
+
+/**
+ * @brief Initialises the UART and makes a line of it that only listens, for sensors that send by themselves.
+ *
+ * The program links nothing that sends. All else is as for fathom_rp2040_bus_init().
+ *
+ * @param bus       The bus.
+ * @param wiring    The wiring.
+ * @param settings  The settings.
+ * @return As fathom_rp2040_bus_init().
+ */
+bool fathom_rp2040_bus_init_listening(fathom_rp2040_bus_t *bus, const fathom_rp2040_wiring_t *wiring,
+                                      const fathom_line_settings_t *settings);
+
+/**
+ * @brief Waits for the next reading or error of a sensor, as fathom_wait(). Sleeps while it waits (fathom_rp2040_idle()).
+ *
+ * The driver's header states the longest wait.
+ *
+ * @param bus     The bus of the sensor.
+ * @param sensor  The sensor, such as the result of fathom_hps167s_sensor().
+ * @param sample  Written with FATHOM_OK only.
+ * @return Any result of fathom_poll() but FATHOM_PENDING.
+ */
+fathom_status_t fathom_rp2040_bus_read(fathom_rp2040_bus_t *bus, fathom_sensor_t sensor,
+                                       fathom_sample_t *sample);
 
 #ifdef __cplusplus
 }
