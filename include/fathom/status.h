@@ -144,6 +144,17 @@ typedef enum {
  */
 const char *fathom_status_name(fathom_status_t status);
 
+/**
+ * @brief Returns what to check after a status: one or two sentences in English, for people who read the program's output.
+ *
+ * The advice follows from the status alone, so it is the same for all sensors. The function costs about 1.8 KB of flash
+ * on a Cortex-M0+, and as much RAM on an AVR, where constants lie in RAM. If a program does not call the function, it is
+ * not linked.
+ *
+ * @return A constant string, never NULL. "This is no status." for any other number.
+ */
+const char *fathom_status_advice(fathom_status_t status);
+
 #ifdef __cplusplus
 }
 #endif

@@ -35,6 +35,7 @@ BESIDE = {
     'fathom_level_from_distance': "a tank's level",
     'fathom_wait': 'the blocking form',
     'fathom_status_name': 'the names of errors',
+    'fathom_status_advice': 'what to check after an error',
 }
 WITH = 'hps167s'
 # Programs that are another one with one of these.

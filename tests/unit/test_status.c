@@ -48,3 +48,34 @@ TEST(each_status_has_its_name_and_any_other_number_a_question_mark)
     assert_int_equal(named, 20);
     assert_string_equal(fathom_status_name(FATHOM_ERR_NO_RESPONSE), "NO_RESPONSE");
 }
+
+/* Two statuses with the same advice would be one status for a user. */
+TEST(each_status_has_advice_of_its_own)
+{
+    static const fathom_status_t none = (fathom_status_t)(FATHOM_ERR_OTHER_MASTER - 1);
+    for (int number = FATHOM_ERR_OTHER_MASTER; number <= FATHOM_PENDING; number++) {
+        const char *const advice = fathom_status_advice((fathom_status_t)number);
+        assert_int_equal(advice[strlen(advice) - 1], '.');
+        assert_in_range(strlen(advice), 20, 120);
+        for (int other = FATHOM_ERR_OTHER_MASTER; other < number; other++)
+            assert_string_not_equal(advice, fathom_status_advice((fathom_status_t)other));
+        assert_string_not_equal(advice, fathom_status_advice(none));
+    }
+    assert_string_equal(fathom_status_advice(none), "This is no status.");
+    assert_string_equal(fathom_status_advice((fathom_status_t)(FATHOM_PENDING + 1)), "This is no status.");
+}
+
+/* The sentence names what a user checks first (status.h has the causes). */
+TEST(advice_names_what_to_check)
+{
+    static const struct {
+        fathom_status_t status;
+        const char *word;
+    } rows[] = {{FATHOM_ERR_ARGUMENT, "init"},      {FATHOM_ERR_PORT, "adapter"},
+                {FATHOM_ERR_NO_RESPONSE, "supply"}, {FATHOM_ERR_NO_RESPONSE, "address"},
+                {FATHOM_ERR_CHECKSUM, "parity"},    {FATHOM_ERR_STALE, "TX"},
+                {FATHOM_ERR_LINE_BUSY, "bias"},     {FATHOM_ERR_OTHER_MASTER, "one master"},
+                {FATHOM_ERR_CAPACITY, "32 bytes"},  {FATHOM_ERR_IN_USE, "free address"}};
+    for (unsigned i = 0; i != sizeof rows / sizeof rows[0]; i++)
+        assert_non_null(strstr(fathom_status_advice(rows[i].status), rows[i].word));
+}
