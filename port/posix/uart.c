@@ -144,6 +144,12 @@ static int uart_set_line(void *ctx, const fathom_line_settings_t *settings)
     return status == FATHOM_POSIX_OK ? 1 : -1;
 }
 
+/* What a driver reports that does not have this ioctl(2). */
+static bool is_unsupported(int code)
+{
+    return code == ENOTTY || code == EINVAL || code == EOPNOTSUPP || code == ENOSYS;
+}
+
 static int uart_set_break(void *ctx, bool on)
 {
     fathom_posix_uart_t *const port = ctx;
@@ -153,7 +159,11 @@ static int uart_set_break(void *ctx, bool on)
      * PARMRK), so the port writes such a byte. */
     if (port->is_pty) return on ? uart_write(ctx, (const uint8_t[]){0}, 1) : 1;
     if (ioctl(port->fd, on ? TIOCSBRK : TIOCCBRK) == 0) return 1;
-    (void)fathom_posix_fail_lost(port, errno);
+    if (is_unsupported(errno))
+        (void)fathom_posix_fail(port, FATHOM_POSIX_ERR_UNSUPPORTED,
+                                "the driver of this port cannot send a break; use another adapter");
+    else
+        (void)fathom_posix_fail_system(port, "sending a break", errno);
     return -1;
 }
 
@@ -239,7 +249,7 @@ fathom_posix_status_t fathom_posix_line_errors(fathom_posix_uart_t *port, fathom
     struct serial_icounter_struct counts;
     memset(&counts, 0, sizeof counts);
     if (ioctl(port->fd, TIOCGICOUNT, &counts) != 0) {
-        if (errno != ENOTTY && errno != EINVAL) return fathom_posix_fail_lost(port, errno);
+        if (!is_unsupported(errno)) return fathom_posix_fail_lost(port, errno);
         return fathom_posix_fail(port, FATHOM_POSIX_ERR_UNSUPPORTED, "this port does not count line errors");
     }
     errors->parity = (uint32_t)counts.parity;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include <errno.h>
+#include <string.h>
 
 #include "posix_driver.h"
 #include "posix_rig.h"
@@ -41,6 +42,34 @@ TEST(a_device_that_has_gone_is_a_broken_port)
     driver.break_error = 0;
     assert_int_equal(uart.set_break(uart.ctx, true), -1); /* until it is opened again */
     assert_int_equal(driver.break_calls, 1);
+}
+
+/* The usb-serial core of Linux returns ENOTTY for an adapter whose driver has no break_ctl. */
+TEST(a_driver_without_breaks_is_not_a_lost_port)
+{
+    static const int errors[] = {ENOTTY, EINVAL, EOPNOTSUPP, ENOSYS};
+    for (size_t i = 0; i != sizeof errors / sizeof *errors; i++) {
+        const fathom_uart_t uart = open_wire();
+        uint8_t byte = 0;
+        fathom_rx_t rx = {0, 0};
+        driver.break_error = errors[i];
+        assert_int_equal(uart.set_break(uart.ctx, true), -1);
+        assert_int_equal(fathom_posix_error(&rig.port), FATHOM_POSIX_ERR_UNSUPPORTED);
+        assert_non_null(strstr(fathom_posix_error_text(&rig.port), "break"));
+        assert_int_equal(uart.read(uart.ctx, &byte, 1, &rx), 0);
+        assert_int_equal(uart.write(uart.ctx, (const uint8_t[]){0x55}, 1), 1);
+        fathom_posix_close(&rig.port);
+    }
+}
+
+TEST(a_break_that_fails_once_is_not_a_lost_port)
+{
+    const fathom_uart_t uart = open_wire();
+    driver.break_error = ETIMEDOUT;
+    assert_int_equal(uart.set_break(uart.ctx, true), -1);
+    assert_int_equal(fathom_posix_error(&rig.port), FATHOM_POSIX_ERR_SYSTEM);
+    driver.break_error = 0;
+    assert_int_equal(uart.set_break(uart.ctx, true), 1);
 }
 
 TEST(a_port_that_is_closed_is_broken_too)
