@@ -135,6 +135,12 @@ fathom_status_t fathom_modbus_write_next_unchecked(fathom_modbus_unit_t *unit)
     return FATHOM_OK;
 }
 
+fathom_status_t fathom_modbus_refuse_argument(fathom_modbus_unit_t *unit)
+{
+    if (unit->setting == 0u) unit->is_blind = false;
+    return FATHOM_ERR_ARGUMENT;
+}
+
 fathom_status_t fathom_modbus_set(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting)
 {
     fathom_status_t status;

@@ -87,9 +87,9 @@ fathom_status_t fathom_a05_dyp_broadcast_address(fathom_a05_dyp_t *sensor, uint8
     fathom_modbus_unit_t *const unit = &sensor->base.unit;
     const fathom_modbus_t *const transport = unit->transport;
     fathom_modbus_setting_t setting;
-    if ((address == FATHOM_LINE_ALL_UNITS) || (address == FATHOM_LINE_ANY_UNIT) || unit->is_blind ||
-        (transport == NULL))
-        return FATHOM_ERR_ARGUMENT;
+    if ((address == FATHOM_LINE_ALL_UNITS) || (address == FATHOM_LINE_ANY_UNIT) || (transport == NULL) ||
+        fathom_modbus_is_next_unchecked(unit))
+        return fathom_modbus_refuse_argument(unit);
     fathom_modbus_unit_poll(unit);
     const fathom_modbus_t either = fathom_modbus_over_line(transport->ctx, submit_either);
     fathom_dyp_modbus_describe(&sensor->base, &setting, FATHOM_DYP_REGISTER_ADDRESS, address);

@@ -46,7 +46,7 @@ fathom_status_t fathom_a16_modbus_set_address_0(fathom_a16_modbus_t *sensor)
 fathom_status_t fathom_a16_modbus_set_operating_mode(fathom_a16_modbus_t *sensor,
                                                      fathom_a16_operating_mode_t mode)
 {
-    if ((unsigned)mode > FATHOM_A16_AUTOMATIC) return FATHOM_ERR_ARGUMENT;
+    if ((unsigned)mode > FATHOM_A16_AUTOMATIC) return fathom_modbus_refuse_argument(&sensor->base.unit);
     return fathom_dyp_modbus_write_register(&sensor->base, FATHOM_A16_REGISTER_OPERATING_MODE,
                                             (uint16_t)mode);
 }
@@ -64,7 +64,7 @@ static fathom_status_t get_choice(fathom_a16_modbus_t *sensor, uint16_t address,
 
 static fathom_status_t set_choice(fathom_a16_modbus_t *sensor, uint16_t address, unsigned value)
 {
-    if (value > 1u) return FATHOM_ERR_ARGUMENT;
+    if (value > 1u) return fathom_modbus_refuse_argument(&sensor->base.unit);
     return fathom_dyp_modbus_set_register(&sensor->base, address, (uint16_t)value);
 }
 
@@ -90,7 +90,8 @@ fathom_status_t fathom_a16_modbus_get_switch_threshold_mm(fathom_a16_modbus_t *s
 
 fathom_status_t fathom_a16_modbus_set_switch_threshold_mm(fathom_a16_modbus_t *sensor, uint16_t threshold_mm)
 {
-    if ((threshold_mm == 0u) || (threshold_mm > FATHOM_A16_MAX_MM)) return FATHOM_ERR_ARGUMENT;
+    if ((threshold_mm == 0u) || (threshold_mm > FATHOM_A16_MAX_MM))
+        return fathom_modbus_refuse_argument(&sensor->base.unit);
     return fathom_dyp_modbus_set_register(&sensor->base, FATHOM_A16_REGISTER_SWITCH_THRESHOLD, threshold_mm);
 }
 

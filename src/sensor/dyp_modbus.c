@@ -101,15 +101,16 @@ typedef fathom_status_t (*read_t)(const fathom_modbus_setting_t *setting, uint32
 
 static fathom_status_t set(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t value, read_t its_read)
 {
-    const fathom_modbus_unit_t *const unit = &sensor->unit;
+    fathom_modbus_unit_t *const unit = &sensor->unit;
     const bool is_address = address == FATHOM_DYP_REGISTER_ADDRESS;
     fathom_modbus_setting_t setting;
-    if (is_address && unit->is_blind) return FATHOM_ERR_ARGUMENT;
-    if ((unit->address == FATHOM_MODBUS_BROADCAST) && (unit->setting == 0u)) return FATHOM_ERR_ARGUMENT;
+    if (is_address && fathom_modbus_is_next_unchecked(unit)) return fathom_modbus_refuse_argument(unit);
+    if ((unit->address == FATHOM_MODBUS_BROADCAST) && (unit->setting == 0u))
+        return fathom_modbus_refuse_argument(unit);
     fathom_dyp_modbus_describe(sensor, &setting, address, value);
     setting.read = its_read;
     if (is_address) setting.address = (value != 0u) ? value : ZERO_ADDRESS;
-    return fathom_modbus_set(&sensor->unit, &setting);
+    return fathom_modbus_set(unit, &setting);
 }
 
 fathom_status_t fathom_dyp_modbus_set_register(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t value)
@@ -134,7 +135,7 @@ fathom_status_t fathom_dyp_modbus_write_register(fathom_dyp_modbus_t *sensor, ui
 fathom_status_t fathom_dyp_modbus_set_address(fathom_dyp_modbus_t *sensor, uint8_t address)
 {
     if ((address == FATHOM_MODBUS_BROADCAST) || (address == FATHOM_MODBUS_ANY_UNIT))
-        return FATHOM_ERR_ARGUMENT;
+        return fathom_modbus_refuse_argument(&sensor->unit);
     return fathom_dyp_modbus_set_register(sensor, FATHOM_DYP_REGISTER_ADDRESS, address);
 }
 

@@ -213,7 +213,7 @@ fathom_status_t fathom_hps167s_set_termination(fathom_hps167s_t *sensor, bool te
 fathom_status_t fathom_hps167s_set_distance_offset_mm(fathom_hps167s_t *sensor, int16_t offset_mm)
 {
     /* The offset may add to the present one, and a blind setting may be a repetition. So none is written blind. */
-    if (sensor->unit.is_blind) return FATHOM_ERR_ARGUMENT;
+    if (fathom_modbus_is_next_unchecked(&sensor->unit)) return fathom_modbus_refuse_argument(&sensor->unit);
     return set(sensor, FATHOM_HPS167S_OFFSET, (uint16_t)offset_mm, WRITE_ONLY);
 }
 
@@ -235,7 +235,8 @@ fathom_status_t fathom_hps167s_set_filter_sensitivity(fathom_hps167s_t *sensor, 
 fathom_status_t fathom_hps167s_set_reconnect_time_ms(fathom_hps167s_t *sensor, uint32_t reconnect_time_ms)
 {
     fathom_modbus_unit_request_t *const write = &sensor->setting.write;
-    if ((reconnect_time_ms % FATHOM_HPS167S_RECONNECT_STEP_MS) != 0u) return FATHOM_ERR_ARGUMENT;
+    if ((reconnect_time_ms % FATHOM_HPS167S_RECONNECT_STEP_MS) != 0u)
+        return fathom_modbus_refuse_argument(&sensor->unit);
     const fathom_status_t status = begin(sensor, FATHOM_HPS167S_RECONNECT, reconnect_time_ms, READ_BACK);
     if (status != FATHOM_OK) return status;
     fathom_hps167s_encode_reconnect_time(reconnect_time_ms, sensor->low_word_first, sensor->words);
@@ -276,7 +277,8 @@ fathom_status_t fathom_hps167s_broadcast_termination(fathom_hps167s_t *sensor, b
 
 fathom_status_t fathom_hps167s_set_address(fathom_hps167s_t *sensor, uint8_t address)
 {
-    if ((address == 0u) || (address > FATHOM_HPS167S_MAX_ADDRESS)) return FATHOM_ERR_ARGUMENT;
+    if ((address == 0u) || (address > FATHOM_HPS167S_MAX_ADDRESS))
+        return fathom_modbus_refuse_argument(&sensor->unit);
     const fathom_status_t status = begin(sensor, FATHOM_HPS167S_ADDRESS, address, READ_BACK);
     if (status != FATHOM_OK) return status;
     sensor->setting.address = address;
@@ -304,7 +306,8 @@ static void expect_baud(fathom_hps167s_t *sensor, uint32_t baud)
 fathom_status_t fathom_hps167s_set_baud(fathom_hps167s_t *sensor, uint32_t baud)
 {
     const uint8_t code = fathom_hps167s_baud_code(baud);
-    if ((code == 0u) || (sensor->unit.line_settings == NULL)) return FATHOM_ERR_ARGUMENT;
+    if ((code == 0u) || (sensor->unit.line_settings == NULL))
+        return fathom_modbus_refuse_argument(&sensor->unit);
     fathom_status_t status = begin(sensor, FATHOM_HPS167S_BAUD, code, READ_BACK);
     if (status != FATHOM_OK) return status;
     move_to_baud(sensor, baud, sensor->unit.address);
@@ -320,7 +323,7 @@ fathom_status_t fathom_hps167s_set_baud(fathom_hps167s_t *sensor, uint32_t baud)
 fathom_status_t fathom_hps167s_restore_factory_settings(fathom_hps167s_t *sensor)
 {
     fathom_modbus_setting_t *const setting = &sensor->setting;
-    if (sensor->unit.is_blind) return FATHOM_ERR_ARGUMENT;
+    if (fathom_modbus_is_next_unchecked(&sensor->unit)) return fathom_modbus_refuse_argument(&sensor->unit);
     fathom_status_t status = begin(sensor, FATHOM_HPS167S_RESET, FATHOM_HPS167S_RESET_DONE, READ_BACK);
     if (status != FATHOM_OK) return status;
     if (sensor->unit.setting == 0u) {

@@ -495,8 +495,10 @@ TEST(what_was_refused_or_given_up_leaves_the_transport_closed)
     assert_refused();
     assert_int_equal(fathom_modbus_write_next_unchecked(&a05.base.unit), FATHOM_OK); /* an address never is */
     assert_int_equal(set_7(), FATHOM_ERR_ARGUMENT);
-    fathom_a05_dyp_cancel(&a05);
-    assert_int_equal(set_7(), FATHOM_PENDING);
+    assert_refused();
+    assert_int_equal(fathom_modbus_write_next_unchecked(&a05.base.unit), FATHOM_OK);
+    assert_int_equal(fathom_a05_dyp_broadcast_address(&a05, 0), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(set_7(), FATHOM_PENDING); /* the refused ones were the blind ones */
     assert_false(fathom_a05_dyp_is_written(&a05));
     fathom_a05_dyp_cancel(&a05);
     assert_refused();

@@ -211,6 +211,37 @@ TEST(each_setting_can_be_written_blind_but_the_address)
     assert_null(fake.request);
 }
 
+/* a16_settings.h: "The setting after it is not blind." */
+TEST(a_setting_after_a_refused_argument_is_not_blind)
+{
+    static const struct {
+        fathom_status_t (*set)(void);
+        int32_t argument;
+    } refused[] = {{set_address, 5},   {set_address, 0},   {set_address, 255},     {set_polarity, 2},
+                   {set_threshold, 0}, {set_automatic, 2}, {set_threshold, 16351}, {set_mode, 2}};
+    for (unsigned i = 0; i != COUNT(refused); i++) {
+        set_up(state);
+        desk.argument = refused[i].argument;
+        assert_int_equal(fathom_a16_modbus_write_next_unchecked(&a16), OK);
+        assert_int_equal(refused[i].set(), FATHOM_ERR_ARGUMENT);
+        desk.argument = 1;
+        PLAY(set_polarity, OK, READ(1, 0x0205, OK, 1));
+    }
+}
+
+TEST(a_refused_argument_leaves_the_blind_setting_in_progress_blind)
+{
+    desk.argument = 1;
+    assert_int_equal(fathom_a16_modbus_write_next_unchecked(&a16), OK);
+    PART(set_polarity, WRITE(1, 0x0205, 1, OK));
+    desk.argument = 255;
+    assert_int_equal(set_address(), FATHOM_ERR_ARGUMENT);
+    desk.argument = 5;
+    assert_int_equal(set_address(), FATHOM_ERR_BUSY);
+    desk.argument = 1;
+    assert_int_equal(set_polarity(), FATHOM_ERR_UNCONFIRMED);
+}
+
 TEST(the_operating_mode_is_write_only_and_its_acknowledgement_all_there_is)
 {
     desk.argument = 1; /* is it there, and does the line echo? */

@@ -88,6 +88,16 @@ TEST(a_rate_that_was_written_blind_is_sought_at_both)
     hps_answers();
 }
 
+TEST(a_rate_that_no_sensor_has_is_refused_and_the_next_setting_is_not_blind)
+{
+    hps_start_at(1, &hps_factory);
+    assert_int_equal(fathom_hps167s_write_next_unchecked(&hps), OK);
+    desk.argument = 9600;
+    assert_int_equal(set_baud(), FATHOM_ERR_ARGUMENT);
+    desk.argument = 19200;
+    PLAY(set_baud, OK, IS(1, 1, 19200));
+}
+
 FOLLOWS(a_rate_that_the_port_cannot_do_is_not_set, 1, 19200, 1, &hps_factory, 230400, set_baud,
         FATHOM_ERR_UNSUPPORTED, IS(1, 1, 19200), TWO(1, FATHOM_ERR_UNSUPPORTED, 0, 230400))
 

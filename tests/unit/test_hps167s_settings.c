@@ -184,8 +184,37 @@ TEST(each_setting_can_be_written_blind_but_the_offset_and_the_reset)
     PLAY(reconnect, FATHOM_ERR_UNCONFIRMED, RECONNECT(0, 18));
     assert_int_equal(fathom_hps167s_write_next_unchecked(&hps), OK);
     assert_int_equal(offset(), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_hps167s_write_next_unchecked(&hps), OK);
     assert_int_equal(reset(), FATHOM_ERR_ARGUMENT);
     assert_null(fake.request);
+}
+
+/* hps167s_settings.h: "The setting after it is not blind, whatever its result is." */
+TEST(a_setting_after_a_refused_argument_is_not_blind)
+{
+    static const struct {
+        fathom_status_t (*set)(void);
+        int32_t argument;
+    } refused[] = {{offset, 1}, {reset, 0}, {reconnect, 17}, {address, 0}, {address, 33}};
+    for (unsigned i = 0; i != COUNT(refused); i++) {
+        hps_set_up(NULL);
+        desk.argument = refused[i].argument;
+        assert_int_equal(fathom_hps167s_write_next_unchecked(&hps), OK);
+        assert_int_equal(refused[i].set(), FATHOM_ERR_ARGUMENT);
+        desk.argument = 0;
+        PLAY(termination, OK, FACTORY, PUTS(0x13, 0, OK), TELLS(0x00FF, 0x0500, 0x0000, 0xB401));
+    }
+}
+
+TEST(a_refused_argument_leaves_the_blind_setting_in_progress_blind)
+{
+    desk.argument = 0;
+    assert_int_equal(fathom_hps167s_write_next_unchecked(&hps), OK);
+    PART(termination, PUTS(0x13, 0, OK));
+    desk.argument = 17;
+    assert_int_equal(reconnect(), FATHOM_ERR_ARGUMENT);
+    desk.argument = 0;
+    assert_int_equal(termination(), FATHOM_ERR_UNCONFIRMED);
 }
 
 /* ---- to all units ---- */
@@ -197,6 +226,21 @@ static fathom_status_t measures_all(void)
 static fathom_status_t termination_all(void)
 {
     return fathom_hps167s_broadcast_termination(&hps, desk.argument != 0);
+}
+
+TEST(no_setting_begins_while_a_blind_one_or_a_broadcast_is_in_progress)
+{
+    for (unsigned is_for_all = 0; is_for_all != 2; is_for_all++) {
+        const row_t write = HPS_WRITE(is_for_all != 0 ? 0 : 1, 0x12, 0, OK, 0);
+        fathom_status_t (*const set)(void) = is_for_all != 0 ? measures_all : measures;
+        hps_set_up(NULL);
+        desk.argument = 0;
+        if (is_for_all == 0) assert_int_equal(fathom_hps167s_write_next_unchecked(&hps), OK);
+        desk_part(set, &write, 1);
+        assert_int_equal(offset(), FATHOM_ERR_BUSY);
+        assert_int_equal(reset(), FATHOM_ERR_BUSY);
+        assert_int_equal(set(), FATHOM_ERR_UNCONFIRMED);
+    }
 }
 
 /* 2.2.1: "For the request sent by the host in broadcast mode, the slave does not respond": the line ends it as sent. */

@@ -101,6 +101,22 @@ fathom_status_t fathom_modbus_set(fathom_modbus_unit_t *unit, const fathom_modbu
  */
 fathom_status_t fathom_modbus_write_next_unchecked(fathom_modbus_unit_t *unit);
 
+/**
+ * @brief Refuses a setting because of its argument. The setting after it is not blind.
+ *
+ * A driver calls this function instead of fathom_modbus_set(). A setting in progress continues unchanged.
+ *
+ * @param unit  The unit.
+ * @return FATHOM_ERR_ARGUMENT.
+ */
+fathom_status_t fathom_modbus_refuse_argument(fathom_modbus_unit_t *unit);
+
+/** @brief Returns true if the next setting is blind, and no setting is in progress. */
+static inline bool fathom_modbus_is_next_unchecked(const fathom_modbus_unit_t *unit)
+{
+    return unit->is_blind && (unit->setting == 0u);
+}
+
 #ifdef __cplusplus
 }
 #endif
