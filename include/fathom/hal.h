@@ -14,9 +14,9 @@ extern "C" {
  * @file
  * @brief What Fathom needs from a machine: one small struct of functions for each peripheral.
  *
- * A port fills in the structs, which may be const. Fathom never touches a register, an interrupt or an operating system
- * itself. This header declares types and three inline functions; it costs only what a program calls. port/README.md shows
- * how to write a port, and fathom_conformance.h tests one.
+ * A port is the code of one machine that fills in these structs, which may be const. Fathom never touches a register,
+ * an interrupt or an operating system itself. This header declares types and three inline functions, so a program pays
+ * only for what it calls. port/README.md shows how to write a port, and fathom_conformance.h tests one.
  *
  * @code
  * static uint32_t now_us(void *ctx) { (void)ctx; return TIMER->COUNT; }       // a 32-bit timer at 1 MHz
@@ -27,13 +27,16 @@ extern "C" {
  *
  * 1. **No waiting.** Each function returns at once. No function calls Fathom.
  *
- * 2. **One context.** Fathom calls the functions from one context: one task or the main loop. Interrupts belong to the
- *    port. The port stores what an interrupt received until Fathom calls it.
+ * 2. **One context.** Fathom calls the functions from the context of the program that polls: one task or the main loop.
+ *    Interrupts belong to the port. The port stores the bytes that an interrupt received until Fathom reads them.
  *
  * 3. **Context and lifetime.** `ctx` belongs to the port. Fathom passes `ctx` to each function of its struct and never
  *    uses it. Fathom keeps pointers to the structs, so a struct must stay valid as long as an object uses it.
  *
- * 4. **Time.** Times wrap. Compare two times only by fathom_elapsed_us(), a function without state.
+ * 4. **Time.** Times wrap. Compare two times only by fathom_elapsed_us().
+ *
+ * 5. **Broken ports.** A negative result of `read` reports a broken port. Fathom calls `read` again at each poll, so
+ *    the port works again as soon as `read` returns 0 or more.
  */
 
 /** @brief The parity of a line. The sensors of Fathom all have 8 data bits. */
@@ -61,14 +64,18 @@ static inline uint8_t fathom_character_bits(const fathom_line_settings_t *settin
     return (uint8_t)(9u + ((settings->parity != FATHOM_PARITY_NONE) ? 1u : 0u) + settings->stop_bits);
 }
 
-/** @brief Flags of fathom_rx_t: what a port knows about the bytes of one read. A flag that is not set claims nothing. */
+/**
+ * @brief Flags of fathom_rx_t: what a port knows about the bytes of one read. A flag that is not set claims nothing.
+ *
+ * A line always uses FATHOM_RX_TIMED. It uses the other flags only if its parts name `marks` (line.h).
+ */
 enum {
     FATHOM_RX_TIMED = 1, /**< `last_us` is set. */
     FATHOM_RX_SILENCE =
         2,                /**< The line was idle before the first byte (idle-line interrupt, DMA time-out). */
     FATHOM_RX_PARITY = 4, /**< A byte of this read has a wrong parity. All bytes of the read count as bad. */
     FATHOM_RX_FRAMING =
-        8, /**< A byte of this read has no stop bit: a break, noise, or another baud rate. The same. */
+        8, /**< A byte has no stop bit (break, noise, other baud rate). All bytes of the read count as bad. */
     FATHOM_RX_OVERRUN = 16 /**< Bytes were lost directly before the first byte of this read. */
 };
 
@@ -77,8 +84,8 @@ typedef struct {
     /**
      * @brief Clock at the end of the last byte, in microseconds. Used with FATHOM_RX_TIMED only.
      *
-     * Fathom reads the clock after each read that returned bytes. If `last_us` is later than that (another timer,
-     * rounded up), or 2^31 us or more before that, it counts as "now".
+     * Fathom reads the clock after each read that returned bytes. If `last_us` is later than this time, or 2^31 us or
+     * more before it, this time counts instead. `last_us` can be later if it is of another timer, or rounded up.
      */
     uint32_t last_us;
 
@@ -95,7 +102,7 @@ typedef struct {
     /**
      * @brief Copies received bytes.
      *
-     * One call never spans a silence that the port knows of: it returns the bytes before the silence, and the next call
+     * One call never spans a silence that the port knows of. It returns the bytes before the silence, and the next call
      * returns the bytes after it, with FATHOM_RX_SILENCE. A byte that the port knows to be bad is returned alone. For
      * example, if the third of five bytes has a wrong parity, three calls return 2 bytes, 1 byte with FATHOM_RX_PARITY,
      * and 2 bytes.
@@ -116,52 +123,55 @@ typedef struct {
      *
      * @param bytes   The bytes. Valid only during the call, so the port copies them.
      * @param length  Number of bytes, 1 to 255.
-     * @return `length` if the port accepted all bytes. 0 if the port is busy and accepted none. Negative if the port is
-     *         broken.
+     * @return `length` if the port accepted all bytes. 0 if the port is busy and accepted none: Fathom calls again.
+     *         After 1 s of that, the port counts as broken (line.h). Negative if the port is broken.
      */
     int (*write)(void *ctx, const uint8_t *bytes, size_t length);
 
     /**
      * @brief Returns true if the last stop bit of all accepted bytes has left the pin.
      *
-     * The result may become true late, because a USB adapter does not know the exact time. Bytes that are read before
-     * that still count as a response. A port that drives a transceiver lets it receive again at the latest 3 characters
-     * after the last stop bit, because a unit may respond then.
+     * If the result is false for 1 s after `write`, the port counts as broken (line.h). The result may become true
+     * late, because a USB adapter does not know the exact time. Bytes that are read before that still count as a
+     * response. A port that drives a transceiver lets it receive again at the latest 3 characters after the last stop
+     * bit, because a unit may respond then.
      */
     bool (*sent)(void *ctx);
 
     /**
      * @brief Changes the line settings and keeps the received bytes. NULL: the settings are fixed.
      *
-     * Fathom calls this function before each request that names line settings, also if they are in force already.
+     * Fathom calls this function before each request that names line settings, even if they are in force already.
      *
      * @param settings  The new settings. Valid only during the call.
      * @retval 1  The settings are in force.
-     * @retval 0  Bytes are still leaving. Fathom calls again.
-     * @return Negative: the port cannot make these settings within 2.5 %. Nothing has changed.
+     * @retval 0  Bytes are still leaving. Fathom calls again. After 1 s of that, the port counts as broken (line.h).
+     * @return Negative: the port cannot make these settings within 2.5 %, and nothing has changed; or the port is
+     *         broken. The request ends with FATHOM_ERR_UNSUPPORTED. `read` reports a broken port.
      */
     int (*set_line)(void *ctx, const fathom_line_settings_t *settings);
 
     /**
      * @brief Holds TX low, or releases it. NULL: the port cannot do this.
      *
-     * This is the trigger and the mode select of modules whose RX pin is our TX.
+     * Modules whose RX pin is connected to our TX use this level as their trigger or mode select.
      *
      * @param on  True to hold TX low. False to release it, so that TX becomes high.
      * @retval 1  TX has this state.
-     * @retval 0  Bytes are still leaving. Fathom calls again. After 1 s of that, the port counts as broken.
-     * @return Negative: the port is broken.
+     * @retval 0  Bytes are still leaving. The caller repeats the call. A port that does not release TX for 1 s counts
+     *            as broken. The wait for a low TX has no limit, except in a trigger (trigger.h).
+     * @return Negative: the port is broken, or its driver cannot hold TX low.
      */
     int (*set_break)(void *ctx, bool on);
 
     /**
      * @brief Returns the longest time in microseconds until the last stop bit of all accepted bytes has left the pin.
      *
-     * NULL: the port does not know. The port calculates the time from the remaining bytes, their settings and the
+     * NULL: the port does not know the time. A port calculates it from the remaining bytes, their settings and the
      * clock. The time is less than 2^31. 0 means that the bytes have left, or should have left.
      *
-     * fathom_line_due_us() returns this time while a request leaves or the port is busy. A program that sleeps then
-     * wakes once for it, and the line calls `sent`. If the function is NULL, or if it returns 0 while `sent` is still
+     * fathom_line_due_us() returns this time while a request leaves or the port is busy. So a program that sleeps wakes
+     * once for it, and the line calls `sent`. If the function is NULL, or if it returns 0 while `sent` is still
      * false, the line polls `sent` every millisecond. A time that is too short costs polls. A time that is too long
      * delays what follows the request: the end of a broadcast, and the beginning of a time-out. Neither loses a byte.
      * Fathom may call this function at any time; it changes nothing.
@@ -177,8 +187,9 @@ typedef struct {
     /**
      * @brief Returns the time in microseconds. Wraps from 4294967295 to 0, which is every 71.6 minutes.
      *
-     * The clock is monotonic and need not start at 0. A clock that counts in coarser steps is allowed; each deadline is
-     * then late by up to one step.
+     * The clock never goes back and need not start at 0. If it goes back by up to 100 ms all the same, most waits
+     * treat it as a clock that stood still. If it goes back further, the time counts as wrapped. A clock that counts
+     * in coarser steps is allowed; each deadline is then late by up to one step.
      */
     uint32_t (*now_us)(void *ctx);
 
@@ -217,7 +228,8 @@ typedef struct {
 /**
  * @brief A device that measures high pulses: the capture input of a timer, or a pin interrupt (edges.h).
  *
- * The capture continues after a pulse. If a pulse ends while another one waits to be fetched, the capture may lose it.
+ * The capture continues after a pulse. If a pulse ends while an older one waits to be fetched, the capture may lose the
+ * new one.
  */
 typedef struct {
     /**
@@ -239,7 +251,7 @@ typedef struct {
     void *ctx;
 } fathom_capture_t;
 
-/** @brief A result of the `..._due_us()` functions: without a new byte or a change of a pin, nothing will happen. */
+/** @brief A result of the `..._due_us()` functions: nothing will happen before a byte arrives or a pin changes. */
 #define FATHOM_NO_DEADLINE UINT32_MAX
 
 /** @brief Longest time that a configuration may name, in microseconds: 2^31 - 1, which is 35 minutes. */
@@ -248,7 +260,8 @@ typedef struct {
 /**
  * @brief Returns the time from `since_us` to `now_us`, in microseconds. Correct across the wrap of the clock.
  *
- * Differences of up to 71.6 minutes are correct. Poll each object of Fathom at least that often.
+ * Differences of up to 71.6 minutes are correct. Poll each object of Fathom at least that often. alarm.h, debounce.h
+ * and median.h name a shorter time.
  *
  * @param now_us    The later time.
  * @param since_us  The earlier time.

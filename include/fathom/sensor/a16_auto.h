@@ -15,7 +15,7 @@ extern "C" {
  * @brief Reads an A16 with automatic output: UART automatic (A16 2), and RS232 (A16 5) before its first Modbus request.
  *
  * The module sends frames FF H L SUM without a request, at 9600 8N1 (A16 2(2), 2(3)). The driver listens to a line and
- * returns one sample for each frame. The driver never sends a byte and never waits. It can select which distance the
+ * returns samples of these frames. The driver never sends a byte and never waits. It can select which distance the
  * module sends, by a pin or by a break of the line. include/COST.md has its size in the row `a16_auto`.
  *
  * @code
@@ -27,15 +27,17 @@ extern "C" {
  *     if (fathom_poll(&sensor, &sample) == FATHOM_OK && sample.kind == FATHOM_TARGET) show_mm(sample.distance_mm);
  * @endcode
  *
- * 1. **Samples.** The kind is FATHOM_TARGET, or the meaning of a value that is no distance: by default FFFD is
- *    FATHOM_NO_TARGET, FFFE is FATHOM_NO_TARGET with `interference`, 0 is FATHOM_UNKNOWN, and FFFF is refused. `window`
- *    changes these meanings. `distance_mm` is 0 unless the kind is FATHOM_TARGET. `time_us` is
- *    the arrival of the last byte of the frame. fathom_poll() returns the sample when the next frame begins, or when
- *    the line has been silent for `gap_us` after the frame.
+ * 1. **Samples.** A distance is a sample of the kind FATHOM_TARGET. Other values have a meaning, which `window`
+ *    changes. By default FFFD is FATHOM_NO_TARGET, FFFE is FATHOM_NO_TARGET with `interference`, 0 is FATHOM_UNKNOWN,
+ *    and the driver refuses FFFF. `distance_mm` is 0 unless the kind is FATHOM_TARGET. `time_us` is the arrival of the
+ *    last byte of the frame. fathom_poll() returns the sample when the next frame begins, or when the line has been
+ *    silent for `gap_us` after the frame.
  *
- * 2. **Sequence.** Each valid frame increments `sequence`, a frame with a refused value too. If the program polls less
- *    often than the module sends, newer frames replace older ones. The datasheet prints no period of the frames. If the module sends faster than it
- *    measures, it repeats the old value, and neither the frame nor the sample shows this.
+ * 2. **Sequence.** Each frame that fathom_poll() fetches increments `sequence`, a frame with a refused value too. If
+ *    the program polls less often than the module sends, newer frames replace older ones. The replaced frames do not
+ *    increment `sequence`; `base.stream.counters[FATHOM_STREAM_MISSED]` counts them. The datasheet prints no period of
+ *    the frames. If the module sends faster than it measures, it repeats the old value, and neither the frame nor the
+ *    sample shows this.
  *
  * 3. **Settling.** The processed value needs 2.5 to 7.5 s to follow a change, the real-time value about 500 ms
  *    (A16 2(2)).
@@ -49,8 +51,8 @@ extern "C" {
  * | FATHOM_ERR_STALE | the program paused for longer than `stale_us` and 0.5 s, so waiting frames are too old (stream.h) |
  * | FATHOM_ERR_CHECKSUM | bytes, but no valid frame, for `stale_us`: damage, noise, another rate or another device |
  * | FATHOM_ERR_MALFORMED | once for each frame with a refused value: outside the window, or FFFF by default |
- * | FATHOM_ERR_PORT | the port is broken; returned by every poll until the port works again |
- * | FATHOM_ERR_ARGUMENT | the initialisation failed or never ran, and the memory is zeroed |
+ * | FATHOM_ERR_PORT | the port is broken; returned by every poll until the port can be read again |
+ * | FATHOM_ERR_ARGUMENT | the initialisation failed; or it never ran, and the memory is zeroed |
  *
  * After FATHOM_ERR_CHECKSUM the counters in `base.stream.counters` show the cause (stream.h). After
  * FATHOM_ERR_MALFORMED, `base.measurement.refused_raw` is the refused value.
@@ -69,8 +71,8 @@ typedef struct {
      * @brief The output that drives the RX pin of the module: fathom_output_pin(), or fathom_output_line_break() if the
      * TX of the line is wired to it.
      *
-     * All members 0: the program selects nothing. A module whose RX is not connected sends the processed value (A16
-     * 2(2)). `select.ctx` must stay valid until fathom_a16_auto_deinit().
+     * If all members are 0, the program selects nothing. A module whose RX is not connected sends the processed value
+     * (A16 2(2)). `select.ctx` must stay valid until fathom_a16_auto_deinit().
      */
     fathom_output_t select;
 
@@ -84,7 +86,7 @@ typedef struct {
     /**
      * @brief Silence that starts and ends a frame (stream.h), in microseconds: 1042 to 65535. 0 selects 5000.
      *
-     * Behind an operating system choose 25000.
+     * On an operating system choose 25000, because bytes of one frame can arrive with pauses.
      */
     uint16_t gap_us;
 
@@ -110,7 +112,8 @@ typedef struct {
 /**
  * @brief Initialises the driver, makes it the listener of the line, and selects the value.
  *
- * After an error the driver does not listen, and its memory is zeroed.
+ * After an error the driver does not listen, and its memory is zeroed. Call fathom_a16_auto_deinit() before a second
+ * initialisation; otherwise a break that selects the real-time value stays on the line.
  *
  * @param sensor  The driver. Must stay valid until fathom_a16_auto_deinit().
  * @param config  The configuration. Not used after the call.
@@ -118,7 +121,8 @@ typedef struct {
  * @retval FATHOM_ERR_ARGUMENT     `line` is NULL or not initialised, or a member is outside its range.
  * @retval FATHOM_ERR_BUSY         The line has another listener, which stays. Or the break that selects the value
  *                                 cannot begin yet, because the port or a transaction uses the line. Call again.
- * @retval FATHOM_ERR_UNSUPPORTED  FATHOM_REAL_TIME needs `select`; or the port has no `set_break`, or the pin no `set`.
+ * @retval FATHOM_ERR_UNSUPPORTED  `value` is FATHOM_REAL_TIME without `select`, the port has no `set_break`, or the
+ *                                 pin has no `set`.
  * @retval FATHOM_ERR_PORT         As fathom_a16_auto_select().
  */
 fathom_status_t fathom_a16_auto_init(fathom_a16_auto_t *sensor, const fathom_a16_auto_config_t *config);
@@ -126,15 +130,16 @@ fathom_status_t fathom_a16_auto_init(fathom_a16_auto_t *sensor, const fathom_a16
 /**
  * @brief Selects the value that the module sends (A16 2(2)): drives its RX pin high or low by `select`.
  *
- * For UART automatic only; an RS232 module has register 0x0207 instead (a16_settings.h). Frames of the first 0.5 s
- * (real-time) or 2.5 to 7.5 s (processed) may still have the other value; the frames do not show this. While a break
- * selects the real-time value, the line cannot send.
+ * This function is for UART automatic only; an RS232 module has register 0x0207 instead (a16_settings.h). The first
+ * frames may still have the other value, for 0.5 s (real-time) or 2.5 to 7.5 s (processed). The frames do not show
+ * this. While a break selects the real-time value, the line cannot send.
  *
  * @param sensor  The driver.
  * @param value   FATHOM_PROCESSED (RX high) or FATHOM_REAL_TIME (RX low).
- * @retval FATHOM_OK               The value is selected. A pin always has this result.
- * @retval FATHOM_PENDING          As fathom_line_break(). The selection has not changed: call again.
- * @retval FATHOM_ERR_BUSY         As fathom_line_break(). The selection has not changed: call again.
+ * @retval FATHOM_OK               The value is selected. A pin that has `set` always has this result.
+ * @retval FATHOM_PENDING          The port is still sending. The selection has not changed: call again. If the port
+ *                                 never stops sending, this never ends: use a limit.
+ * @retval FATHOM_ERR_BUSY         A transaction is on the wire. The selection has not changed: call again.
  * @retval FATHOM_ERR_PORT         As fathom_line_break(). The selection has not changed: call again.
  * @retval FATHOM_ERR_ARGUMENT     `value` is none of the two, or the driver is not initialised.
  * @retval FATHOM_ERR_UNSUPPORTED  The configuration has no `select`, the port no `set_break`, or the pin no `set`.
@@ -144,11 +149,11 @@ fathom_status_t fathom_a16_auto_select(fathom_a16_auto_t *sensor, fathom_dyp_val
 /**
  * @brief Stops listening and ends a break that selects the real-time value.
  *
- * If the driver is no longer the listener of the line, the present listener stays. A pin keeps its level.
+ * If another listener has replaced the driver, the present listener stays. A pin keeps its level.
  *
  * @param sensor  The driver.
  * @retval FATHOM_OK        No break is held. The memory belongs to the caller again. A pin always has this result.
- * @retval FATHOM_PENDING   As fathom_line_break(). Call this function again, and do not poll.
+ * @retval FATHOM_PENDING   The port has not released TX yet. Call this function again, and do not poll.
  * @retval FATHOM_ERR_PORT  As fathom_line_break(). Call this function again, and do not poll. If the program gives up
  *                          here, TX stays low, and the line sends nothing until fathom_line_break() ends the break.
  */

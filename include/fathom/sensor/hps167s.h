@@ -17,10 +17,11 @@ extern "C" {
  * @brief Measures with an HPS-167S, an infrared time-of-flight sensor on RS-485, by Modbus RTU.
  *
  * The driver sends command #5 of the datasheet again and again, and each response is one sample with a distance, the
- * strength of the reflection, the ambient light and a figure of precision. Polling sends no other command, because
- * the "registers" of this device are commands, and a read at a wrong place can reset it. The driver never waits and never allocates
- * memory. include/COST.md has its flash, RAM and stack (`hps167s`). hps167s_info.h reads versions, configuration and
- * temperature, hps167s_settings.h changes settings, and hps167s_auto.h listens to unsolicited frames.
+ * strength of the reflection, the ambient light and a figure of precision. Polling sends no other command, because the
+ * "registers" of this device are commands, and a read of a wrong register can reset it. #1 to #15 are the numbers of
+ * the commands in the datasheet. The driver never waits and never allocates memory. include/COST.md has its flash,
+ * RAM and stack (`hps167s`). hps167s_info.h reads versions, configuration and temperature, hps167s_settings.h changes
+ * settings, and hps167s_auto.h listens to unsolicited frames.
  *
  * With factory settings the sensor has address 1, 19200 baud and 8E1 (datasheet 2.3).
  *
@@ -45,8 +46,8 @@ extern "C" {
  * if (fathom_poll(&sensor, &sample) == FATHOM_OK && sample.kind == FATHOM_TARGET) use(sample.distance_mm);
  * @endcode
  *
- * 1. **Samples.** fathom_hps167s_set_limits() replaces the limits 80, 30000 and 65530. `raw` has the 16 bits of the
- *    distance as they were sent. `distance_mm` is 0 unless the kind is FATHOM_TARGET.
+ * 1. **Samples.** `raw` has the 16 bits of the distance as the sensor sent them. `distance_mm` is 0 unless the kind is
+ *    FATHOM_TARGET. fathom_hps167s_set_limits() replaces the limits 80, 30000 and 65530 of this table:
  *
  *    | `kind`           | response                                                                        |
  *    |------------------|---------------------------------------------------------------------------------|
@@ -58,8 +59,8 @@ extern "C" {
  *    In the abnormal packet all bits of distance, ambient light and precision are 1, and the magnitude is 0. The
  *    datasheet leaves its exponent open, so the driver accepts any.
  *
- * 2. **Errors of fathom_poll().** FATHOM_PENDING means that there is nothing new. Each error is the result of one request,
- *    with its retries. Continue to poll after an error.
+ * 2. **Errors of fathom_poll().** FATHOM_PENDING is no error: there is nothing new. Each error is the result of one
+ *    request with its retries. Continue to poll after an error.
  *
  *    | error                   | cause                                                                     |
  *    |-------------------------|---------------------------------------------------------------------------|
@@ -68,22 +69,25 @@ extern "C" {
  *    | FATHOM_ERR_EXCEPTION    | The unit refused the request: see fathom_hps167s_exception().             |
  *    | FATHOM_ERR_MALFORMED    | The unit sent a frame of another shape, or values that rule 3 refuses.    |
  *    | FATHOM_ERR_WARMING_UP   | The unit was powered a short time ago: see fathom_hps167s_power_on().     |
- *    | FATHOM_ERR_PORT         | The port is broken. Returned by every poll until the port works again.    |
+ *    | FATHOM_ERR_PORT         | The port is broken: see below.                                            |
  *    | FATHOM_ERR_LINE_BUSY    | The line was never silent. This says nothing about the unit (status.h).   |
  *    | FATHOM_ERR_OTHER_MASTER | Another master sent the unit a request. This says nothing about the unit. |
  *    | FATHOM_ERR_CANCELLED    | The line was initialised again, or another driver moved the unit.         |
- *    | FATHOM_ERR_UNSUPPORTED  | The port or the transport cannot set `line_settings`.                     |
+ *    | FATHOM_ERR_UNSUPPORTED  | `line_settings` cannot be set, or the line only listens.                  |
  *    | FATHOM_ERR_ARGUMENT     | The driver is not initialised.                                            |
  *
+ *    If the port cannot be read, every poll returns FATHOM_ERR_PORT until the port works again. If the port can be read
+ *    but cannot send, each request ends with this error.
+ *
  * 3. **Refused values.** The driver refuses a distance of 0, of 30001 to 65529, and of 65535 outside the abnormal
- *    packet. It also refuses an exponent above 16, and a response that equals the newest configuration (#2).
- *    Each is counted in `implausible`.
+ *    packet. It also refuses an exponent of the magnitude above 16, and a response that equals the newest configuration
+ *    (#2). The driver counts the responses that it refuses in `implausible`.
  *
  * 4. **What `sequence` promises.** `sequence` increases by 1 with each sample and wraps after 65535. A new number means
  *    a new response, not always a new measurement. The sensor measures 6 to 54 times a second (table 1). The datasheet
- *    does not state what it sends if a request arrives before a new measurement is finished: the sample can then be the
- *    previous measurement again. If each sample must be a new measurement, set `period_us` to 167000 (6 a second) or
- *    more.
+ *    does not state what it sends if a request arrives before a new measurement is finished. The sensor may then
+ *    send the previous measurement again. If each sample must be a new measurement, set `period_us` to 167000 (6 a
+ *    second) or more.
  *
  * 5. **Bound.** fathom_poll() returns a sample or an error at the latest after
  *
@@ -91,23 +95,24 @@ extern "C" {
  *
  *    B is the bound of one transaction alone on its line (line.h, rule 13). S is the sum of the bounds of the line's
  *    other transactions. P is the longest time between two polls. While a command or a setting of this driver is in
- *    progress, fathom_poll() returns FATHOM_PENDING, so the time of the command or setting is added. modbus_unit.h has
- *    the rules of pace, back-off and abandoned commands.
+ *    progress, fathom_poll() returns FATHOM_PENDING, except FATHOM_ERR_PORT and the result of a measurement that was on
+ *    the wire already. So the time of the command or setting is added. modbus_unit.h has the rules of pace, back-off
+ *    and abandoned commands.
  *
- *    For example: with the defaults, alone on its line and polled each millisecond, an unplugged sensor is
+ *    For example, an unplugged sensor with the default configuration, alone on its line and polled each millisecond, is
  *    FATHOM_ERR_NO_RESPONSE after 0.51 s. Because of the back-off, later errors are up to 8.5 s apart.
  *
  * 6. **Unsolicited frames.** With factory settings the sensor may send measurements without a request after power-on
- *    (#10). Name `senders` in the parts of the line (line.h, rule 11), so that requests leave between these frames. An
- *    unsolicited frame is no sample, unless it arrives while a response is due and has its shape; its values are then
- *    as new as those of the response. fathom_hps167s_set_measures_after_power_on() of hps167s_settings.h switches the
+ *    (#10). Name `senders` in the parts of the line (line.h, rule 11), so that requests leave between these frames.
+ *    Such a frame is no sample, unless it arrives in place of a due response and has its shape. Its values are then as
+ *    new as those of the response. fathom_hps167s_set_measures_after_power_on() of hps167s_settings.h switches the
  *    frames off from the next power-on.
  */
 
 /** @brief Least time from one measurement to the next in microseconds: 54 measurements a second (table 1). */
 #define FATHOM_HPS167S_MIN_PERIOD_US 18519uL
 
-/** @brief Configuration. Read only during fathom_hps167s_init(). A member that is 0 takes its default. */
+/** @brief The configuration. Used only during fathom_hps167s_init(). A member that is 0 takes its default. */
 typedef struct {
     /**
      * @brief Connection to the sensor; modbus_unit.h explains its members. `transport` is required.
@@ -126,20 +131,21 @@ typedef struct {
      */
     fathom_modbus_config_t modbus;
 
-    /** @brief Warm-up time of the sensor in seconds, as set by #7; for fathom_hps167s_power_on(). 0 selects 5. */
+    /** @brief Warm-up time of the sensor in seconds (#7), for fathom_hps167s_power_on(). 0 selects 5. */
     uint8_t warm_up_s;
 
-    /** @brief True if the warm-up time was set to 0 s. Then `warm_up_s` is 0. */
+    /** @brief True if the warm-up time of the sensor is 0 s. `warm_up_s` is then 0. */
     bool no_warm_up;
 
     /**
-     * @brief Equal responses in succession after which the configuration (#2) is believed: 1 to 8. 0 selects 2.
+     * @brief Number of equal responses in succession after which the driver believes the configuration (#2): 1 to 8.
      *
-     * A response to #2 has the shape of a measurement. For 2 s after an unsolicited frame at least 3 are needed.
+     * 0 selects 2. A response to #2 has the shape of a measurement. So for 2 s after an unsolicited frame the driver
+     * needs at least 3 equal responses.
      */
     uint8_t same_responses;
 
-    /** @brief Steps of the temperature (#4) in a degree Fahrenheit: 10 if the sensor sends tenths. 0 selects 1. */
+    /** @brief Steps of the temperature (#4) in a degree Fahrenheit, 1 to 255. 10: tenths. 0 selects 1. */
     uint8_t steps_per_degree;
 
     /**
@@ -197,7 +203,11 @@ struct fathom_hps167s {
     void (*follow)(fathom_hps167s_t *sensor, fathom_status_t status);
     uint32_t unasked_us;       /**< Clock at the newest unsolicited frame, in microseconds. */
     fathom_modbus_unit_t unit; /**< The unit. */
-    /** @brief Baud rate that the sensor uses from its next power-on (fathom_hps167s_set_baud()); 0: unchanged. */
+    /**
+     * @brief Baud rate that the sensor uses from its next power-on; 0: unchanged.
+     *
+     * fathom_hps167s_set_baud() and fathom_hps167s_restore_factory_settings() write this member.
+     */
     uint32_t next_baud;
     /* private */
     const fathom_line_settings_t *other;            /* the line settings that are not in use while seeking */
@@ -234,23 +244,24 @@ fathom_status_t fathom_hps167s_init(fathom_hps167s_t *sensor, const fathom_hps16
 fathom_status_t fathom_hps167s_set_limits(fathom_hps167s_t *sensor, fathom_hps167s_limits_t *limits);
 
 /**
- * @brief Cancels what is in progress. After this the memory is the caller's again.
+ * @brief Cancels what is in progress. After this the memory belongs to the caller again.
  *
- * If the configuration (#2) was read among unsolicited frames, its response may still arrive. Wait for
- * `command_timeout_us` before another driver is initialised for the same unit.
+ * Do not poll the sensor after this: a poll would start a new measurement. If the driver read the configuration (#2)
+ * among unsolicited frames, a response may still arrive. Wait for `command_timeout_us` before you initialise another
+ * driver for the same unit.
  */
 void fathom_hps167s_deinit(fathom_hps167s_t *sensor);
 
 /**
- * @brief Reports to the driver that the sensor is powered now. Call it when the supply is switched on.
+ * @brief Informs the driver that the sensor is powered now. Call this function when the supply is switched on.
  *
  * The driver cancels what is in progress. For `warm_up_s` and one `timeout_us` after the call, four results become
  * FATHOM_ERR_WARMING_UP: no response, a damaged response, an exception, and the abnormal packet. The datasheet states
- * that the sensor does not measure in its warm-up time, and not what it sends (#7).
+ * that the sensor does not measure in its warm-up time, but not what it sends (#7).
  *
- * If the program does not know when the sensor is powered, do not call this function; the errors are then reported
- * unchanged. If `next_baud` is not 0, the driver uses that rate from now on, alternately with the former rate, until
- * the sensor responds.
+ * If the program does not know when the sensor is powered, do not call this function. The driver then returns these
+ * errors unchanged. If `next_baud` is not 0, the driver uses that rate from now on. While the sensor does not respond,
+ * the driver alternates between this rate and the former one.
  */
 void fathom_hps167s_power_on(fathom_hps167s_t *sensor);
 
@@ -276,7 +287,8 @@ static inline const fathom_modbus_unit_t *fathom_hps167s_unit(const fathom_hps16
 /**
  * @brief Cancels the measurement, command or setting in progress. The driver can be used at once.
  *
- * A cancelled setting may be set or not. The driver uses the address and line settings from before the setting.
+ * No call returns a result for what was cancelled; a later fathom_poll() starts a new measurement. A cancelled setting
+ * may be set or not. The driver uses the address and line settings from before the setting.
  */
 void fathom_hps167s_cancel(fathom_hps167s_t *sensor);
 
