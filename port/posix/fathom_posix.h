@@ -17,10 +17,11 @@ extern "C" {
  * @file
  * @brief The HAL (hal.h) on a Linux tty, with a clock and a wait that uses no processor time.
  *
- * A port is a tty: /dev/ttyUSB0, /dev/ttyS1, /dev/ttyAMA0, or a pseudo terminal. The port never allocates memory, and
- * keeps no state outside the struct that the caller passes to it. Only fathom_posix_wait() waits. All other functions
- * return at once, except that the driver may need a few milliseconds to open or close a USB port. The section "Many
- * lines" of include/COST.md has the processor time of programs with 1 to 256 ports.
+ * A port is a tty: /dev/ttyUSB0, /dev/ttyS1, /dev/ttyAMA0, or a pseudo terminal. "The driver" is here the driver
+ * of the kernel for this tty. The port never allocates memory, and keeps no state outside the struct that the caller
+ * passes to it. Only fathom_posix_wait() waits. All other functions return at once, except that the driver may need a
+ * few milliseconds to open or close a USB port. The section "Many lines" of include/COST.md has the processor time of
+ * programs with 1 to 256 ports.
  *
  * @code
  * static fathom_posix_uart_t port;          // these three at file scope
@@ -41,36 +42,40 @@ extern "C" {
  *
  * 1. **Threads.** Call the functions of one port from one thread at a time. Different ports are independent.
  *
- * 2. **Memory.** A port holds no pointer to other memory. An open port must not be moved, because the result of
- *    fathom_posix_uart() contains a pointer to the port.
+ * 2. **Memory.** A port holds no pointer to other memory. Do not move or copy an open port, because the result of
+ *    fathom_posix_uart() contains a pointer to it.
  *
  * 3. **Single bytes.** The port reports nothing about single bytes: it never sets a flag `FATHOM_RX_...`. A tty has no
- *    time stamps. Its error marks (PARMRK) cannot be trusted: the drivers of the most common USB adapters (ftdi_sio,
- *    pl2303) give one mark to all bytes of a USB packet. A spike on the line before a response would then invalidate
- *    the whole response. The port delivers a byte with wrong parity like any other byte, so only checksums find it. For
- *    diagnosis, fathom_posix_line_errors() returns the counts of the driver.
+ *    time stamps. Its error marks (PARMRK) cannot be trusted, because the drivers of the most common USB adapters
+ *    (ftdi_sio, pl2303) give one mark to all bytes of a USB packet. A spike on the line before a response would then
+ *    invalidate the whole response. The port delivers a byte with wrong parity like any other byte, so only checksums
+ *    find it. For diagnosis, fathom_posix_line_errors() returns the counts of the driver.
  *
- * 4. **RS-485.** The port does not drive an RS-485 transceiver. Either the adapter does, or the driver of the kernel.
- *    Configure that driver in the device tree (`linux,rs485-enabled-at-boot-time`) or by fathom_posix_set_rs485(). An
- *    adapter that needs RTS to switch its direction, at a driver without this function, cannot be used.
+ * 4. **RS-485.** The port does not drive an RS-485 transceiver. The adapter does this, or else the driver. Configure
+ *    the driver in the device tree (`linux,rs485-enabled-at-boot-time`) or by fathom_posix_set_rs485(). If an adapter
+ *    needs RTS to switch its direction and its driver cannot do this, the adapter cannot be used.
  *
- * 5. **USB latency.** The port does not make a USB adapter faster. An FTDI chip holds bytes back for up to 16 ms.
- *    `setserial /dev/ttyUSB0 low_latency` reduces this to 1 ms.
+ * 5. **USB latency.** The port does not change the latency of a USB adapter. An FTDI chip holds bytes back for up to
+ *    16 ms. `setserial /dev/ttyUSB0 low_latency` reduces this to 1 ms.
  *
- * 6. **Settings.** The port has 8 data bits and no flow control. It ignores the modem lines and does not set RTS and DTR;
- *    most drivers switch both on when the tty is opened. fathom_posix_close() does not restore the former settings of
- *    the tty.
+ * 6. **Settings.** The port has 8 data bits and no flow control. It ignores the modem lines and does not set RTS and
+ *    DTR; most drivers switch both on when the tty is opened. fathom_posix_close() does not restore the former
+ *    settings of the tty.
  *
- * 7. **An unplugged adapter.** The polls of line and driver return FATHOM_ERR_PORT, and fathom_posix_error() returns
- *    FATHOM_POSIX_ERR_LOST. Call fathom_posix_close(), and fathom_posix_open() on the same struct until it succeeds. The
- *    result of fathom_posix_uart() stays valid, and the line and its drivers continue without a new initialisation. An
- *    adapter can come back under another name: a path in /dev/serial/by-id keeps its name. fathom_loop.h does all this.
+ * 7. **An unplugged adapter.** If the adapter is unplugged, the port is lost. The polls of Fathom's line and sensors
+ *    return FATHOM_ERR_PORT, and fathom_posix_error() returns FATHOM_POSIX_ERR_LOST. Call fathom_posix_close(). Then
+ *    call fathom_posix_open() on the same struct until it succeeds. The result of fathom_posix_uart() stays valid, and
+ *    the line and its sensors continue without a new initialisation. An adapter can come back under another name, but
+ *    a path in /dev/serial/by-id stays the same. fathom_loop.h does all this.
+ *
+ * 8. **Processes.** exec(2) closes the file descriptor of a port. A child of fork(2) without exec(2) keeps the tty and
+ *    its lock open.
  */
 
 /**
  * @brief The result of a call on a port. Errors are negative.
  *
- * fathom_posix_error_text() returns the error in words and, for most errors, what to do about it.
+ * fathom_posix_error_text() returns the error in words, and for most errors also a remedy.
  */
 typedef enum {
     FATHOM_POSIX_OK = 0, /**< Success. */
@@ -91,7 +96,7 @@ typedef enum {
     FATHOM_POSIX_ERR_LOST = -8, /**< The device was unplugged, or the far end of a pseudo terminal was closed.
                                            Close the port and open it again. */
     FATHOM_POSIX_ERR_CLOSED = -9,       /**< The port is not open. */
-    FATHOM_POSIX_ERR_UNSUPPORTED = -10, /**< This kind of port cannot do this. */
+    FATHOM_POSIX_ERR_UNSUPPORTED = -10, /**< The driver of this port cannot do this. */
     FATHOM_POSIX_ERR_SYSTEM = -11 /**< Any other error of the system. The text has the words of the system. */
 } fathom_posix_status_t;
 
@@ -120,17 +125,18 @@ typedef struct {
 /**
  * @brief Opens a tty exclusively, sets it, reads the settings back, and discards the bytes that arrived before.
  *
- * **Settings.** The port reads the settings back, because a driver may accept settings silently and not keep them: an
- * 8250 whose clock is too slow for 230400 baud keeps its old rate and reports success. Settings that were not kept are
- * FATHOM_POSIX_ERR_REFUSED. A rate within 2.5 % counts as kept. There is one exception: a pseudo terminal never keeps
- * PARENB, because it has no wire with a parity bit. The port ignores that for a pseudo terminal only, which it
- * recognises by the device number (Unix98 slaves have the majors 136 to 143). A pseudo terminal keeps baud rate and
- * stop bits, so the port checks these.
+ * **Settings.** The port reads the settings back, because a driver may report success without keeping them. For
+ * example, an 8250 whose clock is too slow for 230400 baud keeps its old rate and reports success. If the driver does
+ * not keep the settings, the result is FATHOM_POSIX_ERR_REFUSED. A rate within 2.5 % counts as kept. There is one
+ * exception: a pseudo terminal never keeps PARENB, because it has no wire with a parity bit. The port ignores the
+ * parity of a pseudo terminal, which it recognises by the device number (Unix98 slaves have the majors 136 to 143). A
+ * pseudo terminal keeps baud rate and stop bits, so the port checks these.
  *
  * **Exclusive.** The port takes a lock by flock(2), as pyserial does with `exclusive=True`, and sets TIOCEXCL against
- * programs that do not lock. TIOCEXCL does not stop a program of root; the lock stops it only if it locks too. A pseudo terminal gets the lock only: TIOCEXCL
- * would outlive a killed program there as long as the master is open. The port does not detect a program that opened
- * the tty earlier and uses neither.
+ * programs that do not lock. TIOCEXCL does not stop a program of root; the lock stops such a program only if it locks
+ * too. A pseudo terminal gets the lock only, because TIOCEXCL would outlive a killed program there as long as the
+ * master is open. The port does not detect a program that opened the tty earlier and uses neither the lock nor
+ * TIOCEXCL.
  *
  * @param port      The port, with any content. Close an open port first; otherwise its file descriptor leaks.
  * @param path      Path of the tty. Used only during the call.
@@ -147,7 +153,8 @@ fathom_posix_status_t fathom_posix_open(fathom_posix_uart_t *port, const char *p
  * @brief Closes a port.
  *
  * Bytes that have not left yet may be lost or may still leave; this depends on the driver. If that matters, wait until
- * `sent` of fathom_posix_uart() is true. If the port is closed, failed to open or is all zeros, nothing happens.
+ * `sent` of fathom_posix_uart() is true. If the port is closed, failed to open or is all zeros, the function does
+ * nothing.
  *
  * @param port  The port, or NULL.
  */
@@ -172,8 +179,9 @@ fathom_posix_status_t fathom_posix_set_line(fathom_posix_uart_t *port,
 /**
  * @brief How the driver of the kernel drives an RS-485 transceiver whose DE is connected to RTS.
  *
- * If all members are 0, RTS is on while bytes are sent and off otherwise. The level at the pin depends on the driver:
- * it is high for a PL011; others differ. If nothing leaves the board, try the other value of `rts_off_to_send`.
+ * If all members are 0, RTS is on while bytes are sent and off otherwise. Whether "on" is a high level at the pin
+ * depends on the driver: it is high for a PL011. If nothing leaves the board, try the other value of
+ * `rts_off_to_send`.
  */
 typedef struct {
     /** @brief True: RTS is off while bytes are sent, and on otherwise. */
@@ -209,10 +217,11 @@ fathom_posix_status_t fathom_posix_set_rs485(fathom_posix_uart_t *port, const fa
 /**
  * @brief Returns the UART functions (hal.h) of an open port.
  *
- * If the port is closed or lost, `read` and `write` return -1. Line and drivers report that as FATHOM_ERR_PORT.
+ * If the port is closed or lost, `read`, `write` and `set_break` return -1. The line and the sensors report that as
+ * FATHOM_ERR_PORT.
  *
- * - **read** returns -1 after the tty has hung up or its device was unplugged, until the port is closed and opened again
- *   (rule 7). Signals do not disturb a read.
+ * - **read** returns -1 after the tty has hung up or its device was unplugged, until the port is closed and opened
+ *   again (rule 7). Signals do not disturb a read.
  * - **write** accepts 1 to FATHOM_POSIX_WRITE_MAX bytes. If `length` is larger, it returns -1 and changes nothing. If
  *   the queue of the kernel (4 KiB for most UARTs) is nearly full, the kernel may accept only the beginning of a
  *   request. The port then keeps the rest, and `write` returns `length`. The next call of `read`, `write`, `sent` or
@@ -220,19 +229,19 @@ fathom_posix_status_t fathom_posix_set_rs485(fathom_posix_uart_t *port, const fa
  *   is no gap on the wire if one of these calls comes before the queue of the kernel is empty.
  * - **sent** is true when three conditions hold: the queue of the kernel is empty; the transmitter of a real UART is
  *   empty too (TIOCSERGETLSR, if the driver has it); and the time that the bytes need at the set rate has passed since
- *   `write`. The third condition is necessary because the driver of a USB adapter knows only its own queue, not that of
- *   the chip, and because a pseudo terminal is always empty at once. An adapter begins only when the next USB frame has
- *   reached it, every 1 ms at full speed: by this time `sent` may be early. An FTDI chip reports its state in status
- *   packets, up to 16 ms late. `sent` is true for a lost or closed port, so that no caller waits; `read` and `write`
- *   return the error.
- * - **leaves_in_us** returns the rest of the time of the third condition. It returns 0 if the kernel has not accepted
- *   all bytes yet, so that the caller polls soon, and if an adapter needs longer.
- * - **set_break** returns at once: 0 while bytes are still being sent, so the caller calls it again; after that it calls
- *   TIOCSBRK or TIOCCBRK. The caller ends the break by a second call. Not every adapter can send a break, and
- *   most drivers do not report that. On a pseudo terminal the port writes a byte 0 instead, since a received break
- *   reads as such a byte.
- * - **set_line** calls fathom_posix_set_line(), or nothing if the settings are in force already. If it returns -1,
- *   fathom_posix_error() has the reason.
+ *   `write`. The third condition is necessary for two reasons. The driver of a USB adapter knows only its own queue,
+ *   not that of the chip, and a pseudo terminal is always empty at once. An adapter begins when the next USB frame has
+ *   reached it, every 1 ms at full speed, so `sent` may be true up to 1 ms early. An FTDI chip reports its state in
+ *   status packets, up to 16 ms late. `sent` is true for a lost or closed port, so that no caller waits; `read` and
+ *   `write` return the error.
+ * - **leaves_in_us** returns the rest of the time of the third condition. If the kernel has not accepted all bytes
+ *   yet, or if an adapter needs longer, it returns 0, so that the caller polls soon.
+ * - **set_break** returns 0 while bytes are still being sent. After that it calls TIOCSBRK or TIOCCBRK. Not every
+ *   adapter can send a break, and most drivers do not report that. If the driver reports it, `set_break` returns -1,
+ *   fathom_posix_error() returns FATHOM_POSIX_ERR_UNSUPPORTED, and the port stays usable. On a pseudo terminal the port
+ *   writes a byte 0 instead, because a received break reads as such a byte.
+ * - **set_line** returns 1 if the settings are in force already, also if the port is closed or lost. Otherwise it calls
+ *   fathom_posix_set_line(). If the result is -1, fathom_posix_error() has the reason.
  *
  * @param port  The port. It must stay valid, and must not be moved, as long as the functions are used.
  * @return The UART, by value. A line needs it in memory that stays valid.
@@ -242,9 +251,10 @@ fathom_uart_t fathom_posix_uart(fathom_posix_uart_t *port);
 /**
  * @brief Returns the error of the newest call that failed on this port, or FATHOM_POSIX_OK if none failed.
  *
- * These calls set it: fathom_posix_open(), fathom_posix_set_line(), fathom_posix_set_rs485() and
- * fathom_posix_line_errors(). For FATHOM_POSIX_ERR_LOST, `read`, `write`, `sent` and fathom_posix_wait() set it too.
- * Only fathom_posix_open() clears it.
+ * These calls set it: fathom_posix_open(), fathom_posix_set_line(), fathom_posix_set_rs485(),
+ * fathom_posix_line_errors(), `set_line` and `set_break`. `read`, `write`, `sent` and fathom_posix_wait() set it to
+ * FATHOM_POSIX_ERR_LOST. Two kinds of failed calls do not set it: calls on a port that is lost already, and
+ * fathom_posix_line_errors() with NULL. Only fathom_posix_open() clears it.
  */
 fathom_posix_status_t fathom_posix_error(const fathom_posix_uart_t *port);
 

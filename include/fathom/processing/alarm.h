@@ -16,8 +16,8 @@ extern "C" {
  * @file
  * @brief An alarm on the distance of one probe: two thresholds, hold times, and a side for the time without a distance.
  *
- * The alarm works for any sensor in any mode, and behind a median. It is not a safety function. It never waits, has no
- * clock of its own and does no I/O. include/COST.md has its size in the row `alarm`.
+ * The alarm works for any sensor in any mode, and behind a median (median.h). It is not a safety function. It never
+ * waits, has no clock of its own and does no I/O. include/COST.md has its size in the row `alarm`.
  *
  * @code
  * static const fathom_alarm_config_t bumper = {.when = FATHOM_NEAR, .on_mm = 500, .off_mm = 600,
@@ -35,10 +35,11 @@ extern "C" {
  * @endcode
  *
  * 1. **Thresholds.** If `when` is FATHOM_NEAR, a distance below `on_mm` is beyond the threshold of on, and a distance
- *    above `off_mm` is beyond the threshold of off. If `when` is FATHOM_FAR, it is the reverse: above `on_mm` and below
- *    `off_mm`. A sample of the kind FATHOM_NEAR counts as 0 mm. A sample of the kind FATHOM_FAR or FATHOM_NO_TARGET is
- *    farther than every threshold. With `no_target_is_unknown`, FATHOM_NO_TARGET has no distance (rule 5); an ultrasonic
- *    sensor can detect nothing in foam, or if the surface is too near.
+ *    above `off_mm` is beyond the threshold of off. If `when` is FATHOM_FAR, a distance above `on_mm` is beyond the
+ *    threshold of on, and a distance below `off_mm` is beyond the threshold of off. A sample of the kind FATHOM_NEAR is
+ *    nearer than every threshold. A sample of the kind FATHOM_FAR or FATHOM_NO_TARGET is farther than every threshold.
+ *    If `no_target_is_unknown` is true, FATHOM_NO_TARGET is a sample without a distance instead: an ultrasonic sensor
+ *    can detect nothing in foam, or if the surface is too near.
  *
  * 2. **States.**
  *
@@ -49,31 +50,33 @@ extern "C" {
  *    | FATHOM_ALARM_UNKNOWN | after init; or there was no distance for more than `unknown_us`, and the device responds |
  *    | FATHOM_ALARM_NO_RESPONSE | there was no distance for more than `unknown_us`, and the device does not respond |
  *
- *    Distances between the thresholds, or equal to one of them, do not change FATHOM_ALARM_ON or _OFF.
+ *    A distance between the thresholds, or equal to one of them, does not change FATHOM_ALARM_ON or FATHOM_ALARM_OFF.
  *
- * 3. **Hold times.** A hold time runs from the first sample beyond the threshold to the sample that completes it; time
- *    alone switches neither on nor off. A distance that is not beyond that threshold starts the hold time again. A time
- *    without a distance starts it again only if it is longer than `unknown_us`.
+ * 3. **Hold times.** A hold time runs from the first sample beyond the threshold to the sample that completes it. Time
+ *    alone switches neither on nor off. After a distance that is not beyond that threshold, the hold time starts again.
+ *    After a time without a distance it starts again only if that time was longer than `unknown_us`.
  *
- * 4. **Which side without a distance.** In the last two states, `if_unknown` and `if_no_response` decide whether the
- *    alarm is on. There is no default, because a bumper, a tank and a pit differ. A distance beyond a threshold ends
- *    these states after its hold time; until then the state stays. A distance between the thresholds ends them at once:
- *    the state is then FATHOM_ALARM_ON or _OFF, whichever was the last of the two, or `if_unknown` if there was none.
+ * 4. **Which side without a distance.** In FATHOM_ALARM_UNKNOWN, `if_unknown` decides whether the alarm is on. In
+ *    FATHOM_ALARM_NO_RESPONSE, `if_no_response` does. There is no default, because a bumper, a tank and a pit differ. A
+ *    distance beyond a threshold ends these states after its hold time. Any other distance ends them at once. The state
+ *    is then the newer of FATHOM_ALARM_ON and FATHOM_ALARM_OFF, or `if_unknown` if the alarm was in neither before.
  *
- * 5. **Whether the device responds.** The newest call that says something about the device decides this (the table of
- *    fathom_alarm_add_status()). FATHOM_PENDING, for example, changes nothing. Samples of the kinds FATHOM_UNKNOWN and
- *    FATHOM_FAULT are responses without a distance. A device that was never heard counts as not responding. Before the
- *    first distance, `unknown_us` counts from the first call.
+ * 5. **Whether the device responds.** The newest call that proves something about the device decides this (the table of
+ *    fathom_alarm_add_status()). For example, FATHOM_PENDING proves nothing. Samples of the kinds FATHOM_UNKNOWN and
+ *    FATHOM_FAULT are responses without a distance. A device that has never responded counts as not responding. Before
+ *    the first distance, `unknown_us` counts from the first call.
  *
  * 6. **Several probes.** Each probe needs an alarm of its own. Pass a sample only to the alarm of its probe
  *    (`sample.probe`). You may call fathom_alarm_add_status() with FATHOM_OK for the other alarms, to show that the
  *    device responds.
  *
- * 7. **Times.** `now_us` and the `time_us` of the samples must be from the same clock. They may wrap. The time between two
- *    calls and `unknown_us` must together be below 35 minutes; after a longer pause initialise the alarm again. A sample
- *    that is up to 100 ms older than the sample before it counts as equally old.
+ * 7. **Times.** `now_us` and the `time_us` of the samples must be from the same clock. They may wrap. The time between
+ *    two calls and `unknown_us` must together be below 35 minutes. After a longer pause, initialise the alarm again. A
+ *    sample that is up to 100 ms older than the previous sample counts as equally old. Do not pass an older one: it can
+ *    complete a hold time at once.
  *
- * 8. **Contexts.** The functions may be called from an interrupt. Two contexts must not use the same alarm at once.
+ * 8. **Contexts.** An interrupt may call the functions. Two contexts, such as an interrupt and the main loop, must not
+ *    use the same alarm at once.
  */
 
 /** @brief The state of an alarm. */
@@ -85,29 +88,29 @@ typedef enum {
     FATHOM_ALARM_NO_RESPONSE = 4 /**< There is no distance; the device does not respond, or never did. */
 } fathom_alarm_state_t;
 
-/** Default of `unknown_us`. */
+/** @brief Default of `unknown_us`, in microseconds. */
 #define FATHOM_ALARM_DEFAULT_UNKNOWN_US 5000000uL
 
 /** @brief The configuration of an alarm. */
 typedef struct {
-    /** Time for which something must be beyond `on_mm` before the alarm is on, 0..FATHOM_MAX_DURATION_US; 0: the first
-     * sample switches it on. */
+    /** Time for which distances must be beyond `on_mm` before the alarm is on, in microseconds,
+     * 0..FATHOM_MAX_DURATION_US. 0: the first sample switches the alarm on. */
     uint32_t on_hold_us;
     uint32_t off_hold_us; /**< The same with `off_mm` and off. */
-    /** Time without a distance after which the distance is not known, 1..FATHOM_MAX_DURATION_US. Choose more than the
-     * interval between two samples. 0 selects 5 s. It cannot be disabled. */
+    /** Time without a distance after which the distance is unknown, in microseconds, 1..FATHOM_MAX_DURATION_US. Choose
+     * more than the interval between two samples. 0 selects 5 s. This limit cannot be disabled. */
     uint32_t unknown_us;
     uint16_t on_mm;  /**< Threshold of on, 0..65535 mm. */
     uint16_t off_mm; /**< Threshold of off. With FATHOM_NEAR: on_mm..65535; with FATHOM_FAR: 0..on_mm. */
     uint8_t when;    /**< FATHOM_NEAR or FATHOM_FAR. Required. */
-    /** FATHOM_ALARM_ON or FATHOM_ALARM_OFF: what fathom_alarm_is_on() reports in FATHOM_ALARM_UNKNOWN. Required. */
+    /** FATHOM_ALARM_ON or FATHOM_ALARM_OFF: the side in the state FATHOM_ALARM_UNKNOWN (rule 4). Required. */
     uint8_t if_unknown;
-    uint8_t if_no_response; /**< The same in FATHOM_ALARM_NO_RESPONSE. Required. */
+    uint8_t if_no_response; /**< The same in the state FATHOM_ALARM_NO_RESPONSE. Required. */
     bool
         no_target_is_unknown; /**< FATHOM_NO_TARGET is no distance. False: it is farther than every threshold. */
 } fathom_alarm_config_t;
 
-/** @brief An alarm. The caller owns the memory. Only `state` is meant to be read. */
+/** @brief An alarm. The caller owns the memory. The caller may read `state`. All other members are private. */
 typedef struct {
     fathom_alarm_config_t config; /**< The configuration, with the default filled in. */
     uint32_t fed_us;   /**< Time of the last distance; before the first distance, of the first call. */
@@ -153,8 +156,8 @@ bool fathom_alarm_add_sample(fathom_alarm_t *alarm, const fathom_sample_t *sampl
  * | FATHOM_OK | the device responds without a distance: the sample was of another probe, or the median has no value yet |
  * | other errors | the device does not respond |
  *
- * If only results of the first line arrive from the start, the state is FATHOM_ALARM_NO_RESPONSE after `unknown_us`. A
- * time before that of the newest sample does not change the state.
+ * If only results of the first line arrive from the start, the state is FATHOM_ALARM_NO_RESPONSE after `unknown_us`. In
+ * FATHOM_ALARM_ON and FATHOM_ALARM_OFF, a time before that of the newest distance does not change the state.
  *
  * @param alarm   The alarm.
  * @param status  The result of fathom_poll().

@@ -46,11 +46,11 @@ extern "C" {
  *    | FATHOM_ERR_EXCEPTION    | The unit refused the request: see fathom_a05_modbus_exception().          |
  *    | FATHOM_ERR_MALFORMED    | The unit sent another frame, or the value of one probe is refused (rule 3). |
  *    | FATHOM_ERR_WARMING_UP   | The unit was powered a short time ago: see fathom_a05_modbus_power_on().  |
- *    | FATHOM_ERR_PORT         | The port is broken. Returned by every poll until the port works again.    |
+ *    | FATHOM_ERR_PORT         | The port is broken. Returned by every poll while it cannot be read.       |
  *    | FATHOM_ERR_LINE_BUSY    | The line was never silent. This says nothing about the unit (status.h).   |
  *    | FATHOM_ERR_OTHER_MASTER | Another master sent the unit a request. This says nothing about the unit. |
  *    | FATHOM_ERR_CANCELLED    | The line was initialised again, or another driver moved the unit.         |
- *    | FATHOM_ERR_UNSUPPORTED  | The port or the transport cannot set `line_settings`.                     |
+ *    | FATHOM_ERR_UNSUPPORTED  | `line_settings` cannot be set, or the line only listens.                  |
  *    | FATHOM_ERR_ARGUMENT     | The driver is not initialised.                                            |
  *
  * 3. **Refused values.** A value outside the window, or FFFF, is no sample. The driver counts it in

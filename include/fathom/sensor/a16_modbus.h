@@ -53,11 +53,11 @@ extern "C" {
  * | FATHOM_ERR_EXCEPTION | the unit refused; fathom_a16_modbus_exception() returns the exception code |
  * | FATHOM_ERR_MALFORMED | the unit sent another frame, or a refused value: outside the window, or FFFF |
  * | FATHOM_ERR_WARMING_UP | no reading yet so soon after fathom_a16_modbus_power_on() |
- * | FATHOM_ERR_PORT | the port is broken; returned by every poll until the port works again |
+ * | FATHOM_ERR_PORT | the port is broken; returned by every poll while it cannot be read |
  * | FATHOM_ERR_LINE_BUSY | the line was never silent; says nothing about the unit (status.h) |
  * | FATHOM_ERR_OTHER_MASTER | another master sent the unit a request; says nothing about the unit |
  * | FATHOM_ERR_CANCELLED | the line was initialised again, or another driver moved the unit |
- * | FATHOM_ERR_UNSUPPORTED | the port cannot set `line_settings` |
+ * | FATHOM_ERR_UNSUPPORTED | `line_settings` cannot be set, or the line only listens |
  * | FATHOM_ERR_ARGUMENT | the driver is not initialised |
  *
  * A refused value increments `base.measurement.implausible` and stands in `base.measurement.refused_raw` (dyp.h).
