@@ -135,6 +135,14 @@ static fathom_status_t look(const fathom_modbus_setting_t *setting, uint32_t *va
 
 /* ---- Settings at one place ---- */
 
+/* Another setting is in progress. #13 loads the user's settings or those of the factory: the same id with another value
+ * is another setting. */
+static bool is_kept_out(const fathom_hps167s_t *sensor, uint8_t id, uint32_t value)
+{
+    const uint8_t setting = sensor->unit.setting;
+    return (setting != 0u) && ((setting != id) || (sensor->setting.value != value));
+}
+
 /*
  * Begins a setting, or continues the one in progress. With FATHOM_OK, sensor->setting describes the setting; the caller
  * adds what is special to it and calls go_on().
@@ -148,10 +156,9 @@ static fathom_status_t begin(fathom_hps167s_t *sensor, uint8_t command, uint32_t
     fathom_modbus_setting_t *const setting = &sensor->setting;
     const uint8_t id = (uint8_t)(fathom_hps167s_id(command) | (kind & TO_ALL));
     fathom_modbus_unit_poll(unit);
-    if (unit->setting != 0u) {
-        /* #13 loads the user's settings or those of the factory: the same id with another value is another setting. */
-        if ((unit->setting != id) || (setting->value != value)) return FATHOM_ERR_BUSY;
-    } else {
+    if (is_kept_out(sensor, id, value) && !fathom_modbus_command_give_way(unit)) return FATHOM_ERR_BUSY;
+    if (unit->setting == 0u) {
+        if (kind == TO_ALL) unit->is_blind = true;
         unit->is_written = false; /* Nothing is written before the following read has ended. */
         if (!unit->is_blind && (sensor->is_seeking || (kind == WRITE_ONLY))) {
             const fathom_status_t status =
@@ -251,10 +258,9 @@ fathom_status_t fathom_hps167s_set_reconnect_time_ms(fathom_hps167s_t *sensor, u
 static fathom_status_t set_all(fathom_hps167s_t *sensor, uint8_t command, bool is_on)
 {
     fathom_modbus_unit_t *const unit = &sensor->unit;
-    const uint8_t home = unit->address;
-    if (unit->setting == 0u) unit->is_blind = true;
     fathom_status_t status = begin(sensor, command, switch_of(is_on), TO_ALL);
     if (status != FATHOM_OK) return status;
+    const uint8_t home = unit->address; /* An abandoned setting that moves the sensor has given way. */
     unit->address = FATHOM_MODBUS_BROADCAST;
     status = go_on(sensor);
     unit->address = home;

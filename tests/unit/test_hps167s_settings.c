@@ -243,6 +243,56 @@ TEST(no_setting_begins_while_a_blind_one_or_a_broadcast_is_in_progress)
     }
 }
 
+/* modbus_unit.h, rule 5: a setting that is not called for 5 s and 16 calls of other functions ends. */
+static void begins_behind_the_abandoned_one(fathom_status_t (*set)(void), int32_t argument)
+{
+    fathom_status_t status = FATHOM_ERR_BUSY;
+    desk.argument = argument;
+    for (unsigned calls = 1; status == FATHOM_ERR_BUSY; calls++) {
+        assert_true(calls <= 16);
+        fake.now_us += 1000000;
+        status = set();
+        assert_int_equal(status, calls < 16 ? FATHOM_ERR_BUSY : FATHOM_PENDING);
+    }
+    fake.submits = 0;
+}
+
+static void begins_behind_an_abandoned_setting(fathom_status_t (*set)(void), int32_t argument)
+{
+    hps_set_up(NULL);
+    desk.argument = 0;
+    PENDS(termination());
+    begins_behind_the_abandoned_one(set, argument);
+}
+
+TEST(an_abandoned_setting_gives_way_to_another_setting)
+{
+    begins_behind_an_abandoned_setting(warm_up, 9);
+    PLAY(warm_up, OK, FACTORY, PUTS(0x0A, 9, OK), TELLS(0xFFFF, 0x0900, 0x0000, 0xB401));
+    begins_behind_an_abandoned_setting(termination, 1); /* the same with another value */
+    PLAY(termination, OK, FACTORY);
+    begins_behind_an_abandoned_setting(offset, -15);
+    PLAY(offset, OK, ASK_1, PUTS(0x14, 0xFFF1, OK));
+}
+
+TEST(an_abandoned_setting_gives_way_to_a_broadcast_which_reads_nothing)
+{
+    begins_behind_an_abandoned_setting(measures_all, 1);
+    PLAY(measures_all, FATHOM_ERR_UNCONFIRMED, HPS_WRITE(0, 0x12, 0xFF, OK, 0));
+}
+
+TEST(behind_an_abandoned_move_a_broadcast_leaves_the_driver_at_its_former_address)
+{
+    desk.argument = 5;
+    PART(address, ASK_1);
+    PENDS(address()); /* The new address is probed. */
+    assert_int_equal(hps.unit.address, 5);
+    begins_behind_the_abandoned_one(measures_all, 1);
+    PLAY(measures_all, FATHOM_ERR_UNCONFIRMED, HPS_WRITE(0, 0x12, 0xFF, OK, 0));
+    hps_asks(1, 0);
+    hps_answers();
+}
+
 /* 2.2.1: "For the request sent by the host in broadcast mode, the slave does not respond": the line ends it as sent. */
 TEST(what_goes_to_all_units_is_sent_once_and_not_confirmed)
 {

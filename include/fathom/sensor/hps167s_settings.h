@@ -31,8 +31,8 @@ extern "C" {
  *    that starts a new setting. While a setting is in progress, other commands and settings return FATHOM_ERR_BUSY, and
  *    fathom_poll() returns FATHOM_PENDING. fathom_poll() makes two exceptions: FATHOM_ERR_PORT, and the result of a
  *    measurement that was on the wire already. fathom_hps167s_cancel() ends a setting: the value may then be set or
- *    not. The same happens if the program stops to call the function: after 5 s and 16 polls fathom_poll() ends the
- *    setting and measures again.
+ *    not. A setting that the program no longer calls ends in the same way, after 5 s and 16 calls of other functions of
+ *    the driver, such as fathom_poll() (modbus_unit.h, rule 5).
  *
  * 2. **Arguments.** A function checks its argument before it sends anything. It returns FATHOM_ERR_ARGUMENT if the
  *    argument is outside its range, or if the driver is not initialised.
