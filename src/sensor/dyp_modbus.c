@@ -45,6 +45,8 @@ static uint8_t id_of(uint16_t address)
     return (uint8_t)(FATHOM_MODBUS_COMMAND | ((address >> 4) & 0x30u) | (address & 0x0Fu));
 }
 
+static uint8_t write_id(uint16_t address) { return (uint8_t)(id_of(address) + WRITES); }
+
 fathom_status_t fathom_dyp_modbus_look(fathom_dyp_modbus_t *sensor, uint16_t address, uint16_t *value)
 {
     fathom_modbus_unit_request_t request;
@@ -91,7 +93,7 @@ void fathom_dyp_modbus_describe(fathom_dyp_modbus_t *sensor, fathom_modbus_setti
     setting->write.first = address;
     setting->write.last = value;
     setting->write.function = FATHOM_MODBUS_WRITE_SINGLE_REGISTER;
-    setting->write.id = (uint8_t)(id_of(address) + WRITES);
+    setting->write.id = write_id(address);
     setting->value = value;
     setting->line_settings = NULL;
     setting->address = 0;
@@ -122,8 +124,12 @@ fathom_status_t fathom_dyp_modbus_set_register(fathom_dyp_modbus_t *sensor, uint
 fathom_status_t fathom_dyp_modbus_write_register(fathom_dyp_modbus_t *sensor, uint16_t address,
                                                  uint16_t value)
 {
+    const fathom_modbus_unit_t *const unit = &sensor->unit;
     fathom_modbus_unit_poll(&sensor->unit);
-    if ((sensor->unit.setting == 0u) && !sensor->unit.is_blind) {
+    if ((unit->setting != 0u) && (unit->setting != write_id(address)) &&
+        !fathom_modbus_command_give_way(&sensor->unit))
+        return FATHOM_ERR_BUSY;
+    if ((unit->setting == 0u) && !unit->is_blind) {
         sensor->unit.is_written = false; /* nor will it be before this read has ended */
         const fathom_status_t status =
             fathom_dyp_modbus_look(sensor, FATHOM_DYP_REGISTER_ADDRESS, &sensor->found);

@@ -253,6 +253,19 @@ TEST(the_operating_mode_of_one_that_does_not_answer_is_not_written)
     PLAY(set_mode, SILENT, READ(1, 0x0200, SILENT, 0));
 }
 
+/* modbus_unit.h, rule 5: a setting that is not called for 5 s and 16 calls of other functions ends. */
+TEST(behind_an_abandoned_setting_the_operating_mode_is_written_after_its_read)
+{
+    desk.argument = 1;
+    PENDS(set_polarity());
+    for (unsigned calls = 1; calls != 17; calls++) {
+        fake.now_us += 1000000;
+        assert_int_equal(set_mode(), calls < 16 ? FATHOM_ERR_BUSY : FATHOM_PENDING);
+    }
+    fake.submits = 0;
+    PLAY(set_mode, OK, READ(1, 0x0200, OK, 1), WRITE(1, 0x0202, 1, OK));
+}
+
 /* ---- a distance asked once ---- */
 
 static fathom_status_t measure(void)
