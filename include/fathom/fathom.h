@@ -40,6 +40,9 @@
 #include "fathom/sensor/hps167s_info.h"     /* commands that read: #1 to #4 */
 #include "fathom/sensor/hps167s_settings.h" /* commands that set: #6 to #15 */
 
+/* All three */
+#include "fathom/sensor/factory_line.h" /* the line settings with which they leave the factory */
+
 /* Processing of readings */
 #include "fathom/processing/alarm.h" /* an alarm: thresholds, hold times, and a side for an unknown distance */
 #include "fathom/processing/level.h"  /* level and volume of a tank */
