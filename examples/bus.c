@@ -67,26 +67,23 @@ static bool bus_init(bus_t *bus, const fathom_uart_t *uart, const fathom_clock_t
     bus->modbus = fathom_modbus_client(&bus->line);
 
     const fathom_a16_modbus_config_t a16 = {
-        .modbus.transport = &bus->modbus,
         .modbus.line_settings = &ultrasonic,
         .modbus.address = 1,
         .value = FATHOM_REAL_TIME,
     };
     const fathom_a05_modbus_config_t a05 = {
-        .modbus.transport = &bus->modbus,
         .modbus.line_settings = &ultrasonic,
         .modbus.address = 2,
         /* When it is silent, it is asked every two seconds; the default is 16 time-outs, 9.6 s. */
         .modbus.backoff_us = 2000000,
     };
     const fathom_hps167s_config_t hps = {
-        .modbus.transport = &bus->modbus,
         .modbus.line_settings = &infrared,
         .modbus.address = 7,
     };
-    if (fathom_a16_modbus_init(&bus->a16, &a16) != FATHOM_OK ||
-        fathom_a05_modbus_init(&bus->a05, &a05) != FATHOM_OK ||
-        fathom_hps167s_init(&bus->hps, &hps) != FATHOM_OK)
+    if (fathom_a16_modbus_init(&bus->a16, &bus->modbus, &a16) != FATHOM_OK ||
+        fathom_a05_modbus_init(&bus->a05, &bus->modbus, &a05) != FATHOM_OK ||
+        fathom_hps167s_init(&bus->hps, &bus->modbus, &hps) != FATHOM_OK)
         return false;
 
     bus->sensors[A16] = fathom_a16_modbus_sensor(&bus->a16);

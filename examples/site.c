@@ -41,15 +41,14 @@ int main(int argc, char **argv)
     if (argc != 4 || fathom_loop_init(&loop, &(fathom_loop_config_t){.tell = tell, .ctx = stderr})) return 2;
     bool bad = fathom_gpio_open_edges(&contact, argv[3], 17, FATHOM_GPIO_BIAS_PULL_UP) != FATHOM_GPIO_OK;
     const fathom_pin_t level = fathom_gpio_pin(&contact);
-    fathom_loop_add_line(&loop, &north, argv[1], &(fathom_line_settings_t){19200, FATHOM_PARITY_EVEN, 1});
-    fathom_loop_add_line(&loop, &west, argv[2], &(fathom_line_settings_t){9600, FATHOM_PARITY_NONE, 1});
+    fathom_loop_add_line(&loop, &north, argv[1], &fathom_hps167s_factory_line);
+    fathom_loop_add_line(&loop, &west, argv[2], &fathom_a16_factory_line);
     /* An edge wakes it. A state that does not change is printed once a minute. */
     const fathom_contact_timing_t timing = {.period_us = 60000000u, .interval_us = FATHOM_NO_DEADLINE};
-    bad |= fathom_hps167s_init(&gate, &(fathom_hps167s_config_t){.modbus.transport = &north.bus.modbus}) < 0;
-    bad |= fathom_a16_modbus_init(&tank,
-                                  &(fathom_a16_modbus_config_t){.modbus.transport = &west.bus.modbus}) < 0;
-    bad |= fathom_a05_relay_init(&door,
-                                 &(fathom_a05_relay_config_t){&level, &north.bus.clock, timing, 0, 0}) < 0;
+    bad |= fathom_hps167s_init(&gate, &north.bus.modbus, NULL) < 0;
+    bad |= fathom_a16_modbus_init(&tank, &west.bus.modbus, NULL) < 0;
+    bad |= fathom_a05_relay_init(&door, &level, &north.bus.clock,
+                                 &(fathom_a05_relay_config_t){timing, 0, 0}) < 0;
     if (bad) return fprintf(stderr, "wrong pin or configuration: %s\n", fathom_gpio_error_text(&contact)), 1;
     fathom_loop_add_pin(&loop, &pin, fathom_gpio_fd(&contact));
     fathom_loop_read(&north.source, &(fathom_loop_sensor_t){0}, fathom_hps167s_sensor(&gate), take, "gate");

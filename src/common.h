@@ -72,6 +72,17 @@ static inline void clear(void *object, size_t size)
     }
 }
 
+/*
+ * Returns the config of an init function, or `zeroed`, all bytes of which are 0 then, if the program has no config. An
+ * AVR keeps a constant in RAM, so init functions have `zeroed` on their stack, which is deeper in a poll.
+ */
+static inline const void *config_or_zeroed(const void *config, void *zeroed, size_t size)
+{
+    if (config != NULL) return config;
+    clear(zeroed, size);
+    return zeroed;
+}
+
 /* Copies an object onto another one, which may be the same. Volatile for the same reason as in clear(). */
 static inline void copy(void *to, const void *from, size_t size)
 {

@@ -81,10 +81,10 @@ static bool begin(void)
     if (!fathom_avr_usart0_init(&usart)) return false;
     sei();
     if (!begin_receiver(&receivers[A16]) || !begin_receiver(&receivers[A05])) return false;
-    const fathom_a16_auto_config_t one = {.line = &receivers[A16].line, .stale_us = STALE_US};
-    const fathom_a05_auto_config_t four = {.line = &receivers[A05].line, .stale_us = STALE_US};
-    if (fathom_a16_auto_init(&a16, &one) != FATHOM_OK) return false;
-    if (fathom_a05_auto_init(&a05, &four) != FATHOM_OK) return false;
+    const fathom_a16_auto_config_t one = {.stale_us = STALE_US};
+    const fathom_a05_auto_config_t four = {.stale_us = STALE_US};
+    if (fathom_a16_auto_init(&a16, &receivers[A16].line, &one) != FATHOM_OK) return false;
+    if (fathom_a05_auto_init(&a05, &receivers[A05].line, &four) != FATHOM_OK) return false;
     sensors[A16] = fathom_a16_auto_sensor(&a16);
     sensors[A05] = fathom_a05_auto_sensor(&a05);
     turn_to(A16);

@@ -42,11 +42,8 @@ static bool begin(void)
     fathom_avr_icp1_init(&edges);
     const bool is_ready = fathom_avr_usart0_init(&usart);
     sei();
-    return is_ready &&
-           fathom_a16_pwm_init(&tank, &(fathom_a16_pwm_config_t){
-                                          .pulse = {.clock = &fathom_avr_clock,
-                                                    .capture = &capture,
-                                                    .trigger = fathom_output_pin(&trigger)}}) == FATHOM_OK;
+    const fathom_output_t output = fathom_output_pin(&trigger);
+    return is_ready && fathom_a16_pwm_init(&tank, &capture, &fathom_avr_clock, &output, NULL) == FATHOM_OK;
 }
 
 /* Nothing is sent to it; but a byte of noise that is not read would keep it awake. */

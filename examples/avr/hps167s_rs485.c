@@ -68,8 +68,8 @@ static bool begin(void)
     if (fathom_line_init(&line, &line_parts) != FATHOM_OK) return false;
     modbus = fathom_modbus_client(&line);
     /* One retry: a single hit on the wire is no error yet. */
-    const fathom_hps167s_config_t config = {.modbus.transport = &modbus, .modbus.retries = 1};
-    if (fathom_hps167s_init(&gate, &config) != FATHOM_OK) return false;
+    const fathom_hps167s_config_t config = {.modbus.retries = 1};
+    if (fathom_hps167s_init(&gate, &modbus, &config) != FATHOM_OK) return false;
     fathom_hps167s_power_on(&gate); /* it gets its supply together with this board */
     return fathom_debounce_init(&level, &rule) == FATHOM_OK;
 }

@@ -34,8 +34,7 @@ int main(void)
     if (fathom_line_init(&line, &parts) != FATHOM_OK) return 2;
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
     fathom_hps167s_t gate;
-    const fathom_hps167s_config_t gate_config = {.modbus.transport = &modbus};
-    if (fathom_hps167s_init(&gate, &gate_config) != FATHOM_OK) return 2;
+    if (fathom_hps167s_init(&gate, &modbus, NULL) != FATHOM_OK) return 2;
 
     const fathom_sensor_t sensor = fathom_hps167s_sensor(&gate);
     for (int readings = 0; readings != 30;) {

@@ -59,8 +59,7 @@ int main(void)
                                             .counters = counters};
     if (fathom_line_init_listening(&line, &line_parts) != FATHOM_OK) return 3;
     fathom_a16_auto_t a16;
-    const fathom_a16_auto_config_t config = {.line = &line};
-    if (fathom_a16_auto_init(&a16, &config) != FATHOM_OK) return 4;
+    if (fathom_a16_auto_init(&a16, &line, NULL) != FATHOM_OK) return 4;
     const fathom_sensor_t sensor = fathom_a16_auto_sensor(&a16);
     for (;;) {
         fathom_sample_t sample;

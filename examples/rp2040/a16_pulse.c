@@ -47,10 +47,8 @@ int main(void)
     const fathom_capture_t capture = fathom_edges_capture(&edges);
 
     fathom_a16_pwm_t a16;
-    const fathom_a16_pwm_config_t config = {.pulse = {.clock = &fathom_rp2040_clock,
-                                                      .capture = &capture,
-                                                      .trigger = fathom_output_pin(&trigger)}};
-    if (fathom_a16_pwm_init(&a16, &config) != FATHOM_OK) return 2;
+    const fathom_output_t output = fathom_output_pin(&trigger);
+    if (fathom_a16_pwm_init(&a16, &capture, &fathom_rp2040_clock, &output, NULL) != FATHOM_OK) return 2;
     const fathom_sensor_t sensor = fathom_a16_pwm_sensor(&a16);
     for (;;) {
         fathom_sample_t sample;

@@ -69,8 +69,7 @@ int main(void)
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
 
     fathom_hps167s_t hps;
-    const fathom_hps167s_config_t config = {.modbus.transport = &modbus};
-    if (fathom_hps167s_init(&hps, &config) != FATHOM_OK) return 4;
+    if (fathom_hps167s_init(&hps, &modbus, NULL) != FATHOM_OK) return 4;
     const fathom_sensor_t sensor = fathom_hps167s_sensor(&hps);
     for (;;) {
         fathom_sample_t sample;

@@ -88,8 +88,8 @@ static void read_tank(void)
     if (status != FATHOM_OK) end(&tank, status);
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
     fathom_a16_modbus_t a16;
-    const fathom_a16_modbus_config_t config = {.modbus.transport = &modbus, .value = FATHOM_REAL_TIME};
-    status = fathom_a16_modbus_init(&a16, &config);
+    const fathom_a16_modbus_config_t config = {.value = FATHOM_REAL_TIME};
+    status = fathom_a16_modbus_init(&a16, &modbus, &config);
     if (status != FATHOM_OK) end(&tank, status);
     const fathom_sensor_t sensor = fathom_a16_modbus_sensor(&a16);
     for (;;) {
@@ -118,8 +118,7 @@ static void read_gate(void)
     if (status != FATHOM_OK) end(&gate, status);
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
     fathom_hps167s_t hps;
-    const fathom_hps167s_config_t config = {.modbus.transport = &modbus};
-    status = fathom_hps167s_init(&hps, &config);
+    status = fathom_hps167s_init(&hps, &modbus, NULL);
     if (status != FATHOM_OK) end(&gate, status);
     const fathom_sensor_t sensor = fathom_hps167s_sensor(&hps);
     for (;;) {

@@ -29,10 +29,8 @@ int main(void)
     const fathom_capture_t capture = fathom_edges_capture(&edges);
 
     fathom_a16_pwm_t tank;
-    const fathom_a16_pwm_config_t config = {.pulse = {.clock = &fathom_stm32f4_clock,
-                                                      .capture = &capture,
-                                                      .trigger = fathom_output_pin(&trigger)}};
-    if (fathom_a16_pwm_init(&tank, &config) != FATHOM_OK) return 2;
+    const fathom_output_t output = fathom_output_pin(&trigger);
+    if (fathom_a16_pwm_init(&tank, &capture, &fathom_stm32f4_clock, &output, NULL) != FATHOM_OK) return 2;
     const fathom_sensor_t sensor = fathom_a16_pwm_sensor(&tank);
     fathom_stm32f4_idle_t idle = {NULL, 0};
     for (;;) {

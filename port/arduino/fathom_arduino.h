@@ -112,7 +112,7 @@ class pulse_input
     void changed();
 
     /**
-     * @brief Returns the capture for a fathom_a16_pwm_config_t or fathom_pulse_config_t. Call it after begin().
+     * @brief Returns the capture for fathom_a16_pwm_init(). Call it after begin().
      * @return The capture, by value. This object must stay valid as long as the capture is used.
      */
     fathom_capture_t capture();

@@ -31,9 +31,8 @@ extern "C" {
  * clock = fathom_posix_clock();                     // the stamps of the kernel are of the same clock, CLOCK_MONOTONIC
  * trigger_pin = fathom_gpio_pin(&trigger);
  * capture = fathom_gpio_capture(&echo);
- * config.pulse.clock = &clock;                      // config is a fathom_a16_pwm_config_t
- * config.pulse.trigger = fathom_output_pin(&trigger_pin);
- * config.pulse.capture = &capture;
+ * const fathom_output_t output = fathom_output_pin(&trigger_pin);
+ * if (fathom_a16_pwm_init(&a16, &capture, &clock, &output, NULL) != FATHOM_OK) return 1;
  * @endcode
  *
  * 1. **Voltage.** The pins of most boards stand 3.3 V and no more. TX of an A16 is 3 V when it is high, and its RX

@@ -31,7 +31,9 @@ extern "C" {
  * if (modbus == NULL || modbus_connect(modbus) != 0) return 1;
  * clock = fathom_posix_clock();
  * if (fathom_libmodbus_init(&port, modbus, &(fathom_libmodbus_config_t){.clock = &clock}) != FATHOM_OK) return 1;
- * transport = fathom_libmodbus(&port);      // .modbus.transport = &transport in the configuration of each driver
+ * transport = fathom_libmodbus(&port);
+ * if (fathom_hps167s_init(&gate, &transport, NULL) != FATHOM_OK) return 1;
+ * sensor = fathom_hps167s_sensor(&gate);
  * status = fathom_wait(&sensor, &sample, fathom_libmodbus_wait, &port);
  * @endcode
  *

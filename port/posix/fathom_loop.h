@@ -32,8 +32,8 @@ extern "C" {
  * static fathom_loop_sensor_t gate_sensor = {.take = print, .ctx = "gate"};
  *
  * fathom_loop_init(&loop, NULL);
- * fathom_loop_add_line(&loop, &north, "/dev/ttyUSB0", &(fathom_line_settings_t){19200, FATHOM_PARITY_EVEN, 1});
- * fathom_hps167s_init(&gate, &(fathom_hps167s_config_t){.modbus.transport = &north.modbus});
+ * fathom_loop_add_line(&loop, &north, "/dev/ttyUSB0", &fathom_hps167s_factory_line);
+ * fathom_hps167s_init(&gate, &north.modbus, NULL);
  * gate_sensor.sensor = fathom_hps167s_sensor(&gate);
  * fathom_loop_add_sensor(&north.source, &gate_sensor);
  * fathom_loop_run(&loop);

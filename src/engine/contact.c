@@ -125,7 +125,7 @@ static void set_sample(fathom_contact_t *contact, uint8_t kind, fathom_sample_t 
     contact->period_us = contact->timing.period_us;
 }
 
-static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
+fathom_status_t fathom_contact_sensor_poll(void *ctx, fathom_sample_t *sample)
 {
     fathom_contact_t *const contact = ctx;
     const fathom_contact_guard_t *const guard = contact->guard;
@@ -151,7 +151,7 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     return guarded;
 }
 
-static uint32_t due_us(void *ctx)
+uint32_t fathom_contact_sensor_due_us(void *ctx)
 {
     const fathom_contact_t *const contact = ctx;
     const fathom_contact_guard_t *const guard = contact->guard;
@@ -165,9 +165,4 @@ static uint32_t due_us(void *ctx)
         until_us = least_us(until_us, contact->period_us);
     until_us = rest_us(until_us, time_since_us(clock_us(contact->clock), contact->sampled_us));
     return (guard != NULL) ? least_us(until_us, guard->due_us(guard->ctx)) : until_us;
-}
-
-fathom_sensor_t fathom_contact_sensor(fathom_contact_t *contact)
-{
-    return fathom_sensor_make(poll, due_us, contact);
 }

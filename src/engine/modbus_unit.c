@@ -13,10 +13,9 @@ enum { PATIENCE = 3, DOUBLINGS = 4 };
 
 /* ---- Initialisation ---- */
 
-fathom_status_t fathom_modbus_unit_begin(fathom_modbus_unit_t *unit, const fathom_modbus_config_t *config,
+fathom_status_t fathom_modbus_unit_begin(fathom_modbus_unit_t *unit, const fathom_modbus_t *transport,
                                          void *driver, size_t size)
 {
-    const fathom_modbus_t *const transport = config->transport;
     const bool is_queued = (transport != NULL) && (transport->clock != NULL) && (transport->has != NULL) &&
                            transport->has(transport->ctx, &unit->request);
     FATHOM_ASSERT(!is_queued); /* the driver was not deinitialised */
@@ -25,21 +24,21 @@ fathom_status_t fathom_modbus_unit_begin(fathom_modbus_unit_t *unit, const fatho
     return FATHOM_OK;
 }
 
-static bool is_valid(const fathom_modbus_config_t *config)
+static bool is_valid(const fathom_modbus_t *transport, const fathom_modbus_config_t *config)
 {
     enum { MAX_RETRIES = 254 };
-    return (config->transport != NULL) && (config->transport->clock != NULL) &&
-           (config->address != FATHOM_MODBUS_ANY_UNIT) &&
+    return (transport != NULL) && (transport->clock != NULL) && (config->address != FATHOM_MODBUS_ANY_UNIT) &&
            (!config->address_zero || (config->address == 0u)) && (config->retries <= MAX_RETRIES) &&
            ((config->period_us | config->timeout_us | config->command_timeout_us | config->backoff_us) <=
             FATHOM_MAX_DURATION_US);
 }
 
-fathom_status_t fathom_modbus_unit_init(fathom_modbus_unit_t *unit, const fathom_modbus_config_t *config,
-                                        uint32_t timeout_us, uint32_t pace_us)
+fathom_status_t fathom_modbus_unit_init(fathom_modbus_unit_t *unit, const fathom_modbus_t *transport,
+                                        const fathom_modbus_config_t *config, uint32_t timeout_us,
+                                        uint32_t pace_us)
 {
-    if (!is_valid(config)) return FATHOM_ERR_ARGUMENT;
-    unit->transport = config->transport;
+    if (!is_valid(transport, config)) return FATHOM_ERR_ARGUMENT;
+    unit->transport = transport;
     unit->line_settings = config->line_settings;
     unit->timeout_us = or_default(config->timeout_us, timeout_us);
     unit->command_timeout_us =

@@ -77,15 +77,18 @@ static fathom_status_t take(fathom_pulse_meter_t *meter, fathom_pulse_reading_t 
 static bool configure(fathom_pulse_meter_t *meter, const fathom_pulse_config_t *config)
 {
     fathom_trigger_t *const trigger = &meter->trigger;
-    const fathom_capture_t *const capture = config->capture;
-    meter->capture = capture;
-    meter->no_target_us = or_default(config->no_target_us, FATHOM_PULSE_DEFAULT_NO_TARGET_US);
-    meter->stuck_us = or_default(config->stuck_us, FATHOM_PULSE_DEFAULT_STUCK_US);
-    meter->noise_us = (uint16_t)or_default(config->noise_us, FATHOM_PULSE_DEFAULT_NOISE_US);
-    trigger->output = config->trigger;
-    trigger->clock = config->clock;
-    trigger->period_us = or_default(config->cycle_us, FATHOM_PULSE_DEFAULT_CYCLE_US);
-    trigger->low_us = config->low_us;
+    const fathom_capture_t *const capture = meter->capture;
+    if (config != NULL) {
+        meter->no_target_us = config->no_target_us;
+        meter->stuck_us = config->stuck_us;
+        meter->noise_us = config->noise_us;
+        trigger->period_us = config->cycle_us;
+        trigger->low_us = config->low_us;
+    }
+    meter->no_target_us = or_default(meter->no_target_us, FATHOM_PULSE_DEFAULT_NO_TARGET_US);
+    meter->stuck_us = or_default(meter->stuck_us, FATHOM_PULSE_DEFAULT_STUCK_US);
+    meter->noise_us = (uint16_t)or_default(meter->noise_us, FATHOM_PULSE_DEFAULT_NOISE_US);
+    trigger->period_us = or_default(trigger->period_us, FATHOM_PULSE_DEFAULT_CYCLE_US);
     return (capture != NULL) && (capture->arm != NULL) && (capture->take != NULL) &&
            (trigger->period_us >= FATHOM_PULSE_DEFAULT_CYCLE_US) && (meter->noise_us < meter->no_target_us) &&
            (meter->no_target_us <= meter->stuck_us) && (meter->stuck_us <= trigger->period_us);
@@ -94,7 +97,10 @@ static bool configure(fathom_pulse_meter_t *meter, const fathom_pulse_config_t *
 fathom_status_t fathom_pulse_init(fathom_pulse_meter_t *meter, const fathom_pulse_config_t *config)
 {
     fathom_status_t status = FATHOM_ERR_ARGUMENT;
-    clear(meter, sizeof *meter);
+    meter->short_us = 0;
+    meter->noises = 0;
+    meter->stales = 0;
+    meter->is_waiting = false;
     if (configure(meter, config)) status = fathom_trigger_init(&meter->trigger);
     if (status != FATHOM_OK) clear(meter, sizeof *meter);
     return status;

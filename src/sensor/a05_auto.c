@@ -12,11 +12,14 @@ enum { ALL_PROBES = 0x0F };
 /* Time until the next attempt to end the break, in microseconds. */
 enum { AGAIN_US = 1000 };
 
-fathom_status_t fathom_a05_auto_init(fathom_a05_auto_t *sensor, const fathom_a05_auto_config_t *config)
+fathom_status_t fathom_a05_auto_init(fathom_a05_auto_t *sensor, fathom_line_t *line,
+                                     const fathom_a05_auto_config_t *config)
 {
     fathom_dyp_auto_t *const base = &sensor->base;
+    fathom_a05_auto_config_t zeroed;
     fathom_status_t status = FATHOM_ERR_ARGUMENT;
     clear(sensor, sizeof *sensor);
+    config = config_or_zeroed(config, &zeroed, sizeof zeroed);
     base->stream.length = FATHOM_DYP_A05_LENGTH;
     base->stream.listener.gap_us = config->gap_us;
     base->stream.storage = sensor->storage;
@@ -25,7 +28,7 @@ fathom_status_t fathom_a05_auto_init(fathom_a05_auto_t *sensor, const fathom_a05
     fathom_dyp_window_copy(&base->measurement.window, &config->window);
     base->measurement.model = FATHOM_A05;
     base->measurement.first = 1;
-    base->line = config->line;
+    base->line = line;
     sensor->probes = (uint8_t)or_default(config->probes, ALL_PROBES);
     sensor->was_odd = true; /* No good frame precedes the first one. */
     sensor->select = config->select;
@@ -115,7 +118,7 @@ static uint8_t believed(fathom_a05_auto_t *sensor)
     return is_whole ? sensor->probes : odd;
 }
 
-static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
+fathom_status_t fathom_a05_auto_sensor_poll(void *ctx, fathom_sample_t *sample)
 {
     fathom_a05_auto_t *const sensor = ctx;
     fathom_dyp_measurement_t *const measurement = &sensor->base.measurement;
@@ -131,7 +134,7 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     return (status != FATHOM_PENDING) ? status : rx;
 }
 
-static uint32_t due_us(void *ctx)
+uint32_t fathom_a05_auto_sensor_due_us(void *ctx)
 {
     const fathom_a05_auto_t *const sensor = ctx;
     if (sensor->base.measurement.left != 0u) return 0;
@@ -140,9 +143,4 @@ static uint32_t due_us(void *ctx)
     const uint32_t now_us = clock_us(sensor->base.line->parts->clock);
     const uint32_t left_us = or_default(sensor->select_left_us, AGAIN_US);
     return least_us(base_us, rest_us(left_us, fathom_elapsed_us(now_us, sensor->polled_us)));
-}
-
-fathom_sensor_t fathom_a05_auto_sensor(fathom_a05_auto_t *sensor)
-{
-    return fathom_sensor_make(poll, due_us, sensor);
 }

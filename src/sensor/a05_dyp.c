@@ -5,6 +5,7 @@
  */
 #include "fathom/sensor/a05_dyp.h"
 
+#include "../common.h"
 #include "fathom/codec/dyp_55aa.h"
 
 /* Time-outs. The response for all probes arrives after 200 to 210 ms, for one probe after 65 to 75 ms (A05 2(3)1). */
@@ -22,15 +23,17 @@ static bool has_room(const fathom_modbus_t *transport)
            (transport->frame_size >= FATHOM_DYP_MAX_RESPONSE);
 }
 
-fathom_status_t fathom_a05_dyp_init(fathom_a05_dyp_t *sensor, const fathom_a05_dyp_config_t *config)
+fathom_status_t fathom_a05_dyp_init(fathom_a05_dyp_t *sensor, const fathom_modbus_t *transport,
+                                    const fathom_a05_dyp_config_t *config)
 {
     fathom_dyp_modbus_t *const base = &sensor->base;
-    const fathom_status_t status =
-        fathom_modbus_unit_begin(&base->unit, &config->modbus, sensor, sizeof *sensor);
+    fathom_a05_dyp_config_t zeroed;
+    const fathom_status_t status = fathom_modbus_unit_begin(&base->unit, transport, sensor, sizeof *sensor);
     if (status < 0) return status;
+    config = config_or_zeroed(config, &zeroed, sizeof zeroed);
     const uint8_t probes = (config->probes != 0u) ? config->probes : ALL_PROBES;
     if (config->modbus.address_zero || (probes > ALL_PROBES)) return FATHOM_ERR_ARGUMENT;
-    if (!has_room(config->modbus.transport)) return FATHOM_ERR_ARGUMENT;
+    if (!has_room(transport)) return FATHOM_ERR_ARGUMENT;
 
     const bool is_single = is_one(probes);
     uint8_t first = 0;
@@ -44,17 +47,12 @@ fathom_status_t fathom_a05_dyp_init(fathom_a05_dyp_t *sensor, const fathom_a05_d
     base->measurement.model = FATHOM_A05;
     base->measurement.first = (uint8_t)(first + 1u);
     base->probes = probes;
-    return fathom_dyp_modbus_init(base, &config->modbus,
+    return fathom_dyp_modbus_init(base, transport, &config->modbus,
                                   is_single ? ONE_PROBE_TIMEOUT_US : ALL_PROBES_TIMEOUT_US,
                                   is_single ? FATHOM_A05_DYP_ONE_PROBE_US : FATHOM_A05_DYP_ALL_PROBES_US);
 }
 
 void fathom_a05_dyp_deinit(fathom_a05_dyp_t *sensor) { fathom_dyp_modbus_deinit(&sensor->base); }
-
-fathom_sensor_t fathom_a05_dyp_sensor(fathom_a05_dyp_t *sensor)
-{
-    return fathom_dyp_modbus_sensor(&sensor->base);
-}
 
 void fathom_a05_dyp_power_on(fathom_a05_dyp_t *sensor) { fathom_dyp_modbus_power_on(&sensor->base); }
 

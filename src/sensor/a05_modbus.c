@@ -5,17 +5,21 @@
  */
 #include "fathom/sensor/a05_modbus.h"
 
+#include "../common.h"
+
 /* Default time-out without the time that the probes need, in microseconds. */
 #define RESPONSE_TIMEOUT_US 200000uL
 
 enum { ALL_PROBES = 0x0F };
 
-fathom_status_t fathom_a05_modbus_init(fathom_a05_modbus_t *sensor, const fathom_a05_modbus_config_t *config)
+fathom_status_t fathom_a05_modbus_init(fathom_a05_modbus_t *sensor, const fathom_modbus_t *transport,
+                                       const fathom_a05_modbus_config_t *config)
 {
     fathom_dyp_modbus_t *const base = &sensor->base;
-    const fathom_status_t status =
-        fathom_modbus_unit_begin(&base->unit, &config->modbus, sensor, sizeof *sensor);
+    fathom_a05_modbus_config_t zeroed;
+    const fathom_status_t status = fathom_modbus_unit_begin(&base->unit, transport, sensor, sizeof *sensor);
     if (status < 0) return status;
+    config = config_or_zeroed(config, &zeroed, sizeof zeroed);
     const uint16_t registers = (config->registers != 0u) ? config->registers : FATHOM_A05_REGISTERS;
     const uint8_t probes = (config->probes != 0u) ? config->probes : ALL_PROBES;
     if (probes > ALL_PROBES) return FATHOM_ERR_ARGUMENT;
@@ -36,7 +40,8 @@ fathom_status_t fathom_a05_modbus_init(fathom_a05_modbus_t *sensor, const fathom
     base->measurement.model = FATHOM_A05;
     base->measurement.first = (uint8_t)(first + 1u);
     base->probes = probes;
-    return fathom_dyp_modbus_init(base, &config->modbus, RESPONSE_TIMEOUT_US + measuring_us, measuring_us);
+    return fathom_dyp_modbus_init(base, transport, &config->modbus, RESPONSE_TIMEOUT_US + measuring_us,
+                                  measuring_us);
 }
 
 void fathom_a05_modbus_deinit(fathom_a05_modbus_t *sensor) { fathom_dyp_modbus_deinit(&sensor->base); }
@@ -60,9 +65,4 @@ fathom_status_t fathom_a05_modbus_set_address(fathom_a05_modbus_t *sensor, uint8
 fathom_status_t fathom_a05_modbus_set_address_0(fathom_a05_modbus_t *sensor)
 {
     return fathom_dyp_modbus_set_address_0(&sensor->base);
-}
-
-fathom_sensor_t fathom_a05_modbus_sensor(fathom_a05_modbus_t *sensor)
-{
-    return fathom_dyp_modbus_sensor(&sensor->base);
 }

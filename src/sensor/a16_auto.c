@@ -8,10 +8,13 @@
  * the module sends.
  */
 
-fathom_status_t fathom_a16_auto_init(fathom_a16_auto_t *sensor, const fathom_a16_auto_config_t *config)
+fathom_status_t fathom_a16_auto_init(fathom_a16_auto_t *sensor, fathom_line_t *line,
+                                     const fathom_a16_auto_config_t *config)
 {
     fathom_dyp_auto_t *const base = &sensor->base;
+    fathom_a16_auto_config_t zeroed;
     clear(sensor, sizeof *sensor);
+    config = config_or_zeroed(config, &zeroed, sizeof zeroed);
     base->stream.length = FATHOM_DYP_A16_LENGTH;
     base->stream.listener.gap_us = config->gap_us;
     base->stream.storage = sensor->storage;
@@ -20,7 +23,7 @@ fathom_status_t fathom_a16_auto_init(fathom_a16_auto_t *sensor, const fathom_a16
     base->measurement.values = sensor->values;
     base->measurement.model = FATHOM_A16;
     base->measurement.first = 1;
-    base->line = config->line;
+    base->line = line;
     sensor->select = config->select;
     sensor->value = FATHOM_PROCESSED;
     fathom_status_t status = fathom_dyp_auto_init(base, FATHOM_A16_MAX_MM);
@@ -53,20 +56,15 @@ fathom_status_t fathom_a16_auto_deinit(fathom_a16_auto_t *sensor)
     return status;
 }
 
-static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
+fathom_status_t fathom_a16_auto_sensor_poll(void *ctx, fathom_sample_t *sample)
 {
     fathom_a16_auto_t *const sensor = ctx;
     const fathom_status_t status = fathom_dyp_auto_take(&sensor->base);
     return (status == FATHOM_OK) ? fathom_dyp_measurement_next(&sensor->base.measurement, sample) : status;
 }
 
-static uint32_t due_us(void *ctx)
+uint32_t fathom_a16_auto_sensor_due_us(void *ctx)
 {
     const fathom_a16_auto_t *const sensor = ctx;
     return fathom_dyp_auto_due_us(&sensor->base);
-}
-
-fathom_sensor_t fathom_a16_auto_sensor(fathom_a16_auto_t *sensor)
-{
-    return fathom_sensor_make(poll, due_us, sensor);
 }

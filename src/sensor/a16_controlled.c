@@ -56,7 +56,7 @@ static uint32_t response_left_us(const fathom_a16_controlled_t *sensor)
     return rest_us(sensor->latest_us, fathom_elapsed_us(sensor->trigger.polled_us, sensor->edge_us));
 }
 
-static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
+fathom_status_t fathom_a16_controlled_sensor_poll(void *ctx, fathom_sample_t *sample)
 {
     fathom_a16_controlled_t *const sensor = ctx;
     fathom_trigger_t *const trigger = &sensor->trigger;
@@ -82,7 +82,7 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     return ((status != FATHOM_PENDING) || (driven == FATHOM_OK)) ? status : driven;
 }
 
-static uint32_t due_us(void *ctx)
+uint32_t fathom_a16_controlled_sensor_due_us(void *ctx)
 {
     const fathom_a16_controlled_t *const sensor = ctx;
     const fathom_trigger_t *const trigger = &sensor->trigger;
@@ -104,18 +104,16 @@ static void stop_listening(fathom_a16_controlled_t *sensor)
 /* Copies the configuration. Returns true if each member is inside its range. */
 static bool configure(fathom_a16_controlled_t *sensor, const fathom_a16_controlled_config_t *config)
 {
-    fathom_line_t *const line = config->line;
+    const fathom_line_t *const line = sensor->line;
     fathom_stream_t *const stream = &sensor->stream;
     fathom_trigger_t *const trigger = &sensor->trigger;
     fathom_dyp_measurement_t *const measurement = &sensor->measurement;
-    sensor->line = line;
     sensor->earliest_us = or_default(config->earliest_us, FATHOM_A16_CONTROLLED_DEFAULT_EARLIEST_US);
     sensor->latest_us = or_default(config->latest_us, FATHOM_A16_CONTROLLED_DEFAULT_LATEST_US);
     fathom_dyp_window_copy(&measurement->window, &config->window);
     measurement->values = sensor->values;
     measurement->model = FATHOM_A16;
     measurement->first = 1;
-    trigger->output = config->trigger;
     trigger->period_us = FATHOM_A16_CONTROLLED_DEFAULT_PERIOD_US;
     if (config->period_us > trigger->period_us) trigger->period_us = config->period_us;
     trigger->low_us = config->low_us;
@@ -130,12 +128,16 @@ static bool configure(fathom_a16_controlled_t *sensor, const fathom_a16_controll
            (fathom_stream_start(stream, clock_us(trigger->clock)) == FATHOM_OK);
 }
 
-fathom_status_t fathom_a16_controlled_init(fathom_a16_controlled_t *sensor,
+fathom_status_t fathom_a16_controlled_init(fathom_a16_controlled_t *sensor, fathom_line_t *line,
+                                           const fathom_output_t *trigger,
                                            const fathom_a16_controlled_config_t *config)
 {
     fathom_status_t status = FATHOM_ERR_ARGUMENT;
+    fathom_a16_controlled_config_t zeroed;
     clear(sensor, sizeof *sensor);
-    if (configure(sensor, config)) {
+    sensor->line = line;
+    if (trigger != NULL) sensor->trigger.output = *trigger;
+    if (configure(sensor, config_or_zeroed(config, &zeroed, sizeof zeroed))) {
         sensor->stream.listener.receive = receive;
         status = fathom_line_listen(sensor->line, &sensor->stream.listener);
     }
@@ -152,9 +154,4 @@ fathom_status_t fathom_a16_controlled_deinit(fathom_a16_controlled_t *sensor)
 {
     stop_listening(sensor);
     return fathom_trigger_deinit(&sensor->trigger);
-}
-
-fathom_sensor_t fathom_a16_controlled_sensor(fathom_a16_controlled_t *sensor)
-{
-    return fathom_sensor_make(poll, due_us, sensor);
 }

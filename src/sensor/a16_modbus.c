@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/sensor/a16_modbus.h"
 
+#include "../common.h"
+
 /*
  * The driver that reads the distances of an A16 by Modbus. dyp_modbus.c does the work; this file has the
  * registers and the times of an A16.
@@ -10,12 +12,14 @@
 #define PROCESSED_TIMEOUT_US 1000000uL
 #define REAL_TIME_TIMEOUT_US 300000uL
 
-fathom_status_t fathom_a16_modbus_init(fathom_a16_modbus_t *sensor, const fathom_a16_modbus_config_t *config)
+fathom_status_t fathom_a16_modbus_init(fathom_a16_modbus_t *sensor, const fathom_modbus_t *transport,
+                                       const fathom_a16_modbus_config_t *config)
 {
     fathom_dyp_modbus_t *const base = &sensor->base;
-    const fathom_status_t status =
-        fathom_modbus_unit_begin(&base->unit, &config->modbus, sensor, sizeof *sensor);
+    fathom_a16_modbus_config_t zeroed;
+    const fathom_status_t status = fathom_modbus_unit_begin(&base->unit, transport, sensor, sizeof *sensor);
     if (status < 0) return status;
+    config = config_or_zeroed(config, &zeroed, sizeof zeroed);
     if (config->value > FATHOM_REAL_TIME) return FATHOM_ERR_ARGUMENT;
     const bool is_real_time = config->value == FATHOM_REAL_TIME;
     base->first = is_real_time ? FATHOM_A16_REGISTER_REAL_TIME : FATHOM_A16_REGISTER_PROCESSED;
@@ -26,7 +30,7 @@ fathom_status_t fathom_a16_modbus_init(fathom_a16_modbus_t *sensor, const fathom
     base->measurement.model = FATHOM_A16;
     base->measurement.first = 1;
     base->probes = 1;
-    return fathom_dyp_modbus_init(base, &config->modbus,
+    return fathom_dyp_modbus_init(base, transport, &config->modbus,
                                   is_real_time ? REAL_TIME_TIMEOUT_US : PROCESSED_TIMEOUT_US,
                                   FATHOM_A16_MIN_PERIOD_US);
 }
@@ -34,8 +38,3 @@ fathom_status_t fathom_a16_modbus_init(fathom_a16_modbus_t *sensor, const fathom
 void fathom_a16_modbus_deinit(fathom_a16_modbus_t *sensor) { fathom_dyp_modbus_deinit(&sensor->base); }
 
 void fathom_a16_modbus_power_on(fathom_a16_modbus_t *sensor) { fathom_dyp_modbus_power_on(&sensor->base); }
-
-fathom_sensor_t fathom_a16_modbus_sensor(fathom_a16_modbus_t *sensor)
-{
-    return fathom_dyp_modbus_sensor(&sensor->base);
-}

@@ -9,25 +9,35 @@
  * a sample.
  */
 
-/* Copies the configuration. Returns true if each member is inside its range. */
+/* Copies the configuration, if there is one. Returns true if each member is inside its range. */
 static bool configure(fathom_a16_pwm_t *sensor, const fathom_a16_pwm_config_t *config)
 {
-    const uint16_t default_max_mm =
-        config->in_air ? (uint16_t)FATHOM_A16_PWM_MAX_MM_IN_AIR : (uint16_t)FATHOM_A16_MAX_MM;
     fathom_dyp_window_t *const window = &sensor->window;
-    window->min_mm = (uint16_t)or_default(config->window.min_mm, 1);
-    window->max_mm = (uint16_t)or_default(config->window.max_mm, default_max_mm);
-    sensor->air_dc = config->air_dc;
-    sensor->in_air = config->in_air;
-    return (window->min_mm <= window->max_mm) && (config->air_dc >= FATHOM_PULSE_WIDTH_MIN_AIR_DC) &&
-           (config->air_dc <= FATHOM_PULSE_WIDTH_MAX_AIR_DC);
+    if (config != NULL) {
+        window->min_mm = config->window.min_mm;
+        window->max_mm = config->window.max_mm;
+        sensor->air_dc = config->air_dc;
+        sensor->in_air = config->in_air;
+    }
+    const uint16_t default_max_mm =
+        sensor->in_air ? (uint16_t)FATHOM_A16_PWM_MAX_MM_IN_AIR : (uint16_t)FATHOM_A16_MAX_MM;
+    window->min_mm = (uint16_t)or_default(window->min_mm, 1);
+    window->max_mm = (uint16_t)or_default(window->max_mm, default_max_mm);
+    return (window->min_mm <= window->max_mm) && (sensor->air_dc >= FATHOM_PULSE_WIDTH_MIN_AIR_DC) &&
+           (sensor->air_dc <= FATHOM_PULSE_WIDTH_MAX_AIR_DC);
 }
 
-fathom_status_t fathom_a16_pwm_init(fathom_a16_pwm_t *sensor, const fathom_a16_pwm_config_t *config)
+fathom_status_t fathom_a16_pwm_init(fathom_a16_pwm_t *sensor, const fathom_capture_t *capture,
+                                    const fathom_clock_t *clock, const fathom_output_t *trigger,
+                                    const fathom_a16_pwm_config_t *config)
 {
     fathom_status_t status = FATHOM_ERR_ARGUMENT;
     clear(sensor, sizeof *sensor);
-    if (configure(sensor, config)) status = fathom_pulse_init(&sensor->meter, &config->pulse);
+    sensor->meter.capture = capture;
+    sensor->meter.trigger.clock = clock;
+    if (trigger != NULL) sensor->meter.trigger.output = *trigger;
+    if (configure(sensor, config))
+        status = fathom_pulse_init(&sensor->meter, (config != NULL) ? &config->pulse : NULL);
     if (status != FATHOM_OK) clear(sensor, sizeof *sensor);
     return status;
 }
@@ -37,7 +47,7 @@ fathom_status_t fathom_a16_pwm_deinit(fathom_a16_pwm_t *sensor)
     return fathom_pulse_deinit(&sensor->meter);
 }
 
-static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
+fathom_status_t fathom_a16_pwm_sensor_poll(void *ctx, fathom_sample_t *sample)
 {
     fathom_a16_pwm_t *const sensor = ctx;
     fathom_pulse_reading_t reading;
@@ -68,13 +78,8 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     return FATHOM_OK;
 }
 
-static uint32_t due_us(void *ctx)
+uint32_t fathom_a16_pwm_sensor_due_us(void *ctx)
 {
     const fathom_a16_pwm_t *const sensor = ctx;
     return fathom_pulse_due_us(&sensor->meter);
-}
-
-fathom_sensor_t fathom_a16_pwm_sensor(fathom_a16_pwm_t *sensor)
-{
-    return fathom_sensor_make(poll, due_us, sensor);
 }

@@ -16,14 +16,15 @@ static bool has_room(const fathom_dyp_modbus_t *sensor, const fathom_modbus_t *t
            ((OVERHEAD + (2u * sensor->count)) <= transport->frame_size);
 }
 
-fathom_status_t fathom_dyp_modbus_init(fathom_dyp_modbus_t *sensor, const fathom_modbus_config_t *config,
-                                       uint32_t timeout_us, uint32_t pace_us)
+fathom_status_t fathom_dyp_modbus_init(fathom_dyp_modbus_t *sensor, const fathom_modbus_t *transport,
+                                       const fathom_modbus_config_t *config, uint32_t timeout_us,
+                                       uint32_t pace_us)
 {
     const uint16_t max_mm = (sensor->measurement.model == FATHOM_A16) ? FATHOM_A16_MAX_MM : FATHOM_A05_MAX_MM;
     sensor->start_us = or_default(sensor->start_us, FATHOM_DYP_DEFAULT_START_US);
     if ((fathom_dyp_measurement_init(&sensor->measurement, max_mm) == FATHOM_OK) &&
-        (sensor->start_us <= FATHOM_MAX_DURATION_US) && has_room(sensor, config->transport) &&
-        (fathom_modbus_unit_init(&sensor->unit, config, timeout_us, pace_us) == FATHOM_OK))
+        (sensor->start_us <= FATHOM_MAX_DURATION_US) && has_room(sensor, transport) &&
+        (fathom_modbus_unit_init(&sensor->unit, transport, config, timeout_us, pace_us) == FATHOM_OK))
         return FATHOM_OK;
     clear(sensor, sizeof *sensor);
     return FATHOM_ERR_ARGUMENT;
@@ -188,7 +189,7 @@ void fathom_dyp_modbus_find_cancel(fathom_dyp_modbus_find_t *find, const fathom_
 
 /* ---- measuring ---- */
 
-static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
+fathom_status_t fathom_dyp_modbus_sensor_poll(void *ctx, fathom_sample_t *sample)
 {
     fathom_dyp_modbus_t *const sensor = ctx;
     const fathom_status_t next = fathom_dyp_measurement_next(&sensor->measurement, sample);
@@ -204,13 +205,8 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     return fathom_dyp_measurement_next(&sensor->measurement, sample);
 }
 
-static uint32_t due_us(void *ctx)
+uint32_t fathom_dyp_modbus_sensor_due_us(void *ctx)
 {
     const fathom_dyp_modbus_t *const sensor = ctx;
     return (sensor->measurement.left != 0u) ? 0u : fathom_modbus_unit_due_us(&sensor->unit);
-}
-
-fathom_sensor_t fathom_dyp_modbus_sensor(fathom_dyp_modbus_t *sensor)
-{
-    return fathom_sensor_make(poll, due_us, sensor);
 }

@@ -12,20 +12,22 @@ enum { MAX_SAME_RESPONSES = 8, MEASUREMENT_LENGTH = 5 + (2 * FATHOM_HPS167S_MEAS
 
 #define MEASURE_TIMEOUT_US 500000uL
 
-static bool is_valid(const fathom_hps167s_config_t *config)
+static bool is_valid(const fathom_modbus_t *transport, const fathom_hps167s_config_t *config)
 {
-    const fathom_modbus_t *const transport = config->modbus.transport;
     return (config->modbus.address <= FATHOM_HPS167S_MAX_ADDRESS) && !config->modbus.address_zero &&
            (config->same_responses <= MAX_SAME_RESPONSES) &&
            ((transport == NULL) || (transport->frame_size == 0u) ||
             (transport->frame_size >= MEASUREMENT_LENGTH));
 }
 
-fathom_status_t fathom_hps167s_init(fathom_hps167s_t *sensor, const fathom_hps167s_config_t *config)
+fathom_status_t fathom_hps167s_init(fathom_hps167s_t *sensor, const fathom_modbus_t *transport,
+                                    const fathom_hps167s_config_t *config)
 {
-    fathom_status_t status = fathom_modbus_unit_begin(&sensor->unit, &config->modbus, sensor, sizeof *sensor);
+    fathom_hps167s_config_t zeroed;
+    fathom_status_t status = fathom_modbus_unit_begin(&sensor->unit, transport, sensor, sizeof *sensor);
     if (status < 0) return status;
-    if (!is_valid(config)) return FATHOM_ERR_ARGUMENT;
+    config = config_or_zeroed(config, &zeroed, sizeof zeroed);
+    if (!is_valid(transport, config)) return FATHOM_ERR_ARGUMENT;
     sensor->warm_up_s = config->warm_up_s;
     if ((config->warm_up_s == 0u) && !config->no_warm_up)
         sensor->warm_up_s = FATHOM_HPS167S_FACTORY_WARM_UP_S;
@@ -33,7 +35,7 @@ fathom_status_t fathom_hps167s_init(fathom_hps167s_t *sensor, const fathom_hps16
     sensor->steps_per_degree = config->steps_per_degree;
     sensor->low_word_first = config->low_word_first;
     sensor->reset_response = FATHOM_HPS167S_NO_RESET_RESPONSE;
-    status = fathom_modbus_unit_init(&sensor->unit, &config->modbus, MEASURE_TIMEOUT_US,
+    status = fathom_modbus_unit_init(&sensor->unit, transport, &config->modbus, MEASURE_TIMEOUT_US,
                                      FATHOM_HPS167S_MIN_PERIOD_US);
     if (status < 0) clear(sensor, sizeof *sensor);
     return status;
@@ -62,7 +64,7 @@ void fathom_hps167s_power_on(fathom_hps167s_t *sensor)
     if (sensor->follow != NULL) sensor->follow(sensor, FATHOM_PENDING);
 }
 
-static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
+fathom_status_t fathom_hps167s_sensor_poll(void *ctx, fathom_sample_t *sample)
 {
     fathom_hps167s_t *const sensor = ctx;
     fathom_modbus_unit_poll(&sensor->unit);
@@ -86,13 +88,8 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     return FATHOM_OK;
 }
 
-static uint32_t due_us(void *ctx)
+uint32_t fathom_hps167s_sensor_due_us(void *ctx)
 {
     const fathom_hps167s_t *const sensor = ctx;
     return fathom_modbus_unit_due_us(&sensor->unit);
-}
-
-fathom_sensor_t fathom_hps167s_sensor(fathom_hps167s_t *sensor)
-{
-    return fathom_sensor_make(poll, due_us, sensor);
 }

@@ -84,9 +84,8 @@ static void receive(fathom_listener_t *listener, const uint8_t *bytes, uint8_t l
 /* ---- Initialisation ---- */
 
 /* Returns true if each member is inside its range. */
-static bool is_in_range(const fathom_hps167s_auto_config_t *config)
+static bool is_in_range(const fathom_line_t *line, const fathom_hps167s_auto_config_t *config)
 {
-    const fathom_line_t *const line = config->line;
     return (line != NULL) && (line->parts != NULL) && (line->parts->frame_size >= LENGTH) &&
            (config->address <= FATHOM_HPS167S_MAX_ADDRESS) && (config->stale_us <= FATHOM_MAX_DURATION_US);
 }
@@ -97,19 +96,21 @@ static void stop_listening(fathom_hps167s_auto_t *sensor)
     if (line != NULL) fathom_line_unlisten(line, &sensor->listener);
 }
 
-fathom_status_t fathom_hps167s_auto_init(fathom_hps167s_auto_t *sensor,
+fathom_status_t fathom_hps167s_auto_init(fathom_hps167s_auto_t *sensor, fathom_line_t *line,
                                          const fathom_hps167s_auto_config_t *config)
 {
     fathom_status_t status = FATHOM_ERR_ARGUMENT;
+    fathom_hps167s_auto_config_t zeroed;
     clear(sensor, sizeof *sensor);
+    config = config_or_zeroed(config, &zeroed, sizeof zeroed);
     sensor->listener.receive = receive;
-    sensor->line = config->line;
+    sensor->line = line;
     sensor->listener.stale_us = or_default(config->stale_us, FATHOM_HPS167S_AUTO_DEFAULT_STALE_US);
     sensor->address = (config->address != 0u) ? config->address : 1u;
     sensor->from = &sensor->address;
-    if (is_in_range(config)) {
-        sensor->since_us = clock_us(sensor->line->parts->clock);
-        status = fathom_line_listen(sensor->line, &sensor->listener);
+    if (is_in_range(line, config)) {
+        sensor->since_us = clock_us(line->parts->clock);
+        status = fathom_line_listen(line, &sensor->listener);
     }
     if (status != FATHOM_OK) {
         stop_listening(sensor);
@@ -154,7 +155,7 @@ static fathom_status_t return_frame(fathom_hps167s_auto_t *sensor, fathom_sample
     return FATHOM_OK;
 }
 
-static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
+fathom_status_t fathom_hps167s_auto_sensor_poll(void *ctx, fathom_sample_t *sample)
 {
     fathom_hps167s_auto_t *const sensor = ctx;
     if (sensor->line == NULL) return FATHOM_ERR_ARGUMENT; /* init did not run, or failed */
@@ -176,16 +177,11 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
     return status;
 }
 
-static uint32_t due_us(void *ctx)
+uint32_t fathom_hps167s_auto_sensor_due_us(void *ctx)
 {
     const fathom_hps167s_auto_t *const sensor = ctx;
     if (sensor->line == NULL) return 0;
     const uint32_t line_us = fathom_line_due_us(sensor->line);
     const uint32_t passed_us = time_since_us(clock_us(sensor->line->parts->clock), sensor->since_us);
     return sensor->is_new ? 0u : least_us(line_us, rest_us(sensor->listener.stale_us, passed_us));
-}
-
-fathom_sensor_t fathom_hps167s_auto_sensor(fathom_hps167s_auto_t *sensor)
-{
-    return fathom_sensor_make(poll, due_us, sensor);
 }

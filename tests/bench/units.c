@@ -72,9 +72,8 @@ int main(int argc, char **argv)
     (void)fathom_line_init(&line, &config);
     modbus = fathom_modbus_client(&line);
     for (unsigned i = 0; i != UNITS; i++) {
-        const fathom_hps167s_config_t of_unit = {.modbus.transport = &modbus,
-                                                 .modbus.address = (uint8_t)(i + 1)};
-        if (fathom_hps167s_init(&units[i], &of_unit) != FATHOM_OK) return EXIT_FAILURE;
+        const fathom_hps167s_config_t of_unit = {.modbus.address = (uint8_t)(i + 1)};
+        if (fathom_hps167s_init(&units[i], &modbus, &of_unit) != FATHOM_OK) return EXIT_FAILURE;
         sensors[i] = fathom_hps167s_sensor(&units[i]);
     }
     while (readings < wanted) {

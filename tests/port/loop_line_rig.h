@@ -50,9 +50,8 @@ static inline void line_rig_add(uint32_t baud)
     numbers[i] = i;
     assert_int_equal(fathom_loop_add_line(&rig.loop, &rig.lines[i], rig.ptys[i].path, &settings),
                      FATHOM_POSIX_OK);
-    const fathom_hps167s_config_t config = {.modbus.transport = &rig.lines[i].bus.modbus,
-                                            .modbus.timeout_us = LINE_RIG_TIMEOUT_US};
-    assert_int_equal(fathom_hps167s_init(&rig.drivers[i], &config), FATHOM_OK);
+    const fathom_hps167s_config_t config = {.modbus.timeout_us = LINE_RIG_TIMEOUT_US};
+    assert_int_equal(fathom_hps167s_init(&rig.drivers[i], &rig.lines[i].bus.modbus, &config), FATHOM_OK);
     rig.sensors[i] =
         (fathom_loop_sensor_t){fathom_hps167s_sensor(&rig.drivers[i]), line_rig_take, &numbers[i], NULL};
     fathom_loop_add_sensor(&rig.lines[i].source, &rig.sensors[i]);

@@ -75,9 +75,8 @@ static int begins(void **state)
     trigger_pin = fathom_gpio_pin(&trigger);
     capture = fathom_gpio_capture(&echo);
     hal_clock.now_us = read_clock;
-    const fathom_a16_pwm_config_t config = {
-        .pulse = {.clock = &hal_clock, .capture = &capture, .trigger = fathom_output_pin(&trigger_pin)}};
-    assert_int_equal(fathom_a16_pwm_init(&sensor, &config), FATHOM_OK);
+    const fathom_output_t output = fathom_output_pin(&trigger_pin);
+    assert_int_equal(fathom_a16_pwm_init(&sensor, &capture, &hal_clock, &output, NULL), FATHOM_OK);
     return 0;
 }
 

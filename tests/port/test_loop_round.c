@@ -54,9 +54,9 @@ TEST(a_turn_with_eight_sensors_reads_the_port_once)
     source = (fathom_loop_source_t){.kind = &kind};
     fathom_loop_add(&loop, &source);
     for (uint8_t i = 0; i != UNITS; i++) {
-        const fathom_a16_modbus_config_t unit = {
-            .modbus.transport = &modbus, .modbus.address = (uint8_t)(i + 1), .modbus.timeout_us = TIMEOUT_US};
-        assert_int_equal(fathom_a16_modbus_init(&drivers[i], &unit), FATHOM_OK);
+        const fathom_a16_modbus_config_t unit = {.modbus.address = (uint8_t)(i + 1),
+                                                 .modbus.timeout_us = TIMEOUT_US};
+        assert_int_equal(fathom_a16_modbus_init(&drivers[i], &modbus, &unit), FATHOM_OK);
         fathom_loop_read(&source, &nodes[i], fathom_a16_modbus_sensor(&drivers[i]), take, NULL);
     }
     outcomes = 0;

@@ -227,16 +227,14 @@ static void add_place(unsigned number)
     fathom_sensor_t sensor;
     if (is_a16(place)) {
         assert_int_equal(
-            fathom_a16_modbus_init(&place->a16_driver,
-                                   &(fathom_a16_modbus_config_t){.modbus.transport = &place->modbus,
-                                                                 .modbus.timeout_us = A16_TIMEOUT_US,
+            fathom_a16_modbus_init(&place->a16_driver, &place->modbus,
+                                   &(fathom_a16_modbus_config_t){.modbus.timeout_us = A16_TIMEOUT_US,
                                                                  .value = FATHOM_REAL_TIME}),
             FATHOM_OK);
         sensor = fathom_a16_modbus_sensor(&place->a16_driver);
     } else {
-        assert_int_equal(fathom_hps167s_init(&place->hps_driver,
-                                             &(fathom_hps167s_config_t){.modbus.transport = &place->modbus,
-                                                                        .modbus.timeout_us = HPS_TIMEOUT_US}),
+        assert_int_equal(fathom_hps167s_init(&place->hps_driver, &place->modbus,
+                                             &(fathom_hps167s_config_t){.modbus.timeout_us = HPS_TIMEOUT_US}),
                          FATHOM_OK);
         sensor = fathom_hps167s_sensor(&place->hps_driver);
     }

@@ -447,8 +447,8 @@ static void read_sensor(const fathom_uart_t *uart, uint32_t us, uint32_t round_u
     begin_at(us);
     assert_int_equal(fathom_line_init(&line, &line_parts), FATHOM_OK);
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
-    const fathom_a16_modbus_config_t config = {.modbus.transport = &modbus, .value = FATHOM_REAL_TIME};
-    assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_OK);
+    const fathom_a16_modbus_config_t config = {.value = FATHOM_REAL_TIME};
+    assert_int_equal(fathom_a16_modbus_init(&a16, &modbus, &config), FATHOM_OK);
     const fathom_sensor_t sensor = fathom_a16_modbus_sensor(&a16);
     fathom_sample_t sample;
     fathom_status_t status = FATHOM_PENDING;

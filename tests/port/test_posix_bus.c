@@ -38,8 +38,7 @@ static const suite_t suite = {.set_up = set_up, .tear_down = tear_down, .begin_r
 
 static fathom_sensor_t gate_sensor(void)
 {
-    assert_int_equal(fathom_hps167s_init(&gate, &(fathom_hps167s_config_t){.modbus.transport = &bus.modbus}),
-                     FATHOM_OK);
+    assert_int_equal(fathom_hps167s_init(&gate, &bus.modbus, NULL), FATHOM_OK);
     return fathom_hps167s_sensor(&gate);
 }
 
@@ -154,8 +153,7 @@ TEST(a_bus_that_cannot_be_opened_says_why_and_no_driver_accepts_it)
     memset(&none, 0xA5, sizeof none);
     assert_int_equal(fathom_posix_bus_open(&none, "/nowhere/tty", &settings), FATHOM_POSIX_ERR_NOT_FOUND);
     assert_non_null(strstr(fathom_posix_bus_error(&none), "/nowhere/tty: "));
-    assert_int_equal(fathom_hps167s_init(&gate, &(fathom_hps167s_config_t){.modbus.transport = &none.modbus}),
-                     FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_hps167s_init(&gate, &none.modbus, NULL), FATHOM_ERR_ARGUMENT);
     fathom_posix_bus_close(&none); /* which is no error */
 }
 

@@ -18,16 +18,39 @@
 uint32_t contract_came_us;
 uint32_t contract_slack_us;
 
-/* The driver NAME with its config, of which the members that follow are the least that it needs. */
-#define DRIVER(name, ...)                                                                                    \
+/* The parameters of the init functions between the driver and its config. Each prepare function sets those of its driver,
+ * and a test may make one NULL. */
+static const fathom_modbus_t *transport;
+static fathom_line_t *line;
+static fathom_output_t output;
+static const fathom_output_t *trigger;
+static const fathom_capture_t *capture;
+static const fathom_clock_t *its_clock;
+static const fathom_pin_t *pin;
+
+#define PARAMETERS(...) __VA_ARGS__
+
+/* The driver NAME with the parameters of its init, what prepares these, and the least config that its tests need. */
+#define DRIVER(name, parameters, prepares, ...)                                                              \
     static fathom_##name##_t name;                                                                           \
     static fathom_##name##_config_t name##_config;                                                           \
-    static void name##_prepare(void) { name##_config = (fathom_##name##_config_t){__VA_ARGS__}; }            \
-    static fathom_status_t name##_init(void)                                                                 \
+    static void name##_prepare(void)                                                                         \
+    {                                                                                                        \
+        prepares;                                                                                            \
+        name##_config = (fathom_##name##_config_t){__VA_ARGS__};                                             \
+    }                                                                                                        \
+    static fathom_status_t name##_init_with(const fathom_##name##_config_t *config)                          \
     {                                                                                                        \
         memset(&name, 0x5A, sizeof name);                                                                    \
-        return fathom_##name##_init(&name, &name##_config);                                                  \
+        return fathom_##name##_init(&name, PARAMETERS parameters, config);                                   \
     }                                                                                                        \
+    static fathom_status_t name##_init(void) { return name##_init_with(&name##_config); }                    \
+    static fathom_status_t name##_init_without_config(void) { return name##_init_with(NULL); }               \
+    static fathom_status_t name##_poll(fathom_sample_t *sample)                                              \
+    {                                                                                                        \
+        return fathom_##name##_poll(&name, sample);                                                          \
+    }                                                                                                        \
+    static uint32_t name##_due_us(void) { return fathom_##name##_due_us(&name); }                            \
     static fathom_sensor_t name##_sensor(void) { return fathom_##name##_sensor(&name); }
 
 /* One of its functions, for the table. */
@@ -41,14 +64,20 @@ uint32_t contract_slack_us;
     static const fathom_modbus_unit_t *name##_unit(void) { return fathom_##name##_unit(&name); }
 
 #define ITSELF(d, its_kind)                                                                                  \
-    .name = #d, .kind = &(its_kind), .prepare = d##_prepare, .init = d##_init, .sensor = d##_sensor
+    .name = #d, .kind = &(its_kind), .prepare = d##_prepare, .init = d##_init,                               \
+    .init_without_config = d##_init_without_config, .sensor = d##_sensor, .poll = d##_poll,                  \
+    .due_us = d##_due_us, .memory = &(d), .size = sizeof(d), .config = &d##_config,                          \
+    .config_size = sizeof d##_config
 
 #define RANGE(d, its, least, most)                                                                           \
     {                                                                                                        \
         .what = #its, .member = &d##_config.its, .from = least, .to = most, .size = sizeof d##_config.its    \
     }
 #define IS(d, its, value) RANGE(d, its, value, value)
-#define NONE(d, its)      IS(d, its, 0) /* a pointer */
+#define NONE(its)                                                                                            \
+    {                                                                                                        \
+        .what = #its, .member = &(its), .size = sizeof(its)                                                  \
+    }
 #define BOTH(d, its, value, other, other_value)                                                              \
     {                                                                                                        \
         .what = #its, .member = &d##_config.its, .from = value, .to = value, .size = sizeof d##_config.its,  \
@@ -96,7 +125,7 @@ static const contract_kind_t on_transport = {desk_begin,   desk_poll,    desk_ha
     .sample = {                                                                                              \
         .raw = 1953, .distance_mm = 1953, .kind = FATHOM_TARGET, .model = its_model, .address = its_unit}
 
-DRIVER(a16_modbus, .modbus.transport = &fake.modbus)
+DRIVER(a16_modbus, (transport), transport = &fake.modbus, 0)
 CAN(a16_modbus, deinit)
 CAN(a16_modbus, power_on)
 CAN(a16_modbus, cancel)
@@ -117,10 +146,10 @@ const contract_driver_t contract_a16_modbus = {
     .default_timeout_us = 1000000,
     .start_us = &a16_modbus_config.start_us,
     .power_on = a16_modbus_power_on,
-    .wrong = {NONE(a16_modbus, modbus.transport), IS(a16_modbus, modbus.address, 255),
-              RANGE(a16_modbus, value, 2, 255), WINDOW(a16_modbus, 16350)}};
+    .wrong = {NONE(transport), IS(a16_modbus, modbus.address, 255), RANGE(a16_modbus, value, 2, 255),
+              WINDOW(a16_modbus, 16350)}};
 
-DRIVER(a05_modbus, .modbus.transport = &fake.modbus, .probes = 1)
+DRIVER(a05_modbus, (transport), transport = &fake.modbus, .probes = 1)
 CAN(a05_modbus, deinit)
 CAN(a05_modbus, power_on)
 CAN(a05_modbus, cancel)
@@ -141,12 +170,11 @@ const contract_driver_t contract_a05_modbus = {
     .default_timeout_us = 300000,
     .start_us = &a05_modbus_config.start_us,
     .power_on = a05_modbus_power_on,
-    .wrong = {NONE(a05_modbus, modbus.transport), IS(a05_modbus, modbus.address, 255),
-              RANGE(a05_modbus, probes, 16, 255), WINDOW(a05_modbus, 6000),
-              RANGE(a05_modbus, registers, 1, 0x000F), RANGE(a05_modbus, registers, 0x0011, 0x0105),
-              RANGE(a05_modbus, registers, 0x0107, 0x0200)}};
+    .wrong = {NONE(transport), IS(a05_modbus, modbus.address, 255), RANGE(a05_modbus, probes, 16, 255),
+              WINDOW(a05_modbus, 6000), RANGE(a05_modbus, registers, 1, 0x000F),
+              RANGE(a05_modbus, registers, 0x0011, 0x0105), RANGE(a05_modbus, registers, 0x0107, 0x0200)}};
 
-DRIVER(hps167s, .modbus.transport = &fake.modbus)
+DRIVER(hps167s, (transport), transport = &fake.modbus, 0)
 CAN(hps167s, deinit)
 CAN(hps167s, cancel)
 TELLS(hps167s)
@@ -173,8 +201,8 @@ const contract_driver_t contract_hps167s = {
     .most_address = 32,
     .least_period_us = 18519,
     .default_timeout_us = 500000,
-    .wrong = {NONE(hps167s, modbus.transport), RANGE(hps167s, modbus.address, 33, 255),
-              IS(hps167s, modbus.address_zero, 1), RANGE(hps167s, same_responses, 9, 255)}};
+    .wrong = {NONE(transport), RANGE(hps167s, modbus.address, 33, 255), IS(hps167s, modbus.address_zero, 1),
+              RANGE(hps167s, same_responses, 9, 255)}};
 
 /* ---- on a line ---- */
 
@@ -231,35 +259,30 @@ static const contract_kind_t listening = LINE_KIND(has_sent, line_is_at_work);
 
 #define LISTENS(d) ITSELF(d, listening), .deinit = d##_deinit, .stale_us = &d##_config.stale_us
 
-DRIVER(a16_auto, .line = &rig.line)
+DRIVER(a16_auto, (line), line = &rig.line, .value = FATHOM_PROCESSED)
 CAN(a16_auto, deinit)
 
 const contract_driver_t contract_a16_auto = {
     LISTENS(a16_auto), .gap_us = &a16_auto_config.gap_us,
     DYP(a16_auto, a16_auto.base.measurement, 16350, FATHOM_A16, 0), .frame = a16_frame,
-    .wrong = {NONE(a16_auto, line), STREAM(a16_auto), WINDOW(a16_auto, 16350)}};
+    .wrong = {NONE(line), STREAM(a16_auto), WINDOW(a16_auto, 16350)}};
 
-DRIVER(a05_auto, .line = &rig.line, .probes = 1)
+DRIVER(a05_auto, (line), line = &rig.line, .probes = 1)
 CAN(a05_auto, deinit)
 
 const contract_driver_t contract_a05_auto = {
     LISTENS(a05_auto), .gap_us = &a05_auto_config.gap_us,
     DYP(a05_auto, a05_auto.base.measurement, 6000, FATHOM_A05, 0), .frame = a05_frame,
-    .wrong = {NONE(a05_auto, line), STREAM(a05_auto), RANGE(a05_auto, probes, 16, 255),
-              WINDOW(a05_auto, 6000)}};
+    .wrong = {NONE(line), STREAM(a05_auto), RANGE(a05_auto, probes, 16, 255), WINDOW(a05_auto, 6000)}};
 
-DRIVER(hps167s_auto, .line = &rig.line)
+DRIVER(hps167s_auto, (line), line = &rig.line, 0)
 CAN(hps167s_auto, deinit)
 
 const contract_driver_t contract_hps167s_auto = {
-    LISTENS(hps167s_auto),
-    .frame = hps_frame,
-    .good = 2083,
-    .other = 511,
-    .refused = 31000,
-    .sample = {HPS_FIGURES},
-    COUNTS(hps167s_auto),
-    .wrong = {NONE(hps167s_auto, line), STALE(hps167s_auto), RANGE(hps167s_auto, address, 33, 255)}};
+    LISTENS(hps167s_auto), .frame = hps_frame,
+    .good = 2083,          .other = 511,
+    .refused = 31000,      .sample = {HPS_FIGURES},
+    COUNTS(hps167s_auto),  .wrong = {NONE(line), STALE(hps167s_auto), RANGE(hps167s_auto, address, 33, 255)}};
 
 /* It is asked with 55 AA; the response is there at once. */
 static fathom_status_t is_asked(const contract_driver_t *driver, uint16_t value)
@@ -296,7 +319,7 @@ static const fathom_modbus_t *dyp_of_line(void)
     return &dyp;
 }
 
-DRIVER(a05_dyp, .modbus.transport = dyp_of_line(), .probes = 1)
+DRIVER(a05_dyp, (transport), transport = dyp_of_line(), .probes = 1)
 CAN(a05_dyp, deinit)
 CAN(a05_dyp, power_on)
 
@@ -307,8 +330,8 @@ const contract_driver_t contract_a05_dyp = {
     .power_on = a05_dyp_power_on,
     .start_us = &a05_dyp_config.start_us,
     .frame = a05_dyp_stream,
-    .wrong = {NONE(a05_dyp, modbus.transport), IS(a05_dyp, modbus.address, 255),
-              IS(a05_dyp, modbus.address_zero, 1), RANGE(a05_dyp, probes, 16, 255), WINDOW(a05_dyp, 6000)}};
+    .wrong = {NONE(transport), IS(a05_dyp, modbus.address, 255), IS(a05_dyp, modbus.address_zero, 1),
+              RANGE(a05_dyp, probes, 16, 255), WINDOW(a05_dyp, 6000)}};
 
 /* ---- triggered ---- */
 
@@ -325,17 +348,24 @@ static fathom_status_t is_triggered(const contract_driver_t *driver, uint16_t va
 
 static const contract_kind_t triggered = LINE_KIND(is_triggered, line_is_at_work);
 
-DRIVER(a16_controlled, .line = &rig.line, .trigger = {fathom_output_set_line_break, &rig.line})
+static void prepare_break(void)
+{
+    line = &rig.line;
+    output = fathom_output_line_break(&rig.line);
+    trigger = &output;
+}
+
+DRIVER(a16_controlled, (line, trigger), prepare_break(), 0)
 CAN(a16_controlled, deinit)
 
 const contract_driver_t contract_a16_controlled = {
     ITSELF(a16_controlled, triggered), DYP(a16_controlled, a16_controlled.measurement, 16350, FATHOM_A16, 0),
     .deinit = a16_controlled_deinit, .frame = a16_frame,
-    .wrong = {NONE(a16_controlled, line), NONE(a16_controlled, trigger.set),
-              IS(a16_controlled, earliest_us, 131 * MS), IS(a16_controlled, latest_us, 79 * MS),
-              IS(a16_controlled, latest_us, 0x80000000), IS(a16_controlled, latest_us, 0xFFFFFFFE),
-              IS(a16_controlled, period_us, 0x80000000), IS(a16_controlled, gap_us, 1),
-              IS(a16_controlled, gap_us, 1041), WINDOW(a16_controlled, 16350)}};
+    .wrong = {NONE(line), NONE(trigger), NONE(output.set), IS(a16_controlled, earliest_us, 131 * MS),
+              IS(a16_controlled, latest_us, 79 * MS), IS(a16_controlled, latest_us, 0x80000000),
+              IS(a16_controlled, latest_us, 0xFFFFFFFE), IS(a16_controlled, period_us, 0x80000000),
+              IS(a16_controlled, gap_us, 1), IS(a16_controlled, gap_us, 1041),
+              WINDOW(a16_controlled, 16350)}};
 
 /* A pulse so wide, 110 ms after the trigger. */
 static fathom_status_t has_pulsed(const contract_driver_t *driver, uint16_t value)
@@ -357,9 +387,15 @@ static bool is_low(void) { return !controlled.pin.level; }
 
 static const contract_kind_t pulsing = LINE_KIND(has_pulsed, is_low);
 
-DRIVER(a16_pwm, .pulse = {.clock = &rig.fake.clock,
-                          .capture = &controlled.pin.capture,
-                          .trigger = {fathom_output_set_pin, &controlled.pin.trigger}})
+static void prepare_pulse(void)
+{
+    capture = &controlled.pin.capture;
+    its_clock = &rig.fake.clock;
+    output = fathom_output_pin(&controlled.pin.trigger);
+    trigger = &output;
+}
+
+DRIVER(a16_pwm, (capture, its_clock, trigger), prepare_pulse(), .in_air = false)
 CAN(a16_pwm, deinit)
 
 const contract_driver_t contract_a16_pwm = {
@@ -369,8 +405,7 @@ const contract_driver_t contract_a16_pwm = {
     /* A16 1(4): 173.9 cm */ .other = 20000,
     .sample = {.raw = 10000, .distance_mm = 1739, .kind = FATHOM_TARGET, .model = FATHOM_A16},
     COUNTS(a16_pwm),
-    .wrong = {NONE(a16_pwm, pulse.clock), NONE(a16_pwm, pulse.capture), NONE(a16_pwm, pulse.trigger.set),
-              WINDOW(a16_pwm, 16350)}};
+    .wrong = {NONE(its_clock), NONE(capture), NONE(trigger), NONE(output.set), WINDOW(a16_pwm, 16350)}};
 
 /* ---- contacts ---- */
 
@@ -397,17 +432,22 @@ static const contract_kind_t contact = {.begin = pins_start,
                                         .sample = &pins.sample,
                                         .now_us = &pins.fake.now_us};
 
-DRIVER(a16_switch, .pin = &pins.pin, .clock = &pins.fake.clock, .address = 5)
+static void prepare_pin(void)
+{
+    pin = &pins.pin;
+    its_clock = &pins.fake.clock;
+}
+
+DRIVER(a16_switch, (pin, its_clock), prepare_pin(), .address = 5)
 
 const contract_driver_t contract_a16_switch = {
     ITSELF(a16_switch, contact), .good = 1,
     .sample = {.raw = 1, .kind = FATHOM_NEAR, .model = FATHOM_A16, .address = 5},
-    .timing = &a16_switch_config.timing, .wrong = {NONE(a16_switch, pin), NONE(a16_switch, clock)}};
+    .timing = &a16_switch_config.timing, .wrong = {NONE(pin), NONE(its_clock)}};
 
-DRIVER(a05_relay, .pin = &pins.pin, .clock = &pins.fake.clock)
+DRIVER(a05_relay, (pin, its_clock), prepare_pin(), .level = 0)
 
-const contract_driver_t contract_a05_relay = {ITSELF(a05_relay, contact), .good = 1,
-                                              .sample = {.raw = 1, .kind = FATHOM_FAR, .model = FATHOM_A05},
-                                              .timing = &a05_relay_config.timing,
-                                              .wrong = {NONE(a05_relay, pin), NONE(a05_relay, clock),
-                                                        IS(a05_relay, wiring, 3), IS(a05_relay, level, 3)}};
+const contract_driver_t contract_a05_relay = {
+    ITSELF(a05_relay, contact), .good = 1, .sample = {.raw = 1, .kind = FATHOM_FAR, .model = FATHOM_A05},
+    .timing = &a05_relay_config.timing,
+    .wrong = {NONE(pin), NONE(its_clock), IS(a05_relay, wiring, 3), IS(a05_relay, level, 3)}};

@@ -44,7 +44,12 @@ struct contract_driver {
     const contract_kind_t *kind;
     void (*prepare)(void); /* the default config */
     fathom_status_t (*init)(void);
+    fathom_status_t (*init_without_config)(void);
     fathom_sensor_t (*sensor)(void);
+    fathom_status_t (*poll)(fathom_sample_t *sample); /* without a sensor; due_us too */
+    uint32_t (*due_us)(void);
+    void *memory, *config;
+    size_t size, config_size;
     void (*deinit)(void);
     size_t (*frame)(uint8_t *frame, uint16_t value);
 

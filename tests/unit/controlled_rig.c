@@ -6,13 +6,17 @@ controlled_t controlled;
 const uint8_t controlled_1953[4] = {0xFF, 0x07, 0xA1, 0xA7};
 const uint8_t controlled_511[4] = {0xFF, 0x01, 0xFF, 0xFF};
 
+fathom_status_t controlled_init(void)
+{
+    return fathom_a16_controlled_init(&controlled.a16, &rig.line, &controlled.trigger, &controlled.config);
+}
+
 void controlled_start_at(uint32_t now_us)
 {
     rig_start(now_us);
     fake_pin_init(&controlled.pin, &rig.fake);
-    controlled.config.line = &rig.line;
     memset(&controlled.a16, 0x5A, sizeof controlled.a16);
-    assert_int_equal(fathom_a16_controlled_init(&controlled.a16, &controlled.config), FATHOM_OK);
+    assert_int_equal(controlled_init(), FATHOM_OK);
     rig.sensor = fathom_a16_controlled_sensor(&controlled.a16);
 }
 
@@ -21,7 +25,7 @@ void controlled_start(void) { controlled_start_at(RIG_START_US); }
 int controlled_set_up(void **state)
 {
     memset(&controlled.config, 0, sizeof controlled.config);
-    controlled.config.trigger = fathom_output_line_break(&rig.line);
+    controlled.trigger = fathom_output_line_break(&rig.line);
     controlled_start();
     return 0;
 }

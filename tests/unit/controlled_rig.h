@@ -11,7 +11,8 @@
 enum { FRAME_US = 4 * RIG_BYTE_US };
 
 typedef struct {
-    fathom_a16_controlled_config_t config; /* the test's to change before it starts anew */
+    fathom_output_t trigger; /* this and the config are the test's to change before it starts anew */
+    fathom_a16_controlled_config_t config;
     fathom_a16_controlled_t a16;
     fake_pin_t pin;
 } controlled_t;
@@ -24,7 +25,10 @@ extern const uint8_t controlled_511[4];  /* FF + 01 + FF = 1FF */
 /* For cmocka: the default config. */
 int controlled_set_up(void **state);
 
-/* All but the config begins anew. */
+/* Initialises the driver as it is. */
+fathom_status_t controlled_init(void);
+
+/* All but the trigger and the config begins anew. */
 void controlled_start(void);
 void controlled_start_at(uint32_t now_us);
 

@@ -166,11 +166,11 @@ void fake_modbus_assert_asked(const fake_modbus_t *fake, unsigned submits, uint8
     assert_memory_equal(fake->log[submits - 1], head, sizeof head);
 }
 
-fathom_status_t init_unit(fathom_modbus_unit_t *unit, const fathom_modbus_config_t *config,
-                          uint32_t timeout_us, uint32_t pace_us)
+fathom_status_t init_unit(fathom_modbus_unit_t *unit, const fathom_modbus_t *transport,
+                          const fathom_modbus_config_t *config, uint32_t timeout_us, uint32_t pace_us)
 {
-    const fathom_status_t status = fathom_modbus_unit_begin(unit, config, unit, sizeof *unit);
-    return status < 0 ? status : fathom_modbus_unit_init(unit, config, timeout_us, pace_us);
+    const fathom_status_t status = fathom_modbus_unit_begin(unit, transport, unit, sizeof *unit);
+    return status < 0 ? status : fathom_modbus_unit_init(unit, transport, config, timeout_us, pace_us);
 }
 
 fathom_status_t ask_unit(fathom_modbus_unit_t *unit, const fathom_modbus_unit_request_t *request)

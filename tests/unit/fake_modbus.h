@@ -64,8 +64,8 @@ void fake_modbus_assert_asked(const fake_modbus_t *fake, unsigned submits, uint8
 
 /* What a driver does with its unit: its init, and after fathom_modbus_unit_poll() its measurement or command. A request
  * whose id is below FATHOM_MODBUS_COMMAND is the measurement. */
-fathom_status_t init_unit(fathom_modbus_unit_t *unit, const fathom_modbus_config_t *config,
-                          uint32_t timeout_us, uint32_t pace_us);
+fathom_status_t init_unit(fathom_modbus_unit_t *unit, const fathom_modbus_t *transport,
+                          const fathom_modbus_config_t *config, uint32_t timeout_us, uint32_t pace_us);
 fathom_status_t ask_unit(fathom_modbus_unit_t *unit, const fathom_modbus_unit_request_t *request);
 
 #endif

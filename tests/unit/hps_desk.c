@@ -2,6 +2,7 @@
 #include "hps_desk.h"
 
 fathom_hps167s_config_t hps_config;
+const fathom_modbus_t *hps_transport;
 fathom_hps167s_t hps;
 
 const fathom_line_settings_t hps_factory = {19200, FATHOM_PARITY_EVEN, 1};
@@ -15,7 +16,8 @@ int hps_set_up(void **state)
 {
     desk_begin(start_us);
     desk.step_us = loop_us;
-    hps_config = (fathom_hps167s_config_t){.modbus.transport = &fake.modbus};
+    hps_config = (fathom_hps167s_config_t){0};
+    hps_transport = &fake.modbus;
     memset(&hps, 0x5A, sizeof hps);
     hps_start();
     return 0;
@@ -23,7 +25,7 @@ int hps_set_up(void **state)
 
 void hps_start(void)
 {
-    assert_int_equal(fathom_hps167s_init(&hps, &hps_config), FATHOM_OK);
+    assert_int_equal(fathom_hps167s_init(&hps, hps_transport, &hps_config), FATHOM_OK);
     desk.sensor = fathom_hps167s_sensor(&hps);
 }
 

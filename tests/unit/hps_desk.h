@@ -7,6 +7,7 @@
 #include "fathom/sensor/hps167s_settings.h"
 
 /* desk.h with an HPS-167S. */
+extern const fathom_modbus_t *hps_transport; /* as hps_config */
 extern fathom_hps167s_config_t hps_config;
 extern fathom_hps167s_t hps;
 

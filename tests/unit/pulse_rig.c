@@ -7,18 +7,26 @@ enum { GUARD = 0xA5 };
 
 pulse_rig_t stand;
 
+fathom_status_t init_meter(void)
+{
+    stand.meter.capture = stand.capture;
+    stand.meter.trigger.clock = stand.clock;
+    stand.meter.trigger.output = stand.trigger;
+    return fathom_pulse_init(&stand.meter, &stand.config);
+}
+
 void start_meter_at(uint32_t now_us)
 {
     fake_init(&stand.fake);
     stand.fake.now_us = now_us;
     stand.fake.busy_until_us = now_us;
     fake_pin_init(&stand.pin, &stand.fake);
-    stand.config.clock = &stand.fake.clock;
-    stand.config.capture = &stand.pin.capture;
+    stand.clock = &stand.fake.clock;
+    stand.capture = &stand.pin.capture;
     memset(&stand.meter, 0x5A, sizeof stand.meter);
     stand.readings = 0;
     stand.no_responses = stand.port_errors = 0;
-    assert_int_equal(fathom_pulse_init(&stand.meter, &stand.config), FATHOM_OK);
+    assert_int_equal(init_meter(), FATHOM_OK);
 }
 
 void start_meter(void) { start_meter_at(1000); }
@@ -32,7 +40,7 @@ void response_with(uint32_t after_us, uint32_t width_us)
 int set_up_meter(void **state)
 {
     memset(&stand.config, 0, sizeof stand.config);
-    stand.config.trigger = fathom_output_pin(&stand.pin.trigger);
+    stand.trigger = fathom_output_pin(&stand.pin.trigger);
     start_meter();
     return 0;
 }

@@ -15,7 +15,11 @@
 typedef struct {
     fake_t fake;
     fake_pin_t pin;
-    fathom_pulse_config_t config; /* the test's to change before it starts anew */
+    const fathom_capture_t
+        *capture; /* this and the next members: the test's to change before it starts anew */
+    const fathom_clock_t *clock;
+    fathom_output_t trigger;
+    fathom_pulse_config_t config;
     fathom_pulse_meter_t meter;
     fathom_pulse_reading_t last;
     unsigned readings;
@@ -24,6 +28,9 @@ typedef struct {
 } pulse_rig_t;
 
 extern pulse_rig_t stand;
+
+/* Initialises the meter as it is, with the members of the rig. */
+fathom_status_t init_meter(void);
 
 /* For cmocka: the default config with a pin, at 1000 us. */
 int set_up_meter(void **state);

@@ -20,10 +20,9 @@ static void start_at(uint32_t now_us, bool by_pin)
     rig_start(now_us);
     fake_pin_init(&pin, &rig.fake);
     pin.level = true;
-    config.line = &rig.line;
     config.select = by_pin ? fathom_output_pin(&pin.trigger) : fathom_output_line_break(&rig.line);
     memset(&a05, memory, sizeof a05);
-    assert_int_equal(fathom_a05_auto_init(&a05, &config), FATHOM_OK);
+    assert_int_equal(fathom_a05_auto_init(&a05, &rig.line, &config), FATHOM_OK);
     rig.sensor = fathom_a05_auto_sensor(&a05);
 }
 
@@ -342,7 +341,7 @@ TEST(a_port_that_cannot_is_said_and_a_pin_helps)
     power_on(FATHOM_REAL_TIME, FATHOM_ERR_UNSUPPORTED);
     power_on(FATHOM_PROCESSED, FATHOM_ERR_UNSUPPORTED);
     config.select.set = NULL;
-    assert_int_equal(fathom_a05_auto_init(&a05, &config), FATHOM_OK);
+    assert_int_equal(fathom_a05_auto_init(&a05, &rig.line, &config), FATHOM_OK);
     power_on(FATHOM_REAL_TIME, FATHOM_ERR_UNSUPPORTED);
     power_on(FATHOM_PROCESSED, FATHOM_OK);
     start_at(RIG_START_US, true);

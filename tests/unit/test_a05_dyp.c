@@ -24,13 +24,13 @@ static void set_up_at(uint32_t now_us)
     rig.fake.byte_us = RIG_BYTE_US;
     assert_int_equal(fathom_line_init(&rig.line, &rig.line_parts), FATHOM_OK);
     dyp = fathom_dyp_client(&rig.line);
-    config = (fathom_a05_dyp_config_t){.modbus.transport = &dyp};
+    config = (fathom_a05_dyp_config_t){0};
     memset(&a05, 0x5A, sizeof a05);
 }
 
 static void start(void)
 {
-    assert_int_equal(fathom_a05_dyp_init(&a05, &config), FATHOM_OK);
+    assert_int_equal(fathom_a05_dyp_init(&a05, &dyp, &config), FATHOM_OK);
     rig.sensor = fathom_a05_dyp_sensor(&a05);
 }
 

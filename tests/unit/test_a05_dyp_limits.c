@@ -16,7 +16,6 @@ static int set_up_a05(void **state)
     set_up(state);
     memset(&config, 0, sizeof config);
     dyp = fathom_dyp_client(&bench.line);
-    config.modbus.transport = &dyp;
     return 0;
 }
 
@@ -25,7 +24,7 @@ static const suite_t suite = {.set_up = set_up_a05};
 static void start(void)
 {
     memset(&a05, 0xA5, sizeof a05);
-    assert_int_equal(fathom_a05_dyp_init(&a05, &config), FATHOM_OK);
+    assert_int_equal(fathom_a05_dyp_init(&a05, &dyp, &config), FATHOM_OK);
     sensor = fathom_a05_dyp_sensor(&a05);
 }
 

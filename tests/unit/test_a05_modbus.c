@@ -7,12 +7,14 @@
 /* Its four probes; test_driver_contract.c has the rest. */
 
 static fathom_a05_modbus_config_t config;
+static const fathom_modbus_t *transport;
 static fathom_a05_modbus_t a05;
 
 static int set_up(void **state)
 {
     desk_begin(5000);
-    config = (fathom_a05_modbus_config_t){.modbus.transport = &fake.modbus};
+    config = (fathom_a05_modbus_config_t){0};
+    transport = &fake.modbus;
     memset(&a05, 0x5A, sizeof a05);
     return 0;
 }
@@ -21,7 +23,7 @@ static const suite_t suite = {.set_up = set_up};
 
 static void start(void)
 {
-    assert_int_equal(fathom_a05_modbus_init(&a05, &config), FATHOM_OK);
+    assert_int_equal(fathom_a05_modbus_init(&a05, transport, &config), FATHOM_OK);
     desk.sensor = fathom_a05_modbus_sensor(&a05);
 }
 
@@ -181,7 +183,7 @@ TEST(the_example_of_the_datasheet_goes_over_a_line)
     static const uint16_t distances[] = {250, 659, 2426};
     rig_start(RIG_START_US);
     const fathom_modbus_t modbus = fathom_modbus_client(&rig.line);
-    config.modbus.transport = &modbus;
+    transport = &modbus;
     config.probes = 0xE;
     start();
     rig.sensor = desk.sensor;

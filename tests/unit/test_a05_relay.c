@@ -13,10 +13,9 @@ static void start(uint8_t wiring, uint8_t level_of_it, bool level)
     static fathom_a05_relay_t relay;
     pins_start(1000);
     pins.level = level;
-    const fathom_a05_relay_config_t config = {
-        .pin = &pins.pin, .clock = &pins.fake.clock, .wiring = wiring, .level = level_of_it};
+    const fathom_a05_relay_config_t config = {.wiring = wiring, .level = level_of_it};
     memset(&relay, 0x5A, sizeof relay);
-    assert_int_equal(fathom_a05_relay_init(&relay, &config), FATHOM_OK);
+    assert_int_equal(fathom_a05_relay_init(&relay, &pins.pin, &pins.fake.clock, &config), FATHOM_OK);
     pins.sensor = fathom_a05_relay_sensor(&relay);
 }
 

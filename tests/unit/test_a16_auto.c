@@ -17,9 +17,8 @@ static void start_at(uint32_t now_us)
 {
     rig_start(now_us);
     fake_pin_init(&pin, &rig.fake);
-    config.line = &rig.line;
     memset(&a16, 0x5A, sizeof a16);
-    assert_int_equal(fathom_a16_auto_init(&a16, &config), FATHOM_OK);
+    assert_int_equal(fathom_a16_auto_init(&a16, &rig.line, &config), FATHOM_OK);
     rig.sensor = fathom_a16_auto_sensor(&a16);
 }
 
@@ -147,7 +146,10 @@ TEST(where_gap_us_is_longer_than_the_pauses_no_frame_is_shown)
 
 /* ---- which value is sent: its RX pin high or open, the processed one; low, the real-time one (A16 2(2)) ---- */
 
-static void inits(fathom_status_t status) { assert_int_equal(fathom_a16_auto_init(&a16, &config), status); }
+static void inits(fathom_status_t status)
+{
+    assert_int_equal(fathom_a16_auto_init(&a16, &rig.line, &config), status);
+}
 
 static void selects(fathom_dyp_value_t value, fathom_status_t status)
 {

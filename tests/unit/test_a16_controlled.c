@@ -32,7 +32,7 @@ TEST(a_break_of_2_ms_triggers_every_121_ms)
 
 TEST(a_pin_triggers_instead_of_the_break)
 {
-    controlled.config.trigger = fathom_output_pin(&controlled.pin.trigger);
+    controlled.trigger = fathom_output_pin(&controlled.pin.trigger);
     controlled_start();
     assert_true(controlled.pin.level);
     rig_run(2 * MS, 100);
@@ -50,7 +50,7 @@ TEST(a_pin_triggers_instead_of_the_break)
 
 TEST(period_and_low_time_are_options_and_a_shorter_period_is_not_kept)
 {
-    controlled.config.trigger = fathom_output_pin(&controlled.pin.trigger);
+    controlled.trigger = fathom_output_pin(&controlled.pin.trigger);
     controlled.config.period_us = 300 * MS;
     controlled.config.low_us = 10 * MS;
     controlled_start();
@@ -66,7 +66,7 @@ TEST(period_and_low_time_are_options_and_a_shorter_period_is_not_kept)
 
 TEST(a_slow_loop_leaves_the_pin_high_for_the_low_time_before_the_next_edge)
 {
-    controlled.config.trigger = fathom_output_pin(&controlled.pin.trigger);
+    controlled.trigger = fathom_output_pin(&controlled.pin.trigger);
     controlled_start();
     for (unsigned i = 0; i != 100; i++) {
         rig.fake.now_us += i % 2 != 0 ? 300 * MS : 500;
@@ -322,12 +322,15 @@ TEST(without_a_pin_or_a_break_nothing_listens_and_deinit_ends_a_break)
     fathom_a16_controlled_deinit(&controlled.a16);
     assert_false(rig.fake.in_break);
     rig.fake.uart.set_break = NULL;
-    assert_int_equal(fathom_a16_controlled_init(&other, &controlled.config), FATHOM_ERR_UNSUPPORTED);
+    assert_int_equal(fathom_a16_controlled_init(&other, &rig.line, &controlled.trigger, &controlled.config),
+                     FATHOM_ERR_UNSUPPORTED);
     assert_null(rig.line.listener);
-    controlled.config.trigger.set = NULL;
-    assert_int_equal(fathom_a16_controlled_init(&other, &controlled.config), FATHOM_ERR_ARGUMENT);
-    controlled.config.trigger = fathom_output_pin(&controlled.pin.trigger);
-    assert_int_equal(fathom_a16_controlled_init(&other, &controlled.config), FATHOM_OK);
+    controlled.trigger.set = NULL;
+    assert_int_equal(fathom_a16_controlled_init(&other, &rig.line, &controlled.trigger, &controlled.config),
+                     FATHOM_ERR_ARGUMENT);
+    controlled.trigger = fathom_output_pin(&controlled.pin.trigger);
+    assert_int_equal(fathom_a16_controlled_init(&other, &rig.line, &controlled.trigger, &controlled.config),
+                     FATHOM_OK);
     assert_ptr_equal(rig.line.listener, &other.stream.listener);
 }
 

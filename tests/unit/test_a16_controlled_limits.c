@@ -119,9 +119,9 @@ TEST(earliest_and_latest_may_be_the_same)
 {
     controlled.config.earliest_us = 100000;
     controlled.config.latest_us = 100000;
-    assert_int_equal(fathom_a16_controlled_init(&controlled.a16, &controlled.config), FATHOM_OK);
+    assert_int_equal(controlled_init(), FATHOM_OK);
     controlled.config.latest_us = 99999;
-    assert_int_equal(fathom_a16_controlled_init(&controlled.a16, &controlled.config), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(controlled_init(), FATHOM_ERR_ARGUMENT);
 }
 
 /* ---- when it is due ---- */
@@ -167,7 +167,7 @@ TEST(between_two_triggers_it_is_due_at_the_next_one)
     for (unsigned fill = 0; fill != 2; fill++) {
         rig_start(RIG_START_US);
         memset(&controlled.a16, fill != 0 ? 0xFF : 0, sizeof controlled.a16);
-        assert_int_equal(fathom_a16_controlled_init(&controlled.a16, &controlled.config), FATHOM_OK);
+        assert_int_equal(controlled_init(), FATHOM_OK);
         rig.sensor = fathom_a16_controlled_sensor(&controlled.a16);
         trigger();
         poll_after(2 * MS);
@@ -210,11 +210,11 @@ TEST(a_break_is_ended_only_where_one_has_begun)
     uart.set_break = counted_set_break;
     set_breaks = 0;
     rig.line_parts.uart = &uart;
-    assert_int_equal(fathom_a16_controlled_init(&controlled.a16, &controlled.config), FATHOM_OK);
+    assert_int_equal(controlled_init(), FATHOM_OK);
     assert_int_equal(set_breaks, 0);
     fathom_a16_controlled_deinit(&controlled.a16);
     assert_int_equal(set_breaks, 0);
-    assert_int_equal(fathom_a16_controlled_init(&controlled.a16, &controlled.config), FATHOM_OK);
+    assert_int_equal(controlled_init(), FATHOM_OK);
     trigger();
     assert_int_equal(set_breaks, 1);
     fathom_a16_controlled_deinit(&controlled.a16);
@@ -224,7 +224,7 @@ TEST(a_break_is_ended_only_where_one_has_begun)
 
 TEST(a_pin_that_is_high_is_not_set_when_the_sensor_is_given_up)
 {
-    controlled.config.trigger = fathom_output_pin(&controlled.pin.trigger);
+    controlled.trigger = fathom_output_pin(&controlled.pin.trigger);
     controlled_start();
     assert_int_equal(controlled.pin.sets, 1); /* high */
     fathom_a16_controlled_deinit(&controlled.a16);

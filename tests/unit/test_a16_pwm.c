@@ -8,6 +8,7 @@
 static fake_t fake;
 static fake_pin_t pin;
 static fathom_a16_pwm_config_t config;
+static fathom_output_t output;
 static fathom_a16_pwm_t a16;
 static fathom_sensor_t sensor;
 static fathom_sample_t last;
@@ -18,14 +19,14 @@ static void start(void)
     fake_pin_init(&pin, &fake);
     pin.response_after_us = 110 * MS;
     memset(&a16, 0x5A, sizeof a16);
-    assert_int_equal(fathom_a16_pwm_init(&a16, &config), FATHOM_OK);
+    assert_int_equal(fathom_a16_pwm_init(&a16, &pin.capture, &fake.clock, &output, &config), FATHOM_OK);
     sensor = fathom_a16_pwm_sensor(&a16);
 }
 
 static int set_up(void **state)
 {
-    config = (fathom_a16_pwm_config_t){
-        .pulse = {.clock = &fake.clock, .capture = &pin.capture, .trigger = fathom_output_pin(&pin.trigger)}};
+    output = fathom_output_pin(&pin.trigger);
+    config = (fathom_a16_pwm_config_t){0};
     start();
     return 0;
 }
@@ -169,7 +170,7 @@ TEST(it_is_due_as_its_engine_is)
 
 TEST(a_break_triggers_where_there_is_no_pin)
 {
-    config.pulse.trigger = fathom_output_break(&fake.uart);
+    output = fathom_output_break(&fake.uart);
     start();
     fake.now_us += 2 * MS;
     assert_int_equal(fathom_poll(&sensor, &last), FATHOM_PENDING);
@@ -182,7 +183,8 @@ TEST(in_air_a_window_may_be_wider)
 {
     config.in_air = true;
     config.window.min_mm = 16351;
-    assert_int_equal(fathom_a16_pwm_init(&a16, &config), FATHOM_OK);
+    assert_int_equal(fathom_a16_pwm_init(&a16, &pin.capture, &fake.clock, &output, &config), FATHOM_OK);
     config.window.min_mm = 18001;
-    assert_int_equal(fathom_a16_pwm_init(&a16, &config), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_a16_pwm_init(&a16, &pin.capture, &fake.clock, &output, &config),
+                     FATHOM_ERR_ARGUMENT);
 }

@@ -15,7 +15,11 @@ static fathom_a16_pwm_t a16;
 static fathom_sensor_t sensor;
 static fathom_sample_t sample;
 
-static fathom_status_t init(void) { return fathom_a16_pwm_init(&a16, &config); }
+static fathom_status_t init(void)
+{
+    const fathom_output_t output = fathom_output_pin(&pin.trigger);
+    return fathom_a16_pwm_init(&a16, &pin.capture, &fake.clock, &output, &config);
+}
 
 static int set_up(void **state)
 {
@@ -23,9 +27,6 @@ static int set_up(void **state)
     fake_pin_init(&pin, &fake);
     pin.response_after_us = 100000;
     memset(&config, 0, sizeof config);
-    config.pulse.clock = &fake.clock;
-    config.pulse.capture = &pin.capture;
-    config.pulse.trigger = fathom_output_pin(&pin.trigger);
     config.pulse.noise_us = 1; /* or short pulses would be none */
     memset(&a16, 0x5A, sizeof a16);
     return 0;

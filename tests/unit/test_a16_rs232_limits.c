@@ -35,14 +35,13 @@ static uint32_t begins_us; /* not 0: the clock then */
 /* The address has been read and the mode written; from now on it listens. The memory was full of 01, which is true. */
 static int set_up_listening(void **state)
 {
-    const fathom_a16_modbus_config_t config = {.modbus.transport = &transport};
-    const fathom_a16_auto_config_t listening = {.line = &bench.line, .stale_us = 100000000};
+    const fathom_a16_auto_config_t listening = {.stale_us = 100000000};
     set_up(state);
     if (begins_us != 0) bench.fake.now_us = bench.fake.busy_until_us = begins_us;
     assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_OK);
     transport = fathom_modbus_client(&bench.line);
-    assert_int_equal(fathom_a16_modbus_init(&modbus, &config), FATHOM_OK);
-    assert_int_equal(fathom_a16_auto_init(&automatic, &listening), FATHOM_OK);
+    assert_int_equal(fathom_a16_modbus_init(&modbus, &transport, NULL), FATHOM_OK);
+    assert_int_equal(fathom_a16_auto_init(&automatic, &bench.line, &listening), FATHOM_OK);
     memset(&rs232, 0x01, sizeof rs232);
     fathom_a16_rs232_init(&rs232, &modbus, &automatic);
     response_when_sent(1, address_is_1, sizeof address_is_1);

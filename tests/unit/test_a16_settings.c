@@ -9,9 +9,8 @@ static fathom_a16_modbus_t a16;
 static int set_up(void **state)
 {
     desk_begin(5000);
-    const fathom_a16_modbus_config_t config = {.modbus.transport = &fake.modbus};
     memset(&a16, 0, sizeof a16); /* 0 is something that each output could be given by mistake */
-    assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_OK);
+    assert_int_equal(fathom_a16_modbus_init(&a16, &fake.modbus, NULL), FATHOM_OK);
     desk.sensor = fathom_a16_modbus_sensor(&a16);
     return 0;
 }

@@ -40,10 +40,8 @@ static void start_at(uint32_t now_us, bool level)
                                        .count = fathom_line_count,
                                        .counters = counters};
     assert_int_equal(fathom_line_init(&line, &line_parts), FATHOM_OK);
-    config.pin = &pins.pin;
-    config.clock = &pins.fake.clock;
     memset(&a16, 0x5A, sizeof a16);
-    assert_int_equal(fathom_a16_switch_init(&a16, &config), FATHOM_OK);
+    assert_int_equal(fathom_a16_switch_init(&a16, &pins.pin, &pins.fake.clock, &config), FATHOM_OK);
     pins.sensor = fathom_a16_switch_sensor(&a16);
 }
 

@@ -238,10 +238,9 @@ static fathom_a05_modbus_t a05;
 static int set_up_drivers(void **state)
 {
     desk_begin(5000);
-    const fathom_a16_modbus_config_t config = {.modbus.transport = &fake.modbus};
-    assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_OK);
-    const fathom_a05_modbus_config_t its = {.modbus.transport = &fake.modbus, .probes = 1};
-    assert_int_equal(fathom_a05_modbus_init(&a05, &its), FATHOM_OK);
+    assert_int_equal(fathom_a16_modbus_init(&a16, &fake.modbus, NULL), FATHOM_OK);
+    const fathom_a05_modbus_config_t its = {.probes = 1};
+    assert_int_equal(fathom_a05_modbus_init(&a05, &fake.modbus, &its), FATHOM_OK);
     desk.sensor = fathom_a16_modbus_sensor(&a16);
     return 0;
 }
@@ -256,8 +255,8 @@ static fathom_status_t move_a05(void) { return fathom_a05_modbus_set_address_0(&
 TEST_IN(driving, a_sensor_at_address_0_is_read_and_never_written)
 {
     read_address = 0xA5;
-    fathom_a16_modbus_config_t config = {.modbus.transport = &fake.modbus, .modbus.address_zero = true};
-    assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_OK);
+    fathom_a16_modbus_config_t config = {.modbus.address_zero = true};
+    assert_int_equal(fathom_a16_modbus_init(&a16, &fake.modbus, &config), FATHOM_OK);
     PLAY(desk_poll, OK, READ(0, 0x0100, OK, 754));
     assert_int_equal(desk.sample.address, 0);
     assert_int_equal(desk.sample.distance_mm, 754);
@@ -269,10 +268,9 @@ TEST_IN(driving, a_sensor_at_address_0_is_read_and_never_written)
     assert_int_equal(read_address, 0);
 
     config.modbus.address = 1;
-    assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_ERR_ARGUMENT);
-    const fathom_a05_modbus_config_t its = {
-        .modbus.transport = &fake.modbus, .probes = 1, .modbus.address_zero = true};
-    assert_int_equal(fathom_a05_modbus_init(&a05, &its), FATHOM_OK);
+    assert_int_equal(fathom_a16_modbus_init(&a16, &fake.modbus, &config), FATHOM_ERR_ARGUMENT);
+    const fathom_a05_modbus_config_t its = {.probes = 1, .modbus.address_zero = true};
+    assert_int_equal(fathom_a05_modbus_init(&a05, &fake.modbus, &its), FATHOM_OK);
     desk.sensor = fathom_a05_modbus_sensor(&a05);
     PLAY(desk_poll, OK, READ(0, 0x0106, OK, 1000));
 }

@@ -46,18 +46,17 @@ static fathom_output_t select_by(bool pin_does)
 
 static void start_a05(bool by_pin)
 {
-    const fathom_a05_auto_config_t config = {.line = &rig.line, .select = select_by(by_pin)};
+    const fathom_a05_auto_config_t config = {.select = select_by(by_pin)};
     memset(&a05, 0xFF, sizeof a05);
-    assert_int_equal(fathom_a05_auto_init(&a05, &config), FATHOM_OK);
+    assert_int_equal(fathom_a05_auto_init(&a05, &rig.line, &config), FATHOM_OK);
     rig.sensor = fathom_a05_auto_sensor(&a05);
 }
 
 static void start_a16(uint8_t fill, bool by_pin, uint32_t stale_us)
 {
-    const fathom_a16_auto_config_t config = {
-        .line = &rig.line, .select = select_by(by_pin), .stale_us = stale_us};
+    const fathom_a16_auto_config_t config = {.select = select_by(by_pin), .stale_us = stale_us};
     memset(&a16, fill, sizeof a16);
-    assert_int_equal(fathom_a16_auto_init(&a16, &config), FATHOM_OK);
+    assert_int_equal(fathom_a16_auto_init(&a16, &rig.line, &config), FATHOM_OK);
     rig.sensor = fathom_a16_auto_sensor(&a16);
 }
 
@@ -169,8 +168,8 @@ TEST(an_a16_without_a_line_is_refused_before_anything_is_selected)
 {
     const fathom_a16_auto_config_t config = {.select = select_by(true), .value = FATHOM_REAL_TIME};
     const fathom_a16_auto_config_t by_break = {.select = select_by(false), .value = FATHOM_REAL_TIME};
-    assert_int_equal(fathom_a16_auto_init(&a16, &config), FATHOM_ERR_ARGUMENT);
-    assert_int_equal(fathom_a16_auto_init(&a16, &by_break), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_a16_auto_init(&a16, NULL, &config), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_a16_auto_init(&a16, NULL, &by_break), FATHOM_ERR_ARGUMENT);
     assert_int_equal(pin.sets, 0);
 }
 

@@ -16,25 +16,25 @@ static fathom_a16_auto_t a16;
 
 static void select_a05(void)
 {
-    const fathom_a05_auto_config_t config = {
-        .line = &rig.line, .stale_us = 60000000, .select = fathom_output_line_break(&rig.line)};
+    const fathom_a05_auto_config_t config = {.stale_us = 60000000,
+                                             .select = fathom_output_line_break(&rig.line)};
     rig_start(RIG_START_US);
-    assert_int_equal(fathom_a05_auto_init(&a05, &config), FATHOM_OK);
+    assert_int_equal(fathom_a05_auto_init(&a05, &rig.line, &config), FATHOM_OK);
     rig.sensor = fathom_a05_auto_sensor(&a05);
     assert_int_equal(fathom_a05_auto_select(&a05, FATHOM_REAL_TIME), FATHOM_OK);
 }
 
 static void select_a16(void)
 {
-    const fathom_a16_auto_config_t config = {
-        .line = &rig.line, .value = FATHOM_REAL_TIME, .select = fathom_output_line_break(&rig.line)};
+    const fathom_a16_auto_config_t config = {.value = FATHOM_REAL_TIME,
+                                             .select = fathom_output_line_break(&rig.line)};
     rig_start(RIG_START_US);
-    assert_int_equal(fathom_a16_auto_init(&a16, &config), FATHOM_OK);
+    assert_int_equal(fathom_a16_auto_init(&a16, &rig.line, &config), FATHOM_OK);
 }
 
 static void start_controlled(void)
 {
-    controlled.config.trigger = fathom_output_line_break(&rig.line);
+    controlled.trigger = fathom_output_line_break(&rig.line);
     controlled_start();
 }
 
@@ -46,7 +46,7 @@ static void trigger_controlled(void)
 
 static void start_pulse(void)
 {
-    stand.config.trigger = fathom_output_break(&stand.fake.uart);
+    stand.trigger = fathom_output_break(&stand.fake.uart);
     start_meter();
 }
 

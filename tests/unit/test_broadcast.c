@@ -103,10 +103,8 @@ static const uint8_t allowed[4][6] = {
 static int set_up(void **state)
 {
     hps_set_up(state);
-    const fathom_a16_modbus_config_t a16_config = {.modbus.transport = &fake.modbus};
-    const fathom_a05_modbus_config_t a05_config = {.modbus.transport = &fake.modbus};
-    assert_int_equal(fathom_a16_modbus_init(&a16, &a16_config), FATHOM_OK);
-    assert_int_equal(fathom_a05_modbus_init(&a05, &a05_config), FATHOM_OK);
+    assert_int_equal(fathom_a16_modbus_init(&a16, &fake.modbus, NULL), FATHOM_OK);
+    assert_int_equal(fathom_a05_modbus_init(&a05, &fake.modbus, NULL), FATHOM_OK);
     hps_config.modbus.line_settings = &hps_factory;
     hps_start();
     return 0;

@@ -36,27 +36,31 @@ typedef struct {
     fathom_sensor_t (*sensor)(void);
     void *memory;
     size_t size;
-    const fathom_modbus_t **transport;
     uint8_t frame_size; /* the least that the driver needs */
     range_t ranges[ROWS];
 } driver_t;
+
+static const fathom_modbus_t *transport;
 
 #define DRIVER(name, ...)                                                                                    \
     static fathom_##name##_t name;                                                                           \
     static fathom_##name##_config_t name##_config;                                                           \
     static void name##_prepare(void)                                                                         \
     {                                                                                                        \
-        name##_config = (fathom_##name##_config_t){.modbus.transport = &fake.modbus, __VA_ARGS__};           \
+        transport = &fake.modbus;                                                                            \
+        name##_config = (fathom_##name##_config_t){__VA_ARGS__};                                             \
         memset(&name, 0, sizeof name);                                                                       \
     }                                                                                                        \
-    static fathom_status_t name##_init(void) { return fathom_##name##_init(&name, &name##_config); }         \
+    static fathom_status_t name##_init(void)                                                                 \
+    {                                                                                                        \
+        return fathom_##name##_init(&name, transport, &name##_config);                                       \
+    }                                                                                                        \
     static void name##_deinit(void) { fathom_##name##_deinit(&name); }                                       \
     static fathom_sensor_t name##_sensor(void) { return fathom_##name##_sensor(&name); }
 
 #define ITSELF(name, needs)                                                                                  \
     .prepare = name##_prepare, .init = name##_init, .deinit = name##_deinit, .sensor = name##_sensor,        \
-    .memory = &(name), .size = sizeof(name), .transport = &name##_config.modbus.transport,                   \
-    .frame_size = needs
+    .memory = &(name), .size = sizeof(name), .frame_size = needs
 
 #define RANGE(name, its, from, to, ...)                                                                      \
     {                                                                                                        \
@@ -186,7 +190,7 @@ static void a_missing_transport_or_clock_is_refused(void **state)
     const driver_t *const driver = *state;
     fake.modbus.clock = NULL;
     assert_int_equal(driver->init(), FATHOM_ERR_ARGUMENT);
-    *driver->transport = NULL;
+    transport = NULL;
     assert_int_equal(driver->init(), FATHOM_ERR_ARGUMENT);
 }
 

@@ -22,9 +22,8 @@ TEST(a_setting_over_modbus_keeps_no_pointer_to_its_parameter)
 {
     static const uint16_t is_10000[] = {10000};
     fathom_a16_modbus_t a16;
-    const fathom_a16_modbus_config_t config = {.modbus.transport = &modbus.modbus};
     fake_modbus_init(&modbus);
-    assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_OK);
+    assert_int_equal(fathom_a16_modbus_init(&a16, &modbus.modbus, NULL), FATHOM_OK);
     assert_int_equal(fathom_a16_modbus_set_switch_threshold_mm(&a16, 500), FATHOM_PENDING);
     fake_modbus_response(&modbus, is_10000, 1);
     for (unsigned i = 0; modbus.submits != 2; i++) {
@@ -43,8 +42,8 @@ TEST(the_address_of_every_a05_is_set_without_a_pointer_to_a_parameter)
     fathom_a05_dyp_t a05;
     (void)set_up(state);
     const fathom_modbus_t transport = fathom_dyp_client(&bench.line);
-    const fathom_a05_dyp_config_t config = {.modbus.transport = &transport, .probes = 1};
-    assert_int_equal(fathom_a05_dyp_init(&a05, &config), FATHOM_OK);
+    const fathom_a05_dyp_config_t config = {.probes = 1};
+    assert_int_equal(fathom_a05_dyp_init(&a05, &transport, &config), FATHOM_OK);
     bool is_answered = false;
     for (unsigned i = 0; bench.fake.written != 3; i++) {
         assert_true(i != 10000);

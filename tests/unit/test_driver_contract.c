@@ -77,6 +77,21 @@ static void put(void *member, size_t size, uint32_t value)
         memcpy(member, &value, size);
 }
 
+static void assert_zeroed(void)
+{
+    const uint8_t *at = driver->memory;
+    for (size_t left = driver->size; left != 0; left--) assert_int_equal(*at++, 0);
+}
+
+/* FNV-1a of the driver's memory; a copy would need more RAM than an AVR has. */
+static uint32_t hash_of_driver(void)
+{
+    const uint8_t *at = driver->memory;
+    uint32_t hash = 2166136261u;
+    for (size_t left = driver->size; left != 0; left--) hash = (hash ^ *at++) * 16777619u;
+    return hash;
+}
+
 CONTRACT(each_wrong_argument_is_refused_and_the_port_is_not_used, ALL)
 {
     for (const contract_wrong_t *wrong = driver->wrong; wrong->what != NULL; wrong++) {
@@ -85,11 +100,37 @@ CONTRACT(each_wrong_argument_is_refused_and_the_port_is_not_used, ALL)
             put(wrong->member, wrong->size, value);
             if (wrong->also != NULL) put(wrong->also, sizeof wrong->also_is, wrong->also_is);
             if (driver->init() != FATHOM_ERR_ARGUMENT) fail_msg("%s %lu", wrong->what, (unsigned long)value);
+            assert_zeroed();
             assert_false(kind->is_used());
         }
     }
     begin_at(START_US);
     start();
+}
+
+CONTRACT(without_a_config_the_driver_is_that_of_a_zeroed_config, ALL)
+{
+    memset(driver->config, 0, driver->config_size);
+    start();
+    const uint32_t hash = hash_of_driver();
+    begin_at(START_US);
+    memset(driver->config, 0x5A, driver->config_size);
+    assert_int_equal(driver->init_without_config(), FATHOM_OK);
+    assert_int_equal(hash_of_driver(), hash);
+}
+
+CONTRACT(without_a_config_the_parameters_are_needed_all_the_same, ALL)
+{
+    for (const contract_wrong_t *wrong = driver->wrong; wrong->what != NULL; wrong++) {
+        const uint8_t *const member = wrong->member;
+        const uint8_t *const config = driver->config;
+        if (member >= config && member < config + driver->config_size) continue;
+        begin_at(START_US);
+        put(wrong->member, wrong->size, wrong->from);
+        assert_int_equal(driver->init_without_config(), FATHOM_ERR_ARGUMENT);
+        assert_zeroed();
+        assert_false(kind->is_used());
+    }
 }
 
 static void until_at_work(void)
@@ -130,6 +171,43 @@ CONTRACT(a_sample_has_all_its_members, ALL)
     reads(driver->good);
     assert_reading(1);
     PENDS(kind->poll());
+}
+
+/* ---- polling without a sensor ---- */
+
+static fathom_status_t poll_directly(void *ctx, fathom_sample_t *sample)
+{
+    (void)ctx;
+    return driver->poll(sample);
+}
+
+static uint32_t due_us_directly(void *ctx)
+{
+    const fathom_sensor_t sensor = driver->sensor();
+    (void)ctx;
+    const uint32_t due_us = driver->due_us();
+    assert_int_equal(due_us, fathom_due_us(&sensor, 1));
+    return due_us;
+}
+
+CONTRACT(a_poll_of_the_driver_is_that_of_its_sensor, ALL)
+{
+    start();
+    *kind->sensor = (fathom_sensor_t){poll_directly, due_us_directly, NULL};
+    (void)fathom_due_us(kind->sensor, 1);
+    reads(driver->good);
+    assert_reading(1);
+    (void)fathom_due_us(kind->sensor, 1);
+    PENDS(kind->poll());
+    (void)fathom_due_us(kind->sensor, 1);
+}
+
+CONTRACT(a_poll_of_a_driver_in_zeroed_memory_is_an_error_and_due_at_once, ALL)
+{
+    fathom_sample_t sample;
+    memset(driver->memory, 0, driver->size);
+    assert_int_equal(driver->poll(&sample), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(driver->due_us(), 0);
 }
 
 CONTRACT(the_sequence_counts_samples_and_wraps, MEASURING)

@@ -17,21 +17,19 @@ static fathom_sample_t sample;
 
 static void start_a05(uint32_t backoff_us)
 {
-    const fathom_a05_modbus_config_t config = {.modbus.transport = &fake.modbus,
-                                               .modbus.backoff_us = backoff_us};
+    const fathom_a05_modbus_config_t config = {.modbus.backoff_us = backoff_us};
     fake_modbus_init(&fake);
     memset(&a05, 0x5A, sizeof a05);
-    assert_int_equal(fathom_a05_modbus_init(&a05, &config), FATHOM_OK);
+    assert_int_equal(fathom_a05_modbus_init(&a05, &fake.modbus, &config), FATHOM_OK);
     sensor = fathom_a05_modbus_sensor(&a05);
 }
 
 static void start_a16(uint32_t backoff_us)
 {
-    const fathom_a16_modbus_config_t config = {.modbus.transport = &fake.modbus,
-                                               .modbus.backoff_us = backoff_us};
+    const fathom_a16_modbus_config_t config = {.modbus.backoff_us = backoff_us};
     fake_modbus_init(&fake);
     memset(&a16, 0x5A, sizeof a16);
-    assert_int_equal(fathom_a16_modbus_init(&a16, &config), FATHOM_OK);
+    assert_int_equal(fathom_a16_modbus_init(&a16, &fake.modbus, &config), FATHOM_OK);
     sensor = fathom_a16_modbus_sensor(&a16);
 }
 

@@ -233,7 +233,7 @@ static void start_line(void)
     static fathom_modbus_t modbus;
     rig_start(RIG_START_US);
     modbus = fathom_modbus_client(&rig.line);
-    hps_config.modbus.transport = &modbus;
+    hps_transport = &modbus;
     hps_start();
     rig.sensor = desk.sensor;
 }

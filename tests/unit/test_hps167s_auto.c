@@ -21,14 +21,14 @@ static const uint8_t example[LENGTH] = {0x01, 0x03, 0x08, 0x08, 0x23, 0xDC, 0xB2
 
 static void begin(void)
 {
-    assert_int_equal(fathom_hps167s_auto_init(&hps, &config), FATHOM_OK);
+    assert_int_equal(fathom_hps167s_auto_init(&hps, &rig.line, &config), FATHOM_OK);
     rig.sensor = fathom_hps167s_auto_sensor(&hps);
 }
 
 static int set_up(void **state)
 {
     rig_start(start_us);
-    config = (fathom_hps167s_auto_config_t){.line = &rig.line};
+    config = (fathom_hps167s_auto_config_t){0};
     memset(&hps, 0x5A, sizeof hps);
     begin();
     PENDS(rig_poll()); /* the port is seen empty */
@@ -58,8 +58,8 @@ static void hears_example(void) { assert_int_equal(rig_send(example, LENGTH, loo
 static void ask_too(void)
 {
     modbus = fathom_modbus_client(&rig.line);
-    const fathom_hps167s_config_t asked = {.modbus.transport = &modbus, .modbus.timeout_us = 300000};
-    assert_int_equal(fathom_hps167s_init(&driver, &asked), FATHOM_OK);
+    const fathom_hps167s_config_t asked = {.modbus.timeout_us = 300000};
+    assert_int_equal(fathom_hps167s_init(&driver, &modbus, &asked), FATHOM_OK);
     fathom_hps167s_auto_follow(&hps, &driver);
 }
 

@@ -17,9 +17,9 @@ static const uint8_t example[] = {0x01, 0x03, 0x08, 0x08, 0x23, 0xDC, 0xB2,
 static int begin(void **state)
 {
     set_up(state);
-    config = (fathom_hps167s_auto_config_t){.line = &bench.line};
+    config = (fathom_hps167s_auto_config_t){0};
     memset(&hps, 0x01, sizeof hps);
-    assert_int_equal(fathom_hps167s_auto_init(&hps, &config), FATHOM_OK);
+    assert_int_equal(fathom_hps167s_auto_init(&hps, &bench.line, &config), FATHOM_OK);
     sensor = fathom_hps167s_auto_sensor(&hps);
     assert_int_equal(fathom_poll(&sensor, &sample), FATHOM_PENDING); /* the port is seen empty */
     return 0;
@@ -71,9 +71,9 @@ TEST(nothing_is_due_but_the_deadline)
 TEST(the_buffer_of_the_line_holds_13_bytes)
 {
     bench.config.frame_size = 12;
-    assert_int_equal(fathom_hps167s_auto_init(&hps, &config), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_hps167s_auto_init(&hps, &bench.line, &config), FATHOM_ERR_ARGUMENT);
     bench.config.frame_size = 13;
-    assert_int_equal(fathom_hps167s_auto_init(&hps, &config), FATHOM_OK);
+    assert_int_equal(fathom_hps167s_auto_init(&hps, &bench.line, &config), FATHOM_OK);
 }
 
 /* 12 bytes of a frame without the first: none can be in a frame, but the last 01 may begin one; a wrong CRC: 41 for 42.

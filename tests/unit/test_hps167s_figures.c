@@ -40,9 +40,8 @@ static fathom_hps167s_t hps;
 
 static void start(uint8_t steps_per_degree)
 {
-    const fathom_hps167s_config_t config = {.modbus.transport = &modbus,
-                                            .steps_per_degree = steps_per_degree};
-    assert_int_equal(fathom_hps167s_init(&hps, &config), FATHOM_OK);
+    const fathom_hps167s_config_t config = {.steps_per_degree = steps_per_degree};
+    assert_int_equal(fathom_hps167s_init(&hps, &modbus, &config), FATHOM_OK);
 }
 
 /* Whatever the other bytes are: some of each. */

@@ -148,9 +148,8 @@ TEST(a_command_goes_out_at_once_when_the_pace_has_passed)
     const fathom_modbus_unit_request_t measure = {values, 0x0100, 1, 3, 1};
     const fathom_modbus_unit_request_t version = {values, 0x0001, 3, 3, 0x81};
     fake_modbus_init(&fake);
-    assert_int_equal(
-        init_unit(&unit, &(fathom_modbus_config_t){.transport = &fake.modbus, .address = 9}, 300000, 100000),
-        FATHOM_OK);
+    assert_int_equal(init_unit(&unit, &fake.modbus, &(fathom_modbus_config_t){.address = 9}, 300000, 100000),
+                     FATHOM_OK);
     for (unsigned n = 0; n != 3; n++) {
         assert_int_equal(asks(&unit, &measure), FATHOM_PENDING);
         fake_modbus_send(&fake);

@@ -98,10 +98,10 @@ static fathom_sensor_t held(uint32_t stale_us)
 {
     static const uint8_t came[] = {0xFF, 0x07, 0xA1, 0xA7, 0xFF, 0x07, 0xA1, 0xA7, 0x01, 0x03, 0x02, 0x02};
     static fathom_a16_auto_t automatic;
-    const fathom_a16_auto_config_t config = {.line = &bench.line, .stale_us = stale_us};
+    const fathom_a16_auto_config_t config = {.stale_us = stale_us};
     fathom_sample_t sample;
     send();
-    assert_int_equal(fathom_a16_auto_init(&automatic, &config), FATHOM_OK);
+    assert_int_equal(fathom_a16_auto_init(&automatic, &bench.line, &config), FATHOM_OK);
     const fathom_sensor_t sensor = fathom_a16_auto_sensor(&automatic);
     after(10000);
     receive(came, sizeof came);

@@ -127,11 +127,9 @@ TEST(a_driver_that_listens_refuses_a_line_that_is_not_initialised)
     static fathom_a16_controlled_t controlled;
     static fathom_hps167s_auto_t hps167s;
     const fathom_pin_t pin = {.set = set_nothing};
-    const fathom_a16_auto_config_t automatic_config = {.line = &line};
-    const fathom_a16_controlled_config_t controlled_config = {.line = &line,
-                                                              .trigger = fathom_output_pin(&pin)};
-    const fathom_hps167s_auto_config_t hps167s_config = {.line = &line, .address = 1};
-    assert_int_equal(fathom_a16_auto_init(&automatic, &automatic_config), FATHOM_ERR_ARGUMENT);
-    assert_int_equal(fathom_a16_controlled_init(&controlled, &controlled_config), FATHOM_ERR_ARGUMENT);
-    assert_int_equal(fathom_hps167s_auto_init(&hps167s, &hps167s_config), FATHOM_ERR_ARGUMENT);
+    const fathom_output_t trigger = fathom_output_pin(&pin);
+    const fathom_hps167s_auto_config_t hps167s_config = {.address = 1};
+    assert_int_equal(fathom_a16_auto_init(&automatic, &line, NULL), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_a16_controlled_init(&controlled, &line, &trigger, NULL), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_hps167s_auto_init(&hps167s, &line, &hps167s_config), FATHOM_ERR_ARGUMENT);
 }

@@ -21,11 +21,10 @@ static int set_up_units(void **state)
     modbus = fathom_modbus_client(&bench.line);
     memset(drivers, 0xA5, sizeof drivers);
     for (uint8_t i = 0; i != UNITS; i++) {
-        const fathom_a16_modbus_config_t config = {.modbus.transport = &modbus,
-                                                   .modbus.address = (uint8_t)(i + 1),
+        const fathom_a16_modbus_config_t config = {.modbus.address = (uint8_t)(i + 1),
                                                    .modbus.period_us = PERIOD_US,
                                                    .modbus.timeout_us = TIMEOUT_US};
-        assert_int_equal(fathom_a16_modbus_init(&drivers[i], &config), FATHOM_OK);
+        assert_int_equal(fathom_a16_modbus_init(&drivers[i], &modbus, &config), FATHOM_OK);
         sensors[i] = fathom_a16_modbus_sensor(&drivers[i]);
     }
     readings = 0;

@@ -82,11 +82,10 @@ static uint8_t probe_of(uint8_t wanted, uint16_t registers)
                                     .poll = poll,
                                     .due_us = zero,
                                     .clock = &clock};
-    const fathom_a05_modbus_config_t config = {
-        .modbus.transport = &modbus, .probes = wanted, .registers = registers};
+    const fathom_a05_modbus_config_t config = {.probes = wanted, .registers = registers};
     fathom_a05_modbus_t sensor;
     fathom_sample_t sample;
-    assert_int_equal(fathom_a05_modbus_init(&sensor, &config), FATHOM_OK);
+    assert_int_equal(fathom_a05_modbus_init(&sensor, &modbus, &config), FATHOM_OK);
     const fathom_sensor_t driver = fathom_a05_modbus_sensor(&sensor);
     assert_int_equal(fathom_poll(&driver, &sample), FATHOM_PENDING);
     assert_int_equal(fathom_poll(&driver, &sample), FATHOM_OK);

@@ -62,11 +62,10 @@ static const fathom_modbus_t modbus = {.submit = submit, .poll = poll, .clock = 
 TEST(command_3_says_19_09_27_and_ver_2_1_and_its_bytes_2019_09_23_and_3_9)
 {
     const uint8_t *const example = frame_of("HPS command #3")->bytes;
-    const fathom_hps167s_config_t config = {.modbus.transport = &modbus};
     fathom_hps167s_details_t details;
     fathom_hps167s_t hps;
     assert_int_equal(bitwise(example, 27), 0); /* so the bytes are what the device said */
-    assert_int_equal(fathom_hps167s_init(&hps, &config), FATHOM_OK);
+    assert_int_equal(fathom_hps167s_init(&hps, &modbus, NULL), FATHOM_OK);
     assert_int_equal(fathom_hps167s_get_details(&hps, &details), FATHOM_PENDING);
     end_with(example);
     assert_int_equal(fathom_hps167s_get_details(&hps, &details), FATHOM_OK);

@@ -35,10 +35,9 @@ static int set_up(void **state)
 {
     desk_begin(0xFFFFF000u); /* the clock wraps soon */
     memset(&unit, 0x5A, sizeof unit);
-    assert_int_equal(init_unit(&unit,
-                               &(fathom_modbus_config_t){
-                                   .transport = &fake.modbus, .address = HERE, .command_timeout_us = 1000},
-                               1000, 0),
+    assert_int_equal(init_unit(&unit, &fake.modbus,
+                               &(fathom_modbus_config_t){.address = HERE, .command_timeout_us = 1000}, 1000,
+                               0),
                      FATHOM_OK);
     setting = (fathom_modbus_setting_t){.read = read_it, .driver = &unit, .write = put, .value = NEW};
     found = 0;

@@ -34,10 +34,9 @@ static int set_up(void **state)
 {
     fake_modbus_init(&fake);
     memset(&unit, 0, sizeof unit);
-    assert_int_equal(init_unit(&unit,
-                               &(fathom_modbus_config_t){
-                                   .transport = &fake.modbus, .address = HERE, .command_timeout_us = 1000},
-                               1000, PACE_US),
+    assert_int_equal(init_unit(&unit, &fake.modbus,
+                               &(fathom_modbus_config_t){.address = HERE, .command_timeout_us = 1000}, 1000,
+                               PACE_US),
                      FATHOM_OK);
     setting = (fathom_modbus_setting_t){.read = read_it, .driver = &unit, .write = put, .value = NEW};
     found = 0;

@@ -18,10 +18,9 @@ static void set_up_at(uint32_t now_us)
     desk_begin(now_us);
     memset(values, GUARD, sizeof values);
     memset(&unit, 0x5A, sizeof unit);
-    assert_int_equal(
-        init_unit(&unit, &(fathom_modbus_config_t){.transport = &fake.modbus, .address = UNIT, .retries = 2},
-                  TIMEOUT_US, PACE_US),
-        FATHOM_OK);
+    assert_int_equal(init_unit(&unit, &fake.modbus, &(fathom_modbus_config_t){.address = UNIT, .retries = 2},
+                               TIMEOUT_US, PACE_US),
+                     FATHOM_OK);
 }
 
 static int set_up(void **state)
@@ -98,19 +97,20 @@ TEST(a_unit_needs_a_transport_a_clock_and_an_address_of_one_device)
 {
     fathom_modbus_unit_t other;
     fathom_modbus_config_t config = {.address = 1};
-    assert_int_equal(init_unit(&other, &config, 1000, 0), FATHOM_ERR_ARGUMENT);
-    config.transport = &fake.modbus;
+    assert_int_equal(init_unit(&other, NULL, &config, 1000, 0), FATHOM_ERR_ARGUMENT);
     fake.modbus.clock = NULL;
-    assert_int_equal(init_unit(&other, &config, 1000, 0), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(init_unit(&other, &fake.modbus, &config, 1000, 0), FATHOM_ERR_ARGUMENT);
     fake.modbus.clock = &fake.clock;
     for (unsigned address = 0; address != 256; address++) {
         const bool is_good = address != 255;
         config.address = (uint8_t)address;
         config.address_zero = false;
-        assert_int_equal(init_unit(&other, &config, 1000, 0), is_good ? FATHOM_OK : FATHOM_ERR_ARGUMENT);
+        assert_int_equal(init_unit(&other, &fake.modbus, &config, 1000, 0),
+                         is_good ? FATHOM_OK : FATHOM_ERR_ARGUMENT);
         if (is_good) assert_int_equal(other.address, address != 0 ? address : 1);
         config.address_zero = true;
-        assert_int_equal(init_unit(&other, &config, 1000, 0), address == 0 ? FATHOM_OK : FATHOM_ERR_ARGUMENT);
+        assert_int_equal(init_unit(&other, &fake.modbus, &config, 1000, 0),
+                         address == 0 ? FATHOM_OK : FATHOM_ERR_ARGUMENT);
         if (address == 0) assert_int_equal(other.address, 0);
     }
     assert_int_equal(fake.polls + fake.submits, 0);

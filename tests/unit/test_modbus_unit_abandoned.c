@@ -30,13 +30,13 @@ static fathom_status_t look(const fathom_modbus_setting_t *setting, uint32_t *is
 static const fathom_modbus_setting_t move = {look, &unit, {NULL, 0x0200, OTHER, 6, 0xC8}, OTHER, NULL, OTHER};
 static const fathom_modbus_setting_t other_setting = {look, &unit, {NULL, 0x0201, 1, 6, 0xC9}, 1, NULL, 0};
 
-static const fathom_modbus_config_t config = {.transport = &fake.modbus, .address = UNIT};
+static const fathom_modbus_config_t config = {.address = UNIT};
 
 static int set_up(void **state)
 {
     desk_begin(0xFFFFF000u); /* the clock wraps soon */
     memset(&unit, 0x5A, sizeof unit);
-    assert_int_equal(init_unit(&unit, &config, TIMEOUT_US, 0), FATHOM_OK);
+    assert_int_equal(init_unit(&unit, &fake.modbus, &config, TIMEOUT_US, 0), FATHOM_OK);
     return 0;
 }
 
@@ -324,15 +324,15 @@ TEST(a_transport_that_cannot_tell_what_it_has_is_trusted)
         PENDS(asks(&measure));
     }
     measures();
-    assert_int_equal(init_unit(&unit, &config, TIMEOUT_US, 0), FATHOM_OK);
+    assert_int_equal(init_unit(&unit, &fake.modbus, &config, TIMEOUT_US, 0), FATHOM_OK);
 }
 
 TEST(a_second_init_is_refused_while_the_request_is_queued_and_changes_nothing)
 {
     PENDS(asks(&measure));
     const fathom_modbus_unit_t before = unit;
-    assert_int_equal(init_unit(&unit, &config, TIMEOUT_US, 0), FATHOM_ERR_BUSY);
+    assert_int_equal(init_unit(&unit, &fake.modbus, &config, TIMEOUT_US, 0), FATHOM_ERR_BUSY);
     assert_memory_equal(&unit, &before, sizeof unit);
     measures();
-    assert_int_equal(init_unit(&unit, &config, TIMEOUT_US, 0), FATHOM_OK);
+    assert_int_equal(init_unit(&unit, &fake.modbus, &config, TIMEOUT_US, 0), FATHOM_OK);
 }

@@ -15,9 +15,9 @@ static void set_up_at(uint32_t now_us)
 {
     desk_begin(now_us);
     memset(&unit, 0x5A, sizeof unit);
-    assert_int_equal(init_unit(&unit, &(fathom_modbus_config_t){.transport = &fake.modbus, .address = UNIT},
-                               TIMEOUT_US, PACE_US),
-                     FATHOM_OK);
+    assert_int_equal(
+        init_unit(&unit, &fake.modbus, &(fathom_modbus_config_t){.address = UNIT}, TIMEOUT_US, PACE_US),
+        FATHOM_OK);
 }
 
 static int set_up(void **state)

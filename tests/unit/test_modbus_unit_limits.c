@@ -19,9 +19,8 @@ static void set_up_on(uint8_t fill)
 {
     fake_modbus_init(&fake);
     memset(&unit, fill, sizeof unit);
-    assert_int_equal(
-        init_unit(&unit, &(fathom_modbus_config_t){.transport = &fake.modbus, .address = UNIT}, 100000, 0),
-        FATHOM_OK);
+    assert_int_equal(init_unit(&unit, &fake.modbus, &(fathom_modbus_config_t){.address = UNIT}, 100000, 0),
+                     FATHOM_OK);
 }
 
 static int set_up(void **state)

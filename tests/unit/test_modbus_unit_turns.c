@@ -25,9 +25,9 @@ static int set_up(void **state)
 {
     fake_modbus_init(&fake);
     memset(&unit, 0, sizeof unit);
-    assert_int_equal(init_unit(&unit, &(fathom_modbus_config_t){.transport = &fake.modbus, .address = UNIT},
-                               TIMEOUT_US, PACE_US),
-                     FATHOM_OK);
+    assert_int_equal(
+        init_unit(&unit, &fake.modbus, &(fathom_modbus_config_t){.address = UNIT}, TIMEOUT_US, PACE_US),
+        FATHOM_OK);
     return 0;
 }
 

@@ -35,13 +35,16 @@ typedef struct {
     call_t commands[CALLS];
 } driver_t;
 
-#define DRIVER(name)                                                                                         \
+#define PARAMETERS(...) __VA_ARGS__
+
+/* A driver, with the parameters of its init without which it is refused. */
+#define DRIVER(name, parameters)                                                                             \
     static fathom_##name##_t name;                                                                           \
     static fathom_sensor_t name##_sensor(void) { return fathom_##name##_sensor(&name); }                     \
     static fathom_status_t name##_refused(void)                                                              \
     {                                                                                                        \
         static const fathom_##name##_config_t nothing;                                                       \
-        return fathom_##name##_init(&name, &nothing);                                                        \
+        return fathom_##name##_init(&name, PARAMETERS parameters, &nothing);                                 \
     }
 
 #define ITSELF(name)                                                                                         \
@@ -60,17 +63,17 @@ static fathom_hps167s_configuration_t configuration;
 static fathom_hps167s_details_t details;
 static fathom_hps167s_temperature_t temperature;
 
-DRIVER(a05_auto)
-DRIVER(a05_dyp)
-DRIVER(a05_modbus)
-DRIVER(a05_relay)
-DRIVER(a16_auto)
-DRIVER(a16_controlled)
-DRIVER(a16_modbus)
-DRIVER(a16_pwm)
-DRIVER(a16_switch)
-DRIVER(hps167s)
-DRIVER(hps167s_auto)
+DRIVER(a05_auto, (NULL))
+DRIVER(a05_dyp, (NULL))
+DRIVER(a05_modbus, (NULL))
+DRIVER(a05_relay, (NULL, NULL))
+DRIVER(a16_auto, (NULL))
+DRIVER(a16_controlled, (NULL, NULL))
+DRIVER(a16_modbus, (NULL))
+DRIVER(a16_pwm, (NULL, NULL, NULL))
+DRIVER(a16_switch, (NULL, NULL))
+DRIVER(hps167s, (NULL))
+DRIVER(hps167s_auto, (NULL))
 
 /* ---- the commands ---- */
 
@@ -225,15 +228,8 @@ TEST(a_transport_over_a_zeroed_line_is_refused)
     static fathom_line_t line;
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
     const fathom_modbus_t dyp = fathom_dyp_client(&line);
-    assert_int_equal(
-        fathom_hps167s_init(&hps167s, &(fathom_hps167s_config_t){.modbus = {.transport = &modbus}}),
-        FATHOM_ERR_ARGUMENT);
-    assert_int_equal(
-        fathom_a16_modbus_init(&a16_modbus, &(fathom_a16_modbus_config_t){.modbus = {.transport = &modbus}}),
-        FATHOM_ERR_ARGUMENT);
-    assert_int_equal(
-        fathom_a05_modbus_init(&a05_modbus, &(fathom_a05_modbus_config_t){.modbus = {.transport = &modbus}}),
-        FATHOM_ERR_ARGUMENT);
-    assert_int_equal(fathom_a05_dyp_init(&a05_dyp, &(fathom_a05_dyp_config_t){.modbus = {.transport = &dyp}}),
-                     FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_hps167s_init(&hps167s, &modbus, NULL), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_a16_modbus_init(&a16_modbus, &modbus, NULL), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_a05_modbus_init(&a05_modbus, &modbus, NULL), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_a05_dyp_init(&a05_dyp, &dyp, NULL), FATHOM_ERR_ARGUMENT);
 }

@@ -31,7 +31,7 @@ static int set_up_uart(void **state)
     set_up_meter(state);
     uart = stand.fake.uart;
     uart.set_break = counted_set_break;
-    stand.config.trigger = fathom_output_break(&uart);
+    stand.trigger = fathom_output_break(&uart);
     set_breaks = 0;
     start_meter();
     return 0;

@@ -26,7 +26,7 @@ static int set_up_uart(void **state)
 {
     set_up_pin(state);
     uart = stand.fake.uart;
-    stand.config.trigger = fathom_output_break(&uart);
+    stand.trigger = fathom_output_break(&uart);
     start_meter();
     return 0;
 }
@@ -123,7 +123,8 @@ TEST(an_a16_with_short_pulses_is_unknown)
     const fathom_a16_pwm_config_t config = {.pulse = stand.config};
     fathom_sample_t sample;
     response_with(110 * MS, 1500);
-    assert_int_equal(fathom_a16_pwm_init(&a16, &config), FATHOM_OK);
+    assert_int_equal(fathom_a16_pwm_init(&a16, stand.capture, stand.clock, &stand.trigger, &config),
+                     FATHOM_OK);
     const fathom_sensor_t sensor = fathom_a16_pwm_sensor(&a16);
     fathom_status_t status = FATHOM_PENDING;
     for (unsigned polls = 0; polls != 1000 && status == FATHOM_PENDING; polls++) {
@@ -251,7 +252,7 @@ TEST(init_forgets_the_pulse_of_the_cycle_before)
     run_to_trigger();
     pulse_in(5 * MS, 10 * MS);
     stand.fake.now_us += 20 * MS;
-    assert_int_equal(fathom_pulse_init(&stand.meter, &stand.config), FATHOM_OK);
+    assert_int_equal(init_meter(), FATHOM_OK);
     run_meter(240 * MS);
     expect_readings(0);
     expect_no_responses(1);
@@ -350,7 +351,8 @@ static fathom_status_t wait_for_a16(uint8_t kind)
     static fathom_a16_pwm_t a16;
     const fathom_a16_pwm_config_t config = {.pulse = stand.config};
     fathom_sample_t sample;
-    assert_int_equal(fathom_a16_pwm_init(&a16, &config), FATHOM_OK);
+    assert_int_equal(fathom_a16_pwm_init(&a16, stand.capture, stand.clock, &stand.trigger, &config),
+                     FATHOM_OK);
     const fathom_sensor_t sensor = fathom_a16_pwm_sensor(&a16);
     fathom_status_t status = FATHOM_PENDING;
     for (unsigned n = 0; n != 5; n++) status = fathom_wait(&sensor, &sample, sleep_for, NULL);
@@ -393,11 +395,11 @@ TEST(an_init_that_fails_leaves_the_meter_zeroed)
     const fathom_pulse_meter_t zeroed = {0};
     const fathom_pin_t input = {NULL, NULL, NULL};
     memset(&stand.meter, 0x5A, sizeof stand.meter);
-    stand.config.trigger = fathom_output_pin(&input);
-    assert_int_equal(fathom_pulse_init(&stand.meter, &stand.config), FATHOM_ERR_UNSUPPORTED);
+    stand.trigger = fathom_output_pin(&input);
+    assert_int_equal(init_meter(), FATHOM_ERR_UNSUPPORTED);
     assert_memory_equal(&stand.meter, &zeroed, sizeof zeroed);
-    stand.config.trigger = fathom_output_pin(NULL);
-    assert_int_equal(fathom_pulse_init(&stand.meter, &stand.config), FATHOM_ERR_UNSUPPORTED);
-    stand.config.trigger = fathom_output_break(NULL);
-    assert_int_equal(fathom_pulse_init(&stand.meter, &stand.config), FATHOM_ERR_UNSUPPORTED);
+    stand.trigger = fathom_output_pin(NULL);
+    assert_int_equal(init_meter(), FATHOM_ERR_UNSUPPORTED);
+    stand.trigger = fathom_output_break(NULL);
+    assert_int_equal(init_meter(), FATHOM_ERR_UNSUPPORTED);
 }

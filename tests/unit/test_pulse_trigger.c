@@ -187,7 +187,7 @@ TEST(the_period_of_a_trigger_is_longer_than_its_low_time)
 
 static void trigger_by_break(void)
 {
-    stand.config.trigger = fathom_output_break(&stand.fake.uart);
+    stand.trigger = fathom_output_break(&stand.fake.uart);
     start_meter();
 }
 
@@ -293,28 +293,25 @@ TEST(a_capture_that_fails_is_said_by_every_poll_until_it_works_again)
 
 /* ---- setting up ---- */
 
-static void expect_init(fathom_status_t status)
-{
-    assert_int_equal(fathom_pulse_init(&stand.meter, &stand.config), status);
-}
+static void expect_init(fathom_status_t status) { assert_int_equal(init_meter(), status); }
 
 TEST(a_config_without_what_it_needs_is_refused)
 {
-    const fathom_pulse_config_t good = stand.config;
+    const pulse_rig_t good = stand;
     fathom_uart_t uart = stand.fake.uart;
-    stand.config.clock = NULL;
+    stand.clock = NULL;
     expect_init(FATHOM_ERR_ARGUMENT);
-    stand.config = good;
-    stand.config.capture = NULL;
+    stand.clock = good.clock;
+    stand.capture = NULL;
     expect_init(FATHOM_ERR_ARGUMENT);
-    stand.config = good;
-    stand.config.trigger.set = NULL;
+    stand.capture = good.capture;
+    stand.trigger.set = NULL;
     expect_init(FATHOM_ERR_ARGUMENT);
-    stand.config.trigger = fathom_output_break(&uart);
+    stand.trigger = fathom_output_break(&uart);
     expect_init(FATHOM_OK);
     uart.set_break = NULL;
     expect_init(FATHOM_ERR_UNSUPPORTED);
-    stand.config = good;
+    stand.trigger = good.trigger;
     stand.config.noise_us = 50000;
     stand.config.no_target_us = 50000;
     expect_init(FATHOM_ERR_ARGUMENT);

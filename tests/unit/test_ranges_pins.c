@@ -26,6 +26,9 @@ static fake_pin_t pin;
 static fathom_pin_t input;
 static uint16_t window[FATHOM_MEDIAN_MAX_COUNT];
 
+static fathom_output_t output;
+static const fathom_capture_t *capture;
+static const fathom_clock_t *clock_of_all;
 static fathom_a16_pwm_config_t pwm;
 static fathom_a16_switch_config_t of_switch;
 static fathom_a05_relay_config_t relay;
@@ -46,10 +49,26 @@ static union {
     fathom_median_t median;
 } driver;
 
-static fathom_status_t init_pwm(void) { return fathom_a16_pwm_init(&driver.pwm, &pwm); }
-static fathom_status_t init_pulse(void) { return fathom_pulse_init(&driver.pwm.meter, &pwm.pulse); }
-static fathom_status_t init_switch(void) { return fathom_a16_switch_init(&driver.of_switch, &of_switch); }
-static fathom_status_t init_relay(void) { return fathom_a05_relay_init(&driver.relay, &relay); }
+static fathom_status_t init_pwm(void)
+{
+    return fathom_a16_pwm_init(&driver.pwm, capture, clock_of_all, &output, &pwm);
+}
+static fathom_status_t init_pulse(void)
+{
+    fathom_pulse_meter_t *const meter = &driver.pwm.meter;
+    meter->capture = capture;
+    meter->trigger.clock = clock_of_all;
+    meter->trigger.output = output;
+    return fathom_pulse_init(meter, &pwm.pulse);
+}
+static fathom_status_t init_switch(void)
+{
+    return fathom_a16_switch_init(&driver.of_switch, &input, clock_of_all, &of_switch);
+}
+static fathom_status_t init_relay(void)
+{
+    return fathom_a05_relay_init(&driver.relay, &input, clock_of_all, &relay);
+}
 static fathom_status_t init_debounce(void) { return fathom_debounce_init(&driver.debounce, &debounce); }
 static fathom_status_t init_rule(void) { return fathom_a05_relay_rule_init(&driver.rule, &rule); }
 static fathom_status_t init_alarm(void) { return fathom_alarm_init(&driver.alarm, &alarm); }
@@ -79,10 +98,12 @@ static int set_up(void **state)
     fake_init(&fake);
     fake_pin_init(&pin, &fake);
     input = (fathom_pin_t){NULL, get, NULL};
-    pwm = (fathom_a16_pwm_config_t){
-        .pulse = {.clock = &fake.clock, .capture = &pin.capture, .trigger = fathom_output_pin(&pin.trigger)}};
-    of_switch = (fathom_a16_switch_config_t){.pin = &input, .clock = &fake.clock};
-    relay = (fathom_a05_relay_config_t){.pin = &input, .clock = &fake.clock};
+    output = fathom_output_pin(&pin.trigger);
+    capture = &pin.capture;
+    clock_of_all = &fake.clock;
+    pwm = (fathom_a16_pwm_config_t){0};
+    of_switch = (fathom_a16_switch_config_t){0};
+    relay = (fathom_a05_relay_config_t){0};
     debounce = (fathom_debounce_config_t){0};
     rule = (fathom_a05_relay_rule_config_t){0};
     alarm = (fathom_alarm_config_t){.when = FATHOM_NEAR,
@@ -255,17 +276,16 @@ TEST(an_alarm_of_something_far_has_its_thresholds_the_other_way_round)
 TEST(a_missing_function_is_refused)
 {
     const fathom_clock_t clock = {NULL, NULL};
-    fathom_capture_t capture = pin.capture;
-    capture.arm = NULL;
-    pwm.pulse.capture = &capture;
+    fathom_capture_t partial = pin.capture;
+    partial.arm = NULL;
+    capture = &partial;
     assert_int_equal(init_pulse(), FATHOM_ERR_ARGUMENT);
-    capture = pin.capture;
-    capture.take = NULL;
+    partial = pin.capture;
+    partial.take = NULL;
     assert_int_equal(init_pulse(), FATHOM_ERR_ARGUMENT);
-    pwm.pulse.capture = &pin.capture;
-    pwm.pulse.clock = &clock;
+    capture = &pin.capture;
+    clock_of_all = &clock;
     assert_int_equal(init_pulse(), FATHOM_ERR_ARGUMENT);
-    of_switch.clock = &clock;
     assert_int_equal(init_switch(), FATHOM_ERR_ARGUMENT);
     median.window = NULL;
     assert_int_equal(init_median(), FATHOM_ERR_ARGUMENT);

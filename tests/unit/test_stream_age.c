@@ -122,8 +122,7 @@ static fathom_a16_auto_t a16;
 static void begin_a16(void)
 {
     rig_start(start_us);
-    const fathom_a16_auto_config_t config = {.line = &rig.line};
-    assert_int_equal(fathom_a16_auto_init(&a16, &config), FATHOM_OK);
+    assert_int_equal(fathom_a16_auto_init(&a16, &rig.line, NULL), FATHOM_OK);
     rig.sensor = fathom_a16_auto_sensor(&a16);
 }
 

@@ -115,7 +115,7 @@ static outcome_t run(uint32_t pause_us, uint32_t loop_us, unsigned lose, unsigne
     world.flip = flip;
     world.lost = LENGTH;
     assert_int_equal(fathom_line_init(&line, &line_parts), FATHOM_OK);
-    assert_int_equal(fathom_a05_auto_init(&sensor, &(fathom_a05_auto_config_t){.line = &line}), FATHOM_OK);
+    assert_int_equal(fathom_a05_auto_init(&sensor, &line, NULL), FATHOM_OK);
     const fathom_sensor_t handle = fathom_a05_auto_sensor(&sensor);
     while (world.sent < frames(loop_us)) {
         fathom_sample_t sample;

@@ -48,12 +48,10 @@ TEST(over_modbus_reads_are_repeated_and_writes_are_not)
         uint8_t retries[7];
         memset(retries, 0xFF, sizeof retries);
         fake_modbus_init(&fake);
-        const fathom_a16_modbus_config_t a16_config = {.modbus.transport = &fake.modbus,
-                                                       .modbus.retries = RETRIES};
-        const fathom_a05_modbus_config_t a05_config = {.modbus.transport = &fake.modbus,
-                                                       .modbus.retries = RETRIES};
-        assert_int_equal(fathom_a16_modbus_init(&a16, &a16_config), FATHOM_OK);
-        assert_int_equal(fathom_a05_modbus_init(&a05, &a05_config), FATHOM_OK);
+        const fathom_a16_modbus_config_t a16_config = {.modbus.retries = RETRIES};
+        const fathom_a05_modbus_config_t a05_config = {.modbus.retries = RETRIES};
+        assert_int_equal(fathom_a16_modbus_init(&a16, &fake.modbus, &a16_config), FATHOM_OK);
+        assert_int_equal(fathom_a05_modbus_init(&a05, &fake.modbus, &a05_config), FATHOM_OK);
         for (unsigned asks = 0; asks != 3 && asked(settings[i], retries) == 3; asks++) {
             if (fake.request->message.head[0] == 1)
                 fake_modbus_response(&fake, one, 1);
@@ -83,10 +81,10 @@ TEST(over_55_aa_requests_are_repeated_and_the_command_to_all_is_not)
 {
     static fathom_a05_dyp_t dyp;
     const fathom_modbus_t transport = fathom_dyp_client(&bench.line);
-    const fathom_a05_dyp_config_t config = {.modbus.transport = &transport, .modbus.retries = RETRIES};
+    const fathom_a05_dyp_config_t config = {.modbus.retries = RETRIES};
     fathom_status_t status = FATHOM_PENDING;
     bool is_answered = false;
-    assert_int_equal(fathom_a05_dyp_init(&dyp, &config), FATHOM_OK);
+    assert_int_equal(fathom_a05_dyp_init(&dyp, &transport, &config), FATHOM_OK);
     for (unsigned ms = 0; status == FATHOM_PENDING; ms++) {
         assert_true(ms < 30000);
         bench.fake.now_us += 1000;

@@ -47,9 +47,7 @@ void setup()
     line_parts.frame_size = sizeof frame;
     if (fathom_line_init_listening(&line, &line_parts) != FATHOM_OK) stop(F("wrong config of the line"));
 
-    fathom_a05_auto_config_t config = {};
-    config.line = &line;
-    if (fathom_a05_auto_init(&bumper, &config) != FATHOM_OK) stop(F("wrong config of the sensor"));
+    if (fathom_a05_auto_init(&bumper, &line, NULL) != FATHOM_OK) stop(F("wrong config of the sensor"));
     sensor = fathom_a05_auto_sensor(&bumper);
 }
 

@@ -31,11 +31,9 @@ void setup()
     attachInterrupt(digitalPinToInterrupt(echo_pin), echo_changed, CHANGE);
     capture = echo.capture();
 
-    fathom_a16_pwm_config_t config = {};
-    config.pulse.clock = &fathom::arduino::clock;
-    config.pulse.capture = &capture;
-    config.pulse.trigger = fathom_output_pin(&trigger);
-    if (fathom_a16_pwm_init(&tank, &config) != FATHOM_OK) stop(F("wrong config of the sensor"));
+    const fathom_output_t output = fathom_output_pin(&trigger);
+    if (fathom_a16_pwm_init(&tank, &capture, &fathom::arduino::clock, &output, NULL) != FATHOM_OK)
+        stop(F("wrong config of the sensor"));
     sensor = fathom_a16_pwm_sensor(&tank);
 }
 

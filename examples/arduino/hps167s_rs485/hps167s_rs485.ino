@@ -61,9 +61,7 @@ void setup()
     if (fathom_line_init(&line, &line_parts) != FATHOM_OK) stop(F("wrong config of the line"));
     modbus = fathom_modbus_client(&line);
 
-    fathom_hps167s_config_t config = {};
-    config.modbus.transport = &modbus;
-    if (fathom_hps167s_init(&gate, &config) != FATHOM_OK) stop(F("wrong config of the sensor"));
+    if (fathom_hps167s_init(&gate, &modbus, NULL) != FATHOM_OK) stop(F("wrong config of the sensor"));
     sensor = fathom_hps167s_sensor(&gate);
 }
 

@@ -31,11 +31,9 @@ void reader_end_break(channel_t *channel)
     (void)fathom_line_break(&channel->line, false); /* a port that cannot end a break holds none */
 }
 
-fathom_modbus_config_t reader_config(const channel_t *channel, const reader_settings_t *settings,
-                                     const fathom_modbus_t *transport)
+fathom_modbus_config_t reader_config(const channel_t *channel, const reader_settings_t *settings)
 {
     return (fathom_modbus_config_t){
-        .transport = transport,
         .line_settings = line_of(channel, settings),
         .period_us = settings->period_us,
         .timeout_us = settings->timeout_us,

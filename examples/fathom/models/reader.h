@@ -133,8 +133,7 @@ bool reader_has_break(reader_t *reader, const channel_t *channel);
 void reader_end_break(channel_t *channel);
 
 /* What all that are asked have in common. Address 0 is the driver's to refuse, where the device cannot be there. */
-fathom_modbus_config_t reader_config(const channel_t *channel, const reader_settings_t *settings,
-                                     const fathom_modbus_t *transport);
+fathom_modbus_config_t reader_config(const channel_t *channel, const reader_settings_t *settings);
 
 /* What all contacts have in common: how often they are looked at, and the last step of a reader_init_t, when the driver
  * has been begun. True. */

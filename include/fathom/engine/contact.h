@@ -139,6 +139,52 @@ void fathom_contact_set_near_is_high(fathom_contact_t *contact, bool near_is_hig
 void fathom_contact_set_hold(fathom_contact_t *contact, bool hold);
 
 /**
+ * @brief Polls a driver of unknown type: the `poll` of its fathom_sensor_t. Programs call fathom_contact_poll().
+ *
+ * @param ctx     The driver, a fathom_contact_t.
+ * @param sample  Written with FATHOM_OK only.
+ * @return As fathom_contact_poll().
+ */
+fathom_status_t fathom_contact_sensor_poll(void *ctx, fathom_sample_t *sample);
+
+/**
+ * @brief Returns when a driver of unknown type is due: the `due_us` of its fathom_sensor_t.
+ *
+ * @param ctx  The driver, a fathom_contact_t.
+ * @return As fathom_contact_due_us().
+ */
+uint32_t fathom_contact_sensor_due_us(void *ctx);
+
+/**
+ * @brief Polls the driver as fathom_poll() does, without a fathom_sensor_t.
+ *
+ * A program that calls only this function does not link the part of the driver that fathom_due_us() needs.
+ *
+ * @param contact  The driver.
+ * @param sample   Written with FATHOM_OK only.
+ * @retval FATHOM_OK            `*sample` is a new reading. Call again at once for the next one.
+ * @retval FATHOM_PENDING       There is nothing new.
+ * @retval FATHOM_ERR_ARGUMENT  The initialisation failed or never ran, and the memory is zeroed.
+ * @return Other errors: an attempt failed. This header lists them as errors of fathom_poll().
+ */
+static inline fathom_status_t fathom_contact_poll(fathom_contact_t *contact, fathom_sample_t *sample)
+{
+    return fathom_contact_sensor_poll(contact, sample);
+}
+
+/**
+ * @brief Returns the time in microseconds until the driver must be polled again if the pin does not change.
+ *
+ * The result is that of fathom_due_us(), without a fathom_sensor_t. It is 0 for a driver in zeroed memory.
+ *
+ * @param contact  The driver.
+ */
+static inline uint32_t fathom_contact_due_us(fathom_contact_t *contact)
+{
+    return fathom_contact_sensor_due_us(contact);
+}
+
+/**
  * @brief Returns the sensor for fathom_poll() and fathom_due_us(). Each poll is one look, and one poll of the guard.
  *
  * - FATHOM_OK: a sample. `raw` is the level, 1 for high. `time_us` is the first look that saw this level if the kind
@@ -152,7 +198,10 @@ void fathom_contact_set_hold(fathom_contact_t *contact, bool hold);
  *
  * A cut wire is no error: it reads as the level that the board pulls the pin to.
  */
-fathom_sensor_t fathom_contact_sensor(fathom_contact_t *contact);
+static inline fathom_sensor_t fathom_contact_sensor(fathom_contact_t *contact)
+{
+    return fathom_sensor_make(fathom_contact_sensor_poll, fathom_contact_sensor_due_us, contact);
+}
 
 #ifdef __cplusplus
 }

@@ -36,11 +36,11 @@ extern "C" {
  * No function waits. The row `a16_pwm_edges` of include/COST.md has the size of a driver with this file.
  *
  * @code
- * static fathom_edges_t edges;                              // the interrupt calls fathom_edges_feed(&edges, level,
- * time) static fathom_capture_t capture;                          // must stay valid as long as the driver
+ * static fathom_edges_t edges;                              // the interrupt calls fathom_edges_feed()
+ * static fathom_capture_t capture;                          // must stay valid as long as the driver
  * fathom_edges_init(&edges, &pin);
  * capture = fathom_edges_capture(&edges);
- * config.pulse.capture = &capture;
+ * fathom_a16_pwm_init(&a16, &capture, &clock, &trigger, NULL);
  * @endcode
  *
  * No lock is needed, also on 8-bit machines. There is one writer (the interrupt, or several interrupts of one priority)
@@ -100,7 +100,7 @@ void fathom_edges_init(fathom_edges_t *edges, const fathom_pin_t *pin);
  */
 void fathom_edges_feed(fathom_edges_t *edges, bool high, uint32_t time_us);
 
-/** @brief Returns the capture for a fathom_pulse_config_t. Its functions must be called from the main loop only. */
+/** @brief Returns the capture for fathom_a16_pwm_init(). Its functions must be called from the main loop only. */
 fathom_capture_t fathom_edges_capture(fathom_edges_t *edges);
 
 /** @brief Returns true if the next pulse would find no free place. For the writer. */

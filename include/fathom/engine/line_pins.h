@@ -18,7 +18,8 @@ extern "C" {
  * line must stay valid as long as the result is used.
  *
  * @code
- * const fathom_a16_controlled_config_t config = {.line = &line, .trigger = fathom_output_line_break(&line)};
+ * const fathom_output_t trigger = fathom_output_line_break(&line);
+ * fathom_a16_controlled_init(&a16, &line, &trigger, NULL);
  *
  * static fathom_contact_guard_t guard;                      // must stay valid as long as the contact
  * guard = fathom_contact_line_guard(&line);

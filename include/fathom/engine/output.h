@@ -20,8 +20,9 @@ extern "C" {
  * it names.
  *
  * @code
- * config.trigger = fathom_output_pin(&pin);
- * static const fathom_a16_auto_config_t config = {.line = &line, .select = {fathom_output_set_pin, &pin}};
+ * const fathom_output_t trigger = fathom_output_pin(&pin);
+ * fathom_a16_controlled_init(&a16, &line, &trigger, NULL);
+ * static const fathom_a16_auto_config_t config = {.select = {fathom_output_set_pin, &pin}};
  * @endcode
  */
 

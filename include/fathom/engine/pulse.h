@@ -69,16 +69,8 @@ extern "C" {
 /** A pulse that ended longer ago than this is no reading: 2 s, and half a second for a slow loop. */
 #define FATHOM_PULSE_STALE_US 2500000uL
 
-/**
- * @brief The configuration of a meter. A member that is 0 takes its default. `clock`, `capture` and `trigger.ctx` must
- * stay valid until fathom_pulse_deinit().
- */
+/** @brief The configuration of a meter: its times. A member that is 0 takes its default. */
 typedef struct {
-    const fathom_clock_t *clock; /**< Required, with `now_us`. */
-    const fathom_capture_t
-        *capture; /**< Captures the sensor's output. Required, with `arm` and `take`; not shared. */
-    /** Drives the sensor's input: a pin, or the break of a UART that has no other use. Required. */
-    fathom_output_t trigger;
     /** Time between two falling edges, at least: 221000 us..FATHOM_MAX_DURATION_US; 0 selects 221000 us. The period
      * "must be greater than 220ms" (A16 1(2)), and a clock may count in milliseconds. */
     uint32_t cycle_us;
@@ -103,29 +95,39 @@ typedef struct {
     uint8_t kind; /**< FATHOM_TARGET, FATHOM_NO_TARGET, FATHOM_FAULT or FATHOM_UNKNOWN. */
 } fathom_pulse_reading_t;
 
-/** @brief A meter. The caller owns the memory. Members without a remark may be read only. */
+/**
+ * @brief A meter. The caller owns the memory, and sets `trigger.output`, `trigger.clock` and `capture` before
+ * fathom_pulse_init(). Other members without a remark may be read only.
+ */
 typedef struct {
-    fathom_trigger_t trigger;        /**< Makes the edges. */
-    const fathom_capture_t *capture; /**< Invariant: NULL unless the initialisation succeeded. */
-    uint32_t no_target_us;           /**< As in the configuration, with the default filled in. */
-    uint32_t stuck_us;               /**< As in the configuration, with the default filled in. */
-    uint16_t noise_us;               /**< As in the configuration, with the default filled in. */
-    uint16_t short_us;               /**< Longest pulse of this cycle of 100 us..noise_us; 0: none. */
-    uint16_t noises; /**< Pulses shorter than `noise_us`; stops at 65535. The caller may set it to 0. */
-    uint16_t stales; /**< Pulses that were too old; stops at 65535. The caller may set it to 0. */
-    bool is_waiting; /**< A cycle has no outcome yet. */
+    /** Makes the edges. `trigger.output` drives the input of the sensor: a pin, or the break of a UART that has no other
+     * use. `trigger.clock` is the clock. What they point to must stay valid until fathom_pulse_deinit(). */
+    fathom_trigger_t trigger;
+    /** Captures the output of the sensor, with `arm` and `take`; not shared. Must stay valid until
+     * fathom_pulse_deinit(). Invariant: NULL after an initialisation that failed. */
+    const fathom_capture_t *capture;
+    uint32_t no_target_us; /**< As in the configuration, with the default filled in. */
+    uint32_t stuck_us;     /**< As in the configuration, with the default filled in. */
+    uint16_t noise_us;     /**< As in the configuration, with the default filled in. */
+    uint16_t short_us;     /**< Longest pulse of this cycle of 100 us..noise_us; 0: none. */
+    uint16_t noises;       /**< Pulses shorter than `noise_us`; stops at 65535. The caller may set it to 0. */
+    uint16_t stales;       /**< Pulses that were too old; stops at 65535. The caller may set it to 0. */
+    bool is_waiting;       /**< A cycle has no outcome yet. */
 } fathom_pulse_meter_t;
 
 /**
  * @brief Initialises a meter and makes the trigger high. The first falling edge may come `low_us` later.
  *
- * If the function fails, the meter is zeroed. The function may be called again at any time; it discards the cycle in
- * progress.
+ * If the function fails, the meter is zeroed: set its three members again before the next try. The function may be
+ * called again at any time; it discards the cycle in progress.
  *
- * @param meter   The meter. Must stay valid until fathom_pulse_deinit().
- * @param config  The configuration. Not used after the call.
+ * @param meter   The meter, with its three members set and all others 0 before the first call. Must stay valid until
+ *                fathom_pulse_deinit().
+ * @param config  The times. Not used after the call. NULL keeps the times of the meter, which are the defaults if the
+ *                meter has none.
  * @retval FATHOM_OK               The meter is ready.
- * @retval FATHOM_ERR_ARGUMENT     A required member is missing, or a member is outside its range.
+ * @retval FATHOM_ERR_ARGUMENT     The capture, the clock or the trigger, or one of their functions, is NULL, or a member
+ *                                 of the configuration is outside its range.
  * @retval FATHOM_ERR_UNSUPPORTED  The UART has no `set_break`, or the pin no `set`.
  */
 fathom_status_t fathom_pulse_init(fathom_pulse_meter_t *meter, const fathom_pulse_config_t *config);

@@ -25,8 +25,7 @@ extern "C" {
  * @code
  * static fathom_a05_auto_t bumper;
  * fathom_line_init_listening(&line, &parts);         // line.h: a line without requests
- * const fathom_a05_auto_config_t config = {.line = &line};
- * fathom_a05_auto_init(&bumper, &config);
+ * fathom_a05_auto_init(&bumper, &line, NULL);        // all four probes
  * const fathom_sensor_t sensor = fathom_a05_auto_sensor(&bumper);
  *
  * fathom_sample_t near;                              // in the loop: each probe is one sample
@@ -76,13 +75,6 @@ extern "C" {
 
 /** @brief Configuration. Read only during fathom_a05_auto_init(). A member that is 0 takes its default. */
 typedef struct {
-    /**
-     * @brief The initialised line, whose listener the driver becomes. Required.
-     *
-     * Must stay valid as long as the driver. The line may also carry Modbus, which stops the automatic output.
-     */
-    fathom_line_t *line;
-
     /**
      * @brief Time without a frame after which fathom_poll() returns an error, in microseconds: 1 to 2^31 - 1. 0 selects
      * 2 s.
@@ -147,14 +139,18 @@ typedef struct {
  * @brief Initialises a driver and makes it the listener of the line. It does not change the level of RX.
  *
  * @param sensor  The driver, in any memory. Must stay valid until fathom_a05_auto_deinit().
+ * @param line    The initialised line, whose listener the driver becomes. It may also carry Modbus, which stops the
+ *                automatic output. Must stay valid until fathom_a05_auto_deinit().
  * @param config  The config. Read only during the call; what it points to must stay valid as long as the driver.
+ *                NULL selects all defaults.
  * @retval FATHOM_OK            The driver listens. Next, pass fathom_a05_auto_sensor() to fathom_poll().
  * @retval FATHOM_ERR_ARGUMENT  `line` is NULL or not initialised, `stale_us` is above 2^31 - 1, `gap_us` is 1 to 1041,
  *                              `min_mm` is above `max_mm`, a meaning does not exist, or `probes` is above 15. The
  *                              driver is zeroed.
  * @retval FATHOM_ERR_BUSY      The line has another listener, which stays. The driver is zeroed.
  */
-fathom_status_t fathom_a05_auto_init(fathom_a05_auto_t *sensor, const fathom_a05_auto_config_t *config);
+fathom_status_t fathom_a05_auto_init(fathom_a05_auto_t *sensor, fathom_line_t *line,
+                                     const fathom_a05_auto_config_t *config);
 
 /**
  * @brief Sets the RX pin for the values that the module is to send. Call it right before the module is powered.
@@ -184,8 +180,57 @@ fathom_status_t fathom_a05_auto_select(fathom_a05_auto_t *sensor, fathom_dyp_val
  */
 fathom_status_t fathom_a05_auto_deinit(fathom_a05_auto_t *sensor);
 
+/**
+ * @brief Polls a driver of unknown type: the `poll` of its fathom_sensor_t. Programs call fathom_a05_auto_poll().
+ *
+ * @param ctx     The driver, a fathom_a05_auto_t.
+ * @param sample  Written with FATHOM_OK only.
+ * @return As fathom_a05_auto_poll().
+ */
+fathom_status_t fathom_a05_auto_sensor_poll(void *ctx, fathom_sample_t *sample);
+
+/**
+ * @brief Returns when a driver of unknown type is due: the `due_us` of its fathom_sensor_t.
+ *
+ * @param ctx  The driver, a fathom_a05_auto_t.
+ * @return As fathom_a05_auto_due_us().
+ */
+uint32_t fathom_a05_auto_sensor_due_us(void *ctx);
+
+/**
+ * @brief Polls the driver as fathom_poll() does, without a fathom_sensor_t.
+ *
+ * A program that calls only this function does not link the part of the driver that fathom_due_us() needs.
+ *
+ * @param sensor  The driver.
+ * @param sample  Written with FATHOM_OK only.
+ * @retval FATHOM_OK            `*sample` is the reading of one probe. Call again at once for the next one.
+ * @retval FATHOM_PENDING       There is nothing new.
+ * @retval FATHOM_ERR_ARGUMENT  The initialisation failed or never ran, and the memory is zeroed.
+ * @return Other errors: an attempt failed. This header lists them as errors of fathom_poll().
+ */
+static inline fathom_status_t fathom_a05_auto_poll(fathom_a05_auto_t *sensor, fathom_sample_t *sample)
+{
+    return fathom_a05_auto_sensor_poll(sensor, sample);
+}
+
+/**
+ * @brief Returns the time in microseconds until the driver must be polled again if no byte arrives.
+ *
+ * The result is that of fathom_due_us(), without a fathom_sensor_t. It is 0 for a driver in zeroed memory.
+ *
+ * @param sensor  The driver.
+ */
+static inline uint32_t fathom_a05_auto_due_us(fathom_a05_auto_t *sensor)
+{
+    return fathom_a05_auto_sensor_due_us(sensor);
+}
+
 /** @brief Returns the sensor for fathom_poll() and fathom_due_us(), by value. It points to the driver. */
-fathom_sensor_t fathom_a05_auto_sensor(fathom_a05_auto_t *sensor);
+static inline fathom_sensor_t fathom_a05_auto_sensor(fathom_a05_auto_t *sensor)
+{
+    return fathom_sensor_make(fathom_a05_auto_sensor_poll, fathom_a05_auto_sensor_due_us, sensor);
+}
 
 #ifdef __cplusplus
 }

@@ -31,8 +31,7 @@ extern "C" {
  * static fathom_modbus_t transport;
  * static fathom_a05_dyp_t bumper;
  * transport = fathom_dyp_client(&line);              // dyp_client.h
- * const fathom_a05_dyp_config_t config = {.modbus = {.transport = &transport, .address = 1}};
- * fathom_a05_dyp_init(&bumper, &config);
+ * fathom_a05_dyp_init(&bumper, &transport, NULL);    // address 1, all four probes
  * const fathom_sensor_t sensor = fathom_a05_dyp_sensor(&bumper);
  *
  * fathom_sample_t near;                              // in the loop: each probe is one sample
@@ -64,7 +63,6 @@ typedef struct {
      *
      * | member         | range here                                      | 0 selects                        |
      * |----------------|-------------------------------------------------|----------------------------------|
-     * | `transport`    | made by fathom_dyp_client(); required           |                                  |
      * | `address`      | 1 to 254 (A05 2(3)2)                            | 1                                |
      * | `address_zero` | false                                           |                                  |
      * | `period_us`    | up to 2^31 - 1; at least that of the datasheet  | 250 ms, or 100 ms for one probe  |
@@ -105,17 +103,20 @@ typedef struct {
 /**
  * @brief Initialises a driver. Nothing is sent before the first poll.
  *
- * @param sensor  The driver, in any memory. Must stay valid until fathom_a05_dyp_deinit().
- * @param config  The config. Read only during the call; what it points to must stay valid as long as the driver.
+ * @param sensor     The driver, in any memory. Must stay valid until fathom_a05_dyp_deinit().
+ * @param transport  The transport, made by fathom_dyp_client(). Must stay valid as long as the driver.
+ * @param config     The config. Read only during the call; what it points to must stay valid as long as the driver.
+ *                   NULL selects all defaults.
  * @retval FATHOM_OK            The driver can be used. Next, pass fathom_a05_dyp_sensor() to fathom_poll().
- * @retval FATHOM_ERR_ARGUMENT  There is no transport or no clock, the address is 255, `address_zero` is true, `probes`
+ * @retval FATHOM_ERR_ARGUMENT  `transport` is NULL or has no clock, the address is 255, `address_zero` is true, `probes`
  *                              is above 15, `min_mm` is above `max_mm`, another member is outside its range, or the
  *                              frame buffer of the line has less than 13 bytes. The driver is zeroed: each poll and
  *                              command returns FATHOM_ERR_ARGUMENT.
  * @retval FATHOM_ERR_BUSY      A request of this driver is still queued. Nothing changed. Call fathom_a05_dyp_deinit()
  *                              first.
  */
-fathom_status_t fathom_a05_dyp_init(fathom_a05_dyp_t *sensor, const fathom_a05_dyp_config_t *config);
+fathom_status_t fathom_a05_dyp_init(fathom_a05_dyp_t *sensor, const fathom_modbus_t *transport,
+                                    const fathom_a05_dyp_config_t *config);
 
 /** @brief Cancels what is in progress. After this the memory is the caller's again. */
 void fathom_a05_dyp_deinit(fathom_a05_dyp_t *sensor);
@@ -126,8 +127,40 @@ static inline const fathom_modbus_unit_t *fathom_a05_dyp_unit(const fathom_a05_d
     return &sensor->base.unit;
 }
 
+/**
+ * @brief Polls the driver as fathom_poll() does, without a fathom_sensor_t.
+ *
+ * A program that calls only this function does not link the part of the driver that fathom_due_us() needs.
+ *
+ * @param sensor  The driver.
+ * @param sample  Written with FATHOM_OK only.
+ * @retval FATHOM_OK            `*sample` is the reading of one probe. Call again at once for the next one.
+ * @retval FATHOM_PENDING       There is nothing new.
+ * @retval FATHOM_ERR_ARGUMENT  The initialisation failed or never ran, and the memory is zeroed.
+ * @return Other errors: an attempt failed. This header lists them as errors of fathom_poll().
+ */
+static inline fathom_status_t fathom_a05_dyp_poll(fathom_a05_dyp_t *sensor, fathom_sample_t *sample)
+{
+    return fathom_dyp_modbus_sensor_poll(&sensor->base, sample);
+}
+
+/**
+ * @brief Returns the time in microseconds until the driver must be polled again if no byte arrives.
+ *
+ * The result is that of fathom_due_us(), without a fathom_sensor_t. It is 0 for a driver in zeroed memory.
+ *
+ * @param sensor  The driver.
+ */
+static inline uint32_t fathom_a05_dyp_due_us(fathom_a05_dyp_t *sensor)
+{
+    return fathom_dyp_modbus_sensor_due_us(&sensor->base);
+}
+
 /** @brief Returns the sensor for fathom_poll() and fathom_due_us(), by value. It points to the driver. */
-fathom_sensor_t fathom_a05_dyp_sensor(fathom_a05_dyp_t *sensor);
+static inline fathom_sensor_t fathom_a05_dyp_sensor(fathom_a05_dyp_t *sensor)
+{
+    return fathom_dyp_modbus_sensor(&sensor->base);
+}
 
 /**
  * @brief Reports to the driver that the sensor is powered now. Call it when the supply is switched on.

@@ -23,8 +23,8 @@ extern "C" {
  *
  * @code
  * static fathom_a05_modbus_t bumper;                 // `modbus` is a transport: see hps167s.h
- * const fathom_a05_modbus_config_t config = {.modbus = {.transport = &modbus, .address = 1}, .probes = 0x03};
- * fathom_a05_modbus_init(&bumper, &config);
+ * const fathom_a05_modbus_config_t config = {.modbus = {.address = 1}, .probes = 0x03};
+ * fathom_a05_modbus_init(&bumper, &modbus, &config);
  * const fathom_sensor_t sensor = fathom_a05_modbus_sensor(&bumper);
  *
  * fathom_sample_t near;                              // in the loop: probes 1 and 2 are one sample each
@@ -85,7 +85,7 @@ enum {
 /** @brief Configuration. Read only during fathom_a05_modbus_init(). A member that is 0 takes its default. */
 typedef struct {
     /**
-     * @brief Connection to the sensor; modbus_unit.h explains its members. `transport` is required.
+     * @brief Connection to the sensor; modbus_unit.h explains its members.
      *
      * With n registers from the first to the last wanted probe, `period_us` is at least n * 100 ms, and a `timeout_us`
      * of 0 selects 200 ms + n * 100 ms.
@@ -129,10 +129,13 @@ typedef struct {
 /**
  * @brief Initialises a driver. Nothing is sent before the first poll.
  *
- * @param sensor  The driver, in any memory. Must stay valid until fathom_a05_modbus_deinit().
- * @param config  The config. Read only during the call; what it points to must stay valid as long as the driver.
+ * @param sensor     The driver, in any memory. Must stay valid until fathom_a05_modbus_deinit().
+ * @param transport  The transport, with a clock: fathom_modbus_client(), or that of a port. Must stay valid as long as
+ *                   the driver.
+ * @param config     The config. Read only during the call; what it points to must stay valid as long as the driver.
+ *                   NULL selects all defaults.
  * @retval FATHOM_OK            The driver can be used. Next, pass fathom_a05_modbus_sensor() to fathom_poll().
- * @retval FATHOM_ERR_ARGUMENT  There is no transport or no clock, the address is 255, `address_zero` is true and
+ * @retval FATHOM_ERR_ARGUMENT  `transport` is NULL or has no clock, the address is 255, `address_zero` is true and
  *                              `address` is not 0, `registers` or `probes` has no such value, `min_mm` is above
  *                              `max_mm`, another member is outside its range, or the frame buffer of the line has less
  *                              than 5 bytes and 2 for each register. The driver is zeroed: each poll and command
@@ -140,7 +143,8 @@ typedef struct {
  * @retval FATHOM_ERR_BUSY      A request of this driver is still queued. Nothing changed. Call
  *                              fathom_a05_modbus_deinit() first.
  */
-fathom_status_t fathom_a05_modbus_init(fathom_a05_modbus_t *sensor, const fathom_a05_modbus_config_t *config);
+fathom_status_t fathom_a05_modbus_init(fathom_a05_modbus_t *sensor, const fathom_modbus_t *transport,
+                                       const fathom_a05_modbus_config_t *config);
 
 /** @brief Cancels what is in progress. After this the memory is the caller's again. */
 void fathom_a05_modbus_deinit(fathom_a05_modbus_t *sensor);
@@ -235,8 +239,40 @@ static inline const fathom_modbus_unit_t *fathom_a05_modbus_unit(const fathom_a0
     return &sensor->base.unit;
 }
 
+/**
+ * @brief Polls the driver as fathom_poll() does, without a fathom_sensor_t.
+ *
+ * A program that calls only this function does not link the part of the driver that fathom_due_us() needs.
+ *
+ * @param sensor  The driver.
+ * @param sample  Written with FATHOM_OK only.
+ * @retval FATHOM_OK            `*sample` is the reading of one probe. Call again at once for the next one.
+ * @retval FATHOM_PENDING       There is nothing new.
+ * @retval FATHOM_ERR_ARGUMENT  The initialisation failed or never ran, and the memory is zeroed.
+ * @return Other errors: an attempt failed. This header lists them as errors of fathom_poll().
+ */
+static inline fathom_status_t fathom_a05_modbus_poll(fathom_a05_modbus_t *sensor, fathom_sample_t *sample)
+{
+    return fathom_dyp_modbus_sensor_poll(&sensor->base, sample);
+}
+
+/**
+ * @brief Returns the time in microseconds until the driver must be polled again if no byte arrives.
+ *
+ * The result is that of fathom_due_us(), without a fathom_sensor_t. It is 0 for a driver in zeroed memory.
+ *
+ * @param sensor  The driver.
+ */
+static inline uint32_t fathom_a05_modbus_due_us(fathom_a05_modbus_t *sensor)
+{
+    return fathom_dyp_modbus_sensor_due_us(&sensor->base);
+}
+
 /** @brief Returns the sensor for fathom_poll() and fathom_due_us(), by value. It points to the driver. */
-fathom_sensor_t fathom_a05_modbus_sensor(fathom_a05_modbus_t *sensor);
+static inline fathom_sensor_t fathom_a05_modbus_sensor(fathom_a05_modbus_t *sensor)
+{
+    return fathom_dyp_modbus_sensor(&sensor->base);
+}
 
 #ifdef __cplusplus
 }

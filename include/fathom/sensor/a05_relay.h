@@ -22,8 +22,7 @@ extern "C" {
  *
  * @code
  * static fathom_a05_relay_t door;
- * const fathom_a05_relay_config_t config = {.pin = &pin, .clock = &clock};
- * fathom_a05_relay_init(&door, &config);
+ * fathom_a05_relay_init(&door, &pin, &clock, NULL);
  * const fathom_sensor_t sensor = fathom_a05_relay_sensor(&door);
  *
  * fathom_sample_t state;                             // in the loop
@@ -69,12 +68,6 @@ typedef enum {
 
 /** @brief Configuration. Read only during fathom_a05_relay_init(). A member that is 0 takes its default. */
 typedef struct {
-    /** @brief The pin of the contact. Required, with `get`. Must stay valid as long as the driver. */
-    const fathom_pin_t *pin;
-
-    /** @brief The clock. Required, with `now_us`. Must stay valid as long as the driver. */
-    const fathom_clock_t *clock;
-
     /** @brief The times. contact.h has their ranges and defaults. */
     fathom_contact_timing_t timing;
 
@@ -94,15 +87,51 @@ typedef struct {
  * @brief Initialises a driver and reads the pin once.
  *
  * @param sensor  The driver, in any memory. Must stay valid as long as it is polled.
+ * @param pin     Reads the contact, with `get`. Must stay valid as long as the driver.
+ * @param clock   The clock, with `now_us`. Must stay valid as long as the driver.
  * @param config  The config. Read only during the call; what it points to must stay valid as long as the driver.
+ *                NULL selects all defaults.
  * @retval FATHOM_OK            The driver can be used. Next, pass fathom_a05_relay_sensor() to fathom_poll().
  * @retval FATHOM_ERR_ARGUMENT  There is no clock or no pin that can be read, or a member is outside its range. The
  *                              driver is zeroed.
  */
-fathom_status_t fathom_a05_relay_init(fathom_a05_relay_t *sensor, const fathom_a05_relay_config_t *config);
+fathom_status_t fathom_a05_relay_init(fathom_a05_relay_t *sensor, const fathom_pin_t *pin,
+                                      const fathom_clock_t *clock, const fathom_a05_relay_config_t *config);
+
+/**
+ * @brief Polls the driver as fathom_poll() does, without a fathom_sensor_t.
+ *
+ * A program that calls only this function does not link the part of the driver that fathom_due_us() needs.
+ *
+ * @param sensor  The driver.
+ * @param sample  Written with FATHOM_OK only.
+ * @retval FATHOM_OK            `*sample` is a new reading. Call again at once for the next one.
+ * @retval FATHOM_PENDING       There is nothing new.
+ * @retval FATHOM_ERR_ARGUMENT  The initialisation failed or never ran, and the memory is zeroed.
+ * @return Other errors: an attempt failed. This header lists them as errors of fathom_poll().
+ */
+static inline fathom_status_t fathom_a05_relay_poll(fathom_a05_relay_t *sensor, fathom_sample_t *sample)
+{
+    return fathom_contact_sensor_poll(&sensor->base, sample);
+}
+
+/**
+ * @brief Returns the time in microseconds until the driver must be polled again if the pin does not change.
+ *
+ * The result is that of fathom_due_us(), without a fathom_sensor_t. It is 0 for a driver in zeroed memory.
+ *
+ * @param sensor  The driver.
+ */
+static inline uint32_t fathom_a05_relay_due_us(fathom_a05_relay_t *sensor)
+{
+    return fathom_contact_sensor_due_us(&sensor->base);
+}
 
 /** @brief Returns the sensor for fathom_poll() and fathom_due_us(), by value. There is no deinit: stop polling. */
-fathom_sensor_t fathom_a05_relay_sensor(fathom_a05_relay_t *sensor);
+static inline fathom_sensor_t fathom_a05_relay_sensor(fathom_a05_relay_t *sensor)
+{
+    return fathom_contact_sensor(&sensor->base);
+}
 
 #ifdef __cplusplus
 }

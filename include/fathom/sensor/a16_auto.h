@@ -20,8 +20,7 @@ extern "C" {
  *
  * @code
  * // `uart` is set to 9600 8N1. fathom_line_init_listening(&line, &parts) initialises a line without requests (line.h).
- * static const fathom_a16_auto_config_t config = {.line = &line};
- * fathom_a16_auto_init(&a16, &config);
+ * fathom_a16_auto_init(&a16, &line, NULL);
  * sensor = fathom_a16_auto_sensor(&a16);
  * for (;;)
  *     if (fathom_poll(&sensor, &sample) == FATHOM_OK && sample.kind == FATHOM_TARGET) show_mm(sample.distance_mm);
@@ -60,13 +59,6 @@ extern "C" {
 
 /** @brief The configuration. A member that is 0 takes its default. */
 typedef struct {
-    /**
-     * @brief The line. Required. The driver becomes its listener. Must stay valid until fathom_a16_auto_deinit().
-     *
-     * The line may also carry Modbus requests (a16_rs232.h).
-     */
-    fathom_line_t *line;
-
     /**
      * @brief The output that drives the RX pin of the module: fathom_output_pin(), or fathom_output_line_break() if the
      * TX of the line is wired to it.
@@ -116,16 +108,20 @@ typedef struct {
  * initialisation; otherwise a break that selects the real-time value stays on the line.
  *
  * @param sensor  The driver. Must stay valid until fathom_a16_auto_deinit().
- * @param config  The configuration. Not used after the call.
+ * @param line    The initialised line, whose listener the driver becomes. It may also carry Modbus requests
+ *                (a16_rs232.h). Must stay valid until fathom_a16_auto_deinit().
+ * @param config  The configuration. Not used after the call. NULL selects all defaults.
  * @retval FATHOM_OK               The driver listens. Next, call fathom_poll().
- * @retval FATHOM_ERR_ARGUMENT     `line` is NULL or not initialised, or a member is outside its range.
+ * @retval FATHOM_ERR_ARGUMENT     `line` is NULL or not initialised, or a member of the configuration is outside its
+ *                                 range.
  * @retval FATHOM_ERR_BUSY         The line has another listener, which stays. Or the break that selects the value
  *                                 cannot begin yet, because the port or a transaction uses the line. Call again.
  * @retval FATHOM_ERR_UNSUPPORTED  `value` is FATHOM_REAL_TIME without `select`, the port has no `set_break`, or the
  *                                 pin has no `set`.
  * @retval FATHOM_ERR_PORT         As fathom_a16_auto_select().
  */
-fathom_status_t fathom_a16_auto_init(fathom_a16_auto_t *sensor, const fathom_a16_auto_config_t *config);
+fathom_status_t fathom_a16_auto_init(fathom_a16_auto_t *sensor, fathom_line_t *line,
+                                     const fathom_a16_auto_config_t *config);
 
 /**
  * @brief Selects the value that the module sends (A16 2(2)): drives its RX pin high or low by `select`.
@@ -159,8 +155,57 @@ fathom_status_t fathom_a16_auto_select(fathom_a16_auto_t *sensor, fathom_dyp_val
  */
 fathom_status_t fathom_a16_auto_deinit(fathom_a16_auto_t *sensor);
 
+/**
+ * @brief Polls a driver of unknown type: the `poll` of its fathom_sensor_t. Programs call fathom_a16_auto_poll().
+ *
+ * @param ctx     The driver, a fathom_a16_auto_t.
+ * @param sample  Written with FATHOM_OK only.
+ * @return As fathom_a16_auto_poll().
+ */
+fathom_status_t fathom_a16_auto_sensor_poll(void *ctx, fathom_sample_t *sample);
+
+/**
+ * @brief Returns when a driver of unknown type is due: the `due_us` of its fathom_sensor_t.
+ *
+ * @param ctx  The driver, a fathom_a16_auto_t.
+ * @return As fathom_a16_auto_due_us().
+ */
+uint32_t fathom_a16_auto_sensor_due_us(void *ctx);
+
+/**
+ * @brief Polls the driver as fathom_poll() does, without a fathom_sensor_t.
+ *
+ * A program that calls only this function does not link the part of the driver that fathom_due_us() needs.
+ *
+ * @param sensor  The driver.
+ * @param sample  Written with FATHOM_OK only.
+ * @retval FATHOM_OK            `*sample` is a new reading. Call again at once for the next one.
+ * @retval FATHOM_PENDING       There is nothing new.
+ * @retval FATHOM_ERR_ARGUMENT  The initialisation failed or never ran, and the memory is zeroed.
+ * @return Other errors: an attempt failed. This header lists them as errors of fathom_poll().
+ */
+static inline fathom_status_t fathom_a16_auto_poll(fathom_a16_auto_t *sensor, fathom_sample_t *sample)
+{
+    return fathom_a16_auto_sensor_poll(sensor, sample);
+}
+
+/**
+ * @brief Returns the time in microseconds until the driver must be polled again if no byte arrives.
+ *
+ * The result is that of fathom_due_us(), without a fathom_sensor_t. It is 0 for a driver in zeroed memory.
+ *
+ * @param sensor  The driver.
+ */
+static inline uint32_t fathom_a16_auto_due_us(fathom_a16_auto_t *sensor)
+{
+    return fathom_a16_auto_sensor_due_us(sensor);
+}
+
 /** @brief Returns the sensor for fathom_poll() and fathom_due_us(). The sensor points to the driver. */
-fathom_sensor_t fathom_a16_auto_sensor(fathom_a16_auto_t *sensor);
+static inline fathom_sensor_t fathom_a16_auto_sensor(fathom_a16_auto_t *sensor)
+{
+    return fathom_sensor_make(fathom_a16_auto_sensor_poll, fathom_a16_auto_sensor_due_us, sensor);
+}
 
 #ifdef __cplusplus
 }

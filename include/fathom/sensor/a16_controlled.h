@@ -25,8 +25,8 @@ extern "C" {
  * `a16_controlled`.
  *
  * @code
- * const fathom_a16_controlled_config_t config = {.line = &line, .trigger = fathom_output_pin(&pin)};
- * fathom_a16_controlled_init(&a16, &config);
+ * const fathom_output_t trigger = fathom_output_pin(&pin);
+ * fathom_a16_controlled_init(&a16, &line, &trigger, NULL);
  * sensor = fathom_a16_controlled_sensor(&a16);
  * for (;;)
  *     if (fathom_poll(&sensor, &sample) == FATHOM_OK && sample.kind == FATHOM_TARGET) show_mm(sample.distance_mm);
@@ -79,20 +79,6 @@ extern "C" {
 
 /** @brief The configuration. A member that is 0 takes its default. */
 typedef struct {
-    /**
-     * @brief The line, which has no other sensor. Required. The driver becomes its listener.
-     *
-     * Must stay valid until fathom_a16_controlled_deinit().
-     */
-    fathom_line_t *line;
-
-    /**
-     * @brief Drives the RX pin of the module: a pin, or a break of the line (fathom_output_line_break()). Required.
-     *
-     * `trigger.ctx` must stay valid until fathom_a16_controlled_deinit().
-     */
-    fathom_output_t trigger;
-
     /**
      * @brief Least time between two triggers, in microseconds, at most 2^31 - 1. 0 and all below 121000 select 121000.
      *
@@ -165,14 +151,20 @@ typedef struct {
  *
  * The first trigger comes `low_us` later. After an error the driver does not listen, and its memory is zeroed.
  *
- * @param sensor  The driver. Must stay valid until fathom_a16_controlled_deinit().
- * @param config  The configuration. Not used after the call.
+ * @param sensor   The driver. Must stay valid until fathom_a16_controlled_deinit().
+ * @param line     The initialised line, which has no other sensor. The driver becomes its listener. Must stay valid
+ *                 until fathom_a16_controlled_deinit().
+ * @param trigger  Drives the RX pin of the module: a pin, or a break of the line (fathom_output_line_break()). Copied;
+ *                 its `ctx` must stay valid until fathom_a16_controlled_deinit().
+ * @param config   The configuration. Not used after the call. NULL selects all defaults.
  * @retval FATHOM_OK               The driver listens. Next, call fathom_poll().
- * @retval FATHOM_ERR_ARGUMENT     `line` or `trigger.set` is NULL, or a member is outside its range.
+ * @retval FATHOM_ERR_ARGUMENT     `line`, `trigger` or `trigger->set` is NULL, the line is not initialised, or a member
+ *                                 of the configuration is outside its range.
  * @retval FATHOM_ERR_BUSY         The line has another listener, which stays. The trigger was not touched.
  * @retval FATHOM_ERR_UNSUPPORTED  The port has no `set_break`, or the pin no `set`.
  */
-fathom_status_t fathom_a16_controlled_init(fathom_a16_controlled_t *sensor,
+fathom_status_t fathom_a16_controlled_init(fathom_a16_controlled_t *sensor, fathom_line_t *line,
+                                           const fathom_output_t *trigger,
                                            const fathom_a16_controlled_config_t *config);
 
 /**
@@ -189,8 +181,58 @@ fathom_status_t fathom_a16_controlled_init(fathom_a16_controlled_t *sensor,
  */
 fathom_status_t fathom_a16_controlled_deinit(fathom_a16_controlled_t *sensor);
 
+/**
+ * @brief Polls a driver of unknown type: the `poll` of its fathom_sensor_t. Programs call fathom_a16_controlled_poll().
+ *
+ * @param ctx     The driver, a fathom_a16_controlled_t.
+ * @param sample  Written with FATHOM_OK only.
+ * @return As fathom_a16_controlled_poll().
+ */
+fathom_status_t fathom_a16_controlled_sensor_poll(void *ctx, fathom_sample_t *sample);
+
+/**
+ * @brief Returns when a driver of unknown type is due: the `due_us` of its fathom_sensor_t.
+ *
+ * @param ctx  The driver, a fathom_a16_controlled_t.
+ * @return As fathom_a16_controlled_due_us().
+ */
+uint32_t fathom_a16_controlled_sensor_due_us(void *ctx);
+
+/**
+ * @brief Polls the driver as fathom_poll() does, without a fathom_sensor_t.
+ *
+ * A program that calls only this function does not link the part of the driver that fathom_due_us() needs.
+ *
+ * @param sensor  The driver.
+ * @param sample  Written with FATHOM_OK only.
+ * @retval FATHOM_OK            `*sample` is a new reading. Call again at once for the next one.
+ * @retval FATHOM_PENDING       There is nothing new.
+ * @retval FATHOM_ERR_ARGUMENT  The initialisation failed or never ran, and the memory is zeroed.
+ * @return Other errors: an attempt failed. This header lists them as errors of fathom_poll().
+ */
+static inline fathom_status_t fathom_a16_controlled_poll(fathom_a16_controlled_t *sensor,
+                                                         fathom_sample_t *sample)
+{
+    return fathom_a16_controlled_sensor_poll(sensor, sample);
+}
+
+/**
+ * @brief Returns the time in microseconds until the driver must be polled again if no byte arrives.
+ *
+ * The result is that of fathom_due_us(), without a fathom_sensor_t. It is 0 for a driver in zeroed memory.
+ *
+ * @param sensor  The driver.
+ */
+static inline uint32_t fathom_a16_controlled_due_us(fathom_a16_controlled_t *sensor)
+{
+    return fathom_a16_controlled_sensor_due_us(sensor);
+}
+
 /** @brief Returns the sensor for fathom_poll() and fathom_due_us(). The sensor points to the driver. */
-fathom_sensor_t fathom_a16_controlled_sensor(fathom_a16_controlled_t *sensor);
+static inline fathom_sensor_t fathom_a16_controlled_sensor(fathom_a16_controlled_t *sensor)
+{
+    return fathom_sensor_make(fathom_a16_controlled_sensor_poll, fathom_a16_controlled_sensor_due_us, sensor);
+}
 
 #ifdef __cplusplus
 }

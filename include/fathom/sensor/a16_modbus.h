@@ -19,8 +19,7 @@ extern "C" {
  * @code
  * static fathom_modbus_t transport;                         // must stay valid as long as the driver
  * transport = fathom_modbus_client(&line);
- * const fathom_a16_modbus_config_t config = {.modbus = {.transport = &transport, .address = 1}};
- * fathom_a16_modbus_init(&a16, &config);
+ * fathom_a16_modbus_init(&a16, &transport, NULL);      // address 1, the processed distance
  * sensor = fathom_a16_modbus_sensor(&a16);
  * for (;;)
  *     if (fathom_poll(&sensor, &sample) == FATHOM_OK && sample.kind == FATHOM_TARGET) show_mm(sample.distance_mm);
@@ -75,7 +74,7 @@ enum {
 /** @brief The configuration. A member that is 0 takes its default. */
 typedef struct {
     /**
-     * @brief Transport, address and times (fathom_modbus_config_t).
+     * @brief Address and times (fathom_modbus_config_t).
      *
      * `timeout_us` 0 selects 1 s for the processed value and 300 ms for the real-time value. Sister models respond
      * within 520 ms and 120 ms; the datasheet prints no time. `period_us` below 120 ms selects 120 ms.
@@ -108,15 +107,19 @@ typedef struct {
 /**
  * @brief Initialises the driver. Sends nothing.
  *
- * @param sensor  The driver. Must stay valid until fathom_a16_modbus_deinit().
- * @param config  The configuration. Not used after the call.
+ * @param sensor     The driver. Must stay valid until fathom_a16_modbus_deinit().
+ * @param transport  The transport, with a clock: fathom_modbus_client(), or that of a port. Must stay valid as long as
+ *                   the driver.
+ * @param config     The configuration. Not used after the call. NULL selects all defaults.
  * @retval FATHOM_OK            The driver can be used. Next, call fathom_poll().
- * @retval FATHOM_ERR_ARGUMENT  A member is outside its range, there is no transport, or the buffer of its line is too
- *                              small. The driver is zeroed: each poll and command then returns this error.
+ * @retval FATHOM_ERR_ARGUMENT  `transport` is NULL or has no clock, the buffer of its line is too small, or a member of
+ *                              the configuration is outside its range. The driver is zeroed: each poll and command
+ *                              then returns this error.
  * @retval FATHOM_ERR_BUSY      A request of this driver is still queued. Nothing has changed. Call
  *                              fathom_a16_modbus_deinit() first.
  */
-fathom_status_t fathom_a16_modbus_init(fathom_a16_modbus_t *sensor, const fathom_a16_modbus_config_t *config);
+fathom_status_t fathom_a16_modbus_init(fathom_a16_modbus_t *sensor, const fathom_modbus_t *transport,
+                                       const fathom_a16_modbus_config_t *config);
 
 /** @brief Cancels the request in progress. After the call the memory belongs to the caller again. */
 void fathom_a16_modbus_deinit(fathom_a16_modbus_t *sensor);
@@ -145,8 +148,40 @@ static inline const fathom_modbus_unit_t *fathom_a16_modbus_unit(const fathom_a1
     return &sensor->base.unit;
 }
 
+/**
+ * @brief Polls the driver as fathom_poll() does, without a fathom_sensor_t.
+ *
+ * A program that calls only this function does not link the part of the driver that fathom_due_us() needs.
+ *
+ * @param sensor  The driver.
+ * @param sample  Written with FATHOM_OK only.
+ * @retval FATHOM_OK            `*sample` is a new reading. Call again at once for the next one.
+ * @retval FATHOM_PENDING       There is nothing new.
+ * @retval FATHOM_ERR_ARGUMENT  The initialisation failed or never ran, and the memory is zeroed.
+ * @return Other errors: an attempt failed. This header lists them as errors of fathom_poll().
+ */
+static inline fathom_status_t fathom_a16_modbus_poll(fathom_a16_modbus_t *sensor, fathom_sample_t *sample)
+{
+    return fathom_dyp_modbus_sensor_poll(&sensor->base, sample);
+}
+
+/**
+ * @brief Returns the time in microseconds until the driver must be polled again if no byte arrives.
+ *
+ * The result is that of fathom_due_us(), without a fathom_sensor_t. It is 0 for a driver in zeroed memory.
+ *
+ * @param sensor  The driver.
+ */
+static inline uint32_t fathom_a16_modbus_due_us(fathom_a16_modbus_t *sensor)
+{
+    return fathom_dyp_modbus_sensor_due_us(&sensor->base);
+}
+
 /** @brief Returns the sensor for fathom_poll() and fathom_due_us(). The sensor points to the driver. */
-fathom_sensor_t fathom_a16_modbus_sensor(fathom_a16_modbus_t *sensor);
+static inline fathom_sensor_t fathom_a16_modbus_sensor(fathom_a16_modbus_t *sensor)
+{
+    return fathom_dyp_modbus_sensor(&sensor->base);
+}
 
 #ifdef __cplusplus
 }

@@ -22,9 +22,8 @@ extern "C" {
  * It needs no line; a capture measures the pulse (hal.h, edges.h). include/COST.md has its size in the row `a16_pwm`.
  *
  * @code
- * const fathom_a16_pwm_config_t config = {
- *     .pulse = {.clock = &clock, .capture = &capture, .trigger = fathom_output_pin(&pin)}};
- * fathom_a16_pwm_init(&a16, &config);
+ * const fathom_output_t trigger = fathom_output_pin(&pin);
+ * fathom_a16_pwm_init(&a16, &capture, &clock, &trigger, NULL);
  * sensor = fathom_a16_pwm_sensor(&a16);
  * for (;;)
  *     if (fathom_poll(&sensor, &sample) == FATHOM_OK && sample.kind == FATHOM_TARGET) show_mm(sample.distance_mm);
@@ -64,7 +63,7 @@ enum {
 
 /** @brief The configuration. A member that is 0 takes its default. */
 typedef struct {
-    /** The clock, the capture of the module's TX pin, and the trigger, which is its RX pin; the times have defaults. */
+    /** The times; pulse.h has their ranges. */
     fathom_pulse_config_t pulse;
     /** Distances outside are refused. `min_mm`: 1..max_mm, 0 selects 1. `max_mm`: min_mm..65535, 0 selects 16350, or
      * 18000 with `in_air`. The other members are not used. */
@@ -88,14 +87,22 @@ typedef struct {
 /**
  * @brief Initialises the driver and makes the trigger high. If the function fails, the driver is zeroed.
  *
- * @param sensor  The driver. Must stay valid until fathom_a16_pwm_deinit().
- * @param config  The configuration. Not used after the call.
+ * @param sensor   The driver. Must stay valid until fathom_a16_pwm_deinit().
+ * @param capture  Captures the TX pin of the module, with `arm` and `take`; not shared. Must stay valid as long as the
+ *                 driver.
+ * @param clock    The clock. Must stay valid as long as the driver.
+ * @param trigger  Drives the RX pin of the module: a pin, or the break of a UART that has no other use. Copied; its
+ *                 `ctx` must stay valid as long as the driver.
+ * @param config   The configuration. Not used after the call. NULL selects all defaults.
  * @retval FATHOM_OK               The driver is ready. Next, call fathom_poll(). The first trigger comes `low_us`
  *                                 later.
- * @retval FATHOM_ERR_ARGUMENT     A member of the configuration is missing or outside its range.
+ * @retval FATHOM_ERR_ARGUMENT     `capture`, `clock` or `trigger` or one of their functions is NULL, or a member of the
+ *                                 configuration is outside its range.
  * @retval FATHOM_ERR_UNSUPPORTED  The UART has no `set_break`, or the pin no `set`.
  */
-fathom_status_t fathom_a16_pwm_init(fathom_a16_pwm_t *sensor, const fathom_a16_pwm_config_t *config);
+fathom_status_t fathom_a16_pwm_init(fathom_a16_pwm_t *sensor, const fathom_capture_t *capture,
+                                    const fathom_clock_t *clock, const fathom_output_t *trigger,
+                                    const fathom_a16_pwm_config_t *config);
 
 /**
  * @brief Makes the trigger high, if it is low. Call it again, and do not poll, unless it returns FATHOM_OK.
@@ -108,8 +115,57 @@ fathom_status_t fathom_a16_pwm_init(fathom_a16_pwm_t *sensor, const fathom_a16_p
  */
 fathom_status_t fathom_a16_pwm_deinit(fathom_a16_pwm_t *sensor);
 
+/**
+ * @brief Polls a driver of unknown type: the `poll` of its fathom_sensor_t. Programs call fathom_a16_pwm_poll().
+ *
+ * @param ctx     The driver, a fathom_a16_pwm_t.
+ * @param sample  Written with FATHOM_OK only.
+ * @return As fathom_a16_pwm_poll().
+ */
+fathom_status_t fathom_a16_pwm_sensor_poll(void *ctx, fathom_sample_t *sample);
+
+/**
+ * @brief Returns when a driver of unknown type is due: the `due_us` of its fathom_sensor_t.
+ *
+ * @param ctx  The driver, a fathom_a16_pwm_t.
+ * @return As fathom_a16_pwm_due_us().
+ */
+uint32_t fathom_a16_pwm_sensor_due_us(void *ctx);
+
+/**
+ * @brief Polls the driver as fathom_poll() does, without a fathom_sensor_t.
+ *
+ * A program that calls only this function does not link the part of the driver that fathom_due_us() needs.
+ *
+ * @param sensor  The driver.
+ * @param sample  Written with FATHOM_OK only.
+ * @retval FATHOM_OK            `*sample` is a new reading. Call again at once for the next one.
+ * @retval FATHOM_PENDING       There is nothing new.
+ * @retval FATHOM_ERR_ARGUMENT  The initialisation failed or never ran, and the memory is zeroed.
+ * @return Other errors: an attempt failed. This header lists them as errors of fathom_poll().
+ */
+static inline fathom_status_t fathom_a16_pwm_poll(fathom_a16_pwm_t *sensor, fathom_sample_t *sample)
+{
+    return fathom_a16_pwm_sensor_poll(sensor, sample);
+}
+
+/**
+ * @brief Returns the time in microseconds until the driver must be polled again if no pulse ends.
+ *
+ * The result is that of fathom_due_us(), without a fathom_sensor_t. It is 0 for a driver in zeroed memory.
+ *
+ * @param sensor  The driver.
+ */
+static inline uint32_t fathom_a16_pwm_due_us(fathom_a16_pwm_t *sensor)
+{
+    return fathom_a16_pwm_sensor_due_us(sensor);
+}
+
 /** @brief Returns the sensor for fathom_poll() and fathom_due_us(). */
-fathom_sensor_t fathom_a16_pwm_sensor(fathom_a16_pwm_t *sensor);
+static inline fathom_sensor_t fathom_a16_pwm_sensor(fathom_a16_pwm_t *sensor)
+{
+    return fathom_sensor_make(fathom_a16_pwm_sensor_poll, fathom_a16_pwm_sensor_due_us, sensor);
+}
 
 #ifdef __cplusplus
 }

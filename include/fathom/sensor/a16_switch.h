@@ -18,8 +18,7 @@ extern "C" {
  * waits. include/COST.md has its size in the row `a16_switch`, and with settings in `a16_switch_set`.
  *
  * @code
- * const fathom_a16_switch_config_t config = {.pin = &pin, .clock = &clock};
- * fathom_a16_switch_init(&a16, &config);
+ * fathom_a16_switch_init(&a16, &pin, &clock, NULL);
  * sensor = fathom_a16_switch_sensor(&a16);
  * for (;;)
  *     if (fathom_poll(&sensor, &sample) == FATHOM_OK) show_near(sample.kind == FATHOM_NEAR);
@@ -57,14 +56,8 @@ extern "C" {
  * lasts, the line looks busy; switch the receiver off while no request is in progress.
  */
 
-/**
- * @brief The configuration. A member that is 0 takes its default.
- *
- * `pin`, `clock` and `guard` must stay valid as long as the driver.
- */
+/** @brief The configuration. A member that is 0 takes its default. `guard` must stay valid as long as the driver. */
 typedef struct {
-    const fathom_pin_t *pin;     /**< Reads the module's TX. Required, with `get`. */
-    const fathom_clock_t *clock; /**< Required, with `now_us`. */
     /** The guard of the line on the same pins (fathom_contact_line_guard()). This driver polls that line too. NULL:
      * there is no line, and the module gets no requests. */
     const fathom_contact_guard_t *guard;
@@ -85,12 +78,15 @@ typedef struct {
  * @brief Initialises the driver and reads the pin once. If the function fails, the driver is zeroed.
  *
  * @param sensor  The driver. Must stay valid as long as the program polls it.
- * @param config  The configuration. Not used after the call.
+ * @param pin     Reads the TX pin of the module, with `get`. Must stay valid as long as the driver.
+ * @param clock   The clock, with `now_us`. Must stay valid as long as the driver.
+ * @param config  The configuration. Not used after the call. NULL selects all defaults.
  * @retval FATHOM_OK            The driver is ready. Next, call fathom_poll().
  * @retval FATHOM_ERR_ARGUMENT  There is no clock, no pin that can be read, a guard without one of its functions, or a
  *                              time outside its range.
  */
-fathom_status_t fathom_a16_switch_init(fathom_a16_switch_t *sensor, const fathom_a16_switch_config_t *config);
+fathom_status_t fathom_a16_switch_init(fathom_a16_switch_t *sensor, const fathom_pin_t *pin,
+                                       const fathom_clock_t *clock, const fathom_a16_switch_config_t *config);
 
 /**
  * @brief Sets the polarity by Modbus. Call it until it does not return FATHOM_PENDING.
@@ -118,8 +114,40 @@ fathom_status_t fathom_a16_switch_set_polarity(fathom_a16_switch_t *sensor, fath
  */
 void fathom_a16_switch_note_polarity(fathom_a16_switch_t *sensor, fathom_a16_polarity_t polarity);
 
+/**
+ * @brief Polls the driver as fathom_poll() does, without a fathom_sensor_t.
+ *
+ * A program that calls only this function does not link the part of the driver that fathom_due_us() needs.
+ *
+ * @param sensor  The driver.
+ * @param sample  Written with FATHOM_OK only.
+ * @retval FATHOM_OK            `*sample` is a new reading. Call again at once for the next one.
+ * @retval FATHOM_PENDING       There is nothing new.
+ * @retval FATHOM_ERR_ARGUMENT  The initialisation failed or never ran, and the memory is zeroed.
+ * @return Other errors: an attempt failed. This header lists them as errors of fathom_poll().
+ */
+static inline fathom_status_t fathom_a16_switch_poll(fathom_a16_switch_t *sensor, fathom_sample_t *sample)
+{
+    return fathom_contact_sensor_poll(&sensor->base, sample);
+}
+
+/**
+ * @brief Returns the time in microseconds until the driver must be polled again if the pin does not change.
+ *
+ * The result is that of fathom_due_us(), without a fathom_sensor_t. It is 0 for a driver in zeroed memory.
+ *
+ * @param sensor  The driver.
+ */
+static inline uint32_t fathom_a16_switch_due_us(fathom_a16_switch_t *sensor)
+{
+    return fathom_contact_sensor_due_us(&sensor->base);
+}
+
 /** @brief Returns the sensor for fathom_poll() and fathom_due_us(). There is no deinit: stop polling. */
-fathom_sensor_t fathom_a16_switch_sensor(fathom_a16_switch_t *sensor);
+static inline fathom_sensor_t fathom_a16_switch_sensor(fathom_a16_switch_t *sensor)
+{
+    return fathom_contact_sensor(&sensor->base);
+}
 
 #ifdef __cplusplus
 }

@@ -38,12 +38,10 @@ extern "C" {
  *
  * fathom_line_init(&line, &parts);
  * modbus = fathom_modbus_client(&line);              // modbus_client.h
- * const fathom_hps167s_config_t config = {.modbus = {.transport = &modbus, .address = 1}};
- * fathom_hps167s_init(&gate, &config);
- * const fathom_sensor_t sensor = fathom_hps167s_sensor(&gate);
+ * fathom_hps167s_init(&gate, &modbus, NULL);         // address 1, all defaults
  *
  * fathom_sample_t sample;                            // in the loop:
- * if (fathom_poll(&sensor, &sample) == FATHOM_OK && sample.kind == FATHOM_TARGET) use(sample.distance_mm);
+ * if (fathom_hps167s_poll(&gate, &sample) == FATHOM_OK && sample.kind == FATHOM_TARGET) use(sample.distance_mm);
  * @endcode
  *
  * 1. **Samples.** `raw` has the 16 bits of the distance as the sensor sent them. `distance_mm` is 0 unless the kind is
@@ -115,7 +113,7 @@ extern "C" {
 /** @brief The configuration. Used only during fathom_hps167s_init(). A member that is 0 takes its default. */
 typedef struct {
     /**
-     * @brief Connection to the sensor; modbus_unit.h explains its members. `transport` is required.
+     * @brief Connection to the sensor; modbus_unit.h explains its members.
      *
      * | member               | range here                               | 0 selects                              |
      * |----------------------|------------------------------------------|----------------------------------------|
@@ -219,17 +217,21 @@ struct fathom_hps167s {
 /**
  * @brief Initialises a driver. Nothing is sent before the first poll.
  *
- * @param sensor  The driver. Its memory may have any content. Must stay valid until fathom_hps167s_deinit().
- * @param config  The config. Read only during the call; what it points to must stay valid as long as the driver.
+ * @param sensor     The driver. Its memory may have any content. Must stay valid until fathom_hps167s_deinit().
+ * @param transport  The transport, with a clock: fathom_modbus_client(), or that of a port. Must stay valid as long as
+ *                   the driver.
+ * @param config     The config. Read only during the call; what it points to must stay valid as long as the driver.
+ *                   NULL selects all defaults.
  * @retval FATHOM_OK            The driver can be used. Next, pass fathom_hps167s_sensor() to fathom_poll().
- * @retval FATHOM_ERR_ARGUMENT  There is no transport or no clock, the address is above 32, `address_zero` is true,
+ * @retval FATHOM_ERR_ARGUMENT  `transport` is NULL or has no clock, the address is above 32, `address_zero` is true,
  *                              `same_responses` is above 8, another member of `modbus` is outside its range, or the
  *                              frame buffer of the line has less than 13 bytes. The driver is zeroed: each poll and
  *                              command returns FATHOM_ERR_ARGUMENT.
  * @retval FATHOM_ERR_BUSY      A request of this driver is still queued. Nothing changed. Call fathom_hps167s_deinit()
  *                              first.
  */
-fathom_status_t fathom_hps167s_init(fathom_hps167s_t *sensor, const fathom_hps167s_config_t *config);
+fathom_status_t fathom_hps167s_init(fathom_hps167s_t *sensor, const fathom_modbus_t *transport,
+                                    const fathom_hps167s_config_t *config);
 
 /**
  * @brief Replaces the default distance limits (hps167s_registers.h), from the next response on.
@@ -265,8 +267,57 @@ void fathom_hps167s_deinit(fathom_hps167s_t *sensor);
  */
 void fathom_hps167s_power_on(fathom_hps167s_t *sensor);
 
+/**
+ * @brief Polls a driver of unknown type: the `poll` of its fathom_sensor_t. Programs call fathom_hps167s_poll().
+ *
+ * @param ctx     The driver, a fathom_hps167s_t.
+ * @param sample  Written with FATHOM_OK only.
+ * @return As fathom_hps167s_poll().
+ */
+fathom_status_t fathom_hps167s_sensor_poll(void *ctx, fathom_sample_t *sample);
+
+/**
+ * @brief Returns when a driver of unknown type is due: the `due_us` of its fathom_sensor_t.
+ *
+ * @param ctx  The driver, a fathom_hps167s_t.
+ * @return As fathom_hps167s_due_us().
+ */
+uint32_t fathom_hps167s_sensor_due_us(void *ctx);
+
+/**
+ * @brief Polls the driver as fathom_poll() does, without a fathom_sensor_t.
+ *
+ * A program that calls only this function does not link the part of the driver that fathom_due_us() needs.
+ *
+ * @param sensor  The driver.
+ * @param sample  Written with FATHOM_OK only.
+ * @retval FATHOM_OK            `*sample` is a new reading. Call again at once for the next one.
+ * @retval FATHOM_PENDING       There is nothing new.
+ * @retval FATHOM_ERR_ARGUMENT  The initialisation failed or never ran, and the memory is zeroed.
+ * @return Other errors: an attempt failed. This header lists them as errors of fathom_poll().
+ */
+static inline fathom_status_t fathom_hps167s_poll(fathom_hps167s_t *sensor, fathom_sample_t *sample)
+{
+    return fathom_hps167s_sensor_poll(sensor, sample);
+}
+
+/**
+ * @brief Returns the time in microseconds until the driver must be polled again if no byte arrives.
+ *
+ * The result is that of fathom_due_us(), without a fathom_sensor_t. It is 0 for a driver in zeroed memory.
+ *
+ * @param sensor  The driver.
+ */
+static inline uint32_t fathom_hps167s_due_us(fathom_hps167s_t *sensor)
+{
+    return fathom_hps167s_sensor_due_us(sensor);
+}
+
 /** @brief Returns the sensor for fathom_poll() and fathom_due_us(), by value. It points to the driver. */
-fathom_sensor_t fathom_hps167s_sensor(fathom_hps167s_t *sensor);
+static inline fathom_sensor_t fathom_hps167s_sensor(fathom_hps167s_t *sensor)
+{
+    return fathom_sensor_make(fathom_hps167s_sensor_poll, fathom_hps167s_sensor_due_us, sensor);
+}
 
 /**
  * @brief Returns the exception code of the newest response, valid after FATHOM_ERR_EXCEPTION until the next request.

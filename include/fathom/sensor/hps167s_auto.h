@@ -23,8 +23,7 @@ extern "C" {
  *
  * @code
  * fathom_line_init_listening(&line, &parts);          // line.h: a line without requests
- * const fathom_hps167s_auto_config_t config = {.line = &line, .address = 1};
- * fathom_hps167s_auto_init(&gate, &config);
+ * fathom_hps167s_auto_init(&gate, &line, NULL);       // address 1
  * const fathom_sensor_t sensor = fathom_hps167s_auto_sensor(&gate);
  *
  * fathom_sample_t sample;                             // in the loop:
@@ -76,13 +75,6 @@ enum {
 
 /** @brief Configuration. Read only during fathom_hps167s_auto_init(). A member that is 0 takes its default. */
 typedef struct {
-    /**
-     * @brief The initialised line, whose listener the driver becomes. Required.
-     *
-     * Must stay valid as long as the driver. Its frame buffer has at least 13 bytes.
-     */
-    fathom_line_t *line;
-
     /**
      * @brief Time without a sample after which fathom_poll() returns an error, in microseconds: 1 to 2^31 - 1.
      *
@@ -154,13 +146,15 @@ typedef struct {
  * @brief Initialises a driver and makes it the listener of the line.
  *
  * @param sensor  The driver. Must stay valid until fathom_hps167s_auto_deinit().
- * @param config  The config. Read only during the call.
+ * @param line    The initialised line, whose listener the driver becomes. Its frame buffer has at least 13 bytes. Must
+ *                stay valid until fathom_hps167s_auto_deinit().
+ * @param config  The config. Read only during the call. NULL selects all defaults.
  * @retval FATHOM_OK         The driver listens. Next, pass fathom_hps167s_auto_sensor() to fathom_poll().
- * @retval FATHOM_ERR_ARGUMENT  `line` is NULL, its frame buffer has less than 13 bytes, `address` is above 32, or
+ * @retval FATHOM_ERR_ARGUMENT  `line` is NULL or not initialised, its frame buffer has less than 13 bytes, `address` is above 32, or
  *                              `stale_us` is above 2^31 - 1. Correct the config.
  * @retval FATHOM_ERR_BUSY      The line has another listener, which stays. Remove that one first.
  */
-fathom_status_t fathom_hps167s_auto_init(fathom_hps167s_auto_t *sensor,
+fathom_status_t fathom_hps167s_auto_init(fathom_hps167s_auto_t *sensor, fathom_line_t *line,
                                          const fathom_hps167s_auto_config_t *config);
 
 /**
@@ -195,8 +189,57 @@ fathom_status_t fathom_hps167s_auto_set_limits(fathom_hps167s_auto_t *sensor,
 /** @brief Stops listening, if the driver is the listener of the line. The memory is the caller's again. */
 void fathom_hps167s_auto_deinit(fathom_hps167s_auto_t *sensor);
 
+/**
+ * @brief Polls a driver of unknown type: the `poll` of its fathom_sensor_t. Programs call fathom_hps167s_auto_poll().
+ *
+ * @param ctx     The driver, a fathom_hps167s_auto_t.
+ * @param sample  Written with FATHOM_OK only.
+ * @return As fathom_hps167s_auto_poll().
+ */
+fathom_status_t fathom_hps167s_auto_sensor_poll(void *ctx, fathom_sample_t *sample);
+
+/**
+ * @brief Returns when a driver of unknown type is due: the `due_us` of its fathom_sensor_t.
+ *
+ * @param ctx  The driver, a fathom_hps167s_auto_t.
+ * @return As fathom_hps167s_auto_due_us().
+ */
+uint32_t fathom_hps167s_auto_sensor_due_us(void *ctx);
+
+/**
+ * @brief Polls the driver as fathom_poll() does, without a fathom_sensor_t.
+ *
+ * A program that calls only this function does not link the part of the driver that fathom_due_us() needs.
+ *
+ * @param sensor  The driver.
+ * @param sample  Written with FATHOM_OK only.
+ * @retval FATHOM_OK            `*sample` is a new reading. Call again at once for the next one.
+ * @retval FATHOM_PENDING       There is nothing new.
+ * @retval FATHOM_ERR_ARGUMENT  The initialisation failed or never ran, and the memory is zeroed.
+ * @return Other errors: an attempt failed. This header lists them as errors of fathom_poll().
+ */
+static inline fathom_status_t fathom_hps167s_auto_poll(fathom_hps167s_auto_t *sensor, fathom_sample_t *sample)
+{
+    return fathom_hps167s_auto_sensor_poll(sensor, sample);
+}
+
+/**
+ * @brief Returns the time in microseconds until the driver must be polled again if no byte arrives.
+ *
+ * The result is that of fathom_due_us(), without a fathom_sensor_t. It is 0 for a driver in zeroed memory.
+ *
+ * @param sensor  The driver.
+ */
+static inline uint32_t fathom_hps167s_auto_due_us(fathom_hps167s_auto_t *sensor)
+{
+    return fathom_hps167s_auto_sensor_due_us(sensor);
+}
+
 /** @brief Returns the sensor for fathom_poll() and fathom_due_us(), by value. It points to the driver. */
-fathom_sensor_t fathom_hps167s_auto_sensor(fathom_hps167s_auto_t *sensor);
+static inline fathom_sensor_t fathom_hps167s_auto_sensor(fathom_hps167s_auto_t *sensor)
+{
+    return fathom_sensor_make(fathom_hps167s_auto_sensor_poll, fathom_hps167s_auto_sensor_due_us, sensor);
+}
 
 #ifdef __cplusplus
 }

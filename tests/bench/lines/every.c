@@ -40,11 +40,10 @@ static bool add(const lines_job_t *job, unsigned n)
                                        .gap_us = 25000};
     if (fathom_line_init(&at->line, &at->config) != FATHOM_OK) return false;
     at->modbus = fathom_modbus_client(&at->line);
-    const fathom_hps167s_config_t config = {.modbus.transport = &at->modbus,
-                                            .modbus.address = LINES_UNIT,
+    const fathom_hps167s_config_t config = {.modbus.address = LINES_UNIT,
                                             .modbus.period_us = job->period_us,
                                             .modbus.timeout_us = LINES_TIMEOUT_S * 1000000u};
-    if (fathom_hps167s_init(&at->driver, &config) != FATHOM_OK) return false;
+    if (fathom_hps167s_init(&at->driver, &at->modbus, &config) != FATHOM_OK) return false;
     sensors[n] = fathom_hps167s_sensor(&at->driver);
     return true;
 }

@@ -15,12 +15,11 @@ static void take(void *ctx, fathom_status_t status, const fathom_sample_t *sampl
 
 static bool add(lines_job_t *job, unsigned n)
 {
-    fathom_hps167s_config_t config = {.modbus.transport = &lines[n].bus.modbus,
-                                      .modbus.address = LINES_UNIT,
+    fathom_hps167s_config_t config = {.modbus.address = LINES_UNIT,
                                       .modbus.period_us = job->period_us,
                                       .modbus.timeout_us = LINES_TIMEOUT_S * 1000000u};
     if (fathom_loop_add_line(&loop, &lines[n], job->paths[n], &lines_settings) != FATHOM_POSIX_OK ||
-        fathom_hps167s_init(&drivers[n], &config) != FATHOM_OK)
+        fathom_hps167s_init(&drivers[n], &lines[n].bus.modbus, &config) != FATHOM_OK)
         return false;
     sensors[n] = (fathom_loop_sensor_t){fathom_hps167s_sensor(&drivers[n]), take, &job->seen[n], NULL};
     fathom_loop_add_sensor(&lines[n].source, &sensors[n]);

@@ -109,10 +109,10 @@ static void begin_quarantine(void)
         fathom_sim_hps167s_init(
             &devices[i], &(fathom_sim_hps167s_config_t){.address = unit, .scene = fathom_sim_fixed(&scene)});
         fathom_sim_attach(&wire, &devices[i].device, now.now_us);
-        fathom_hps167s_init(&drivers[i], &(fathom_hps167s_config_t){.modbus.transport = &transport,
-                                                                    .modbus.address = unit,
-                                                                    .modbus.timeout_us = TIMEOUT_US,
-                                                                    .modbus.period_us = 40000});
+        fathom_hps167s_init(&drivers[i], &transport,
+                            &(fathom_hps167s_config_t){.modbus.address = unit,
+                                                       .modbus.timeout_us = TIMEOUT_US,
+                                                       .modbus.period_us = 40000});
         sensors[i] = fathom_hps167s_sensor(&drivers[i]);
     }
     fathom_sim_fault_init(&fault, 1);
@@ -185,7 +185,7 @@ static void begin_resync(const resync_t *with)
     fathom_sim_fault_attach(&fault, &wire, &a05.device);
     fathom_sim_attach(&wire, &a05.device, now.now_us);
     fathom_line_init_listening(&line, &config);
-    fathom_a05_auto_init(&bumper, &(fathom_a05_auto_config_t){.line = &line});
+    fathom_a05_auto_init(&bumper, &line, NULL);
 }
 
 static void tell_reading(const fathom_sensor_t *sensor)

@@ -5,7 +5,9 @@ static fathom_a05_dyp_find_t a05_dyp_find;
 static fathom_a05_relay_rule_t a05_relay_rule;
 static fathom_modbus_t dyp;
 
-DRIVER(a05_auto, listening_begin(), .line = &line, .select = {fathom_output_set_pin, &pin})
+static const fathom_a05_auto_config_t selecting = {.select = {fathom_output_set_pin, &pin}};
+
+DRIVER(a05_auto, listening_begin(), &line, &selecting)
 
 void a05_auto_use(const fathom_sample_t *sample)
 {
@@ -13,7 +15,7 @@ void a05_auto_use(const fathom_sample_t *sample)
     outcome = (uint16_t)fathom_a05_auto_select(&a05_auto, (fathom_dyp_value_t)argument);
 }
 
-DRIVER(a05_modbus, modbus_begin(), .modbus.transport = &modbus)
+DRIVER(a05_modbus, modbus_begin(), &modbus, NULL)
 
 void a05_modbus_use(const fathom_sample_t *sample)
 {
@@ -30,7 +32,7 @@ static void dyp_begin(void)
     dyp = fathom_dyp_client(&line);
 }
 
-DRIVER(a05_dyp, dyp_begin(), .modbus.transport = &dyp)
+DRIVER(a05_dyp, dyp_begin(), &dyp, NULL)
 
 void a05_dyp_use(const fathom_sample_t *sample)
 {
@@ -41,7 +43,7 @@ void a05_dyp_use(const fathom_sample_t *sample)
     outcome = (uint16_t)fathom_a05_dyp_find(&a05_dyp_find, &line, &address);
 }
 
-DRIVER(a05_relay, (void)0, .pin = &pin, .clock = &clock)
+DRIVER(a05_relay, (void)0, &pin, &clock, NULL)
 ONLY(a05_relay, kind)
 
 /* The rule is fed with the samples of any driver; here with those of the least one that there can be. */

@@ -5,7 +5,10 @@ static fathom_a16_rs232_t a16_rs232;
 static fathom_edges_t edges;
 static fathom_capture_t edges_capture;
 
-DRIVER(a16_auto, listening_begin(), .line = &line, .select = {fathom_output_set_pin, &pin})
+static const fathom_output_t output = {fathom_output_set_pin, &pin};
+static const fathom_a16_auto_config_t selecting = {.select = {fathom_output_set_pin, &pin}};
+
+DRIVER(a16_auto, listening_begin(), &line, &selecting)
 
 void a16_auto_use(const fathom_sample_t *sample)
 {
@@ -13,10 +16,10 @@ void a16_auto_use(const fathom_sample_t *sample)
     outcome = (uint16_t)fathom_a16_auto_select(&a16_auto, (fathom_dyp_value_t)argument);
 }
 
-DRIVER(a16_controlled, listening_begin(), .line = &line, .trigger = {fathom_output_set_pin, &pin})
+DRIVER(a16_controlled, listening_begin(), &line, &output, NULL)
 ONLY(a16_controlled, distance_mm)
 
-DRIVER(a16_modbus, modbus_begin(), .modbus.transport = &modbus)
+DRIVER(a16_modbus, modbus_begin(), &modbus, NULL)
 
 void a16_modbus_use(const fathom_sample_t *sample)
 {
@@ -48,16 +51,14 @@ void a16_settings_use(const fathom_sample_t *sample)
     outcome = (uint16_t)fathom_a16_modbus_set_automatic_value(&a16_modbus, (fathom_dyp_value_t)argument);
 }
 
-DRIVER(a16_pwm, (void)0, .pulse = {&clock, &capture, {fathom_output_set_pin, &pin}, 0, 0, 0, 0, 0})
+DRIVER(a16_pwm, (void)0, &capture, &clock, &output, NULL)
 ONLY(a16_pwm, distance_mm)
 
 fathom_sensor_t a16_pwm_edges_begin(void)
 {
-    static const fathom_a16_pwm_config_t config = {
-        .pulse = {.clock = &clock, .capture = &edges_capture, .trigger = {fathom_output_set_pin, &pin}}};
     fathom_edges_init(&edges, &pin);
     edges_capture = fathom_edges_capture(&edges);
-    fathom_a16_pwm_init(&a16_pwm, &config);
+    fathom_a16_pwm_init(&a16_pwm, &edges_capture, &clock, &output, NULL);
     return fathom_a16_pwm_sensor(&a16_pwm);
 }
 
@@ -69,9 +70,8 @@ void a16_pwm_edges_use(const fathom_sample_t *sample)
 
 fathom_sensor_t a16_rs232_begin(void)
 {
-    static const fathom_a16_auto_config_t config = {.line = &line};
     const fathom_sensor_t sensor = a16_modbus_begin();
-    fathom_a16_auto_init(&a16_auto, &config);
+    fathom_a16_auto_init(&a16_auto, &line, NULL);
     fathom_a16_rs232_init(&a16_rs232, &a16_modbus, &a16_auto);
     return argument != 0 ? fathom_a16_auto_sensor(&a16_auto) : sensor;
 }
@@ -85,16 +85,16 @@ void a16_rs232_use(const fathom_sample_t *sample)
     outcome = (uint16_t)fathom_a16_rs232_due_us(&a16_rs232);
 }
 
-DRIVER(a16_switch, (void)0, .pin = &pin, .clock = &clock)
+DRIVER(a16_switch, (void)0, &pin, &clock, NULL)
 ONLY(a16_switch, kind)
 
 fathom_sensor_t a16_switch_set_begin(void)
 {
     static fathom_contact_guard_t guard;
-    static const fathom_a16_switch_config_t config = {.pin = &pin, .clock = &clock, .guard = &guard};
+    static const fathom_a16_switch_config_t config = {.guard = &guard};
     a16_modbus_begin();
     guard = fathom_contact_line_guard(&line);
-    fathom_a16_switch_init(&a16_switch, &config);
+    fathom_a16_switch_init(&a16_switch, &pin, &clock, &config);
     return fathom_a16_switch_sensor(&a16_switch);
 }
 

@@ -2,8 +2,9 @@
 #include "programs.h"
 
 static const fathom_line_settings_t settings = {19200, FATHOM_PARITY_EVEN, 1};
+static const fathom_hps167s_config_t config = {.modbus.line_settings = &settings};
 
-DRIVER(hps167s, modbus_begin(), .modbus.transport = &modbus, .modbus.line_settings = &settings)
+DRIVER(hps167s, modbus_begin(), &modbus, &config)
 
 void hps167s_use(const fathom_sample_t *sample)
 {
@@ -44,5 +45,5 @@ void hps167s_settings_use(const fathom_sample_t *sample)
     outcome = (uint16_t)fathom_hps167s_restore_factory_settings(&hps167s);
 }
 
-DRIVER(hps167s_auto, listening_begin(), .line = &line)
+DRIVER(hps167s_auto, listening_begin(), &line, NULL)
 ONLY(hps167s_auto, distance_mm)

@@ -36,14 +36,13 @@ extern volatile uint16_t argument;
 extern volatile uint16_t outcome;
 extern volatile uint8_t level;
 
-/* The driver of that name and how its program begins: after `before`, with this configuration. */
+/* The driver of that name and how its program begins: after `before`, with these parameters of init behind the driver. */
 #define DRIVER(name, before, ...)                                                                            \
     static fathom_##name##_t name;                                                                           \
     fathom_sensor_t name##_begin(void)                                                                       \
     {                                                                                                        \
-        static const fathom_##name##_config_t config = {__VA_ARGS__};                                        \
         before;                                                                                              \
-        fathom_##name##_init(&name, &config);                                                                \
+        fathom_##name##_init(&name, __VA_ARGS__);                                                            \
         return fathom_##name##_sensor(&name);                                                                \
     }
 

@@ -18,8 +18,7 @@ int main(void)
                                         .find_echo = fathom_line_find_echo};
     if (fathom_line_init(&line, &config) != FATHOM_OK) return 1;
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
-    const fathom_hps167s_config_t hps_config = {.modbus = {.transport = &modbus}};
-    if (fathom_hps167s_init(&hps, &hps_config) != FATHOM_OK) return 1;
+    if (fathom_hps167s_init(&hps, &modbus, NULL) != FATHOM_OK) return 1;
     const fathom_sensor_t sensor = fathom_hps167s_sensor(&hps);
     fathom_sample_t sample;
     fathom_status_t status;

@@ -16,12 +16,10 @@ static void show(rig_t *rig, size_t i) { second_scene(&rig->device, &there[i % T
 static fathom_sensor_t begin_modbus(rig_t *rig, fathom_a05_modbus_t *sensor, uint8_t probes,
                                     uint16_t registers)
 {
-    fathom_a05_modbus_config_t config = {.modbus.transport = &rig->modbus,
-                                         .modbus.address = rig->device.address,
-                                         .probes = probes,
-                                         .registers = registers};
+    fathom_a05_modbus_config_t config = {
+        .modbus.address = rig->device.address, .probes = probes, .registers = registers};
     config.modbus.retries = rig->device.config.seed % 5 == 0 ? 2 : 0;
-    assert_int_equal(fathom_a05_modbus_init(sensor, &config), FATHOM_OK);
+    assert_int_equal(fathom_a05_modbus_init(sensor, &rig->modbus, &config), FATHOM_OK);
     return fathom_a05_modbus_sensor(sensor);
 }
 
@@ -60,11 +58,11 @@ void life_a05_uart(rig_t *rig)
     fathom_a05_auto_t automatic;
     fathom_a05_modbus_t sensor;
     fathom_status_t status;
-    fathom_a05_auto_config_t config = {.line = &rig->line, .gap_us = rig->line_parts.gap_us};
+    fathom_a05_auto_config_t config = {.gap_us = rig->line_parts.gap_us};
     config.select = fathom_output_line_break(&rig->line);
     config.probes = rig->device.config.fitted;
     config.stale_us = rig->device.config.seed % 2 == 0 ? 0 : 4 * SECOND_US;
-    assert_int_equal(fathom_a05_auto_init(&automatic, &config), FATHOM_OK);
+    assert_int_equal(fathom_a05_auto_init(&automatic, &rig->line, &config), FATHOM_OK);
     fathom_sensor_t by_itself = fathom_a05_auto_sensor(&automatic);
     judge_begin("a05_auto_power_on");
     JUDGE_RUN(status, by_itself,
@@ -119,9 +117,8 @@ void life_a05_rs485(rig_t *rig)
 
 static fathom_sensor_t begin_dyp(rig_t *rig, fathom_a05_dyp_t *sensor, uint8_t probes)
 {
-    fathom_a05_dyp_config_t config = {
-        .modbus.transport = &rig->dyp, .modbus.address = rig->device.address, .probes = probes};
-    assert_int_equal(fathom_a05_dyp_init(sensor, &config), FATHOM_OK);
+    fathom_a05_dyp_config_t config = {.modbus.address = rig->device.address, .probes = probes};
+    assert_int_equal(fathom_a05_dyp_init(sensor, &rig->dyp, &config), FATHOM_OK);
     return fathom_a05_dyp_sensor(sensor);
 }
 

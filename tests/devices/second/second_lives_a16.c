@@ -21,12 +21,11 @@ static uint32_t stale_us(const rig_t *rig) { return rig->device.config.seed % 2 
 void life_a16_auto(rig_t *rig)
 {
     fathom_a16_auto_t sensor;
-    fathom_a16_auto_config_t config = {
-        .line = &rig->line, .stale_us = stale_us(rig), .gap_us = rig->line_parts.gap_us};
+    fathom_a16_auto_config_t config = {.stale_us = stale_us(rig), .gap_us = rig->line_parts.gap_us};
     config.select = fathom_output_line_break(&rig->line);
     config.value = rig->device.config.seed % 4 >= 2 ? FATHOM_REAL_TIME : FATHOM_PROCESSED;
     rig_power(rig, true);
-    assert_int_equal(fathom_a16_auto_init(&sensor, &config), FATHOM_OK);
+    assert_int_equal(fathom_a16_auto_init(&sensor, &rig->line, &config), FATHOM_OK);
     fathom_sensor_t any = fathom_a16_auto_sensor(&sensor);
     for (size_t i = 0; i < 5; i++) {
         show(rig, i);
@@ -45,11 +44,10 @@ void life_a16_auto(rig_t *rig)
 void life_a16_controlled(rig_t *rig)
 {
     fathom_a16_controlled_t sensor;
-    fathom_a16_controlled_config_t config = {.line = &rig->line,
-                                             .trigger = fathom_output_line_break(&rig->line),
-                                             .gap_us = rig->line_parts.gap_us};
+    const fathom_output_t trigger = fathom_output_line_break(&rig->line);
+    fathom_a16_controlled_config_t config = {.gap_us = rig->line_parts.gap_us};
     rig_power(rig, true);
-    assert_int_equal(fathom_a16_controlled_init(&sensor, &config), FATHOM_OK);
+    assert_int_equal(fathom_a16_controlled_init(&sensor, &rig->line, &trigger, &config), FATHOM_OK);
     fathom_sensor_t any = fathom_a16_controlled_sensor(&sensor);
     for (size_t i = 0; i < 5; i++) {
         show(rig, i);
@@ -60,10 +58,9 @@ void life_a16_controlled(rig_t *rig)
 
 static fathom_sensor_t begin_modbus(rig_t *rig, fathom_a16_modbus_t *sensor, uint8_t value)
 {
-    fathom_a16_modbus_config_t config = {
-        .modbus.transport = &rig->modbus, .modbus.address = rig->device.address, .value = value};
+    fathom_a16_modbus_config_t config = {.modbus.address = rig->device.address, .value = value};
     config.modbus.retries = rig->device.config.seed % 5 == 0 ? 2 : 0;
-    assert_int_equal(fathom_a16_modbus_init(sensor, &config), FATHOM_OK);
+    assert_int_equal(fathom_a16_modbus_init(sensor, &rig->modbus, &config), FATHOM_OK);
     return fathom_a16_modbus_sensor(sensor);
 }
 
@@ -167,10 +164,9 @@ void life_a16_rs232(rig_t *rig)
     fathom_a16_rs232_t rs232;
     fathom_sample_t sample;
     fathom_status_t status;
-    fathom_a16_auto_config_t config = {
-        .line = &rig->line, .stale_us = stale_us(rig), .gap_us = rig->line_parts.gap_us};
+    fathom_a16_auto_config_t config = {.stale_us = stale_us(rig), .gap_us = rig->line_parts.gap_us};
     rig_power(rig, true);
-    assert_int_equal(fathom_a16_auto_init(&automatic, &config), FATHOM_OK);
+    assert_int_equal(fathom_a16_auto_init(&automatic, &rig->line, &config), FATHOM_OK);
     fathom_sensor_t by_itself = fathom_a16_auto_sensor(&automatic);
     judge_poll("a16_auto RS232", &by_itself, 8, SETTLED_US);
     fathom_sensor_t any = begin_modbus(rig, &sensor, 0);

@@ -19,14 +19,13 @@ static hps_driver_t h;
 static void begin(rig_t *rig)
 {
     h.settings = (fathom_line_settings_t){rig->device.line.baud, FATHOM_PARITY_EVEN, 1};
-    fathom_hps167s_config_t config = {.modbus.transport = &rig->modbus,
-                                      .modbus.line_settings = &h.settings,
+    fathom_hps167s_config_t config = {.modbus.line_settings = &h.settings,
                                       .modbus.address = rig->device.address,
                                       .modbus.retries = 2,
                                       .warm_up_s = rig->device.hps.flash.warm_s};
     config.no_warm_up = config.warm_up_s == 0;
     config.low_word_first = second_choice(&rig->device, CHOICE_hps_reconnect_order) == 2;
-    assert_int_equal(fathom_hps167s_init(&h.sensor, &config), FATHOM_OK);
+    assert_int_equal(fathom_hps167s_init(&h.sensor, &rig->modbus, &config), FATHOM_OK);
     h.any = fathom_hps167s_sensor(&h.sensor);
 }
 
@@ -168,8 +167,7 @@ void life_hps167s_auto(rig_t *rig)
 {
     fathom_hps167s_auto_t listener;
     begin(rig);
-    fathom_hps167s_auto_config_t config = {.line = &rig->line};
-    assert_int_equal(fathom_hps167s_auto_init(&listener, &config), FATHOM_OK);
+    assert_int_equal(fathom_hps167s_auto_init(&listener, &rig->line, NULL), FATHOM_OK);
     fathom_hps167s_auto_follow(&listener, &h.sensor);
     fathom_sensor_t any = fathom_hps167s_auto_sensor(&listener);
     rig_power(rig, true);

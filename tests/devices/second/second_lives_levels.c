@@ -23,10 +23,9 @@ void life_a16_pwm(rig_t *rig)
 {
     fathom_a16_pwm_t sensor;
     fathom_capture_t capture = fathom_edges_capture(&rig->edges);
-    fathom_a16_pwm_config_t config = {
-        .pulse = {.clock = &rig->clock, .capture = &capture, .trigger = fathom_output_break(&rig->uart)}};
+    const fathom_output_t trigger = fathom_output_break(&rig->uart);
     rig_power(rig, true);
-    assert_int_equal(fathom_a16_pwm_init(&sensor, &config), FATHOM_OK);
+    assert_int_equal(fathom_a16_pwm_init(&sensor, &capture, &rig->clock, &trigger, NULL), FATHOM_OK);
     fathom_sensor_t any = fathom_a16_pwm_sensor(&sensor);
     live(rig, "a16_pwm", &any);
     fathom_a16_pwm_deinit(&sensor);
@@ -35,10 +34,9 @@ void life_a16_pwm(rig_t *rig)
 void life_a16_switch(rig_t *rig)
 {
     fathom_a16_switch_t sensor;
-    fathom_a16_switch_config_t config = {
-        .pin = &rig->pin, .clock = &rig->clock, .timing = {.period_us = 700000}};
+    fathom_a16_switch_config_t config = {.timing = {.period_us = 700000}};
     rig_power(rig, true);
-    assert_int_equal(fathom_a16_switch_init(&sensor, &config), FATHOM_OK);
+    assert_int_equal(fathom_a16_switch_init(&sensor, &rig->pin, &rig->clock, &config), FATHOM_OK);
     fathom_sensor_t any = fathom_a16_switch_sensor(&sensor);
     live(rig, "a16_switch", &any);
 }
@@ -46,10 +44,9 @@ void life_a16_switch(rig_t *rig)
 void life_a05_relay(rig_t *rig)
 {
     fathom_a05_relay_t sensor;
-    fathom_a05_relay_config_t config = {
-        .pin = &rig->pin, .clock = &rig->clock, .timing = {.period_us = 700000}};
+    fathom_a05_relay_config_t config = {.timing = {.period_us = 700000}};
     rig_power(rig, true);
-    assert_int_equal(fathom_a05_relay_init(&sensor, &config), FATHOM_OK);
+    assert_int_equal(fathom_a05_relay_init(&sensor, &rig->pin, &rig->clock, &config), FATHOM_OK);
     fathom_sensor_t any = fathom_a05_relay_sensor(&sensor);
     live(rig, "a05_relay", &any);
 }

@@ -33,9 +33,8 @@ static damage_counted_t counted_by(const fathom_stream_t *stream)
 
 static fathom_sensor_t begin_a16(void)
 {
-    const fathom_a16_auto_config_t config = {
-        .line = &rig.line, .stale_us = STALE_US, .gap_us = rig.line_parts.gap_us};
-    assert_int_equal(fathom_a16_auto_init(&a16, &config), FATHOM_OK);
+    const fathom_a16_auto_config_t config = {.stale_us = STALE_US, .gap_us = rig.line_parts.gap_us};
+    assert_int_equal(fathom_a16_auto_init(&a16, &rig.line, &config), FATHOM_OK);
     return fathom_a16_auto_sensor(&a16);
 }
 
@@ -48,11 +47,9 @@ static damage_counted_t end_a16(void)
 
 static fathom_sensor_t begin_a05(void)
 {
-    const fathom_a05_auto_config_t config = {.line = &rig.line,
-                                             .stale_us = STALE_US,
-                                             .gap_us = rig.line_parts.gap_us,
-                                             .probes = rig.device.config.fitted};
-    assert_int_equal(fathom_a05_auto_init(&a05, &config), FATHOM_OK);
+    const fathom_a05_auto_config_t config = {
+        .stale_us = STALE_US, .gap_us = rig.line_parts.gap_us, .probes = rig.device.config.fitted};
+    assert_int_equal(fathom_a05_auto_init(&a05, &rig.line, &config), FATHOM_OK);
     return fathom_a05_auto_sensor(&a05);
 }
 
@@ -65,9 +62,8 @@ static damage_counted_t end_a05(void)
 
 static fathom_sensor_t begin_hps(void)
 {
-    const fathom_hps167s_auto_config_t config = {
-        .line = &rig.line, .stale_us = STALE_US, .address = rig.device.address};
-    assert_int_equal(fathom_hps167s_auto_init(&hps, &config), FATHOM_OK);
+    const fathom_hps167s_auto_config_t config = {.stale_us = STALE_US, .address = rig.device.address};
+    assert_int_equal(fathom_hps167s_auto_init(&hps, &rig.line, &config), FATHOM_OK);
     return fathom_hps167s_auto_sensor(&hps);
 }
 
@@ -82,9 +78,9 @@ static damage_counted_t end_hps(void)
 
 static fathom_sensor_t begin_controlled(void)
 {
-    const fathom_a16_controlled_config_t config = {
-        .line = &rig.line, .trigger = fathom_output_line_break(&rig.line), .gap_us = rig.line_parts.gap_us};
-    assert_int_equal(fathom_a16_controlled_init(&controlled, &config), FATHOM_OK);
+    const fathom_output_t trigger = fathom_output_line_break(&rig.line);
+    const fathom_a16_controlled_config_t config = {.gap_us = rig.line_parts.gap_us};
+    assert_int_equal(fathom_a16_controlled_init(&controlled, &rig.line, &trigger, &config), FATHOM_OK);
     return fathom_a16_controlled_sensor(&controlled);
 }
 

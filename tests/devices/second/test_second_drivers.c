@@ -105,7 +105,7 @@ static fathom_sensor_t begin_a16_modbus(rig_t *on)
 {
     static fathom_a16_modbus_t sensor;
     memset(&sensor, 0, sizeof sensor);
-    (void)fathom_a16_modbus_init(&sensor, &(fathom_a16_modbus_config_t){.modbus.transport = &on->modbus});
+    (void)fathom_a16_modbus_init(&sensor, &on->modbus, NULL);
     return fathom_a16_modbus_sensor(&sensor);
 }
 
@@ -113,7 +113,7 @@ static fathom_sensor_t begin_a05_dyp(rig_t *on)
 {
     static fathom_a05_dyp_t sensor;
     memset(&sensor, 0, sizeof sensor);
-    (void)fathom_a05_dyp_init(&sensor, &(fathom_a05_dyp_config_t){.modbus.transport = &on->dyp});
+    (void)fathom_a05_dyp_init(&sensor, &on->dyp, NULL);
     return fathom_a05_dyp_sensor(&sensor);
 }
 
@@ -121,7 +121,7 @@ static fathom_sensor_t begin_hps167s(rig_t *on)
 {
     static fathom_hps167s_t sensor;
     memset(&sensor, 0, sizeof sensor);
-    (void)fathom_hps167s_init(&sensor, &(fathom_hps167s_config_t){.modbus.transport = &on->modbus});
+    (void)fathom_hps167s_init(&sensor, &on->modbus, NULL);
     return fathom_hps167s_sensor(&sensor);
 }
 

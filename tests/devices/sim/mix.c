@@ -112,17 +112,15 @@ void mix_run(const mix_t *mix, uint32_t seconds, mix_share_t shares[MIX_SENSORS]
     seen.modbus = fathom_modbus_client(&line);
     fathom_modbus_t modbus = seen.modbus;
     modbus.submit = submit;
-    const fathom_a16_modbus_config_t a16_config = {
-        .modbus = {.transport = &modbus, .line_settings = &ultrasonic, .address = 1},
-        .value = mix->processed ? FATHOM_PROCESSED : FATHOM_REAL_TIME};
-    const fathom_a05_modbus_config_t a05_config = {
-        .modbus = {.transport = &modbus, .line_settings = &ultrasonic, .address = 2}};
+    const fathom_a16_modbus_config_t a16_config = {.modbus = {.line_settings = &ultrasonic, .address = 1},
+                                                   .value =
+                                                       mix->processed ? FATHOM_PROCESSED : FATHOM_REAL_TIME};
+    const fathom_a05_modbus_config_t a05_config = {.modbus = {.line_settings = &ultrasonic, .address = 2}};
     const fathom_hps167s_config_t hps_config = {
-        .modbus = {
-            .transport = &modbus, .line_settings = &infrared, .address = 7, .period_us = mix->hps_period_us}};
-    (void)fathom_a16_modbus_init(&a16, &a16_config);
-    (void)fathom_a05_modbus_init(&a05, &a05_config);
-    (void)fathom_hps167s_init(&hps, &hps_config);
+        .modbus = {.line_settings = &infrared, .address = 7, .period_us = mix->hps_period_us}};
+    (void)fathom_a16_modbus_init(&a16, &modbus, &a16_config);
+    (void)fathom_a05_modbus_init(&a05, &modbus, &a05_config);
+    (void)fathom_hps167s_init(&hps, &modbus, &hps_config);
 
     const fathom_sensor_t all[MIX_SENSORS] = {fathom_a16_modbus_sensor(&a16), fathom_a05_modbus_sensor(&a05),
                                               fathom_hps167s_sensor(&hps)};

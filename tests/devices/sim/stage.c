@@ -57,19 +57,15 @@ void stage_begin(const fathom_line_settings_t *settings, bool full_duplex, uint3
 
 void init_driver(driver_t *driver, model_t model, uint8_t unit, const fathom_line_settings_t *settings)
 {
-    const fathom_a16_modbus_config_t a16 = {
-        .modbus.transport = &s.modbus, .modbus.address = unit, .modbus.line_settings = settings};
-    const fathom_a05_modbus_config_t a05 = {
-        .modbus.transport = &s.modbus, .modbus.address = unit, .modbus.line_settings = settings};
-    const fathom_a05_dyp_config_t dyp = {
-        .modbus.transport = &s.dyp, .modbus.address = unit, .modbus.line_settings = settings};
-    const fathom_hps167s_config_t hps = {
-        .modbus.transport = &s.modbus, .modbus.address = unit, .modbus.line_settings = settings};
+    const fathom_a16_modbus_config_t a16 = {.modbus.address = unit, .modbus.line_settings = settings};
+    const fathom_a05_modbus_config_t a05 = {.modbus.address = unit, .modbus.line_settings = settings};
+    const fathom_a05_dyp_config_t dyp = {.modbus.address = unit, .modbus.line_settings = settings};
+    const fathom_hps167s_config_t hps = {.modbus.address = unit, .modbus.line_settings = settings};
     fathom_status_t status = FATHOM_PENDING;
-    if (model == HPS) status = fathom_hps167s_init(&driver->hps, &hps);
-    if (model == A16) status = fathom_a16_modbus_init(&driver->a16, &a16);
-    if (model == A05) status = fathom_a05_modbus_init(&driver->a05, &a05);
-    if (model == A05_DYP) status = fathom_a05_dyp_init(&driver->dyp, &dyp);
+    if (model == HPS) status = fathom_hps167s_init(&driver->hps, &s.modbus, &hps);
+    if (model == A16) status = fathom_a16_modbus_init(&driver->a16, &s.modbus, &a16);
+    if (model == A05) status = fathom_a05_modbus_init(&driver->a05, &s.modbus, &a05);
+    if (model == A05_DYP) status = fathom_a05_dyp_init(&driver->dyp, &s.dyp, &dyp);
     assert_int_equal(status, FATHOM_OK);
 }
 

@@ -37,12 +37,10 @@ static inline void set_switch(int32_t mm)
     add_a16(FATHOM_SIM_A16_SWITCH, (a16_config_t){0});
     take_pin();
     guard = fathom_contact_line_guard(&s.line);
-    const fathom_a16_switch_config_t own = {.pin = &pin,
-                                            .clock = &s.hal_clock,
-                                            .guard = &guard,
+    const fathom_a16_switch_config_t own = {.guard = &guard,
                                             .timing.period_us = FATHOM_MAX_DURATION_US, /* changes alone */
                                             .address = 1};
-    assert_int_equal(fathom_a16_switch_init(&a16, &own), FATHOM_OK);
+    assert_int_equal(fathom_a16_switch_init(&a16, &pin, &s.hal_clock, &own), FATHOM_OK);
     s.sensor = fathom_a16_switch_sensor(&a16);
     init_driver(&s.driver, A16, 1, NULL);
 }
@@ -52,11 +50,9 @@ static inline void set_relay(int32_t mm, a05_config_t config, uint8_t wiring)
     begin(mm);
     add_a05(FATHOM_SIM_A05_RELAY, config);
     take_pin();
-    const fathom_a05_relay_config_t own = {.pin = &pin,
-                                           .clock = &s.hal_clock,
-                                           .timing.period_us = FATHOM_MAX_DURATION_US, /* changes alone */
+    const fathom_a05_relay_config_t own = {.timing.period_us = FATHOM_MAX_DURATION_US, /* changes alone */
                                            .wiring = wiring};
-    assert_int_equal(fathom_a05_relay_init(&a05, &own), FATHOM_OK);
+    assert_int_equal(fathom_a05_relay_init(&a05, &pin, &s.hal_clock, &own), FATHOM_OK);
     s.sensor = fathom_a05_relay_sensor(&a05);
 }
 

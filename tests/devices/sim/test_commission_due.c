@@ -90,9 +90,8 @@ static fathom_sample_t sample;
 /* FF 02 EF F0 (751 mm) and perhaps more after a silence, while unit 1 is asked. */
 static void hear_frame(const uint8_t *bytes, size_t count)
 {
-    const fathom_a16_auto_config_t automatic = {.line = &line};
     set_desk();
-    assert_int_equal(fathom_a16_auto_init(&a16, &automatic), FATHOM_OK);
+    assert_int_equal(fathom_a16_auto_init(&a16, &line, NULL), FATHOM_OK);
     sensor = fathom_a16_auto_sensor(&a16);
     ask();
     pass(10 * MS);

@@ -103,9 +103,8 @@ TEST(an_address_is_set_in_one_protocol_while_the_other_measures)
         const bool dyp_sets = n % 2 != 0;
         fathom_status_t status;
         set_up(A05_DYP, 1, loops_us[n / 2], FATHOM_LINE_ECHO_AUTO);
-        const fathom_a05_modbus_config_t config = {.modbus.transport = &s.modbus,
-                                                   .modbus.line_settings = &s.settings};
-        assert_int_equal(fathom_a05_modbus_init(&second, &config), FATHOM_OK);
+        const fathom_a05_modbus_config_t config = {.modbus.line_settings = &s.settings};
+        assert_int_equal(fathom_a05_modbus_init(&second, &s.modbus, &config), FATHOM_OK);
         const fathom_sensor_t modbus = fathom_a05_modbus_sensor(&second);
         const unsigned readings =
             with_others(dyp_sets ? set_by_dyp : set_by_modbus, dyp_sets ? modbus : s.sensor,
@@ -124,8 +123,7 @@ static bool among_unasked(const job_t *job, uint32_t unasked_us, uint32_t loop_u
     set_up_for(job, loop_us, FATHOM_LINE_ECHO_AUTO);
     fathom_sim_detach(&bench.line, bench.device, s.clock.now_us);
     add_hps((hps_config_t){.address = job->unit, .unasked_us = unasked_us});
-    const fathom_hps167s_auto_config_t config = {.line = &s.line};
-    assert_int_equal(fathom_hps167s_auto_init(&listener, &config), FATHOM_OK);
+    assert_int_equal(fathom_hps167s_auto_init(&listener, &s.line, NULL), FATHOM_OK);
     fathom_hps167s_auto_follow(&listener, &s.driver.hps);
     const fathom_sensor_t heard = fathom_hps167s_auto_sensor(&listener);
     fathom_status_t status;

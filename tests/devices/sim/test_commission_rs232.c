@@ -21,8 +21,7 @@ static void set_up_serial(uint32_t loop_us)
     add_a16(FATHOM_SIM_A16_AUTO, (a16_config_t){0});
     set_faults(1);
     bench.fault.clock = &s.clock;
-    const fathom_a16_auto_config_t config = {.line = &s.line};
-    assert_int_equal(fathom_a16_auto_init(&automatic, &config), FATHOM_OK);
+    assert_int_equal(fathom_a16_auto_init(&automatic, &s.line, NULL), FATHOM_OK);
     fathom_a16_rs232_init(&rs232, &s.driver.a16, &automatic);
     s.sensor = fathom_a16_auto_sensor(&automatic);
     heard = 0;

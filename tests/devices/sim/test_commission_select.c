@@ -16,9 +16,9 @@ static void set_up_start(uint32_t loop_us, bool by_pin)
     add_a05(FATHOM_SIM_A05_AUTO, (a05_config_t){.processed = PROCESSED});
     fathom_sim_pins_init(&s.pins, bench.device, &bench.line, &s.clock);
     rx = fathom_sim_rx_pin(&s.pins);
-    const fathom_a05_auto_config_t config = {
-        .line = &s.line, .select = by_pin ? fathom_output_pin(&rx) : fathom_output_line_break(&s.line)};
-    assert_int_equal(fathom_a05_auto_init(&automatic, &config), FATHOM_OK);
+    const fathom_a05_auto_config_t config = {.select = by_pin ? fathom_output_pin(&rx)
+                                                              : fathom_output_line_break(&s.line)};
+    assert_int_equal(fathom_a05_auto_init(&automatic, &s.line, &config), FATHOM_OK);
     s.sensor = fathom_a05_auto_sensor(&automatic);
     init_driver(&s.driver, A05, 1, NULL);
 }

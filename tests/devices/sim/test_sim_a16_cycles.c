@@ -28,11 +28,8 @@ static void set(uint8_t mode, int32_t distance, uint32_t step_us, a16_config_t c
 
 static void begin_pwm(bool by_break)
 {
-    const fathom_a16_pwm_config_t config = {
-        .pulse = {.clock = &s.hal_clock,
-                  .capture = &capture,
-                  .trigger = by_break ? fathom_output_break(&s.uart) : fathom_output_pin(&trigger)}};
-    assert_int_equal(fathom_a16_pwm_init(&pwm, &config), FATHOM_OK);
+    const fathom_output_t edge = by_break ? fathom_output_break(&s.uart) : fathom_output_pin(&trigger);
+    assert_int_equal(fathom_a16_pwm_init(&pwm, &capture, &s.hal_clock, &edge, NULL), FATHOM_OK);
     s.sensor = fathom_a16_pwm_sensor(&pwm);
 }
 
@@ -43,8 +40,8 @@ static fathom_output_t output(bool by_break)
 
 static void begin_controlled(bool by_break)
 {
-    const fathom_a16_controlled_config_t config = {.line = &s.line, .trigger = output(by_break)};
-    assert_int_equal(fathom_a16_controlled_init(&controlled, &config), FATHOM_OK);
+    const fathom_output_t edge = output(by_break);
+    assert_int_equal(fathom_a16_controlled_init(&controlled, &s.line, &edge, NULL), FATHOM_OK);
     s.sensor = fathom_a16_controlled_sensor(&controlled);
 }
 
@@ -275,8 +272,8 @@ static void the_select_of_the_automatic_mode_reaches_the_module(bool by_break)
     fathom_a16_auto_t automatic;
     bench.processed = FIXED(1000);
     set(FATHOM_SIM_A16_UART, 2000, 20000, (a16_config_t){.processed = PROCESSED});
-    const fathom_a16_auto_config_t config = {.line = &s.line, .select = output(by_break)};
-    assert_int_equal(fathom_a16_auto_init(&automatic, &config), FATHOM_OK);
+    const fathom_a16_auto_config_t config = {.select = output(by_break)};
+    assert_int_equal(fathom_a16_auto_init(&automatic, &s.line, &config), FATHOM_OK);
     s.sensor = fathom_a16_auto_sensor(&automatic);
     run(1000 * MS);
     assert_int_equal(last.distance_mm, 1000);

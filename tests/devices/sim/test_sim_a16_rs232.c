@@ -11,8 +11,7 @@ static void set(uint8_t mode, uint32_t loop_us)
     stage_begin(&bench_9600, true, loop_us);
     bench.fixed = FIXED(1953);
     set_echo(FATHOM_LINE_ECHO_OFF);
-    const fathom_a16_auto_config_t config = {.line = &s.line};
-    assert_int_equal(fathom_a16_auto_init(&automatic, &config), FATHOM_OK);
+    assert_int_equal(fathom_a16_auto_init(&automatic, &s.line, NULL), FATHOM_OK);
     init_driver(&s.driver, A16, 1, NULL);
     fathom_a16_rs232_init(&rs232, &s.driver.a16, &automatic);
     add_a16(mode, (a16_config_t){0});

@@ -42,11 +42,10 @@ static void set(uint32_t loop_us, hps_config_t config, const fathom_line_setting
     stage_begin(&bench_19200, false, loop_us);
     bench.fixed = FIXED(TARGET_MM);
     s.model = HPS;
-    const fathom_hps167s_config_t driver = {.modbus.transport = &s.modbus,
-                                            .modbus.line_settings = at,
+    const fathom_hps167s_config_t driver = {.modbus.line_settings = at,
                                             .modbus.address = config.address != 0 ? config.address : 1,
                                             .modbus.timeout_us = 100 * MS};
-    assert_int_equal(fathom_hps167s_init(hps, &driver), FATHOM_OK);
+    assert_int_equal(fathom_hps167s_init(hps, &s.modbus, &driver), FATHOM_OK);
     s.sensor = sensor_of(&s.driver, HPS);
     add_hps(config);
     set_faults(1);

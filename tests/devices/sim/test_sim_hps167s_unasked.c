@@ -36,8 +36,7 @@ static void begin(uint32_t loop_us, uint32_t unasked_us, bool is_asked)
     init_driver(&s.driver, HPS, 1, NULL);
     measuring = sensor_of(&s.driver, HPS);
     add_hps((hps_config_t){.unasked_us = unasked_us});
-    const fathom_hps167s_auto_config_t config = {.line = &s.line};
-    assert_int_equal(fathom_hps167s_auto_init(&hears, &config), FATHOM_OK);
+    assert_int_equal(fathom_hps167s_auto_init(&hears, &s.line, NULL), FATHOM_OK);
     if (is_asked) fathom_hps167s_auto_follow(&hears, hps);
     s.sensor = fathom_hps167s_auto_sensor(&hears);
     heard = 0;

@@ -23,15 +23,12 @@ static void begin(const fathom_line_settings_t *slow, const fathom_line_settings
     add_a16(FATHOM_SIM_A16_MODBUS, (a16_config_t){.scene = fathom_sim_fixed(&scenes[0])});
     add_a05(FATHOM_SIM_A05_DYP, (a05_config_t){.address = 2, .scene = fathom_sim_fixed(&scenes[1])});
     add_hps((hps_config_t){.address = 3, .scene = fathom_sim_fixed(&scenes[2])});
-    const fathom_a16_modbus_config_t a16 = {
-        .modbus.transport = &s.modbus, .modbus.line_settings = slow, .value = FATHOM_REAL_TIME};
-    const fathom_hps167s_config_t hps = {.modbus.transport = &s.modbus,
-                                         .modbus.line_settings = fast,
-                                         .modbus.period_us = 100 * MS,
-                                         .modbus.address = 3};
-    assert_int_equal(fathom_a16_modbus_init(&drivers[0].a16, &a16), FATHOM_OK);
+    const fathom_a16_modbus_config_t a16 = {.modbus.line_settings = slow, .value = FATHOM_REAL_TIME};
+    const fathom_hps167s_config_t hps = {
+        .modbus.line_settings = fast, .modbus.period_us = 100 * MS, .modbus.address = 3};
+    assert_int_equal(fathom_a16_modbus_init(&drivers[0].a16, &s.modbus, &a16), FATHOM_OK);
     init_driver(&drivers[1], A05_DYP, 2, slow);
-    assert_int_equal(fathom_hps167s_init(&drivers[2].hps, &hps), FATHOM_OK);
+    assert_int_equal(fathom_hps167s_init(&drivers[2].hps, &s.modbus, &hps), FATHOM_OK);
     for (unsigned i = 0; i != SENSORS; i++) {
         sensors[i] = sensor_of(&drivers[i], models[i]);
         readings[i] = errors[i] = 0;

@@ -59,8 +59,7 @@ TEST(a_debounced_a16_is_the_switch_of_one)
         .mode = FATHOM_SIM_A16_UART, .scene = fathom_sim_fixed(&bench.fixed), .period_us = 500 * MS};
     fathom_sim_a16_init(&s.other.a16, &config);
     begin_beside();
-    const fathom_a16_auto_config_t own = {.line = &beside.line};
-    assert_int_equal(fathom_a16_auto_init(&automatic, &own), FATHOM_OK);
+    assert_int_equal(fathom_a16_auto_init(&automatic, &beside.line, NULL), FATHOM_OK);
     assert_int_equal(fathom_debounce_init(&gate, &(fathom_debounce_config_t){0}), FATHOM_OK);
     const fathom_sensor_t sensor = fathom_a16_auto_sensor(&automatic);
     unsigned changes = 0;
@@ -90,8 +89,8 @@ TEST(the_rule_over_an_a05_is_the_relay_of_one)
     const a05_config_t config = {.mode = FATHOM_SIM_A05_AUTO, .scene = fathom_sim_fixed(&bench.fixed)};
     fathom_sim_a05_init(&s.other.a05, &config);
     begin_beside();
-    const fathom_a05_auto_config_t own = {.line = &beside.line, .probes = 0x0B};
-    assert_int_equal(fathom_a05_auto_init(&automatic, &own), FATHOM_OK);
+    const fathom_a05_auto_config_t own = {.probes = 0x0B};
+    assert_int_equal(fathom_a05_auto_init(&automatic, &beside.line, &own), FATHOM_OK);
     const fathom_a05_relay_rule_config_t same = {.probes = 0x0B};
     assert_int_equal(fathom_a05_relay_rule_init(&rule, &same), FATHOM_OK);
     const fathom_sensor_t sensor = fathom_a05_auto_sensor(&automatic);
@@ -124,8 +123,7 @@ TEST(an_odd_probe_neither_hides_one_that_is_near_nor_keeps_the_level_for_ever)
     const a05_config_t config = {.mode = FATHOM_SIM_A05_AUTO, .scene = fathom_sim_fixed(&bench.fixed)};
     fathom_sim_a05_init(&s.other.a05, &config);
     begin_beside();
-    assert_int_equal(fathom_a05_auto_init(&automatic, &(fathom_a05_auto_config_t){.line = &beside.line}),
-                     FATHOM_OK);
+    assert_int_equal(fathom_a05_auto_init(&automatic, &beside.line, NULL), FATHOM_OK);
     assert_int_equal(fathom_a05_relay_rule_init(&rule, &(fathom_a05_relay_rule_config_t){0}), FATHOM_OK);
     const fathom_sensor_t sensor = fathom_a05_auto_sensor(&automatic);
     for (unsigned i = 0; i != 2; i++) {

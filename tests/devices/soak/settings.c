@@ -52,18 +52,14 @@ fathom_sim_device_t *soak_device_init(soak_device_t *device, uint8_t setting, ui
 }
 
 #define WINDOW .window = {.max_mm = options->max_mm}
-#define STREAM .line = line, .stale_us = stale_us, .gap_us = options->gap_us, WINDOW
-#define ASKED(over)                                                                                          \
-    .modbus = {.transport = over,                                                                            \
-               .address = address,                                                                           \
-               .backoff_us = options->backoff_us,                                                            \
-               .retries = options->retries}
+#define STREAM .stale_us = stale_us, .gap_us = options->gap_us, WINDOW
+#define ASKED  .modbus = {.address = address, .backoff_us = options->backoff_us, .retries = options->retries}
 
-/* The driver of that kind and member, with its configuration. */
-#define DRIVER(kind, ...)                                                                                    \
+/* The driver of that kind and member, on this line or transport, with its configuration. */
+#define DRIVER(kind, on, ...)                                                                                \
     {                                                                                                        \
         const fathom_##kind##_config_t config = {__VA_ARGS__};                                               \
-        (void)fathom_##kind##_init(&driver->kind, &config);                                                  \
+        (void)fathom_##kind##_init(&driver->kind, on, &config);                                              \
         return fathom_##kind##_sensor(&driver->kind);                                                        \
     }
 
@@ -77,12 +73,12 @@ fathom_sensor_t soak_driver_init(soak_driver_t *driver, uint8_t setting, uint8_t
     /* the bounds of recovery are of streams that are stale after the time that the setting tells */
     const uint32_t stale_us = options->stale_us != 0 ? options->stale_us : soak_facts[setting].timeout_us;
     memset(driver, 0, sizeof *driver);
-    if (!soak_is_asked(setting) && is_a16) DRIVER(a16_auto, STREAM)
-    if (!soak_is_asked(setting)) DRIVER(a05_auto, STREAM)
-    if (soak_facts[setting].proof == SOAK_SUM) DRIVER(a05_dyp, ASKED(dyp), WINDOW, .probes = probes)
-    if (setting == SOAK_HPS167S) DRIVER(hps167s, ASKED(modbus))
-    if (setting == SOAK_A05_MODBUS) DRIVER(a05_modbus, ASKED(modbus), WINDOW)
-    DRIVER(a16_modbus, ASKED(modbus), WINDOW, .value = value)
+    if (!soak_is_asked(setting) && is_a16) DRIVER(a16_auto, line, STREAM)
+    if (!soak_is_asked(setting)) DRIVER(a05_auto, line, STREAM)
+    if (soak_facts[setting].proof == SOAK_SUM) DRIVER(a05_dyp, dyp, ASKED, WINDOW, .probes = probes)
+    if (setting == SOAK_HPS167S) DRIVER(hps167s, modbus, ASKED)
+    if (setting == SOAK_A05_MODBUS) DRIVER(a05_modbus, modbus, ASKED, WINDOW)
+    DRIVER(a16_modbus, modbus, ASKED, WINDOW, .value = value)
 }
 
 static const fathom_dyp_modbus_t *ultrasonic(const soak_driver_t *driver, uint8_t setting)

@@ -89,8 +89,8 @@ TEST(an_abandoned_command_holds_up_no_other_sensor)
         fathom_hps167s_version_t version;
         (void)open_user(USER_HPS167S, turns_us[t]);
         wire_add(&(wire_unit_t){.kind = WIRE_HPS167S, .address = 2, .answer_us = 2000});
-        const fathom_hps167s_config_t config = {.modbus = {.transport = &desk.modbus, .address = 2}};
-        assert_int_equal(fathom_hps167s_init(&abandoned, &config), FATHOM_OK);
+        const fathom_hps167s_config_t config = {.modbus = {.address = 2}};
+        assert_int_equal(fathom_hps167s_init(&abandoned, &desk.modbus, &config), FATHOM_OK);
         expect_readings();
         assert_int_equal(fathom_hps167s_get_interface_version(&abandoned, &version), FATHOM_PENDING);
         poll_users(60u * SECOND_US);
@@ -104,8 +104,8 @@ TEST(an_abandoned_setting_holds_up_no_other_sensor)
         static fathom_hps167s_t abandoned;
         (void)open_user(USER_HPS167S, turns_us[t]);
         wire_add(&(wire_unit_t){.kind = WIRE_HPS167S, .address = 2, .answer_us = 2000});
-        const fathom_hps167s_config_t config = {.modbus = {.transport = &desk.modbus, .address = 2}};
-        assert_int_equal(fathom_hps167s_init(&abandoned, &config), FATHOM_OK);
+        const fathom_hps167s_config_t config = {.modbus = {.address = 2}};
+        assert_int_equal(fathom_hps167s_init(&abandoned, &desk.modbus, &config), FATHOM_OK);
         for (unsigned polls = 1; polls != 40; polls++) { /* it stops in each of its steps */
             fathom_hps167s_cancel(&abandoned);
             for (unsigned i = 0; i != polls; i++) {

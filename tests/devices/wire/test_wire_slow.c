@@ -32,8 +32,8 @@ static void open_sensor(unsigned loop_ms, unsigned phase, uint32_t timeout_us, w
                             .keeps_schedule = ways.keeps_schedule});
     desk_open(DESK_ALL, loop_ms * 1000u, 100);
     const fathom_hps167s_config_t config = {
-        .modbus = {.transport = &desk.modbus, .timeout_us = timeout_us, .command_timeout_us = timeout_us}};
-    assert_int_equal(fathom_hps167s_init(&sensor, &config), FATHOM_OK);
+        .modbus = {.timeout_us = timeout_us, .command_timeout_us = timeout_us}};
+    assert_int_equal(fathom_hps167s_init(&sensor, &desk.modbus, &config), FATHOM_OK);
 }
 
 /* The time after which the command has succeeded. A command that fails begins again. */

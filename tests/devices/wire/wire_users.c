@@ -50,10 +50,9 @@ const char *user_name(user_kind_t kind) { return kinds[kind].name; }
 bool user_is_stream(user_kind_t kind) { return kinds[kind].is_stream; }
 uint32_t user_byte_us(user_kind_t kind) { return kinds[kind].byte_us; }
 
-static fathom_modbus_config_t modbus_config(const user_t *user, const fathom_modbus_t *transport)
+static fathom_modbus_config_t modbus_config(const user_t *user)
 {
-    return (fathom_modbus_config_t){.transport = transport,
-                                    .timeout_us = (uint32_t)user->timeout_us,
+    return (fathom_modbus_config_t){.timeout_us = (uint32_t)user->timeout_us,
                                     .command_timeout_us = (uint32_t)user->timeout_us,
                                     .backoff_us = BACKOFF_US,
                                     .address = user->unit->address,
@@ -67,25 +66,24 @@ static fathom_status_t init_requests(user_t *user)
     const size_t i = index_of(user);
     switch (user->kind) {
     case USER_HPS167S: {
-        const fathom_hps167s_config_t config = {.modbus = modbus_config(user, &desk.modbus)};
+        const fathom_hps167s_config_t config = {.modbus = modbus_config(user)};
         user->sensor = fathom_hps167s_sensor(&drivers[i].hps);
-        return fathom_hps167s_init(&drivers[i].hps, &config);
+        return fathom_hps167s_init(&drivers[i].hps, &desk.modbus, &config);
     }
     case USER_A16_MODBUS: {
-        const fathom_a16_modbus_config_t config = {.modbus = modbus_config(user, &desk.modbus),
-                                                   .value = FATHOM_REAL_TIME};
+        const fathom_a16_modbus_config_t config = {.modbus = modbus_config(user), .value = FATHOM_REAL_TIME};
         user->sensor = fathom_a16_modbus_sensor(&drivers[i].a16);
-        return fathom_a16_modbus_init(&drivers[i].a16, &config);
+        return fathom_a16_modbus_init(&drivers[i].a16, &desk.modbus, &config);
     }
     case USER_A05_MODBUS: {
-        const fathom_a05_modbus_config_t config = {.modbus = modbus_config(user, &desk.modbus)};
+        const fathom_a05_modbus_config_t config = {.modbus = modbus_config(user)};
         user->sensor = fathom_a05_modbus_sensor(&drivers[i].a05);
-        return fathom_a05_modbus_init(&drivers[i].a05, &config);
+        return fathom_a05_modbus_init(&drivers[i].a05, &desk.modbus, &config);
     }
     default: {
-        const fathom_a05_dyp_config_t config = {.modbus = modbus_config(user, &desk.dyp)};
+        const fathom_a05_dyp_config_t config = {.modbus = modbus_config(user)};
         user->sensor = fathom_a05_dyp_sensor(&drivers[i].dyp);
-        return fathom_a05_dyp_init(&drivers[i].dyp, &config);
+        return fathom_a05_dyp_init(&drivers[i].dyp, &desk.dyp, &config);
     }
     }
 }
@@ -95,26 +93,24 @@ static fathom_status_t init_stream(user_t *user)
     const size_t i = index_of(user);
     switch (user->kind) {
     case USER_HPS167S_AUTO: {
-        const fathom_hps167s_auto_config_t config = {
-            .line = &desk.line, .stale_us = STALE_US, .address = user->unit->address};
+        const fathom_hps167s_auto_config_t config = {.stale_us = STALE_US, .address = user->unit->address};
         user->sensor = fathom_hps167s_auto_sensor(&drivers[i].hps_auto);
-        return fathom_hps167s_auto_init(&drivers[i].hps_auto, &config);
+        return fathom_hps167s_auto_init(&drivers[i].hps_auto, &desk.line, &config);
     }
     case USER_A16_AUTO: {
-        const fathom_a16_auto_config_t config = {.line = &desk.line, .stale_us = STALE_US};
+        const fathom_a16_auto_config_t config = {.stale_us = STALE_US};
         user->sensor = fathom_a16_auto_sensor(&drivers[i].a16_auto);
-        return fathom_a16_auto_init(&drivers[i].a16_auto, &config);
+        return fathom_a16_auto_init(&drivers[i].a16_auto, &desk.line, &config);
     }
     case USER_A05_AUTO: {
-        const fathom_a05_auto_config_t config = {.line = &desk.line, .stale_us = STALE_US};
+        const fathom_a05_auto_config_t config = {.stale_us = STALE_US};
         user->sensor = fathom_a05_auto_sensor(&drivers[i].a05_auto);
-        return fathom_a05_auto_init(&drivers[i].a05_auto, &config);
+        return fathom_a05_auto_init(&drivers[i].a05_auto, &desk.line, &config);
     }
     default: {
-        const fathom_a16_controlled_config_t config = {.line = &desk.line,
-                                                       .trigger = fathom_output_line_break(&desk.line)};
+        const fathom_output_t trigger = fathom_output_line_break(&desk.line);
         user->sensor = fathom_a16_controlled_sensor(&drivers[i].controlled);
-        return fathom_a16_controlled_init(&drivers[i].controlled, &config);
+        return fathom_a16_controlled_init(&drivers[i].controlled, &desk.line, &trigger, NULL);
     }
     }
 }

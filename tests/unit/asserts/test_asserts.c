@@ -35,8 +35,7 @@ TEST(a_right_program_fails_no_check)
     failed_asserts = 0;
     assert_int_equal(fathom_line_init(&line, &right_parts), FATHOM_OK);
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
-    const fathom_hps167s_config_t config = {.modbus.transport = &modbus};
-    assert_int_equal(fathom_hps167s_init(&sensor, &config), FATHOM_OK);
+    assert_int_equal(fathom_hps167s_init(&sensor, &modbus, NULL), FATHOM_OK);
     const fathom_sensor_t gate = fathom_hps167s_sensor(&sensor);
     fathom_sample_t sample;
     for (unsigned i = 0; i != 3000; i++) assert_true(fathom_poll(&gate, &sample) != FATHOM_OK);
@@ -83,15 +82,14 @@ TEST(an_init_over_a_queued_request_is_found)
     failed_asserts = 0;
     assert_int_equal(fathom_line_init(&line, &right_parts), FATHOM_OK);
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
-    const fathom_hps167s_config_t config = {.modbus.transport = &modbus};
-    assert_int_equal(fathom_hps167s_init(&sensor, &config), FATHOM_OK);
+    assert_int_equal(fathom_hps167s_init(&sensor, &modbus, NULL), FATHOM_OK);
     const fathom_sensor_t gate = fathom_hps167s_sensor(&sensor);
     fathom_sample_t sample;
     while (!fathom_line_is_idle(&line) || fathom_poll(&gate, &sample) == FATHOM_PENDING) {
         if (!fathom_line_is_idle(&line)) break;
     }
     assert_int_equal(failed_asserts, 0);
-    assert_int_equal(fathom_hps167s_init(&sensor, &config), FATHOM_ERR_BUSY);
+    assert_int_equal(fathom_hps167s_init(&sensor, &modbus, NULL), FATHOM_ERR_BUSY);
     assert_int_equal(failed_asserts, 1);
     fathom_hps167s_deinit(&sensor);
 }

@@ -249,12 +249,11 @@ static void add_hps(bool is_beside, uint8_t how, const fathom_modbus_config_t *m
                                         .same_responses = how % 9,
                                         .low_word_first = (how & 16) != 0,
                                         .no_warm_up = (how & 32) != 0};
-    PROMISE(fathom_hps167s_init(&hps, &of) == FATHOM_OK, "hps167s.h: init");
+    PROMISE(fathom_hps167s_init(&hps, &transport, &of) == FATHOM_OK, "hps167s.h: init");
     add(fathom_hps167s_sensor(&hps));
     COMMANDS(hps_commands);
     if (!is_beside) return;
-    const fathom_hps167s_auto_config_t beside = {.line = &line};
-    PROMISE(fathom_hps167s_auto_init(&hps_auto, &beside) == FATHOM_OK, "hps167s_auto.h: init");
+    PROMISE(fathom_hps167s_auto_init(&hps_auto, &line, NULL) == FATHOM_OK, "hps167s_auto.h: init");
     fathom_hps167s_auto_follow(&hps_auto, &hps);
     add(fathom_hps167s_auto_sensor(&hps_auto));
 }
@@ -262,33 +261,31 @@ static void add_hps(bool is_beside, uint8_t how, const fathom_modbus_config_t *m
 static void add_a16(bool is_rs232, uint8_t how, const fathom_modbus_config_t *modbus)
 {
     const fathom_a16_modbus_config_t of = {.modbus = *modbus, .value = how & 1};
-    PROMISE(fathom_a16_modbus_init(&a16, &of) == FATHOM_OK, "a16_modbus.h: init");
+    PROMISE(fathom_a16_modbus_init(&a16, &transport, &of) == FATHOM_OK, "a16_modbus.h: init");
     add(fathom_a16_modbus_sensor(&a16));
     COMMANDS(a16_commands);
     if (!is_rs232) return;
-    const fathom_a16_auto_config_t automatic = {.line = &line};
-    PROMISE(fathom_a16_auto_init(&a16_auto, &automatic) == FATHOM_OK, "a16_auto.h: init");
+    PROMISE(fathom_a16_auto_init(&a16_auto, &line, NULL) == FATHOM_OK, "a16_auto.h: init");
     add(fathom_a16_auto_sensor(&a16_auto));
     fathom_a16_rs232_init(&rs232, &a16, &a16_auto);
 }
 
 static void add_controlled(uint8_t how)
 {
-    fathom_a16_controlled_config_t of = {.line = &line, .trigger = fathom_output_pin(&pin)};
-    if ((how & 1) != 0) of.trigger = fathom_output_line_break(&line);
-    PROMISE(fathom_a16_controlled_init(&controlled, &of) == FATHOM_OK, "a16_controlled.h: init");
+    const fathom_output_t trigger =
+        (how & 1) != 0 ? fathom_output_line_break(&line) : fathom_output_pin(&pin);
+    PROMISE(fathom_a16_controlled_init(&controlled, &line, &trigger, NULL) == FATHOM_OK,
+            "a16_controlled.h: init");
     add(fathom_a16_controlled_sensor(&controlled));
 }
 
 static void add_world(uint8_t world, uint8_t how)
 {
-    fathom_modbus_config_t modbus = {.transport = &transport, .retries = how >> 7};
+    fathom_modbus_config_t modbus = {.retries = how >> 7};
     modbus.line_settings = (how & 64) != 0 ? &wire_settings[1] : NULL;
-    const fathom_a05_auto_config_t of_a05_auto = {.line = &line, .probes = how % 16};
-    const fathom_hps167s_auto_config_t of_hps_auto = {.line = &line};
+    const fathom_a05_auto_config_t of_a05_auto = {.probes = how % 16};
     const fathom_a05_modbus_config_t of_a05 = {.modbus = modbus, .probes = how % 16};
-    fathom_a05_dyp_config_t of_dyp = {.modbus = modbus, .probes = how % 16};
-    of_dyp.modbus.transport = &dyp_transport;
+    const fathom_a05_dyp_config_t of_dyp = {.modbus = modbus, .probes = how % 16};
     is_asked = world < 6;
     switch (world) {
     case 0:
@@ -300,21 +297,21 @@ static void add_world(uint8_t world, uint8_t how)
         add_a16(world == 3, how, &modbus);
         break;
     case 4:
-        PROMISE(fathom_a05_modbus_init(&a05, &of_a05) == FATHOM_OK, "a05_modbus.h: init");
+        PROMISE(fathom_a05_modbus_init(&a05, &transport, &of_a05) == FATHOM_OK, "a05_modbus.h: init");
         add(fathom_a05_modbus_sensor(&a05));
         COMMANDS(a05_commands);
         break;
     case 5:
-        PROMISE(fathom_a05_dyp_init(&a05_dyp, &of_dyp) == FATHOM_OK, "a05_dyp.h: init");
+        PROMISE(fathom_a05_dyp_init(&a05_dyp, &dyp_transport, &of_dyp) == FATHOM_OK, "a05_dyp.h: init");
         add(fathom_a05_dyp_sensor(&a05_dyp));
         COMMANDS(dyp_commands);
         break;
     case 6:
-        PROMISE(fathom_a05_auto_init(&a05_auto, &of_a05_auto) == FATHOM_OK, "a05_auto.h: init");
+        PROMISE(fathom_a05_auto_init(&a05_auto, &line, &of_a05_auto) == FATHOM_OK, "a05_auto.h: init");
         add(fathom_a05_auto_sensor(&a05_auto));
         break;
     case 7:
-        PROMISE(fathom_hps167s_auto_init(&hps_auto, &of_hps_auto) == FATHOM_OK, "hps167s_auto.h: init");
+        PROMISE(fathom_hps167s_auto_init(&hps_auto, &line, NULL) == FATHOM_OK, "hps167s_auto.h: init");
         add(fathom_hps167s_auto_sensor(&hps_auto));
         break;
     default:

@@ -153,15 +153,13 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     rise_us = now_us;
     fathom_edges_init(&edges, &input);
     const fathom_capture_t capture = fathom_edges_capture(&edges);
-    const fathom_a16_pwm_config_t of_pwm = {
-        .pulse = {.clock = &clock_of_pins, .capture = &capture, .trigger = fathom_output_pin(&output)},
-        .in_air = (how & 2) != 0,
-        .air_dc = (int16_t)(how - 50)};
-    PROMISE(fathom_a16_pwm_init(&pwm, &of_pwm) == FATHOM_OK, "a16_pwm.h: init");
-    const fathom_a16_switch_config_t of_switch = {.pin = &input, .clock = &clock_of_pins};
-    PROMISE(fathom_a16_switch_init(&contact, &of_switch) == FATHOM_OK, "a16_switch.h: init");
-    const fathom_a05_relay_config_t of_relay = {.pin = &input, .clock = &clock_of_pins};
-    PROMISE(fathom_a05_relay_init(&relay, &of_relay) == FATHOM_OK, "a05_relay.h: init");
+    const fathom_output_t rx = fathom_output_pin(&output);
+    const fathom_a16_pwm_config_t of_pwm = {.in_air = (how & 2) != 0, .air_dc = (int16_t)(how - 50)};
+    PROMISE(fathom_a16_pwm_init(&pwm, &capture, &clock_of_pins, &rx, &of_pwm) == FATHOM_OK,
+            "a16_pwm.h: init");
+    PROMISE(fathom_a16_switch_init(&contact, &input, &clock_of_pins, NULL) == FATHOM_OK,
+            "a16_switch.h: init");
+    PROMISE(fathom_a05_relay_init(&relay, &input, &clock_of_pins, NULL) == FATHOM_OK, "a05_relay.h: init");
     const fathom_sensor_t sensors[] = {fathom_a16_pwm_sensor(&pwm), fathom_a16_switch_sensor(&contact),
                                        fathom_a05_relay_sensor(&relay)};
     while (fuzz_more()) {

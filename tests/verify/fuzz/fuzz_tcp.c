@@ -311,11 +311,10 @@ static void play_transport(fathom_libmodbus_t *port, uint8_t how)
     fathom_hps167s_t hps;
     fathom_a05_modbus_t a05;
     bool has_ended[2] = {false, false};
-    const fathom_hps167s_config_t of_hps = {.modbus = {.transport = &transport, .retries = how >> 1 & 1}};
-    const fathom_a05_modbus_config_t of_a05 = {.modbus = {.transport = &transport, .address = 2},
-                                               .probes = how >> 3};
-    PROMISE(fathom_hps167s_init(&hps, &of_hps) == FATHOM_OK, "hps167s.h: init");
-    PROMISE(fathom_a05_modbus_init(&a05, &of_a05) == FATHOM_OK, "a05_modbus.h: init");
+    const fathom_hps167s_config_t of_hps = {.modbus = {.retries = how >> 1 & 1}};
+    const fathom_a05_modbus_config_t of_a05 = {.modbus = {.address = 2}, .probes = how >> 3};
+    PROMISE(fathom_hps167s_init(&hps, &transport, &of_hps) == FATHOM_OK, "hps167s.h: init");
+    PROMISE(fathom_a05_modbus_init(&a05, &transport, &of_a05) == FATHOM_OK, "a05_modbus.h: init");
     const fathom_sensor_t sensors[2] = {fathom_hps167s_sensor(&hps), fathom_a05_modbus_sensor(&a05)};
     while (fuzz_more()) {
         const uint8_t op = fuzz_byte();

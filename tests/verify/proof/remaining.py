@@ -150,18 +150,19 @@ LINES_FRAME = 'the transport is that of a line, whose frame buffer has 8 bytes o
 UNREACHED = {
     ('line/a05_dyp', 'has_room'): (2, LINES_FRAME),
     ('line/a05_dyp', 'has_room_0'): (2, LINES_FRAME),
-    ('line/a16_modbus', 'due_us_0'): (1, ONE_PROBE),
     ('line/a16_modbus', 'fathom_dyp_modbus_init'): (1, A16),
+    ('line/a16_modbus', 'fathom_dyp_modbus_sensor_due_us'): (1, ONE_PROBE),
+    ('line/a16_modbus', 'fathom_dyp_modbus_sensor_poll'): (3, ONE_PROBE),
     ('line/a16_modbus', 'fathom_modbus_unit_begin'): (1, CLOCK),
     ('line/a16_modbus', 'is_valid'): (1, CLOCK),
     ('line/a16_modbus', 'moves'): (1, NO_RATE),
-    ('line/a16_modbus', 'poll'): (3, ONE_PROBE),
     ('line/a16_modbus', 'use_new_address'): (1, NO_RATE),
     ('line/clients', 'command_of_read'): (3, NO_HIGH_BYTE),
     ('line/hps167s', 'fathom_hps167s_follow'): (1, NO_FOLLOW),
     ('line/hps167s', 'fathom_hps167s_power_on'): (1, NO_FOLLOW),
     ('line/hps167s', 'is_valid_0'): (4, REFUSED_BEFORE + '; ' + CLOCK),
-    ('line/hps167s_auto', 'due_us'): (1, 'the harness polls before each due_us, and the poll takes the reading'),
+    ('line/hps167s_auto', 'fathom_hps167s_auto_sensor_due_us'):
+        (1, 'the harness polls before each due_us, and the poll takes the reading'),
     ('pure/dyp', 'complete'): (2, 'each case of the switch returns, so nothing follows it'),
     ('line/line', 'fathom_line_submit'): (3, 'the line of the harness can send, so `fail_all` is not NULL'),
 }

@@ -9,7 +9,6 @@ static bool read_auto(reader_t *reader, channel_t *channel, const reader_setting
 {
     fathom_a05_auto_t *const driver = &reader->driver.a05_auto;
     const fathom_a05_auto_config_t config = {
-        .line = &channel->line,
         .select = fathom_output_line_break(&channel->line),
         .stale_us = settings->timeout_us,
         .gap_us = CHANNEL_STREAM_GAP_US,
@@ -17,7 +16,7 @@ static bool read_auto(reader_t *reader, channel_t *channel, const reader_setting
         .probes = settings->probes,
     };
     reader_begin(reader, channel);
-    if (fathom_a05_auto_init(driver, &config) != FATHOM_OK) return false;
+    if (fathom_a05_auto_init(driver, &channel->line, &config) != FATHOM_OK) return false;
     (void)dyp_begin_auto(reader, &driver->base, fathom_a05_auto_sensor(driver));
     return !settings->has_value || a05_select(reader, channel, settings->value);
 }
@@ -26,13 +25,13 @@ static bool read_modbus(reader_t *reader, channel_t *channel, const reader_setti
 {
     fathom_a05_modbus_t *const driver = &reader->driver.a05_modbus;
     const fathom_a05_modbus_config_t config = {
-        .modbus = reader_config(channel, settings, &channel->modbus),
+        .modbus = reader_config(channel, settings),
         .window = settings->window,
         .registers = settings->registers,
         .probes = settings->probes,
     };
     reader_begin(reader, channel);
-    return fathom_a05_modbus_init(driver, &config) == FATHOM_OK &&
+    return fathom_a05_modbus_init(driver, &channel->modbus, &config) == FATHOM_OK &&
            dyp_begin_asked(reader, &driver->base, fathom_a05_modbus_sensor(driver), reader_modbus);
 }
 
@@ -40,12 +39,12 @@ static bool read_dyp(reader_t *reader, channel_t *channel, const reader_settings
 {
     fathom_a05_dyp_t *const driver = &reader->driver.a05_dyp;
     const fathom_a05_dyp_config_t config = {
-        .modbus = reader_config(channel, settings, &channel->dyp),
+        .modbus = reader_config(channel, settings),
         .window = settings->window,
         .probes = settings->probes,
     };
     reader_begin(reader, channel);
-    return fathom_a05_dyp_init(driver, &config) == FATHOM_OK &&
+    return fathom_a05_dyp_init(driver, &channel->dyp, &config) == FATHOM_OK &&
            dyp_begin_asked(reader, &driver->base, fathom_a05_dyp_sensor(driver), "55 AA");
 }
 
@@ -58,14 +57,12 @@ static bool read_relay(reader_t *reader, channel_t *channel, const reader_settin
     const bool conducts_high = wanted->bias == FATHOM_GPIO_BIAS_PULL_DOWN;
     const bool is_normally_closed = wanted->near == (conducts_high ? PINS_NEAR_LOW : PINS_NEAR_HIGH);
     const fathom_a05_relay_config_t config = {
-        .pin = &channel->pins.in,
-        .clock = &channel->clock,
         .timing = reader_contact_timing(channel, settings),
         .wiring = is_normally_closed ? FATHOM_A05_RELAY_NORMALLY_CLOSED : FATHOM_A05_RELAY_NORMALLY_OPEN,
         .level = conducts_high ? FATHOM_A05_RELAY_CONDUCTS_HIGH : FATHOM_A05_RELAY_CONDUCTS_LOW,
     };
     reader_begin(reader, channel);
-    return fathom_a05_relay_init(driver, &config) == FATHOM_OK &&
+    return fathom_a05_relay_init(driver, &channel->pins.in, &channel->clock, &config) == FATHOM_OK &&
            reader_begin_contact(reader, channel, &driver->base, fathom_a05_relay_sensor(driver));
 }
 

@@ -18,7 +18,6 @@ static bool read_auto(reader_t *reader, channel_t *channel, const reader_setting
 {
     fathom_a16_auto_t *const driver = &reader->driver.a16_auto;
     fathom_a16_auto_config_t config = {
-        .line = &channel->line,
         .stale_us = settings->timeout_us,
         .gap_us = CHANNEL_STREAM_GAP_US,
         .window = settings->window,
@@ -30,7 +29,7 @@ static bool read_auto(reader_t *reader, channel_t *channel, const reader_setting
         config.select = fathom_output_line_break(&channel->line);
     }
     if (settings->value == FATHOM_REAL_TIME && !reader_has_break(reader, channel)) return false;
-    if (fathom_a16_auto_init(driver, &config) != FATHOM_OK) return false;
+    if (fathom_a16_auto_init(driver, &channel->line, &config) != FATHOM_OK) return false;
     reader->end = end_auto;
     return dyp_begin_auto(reader, &driver->base, fathom_a16_auto_sensor(driver));
 }
@@ -39,15 +38,14 @@ static bool read_auto(reader_t *reader, channel_t *channel, const reader_setting
 static bool read_controlled(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
 {
     fathom_a16_controlled_t *const driver = &reader->driver.a16_controlled;
+    const fathom_output_t trigger = fathom_output_line_break(&channel->line);
     const fathom_a16_controlled_config_t config = {
-        .line = &channel->line,
-        .trigger = fathom_output_line_break(&channel->line),
         .period_us = settings->period_us,
         .gap_us = CHANNEL_STREAM_GAP_US,
         .window = settings->window,
     };
     reader_begin(reader, channel);
-    if (fathom_a16_controlled_init(driver, &config) != FATHOM_OK) return false;
+    if (fathom_a16_controlled_init(driver, &channel->line, &trigger, &config) != FATHOM_OK) return false;
     reader->sensor = fathom_a16_controlled_sensor(driver);
     reader->end = end_controlled;
     reader->frames = driver->stream.counters;
@@ -64,12 +62,12 @@ static bool read_modbus(reader_t *reader, channel_t *channel, const reader_setti
 {
     fathom_a16_modbus_t *const driver = &reader->driver.a16_modbus;
     const fathom_a16_modbus_config_t config = {
-        .modbus = reader_config(channel, settings, &channel->modbus),
+        .modbus = reader_config(channel, settings),
         .window = settings->window,
         .value = settings->value,
     };
     reader_begin(reader, channel);
-    return fathom_a16_modbus_init(driver, &config) == FATHOM_OK &&
+    return fathom_a16_modbus_init(driver, &channel->modbus, &config) == FATHOM_OK &&
            dyp_begin_asked(reader, &driver->base, fathom_a16_modbus_sensor(driver), reader_modbus);
 }
 

@@ -9,13 +9,11 @@ bool a16_read_pwm(reader_t *reader, channel_t *channel, const reader_settings_t 
     fathom_a16_pwm_t *const driver = &reader->driver.a16_pwm;
     const pins_t *const pins = &channel->pins;
     const uint32_t cycle_us = settings->period_us > FATHOM_PULSE_DEFAULT_CYCLE_US ? settings->period_us : 0;
-    const fathom_a16_pwm_config_t config = {.pulse = {.clock = &channel->clock,
-                                                      .capture = &pins->capture,
-                                                      .trigger = fathom_output_pin(&pins->trigger),
-                                                      .cycle_us = cycle_us},
-                                            .window = settings->window};
+    const fathom_output_t output = fathom_output_pin(&pins->trigger);
+    const fathom_a16_pwm_config_t config = {.pulse = {.cycle_us = cycle_us}, .window = settings->window};
     reader_begin(reader, channel);
-    if (fathom_a16_pwm_init(driver, &config) != FATHOM_OK) return false;
+    if (fathom_a16_pwm_init(driver, &pins->capture, &channel->clock, &output, &config) != FATHOM_OK)
+        return false;
     reader->sensor = fathom_a16_pwm_sensor(driver);
     reader->end = end_pwm;
     reader->sequence = &driver->sequence;
@@ -30,11 +28,9 @@ bool a16_read_pwm(reader_t *reader, channel_t *channel, const reader_settings_t 
 bool a16_read_switch(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
 {
     fathom_a16_switch_t *const driver = &reader->driver.a16_switch;
-    const fathom_a16_switch_config_t config = {.pin = &channel->pins.in,
-                                               .clock = &channel->clock,
-                                               .timing = reader_contact_timing(channel, settings),
+    const fathom_a16_switch_config_t config = {.timing = reader_contact_timing(channel, settings),
                                                .negative = channel->pins.wanted.near == PINS_NEAR_LOW};
     reader_begin(reader, channel);
-    return fathom_a16_switch_init(driver, &config) == FATHOM_OK &&
+    return fathom_a16_switch_init(driver, &channel->pins.in, &channel->clock, &config) == FATHOM_OK &&
            reader_begin_contact(reader, channel, &driver->base, fathom_a16_switch_sensor(driver));
 }

@@ -47,8 +47,8 @@ static fathom_status_t send_again(reader_t *reader, int32_t value)
     fathom_sample_t sample;
     (void)value;
     if (!is_begun) {
-        const fathom_a16_auto_config_t config = {.line = reader->line, .gap_us = CHANNEL_STREAM_GAP_US};
-        if (fathom_a16_auto_init(&automatic, &config) != FATHOM_OK) return FATHOM_ERR_ARGUMENT;
+        const fathom_a16_auto_config_t config = {.gap_us = CHANNEL_STREAM_GAP_US};
+        if (fathom_a16_auto_init(&automatic, reader->line, &config) != FATHOM_OK) return FATHOM_ERR_ARGUMENT;
         fathom_a16_rs232_init(&rs232, &reader->driver.a16_modbus, &automatic);
         is_begun = true;
     }

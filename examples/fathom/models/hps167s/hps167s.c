@@ -10,8 +10,7 @@
 
 static void listen_unasked(reader_t *reader)
 {
-    const fathom_hps167s_auto_config_t config = {.line = reader->line};
-    (void)fathom_hps167s_auto_init(&reader->unasked, &config);
+    (void)fathom_hps167s_auto_init(&reader->unasked, reader->line, NULL);
     fathom_hps167s_auto_follow(&reader->unasked, &reader->driver.hps167s);
 }
 

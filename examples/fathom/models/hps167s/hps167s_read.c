@@ -17,13 +17,13 @@ bool hps167s_read_modbus(reader_t *reader, channel_t *channel, const reader_sett
 {
     fathom_hps167s_t *const driver = &reader->driver.hps167s;
     fathom_hps167s_config_t config = {
-        .modbus = reader_config(channel, settings, &channel->modbus),
+        .modbus = reader_config(channel, settings),
     };
     reader_begin(reader, channel);
     /* The driver's period is also that of the temperature. */
     if (settings->temperature_us != 0) config.modbus.period_us = 0;
     fathom_hps167s_limits_t *const limits = limits_of(reader, settings);
-    if (fathom_hps167s_init(driver, &config) != FATHOM_OK) return false;
+    if (fathom_hps167s_init(driver, &channel->modbus, &config) != FATHOM_OK) return false;
     if (limits != NULL && fathom_hps167s_set_limits(driver, limits) != FATHOM_OK) return false;
     reader->sensor = fathom_hps167s_sensor(driver);
     reader->protocol = reader_modbus;
@@ -82,13 +82,12 @@ bool hps167s_read_auto(reader_t *reader, channel_t *channel, const reader_settin
 {
     fathom_hps167s_auto_t *const driver = &reader->unasked;
     const fathom_hps167s_auto_config_t config = {
-        .line = &channel->line,
         .stale_us = settings->timeout_us,
         .address = settings->address,
     };
     reader_begin(reader, channel);
     fathom_hps167s_limits_t *const limits = limits_of(reader, settings);
-    if (fathom_hps167s_auto_init(driver, &config) != FATHOM_OK) return false;
+    if (fathom_hps167s_auto_init(driver, &channel->line, &config) != FATHOM_OK) return false;
     if (limits != NULL && fathom_hps167s_auto_set_limits(driver, limits) != FATHOM_OK) return false;
     reader->sensor = (fathom_sensor_t){poll_auto, due_us_auto, reader};
     reader->frames = reader->unasked_frames;

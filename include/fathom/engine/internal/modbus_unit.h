@@ -70,14 +70,11 @@ extern "C" {
 /**
  * @brief Connection of a Modbus driver to its sensor: the part of the config that all Modbus drivers share.
  *
- * The driver's init function copies the config. The transport, its clock and the line settings must stay valid as long
- * as the driver. A member that is 0 takes its default. The init function returns FATHOM_ERR_ARGUMENT if a member is
- * outside its range.
+ * The driver's init function copies the config. The transport, which is a parameter of that function, its clock and the
+ * line settings must stay valid as long as the driver. A member that is 0 takes its default. The init function returns
+ * FATHOM_ERR_ARGUMENT if a member is outside its range.
  */
 typedef struct {
-    /** @brief The transport: fathom_modbus_client(), fathom_dyp_client(), or that of a port. Not NULL. */
-    const fathom_modbus_t *transport;
-
     /** @brief Line settings of this unit, if those of the units on one line differ (line.h); NULL: unchanged. */
     const fathom_line_settings_t *line_settings;
 
@@ -196,30 +193,32 @@ typedef struct {
  *
  * `*unit` may be uninitialised: the function compares only its address.
  *
- * @param unit    The unit, a part of the driver.
- * @param config  The config that the driver is initialised with.
- * @param driver  The driver.
- * @param size    Its size in bytes.
+ * @param unit       The unit, a part of the driver.
+ * @param transport  The transport that the driver is initialised with, or NULL.
+ * @param driver     The driver.
+ * @param size       Its size in bytes.
  * @retval FATHOM_OK     All bytes of the driver are 0.
  * @retval FATHOM_ERR_BUSY  The request of this unit is still queued. Nothing has changed. Call the driver's deinit
  *                          function first.
  */
-fathom_status_t fathom_modbus_unit_begin(fathom_modbus_unit_t *unit, const fathom_modbus_config_t *config,
+fathom_status_t fathom_modbus_unit_begin(fathom_modbus_unit_t *unit, const fathom_modbus_t *transport,
                                          void *driver, size_t size);
 
 /**
  * @brief Initialises a unit, which fathom_modbus_unit_begin() has cleared.
  *
  * @param unit        The unit.
- * @param config      The config, copied.
+ * @param transport   The transport: fathom_modbus_client(), fathom_dyp_client(), or that of a port.
+ * @param config      The config, copied. Not NULL.
  * @param timeout_us  Default of `config->timeout_us`.
  * @param pace_us     The driver's least period in microseconds.
  * @retval FATHOM_OK         The unit can be used.
- * @retval FATHOM_ERR_ARGUMENT  A member of the config is outside its range, or the transport has no clock. The unit is
- *                              still cleared.
+ * @retval FATHOM_ERR_ARGUMENT  `transport` is NULL or has no clock, or a member of the config is outside its range. The
+ *                              unit is still cleared.
  */
-fathom_status_t fathom_modbus_unit_init(fathom_modbus_unit_t *unit, const fathom_modbus_config_t *config,
-                                        uint32_t timeout_us, uint32_t pace_us);
+fathom_status_t fathom_modbus_unit_init(fathom_modbus_unit_t *unit, const fathom_modbus_t *transport,
+                                        const fathom_modbus_config_t *config, uint32_t timeout_us,
+                                        uint32_t pace_us);
 
 /**
  * @brief Polls the transport and advances all deadlines.

@@ -53,14 +53,16 @@ enum { FATHOM_DYP_REGISTER_ADDRESS = 0x0200 /**< The address (A05 3(3), A16 6(3)
  * `window`, `model` and `first` of `measurement`.
  *
  * @param sensor      The driver.
- * @param config      The configuration of the unit. Read only during the call.
+ * @param transport   The transport. Must stay valid as long as the driver.
+ * @param config      The configuration of the unit. Read only during the call. Not NULL.
  * @param timeout_us  Default of the time-out, as in fathom_modbus_unit_init().
  * @param pace_us     Least time between two measurements, as in fathom_modbus_unit_init().
  * @retval FATHOM_OK            The driver can be used.
  * @retval FATHOM_ERR_ARGUMENT  As fathom_modbus_unit_init(), or the window or `start_us` is outside its range.
  */
-fathom_status_t fathom_dyp_modbus_init(fathom_dyp_modbus_t *sensor, const fathom_modbus_config_t *config,
-                                       uint32_t timeout_us, uint32_t pace_us);
+fathom_status_t fathom_dyp_modbus_init(fathom_dyp_modbus_t *sensor, const fathom_modbus_t *transport,
+                                       const fathom_modbus_config_t *config, uint32_t timeout_us,
+                                       uint32_t pace_us);
 
 /** @brief Cancels what is in progress. */
 void fathom_dyp_modbus_deinit(fathom_dyp_modbus_t *sensor);
@@ -190,11 +192,29 @@ fathom_status_t fathom_dyp_modbus_find(fathom_dyp_modbus_find_t *find, const fat
 void fathom_dyp_modbus_find_cancel(fathom_dyp_modbus_find_t *find, const fathom_modbus_t *transport);
 
 /**
- * @brief Returns the sensor for fathom_poll() and fathom_due_us().
+ * @brief The member `poll` of the fathom_sensor_t of a driver.
  *
  * A value that is refused does not affect the values of the other probes, because the CRC confirms their places.
+ *
+ * @param ctx     The driver, a fathom_dyp_modbus_t.
+ * @param sample  Written with FATHOM_OK only.
+ * @return As fathom_a16_modbus_poll(), fathom_a05_modbus_poll() and fathom_a05_dyp_poll().
  */
-fathom_sensor_t fathom_dyp_modbus_sensor(fathom_dyp_modbus_t *sensor);
+fathom_status_t fathom_dyp_modbus_sensor_poll(void *ctx, fathom_sample_t *sample);
+
+/**
+ * @brief The member `due_us` of the fathom_sensor_t of a driver.
+ *
+ * @param ctx  The driver, a fathom_dyp_modbus_t.
+ * @return As fathom_due_us().
+ */
+uint32_t fathom_dyp_modbus_sensor_due_us(void *ctx);
+
+/** @brief Returns the sensor for fathom_poll() and fathom_due_us(). */
+static inline fathom_sensor_t fathom_dyp_modbus_sensor(fathom_dyp_modbus_t *sensor)
+{
+    return fathom_sensor_make(fathom_dyp_modbus_sensor_poll, fathom_dyp_modbus_sensor_due_us, sensor);
+}
 
 #ifdef __cplusplus
 }

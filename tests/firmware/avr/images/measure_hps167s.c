@@ -40,8 +40,7 @@ int main(void)
     if (!fathom_avr_usart0_init(&usart)) return 1;
     if (fathom_line_init(&line, &line_parts) != FATHOM_OK) return 1;
     modbus = fathom_modbus_client(&line);
-    const fathom_hps167s_config_t config = {.modbus.transport = &modbus};
-    if (fathom_hps167s_init(&gate, &config) != FATHOM_OK) return 1;
+    if (fathom_hps167s_init(&gate, &modbus, NULL) != FATHOM_OK) return 1;
     sei();
     const fathom_sensor_t sensor = fathom_hps167s_sensor(&gate);
     for (;;) {

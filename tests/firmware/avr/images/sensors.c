@@ -99,21 +99,18 @@ static uint8_t begin(uint8_t orders)
     sei();
     if (fathom_line_init(&line, &line_parts) != FATHOM_OK) GPIOR2 = 2;
     if ((orders & ORDER_A16) != 0) {
-        const fathom_a16_auto_config_t config = {.line = &line};
-        if (fathom_a16_auto_init(&a16, &config) != FATHOM_OK) GPIOR2 = 3;
+        if (fathom_a16_auto_init(&a16, &line, NULL) != FATHOM_OK) GPIOR2 = 3;
         sensors[0] = fathom_a16_auto_sensor(&a16);
     } else if ((orders & ORDER_A05) != 0) {
-        const fathom_a05_auto_config_t config = {.line = &line};
-        if (fathom_a05_auto_init(&a05, &config) != FATHOM_OK) GPIOR2 = 4;
+        if (fathom_a05_auto_init(&a05, &line, NULL) != FATHOM_OK) GPIOR2 = 4;
         sensors[0] = fathom_a05_auto_sensor(&a05);
     } else {
         modbus = fathom_modbus_client(&line);
         for (uint8_t i = 0; i < units; i++) {
-            const fathom_hps167s_config_t config = {.modbus.transport = &modbus,
-                                                    .modbus.address = (uint8_t)(1 + i),
+            const fathom_hps167s_config_t config = {.modbus.address = (uint8_t)(1 + i),
                                                     .modbus.timeout_us = 100000,
                                                     .modbus.retries = (orders & ORDER_RETRY) != 0};
-            if (fathom_hps167s_init(&hps[i], &config) != FATHOM_OK) GPIOR2 = 5;
+            if (fathom_hps167s_init(&hps[i], &modbus, &config) != FATHOM_OK) GPIOR2 = 5;
             sensors[i] = fathom_hps167s_sensor(&hps[i]);
         }
     }

@@ -81,20 +81,16 @@ static bool begin(fathom_sensor_t sensors[LINES])
 {
     for (uint8_t i = 0; i != LINES; i++)
         if (!begin_line(i, i == GATE ? 19200 : 9600)) return false;
-    const fathom_a16_modbus_config_t tank_config = {.modbus.transport = &lanes[TANK].modbus,
-                                                    .value = FATHOM_REAL_TIME};
-    const fathom_a05_modbus_config_t bumper_config = {.modbus.transport = &lanes[BUMPER].modbus};
-    const fathom_hps167s_config_t gate_config = {.modbus.transport = &lanes[GATE].modbus};
+    const fathom_a16_modbus_config_t tank_config = {.value = FATHOM_REAL_TIME};
     /* No period is printed; this one is known to send ten times a second. */
-    const fathom_a16_auto_config_t silo_config = {
-        .line = &lanes[SILO].line, .stale_us = 2000000, .gap_us = 25000};
+    const fathom_a16_auto_config_t silo_config = {.stale_us = 2000000, .gap_us = 25000};
     lanes[REAR].modbus = fathom_dyp_client(&lanes[REAR].line); /* the same transport, with the frames 55 AA */
-    const fathom_a05_dyp_config_t rear_config = {.modbus.transport = &lanes[REAR].modbus, .probes = 1};
-    if (fathom_a16_modbus_init(&tank, &tank_config) != FATHOM_OK ||
-        fathom_a05_modbus_init(&bumper, &bumper_config) != FATHOM_OK ||
-        fathom_hps167s_init(&gate, &gate_config) != FATHOM_OK ||
-        fathom_a16_auto_init(&silo, &silo_config) != FATHOM_OK ||
-        fathom_a05_dyp_init(&rear, &rear_config) != FATHOM_OK)
+    const fathom_a05_dyp_config_t rear_config = {.probes = 1};
+    if (fathom_a16_modbus_init(&tank, &lanes[TANK].modbus, &tank_config) != FATHOM_OK ||
+        fathom_a05_modbus_init(&bumper, &lanes[BUMPER].modbus, NULL) != FATHOM_OK ||
+        fathom_hps167s_init(&gate, &lanes[GATE].modbus, NULL) != FATHOM_OK ||
+        fathom_a16_auto_init(&silo, &lanes[SILO].line, &silo_config) != FATHOM_OK ||
+        fathom_a05_dyp_init(&rear, &lanes[REAR].modbus, &rear_config) != FATHOM_OK)
         return false;
     sensors[TANK] = fathom_a16_modbus_sensor(&tank);
     sensors[BUMPER] = fathom_a05_modbus_sensor(&bumper);

@@ -76,10 +76,8 @@ int main(void)
     fathom_rp2040_edges_init(&echo, &edges, ECHO, NULL);
     const fathom_capture_t capture = fathom_edges_capture(&edges);
     fathom_a16_pwm_t a16;
-    const fathom_a16_pwm_config_t a16_config = {.pulse = {.clock = &fathom_rp2040_clock,
-                                                          .capture = &capture,
-                                                          .trigger = fathom_output_pin(&trigger)}};
-    if (fathom_a16_pwm_init(&a16, &a16_config) != FATHOM_OK) return 3;
+    const fathom_output_t output = fathom_output_pin(&trigger);
+    if (fathom_a16_pwm_init(&a16, &capture, &fathom_rp2040_clock, &output, NULL) != FATHOM_OK) return 3;
 
     uint8_t frame[32];
     fathom_line_t line;
@@ -95,8 +93,7 @@ int main(void)
     if (fathom_line_init(&line, &line_parts) != FATHOM_OK) return 4;
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
     fathom_hps167s_t hps;
-    const fathom_hps167s_config_t hps_config = {.modbus.transport = &modbus};
-    if (fathom_hps167s_init(&hps, &hps_config) != FATHOM_OK) return 5;
+    if (fathom_hps167s_init(&hps, &modbus, NULL) != FATHOM_OK) return 5;
 
     const fathom_sensor_t pulse = fathom_a16_pwm_sensor(&a16);
     const fathom_sensor_t modbus_sensor = fathom_hps167s_sensor(&hps);

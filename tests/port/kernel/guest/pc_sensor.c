@@ -131,8 +131,7 @@ static void the_loop_reads_loses_and_opens_it_again(void)
     const fathom_line_settings_t settings = {19200, FATHOM_PARITY_EVEN, 1};
     begin_sensor();
     CHECK_INT(fathom_loop_add_line(&rig.loop, &rig.line, NEAR, &settings), FATHOM_POSIX_OK);
-    const fathom_hps167s_config_t hps167s = {.modbus.transport = &rig.line.bus.modbus};
-    CHECK_INT(fathom_hps167s_init(&rig.gate, &hps167s), FATHOM_OK);
+    CHECK_INT(fathom_hps167s_init(&rig.gate, &rig.line.bus.modbus, NULL), FATHOM_OK);
     rig.sensor.take = take;
     rig.sensor.sensor = fathom_hps167s_sensor(&rig.gate);
     fathom_loop_add_sensor(&rig.line.source, &rig.sensor);

@@ -86,8 +86,7 @@ void tty_reads_2083(const fathom_uart_t *uart)
                                             .gap_us = 25000};
     CHECK_INT(fathom_line_init(&line, &line_parts), FATHOM_OK);
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
-    const fathom_hps167s_config_t config = {.modbus.transport = &modbus};
-    CHECK_INT(fathom_hps167s_init(&gate, &config), FATHOM_OK);
+    CHECK_INT(fathom_hps167s_init(&gate, &modbus, NULL), FATHOM_OK);
     const fathom_sensor_t sensor = fathom_hps167s_sensor(&gate);
     CHECK_INT(fathom_wait(&sensor, &sample, fathom_posix_wait, &tty_port), FATHOM_OK);
     tty_is_2083(&sample);

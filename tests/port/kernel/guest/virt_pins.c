@@ -126,10 +126,8 @@ static fathom_sensor_t begin_tank(void)
     (void)open_edges(&echo, ECHO);
     capture = fathom_gpio_capture(&echo);
     clock_of_system = fathom_posix_clock();
-    const fathom_a16_pwm_config_t config = {.pulse.clock = &clock_of_system,
-                                            .pulse.capture = &capture,
-                                            .pulse.trigger = fathom_output_pin(&trigger_pin)};
-    CHECK_INT(fathom_a16_pwm_init(&tank, &config), FATHOM_OK);
+    const fathom_output_t output = fathom_output_pin(&trigger_pin);
+    CHECK_INT(fathom_a16_pwm_init(&tank, &capture, &clock_of_system, &output, NULL), FATHOM_OK);
     return fathom_a16_pwm_sensor(&tank);
 }
 
@@ -300,8 +298,7 @@ static void a_switch_is_read(void)
     (void)guest_ask("set %d 1", CONTACT);
     const fathom_pin_t pin = open_edges(&echo, CONTACT);
     clock_of_system = fathom_posix_clock();
-    const fathom_a16_switch_config_t config = {.pin = &pin, .clock = &clock_of_system};
-    CHECK_INT(fathom_a16_switch_init(&level, &config), FATHOM_OK);
+    CHECK_INT(fathom_a16_switch_init(&level, &pin, &clock_of_system, NULL), FATHOM_OK);
     const fathom_sensor_t sensor = fathom_a16_switch_sensor(&level);
     CHECK_INT(wait_for(&sensor, &sample), FATHOM_OK);
     CHECK_INT(sample.kind, FATHOM_NEAR); /* high, A16 4(2) */
@@ -317,8 +314,7 @@ static void a_relay_is_read(void)
     (void)guest_ask("set %d 1", RELAY);
     const fathom_pin_t pin = open_edges(&echo, RELAY);
     clock_of_system = fathom_posix_clock();
-    const fathom_a05_relay_config_t config = {.pin = &pin, .clock = &clock_of_system};
-    CHECK_INT(fathom_a05_relay_init(&relay, &config), FATHOM_OK);
+    CHECK_INT(fathom_a05_relay_init(&relay, &pin, &clock_of_system, NULL), FATHOM_OK);
     const fathom_sensor_t sensor = fathom_a05_relay_sensor(&relay);
     CHECK_INT(wait_for(&sensor, &sample), FATHOM_OK);
     CHECK_INT(sample.kind, FATHOM_FAR); /* its contact is open and the pin pulled up */

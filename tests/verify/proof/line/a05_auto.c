@@ -6,7 +6,7 @@
  * options: -eva-precision 0 -eva-ilevel 16
  *          -eva-slevel-function fathom_a05_auto_init:50,fathom_dyp_auto_init:20,fathom_dyp_window_copy:40,main:200,run:1,odd_probe:20,fathom_dyp_measurement_next:20,output_of:10,take:40
  *          -eva-split-return-function fathom_a05_auto_init:0,fathom_dyp_auto_init:0
- * unreached: due_us_0 poll_0
+ * unreached: due_us poll
  * quick:   no
  *
  * The A05 that sends by itself: any calls in any order, any bytes.
@@ -44,21 +44,20 @@ void main(void)
     const uint8_t which = any_8_in(0, 4);
     /*@ split which; */
     any_line_init();
-    config.line = any_bool() ? &any_line : NULL;
     config.select = output_of(which);
     config.stale_us = any_32();
     config.gap_us = any_16();
     any_window(&config.window);
     config.probes = any_8_in(16, UINT8_MAX);
-    fathom_status_t status = fathom_a05_auto_init(&sensor, &config);
+    fathom_line_t *const line = any_bool() ? &any_line : NULL;
+    fathom_status_t status = fathom_a05_auto_init(&sensor, line, &config);
     /*@ assert status == FATHOM_ERR_ARGUMENT; */
     config.probes = any_8_in(0, 15);
-    config.line = &blank_line;
-    status = fathom_a05_auto_init(&sensor, &config);
+    status = fathom_a05_auto_init(&sensor, &blank_line, &config);
     /*@ assert status == FATHOM_ERR_ARGUMENT; */
-    config.line = any_bool() ? &any_line : NULL;
     const fathom_sensor_t none = fathom_a05_auto_sensor(&sensor);
     any_call(&none); /* in zeroed memory */
-    if (fathom_a05_auto_init(&sensor, &config) != FATHOM_OK) return;
+    if (fathom_a05_auto_init(&sensor, line, NULL) == FATHOM_OK) (void)fathom_a05_auto_deinit(&sensor);
+    if (fathom_a05_auto_init(&sensor, line, &config) != FATHOM_OK) return;
     run();
 }

@@ -66,17 +66,17 @@ void main(void)
     const fathom_sensor_t none = fathom_a05_dyp_sensor(&sensor);
     any_call(&none); /* in zeroed memory */
     any_modbus_config(&config.modbus);
-    config.modbus.transport = &transport;
     config.start_us = any_32();
     any_window(&config.window);
     config.probes = any_8_in(0, 16); /* from 16 on they are refused */
     /*@ split config.probes; */
-    if (fathom_a05_dyp_init(&sensor, &config) != FATHOM_OK) return;
+    (void)fathom_a05_dyp_init(&sensor, &transport, NULL);
+    if (fathom_a05_dyp_init(&sensor, &transport, &config) != FATHOM_OK) return;
     const uint8_t first = sensor.base.measurement.first;
     /*@ split first; */
     /*@ merge config.probes; */
     /*@ slevel merge; */
     run();
     if (any_bool()) fathom_a05_dyp_deinit(&sensor);
-    (void)fathom_a05_dyp_init(&sensor, &config); /* again, perhaps while a request is queued */
+    (void)fathom_a05_dyp_init(&sensor, &transport, &config); /* again, perhaps while a request is queued */
 }

@@ -56,6 +56,7 @@ static void run(void)
 void main(void)
 {
     fathom_a05_modbus_config_t config;
+    const fathom_modbus_t *const transport = any_transport();
     any_modbus_config(&config.modbus);
     config.start_us = any_32();
     any_window(&config.window);
@@ -65,8 +66,9 @@ void main(void)
     config.probes = any_probes(which);
     const fathom_sensor_t none = fathom_a05_modbus_sensor(&sensor);
     any_call(&none); /* in zeroed memory */
-    if (fathom_a05_modbus_init(&sensor, &config) != FATHOM_OK) return;
+    (void)fathom_a05_modbus_init(&sensor, transport, NULL);
+    if (fathom_a05_modbus_init(&sensor, transport, &config) != FATHOM_OK) return;
     run();
     if (any_bool()) fathom_a05_modbus_deinit(&sensor);
-    (void)fathom_a05_modbus_init(&sensor, &config); /* again, perhaps while a request is queued */
+    (void)fathom_a05_modbus_init(&sensor, transport, &config); /* again, perhaps while a request is queued */
 }

@@ -48,11 +48,11 @@ void main(void)
     any_window(&config.window);
     const fathom_sensor_t handle = fathom_a16_auto_sensor(&sensor);
     any_call(&handle); /* in zeroed memory */
-    config.line = &blank_line;
-    const fathom_status_t status = fathom_a16_auto_init(&sensor, &config);
+    const fathom_status_t status = fathom_a16_auto_init(&sensor, &blank_line, &config);
     /*@ assert status == FATHOM_ERR_ARGUMENT; */
-    config.line = any_bool() ? &any_line : NULL;
-    if (fathom_a16_auto_init(&sensor, &config) != FATHOM_OK) return;
+    fathom_line_t *const line = any_bool() ? &any_line : NULL;
+    if (fathom_a16_auto_init(&sensor, line, &config) != FATHOM_OK) return;
     while (any_bool()) any_call(&handle);
     (void)fathom_a16_auto_deinit(&sensor);
+    (void)fathom_a16_auto_init(&sensor, line, NULL);
 }

@@ -6,7 +6,7 @@
  * options: -eva-precision 0
  *          -eva-slevel-function fathom_a16_controlled_init:50,fathom_dyp_auto_init:20,fathom_dyp_window_copy:40,main:30,output_of:10,take:40
  *          -eva-split-return-function fathom_a16_controlled_init:0,fathom_dyp_auto_init:0,fathom_trigger_init:0
- * unreached: due_us_0 poll_0
+ * unreached: due_us poll
  * quick:   no
  *
  * The A16 that a pin triggers: any calls in any order, any bytes.
@@ -36,7 +36,7 @@ void main(void)
     const uint8_t which = any_8_in(0, 4);
     /*@ split which; */
     any_line_init();
-    config.trigger = output_of(which);
+    const fathom_output_t trigger = output_of(which);
     config.period_us = any_32();
     config.earliest_us = any_32();
     config.latest_us = any_32();
@@ -45,11 +45,14 @@ void main(void)
     any_window(&config.window);
     const fathom_sensor_t handle = fathom_a16_controlled_sensor(&sensor);
     any_call(&handle); /* in zeroed memory */
-    config.line = &blank_line;
-    const fathom_status_t status = fathom_a16_controlled_init(&sensor, &config);
+    fathom_status_t status = fathom_a16_controlled_init(&sensor, &blank_line, &trigger, &config);
     /*@ assert status == FATHOM_ERR_ARGUMENT; */
-    config.line = any_bool() ? &any_line : NULL;
-    if (fathom_a16_controlled_init(&sensor, &config) != FATHOM_OK) return;
+    status = fathom_a16_controlled_init(&sensor, &any_line, NULL, &config);
+    /*@ assert status == FATHOM_ERR_ARGUMENT; */
+    fathom_line_t *const line = any_bool() ? &any_line : NULL;
+    status = fathom_a16_controlled_init(&sensor, line, &trigger, NULL);
+    if (status == FATHOM_OK) (void)fathom_a16_controlled_deinit(&sensor);
+    if (fathom_a16_controlled_init(&sensor, line, &trigger, &config) != FATHOM_OK) return;
     while (any_bool()) any_call(&handle);
     (void)fathom_a16_controlled_deinit(&sensor);
 }

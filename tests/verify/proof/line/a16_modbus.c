@@ -98,14 +98,16 @@ static void any_call(const fathom_sensor_t *handle)
 void main(void)
 {
     fathom_a16_modbus_config_t config;
+    const fathom_modbus_t *const transport = any_transport();
     any_modbus_config(&config.modbus);
     config.start_us = any_32();
     any_window(&config.window);
     config.value = any_8();
     const fathom_sensor_t handle = fathom_a16_modbus_sensor(&sensor);
     any_call(&handle); /* in zeroed memory */
-    if (fathom_a16_modbus_init(&sensor, &config) != FATHOM_OK) return;
+    (void)fathom_a16_modbus_init(&sensor, transport, NULL);
+    if (fathom_a16_modbus_init(&sensor, transport, &config) != FATHOM_OK) return;
     while (any_bool()) any_call(&handle);
     if (any_bool()) fathom_a16_modbus_deinit(&sensor);
-    (void)fathom_a16_modbus_init(&sensor, &config); /* again, perhaps while a request is queued */
+    (void)fathom_a16_modbus_init(&sensor, transport, &config); /* again, perhaps while a request is queued */
 }

@@ -49,20 +49,20 @@ void main(void)
 {
     fathom_a16_modbus_config_t config;
     fathom_a16_auto_config_t config_automatic;
+    const fathom_modbus_t *const transport = any_transport();
     any_line_init();
     any_modbus_config(&config.modbus);
     config.start_us = any_32();
     any_window(&config.window);
     config.value = any_8();
-    config_automatic.line = &any_line;
     config_automatic.select.set = NULL;
     config_automatic.select.ctx = NULL;
     config_automatic.stale_us = any_32();
     config_automatic.gap_us = any_16();
     config_automatic.value = any_8();
     any_window(&config_automatic.window);
-    if (fathom_a16_modbus_init(&modbus, &config) != FATHOM_OK) return;
-    if (fathom_a16_auto_init(&automatic, &config_automatic) != FATHOM_OK) return;
+    if (fathom_a16_modbus_init(&modbus, transport, &config) != FATHOM_OK) return;
+    if (fathom_a16_auto_init(&automatic, &any_line, &config_automatic) != FATHOM_OK) return;
     fathom_a16_rs232_init(&rs232, &modbus, &automatic);
     rs232.return_us = any_32();
     const fathom_sensor_t of_modbus = fathom_a16_modbus_sensor(&modbus);

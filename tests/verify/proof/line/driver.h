@@ -7,12 +7,16 @@
 #include "fathom/sensor/internal/dyp.h"
 #include "transport.h"
 
-/* What the configs of the drivers have in common, with any value. */
+/* The transport of a driver, and what the configs of the drivers have in common, with any value. */
+
+static const fathom_modbus_t *any_transport(void)
+{
+    assumed_transport.frame_size = any_8();
+    return any_bool() ? &assumed_transport : any_bool() ? &assumed_bare_transport : NULL;
+}
 
 static void any_modbus_config(fathom_modbus_config_t *config)
 {
-    assumed_transport.frame_size = any_8();
-    config->transport = any_bool() ? &assumed_transport : any_bool() ? &assumed_bare_transport : NULL;
     config->line_settings = any_bool() ? &assumed_settings : NULL;
     config->period_us = any_32();
     config->timeout_us = any_32();

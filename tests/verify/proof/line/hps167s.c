@@ -65,11 +65,13 @@ static void any_call(const fathom_sensor_t *handle)
 void main(void)
 {
     fathom_hps167s_config_t config;
+    const fathom_modbus_t *const transport = any_transport();
     any_hps167s_config(&config);
     const fathom_sensor_t handle = fathom_hps167s_sensor(&sensor);
     any_call(&handle); /* in zeroed memory */
-    if (fathom_hps167s_init(&sensor, &config) != FATHOM_OK) return;
+    (void)fathom_hps167s_init(&sensor, transport, NULL);
+    if (fathom_hps167s_init(&sensor, transport, &config) != FATHOM_OK) return;
     while (any_bool()) any_call(&handle);
     if (any_bool()) fathom_hps167s_deinit(&sensor);
-    (void)fathom_hps167s_init(&sensor, &config); /* again, perhaps while a request is queued */
+    (void)fathom_hps167s_init(&sensor, transport, &config); /* again, perhaps while a request is queued */
 }

@@ -58,17 +58,17 @@ void main(void)
     any_line_init();
     config.stale_us = any_32();
     config.address = any_8();
-    config.line = &blank_line;
-    const fathom_status_t status = fathom_hps167s_auto_init(&sensor, &config);
+    const fathom_status_t status = fathom_hps167s_auto_init(&sensor, &blank_line, &config);
     /*@ assert status == FATHOM_ERR_ARGUMENT; */
-    config.line = any_bool() ? &any_line : NULL;
+    fathom_line_t *const line = any_bool() ? &any_line : NULL;
     any_hps167s_config(&config_beside);
     const fathom_sensor_t handle = fathom_hps167s_auto_sensor(&sensor);
     any_poll(&handle); /* in zeroed memory */
     const bool is_beside = any_bool();
     /*@ split is_beside; */
-    if (fathom_hps167s_init(&beside, &config_beside) != FATHOM_OK) return;
-    if (fathom_hps167s_auto_init(&sensor, &config) != FATHOM_OK) return;
+    if (fathom_hps167s_init(&beside, any_transport(), &config_beside) != FATHOM_OK) return;
+    if (fathom_hps167s_auto_init(&sensor, line, NULL) == FATHOM_OK) fathom_hps167s_auto_deinit(&sensor);
+    if (fathom_hps167s_auto_init(&sensor, line, &config) != FATHOM_OK) return;
     if (is_beside) fathom_hps167s_auto_follow(&sensor, &beside);
     run();
 }

@@ -5,7 +5,7 @@
  *
  * proves: src/engine/contact.c src/sensor/a05_relay.c src/sensor/a16_switch.c
  * with: src/engine/sensor.c
- * options: -eva-split-return-function poll:0,fathom_poll:0,can_be_read:1
+ * options: -eva-split-return-function fathom_contact_sensor_poll:0,fathom_poll:0,can_be_read:1
  *         -eva-split-return-function fathom_contact_init:0,fathom_a05_relay_init:0,fathom_a16_switch_init:0
  */
 #include "assumptions.h"
@@ -62,16 +62,17 @@ static void relay(const fathom_pin_t *pin)
 {
     static fathom_a05_relay_t relay, blank;
     fathom_a05_relay_config_t config;
-    config.pin = pin;
+    const fathom_clock_t *clock;
     const bool has_clock = any_bool();
     /*@ split has_clock; */
-    config.clock = has_clock ? &assumed_clock : NULL;
+    clock = has_clock ? &assumed_clock : NULL;
     config.timing = any_timing();
     config.wiring = any_8();
     config.level = any_8();
     const fathom_sensor_t none = fathom_a05_relay_sensor(&blank);
     look(&none); /* in zeroed memory */
-    if (fathom_a05_relay_init(&relay, &config) != FATHOM_OK) return;
+    (void)fathom_a05_relay_init(&relay, pin, clock, NULL);
+    if (fathom_a05_relay_init(&relay, pin, clock, &config) != FATHOM_OK) return;
     const fathom_sensor_t sensor = fathom_a05_relay_sensor(&relay);
     while (any_bool()) look(&sensor);
 }
@@ -85,23 +86,20 @@ static void refused(void)
     static const fathom_clock_t no_time = {NULL, &assumed_ctx};
     static fathom_a16_switch_t object;
     fathom_a16_switch_config_t config;
-    config.pin = &assumed_input;
-    config.clock = &assumed_clock;
     config.timing = any_timing();
     config.negative = any_bool();
     config.address = any_8();
     config.guard = &no_poll;
-    fathom_status_t status = fathom_a16_switch_init(&object, &config);
+    fathom_status_t status = fathom_a16_switch_init(&object, &assumed_input, &assumed_clock, &config);
     /*@ assert status == FATHOM_ERR_ARGUMENT; */
     config.guard = &no_is_clear;
-    status = fathom_a16_switch_init(&object, &config);
+    status = fathom_a16_switch_init(&object, &assumed_input, &assumed_clock, &config);
     /*@ assert status == FATHOM_ERR_ARGUMENT; */
     config.guard = &no_due_us;
-    status = fathom_a16_switch_init(&object, &config);
+    status = fathom_a16_switch_init(&object, &assumed_input, &assumed_clock, &config);
     /*@ assert status == FATHOM_ERR_ARGUMENT; */
     config.guard = NULL;
-    config.clock = &no_time;
-    status = fathom_a16_switch_init(&object, &config);
+    status = fathom_a16_switch_init(&object, &assumed_input, &no_time, &config);
     /*@ assert status == FATHOM_ERR_ARGUMENT; */
 }
 
@@ -110,17 +108,18 @@ static void a_switch(const fathom_pin_t *pin)
     static fathom_a16_switch_t object, blank;
     static fathom_a16_modbus_t modbus;
     fathom_a16_switch_config_t config;
-    config.pin = pin;
+    const fathom_clock_t *clock;
     const bool has_clock = any_bool();
     /*@ split has_clock; */
-    config.clock = has_clock ? &assumed_clock : NULL;
+    clock = has_clock ? &assumed_clock : NULL;
     config.guard = any_bool() ? &guard : NULL;
     config.timing = any_timing();
     config.negative = any_bool();
     config.address = any_8();
     const fathom_sensor_t none = fathom_a16_switch_sensor(&blank);
     look(&none); /* in zeroed memory */
-    if (fathom_a16_switch_init(&object, &config) != FATHOM_OK) return;
+    (void)fathom_a16_switch_init(&object, pin, clock, NULL);
+    if (fathom_a16_switch_init(&object, pin, clock, &config) != FATHOM_OK) return;
     const fathom_sensor_t sensor = fathom_a16_switch_sensor(&object);
     while (any_bool()) {
         look(&sensor);

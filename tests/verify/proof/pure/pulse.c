@@ -7,8 +7,8 @@
  *         src/engine/wait.c
  * with: src/codec/pulse_width.c
  * options: -eva-precision 1
- *         -eva-slevel-function polls:1,look:100,fathom_poll:100,poll:100,fathom_pulse_poll:100,take:100,end_cycle:20
- *         -eva-split-return-function assumed_take:0:1,take:0,end_cycle:0,fathom_pulse_poll:0,poll:0,fathom_poll:0
+ *         -eva-slevel-function polls:1,look:100,fathom_poll:100,fathom_a16_pwm_sensor_poll:100,fathom_pulse_poll:100,take:100,end_cycle:20
+ *         -eva-split-return-function assumed_take:0:1,take:0,end_cycle:0,fathom_pulse_poll:0,fathom_a16_pwm_sensor_poll:0,fathom_poll:0
  *         -eva-split-return-function fathom_trigger_drive:0,fathom_trigger_init:0
  *         -eva-split-return-function fathom_pulse_init:0,fathom_a16_pwm_init:0
  */
@@ -40,9 +40,6 @@ static void any_pwm(const fathom_clock_t *clock, const fathom_capture_t *capture
     const fathom_sensor_t none = fathom_a16_pwm_sensor(&blank);
     look(&none); /* in zeroed memory */
     fathom_a16_pwm_config_t config;
-    config.pulse.clock = clock;
-    config.pulse.capture = capture;
-    config.pulse.trigger = output;
     config.pulse.cycle_us = any_32();
     config.pulse.low_us = any_16();
     config.pulse.noise_us = any_16();
@@ -52,7 +49,9 @@ static void any_pwm(const fathom_clock_t *clock, const fathom_capture_t *capture
     config.window.max_mm = any_16();
     config.in_air = any_bool();
     config.air_dc = Frama_C_short_interval(INT16_MIN, INT16_MAX);
-    if (fathom_a16_pwm_init(&pwm, &config) != FATHOM_OK) return;
+    if (fathom_a16_pwm_init(&pwm, capture, clock, &output, NULL) == FATHOM_OK)
+        (void)fathom_a16_pwm_deinit(&pwm);
+    if (fathom_a16_pwm_init(&pwm, capture, clock, &output, &config) != FATHOM_OK) return;
     polls(&pwm);
 }
 
