@@ -59,7 +59,8 @@ static inline uint32_t or_default(uint32_t value, uint32_t default_value)
 /* Increments a counter, which stops at 65535. */
 static inline void count_one(uint16_t *counter)
 {
-    *counter = (uint16_t)(*counter + (*counter != UINT16_MAX));
+    const uint16_t next = (uint16_t)(*counter + 1u);
+    if (next != 0u) *counter = next;
 }
 
 /* Sets all bytes of an object to 0. Without volatile, compilers would call memset, which costs more flash. */

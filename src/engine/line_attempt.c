@@ -94,7 +94,7 @@ void fathom_line_end_attempt(fathom_line_t *line)
     }
     const fathom_status_t error = error_of_attempt(line);
     fathom_line_add(line, (uint8_t)-error, 1); /* line.h: the index of the counter is -status. */
-    if (error == FATHOM_ERR_LINE_BUSY) fathom_line_note_sender(line, SENDER_LOSS, 0);
+    if (line->wait == WAIT_SKIPPED) fathom_line_note_sender(line, SENDER_LOSS, 0);
     fathom_line_quarantine(line);
     fathom_line_free_wire(line, FATHOM_LINE_IDLE);
     if (line->head->attempts > line->head->retries) fathom_line_finish(line, &line->head, error);

@@ -9,6 +9,15 @@
 
 /* ---- Bytes that belong to no transaction ---- */
 
+/* Passes on the first `length` bytes in the buffer, as far as the listener has not received them. */
+static void pass(fathom_line_t *line, uint8_t length)
+{
+    const uint8_t passed_count = line->passed_count;
+    if (length <= passed_count) return;
+    line->passed_count = length;
+    fathom_line_pass(line, passed_count, (uint8_t)(length - passed_count));
+}
+
 /*
  * Handles the first `length` bytes in the buffer, which belong to no transaction.
  *
@@ -17,11 +26,7 @@
  */
 static void discard(fathom_line_t *line, uint8_t length)
 {
-    if (length > line->passed_count) {
-        const uint8_t passed_count = line->passed_count;
-        line->passed_count = length;
-        fathom_line_pass(line, passed_count, (uint8_t)(length - passed_count));
-    }
+    pass(line, length);
     if (!expects_response(line)) {
         fathom_line_note_sender(line, SENDER_BYTES, length);
         return;
@@ -240,10 +245,7 @@ static void remove_bytes(fathom_line_t *line, uint8_t length)
  * response to us are held back from the listener. */
 static void pass_early(fathom_line_t *line)
 {
-    const uint8_t passed_count = line->passed_count;
-    if (expects_response(line) || (line->quarantined_units != 0u) || !holds_bytes(line)) return;
-    line->passed_count = line->received_count;
-    fathom_line_pass(line, passed_count, (uint8_t)(line->received_count - passed_count));
+    if (!expects_response(line) && (line->quarantined_units == 0u)) pass(line, line->received_count);
 }
 
 void fathom_line_scan(fathom_line_t *line, bool is_over)

@@ -3,7 +3,7 @@
  * proves: src/sensor/a16_rs232.c
  * with:   src/sensor/a16_modbus.c src/sensor/a16_settings.c src/sensor/a16_auto.c src/sensor/dyp_modbus.c
  *          src/sensor/dyp_auto.c src/sensor/dyp.c src/engine/modbus_command.c src/engine/modbus_unit.c src/engine/modbus_setting.c
- *          src/engine/stream.c src/engine/output.c src/engine/sensor.c src/codec/dyp_stream.c
+ *          src/engine/stream.c src/engine/output.c src/engine/sensor.c src/codec/dyp_stream.c src/codec/modbus_rtu.c
  * options: -eva-precision 0
  *          -eva-slevel-function fathom_modbus_unit_init:400,is_valid:50,fathom_dyp_modbus_init:20,fathom_dyp_window_copy:40,main:30,fathom_a16_modbus_init:50,fathom_a16_auto_init:50,fathom_dyp_auto_init:20,take:40
  *          -eva-split-return-function fathom_modbus_unit_init:0,is_valid:1,fathom_dyp_modbus_init:0,fathom_a16_modbus_init:0,fathom_a16_auto_init:0,fathom_dyp_auto_init:0
