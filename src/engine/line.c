@@ -359,6 +359,19 @@ fathom_status_t fathom_line_break(fathom_line_t *line, bool on)
 
 /* ---- The next deadline ---- */
 
+/* Returns true if the attempt ends at the next gap, because the response is damaged. */
+static bool ends_at_gap(const fathom_line_t *line)
+{
+    return (line->attempt.fault == FAULT_TRUNCATED) || (line->attempt.fault == FAULT_CORRUPT);
+}
+
+uint32_t fathom_line_attempt_left_us(const fathom_line_t *line)
+{
+    if (line->received_count != 0u) return line->phase_left_us;
+    if (!ends_at_gap(line)) return response_left_us(line);
+    return least_us(response_left_us(line), rest_us(gap_us(line), line->silent_us));
+}
+
 /*
  * Returns when the port may have sent the request, or may accept it, in microseconds after the last poll. The port
  * counts from now, which is `passed_us` after the last poll.
@@ -380,7 +393,7 @@ static uint32_t phase_due_us(const fathom_line_t *line, uint32_t passed_us)
     case FATHOM_LINE_SENDING:
         return port_due_us(line, passed_us);
     case FATHOM_LINE_WAITING:
-        return attempt_left_us(line);
+        return fathom_line_attempt_left_us(line);
     case FATHOM_LINE_ENDING_BREAK:
         return (line->head != NULL) ? line->phase_left_us : FATHOM_NO_DEADLINE;
     default:

@@ -143,12 +143,6 @@ static inline uint32_t busy_us(const fathom_line_t *line)
     return or_default(line->parts->busy_us, FATHOM_LINE_DEFAULT_BUSY_US);
 }
 
-/* Returns true if the attempt ends at the next gap, because the response is damaged. */
-static inline bool ends_at_gap(const fathom_line_t *line)
-{
-    return (line->attempt.fault == FAULT_TRUNCATED) || (line->attempt.fault == FAULT_CORRUPT);
-}
-
 /* Returns true if the frame buffer holds bytes that the listener has not received, because they may be a response. */
 static inline bool holds_bytes(const fathom_line_t *line)
 {
@@ -178,14 +172,6 @@ static inline uint32_t response_left_us(const fathom_line_t *line)
 static inline bool is_overtime(const fathom_line_t *line)
 {
     return (line->phase == FATHOM_LINE_WAITING) && (response_left_us(line) == 0u);
-}
-
-/* Returns the time until the attempt ends if no byte arrives, counted from the last poll. The phase is WAITING. */
-static inline uint32_t attempt_left_us(const fathom_line_t *line)
-{
-    if (line->received_count != 0u) return line->phase_left_us;
-    if (!ends_at_gap(line)) return response_left_us(line);
-    return least_us(response_left_us(line), rest_us(gap_us(line), line->silent_us));
 }
 
 /* Returns true if the request may be sent into noise. */
@@ -250,6 +236,9 @@ void fathom_line_pass(fathom_line_t *line, uint8_t from, uint8_t length);
 
 /* Returns true if a byte of this age is no reading any more. */
 bool fathom_line_is_old(const fathom_line_t *line, uint32_t age_us);
+
+/* Returns the time until the attempt ends if no byte arrives, counted from the last poll. The phase is WAITING. */
+uint32_t fathom_line_attempt_left_us(const fathom_line_t *line);
 
 /* Handles a broken port: forgets the received bytes and ends all transactions. Always returns FATHOM_ERR_PORT. */
 fathom_status_t fathom_line_broken(fathom_line_t *line);

@@ -211,7 +211,7 @@ static fathom_status_t advance(fathom_line_t *line)
     case FATHOM_LINE_DRAINING:
         return follow_request(line);
     case FATHOM_LINE_WAITING:
-        if (attempt_left_us(line) != 0u) return FATHOM_PENDING;
+        if (fathom_line_attempt_left_us(line) != 0u) return FATHOM_PENDING;
         if (line->received_count != 0u) line->kind->scan(line, true); /* The frame took too long. */
         if (is_busy(line)) fathom_line_end_attempt(line);
         break;
