@@ -122,6 +122,18 @@ void fathom_line_pass(fathom_line_t *line, uint8_t from, uint8_t length)
     line->is_after_gap = false;
 }
 
+/* ---- Silence ---- */
+
+uint32_t fathom_line_gap_left_us(const fathom_line_t *line)
+{
+    return rest_us(or_default(line->parts->gap_us, FATHOM_LINE_DEFAULT_GAP_US), line->silent_us);
+}
+
+uint32_t fathom_line_silence_left_us(const fathom_line_t *line)
+{
+    return rest_us(silence_us(line), line->silent_us);
+}
+
 /* ---- The age of bytes ---- */
 
 /* Returns true if a response may arrive that a transaction would accept. */
@@ -294,7 +306,7 @@ static fathom_status_t read_port(fathom_line_t *line)
 static uint32_t frame_over_in_us(const fathom_line_t *line)
 {
     if (line->received_count == 0u) return FATHOM_NO_DEADLINE;
-    return rest_us(holds_bytes(line) ? gap_us(line) : silence_us(line), line->silent_us);
+    return holds_bytes(line) ? fathom_line_gap_left_us(line) : fathom_line_silence_left_us(line);
 }
 
 fathom_status_t fathom_line_poll(fathom_line_t *line)
@@ -369,7 +381,7 @@ uint32_t fathom_line_attempt_left_us(const fathom_line_t *line)
 {
     if (line->received_count != 0u) return line->phase_left_us;
     if (!ends_at_gap(line)) return response_left_us(line);
-    return least_us(response_left_us(line), rest_us(gap_us(line), line->silent_us));
+    return least_us(response_left_us(line), fathom_line_gap_left_us(line));
 }
 
 /*

@@ -128,11 +128,6 @@ static inline uint16_t sum_of_parts(const fathom_line_parts_t *parts)
 }
 #endif
 
-static inline uint16_t gap_us(const fathom_line_t *line)
-{
-    return (uint16_t)or_default(line->parts->gap_us, FATHOM_LINE_DEFAULT_GAP_US);
-}
-
 static inline uint16_t silence_us(const fathom_line_t *line)
 {
     return (uint16_t)or_default(line->parts->silence_us, FATHOM_LINE_DEFAULT_SILENCE_US);
@@ -154,8 +149,6 @@ static inline bool is_waiting(const fathom_line_t *line)
 {
     return (line->wait == WAIT_NOISE) || (line->wait == WAIT_FRAMES);
 }
-
-static inline bool is_silent(const fathom_line_t *line) { return line->silent_us >= silence_us(line); }
 
 /*
  * In WAITING, `phase_left_us` is the time until a response that has begun must be complete:
@@ -239,6 +232,14 @@ bool fathom_line_is_old(const fathom_line_t *line, uint32_t age_us);
 
 /* Returns the time until the attempt ends if no byte arrives, counted from the last poll. The phase is WAITING. */
 uint32_t fathom_line_attempt_left_us(const fathom_line_t *line);
+
+/* Return the time until an incomplete frame is over, and until a request may leave, if no byte arrives. Both are counted
+ * from the last poll, in microseconds. */
+uint32_t fathom_line_gap_left_us(const fathom_line_t *line);
+uint32_t fathom_line_silence_left_us(const fathom_line_t *line);
+
+/* Returns true if the silence before a request is kept. */
+static inline bool is_silent(const fathom_line_t *line) { return fathom_line_silence_left_us(line) == 0u; }
 
 /* Handles a broken port: forgets the received bytes and ends all transactions. Always returns FATHOM_ERR_PORT. */
 fathom_status_t fathom_line_broken(fathom_line_t *line);

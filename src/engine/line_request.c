@@ -46,7 +46,7 @@ static uint32_t silence_in_us(const fathom_line_t *line)
     if (line->awaited_left_us != 0u)
         return line->awaited_left_us - 1u; /* It ends at 1, with a poll (line.c). */
     if (line->parts->senders != NULL) return line->parts->senders->slot_in_us(line);
-    return rest_us(silence_us(line), line->silent_us);
+    return fathom_line_silence_left_us(line);
 }
 
 /* Returns true if `transaction` may leave in this silence. Without a transaction the slot passes unused. */
@@ -216,7 +216,7 @@ static fathom_status_t advance(fathom_line_t *line)
         if (is_busy(line)) fathom_line_end_attempt(line);
         break;
     default: /* IDLE, IN_BREAK, ENDING_BREAK, PORT_BUSY */
-        if (is_echo_due(line) && (line->silent_us >= gap_us(line))) line->attempt.copy = COPY_PAST;
+        if (is_echo_due(line) && (fathom_line_gap_left_us(line) == 0u)) line->attempt.copy = COPY_PAST;
         break;
     }
     return send_next(line);

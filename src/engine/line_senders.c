@@ -81,10 +81,10 @@ static void note(fathom_line_t *line, uint8_t event, uint32_t amount)
 
 static uint32_t slot_in_us(const fathom_line_t *line)
 {
-    if (line->sender == SENDER_NONE) return rest_us(silence_us(line), line->silent_us);
+    if (line->sender == SENDER_NONE) return fathom_line_silence_left_us(line);
     if (line->slot == SLOT_OVER) return rest_us(QUIET_US, line->silent_us);
     if (is_slow(line) && (line->slot == SLOT_BEHIND_FRAME)) return 0;
-    return rest_us(silence_us(line), line->silent_us);
+    return fathom_line_silence_left_us(line);
 }
 
 /* The product spreads neighbouring readings of the clock over all values of 16 bits (Knuth's multiplicative hash:
