@@ -170,7 +170,7 @@ bool fathom_line_is_old(const fathom_line_t *line, uint32_t age_us)
 static void drop_port(fathom_line_t *line)
 {
     line->kind->scan(line, true);
-    line->age = (line->age == AGE_KNOWN) ? AGE_OLD : AGE_DROPPED;
+    line->age |= AGE_OLD;
 }
 
 /* Reads the clock and moves all deadlines on. Returns the time since the previous call, in microseconds. */
@@ -193,8 +193,7 @@ void fathom_line_flush(fathom_line_t *line)
 /* The next bytes are young. */
 static void end_dropping(fathom_line_t *line)
 {
-    if (line->age == AGE_OLD) line->age = AGE_KNOWN;
-    if (line->age == AGE_DROPPED) line->age = AGE_LOST;
+    line->age &= AGE_LOST;
 }
 
 /* Sets the silence from the port's time stamp. A stamp that is later than the clock counts as "now" (hal.h). */

@@ -30,13 +30,12 @@ enum copy {
     COPY_CANCELLED = 3 /* No request is on the wire, but the echo of a cancelled one may still arrive. */
 };
 
-/* Whether the bytes in the port may be too old, and what the listener knows of dropped bytes. */
+/* Whether the bytes in the port may be too old, and what the listener knows of dropped bytes: a set of two bits. */
 enum age {
     AGE_KNOWN = 0, /* The bytes are not older than the pause between two polls. */
-    AGE_LOST =
-        1, /* The same, but bytes before them were dropped, and the listener has not been notified yet. */
-    AGE_OLD = 2,    /* All bytes are dropped until the port was seen empty. */
-    AGE_DROPPED = 3 /* The same, and bytes were dropped. */
+    AGE_LOST = 1,  /* Bytes were dropped, and the listener has not been notified yet. */
+    AGE_OLD = 2,   /* All bytes are dropped until the port was seen empty. */
+    AGE_DROPPED = AGE_OLD | AGE_LOST
 };
 
 /* The silence before the next request, or before the request on the wire. */
