@@ -4,11 +4,11 @@
 #include "line_internal.h"
 
 /*
- * What every line does: it reads the port, measures silence, feeds the listener, holds breaks and computes the next
- * deadline. What a line does with the received bytes depends on its kind: line_request.c or line_listening.c.
+ * What every line does: it reads the port, measures silence, feeds the listener and holds breaks. What a line does with
+ * the received bytes depends on its kind: line_request.c or line_listening.c. line_due.c computes the next deadline.
  */
 
-enum { MAX_READS = 16, MIN_FRAME_SIZE = 8, SEND_POLL_US = 1000, MIN_GAP_US = 100 };
+enum { MAX_READS = 16, MIN_FRAME_SIZE = 8, MIN_GAP_US = 100 };
 
 /* A value of `awaited_left_us`: the wait for the response to another master is over. The bytes that this poll reads may
  * have arrived before, so for them it is not. */
@@ -28,9 +28,13 @@ void fathom_line_note_sender(fathom_line_t *line, uint8_t event, uint32_t amount
     if (senders != NULL) senders->note(line, event, amount);
 }
 
-/* ---- Initialisation ---- */
+uint8_t fathom_line_find_request(fathom_line_t *line, bool is_response)
+{
+    const fathom_line_masters_t *const masters = line->parts->masters;
+    return (masters != NULL) ? masters->find_request(line, is_response) : 0u;
+}
 
-static bool is_initialised(const fathom_line_t *line) { return line->kind != NULL; }
+/* ---- Initialisation ---- */
 
 /* 65535 is what FATHOM_T3_5_US() returns if the silence does not fit. */
 static bool is_silence(uint16_t us) { return us != UINT16_MAX; }
@@ -170,7 +174,7 @@ bool fathom_line_is_old(const fathom_line_t *line, uint32_t age_us)
 static void drop_port(fathom_line_t *line)
 {
     line->kind->scan(line, true);
-    line->age |= AGE_OLD;
+    if (line->age < AGE_OLD) line->age = (uint8_t)(line->age + AGE_OLD);
 }
 
 /* Reads the clock and moves all deadlines on. Returns the time since the previous call, in microseconds. */
@@ -193,7 +197,7 @@ void fathom_line_flush(fathom_line_t *line)
 /* The next bytes are young. */
 static void end_dropping(fathom_line_t *line)
 {
-    line->age &= AGE_LOST;
+    if (line->age >= AGE_OLD) line->age = (uint8_t)(line->age - AGE_OLD);
 }
 
 /* Sets the silence from the port's time stamp. A stamp that is later than the clock counts as "now" (hal.h). */
@@ -298,11 +302,7 @@ static fathom_status_t read_port(fathom_line_t *line)
     return FATHOM_PENDING;
 }
 
-/*
- * Returns the time until the bytes in the frame buffer are over, counted from the last poll. Bytes that may be a
- * response end at a gap. All others end at the silence: a gap may be longer than the pause between two frames.
- */
-static uint32_t frame_over_in_us(const fathom_line_t *line)
+uint32_t fathom_line_frame_over_us(const fathom_line_t *line)
 {
     if (line->received_count == 0u) return FATHOM_NO_DEADLINE;
     return holds_bytes(line) ? fathom_line_gap_left_us(line) : fathom_line_silence_left_us(line);
@@ -316,7 +316,7 @@ fathom_status_t fathom_line_poll(fathom_line_t *line)
     const fathom_status_t status = read_port(line);
     if (status != FATHOM_PENDING) return status;
     if (line->awaited_left_us == ENDS_WITH_THIS_POLL) line->awaited_left_us = 0;
-    if (frame_over_in_us(line) == 0u) line->kind->scan(line, true);
+    if (fathom_line_frame_over_us(line) == 0u) line->kind->scan(line, true);
     return line->kind->advance(line);
 }
 
@@ -366,58 +366,4 @@ fathom_status_t fathom_line_break(fathom_line_t *line, bool on)
         if ((result < 0) || (line->phase_left_us == 0u)) return fathom_line_broken(line);
     }
     return (result < 0) ? FATHOM_ERR_PORT : FATHOM_PENDING;
-}
-
-/* ---- The next deadline ---- */
-
-/* Returns true if the attempt ends at the next gap, because the response is damaged. */
-static bool ends_at_gap(const fathom_line_t *line)
-{
-    return (line->attempt.fault == FAULT_TRUNCATED) || (line->attempt.fault == FAULT_CORRUPT);
-}
-
-uint32_t fathom_line_attempt_left_us(const fathom_line_t *line)
-{
-    if (line->received_count != 0u) return line->phase_left_us;
-    if (!ends_at_gap(line)) return response_left_us(line);
-    return least_us(response_left_us(line), fathom_line_gap_left_us(line));
-}
-
-/*
- * Returns when the port may have sent the request, or may accept it, in microseconds after the last poll. The port
- * counts from now, which is `passed_us` after the last poll.
- */
-static uint32_t port_due_us(const fathom_line_t *line, uint32_t passed_us)
-{
-    const fathom_uart_t *const uart = line->parts->uart;
-    const uint32_t us = (uart->leaves_in_us != NULL) ? uart->leaves_in_us(uart->ctx) : 0u;
-    if (us == 0u) return SEND_POLL_US;
-    return us + passed_us;
-}
-
-/* Returns when the present phase may end, in microseconds after the last poll. */
-static uint32_t phase_due_us(const fathom_line_t *line, uint32_t passed_us)
-{
-    switch (line->phase) {
-    case FATHOM_LINE_DRAINING:
-    case FATHOM_LINE_PORT_BUSY:
-    case FATHOM_LINE_SENDING:
-        return port_due_us(line, passed_us);
-    case FATHOM_LINE_WAITING:
-        return fathom_line_attempt_left_us(line);
-    case FATHOM_LINE_ENDING_BREAK:
-        return (line->head != NULL) ? line->phase_left_us : FATHOM_NO_DEADLINE;
-    default:
-        return (line->head != NULL) ? line->kind->due_us(line) : FATHOM_NO_DEADLINE;
-    }
-}
-
-uint32_t fathom_line_due_us(const fathom_line_t *line)
-{
-    if (!is_initialised(line)) return FATHOM_NO_DEADLINE;
-    const uint32_t passed_us = time_since_us(clock_us(line->parts->clock), line->polled_us);
-    uint32_t due_us = least_us(phase_due_us(line, passed_us), frame_over_in_us(line));
-    if ((line->listener != NULL) && (line->silent_us < line->listener->gap_us))
-        due_us = least_us(due_us, rest_us(line->listener->gap_us, line->silent_us));
-    return (due_us == FATHOM_NO_DEADLINE) ? due_us : rest_us(due_us, passed_us);
 }

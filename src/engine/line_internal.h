@@ -30,12 +30,12 @@ enum copy {
     COPY_CANCELLED = 3 /* No request is on the wire, but the echo of a cancelled one may still arrive. */
 };
 
-/* Whether the bytes in the port may be too old, and what the listener knows of dropped bytes: a set of two bits. */
+/* Whether the bytes in the port may be too old, and what the listener knows of dropped bytes. */
 enum age {
     AGE_KNOWN = 0, /* The bytes are not older than the pause between two polls. */
     AGE_LOST = 1,  /* Bytes were dropped, and the listener has not been notified yet. */
-    AGE_OLD = 2,   /* All bytes are dropped until the port was seen empty. */
-    AGE_DROPPED = AGE_OLD | AGE_LOST
+    AGE_OLD = 2,   /* All bytes are dropped until the port was seen empty. Added to one of the two above. */
+    AGE_DROPPED = AGE_OLD + AGE_LOST
 };
 
 /* The silence before the next request, or before the request on the wire. */
@@ -111,6 +111,8 @@ static inline bool is_in_break(const fathom_line_t *line)
 {
     return (line->phase == FATHOM_LINE_IN_BREAK) || (line->phase == FATHOM_LINE_ENDING_BREAK);
 }
+
+static inline bool is_initialised(const fathom_line_t *line) { return line->kind != NULL; }
 
 #ifdef FATHOM_HAS_ASSERT
 /*
@@ -219,6 +221,9 @@ void fathom_line_add(fathom_line_t *line, uint8_t which, uint8_t by);
 /* Notifies the part for devices that send by themselves, if the parts name it: an enum sender_event. */
 void fathom_line_note_sender(fathom_line_t *line, uint8_t event, uint32_t amount);
 
+/* As find_request of the part for other masters. Returns 0 if the parts do not name it. */
+uint8_t fathom_line_find_request(fathom_line_t *line, bool is_response);
+
 /* Initialises all members that both kinds of lines share. Returns FATHOM_ERR_ARGUMENT if the parts are refused. */
 fathom_status_t fathom_line_begin(fathom_line_t *line, const fathom_line_parts_t *parts,
                                   const fathom_line_kind_t *kind);
@@ -229,9 +234,6 @@ void fathom_line_pass(fathom_line_t *line, uint8_t from, uint8_t length);
 /* Returns true if a byte of this age is no reading any more. */
 bool fathom_line_is_old(const fathom_line_t *line, uint32_t age_us);
 
-/* Returns the time until the attempt ends if no byte arrives, counted from the last poll. The phase is WAITING. */
-uint32_t fathom_line_attempt_left_us(const fathom_line_t *line);
-
 /* Return the time until an incomplete frame is over, and until a request may leave, if no byte arrives. Both are counted
  * from the last poll, in microseconds. */
 uint32_t fathom_line_gap_left_us(const fathom_line_t *line);
@@ -239,6 +241,12 @@ uint32_t fathom_line_silence_left_us(const fathom_line_t *line);
 
 /* Returns true if the silence before a request is kept. */
 static inline bool is_silent(const fathom_line_t *line) { return fathom_line_silence_left_us(line) == 0u; }
+
+/*
+ * Returns the time until the bytes in the frame buffer are over, counted from the last poll. Bytes that may be a
+ * response end at a gap. All others end at the silence: a gap may be longer than the pause between two frames.
+ */
+uint32_t fathom_line_frame_over_us(const fathom_line_t *line);
 
 /* Handles a broken port: forgets the received bytes and ends all transactions. Always returns FATHOM_ERR_PORT. */
 fathom_status_t fathom_line_broken(fathom_line_t *line);
@@ -259,6 +267,19 @@ void fathom_line_quarantine(fathom_line_t *line);
 
 /* Ends an attempt without a response. */
 void fathom_line_end_attempt(fathom_line_t *line);
+
+/* ---- line_due.c ---- */
+
+/* Returns the time until the attempt ends if no byte arrives, counted from the last poll. The phase is WAITING. */
+uint32_t fathom_line_attempt_left_us(const fathom_line_t *line);
+
+/* ---- line_echo.c ---- */
+
+/*
+ * Returns true if the received bytes are the echo, or the beginning of it. `response_length` is the length of the
+ * complete response frame with a right checksum at the beginning of the buffer, or 0.
+ */
+bool fathom_line_is_echo(const fathom_line_t *line, uint8_t response_length);
 
 /* ---- line_response.c ---- */
 

@@ -19,73 +19,37 @@ static void pass(fathom_line_t *line, uint8_t length)
 }
 
 /*
- * Handles the first `length` bytes in the buffer, which belong to no transaction.
+ * Handles the first `length` bytes in the buffer, which belong to no transaction. Returns `length`.
  *
  * If the time-out has passed, the attempt ends here: bytes that begin now are another device's frame or noise, which
  * could otherwise keep the attempt alive without end.
  */
-static void discard(fathom_line_t *line, uint8_t length)
+static uint8_t discard(fathom_line_t *line, uint8_t length)
 {
     pass(line, length);
     if (!expects_response(line)) {
         fathom_line_note_sender(line, SENDER_BYTES, length);
-        return;
+        return length;
     }
     /* A complete frame hides no echo; single bytes may. */
     if ((length == 1u) && (line->attempt.copy == COPY_DUE)) line->attempt.copy = COPY_HIDDEN;
     if (is_overtime(line)) fathom_line_end_attempt(line);
+    return length;
 }
 
-/* ---- Echo ---- */
-
-/*
- * Many RS-485 adapters receive what they send. The echo arrives before the response and ends before it.
- *
- *     read    sent [request]
- *             wire [request][response]      differ: the first is the echo, the second is the response
- *
- *     write   sent [request]
- *             wire [request]                is this the echo, or the response of a unit without an echo?
- *             wire [request][request]       the echo and the response
- *
- *  - While echo is unknown, received bytes that equal the request are accepted as the echo, once per attempt
- *    (COPY_PAST). A write whose only received bytes equal its request therefore ends with FATHOM_ERR_ECHO.
- *  - If it is known that there is no echo, `copy` is COPY_PAST from the start, and the copy is the response.
- *  - The line learns ECHO_ON from an echo that cannot be a response: the bytes of the request form no response frame.
- *  - The line learns ECHO_OFF from a response without an echo before it. Noise before it proves nothing, because a
- *    damaged echo looks like noise (COPY_HIDDEN).
- *  - The bytes of a request can also begin with a shorter response frame, so a response of the request's length, or one
- *    byte less, can be the echo. A response of any other length cannot.
- *  - Once the time-out has passed, a second copy is discarded. Otherwise endless copies would keep the attempt alive.
- */
-static bool can_be_echo(const fathom_line_t *line, uint8_t response_length)
+/* The first `length` bytes in the buffer are a response or an echo. The listener's next frame cannot continue across it. */
+static uint8_t accept(fathom_line_t *line, uint8_t length)
 {
-    if (!expects_response(line)) return false;
-    if (response_length == 0u) return true;
-    return (line->attempt.copy != COPY_PAST) && ((response_length == line->attempt.request_length) ||
-                                                 ((response_length + 1) == line->attempt.request_length));
+    line->is_after_gap = true;
+    return length;
 }
 
-/*
- * Returns true if the received bytes are the echo, or the beginning of it. `response_length` is the length of the
- * complete response frame with a right checksum at the beginning of the buffer, or 0.
- */
-static bool is_echo(const fathom_line_t *line, uint8_t response_length)
-{
-    const fathom_protocol_t *const protocol = line->protocol;
-    const uint8_t *const frame = line->parts->frame;
-    const uint8_t request_length = line->attempt.request_length;
-    if (!can_be_echo(line, response_length)) return false;
-    if (!protocol->is_request(line->head, frame, line->received_count)) return false;
-    return (line->received_count < request_length) || (protocol->check(frame, request_length) == 0u);
-}
+/* ---- Received frames ---- */
 
 static void learn_echo(fathom_line_t *line, uint8_t echo)
 {
     if (line->parts->find_echo != NULL) line->parts->find_echo(line, echo);
 }
-
-/* ---- Received frames ---- */
 
 /*
  * Assigns a complete frame with a right checksum from `address` to the first transaction that it is a response to.
@@ -155,21 +119,7 @@ static bool accept_frame(fathom_line_t *line)
 
 /* ---- Scanning ---- */
 
-/* What to do with the bytes at the beginning of the frame buffer. */
-enum action { NEED_MORE, DISCARD, FOREIGN_FRAME, ACCEPT };
-
-typedef struct {
-    uint8_t action; /* enum action */
-    uint8_t length; /* All but NEED_MORE: the number of bytes that leave the buffer, 1 to received_count */
-} scan_result_t;
-
-static scan_result_t result(uint8_t action, uint8_t length)
-{
-    scan_result_t scanned;
-    scanned.action = action;
-    scanned.length = length;
-    return scanned;
-}
+enum { NEED_MORE = 0 };
 
 /* Less than three bytes are noise: they show no broken response. */
 enum { MIN_TRUNCATED = 3 };
@@ -181,55 +131,62 @@ static bool is_damaged_response(const fathom_line_t *line, uint8_t frame_length)
            expects_unit(line, line->parts->frame[line->protocol->address_offset]);
 }
 
-/* Skips one byte, since no valid frame begins at the front of the buffer. */
-static scan_result_t skip_byte(fathom_line_t *line, uint8_t frame_length, bool is_complete)
+/* Discards one byte, since no valid frame begins at the front of the buffer. */
+static uint8_t skip_byte(fathom_line_t *line, uint8_t frame_length, bool is_complete)
 {
     if (is_damaged_response(line, frame_length)) {
         /* While the request still leaves, noise is more likely than a response. */
         const bool is_corrupt = is_complete && (line->phase != FATHOM_LINE_SENDING);
         note_fault(line, is_corrupt ? FAULT_CORRUPT : FAULT_TRUNCATED);
     }
-    return result(DISCARD, 1);
+    return discard(line, 1);
 }
 
-static scan_result_t take_echo(fathom_line_t *line, bool is_response)
+static uint8_t take_echo(fathom_line_t *line, bool is_response)
 {
     if (!is_response) learn_echo(line, FATHOM_LINE_ECHO_ON);
     if ((line->attempt.copy == COPY_PAST) && is_overtime(line))
-        return result(DISCARD, line->attempt.request_length);
+        return discard(line, line->attempt.request_length);
     line->attempt.copy = COPY_PAST;
     fathom_line_note_sender(line, SENDER_ECHO, 0);
-    return result(ACCEPT, line->attempt.request_length);
+    return accept(line, line->attempt.request_length);
 }
 
-/* Decides about the bytes at the beginning of the buffer. If `is_over` is true, no byte will complete a frame there. */
-static scan_result_t examine(fathom_line_t *line, bool is_over)
+/* A complete frame with a right checksum that is no echo. */
+static uint8_t take_frame(fathom_line_t *line, uint8_t length, bool is_over)
+{
+    if (line->wait == WAIT_NOISE) line->wait = WAIT_FRAMES;
+    if (accept_frame(line)) return accept(line, length);
+    if ((length == line->received_count) && !is_over) fathom_line_note_sender(line, SENDER_FRAME, 0);
+    return discard(line, length);
+}
+
+/*
+ * Handles the bytes at the beginning of the buffer, if they can be decided. If `is_over` is true, no byte will complete a
+ * frame there. Returns the number of bytes that leave the buffer; 0: more bytes are needed.
+ */
+static uint8_t take_front(fathom_line_t *line, bool is_over)
 {
     const fathom_protocol_t *const protocol = line->protocol;
     const uint8_t *const frame = line->parts->frame;
     const uint8_t received_count = line->received_count;
-    const fathom_line_masters_t *const masters = line->parts->masters;
     /* Without a protocol nothing was ever submitted. */
-    if ((protocol == NULL) && (masters == NULL)) return result(DISCARD, received_count);
+    if ((protocol == NULL) && (line->parts->masters == NULL)) return discard(line, received_count);
 
     const uint8_t length = (protocol != NULL) ? protocol->length(frame, received_count) : 0u;
     const bool is_complete = (length != 0u) && (length <= received_count);
     const bool is_frame = is_complete && (protocol->check(frame, length) == 0u);
-    uint8_t request_length = 0;
-    if (masters != NULL) request_length = masters->find_request(line, is_frame);
-    if ((request_length != 0u) && (request_length <= received_count)) return result(DISCARD, request_length);
+    const uint8_t request_length = fathom_line_find_request(line, is_frame);
+    if ((request_length != 0u) && (request_length <= received_count)) return discard(line, request_length);
     const bool can_complete = (length > received_count) && (length <= line->parts->frame_size);
-    if (can_complete && !is_over) return result(NEED_MORE, 0);
+    if (can_complete && !is_over) return NEED_MORE;
 
-    if (is_echo(line, is_frame ? length : 0u)) {
+    if (fathom_line_is_echo(line, is_frame ? length : 0u)) {
         if (line->attempt.request_length <= received_count) return take_echo(line, is_frame);
-        if (!is_over) return result(NEED_MORE, 0);
+        if (!is_over) return NEED_MORE;
     }
-    if (is_frame) {
-        if (line->wait == WAIT_NOISE) line->wait = WAIT_FRAMES;
-        return result(accept_frame(line) ? ACCEPT : FOREIGN_FRAME, length);
-    }
-    if ((request_length != 0u) && !is_over) return result(NEED_MORE, 0);
+    if (is_frame) return take_frame(line, length, is_over);
+    if ((request_length != 0u) && !is_over) return NEED_MORE;
     return skip_byte(line, length, is_complete);
 }
 
@@ -251,16 +208,9 @@ static void pass_early(fathom_line_t *line)
 void fathom_line_scan(fathom_line_t *line, bool is_over)
 {
     while (line->received_count != 0u) {
-        const scan_result_t front = examine(line, is_over);
-        if (front.action == NEED_MORE) break;
-        if (front.action == ACCEPT) {
-            line->is_after_gap = true; /* The listener's next frame cannot continue across a response. */
-        } else {
-            discard(line, front.length);
-        }
-        remove_bytes(line, front.length);
-        if ((front.action == FOREIGN_FRAME) && (line->received_count == 0u) && !is_over)
-            fathom_line_note_sender(line, SENDER_FRAME, 0);
+        const uint8_t length = take_front(line, is_over);
+        if (length == NEED_MORE) break;
+        remove_bytes(line, length);
     }
     pass_early(line);
 }

@@ -6,9 +6,9 @@ EVA knows the values of each member, not how members go together. Each argument 
 make it, so that it can be checked by reading them."""
 
 BYTES = """passed_count <= received_count <= frame_size, and received_count >= 1 where a protocol or the part for
-masters reads the buffer: fathom_line_scan calls examine only then. read_port gives read the room that is left,
+masters reads the buffer: fathom_line_scan calls take_front only then. read_port gives read the room that is left,
 frame_size - received_count, and receive adds what read returns, which is no more, or nothing of it. What leaves the
-buffer is received_count at most: examine returns received_count, or 1, or a length that it has compared with
+buffer is received_count at most: take_front returns received_count, or 1, or a length that it has compared with
 received_count, of a frame, of a request of another master, or of our own request. discard passes on from passed_count
 up to that length, and remove_bytes takes it from both counts. form_of reads no byte before it has compared
 received_count with its index. is_ours passes request_length to is_request: it is not 0 there, and encode, which has
@@ -31,9 +31,9 @@ fathom_line_end_attempt has called fathom_line_free_wire right before. fathom_li
 SENDING, where request_length is 0. is_old reads head where it has seen that it is not NULL."""
 
 PROTOCOL = """line->protocol is not NULL where request_length is not 0: fathom_line_submit sets it before a request can
-leave, begin_attempt sets it with request_length, and nothing resets it. is_ours and is_echo read it only if
-expects_response() is true, that is, if request_length is not 0. examine sets its length to 0 if line->protocol is NULL.
-Without a length nothing is complete and nothing is a frame: examine calls check only if is_complete is true,
+leave, begin_attempt sets it with request_length, and nothing resets it. is_ours and fathom_line_is_echo read it only if
+expects_response() is true, that is, if request_length is not 0. take_front sets its length to 0 if line->protocol is NULL.
+Without a length nothing is complete and nothing is a frame: take_front calls check only if is_complete is true,
 accept_frame only if is_frame is true, and is_damaged_response reads the protocol only if frame_length, which is this
 length, is not 0."""
 
@@ -99,10 +99,10 @@ ARGUED = {
     ('src/engine/line_response.c', 'accept_frame',
      'mem_access: \\valid_read(&(line_0->protocol)->address_offset)'): PROTOCOL,
     ('src/engine/line_response.c', 'accept_response', 'mem_access: \\valid_read(&(line_0->head)->address)'): WIRE,
-    ('src/engine/line_response.c', 'examine', 'mem_access: \\valid_read(&protocol->check)'): PROTOCOL,
+    ('src/engine/line_response.c', 'take_front', 'mem_access: \\valid_read(&protocol->check)'): PROTOCOL,
     ('src/engine/line_response.c', 'is_damaged_response',
      'mem_access: \\valid_read(&(line_0->protocol)->address_offset)'): PROTOCOL,
-    ('src/engine/line_response.c', 'is_echo', 'mem_access: \\valid_read(&protocol->is_request)'): PROTOCOL,
+    ('src/engine/line_echo.c', 'fathom_line_is_echo', 'mem_access: \\valid_read(&protocol->is_request)'): PROTOCOL,
     ('src/engine/line_response.c', 'remove_bytes', 'mem_access: \\valid(frame_0 + i)'): BYTES,
     ('src/engine/line_response.c', 'remove_bytes',
      'mem_access: \\valid_read(frame_0 + (int)((int)i + (int)length_0))'): BYTES,

@@ -2,7 +2,7 @@
 /*
  * proves: src/engine/line_listening.c
  * with:   src/engine/line.c src/engine/line_attempt.c src/engine/line_options.c src/engine/line_request.c
- *          src/engine/line_response.c
+ *          src/engine/line_response.c src/engine/line_due.c src/engine/line_echo.c
  * unreached: advance_0
  * options: -eva-precision 0
  *          -eva-slevel-function fathom_line_begin:100,main:5,fathom_line_poll:3,fathom_line_marks:30
