@@ -277,10 +277,7 @@ static fathom_status_t read_port(fathom_line_t *line)
     const fathom_uart_t *const uart = line->parts->uart;
     const uint32_t pause_us = begin_turn(line);
     uint32_t silent_us = pause_us + line->silent_us;
-    if (line->slot == SLOT_BEHIND_FRAME) {
-        fathom_line_note_sender(line, SENDER_PAUSE, pause_us);
-        line->slot = SLOT_OPEN;
-    }
+    fathom_line_note_sender(line, SENDER_PAUSE, pause_us);
     for (uint8_t reads_left = MAX_READS; reads_left != 0u; reads_left--) {
         fathom_rx_t rx;
         rx.last_us = 0;

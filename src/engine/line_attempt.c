@@ -38,6 +38,11 @@ void fathom_line_finish(fathom_line_t *line, fathom_transaction_t **link, fathom
 
 /* ---- The quarantine ---- */
 
+uint16_t fathom_line_units_of(uint8_t address)
+{
+    return (uint16_t)((address == FATHOM_LINE_ANY_UNIT) ? UINT16_MAX : (1u << (address % 16u)));
+}
+
 /*
  * Modbus frames carry no sequence number: a late response looks exactly like the response to the next request of the
  * same shape. So after a failed attempt the line sends this unit nothing until its late response can no longer arrive.
@@ -67,7 +72,7 @@ void fathom_line_quarantine(fathom_line_t *line)
     if (line->attempt.fault != FAULT_CORRUPT) duration_us += transaction->timeout_us;
     if ((line->quarantined_units == 0u) || (line->quarantine_left_us < duration_us))
         line->quarantine_left_us = duration_us;
-    line->quarantined_units |= units_of(transaction->address);
+    line->quarantined_units |= fathom_line_units_of(transaction->address);
 }
 
 /* ---- The end of an attempt ---- */

@@ -42,10 +42,9 @@ static uint32_t phase_due_us(const fathom_line_t *line, uint32_t passed_us)
         return port_due_us(line, passed_us);
     case FATHOM_LINE_WAITING:
         return fathom_line_attempt_left_us(line);
-    case FATHOM_LINE_ENDING_BREAK:
-        return (line->head != NULL) ? line->phase_left_us : FATHOM_NO_DEADLINE;
-    default:
-        return (line->head != NULL) ? line->kind->due_us(line) : FATHOM_NO_DEADLINE;
+    default: /* IDLE, IN_BREAK, ENDING_BREAK */
+        if (line->head == NULL) return FATHOM_NO_DEADLINE;
+        return (line->phase == FATHOM_LINE_ENDING_BREAK) ? line->phase_left_us : line->kind->due_us(line);
     }
 }
 
@@ -55,6 +54,6 @@ uint32_t fathom_line_due_us(const fathom_line_t *line)
     const uint32_t passed_us = time_since_us(clock_us(line->parts->clock), line->polled_us);
     uint32_t due_us = least_us(phase_due_us(line, passed_us), fathom_line_frame_over_us(line));
     if ((line->listener != NULL) && (line->silent_us < line->listener->gap_us))
-        due_us = least_us(due_us, rest_us(line->listener->gap_us, line->silent_us));
+        due_us = least_us(due_us, (uint32_t)(line->listener->gap_us - line->silent_us));
     return (due_us == FATHOM_NO_DEADLINE) ? due_us : rest_us(due_us, passed_us);
 }

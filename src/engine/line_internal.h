@@ -69,7 +69,7 @@ enum sender_event {
     SENDER_ECHO,     /* The echo of our request arrived. */
     SENDER_RESPONSE, /* A transaction has accepted a frame. */
     SENDER_LOSS,     /* A request that was sent without a measured silence was not answered. */
-    SENDER_PAUSE     /* The previous poll ended with SENDER_FRAME, and this poll comes `amount` us later. */
+    SENDER_PAUSE     /* This poll comes `amount` us after the previous one. */
 };
 
 /* The part for devices that send by themselves (line_senders.c). */
@@ -180,19 +180,8 @@ static inline void set_silent(fathom_line_t *line, uint32_t us)
     line->silent_us = (us > QUIET_US) ? QUIET_US : (uint16_t)us;
 }
 
-/* Returns the members of `quarantined_units` for an address. FATHOM_LINE_ANY_UNIT stands for all units. */
-static inline uint16_t units_of(uint8_t address)
-{
-    return (uint16_t)((address == FATHOM_LINE_ANY_UNIT) ? UINT16_MAX : (1u << (address % 16u)));
-}
-
 /* Returns true if a request is on the wire to which a unit responds. */
 static inline bool expects_response(const fathom_line_t *line) { return line->attempt.request_length != 0u; }
-
-static inline bool is_quarantined(const fathom_line_t *line, uint8_t address)
-{
-    return (line->quarantined_units & units_of(address)) != 0u;
-}
 
 static inline bool is_from_unit_of(const fathom_transaction_t *transaction, uint8_t address)
 {
@@ -261,6 +250,14 @@ void fathom_line_free_wire(fathom_line_t *line, uint8_t next_phase);
 
 /* Removes a transaction from the queue and writes its result. If the transaction uses the wire, the wire is free. */
 void fathom_line_finish(fathom_line_t *line, fathom_transaction_t **link, fathom_status_t status);
+
+/* Returns the members of `quarantined_units` for an address. FATHOM_LINE_ANY_UNIT stands for all units. */
+uint16_t fathom_line_units_of(uint8_t address);
+
+static inline bool is_quarantined(const fathom_line_t *line, uint8_t address)
+{
+    return (line->quarantined_units & fathom_line_units_of(address)) != 0u;
+}
 
 /* Keeps the unit of the request on the wire in quarantine until its late response can no longer arrive. */
 void fathom_line_quarantine(fathom_line_t *line);

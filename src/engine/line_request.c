@@ -170,7 +170,7 @@ static fathom_status_t send_next(fathom_line_t *line)
     const fathom_uart_t *const uart = line->parts->uart;
     fathom_transaction_t *const transaction = choose(line);
     if (transaction == NULL) return FATHOM_PENDING;
-    if (line->received_count != 0u) line->kind->scan(line, true); /* The request needs the frame buffer. */
+    line->kind->scan(line, true); /* The request needs the frame buffer. */
     move_to_front(line, transaction);
 
     const int settings = apply_settings(line, transaction);
@@ -212,7 +212,7 @@ static fathom_status_t advance(fathom_line_t *line)
         return follow_request(line);
     case FATHOM_LINE_WAITING:
         if (fathom_line_attempt_left_us(line) != 0u) return FATHOM_PENDING;
-        if (line->received_count != 0u) line->kind->scan(line, true); /* The frame took too long. */
+        line->kind->scan(line, true); /* A frame in the buffer took too long. */
         if (is_busy(line)) fathom_line_end_attempt(line);
         break;
     default: /* IDLE, IN_BREAK, ENDING_BREAK, PORT_BUSY */

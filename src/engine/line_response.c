@@ -107,7 +107,7 @@ static bool accept_late_response(fathom_line_t *line, uint8_t address)
         if (!is_claimed) note_unrequested(line);
         return false;
     }
-    line->quarantined_units &= (uint16_t)~units_of(address);
+    line->quarantined_units &= (uint16_t)~fathom_line_units_of(address);
     return serve(line, address);
 }
 
@@ -175,17 +175,18 @@ static uint8_t take_front(fathom_line_t *line, bool is_over)
 
     const uint8_t length = (protocol != NULL) ? protocol->length(frame, received_count) : 0u;
     const bool is_complete = (length != 0u) && (length <= received_count);
-    const bool is_frame = is_complete && (protocol->check(frame, length) == 0u);
-    const uint8_t request_length = fathom_line_find_request(line, is_frame);
+    uint8_t frame_length = 0; /* Of a complete frame with a right checksum. */
+    if (is_complete && (protocol->check(frame, length) == 0u)) frame_length = length;
+    const uint8_t request_length = fathom_line_find_request(line, frame_length != 0u);
     if ((request_length != 0u) && (request_length <= received_count)) return discard(line, request_length);
     const bool can_complete = (length > received_count) && (length <= line->parts->frame_size);
     if (can_complete && !is_over) return NEED_MORE;
 
-    if (fathom_line_is_echo(line, is_frame ? length : 0u)) {
-        if (line->attempt.request_length <= received_count) return take_echo(line, is_frame);
+    if (fathom_line_is_echo(line, frame_length)) {
+        if (line->attempt.request_length <= received_count) return take_echo(line, frame_length != 0u);
         if (!is_over) return NEED_MORE;
     }
-    if (is_frame) return take_frame(line, length, is_over);
+    if (frame_length != 0u) return take_frame(line, frame_length, is_over);
     if ((request_length != 0u) && !is_over) return NEED_MORE;
     return skip_byte(line, length, is_complete);
 }

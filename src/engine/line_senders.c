@@ -46,6 +46,8 @@ static void note_bytes(fathom_line_t *line, uint32_t amount)
 
 static void note_pause(fathom_line_t *line, uint32_t pause_us)
 {
+    if (line->slot != SLOT_BEHIND_FRAME) return;
+    line->slot = SLOT_OPEN;
     if (!is_waiting(line) || (line->sender == SENDER_NONE)) return;
     if (pause_us < (2u * silence_us(line)))
         line->sender = SENDER_QUICK;
