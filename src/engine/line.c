@@ -75,10 +75,8 @@ static void move_to(fathom_line_t *line, uint32_t now_us)
     const uint32_t passed_us = time_since_us(now_us, line->polled_us);
     line->polled_us = now_us;
     (void)fathom_count_down(&line->phase_left_us, passed_us);
-    if (line->awaited_left_us != 0u) {
-        line->awaited_left_us = rest_us(line->awaited_left_us, passed_us);
-        if (line->awaited_left_us == 0u) line->awaited_left_us = ENDS_WITH_THIS_POLL;
-    }
+    if ((line->awaited_left_us != 0u) && fathom_count_down(&line->awaited_left_us, passed_us))
+        line->awaited_left_us = ENDS_WITH_THIS_POLL;
     if ((line->quarantined_units != 0u) && (line->phase != FATHOM_LINE_DRAINING) &&
         fathom_count_down(&line->quarantine_left_us, passed_us))
         line->quarantined_units = 0;

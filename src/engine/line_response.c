@@ -65,9 +65,8 @@ static bool serve(fathom_line_t *line, uint8_t address)
             continue;
         const fathom_status_t status = protocol->parse_response(transaction, line->parts->frame);
         if ((status != FATHOM_OK) && (status != FATHOM_ERR_EXCEPTION)) continue;
-        fathom_line_add(line, (status == FATHOM_OK) ? FATHOM_LINE_RESPONSES : FATHOM_LINE_EXCEPTIONS, 1);
+        fathom_line_add(line, (uint8_t)-status, 1); /* line.h: the index of the counter is -status. */
         fathom_line_note_sender(line, SENDER_RESPONSE, 0);
-        if (line->sender != SENDER_NONE) fathom_line_add(line, FATHOM_LINE_MAYBE_UNSOLICITED, 1);
         fathom_line_finish(line, link, status);
         return true;
     }
@@ -195,7 +194,7 @@ static void remove_bytes(fathom_line_t *line, uint8_t length)
 {
     uint8_t *const frame = line->parts->frame;
     line->received_count = (uint8_t)(line->received_count - length);
-    line->passed_count = (uint8_t)rest_us(line->passed_count, length);
+    line->passed_count = (line->passed_count > length) ? (uint8_t)(line->passed_count - length) : 0u;
     for (uint8_t i = 0; i != line->received_count; i++) frame[i] = frame[i + length];
 }
 

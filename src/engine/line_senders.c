@@ -68,6 +68,7 @@ static void note(fathom_line_t *line, uint8_t event, uint32_t amount)
         line->slot = SLOT_OVER;
         break;
     case SENDER_RESPONSE:
+        if (line->sender != SENDER_NONE) fathom_line_add(line, FATHOM_LINE_MAYBE_UNSOLICITED, 1);
         line->slot = SLOT_OVER;
         line->unsolicited_count = 0;
         if (is_slow(line)) line->sender = SENDER_SLOW;

@@ -200,9 +200,9 @@ uint32_t fathom_modbus_unit_due_us(const fathom_modbus_unit_t *unit)
     uint32_t due_us =
         0; /* not initialised: each poll returns its error; ended: the result is to be fetched */
     if (unit->transport == NULL) return due_us;
-    if (unit->state == FATHOM_MODBUS_UNIT_IDLE) due_us = idle_due_us(unit);
-    /* Another unit's poll may have ended the request already. */
-    if ((unit->state == FATHOM_MODBUS_UNIT_QUEUED) && (unit->request.transaction.status == FATHOM_PENDING))
+    if (unit->state == FATHOM_MODBUS_UNIT_IDLE)
+        due_us = idle_due_us(unit);
+    else if (unit->request.transaction.status == FATHOM_PENDING) /* Else the request has ended. */
         due_us = unit->transport->due_us(unit->transport->ctx);
     return (unit->commands != NULL) ? unit->commands->due_us(unit, due_us) : due_us;
 }

@@ -30,13 +30,13 @@ static void drop_first(fathom_hps167s_auto_t *sensor)
 {
     volatile uint8_t *to = sensor->bytes;
     const uint8_t *from = sensor->bytes;
-    count_one(&sensor->dropped_bytes);
     sensor->held_count--;
     for (uint8_t left = sensor->held_count; left != 0u; left--) {
         from++;
         *to = *from;
         to++;
     }
+    count_one(&sensor->dropped_bytes);
 }
 
 /* Stores the held bytes as the newest frame, unless the driver of the same unit refuses it. */
