@@ -122,6 +122,7 @@ static bool configure(fathom_a16_controlled_t *sensor, const fathom_a16_controll
     stream->storage = sensor->storage;
     stream->listener.stale_us = sensor->latest_us; /* The line drops bytes that are older. */
     if ((line == NULL) || (line->parts == NULL)) return false;
+    fathom_dyp_choose_gap(&stream->listener, line);
     trigger->clock = line->parts->clock;
     return (trigger->output.set != NULL) && (sensor->earliest_us <= sensor->latest_us) &&
            (fathom_dyp_measurement_init(measurement, FATHOM_A16_MAX_MM) == FATHOM_OK) &&

@@ -12,8 +12,10 @@
 fathom_status_t fathom_dyp_auto_init(fathom_dyp_auto_t *sensor, uint16_t default_max_mm)
 {
     fathom_line_t *const line = sensor->line;
-    if ((fathom_dyp_measurement_init(&sensor->measurement, default_max_mm) < 0) || (line == NULL) ||
-        (line->parts == NULL) || (fathom_stream_start(&sensor->stream, clock_us(line->parts->clock)) < 0))
+    if ((line == NULL) || (line->parts == NULL)) return FATHOM_ERR_ARGUMENT;
+    fathom_dyp_choose_gap(&sensor->stream.listener, line);
+    if ((fathom_dyp_measurement_init(&sensor->measurement, default_max_mm) < 0) ||
+        (fathom_stream_start(&sensor->stream, clock_us(line->parts->clock)) < 0))
         return FATHOM_ERR_ARGUMENT;
     return fathom_line_listen(line, &sensor->stream.listener);
 }

@@ -381,3 +381,12 @@ TEST(in_a_slow_loop_rx_is_low_for_longer_and_never_for_less)
     (void)rig_poll();
     assert_false(rig.fake.in_break);
 }
+
+/* test_a16_auto.c shows what it is good for. */
+TEST(the_gap_is_that_of_the_line_if_it_is_longer)
+{
+    rig.line_parts.gap_us = 25000;
+    assert_int_equal(fathom_line_init(&rig.line, &rig.line_parts), FATHOM_OK);
+    assert_int_equal(fathom_a05_auto_init(&a05, &rig.line, NULL), FATHOM_OK);
+    assert_int_equal(a05.base.stream.listener.gap_us, 25000);
+}

@@ -54,6 +54,33 @@ TEST(a_sample_is_there_5_ms_after_its_last_byte_and_says_when_that_came)
     PENDS(rig_poll());
 }
 
+/* A USB adapter holds bytes back for up to 16 ms in the middle of a frame, and the parts of its line say so (line.h). */
+TEST(a_frame_in_two_pieces_is_whole_if_the_line_has_a_long_gap)
+{
+    rig.line_parts.gap_us = 25000;
+    assert_int_equal(fathom_line_init(&rig.line, &rig.line_parts), FATHOM_OK);
+    assert_int_equal(fathom_a16_auto_init(&a16, &rig.line, NULL), FATHOM_OK);
+    rig_run(30000, 500);
+    fake_receive(&rig.fake, 0, mm_1953, 2);
+    rig_run(16000, 500);
+    fake_receive(&rig.fake, 0, mm_1953 + 2, 2);
+    rig_run(24000, 500);
+    assert_int_equal(rig.samples, 0); /* it may go on */
+    rig_run(2000, 500);
+    assert_int_equal(rig.samples, 1);
+    assert_int_equal(rig.sample.distance_mm, 1953);
+    assert_int_equal(rig.damaged, 0);
+}
+
+/* The gap of a connection whose responses come whole is 1000 us, which is less than a character here. */
+TEST(a_short_gap_of_the_line_changes_nothing)
+{
+    rig.line_parts.gap_us = 1000;
+    assert_int_equal(fathom_line_init(&rig.line, &rig.line_parts), FATHOM_OK);
+    assert_int_equal(fathom_a16_auto_init(&a16, &rig.line, NULL), FATHOM_OK);
+    assert_int_equal(a16.base.stream.listener.gap_us, 5000);
+}
+
 /* The byte behind it has come in time, but is read only when the silence would have been long enough. */
 TEST(a_byte_that_has_come_is_looked_at_before_the_silence)
 {

@@ -405,3 +405,13 @@ TEST(a_response_that_waited_in_the_port_is_no_sample)
         assert_int_equal(rig.samples, !is_old);
     }
 }
+
+/* test_a16_auto.c shows what it is good for. */
+TEST(the_gap_is_that_of_the_line_if_it_is_longer)
+{
+    rig.line_parts.gap_us = 25000;
+    assert_int_equal(fathom_line_init(&rig.line, &rig.line_parts), FATHOM_OK);
+    assert_int_equal(fathom_a16_controlled_init(&controlled.a16, &rig.line, &controlled.trigger, NULL),
+                     FATHOM_OK);
+    assert_int_equal(controlled.a16.stream.listener.gap_us, 25000);
+}

@@ -84,9 +84,10 @@ typedef struct {
     uint32_t stale_us;
 
     /**
-     * @brief Silence that starts and ends a frame (stream.h), in microseconds: 1042 to 65535. 0 selects 5000.
+     * @brief Silence that starts and ends a frame (stream.h), in microseconds: 1042 to 65535.
      *
-     * Behind an operating system choose 25000.
+     * 0 selects 5000, or `gap_us` in the parts of the line if that is longer: a port that holds bytes back in the middle
+     * of a frame, as behind an operating system, has a long one there.
      */
     uint16_t gap_us;
 

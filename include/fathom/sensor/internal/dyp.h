@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "fathom/engine/line.h"
 #include "fathom/sample.h"
 #include "fathom/status.h"
 
@@ -169,6 +170,20 @@ fathom_status_t fathom_dyp_measurement_init(fathom_dyp_measurement_t *measuremen
  * @param value   The value as the device sent it.
  */
 uint8_t fathom_dyp_meaning(const fathom_dyp_window_t *window, uint16_t value);
+
+/**
+ * @brief Gives the listener of a driver the gap of its line, if the config left it open and the line's is longer.
+ *
+ * A port that holds bytes back in the middle of a frame has a long gap in the parts of its line (line.h).
+ *
+ * @param listener  The listener, whose `gap_us` is that of the config.
+ * @param line      The line, initialised.
+ */
+static inline void fathom_dyp_choose_gap(fathom_listener_t *listener, const fathom_line_t *line)
+{
+    if ((listener->gap_us == 0u) && (line->parts->gap_us > FATHOM_LINE_DEFAULT_GAP_US))
+        listener->gap_us = line->parts->gap_us;
+}
 
 #ifdef __cplusplus
 }
