@@ -3,7 +3,7 @@
  * proves: src/sensor/hps167s_settings.c
  * with:   src/codec/modbus_rtu.c src/sensor/hps167s.c src/sensor/hps167s_info.c src/codec/hps167s_registers.c src/engine/modbus_command.c src/engine/modbus_unit.c
  *          src/engine/modbus_setting.c src/engine/sensor.c
- * options: -eva-precision 0 -eva-auto-loop-unroll 700
+ * options: -eva-precision 0 -eva-auto-loop-unroll 700 -eva-ilevel 32
  *          -eva-slevel-function fathom_modbus_unit_init:400,is_valid:50,is_valid_0:50,fathom_hps167s_init:50,main:5,fathom_hps167s_baud_code:10,set:4,set_all:4
  *          -eva-slevel-function fathom_hps167s_set_address:4,fathom_hps167s_set_baud:4,fathom_hps167s_set_reconnect_time_ms:4
  *          -eva-slevel-function fathom_hps167s_restore_factory_settings:4
