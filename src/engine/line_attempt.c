@@ -43,6 +43,11 @@ uint16_t fathom_line_units_of(uint8_t address)
     return (uint16_t)((address == FATHOM_LINE_ANY_UNIT) ? UINT16_MAX : (1u << (address % 16u)));
 }
 
+bool fathom_line_is_quarantined(const fathom_line_t *line, uint8_t address)
+{
+    return (line->quarantined_units & fathom_line_units_of(address)) != 0u;
+}
+
 /*
  * Modbus frames carry no sequence number: a late response looks exactly like the response to the next request of the
  * same shape. So after a failed attempt the line sends this unit nothing until its late response can no longer arrive.

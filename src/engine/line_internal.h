@@ -228,9 +228,6 @@ bool fathom_line_is_old(const fathom_line_t *line, uint32_t age_us);
 uint32_t fathom_line_gap_left_us(const fathom_line_t *line);
 uint32_t fathom_line_silence_left_us(const fathom_line_t *line);
 
-/* Returns true if the silence before a request is kept. */
-static inline bool is_silent(const fathom_line_t *line) { return fathom_line_silence_left_us(line) == 0u; }
-
 /*
  * Returns the time until the bytes in the frame buffer are over, counted from the last poll. Bytes that may be a
  * response end at a gap. All others end at the silence: a gap may be longer than the pause between two frames.
@@ -253,11 +250,6 @@ void fathom_line_finish(fathom_line_t *line, fathom_transaction_t **link, fathom
 
 /* Returns the members of `quarantined_units` for an address. FATHOM_LINE_ANY_UNIT stands for all units. */
 uint16_t fathom_line_units_of(uint8_t address);
-
-static inline bool is_quarantined(const fathom_line_t *line, uint8_t address)
-{
-    return (line->quarantined_units & fathom_line_units_of(address)) != 0u;
-}
 
 /* Keeps the unit of the request on the wire in quarantine until its late response can no longer arrive. */
 void fathom_line_quarantine(fathom_line_t *line);

@@ -112,7 +112,7 @@ static void note_foreign_request(fathom_line_t *line, uint8_t address)
 {
     const bool is_outstanding = expects_unit(line, address);
     const bool is_second = (line->awaited_left_us != 0u) && !line->is_answered;
-    const bool is_unclear = is_outstanding || is_second || is_quarantined(line, address) ||
+    const bool is_unclear = is_outstanding || is_second || fathom_line_is_quarantined(line, address) ||
                             (line->unrequested_count == UNREQUESTED_LIMIT);
     fathom_line_add(line, FATHOM_LINE_FOREIGN_REQUESTS, 1);
     if (is_outstanding) note_fault(line, FAULT_CLAIMED);
@@ -129,7 +129,7 @@ static bool is_ours(fathom_line_t *line, uint8_t address, bool is_response)
     if (expects_response(line) && line->protocol->is_request(line->head, frame, line->attempt.request_length))
         return true;
     if (is_response) return !expects_unit(line, address); /* The copy of a write of one register. */
-    if (!is_echo_due(line) || !is_quarantined(line, address)) return false;
+    if (!is_echo_due(line) || !fathom_line_is_quarantined(line, address)) return false;
     line->attempt.copy = COPY_PAST;
     return true;
 }

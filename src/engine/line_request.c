@@ -33,7 +33,7 @@
 static fathom_transaction_t *next(const fathom_line_t *line)
 {
     fathom_transaction_t *transaction = line->head;
-    while ((transaction != NULL) && is_quarantined(line, transaction->address))
+    while ((transaction != NULL) && fathom_line_is_quarantined(line, transaction->address))
         transaction = transaction->link.next;
     return transaction;
 }
@@ -140,7 +140,7 @@ static void begin_attempt(fathom_line_t *line, uint8_t length)
     line->protocol = protocol;
     line->attempt.request_length = is_broadcast ? 0u : length;
     line->attempt.copy = (line->echo == FATHOM_LINE_ECHO_OFF) ? COPY_PAST : COPY_DUE;
-    line->wait = is_silent(line) ? WAIT_NONE : WAIT_SKIPPED;
+    line->wait = (fathom_line_silence_left_us(line) == 0u) ? WAIT_NONE : WAIT_SKIPPED;
     line->phase = FATHOM_LINE_SENDING;
     line->phase_left_us = FATHOM_LINE_SEND_US;
 }

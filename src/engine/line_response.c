@@ -99,7 +99,7 @@ static bool accept_late_response(fathom_line_t *line, uint8_t address)
 {
     const fathom_line_masters_t *const masters = line->parts->masters;
     const bool is_claimed = (masters != NULL) && masters->take_answer(line, address);
-    const bool is_late = is_quarantined(line, address) && !is_echo_due(line) && !is_claimed;
+    const bool is_late = fathom_line_is_quarantined(line, address) && !is_echo_due(line) && !is_claimed;
     if (is_echo_due(line)) line->attempt.copy = COPY_PAST;
     fathom_line_add(line, is_late ? FATHOM_LINE_LATE_RESPONSES : FATHOM_LINE_STRAYS, 1);
     if (!is_late) {

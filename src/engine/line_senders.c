@@ -114,7 +114,7 @@ static bool take_slot(fathom_line_t *line, const fathom_transaction_t *transacti
         line->unsolicited_count = 0;
     }
     line->slot = SLOT_OVER;
-    return is_silent(line) || !must_draw(line, transaction) || is_drawn(line);
+    return (fathom_line_silence_left_us(line) == 0u) || !must_draw(line, transaction) || is_drawn(line);
 }
 
 const fathom_line_senders_t fathom_line_senders = {note, slot_in_us, take_slot};

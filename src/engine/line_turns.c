@@ -63,8 +63,3 @@ void fathom_line_take_turns(fathom_line_t *line, fathom_line_turns_t *turns)
     turns->is_busy = false;
     line->kind = &turns->kind;
 }
-
-bool fathom_line_is_quarantined(const fathom_line_t *line, uint8_t address)
-{
-    return is_quarantined(line, address);
-}
