@@ -15,7 +15,7 @@ extern "C" {
 
 /**
  * @file
- * @brief The Modbus transport (modbus.h) over a modbus_t of libmodbus, RTU or TCP.
+ * @brief The Modbus transport (modbus.h) over a modbus_t of libmodbus, RTU or TCP: a line whose UART is the modbus_t.
  *
  * This port is for programs that use libmodbus already, and for sensors behind an Ethernet gateway. The program makes
  * the modbus_t and connects it. Only fathom_libmodbus_wait() waits, and no function allocates memory. The rules of
@@ -203,7 +203,7 @@ fathom_libmodbus_error_t fathom_libmodbus_error(const fathom_libmodbus_t *port);
  *
  * This is an idle hook for fathom_wait() (wait.h). If the modbus_t is not connected, or the connection is broken, it
  * returns at once: a loop must check the status that the poll functions return, or it uses a whole processor. For a
- * poll(2) of the program, use modbus_get_socket(), POLLIN and `due_us` of the transport.
+ * poll(2) of the program, use modbus_get_socket(), POLLIN and fathom_line_due_us() with `line` of the transport.
  *
  * @param port    The port, a fathom_libmodbus_t.
  * @param max_us  Longest sleep in microseconds. FATHOM_NO_DEADLINE: without a limit.

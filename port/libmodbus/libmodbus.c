@@ -69,16 +69,17 @@ static bool takes_unit(modbus_t *modbus, uint8_t unit)
     return is_taken;
 }
 
-static fathom_status_t submit(void *line, fathom_modbus_request_t *request)
+static fathom_status_t submit(fathom_line_t *line, fathom_modbus_request_t *request)
 {
-    fathom_libmodbus_t *const port = line;
+    const fathom_libmodbus_t *const port = (const fathom_libmodbus_t *)line; /* its first member */
     if (!takes_unit(port->modbus, request->message.head[0])) return FATHOM_ERR_UNSUPPORTED;
-    return fathom_modbus_client_submit_with_zero(&port->line, request);
+    return fathom_modbus_client_submit_with_zero(line, request);
 }
 
 fathom_modbus_t fathom_libmodbus(fathom_libmodbus_t *port)
 {
-    return fathom_modbus_over_line(&port->line, submit);
+    const fathom_modbus_t transport = {.line = &port->line, .submit = submit};
+    return transport;
 }
 
 fathom_uart_t fathom_libmodbus_uart(fathom_libmodbus_t *port)

@@ -102,12 +102,8 @@ fathom_status_t fathom_dyp_client_broadcast_address(fathom_line_t *line, fathom_
     return start(line, request);
 }
 
-static fathom_status_t transport_submit(void *ctx, fathom_modbus_request_t *request)
-{
-    return fathom_dyp_client_submit(ctx, request);
-}
-
 fathom_modbus_t fathom_dyp_client(fathom_line_t *line)
 {
-    return fathom_modbus_over_line(line, transport_submit);
+    const fathom_modbus_t transport = {.line = line, .submit = fathom_dyp_client_submit};
+    return transport;
 }

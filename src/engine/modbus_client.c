@@ -67,12 +67,8 @@ void fathom_modbus_client_cancel(fathom_line_t *line, fathom_modbus_request_t *r
     fathom_line_cancel(line, &request->transaction);
 }
 
-static fathom_status_t transport_submit(void *ctx, fathom_modbus_request_t *request)
-{
-    return fathom_modbus_client_submit(ctx, request);
-}
-
 fathom_modbus_t fathom_modbus_client(fathom_line_t *line)
 {
-    return fathom_modbus_over_line(line, transport_submit);
+    const fathom_modbus_t transport = {.line = line, .submit = fathom_modbus_client_submit};
+    return transport;
 }

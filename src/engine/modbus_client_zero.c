@@ -24,12 +24,8 @@ fathom_status_t fathom_modbus_client_submit_with_zero(fathom_line_t *line, fatho
     return fathom_modbus_client_submit(line, request);
 }
 
-static fathom_status_t transport_submit(void *ctx, fathom_modbus_request_t *request)
-{
-    return fathom_modbus_client_submit_with_zero(ctx, request);
-}
-
 fathom_modbus_t fathom_modbus_client_with_zero(fathom_line_t *line)
 {
-    return fathom_modbus_over_line(line, transport_submit);
+    const fathom_modbus_t transport = {.line = line, .submit = fathom_modbus_client_submit_with_zero};
+    return transport;
 }

@@ -88,7 +88,7 @@ static fathom_status_t written(fathom_modbus_unit_t *unit, const fathom_modbus_s
     unit->step = CONFIRM_OLD;
     if (moves(setting)) {
         unit->step = CONFIRM_NEW;
-        unit->transport->cancel_unit(unit->transport->ctx, unit->address);
+        fathom_line_cancel_unit(unit->transport->line, unit->address);
         use_new_address(unit, setting);
     }
     return FATHOM_PENDING;

@@ -13,21 +13,34 @@ enum { PATIENCE = 3, DOUBLINGS = 4 };
 
 /* ---- Initialisation ---- */
 
+/* Returns the line of a transport, or NULL if there is no transport or its line is not initialised. */
+static fathom_line_t *line_of(const fathom_modbus_t *transport)
+{
+    if ((transport == NULL) || (transport->line == NULL) || (transport->line->parts == NULL)) return NULL;
+    return transport->line;
+}
+
 fathom_status_t fathom_modbus_unit_begin(fathom_modbus_unit_t *unit, const fathom_modbus_t *transport,
                                          void *driver, size_t size)
 {
-    const bool is_queued = (transport != NULL) && (transport->clock != NULL) && (transport->has != NULL) &&
-                           transport->has(transport->ctx, &unit->request);
+    const fathom_line_t *const line = line_of(transport);
+    const bool is_queued = (line != NULL) && fathom_line_is_queued(line, &unit->request.transaction);
     FATHOM_ASSERT(!is_queued); /* the driver was not deinitialised */
     if (is_queued) return FATHOM_ERR_BUSY;
     clear(driver, size);
     return FATHOM_OK;
 }
 
+bool fathom_modbus_unit_has_room(const fathom_modbus_t *transport, uint8_t length)
+{
+    const fathom_line_t *const line = line_of(transport);
+    return (line != NULL) && (length <= line->parts->frame_size);
+}
+
 static bool is_valid(const fathom_modbus_t *transport, const fathom_modbus_config_t *config)
 {
     enum { MAX_RETRIES = 254 };
-    return (transport != NULL) && (transport->clock != NULL) && (config->address != FATHOM_MODBUS_ANY_UNIT) &&
+    return (line_of(transport) != NULL) && (config->address != FATHOM_MODBUS_ANY_UNIT) &&
            (!config->address_zero || (config->address == 0u)) && (config->retries <= MAX_RETRIES) &&
            ((config->period_us | config->timeout_us | config->command_timeout_us | config->backoff_us) <=
             FATHOM_MAX_DURATION_US);
@@ -72,17 +85,16 @@ static void back_off(fathom_modbus_unit_t *unit, int8_t status)
 }
 
 /*
- * If the transport was initialised again while it had the request, the request never ends. With many units on one line a
+ * If the line was initialised again while it had the request, the request never ends. With many units on one line a
  * search of the queue takes long, so it takes place when the upper 16 bits of the clock change, every 65.5 ms.
  */
 static bool is_forgotten(const fathom_modbus_unit_t *unit, uint32_t now_us)
 {
-    const fathom_modbus_t *const transport = unit->transport;
     if ((now_us >> 16) == (unit->polled_us >> 16)) return false;
-    return (transport->has != NULL) && !transport->has(transport->ctx, &unit->request);
+    return !fathom_line_is_queued(unit->transport->line, &unit->request.transaction);
 }
 
-/* Follows the request of the transport. */
+/* Follows the request. */
 static void follow_request(fathom_modbus_unit_t *unit, uint32_t now_us)
 {
     fathom_transaction_t *const transaction = &unit->request.transaction;
@@ -101,12 +113,17 @@ static void follow_request(fathom_modbus_unit_t *unit, uint32_t now_us)
 
 void fathom_modbus_unit_poll(fathom_modbus_unit_t *unit)
 {
-    const fathom_modbus_t *const transport = unit->transport;
-    FATHOM_ASSERT(transport != NULL); /* the driver is not initialised */
+    fathom_line_t *const line = line_of(unit->transport);
+    FATHOM_ASSERT(line != NULL); /* the driver or its line is not initialised */
     unit->transport_status = FATHOM_ERR_ARGUMENT;
-    if (transport == NULL) return;
-    unit->transport_status = (int8_t)transport->poll(transport->ctx, unit->polled_us);
-    const uint32_t now_us = clock_us(transport->clock);
+    if (line == NULL) { /* A line whose next init has failed has forgotten the request. */
+        unit->state = FATHOM_MODBUS_UNIT_IDLE;
+        return;
+    }
+    unit->transport_status = FATHOM_PENDING;
+    if (!fathom_line_was_polled(line, unit->polled_us)) /* by another driver in this round */
+        unit->transport_status = (int8_t)fathom_line_poll(line);
+    const uint32_t now_us = clock_us(line->parts->clock);
     const uint32_t passed_us = fathom_elapsed_us(now_us, unit->polled_us);
     (void)fathom_count_down(&unit->pause_us, passed_us);
     /* These are rare, and an AVR needs its time to subtract. */
@@ -124,7 +141,7 @@ fathom_status_t fathom_modbus_unit_submit(fathom_modbus_unit_t *unit, uint8_t id
 {
     unit->current = id;
     unit->request.transaction.line_settings = unit->line_settings;
-    const fathom_status_t status = unit->transport->submit(unit->transport->ctx, &unit->request);
+    const fathom_status_t status = unit->transport->submit(unit->transport->line, &unit->request);
     if (status == FATHOM_PENDING) {
         unit->state = FATHOM_MODBUS_UNIT_QUEUED;
         unit->attempts = 0;
@@ -163,7 +180,7 @@ fathom_status_t fathom_modbus_unit_measure(fathom_modbus_unit_t *unit, uint16_t 
 void fathom_modbus_unit_drop_request(fathom_modbus_unit_t *unit)
 {
     if (unit->state == FATHOM_MODBUS_UNIT_QUEUED)
-        unit->transport->cancel(unit->transport->ctx, &unit->request);
+        fathom_line_cancel(unit->transport->line, &unit->request.transaction);
     unit->state = FATHOM_MODBUS_UNIT_IDLE;
 }
 
@@ -175,9 +192,10 @@ void fathom_modbus_unit_cancel(fathom_modbus_unit_t *unit)
 
 void fathom_modbus_unit_power_on(fathom_modbus_unit_t *unit, uint32_t warm_us)
 {
-    if (unit->transport == NULL) return;
+    const fathom_line_t *const line = line_of(unit->transport);
+    if (line == NULL) return;
     fathom_modbus_unit_cancel(unit);
-    unit->polled_us = clock_us(unit->transport->clock);
+    unit->polled_us = clock_us(line->parts->clock);
     unit->warm_us = warm_us;
     unit->pause_us = 0;
     unit->backoff_left_us = 0;
@@ -188,21 +206,22 @@ void fathom_modbus_unit_power_on(fathom_modbus_unit_t *unit, uint32_t warm_us)
 /* ---- The next deadline ---- */
 
 /* Returns the time until a request may be sent. */
-static uint32_t idle_due_us(const fathom_modbus_unit_t *unit)
+static uint32_t idle_due_us(const fathom_modbus_unit_t *unit, const fathom_line_t *line)
 {
     uint32_t left_us = unit->pause_us;
     if ((unit->command == 0u) && (unit->backoff_left_us > left_us)) left_us = unit->backoff_left_us;
-    return rest_us(left_us, fathom_elapsed_us(clock_us(unit->transport->clock), unit->polled_us));
+    return rest_us(left_us, fathom_elapsed_us(clock_us(line->parts->clock), unit->polled_us));
 }
 
 uint32_t fathom_modbus_unit_due_us(const fathom_modbus_unit_t *unit)
 {
+    const fathom_line_t *const line = line_of(unit->transport);
     uint32_t due_us =
         0; /* not initialised: each poll returns its error; ended: the result is to be fetched */
-    if (unit->transport == NULL) return due_us;
+    if (line == NULL) return due_us;
     if (unit->state == FATHOM_MODBUS_UNIT_IDLE)
-        due_us = idle_due_us(unit);
+        due_us = idle_due_us(unit, line);
     else if (unit->request.transaction.status == FATHOM_PENDING) /* Else the request has ended. */
-        due_us = unit->transport->due_us(unit->transport->ctx);
+        due_us = fathom_line_due_us(line);
     return (unit->commands != NULL) ? unit->commands->due_us(unit, due_us) : due_us;
 }

@@ -10,7 +10,7 @@
 /* fathom_modbus_unit_t::state */
 enum {
     FATHOM_MODBUS_UNIT_IDLE = 0,   /* There is no request. */
-    FATHOM_MODBUS_UNIT_QUEUED = 1, /* The transport has the request. */
+    FATHOM_MODBUS_UNIT_QUEUED = 1, /* The line has the request. */
     FATHOM_MODBUS_UNIT_ENDED = 2   /* The request has ended, and its caller has not fetched the result. */
 };
 
@@ -32,7 +32,7 @@ extern const fathom_modbus_commands_t fathom_modbus_commands;
 /* Submits `unit->request`, whose message, time-out and retries are set. `id`: fathom_modbus_unit_t::current. */
 fathom_status_t fathom_modbus_unit_submit(fathom_modbus_unit_t *unit, uint8_t id);
 
-/* Cancels the request of the transport, and forgets its result. */
+/* Cancels the request, and forgets its result. */
 void fathom_modbus_unit_drop_request(fathom_modbus_unit_t *unit);
 
 /* Returns how the present request has ended, once; FATHOM_PENDING: it has not. The state is not IDLE. */

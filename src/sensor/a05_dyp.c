@@ -16,13 +16,6 @@ enum { ALL_PROBES = 0x0F };
 
 static bool is_one(uint8_t probes) { return (probes & (probes - 1u)) == 0u; }
 
-/* Returns true if the frame buffer of the line holds the longest response. The line refuses all requests without it. */
-static bool has_room(const fathom_modbus_t *transport)
-{
-    return (transport == NULL) || (transport->frame_size == 0u) ||
-           (transport->frame_size >= FATHOM_DYP_MAX_RESPONSE);
-}
-
 fathom_status_t fathom_a05_dyp_init(fathom_a05_dyp_t *sensor, const fathom_modbus_t *transport,
                                     const fathom_a05_dyp_config_t *config)
 {
@@ -33,7 +26,8 @@ fathom_status_t fathom_a05_dyp_init(fathom_a05_dyp_t *sensor, const fathom_modbu
     config = config_or_zeroed(config, &zeroed, sizeof zeroed);
     const uint8_t probes = (config->probes != 0u) ? config->probes : ALL_PROBES;
     if (config->modbus.address_zero || (probes > ALL_PROBES)) return FATHOM_ERR_ARGUMENT;
-    if (!has_room(transport)) return FATHOM_ERR_ARGUMENT;
+    /* Without room for the longest response, dyp_client.c refuses all requests. */
+    if (!fathom_modbus_unit_has_room(transport, FATHOM_DYP_MAX_RESPONSE)) return FATHOM_ERR_ARGUMENT;
 
     const bool is_single = is_one(probes);
     uint8_t first = 0;
@@ -62,12 +56,12 @@ void fathom_a05_dyp_cancel(fathom_a05_dyp_t *sensor) { fathom_dyp_modbus_deinit(
 
 /* Submits a request of either kind. It is the transport of the unit only during fathom_a05_dyp_broadcast_address(), so
  * nothing else can send the command that sets the address. */
-static fathom_status_t submit_either(void *ctx, fathom_modbus_request_t *request)
+static fathom_status_t submit_either(fathom_line_t *line, fathom_modbus_request_t *request)
 {
     const uint8_t *const head = request->message.head;
-    if (head[1] != FATHOM_MODBUS_WRITE_SINGLE_REGISTER) return fathom_dyp_client_submit(ctx, request);
+    if (head[1] != FATHOM_MODBUS_WRITE_SINGLE_REGISTER) return fathom_dyp_client_submit(line, request);
     request->transaction.timeout_us = ONE_PROBE_TIMEOUT_US;
-    return fathom_dyp_client_broadcast_address(ctx, request, head[5]);
+    return fathom_dyp_client_broadcast_address(line, request, head[5]);
 }
 
 /* Measures the first probe. If a unit responds, it is at the address of the request. */
@@ -89,7 +83,7 @@ fathom_status_t fathom_a05_dyp_broadcast_address(fathom_a05_dyp_t *sensor, uint8
         fathom_modbus_is_next_unchecked(unit))
         return fathom_modbus_refuse_argument(unit);
     fathom_modbus_unit_poll(unit);
-    const fathom_modbus_t either = fathom_modbus_over_line(transport->ctx, submit_either);
+    const fathom_modbus_t either = {.line = transport->line, .submit = submit_either};
     fathom_dyp_modbus_describe(&sensor->base, &setting, FATHOM_DYP_REGISTER_ADDRESS, address);
     setting.read = read_address;
     setting.address = address;

@@ -8,22 +8,16 @@ enum { WRITES = 64 };        /* Added to the id of a register: the id of its wri
 
 /* ---- Initialisation ---- */
 
-/* A response has five bytes beside its registers: address, function, byte count and CRC. */
-static bool has_room(const fathom_dyp_modbus_t *sensor, const fathom_modbus_t *transport)
-{
-    enum { OVERHEAD = 5 };
-    return (transport == NULL) || (transport->frame_size == 0u) ||
-           ((OVERHEAD + (2u * sensor->count)) <= transport->frame_size);
-}
-
 fathom_status_t fathom_dyp_modbus_init(fathom_dyp_modbus_t *sensor, const fathom_modbus_t *transport,
                                        const fathom_modbus_config_t *config, uint32_t timeout_us,
                                        uint32_t pace_us)
 {
+    enum { OVERHEAD = 5 }; /* of a response: address, function, byte count and CRC */
     const uint16_t max_mm = (sensor->measurement.model == FATHOM_A16) ? FATHOM_A16_MAX_MM : FATHOM_A05_MAX_MM;
     sensor->start_us = or_default(sensor->start_us, FATHOM_DYP_DEFAULT_START_US);
     if ((fathom_dyp_measurement_init(&sensor->measurement, max_mm) == FATHOM_OK) &&
-        (sensor->start_us <= FATHOM_MAX_DURATION_US) && has_room(sensor, transport) &&
+        (sensor->start_us <= FATHOM_MAX_DURATION_US) &&
+        fathom_modbus_unit_has_room(transport, (uint8_t)(OVERHEAD + (2u * sensor->count))) &&
         (fathom_modbus_unit_init(&sensor->unit, transport, config, timeout_us, pace_us) == FATHOM_OK))
         return FATHOM_OK;
     clear(sensor, sizeof *sensor);
@@ -161,15 +155,14 @@ fathom_status_t fathom_dyp_modbus_find(fathom_dyp_modbus_find_t *find, const fat
         request->transaction.timeout_us = FATHOM_MODBUS_DEFAULT_COMMAND_TIMEOUT_US;
         fathom_modbus_read_holding_registers(&request->message, FATHOM_MODBUS_ANY_UNIT,
                                              FATHOM_DYP_REGISTER_ADDRESS, 1, &find->value);
-        const fathom_status_t status = transport->submit(transport->ctx, request);
+        const fathom_status_t status = transport->submit(transport->line, request);
         if (status != FATHOM_PENDING) return status;
         find->is_asked = true;
     }
-    (void)transport->poll(transport->ctx, find->polled_us); /* A broken port ends the request. */
-    find->polled_us = clock_us(transport->clock);
+    (void)fathom_line_poll(transport->line); /* A broken port ends the request. */
     fathom_status_t status = (fathom_status_t)request->transaction.status;
     if (status == FATHOM_PENDING) {
-        if ((transport->has == NULL) || transport->has(transport->ctx, request)) return status;
+        if (fathom_line_is_queued(transport->line, &request->transaction)) return status;
         status = FATHOM_ERR_CANCELLED; /* The line was initialised again. */
     }
     find->is_asked = false;
@@ -183,7 +176,7 @@ fathom_status_t fathom_dyp_modbus_find(fathom_dyp_modbus_find_t *find, const fat
 
 void fathom_dyp_modbus_find_cancel(fathom_dyp_modbus_find_t *find, const fathom_modbus_t *transport)
 {
-    if (find->is_asked) transport->cancel(transport->ctx, &find->request);
+    if (find->is_asked) fathom_line_cancel(transport->line, &find->request.transaction);
     find->is_asked = false;
 }
 

@@ -16,8 +16,7 @@ static bool is_valid(const fathom_modbus_t *transport, const fathom_hps167s_conf
 {
     return (config->modbus.address <= FATHOM_HPS167S_MAX_ADDRESS) && !config->modbus.address_zero &&
            (config->same_responses <= MAX_SAME_RESPONSES) &&
-           ((transport == NULL) || (transport->frame_size == 0u) ||
-            (transport->frame_size >= MEASUREMENT_LENGTH));
+           fathom_modbus_unit_has_room(transport, MEASUREMENT_LENGTH);
 }
 
 fathom_status_t fathom_hps167s_init(fathom_hps167s_t *sensor, const fathom_modbus_t *transport,

@@ -14,12 +14,8 @@ from tools import LIBRARY, ROOT, Failed, run
 # Where the indirect calls of src/ lead, by the text of the call: file:function of the library.
 SENSORS = ('a05_auto', 'a16_auto', 'a16_controlled', 'a16_pwm', 'contact', 'dyp_modbus', 'hps167s', 'hps167s_auto')
 INDIRECT = {
-    'transport->submit': ('modbus_client.c:transport_submit', 'dyp_client.c:transport_submit'),
-    'transport->cancel': ('modbus.c:cancel',),
-    'transport->cancel_unit': ('modbus.c:cancel_unit',),
-    'transport->poll': ('modbus.c:poll',),
-    'transport->due_us': ('modbus.c:due_us',),
-    'transport->has': ('modbus.c:has',),
+    'transport->submit': ('modbus_client.c:fathom_modbus_client_submit', 'dyp_client.c:fathom_dyp_client_submit',
+                          'modbus_client_zero.c:fathom_modbus_client_submit_with_zero', 'a05_dyp.c:submit_either'),
 }
 # The same for those that may also lead to the user's code, or nowhere; then nothing is added.
 PERHAPS = {
@@ -227,8 +223,11 @@ class Image:
                 self.names[function] = label[2]
             elif source:
                 where = (source[1], int(source[2]))
-                if function is not None and function not in self.owner:
-                    self.names[function] = f'{self.file(where)}:{self.names[function]}'
+                if function is not None:
+                    file, _, name = self.names[function].rpartition(':')
+                    # A function may begin with lines of an inline function of a header.
+                    if function not in self.owner and not file or file.endswith('.h') and where[0].endswith('.c'):
+                        self.names[function] = f'{self.file(where)}:{name}'
             elif code:
                 address, size = int(code[1], 16), len(code[2].replace(' ', '')) // 2
                 if before is not None:

@@ -24,7 +24,9 @@ MAX_LINES = 400
 LONGER = {'include/fathom/engine/line.h': 680}  # the manual of the line: 13 rules, and each member with its range
 
 # Headers without a source of their own name, and why.
-WITHOUT_SOURCE = ('include/fathom/engine/silence.h', 'include/fathom/engine/transaction.h')  # a formula; types
+# A formula; types and constants, whose functions line.h and the clients have.
+WITHOUT_SOURCE = ('include/fathom/engine/silence.h', 'include/fathom/engine/modbus.h',
+                  'include/fathom/engine/transaction.h')
 
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.M)
 

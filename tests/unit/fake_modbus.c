@@ -5,6 +5,14 @@
 
 #include "suite.h"
 
+/*
+ * Each call of NAME comes to __wrap_NAME, and __real_NAME is the one of the library. fake_modbus.cmake links so.
+ */
+#define REPLACES(type, name, parameters)                                                                     \
+    type __real_##name parameters;                                                                           \
+    type __wrap_##name parameters;                                                                           \
+    type __wrap_##name parameters
+
 static void assert_unchanged(const fake_modbus_t *fake)
 {
     const fathom_modbus_request_t *const is = fake->request;
@@ -16,9 +24,14 @@ static void assert_unchanged(const fake_modbus_t *fake)
     assert_int_equal(is->transaction.retries, was->transaction.retries);
 }
 
-static fathom_status_t fake_submit(void *ctx, fathom_modbus_request_t *request)
+/* A line with this address as its kind is a fake. */
+static const uint8_t kind_of_fake;
+
+static bool is_fake(const fathom_line_t *line) { return (const void *)line->kind == &kind_of_fake; }
+
+static fathom_status_t fake_submit(fathom_line_t *line, fathom_modbus_request_t *request)
 {
-    fake_modbus_t *const fake = ctx;
+    fake_modbus_t *const fake = (fake_modbus_t *)line;
     if (fake->refuses < 0) return fake->refuses;
     assert_null(fake->request);
     assert_true(fake->submits < FAKE_MODBUS_LOG);
@@ -39,27 +52,43 @@ static void end(fake_modbus_t *fake, fathom_status_t status)
     fake->is_sent = false;
 }
 
-static void fake_cancel(void *ctx, fathom_modbus_request_t *request)
+/* ---- in the place of the functions of line.h ---- */
+
+REPLACES(void, fathom_line_cancel, (fathom_line_t * line, fathom_transaction_t *transaction))
 {
-    fake_modbus_t *const fake = ctx;
+    if (!is_fake(line)) {
+        __real_fathom_line_cancel(line, transaction);
+        return;
+    }
+    fake_modbus_t *const fake = (fake_modbus_t *)line;
     fake->cancels++;
-    assert_ptr_equal(fake->request, request);
+    assert_ptr_equal(fake->request, transaction);
     assert_unchanged(fake);
     end(fake, FATHOM_ERR_CANCELLED);
 }
 
-static void fake_cancel_unit(void *ctx, uint8_t unit)
+REPLACES(void, fathom_line_cancel_unit, (fathom_line_t * line, uint8_t address))
 {
-    fake_modbus_t *const fake = ctx;
+    if (!is_fake(line)) {
+        __real_fathom_line_cancel_unit(line, address);
+        return;
+    }
+    fake_modbus_t *const fake = (fake_modbus_t *)line;
     fake->unit_cancels++;
-    fake->cancelled_unit = unit;
-    if (fake->request != NULL && fake->request->message.head[0] == unit) end(fake, FATHOM_ERR_CANCELLED);
+    fake->cancelled_unit = address;
+    if (fake->request != NULL && fake->request->message.head[0] == address) end(fake, FATHOM_ERR_CANCELLED);
 }
 
-static fathom_status_t fake_poll(void *ctx, uint32_t since_us)
+/* Each driver polls, in each call. */
+REPLACES(bool, fathom_line_was_polled, (const fathom_line_t *line, uint32_t since_us))
 {
-    (void)since_us;
-    fake_modbus_t *const fake = ctx;
+    return !is_fake(line) && __real_fathom_line_was_polled(line, since_us);
+}
+
+REPLACES(fathom_status_t, fathom_line_poll, (fathom_line_t * line))
+{
+    if (!is_fake(line)) return __real_fathom_line_poll(line);
+    fake_modbus_t *const fake = (fake_modbus_t *)line;
     fake->polls++;
     if (fake->request == NULL) return fake->transport;
     assert_unchanged(fake);
@@ -76,13 +105,19 @@ static fathom_status_t fake_poll(void *ctx, uint32_t since_us)
     return fake->transport;
 }
 
-static uint32_t fake_due_us(void *ctx) { return ((const fake_modbus_t *)ctx)->due_us; }
-
-static bool fake_has(void *ctx, const fathom_modbus_request_t *request)
+REPLACES(uint32_t, fathom_line_due_us, (const fathom_line_t *line))
 {
-    const fake_modbus_t *const fake = ctx;
-    return request != NULL && fake->request == request;
+    return is_fake(line) ? ((const fake_modbus_t *)line)->due_us : __real_fathom_line_due_us(line);
 }
+
+REPLACES(bool, fathom_line_is_queued, (const fathom_line_t *line, const fathom_transaction_t *transaction))
+{
+    if (!is_fake(line)) return __real_fathom_line_is_queued(line, transaction);
+    const fathom_modbus_request_t *const request = ((const fake_modbus_t *)line)->request;
+    return request != NULL && &request->transaction == transaction;
+}
+
+/* ---- the test's side ---- */
 
 static uint32_t fake_now_us(void *ctx) { return ((const fake_modbus_t *)ctx)->now_us; }
 
@@ -93,14 +128,11 @@ void fake_modbus_init(fake_modbus_t *fake)
     fake->ends = FATHOM_PENDING;
     fake->transport = FATHOM_PENDING;
     fake->due_us = FATHOM_NO_DEADLINE;
-    fake->modbus = (fathom_modbus_t){.submit = fake_submit,
-                                     .cancel = fake_cancel,
-                                     .cancel_unit = fake_cancel_unit,
-                                     .poll = fake_poll,
-                                     .due_us = fake_due_us,
-                                     .clock = &fake->clock,
-                                     .ctx = fake,
-                                     .has = fake_has};
+    fake->parts.clock = &fake->clock;
+    fake->parts.frame_size = UINT8_MAX;
+    fake->line.parts = &fake->parts;
+    fake->line.kind = (const fathom_line_kind_t *)(const void *)&kind_of_fake;
+    fake->modbus = (fathom_modbus_t){.line = &fake->line, .submit = fake_submit};
     fake->clock = (fathom_clock_t){fake_now_us, fake};
 }
 

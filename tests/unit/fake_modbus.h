@@ -9,13 +9,19 @@
 #include "fathom/engine/internal/modbus_command.h"
 
 /*
- * A transport of Modbus and a clock that do what the test says: the transport of modbus.h without a wire. Time stands
- * still until the test moves it, and what was submitted waits until the test sends and ends it. It fails the
- * test when a driver breaks the transport's rules: a second submit, or a request that changed under way.
+ * A transport of Modbus, its line and a clock that do what the test says, without a wire. Time stands still until the
+ * test moves it, and what was submitted waits until the test sends and ends it. The fake fails the test when a driver
+ * breaks the rules of a line: a second submit, or a request that changed while it was queued.
+ *
+ * For this line, and for no other one, the functions of fake_modbus.c replace those of line.h that a driver calls
+ * (fake_modbus.cmake). No other function of line.h may get it.
  */
 enum { FAKE_MODBUS_LOG = 64 };
 
 typedef struct {
+    fathom_line_t
+        line; /* the first member, so that one pointer is both; without `parts` it is not initialised */
+    fathom_line_parts_t parts;
     fathom_modbus_t modbus;
     fathom_clock_t clock;
     uint32_t now_us;
@@ -55,7 +61,7 @@ void fake_modbus_fail(fake_modbus_t *fake, fathom_status_t status);
 /* The next poll ends the request, and no attempt has left. */
 void fake_modbus_end_unsent(fake_modbus_t *fake, fathom_status_t status);
 
-/* The transport is initialised again: it has forgotten the request, which never ends. */
+/* The line is initialised again: it has forgotten the request, which never ends. */
 void fake_modbus_forget(fake_modbus_t *fake);
 
 /* The last request was a read of `count` registers from `first` of `unit`, asked `submits`-th. */

@@ -448,7 +448,7 @@ static void assert_refused(void)
     const fathom_modbus_t *const transport = a05.base.unit.transport;
     const size_t written = rig.fake.written;
     fathom_modbus_write_single_register(&other.message, 9, 0x0200, 9);
-    assert_int_equal(transport->submit(transport->ctx, &other), FATHOM_ERR_UNSUPPORTED);
+    assert_int_equal(transport->submit(transport->line, &other), FATHOM_ERR_UNSUPPORTED);
     assert_false(fathom_line_is_queued(&rig.line, &other.transaction));
     assert_int_equal(rig.fake.written, written);
 }

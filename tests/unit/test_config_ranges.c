@@ -177,18 +177,19 @@ static void the_greatest_times_work(void **state)
 static void a_line_whose_frames_are_too_short_is_refused(void **state)
 {
     const driver_t *const driver = *state;
-    fake.modbus.frame_size = (uint8_t)(driver->frame_size - 1);
+    fake.parts.frame_size = (uint8_t)(driver->frame_size - 1);
     assert_int_equal(driver->init(), FATHOM_ERR_ARGUMENT);
-    fake.modbus.frame_size = driver->frame_size;
-    assert_int_equal(driver->init(), FATHOM_OK);
-    fake.modbus.frame_size = 0; /* there is no limit */
+    fake.parts.frame_size = driver->frame_size;
     assert_int_equal(driver->init(), FATHOM_OK);
 }
 
-static void a_missing_transport_or_clock_is_refused(void **state)
+static void a_missing_transport_or_line_and_a_line_that_is_not_initialised_are_refused(void **state)
 {
     const driver_t *const driver = *state;
-    fake.modbus.clock = NULL;
+    static fathom_line_t blank;
+    fake.modbus.line = &blank;
+    assert_int_equal(driver->init(), FATHOM_ERR_ARGUMENT);
+    fake.modbus.line = NULL;
     assert_int_equal(driver->init(), FATHOM_ERR_ARGUMENT);
     transport = NULL;
     assert_int_equal(driver->init(), FATHOM_ERR_ARGUMENT);
@@ -219,5 +220,5 @@ static void a_second_init_is_refused_while_a_request_is_queued(void **state)
 ALL(each_member_has_its_range)
 ALL(the_greatest_times_work)
 ALL(a_line_whose_frames_are_too_short_is_refused)
-ALL(a_missing_transport_or_clock_is_refused)
+ALL(a_missing_transport_or_line_and_a_line_that_is_not_initialised_are_refused)
 ALL(a_second_init_is_refused_while_a_request_is_queued)

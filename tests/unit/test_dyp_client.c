@@ -356,20 +356,20 @@ TEST(a_late_response_of_another_unit_serves_no_retry)
 TEST(the_transport_does_what_the_functions_do)
 {
     const fathom_modbus_t transport = fathom_dyp_client(&bench.line);
-    assert_ptr_equal(transport.ctx, &bench.line);
+    assert_ptr_equal(transport.line, &bench.line);
     fill(0, 0x0106, 4);
-    assert_int_equal(transport.submit(transport.ctx, &bench.request), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(transport.submit(transport.line, &bench.request), FATHOM_ERR_ARGUMENT);
     fill(1, 0x0106, 4);
-    assert_int_equal(transport.submit(transport.ctx, &bench.request), FATHOM_PENDING);
-    assert_int_equal(transport.due_us(transport.ctx), due());
+    assert_int_equal(transport.submit(transport.line, &bench.request), FATHOM_PENDING);
+    assert_int_equal(fathom_line_due_us(transport.line), due());
     bench.fake.now_us += T3_5_US;
-    assert_int_equal(transport.poll(transport.ctx, bench.fake.now_us), FATHOM_PENDING);
+    assert_int_equal(fathom_line_poll(transport.line), FATHOM_PENDING);
     bench.fake.now_us += T3_5_US;
-    assert_int_equal(transport.poll(transport.ctx, bench.fake.now_us), FATHOM_PENDING);
+    assert_int_equal(fathom_line_poll(transport.line), FATHOM_PENDING);
     expect_written(1);
-    transport.cancel(transport.ctx, &bench.request);
-    transport.cancel(transport.ctx, &bench.request);
+    fathom_line_cancel(transport.line, &bench.request.transaction);
+    fathom_line_cancel(transport.line, &bench.request.transaction);
     expect(FATHOM_ERR_CANCELLED);
     bench.fake.read_fails = true;
-    assert_int_equal(transport.poll(transport.ctx, bench.fake.now_us), FATHOM_ERR_PORT);
+    assert_int_equal(fathom_line_poll(transport.line), FATHOM_ERR_PORT);
 }

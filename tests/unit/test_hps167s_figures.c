@@ -4,43 +4,30 @@
 
 #include "suite.h"
 
+#include "fake_modbus.h"
 #include "fathom/sensor/hps167s_info.h"
 
 /* Every figure that an HPS-167S can send where two responses have one shape, and every temperature. */
 
 static fathom_modbus_request_t *pending;
 
-static fathom_status_t submit(void *ctx, fathom_modbus_request_t *request)
+static fathom_status_t submit(fathom_line_t *line, fathom_modbus_request_t *request)
 {
-    (void)ctx;
+    (void)line;
     request->transaction.status = FATHOM_PENDING;
     request->transaction.attempts = 1;
     pending = request;
     return FATHOM_PENDING;
 }
 
-static fathom_status_t poll(void *ctx, uint32_t since_us)
-{
-    (void)since_us;
-    (void)ctx;
-    return FATHOM_PENDING;
-}
-
-static uint32_t clock_us;
-
-static uint32_t now_us(void *ctx)
-{
-    (void)ctx;
-    return clock_us;
-}
-
-static const fathom_clock_t clock = {.now_us = now_us};
-static const fathom_modbus_t modbus = {.submit = submit, .poll = poll, .clock = &clock};
+static fake_modbus_t bus;
+static const fathom_modbus_t modbus = {.line = &bus.line, .submit = submit};
 static fathom_hps167s_t hps;
 
 static void start(uint8_t steps_per_degree)
 {
     const fathom_hps167s_config_t config = {.steps_per_degree = steps_per_degree};
+    fake_modbus_init(&bus);
     assert_int_equal(fathom_hps167s_init(&hps, &modbus, &config), FATHOM_OK);
 }
 
@@ -81,7 +68,7 @@ TEST(the_abnormal_packet_is_never_a_configuration)
 
 static fathom_status_t ask(uint16_t raw, fathom_hps167s_temperature_t *out)
 {
-    clock_us += 20000;
+    bus.now_us += 20000;
     assert_int_equal(fathom_hps167s_get_temperature(&hps, out), FATHOM_PENDING);
     *pending->message.values = raw;
     pending->transaction.status = FATHOM_OK;

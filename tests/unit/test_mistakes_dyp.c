@@ -3,6 +3,7 @@
 
 #include "suite.h"
 
+#include "fake_modbus.h"
 #include "fathom/codec/dyp_55aa.h"
 #include "fathom/sensor/a05_dyp.h"
 #include "fathom/sensor/a05_modbus.h"
@@ -54,9 +55,9 @@ TEST(a05_2_3_prints_data_1h_twice_and_the_second_is_data_1l)
 
 static uint8_t head[6];
 
-static fathom_status_t submit(void *ctx, fathom_modbus_request_t *request)
+static fathom_status_t submit(fathom_line_t *line, fathom_modbus_request_t *request)
 {
-    (void)ctx;
+    (void)line;
     memcpy(head, request->message.head, sizeof head);
     for (uint8_t i = 0; i != head[5]; i++) request->message.values[i] = (uint16_t)(1000u + head[3] + i);
     request->transaction.attempts = 1;
@@ -64,27 +65,16 @@ static fathom_status_t submit(void *ctx, fathom_modbus_request_t *request)
     request->transaction.link.heard_us = 0;
     return FATHOM_PENDING;
 }
-static void cancel(void *ctx, fathom_modbus_request_t *request) { (void)ctx, (void)request; }
-static void cancel_unit(void *ctx, uint8_t unit) { (void)ctx, (void)unit; }
-static uint32_t zero(void *ctx) { return (void)ctx, (uint32_t)0; }
-static fathom_status_t poll(void *ctx, uint32_t since_us)
-{
-    return (void)ctx, (void)since_us, FATHOM_PENDING;
-}
 
 /* The one wanted probe of an A05 whose registers begin there: what is asked, and as which probe it comes. */
 static uint8_t probe_of(uint8_t wanted, uint16_t registers)
 {
-    const fathom_clock_t clock = {zero, NULL};
-    const fathom_modbus_t modbus = {.submit = submit,
-                                    .cancel = cancel,
-                                    .cancel_unit = cancel_unit,
-                                    .poll = poll,
-                                    .due_us = zero,
-                                    .clock = &clock};
+    fake_modbus_t bus;
+    const fathom_modbus_t modbus = {.line = &bus.line, .submit = submit};
     const fathom_a05_modbus_config_t config = {.probes = wanted, .registers = registers};
     fathom_a05_modbus_t sensor;
     fathom_sample_t sample;
+    fake_modbus_init(&bus);
     assert_int_equal(fathom_a05_modbus_init(&sensor, &modbus, &config), FATHOM_OK);
     const fathom_sensor_t driver = fathom_a05_modbus_sensor(&sensor);
     assert_int_equal(fathom_poll(&driver, &sample), FATHOM_PENDING);

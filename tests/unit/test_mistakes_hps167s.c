@@ -3,8 +3,8 @@
 
 #include "suite.h"
 
+#include "fake_modbus.h"
 #include "fathom/codec/crc16.h"
-#include "fathom/engine/modbus_client.h"
 #include "fathom/sensor/hps167s_info.h"
 #include "vectors.h"
 
@@ -35,29 +35,22 @@ static const vector_t *frame_of(const char *source)
 
 static fathom_modbus_request_t *pending;
 
-static fathom_status_t submit(void *ctx, fathom_modbus_request_t *request)
+static fathom_status_t submit(fathom_line_t *line, fathom_modbus_request_t *request)
 {
-    (void)ctx;
+    (void)line;
     request->transaction.status = FATHOM_PENDING;
     request->transaction.attempts = 1;
     pending = request;
     return FATHOM_PENDING;
 }
 
-static fathom_status_t poll(void *ctx, uint32_t since_us)
-{
-    return (void)ctx, (void)since_us, FATHOM_PENDING;
-}
-
-static uint32_t now_us(void *ctx) { return (void)ctx, (uint32_t)0; }
-
 static void end_with(const uint8_t *frame)
 {
     pending->transaction.status = (int8_t)fathom_modbus_rtu_parse_response(&pending->message, frame);
 }
 
-static const fathom_clock_t clock = {.now_us = now_us};
-static const fathom_modbus_t modbus = {.submit = submit, .poll = poll, .clock = &clock};
+static fake_modbus_t bus;
+static const fathom_modbus_t modbus = {.line = &bus.line, .submit = submit};
 
 TEST(command_3_says_19_09_27_and_ver_2_1_and_its_bytes_2019_09_23_and_3_9)
 {
@@ -65,6 +58,7 @@ TEST(command_3_says_19_09_27_and_ver_2_1_and_its_bytes_2019_09_23_and_3_9)
     fathom_hps167s_details_t details;
     fathom_hps167s_t hps;
     assert_int_equal(bitwise(example, 27), 0); /* so the bytes are what the device said */
+    fake_modbus_init(&bus);
     assert_int_equal(fathom_hps167s_init(&hps, &modbus, NULL), FATHOM_OK);
     assert_int_equal(fathom_hps167s_get_details(&hps, &details), FATHOM_PENDING);
     end_with(example);

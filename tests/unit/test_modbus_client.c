@@ -81,18 +81,19 @@ TEST(every_byte_of_an_acknowledgement_counts)
 TEST(the_transport_is_the_same_client)
 {
     const fathom_modbus_t modbus = fathom_modbus_client(&bench.line);
+    assert_ptr_equal(modbus.line, &bench.line);
     bench.request.transaction.timeout_us = TIMEOUT_US;
     fathom_modbus_read_holding_registers(&bench.request.message, 1, 0x0100, 1, &bench.value);
-    assert_int_equal(modbus.submit(modbus.ctx, &bench.request), FATHOM_PENDING);
-    assert_int_equal(modbus.submit(modbus.ctx, &bench.request), FATHOM_ERR_BUSY);
-    modbus.poll(modbus.ctx, bench.fake.now_us);
-    assert_int_equal(modbus.due_us(modbus.ctx), T3_5_US);
+    assert_int_equal(modbus.submit(modbus.line, &bench.request), FATHOM_PENDING);
+    assert_int_equal(modbus.submit(modbus.line, &bench.request), FATHOM_ERR_BUSY);
+    fathom_line_poll(&bench.line);
+    assert_int_equal(fathom_line_due_us(&bench.line), T3_5_US);
     run(20000);
     receive_all(response_1_754);
-    modbus.poll(modbus.ctx, bench.fake.now_us);
+    fathom_line_poll(&bench.line);
     expect_mm(754);
     assert_int_equal(bench.request.transaction.link.heard_us, bench.fake.now_us);
-    modbus.submit(modbus.ctx, &bench.request);
-    modbus.cancel(modbus.ctx, &bench.request);
+    modbus.submit(modbus.line, &bench.request);
+    fathom_modbus_client_cancel(modbus.line, &bench.request);
     expect(FATHOM_ERR_CANCELLED);
 }

@@ -93,14 +93,17 @@ static uint32_t due(void) { return fathom_modbus_unit_due_us(&unit); }
 
 /* ---- setting up ---- */
 
-TEST(a_unit_needs_a_transport_a_clock_and_an_address_of_one_device)
+TEST(a_unit_needs_a_transport_an_initialised_line_and_an_address_of_one_device)
 {
     fathom_modbus_unit_t other;
     fathom_modbus_config_t config = {.address = 1};
     assert_int_equal(init_unit(&other, NULL, &config, 1000, 0), FATHOM_ERR_ARGUMENT);
-    fake.modbus.clock = NULL;
+    fake.line.parts = NULL;
     assert_int_equal(init_unit(&other, &fake.modbus, &config, 1000, 0), FATHOM_ERR_ARGUMENT);
-    fake.modbus.clock = &fake.clock;
+    fake.line.parts = &fake.parts;
+    fake.modbus.line = NULL;
+    assert_int_equal(init_unit(&other, &fake.modbus, &config, 1000, 0), FATHOM_ERR_ARGUMENT);
+    fake.modbus.line = &fake.line;
     for (unsigned address = 0; address != 256; address++) {
         const bool is_good = address != 255;
         config.address = (uint8_t)address;
@@ -313,7 +316,7 @@ TEST(it_is_due_when_the_transport_is_while_it_waits)
 TEST(it_is_due_at_once_when_anothers_poll_has_ended_its_request)
 {
     GO(ON_WIRE(measure, 1), ANSWERED);
-    fake.modbus.poll(fake.modbus.ctx, 0);
+    fathom_line_poll(&fake.line);
     assert_int_equal(due(), 0);
 }
 

@@ -315,16 +315,24 @@ TEST(a_request_that_the_line_has_forgotten_is_cancelled_within_65_ms_and_the_nex
     measures();
 }
 
-TEST(a_transport_that_cannot_tell_what_it_has_is_trusted)
+/* The program initialised the line again, and fathom_line_init() refused the new parts. */
+TEST(a_line_that_is_not_initialised_any_more_is_reported_and_serves_the_unit_again_after_its_next_init)
 {
-    fake.modbus.has = NULL;
     PENDS(asks(&measure));
-    for (unsigned i = 0; i != 100; i++) {
-        fake.now_us += 1000;
-        PENDS(asks(&measure));
-    }
+    fake_modbus_forget(&fake);
+    fake.line.parts = NULL;
+    fake.now_us += 1000;
+    fake.polls = 0;
+    assert_int_equal(asks(&measure), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(asks(&version), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_modbus_unit_due_us(&unit), 0);
+    fathom_modbus_unit_power_on(&unit, 1000);
+    fathom_modbus_unit_cancel(&unit);
+    assert_int_equal(fake.submits + fake.polls + fake.cancels, 0);
+    fake.line.parts = &fake.parts;
+    fake.now_us += TIMEOUT_US;
+    PENDS(asks(&measure));
     measures();
-    assert_int_equal(init_unit(&unit, &fake.modbus, &config, TIMEOUT_US, 0), FATHOM_OK);
 }
 
 TEST(a_second_init_is_refused_while_the_request_is_queued_and_changes_nothing)

@@ -93,7 +93,7 @@ TEST(a_cancelled_request_does_not_begin_its_pace_anew_at_the_next_call)
 {
     pending_after(0, &measure);
     fake_modbus_send(&fake);
-    fake.modbus.poll(fake.modbus.ctx, 0);
+    fathom_line_poll(&fake.line);
     fathom_modbus_unit_cancel(&unit);
     asked_after(PACE_US, &measure);
 }

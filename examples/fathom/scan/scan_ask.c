@@ -83,7 +83,7 @@ void scan_ask(const scan_wire_t *wire, const scan_request_t *request, scan_respo
     listener_forget(wire->listener);
     const fathom_modbus_t modbus = fathom_modbus_client_with_zero(wire->line);
     response->status = request->is_dyp ? fathom_dyp_client_submit(wire->line, &pending)
-                                       : modbus.submit(modbus.ctx, &pending);
+                                       : modbus.submit(modbus.line, &pending);
     if (response->status == FATHOM_PENDING) response->status = wait_for_response(wire, &pending);
     response->address = pending.message.head[0];
     if (scan_is_answered(response->status) && request->linger_us != 0) {

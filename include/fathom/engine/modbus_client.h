@@ -54,7 +54,8 @@ void fathom_modbus_client_cancel(fathom_line_t *line, fathom_modbus_request_t *r
  *
  * Keep the transport as long as the drivers, because they point to it. The line must stay valid as long.
  *
- * @param line  The line, initialised.
+ * @param line  The line, initialised. If the line is not initialised, each driver refuses the transport with
+ *              FATHOM_ERR_ARGUMENT.
  */
 fathom_modbus_t fathom_modbus_client(fathom_line_t *line);
 

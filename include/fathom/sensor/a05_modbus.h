@@ -135,7 +135,7 @@ typedef struct {
  * @param config     The config. Read only during the call; what it points to must stay valid as long as the driver.
  *                   NULL selects all defaults.
  * @retval FATHOM_OK            The driver can be used. Next, pass fathom_a05_modbus_sensor() to fathom_poll().
- * @retval FATHOM_ERR_ARGUMENT  `transport` is NULL or has no clock, the address is 255, `address_zero` is true and
+ * @retval FATHOM_ERR_ARGUMENT  `transport` has no initialised line, the address is 255, `address_zero` is true and
  *                              `address` is not 0, `registers` or `probes` has no such value, `min_mm` is above
  *                              `max_mm`, another member is outside its range, or the frame buffer of the line has less
  *                              than 5 bytes and 2 for each register. The driver is zeroed: each poll and command

@@ -112,7 +112,7 @@ typedef struct {
  *                   the driver.
  * @param config     The configuration. Not used after the call. NULL selects all defaults.
  * @retval FATHOM_OK            The driver can be used. Next, call fathom_poll().
- * @retval FATHOM_ERR_ARGUMENT  `transport` is NULL or has no clock, the buffer of its line is too small, or a member of
+ * @retval FATHOM_ERR_ARGUMENT  `transport` has no initialised line, the buffer of its line is too small, or a member of
  *                              the configuration is outside its range. The driver is zeroed: each poll and command
  *                              then returns this error.
  * @retval FATHOM_ERR_BUSY      A request of this driver is still queued. Nothing has changed. Call

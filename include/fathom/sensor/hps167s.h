@@ -223,7 +223,7 @@ struct fathom_hps167s {
  * @param config     The config. Read only during the call; what it points to must stay valid as long as the driver.
  *                   NULL selects all defaults.
  * @retval FATHOM_OK            The driver can be used. Next, pass fathom_hps167s_sensor() to fathom_poll().
- * @retval FATHOM_ERR_ARGUMENT  `transport` is NULL or has no clock, the address is above 32, `address_zero` is true,
+ * @retval FATHOM_ERR_ARGUMENT  `transport` has no initialised line, the address is above 32, `address_zero` is true,
  *                              `same_responses` is above 8, another member of `modbus` is outside its range, or the
  *                              frame buffer of the line has less than 13 bytes. The driver is zeroed: each poll and
  *                              command returns FATHOM_ERR_ARGUMENT.

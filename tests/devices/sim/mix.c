@@ -55,10 +55,10 @@ static int read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
     return n;
 }
 
-static fathom_status_t submit(void *ctx, fathom_modbus_request_t *request)
+static fathom_status_t submit(fathom_line_t *line, fathom_modbus_request_t *request)
 {
     seen.asked_us[sensor_at(request->message.head[0])] = seen.clock.now_us;
-    return seen.modbus.submit(ctx, request);
+    return seen.modbus.submit(line, request);
 }
 
 void mix_run(const mix_t *mix, uint32_t seconds, mix_share_t shares[MIX_SENSORS])

@@ -70,7 +70,7 @@ void rig_ask_three(fathom_modbus_request_t *request, uint8_t unit, uint8_t retri
     request->transaction.timeout_us = RIG_TIMEOUT_US;
     request->transaction.retries = retries;
     fathom_modbus_read_holding_registers(&request->message, unit, 0x0107, 3, rig.values);
-    assert_int_equal(rig.transport.submit(rig.transport.ctx, request), FATHOM_PENDING);
+    assert_int_equal(rig.transport.submit(rig.transport.line, request), FATHOM_PENDING);
 }
 
 void rig_expect_three(void)
@@ -92,14 +92,14 @@ void rig_run(uint32_t in_us, uint32_t step_us)
 {
     for (uint32_t us = 0; us < in_us; us += step_us) {
         rig.fake.now_us += step_us;
-        (void)rig.transport.poll(rig.transport.ctx, rig.fake.now_us);
+        (void)fathom_line_poll(rig.transport.line);
     }
 }
 
 fathom_status_t rig_poll(void)
 {
     rig.fake.now_us += FINE_US;
-    return rig.transport.poll(rig.transport.ctx, rig.fake.now_us);
+    return fathom_line_poll(rig.transport.line);
 }
 
 void rig_hang_up(void)
@@ -150,9 +150,9 @@ void rig_expect_units_refused(unsigned first, unsigned last)
     assert_int_equal(modbus_set_slave(rig.modbus, 42), 0);
     for (unsigned unit = 0; unit != 256; unit++) {
         fathom_modbus_write_single_register(&rig.request.message, (uint8_t)unit, 0x0010, 7);
-        assert_int_equal(rig.transport.submit(rig.transport.ctx, &rig.request),
+        assert_int_equal(rig.transport.submit(rig.transport.line, &rig.request),
                          unit >= first && unit <= last ? FATHOM_ERR_UNSUPPORTED : FATHOM_PENDING);
-        rig.transport.cancel(rig.transport.ctx, &rig.request);
+        fathom_line_cancel(rig.transport.line, &rig.request.transaction);
         assert_int_equal(modbus_get_slave(rig.modbus), 42); /* the program's own */
     }
 }

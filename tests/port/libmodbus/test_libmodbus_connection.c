@@ -156,9 +156,9 @@ TEST(line_settings_are_unsupported_and_nothing_is_sent) { rig_expect_no_settings
 TEST(counts_out_of_range_are_refused)
 {
     fathom_modbus_read_holding_registers(&rig.request.message, 1, 0, 126, rig.values);
-    assert_int_equal(rig.transport.submit(rig.transport.ctx, &rig.request), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(rig.transport.submit(rig.transport.line, &rig.request), FATHOM_ERR_ARGUMENT);
     rig_ask_three(&rig.request, 1, 0);
-    assert_int_equal(rig.transport.submit(rig.transport.ctx, &rig.request), FATHOM_ERR_BUSY);
+    assert_int_equal(rig.transport.submit(rig.transport.line, &rig.request), FATHOM_ERR_BUSY);
 }
 
 TEST(init_wants_all_that_it_needs)

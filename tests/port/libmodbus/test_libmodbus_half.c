@@ -39,7 +39,7 @@ static const suite_t suite = {.set_up = set_up, .tear_down = rig_tear_down};
 static fathom_status_t poll_once(void)
 {
     rig.fake.now_us += 1000;
-    (void)rig.transport.poll(rig.transport.ctx, rig.fake.now_us);
+    (void)fathom_line_poll(rig.transport.line);
     return (fathom_status_t)status();
 }
 
@@ -132,7 +132,7 @@ TEST(half_a_response_behind_a_flood_does_not_stop_the_connection)
     for (unsigned polls = 0; status() == FATHOM_PENDING && polls != MOST_POLLS; polls++) {
         const ssize_t n = send(rig.far, flood + sent, sizeof flood - sent, MSG_DONTWAIT);
         if (n > 0) sent += (size_t)n;
-        (void)rig.transport.poll(rig.transport.ctx, rig.fake.now_us);
+        (void)fathom_line_poll(rig.transport.line);
     }
     rig_expect_three();
     assert_int_equal(rig.port.late_responses, FLOOD);

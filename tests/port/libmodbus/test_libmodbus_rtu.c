@@ -142,7 +142,7 @@ TEST(the_config_says_whether_there_is_an_echo)
         assert_int_equal(fathom_libmodbus_init(&rig.port, rig.modbus, &config), FATHOM_OK);
         rig.request.transaction.timeout_us = RIG_TIMEOUT_US;
         fathom_modbus_write_single_register(&rig.request.message, 1, 0x0010, 7);
-        assert_int_equal(rig.transport.submit(rig.transport.ctx, &rig.request), FATHOM_PENDING);
+        assert_int_equal(rig.transport.submit(rig.transport.line, &rig.request), FATHOM_PENDING);
         rig_run_fine(SILENCE_US + FINE_US);
         assert_int_equal(recv(rig.far, sent, sizeof sent, MSG_DONTWAIT), 8);
         assert_memory_equal(sent, write, sizeof write);

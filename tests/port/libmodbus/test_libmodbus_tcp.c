@@ -18,7 +18,7 @@ TEST(a_request_has_a_header_and_no_crc_and_its_response_is_read)
     rig_ask(0);
     rig.fake.now_us += 5000;
     rig_say_response(1);
-    assert_int_equal(rig.transport.poll(rig.transport.ctx, rig.fake.now_us), FATHOM_PENDING);
+    assert_int_equal(fathom_line_poll(rig.transport.line), FATHOM_PENDING);
     rig_expect_three();
     assert_int_equal(rig.request.transaction.attempts, 1);
     assert_int_equal(rig.request.transaction.link.heard_us, rig.fake.now_us);
@@ -268,7 +268,7 @@ TEST(the_longest_response_is_read_and_a_longer_one_dropped)
     static uint8_t response[6 + 253] = {0xF0, 1, 0, 0, 0, 253, 1, 0x03, 250};
     rig.request.transaction.timeout_us = RIG_TIMEOUT_US;
     fathom_modbus_read_holding_registers(&rig.request.message, 1, 0, 125, rig.values);
-    assert_int_equal(rig.transport.submit(rig.transport.ctx, &rig.request), FATHOM_PENDING);
+    assert_int_equal(rig.transport.submit(rig.transport.line, &rig.request), FATHOM_PENDING);
     rig_run_fine(FINE_US);
     for (uint8_t i = 0; i != 250; i++) response[9 + i] = i;
     rig_say(longer, sizeof longer);

@@ -12,7 +12,7 @@ static const uint8_t *write_7(uint8_t unit)
     write[6] = unit;
     rig.request.transaction.timeout_us = RIG_TIMEOUT_US;
     fathom_modbus_write_single_register(&rig.request.message, unit, 0x0010, 7);
-    assert_int_equal(rig.transport.submit(rig.transport.ctx, &rig.request), FATHOM_PENDING);
+    assert_int_equal(rig.transport.submit(rig.transport.line, &rig.request), FATHOM_PENDING);
     rig_run_fine(FINE_US);
     rig_expect_sent(write, sizeof write);
     return write;
@@ -48,11 +48,11 @@ TEST(a_loop_of_20_ms_has_the_response_in_the_poll_that_finds_it)
 TEST(the_wrap_of_the_clock_changes_nothing)
 {
     rig.fake.now_us = UINT32_MAX - RIG_TIMEOUT_US / 2;
-    (void)rig.transport.poll(rig.transport.ctx, rig.fake.now_us);
+    (void)fathom_line_poll(rig.transport.line);
     rig_ask(0);
     rig_run_fine(RIG_TIMEOUT_US - 1000);
     assert_int_equal(status(), FATHOM_PENDING);
-    assert_int_equal(rig.transport.due_us(rig.transport.ctx),
+    assert_int_equal(fathom_line_due_us(rig.transport.line),
                      1100); /* that it has left is seen by the poll after */
     rig_run_fine(1100);
     assert_int_equal(status(), FATHOM_ERR_NO_RESPONSE);
@@ -81,7 +81,7 @@ TEST(requests_go_in_the_order_of_their_coming_and_a_dead_unit_does_not_hold_up_t
 TEST(a_cancelled_request_is_forgotten_and_its_response_too)
 {
     rig_ask(0);
-    rig.transport.cancel(rig.transport.ctx, &rig.request);
+    fathom_line_cancel(rig.transport.line, &rig.request.transaction);
     assert_int_equal(status(), FATHOM_ERR_CANCELLED);
     rig_ask_three(&rig.request, 1, 0);
     rig_say(other_1, sizeof other_1);
@@ -98,7 +98,7 @@ TEST(what_was_asked_of_a_unit_is_cancelled_and_the_others_requests_are_not)
     rig_ask(0);
     rig_ask_three(&second, 2, 0);
     rig_ask_three(&third, 1, 0);
-    rig.transport.cancel_unit(rig.transport.ctx, 1);
+    fathom_line_cancel_unit(rig.transport.line, 1);
     assert_int_equal(status(), FATHOM_ERR_CANCELLED);
     assert_int_equal(third.transaction.status, FATHOM_ERR_CANCELLED);
     assert_int_equal(second.transaction.status, FATHOM_PENDING);

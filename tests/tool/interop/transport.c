@@ -34,7 +34,7 @@ static void print_outcome(const fathom_modbus_request_t *request, const step_t *
 
 static bool run(const transport_t *transport, step_t *step, uint8_t unit)
 {
-    const fathom_modbus_t *const modbus = transport->modbus;
+    fathom_line_t *const line = transport->modbus->line;
     fathom_modbus_request_t request = {.transaction = {.timeout_us = transport->timeout_us}};
     switch (step->kind) {
     case STEP_READ:
@@ -51,15 +51,15 @@ static bool run(const transport_t *transport, step_t *step, uint8_t unit)
     default:
         return false;
     }
-    const fathom_status_t status = modbus->submit(modbus->ctx, &request);
+    const fathom_status_t status = transport->modbus->submit(line, &request);
     if (status != FATHOM_PENDING) {
         (void)printf("not sent, %s\n", fathom_status_name(status));
         return true;
     }
     for (;;) {
-        (void)modbus->poll(modbus->ctx, modbus->clock->now_us(modbus->clock->ctx));
+        (void)fathom_line_poll(line);
         if (request.transaction.status != FATHOM_PENDING) break;
-        transport->wait(transport->port, modbus->due_us(modbus->ctx));
+        transport->wait(transport->port, fathom_line_due_us(line));
     }
     print_outcome(&request, step);
     (void)fflush(stdout);

@@ -70,9 +70,9 @@ extern "C" {
 /**
  * @brief Connection of a Modbus driver to its sensor: the part of the config that all Modbus drivers share.
  *
- * The driver's init function copies the config. The transport, which is a parameter of that function, its clock and the
- * line settings must stay valid as long as the driver. A member that is 0 takes its default. The init function returns
- * FATHOM_ERR_ARGUMENT if a member is outside its range.
+ * The driver's init function copies the config. The line of the transport and the line settings must stay valid as long
+ * as the driver. A member that is 0 takes its default. The init function returns FATHOM_ERR_ARGUMENT if a member is
+ * outside its range.
  */
 typedef struct {
     /** @brief Line settings of this unit, if those of the units on one line differ (line.h); NULL: unchanged. */
@@ -125,7 +125,7 @@ typedef struct {
     uint8_t command;
     /** @brief Number of calls of other functions after which the command or setting may be abandoned, 0 to 16 (rule 5). */
     uint8_t calls_left;
-    /** @brief Result of the last call of the transport's `poll`. */
+    /** @brief FATHOM_PENDING if the line worked at the last poll of the unit; otherwise its error. */
     int8_t transport_status;
     /** @brief Number of attempts of the present request at the last poll. */
     uint8_t attempts;
@@ -184,7 +184,7 @@ typedef struct {
     uint32_t command_timeout_us; /**< @copydoc timeout_us */
     uint32_t pace_us;            /**< @copydoc timeout_us */
     uint32_t backoff_us;         /**< @copydoc timeout_us */
-    /** @brief The request of the transport. */
+    /** @brief The request. */
     fathom_modbus_request_t request;
 } fathom_modbus_unit_t;
 
@@ -213,7 +213,7 @@ fathom_status_t fathom_modbus_unit_begin(fathom_modbus_unit_t *unit, const fatho
  * @param timeout_us  Default of `config->timeout_us`.
  * @param pace_us     The driver's least period in microseconds.
  * @retval FATHOM_OK         The unit can be used.
- * @retval FATHOM_ERR_ARGUMENT  `transport` is NULL or has no clock, or a member of the config is outside its range. The
+ * @retval FATHOM_ERR_ARGUMENT  `transport` has no initialised line, or a member of the config is outside its range. The
  *                              unit is still cleared.
  */
 fathom_status_t fathom_modbus_unit_init(fathom_modbus_unit_t *unit, const fathom_modbus_t *transport,
@@ -221,7 +221,15 @@ fathom_status_t fathom_modbus_unit_init(fathom_modbus_unit_t *unit, const fathom
                                         uint32_t pace_us);
 
 /**
- * @brief Polls the transport and advances all deadlines.
+ * @brief Returns true if the line of a transport is initialised and has room for frames of this length.
+ *
+ * @param transport  The transport of a driver, or NULL.
+ * @param length     Length of the longest frame of the driver, in bytes.
+ */
+bool fathom_modbus_unit_has_room(const fathom_modbus_t *transport, uint8_t length);
+
+/**
+ * @brief Polls the line, unless another driver has polled it in this round, and advances all deadlines.
  *
  * Each function of a driver that sends requests calls this function first and once, because the stack is deepest in it.
  */

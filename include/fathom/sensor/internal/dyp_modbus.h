@@ -158,7 +158,6 @@ void fathom_dyp_modbus_describe(fathom_dyp_modbus_t *sensor, fathom_modbus_setti
 typedef struct {
     /* private */
     fathom_modbus_request_t request;
-    uint32_t polled_us; /* the clock at the previous call */
     uint16_t value;
     bool is_asked;
 } fathom_dyp_modbus_find_t;
@@ -167,7 +166,7 @@ typedef struct {
  * @brief Finds the address of an A16 or A05 that is the only device on its line.
  *
  * The function reads register 0x0200 at address 255, "the broadcast address" (A16 6(3), A05 3(3)), which changes
- * nothing. Call it until it does not return FATHOM_PENDING; it polls the transport. The line settings stay as they are.
+ * nothing. Call it until it does not return FATHOM_PENDING; it polls the line. The line settings stay as they are.
  * Each result is returned once; the next call starts again. All units are quarantined for up to two seconds.
  *
  * @param find       The state.
