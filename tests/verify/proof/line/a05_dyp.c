@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * proves: src/sensor/a05_dyp.c
- * with:   src/engine/modbus.c src/engine/dyp_client.c src/codec/dyp_55aa.c src/codec/dyp_stream.c src/codec/modbus_rtu.c src/codec/crc16.c
+ * with:   src/engine/dyp_client.c src/codec/dyp_55aa.c src/codec/dyp_stream.c src/codec/modbus_rtu.c src/codec/crc16.c
  *          src/sensor/dyp_modbus.c src/sensor/dyp.c src/engine/modbus_command.c src/engine/modbus_unit.c src/engine/modbus_setting.c
  *          src/engine/sensor.c
  * options: -eva-precision 0 -eva-ilevel 16

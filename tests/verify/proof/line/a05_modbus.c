@@ -11,7 +11,7 @@
  * The A05 by Modbus: any calls in any order. Which probes it has is told apart, so that a value stands beside its room.
  */
 #include "fathom/sensor/a05_modbus.h"
-#include "driver.h"
+#include "transport.h"
 
 static fathom_a05_modbus_t sensor;
 
@@ -33,7 +33,7 @@ static void any_call(const fathom_sensor_t *handle)
         (void)fathom_a05_modbus_exception(&sensor);
         break;
     case 4:
-        assumed_go_on(); /* another driver has polled the transport */
+        any_line_go_on(); /* another driver has polled the line */
         break;
     case 5:
         (void)fathom_a05_modbus_get_address(&sensor, &address);
@@ -56,7 +56,7 @@ static void run(void)
 void main(void)
 {
     fathom_a05_modbus_config_t config;
-    const fathom_modbus_t *const transport = any_transport();
+    any_line_init();
     any_modbus_config(&config.modbus);
     config.start_us = any_32();
     any_window(&config.window);
@@ -66,9 +66,10 @@ void main(void)
     config.probes = any_probes(which);
     const fathom_sensor_t none = fathom_a05_modbus_sensor(&sensor);
     any_call(&none); /* in zeroed memory */
-    (void)fathom_a05_modbus_init(&sensor, transport, NULL);
-    if (fathom_a05_modbus_init(&sensor, transport, &config) != FATHOM_OK) return;
+    (void)fathom_a05_modbus_init(&sensor, &assumed_transport, NULL);
+    if (fathom_a05_modbus_init(&sensor, &assumed_transport, &config) != FATHOM_OK) return;
     run();
     if (any_bool()) fathom_a05_modbus_deinit(&sensor);
-    (void)fathom_a05_modbus_init(&sensor, transport, &config); /* again, perhaps while a request is queued */
+    (void)fathom_a05_modbus_init(&sensor, &assumed_transport,
+                                 &config); /* again, perhaps while a request is queued */
 }

@@ -10,8 +10,8 @@
  *
  * The A16 by Modbus, with all that can be set, and the search for its address: any calls in any order.
  */
-#include "driver.h"
 #include "fathom/sensor/a16_settings.h"
+#include "transport.h"
 
 static fathom_a16_modbus_t sensor;
 
@@ -63,7 +63,7 @@ static void read_or_set(void)
 
 static void any_call(const fathom_sensor_t *handle)
 {
-    static fathom_dyp_modbus_find_t find, find_over_bare;
+    static fathom_dyp_modbus_find_t find;
     uint8_t address;
     switch (any_8_in(0, 7)) {
     case 0:
@@ -80,34 +80,45 @@ static void any_call(const fathom_sensor_t *handle)
         (void)fathom_a16_modbus_exception(&sensor);
         break;
     case 4:
-        assumed_go_on(); /* another driver has polled the transport */
+        any_line_go_on(); /* another driver has polled the line */
         break;
     case 5:
         (void)fathom_dyp_modbus_find(&find, &assumed_transport, &address);
-        (void)fathom_dyp_modbus_find(&find_over_bare, &assumed_bare_transport, &address);
         break;
     case 6:
         fathom_dyp_modbus_find_cancel(&find, &assumed_transport);
-        fathom_dyp_modbus_find_cancel(&find_over_bare, &assumed_bare_transport);
         break;
     default:
         read_or_set();
     }
 }
 
+static const fathom_modbus_t no_line = {NULL, assumed_submit};
+static const fathom_modbus_t no_initialised_line = {&blank_line, assumed_submit};
+
+static void refuse(const fathom_modbus_t *transport, const fathom_a16_modbus_config_t *config)
+{
+    const fathom_status_t status = fathom_a16_modbus_init(&sensor, transport, config);
+    /*@ assert status == FATHOM_ERR_ARGUMENT; */
+}
+
 void main(void)
 {
     fathom_a16_modbus_config_t config;
-    const fathom_modbus_t *const transport = any_transport();
+    any_line_init();
     any_modbus_config(&config.modbus);
     config.start_us = any_32();
     any_window(&config.window);
     config.value = any_8();
     const fathom_sensor_t handle = fathom_a16_modbus_sensor(&sensor);
     any_call(&handle); /* in zeroed memory */
-    (void)fathom_a16_modbus_init(&sensor, transport, NULL);
-    if (fathom_a16_modbus_init(&sensor, transport, &config) != FATHOM_OK) return;
+    refuse(NULL, &config);
+    refuse(&no_line, &config);
+    refuse(&no_initialised_line, &config);
+    (void)fathom_a16_modbus_init(&sensor, &assumed_transport, NULL);
+    if (fathom_a16_modbus_init(&sensor, &assumed_transport, &config) != FATHOM_OK) return;
     while (any_bool()) any_call(&handle);
     if (any_bool()) fathom_a16_modbus_deinit(&sensor);
-    (void)fathom_a16_modbus_init(&sensor, transport, &config); /* again, perhaps while a request is queued */
+    (void)fathom_a16_modbus_init(&sensor, &assumed_transport,
+                                 &config); /* again, perhaps while a request is queued */
 }

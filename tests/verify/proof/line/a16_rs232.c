@@ -12,7 +12,7 @@
  * The A16 by RS232, which is told to send by itself again: both drivers and the way back, any calls in any order.
  */
 #include "fathom/sensor/a16_rs232.h"
-#include "any_line.h"
+#include "transport.h"
 
 static fathom_a16_modbus_t modbus;
 static fathom_a16_auto_t automatic;
@@ -21,7 +21,7 @@ static fathom_a16_rs232_t rs232;
 static void any_call(const fathom_sensor_t *of_modbus, const fathom_sensor_t *of_automatic)
 {
     fathom_sample_t sample;
-    switch (any_8_in(0, 6)) {
+    switch (any_8_in(0, 5)) {
     case 0:
         any_poll(of_modbus);
         break;
@@ -32,12 +32,9 @@ static void any_call(const fathom_sensor_t *of_modbus, const fathom_sensor_t *of
         (void)fathom_line_poll(&any_line); /* another driver has */
         break;
     case 3:
-        assumed_go_on(); /* likewise, the transport */
-        break;
-    case 4:
         fathom_a16_rs232_cancel(&rs232);
         break;
-    case 5:
+    case 4:
         (void)fathom_a16_rs232_due_us(&rs232);
         break;
     default:
@@ -49,7 +46,6 @@ void main(void)
 {
     fathom_a16_modbus_config_t config;
     fathom_a16_auto_config_t config_automatic;
-    const fathom_modbus_t *const transport = any_transport();
     any_line_init();
     any_modbus_config(&config.modbus);
     config.start_us = any_32();
@@ -61,7 +57,7 @@ void main(void)
     config_automatic.gap_us = any_16();
     config_automatic.value = any_8();
     any_window(&config_automatic.window);
-    if (fathom_a16_modbus_init(&modbus, transport, &config) != FATHOM_OK) return;
+    if (fathom_a16_modbus_init(&modbus, &assumed_transport, &config) != FATHOM_OK) return;
     if (fathom_a16_auto_init(&automatic, &any_line, &config_automatic) != FATHOM_OK) return;
     fathom_a16_rs232_init(&rs232, &modbus, &automatic);
     rs232.return_us = any_32();

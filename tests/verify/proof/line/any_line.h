@@ -49,6 +49,7 @@ static void any_line_end(int8_t status)
 
 static void any_line_go_on(void)
 {
+    if (any_bool()) any_line_queued = NULL; /* It was initialised again and has forgotten its transactions. */
     if (any_line_queued == NULL || any_bool()) return;
     any_line_queued->attempts = any_8();
     if (any_bool()) return;

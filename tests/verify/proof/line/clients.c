@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * proves: src/engine/modbus_client.c src/engine/modbus_client_zero.c src/engine/dyp_client.c src/engine/modbus.c
+ * proves: src/engine/modbus_client.c src/engine/modbus_client_zero.c src/engine/dyp_client.c
  * with:   src/codec/modbus_rtu.c src/codec/dyp_55aa.c src/codec/dyp_stream.c
  * options: -eva-precision 0 -eva-auto-loop-unroll 300 -eva-slevel 400 -eva-split-return full
  *          -eva-slevel-function main:0,go_on:0,submit:100000
@@ -71,18 +71,14 @@ static void look_at(const fathom_protocol_t *protocol, uint8_t have, bool is_dyp
     (void)protocol->parse_response(&request.transaction, frame);
 }
 
-static void go_on(const fathom_modbus_t *transport)
+static void go_on(void)
 {
     if (fathom_line_is_queued(&any_line, &request.transaction)) {
         const fathom_status_t status =
             fathom_dyp_client_broadcast_address(&any_line, &request, any_8_in(1, 254));
         /*@ assert status == FATHOM_ERR_BUSY; */
     }
-    (void)transport->poll(&any_line, any_32());
-    (void)transport->due_us(&any_line);
-    (void)transport->has(&any_line, &request);
-    if (any_bool()) transport->cancel(&any_line, &request);
-    if (any_bool()) transport->cancel_unit(&any_line, any_8());
+    (void)fathom_line_poll(&any_line);
     if (any_bool()) fathom_modbus_client_cancel(&any_line, &request);
 }
 
@@ -108,11 +104,11 @@ static void submit(uint16_t *values, uint8_t count)
     request.transaction.line_settings = NULL;
     const fathom_status_t status = client == 3
                                        ? fathom_dyp_client_broadcast_address(&any_line, &request, any_8())
-                                       : transports[client].submit(&any_line, &request);
+                                       : transports[client].submit(transports[client].line, &request);
     if (status != FATHOM_PENDING) return;
     /*@ slevel merge; */
     if (any_bool()) {
-        go_on(&transports[0]);
+        go_on();
         return;
     }
     const uint8_t have = any_8_in(1, MOST);

@@ -2,18 +2,14 @@
 #ifndef DRIVER_H
 #define DRIVER_H
 
+#include "assumptions.h"
 #include "fathom/engine/internal/modbus_unit.h"
 #include "fathom/engine/sensor.h"
 #include "fathom/sensor/internal/dyp.h"
-#include "transport.h"
 
-/* The transport of a driver, and what the configs of the drivers have in common, with any value. */
+/* What the configs of the drivers have in common, with any value. a16_modbus.c has the transports that are refused. */
 
-static const fathom_modbus_t *any_transport(void)
-{
-    assumed_transport.frame_size = any_8();
-    return any_bool() ? &assumed_transport : any_bool() ? &assumed_bare_transport : NULL;
-}
+static const fathom_line_settings_t assumed_settings = {19200, FATHOM_PARITY_EVEN, 1};
 
 static void any_modbus_config(fathom_modbus_config_t *config)
 {

@@ -52,7 +52,7 @@ static void any_call(const fathom_sensor_t *handle)
         fathom_hps167s_cancel(&sensor);
         break;
     case 3:
-        assumed_go_on(); /* another driver has polled the transport */
+        any_line_go_on(); /* another driver has polled the line */
         break;
     case 4:
         (void)fathom_hps167s_set_limits(&sensor, &any_limits);
@@ -65,13 +65,14 @@ static void any_call(const fathom_sensor_t *handle)
 void main(void)
 {
     fathom_hps167s_config_t config;
-    const fathom_modbus_t *const transport = any_transport();
+    any_line_init();
     any_hps167s_config(&config);
     const fathom_sensor_t handle = fathom_hps167s_sensor(&sensor);
     any_call(&handle); /* in zeroed memory */
-    (void)fathom_hps167s_init(&sensor, transport, NULL);
-    if (fathom_hps167s_init(&sensor, transport, &config) != FATHOM_OK) return;
+    (void)fathom_hps167s_init(&sensor, &assumed_transport, NULL);
+    if (fathom_hps167s_init(&sensor, &assumed_transport, &config) != FATHOM_OK) return;
     while (any_bool()) any_call(&handle);
     if (any_bool()) fathom_hps167s_deinit(&sensor);
-    (void)fathom_hps167s_init(&sensor, transport, &config); /* again, perhaps while a request is queued */
+    (void)fathom_hps167s_init(&sensor, &assumed_transport,
+                              &config); /* again, perhaps while a request is queued */
 }

@@ -11,7 +11,6 @@
  * The HPS-167S that sends by itself, alone and beside a driver that sends requests: any calls in any order, any bytes.
  */
 #include "fathom/sensor/hps167s_auto.h"
-#include "any_line.h"
 #include "fathom/sensor/hps167s_info.h"
 #include "hps167s_config.h"
 
@@ -66,7 +65,7 @@ void main(void)
     any_poll(&handle); /* in zeroed memory */
     const bool is_beside = any_bool();
     /*@ split is_beside; */
-    if (fathom_hps167s_init(&beside, any_transport(), &config_beside) != FATHOM_OK) return;
+    if (fathom_hps167s_init(&beside, &assumed_transport, &config_beside) != FATHOM_OK) return;
     if (fathom_hps167s_auto_init(&sensor, line, NULL) == FATHOM_OK) fathom_hps167s_auto_deinit(&sensor);
     if (fathom_hps167s_auto_init(&sensor, line, &config) != FATHOM_OK) return;
     if (is_beside) fathom_hps167s_auto_follow(&sensor, &beside);

@@ -2,8 +2,8 @@
 #ifndef HPS167S_CONFIG_H
 #define HPS167S_CONFIG_H
 
-#include "driver.h"
 #include "fathom/sensor/hps167s.h"
+#include "transport.h"
 
 /* Any config of the HPS-167S's driver, and any limits. */
 
