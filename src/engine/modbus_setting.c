@@ -88,7 +88,7 @@ static fathom_status_t written(fathom_modbus_unit_t *unit, const fathom_modbus_s
     unit->step = CONFIRM_OLD;
     if (moves(setting)) {
         unit->step = CONFIRM_NEW;
-        fathom_line_cancel_unit(unit->transport->line, unit->address);
+        fathom_line_cancel_unit(unit->transport.line, unit->address);
         use_new_address(unit, setting);
     }
     return FATHOM_PENDING;
@@ -128,7 +128,7 @@ static fathom_status_t go_on(fathom_modbus_unit_t *unit, const fathom_modbus_set
 
 fathom_status_t fathom_modbus_write_next_unchecked(fathom_modbus_unit_t *unit)
 {
-    if (unit->transport == NULL) return FATHOM_ERR_ARGUMENT;
+    if (unit->transport.line == NULL) return FATHOM_ERR_ARGUMENT;
     if ((unit->setting != 0u) && !fathom_modbus_command_give_way(unit)) return FATHOM_ERR_BUSY;
     unit->commands = &fathom_modbus_commands;
     unit->is_blind = true;

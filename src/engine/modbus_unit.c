@@ -51,7 +51,7 @@ fathom_status_t fathom_modbus_unit_init(fathom_modbus_unit_t *unit, const fathom
                                         uint32_t pace_us)
 {
     if (!is_valid(transport, config)) return FATHOM_ERR_ARGUMENT;
-    unit->transport = transport;
+    unit->transport = *transport;
     unit->line_settings = config->line_settings;
     unit->timeout_us = or_default(config->timeout_us, timeout_us);
     unit->command_timeout_us =
@@ -91,7 +91,7 @@ static void back_off(fathom_modbus_unit_t *unit, int8_t status)
 static bool is_forgotten(const fathom_modbus_unit_t *unit, uint32_t now_us)
 {
     if ((now_us >> 16) == (unit->polled_us >> 16)) return false;
-    return !fathom_line_is_queued(unit->transport->line, &unit->request.transaction);
+    return !fathom_line_is_queued(unit->transport.line, &unit->request.transaction);
 }
 
 /* Follows the request. */
@@ -113,7 +113,7 @@ static void follow_request(fathom_modbus_unit_t *unit, uint32_t now_us)
 
 void fathom_modbus_unit_poll(fathom_modbus_unit_t *unit)
 {
-    fathom_line_t *const line = line_of(unit->transport);
+    fathom_line_t *const line = line_of(&unit->transport);
     FATHOM_ASSERT(line != NULL); /* the driver or its line is not initialised */
     unit->transport_status = FATHOM_ERR_ARGUMENT;
     if (line == NULL) { /* A line whose next init has failed has forgotten the request. */
@@ -141,7 +141,7 @@ fathom_status_t fathom_modbus_unit_submit(fathom_modbus_unit_t *unit, uint8_t id
 {
     unit->current = id;
     unit->request.transaction.line_settings = unit->line_settings;
-    const fathom_status_t status = unit->transport->submit(unit->transport->line, &unit->request);
+    const fathom_status_t status = unit->transport.submit(unit->transport.line, &unit->request);
     if (status == FATHOM_PENDING) {
         unit->state = FATHOM_MODBUS_UNIT_QUEUED;
         unit->attempts = 0;
@@ -180,7 +180,7 @@ fathom_status_t fathom_modbus_unit_measure(fathom_modbus_unit_t *unit, uint16_t 
 void fathom_modbus_unit_drop_request(fathom_modbus_unit_t *unit)
 {
     if (unit->state == FATHOM_MODBUS_UNIT_QUEUED)
-        fathom_line_cancel(unit->transport->line, &unit->request.transaction);
+        fathom_line_cancel(unit->transport.line, &unit->request.transaction);
     unit->state = FATHOM_MODBUS_UNIT_IDLE;
 }
 
@@ -192,7 +192,7 @@ void fathom_modbus_unit_cancel(fathom_modbus_unit_t *unit)
 
 void fathom_modbus_unit_power_on(fathom_modbus_unit_t *unit, uint32_t warm_us)
 {
-    const fathom_line_t *const line = line_of(unit->transport);
+    const fathom_line_t *const line = line_of(&unit->transport);
     if (line == NULL) return;
     fathom_modbus_unit_cancel(unit);
     unit->polled_us = clock_us(line->parts->clock);
@@ -215,7 +215,7 @@ static uint32_t idle_due_us(const fathom_modbus_unit_t *unit, const fathom_line_
 
 uint32_t fathom_modbus_unit_due_us(const fathom_modbus_unit_t *unit)
 {
-    const fathom_line_t *const line = line_of(unit->transport);
+    const fathom_line_t *const line = line_of(&unit->transport);
     uint32_t due_us =
         0; /* not initialised: each poll returns its error; ended: the result is to be fetched */
     if (line == NULL) return due_us;

@@ -16,18 +16,19 @@ enum { ALL_PROBES = 0x0F };
 
 static bool is_one(uint8_t probes) { return (probes & (probes - 1u)) == 0u; }
 
-fathom_status_t fathom_a05_dyp_init(fathom_a05_dyp_t *sensor, const fathom_modbus_t *transport,
+fathom_status_t fathom_a05_dyp_init(fathom_a05_dyp_t *sensor, fathom_line_t *line,
                                     const fathom_a05_dyp_config_t *config)
 {
     fathom_dyp_modbus_t *const base = &sensor->base;
+    const fathom_modbus_t transport = fathom_dyp_client(line);
     fathom_a05_dyp_config_t zeroed;
-    const fathom_status_t status = fathom_modbus_unit_begin(&base->unit, transport, sensor, sizeof *sensor);
+    const fathom_status_t status = fathom_modbus_unit_begin(&base->unit, &transport, sensor, sizeof *sensor);
     if (status < 0) return status;
     config = config_or_zeroed(config, &zeroed, sizeof zeroed);
     const uint8_t probes = (config->probes != 0u) ? config->probes : ALL_PROBES;
     if (config->modbus.address_zero || (probes > ALL_PROBES)) return FATHOM_ERR_ARGUMENT;
     /* Without room for the longest response, dyp_client.c refuses all requests. */
-    if (!fathom_modbus_unit_has_room(transport, FATHOM_DYP_MAX_RESPONSE)) return FATHOM_ERR_ARGUMENT;
+    if (!fathom_modbus_unit_has_room(&transport, FATHOM_DYP_MAX_RESPONSE)) return FATHOM_ERR_ARGUMENT;
 
     const bool is_single = is_one(probes);
     uint8_t first = 0;
@@ -41,7 +42,7 @@ fathom_status_t fathom_a05_dyp_init(fathom_a05_dyp_t *sensor, const fathom_modbu
     base->measurement.model = FATHOM_A05;
     base->measurement.first = (uint8_t)(first + 1u);
     base->probes = probes;
-    return fathom_dyp_modbus_init(base, transport, &config->modbus,
+    return fathom_dyp_modbus_init(base, &transport, &config->modbus,
                                   is_single ? ONE_PROBE_TIMEOUT_US : ALL_PROBES_TIMEOUT_US,
                                   is_single ? FATHOM_A05_DYP_ONE_PROBE_US : FATHOM_A05_DYP_ALL_PROBES_US);
 }
@@ -77,19 +78,18 @@ static fathom_status_t read_address(const fathom_modbus_setting_t *setting, uint
 fathom_status_t fathom_a05_dyp_broadcast_address(fathom_a05_dyp_t *sensor, uint8_t address)
 {
     fathom_modbus_unit_t *const unit = &sensor->base.unit;
-    const fathom_modbus_t *const transport = unit->transport;
     fathom_modbus_setting_t setting;
-    if ((address == FATHOM_LINE_ALL_UNITS) || (address == FATHOM_LINE_ANY_UNIT) || (transport == NULL) ||
-        fathom_modbus_is_next_unchecked(unit))
+    if ((address == FATHOM_LINE_ALL_UNITS) || (address == FATHOM_LINE_ANY_UNIT) ||
+        (unit->transport.line == NULL) || fathom_modbus_is_next_unchecked(unit))
         return fathom_modbus_refuse_argument(unit);
     fathom_modbus_unit_poll(unit);
-    const fathom_modbus_t either = {.line = transport->line, .submit = submit_either};
     fathom_dyp_modbus_describe(&sensor->base, &setting, FATHOM_DYP_REGISTER_ADDRESS, address);
     setting.read = read_address;
     setting.address = address;
-    unit->transport = &either;
+    unit->transport.submit =
+        submit_either; /* Only here may the command leave that sets the address of every A05. */
     const fathom_status_t status = fathom_modbus_set(unit, &setting);
-    unit->transport = transport;
+    unit->transport.submit = fathom_dyp_client_submit;
     return status;
 }
 

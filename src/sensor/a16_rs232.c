@@ -10,7 +10,7 @@
 
 static uint32_t now_us(const fathom_a16_rs232_t *rs232)
 {
-    return clock_us(rs232->modbus->base.unit.transport->line->parts->clock);
+    return clock_us(rs232->modbus->base.unit.transport.line->parts->clock);
 }
 
 void fathom_a16_rs232_init(fathom_a16_rs232_t *rs232, fathom_a16_modbus_t *modbus,

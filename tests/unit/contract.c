@@ -312,14 +312,7 @@ static size_t a05_dyp_stream(uint8_t *frame, uint16_t value)
 
 static const contract_kind_t asked_on_line = LINE_KIND(is_asked, line_is_at_work);
 
-static fathom_modbus_t dyp;
-static const fathom_modbus_t *dyp_of_line(void)
-{
-    dyp = fathom_dyp_client(&rig.line);
-    return &dyp;
-}
-
-DRIVER(a05_dyp, (transport), transport = dyp_of_line(), .probes = 1)
+DRIVER(a05_dyp, (line), line = &rig.line, .probes = 1)
 CAN(a05_dyp, deinit)
 CAN(a05_dyp, power_on)
 
@@ -330,7 +323,7 @@ const contract_driver_t contract_a05_dyp = {
     .power_on = a05_dyp_power_on,
     .start_us = &a05_dyp_config.start_us,
     .frame = a05_dyp_stream,
-    .wrong = {NONE(transport), IS(a05_dyp, modbus.address, 255), IS(a05_dyp, modbus.address_zero, 1),
+    .wrong = {NONE(line), IS(a05_dyp, modbus.address, 255), IS(a05_dyp, modbus.address_zero, 1),
               RANGE(a05_dyp, probes, 16, 255), WINDOW(a05_dyp, 6000)}};
 
 /* ---- triggered ---- */

@@ -117,6 +117,13 @@ REPLACES(bool, fathom_line_is_queued, (const fathom_line_t *line, const fathom_t
     return request != NULL && &request->transaction == transaction;
 }
 
+/* The client of `55 AA` submits to the line itself. */
+REPLACES(fathom_status_t, fathom_line_submit, (fathom_line_t * line, fathom_transaction_t *transaction))
+{
+    if (!is_fake(line)) return __real_fathom_line_submit(line, transaction);
+    return fake_submit(line, (fathom_modbus_request_t *)transaction);
+}
+
 /* ---- the test's side ---- */
 
 static uint32_t fake_now_us(void *ctx) { return ((const fake_modbus_t *)ctx)->now_us; }

@@ -3,7 +3,7 @@
 # The functions that fake_modbus.c replaces, in each program that links it: fake_modbus(HELPERS). The linker leads each
 # call of FUNCTION to __wrap_FUNCTION, and __real_FUNCTION to FUNCTION.
 function(fake_modbus helpers)
-    foreach(function IN ITEMS cancel cancel_unit was_polled poll due_us is_queued)
+    foreach(function IN ITEMS cancel cancel_unit was_polled poll due_us is_queued submit)
         if(BUILD_SHARED_LIBS)
             # The calls within a shared library are linked already. The loader leads them to the function of the program.
             target_link_options(${helpers} INTERFACE

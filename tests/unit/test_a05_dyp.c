@@ -14,7 +14,6 @@ static const uint16_t four_mm[] = {1000, 2000, 1953, 3562};
 static const uint8_t first_1953[] = {0x55, 0xAA, 0x01, 0x10, 0x07, 0xA1, 0xB8};
 
 static fathom_a05_dyp_config_t config;
-static fathom_modbus_t dyp;
 static fathom_a05_dyp_t a05;
 
 static void set_up_at(uint32_t now_us)
@@ -23,14 +22,13 @@ static void set_up_at(uint32_t now_us)
     rig.line_parts.echo = FATHOM_LINE_ECHO_OFF;
     rig.fake.byte_us = RIG_BYTE_US;
     assert_int_equal(fathom_line_init(&rig.line, &rig.line_parts), FATHOM_OK);
-    dyp = fathom_dyp_client(&rig.line);
     config = (fathom_a05_dyp_config_t){0};
     memset(&a05, 0x5A, sizeof a05);
 }
 
 static void start(void)
 {
-    assert_int_equal(fathom_a05_dyp_init(&a05, &dyp, &config), FATHOM_OK);
+    assert_int_equal(fathom_a05_dyp_init(&a05, &rig.line, &config), FATHOM_OK);
     rig.sensor = fathom_a05_dyp_sensor(&a05);
 }
 
@@ -445,7 +443,7 @@ TEST_IN(finding, a_line_without_room_says_so)
 static void assert_refused(void)
 {
     static fathom_modbus_request_t other;
-    const fathom_modbus_t *const transport = a05.base.unit.transport;
+    const fathom_modbus_t *const transport = &a05.base.unit.transport;
     const size_t written = rig.fake.written;
     fathom_modbus_write_single_register(&other.message, 9, 0x0200, 9);
     assert_int_equal(transport->submit(transport->line, &other), FATHOM_ERR_UNSUPPORTED);

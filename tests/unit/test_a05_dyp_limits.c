@@ -6,7 +6,6 @@
  * 8N1 and keeps 3646 us of silence before a request. */
 
 static fathom_a05_dyp_config_t config;
-static fathom_modbus_t dyp;
 static fathom_a05_dyp_t a05;
 static fathom_sensor_t sensor;
 static fathom_sample_t sample;
@@ -15,7 +14,6 @@ static int set_up_a05(void **state)
 {
     set_up(state);
     memset(&config, 0, sizeof config);
-    dyp = fathom_dyp_client(&bench.line);
     return 0;
 }
 
@@ -24,7 +22,7 @@ static const suite_t suite = {.set_up = set_up_a05};
 static void start(void)
 {
     memset(&a05, 0xA5, sizeof a05);
-    assert_int_equal(fathom_a05_dyp_init(&a05, &dyp, &config), FATHOM_OK);
+    assert_int_equal(fathom_a05_dyp_init(&a05, &bench.line, &config), FATHOM_OK);
     sensor = fathom_a05_dyp_sensor(&a05);
 }
 

@@ -41,20 +41,19 @@ typedef struct {
 } driver_t;
 
 static const fathom_modbus_t *transport;
+static fathom_line_t *line;
 
-#define DRIVER(name, ...)                                                                                    \
+#define DRIVER(name, on, ...)                                                                                \
     static fathom_##name##_t name;                                                                           \
     static fathom_##name##_config_t name##_config;                                                           \
     static void name##_prepare(void)                                                                         \
     {                                                                                                        \
         transport = &fake.modbus;                                                                            \
+        line = &fake.line;                                                                                   \
         name##_config = (fathom_##name##_config_t){__VA_ARGS__};                                             \
         memset(&name, 0, sizeof name);                                                                       \
     }                                                                                                        \
-    static fathom_status_t name##_init(void)                                                                 \
-    {                                                                                                        \
-        return fathom_##name##_init(&name, transport, &name##_config);                                       \
-    }                                                                                                        \
+    static fathom_status_t name##_init(void) { return fathom_##name##_init(&name, on, &name##_config); }     \
     static void name##_deinit(void) { fathom_##name##_deinit(&name); }                                       \
     static fathom_sensor_t name##_sensor(void) { return fathom_##name##_sensor(&name); }
 
@@ -81,10 +80,10 @@ static const fathom_modbus_t *transport;
         RANGE(name, window.value_fffe, 0, 8, {1, 255}), RANGE(name, window.value_ffff, 2, 4, {5, 200}),      \
         RANGE(name, window.value_0, 6, 8, {1, 5}), TIME(name, start_us)
 
-DRIVER(a16_modbus, .window.min_mm = 500)
-DRIVER(a05_modbus, .window.min_mm = 500)
-DRIVER(a05_dyp, .window.min_mm = 500)
-DRIVER(hps167s, .modbus.address = 0)
+DRIVER(a16_modbus, transport, .window.min_mm = 500)
+DRIVER(a05_modbus, transport, .window.min_mm = 500)
+DRIVER(a05_dyp, line, .window.min_mm = 500)
+DRIVER(hps167s, transport, .modbus.address = 0)
 
 static const driver_t of_a16_modbus = {
     ITSELF(a16_modbus, 7), /* address, function, count, one register, CRC */
@@ -187,9 +186,9 @@ static void a_missing_transport_or_line_and_a_line_that_is_not_initialised_are_r
 {
     const driver_t *const driver = *state;
     static fathom_line_t blank;
-    fake.modbus.line = &blank;
+    line = fake.modbus.line = &blank;
     assert_int_equal(driver->init(), FATHOM_ERR_ARGUMENT);
-    fake.modbus.line = NULL;
+    line = fake.modbus.line = NULL;
     assert_int_equal(driver->init(), FATHOM_ERR_ARGUMENT);
     transport = NULL;
     assert_int_equal(driver->init(), FATHOM_ERR_ARGUMENT);

@@ -41,9 +41,8 @@ TEST(the_address_of_every_a05_is_set_without_a_pointer_to_a_parameter)
     static const uint8_t one_754[] = {0x55, 0xAA, 0x01, 0x10, 0x02, 0xF2, 0x04}; /* the sum is 204 */
     fathom_a05_dyp_t a05;
     (void)set_up(state);
-    const fathom_modbus_t transport = fathom_dyp_client(&bench.line);
     const fathom_a05_dyp_config_t config = {.probes = 1};
-    assert_int_equal(fathom_a05_dyp_init(&a05, &transport, &config), FATHOM_OK);
+    assert_int_equal(fathom_a05_dyp_init(&a05, &bench.line, &config), FATHOM_OK);
     bool is_answered = false;
     for (unsigned i = 0; bench.fake.written != 3; i++) {
         assert_true(i != 10000);

@@ -364,3 +364,16 @@ STEPS(while_a_register_is_written_a_read_is_told_busy_and_a_measurement_waits, P
 STEPS(a_write_of_a_register_that_is_being_read_is_told_busy, P(0, reading, 1),
       IS(FATHOM_ERR_BUSY, 0, one_write, 1), IS(FATHOM_ERR_BUSY, 0, two_written, 1), ANSWERED,
       IS(FATHOM_ERR_BUSY, 0, one_write, 1), IS(FATHOM_OK, 0, reading, 1), P(PACE_US, two_written, 2))
+
+TEST(the_transport_may_be_a_local_variable)
+{
+    fathom_modbus_unit_t other;
+    const fathom_modbus_config_t config = {.address = 1};
+    fathom_modbus_t transport = fake.modbus;
+    assert_int_equal(init_unit(&other, &transport, &config, 1000, 0), FATHOM_OK);
+    memset(&transport, 0x5A, sizeof transport);
+    fathom_modbus_unit_poll(&other);
+    assert_int_equal(fathom_modbus_unit_measure(&other, 0x0100, 1, other.request.message.values),
+                     FATHOM_PENDING);
+    assert_non_null(fake.request);
+}

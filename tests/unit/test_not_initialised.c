@@ -227,9 +227,8 @@ TEST(a_transport_over_a_zeroed_line_is_refused)
 {
     static fathom_line_t line;
     const fathom_modbus_t modbus = fathom_modbus_client(&line);
-    const fathom_modbus_t dyp = fathom_dyp_client(&line);
     assert_int_equal(fathom_hps167s_init(&hps167s, &modbus, NULL), FATHOM_ERR_ARGUMENT);
     assert_int_equal(fathom_a16_modbus_init(&a16_modbus, &modbus, NULL), FATHOM_ERR_ARGUMENT);
     assert_int_equal(fathom_a05_modbus_init(&a05_modbus, &modbus, NULL), FATHOM_ERR_ARGUMENT);
-    assert_int_equal(fathom_a05_dyp_init(&a05_dyp, &dyp, NULL), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_a05_dyp_init(&a05_dyp, &line, NULL), FATHOM_ERR_ARGUMENT);
 }

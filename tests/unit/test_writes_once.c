@@ -80,11 +80,10 @@ static unsigned sent(uint8_t address, uint8_t command)
 TEST(over_55_aa_requests_are_repeated_and_the_command_to_all_is_not)
 {
     static fathom_a05_dyp_t dyp;
-    const fathom_modbus_t transport = fathom_dyp_client(&bench.line);
     const fathom_a05_dyp_config_t config = {.modbus.retries = RETRIES};
     fathom_status_t status = FATHOM_PENDING;
     bool is_answered = false;
-    assert_int_equal(fathom_a05_dyp_init(&dyp, &transport, &config), FATHOM_OK);
+    assert_int_equal(fathom_a05_dyp_init(&dyp, &bench.line, &config), FATHOM_OK);
     for (unsigned ms = 0; status == FATHOM_PENDING; ms++) {
         assert_true(ms < 30000);
         bench.fake.now_us += 1000;

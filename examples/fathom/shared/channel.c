@@ -77,7 +77,6 @@ static void begin(channel_t *channel)
     channel->parts.counters = channel->counters;
     (void)fathom_line_init(&channel->line, &channel->parts); /* all of it is there */
     channel->modbus = fathom_modbus_client_with_zero(&channel->line);
-    channel->dyp = fathom_dyp_client(&channel->line);
 }
 
 bool channel_open(channel_t *channel, const host_t *host, const char *path,

@@ -28,7 +28,6 @@ typedef struct {
     uint16_t counters[FATHOM_LINE_COUNTERS];
     fathom_line_t line;
     fathom_modbus_t modbus;
-    fathom_modbus_t dyp;
     /* To be set before it is opened. */
     uint8_t echo; /* fathom_line_parts_t.echo */
     bool rs485;   /* the kernel's driver is to drive the transceiver: RTS is on while bytes leave */

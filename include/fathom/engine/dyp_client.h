@@ -27,8 +27,7 @@ extern "C" {
  * damaged in more than one byte. Modbus, which the same module speaks, lets one in 65536 pass.
  *
  * @code
- * static fathom_modbus_t transport;                  // must stay valid as long as the drivers
- * transport = fathom_dyp_client(&line);              // `line` is initialised
+ * const fathom_modbus_t transport = fathom_dyp_client(&line); // `line` is initialised
  * @endcode
  */
 
@@ -72,7 +71,7 @@ fathom_status_t fathom_dyp_client_broadcast_address(fathom_line_t *line, fathom_
                                                     uint8_t address);
 
 /**
- * @brief Returns the transport for drivers, by value. Keep it as long as the drivers that point to it.
+ * @brief Returns the transport for drivers, by value. Drivers copy it.
  *
  * @param line  The line, initialised. If the line is not initialised, each driver refuses the transport with
  *              FATHOM_ERR_ARGUMENT.

@@ -28,10 +28,8 @@ extern "C" {
  * request that gives its address to every other A05 of the line.
  *
  * @code
- * static fathom_modbus_t transport;
  * static fathom_a05_dyp_t bumper;
- * transport = fathom_dyp_client(&line);              // dyp_client.h
- * fathom_a05_dyp_init(&bumper, &transport, NULL);    // address 1, all four probes
+ * fathom_a05_dyp_init(&bumper, &line, NULL);         // address 1, all four probes
  * const fathom_sensor_t sensor = fathom_a05_dyp_sensor(&bumper);
  *
  * fathom_sample_t near;                              // in the loop: each probe is one sample
@@ -103,19 +101,19 @@ typedef struct {
 /**
  * @brief Initialises a driver. Nothing is sent before the first poll.
  *
- * @param sensor     The driver, in any memory. Must stay valid until fathom_a05_dyp_deinit().
- * @param transport  The transport, made by fathom_dyp_client(). Must stay valid as long as the driver.
- * @param config     The config. Read only during the call; what it points to must stay valid as long as the driver.
- *                   NULL selects all defaults.
+ * @param sensor  The driver, in any memory. Must stay valid until fathom_a05_dyp_deinit().
+ * @param line    The line, initialised. Must stay valid as long as the driver.
+ * @param config  The config. Read only during the call; what it points to must stay valid as long as the driver. NULL
+ *                selects all defaults.
  * @retval FATHOM_OK            The driver can be used. Next, pass fathom_a05_dyp_sensor() to fathom_poll().
- * @retval FATHOM_ERR_ARGUMENT  `transport` has no initialised line, the address is 255, `address_zero` is true, `probes`
+ * @retval FATHOM_ERR_ARGUMENT  `line` is NULL or not initialised, the address is 255, `address_zero` is true, `probes`
  *                              is above 15, `min_mm` is above `max_mm`, another member is outside its range, or the
  *                              frame buffer of the line has less than 13 bytes. The driver is zeroed: each poll and
  *                              command returns FATHOM_ERR_ARGUMENT.
  * @retval FATHOM_ERR_BUSY      A request of this driver is still queued. Nothing changed. Call fathom_a05_dyp_deinit()
  *                              first.
  */
-fathom_status_t fathom_a05_dyp_init(fathom_a05_dyp_t *sensor, const fathom_modbus_t *transport,
+fathom_status_t fathom_a05_dyp_init(fathom_a05_dyp_t *sensor, fathom_line_t *line,
                                     const fathom_a05_dyp_config_t *config);
 
 /** @brief Cancels what is in progress. After this the memory is the caller's again. */

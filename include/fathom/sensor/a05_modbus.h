@@ -130,8 +130,8 @@ typedef struct {
  * @brief Initialises a driver. Nothing is sent before the first poll.
  *
  * @param sensor     The driver, in any memory. Must stay valid until fathom_a05_modbus_deinit().
- * @param transport  The transport, with a clock: fathom_modbus_client(), or that of a port. Must stay valid as long as
- *                   the driver.
+ * @param transport  The transport: `modbus` of a bus, or the result of fathom_modbus_client(). Copied; its line must stay
+ *                   valid as long as the driver.
  * @param config     The config. Read only during the call; what it points to must stay valid as long as the driver.
  *                   NULL selects all defaults.
  * @retval FATHOM_OK            The driver can be used. Next, pass fathom_a05_modbus_sensor() to fathom_poll().

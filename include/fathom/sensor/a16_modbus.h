@@ -108,8 +108,8 @@ typedef struct {
  * @brief Initialises the driver. Sends nothing.
  *
  * @param sensor     The driver. Must stay valid until fathom_a16_modbus_deinit().
- * @param transport  The transport, with a clock: fathom_modbus_client(), or that of a port. Must stay valid as long as
- *                   the driver.
+ * @param transport  The transport: `modbus` of a bus, or the result of fathom_modbus_client(). Copied; its line must stay
+ *                   valid as long as the driver.
  * @param config     The configuration. Not used after the call. NULL selects all defaults.
  * @retval FATHOM_OK            The driver can be used. Next, call fathom_poll().
  * @retval FATHOM_ERR_ARGUMENT  `transport` has no initialised line, the buffer of its line is too small, or a member of

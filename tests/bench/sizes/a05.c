@@ -3,7 +3,6 @@
 
 static fathom_a05_dyp_find_t a05_dyp_find;
 static fathom_a05_relay_rule_t a05_relay_rule;
-static fathom_modbus_t dyp;
 
 static const fathom_a05_auto_config_t selecting = {.select = {fathom_output_set_pin, &pin}};
 
@@ -26,13 +25,7 @@ void a05_modbus_use(const fathom_sample_t *sample)
     outcome = (uint16_t)fathom_a05_modbus_set_address(&a05_modbus, (uint8_t)argument);
 }
 
-static void dyp_begin(void)
-{
-    line_begin();
-    dyp = fathom_dyp_client(&line);
-}
-
-DRIVER(a05_dyp, dyp_begin(), &dyp, NULL)
+DRIVER(a05_dyp, line_begin(), &line, NULL)
 
 void a05_dyp_use(const fathom_sample_t *sample)
 {

@@ -118,7 +118,7 @@ void life_a05_rs485(rig_t *rig)
 static fathom_sensor_t begin_dyp(rig_t *rig, fathom_a05_dyp_t *sensor, uint8_t probes)
 {
     fathom_a05_dyp_config_t config = {.modbus.address = rig->device.address, .probes = probes};
-    assert_int_equal(fathom_a05_dyp_init(sensor, &rig->dyp, &config), FATHOM_OK);
+    assert_int_equal(fathom_a05_dyp_init(sensor, &rig->line, &config), FATHOM_OK);
     return fathom_a05_dyp_sensor(sensor);
 }
 

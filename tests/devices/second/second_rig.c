@@ -223,7 +223,6 @@ void rig_open(rig_t *rig, const second_config_t *config)
                                             .gap_us = rig->loop == RIG_EVERY_20_MS ? 25000 : 0};
     assert_int_equal(fathom_line_init(&rig->line, &rig->line_parts), FATHOM_OK);
     rig->modbus = fathom_modbus_client_with_zero(&rig->line);
-    rig->dyp = fathom_dyp_client(&rig->line);
 }
 
 /* Returns the time of a character of 11 bits. */

@@ -64,7 +64,7 @@ typedef struct {
     fathom_line_parts_t line_parts;
     uint8_t frame[RIG_FRAME];
     fathom_line_t line;
-    fathom_modbus_t modbus, dyp;
+    fathom_modbus_t modbus;
 } rig_t;
 
 /* A device on a wire, without power. The loop, the echo's being told and the clock's begin hang on the seed. */

@@ -113,7 +113,7 @@ static fathom_sensor_t begin_a05_dyp(rig_t *on)
 {
     static fathom_a05_dyp_t sensor;
     memset(&sensor, 0, sizeof sensor);
-    (void)fathom_a05_dyp_init(&sensor, &on->dyp, NULL);
+    (void)fathom_a05_dyp_init(&sensor, &on->line, NULL);
     return fathom_a05_dyp_sensor(&sensor);
 }
 

@@ -52,7 +52,6 @@ void stage_begin(const fathom_line_settings_t *settings, bool full_duplex, uint3
                                      .counters = s.counters};
     assert_int_equal(fathom_line_init(&s.line, &s.config), FATHOM_OK);
     s.modbus = fathom_modbus_client_with_zero(&s.line);
-    s.dyp = fathom_dyp_client(&s.line);
 }
 
 void init_driver(driver_t *driver, model_t model, uint8_t unit, const fathom_line_settings_t *settings)
@@ -65,7 +64,7 @@ void init_driver(driver_t *driver, model_t model, uint8_t unit, const fathom_lin
     if (model == HPS) status = fathom_hps167s_init(&driver->hps, &s.modbus, &hps);
     if (model == A16) status = fathom_a16_modbus_init(&driver->a16, &s.modbus, &a16);
     if (model == A05) status = fathom_a05_modbus_init(&driver->a05, &s.modbus, &a05);
-    if (model == A05_DYP) status = fathom_a05_dyp_init(&driver->dyp, &s.dyp, &dyp);
+    if (model == A05_DYP) status = fathom_a05_dyp_init(&driver->dyp, &s.line, &dyp);
     assert_int_equal(status, FATHOM_OK);
 }
 

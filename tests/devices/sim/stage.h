@@ -42,7 +42,7 @@ typedef struct {
     fathom_line_settings_t settings;
     uint8_t frame[64];
     fathom_line_t line;
-    fathom_modbus_t modbus, dyp;
+    fathom_modbus_t modbus;
     model_t model;
     driver_t driver;
     fathom_sensor_t sensor; /* of that driver, or the test's */

@@ -175,7 +175,6 @@ void rig_init(rig_t *rig, uint8_t setting, uint32_t loop_us, uint8_t knows, cons
     };
     (void)fathom_line_init(&rig->line, &rig->config);
     rig->modbus = fathom_modbus_client(&rig->line);
-    rig->dyp = fathom_dyp_client(&rig->line);
 }
 
 rig_unit_t *rig_add(rig_t *rig, uint8_t setting, uint8_t address, uint32_t seed)
@@ -196,8 +195,7 @@ rig_unit_t *rig_add(rig_t *rig, uint8_t setting, uint8_t address, uint32_t seed)
     unit->hooks = (fathom_sim_faults_t){.outgoing = outgoing, .measured = measured, .ctx = unit};
     unit->device->faults = &unit->hooks;
     fathom_sim_attach(&rig->wire, unit->device, rig->clock.now_us);
-    unit->sensor =
-        soak_driver_init(&unit->driver, setting, address, &rig->line, &rig->modbus, &rig->dyp, &rig->options);
+    unit->sensor = soak_driver_init(&unit->driver, setting, address, &rig->line, &rig->modbus, &rig->options);
     unit->wrong_sequence = -1;
     unit->outcome_us = unit->right_us = unit->trouble_end_us = unit->under_way_us = rig->clock.now_us;
     rig->sensors[rig->count++] = unit->sensor;

@@ -75,7 +75,7 @@ typedef struct rig {
     uint16_t counters[FATHOM_LINE_COUNTERS];
     fathom_line_parts_t config;
     fathom_line_t line;
-    fathom_modbus_t modbus, dyp;
+    fathom_modbus_t modbus;
     uint8_t frame[RIG_FRAME];
     rig_unit_t units[RIG_UNITS];
     fathom_sensor_t sensors[RIG_UNITS];

@@ -64,8 +64,7 @@ fathom_sim_device_t *soak_device_init(soak_device_t *device, uint8_t setting, ui
     }
 
 fathom_sensor_t soak_driver_init(soak_driver_t *driver, uint8_t setting, uint8_t address, fathom_line_t *line,
-                                 const fathom_modbus_t *modbus, const fathom_modbus_t *dyp,
-                                 const soak_options_t *options)
+                                 const fathom_modbus_t *modbus, const soak_options_t *options)
 {
     const bool is_a16 = soak_facts[setting].model == FATHOM_A16;
     const uint8_t probes = setting == SOAK_A05_DYP_ONE ? 1 << 2 : 0;
@@ -75,7 +74,7 @@ fathom_sensor_t soak_driver_init(soak_driver_t *driver, uint8_t setting, uint8_t
     memset(driver, 0, sizeof *driver);
     if (!soak_is_asked(setting) && is_a16) DRIVER(a16_auto, line, STREAM)
     if (!soak_is_asked(setting)) DRIVER(a05_auto, line, STREAM)
-    if (soak_facts[setting].proof == SOAK_SUM) DRIVER(a05_dyp, dyp, ASKED, WINDOW, .probes = probes)
+    if (soak_facts[setting].proof == SOAK_SUM) DRIVER(a05_dyp, line, ASKED, WINDOW, .probes = probes)
     if (setting == SOAK_HPS167S) DRIVER(hps167s, modbus, ASKED)
     if (setting == SOAK_A05_MODBUS) DRIVER(a05_modbus, modbus, ASKED, WINDOW)
     DRIVER(a16_modbus, modbus, ASKED, WINDOW, .value = value)

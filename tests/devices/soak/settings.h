@@ -74,10 +74,9 @@ typedef union {
 fathom_sim_device_t *soak_device_init(soak_device_t *device, uint8_t setting, uint8_t address,
                                       const fathom_sim_scene_t *scene, uint32_t seed);
 
-/* Its driver on `line`. modbus and dyp outlive it. */
+/* Its driver on `line`. The line outlives it. */
 fathom_sensor_t soak_driver_init(soak_driver_t *driver, uint8_t setting, uint8_t address, fathom_line_t *line,
-                                 const fathom_modbus_t *modbus, const fathom_modbus_t *dyp,
-                                 const soak_options_t *options);
+                                 const fathom_modbus_t *modbus, const soak_options_t *options);
 
 /* The counters of a driver; NULL where it has none of the kind. */
 const fathom_modbus_unit_t *soak_unit_of(const soak_driver_t *driver, uint8_t setting);

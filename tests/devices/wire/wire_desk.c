@@ -29,7 +29,6 @@ void desk_open(desk_parts_t parts, wire_us_t turn_us, wire_us_t jitter_us)
                               .masters = (parts & DESK_MASTERS) != 0 ? &fathom_line_masters : NULL};
     desk_init_line();
     desk.modbus = fathom_modbus_client(&desk.line);
-    desk.dyp = fathom_dyp_client(&desk.line);
 }
 
 void desk_learn_protocol(void)

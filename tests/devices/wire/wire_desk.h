@@ -11,7 +11,7 @@
 typedef struct {
     fathom_line_parts_t config;
     fathom_line_t line;
-    fathom_modbus_t modbus, dyp;
+    fathom_modbus_t modbus;
     uint8_t frame[64];
     uint16_t counters[FATHOM_LINE_COUNTERS];
     /* For the bound: the longest turn, if turns change; requests beside those of the drivers. */

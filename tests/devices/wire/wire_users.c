@@ -83,7 +83,7 @@ static fathom_status_t init_requests(user_t *user)
     default: {
         const fathom_a05_dyp_config_t config = {.modbus = modbus_config(user)};
         user->sensor = fathom_a05_dyp_sensor(&drivers[i].dyp);
-        return fathom_a05_dyp_init(&drivers[i].dyp, &desk.dyp, &config);
+        return fathom_a05_dyp_init(&drivers[i].dyp, &desk.line, &config);
     }
     }
 }

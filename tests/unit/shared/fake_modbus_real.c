@@ -23,3 +23,5 @@ REAL(fathom_status_t, fathom_line_poll, (fathom_line_t * line), return real(line
 REAL(uint32_t, fathom_line_due_us, (const fathom_line_t *line), return real(line))
 REAL(bool, fathom_line_is_queued, (const fathom_line_t *line, const fathom_transaction_t *transaction),
      return real(line, transaction))
+REAL(fathom_status_t, fathom_line_submit, (fathom_line_t * line, fathom_transaction_t *transaction),
+     return real(line, transaction))

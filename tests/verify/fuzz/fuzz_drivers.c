@@ -22,7 +22,6 @@ enum { SENSORS = 2, POLLS = 8, NONE = 0xFF };
 static fathom_line_t line;
 static fathom_line_parts_t config;
 static fathom_modbus_t transport;
-static fathom_modbus_t dyp_transport;
 static fathom_sensor_t sensors[SENSORS];
 static int count;
 static bool is_asked; /* else they only listen */
@@ -302,7 +301,7 @@ static void add_world(uint8_t world, uint8_t how)
         COMMANDS(a05_commands);
         break;
     case 5:
-        PROMISE(fathom_a05_dyp_init(&a05_dyp, &dyp_transport, &of_dyp) == FATHOM_OK, "a05_dyp.h: init");
+        PROMISE(fathom_a05_dyp_init(&a05_dyp, &line, &of_dyp) == FATHOM_OK, "a05_dyp.h: init");
         add(fathom_a05_dyp_sensor(&a05_dyp));
         COMMANDS(dyp_commands);
         break;
@@ -335,7 +334,6 @@ static void begin(void)
                                    .marks = has_marks ? fathom_line_marks : NULL};
     PROMISE(fathom_line_init(&line, &config) == FATHOM_OK, "line.h: init");
     transport = (world & 128) != 0 ? fathom_modbus_client_with_zero(&line) : fathom_modbus_client(&line);
-    dyp_transport = fathom_dyp_client(&line);
     count = 0;
     command = NULL;
     commands = NULL;

@@ -44,7 +44,7 @@ static bool read_dyp(reader_t *reader, channel_t *channel, const reader_settings
         .probes = settings->probes,
     };
     reader_begin(reader, channel);
-    return fathom_a05_dyp_init(driver, &channel->dyp, &config) == FATHOM_OK &&
+    return fathom_a05_dyp_init(driver, &channel->line, &config) == FATHOM_OK &&
            dyp_begin_asked(reader, &driver->base, fathom_a05_dyp_sensor(driver), "55 AA");
 }
 

@@ -13,7 +13,7 @@ enum { PERIODS_SHOWN = 3 };
 
 static uint32_t now_us(const reader_t *reader)
 {
-    const fathom_clock_t *const clock = reader->unit->transport->line->parts->clock;
+    const fathom_clock_t *const clock = reader->unit->transport.line->parts->clock;
     return clock->now_us(clock->ctx);
 }
 

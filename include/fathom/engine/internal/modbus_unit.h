@@ -163,8 +163,8 @@ typedef struct {
     uint16_t failures;
     /** @brief NULL until the first command. */
     const fathom_modbus_commands_t *commands;
-    /** @brief The transport. Invariant: NULL unless init has returned FATHOM_OK. */
-    const fathom_modbus_t *transport;
+    /** @brief The transport, copied. Invariant: its line is NULL unless init has returned FATHOM_OK. */
+    fathom_modbus_t transport;
     /** @brief Present line settings of the unit; NULL: those of the line. */
     const fathom_line_settings_t *line_settings;
     /** @brief Line settings of the unit when the setting began. */

@@ -53,7 +53,7 @@ enum { FATHOM_DYP_REGISTER_ADDRESS = 0x0200 /**< The address (A05 3(3), A16 6(3)
  * `window`, `model` and `first` of `measurement`.
  *
  * @param sensor      The driver.
- * @param transport   The transport. Must stay valid as long as the driver.
+ * @param transport   The transport, copied. Its line must stay valid as long as the driver.
  * @param config      The configuration of the unit. Read only during the call. Not NULL.
  * @param timeout_us  Default of the time-out, as in fathom_modbus_unit_init().
  * @param pace_us     Least time between two measurements, as in fathom_modbus_unit_init().

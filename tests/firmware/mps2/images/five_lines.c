@@ -84,13 +84,12 @@ static bool begin(fathom_sensor_t sensors[LINES])
     const fathom_a16_modbus_config_t tank_config = {.value = FATHOM_REAL_TIME};
     /* No period is printed; this one is known to send ten times a second. */
     const fathom_a16_auto_config_t silo_config = {.stale_us = 2000000, .gap_us = 25000};
-    lanes[REAR].modbus = fathom_dyp_client(&lanes[REAR].line); /* the same transport, with the frames 55 AA */
     const fathom_a05_dyp_config_t rear_config = {.probes = 1};
     if (fathom_a16_modbus_init(&tank, &lanes[TANK].modbus, &tank_config) != FATHOM_OK ||
         fathom_a05_modbus_init(&bumper, &lanes[BUMPER].modbus, NULL) != FATHOM_OK ||
         fathom_hps167s_init(&gate, &lanes[GATE].modbus, NULL) != FATHOM_OK ||
         fathom_a16_auto_init(&silo, &lanes[SILO].line, &silo_config) != FATHOM_OK ||
-        fathom_a05_dyp_init(&rear, &lanes[REAR].modbus, &rear_config) != FATHOM_OK)
+        fathom_a05_dyp_init(&rear, &lanes[REAR].line, &rear_config) != FATHOM_OK)
         return false;
     sensors[TANK] = fathom_a16_modbus_sensor(&tank);
     sensors[BUMPER] = fathom_a05_modbus_sensor(&bumper);

@@ -14,7 +14,6 @@
 #include "fathom/sensor/a05_dyp.h"
 #include "any_line.h"
 
-static fathom_modbus_t transport;
 static fathom_a05_dyp_t sensor;
 static fathom_a05_dyp_find_t find;
 
@@ -62,7 +61,6 @@ void main(void)
 {
     fathom_a05_dyp_config_t config;
     any_line_init();
-    transport = fathom_dyp_client(&any_line);
     const fathom_sensor_t none = fathom_a05_dyp_sensor(&sensor);
     any_call(&none); /* in zeroed memory */
     any_modbus_config(&config.modbus);
@@ -70,13 +68,13 @@ void main(void)
     any_window(&config.window);
     config.probes = any_8_in(0, 16); /* from 16 on they are refused */
     /*@ split config.probes; */
-    (void)fathom_a05_dyp_init(&sensor, &transport, NULL);
-    if (fathom_a05_dyp_init(&sensor, &transport, &config) != FATHOM_OK) return;
+    (void)fathom_a05_dyp_init(&sensor, &any_line, NULL);
+    if (fathom_a05_dyp_init(&sensor, &any_line, &config) != FATHOM_OK) return;
     const uint8_t first = sensor.base.measurement.first;
     /*@ split first; */
     /*@ merge config.probes; */
     /*@ slevel merge; */
     run();
     if (any_bool()) fathom_a05_dyp_deinit(&sensor);
-    (void)fathom_a05_dyp_init(&sensor, &transport, &config); /* again, perhaps while a request is queued */
+    (void)fathom_a05_dyp_init(&sensor, &any_line, &config); /* again, perhaps while a request is queued */
 }
