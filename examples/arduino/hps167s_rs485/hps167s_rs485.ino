@@ -27,7 +27,6 @@ static fathom_line_parts_t line_parts;
 static fathom_line_t line;
 static fathom_modbus_t modbus;
 static fathom_hps167s_t gate;
-static fathom_sensor_t sensor;
 
 // Stops with a message: a setup that failed is an error in this sketch. The LED stays on.
 static void stop(const __FlashStringHelper *why)
@@ -62,13 +61,12 @@ void setup()
     modbus = fathom_modbus_client(&line);
 
     if (fathom_hps167s_init(&gate, &modbus, NULL) != FATHOM_OK) stop(F("wrong config of the sensor"));
-    sensor = fathom_hps167s_sensor(&gate);
 }
 
 void loop()
 {
     fathom_sample_t sample;
-    const fathom_status_t status = fathom_poll(&sensor, &sample);
+    const fathom_status_t status = fathom_hps167s_poll(&gate, &sample);
     if (status == FATHOM_OK) {
         digitalWrite(LED_BUILTIN, sample.kind == FATHOM_TARGET && sample.distance_mm < near_mm ? HIGH : LOW);
 #ifdef PRINT_TO
