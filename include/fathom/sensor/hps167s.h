@@ -45,20 +45,21 @@ extern "C" {
  * @endcode
  *
  * 1. **Samples.** `raw` has the 16 bits of the distance as the sensor sent them. `distance_mm` is 0 unless the kind is
- *    FATHOM_TARGET. fathom_hps167s_set_limits() replaces the limits 80, 30000 and 65530 of this table:
+ *    FATHOM_TARGET. fathom_hps167s_set_limits() replaces the limits 80, 30000 and 65530 of this table. The datasheet
+ *    promises 80 to 18000 mm (table 1), so do not rely on a greater distance. A `max_mm` of 18000 refuses it (rule 3).
  *
  *    | `kind`           | response                                                                        |
  *    |------------------|---------------------------------------------------------------------------------|
- *    | FATHOM_TARGET    | A distance of 80 to 30000 mm. The datasheet's range is 80 to 18000 mm (table 1). |
+ *    | FATHOM_TARGET    | A distance of 80 to 30000 mm.                                                   |
  *    | FATHOM_NO_TARGET | 65530 to 65534 mm: out of range, or too weak ("65.53 meters", #5).              |
  *    | FATHOM_UNKNOWN   | 1 to 79 mm, below the range.                                                    |
  *    | FATHOM_FAULT     | The abnormal packet: the sensor reports a failure (#5).                         |
  *
- *    In the abnormal packet all bits of distance, ambient light and precision are 1, and the magnitude is 0. The
- *    datasheet leaves its exponent open, so the driver accepts any.
+ *    In the abnormal packet all bits of distance, ambient light and precision are 1, and the magnitude is 0.
  *
- * 2. **Errors of fathom_poll().** FATHOM_PENDING is no error: there is nothing new. Each error is the result of one
- *    request with its retries. Continue to poll after an error.
+ * 2. **Errors of fathom_poll().** FATHOM_PENDING is no error: there is nothing new. Continue to poll after an error.
+ *    An error is the result of one request after its retries (line.h, rule 8), except FATHOM_ERR_ARGUMENT and
+ *    FATHOM_ERR_PORT. A response with refused values (rule 3) is not retried.
  *
  *    | error                   | cause                                                                     |
  *    |-------------------------|---------------------------------------------------------------------------|
@@ -70,7 +71,8 @@ extern "C" {
  *    | FATHOM_ERR_PORT         | The port is broken: see below.                                            |
  *    | FATHOM_ERR_LINE_BUSY    | The line was never silent. This says nothing about the unit (status.h).   |
  *    | FATHOM_ERR_OTHER_MASTER | Another master sent the unit a request. This says nothing about the unit. |
- *    | FATHOM_ERR_CANCELLED    | The line was initialised again, or another driver moved the unit.         |
+ *    | FATHOM_ERR_CANCELLED    | The line was initialised again. Or another driver changed the address or  |
+ *    |                         | rate of this unit: initialise this driver with the new one.               |
  *    | FATHOM_ERR_UNSUPPORTED  | `line_settings` cannot be set, or the line only listens.                  |
  *    | FATHOM_ERR_ARGUMENT     | The driver is not initialised.                                            |
  *
@@ -78,14 +80,14 @@ extern "C" {
  *    but cannot send, each request ends with this error.
  *
  * 3. **Refused values.** The driver refuses a distance of 0, of 30001 to 65529, and of 65535 outside the abnormal
- *    packet. It also refuses an exponent of the magnitude above 16, and a response that equals the newest configuration
- *    (#2). The driver counts the responses that it refuses in `implausible`.
+ *    packet. It also refuses an exponent of the magnitude above 16. If the program has read the configuration (#2), the
+ *    driver refuses a response with the same 8 bytes, which may be a late response to #2. Of all distances only 255 mm
+ *    can have these bytes. The driver counts the responses that it refuses in `implausible`.
  *
  * 4. **What `sequence` promises.** `sequence` increases by 1 with each sample and wraps after 65535. A new number means
- *    a new response, not always a new measurement. The sensor measures 6 to 54 times a second (table 1). The datasheet
- *    does not state what it sends if a request arrives before a new measurement is finished. The sensor may then
- *    send the previous measurement again. If each sample must be a new measurement, set `period_us` to 167000 (6 a
- *    second) or more.
+ *    a new response, not always a new measurement. The sensor measures 6 to 54 times a second (table 1). If a request
+ *    arrives before a new measurement is finished, the sensor may send the previous one again. If each sample must be a
+ *    new measurement, set `period_us` to 167000 (6 a second) or more.
  *
  * 5. **Bound.** fathom_poll() returns a sample or an error at the latest after
  *
@@ -98,7 +100,11 @@ extern "C" {
  *    and abandoned commands.
  *
  *    For example, an unplugged sensor with the default configuration, alone on its line and polled each millisecond, is
- *    FATHOM_ERR_NO_RESPONSE after 0.51 s. Because of the back-off, later errors are up to 8.5 s apart.
+ *    FATHOM_ERR_NO_RESPONSE at these times after the first poll. The back-off begins after the third error:
+ *
+ *    | error   | 1   | 2   | 3   | 4   | 5 | 6   | 7  | 8    | each later one |
+ *    |---------|-----|-----|-----|-----|---|-----|----|------|----------------|
+ *    | seconds | 0.5 | 1.5 | 2.5 | 3.5 | 5 | 7.5 | 12 | 20.5 | 8.5 more       |
  *
  * 6. **Unsolicited frames.** With factory settings the sensor may send measurements without a request after power-on
  *    (#10). Name `senders` in the parts of the line (line.h, rule 11), so that requests leave between these frames.
@@ -132,7 +138,7 @@ typedef struct {
     /** @brief Warm-up time of the sensor in seconds (#7), for fathom_hps167s_power_on(). 0 selects 5. */
     uint8_t warm_up_s;
 
-    /** @brief True if the warm-up time of the sensor is 0 s. `warm_up_s` is then 0. */
+    /** @brief True if a `warm_up_s` of 0 means 0 s, not the default. No effect if `warm_up_s` is not 0. */
     bool no_warm_up;
 
     /**
@@ -143,13 +149,18 @@ typedef struct {
      */
     uint8_t same_responses;
 
-    /** @brief Steps of the temperature (#4) in a degree Fahrenheit, 1 to 255. 10: tenths. 0 selects 1. */
+    /**
+     * @brief Steps of the temperature (#4) in a degree Fahrenheit, 1 to 255. 0 selects 1.
+     *
+     * The datasheet states no scale. At 25 degrees Celsius a sensor sends 77 if it has 1 step, and 770 if it has 10.
+     */
     uint8_t steps_per_degree;
 
     /**
      * @brief True if the low word of the reconnect time (#2, #15) comes first.
      *
-     * The datasheet leaves this open. False: the high word comes first, as in all integers of this sensor.
+     * The datasheet leaves this open. False: the high word comes first, as in all integers of this sensor. In the wrong
+     * order, a time below 65536 ms is read as a multiple of 65536 ms.
      */
     bool low_word_first;
 } fathom_hps167s_config_t;
@@ -184,7 +195,8 @@ struct fathom_hps167s {
     /**
      * @brief The sensor's response to the newest factory reset (#6).
      *
-     * 1 is success, FATHOM_HPS167S_NO_RESET_RESPONSE is no response, and any other value is the sensor's error code.
+     * 1 is success. FATHOM_HPS167S_NO_RESET_RESPONSE is no response, or no reset since fathom_hps167s_init(). Any other
+     * value is the sensor's error code.
      */
     uint16_t reset_response;
     uint16_t last_configuration[FATHOM_HPS167S_CONFIGURATION_COUNT]; /**< The newest that may be of #2. */
@@ -248,9 +260,9 @@ fathom_status_t fathom_hps167s_set_limits(fathom_hps167s_t *sensor, fathom_hps16
 /**
  * @brief Cancels what is in progress. After this the memory belongs to the caller again.
  *
- * Do not poll the sensor after this: a poll would start a new measurement. If the driver read the configuration (#2)
- * among unsolicited frames, a response may still arrive. Wait for `command_timeout_us` before you initialise another
- * driver for the same unit.
+ * Do not poll the sensor after this: a poll would start a new measurement. If the program has used settings or
+ * fathom_hps167s_get_configuration(), and the sensor may send unsolicited frames, a response to #2 may still arrive.
+ * Wait for `command_timeout_us` before you initialise another driver for the same unit.
  */
 void fathom_hps167s_deinit(fathom_hps167s_t *sensor);
 
@@ -258,12 +270,12 @@ void fathom_hps167s_deinit(fathom_hps167s_t *sensor);
  * @brief Informs the driver that the sensor is powered now. Call this function when the supply is switched on.
  *
  * The driver cancels what is in progress. For `warm_up_s` and one `timeout_us` after the call, four results become
- * FATHOM_ERR_WARMING_UP: no response, a damaged response, an exception, and the abnormal packet. The datasheet states
- * that the sensor does not measure in its warm-up time, but not what it sends (#7).
+ * FATHOM_ERR_WARMING_UP: no response, a damaged response, an exception, and the abnormal packet (#7).
  *
  * If the program does not know when the sensor is powered, do not call this function. The driver then returns these
- * errors unchanged. If `next_baud` is not 0, the driver uses that rate from now on. While the sensor does not respond,
- * the driver alternates between this rate and the former one.
+ * errors unchanged. Exception: if `next_baud` is not 0 and the sensor no longer responds, call this function, because
+ * only this function makes the driver use `next_baud`. The function sets `next_baud` to 0. While the sensor does not
+ * respond, the driver alternates between this rate and the former one.
  */
 void fathom_hps167s_power_on(fathom_hps167s_t *sensor);
 
