@@ -27,8 +27,9 @@ extern "C" {
  *
  * 1. **No waiting.** Each function returns at once. No function calls Fathom.
  *
- * 2. **One context.** Fathom calls the functions from the context of the program that polls: one task or the main loop.
- *    Interrupts belong to the port. The port stores the bytes that an interrupt received until Fathom reads them.
+ * 2. **One context.** Fathom calls the functions of a struct only from the task or main loop that polls its user, such
+ *    as a line. Two tasks may poll two lines; both then call the clock that the lines share. Interrupts belong to the
+ *    port. The port stores the bytes that an interrupt received until Fathom reads them.
  *
  * 3. **Context and lifetime.** `ctx` belongs to the port. Fathom passes `ctx` to each function of its struct and never
  *    uses it. Fathom keeps pointers to the structs, so a struct must stay valid as long as an object uses it.
@@ -71,8 +72,8 @@ static inline uint8_t fathom_character_bits(const fathom_line_settings_t *settin
  */
 enum {
     FATHOM_RX_TIMED = 1, /**< `last_us` is set. */
-    FATHOM_RX_SILENCE =
-        2,                /**< The line was idle before the first byte (idle-line interrupt, DMA time-out). */
+    /** The line was idle for a character or more before the first byte (idle-line interrupt, DMA time-out). */
+    FATHOM_RX_SILENCE = 2,
     FATHOM_RX_PARITY = 4, /**< A byte of this read has a wrong parity. All bytes of the read count as bad. */
     FATHOM_RX_FRAMING =
         8, /**< A byte has no stop bit (break, noise, other baud rate). All bytes of the read count as bad. */
@@ -96,16 +97,16 @@ typedef struct {
 /**
  * @brief A serial line. On RS485 the port also drives the transceiver.
  *
- * `read`, `write` and `sent` are required. Each other function may be NULL.
+ * `read`, `write` and `sent` are required. Each other function may be NULL. If the receiver stays on while the port
+ * sends, `read` returns the sent bytes too, and the `echo` of the line is on (line.h).
  */
 typedef struct {
     /**
      * @brief Copies received bytes.
      *
-     * One call never spans a silence that the port knows of. It returns the bytes before the silence, and the next call
-     * returns the bytes after it, with FATHOM_RX_SILENCE. A byte that the port knows to be bad is returned alone. For
-     * example, if the third of five bytes has a wrong parity, three calls return 2 bytes, 1 byte with FATHOM_RX_PARITY,
-     * and 2 bytes.
+     * If the port sets FATHOM_RX_SILENCE, one call returns the bytes before the silence, and the next call returns the
+     * bytes after it, with this flag. A byte that the port knows to be bad is returned alone. For example, if the third
+     * of five bytes has a wrong parity, three calls return 2 bytes, 1 byte with FATHOM_RX_PARITY, and 2 bytes.
      *
      * @param bytes     The memory for the bytes. Valid only during the call.
      * @param capacity  Size of `bytes` in bytes, at least 1.
@@ -118,11 +119,11 @@ typedef struct {
     /**
      * @brief Sends all bytes or none.
      *
-     * The bytes leave the pin without a gap, because an HPS-167S discards a frame with a silence of 1.5 characters in
-     * it (HPS-167S 2.2.3).
+     * Between two bytes the pin is idle for less than 1.5 characters. A device such as the HPS-167S discards a frame
+     * with a longer silence in it (HPS-167S 2.2.3).
      *
      * @param bytes   The bytes. Valid only during the call, so the port copies them.
-     * @param length  Number of bytes, 1 to 255.
+     * @param length  Number of bytes: at most `frame_size` of the line (line.h). The drivers of Fathom send at most 13.
      * @return `length` if the port accepted all bytes. 0 if the port is busy and accepted none: Fathom calls again.
      *         After 1 s of that, the port counts as broken (line.h). Negative if the port is broken.
      */
@@ -139,9 +140,10 @@ typedef struct {
     bool (*sent)(void *ctx);
 
     /**
-     * @brief Changes the line settings and keeps the received bytes. NULL: the settings are fixed.
+     * @brief Changes the line settings and keeps the received bytes.
      *
-     * Fathom calls this function before each request that names line settings, even if they are in force already.
+     * Fathom calls this function before each request that names line settings, even if they are in force already. If
+     * the function is NULL, each request that names line settings ends with FATHOM_ERR_UNSUPPORTED.
      *
      * @param settings  The new settings. Valid only during the call.
      * @retval 1  The settings are in force.
@@ -154,12 +156,14 @@ typedef struct {
     /**
      * @brief Holds TX low, or releases it. NULL: the port cannot do this.
      *
-     * Modules whose RX pin is connected to our TX use this level as their trigger or mode select.
+     * Modules whose RX pin is connected to our TX use this level as their trigger or mode select. Fathom may call this
+     * function if TX has the state already. Fathom never calls `write` while TX is low.
      *
      * @param on  True to hold TX low. False to release it, so that TX becomes high.
      * @retval 1  TX has this state.
-     * @retval 0  Bytes are still leaving. The caller repeats the call. A port that does not release TX for 1 s counts
-     *            as broken. The wait for a low TX has no limit, except in a trigger (trigger.h).
+     * @retval 0  TX cannot change yet, for example because bytes are still leaving. The caller repeats the call. A port
+     *            that does not release TX for 1 s counts as broken. The wait for a low TX has no limit, except in a
+     *            trigger (trigger.h).
      * @return Negative: the port is broken, or its driver cannot hold TX low.
      */
     int (*set_break)(void *ctx, bool on);
@@ -170,11 +174,11 @@ typedef struct {
      * NULL: the port does not know the time. A port calculates it from the remaining bytes, their settings and the
      * clock. The time is less than 2^31. 0 means that the bytes have left, or should have left.
      *
-     * fathom_line_due_us() returns this time while a request leaves or the port is busy. So a program that sleeps wakes
-     * once for it, and the line calls `sent`. If the function is NULL, or if it returns 0 while `sent` is still
-     * false, the line polls `sent` every millisecond. A time that is too short costs polls. A time that is too long
-     * delays what follows the request: the end of a broadcast, and the beginning of a time-out. Neither loses a byte.
-     * Fathom may call this function at any time; it changes nothing.
+     * Only fathom_line_due_us() uses this time, while a request leaves or the port is busy. So a program that sleeps
+     * until then wakes once, and its poll calls `sent`. If the function is NULL, or if it returns 0 while `sent` is
+     * still false, the program wakes every millisecond. If the time is too short, the program wakes more often. If the
+     * time is too long, the sleep delays the end of a broadcast, or the beginning of a time-out. No byte is lost. The function
+     * changes nothing.
      */
     uint32_t (*leaves_in_us)(void *ctx);
 
@@ -187,9 +191,9 @@ typedef struct {
     /**
      * @brief Returns the time in microseconds. Wraps from 4294967295 to 0, which is every 71.6 minutes.
      *
-     * The clock never goes back and need not start at 0. If it goes back by up to 100 ms all the same, most waits
-     * treat it as a clock that stood still. If it goes back further, the time counts as wrapped. A clock that counts
-     * in coarser steps is allowed; each deadline is then late by up to one step.
+     * The clock need not start at 0. The clock never goes back; otherwise waits may end at once. A clock that counts in
+     * coarser steps is allowed. A wait is then up to one step longer or shorter, so add one step to `silence_us` and
+     * `gap_us` of a line.
      */
     uint32_t (*now_us)(void *ctx);
 

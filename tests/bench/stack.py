@@ -14,7 +14,7 @@ from tools import LIBRARY, ROOT, Failed, run
 # Where the indirect calls of src/ lead, by the text of the call: file:function of the library.
 SENSORS = ('a05_auto', 'a16_auto', 'a16_controlled', 'a16_pwm', 'contact', 'dyp_modbus', 'hps167s', 'hps167s_auto')
 INDIRECT = {
-    'transport->submit': ('modbus_client.c:fathom_modbus_client_submit', 'dyp_client.c:fathom_dyp_client_submit',
+    'transport.submit': ('modbus_client.c:fathom_modbus_client_submit', 'dyp_client.c:fathom_dyp_client_submit',
                           'modbus_client_zero.c:fathom_modbus_client_submit_with_zero', 'a05_dyp.c:submit_either'),
 }
 # The same for those that may also lead to the user's code, or nowhere; then nothing is added.
