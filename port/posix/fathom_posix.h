@@ -153,8 +153,8 @@ fathom_posix_status_t fathom_posix_open(fathom_posix_uart_t *port, const char *p
  * @brief Closes a port.
  *
  * Bytes that have not left yet may be lost or may still leave; this depends on the driver. If that matters, wait until
- * `sent` of fathom_posix_uart() is true. If the port is closed, failed to open or is all zeros, the function does
- * nothing.
+ * `sent` of fathom_posix_uart() is true, and 1 ms longer for a USB adapter. If the port is closed, failed to open or is
+ * all zeros, the function does nothing.
  *
  * @param port  The port, or NULL.
  */
@@ -197,8 +197,8 @@ typedef struct {
  * @brief Sets how the driver of an open port drives an RS-485 transceiver (TIOCSRS485), and reads it back (TIOCGRS485).
  *
  * The setting stays in force until the next call, also after fathom_posix_set_line() and fathom_posix_close(). The call
- * requests that the UART does not receive what it sends (no SER_RS485_RX_DURING_TX), but the driver may ignore that. A
- * line can find out whether there is echo (fathom_line_find_echo() of line.h).
+ * requests that the UART does not receive what it sends (no SER_RS485_RX_DURING_TX). If the driver ignores that, the
+ * result is still FATHOM_POSIX_OK. A line can find out whether there is echo (fathom_line_find_echo() of line.h).
  *
  * @param port   The port.
  * @param rs485  The setting. NULL: the driver no longer changes RTS. Used only during the call.

@@ -38,8 +38,10 @@ extern "C" {
  *    above `off_mm` is beyond the threshold of off. If `when` is FATHOM_FAR, a distance above `on_mm` is beyond the
  *    threshold of on, and a distance below `off_mm` is beyond the threshold of off. A sample of the kind FATHOM_NEAR is
  *    nearer than every threshold. A sample of the kind FATHOM_FAR or FATHOM_NO_TARGET is farther than every threshold.
- *    If `no_target_is_unknown` is true, FATHOM_NO_TARGET is a sample without a distance instead: an ultrasonic sensor
- *    can detect nothing in foam, or if the surface is too near.
+ *    If `no_target_is_unknown` is true, FATHOM_NO_TARGET is a sample without a distance instead. Set it if a surface is
+ *    always in range, such as in a tank: an ultrasonic sensor can detect nothing in foam, or if the surface is too
+ *    near. For a bumper leave it false, because free space is FATHOM_NO_TARGET, and mount an ultrasonic sensor so that
+ *    no object can be too near.
  *
  * 2. **States.**
  *
@@ -58,8 +60,9 @@ extern "C" {
  *
  * 4. **Which side without a distance.** In FATHOM_ALARM_UNKNOWN, `if_unknown` decides whether the alarm is on. In
  *    FATHOM_ALARM_NO_RESPONSE, `if_no_response` does. There is no default, because a bumper, a tank and a pit differ. A
- *    distance beyond a threshold ends these states after its hold time. Any other distance ends them at once. The state
- *    is then the newer of FATHOM_ALARM_ON and FATHOM_ALARM_OFF, or `if_unknown` if the alarm was in neither before.
+ *    distance beyond a threshold ends these states after its hold time, and not before. Any other distance ends them at
+ *    once. The state is then the newer of FATHOM_ALARM_ON and FATHOM_ALARM_OFF, or `if_unknown` if the alarm was in
+ *    neither before.
  *
  * 5. **Whether the device responds.** The newest call that proves something about the device decides this (the table of
  *    fathom_alarm_add_status()). For example, FATHOM_PENDING proves nothing. Samples of the kinds FATHOM_UNKNOWN and
@@ -154,7 +157,7 @@ bool fathom_alarm_add_sample(fathom_alarm_t *alarm, const fathom_sample_t *sampl
  * | FATHOM_PENDING, FATHOM_ERR_LINE_BUSY, FATHOM_ERR_OTHER_MASTER | time has passed; the device may respond or not |
  * | FATHOM_ERR_MALFORMED, FATHOM_ERR_EXCEPTION, FATHOM_ERR_WARMING_UP | the device responds without a distance |
  * | FATHOM_OK | the device responds without a distance: the sample was of another probe, or the median has no value yet |
- * | other errors | the device does not respond |
+ * | all others, such as FATHOM_ERR_CHECKSUM and FATHOM_ERR_PORT | the device counts as not responding |
  *
  * If only results of the first line arrive from the start, the state is FATHOM_ALARM_NO_RESPONSE after `unknown_us`. In
  * FATHOM_ALARM_ON and FATHOM_ALARM_OFF, a time before that of the newest distance does not change the state.

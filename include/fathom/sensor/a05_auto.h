@@ -56,7 +56,8 @@ extern "C" {
  *    | FATHOM_ERR_STALE     | Nothing was received for `stale_us`: no wire, no supply, or another mode. Or the    |
  *    |                      | newest frame is too old (stream.h, rule 6). Returned once every `stale_us`.         |
  *    | FATHOM_ERR_CHECKSUM  | Bytes were received for `stale_us`, but no frame: damage, noise, another rate, or   |
- *    |                      | another device. `base.stream.counters` show which. Returned once every `stale_us`.  |
+ *    |                      | another device. If `base.stream.counters[FATHOM_STREAM_FRAMES]` is 0, suspect the   |
+ *    |                      | rate or the device; else suspect noise. Returned once every `stale_us`.             |
  *    | FATHOM_ERR_MALFORMED | The value of one probe is refused (rule 5).                                         |
  *    | FATHOM_ERR_PORT      | The port is broken. Returned by every poll until the port works again.              |
  *    |                      | Or the port does not end the break of fathom_a05_auto_select(). Then this error is  |
@@ -172,8 +173,9 @@ fathom_status_t fathom_a05_auto_select(fathom_a05_auto_t *sensor, fathom_dyp_val
 /**
  * @brief Stops listening, if the driver is the listener of the line, and makes RX high if the driver holds it low.
  *
- * Call this function again, and do not poll, until it returns FATHOM_OK. If the caller stops before, TX stays low, and
- * the line sends nothing until fathom_line_break(line, false) returns FATHOM_OK.
+ * Do not poll this sensor after the call. Call this function again until it returns FATHOM_OK. If the program gives up
+ * before, the memory belongs to the caller too. TX stays low, and the line sends nothing until
+ * fathom_line_break(line, false) returns FATHOM_OK.
  *
  * @retval FATHOM_OK        The memory is the caller's again. A pin always gives this result.
  * @retval FATHOM_PENDING   The break has not ended (fathom_line_break()).

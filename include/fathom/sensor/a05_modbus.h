@@ -36,8 +36,9 @@ extern "C" {
  *    the config gives the values 0, FFFD, FFFE and FFFF their meaning (dyp.h). By default FFFD is FATHOM_NO_TARGET,
  *    FFFE is FATHOM_NO_TARGET with `interference`, 0 is FATHOM_UNKNOWN, and FFFF is refused.
  *
- * 2. **Errors of fathom_poll().** Each is the result of one request, with its retries. The driver continues after each.
- *    The datasheet documents no exceptions, so a unit may respond with silence to a register that it does not have.
+ * 2. **Errors of fathom_poll().** Each is the result of one request after its retries (line.h, rule 8). A refused
+ *    value (rule 3) is not retried. The driver continues after each error. The datasheet documents no exceptions, so a
+ *    unit may respond with silence to a register that it does not have.
  *
  *    | error                   | cause                                                                     |
  *    |-------------------------|---------------------------------------------------------------------------|
@@ -49,7 +50,8 @@ extern "C" {
  *    | FATHOM_ERR_PORT         | The port is broken. Returned by every poll while it cannot be read.       |
  *    | FATHOM_ERR_LINE_BUSY    | The line was never silent. This says nothing about the unit (status.h).   |
  *    | FATHOM_ERR_OTHER_MASTER | Another master sent the unit a request. This says nothing about the unit. |
- *    | FATHOM_ERR_CANCELLED    | The line was initialised again, or another driver moved the unit.         |
+ *    | FATHOM_ERR_CANCELLED    | The line was initialised again. Or another driver changed the address of  |
+ *    |                         | this unit: initialise this driver with the new address.                   |
  *    | FATHOM_ERR_UNSUPPORTED  | `line_settings` cannot be set, or the line only listens.                  |
  *    | FATHOM_ERR_ARGUMENT     | The driver is not initialised.                                            |
  *

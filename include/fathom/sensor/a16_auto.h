@@ -47,24 +47,25 @@ extern "C" {
  * | error of fathom_poll() | cause |
  * |---|---|
  * | FATHOM_ERR_STALE | the line was silent for `stale_us`: no wire, no supply, or another mode |
- * | FATHOM_ERR_STALE | the program paused for longer than `stale_us` and 0.5 s, so waiting frames are too old (stream.h) |
+ * | FATHOM_ERR_STALE | the program paused for longer than `stale_us` and 0.5 s, and the port dates no newer bytes (hal.h) |
  * | FATHOM_ERR_CHECKSUM | bytes, but no valid frame, for `stale_us`: damage, noise, another rate or another device |
  * | FATHOM_ERR_MALFORMED | once for each frame with a refused value: outside the window, or FFFF by default |
  * | FATHOM_ERR_PORT | the port is broken; returned by every poll until the port can be read again |
  * | FATHOM_ERR_ARGUMENT | the initialisation failed; or it never ran, and the memory is zeroed |
  *
- * After FATHOM_ERR_CHECKSUM the counters in `base.stream.counters` show the cause (stream.h). After
- * FATHOM_ERR_MALFORMED, `base.measurement.refused_raw` is the refused value.
+ * After FATHOM_ERR_CHECKSUM read `base.stream.counters[FATHOM_STREAM_FRAMES]`. If it is 0, suspect the rate or the
+ * device; else suspect noise. After FATHOM_ERR_MALFORMED, `base.measurement.refused_raw` is the refused value.
  */
 
 /** @brief The configuration. A member that is 0 takes its default. */
 typedef struct {
     /**
-     * @brief The output that drives the RX pin of the module: fathom_output_pin(), or fathom_output_line_break() if the
-     * TX of the line is wired to it.
+     * @brief The output that drives the RX pin of the module: fathom_output_pin(), or fathom_output_line_break()
+     * (line_pins.h) if the TX of the line is wired to it.
      *
-     * If all members are 0, the program selects nothing. A module whose RX is not connected sends the processed value
-     * (A16 2(2)). `select.ctx` must stay valid until fathom_a16_auto_deinit().
+     * A line of fathom_line_init_listening() can hold TX low too. If all members are 0, the program selects nothing. A
+     * module whose RX is not connected sends the processed value (A16 2(2)). `select.ctx` must stay valid until
+     * fathom_a16_auto_deinit().
      */
     fathom_output_t select;
 
@@ -105,8 +106,9 @@ typedef struct {
 /**
  * @brief Initialises the driver, makes it the listener of the line, and selects the value.
  *
- * After an error the driver does not listen, and its memory is zeroed. Call fathom_a16_auto_deinit() before a second
- * initialisation; otherwise a break that selects the real-time value stays on the line.
+ * After an error the driver does not listen, its memory is zeroed, and fathom_a16_auto_deinit() is not needed. After
+ * FATHOM_OK call it before a second initialisation; otherwise a break that selects the real-time value stays on the
+ * line.
  *
  * @param sensor  The driver. Must stay valid until fathom_a16_auto_deinit().
  * @param line    The initialised line, whose listener the driver becomes. It may also carry Modbus requests
@@ -115,8 +117,9 @@ typedef struct {
  * @retval FATHOM_OK               The driver listens. Next, call fathom_poll().
  * @retval FATHOM_ERR_ARGUMENT     `line` is NULL or not initialised, or a member of the configuration is outside its
  *                                 range.
- * @retval FATHOM_ERR_BUSY         The line has another listener, which stays. Or the break that selects the value
- *                                 cannot begin yet, because the port or a transaction uses the line. Call again.
+ * @retval FATHOM_ERR_BUSY         The line has another listener, which stays: deinitialise its driver first. Or the
+ *                                 port or a transaction uses the line, so that the break that selects the value cannot
+ *                                 begin yet: poll the line and call again.
  * @retval FATHOM_ERR_UNSUPPORTED  `value` is FATHOM_REAL_TIME without `select`, the port has no `set_break`, or the
  *                                 pin has no `set`.
  * @retval FATHOM_ERR_PORT         As fathom_a16_auto_select().
@@ -146,13 +149,15 @@ fathom_status_t fathom_a16_auto_select(fathom_a16_auto_t *sensor, fathom_dyp_val
 /**
  * @brief Stops listening and ends a break that selects the real-time value.
  *
- * If another listener has replaced the driver, the present listener stays. A pin keeps its level.
+ * If another listener has replaced the driver, the present listener stays. A pin keeps its level. Do not poll this
+ * sensor after the call. Other drivers of the line may be polled, but that does not release TX.
  *
  * @param sensor  The driver.
  * @retval FATHOM_OK        No break is held. The memory belongs to the caller again. A pin always has this result.
- * @retval FATHOM_PENDING   The port has not released TX yet. Call this function again, and do not poll.
- * @retval FATHOM_ERR_PORT  As fathom_line_break(). Call this function again, and do not poll. If the program gives up
- *                          here, TX stays low, and the line sends nothing until fathom_line_break() ends the break.
+ * @retval FATHOM_PENDING   The port has not released TX yet. Call this function again.
+ * @retval FATHOM_ERR_PORT  As fathom_line_break(). Call this function again. If the program gives up here, the memory
+ *                          belongs to the caller too. TX stays low, and the line sends nothing until
+ *                          fathom_line_break() ends the break.
  */
 fathom_status_t fathom_a16_auto_deinit(fathom_a16_auto_t *sensor);
 

@@ -171,14 +171,15 @@ fathom_status_t fathom_a16_controlled_init(fathom_a16_controlled_t *sensor, fath
 /**
  * @brief Stops listening and makes the trigger high.
  *
- * If the driver is no longer the listener of the line, the present listener stays.
+ * If the driver is no longer the listener of the line, the present listener stays. Do not poll this sensor after the
+ * call.
  *
  * @param sensor  The driver.
  * @retval FATHOM_OK        The trigger is high. The memory belongs to the caller again. A pin always has this result.
- * @retval FATHOM_PENDING   The port refused to end the break. Call this function again, and do not poll.
- * @retval FATHOM_ERR_PORT  The break failed, or the port has refused for 1 s. Call this function again, and do not
- *                          poll. If the program gives up here, TX stays low, and the line sends nothing until
- *                          fathom_line_break() ends the break.
+ * @retval FATHOM_PENDING   The port refused to end the break. Call this function again.
+ * @retval FATHOM_ERR_PORT  The break failed, or the port has refused for 1 s. Call this function again. If the program
+ *                          gives up here, the memory belongs to the caller too. TX stays low, and the line sends
+ *                          nothing until fathom_line_break() ends the break.
  */
 fathom_status_t fathom_a16_controlled_deinit(fathom_a16_controlled_t *sensor);
 

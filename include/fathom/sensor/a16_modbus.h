@@ -43,7 +43,8 @@ extern "C" {
  *    of the line. P is the longest time between two polls. If a command or setting of this driver is in progress, add
  *    its time (a16_settings.h).
  *
- * 5. **Errors.** Each error is the result of one request, retries included. The driver continues after each error.
+ * 5. **Errors.** Each error is the result of one request after its retries (line.h, rule 8). A refused value is not
+ *    retried. The driver continues after each error.
  *
  * | error of fathom_poll() | cause |
  * |---|---|
@@ -55,7 +56,8 @@ extern "C" {
  * | FATHOM_ERR_PORT | the port is broken; returned by every poll while it cannot be read |
  * | FATHOM_ERR_LINE_BUSY | the line was never silent; says nothing about the unit (status.h) |
  * | FATHOM_ERR_OTHER_MASTER | another master sent the unit a request; says nothing about the unit |
- * | FATHOM_ERR_CANCELLED | the line was initialised again, or another driver moved the unit |
+ * | FATHOM_ERR_CANCELLED | the line was initialised again |
+ * | FATHOM_ERR_CANCELLED | another driver changed the address of this unit: initialise this driver with the new one |
  * | FATHOM_ERR_UNSUPPORTED | `line_settings` cannot be set, or the line only listens |
  * | FATHOM_ERR_ARGUMENT | the driver is not initialised |
  *

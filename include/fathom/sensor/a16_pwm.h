@@ -110,8 +110,8 @@ fathom_status_t fathom_a16_pwm_init(fathom_a16_pwm_t *sensor, const fathom_captu
  * @param sensor  The driver.
  * @retval FATHOM_OK        The trigger is high. The memory belongs to the caller again. A pin always has this result.
  * @retval FATHOM_PENDING   The UART refused to end the break.
- * @retval FATHOM_ERR_PORT  The break failed, or the UART has refused for 1 s. If the program gives up, the trigger
- *                          stays low.
+ * @retval FATHOM_ERR_PORT  The break failed, or the UART has refused for 1 s. If the program gives up, the memory
+ *                          belongs to the caller too, and the trigger stays low.
  */
 fathom_status_t fathom_a16_pwm_deinit(fathom_a16_pwm_t *sensor);
 

@@ -79,8 +79,8 @@ bool fathom_a16_modbus_is_written(const fathom_a16_modbus_t *sensor);
  * Use this function if the responses of the device cannot be understood. A blind setting ends with
  * FATHOM_ERR_UNCONFIRMED if it was sent, acknowledged or not; the unit may have the value or not. It ends with
  * FATHOM_ERR_EXCEPTION if the unit refused it. With all other errors nothing was written. The address cannot be set
- * blindly: FATHOM_ERR_ARGUMENT. The setting after it is not blind, whatever its result is.
- * fathom_a16_modbus_cancel() and fathom_a16_modbus_power_on() undo this call.
+ * blindly: FATHOM_ERR_ARGUMENT. The first result of the setting other than FATHOM_PENDING uses this call up, also
+ * FATHOM_ERR_BUSY and FATHOM_ERR_ARGUMENT. fathom_a16_modbus_cancel() and fathom_a16_modbus_power_on() undo this call.
  *
  * @param sensor  The driver.
  * @retval FATHOM_OK            The next setting is blind.

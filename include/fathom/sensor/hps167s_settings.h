@@ -39,9 +39,9 @@ extern "C" {
  *
  * 3. **Settings with read-back (#7 to #11, #15).** The driver reads the present value, writes the new value if it
  *    differs, and reads it back. For #8 the driver reads #1, for all others it reads the configuration (#2). `retries`
- *    of the configuration of the driver applies to these reads. If the newest write of a setting has not read back
- *    since power-on, the driver writes an equal value too, because the sensor may report the value that it works with
- *    and keep another.
+ *    of the configuration of the driver applies to these reads. After a write that did not read back, the sensor may
+ *    report one value and keep another. So the next call may write an equal value too, until a write reads back or
+ *    fathom_hps167s_power_on() is called.
  *
  *    | result                     | cause                                                                         |
  *    |----------------------------|-------------------------------------------------------------------------------|
@@ -55,12 +55,14 @@ extern "C" {
  *    | other, not written         | Nothing changed. The errors are those of fathom_poll() (hps167s.h, rule 2).   |
  *    | other, written             | The write failed with this error, and another value was read back.            |
  *
- *    "Written" is the result of fathom_hps167s_is_written().
+ *    "Written" is the result of fathom_hps167s_is_written(). The sensor uses #10 and #11 from its next power-on. The
+ *    datasheet does not state what #2 reports before it. If the result is FATHOM_ERR_DIFFERS, read the configuration
+ *    after the next power-on.
  *
  * 4. **WRITE-ONLY settings (#12, #13, #14).** The sensor has no command that reads these values. The driver reads #1
  *    and then writes. The read shows that the sensor responds, and whether the port receives its own requests (echo).
- *    If another setting that begins with a read of #1 is called meanwhile, it returns FATHOM_PENDING too. The setting
- *    that is called when the read has ended is written first.
+ *    Call no other setting until it has ended: during this read another setting can take its place, and this one then
+ *    returns FATHOM_ERR_BUSY and is not written.
  *
  *    | result                     | cause                                                                         |
  *    |----------------------------|-------------------------------------------------------------------------------|
@@ -94,9 +96,9 @@ bool fathom_hps167s_is_written(const fathom_hps167s_t *sensor);
  *
  * A blind setting is written once, to this unit alone. The driver reads nothing before or after it. So it does not
  * check that a new address is free, and it stays at its present address. After a blind fathom_hps167s_set_baud() the
- * driver uses the present and the new rate alternately until the sensor responds. The setting after the blind one is
- * not blind, whatever the result of the blind one is. fathom_hps167s_cancel() and fathom_hps167s_power_on() withdraw
- * this call.
+ * driver uses the present and the new rate alternately until the sensor responds. Only the next setting is blind, also
+ * if it is a broadcast. Its first result other than FATHOM_PENDING uses this call up, also FATHOM_ERR_BUSY and
+ * FATHOM_ERR_ARGUMENT. fathom_hps167s_cancel() and fathom_hps167s_power_on() withdraw this call.
  *
  * | result of the blind setting | cause                                                                         |
  * |-----------------------------|-------------------------------------------------------------------------------|
@@ -128,9 +130,9 @@ fathom_status_t fathom_hps167s_set_warm_up_s(fathom_hps167s_t *sensor, uint8_t w
 /**
  * @brief Sets the address of the sensor (#8). The sensor uses the new address at once.
  *
- * The driver reads #1 at the present address, then at the new one, where no unit may respond. So the second read costs
- * one `command_timeout_us` for each attempt. With FATHOM_OK the driver uses the new address. Requests of other drivers
- * that wait for the present address end with FATHOM_ERR_CANCELLED.
+ * The driver reads #1 at the present address. If the new address is another one, the driver then reads there, where no
+ * unit may respond. So the second read costs one `command_timeout_us` for each attempt. With FATHOM_OK the driver uses
+ * the new address. Requests of other drivers that wait for the present address end with FATHOM_ERR_CANCELLED.
  *
  * @param sensor   The driver.
  * @param address  The new address, 1 to 32.
@@ -165,8 +167,8 @@ fathom_status_t fathom_hps167s_set_address(fathom_hps167s_t *sensor, uint8_t add
  * @retval FATHOM_ERR_ARGUMENT     The sensor has no such rate, or the driver has no `line_settings`.
  * @retval FATHOM_ERR_UNSUPPORTED  The port does not have this rate. Nothing was written.
  * @retval FATHOM_ERR_IN_USE       A unit with this address responds at the new rate, or noise that may be a damaged
- *                                 response arrived, such as unsolicited frames at the present rate. Nothing was
- *                                 written.
+ *                                 response arrived. Nothing was written. Unsolicited frames can be such noise: try
+ *                                 again, or first switch them off (#10) and power the sensor off and on.
  * @retval FATHOM_ERR_WARMING_UP   As fathom_hps167s_set_address().
  * @retval FATHOM_ERR_UNCONFIRMED  The sensor responds at neither rate. The driver uses both alternately until the
  *                                 sensor responds.
@@ -202,9 +204,10 @@ fathom_status_t fathom_hps167s_set_termination(fathom_hps167s_t *sensor, bool te
 /**
  * @brief Sends #10 to ALL units of the line, whatever their addresses are (2.2.1).
  *
- * The request also reaches several new units that share address 1. No unit responds to a broadcast. The request is
- * sent once, and nothing is read. After the request the line sends nothing for `command_timeout_us`, so that the units
- * can do their work. Only this function and fathom_hps167s_broadcast_termination() send anything to address 0.
+ * The request also reaches several new units that share address 1. To read these units afterwards, connect one at a
+ * time. No unit responds to a broadcast. The request is sent once, and nothing is read. After the request the line
+ * sends nothing for `command_timeout_us`, so that the units can do their work. Only this function and
+ * fathom_hps167s_broadcast_termination() send anything to address 0.
  *
  * @param sensor    Any driver of the line. It stays at its address.
  * @param measures  True to measure after power-on.
@@ -243,7 +246,8 @@ fathom_status_t fathom_hps167s_set_distance_offset_mm(fathom_hps167s_t *sensor, 
 /**
  * @brief Loads the settings of the measuring part that the user has set (#13). WRITE-ONLY.
  *
- * The datasheet does not list these settings. The settings of the interface belong to #6.
+ * The datasheet neither lists these settings nor states when a program needs this command. The settings of the
+ * interface belong to #6. The command does not undo fathom_hps167s_load_factory_settings().
  *
  * @retval FATHOM_PENDING  Call again.
  * @return Other values: rule 4.
@@ -275,10 +279,11 @@ fathom_status_t fathom_hps167s_set_filter_sensitivity(fathom_hps167s_t *sensor, 
 /**
  * @brief Sets the reconnect time (#15).
  *
- * If the interface receives no data for this time in continuous output, it reconnects and sends abnormal packets.
+ * If the interface receives no data from the measuring part for this time in continuous output, it reconnects to that
+ * part and sends abnormal packets. The datasheet does not state what a polled sensor does, nor what 0 means.
  *
  * @param sensor             The driver.
- * @param reconnect_time_ms  The time in milliseconds: a multiple of 18, or 0.
+ * @param reconnect_time_ms  The time in milliseconds: a multiple of 18, 0 to 4294967292.
  * @retval FATHOM_PENDING       Call again with the same argument.
  * @retval FATHOM_ERR_ARGUMENT  The time is no multiple of 18, or the driver is not initialised.
  * @return Other values: rules 3 and 5.
