@@ -162,8 +162,8 @@ uint32_t fathom_pulse_due_us(const fathom_pulse_meter_t *meter);
  * memory belongs to the caller again after that.
  * @retval FATHOM_OK        The trigger is high. A pin, and a meter in zeroed memory, always have this result.
  * @retval FATHOM_PENDING   The UART refused to end the break. The trigger is low until a later call succeeds.
- * @retval FATHOM_ERR_PORT  The break failed, or the UART has refused for 1 s. If the caller gives up, the trigger stays
- *                          low.
+ * @retval FATHOM_ERR_PORT  The break failed, or the UART has refused for 1 s. If the caller gives up, the memory
+ *                          belongs to the caller too, and the trigger stays low.
  */
 fathom_status_t fathom_pulse_deinit(fathom_pulse_meter_t *meter);
 
