@@ -98,7 +98,7 @@ typedef struct {
  * @brief A serial line. On RS485 the port also drives the transceiver.
  *
  * `read`, `write` and `sent` are required. Each other function may be NULL. If the receiver stays on while the port
- * sends, `read` returns the sent bytes too, and the `echo` of the line is on (line.h).
+ * sends, `read` returns the sent bytes too: name FATHOM_LINE_ECHO_ON in the parts of the line (line.h).
  */
 typedef struct {
     /**
@@ -123,7 +123,7 @@ typedef struct {
      * with a longer silence in it (HPS-167S 2.2.3).
      *
      * @param bytes   The bytes. Valid only during the call, so the port copies them.
-     * @param length  Number of bytes: at most `frame_size` of the line (line.h). The drivers of Fathom send at most 13.
+     * @param length  Number of bytes: 1 to `frame_size` of the line (line.h). The drivers of Fathom send at most 13.
      * @return `length` if the port accepted all bytes. 0 if the port is busy and accepted none: Fathom calls again.
      *         After 1 s of that, the port counts as broken (line.h). Negative if the port is broken.
      */
@@ -177,8 +177,8 @@ typedef struct {
      * Only fathom_line_due_us() uses this time, while a request leaves or the port is busy. So a program that sleeps
      * until then wakes once, and its poll calls `sent`. If the function is NULL, or if it returns 0 while `sent` is
      * still false, the program wakes every millisecond. If the time is too short, the program wakes more often. If the
-     * time is too long, the sleep delays the end of a broadcast, or the beginning of a time-out. No byte is lost. The function
-     * changes nothing.
+     * time is too long, the sleep delays the end of a broadcast, or the beginning of a time-out. No byte is lost. The
+     * function changes nothing.
      */
     uint32_t (*leaves_in_us)(void *ctx);
 
