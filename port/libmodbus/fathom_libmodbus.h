@@ -8,6 +8,7 @@
 
 #include "fathom/engine/line.h"
 #include "fathom/engine/modbus.h"
+#include "fathom/engine/wait.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -24,17 +25,12 @@ extern "C" {
  *
  * @code
  * static fathom_libmodbus_t port;
- * static fathom_clock_t clock;
- * static fathom_modbus_t transport;
  *
  * modbus_t *const modbus = modbus_new_tcp("192.168.1.20", 502);
  * if (modbus == NULL || modbus_connect(modbus) != 0) return 1;
- * clock = fathom_posix_clock();
- * if (fathom_libmodbus_init(&port, modbus, &(fathom_libmodbus_config_t){.clock = &clock}) != FATHOM_OK) return 1;
- * transport = fathom_libmodbus(&port);
- * if (fathom_hps167s_init(&gate, &transport, NULL) != FATHOM_OK) return 1;
- * sensor = fathom_hps167s_sensor(&gate);
- * status = fathom_wait(&sensor, &sample, fathom_libmodbus_wait, &port);
+ * if (fathom_libmodbus_init(&port, modbus, NULL) != FATHOM_OK) return 1;
+ * if (fathom_hps167s_init(&gate, &port.modbus, NULL) != FATHOM_OK) return 1;
+ * status = fathom_libmodbus_read(&port, fathom_hps167s_sensor(&gate), &sample);
  * @endcode
  *
  * What this port cannot do, because libmodbus (3.1.6 of Debian 12) cannot:
@@ -88,7 +84,7 @@ extern "C" {
 /** @brief Configuration of a port. A member that is 0 takes its default. On TCP only the clock is used. Read only by
  * fathom_libmodbus_init(). */
 typedef struct {
-    /** @brief The clock. It must stay valid as long as the port is used. */
+    /** @brief The clock. It must stay valid as long as the port is used. NULL selects CLOCK_MONOTONIC. */
     const fathom_clock_t *clock;
 
     /** @brief FATHOM_LINE_ECHO_OFF or _ON: whether the RS-485 adapter returns the bytes that are sent. 0: the line
@@ -115,7 +111,7 @@ typedef enum {
 /** @brief A port, in the caller's memory. It must not be moved while it is used. A program may read the members whose
  * comment does not say "Private". */
 typedef struct {
-    /** @brief Private: the line. The first member, so that one pointer is both. */
+    /** @brief The line, for fathom_line_due_us(). The first member, so that one pointer is both. */
     fathom_line_t line;
     /** @brief The counters of the line (line.h). The caller may set them to 0. */
     uint16_t counters[FATHOM_LINE_COUNTERS];
@@ -123,8 +119,10 @@ typedef struct {
     fathom_line_parts_t parts;
     /** @brief Private: the UART of the line. */
     fathom_uart_t uart;
+    /** @brief The transport over the connection, for drivers. Its `submit` may return FATHOM_ERR_UNSUPPORTED (rule 1). */
+    fathom_modbus_t modbus;
     /** @brief Private: the modbus_t. */
-    modbus_t *modbus;
+    modbus_t *handle;
     /** @brief Private: true for TCP. */
     bool is_tcp;
     /** @brief Private: a fathom_libmodbus_error_t; fathom_libmodbus_error() returns it. */
@@ -160,29 +158,19 @@ typedef struct {
  *
  * @param port    The port, with any content.
  * @param modbus  The modbus_t. Must stay valid as long as the port is used.
- * @param config  The configuration, read only during the call; its clock must stay valid.
- * @retval FATHOM_OK               The port is ready.
- * @retval FATHOM_ERR_ARGUMENT     A pointer is NULL, the clock included, or a time is out of the range of line.h.
+ * @param config  The configuration, read only during the call; its clock must stay valid. NULL selects all defaults.
+ * @retval FATHOM_OK               The port is ready. Next, pass `&port->modbus` to the init functions of drivers.
+ * @retval FATHOM_ERR_ARGUMENT     `port` or `modbus` is NULL, or a time is out of the range of line.h.
  * @retval FATHOM_ERR_UNSUPPORTED  libmodbus switches a transceiver by RTS (rule 4).
  */
 fathom_status_t fathom_libmodbus_init(fathom_libmodbus_t *port, modbus_t *modbus,
                                       const fathom_libmodbus_config_t *config);
 
 /**
- * @brief Returns the transport over a port, for the configurations of drivers.
- *
- * In addition to the results in modbus.h, `submit` may return FATHOM_ERR_UNSUPPORTED (rule 1).
- *
- * @param port  The port, initialised.
- * @return The transport, by value. Keep it as long as the drivers that point to it.
- */
-fathom_modbus_t fathom_libmodbus(fathom_libmodbus_t *port);
-
-/**
  * @brief Returns the UART functions (hal.h) under that transport, for a program that polls a line of its own.
  *
  * For example, a listener on RTU needs a line of its own. The line sees RTU frames on TCP as well. The program must
- * then use neither `port->line` nor fathom_libmodbus().
+ * then use neither `port->line` nor `port->modbus`.
  *
  * - **read** returns a negative number when the connection is broken. It never returns a part of a TCP response that
  *   has not arrived completely.
@@ -209,6 +197,19 @@ fathom_libmodbus_error_t fathom_libmodbus_error(const fathom_libmodbus_t *port);
  * @param max_us  Longest sleep in microseconds. FATHOM_NO_DEADLINE: without a limit.
  */
 void fathom_libmodbus_wait(void *port, uint32_t max_us);
+
+/**
+ * @brief Waits for the next reading or error of a sensor, as fathom_wait(). Uses no processor time while it waits.
+ *
+ * The driver's header states the longest wait. If the connection is broken, the call returns FATHOM_ERR_PORT at once.
+ *
+ * @param port    The port of the sensor.
+ * @param sensor  The sensor, such as the result of fathom_hps167s_sensor().
+ * @param sample  Written with FATHOM_OK only.
+ * @return Any result of fathom_poll() but FATHOM_PENDING.
+ */
+fathom_status_t fathom_libmodbus_read(fathom_libmodbus_t *port, fathom_sensor_t sensor,
+                                      fathom_sample_t *sample);
 
 #ifdef __cplusplus
 }

@@ -24,7 +24,7 @@ static bool is_ready(int fd, short events)
 int fathom_libmodbus_rtu_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
 {
     fathom_libmodbus_t *const port = ctx;
-    const int fd = modbus_get_socket(port->modbus);
+    const int fd = modbus_get_socket(port->handle);
     int waiting = 0;
     (void)rx; /* Nothing is known about single bytes. */
     if (fd < 0) return fathom_libmodbus_broken(port, FATHOM_LIBMODBUS_ERR_NOT_CONNECTED);
@@ -43,10 +43,10 @@ int fathom_libmodbus_rtu_read(void *ctx, uint8_t *bytes, size_t capacity, fathom
 int fathom_libmodbus_rtu_write(void *ctx, const uint8_t *bytes, size_t length)
 {
     fathom_libmodbus_t *const port = ctx;
-    const int fd = modbus_get_socket(port->modbus);
+    const int fd = modbus_get_socket(port->handle);
     if (fd < 0) return fathom_libmodbus_broken(port, FATHOM_LIBMODBUS_ERR_NOT_CONNECTED);
     if (!is_ready(fd, POLLOUT)) return 0; /* A blocking descriptor would wait here. */
-    const int n = modbus_send_raw_request(port->modbus, bytes, (int)length - CRC_LENGTH);
+    const int n = modbus_send_raw_request(port->handle, bytes, (int)length - CRC_LENGTH);
     if (n == (int)length) {
         fathom_libmodbus_works(port);
         return n;
@@ -60,5 +60,5 @@ bool fathom_libmodbus_rtu_sent(void *ctx)
     const fathom_libmodbus_t *const port = ctx;
     int leaving = 0;
     /* If the descriptor cannot report this or was closed, nothing waits for it; `read` returns the error. */
-    return ioctl(modbus_get_socket(port->modbus), TIOCOUTQ, &leaving) != 0 || leaving == 0;
+    return ioctl(modbus_get_socket(port->handle), TIOCOUTQ, &leaving) != 0 || leaving == 0;
 }

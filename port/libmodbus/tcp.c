@@ -47,7 +47,7 @@ static void count(uint16_t *counter)
 /* Shuts the connection down, because requests and responses no longer match. */
 static int out_of_step(fathom_libmodbus_t *port, fathom_libmodbus_error_t error)
 {
-    (void)shutdown(modbus_get_socket(port->modbus), SHUT_RDWR);
+    (void)shutdown(modbus_get_socket(port->handle), SHUT_RDWR);
     return fathom_libmodbus_broken(port, error);
 }
 
@@ -83,7 +83,7 @@ static int needed(const fathom_libmodbus_t *port)
  * broken. Bytes that are no response stay in adu while the connection exists, so that nothing behind them is read. */
 static int take(fathom_libmodbus_t *port)
 {
-    const int fd = modbus_get_socket(port->modbus);
+    const int fd = modbus_get_socket(port->handle);
     if (fd < 0) return fathom_libmodbus_broken(port, FATHOM_LIBMODBUS_ERR_NOT_CONNECTED);
     if (port->have != 0 && port->connection != connection_of(fd)) port->have = 0;
     int need = needed(port);
@@ -148,7 +148,7 @@ int fathom_libmodbus_tcp_read(void *ctx, uint8_t *bytes, size_t capacity, fathom
 int fathom_libmodbus_tcp_write(void *ctx, const uint8_t *bytes, size_t length)
 {
     fathom_libmodbus_t *const port = ctx;
-    const int fd = modbus_get_socket(port->modbus);
+    const int fd = modbus_get_socket(port->handle);
     const uint16_t transaction = (uint16_t)(port->transaction + 1);
     const uint16_t rest = (uint16_t)(length - CRC_LENGTH);
     uint8_t adu[UNIT + FATHOM_MODBUS_MAX_FRAME];

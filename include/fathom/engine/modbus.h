@@ -21,7 +21,7 @@ extern "C" {
  * | fathom_modbus_client()          | Modbus RTU                                                    | modbus_client.h |
  * | fathom_modbus_client_with_zero()| Modbus RTU; a unit may have the address 0                     | modbus_client.h |
  * | fathom_dyp_client()             | `55 AA` of the A05: each read becomes a command               | dyp_client.h    |
- * | fathom_libmodbus()              | Modbus RTU or TCP, through a connection of libmodbus          | port/libmodbus  |
+ * | `modbus` of fathom_libmodbus_t  | Modbus RTU or TCP, through a connection of libmodbus          | port/libmodbus  |
  *
  * **A transport of your own.** Most programs need none. Write one if the requests of the drivers are to be changed or
  * refused before they reach the line, for example to forbid writes:

@@ -31,7 +31,7 @@ static int set_up(modbus_t *modbus)
     rig_connect();
     memset(&rig.port, 0xA5, sizeof rig.port); /* any content will do */
     assert_int_equal(fathom_libmodbus_init(&rig.port, modbus, &config), FATHOM_OK);
-    rig.transport = fathom_libmodbus(&rig.port);
+    rig.transport = rig.port.modbus;
     return 0;
 }
 

@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #define _DEFAULT_SOURCE 1
+#include <time.h>
+
+#include "fathom/sensor/hps167s.h"
 #include "libmodbus_rig.h"
 
 #include <errno.h>
@@ -164,11 +167,29 @@ TEST(counts_out_of_range_are_refused)
 TEST(init_wants_all_that_it_needs)
 {
     const fathom_libmodbus_config_t config = {.clock = &rig.fake.clock};
-    const fathom_libmodbus_config_t timeless = {.clock = NULL};
     assert_int_equal(fathom_libmodbus_init(NULL, rig.modbus, &config), FATHOM_ERR_ARGUMENT);
     assert_int_equal(fathom_libmodbus_init(&rig.port, NULL, &config), FATHOM_ERR_ARGUMENT);
-    assert_int_equal(fathom_libmodbus_init(&rig.port, rig.modbus, NULL), FATHOM_ERR_ARGUMENT);
-    assert_int_equal(fathom_libmodbus_init(&rig.port, rig.modbus, &timeless), FATHOM_ERR_ARGUMENT);
+}
+
+TEST(without_a_config_the_clock_is_that_of_the_system)
+{
+    assert_int_equal(fathom_libmodbus_init(&rig.port, rig.modbus, NULL), FATHOM_OK);
+    const fathom_clock_t *const clock = rig.port.parts.clock;
+    const uint32_t before_us = clock->now_us(clock->ctx);
+    (void)nanosleep(&(struct timespec){.tv_nsec = 2000000}, NULL);
+    assert_in_range(clock->now_us(clock->ctx) - before_us, 2000, 60000000);
+}
+
+TEST(a_driver_reads_by_the_transport_of_the_port)
+{
+    static fathom_hps167s_t gate;
+    fathom_sample_t sample;
+    assert_int_equal(fathom_libmodbus_init(&rig.port, rig.modbus, NULL), FATHOM_OK);
+    assert_int_equal(fathom_hps167s_init(&gate, &rig.port.modbus, NULL), FATHOM_OK);
+    rig_hang_up();
+    assert_int_equal(fathom_libmodbus_read(&rig.port, fathom_hps167s_sensor(&gate), &sample),
+                     FATHOM_ERR_PORT);
+    assert_int_equal(fathom_libmodbus_error(&rig.port), FATHOM_LIBMODBUS_ERR_HUNG_UP);
 }
 
 /* Else libmodbus would sleep and connect by itself when sending fails: the alarm ends that. */

@@ -203,7 +203,7 @@ TEST(a_terminal_that_hangs_up_is_broken)
     (void)alarm(RIG_ALARM_S);
     assert_int_equal(modbus_connect(rig.modbus), 0);
     assert_int_equal(fathom_libmodbus_init(&rig.port, rig.modbus, &config), FATHOM_OK);
-    rig.transport = fathom_libmodbus(&rig.port);
+    rig.transport = rig.port.modbus;
     rig_ask_three(&rig.request, 1, 0);
     rig_run_fine(SILENCE_US + FINE_US);
     assert_int_equal(rig.request.transaction.attempts, 1);

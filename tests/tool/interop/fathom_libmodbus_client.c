@@ -45,7 +45,7 @@ int main(int argc, char **argv)
     };
     static fathom_libmodbus_t port;
     bool is_usage = fathom_libmodbus_init(&port, modbus, &config) == FATHOM_OK;
-    const fathom_modbus_t libmodbus = fathom_libmodbus(&port);
+    const fathom_modbus_t libmodbus = port.modbus;
     const transport_t transport = {&libmodbus, fathom_libmodbus_wait, &port,
                                    (uint32_t)strtoul(argv[4], NULL, 10) * 1000u};
     is_usage = is_usage && transport_run(&transport, argv + 5);

@@ -307,7 +307,7 @@ static void poll_sensors(const fathom_sensor_t *sensors, bool has_ended[2])
 
 static void play_transport(fathom_libmodbus_t *port, uint8_t how)
 {
-    const fathom_modbus_t transport = fathom_libmodbus(port);
+    const fathom_modbus_t transport = port->modbus;
     fathom_hps167s_t hps;
     fathom_a05_modbus_t a05;
     bool has_ended[2] = {false, false};
