@@ -3,8 +3,8 @@
 
 #include "board.h"
 
-/* The README's program for an ATmega328P: an A16 that sends by itself over a tank; PB5 is high while the volume is over
- * 4500 litres, PB4 while it is not known. The sensor is 2300 mm above the bottom, 2000 mm are 5000 litres: at 500 mm the
+/* examples/avr/tank.c: an A16 that sends by itself over a tank; PB5 is high while the volume is over 4500 litres, PB4
+ * while it is not known. The sensor is 2300 mm above the bottom, 2000 mm are 5000 litres: at 500 mm the
  * level is 1800 mm, which are 4500 litres, and at 499 mm 1801 mm, which are 4502.5. */
 enum { PERIOD_US = 100000, UNKNOWN_US = 2000000, WINDOW = 5, MOST_OF_IT = 3, GATE_ROW = 2 };
 
@@ -19,7 +19,7 @@ static int set_up(void **state)
 {
     scene.value[0] = 500;
     full = error = false;
-    board_start("readme");
+    board_start("tank");
     fathom_sim_a16_init(&a16, &(fathom_sim_a16_config_t){.mode = FATHOM_SIM_A16_UART,
                                                          .scene = fathom_sim_fixed(&scene),
                                                          .period_us = PERIOD_US});

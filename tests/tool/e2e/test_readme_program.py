@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The README's program for Linux, as it is printed there: what it says of a simulated HPS-167S, and how it ends."""
+"""The lines of the README that compile its two programs. The programs themselves are examples/linux/first.c and
+examples/avr/first.c, which have their own tests."""
 import os
 import re
 import shlex
@@ -8,22 +9,8 @@ import subprocess
 
 import e2e
 
-PROGRAM = os.path.join(os.environ.get('FATHOM_BUILD', ''), 'tests', 'tool', 'readme_linux')
 
-
-class Gate(e2e.Case):
-    def gate(self, *arguments, **options):
-        return self.start([PROGRAM, *arguments], **options)
-
-    @e2e.each(a_distance=('--distance 2083', '2083 mm'), nothing_in_range=('--distance no-target', 'nothing in range'),
-              a_device_that_has_failed=('--distance fault', 'no distance'),
-              a_damaged_response=('--fault flip-byte', 'no reading: CHECKSUM'))
-    def reading(self, sensor, words):
-        sim = self.sim('hps167s', sensor)
-        gate = self.gate(sim)
-        gate.expect(f'^{words}$')
-        gate.expect(f'^{words}$')
-
+class Lines(e2e.Case):
     def save(self, number, name):
         """Of the page's programs the one with this number, from 0. Returns the page, and where it is."""
         with open(os.path.join(e2e.ROOT, 'README.md'), encoding='utf-8') as file:
@@ -51,30 +38,6 @@ class Gate(e2e.Case):
         subprocess.run(line, cwd=e2e.ROOT, shell=True, check=True)
         with open(image, 'rb') as file:
             self.assertEqual(file.read(20)[18:], b'\x53\0')  # e_machine 83: AVR
-
-    def test_after_a_silence_it_goes_on(self):
-        gate = self.gate(self.sim('hps167s --distance 2083 --fault silence=1@2'))
-        gate.expect('^2083 mm$')
-        gate.expect('^no reading: NO_RESPONSE$')
-        gate.expect('^2083 mm$')
-
-    def test_it_ends_when_the_port_is_lost(self):
-        sim = self.sim('hps167s --distance 2083')
-        gate = self.gate(sim)
-        gate.expect('^2083 mm$')
-        sim.end()
-        self.ends(gate, 1, sim.port)
-
-    def test_a_port_that_is_not_there_is_said(self):
-        self.ends(self.gate('/nowhere'), 1, '/nowhere', out='')
-
-    def test_without_a_port_it_says_how_it_is_used(self):
-        self.ends(self.gate(), 1, 'usage: gate PORT', out='')
-
-    def test_it_ends_when_its_output_is_broken(self):
-        with open('/dev/full', 'w', encoding='utf-8') as full:
-            gate = self.gate(self.sim('hps167s'), stdout=full)
-            self.ends(gate, 1, 'the output is broken')
 
 
 if __name__ == '__main__':

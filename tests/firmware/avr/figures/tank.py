@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""What the README's program for an ATmega328P takes, and what of it the median and the level are.
+"""What examples/avr/tank.c takes, and what of it the median and the level are.
 
-    readme.py IMAGE    prints lines "figure NAME VALUE UNIT" for figures.py
+    tank.py IMAGE    prints lines "figure NAME VALUE UNIT" for figures.py
 """
 import re
 import subprocess
@@ -19,14 +19,14 @@ def said(*command):
 def main():
     image = sys.argv[1]
     text, data, bss = (int(word) for word in said('avr-size', image).splitlines()[1].split()[:3])
-    print(f'figure avr_readme_flash {text + data} B')
-    print(f'figure avr_readme_ram {data + bss} B')
+    print(f'figure avr_tank_flash {text + data} B')
+    print(f'figure avr_tank_ram {data + bss} B')
     functions = re.findall(r'^\w+ (\w+) [Tt] (\w+)$', said('avr-nm', '-S', image), re.M)
     for name, pattern in MODULES.items():
         sizes = [int(size, 16) for size, function in functions if re.fullmatch(pattern, function)]
         if not sizes:
             sys.exit(f'{image} has nothing of {name}')
-        print(f'figure avr_readme_{name} {sum(sizes)} B')
+        print(f'figure avr_tank_{name} {sum(sizes)} B')
 
 
 if __name__ == '__main__':

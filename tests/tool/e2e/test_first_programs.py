@@ -1,0 +1,95 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""The first programs of examples/ for Linux, each with the simulated sensor that it is for."""
+import os
+
+import e2e
+
+SERIAL = ('a16_auto', 'a16_controlled', 'a16_modbus', 'a05_auto', 'a05_modbus', 'hps167s', 'hps167s_auto')
+PROGRAMS = os.path.join(os.environ.get('FATHOM_BUILD', ''), 'examples')
+
+
+class Complete(e2e.Case):
+    """examples/linux/first.c"""
+
+    def gate(self, *arguments, **options):
+        return self.start([os.path.join(PROGRAMS, 'example_first'), *arguments], **options)
+
+    @e2e.each(a_distance=('--distance 2083', '2083 mm'), nothing_in_range=('--distance no-target', 'nothing in range'),
+              a_device_that_has_failed=('--distance fault', 'no distance'),
+              a_damaged_response=('--fault flip-byte', r'no reading \(CHECKSUM\)\. [A-Z].*\.'))
+    def reading(self, sensor, words):
+        gate = self.gate(self.sim('hps167s', sensor))
+        gate.expect(f'^{words}$')
+        gate.expect(f'^{words}$')
+
+    def test_after_a_silence_it_goes_on(self):
+        gate = self.gate(self.sim('hps167s --distance 2083 --fault silence=1@2'))
+        gate.expect('^2083 mm$')
+        gate.expect(r'^no reading \(NO_RESPONSE\)\. [A-Z].*\.$')
+        gate.expect('^2083 mm$')
+
+    def test_a_port_that_is_lost_is_reported_again_and_again(self):
+        sim = self.sim('hps167s --distance 2083')
+        gate = self.gate(sim)
+        gate.expect('^2083 mm$')
+        sim.end()
+        gate.expect(r'^no reading \(PORT\)\. [A-Z].*\.$')
+        gate.expect(r'^no reading \(PORT\)\. [A-Z].*\.$')
+        self.assertIsNone(gate.done)
+
+    def test_a_port_that_is_not_there_is_reported(self):
+        self.ends(self.gate('/nowhere'), 1, '/nowhere', out='')
+
+    def test_without_a_path_it_opens_the_first_usb_adapter(self):
+        if os.path.exists('/dev/ttyUSB0'):
+            self.skipTest('this machine has an adapter')
+        self.ends(self.gate(), 1, '/dev/ttyUSB0', out='')
+
+    def test_it_ends_when_its_output_is_broken(self):
+        with open('/dev/full', 'w', encoding='utf-8') as full:
+            self.ends(self.gate(self.sim('hps167s --distance 2083'), stdout=full), 1)
+
+
+class Modes(e2e.Case):
+    """examples/first/MODE.c: those whose sensor has a serial port"""
+
+    def program(self, mode, *arguments):
+        return self.start([os.path.join(PROGRAMS, 'first', 'example_first_' + mode), *arguments])
+
+    @e2e.each(a16_auto=('a16_auto', 'a16 --distance 1234', ['probe 1: 1234 mm']),
+              a16_controlled=('a16_controlled', 'a16::controlled --distance 1234', ['probe 1: 1234 mm']),
+              a16_modbus=('a16_modbus', 'a16::modbus --distance 1234', ['probe 1: 1234 mm']),
+              a05_auto=('a05_auto', 'a05 --distance 1000,2000,1953,no-target',
+                        ['probe 1: 1000 mm', 'probe 2: 2000 mm', 'probe 3: 1953 mm', 'probe 4: nothing in range']),
+              a05_modbus=('a05_modbus', 'a05::modbus --distance 1000,2000,1953,no-target',
+                          ['probe 1: 1000 mm', 'probe 2: 2000 mm', 'probe 3: 1953 mm', 'probe 4: nothing in range']),
+              hps167s=('hps167s', 'hps167s --distance 2083', ['probe 1: 2083 mm']),
+              hps167s_auto=('hps167s_auto', 'hps167s::auto --distance 2083', ['probe 1: 2083 mm']))
+    def reading(self, mode, sensor, lines):
+        program = self.program(mode, self.sim(sensor))
+        for line in 2 * lines:
+            program.expect(f'^{line}$')
+        sensors = program.lines()
+        self.assertEqual([line for line in sensors if line.startswith('probe') and line not in lines], [])
+
+    @e2e.each(**{'silent_' + mode: mode for mode in SERIAL})
+    def silent(self, mode):
+        device = self.device()
+        self.program(mode, device.port).expect(r'^no reading \((NO_RESPONSE|STALE)\)\. [A-Z].*\.$')
+
+    @e2e.each(**{'no_port_' + mode: mode for mode in SERIAL})
+    def no_port(self, mode):
+        self.ends(self.program(mode, '/nowhere'), 1, '/nowhere', out='')
+
+    @e2e.each(no_pin_of_a16_switch=('a16_switch', ['/nowhere', '17'], '/nowhere'),
+              no_pin_of_a16_pwm=('a16_pwm', ['/nowhere', '17', '27'], '/nowhere'),
+              no_pin_of_a05_relay=('a05_relay', ['/nowhere', '17'], '/nowhere'),
+              no_arguments=('a05_relay', [], 'a05_relay CHIP LINE\n'),
+              too_few_arguments=('a16_pwm', ['/nowhere', '17'], 'a16_pwm CHIP LINE LINE\n'))
+    def no_pin(self, mode, arguments, words):
+        self.ends(self.program(mode, *arguments), 1, words, out='')
+
+
+if __name__ == '__main__':
+    e2e.main()
