@@ -15,10 +15,8 @@ static bool begin(fathom_avr_bus_t *bus, const fathom_avr_pin_t *driver,
                                        .clock = &fathom_avr_clock,
                                        .frame = bus->frame,
                                        .frame_size = sizeof bus->frame,
-                                       .silence_us = fathom_silence_us(settings),
                                        .marks = fathom_line_marks};
     bus->parts = parts;
-    bus->modbus = (fathom_modbus_t){0};
     return fathom_avr_usart0_init(&config);
 }
 
@@ -26,6 +24,7 @@ bool fathom_avr_bus_init(fathom_avr_bus_t *bus, const fathom_avr_pin_t *driver,
                          const fathom_line_settings_t *settings)
 {
     if (!begin(bus, driver, settings)) return false;
+    bus->parts.silence_us = fathom_silence_us(settings);
     bus->parts.find_echo = fathom_line_find_echo;
     bus->parts.senders = &fathom_line_senders;
     const bool is_ready = fathom_line_init(&bus->line, &bus->parts) == FATHOM_OK;
@@ -35,6 +34,7 @@ bool fathom_avr_bus_init(fathom_avr_bus_t *bus, const fathom_avr_pin_t *driver,
 
 bool fathom_avr_bus_init_listening(fathom_avr_bus_t *bus, const fathom_line_settings_t *settings)
 {
+    bus->modbus = (fathom_modbus_t){0};
     return begin(bus, NULL, settings) && (fathom_line_init_listening(&bus->line, &bus->parts) == FATHOM_OK);
 }
 

@@ -15,9 +15,7 @@ static bool begin(fathom_rp2040_bus_t *bus, const fathom_rp2040_wiring_t *wiring
                                        .clock = &fathom_rp2040_clock,
                                        .frame = bus->frame,
                                        .frame_size = sizeof bus->frame,
-                                       .silence_us = fathom_silence_us(settings),
                                        .marks = fathom_line_marks};
-    bus->modbus = (fathom_modbus_t){0};
     const fathom_rp2040_uart_config_t config = {.wiring = *wiring,
                                                 .line = *settings,
                                                 .request = bus->request,
@@ -30,6 +28,7 @@ bool fathom_rp2040_bus_init(fathom_rp2040_bus_t *bus, const fathom_rp2040_wiring
                             const fathom_line_settings_t *settings)
 {
     if (!begin(bus, wiring, settings)) return false;
+    bus->parts.silence_us = fathom_silence_us(settings);
     bus->parts.find_echo = fathom_line_find_echo;
     bus->parts.senders = &fathom_line_senders;
     const bool is_ready = fathom_line_init(&bus->line, &bus->parts) == FATHOM_OK;
@@ -40,6 +39,7 @@ bool fathom_rp2040_bus_init(fathom_rp2040_bus_t *bus, const fathom_rp2040_wiring
 bool fathom_rp2040_bus_init_listening(fathom_rp2040_bus_t *bus, const fathom_rp2040_wiring_t *wiring,
                                       const fathom_line_settings_t *settings)
 {
+    bus->modbus = (fathom_modbus_t){0};
     return begin(bus, wiring, settings) && (fathom_line_init_listening(&bus->line, &bus->parts) == FATHOM_OK);
 }
 

@@ -17,9 +17,7 @@ static bool begin(fathom_stm32f4_bus_t *bus, const fathom_stm32f4_usart_config_t
                                        .clock = &fathom_stm32f4_clock,
                                        .frame = bus->frame,
                                        .frame_size = sizeof bus->frame,
-                                       .silence_us = fathom_silence_us(settings),
                                        .marks = fathom_line_marks};
-    bus->modbus = (fathom_modbus_t){0};
     return fathom_stm32f4_usart_init(&bus->port, &config);
 }
 
@@ -27,6 +25,7 @@ bool fathom_stm32f4_bus_init(fathom_stm32f4_bus_t *bus, const fathom_stm32f4_usa
                              const fathom_line_settings_t *settings)
 {
     if (!begin(bus, wiring, settings)) return false;
+    bus->parts.silence_us = fathom_silence_us(settings);
     bus->parts.find_echo = fathom_line_find_echo;
     bus->parts.senders = &fathom_line_senders;
     const bool is_ready = fathom_line_init(&bus->line, &bus->parts) == FATHOM_OK;
@@ -37,6 +36,7 @@ bool fathom_stm32f4_bus_init(fathom_stm32f4_bus_t *bus, const fathom_stm32f4_usa
 bool fathom_stm32f4_bus_init_listening(fathom_stm32f4_bus_t *bus, const fathom_stm32f4_usart_config_t *wiring,
                                        const fathom_line_settings_t *settings)
 {
+    bus->modbus = (fathom_modbus_t){0};
     return begin(bus, wiring, settings) && (fathom_line_init_listening(&bus->line, &bus->parts) == FATHOM_OK);
 }
 
