@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A Modbus device that knows one request and one response, of the datasheets' examples.
+// A device that knows one request and one response, of the datasheets' examples.
 'use strict';
 
 const A16_REAL_TIME = { // A16 6(4), example 2: 751 mm
@@ -7,6 +7,13 @@ const A16_REAL_TIME = { // A16 6(4), example 2: 751 mm
   baud: 9600,
   request: [0x01, 0x03, 0x01, 0x01, 0x00, 0x01, 0xd4, 0x36],
   response: [0x01, 0x03, 0x02, 0x02, 0xef, 0xf8, 0xa8],
+};
+
+const A05_ALL_PROBES = { // A05 2(3)3: 1000, 2000, 1953, 3562 mm; the sum that is printed there is wrong
+  format: '8N1',
+  baud: 9600,
+  request: [0x55, 0xaa, 0x01, 0x01, 0x01],
+  response: [0x55, 0xaa, 0x01, 0x01, 0x03, 0xe8, 0x07, 0xd0, 0x07, 0xa1, 0x0d, 0xea, 0x62],
 };
 
 // Responses `after` us (undefined: never) after the request's last stop bit. Keeps when each request ended, in ns, and what
@@ -38,4 +45,4 @@ class Answering {
   }
 }
 
-module.exports = {Answering, A16_REAL_TIME};
+module.exports = {Answering, A05_ALL_PROBES, A16_REAL_TIME};

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// examples/rp2040/first.c: an HPS-167S over RS-485, printed by printf; and some of examples/first/MODE.c.
+// examples/rp2040/first.c: an A05 over RS-485 by 55 AA, printed by printf; and some of examples/first/MODE.c.
 'use strict';
 const {assert, test} = require('./runner.js');
 const {Machine} = require('./machine.js');
-const {A16, Hps167s, Terminal, MEASURING, NEVER} = require('./devices.js');
+const {Answering, A05_ALL_PROBES} = require('./answering.js');
+const {A16, Hps167s, Terminal, MEASURING} = require('./devices.js');
 
 const TRIGGER = 2, INPUT = 3, DE = 6;
 const FRAME = [0xff, 0x07, 0xa1, 0xa7]; // A16 2(3): 1953 mm
@@ -15,20 +16,27 @@ function start(image) {
   return {machine, terminal: new Terminal(machine)};
 }
 
-test('it prints each reading of an HPS-167S', () => {
+const PROBES = ['probe 1: 1000 mm', 'probe 2: 2000 mm', 'probe 3: 1953 mm', 'probe 4: 3562 mm'];
+const AFTER_US = 205000; // A05 2(3)1: 200 to 210 ms
+
+test('it prints the four distances of each response of an A05', () => {
   const {machine, terminal} = start('first');
-  new Hps167s(machine, {uart: machine.uart[1], driver: DE, responses: [MEASURING]});
-  assert.deepStrictEqual(terminal.first(5, 3000), Array(5).fill('2083 mm'));
+  const a05 = new Answering(machine, machine.uart[1], A05_ALL_PROBES, AFTER_US);
+  assert.deepStrictEqual(terminal.first(8, 3000), [...PROBES, ...PROBES]);
+  assert.deepStrictEqual(a05.strays, []);
   assert.strictEqual(machine.uart[0].format, '8N1');
   assert.strictEqual(machine.uart[0].divider, 67 * 64 + 52); // 125 MHz / 16 / 115200 = 67.817: 67 and 52 / 64
 });
 
 test('it prints an error and what to check while the sensor does not respond, and goes on after that', () => {
   const {machine, terminal} = start('first');
-  new Hps167s(machine, {uart: machine.uart[1], driver: DE, responses: [MEASURING, NEVER, MEASURING]});
-  const lines = terminal.first(3, 6000);
-  assert.match(lines[1], NO_RESPONSE);
-  assert.deepStrictEqual([lines[0], lines[2]], ['2083 mm', '2083 mm']);
+  const a05 = new Answering(machine, machine.uart[1], A05_ALL_PROBES, undefined);
+  assert.match(terminal.first(1, 3000)[0], NO_RESPONSE);
+  a05.after = AFTER_US;
+  machine.until(() => terminal.lines.includes(PROBES[3]), 20000);
+  const first = terminal.lines.indexOf(PROBES[0]);
+  assert.deepStrictEqual(terminal.lines.slice(first, first + 4), PROBES);
+  for (const line of terminal.lines.slice(0, first)) assert.match(line, NO_RESPONSE);
 });
 
 test('first/hps167s.c prints the same readings with the probe', () => {

@@ -5,7 +5,7 @@ import os
 
 import e2e
 
-SERIAL = ('a16_auto', 'a16_controlled', 'a16_modbus', 'a05_auto', 'a05_modbus', 'hps167s', 'hps167s_auto')
+SERIAL = ('a16_auto', 'a16_controlled', 'a16_modbus', 'a05_auto', 'a05_dyp', 'a05_modbus', 'hps167s', 'hps167s_auto')
 PROGRAMS = os.path.join(os.environ.get('FATHOM_BUILD', ''), 'examples')
 
 
@@ -62,6 +62,8 @@ class Modes(e2e.Case):
               a16_modbus=('a16_modbus', 'a16::modbus --distance 1234', ['probe 1: 1234 mm']),
               a05_auto=('a05_auto', 'a05 --distance 1000,2000,1953,no-target',
                         ['probe 1: 1000 mm', 'probe 2: 2000 mm', 'probe 3: 1953 mm', 'probe 4: nothing in range']),
+              a05_dyp=('a05_dyp', 'a05::dyp --distance 1000,2000,1953,no-target',
+                       ['probe 1: 1000 mm', 'probe 2: 2000 mm', 'probe 3: 1953 mm', 'probe 4: nothing in range']),
               a05_modbus=('a05_modbus', 'a05::modbus --distance 1000,2000,1953,no-target',
                           ['probe 1: 1000 mm', 'probe 2: 2000 mm', 'probe 3: 1953 mm', 'probe 4: nothing in range']),
               hps167s=('hps167s', 'hps167s --distance 2083', ['probe 1: 2083 mm']),

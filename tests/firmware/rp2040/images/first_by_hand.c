@@ -14,13 +14,12 @@ static const fathom_line_parts_t parts = {.uart = &uart,
                                           .clock = &fathom_rp2040_clock,
                                           .frame = frame,
                                           .frame_size = sizeof frame,
-                                          .silence_us = FATHOM_T3_5_US(19200, 11),
+                                          .silence_us = FATHOM_T3_5_US(9600, 10),
                                           .find_echo = fathom_line_find_echo,
                                           .senders = &fathom_line_senders,
                                           .marks = fathom_line_marks};
 static fathom_line_t line;
-static fathom_modbus_t modbus;
-static fathom_hps167s_t gate;
+static fathom_a05_dyp_t bumper;
 
 void uart1_irq(void) { fathom_rp2040_uart_interrupt(&port); }
 void timer_irq_0(void) { fathom_rp2040_uart_alarm(&port); }
@@ -30,7 +29,7 @@ int main(void)
 {
     static const fathom_rp2040_uart_config_t config = {
         .wiring = {.clk_peri_hz = 125000000, .number = 1, .tx = 4, .rx = 5, .has_driver = true, .driver = 6},
-        .line = {19200, FATHOM_PARITY_EVEN, 1},
+        .line = {9600, FATHOM_PARITY_NONE, 1},
         .request = request,
         .request_size = sizeof request,
         .idle = &idle};
@@ -39,17 +38,17 @@ int main(void)
     if (!fathom_rp2040_uart_init(&port, &config)) return 1;
     uart = fathom_rp2040_uart(&port);
     if (fathom_line_init(&line, &parts) != FATHOM_OK) return 1;
-    modbus = fathom_modbus_client(&line);
-    if (fathom_hps167s_init(&gate, &modbus, NULL) != FATHOM_OK) return 1;
-    const fathom_sensor_t sensor = fathom_hps167s_sensor(&gate);
+    if (fathom_a05_dyp_init(&bumper, &line, NULL) != FATHOM_OK) return 1;
+    const fathom_sensor_t sensor = fathom_a05_dyp_sensor(&bumper);
     for (;;) {
         fathom_sample_t sample;
         const fathom_status_t status = fathom_wait(&sensor, &sample, fathom_rp2040_idle, &idle);
         if (status != FATHOM_OK)
             printf("no reading (%s). %s\n", fathom_status_name(status), fathom_status_advice(status));
         else if (sample.kind == FATHOM_TARGET)
-            printf("%u mm\n", sample.distance_mm);
+            printf("probe %u: %u mm\n", sample.probe, sample.distance_mm);
         else
-            printf("%s\n", sample.kind == FATHOM_NO_TARGET ? "nothing in range" : "no distance");
+            printf("probe %u: %s\n", sample.probe,
+                   sample.kind == FATHOM_NO_TARGET ? "nothing in range" : "no distance");
     }
 }
