@@ -11,9 +11,9 @@ static fathom_a16_auto_t tank;
 int main(void)
 {
     fathom_avr_clock_init();
-    sei();
     if (!fathom_avr_bus_init_listening(&bus, &fathom_a16_factory_line)) return 1;
     if (fathom_a16_auto_init(&tank, &bus.line, NULL) != FATHOM_OK) return 1;
+    sei();
     for (;;) {
         fathom_sample_t sample;
         char text[16];

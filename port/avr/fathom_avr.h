@@ -227,7 +227,7 @@ typedef struct {
  * @param driver    Driver enable (DE) of an RS-485 transceiver, as in fathom_avr_usart_config_t. NULL: none. Copied.
  * @param settings  The settings with which the sensors leave the factory (factory_line.h), or those that were set.
  *                  Copied.
- * @return False if the settings cannot be reached, or are slower than 588 baud. Do not use the bus then.
+ * @return False if the settings cannot be reached, or are slower than 9600 baud. Do not use the bus then.
  */
 bool fathom_avr_bus_init(fathom_avr_bus_t *bus, const fathom_avr_pin_t *driver,
                          const fathom_line_settings_t *settings);

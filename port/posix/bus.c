@@ -29,7 +29,9 @@ void fathom_posix_bus_set_up(fathom_posix_bus_t *bus, const fathom_uart_t *uart,
     bus->parts.counters = bus->counters;
     bus->parts.senders = &fathom_line_senders;
     bus->parts.masters = &fathom_line_masters;
-    bus->parts.silence_us = fathom_silence_us(settings);
+    bus->parts.silence_us = settings->baud >= 9600u
+                                ? fathom_silence_us(settings)
+                                : FATHOM_T3_5_US(settings->baud, fathom_character_bits(settings));
     bus->parts.gap_us = GAP_US;
     /* The line accepts each silence of 588 baud and more, and the port has no rate below 1200. */
     (void)fathom_line_init(&bus->line, &bus->parts);

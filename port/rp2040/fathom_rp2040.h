@@ -342,7 +342,7 @@ typedef struct {
  * @param wiring    Pins, clock and alarm of the UART. Copied.
  * @param settings  The settings with which the sensors leave the factory (factory_line.h), or those that were set.
  *                  Copied.
- * @return False if the wiring is not possible, or if the settings cannot be reached or are slower than 588 baud. Do not
+ * @return False if the wiring is not possible, or if the settings cannot be reached or are slower than 9600 baud. Do not
  *         use the bus then.
  */
 bool fathom_rp2040_bus_init(fathom_rp2040_bus_t *bus, const fathom_rp2040_wiring_t *wiring,

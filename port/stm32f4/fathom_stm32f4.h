@@ -265,7 +265,7 @@ typedef struct {
  * @param wiring    Number, bus and pins of the USART. `line`, `request` and `request_size` are not used. Copied.
  * @param settings  The settings with which the sensors leave the factory (factory_line.h), or those that were set.
  *                  Copied.
- * @return False if the wiring is not possible, or if the settings cannot be reached or are slower than 588 baud. Do not
+ * @return False if the wiring is not possible, or if the settings cannot be reached or are slower than 9600 baud. Do not
  *         use the bus then.
  */
 bool fathom_stm32f4_bus_init(fathom_stm32f4_bus_t *bus, const fathom_stm32f4_usart_config_t *wiring,

@@ -12,7 +12,7 @@ extern "C" {
 
 /**
  * @file
- * @brief Computes the silence between two frames of Modbus RTU from the settings of a line.
+ * @brief The silence between two frames of Modbus RTU, from the settings of a line.
  *
  * The bus of each port calls fathom_silence_us(). A program that names the parts of a line (line.h) uses
  * FATHOM_T3_5_US(), which costs no code.
@@ -35,17 +35,19 @@ extern "C" {
                     : ((((bits)*3500000uL) + ((baud)-1uL)) / (baud))))
 
 /**
- * @brief Returns the silence before a request on a line with these settings, in microseconds: t3.5.
+ * @brief Returns the silence before a request on a line with these settings, in microseconds: t3.5 of 11 bits.
  *
- * A rate above 19200 baud counts as 19200, because an HPS-167S that was set to such a rate returns to 19200 baud by its
- * factory reset (#6), and the silence has to be right for the slowest rate that is used on the line.
+ * The result is that of 19200 baud for all faster rates too, because an HPS-167S that was set to such a rate returns to
+ * 19200 baud by its factory reset (#6), and the silence has to be right for the slowest rate that is used on the line. For
+ * 9600 to 19199 baud it is that of 9600. No sensor has a slower rate: the result is 65535, and fathom_line_init() refuses
+ * it. The function does not divide, so it costs a few bytes of flash.
  *
  * @param settings  The settings.
  */
 static inline uint16_t fathom_silence_us(const fathom_line_settings_t *settings)
 {
-    const uint32_t baud = (settings->baud > 19200u) ? 19200u : settings->baud;
-    return FATHOM_T3_5_US(baud, fathom_character_bits(settings));
+    if (settings->baud >= 19200u) return FATHOM_T3_5_US(19200u, 11u);
+    return (settings->baud >= 9600u) ? FATHOM_T3_5_US(9600u, 11u) : UINT16_MAX;
 }
 
 #ifdef __cplusplus
