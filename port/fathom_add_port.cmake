@@ -16,7 +16,7 @@
 
 # What the sources are kept free of, on every compiler that CI uses; fathom_strict() makes them errors.
 set_property(GLOBAL PROPERTY FATHOM_WARNINGS -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow
-    -Wstrict-prototypes -Wmissing-declarations -Wcast-align -Wvla)
+    $<$<COMPILE_LANGUAGE:C>:-Wstrict-prototypes> -Wmissing-declarations -Wcast-align -Wvla)
 
 # fathom_warn(TARGET [option...]): these warnings, and the options, for a target.
 function(fathom_warn target)

@@ -27,7 +27,7 @@ file(REMOVE_RECURSE ${TO})
 file(COPY ${CMAKE_CURRENT_LIST_DIR}/library.properties ${root}/LICENSE DESTINATION ${TO})
 file(COPY ${CMAKE_CURRENT_LIST_DIR}/fathom_arduino.h ${CMAKE_CURRENT_LIST_DIR}/fathom_arduino.cpp
     DESTINATION ${TO}/src)
-file(COPY ${root}/include/fathom DESTINATION ${TO}/src FILES_MATCHING PATTERN *.h)
+file(COPY ${root}/include/fathom DESTINATION ${TO}/src FILES_MATCHING PATTERN *.h PATTERN *.hpp)
 file(COPY ${root}/src/ DESTINATION ${TO}/src/core FILES_MATCHING PATTERN *.c PATTERN *.h)
 file(REMOVE ${TO}/src/core/codec/crc16.c)
 file(COPY ${sketches} DESTINATION ${TO}/examples)

@@ -35,6 +35,8 @@ GENERATE_XML = YES
 XML_PROGRAMLISTING = NO
 """
 PLACE = re.compile(r'(.+?):(\d+): (?:warning|error): (.*)')
+FUNCTION = re.compile(r'^(?!#)[A-Za-z_][\w \t*\n]*?\b(\w+)\(([^;{}]*)\)\s*[;{]', re.M)
+METHOD = re.compile(r'^ {4}[A-Za-z_][\w \t*&\n]*?\b(\w+)\(([^;{}]*)\)\s*(?:const\s*)?[;{]', re.M)
 NO_PARAMETERS = re.compile(r'parameters of member (\S+) are not documented')
 NO_RETURN = re.compile(r'return type of member (\S+) is not documented')
 
@@ -48,17 +50,17 @@ def doxygen_filter(root):
 
 
 def headers(root):
-    return [path for path in files(root, 'include', 'port', ends='.h')
+    return [path for path in files(root, 'include', 'port', ends=('.h', '.hpp'))
             if path.startswith('include/fathom/') or re.fullmatch(r'port/\w+/fathom_\w+\.h', path)]
 
 
 def declarations(root):
-    """{function: (path, line, number of parameters, first words of its comment)}"""
+    """{function: (path, line, number of parameters, first words of its comment)}. Of a class: without its class."""
     found = {}
     for path in headers(root):
         text = read(root, path)
         code = code_of(text)
-        for match in re.finditer(r'^(?!#)[A-Za-z_][\w \t*\n]*?\b(\w+)\(([^;{}]*)\)\s*[;{]', code, re.M):
+        for match in (METHOD if path.endswith('.hpp') else FUNCTION).finditer(code):
             comment = '\n'.join(text.split('\n')[:code.count('\n', 0, match.start())]).rstrip()
             comment = comment[comment.rindex('/**'):] if comment.endswith('*/') and '/**' in comment else ''
             count = 0 if match[2].strip() in ('', 'void') else match[2].count(',') + 1
@@ -83,8 +85,9 @@ def warnings(root, said):
             text += ' ' + ', '.join(more[:more.index('')] if '' in more else more)
             text = re.split(r', \S+:\d+: ', text)[0]
         function = NO_PARAMETERS.match(text) or NO_RETURN.match(text)
-        if function and function[1] in declared:
-            own, line_of, count, words = declared[function[1]]
+        name = function and function[1].split('::')[-1]
+        if name in declared:
+            own, line_of, count, words = declared[name]
             if path.startswith('<'):  # Doxygen does not report the place
                 path, at = own, line_of
             if NO_PARAMETERS.match(text) and count < 2 or NO_RETURN.match(text) and words.startswith('Returns '):

@@ -10,7 +10,7 @@ FOLDERS = ('include', 'src', 'port', 'examples', 'tests')
 
 
 def check(root, only):
-    paths = [path for path in files(root, *FOLDERS, ends=('.c', '.h', '.cpp', '.ino')) if not only or path in only]
+    paths = [path for path in files(root, *FOLDERS, ends=('.c', '.h', '.cpp', '.hpp', '.ino')) if not only or path in only]
     _, said = run(['clang-format-14', '--dry-run', '--Werror', *paths], root)
     problems = re.findall(r'^\S+: error: .*$', said, re.M)
     if said and not problems:

@@ -38,8 +38,10 @@ typedef struct {
         return 0;                                                                                            \
     }
 
-/* A file without a suite of its own has this one. */
+/* A file of C without a suite of its own has this one. */
+#ifndef __cplusplus
 static const suite_t suite;
+#endif
 
 typedef struct suite_test {
     struct CMUnitTest test;

@@ -78,7 +78,7 @@ def test_all_of_the_core_is_there_and_the_crc_once():
     core = {path for path in below(os.path.join(build.ROOT, 'src')) if path.endswith(('.c', '.h'))}
     assert core - set(below(os.path.join(LIBRARY, 'src/core'))) == {'codec/crc16.c'}
     assert set(below(os.path.join(LIBRARY, 'src/fathom'))) == \
-        {path for path in below(os.path.join(build.ROOT, 'include/fathom')) if path.endswith('.h')}
+        {path for path in below(os.path.join(build.ROOT, 'include/fathom')) if path.endswith(('.h', '.hpp'))}
 
 
 def test_the_examples_are_there_each_in_a_folder_of_its_name():

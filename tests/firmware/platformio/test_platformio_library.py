@@ -59,7 +59,7 @@ def test_the_package_has_the_library_and_the_ports_that_its_page_names_and_no_mo
     # The page of the script names its ports.
     ports = re.search(r"^PORTS = \((.*)\)", read(build.ROOT, 'port/platformio/library.py'), re.M)[1]
     wanted = {path for path in below('include', 'src', 'port/serial', *('port/' + name for name in re.findall(r'\w+', ports)))
-              if path.endswith(('.c', '.h', '.cpp'))}
+              if path.endswith(('.c', '.h', '.hpp', '.cpp'))}
     assert wanted <= names, wanted - names
     others = {name for name in names - wanted if not name.endswith('toolchain.cmake')}
     assert others <= {'LICENSE', 'README.md', 'library.json', 'include/COST.md', 'include/README.md',
