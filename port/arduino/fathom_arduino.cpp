@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The HAL on the functions of an Arduino core: clock, pins, pulses, HardwareSerial and Stream. The end of a request is
- * computed from the time, because flush() of a core blocks.
+ * The HAL on the functions of an Arduino core: clock, pins, pulses, HardwareSerial and Stream; and the buses. The end of
+ * a request is computed from the time, because flush() of a core blocks.
  */
 #include "fathom_arduino.h"
+
+#include "fathom/engine/modbus_client.h"
+#include "fathom/engine/silence.h"
 
 namespace fathom
 {
@@ -13,7 +16,7 @@ namespace arduino
 namespace
 {
 
-uint32_t now_us(void *) { return micros(); }
+uint32_t read_micros(void *) { return micros(); }
 
 /* `ctx` is the number of the pin, not an address. */
 void *ctx_of(uint8_t pin) { return reinterpret_cast<void *>(static_cast<uintptr_t>(pin)); }
@@ -39,7 +42,7 @@ uint32_t span_us_of(size_t length, uint8_t bits, uint32_t baud)
     return (frame_bits + (frame_bits + 39) / 40 + 2) * 1000000ul / baud + 9;
 }
 
-uint32_t left_us(uint32_t since_us, uint32_t span_us)
+uint32_t unsent_us(uint32_t since_us, uint32_t span_us)
 {
     const uint32_t passed_us = fathom_elapsed_us(static_cast<uint32_t>(micros()), since_us);
     return passed_us < span_us ? span_us - passed_us : 0;
@@ -62,7 +65,7 @@ bool can_reach(uint32_t baud)
 
 } // namespace
 
-extern const fathom_clock_t clock = {now_us, NULL};
+extern const fathom_clock_t clock = {read_micros, NULL};
 
 fathom_pin_t output(uint8_t pin)
 {
@@ -82,14 +85,26 @@ fathom_pin_t input(uint8_t pin, bool pull_up)
     return made;
 }
 
-void pulse_input::begin(uint8_t pin)
+pulse_input *pulse_input::slots_[slot_count];
+
+bool pulse_input::begin(uint8_t pin)
 {
+    static void (*const functions[slot_count])() = {changed<0>, changed<1>, changed<2>, changed<3>};
+    uint8_t slot = 0;
+    while (slot != slot_count && slots_[slot] != NULL && slots_[slot] != this) slot++;
+    if (slot == slot_count) return false;
+#ifdef NOT_AN_INTERRUPT
+    if (digitalPinToInterrupt(pin) == NOT_AN_INTERRUPT) return false;
+#endif
     pin_ = pin;
     level_ = input(pin);
     fathom_edges_init(&edges, &level_);
+    slots_[slot] = this;
+    attachInterrupt(static_cast<uint8_t>(digitalPinToInterrupt(pin)), functions[slot], CHANGE);
+    return true;
 }
 
-void pulse_input::changed()
+void pulse_input::feed()
 {
     const uint32_t time_us = micros();
     fathom_edges_feed(&edges, digitalRead(pin_) == HIGH, time_us);
@@ -97,20 +112,21 @@ void pulse_input::changed()
 
 fathom_capture_t pulse_input::capture() { return fathom_edges_capture(&edges); }
 
-serial_uart::serial_uart(HardwareSerial &serial, uint8_t driver_enable)
-    : serial_(serial), driver_enable_(driver_enable), leaving_(false), since_us_(0), span_us_(0),
-      capacity_(0), line_()
+serial_uart::serial_uart(HardwareSerial &serial) : serial_uart(serial, no_pin, NULL) {}
+
+serial_uart::serial_uart(HardwareSerial &serial, uint8_t driver_enable, void (*started)(serial_uart &))
+    : serial_(serial), driver_enable_(driver_enable), started_(started), next_(NULL), leaving_(false),
+      since_us_(0), span_us_(0), capacity_(0), line_()
 {
 }
 
-bool serial_uart::begin(uint32_t baud, fathom_parity_t parity, uint8_t stop_bits)
+bool serial_uart::begin(const fathom_line_settings_t &settings)
 {
-    const fathom_line_settings_t line = {baud, static_cast<uint8_t>(parity), stop_bits};
     if (driver_enable_ != no_pin) {
         digitalWrite(driver_enable_, LOW);
         pinMode(driver_enable_, OUTPUT);
     }
-    if (!set(line)) return false;
+    if (!set(settings)) return false;
     leaving_ = false;
     capacity_ = serial_.availableForWrite();
     return true;
@@ -155,7 +171,7 @@ bool serial_uart::set(const fathom_line_settings_t &line)
 bool serial_uart::release()
 {
     if (!leaving_) return true;
-    if (left_us(since_us_, span_us_) != 0 || serial_.availableForWrite() < capacity_) return false;
+    if (unsent_us(since_us_, span_us_) != 0 || serial_.availableForWrite() < capacity_) return false;
     if (driver_enable_ != no_pin) digitalWrite(driver_enable_, LOW);
     leaving_ = false;
     return true;
@@ -179,6 +195,7 @@ int serial_uart::write(void *ctx, const uint8_t *bytes, size_t length)
     self.since_us_ =
         micros(); /* The time is read after write(), because the first byte may begin that late. */
     self.leaving_ = true;
+    if (self.started_ != NULL) self.started_(self);
     return taken;
 }
 
@@ -187,7 +204,7 @@ bool serial_uart::sent(void *ctx) { return static_cast<serial_uart *>(ctx)->rele
 uint32_t serial_uart::leaves_in_us(void *ctx)
 {
     const serial_uart &self = *static_cast<serial_uart *>(ctx);
-    return self.leaving_ ? left_us(self.since_us_, self.span_us_) : 0;
+    return self.leaving_ ? unsent_us(self.since_us_, self.span_us_) : 0;
 }
 
 int serial_uart::set_line(void *ctx, const fathom_line_settings_t *settings)
@@ -200,9 +217,15 @@ int serial_uart::set_line(void *ctx, const fathom_line_settings_t *settings)
     return self.set(*settings) ? 1 : -1;
 }
 
-stream_uart::stream_uart(Stream &stream, uint32_t baud, uint8_t bits)
-    : stream_(stream), baud_(baud), bits_(bits), leaving_(false), since_us_(0), span_us_(0)
+stream_uart::stream_uart(Stream &stream)
+    : stream_(stream), baud_(9600), bits_(10), leaving_(false), since_us_(0), span_us_(0)
 {
+}
+
+void stream_uart::begin(const fathom_line_settings_t &settings)
+{
+    baud_ = settings.baud;
+    bits_ = fathom_character_bits(&settings);
 }
 
 fathom_uart_t stream_uart::hal()
@@ -229,14 +252,87 @@ int stream_uart::write(void *ctx, const uint8_t *bytes, size_t length)
 bool stream_uart::sent(void *ctx)
 {
     stream_uart &self = *static_cast<stream_uart *>(ctx);
-    if (self.leaving_ && left_us(self.since_us_, self.span_us_) == 0) self.leaving_ = false;
+    if (self.leaving_ && unsent_us(self.since_us_, self.span_us_) == 0) self.leaving_ = false;
     return !self.leaving_;
 }
 
 uint32_t stream_uart::leaves_in_us(void *ctx)
 {
     const stream_uart &self = *static_cast<stream_uart *>(ctx);
-    return self.leaving_ ? left_us(self.since_us_, self.span_us_) : 0;
+    return self.leaving_ ? unsent_us(self.since_us_, self.span_us_) : 0;
+}
+
+void bus_line::name_parts()
+{
+    parts = fathom_line_parts_t();
+    parts.uart = &uart_;
+    parts.clock = &clock;
+    parts.frame = frame_;
+    parts.frame_size = sizeof frame_;
+    modbus = fathom_modbus_t();
+}
+
+bool bus_line::ask(const fathom_line_settings_t &settings)
+{
+    name_parts();
+    parts.silence_us = fathom_silence_us(&settings);
+    parts.find_echo = fathom_line_find_echo;
+    parts.senders = &fathom_line_senders;
+    if (fathom_line_init(&line, &parts) != FATHOM_OK) return refuse();
+    modbus = fathom_modbus_client(&line);
+    return true;
+}
+
+bool bus_line::listen()
+{
+    name_parts();
+    return fathom_line_init_listening(&line, &parts) == FATHOM_OK || refuse();
+}
+
+bool bus_line::refuse()
+{
+    line = fathom_line_t();
+    modbus = fathom_modbus_t();
+    return false;
+}
+
+bool bus::begin(const fathom_line_settings_t &settings)
+{
+    uart_ = port.hal();
+    return port.begin(settings) ? ask(settings) : refuse();
+}
+
+bool bus::begin_listening(const fathom_line_settings_t &settings)
+{
+    uart_ = port.hal();
+    return port.begin(settings) ? listen() : refuse();
+}
+
+bool stream_bus::begin_port(const fathom_line_settings_t &settings)
+{
+    if (settings.parity != FATHOM_PARITY_NONE || settings.stop_bits != 1) return false;
+    begin_(serial_, settings.baud);
+    port.begin(settings);
+    uart_ = port.hal();
+    return true;
+}
+
+bool stream_bus::begin(const fathom_line_settings_t &settings)
+{
+    return begin_port(settings) ? ask(settings) : refuse();
+}
+
+bool stream_bus::begin_listening(const fathom_line_settings_t &settings)
+{
+    return begin_port(settings) ? listen() : refuse();
+}
+
+fathom_status_t a16_pwm::begin(const fathom_a16_pwm_config_t *config)
+{
+    if (!pulses.begin(pulse_pin_)) return begun(FATHOM_ERR_UNSUPPORTED);
+    trigger_ = output(trigger_pin_);
+    capture_ = pulses.capture();
+    return fathom::a16_pwm::begin(capture_, clock, fathom_output_pin(&trigger_), config);
 }
 
 } // namespace arduino

@@ -4,25 +4,28 @@
 
 #include <Arduino.h>
 
-#include "fathom/fathom.h"
+#include "fathom/fathom.hpp"
 
 /**
  * @file
- * @brief The HAL (hal.h) on an Arduino core, in C++11: serial ports, the clock, pins and pulses.
+ * @brief Fathom on an Arduino core, in C++11: a class for each sensor, buses, and the HAL (hal.h) below them.
  *
  * The port uses HardwareSerial, any Stream, micros(), digital pins, and a pin interrupt for pulses.
  * `cmake --build build --target arduino-library` makes the library for Arduino; start with the sketches in its
- * examples/. All functions return at once, except that a SoftwareSerial blocks while it sends (stream_uart). None
- * allocates memory.
+ * examples/. No function allocates memory. All functions return at once, with two exceptions: a SoftwareSerial blocks
+ * while it sends (stream_uart), and so does a serial_uart with a driver-enable pin on a core without Timer0.
  *
  * @code
- * fathom::arduino::serial_uart bus(Serial1, 2);            // pin 2: driver enable of an RS-485 transceiver
- * fathom_uart_t uart;
+ * FathomBus bus(Serial1, 2);                    // pin 2: driver enable of an RS-485 transceiver
+ * FathomHps167s gate(bus);
  *
- * void setup()
+ * void setup() { bus.begin(fathom_hps167s_factory_line) && gate.begin(); }
+ *
+ * void loop()
  * {
- *     if (!bus.begin(9600)) return;
- *     uart = bus.hal();                                    // a line (line.h) uses &uart and &fathom::arduino::clock
+ *     if (!gate.available()) return;
+ *     if (gate.hasTarget()) use(gate.distanceMm());
+ *     else report(gate.resultName());           // such as NO_TARGET, NO_RESPONSE
  * }
  * @endcode
  *
@@ -30,7 +33,7 @@
  *    an interrupt.
  *
  * 2. **Objects** are in the caller's memory and may be global: they do nothing before begin(). Do not move or copy them
- *    afterwards.
+ *    afterwards. An object with a pin or a serial port must stay valid for ever after begin().
  *
  * 3. **CRC.** The library contains src/codec/crc16_small.c, the CRC with a table of 16 entries. An AVR keeps constant
  *    tables in RAM: 16 entries take 32 bytes, and 256 entries would take 512 of 2048 bytes. The smaller table needs
@@ -80,20 +83,11 @@ fathom_pin_t input(uint8_t pin, bool pull_up = false);
  * @brief A pin whose high pulses are measured by its interrupt (A16 1).
  *
  * It replaces pulseIn(), which blocks, and which lost 1.2 % to the interrupts of Timer0 and Serial in a measurement.
- * attachInterrupt() passes no argument to its function, so the sketch has a function for each pin:
- *
- * @code
- * fathom::arduino::pulse_input echo;
- * void echo_changed() { echo.changed(); }
- * // in setup():
- * echo.begin(2);
- * attachInterrupt(digitalPinToInterrupt(2), echo_changed, CHANGE);
- * capture = echo.capture();
- * @endcode
+ * At most 4 objects can be used, because attachInterrupt() passes no argument to its function.
  *
  * On an AVR at 16 MHz a width is off by the steps of micros(), 4 us, and at each edge by an interrupt that runs when
  * the edge comes: 7 us by that of Timer0, 5 us by that of Serial. The interrupt of the pin is the first of those that
- * wait, so there is one such delay: usually 4 us in all, which is 0.7 mm, and at worst 11 us, which is 1.9 mm (6 us
+ * wait, so there is one such delay: usually 4 us in all, which is 0.7 mm, and at worst 11 us, which is 1.9 mm (8 us
  * were observed). Other delays add to this: about 20 us by another pulse_input, 1 ms by a byte of SoftwareSerial. The
  * capture hardware of Timer1 is more exact (port/avr).
  *
@@ -103,13 +97,11 @@ class pulse_input
 {
   public:
     /**
-     * @brief Makes a pin an input and discards all edges. Call it before attachInterrupt().
-     * @param pin  Arduino number of the pin.
+     * @brief Makes a pin an input, discards all edges, and attaches the interrupt of the pin.
+     * @param pin  Arduino number of the pin: 2 or 3 on an Uno. If begin() is called again, the same pin.
+     * @return False if the pin has no interrupt, or if there are 4 other objects.
      */
-    void begin(uint8_t pin);
-
-    /** @brief Stores an edge: first its time, then the level. Call it from the interrupt of the pin, in mode CHANGE. */
-    void changed();
+    bool begin(uint8_t pin);
 
     /**
      * @brief Returns the capture for fathom_a16_pwm_init(). Call it after begin().
@@ -117,13 +109,18 @@ class pulse_input
      */
     fathom_capture_t capture();
 
-    /** @brief The edges (edges.h). Its counters `lost` and `missed` may be read. `same_us` may be changed between
-     * begin() and attachInterrupt(). */
+    /** @brief The edges (edges.h). Its counters `lost` and `missed` may be read. */
     fathom_edges_t edges;
 
   private:
+    static const uint8_t slot_count = 4;
+    static pulse_input *slots_[slot_count];
+    template <uint8_t slot> static void changed() { slots_[slot]->feed(); }
+
     uint8_t pin_;
     fathom_pin_t level_;
+
+    void feed();
 };
 
 /** @brief Constants of pins. */
@@ -152,50 +149,50 @@ enum : uint8_t {
  * - **set_break** is NULL, because cores have no function for it. Use a pin, output(), for triggers and selects.
  *
  * **RS-485.** The driver-enable pin (DE) is high while a request is sent. Connect /RE to it too if there should be no
- * echo; RX then needs a pull-up resistor. `write` sets the pin. The first call of `read`, `sent`, `set_line` or
- * release() after the time of `sent` clears the pin; fathom_poll() makes such a call each time while a request is sent.
- * No interrupt of the core does this. A slow loop therefore clears the pin late by its own period, and the response of
- * a device that responds meanwhile is lost. The period of loop() must be shorter than the pause of the device before
- * its response, less the delay of `sent`:
+ * echo; RX then needs a pull-up resistor. A device responds after a pause of 1.75 ms or more, so DE must be low by then,
+ * however long loop() takes. No core does this by itself:
  *
- * | sensor                    | longest period of loop()                          |
- * |---------------------------|---------------------------------------------------|
- * | HPS-167S at 19200 baud    | 1.6 ms (the sensor keeps t3.5, 2.0 ms)            |
- * | HPS-167S at 115200 baud   | 1.6 ms                                            |
- * | A05, `55 AA`              | 60 ms (the sensor waits 65 ms or more, A05 2(3))  |
- * | A16 and A05, Modbus       | 3.4 ms (t3.5 at 9600 baud)                        |
+ * - **AVR.** The compare interrupt A of Timer0 runs every 1.024 ms (at 16 MHz) while a request is sent, and clears the
+ *   pin at most 1.5 ms after the last stop bit. fathom_poll() clears it earlier if loop() is fast. Timer0 is the clock
+ *   of the core; only this interrupt of it is used. A sketch that constructs no port with a driver-enable pin may use
+ *   TIMER0_COMPA_vect itself. With one it cannot, unless the library is compiled with the macro
+ *   `FATHOM_ARDUINO_NO_TIMER0`; then the next paragraph applies.
+ * - **Other cores** have no such timer. `write` waits until the request has left (flush()), and then clears the pin at
+ *   once. It takes as long as the request: 4.6 ms for a measurement of an HPS-167S at 19200 baud, and at most 15 ms, for
+ *   13 bytes of 11 bits at 9600 baud.
  *
- * If loop() takes longer, call release() from a timer interrupt every millisecond, or use a transceiver that switches
- * by itself. An AVR has an interrupt of Timer0 for this, which the core does not use:
+ * With DE, and without it, loop() may take as long as the sensors allow:
  *
- * @code
- * ISR(TIMER0_COMPA_vect) { bus.release(); }
- * // in setup():
- * OCR0A = 0x80;
- * TIMSK0 |= _BV(OCIE0A);
- * @endcode
+ * | sensor                                                    | longest period of loop()           |
+ * |-----------------------------------------------------------|------------------------------------|
+ * | any that is asked, also an HPS-167S with factory settings | 50 ms; a reading takes 3 periods   |
+ * | A16 and A05 with automatic output, 9600 baud              | 60 ms: the core keeps 63 bytes     |
  */
 class serial_uart
 {
   public:
     /**
-     * @brief Names the serial port. Does nothing with it yet.
+     * @brief Stores the serial port. Does nothing with it yet.
+     * @param serial  The serial port. Must stay valid as long as this object.
+     */
+    explicit serial_uart(HardwareSerial &serial);
+
+    /**
+     * @brief Stores the serial port and the driver-enable pin. Does nothing with them yet.
      *
      * @param serial         The serial port. Must stay valid as long as this object.
      * @param driver_enable  Arduino number of the driver-enable pin. no_pin: there is no transceiver.
      */
-    explicit serial_uart(HardwareSerial &serial, uint8_t driver_enable = no_pin);
+    serial_uart(HardwareSerial &serial, uint8_t driver_enable);
 
     /**
      * @brief Calls begin() of the core and sets the driver-enable pin low. Call it in setup(), before anything is
      * written.
      *
-     * @param baud       Baud rate.
-     * @param parity     Parity.
-     * @param stop_bits  1 or 2.
+     * @param settings  Baud rate, parity and stop bits. Copied.
      * @return False if these settings cannot be reached. Then nothing changed except the driver-enable pin.
      */
-    bool begin(uint32_t baud, fathom_parity_t parity = FATHOM_PARITY_NONE, uint8_t stop_bits = 1);
+    bool begin(const fathom_line_settings_t &settings);
 
     /**
      * @brief Returns the UART functions for a fathom_line_parts_t.
@@ -206,16 +203,18 @@ class serial_uart
     /**
      * @brief Clears the driver-enable pin if the request has left.
      *
-     * May be called from an interrupt, whatever loop() does at this moment. On an AVR it takes about 10 us while a
-     * request is sent, else 1 us.
+     * May be called from an interrupt, whatever loop() does at this moment.
      *
      * @return True if no request is being sent.
      */
     bool release();
 
   private:
+    friend struct driver_enable;
     HardwareSerial &serial_;
     const uint8_t driver_enable_;
+    void (*const started_)(serial_uart &); /* called when a request was written; NULL without a pin */
+    serial_uart *next_;                    /* of those that an interrupt releases */
     volatile bool leaving_;
     volatile uint32_t
         since_us_; /* An interrupt may call release(), so this is set only while leaving_ is false. */
@@ -223,6 +222,7 @@ class serial_uart
     int capacity_; /* of the core's buffer when it is empty */
     fathom_line_settings_t line_;
 
+    serial_uart(HardwareSerial &serial, uint8_t driver_enable, void (*started)(serial_uart &));
     bool set(const fathom_line_settings_t &line);
     static int read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx);
     static int write(void *ctx, const uint8_t *bytes, size_t length);
@@ -239,7 +239,7 @@ class serial_uart
  * - **write** passes all bytes to the Stream, and takes as long as the Stream does. SoftwareSerial sends bit by bit: a
  *   request of 8 bytes at 9600 baud blocks for 8.3 ms, during which nothing is received. `write` returns a negative
  *   number if the Stream accepted fewer bytes.
- * - **sent** is true when the time of the frame at `baud` has passed since `write` was called, with the addition of
+ * - **sent** is true when the time of the frame has passed since `write` was called, with the addition of
  *   serial_uart.
  * - **leaves_in_us** returns the rest of that time.
  *
@@ -251,13 +251,16 @@ class stream_uart
 {
   public:
     /**
-     * @brief Names the Stream. Does nothing with it yet.
-     *
+     * @brief Stores the Stream. Does nothing with it yet.
      * @param stream  The Stream. Must stay valid as long as this object.
-     * @param baud    Its baud rate.
-     * @param bits    Bits of one character with start, parity and stop bits; 10 for 8N1.
      */
-    stream_uart(Stream &stream, uint32_t baud, uint8_t bits = 10);
+    explicit stream_uart(Stream &stream);
+
+    /**
+     * @brief Stores the settings. Call it before hal().
+     * @param settings  The settings that the sketch passed to begin() of the Stream.
+     */
+    void begin(const fathom_line_settings_t &settings);
 
     /**
      * @brief Returns the UART functions for a fathom_line_parts_t.
@@ -267,8 +270,8 @@ class stream_uart
 
   private:
     Stream &stream_;
-    const uint32_t baud_;
-    const uint8_t bits_;
+    uint32_t baud_;
+    uint8_t bits_; /* of one character */
     bool leaving_;
     uint32_t since_us_;
     uint32_t span_us_;
@@ -279,7 +282,330 @@ class stream_uart
     static uint32_t leaves_in_us(void *ctx);
 };
 
+/** @brief The line of a bus, with its parts: the base of bus and stream_bus. */
+class bus_line
+{
+  public:
+    /** @brief The line. */
+    fathom_line_t line;
+
+    /** @brief The Modbus RTU transport over `line`, for a bus that asks. */
+    fathom_modbus_t modbus;
+
+    /** @brief The parts of `line`. A sketch that needs others changes them and calls fathom_line_init() with `&line`. */
+    fathom_line_parts_t parts;
+
+  protected:
+    /**
+     * @brief Makes a line that sends requests of `uart_`.
+     * @param settings  The settings of the port.
+     * @return False if the settings are not allowed.
+     */
+    bool ask(const fathom_line_settings_t &settings);
+
+    /**
+     * @brief Makes a line that only listens of `uart_`.
+     * @return False if the line refuses its parts.
+     */
+    bool listen();
+
+    /**
+     * @brief Makes the bus one that drivers refuse.
+     * @return False.
+     */
+    bool refuse();
+
+    /** @brief The UART of the line. */
+    fathom_uart_t uart_;
+
+  private:
+    uint8_t frame_[32]; /* the longest frame of any sensor is the details of an HPS-167S, 27 bytes */
+
+    void name_parts();
+};
+
+/**
+ * @brief A HardwareSerial with a line on it: all that the sensors of one serial port need.
+ *
+ * The line is made of parts (line.h) for a transceiver of unknown kind and sensors with factory settings: it finds out
+ * whether there is an echo, names `senders`, and keeps fathom_silence_us() before a request. Several sensors may share
+ * a bus, and a sketch may have several buses.
+ */
+class bus : public bus_line
+{
+  public:
+    /**
+     * @brief Stores the serial port. Does nothing with it yet.
+     * @param serial  The serial port (Serial, Serial1, ...). Nothing else may use it.
+     */
+    explicit bus(HardwareSerial &serial) : port(serial) {}
+
+    /**
+     * @brief Stores the serial port and the driver-enable pin. Does nothing with them yet.
+     *
+     * @param serial         The serial port (Serial, Serial1, ...). Nothing else may use it.
+     * @param driver_enable  Arduino number of the driver-enable pin of an RS-485 transceiver (serial_uart).
+     */
+    bus(HardwareSerial &serial, uint8_t driver_enable) : port(serial, driver_enable) {}
+
+    /**
+     * @brief Begins the port and makes a line of it, for sensors that are asked. Call it in setup().
+     * @param settings  The settings with which the sensors leave the factory (factory_line.h), or those that were set.
+     * @return False if the port cannot reach the settings. Then each driver refuses this bus.
+     */
+    bool begin(const fathom_line_settings_t &settings);
+
+    /**
+     * @brief Begins the port and makes a line of it that only listens, for sensors that send by themselves.
+     *
+     * The sketch links nothing that sends. It may print by the serial port, since TX is free.
+     *
+     * @param settings  As for begin().
+     * @return As begin().
+     */
+    bool begin_listening(const fathom_line_settings_t &settings);
+
+    /** @brief The port. */
+    serial_uart port;
+};
+
+/**
+ * @brief The same as bus for a SoftwareSerial, the USB serial of a board, or any other Stream with begin(baud).
+ *
+ * It has 8 data bits, no parity, 1 stop bit, and no driver enable (stream_uart).
+ */
+class stream_bus : public bus_line
+{
+  public:
+    /**
+     * @brief Stores the serial port. Does nothing with it yet.
+     * @param serial  The serial port, a Stream with begin(baud). Must stay valid as long as this object.
+     */
+    template <class Serial>
+    explicit stream_bus(Serial &serial) : port(serial), serial_(serial), begin_(begin_of<Serial>)
+    {
+    }
+
+    /**
+     * @brief Begins the serial port and makes a line of it, for sensors that are asked. Call it in setup().
+     * @param settings  As for bus::begin().
+     * @return False if the settings have a parity or 2 stop bits. Then each driver refuses this bus.
+     */
+    bool begin(const fathom_line_settings_t &settings);
+
+    /**
+     * @brief Begins the serial port and makes a line of it that only listens, for sensors that send by themselves.
+     * @param settings  As for begin().
+     * @return As begin().
+     */
+    bool begin_listening(const fathom_line_settings_t &settings);
+
+    /** @brief The port. */
+    stream_uart port;
+
+  private:
+    Stream &serial_;
+    void (*begin_)(Stream &serial, uint32_t baud);
+
+    template <class Serial> static void begin_of(Stream &serial, uint32_t baud)
+    {
+        static_cast<Serial &>(serial).begin(static_cast<long>(baud));
+    }
+    bool begin_port(const fathom_line_settings_t &settings);
+};
+
+/** @brief fathom::a16_controlled whose trigger is a pin. */
+class a16_controlled : public fathom::a16_controlled
+{
+  public:
+    /**
+     * @brief Stores the bus and the number of the pin.
+     * @param bus          The bus, which only listens.
+     * @param trigger_pin  Arduino number of the pin to the module's RX.
+     */
+    template <class Bus>
+    a16_controlled(Bus &bus, uint8_t trigger_pin) : fathom::a16_controlled(bus), trigger_pin_(trigger_pin)
+    {
+    }
+
+    /**
+     * @brief Makes the pin an output and initialises the driver, as fathom_a16_controlled_init().
+     * @param config  The configuration, read only during the call. NULL: the defaults.
+     * @return As fathom_a16_controlled_init().
+     */
+    fathom_status_t begin(const fathom_a16_controlled_config_t *config = nullptr)
+    {
+        trigger_ = output(trigger_pin_);
+        return fathom::a16_controlled::begin(fathom_output_pin(&trigger_), config);
+    }
+
+  private:
+    uint8_t trigger_pin_;
+    fathom_pin_t trigger_;
+};
+
+/** @brief fathom::a16_pwm with its pins. */
+class a16_pwm : public fathom::a16_pwm
+{
+  public:
+    /**
+     * @brief Stores the numbers of the pins.
+     * @param pulse_pin    Arduino number of the pin to the module's TX: one with an interrupt (pulse_input).
+     * @param trigger_pin  Arduino number of the pin to the module's RX.
+     */
+    a16_pwm(uint8_t pulse_pin, uint8_t trigger_pin) : pulse_pin_(pulse_pin), trigger_pin_(trigger_pin) {}
+
+    /**
+     * @brief Sets up the pins and the interrupt, and initialises the driver, as fathom_a16_pwm_init().
+     * @param config  The configuration, read only during the call. NULL: the defaults.
+     * @return As fathom_a16_pwm_init(). FATHOM_ERR_UNSUPPORTED: pulse_input::begin() failed.
+     */
+    fathom_status_t begin(const fathom_a16_pwm_config_t *config = nullptr);
+
+    /** @brief The pulses. */
+    pulse_input pulses;
+
+  private:
+    uint8_t pulse_pin_;
+    uint8_t trigger_pin_;
+    fathom_pin_t trigger_;
+    fathom_capture_t capture_;
+};
+
+/** @brief fathom::a16_switch with its pin, an input without a pull-up. */
+class a16_switch : public fathom::a16_switch
+{
+  public:
+    /**
+     * @brief Stores the number of the pin.
+     * @param pin  Arduino number of the pin to the module's TX.
+     */
+    explicit a16_switch(uint8_t pin) : pin_(pin) {}
+
+    /**
+     * @brief Makes the pin an input and initialises the driver, as fathom_a16_switch_init().
+     * @param config  The configuration, read only during the call. NULL: the defaults.
+     * @return As fathom_a16_switch_init().
+     */
+    fathom_status_t begin(const fathom_a16_switch_config_t *config = nullptr)
+    {
+        level_ = input(pin_);
+        return fathom::a16_switch::begin(level_, clock, config);
+    }
+
+  private:
+    uint8_t pin_;
+    fathom_pin_t level_;
+};
+
+/** @brief fathom::a05_relay with its pin, an input with a pull-up. The contact goes to ground. */
+class a05_relay : public fathom::a05_relay
+{
+  public:
+    /**
+     * @brief Stores the number of the pin.
+     * @param pin  Arduino number of the pin to the contact.
+     */
+    explicit a05_relay(uint8_t pin) : pin_(pin) {}
+
+    /**
+     * @brief Makes the pin an input with a pull-up and initialises the driver, as fathom_a05_relay_init().
+     * @param config  The configuration, read only during the call. NULL: the defaults.
+     * @return As fathom_a05_relay_init().
+     */
+    fathom_status_t begin(const fathom_a05_relay_config_t *config = nullptr)
+    {
+        level_ = input(pin_, true);
+        return fathom::a05_relay::begin(level_, clock, config);
+    }
+
+  private:
+    uint8_t pin_;
+    fathom_pin_t level_;
+};
+
+/** @brief A sensor whose functions have names as the Arduino API has them. The other functions of it remain. */
+template <class Sensor> class named : public Sensor
+{
+  public:
+    using Sensor::Sensor;
+
+    /**
+     * @brief Initialises the driver with the defaults.
+     * @return False after an error, which statusName() has.
+     */
+    bool begin() { return Sensor::begin() == FATHOM_OK; }
+
+    /**
+     * @brief Initialises the driver with a configuration.
+     * @param config  The configuration of the driver, read only during the call.
+     * @return False after an error, which statusName() has.
+     */
+    template <class Config> bool begin(const Config &config) { return Sensor::begin(&config) == FATHOM_OK; }
+
+    /**
+     * @brief Polls the sensor. Call it in each loop().
+     * @return True if there is a new reading or error.
+     */
+    bool available() { return Sensor::poll() != FATHOM_PENDING; }
+
+    /** @brief Returns true if the newest result is a distance. */
+    bool hasTarget() const { return Sensor::has_target(); }
+
+    /** @brief Returns the distance in millimetres. 0 unless hasTarget(). */
+    uint16_t distanceMm() const { return Sensor::distance_mm(); }
+
+    /** @brief Returns true if the newest result is that of a switch or relay with something near. */
+    bool isNear() const { return Sensor::is(FATHOM_NEAR); }
+
+    /** @brief Returns the newest result as a name: the kind of a reading, such as "NO_TARGET", or an error. */
+    const char *resultName() const { return Sensor::result_name(); }
+
+    /** @brief Returns the newest status as a name: "OK", "PENDING", or an error such as "NO_RESPONSE". */
+    const char *statusName() const { return Sensor::status_name(); }
+};
+
+/** @brief A bus whose functions have names as the Arduino API has them. The other functions of it remain. */
+template <class Bus> class named_bus : public Bus
+{
+  public:
+    using Bus::Bus;
+
+    /**
+     * @brief As begin_listening().
+     * @param settings  As for begin_listening().
+     * @return As begin_listening().
+     */
+    bool beginListening(const fathom_line_settings_t &settings) { return Bus::begin_listening(settings); }
+};
+
 } // namespace arduino
 } // namespace fathom
+
+/** @brief A HardwareSerial with a line on it. */
+typedef fathom::arduino::named_bus<fathom::arduino::bus> FathomBus;
+/** @brief A SoftwareSerial or any other Stream with a line on it. */
+typedef fathom::arduino::named_bus<fathom::arduino::stream_bus> FathomStreamBus;
+
+/** @brief HPS-167S, Modbus RTU: `FathomHps167s gate(bus)`. */
+typedef fathom::arduino::named<fathom::hps167s> FathomHps167s;
+/** @brief A16, automatic output on UART or RS232: `FathomA16Auto tank(bus)`. */
+typedef fathom::arduino::named<fathom::a16_auto> FathomA16Auto;
+/** @brief A16, UART controlled: `FathomA16Controlled tank(bus, trigger_pin)`. */
+typedef fathom::arduino::named<fathom::arduino::a16_controlled> FathomA16Controlled;
+/** @brief A16, pulse width: `FathomA16Pwm tank(pulse_pin, trigger_pin)`. */
+typedef fathom::arduino::named<fathom::arduino::a16_pwm> FathomA16Pwm;
+/** @brief A16, Modbus RTU: `FathomA16Modbus tank(bus)`. */
+typedef fathom::arduino::named<fathom::a16_modbus> FathomA16Modbus;
+/** @brief A16, switch output: `FathomA16Switch door(pin)`. */
+typedef fathom::arduino::named<fathom::arduino::a16_switch> FathomA16Switch;
+/** @brief A05, automatic output: `FathomA05Auto bumper(bus)`. */
+typedef fathom::arduino::named<fathom::a05_auto> FathomA05Auto;
+/** @brief A05, protocol `55 AA`: `FathomA05Dyp bumper(bus)`. */
+typedef fathom::arduino::named<fathom::a05_dyp> FathomA05Dyp;
+/** @brief A05, Modbus RTU: `FathomA05Modbus bumper(bus)`. */
+typedef fathom::arduino::named<fathom::a05_modbus> FathomA05Modbus;
+/** @brief A05, relay output: `FathomA05Relay door(pin)`. */
+typedef fathom::arduino::named<fathom::arduino::a05_relay> FathomA05Relay;
 
 #endif

@@ -4,7 +4,7 @@
 #
 # Why this is needed: of a library with a src/ folder the Arduino tools put src/ on the include path, and nothing else,
 # and compile every source below it. Here the headers are in include/, and src/ has the CRC twice. So:
-#     src/fathom_arduino.h, .cpp   the port, which sketches include
+#     src/fathom_arduino*          the port, whose header sketches include
 #     src/fathom/                  include/fathom
 #     src/core/                    src/, with one of the two CRCs (fathom_arduino.h says why that one)
 #     examples/                    examples/arduino
@@ -26,6 +26,7 @@ file(GLOB sketches ${root}/examples/arduino/*)
 file(REMOVE_RECURSE ${TO})
 file(COPY ${CMAKE_CURRENT_LIST_DIR}/library.properties ${root}/LICENSE DESTINATION ${TO})
 file(COPY ${CMAKE_CURRENT_LIST_DIR}/fathom_arduino.h ${CMAKE_CURRENT_LIST_DIR}/fathom_arduino.cpp
+    ${CMAKE_CURRENT_LIST_DIR}/fathom_arduino_driver_enable.cpp
     DESTINATION ${TO}/src)
 file(COPY ${root}/include/fathom DESTINATION ${TO}/src FILES_MATCHING PATTERN *.h PATTERN *.hpp)
 file(COPY ${root}/src/ DESTINATION ${TO}/src/core FILES_MATCHING PATTERN *.c PATTERN *.h)

@@ -60,7 +60,7 @@ def declarations(root):
     for path in headers(root):
         text = read(root, path)
         code = code_of(text)
-        for match in (METHOD if path.endswith('.hpp') else FUNCTION).finditer(code):
+        for match in (METHOD if 'namespace fathom' in code else FUNCTION).finditer(code):
             comment = '\n'.join(text.split('\n')[:code.count('\n', 0, match.start())]).rstrip()
             comment = comment[comment.rindex('/**'):] if comment.endswith('*/') and '/**' in comment else ''
             count = 0 if match[2].strip() in ('', 'void') else match[2].count(',') + 1

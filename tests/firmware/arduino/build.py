@@ -20,6 +20,8 @@ INCLUDE = ['-I' + CORE, '-I' + AVR + '/variants/standard']
 # avr-gcc 5.4 does not define it for C++, and WString.cpp of Debian's core needs it.
 CORE_NEEDS = '-DDECIMAL_DIG=__DECIMAL_DIG__'
 
+FLAGS = {'hps_waits': ['-DFATHOM_ARDUINO_NO_TIMER0']}  # of the library and a sketch
+
 
 def arduino_library(out):
     return os.path.join(out, 'sketchbook', 'libraries', 'Fathom')
@@ -34,8 +36,10 @@ def run(command):
 
 def builder(out, sketch, folder):
     """The builder with Debian's core and tools; the second folder of hardware tells it of arduino-ctags."""
-    # A sketch of the tests includes one of the library's; a user's sketch has no such need.
-    preferences = {'compiler.cpp.extra_flags': f'{CORE_NEEDS} -I{os.path.join(arduino_library(out), "examples")}'}
+    # A sketch of the tests includes one of the library's or of the tests; a user's sketch has no such need.
+    flags = [CORE_NEEDS, '-I' + os.path.join(arduino_library(out), 'examples'), '-I' + os.path.join(HERE, 'sketches'),
+             *FLAGS.get(os.path.basename(folder), [])]
+    preferences = {'compiler.cpp.extra_flags': ' '.join(flags)}
     preferences |= {f'runtime.tools.{tool}.path': '/usr' for tool in ('avr-gcc', 'avrdude', 'arduinoOTA')}
     return ['arduino-builder', '-compile', '-verbose', '-hardware', HARDWARE, '-hardware', '/usr/share/arduino-builder',
             '-tools', '/usr/bin', '-built-in-libraries', AVR + '/libraries',

@@ -17,6 +17,6 @@ TEST(the_adapter_keeps_what_its_header_says)
     }
     assert_true(board.finished);
     assert_int_equal(board.exit_code, 0);
-    assert_int_equal(held, 49);
+    assert_int_equal(held, 81);
     assert_int_equal(board.usart.overruns, 0);
 }

@@ -15,6 +15,9 @@ import cases
 
 OUT = sys.argv[1]
 LIBRARY = build.arduino_library(OUT)
+EXAMPLES = ['a05_auto', 'a05_dyp', 'a05_modbus', 'a05_relay', 'a16_auto', 'a16_controlled', 'a16_modbus', 'a16_pwm',
+            'a16_switch', 'hps167s']
+SOURCES = ['fathom_arduino.cpp', 'fathom_arduino_driver_enable.cpp']
 WARNINGS = ['-Wall', '-Wextra', '-Wpedantic', '-Wconversion', '-Wsign-conversion', '-Wshadow',
             '-Wmissing-declarations']
 
@@ -70,8 +73,8 @@ def test_the_header_that_the_ide_includes_stands_right_in_src():
     for name in properties()['includes'].split(','):
         assert os.path.exists(os.path.join(LIBRARY, 'src', name)), name
     # All that is on the include path: nothing there may shadow what is not ours.
-    assert sorted(os.listdir(os.path.join(LIBRARY, 'src'))) == ['core', 'fathom', 'fathom_arduino.cpp',
-                                                                'fathom_arduino.h']
+    assert sorted(os.listdir(os.path.join(LIBRARY, 'src'))) == [
+        'core', 'fathom', 'fathom_arduino.cpp', 'fathom_arduino.h', 'fathom_arduino_driver_enable.cpp']
 
 
 def test_all_of_the_core_is_there_and_the_crc_once():
@@ -83,9 +86,24 @@ def test_all_of_the_core_is_there_and_the_crc_once():
 
 def test_the_examples_are_there_each_in_a_folder_of_its_name():
     names = sorted(os.listdir(os.path.join(LIBRARY, 'examples')))
-    assert names == ['a05_auto', 'a16_pulse', 'hps167s_rs485']
+    assert names == EXAMPLES
     for name in names:
         assert below(os.path.join(LIBRARY, 'examples', name)) == [name + '.ino'], name
+
+
+def test_each_example_is_a_first_sketch_of_at_most_25_lines():
+    for name in EXAMPLES:
+        lines = read(LIBRARY, 'examples', name, name + '.ino').splitlines()
+        assert lines[0] == '// SPDX-License-Identifier: MIT', name
+        assert len(lines) - 1 <= 25, f'{name}: {len(lines) - 1} lines'
+
+
+def test_the_interrupt_of_timer0_is_linked_with_a_driver_enable_pin_and_else_not():
+    for name in EXAMPLES:
+        symbols = read(OUT, 'images', name + '.sym')
+        is_ours = re.search(r' T __vector_14$', symbols, re.M) is not None
+        has_pin = '(Serial, 2)' in read(LIBRARY, 'examples', name, name + '.ino')
+        assert is_ours == has_pin, name
 
 
 def test_there_is_no_link_in_it_which_a_registry_refuses():
@@ -116,38 +134,47 @@ def test_the_builder_finds_the_library_by_its_header_for_each_sketch():
 
 def test_the_port_compiles_without_a_warning():
     # The core's headers have some, and as system headers avr-gcc takes them for C.
-    command = ['avr-g++', '-std=c++11', '-Os', *WARNINGS, *build.BOARD, build.CORE_NEEDS,
-               *build.INCLUDE, '-I' + os.path.join(LIBRARY, 'src'), '-c',
-               os.path.join(LIBRARY, 'src/fathom_arduino.cpp'), '-o', '/dev/null']
-    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
-    assert done.returncode == 0, done.stdout
-    found = [line for line in done.stdout.splitlines()
-             if re.search(r': (warning|error):', line) and not line.startswith(build.AVR)]
-    assert not found, '\n'.join(found)
+    for name in SOURCES:
+        for options in ([], ['-DFATHOM_ARDUINO_NO_TIMER0']):
+            command = ['avr-g++', '-std=c++11', '-Os', *WARNINGS, *build.BOARD, build.CORE_NEEDS, *options,
+                       *build.INCLUDE, '-I' + os.path.join(LIBRARY, 'src'), '-c', os.path.join(LIBRARY, 'src', name),
+                       '-o', '/dev/null']
+            done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+            assert done.returncode == 0, done.stdout
+            found = [line for line in done.stdout.splitlines()
+                     if re.search(r': (warning|error):', line) and not line.startswith(build.AVR)]
+            assert not found, '\n'.join(found)
 
 
-def test_the_header_compiles_alone_and_twice_and_on_a_mega_and_a_leonardo():
+def on_serial1(sketch):
+    """The sketch as its comment says for a board with Serial1."""
+    return re.sub(r'^SoftwareSerial .*\n|^#include <SoftwareSerial.h>\n', '', sketch, flags=re.M) \
+        .replace('FathomBus bus(Serial, 2)', 'FathomBus bus(Serial1, 2)').replace('console.', 'Serial.') \
+        .replace('FathomStreamBus bus(serial)', 'FathomBus bus(Serial1)')
+
+
+def test_the_port_and_the_sketches_compile_for_a_mega_and_a_leonardo():
     with tempfile.TemporaryDirectory() as work:
-        source = os.path.join(work, 'alone.cpp')
-        with open(source, 'w', encoding='utf-8') as file:
-            file.write('#include <fathom_arduino.h>\n#include <fathom_arduino.h>\n'
-                       'fathom::arduino::serial_uart port(Serial1);\n')
+        sources = [os.path.join(LIBRARY, 'src', name) for name in SOURCES]
+        for name, text in [('twice', '#include <fathom_arduino.h>\n#include <fathom_arduino.h>\n'),
+                           *((name, '#include <Arduino.h>\n' + on_serial1(read(LIBRARY, 'examples', name, name + '.ino')))
+                             for name in EXAMPLES)]:
+            sources.append(os.path.join(work, name + '.cpp'))
+            with open(sources[-1], 'w', encoding='utf-8') as file:
+                file.write(text)
         for chip, board, variant in (('atmega2560', 'MEGA2560', 'mega'), ('atmega32u4', 'LEONARDO', 'leonardo')):
             usb = ['-DUSB_VID=0x2341', '-DUSB_PID=0x8036'] if variant == 'leonardo' else []
-            for path in [source, os.path.join(LIBRARY, 'src/fathom_arduino.cpp'),
-                         *(os.path.join(LIBRARY, 'examples', name, name + '.ino')
-                           for name in os.listdir(os.path.join(LIBRARY, 'examples')))]:
-                sketch = ['-include', 'Arduino.h', '-x', 'c++'] if path.endswith('.ino') else []
+            for path in sources:
                 build.run(['avr-g++', '-c', '-Os', '-w', '-std=gnu++11', '-fpermissive', '-fno-exceptions', '-mmcu=' + chip,
                            '-DF_CPU=16000000L', '-DARDUINO=10819', '-DARDUINO_AVR_' + board, '-DARDUINO_ARCH_AVR',
                            *usb, build.CORE_NEEDS, '-I' + build.CORE,
-                           '-I' + build.AVR + '/variants/' + variant, '-I' + os.path.join(LIBRARY, 'src'), *sketch,
+                           '-I' + build.AVR + '/variants/' + variant, '-I' + os.path.join(LIBRARY, 'src'),
                            path, '-o', '/dev/null'])
 
 
 def test_no_sketch_links_the_table_of_256_entries_or_floating_point():
     images = os.path.join(OUT, 'images')
-    for name in ('a16_pulse', 'a05_auto', 'hps167s_rs485'):
+    for name in EXAMPLES:
         text = read(images, name + '.sym')
         assert 'pulseIn' not in text and '__addsf3' not in text, name
         size = build.run(['avr-size', os.path.join(images, name + '.elf')]).split('\n')[1].split()

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The sketch a16_pulse against a module that answers the trigger with pulses of known width (A16 1). */
+/* The sketch a16_pwm against a module that answers the trigger with pulses of known width (A16 1). */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -107,43 +107,49 @@ static double off_us(void)
 
 static double magnitude(double value) { return value < 0 ? -value : value; }
 
-/* Four pulses by that sketch. */
-static void measure(const char *image, const uint32_t widths_us[4])
+static const uint32_t widths_us[] = {3000, 10100, 50003, 86250};
+
+TEST(pulses_become_distances)
 {
-    begin(image);
-    for (int i = 0; i < 4; i++) {
+    begin("a16_raw");
+    for (size_t i = 0; i < sizeof widths_us / sizeof *widths_us; i++) {
         bench.width_cycles = widths_us[i] * BOARD_CYCLES_PER_US;
         assert_true(magnitude(off_us()) <= BOUND_US);
         assert_int_equal(bench.fell_cycles / BOARD_CYCLES_PER_US, widths_us[i]);
     }
-}
-
-TEST(pulses_become_distances)
-{
-    measure("a16_pulse", (const uint32_t[4]){3000, 10100, 86250, 3000});
     /* A16 1(1), (2): low long enough for any input, and more than 220 ms from trigger to trigger. */
     assert_true(bench.triggers >= 4);
     assert_in_range(bench.low_cycles / BOARD_CYCLES_PER_US, 2000, 3000);
     assert_in_range(bench.trigger_cycles / BOARD_CYCLES_PER_US, 220001, CYCLE_US);
 }
 
-TEST(nothing_in_range_no_response_and_a_stuck_line_are_told_apart)
+/* A sketch prints the distance of each width, or the name of what there is instead. */
+static void expect_names(const char *image, uint64_t most_us)
 {
-    begin("a16_pulse");
+    begin(image);
+    for (size_t i = 0; i < sizeof widths_us / sizeof *widths_us; i++) {
+        bench.width_cycles = widths_us[i] * BOARD_CYCLES_PER_US;
+        const double off_mm = strtod(board_line(most_us), NULL) - widths_us[i] * 4 / 23.0; /* A16 1(4) */
+        if (magnitude(off_mm) > BOUND_US * 4 / 23.0 + 0.5)
+            fail_msg("%u us: off by %f mm", (unsigned)widths_us[i], off_mm);
+    }
     bench.width_cycles = 94000 * BOARD_CYCLES_PER_US;
-    assert_string_equal(line(), "nothing in range");
+    assert_string_equal(board_line(most_us), "NO_TARGET");
     bench.width_cycles = 0;
-    assert_string_equal(line(), "error -3");         /* FATHOM_ERR_NO_RESPONSE */
+    assert_string_equal(board_line(most_us), "NO_RESPONSE");
     bench.width_cycles = 1000 * BOARD_CYCLES_PER_US; /* below the range */
-    assert_string_equal(line(), "unknown");
+    assert_string_equal(board_line(most_us), "UNKNOWN");
     bench.width_cycles = 120000 * BOARD_CYCLES_PER_US;
-    assert_string_equal(line(), "stuck line");
+    assert_string_equal(board_line(most_us), "FAULT"); /* a stuck line */
     bench.width_cycles = 10000 * BOARD_CYCLES_PER_US;
-    bench.stays_high = false;
-    assert_true(magnitude(off_us()) <= BOUND_US);
+    assert_in_range(strtoul(board_line(most_us), NULL, 10), 1737, 1741); /* 1739.1 mm */
     bench.stays_high = true;
-    assert_string_equal(line(), "stuck line");
+    assert_string_equal(board_line(most_us), "FAULT");
 }
+
+TEST(nothing_in_range_no_response_and_a_stuck_line_have_names) { expect_names("a16_pwm", 2 * CYCLE_US); }
+
+TEST(a_loop_of_20_ms_loses_nothing) { expect_names("a16_slow", 3 * CYCLE_US); }
 
 /* The most that widths are off with falling edges so long after an overflow of Timer0, and rising ones away from it, at
  * two places of a step of micros(), which is 64 cycles, or at four. */
@@ -163,7 +169,7 @@ static double most_off_us(uint64_t first, uint64_t end, uint64_t step)
 
 TEST(a_width_is_off_by_a_step_and_the_interrupt_of_timer0_at_most)
 {
-    begin("a16_pulse");
+    begin("a16_raw");
     bench.width_cycles = 20000 * BOARD_CYCLES_PER_US;
     off_us(); /* until Timer0's time is known */
     const double apart_us = most_off_us(4000, 4064, 22);
@@ -175,19 +181,12 @@ TEST(a_width_is_off_by_a_step_and_the_interrupt_of_timer0_at_most)
     assert_true(most_us > STEP_US); /* it was hit */
 }
 
-TEST(a_loop_of_20_ms_loses_no_precision)
-{
-    measure("a16_slow", (const uint32_t[4]){3000, 10100, 50003, 86250});
-    bench.width_cycles = 0;
-    assert_string_equal(board_line(3 * CYCLE_US), "error -3");
-}
-
 /* The core counts overflows of Timer0, of 1024 us each, in 32 bits, and micros() is 1024 times that: 2^22 of them are
  * its wrap. */
 TEST(a_pulse_across_the_wrap_of_micros_is_right)
 {
     static const uint32_t wrap = UINT32_C(1) << 22;
-    begin("a16_pulse");
+    begin("a16_raw");
     bench.width_cycles = 80000 * BOARD_CYCLES_PER_US;
     assert_true(board_run_us(1500)); /* the sketch has begun, and has not triggered */
     assert_int_equal(bench.triggers, 0);

@@ -14,17 +14,20 @@ import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(HERE)))
-IMAGES = {'avr': 'hps167s_rs485', 'stm32f4': 'hps167s_rs485_qemu', 'hps167s_rs485': 'hps167s_rs485',
-          'hps_probe': 'hps_probe', 'alone': 'alone'}  # environment: image
-ARDUINO = ('hps167s_rs485', 'hps_probe')
+IMAGES = {'avr': 'hps167s_rs485', 'stm32f4': 'hps167s_rs485_qemu', 'hps167s': 'hps167s',
+          'hps_probe': 'hps_probe', 'hps_waits': 'hps_waits',
+          'timer0': 'timer0', 'alone': 'alone'}  # environment: image
+ARDUINO = ('hps167s', 'hps_probe', 'hps_waits', 'timer0')
 SCONS = '4.40801.0'  # as PlatformIO names SCons 4.8.1
 SOURCES = {
     'avr': ['examples/avr/hps167s_rs485.c'],
     'stm32f4': ['examples/stm32f4/hps167s_rs485.c', 'examples/stm32f4/board.h', 'examples/stm32f4/start.c',
                 'examples/stm32f4/start.h', 'examples/stm32f4/stm32f4.ld', 'examples/start',
                 'tests/firmware/stm32f4/images/board_qemu.c'],
-    'hps167s_rs485': ['examples/arduino/hps167s_rs485/hps167s_rs485.ino'],
+    'hps167s': ['examples/arduino/hps167s/hps167s.ino'],
     'hps_probe': ['tests/firmware/arduino/sketches/hps_probe/hps_probe.ino'],
+    'hps_waits': ['tests/firmware/arduino/sketches/hps_waits/hps_waits.ino'],
+    'timer0': ['tests/firmware/platformio/timer0.cpp'],
     'alone': ['tests/firmware/platformio/alone.c'],
     'unknown': ['tests/firmware/platformio/alone.c'],  # which is refused
 }

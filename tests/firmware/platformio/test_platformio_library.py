@@ -86,7 +86,13 @@ def test_on_an_stm32_the_port_that_is_named_is_compiled():
 
 
 def test_with_the_framework_of_arduino_its_port_needs_no_line():
-    assert compiled('hps167s_rs485') == core(without=('crc16.c',)) | {'port/arduino/fathom_arduino.cpp'}
+    port = {path for path in below('port/arduino') if path.endswith('.cpp')}
+    assert compiled('hps167s') == core(without=('crc16.c',)) | port
+
+
+def test_a_sketch_that_has_the_interrupt_of_timer0_itself_links_beside_the_port():
+    # PlatformIO makes an archive of the library, of which only what is named is linked.
+    assert os.path.exists(os.path.join(OUT, 'images/arduino/timer0.elf'))
 
 
 def test_a_port_that_is_not_there_is_refused_with_those_that_are():

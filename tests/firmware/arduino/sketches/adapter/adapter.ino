@@ -25,6 +25,8 @@ class taker : public Stream
   public:
     size_t takes = 255;
     uint8_t waiting = 0;
+    unsigned long baud = 0;
+    void begin(unsigned long rate) { baud = rate; }
     size_t write(uint8_t) override { return takes == 0 ? 0 : (takes--, 1); }
     int available() override { return waiting; }
     int peek() override { return waiting != 0 ? 0x40 + waiting : -1; }
@@ -34,7 +36,7 @@ class taker : public Stream
 static const uint8_t driver_pin = 2;
 static fathom::arduino::serial_uart port(Serial, driver_pin);
 static taker stream;
-static fathom::arduino::stream_uart soft(stream, 9600);
+static fathom::arduino::stream_uart soft(stream);
 
 static uint32_t now() { return fathom::arduino::clock.now_us(fathom::arduino::clock.ctx); }
 
@@ -106,7 +108,7 @@ static void check_settings(const fathom_uart_t &uart)
     CHECK(uart.set_line(uart.ctx, &no_stop) < 0);
     CHECK(uart.set_line(uart.ctx, &fast) == 1); // what held still does
     CHECK(uart.set_break == NULL);
-    CHECK(!port.begin(230400) && UBRR0L == 16);
+    CHECK(!port.begin(too_fast) && UBRR0L == 16);
 }
 
 static void check_stream(const fathom_uart_t &uart)
@@ -147,15 +149,78 @@ static void check_pins()
     CHECK(pulled.get(pulled.ctx));
 }
 
+// No call of the loop: the interrupt of Timer0 releases each port that has sent, whatever others there are.
+static fathom::arduino::serial_uart second(Serial, 3);
+static fathom::arduino::serial_uart third(Serial, 4);
+
+static void check_release(fathom::arduino::serial_uart &port_, uint8_t pin)
+{
+    const fathom_uart_t uart = port_.hal();
+    OCR0A = 0;
+    CHECK(port_.begin(fathom_hps167s_factory_line) && digitalRead(pin) == LOW);
+    CHECK(uart.write(uart.ctx, many, 8) == 8 && digitalRead(pin) == HIGH);
+    CHECK(OCR0A == 0x80 && (TIMSK0 & _BV(OCIE0A)) != 0);
+    delay(4); // 8 characters take 4.6 ms
+    CHECK(digitalRead(pin) == HIGH);
+    delay(3);
+    CHECK(digitalRead(pin) == LOW && (TIMSK0 & _BV(OCIE0A)) == 0);
+}
+
+static void check_analog_write()
+{
+    const fathom_uart_t uart = second.hal();
+    analogWrite(6, 10); // OC0A
+    CHECK(uart.write(uart.ctx, many, 1) == 1 && OCR0A == 10);
+    delay(3);
+    CHECK(digitalRead(3) == LOW && OCR0A == 10);
+}
+
+static fathom::arduino::stream_bus soft_bus(stream);
+static fathom::hps167s gate(soft_bus);
+static fathom::a16_auto tank(soft_bus);
+
+static void check_buses()
+{
+    CHECK(!soft_bus.begin(fathom_hps167s_factory_line)); // even parity
+    CHECK(gate.begin() == FATHOM_ERR_ARGUMENT);
+    CHECK(soft_bus.begin(fathom_a16_factory_line) && stream.baud == 9600);
+    CHECK(gate.begin() == FATHOM_OK);
+    gate.end();
+    CHECK(soft_bus.begin_listening(fathom_a16_factory_line));
+    CHECK(tank.begin() == FATHOM_OK && tank.poll() == FATHOM_PENDING);
+    CHECK(gate.begin() == FATHOM_ERR_ARGUMENT); // it cannot ask
+    const fathom_line_settings_t too_fast = {230400, FATHOM_PARITY_NONE, 1};
+    static fathom::arduino::bus bus(Serial);
+    CHECK(!bus.begin(too_fast) && bus.modbus.line == NULL);
+}
+
+static void check_pulses()
+{
+    static FathomA16Pwm none(5, 7); // no interrupt
+    CHECK(!none.begin() && none.status() == FATHOM_ERR_UNSUPPORTED);
+    static fathom::arduino::pulse_input inputs[5];
+    for (uint8_t i = 0; i < 4; i++) CHECK(inputs[i].begin(2));
+    CHECK(!inputs[4].begin(3));
+    CHECK(inputs[0].begin(2)); // again
+    detachInterrupt(digitalPinToInterrupt(2));
+}
+
 void setup()
 {
     const fathom_uart_t uart = port.hal();
     CHECK(uart.write(uart.ctx, many, 1) < 0); // before begin()
-    CHECK(port.begin(19200, FATHOM_PARITY_EVEN));
+    CHECK(port.begin(fathom_hps167s_factory_line));
     check_write(uart);
     check_settings(uart);
+    soft.begin(fathom_a16_factory_line);
     check_stream(soft.hal());
     check_pins();
+    check_release(second, 3);
+    check_release(third, 4);
+    check_release(second, 3);
+    check_analog_write();
+    check_buses();
+    check_pulses();
     GPIOR0 = held;
     GPIOR1 = 1;
     GPIOR2 = 0;

@@ -13,6 +13,7 @@ env.Append(CXXFLAGS=['-std=gnu++11', '-fpermissive', '-fno-exceptions', '-fno-th
            CPPDEFINES=[('ARDUINO', '10819'), 'ARDUINO_AVR_UNO', 'ARDUINO_ARCH_AVR',
                        ('DECIMAL_DIG', '__DECIMAL_DIG__')],  # why: ../../../arduino/build.py
            CPPPATH=[CORE, os.path.join(ARDUINO, 'variants/standard')])
+env.Append(LIBSOURCE_DIRS=[os.path.join(ARDUINO, 'libraries')])  # SoftwareSerial
 env.Replace(AR='avr-gcc-ar', RANLIB='avr-gcc-ranlib')
 # wiring_pulse.c and .S would be one object; no sketch here calls pulseIn.
 env.Prepend(LIBS=[env.BuildLibrary(os.path.join('$BUILD_DIR', 'core'), CORE, ['+<*>', '-<wiring_pulse.*>'])])

@@ -1,37 +1,24 @@
 /* SPDX-License-Identifier: MIT */
-/* The sketch a05_auto, which hears an A05 by SoftwareSerial, bit by bit on pin 10 (PB2), and prints. */
+/* The sketches a05_auto, a16_auto and a16_controlled, which receive by SoftwareSerial and print. */
 #include "suite.h"
 
-#include "board.h"
-
-enum { BIT_CYCLES = BOARD_HZ / 9600, CHARACTER_BITS = 10 };
+#include "soft.h"
 
 /* A05 1(3): 1000, 2000, 1953, 3562 mm. */
 static const uint8_t frame[] = {0xFF, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x60};
 
-static struct {
-    uint8_t bytes[sizeof frame];
-    unsigned bit; /* of all of them */
-} sent;
+/* A16 2(4), 3(4): 1953 mm. */
+static const uint8_t mm_1953[] = {0xFF, 0x07, 0xA1, 0xA7};
 
 static const suite_t suite = {.tear_down = board_stop};
 
-static avr_cycle_count_t next_bit(avr_t *avr, avr_cycle_count_t when, void *param)
-{
-    if (sent.bit == sizeof frame * CHARACTER_BITS) return 0;
-    const unsigned at = sent.bit % CHARACTER_BITS;
-    const uint8_t byte = sent.bytes[sent.bit++ / CHARACTER_BITS];
-    board_drive('B', 2, at == 9 || (at != 0 && (byte >> (at - 1) & 1) != 0));
-    return when + BIT_CYCLES;
-}
-
-/* One frame, its bytes without a gap, with one byte changed; then the pause until the next one. */
+/* One frame, with one byte changed; then the pause until the next one. */
 static void send(size_t changed, uint8_t by)
 {
-    memcpy(sent.bytes, frame, sizeof frame);
-    sent.bytes[changed] ^= by;
-    sent.bit = 0;
-    avr_cycle_timer_register(board.avr, BIT_CYCLES, next_bit, NULL);
+    uint8_t bytes[sizeof frame];
+    memcpy(bytes, frame, sizeof frame);
+    bytes[changed] ^= by;
+    soft_send(bytes, sizeof bytes, 0);
 }
 
 static void begin(const char *image)
@@ -77,5 +64,37 @@ TEST(silence_is_stale_after_two_seconds)
     send(0, 0);
     for (int n = 0; n < 4; n++) assert_string_not_equal(board_line(100000), "");
     assert_string_equal(board_line(1900000), "");
-    assert_string_equal(board_line(200000), "error -7"); /* FATHOM_ERR_STALE */
+    assert_string_equal(board_line(200000), "0: STALE");
+}
+
+TEST(an_a16_is_printed_until_it_is_silent)
+{
+    begin("a16_auto");
+    for (int n = 0; n != 5; n++) {
+        soft_send(mm_1953, sizeof mm_1953, 0);
+        expect_line("1953");
+        board_run_us(70001);
+    }
+    soft_send((const uint8_t[]){0xFF, 0x07, 0xA1, 0xA6}, 4, 0); /* wrong sum */
+    assert_string_equal(board_line(1500000), "");
+    assert_string_equal(board_line(600000), "CHECKSUM");
+    assert_string_equal(board_line(2100000), "STALE");
+}
+
+static void on_trigger(void *ctx, bool high)
+{
+    unsigned *const triggers = ctx;
+    if (high) return;
+    ++*triggers;
+    soft_send(mm_1953, sizeof mm_1953, 100000); /* A16 3(2): 90 to 110 ms after the edge */
+}
+
+TEST(an_a16_is_triggered_for_each_distance)
+{
+    unsigned triggers = 0;
+    board_start("a16_controlled");
+    board_drive('B', 2, true);
+    board_watch('D', 7, true, on_trigger, &triggers);
+    for (int n = 0; n != 8; n++) assert_string_equal(board_line(300000), "1953");
+    assert_in_range(triggers, 8, 9);
 }

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+// A05, Modbus RTU on RS485. Wiring and serial ports are those of the sketch hps167s.
+#include <SoftwareSerial.h>
+#include <fathom_arduino.h>
+
+SoftwareSerial console(10, 11); // RX, TX
+FathomBus bus(Serial, 2);
+FathomA05Modbus bumper(bus);
+
+void setup()
+{
+    console.begin(115200);
+    bus.begin(fathom_a05_factory_line);
+    if (!bumper.begin()) console.println(bumper.statusName());
+}
+
+void loop()
+{
+    if (!bumper.available()) return;
+    console.print(bumper.probe());
+    console.print(": ");
+    if (bumper.hasTarget())
+        console.println(bumper.distanceMm());
+    else
+        console.println(bumper.resultName());
+}

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// A16, UART controlled: TX of the module to pin 10, its RX (the trigger) to pin 7.
+// If a board has Serial1, write FathomBus bus(Serial1) and leave out SoftwareSerial.
+#include <SoftwareSerial.h>
+#include <fathom_arduino.h>
+
+SoftwareSerial serial(10, 11); // RX, TX
+FathomStreamBus bus(serial);
+FathomA16Controlled tank(bus, 7);
+
+void setup()
+{
+    Serial.begin(115200);
+    bus.beginListening(fathom_a16_factory_line);
+    if (!tank.begin()) Serial.println(tank.statusName());
+}
+
+void loop()
+{
+    if (!tank.available()) return;
+    if (tank.hasTarget())
+        Serial.println(tank.distanceMm());
+    else
+        Serial.println(tank.resultName());
+}
