@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* An A05 at an RS-485 transceiver for 3.3 V: DI at GPIO 4, RO at 5, DE with /RE at 6. Text leaves at GPIO 0. */
 #include <stdio.h>
 
 #include "fathom/fathom.h"

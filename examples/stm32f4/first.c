@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+/* An HPS-167S at an RS-485 transceiver for 3.3 V: DI at PA2, RO at PA3, DE with /RE at PA1. Text leaves at PA9. */
 #include <stdio.h>
 
 #include "fathom/fathom.h"

@@ -50,7 +50,18 @@ extern "C" {
  * 1. **Start-up.** The start-up code (boot2, clocks, VTOR; that of the SDK will do) has started clk_ref and clk_peri.
  *
  * 2. **Interrupts.** The vectors belong to the application. They call the functions whose names end in `_interrupt` or
- *    `_alarm`. The init functions enable the interrupts in the NVIC.
+ *    `_alarm`. The init functions enable the interrupts in the NVIC. If one is missing, the linker does not say so, and
+ *    the program waits for ever. With the maker's SDK, before the init functions:
+ *
+ *        static void on_uart1(void) { fathom_rp2040_uart_interrupt(&bus.port); }
+ *        static void on_alarm0(void) { fathom_rp2040_uart_alarm(&bus.port); }
+ *        static void on_alarm1(void) { fathom_rp2040_idle_alarm(&bus.idle); }
+ *
+ *        irq_set_exclusive_handler(UART1_IRQ, on_uart1);
+ *        irq_set_exclusive_handler(TIMER_IRQ_0, on_alarm0);
+ *        irq_set_exclusive_handler(TIMER_IRQ_1, on_alarm1);
+ *
+ *    The SDK itself uses alarm 3 for its time (PICO_TIME_DEFAULT_ALARM_POOL_HARDWARE_ALARM_NUM).
  *
  * 3. **Context.** All other functions belong to the main loop. Use one core, core 0, for all of them.
  *
@@ -147,7 +158,8 @@ typedef struct {
     /** @brief GPIO of the driver enable (DE), high while bytes are sent. Connect /RE to it too if there should be no
      * echo. */
     uint8_t driver;
-    /** @brief Number of an alarm that is used for nothing else, 0 to 3. It ends the driver enable. */
+    /** @brief Number of an alarm that is used for nothing else, 0 to 3. It ends the driver enable. A bus also uses the
+     * next one, (`alarm` + 1) % 4, for its sleep. */
     uint8_t alarm;
 } fathom_rp2040_wiring_t;
 
