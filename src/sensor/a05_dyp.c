@@ -31,16 +31,14 @@ fathom_status_t fathom_a05_dyp_init(fathom_a05_dyp_t *sensor, fathom_line_t *lin
     if (!fathom_modbus_unit_has_room(&transport, FATHOM_DYP_MAX_RESPONSE)) return FATHOM_ERR_ARGUMENT;
 
     const bool is_single = is_one(probes);
-    uint8_t first = 0;
-    if (is_single)
-        while ((((unsigned)probes >> first) & 1u) == 0u) first++;
-    base->first = (uint16_t)(FATHOM_DYP_FIRST_REGISTER + first);
+    const uint8_t first = is_single ? fathom_dyp_first_probe(probes) : 1u;
+    base->first = (uint16_t)(FATHOM_DYP_FIRST_REGISTER + first - 1u);
     base->count = is_single ? 1 : FATHOM_DYP_PROBES;
     base->measurement.values = sensor->values;
     base->start_us = config->start_us;
     fathom_dyp_window_copy(&base->measurement.window, &config->window);
     base->measurement.model = FATHOM_A05;
-    base->measurement.first = (uint8_t)(first + 1u);
+    base->measurement.first = first;
     base->probes = probes;
     return fathom_dyp_modbus_init(base, &transport, &config->modbus,
                                   is_single ? ONE_PROBE_TIMEOUT_US : ALL_PROBES_TIMEOUT_US,

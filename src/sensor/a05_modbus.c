@@ -22,23 +22,26 @@ fathom_status_t fathom_a05_modbus_init(fathom_a05_modbus_t *sensor, const fathom
     config = config_or_zeroed(config, &zeroed, sizeof zeroed);
     const uint16_t registers = (config->registers != 0u) ? config->registers : FATHOM_A05_REGISTERS;
     const uint8_t probes = (config->probes != 0u) ? config->probes : ALL_PROBES;
-    if (probes > ALL_PROBES) return FATHOM_ERR_ARGUMENT;
-    if ((registers != FATHOM_A05_REGISTERS) && (registers != FATHOM_A05_REGISTERS_ALIAS))
+    if ((probes > ALL_PROBES) ||
+        ((registers != FATHOM_A05_REGISTERS) && (registers != FATHOM_A05_REGISTERS_ALIAS)))
         return FATHOM_ERR_ARGUMENT;
 
-    uint8_t first = 0;
-    while ((((unsigned)probes >> first) & 1u) == 0u) first++;
-    uint8_t count = 1;
-    uint32_t measuring_us = FATHOM_A05_PROBE_US;
-    for (; (probes >> (first + count)) != 0u; count++) measuring_us += FATHOM_A05_PROBE_US;
+    /* One request reads all registers from that of the first wanted probe to that of the last. */
+    const uint8_t first = fathom_dyp_first_probe(probes);
+    uint8_t count = 0;
+    uint32_t measuring_us = 0;
+    for (uint8_t rest = (uint8_t)(probes >> (first - 1u)); rest != 0u; rest >>= 1) {
+        count++;
+        measuring_us += FATHOM_A05_PROBE_US;
+    }
 
-    base->first = (uint16_t)(registers + first);
+    base->first = (uint16_t)(registers + first - 1u);
     base->count = count;
     base->measurement.values = sensor->values;
     base->start_us = config->start_us;
     fathom_dyp_window_copy(&base->measurement.window, &config->window);
     base->measurement.model = FATHOM_A05;
-    base->measurement.first = (uint8_t)(first + 1u);
+    base->measurement.first = first;
     base->probes = probes;
     return fathom_dyp_modbus_init(base, transport, &config->modbus, RESPONSE_TIMEOUT_US + measuring_us,
                                   measuring_us);

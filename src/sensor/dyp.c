@@ -10,32 +10,20 @@
 
 uint8_t fathom_dyp_meaning(const fathom_dyp_window_t *window, uint16_t value)
 {
-    switch (value) {
-    case 0:
-        return window->value_0;
-    case 0xFFFD:
-        return window->value_fffd;
-    case 0xFFFE:
-        return window->value_fffe;
-    case 0xFFFF:
-        return window->value_ffff;
-    default:
-        break;
-    }
+    /* FFFD, FFFE, FFFF and 0 follow one another modulo 65536, and so do their members. */
+    const uint16_t past_fffd = (uint16_t)(value - 0xFFFDu);
+    if (past_fffd <= 3u)
+        return ((const uint8_t *)window)[offsetof(fathom_dyp_window_t, value_fffd) + past_fffd];
     if ((value < window->min_mm) || (value > window->max_mm)) return FATHOM_MEANS_REFUSED;
     return FATHOM_TARGET;
 }
 
 fathom_status_t fathom_dyp_measurement_next(fathom_dyp_measurement_t *measurement, fathom_sample_t *sample)
 {
-    uint8_t probe = 1;
-    uint8_t bit = 1;
-    if (measurement->left == 0u) return FATHOM_PENDING;
-    while ((measurement->left & bit) == 0u) {
-        probe++;
-        bit = (uint8_t)(bit << 1);
-    }
-    measurement->left &= (uint8_t)~bit;
+    const uint8_t left = measurement->left;
+    if (left == 0u) return FATHOM_PENDING;
+    const uint8_t probe = fathom_dyp_first_probe(left);
+    measurement->left = (uint8_t)(left & (left - 1u)); /* without its lowest bit, that of `probe` */
     const uint16_t value = measurement->values[probe - measurement->first];
     uint8_t kind = fathom_dyp_meaning(&measurement->window, value);
     if (kind == FATHOM_MEANS_REFUSED) {
@@ -44,11 +32,8 @@ fathom_status_t fathom_dyp_measurement_next(fathom_dyp_measurement_t *measuremen
         measurement->refused_probe = probe;
         return FATHOM_ERR_MALFORMED;
     }
-    sample->interference = false;
-    if (kind == FATHOM_MEANS_INTERFERENCE) {
-        kind = FATHOM_NO_TARGET;
-        sample->interference = true;
-    }
+    sample->interference = kind == FATHOM_MEANS_INTERFERENCE;
+    if (sample->interference) kind = FATHOM_NO_TARGET;
     sample->kind = kind;
     sample->distance_mm = 0;
     if (kind == FATHOM_TARGET) sample->distance_mm = value;

@@ -65,7 +65,7 @@ typedef struct {
     uint8_t value_ffff;
 
     /** @brief Meaning of 0: a fathom_meaning_t. 0 selects FATHOM_MEANS_UNKNOWN. */
-    uint8_t value_0; /* The last of the four, because the drivers index them by value + 3. */
+    uint8_t value_0; /* The last of the four, because fathom_dyp_meaning() indexes them by value - FFFD. */
 } fathom_dyp_window_t;
 
 /** @brief The default of fathom_dyp_window_t::max_mm. */
@@ -143,6 +143,18 @@ static inline void fathom_dyp_measurement_set(fathom_dyp_measurement_t *measurem
     measurement->sequence++;
     measurement->time_us = time_us;
     measurement->left = probes;
+}
+
+/**
+ * @brief Returns the number of the first probe of a set.
+ *
+ * @param probes  The set, not empty: bit (probe - 1).
+ */
+static inline uint8_t fathom_dyp_first_probe(uint8_t probes)
+{
+    uint8_t probe = 1;
+    for (; (probes & 1u) == 0u; probes >>= 1) probe++;
+    return probe;
 }
 
 /**
