@@ -3,7 +3,8 @@
 
 #include "modbus_unit_internal.h"
 
-enum { READ_OLD = 0, PROBE_NEW = 1, WRITE = 2, CONFIRM_NEW = 3, CONFIRM_OLD = 4, WRITE_UNREAD = 5 };
+/* fathom_modbus_unit_t::step: four reads, and behind them two writes. */
+enum { READ_OLD = 0, PROBE_NEW = 1, CONFIRM_NEW = 2, CONFIRM_OLD = 3, WRITE = 4, WRITE_UNREAD = 5 };
 
 static void use_new_address(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting)
 {
@@ -17,7 +18,7 @@ static void restore_address(fathom_modbus_unit_t *unit)
     unit->line_settings = unit->known_line_settings;
 }
 
-/* Two settings whose ids are equal modulo 16 share one: then one is written without need, once. */
+/* The bit of the present setting. Two whose ids are equal modulo 16 share one: then one is written without need, once. */
 static uint16_t setting_bit(const fathom_modbus_unit_t *unit)
 {
     return (uint16_t)(1u << (unit->setting % 16u));
@@ -67,9 +68,7 @@ static fathom_status_t new_was_probed(fathom_modbus_unit_t *unit, fathom_status_
 /* The write was submitted and ended before it was sent. A broken port may have sent a part of it. */
 static bool has_not_left(const fathom_modbus_unit_t *unit, fathom_status_t status)
 {
-    if (status == FATHOM_ERR_UNSUPPORTED) return true;
-    return ((status == FATHOM_ERR_LINE_BUSY) || (status == FATHOM_ERR_CANCELLED)) &&
-           (unit->request.transaction.attempts == 0u);
+    return (unit->request.transaction.attempts == 0u) && (status != FATHOM_ERR_PORT);
 }
 
 static fathom_status_t written(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting,
@@ -80,10 +79,11 @@ static fathom_status_t written(fathom_modbus_unit_t *unit, const fathom_modbus_s
     if (!unit->is_written || (status == FATHOM_ERR_EXCEPTION)) return status;
     unit->unconfirmed |= setting_bit(unit);
     /* The value may have read so before: only the acknowledgement shows that it was taken. */
-    const bool is_lost = (unit->step == WRITE_UNREAD) && (status < 0);
-    unit->last_written = is_lost ? 0u : unit->setting;
+    unit->last_written = 0;
+    if ((unit->step == WRITE_UNREAD) && (status < 0)) return FATHOM_ERR_UNCONFIRMED;
+    unit->last_written = unit->setting;
     unit->last_written_value = (uint16_t)setting->value;
-    if (unit->is_blind || is_lost) return FATHOM_ERR_UNCONFIRMED;
+    if (unit->is_blind) return FATHOM_ERR_UNCONFIRMED;
     if (setting->read == NULL) return status;
     unit->step = CONFIRM_OLD;
     if (moves(setting)) {
@@ -110,20 +110,12 @@ static fathom_status_t confirmed(fathom_modbus_unit_t *unit, const fathom_modbus
     return (unit->outcome < 0) ? (fathom_status_t)unit->outcome : FATHOM_ERR_DIFFERS;
 }
 
-static fathom_status_t go_on(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting,
-                             fathom_status_t status, uint32_t value)
+static fathom_status_t was_read(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting,
+                                fathom_status_t status, uint32_t value)
 {
-    switch (unit->step) {
-    case READ_OLD:
-        return old_was_read(unit, setting, status, value);
-    case PROBE_NEW:
-        return new_was_probed(unit, status);
-    case WRITE:
-    case WRITE_UNREAD:
-        return written(unit, setting, status);
-    default:
-        return confirmed(unit, setting, status, value);
-    }
+    if (unit->step == READ_OLD) return old_was_read(unit, setting, status, value);
+    if (unit->step == PROBE_NEW) return new_was_probed(unit, status);
+    return confirmed(unit, setting, status, value);
 }
 
 fathom_status_t fathom_modbus_write_next_unchecked(fathom_modbus_unit_t *unit)
@@ -147,25 +139,23 @@ fathom_status_t fathom_modbus_set(fathom_modbus_unit_t *unit, const fathom_modbu
     if ((unit->setting != 0u) && (unit->setting != setting->write.id) &&
         !fathom_modbus_command_give_way(unit))
         return FATHOM_ERR_BUSY;
-    if (unit->setting == 0u) {
-        unit->commands = &fathom_modbus_commands;
+    if (unit->setting != 0u) {
+        fathom_modbus_command_keep(unit);
+    } else {
         unit->setting = setting->write.id;
         unit->is_written = false;
         unit->step = ((setting->read != NULL) && !unit->is_blind) ? READ_OLD : WRITE_UNREAD;
         unit->known_address = unit->address;
         unit->known_line_settings = unit->line_settings;
-    } else {
-        fathom_modbus_command_keep(unit);
     }
     do {
-        const bool is_write =
-            (setting->read == NULL) || (unit->step == WRITE) || (unit->step == WRITE_UNREAD);
+        const bool is_write = (setting->read == NULL) || (unit->step >= WRITE);
         uint32_t value = 0;
         unit->is_in_setting = true;
         status = is_write ? fathom_modbus_command(unit, &setting->write) : setting->read(setting, &value);
         unit->is_in_setting = false;
         if (status == FATHOM_PENDING) return status;
-        status = go_on(unit, setting, status, value);
+        status = is_write ? written(unit, setting, status) : was_read(unit, setting, status, value);
     } while (status == FATHOM_PENDING);
     unit->setting = 0;
     unit->is_blind = false;

@@ -173,7 +173,9 @@ void fake_modbus_refuse(fake_modbus_t *fake, uint8_t exception)
 void fake_modbus_fail(fake_modbus_t *fake, fathom_status_t status)
 {
     assert_non_null(fake->request);
-    if (fake->request->transaction.attempts == 0) fake_modbus_send(fake);
+    /* A line that cannot do the line settings sends nothing. */
+    const bool has_left = status != FATHOM_ERR_UNSUPPORTED;
+    if (has_left && fake->request->transaction.attempts == 0) fake_modbus_send(fake);
     fake->ends = status;
 }
 
