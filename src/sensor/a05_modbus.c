@@ -20,11 +20,12 @@ fathom_status_t fathom_a05_modbus_init(fathom_a05_modbus_t *sensor, const fathom
     const fathom_status_t status = fathom_modbus_unit_begin(&base->unit, transport, sensor, sizeof *sensor);
     if (status < 0) return status;
     config = config_or_zeroed(config, &zeroed, sizeof zeroed);
-    const uint16_t registers = (config->registers != 0u) ? config->registers : FATHOM_A05_REGISTERS;
-    const uint8_t probes = (config->probes != 0u) ? config->probes : ALL_PROBES;
-    if ((probes > ALL_PROBES) ||
-        ((registers != FATHOM_A05_REGISTERS) && (registers != FATHOM_A05_REGISTERS_ALIAS)))
+    const bool is_alias = config->registers == FATHOM_A05_REGISTERS_ALIAS;
+    if ((config->probes > ALL_PROBES) ||
+        (!is_alias && (config->registers != FATHOM_A05_REGISTERS) && (config->registers != 0u)))
         return FATHOM_ERR_ARGUMENT;
+    const uint16_t registers = is_alias ? FATHOM_A05_REGISTERS_ALIAS : FATHOM_A05_REGISTERS;
+    const uint8_t probes = (config->probes != 0u) ? config->probes : ALL_PROBES;
 
     /* One request reads all registers from that of the first wanted probe to that of the last. */
     const uint8_t first = fathom_dyp_first_probe(probes);

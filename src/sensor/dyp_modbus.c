@@ -185,17 +185,17 @@ void fathom_dyp_modbus_find_cancel(fathom_dyp_modbus_find_t *find, const fathom_
 fathom_status_t fathom_dyp_modbus_sensor_poll(void *ctx, fathom_sample_t *sample)
 {
     fathom_dyp_modbus_t *const sensor = ctx;
-    const fathom_status_t next = fathom_dyp_measurement_next(&sensor->measurement, sample);
-    if (next != FATHOM_PENDING) return next;
-    fathom_modbus_unit_poll(&sensor->unit);
-    const fathom_status_t status =
-        fathom_modbus_unit_measure(&sensor->unit, sensor->first, sensor->count, sensor->measurement.values);
-    if (status != FATHOM_OK) return status;
-    sensor->measurement.address =
-        sensor->unit.address; /* it may have moved, and a move may have been given up */
-    fathom_dyp_measurement_set(&sensor->measurement, sensor->probes,
-                               fathom_modbus_unit_heard_us(&sensor->unit));
-    return fathom_dyp_measurement_next(&sensor->measurement, sample);
+    fathom_dyp_measurement_t *const measurement = &sensor->measurement;
+    fathom_modbus_unit_t *const unit = &sensor->unit;
+    if (measurement->left == 0u) {
+        fathom_modbus_unit_poll(unit);
+        const fathom_status_t status =
+            fathom_modbus_unit_measure(unit, sensor->first, sensor->count, measurement->values);
+        if (status != FATHOM_OK) return status;
+        measurement->address = unit->address; /* it may have moved, and a move may have been given up */
+        fathom_dyp_measurement_set(measurement, sensor->probes, fathom_modbus_unit_heard_us(unit));
+    }
+    return fathom_dyp_measurement_next(measurement, sample);
 }
 
 uint32_t fathom_dyp_modbus_sensor_due_us(void *ctx)
