@@ -41,9 +41,13 @@ static bool is_certain(const fathom_modbus_unit_t *unit, const fathom_modbus_set
 static fathom_status_t old_was_read(fathom_modbus_unit_t *unit, const fathom_modbus_setting_t *setting,
                                     fathom_status_t status, uint32_t value)
 {
-    const bool is_so = value == setting->value;
-    if ((status < 0) || (is_so && is_certain(unit, setting))) return status;
-    unit->step = is_so ? WRITE_UNREAD : WRITE;
+    if (status < 0) return status;
+    if (value == setting->value) {
+        if (is_certain(unit, setting)) return status;
+        unit->step = WRITE_UNREAD;
+        return FATHOM_PENDING;
+    }
+    unit->step = WRITE;
     if (setting->address != 0u) {
         unit->step = PROBE_NEW;
         use_new_address(unit, setting);

@@ -28,19 +28,13 @@ fathom_status_t fathom_modbus_unit_begin(fathom_modbus_unit_t *unit, const fatho
     FATHOM_ASSERT(!is_queued); /* the driver was not deinitialised */
     if (is_queued) return FATHOM_ERR_BUSY;
     clear(driver, size);
-    return FATHOM_OK;
+    return (line != NULL) ? FATHOM_OK : FATHOM_ERR_ARGUMENT;
 }
 
-bool fathom_modbus_unit_has_room(const fathom_modbus_t *transport, uint8_t length)
-{
-    const fathom_line_t *const line = line_of(transport);
-    return (line != NULL) && (length <= line->parts->frame_size);
-}
-
-static bool is_valid(const fathom_modbus_t *transport, const fathom_modbus_config_t *config)
+static bool is_valid(const fathom_modbus_config_t *config)
 {
     enum { MAX_RETRIES = 254 };
-    return (line_of(transport) != NULL) && (config->address != FATHOM_MODBUS_ANY_UNIT) &&
+    return (config->address != FATHOM_MODBUS_ANY_UNIT) &&
            (!config->address_zero || (config->address == 0u)) && (config->retries <= MAX_RETRIES) &&
            ((config->period_us | config->timeout_us | config->command_timeout_us | config->backoff_us) <=
             FATHOM_MAX_DURATION_US);
@@ -50,7 +44,7 @@ fathom_status_t fathom_modbus_unit_init(fathom_modbus_unit_t *unit, const fathom
                                         const fathom_modbus_config_t *config, uint32_t timeout_us,
                                         uint32_t pace_us)
 {
-    if (!is_valid(transport, config)) return FATHOM_ERR_ARGUMENT;
+    if (!is_valid(config)) return FATHOM_ERR_ARGUMENT;
     unit->transport = *transport;
     unit->line_settings = config->line_settings;
     unit->timeout_us = or_default(config->timeout_us, timeout_us);

@@ -197,15 +197,16 @@ typedef struct {
  * @param transport  The transport that the driver is initialised with, or NULL.
  * @param driver     The driver.
  * @param size       Its size in bytes.
- * @retval FATHOM_OK     All bytes of the driver are 0.
- * @retval FATHOM_ERR_BUSY  The request of this unit is still queued. Nothing has changed. Call the driver's deinit
- *                          function first.
+ * @retval FATHOM_OK            All bytes of the driver are 0, and the line of the transport is initialised.
+ * @retval FATHOM_ERR_BUSY      The request of this unit is still queued. Nothing has changed. Call the driver's deinit
+ *                              function first.
+ * @retval FATHOM_ERR_ARGUMENT  `transport` has no initialised line. All bytes of the driver are 0.
  */
 fathom_status_t fathom_modbus_unit_begin(fathom_modbus_unit_t *unit, const fathom_modbus_t *transport,
                                          void *driver, size_t size);
 
 /**
- * @brief Initialises a unit, which fathom_modbus_unit_begin() has cleared.
+ * @brief Initialises a unit. fathom_modbus_unit_begin() has returned FATHOM_OK for the same transport.
  *
  * @param unit        The unit.
  * @param transport   The transport: fathom_modbus_client(), fathom_dyp_client(), or that of a port.
@@ -213,20 +214,22 @@ fathom_status_t fathom_modbus_unit_begin(fathom_modbus_unit_t *unit, const fatho
  * @param timeout_us  Default of `config->timeout_us`.
  * @param pace_us     The driver's least period in microseconds.
  * @retval FATHOM_OK         The unit can be used.
- * @retval FATHOM_ERR_ARGUMENT  `transport` has no initialised line, or a member of the config is outside its range. The
- *                              unit is still cleared.
+ * @retval FATHOM_ERR_ARGUMENT  A member of the config is outside its range. The unit is still cleared.
  */
 fathom_status_t fathom_modbus_unit_init(fathom_modbus_unit_t *unit, const fathom_modbus_t *transport,
                                         const fathom_modbus_config_t *config, uint32_t timeout_us,
                                         uint32_t pace_us);
 
 /**
- * @brief Returns true if the line of a transport is initialised and has room for frames of this length.
+ * @brief Returns true if the line of a transport has room for frames of this length.
  *
- * @param transport  The transport of a driver, or NULL.
+ * @param transport  The transport, for which fathom_modbus_unit_begin() has returned FATHOM_OK.
  * @param length     Length of the longest frame of the driver, in bytes.
  */
-bool fathom_modbus_unit_has_room(const fathom_modbus_t *transport, uint8_t length);
+static inline bool fathom_modbus_unit_has_room(const fathom_modbus_t *transport, uint8_t length)
+{
+    return length <= transport->line->parts->frame_size;
+}
 
 /**
  * @brief Polls the line, unless another driver has polled it in this round, and advances all deadlines.
