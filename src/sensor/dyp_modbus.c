@@ -74,9 +74,9 @@ fathom_status_t fathom_dyp_modbus_get_address(fathom_dyp_modbus_t *sensor, uint8
 
 static fathom_status_t read(const fathom_modbus_setting_t *setting, uint32_t *value)
 {
-    uint16_t found = 0;
-    const fathom_status_t status = fathom_dyp_modbus_look(setting->driver, setting->write.first, &found);
-    *value = found;
+    fathom_dyp_modbus_t *const sensor = setting->driver;
+    const fathom_status_t status = fathom_dyp_modbus_look(sensor, setting->write.first, &sensor->found);
+    *value = sensor->found;
     return status;
 }
 
