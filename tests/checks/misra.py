@@ -57,7 +57,8 @@ def look(job):
     for path in paths:
         if '<token ' not in read(root, f'{path}.dump'):
             raise SystemExit(f'misra.py: cppcheck has read nothing of {path}')
-    return addon(root, [f'{path}.dump' for path in paths])
+    # One at a time: of several, it keeps the names of the first alone for the rules that compare files.
+    return [finding for path in paths for finding in addon(root, [f'{path}.dump'])]
 
 
 def places(root, only=None):
