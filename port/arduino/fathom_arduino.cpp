@@ -275,6 +275,8 @@ void bus_line::name_parts()
 bool bus_line::ask(const fathom_line_settings_t &settings)
 {
     name_parts();
+    settings_ = settings;
+    if (uart_.set_line != nullptr) parts.line_settings = &settings_;
     parts.silence_us = fathom_silence_us(&settings);
     parts.find_echo = fathom_line_find_echo;
     parts.senders = &fathom_line_senders;

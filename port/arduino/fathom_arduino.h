@@ -320,6 +320,7 @@ class bus_line
 
   private:
     uint8_t frame_[32]; /* the longest frame of any sensor is the details of an HPS-167S, 27 bytes */
+    fathom_line_settings_t settings_; /* with which the bus was begun */
 
     void name_parts();
 };

@@ -19,6 +19,7 @@ void fathom_posix_bus_set_up(fathom_posix_bus_t *bus, const fathom_uart_t *uart,
                              const fathom_line_settings_t *settings)
 {
     bus->uart = *uart;
+    bus->settings = *settings;
     bus->clock = fathom_posix_clock();
     bus->parts.uart = &bus->uart;
     bus->parts.clock = &bus->clock;
@@ -33,6 +34,7 @@ void fathom_posix_bus_set_up(fathom_posix_bus_t *bus, const fathom_uart_t *uart,
                                 ? fathom_silence_us(settings)
                                 : FATHOM_T3_5_US(settings->baud, fathom_character_bits(settings));
     bus->parts.gap_us = GAP_US;
+    bus->parts.line_settings = &bus->settings;
     /* The line accepts each silence of 588 baud and more, and the port has no rate below 1200. */
     (void)fathom_line_init(&bus->line, &bus->parts);
     bus->modbus = fathom_modbus_client(&bus->line);

@@ -357,6 +357,7 @@ typedef struct {
     uint16_t counters[FATHOM_LINE_COUNTERS];
     /* private */
     fathom_uart_t uart;
+    fathom_line_settings_t settings; /* with which the bus was opened */
     uint8_t frame[255];
 } fathom_posix_bus_t;
 

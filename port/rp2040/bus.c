@@ -28,6 +28,8 @@ bool fathom_rp2040_bus_init(fathom_rp2040_bus_t *bus, const fathom_rp2040_wiring
                             const fathom_line_settings_t *settings)
 {
     if (!begin(bus, wiring, settings)) return false;
+    bus->settings = *settings;
+    bus->parts.line_settings = &bus->settings;
     bus->parts.silence_us = fathom_silence_us(settings);
     bus->parts.find_echo = fathom_line_find_echo;
     bus->parts.senders = &fathom_line_senders;

@@ -252,6 +252,7 @@ typedef struct {
     fathom_stm32f4_usart_t port;
     /* private */
     fathom_uart_t uart;
+    fathom_line_settings_t settings; /* with which the bus was initialised */
     uint8_t frame[32];   /* the longest frame of any sensor is the details of an HPS-167S, 27 bytes */
     uint8_t request[16]; /* the longest request is that of the reconnect time of an HPS-167S, 13 bytes */
 } fathom_stm32f4_bus_t;

@@ -131,7 +131,8 @@ static inline uint16_t sum_of_parts(const fathom_line_parts_t *parts)
 
 static inline uint16_t silence_us(const fathom_line_t *line)
 {
-    return (uint16_t)or_default(line->parts->silence_us, FATHOM_LINE_DEFAULT_SILENCE_US);
+    const uint16_t us = (uint16_t)or_default(line->parts->silence_us, FATHOM_LINE_DEFAULT_SILENCE_US);
+    return (us > line->longest_silence_us) ? us : line->longest_silence_us;
 }
 
 static inline uint32_t busy_us(const fathom_line_t *line)

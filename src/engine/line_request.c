@@ -159,9 +159,11 @@ static fathom_status_t wait_for_port(fathom_line_t *line)
 static int apply_settings(const fathom_line_t *line, const fathom_transaction_t *transaction)
 {
     const fathom_uart_t *const uart = line->parts->uart;
-    if (transaction->line_settings == NULL) return 1;
+    const fathom_line_settings_t *settings = transaction->line_settings;
+    if (settings == NULL) settings = line->parts->line_settings;
+    if (settings == NULL) return 1;
     if (uart->set_line == NULL) return -1;
-    return uart->set_line(uart->ctx, transaction->line_settings);
+    return uart->set_line(uart->ctx, settings);
 }
 
 /* Sends the request of the next transaction, if one may leave now. */
@@ -255,6 +257,14 @@ fathom_status_t fathom_line_init(fathom_line_t *line, const fathom_line_parts_t 
     return FATHOM_ERR_ARGUMENT;
 }
 
+/* Where units differ in their line settings, the slowest needs the longest silence before its request. */
+static void note_settings(fathom_line_t *line, const fathom_line_settings_t *settings)
+{
+    if (settings == NULL) return;
+    const uint16_t us = fathom_silence_us(settings);
+    if ((us != UINT16_MAX) && (us > line->longest_silence_us)) line->longest_silence_us = us;
+}
+
 fathom_status_t fathom_line_submit(fathom_line_t *line, fathom_transaction_t *transaction)
 {
     fathom_transaction_t **const link = fathom_line_find(line, transaction);
@@ -265,6 +275,7 @@ fathom_status_t fathom_line_submit(fathom_line_t *line, fathom_transaction_t *tr
     if (line->kind->fail_all == NULL) return FATHOM_ERR_UNSUPPORTED; /* This line only listens. */
     if (line->protocol == NULL)
         line->protocol = transaction->protocol; /* From now on it recognises frames. */
+    note_settings(line, transaction->line_settings);
     *link = transaction;
     transaction->link.next = NULL;
     transaction->attempts = 0;

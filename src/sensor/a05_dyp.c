@@ -32,7 +32,7 @@ fathom_status_t fathom_a05_dyp_init(fathom_a05_dyp_t *sensor, fathom_line_t *lin
 
     const bool is_single = is_one(probes);
     const uint8_t first = is_single ? fathom_dyp_first_probe(probes) : 1u;
-    base->first = (uint16_t)(FATHOM_DYP_FIRST_REGISTER + first - 1u);
+    base->first = (uint16_t)(FATHOM_DYP_FIRST_REGISTER + (first - 1));
     base->count = is_single ? 1 : FATHOM_DYP_PROBES;
     base->measurement.values = sensor->values;
     base->start_us = config->start_us;

@@ -177,3 +177,41 @@ TEST(a_transaction_that_waits_for_its_settings_can_be_cancelled_and_quarantines_
     run(100);
     expect_written_with(0, 1, &n9600);
 }
+
+/* An A16 beside an HPS-167S on a bus that was opened for the latter, by 19200 baud: 38.5 bits are 2005.2 us there, and
+ * 4010.4 us at 9600 baud, which the A16 needs to see where its request begins. */
+TEST(the_silence_is_that_of_the_slowest_settings_that_were_named)
+{
+    bench.config.silence_us = 2006;
+    ask_2_with(&e19200);
+    run(1900);
+    expect_written(0);
+    run(200);
+    expect_written(1);
+    run(8 * BYTE_US);
+    response_other(2, 222);
+    ask_1_with(0, &n9600);
+    run(3900);
+    expect_written(1);
+    run(300);
+    expect_written_with(1, 1, &n9600);
+    run(8 * BYTE_US);
+    response_1(111);
+    ask_2_with(&e19200); /* also before the faster one: the A16 hears the end of its own frame by it */
+    run(3900);
+    expect_written(2);
+    run(300);
+    expect_written_with(2, 2, &e19200);
+}
+
+TEST(a_transaction_without_settings_gets_those_of_the_parts)
+{
+    bench.config.line_settings = &n9600;
+    ask_2_with(&e19200);
+    run(REQUEST_US);
+    expect_written_with(0, 2, &e19200);
+    response_other(2, 222);
+    ask_1_with(0, NULL);
+    run(REQUEST_US + 400);
+    expect_written_with(1, 1, &n9600);
+}

@@ -277,7 +277,8 @@ typedef struct {
     /**
      * @brief Silence before a request, in microseconds, 1 to 65534. 0 selects FATHOM_LINE_DEFAULT_SILENCE_US.
      *
-     * Use FATHOM_T3_5_US() with the slowest settings that are used on the line.
+     * Use fathom_silence_us() or FATHOM_T3_5_US(). If a transaction names line settings that need a longer silence
+     * (fathom_silence_us()), the line keeps that one from then on.
      */
     uint16_t silence_us;
 
@@ -289,6 +290,9 @@ typedef struct {
      * choose 25000, because USB adapters hold bytes back for 16 ms.
      */
     uint16_t gap_us;
+
+    /** @brief Line settings of all transactions that name none; NULL: those leave the settings unchanged. Must stay valid. */
+    const fathom_line_settings_t *line_settings;
 
     /** @brief fathom_line_find_echo to find out whether the adapter echoes; else NULL. */
     void (*find_echo)(fathom_line_t *line, uint8_t echo);
@@ -382,6 +386,8 @@ struct fathom_line {
     uint16_t quarantined_units; /**< Set of units in quarantine: bit (address modulo 16). */
     uint16_t parts_sum;         /**< A sum over the parts, for FATHOM_ASSERT; else not used. */
     uint16_t silent_us; /**< Silence since the last byte in either direction, in us; stops at 65535. */
+    /** @brief The longest silence that the line settings of a transaction have needed, in us; 0: none yet. */
+    uint16_t longest_silence_us;
 
     const fathom_line_parts_t *parts; /**< NULL until the line is initialised. */
     fathom_transaction_t *head;       /**< The queue. Invariant: the transaction on the wire is the first. */

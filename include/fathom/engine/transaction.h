@@ -100,10 +100,10 @@ struct fathom_transaction {
     const fathom_protocol_t *protocol;
 
     /**
-     * @brief Line settings that are set before the request is sent, or NULL to leave them unchanged.
+     * @brief Line settings that are set before the request is sent. NULL: `line_settings` in the parts of the line.
      *
-     * If one transaction of a line names line settings, all transactions of that line must name them. Must stay valid
-     * as long as the transaction is queued.
+     * If those are NULL too, the settings of the transaction before are used. Then, if one transaction of a line names
+     * line settings, all must. Must stay valid as long as the transaction is queued.
      */
     const fathom_line_settings_t *line_settings;
 
