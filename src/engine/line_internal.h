@@ -131,8 +131,9 @@ static inline uint16_t sum_of_parts(const fathom_line_parts_t *parts)
 
 static inline uint16_t silence_us(const fathom_line_t *line)
 {
-    const uint16_t us = (uint16_t)or_default(line->parts->silence_us, FATHOM_LINE_DEFAULT_SILENCE_US);
-    return (us > line->longest_silence_us) ? us : line->longest_silence_us;
+    const uint16_t us = line->parts->silence_us;
+    const bool is_default = (us == 0u) || (line->is_slow && (us < FATHOM_LINE_DEFAULT_SILENCE_US));
+    return is_default ? FATHOM_LINE_DEFAULT_SILENCE_US : us;
 }
 
 static inline uint32_t busy_us(const fathom_line_t *line)

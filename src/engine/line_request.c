@@ -257,14 +257,6 @@ fathom_status_t fathom_line_init(fathom_line_t *line, const fathom_line_parts_t 
     return FATHOM_ERR_ARGUMENT;
 }
 
-/* Where units differ in their line settings, the slowest needs the longest silence before its request. */
-static void note_settings(fathom_line_t *line, const fathom_line_settings_t *settings)
-{
-    if (settings == NULL) return;
-    const uint16_t us = fathom_silence_us(settings);
-    if ((us != UINT16_MAX) && (us > line->longest_silence_us)) line->longest_silence_us = us;
-}
-
 fathom_status_t fathom_line_submit(fathom_line_t *line, fathom_transaction_t *transaction)
 {
     fathom_transaction_t **const link = fathom_line_find(line, transaction);
@@ -275,7 +267,9 @@ fathom_status_t fathom_line_submit(fathom_line_t *line, fathom_transaction_t *tr
     if (line->kind->fail_all == NULL) return FATHOM_ERR_UNSUPPORTED; /* This line only listens. */
     if (line->protocol == NULL)
         line->protocol = transaction->protocol; /* From now on it recognises frames. */
-    note_settings(line, transaction->line_settings);
+    /* Where units differ in their line settings, the slowest needs the longest silence before its request. */
+    if ((transaction->line_settings != NULL) && (transaction->line_settings->baud < 19200u))
+        line->is_slow = true;
     *link = transaction;
     transaction->link.next = NULL;
     transaction->attempts = 0;

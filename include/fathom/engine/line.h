@@ -277,8 +277,8 @@ typedef struct {
     /**
      * @brief Silence before a request, in microseconds, 1 to 65534. 0 selects FATHOM_LINE_DEFAULT_SILENCE_US.
      *
-     * Use fathom_silence_us() or FATHOM_T3_5_US(). If a transaction names line settings that need a longer silence
-     * (fathom_silence_us()), the line keeps that one from then on.
+     * Use fathom_silence_us() or FATHOM_T3_5_US(). From the first transaction on whose line settings have less than 19200
+     * baud, the silence is at least FATHOM_LINE_DEFAULT_SILENCE_US, which 9600 baud need.
      */
     uint16_t silence_us;
 
@@ -373,6 +373,8 @@ struct fathom_line {
     bool is_after_gap; /**< For the listener: true if the next byte that it receives begins a new frame. */
     uint8_t age;       /**< Whether the port may hold old bytes: enum age of line_internal.h. */
 
+    bool
+        is_slow; /**< True if a transaction has named less than 19200 baud: the silence is that of 9600 then. */
     uint8_t slot;              /**< Where in the present silence the line is: enum slot of line_internal.h. */
     uint8_t sender;            /**< Whether a device sends by itself: enum sender of line_internal.h. */
     uint8_t unsolicited_count; /**< Bytes since the last response that belong to no transaction, 0 to 4. */
@@ -386,8 +388,6 @@ struct fathom_line {
     uint16_t quarantined_units; /**< Set of units in quarantine: bit (address modulo 16). */
     uint16_t parts_sum;         /**< A sum over the parts, for FATHOM_ASSERT; else not used. */
     uint16_t silent_us; /**< Silence since the last byte in either direction, in us; stops at 65535. */
-    /** @brief The longest silence that the line settings of a transaction have needed, in us; 0: none yet. */
-    uint16_t longest_silence_us;
 
     const fathom_line_parts_t *parts; /**< NULL until the line is initialised. */
     fathom_transaction_t *head;       /**< The queue. Invariant: the transaction on the wire is the first. */
