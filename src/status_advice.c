@@ -11,8 +11,8 @@ const char *fathom_status_advice(fathom_status_t status)
         "The bus or the driver is not initialised, or a value is out of its range. Check what each init "
         "returned.",
         "The serial port is gone or does not send. Check the adapter and its cable, and open the port again.",
-        "Nothing came back. Check supply, ground, address and line settings, and try A and B the other way "
-        "round.",
+        "Nothing came back. Check supply, ground, address, line settings; swap A and B. If others respond, "
+        "check this one's plug.",
         "What came back was damaged. Check baud rate and parity first, then termination, bias and ground.",
         "The unit refused the request. Check that the sensor is the model and in the mode that the driver is "
         "for.",

@@ -73,6 +73,7 @@ TEST(advice_names_what_to_check)
         const char *word;
     } rows[] = {{FATHOM_ERR_ARGUMENT, "init"},      {FATHOM_ERR_PORT, "adapter"},
                 {FATHOM_ERR_NO_RESPONSE, "supply"}, {FATHOM_ERR_NO_RESPONSE, "address"},
+                {FATHOM_ERR_NO_RESPONSE, "plug"},   {FATHOM_ERR_NO_RESPONSE, "others respond"},
                 {FATHOM_ERR_CHECKSUM, "parity"},    {FATHOM_ERR_STALE, "TX"},
                 {FATHOM_ERR_LINE_BUSY, "bias"},     {FATHOM_ERR_OTHER_MASTER, "one master"},
                 {FATHOM_ERR_CAPACITY, "32 bytes"},  {FATHOM_ERR_IN_USE, "free address"}};
