@@ -77,6 +77,9 @@ typedef struct {
      * @brief The clock of the HAL when the last byte of the response arrived, in microseconds. Wraps after 71.6
      * minutes.
      *
+     * The age of the sample is the clock's present value minus `time_us`, as a uint32_t, if it is less than 71 minutes. On
+     * Linux it is `(uint32_t)fathom_posix_now_us() - sample.time_us`; fathom_posix.h has the time of the day too.
+     *
      * For a pulse: the end of the pulse. For a switch or a relay: see contact.h.
      */
     uint32_t time_us;

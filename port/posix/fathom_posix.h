@@ -296,13 +296,25 @@ fathom_posix_status_t fathom_posix_line_errors(fathom_posix_uart_t *port, fathom
  * is suspended, the clock stands still. */
 fathom_clock_t fathom_posix_clock(void);
 
-/** @brief Returns CLOCK_MONOTONIC in microseconds, in 64 bits, which do not wrap. For programs. */
+/**
+ * @brief Returns CLOCK_MONOTONIC in microseconds, in 64 bits, which do not wrap. For programs.
+ *
+ * The low 32 bits are the clock of fathom_posix_clock(), and so of `time_us` of a sample. The age of a sample that is less
+ * than 71 minutes old, and the time of the day at which its last byte arrived:
+ *
+ * @code
+ * const uint32_t age_us = (uint32_t)fathom_posix_now_us() - sample.time_us;
+ * struct timespec now; // <time.h>
+ * clock_gettime(CLOCK_REALTIME, &now);
+ * const int64_t unix_us = now.tv_sec * INT64_C(1000000) + now.tv_nsec / 1000 - age_us;
+ * @endcode
+ */
 uint64_t fathom_posix_now_us(void);
 
 /**
  * @brief Sleeps until bytes can be read, the far end has hung up, a signal handler has run, or `max_us` has passed.
  *
- * This is an idle hook for fathom_wait() (wait.h). It also returns early if the kernel had space for the rest of a
+ * This is an idle hook for fathom_wait() (wait.h). The port of a bus `bus` is `&bus.port`. The function also returns early if the kernel had space for the rest of a
  * request. If the port is closed or lost, it returns at once: a loop must check the status that the poll functions
  * return, or it uses a whole processor.
  *
@@ -310,7 +322,7 @@ uint64_t fathom_posix_now_us(void);
  * `max_us`, or call ppoll(2) with fathom_posix_fd(). There is no event for the end of sending. fathom_due_us()
  * therefore returns the time of `leaves_in_us` while a request leaves, and 1 ms after that.
  *
- * @param port    The port, a fathom_posix_uart_t.
+ * @param port    The port, a fathom_posix_uart_t, such as `&bus.port`.
  * @param max_us  Longest sleep in microseconds. FATHOM_NO_DEADLINE: without a limit.
  */
 void fathom_posix_wait(void *port, uint32_t max_us);
@@ -385,8 +397,9 @@ const char *fathom_posix_bus_error(const fathom_posix_bus_t *bus);
 /**
  * @brief Waits for the next reading or error of a sensor, as fathom_wait(). Uses no processor time while it waits.
  *
- * The driver's header states the longest wait. With several sensors on one bus, read them in turns, or poll all of them
- * with fathom_poll() and sleep by fathom_posix_wait(). If the port is closed, or was lost before the call, the call takes
+ * The driver's header states the longest wait, which is seconds if the sensor does not respond. So use this function for
+ * one sensor only. If the bus has several sensors, poll all of them with fathom_poll(), and sleep by
+ * fathom_posix_wait() with `&bus.port` and fathom_due_us(): examples/linux/three.c. If the port is closed, or was lost before the call, the call takes
  * one second, so that a program that reads on does not use a whole processor.
  *
  * @param bus     The bus of the sensor.
