@@ -59,7 +59,7 @@ extern "C" {
 /** @brief Configuration. Read only during fathom_a05_dyp_init(). A member that is 0 takes its default. */
 typedef struct {
     /**
-     * @brief Connection to the sensor; modbus_unit.h explains its members.
+     * @brief Connection to the sensor; fathom/engine/internal/modbus_unit.h explains its members.
      *
      * | member         | range here                                      | 0 selects                        |
      * |----------------|-------------------------------------------------|----------------------------------|

@@ -87,7 +87,7 @@ enum {
 /** @brief Configuration. Read only during fathom_a05_modbus_init(). A member that is 0 takes its default. */
 typedef struct {
     /**
-     * @brief Connection to the sensor; modbus_unit.h explains its members.
+     * @brief Connection to the sensor; fathom/engine/internal/modbus_unit.h explains its members.
      *
      * With n registers from the first to the last wanted probe, `period_us` is at least n * 100 ms, and a `timeout_us`
      * of 0 selects 200 ms + n * 100 ms.

@@ -119,7 +119,7 @@ extern "C" {
 /** @brief The configuration. Used only during fathom_hps167s_init(). A member that is 0 takes its default. */
 typedef struct {
     /**
-     * @brief Connection to the sensor; modbus_unit.h explains its members.
+     * @brief Connection to the sensor; fathom/engine/internal/modbus_unit.h explains its members.
      *
      * | member               | range here                               | 0 selects                              |
      * |----------------------|------------------------------------------|----------------------------------------|
