@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """The first programs of examples/ for Linux, each with the simulated sensor that it is for."""
+import collections
 import os
+import re
 
 import e2e
 
@@ -29,14 +31,13 @@ class Complete(e2e.Case):
         gate.expect(r'^no reading \(NO_RESPONSE\)\. [A-Z].*\.$')
         gate.expect('^2083 mm$')
 
-    def test_a_port_that_is_lost_is_reported_again_and_again(self):
+    def test_it_ends_with_the_reason_when_its_port_is_lost(self):
         sim = self.sim('hps167s --distance 2083')
         gate = self.gate(sim)
         gate.expect('^2083 mm$')
         sim.end()
         gate.expect(r'^no reading \(PORT\)\. [A-Z].*\.$')
-        gate.expect(r'^no reading \(PORT\)\. [A-Z].*\.$')
-        self.assertIsNone(gate.done)
+        self.ends(gate, 1, re.compile(f'^{re.escape(str(sim))}: \\S.*\n$'))
 
     def test_a_port_that_is_not_there_is_reported(self):
         self.ends(self.gate('/nowhere'), 1, '/nowhere', out='')
@@ -49,6 +50,49 @@ class Complete(e2e.Case):
     def test_it_ends_when_its_output_is_broken(self):
         with open('/dev/full', 'w', encoding='utf-8') as full:
             self.ends(self.gate(self.sim('hps167s --distance 2083'), stdout=full), 1)
+
+
+class Three(e2e.Case):
+    """examples/linux/three.c"""
+    BUS = 'a16:2:modbus a05:1:modbus hps167s:5'
+    SEEN = '--distance 1@754 --distance 2@1000,2000,no-target,3562 --distance 3@2083'
+    LINES = {'A16: probe 1: 754 mm', 'A05: probe 1: 1000 mm', 'A05: probe 2: 2000 mm',
+             'A05: probe 3: nothing in range', 'A05: probe 4: 3562 mm', 'HPS-167S: probe 1: 2083 mm'}
+
+    def three(self, *arguments, **options):
+        return self.start([os.path.join(PROGRAMS, 'example_three'), *arguments], **options)
+
+    def test_each_sensor_is_read_again_and_again_at_its_own_settings(self):
+        three = self.three(self.sim(self.BUS, self.SEEN))
+        count = collections.Counter()
+        while len(count) < len(self.LINES) or min(count.values()) < 2:
+            count[three.expect('^(.*)$')[1]] += 1
+            self.assertLess(sum(count.values()), 1000, count)
+        self.assertEqual(set(count), self.LINES)
+
+    def test_a_sensor_that_is_missing_is_named_and_the_others_are_read(self):
+        three = self.three(self.sim('a16:2:modbus hps167s:5', '--distance 1@754 --distance 2@2083'))
+        for _ in range(2):
+            three.expect(r'^A05: no reading \(NO_RESPONSE\)\. [A-Z].*\.$')
+            three.expect('^A16: probe 1: 754 mm$')
+            three.expect('^HPS-167S: probe 1: 2083 mm$')
+        self.assertEqual([line for line in three.lines() if not line.startswith('A05: no reading (NO_RESPONSE)') and
+                          line not in self.LINES], [])
+
+    def test_it_ends_with_the_reason_when_its_port_is_lost(self):
+        sim = self.sim(self.BUS, self.SEEN)
+        three = self.three(sim)
+        three.expect('^A16: probe 1: 754 mm$')
+        sim.end()
+        three.expect(r'no reading \(PORT\)\. [A-Z].*\.$')
+        self.ends(three, 1, re.compile(f'^{re.escape(str(sim))}: \\S.*\n$'))
+
+    def test_a_port_that_is_not_there_is_reported(self):
+        self.ends(self.three('/nowhere'), 1, '/nowhere', out='')
+
+    def test_it_ends_when_its_output_is_broken(self):
+        with open('/dev/full', 'w', encoding='utf-8') as full:
+            self.ends(self.three(self.sim(self.BUS, self.SEEN), stdout=full), 1)
 
 
 class Modes(e2e.Case):
