@@ -29,7 +29,9 @@
  *
  * 2. **Order.** Set up the bus, call begin(), then call poll() in the loop. Without begin(), poll() must not be called.
  *    begin() accepts the configuration of the driver, which may be a local variable; without one, all members have
- *    their defaults. Call end() before an object is destroyed while its bus is still in use.
+ *    their defaults. If begin() fails, each poll() returns FATHOM_ERR_ARGUMENT until a begin() succeeds, so keep the
+ *    error of begin(): status() has it only until the first poll(). Call end() before an object is destroyed while its
+ *    bus is still in use.
  *
  * 3. **Everything else.** `driver` is the driver of C, for all functions of its header: for example
  *    `fathom_hps167s_power_on(&gate.driver)`. That header has the errors, the limits and the longest wait.
@@ -74,16 +76,37 @@ class newest
         }
     }
 
-    /** @brief Returns what to check after the newest result, as a sentence (fathom_status_advice()). */
+    /**
+     * @brief Returns what to check after the newest result, as a sentence (fathom_status_advice()).
+     *
+     * Not for an AVR: constants are in its RAM, and the 1.7 KB of all sentences are more than an Uno has left.
+     */
     const char *advice() const { return fathom_status_advice(status()); }
 
     /** @brief Returns the newest reading, of fathom_sample_t. Valid only while status() is FATHOM_OK. */
     const fathom_sample_t &sample() const { return sample_; }
 
+    /**
+     * @brief Returns true if the newest result is an error, and no reading.
+     *
+     * False with FATHOM_PENDING, and with every reading, also one without a distance, such as FATHOM_NO_TARGET.
+     */
+    bool is_error() const { return status() < 0; }
+
+    /**
+     * @brief Returns the time since the newest reading, from its `time_us`, in microseconds.
+     * @param now_us  The clock of the sensor's line, capture or contact, now.
+     * @return The age, which wraps after 71.6 minutes without a poll(). UINT32_MAX if the newest result is no reading.
+     */
+    uint32_t age_us(uint32_t now_us) const
+    {
+        return status() == FATHOM_OK ? fathom_elapsed_us(now_us, sample_.time_us) : UINT32_MAX;
+    }
+
     /** @brief Returns true if the newest result is a reading of this kind, such as FATHOM_NEAR. */
     bool is(fathom_sample_kind_t kind) const { return status() == FATHOM_OK && sample_.kind == kind; }
 
-    /** @brief Returns true if the newest result is a distance. */
+    /** @brief Returns true if the newest result is a distance. An object nearer than the range is no target. */
     bool has_target() const { return is(FATHOM_TARGET); }
 
     /** @brief Returns the distance in millimetres. 0 unless has_target(): no old value outlives an error. */

@@ -50,13 +50,23 @@ typedef enum {
      */
     FATHOM_FAULT = 3,
 
-    /** @brief A target is nearer than the threshold of a switch or relay, or too near to measure. No distance. */
+    /**
+     * @brief A target is nearer than the threshold of a switch or relay. No distance.
+     *
+     * The drivers of the A16 and A05 with a `window` also return it for a value whose meaning the program has set to
+     * FATHOM_MEANS_TOO_NEAR: a16_auto, a16_controlled, a16_modbus, a05_auto, a05_dyp and a05_modbus. With the defaults
+     * they do not. An HPS-167S never returns it: for an object nearer than its range it returns FATHOM_UNKNOWN.
+     */
     FATHOM_NEAR = 4,
 
     /** @brief No target is nearer than the threshold of a switch or relay. No distance. */
     FATHOM_FAR = 5,
 
-    /** @brief A value without a known meaning, or only pulses below the range. `raw` has the value. No distance. */
+    /**
+     * @brief A value without a known meaning, or below the range. `raw` has the value. No distance.
+     *
+     * Below the range are 1 to 79 mm of an HPS-167S, and a PWM of pulses that are too short only.
+     */
     FATHOM_UNKNOWN = 6
 } fathom_sample_kind_t;
 

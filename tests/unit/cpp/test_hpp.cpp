@@ -83,6 +83,8 @@ template <class Sensor> void expect_nothing(const Sensor &sensor, fathom_status_
     assert_false(sensor.is(FATHOM_NEAR));
     assert_int_equal(sensor.distance_mm(), 0);
     assert_int_equal(sensor.probe(), 0);
+    assert_int_equal(sensor.age_us(0), UINT32_MAX);
+    assert_int_equal(sensor.is_error(), status != FATHOM_PENDING);
 }
 
 template <class Sensor> void has_no_copy()
@@ -127,6 +129,7 @@ TEST(a_frame_becomes_a_distance_and_no_old_distance_outlives_an_error)
     assert_int_equal(tank.object->probe(), 1);
     assert_int_equal(tank.object->sample().distance_mm, 1953);
     assert_string_equal(tank.object->result_name(), "TARGET");
+    assert_false(tank.object->is_error());
 
     /* Nothing new: the reading stays. */
     assert_int_equal(tank.object->poll(), FATHOM_PENDING);
@@ -168,6 +171,67 @@ TEST(a_begin_that_fails_is_the_status_and_a_new_begin_forgets_the_reading)
     expect_nothing(*tank.object, FATHOM_ERR_ARGUMENT);
     assert_int_equal(tank.object->begin(), FATHOM_OK);
     expect_nothing(*tank.object, FATHOM_PENDING);
+}
+
+TEST(the_age_of_a_reading_grows_with_the_clock_and_across_its_wrap)
+{
+    bus.set_up(false);
+    bus.fake.now_us = UINT32_MAX - 30000;
+    dirty<fathom::a16_auto> tank(bus);
+    assert_int_equal(tank.object->begin(), FATHOM_OK);
+    fake_receive(&bus.fake, 20000, mm_1953, sizeof mm_1953);
+    assert_int_equal(bus.run(*tank.object, 100000), FATHOM_OK);
+    const uint32_t time_us = tank.object->sample().time_us;
+    assert_int_equal(tank.object->age_us(time_us), 0);
+    assert_int_equal(tank.object->age_us(time_us + 1500000), 1500000);
+}
+
+template <class Sensor> void a_poll_after_a_failed_begin_is_refused(Sensor &sensor)
+{
+    assert_int_equal(sensor.status(), FATHOM_ERR_ARGUMENT);
+    for (int i = 0; i < 3; i++) assert_int_equal(sensor.poll(), FATHOM_ERR_ARGUMENT);
+    expect_nothing(sensor, FATHOM_ERR_ARGUMENT);
+}
+
+TEST(after_a_begin_that_failed_each_poll_of_every_class_is_refused)
+{
+    /* Once the bus is refused, once the configuration: each has a value that its header excludes. */
+    for (int is_set_up = 0; is_set_up <= 1; is_set_up++) {
+#define ON_LINE(name, asks, member, value)                                                                   \
+    {                                                                                                        \
+        fathom_##name##_config_t config = {};                                                                \
+        config.member = value;                                                                               \
+        memset(&bus, 0, sizeof bus);                                                                         \
+        if (is_set_up != 0) bus.set_up(asks);                                                                \
+        dirty<fathom::name> sensor(bus);                                                                     \
+        assert_int_equal(sensor.object->begin(&config), FATHOM_ERR_ARGUMENT);                                \
+        a_poll_after_a_failed_begin_is_refused(*sensor.object);                                              \
+    }
+        ON_LINE(a16_auto, false, stale_us, UINT32_C(1) << 31)
+        ON_LINE(a05_auto, false, stale_us, UINT32_C(1) << 31)
+        ON_LINE(hps167s_auto, false, address, 33)
+        ON_LINE(a16_modbus, true, modbus.address, 255)
+        ON_LINE(a05_modbus, true, modbus.address, 255)
+        ON_LINE(a05_dyp, true, modbus.address, 255)
+        ON_LINE(hps167s, true, modbus.address, 33)
+    }
+
+    const fathom_output_t none = {};
+    const fathom_capture_t nothing = {};
+    const fathom_pin_t no_pin = {};
+    bus.set_up(false);
+    dirty<fathom::a16_controlled> controlled(bus);
+    assert_int_equal(controlled.object->begin(none), FATHOM_ERR_ARGUMENT);
+    a_poll_after_a_failed_begin_is_refused(*controlled.object);
+    dirty<fathom::a16_pwm> pulse;
+    assert_int_equal(pulse.object->begin(nothing, bus.fake.clock, none), FATHOM_ERR_ARGUMENT);
+    a_poll_after_a_failed_begin_is_refused(*pulse.object);
+    dirty<fathom::a16_switch> door;
+    assert_int_equal(door.object->begin(no_pin, bus.fake.clock), FATHOM_ERR_ARGUMENT);
+    a_poll_after_a_failed_begin_is_refused(*door.object);
+    dirty<fathom::a05_relay> relay;
+    assert_int_equal(relay.object->begin(no_pin, bus.fake.clock), FATHOM_ERR_ARGUMENT);
+    a_poll_after_a_failed_begin_is_refused(*relay.object);
 }
 
 TEST(a_bus_that_is_not_set_up_is_refused)
