@@ -331,7 +331,10 @@ bool stream_bus::begin_listening(const fathom_line_settings_t &settings)
 
 fathom_status_t a16_pwm::begin(const fathom_a16_pwm_config_t *config)
 {
-    if (!pulses.begin(pulse_pin_)) return begun(FATHOM_ERR_UNSUPPORTED);
+    if (!pulses.begin(pulse_pin_)) {
+        driver = fathom_a16_pwm_t(); /* which every poll() refuses */
+        return begun(FATHOM_ERR_UNSUPPORTED);
+    }
     trigger_ = output(trigger_pin_);
     capture_ = pulses.capture();
     return fathom::a16_pwm::begin(capture_, clock, fathom_output_pin(&trigger_), config);

@@ -131,6 +131,8 @@ enum : uint8_t {
 /**
  * @brief A HardwareSerial (Serial, Serial1, ...) that is used for nothing else, not even for printing.
  *
+ * One exception: if its line only listens, the sketch may print by it, because TX is free (bus::begin_listening()).
+ *
  * - **read** returns the bytes that the core has kept. An AVR with 1 KiB of RAM or more keeps 63 bytes: 65 ms at 9600
  *   baud, 36 ms at 19200 8E1, 5.5 ms at 115200. Later bytes are lost. The core reports nothing about single bytes, so
  *   no flag is set. The core drops bytes with wrong parity; their frame is then too short.
@@ -161,12 +163,7 @@ enum : uint8_t {
  *   once. It takes as long as the request: 4.6 ms for a measurement of an HPS-167S at 19200 baud, and at most 15 ms, for
  *   13 bytes of 11 bits at 9600 baud.
  *
- * With DE, and without it, loop() may take as long as the sensors allow:
- *
- * | sensor                                                    | longest period of loop()           |
- * |-----------------------------------------------------------|------------------------------------|
- * | any that is asked, also an HPS-167S with factory settings | 50 ms; a reading takes 3 periods   |
- * | A16 and A05 with automatic output, 9600 baud              | 60 ms: the core keeps 63 bytes     |
+ * With DE, and without it, loop() may take as long as the sensors allow (bus).
  */
 class serial_uart
 {
@@ -331,20 +328,43 @@ class bus_line
  * The line is made of parts (line.h) for a transceiver of unknown kind and sensors with factory settings: it finds out
  * whether there is an echo, names `senders`, and keeps fathom_silence_us() before a request. Several sensors may share
  * a bus, and a sketch may have several buses.
+ *
+ * **Wiring of an RS-485 transceiver.**
+ *
+ * | pin of the transceiver | goes to                                                                             |
+ * |------------------------|-------------------------------------------------------------------------------------|
+ * | DI                     | TX of the board.                                                                    |
+ * | RO                     | RX of the board, with 10 kOhm to the supply of the transceiver: while a request is  |
+ * |                        | sent, RO is not driven. Many modules have this resistor.                            |
+ * | DE and /RE             | The driver-enable pin, with 10 kOhm to ground: while the board is in reset, the pin |
+ * |                        | is not driven, and the transceiver must not send.                                   |
+ * | A and B                | The pair of the sensors, with a common ground.                                      |
+ *
+ * An Uno receives its programs by pin 0 (RX). Disconnect RO from pin 0 while you upload a sketch.
+ *
+ * **Period of loop().** With a driver-enable pin, and without it, loop() may take:
+ *
+ * | sensor                                                    | longest period of loop()           |
+ * |-----------------------------------------------------------|------------------------------------|
+ * | any that is asked, also an HPS-167S with factory settings | 50 ms; a reading takes 3 periods   |
+ * | A16 and A05 with automatic output, 9600 baud              | 60 ms: the core keeps 63 bytes     |
+ *
+ * An HPS-167S may send by itself with factory settings. The 50 ms are true then too, with more time for each reading:
+ * a loop() of 20 ms got 10 readings a second, and one of 50 ms got 5.
  */
 class bus : public bus_line
 {
   public:
     /**
      * @brief Stores the serial port. Does nothing with it yet.
-     * @param serial  The serial port (Serial, Serial1, ...). Nothing else may use it.
+     * @param serial  The serial port (Serial, Serial1, ...). Nothing else may use it, except as begin_listening() says.
      */
     explicit bus(HardwareSerial &serial) : port(serial) {}
 
     /**
      * @brief Stores the serial port and the driver-enable pin. Does nothing with them yet.
      *
-     * @param serial         The serial port (Serial, Serial1, ...). Nothing else may use it.
+     * @param serial         The serial port. Nothing else may use it, except as begin_listening() says.
      * @param driver_enable  Arduino number of the driver-enable pin of an RS-485 transceiver (serial_uart).
      */
     bus(HardwareSerial &serial, uint8_t driver_enable) : port(serial, driver_enable) {}
@@ -525,7 +545,33 @@ class a05_relay : public fathom::a05_relay
     fathom_pin_t level_;
 };
 
-/** @brief A sensor whose functions have names as the Arduino API has them. The other functions of it remain. */
+/**
+ * @brief A sensor whose functions have names as the Arduino API has them. The other functions of it remain.
+ *
+ * These functions of the class below (fathom.hpp) are also of use in a sketch:
+ *
+ * | function            | returns                                                                                |
+ * |---------------------|----------------------------------------------------------------------------------------|
+ * | `probe()`           | the probe of the newest reading, 1 to 4; 0 if there is none                            |
+ * | `sample()`          | the newest reading, with `raw`, `magnitude`, `ambient` and others (sample.h)           |
+ * | `is(FATHOM_FAULT)`  | true if the newest result is a reading of this kind                                    |
+ * | `status()`          | the newest result as a number, such as FATHOM_ERR_NO_RESPONSE                          |
+ * | `end()`             | nothing; it cancels what is in progress. A class with only pins does not have it       |
+ * | `driver`            | no function: the driver of C, for all functions of its header                          |
+ *
+ * Do not use `advice()` on an AVR: its sentences need 1.7 KB of RAM.
+ *
+ * **No old value.** After an error there is no distance until the next reading. With the defaults the first error after
+ * the newest reading comes after this time, if available() is called in each loop(). The headers of the drivers have
+ * the times of the other modes.
+ *
+ * | sensor                                        | an unplugged sensor is an error after                     |
+ * |-----------------------------------------------|-----------------------------------------------------------|
+ * | HPS-167S                                      | 0.5 s without a response: NO_RESPONSE (`timeout_us`)      |
+ * | A16, A05 and HPS-167S that send by themselves | 2 s without a byte: STALE (`stale_us`)                    |
+ *
+ * A switch or relay cannot show a cut wire. Between two readings the newest one remains: ageMs() has its age.
+ */
 template <class Sensor> class named : public Sensor
 {
   public:
@@ -533,37 +579,72 @@ template <class Sensor> class named : public Sensor
 
     /**
      * @brief Initialises the driver with the defaults.
-     * @return False after an error, which statusName() has.
+     * @return False after an error, which statusName() has until the first available().
      */
     bool begin() { return Sensor::begin() == FATHOM_OK; }
 
     /**
      * @brief Initialises the driver with a configuration.
+     *
+     * @code
+     * fathom_hps167s_config_t config = {};   // all defaults
+     * config.modbus.period_us = 167000;      // from one request to the next; 0 selects 18519
+     * if (!gate.begin(config)) report(gate.statusName());
+     * @endcode
+     *
+     * The sensor of this example measures 6 to 54 times a second. With 167000 us, 6 requests a second, each reading is
+     * a new measurement. Assign the members: avr-gcc 5.4 does not compile `{.modbus = ...}`.
+     *
      * @param config  The configuration of the driver, read only during the call.
-     * @return False after an error, which statusName() has.
+     * @return False after an error, which statusName() has until the first available().
      */
     template <class Config> bool begin(const Config &config) { return Sensor::begin(&config) == FATHOM_OK; }
 
     /**
      * @brief Polls the sensor. Call it in each loop().
-     * @return True if there is a new reading or error.
+     * @return True if there is a new reading or error. After a begin() that failed: true, with the error ARGUMENT.
      */
     bool available() { return Sensor::poll() != FATHOM_PENDING; }
 
-    /** @brief Returns true if the newest result is a distance. */
+    /**
+     * @brief Returns true if the newest result is a distance.
+     *
+     * An object nearer than the range is no target: an HPS-167S reports 1 to 79 mm as FATHOM_UNKNOWN. So false does not
+     * prove that nothing is there.
+     */
     bool hasTarget() const { return Sensor::has_target(); }
 
-    /** @brief Returns the distance in millimetres. 0 unless hasTarget(). */
+    /** @brief Returns true if the newest result is an error. NO_TARGET and every other reading are no error. */
+    bool isError() const { return Sensor::is_error(); }
+
+    /** @brief Returns the distance in millimetres. 0 unless hasTarget(), also for an object nearer than the range. */
     uint16_t distanceMm() const { return Sensor::distance_mm(); }
 
-    /** @brief Returns true if the newest result is that of a switch or relay with something near. */
-    bool isNear() const { return Sensor::is(FATHOM_NEAR); }
+    /**
+     * @brief Returns the time since the newest reading, from its `time_us`, in milliseconds.
+     *
+     * It wraps after 71.6 minutes without available(). 4294967 (71.6 minutes) if the newest result is no reading.
+     */
+    uint32_t ageMs() const { return Sensor::age_us(static_cast<uint32_t>(micros())) / 1000; }
 
     /** @brief Returns the newest result as a name: the kind of a reading, such as "NO_TARGET", or an error. */
     const char *resultName() const { return Sensor::result_name(); }
 
     /** @brief Returns the newest status as a name: "OK", "PENDING", or an error such as "NO_RESPONSE". */
     const char *statusName() const { return Sensor::status_name(); }
+};
+
+/** @brief The same as named for a switch or a relay. */
+template <class Sensor> class named_contact : public named<Sensor>
+{
+  public:
+    using named<Sensor>::named;
+
+    /** @brief Returns true if the newest result is that something is near. */
+    bool isNear() const { return Sensor::is(FATHOM_NEAR); }
+
+    /** @brief Returns true if the newest result is that nothing is near. False after an error, as isNear(). */
+    bool isFar() const { return Sensor::is(FATHOM_FAR); }
 };
 
 /** @brief A bus whose functions have names as the Arduino API has them. The other functions of it remain. */
@@ -590,6 +671,8 @@ typedef fathom::arduino::named_bus<fathom::arduino::stream_bus> FathomStreamBus;
 
 /** @brief HPS-167S, Modbus RTU: `FathomHps167s gate(bus)`. */
 typedef fathom::arduino::named<fathom::hps167s> FathomHps167s;
+/** @brief HPS-167S that sends by itself: `FathomHps167sAuto gate(bus)`, with bus.beginListening(). */
+typedef fathom::arduino::named<fathom::hps167s_auto> FathomHps167sAuto;
 /** @brief A16, automatic output on UART or RS232: `FathomA16Auto tank(bus)`. */
 typedef fathom::arduino::named<fathom::a16_auto> FathomA16Auto;
 /** @brief A16, UART controlled: `FathomA16Controlled tank(bus, trigger_pin)`. */
@@ -599,7 +682,7 @@ typedef fathom::arduino::named<fathom::arduino::a16_pwm> FathomA16Pwm;
 /** @brief A16, Modbus RTU: `FathomA16Modbus tank(bus)`. */
 typedef fathom::arduino::named<fathom::a16_modbus> FathomA16Modbus;
 /** @brief A16, switch output: `FathomA16Switch door(pin)`. */
-typedef fathom::arduino::named<fathom::arduino::a16_switch> FathomA16Switch;
+typedef fathom::arduino::named_contact<fathom::arduino::a16_switch> FathomA16Switch;
 /** @brief A05, automatic output: `FathomA05Auto bumper(bus)`. */
 typedef fathom::arduino::named<fathom::a05_auto> FathomA05Auto;
 /** @brief A05, protocol `55 AA`: `FathomA05Dyp bumper(bus)`. */
@@ -607,6 +690,6 @@ typedef fathom::arduino::named<fathom::a05_dyp> FathomA05Dyp;
 /** @brief A05, Modbus RTU: `FathomA05Modbus bumper(bus)`. */
 typedef fathom::arduino::named<fathom::a05_modbus> FathomA05Modbus;
 /** @brief A05, relay output: `FathomA05Relay door(pin)`. */
-typedef fathom::arduino::named<fathom::arduino::a05_relay> FathomA05Relay;
+typedef fathom::arduino::named_contact<fathom::arduino::a05_relay> FathomA05Relay;
 
 #endif

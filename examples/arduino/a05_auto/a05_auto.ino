@@ -3,8 +3,8 @@
 #include <SoftwareSerial.h>
 #include <fathom_arduino.h>
 
-SoftwareSerial serial(10, 11); // RX, TX
-FathomStreamBus bus(serial);
+SoftwareSerial sensorPort(10, 11); // RX, TX
+FathomStreamBus bus(sensorPort);
 FathomA05Auto bumper(bus);
 
 void setup()

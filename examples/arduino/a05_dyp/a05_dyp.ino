@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A05, the protocol 55 AA on RS485. Wiring and serial ports are those of the sketch hps167s.
+// A05, the protocol 55 AA on RS485. Wiring, resistors, uploading and serial ports: see the sketch hps167s.
 #include <SoftwareSerial.h>
 #include <fathom_arduino.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A16, Modbus RTU on RS485. Transceiver: DI to TX, RO to RX, DE and /RE to pin 2.
-// An Uno has one UART, so it prints by pin 11, to a USB adapter. If a board has Serial1, write Serial1 in place of
-// Serial, and Serial in place of console.
+// A16, Modbus RTU on RS485, with factory settings. fathom_arduino.h has more about the wiring, at class bus.
+// DI to TX, RO to RX, DE and /RE to pin 2; 10 kOhm from RO to 5 V, from DE to ground. Disconnect RO while uploading.
+// It prints by pin 11, to a USB adapter. With Serial1: write Serial1 for Serial, and Serial for console.
 #include <SoftwareSerial.h>
 #include <fathom_arduino.h>
 

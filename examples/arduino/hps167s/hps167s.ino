@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// HPS-167S, Modbus RTU on RS485, with factory settings. Transceiver: DI to TX, RO to RX, DE and /RE to pin 2.
-// An Uno has one UART, so it prints by pin 11, to a USB adapter. If a board has Serial1, write Serial1 in place of
-// Serial, and Serial in place of console.
+// HPS-167S, Modbus RTU on RS485, with factory settings. It works too if the sensor sends by itself, as it may then.
+// DI to TX, RO to RX, DE and /RE to pin 2; 10 kOhm from RO to 5 V, from DE to ground. Disconnect RO while uploading.
+// It prints by pin 11, to a USB adapter. With Serial1: write Serial1 for Serial, and Serial for console.
 #include <SoftwareSerial.h>
 #include <fathom_arduino.h>
 

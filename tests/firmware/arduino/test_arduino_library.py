@@ -150,7 +150,7 @@ def on_serial1(sketch):
     """The sketch as its comment says for a board with Serial1."""
     return re.sub(r'^SoftwareSerial .*\n|^#include <SoftwareSerial.h>\n', '', sketch, flags=re.M) \
         .replace('FathomBus bus(Serial, 2)', 'FathomBus bus(Serial1, 2)').replace('console.', 'Serial.') \
-        .replace('FathomStreamBus bus(serial)', 'FathomBus bus(Serial1)')
+        .replace('FathomStreamBus bus(sensorPort)', 'FathomBus bus(Serial1)')
 
 
 def test_the_port_and_the_sketches_compile_for_a_mega_and_a_leonardo():
@@ -170,6 +170,31 @@ def test_the_port_and_the_sketches_compile_for_a_mega_and_a_leonardo():
                            *usb, build.CORE_NEEDS, '-I' + build.CORE,
                            '-I' + build.AVR + '/variants/' + variant, '-I' + os.path.join(LIBRARY, 'src'),
                            path, '-o', '/dev/null'])
+
+
+CLASSES = ['HPS167S', 'HPS167S_AUTO', 'A16_AUTO', 'A16_CONTROLLED', 'A16_PWM', 'A16_MODBUS', 'A16_SWITCH', 'A05_AUTO',
+           'A05_DYP', 'A05_MODBUS', 'A05_RELAY']
+CONTACTS = ['A16_SWITCH', 'A05_RELAY']
+
+
+def compiles(call, name):
+    """Whether a class has a function, by a compiler that gets nothing else wrong in the same lines."""
+    kind = 'Fathom' + ''.join(part.capitalize() for part in name.split('_'))
+    text = f'#include <fathom_arduino.h>\nlong ask(const {kind} &sensor) {{ return sensor.{call}(); }}\n'
+    done = subprocess.run(['avr-g++', '-fsyntax-only', '-w', '-std=gnu++11', '-x', 'c++', *build.BOARD,
+                           build.CORE_NEEDS, *build.INCLUDE, '-I' + os.path.join(LIBRARY, 'src'), '-'],
+                          input=text, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+    assert done.returncode == 0 or f"has no member named '{call}'" in done.stdout.replace('‘', "'").replace('’', "'"), \
+        done.stdout
+    return done.returncode == 0
+
+
+def test_each_class_tells_error_and_age_and_only_a_contact_is_near_or_far():
+    for name in CLASSES:
+        for call in ('isError', 'ageMs'):
+            assert compiles(call, name), (name, call)
+        for call in ('isNear', 'isFar'):
+            assert compiles(call, name) == (name in CONTACTS), (name, call)
 
 
 def test_no_sketch_links_the_table_of_256_entries_or_floating_point():
