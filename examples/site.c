@@ -44,11 +44,10 @@ int main(int argc, char **argv)
     fathom_loop_add_line(&loop, &north, argv[1], &fathom_hps167s_factory_line);
     fathom_loop_add_line(&loop, &west, argv[2], &fathom_a16_factory_line);
     /* An edge wakes it. A state that does not change is printed once a minute. */
-    const fathom_contact_timing_t timing = {.period_us = 60000000u, .interval_us = FATHOM_NO_DEADLINE};
+    const fathom_a05_relay_config_t slow = {{.period_us = 60000000, .interval_us = FATHOM_NO_DEADLINE}, 0, 0};
     bad |= fathom_hps167s_init(&gate, &north.bus.modbus, NULL) < 0;
     bad |= fathom_a16_modbus_init(&tank, &west.bus.modbus, NULL) < 0;
-    bad |= fathom_a05_relay_init(&door, &level, &north.bus.clock,
-                                 &(fathom_a05_relay_config_t){timing, 0, 0}) < 0;
+    bad |= fathom_a05_relay_init(&door, &level, &north.bus.clock, &slow) < 0;
     if (bad) return fprintf(stderr, "wrong pin or configuration: %s\n", fathom_gpio_error_text(&contact)), 1;
     fathom_loop_add_pin(&loop, &pin, fathom_gpio_fd(&contact));
     fathom_loop_read(&north.source, &(fathom_loop_sensor_t){0}, fathom_hps167s_sensor(&gate), take, "gate");

@@ -75,7 +75,7 @@ extern "C" {
  * outside its range.
  */
 typedef struct {
-    /** @brief Line settings of this unit, if those of the units on one line differ (line.h); NULL: unchanged. */
+    /** @brief Line settings of this unit, if those of the units on one line differ; NULL: `line_settings` of the parts (line.h). */
     const fathom_line_settings_t *line_settings;
 
     /** @brief Time from one measurement to the next in microseconds, 0 to 2^31 - 1. At least the driver's period. */
