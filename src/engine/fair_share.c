@@ -45,9 +45,8 @@ static void ended(fathom_line_turns_t *turns, uint8_t address, uint32_t at_us)
 static void count(fathom_fair_share_t *share, const fathom_line_t *line)
 {
     const uint32_t now_us = line->polled_us;
-    const uint16_t own_us = line->parts->silence_us;
-    const bool is_default = (own_us == 0u) || (line->is_slow && (own_us < FATHOM_LINE_DEFAULT_SILENCE_US));
-    const uint16_t silence_us = is_default ? FATHOM_LINE_DEFAULT_SILENCE_US : own_us;
+    uint16_t silence_us = line->parts->silence_us;
+    if (silence_us == 0u) silence_us = FATHOM_LINE_DEFAULT_SILENCE_US;
     if (share->held_for != NULL)
         (void)bill(share, share->held_for, now_us);
     else if (fathom_elapsed_us(now_us, share->since_us) > silence_us)

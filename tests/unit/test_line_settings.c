@@ -215,3 +215,26 @@ TEST(a_transaction_without_settings_gets_those_of_the_parts)
     run(REQUEST_US + 400);
     expect_written_with(1, 1, &n9600);
 }
+
+TEST(a_longer_silence_of_the_parts_is_kept)
+{
+    bench.config.silence_us = 6000;
+    ask_1_with(0, &n9600);
+    run(5800);
+    expect_written(0);
+    run(400);
+    expect_written_with(0, 1, &n9600);
+}
+
+/* silence.h: 38.5 / 9600 is 4010.4 us, 38.5 / 19200 is 2005.2; slower rates have none. */
+TEST(the_silence_of_settings_is_that_of_9600_or_19200_baud)
+{
+    static const struct {
+        uint32_t baud;
+        uint16_t us;
+    } rows[] = {{4800, 65535}, {9599, 65535}, {9600, 4011}, {19199, 4011}, {19200, 2006}, {115200, 2006}};
+    for (unsigned i = 0; i != sizeof rows / sizeof rows[0]; i++) {
+        const fathom_line_settings_t settings = {rows[i].baud, FATHOM_PARITY_NONE, 1};
+        assert_int_equal(fathom_silence_us(&settings), rows[i].us);
+    }
+}

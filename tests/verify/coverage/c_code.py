@@ -181,7 +181,13 @@ def files_of(root, paths, merged):
 
 
 def sources(root):
-    """What has to be measured: each C file of those folders."""
-    return [os.path.relpath(os.path.join(where, name), root) for folder in FOLDERS
-            for where, _, names in sorted(os.walk(os.path.join(root, folder))) for name in sorted(names)
-            if name.endswith('.c') or name == 'fathom_serial.h']
+    """What has to be measured: each C file of those folders that has a function."""
+    paths = [os.path.join(where, name) for folder in FOLDERS
+             for where, _, names in sorted(os.walk(os.path.join(root, folder))) for name in sorted(names)
+             if name.endswith('.c') or name == 'fathom_serial.h']
+    return [os.path.relpath(path, root) for path in paths if has_function(path)]
+
+
+def has_function(path):
+    with open(path, encoding='utf-8') as file:
+        return re.search(r'\)\s*\{', file.read()) is not None

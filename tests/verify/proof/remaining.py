@@ -151,15 +151,13 @@ ONE_REGISTER = 'a line has a buffer of 8 bytes or more, and the response of an A
 UNREACHED = {
     ('line/a16_modbus', 'fathom_dyp_modbus_init'): (1, A16),
     ('line/a16_modbus', 'fathom_dyp_modbus_sensor_due_us'): (1, ONE_PROBE),
-    ('line/a16_modbus', 'fathom_dyp_modbus_sensor_poll'): (3, ONE_PROBE),
     ('line/a16_modbus', 'fathom_modbus_unit_has_room'): (1, ONE_REGISTER),
-    ('line/a16_modbus', 'is_valid'): (1, HAS_ROOM),
     ('line/a16_modbus', 'moves'): (1, NO_RATE),
     ('line/a16_modbus', 'use_new_address'): (1, NO_RATE),
     ('line/clients', 'command_of_read'): (3, NO_HIGH_BYTE),
     ('line/hps167s', 'fathom_hps167s_follow'): (1, NO_FOLLOW),
     ('line/hps167s', 'fathom_hps167s_power_on'): (1, NO_FOLLOW),
-    ('line/hps167s', 'is_valid_0'): (4, REFUSED_BEFORE + '; ' + HAS_ROOM),
+    ('line/hps167s', 'is_valid_0'): (3, REFUSED_BEFORE + '; ' + HAS_ROOM),
     ('line/hps167s_auto', 'fathom_hps167s_auto_sensor_due_us'):
         (1, 'the harness polls before each due_us, and the poll takes the reading'),
     ('pure/dyp', 'complete'): (2, 'each case of the switch returns, so nothing follows it'),

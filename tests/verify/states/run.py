@@ -22,8 +22,8 @@ sys.path.insert(0, os.path.dirname(HERE))
 import c_text  # noqa: E402
 
 LIBRARY = [f'src/engine/{name}.c' for name in (
-    'line', 'line_attempt', 'line_due', 'line_echo', 'line_request', 'line_response', 'line_senders', 'line_masters', 'line_options',
-    'line_turns', 'line_round', 'modbus', 'modbus_client', 'dyp_client')] + [
+    'line', 'line_attempt', 'line_due', 'line_echo', 'line_request', 'line_response', 'line_senders', 'line_masters',
+    'line_options', 'line_turns', 'line_round', 'modbus_client', 'dyp_client')] + [
     f'src/codec/{name}.c' for name in ('crc16', 'modbus_rtu', 'dyp_55aa', 'dyp_stream')] + ['src/status_name.c']
 WORLD = [f'tests/verify/states/{name}.c' for name in (
     'main', 'search', 'ends', 'world', 'packed', 'steps', 'rules', 'described')]

@@ -85,7 +85,8 @@ static const fathom_uart_t uart = {.read = port_read,
                                    .set_line = port_set_line,
                                    .leaves_in_us = port_leaves_in_us};
 static const fathom_clock_t line_clock = {.now_us = clock_now_us};
-static const fathom_line_settings_t settings = {9600, FATHOM_PARITY_NONE, 1};
+static const fathom_line_settings_t settings = {19200, FATHOM_PARITY_NONE,
+                                                1}; /* a slower rate needs 40 ticks */
 static fathom_line_parts_t config;
 static uint16_t counters[FATHOM_LINE_COUNTERS]; /* required beside `count`, which does without */
 static fathom_listener_t listener = {.receive = receive};

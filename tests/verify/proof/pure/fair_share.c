@@ -4,6 +4,7 @@
  * line it looks at is any; what it calls is called as fathom_line_turns does.
  *
  * proves: src/engine/fair_share.c src/engine/line_turns.c
+ * with: src/engine/line_attempt.c
  * unreached: count_0
  * options: -eva-auto-loop-unroll 16
  */
@@ -31,6 +32,7 @@ static void any_line(void)
     line.phase = any_8_in(FATHOM_LINE_IDLE, FATHOM_LINE_WAITING);
     line.wait = any_8_in(0, 3);
     line.phase_left_us = any_32();
+    line.is_slow = any_bool();
     line.quarantined_units = any_16();
     line.polled_us = any_32();
     line.quarantine_left_us = any_32();
