@@ -21,7 +21,7 @@ PLACES = {
         ('-rw-r--r--', r'usr/share/doc/fathom/changelog\.gz'),
         ('-rw-r--r--', r'usr/share/doc/fathom/changelog\.Debian\.gz')],
     'libfathom-dev': [
-        ('-rw-r--r--', r'usr/include/fathom/([a-z]+/)?(internal/)?[a-z0-9_]+\.h'),
+        ('-rw-r--r--', r'usr/include/fathom/([a-z]+/)?(internal/)?[a-z0-9_]+\.h(pp)?'),
         ('-rw-r--r--', r'usr/include/fathom_serial\.h'),
         ('-rw-r--r--', r'usr/include/fathom_(conformance|gpio|libmodbus|posix)/fathom_[a-z]+\.h'),
         ('-rw-r--r--', r'usr/include/fathom_sim/sim/[a-z0-9]+\.h'),
