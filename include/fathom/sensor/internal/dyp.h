@@ -152,9 +152,9 @@ static inline void fathom_dyp_measurement_set(fathom_dyp_measurement_t *measurem
  */
 static inline uint8_t fathom_dyp_first_probe(uint8_t probes)
 {
-    uint8_t probe = 1;
-    for (; (probes & 1u) == 0u; probes = (uint8_t)(probes >> 1)) probe++;
-    return probe;
+    uint8_t first = 1;
+    for (; (probes & 1u) == 0u; probes = (uint8_t)(probes >> 1)) first++;
+    return first;
 }
 
 /**
