@@ -3,7 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include "commands.h"
+#include "commands/commands.h"
 
 /*
  * A descriptor that is closed at the start would be given to the next file that is opened, and readings would

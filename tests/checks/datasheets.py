@@ -42,7 +42,7 @@ class Tree:
         self.root = root
         code = '\n'.join(code_of(read(root, path)) for path in files(root, 'include'))
         self.names = set(re.findall(r'\b[A-Za-z_]\w*\b', code))
-        self.commands = set(re.findall(r'&(\w+)_command\b', read(root, 'examples/fathom/commands.c')))
+        self.commands = set(re.findall(r'&(\w+)_command\b', read(root, 'examples/fathom/commands/commands.c')))
 
         self.headers = files(root, 'include', ends='.h')
 

@@ -13,10 +13,40 @@ from common import files, main, read
 LAYERS = ('', 'codec', 'engine', 'processing', 'sensor')
 MAP = 'include/fathom/fathom.h'
 COMMON = 'src/common.h'  # what the sources of engine/ and sensor/ share
-# The same for the tool. Every other folder of it is a command, which may include these and itself.
-TOOL = ('shared', 'models', 'stations')
+# The same for the tool. commands/ stands on top: a file or a folder for each command, which includes no other command.
+TOOL = ('output', 'ports', 'sensors', 'diagnosis', 'reading', 'device', 'mqtt', 'cli', 'commands')
 TOOL_FOLDER = 'examples/fathom/'
-ANYWHERE = TOOL_FOLDER + 'commands.h'  # declares the commands
+ANYWHERE = TOOL_FOLDER + 'commands/commands.h'  # declares the commands
+
+# Arrows that still point up. Each has to go; none may be added.
+UPWARDS = {
+    ('device/backup_file.c', 'cli/command.h'),
+    ('device/session.c', 'cli/command.h'),
+    ('device/session.c', 'cli/options.h'),
+    ('device/session.h', 'cli/command.h'),
+    ('device/session.h', 'cli/sensor_options.h'),
+    ('device/set_report.c', 'cli/command.h'),
+    ('device/setting_text.c', 'cli/command.h'),
+    ('device/setting_text.c', 'cli/options.h'),
+    ('diagnosis/counters_print.h', 'reading/station.h'),
+    ('mqtt/broker.h', 'cli/config.h'),
+    ('mqtt/publisher.c', 'cli/command.h'),
+    ('mqtt/queue.h', 'commands/publish/streams.h'),
+    ('mqtt/state.c', 'cli/options.h'),
+    ('mqtt/topics.h', 'cli/config.h'),
+    ('ports/channel.c', 'cli/options.h'),
+    ('ports/line_text.c', 'cli/options.h'),
+    ('ports/tcp_address.c', 'cli/options.h'),
+    ('reading/poll.h', 'cli/sensor_options.h'),
+    ('reading/station.c', 'cli/command.h'),
+    ('reading/station.c', 'cli/options.h'),
+    ('reading/station.h', 'cli/place.h'),
+    ('sensors/hps167s/hps167s_settings.c', 'cli/options.h'),
+    ('sensors/models.c', 'cli/command.h'),
+    ('sensors/models.c', 'cli/options.h'),
+    ('sensors/sensor_text.c', 'cli/command.h'),
+    ('sensors/sensor_text.c', 'cli/options.h'),
+}
 
 STANDARD = {'stdbool.h', 'stddef.h', 'stdint.h'}
 MAX_LINES = 400
@@ -68,16 +98,17 @@ def check_library(path, text, headers):
 
 
 def check_tool(path, text, tool):
-    folder, _, _ = path[len(TOOL_FOLDER):].rpartition('/')
-    folder = folder.split('/')[0]
+    """path: of a source or header of the tool, whose files are `tool`."""
+    folder = os.path.dirname(path[len(TOOL_FOLDER):])
     for _, target in includes(text):
-        public = TOOL_FOLDER + target
-        if public not in tool or public == ANYWHERE or not folder:
+        if TOOL_FOLDER + target not in tool or TOOL_FOLDER + target == ANYWHERE or not folder:
             continue
-        other = target.split('/')[0]
-        if other == folder or other in TOOL and (folder not in TOOL or TOOL.index(other) < TOOL.index(folder)):
+        module, other = folder.split('/')[0], target.split('/')[0]
+        if TOOL.index(other) < TOOL.index(module) or other == module != 'commands' or \
+                os.path.dirname(target) == folder != 'commands':
             continue
-        yield f'{path}: {folder}/ may not include {target}'
+        if (path[len(TOOL_FOLDER):], target) not in UPWARDS:
+            yield f'{path}: {folder}/ may not include {target}'
 
 
 def check(root, only):

@@ -9,7 +9,7 @@
 
 #include "suite.h"
 
-#include "shared/sysfs_adapter.h"
+#include "ports/sysfs_adapter.h"
 
 enum { LONG = 512 };
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* What a calibration measures, writes and claims, against a model of every device that the datasheet allows: each
  * offset before, each deviation, each fate of each write. */
-#include "calibrate/calibrate_plan.h"
+#include "commands/calibrate/calibrate_plan.h"
 #include "suite.h"
 
 /* ---- a device ---- */

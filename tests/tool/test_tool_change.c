@@ -5,8 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "stations/poll_change.h"
-#include "stations/poll_loop.h"
+#include "reading/poll_change.h"
+#include "reading/poll_loop.h"
 
 enum { WORDS = 4, TEXT = 256, OUTCOMES = 400, CHANGES = 8 };
 

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "stations/place.h"
+#include "cli/place.h"
 
 /* ---- a word, and its place as a word again ---- */
 

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#include "stations/sensor_options.h"
+#include "cli/sensor_options.h"
 
 EACH_BEGINS(bench_begin())
 

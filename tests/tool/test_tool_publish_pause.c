@@ -8,7 +8,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "publish/broker.h"
+#include "mqtt/broker.h"
 
 enum { PATIENCE = 500, TRIES = 10 };
 

@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "publish/queue.h"
+#include "mqtt/queue.h"
 
 enum { MOST = 4, SIZE = 4096 };
 

@@ -6,8 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "publish/discovery.h"
-#include "publish/state.h"
+#include "mqtt/discovery.h"
+#include "mqtt/state.h"
 
 static config_t config;
 static config_results_t results;

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#include "stations/result_options.h"
+#include "cli/result_options.h"
 
 EACH_BEGINS(bench_begin())
 

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "commands.h"
+#include "commands/commands.h"
 
 enum { WORDS = 300, TEXT = 10000, PORTS = 256, CHIPS = 4 };
 static const uint64_t longest_us = UINT64_C(7200000000);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "scan/scan_listen.h"
+#include "commands/scan/scan_listen.h"
 #include "scan_others.h"
 
 /* What `fathom scan` hears before it asks, and what it may not ask. */

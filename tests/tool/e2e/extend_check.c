@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "shared/timestamp.h"
+#include "output/timestamp.h"
 
 /* extend_check NOW THEN ...: a line each */
 int main(int argc, char **argv)

@@ -36,7 +36,7 @@ class Clock(e2e.Case):
     def test_a_time_before_the_wrap_told_after_it(self):
         program = self.path('extend_check')
         subprocess.run(['cc', '-std=c99', *(f'-I{e2e.ROOT}/{folder}' for folder in FOLDERS), '-o', program,
-                        f'{e2e.HERE}/extend_check.c', f'{e2e.ROOT}/examples/fathom/shared/timestamp.c'], check=True)
+                        f'{e2e.HERE}/extend_check.c', f'{e2e.ROOT}/examples/fathom/output/timestamp.c'], check=True)
         cases = [(5 * WRAP + 10, 10, 5 * WRAP + 10), (5 * WRAP + 10, 9, 5 * WRAP + 9),
                  (5 * WRAP + 10, WRAP - 1, 5 * WRAP - 1), (5 * WRAP, WRAP - 1, 5 * WRAP - 1),
                  (5 * WRAP, 0, 5 * WRAP), (5 * WRAP + 10, WRAP + 10 - MOST, 5 * WRAP + 10 - MOST),

@@ -3,6 +3,7 @@
 import concurrent.futures
 import glob
 import os
+import re
 import shutil
 import subprocess
 
@@ -39,10 +40,10 @@ def libmodbus():
 
 
 def commands(of_publish):
-    own = 'examples/fathom/publish/'
+    own = re.compile(r'examples/fathom/(mqtt/|commands/publish/|cli/config)')
     found = sources('examples/fathom/*.c', 'examples/fathom/*/*.c', 'examples/fathom/*/*/*.c', 'port/posix/*.c',
                     'port/gpio/*.c', 'port/sim/*.c', without=('main.c', 'tcp_none.c', 'pins_none.c'))
-    return libmodbus() + [path for path in found if not path.startswith(own) or of_publish(path[len(own):])]
+    return libmodbus() + [path for path in found if not own.match(path) or of_publish(os.path.basename(path))]
 
 
 def tool():

@@ -2,8 +2,8 @@
 #define _GNU_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): open_memstream */
 #include "tool.h"
 
-#include "backup/backup_file.h"
-#include "commission/record.h"
+#include "commands/commission/record.h"
+#include "device/backup_file.h"
 
 /*
  * The files that the tool reads again: the settings of a unit (backup_file.h) and the record of a commissioning

@@ -3,12 +3,12 @@
 
 #include <ctype.h>
 
-#include "commands.h"
-#include "shared/options.h"
-#include "shared/tcp_address.h"
-#include "stations/place.h"
-#include "stations/result_options.h"
-#include "stations/setting_text.h"
+#include "cli/options.h"
+#include "cli/place.h"
+#include "cli/result_options.h"
+#include "commands/commands.h"
+#include "device/setting_text.h"
+#include "ports/tcp_address.h"
 
 /*
  * What a user writes: whole command lines, a word a line, of every command; and the parsers of numbers, places, ports,

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "tool.h"
 
-#include "publish/config.h"
-#include "publish/explain.h"
+#include "cli/config.h"
+#include "commands/publish/explain.h"
 
 /* The configuration of `fathom publish` (config.h), with anything in it. What is taken can be explained, and has no two sensors
  * with the same topics; what is refused is said, in a line that drives no terminal. */

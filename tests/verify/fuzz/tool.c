@@ -8,7 +8,7 @@
 #include <netdb.h>
 #include <sys/stat.h>
 
-#include "commands.h"
+#include "commands/commands.h"
 
 tool_t tool;
 

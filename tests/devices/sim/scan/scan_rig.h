@@ -4,7 +4,7 @@
 
 #include "suite.h"
 
-#include "scan/scan_walk.h"
+#include "commands/scan/scan_walk.h"
 #include "sim/a05.h"
 #include "sim/a16.h"
 #include "sim/fault.h"

@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef COMMAND_H
+#define COMMAND_H
+
+#include <stddef.h>
+#include <stdio.h>
+
+#include "ports/host.h"
+
+/* A command of the tool: a row in the table of commands.c. */
+typedef struct {
+    const char *name;
+    const char *summary;    /* a line of `fathom --help` */
+    void (*help)(FILE *to); /* `fathom NAME --help` */
+    /* argv[0] is the command's name; returns the exit status */
+    int (*run)(const host_t *host, int argc, char **argv);
+} command_t;
+
+/* Exit statuses of every command. */
+enum {
+    STATUS_OK = 0,
+    STATUS_FAILED = 1, /* the line, the port or the output failed */
+    STATUS_USAGE = 2,
+    STATUS_ALARM = 3 /* `fathom read --until-alarm` alone: an alarm is on */
+};
+
+/* Prints its help on stdout; returns the exit status. */
+int command_help(const command_t *command);
+
+/* Hands over what was printed, so that the reader of a pipe sees each line at once. errno is to be 0 before the
+ * printing. Returns 0, or errno of what has failed since then. */
+int output_flush(void);
+
+/* Says on stderr, in one line, what is wrong with the command line and where help is. command: "" before one
+ * is known. Returns STATUS_USAGE. */
+int usage_error(const char *command, const char *format, ...);
+
+/* Where the words stand that are looked at: in a file, and not on the command line. What is wrong is told with the file and
+ * the line then, and an option is named as the file names it, `interval:` for --interval. */
+typedef struct {
+    const char *file; /* NULL: the command line */
+    unsigned line;    /* from 1, where neither of the next two says it better */
+    const unsigned
+        *lines; /* of each word, where those of several sensors are looked at together; NULL: there is one */
+    /* Of an option, the first `length` bytes of this name; 0: not known. NULL: none is. */
+    unsigned (*line_of)(const void *ctx, const char *option, size_t length);
+    const void *ctx;
+} usage_place_t;
+
+/* From now on that is the place; NULL: the command line. */
+void usage_at(const usage_place_t *place);
+void usage_at_line(const char *file, unsigned line);
+
+/* Which of several words is looked at now. On the command line there is nothing to say of that. */
+void usage_of_word(size_t number);
+
+#endif

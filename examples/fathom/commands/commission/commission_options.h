@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef COMMISSION_OPTIONS_H
+#define COMMISSION_OPTIONS_H
+
+#include "device/session.h"
+
+/* What `fathom commission` was asked to do. */
+enum { COMMISSION_ADDRESSES = 254 };
+
+typedef struct {
+    uint8_t addresses[COMMISSION_ADDRESSES]; /* to give, in this order */
+    uint32_t count;
+    uint8_t terminated; /* at which the termination resistor stays on; 0: at none */
+    uint64_t wait_us;   /* so long without a unit ends it; 0: never */
+    const char *record;
+    bool is_taken_away; /* of a model without numbers: those that are done are not on the line */
+} commission_options_t;
+
+/* Reads the options and the sensor. False, after saying why: wrong usage. wants_help: nothing else was looked at. */
+bool commission_options(commission_options_t *options, session_t *session, int argc, char **argv,
+                        bool *wants_help);
+
+void commission_help(FILE *to);
+
+#endif

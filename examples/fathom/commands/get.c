@@ -1,0 +1,237 @@
+/* SPDX-License-Identifier: MIT */
+#include <string.h>
+
+#include "commands/commands.h"
+#include "device/session.h"
+#include "device/setting_text.h"
+#include "ports/line_text.h"
+
+/* fathom info and fathom get: all that a device tells, or some of it. */
+
+static session_t session;
+
+static void print_text(const setting_t *setting, fathom_status_t status, const char *text)
+{
+    const bool has_unit = setting->unit != NULL && strspn(text, "0123456789-., ") == strlen(text);
+    if (status == FATHOM_OK)
+        (void)printf("%-26s %s%s%s\n", setting->name, text, has_unit ? " " : "",
+                     has_unit ? setting->unit : "");
+    else
+        (void)printf("%-26s - (%s)\n", setting->name, setting_reason(status));
+}
+
+static void print_json(const setting_t *setting, fathom_status_t status, const char *text)
+{
+    (void)printf(", \"%s\": ", setting->name);
+    if (status == FATHOM_OK)
+        session_print_json(stdout, text);
+    else
+        (void)fputs("null", stdout);
+}
+
+/* Does each tell whose it is? */
+static bool has_name(void) { return session.options.station_count > 1 || session.station->has_own_name; }
+
+static void begin(void)
+{
+    const station_t *const station = session.station;
+    char line[LINE_TEXT];
+    (void)session_line_text(&session, line);
+    if (session.is_json)
+        (void)printf(
+            "{\"name\": \"%s\", \"sensor\": \"%s\", \"asked_at\": %u, \"mode\": \"%s\", \"line\": \"%s\"",
+            station->name, station->model->name, station->address, station->mode->name, line);
+    else
+        (void)printf("%s%s%s%s, %s, asked at address %u, %s\n",
+                     station != session.options.stations[0] ? "\n" : "", has_name() ? station->name : "",
+                     has_name() ? ": " : "", station->model->name, station->model->what, station->address,
+                     line);
+}
+
+/* Before what is said on the standard error. */
+static void say_whose(void)
+{
+    (void)fflush(stdout);
+    (void)fprintf(stderr, "fathom: %s%s", has_name() ? session.station->name : "", has_name() ? ": " : "");
+}
+
+static bool can_be_printed(const setting_t *setting)
+{
+    return setting->get != NULL && strcmp(setting->mode, session.station->mode->name) == 0;
+}
+
+static void tell_remark(const setting_t *setting, const char *text)
+{
+    if (has_name()) {
+        say_whose();
+        (void)fprintf(stderr, "%s is %s\n", setting->name, text);
+    }
+    setting->remark(stderr, text);
+}
+
+/* The progress of `tell` through the values of one device. */
+typedef struct {
+    bool is_known;    /* The device has sent a response to at least one request. */
+    unsigned printed; /* Number of values that were read. */
+    /* The shared command that failed last and its error. Its other values are not requested again: one failure can take
+     * several seconds. */
+    uint8_t failed_command;
+    fathom_status_t failure;
+} progress_t;
+
+static fathom_status_t get_one(const setting_t *setting, progress_t *progress, char text[SETTING_TEXT])
+{
+    if (setting->shared_command != 0 && setting->shared_command == progress->failed_command)
+        return progress->failure;
+    const fathom_status_t status = session_get(&session, setting, text);
+    if (status != FATHOM_OK) {
+        progress->failed_command = setting->shared_command;
+        progress->failure = status;
+    }
+    return status;
+}
+
+/* False: nothing further can be told, for a reason that was said. */
+static bool print_one(const setting_t *setting, progress_t *progress)
+{
+    char text[SETTING_TEXT];
+    const fathom_status_t status = get_one(setting, progress, text);
+    if (status != FATHOM_OK && (!progress->is_known || setting_reason(status) == NULL)) {
+        say_whose();
+        (void)fprintf(stderr, "%s: ", setting->name);
+        session_explain(&session, status);
+        (void)fputs("\n", stderr);
+        return false;
+    }
+    if (!progress->is_known) begin();
+    progress->is_known = true;
+    progress->printed += status == FATHOM_OK;
+    if (session.is_json)
+        print_json(setting, status, text);
+    else
+        print_text(setting, status, text);
+    if (setting->remark != NULL && status == FATHOM_OK) tell_remark(setting, text);
+    return true;
+}
+
+static int tell(const setting_t *settings, size_t count)
+{
+    progress_t progress = {0};
+    bool is_good = true;
+    unsigned all = 0;
+    for (size_t i = 0; i != count && settings[i].name != NULL; i++) {
+        if (!can_be_printed(&settings[i])) continue;
+        if (is_good) is_good = print_one(&settings[i], &progress);
+        all++;
+    }
+    if (progress.is_known && session.is_json) (void)puts("}");
+    if (fflush(stdout) != 0 || ferror(stdout)) {
+        (void)fputs("fathom: the output cannot be written\n", stderr);
+        is_good = false;
+    }
+    if (progress.is_known && progress.printed != all) {
+        say_whose();
+        (void)fprintf(stderr, "%u of %u values could not be read\n", all - progress.printed, all);
+    }
+    return is_good && progress.printed == all ? STATUS_OK : STATUS_FAILED;
+}
+
+static void help(FILE *to, bool is_info)
+{
+    if (is_info)
+        (void)fputs(
+            "fathom info prints everything that a device tells: versions, settings, what it measures.\n\n"
+            "usage: fathom info [NAME=]SENSOR[:ADDRESS][:MODE][@PORT[,KEY=VALUE...]]... [--port PATH] "
+            "[OPTIONS]\n\n"
+            "Several sensors are asked one after the other; where one fails, the others are told all the "
+            "same.\n\n",
+            to);
+    else
+        (void)fputs(
+            "fathom get prints a setting of a device. It changes nothing.\n\n"
+            "usage: fathom get SENSOR[:ADDRESS][:MODE][@PORT] [--port PATH] SETTING [OPTIONS]\n"
+            "       fathom get SENSOR        lists the settings, their values, and when they take effect\n\n",
+            to);
+    models_print(to);
+    (void)fputs("\n", to);
+    session_options_help(to);
+    (void)fputs(
+        "\nThe first request ends the automatic output of an A16 with RS232 or an A05 with UART; for an A05 "
+        "until\npower-off, for an A16 `fathom set a16 automatic-output on` brings it back.\n"
+        "Exit status: 0 when all of it was printed, 1 when some of it was not, 2 for wrong usage.\n\n"
+        "examples:\n",
+        to);
+    (void)fputs(is_info ? "  fathom info hps167s:7 --port /dev/ttyUSB0\n"
+                          "  fathom info a05 --port /dev/ttyUSB0 --format json\n"
+                          "  fathom info tank=a16@/dev/ttyUSB0 gate=hps167s:7@/dev/ttyUSB1,baud=57600\n"
+                        : "  fathom get hps167s:7 --port /dev/ttyUSB0 termination\n"
+                          "  fathom get a16 --port /dev/ttyUSB0 switch-threshold\n",
+                to);
+}
+
+/* `fathom get SENSOR` and nothing else. */
+static int list(const char *name)
+{
+    const model_t *const model = model_find("get", name);
+    if (model == NULL) return STATUS_USAGE;
+    (void)printf("%s, %s, tells and takes:\n\n", model->name, model->what);
+    settings_print(stdout, model->settings);
+    (void)printf("\nfathom get %s --port PATH SETTING          fathom set %s --port PATH SETTING VALUE\n",
+                 model->name, model->name);
+    return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
+}
+
+static int tell_on_port(const host_t *host, const setting_t *settings, size_t count)
+{
+    if (!session_open(&session, host)) return STATUS_FAILED;
+    const int status = tell(settings, count);
+    session_close(&session);
+    return status;
+}
+
+/* One after the other; what fails keeps none of the others from being told. */
+static int run_info(const host_t *host, int argc, char **argv)
+{
+    const char *values[SESSION_OPTIONS] = {NULL};
+    int status = STATUS_OK;
+    if (!session_options_of_several(&session, &info_command, argc, argv, session_table, values, &status))
+        return status;
+    const sensor_options_t *const options = &session.options;
+    status = STATUS_OK;
+    for (size_t i = 0; i != options->station_count; i++) {
+        if (i != 0 && host->has_ended(host->ctx)) return STATUS_FAILED;
+        session.station = options->stations[i];
+        if (tell_on_port(host, session_settings(&session), SIZE_MAX) != STATUS_OK) status = STATUS_FAILED;
+    }
+    return status;
+}
+
+static int run_get(const host_t *host, int argc, char **argv)
+{
+    const char *values[SESSION_OPTIONS] = {NULL};
+    char **words = NULL;
+    int count = 0;
+    bool wants_help = false;
+    if (argc == 2 && argv[1][0] != '-' && strchr(argv[1], '@') == NULL) return list(argv[1]);
+    if (!session_options(&session, "get", argc, argv, session_table, values, &words, &count, &wants_help))
+        return STATUS_USAGE;
+    if (wants_help) return command_help(&get_command);
+    if (count != 1)
+        return usage_error("get",
+                           count == 0 ? "which setting? `fathom get %s` lists them" : "one setting at a time",
+                           session.station->model->name);
+    const setting_t *const setting =
+        setting_find("get", session.station->model->name, session_settings(&session), words[0]);
+    if (setting == NULL) return STATUS_USAGE;
+    if (setting->get == NULL)
+        return usage_error("get", "%s is write-only: the device does not tell it", setting->name);
+    if (!session_set_mode(&session, "get", values, setting->mode)) return STATUS_USAGE;
+    return tell_on_port(host, setting, 1);
+}
+
+static void help_info(FILE *to) { help(to, true); }
+static void help_get(FILE *to) { help(to, false); }
+
+const command_t info_command = {"info", "prints everything that a device tells", help_info, run_info};
+const command_t get_command = {"get", "prints a setting of a device, or lists the settings", help_get,
+                               run_get};

@@ -1,0 +1,237 @@
+/* SPDX-License-Identifier: MIT */
+#include "commands/request/request_ask.h"
+
+#include <string.h>
+
+#include "commands/request/request_effects.h"
+#include "fathom/codec/crc16.h"
+#include "fathom/codec/modbus_rtu.h"
+#include "ports/line_text.h"
+
+enum { FUNCTION = 1, SIZE = 2, FIRST = 2, COUNT = 5 };
+enum { LEAST_LENGTH = 4, MAX_LENGTH = 255, EXCEPTION_LENGTH = 5, READ_OVERHEAD = 5, WRITE_LENGTH = 8 };
+enum { MAX_SIZE = 250 };
+enum { READ_COILS = 1, READ_DISCRETE_INPUTS = 2, WRITE_COIL = 5, WRITE_COILS = 15 };
+
+static const request_t *request_of(const fathom_transaction_t *transaction)
+{
+    return ((const request_ask_t *)transaction)->request;
+}
+
+static uint8_t encode(const fathom_transaction_t *transaction, uint8_t *frame)
+{
+    const request_t *const request = request_of(transaction);
+    memcpy(frame, request->frame, request->length);
+    return request->length;
+}
+
+static bool is_request(const fathom_transaction_t *transaction, const uint8_t *frame, uint8_t have)
+{
+    const request_t *const request = request_of(transaction);
+    return memcmp(frame, request->frame, have < request->length ? have : request->length) == 0;
+}
+
+/* ---- how long a response is ---- */
+
+static bool reads(uint8_t function) { return function >= READ_COILS && function <= REQUEST_READ_INPUT; }
+
+/* Is a response to it as long as its first bytes say? (MODBUS Application Protocol V1.1b3, 6) */
+static bool has_known_length(uint8_t function)
+{
+    return reads(function) || function == WRITE_COIL || function == REQUEST_WRITE ||
+           function == WRITE_COILS || function == REQUEST_WRITE_MANY;
+}
+
+static uint8_t known_length_with_zero(const uint8_t *frame, uint8_t have)
+{
+    if (have <= SIZE) return SIZE + 1;
+    const uint8_t function = frame[FUNCTION] & (uint8_t)~FATHOM_MODBUS_EXCEPTION;
+    if (!has_known_length(function)) return 0;
+    if (function != frame[FUNCTION]) return EXCEPTION_LENGTH;
+    if (!reads(function)) return WRITE_LENGTH;
+    const uint8_t size = frame[SIZE];
+    return size >= 1 && size <= MAX_SIZE ? (uint8_t)(size + READ_OVERHEAD) : 0;
+}
+
+/* Of the other functions a response ends where its CRC is right. */
+static uint8_t any_length_with_zero(const uint8_t *frame, uint8_t have)
+{
+    for (uint8_t length = LEAST_LENGTH; length <= have && length != 0; length++)
+        if (fathom_crc16(frame, length) == 0) return length;
+    if (have < LEAST_LENGTH) return LEAST_LENGTH;
+    return have < MAX_LENGTH ? (uint8_t)(have + 1) : 0;
+}
+
+/* Zeros are what noise is made of: frames of unit 0 are looked for where it may answer. */
+static uint8_t known_length(const uint8_t *frame, uint8_t have)
+{
+    return frame[0] != 0 ? known_length_with_zero(frame, have) : 0;
+}
+
+static uint8_t any_length(const uint8_t *frame, uint8_t have)
+{
+    return frame[0] != 0 ? any_length_with_zero(frame, have) : 0;
+}
+
+/* ---- is it the response? ---- */
+
+static bool fits(const request_t *request, const uint8_t *frame)
+{
+    const uint8_t *const asked = request->frame;
+    const uint8_t function = asked[FUNCTION];
+    if (!has_known_length(function)) return true;
+    if (!reads(function)) return memcmp(frame + FIRST, asked + FIRST, WRITE_LENGTH - 2 - FIRST) == 0;
+    if (function >= REQUEST_READ) return frame[SIZE] == 2 * asked[COUNT];
+    /* Coils: eight in a byte. The user has given the bytes of such a request, perhaps not these. */
+    return request->length != WRITE_LENGTH || frame[SIZE] == (request_word(request, REQUEST_COUNT) + 7u) / 8u;
+}
+
+static fathom_status_t parse_response(fathom_transaction_t *transaction, const uint8_t *frame)
+{
+    request_ask_t *const ask = (request_ask_t *)transaction;
+    const uint8_t *const asked = ask->request->frame;
+    const bool is_exception = frame[FUNCTION] == (asked[FUNCTION] | FATHOM_MODBUS_EXCEPTION);
+    if (!is_exception && (frame[FUNCTION] != asked[FUNCTION] || !fits(ask->request, frame)))
+        return FATHOM_ERR_MALFORMED;
+    ask->length = transaction->protocol->length(frame, MAX_LENGTH);
+    memcpy(ask->response, frame, ask->length);
+    return is_exception ? FATHOM_ERR_EXCEPTION : FATHOM_OK;
+}
+
+static bool may_collide(const fathom_transaction_t *transaction)
+{
+    return request_may_collide(request_of(transaction));
+}
+
+static const fathom_protocol_t *protocol_of(const request_t *request)
+{
+    static const fathom_protocol_t known = {.encode = encode,
+                                            .length = known_length,
+                                            .check = fathom_crc16,
+                                            .is_request = is_request,
+                                            .parse_response = parse_response,
+                                            .may_collide = may_collide,
+                                            .is_unit_0_ordinary = false};
+    static const fathom_protocol_t known_with_zero = {.encode = encode,
+                                                      .length = known_length_with_zero,
+                                                      .check = fathom_crc16,
+                                                      .is_request = is_request,
+                                                      .parse_response = parse_response,
+                                                      .may_collide = may_collide,
+                                                      .is_unit_0_ordinary = true};
+    static const fathom_protocol_t any = {.encode = encode,
+                                          .length = any_length,
+                                          .check = fathom_crc16,
+                                          .is_request = is_request,
+                                          .parse_response = parse_response,
+                                          .may_collide = may_collide,
+                                          .is_unit_0_ordinary = false};
+    static const fathom_protocol_t any_with_zero = {.encode = encode,
+                                                    .length = any_length_with_zero,
+                                                    .check = fathom_crc16,
+                                                    .is_request = is_request,
+                                                    .parse_response = parse_response,
+                                                    .may_collide = may_collide,
+                                                    .is_unit_0_ordinary = true};
+    const uint8_t unit = request->frame[REQUEST_UNIT];
+    const bool has_zero =
+        unit == FATHOM_MODBUS_ANY_UNIT || (unit == FATHOM_MODBUS_BROADCAST && !request_is_broadcast(request));
+    if (has_known_length(request->frame[REQUEST_FUNCTION])) return has_zero ? &known_with_zero : &known;
+    return has_zero ? &any_with_zero : &any;
+}
+
+/* ---- what came of it ---- */
+
+/*
+ * One copy of a request that its acknowledgement equals, on a line of which it is not known whether it echoes. An
+ * acknowledgement on a wire comes after the request, a silence of 3.5 characters and its own characters; an echo no
+ * later than an adapter holds it back.
+ */
+static request_outcome_t judge_copy(const request_ask_t *ask, const channel_t *channel)
+{
+    const request_t *const request = ask->request;
+    const uint64_t bits = fathom_character_bits(&request->line);
+    const uint64_t wire_us = request->length * bits * 1000000u / request->line.baud;
+    const uint64_t silence_us = FATHOM_T3_5_US(request->line.baud, bits);
+    const uint64_t took_us = ask->evidence.slowest_us;
+    if (ask->evidence.echoes != 1 || ask->evidence.rest != 0) return REQUEST_NO_RESPONSE;
+    if (took_us > wire_us + CHANNEL_RESPONSE_GAP_US) return REQUEST_ANSWERED;
+    if (!channel->port.is_pty && took_us < 2 * wire_us + silence_us) return REQUEST_NO_RESPONSE;
+    return REQUEST_ECHO;
+}
+
+/* Is what acknowledges it the request once more? Of functions that are not known that may be so. */
+static bool equals_acknowledgement(const request_t *request)
+{
+    const uint8_t function = request->frame[REQUEST_FUNCTION];
+    return !request_is_read(request) && function != WRITE_COILS && function != REQUEST_WRITE_MANY;
+}
+
+static request_outcome_t outcome_of(const request_ask_t *ask, const channel_t *channel,
+                                    fathom_status_t status)
+{
+    switch (status) {
+    case FATHOM_OK:
+        return request_is_broadcast(ask->request) ? REQUEST_SENT : REQUEST_ANSWERED;
+    case FATHOM_ERR_EXCEPTION:
+        return REQUEST_REFUSED;
+    case FATHOM_ERR_MALFORMED:
+        return REQUEST_UNEXPECTED;
+    case FATHOM_ERR_CHECKSUM:
+        return REQUEST_DAMAGED;
+    case FATHOM_ERR_ECHO:
+        return equals_acknowledgement(ask->request) ? judge_copy(ask, channel) : REQUEST_NO_RESPONSE;
+    case FATHOM_ERR_NO_RESPONSE:
+        return REQUEST_NO_RESPONSE;
+    case FATHOM_ERR_LINE_BUSY:
+        return REQUEST_LINE_BUSY;
+    case FATHOM_ERR_OTHER_MASTER:
+        return REQUEST_OTHER_MASTER;
+    default:
+        return REQUEST_FAILED;
+    }
+}
+
+static fathom_status_t wait_for_response(request_ask_t *ask, channel_t *channel)
+{
+    const host_t *const host = channel->host;
+    fathom_transaction_t *const transaction = &ask->transaction;
+    for (;;) {
+        (void)fathom_line_poll(&channel->line); /* a broken port ends the transaction */
+        if (transaction->status != FATHOM_PENDING) return transaction->status;
+        if (host->has_ended(host->ctx)) {
+            fathom_line_cancel(&channel->line, transaction);
+            return transaction->status;
+        }
+        host->wait(host->ctx, &channel->port, fathom_line_due_us(&channel->line), false);
+    }
+}
+
+/* What came besides the response and the echo: another unit at the same address, for one. */
+static uint32_t count_more(const request_ask_t *ask, const channel_t *channel)
+{
+    const uint32_t echo =
+        fathom_line_get_echo(&channel->line) == FATHOM_LINE_ECHO_ON ? ask->request->length : 0;
+    const uint32_t known = ask->length + echo;
+    return ask->length != 0 && ask->evidence.bytes > known ? ask->evidence.bytes - known : 0;
+}
+
+void request_ask(request_ask_t *ask, const request_t *request, channel_t *channel)
+{
+    memset(ask, 0, sizeof *ask);
+    ask->request = request;
+    ask->transaction.protocol = protocol_of(request);
+    ask->transaction.address = request->frame[REQUEST_UNIT];
+    ask->transaction.timeout_us = request->timeout_us;
+    if (channel->tcp == NULL) channel_listen(channel, CHANNEL_UNASKED_US);
+    listener_forget(&channel->listener);
+    fathom_status_t status = fathom_line_submit(&channel->line, &ask->transaction);
+    if (status == FATHOM_PENDING) status = wait_for_response(ask, channel);
+    if (ask->length != 0 && channel->tcp == NULL) channel_listen(channel, CHANNEL_RESPONSE_GAP_US);
+    listener_judge(&channel->listener, request->frame[REQUEST_UNIT], &ask->evidence);
+    ask->outcome = outcome_of(ask, channel, status);
+    ask->more = count_more(ask, channel);
+    if (ask->outcome != REQUEST_ANSWERED || ask->length != 0) return;
+    memcpy(ask->response, request->frame, request->length); /* the copy that was no echo */
+    ask->length = request->length;
+}

@@ -1,0 +1,251 @@
+/* SPDX-License-Identifier: MIT */
+#include "commands/request/request_report.h"
+
+#include <inttypes.h>
+#include <stdio.h>
+
+#include "commands/request/request_meaning.h"
+#include "diagnosis/advice.h"
+#include "sensors/decoding_print.h"
+#include "sensors/modbus_exception.h"
+
+enum { CODE = 2, DATA = 3, REGISTER_TEXT = 3 };
+
+bool request_is_good(const request_ask_t *ask)
+{
+    return ask->outcome == REQUEST_ANSWERED || ask->outcome == REQUEST_SENT || ask->outcome == REQUEST_ECHO;
+}
+
+static bool has_registers(const request_ask_t *ask)
+{
+    const uint8_t function = ask->request->frame[REQUEST_FUNCTION];
+    return ask->outcome == REQUEST_ANSWERED && (function == REQUEST_READ || function == REQUEST_READ_INPUT);
+}
+
+static bool is_printable(uint8_t byte) { return byte >= 0x20 && byte <= 0x7E; }
+
+/* The two characters of a register; "": not both can be printed. */
+static const char *ascii(uint16_t value, char text[REGISTER_TEXT])
+{
+    const uint8_t bytes[] = {(uint8_t)(value >> 8), (uint8_t)value};
+    const bool is_text = is_printable(bytes[0]) && is_printable(bytes[1]);
+    (void)snprintf(text, REGISTER_TEXT, "%c%c", is_text ? bytes[0] : '\0', is_text ? bytes[1] : '\0');
+    return text;
+}
+
+static int value_signed(uint16_t value)
+{
+    return value > INT16_MAX ? (int)value - UINT16_MAX - 1 : (int)value;
+}
+
+static void put_bytes(const uint8_t *bytes, size_t count)
+{
+    for (size_t i = 0; i != count; i++) (void)printf("%s%02X", i != 0 ? " " : "", bytes[i]);
+}
+
+/* ---- text ---- */
+
+static void print_bytes(const char *name, const uint8_t *bytes, size_t count)
+{
+    if (count == 0) return;
+    (void)printf("%-9s ", name);
+    put_bytes(bytes, count);
+    (void)puts("");
+}
+
+static void print_registers(const request_ask_t *ask)
+{
+    uint16_t at = request_word(ask->request, REQUEST_FIRST);
+    for (uint8_t i = 0; i != ask->response[CODE] / 2u; i++, at++) {
+        const uint16_t value = decode_get16(ask->response + DATA + (size_t)2 * i);
+        char text[REGISTER_TEXT];
+        (void)printf("0x%04X    unsigned %5u  signed %6d  hex %04X", at, value, value_signed(value), value);
+        if (ascii(value, text)[0] != '\0') (void)printf("  ascii \"%s\"", text);
+        (void)puts("");
+    }
+}
+
+static void print_text(const request_ask_t *ask, const channel_t *channel, const decode_frame_t *frame)
+{
+    const bool was_sent = channel->listener.request_length != 0;
+    if (was_sent) print_bytes("sent", ask->request->frame, ask->request->length);
+    if (ask->length != 0)
+        print_bytes("received", ask->response, ask->length);
+    else if (was_sent)
+        print_bytes("heard", channel->listener.window, channel->listener.have);
+    if (has_registers(ask)) print_registers(ask);
+    for (uint8_t i = 0; i != frame->meanings; i++) decoding_put_text(stdout, &frame->meaning[i]);
+}
+
+/* ---- JSON ---- */
+
+static void put_field(const char *name, const uint8_t *bytes, size_t count)
+{
+    (void)printf(",\"%s\":\"", name);
+    put_bytes(bytes, count);
+    (void)fputs("\"", stdout);
+}
+
+static void put_ascii(uint16_t value)
+{
+    char text[REGISTER_TEXT];
+    if (ascii(value, text)[0] == '\0') {
+        (void)fputs("null", stdout);
+        return;
+    }
+    (void)fputs("\"", stdout);
+    for (const char *at = text; *at != '\0'; at++)
+        (void)printf("%s%c", *at == '"' || *at == '\\' ? "\\" : "", *at);
+    (void)fputs("\"", stdout);
+}
+
+static void put_registers(const request_ask_t *ask)
+{
+    uint16_t at = request_word(ask->request, REQUEST_FIRST);
+    (void)fputs(",\"registers\":[", stdout);
+    for (uint8_t i = 0; i != ask->response[CODE] / 2u; i++, at++) {
+        const uint16_t value = decode_get16(ask->response + DATA + (size_t)2 * i);
+        (void)printf("%s{\"register\":\"0x%04X\",\"unsigned\":%u,\"signed\":%d,\"hex\":\"%04X\",\"ascii\":",
+                     i != 0 ? "," : "", at, value, value_signed(value), value);
+        put_ascii(value);
+        (void)fputs("}", stdout);
+    }
+    (void)fputs("]", stdout);
+}
+
+static void print_json(const request_ask_t *ask, const channel_t *channel, const decode_frame_t *frame)
+{
+    static const char *const names[] = {
+        [REQUEST_ANSWERED] = "answered",         [REQUEST_SENT] = "sent",
+        [REQUEST_ECHO] = "answered_or_echo",     [REQUEST_REFUSED] = "exception",
+        [REQUEST_UNEXPECTED] = "unexpected",     [REQUEST_DAMAGED] = "damaged",
+        [REQUEST_NO_RESPONSE] = "no_response",   [REQUEST_LINE_BUSY] = "line_busy",
+        [REQUEST_OTHER_MASTER] = "other_master", [REQUEST_FAILED] = "failed"};
+    const request_t *const request = ask->request;
+    const bool was_sent = channel->listener.request_length != 0;
+    (void)printf("{\"unit\":%u,\"function\":%u,\"status\":\"%s\"", request->frame[REQUEST_UNIT],
+                 request->frame[REQUEST_FUNCTION], names[ask->outcome]);
+    if (was_sent) put_field("sent", request->frame, request->length);
+    if (ask->length != 0)
+        put_field("received", ask->response, ask->length);
+    else if (was_sent)
+        put_field("heard", channel->listener.window, channel->listener.have);
+    if (has_registers(ask)) put_registers(ask);
+    if (ask->outcome == REQUEST_REFUSED)
+        (void)printf(",\"exception\":{\"code\":%u,\"name\":\"%s\"}", ask->response[CODE],
+                     modbus_exception(ask->response[CODE]).name);
+    (void)fputs(",\"meanings\":[", stdout);
+    for (uint8_t i = 0; i != frame->meanings; i++) {
+        if (i != 0) (void)fputs(",", stdout);
+        decoding_put_json(stdout, &frame->meaning[i]);
+    }
+    (void)puts("]}");
+}
+
+void request_print(const request_ask_t *ask, const channel_t *channel)
+{
+    decode_frame_t frame;
+    decode_piece_t piece;
+    frame.meanings = 0;
+    if (ask->request->model != NULL && ask->outcome == REQUEST_ANSWERED && ask->length != 0)
+        request_mean(&frame, &piece, ask->request, ask->response, ask->length);
+    if (ask->request->is_json)
+        print_json(ask, channel, &frame);
+    else
+        print_text(ask, channel, &frame);
+}
+
+/* ---- what went wrong ---- */
+
+static void tell_refused(const request_ask_t *ask)
+{
+    const uint8_t code = ask->response[CODE];
+    const modbus_exception_t exception = modbus_exception(code);
+    const model_t *const model = ask->request->model;
+    (void)fprintf(stderr, "unit %u refused: exception %02u (%s): %s", ask->response[0], code, exception.name,
+                  exception.meaning);
+    if (model != NULL && model->exception_name != NULL && model->exception_name(code) != NULL)
+        (void)fprintf(stderr, "; %s: %s", model->exception_source, model->exception_name(code));
+    if (model != NULL && model->exception_name == NULL)
+        (void)fprintf(stderr, "; no exceptions are in the datasheet of %s", model->name);
+}
+
+static fathom_status_t status_of(request_outcome_t outcome)
+{
+    switch (outcome) {
+    case REQUEST_DAMAGED:
+        return FATHOM_ERR_CHECKSUM;
+    case REQUEST_LINE_BUSY:
+        return FATHOM_ERR_LINE_BUSY;
+    case REQUEST_OTHER_MASTER:
+        return FATHOM_ERR_OTHER_MASTER;
+    default:
+        return FATHOM_ERR_NO_RESPONSE;
+    }
+}
+
+static void advise(const request_ask_t *ask, const channel_t *channel, const counters_t *counters)
+{
+    /* Not named: it has the line that was told, and can have any address. */
+    const model_t any = {.name = "sensor of these", .line = ask->request->line, .max_address = UINT8_MAX};
+    const reader_t reader = {.protocol = reader_modbus};
+    failure_t failure = {.status = status_of(ask->outcome),
+                         .model = ask->request->model != NULL ? ask->request->model : &any,
+                         .reader = &reader,
+                         .channel = channel,
+                         .counters = counters,
+                         .line = &ask->request->line,
+                         .evidence = ask->evidence,
+                         .address = ask->request->frame[REQUEST_UNIT],
+                         .is_request = true};
+    advice_print(stderr, &failure);
+}
+
+static void tell_failed(const request_ask_t *ask, const channel_t *channel)
+{
+    const bool was_sent = channel->listener.request_length != 0;
+    if (fathom_posix_error(&channel->port) == FATHOM_POSIX_ERR_LOST)
+        (void)fputs(fathom_posix_error_text(&channel->port), stderr);
+    else if (ask->transaction.status != FATHOM_ERR_CANCELLED)
+        (void)fprintf(stderr, "%s: the port did not send the request; check the adapter", ask->request->path);
+    else if (was_sent)
+        (void)fputs("ended before the response came", stderr);
+    else
+        (void)fputs("ended before the request could leave: the line was not silent; nothing was sent",
+                    stderr);
+}
+
+static void tell_more(const request_ask_t *ask)
+{
+    if (ask->more == 0) return;
+    (void)fprintf(stderr, "fathom: %" PRIu32 " bytes more came%s\n", ask->more,
+                  ask->evidence.own > 1        ? ": two units may have this address"
+                  : ask->evidence.foreign != 0 ? ": another unit has answered too"
+                                               : " than the response");
+}
+
+void request_tell(const request_ask_t *ask, const channel_t *channel, const counters_t *counters)
+{
+    const uint8_t unit = ask->request->frame[REQUEST_UNIT];
+    tell_more(ask);
+    if (ask->outcome == REQUEST_ANSWERED) return;
+    (void)fputs("fathom: ", stderr);
+    if (ask->outcome == REQUEST_SENT)
+        (void)fputs("sent to all units, none of which answers; what became of it is not known", stderr);
+    else if (ask->outcome == REQUEST_ECHO)
+        (void)fprintf(stderr,
+                      "unit %u has acknowledged, unless the adapter returns what it sends: the bytes are the "
+                      "same; read it back, or say --echo off or on",
+                      unit);
+    else if (ask->outcome == REQUEST_REFUSED)
+        tell_refused(ask);
+    else if (ask->outcome == REQUEST_UNEXPECTED)
+        (void)fprintf(
+            stderr, "unit %u answered something else than was asked; check that it is alone at this address",
+            unit);
+    else if (ask->outcome == REQUEST_FAILED)
+        tell_failed(ask, channel);
+    else
+        advise(ask, channel, counters);
+    (void)fputs("\n", stderr);
+}

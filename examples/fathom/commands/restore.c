@@ -1,0 +1,227 @@
+/* SPDX-License-Identifier: MIT */
+#include <string.h>
+
+#include "cli/options.h"
+#include "commands/commands.h"
+#include "device/backup_file.h"
+#include "device/move.h"
+#include "device/plan.h"
+#include "device/set_report.h"
+#include "device/setting_text.h"
+
+/* fathom restore: what a file of fathom save has, into a unit. */
+
+static const char command[] = "restore";
+static session_t session;
+
+enum { FILE_NAME = SESSION_OPTIONS, DRY_RUN, AS_NEW, OPTIONS };
+
+static const struct option table[OPTIONS + 1] = {
+    SESSION_OPTION_ROWS,
+    [FILE_NAME] = {"file", required_argument, NULL, 256},
+    [DRY_RUN] = {"dry-run", no_argument, NULL, 256},
+    [AS_NEW] = {"as-new", no_argument, NULL, 256},
+};
+
+static void help(FILE *to)
+{
+    (void)fputs(
+        "fathom restore gives a unit the settings that `fathom save` has written into a file: it reads the "
+        "unit, tells in\nwhat it differs, and writes that alone.\n\n"
+        "usage: fathom restore SENSOR[:ADDRESS] --port PATH --file FILE [--dry-run] [--as-new] [OPTIONS]\n\n"
+        "  --file FILE       of fathom save\n"
+        "  --dry-run         tells in what they differ and writes nothing; exit status 1 when restore would "
+        "write\n"
+        "                    something, or could not, 0 when not\n"
+        "  --as-new          the unit takes the place of the saved one: at last it gets its address and its "
+        "rate too.\n"
+        "                    Without it the unit stays where it is\n",
+        to);
+    session_line_help(to);
+    (void)fputs(
+        "\nBefore --as-new writes anything, the new place has to be silent. What stands in the file as `not "
+        "readable` is written\nonly if it was filled in, and then each time. At the first write that fails, "
+        "or is not confirmed, it ends and tells what\nis written and what is not; run again, it writes what "
+        "still differs.\n"
+        "Exit status: 0 when the unit has what the file has, but for the place where it stays; 1 when not or "
+        "when that is\nnot known; 2 for wrong usage, or a line of the file that is wrong: then nothing is "
+        "sent.\n\n"
+        "examples:\n"
+        "  fathom restore hps167s:7 --port /dev/ttyUSB0 --file gate.txt --dry-run\n"
+        "  fathom restore hps167s:7 --port /dev/ttyUSB0 --file gate.txt\n"
+        "  fathom restore hps167s --port /dev/ttyUSB0 --file gate.txt --as-new\n",
+        to);
+}
+
+/* ---- writing ---- */
+
+static const setting_t *row_of(const plan_t *plan, size_t n)
+{
+    return &plan->unit->model->settings[plan->order[n]];
+}
+
+/* Returns the exit status. */
+static int write_row(const plan_t *plan, size_t n)
+{
+    const setting_t *const setting = row_of(plan, n);
+    const backup_row_t *const unit = &plan->unit->rows[plan->order[n]];
+    change_t change = {
+        .session = &session, .setting = setting, .value = plan->file->rows[plan->order[n]].value};
+    setting_print_value(setting, change.value, change.wanted);
+    (void)snprintf(change.was, sizeof change.was, "%s", unit->text);
+    const int status = set_report(&change, session_set(&session, setting, change.value));
+    if (status == STATUS_OK && setting->moves && !move_follow(&session)) return STATUS_FAILED;
+    return status;
+}
+
+/* Of the rows from one to another, the names; of those that the unit does not tell alone, if that is asked for. */
+static const char *names(const plan_t *plan, size_t from, size_t to, bool is_unseen,
+                         char text[SETTING_VALUES])
+{
+    text[0] = '\0';
+    for (size_t n = from; n < to; n++)
+        if (!is_unseen || plan->steps[plan->order[n]] == PLAN_WRITE_UNSEEN)
+            list_add(text, SETTING_VALUES, row_of(plan, n)->name);
+    return text;
+}
+
+/* Of the first `count` rows: what the next run would write once more. */
+static void print_again(const plan_t *plan, size_t count, const char *path)
+{
+    char unseen[SETTING_VALUES];
+    if (names(plan, 0, count, true, unseen)[0] == '\0') return;
+    (void)fflush(stdout);
+    (void)fprintf(stderr,
+                  "fathom: run again it would also write %s again; put `not readable` there in %s first\n",
+                  unseen, path);
+}
+
+static void print_stop(const plan_t *plan, size_t n, const char *path)
+{
+    char before[SETTING_VALUES];
+    char after[SETTING_VALUES];
+    const bool is_written = session.station->reader.unit->is_written;
+    (void)names(plan, 0, n, false, before);
+    (void)names(plan, n + 1, plan->count, false, after);
+    (void)fprintf(stderr, "fathom: it has ended at %s; written before: %s; not written: %s\n",
+                  row_of(plan, n)->name, before[0] != '\0' ? before : "nothing",
+                  after[0] != '\0' ? after : "nothing else");
+    print_again(plan, is_written ? n + 1 : n, path);
+}
+
+static int write_all(const plan_t *plan, const char *path)
+{
+    for (size_t n = 0; n != plan->count; n++) {
+        if (write_row(plan, n) == STATUS_OK) continue;
+        print_stop(plan, n, path);
+        return STATUS_FAILED;
+    }
+    return STATUS_OK;
+}
+
+/* ---- the whole ---- */
+
+/* Where the plan has this kind of place: what the file has of it. */
+static bool finds(const plan_t *plan, bool is_baud, const backup_row_t **row)
+{
+    for (size_t n = 0; n != plan->count; n++) {
+        *row = &plan->file->rows[plan->order[n]];
+        if (row_of(plan, n)->moves && row_of(plan, n)->is_baud == is_baud) return true;
+    }
+    return false;
+}
+
+static bool is_place_free(const plan_t *plan)
+{
+    const backup_row_t *row = NULL;
+    uint8_t address = session.station->address;
+    uint32_t baud = session.station->line.baud;
+    if (finds(plan, false, &row)) address = (uint8_t)row->value;
+    if (finds(plan, true, &row)) (void)number_parse(row->text, 0, UINT32_MAX, &baud);
+    return move_is_free(&session, address, baud);
+}
+
+static bool has_moved(const plan_t *plan)
+{
+    const backup_row_t *row = NULL;
+    return finds(plan, false, &row) || finds(plan, true, &row);
+}
+
+/* At its new place: is it the same one? */
+static int look_again(const backup_t *unit)
+{
+    backup_t now;
+    char line[LINE_TEXT];
+    if (!backup_read(&session, &now)) {
+        (void)fputs("fathom: all that differed is written; whether it is the same unit there is not known\n",
+                    stderr);
+        return STATUS_FAILED;
+    }
+    (void)printf("%s: it answers there, %s\n", session.station->name, session_line_text(&session, line));
+    if (plan_print_identity(unit, "before", &now, "now")) return STATUS_OK;
+    (void)fflush(stdout);
+    (void)fputs("fathom: another unit answers at the new place; try fathom scan\n", stderr);
+    return STATUS_FAILED;
+}
+
+static int restore(const backup_t *file, const char *path, bool is_dry, bool is_new)
+{
+    backup_t unit;
+    plan_t plan;
+    if (!backup_read(&session, &unit)) {
+        (void)fputs("fathom: nothing was written\n", stderr);
+        return STATUS_FAILED;
+    }
+    /* the rate of a gateway's line is not its unit's alone */
+    plan_begin(&plan, file, &unit, is_new, is_new && session.channel.tcp == NULL);
+    plan_print(&plan);
+    if (is_dry) return plan.count == 0 && !plan.is_impossible ? STATUS_OK : STATUS_FAILED;
+    if (fflush(stdout) != 0 || ferror(stdout) != 0) return STATUS_FAILED; /* unseen, nothing is written */
+    if (plan.is_impossible) {
+        (void)fprintf(stderr,
+                      "fathom: nothing was written: this unit does not have all that the file has; put "
+                      "`not there` in %s for what it is to do without\n",
+                      path);
+        return STATUS_FAILED;
+    }
+    if (has_moved(&plan) && !is_place_free(&plan)) return STATUS_FAILED;
+    if (write_all(&plan, path) != STATUS_OK) return STATUS_FAILED;
+    if (!has_moved(&plan) || look_again(&unit) == STATUS_OK) return STATUS_OK;
+    print_again(&plan, plan.count, path);
+    return STATUS_FAILED;
+}
+
+/* Address 0 is nothing that is restored. */
+static int check_address(const char *path, const backup_t *file)
+{
+    for (size_t i = 0; i != backup_count(file->model); i++)
+        if (file->model->settings[i].has_zero && file->rows[i].held == HELD_VALUE && file->rows[i].value == 0)
+            return backup_refuse(path, &file->rows[i],
+                                 "with --as-new no unit gets address 0; `fathom set` can do that");
+    return STATUS_OK;
+}
+
+static int run(const host_t *host, int argc, char **argv)
+{
+    const char *values[OPTIONS] = {NULL};
+    int status = STATUS_OK;
+    backup_t file;
+    if (!session_options_of_one(&session, &restore_command, argc, argv, table, values, &status))
+        return status;
+    const char *const path = values[FILE_NAME];
+    if (path == NULL) return usage_error(command, "--file is missing, as fathom save has written it");
+    if (values[SESSION_FORMAT] != NULL) return usage_error(command, "it has one format; leave --format out");
+    if (!session_set_mode(&session, command, values, "modbus") || !session_can_set(&session, command))
+        return STATUS_USAGE;
+    status = backup_parse(path, session.station->model, &file);
+    if (status == STATUS_OK && values[AS_NEW] != NULL) status = check_address(path, &file);
+    if (status != STATUS_OK) return status;
+    if (!session_open(&session, host)) return STATUS_FAILED;
+    status = restore(&file, path, values[DRY_RUN] != NULL, values[AS_NEW] != NULL);
+    session_close(&session);
+    if (fflush(stdout) == 0 && ferror(stdout) == 0) return status;
+    (void)fputs("fathom: the output cannot be written\n", stderr);
+    return STATUS_FAILED;
+}
+
+const command_t restore_command = {"restore", "writes the settings of a file into a unit", help, run};

@@ -1,0 +1,103 @@
+/* SPDX-License-Identifier: MIT */
+#include "commands/sim/sim_report.h"
+
+#include <inttypes.h>
+
+#include "ports/line_text.h"
+
+static void print_device(FILE *to, const sim_device_t *device)
+{
+    char line[LINE_TEXT];
+    (void)fprintf(to, "%s, mode %s, address %u, %s", device->model->name, device->mode->name, device->address,
+                  line_text(&device->line, line));
+}
+
+static void print_reader(FILE *to, const sim_device_t *device, const char *port)
+{
+    (void)fprintf(to, "fathom read %s", device->model->name);
+    if (device->mode != &device->model->modes[0]) (void)fprintf(to, " --mode %s", device->mode->name);
+    if (device->mode->has_address && device->address != FACTORY_ADDRESS)
+        (void)fprintf(to, " --address %u", device->address);
+    if (device->line.baud != device->model->line.baud)
+        (void)fprintf(to, " --baud %" PRIu32, device->line.baud);
+    (void)fprintf(to, " --port %s\n", port);
+}
+
+/* Those that cannot work together are meant to be, most often; but who did not mean it should know. */
+static void print_clashes(FILE *to, const sim_options_t *options)
+{
+    if (options->one_by_one) {
+        (void)fputs(
+            "fathom: one by one: each further device is connected a second after the one before has left "
+            "its address\n",
+            to);
+        return;
+    }
+    for (uint32_t i = 0; i != options->count; i++) {
+        const sim_device_t *const one = &options->devices[i];
+        if (!one->mode->is_asked)
+            (void)fprintf(to, "fathom: device %" PRIu32 " sends by itself, into what the others say\n",
+                          i + 1);
+        for (uint32_t other = i + 1; other != options->count; other++)
+            if (options->devices[other].address == one->address &&
+                options->devices[other].line.baud == one->line.baud)
+                (void)fprintf(to,
+                              "fathom: devices %" PRIu32 " and %" PRIu32
+                              " have the address %u both and will answer into each other\n",
+                              i + 1, other + 1, one->address);
+    }
+}
+
+void sim_announce(FILE *to, const sim_options_t *options, const char *port)
+{
+    if (options->count == 1) {
+        (void)fprintf(to, "fathom: simulates ");
+        print_device(to, &options->devices[0]);
+        (void)fprintf(to, ", until Ctrl-C; to read it: ");
+        print_reader(to, &options->devices[0], port);
+        return;
+    }
+    print_clashes(to, options);
+    (void)fprintf(to, "fathom: simulates %" PRIu32 " devices on one line, until Ctrl-C; to read each:\n",
+                  options->count);
+    for (uint32_t i = 0; i != options->count; i++) {
+        (void)fprintf(to, "  %2" PRIu32 "  ", i + 1);
+        print_device(to, &options->devices[i]);
+        (void)fprintf(to, ": ");
+        print_reader(to, &options->devices[i], port);
+    }
+}
+
+void sim_print_counters(FILE *to, const sim_options_t *options, uint32_t i, const fathom_sim_device_t *device,
+                        const fathom_sim_line_t *line)
+{
+    const fathom_sim_counters_t *const counters = &device->counters;
+    const struct {
+        const char *name;
+        uint32_t value;
+    } fields[] = {
+        {"baud", device->settings.baud},
+        {"requests", counters->requests},
+        {"answered", counters->answered},
+        {"exceptions", counters->exceptions},
+        {"unserved", counters->unserved},
+        {"others", counters->others},
+        {"crc_errors", counters->crc_errors},
+        {"truncated", counters->truncated},
+        {"unheard", counters->unheard},
+        {"wrong_settings", counters->wrong_settings},
+        {"automatic", counters->automatic},
+        {"writes", counters->writes},
+        {"writes_refused", counters->writes_refused},
+        {"flash_writes", counters->flash_writes},
+        {"resets", counters->resets},
+        {"resets_refused", counters->resets_refused},
+        {"measurements", counters->measurements},
+        {"line_collisions", line->counters.collisions},
+    };
+    (void)fprintf(to, "{\"device\":%" PRIu32 ",\"sensor\":\"%s\",\"mode\":\"%s\",\"address\":%u", i + 1,
+                  options->devices[i].model->name, options->devices[i].mode->name, device->address);
+    for (size_t f = 0; f != sizeof fields / sizeof fields[0]; f++)
+        (void)fprintf(to, ",\"%s\":%" PRIu32, fields[f].name, fields[f].value);
+    (void)fprintf(to, "}\n");
+}

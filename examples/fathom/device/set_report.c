@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: MIT */
+#include "device/set_report.h"
+
+#include "cli/command.h"
+#include "ports/line_text.h"
+
+static void print_value(const setting_t *setting, const char *text)
+{
+    const bool has_unit = setting->unit != NULL && setting->words == NULL;
+    (void)printf("%s%s%s", text, has_unit ? " " : "", has_unit ? setting->unit : "");
+}
+
+/* Where the device is asked from now on. */
+static void print_next(const change_t *change)
+{
+    const setting_t *const setting = change->setting;
+    const station_t *const station = change->session->station;
+    const model_t *const model = station->model;
+    const fathom_modbus_unit_t *const unit = station->reader.unit;
+    const fathom_line_settings_t *const line =
+        unit->line_settings != NULL ? unit->line_settings : &station->line;
+    char options[LINE_OPTIONS];
+    if (!setting->moves) return;
+    (void)printf("from now on: fathom read %s:%u:%s --port %s%s\n", model->name, unit->address,
+                 station->mode->name, session_port(change->session)->path,
+                 line_options(line, &model->line, options));
+}
+
+static bool is_later(const change_t *change)
+{
+    const setting_t *const setting = change->setting;
+    return setting->is_later != NULL && setting->is_later(&change->session->station->reader);
+}
+
+static void print_json(const change_t *change, change_outcome_t outcome)
+{
+    const station_t *const station = change->session->station;
+    const bool is_written = outcome != CHANGE_UNCHANGED && outcome != CHANGE_NOT_WRITTEN;
+    (void)printf("{\"sensor\": \"%s\", \"setting\": \"%s\", \"value\": ", station->model->name,
+                 change->setting->name);
+    session_print_json(stdout, change->wanted);
+    (void)fputs(", \"was\": ", stdout);
+    if (change->was[0] != '\0')
+        session_print_json(stdout, change->was);
+    else
+        (void)fputs("null", stdout);
+    (void)printf(", \"written\": %s, \"confirmed\": %s, \"outcome\": \"%s\", \"address\": %u}\n",
+                 is_written ? "true" : "false",
+                 outcome == CHANGE_UNCHANGED || (outcome == CHANGE_DONE && change_is_read_back(change))
+                     ? "true"
+                     : "false",
+                 change_outcomes[outcome], change->is_for_all ? 0u : (unsigned)station->reader.unit->address);
+}
+
+static void print_done(const change_t *change, change_outcome_t outcome)
+{
+    const setting_t *const setting = change->setting;
+    (void)printf("%s: %s is ", change->session->station->name, setting->name);
+    print_value(setting, change->wanted);
+    if (is_later(change))
+        (void)printf(" from the next power-on (%s until then)\n", change->was);
+    else if (outcome == CHANGE_UNCHANGED)
+        (void)printf(": %s\n", change_outcomes[CHANGE_UNCHANGED]);
+    else if (setting->get != NULL)
+        (void)printf(" (was %s)\n", change->was);
+    else if (setting->moves || setting->confirmed != NULL)
+        (void)printf("%s%s\n", setting->confirmed != NULL ? ": " : "",
+                     setting->confirmed != NULL ? setting->confirmed : "");
+    else
+        (void)puts(" as far as the device has acknowledged it; it cannot be read back");
+    if (outcome != CHANGE_UNCHANGED) print_next(change);
+}
+
+/* What was asked for is done, and more than that cannot be known. */
+static bool is_done_blind(const change_t *change, change_outcome_t outcome)
+{
+    const int8_t response = change->session->station->reader.unit->outcome;
+    /* what came back is its acknowledgement, or may be: nothing was read that could tell an echo from one */
+    const bool is_answered = response == FATHOM_OK || response == FATHOM_ERR_ECHO;
+    return outcome == CHANGE_SENT || (change->is_blind && outcome == CHANGE_UNCONFIRMED && is_answered);
+}
+
+int set_report(const change_t *change, fathom_status_t status)
+{
+    const change_outcome_t outcome = change_outcome(change, status);
+    const bool is_blind = is_done_blind(change, outcome);
+    const bool is_done = outcome == CHANGE_UNCHANGED || outcome == CHANGE_DONE || is_blind;
+    if (change->session->is_json) print_json(change, outcome);
+    if (!is_done) {
+        (void)fflush(stdout);
+        change_explain(change, outcome, status);
+    } else if (is_blind && !change->session->is_json) {
+        (void)printf("%s: %s %s: %s\n", change->is_for_all ? "all units" : change->session->station->name,
+                     change->setting->name, change->wanted, change_outcomes[outcome]);
+    } else if (!change->session->is_json) {
+        print_done(change, outcome);
+    }
+    if (fflush(stdout) != 0 || ferror(stdout)) {
+        (void)fprintf(stderr, "fathom: the output cannot be written; the setting: %s\n",
+                      change_outcomes[outcome]);
+        return STATUS_FAILED;
+    }
+    return is_done ? STATUS_OK : STATUS_FAILED;
+}

@@ -1,0 +1,118 @@
+/* SPDX-License-Identifier: MIT */
+#include "device/setting_text.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cli/command.h"
+#include "cli/options.h"
+
+const char *setting_values_text(const setting_t *setting, char text[SETTING_VALUES])
+{
+    text[0] = '\0';
+    if (setting->words != NULL) {
+        for (const char *const *word = setting->words; *word != NULL; word++)
+            list_add(text, SETTING_VALUES, *word);
+        return text;
+    }
+    (void)snprintf(text, SETTING_VALUES, "%" PRId32 " to %" PRId32, setting->least, setting->most);
+    if (setting->step > 1) {
+        char multiple[SETTING_TEXT];
+        (void)snprintf(multiple, sizeof multiple, "a multiple of %" PRId32, setting->step);
+        list_add(text, SETTING_VALUES, multiple);
+    }
+    if (setting->unit != NULL) {
+        const size_t length = strlen(text);
+        (void)snprintf(text + length, SETTING_VALUES - length, " %s", setting->unit);
+    }
+    return text;
+}
+
+const setting_t *setting_of(const setting_t *settings, const char *name)
+{
+    for (const setting_t *setting = settings; setting->name != NULL; setting++)
+        if (strcmp(setting->name, name) == 0) return setting;
+    return NULL;
+}
+
+const setting_t *setting_find(const char *command, const char *model, const setting_t *settings,
+                              const char *name)
+{
+    char known[SETTING_VALUES] = "";
+    const setting_t *const found = setting_of(settings, name);
+    if (found != NULL) return found;
+    for (const setting_t *setting = settings; setting->name != NULL; setting++)
+        list_add(known, SETTING_VALUES, setting->name);
+    (void)usage_error(command, "%s has no setting '%s', only %s", model, name, known);
+    return NULL;
+}
+
+static bool parse_number(const setting_t *setting, const char *text, int32_t *value)
+{
+    char *end = NULL;
+    const char *const digits = text[0] == '-' ? text + 1 : text;
+    if (*digits < '0' || *digits > '9' || strlen(digits) > 10) return false;
+    const long long number = strtoll(text, &end, 10);
+    if (*end != '\0' || number < setting->least || number > setting->most) return false;
+    if (setting->step > 1 && number % setting->step != 0) return false;
+    *value = (int32_t)number;
+    return true;
+}
+
+bool setting_value(const setting_t *setting, const char *text, int32_t *value)
+{
+    if (setting->words == NULL) return parse_number(setting, text, value);
+    for (int32_t i = 0; setting->words[i] != NULL; i++) {
+        if (strcmp(setting->words[i], text) != 0) continue;
+        *value = i;
+        return true;
+    }
+    return false;
+}
+
+bool setting_parse(const char *command, const setting_t *setting, const char *text, int32_t *value)
+{
+    char values[SETTING_VALUES];
+    if (setting_value(setting, text, value)) return true;
+    (void)usage_error(command, "%s takes %s, not '%s'", setting->name, setting_values_text(setting, values),
+                      text);
+    return false;
+}
+
+const char *setting_reason(fathom_status_t status)
+{
+    switch (status) {
+    case FATHOM_ERR_NO_RESPONSE:
+        return "no response; not every variant has it";
+    case FATHOM_ERR_EXCEPTION:
+        return "refused; not every variant has it";
+    case FATHOM_ERR_MALFORMED:
+        return "its responses cannot be that";
+    default:
+        return NULL;
+    }
+}
+
+void setting_print_value(const setting_t *setting, int32_t value, char text[SETTING_TEXT])
+{
+    if (setting->words != NULL)
+        (void)snprintf(text, SETTING_TEXT, "%s", setting->words[value]);
+    else
+        (void)snprintf(text, SETTING_TEXT, "%" PRId32, value);
+}
+
+void settings_print(FILE *to, const setting_t *settings)
+{
+    for (const setting_t *setting = settings; setting->name != NULL; setting++) {
+        (void)fprintf(to, "  %s%s\n      %s", setting->name, setting->get == NULL ? " (write-only)" : "",
+                      setting->what);
+        if (setting->effect == NULL) {
+            (void)fputs("; cannot be set", to);
+        } else {
+            char values[SETTING_VALUES];
+            (void)fprintf(to, ": %s\n      %s", setting_values_text(setting, values), setting->effect);
+        }
+        (void)fputs("\n", to);
+    }
+}

@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef SETTING_TEXT_H
+#define SETTING_TEXT_H
+
+#include "sensors/setting.h"
+
+/* The settings as words: on the command line, in lists, in responses. */
+
+/* By name; NULL: there is none. */
+const setting_t *setting_of(const setting_t *settings, const char *name);
+
+/* The same; NULL after a usage error that lists what there is. */
+const setting_t *setting_find(const char *command, const char *model, const setting_t *settings,
+                              const char *name);
+
+/* Its value, where the text is one. */
+bool setting_value(const setting_t *setting, const char *text, int32_t *value);
+
+/* What it may be, "0 to 255 s" or "off, on". */
+enum { SETTING_VALUES = 400 };
+const char *setting_values_text(const setting_t *setting, char text[SETTING_VALUES]);
+
+/* False after a usage error. */
+bool setting_parse(const char *command, const setting_t *setting, const char *text, int32_t *value);
+
+/* A word, or a number. */
+void setting_print_value(const setting_t *setting, int32_t value, char text[SETTING_TEXT]);
+
+/* Why a device that answers has not told this one; NULL: the status says nothing of this one alone. */
+const char *setting_reason(fathom_status_t status);
+
+/* All of them with their values and effects, for people. */
+void settings_print(FILE *to, const setting_t *settings);
+
+#endif

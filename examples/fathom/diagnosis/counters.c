@@ -1,0 +1,137 @@
+/* SPDX-License-Identifier: MIT */
+#include "diagnosis/counters.h"
+
+#include <string.h>
+
+/* Those that can end an attempt; the others have no name. */
+static const struct {
+    const char *name;
+    const char *what;
+} failure_kinds[FAILURE_KINDS] = {
+    [FAILURE_VALUE] = {"impossible values",
+                       "a value that can be no distance, or that --window or --means refuses"},
+    [-FATHOM_ERR_PORT] = {"port", "the port is lost, or it is waited for"},
+    [-FATHOM_ERR_NO_RESPONSE] = {"no response", "nothing that was asked for came within --timeout"},
+    [-FATHOM_ERR_CHECKSUM] = {"damaged", "the received bytes have a wrong checksum, or form no frame"},
+    [-FATHOM_ERR_EXCEPTION] = {"exception", "the sensor has refused the request by a Modbus exception"},
+    [-FATHOM_ERR_MALFORMED] = {"other response", "a response that does not fit the request"},
+    [-FATHOM_ERR_STALE] = {"stale", "a sensor that sends by itself sent nothing within --timeout"},
+    [-FATHOM_ERR_LINE_BUSY] = {"line busy", "the line was never silent, so no request could be sent safely"},
+    [-FATHOM_ERR_OTHER_MASTER] = {"other master", "another master asked the same sensor at the same time"},
+    [FAILURE_KINDS - 1] = {"other", "anything else"},
+};
+
+const char *counters_failure_name(size_t kind) { return failure_kinds[kind].name; }
+
+const char *counters_failure_what(size_t kind) { return failure_kinds[kind].what; }
+
+const char *counters_member(const char *name, char text[COUNTERS_MEMBER])
+{
+    size_t i = 0;
+    for (; name[i] != '\0' && i != COUNTERS_MEMBER - 1; i++) text[i] = name[i];
+    text[i] = '\0';
+    for (char *space = text; (space = strchr(space, ' ')) != NULL;) *space = '_';
+    return text;
+}
+
+static void take(uint16_t *from, uint64_t *attempt, uint64_t *total, size_t count)
+{
+    for (size_t i = 0; i != count; i++) {
+        attempt[i] += from[i];
+        total[i] += from[i];
+        from[i] = 0;
+    }
+}
+
+static bool read_port(const port_counts_t *port, channel_t *channel, fathom_posix_line_errors_t *now)
+{
+    /* Most ports that do not count say so at the first look; a lost one would only say that again. */
+    return port->is_there && fathom_posix_line_errors(&channel->port, now) == FATHOM_POSIX_OK;
+}
+
+void counters_begin_port(port_counts_t *port, channel_t *channel)
+{
+    port->is_there = true;
+    port->is_there = read_port(port, channel, &port->at);
+}
+
+static void take_port(counters_t *counters, port_counts_t *port, channel_t *channel)
+{
+    fathom_posix_line_errors_t now;
+    if (!read_port(port, channel, &now)) return;
+    const uint32_t passed[PORT_COUNTERS] = {
+        [PORT_PARITY] = now.parity - port->at.parity,
+        [PORT_FRAMING] = now.framing - port->at.framing,
+        [PORT_OVERRUN] = now.overrun - port->at.overrun,
+        [PORT_BREAKS] = now.breaks - port->at.breaks,
+    };
+    for (size_t i = 0; i != PORT_COUNTERS; i++) {
+        counters->attempt.port[i] += passed[i];
+        counters->total.port[i] += passed[i];
+    }
+    port->at = now;
+}
+
+void counters_take(counters_t *counters, port_counts_t *port, channel_t *channel, const reader_t *reader)
+{
+    take(channel->counters, counters->attempt.line, counters->total.line, FATHOM_LINE_COUNTERS);
+    if (reader->frames != NULL)
+        take(reader->frames, counters->attempt.stream, counters->total.stream, FATHOM_STREAM_COUNTERS);
+    if (reader->unit != NULL) {
+        take(&reader->unit->responses, counters->attempt.unit + UNIT_RESPONSES,
+             counters->total.unit + UNIT_RESPONSES, 1);
+        take(&reader->unit->failures, counters->attempt.unit + UNIT_FAILURES,
+             counters->total.unit + UNIT_FAILURES, 1);
+    }
+    take_port(counters, port, channel);
+}
+
+void counters_take_late(counters_t *counters, channel_t *channel)
+{
+    enum { LATE = FATHOM_LINE_LATE_RESPONSES };
+    take(&channel->counters[LATE], &counters->attempt.line[LATE], &counters->total.line[LATE], 1);
+}
+
+void counters_begin_attempt(counters_t *counters) { memset(&counters->attempt, 0, sizeof counters->attempt); }
+
+size_t counters_failure_kind(fathom_status_t status, const reader_t *reader)
+{
+    const size_t kind = (size_t)-status;
+    if (status == FATHOM_ERR_MALFORMED && !reader_got_unexpected_response(reader)) return FAILURE_VALUE;
+    return kind >= FAILURE_KINDS || counters_failure_name(kind) == NULL ? FAILURE_KINDS - 1 : kind;
+}
+
+void counters_failure(counters_t *counters, fathom_status_t status, const reader_t *reader)
+{
+    counters->failures[counters_failure_kind(status, reader)]++;
+}
+
+void counters_time(counters_t *counters, uint32_t took_us)
+{
+    if (counters->timed++ == 0 || took_us < counters->time_min_us) counters->time_min_us = took_us;
+    if (took_us > counters->time_max_us) counters->time_max_us = took_us;
+    counters->time_sum_us += took_us;
+}
+
+static void add(uint64_t *to, const uint64_t *from, size_t count)
+{
+    for (size_t i = 0; i != count; i++) to[i] += from[i];
+}
+
+void counters_add(counters_t *sum, const counters_t *part)
+{
+    add(sum->total.line, part->total.line, FATHOM_LINE_COUNTERS);
+    add(sum->total.stream, part->total.stream, FATHOM_STREAM_COUNTERS);
+    add(sum->total.unit, part->total.unit, UNIT_COUNTERS);
+    add(sum->total.port, part->total.port, PORT_COUNTERS);
+    add(sum->failures, part->failures, FAILURE_KINDS);
+    sum->attempts += part->attempts;
+    sum->failed += part->failed;
+    sum->readings += part->readings;
+    sum->skipped += part->skipped;
+    if (part->timed == 0) return;
+    if (sum->timed == 0 || part->time_min_us < sum->time_min_us) sum->time_min_us = part->time_min_us;
+    if (part->time_max_us > sum->time_max_us) sum->time_max_us = part->time_max_us;
+    sum->timed += part->timed;
+    sum->time_sum_us += part->time_sum_us;
+}

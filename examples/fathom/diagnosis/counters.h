@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef COUNTERS_H
+#define COUNTERS_H
+
+#include <stdio.h>
+
+#include "ports/channel.h"
+#include "sensors/reader.h"
+
+/* What the port's driver counts, where it does. */
+enum { PORT_PARITY = 0, PORT_FRAMING = 1, PORT_OVERRUN = 2, PORT_BREAKS = 3, PORT_COUNTERS = 4 };
+
+/* What the driver of a sensor that is asked counts. */
+enum { UNIT_RESPONSES = 0, UNIT_FAILURES = 1, UNIT_COUNTERS = 2 };
+
+/* Failures by kind: -status, and beside it those whose values were refused. */
+enum { FAILURE_VALUE = 0, FAILURE_KINDS = 20 };
+
+/*
+ * The library's counters stop at 65535 and run from the beginning. Here they are taken out after each attempt:
+ * so there are those of one attempt, from which its failure is explained, and the sums of all.
+ */
+typedef struct {
+    uint64_t line[FATHOM_LINE_COUNTERS];
+    uint64_t stream[FATHOM_STREAM_COUNTERS];
+    uint64_t unit[UNIT_COUNTERS];
+    uint64_t port[PORT_COUNTERS];
+} counts_t;
+
+typedef struct {
+    counts_t attempt; /* since counters_begin_attempt */
+    counts_t total;
+    uint64_t attempts;
+    uint64_t failed;
+    uint64_t readings;
+    uint64_t skipped;                 /* frames that came sooner than the interval */
+    uint64_t failures[FAILURE_KINDS]; /* each is a line on stderr; four of an a05 may be one failed attempt */
+    uint64_t timed; /* responses whose time is in the next three: from the request's start */
+    uint64_t time_sum_us;
+    uint32_t time_min_us;
+    uint32_t time_max_us;
+} counters_t;
+
+/* The counters of the port's driver. */
+typedef struct {
+    fathom_posix_line_errors_t at; /* at the last look */
+    bool is_there;                 /* the driver counts */
+} port_counts_t;
+
+/* A port has been opened: the driver's counters begin here. */
+void counters_begin_port(port_counts_t *port, channel_t *channel);
+
+/* Takes the counters out of the line, the stream, the unit and the port and adds them. */
+void counters_take(counters_t *counters, port_counts_t *port, channel_t *channel, const reader_t *reader);
+
+/* Takes the line's late responses alone: they are this sensor's. */
+void counters_take_late(counters_t *counters, channel_t *channel);
+
+void counters_begin_attempt(counters_t *counters);
+
+/* Of a failure: FAILURE_VALUE, -status, or the last one, "other". */
+size_t counters_failure_kind(fathom_status_t status, const reader_t *reader);
+
+/* Its name, NULL where it cannot end an attempt; and what that means. */
+const char *counters_failure_name(size_t kind);
+const char *counters_failure_what(size_t kind);
+
+/* A name as programs want it: with underscores for spaces. */
+enum { COUNTERS_MEMBER = 40 };
+const char *counters_member(const char *name, char text[COUNTERS_MEMBER]);
+
+void counters_failure(counters_t *counters, fathom_status_t status, const reader_t *reader);
+
+void counters_time(counters_t *counters, uint32_t took_us);
+
+/* Adds what one sensor has counted to the sums of all; the present attempt is left out. */
+void counters_add(counters_t *sum, const counters_t *part);
+
+#endif

@@ -1,0 +1,400 @@
+/* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): getentropy */
+#include "mqtt/broker.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <poll.h>
+#include <signal.h>
+#include <string.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+enum {
+    FIRST_PAUSE_US = 500000,
+    LONGEST_PAUSE_US = 60000000,
+    STEADY_US = 10000000,
+    GREETING_US = 20000000,
+    LOOK_US = 1000000, /* how often the keep-alive is looked after */
+    READS = 16,
+    QOS = 1
+};
+
+static uint64_t now_us(const broker_t *broker) { return broker->host->now_us(broker->host->ctx); }
+
+/* ---- what libmosquitto tells ---- */
+
+static void on_connect(struct mosquitto *mosq, void *ctx, int code)
+{
+    broker_t *const broker = ctx;
+    (void)mosq;
+    if (code == 0) {
+        broker->phase = BROKER_READY;
+        return;
+    }
+    broker_explain_refusal(broker, code);
+    broker->is_lost = true;
+}
+
+/* Of the messages under way, from the oldest, 0. */
+static broker_sent_t *sent_at(broker_t *broker, unsigned number)
+{
+    return &broker->sent[(broker->first + number) % BROKER_WINDOW];
+}
+
+static void on_publish(struct mosquitto *mosq, void *ctx, int number)
+{
+    broker_t *const broker = ctx;
+    (void)mosq;
+    for (unsigned i = 0; i != broker->count; i++)
+        if (sent_at(broker, i)->number == number) sent_at(broker, i)->is_acknowledged = true;
+    while (broker->count != 0 && sent_at(broker, 0)->is_acknowledged) {
+        broker->first = (broker->first + 1) % BROKER_WINDOW;
+        broker->count--;
+    }
+}
+
+static void on_log(struct mosquitto *mosq, void *ctx, int level, const char *text)
+{
+    broker_t *const broker = ctx;
+    (void)mosq;
+    if (level == MOSQ_LOG_ERR && broker->log[0] == '\0')
+        (void)snprintf(broker->log, sizeof broker->log, "%.*s", (int)strcspn(text, "\n"), text);
+}
+
+/* ---- the socket ---- */
+
+static broker_t *broker_of(fathom_loop_source_t *source) { return ((broker_source_t *)source)->broker; }
+
+static int source_fd(const fathom_loop_source_t *source) { return ((const broker_source_t *)source)->fd; }
+
+static short socket_events(const fathom_loop_source_t *source)
+{
+    const broker_t *const broker = ((const broker_source_t *)source)->broker;
+    return mosquitto_want_write(broker->mosq) ? POLLIN | POLLOUT : POLLIN;
+}
+
+static void take_result(broker_t *broker, int result)
+{
+    const int error = errno;
+    if (result == MOSQ_ERR_SUCCESS || broker->is_lost) return;
+    broker_explain(broker, result, error);
+    broker->is_lost = true;
+}
+
+/* All that has come, since it is not told again that it has. */
+static void read_all(broker_t *broker)
+{
+    for (unsigned turn = 0; turn != READS && !broker->is_lost; turn++) {
+        errno = 0;
+        const int result = mosquitto_loop_read(broker->mosq, 1);
+        const bool is_all = errno == EAGAIN || errno == EWOULDBLOCK;
+        take_result(broker, result);
+        if (is_all) return;
+    }
+}
+
+/* False: libmosquitto does not take it. What it has in its list it sends, and sends again, by itself. */
+static bool hand_over(broker_t *broker, broker_sent_t *sent)
+{
+    const int result = mosquitto_publish(broker->mosq, &sent->number, sent->topic, (int)strlen(sent->payload),
+                                         sent->payload, QOS, sent->is_retained);
+    return result != MOSQ_ERR_INVAL && result != MOSQ_ERR_NOMEM && result != MOSQ_ERR_PAYLOAD_SIZE &&
+           result != MOSQ_ERR_MALFORMED_UTF8;
+}
+
+static void take_readiness(broker_t *broker)
+{
+    const broker_config_t *const config = &broker->config->broker;
+    char text[BROKER_TEXT];
+    (void)snprintf(text, sizeof text, "broker %s port %u: connected", config->host, config->port);
+    if (broker->is_told) broker->user->tell(broker->ctx, text);
+    broker->is_told = false;
+    /* That another client had under way. One that is the same sends them again by itself. */
+    for (unsigned i = 0; broker->is_other && i != broker->count; i++)
+        if (!sent_at(broker, i)->is_acknowledged) (void)hand_over(broker, sent_at(broker, i));
+    broker->is_other = false;
+    broker->user->connected(broker->ctx);
+}
+
+static bool poll_socket(fathom_loop_source_t *source)
+{
+    broker_t *const broker = broker_of(source);
+    const unsigned count = broker->count;
+    const bool was_ready = broker->phase == BROKER_READY;
+    if (broker->is_lost) return true;
+    if (source->is_readable) read_all(broker);
+    if (!broker->is_lost && mosquitto_want_write(broker->mosq)) {
+        errno = 0;
+        take_result(broker, mosquitto_loop_write(broker->mosq, 1));
+    }
+    if (!broker->is_lost) take_result(broker, mosquitto_loop_misc(broker->mosq));
+    /* A handshake of TLS does not tell libmosquitto of its end. */
+    if (broker->phase == BROKER_GREETING && source->is_hung_up) take_result(broker, MOSQ_ERR_CONN_LOST);
+    if (broker->is_lost) return true;
+    if (!was_ready && broker->phase == BROKER_READY) take_readiness(broker);
+    if (broker->count < count) broker->user->acknowledged(broker->ctx);
+    return true;
+}
+
+static uint32_t socket_due_us(fathom_loop_source_t *source)
+{
+    (void)source;
+    return LOOK_US;
+}
+
+/* Of its own, so that the number is no other file's while the loop waits for it: libmosquitto closes its own when it
+ * likes. */
+static bool add_socket(broker_t *broker)
+{
+    static const fathom_loop_kind_t kind = {
+        .fd = source_fd, .events = socket_events, .poll = poll_socket, .due_us = socket_due_us};
+    const int fd = fcntl(mosquitto_socket(broker->mosq), F_DUPFD_CLOEXEC, 0);
+    if (fd < 0) return false;
+    broker->socket = (broker_source_t){.source.kind = &kind, .broker = broker, .fd = fd};
+    fathom_loop_add(broker->loop, &broker->socket.source);
+    return true;
+}
+
+static void remove_socket(broker_t *broker)
+{
+    if (broker->socket.source.loop == NULL) return;
+    fathom_loop_remove(&broker->socket.source);
+    (void)shutdown(broker->socket.fd, SHUT_RDWR);
+    (void)close(broker->socket.fd);
+}
+
+/* ---- the thread ---- */
+
+static void *connect_in_thread(void *ctx)
+{
+    broker_t *const broker = ctx;
+    const uint64_t one = 1;
+    errno = 0;
+    broker->connect_result =
+        mosquitto_connect(broker->mosq, broker->connect_host, broker->connect_port, broker->keep_alive_s);
+    broker->connect_errno = errno;
+    if (write(broker->thread.fd, &one, sizeof one) < 0) broker->connect_errno = errno;
+    return NULL;
+}
+
+/* Signals are for the thread that sleeps. */
+static int begin_thread(broker_t *broker)
+{
+    sigset_t all;
+    sigset_t before;
+    (void)sigfillset(&all);
+    (void)pthread_sigmask(SIG_SETMASK, &all, &before);
+    const int error = pthread_create(&broker->connecting, NULL, connect_in_thread, broker);
+    (void)pthread_sigmask(SIG_SETMASK, &before, NULL);
+    return error;
+}
+
+static bool poll_thread(fathom_loop_source_t *source)
+{
+    broker_t *const broker = broker_of(source);
+    uint64_t count;
+    if (read(broker->thread.fd, &count, sizeof count) == (ssize_t)sizeof count)
+        broker->thread_has_ended = true;
+    return true;
+}
+
+/* ---- trying again ---- */
+
+/* Between a half and the whole of it, so that the clients of a broker that is back do not come all at once. */
+static uint32_t part_of(uint32_t pause_us)
+{
+    uint32_t random = 0;
+    if (getentropy(&random, sizeof random) != 0) random = 0;
+    return pause_us / 2 + (uint32_t)((uint64_t)random * (pause_us - pause_us / 2) >> 32);
+}
+
+static void tell_away(broker_t *broker)
+{
+    const broker_config_t *const config = &broker->config->broker;
+    char text[2 * BROKER_TEXT];
+    if (broker->is_told && strcmp(broker->told_reason, broker->reason) == 0) return;
+    broker->is_told = true;
+    memcpy(broker->told_reason, broker->reason, sizeof broker->told_reason);
+    (void)snprintf(text, sizeof text, "broker %s port %u: %s; it is tried again and again", config->host,
+                   config->port, broker->reason);
+    broker->user->tell(broker->ctx, text);
+}
+
+/* For broker->reason. */
+static void fail(broker_t *broker)
+{
+    const bool was_ready = broker->phase == BROKER_READY;
+    remove_socket(broker);
+    if (was_ready) {
+        broker->user->lost(broker->ctx);
+        /* One that accepts and ends it again, as where two clients have the same id, is not asked as fast as can be. */
+        if (now_us(broker) - broker->began_us >= STEADY_US) broker->pause_us = 0;
+    }
+    broker->pause_us = broker->pause_us == 0 ? FIRST_PAUSE_US : broker->pause_us * 2;
+    if (broker->pause_us > LONGEST_PAUSE_US) broker->pause_us = LONGEST_PAUSE_US;
+    broker->next_us = now_us(broker) + part_of(broker->pause_us);
+    broker->phase = BROKER_PAUSE;
+    broker->is_lost = false;
+    tell_away(broker);
+}
+
+static void fail_for(broker_t *broker, const char *reason)
+{
+    (void)snprintf(broker->reason, sizeof broker->reason, "%s", reason);
+    fail(broker);
+}
+
+static void make_client(broker_t *broker)
+{
+    if (broker->mosq != NULL && !broker->has_changed) return;
+    if (broker->mosq != NULL) mosquitto_destroy(broker->mosq);
+    broker->is_other = true;
+    broker->has_changed = false;
+    broker->mosq = broker_client(broker);
+    if (broker->mosq == NULL) return;
+    mosquitto_connect_callback_set(broker->mosq, on_connect);
+    mosquitto_publish_callback_set(broker->mosq, on_publish);
+    mosquitto_log_callback_set(broker->mosq, on_log);
+}
+
+static void begin_connecting(broker_t *broker)
+{
+    const broker_config_t *const config = &broker->config->broker;
+    (void)snprintf(broker->connect_host, sizeof broker->connect_host, "%s", config->host);
+    broker->connect_port = config->port;
+    broker->keep_alive_s = config->keep_alive_s;
+    broker->reason[0] = broker->log[0] = '\0';
+    broker->is_lost = false;
+    broker->tls_error = 0;
+    broker->began_us = now_us(broker);
+    make_client(broker);
+    if (broker->mosq == NULL || !broker_login(broker)) {
+        fail(broker);
+        return;
+    }
+    const int error = begin_thread(broker);
+    if (error != 0)
+        fail_for(broker, strerror(error));
+    else
+        broker->phase = BROKER_CONNECTING;
+}
+
+static void end_connecting(broker_t *broker)
+{
+    broker->thread_has_ended = false;
+    (void)pthread_join(broker->connecting, NULL);
+    if (broker->has_changed) {
+        begin_connecting(broker);
+        return;
+    }
+    broker->phase = BROKER_GREETING;
+    broker->began_us = now_us(broker);
+    if (broker->connect_result != MOSQ_ERR_SUCCESS) {
+        broker_explain(broker, broker->connect_result, broker->connect_errno);
+        fail(broker);
+    } else if (!add_socket(broker)) {
+        fail_for(broker, strerror(errno));
+    }
+}
+
+uint32_t broker_tick(broker_t *broker)
+{
+    const uint64_t now = now_us(broker);
+    if (broker->phase == BROKER_PAUSE && now >= broker->next_us) begin_connecting(broker);
+    if (broker->phase == BROKER_CONNECTING && broker->thread_has_ended) end_connecting(broker);
+    if (broker->phase == BROKER_GREETING && !broker->is_lost && now > broker->began_us + GREETING_US) {
+        (void)snprintf(broker->reason, sizeof broker->reason,
+                       "it takes the connection, and says nothing; is it MQTT?");
+        broker->is_lost = true;
+    }
+    if (broker->is_lost) fail(broker);
+    if (broker->phase == BROKER_PAUSE) return broker->next_us > now ? (uint32_t)(broker->next_us - now) : 0;
+    return broker->phase == BROKER_GREETING ? LOOK_US : FATHOM_NO_DEADLINE;
+}
+
+/* ---- begin, send, end ---- */
+
+bool broker_begin(broker_t *broker, const host_t *host, fathom_loop_t *loop, const config_t *config,
+                  const char *will, const broker_user_t *user, void *ctx)
+{
+    static const fathom_loop_kind_t kind = {.fd = source_fd, .poll = poll_thread};
+    memset(broker, 0, sizeof *broker);
+    broker->host = host;
+    broker->loop = loop;
+    broker->config = config;
+    broker->user = user;
+    broker->ctx = ctx;
+    (void)snprintf(broker->will, sizeof broker->will, "%s", will);
+    broker->thread.fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+    if (broker->thread.fd < 0 || mosquitto_lib_init() != MOSQ_ERR_SUCCESS) {
+        user->tell(ctx, "the system has no descriptor or no memory left; end other programs");
+        return false;
+    }
+    broker->thread.broker = broker;
+    broker->thread.source.kind = &kind;
+    fathom_loop_add(loop, &broker->thread.source);
+    return true;
+}
+
+bool broker_is_connected(const broker_t *broker) { return broker->phase == BROKER_READY && !broker->is_lost; }
+
+bool broker_is_free(const broker_t *broker)
+{
+    return broker_is_connected(broker) && broker->count != BROKER_WINDOW;
+}
+
+bool broker_is_idle(const broker_t *broker) { return broker_is_connected(broker) && broker->count == 0; }
+
+bool broker_send(broker_t *broker, const char *topic, const char *payload, bool is_retained)
+{
+    broker_sent_t *const sent = sent_at(broker, broker->count);
+    sent->is_acknowledged = false;
+    sent->is_retained = is_retained;
+    (void)snprintf(sent->topic, sizeof sent->topic, "%s", topic);
+    (void)snprintf(sent->payload, sizeof sent->payload, "%s", payload);
+    if (!hand_over(broker, sent)) return false;
+    broker->count++;
+    if (mosquitto_want_write(broker->mosq)) fathom_loop_wake(&broker->socket.source);
+    return true;
+}
+
+void broker_change(broker_t *broker, const char *will)
+{
+    (void)snprintf(broker->will, sizeof broker->will, "%s", will);
+    broker->has_changed = true;
+    broker->is_told = false;
+    if (broker->phase == BROKER_CONNECTING) return;
+    if (broker->phase == BROKER_READY) (void)mosquitto_disconnect(broker->mosq);
+    remove_socket(broker);
+    broker->phase = BROKER_PAUSE;
+    broker->is_lost = false;
+    broker->pause_us = 0;
+    broker->next_us = now_us(broker);
+}
+
+bool broker_wait(broker_t *broker, uint32_t max_us)
+{
+    if (!broker_is_connected(broker)) return false;
+    struct pollfd entry = {broker->socket.fd, socket_events(&broker->socket.source), 0};
+    broker->socket.source.is_readable = poll(&entry, 1, (int)(max_us / 1000)) > 0;
+    (void)poll_socket(&broker->socket.source);
+    return broker_is_connected(broker);
+}
+
+void broker_end(broker_t *broker)
+{
+    if (broker->phase == BROKER_CONNECTING) {
+        (void)pthread_detach(broker->connecting); /* it may wait for minutes, and ends with the program */
+        return;
+    }
+    if (broker->phase == BROKER_READY) (void)mosquitto_disconnect(broker->mosq);
+    remove_socket(broker);
+    if (broker->thread.source.loop != NULL) fathom_loop_remove(&broker->thread.source);
+    if (broker->thread.fd >= 0) (void)close(broker->thread.fd);
+    if (broker->mosq != NULL) mosquitto_destroy(broker->mosq);
+    broker->mosq = NULL;
+    (void)mosquitto_lib_cleanup();
+}

@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: MIT */
+#include "sensors/a05/a05.h"
+
+/* Processed or real-time values, by RX in the first second after power-on (A05 1(1)). The port's TX is held at that
+ * level, until what the sensor sends has been away and has come back. Nothing is told of what comes before. */
+
+/* A silence of so much is no pause between two frames: it was off. No period is printed, but a "response time" of 1.5 s
+ * (A05 1). */
+#define OFF_US 2000000u
+
+static uint32_t now_us(const reader_t *reader)
+{
+    const fathom_clock_t *const clock = reader->line->parts->clock;
+    return clock->now_us(clock->ctx);
+}
+
+/* Low for another 1.5 s, if it is; the driver lets it go high then. */
+static fathom_status_t go_on(reader_t *reader)
+{
+    reader_selection_t *const selection = &reader->selection;
+    const fathom_status_t status =
+        fathom_a05_auto_select(&reader->driver.a05_auto, (fathom_dyp_value_t)selection->value);
+    if (status != FATHOM_OK) return status == FATHOM_ERR_BUSY ? FATHOM_PENDING : status;
+    reader->sensor = selection->listening;
+    reader->remark = "it has been switched on: readings begin";
+    return FATHOM_PENDING;
+}
+
+static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
+{
+    reader_t *const reader = ctx;
+    reader_selection_t *const selection = &reader->selection;
+    fathom_sample_t unselected;
+    (void)sample;
+    const fathom_status_t status = fathom_poll(&selection->listening, &unselected);
+    const uint32_t now = now_us(reader);
+    /* Bytes that form no frame may be noise of a module without power. */
+    const bool is_silent =
+        status == FATHOM_PENDING || status == FATHOM_ERR_STALE || status == FATHOM_ERR_CHECKSUM;
+    if (status == FATHOM_ERR_PORT) return status;
+    if (fathom_elapsed_us(now, selection->heard_us) >= OFF_US) selection->has_been_off = true;
+    if (is_silent) return FATHOM_PENDING;
+    selection->heard_us = now;
+    return selection->has_been_off ? go_on(reader) : FATHOM_PENDING;
+}
+
+static uint32_t due_us(void *ctx)
+{
+    const reader_t *const reader = ctx;
+    const reader_selection_t *const selection = &reader->selection;
+    const uint32_t passed_us = fathom_elapsed_us(now_us(reader), selection->heard_us);
+    const uint32_t listening_us = fathom_due_us(&selection->listening, 1);
+    if (selection->has_been_off || passed_us >= OFF_US) return listening_us;
+    return OFF_US - passed_us < listening_us ? OFF_US - passed_us : listening_us;
+}
+
+static fathom_status_t end(reader_t *reader)
+{
+    const fathom_status_t status = fathom_a05_auto_deinit(&reader->driver.a05_auto);
+    return status == FATHOM_OK ? fathom_output_set(&reader->selection.rx, FATHOM_OUTPUT_FREE) : status;
+}
+
+bool a05_select(reader_t *reader, channel_t *channel, uint8_t value)
+{
+    reader_selection_t *const selection = &reader->selection;
+    const bool is_low = value == FATHOM_REAL_TIME;
+    if (is_low && !reader_has_break(reader, channel)) return false;
+    reader_end_break(channel);
+    selection->rx = fathom_output_line_break(reader->line);
+    if (is_low && fathom_output_set(&selection->rx, FATHOM_OUTPUT_LOW) != FATHOM_OK) return false;
+    selection->listening = reader->sensor;
+    selection->value = value;
+    selection->heard_us = now_us(reader);
+    reader->sensor = (fathom_sensor_t){poll, due_us, reader};
+    reader->end = end;
+    reader->remark =
+        is_low ? "its RX is held low, which selects real-time values when it is switched on: switch its "
+                 "supply off for 3 seconds and on"
+               : "its RX is high, which selects processed values when it is switched on: switch its "
+                 "supply off for 3 seconds and on";
+    return true;
+}

@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef HPS167S_H
+#define HPS167S_H
+
+#include "sensors/model.h"
+
+/* From the factory. */
+#define HPS167S_LINE                                                                                         \
+    {                                                                                                        \
+        FATHOM_HPS167S_FACTORY_BAUD, FATHOM_PARITY_EVEN, 1                                                   \
+    }
+
+extern const model_t model_hps167s;
+
+/* ---- its parts ---- */
+
+extern const setting_t hps167s_settings[];
+
+bool hps167s_read_modbus(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
+bool hps167s_read_auto(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
+
+/* The reader of mode modbus: from now on it reads the temperature too. */
+void hps167s_begin_temperature(reader_t *reader, const reader_settings_t *settings);
+
+void hps167s_decode(decode_frame_t *frame, const uint8_t *request);
+
+bool hps167s_identify(inquiry_t *inquiry);
+void hps167s_print_finding(FILE *to, const model_t *model, const scan_finding_t *finding);
+void hps167s_print_finding_json(FILE *to, const scan_finding_t *finding);
+
+#endif

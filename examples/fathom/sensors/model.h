@@ -1,0 +1,105 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef MODEL_H
+#define MODEL_H
+
+#include "fathom/sample.h"
+#include "sensors/decoding.h"
+#include "sensors/device.h"
+#include "sensors/inquiry.h"
+#include "sensors/setting.h"
+
+/* The lines of a GPIO chip on which a sensor hangs instead of a serial line: bits. */
+enum {
+    MODEL_PIN_TRIGGER = 1, /* to its RX */
+    MODEL_PIN_ECHO = 2,    /* pulses, from its TX */
+    MODEL_PIN_IN = 4       /* a level: a switch, or a relay's contact */
+};
+
+/* One way in which a sensor can be read and simulated. */
+typedef struct {
+    const char *name;
+    bool is_asked;    /* else it sends by itself */
+    bool has_address; /* on the wire: it is asked there, or its frames tell it */
+    uint8_t takes;    /* READER_TAKES_...: which of the user's settings have an effect */
+    uint8_t pins;     /* MODEL_PIN_...: that it needs; 0: it has a serial line */
+    uint8_t may_pins; /* and that it can have besides */
+    reader_init_t read;
+    device_init_t simulate; /* NULL: `fathom sim` does not */
+} model_mode_t;
+
+enum { MODEL_MODES = 5 };
+
+/* All that the tool knows of a sensor model. What is NULL or 0 it has not. */
+typedef struct model model_t;
+struct model {
+    const char *name;
+    const char *what;
+    fathom_model_t id;
+
+    /* ---- its line and how it is read; the first mode is the default, the line is the factory's ---- */
+
+    fathom_line_settings_t line;
+    const uint32_t *rates;           /* to which it can be set, ended by 0 */
+    const char *other_settings;      /* the same as options to try */
+    model_mode_t modes[MODEL_MODES]; /* rows without a name end it */
+    uint8_t max_address;
+    /* An A16 or A05: address 0 is one too, 0xFF is all units, and values can be given a meaning. */
+    bool is_dyp;
+    bool has_optics; /* magnitude, ambient light and precision, and it can report a fault */
+    uint8_t probes;
+    uint16_t max_mm; /* beyond this a value is no distance */
+    /* It may send measurements unasked: listens to them beside what is asked; has it heard any, or what was none? */
+    void (*listen_unasked)(reader_t *reader);
+    bool (*has_unasked)(const reader_t *reader);
+
+    const char *automatic_again; /* what makes it send by itself again after a request, besides power-off */
+
+    /* ---- its settings ---- */
+
+    const setting_t *settings;
+    /* Its factory settings: of its interface, and of the sensor behind it. To be called until they are not
+     * FATHOM_PENDING. is_sent: has a request left that may have reset it? */
+    struct {
+        fathom_status_t (*restore)(reader_t *reader);
+        fathom_status_t (*load)(reader_t *reader);
+        bool (*is_sent)(const reader_t *reader);
+    } reset;
+
+    /* ---- as it is simulated ---- */
+
+    uint32_t traits;  /* bits 1 << DEVICE_...: those that it can have */
+    uint16_t near_mm; /* between these the target moves if nothing else is asked for */
+    uint16_t far_mm;
+
+    /* ---- how a scan knows it; two models may have the first read in common ---- */
+
+    struct {
+        uint16_t first; /* the read by which it is looked for */
+        uint8_t count;
+        uint8_t frame_length; /* of what it sends by itself */
+        uint16_t own;         /* a register that only it has, of those with the same first read, ... */
+        uint16_t slow_own; /* ... and one to ask for within INQUIRY_SLOW_US if none of them responses that */
+        /* Instead of `own`: decides by the response to the first read, and what it asks besides. */
+        bool (*is_it)(inquiry_t *inquiry);
+    } scan;
+    void (*print_finding)(FILE *to, const model_t *model, const scan_finding_t *finding);
+    void (*print_finding_json)(FILE *to, const scan_finding_t *finding); /* members, each after a comma */
+
+    /* ---- what its frames say ---- */
+
+    uint8_t protocols; /* DECODE_... */
+    /* A Modbus frame. A response to a read may have no request (NULL); the bytes of a request are those of the
+     * frame. */
+    void (*decode)(decode_frame_t *frame, const uint8_t *request);
+    void (*decode_sum)(decode_frame_t *frame); /* of another of its protocols */
+    const char *(*exception_name)(uint8_t code);
+    const char *exception_source; /* section of its datasheet */
+};
+
+/* Can it have this address? */
+bool model_has_address(const model_t *model, uint8_t address);
+
+/* Can it have this rate? */
+bool model_has_rate(const model_t *model, uint32_t baud);
+
+#endif
