@@ -59,8 +59,8 @@ static inline uint32_t or_default(uint32_t value, uint32_t default_value)
 /* Increments a counter, which stops at 65535. */
 static inline void count_one(uint16_t *counter)
 {
-    const uint32_t sum = *counter + (uint32_t)1;
-    if (sum <= UINT16_MAX) *counter = (uint16_t)sum;
+    const uint16_t incremented = (uint16_t)(*counter + 1u);
+    if (incremented != 0u) *counter = incremented;
 }
 
 /* Sets all bytes of an object to 0. Without volatile, compilers would call memset, which costs more flash. */
