@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* What a calibration measures, writes and claims, against a model of every device that the datasheet allows: each
- * offset before, each deviation, each fate of each write. */
+/* A calibration plan against a model of every device that the datasheet allows: each old offset, each deviation, each
+ * fate of each write. */
 #include "commands/calibrate/calibrate_plan.h"
 #include "suite.h"
 
@@ -32,24 +32,20 @@ typedef struct {
     int32_t before_mm; /* the offset */
     fate_t fates[CALIBRATE_WRITES];
     int8_t errors_mm[CALIBRATE_MEASUREMENTS]; /* of the medians */
-    bool settles;
 } run_t;
 
 static calibrate_plan_t plan;
 static unsigned whys[CALIBRATE_TOO_LARGE + 1];
-static unsigned rules[CALIBRATE_REPLACES + 1];
-static unsigned refused; /* writes */
+static unsigned replacing, refused; /* runs; writes */
 
 static void fail_run(const run_t *run, const char *what)
 {
     fail_msg(
-        "%s: %s%s, raw %d, before %d, fates %u %u %u, errors %d %d %d %d: measured %zu, wrote %zu: %d %d %d, "
-        "why %d, rule %d",
+        "%s: %s%s, raw %d, before %d, fates %u %u, errors %d %d %d: measured %zu, wrote %zu: %d %d, why %d",
         what, run->device.adds ? "adds" : "replaces", run->device.is_later ? " later" : "",
-        (int)run->device.raw_mm, (int)run->before_mm, run->fates[0], run->fates[1], run->fates[2],
-        run->errors_mm[0], run->errors_mm[1], run->errors_mm[2], run->errors_mm[3], plan.measurements,
-        plan.writes, (int)plan.written_mm[0], (int)plan.written_mm[1], (int)plan.written_mm[2], (int)plan.why,
-        (int)plan.rule);
+        (int)run->device.raw_mm, (int)run->before_mm, run->fates[0], run->fates[1], run->errors_mm[0],
+        run->errors_mm[1], run->errors_mm[2], plan.measurements, plan.writes, (int)plan.written_mm[0],
+        (int)plan.written_mm[1], (int)plan.why);
 }
 
 static bool lists_truth(const run_t *run)
@@ -70,7 +66,7 @@ static int32_t run_plan(run_t *run)
     size_t tries = 0;
     bool is_lost = false;
     refused = 0;
-    calibrate_begin(&plan, KNOWN_MM, run->settles);
+    calibrate_start(&plan, KNOWN_MM);
     while (plan.next != CALIBRATE_END) {
         if (plan.next == CALIBRATE_MEASURE) {
             if (plan.measurements == CALIBRATE_MEASUREMENTS) fail_run(run, "too many measurements");
@@ -78,7 +74,7 @@ static int32_t run_plan(run_t *run)
                                3);
             continue;
         }
-        if (tries == CALIBRATE_WRITES) fail_run(run, "a fourth write");
+        if (tries == CALIBRATE_WRITES) fail_run(run, "a third write");
         if (is_lost) fail_run(run, "a write after one that was lost");
         const fate_t fate = run->fates[tries++];
         if (fate == TAKEN || fate == TAKEN_UNANSWERED) take(device, plan.write_mm);
@@ -89,11 +85,10 @@ static int32_t run_plan(run_t *run)
                                                  : CALIBRATE_UNANSWERED);
     }
     whys[plan.why]++;
-    rules[plan.rule]++;
+    replacing += plan.replaces;
     assert_int_equal(plan.tolerance_mm, T_MM); /* of a spread of 3: half of it, rounded up */
     if (plan.writes + refused != tries) fail_run(run, "not all writes are counted");
-    if (plan.rule == CALIBRATE_ADDS && !device->adds) fail_run(run, "it replaces");
-    if (plan.rule == CALIBRATE_REPLACES && device->adds) fail_run(run, "it adds");
+    if (plan.replaces && device->adds) fail_run(run, "it adds");
     if (!lists_truth(run)) fail_run(run, "it has another offset");
     if (plan.why == CALIBRATE_DONE && !plan.is_right) fail_run(run, "done, and not right");
     return device->raw_mm + device->used_mm - KNOWN_MM;
@@ -101,28 +96,18 @@ static int32_t run_plan(run_t *run)
 
 /* ---- all of them ---- */
 
-static void each_fate(run_t start, void (*check)(const run_t *start))
-{
-    for (unsigned fates = 0; fates != FATES * FATES * FATES; fates++) {
-        start.fates[0] = (fate_t)(fates % FATES);
-        start.fates[1] = (fate_t)(fates / FATES % FATES);
-        start.fates[2] = (fate_t)(fates / FATES / FATES);
-        check(&start);
-    }
-}
-
 static void each_device(void (*check)(const run_t *start))
 {
     memset(whys, 0, sizeof whys);
-    memset(rules, 0, sizeof rules);
-    for (unsigned kind = 0; kind != 8; kind++)
+    replacing = 0;
+    for (unsigned kind = 0; kind != 4 * FATES * FATES; kind++)
         for (int32_t before_mm = -MOST_MM; before_mm <= MOST_MM; before_mm++)
             for (int32_t off_mm = -MOST_MM; off_mm <= MOST_MM; off_mm++) {
                 const run_t start = {
                     .device = {(kind & 1) != 0, (kind & 2) != 0, KNOWN_MM + off_mm, before_mm, before_mm},
                     .before_mm = before_mm,
-                    .settles = (kind & 4) != 0};
-                each_fate(start, check);
+                    .fates = {(fate_t)(kind / 4 % FATES), (fate_t)(kind / 4 / FATES)}};
+                check(&start);
             }
 }
 
@@ -142,11 +127,7 @@ static void check_good(const run_t *start, int32_t off_mm)
         return;
     }
     if (!plan.is_right || size_of(off_mm) > T_MM) fail_run(start, "it is not made right");
-    if (start->settles && plan.rule == CALIBRATE_UNSETTLED) fail_run(start, "it is not settled");
-    const size_t writes = size_of(start->before_mm) > T_MM && !start->device.adds ? 2
-                          : !start->settles                                       ? 1
-                          : start->device.adds                                    ? 2
-                                                                                  : 3;
+    const size_t writes = size_of(start->before_mm) > T_MM && !start->device.adds ? 2 : 1;
     if (plan.writes != writes) fail_run(start, "another number of writes");
 }
 
@@ -160,7 +141,7 @@ static void check_exact(const run_t *start)
     check_good(start, off_mm);
 }
 
-TEST(of_every_device_and_every_fate_of_its_writes_what_is_claimed_is_so)
+TEST(every_claim_holds_for_every_device_and_every_fate_of_its_writes)
 {
     each_device(check_exact);
     assert_true(whys[CALIBRATE_DONE] > 0 && whys[CALIBRATE_REFUSED] > 0 && whys[CALIBRATE_NOT_MOVED] > 0 &&
@@ -168,13 +149,13 @@ TEST(of_every_device_and_every_fate_of_its_writes_what_is_claimed_is_so)
     /* the target does not move, and nothing is so far away */
     assert_int_equal(whys[CALIBRATE_UNEXPECTED] + whys[CALIBRATE_NOT_MEASURED] + whys[CALIBRATE_TOO_LARGE],
                      0);
-    for (size_t i = 0; i != sizeof rules / sizeof rules[0]; i++) assert_true(rules[i] > 0);
+    assert_true(replacing > 0);
 }
 
 /* Medians that are off by up to half the tolerance, so that two of them differ by up to T. */
 static void check_noisy(const run_t *start)
 {
-    for (unsigned errors = 0; errors != 3 * 3 * 3 * 3; errors++) {
+    for (unsigned errors = 0; errors != 3 * 3 * 3; errors++) {
         run_t run = *start;
         unsigned rest = errors;
         for (size_t i = 0; i != CALIBRATE_MEASUREMENTS; i++, rest /= 3)
@@ -186,7 +167,7 @@ static void check_noisy(const run_t *start)
     }
 }
 
-TEST(with_medians_that_are_off_by_half_the_tolerance_too) { each_device(check_noisy); }
+TEST(every_claim_holds_with_medians_off_by_half_the_tolerance) { each_device(check_noisy); }
 
 /* ---- one at a time ---- */
 
@@ -201,10 +182,10 @@ TEST(the_tolerance_is_half_the_spread_and_2_mm_at_least)
     for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
         assert_int_equal(calibrate_tolerance_mm(rows[i].spread_mm), rows[i].tolerance_mm);
         for (int sign = -1; sign <= 1; sign += 2) {
-            calibrate_begin(&plan, 2000, true);
+            calibrate_start(&plan, 2000);
             calibrate_measured(&plan, 2000 + sign * rows[i].tolerance_mm, rows[i].spread_mm);
             assert_true(plan.next == CALIBRATE_END && plan.is_right && plan.why == CALIBRATE_DONE);
-            calibrate_begin(&plan, 2000, true);
+            calibrate_start(&plan, 2000);
             calibrate_measured(&plan, 2000 + sign * (rows[i].tolerance_mm + 1), rows[i].spread_mm);
             assert_int_equal(plan.next, CALIBRATE_WRITE);
             assert_int_equal(plan.write_mm, -sign * (rows[i].tolerance_mm + 1));
@@ -212,9 +193,9 @@ TEST(the_tolerance_is_half_the_spread_and_2_mm_at_least)
     }
 }
 
-TEST(the_largest_spread_so_far_is_what_counts)
+TEST(the_largest_spread_sets_the_tolerance)
 {
-    calibrate_begin(&plan, 2000, false);
+    calibrate_start(&plan, 2000);
     calibrate_measured(&plan, 2100, 20);
     calibrate_wrote(&plan, CALIBRATE_ACKNOWLEDGED);
     calibrate_measured(&plan, 2010, 1);
@@ -223,21 +204,21 @@ TEST(the_largest_spread_so_far_is_what_counts)
 }
 
 /* 18000 - 80 = 17920 is written first, and replaces; what is then missing is added to it. */
-TEST(an_offset_that_is_no_int16_is_not_written)
+TEST(an_offset_beyond_int16_is_not_written)
 {
-    calibrate_begin(&plan, 18000, true);
+    calibrate_start(&plan, 18000);
     measured(80);
     assert_int_equal(plan.write_mm, 17920);
     calibrate_wrote(&plan, CALIBRATE_ACKNOWLEDGED);
     measured(3152); /* 17920 + 14848 = 32768 */
     assert_true(plan.next == CALIBRATE_END && plan.why == CALIBRATE_TOO_LARGE && !plan.is_right);
-    calibrate_begin(&plan, 18000, true);
+    calibrate_start(&plan, 18000);
     measured(80);
     calibrate_wrote(&plan, CALIBRATE_ACKNOWLEDGED);
     measured(3153); /* 17920 + 14847 = 32767 */
     assert_true(plan.next == CALIBRATE_WRITE && plan.write_mm == 32767);
     for (int32_t more_mm = 0; more_mm <= 1; more_mm++) {
-        calibrate_begin(&plan, 80, true);
+        calibrate_start(&plan, 80);
         measured(18000);
         calibrate_wrote(&plan, CALIBRATE_ACKNOWLEDGED);
         measured(14928 + more_mm); /* -17920 - 14848 = -32768 */
@@ -246,39 +227,11 @@ TEST(an_offset_that_is_no_int16_is_not_written)
     assert_int_equal(plan.why, CALIBRATE_TOO_LARGE);
 }
 
-/* Measured as before within 2 mm, and 3 mm off. */
-TEST(one_that_adds_and_drifts_off_is_not_right)
-{
-    calibrate_begin(&plan, 2000, true);
-    measured(2015);
-    calibrate_wrote(&plan, CALIBRATE_ACKNOWLEDGED);
-    measured(2002);
-    calibrate_wrote(&plan, CALIBRATE_ACKNOWLEDGED);
-    measured(2003);
-    assert_true(plan.next == CALIBRATE_END && plan.why == CALIBRATE_UNEXPECTED && !plan.is_right);
-    assert_int_equal(plan.rule, CALIBRATE_ADDS);
-}
-
-TEST(what_moves_meanwhile_is_not_explained)
-{
-    calibrate_offset_t offsets[CALIBRATE_OFFSETS];
-    calibrate_begin(&plan, 2000, true);
-    measured(2015);
-    calibrate_wrote(&plan, CALIBRATE_ACKNOWLEDGED);
-    measured(2000);
-    calibrate_wrote(&plan, CALIBRATE_ACKNOWLEDGED);
-    measured(2500);
-    assert_true(plan.next == CALIBRATE_END && plan.why == CALIBRATE_UNEXPECTED && !plan.is_right);
-    assert_int_equal(plan.rule, CALIBRATE_UNSETTLED);
-    assert_int_equal(calibrate_offsets(&plan, offsets), 2);
-    assert_true(offsets[0].mm == 0 && !offsets[0].is_added && offsets[1].mm == -15 && offsets[1].is_added);
-}
-
 /* -15 and then 30 as if it replaced; where it adds, that has become 15. */
-TEST(a_correction_that_does_not_help_leaves_open_what_12_does)
+TEST(a_second_write_without_success_leaves_the_rule_open)
 {
     calibrate_offset_t offsets[CALIBRATE_OFFSETS];
-    calibrate_begin(&plan, 2000, true);
+    calibrate_start(&plan, 2000);
     measured(2015);
     calibrate_wrote(&plan, CALIBRATE_ACKNOWLEDGED);
     measured(1955);
@@ -286,41 +239,29 @@ TEST(a_correction_that_does_not_help_leaves_open_what_12_does)
     calibrate_wrote(&plan, CALIBRATE_UNANSWERED);
     measured(2045);
     assert_true(plan.next == CALIBRATE_END && plan.why == CALIBRATE_UNEXPECTED && !plan.is_right);
-    assert_int_equal(plan.rule, CALIBRATE_UNSETTLED);
+    assert_false(plan.replaces);
     assert_int_equal(calibrate_offsets(&plan, offsets), 4);
     assert_true(offsets[0].mm == 30 && !offsets[0].is_added && offsets[1].mm == 15 && offsets[1].is_added);
     assert_true(offsets[2].mm == -15 && !offsets[2].is_added && offsets[3].mm == -15 && offsets[3].is_added);
 }
 
-TEST(where_it_cannot_be_measured_it_is_not_right)
+TEST(without_a_measurement_the_sensor_is_not_right)
 {
     calibrate_offset_t offsets[CALIBRATE_OFFSETS];
-    calibrate_begin(&plan, 2000, true);
+    calibrate_start(&plan, 2000);
     calibrate_not_measured(&plan);
     assert_true(plan.next == CALIBRATE_END && !plan.is_right && plan.writes == 0);
     assert_int_equal(calibrate_offsets(&plan, offsets), 1);
     assert_true(offsets[0].mm == 0 && offsets[0].is_added);
-    calibrate_begin(&plan, 2000, true);
+    calibrate_start(&plan, 2000);
     measured(2015);
     calibrate_wrote(&plan, CALIBRATE_ACKNOWLEDGED);
     calibrate_not_measured(&plan);
     assert_true(plan.next == CALIBRATE_END && !plan.is_right && plan.why == CALIBRATE_NOT_MEASURED);
     assert_int_equal(calibrate_offsets(&plan, offsets), 2); /* -15, or 15 less than before */
-    calibrate_begin(&plan, 2000, true);
+    calibrate_start(&plan, 2000);
     measured(2015);
     calibrate_wrote(&plan, CALIBRATE_UNANSWERED);
     calibrate_not_measured(&plan);
     assert_int_equal(calibrate_offsets(&plan, offsets), 3); /* or as before */
-}
-
-TEST(what_was_right_stays_right_when_the_last_write_is_refused)
-{
-    calibrate_begin(&plan, 2000, true);
-    measured(2015);
-    calibrate_wrote(&plan, CALIBRATE_ACKNOWLEDGED);
-    measured(2000);
-    assert_true(plan.next == CALIBRATE_WRITE && plan.write_mm == 0);
-    calibrate_wrote(&plan, CALIBRATE_NOT_WRITTEN);
-    assert_true(plan.next == CALIBRATE_END && plan.is_right && plan.why == CALIBRATE_REFUSED);
-    assert_int_equal(plan.writes, 1);
 }

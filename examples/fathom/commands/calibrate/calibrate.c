@@ -4,29 +4,28 @@
 #include "commands/commands.h"
 #include "device/setting_text.h"
 
-/* fathom calibrate: the distance offset of an HPS-167S from a target at a known distance. calibrate_plan.h has what is
- * done, and why. */
+/* fathom calibrate finds the distance offset of an HPS-167S with a target at a known distance. calibrate_plan.h explains
+ * the steps. */
 
 static const char command[] = "calibrate";
 
 /* Table 1 of the datasheet: its range. */
 enum { LEAST_MM = 80, MOST_MM = 18000, SPREAD_MM = 20, MOST_SPREAD_MM = 1000 };
 
-enum { SAMPLES = SESSION_OPTIONS, SPREAD, KNOWN, UNSETTLED, DRY_RUN, OPTIONS };
+enum { SAMPLES = SESSION_OPTIONS, SPREAD, KNOWN, DRY_RUN, OPTIONS };
 
 static const struct option table[OPTIONS + 1] = {
     SESSION_OPTION_ROWS,
     [SAMPLES] = {"samples", required_argument, NULL, 256},
     [SPREAD] = {"spread", required_argument, NULL, 256},
     [KNOWN] = {"known", required_argument, NULL, 256},
-    [UNSETTLED] = {"leave-unsettled", no_argument, NULL, 256},
     [DRY_RUN] = {"dry-run", no_argument, NULL, 256},
 };
 
 static session_t session;
 
-/* Did the device itself refuse the write? Any other exception leaves open what has become of it: it has failed (4), or
- * a gateway lost it (10, 11). */
+/* Returns true if the sensor itself refused the write. Any other exception leaves the result open: the sensor failed (4),
+ * or a gateway lost the request or the response (10, 11). */
 static bool is_refusal(uint8_t exception)
 {
     return exception == FATHOM_MODBUS_ILLEGAL_FUNCTION || exception == FATHOM_MODBUS_ILLEGAL_DATA_ADDRESS ||
@@ -48,24 +47,24 @@ static calibrate_outcome_t write_offset(const setting_t *setting, int32_t offset
     return CALIBRATE_NOT_WRITTEN;
 }
 
-static void take_measurement(calibrate_plan_t *plan, const calibrate_batch_t *asked)
+static void measure(calibrate_plan_t *plan, const calibrate_batch_t *batch)
 {
     calibrate_measurement_t measurement = {0, 0};
-    if (calibrate_measure(&session, asked, plan->writes != 0, &measurement) &&
-        calibrate_report_measurement(&session, plan, asked, &measurement))
+    if (calibrate_measure(&session, batch, plan->writes != 0, &measurement) &&
+        calibrate_report_measurement(&session, plan, batch, &measurement))
         calibrate_measured(plan, measurement.median_mm, measurement.spread_mm);
     else
         calibrate_not_measured(plan);
 }
 
-static int calibrate(calibrate_plan_t *plan, const calibrate_batch_t *asked, bool is_dry)
+static int calibrate(calibrate_plan_t *plan, const calibrate_batch_t *batch, bool is_dry)
 {
     const setting_t *const setting =
         setting_find(command, session.station->model->name, session_settings(&session), "distance-offset");
     if (setting == NULL) return STATUS_USAGE;
     while (plan->next != CALIBRATE_END) {
         if (plan->next == CALIBRATE_MEASURE)
-            take_measurement(plan, asked);
+            measure(plan, batch);
         else if (is_dry)
             break;
         else
@@ -79,34 +78,25 @@ static int calibrate(calibrate_plan_t *plan, const calibrate_batch_t *asked, boo
 static void help(FILE *to)
 {
     (void)fputs(
-        "fathom calibrate makes an HPS-167S measure what is true: with a target at a known distance it finds "
-        "the "
-        "distance\noffset (#12) and writes it.\n\n"
+        "Find the distance offset of an HPS-167S (#12) with a target at a known distance, and write it.\n\n"
         "usage: fathom calibrate hps167s[:ADDRESS] --port PATH --known MM [OPTIONS]\n\n"
-        "  --known MM        the true distance of the target, 80 to 18000, from where the sensor measures\n"
-        "  --samples N       of which the median is taken, 5 to 200; default 25\n"
-        "  --spread MM       the most that they may differ, 0 to 1000; default 20\n"
-        "  --leave-unsettled does not write an offset 0 to find out what the datasheet does not say: does a "
-        "new "
-        "offset\n"
-        "                    replace the one before or add to it?\n"
-        "  --dry-run         measures, and says what would be written first\n",
+        "  --known MM        true distance from the sensor to the target, 80 to 18000\n"
+        "  --samples N       samples of a measurement, 5 to 200; default 25\n"
+        "  --spread MM       largest difference of these samples, 0 to 1000; default 20\n"
+        "  --dry-run         measure, and print the offset without writing it\n",
         to);
     session_options_help(to);
     (void)fputs(
-        "\nUse a flat, light target at a right angle, and let nothing move. It is measured before and after "
-        "each "
-        "write, until\ntwo medians agree; \"right\" is within half the spread of the samples, and 2 mm at "
-        "least. What is "
-        "right is left alone.\nElse flash is written up to three times, each time said before. What is not "
-        "acknowledged is not written again: the\nmeasurement shows whether it was taken. Where it cannot go "
-        "on, it says "
-        "which offsets the sensor may have now.\n"
-        "If an offset was written since the sensor's power-on, switch it off and on first: it may hold from "
-        "then on.\n"
-        "Exit status: 0 when the sensor is right in the end, 1 when not (also with --dry-run) or "
-        "when that is not "
-        "known,\n2 for wrong usage.\n\n"
+        "\nUse a flat, light target at a right angle, and let nothing move. The sensor is measured before "
+        "and\n"
+        "after each write until two medians agree. It is right within half the spread, and at least 2 mm.\n"
+        "Flash is written at most twice, and each write is announced. A write without an acknowledgement is\n"
+        "not repeated: the next measurement shows whether the sensor accepted it. If the command stops, it\n"
+        "prints the offsets that the sensor may have. If an offset was written since the last power-on,\n"
+        "switch the power off and on first.\n\n"
+        "Exit status: 0 when the sensor is right, 1 when it is not (also with --dry-run) or that is "
+        "unknown,\n"
+        "2 for wrong usage.\n\n"
         "examples:\n"
         "  fathom calibrate hps167s --port /dev/ttyUSB0 --known 2000 --dry-run\n"
         "  fathom calibrate hps167s:7 --port /dev/ttyUSB0 --known 2000 --samples 100\n",
@@ -118,23 +108,23 @@ static int run(const host_t *host, int argc, char **argv)
     const char *values[OPTIONS] = {NULL};
     int status = STATUS_OK;
     uint32_t known_mm = 0;
-    calibrate_batch_t asked = {.samples = CALIBRATE_SAMPLES, .spread_mm = SPREAD_MM};
+    calibrate_batch_t batch = {.samples = CALIBRATE_SAMPLES, .spread_mm = SPREAD_MM};
     calibrate_plan_t plan;
     if (!session_options_of_one(&session, &calibrate_command, argc, argv, table, values, &status))
         return status;
     if (session.station->model->id != FATHOM_HPS167S)
-        return usage_error(command, "only an hps167s has a distance offset; %s has none",
+        return usage_error(command, "%s has no distance offset. Only hps167s has one",
                            session.station->model->name);
     if (values[KNOWN] == NULL)
-        return usage_error(command, "--known is missing: the true distance of the target in mm");
+        return usage_error(command, "--known is missing. It is the true distance of the target in mm");
     if (!option_number(command, "known", values[KNOWN], LEAST_MM, MOST_MM, &known_mm) ||
         !option_number(command, "samples", values[SAMPLES], CALIBRATE_LEAST_SAMPLES, CALIBRATE_MOST_SAMPLES,
-                       &asked.samples) ||
-        !option_number(command, "spread", values[SPREAD], 0, MOST_SPREAD_MM, &asked.spread_mm))
+                       &batch.samples) ||
+        !option_number(command, "spread", values[SPREAD], 0, MOST_SPREAD_MM, &batch.spread_mm))
         return STATUS_USAGE;
     if (!session_open(&session, host)) return STATUS_FAILED;
-    calibrate_begin(&plan, (int32_t)known_mm, values[UNSETTLED] == NULL);
-    status = calibrate(&plan, &asked, values[DRY_RUN] != NULL);
+    calibrate_start(&plan, (int32_t)known_mm);
+    status = calibrate(&plan, &batch, values[DRY_RUN] != NULL);
     session_close(&session);
     return status;
 }

@@ -6,14 +6,24 @@
 
 #include "commands/calibrate/calibrate_plan.h"
 
-/* After a write: of the slowest sensor's six measurements (table 1: 6 to 54 a second) one may have been made before. */
-enum { AFTER_WRITE_US = 1000000 };
-/* Between two batches. Where a filter settles with a time constant of 2 s, two that differ by 1 mm leave 0.4 mm. */
-enum { REST_US = 2000000 };
-enum { MOST_BATCHES = 10, MOST_FAILURES_IN_ROW = 5 };
+enum {
+    /* The slowest sensor measures six times a second (table 1), so one sample may come from before the write. */
+    AFTER_WRITE_US = 1000000,
+    /* If a filter has a time constant of 2 s, two batches that differ by 1 mm leave an error of 0.4 mm. */
+    REST_US = 2000000,
+    MOST_BATCHES = 10,
+    MOST_FAILURES_IN_ROW = 5
+};
 
-/* Why a batch does not count; FAILED: the line, and all is over. */
-typedef enum { BATCH_GOOD, BATCH_NO_TARGET, BATCH_FAULT, BATCH_UNKNOWN, BATCH_SPREAD, BATCH_FAILED } batch_t;
+typedef enum {
+    BATCH_GOOD,
+    BATCH_NO_TARGET,
+    BATCH_FAULT,
+    BATCH_UNKNOWN,
+    BATCH_SPREAD,
+    BATCH_UNSETTLED, /* good, but the median differs from that of the batch before */
+    BATCH_FAILED     /* no sample could be read; the reason was printed */
+} batch_result_t;
 
 static fathom_status_t poll(reader_t *reader, void *ctx)
 {
@@ -21,38 +31,34 @@ static fathom_status_t poll(reader_t *reader, void *ctx)
     return fathom_poll(&reader->sensor, sample);
 }
 
-static void begin_why(const session_t *session)
+static void print_start(const session_t *session)
 {
     (void)fflush(stdout);
-    (void)fprintf(stderr, "fathom: %s: it could not be measured: ", session->station->name);
+    (void)fprintf(stderr, "fathom: %s: cannot measure: ", session->station->name);
 }
 
-/* A sample; what fails on the line is tried again. False after saying why there is none. */
-static bool take_sample(session_t *session, fathom_sample_t *sample)
+/* Reads a sample and repeats a failed read. Returns false after printing why there is none. */
+static bool read_sample(session_t *session, fathom_sample_t *sample)
 {
     for (unsigned failures = 0;;) {
         const fathom_status_t status = session_call(session, poll, sample);
         if (status == FATHOM_OK) return true;
         const bool is_over = status == FATHOM_ERR_CANCELLED || status == FATHOM_ERR_PORT;
         if (!is_over && ++failures != MOST_FAILURES_IN_ROW) continue;
-        begin_why(session);
-        if (status == FATHOM_ERR_MALFORMED && !reader_got_unexpected_response(&session->station->reader))
-            (void)fputs("it sends values that no measurement has; `fathom read` says which", stderr);
-        else
-            session_explain(session, status);
+        print_start(session);
+        session_explain(session, status);
         (void)fputs("\n", stderr);
         return false;
     }
 }
 
-/* Samples that count for nothing. */
-static bool rest(session_t *session, uint32_t rest_us)
+static bool discard_samples(session_t *session, uint32_t for_us)
 {
     const host_t *const host = session->channel.host;
-    const uint64_t end_us = host->now_us(host->ctx) + rest_us;
+    const uint64_t end_us = host->now_us(host->ctx) + for_us;
     fathom_sample_t sample;
     do
-        if (!take_sample(session, &sample)) return false;
+        if (!read_sample(session, &sample)) return false;
     while (host->now_us(host->ctx) < end_us);
     return true;
 }
@@ -64,22 +70,22 @@ static int compare(const void *one, const void *other)
     return (a > b) - (a < b);
 }
 
-static batch_t take_batch(session_t *session, const calibrate_batch_t *asked,
-                          calibrate_measurement_t *measurement)
+static batch_result_t read_batch(session_t *session, const calibrate_batch_t *batch,
+                                 calibrate_measurement_t *measurement)
 {
     uint16_t distances[CALIBRATE_MOST_SAMPLES] = {0};
-    for (uint32_t i = 0; i != asked->samples; i++) {
+    for (uint32_t i = 0; i != batch->samples; i++) {
         fathom_sample_t sample;
-        if (!take_sample(session, &sample)) return BATCH_FAILED;
+        if (!read_sample(session, &sample)) return BATCH_FAILED;
         if (sample.kind == FATHOM_NO_TARGET) return BATCH_NO_TARGET;
         if (sample.kind == FATHOM_FAULT) return BATCH_FAULT;
         if (sample.kind != FATHOM_TARGET) return BATCH_UNKNOWN;
         distances[i] = sample.distance_mm;
     }
-    qsort(distances, asked->samples, sizeof distances[0], compare);
-    measurement->median_mm = distances[asked->samples / 2];
-    measurement->spread_mm = (uint32_t)distances[asked->samples - 1] - distances[0];
-    return measurement->spread_mm > asked->spread_mm ? BATCH_SPREAD : BATCH_GOOD;
+    qsort(distances, batch->samples, sizeof distances[0], compare);
+    measurement->median_mm = distances[batch->samples / 2];
+    measurement->spread_mm = (uint32_t)distances[batch->samples - 1] - distances[0];
+    return measurement->spread_mm > batch->spread_mm ? BATCH_SPREAD : BATCH_GOOD;
 }
 
 static bool agree(const calibrate_measurement_t *one, const calibrate_measurement_t *other)
@@ -89,64 +95,52 @@ static bool agree(const calibrate_measurement_t *one, const calibrate_measuremen
     return (apart_mm < 0 ? -apart_mm : apart_mm) <= calibrate_tolerance_mm(spread_mm) / 2;
 }
 
-static void explain(const session_t *session, const calibrate_batch_t *asked, batch_t why,
-                    const calibrate_measurement_t *last, const calibrate_measurement_t *before)
+static void print_why(const session_t *session, const calibrate_batch_t *batch, batch_result_t why,
+                      const calibrate_measurement_t *last)
 {
-    begin_why(session);
-    switch (why) {
-    case BATCH_NO_TARGET:
-        (void)fputs("no target in range; aim it at a flat, light target, at a right angle", stderr);
-        break;
-    case BATCH_FAULT:
-        (void)fputs(
-            "the sensor reports that it has failed; wait until it has warmed up, or switch its power off "
-            "and on",
-            stderr);
-        break;
-    case BATCH_UNKNOWN:
-        (void)fputs("it measures less than 80 mm, below its range; place the target farther away", stderr);
-        break;
-    case BATCH_SPREAD:
-        (void)fprintf(
-            stderr,
-            "the samples spread over %" PRIu32 " mm, more than --spread %" PRIu32
-            "; hold sensor and target still, use a flat, light target at a right angle, or allow more",
-            last->spread_mm, asked->spread_mm);
-        break;
-    default:
+    static const char *const texts[] = {
+        [BATCH_NO_TARGET] = "no target in range. Aim the sensor at a flat, light target at a right angle",
+        [BATCH_FAULT] = "the sensor reports a fault. Wait until it has warmed up, or switch its power off "
+                        "and on",
+        [BATCH_UNKNOWN] = "the distance is below the range, 80 mm. Place the target farther away",
+        [BATCH_UNSETTLED] = "the median does not settle. Hold the sensor and the target still",
+    };
+    print_start(session);
+    if (why == BATCH_SPREAD)
         (void)fprintf(stderr,
-                      "it does not come to rest, %" PRId32 " mm after %" PRId32
-                      " mm; hold sensor and target still",
-                      last->median_mm, before->median_mm);
-        break;
-    }
+                      "the samples differ by %" PRIu32 " mm, more than --spread %" PRIu32
+                      ". Hold the sensor and the target still, use a flat, light target at a right angle, or "
+                      "raise --spread",
+                      last->spread_mm, batch->spread_mm);
+    else
+        (void)fputs(texts[why], stderr);
     (void)fputs("\n", stderr);
 }
 
-bool calibrate_measure(session_t *session, const calibrate_batch_t *asked, bool is_after_write,
+bool calibrate_measure(session_t *session, const calibrate_batch_t *batch, bool is_after_write,
                        calibrate_measurement_t *measurement)
 {
-    calibrate_measurement_t before = {0, 0};
     calibrate_measurement_t last = {0, 0};
-    batch_t why = BATCH_GOOD;
-    bool has_before = false;
-    if (is_after_write && !rest(session, AFTER_WRITE_US)) return false;
+    batch_result_t why = BATCH_GOOD;
+    bool has_last = false;
+    if (is_after_write && !discard_samples(session, AFTER_WRITE_US)) return false;
     for (unsigned batches = 0; batches != MOST_BATCHES; batches++) {
-        if (batches != 0 && !rest(session, REST_US)) return false;
+        if (batches != 0 && !discard_samples(session, REST_US)) return false;
         calibrate_measurement_t now = {0, 0};
-        const batch_t batch = take_batch(session, asked, &now);
-        if (batch == BATCH_FAILED) return false;
-        const bool is_good = batch == BATCH_GOOD;
-        if (is_good && has_before && agree(&last, &now)) {
+        const batch_result_t result = read_batch(session, batch, &now);
+        if (result == BATCH_FAILED) return false;
+        if (result == BATCH_GOOD && has_last && agree(&last, &now)) {
             *measurement = now;
             if (last.spread_mm > now.spread_mm) measurement->spread_mm = last.spread_mm;
             return true;
         }
-        if (!is_good || has_before) why = batch; /* good: the two do not agree */
-        has_before = is_good;
-        before = last;
+        if (result != BATCH_GOOD)
+            why = result;
+        else if (has_last)
+            why = BATCH_UNSETTLED;
+        has_last = result == BATCH_GOOD;
         last = now;
     }
-    explain(session, asked, why, &last, &before);
+    print_why(session, batch, why, &last);
     return false;
 }

@@ -8,7 +8,7 @@ enum { CALIBRATE_LEAST_SAMPLES = 5, CALIBRATE_SAMPLES = 25, CALIBRATE_MOST_SAMPL
 
 typedef struct {
     uint32_t samples;   /* of a batch */
-    uint32_t spread_mm; /* of a batch, most - least, at most */
+    uint32_t spread_mm; /* the largest difference that the samples of a batch may have */
 } calibrate_batch_t;
 
 typedef struct {
@@ -17,12 +17,12 @@ typedef struct {
 } calibrate_measurement_t;
 
 /*
- * Measures until the medians of two batches in succession, two seconds apart, differ by no more than half their tolerance:
- * a sensor with a filter settles slowly. is_after_write: what was measured before it is dropped first. In a batch all
- * samples are targets; one that has another sample, or too large a spread, does not count. False after saying why
- * there were no two such batches, and what to try.
+ * Measures until the medians of two consecutive batches, 2 s apart, differ by at most half their tolerance: a sensor
+ * with a filter settles slowly. A batch with a sample that is no distance, or with a larger spread, is discarded.
+ * is_after_write: samples of the first second are discarded, since the sensor may have measured them before the write.
+ * Returns false after printing why there are no two such batches.
  */
-bool calibrate_measure(session_t *session, const calibrate_batch_t *asked, bool is_after_write,
+bool calibrate_measure(session_t *session, const calibrate_batch_t *batch, bool is_after_write,
                        calibrate_measurement_t *measurement);
 
 #endif

@@ -7,108 +7,96 @@
 #include <stdint.h>
 
 /*
- * What a calibration measures and writes next, and what it may claim in the end. It does no I/O: the command measures
- * and writes, and says here what came of it.
+ * Decides what a calibration measures and writes next, and what it may claim at the end. The plan does no I/O: the
+ * command measures and writes, and reports the result to the plan.
  *
- * The distance offset of an HPS-167S (#12) is kept in flash and cannot be read; the datasheet does not say whether what
- * is written REPLACES the offset before or ADDS to it. A target that stands still at a known distance K tells:
+ * The sensor keeps the distance offset (#12) in flash and does not report it. The datasheet does not state whether a new
+ * offset REPLACES the old one or is ADDED to it. A fixed target at a known distance K shows enough:
  *
- *   1. m0 is measured. d = K - m0. |d| <= T: it is right, nothing is written.
- *   2. d is written, m1 measured. Where it adds, m1 = K; where it replaces an offset o, m1 = K - o.
- *        m1 = K         it adds, or there was no offset: 3 (or the end, where that need not be known)
- *        m1 = m0        it has not taken effect: the end. More writes could add up at the next power-on
- *        anything else  it replaces: K - m1 was missing, 4
- *   3. 0 is written, m2 measured. m2 = m1: it adds, and 0 has changed nothing. m2 = m1 - d: it replaces: 4
- *   4. What is right without an offset before is written, and measured: = K, or the end.
+ *   1. Measure m0. If |K - m0| <= T, the sensor is right and nothing is written.
+ *   2. Write d = K - m0 and measure m1.
+ *        m1 = K         the sensor is right: #12 adds, or there was no old offset
+ *        m1 = m0        the write had no effect. Stop: another write could add up at the next power-on
+ *        anything else  #12 has replaced an old offset. K - m1 is missing
+ *   3. Only after a replaced offset: write d + K - m1, which does not depend on the old one, and measure again.
  *
- * So there are three writes at most. None is ever repeated, and after one without an acknowledgement the next is made
- * only if the measurement shows that it was taken.
+ * So flash is written at most twice. No write is repeated. After a write without an acknowledgement, the second one is
+ * made only if the measurement shows that the first one was accepted.
  *
- * T is half the largest spread (most - least) of the samples of a measurement, rounded up, and 2 mm at least, as whole
- * millimetres are: a median of several samples lies well within half the spread of the true one. "=" above is within T.
- * Where a measurement is within T of two things that have to be told apart (which can be for |d| <= 2 T), that is said,
- * and the calibration ends.
+ * T is half the largest spread (maximum - minimum) of the samples, rounded up, and at least 2 mm. "=" above means within
+ * T. If a measurement is within T of two results that exclude each other, the calibration stops and reports that.
  */
-
 enum {
-    CALIBRATE_WRITES = 3,
+    CALIBRATE_WRITES = 2,
     CALIBRATE_MEASUREMENTS = CALIBRATE_WRITES + 1,
     CALIBRATE_LEAST_TOLERANCE_MM = 2
 };
 
-/* What the command has to do. */
+/* The next step of the command. */
 typedef enum { CALIBRATE_MEASURE, CALIBRATE_WRITE, CALIBRATE_END } calibrate_next_t;
 
-/* What became of a write. */
+/* The result of a write. */
 typedef enum {
     CALIBRATE_ACKNOWLEDGED,
-    CALIBRATE_UNANSWERED, /* it was sent: taken or not */
+    CALIBRATE_UNANSWERED, /* sent; the sensor may have accepted it */
     CALIBRATE_NOT_WRITTEN /* refused, or never sent */
 } calibrate_outcome_t;
 
-/* What #12 does to the offset before, as far as it is known. */
-typedef enum { CALIBRATE_UNSETTLED, CALIBRATE_ADDS, CALIBRATE_REPLACES } calibrate_rule_t;
-
-/* Why it has ended. */
+/* The reason why the calibration ended. */
 typedef enum {
-    CALIBRATE_DONE,         /* nothing was wrong */
+    CALIBRATE_DONE,         /* the sensor is right */
     CALIBRATE_REFUSED,      /* a write was CALIBRATE_NOT_WRITTEN */
-    CALIBRATE_NOT_MEASURED, /* the command could not measure */
-    CALIBRATE_NOT_MOVED,    /* acknowledged, and it measures as before */
-    CALIBRATE_NOT_SEEN,     /* not acknowledged, and it measures as before */
-    CALIBRATE_UNCLEAR,      /* within T of two things that have to be told apart */
-    CALIBRATE_UNEXPECTED,   /* within T of none */
-    CALIBRATE_TOO_LARGE     /* an offset would be needed that #12 does not take */
+    CALIBRATE_NOT_MEASURED, /* a measurement failed */
+    CALIBRATE_NOT_MOVED,    /* the write was acknowledged and had no effect */
+    CALIBRATE_NOT_SEEN,     /* the write was not acknowledged and had no effect */
+    CALIBRATE_UNCLEAR,      /* a measurement is within T of two results that exclude each other */
+    CALIBRATE_UNEXPECTED,   /* a measurement is within T of no possible result */
+    CALIBRATE_TOO_LARGE     /* the offset does not fit into #12 */
 } calibrate_why_t;
 
-/* An offset that the device may have now; is_added: to the one before, which is not known. */
+/* An offset that the sensor may have. */
 typedef struct {
     int32_t mm;
-    bool is_added;
+    bool is_added; /* to the old offset, which is unknown */
 } calibrate_offset_t;
 
 enum { CALIBRATE_OFFSETS = 4 };
 
-/* To be read by the command. */
 typedef struct {
     calibrate_next_t next;
-    int32_t write_mm; /* of CALIBRATE_WRITE */
-
+    int32_t write_mm; /* with CALIBRATE_WRITE: the offset to write */
     int32_t known_mm;
     int32_t tolerance_mm;                        /* T */
     int32_t measured_mm[CALIBRATE_MEASUREMENTS]; /* the medians */
-    uint32_t spread_mm;                          /* the largest */
-    int32_t written_mm[CALIBRATE_WRITES]; /* sent and not refused: what flash may have been written with */
+    uint32_t spread_mm;                          /* the largest one */
+    int32_t written_mm[CALIBRATE_WRITES];        /* offsets that were sent and not refused */
     size_t measurements;
     size_t writes;
+    size_t
+        certain_writes; /* number of writes that the sensor has certainly accepted; a later one is in doubt */
+    bool is_acknowledged; /* the last write */
+    bool replaces;        /* a measurement has shown that #12 replaces the old offset */
 
     /* ---- at the end ---- */
 
     calibrate_why_t why;
-    bool is_right; /* the last measurement is within T of known_mm, and it came after the last write */
-    calibrate_rule_t rule;
-
-    /* inside */
-    uint8_t step;
-    bool settles;
-    bool is_acknowledged; /* the last write */
-    size_t surely;        /* writes that were surely taken: a later one may have been */
+    bool is_right; /* the last measurement came after the last write and is within T of known_mm */
 } calibrate_plan_t;
 
-/* settles: also finds out whether #12 adds or replaces, where it is right without. Then what `next` says: */
-void calibrate_begin(calibrate_plan_t *plan, int32_t known_mm, bool settles);
+/* Starts a calibration. The member `next` is then the next step. */
+void calibrate_start(calibrate_plan_t *plan, int32_t known_mm);
 
-/* CALIBRATE_MEASURE: the median of the samples and their spread, once two measurements have agreed; or it failed. */
+/* Reports the result of CALIBRATE_MEASURE to the plan: the median and the spread, or a failure. */
 void calibrate_measured(calibrate_plan_t *plan, int32_t median_mm, uint32_t spread_mm);
 void calibrate_not_measured(calibrate_plan_t *plan);
 
-/* CALIBRATE_WRITE: plan->write_mm was written once. */
+/* Reports the result of CALIBRATE_WRITE to the plan. */
 void calibrate_wrote(calibrate_plan_t *plan, calibrate_outcome_t outcome);
 
-/* The offsets that are possible at the end; returns how many. With the one before: {0, true}. */
+/* Stores the offsets that the sensor may have at the end and returns their number. {0, true} is the old offset. */
 size_t calibrate_offsets(const calibrate_plan_t *plan, calibrate_offset_t offsets[CALIBRATE_OFFSETS]);
 
-/* The tolerance that goes with a spread. */
+/* Returns the tolerance T for a spread. */
 int32_t calibrate_tolerance_mm(uint32_t spread_mm);
 
 #endif

@@ -6,17 +6,15 @@
 
 #include "cli/command.h"
 
-/* ---- on the way ---- */
-
 bool calibrate_report_measurement(const session_t *session, const calibrate_plan_t *plan,
-                                  const calibrate_batch_t *asked, const calibrate_measurement_t *measurement)
+                                  const calibrate_batch_t *batch, const calibrate_measurement_t *measurement)
 {
     const int32_t off_mm = measurement->median_mm - plan->known_mm;
     if (session->is_json) return true;
     errno = 0;
-    (void)printf("%s: measured %" PRId32 " mm, the median of %" PRIu32 " (spread %" PRIu32
-                 " mm); known %" PRId32 " mm",
-                 session->station->name, measurement->median_mm, asked->samples, measurement->spread_mm,
+    (void)printf("%s: measured %" PRId32 " mm (median of %" PRIu32 ", spread %" PRIu32 " mm), known %" PRId32
+                 " mm",
+                 session->station->name, measurement->median_mm, batch->samples, measurement->spread_mm,
                  plan->known_mm);
     if (off_mm != 0)
         (void)printf(": %" PRId32 " mm too %s", off_mm < 0 ? -off_mm : off_mm, off_mm < 0 ? "near" : "far");
@@ -28,23 +26,22 @@ bool calibrate_report_write(const session_t *session, const calibrate_plan_t *pl
 {
     FILE *const to = session->is_json ? stderr : stdout;
     errno = 0;
-    (void)fprintf(to, "%s%s: writing to flash, %zu of at most %d: offset %" PRId32 " mm%s\n",
-                  session->is_json ? "fathom: " : "", session->station->name, plan->writes + 1,
-                  CALIBRATE_WRITES, plan->write_mm,
-                  plan->write_mm == 0 ? ", which shows whether #12 adds or replaces" : "");
+    (void)fprintf(to, "%s%s: writing offset %" PRId32 " mm to flash (write %zu of at most %d)\n",
+                  session->is_json ? "fathom: " : "", session->station->name, plan->write_mm,
+                  plan->writes + 1, CALIBRATE_WRITES);
     return session->is_json ? fflush(to) == 0 : output_flush() == 0;
 }
 
-/* ---- what has come of it ---- */
+/* ---- the result ---- */
 
 static void print_offset(FILE *to, const calibrate_offset_t *offset)
 {
     if (!offset->is_added)
         (void)fprintf(to, "%" PRId32 " mm", offset->mm);
     else if (offset->mm == 0)
-        (void)fputs("what it was before", to);
+        (void)fputs("the old offset", to);
     else
-        (void)fprintf(to, "what it was before %s %" PRId32 " mm", offset->mm < 0 ? "minus" : "plus",
+        (void)fprintf(to, "the old offset %s %" PRId32 " mm", offset->mm < 0 ? "minus" : "plus",
                       offset->mm < 0 ? -offset->mm : offset->mm);
 }
 
@@ -58,98 +55,82 @@ static void print_offsets(FILE *to, const calibrate_plan_t *plan)
     }
 }
 
-static const char *rule_text(const calibrate_plan_t *plan)
-{
-    switch (plan->rule) {
-    case CALIBRATE_ADDS:
-        return "#12 adds to the offset before";
-    case CALIBRATE_REPLACES:
-        return "#12 replaces the offset before";
-    default:
-        return "whether #12 adds to the offset before or replaces it is not settled";
-    }
-}
-
 static int32_t last_mm(const calibrate_plan_t *plan) { return plan->measured_mm[plan->measurements - 1]; }
 
 static void print_right(const session_t *session, const calibrate_plan_t *plan)
 {
-    (void)printf("%s: it is right within %" PRId32 " mm: measured %" PRId32 " mm, known %" PRId32 " mm; ",
+    (void)printf("%s: right within %" PRId32 " mm: measured %" PRId32 " mm, known %" PRId32 " mm; ",
                  session->station->name, plan->tolerance_mm, last_mm(plan), plan->known_mm);
     if (plan->writes == 0) {
-        (void)printf("nothing was written; %s\n", rule_text(plan));
+        (void)puts("nothing was written");
         return;
     }
     (void)fputs("offset: ", stdout);
     print_offsets(stdout, plan);
-    (void)printf("; %s; flash writes: %zu\n", rule_text(plan), plan->writes);
+    (void)printf("; flash writes: %zu%s\n", plan->writes,
+                 plan->replaces ? "; #12 replaces the old offset" : "");
 }
 
-/* Why it has ended, where something was wrong that has not been said yet. */
 static void print_why(const calibrate_plan_t *plan)
 {
     const int32_t offset_mm = plan->writes != 0 ? plan->written_mm[plan->writes - 1] : 0;
     switch (plan->why) {
     case CALIBRATE_NOT_MOVED:
-        (void)fprintf(
-            stderr,
-            "offset %" PRId32 " mm was acknowledged, and it measures %" PRId32
-            " mm as before: it holds from the next power-on, or it is the offset that it had, or it was "
-            "not taken",
-            offset_mm, last_mm(plan));
+        (void)fprintf(stderr,
+                      "offset %" PRId32 " mm was acknowledged, but the sensor still measures %" PRId32
+                      " mm. The offset takes effect at the next power-on, or the sensor had this offset "
+                      "already, or it did not accept it",
+                      offset_mm, last_mm(plan));
         break;
     case CALIBRATE_NOT_SEEN:
         (void)fprintf(stderr,
-                      "offset %" PRId32 " mm was not acknowledged, and it measures %" PRId32 " mm as before",
+                      "offset %" PRId32 " mm was not acknowledged, and the sensor still measures %" PRId32
+                      " mm",
                       offset_mm, last_mm(plan));
         break;
     case CALIBRATE_UNCLEAR:
         (void)fprintf(stderr,
-                      "%" PRId32 " mm after offset %" PRId32
-                      " mm may be the distance as before as well as the "
-                      "expected one: they are too near to be told apart within %" PRId32 " mm",
-                      last_mm(plan), offset_mm, plan->tolerance_mm);
+                      "the distance before offset %" PRId32 " mm and the known distance are within %" PRId32
+                      " mm of each other, so %" PRId32
+                      " mm does not show whether the sensor accepted the offset",
+                      offset_mm, plan->tolerance_mm, last_mm(plan));
         break;
     case CALIBRATE_UNEXPECTED:
         (void)fprintf(stderr,
                       "%" PRId32 " mm after offset %" PRId32
-                      " mm is not what it can be: sensor or target have moved",
+                      " mm is not possible unless the sensor or the target has moved",
                       last_mm(plan), offset_mm);
         break;
-    case CALIBRATE_TOO_LARGE:
-        (void)fputs("the offset that is right is beyond what #12 takes, -32768 to 32767 mm", stderr);
-        break;
     default:
-        (void)fputs("it was not finished", stderr);
+        (void)fputs("the required offset does not fit into #12, -32768 to 32767 mm", stderr);
         break;
     }
 }
 
-/* What is safe to do next. Of a first write that holds from the next power-on: where it adds, it is right then; where it
- * replaces an offset that is not 0, what is missing then makes it right, and another calibration would only go back. */
+/* If the first write takes effect only at the next power-on: a sensor that adds is right then. A sensor that replaces
+ * lacks its old offset then, and another calibration would only restore the old state. */
 static void print_next(const calibrate_plan_t *plan)
 {
     const bool is_unmoved = plan->why == CALIBRATE_NOT_MOVED || plan->why == CALIBRATE_NOT_SEEN;
-    if (plan->rule == CALIBRATE_REPLACES) {
-        (void)fputs("fathom: #12 replaces the offset before, so it may be calibrated again\n", stderr);
+    if (plan->replaces) {
+        (void)fputs("fathom: #12 replaces the old offset, so you can calibrate again\n", stderr);
         return;
     }
-    (void)fputs("fathom: switch its power off and on, then measure, before you calibrate again\n", stderr);
-    if (is_unmoved && plan->writes == 1)
+    (void)fputs("fathom: before you calibrate again, switch the power off and on, and measure\n", stderr);
+    if (is_unmoved)
         (void)fprintf(stderr,
-                      "fathom: if it measures as before then, write offset 0, switch it off and on, and "
-                      "calibrate again; "
-                      "if it\nfathom: measures X mm, neither right nor as before, #12 replaces, and the "
-                      "right offset is "
-                      "%" PRId32 " - X\n",
+                      "fathom: if the sensor then measures as before, set distance-offset to 0, switch the "
+                      "power off and on, and calibrate again\n"
+                      "fathom: if it measures another wrong distance X, #12 replaces the old offset, and the "
+                      "right offset is %" PRId32 " - X\n",
                       plan->written_mm[0] + plan->known_mm);
 }
 
-static void print_ended(const session_t *session, const calibrate_plan_t *plan)
+static void print_failure(const session_t *session, const calibrate_plan_t *plan)
 {
     const char *const name = session->station->name;
-    if (plan->why == CALIBRATE_DONE) return;
     (void)fflush(stdout);
+    /* the other two reasons were printed when they occurred */
     if (plan->why != CALIBRATE_REFUSED && plan->why != CALIBRATE_NOT_MEASURED) {
         (void)fprintf(stderr, "fathom: %s: ", name);
         print_why(plan);
@@ -157,52 +138,51 @@ static void print_ended(const session_t *session, const calibrate_plan_t *plan)
     }
     if (plan->writes == 0) {
         (void)fprintf(stderr, "fathom: %s: nothing was written\n", name);
-    } else if (!plan->is_right) {
-        (void)fprintf(stderr,
-                      "fathom: %s: nothing more is written (flash writes: %zu); its offset is now, or from "
-                      "the next power-on: ",
-                      name, plan->writes);
-        print_offsets(stderr, plan);
-        (void)fputs("\n", stderr);
-        print_next(plan);
+        return;
     }
+    (void)fprintf(stderr,
+                  "fathom: %s: flash writes: %zu; the offset is now, or from the next power-on: ", name,
+                  plan->writes);
+    print_offsets(stderr, plan);
+    (void)fputs("\n", stderr);
+    print_next(plan);
 }
 
 static const char *const whys[] = {
-    [CALIBRATE_DONE] = "done",
+    [CALIBRATE_DONE] = "right",
     [CALIBRATE_REFUSED] = "not written",
     [CALIBRATE_NOT_MEASURED] = "not measured",
-    [CALIBRATE_NOT_MOVED] = "acknowledged, and it measures as before",
-    [CALIBRATE_NOT_SEEN] = "not acknowledged, and it measures as before",
-    [CALIBRATE_UNCLEAR] = "too near to be told apart",
-    [CALIBRATE_UNEXPECTED] = "not what it can be",
-    [CALIBRATE_TOO_LARGE] = "beyond what #12 takes",
+    [CALIBRATE_NOT_MOVED] = "acknowledged, without effect",
+    [CALIBRATE_NOT_SEEN] = "not acknowledged, without effect",
+    [CALIBRATE_UNCLEAR] = "ambiguous",
+    [CALIBRATE_UNEXPECTED] = "impossible distance",
+    [CALIBRATE_TOO_LARGE] = "offset too large",
 };
+
+static void print_json_list(const char *key, const int32_t *values, size_t count)
+{
+    (void)printf(", \"%s\": [", key);
+    for (size_t i = 0; i != count; i++) (void)printf("%s%" PRId32, i == 0 ? "" : ", ", values[i]);
+    (void)fputs("]", stdout);
+}
 
 static void print_json(const session_t *session, const calibrate_plan_t *plan, bool is_dry)
 {
-    static const char *const rules[] = {"null", "\"adds\"", "\"replaces\""};
     calibrate_offset_t offsets[CALIBRATE_OFFSETS];
     const size_t count = calibrate_offsets(plan, offsets);
-    (void)printf("{\"sensor\": \"%s\", \"address\": %u, \"known_mm\": %" PRId32 ", \"measured_mm\": [",
+    (void)printf("{\"sensor\": \"%s\", \"address\": %u, \"known_mm\": %" PRId32,
                  session->station->model->name, session->station->address, plan->known_mm);
-    for (size_t i = 0; i != plan->measurements; i++)
-        (void)printf("%s%" PRId32, i == 0 ? "" : ", ", plan->measured_mm[i]);
-    (void)printf("], \"spread_mm\": %" PRIu32 ", \"tolerance_mm\": %" PRId32 ", \"written_mm\": [",
-                 plan->spread_mm, plan->tolerance_mm);
-    for (size_t i = 0; i != plan->writes; i++)
-        (void)printf("%s%" PRId32, i == 0 ? "" : ", ", plan->written_mm[i]);
-    (void)printf("], \"would_write_mm\": ");
-    if (is_dry)
-        (void)printf("%" PRId32, plan->write_mm);
-    else
-        (void)fputs("null", stdout);
+    print_json_list("measured_mm", plan->measured_mm, plan->measurements);
+    (void)printf(", \"spread_mm\": %" PRIu32 ", \"tolerance_mm\": %" PRId32, plan->spread_mm,
+                 plan->tolerance_mm);
+    print_json_list("written_mm", plan->written_mm, plan->writes);
+    if (is_dry) (void)printf(", \"would_write_mm\": %" PRId32, plan->write_mm);
     (void)printf(", \"offsets\": [");
     for (size_t i = 0; i != count; i++)
-        (void)printf("%s{\"mm\": %" PRId32 ", \"added_to_the_one_before\": %s}", i == 0 ? "" : ", ",
-                     offsets[i].mm, offsets[i].is_added ? "true" : "false");
-    (void)printf("], \"offset_12\": %s, \"right\": %s, \"outcome\": \"%s\"}\n", rules[plan->rule],
-                 plan->is_right ? "true" : "false", is_dry ? "dry run" : whys[plan->why]);
+        (void)printf("%s{\"mm\": %" PRId32 ", \"is_added\": %s}", i == 0 ? "" : ", ", offsets[i].mm,
+                     offsets[i].is_added ? "true" : "false");
+    (void)printf("], \"right\": %s, \"outcome\": \"%s\"}\n", plan->is_right ? "true" : "false",
+                 is_dry ? "dry run" : whys[plan->why]);
 }
 
 int calibrate_report(const session_t *session, const calibrate_plan_t *plan, bool is_dry)
@@ -211,14 +191,12 @@ int calibrate_report(const session_t *session, const calibrate_plan_t *plan, boo
     if (session->is_json)
         print_json(session, plan, is_dry);
     else if (is_dry)
-        (void)printf("%s: nothing was written; offset %" PRId32 " mm would be\n", session->station->name,
-                     plan->write_mm);
+        (void)printf("%s: nothing was written; without --dry-run, offset %" PRId32 " mm would be\n",
+                     session->station->name, plan->write_mm);
     else if (plan->is_right)
         print_right(session, plan);
-    if (!is_dry) print_ended(session, plan);
-    if (output_flush() != 0) {
-        (void)fprintf(stderr, "fathom: the output cannot be written; flash writes: %zu\n", plan->writes);
-        return STATUS_FAILED;
-    }
-    return plan->is_right ? STATUS_OK : STATUS_FAILED;
+    if (!is_dry && plan->why != CALIBRATE_DONE) print_failure(session, plan);
+    if (output_flush() == 0) return plan->is_right ? STATUS_OK : STATUS_FAILED;
+    (void)fprintf(stderr, "fathom: cannot write the output; flash writes: %zu\n", plan->writes);
+    return STATUS_FAILED;
 }

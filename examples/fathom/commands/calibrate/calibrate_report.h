@@ -5,13 +5,13 @@
 #include "commands/calibrate/calibrate_measure.h"
 #include "commands/calibrate/calibrate_plan.h"
 
-/* What `fathom calibrate` says on the way: of a measurement, and of what is about to be written. In JSON the former is
- * left out and the latter goes to stderr. False: it could not be said. */
+/* Prints a measurement, or announces a write. With JSON, a measurement is not printed and a write is announced on
+ * stderr. Returns false if the output failed. */
 bool calibrate_report_measurement(const session_t *session, const calibrate_plan_t *plan,
-                                  const calibrate_batch_t *asked, const calibrate_measurement_t *measurement);
+                                  const calibrate_batch_t *batch, const calibrate_measurement_t *measurement);
 bool calibrate_report_write(const session_t *session, const calibrate_plan_t *plan);
 
-/* What has come of it; is_dry: it ended before the first write. Returns the exit status. */
+/* Prints the result and returns the exit status. is_dry: the calibration ended before its first write. */
 int calibrate_report(const session_t *session, const calibrate_plan_t *plan, bool is_dry);
 
 #endif
