@@ -64,7 +64,7 @@ def states_of(lines):
         state = json.loads(payload)
         stream = streams[topic.split('/')[-2]]
         if not stream or state['seq'] > stream[-1]['seq']:
-            stream.append({**state, 'time': seconds_of(state['time'])})
+            stream.append({**state, 'time': seconds_of(state['utc'])})
     return streams
 
 

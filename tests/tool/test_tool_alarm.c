@@ -67,14 +67,14 @@ TEST(no_target_is_far_or_unknown)
 {
     SEES_A16(400, FATHOM_SIM_NO_TARGET);
     expect_text(alarm_of("a16:1:modbus", "near<500" SAFE, "--count 8"),
-                "0 a16: alarm on, 400 mm\n1 a16: alarm off, no target in range\n");
+                "0 a16: alarm on, 400 mm\n1 a16: alarm off, no_target\n");
     SEES_A16(400, FATHOM_SIM_NO_TARGET);
     expect_text(alarm_of("a16:1:modbus", "far>2000" SAFE, "--count 8"),
-                "0 a16: alarm off, 400 mm\n1 a16: alarm on, no target in range\n");
+                "0 a16: alarm off, 400 mm\n1 a16: alarm on, no_target\n");
     SEES_A16(400, FATHOM_SIM_NO_TARGET); /* 5 s after the distance of second 0 */
     expect_text(
         alarm_of("a16:1:modbus", "near<500,unknown=off,no-response=on,no-target=unknown", "--count 8"),
-        "0 a16: alarm on, 400 mm\n5 a16: not known (off)\n");
+        "0 a16: alarm on, 400 mm\n5 a16: alarm unknown (off)\n");
 }
 
 /* Off after 2.5 s: with the fourth sample; on after 1.5 s: with the third one. */
@@ -108,12 +108,12 @@ TEST(a_device_that_does_not_respond_is_a_state_of_its_own)
     const tool_run_t *run =
         alarm_of("a16:1:modbus", "near<500,unknown-after=2000,no-response=on,unknown=off", "--count 10");
     assert_int_equal(run->status, 1);
-    expect_text(run, "0 a16: alarm off, 700 mm\n5 a16: no response (on)\n8 a16: alarm off, 700 mm\n");
+    expect_text(run, "0 a16: alarm off, 700 mm\n5 a16: alarm no_response (on)\n8 a16: alarm off, 700 mm\n");
     expect_err(run, "nothing was heard at all");
     SEES_A16(700);
     steps.off_us = 3800000;
     run = alarm_of("a16:1:modbus", "near<500,unknown-after=2000,no-response=off,unknown=on", "--count 7");
-    expect_text(run, "0 a16: alarm off, 700 mm\n5 a16: no response (off)\n");
+    expect_text(run, "0 a16: alarm off, 700 mm\n5 a16: alarm no_response (off)\n");
 }
 
 TEST(a_device_that_tells_no_distance_is_another_one)
@@ -121,7 +121,7 @@ TEST(a_device_that_tells_no_distance_is_another_one)
     SEES_A16(700, REFUSED_A16);
     expect_text(
         alarm_of("a16:1:modbus", "near<500,unknown-after=2500,no-response=off,unknown=on", "--count 5"),
-        "0 a16: alarm off, 700 mm\n2 a16: not known (on)\n");
+        "0 a16: alarm off, 700 mm\n2 a16: alarm unknown (on)\n");
 }
 
 /* The time alone tells it, 5 s after the last frame; the reader gives up 10 s after it, as --timeout says. */
@@ -131,23 +131,23 @@ TEST(a_sensor_that_sends_nothing_any_more_is_noticed_by_the_time)
     steps_a16(FATHOM_SIM_A16_AUTO, &sees, 1);
     steps.off_us = 3500000;
     expect_text(alarm_of("a16", "near<500,unknown=on,no-response=off", "--duration 15 --timeout 10000"),
-                "0 a16: alarm off, 700 mm\n8 a16: not known (on)\n13 a16: no response (off)\n");
+                "0 a16: alarm off, 700 mm\n8 a16: alarm unknown (on)\n13 a16: alarm no_response (off)\n");
 }
 
 TEST(the_first_state_is_told_when_nothing_has_come_for_that_time)
 {
-    expect_text(alarm_of("a16:1:modbus", "near<500" SAFE, "--count 8"), "5 a16: no response (on)\n");
+    expect_text(alarm_of("a16:1:modbus", "near<500" SAFE, "--count 8"), "5 a16: alarm no_response (on)\n");
     SEES_A16(REFUSED_A16);
     expect_text(alarm_of("a16:1:modbus", "near<500,unknown=off,no-response=on", "--count 8"),
-                "5 a16: not known (off)\n");
+                "5 a16: alarm unknown (off)\n");
     bench_begin(); /* three intervals */
     expect_text(
         tool_run(&bench.tool, "read hps167s --interval 3000 --count 5 --port line --alarm far>500" SAFE),
-        "9 hps167s: no response (on)\n");
+        "9 hps167s: alarm no_response (on)\n");
     bench_begin();
     for (int i = 0; i != 4; i++) bench.scene.value[i] = FATHOM_SIM_FAULT;
     bench_hps167s((fathom_sim_hps167s_config_t){0});
-    expect_text(alarm_of("hps167s", "near<500" SAFE, "--count 8"), "5 hps167s: not known (on)\n");
+    expect_text(alarm_of("hps167s", "near<500" SAFE, "--count 8"), "5 hps167s: alarm unknown (on)\n");
 }
 
 /* Of 15 there is none in 8 s, but the device responds. */
@@ -155,7 +155,7 @@ TEST(a_sample_without_a_median_is_a_response)
 {
     SEES_A16(700);
     expect_text(alarm_of("a16:1:modbus", "near<500,unknown=on,no-response=off", "--median 15 --count 8"),
-                "5 a16: not known (on)\n");
+                "5 a16: alarm unknown (on)\n");
 }
 
 /* Nothing else happens before the reader gives up after 60 s. */
@@ -163,7 +163,7 @@ TEST(the_time_is_looked_at_when_nothing_happens)
 {
     bench.tool.idle = fathom_sim_clock_idle;
     expect_text(alarm_of("a16", "near<500" SAFE, "--timeout 60000 --duration 20"),
-                "5 a16: no response (on)\n");
+                "5 a16: alarm no_response (on)\n");
 }
 
 /* ---- several ---- */
@@ -178,18 +178,18 @@ TEST(each_probe_has_an_alarm_of_its_own)
                 "0 a16:1: alarm off, 1234 mm\n"
                 "0 a05:2 probe 1: alarm on, 480 mm\n"
                 "0 a05:2 probe 2: alarm off, 2000 mm\n"
-                "0 a05:2 probe 3: alarm off, no target in range\n"
+                "0 a05:2 probe 3: alarm off, no_target\n"
                 "0 a05:2 probe 4: alarm off, 700 mm\n"
                 "1 a05:2 probe 2: alarm on, 450 mm\n"
                 "2 a05:2 probe 3: alarm on, 100 mm\n"
-                "3 a05:2 probe 4: not known (on)\n"
+                "3 a05:2 probe 4: alarm unknown (on)\n"
                 "3 a05:2 probe 1: alarm off, 610 mm\n");
 }
 
 TEST(probes_that_are_left_out_have_none)
 {
     expect_text(alarm_of("a05:2:modbus", "near<500" SAFE, "--probes 2,4 --count 8"),
-                "5 a05 probe 2: no response (on)\n5 a05 probe 4: no response (on)\n");
+                "5 a05 probe 2: alarm no_response (on)\n5 a05 probe 4: alarm no_response (on)\n");
 }
 
 /* The first one is done at 2.5 s; the second one is not there, and at 7.5 s it is still waited for. */
@@ -200,8 +200,8 @@ TEST(a_sensor_that_has_been_read_often_enough_goes_into_no_other_state)
         tool_run(&bench.tool, "read a16:1 a05:2 --timeout 4000 --count 3 --port line --alarm near<500" SAFE);
     assert_in_range(run->took_us, 8000000, 24000000);
     expect_text(run, "0 a16:1: alarm off, 700 mm\n"
-                     "5 a05:2 probe 1: no response (on)\n5 a05:2 probe 2: no response (on)\n"
-                     "5 a05:2 probe 3: no response (on)\n5 a05:2 probe 4: no response (on)\n");
+                     "5 a05:2 probe 1: alarm no_response (on)\n5 a05:2 probe 2: alarm no_response (on)\n"
+                     "5 a05:2 probe 3: alarm no_response (on)\n5 a05:2 probe 4: alarm no_response (on)\n");
 }
 
 /* ---- formats ---- */
@@ -224,15 +224,15 @@ TEST(a_change_is_an_object)
     SEES_A05({480, REFUSED_A05, FATHOM_SIM_NO_TARGET, 700});
     expect_objects(alarm_of("a05:2:modbus", "near<500,unknown-after=1500,unknown=off,no-response=on",
                             "--probes 1,2,3 --count 3 --format json"),
-                   "{\"name\":\"a05:2\",\"sensor\":\"a05\",\"mode\":\"modbus\",\"address\":2,\"probe\":1,"
+                   "{\"sensor\":\"a05:2\",\"model\":\"a05\",\"mode\":\"modbus\",\"address\":2,\"probe\":1,"
                    "\"alarm\":\"on\",\"is_on\":true,\"distance_mm\":480}\n"
-                   "{\"name\":\"a05:2\",\"sensor\":\"a05\",\"mode\":\"modbus\",\"address\":2,\"probe\":3,"
+                   "{\"sensor\":\"a05:2\",\"model\":\"a05\",\"mode\":\"modbus\",\"address\":2,\"probe\":3,"
                    "\"alarm\":\"off\",\"is_on\":false,\"distance_mm\":null}\n"
-                   "{\"name\":\"a05:2\",\"sensor\":\"a05\",\"mode\":\"modbus\",\"address\":2,\"probe\":2,"
+                   "{\"sensor\":\"a05:2\",\"model\":\"a05\",\"mode\":\"modbus\",\"address\":2,\"probe\":2,"
                    "\"alarm\":\"unknown\",\"is_on\":false,\"distance_mm\":null}\n");
     (void)set_up(NULL);
     expect_objects(alarm_of("a16:1:modbus", "near<500" SAFE, "--count 7 --format json"),
-                   "{\"name\":\"a16:1\",\"sensor\":\"a16\",\"mode\":\"modbus\",\"address\":1,\"probe\":1,"
+                   "{\"sensor\":\"a16:1\",\"model\":\"a16\",\"mode\":\"modbus\",\"address\":1,\"probe\":1,"
                    "\"alarm\":\"no_response\",\"is_on\":true,\"distance_mm\":null}\n");
 }
 
@@ -243,9 +243,9 @@ TEST(a_change_is_a_row_of_csv_and_may_have_a_level)
     const tool_run_t *const run =
         alarm_of("a16:1:modbus", "near<500" SAFE,
                  "--level mounting=2300,height=2000,capacity=1000 --count 2 --format csv");
-    const char *const header =
-        "name,sensor,mode,address,probe,time_us,utc,alarm,is_on,distance_mm,level_mm,level_per_mille,volume\n"
-        "a16:1,a16,modbus,1,1,";
+    const char *const header = "sensor,model,mode,address,probe,time_us,utc,alarm,is_on,distance_mm,level_mm,"
+                               "level_per_mille,volume\n"
+                               "a16:1,a16,modbus,1,1,";
     assert_memory_equal(run->out, header, strlen(header));
     assert_non_null(strstr(run->out, "Z,on,true,480,1820,910,910\n"));
     SEES_A16(480);
@@ -285,7 +285,7 @@ TEST(until_alarm_ends_as_ever_when_none_goes_on)
     const tool_run_t *const run =
         alarm_of("a16:1:modbus", "near<500,unknown=on,no-response=off", "--until-alarm --count 8");
     assert_int_equal(run->status, 1);
-    expect_text(run, "5 a16: no response (off)\n");
+    expect_text(run, "5 a16: alarm no_response (off)\n");
 }
 
 TEST(without_until_alarm_an_alarm_is_no_exit_status)

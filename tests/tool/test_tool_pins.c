@@ -41,7 +41,7 @@ TEST(pwm_tells_nothing_in_range)
 {
     with_a16(FATHOM_SIM_A16_PWM);
     see(FATHOM_SIM_NO_TARGET);
-    EXPECT(0, 1, "no target in range", "read " PWM " --count 1");
+    EXPECT(0, 1, "no_target", "read " PWM " --count 1");
 }
 
 TEST(a_line_that_stays_high_is_a_fault_with_a_cause)
@@ -113,7 +113,7 @@ TEST(a_pulse_that_is_too_short_is_unknown)
     with_a16(FATHOM_SIM_A16_PWM);
     at_us = 50000;
     happens = cut_with_short_pulse;
-    EXPECT(1, 1, "unknown: only pulses shorter than the sensor's; the longest has 1500 us",
+    EXPECT(1, 1, "unknown: all pulses are too short for the sensor; the longest has 1500 us",
            "read " PWM " --count 1");
 }
 

@@ -114,7 +114,7 @@ static state_t state_of(size_t number, const result_t *result)
                      .seq = 7};
 }
 
-#define BEGIN "{\"time\":\"2026-11-23T09:43:12.345678Z\","
+#define BEGIN "{\"utc\":\"2026-11-23T09:43:12.345678Z\","
 #define END   ",\"boot\":\"0123456789abcdef\",\"seq\":7,\"age_ms\":1500,\"dropped\":3}"
 
 static void expect(const state_t *state, topic_t topic, const char *expected)

@@ -58,7 +58,7 @@ TEST(each_probe_of_each_sensor_has_a_median_of_its_own)
     expect_text(run, "2 a16:1    1234 mm    1.234 m\n"
                      "2 a05:2 probe 1    1010 mm    1.010 m\n"
                      "2 a05:2 probe 2    2010 mm    2.010 m\n"
-                     "2 a05:2 probe 3  no target in range\n"
+                     "2 a05:2 probe 3  no_target\n"
                      "2 a05:2 probe 4     500 mm    0.500 m\n");
 }
 
@@ -67,8 +67,8 @@ TEST(a_fault_is_printed_as_it_came)
     bench_hps167s((fathom_sim_hps167s_config_t){0});
     for (int i = 0; i != 4; i++) bench.scene.value[i] = FATHOM_SIM_FAULT;
     expect_text(read_steps("hps167s", "--count 2 --median 5"),
-                "0 hps167s  fault: the sensor says that it has failed\n"
-                "1 hps167s  fault: the sensor says that it has failed\n");
+                "0 hps167s  fault: the sensor reports a fault\n"
+                "1 hps167s  fault: the sensor reports a fault\n");
 }
 
 /* The last sample before it was cut off is that of second 2, the next one that of 9: 7 s are more than 5. */
@@ -98,7 +98,7 @@ TEST(three_intervals_are_longer_than_5_s)
 static void expect_level(int32_t distance_mm, const char *keys, const char *level)
 {
     char options[256];
-    char expected[128] = "0 a16  no target in range\n";
+    char expected[128] = "0 a16  no_target\n";
     SEES_A16(distance_mm);
     (void)snprintf(options, sizeof options, "--count 1 --level mounting=2300,height=2000,%s", keys);
     if (level != NULL)

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): fmemopen */
 #include "mqtt/discovery.h"
 
 #include <inttypes.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "fathom/version.h"
-#include "mqtt/text.h"
-
-#define ADD(text, ...) text_add(text, DISCOVERY_TEXT, __VA_ARGS__)
+#include "output/json.h"
 
 enum { ID = 320 };
 
@@ -58,7 +58,7 @@ uint32_t discovery_all(const config_t *config, const station_t *station, const r
 static void add_id(char id[ID], const char *word)
 {
     const size_t before = strlen(id);
-    text_add(id, ID, "%s%s", before != 0 ? "_" : "", word);
+    (void)snprintf(id + before, ID - before, "%s%s", before != 0 ? "_" : "", word);
     for (char *at = id + before; *at != '\0'; at++)
         if (*at == '/' || *at == '.') *at = '_';
 }
@@ -98,57 +98,82 @@ static uint32_t expire_s(const station_t *station)
     return (uint32_t)((uint64_t)INTERVALS * station->settings.period_us / 1000000u) + AWAY_S;
 }
 
-static void add_availability(const config_t *config, const station_t *station, char *text)
+static void add_availability(const config_t *config, const station_t *station, json_t *json)
 {
     char site[TOPIC];
     char sensor[TOPIC];
     topic_of_site(config, "status", site);
     topic_of_sensor(config, station, "availability", sensor);
-    ADD(text, ",\"availability\":[{\"topic\":\"%s\"},{\"topic\":\"%s\"}],\"availability_mode\":\"all\"", site,
-        sensor);
+    const char *const topics[] = {site, sensor};
+    json_begin(json, "availability", '[');
+    for (size_t i = 0; i != sizeof topics / sizeof topics[0]; i++) {
+        json_begin(json, NULL, '{');
+        json_string(json, "topic", topics[i]);
+        json_end(json, '}');
+    }
+    json_end(json, ']');
+    json_string(json, "availability_mode", "all");
 }
 
-static void add_device(const config_t *config, const station_t *station, char *text)
+static void add_device(const config_t *config, const station_t *station, json_t *json)
 {
     char id[ID];
+    char name[TOPIC];
     device_id(config, station, id);
-    ADD(text, ",\"device\":{\"identifiers\":[\"%s\"],\"name\":\"%s %s\",\"model\":\"%s\"}", id, config->site,
-        station->name, station->model->name);
-    ADD(text, ",\"origin\":{\"name\":\"fathom\",\"sw_version\":\"" FATHOM_VERSION_STRING "\"}");
+    (void)snprintf(name, sizeof name, "%s %s", config->site, station->name);
+    json_begin(json, "device", '{');
+    json_begin(json, "identifiers", '[');
+    json_string(json, NULL, id);
+    json_end(json, ']');
+    json_string(json, "name", name);
+    json_string(json, "model", station->model->name);
+    json_end(json, '}');
+    json_begin(json, "origin", '{');
+    json_string(json, "name", "fathom");
+    json_string(json, "sw_version", FATHOM_VERSION_STRING);
+    json_end(json, '}');
 }
 
-/* A contact says near or far in words. */
-static void add_value(const station_t *station, entity_t entity, char *text)
+/* A contact reports near or far as words. */
+static void add_value(const station_t *station, entity_t entity, json_t *json)
 {
     if (entity == ENTITY_DISTANCE && is_contact(station)) {
-        ADD(text, ",\"value_template\":\"{{ value_json.status }}\"");
+        json_string(json, "value_template", "{{ value_json.status }}");
         return;
     }
-    ADD(text, ",\"value_template\":\"%s\"", entities[entity].template);
+    json_string(json, "value_template", entities[entity].template);
     if (entities[entity].device_class != NULL)
-        ADD(text, ",\"device_class\":\"%s\"", entities[entity].device_class);
-    if (entities[entity].unit != NULL)
-        ADD(text, ",\"unit_of_measurement\":\"%s\",\"state_class\":\"measurement\"", entities[entity].unit);
+        json_string(json, "device_class", entities[entity].device_class);
+    if (entities[entity].unit == NULL) return;
+    json_string(json, "unit_of_measurement", entities[entity].unit);
+    json_string(json, "state_class", "measurement");
 }
 
 void discovery_payload(const config_t *config, const station_t *station, unsigned bit,
                        char text[DISCOVERY_TEXT])
 {
     const entity_t entity = bit % ENTITIES;
+    const bool is_word = entity == ENTITY_DISTANCE && is_contact(station);
     char id[ID];
     char topic[TOPIC];
-    char probe[16] = "";
+    char name[ID];
+    json_t json = {.to = fmemopen(text, DISCOVERY_TEXT, "w")};
+    text[0] = '\0';
+    if (json.to == NULL) return;
     entity_id(config, station, bit, id);
     topic_of_probe(config, station, probe_of(bit), entities[entity].topic, topic);
-    if (topic_has_probes(station)) (void)snprintf(probe, sizeof probe, " %u", probe_of(bit));
-    const bool is_word = entity == ENTITY_DISTANCE && is_contact(station);
-    text[0] = '\0';
-    ADD(text, "{\"name\":\"%s%s\",\"unique_id\":\"%s\",\"state_topic\":\"%s\",\"qos\":1",
-        is_word ? "contact" : entities[entity].name, probe, id, topic);
-    add_value(station, entity, text);
-    /* Of an alarm only the changes are told. */
-    if (entity != ENTITY_ALARM) ADD(text, ",\"expire_after\":%" PRIu32, expire_s(station));
-    add_availability(config, station, text);
-    add_device(config, station, text);
-    ADD(text, "}");
+    (void)snprintf(name, sizeof name, topic_has_probes(station) ? "%s %u" : "%s",
+                   is_word ? "contact" : entities[entity].name, probe_of(bit));
+    json_begin(&json, NULL, '{');
+    json_string(&json, "name", name);
+    json_string(&json, "unique_id", id);
+    json_string(&json, "state_topic", topic);
+    json_value(&json, "qos", "1");
+    add_value(station, entity, &json);
+    /* Only the changes of an alarm are published. */
+    if (entity != ENTITY_ALARM) json_value(&json, "expire_after", "%" PRIu32, expire_s(station));
+    add_availability(config, station, &json);
+    add_device(config, station, &json);
+    json_end(&json, '}');
+    (void)fclose(json.to);
 }

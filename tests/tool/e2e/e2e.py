@@ -315,7 +315,7 @@ class Case(unittest.TestCase):
         device = self.device()
         program = self.fathom(*line, ['--port', device.port], **options)
         if '--format csv' in ' '.join(program.command):
-            program.expect('^name,')
+            program.expect('^sensor,')
         return device, program
 
     def play(self, line, request, *scripts):

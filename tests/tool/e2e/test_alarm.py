@@ -43,7 +43,7 @@ class Alarm(e2e.Case):
         reader.expect('alarm off, 700 mm')
         os.unlink(port)
         device.hang_up()
-        self.assertRegex(self.ends(reader, 3, 'waiting').out, r'a16: no response \(on\)\n$')
+        self.assertRegex(self.ends(reader, 3, 'waiting').out, r'a16: alarm no_response \(on\)\n$')
 
     def test_a_port_that_is_lost_is_no_response_of_any_sensor(self):
         """Also of those that have just responded."""
@@ -54,7 +54,7 @@ class Alarm(e2e.Case):
             reader.expect(f'{sensor}: alarm off, 700 mm')
         sim.end(signal.SIGKILL)
         for sensor in ('a16:1', 'a16:2'):
-            reader.expect(rf'{sensor}: no response \(on\)')
+            reader.expect(rf'{sensor}: alarm no_response \(on\)')
         self.assertNotIn('not known', reader.end(signal.SIGINT).out)
 
     def test_a_port_that_never_comes_is_no_response_too(self):

@@ -28,7 +28,7 @@ class Read(e2e.Case):
 
     def test_three_models_with_two_line_settings_are_read_in_one_loop(self):
         done = self.ends(f'read {BUS} --port {self.bus()} --count 4 --format json', 0)
-        got = collections.Counter((one['sensor'], one['mode'], one['address'], one['probe'], one['status'],
+        got = collections.Counter((one['model'], one['mode'], one['address'], one['probe'], one['status'],
                                    one['distance_mm']) for one in done.json)
         self.assertEqual(got, {('a16', 'modbus', 1, 1, 'target', 1953): 4,
                                ('a05', 'modbus', 2, 1, 'target', 1000): 4,
@@ -62,7 +62,7 @@ class Read(e2e.Case):
             device.write(SAYS_754 if asked == ASK_A16 else SAYS_2083)
         done = self.ends(reader, 0)
         self.assertEqual(rates, {ASK_A16: {termios.B9600}, ASK_HPS: {termios.B19200}})
-        self.assertEqual(seen(done.json, 'sensor', 'distance_mm'),
+        self.assertEqual(seen(done.json, 'model', 'distance_mm'),
                          [('a16', 754)] * 3 + [('hps167s', 2083)] * 3)
 
     def test_one_rate_for_all_if_that_is_asked_for(self):
@@ -187,7 +187,7 @@ class Gateway(tcp_server.Case):
             server.say(tcp_server.registers(transaction, unit, *values))
         done = self.ends(reader, 0)
         self.assertEqual(sorted(asked), [(1, '01000001')] * 2 + [(7, '00080004')] * 2)
-        self.assertEqual(seen(done.json, 'sensor', 'address', 'distance_mm'),
+        self.assertEqual(seen(done.json, 'model', 'address', 'distance_mm'),
                          [('a16', 1, 754)] * 2 + [('hps167s', 7, 2083)] * 2)
 
     def test_one_address_is_one_sensor_there(self):

@@ -48,7 +48,7 @@ class Demo(Case):
                             ('hps167s', 10)):
             self.assertEqual(len(re.findall(rf'^ +\d+\.\d{{3}} s  {name} +\d+ mm', done.out, re.M)), count,
                              done)
-        self.assertEqual(done.out.count('"sensor":"hps167s",'), 1)
+        self.assertEqual(done.out.count('"model":"hps167s",'), 1)
         self.assertEqual(list(self.processes()), [])
         self.assertEqual(os.listdir(self.path('tmp')), [])
 

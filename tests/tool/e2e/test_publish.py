@@ -29,11 +29,11 @@ class States(mqtt.Case):
         self.assertEqual({one.topic for one in got}, {'fathom/mill/tank/state'})
         states = mqtt.states(got)
         for state in states:
-            self.assertEqual(list(state), ['time', 'status', 'distance_mm', 'boot', 'seq', 'age_ms', 'dropped'])
+            self.assertEqual(list(state), ['utc', 'status', 'distance_mm', 'boot', 'seq', 'age_ms', 'dropped'])
             self.assertEqual((state['status'], state['distance_mm'], state['dropped']), ('target', 1500, 0))
             self.assertRegex(state['boot'], '^[0-9a-f]{16}$')
             self.assertLess(state['age_ms'], 10000)
-            then = datetime.datetime.strptime(state['time'], '%Y-%m-%dT%H:%M:%S.%fZ')
+            then = datetime.datetime.strptime(state['utc'], '%Y-%m-%dT%H:%M:%S.%fZ')
             now = datetime.datetime.now(datetime.timezone.utc).replace(tzinfo=None)
             self.assertLess(abs((now - then).total_seconds()), e2e.PATIENCE)
         self.assertEqual([state['seq'] for state in states], [1, 2, 3])
@@ -47,11 +47,11 @@ class States(mqtt.Case):
             'gate hps167s:7 alarm: {when: near<1600/1700, unknown: on, no-response: on}, interval: 100',
             sim='a16:1:modbus hps167s:7 --distance 1500', top='interval: 250')
         level = mqtt.states(self.wait_for(subscriber, '/tank/level'))[0]
-        self.assertEqual(list(level), ['time', 'status', 'level_mm', 'level_per_mille', 'volume', 'boot', 'seq', 'age_ms',
+        self.assertEqual(list(level), ['utc', 'status', 'level_mm', 'level_per_mille', 'volume', 'boot', 'seq', 'age_ms',
                                        'dropped'])
         self.assertEqual((level['level_mm'], level['level_per_mille'], level['volume']), (800, 400, 2000))
         alarm = mqtt.states(self.wait_for(subscriber, '/gate/alarm'))[0]
-        self.assertEqual(list(alarm), ['time', 'alarm', 'is_on', 'distance_mm', 'boot', 'seq', 'age_ms', 'dropped'])
+        self.assertEqual(list(alarm), ['utc', 'alarm', 'is_on', 'distance_mm', 'boot', 'seq', 'age_ms', 'dropped'])
         self.assertEqual((alarm['alarm'], alarm['is_on'], alarm['distance_mm']), ('on', True, 1500))
         self.wait_for(subscriber, '/gate/state', count=2)
         topics = {one.topic for one in self.messages(subscriber)}

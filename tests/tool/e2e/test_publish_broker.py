@@ -30,7 +30,7 @@ class Away(Case):
             self.assertGreater(states[0]['age_ms'], 100)
         self.assertEqual([state['seq'] for state in states], list(range(states[0]['seq'], states[-1]['seq'] + 1)))
         self.assertEqual({state['dropped'] for state in states}, {0})
-        self.assertEqual([state['time'] for state in states], sorted(state['time'] for state in states))
+        self.assertEqual([state['utc'] for state in states], sorted(state['utc'] for state in states))
 
     def test_what_is_too_much_for_the_queue_is_dropped_counted_and_told(self):
         publisher = self.begin(top='interval: 100\nqueue: {messages: 5}')
@@ -42,7 +42,7 @@ class Away(Case):
         self.wait_for(subscriber, '/publisher', lambda one: one.json['dropped'] > 0)
         counters = self.messages(subscriber, '/publisher')[-1].json
         state = self.messages(subscriber, '/gate/state')[-1].json
-        self.assertEqual(list(counters), ['time', 'version', 'boot', 'uptime_s', 'sensors', 'queued', 'dropped'])
+        self.assertEqual(list(counters), ['utc', 'version', 'boot', 'uptime_s', 'sensors', 'queued', 'dropped'])
         self.assertEqual((counters['boot'], counters['dropped']), (state['boot'], state['dropped']))
         publisher.expect(rf'the queue was full: \d+ messages were dropped, {counters["dropped"]} since the begin$', 'err')
 

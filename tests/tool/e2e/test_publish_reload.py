@@ -44,7 +44,7 @@ class Case(mqtt.Case):
         states = mqtt.states(self.messages(self.subscriber, topic))
         self.assertEqual([state['seq'] for state in states], list(range(1, len(states) + 1)))
         self.assertEqual({state['status'] for state in states}, {'target'}, states)
-        times = [float(state['time'][17:-1]) for state in states]
+        times = [float(state['utc'][17:-1]) for state in states]
         self.assertLess(max((later - before) % 60 for before, later in zip(times, times[1:])), longest)
 
 

@@ -8,7 +8,7 @@ import time
 
 import e2e
 
-COMMON = ['name', 'sensor', 'mode', 'address', 'probe', 'sequence', 'time_us', 'utc', 'status', 'interference',
+COMMON = ['sensor', 'model', 'mode', 'address', 'probe', 'sequence', 'time_us', 'utc', 'status', 'interference',
           'distance_mm', 'raw']
 OPTICS = ['magnitude', 'ambient', 'precision']
 
@@ -120,7 +120,7 @@ class Json(e2e.Case):
         self.assertEqual(len(done.json), 3 * probes)
         for one in done.json:
             self.assertEqual(list(one), COMMON + (OPTICS if sensor == 'hps167s' else []))
-            self.assertEqual((one['sensor'], one['mode'], one['address']), (sensor, mode, address))
+            self.assertEqual((one['model'], one['mode'], one['address']), (sensor, mode, address))
             self.assertEqual((one['status'], one['distance_mm'], one['raw']), ('target', 1234, 1234))
             self.assertIs(one['interference'], False)
             for name in ('probe', 'sequence', 'time_us', 'raw', 'distance_mm'):
@@ -166,16 +166,16 @@ class Formats(e2e.Case):
         text_is_the_default_and_in_mm_and_m=('a16', '754', '', 'a16     754 mm    0.754 m'),
         text_of_four_probes=('a05', '1000,20,no-target,interference', '--format text',
                              'a05 probe 1    1000 mm    1.000 m', 'a05 probe 2      20 mm    0.020 m',
-                             'a05 probe 3  no target in range',
-                             'a05 probe 4  no target in range (interference)'),
+                             'a05 probe 3  no_target',
+                             'a05 probe 4  no_target (interference)'),
         text_of_what_is_no_distance=(
             'a05', '0,65533,1000,1000', '--means fffd=too-near',
-            'a05 probe 1  unknown: the value 0 has been given no meaning (--means)',
-            'a05 probe 2  nearer than it can measure', 'a05 probe 3    1000 mm    1.000 m',
+            'a05 probe 1  unknown: the value 0 has no known meaning (--means)',
+            'a05 probe 2  too_near', 'a05 probe 3    1000 mm    1.000 m',
             'a05 probe 4    1000 mm    1.000 m'),
         text_of_an_hps167s=('hps167s', '17999', '',
                             'hps167s   17999 mm   17.999 m  magnitude 723.1744  ambient 1  precision 0'),
-        text_of_a_fault=('hps167s', 'fault', '', 'hps167s  fault: the sensor says that it has failed'))
+        text_of_a_fault=('hps167s', 'fault', '', 'hps167s  fault: the sensor reports a fault'))
     def text(self, sensor, distance, options, *expected):
         sim = self.sim(f'{sensor} --distance {distance}')
         done = self.ends(f'read {sensor} --port {sim} --count 1 {options}', 0)

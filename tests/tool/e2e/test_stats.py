@@ -67,7 +67,7 @@ class Stats(e2e.Case):
         done = self.ends(self.fathom(f'read --count 1 {JSON}', words), 0)
         names = ['hps167s:1@plain', 'hps167s:1@a_b_c']
         self.assertEqual([unit['name'] for unit in self.told(done)['units']], names)
-        self.assertEqual(sorted(one['name'] for one in done.all_json), sorted(names))
+        self.assertEqual(sorted(one['sensor'] for one in done.all_json), sorted(names))
 
     def test_text_has_every_counter_too(self):
         lines = self.ask([GOOD, b''], '--stats').err.splitlines()[1:]

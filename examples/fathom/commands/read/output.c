@@ -5,68 +5,69 @@
 #include <string.h>
 
 #include "cli/command.h"
-#include "commands/read/fields.h"
+#include "diagnosis/status_word.h"
 
 /* ---- text, for people ---- */
 
-/* Where there is no distance. */
-static void write_kind(FILE *to, const reading_t *reading)
+/* Writes why a pulse, or a value that the sensor sent, is no distance. */
+static void write_reason(FILE *to, const reading_t *reading)
 {
     const fathom_sample_t *const sample = reading->sample;
-    if (sample->kind == FATHOM_NO_TARGET)
-        (void)fprintf(to, "no target in range%s", sample->interference ? " (interference)" : "");
-    else if (sample->kind == FATHOM_NEAR)
-        (void)fputs(fields_is_contact(reading) ? "near" : "nearer than it can measure", to);
-    else if (sample->kind == FATHOM_FAR)
-        (void)fputs("far", to);
-    else if (sample->kind == FATHOM_UNKNOWN && reading->reader->meter != NULL)
-        (void)fprintf(to, "unknown: only pulses shorter than the sensor's; the longest has %" PRIu32 " us",
+    const bool is_pulse = reading->reader->meter != NULL;
+    const bool is_unknown = sample->kind == FATHOM_UNKNOWN;
+    if (is_unknown && is_pulse)
+        (void)fprintf(to, ": all pulses are too short for the sensor; the longest has %" PRIu32 " us",
                       sample->raw);
-    else if (sample->kind == FATHOM_UNKNOWN)
-        (void)fprintf(to, "unknown: the value %" PRIu32 "%s", sample->raw,
-                      reading->model->has_optics ? "" : " has been given no meaning (--means)");
-    else if (reading->reader->meter == NULL)
-        (void)fputs("fault: the sensor says that it has failed", to);
+    else if (is_unknown)
+        (void)fprintf(to, ": the value %" PRIu32 "%s", sample->raw,
+                      reading->model->has_optics ? "" : " has no known meaning (--means)");
+    else if (!is_pulse)
+        (void)fputs(": the sensor reports a fault", to);
     else if (sample->raw == 0)
-        (void)fputs("fault: the line stays high; check the wire of echo", to);
+        (void)fputs(": the line stays high; check the wire of echo", to);
     else
-        (void)fprintf(to, "fault: a pulse of %" PRIu32 " us, longer than any of the sensor", sample->raw);
+        (void)fprintf(to, ": a pulse of %" PRIu32 " us is too long for the sensor", sample->raw);
+}
+
+/* Writes the status of a reading that has no distance. */
+static void write_status(FILE *to, const reading_t *reading)
+{
+    const fathom_sample_t *const sample = reading->sample;
+    (void)fprintf(to, "%s%s", reading_status(reading), sample->interference ? " (interference)" : "");
+    if (sample->kind == FATHOM_UNKNOWN || sample->kind == FATHOM_FAULT) write_reason(to, reading);
 }
 
 static void write_text_reading(FILE *to, const reading_t *reading)
 {
     const fathom_sample_t *const sample = reading->sample;
+    const reader_temperature_t *const temperature = &reading->reader->temperature;
     (void)fputs("  ", to);
     if (sample->kind == FATHOM_TARGET)
         (void)fprintf(to, "%6u mm  %3u.%03u m", sample->distance_mm, sample->distance_mm / 1000u,
                       sample->distance_mm % 1000u);
     else
-        write_kind(to, reading);
-    if (reading->model->has_optics && sample->kind != FATHOM_FAULT) {
-        char magnitude[VALUE_TEXT];
-        fields_magnitude(sample, magnitude);
-        (void)fprintf(to, "  magnitude %s  ambient %u  precision %u", magnitude, sample->ambient,
+        write_status(to, reading);
+    if (reading->model->has_optics && sample->kind != FATHOM_FAULT)
+        (void)fprintf(to, "  magnitude %" PRIu32 ".%04" PRIu32 "  ambient %u  precision %u",
+                      sample->magnitude / 10000, sample->magnitude % 10000, sample->ambient,
                       sample->precision);
-    }
-    char temperature[VALUE_TEXT];
-    fields_temperature(reading->reader, temperature);
-    if (temperature[0] != '\0') (void)fprintf(to, "  %s degC", temperature);
+    if (temperature->is_known) (void)fprintf(to, "  %.1f degC", temperature->dc / 10.0);
 }
 
-/* Is it on where no distance decides it? The user has said so. */
 static void write_text_change(FILE *to, const reading_t *reading)
 {
     const result_t *const result = reading->result;
-    if (result->alarm != FATHOM_ALARM_ON && result->alarm != FATHOM_ALARM_OFF) {
-        (void)fprintf(to, ": %s (%s)", result->alarm == FATHOM_ALARM_UNKNOWN ? "not known" : "no response",
-                      result->is_on ? "on" : "off");
+    const bool is_known = result->alarm == FATHOM_ALARM_ON || result->alarm == FATHOM_ALARM_OFF;
+    (void)fprintf(to, ": alarm %s", alarm_word(result->alarm));
+    if (!is_known) {
+        (void)fprintf(to, " (%s)", result->is_on ? "on" : "off");
         return;
     }
-    (void)fprintf(to, ": alarm %s, ", result->is_on ? "on" : "off");
+    (void)fputs(", ", to);
     if (reading->sample->kind == FATHOM_TARGET)
         (void)fprintf(to, "%u mm", reading->sample->distance_mm);
     else
-        write_kind(to, reading);
+        write_status(to, reading);
 }
 
 static void write_text(FILE *to, const reading_t *reading)
@@ -74,7 +75,7 @@ static void write_text(FILE *to, const reading_t *reading)
     const result_t *const result = reading->result;
     (void)fprintf(to, "%6" PRIu64 ".%03u s  %s", reading->time_us / 1000000u,
                   (unsigned)(reading->time_us / 1000u % 1000u), reading->label);
-    if (reading->model->probes > 1 && fields_has_probe(reading))
+    if (reading->model->probes > 1 && reading_has_probe(reading))
         (void)fprintf(to, " probe %u", reading->sample->probe);
     if (result->alarm != 0)
         write_text_change(to, reading);
@@ -86,12 +87,21 @@ static void write_text(FILE *to, const reading_t *reading)
     (void)fputs("\n", to);
 }
 
+static void write_json(FILE *to, const reading_t *reading)
+{
+    json_t json = {.to = to};
+    json_begin(&json, NULL, '{');
+    reading_json(&json, reading);
+    json_end(&json, '}');
+    (void)fputc('\n', to);
+}
+
 /* ---- formats ---- */
 
 static const format_t formats[] = {
     {"text", false, false, NULL, write_text},
-    {"json", true, true, NULL, fields_json},
-    {"csv", false, true, fields_begin_csv, fields_csv},
+    {"json", true, true, NULL, write_json},
+    {"csv", false, true, reading_csv_header, reading_csv},
 };
 enum { FORMATS = sizeof formats / sizeof formats[0] };
 

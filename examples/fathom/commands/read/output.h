@@ -4,14 +4,14 @@
 
 #include <stdio.h>
 
-#include "commands/read/reading.h"
+#include "reading/fields.h"
 
 /* A way to write readings. begin may be NULL. */
 typedef struct {
     const char *name;
     bool is_json;
     bool has_failures; /* a row for each attempt, also for one that has failed */
-    void (*begin)(FILE *to, uint8_t columns);
+    void (*begin)(FILE *to, unsigned columns);
     void (*write)(FILE *to, const reading_t *reading);
 } format_t;
 

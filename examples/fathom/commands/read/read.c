@@ -40,10 +40,11 @@ static uint8_t own_columns(const reading_run_t *run, const station_t *station)
 {
     const results_config_t *const results = &run->options.results;
     const uint8_t level = results->has_level ? COLUMNS_LEVEL : 0;
-    if (results->has_alarm) return COLUMNS_ALARM | level;
+    const uint8_t row = COLUMNS_ROW | COLUMNS_DISTANCE | level;
+    if (results->has_alarm) return COLUMNS_ALARM | row;
     const bool has_temperature =
         station->settings.temperature_us != 0 && (station->mode->takes & READER_TAKES_TEMPERATURE) != 0;
-    return (uint8_t)(COLUMNS_READING | level | (station->model->has_optics ? COLUMNS_OPTICS : 0) |
+    return (uint8_t)(COLUMNS_READING | row | (station->model->has_optics ? COLUMNS_OPTICS : 0) |
                      (has_temperature ? COLUMNS_TEMPERATURE : 0));
 }
 

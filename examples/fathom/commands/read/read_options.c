@@ -7,7 +7,6 @@
 #include "cli/options.h"
 #include "cli/pins_help.h"
 #include "cli/result_options.h"
-#include "commands/read/fields.h"
 
 static const char command[] = "read";
 
@@ -163,7 +162,7 @@ void read_help(FILE *to)
         "status 3\n",
         to);
     pins_help(to);
-    fields_help(to);
+    reading_help(to);
     (void)fputs(
         "\nReadings go to the standard output, everything else to the standard error, --stats too. No target "
         "in range\n"

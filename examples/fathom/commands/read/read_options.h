@@ -3,7 +3,7 @@
 #define READ_OPTIONS_H
 
 #include "commands/read/output.h"
-#include "commands/read/output_file.h"
+#include "output/file.h"
 #include "reading/results.h"
 
 /* What `fathom read` was asked to do, besides reading. */

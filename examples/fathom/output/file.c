@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): open, dup2 */
-#include "commands/read/output_file.h"
+#include "output/file.h"
 
 #include <errno.h>
 #include <fcntl.h>
