@@ -15,7 +15,7 @@ from e2e import ASK_A16, ASK_HPS, SAYS_754, SAYS_2083
 
 BUILD = os.environ.get('FATHOM_BUILD') or os.path.dirname(e2e.FATHOM)
 BUS = 'a16:1:modbus a05:2:modbus hps167s:7'
-SEEN = '--distance 1@1953 --distance 2@1000,2000,no-target,3562 --distance 3@2083'
+SEEN = 'a16:1:modbus,distance=1953 a05:2:modbus,distance=1000,2000,no-target,3562 hps167s:7,distance=2083'
 
 
 def seen(objects, *names):
@@ -24,7 +24,7 @@ def seen(objects, *names):
 
 class Read(e2e.Case):
     def bus(self):
-        return self.sim(BUS, SEEN)
+        return self.sim(SEEN)
 
     def test_three_models_with_two_line_settings_are_read_in_one_loop(self):
         done = self.ends(f'read {BUS} --port {self.bus()} --count 4 --format json', 0)
@@ -205,7 +205,7 @@ class Port(e2e.Case):
         self.assertNotRegex(done.err, r'a16:1: attempt \d')
 
     def test_ctrl_c_ends_it_in_order(self):
-        reader = self.fathom(f'read {BUS} --port {self.sim(BUS, SEEN)}')
+        reader = self.fathom(f'read {BUS} --port {self.sim(SEEN)}')
         reader.expect('hps167s:7')
         self.ends(reader.end(signal.SIGINT), 0)
 
@@ -238,7 +238,7 @@ class Example(e2e.Case):
         self.assertRegex(after, r'HPS-167S responses \d+, failures 0, ')
 
     def test_it_reads_a_port_too(self):
-        done = self.run_example(self.sim(BUS, SEEN), 2)
+        done = self.run_example(self.sim(SEEN), 2)
         self.assertEqual((done.code, done.err), (0, ''))
         for words in ('A16      probe 1   1953 mm', 'A05      probe 4   3562 mm',
                       'HPS-167S probe 1   2083 mm'):

@@ -34,7 +34,7 @@ class Commission(e2e.Case):
         self.assertEqual(self.units(), [['hps167s', '2', FIRST, 'planned']])
         second = self.commission(sim, 'hps167s --addresses 2-4')
         second.expect('address 2 is done: termination off from the next power-on, 1234 mm', seconds=60)
-        sim.expect('device 2 is connected', 'err')
+        sim.expect('sensor 2 is connected', 'err')
         second.expect('writes address 3', seconds=60)
         second.expect('address 3 is done')
         self.ends(second.end(signal.SIGINT), 1)
@@ -73,10 +73,10 @@ class Commission(e2e.Case):
 
 class OneByOne(e2e.Case):
     def test_the_next_device_is_connected_when_the_one_before_has_left_its_address(self):
-        sim = self.sim('a16:1:modbus a16:1:modbus --one-by-one --distance 1@1000 --distance 2@2000')
+        sim = self.sim('a16:1:modbus,distance=1000 a16:1:modbus,distance=2000 --one-by-one')
         self.assertEqual(self.read_json(f'a16:1:modbus --count 1 --port {sim}')[0]['distance_mm'], 1000)
         self.ends(f'set a16:1 address 5 --port {sim}', 0)
-        sim.expect('fathom: device 2 is connected', 'err')
+        sim.expect('fathom: sensor 2 is connected', 'err')
         self.assertEqual(self.read_json(f'a16:1:modbus --count 1 --port {sim}')[0]['distance_mm'], 2000)
         self.assertEqual(self.read_json(f'a16:5:modbus --count 1 --port {sim}')[0]['distance_mm'], 1000)
 

@@ -54,8 +54,7 @@ class Complete(e2e.Case):
 
 class Three(e2e.Case):
     """examples/linux/three.c"""
-    BUS = 'a16:2:modbus a05:1:modbus hps167s:5'
-    SEEN = '--distance 1@754 --distance 2@1000,2000,no-target,3562 --distance 3@2083'
+    SEEN = 'a16:2:modbus,distance=754 a05:1:modbus,distance=1000,2000,no-target,3562 hps167s:5,distance=2083'
     LINES = {'A16: probe 1: 754 mm', 'A05: probe 1: 1000 mm', 'A05: probe 2: 2000 mm',
              'A05: probe 3: nothing in range', 'A05: probe 4: 3562 mm', 'HPS-167S: probe 1: 2083 mm'}
 
@@ -63,7 +62,7 @@ class Three(e2e.Case):
         return self.start([os.path.join(PROGRAMS, 'example_three'), *arguments], **options)
 
     def test_each_sensor_is_read_again_and_again_at_its_own_settings(self):
-        three = self.three(self.sim(self.BUS, self.SEEN))
+        three = self.three(self.sim(self.SEEN))
         count = collections.Counter()
         while len(count) < len(self.LINES) or min(count.values()) < 2:
             count[three.expect('^(.*)$')[1]] += 1
@@ -71,7 +70,7 @@ class Three(e2e.Case):
         self.assertEqual(set(count), self.LINES)
 
     def test_a_sensor_that_is_missing_is_named_and_the_others_are_read(self):
-        three = self.three(self.sim('a16:2:modbus hps167s:5', '--distance 1@754 --distance 2@2083'))
+        three = self.three(self.sim('a16:2:modbus,distance=754 hps167s:5,distance=2083'))
         for _ in range(2):
             three.expect(r'^A05: no reading \(NO_RESPONSE\)\. [A-Z].*\.$')
             three.expect('^A16: probe 1: 754 mm$')
@@ -80,7 +79,7 @@ class Three(e2e.Case):
                           line not in self.LINES], [])
 
     def test_it_ends_with_the_reason_when_its_port_is_lost(self):
-        sim = self.sim(self.BUS, self.SEEN)
+        sim = self.sim(self.SEEN)
         three = self.three(sim)
         three.expect('^A16: probe 1: 754 mm$')
         sim.end()
@@ -92,7 +91,7 @@ class Three(e2e.Case):
 
     def test_it_ends_when_its_output_is_broken(self):
         with open('/dev/full', 'w', encoding='utf-8') as full:
-            self.ends(self.three(self.sim(self.BUS, self.SEEN), stdout=full), 1)
+            self.ends(self.three(self.sim(self.SEEN), stdout=full), 1)
 
 
 class Modes(e2e.Case):

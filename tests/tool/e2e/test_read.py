@@ -98,7 +98,7 @@ class FirstContact(e2e.Case):
         self.ends(f'read a16 --port {self.device()} --duration 1 --stats', 1, 'attempts 0, failed 0, readings 0\n')
 
     def test_one_good_sensor_does_not_make_up_for_another_that_gave_nothing_good(self):
-        sim = self.sim('a16:1:modbus a05:2:modbus --distance 1@0 --distance 2@1000')
+        sim = self.sim('a16:1:modbus,distance=0 a05:2:modbus,distance=1000')
         self.ends(f'read a16:1 a05:2 --port {sim} --count 1 --stats', 1, 'attempts 2, failed 0, readings 5\n')
 
 

@@ -87,7 +87,7 @@ class Whole(e2e.Case):
     def writes(self, options):
         """What each write(2) has handed over: a socket of packets keeps them apart."""
         ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-        sim = self.sim('a05:2:modbus hps167s:7 --distance 1@1000,40000,1953,3562 --distance 2@2083')
+        sim = self.sim('a05:2:modbus,distance=1000,40000,1953,3562 hps167s:7,distance=2083')
         with ours:
             with theirs:
                 reader = self.fathom(f'read a05:2 hps167s:7 --temperature --timeout 5000 --port {sim} --count 4 '

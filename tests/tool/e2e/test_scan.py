@@ -41,11 +41,12 @@ class Case(e2e.Case):
 
 class Eight(Case):
     @e2e.each(
-        eight_sensors_of_three_models_are_found_and_none_is_harmed='',
-        they_are_found_behind_local_echo_with_one_that_is_noisy='--echo --fault 2@noise --fault 6@noise=50%')
-    def eight(self, options):
+        eight_sensors_of_three_models_are_found_and_none_is_harmed=EIGHT,
+        eight_sensors_are_found_behind_local_echo_although_two_are_noisy=EIGHT.replace(
+            'a16:2:modbus', 'a16:2:modbus,fault=noise').replace('s:7', 's:7,fault=noise=50%') + ' --echo')
+    def eight(self, sensors):
         """Address 4 is the dead one."""
-        sim = self.sim(f'{EIGHT} --counters {options}')
+        sim = self.sim(f'{sensors} --counters')
         self.scan(sim, f'--address 1-9 {PATIENT}',
                   '3 HPS-167S have their termination resistor on, as from the factory, which overloads the '
                   'line',
@@ -64,7 +65,7 @@ class Eight(Case):
 
 class Output(Case):
     def test_what_is_printed_as_next_reads_the_sensor(self):
-        sim = self.sim('a16:11:modbus a05:12:modbus hps167s:13 --baud 3@57600 --distance 1234')
+        sim = self.sim('a16:11:modbus a05:12:modbus hps167s:13,baud=57600 --distance 1234')
         self.scan(sim, f'--address 11-13 --baud 9600,57600 {PATIENT}')
         self.assertEqual([one['model'] for one in self.found], ['a16', 'a05', 'hps167s'])
         for one in self.found:

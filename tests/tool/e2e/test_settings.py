@@ -189,6 +189,7 @@ class Change(Settings):
         'warm-up 3', 'measure-after-power-on off', 'termination off', 'reconnect-time 36', 'baud 57600')})
     def odd(self, setting):
         sim = self.sim('hps167s --with reconnect=1000 --with baud-code-00 --counters')
+        self.assertRegex(self.told(f'get hps167s --port {sim} reconnect-time'), 'reconnect-time +1000 ms')
         self.told(f'set hps167s --port {sim} {setting}')
         self.assertEqual(self.counters(sim, 'writes'), [(1,)])
 

@@ -168,7 +168,7 @@ class Bus(Case):
 
 class Several(Bus):
     def test_three_models_answer_each_at_its_own_address_and_rate(self):
-        sim = self.sim(f'{BUS} --distance 1@754 --distance 2@316 --distance 3@2083 --counters')
+        sim = self.sim('a16:1:modbus,distance=754 a05:2:modbus,distance=316 hps167s:7,distance=2083 --counters')
         self.assertEqual([self.mm(sim, sensor) for sensor in (HPS, A16, A05)], [2083, 754, 316])
         told = self.counters(sim, 'device', 'sensor', 'mode', 'address', 'baud', 'requests', 'answered',
                              'writes', 'resets', 'wrong_settings', 'others')
@@ -180,8 +180,8 @@ class Several(Bus):
         self.assertEqual([one[9] for one in told[:2]], [21, 21])
         self.assertGreaterEqual(told[0][10], 1)
 
-    def test_one_option_holds_for_all_and_its_own_wins(self):
-        sim = self.sim(f'{BUS} --distance 2@1500 --distance 700 --fault 3@silence')
+    def test_an_option_applies_to_all_and_a_key_behind_a_sensor_to_that_sensor(self):
+        sim = self.sim('a16:1:modbus a05:2:modbus,distance=1500 hps167s:7,fault=silence --distance 700')
         self.assertEqual([self.mm(sim, sensor) for sensor in (A16, A05)], [700, 1500])
         self.fails(sim, HPS)
 
@@ -192,8 +192,8 @@ class Several(Bus):
         self.assertEqual(self.counters(sim, 'requests', 'answered'), [(1, 1)] * 2)
 
     def test_two_units_with_one_address_answer_into_each_other(self):
-        sim = self.sim('hps167s hps167s --distance 1@2083 --distance 2@1000 --counters')
-        sim.expect('devices 1 and 2 have the address 1 both', 'err')
+        sim = self.sim('hps167s,distance=2083 hps167s,distance=1000 --counters')
+        sim.expect('sensors 1 and 2 have the address 1 both', 'err')
         garbled = self.ask(self.open(sim), ASK_HPS, 13)
         self.assertNotEqual(garbled, SAYS_2083)
         self.assertNotEqual(e2e.crc16(garbled[:-2]), garbled[-2:])
@@ -202,7 +202,7 @@ class Several(Bus):
         self.assertGreater(collisions, 10)
 
     def test_two_units_with_one_address_at_two_rates_do_not_meet(self):
-        sim = self.sim('a16:1:modbus hps167s:1 --distance 1@754 --distance 2@2083 --counters')
+        sim = self.sim('a16:1:modbus,distance=754 hps167s:1,distance=2083 --counters')
         port = self.open(sim)
         for _ in range(2):
             self.assertEqual(self.ask(port, ASK_A16, 7, 9600), SAYS_754)
@@ -254,7 +254,7 @@ class Several(Bus):
 
     def test_one_that_sends_by_itself_beside_others_is_told(self):
         sim = self.sim('a16:1:auto hps167s:7 --distance 754')
-        sim.expect('device 1 sends by itself, into what the others say', 'err')
+        sim.expect('sensor 1 sends by itself, into what the others say', 'err')
         self.assertIn(bytes.fromhex('FF 02 F2 F3'), self.open(sim).read(12))  # FF + 02 + F2 = 1F3
 
 
@@ -361,8 +361,8 @@ class With(Case):
             self.ask(port, e2e.adu(1, 6, 0, 0x14, 0, 10), 8)
         self.assertEqual(self.ask(port, ASK_HPS, 13)[3:5], distance.to_bytes(2, 'big'))
 
-    def test_for_all_means_those_that_can_and_n_means_one(self):
-        port = self.open(self.sim(f'{BUS} --with exceptions --with 3@count-03'))
+    def test_an_option_applies_to_the_sensors_that_can_have_it_and_keys_add_to_it(self):
+        port = self.open(self.sim(f'{BUS},with=count-03 --with exceptions'))
         self.assertEqual(self.ask(port, NO_SUCH_REGISTER, 5, 9600), e2e.adu(1, 0x83, 2))
         self.assertEqual(self.ask(port, e2e.adu(2, 3, 3, 0, 0, 1), 5, 9600), e2e.adu(2, 0x83, 2))
         self.assertEqual(self.ask(port, e2e.adu(7, 3, 0, 8, 0, 3), 5, 19200), e2e.adu(7, 0x83, 3))
@@ -398,14 +398,14 @@ class FaultUsage(Case):
         '0.0000001',
         '0.00001%', '1@', '1@0', '1@-1', '1@x', '1@4294967296', '@3', '1@2@3', ' 1', '9' * 40))})
     def wrong_number(self, text):
-        self.assertIn('--fault takes KIND[=P[@N]], P from 0.000001 to 1 or as 5%, N from 1, not '
+        self.assertIn('fault takes KIND[=P[@N]], P from 0.000001 to 1 or as 5%, N from 1, not '
                       f"'drop={text}'", self.wrong('a16', ['--fault', f'drop={text}']))
 
     def test_one_wrong_among_good_ones_is_found(self):
         self.assertIn("not 'late=7'", self.wrong('a16 --fault drop=1% --fault late=7 --fault insert'))
 
     def test_there_may_be_32_and_no_more(self):
-        self.assertIn('--fault may be given up to 32 times', self.wrong('a16', '--fault drop ' * 33))
+        self.assertIn('fault may be given up to 32 times', self.wrong('a16', '--fault drop ' * 33))
         self.assertEqual(self.sim('a16', '--fault drop=1% ' * 32).end().code, 0)
 
     def test_a_value_is_needed(self):

@@ -11,6 +11,11 @@ import e2e
 import terminal
 
 BUS = 'a16:1:modbus a05:2:modbus hps167s:7'
+
+
+def seen(distance):
+    """The same sensors and what they measure, as words of fathom sim."""
+    return f'a16:1:modbus,distance=1953 a05:2:modbus,distance=1000,no-target,1500,4500 hps167s:7,distance={distance}'
 FULL = '█'  # an eighth to eight eighths: ▁▂▃▄▅▆▇█
 GUTTER = 8
 
@@ -61,7 +66,7 @@ def foot_of(screen, name):
 
 class Picture(Case):
     def test_three_models_fit_80x24_with_a_lane_for_each_probe(self):
-        sim = self.sim(f'{BUS} --distance 1@1953 --distance 2@1000,no-target,1500,4500 --distance 3@fault')
+        sim = self.sim(seen('fault'))
         it = self.watch(f'{BUS} a16:9 --port {sim} --timeout 800')
         it.wait(lambda screen: re.search(r'(?m)^a16:9 +no response', screen.text())
                 and 'fault  ' in screen.text() and
@@ -365,7 +370,7 @@ class Lines(Case):
     ends = e2e.Case.ends
 
     def test_into_a_pipe_go_plain_lines_one_a_second(self):
-        sim = self.sim(f'{BUS} --distance 1@1953 --distance 2@1000,no-target,1500,4500 --distance 3@2500')
+        sim = self.sim(seen(2500))
         done = self.ends(f'watch {BUS} --port {sim} --duration 4', 0)
         self.assertNotIn('\x1b', done.out + done.err)
         lines = done.out.splitlines()

@@ -6,9 +6,7 @@
 #include <string.h>
 
 #include "commands/commands.h"
-#include "commands/sim/sim_help.h"
-#include "commands/sim/sim_options.h"
-#include "commands/sim/sim_report.h"
+#include "commands/sim/sim.h"
 #include "ports/events.h"
 #include "sim/pty.h"
 
@@ -18,28 +16,34 @@ typedef struct {
     sim_options_t options;
     fathom_sim_line_t line;
     fathom_sim_pty_t pty;
-    uint32_t connected; /* devices, the first ones */
-    uint32_t left_us;   /* when the last of them left the address that it came with, ... */
-    bool has_left;      /* ... if it has */
-    device_t devices[SIM_DEVICES];
-    fathom_sim_fault_t faults[SIM_DEVICES];
+    uint32_t connected; /* the first sensors */
+    uint32_t left_us;   /* time at which the last connected sensor left its first address */
+    bool has_left;      /* `left_us` is valid */
+    device_t devices[SIM_SENSORS];
+    fathom_sim_fault_t faults[SIM_SENSORS];
 } simulation_t;
 
-static void hang_device(simulation_t *simulation, uint32_t i, uint32_t now_us)
+static void attach_faults(const sim_sensor_t *sensor, fathom_sim_fault_t *fault)
 {
-    const sim_device_t *const asked = &simulation->options.devices[i];
-    uint8_t number = 0;
-    for (uint32_t j = 0; j != i; j++)
-        if (simulation->options.devices[j].model == asked->model) number++;
-    device_settings_t settings = {.address = asked->address,
-                                  .number = number,
-                                  .baud = asked->line.baud,
-                                  .seed = asked->seed,
-                                  .scene = asked->scene.scene};
+    fathom_sim_fault_init(fault, sensor->seed);
+    for (uint8_t i = 0; i != sensor->fault_count; i++)
+        (void)fathom_sim_fault_add(fault, sensor->faults[i].kind, sensor->faults[i].chance_ppm,
+                                   sensor->faults[i].at_frame);
+}
+
+static void connect_sensor(simulation_t *simulation, uint32_t i, uint32_t now_us)
+{
+    const sim_sensor_t *const sensor = &simulation->options.sensors[i];
     device_t *const device = &simulation->devices[i];
-    memcpy(settings.traits, asked->traits, sizeof settings.traits);
-    asked->mode->simulate(device, &settings);
-    sim_faults_begin(&asked->faults, &simulation->faults[i], asked->seed);
+    device_settings_t settings = {.address = sensor->address,
+                                  .baud = sensor->line.baud,
+                                  .seed = sensor->seed,
+                                  .scene = sensor->scene.scene};
+    for (uint32_t j = 0; j != i; j++)
+        if (simulation->options.sensors[j].model == sensor->model) settings.number++;
+    memcpy(settings.traits, sensor->traits, sizeof settings.traits);
+    sensor->mode->simulate(device, &settings);
+    attach_faults(sensor, &simulation->faults[i]);
     fathom_sim_fault_attach(&simulation->faults[i], &simulation->line, device->base);
     fathom_sim_attach(&simulation->line, device->base, now_us);
     simulation->connected++;
@@ -50,12 +54,12 @@ static bool open_line(simulation_t *simulation)
     const sim_options_t *const options = &simulation->options;
     const fathom_sim_pty_config_t config = {.link = options->link};
     const uint32_t now_us = fathom_sim_pty_now_us();
-    fathom_sim_line_init(&simulation->line, &options->devices[0].line, now_us);
-    /* What has no address has a wire each way; the others share an RS485 pair. */
-    simulation->line.full_duplex = options->count == 1 && !options->devices[0].mode->has_address;
+    fathom_sim_line_init(&simulation->line, &options->sensors[0].line, now_us);
+    /* A sensor without an address has a wire in each direction; the others share an RS485 pair. */
+    simulation->line.full_duplex = options->count == 1 && !options->sensors[0].mode->has_address;
     simulation->line.echo = options->echo;
     const uint32_t first = options->one_by_one ? 1 : options->count;
-    for (uint32_t i = 0; i != first; i++) hang_device(simulation, i, now_us);
+    for (uint32_t i = 0; i != first; i++) connect_sensor(simulation, i, now_us);
     if (fathom_sim_pty_open(&simulation->pty, &simulation->line, &config) == 0) return true;
     if (options->link != NULL && errno == EEXIST)
         (void)fprintf(stderr,
@@ -69,7 +73,7 @@ static bool open_line(simulation_t *simulation)
     return false;
 }
 
-/* The path alone on stdout, for scripts; what a person may want to know on stderr. */
+/* Prints only the path on stdout, for scripts, and what a person may want to know on stderr. */
 static bool announce(const simulation_t *simulation)
 {
     const char *const path = fathom_sim_pty_path(&simulation->pty);
@@ -82,7 +86,7 @@ static bool announce(const simulation_t *simulation)
     return true;
 }
 
-/* Of all: what hangs on one line hangs on one supply, most often. */
+/* The sensors of a line mostly share a supply, too. */
 static void cycle_power(simulation_t *simulation)
 {
     const uint32_t now_us = fathom_sim_pty_now_us();
@@ -91,22 +95,22 @@ static void cycle_power(simulation_t *simulation)
     (void)fprintf(stderr, "fathom: power off for a second\n");
 }
 
-/* Connects the next one a second after the last one has left its address, as a person would. Returns how long it
- * may be until then at most. */
+/* Connects the next sensor a second after the last one has left its address, as a person would. Returns the time until
+ * this function must be called again, at most `due_us`. */
 static uint32_t connect_next(simulation_t *simulation, uint32_t due_us)
 {
     const uint32_t next = simulation->connected;
     if (next == simulation->options.count) return due_us;
     const uint32_t now_us = fathom_sim_pty_now_us();
-    if (simulation->devices[next - 1].base->address == simulation->options.devices[next - 1].address)
+    if (simulation->devices[next - 1].base->address == simulation->options.sensors[next - 1].address)
         return due_us;
     if (!simulation->has_left) simulation->left_us = now_us;
     simulation->has_left = true;
     const uint32_t passed_us = fathom_elapsed_us(now_us, simulation->left_us);
     if (passed_us < CONNECT_US) return due_us < CONNECT_US - passed_us ? due_us : CONNECT_US - passed_us;
     simulation->has_left = false;
-    hang_device(simulation, next, now_us);
-    (void)fprintf(stderr, "fathom: device %u is connected\n", (unsigned)next + 1);
+    connect_sensor(simulation, next, now_us);
+    (void)fprintf(stderr, "fathom: sensor %u is connected\n", (unsigned)next + 1);
     return 0;
 }
 

@@ -1,125 +1,96 @@
 /* SPDX-License-Identifier: MIT */
-#include "commands/sim/sim_faults.h"
-
 #include <string.h>
 
 #include "cli/command.h"
 #include "cli/options.h"
+#include "commands/sim/sim.h"
+
+static const char command[] = "sim";
 
 enum { KINDS_TEXT = 400, MAX_KIND = 16 };
-
-void sim_faults_note(sim_faults_t *faults, const char *text)
-{
-    if (faults->count < FATHOM_SIM_FAULT_RULES) faults->texts[faults->count] = text;
-    faults->count++;
-}
 
 /* A port has no clock that could jump. */
 static bool is_offered(uint8_t kind) { return kind != FATHOM_SIM_FAULT_CLOCK_JUMP; }
 
-static bool applies(uint8_t kind, const model_mode_t *mode)
+bool sim_can_have_fault(const sim_sensor_t *sensor, uint8_t kind)
 {
     const device_settings_t settings = {.address = FACTORY_ADDRESS};
     device_t device;
-    mode->simulate(&device, &settings);
+    sensor->mode->simulate(&device, &settings);
     return is_offered(kind) && fathom_sim_fault_applies(kind, device.base);
 }
 
-/* Decimal digits with `places` of them after the point, as a whole number; nothing is rounded. */
-static bool parse_decimal(const char *text, size_t length, uint32_t places, uint32_t *number)
+bool sim_decimal(const char *text, size_t length, uint32_t places, uint32_t min, uint32_t max,
+                 uint32_t *number)
 {
+    const size_t whole = strspn(text, "0123456789");
+    const size_t part = whole < length && text[whole] == '.' ? strspn(text + whole + 1, "0123456789") : 0;
+    const size_t read = part != 0 ? whole + 1 + part : whole;
     uint64_t sum = 0;
-    uint32_t after = 0;
-    bool point = false;
-    bool digit = false;
-    for (size_t i = 0; i != length; i++) {
-        if (text[i] == '.' && !point) {
-            point = true;
-            continue;
-        }
-        if (text[i] < '0' || text[i] > '9' || after == places || sum > UINT32_MAX) return false;
-        sum = sum * 10 + (uint64_t)(text[i] - '0');
-        if (point) after++;
-        digit = true;
-    }
-    for (; after != places; after++) sum *= 10;
-    if (!digit || sum > UINT32_MAX) return false;
+    if (whole == 0 || read != length || part > places) return false;
+    for (size_t i = 0; i != read && sum <= UINT32_MAX; i++)
+        if (i != whole) sum = sum * 10 + (uint64_t)(text[i] - '0');
+    for (size_t i = part; i != places && sum <= UINT32_MAX; i++) sum *= 10;
+    if (sum < min || sum > max) return false;
     *number = (uint32_t)sum;
     return true;
 }
 
-/* 0.05 or 5%, in millionths. */
+/* Reads 0.05 or 5% as millionths. */
 static bool parse_chance(const char *text, size_t length, uint32_t *chance_ppm)
 {
-    const bool percent = length != 0 && text[length - 1] == '%';
-    if (!parse_decimal(text, percent ? length - 1 : length, percent ? 4 : 6, chance_ppm)) return false;
-    return *chance_ppm >= 1 && *chance_ppm <= FATHOM_SIM_FAULT_ALWAYS_PPM;
+    const bool is_percent = length != 0 && text[length - 1] == '%';
+    return sim_decimal(text, is_percent ? length - 1 : length, is_percent ? 4 : 6, 1,
+                       FATHOM_SIM_FAULT_ALWAYS_PPM, chance_ppm);
 }
 
-/* What follows the name. */
+/* Reads P[@N]. */
 static bool parse_rest(const char *text, sim_fault_t *fault)
 {
-    fault->chance_ppm = FATHOM_SIM_FAULT_ALWAYS_PPM;
-    if (*text == '\0') return true;
-    text++;
     const size_t length = strcspn(text, "@");
     if (!parse_chance(text, length, &fault->chance_ppm)) return false;
     return text[length] == '\0' || number_parse(text + length + 1, 1, UINT32_MAX, &fault->at_frame);
 }
 
-static bool parse_one(const char *command, const model_t *model, const model_mode_t *mode, const char *text,
-                      sim_fault_t *fault)
+static bool reject_kind(const sim_sensor_t *sensor, const char *text)
 {
+    char known[KINDS_TEXT] = "";
+    for (uint8_t kind = 1; kind != FATHOM_SIM_FAULT_END; kind++)
+        if (sim_can_have_fault(sensor, kind)) list_add(known, sizeof known, fathom_sim_fault_name(kind));
+    (void)usage_error(command, "there is no fault '%.*s' for %s in mode %s, only %s", (int)strcspn(text, "="),
+                      text, sensor->model->name, sensor->mode->name, known);
+    return false;
+}
+
+bool sim_add_fault(sim_sensor_t *sensor, const char *text)
+{
+    if (sensor->fault_count == FATHOM_SIM_FAULT_RULES) {
+        (void)usage_error(command, "fault may be given up to %u times", FATHOM_SIM_FAULT_RULES);
+        return false;
+    }
+    sim_fault_t *const fault = &sensor->faults[sensor->fault_count++];
     const size_t length = strcspn(text, "=");
     char name[MAX_KIND] = "";
     if (length < sizeof name) memcpy(name, text, length);
     fault->kind = fathom_sim_fault_find(name);
-    if (fault->kind == 0 || !applies(fault->kind, mode)) {
-        char known[KINDS_TEXT] = "";
-        for (uint8_t kind = 1; kind != FATHOM_SIM_FAULT_END; kind++)
-            if (applies(kind, mode)) list_add(known, sizeof known, fathom_sim_fault_name(kind));
-        (void)usage_error(command, "there is no fault '%.*s' for %s in mode %s, only %s", (int)length, text,
-                          model->name, mode->name, known);
-        return false;
-    }
-    if (!parse_rest(text + length, fault)) {
-        (void)usage_error(
-            command, "--fault takes KIND[=P[@N]], P from 0.000001 to 1 or as 5%%, N from 1, not '%s'", text);
-        return false;
-    }
-    return true;
+    fault->chance_ppm = FATHOM_SIM_FAULT_ALWAYS_PPM;
+    if (fault->kind == 0 || !sim_can_have_fault(sensor, fault->kind)) return reject_kind(sensor, text);
+    if (text[length] == '\0' || parse_rest(text + length + 1, fault)) return true;
+    (void)usage_error(command, "fault takes KIND[=P[@N]], P from 0.000001 to 1 or as 5%%, N from 1, not '%s'",
+                      text);
+    return false;
 }
 
-bool sim_faults_parse(sim_faults_t *faults, const char *command, const model_t *model,
-                      const model_mode_t *mode)
+void sim_print_faults(FILE *to)
 {
-    if (faults->count > FATHOM_SIM_FAULT_RULES) {
-        (void)usage_error(command, "--fault may be given up to %u times", FATHOM_SIM_FAULT_RULES);
-        return false;
-    }
-    for (uint32_t i = 0; i != faults->count; i++)
-        if (!parse_one(command, model, mode, faults->texts[i], &faults->list[i])) return false;
-    return true;
-}
-
-void sim_faults_begin(const sim_faults_t *faults, fathom_sim_fault_t *fault, uint32_t seed)
-{
-    fathom_sim_fault_init(fault, seed);
-    for (uint32_t i = 0; i != faults->count; i++)
-        (void)fathom_sim_fault_add(fault, faults->list[i].kind, faults->list[i].chance_ppm,
-                                   faults->list[i].at_frame);
-}
-
-void sim_faults_print(FILE *to)
-{
-    bool second = false;
+    bool is_second = false;
     for (uint8_t kind = 1; kind != FATHOM_SIM_FAULT_END; kind++) {
         if (!is_offered(kind)) continue;
-        (void)fprintf(to, second ? "%-12s  %s\n" : "    %-12s  %-41s  ", fathom_sim_fault_name(kind),
+        (void)fprintf(to, is_second ? "%-12s  %s\n" : "    %-12s  %-41s  ", fathom_sim_fault_name(kind),
                       fathom_sim_fault_text(kind));
-        second = !second;
+        is_second = !is_second;
     }
-    if (second) (void)fputc('\n', to);
+    if (is_second) (void)fputc('\n', to);
     (void)fputs("A pseudo terminal cannot mark a byte: with parity, framing and break it comes as a terminal "
                 "without\nchecks delivers it, wrong or 00, and with overrun it is missing.\n",
                 to);

@@ -1,8 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "commands/sim/sim_help.h"
-
-#include "commands/sim/sim_faults.h"
-#include "commands/sim/sim_traits.h"
+#include "commands/sim/sim.h"
 #include "sensors/models.h"
 
 void sim_help(FILE *to)
@@ -10,7 +7,7 @@ void sim_help(FILE *to)
     (void)fputs("fathom sim puts simulated sensors behind a pseudo terminal, which any program can open like "
                 "a serial\n"
                 "port. It prints the port's path and runs until Ctrl-C.\n\n"
-                "usage: fathom sim SENSOR[:ADDRESS][:MODE]... [OPTIONS]\n\n",
+                "usage: fathom sim SENSOR[:ADDRESS][:MODE][,KEY=VALUE...]... [OPTIONS]\n\n",
                 to);
     models_print(to);
     (void)fputs(
@@ -31,8 +28,9 @@ void sim_help(FILE *to)
         "  --seed N          where the movement begins, the small differences of the response times, and the "
         "faults;\n"
         "                    default 0\n\n"
-        "Of several sensors, the rest are for all, or with N@ before the value for the N-th:\n"
-        "--distance 2@1500 --fault 3@silence=10%.\n\n"
+        "Write an option of one sensor behind it: a05:2,distance=1500,fault=silence=10%. An option without "
+        "a\n"
+        "sensor applies to all sensors that can have it:\n\n"
         "  --distance MM     what it measures, 0..65535, which is sent as it is; or no-target, interference "
         "(a16,\n"
         "                    a05) or fault (hps167s). An a05 takes up to four, separated by commas; the last "
@@ -42,7 +40,7 @@ void sim_help(FILE *to)
         "  --with NAME       gives it what was set before, or one of the ways that the datasheets leave "
         "open:\n",
         to);
-    sim_traits_print(to);
+    sim_print_traits(to);
     (void)fputs("  --fault KIND[=P[@N]]\n"
                 "                    damages what it sends: each frame with the chance P, such as 0.05 or 5% "
                 "(default "
@@ -50,7 +48,7 @@ void sim_help(FILE *to)
                 "                    only the N-th, counted from 1. May be given several times, such as\n"
                 "                    --fault silence=10% --fault flip-bit=0.01. The kinds:\n",
                 to);
-    sim_faults_print(to);
+    sim_print_faults(to);
     (void)fputs(
         "\nSIGUSR1 cuts the power of all for a second; they keep the settings that real ones keep.\n"
         "Each answers only at its own baud rate. Parity cannot be seen through a pseudo terminal: it is "

@@ -1,48 +1,47 @@
 /* SPDX-License-Identifier: MIT */
-#include "commands/sim/sim_report.h"
-
 #include <inttypes.h>
 
+#include "commands/sim/sim.h"
 #include "ports/line_text.h"
 
-static void print_device(FILE *to, const sim_device_t *device)
+static void print_sensor(FILE *to, const sim_sensor_t *sensor)
 {
     char line[LINE_TEXT];
-    (void)fprintf(to, "%s, mode %s, address %u, %s", device->model->name, device->mode->name, device->address,
-                  line_text(&device->line, line));
+    (void)fprintf(to, "%s, mode %s, address %u, %s", sensor->model->name, sensor->mode->name, sensor->address,
+                  line_text(&sensor->line, line));
 }
 
-static void print_reader(FILE *to, const sim_device_t *device, const char *port)
+static void print_reader(FILE *to, const sim_sensor_t *sensor, const char *port)
 {
-    (void)fprintf(to, "fathom read %s", device->model->name);
-    if (device->mode != &device->model->modes[0]) (void)fprintf(to, " --mode %s", device->mode->name);
-    if (device->mode->has_address && device->address != FACTORY_ADDRESS)
-        (void)fprintf(to, " --address %u", device->address);
-    if (device->line.baud != device->model->line.baud)
-        (void)fprintf(to, " --baud %" PRIu32, device->line.baud);
+    (void)fprintf(to, "fathom read %s", sensor->model->name);
+    if (sensor->mode != &sensor->model->modes[0]) (void)fprintf(to, " --mode %s", sensor->mode->name);
+    if (sensor->mode->has_address && sensor->address != FACTORY_ADDRESS)
+        (void)fprintf(to, " --address %u", sensor->address);
+    if (sensor->line.baud != sensor->model->line.baud)
+        (void)fprintf(to, " --baud %" PRIu32, sensor->line.baud);
     (void)fprintf(to, " --port %s\n", port);
 }
 
-/* Those that cannot work together are meant to be, most often; but who did not mean it should know. */
+/* Sensors that disturb each other are mostly intended, but the user should know. */
 static void print_clashes(FILE *to, const sim_options_t *options)
 {
     if (options->one_by_one) {
         (void)fputs(
-            "fathom: one by one: each further device is connected a second after the one before has left "
+            "fathom: one by one: each further sensor is connected a second after the one before has left "
             "its address\n",
             to);
         return;
     }
     for (uint32_t i = 0; i != options->count; i++) {
-        const sim_device_t *const one = &options->devices[i];
+        const sim_sensor_t *const one = &options->sensors[i];
         if (!one->mode->is_asked)
-            (void)fprintf(to, "fathom: device %" PRIu32 " sends by itself, into what the others say\n",
+            (void)fprintf(to, "fathom: sensor %" PRIu32 " sends by itself, into what the others say\n",
                           i + 1);
         for (uint32_t other = i + 1; other != options->count; other++)
-            if (options->devices[other].address == one->address &&
-                options->devices[other].line.baud == one->line.baud)
+            if (options->sensors[other].address == one->address &&
+                options->sensors[other].line.baud == one->line.baud)
                 (void)fprintf(to,
-                              "fathom: devices %" PRIu32 " and %" PRIu32
+                              "fathom: sensors %" PRIu32 " and %" PRIu32
                               " have the address %u both and will answer into each other\n",
                               i + 1, other + 1, one->address);
     }
@@ -52,19 +51,19 @@ void sim_announce(FILE *to, const sim_options_t *options, const char *port)
 {
     if (options->count == 1) {
         (void)fprintf(to, "fathom: simulates ");
-        print_device(to, &options->devices[0]);
+        print_sensor(to, &options->sensors[0]);
         (void)fprintf(to, ", until Ctrl-C; to read it: ");
-        print_reader(to, &options->devices[0], port);
+        print_reader(to, &options->sensors[0], port);
         return;
     }
     print_clashes(to, options);
-    (void)fprintf(to, "fathom: simulates %" PRIu32 " devices on one line, until Ctrl-C; to read each:\n",
+    (void)fprintf(to, "fathom: simulates %" PRIu32 " sensors on one line, until Ctrl-C; to read each:\n",
                   options->count);
     for (uint32_t i = 0; i != options->count; i++) {
         (void)fprintf(to, "  %2" PRIu32 "  ", i + 1);
-        print_device(to, &options->devices[i]);
+        print_sensor(to, &options->sensors[i]);
         (void)fprintf(to, ": ");
-        print_reader(to, &options->devices[i], port);
+        print_reader(to, &options->sensors[i], port);
     }
 }
 
@@ -96,7 +95,7 @@ void sim_print_counters(FILE *to, const sim_options_t *options, uint32_t i, cons
         {"line_collisions", line->counters.collisions},
     };
     (void)fprintf(to, "{\"device\":%" PRIu32 ",\"sensor\":\"%s\",\"mode\":\"%s\",\"address\":%u", i + 1,
-                  options->devices[i].model->name, options->devices[i].mode->name, device->address);
+                  options->sensors[i].model->name, options->sensors[i].mode->name, device->address);
     for (size_t f = 0; f != sizeof fields / sizeof fields[0]; f++)
         (void)fprintf(to, ",\"%s\":%" PRIu32, fields[f].name, fields[f].value);
     (void)fprintf(to, "}\n");

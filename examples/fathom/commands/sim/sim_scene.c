@@ -1,52 +1,65 @@
 /* SPDX-License-Identifier: MIT */
-#include "commands/sim/sim_scene.h"
-
 #include <string.h>
 
 #include "cli/command.h"
 #include "cli/options.h"
+#include "commands/sim/sim.h"
 
-enum { MAX_VALUE = 65535, MAX_WORD = 16 };
+static const char command[] = "sim";
 
-static bool parse_value(const model_t *model, const char *word, int32_t *value)
+enum { MAX_MM = 65535, MAX_WORD = 16 };
+
+/* What a sensor may report instead of a distance; the faults of the same name do it by chance. */
+static const struct {
+    uint8_t fault;
+    int32_t value;
+} conditions[] = {{FATHOM_SIM_FAULT_NO_TARGET, FATHOM_SIM_NO_TARGET},
+                  {FATHOM_SIM_FAULT_INTERFERENCE, FATHOM_SIM_INTERFERENCE},
+                  {FATHOM_SIM_FAULT_FAULT, FATHOM_SIM_FAULT}};
+enum { CONDITIONS = sizeof conditions / sizeof conditions[0] };
+
+static bool parse_value(const sim_sensor_t *sensor, const char *word, int32_t *value)
 {
-    uint32_t number = 0;
-    if (strcmp(word, "no-target") == 0)
-        *value = FATHOM_SIM_NO_TARGET;
-    else if (strcmp(word, "interference") == 0 && !model->has_optics)
-        *value = FATHOM_SIM_INTERFERENCE;
-    else if (strcmp(word, "fault") == 0 && model->has_optics)
-        *value = FATHOM_SIM_FAULT;
-    else if (number_parse(word, 0, MAX_VALUE, &number))
-        *value = (int32_t)number;
-    else
-        return false;
+    uint32_t mm = 0;
+    for (size_t i = 0; i != CONDITIONS; i++) {
+        if (strcmp(word, fathom_sim_fault_name(conditions[i].fault)) != 0) continue;
+        *value = conditions[i].value;
+        return sim_can_have_fault(sensor, conditions[i].fault);
+    }
+    if (!number_parse(word, 0, MAX_MM, &mm)) return false;
+    *value = (int32_t)mm;
     return true;
 }
 
-bool sim_scene_fixed(sim_scene_t *scene, const char *command, const model_t *model, const char *list)
+static bool reject_value(const sim_sensor_t *sensor, const char *text)
 {
+    char words[64] = "";
+    for (size_t i = 0; i != CONDITIONS; i++)
+        if (sim_can_have_fault(sensor, conditions[i].fault))
+            list_add(words, sizeof words, fathom_sim_fault_name(conditions[i].fault));
+    (void)usage_error(command, "distance of %s takes 0..%d mm, %s, not '%.*s'", sensor->model->name, MAX_MM,
+                      words, (int)strcspn(text, ","), text);
+    return false;
+}
+
+bool sim_set_distance(sim_sensor_t *sensor, const char *list)
+{
+    sim_scene_t *const scene = &sensor->scene;
     uint8_t count = 0;
     int32_t value = 0;
-    for (const char *at = list;; at++) {
-        const size_t length = strcspn(at, ",");
-        char word[MAX_WORD] = "";
-        if (length < sizeof word) memcpy(word, at, length);
-        if (count == model->probes) {
-            (void)usage_error(command, "--distance '%s' is more than the %u of %s", list, model->probes,
-                              model->name);
+    for (const char *rest = list; rest != NULL;) {
+        const char *const text = rest;
+        char word[MAX_WORD];
+        rest = next_word(text, ',', word, sizeof word);
+        if (count == sensor->model->probes) {
+            (void)usage_error(command, "distance '%s' is more than the %u of %s", list, sensor->model->probes,
+                              sensor->model->name);
             return false;
         }
-        if (!parse_value(model, word, &value)) {
-            (void)usage_error(command, "--distance takes 0..%d mm, no-target or %s, not '%.*s'", MAX_VALUE,
-                              model->has_optics ? "fault" : "interference", (int)length, at);
-            return false;
-        }
+        if (!parse_value(sensor, word, &value)) return reject_value(sensor, text);
         scene->fixed.value[count++] = value;
-        at += length;
-        if (*at == '\0') break;
     }
-    for (; count != SIM_SCENE_PROBES; count++) scene->fixed.value[count] = value;
+    for (; count != SIM_PROBES; count++) scene->fixed.value[count] = value;
     scene->scene = fathom_sim_fixed(&scene->fixed);
     return true;
 }
@@ -54,20 +67,19 @@ bool sim_scene_fixed(sim_scene_t *scene, const char *command, const model_t *mod
 static int32_t moving_distance(void *ctx, uint8_t probe, uint32_t now_us)
 {
     sim_scene_t *const scene = ctx;
-    if (probe < 1 || probe > SIM_SCENE_PROBES) return FATHOM_SIM_NO_TARGET;
+    if (probe < 1 || probe > SIM_PROBES) return FATHOM_SIM_NO_TARGET;
     const fathom_sim_scene_t one = fathom_sim_moving(&scene->moving[probe - 1]);
     return one.distance(one.ctx, probe, now_us);
 }
 
-void sim_scene_moving(sim_scene_t *scene, const model_t *model, uint32_t seed, uint32_t now_us)
+void sim_move(sim_sensor_t *sensor, uint32_t now_us)
 {
-    for (uint8_t i = 0; i != SIM_SCENE_PROBES; i++) {
-        fathom_sim_moving_t *const moving = &scene->moving[i];
-        moving->from_mm = model->near_mm;
-        moving->to_mm = model->far_mm;
+    for (uint8_t i = 0; i != SIM_PROBES; i++) {
+        fathom_sim_moving_t *const moving = &sensor->scene.moving[i];
+        moving->from_mm = sensor->model->near_mm;
+        moving->to_mm = sensor->model->far_mm;
         moving->period_us = 8000000u + i * 3000000u;
-        moving->start_us = now_us - seed % moving->period_us;
+        moving->start_us = now_us - sensor->seed % moving->period_us;
     }
-    scene->scene.distance = moving_distance;
-    scene->scene.ctx = scene;
+    sensor->scene.scene = (fathom_sim_scene_t){.distance = moving_distance, .ctx = &sensor->scene};
 }

@@ -1,37 +1,39 @@
 /* SPDX-License-Identifier: MIT */
-#include "commands/sim/sim_traits.h"
-
 #include <inttypes.h>
 #include <string.h>
 
 #include "cli/command.h"
 #include "cli/options.h"
+#include "commands/sim/sim.h"
+
+static const char command[] = "sim";
 
 enum { NAMES_TEXT = 300 };
 
 typedef struct {
     const char *name;
-    const char *unit; /* of the value; NULL: it has none */
-    uint32_t most;    /* of the value, from 1 */
     const char *text;
+    const char *unit; /* of the value; NULL: the trait has no value */
+    uint32_t max;     /* of the value, from 1 */
+    uint32_t places;  /* decimal places of the value; it is stored without its point */
 } trait_t;
 
 static const trait_t traits[DEVICE_TRAITS] = {
-    [DEVICE_EXCEPTIONS] = {"exceptions", NULL, 0, "refuses by exception instead of silence"},
-    [DEVICE_ANSWERS_BROADCAST] = {"broadcast", NULL, 0, "answers what goes to address FF"},
-    [DEVICE_REAL_TIME] = {"real-time", NULL, 0, "sends real-time values by itself"},
-    [DEVICE_ANSWERS_FROM_NEW] = {"new-address", NULL, 0, "answers from the new address when it is set"},
-    [DEVICE_WARM_UP] = {"warm-up", "S", 255, "measures nothing for so long after power-on"},
-    [DEVICE_WARM_UP_REFUSES] = {"warm-up-04", NULL, 0, "says exception 04 meanwhile; else silence"},
-    [DEVICE_WARM_UP_ABNORMAL] = {"warm-up-ff", NULL, 0, "sends the abnormal packet meanwhile"},
-    [DEVICE_UNASKED] = {"unasked", "MS", 60000, "sends measurements unasked, so often"},
-    [DEVICE_NO_OUTPUT] = {"output-off", NULL, 0, "as #10 has set it"},
-    [DEVICE_NO_TERMINATION] = {"termination-off", NULL, 0, "as #11 has set it"},
-    [DEVICE_BAUD_LATER] = {"baud-later", NULL, 0, "#9 acts from the next power-on, not at once"},
-    [DEVICE_OFFSET_ADDS] = {"offset-adds", NULL, 0, "#12 adds to the offset before"},
-    [DEVICE_RECONNECT] = {"reconnect", "MS", 1000000, "#2 tells this reconnect time"},
-    [DEVICE_NO_BAUD_CODE] = {"baud-code-00", NULL, 0, "#2 tells 00 for its rate"},
-    [DEVICE_COUNT_EXCEPTION] = {"count-03", NULL, 0, "exception 03 to a wrong length, not 02"},
+    [DEVICE_EXCEPTIONS] = {"exceptions", "refuse by an exception instead of silence", NULL, 0, 0},
+    [DEVICE_ANSWERS_BROADCAST] = {"broadcast", "respond to requests to address FF", NULL, 0, 0},
+    [DEVICE_REAL_TIME] = {"real-time", "send real-time values automatically", NULL, 0, 0},
+    [DEVICE_ANSWERS_FROM_NEW] = {"new-address", "confirm a new address from that address", NULL, 0, 0},
+    [DEVICE_WARM_UP] = {"warm-up", "do not measure for S seconds after power-on", "S", 255, 0},
+    [DEVICE_WARM_UP_REFUSES] = {"warm-up-04", "refuse by exception 04 meanwhile", NULL, 0, 0},
+    [DEVICE_WARM_UP_ABNORMAL] = {"warm-up-ff", "send the abnormal packet meanwhile", NULL, 0, 0},
+    [DEVICE_UNASKED] = {"unasked", "send an unsolicited measurement every MS ms", "MS", 60000, 3},
+    [DEVICE_NO_OUTPUT] = {"output-off", "start with the output off, as #10 sets it", NULL, 0, 0},
+    [DEVICE_NO_TERMINATION] = {"termination-off", "start without termination, as #11 sets it", NULL, 0, 0},
+    [DEVICE_BAUD_LATER] = {"baud-later", "apply #9 from the next power-on", NULL, 0, 0},
+    [DEVICE_OFFSET_ADDS] = {"offset-adds", "add the offset of #12 to the previous one", NULL, 0, 0},
+    [DEVICE_RECONNECT] = {"reconnect", "report this reconnect time in #2", "MS", 1000000, 0},
+    [DEVICE_NO_BAUD_CODE] = {"baud-code-00", "report 00 as the rate in #2", NULL, 0, 0},
+    [DEVICE_COUNT_EXCEPTION] = {"count-03", "refuse a wrong length by 03, not by 02", NULL, 0, 0},
 };
 
 static const trait_t *find(const char *text)
@@ -47,65 +49,46 @@ static bool has(const model_t *model, const trait_t *trait)
     return trait != NULL && (model->traits >> (trait - traits) & 1) != 0;
 }
 
-bool sim_trait_fits(const char *text, const model_t *model) { return has(model, find(text)); }
+bool sim_can_have_trait(const sim_sensor_t *sensor, const char *text)
+{
+    return has(sensor->model, find(text));
+}
 
-static bool unknown(const char *command, const model_t *model, const char *text)
+static bool reject_name(const model_t *model, const char *text)
 {
     char known[NAMES_TEXT] = "";
-    for (size_t i = 0; i != DEVICE_TRAITS; i++) {
+    for (size_t i = 0; i != DEVICE_TRAITS; i++)
         if (has(model, &traits[i])) list_add(known, sizeof known, traits[i].name);
-    }
     (void)usage_error(command, "there is no '%.*s' for %s, only %s", (int)strcspn(text, "="), text,
                       model->name, known);
     return false;
 }
 
-static bool is_ms(const trait_t *trait) { return strcmp(trait->unit, "MS") == 0; }
-
-/* Milliseconds with up to three decimals: 18.5. As microseconds. */
-static bool ms_parse(const char *text, uint32_t most, uint32_t *us)
+static bool parse_value(const trait_t *trait, const char *text, uint32_t *value)
 {
-    enum { DIGITS = 5, US = 1000 };
-    const size_t whole = strcspn(text, ".");
-    char digits[DIGITS + 1] = "";
-    uint32_t ms = 0;
-    if (whole > DIGITS) return false;
-    memcpy(digits, text, whole);
-    if (!number_parse(digits, 1, most, &ms)) return false;
-    *us = ms * US;
-    if (text[whole] == '\0') return true;
-    uint32_t part = US / 10;
-    for (text += whole + 1; *text >= '0' && *text <= '9' && part != 0; text++, part /= 10)
-        *us += (uint32_t)(*text - '0') * part;
-    return *text == '\0' && part != US / 10 && *us <= most * US;
+    uint32_t one = 1;
+    for (uint32_t i = 0; i != trait->places; i++) one *= 10;
+    return sim_decimal(text, strlen(text), trait->places, one, trait->max * one, value);
 }
 
-bool sim_trait_take(uint32_t values[DEVICE_TRAITS], const char *command, const model_t *model,
-                    const char *text)
+bool sim_add_trait(sim_sensor_t *sensor, const char *text)
 {
     const trait_t *const trait = find(text);
-    const size_t length = strcspn(text, "=");
-    if (!has(model, trait)) return unknown(command, model, text);
-    uint32_t value = 1;
-    const bool has_value = text[length] == '=';
-    const char *const number = text + length + 1;
-    const bool is_right = trait->unit == NULL ? !has_value
-                          : !has_value        ? false
-                          : is_ms(trait)      ? ms_parse(number, trait->most, &value)
-                                              : number_parse(number, 1, trait->most, &value);
-    if (is_right) {
-        values[trait - traits] = value;
-        return true;
-    }
+    const char *const value = strchr(text, '=');
+    if (!has(sensor->model, trait)) return reject_name(sensor->model, text);
+    uint32_t *const set = &sensor->traits[trait - traits];
+    *set = 1;
+    if (trait->unit == NULL && value == NULL) return true;
+    if (trait->unit != NULL && value != NULL && parse_value(trait, value + 1, set)) return true;
     if (trait->unit == NULL)
-        (void)usage_error(command, "--with %s takes no value, so not '%s'", trait->name, text);
+        (void)usage_error(command, "with %s takes no value, so not '%s'", trait->name, text);
     else
-        (void)usage_error(command, "--with takes %s=%s, a %snumber from 1 to %" PRIu32 ", not '%s'",
-                          trait->name, trait->unit, is_ms(trait) ? "" : "whole ", trait->most, text);
+        (void)usage_error(command, "with takes %s=%s, a %snumber from 1 to %" PRIu32 ", not '%s'",
+                          trait->name, trait->unit, trait->places != 0 ? "" : "whole ", trait->max, text);
     return false;
 }
 
-void sim_traits_print(FILE *to)
+void sim_print_traits(FILE *to)
 {
     for (size_t i = 0; i != DEVICE_TRAITS; i++) {
         const trait_t *const trait = &traits[i];
