@@ -204,7 +204,7 @@ WRONG = [
         ('--with x', "there is no 'x' for a16"),
     ]),
     ('a_rate_that_an_hps167s_does_not_have_is_refused', 'sim hps167s', [
-        (f"--baud '{rate}'", f"baud of hps167s takes 19200, 57600, 115200 or 230400, not '{rate}'")
+        (f"--baud '{rate}'", f"--baud of hps167s takes 19200, 57600, 115200 or 230400, not '{rate}'")
         for rate in ('9600', '38400', '19200x', '', '0')]),
     ('what_none_of_them_has_is_refused', 'sim hps167s', [
         *((f'--with {value}', f"with takes warm-up=S, a whole number from 1 to 255, not '{value}'")

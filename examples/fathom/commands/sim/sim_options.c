@@ -50,7 +50,7 @@ static bool set_baud(sim_sensor_t *sensor, const char *text)
         const char *const gap = rate == sensor->model->rates ? "" : rate[1] != 0 ? ", " : " or ";
         (void)snprintf(rates + length, sizeof rates - length, "%s%" PRIu32, gap, *rate);
     }
-    (void)usage_error(command, "baud of %s takes %s, not '%s'", sensor->model->name, rates, text);
+    (void)usage_error(command, "--baud of %s takes %s, not '%s'", sensor->model->name, rates, text);
     return false;
 }
 
