@@ -109,8 +109,8 @@ TEST(an_occupied_place_is_refused_before_anything_is_written)
 {
     static fathom_sim_hps167s_t other;
     static const char *const words[] = {
-        "nothing was written: at address 7, 19200 8E1, a device answers already",
-        "nothing was written: at address 7, 57600 8E1, a device answers already"};
+        "nothing was written: at address 7, 19200 8E1, a sensor responds already",
+        "nothing was written: at address 7, 57600 8E1, a sensor responds already"};
     desk_write("unit", hps167s_file);
     for (uint8_t code = 1; code <= 2; code++) {
         const fathom_sim_hps167s_config_t config = {.address = 7, .baud_code = code};
@@ -141,7 +141,7 @@ TEST(a_place_is_asked_twice)
     fathom_sim_fault_init(&faults, 1);
     fathom_sim_fault_attach(&faults, &bench.line, &other.device);
     assert_non_null(fathom_sim_fault_add(&faults, FATHOM_SIM_FAULT_SILENCE, FATHOM_SIM_FAULT_ALWAYS_PPM, 1));
-    says(1, "nothing was written: at address 7, 19200 8E1, a device answers already",
+    says(1, "nothing was written: at address 7, 19200 8E1, a sensor responds already",
          "restore hps167s --as-new");
     assert_int_equal(counters()->writes, 0);
 }
@@ -155,7 +155,7 @@ TEST(an_occupied_rate_is_refused_before_anything_is_written)
     bench_hps167s(any_hps167s);
     fathom_sim_hps167s_init(&other, &config);
     fathom_sim_attach(&bench.line, &other.device, bench.clock.now_us);
-    says(1, "at address 1, 57600 8E1, a device answers already", "restore hps167s --as-new");
+    says(1, "at address 1, 57600 8E1, a sensor responds already", "restore hps167s --as-new");
     assert_int_equal(counters()->writes + other.device.counters.writes, 0);
 }
 

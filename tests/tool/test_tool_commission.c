@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* fathom commission: wherever it is ended, no two units have one address, none is out of reach, and nothing is written
- * that was not announced. */
+/* Wherever fathom commission is interrupted, no two sensors have the same address, the record shows where each is, and
+ * every write was announced. */
 #include "commission_bench.h"
 
 #include <string.h>
@@ -24,12 +24,12 @@ TEST(eight_units_from_the_factory_get_the_addresses_from_2_to_9)
 {
     add_hps_units(8);
     const tool_run_t *const done = commission("hps167s --addresses 2-9");
-    expect(done, 0, "8 of 8 addresses are given and verified\n");
+    expect(done, 0, "8 of 8 addresses are assigned and verified\n");
     expect_all_hps(8);
     assert_true(site.asked_us[0] > SECOND); /* what came late of a run before has been heard */
     assert_int_equal(site.announced, 15);   /* an address each, and the termination of seven */
     expect(done, 0,
-           "hps167s at address 1, UUID " FIRST ": becomes address 2\n"
+           "hps167s at address 1, UUID " FIRST ": gets address 2\n"
            "  writes termination off (#11)\n"
            "  writes address 2 (#8)\n"
            "  address 2 is done: termination off from the next power-on, 1234 mm\n");
@@ -48,7 +48,7 @@ TEST(a_second_run_writes_nothing)
     expect_all_hps(2);
 }
 
-TEST(the_termination_stays_where_it_is_said)
+TEST(only_the_terminated_address_keeps_its_termination)
 {
     add_hps_units(3);
     expect(commission("hps167s --addresses 2-4 --terminated 3"), 0, "3 of 3");
@@ -57,7 +57,7 @@ TEST(the_termination_stays_where_it_is_said)
     assert_false(site.unit[2].hps.termination);
 }
 
-TEST(the_last_one_may_keep_address_1)
+TEST(the_last_sensor_may_keep_address_1)
 {
     add_hps_units(2);
     expect(commission("hps167s --addresses 7,1 --terminated none"), 0, "2 of 2");
@@ -67,7 +67,7 @@ TEST(the_last_one_may_keep_address_1)
     assert_int_equal(site.device[1]->counters.flash_writes, 1);
 }
 
-TEST(what_is_so_already_is_not_written)
+TEST(a_value_that_the_sensor_already_has_is_not_written)
 {
     add_hps((fathom_sim_hps167s_config_t){.no_termination = true});
     add_hps((fathom_sim_hps167s_config_t){.no_termination = true});
@@ -78,7 +78,7 @@ TEST(what_is_so_already_is_not_written)
     assert_int_equal(site.device[1]->counters.flash_writes, 2);
 }
 
-TEST(units_that_send_by_themselves_are_commissioned_too)
+TEST(sensors_that_send_unsolicited_frames_are_commissioned)
 {
     static const uint32_t unasked_us[] = {18500, 26419, 34338, 50176, 66014, 100000, 152000, 192718};
     for (size_t i = 0; i != sizeof unasked_us / sizeof unasked_us[0]; i++) {
@@ -90,7 +90,7 @@ TEST(units_that_send_by_themselves_are_commissioned_too)
     }
 }
 
-TEST(an_object_a_unit_has_what_it_is_and_where)
+TEST(json_has_an_object_for_each_sensor)
 {
     add_hps_units(1);
     const tool_run_t *const done = commission("hps167s --addresses 2 --format json");
@@ -105,7 +105,7 @@ TEST(an_object_a_unit_has_what_it_is_and_where)
     assert_non_null(strstr(done->err, "  writes address 2 (#8)\n"));
 }
 
-/* ---- ended at any time, and taken up again ---- */
+/* ---- interrupted and resumed ---- */
 
 /* What two units are to have come to. */
 typedef struct {
@@ -155,13 +155,13 @@ static void end_at_any_moment(void **state)
 
 #define ENDED(name, ...)                                                                                     \
     static const pair_t pair_##name = {__VA_ARGS__};                                                         \
-    TEST_ROW(ended_at_any_moment_it_is_taken_up_again_with_##name, end_at_any_moment, &pair_##name)
+    TEST_ROW(interrupted_at_any_moment_it_resumes_with_##name, end_at_any_moment, &pair_##name)
 
 ENDED(an_hps167s, add_hps_units, "hps167s --addresses 2,3 --wait 60", {2, 3}, {2, 1})
 ENDED(an_a16, add_a16_units, "a16 --addresses 2,3 --wait 60", {2, 3}, {1, 1})
 ENDED(an_a05_that_keeps_address_1, add_a05_units, "a05 --addresses 9,1 --wait 60", {9, 1}, {1, 0})
 
-TEST(ended_again_and_again_it_comes_to_an_end)
+TEST(interrupted_again_and_again_it_finishes)
 {
     for (uint64_t step = 0; step != 20; step++) {
         unsigned runs = 1;

@@ -20,7 +20,7 @@ TEST(of_two_units_at_address_1_none_is_written)
         (void)snprintf(more, sizeof more, "%s --addresses 2,3 --wait 20", models[row]);
         const tool_run_t *const done =
             tool_run(&bench.tool, "commission %s --port line --record %s", more, site.record);
-        expect(done, 1, "two units at address 1, or a loose wire: what answers is ");
+        expect(done, 1, "two sensors at address 1, or a loose wire: ");
         assert_int_equal(writes(), 0);
         assert_int_equal(count_of(record_text(), " planned 2"), 0);
         fathom_sim_detach(&bench.line, site.device[1], bench.clock.now_us);
@@ -36,7 +36,7 @@ TEST(nothing_is_written_where_the_new_address_is_in_use)
     connect_next();
     connect_next();
     expect(commission("hps167s --addresses 2 --wait 20"), 1,
-           "something answers at address 2, which the unit at address 1 is to get: nothing was written");
+           "nothing was written: a sensor responds at address 2, which the sensor at address 1 is to get");
     assert_int_equal(writes(), 0);
     assert_int_equal(count_of(record_text(), " planned 2"), 0);
 }
@@ -46,7 +46,7 @@ TEST(an_a16_is_not_given_an_address_that_is_in_use)
     add_a16_units(2);
     site.device[0]->address = 2;
     connect_next();
-    expect(commission("a16 --addresses 2,3 --wait 20"), 1, "something answers at address 2, which ");
+    expect(commission("a16 --addresses 2,3 --wait 20"), 1, "a sensor responds at address 2, which ");
     assert_int_equal(writes(), 0);
 }
 
@@ -56,27 +56,27 @@ TEST(with_a_damaged_record_nothing_is_sent)
         const char *text;
         const char *says;
     } rows[] = {
-        {"", " is empty; remove it to begin anew"},
-        {"hello\n", ", line 1: this is no record of fathom commission"},
-        {TITLE "hps167s 2 " FIRST " done\n", ", line 2: it has five words"},
-        {TITLE "hps167s 2 " FIRST " done now and\n", ", line 2: it has five words"},
-        {TITLE "hps167s 2 " FIRST " done now", ", line 2: the end of the line is missing"},
-        {TITLE "hps168s 2 " FIRST " done now\n", ", line 2: there is no such sensor"},
-        {TITLE "hps167s 33 " FIRST " done now\n", ", line 2: no address that it can have"},
-        {TITLE "hps167s 0 " FIRST " done now\n", ", line 2: no address that it can have"},
-        {TITLE "hps167s 2 - done now\n", ", line 2: no UUID"},
-        {TITLE "hps167s 2 " FIRST "0 done now\n", ", line 2: no UUID"},
-        {TITLE "a16 2 " FIRST " done now\n", ", line 2: no UUID"},
-        {TITLE "hps167s 2 " FIRST " Done now\n", ", line 2: neither planned, restart nor done"},
-        {TITLE "hps167s 2 " FIRST " planned \x1b[2J\n", ", line 2: no time"},
+        {"", " is empty. Remove the file"},
+        {"hello\n", ":1: this file is no record of fathom commission"},
+        {TITLE "hps167s 2 " FIRST " done\n", ":2: a line has five words"},
+        {TITLE "hps167s 2 " FIRST " done now and\n", ":2: a line has five words"},
+        {TITLE "hps167s 2 " FIRST " done now", ":2: the end of the line is missing"},
+        {TITLE "hps168s 2 " FIRST " done now\n", ":2: unknown sensor"},
+        {TITLE "hps167s 33 " FIRST " done now\n", ":2: this sensor cannot have this address"},
+        {TITLE "hps167s 0 " FIRST " done now\n", ":2: this sensor cannot have this address"},
+        {TITLE "hps167s 2 - done now\n", ":2: invalid UUID"},
+        {TITLE "hps167s 2 " FIRST "0 done now\n", ":2: invalid UUID"},
+        {TITLE "a16 2 " FIRST " done now\n", ":2: invalid UUID"},
+        {TITLE "hps167s 2 " FIRST " Done now\n", ":2: the state is neither planned nor done"},
+        {TITLE "hps167s 2 " FIRST " planned \x1b[2J\n", ":2: invalid time"},
         {TITLE "hps167s 2 " FIRST " planned \x9b"
                "2J\n",
-         ", line 2: no time"},
-        {TITLE "hps167s 2 " FIRST " planned x\",\"y\n", ", line 2: no time"},
-        {TITLE "hps167s 2 " FIRST " planned x\\\n", ", line 2: no time"},
-        {TITLE "#\na16 2 - done now\na05 2 - done now\n", ", line 4: this address stands there twice"},
+         ":2: invalid time"},
+        {TITLE "hps167s 2 " FIRST " planned x\",\"y\n", ":2: invalid time"},
+        {TITLE "hps167s 2 " FIRST " planned x\\\n", ":2: invalid time"},
+        {TITLE "#\na16 2 - done now\na05 2 - done now\n", ":4: this address is in the record twice"},
         {TITLE "hps167s 2 " FIRST " done now\nhps167s 3 " FIRST " done now\n",
-         ", line 3: this UUID stands there twice"},
+         ":3: this UUID is in the record twice"},
     };
     add_hps_units(1);
     for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
@@ -94,7 +94,7 @@ TEST(with_a_record_that_cannot_be_written_nothing_is_sent)
     add_hps_units(1);
     (void)snprintf(site.record, sizeof site.record, "/tmp/fathom-no-such-folder/record.txt");
     expect(commission("hps167s --addresses 2"), 1,
-           "fathom: the record /tmp/fathom-no-such-folder/record.txt cannot be written: No such file or "
+           "fathom: cannot write the record /tmp/fathom-no-such-folder/record.txt: No such file or "
            "directory\n");
     assert_int_equal(bench.line.counters.from_host, 0);
 }
@@ -113,7 +113,6 @@ TEST(wrong_words_are_usage_errors)
         {"hps167s --addresses 2-4,3", "address 3 stands twice"},
         {"hps167s --addresses 2-4 --terminated 5", "--terminated takes one of --addresses, or none, not '5'"},
         {"a16 --addresses 2-4 --terminated 4", "a16 has no termination"},
-        {"hps167s --addresses 2 --taken-away", "known by its UUID"},
         {"hps167s:3 --addresses 2", "address 1, with which they come; leave 3 out"},
         {"hps167s a16 --addresses 2", "one model at a time; 'a16' is too much"},
         {"a05 --mode dyp --addresses 2", "this takes --mode modbus"},
@@ -125,9 +124,9 @@ TEST(wrong_words_are_usage_errors)
     expect(tool_run(&bench.tool, "commission hps167s --port tcp:localhost --addresses 2 --record r"), 2,
            "it needs a serial port");
     write_record(TITLE "a16 2 - done now\n");
-    expect(commission("hps167s --addresses 2-4"), 2, "address 2 is that of an a16 by the record");
+    expect(commission("hps167s --addresses 2-4"), 2, "address 2 belongs to an a16 in the record");
     write_record(TITLE "a16 1 - done now\n");
-    expect(commission("a16 --addresses 2-4"), 2, "a unit keeps address 1 by the record");
+    expect(commission("a16 --addresses 2-4"), 2, "a sensor keeps address 1 in the record");
 }
 
 /* Their responses do not meet: each is whole. */
@@ -138,7 +137,7 @@ TEST(two_that_answer_one_after_the_other_are_two)
     connect_next();
     const tool_run_t *const done = tool_run(
         &bench.tool, "commission hps167s --addresses 2,3 --wait 20 --port line --record %s", site.record);
-    expect(done, 1, "what answers is two responses; connect one alone");
+    expect(done, 1, "two responses to one request. Connect one sensor only");
     assert_int_equal(writes(), 0);
 }
 

@@ -4,8 +4,8 @@
 #include "cli/options.h"
 #include "commands/commands.h"
 #include "device/backup_file.h"
-#include "device/move.h"
 #include "device/plan.h"
+#include "device/presence.h"
 #include "device/set_report.h"
 #include "device/setting_text.h"
 
@@ -70,7 +70,7 @@ static int write_row(const plan_t *plan, size_t n)
     setting_print_value(setting, change.value, change.wanted);
     (void)snprintf(change.was, sizeof change.was, "%s", unit->text);
     const int status = set_report(&change, session_set(&session, setting, change.value));
-    if (status == STATUS_OK && setting->moves && !move_follow(&session)) return STATUS_FAILED;
+    if (status == STATUS_OK && setting->moves && !presence_follow(&session)) return STATUS_FAILED;
     return status;
 }
 
@@ -138,7 +138,7 @@ static bool is_place_free(const plan_t *plan)
     uint32_t baud = session.station->line.baud;
     if (finds(plan, false, &row)) address = (uint8_t)row->value;
     if (finds(plan, true, &row)) (void)number_parse(row->text, 0, UINT32_MAX, &baud);
-    return move_is_free(&session, address, baud);
+    return presence_is_free(&session, address, baud);
 }
 
 static bool has_moved(const plan_t *plan)

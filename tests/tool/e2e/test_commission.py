@@ -38,10 +38,10 @@ class Commission(e2e.Case):
         second.expect('writes address 3', seconds=60)
         second.expect('address 3 is done')
         self.ends(second.end(signal.SIGINT), 1)
-        self.assertIn('1 of 3' if 'address 3 is open' in second.done.out else '2 of 3', second.done.out)
+        self.assertIn('1 of 3' if 'address 3 is not done' in second.done.out else '2 of 3', second.done.out)
         done = self.commission(sim, 'hps167s --addresses 2-4').finish(60)
         self.ends(done, 0)
-        self.assertIn('3 of 3 addresses are given and verified\n', done.out)
+        self.assertIn('3 of 3 addresses are assigned and verified\n', done.out)
         self.assertEqual(self.units(), [['hps167s', str(2 + i), f'{FIRST[:-1]}{5 + i}', 'done'] for i in range(3)])
         self.assertEqual(os.listdir(self.folder), ['record.txt'])  # nothing of the way it is written is left
         counters = self.counters(sim)
@@ -58,8 +58,8 @@ class Commission(e2e.Case):
     def test_two_at_address_1_are_refused(self):
         sim = self.sim('a05:1:modbus a05:1:modbus --counters')
         done = self.commission(sim, 'a05 --addresses 2,3 --wait 2').finish(60)
-        self.ends(done, 1, 'no unit was commissioned for 2 s')
-        self.assertIn('two units at address 1, or a loose wire', done.out)
+        self.ends(done, 1, 'no sensor was commissioned for 2 s')
+        self.assertIn('two sensors at address 1, or a loose wire', done.out)
         self.assertEqual(self.units(), [])
         self.assertEqual([one['writes'] for one in self.counters(sim)], [0, 0])
 
@@ -67,7 +67,7 @@ class Commission(e2e.Case):
         sim = self.sim('hps167s --counters')
         with open(self.record, 'w', encoding='ascii') as file:
             file.write('hps167s 2\n')
-        self.ends(self.commission(sim, 'hps167s --addresses 2'), 1, 'line 1: this is no record', out='')
+        self.ends(self.commission(sim, 'hps167s --addresses 2'), 1, ':1: this file is no record', out='')
         self.assertEqual(self.counters(sim)[0]['requests'], 0)
 
 

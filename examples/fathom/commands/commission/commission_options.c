@@ -9,7 +9,7 @@
 
 static const char command[] = "commission";
 
-enum { ADDRESSES = SESSION_OPTIONS, RECORD, TERMINATED, WAIT, TAKEN_AWAY, OPTIONS };
+enum { ADDRESSES = SESSION_OPTIONS, RECORD, TERMINATED, WAIT, OPTIONS };
 
 static const struct option table[OPTIONS + 1] = {
     SESSION_OPTION_ROWS,
@@ -17,7 +17,6 @@ static const struct option table[OPTIONS + 1] = {
     [RECORD] = {"record", required_argument, NULL, 256},
     [TERMINATED] = {"terminated", required_argument, NULL, 256},
     [WAIT] = {"wait", required_argument, NULL, 256},
-    [TAKEN_AWAY] = {"taken-away", no_argument, NULL, 256},
 };
 
 enum { MAX_WAIT_S = 86400 };
@@ -128,64 +127,44 @@ bool commission_options(commission_options_t *options, session_t *session, int a
         !option_number(command, "wait", values[WAIT], 1, MAX_WAIT_S, &wait_s))
         return false;
     options->wait_us = wait_s * UINT64_C(1000000);
-    options->is_taken_away = values[TAKEN_AWAY] != NULL;
     options->record = values[RECORD];
-    if (options->record == NULL)
-        (void)usage_error(command, "--record is missing: the file in which it is kept which unit has which "
-                                   "address");
-    else if (options->is_taken_away && setting_of(model->settings, "uuid") != NULL)
-        (void)usage_error(command,
-                          "each %s is known by its UUID and may be taken away anyway; leave "
-                          "--taken-away out",
-                          model->name);
-    else
-        return true;
+    if (options->record != NULL) return true;
+    (void)usage_error(command,
+                      "--record is missing. It is the file that stores which sensor has which address");
     return false;
 }
 
 void commission_help(FILE *to)
 {
     (void)fputs(
-        "fathom commission gives units that all come with address 1 an address each. Connect them one after "
-        "the other:\n"
-        "it says which address the next one gets, finds it, does its work, and waits for the one after "
-        "it.\n\n"
+        "Assign addresses to new sensors that all have address 1. Connect them one after the other: the\n"
+        "command prints the address that the next one gets, finds it, sets it up and verifies it.\n\n"
         "usage: fathom commission SENSOR --port PATH --addresses LIST --record FILE [OPTIONS]\n\n"
-        "  --addresses LIST  to be given in this order, such as 2-9 or 5,7,10-12; 1 may be the last one\n"
-        "  --record FILE     which unit has which address, in text. It is made if it is not there; the same "
-        "file again\n"
-        "                    takes up what was ended, by Ctrl-C or otherwise. No address in it is given "
-        "again\n"
-        "  --terminated N    hps167s: the address at which the termination resistor stays on, or none. "
-        "Default: the\n"
-        "                    last one of the list. It is switched off in all others, from their next "
+        "  --addresses LIST  addresses to assign, in this order, such as 2-9 or 5,7,10-12; 1 only as the "
+        "last\n"
+        "  --record FILE     text file that stores which sensor has which address; made if it does not "
+        "exist.\n"
+        "                    With the same file an interrupted command continues. No address in it is\n"
+        "                    assigned again\n"
+        "  --terminated N    hps167s: address at which the termination resistor stays on, or none; default\n"
+        "                    the last of the list. It is switched off in all others from their next "
         "power-on\n"
-        "  --wait SECONDS    ends when no unit was commissioned for so long; default: waits until Ctrl-C\n"
-        "  --taken-away      a16, a05: the units that are done are not on the line any more, see below\n",
+        "  --wait SECONDS    end if no sensor was commissioned for this time; default: wait until Ctrl-C\n",
         to);
     session_options_help(to);
     (void)fputs(
-        "\nThe port is a serial one, the mode modbus, and the address 1.\n\n"
-        "For each unit: nothing may answer at the new address. At address 1 it has to be alone: what it "
-        "tells "
-        "is read\n"
-        "three times. The record has its line before anything is written. Each write is announced, is made "
-        "once, and only\n"
-        "where the unit has another value; then the unit is asked for everything at its new address, and for "
-        "a\n"
-        "measurement. A failed or unconfirmed write ends the command: run it again, and it asks where the "
-        "unit is. The\n"
-        "record says planned until then, and restart of a unit that tells its new termination from its next "
-        "power-on\n"
-        "only: switch it off and on while the command runs.\n\n"
-        "hps167s are known by their UUID and may be commissioned on a bench and taken off. An a16 or a05 has "
-        "no number:\n"
-        "keep those that are done connected and switched on; each has to answer when the command is run "
-        "again. "
-        "With\n"
-        "--taken-away that is not asked for; a unit whose work was interrupted then keeps its address "
-        "reserved.\n\n"
-        "Exit status: 0 when all addresses are given and verified, 1 when not, 2 for wrong usage.\n\n"
+        "\nThe port must be a serial port. No sensor may respond at the new address, and the sensor at "
+        "address\n"
+        "1 must be alone, which three reads check. The record has a line of the sensor before anything is\n"
+        "written. Each write is announced, is made once, and only if the sensor has another value. Then the\n"
+        "sensor is verified at its new address. After a failed or unconfirmed write the command ends. Run "
+        "it\n"
+        "again: it finds out where the sensor is. If a sensor reports its new termination only after a\n"
+        "power-on, switch it off and on, and run the command again.\n\n"
+        "Each hps167s is known by its UUID and may be taken off the line. An a16 or a05 has no UUID: keep "
+        "the\n"
+        "finished ones connected and switched on, since each has to respond when the command runs again.\n\n"
+        "Exit status: 0 when all addresses are assigned and verified, 1 when not, 2 for wrong usage.\n\n"
         "examples:\n"
         "  fathom commission hps167s --port /dev/ttyUSB0 --addresses 2-9 --record hall.txt\n"
         "  fathom commission a16 --port /dev/ttyUSB0 --addresses 2-8,1 --record tanks.txt --wait 300\n"

@@ -13,7 +13,6 @@ typedef struct {
     uint8_t terminated; /* at which the termination resistor stays on; 0: at none */
     uint64_t wait_us;   /* so long without a unit ends it; 0: never */
     const char *record;
-    bool is_taken_away; /* of a model without numbers: those that are done are not on the line */
 } commission_options_t;
 
 /* Reads the options and the sensor. False, after saying why: wrong usage. wants_help: nothing else was looked at. */

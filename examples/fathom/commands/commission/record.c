@@ -13,11 +13,11 @@
 
 static const char title[] = "# fathom commission: which unit has which address, or is to have it";
 static const char columns[] =
-    "# sensor, address, UUID (- where it has none), planned, restart or done, since when\n";
+    "# sensor, address, UUID (- if it has none), planned or done, time of the last change\n";
 
 enum { LINE = 200, PATH = 4096, HEX = 32 };
 
-const char *const record_states[] = {"planned", "restart", "done"};
+const char *const record_states[] = {"planned", "done"};
 
 bool record_has_numbers(const model_t *model) { return setting_of(model->settings, "uuid") != NULL; }
 
@@ -53,7 +53,7 @@ static bool is_number(const model_t *model, const char *text)
     return strlen(text) == HEX && strspn(text, "0123456789abcdef") == HEX;
 }
 
-/* It is printed, in JSON as it is. */
+/* The time is printed as it is, also in JSON. */
 static bool is_time(const char *text)
 {
     for (; *text != '\0'; text++)
@@ -61,8 +61,8 @@ static bool is_time(const char *text)
     return true;
 }
 
-/* What is wrong with a line, which is added; NULL: nothing. */
-static const char *take_line(record_t *record, const char *text)
+/* Adds a line to the record. Returns what is wrong with the line, or NULL. */
+static const char *parse_line(record_t *record, const char *text)
 {
     record_unit_t unit;
     char model[16];
@@ -72,22 +72,23 @@ static const char *take_line(record_t *record, const char *text)
     uint32_t number = 0;
     const int found =
         sscanf(text, "%15s %15s %63s %15s %23s %1s", model, address, unit.number, state, unit.when, rest);
-    if (found != 5) return "it has five words: sensor, address, UUID, planned, restart or done, since when";
+    if (found != 5) return "a line has five words: sensor, address, UUID, planned or done, time";
     unit.model = model_named(model);
-    if (unit.model == NULL) return "there is no such sensor";
-    if (!number_parse(address, 1, unit.model->max_address, &number)) return "no address that it can have";
-    if (!is_number(unit.model, unit.number)) return "no UUID";
+    if (unit.model == NULL) return "unknown sensor";
+    if (!number_parse(address, 1, unit.model->max_address, &number))
+        return "this sensor cannot have this address";
+    if (!is_number(unit.model, unit.number)) return "invalid UUID";
     for (unit.state = RECORD_PLANNED; strcmp(state, record_states[unit.state]) != 0; unit.state++)
-        if (unit.state == RECORD_DONE) return "neither planned, restart nor done";
-    if (!is_time(unit.when)) return "no time";
+        if (unit.state == RECORD_DONE) return "the state is neither planned nor done";
+    if (!is_time(unit.when)) return "invalid time";
     unit.address = (uint8_t)number;
-    if (record_at(record, unit.address) != NULL) return "this address stands there twice";
-    if (record_of(record, unit.model, unit.number) != NULL) return "this UUID stands there twice";
+    if (record_at(record, unit.address) != NULL) return "this address is in the record twice";
+    if (record_of(record, unit.model, unit.number) != NULL) return "this UUID is in the record twice";
     record->units[record->count++] = unit;
     return NULL;
 }
 
-static bool take_lines(record_t *record, FILE *file)
+static bool parse_lines(record_t *record, FILE *file)
 {
     char text[LINE];
     for (unsigned line = 1; fgets(text, sizeof text, file) != NULL; line++) {
@@ -97,13 +98,12 @@ static bool take_lines(record_t *record, FILE *file)
         if (end == NULL)
             wrong = "the end of the line is missing";
         else if (line == 1 && strcmp(text, title) != 0)
-            wrong = "this is no record of fathom commission";
+            wrong = "this file is no record of fathom commission";
         else if (text[0] != '#' && text[0] != '\0')
-            wrong = take_line(record, text);
+            wrong = parse_line(record, text);
         if (wrong == NULL) continue;
         (void)fprintf(stderr,
-                      "fathom: the record %s, line %u: %s; nothing was sent. Mend the line, or name another "
-                      "file\n",
+                      "fathom: %s:%u: %s. Nothing was sent. Correct the line, or use another --record\n",
                       record->path, line, wrong);
         return false;
     }
@@ -112,7 +112,7 @@ static bool take_lines(record_t *record, FILE *file)
 
 static bool fail(const record_t *record, const char *what)
 {
-    (void)fprintf(stderr, "fathom: the record %s cannot be %s: %s\n", record->path, what, strerror(errno));
+    (void)fprintf(stderr, "fathom: cannot %s the record %s: %s\n", what, record->path, strerror(errno));
     return false;
 }
 
@@ -122,10 +122,11 @@ bool record_read(record_t *record, const char *path)
     record->path = path;
     FILE *const file = fopen(path, "r");
     if (file == NULL) return errno == ENOENT || fail(record, "read");
-    bool is_good = take_lines(record, file);
+    bool is_good = parse_lines(record, file);
     if (is_good && ferror(file) != 0) is_good = fail(record, "read");
     if (is_good && ftell(file) == 0) {
-        (void)fprintf(stderr, "fathom: the record %s is empty; remove it to begin anew\n", path);
+        (void)fprintf(stderr, "fathom: the record %s is empty. Remove the file to start a new record\n",
+                      path);
         is_good = false;
     }
     (void)fclose(file);
@@ -134,7 +135,7 @@ bool record_read(record_t *record, const char *path)
 
 /* ---- writing ---- */
 
-static bool put_all(const record_t *record, FILE *file)
+static bool print_all(const record_t *record, FILE *file)
 {
     (void)fprintf(file, "%s\n%s", title, columns);
     for (uint32_t i = 0; i != record->count; i++) {
@@ -145,7 +146,7 @@ static bool put_all(const record_t *record, FILE *file)
     return fflush(file) == 0 && ferror(file) == 0 && fsync(fileno(file)) == 0;
 }
 
-/* The new name is on the disk when its folder is. Not every file system can be told so. */
+/* The new name is on the disk only when its folder is. Not every file system supports this. */
 static void sync_folder(const char *path)
 {
     char folder[PATH] = ".";
@@ -162,18 +163,18 @@ bool record_write(const record_t *record)
     char fresh[PATH];
     if ((size_t)snprintf(fresh, sizeof fresh, "%s.new", record->path) >= sizeof fresh) {
         errno = ENAMETOOLONG;
-        return fail(record, "written");
+        return fail(record, "write");
     }
     FILE *const file = fopen(fresh, "w");
-    if (file == NULL) return fail(record, "written");
-    const bool is_put = put_all(record, file);
+    if (file == NULL) return fail(record, "write");
+    const bool is_put = print_all(record, file);
     const int error = errno;
     if (fclose(file) == 0 && is_put && rename(fresh, record->path) == 0) {
         sync_folder(record->path);
         return true;
     }
     if (!is_put) errno = error;
-    (void)fail(record, "written");
+    (void)fail(record, "write");
     (void)remove(fresh);
     return false;
 }

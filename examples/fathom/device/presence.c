@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "commands/commission/presence.h"
+#include "device/presence.h"
 
 #include <string.h>
 
@@ -7,10 +7,10 @@
 
 enum {
     READS = 3,
-    /* Fewer bytes than this are no response: the line's own, where it is held by nothing. The shortest frame has 5. */
+    /* Fewer bytes are no response: an open line may produce them. The shortest frame has 5. */
     LEAST_BYTES = 3,
-    /* In which the response of a second unit comes, of an HPS-167S within 20 ms behind an adapter's 16. A module that
-     * is at work on a measurement may need longer (A16 3: 110 ms, A05 2(3): 210 ms). */
+    /* Within this time the response of a second sensor arrives. An HPS-167S needs 20 ms, behind an adapter that delays
+     * bytes by 16 ms. An A16 or A05 that is measuring needs longer (A16 3: 110 ms, A05 2(3): 210 ms). */
     SECOND_RESPONSE_US = 250000,
     SECOND_RESPONSE_HPS167S_US = 60000
 };
@@ -22,7 +22,7 @@ static evidence_t evidence_of(const session_t *session)
     return evidence;
 }
 
-/* Where another unit sends by itself, its first and its last frame may be cut off. */
+/* If another sensor sends automatically, its first and last frame may be incomplete. */
 static bool is_silent(const session_t *session)
 {
     const evidence_t evidence = evidence_of(session);
@@ -30,8 +30,8 @@ static bool is_silent(const session_t *session)
     return evidence.own == 0 && !is_rest && evidence.streamed_a16 == 0 && evidence.streamed_a05 == 0;
 }
 
-/* What is asked for: the number, or where the model has none its address, which is what it was asked at. */
-static fathom_status_t ask_number(session_t *session, char number[SETTING_TEXT])
+/* Reads the UUID. If the model has none, reads the address register, which must match. */
+static fathom_status_t read_number(session_t *session, char number[SETTING_TEXT])
 {
     const setting_t *const settings = session_settings(session);
     const setting_t *const uuid = setting_of(settings, "uuid");
@@ -45,7 +45,7 @@ static fathom_status_t ask_number(session_t *session, char number[SETTING_TEXT])
     return status;
 }
 
-/* The line was busy, or another master asked the same unit: that proves nothing about the unit. */
+/* A busy line and another master prove nothing about the sensor. */
 static bool is_of_line(fathom_status_t status)
 {
     return status == FATHOM_ERR_LINE_BUSY || status == FATHOM_ERR_OTHER_MASTER;
@@ -57,11 +57,10 @@ static bool has_stopped(const session_t *session, fathom_status_t status)
     return status == FATHOM_ERR_CANCELLED || status == FATHOM_ERR_PORT || host->has_ended(host->ctx);
 }
 
-/* The first read, which may find nothing. */
 static present_t find(session_t *session, unsigned times, presence_t *presence)
 {
     for (unsigned i = 0; i != times; i++) {
-        presence->status = ask_number(session, presence->number);
+        presence->status = read_number(session, presence->number);
         if (has_stopped(session, presence->status)) return PRESENT_STOPPED;
         if (presence->status == FATHOM_OK) return PRESENT_ONE;
         if (is_of_line(presence->status)) return PRESENT_UNKNOWN;
@@ -78,7 +77,7 @@ static present_t ask(session_t *session, unsigned times, presence_t *presence)
     if (found != PRESENT_ONE) return found;
     for (unsigned i = 0; i != READS; i++) {
         char number[SETTING_TEXT];
-        if (i != 0) presence->status = ask_number(session, number);
+        if (i != 0) presence->status = read_number(session, number);
         if (has_stopped(session, presence->status)) return PRESENT_STOPPED;
         if (is_of_line(presence->status)) return PRESENT_UNKNOWN;
         if (presence->status != FATHOM_OK) return PRESENT_UNCLEAR;
@@ -90,18 +89,63 @@ static present_t ask(session_t *session, unsigned times, presence_t *presence)
     return has_stopped(session, FATHOM_OK) ? PRESENT_STOPPED : PRESENT_ONE;
 }
 
-presence_t presence_ask(session_t *session, uint8_t address, unsigned times)
+presence_t presence_ask(session_t *session, uint8_t address, const fathom_line_settings_t *line,
+                        unsigned times)
 {
     presence_t presence = {.what = PRESENT_STOPPED, .status = FATHOM_ERR_ARGUMENT};
-    const fathom_line_settings_t line = session->station->line;
-    if (session_move(session, address, &line)) presence.what = ask(session, times, &presence);
+    const fathom_line_settings_t copy = *line; /* session_move() writes the station's, which *line may be */
+    if (session_move(session, address, &copy)) presence.what = ask(session, times, &presence);
     return presence;
 }
 
 void presence_explain(session_t *session, const presence_t *presence)
 {
     if (presence->is_two)
-        (void)fprintf(stderr, "two units answer at address %u", session->station->address);
+        (void)fprintf(stderr, "two sensors respond at address %u", session->station->address);
     else
         session_explain(session, presence->status);
+}
+
+/* ---- moving a sensor ---- */
+
+/* Bytes without a response do not occupy a place: they may be frames of this sensor, heard at another rate. */
+static bool is_free_at(session_t *session, uint8_t address, const fathom_line_settings_t *line)
+{
+    enum { TIMES = 2 };
+    presence_t presence = {.what = PRESENT_NONE};
+    char text[LINE_TEXT];
+    unsigned times = 0;
+    do presence = presence_ask(session, address, line, 1);
+    while (presence.status == FATHOM_ERR_NO_RESPONSE && ++times != TIMES);
+    if (presence.status == FATHOM_ERR_NO_RESPONSE) return true;
+    if (presence.status == FATHOM_ERR_ARGUMENT) return false; /* session_move() has printed the reason */
+    (void)fflush(stdout);
+    (void)fprintf(stderr, "fathom: nothing was written: at address %u, %s, ", address,
+                  session_line_text(session, text));
+    if (presence.what == PRESENT_ONE || presence.what == PRESENT_UNCLEAR)
+        (void)fputs("a sensor responds already. Two sensors at one address would respond at the same time",
+                    stderr);
+    else
+        session_explain(session, presence.status);
+    (void)fputs("\n", stderr);
+    return false;
+}
+
+bool presence_is_free(session_t *session, uint8_t address, uint32_t baud)
+{
+    const uint8_t home = session->station->address;
+    const fathom_line_settings_t home_line = session->station->line;
+    fathom_line_settings_t line = home_line;
+    line.baud = baud;
+    const bool is_free = (address == home || is_free_at(session, address, &home_line)) &&
+                         (baud == home_line.baud || is_free_at(session, address, &line));
+    return session_move(session, home, &home_line) && is_free;
+}
+
+bool presence_follow(session_t *session)
+{
+    const station_t *const station = session->station;
+    const fathom_modbus_unit_t *const unit = station->reader.unit;
+    const fathom_line_settings_t line = unit->line_settings != NULL ? *unit->line_settings : station->line;
+    return session_move(session, unit->address, &line);
 }
