@@ -8,6 +8,7 @@
 
 #include "mqtt/discovery.h"
 #include "mqtt/state.h"
+#include "sensors/driver.h"
 
 static config_t config;
 static config_results_t results;
@@ -156,13 +157,15 @@ TEST(a_temperature_is_told_in_degrees_once_it_is_known)
 {
     const result_t result = {.sample = {.kind = FATHOM_TARGET, .distance_mm = 900, .probe = 1}};
     const state_t message = state_of(GATE, &result);
-    reader_temperature_t *const temperature = &station(GATE)->reader.temperature;
+    reader_t reader = {.temperature = {.is_known = false}};
+    station(GATE)->reader = &reader;
     expect(&message, TOPIC_STATE,
            BEGIN "\"status\":\"target\",\"distance_mm\":900,\"temperature_degc\":null" END);
-    temperature->is_known = true;
-    temperature->dc = -5;
+    reader.temperature.is_known = true;
+    reader.temperature.dc = -5;
     expect(&message, TOPIC_STATE,
            BEGIN "\"status\":\"target\",\"distance_mm\":900,\"temperature_degc\":-0.5" END);
+    station(GATE)->reader = NULL;
 }
 
 TEST(a_change_of_an_alarm_is_told_with_its_distance)
@@ -183,9 +186,11 @@ TEST(an_attempt_that_has_failed_says_so_and_tells_no_value)
     const result_t none = {.has_level = false};
     state_t message = state_of(GATE, &none);
     message.failure = "no_response";
-    station(GATE)->reader.temperature.is_known = true;
+    reader_t reader = {.temperature = {.is_known = true}};
+    station(GATE)->reader = &reader;
     expect(&message, TOPIC_STATE,
            BEGIN "\"status\":\"no_response\",\"distance_mm\":null,\"temperature_degc\":null" END);
+    station(GATE)->reader = NULL;
 }
 
 TEST(the_longest_state_fits_into_a_place_of_the_queue)

@@ -7,6 +7,7 @@
 
 #include "cli/command.h"
 #include "cli/options.h"
+#include "fathom/sensor/a05_modbus.h"
 
 enum { MAX_WORD = 24, MAX_LIST = 200 };
 

@@ -223,6 +223,7 @@ static void take_slots(sensor_options_t *options, size_t count)
     size_t slot = 0;
     for (options->station_count = 0; options->station_count != count; slot++) {
         if (is_taken[slot]) continue;
+        reader_free(&slots[slot].reader);
         memset(&slots[slot], 0, sizeof slots[slot]);
         slots[slot].slot = slot;
         options->stations[options->station_count++] = &slots[slot];
@@ -269,8 +270,8 @@ void sensor_options_tell_useless(const sensor_options_t *options, const char *ad
         const model_mode_t *const mode = station->mode;
         const bool has_key = port_keys_has(&options->ports[station->port].keys, KEY_ECHO);
         tell_useless(options, station, mode->has_address, "--address", address);
-        tell_useless(options, station, mode->is_asked, "--retries", values[OPTION_RETRIES]);
-        tell_useless(options, station, mode->is_asked, has_key ? "echo=" : "--echo",
+        tell_useless(options, station, mode_is_asked(mode), "--retries", values[OPTION_RETRIES]);
+        tell_useless(options, station, mode_is_asked(mode), has_key ? "echo=" : "--echo",
                      has_key ? "" : values[OPTION_ECHO]);
     }
 }

@@ -49,7 +49,7 @@ static int finish(bool is_restore, fathom_status_t status)
                          station->name);
         return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
     }
-    const bool is_sent = station->model->reset.is_sent(&station->reader);
+    const bool is_sent = station->model->reset.is_sent(station->reader);
     const bool is_told = status == FATHOM_ERR_UNCONFIRMED || status == FATHOM_ERR_EXCEPTION;
     (void)fprintf(stderr, "fathom: %s: %s", station->name,
                   !is_sent  ? "nothing was written: "

@@ -100,7 +100,7 @@ static void print_stop(const plan_t *plan, size_t n, const char *path)
 {
     char before[SETTING_VALUES];
     char after[SETTING_VALUES];
-    const bool is_written = session.station->reader.unit->is_written;
+    const bool is_written = reader_facts(session.station->reader).is_written;
     (void)names(plan, 0, n, false, before);
     (void)names(plan, n + 1, plan->count, false, after);
     (void)fprintf(stderr, "fathom: it has ended at %s; written before: %s; not written: %s\n",

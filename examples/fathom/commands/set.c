@@ -32,7 +32,7 @@ static int set(change_t *change)
     change->was[0] = '\0';
     if (change->is_for_all) return set_report(change, session_call(&session, call_all, change));
     if (change->is_blind) {
-        (void)fathom_modbus_write_next_unchecked(session.station->reader.unit);
+        reader_write_next_unchecked(session.station->reader);
     } else if (change->setting->get != NULL) {
         const fathom_status_t status = session_get(&session, change->setting, change->was);
         if (status != FATHOM_OK) return set_report(change, status);

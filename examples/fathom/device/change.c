@@ -21,14 +21,13 @@ bool change_is_read_back(const change_t *change)
 
 change_outcome_t change_outcome(const change_t *change, fathom_status_t status)
 {
-    const fathom_modbus_unit_t *const unit = change->session->station->reader.unit;
-    const bool has_ended = unit->setting == 0;
-    if (!unit->is_written) return status == FATHOM_OK ? CHANGE_UNCHANGED : CHANGE_NOT_WRITTEN;
+    const reader_facts_t facts = reader_facts(change->session->station->reader);
+    if (!facts.is_written) return status == FATHOM_OK ? CHANGE_UNCHANGED : CHANGE_NOT_WRITTEN;
     if (status == FATHOM_OK) return CHANGE_DONE;
-    if (change->is_for_all) return unit->outcome == FATHOM_OK ? CHANGE_SENT : CHANGE_UNCONFIRMED;
+    if (change->is_for_all) return facts.acknowledgement == FATHOM_OK ? CHANGE_SENT : CHANGE_UNCONFIRMED;
     if (status == FATHOM_ERR_EXCEPTION) return CHANGE_REFUSED;
     const bool is_unknown =
-        !has_ended || status == FATHOM_ERR_UNCONFIRMED || change->setting->confirmed != NULL;
+        facts.is_setting || status == FATHOM_ERR_UNCONFIRMED || change->setting->confirmed != NULL;
     return is_unknown || !change_is_read_back(change) ? CHANGE_UNCONFIRMED : CHANGE_DIFFERS;
 }
 
@@ -37,8 +36,8 @@ static void print_unknown(FILE *to, const change_t *change)
 {
     const station_t *const station = change->session->station;
     const setting_t *const setting = change->setting;
-    const bool is_acknowledged =
-        station->reader.unit->setting == 0 && station->reader.unit->outcome == FATHOM_OK;
+    const reader_facts_t facts = reader_facts(station->reader);
+    const bool is_acknowledged = !facts.is_setting && facts.acknowledgement == FATHOM_OK;
     (void)fputs(is_acknowledged ? "it was acknowledged; " : "no acknowledgement came; ", to);
     if (setting->is_baud) {
         const uint32_t was = station->line.baud;
@@ -78,7 +77,7 @@ static void print_not_written(const change_t *change, fathom_status_t status)
 
 void change_explain(const change_t *change, change_outcome_t outcome, fathom_status_t status)
 {
-    const fathom_modbus_unit_t *const unit = change->session->station->reader.unit;
+    const reader_facts_t facts = reader_facts(change->session->station->reader);
     (void)fprintf(stderr, "fathom: %s: %s %s: %s: ", change->session->station->name, change->setting->name,
                   change->wanted, change_outcomes[outcome]);
     switch (outcome) {
@@ -87,7 +86,7 @@ void change_explain(const change_t *change, change_outcome_t outcome, fathom_sta
         break;
     case CHANGE_DIFFERS:
         (void)fprintf(stderr, "%s, and the device tells another value; perhaps this variant does not have it",
-                      unit->outcome == FATHOM_OK ? "it was acknowledged" : "no acknowledgement came");
+                      facts.acknowledgement == FATHOM_OK ? "it was acknowledged" : "no acknowledgement came");
         break;
     case CHANGE_REFUSED:
         session_explain(change->session, status);

@@ -18,7 +18,7 @@ static bool check_modes(const sensor_options_t *options, const char *command)
 {
     for (size_t i = 0; i != options->station_count; i++) {
         const model_mode_t *const mode = options->stations[i]->mode;
-        if (mode->is_asked && mode->pins == 0) continue;
+        if (mode_is_asked(mode) && mode->pins == 0) continue;
         (void)usage_error(command, "in mode %s nothing is asked; leave it out", mode->name);
         return false;
     }
@@ -137,8 +137,7 @@ static bool begin(session_t *session)
         (void)fprintf(stderr, "fathom: %s\n", text);
         return false;
     }
-    if (session->channel.tcp == NULL && station->model->listen_unasked != NULL)
-        station->model->listen_unasked(&station->reader);
+    if (session->channel.tcp == NULL) reader_listen_unasked(station->reader);
     return true;
 }
 
@@ -166,7 +165,7 @@ bool session_open(session_t *session, const host_t *host)
 bool session_move(session_t *session, uint8_t address, const fathom_line_settings_t *line)
 {
     station_t *const station = session->station;
-    fathom_modbus_unit_cancel(station->reader.unit);
+    reader_cancel(station->reader);
     station->address = address;
     station->line = *line;
     station_name(station);
@@ -177,7 +176,7 @@ void session_close(session_t *session) { channel_close(&session->channel); }
 
 fathom_status_t session_call(session_t *session, session_call_t call, void *ctx)
 {
-    reader_t *const reader = &session->station->reader;
+    reader_t *const reader = session->station->reader;
     const host_t *const host = session->channel.host;
     const fathom_posix_uart_t *const port = &session->channel.port;
     counters_begin_attempt(&session->station->counters);
@@ -186,7 +185,7 @@ fathom_status_t session_call(session_t *session, session_call_t call, void *ctx)
         const fathom_status_t status = call(reader, ctx);
         if (status != FATHOM_PENDING) return status;
         if (fathom_posix_error(port) == FATHOM_POSIX_ERR_LOST) return FATHOM_ERR_PORT;
-        host->wait(host->ctx, port, fathom_due_us(&reader->sensor, 1), false);
+        host->wait(host->ctx, port, reader_due_us(reader), false);
     }
     return FATHOM_ERR_CANCELLED;
 }
@@ -218,17 +217,15 @@ static fathom_status_t call_set(reader_t *reader, void *ctx)
 static fathom_status_t call_again(session_t *session, session_call_t call, what_t *what)
 {
     enum { TIMES = 4 };
-    const fathom_modbus_unit_t *const unit = session->station->reader.unit;
-    const model_t *const model = session->station->model;
+    reader_t *const reader = session->station->reader;
     fathom_status_t status = FATHOM_PENDING;
     for (unsigned times = 0; times != TIMES; times++) {
         status = session_call(session, call, what);
         const bool is_met = status == FATHOM_ERR_NO_RESPONSE || status == FATHOM_ERR_CHECKSUM ||
                             status == FATHOM_ERR_MALFORMED;
-        const bool is_among_unasked =
-            model->has_unasked != NULL && model->has_unasked(&session->station->reader);
+        const reader_facts_t facts = reader_facts(reader);
         const bool is_of_line = status == FATHOM_ERR_LINE_BUSY || status == FATHOM_ERR_OTHER_MASTER;
-        if (unit->is_written || !(is_of_line || (is_met && is_among_unasked))) break;
+        if (facts.is_written || !(is_of_line || (is_met && facts.has_unasked))) break;
     }
     return status;
 }
@@ -258,19 +255,20 @@ void session_explain(session_t *session, fathom_status_t status)
     station_t *const station = session->station;
     failure_t failure = {.status = status,
                          .model = station->model,
-                         .reader = &station->reader,
+                         .mode = station->mode,
+                         .reader = station->reader,
                          .channel = &session->channel,
                          .counters = &station->counters,
                          .line = &station->line,
                          .address = station->address};
-    counters_take(&station->counters, &session->port_counts, &session->channel, &station->reader);
+    (void)counters_take(&station->counters, &session->port_counts, &session->channel, station->reader);
     listener_judge(&session->channel.listener, station->address, &failure.evidence);
     if (status == FATHOM_ERR_CANCELLED)
         (void)fputs("ended before the response came", stderr);
-    else if (status == FATHOM_ERR_MALFORMED && !reader_got_unexpected_response(&station->reader))
+    else if (status == FATHOM_ERR_MALFORMED && !reader_facts(station->reader).is_unexpected)
         (void)fprintf(
             stderr, "its responses cannot be that%s; check that it is %s, and alone at this address",
-            station->model->has_unasked != NULL ? ", or what it sends unasked stands between them" : "",
+            station->model->may_send_unasked ? ", or what it sends unasked stands between them" : "",
             station->model->name);
     else
         advice_print(stderr, &failure);

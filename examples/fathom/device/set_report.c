@@ -16,12 +16,11 @@ static void print_next(const change_t *change)
     const setting_t *const setting = change->setting;
     const station_t *const station = change->session->station;
     const model_t *const model = station->model;
-    const fathom_modbus_unit_t *const unit = station->reader.unit;
-    const fathom_line_settings_t *const line =
-        unit->line_settings != NULL ? unit->line_settings : &station->line;
+    const reader_facts_t facts = reader_facts(station->reader);
+    const fathom_line_settings_t *const line = facts.line != NULL ? facts.line : &station->line;
     char options[LINE_OPTIONS];
     if (!setting->moves) return;
-    (void)printf("from now on: fathom read %s:%u:%s --port %s%s\n", model->name, unit->address,
+    (void)printf("from now on: fathom read %s:%u:%s --port %s%s\n", model->name, facts.address,
                  station->mode->name, session_port(change->session)->path,
                  line_options(line, &model->line, options));
 }
@@ -29,7 +28,7 @@ static void print_next(const change_t *change)
 static bool is_later(const change_t *change)
 {
     const setting_t *const setting = change->setting;
-    return setting->is_later != NULL && setting->is_later(&change->session->station->reader);
+    return setting->is_later != NULL && setting->is_later(change->session->station->reader);
 }
 
 static void print_json(const change_t *change, change_outcome_t outcome)
@@ -44,12 +43,12 @@ static void print_json(const change_t *change, change_outcome_t outcome)
         session_print_json(stdout, change->was);
     else
         (void)fputs("null", stdout);
-    (void)printf(", \"written\": %s, \"confirmed\": %s, \"outcome\": \"%s\", \"address\": %u}\n",
-                 is_written ? "true" : "false",
-                 outcome == CHANGE_UNCHANGED || (outcome == CHANGE_DONE && change_is_read_back(change))
-                     ? "true"
-                     : "false",
-                 change_outcomes[outcome], change->is_for_all ? 0u : (unsigned)station->reader.unit->address);
+    (void)printf(
+        ", \"written\": %s, \"confirmed\": %s, \"outcome\": \"%s\", \"address\": %u}\n",
+        is_written ? "true" : "false",
+        outcome == CHANGE_UNCHANGED || (outcome == CHANGE_DONE && change_is_read_back(change)) ? "true"
+                                                                                               : "false",
+        change_outcomes[outcome], change->is_for_all ? 0u : (unsigned)reader_facts(station->reader).address);
 }
 
 static void print_done(const change_t *change, change_outcome_t outcome)
@@ -74,7 +73,7 @@ static void print_done(const change_t *change, change_outcome_t outcome)
 /* What was asked for is done, and more than that cannot be known. */
 static bool is_done_blind(const change_t *change, change_outcome_t outcome)
 {
-    const int8_t response = change->session->station->reader.unit->outcome;
+    const int8_t response = reader_facts(change->session->station->reader).acknowledgement;
     /* what came back is its acknowledgement, or may be: nothing was read that could tell an echo from one */
     const bool is_answered = response == FATHOM_OK || response == FATHOM_ERR_ECHO;
     return outcome == CHANGE_SENT || (change->is_blind && outcome == CHANGE_UNCONFIRMED && is_answered);

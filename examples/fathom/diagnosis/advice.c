@@ -112,8 +112,8 @@ static bool print_unasked(FILE *to, const failure_t *failure)
 {
     enum { LEAST = 3, LITTLE_MS = 2 };
     const char *const path = failure->channel->port.path;
-    if (failure->channel->tcp != NULL || failure->reader->protocol == NULL ||
-        failure->model->has_unasked == NULL || failure->evidence.own < LEAST)
+    if (failure->channel->tcp != NULL || !mode_is_asked(failure->mode) || !failure->model->may_send_unasked ||
+        failure->evidence.own < LEAST)
         return false;
     const unsigned latency_ms = sysfs_adapter_latency_ms(SYSFS_ROOT, path);
     (void)fprintf(to,
@@ -152,7 +152,7 @@ static void print_no_response(FILE *to, const failure_t *failure)
                     "asks, and that only one sensor has this address",
                     to);
     } else if (evidence->bytes != 0) {
-        (void)fprintf(to, "bytes were heard, but no %s frame; ", failure->reader->protocol);
+        (void)fprintf(to, "bytes were heard, but no %s frame; ", failure->mode->protocol);
         print_settings(to, failure);
         (void)fputs("; A and B swapped and noise look like this too", to);
     } else if (failure->others_answer) {
@@ -294,25 +294,23 @@ static void print_stale(FILE *to, const failure_t *failure)
 /* A sensor that sends by itself has sent no good frame. */
 static void print_silence(FILE *to, const failure_t *failure)
 {
-    if (failure->has_address)
+    if (failure->mode->has_address)
         print_unheard(to, failure);
     else
         print_stale(to, failure);
 }
 
 /* Which value of an A16 or A05 was refused and why, and what became of the other probes. */
-static void print_refused(FILE *to, const failure_t *failure, uint8_t probe)
+static void print_refused(FILE *to, const failure_t *failure, const reader_facts_t *facts)
 {
-    const fathom_dyp_measurement_t *const response = failure->reader->response;
-    const uint16_t raw = response->refused_raw;
+    const uint16_t raw = facts->refused_raw;
     const bool is_code = raw == 0 || raw >= 0xFFFD;
     const bool has_probes = failure->model->probes > 1;
-    if (has_probes) (void)fprintf(to, "probe %u: ", probe);
+    if (has_probes) (void)fprintf(to, "probe %u: ", facts->refused_probe);
     if (is_code)
         (void)fprintf(to, "%u (%X) is refused", raw, raw);
     else
-        (void)fprintf(to, "%u is refused: no distance from %u to %u mm", raw,
-                      response->window.min_mm != 0 ? response->window.min_mm : 1u, response->window.max_mm);
+        (void)fprintf(to, "%u is refused: no distance from %u to %u mm", raw, facts->min_mm, facts->max_mm);
     if (failure->is_whole)
         (void)fputs(", and with it the other probes of this frame, which may be damaged", to);
     if (is_code) (void)fprintf(to, "; --means %X=... says what it is", raw);
@@ -321,11 +319,10 @@ static void print_refused(FILE *to, const failure_t *failure, uint8_t probe)
 }
 
 /* Which values of an HPS-167S were refused. */
-static void print_values(FILE *to, const failure_t *failure)
+static void print_values(FILE *to, const failure_t *failure, const reader_facts_t *facts)
 {
-    const reader_t *const reader = failure->reader;
     (void)fputs("a value that cannot be a distance:", to);
-    for (uint8_t i = 0; i != reader->value_count; i++) (void)fprintf(to, " %u", reader->values[i]);
+    for (uint8_t i = 0; i != facts->value_count; i++) (void)fprintf(to, " %u", facts->values[i]);
     (void)fprintf(to, "; check that the sensor is %s, and for noise", failure->model->name);
 }
 
@@ -347,17 +344,16 @@ static void print_port(FILE *to, const failure_t *failure)
 
 void advice_print(FILE *to, const failure_t *failure)
 {
-    if (failure->channel->is_chip && advice_print_pins(to, failure->status, failure->reader, failure->noises))
-        return;
-    const bool is_triggered = failure->reader->protocol == NULL && failure->reader->is_paced;
-    if (is_triggered &&
+    const reader_facts_t facts = reader_facts(failure->reader);
+    if (failure->channel->is_chip && advice_print_pins(to, failure, &facts)) return;
+    if (failure->mode->is_triggered &&
         (failure->status == FATHOM_ERR_NO_RESPONSE || failure->status == FATHOM_ERR_CHECKSUM)) {
         print_untriggered(to, failure);
         return;
     }
     switch (failure->status) {
     case FATHOM_ERR_CHECKSUM:
-        if (failure->reader->frames != NULL)
+        if (!mode_is_asked(failure->mode))
             print_silence(to, failure);
         else if (is_only_echo(&failure->evidence))
             print_no_response(to, failure);
@@ -369,21 +365,20 @@ void advice_print(FILE *to, const failure_t *failure)
         break;
     case FATHOM_ERR_MALFORMED:
         if (print_unasked(to, failure)) break;
-        if (reader_got_unexpected_response(failure->reader))
+        if (facts.is_unexpected)
             (void)fprintf(to,
                           "address %u answered something else than was asked; check that it is %s, and alone "
                           "at this address",
                           failure->address, failure->model->name);
-        else if (reader_refused_probe(failure->reader) != 0)
-            print_refused(to, failure, reader_refused_probe(failure->reader));
+        else if (facts.refused_probe != 0)
+            print_refused(to, failure, &facts);
         else
-            print_values(to, failure);
+            print_values(to, failure, &facts);
         break;
     case FATHOM_ERR_EXCEPTION: {
-        const uint8_t number = fathom_modbus_unit_exception(failure->reader->unit);
-        const modbus_exception_t text = modbus_exception(number);
-        (void)fprintf(to, "address %u refused: exception %02u (%s): %s", failure->address, number, text.name,
-                      text.meaning);
+        const modbus_exception_t text = modbus_exception(facts.exception);
+        (void)fprintf(to, "address %u refused: exception %02u (%s): %s", failure->address, facts.exception,
+                      text.name, text.meaning);
         if (text.is_other_sensor) (void)fprintf(to, "; check that it is %s", failure->model->name);
         break;
     }

@@ -11,6 +11,7 @@
 typedef struct {
     fathom_status_t status;
     const model_t *model;
+    const model_mode_t *mode;
     const reader_t *reader;
     const channel_t *channel;
     const counters_t *counters;
@@ -19,7 +20,6 @@ typedef struct {
     evidence_t evidence;                /* of this attempt */
     uint32_t noises;                    /* pulses of this attempt that were too short */
     uint8_t address;
-    bool has_address;   /* at which it is asked, or heard */
     bool others_answer; /* on this line */
     bool waits;         /* for a lost port, which is opened again */
     bool is_told;       /* of another sensor on this port, which is lost to all of them */

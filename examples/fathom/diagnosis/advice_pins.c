@@ -21,22 +21,21 @@ static void print_no_pulse(FILE *to, uint32_t noises)
                 to);
 }
 
-bool advice_print_pins(FILE *to, fathom_status_t status, const reader_t *reader, uint32_t noises)
+bool advice_print_pins(FILE *to, const failure_t *failure, const reader_facts_t *facts)
 {
-    const fathom_dyp_window_t *const window = &reader->driver.a16_pwm.window;
-    switch (status) {
+    switch (failure->status) {
     case FATHOM_ERR_NO_RESPONSE:
-        print_no_pulse(to, noises);
+        print_no_pulse(to, failure->noises);
         return true;
     case FATHOM_ERR_MALFORMED:
         (void)fprintf(
             to,
             "a pulse came that is no distance from %u to %u mm (--window); check for noise, and that "
             "nothing is nearer than 50 cm",
-            window->min_mm, window->max_mm);
+            facts->min_mm, facts->max_mm);
         return true;
     case FATHOM_ERR_STALE:
-        if (reader->meter != NULL) {
+        if (failure->mode->has_pulses) {
             (void)fputs(
                 "a pulse was read more than 2.5 s after its end; the machine is too busy, or it slept", to);
             return true;

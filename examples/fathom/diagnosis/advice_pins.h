@@ -4,10 +4,9 @@
 
 #include <stdio.h>
 
-#include "sensors/reader.h"
+#include "diagnosis/advice.h"
 
-/* The part of advice_print for a sensor on pins. noises: pulses of this attempt that were too short. False: it has nothing
- * to say of this failure. */
-bool advice_print_pins(FILE *to, fathom_status_t status, const reader_t *reader, uint32_t noises);
+/* The part of advice_print for a sensor on pins. Returns false if it has nothing to print for this failure. */
+bool advice_print_pins(FILE *to, const failure_t *failure, const reader_facts_t *facts);
 
 #endif

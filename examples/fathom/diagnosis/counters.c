@@ -72,18 +72,17 @@ static void take_port(counters_t *counters, port_counts_t *port, channel_t *chan
     port->at = now;
 }
 
-void counters_take(counters_t *counters, port_counts_t *port, channel_t *channel, const reader_t *reader)
+reader_counters_t counters_take(counters_t *counters, port_counts_t *port, channel_t *channel,
+                                reader_t *reader)
 {
+    reader_counters_t counted;
+    reader_take_counters(reader, &counted);
+    uint16_t unit[UNIT_COUNTERS] = {[UNIT_RESPONSES] = counted.responses, [UNIT_FAILURES] = counted.failures};
     take(channel->counters, counters->attempt.line, counters->total.line, FATHOM_LINE_COUNTERS);
-    if (reader->frames != NULL)
-        take(reader->frames, counters->attempt.stream, counters->total.stream, FATHOM_STREAM_COUNTERS);
-    if (reader->unit != NULL) {
-        take(&reader->unit->responses, counters->attempt.unit + UNIT_RESPONSES,
-             counters->total.unit + UNIT_RESPONSES, 1);
-        take(&reader->unit->failures, counters->attempt.unit + UNIT_FAILURES,
-             counters->total.unit + UNIT_FAILURES, 1);
-    }
+    take(counted.stream, counters->attempt.stream, counters->total.stream, FATHOM_STREAM_COUNTERS);
+    take(unit, counters->attempt.unit, counters->total.unit, UNIT_COUNTERS);
     take_port(counters, port, channel);
+    return counted;
 }
 
 void counters_take_late(counters_t *counters, channel_t *channel)
@@ -97,7 +96,7 @@ void counters_begin_attempt(counters_t *counters) { memset(&counters->attempt, 0
 size_t counters_failure_kind(fathom_status_t status, const reader_t *reader)
 {
     const size_t kind = (size_t)-status;
-    if (status == FATHOM_ERR_MALFORMED && !reader_got_unexpected_response(reader)) return FAILURE_VALUE;
+    if (status == FATHOM_ERR_MALFORMED && !reader_facts(reader).is_unexpected) return FAILURE_VALUE;
     return kind >= FAILURE_KINDS || counters_failure_name(kind) == NULL ? FAILURE_KINDS - 1 : kind;
 }
 

@@ -50,8 +50,9 @@ typedef struct {
 /* A port has been opened: the driver's counters begin here. */
 void counters_begin_port(port_counts_t *port, channel_t *channel);
 
-/* Takes the counters out of the line, the stream, the unit and the port and adds them. */
-void counters_take(counters_t *counters, port_counts_t *port, channel_t *channel, const reader_t *reader);
+/* Moves the counters of the line, the sensor and the port. Returns those of the sensor. */
+reader_counters_t counters_take(counters_t *counters, port_counts_t *port, channel_t *channel,
+                                reader_t *reader);
 
 /* Takes the line's late responses alone: they are this sensor's. */
 void counters_take_late(counters_t *counters, channel_t *channel);

@@ -60,7 +60,7 @@ typedef struct {
 static bool has_some(const account_t *account, bool is_asked)
 {
     for (size_t i = 0; i != account->station_count; i++)
-        if (account->stations[i]->mode->is_asked == is_asked) return true;
+        if (mode_is_asked(account->stations[i]->mode) == is_asked) return true;
     return false;
 }
 
@@ -102,22 +102,12 @@ static void print_attempts(const counters_t *counters, FILE *to, const char *of,
                   counters->attempts, counters->failed, counters->readings);
 }
 
-/* Before the port was there, there is no unit. */
-static unsigned timeouts_in_row(const station_t *station)
-{
-    return station->reader.unit != NULL ? station->reader.unit->timeouts_in_row : 0u;
-}
-
-static uint32_t backoff_left_us(const station_t *station)
-{
-    return station->reader.unit != NULL ? station->reader.unit->backoff_left_us : 0u;
-}
-
 /* Time-outs in a row, and for how long the driver leaves it alone because of them. */
 static void print_back_off(const station_t *station, FILE *to)
 {
-    (void)fprintf(to, ", time-outs in a row %u, left alone for %.1f s", timeouts_in_row(station),
-                  backoff_left_us(station) / 1000000.0);
+    (void)fprintf(to, ", time-outs in a row %u, left alone for %.1f s",
+                  reader_facts(station->reader).timeouts_in_row,
+                  reader_facts(station->reader).backoff_left_us / 1000000.0);
 }
 
 void counters_print(const account_t *account, FILE *to)
@@ -128,7 +118,7 @@ void counters_print(const account_t *account, FILE *to)
     for (size_t i = 0; i != account->station_count && account->station_count > 1; i++) {
         const station_t *const station = account->stations[i];
         print_attempts(&station->counters, to, station->name, ": ");
-        if (timeouts_in_row(station) != 0) print_back_off(station, to);
+        if (reader_facts(station->reader).timeouts_in_row != 0) print_back_off(station, to);
         (void)fputs("\n", to);
     }
     bool is_empty = print(to, total->stream, stream_names, FATHOM_STREAM_COUNTERS, true);
@@ -181,7 +171,7 @@ void counters_print_all(const account_t *account, FILE *to)
         (void)fputs("\n", to);
     }
     for (size_t i = 0; i != account->station_count; i++)
-        if (account->stations[i]->mode->is_asked) print_unit(account->stations[i], to);
+        if (mode_is_asked(account->stations[i]->mode)) print_unit(account->stations[i], to);
 }
 
 /* ---- for programs ---- */
@@ -237,8 +227,9 @@ static void print_json_unit(const station_t *station, FILE *to)
     (void)fprintf(to,
                   ",\"responses\":%" PRIu64 ",\"failures\":%" PRIu64
                   ",\"timeouts_in_row\":%u,\"backoff_left_us\":%" PRIu32,
-                  counts[UNIT_RESPONSES], counts[UNIT_FAILURES], timeouts_in_row(station),
-                  backoff_left_us(station));
+                  counts[UNIT_RESPONSES], counts[UNIT_FAILURES],
+                  reader_facts(station->reader).timeouts_in_row,
+                  reader_facts(station->reader).backoff_left_us);
     print_json_time(&station->counters, to);
     (void)fputs("}", to);
 }
@@ -259,7 +250,7 @@ void counters_print_json(const account_t *account, FILE *to)
     (void)fputs(",\"units\":[", to);
     const char *gap = "";
     for (size_t i = 0; i != account->station_count; i++) {
-        if (!account->stations[i]->mode->is_asked) continue;
+        if (!mode_is_asked(account->stations[i]->mode)) continue;
         (void)fputs(gap, to);
         print_json_unit(account->stations[i], to);
         gap = ",";

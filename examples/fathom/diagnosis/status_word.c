@@ -24,7 +24,7 @@ enum { KINDS = sizeof kinds / sizeof kinds[0] };
 
 const char *status_word(const model_mode_t *mode, uint8_t kind)
 {
-    const bool is_contact = (mode->pins & MODEL_PIN_IN) != 0;
+    const bool is_contact = mode->is_contact;
     return kinds[kind == FATHOM_NEAR && is_contact ? KIND_NEAR : kind].name;
 }
 

@@ -35,7 +35,7 @@ static const struct {
 
 static uint8_t probe_of(unsigned bit) { return (uint8_t)(bit / ENTITIES + 1); }
 
-static bool is_contact(const station_t *station) { return (station->mode->pins & MODEL_PIN_IN) != 0; }
+static bool is_contact(const station_t *station) { return station->mode->is_contact; }
 
 static bool has_entity(const station_t *station, const results_config_t *results, entity_t entity)
 {

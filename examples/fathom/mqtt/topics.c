@@ -29,7 +29,7 @@ void topic_of_probe(const config_t *config, const station_t *station, uint8_t pr
 
 bool topic_has_probes(const station_t *station)
 {
-    return station->model->probes > 1 && (station->mode->pins & MODEL_PIN_IN) == 0;
+    return station->model->probes > 1 && !station->mode->is_contact;
 }
 
 bool topic_wants_probe(const station_t *station, uint8_t probe)

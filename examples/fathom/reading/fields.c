@@ -49,7 +49,7 @@ static const field_t fields[] = {
 };
 #undef AT
 
-bool reading_is_contact(const reading_t *reading) { return (reading->mode->pins & MODEL_PIN_IN) != 0; }
+bool reading_is_contact(const reading_t *reading) { return reading->mode->is_contact; }
 
 bool reading_has_probe(const reading_t *reading)
 {
@@ -66,7 +66,7 @@ static void fill_sample(row_t *row, const reading_t *reading)
 {
     const fathom_sample_t *const sample = reading->sample;
     const bool is_good = reading->failure == NULL;
-    const reader_temperature_t *const temperature = &reading->reader->temperature;
+    const reader_facts_t facts = reader_facts(reading->reader);
     row->sequence = is_good ? sample->sequence : NO_VALUE;
     row->interference = is_good ? sample->interference : NO_VALUE;
     row->distance_mm = is_good && sample->kind == FATHOM_TARGET ? sample->distance_mm : NO_VALUE;
@@ -74,7 +74,7 @@ static void fill_sample(row_t *row, const reading_t *reading)
     row->magnitude = is_good ? sample->magnitude : NO_VALUE;
     row->ambient = is_good ? sample->ambient : NO_VALUE;
     row->precision = is_good ? sample->precision : NO_VALUE;
-    row->temperature_dc = is_good && temperature->is_known ? temperature->dc : NO_VALUE;
+    row->temperature_dc = is_good && facts.has_temperature ? facts.temperature_dc : NO_VALUE;
 }
 
 static void fill(row_t *row, const reading_t *reading, char utc[UTC_TEXT])

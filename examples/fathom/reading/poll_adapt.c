@@ -8,7 +8,7 @@ bool poll_may_adapt(const poll_port_t *port)
 {
     if (!port->was_open || port->is_lost || port->is_waiting || port->is_done) return false;
     for (const station_t *station = port->stations; station != NULL; station = station->next)
-        if (station->reader.unit == NULL) return false;
+        if (!mode_is_asked(station->mode)) return false;
     return true;
 }
 
@@ -24,7 +24,7 @@ static void go_on(poll_port_t *port, station_t *station)
     listener_t *const listener = poll_listener_of(port, station);
     if (listener != station->listener) listener_take_over(listener, station->listener);
     station->listener = listener;
-    station->reader.unit->backoff_us = poll_backoff_us(port);
+    reader_set_backoff_us(station->reader, poll_backoff_us(port));
 }
 
 void poll_adapt(poll_port_t *port, station_t *const *stations, size_t count)
@@ -38,7 +38,7 @@ void poll_adapt(poll_port_t *port, station_t *const *stations, size_t count)
         next = at->next;
         size_t i = 0;
         while (i != count && stations[i] != at) i++;
-        if (i == count) fathom_modbus_unit_cancel(at->reader.unit);
+        if (i == count) reader_cancel(at->reader);
     }
     for (size_t i = count; i != 0; i--) poll_port_add(port, stations[i - 1]);
     channel_suit(&port->channel, &port->options->line);

@@ -35,7 +35,7 @@ listener_t *poll_whose(void *ctx)
 {
     const poll_port_t *const port = ctx;
     for (station_t *station = port->stations; station != NULL; station = station->next)
-        if (port->channel.line.head == &station->reader.unit->request.transaction) return station->listener;
+        if (reader_has_sent(station->reader, port->channel.line.head)) return station->listener;
     return NULL;
 }
 
@@ -100,20 +100,20 @@ static void report_failure(poll_port_t *port, station_t *station, const outcome_
     failure_t failure = {
         .status = outcome->status,
         .model = station->model,
-        .reader = &station->reader,
+        .mode = station->mode,
+        .reader = station->reader,
         .channel = &port->channel,
         .counters = &station->counters,
         .line = &station->line,
         .shared = loop->options.station_count > 1 ? station->name : NULL,
         .noises = station->pulses.attempt_noises,
         .address = station->address,
-        .has_address = station->mode->has_address,
         .others_answer = others_answer(port, station),
         .waits = port->waits,
-        .is_whole = outcome->is_first && !reader_has_more(&station->reader) && has_probes(station),
+        .is_whole = outcome->is_first && !reader_has_more(station->reader) && has_probes(station),
         .is_told = outcome->is_told,
     };
-    counters_failure(&station->counters, outcome->status, &station->reader);
+    counters_failure(&station->counters, outcome->status, station->reader);
     judge(port, station, &failure.evidence);
     station->has_failed = true;
     loop->user->failure(loop->ctx, &failure, station);
@@ -143,13 +143,13 @@ static void end_attempt(const poll_loop_t *loop, station_t *station)
  */
 static bool is_early(const poll_loop_t *loop, station_t *station, fathom_status_t status)
 {
-    if (station->reader.is_paced || station->answering) return false;
+    if (!mode_is_automatic(station->mode) || station->answering) return false;
     const bool is_first = !station->skipping;
     if (is_first) station->skipping = poll_now_us(loop) < station->next_us;
     if (!station->skipping) return false;
     const bool is_late = status == FATHOM_ERR_STALE || status == FATHOM_ERR_CHECKSUM;
     if (is_first && !is_late) station->counters.skipped++;
-    station->skipping = reader_has_more(&station->reader);
+    station->skipping = reader_has_more(station->reader);
     poll_begin_attempt(station);
     return true;
 }
@@ -158,10 +158,12 @@ void poll_take_outcome(poll_port_t *port, station_t *station, fathom_status_t st
                        const fathom_sample_t *sample)
 {
     const poll_loop_t *const loop = port->loop;
-    counters_take(&station->counters, &port->counts, &port->channel, &station->reader);
-    pulses_take(&station->pulses, &station->reader, status == FATHOM_OK ? sample : NULL);
+    const reader_counters_t counted =
+        counters_take(&station->counters, &port->counts, &port->channel, station->reader);
+    if (station->mode->has_pulses)
+        pulses_take(&station->pulses, &counted, status == FATHOM_OK ? sample : NULL);
     if (status != FATHOM_ERR_PORT && is_early(loop, station, status)) return;
-    if (status == FATHOM_OK && station->reader.unit != NULL && !station->answering)
+    if (status == FATHOM_OK && mode_is_asked(station->mode) && !station->answering)
         counters_time(&station->counters, fathom_elapsed_us(sample->time_us, station->listener->asked_us));
     const outcome_t outcome = {.status = status, .is_first = !station->answering};
     station->answering = true;
@@ -171,13 +173,13 @@ void poll_take_outcome(poll_port_t *port, station_t *station, fathom_status_t st
     } else {
         report_failure(port, station, &outcome);
     }
-    if (status == FATHOM_ERR_PORT || !reader_has_more(&station->reader)) end_attempt(loop, station);
+    if (status == FATHOM_ERR_PORT || !reader_has_more(station->reader)) end_attempt(loop, station);
 }
 
 void poll_take_loss(poll_port_t *port, station_t *station, bool is_told)
 {
     const outcome_t outcome = {.status = FATHOM_ERR_PORT, .is_told = is_told};
-    counters_take(&station->counters, &port->counts, &port->channel, &station->reader);
+    (void)counters_take(&station->counters, &port->counts, &port->channel, station->reader);
     report_failure(port, station, &outcome);
     end_attempt(port->loop, station);
 }

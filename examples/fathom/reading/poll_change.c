@@ -71,7 +71,8 @@ static bool adapts(const plan_t *plan, size_t here, size_t there)
         return false;
     for (size_t i = 0; i != plan->next->station_count; i++) {
         const station_t *const station = plan->next->stations[i];
-        if (station->port == there && !(station->mode->is_asked && station->mode->has_address)) return false;
+        if (station->port == there && !(mode_is_asked(station->mode) && station->mode->has_address))
+            return false;
     }
     return true;
 }
@@ -122,11 +123,8 @@ static bool is_busy(const plan_t *plan, size_t here)
 {
     const poll_port_t *const port = &plan->loop->ports[here];
     for (const station_t *station = port->stations; station != NULL; station = station->next) {
-        if (port->is_lost || !port->was_open || station->reader.unit == NULL) continue;
-        const fathom_transaction_t *const transaction = &station->reader.unit->request.transaction;
-        if (transaction->status == FATHOM_PENDING && transaction->attempts != 0 &&
-            !(plan->adapts[here] && goes_on(plan, here, station)))
-            return true;
+        if (port->is_lost || !port->was_open || !reader_facts(station->reader).is_in_progress) continue;
+        if (!(plan->adapts[here] && goes_on(plan, here, station))) return true;
     }
     return false;
 }

@@ -131,8 +131,8 @@ void poll_loop_account(poll_loop_t *loop, account_t *account)
         station_t *const station = options->stations[i];
         poll_port_t *const port = &loop->ports[station->port];
         /* The first station takes what the line has counted; the sums are right all the same. */
-        if (station->reader.sequence != NULL)
-            counters_take(&station->counters, &port->counts, &port->channel, &station->reader);
+        if (station->reader != NULL)
+            (void)counters_take(&station->counters, &port->counts, &port->channel, station->reader);
         counters_add(&account->sum, &station->counters);
         account->requests += station->listener != NULL ? station->listener->requests : 0;
         if (port->counts.is_there) account->has_port = true;

@@ -35,7 +35,7 @@ static void finish(poll_port_t *port)
 static void take_counters(poll_port_t *port)
 {
     for (station_t *station = port->stations; station != NULL && port->was_open; station = station->next)
-        counters_take(&station->counters, &port->counts, &port->channel, &station->reader);
+        (void)counters_take(&station->counters, &port->counts, &port->channel, station->reader);
 }
 
 static void end_with_counters(poll_port_t *port)
@@ -63,7 +63,6 @@ bool poll_port_begin_station(poll_port_t *port, station_t *station)
     settings.line = port->options->has_mixed_lines || loop->options.persists ? &station->line : NULL;
     settings.backoff_us = poll_backoff_us(port);
     settings.address = station->address;
-    const uint16_t sequence = station->reader.sequence != NULL ? *station->reader.sequence : 0;
     if (!station_begin(station, &port->channel, &settings)) {
         station_refusal(station, text, sizeof text);
         tell(port, text, POLL_PORT_GIVEN_UP);
@@ -71,8 +70,6 @@ bool poll_port_begin_station(poll_port_t *port, station_t *station)
     }
     if (!port->was_open && station_is_raised(station, text, sizeof text))
         loop->user->remark(loop->ctx, station, text);
-    /* Goes on after a loss, so that the gap is not taken for a new start. */
-    *station->reader.sequence = sequence;
     station->listener = poll_listener_of(port, station);
     poll_begin_attempt(station);
     station->next_us = poll_now_us(loop);
@@ -245,8 +242,7 @@ static short port_events(const fathom_loop_source_t *source)
 
 static void tell_remark(const poll_loop_t *loop, station_t *station)
 {
-    const char *const remark = station->reader.remark;
-    station->reader.remark = NULL;
+    const char *const remark = reader_remark(station->reader);
     if (remark != NULL) loop->user->remark(loop->ctx, station, remark);
 }
 
@@ -255,7 +251,7 @@ static bool poll_station(poll_port_t *port, station_t *station)
 {
     do {
         fathom_sample_t sample;
-        const fathom_status_t status = fathom_poll(&station->reader.sensor, &sample);
+        const fathom_status_t status = reader_poll(station->reader, &sample);
         tell_remark(port->loop, station);
         poll_take_late(port);
         channel_look(&port->channel);
@@ -264,7 +260,7 @@ static bool poll_station(poll_port_t *port, station_t *station)
         if (port->is_lost && (status == FATHOM_PENDING || status == FATHOM_ERR_PORT)) return true;
         if (status == FATHOM_PENDING) return false;
         poll_take_outcome(port, station, status, &sample);
-    } while (reader_has_more(&station->reader));
+    } while (reader_has_more(station->reader));
     return true;
 }
 
@@ -309,7 +305,7 @@ static uint32_t due_us(fathom_loop_source_t *source)
     uint32_t soonest_us = port->is_done ? AGAIN_US : FATHOM_NO_DEADLINE;
     for (station_t *station = port->stations; station != NULL && !port->is_done; station = station->next) {
         if (poll_is_done(port->loop, station)) continue;
-        const uint32_t this_us = fathom_due_us(&station->reader.sensor, 1);
+        const uint32_t this_us = reader_due_us(station->reader);
         if (this_us < soonest_us) soonest_us = this_us;
     }
     return soonest_us;
@@ -345,12 +341,7 @@ void poll_port_end(poll_port_t *port)
 bool poll_port_end_stations(poll_port_t *port)
 {
     bool has_ended = true;
-    for (station_t *station = port->stations; station != NULL; station = station->next) {
-        reader_t *const reader = &station->reader;
-        if (reader->end != NULL && reader->end(reader) == FATHOM_PENDING)
-            has_ended = false;
-        else
-            reader->end = NULL;
-    }
+    for (station_t *station = port->stations; station != NULL; station = station->next)
+        if (reader_close(station->reader) == FATHOM_PENDING) has_ended = false;
     return has_ended;
 }

@@ -14,24 +14,15 @@ static void take_width(pulses_t *pulses, uint32_t width_us)
     pulses->squares += off_us * ((double)width_us - pulses->mean_us);
 }
 
-void pulses_take(pulses_t *pulses, reader_t *reader, const fathom_sample_t *sample)
+void pulses_take(pulses_t *pulses, const reader_counters_t *counted, const fathom_sample_t *sample)
 {
-    const pins_t *const pins = reader->pins;
-    if (reader->meter == NULL) return;
     if (sample != NULL && sample->kind == FATHOM_TARGET) take_width(pulses, sample->raw);
     if (sample != NULL && sample->kind == FATHOM_NO_TARGET) pulses->no_targets++;
     if (sample != NULL && sample->kind == FATHOM_FAULT) pulses->faults++;
-    pulses->attempt_noises = reader->meter->noises;
-    pulses->noises += reader->meter->noises;
-    reader->meter->noises = 0;
-    if (pins->missed != NULL) {
-        pulses->missed += *pins->missed;
-        *pins->missed = 0;
-    }
-    if (pins->lost_events != NULL) {
-        pulses->lost_events += *pins->lost_events;
-        *pins->lost_events = 0;
-    }
+    pulses->attempt_noises = counted->noises;
+    pulses->noises += counted->noises;
+    pulses->missed += counted->missed;
+    pulses->lost_events += counted->lost_events;
 }
 
 /* Newton's way, which needs no further library; to a hundredth of what is measured. */

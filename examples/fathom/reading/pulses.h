@@ -23,7 +23,7 @@ typedef struct {
 } pulses_t;
 
 /* An attempt of a sensor that has pulses has ended. sample: NULL unless the status is FATHOM_OK. */
-void pulses_take(pulses_t *pulses, reader_t *reader, const fathom_sample_t *sample);
+void pulses_take(pulses_t *pulses, const reader_counters_t *counted, const fathom_sample_t *sample);
 
 /* A line, and then it begins anew. */
 void pulses_print(pulses_t *pulses, const char *name, FILE *to);

@@ -11,7 +11,7 @@
 static const model_mode_t *asked_mode(const model_t *model)
 {
     const model_mode_t *mode = model->modes;
-    while (!mode->is_asked) mode++; /* each sensor has one */
+    while (!mode_is_asked(mode)) mode++; /* each sensor has one */
     return mode;
 }
 
@@ -51,7 +51,7 @@ static bool suits_tcp(const station_t *station, const char *path, const char *co
         (void)usage_error(command, "%s: %s", path, wrong);
         return false;
     }
-    if (strcmp(station->mode->name, "modbus") == 0) return true;
+    if (station->mode->is_modbus) return true;
     (void)usage_error(command,
                       "%s in mode %s needs a serial port; over tcp: a sensor is asked by Modbus: %s:modbus",
                       station->model->name, station->mode->name, station->model->name);
@@ -103,7 +103,7 @@ static bool suits_chip(const station_t *station, const port_options_t *port, con
             return false;
         }
     }
-    if ((mode->pins & MODEL_PIN_IN) == 0 && port_keys_has(&port->keys, KEY_NEAR)) {
+    if (!mode->is_contact && port_keys_has(&port->keys, KEY_NEAR)) {
         (void)usage_error(command, "%s in mode %s tells distances and has no near=, such as @%s,%s",
                           station->model->name, mode->name, port->path, pins);
         return false;
@@ -202,8 +202,6 @@ bool station_is_same(const station_t *one, const station_t *other)
 
 /* ---- what can be read together ---- */
 
-static bool is_a05_dyp(const station_t *station) { return strcmp(station->mode->name, "dyp") == 0; }
-
 /* has_settings: each is asked at its own line settings; not so behind a gateway. */
 static bool check_two(const station_t *one, const station_t *other, const char *command, bool has_settings)
 {
@@ -212,13 +210,12 @@ static bool check_two(const station_t *one, const station_t *other, const char *
                           other->name);
         return false;
     }
-    /* One flipped bit in a response 55 AA gives its address to every other A05 that hears it. */
-    if (one->model == other->model && (is_a05_dyp(one) || is_a05_dyp(other))) {
+    if (one->model == other->model && (one->mode->can_move_others || other->mode->can_move_others)) {
         (void)usage_error(
             command,
             "a damaged response in mode dyp can change the address of another %s on the line; ask "
             "them all by Modbus, such as %s:modbus",
-            one->model->name, is_a05_dyp(one) ? one->name : other->name);
+            one->model->name, one->mode->can_move_others ? one->name : other->name);
         return false;
     }
     return true;
@@ -231,7 +228,7 @@ static bool suits_line(const station_t *station, const port_options_t *port, con
                           port->path, (unsigned)port->station_count);
         return false;
     }
-    if (port->station_count == 1 || station->mode->is_asked) return true;
+    if (port->station_count == 1 || mode_is_asked(station->mode)) return true;
     (void)usage_error(command,
                       "%s in mode %s sends by itself and cannot share a line with others; ask it, such "
                       "as %s:%u:modbus",
@@ -257,25 +254,22 @@ bool stations_check(station_t *const *stations, size_t count, const port_options
 
 bool station_begin(station_t *station, channel_t *channel, const reader_settings_t *settings)
 {
-    return station->mode->read(&station->reader, channel, settings);
+    return reader_open(&station->reader, station->mode, channel, settings);
 }
 
 void station_refusal(const station_t *station, char *text, size_t capacity)
 {
-    const char *const refusal = station->reader.refusal;
-    (void)snprintf(text, capacity, "%s: %s", station->name,
-                   refusal != NULL ? refusal : "its driver does not take these settings");
+    (void)snprintf(text, capacity, "%s: %s", station->name, reader_refusal(station->reader));
 }
 
 bool station_is_raised(station_t *station, char *text, size_t capacity)
 {
     const uint32_t interval_us = station->settings.period_us;
-    const uint32_t *const period_us = station->reader.period_us;
-    if (period_us == NULL || interval_us == 0 || interval_us >= *period_us || station->is_raise_told)
-        return false;
+    const uint32_t period_us = reader_facts(station->reader).least_period_us;
+    if (interval_us == 0 || interval_us >= period_us || station->is_raise_told) return false;
     station->is_raise_told = true;
     (void)snprintf(text, capacity,
                    "asked every %.4g ms, which is the least it can do (--interval %" PRIu32 ")",
-                   *period_us / 1000.0, interval_us / 1000);
+                   period_us / 1000.0, interval_us / 1000);
     return true;
 }

@@ -22,7 +22,7 @@ struct station {
     size_t slot;                 /* which station of the tool it is: less than STATION_SLOTS */
     /* What the user wants of it; line, backoff_us and address are set when it begins. */
     reader_settings_t settings;
-    reader_t reader;
+    reader_t *reader; /* NULL until it is opened */
     counters_t counters;
     pulses_t pulses;
     listener_t

@@ -46,6 +46,4 @@ typedef struct {
     } simulator;
 } device_t;
 
-typedef void (*device_init_t)(device_t *device, const device_settings_t *settings);
-
 #endif

@@ -7,30 +7,29 @@
 
 /* ---- reading ---- */
 
-bool dyp_begin_auto(reader_t *reader, fathom_dyp_auto_t *base, fathom_sensor_t sensor)
+static bool open_response(reader_t *reader, fathom_dyp_measurement_t *measurement, uint8_t count,
+                          fathom_sensor_t sensor)
 {
     reader->sensor = sensor;
-    reader->frames = base->stream.counters;
-    reader->values = base->measurement.values;
-    reader->value_count = (uint8_t)(base->stream.length / 2 - 1);
-    reader->response = &base->measurement;
-    reader->sequence = &base->measurement.sequence;
+    reader->values = measurement->values;
+    reader->value_count = count;
+    reader->response = measurement;
+    reader->window = &measurement->window;
+    reader->sequence = &measurement->sequence;
     return true;
 }
 
-bool dyp_begin_asked(reader_t *reader, fathom_dyp_modbus_t *base, fathom_sensor_t sensor,
-                     const char *protocol)
+bool dyp_open_stream(reader_t *reader, fathom_dyp_auto_t *base, fathom_sensor_t sensor)
 {
-    reader->sensor = sensor;
-    reader->protocol = protocol;
-    reader->is_paced = true;
+    reader->frames = base->stream.counters;
+    return open_response(reader, &base->measurement, (uint8_t)(base->stream.length / 2 - 1), sensor);
+}
+
+bool dyp_open_asked(reader_t *reader, fathom_dyp_modbus_t *base, fathom_sensor_t sensor)
+{
     reader->unit = &base->unit;
     reader->period_us = &base->unit.pace_us;
-    reader->values = base->measurement.values;
-    reader->value_count = base->count;
-    reader->response = &base->measurement;
-    reader->sequence = &base->measurement.sequence;
-    return true;
+    return open_response(reader, &base->measurement, base->count, sensor);
 }
 
 /* ---- settings ---- */

@@ -2,7 +2,7 @@
 #ifndef DYP_H
 #define DYP_H
 
-#include "sensors/model.h"
+#include "sensors/driver.h"
 
 /* What the A16 and the A05 have in common: DYP makes both. */
 
@@ -19,10 +19,9 @@ enum { DYP_ADDRESS = 0x0200, DYP_MAX_ADDRESS = 0xFE };
 
 enum { DYP_TAKES = READER_TAKES_MEANINGS | READER_TAKES_WINDOW };
 
-/* The last step of a reader_init_t, when the driver has been begun. True. */
-bool dyp_begin_auto(reader_t *reader, fathom_dyp_auto_t *base, fathom_sensor_t sensor);
-bool dyp_begin_asked(reader_t *reader, fathom_dyp_modbus_t *base, fathom_sensor_t sensor,
-                     const char *protocol);
+/* The last step of model_mode_t.read, after the driver is initialised. Returns true. */
+bool dyp_open_stream(reader_t *reader, fathom_dyp_auto_t *base, fathom_sensor_t sensor);
+bool dyp_open_asked(reader_t *reader, fathom_dyp_modbus_t *base, fathom_sensor_t sensor);
 
 /* ---- settings ---- */
 

@@ -16,16 +16,33 @@ enum {
 };
 
 /* One way in which a sensor can be read and simulated. */
-typedef struct {
+typedef struct model_mode {
     const char *name;
-    bool is_asked;    /* else it sends by itself */
-    bool has_address; /* on the wire: it is asked there, or its frames tell it */
-    uint8_t takes;    /* READER_TAKES_...: which of the user's settings have an effect */
-    uint8_t pins;     /* MODEL_PIN_...: that it needs; 0: it has a serial line */
-    uint8_t may_pins; /* and that it can have besides */
-    reader_init_t read;
-    device_init_t simulate; /* NULL: `fathom sim` does not */
+    const char *protocol; /* in which the tool sends requests: "Modbus", "55 AA"; NULL: it sends none */
+    bool is_modbus;       /* of these: also through a gateway */
+    bool is_triggered;    /* a level at the sensor's RX triggers a measurement */
+    bool is_contact;      /* a level is all that the sensor sends */
+    bool has_pulses;      /* the width of a pulse is the distance */
+    bool has_address;     /* in the frames of the sensor */
+    bool can_move_others; /* a damaged response can change the address of another sensor of this model */
+    uint8_t takes;        /* READER_TAKES_...: which settings of the user have an effect */
+    uint8_t pins;         /* MODEL_PIN_...: those that it needs; 0: it has a serial line */
+    uint8_t may_pins;     /* and that it may have as well */
+    uint8_t simulated_as; /* for model_t.simulate; 0: `fathom sim` does not simulate it */
+    /* Initialises the driver through an open channel. Returns false if the driver refuses the settings. */
+    bool (*read)(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
+    void (*listen_unasked)(
+        reader_t *reader); /* reader_listen_unasked; NULL: the sensor sends nothing unasked */
 } model_mode_t;
+
+/* Returns true if the tool sends requests in this mode, at an address. */
+static inline bool mode_is_asked(const model_mode_t *mode) { return mode->protocol != NULL; }
+
+/* Returns true if the sensor sends at its own pace, and not at the user's interval. */
+static inline bool mode_is_automatic(const model_mode_t *mode)
+{
+    return mode->protocol == NULL && !mode->is_triggered && !mode->is_contact;
+}
 
 enum { MODEL_MODES = 5 };
 
@@ -47,10 +64,8 @@ struct model {
     bool is_dyp;
     bool has_optics; /* magnitude, ambient light and precision, and it can report a fault */
     uint8_t probes;
-    uint16_t max_mm; /* beyond this a value is no distance */
-    /* It may send measurements unasked: listens to them beside what is asked; has it heard any, or what was none? */
-    void (*listen_unasked)(reader_t *reader);
-    bool (*has_unasked)(const reader_t *reader);
+    uint16_t max_mm;       /* beyond this a value is no distance */
+    bool may_send_unasked; /* measurements between the responses */
 
     const char *automatic_again; /* what makes it send by itself again after a request, besides power-off */
 
@@ -67,6 +82,7 @@ struct model {
 
     /* ---- as it is simulated ---- */
 
+    void (*simulate)(device_t *device, const device_settings_t *settings, uint8_t simulated_as);
     uint32_t traits;  /* bits 1 << DEVICE_...: those that it can have */
     uint16_t near_mm; /* between these the target moves if nothing else is asked for */
     uint16_t far_mm;

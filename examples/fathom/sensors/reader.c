@@ -1,23 +1,166 @@
 /* SPDX-License-Identifier: MIT */
 #include "sensors/reader.h"
 
+#include <stdlib.h>
 #include <string.h>
 
-const char reader_modbus[] = "Modbus";
+#include "fathom/engine/internal/modbus_setting.h"
+#include "sensors/driver.h"
 
-/* A connection has no line settings. */
-static const fathom_line_settings_t *line_of(const channel_t *channel, const reader_settings_t *settings)
+/* ---- open and close ---- */
+
+bool reader_open(reader_t **reader, const model_mode_t *mode, channel_t *channel,
+                 const reader_settings_t *settings)
 {
-    return channel->tcp == NULL ? settings->line : NULL;
+    if (*reader == NULL) *reader = calloc(1, sizeof **reader);
+    if (*reader == NULL) return false;
+    const uint16_t sequence = (*reader)->sequence != NULL ? *(*reader)->sequence : 0;
+    memset(*reader, 0, sizeof **reader);
+    (*reader)->mode = mode;
+    (*reader)->line = &channel->line;
+    if (!mode->read(*reader, channel, settings)) return false;
+    *(*reader)->sequence = sequence;
+    return true;
 }
 
-void reader_begin(reader_t *reader, channel_t *channel)
+const char *reader_refusal(const reader_t *reader)
 {
-    memset(reader, 0, sizeof *reader);
-    reader->line = &channel->line;
+    if (reader == NULL) return "there is no memory";
+    return reader->refusal != NULL ? reader->refusal : "its driver does not take these settings";
 }
 
-bool reader_has_break(reader_t *reader, const channel_t *channel)
+fathom_status_t reader_close(reader_t *reader)
+{
+    if (reader == NULL || reader->end == NULL) return FATHOM_OK;
+    const fathom_status_t status = reader->end(reader);
+    if (status != FATHOM_PENDING) reader->end = NULL;
+    return status;
+}
+
+void reader_free(reader_t **reader)
+{
+    free(*reader);
+    *reader = NULL;
+}
+
+/* ---- reading ---- */
+
+fathom_status_t reader_poll(reader_t *reader, fathom_sample_t *sample)
+{
+    return reader != NULL ? fathom_poll(&reader->sensor, sample) : FATHOM_PENDING;
+}
+
+uint32_t reader_due_us(const reader_t *reader)
+{
+    return reader != NULL ? fathom_due_us(&reader->sensor, 1) : FATHOM_NO_DEADLINE;
+}
+
+bool reader_has_more(const reader_t *reader)
+{
+    return reader != NULL && reader->response != NULL && reader->response->left != 0;
+}
+
+void reader_cancel(reader_t *reader)
+{
+    if (reader != NULL && reader->unit != NULL) fathom_modbus_unit_cancel(reader->unit);
+}
+
+void reader_write_next_unchecked(reader_t *reader)
+{
+    if (reader != NULL && reader->unit != NULL) (void)fathom_modbus_write_next_unchecked(reader->unit);
+}
+
+void reader_set_backoff_us(reader_t *reader, uint32_t backoff_us)
+{
+    if (reader != NULL && reader->unit != NULL) reader->unit->backoff_us = backoff_us;
+}
+
+void reader_listen_unasked(reader_t *reader)
+{
+    if (reader != NULL && reader->mode->listen_unasked != NULL) reader->mode->listen_unasked(reader);
+}
+
+const char *reader_remark(reader_t *reader)
+{
+    if (reader == NULL) return NULL;
+    const char *const remark = reader->remark;
+    reader->remark = NULL;
+    return remark;
+}
+
+bool reader_has_sent(const reader_t *reader, const fathom_transaction_t *transaction)
+{
+    return reader != NULL && reader->unit != NULL && transaction == &reader->unit->request.transaction;
+}
+
+/* ---- counters and facts ---- */
+
+void reader_take_counters(reader_t *reader, reader_counters_t *counters)
+{
+    memset(counters, 0, sizeof *counters);
+    if (reader == NULL) return;
+    if (reader->frames != NULL) {
+        memcpy(counters->stream, reader->frames, sizeof counters->stream);
+        memset(reader->frames, 0, sizeof counters->stream);
+    }
+    if (reader->unit != NULL) {
+        counters->responses = reader->unit->responses;
+        counters->failures = reader->unit->failures;
+        reader->unit->responses = reader->unit->failures = 0;
+    }
+    if (reader->meter == NULL) return;
+    counters->noises = reader->meter->noises;
+    reader->meter->noises = 0;
+    if (reader->pins->missed != NULL) {
+        counters->missed = *reader->pins->missed;
+        *reader->pins->missed = 0;
+    }
+    if (reader->pins->lost_events != NULL) {
+        counters->lost_events = *reader->pins->lost_events;
+        *reader->pins->lost_events = 0;
+    }
+}
+
+static void get_unit_facts(const fathom_modbus_unit_t *unit, reader_facts_t *facts)
+{
+    const fathom_transaction_t *const transaction = &unit->request.transaction;
+    facts->is_unexpected = transaction->status == FATHOM_ERR_MALFORMED;
+    facts->exception = fathom_modbus_unit_exception(unit);
+    facts->is_in_progress = transaction->status == FATHOM_PENDING && transaction->attempts != 0;
+    facts->timeouts_in_row = unit->timeouts_in_row;
+    facts->backoff_left_us = unit->backoff_left_us;
+    facts->is_written = unit->is_written;
+    facts->is_setting = unit->setting != 0;
+    facts->acknowledgement = unit->outcome;
+    facts->address = unit->address;
+    facts->line = unit->line_settings;
+}
+
+reader_facts_t reader_facts(const reader_t *reader)
+{
+    reader_facts_t facts = {0};
+    if (reader == NULL) return facts;
+    if (reader->unit != NULL) get_unit_facts(reader->unit, &facts);
+    if (reader->period_us != NULL) facts.least_period_us = *reader->period_us;
+    facts.values = reader->values;
+    facts.value_count = reader->value_count;
+    if (reader->response != NULL && !facts.is_unexpected) {
+        facts.refused_probe = reader->response->refused_probe;
+        facts.refused_raw = reader->response->refused_raw;
+    }
+    if (reader->window != NULL) {
+        facts.min_mm = reader->window->min_mm != 0 ? reader->window->min_mm : 1;
+        facts.max_mm = reader->window->max_mm;
+    }
+    facts.has_unasked = reader->unasked.is_new || reader->unasked.implausible != 0;
+    facts.has_temperature = reader->temperature.is_known;
+    facts.temperature_dc = reader->temperature.dc;
+    return facts;
+}
+
+/* ---- what drivers share ---- */
+
+bool driver_has_break(reader_t *reader, const channel_t *channel)
 {
     if (channel_has_break(channel)) return true;
     reader->refusal =
@@ -26,15 +169,15 @@ bool reader_has_break(reader_t *reader, const channel_t *channel)
     return false;
 }
 
-void reader_end_break(channel_t *channel)
+void driver_end_break(channel_t *channel)
 {
     (void)fathom_line_break(&channel->line, false); /* a port that cannot end a break holds none */
 }
 
-fathom_modbus_config_t reader_config(const channel_t *channel, const reader_settings_t *settings)
+fathom_modbus_config_t driver_config(const channel_t *channel, const reader_settings_t *settings)
 {
     return (fathom_modbus_config_t){
-        .line_settings = line_of(channel, settings),
+        .line_settings = channel->tcp == NULL ? settings->line : NULL, /* a connection has none */
         .period_us = settings->period_us,
         .timeout_us = settings->timeout_us,
         .backoff_us = settings->backoff_us,
@@ -44,7 +187,7 @@ fathom_modbus_config_t reader_config(const channel_t *channel, const reader_sett
     };
 }
 
-fathom_contact_timing_t reader_contact_timing(const channel_t *channel, const reader_settings_t *settings)
+fathom_contact_timing_t driver_contact_timing(const channel_t *channel, const reader_settings_t *settings)
 {
     enum { WITHOUT_EVENT_US = 1000000 }; /* A change without an event is seen within this time. */
     /* Without an interval, changes alone are readings, as far as the library allows. */
@@ -54,29 +197,15 @@ fathom_contact_timing_t reader_contact_timing(const channel_t *channel, const re
                                      .stale_us = settings->timeout_us};
 }
 
-bool reader_begin_contact(reader_t *reader, const channel_t *channel, fathom_contact_t *contact,
-                          fathom_sensor_t sensor)
+bool driver_open_contact(reader_t *reader, fathom_contact_t *contact, fathom_sensor_t sensor)
 {
     reader->sensor = sensor;
     reader->sequence = &contact->sequence;
-    reader->pins = &channel->pins;
-    reader->is_paced = true;
     return true;
 }
 
-bool reader_got_unexpected_response(const reader_t *reader)
+uint32_t driver_now_us(const reader_t *reader)
 {
-    return reader->unit != NULL && reader->unit->request.transaction.status == FATHOM_ERR_MALFORMED;
-}
-
-uint8_t reader_refused_probe(const reader_t *reader)
-{
-    return reader->response != NULL && !reader_got_unexpected_response(reader)
-               ? reader->response->refused_probe
-               : 0;
-}
-
-bool reader_has_more(const reader_t *reader)
-{
-    return reader->response != NULL && reader->response->left != 0;
+    const fathom_clock_t *const clock = reader->line->parts->clock;
+    return clock->now_us(clock->ctx);
 }

@@ -35,10 +35,10 @@ static bool is_refusal(uint8_t exception)
 static calibrate_outcome_t write_offset(const setting_t *setting, int32_t offset_mm)
 {
     const fathom_status_t status = session_set(&session, setting, offset_mm);
-    const fathom_modbus_unit_t *const unit = session.station->reader.unit;
-    const bool is_refused = status == FATHOM_ERR_EXCEPTION && is_refusal(fathom_modbus_unit_exception(unit));
+    const reader_facts_t facts = reader_facts(session.station->reader);
+    const bool is_refused = status == FATHOM_ERR_EXCEPTION && is_refusal(facts.exception);
     if (status == FATHOM_OK) return CALIBRATE_ACKNOWLEDGED;
-    if (unit->is_written && !is_refused) return CALIBRATE_UNANSWERED;
+    if (facts.is_written && !is_refused) return CALIBRATE_UNANSWERED;
     (void)fflush(stdout);
     (void)fprintf(stderr, "fathom: %s: offset %d mm was not written: ", session.station->name,
                   (int)offset_mm);

@@ -28,7 +28,7 @@ typedef enum {
 static fathom_status_t poll(reader_t *reader, void *ctx)
 {
     fathom_sample_t *const sample = ctx;
-    return fathom_poll(&reader->sensor, sample);
+    return reader_poll(reader, sample);
 }
 
 static void print_start(const session_t *session)

@@ -73,7 +73,7 @@ static bool read_termination(commission_t *run, const record_unit_t *unit, commi
 static fathom_status_t call_measure(reader_t *reader, void *ctx)
 {
     fathom_sample_t *const sample = ctx;
-    return fathom_poll(&reader->sensor, sample);
+    return reader_poll(reader, sample);
 }
 
 /* Prefers a sample with a distance: an A05 may have fewer than four probes. */
@@ -87,7 +87,7 @@ static fathom_status_t measure(commission_t *run, fathom_sample_t *best)
         const bool is_better = found != FATHOM_OK || best->kind != FATHOM_TARGET;
         if (status == FATHOM_OK && is_better) *best = sample;
         if (status == FATHOM_OK) found = FATHOM_OK;
-        if (!reader_has_more(&run->session.station->reader)) return found;
+        if (!reader_has_more(run->session.station->reader)) return found;
         status = session_call(&run->session, call_measure, &sample);
     }
 }

@@ -61,12 +61,12 @@ static void take_failure(void *ctx, const failure_t *failure, const station_t *s
 {
     publish_t *const publish = ctx;
     const fathom_status_t status = failure->status;
-    const uint8_t probe = status == FATHOM_ERR_MALFORMED ? reader_refused_probe(&station->reader) : 0;
+    const uint8_t probe = status == FATHOM_ERR_MALFORMED ? reader_facts(station->reader).refused_probe : 0;
     char word[COUNTERS_MEMBER];
-    (void)status_word_of_failure(counters_failure_kind(status, &station->reader), word);
+    (void)status_word_of_failure(counters_failure_kind(status, station->reader), word);
     /* A sensor that sends by itself and is damaged for --timeout has sent no reading, as if it were silent. */
     const bool is_grave = status == FATHOM_ERR_PORT || status == FATHOM_ERR_STALE ||
-                          (status == FATHOM_ERR_CHECKSUM && !station->mode->is_asked);
+                          (status == FATHOM_ERR_CHECKSUM && !mode_is_asked(station->mode));
     if (publisher_failure(&publish->publisher, station, word, probe, is_grave) && !failure->is_told)
         tell_failure(failure, station);
     results_failure(&publish->results, station, status);

@@ -13,7 +13,7 @@
 static void write_reason(FILE *to, const reading_t *reading)
 {
     const fathom_sample_t *const sample = reading->sample;
-    const bool is_pulse = reading->reader->meter != NULL;
+    const bool is_pulse = reading->mode->has_pulses;
     const bool is_unknown = sample->kind == FATHOM_UNKNOWN;
     if (is_unknown && is_pulse)
         (void)fprintf(to, ": all pulses are too short for the sensor; the longest has %" PRIu32 " us",
@@ -40,7 +40,7 @@ static void write_status(FILE *to, const reading_t *reading)
 static void write_text_reading(FILE *to, const reading_t *reading)
 {
     const fathom_sample_t *const sample = reading->sample;
-    const reader_temperature_t *const temperature = &reading->reader->temperature;
+    const reader_facts_t facts = reader_facts(reading->reader);
     (void)fputs("  ", to);
     if (sample->kind == FATHOM_TARGET)
         (void)fprintf(to, "%6u mm  %3u.%03u m", sample->distance_mm, sample->distance_mm / 1000u,
@@ -51,7 +51,7 @@ static void write_text_reading(FILE *to, const reading_t *reading)
         (void)fprintf(to, "  magnitude %" PRIu32 ".%04" PRIu32 "  ambient %u  precision %u",
                       sample->magnitude / 10000, sample->magnitude % 10000, sample->ambient,
                       sample->precision);
-    if (temperature->is_known) (void)fprintf(to, "  %.1f degC", temperature->dc / 10.0);
+    if (facts.has_temperature) (void)fprintf(to, "  %.1f degC", facts.temperature_dc / 10.0);
 }
 
 static void write_text_change(FILE *to, const reading_t *reading)

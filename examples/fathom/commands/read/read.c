@@ -94,7 +94,7 @@ static void write_row(reading_run_t *run, const station_t *station, const result
     const reading_t reading = {
         .model = station->model,
         .mode = station->mode,
-        .reader = &station->reader,
+        .reader = station->reader,
         .name = station->name,
         .label = has_name(run, station) ? station->name : station->model->name,
         .failure = failure,
@@ -152,9 +152,9 @@ static void take_failure(void *ctx, const failure_t *failure, const station_t *s
 {
     reading_run_t *const run = ctx;
     const fathom_status_t status = failure->status;
-    const uint8_t probe = status == FATHOM_ERR_MALFORMED ? reader_refused_probe(&station->reader) : 0;
+    const uint8_t probe = status == FATHOM_ERR_MALFORMED ? reader_facts(station->reader).refused_probe : 0;
     tell_failure(run, failure, station);
-    write_failure_row(run, station, counters_failure_kind(status, &station->reader), probe);
+    write_failure_row(run, station, counters_failure_kind(status, station->reader), probe);
     results_failure(&run->results, station, status);
 }
 

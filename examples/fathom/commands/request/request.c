@@ -73,11 +73,10 @@ static int ask_and_tell(const request_t *request)
     static request_ask_t ask;
     port_counts_t port_counts;
     counters_t counters;
-    const reader_t none = {.unit = NULL};
     memset(&counters, 0, sizeof counters);
     counters_begin_port(&port_counts, &channel);
     request_ask(&ask, request, &channel);
-    counters_take(&counters, &port_counts, &channel, &none);
+    (void)counters_take(&counters, &port_counts, &channel, NULL);
     errno = 0;
     request_print(&ask, &channel);
     const int error = output_flush();

@@ -188,10 +188,10 @@ static void advise(const request_ask_t *ask, const channel_t *channel, const cou
 {
     /* Not named: it has the line that was told, and can have any address. */
     const model_t any = {.name = "sensor of these", .line = ask->request->line, .max_address = UINT8_MAX};
-    const reader_t reader = {.protocol = reader_modbus};
+    static const model_mode_t mode = {.name = "modbus", .protocol = "Modbus", .is_modbus = true};
     failure_t failure = {.status = status_of(ask->outcome),
                          .model = ask->request->model != NULL ? ask->request->model : &any,
-                         .reader = &reader,
+                         .mode = &mode,
                          .channel = channel,
                          .counters = counters,
                          .line = &ask->request->line,

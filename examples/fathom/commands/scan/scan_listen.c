@@ -96,7 +96,7 @@ static bool understand(const scan_wire_t *wire, const fathom_line_settings_t *li
     finding->kind = SCAN_SENDER;
     finding->address = evidence.foreign_address;
     for (size_t i = 0; i != MODELS; i++)
-        if (models[i]->has_unasked != NULL && model_has_rate(models[i], line->baud))
+        if (models[i]->may_send_unasked && model_has_rate(models[i], line->baud))
             return name_sensor(finding, models[i], SCAN_MODBUS);
     return true;
 }

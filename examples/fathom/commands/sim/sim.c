@@ -42,7 +42,7 @@ static void connect_sensor(simulation_t *simulation, uint32_t i, uint32_t now_us
     for (uint32_t j = 0; j != i; j++)
         if (simulation->options.sensors[j].model == sensor->model) settings.number++;
     memcpy(settings.traits, sensor->traits, sizeof settings.traits);
-    sensor->mode->simulate(device, &settings);
+    sensor->model->simulate(device, &settings, sensor->mode->simulated_as);
     attach_faults(sensor, &simulation->faults[i]);
     fathom_sim_fault_attach(&simulation->faults[i], &simulation->line, device->base);
     fathom_sim_attach(&simulation->line, device->base, now_us);

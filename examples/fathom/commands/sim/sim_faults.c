@@ -16,7 +16,7 @@ bool sim_can_have_fault(const sim_sensor_t *sensor, uint8_t kind)
 {
     const device_settings_t settings = {.address = FACTORY_ADDRESS};
     device_t device;
-    sensor->mode->simulate(&device, &settings);
+    sensor->model->simulate(&device, &settings, sensor->mode->simulated_as);
     return is_offered(kind) && fathom_sim_fault_applies(kind, device.base);
 }
 

@@ -149,7 +149,7 @@ static bool parse_sensor(sim_sensor_t *sensor, const char *text)
     sensor->address = FACTORY_ADDRESS;
     sensor->line = parsed.model->line;
     if (sensor->mode == NULL) return false;
-    if (sensor->mode->simulate != NULL)
+    if (sensor->mode->simulated_as != 0)
         return sensor_text_address(&parsed, command, sensor->mode, &sensor->address);
     (void)usage_error(command, "%s in mode %s has pins and no line, and is not simulated here",
                       parsed.model->name, sensor->mode->name);
@@ -162,7 +162,7 @@ static bool has_one_sender(const sim_options_t *options)
     const sim_sensor_t *sender = NULL;
     for (uint32_t i = 0; i != options->count; i++) {
         const sim_sensor_t *const sensor = &options->sensors[i];
-        if (sensor->mode->is_asked) continue;
+        if (mode_is_asked(sensor->mode)) continue;
         if (sender != NULL) {
             (void)usage_error(command,
                               "%s and %s would both send by themselves, which one line cannot carry; "

@@ -34,7 +34,7 @@ static void print_clashes(FILE *to, const sim_options_t *options)
     }
     for (uint32_t i = 0; i != options->count; i++) {
         const sim_sensor_t *const one = &options->sensors[i];
-        if (!one->mode->is_asked)
+        if (!mode_is_asked(one->mode))
             (void)fprintf(to, "fathom: sensor %" PRIu32 " sends by itself, into what the others say\n",
                           i + 1);
         for (uint32_t other = i + 1; other != options->count; other++)

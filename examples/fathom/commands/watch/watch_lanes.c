@@ -40,7 +40,7 @@ const char *mark_name(mark_t mark) { return marks[mark].name; }
 
 bool mark_is_loss(mark_t mark) { return marks[mark].is_loss; }
 
-static bool is_contact(const station_t *station) { return (station->mode->pins & MODEL_PIN_IN) != 0; }
+static bool is_contact(const station_t *station) { return station->mode->is_contact; }
 
 void lanes_begin(lanes_t *lanes, const sensor_options_t *options)
 {
@@ -129,7 +129,7 @@ void lanes_failure(lanes_t *lanes, const failure_t *failure, const station_t *st
     const fathom_status_t status = failure->status;
     /* 0: it is the failure of all */
     const bool is_of_one = status == FATHOM_ERR_MALFORMED && !failure->is_whole;
-    const uint8_t probe = is_of_one ? reader_refused_probe(&station->reader) : 0;
+    const uint8_t probe = is_of_one ? reader_facts(station->reader).refused_probe : 0;
     mark_t mark = MARK_BAD_RESPONSE;
     if (status == FATHOM_ERR_NO_RESPONSE || status == FATHOM_ERR_ECHO) mark = MARK_NO_RESPONSE;
     if (status == FATHOM_ERR_LINE_BUSY) mark = MARK_LINE_BUSY;

@@ -92,7 +92,7 @@ static uint16_t longer_names(const lanes_t *lanes) { return (uint16_t)(lanes->na
 static void draw_words(picture_t *picture, const lanes_t *lanes, const lane_t *lane, uint16_t row,
                        bool is_short)
 {
-    const fathom_modbus_unit_t *const unit = lane->station->reader.unit;
+    const reader_facts_t facts = reader_facts(lane->station->reader);
     const uint32_t rate = lane_rate_tenths(lanes, lane);
     char value[LANE_VALUE];
     char text[96];
@@ -106,8 +106,8 @@ static void draw_words(picture_t *picture, const lanes_t *lanes, const lane_t *l
     (void)snprintf(text, sizeof text, "lost %" PRIu64 " of %" PRIu64, lane->lost, lane->outcomes);
     uint16_t end =
         put_text(picture, row, (uint16_t)(38 + longer), text, lane->lost != 0 ? COLOUR_LOSS : COLOUR_PLAIN);
-    if (unit == NULL || unit->backoff_left_us < 1000000) return;
-    (void)snprintf(text, sizeof text, "asked again in %" PRIu32 " s", unit->backoff_left_us / 1000000);
+    if (facts.backoff_left_us < 1000000) return;
+    (void)snprintf(text, sizeof text, "asked again in %" PRIu32 " s", facts.backoff_left_us / 1000000);
     (void)put_text(picture, row, (uint16_t)(end + 2), text, COLOUR_PLAIN);
 }
 

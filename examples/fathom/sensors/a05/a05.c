@@ -15,9 +15,8 @@ static bool read_auto(reader_t *reader, channel_t *channel, const reader_setting
         .window = settings->window,
         .probes = settings->probes,
     };
-    reader_begin(reader, channel);
     if (fathom_a05_auto_init(driver, &channel->line, &config) != FATHOM_OK) return false;
-    (void)dyp_begin_auto(reader, &driver->base, fathom_a05_auto_sensor(driver));
+    (void)dyp_open_stream(reader, &driver->base, fathom_a05_auto_sensor(driver));
     return !settings->has_value || a05_select(reader, channel, settings->value);
 }
 
@@ -25,27 +24,25 @@ static bool read_modbus(reader_t *reader, channel_t *channel, const reader_setti
 {
     fathom_a05_modbus_t *const driver = &reader->driver.a05_modbus;
     const fathom_a05_modbus_config_t config = {
-        .modbus = reader_config(channel, settings),
+        .modbus = driver_config(channel, settings),
         .window = settings->window,
         .registers = settings->registers,
         .probes = settings->probes,
     };
-    reader_begin(reader, channel);
     return fathom_a05_modbus_init(driver, &channel->modbus, &config) == FATHOM_OK &&
-           dyp_begin_asked(reader, &driver->base, fathom_a05_modbus_sensor(driver), reader_modbus);
+           dyp_open_asked(reader, &driver->base, fathom_a05_modbus_sensor(driver));
 }
 
 static bool read_dyp(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
 {
     fathom_a05_dyp_t *const driver = &reader->driver.a05_dyp;
     const fathom_a05_dyp_config_t config = {
-        .modbus = reader_config(channel, settings),
+        .modbus = driver_config(channel, settings),
         .window = settings->window,
         .probes = settings->probes,
     };
-    reader_begin(reader, channel);
     return fathom_a05_dyp_init(driver, &channel->line, &config) == FATHOM_OK &&
-           dyp_begin_asked(reader, &driver->base, fathom_a05_dyp_sensor(driver), "55 AA");
+           dyp_open_asked(reader, &driver->base, fathom_a05_dyp_sensor(driver));
 }
 
 /* The contact (A05 4) goes to where the input's resistor does not pull; it is the normally open one, unless the user says
@@ -57,23 +54,22 @@ static bool read_relay(reader_t *reader, channel_t *channel, const reader_settin
     const bool conducts_high = wanted->bias == FATHOM_GPIO_BIAS_PULL_DOWN;
     const bool is_normally_closed = wanted->near == (conducts_high ? PINS_NEAR_LOW : PINS_NEAR_HIGH);
     const fathom_a05_relay_config_t config = {
-        .timing = reader_contact_timing(channel, settings),
+        .timing = driver_contact_timing(channel, settings),
         .wiring = is_normally_closed ? FATHOM_A05_RELAY_NORMALLY_CLOSED : FATHOM_A05_RELAY_NORMALLY_OPEN,
         .level = conducts_high ? FATHOM_A05_RELAY_CONDUCTS_HIGH : FATHOM_A05_RELAY_CONDUCTS_LOW,
     };
-    reader_begin(reader, channel);
     return fathom_a05_relay_init(driver, &channel->pins.in, &channel->clock, &config) == FATHOM_OK &&
-           reader_begin_contact(reader, channel, &driver->base, fathom_a05_relay_sensor(driver));
+           driver_open_contact(reader, &driver->base, fathom_a05_relay_sensor(driver));
 }
 
 /* ---- simulation ---- */
 
-static void simulate(device_t *device, const device_settings_t *settings, uint8_t mode)
+static void simulate(device_t *device, const device_settings_t *settings, uint8_t simulated_as)
 {
     const uint32_t *const traits = settings->traits;
     const fathom_sim_a05_config_t config = {.address = settings->address,
                                             .address_zero = settings->address == 0,
-                                            .mode = mode,
+                                            .mode = simulated_as,
                                             .exceptions = traits[DEVICE_EXCEPTIONS] != 0,
                                             .answers_broadcast = traits[DEVICE_ANSWERS_BROADCAST] != 0,
                                             .answers_from_new = traits[DEVICE_ANSWERS_FROM_NEW] != 0,
@@ -82,21 +78,6 @@ static void simulate(device_t *device, const device_settings_t *settings, uint8_
                                             .scene = settings->scene};
     fathom_sim_a05_init(&device->simulator.a05, &config);
     device->base = &device->simulator.a05.device;
-}
-
-static void simulate_auto(device_t *device, const device_settings_t *settings)
-{
-    simulate(device, settings, FATHOM_SIM_A05_AUTO);
-}
-
-static void simulate_modbus(device_t *device, const device_settings_t *settings)
-{
-    simulate(device, settings, FATHOM_SIM_A05_MODBUS);
-}
-
-static void simulate_dyp(device_t *device, const device_settings_t *settings)
-{
-    simulate(device, settings, FATHOM_SIM_A05_DYP);
 }
 
 /* ---- the model ---- */
@@ -109,25 +90,28 @@ const model_t model_a05 = {
     .modes = {{.name = "auto",
                .takes = DYP_TAKES | READER_TAKES_PROBES | READER_TAKES_VALUE,
                .read = read_auto,
-               .simulate = simulate_auto},
+               .simulated_as = FATHOM_SIM_A05_AUTO},
               {.name = "modbus",
-               .is_asked = true,
+               .protocol = "Modbus",
+               .is_modbus = true,
                .has_address = true,
                .takes = DYP_TAKES | READER_TAKES_PROBES | READER_TAKES_REGISTERS,
                .read = read_modbus,
-               .simulate = simulate_modbus},
+               .simulated_as = FATHOM_SIM_A05_MODBUS},
               {.name = "dyp",
-               .is_asked = true,
+               .protocol = "55 AA",
                .has_address = true,
+               .can_move_others = true, /* one wrong bit makes a response a command that sets the address */
                .takes = DYP_TAKES | READER_TAKES_PROBES,
                .read = read_dyp,
-               .simulate = simulate_dyp},
-              {.name = "relay", .pins = MODEL_PIN_IN, .read = read_relay}},
+               .simulated_as = FATHOM_SIM_A05_DYP},
+              {.name = "relay", .is_contact = true, .pins = MODEL_PIN_IN, .read = read_relay}},
     .settings = a05_settings,
     .max_address = DYP_MAX_ADDRESS,
     .is_dyp = true,
     .probes = FATHOM_DYP_PROBES,
     .max_mm = FATHOM_A05_MAX_MM,
+    .simulate = simulate,
     .near_mm = 250,
     .far_mm = 4500,
     .traits = 1u << DEVICE_EXCEPTIONS | 1u << DEVICE_ANSWERS_BROADCAST | 1u << DEVICE_REAL_TIME |

@@ -2,7 +2,7 @@
 #ifndef A05_H
 #define A05_H
 
-#include "sensors/model.h"
+#include "sensors/driver.h"
 
 extern const model_t model_a05;
 

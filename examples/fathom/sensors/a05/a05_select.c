@@ -8,16 +8,10 @@
  * (A05 1). */
 #define OFF_US 2000000u
 
-static uint32_t now_us(const reader_t *reader)
-{
-    const fathom_clock_t *const clock = reader->line->parts->clock;
-    return clock->now_us(clock->ctx);
-}
-
 /* Low for another 1.5 s, if it is; the driver lets it go high then. */
 static fathom_status_t go_on(reader_t *reader)
 {
-    reader_selection_t *const selection = &reader->selection;
+    driver_selection_t *const selection = &reader->selection;
     const fathom_status_t status =
         fathom_a05_auto_select(&reader->driver.a05_auto, (fathom_dyp_value_t)selection->value);
     if (status != FATHOM_OK) return status == FATHOM_ERR_BUSY ? FATHOM_PENDING : status;
@@ -29,11 +23,11 @@ static fathom_status_t go_on(reader_t *reader)
 static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
 {
     reader_t *const reader = ctx;
-    reader_selection_t *const selection = &reader->selection;
+    driver_selection_t *const selection = &reader->selection;
     fathom_sample_t unselected;
     (void)sample;
     const fathom_status_t status = fathom_poll(&selection->listening, &unselected);
-    const uint32_t now = now_us(reader);
+    const uint32_t now = driver_now_us(reader);
     /* Bytes that form no frame may be noise of a module without power. */
     const bool is_silent =
         status == FATHOM_PENDING || status == FATHOM_ERR_STALE || status == FATHOM_ERR_CHECKSUM;
@@ -47,8 +41,8 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
 static uint32_t due_us(void *ctx)
 {
     const reader_t *const reader = ctx;
-    const reader_selection_t *const selection = &reader->selection;
-    const uint32_t passed_us = fathom_elapsed_us(now_us(reader), selection->heard_us);
+    const driver_selection_t *const selection = &reader->selection;
+    const uint32_t passed_us = fathom_elapsed_us(driver_now_us(reader), selection->heard_us);
     const uint32_t listening_us = fathom_due_us(&selection->listening, 1);
     if (selection->has_been_off || passed_us >= OFF_US) return listening_us;
     return OFF_US - passed_us < listening_us ? OFF_US - passed_us : listening_us;
@@ -62,15 +56,15 @@ static fathom_status_t end(reader_t *reader)
 
 bool a05_select(reader_t *reader, channel_t *channel, uint8_t value)
 {
-    reader_selection_t *const selection = &reader->selection;
+    driver_selection_t *const selection = &reader->selection;
     const bool is_low = value == FATHOM_REAL_TIME;
-    if (is_low && !reader_has_break(reader, channel)) return false;
-    reader_end_break(channel);
+    if (is_low && !driver_has_break(reader, channel)) return false;
+    driver_end_break(channel);
     selection->rx = fathom_output_line_break(reader->line);
     if (is_low && fathom_output_set(&selection->rx, FATHOM_OUTPUT_LOW) != FATHOM_OK) return false;
     selection->listening = reader->sensor;
     selection->value = value;
-    selection->heard_us = now_us(reader);
+    selection->heard_us = driver_now_us(reader);
     reader->sensor = (fathom_sensor_t){poll, due_us, reader};
     reader->end = end;
     reader->remark =

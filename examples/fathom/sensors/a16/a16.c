@@ -23,15 +23,14 @@ static bool read_auto(reader_t *reader, channel_t *channel, const reader_setting
         .window = settings->window,
         .value = settings->value,
     };
-    reader_begin(reader, channel);
     if (settings->has_value) {
-        reader_end_break(channel);
+        driver_end_break(channel);
         config.select = fathom_output_line_break(&channel->line);
     }
-    if (settings->value == FATHOM_REAL_TIME && !reader_has_break(reader, channel)) return false;
+    if (settings->value == FATHOM_REAL_TIME && !driver_has_break(reader, channel)) return false;
     if (fathom_a16_auto_init(driver, &channel->line, &config) != FATHOM_OK) return false;
     reader->end = end_auto;
-    return dyp_begin_auto(reader, &driver->base, fathom_a16_auto_sensor(driver));
+    return dyp_open_stream(reader, &driver->base, fathom_a16_auto_sensor(driver));
 }
 
 /* Triggered by a break of the port, whose TX is the module's RX. */
@@ -44,7 +43,6 @@ static bool read_controlled(reader_t *reader, channel_t *channel, const reader_s
         .gap_us = CHANNEL_STREAM_GAP_US,
         .window = settings->window,
     };
-    reader_begin(reader, channel);
     if (fathom_a16_controlled_init(driver, &channel->line, &trigger, &config) != FATHOM_OK) return false;
     reader->sensor = fathom_a16_controlled_sensor(driver);
     reader->end = end_controlled;
@@ -52,8 +50,8 @@ static bool read_controlled(reader_t *reader, channel_t *channel, const reader_s
     reader->values = driver->values;
     reader->value_count = 1;
     reader->response = &driver->measurement;
+    reader->window = &driver->measurement.window;
     reader->sequence = &driver->measurement.sequence;
-    reader->is_paced = true;
     reader->period_us = &driver->trigger.period_us;
     return true;
 }
@@ -62,23 +60,22 @@ static bool read_modbus(reader_t *reader, channel_t *channel, const reader_setti
 {
     fathom_a16_modbus_t *const driver = &reader->driver.a16_modbus;
     const fathom_a16_modbus_config_t config = {
-        .modbus = reader_config(channel, settings),
+        .modbus = driver_config(channel, settings),
         .window = settings->window,
         .value = settings->value,
     };
-    reader_begin(reader, channel);
     return fathom_a16_modbus_init(driver, &channel->modbus, &config) == FATHOM_OK &&
-           dyp_begin_asked(reader, &driver->base, fathom_a16_modbus_sensor(driver), reader_modbus);
+           dyp_open_asked(reader, &driver->base, fathom_a16_modbus_sensor(driver));
 }
 
 /* ---- simulation ---- */
 
-static void simulate(device_t *device, const device_settings_t *settings, uint8_t mode)
+static void simulate(device_t *device, const device_settings_t *settings, uint8_t simulated_as)
 {
     const uint32_t *const traits = settings->traits;
     const fathom_sim_a16_config_t config = {.address = settings->address,
                                             .address_zero = settings->address == 0,
-                                            .mode = mode,
+                                            .mode = simulated_as,
                                             .exceptions = traits[DEVICE_EXCEPTIONS] != 0,
                                             .answers_broadcast = traits[DEVICE_ANSWERS_BROADCAST] != 0,
                                             .answers_from_new = traits[DEVICE_ANSWERS_FROM_NEW] != 0,
@@ -89,21 +86,6 @@ static void simulate(device_t *device, const device_settings_t *settings, uint8_
     device->base = &device->simulator.a16.device;
 }
 
-static void simulate_auto(device_t *device, const device_settings_t *settings)
-{
-    simulate(device, settings, FATHOM_SIM_A16_AUTO);
-}
-
-static void simulate_controlled(device_t *device, const device_settings_t *settings)
-{
-    simulate(device, settings, FATHOM_SIM_A16_CONTROLLED);
-}
-
-static void simulate_modbus(device_t *device, const device_settings_t *settings)
-{
-    simulate(device, settings, FATHOM_SIM_A16_MODBUS);
-}
-
 /* ---- the model ---- */
 
 const model_t model_a16 = {
@@ -111,29 +93,36 @@ const model_t model_a16 = {
     .what = "one ultrasonic probe",
     .id = FATHOM_A16,
     .line = DYP_LINE,
-    .modes =
-        {{.name = "auto",
-          .takes = DYP_TAKES | READER_TAKES_VALUE,
-          .read = read_auto,
-          .simulate = simulate_auto},
-         {.name = "modbus",
-          .is_asked = true,
-          .has_address = true,
-          .takes = DYP_TAKES | READER_TAKES_VALUE,
-          .read = read_modbus,
-          .simulate = simulate_modbus},
-         {.name = "controlled", .takes = DYP_TAKES, .read = read_controlled, .simulate = simulate_controlled},
-         {.name = "pwm",
-          .takes = READER_TAKES_WINDOW,
-          .pins = MODEL_PIN_TRIGGER | MODEL_PIN_ECHO,
-          .read = a16_read_pwm},
-         {.name = "switch", .pins = MODEL_PIN_IN, .read = a16_read_switch}},
+    .modes = {{.name = "auto",
+               .takes = DYP_TAKES | READER_TAKES_VALUE,
+               .read = read_auto,
+               .simulated_as = FATHOM_SIM_A16_AUTO},
+              {.name = "modbus",
+               .protocol = "Modbus",
+               .is_modbus = true,
+               .has_address = true,
+               .takes = DYP_TAKES | READER_TAKES_VALUE,
+               .read = read_modbus,
+               .simulated_as = FATHOM_SIM_A16_MODBUS},
+              {.name = "controlled",
+               .is_triggered = true,
+               .takes = DYP_TAKES,
+               .read = read_controlled,
+               .simulated_as = FATHOM_SIM_A16_CONTROLLED},
+              {.name = "pwm",
+               .is_triggered = true,
+               .has_pulses = true,
+               .takes = READER_TAKES_WINDOW,
+               .pins = MODEL_PIN_TRIGGER | MODEL_PIN_ECHO,
+               .read = a16_read_pwm},
+              {.name = "switch", .is_contact = true, .pins = MODEL_PIN_IN, .read = a16_read_switch}},
     .automatic_again = ", or when 1 is written to its register 0x0202",
     .settings = a16_settings,
     .max_address = DYP_MAX_ADDRESS,
     .is_dyp = true,
     .probes = 1,
     .max_mm = FATHOM_A16_MAX_MM,
+    .simulate = simulate,
     .near_mm = 500,
     .far_mm = 5000,
     .traits = 1u << DEVICE_EXCEPTIONS | 1u << DEVICE_ANSWERS_BROADCAST | 1u << DEVICE_REAL_TIME |

@@ -2,7 +2,7 @@
 #ifndef A16_H
 #define A16_H
 
-#include "sensors/model.h"
+#include "sensors/driver.h"
 
 extern const model_t model_a16;
 

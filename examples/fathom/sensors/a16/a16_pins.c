@@ -11,7 +11,6 @@ bool a16_read_pwm(reader_t *reader, channel_t *channel, const reader_settings_t 
     const uint32_t cycle_us = settings->period_us > FATHOM_PULSE_DEFAULT_CYCLE_US ? settings->period_us : 0;
     const fathom_output_t output = fathom_output_pin(&pins->trigger);
     const fathom_a16_pwm_config_t config = {.pulse = {.cycle_us = cycle_us}, .window = settings->window};
-    reader_begin(reader, channel);
     if (fathom_a16_pwm_init(driver, &pins->capture, &channel->clock, &output, &config) != FATHOM_OK)
         return false;
     reader->sensor = fathom_a16_pwm_sensor(driver);
@@ -19,7 +18,7 @@ bool a16_read_pwm(reader_t *reader, channel_t *channel, const reader_settings_t 
     reader->sequence = &driver->sequence;
     reader->meter = &driver->meter;
     reader->pins = pins;
-    reader->is_paced = true;
+    reader->window = &driver->window;
     reader->period_us = &driver->meter.trigger.period_us;
     return true;
 }
@@ -28,9 +27,8 @@ bool a16_read_pwm(reader_t *reader, channel_t *channel, const reader_settings_t 
 bool a16_read_switch(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
 {
     fathom_a16_switch_t *const driver = &reader->driver.a16_switch;
-    const fathom_a16_switch_config_t config = {.timing = reader_contact_timing(channel, settings),
+    const fathom_a16_switch_config_t config = {.timing = driver_contact_timing(channel, settings),
                                                .negative = channel->pins.wanted.near == PINS_NEAR_LOW};
-    reader_begin(reader, channel);
     return fathom_a16_switch_init(driver, &channel->pins.in, &channel->clock, &config) == FATHOM_OK &&
-           reader_begin_contact(reader, channel, &driver->base, fathom_a16_switch_sensor(driver));
+           driver_open_contact(reader, &driver->base, fathom_a16_switch_sensor(driver));
 }

@@ -6,17 +6,10 @@
 #include "fathom/sensor/hps167s_info.h"
 #include "fathom/sensor/hps167s_settings.h"
 
-/* ---- unasked measurements beside requests ---- */
-
 static void listen_unasked(reader_t *reader)
 {
     (void)fathom_hps167s_auto_init(&reader->unasked, reader->line, NULL);
     fathom_hps167s_auto_follow(&reader->unasked, &reader->driver.hps167s);
-}
-
-static bool has_unasked(const reader_t *reader)
-{
-    return reader->unasked.is_new || reader->unasked.implausible != 0;
 }
 
 /* ---- resetting ---- */
@@ -41,8 +34,12 @@ static uint8_t warm_up_says(const uint32_t *traits)
     return traits[DEVICE_WARM_UP_REFUSES] != 0 ? FATHOM_SIM_HPS167S_EXCEPTION : FATHOM_SIM_HPS167S_SILENCE;
 }
 
-static void simulate(device_t *device, const device_settings_t *settings, uint32_t unasked_us)
+/* model_mode_t.simulated_as: it sends each measurement without a request in mode auto. */
+enum { SIMULATED_MODBUS = 1, SIMULATED_AUTO };
+
+static void simulate(device_t *device, const device_settings_t *settings, uint8_t simulated_as)
 {
+    const uint32_t unasked_us = simulated_as == SIMULATED_AUTO ? FATHOM_HPS167S_MIN_PERIOD_US : 0;
     const uint32_t *const traits = settings->traits;
     const fathom_sim_hps167s_config_t config = {
         .address = settings->address,
@@ -63,17 +60,6 @@ static void simulate(device_t *device, const device_settings_t *settings, uint32
         .scene = settings->scene};
     fathom_sim_hps167s_init(&device->simulator.hps167s, &config);
     device->base = &device->simulator.hps167s.device;
-}
-
-static void simulate_modbus(device_t *device, const device_settings_t *settings)
-{
-    simulate(device, settings, 0);
-}
-
-/* Each measurement. */
-static void simulate_auto(device_t *device, const device_settings_t *settings)
-{
-    simulate(device, settings, FATHOM_HPS167S_MIN_PERIOD_US);
 }
 
 /* ---- the model ---- */
@@ -99,23 +85,25 @@ const model_t model_hps167s = {
     .rates = rates,
     .other_settings = "--baud 57600, 115200 or 230400, to which it can be set",
     .modes = {{.name = "modbus",
-               .is_asked = true,
+               .protocol = "Modbus",
+               .is_modbus = true,
                .has_address = true,
                .takes = READER_TAKES_WINDOW | READER_TAKES_TEMPERATURE,
                .read = hps167s_read_modbus,
-               .simulate = simulate_modbus},
+               .listen_unasked = listen_unasked,
+               .simulated_as = SIMULATED_MODBUS},
               {.name = "auto",
                .has_address = true,
                .takes = READER_TAKES_WINDOW,
                .read = hps167s_read_auto,
-               .simulate = simulate_auto}},
+               .simulated_as = SIMULATED_AUTO}},
     .settings = hps167s_settings,
     .reset = {.restore = restore, .load = load, .is_sent = is_sent},
-    .listen_unasked = listen_unasked,
-    .has_unasked = has_unasked,
+    .may_send_unasked = true,
     .max_address = FATHOM_HPS167S_MAX_ADDRESS,
     .probes = 1,
     .has_optics = true,
+    .simulate = simulate,
     .near_mm = 500,
     .far_mm = 12000,
     .traits = 1u << DEVICE_ANSWERS_FROM_NEW | 1u << DEVICE_WARM_UP | 1u << DEVICE_WARM_UP_REFUSES |

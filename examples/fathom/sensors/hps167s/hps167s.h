@@ -2,7 +2,7 @@
 #ifndef HPS167S_H
 #define HPS167S_H
 
-#include "sensors/model.h"
+#include "sensors/driver.h"
 
 /* From the factory. */
 #define HPS167S_LINE                                                                                         \

@@ -17,17 +17,14 @@ bool hps167s_read_modbus(reader_t *reader, channel_t *channel, const reader_sett
 {
     fathom_hps167s_t *const driver = &reader->driver.hps167s;
     fathom_hps167s_config_t config = {
-        .modbus = reader_config(channel, settings),
+        .modbus = driver_config(channel, settings),
     };
-    reader_begin(reader, channel);
     /* The driver's period is also that of the temperature. */
     if (settings->temperature_us != 0) config.modbus.period_us = 0;
     fathom_hps167s_limits_t *const limits = limits_of(reader, settings);
     if (fathom_hps167s_init(driver, &channel->modbus, &config) != FATHOM_OK) return false;
     if (limits != NULL && fathom_hps167s_set_limits(driver, limits) != FATHOM_OK) return false;
     reader->sensor = fathom_hps167s_sensor(driver);
-    reader->protocol = reader_modbus;
-    reader->is_paced = true;
     reader->unit = &driver->unit;
     reader->period_us = &driver->unit.pace_us;
     reader->sequence = &driver->sequence;
@@ -85,7 +82,6 @@ bool hps167s_read_auto(reader_t *reader, channel_t *channel, const reader_settin
         .stale_us = settings->timeout_us,
         .address = settings->address,
     };
-    reader_begin(reader, channel);
     fathom_hps167s_limits_t *const limits = limits_of(reader, settings);
     if (fathom_hps167s_auto_init(driver, &channel->line, &config) != FATHOM_OK) return false;
     if (limits != NULL && fathom_hps167s_auto_set_limits(driver, limits) != FATHOM_OK) return false;

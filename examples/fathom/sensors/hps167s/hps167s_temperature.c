@@ -11,37 +11,31 @@ enum { RESTING, MEASURING, READING_IT };
 /* One that is older is not shown. */
 enum { PERIODS_SHOWN = 3 };
 
-static uint32_t now_us(const reader_t *reader)
-{
-    const fathom_clock_t *const clock = reader->unit->transport.line->parts->clock;
-    return clock->now_us(clock->ctx);
-}
-
 static uint32_t left_us(bool has_begun, uint32_t began_us, uint32_t period_us, uint32_t now)
 {
     const uint32_t passed_us = fathom_elapsed_us(now, began_us);
     return has_begun && passed_us < period_us ? period_us - passed_us : 0;
 }
 
-static uint32_t until_asked_us(const reader_temperature_t *temperature, uint32_t now)
+static uint32_t until_asked_us(const driver_temperature_t *temperature, uint32_t now)
 {
     return left_us(temperature->was_asked, temperature->asked_us, temperature->period_us, now);
 }
 
-static uint32_t until_measured_us(const reader_temperature_t *temperature, uint32_t now)
+static uint32_t until_measured_us(const driver_temperature_t *temperature, uint32_t now)
 {
     return left_us(temperature->has_measured, temperature->measured_us, temperature->interval_us, now);
 }
 
 static void take(reader_t *reader, fathom_status_t status, const fathom_hps167s_temperature_t *read)
 {
-    reader_temperature_t *const temperature = &reader->temperature;
+    driver_temperature_t *const temperature = &reader->temperature;
     if (status == FATHOM_OK) {
         temperature->dc = read->temperature_dc;
-        temperature->read_us = now_us(reader);
+        temperature->read_us = driver_now_us(reader);
         temperature->is_known = true;
-    } else if (status != FATHOM_ERR_PORT && !temperature->is_told) {
-        temperature->is_told = true;
+    } else if (status != FATHOM_ERR_PORT && !temperature->is_reported) {
+        temperature->is_reported = true;
         reader->remark =
             "its temperature (#4) could not be read; it is measured all the same, and asked for its "
             "temperature again";
@@ -59,7 +53,7 @@ static bool ask(reader_t *reader)
     return true;
 }
 
-static void begin_next(reader_temperature_t *temperature, uint32_t now)
+static void begin_next(driver_temperature_t *temperature, uint32_t now)
 {
     const bool is_due = until_measured_us(temperature, now) == 0;
     /* In turns, or a device that does not answer this would never be measured. */
@@ -80,8 +74,8 @@ static void begin_next(reader_temperature_t *temperature, uint32_t now)
 static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
 {
     reader_t *const reader = ctx;
-    reader_temperature_t *const temperature = &reader->temperature;
-    const uint32_t now = now_us(reader);
+    driver_temperature_t *const temperature = &reader->temperature;
+    const uint32_t now = driver_now_us(reader);
     if (temperature->is_known &&
         fathom_elapsed_us(now, temperature->read_us) > PERIODS_SHOWN * temperature->period_us)
         temperature->is_known = false;
@@ -100,9 +94,9 @@ static fathom_status_t poll(void *ctx, fathom_sample_t *sample)
 static uint32_t due_us(void *ctx)
 {
     const reader_t *const reader = ctx;
-    const reader_temperature_t *const temperature = &reader->temperature;
+    const driver_temperature_t *const temperature = &reader->temperature;
     if (temperature->state != RESTING) return fathom_due_us(&temperature->measuring, 1);
-    const uint32_t now = now_us(reader);
+    const uint32_t now = driver_now_us(reader);
     const uint32_t ask_us = until_asked_us(temperature, now);
     const uint32_t measure_us = until_measured_us(temperature, now);
     return ask_us < measure_us ? ask_us : measure_us;
@@ -110,7 +104,7 @@ static uint32_t due_us(void *ctx)
 
 void hps167s_begin_temperature(reader_t *reader, const reader_settings_t *settings)
 {
-    reader_temperature_t *const temperature = &reader->temperature;
+    driver_temperature_t *const temperature = &reader->temperature;
     temperature->measuring = reader->sensor;
     temperature->period_us = settings->temperature_us;
     temperature->interval_us = settings->period_us;
