@@ -33,7 +33,7 @@ uint32_t state_begin(const state_t *state, topic_t topic, char text[QUEUE_TEXT])
     const station_t *const station = state->station;
     const reading_t reading = {.model = station->model,
                                .mode = station->mode,
-                               .reader = &station->reader,
+                               .reader = station->reader,
                                .name = station->name,
                                .failure = state->failure,
                                .result = state->result,
