@@ -145,7 +145,7 @@ bool presence_is_free(session_t *session, uint8_t address, uint32_t baud)
 bool presence_follow(session_t *session)
 {
     const station_t *const station = session->station;
-    const fathom_modbus_unit_t *const unit = station->reader.unit;
-    const fathom_line_settings_t line = unit->line_settings != NULL ? *unit->line_settings : station->line;
-    return session_move(session, unit->address, &line);
+    const reader_facts_t facts = reader_facts(station->reader);
+    const fathom_line_settings_t line = facts.line != NULL ? *facts.line : station->line;
+    return session_move(session, facts.address, &line);
 }

@@ -73,7 +73,7 @@ static commission_end_t set(commission_t *run, const char *name, int32_t value)
     if (!announce(run, &change)) return COMMISSION_STOPPED;
     run->write_count++;
     status = session_set(&run->session, change.setting, value);
-    if (!run->session.station->reader.unit->is_written) run->write_count--;
+    if (!reader_facts(run->session.station->reader).is_written) run->write_count--;
     const change_outcome_t outcome = change_outcome(&change, status);
     if (outcome == CHANGE_UNCHANGED || outcome == CHANGE_DONE) return COMMISSION_DONE;
     /* the termination was acknowledged; the datasheet does not state what #2 reads until the next power-on */
