@@ -192,10 +192,11 @@ TEST(a_dry_run_writes_nothing)
 TEST(json_is_one_object)
 {
     expect(0,
-           "{\"sensor\": \"hps167s\", \"address\": 1, \"known_mm\": 2000, \"measured_mm\": [2015, 2000], "
-           "\"spread_mm\": 0, \"tolerance_mm\": 2, \"written_mm\": [-15], "
-           "\"offsets\": [{\"mm\": -15, \"is_added\": false}, {\"mm\": -15, \"is_added\": true}], "
-           "\"right\": true, \"outcome\": \"right\"}\n",
+           "{\"sensor\":\"hps167s:1\",\"model\":\"hps167s\",\"mode\":\"modbus\",\"address\":1,\"status\":"
+           "\"right\","
+           "\"known_mm\":2000,\"measured_mm\":[2015,2000],\"spread_mm\":0,\"tolerance_mm\":2,\"written_mm\":["
+           "-15],"
+           "\"offsets\":[{\"offset_mm\":-15,\"is_added\":false},{\"offset_mm\":-15,\"is_added\":true}]}\n",
            "fathom: " ONE, CALIBRATE " --format json");
 }
 

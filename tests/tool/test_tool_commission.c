@@ -96,10 +96,10 @@ TEST(json_has_an_object_for_each_sensor)
     const tool_run_t *const done = commission("hps167s --addresses 2 --format json");
     assert_int_equal(done->status, 0);
     assert_int_equal(strncmp(done->out,
-                             "{\"sensor\": \"hps167s\", \"address\": 2, \"uuid\": \"" FIRST "\", "
-                             "\"termination\": \"on\", \"distance_mm\": 1234, \"state\": \"done\", "
-                             "\"when\": \"2025-11-24T16:00:",
-                             160),
+                             "{\"model\":\"hps167s\",\"address\":2,\"uuid\":\"" FIRST "\","
+                             "\"termination\":true,\"distance_mm\":1234,\"status\":\"done\","
+                             "\"utc\":\"2025-11-24T16:00:",
+                             148),
                      0);
     assert_int_equal(count_of(done->out, "\n"), 1);
     assert_non_null(strstr(done->err, "  writes address 2 (#8)\n"));

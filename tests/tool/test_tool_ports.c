@@ -155,7 +155,9 @@ TEST(info_goes_on_where_a_sensor_or_its_port_fails)
     const tool_run_t *const run =
         info("lost=a16@gone mute=a16:9@here tank=a16:3@here --timeout 300 --format json");
     assert_int_equal(run->status, 1);
-    expect_begin(run->out, "{\"name\": \"tank\", \"sensor\": \"a16\", \"asked_at\": 3, ");
+    expect_begin(
+        run->out,
+        "{\"sensor\":\"tank\",\"model\":\"a16\",\"mode\":\"modbus\",\"line\":\"9600 8N1\",\"address\":3,");
     assert_string_equal(strchr(run->out, '\n'), "\n"); /* one object, in one line */
     expect_begin(run->err, "fathom: gone: no such device\nfathom: mute: address: no response from address 9");
 }

@@ -69,25 +69,25 @@ TEST(an_hps167s_with_another_reconnect_time_and_baud_code_can_be_set)
 TEST(what_it_had_is_unchanged)
 {
     bench_hps167s(any_hps167s);
-    says(0, "termination is on: unchanged, it had that value\n", "set hps167s termination on");
-    says(0, "\"written\": false, \"confirmed\": true, \"outcome\": \"unchanged, it had that value\"",
+    says(0, "termination is on: unchanged\n", "set hps167s termination on");
+    says(0, "\"written\":false,\"confirmed\":true,\"status\":\"unchanged\"",
          "set hps167s termination on --format json");
     assert_int_equal(counters()->flash_writes, 0);
 }
 
 TEST(without_a_response_nothing_was_written)
 {
-    says(1, "termination off: nothing was written: no response", "set hps167s termination off");
-    says(1, "\"written\": false, \"confirmed\": false, \"outcome\": \"nothing was written\"",
+    says(1, "termination off: not_written: no response", "set hps167s termination off");
+    says(1, "\"written\":false,\"confirmed\":false,\"status\":\"not_written\"",
          "set hps167s termination off --format json");
-    says(1, "filter-sensitivity 5: nothing was written: no response", "set hps167s filter-sensitivity 5");
+    says(1, "filter-sensitivity 5: not_written: no response", "set hps167s filter-sensitivity 5");
 }
 
 /* A faulted sensor that sends by itself: nothing can be made out between its packets at 54 Hz. */
 TEST(of_a_setting_that_was_refused_nothing_is_claimed)
 {
     faulty(FATHOM_SIM_FAULT_FUNCTION, 1, 60);
-    says(1, "nothing was written: ", "set hps167s termination off");
+    says(1, "not_written: ", "set hps167s termination off");
     assert_int_equal(counters()->writes, 0);
 }
 
@@ -95,12 +95,12 @@ TEST(of_a_setting_that_was_refused_nothing_is_claimed)
 TEST(what_cannot_be_read_afterwards_is_not_confirmed)
 {
     faulty(FATHOM_SIM_FAULT_SILENCE, 5, 60);
-    says(1, "termination off: written, not confirmed: no acknowledgement came; it may hold or not",
+    says(1, "termination off: not_confirmed: no acknowledgement came; it may hold or not",
          "set hps167s termination off");
     assert_false(bench.hps167s.termination);
     /* #1 is read before what is write-only */
     faulty(FATHOM_SIM_FAULT_SILENCE, 2, 60);
-    says(1, "written, not confirmed: no acknowledgement came", "set hps167s filter-sensitivity 5");
+    says(1, "not_confirmed: no acknowledgement came", "set hps167s filter-sensitivity 5");
 }
 
 /* #9 holds from the next power-on here, and #2 tells nothing of it. */
@@ -108,7 +108,7 @@ TEST(what_was_acknowledged_and_reads_otherwise_is_said_to_be_so)
 {
     bench_hps167s((fathom_sim_hps167s_config_t){.no_baud_code = true, .baud_at_power_on = true});
     says(1,
-         "baud 115200: written, and it reads otherwise: it was acknowledged, and the device tells another "
+         "baud 115200: differs: it was acknowledged, and the device tells another "
          "value",
          "set hps167s baud 115200");
     assert_int_equal(counters()->writes, 1);
@@ -131,17 +131,17 @@ TEST(info_fails_when_it_could_not_read_all)
 TEST(what_is_written_blind_is_written_once_and_not_confirmed)
 {
     bench_hps167s(any_hps167s);
-    says(0, "termination off: written, not confirmed\n", "set hps167s termination off --blind");
+    says(0, "termination off: not_confirmed\n", "set hps167s termination off --blind");
     assert_false(bench.hps167s.termination);
     assert_int_equal(counters()->requests, 1);
-    says(0, "\"written\": true, \"confirmed\": false, \"outcome\": \"written, not confirmed\"",
+    says(0, "\"written\":true,\"confirmed\":false,\"status\":\"not_confirmed\"",
          "set hps167s termination on --blind --format json");
     bench_begin();
     bench_a16(any_a16);
-    says(0, "written, not confirmed", "set a16 switch-threshold 2000 --blind");
+    says(0, "not_confirmed", "set a16 switch-threshold 2000 --blind");
     assert_int_equal(bench.a16.device.counters.requests, 1);
     bench_begin(); /* of a dead line that is not all that there is to say */
-    says(1, "written, not confirmed: no acknowledgement came", "set hps167s termination off --blind");
+    says(1, "not_confirmed: no acknowledgement came", "set hps167s termination off --blind");
 }
 
 TEST(what_has_to_be_read_is_not_written_blind)
@@ -167,10 +167,11 @@ TEST(all_units_are_told_once_and_only_with_yes)
     bench_hps167s((fathom_sim_hps167s_config_t){.address = 9});
     for (size_t i = 0; i != sizeof refused / sizeof refused[0]; i++) says(2, "--all-units", refused[i]);
     assert_int_equal(counters()->requests, 0);
-    says(0, "all units: termination off: sent, not confirmed\n",
-         "set hps167s termination off --all-units --yes");
+    says(0, "all units: termination off: sent\n", "set hps167s termination off --all-units --yes");
     assert_false(bench.hps167s.termination);
-    says(0, "\"confirmed\": false, \"outcome\": \"sent, not confirmed\", \"address\": 0",
+    says(0,
+         "\"address\":0,\"setting\":\"measure-after-power-on\",\"value\":false,\"was\":null,\"written\":true,"
+         "\"confirmed\":false,\"status\":\"sent\"",
          "set hps167s measure-after-power-on off --all-units --yes --format json");
     assert_false(bench.hps167s.auto_output);
     assert_int_equal(counters()->requests, 2);

@@ -9,6 +9,7 @@
 /* fathom info and fathom get: all that a device tells, or some of it. */
 
 static session_t session;
+static json_t json;
 
 static void print_text(const setting_t *setting, fathom_status_t status, const char *text)
 {
@@ -20,32 +21,43 @@ static void print_text(const setting_t *setting, fathom_status_t status, const c
         (void)printf("%-26s - (%s)\n", setting->name, setting_reason(status));
 }
 
-static void print_json(const setting_t *setting, fathom_status_t status, const char *text)
-{
-    (void)printf(", \"%s\": ", setting->name);
-    if (status == FATHOM_OK)
-        session_print_json(stdout, text);
-    else
-        (void)fputs("null", stdout);
-}
-
 /* Does each tell whose it is? */
 static bool has_name(void) { return session.options.station_count > 1 || session.station->has_own_name; }
 
-static void begin(void)
+static bool can_be_printed(const setting_t *setting)
+{
+    return setting->get != NULL && strcmp(setting->mode, session.station->mode->name) == 0;
+}
+
+/* `address` is the value of a sensor that can report it, and else the address that the requests have. */
+static void begin_json(const setting_t *settings, size_t count, const char *line)
+{
+    bool has_address = false;
+    for (size_t i = 0; i != count && settings[i].name != NULL; i++)
+        if (can_be_printed(&settings[i]) && strcmp(settings[i].name, "address") == 0) has_address = true;
+    json = (json_t){.to = stdout};
+    json_begin(&json, NULL, '{');
+    station_json(&json, session.station);
+    if (!has_address) json_value(&json, "address", "%u", session.station->address);
+    json_string(&json, "line", line);
+}
+
+static void begin_text(const char *line)
 {
     const station_t *const station = session.station;
+    (void)printf("%s%s%s%s, %s, asked at address %u, %s\n",
+                 station != session.options.stations[0] ? "\n" : "", has_name() ? station->name : "",
+                 has_name() ? ": " : "", station->model->name, station->model->what, station->address, line);
+}
+
+static void begin(const setting_t *settings, size_t count)
+{
     char line[LINE_TEXT];
     (void)session_line_text(&session, line);
     if (session.is_json)
-        (void)printf(
-            "{\"name\": \"%s\", \"sensor\": \"%s\", \"asked_at\": %u, \"mode\": \"%s\", \"line\": \"%s\"",
-            station->name, station->model->name, station->address, station->mode->name, line);
+        begin_json(settings, count, line);
     else
-        (void)printf("%s%s%s%s, %s, asked at address %u, %s\n",
-                     station != session.options.stations[0] ? "\n" : "", has_name() ? station->name : "",
-                     has_name() ? ": " : "", station->model->name, station->model->what, station->address,
-                     line);
+        begin_text(line);
 }
 
 /* Before what is said on the standard error. */
@@ -53,11 +65,6 @@ static void say_whose(void)
 {
     (void)fflush(stdout);
     (void)fprintf(stderr, "fathom: %s%s", has_name() ? session.station->name : "", has_name() ? ": " : "");
-}
-
-static bool can_be_printed(const setting_t *setting)
-{
-    return setting->get != NULL && strcmp(setting->mode, session.station->mode->name) == 0;
 }
 
 static void tell_remark(const setting_t *setting, const char *text)
@@ -71,6 +78,8 @@ static void tell_remark(const setting_t *setting, const char *text)
 
 /* The progress of `tell` through the values of one device. */
 typedef struct {
+    const setting_t *settings;
+    size_t count;
     bool is_known;    /* The device has sent a response to at least one request. */
     unsigned printed; /* Number of values that were read. */
     /* The shared command that failed last and its error. Its other values are not requested again: one failure can take
@@ -103,11 +112,11 @@ static bool print_one(const setting_t *setting, progress_t *progress)
         (void)fputs("\n", stderr);
         return false;
     }
-    if (!progress->is_known) begin();
+    if (!progress->is_known) begin(progress->settings, progress->count);
     progress->is_known = true;
     progress->printed += status == FATHOM_OK;
     if (session.is_json)
-        print_json(setting, status, text);
+        setting_json(&json, NULL, setting, status == FATHOM_OK ? text : NULL);
     else
         print_text(setting, status, text);
     if (setting->remark != NULL && status == FATHOM_OK) tell_remark(setting, text);
@@ -116,7 +125,7 @@ static bool print_one(const setting_t *setting, progress_t *progress)
 
 static int tell(const setting_t *settings, size_t count)
 {
-    progress_t progress = {0};
+    progress_t progress = {.settings = settings, .count = count};
     bool is_good = true;
     unsigned all = 0;
     for (size_t i = 0; i != count && settings[i].name != NULL; i++) {
@@ -124,7 +133,10 @@ static int tell(const setting_t *settings, size_t count)
         if (is_good) is_good = print_one(&settings[i], &progress);
         all++;
     }
-    if (progress.is_known && session.is_json) (void)puts("}");
+    if (progress.is_known && session.is_json) {
+        json_end(&json, '}');
+        (void)fputc('\n', stdout);
+    }
     if (fflush(stdout) != 0 || ferror(stdout)) {
         (void)fputs("fathom: the output cannot be written\n", stderr);
         is_good = false;

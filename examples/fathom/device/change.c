@@ -5,13 +5,13 @@
 
 #include "ports/line_text.h"
 
-const char *const change_outcomes[] = {"unchanged, it had that value",
-                                       "written",
-                                       "written, not confirmed",
-                                       "written, and it reads otherwise",
-                                       "refused",
-                                       "nothing was written",
-                                       "sent, not confirmed"};
+const char *const change_outcomes[] = {[CHANGE_UNCHANGED] = "unchanged",
+                                       [CHANGE_DONE] = "written",
+                                       [CHANGE_UNCONFIRMED] = "not_confirmed",
+                                       [CHANGE_DIFFERS] = "differs",
+                                       [CHANGE_REFUSED] = "refused",
+                                       [CHANGE_NOT_WRITTEN] = "not_written",
+                                       [CHANGE_SENT] = "sent"};
 
 bool change_is_read_back(const change_t *change)
 {

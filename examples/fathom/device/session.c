@@ -290,14 +290,3 @@ void session_options_help(FILE *to)
     session_line_help(to);
     (void)fputs("  --format FORMAT   text (default) or json\n", to);
 }
-
-void session_print_json(FILE *to, const char *text)
-{
-    const char *const digits = text[0] == '-' ? text + 1 : text;
-    const size_t length = strlen(digits);
-    const bool is_number = length != 0 && strspn(digits, "0123456789.") == length && digits[0] != '.' &&
-                           digits[length - 1] != '.' &&
-                           (digits[0] != '0' || length == 1 || digits[1] == '.') &&
-                           strchr(digits, '.') == strrchr(digits, '.');
-    (void)fprintf(to, is_number ? "%s" : "\"%s\"", text);
-}

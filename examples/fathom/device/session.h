@@ -84,7 +84,4 @@ void session_explain(session_t *session, fathom_status_t status);
 void session_options_help(FILE *to);
 void session_line_help(FILE *to);
 
-/* A value as JSON: a number, or a string. */
-void session_print_json(FILE *to, const char *text);
-
 #endif

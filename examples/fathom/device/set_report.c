@@ -2,6 +2,7 @@
 #include "device/set_report.h"
 
 #include "cli/command.h"
+#include "device/setting_text.h"
 #include "ports/line_text.h"
 
 static void print_value(const setting_t *setting, const char *text)
@@ -34,21 +35,21 @@ static bool is_later(const change_t *change)
 static void print_json(const change_t *change, change_outcome_t outcome)
 {
     const station_t *const station = change->session->station;
-    const bool is_written = outcome != CHANGE_UNCHANGED && outcome != CHANGE_NOT_WRITTEN;
-    (void)printf("{\"sensor\": \"%s\", \"setting\": \"%s\", \"value\": ", station->model->name,
-                 change->setting->name);
-    session_print_json(stdout, change->wanted);
-    (void)fputs(", \"was\": ", stdout);
-    if (change->was[0] != '\0')
-        session_print_json(stdout, change->was);
-    else
-        (void)fputs("null", stdout);
-    (void)printf(
-        ", \"written\": %s, \"confirmed\": %s, \"outcome\": \"%s\", \"address\": %u}\n",
-        is_written ? "true" : "false",
-        outcome == CHANGE_UNCHANGED || (outcome == CHANGE_DONE && change_is_read_back(change)) ? "true"
-                                                                                               : "false",
-        change_outcomes[outcome], change->is_for_all ? 0u : (unsigned)reader_facts(station->reader).address);
+    const bool is_unchanged = outcome == CHANGE_UNCHANGED;
+    const bool is_confirmed = is_unchanged || (outcome == CHANGE_DONE && change_is_read_back(change));
+    json_t json = {.to = stdout};
+    json_begin(&json, NULL, '{');
+    station_json(&json, station);
+    json_value(&json, "address", "%u",
+               change->is_for_all ? 0u : (unsigned)reader_facts(station->reader).address);
+    json_string(&json, "setting", change->setting->name);
+    setting_json(&json, "value", change->setting, change->wanted);
+    setting_json(&json, "was", change->setting, change->was[0] != '\0' ? change->was : NULL);
+    json_flag(&json, "written", !is_unchanged && outcome != CHANGE_NOT_WRITTEN);
+    json_flag(&json, "confirmed", is_confirmed);
+    json_string(&json, "status", change_outcomes[outcome]);
+    json_end(&json, '}');
+    (void)fputc('\n', stdout);
 }
 
 static void print_done(const change_t *change, change_outcome_t outcome)

@@ -102,6 +102,27 @@ void setting_print_value(const setting_t *setting, int32_t value, char text[SETT
         (void)snprintf(text, SETTING_TEXT, "%" PRId32, value);
 }
 
+static bool is_number(const setting_t *setting, const char *text)
+{
+    if (setting->kind == SETTING_VERSION || setting->kind == SETTING_IDENTITY) return false;
+    return text[0] != '\0' && strspn(text, "-0123456789.") == strlen(text);
+}
+
+void setting_json(json_t *json, const char *key, const setting_t *setting, const char *text)
+{
+    char name[SETTING_TEXT];
+    (void)snprintf(name, sizeof name, "%s", setting->name);
+    for (char *at = name; *at != '\0'; at++)
+        if (*at == '-') *at = '_';
+    if (key == NULL) key = name;
+    if (text != NULL && (strcmp(text, "on") == 0 || strcmp(text, "off") == 0))
+        json_flag(json, key, strcmp(text, "on") == 0);
+    else if (text != NULL && is_number(setting, text))
+        json_value(json, key, "%s", text);
+    else
+        json_string(json, key, text);
+}
+
 void settings_print(FILE *to, const setting_t *settings)
 {
     for (const setting_t *setting = settings; setting->name != NULL; setting++) {

@@ -2,6 +2,7 @@
 #ifndef SETTING_TEXT_H
 #define SETTING_TEXT_H
 
+#include "output/json.h"
 #include "sensors/setting.h"
 
 /* The settings as words: on the command line, in lists, in responses. */
@@ -25,6 +26,10 @@ bool setting_parse(const char *command, const setting_t *setting, const char *te
 
 /* A word, or a number. */
 void setting_print_value(const setting_t *setting, int32_t value, char text[SETTING_TEXT]);
+
+/* Writes a value as a member of the open object: off and on as booleans, numbers as numbers, all else as a string, and
+ * null if `text` is NULL. If `key` is NULL, the key is the name of the setting with underscores. */
+void setting_json(json_t *json, const char *key, const setting_t *setting, const char *text);
 
 /* Why a device that answers has not told this one; NULL: the status says nothing of this one alone. */
 const char *setting_reason(fathom_status_t status);

@@ -273,3 +273,10 @@ bool station_is_raised(station_t *station, char *text, size_t capacity)
                    period_us / 1000.0, interval_us / 1000);
     return true;
 }
+
+void station_json(json_t *json, const station_t *station)
+{
+    json_string(json, "sensor", station->name);
+    json_string(json, "model", station->model->name);
+    json_string(json, "mode", station->mode->name);
+}

@@ -4,6 +4,7 @@
 
 #include "cli/place.h"
 #include "diagnosis/counters.h"
+#include "output/json.h"
 #include "reading/pulses.h"
 #include "sensors/models.h"
 
@@ -62,6 +63,9 @@ void station_name(station_t *station);
 /* Names that several have are told apart by the ports. False after a usage error: some are the same all the same. */
 bool stations_name(station_t *const *stations, size_t count, const port_options_t *ports,
                    const char *command);
+
+/* Writes `sensor`, `model` and `mode` as members of the open object. */
+void station_json(json_t *json, const station_t *station);
 
 /* Are both named and read in the same way? Their ports are not looked at. */
 bool station_is_same(const station_t *one, const station_t *other);

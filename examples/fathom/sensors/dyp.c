@@ -45,7 +45,7 @@ void dyp_put_distance(char text[SETTING_TEXT], fathom_status_t status, const fat
     if (sample->kind == FATHOM_TARGET)
         dyp_put_number(text, status, sample->distance_mm);
     else if (sample->kind == FATHOM_NO_TARGET)
-        (void)snprintf(text, SETTING_TEXT, "%s", sample->interference ? "interference" : "no target");
+        (void)snprintf(text, SETTING_TEXT, "%s", sample->interference ? "interference" : "no_target");
     else
         (void)snprintf(text, SETTING_TEXT, "unknown value %u", (unsigned)sample->raw);
 }

@@ -103,11 +103,10 @@ typedef struct {
 static report_t report(void)
 {
     return (report_t){.made = run->status == 0,
-                      .not_written = says("nothing was written") || says("nothing was sent") ||
-                                     says("unchanged, it had"),
-                      .not_confirmed = says("not confirmed") || says("was sent"),
-                      .otherwise = says("reads otherwise"),
-                      .refused = !says("nothing was written") && says("refused")};
+                      .not_written = says("not_written") || says("nothing was sent") || says("unchanged"),
+                      .not_confirmed = says("not_confirmed") || says("was sent"),
+                      .otherwise = says("differs"),
+                      .refused = !says("not_written") && says("refused")};
 }
 
 static void set(const char *sensor, const char *mode, const tool_set_t *rows, size_t count)

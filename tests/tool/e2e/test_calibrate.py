@@ -27,7 +27,7 @@ class Calibrate(e2e.Case):
     def test_a_dry_run_writes_nothing(self):
         sim = self.sim('hps167s --distance 2015 --counters')
         told, = self.ends(f'calibrate hps167s --port {sim} --known 2000 --dry-run --format json', 1).json
-        self.assertEqual((told['would_write_mm'], told['written_mm'], told['right']), (-15, [], False))
+        self.assertEqual((told['would_write_mm'], told['written_mm'], told['status']), (-15, [], 'dry_run'))
         self.assertEqual(self.flash_writes(sim), 0)
 
     def test_what_cannot_be_announced_is_not_written(self):

@@ -52,7 +52,7 @@ class Commission(e2e.Case):
         sim = self.sim('a16:1:modbus a16:1:modbus --one-by-one --distance 1500')
         done = self.commission(sim, 'a16 --addresses 9,1 --format json').finish(60)
         self.ends(done, 0)
-        self.assertEqual([(one['sensor'], one['address'], one['uuid'], one['state'], one['distance_mm'])
+        self.assertEqual([(one['model'], one['address'], one['uuid'], one['status'], one['distance_mm'])
                           for one in done.json], [('a16', 9, None, 'done', 1500), ('a16', 1, None, 'done', 1500)])
 
     def test_two_at_address_1_are_refused(self):

@@ -150,39 +150,47 @@ static void print_failure(const session_t *session, const calibrate_plan_t *plan
 
 static const char *const whys[] = {
     [CALIBRATE_DONE] = "right",
-    [CALIBRATE_REFUSED] = "not written",
-    [CALIBRATE_NOT_MEASURED] = "not measured",
-    [CALIBRATE_NOT_MOVED] = "acknowledged, without effect",
-    [CALIBRATE_NOT_SEEN] = "not acknowledged, without effect",
+    [CALIBRATE_REFUSED] = "not_written",
+    [CALIBRATE_NOT_MEASURED] = "not_measured",
+    [CALIBRATE_NOT_MOVED] = "without_effect",
+    [CALIBRATE_NOT_SEEN] = "not_acknowledged",
     [CALIBRATE_UNCLEAR] = "ambiguous",
-    [CALIBRATE_UNEXPECTED] = "impossible distance",
-    [CALIBRATE_TOO_LARGE] = "offset too large",
+    [CALIBRATE_UNEXPECTED] = "impossible_distance",
+    [CALIBRATE_TOO_LARGE] = "offset_too_large",
 };
 
-static void print_json_list(const char *key, const int32_t *values, size_t count)
+static void print_list(json_t *json, const char *key, const int32_t *values, size_t count)
 {
-    (void)printf(", \"%s\": [", key);
-    for (size_t i = 0; i != count; i++) (void)printf("%s%" PRId32, i == 0 ? "" : ", ", values[i]);
-    (void)fputs("]", stdout);
+    json_begin(json, key, '[');
+    for (size_t i = 0; i != count; i++) json_value(json, NULL, "%" PRId32, values[i]);
+    json_end(json, ']');
 }
 
 static void print_json(const session_t *session, const calibrate_plan_t *plan, bool is_dry)
 {
     calibrate_offset_t offsets[CALIBRATE_OFFSETS];
     const size_t count = calibrate_offsets(plan, offsets);
-    (void)printf("{\"sensor\": \"%s\", \"address\": %u, \"known_mm\": %" PRId32,
-                 session->station->model->name, session->station->address, plan->known_mm);
-    print_json_list("measured_mm", plan->measured_mm, plan->measurements);
-    (void)printf(", \"spread_mm\": %" PRIu32 ", \"tolerance_mm\": %" PRId32, plan->spread_mm,
-                 plan->tolerance_mm);
-    print_json_list("written_mm", plan->written_mm, plan->writes);
-    if (is_dry) (void)printf(", \"would_write_mm\": %" PRId32, plan->write_mm);
-    (void)printf(", \"offsets\": [");
-    for (size_t i = 0; i != count; i++)
-        (void)printf("%s{\"mm\": %" PRId32 ", \"is_added\": %s}", i == 0 ? "" : ", ", offsets[i].mm,
-                     offsets[i].is_added ? "true" : "false");
-    (void)printf("], \"right\": %s, \"outcome\": \"%s\"}\n", plan->is_right ? "true" : "false",
-                 is_dry ? "dry run" : whys[plan->why]);
+    json_t json = {.to = stdout};
+    json_begin(&json, NULL, '{');
+    station_json(&json, session->station);
+    json_value(&json, "address", "%u", session->station->address);
+    json_string(&json, "status", is_dry ? "dry_run" : whys[plan->why]);
+    json_value(&json, "known_mm", "%" PRId32, plan->known_mm);
+    print_list(&json, "measured_mm", plan->measured_mm, plan->measurements);
+    json_value(&json, "spread_mm", "%" PRIu32, plan->spread_mm);
+    json_value(&json, "tolerance_mm", "%" PRId32, plan->tolerance_mm);
+    print_list(&json, "written_mm", plan->written_mm, plan->writes);
+    if (is_dry) json_value(&json, "would_write_mm", "%" PRId32, plan->write_mm);
+    json_begin(&json, "offsets", '[');
+    for (size_t i = 0; i != count; i++) {
+        json_begin(&json, NULL, '{');
+        json_value(&json, "offset_mm", "%" PRId32, offsets[i].mm);
+        json_flag(&json, "is_added", offsets[i].is_added);
+        json_end(&json, '}');
+    }
+    json_end(&json, ']');
+    json_end(&json, '}');
+    (void)fputc('\n', stdout);
 }
 
 int calibrate_report(const session_t *session, const calibrate_plan_t *plan, bool is_dry)

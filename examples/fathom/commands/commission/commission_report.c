@@ -29,13 +29,19 @@ bool commission_has_ended(const commission_t *run)
 
 static void print_json(const record_unit_t *unit, const commission_proof_t *proof)
 {
-    const bool has_distance = proof != NULL && proof->sample.kind == FATHOM_TARGET;
-    (void)printf("{\"sensor\": \"%s\", \"address\": %u, \"uuid\": ", unit->model->name, unit->address);
-    (void)printf(record_has_numbers(unit->model) ? "\"%s\"" : "null", unit->number);
+    json_t json = {.to = stdout};
+    json_begin(&json, NULL, '{');
+    json_string(&json, "model", unit->model->name);
+    json_value(&json, "address", "%u", unit->address);
+    json_string(&json, "uuid", record_has_numbers(unit->model) ? unit->number : NULL);
     if (proof != NULL && proof->termination[0] != '\0')
-        (void)printf(", \"termination\": \"%s\"", proof->termination);
-    if (has_distance) (void)printf(", \"distance_mm\": %u", proof->sample.distance_mm);
-    (void)printf(", \"state\": \"%s\", \"when\": \"%s\"}\n", record_states[unit->state], unit->when);
+        json_flag(&json, "termination", strcmp(proof->termination, "on") == 0);
+    if (proof != NULL && proof->sample.kind == FATHOM_TARGET)
+        json_value(&json, "distance_mm", "%u", proof->sample.distance_mm);
+    json_string(&json, "status", record_states[unit->state]);
+    json_string(&json, "utc", unit->when);
+    json_end(&json, '}');
+    (void)fputc('\n', stdout);
 }
 
 static void print_done(const record_unit_t *unit, const commission_proof_t *proof)
@@ -54,7 +60,7 @@ static void print_done(const record_unit_t *unit, const commission_proof_t *proo
     if (sample->kind == FATHOM_TARGET)
         (void)printf("%u mm\n", sample->distance_mm);
     else
-        (void)puts(sample->kind == FATHOM_NO_TARGET ? "no target" : "a value without a known meaning");
+        (void)puts(sample->kind == FATHOM_NO_TARGET ? "no_target" : "a value without a known meaning");
 }
 
 static void print_open(const record_unit_t *unit)
