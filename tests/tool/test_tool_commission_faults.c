@@ -139,7 +139,7 @@ TEST(a_sensor_without_a_target_is_done)
 {
     add_hps_units(1);
     bench.scene.value[0] = FATHOM_SIM_NO_TARGET;
-    expect(commission("hps167s --addresses 2"), 0, "  address 2 is done: termination on, no target\n");
+    expect(commission("hps167s --addresses 2"), 0, "  address 2 is done: termination on, no_target\n");
 }
 
 TEST(commission_waits_for_a_sensor_that_warms_up)
