@@ -176,13 +176,6 @@ run_full() {
     stage 2400 'mutants: all' mutants all --all
     stage 60 'mutants: planted fault' mutants planted --self-test
     stage 1800 'mutants: a sample of the ports' mutants ports --ports
-    stage 120 'soak: ten million transactions' soak
-}
-soak() {
-    cmake --build build-gcc --target soak >"$logs/soak.txt" 2>&1
-    status=$?
-    tail -n 20 "$logs/soak.txt"
-    return "$status"
 }
 
 # Runs the tests of KIND with this name: in one process, or as scripts that CTest starts.

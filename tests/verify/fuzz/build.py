@@ -18,8 +18,6 @@ COMPILER = ['clang-14', '-g', '-O1', '-fno-omit-frame-pointer', f'-fsanitize=fuz
             '-Iinclude', '-Iport', '-isystem/usr/include/modbus', '-Iexamples/fathom',
             *[f'-Iport/{name}' for name in ('posix', 'gpio', 'sim', 'libmodbus')], '-Itests/verify/fuzz',
             '-Itests/support']
-SMALL = 'src/codec/crc16_small.c'  # stands beside the other one, under another name
-OTHER_NAME = {SMALL: ['-Dfathom_crc16=fathom_crc16_small']}
 
 
 class Failed(Exception):
@@ -32,7 +30,7 @@ def sources(*patterns, without=()):
 
 
 def core():
-    return sources('src/*/*.c')
+    return sources('src/*/*.c', without=('crc16_small.c',))
 
 
 def libmodbus():
@@ -58,8 +56,7 @@ def publish():
 def compile_one(source, to, text_at=None):
     """text_at: another file whose text stands in for the source's."""
     os.makedirs(os.path.dirname(to), exist_ok=True)
-    command = [*COMPILER, *OTHER_NAME.get(source, ()), '-iquote', os.path.dirname(source),
-               '-c', text_at or source, '-o', to]
+    command = [*COMPILER, '-iquote', os.path.dirname(source), '-c', text_at or source, '-o', to]
     if shutil.which('ccache'):
         command.insert(0, 'ccache')
     # What is stamped with the place of the worktree would not be found again from another one.

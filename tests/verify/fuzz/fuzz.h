@@ -43,12 +43,6 @@ static inline uint16_t fuzz_word(void)
     return (uint16_t)(high << 8 | fuzz_byte());
 }
 
-static inline uint32_t fuzz_long(void)
-{
-    const uint16_t high = fuzz_word();
-    return (uint32_t)high << 16 | fuzz_word();
-}
-
 /* A copy in memory of exactly its size, so that a byte too many is seen. To be freed. */
 void *fuzz_copy(const void *bytes, size_t size);
 

@@ -31,26 +31,6 @@ def of(name, text):
     return SCRIPTS[name](frames) if name in SCRIPTS else [b'\0' * 32]
 
 
-@makes('modbus_rtu')
-def modbus_rtu(frames):
-    head = b'\x01\x00\x01\x06\x00\x01'
-    return ([bytes([4]) + head + frame for frame in frames['response']]
-            + [bytes([5, 125]) + frame for frame in frames['request']]
-            + [b'\5\2' + bytes.fromhex('01 10 00 20 00 02 04 00 00 00 12') + b'\0\0']  # the request of HPS table 38
-            + [bytes([2, frame[0], index % 3]) + frame[2:] for index, frame in enumerate(frames['request'])])
-
-
-@makes('figures')
-def figures(frames):
-    return [b'\x00\x00\x27\x10\x00\x00\xc8' + frame for frame in frames['request'][:3]] + [b'\xff' * 7]
-
-
-@makes('hps167s')
-def hps167s(frames):
-    found = [b'\0' + frame[3:-2] for frame in frames['response'] if len(frame) > 10]
-    return found + [b'\0' + b'\xff\xff\0\0' + b'\xff' * 4]
-
-
 @makes('dyp')
 def dyp(frames):
     """The codecs' frames; and of the engine three in a row after a silence, each fed whole."""

@@ -41,9 +41,6 @@ PUBLISH = ('-lmosquitto', '-lyaml', '-lssl', '-lcrypto')
 TOOL_SOURCES = ('tests/verify/fuzz/tool.c',)
 
 TARGETS = [
-    Target('modbus_rtu', (build.core,), 8000, 165, 170, 300),
-    Target('figures', (build.core,), 8000, 48, 150, 64),
-    Target('hps167s', (build.core,), 8000, 120, 160, 64),
     Target('dyp', (build.core,), 5000, 200, 105, 128),
     Target('line', (build.core,), 1500, 620, 40, 96, more=('tests/verify/fuzz/wire.c',)),
     Target('drivers', (build.core,), 500, 1270, 20, 128, more=('tests/verify/fuzz/wire.c',)),
