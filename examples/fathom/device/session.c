@@ -108,8 +108,7 @@ bool session_set_mode(session_t *session, const char *command, const char *const
         (void)usage_error(command, "this takes --mode %s", mode);
         return false;
     }
-    const origin_t origin = {.command = command};
-    session->station->mode = mode_word(session->station->model, mode, &origin);
+    session->station->mode = model_mode_find(command, session->station->model, mode);
     return session->station->mode != NULL;
 }
 

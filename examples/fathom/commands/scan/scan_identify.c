@@ -1,16 +1,15 @@
 /* SPDX-License-Identifier: MIT */
-#include "commands/scan/scan_identify.h"
-
 #include <string.h>
 
+#include "commands/scan/scan.h"
 #include "sensors/models.h"
 
-/* A second response to one request is there by then: two units differ by a few milliseconds. */
+/* A second response to one request arrives within this time: two units differ by a few milliseconds. */
 enum { LINGER_US = 40000 };
 
 enum { DAMAGED_TRIES = 4, ROUNDS = 2 };
 
-/* The model that is most likely at an address; by its first read others are found too. */
+/* Returns the model that is most likely at an address. Its first read finds the other models too. */
 static const model_t *likely(const fathom_line_settings_t *line, uint8_t address)
 {
     for (size_t i = MODELS; i-- != 0;)
@@ -30,11 +29,11 @@ void scan_first_request(const fathom_line_settings_t *line, uint8_t address, sca
 }
 
 typedef struct {
-    inquiry_t base; /* first, so that one pointer is both */
-    const scan_wire_t *wire;
-    const scan_request_t *request; /* the first one: to whom, with which settings */
+    inquiry_t base; /* first, so that ask() gets from it to the rest */
+    scan_t *scan;
+    const scan_request_t *request; /* the first one: its address and settings are those of all */
     scan_response_t response;
-    fathom_status_t failed; /* FATHOM_OK, or why it cannot go on */
+    fathom_status_t failed; /* FATHOM_OK, or why the scan has to end */
 } identification_t;
 
 static bool ask(inquiry_t *inquiry, uint16_t first, uint8_t count, uint32_t timeout_us, uint8_t silence_tries)
@@ -46,15 +45,14 @@ static bool ask(inquiry_t *inquiry, uint16_t first, uint8_t count, uint32_t time
     request.linger_us = 0;
     if (request.timeout_us < timeout_us) request.timeout_us = timeout_us;
     for (uint8_t tries = DAMAGED_TRIES; tries != 0 && identification->failed == FATHOM_OK; tries--) {
-        scan_ask(identification->wire, &request, &identification->response);
+        scan_ask(identification->scan, &request, &identification->response);
         const fathom_status_t status = identification->response.status;
         inquiry->status = status;
         inquiry->values = identification->response.values;
         if (status == FATHOM_OK || status == FATHOM_ERR_EXCEPTION) return status == FATHOM_OK;
-        if (status == FATHOM_ERR_CANCELLED || status == FATHOM_ERR_PORT) identification->failed = status;
-        const bool is_of_line = status == FATHOM_ERR_LINE_BUSY || status == FATHOM_ERR_OTHER_MASTER;
+        if (scan_has_ended(status)) identification->failed = status;
         const bool is_damaged = status == FATHOM_ERR_CHECKSUM || status == FATHOM_ERR_MALFORMED;
-        if (!is_of_line && !is_damaged && --silence_tries == 0) break;
+        if (!scan_is_of_line(status) && !is_damaged && --silence_tries == 0) break;
     }
     return false;
 }
@@ -67,7 +65,8 @@ static bool ask_value(inquiry_t *inquiry, uint16_t address, uint32_t timeout_us)
     return true;
 }
 
-/* Which one of those that have this first read in common? NULL: none, or what answers like several. */
+/* Returns the model that this device is, of those that share this first read. NULL: it responds like none of them, or like
+ * several. */
 static const model_t *tell_apart(inquiry_t *inquiry, uint16_t first)
 {
     for (uint8_t round = 0; round != ROUNDS; round++) {
@@ -101,18 +100,18 @@ static const model_t *find_model(identification_t *identification)
         model = models[0];
         if (!ask(inquiry, model->scan.first, model->scan.count, INQUIRY_MEASURE_US, 1)) return NULL;
     }
-    /* The first read of those that are told apart by a register of their own is of the address, in the low byte; so a
-     * device that answers something else is none of them. */
+    /* The models with a register of their own share a first read that returns the address. A device that returns another
+     * value is none of them. */
     if (inquiry->status != FATHOM_OK || inquiry->values[0] != request->address) return NULL;
     return tell_apart(inquiry, model->scan.first);
 }
 
-fathom_status_t scan_identify(const scan_wire_t *wire, const scan_request_t *request,
-                              const scan_response_t *first, scan_finding_t *finding)
+fathom_status_t scan_identify(scan_t *scan, const scan_request_t *request, const scan_response_t *first,
+                              scan_finding_t *finding)
 {
     identification_t identification = {
         .base = {.ask = ask, .status = first->status, .values = first->values, .finding = finding},
-        .wire = wire,
+        .scan = scan,
         .request = request,
         .failed = FATHOM_OK};
     memset(finding, 0, sizeof *finding);

@@ -84,7 +84,9 @@ static void tell_other(FILE *to, const scan_finding_t *finding)
 {
     switch (finding->kind) {
     case SCAN_OTHER:
-        (void)fputs("another Modbus device: none of the three sensors", to);
+        (void)fputs(finding->is_double ? "answered twice: two sensors with one address?"
+                                       : "another Modbus device: none of the three sensors",
+                    to);
         break;
     case SCAN_DAMAGED:
         (void)fputs("its responses are damaged: two sensors with one address?", to);

@@ -292,5 +292,4 @@ static int run(const host_t *host, int argc, char **argv)
     return status;
 }
 
-const command_t watch_command = {
-    .name = "watch", .summary = "shows sensors live in the terminal", .help = help, .run = run};
+const command_t watch_command = {"watch", "shows sensors live in the terminal", help, run};
