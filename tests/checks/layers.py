@@ -32,20 +32,7 @@ UPWARDS = {
     ('mqtt/broker.h', 'cli/config.h'),
     ('mqtt/publisher.c', 'cli/command.h'),
     ('mqtt/queue.h', 'commands/publish/streams.h'),
-    ('mqtt/state.c', 'cli/options.h'),
     ('mqtt/topics.h', 'cli/config.h'),
-    ('ports/channel.c', 'cli/options.h'),
-    ('ports/line_text.c', 'cli/options.h'),
-    ('ports/tcp_address.c', 'cli/options.h'),
-    ('reading/poll.h', 'cli/sensor_options.h'),
-    ('reading/station.c', 'cli/command.h'),
-    ('reading/station.c', 'cli/options.h'),
-    ('reading/station.h', 'cli/place.h'),
-    ('sensors/hps167s/hps167s_settings.c', 'cli/options.h'),
-    ('sensors/models.c', 'cli/command.h'),
-    ('sensors/models.c', 'cli/options.h'),
-    ('sensors/sensor_text.c', 'cli/command.h'),
-    ('sensors/sensor_text.c', 'cli/options.h'),
 }
 
 STANDARD = {'stdbool.h', 'stddef.h', 'stdint.h'}

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cli/sensor_words.h"
 #include "reading/poll_change.h"
 #include "reading/poll_loop.h"
 
@@ -88,8 +89,8 @@ static void take(sensor_options_t *options, const sensor_options_t *beside, cons
 {
     static char copies[2][TEXT];
     static unsigned turn;
-    static const char *const values[SENSOR_OPTIONS] = {
-        [OPTION_RECONNECT] = "", [OPTION_INTERVAL] = "100", [OPTION_TIMEOUT] = "1000"};
+    static const sensor_defaults_t defaults;
+    origin_t origins[WORDS];
     char *const copy = copies[turn++ % 2];
     char *words[WORDS];
     int count = 0;
@@ -97,7 +98,13 @@ static void take(sensor_options_t *options, const sensor_options_t *beside, cons
     options->beside = beside;
     (void)strcpy(copy, text);
     for (char *word = strtok(copy, " "); word != NULL; word = strtok(NULL, " ")) words[count++] = word;
-    assert_true(sensor_options(options, "publish", words, count, values, NULL, NULL));
+    for (int i = 0; i != count; i++) origins[i] = (origin_t){.command = "publish"};
+    assert_true(sensor_words(options, &defaults, words, count, origins));
+    for (size_t i = 0; i != options->station_count; i++) {
+        options->stations[i]->settings.period_us = 100000;
+        options->stations[i]->settings.timeout_us = 1000000;
+    }
+    options->reconnect = true;
     options->persists = true;
 }
 

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/place.h"
+#include "cli/sensor_word.h"
 
 /* ---- a word, and its place as a word again ---- */
 
@@ -16,7 +16,7 @@ enum { WORD = 400 };
 
 static char message[WORD * 2]; /* on the standard error by the last parse */
 
-static bool parse(sensor_place_t *place, const char *text, char word[WORD])
+static bool parse(sensor_word_t *place, const char *text, char word[WORD])
 {
     char *err = NULL;
     size_t size = 0;
@@ -24,7 +24,8 @@ static bool parse(sensor_place_t *place, const char *text, char word[WORD])
     assert_true(strlen(text) < WORD);
     (void)snprintf(word, WORD, "%s", text);
     stderr = open_memstream(&err, &size);
-    const bool is_right = place_parse(place, "read", word);
+    const origin_t origin = {.command = "read"};
+    const bool is_right = sensor_word_parse(place, word, &origin);
     (void)fclose(stderr);
     stderr = own;
     (void)snprintf(message, sizeof message, "%s", err);
@@ -53,16 +54,16 @@ static void add(char word[WORD], const char *before, const char *text)
 }
 
 /* The keys in the order of port_key_t. */
-static void print(const sensor_place_t *place, char word[WORD])
+static void print(const sensor_word_t *place, char word[WORD])
 {
     word[0] = '\0';
     if (place->name[0] != '\0') add(word, place->name, "=");
-    add(word, "", place->sensor.model->name);
-    add(word, ":", place->sensor.address);
-    add(word, ":", place->sensor.mode);
+    add(word, "", place->model->name);
+    add(word, ":", place->address);
+    add(word, ":", place->mode);
     add(word, "@", place->port);
     for (port_key_t key = 0; key != PORT_KEYS; key++) {
-        if (!port_keys_has(&place->keys, key)) continue;
+        if (!place->keys.has[key]) continue;
         add(word, ",", port_key_name(key));
         add(word, "=", value_text(key, place->keys.value[key]));
     }
@@ -111,7 +112,7 @@ TEST(what_comes_of_right_words)
         {"a16@gpiochip/x,baud=9600", "", "a16", NULL, NULL, "gpiochip/x", ",baud=9600"},
     };
     for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
-        sensor_place_t place;
+        sensor_word_t place;
         char word[WORD];
         char expected[WORD] = "";
         char printed[WORD];
@@ -132,7 +133,7 @@ TEST(what_comes_of_right_words)
 /* The numbers are those of other headers: hal.h, line.h and fathom_gpio.h. */
 TEST(values_are_those_of_the_library)
 {
-    sensor_place_t place;
+    sensor_word_t place;
     char word[WORD];
     assert_true(parse(&place, "a16@x,baud=230400,parity=even,stop=1,rs485=on,echo=on", word));
     assert_int_equal(place.keys.value[KEY_BAUD], 230400);
@@ -149,51 +150,50 @@ TEST(values_are_those_of_the_library)
 
 /* ---- wrong ones ---- */
 
-TEST(what_is_said_of_wrong_words)
+TEST(wrong_words_are_rejected_with_what_they_take)
 {
     const struct {
         const char *word;
         const char *says;
     } rows[] = {
-        {"", "there is no sensor '', only a16, a05, hps167s"},
-        {"a17:1", "there is no sensor 'a17'"},
-        {"tank=", "there is no sensor ''"},
-        {"a=b=a16", "there is no sensor 'b=a16'"},
-        {"hps167s1234567890123456789012345678901234567890:1", "there is no sensor 'hps167s1234567890"},
-        {"=a16", "not ''"},
-        {".a=a16",
-         "=a16: a name has up to 31 letters, digits, - _ and ., the first a letter or digit, such as "
-         "tank-1=a16; not '.a'"},
-        {"a b=a16", "not 'a b'"},
-        {"a:1=a16", "not 'a:1'"},
-        {"\xC3\xA4=a16", "a name has up to 31"},
-        {"abcdefghijabcdefghijabcdefghijXY=a16", "a name has up to 31"},
-        {"a16@", "a16@: the port is missing behind @, such as @/dev/ttyUSB0"},
-        {"a16@,baud=9600", "the port is missing"},
-        {"a16@x,", "a16@x,: a serial port has no key '', only baud, parity, stop, rs485, echo"},
-        {"a16@x,baud=9600,,echo=on", "has no key ''"},
-        {"a16@x,=9600", "has no key ''"},
-        {"a16@x,Baud=9600", "has no key 'Baud'"},
-        {"a16@x,bau=9600", "has no key 'bau'"},
-        {"a16@x,in=1", "a serial port has no key 'in'"},
-        {"a16@gpiochip0,rs485=on", "a GPIO chip has no key 'rs485', only trigger, echo, in, bias, near"},
-        {"a16@x,baud", "a16@x,baud: the value of baud is missing: 9600, 19200"},
-        {"a16@x,baud=", "baud takes 9600, 19200, 38400, 57600, 115200 or 230400, not ''"},
-        {"a16@x,baud=9601", "not '9601'"},
-        {"a16@x,baud=00000000000009600", "not '00000000000009600'"},
-        {"a16@x,parity=even,parity=odd", "parity stands there twice"},
-        {"a16@x,parity=e", "parity takes none, even or odd, not 'e'"},
-        {"a16@x,stop=0", "stop takes a whole number from 1 to 2, not '0'"},
-        {"a16@x,rs485=yes", "rs485 takes on or off, not 'yes'"},
-        {"a16@x,echo=1", "echo takes auto, on or off, not '1'"},
-        {"a16@gpiochip0,echo=on", "echo takes the number of a line from 0 to 65535, not 'on'"},
-        {"a16@gpiochip0,trigger=-1", "not '-1'"},
-        {"a16@gpiochip0,in=65536", "not '65536'"},
-        {"a16@gpiochip0,bias=", "bias takes as-is, up, down or off, not ''"},
-        {"hps167s@tcp:h,baud=9600", "a port over TCP has no keys, for the line is the gateway's"},
+        {"", "unknown sensor ''. It is one of a16, a05, hps167s."},
+        {"a17:1", "unknown sensor 'a17'. Did you mean a16?"},
+        {"tank=", "unknown sensor ''."},
+        {"a=b=a16", "unknown sensor 'b=a16'."},
+        {"hps167s1234567890123456789012345678901234567890:1", "unknown sensor 'hps167s1234567890"},
+        {"=a16", "'' is no name of a sensor."},
+        {".a=a16", "'.a' is no name of a sensor. A name has at most 31 letters, digits, '-', '_' and '.'"},
+        {"a b=a16", "'a b' is no name"},
+        {"a:1=a16", "'a:1' is no name"},
+        {"\xC3\xA4=a16", "is no name"},
+        {"abcdefghijabcdefghijabcdefghijXY=a16", "is no name"},
+        {"a16@", "a16@ names no port."},
+        {"a16@,baud=9600", "a16@ names no port."},
+        {"a16@x,", "a16@x: unknown key ''. It is one of baud, parity, stop, rs485, echo."},
+        {"a16@x,baud=9600,,echo=on", "unknown key ''"},
+        {"a16@x,=9600", "unknown key ''"},
+        {"a16@x,Baud=9600", "unknown key 'Baud'. Did you mean baud?"},
+        {"a16@x,bau=9600", "unknown key 'bau'. Did you mean baud?"},
+        {"a16@x,trigger=1", "unknown key 'trigger'. It is one of baud, parity, stop, rs485, echo."},
+        {"a16@gpiochip0,rs485=on", "unknown key 'rs485'. It is one of trigger, echo, in, bias, near."},
+        {"a16@gpiochip0,17", "unknown key '17'."},
+        {"a16@x,baud", "a16@x: baud has no value."},
+        {"a16@x,baud=", "baud is ''. It takes 9600, 19200, 38400, 57600, 115200 or 230400."},
+        {"a16@x,baud=9601", "baud is '9601'."},
+        {"a16@x,baud=00000000000009600", "baud is '00000000000009600'."},
+        {"a16@x,parity=even,parity=odd", "parity is given twice."},
+        {"a16@x,parity=e", "parity is 'e'. It takes none, even or odd."},
+        {"a16@x,stop=0", "stop is '0'. It takes a whole number from 1 to 2."},
+        {"a16@x,rs485=yes", "rs485 is 'yes'. It takes off or on."},
+        {"a16@x,echo=1", "echo is '1'. It takes auto, off or on."},
+        {"a16@gpiochip0,echo=on", "echo is 'on'. It takes a whole number from 0 to 65535."},
+        {"a16@gpiochip0,trigger=-1", "trigger is '-1'."},
+        {"a16@gpiochip0,in=65536", "in is '65536'."},
+        {"a16@gpiochip0,bias=", "bias is ''. It takes as-is, up, down or off."},
+        {"hps167s@tcp:h,baud=9600", "a port over TCP has none."},
     };
     for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
-        sensor_place_t place;
+        sensor_word_t place;
         char word[WORD];
         if (parse(&place, rows[i].word, word)) fail_msg("'%s' is taken", rows[i].word);
         if (strstr(message, rows[i].says) == NULL) fail_msg("'%s': %s", rows[i].word, message);
@@ -230,8 +230,8 @@ TEST(a_hundred_thousand_words_do_no_harm_and_those_that_are_taken_are_the_same_a
     uint32_t taken = 0;
     seed = 20261123;
     for (uint32_t i = 0; i != 100000; i++) {
-        sensor_place_t first;
-        sensor_place_t second;
+        sensor_word_t first;
+        sensor_word_t second;
         char text[WORD];
         char word[WORD];
         char printed[WORD];
@@ -247,7 +247,7 @@ TEST(a_hundred_thousand_words_do_no_harm_and_those_that_are_taken_are_the_same_a
         print(&second, again);
         assert_string_equal(again, printed);
         assert_string_equal(first.name, second.name);
-        assert_ptr_equal(first.sensor.model, second.sensor.model);
+        assert_ptr_equal(first.model, second.model);
         assert_memory_equal(&first.keys, &second.keys, sizeof first.keys);
     }
     assert_in_range(taken, 1000, 99000);

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#include "cli/sensor_options.h"
+#include "cli/rows.h"
 
 EACH_BEGINS(bench_begin())
 
@@ -16,24 +16,23 @@ enum { WORDS = 8, TEXT = 256 };
 
 static sensor_options_t options;
 
-/* Of words with blanks between them; the values of options are what the test has set. */
-static void take(const char *text, const char *const *values)
+/* `text`: words with blanks between them. */
+static void set(const char *text, const sensor_defaults_t *defaults)
 {
     static char copy[TEXT];
+    origin_t origins[WORDS];
     char *words[WORDS];
     int count = 0;
     assert_true(strlen(text) < sizeof copy);
     (void)strcpy(copy, text);
     for (char *word = strtok(copy, " "); word != NULL; word = strtok(NULL, " ")) words[count++] = word;
+    for (int i = 0; i != count; i++) origins[i] = (origin_t){.command = "read"};
     memset(&options, 0, sizeof options);
-    assert_true(sensor_options(&options, "read", words, count, values, NULL, NULL));
+    assert_true(sensor_words(&options, defaults, words, count, origins));
 }
 
-#define TAKE(text, ...)                                                                                      \
-    do {                                                                                                     \
-        const char *const values[SENSOR_OPTIONS] = {__VA_ARGS__};                                            \
-        take(text, values);                                                                                  \
-    } while (0)
+#define SET(text, ...)   set(text, &(const sensor_defaults_t){__VA_ARGS__})
+#define KEY(key, number) .keys.value[key] = (number), .keys.has[key] = true
 
 static void expect_station(size_t i, const char *name, const char *mode, size_t port)
 {
@@ -51,7 +50,7 @@ static void expect_line(const fathom_line_settings_t *line, uint32_t baud, uint8
 
 TEST(sensors_with_one_port_share_it_and_are_asked)
 {
-    TAKE("a16 hps167s:2@y a05:2 a16@x hps167s:5@y", [OPTION_PORT] = "z");
+    SET("a16 hps167s:2@y a05:2 a16@x hps167s:5@y", .path = "z");
     assert_int_equal(options.port_count, 3);
     assert_string_equal(options.ports[0].path, "z");
     assert_string_equal(options.ports[1].path, "y");
@@ -66,7 +65,7 @@ TEST(sensors_with_one_port_share_it_and_are_asked)
 
 TEST(the_port_of_an_option_is_the_same_as_one_behind_a_sensor)
 {
-    TAKE("a16:3 hps167s:2@x", [OPTION_PORT] = "x");
+    SET("a16:3 hps167s:2@x", .path = "x");
     assert_int_equal(options.port_count, 1);
     /* 9600 8N1 and 19200 8E1: opened at the slower */
     assert_true(options.ports[0].has_mixed_lines);
@@ -76,22 +75,23 @@ TEST(the_port_of_an_option_is_the_same_as_one_behind_a_sensor)
 
 TEST(names_that_are_the_same_have_the_port_behind_them)
 {
-    TAKE("a16@/dev/ttyUSB0 a16@/dev/ttyUSB1 a05@/dev/ttyS2 a16:1@tcp:h hps167s:7@x gate=hps167s:7@y", NULL);
+    SET("a16@/dev/ttyUSB0 a16@/dev/ttyUSB1 a05@/dev/ttyS2 a16:1@tcp:h hps167s:7@x gate=hps167s:7@y",
+        .path = NULL);
     expect_station(0, "a16@ttyUSB0", "auto", 0);
     expect_station(1, "a16@ttyUSB1", "auto", 1);
     expect_station(2, "a05", "auto", 2);
     expect_station(3, "a16:1", "modbus", 3);
     expect_station(4, "hps167s:7", "modbus", 4);
     expect_station(5, "gate", "modbus", 5);
-    TAKE("a05=a16@1/x a05@2/y", NULL);
+    SET("a05=a16@1/x a05@2/y", .path = NULL);
     expect_station(0, "a05", "auto", 0);
     expect_station(1, "a05@y", "auto", 1);
 }
 
 TEST(a_port_s_own_keys_win_over_the_options)
 {
-    TAKE("hps167s@x,baud=57600,rs485=off,echo=off hps167s@y hps167s@tcp:h", [OPTION_BAUD] = "115200",
-         [OPTION_PARITY] = "odd", [OPTION_ECHO] = "on", [OPTION_RS485] = "");
+    SET("hps167s@x,baud=57600,rs485=off,echo=off hps167s@y hps167s@tcp:h", KEY(KEY_BAUD, 115200),
+        KEY(KEY_PARITY, FATHOM_PARITY_ODD), KEY(KEY_ECHO, 2), .rs485 = true);
     expect_line(&options.stations[0]->line, 57600, FATHOM_PARITY_ODD, 1);
     assert_false(options.ports[0].rs485);
     assert_int_equal(options.ports[0].echo, 1);
@@ -106,17 +106,17 @@ TEST(a_port_s_own_keys_win_over_the_options)
 /* HPS-167S 2.2.2: a character has 11 bits. */
 TEST(two_stop_bits_take_the_place_of_the_parity_unless_it_is_given_too)
 {
-    TAKE("hps167s@x,stop=2 hps167s@y,stop=2,parity=even", NULL);
+    SET("hps167s@x,stop=2 hps167s@y,stop=2,parity=even", .path = NULL);
     expect_line(&options.stations[0]->line, 19200, FATHOM_PARITY_NONE, 2);
     expect_line(&options.stations[1]->line, 19200, FATHOM_PARITY_EVEN, 2);
-    TAKE("hps167s@x hps167s@y,stop=1", [OPTION_STOP_BITS] = "2");
+    SET("hps167s@x hps167s@y,stop=1", KEY(KEY_STOP_BITS, 2));
     expect_line(&options.stations[0]->line, 19200, FATHOM_PARITY_NONE, 2);
     expect_line(&options.stations[1]->line, 19200, FATHOM_PARITY_EVEN, 1);
 }
 
 TEST(keys_behind_one_sensor_go_for_all_at_the_port)
 {
-    TAKE("hps167s:1@x hps167s:2@x,baud=57600 hps167s:3@x,baud=57600,echo=on", NULL);
+    SET("hps167s:1@x hps167s:2@x,baud=57600 hps167s:3@x,baud=57600,echo=on", .path = NULL);
     for (size_t i = 0; i != 3; i++) expect_line(&options.stations[i]->line, 57600, FATHOM_PARITY_EVEN, 1);
     assert_false(options.ports[0].has_mixed_lines);
     assert_int_equal(options.ports[0].echo, 2);

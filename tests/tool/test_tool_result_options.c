@@ -4,13 +4,26 @@
 
 #include <string.h>
 
-#include "cli/result_options.h"
+#include "cli/rows.h"
+#include "output/words.h"
 
 EACH_BEGINS(bench_begin())
 
 static const suite_t suite = {.set_up = begins};
 
 /* ---- what they may say ---- */
+
+/* Stores `text` as the value of --NAME. */
+static bool set(const char *name, const char *text, results_config_t *config)
+{
+    static char copy[2000];
+    const option_table_t tables[] = {{result_rows, 0}, {NULL, 0}};
+    const origin_t origin = {.command = "read"};
+    option_walk_t walk;
+    assert_true(option_find(&walk, tables, name, strlen(name)));
+    (void)snprintf(copy, sizeof copy, "%s", text);
+    return option_set(walk.row, copy, config, &origin);
+}
 
 #define TANK "mounting=2300,height=2000"
 
@@ -38,7 +51,7 @@ TEST(a_level_may_be_so)
     for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
         results_config_t config = {0};
         const fathom_level_config_t *const expected = &rows[i].tank;
-        assert_true(level_option(&config, "read", rows[i].text));
+        assert_true(set("level", rows[i].text, &config));
         assert_true(config.has_level);
         assert_false(config.has_alarm);
         assert_ptr_equal(config.tank.volume, expected->volume);
@@ -65,15 +78,14 @@ TEST(a_number_with_so_many_zeros_that_its_end_is_cut_off_is_refused)
     assert_false(range_parse("0000000000000015-20", 1, 254, &first, &last));
     assert_false(range_parse("0000000000000015", 0, 254, &first, &last));
     assert_false(number_parse("00000000015", 0, 254, &first));
-    assert_false(level_option(&config, "read", points));
-    assert_false(
-        level_option(&config, "read", TANK ",shape=table,points=0:000000000000000000000000000000000001"));
+    assert_false(set("level", points, &config));
+    assert_false(set("level", TANK ",shape=table,points=0:000000000000000000000000000000000001", &config));
 }
 
 TEST(the_points_of_a_level_are_a_level_and_a_volume)
 {
     results_config_t config = {0};
-    assert_true(level_option(&config, "read", TANK ",shape=table,points=500:400/1500:4000/2000:5000"));
+    assert_true(set("level", TANK ",shape=table,points=500:400/1500:4000/2000:5000", &config));
     assert_int_equal(config.points[0].level_mm, 500);
     assert_int_equal(config.points[0].volume, 400);
     assert_int_equal(config.points[2].level_mm, 2000);
@@ -104,7 +116,7 @@ TEST(an_alarm_may_be_so)
         results_config_t config = {0};
         const fathom_alarm_config_t *const expected = &rows[i].alarm;
         const fathom_alarm_config_t *const got = &config.alarm;
-        assert_true(alarm_option(&config, "read", rows[i].text));
+        assert_true(set("alarm", rows[i].text, &config));
         assert_true(config.has_alarm);
         assert_false(config.has_level);
         assert_int_equal(got->when, expected->when);
@@ -132,7 +144,7 @@ static void expect_wrong(const char *option, const wrong_t *rows, size_t count)
         const tool_run_t *const run =
             tool_run(&bench.tool, "read a16 --port line %s%s", option, rows[i].words);
         if (run->status != 2 || strstr(run->err, rows[i].err) == NULL ||
-            strstr(run->err, "; try: fathom read --help\n") == NULL || run->out[0] != '\0')
+            strstr(run->err, " See 'fathom read --help'.\n") == NULL || run->out[0] != '\0')
             fail_msg("%s%s: exit status %d\n%snot: %s", option, rows[i].words, run->status, run->err,
                      rows[i].err);
     }
@@ -143,137 +155,112 @@ static void expect_wrong(const char *option, const wrong_t *rows, size_t count)
 TEST(a_median_may_not_be_so)
 {
     static const wrong_t rows[] = {
-        {"--median 2", "--median takes a whole number from 3 to 15, not '2'"},
-        {"--median 16", "not '16'"},
-        {"--median five", "not 'five'"},
-        {"--median 3 --gate 0", "--gate takes a whole number from 1 to 65535, not '0'"},
-        {"--median 3 --gate 65536", "not '65536'"},
-        {"--gate 300", "--gate is the median's: it takes --median too, such as --median 5"},
+        {"--median 2", "--median is '2'. It takes a whole number from 3 to 15."},
+        {"--median 16", "--median is '16'."},
+        {"--median five", "--median is 'five'."},
+        {"--median 3 --gate 0", "--gate is '0'. It takes a whole number from 1 to 65535."},
+        {"--median 3 --gate 65536", "--gate is '65536'."},
         {"--median 3 --interval 2000000",
-         "--median: after 2000000 ms without a reading nothing is known, and --interval is 2000000 ms"},
+         "--interval is 2000000 ms, but --median knows nothing after 2000000 ms without a reading."},
     };
     EXPECT_WRONG("", rows);
 }
 
-#define POINTS "up to 32 of LEVEL:VOLUME, the level in mm, such as 500:400/1500:4000/2000:5000, not "
-#define GROW   ": level and volume grow from point to point, and a full tank has a volume"
-#define SHAPE  "points=, of which the last one is the full tank, and no capacity="
-#define NO_CAP "--level: capacity= is missing, or there are points=, which only shape=table takes"
+#define POINTS "--level: points is '"
+#define GROW   ". Level and volume grow from point to point, and the full tank has a volume."
+#define SHAPE  "--level: shape=table takes points= and no capacity=. The last point is the full tank."
 
 TEST(a_level_may_not_be_so)
 {
     static const wrong_t rows[] = {
-        {"mounting=2300,hight=2000",
-         "--level: there is no key 'hight', only mounting, height, capacity, shape, "
-         "points, offset"},
-        {"2300", "--level: there is no key '2300'"},
-        {TANK ",capacity=5000,", "--level: there is no key ''"},
-        {TANK ",capacity", "--level: capacity= takes the volume of the full tank, a whole number from 1 to "
-                           "4294967295 in any unit, not ''"},
-        {TANK ",capacity=0", "not '0'"},
-        {TANK ",capacity=4294967296", "not '4294967296'"},
+        {"mounting=2300,hight=2000", "--level: unknown key 'hight'. Did you mean height?"},
+        {"2300",
+         "--level: unknown key '2300'. It is one of mounting, height, capacity, shape, points, offset."},
+        {TANK ",capacity=5000,", "--level: unknown key ''"},
+        {TANK ",capacity", "--level: capacity has no value."},
+        {TANK ",capacity=0", "--level: capacity is '0'. It takes a whole number from 1 to 4294967295."},
+        {TANK ",capacity=4294967296", "capacity is '4294967296'"},
         {"height=2000,capacity=5000",
-         "--level: mounting= is missing; it takes the mm from the tank's bottom to "
-         "the sensor's face, from 1 to 65535"},
+         "--level: mounting is missing. It takes a whole number from 1 to 65535."},
         {"mounting=2300,capacity=5000",
-         "--level: height= is missing; it takes the level in mm at which the tank "
-         "is full, from 1 to 65535"},
-        {"mounting=0,height=2000,capacity=5000", "--level: mounting= takes the mm from the tank's bottom"},
-        {"mounting=65536,height=2000,capacity=5000", "not '65536'"},
-        {"mounting=2300mm,height=2000,capacity=5000", "not '2300mm'"},
-        {TANK ",height=2000", "--level: height is there twice"},
-        {TANK, NO_CAP},
-        {TANK ",capacity=5000,points=500:400", NO_CAP},
+         "--level: height is missing. It takes a whole number from 1 to 65535."},
+        {"mounting=0,height=2000,capacity=5000", "--level: mounting is '0'."},
+        {"mounting=65536,height=2000,capacity=5000", "mounting is '65536'"},
+        {"mounting=2300mm,height=2000,capacity=5000", "mounting is '2300mm'"},
+        {TANK ",height=2000", "--level: height is given twice."},
+        {TANK, "--level: capacity is missing."},
+        {TANK ",capacity=5000,points=500:400", "--level: points= is for shape=table."},
         {TANK ",capacity=5000,shape=round",
-         "--level: shape= takes upright, horizontal-cylinder or table, not "
-         "'round'"},
+         "--level: shape is 'round'. It takes upright, horizontal-cylinder or table."},
         {TANK ",shape=table", SHAPE},
-        {TANK ",shape=table,capacity=5000", SHAPE},
         {TANK ",shape=table,points=500:400,capacity=5000", SHAPE},
-        {TANK ",shape=table,points=", POINTS "''"},
-        {TANK ",shape=table,points=500", POINTS "'500'"},
-        {TANK ",shape=table,points=500:", POINTS "'500:'"},
-        {TANK ",shape=table,points=500:400/", POINTS "'500:400/'"},
-        {TANK ",shape=table,points=500:4:5", POINTS "'500:4:5'"},
-        {TANK ",shape=table,points=65536:1", POINTS "'65536:1'"},
-        {TANK ",shape=table,points=1:4294967296", POINTS "'1:4294967296'"},
+        {TANK ",shape=table,points=",
+         POINTS "'. It takes at most 32 of LEVEL:VOLUME, such as 500:400/1500:4000."},
+        {TANK ",shape=table,points=500", POINTS "500'"},
+        {TANK ",shape=table,points=500:", POINTS "500:'"},
+        {TANK ",shape=table,points=500:400/", POINTS "500:400/'"},
+        {TANK ",shape=table,points=500:4:5", POINTS "500:4:5'"},
+        {TANK ",shape=table,points=65536:1", POINTS "65536:1'"},
+        {TANK ",shape=table,points=1:4294967296", POINTS "1:4294967296'"},
         {TANK
          ",shape=table,points=0:0/1:1/2:2/3:3/4:4/5:5/6:6/7:7/8:8/9:9/10:10/11:11/12:12/13:13/14:14/15:15/"
          "16:16/17:17/18:18/19:19/20:20/21:21/22:22/23:23/24:24/25:25/26:26/27:27/28:28/29:29/30:30/31:31/"
          "32:32",
-         POINTS "'0:0/1:1"},
-        {TANK ",shape=table,points=500:400/500:500/2000:600", "--level: points= at 500:500" GROW},
-        {TANK ",shape=table,points=500:400/600:400/2000:500", "--level: points= at 600:400" GROW},
-        {TANK ",shape=table,points=500:400/600:500/2000:499", "--level: points= at 2000:499" GROW},
-        {TANK ",shape=table,points=2000:0", "--level: points= at 2000:0" GROW},
+         POINTS "0:0/1:1"},
+        {TANK ",shape=table,points=500:400/500:500/2000:600", "--level: points is wrong at 500:500" GROW},
+        {TANK ",shape=table,points=500:400/600:400/2000:500", "--level: points is wrong at 600:400" GROW},
+        {TANK ",shape=table,points=500:400/600:500/2000:499", "--level: points is wrong at 2000:499" GROW},
+        {TANK ",shape=table,points=2000:0", "--level: points is wrong at 2000:0" GROW},
         {TANK ",capacity=5000,offset=-32768",
-         "--level: offset= takes the mm that are added to each distance, "
-         "from -32767 to 32767, not '-32768'"},
-        {TANK ",capacity=5000,offset=32768", "not '32768'"},
-        {TANK ",capacity=5000,offset=--3", "not '--3'"},
-        {TANK ",capacity=5000,offset=-", "not '-'"},
+         "--level: offset is '-32768'. It takes a whole number from -32767 to 32767."},
+        {TANK ",capacity=5000,offset=32768", "offset is '32768'"},
+        {TANK ",capacity=5000,offset=--3", "offset is '--3'"},
+        {TANK ",capacity=5000,offset=-", "offset is '-'"},
     };
     EXPECT_WRONG("--level ", rows);
 }
 
-#define BEGINS                                                                                               \
-    "--alarm begins with near<ON or near<ON/OFF, far>ON or far>ON/OFF, in mm from 1 to 65535, such as "
-#define SIDE "on or off (say which: a bumper, a tank and a pit differ)"
+#define WHEN "--alarm: when is '"
 #define SAFE ",unknown=on,no-response=on"
+#define SWAP " With near, OFF is the greater distance; with far, the smaller one."
 
 TEST(an_alarm_may_not_be_so)
 {
     static const wrong_t rows[] = {
-        {"unknown=on,no-response=on,near<500", BEGINS "near<500/600, not with 'unknown=on'"},
-        {"near>500" SAFE, "not with 'near>500'"},
-        {"near" SAFE, "not with 'near'"},
-        {"near<" SAFE, "not with 'near<'"},
-        {"near<0" SAFE, "not with 'near<0'"},
-        {"near<65536" SAFE, "not with 'near<65536'"},
-        {"near<500/" SAFE, "not with 'near<500/'"},
-        {"near</600" SAFE, "not with 'near</600'"},
-        {"near<500/600/700" SAFE, "not with 'near<500/600/700'"},
-        {"far<500" SAFE, "not with 'far<500'"},
-        {"far>5m" SAFE, "not with 'far>5m'"},
+        {"unknown=on,no-response=on,near<500", "--alarm: unknown key 'near<500'."},
+        {"unknown=on,no-response=on", "--alarm: when is missing. It takes near<ON/OFF or far>ON/OFF"},
+        {"near>500" SAFE, WHEN "near>500'. It takes near<ON/OFF or far>ON/OFF, from 1 to 65535 mm"},
+        {"near" SAFE, WHEN "near'"},
+        {"near<" SAFE, WHEN "near<'"},
+        {"near<0" SAFE, WHEN "near<0'"},
+        {"near<65536" SAFE, WHEN "near<65536'"},
+        {"near<500/" SAFE, WHEN "near<500/'"},
+        {"near</600" SAFE, WHEN "near</600'"},
+        {"near<500/600/700" SAFE, WHEN "near<500/600/700'"},
+        {"far<500" SAFE, WHEN "far<500'"},
+        {"far>5m" SAFE, WHEN "far>5m'"},
         {"near<500/499" SAFE,
-         "--alarm near<500/499: it goes off farther away than on with near, and nearer than "
-         "on with far"},
-        {"far>2000/2001" SAFE, "--alarm far>2000/2001: it goes off farther away"},
-        {"near<500", "--alarm: unknown= is missing; it takes " SIDE},
-        {"near<500,no-response=on", "--alarm: unknown= is missing; it takes " SIDE},
-        {"near<500,unknown=on", "--alarm: no-response= is missing; it takes " SIDE},
-        {"near<500,unknown=yes,no-response=on", "--alarm: unknown= takes " SIDE ", not 'yes'"},
-        {"near<500,unknown=on,no-response", "--alarm: no-response= takes " SIDE ", not ''"},
-        {"near<500,unknown=on,unknown=on", "--alarm: unknown is there twice"},
-        {"near<500,holds=1" SAFE, "--alarm: there is no key 'holds', only unknown, no-response, hold, "
-                                  "unknown-after, no-target"},
-        {"near<500,hold=2000001" SAFE,
-         "--alarm: hold= takes the ms before it goes on, and off if that differs, "
-         "from 0 to 2000000, such as 200/1000, not '2000001'"},
-        {"near<500,hold=1/2000001" SAFE, "not '1/2000001'"},
-        {"near<500,hold=1/" SAFE, "not '1/'"},
+         "--alarm: the alarm cannot switch off at 499 mm after it is on at 500 mm." SWAP},
+        {"far>2000/2001" SAFE, "--alarm: the alarm cannot switch off at 2001 mm"},
+        {"near<500", "--alarm: unknown is missing. It takes on or off."},
+        {"near<500,no-response=on", "--alarm: unknown is missing. It takes on or off."},
+        {"near<500,unknown=on", "--alarm: no-response is missing. It takes on or off."},
+        {"near<500,unknown=yes,no-response=on", "--alarm: unknown is 'yes'. It takes on or off."},
+        {"near<500,unknown=on,no-response", "--alarm: no-response has no value."},
+        {"near<500,unknown=on,unknown=on", "--alarm: unknown is given twice."},
+        {"near<500,holds=1" SAFE, "--alarm: unknown key 'holds'. Did you mean hold?"},
+        {"near<500,hold=2000001" SAFE, "--alarm: hold is '2000001'. It takes MS/MS, from 0 to 2000000."},
+        {"near<500,hold=1/2000001" SAFE, "hold is '1/2000001'"},
+        {"near<500,hold=1/" SAFE, "hold is '1/'"},
         {"near<500,unknown-after=0" SAFE,
-         "--alarm: unknown-after= takes the ms without a distance after which it "
-         "is not known, from 1 to 2000000, not '0'"},
-        {"near<500,unknown-after=2000001" SAFE, "not '2000001'"},
-        {"near<500,no-target=near" SAFE,
-         "--alarm: no-target= takes far (the default) or unknown, not 'near'"},
+         "--alarm: unknown-after is '0'. It takes a whole number from 1 to 2000000."},
+        {"near<500,unknown-after=2000001" SAFE, "unknown-after is '2000001'"},
+        {"near<500,no-target=near" SAFE, "--alarm: no-target is 'near'. It takes far or unknown."},
         {"near<500,unknown-after=1000" SAFE " --interval 1000",
-         "--alarm: after 1000 ms without a reading nothing is known, and --interval is 1000 ms: it has to be "
-         "less"},
-        {"near<500" SAFE " --interval 2100000", "--alarm: after 2000000 ms without a reading"},
+         "--interval is 1000 ms, but --alarm knows nothing after 1000 ms without a reading."},
+        {"near<500" SAFE " --interval 2100000", "--alarm knows nothing after 2000000 ms"},
     };
     EXPECT_WRONG("--alarm ", rows);
-}
-
-TEST(a_list_of_keys_may_not_be_endless)
-{
-    char words[1100];
-    memset(words, '1', sizeof words);
-    words[sizeof words - 1] = '\0';
-    results_config_t config = {0};
-    memcpy(words, "mounting=", strlen("mounting="));
-    assert_false(level_option(&config, "read", words));
 }
 
 TEST(until_alarm_takes_an_alarm)

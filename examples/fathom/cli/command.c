@@ -59,6 +59,18 @@ static unsigned line_of(const char *text)
     return line != 0 ? line : place.line;
 }
 
+origin_t usage_origin(const char *command, size_t word)
+{
+    return (origin_t){
+        .command = command, .file = place.file, .line = place.lines != NULL ? place.lines[word] : place.line};
+}
+
+unsigned usage_line_of(const char *option)
+{
+    const unsigned line = place.line_of != NULL ? place.line_of(place.ctx, option, strlen(option)) : 0;
+    return line != 0 ? line : place.line;
+}
+
 int usage_error(const char *command, const char *format, ...)
 {
     enum { TEXT = 1024 };

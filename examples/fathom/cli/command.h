@@ -5,16 +5,40 @@
 #include <stddef.h>
 #include <stdio.h>
 
+#include "cli/option.h"
 #include "ports/host.h"
 
-/* A command of the tool: a row in the table of commands.c. */
+/* What a command was given. */
+typedef struct command command_t;
 typedef struct {
+    const command_t *command;
+    option_given_t given; /* which options */
+    void *settings;       /* their values */
+    char **words;         /* the words between the options, */
+    int count;            /* and how many there are */
+    bool wants_help;
+} arguments_t;
+
+/* A command of the tool: a row in the table of commands.c. */
+struct command {
     const char *name;
     const char *summary;    /* a line of `fathom --help` */
     void (*help)(FILE *to); /* `fathom NAME --help` */
     /* argv[0] is the command's name; returns the exit status */
     int (*run)(const host_t *host, int argc, char **argv);
-} command_t;
+
+    const char *usage; /* behind the name: "SENSOR... [OPTIONS]"; further lines behind line feeds */
+    const option_table_t *tables; /* its options */
+    const char *common;           /* the names of those that most people need, with blanks between them */
+    const char *own_group;        /* the name of GROUP_COMMAND */
+    const char *about;            /* lines below the summary; NULL: none */
+    const char *examples;         /* lines */
+    const char *status;           /* the exit statuses, lines */
+    void (*operands)(FILE *to, char **words, int count); /* prints candidates for the word behind these */
+    const char *topics;                                  /* topics to read on, "sensors, ports"; NULL: none */
+    size_t settings_size; /* of the structure that the options fill; it is all zeros at first */
+    int (*start)(const host_t *host, const arguments_t *arguments); /* returns the exit status */
+};
 
 /* Exit statuses of every command. */
 enum {
@@ -53,5 +77,9 @@ void usage_at_line(const char *file, unsigned line);
 
 /* Which of several words is looked at now. On the command line there is nothing to say of that. */
 void usage_of_word(size_t number);
+
+/* The same as an origin, and the line of an option. */
+origin_t usage_origin(const char *command, size_t word);
+unsigned usage_line_of(const char *option);
 
 #endif

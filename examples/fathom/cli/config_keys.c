@@ -90,10 +90,17 @@ static const char *const section_names[SECTIONS] = {
 
 const char *config_section_name(section_t section) { return section_names[section]; }
 
+const char *port_key_takes(port_key_t key)
+{
+    static char text[OPTION_TAKES];
+    option_takes(key < KEY_TRIGGER ? &serial_keys[key] : &chip_keys[key - KEY_TRIGGER], text);
+    return text;
+}
+
 /* ---- the nearest known key ---- */
 
 /* How many letters have to be changed, added or left out to make one of the other: by a row of the table at a time. */
-static unsigned distance(const char *one, const char *other)
+static unsigned distance_of(const char *one, const char *other)
 {
     enum { LONGEST = 32 };
     unsigned row[LONGEST + 1];
@@ -117,11 +124,11 @@ typedef struct {
     const char *key; /* as the file has it */
     const char *name;
     unsigned distance;
-} nearest_t;
+} nearest_key_t;
 
-static void compare(nearest_t *nearest, const char *name)
+static void compare(nearest_key_t *nearest, const char *name)
 {
-    const unsigned this_distance = distance(nearest->key, name);
+    const unsigned this_distance = distance_of(nearest->key, name);
     if (nearest->name != NULL && this_distance >= nearest->distance) return;
     nearest->name = name;
     nearest->distance = this_distance;
@@ -138,7 +145,7 @@ static bool is_second(size_t key)
 static bool no_key(const char *command, section_t section, const char *key)
 {
     char known[256] = "";
-    nearest_t nearest = {.key = key};
+    nearest_key_t nearest = {.key = key};
     for (size_t i = 0; i != CONFIG_KEYS; i++) {
         if (config_rows[i].section != section) continue;
         compare(&nearest, config_rows[i].name);

@@ -3,7 +3,7 @@
 #define CONFIG_KEYS_H
 
 #include "cli/config_file.h"
-#include "cli/port_options.h"
+#include "cli/sensor_word.h"
 
 /* The keys of the configuration file, in one table: what the file may have, the help, and the page's table come from it. */
 
@@ -84,6 +84,9 @@ typedef struct {
  * of another shape, one that is missing. */
 bool config_take(config_file_t *file, const char *command, const yaml_node_t *map, section_t section,
                  config_values_t *values);
+
+/* What a value may be, in words; until the next call. */
+const char *port_key_takes(port_key_t key);
 
 /* "broker:", "" for the top. */
 const char *config_section_name(section_t section);

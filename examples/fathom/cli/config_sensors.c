@@ -26,10 +26,10 @@ typedef struct {
 static bool add_port_keys(sensors_t *sensors, char *word, size_t capacity)
 {
     const char *const port = config_file_text(sensors->line.at[LINE_PORT]);
-    const port_kind_t kind = port_kind(port, strlen(port));
+    const option_t *const rows = port_kind(port) == PORT_CHIP ? chip_keys : serial_keys;
     for (size_t i = 0; i != PORT_KEYS; i++) {
         const yaml_node_t *const node = sensors->line.port_keys[i];
-        port_keys_t keys = {.given = 0};
+        port_keys_t keys = {{0}, {false}};
         char pair[WORD / 8];
         if (node == NULL) continue;
         config_file_at(sensors->file, node);
@@ -41,7 +41,13 @@ static bool add_port_keys(sensors_t *sensors, char *word, size_t capacity)
             return false;
         }
         /* Here it stands in its own line. */
-        if (!port_keys_parse(&keys, sensors->command, port, kind, pair)) return false;
+        char copy[WORD / 8];
+        const origin_t origin = usage_origin(sensors->command, 0);
+        memcpy(copy, pair, sizeof copy);
+        if (port_kind(port) == PORT_TCP)
+            return reject(&origin, "%s has no keys, for it is a port over TCP. Set the line in the gateway.",
+                          port);
+        if (!option_set_keys(rows, copy, &keys, &origin)) return false;
         const size_t before = strlen(word);
         (void)snprintf(word + before, capacity - before, ",%s", pair);
     }
@@ -73,7 +79,7 @@ static bool check_word(const sensors_t *sensors, const config_values_t *values)
         return false;
     }
     config_file_at(sensors->file, values->at[SENSOR_NAME]);
-    if (place_is_name(name, strlen(name))) return true;
+    if (sensor_name_is_good(name, strlen(name))) return true;
     (void)usage_error(sensors->command, "name: takes %s, the first a letter or digit; not '%.60s'",
                       config_rows[SENSOR_NAME].takes, name);
     return false;

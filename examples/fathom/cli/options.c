@@ -101,32 +101,6 @@ int options_parse_each(const char *command, int argc, char **argv, const struct 
     return optind;
 }
 
-enum { MAX_DIGITS = 10 }; /* 4294967295 */
-
-bool number_parse(const char *text, uint32_t min, uint32_t max, uint32_t *number)
-{
-    uint64_t sum = 0;
-    const size_t length = strlen(text);
-    if (length == 0 || length > MAX_DIGITS) return false;
-    for (; *text != '\0'; text++) {
-        if (*text < '0' || *text > '9') return false;
-        sum = sum * 10 + (uint64_t)(*text - '0');
-        if (sum > max) return false;
-    }
-    if (sum < min) return false;
-    *number = (uint32_t)sum;
-    return true;
-}
-
-bool range_parse(const char *text, uint32_t min, uint32_t max, uint32_t *first, uint32_t *last)
-{
-    char first_text[16];
-    const size_t length = strcspn(text, "-");
-    const char *const last_text = text[length] == '-' ? text + length + 1 : text;
-    (void)snprintf(first_text, sizeof first_text, "%.*s", (int)length, text);
-    return number_parse(first_text, min, max, first) && number_parse(last_text, *first, max, last);
-}
-
 bool option_number(const char *command, const char *name, const char *text, uint32_t min, uint32_t max,
                    uint32_t *number)
 {
@@ -134,26 +108,6 @@ bool option_number(const char *command, const char *name, const char *text, uint
     (void)usage_error(command, "--%s takes a whole number from %" PRIu32 " to %" PRIu32 ", not '%s'", name,
                       min, max, text);
     return false;
-}
-
-void tenths_text(char *text, size_t capacity, int32_t tenths)
-{
-    const uint32_t size = tenths < 0 ? (uint32_t)-tenths : (uint32_t)tenths;
-    (void)snprintf(text, capacity, "%s%" PRIu32 ".%" PRIu32, tenths < 0 ? "-" : "", size / 10, size % 10);
-}
-
-void list_add(char *list, size_t capacity, const char *word)
-{
-    const size_t length = strlen(list);
-    (void)snprintf(list + length, capacity - length, "%s%s", length != 0 ? ", " : "", word);
-}
-
-const char *next_word(const char *list, char separator, char *word, size_t capacity)
-{
-    const char *const end = strchr(list, separator);
-    const size_t length = end != NULL ? (size_t)(end - list) : strlen(list);
-    (void)snprintf(word, capacity, "%.*s", (int)length, list);
-    return end != NULL ? end + 1 : NULL;
 }
 
 bool option_json(const char *command, const char *text, bool *is_json)

@@ -7,6 +7,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "output/words.h"
+
 /* What getopt_long returns for a long option, of which the row counts: option.val. */
 enum {
     OPTION_ANY = 256, /* of several the last one counts */
@@ -35,13 +37,6 @@ int options_parse_each(const char *command, int argc, char **argv, const struct 
 /* FATHOM_PORT; NULL: there is none. values[] has the same pointer then. */
 const char *options_port_of_environment(void);
 
-/* All of `text` is a decimal number from min to max, of 10 digits at most: of a longer one, which only zeros could make,
- * a word that was cut to its capacity would be another number. No sign, no space, nothing after it. */
-bool number_parse(const char *text, uint32_t min, uint32_t max, uint32_t *number);
-
-/* A number, or two as in "2-9", the first not above the last. */
-bool range_parse(const char *text, uint32_t min, uint32_t max, uint32_t *first, uint32_t *last);
-
 /* A number option; text NULL: it was not given, *number stays. False after saying what is wrong. */
 bool option_number(const char *command, const char *name, const char *text, uint32_t min, uint32_t max,
                    uint32_t *number);
@@ -51,14 +46,5 @@ bool option_json(const char *command, const char *text, bool *is_json);
 
 /* --port of a command that takes no port behind a sensor: it has to be there. False after saying that it is not. */
 bool option_port(const char *command, const char *path);
-
-/* Tenths as a decimal, such as -0.5. */
-void tenths_text(char *text, size_t capacity, int32_t tenths);
-
-/* Adds a word to a list of `capacity` bytes, as in "a16, a05"; what does not fit is left out. */
-void list_add(char *list, size_t capacity, const char *word);
-
-/* The next word of a list, cut to `capacity` bytes. Returns what follows its separator; NULL: it was the last one. */
-const char *next_word(const char *list, char separator, char *word, size_t capacity);
 
 #endif

@@ -9,187 +9,38 @@
 #include "cli/options.h"
 #include "fathom/sensor/a05_modbus.h"
 
-enum { MAX_WORD = 24, MAX_LIST = 200 };
-
-/* ---- what takes an option ---- */
-
-/* "a16 (auto, modbus), a05 (auto)" */
-static void takers(uint8_t takes, char list[MAX_LIST])
-{
-    list[0] = '\0';
-    for (size_t i = 0; i != MODELS; i++) {
-        const model_t *const model = models[i];
-        char modes[MAX_LIST / 4] = "";
-        char text[MAX_LIST / 2];
-        for (size_t m = 0; m != MODEL_MODES && model->modes[m].name != NULL; m++)
-            if ((model->modes[m].takes & takes) != 0) list_add(modes, sizeof modes, model->modes[m].name);
-        if (modes[0] == '\0') continue;
-        (void)snprintf(text, sizeof text, "%s (%s)", model->name, modes);
-        list_add(list, MAX_LIST, text);
-    }
-}
-
-bool reading_option_suits(station_t *const *stations, size_t count, const char *command, const char *name,
-                          uint8_t takes)
-{
-    char list[MAX_LIST];
-    for (size_t i = 0; i != count; i++)
-        if ((stations[i]->mode->takes & takes) != 0) return true;
-    takers(takes, list);
-    (void)usage_error(command, "--%s is for %s; it has no effect on %s (%s)", name, list,
-                      stations[0]->model->name, stations[0]->mode->name);
-    return false;
-}
-
-/* ---- each of them; text: what was given ---- */
-
-static bool take_probes(reader_settings_t *settings, const char *command, const char *text)
-{
-    for (const char *at = text; at != NULL;) {
-        char word[MAX_WORD];
-        uint32_t probe = 0;
-        at = next_word(at, ',', word, sizeof word);
-        if (!number_parse(word, 1, FATHOM_DYP_PROBES, &probe) || (settings->probes >> (probe - 1) & 1) != 0) {
-            (void)usage_error(command, "--probes takes some of 1,2,3,4, each once, not '%s'", text);
-            return false;
-        }
-        settings->probes |= (uint8_t)(1u << (probe - 1));
-    }
-    return true;
-}
-
-static const struct {
-    const char *name;
-    uint8_t meaning;
-} meanings[] = {
-    {"unknown", FATHOM_MEANS_UNKNOWN},
-    {"no-target", FATHOM_MEANS_NO_TARGET},
-    {"interference", FATHOM_MEANS_INTERFERENCE},
-    {"too-near", FATHOM_MEANS_TOO_NEAR},
-    {"fault", FATHOM_MEANS_FAULT},
-    {"refused", FATHOM_MEANS_REFUSED},
-};
-
-/* "0", "fffd" ...: where its meaning stands; NULL: it is none of the four. */
-static uint8_t *place_of(fathom_dyp_window_t *window, const char *value)
-{
-    if (strcmp(value, "0") == 0) return &window->value_0;
-    if (strcasecmp(value, "fffd") == 0) return &window->value_fffd;
-    if (strcasecmp(value, "fffe") == 0) return &window->value_fffe;
-    return strcasecmp(value, "ffff") == 0 ? &window->value_ffff : NULL;
-}
-
-/* VALUE=MEANING */
-static bool take_meaning(fathom_dyp_window_t *window, const char *pair)
-{
-    char value[MAX_WORD];
-    const char *const name = next_word(pair, '=', value, sizeof value);
-    uint8_t *const place = place_of(window, value);
-    for (size_t i = 0; place != NULL && name != NULL && i != sizeof meanings / sizeof meanings[0]; i++) {
-        if (strcmp(name, meanings[i].name) != 0) continue;
-        *place = meanings[i].meaning;
-        return true;
-    }
-    return false;
-}
-
-static bool take_means(reader_settings_t *settings, const char *command, const char *text)
-{
-    for (const char *at = text; at != NULL;) {
-        char pair[MAX_WORD];
-        at = next_word(at, ',', pair, sizeof pair);
-        if (take_meaning(&settings->window, pair)) continue;
-        (void)usage_error(command,
-                          "--means takes 0, fffd, fffe or ffff, each with =unknown, no-target, interference, "
-                          "too-near, fault or refused, such as 0=no-target,ffff=unknown, not '%s'",
-                          text);
-        return false;
-    }
-    return true;
-}
-
-/* MIN-MAX, in mm. Beyond MOST the values of all three have other meanings (FFFD, HPS-167S #5). */
-static bool take_window(reader_settings_t *settings, const char *command, const char *text)
-{
-    enum { MOST = 65529 };
-    char word[MAX_WORD];
-    uint32_t min_mm = 0;
-    uint32_t max_mm = 0;
-    const char *const max = next_word(text, '-', word, sizeof word);
-    if (max == NULL || !number_parse(word, 1, MOST, &min_mm) || !number_parse(max, min_mm, MOST, &max_mm)) {
-        (void)usage_error(command,
-                          "--window takes the least and the greatest distance in mm, from 1 to %d, such as "
-                          "300-5000, not '%s'",
-                          MOST, text);
-        return false;
-    }
-    settings->window.min_mm = (uint16_t)min_mm;
-    settings->window.max_mm = (uint16_t)max_mm;
-    return true;
-}
-
-static bool take_value(reader_settings_t *settings, const char *command, const char *text)
-{
-    const bool is_real_time = strcmp(text, "real-time") == 0;
-    if (!is_real_time && strcmp(text, "processed") != 0) {
-        (void)usage_error(command, "--value takes processed or real-time, not '%s'", text);
-        return false;
-    }
-    settings->value = is_real_time ? FATHOM_REAL_TIME : FATHOM_PROCESSED;
-    settings->has_value = true;
-    return true;
-}
-
-static bool take_first_register(reader_settings_t *settings, const char *command, const char *text)
-{
-    static const uint16_t places[] = {FATHOM_A05_REGISTERS, FATHOM_A05_REGISTERS_ALIAS};
-    char *end = NULL;
-    const bool is_hex = strncasecmp(text, "0x", 2) == 0 && strlen(text) <= MAX_WORD;
-    const unsigned long number = is_hex ? strtoul(text + 2, &end, 16) : 0;
-    for (size_t i = 0; is_hex && *end == '\0' && i != sizeof places / sizeof places[0]; i++) {
-        if (number != places[i]) continue;
-        settings->registers = places[i];
-        return true;
-    }
-    (void)usage_error(command, "--first-register takes 0x0106 or 0x0010, not '%s'", text);
-    return false;
-}
-
-static const struct {
-    const char *name;
-    int row;
-    uint8_t takes;
-    bool (*take)(reader_settings_t *settings, const char *command, const char *text);
-} readings[] = {
-    {"probes", OPTION_PROBES, READER_TAKES_PROBES, take_probes},
-    {"means", OPTION_MEANS, READER_TAKES_MEANINGS, take_means},
-    {"window", OPTION_WINDOW, READER_TAKES_WINDOW, take_window},
-    {"value", OPTION_VALUE, READER_TAKES_VALUE, take_value},
-    {"first-register", OPTION_FIRST_REGISTER, READER_TAKES_REGISTERS, take_first_register},
-};
-
 bool reading_options(station_t *const *stations, size_t count, const char *command, const char *const *values)
 {
-    for (size_t i = 0; i != sizeof readings / sizeof readings[0]; i++) {
-        const char *const text = values[readings[i].row];
-        if (text == NULL) continue;
-        if (!reading_option_suits(stations, count, command, readings[i].name, readings[i].takes))
-            return false;
-        for (size_t n = 0; n != count; n++)
-            if (!readings[i].take(&stations[n]->settings, command, text)) return false;
+    const option_table_t tables[] = {{reading_rows, 0}, {NULL, 0}};
+    static const int rows[] = {OPTION_WINDOW, OPTION_MEANS, OPTION_PROBES, OPTION_VALUE};
+    const origin_t origin = usage_origin(command, 0);
+    option_given_t given = {{0}};
+    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++)
+        given.line[i] = values[rows[i]] != NULL ? usage_line_of(reading_rows[i].name) + 1 : 0;
+    if (!options_suit(tables, &given, stations, count, true, &origin)) return false;
+    reader_settings_t settings = {0};
+    if (!values_store(reading_rows, values, &settings, command)) return false;
+    for (size_t n = 0; n != count; n++) {
+        stations[n]->settings.window = settings.window;
+        stations[n]->settings.probes = settings.probes;
+        stations[n]->settings.value = settings.value;
+        stations[n]->settings.has_value = settings.has_value;
     }
     return true;
 }
 
 bool temperature_option(station_t *const *stations, size_t count, const char *command, const char *text)
 {
-    enum { DEFAULT_S = 10, MAX_S = 1000 };
-    uint32_t seconds = DEFAULT_S;
+    const option_t *const row = &reading_rows[4];
+    const option_table_t tables[] = {{row, 0}, {NULL, 0}};
+    const option_given_t given = {{text != NULL}};
+    const origin_t origin = usage_origin(command, 0);
+    char word[24];
     if (text == NULL) return true;
-    if (!reading_option_suits(stations, count, command, "temperature", READER_TAKES_TEMPERATURE) ||
-        !option_number(command, "temperature", text[0] != '\0' ? text : NULL, 1, MAX_S, &seconds))
-        return false;
-    for (size_t i = 0; i != count; i++) stations[i]->settings.temperature_us = seconds * 1000000u;
+    if (!options_suit(tables, &given, stations, count, true, &origin)) return false;
+    (void)snprintf(word, sizeof word, "%s", text[0] != '\0' ? text : row->otherwise);
+    for (size_t i = 0; i != count; i++)
+        if (!option_set(row, word, &stations[i]->settings, &origin)) return false;
     return true;
 }
 

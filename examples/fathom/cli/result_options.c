@@ -6,50 +6,14 @@
 #include "cli/command.h"
 #include "cli/options.h"
 
-static bool take_median(results_config_t *config, const char *command, const char *median, const char *gate)
-{
-    uint32_t count = 0;
-    uint32_t gate_mm = 0;
-    if (!option_number(command, "median", median, FATHOM_MEDIAN_MIN_COUNT, FATHOM_MEDIAN_MAX_COUNT, &count) ||
-        !option_number(command, "gate", gate, 1, UINT16_MAX, &gate_mm))
-        return false;
-    if (gate != NULL && median == NULL) {
-        (void)usage_error(command, "--gate is the median's: it takes --median too, such as --median 5");
-        return false;
-    }
-    config->median = (uint8_t)count;
-    config->gate_mm = (uint16_t)gate_mm;
-    return true;
-}
-
-/* A median or an alarm that does not outlast the interval would never know anything. */
-static bool check_interval(const char *command, const char *what, uint32_t unknown_us, uint32_t interval_us)
-{
-    if (unknown_us > interval_us) return true;
-    (void)usage_error(command,
-                      "%s: after %" PRIu32
-                      " ms without a reading nothing is known, and --interval is %" PRIu32
-                      " ms: it has to be less",
-                      what, unknown_us / 1000u, interval_us / 1000u);
-    return false;
-}
-
 bool result_options(results_config_t *config, uint32_t interval_us, const char *command,
                     const char *const *values)
 {
-    enum { INTERVALS = 3 };
-    const uint64_t intervals_us = (uint64_t)INTERVALS * interval_us;
-    const uint32_t most_us = MAX_UNKNOWN_MS * 1000u;
-    config->unknown_us = intervals_us < most_us ? (uint32_t)intervals_us : most_us;
-    if (config->unknown_us < FATHOM_MEDIAN_DEFAULT_UNKNOWN_US)
-        config->unknown_us = FATHOM_MEDIAN_DEFAULT_UNKNOWN_US;
-    if (!take_median(config, command, values[OPTION_MEDIAN], values[OPTION_GATE]) ||
-        (values[OPTION_LEVEL] != NULL && !level_option(config, command, values[OPTION_LEVEL])) ||
-        (values[OPTION_ALARM] != NULL && !alarm_option(config, command, values[OPTION_ALARM])))
-        return false;
-    if (config->alarm.unknown_us == 0) config->alarm.unknown_us = config->unknown_us;
-    return (config->median == 0 || check_interval(command, "--median", config->unknown_us, interval_us)) &&
-           (!config->has_alarm || check_interval(command, "--alarm", config->alarm.unknown_us, interval_us));
+    const origin_t origin = usage_origin(command, 0);
+    if (!values_store(result_rows, values, config, command)) return false;
+    if (config->gate_mm != 0 && config->median == 0)
+        return reject(&origin, "gate has no effect without median.");
+    return results_finish(config, interval_us, &origin);
 }
 
 void result_options_help(FILE *to)

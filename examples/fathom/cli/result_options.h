@@ -14,16 +14,9 @@ enum { OPTION_MEDIAN = READING_OPTIONS, OPTION_GATE, OPTION_LEVEL, OPTION_ALARM,
                          [OPTION_LEVEL] = {"level", required_argument, NULL, 256},                           \
                          [OPTION_ALARM] = {"alarm", required_argument, NULL, 256}
 
-/* The longest time without a distance that can be asked for; the library's is 35 minutes. */
-enum { MAX_UNKNOWN_MS = 2000000 };
-
 /* For sensors with this interval: values as of sensor_options; *config is all zeros. False after saying what is wrong. */
 bool result_options(results_config_t *config, uint32_t interval_us, const char *command,
                     const char *const *values);
-
-/* The values of --level and --alarm; for result_options. False after saying what is wrong. */
-bool level_option(results_config_t *config, const char *command, const char *text);
-bool alarm_option(results_config_t *config, const char *command, const char *text);
 
 /* Their help, a line each. */
 void result_options_help(FILE *to);

@@ -5,6 +5,7 @@
 #include <getopt.h>
 
 #include "cli/options.h"
+#include "cli/rows.h"
 #include "reading/station.h"
 
 /* The options of every command that reads sensors: the first rows of its table. */
@@ -37,27 +38,8 @@ enum {
     [OPTION_RECONNECT] = {"reconnect", no_argument, NULL, 256},                                              \
     [OPTION_DURATION] = {"duration", required_argument, NULL, 256}
 
-enum { MAX_PORTS = MAX_STATIONS };
-
-/* What a command was asked to read. */
-typedef struct sensor_options {
-    /* Without a MODE each is asked, also one that is alone at its port: to be set before. */
-    bool asks_all;
-    /* Options whose stations are being read meanwhile, and are left alone: to be set before. NULL: none, for the tool runs
-     * one command at a time. */
-    const struct sensor_options *beside;
-    station_t *stations[MAX_STATIONS]; /* in the order of the words */
-    size_t station_count;
-    port_options_t ports[MAX_PORTS];
-    size_t port_count;
-    uint32_t count;       /* attempts of each sensor; 0: endless */
-    uint64_t duration_us; /* 0: endless */
-    bool reconnect;
-    bool persists; /* with reconnect: also where a port is there and cannot be opened, now; to be set after */
-} sensor_options_t;
-
 /*
- * words: of place.h, word_count of them, which it cuts. values: what options_parse has found. address and mode: what
+ * words: of sensor_word.h, word_count of them, which it cuts. values: what options_parse has found. address and mode: what
  * further options have said of the one sensor; NULL: nothing. False after saying what is wrong.
  */
 bool sensor_options(sensor_options_t *options, const char *command, char **words, int word_count,
@@ -71,7 +53,11 @@ bool station_options(station_t *const *stations, size_t count, const char *comma
 void sensor_options_tell_useless(const sensor_options_t *options, const char *address,
                                  const char *const *values);
 
-/* Their help, a line each. */
+/* Stores what `values` has for the options of these rows, found by their names. */
+bool values_store(const option_t *rows, const char *const *values, void *structure, const char *command);
+
+/* Their help, a line each, and that of the options of ports alone. */
+void port_options_help(FILE *to);
 void sensor_options_help(FILE *to);
 
 #endif

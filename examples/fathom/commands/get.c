@@ -184,7 +184,8 @@ static void help(FILE *to, bool is_info)
 /* `fathom get SENSOR` and nothing else. */
 static int list(const char *name)
 {
-    const model_t *const model = model_find("get", name);
+    const origin_t origin = {.command = "get"};
+    const model_t *const model = model_word(name, &origin);
     if (model == NULL) return STATUS_USAGE;
     (void)printf("%s, %s, tells and takes:\n\n", model->name, model->what);
     settings_print(stdout, model->settings);
@@ -244,6 +245,9 @@ static int run_get(const host_t *host, int argc, char **argv)
 static void help_info(FILE *to) { help(to, true); }
 static void help_get(FILE *to) { help(to, false); }
 
-const command_t info_command = {"info", "prints everything that a device tells", help_info, run_info};
-const command_t get_command = {"get", "prints a setting of a device, or lists the settings", help_get,
-                               run_get};
+const command_t info_command = {
+    .name = "info", .summary = "prints everything that a device tells", .help = help_info, .run = run_info};
+const command_t get_command = {.name = "get",
+                               .summary = "prints a setting of a device, or lists the settings",
+                               .help = help_get,
+                               .run = run_get};

@@ -114,4 +114,5 @@ static int run(const host_t *host, int argc, char **argv)
     return status;
 }
 
-const command_t reset_command = {"reset", "gives an HPS-167S its factory settings back", help, run};
+const command_t reset_command = {
+    .name = "reset", .summary = "gives an HPS-167S its factory settings back", .help = help, .run = run};

@@ -224,4 +224,5 @@ static int run(const host_t *host, int argc, char **argv)
     return STATUS_FAILED;
 }
 
-const command_t restore_command = {"restore", "writes the settings of a file into a unit", help, run};
+const command_t restore_command = {
+    .name = "restore", .summary = "writes the settings of a file into a unit", .help = help, .run = run};

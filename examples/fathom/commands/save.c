@@ -82,4 +82,5 @@ static int run(const host_t *host, int argc, char **argv)
     return status;
 }
 
-const command_t save_command = {"save", "writes the settings of a unit into a file", help, run};
+const command_t save_command = {
+    .name = "save", .summary = "writes the settings of a unit into a file", .help = help, .run = run};

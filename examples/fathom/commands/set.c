@@ -163,4 +163,5 @@ static int run(const host_t *host, int argc, char **argv)
     return status;
 }
 
-const command_t set_command = {"set", "changes a setting of a device and confirms it", help, run};
+const command_t set_command = {
+    .name = "set", .summary = "changes a setting of a device and confirms it", .help = help, .run = run};

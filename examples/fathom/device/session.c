@@ -108,7 +108,8 @@ bool session_set_mode(session_t *session, const char *command, const char *const
         (void)usage_error(command, "this takes --mode %s", mode);
         return false;
     }
-    session->station->mode = model_mode_find(command, session->station->model, mode);
+    const origin_t origin = {.command = command};
+    session->station->mode = mode_word(session->station->model, mode, &origin);
     return session->station->mode != NULL;
 }
 

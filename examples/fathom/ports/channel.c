@@ -2,9 +2,10 @@
 #include "ports/channel.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
-#include "cli/options.h"
+#include "output/words.h"
 #include "ports/line_text.h"
 #include "ports/tcp_address.h"
 
@@ -45,7 +46,7 @@ static uint32_t now_us(void *ctx)
 /* The user who has set it a while ago is to know why it is this port. */
 static void tell_environment(fathom_posix_uart_t *port, const char *path)
 {
-    const char *const other = options_port_of_environment();
+    const char *const other = getenv("FATHOM_PORT"); /* NOLINT(concurrency-mt-unsafe): one thread */
     const size_t length = strlen(port->text);
     if (other != NULL && strcmp(other, path) == 0)
         (void)snprintf(port->text + length, sizeof port->text - length,

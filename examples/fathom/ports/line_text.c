@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "cli/options.h"
+#include "output/words.h"
 
 const char *line_text(const fathom_line_settings_t *settings, char text[LINE_TEXT])
 {

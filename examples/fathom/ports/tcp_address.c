@@ -12,8 +12,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "cli/options.h"
 #include "fathom_posix.h"
+#include "output/words.h"
 #include "ports/events.h"
 
 static const char prefix[] = "tcp:";

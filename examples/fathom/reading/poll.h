@@ -2,11 +2,11 @@
 #ifndef POLL_H
 #define POLL_H
 
-#include "cli/sensor_options.h"
 #include "diagnosis/advice.h"
 #include "diagnosis/counters_print.h"
 #include "fathom_loop.h"
 #include "ports/usb_adapter.h"
+#include "reading/station.h"
 
 /* What poll_loop.c, poll_port.c and poll_attempt.c have in common. */
 typedef struct poll_loop poll_loop_t;

@@ -27,8 +27,9 @@ static bool is_same_line(const fathom_line_settings_t *one, const fathom_line_se
 static bool is_same_keys(const port_keys_t *one, const port_keys_t *other)
 {
     for (int key = 0; key != PORT_KEYS; key++)
-        if (port_keys_has(one, (port_key_t)key) && one->value[key] != other->value[key]) return false;
-    return one->given == other->given;
+        if (one->has[key] != other->has[key] || (one->has[key] && one->value[key] != other->value[key]))
+            return false;
+    return true;
 }
 
 static bool is_same_path(const port_options_t *one, const port_options_t *other)

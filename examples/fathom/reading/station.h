@@ -2,9 +2,9 @@
 #ifndef STATION_H
 #define STATION_H
 
-#include "cli/place.h"
 #include "diagnosis/counters.h"
 #include "output/json.h"
+#include "ports/port_settings.h"
 #include "reading/pulses.h"
 #include "sensors/models.h"
 
@@ -12,7 +12,7 @@
 enum { MAX_STATIONS = 256, MAX_STATIONS_ON_A_LINE = 32 };
 
 /* One sensor at a port, as a command reads it. */
-enum { STATION_NAME = 80, STATION_SLOTS = 2 * MAX_STATIONS };
+enum { MAX_PORTS = MAX_STATIONS, STATION_NAME = 80, STATION_SLOTS = 2 * MAX_STATIONS };
 
 typedef struct station station_t;
 struct station {
@@ -42,37 +42,29 @@ struct station {
     char name[STATION_NAME];
 };
 
-/*
- * What the user has named; *station is all zeros before. An empty ADDRESS is the factory's. Without a MODE it is the
- * sensor's first one; the first in which it is asked if it has an ADDRESS or is_asked, for only then can it have or do
- * that. address, mode: what options have said of the same; NULL: nothing. False after a usage error.
- */
-bool station_take(station_t *station, const char *command, const sensor_place_t *place, const char *address,
-                  const char *mode, bool is_asked);
-
-/* Can it be read in its mode at this port? False after a usage error. */
-bool station_suits(const station_t *station, const port_options_t *port, const char *command);
-
-/* "gpiochip0,in=5", a port for the mode on pins that the user has named. False: no such mode. */
-enum { STATION_PORT = 80 };
-bool station_port_example(const sensor_place_t *place, char text[STATION_PORT]);
+/* The sensors that a command reads, and their ports. */
+typedef struct sensor_options {
+    bool asks_all; /* a sensor without a MODE is read in one that sends requests; set before the others */
+    /* Others whose stations are being read, and are left alone; set before. NULL: none. */
+    const struct sensor_options *beside;
+    station_t *stations[MAX_STATIONS]; /* in the order of the words */
+    size_t station_count;
+    port_options_t ports[MAX_PORTS];
+    size_t port_count;
+    uint32_t count;       /* attempts of each sensor; 0: endless */
+    uint64_t duration_us; /* 0: endless */
+    bool reconnect;
+    bool persists; /* with reconnect: also if a port exists and cannot be opened now */
+} sensor_options_t;
 
 /* Its name, by its model, mode and address, if the user has given none. */
 void station_name(station_t *station);
-
-/* Names that several have are told apart by the ports. False after a usage error: some are the same all the same. */
-bool stations_name(station_t *const *stations, size_t count, const port_options_t *ports,
-                   const char *command);
 
 /* Writes `sensor`, `model` and `mode` as members of the open object. */
 void station_json(json_t *json, const station_t *station);
 
 /* Are both named and read in the same way? Their ports are not looked at. */
 bool station_is_same(const station_t *one, const station_t *other);
-
-/* Can they be read at their ports, those of a port together? False after a usage error. */
-bool stations_check(station_t *const *stations, size_t count, const port_options_t *ports,
-                    const char *command);
 
 /* Begins to read it through an open channel. False: its driver, or the port, does not take the settings, for which
  * station_refusal has the words. */

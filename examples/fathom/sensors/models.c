@@ -3,8 +3,7 @@
 
 #include <string.h>
 
-#include "cli/command.h"
-#include "cli/options.h"
+#include "output/words.h"
 #include "ports/line_text.h"
 #include "sensors/a05/a05.h"
 #include "sensors/a16/a16.h"
@@ -30,29 +29,6 @@ bool model_has_rate(const model_t *model, uint32_t baud)
     for (const uint32_t *rate = model->rates; rate != NULL && *rate != 0; rate++)
         if (*rate == baud) return true;
     return false;
-}
-
-const model_t *model_find(const char *command, const char *name)
-{
-    char known[80] = "";
-    for (size_t i = 0; i != MODELS; i++) {
-        if (strcmp(name, models[i]->name) == 0) return models[i];
-        list_add(known, sizeof known, models[i]->name);
-    }
-    (void)usage_error(command, "there is no sensor '%s', only %s", name, known);
-    return NULL;
-}
-
-const model_mode_t *model_mode_find(const char *command, const model_t *model, const char *name)
-{
-    char known[80] = "";
-    if (name == NULL) return &model->modes[0];
-    for (size_t i = 0; i != MODEL_MODES && model->modes[i].name != NULL; i++) {
-        if (strcmp(name, model->modes[i].name) == 0) return &model->modes[i];
-        list_add(known, sizeof known, model->modes[i].name);
-    }
-    (void)usage_error(command, "there is no mode '%s' for %s, only %s", name, model->name, known);
-    return NULL;
 }
 
 uint8_t model_least_address(const model_t *model, const model_mode_t *mode)

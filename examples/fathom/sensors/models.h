@@ -13,10 +13,6 @@ extern const model_t *const models[MODELS];
 
 enum { FACTORY_ADDRESS = 1 };
 
-/* By name; NULL after a usage error that lists what there is. A mode's name NULL: the default. */
-const model_t *model_find(const char *command, const char *name);
-const model_mode_t *model_mode_find(const char *command, const model_t *model, const char *name);
-
 /* The one with this id, which is one of the table. */
 const model_t *model_of(uint8_t id);
 

@@ -129,5 +129,7 @@ static int run(const host_t *host, int argc, char **argv)
     return status;
 }
 
-const command_t calibrate_command = {"calibrate", "finds the distance offset of an HPS-167S by measuring",
-                                     help, run};
+const command_t calibrate_command = {.name = "calibrate",
+                                     .summary = "finds the distance offset of an HPS-167S by measuring",
+                                     .help = help,
+                                     .run = run};

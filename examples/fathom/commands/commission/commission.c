@@ -219,6 +219,7 @@ static int run_commission(const host_t *host, int argc, char **argv)
     return status;
 }
 
-const command_t commission_command = {"commission",
-                                      "assigns addresses to new sensors that all have address 1",
-                                      commission_help, run_commission};
+const command_t commission_command = {.name = "commission",
+                                      .summary = "assigns addresses to new sensors that all have address 1",
+                                      .help = commission_help,
+                                      .run = run_commission};

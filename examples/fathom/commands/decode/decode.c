@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "cli/options.h"
+#include "cli/sensor_word.h"
 #include "commands/commands.h"
 #include "commands/decode/decode_print.h"
 #include "fathom/codec/crc16.h"
@@ -87,7 +88,8 @@ static bool take_protocol(settings_t *settings, const char *text)
 static bool take_model(settings_t *settings, const char *text)
 {
     if (text == NULL) return true;
-    const model_t *const named = model_find(command, text);
+    const origin_t origin = {.command = command};
+    const model_t *const named = model_word(text, &origin);
     if (named == NULL) return false;
     for (size_t i = 0; i != MODELS; i++)
         if (models[i] == named) settings->models = (uint8_t)(1u << i);
@@ -190,4 +192,5 @@ static int run(const host_t *host, int argc, char **argv)
     return status;
 }
 
-const command_t decode_command = {"decode", "explains bytes that were seen on the wire", help, run};
+const command_t decode_command = {
+    .name = "decode", .summary = "explains bytes that were seen on the wire", .help = help, .run = run};

@@ -29,7 +29,7 @@ static void explain_broker(const config_t *config, FILE *to)
 static void explain_port(const port_options_t *port, const station_t *station, FILE *to)
 {
     (void)fprintf(to, " at %s", port->path);
-    if (port_kind(port->path, strlen(port->path)) == PORT_TTY) {
+    if (port_kind(port->path) == PORT_TTY) {
         char line[LINE_TEXT];
         (void)fprintf(to, " (%s)", line_text(&station->line, line));
     }

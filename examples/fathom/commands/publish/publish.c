@@ -230,4 +230,5 @@ static int run(const host_t *host, int argc, char **argv)
     return status;
 }
 
-const command_t publish_command = {"publish", "publishes sensors to an MQTT broker", help, run};
+const command_t publish_command = {
+    .name = "publish", .summary = "publishes sensors to an MQTT broker", .help = help, .run = run};

@@ -24,5 +24,7 @@ static int run(const host_t *host, int argc, char **argv)
                                   "; install the development files and build it again");
 }
 
-const command_t publish_command = {"publish", "publishes sensors to an MQTT broker (not in this build)", help,
-                                   run};
+const command_t publish_command = {.name = "publish",
+                                   .summary = "publishes sensors to an MQTT broker (not in this build)",
+                                   .help = help,
+                                   .run = run};

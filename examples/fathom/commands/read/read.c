@@ -292,4 +292,5 @@ static int run_read(const host_t *host, int argc, char **argv)
     return exit_status(&run, status);
 }
 
-const command_t read_command = {"read", "reads sensors on serial ports and pins", read_help, run_read};
+const command_t read_command = {
+    .name = "read", .summary = "reads sensors on serial ports and pins", .help = read_help, .run = run_read};

@@ -106,4 +106,7 @@ static int run(const host_t *host, int argc, char **argv)
     return status;
 }
 
-const command_t request_command = {"request", "sends one Modbus request and shows the response", help, run};
+const command_t request_command = {.name = "request",
+                                   .summary = "sends one Modbus request and shows the response",
+                                   .help = help,
+                                   .run = run};

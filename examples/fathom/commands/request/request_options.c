@@ -7,7 +7,7 @@
 
 #include "cli/command.h"
 #include "cli/options.h"
-#include "cli/port_options.h"
+#include "cli/sensor_options.h"
 #include "fathom/codec/crc16.h"
 #include "fathom/codec/modbus_rtu.h"
 
@@ -230,13 +230,16 @@ static bool hide_minus(int argc, char **argv, char *copy[MAX_WORDS + 1], char te
 
 static bool take_line(request_t *request, const char *const *values)
 {
-    const char *const given[PORT_KEYS] = {[KEY_BAUD] = values[BAUD],
-                                          [KEY_PARITY] = values[PARITY],
-                                          [KEY_STOP_BITS] = values[STOP_BITS],
-                                          [KEY_ECHO] = values[ECHO],
-                                          [KEY_RS485] = values[RS485] != NULL ? "on" : NULL};
-    port_options_t port = {.path = values[PORT]};
-    if (!port_keys_options(&port.keys, command, given) || !option_port(command, port.path)) return false;
+    const char *const given[SENSOR_OPTIONS] = {[OPTION_BAUD] = values[BAUD],
+                                               [OPTION_PARITY] = values[PARITY],
+                                               [OPTION_STOP_BITS] = values[STOP_BITS],
+                                               [OPTION_ECHO] = values[ECHO]};
+    sensor_defaults_t defaults = {.path = NULL};
+    if (!values_store(port_rows, given, &defaults, command)) return false;
+    port_options_t port = {.path = values[PORT], .keys = defaults.keys};
+    port.keys.has[KEY_RS485] = values[RS485] != NULL;
+    port.keys.value[KEY_RS485] = values[RS485] != NULL;
+    if (!option_port(command, port.path)) return false;
     port_options_take(&port, &port.keys);
     port_options_line(&port, &port.keys, &request->line);
     request->echo = port.echo;
@@ -250,7 +253,8 @@ static bool take_options(request_t *request, const char *const *values)
     uint32_t timeout_ms = TIMEOUT_MS;
     request->line = (fathom_line_settings_t){9600, FATHOM_PARITY_NONE, 1};
     if (values[SENSOR] != NULL) {
-        request->model = model_find(command, values[SENSOR]);
+        const origin_t origin = {.command = command};
+        request->model = model_word(values[SENSOR], &origin);
         if (request->model == NULL) return false;
         request->line = request->model->line;
     }

@@ -146,4 +146,5 @@ static int run(const host_t *host, int argc, char **argv)
     return status;
 }
 
-const command_t scan_command = {"scan", "finds sensors on a serial port", scan_help, run};
+const command_t scan_command = {
+    .name = "scan", .summary = "finds sensors on a serial port", .help = scan_help, .run = run};

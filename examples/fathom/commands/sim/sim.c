@@ -149,4 +149,5 @@ static int run(const host_t *host, int argc, char **argv)
     return status;
 }
 
-const command_t sim_command = {"sim", "puts simulated sensors behind a serial port", sim_help, run};
+const command_t sim_command = {
+    .name = "sim", .summary = "puts simulated sensors behind a serial port", .help = sim_help, .run = run};

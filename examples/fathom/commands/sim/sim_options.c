@@ -4,8 +4,8 @@
 
 #include "cli/command.h"
 #include "cli/options.h"
+#include "cli/sensor_word.h"
 #include "commands/sim/sim.h"
-#include "sensors/sensor_text.h"
 #include "sim/pty.h"
 
 static const char command[] = "sim";
@@ -140,17 +140,19 @@ static bool set_of_all(sim_options_t *options, int row, const char *text)
 enum { SEED_STEP = 1000003 };
 
 /* Reads SENSOR[:ADDRESS][:MODE]. */
-static bool parse_sensor(sim_sensor_t *sensor, const char *text)
+static bool parse_sensor(sim_sensor_t *sensor, char *text)
 {
-    sensor_text_t parsed;
-    if (!sensor_text_parse(&parsed, command, text, strlen(text))) return false;
+    sensor_word_t parsed;
+    const origin_t origin = {.command = command};
+    if (!sensor_word_parse(&parsed, text, &origin)) return false;
     sensor->model = parsed.model;
-    sensor->mode = model_mode_find(command, parsed.model, parsed.mode);
+    sensor->mode =
+        parsed.mode != NULL ? mode_word(parsed.model, parsed.mode, &origin) : &parsed.model->modes[0];
     sensor->address = FACTORY_ADDRESS;
     sensor->line = parsed.model->line;
     if (sensor->mode == NULL) return false;
     if (sensor->mode->simulated_as != 0)
-        return sensor_text_address(&parsed, command, sensor->mode, &sensor->address);
+        return sensor_word_address(&parsed, sensor->mode, &sensor->address, &origin);
     (void)usage_error(command, "%s in mode %s has pins and no line, and is not simulated here",
                       parsed.model->name, sensor->mode->name);
     return false;

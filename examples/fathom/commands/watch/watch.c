@@ -292,4 +292,5 @@ static int run(const host_t *host, int argc, char **argv)
     return status;
 }
 
-const command_t watch_command = {"watch", "shows sensors live in the terminal", help, run};
+const command_t watch_command = {
+    .name = "watch", .summary = "shows sensors live in the terminal", .help = help, .run = run};

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include <inttypes.h>
 
-#include "cli/options.h"
 #include "fathom/sensor/hps167s_info.h"
 #include "fathom/sensor/hps167s_settings.h"
+#include "output/words.h"
 #include "sensors/hps167s/hps167s.h"
 
 /* The commands of the HPS-167S (3, #1 to #15) but for the two that restore the factory's settings: hps167s.c. */

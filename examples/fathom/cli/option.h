@@ -1,0 +1,119 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef OPTION_H
+#define OPTION_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "cli/origin.h"
+
+/*
+ * The rows of options and keys. One row says everything about an option: the parser, the help, the man page, the
+ * completion and the reader of configuration files work from it.
+ */
+
+/* How the value of an option is written, and what stores it. */
+typedef enum {
+    KIND_FLAG,   /* bool; the option has no value */
+    KIND_NUMBER, /* from `min` to `max`, times `scale` */
+    KIND_SIGNED, /* from -`max` to `max` */
+    KIND_ONE_OF, /* one of the numbers in `words` */
+    KIND_PAIR, /* "500/600" into two members; "500" is both. With the separator '-' a range; the second is not less */
+    KIND_CHOICE, /* the place of the word in `words`, from `min` on */
+    KIND_SET,    /* "1,2,4": the bits n - 1 of a uint8_t */
+    KIND_TEXT,   /* const char *: the text itself */
+    KIND_STRING, /* a copy in an array of characters */
+    KIND_KEYS,   /* "key=value,key=value" of the rows `keys`, in a structure */
+    KIND_CUSTOM, /* what `parse` stores */
+    KIND_MAP,    /* of a file only: a map of the rows `keys`, in a structure */
+    KIND_NODE    /* of a file only: const void *, the node; its reader is elsewhere */
+} option_kind_t;
+
+typedef enum {
+    GROUP_COMMON, /* the options that most people need; a command names them */
+    GROUP_COMMAND,
+    GROUP_SENSOR,
+    GROUP_LINE,
+    GROUP_OUTPUT,
+    GROUP_PROCESSING,
+    GROUPS
+} option_group_t;
+
+typedef struct option_row option_t;
+struct option_row {
+    const char *name;
+    const char *value; /* its name in the help, "MS"; "[S]" if it can be left out; NULL: a flag */
+    const char *help;  /* an imperative sentence without a full stop; of a key, a noun phrase */
+    option_kind_t kind;
+    option_group_t group;
+    size_t at;   /* the member: its offset in the structure, */
+    size_t size; /* and its size; of a pair the first one's */
+    size_t has;  /* 1 + the offset of a bool that becomes true when the option is given; 0: there is none */
+    uint32_t min;
+    uint32_t max;
+    uint32_t scale;                /* 0: 1 */
+    const char *words;             /* "text json csv"; of a text, what completion offers */
+    const char *(*list)(size_t n); /* completion: name n; NULL: there are no more */
+    bool is_path;                  /* the value is a file: completion offers files */
+    const char *otherwise;         /* the value of an option whose value was left out */
+    const char *takes; /* what values there are, as an object: "MIN-MAX in mm". NULL: follows from the kind */
+    const option_t *keys;
+    bool (*parse)(const char *text, void *member);
+    /* Of KIND_KEYS and KIND_MAP: are the keys consistent? Rejects what is not. */
+    bool (*check)(void *structure, const origin_t *origin);
+    const char *needs; /* another option without which this one has no effect */
+    uint16_t fits;     /* SUITS_... of a sensor's mode; 0: every mode */
+    char separator;
+    bool is_required; /* of a key */
+    bool is_once;     /* a second one is an error, and does not replace the first */
+    bool is_first;    /* of a key: "value" at the beginning of the list means "key=value" */
+    bool is_hidden;   /* an old name that still works */
+};
+
+#define AT(type, member)  .at = offsetof(type, member), .size = sizeof(((type *)0)->member)
+#define HAS(type, member) .has = 1 + offsetof(type, member)
+
+/* Some rows, whose structure is at this offset in the structure of all. A table without rows ends a list of them. */
+typedef struct {
+    const option_t *rows; /* a row without a name ends them */
+    size_t at;
+} option_table_t;
+
+/* Walks through all rows of a list of tables. Start with {.table = tables}. */
+typedef struct {
+    const option_table_t *table;
+    const option_t *row; /* the present one */
+    size_t number;       /* its number, from 0 */
+} option_walk_t;
+
+bool option_next(option_walk_t *walk);
+bool option_find(option_walk_t *walk, const option_table_t *tables, const char *name, size_t length);
+
+/* Where each row was given. */
+enum { MOST_OPTIONS = 64 };
+typedef struct {
+    unsigned line[MOST_OPTIONS]; /* of a file; 1 for the command line; 0: not given */
+} option_given_t;
+
+bool option_is_given(const option_given_t *given, const option_table_t *tables, const char *name);
+
+/* Stores the value of a row in its structure. False after rejecting it. `text` may be cut, and what KIND_TEXT stores
+ * points into it. */
+bool option_set(const option_t *row, char *text, void *structure, const origin_t *origin);
+
+/* Stores the values of "key=value,key=value". `origin` has the option or the word that they belong to. */
+bool option_set_keys(const option_t *keys, char *text, void *structure, const origin_t *origin);
+
+/* Was every option given that others need, and every required key? `origin` is that of all. False after rejecting. */
+bool option_check_given(const option_table_t *tables, const option_given_t *given, const origin_t *origin);
+
+/* Rejects a name that no row has. */
+bool option_reject_unknown(const option_table_t *tables, const char *what, const char *name,
+                           const origin_t *origin);
+
+/* What values a row takes, as an object: "a whole number from 1 to 254", "text, json or csv". */
+enum { OPTION_TAKES = 200 };
+void option_takes(const option_t *row, char text[OPTION_TAKES]);
+
+#endif

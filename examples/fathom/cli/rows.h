@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef ROWS_H
+#define ROWS_H
+
+#include "cli/sensor_words.h"
+#include "reading/results.h"
+
+/* Options that several commands have, and keys of a configuration file. */
+
+/* Capabilities of a mode beside READER_TAKES_...; an option that needs one of these has no effect without it, which is
+ * no error. */
+enum { SUITS_REQUESTS = 0x100, SUITS_ADDRESS = 0x200, SUITS_NOTICES = SUITS_REQUESTS | SUITS_ADDRESS };
+
+extern const option_t port_rows[];      /* a sensor_defaults_t: the port and its line */
+extern const option_t word_rows[];      /* a sensor_defaults_t: address and mode */
+extern const option_t interval_rows[];  /* a reader_settings_t */
+extern const option_t request_rows[];   /* a reader_settings_t: time-out and retries */
+extern const option_t reading_rows[];   /* a reader_settings_t: what distances are, and which */
+extern const option_t reconnect_rows[]; /* a run_settings_t */
+extern const option_t result_rows[];    /* a results_config_t */
+
+/* Until when a command reads. */
+typedef struct {
+    uint64_t duration_us; /* 0: endless */
+    bool reconnect;
+} run_settings_t;
+
+/* The sensors of a command, as words and options name them. */
+typedef struct {
+    sensor_defaults_t defaults;
+    reader_settings_t reader; /* of each sensor */
+    run_settings_t run;
+} sensor_settings_t;
+
+/* The longest time without a distance that can be set; the library's is 35 minutes. */
+enum { MAX_UNKNOWN_MS = 2000000 };
+
+/* Fills in what follows from the interval of the sensors, and rejects what does not outlast it. */
+bool results_finish(results_config_t *results, uint32_t interval_us, const origin_t *origin);
+
+/* Does each option that was given have an effect on at least one of the sensors? Else rejects it, or prints a notice
+ * unless is_quiet. `lines` of the file where each was given, if it is one. */
+bool options_suit(const option_table_t *tables, const option_given_t *given, station_t *const *stations,
+                  size_t count, bool is_quiet, const origin_t *origin);
+
+#endif

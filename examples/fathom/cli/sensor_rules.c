@@ -1,0 +1,189 @@
+/* SPDX-License-Identifier: MIT */
+#include <string.h>
+
+#include "cli/sensor_words.h"
+#include "ports/tcp_address.h"
+
+/* ---- the port of a sensor ---- */
+
+bool pins_example(const model_mode_t *mode, const char *chip, char text[PORT_EXAMPLE])
+{
+    static const uint8_t examples[] = {17, 27, 5};
+    (void)snprintf(text, PORT_EXAMPLE, "%.20s", chip);
+    for (unsigned i = 0; KEY_TRIGGER + i <= KEY_IN; i++) {
+        const size_t length = strlen(text);
+        if ((mode->pins >> i & 1u) != 0)
+            (void)snprintf(text + length, PORT_EXAMPLE - length, ",%s=%u", port_key_name(KEY_TRIGGER + i),
+                           examples[i]);
+    }
+    return mode->pins != 0;
+}
+
+static bool suits_tcp(const station_t *station, const char *path, const origin_t *origin)
+{
+    tcp_address_t address;
+    const char *const wrong = tcp_parse(path, &address);
+    if (wrong != NULL) return reject(origin, "%s: %s.", path, wrong);
+    if (station->mode->is_modbus) return true;
+    return reject(origin, "%s in mode %s needs a serial port. Over TCP, use Modbus: %s:modbus.",
+                  station->model->name, station->mode->name, station->model->name);
+}
+
+static bool suits_chip(const station_t *station, const port_options_t *port, const origin_t *origin)
+{
+    const model_mode_t *const mode = station->mode;
+    const char *const model = station->model->name;
+    char example[PORT_EXAMPLE];
+    (void)pins_example(mode, port->path, example);
+    for (unsigned i = 0; KEY_TRIGGER + i <= KEY_IN; i++) {
+        const bool is_given = port->keys.has[KEY_TRIGGER + i];
+        const char *const name = port_key_name(KEY_TRIGGER + i);
+        if ((mode->pins >> i & 1u) != 0 && !is_given)
+            return reject(origin, "%s in mode %s needs %s=, such as @%s.", model, mode->name, name, example);
+        if (((mode->pins | mode->may_pins) >> i & 1u) == 0 && is_given)
+            return reject(origin, "%s in mode %s has no %s=. Write it such as @%s.", model, mode->name, name,
+                          example);
+    }
+    if (!mode->is_contact && port->keys.has[KEY_NEAR])
+        return reject(origin, "%s in mode %s reports distances and has no near=. Write it such as @%s.",
+                      model, mode->name, example);
+    return true;
+}
+
+bool sensor_suits_port(const station_t *station, const port_options_t *port, const origin_t *origin)
+{
+    const model_mode_t *const mode = station->mode;
+    const char *const model = station->model->name;
+    char example[PORT_EXAMPLE];
+    if (tcp_names(port->path)) return suits_tcp(station, port->path, origin);
+    const bool has_pins = pins_example(mode, "gpiochip0", example);
+    if (port->is_chip == has_pins) return !has_pins || suits_chip(station, port, origin);
+    if (port->is_chip)
+        return reject(origin, "%s in mode %s needs a serial port, and %s is a GPIO chip.", model, mode->name,
+                      port->path);
+    return reject(origin, "%s in mode %s needs GPIO lines, such as %s:%s@%s.", model, mode->name, model,
+                  mode->name, example);
+}
+
+/* ---- the lines of GPIO chips ---- */
+
+static const port_options_t *next_chip(const sensor_options_t *options, const port_options_t *port)
+{
+    const port_options_t *const end = options->ports + options->port_count;
+    do port++;
+    while (port != end && !port->is_chip);
+    return port;
+}
+
+/* "gpiochip0" is "/dev/gpiochip0". */
+static bool is_same_chip(const char *one, const char *other)
+{
+    static const char folder[] = "/dev/";
+    if (strncmp(one, folder, sizeof folder - 1) == 0) one += sizeof folder - 1;
+    if (strncmp(other, folder, sizeof folder - 1) == 0) other += sizeof folder - 1;
+    return strcmp(one, other) == 0;
+}
+
+/* The kernel gives a line to one user only. */
+bool sensors_suit_pins(const sensor_options_t *options, const port_options_t *port, const origin_t *origin)
+{
+    const port_options_t *const end = options->ports + options->port_count;
+    for (const port_options_t *other = port; other != end; other = next_chip(options, other)) {
+        if (!is_same_chip(port->path, other->path)) continue;
+        for (int one = KEY_TRIGGER; one <= KEY_IN; one++)
+            for (int two = KEY_TRIGGER; two <= KEY_IN; two++) {
+                const bool is_one = port == other && one >= two;
+                if (is_one || !port->keys.has[one] || !other->keys.has[two] ||
+                    port->keys.value[one] != other->keys.value[two])
+                    continue;
+                return reject(origin,
+                              "line %u of %s is used twice, as %s= and as %s=. Each needs its own line.",
+                              (unsigned)port->keys.value[one], port->path, port_key_name((port_key_t)one),
+                              port_key_name((port_key_t)two));
+            }
+    }
+    return true;
+}
+
+/* ---- names ---- */
+
+static bool has_namesake(station_t *const *stations, size_t count, const station_t *station, bool elsewhere)
+{
+    for (size_t i = 0; i != count; i++) {
+        if (elsewhere && stations[i]->port == station->port) continue;
+        if (strcmp(stations[i]->name, station->name) == 0) return true;
+    }
+    return false;
+}
+
+/* Adds the port to a name that the user did not choose. Characters that JSON or CSV would have to quote become "_". */
+static void add_port(station_t *station, const char *path)
+{
+    const size_t length = strlen(station->name);
+    (void)snprintf(station->name + length, sizeof station->name - length, "@%s", port_last_part(path));
+    for (char *at = station->name; *at != '\0'; at++)
+        if (*at == '"' || *at == '\\' || *at == ',' || (unsigned char)*at < ' ') *at = '_';
+}
+
+bool sensors_set_names(const sensor_options_t *options, const origin_t *origins)
+{
+    station_t *const *const stations = options->stations;
+    const size_t count = options->station_count;
+    bool is_ambiguous[MAX_STATIONS];
+    for (size_t i = 0; i != count; i++)
+        is_ambiguous[i] = !stations[i]->has_own_name && has_namesake(stations, count, stations[i], true);
+    for (size_t i = 0; i != count; i++)
+        if (is_ambiguous[i]) add_port(stations[i], options->ports[stations[i]->port].path);
+    for (size_t i = 0; i != count; i++) {
+        if (!has_namesake(stations, i, stations[i], false)) continue;
+        return reject(&origins[i], "two sensors have the name %s. Give each its own name, such as one=%s.",
+                      stations[i]->name, stations[i]->model->name);
+    }
+    return true;
+}
+
+/* ---- sensors that share a line ---- */
+
+/* has_settings: each sensor is read at its own line settings; not so behind a gateway. */
+static bool suit_each_other(const station_t *one, const station_t *other, bool has_settings,
+                            const origin_t *origin)
+{
+    const bool is_same_line = one->line.baud == other->line.baud && one->line.parity == other->line.parity;
+    if (one->address == other->address && (!has_settings || is_same_line))
+        return reject(origin, "%s and %s have the same address, so both would respond at once.", one->name,
+                      other->name);
+    /* One flipped bit in a response 55 AA gives its address to every other A05 on the line. */
+    if (one->model == other->model && (one->mode->can_move_others || other->mode->can_move_others))
+        return reject(origin,
+                      "a damaged response in mode dyp can change the address of another %s on the line. Use "
+                      "Modbus for all of them, such as %s:modbus.",
+                      one->model->name, one->mode->can_move_others ? one->name : other->name);
+    return true;
+}
+
+static bool suits_line(const station_t *station, const port_options_t *port, const origin_t *origin)
+{
+    if (port->station_count > MAX_STATIONS_ON_A_LINE)
+        return reject(origin, "%s has %zu sensors. A line has at most %d.", port->path, port->station_count,
+                      MAX_STATIONS_ON_A_LINE);
+    if (port->station_count == 1 || mode_is_asked(station->mode)) return true;
+    return reject(
+        origin,
+        "%s in mode %s sends automatically and cannot share a line. Use a mode that sends requests, "
+        "such as %s:%u:modbus.",
+        station->model->name, station->mode->name, station->model->name, station->address);
+}
+
+bool sensors_suit_lines(const sensor_options_t *options, const origin_t *origins)
+{
+    for (size_t i = 0; i != options->station_count; i++) {
+        const station_t *const one = options->stations[i];
+        const port_options_t *const port = &options->ports[one->port];
+        if (!suits_line(one, port, &origins[i])) return false;
+        for (size_t j = 0; j != i; j++)
+            if (options->stations[j]->port == one->port &&
+                !suit_each_other(options->stations[j], one, !tcp_names(port->path), &origins[i]))
+                return false;
+    }
+    return true;
+}

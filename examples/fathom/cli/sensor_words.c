@@ -1,0 +1,218 @@
+/* SPDX-License-Identifier: MIT */
+#include "cli/sensor_words.h"
+
+#include <string.h>
+
+#include "output/words.h"
+
+/* ---- ports ---- */
+
+/* Returns the row of a port; a chip has one for each sensor. */
+static size_t port_of(sensor_options_t *options, const char *path)
+{
+    const bool is_chip = port_kind(path) == PORT_CHIP;
+    size_t i = 0;
+    while (i != options->port_count && (is_chip || !port_is_same(options->ports[i].path, path))) i++;
+    if (i != options->port_count) return i;
+    options->port_count++;
+    options->ports[i] = (port_options_t){.path = path, .is_chip = is_chip};
+    return i;
+}
+
+/* An example of the port of a sensor without one. False: a serial port. */
+static bool chip_example(const sensor_word_t *sensor, char text[PORT_EXAMPLE])
+{
+    const model_mode_t *const modes = sensor->model->modes;
+    for (size_t i = 0; sensor->mode != NULL && i != MODEL_MODES && modes[i].name != NULL; i++)
+        if (strcmp(sensor->mode, modes[i].name) == 0) return pins_example(&modes[i], "gpiochip0", text);
+    return false;
+}
+
+/* path: of all sensors that have none of their own; NULL: not given. */
+static bool check_common_port(const sensor_word_t *sensor, const char *path, const origin_t *origin)
+{
+    char example[PORT_EXAMPLE];
+    if (path != NULL && !port_path_has_keys(path)) return true;
+    if (path != NULL)
+        return reject(origin, "--port takes no keys. Write them behind the sensor: %s@%s.", sensor->word,
+                      path);
+    if (chip_example(sensor, example))
+        return reject(origin, "the GPIO lines are missing. Write them behind the sensor: %s@%s.",
+                      sensor->word, example);
+    return reject(origin,
+                  "--port is missing, such as --port /dev/ttyUSB0. 'fathom help ports' explains ports.");
+}
+
+/* Adds the keys of another sensor at this port. */
+static bool add_keys(port_keys_t *keys, const sensor_word_t *sensor, const origin_t *origin)
+{
+    for (size_t key = 0; key != PORT_KEYS; key++) {
+        if (!sensor->keys.has[key]) continue;
+        if (keys->has[key] && keys->value[key] != sensor->keys.value[key])
+            return reject(origin, "%s: another sensor at this port has another %s=. Write it at one of them.",
+                          sensor->word, port_key_name((port_key_t)key));
+        keys->value[key] = sensor->keys.value[key];
+        keys->has[key] = true;
+    }
+    return true;
+}
+
+static bool set_port(sensor_options_t *options, station_t *station, const sensor_word_t *sensor,
+                     const char *path, const origin_t *origin)
+{
+    if (sensor->port == NULL && !check_common_port(sensor, path, origin)) return false;
+    station->port = port_of(options, sensor->port != NULL ? sensor->port : path);
+    port_options_t *const port = &options->ports[station->port];
+    port->station_count++;
+    return add_keys(&port->keys, sensor, origin);
+}
+
+static void set_lines(sensor_options_t *options, const port_keys_t *defaults)
+{
+    for (size_t i = 0; i != options->station_count; i++) {
+        fathom_line_settings_t *const line = &options->stations[i]->line;
+        port_options_t *const port = &options->ports[options->stations[i]->port];
+        *line = options->stations[i]->model->line;
+        port_options_line(port, defaults, line);
+        if (port->line.baud == 0 || line->baud < port->line.baud) port->line = *line;
+    }
+    for (size_t i = 0; i != options->station_count; i++) {
+        const fathom_line_settings_t *const line = &options->stations[i]->line;
+        port_options_t *const port = &options->ports[options->stations[i]->port];
+        if (line->baud != port->line.baud || line->parity != port->line.parity) port->has_mixed_lines = true;
+    }
+}
+
+static bool set_ports(sensor_options_t *options, const sensor_defaults_t *defaults, const origin_t *origins)
+{
+    port_keys_t keys = defaults->keys;
+    if (defaults->rs485) {
+        keys.has[KEY_RS485] = true;
+        keys.value[KEY_RS485] = 1;
+    }
+    set_lines(options, &keys);
+    for (size_t i = 0; i != options->port_count; i++) port_options_take(&options->ports[i], &keys);
+    for (size_t i = 0; i != options->station_count; i++) {
+        const port_options_t *const port = &options->ports[options->stations[i]->port];
+        if (port->is_chip && !sensors_suit_pins(options, port, &origins[i])) return false;
+    }
+    return true;
+}
+
+/* ---- sensors ---- */
+
+static const model_mode_t *asked_mode(const model_t *model)
+{
+    const model_mode_t *mode = model->modes;
+    while (!mode_is_asked(mode)) mode++; /* each sensor has one */
+    return mode;
+}
+
+/* Without a MODE a sensor is read in its first one; with an ADDRESS, or if sends_requests, in the first that sends
+ * requests. */
+static bool set_mode(station_t *station, const sensor_word_t *sensor, const char *mode, bool sends_requests,
+                     const origin_t *origin)
+{
+    if (sensor->mode != NULL) mode = sensor->mode;
+    if (mode != NULL)
+        station->mode = mode_word(sensor->model, mode, origin);
+    else if (sends_requests || sensor->address != NULL)
+        station->mode = asked_mode(sensor->model);
+    else
+        station->mode = &sensor->model->modes[0];
+    return station->mode != NULL;
+}
+
+static bool set_address(station_t *station, const sensor_word_t *sensor, const sensor_defaults_t *defaults,
+                        const origin_t *origin)
+{
+    const uint8_t least = model_least_address(sensor->model, station->mode);
+    station->address = FACTORY_ADDRESS;
+    if (defaults->has_address &&
+        (defaults->address < least || defaults->address > sensor->model->max_address))
+        return reject(origin, "--address is %u. %s takes a whole number from %u to %u.",
+                      (unsigned)defaults->address, sensor->model->name, least, sensor->model->max_address);
+    if (defaults->has_address) station->address = (uint8_t)defaults->address;
+    return sensor_word_address(sensor, station->mode, &station->address, origin);
+}
+
+static bool set_station(station_t *station, const sensor_word_t *sensor, const sensor_defaults_t *defaults,
+                        bool sends_requests, const origin_t *origin)
+{
+    if (sensor->address != NULL && defaults->has_address)
+        return reject(origin, "'%s' has an address already. Leave --address out.", sensor->word);
+    if (sensor->mode != NULL && defaults->mode != NULL)
+        return reject(origin, "'%s' has a mode already. Leave --mode out.", sensor->word);
+    station->model = sensor->model;
+    if (!set_mode(station, sensor, defaults->mode, sends_requests, origin) ||
+        !set_address(station, sensor, defaults, origin))
+        return false;
+    station->has_own_name = sensor->name[0] != '\0';
+    (void)snprintf(station->name, sizeof station->name, "%s", sensor->name);
+    station_name(station);
+    return true;
+}
+
+static bool set_stations(sensor_options_t *options, const sensor_defaults_t *defaults, char **words,
+                         const origin_t *origins)
+{
+    static sensor_word_t sensors[MAX_STATIONS];
+    const size_t count = options->station_count;
+    for (size_t i = 0; i != count; i++)
+        if (!sensor_word_parse(&sensors[i], words[i], &origins[i])) return false;
+    for (size_t i = 0; i != count; i++)
+        if (!set_port(options, options->stations[i], &sensors[i], defaults->path, &origins[i])) return false;
+    for (size_t i = 0; i != count; i++) {
+        const size_t at_port = options->ports[options->stations[i]->port].station_count;
+        if (!set_station(options->stations[i], &sensors[i], defaults, options->asks_all || at_port > 1,
+                         &origins[i]))
+            return false;
+    }
+    return true;
+}
+
+static bool check_count(int count, const sensor_defaults_t *defaults, const origin_t *origin)
+{
+    if (count == 0) return reject(origin, "no sensor is named. Name one of a16, a05 and hps167s.");
+    if (count > MAX_STATIONS)
+        return reject(origin, "%d sensors are named. At most %d can be.", count, MAX_STATIONS);
+    if (count > 1 && (defaults->has_address || defaults->mode != NULL))
+        return reject(origin, "with several sensors, write --address and --mode behind each, such as "
+                              "a16:1:modbus.");
+    return true;
+}
+
+/* Takes as many stations, all zeros, of which options->beside has none. */
+static void take_slots(sensor_options_t *options, size_t count)
+{
+    static station_t slots[STATION_SLOTS];
+    const sensor_options_t *const beside = options->beside;
+    bool is_taken[STATION_SLOTS] = {false};
+    for (size_t i = 0; beside != NULL && i != beside->station_count; i++)
+        is_taken[beside->stations[i]->slot] = true;
+    size_t slot = 0;
+    for (options->station_count = 0; options->station_count != count; slot++) {
+        if (is_taken[slot]) continue;
+        reader_free(&slots[slot].reader);
+        memset(&slots[slot], 0, sizeof slots[slot]);
+        slots[slot].slot = slot;
+        options->stations[options->station_count++] = &slots[slot];
+    }
+}
+
+/* In the order in which a user corrects it. */
+bool sensor_words(sensor_options_t *options, const sensor_defaults_t *defaults, char **words, int count,
+                  const origin_t *origins)
+{
+    if (!check_count(count, defaults, &origins[0])) return false;
+    take_slots(options, (size_t)count);
+    options->port_count = 0;
+    if (!set_stations(options, defaults, words, origins) || !set_ports(options, defaults, origins) ||
+        !sensors_suit_lines(options, origins) || !sensors_set_names(options, origins))
+        return false;
+    for (size_t i = 0; i != options->station_count; i++)
+        if (!sensor_suits_port(options->stations[i], &options->ports[options->stations[i]->port],
+                               &origins[i]))
+            return false;
+    return true;
+}

@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef PORT_SETTINGS_H
+#define PORT_SETTINGS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "fathom/hal.h"
+#include "ports/pins.h"
+
+/* A port as a user names it, with its settings. */
+
+typedef enum {
+    PORT_TTY,
+    PORT_TCP, /* tcp:HOST[:PORT] */
+    PORT_CHIP /* of GPIO lines: the last part of its path begins with gpiochip */
+} port_kind_t;
+
+port_kind_t port_kind(const char *path);
+
+/* The part of a path behind its last slash. */
+const char *port_last_part(const char *path);
+
+/* Do both paths lead to the same port, as a link and its target do? A port that does not exist is known by its path
+ * only. */
+bool port_is_same(const char *one, const char *other);
+
+/* ---- what can be set for a port ---- */
+
+typedef enum {
+    /* of a serial port */
+    KEY_BAUD,
+    KEY_PARITY, /* FATHOM_PARITY_... */
+    KEY_STOP_BITS,
+    KEY_RS485, /* 0 or 1: the kernel's driver switches the transceiver */
+    KEY_ECHO,  /* fathom_line_parts_t.echo */
+    /* of a GPIO chip: lines, by their number on it */
+    KEY_TRIGGER,
+    KEY_PULSE, /* written echo= */
+    KEY_IN,
+    KEY_BIAS, /* fathom_gpio_bias_t */
+    KEY_NEAR, /* pins_near_t */
+    PORT_KEYS
+} port_key_t;
+
+typedef struct {
+    uint32_t value[PORT_KEYS];
+    bool has[PORT_KEYS]; /* the user set this one */
+} port_keys_t;
+
+/* A port, and the line behind it. */
+typedef struct {
+    const char *path;   /* of a serial port; tcp:HOST[:PORT]; of a GPIO chip, "gpiochip0" too */
+    bool is_chip;       /* it belongs to one sensor; another sensor at this chip has a row of its own */
+    pin_options_t pins; /* of a chip */
+    bool rs485;         /* the kernel's driver switches the transceiver */
+    fathom_line_settings_t line; /* with which it is opened: those of its slowest sensor */
+    bool has_mixed_lines;        /* its sensors have different ones */
+    uint8_t echo;                /* fathom_line_parts_t.echo */
+    port_keys_t keys;            /* that stand behind it */
+    size_t station_count;        /* sensors at it */
+} port_options_t;
+
+/* Fills in what follows from its keys, and for a serial port from the defaults of those that it does not have; all but
+ * the line. */
+void port_options_take(port_options_t *port, const port_keys_t *defaults);
+
+/* Changes the line settings of one of its sensors in the same way. */
+void port_options_line(const port_options_t *port, const port_keys_t *defaults, fathom_line_settings_t *line);
+
+#endif
