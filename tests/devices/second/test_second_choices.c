@@ -56,13 +56,6 @@ TEST(every_end_is_drawn)
     }
 }
 
-TEST(every_draw_is_allowed)
-{
-    for (int c = 0; c < CHOICE_COUNT; c++) {
-        for (int i = 0; i < SEEDS; i++) assert_true(second_choice_allows((second_choice_t)c, drawn[c][i]));
-    }
-}
-
 /* Whether a choice stands at its most frequent value: no two choices agree in (nearly) all seeds. */
 TEST(choices_are_independent)
 {
@@ -80,24 +73,6 @@ TEST(choices_are_independent)
                 only_b += !usual[a][i] && usual[b][i] ? 1 : 0;
             }
             assert_true(only_a > 0 && only_b > 0 && both > 0);
-        }
-    }
-}
-
-TEST(rows_are_complete)
-{
-    static const char *const prefixes[] = {"any_", "mb_", "a16_", "a05_", "hps_"};
-    for (int c = 0; c < CHOICE_COUNT; c++) {
-        const second_choice_row_t *row = second_choice_row((second_choice_t)c);
-        bool known = false;
-        for (size_t i = 0; i < sizeof prefixes / sizeof prefixes[0]; i++)
-            known = known || strncmp(row->name, prefixes[i], strlen(prefixes[i])) == 0;
-        assert_true(known && row->section[0] != '\0' && row->says[0] != '\0');
-        assert_true(row->kinds != 0 && row->kinds < 1U << SECOND_KINDS);
-        for (int b = 0; b < c; b++)
-            assert_string_not_equal(row->name, second_choice_row((second_choice_t)b)->name);
-        for (size_t i = 0; i < row->value_count; i++) {
-            for (size_t k = 0; k < i; k++) assert_true(row->values[i].value != row->values[k].value);
         }
     }
 }
@@ -134,39 +109,4 @@ TEST(a_choice_can_be_forced)
     assert_false(second_init(&host.device[0], &config));
     forced[1] = (second_override_t){"hps_over_range", 65529};
     assert_false(second_init(&host.device[0], &config));
-}
-
-TEST(misprints_can_be_left_out)
-{
-    int misprints = 0;
-    for (uint64_t seed = 1; seed <= 50; seed++) {
-        second_config_t config = {.kind = SECOND_A05_RS485, .seed = seed, .no_misprints = true};
-        host_open(&host, &config);
-        for (int c = 0; c < CHOICE_COUNT; c++) {
-            const second_choice_row_t *row = second_choice_row((second_choice_t)c);
-            int64_t value = second_choice(&host.device[0], (second_choice_t)c);
-            if (row->misprint) assert_true(value == row->values[0].value);
-            misprints += row->misprint && drawn[c][seed - 1] != value ? 1 : 0;
-        }
-    }
-    assert_true(misprints > 0);
-}
-
-/* The printed list names the choices of this kind and no others. */
-TEST(the_choices_are_printed)
-{
-    static char text[65536];
-    second_config_t config = {.kind = SECOND_A16_AUTO, .seed = 9};
-    host_open(&host, &config);
-    FILE *out = tmpfile();
-    assert_non_null(out);
-    second_print_choices(&host.device[0], out);
-    rewind(out);
-    text[fread(text, 1, sizeof text - 1, out)] = '\0';
-    fclose(out);
-    char line[64];
-    snprintf(line, sizeof line, "a16_period_us=%lld ", (long long)drawn[CHOICE_a16_period_us][8]);
-    assert_non_null(strstr(text, line));
-    assert_null(strstr(text, "hps_"));
-    assert_null(strstr(text, "mb_"));
 }

@@ -82,34 +82,6 @@ TEST(all_seeds_keep_the_wire_in_order)
     }
 }
 
-/* A request for a measurement is answered, whatever the seed, when the text says so. */
-TEST(all_seeds_answer_a_plain_request)
-{
-    for (int kind = SECOND_A16_CONTROLLED; kind < SECOND_TALKERS; kind++) {
-        for (uint64_t seed = 1; seed <= 300; seed++) {
-            live(&host, (second_kind_t)kind, seed, 0);
-            const second_device_t *d = &host.device[0];
-            size_t asked = 0, expected = 4;
-            for (uint64_t i = 0; i < second_log_count(d); i++) {
-                const second_event_t *event = second_log_at(d, i);
-                if (event->kind == SECOND_EVENT_MEASUREMENT && event->asked && !event->fault) asked++;
-            }
-            /* What may cost a response: the first only switches; no frame without a target; a failure; and an
-               unasked frame that the request ran into. */
-            bool first_switches =
-                (kind == SECOND_A16_RS232 && second_choice(d, CHOICE_a16_first_command) != 0) ||
-                (kind == SECOND_A05_UART && second_choice(d, CHOICE_a05_first_command) != 0);
-            if (first_switches) expected -= second_choice(d, CHOICE_a05_back_us) == 1000000 ? 4 : 1;
-            if (kind == SECOND_A16_CONTROLLED && second_choice(d, CHOICE_a16_nothing) == -2) expected--;
-            bool unasked =
-                second_choice(d, CHOICE_hps_unasked) != 0 && second_choice(d, CHOICE_hps_auto_out) != 0;
-            if (kind == SECOND_HPS167S && unasked) continue;
-            if (kind == SECOND_HPS167S && second_choice(d, CHOICE_hps_fault_every) != 0) continue;
-            if (asked < expected) fail_msg("kind %d seed %u: %zu responses", kind, (unsigned)seed, asked);
-        }
-    }
-}
-
 /* The same seed gives the same bytes, in whatever steps the device is run. */
 TEST(all_seeds_are_repeatable)
 {
@@ -125,21 +97,6 @@ TEST(all_seeds_are_repeatable)
             assert_true(second_log_count(&host.device[0]) == second_log_count(&again.device[0]));
         }
     }
-}
-
-TEST(the_log_is_a_ring)
-{
-    open_device(SECOND_A16_AUTO, 1000, OVERRIDES({"a16_period_us", 50000}));
-    host.got_len = 0;
-    for (int i = 0; i < 5; i++) {
-        host_run(&host, host.now_us + 50000000);
-        host.got_len = 0;
-    }
-    uint64_t count = second_log_count(&host.device[0]);
-    assert_true(count > SECOND_LOG_EVENTS);
-    assert_null(second_log_at(&host.device[0], count));
-    assert_non_null(second_log_at(&host.device[0], count - SECOND_LOG_EVENTS));
-    assert_null(second_log_at(&host.device[0], count - SECOND_LOG_EVENTS - 1));
 }
 
 TEST(breaks_and_power_off)

@@ -36,18 +36,6 @@ static void begin_round(unsigned round) { bench_start_us = UINT32_C(0xFFFF0000);
 
 static const suite_t suite = {.begin_round = begin_round};
 
-TEST(the_bound_is_five_sigma)
-{
-    /* 10000 at 50 %: sigma 50 */
-    assert_true(is_likely(5250, 10000, 500000));
-    assert_true(is_likely(4750, 10000, 500000));
-    assert_false(is_likely(5251, 10000, 500000));
-    assert_false(is_likely(4749, 10000, 500000));
-    /* 10000 at 1 %: sigma 9.95 */
-    assert_true(is_likely(149, 10000, 10000));
-    assert_false(is_likely(150, 10000, 10000));
-}
-
 TEST(each_kind_comes_as_often_as_it_is_told)
 {
     static const uint32_t chances_ppm[] = {1000, 50000, 500000};
@@ -83,38 +71,6 @@ TEST(each_kind_comes_as_often_as_it_is_told)
             assert_int_equal(bench.fault.frames_hit, bench.fault.counters[kind]);
         }
     }
-}
-
-TEST(what_the_host_finds_damaged_is_what_was_counted)
-{
-    uint32_t missing = 0, wrong = 0;
-    set_faulty(A16_AUTO, 3);
-    FAULT(SILENCE, 100000, 0);
-    FAULT(FLIP_BIT, 100000, 0);
-    for (uint32_t n = 1; n <= FRAMES; n++) {
-        next(A16_AUTO);
-        assert_int_equal(bench.fault.frames, n);
-        missing += bench.heard == 0;
-        wrong += bench.heard == 4 && !sum_is_right(); /* one bit always shows in a sum */
-        const bool is_bad = bench.heard == 0 || !is_hex(bench.bytes, A16_FRAME);
-        assert_int_equal(is_bad, bench.fault.last_kinds != 0);
-    }
-    assert_int_equal(missing, HITS(SILENCE));
-    /* both at once: the bit is flipped first, and then the frame does not come */
-    const uint32_t both = HITS(SILENCE) + HITS(FLIP_BIT) - bench.fault.frames_hit;
-    assert_int_equal(wrong, HITS(FLIP_BIT) - both);
-    assert_true(is_likely(both, FRAMES, 10000)); /* 10 % of 10 %: they do not know of each other */
-}
-
-TEST(a_chance_may_be_never_and_one_in_a_million_is_rare)
-{
-    set_faulty(A16_AUTO, 3);
-    FAULT(SILENCE, 0, 0);
-    FAULT(DROP, 0, 5);
-    FAULT(FLIP_BIT, 1, 0);
-    (void)run_frames(FRAMES);
-    assert_int_equal(HITS(SILENCE) + HITS(DROP), 0);
-    assert_true(HITS(FLIP_BIT) <= 1);
 }
 
 static void add_many(uint32_t chance_ppm)

@@ -53,12 +53,6 @@ static void step(bool asks)
     pass_until(fathom_due_us(both, asks ? 2 : 1));
 }
 
-static void listen_for(uint32_t for_us)
-{
-    for (const uint32_t start_us = s.clock.now_us; since_us(start_us) < for_us;) step(false);
-    assert_int_equal(wrong, 0);
-}
-
 static fathom_status_t ask_for(fathom_status_t (*command)(void))
 {
     const uint32_t start_us = s.clock.now_us;
@@ -72,27 +66,6 @@ static fathom_status_t ask_for(fathom_status_t (*command)(void))
 }
 
 static const suite_t suite = {BENCH_ROUNDS};
-
-TEST(every_frame_is_heard_in_any_loop)
-{
-    for (unsigned l = 0; l != 3; l++) {
-        begin(loops_us[l], 100 * MS, false);
-        listen_for(2050 * MS);
-        assert_in_range(bench.device->counters.automatic, 20, 21);
-        assert_in_range(heard, bench.device->counters.automatic - 1, bench.device->counters.automatic);
-        assert_int_equal(hears.missed, 0);
-    }
-}
-
-TEST(at_54_a_second_a_slow_loop_gets_the_newest)
-{
-    begin(20 * MS, 18519, false);
-    listen_for(2050 * MS);
-    const uint32_t sent = bench.device->counters.automatic;
-    assert_in_range(sent, 109, 111); /* 2050 / 18.519 is 110.7 */
-    assert_in_range(heard + hears.missed, sent - 2, sent);
-    assert_in_range(heard, 95, 103); /* no more than there were loops */
-}
 
 static fathom_status_t (*const commands[])(void) = {one, two,    three,  four,     seven,    eight,
                                                     ten, eleven, twelve, thirteen, fourteen, fifteen};
@@ -110,23 +83,6 @@ static void assert_carried_out(void)
     assert_int_equal(is.warm_up_s, 9);
     assert_int_equal(is.reconnect_time_ms, 360);
     assert_false(is.termination);
-}
-
-/* Frames every 40 ms; each command is asked at a time when one may be on its way. */
-TEST(every_command_works_while_frames_arrive)
-{
-    for (unsigned n = 0; n != 12; n++) {
-        begin(loops_us[n % 2], 40 * MS, true);
-        pass_us(n / 2 * 7 * MS);
-        for (unsigned i = 0; i != sizeof commands / sizeof *commands; i++) {
-            fathom_status_t status = FATHOM_ERR_NO_RESPONSE;
-            /* in the slow loop a request may meet a frame and be lost: asked again */
-            for (unsigned times = 0; times != 5 && status < 0; times++) status = ask_for(commands[i]);
-            if (status != FATHOM_OK) fail_msg("command %u in run %u: %s", i, n, fathom_status_name(status));
-        }
-        assert_true(heard > 5);
-        assert_carried_out();
-    }
 }
 
 /* 54 measurements a second: a request has 11 ms between two frames, and the response the next place that is free. */
