@@ -23,6 +23,7 @@ import layers
 import quarantine
 import resync
 import svg
+import tool
 import transaction
 import wiring
 
@@ -49,7 +50,7 @@ def output_of(*command):
 
 def draw_all(options):
     """Returns {name: text} of all pictures that these programs have traces for."""
-    drawn = {**layers.draw({}), **wiring.draw({})}
+    drawn = {**layers.draw({}), **tool.draw({}), **wiring.draw({})}
     if options.sim:
         traces = {name: events.read(output_of(options.sim, name)) for name in SIMULATED}
         drawn.update(quarantine.draw(traces))
