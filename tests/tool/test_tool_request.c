@@ -137,7 +137,7 @@ TEST(without_yes_nothing_dangerous_leaves)
     } rows[] = {
         {"1 6 0x0200 5", "the request writes"},
         {"1 16 0x0205 1 2", "the request writes"},
-        {"1 5 00 00 ff 00", "function 5 (0x05) is in none of the datasheets"},
+        {"1 5 00 00 ff 00", "function 5 (0x05) is in none of the datasheets; its effect is unknown"},
         {"1 0x2b 0e 01 00", "function 43 (0x2B) is in none of the datasheets"},
         {"1 23 00 00 00 01 00 00 00 01 02 00 00", "function 23 (0x17) is in none"},
         {"1 10 02 05 00 01 02 00 00", "in hex: 0x10, which is 16"},
@@ -225,7 +225,7 @@ TEST(wrong_usage_is_told_and_nothing_leaves)
         {"1 16 0xFFFF 1 2 --yes", "function 16 writes 1 to 123 values, up to register 0xFFFF"},
         {"1 43 0e 100 --yes", "function 43 takes bytes in hex, such as 0e, not '100'"},
         {"1 43 xy --yes", "function 43 takes bytes in hex, such as 0e, not 'xy'"},
-        {"1 3 1 --sensor a17", "there is no sensor 'a17', only a16, a05, hps167s"},
+        {"1 3 1 --sensor a17", "unknown sensor 'a17'. Did you mean a16?"},
         {"1 3 1 --baud 1200", "--baud takes 9600,"},
         {"1 3 1 --parity mark", "--parity takes none, even or odd, not 'mark'"},
         {"1 3 1 --stop-bits 3", "--stop-bits takes a whole number from 1 to 2"},

@@ -110,6 +110,12 @@ struct model {
     void (*decode_sum)(decode_frame_t *frame); /* of another of its protocols */
     const char *(*exception_name)(uint8_t code);
     const char *exception_source; /* section of its datasheet */
+
+    /* ---- what a Modbus request does to it ---- */
+
+    const char *request_ends; /* what its first request ends, and how to start that again; NULL: nothing */
+    /* Returns what a read (function 3 or 4) changes, NULL: nothing. */
+    const char *(*read_changes)(const uint8_t *request);
 };
 
 /* Can it have this address? */

@@ -4,8 +4,6 @@
 
 #include "cli/options.h"
 #include "commands/commands.h"
-#include "commands/request/request_ask.h"
-#include "commands/request/request_effects.h"
 #include "commands/request/request_report.h"
 
 /* fathom request: one Modbus request, as the user has written it. */
@@ -67,22 +65,22 @@ static void help(FILE *to)
         to);
 }
 
-/* On the open port. */
-static int ask_and_tell(const request_t *request)
+/* Sends the request on the open port and reports its outcome. */
+static int ask(const request_t *request)
 {
-    static request_ask_t ask;
+    static request_ask_t asked;
     port_counts_t port_counts;
     counters_t counters;
     memset(&counters, 0, sizeof counters);
     counters_begin_port(&port_counts, &channel);
-    request_ask(&ask, request, &channel);
+    request_ask(&asked, request, &channel);
     (void)counters_take(&counters, &port_counts, &channel, NULL);
     errno = 0;
-    request_print(&ask, &channel);
+    request_print(&asked, &channel);
     const int error = output_flush();
-    request_tell(&ask, &channel, &counters);
+    request_tell(&asked, &channel, &counters);
     if (error != 0) (void)fprintf(stderr, "fathom: the output cannot be written: %s\n", strerror(error));
-    return error == 0 && request_is_good(&ask) ? STATUS_OK : STATUS_FAILED;
+    return error == 0 && request_is_good(&asked) ? STATUS_OK : STATUS_FAILED;
 }
 
 static int run(const host_t *host, int argc, char **argv)
@@ -101,7 +99,7 @@ static int run(const host_t *host, int argc, char **argv)
         (void)fprintf(stderr, "fathom: %s\n", fathom_posix_error_text(&channel.port));
         return STATUS_FAILED;
     }
-    const int status = ask_and_tell(&request);
+    const int status = ask(&request);
     channel_close(&channel);
     return status;
 }

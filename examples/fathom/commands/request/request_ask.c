@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include "commands/request/request_ask.h"
-
 #include <string.h>
 
-#include "commands/request/request_effects.h"
+#include "commands/request/request.h"
 #include "fathom/codec/crc16.h"
 #include "fathom/codec/modbus_rtu.h"
 #include "ports/line_text.h"
@@ -35,7 +33,7 @@ static bool is_request(const fathom_transaction_t *transaction, const uint8_t *f
 
 static bool reads(uint8_t function) { return function >= READ_COILS && function <= REQUEST_READ_INPUT; }
 
-/* Is a response to it as long as its first bytes say? (MODBUS Application Protocol V1.1b3, 6) */
+/* Returns true if the first bytes of a response state its length (MODBUS Application Protocol V1.1b3, 6). */
 static bool has_known_length(uint8_t function)
 {
     return reads(function) || function == WRITE_COIL || function == REQUEST_WRITE ||
@@ -53,7 +51,7 @@ static uint8_t known_length_with_zero(const uint8_t *frame, uint8_t have)
     return size >= 1 && size <= MAX_SIZE ? (uint8_t)(size + READ_OVERHEAD) : 0;
 }
 
-/* Of the other functions a response ends where its CRC is right. */
+/* A response of another function ends where its CRC is right. */
 static uint8_t any_length_with_zero(const uint8_t *frame, uint8_t have)
 {
     for (uint8_t length = LEAST_LENGTH; length <= have && length != 0; length++)
@@ -62,7 +60,7 @@ static uint8_t any_length_with_zero(const uint8_t *frame, uint8_t have)
     return have < MAX_LENGTH ? (uint8_t)(have + 1) : 0;
 }
 
-/* Zeros are what noise is made of: frames of unit 0 are looked for where it may answer. */
+/* Noise has many zeros, so a frame from unit 0 counts only if unit 0 may respond. */
 static uint8_t known_length(const uint8_t *frame, uint8_t have)
 {
     return frame[0] != 0 ? known_length_with_zero(frame, have) : 0;
@@ -82,7 +80,7 @@ static bool fits(const request_t *request, const uint8_t *frame)
     if (!has_known_length(function)) return true;
     if (!reads(function)) return memcmp(frame + FIRST, asked + FIRST, WRITE_LENGTH - 2 - FIRST) == 0;
     if (function >= REQUEST_READ) return frame[SIZE] == 2 * asked[COUNT];
-    /* Coils: eight in a byte. The user has given the bytes of such a request, perhaps not these. */
+    /* A byte has eight coils. The user may have entered other bytes than those of a request for coils. */
     return request->length != WRITE_LENGTH || frame[SIZE] == (request_word(request, REQUEST_COUNT) + 7u) / 8u;
 }
 
@@ -103,49 +101,30 @@ static bool may_collide(const fathom_transaction_t *transaction)
     return request_may_collide(request_of(transaction));
 }
 
+#define PROTOCOL(length_of, with_zero)                                                                       \
+    {                                                                                                        \
+        .encode = encode, .length = (length_of), .check = fathom_crc16, .is_request = is_request,            \
+        .parse_response = parse_response, .may_collide = may_collide, .is_unit_0_ordinary = (with_zero)      \
+    }
+
 static const fathom_protocol_t *protocol_of(const request_t *request)
 {
-    static const fathom_protocol_t known = {.encode = encode,
-                                            .length = known_length,
-                                            .check = fathom_crc16,
-                                            .is_request = is_request,
-                                            .parse_response = parse_response,
-                                            .may_collide = may_collide,
-                                            .is_unit_0_ordinary = false};
-    static const fathom_protocol_t known_with_zero = {.encode = encode,
-                                                      .length = known_length_with_zero,
-                                                      .check = fathom_crc16,
-                                                      .is_request = is_request,
-                                                      .parse_response = parse_response,
-                                                      .may_collide = may_collide,
-                                                      .is_unit_0_ordinary = true};
-    static const fathom_protocol_t any = {.encode = encode,
-                                          .length = any_length,
-                                          .check = fathom_crc16,
-                                          .is_request = is_request,
-                                          .parse_response = parse_response,
-                                          .may_collide = may_collide,
-                                          .is_unit_0_ordinary = false};
-    static const fathom_protocol_t any_with_zero = {.encode = encode,
-                                                    .length = any_length_with_zero,
-                                                    .check = fathom_crc16,
-                                                    .is_request = is_request,
-                                                    .parse_response = parse_response,
-                                                    .may_collide = may_collide,
-                                                    .is_unit_0_ordinary = true};
+    /* by whether the length of the response is known, and whether unit 0 may respond */
+    static const fathom_protocol_t protocols[2][2] = {
+        {PROTOCOL(any_length, false), PROTOCOL(any_length_with_zero, true)},
+        {PROTOCOL(known_length, false), PROTOCOL(known_length_with_zero, true)}};
     const uint8_t unit = request->frame[REQUEST_UNIT];
     const bool has_zero =
         unit == FATHOM_MODBUS_ANY_UNIT || (unit == FATHOM_MODBUS_BROADCAST && !request_is_broadcast(request));
-    if (has_known_length(request->frame[REQUEST_FUNCTION])) return has_zero ? &known_with_zero : &known;
-    return has_zero ? &any_with_zero : &any;
+    return &protocols[has_known_length(request->frame[REQUEST_FUNCTION])][has_zero];
 }
 
-/* ---- what came of it ---- */
+/* ---- its outcome ---- */
 
 /*
- * One copy of a request that its acknowledgement equals, on a line of which it is not known whether it echoes. An
- * acknowledgement on a wire comes after the request, a silence of 3.5 characters and its own characters; an echo no
- * later than an adapter holds it back.
+ * Judges one copy of a request whose acknowledgement equals it, on a line that may echo. An acknowledgement on a wire
+ * ends after the request, a silence of 3.5 characters and its own characters; an echo arrives at the latest when the
+ * adapter releases it.
  */
 static request_outcome_t judge_copy(const request_ask_t *ask, const channel_t *channel)
 {
@@ -160,7 +139,7 @@ static request_outcome_t judge_copy(const request_ask_t *ask, const channel_t *c
     return REQUEST_ECHO;
 }
 
-/* Is what acknowledges it the request once more? Of functions that are not known that may be so. */
+/* Returns true if the acknowledgement equals the request. That may also be so with functions that are not known. */
 static bool equals_acknowledgement(const request_t *request)
 {
     const uint8_t function = request->frame[REQUEST_FUNCTION];
@@ -207,7 +186,7 @@ static fathom_status_t wait_for_response(request_ask_t *ask, channel_t *channel)
     }
 }
 
-/* What came besides the response and the echo: another unit at the same address, for one. */
+/* Counts the bytes besides the response and the echo, such as those of another unit at the same address. */
 static uint32_t count_more(const request_ask_t *ask, const channel_t *channel)
 {
     const uint32_t echo =
@@ -232,6 +211,6 @@ void request_ask(request_ask_t *ask, const request_t *request, channel_t *channe
     ask->outcome = outcome_of(ask, channel, status);
     ask->more = count_more(ask, channel);
     if (ask->outcome != REQUEST_ANSWERED || ask->length != 0) return;
-    memcpy(ask->response, request->frame, request->length); /* the copy that was no echo */
+    memcpy(ask->response, request->frame, request->length); /* the copy, which is no echo */
     ask->length = request->length;
 }

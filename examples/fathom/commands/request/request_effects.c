@@ -1,97 +1,106 @@
 /* SPDX-License-Identifier: MIT */
-#include "commands/request/request_effects.h"
-
-#include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
-#include "commands/request/request_meaning.h"
-#include "fathom/codec/hps167s_registers.h"
-#include "fathom/codec/modbus_rtu.h"
+#include "commands/request/request.h"
 
-static void say(const char *format, ...)
+/* Returns true if the request can be for this model. An HPS-167S obeys unit 0, and cannot have address 255. */
+static bool can_be(const model_t *model, const request_t *request)
 {
-    va_list arguments;
-    (void)fputs("fathom: ", stderr);
-    va_start(arguments, format);
-    (void)vfprintf(stderr, format, arguments);
-    va_end(arguments);
-    (void)fputs("\n", stderr);
+    if (request->model != NULL) return model == request->model;
+    return model->is_dyp || request->frame[REQUEST_UNIT] <= model->max_address;
 }
 
-static bool may_be_dyp(const request_t *request) { return request->model == NULL || request->model->is_dyp; }
-
-/* What an HPS-167S is asked for by these, #3 and #5, is known; the range of each has 0x0009 in it. */
-static bool is_harmless(uint16_t first, uint16_t count)
+void request_decode(decode_frame_t *frame, decode_piece_t *piece, const request_t *request,
+                    const uint8_t *response, uint8_t length)
 {
-    return (first == FATHOM_HPS167S_DETAILS && count == FATHOM_HPS167S_DETAILS_COUNT) ||
-           (first == FATHOM_HPS167S_MEASUREMENT && count == FATHOM_HPS167S_MEASUREMENT_COUNT);
+    memset(frame, 0, sizeof *frame);
+    memset(piece, 0, sizeof *piece);
+    piece->protocol = DECODE_MODBUS;
+    piece->direction = response != NULL ? DECODE_RESPONSE : DECODE_REQUEST;
+    piece->length = response != NULL ? length : request->length;
+    frame->piece = piece;
+    frame->bytes = response != NULL ? response : request->frame;
+    frame->is_sure = request->model != NULL;
+    frame->unit = frame->bytes[REQUEST_UNIT];
+    frame->code = frame->bytes[REQUEST_FUNCTION];
+    /* The datasheets know no other functions, whose frames may have any shape. */
+    if (frame->code != REQUEST_READ && frame->code != REQUEST_WRITE && frame->code != REQUEST_WRITE_MANY)
+        return;
+    for (size_t i = 0; i != MODELS; i++)
+        if (can_be(models[i], request)) models[i]->decode(frame, request->frame);
 }
 
-/* A read of 0x0009 is its command #6. What it does with another count, from another register on or by function 4 is not
- * in the datasheet. */
-static bool touches_reset(const request_t *request)
+/* Returns what the read changes, NULL: nothing. Another model than the named one may be at the address. */
+static const char *changes(const request_t *request)
 {
+    const char *text = NULL;
     const uint8_t function = request->frame[REQUEST_FUNCTION];
-    const uint16_t first = request_word(request, REQUEST_FIRST);
-    const uint16_t count = request_word(request, REQUEST_COUNT);
-    if (function != REQUEST_READ && function != REQUEST_READ_INPUT) return false;
-    return first <= FATHOM_HPS167S_RESET && (uint32_t)first + count > FATHOM_HPS167S_RESET &&
-           !(function == REQUEST_READ && is_harmless(first, count));
+    if (function != REQUEST_READ && function != REQUEST_READ_INPUT) return NULL;
+    for (size_t i = 0; i != MODELS && text == NULL; i++)
+        if (models[i]->read_changes != NULL) text = models[i]->read_changes(request->frame);
+    return text;
 }
 
-/* What it sets, if one of the models is there. */
-static void say_meanings(const request_t *request)
+static void print_meanings(const request_t *request)
 {
     decode_frame_t frame;
     decode_piece_t piece;
-    request_mean(&frame, &piece, request, NULL, 0);
-    for (uint8_t i = 0; i != frame.meanings; i++) {
+    request_decode(&frame, &piece, request, NULL, 0);
+    for (uint8_t i = 0; i != frame.meanings && !request_is_read(request); i++) {
         const decode_meaning_t *const meaning = &frame.meaning[i];
         const decode_field_t *const field = &meaning->fields[0];
-        if (request_is_read(request)) continue;
-        if (meaning->count == 0)
-            say("if it is %s: %s", meaning->sensor, meaning->what);
-        else
-            say("if it is %s: %s: %s %s%s%s", meaning->sensor, meaning->what, field->name, field->value,
-                field->unit[0] != '\0' ? " " : "", field->unit);
+        (void)fprintf(stderr, "fathom: if it is %s: %s", meaning->sensor, meaning->what);
+        if (meaning->count != 0)
+            (void)fprintf(stderr, ": %s %s%s%s", field->name, field->value, field->unit[0] != '\0' ? " " : "",
+                          field->unit);
+        (void)fputs("\n", stderr);
     }
-    for (uint8_t i = 0; i != frame.notes; i++) say("%s", frame.note[i]);
+    for (uint8_t i = 0; i != frame.notes; i++) (void)fprintf(stderr, "fathom: %s\n", frame.note[i]);
 }
 
-static void say_write(const request_t *request)
+static void print_write(uint8_t function)
 {
-    const uint8_t function = request->frame[REQUEST_FUNCTION];
-    if (function == REQUEST_WRITE || function == REQUEST_WRITE_MANY) {
-        say("the request writes: the unit may keep that in flash, which wears, and may move to another "
-            "address or "
-            "rate");
-        return;
-    }
-    say("function %u (0x%02X) is in none of the datasheets; what it does is not known", function, function);
-    if (function == 10) say("the function 10 that the datasheets print is in hex: 0x10, which is 16");
+    if (function == REQUEST_WRITE || function == REQUEST_WRITE_MANY)
+        (void)fputs(
+            "fathom: the request writes: the unit may keep that in flash, which wears, and may move to "
+            "another address or rate\n",
+            stderr);
+    else
+        (void)fprintf(stderr,
+                      "fathom: function %u (0x%02X) is in none of the datasheets; its effect is unknown\n",
+                      function, function);
+    if (function == 10)
+        (void)fputs("fathom: the function 10 that the datasheets print is in hex: 0x10, which is 16\n",
+                    stderr);
+}
+
+static void print_unit(const request_t *request)
+{
+    const uint8_t unit = request->frame[REQUEST_UNIT];
+    if (unit == FATHOM_MODBUS_ANY_UNIT)
+        (void)fputs("fathom: unit 255: each A16 and A05 obeys it, whatever its address\n", stderr);
+    else if (unit == FATHOM_MODBUS_BROADCAST)
+        (void)fprintf(stderr, "fathom: unit 0 is all units%s\n",
+                      request_is_broadcast(request) ? ": all obey, and none responds"
+                                                    : ", or an A16 or A05 whose address is 0");
 }
 
 bool request_may_collide(const request_t *request)
 {
-    return request_is_read(request) && !touches_reset(request);
+    return request_is_read(request) && changes(request) == NULL;
 }
 
 bool request_effects(const request_t *request)
 {
     const uint8_t unit = request->frame[REQUEST_UNIT];
-    const bool resets = touches_reset(request);
-    if (may_be_dyp(request))
-        say("the request ends the automatic output of an A16 with RS232 or an A05 with UART; `fathom set a16 "
-            "automatic-output on` brings an A16's back, an A05 needs power off and on");
-    if (resets)
-        say("a read of 0x0009 resets an HPS-167S: address 1, 19200 8E1, warm-up and termination as from the "
-            "factory");
-    if (!request_is_read(request)) say_write(request);
-    say_meanings(request);
-    if (unit == FATHOM_MODBUS_BROADCAST)
-        say(request_is_broadcast(request) ? "unit 0 is all units: all obey, and none answers"
-                                          : "unit 0 is all units, or an A16 or A05 whose address is 0");
-    if (unit == FATHOM_MODBUS_ANY_UNIT) say("unit 255: each A16 and A05 obeys it, whatever its address");
-    return resets || !request_is_read(request) || unit == FATHOM_MODBUS_BROADCAST ||
-           unit == FATHOM_MODBUS_ANY_UNIT;
+    const char *const changed = changes(request);
+    for (size_t i = 0; i != MODELS; i++)
+        if (models[i]->request_ends != NULL && can_be(models[i], request))
+            (void)fprintf(stderr, "fathom: the request ends %s\n", models[i]->request_ends);
+    if (changed != NULL) (void)fprintf(stderr, "fathom: %s\n", changed);
+    if (!request_is_read(request)) print_write(request->frame[REQUEST_FUNCTION]);
+    print_meanings(request);
+    print_unit(request);
+    return !request_may_collide(request) || unit == FATHOM_MODBUS_BROADCAST || unit == FATHOM_MODBUS_ANY_UNIT;
 }

@@ -4,7 +4,6 @@
 #include <inttypes.h>
 #include <stdio.h>
 
-#include "commands/request/request_meaning.h"
 #include "diagnosis/advice.h"
 #include "sensors/decoding_print.h"
 #include "sensors/modbus_exception.h"
@@ -148,7 +147,7 @@ void request_print(const request_ask_t *ask, const channel_t *channel)
     decode_piece_t piece;
     frame.meanings = 0;
     if (ask->request->model != NULL && ask->outcome == REQUEST_ANSWERED && ask->length != 0)
-        request_mean(&frame, &piece, ask->request, ask->response, ask->length);
+        request_decode(&frame, &piece, ask->request, ask->response, ask->length);
     if (ask->request->is_json)
         print_json(ask, channel, &frame);
     else

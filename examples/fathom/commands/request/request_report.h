@@ -2,7 +2,7 @@
 #ifndef REQUEST_REPORT_H
 #define REQUEST_REPORT_H
 
-#include "commands/request/request_ask.h"
+#include "commands/request/request.h"
 #include "diagnosis/counters.h"
 
 /* Writes what came of it: bytes and what they say to stdout, as text or JSON. */

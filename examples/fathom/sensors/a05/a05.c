@@ -123,4 +123,5 @@ const model_t model_a05 = {
     .protocols = DECODE_MODBUS | DECODE_DYP | DECODE_STREAM_FOUR,
     .decode = a05_decode,
     .decode_sum = a05_decode_sum,
+    .request_ends = "the automatic output of an A05 with UART, until power-off",
 };

@@ -138,4 +138,6 @@ const model_t model_a16 = {
     .protocols = DECODE_MODBUS | DECODE_STREAM_ONE,
     .decode = a16_decode,
     .decode_sum = a16_decode_sum,
+    .request_ends =
+        "the automatic output of an A16 with RS232, until power-off or `fathom set a16 automatic-output on`",
 };

@@ -119,4 +119,5 @@ const model_t model_hps167s = {
     .decode = hps167s_decode,
     .exception_name = exception_name,
     .exception_source = "HPS table 39",
+    .read_changes = hps167s_read_changes,
 };

@@ -24,6 +24,9 @@ void hps167s_begin_temperature(reader_t *reader, const reader_settings_t *settin
 
 void hps167s_decode(decode_frame_t *frame, const uint8_t *request);
 
+/* model_t.read_changes */
+const char *hps167s_read_changes(const uint8_t *request);
+
 bool hps167s_identify(inquiry_t *inquiry);
 void hps167s_print_finding(FILE *to, const model_t *model, const scan_finding_t *finding);
 void hps167s_print_finding_json(FILE *to, const scan_finding_t *finding);

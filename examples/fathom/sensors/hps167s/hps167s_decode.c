@@ -301,3 +301,21 @@ void hps167s_decode(decode_frame_t *frame, const uint8_t *request)
             command_known(frame, row, request);
     }
 }
+
+/*
+ * A read of 0x0009 is command #6. The datasheet does not say what a read with another count, from a lower register or by
+ * function 4 does, so each read that includes 0x0009 counts. #3 and #5 include it and are known to be harmless.
+ */
+const char *hps167s_read_changes(const uint8_t *request)
+{
+    const bool is_holding = request[DECODE_AT_FUNCTION] == FATHOM_MODBUS_READ_HOLDING_REGISTERS;
+    const uint16_t first = decode_get16(request + DECODE_AT_FIRST);
+    const uint16_t count = decode_get16(request + DECODE_AT_COUNT);
+    const bool is_known =
+        is_holding && ((first == FATHOM_HPS167S_DETAILS && count == FATHOM_HPS167S_DETAILS_COUNT) ||
+                       (first == FATHOM_HPS167S_MEASUREMENT && count == FATHOM_HPS167S_MEASUREMENT_COUNT));
+    if (is_known || first > FATHOM_HPS167S_RESET || (uint32_t)first + count <= FATHOM_HPS167S_RESET)
+        return NULL;
+    return "a read of 0x0009 resets an HPS-167S: address 1, 19200 8E1, warm-up and termination as from the "
+           "factory";
+}
