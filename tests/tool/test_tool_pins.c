@@ -250,21 +250,21 @@ TEST(what_is_wrong_usage_says_what_to_write)
 {
     with_a16(FATHOM_SIM_A16_PWM);
     expect_usage("a16:pwm@gpiochip0,trigger=17",
-                 "a16 in mode pwm needs echo= too, such as @gpiochip0,trigger=17,echo=27");
-    expect_usage("a16:pwm@gpiochip0,echo=27", "a16 in mode pwm needs trigger= too");
-    expect_usage("a16:switch --port gpiochip0", "a16 in mode switch needs in= too, such as @gpiochip0,in=5");
+                 "a16 in mode pwm needs echo=, such as @gpiochip0,trigger=17,echo=27");
+    expect_usage("a16:pwm@gpiochip0,echo=27", "a16 in mode pwm needs trigger=, such");
+    expect_usage("a16:switch --port gpiochip0", "a16 in mode switch needs in=, such as @gpiochip0,in=5");
     expect_usage("a16:switch@gpiochip0,in=5,trigger=6", "a16 in mode switch has no trigger=");
     expect_usage("a16:pwm@/dev/ttyUSB0",
                  "a16 in mode pwm needs GPIO lines, such as a16:pwm@gpiochip0,trigger=17,echo=27");
     expect_usage("a05:relay@/dev/ttyUSB0", "such as a05:relay@gpiochip0,in=5");
     expect_usage("a16:modbus@gpiochip0,in=5",
                  "a16 in mode modbus needs a serial port, and gpiochip0 is a GPIO chip");
-    expect_usage("a05:pwm@gpiochip0,in=5", "there is no mode 'pwm' for a05, only");
-    expect_usage("a16:pwm@gpiochip0,trigger=17,echo=17", "line 17 of gpiochip0 stands for two things");
-    expect_usage("a16:switch@gpiochip0,in=5,bias=sideways", "bias takes as-is, up, down or off");
-    expect_usage("a16:switch@gpiochip0,in=5,near=by", "near takes high or low, not 'by'");
-    expect_usage("a16:switch@gpiochip0,in=5,near=", "near takes high or low, not ''");
-    expect_usage(PWM ",near=high", "a16 in mode pwm tells distances and has no near=");
+    expect_usage("a05:pwm@gpiochip0,in=5", "unknown mode of a05 'pwm'.");
+    expect_usage("a16:pwm@gpiochip0,trigger=17,echo=17", "line 17 of gpiochip0 is used twice, as trigger= and as echo=");
+    expect_usage("a16:switch@gpiochip0,in=5,bias=sideways", "bias is 'sideways'. It takes as-is, up, down or off.");
+    expect_usage("a16:switch@gpiochip0,in=5,near=by", "near is 'by'. It takes low or high.");
+    expect_usage("a16:switch@gpiochip0,in=5,near=", "near is ''.");
+    expect_usage(PWM ",near=high", "a16 in mode pwm reports distances and has no near=");
     expect_usage(PWM " --probes 1", "--probes");
     expect_usage(PWM " --value real-time", "--value");
 }

@@ -232,26 +232,6 @@ TEST(two_probes_of_an_a05_are_measured_with_the_others)
 }
 
 /* A05 3(3), remark 2 */
-TEST(an_a05_is_read_where_its_distances_stand_again)
-{
-    const struct {
-        const char *option;
-        uint8_t request[6];
-    } rows[] = {{"", {0x01, 0x03, 0x01, 0x06, 0x00, 0x04}},
-                {"--first-register 0x0106", {0x01, 0x03, 0x01, 0x06, 0x00, 0x04}},
-                {"--first-register 0x0010", {0x01, 0x03, 0x00, 0x10, 0x00, 0x04}},
-                {"--first-register 0X10 --probes 2,3", {0x01, 0x03, 0x00, 0x11, 0x00, 0x02}}};
-    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
-        (void)set_up(NULL);
-        bench_a05((fathom_sim_a05_config_t){0});
-        const tool_run_t *const run =
-            tool_run(&bench.tool, "read a05:1:modbus --count 1 --format json %s --port line", rows[i].option);
-        assert_int_equal(run->status, 0);
-        expect_all(run, rows[i].request[5], "\"distance_mm\":1234,");
-        assert_memory_equal(sent, rows[i].request, sizeof rows[i].request);
-    }
-}
-
 /* ---- what is believed ---- */
 
 static const tool_run_t *read_of(const char *sensor, int32_t value, const char *options)
@@ -459,27 +439,24 @@ TEST(an_option_that_no_sensor_takes_is_wrong_usage)
         const char *err;
     } rows[] = {
         {"hps167s --value real-time",
-         "--value is for a16 (auto, modbus), a05 (auto); it has no effect on hps167s (modbus)"},
-        {"a16:1:controlled --value processed", "it has no effect on a16 (controlled)"},
-        {"a05:1:dyp --value processed", "it has no effect on a05 (dyp)"},
-        {"a05:1:modbus --value processed", "it has no effect on a05 (modbus)"},
-        {"a16 --value fast", "--value takes processed or real-time, not 'fast'"},
+         "--value has no effect on hps167s (modbus). It is for a16 (auto, modbus), a05 (auto)."},
+        {"a16:1:controlled --value processed", "--value has no effect on a16 (controlled)."},
+        {"a05:1:dyp --value processed", "--value has no effect on a05 (dyp)."},
+        {"a05:1:modbus --value processed", "--value has no effect on a05 (modbus)."},
+        {"a16 --value fast", "--value is 'fast'. It takes processed or real-time."},
         {"a16:1:modbus --probes 1",
-         "--probes is for a05 (auto, modbus, dyp); it has no effect on a16 (modbus)"},
-        {"hps167s --means 0=fault",
-         "--means is for a16 (auto, modbus, controlled), a05 (auto, modbus, dyp); it has no"},
-        {"a05 --first-register 0x0010",
-         "--first-register is for a05 (modbus); it has no effect on a05 (auto)"},
-        {"a05:1:modbus --first-register 0x0011", "--first-register takes 0x0106 or 0x0010, not '0x0011'"},
-        {"a05:1:modbus --first-register 16", "not '16'"},
-        {"a16 --temperature", "--temperature is for hps167s (modbus); it has no effect on a16 (auto)"},
-        {"hps167s:1:auto --temperature", "it has no effect on hps167s (auto)"},
-        {"hps167s --temperature=0", "--temperature takes a whole number from 1 to 1000, not '0'"},
-        {"a16 --window 300", "not '300'"},
-        {"a16 --window 0-300", "from 1 to 65529, such as 300-5000, not '0-300'"},
-        {"a16 --window 300-299", "not '300-299'"},
-        {"a16 --window 300-65530", "not '300-65530'"},
-        {"hps167s:1:auto a16:2", "hps167s in mode auto sends by itself and cannot share a line with others"},
+         "--probes has no effect on a16 (modbus). It is for a05 (auto, modbus, dyp)."},
+        {"hps167s --means 0=fault", "--means has no effect on hps167s (modbus). It is for a16 (auto, modbus, "
+                                    "controlled), a05 (auto, modbus, dyp)."},
+        {"a05 --first-register 0x0010", "unknown option '--first-register'."},
+        {"a16 --temperature", "--temperature has no effect on a16 (auto). It is for hps167s (modbus)."},
+        {"hps167s:1:auto --temperature", "--temperature has no effect on hps167s (auto)."},
+        {"hps167s --temperature=0", "--temperature is '0'. It takes a whole number from 1 to 1000."},
+        {"a16 --window 300", "--window is '300'. It takes MIN-MAX, from 1 to 65529."},
+        {"a16 --window 0-300", "--window is '0-300'."},
+        {"a16 --window 300-299", "--window is '300-299'."},
+        {"a16 --window 300-65530", "--window is '300-65530'."},
+        {"hps167s:1:auto a16:2", "hps167s in mode auto sends automatically and cannot share a line."},
     };
     for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
         const tool_run_t *const run = tool_run(&bench.tool, "read %s --port line", rows[i].words);

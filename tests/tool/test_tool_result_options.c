@@ -263,11 +263,12 @@ TEST(an_alarm_may_not_be_so)
     EXPECT_WRONG("--alarm ", rows);
 }
 
-TEST(until_alarm_takes_an_alarm)
+TEST(an_option_without_the_one_that_it_needs_has_no_effect)
 {
-    static const wrong_t rows[] = {
-        {"", "--until-alarm takes --alarm too, such as --alarm 'near<500,unknown=on,no-response=on'"}};
-    EXPECT_WRONG("--until-alarm", rows);
+    static const wrong_t rows[] = {{"--until-alarm", "--until-alarm has no effect without --alarm."},
+                                   {"--gate 300", "--gate has no effect without --median."},
+                                   {"--rotate day", "--rotate has no effect without --output."}};
+    EXPECT_WRONG("", rows);
 }
 
 /* The longest interval with which they know something: three of them are more than 2000 s. */

@@ -73,6 +73,10 @@ static bool read_option(arguments_t *arguments, int argc, char **argv, int *i, v
         return reject(&origin, "--%s is given twice. Write the port behind a sensor instead: a16@PORT.",
                       row->name);
     arguments->given.line[walk.number] = 1;
+    if (value == otherwise && value[0] == '\0') {
+        *(bool *)((char *)settings + walk.table->at + row->has - 1) = true;
+        return true;
+    }
     return option_set(row, value, (char *)settings + walk.table->at, &origin);
 }
 

@@ -6,7 +6,7 @@
 #include "cli/arguments.h"
 #include "output/words.h"
 
-enum { COLUMN = 22, WIDTH = 80 };
+enum { COLUMN = 24, WIDTH = 80 };
 
 const char *const help_groups[GROUPS] = {
     [GROUP_COMMON] = "Common options", [GROUP_COMMAND] = "Options",
@@ -50,6 +50,18 @@ static void print_row(FILE *to, const option_t *row)
     help_print_wrapped(to, row->help, COLUMN, column);
 }
 
+/* Prints the options that a command names as the most common, in that order. */
+static void print_common(FILE *to, const command_t *command)
+{
+    (void)fprintf(to, "\n%s:\n", help_groups[GROUP_COMMON]);
+    for (const char *names = command->common; names != NULL;) {
+        char name[32];
+        option_walk_t walk;
+        names = next_word(names, ' ', name, sizeof name);
+        if (option_find(&walk, command->tables, name, strlen(name))) print_row(to, walk.row);
+    }
+}
+
 static void print_group(FILE *to, const command_t *command, option_group_t group)
 {
     bool has_begun = false;
@@ -73,7 +85,8 @@ void help_print(FILE *to, const command_t *command)
     }
     (void)fprintf(to, "\n%s.\n", command->summary);
     if (command->about != NULL) (void)fputs(command->about, to);
-    for (option_group_t group = GROUP_COMMON; group != GROUPS; group++) print_group(to, command, group);
+    print_common(to, command);
+    for (option_group_t group = GROUP_COMMAND; group != GROUPS; group++) print_group(to, command, group);
     if (command->examples != NULL) (void)fprintf(to, "\nExamples:\n%s", command->examples);
     if (command->status != NULL) (void)fprintf(to, "\n%s", command->status);
     if (command->topics != NULL) (void)fprintf(to, "More: fathom help %s.\n", command->topics);

@@ -146,3 +146,17 @@ bool options_suit(const option_table_t *tables, const option_given_t *given, sta
     }
     return true;
 }
+
+bool sensors_read(sensor_options_t *options, const arguments_t *arguments, const sensor_settings_t *settings,
+                  int count, bool is_quiet)
+{
+    const origin_t origin = {.command = arguments->command->name};
+    origin_t origins[MAX_STATIONS];
+    for (int i = 0; i != MAX_STATIONS; i++) origins[i] = origin;
+    if (!sensor_words(options, &settings->defaults, arguments->words, count, origins)) return false;
+    options->duration_us = settings->run.duration_us;
+    options->reconnect = settings->run.reconnect;
+    for (size_t i = 0; i != options->station_count; i++) options->stations[i]->settings = settings->reader;
+    return options_suit(arguments->command->tables, &arguments->given, options->stations,
+                        options->station_count, is_quiet, &origin);
+}

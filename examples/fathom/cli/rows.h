@@ -2,6 +2,7 @@
 #ifndef ROWS_H
 #define ROWS_H
 
+#include "cli/command.h"
 #include "cli/sensor_words.h"
 #include "reading/results.h"
 
@@ -42,5 +43,9 @@ bool results_finish(results_config_t *results, uint32_t interval_us, const origi
  * unless is_quiet. `lines` of the file where each was given, if it is one. */
 bool options_suit(const option_table_t *tables, const option_given_t *given, station_t *const *stations,
                   size_t count, bool is_quiet, const origin_t *origin);
+
+/* Reads the first `count` words of a command as sensors, with what the options set for them. False after rejecting. */
+bool sensors_read(sensor_options_t *options, const arguments_t *arguments, const sensor_settings_t *settings, int count,
+                  bool is_quiet);
 
 #endif

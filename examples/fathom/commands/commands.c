@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include "commands/commands.h"
 
+#include <stdlib.h>
 #include <string.h>
 
+#include "cli/arguments.h"
+#include "cli/help.h"
 #include "cli/options.h"
 #include "fathom/version.h"
 
@@ -37,12 +40,31 @@ static void print_help(void)
                  "wrong usage,\n3 when `fathom read --until-alarm` was ended by an alarm.\n");
 }
 
+static int start(const host_t *host, const command_t *command, int argc, char **argv)
+{
+    arguments_t arguments;
+    int status = STATUS_USAGE;
+    if (command->start == NULL) return command->run(host, argc, argv);
+    void *const settings = calloc(1, command->settings_size);
+    if (settings == NULL) {
+        (void)fputs("fathom: there is no memory left.\n", stderr);
+        return STATUS_FAILED;
+    }
+    if (arguments_parse(&arguments, command, argc, argv, settings)) {
+        if (arguments.wants_help) help_print(stdout, command);
+        status = arguments.wants_help ? (fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED)
+                                      : command->start(host, &arguments);
+    }
+    free(settings);
+    return status;
+}
+
 int run_command(const host_t *host, int argc, char **argv)
 {
     if (argc < 2) return no_command();
     const char *const name = argv[1];
     for (size_t i = 0; i != COMMANDS; i++)
-        if (strcmp(name, commands[i]->name) == 0) return commands[i]->run(host, argc - 1, argv + 1);
+        if (strcmp(name, commands[i]->name) == 0) return start(host, commands[i], argc - 1, argv + 1);
     if (strcmp(name, "--version") == 0) {
         (void)printf("fathom %s\n", FATHOM_VERSION_STRING);
     } else if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) {

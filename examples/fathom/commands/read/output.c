@@ -4,7 +4,6 @@
 #include <inttypes.h>
 #include <string.h>
 
-#include "cli/command.h"
 #include "diagnosis/status_word.h"
 
 /* ---- text, for people ---- */
@@ -98,18 +97,8 @@ static void write_json(FILE *to, const reading_t *reading)
 
 /* ---- formats ---- */
 
-static const format_t formats[] = {
+const format_t read_formats[] = {
     {"text", false, false, NULL, write_text},
     {"json", true, true, NULL, write_json},
     {"csv", false, true, reading_csv_header, reading_csv},
 };
-enum { FORMATS = sizeof formats / sizeof formats[0] };
-
-const format_t *format_find(const char *command, const char *name)
-{
-    if (name == NULL) return &formats[0];
-    for (size_t i = 0; i != FORMATS; i++)
-        if (strcmp(name, formats[i].name) == 0) return &formats[i];
-    (void)usage_error(command, "there is no format '%s', only text, json, csv", name);
-    return NULL;
-}

@@ -15,7 +15,7 @@ typedef struct {
     void (*write)(FILE *to, const reading_t *reading);
 } format_t;
 
-/* By name; NULL: the default, text. NULL after a usage error that lists what there is. */
-const format_t *format_find(const char *command, const char *name);
+/* text, json, csv, in the order of the words of --format. */
+extern const format_t read_formats[];
 
 #endif

@@ -4,7 +4,9 @@
 #include <inttypes.h>
 #include <string.h>
 
+#include "cli/complete.h"
 #include "commands/commands.h"
+#include "commands/read/output.h"
 #include "commands/read/read_options.h"
 #include "diagnosis/status_word.h"
 #include "reading/poll_loop.h"
@@ -14,7 +16,8 @@
 enum { OTHER_COLUMNS = -1 };
 
 typedef struct {
-    read_options_t options;
+    read_options_t *options;
+    const format_t *format;
     poll_loop_t loop;
     results_t results;
     uint64_t stats_us; /* when all counters are told next */
@@ -38,7 +41,7 @@ static bool has_name(const reading_run_t *run, const station_t *station)
 /* Those of one sensor, and of all. */
 static uint8_t own_columns(const reading_run_t *run, const station_t *station)
 {
-    const results_config_t *const results = &run->options.results;
+    const results_config_t *const results = &run->options->results;
     const uint8_t level = results->has_level ? COLUMNS_LEVEL : 0;
     const uint8_t row = COLUMNS_ROW | COLUMNS_DISTANCE | level;
     if (results->has_alarm) return COLUMNS_ALARM | row;
@@ -63,22 +66,22 @@ static bool has_other_columns(const reading_run_t *run)
     char header[HEADER] = "";
     FILE *const to = fmemopen(header, sizeof header, "w");
     if (to == NULL) return false;
-    run->options.format->begin(to, all_columns(run));
+    run->format->begin(to, all_columns(run));
     (void)fclose(to);
-    return output_file_begins(&run->options.file, header, strcspn(header, ",") + 1) &&
-           !output_file_begins(&run->options.file, header, strlen(header));
+    return output_file_begins(&run->options->file, header, strcspn(header, ",") + 1) &&
+           !output_file_begins(&run->options->file, header, strlen(header));
 }
 
 /* Before each row: what is to be written first. The alarms have some while the port is still waited for. */
 static void begin_output(reading_run_t *run, uint64_t utc_us)
 {
-    const format_t *const format = run->options.format;
-    const bool is_first = run->options.file.path == NULL && !run->has_begun;
+    const format_t *const format = run->format;
+    const bool is_first = run->options->file.path == NULL && !run->has_begun;
     run->has_begun = true;
     errno = 0;
-    const output_file_turn_t turn = output_file_turn(&run->options.file, utc_us);
+    const output_file_turn_t turn = output_file_turn(&run->options->file, utc_us);
     if (turn == OUTPUT_FILE_FAILED) run->output_error = errno;
-    if (turn == OUTPUT_FILE_FAILED || format->begin == NULL || run->options.no_header) return;
+    if (turn == OUTPUT_FILE_FAILED || format->begin == NULL || run->options->no_header) return;
     if (turn == OUTPUT_FILE_FILLED && has_other_columns(run)) run->output_error = OTHER_COLUMNS;
     if (turn != OUTPUT_FILE_EMPTY && !is_first) return;
     format->begin(stdout, all_columns(run));
@@ -108,7 +111,7 @@ static void write_row(reading_run_t *run, const station_t *station, const result
     begin_output(run, reading.utc_us);
     if (run->output_error != 0) return;
     errno = 0;
-    run->options.format->write(stdout, &reading);
+    run->format->write(stdout, &reading);
     flush(run);
 }
 
@@ -128,7 +131,7 @@ static void write_failure_row(reading_run_t *run, const station_t *station, size
                                         .kind = FATHOM_UNKNOWN,
                                         .address = station->address,
                                         .probe = station->model->probes == 1 ? 1 : probe}};
-    if (run->options.results.has_alarm || !run->options.format->has_failures) return;
+    if (run->options->results.has_alarm || !run->format->has_failures) return;
     write_row(run, station, &result, status_word_of_failure(kind, word));
 }
 
@@ -141,7 +144,7 @@ static void tell_failure(const reading_run_t *run, const failure_t *failure, con
 {
     const bool is_port = failure->status == FATHOM_ERR_PORT;
     const bool is_named = has_name(run, station) && !is_port;
-    if (failure->is_told || (run->options.quiet && (!is_port || failure->waits))) return;
+    if (failure->is_told || (run->options->quiet && (!is_port || failure->waits))) return;
     (void)fprintf(stderr, "fathom: %s%sattempt %" PRIu64 ": ", is_named ? station->name : "",
                   is_named ? ": " : "", station->counters.attempts + 1);
     advice_print(stderr, failure);
@@ -166,26 +169,26 @@ static void take_absence(void *ctx, const station_t *station)
 static void write_remark(void *ctx, const station_t *station, const char *text)
 {
     const reading_run_t *const run = ctx;
-    if (!run->options.quiet) (void)fprintf(stderr, "fathom: %s: %s\n", station->name, text);
+    if (!run->options->quiet) (void)fprintf(stderr, "fathom: %s: %s\n", station->name, text);
 }
 
 /* What ends the command is said by a quiet one too. */
 static void write_port(void *ctx, const char *text, poll_port_state_t state)
 {
     const reading_run_t *const run = ctx;
-    if (state == POLL_PORT_GIVEN_UP || !run->options.quiet) (void)fprintf(stderr, "fathom: %s\n", text);
+    if (state == POLL_PORT_GIVEN_UP || !run->options->quiet) (void)fprintf(stderr, "fathom: %s\n", text);
 }
 
 static void get_account(reading_run_t *run, account_t *account)
 {
     poll_loop_account(&run->loop, account);
-    account->has_median = run->options.results.median != 0;
+    account->has_median = run->options->results.median != 0;
     account->dropped_spikes = results_dropped(&run->results);
 }
 
 static void tell_stats(reading_run_t *run, const account_t *account)
 {
-    const bool is_json = run->options.format->is_json;
+    const bool is_json = run->format->is_json;
     if (is_json)
         counters_print_json(account, stderr);
     else
@@ -204,7 +207,7 @@ static void tell_stats(reading_run_t *run, const account_t *account)
 /* Tells the counters when it is time for that. */
 static uint32_t tick_stats(reading_run_t *run)
 {
-    const uint32_t every_us = run->options.stats_us;
+    const uint32_t every_us = run->options->stats_us;
     const uint64_t now_us = poll_loop_time_us(&run->loop);
     if (every_us == 0) return FATHOM_NO_DEADLINE;
     if (now_us >= run->stats_us) {
@@ -227,7 +230,7 @@ static uint32_t tick(void *ctx)
 
 static bool is_ended_by_alarm(const reading_run_t *run)
 {
-    return run->options.until_alarm && run->is_alarmed;
+    return run->options->until_alarm && run->is_alarmed;
 }
 
 static bool is_over(const void *ctx)
@@ -239,7 +242,7 @@ static bool is_over(const void *ctx)
 static int finish(reading_run_t *run)
 {
     const host_t *const host = run->loop.host;
-    const char *const path = run->options.file.path;
+    const char *const path = run->options->file.path;
     account_t account;
     /* A signal may have cut a write short: then ending was asked for, and is no failure. */
     if (run->output_error == EINTR && host->has_ended(host->ctx)) run->output_error = 0;
@@ -249,12 +252,12 @@ static int finish(reading_run_t *run)
         (void)fprintf(stderr,
                       "fathom: %s has a header with other columns; choose another --output, or --no-header "
                       "adds the rows all the same\n",
-                      run->options.file.name);
+                      run->options->file.name);
     else if (run->output_error != 0)
         (void)fprintf(stderr, "fathom: the readings cannot be written%s%s: %s\n", path != NULL ? " to " : "",
                       path != NULL ? path : "", strerror(run->output_error));
     get_account(run, &account);
-    if (run->options.stats) tell_stats(run, &account);
+    if (run->options->stats) tell_stats(run, &account);
     return !poll_loop_is_good(&run->loop) || run->output_error != 0 ? STATUS_FAILED : STATUS_OK;
 }
 
@@ -264,7 +267,22 @@ static int exit_status(const reading_run_t *run, int status)
     return is_ended_by_alarm(run) ? STATUS_ALARM : status;
 }
 
-static int run_read(const host_t *host, int argc, char **argv)
+static bool set_up(reading_run_t *run, const arguments_t *arguments)
+{
+    const origin_t origin = {.command = arguments->command->name};
+    read_options_t *const options = arguments->settings;
+    sensor_options_t *const sensors = &run->loop.options;
+    run->options = options;
+    run->format = &read_formats[options->format];
+    run->stats_us = options->stats_us;
+    sensors->count = options->count;
+    if (options->no_header && run->format->begin == NULL)
+        return reject(&origin, "--no-header has no effect without --format csv.");
+    return sensors_read(sensors, arguments, &options->sensors, arguments->count, options->quiet) &&
+           results_finish(&options->results, options->sensors.reader.period_us, &origin);
+}
+
+static int start(const host_t *host, const arguments_t *arguments)
 {
     static const poll_loop_user_t user = {take_sample, take_failure, take_absence, write_remark,
                                           write_port,  tick,         is_over};
@@ -273,14 +291,12 @@ static int run_read(const host_t *host, int argc, char **argv)
     run.output_error = 0;
     run.has_begun = run.is_alarmed = false;
     poll_loop_begin(loop, host, &user, &run);
-    if (!read_options(&run.options, &loop->options, argc, argv)) return STATUS_USAGE;
-    if (run.options.wants_help) return command_help(&read_command);
+    if (!set_up(&run, arguments)) return STATUS_USAGE;
     if (!host->begin(host->ctx)) return STATUS_FAILED;
-    run.stats_us = run.options.stats_us;
     results_begin(&run.results, loop, write_result, &run);
     for (size_t i = 0; i != loop->options.station_count; i++)
-        results_add(&run.results, loop->options.stations[i], &run.options.results);
-    if (run.options.file.path != NULL) begin_output(&run, host->utc_us(host->ctx));
+        results_add(&run.results, loop->options.stations[i], &run.options->results);
+    if (run.options->file.path != NULL) begin_output(&run, host->utc_us(host->ctx));
     if (run.output_error != 0) return finish(&run);
     int status = STATUS_FAILED;
     if (poll_loop_open(loop)) {
@@ -293,4 +309,17 @@ static int run_read(const host_t *host, int argc, char **argv)
 }
 
 const command_t read_command = {
-    .name = "read", .summary = "reads sensors on serial ports and pins", .help = read_help, .run = run_read};
+    .name = "read",
+    .summary = "Read the distance from one or more sensors until interrupted",
+    .usage = "[NAME=]SENSOR[:ADDRESS][:MODE][@PORT]... [OPTIONS]",
+    .tables = read_tables,
+    .common = "port count interval format output",
+    .examples = "  fathom read a16 --port /dev/ttyUSB0\n"
+                "  fathom read hps167s:7 -p /dev/ttyUSB0 --format csv --output log.csv\n"
+                "  fathom read tank=a16@/dev/ttyUSB0 gate=hps167s:7@tcp:10.0.0.7\n",
+    .status = "Exit status: 0 success, 1 an attempt or the port failed, 2 wrong usage, 3 alarm.\n",
+    .topics = "sensors, ports, pins, values, output, level, alarm",
+    .operands = operands_sensors,
+    .settings_size = sizeof(read_options_t),
+    .start = start,
+};

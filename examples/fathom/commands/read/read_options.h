@@ -2,26 +2,23 @@
 #ifndef READ_OPTIONS_H
 #define READ_OPTIONS_H
 
-#include "commands/read/output.h"
+#include "cli/rows.h"
 #include "output/file.h"
-#include "reading/results.h"
 
-/* What `fathom read` was asked to do, besides reading. */
+/* The options of `fathom read`. */
 typedef struct {
-    const format_t *format;
-    output_file_t file;
+    sensor_settings_t sensors;
     results_config_t results;
-    uint32_t stats_us; /* all counters so often; 0: at the end only */
-    bool stats;        /* all counters at the end */
-    bool until_alarm;  /* ends when an alarm is on */
-    bool quiet;        /* says only what ends it, and what `stats` has asked for */
+    output_file_t file;
+    uint32_t count;    /* attempts of each sensor; 0: endless */
+    uint32_t stats_us; /* from one print of all counters to the next; 0: at the end only */
+    uint8_t format;    /* its row in read_formats */
+    bool stats;        /* print all counters */
+    bool until_alarm;  /* stop when an alarm is on */
+    bool quiet;        /* print only fatal errors and counters */
     bool no_header;    /* of csv */
-    bool wants_help;
 } read_options_t;
 
-/* False after saying what is wrong with them. */
-bool read_options(read_options_t *options, sensor_options_t *sensors, int argc, char **argv);
-
-void read_help(FILE *to);
+extern const option_table_t read_tables[];
 
 #endif

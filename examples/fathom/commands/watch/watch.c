@@ -5,20 +5,17 @@
 #include <signal.h>
 #include <string.h>
 
-#include "cli/options.h"
-#include "cli/pins_help.h"
-#include "cli/reading_options.h"
+#include "cli/complete.h"
+#include "cli/rows.h"
 #include "commands/commands.h"
 #include "commands/watch/watch_terminal.h"
 #include "ports/events.h"
 
-static const char command[] = "watch";
-
-enum { HELP = READING_OPTIONS, OPTIONS };
-
-static const struct option table[OPTIONS + 1] = {
-    READING_OPTION_ROWS,
-    [HELP] = {"help", no_argument, NULL, 256},
+#define SENSORS(member) offsetof(sensor_settings_t, member)
+static const option_table_t tables[] = {
+    {word_rows, SENSORS(defaults)},  {interval_rows, SENSORS(reader)}, {request_rows, SENSORS(reader)},
+    {reading_rows, SENSORS(reader)}, {port_rows, SENSORS(defaults)},   {reconnect_rows, SENSORS(run)},
+    {NULL, 0},
 };
 
 /* Eight pictures a second are smooth; a line a second can be read. A message stays for a while. */
@@ -203,75 +200,23 @@ static int finish(watch_t *watch)
     return !poll_loop_is_good(&watch->loop) || watch->output_error != 0 ? STATUS_FAILED : STATUS_OK;
 }
 
-static void help(FILE *to)
+static bool set_up(sensor_options_t *options, const arguments_t *arguments)
 {
-    (void)fputs(
-        "fathom watch shows live in the terminal what sensors say: distance over time, one lane for each "
-        "probe.\n\n"
-        "usage: fathom watch [NAME=]SENSOR[:ADDRESS][:MODE][@PORT[,KEY=VALUE...]]... [--port PATH] "
-        "[OPTIONS]\n\n",
-        to);
-    models_print(to);
-    (void)fputs(
-        "\nSensors and options are those of fathom read. Each lane has the present value, readings a second, "
-        "and "
-        "how many\n"
-        "attempts were lost; below, time goes from left to right, a column 0.25 s or one --interval. What "
-        "came "
-        "instead of a\n"
-        "distance stands there as a letter: - no target, ~ no target and interference, ? a value without a "
-        "meaning, n\n"
-        "something nearer than it can measure, N and _ the near and far of a switch or a relay, x no "
-        "response, ! a "
-        "damaged,\n"
-        "wrong or impossible response, s nothing for too long, F the sensor says that it has failed, P the "
-        "port is "
-        "lost.\n\n"
-        "The picture fits the window and follows it; q or Ctrl-C ends it. NO_COLOR=1 turns colours off; "
-        "without UTF-8 in\n"
-        "the locale the bars are "
-        "of # and dots. Into a pipe or a file go plain lines, one a second, and no picture.\n\n",
-        to);
-    sensor_options_help(to);
-    reading_options_help(to);
-    pins_help(to);
-    (void)fputs("\nExit status: 0 when nothing failed, 1 when an attempt, the port or the output did, or a "
-                "sensor gave no "
-                "good\n"
-                "reading, 2 for wrong usage.\n\n"
-                "examples:\n"
-                "  fathom watch a16 --port /dev/ttyUSB0\n"
-                "  fathom watch a05:2:modbus hps167s:7 --port /dev/ttyUSB0 --interval 500\n"
-                "  fathom watch hps167s --port /dev/ttyUSB0 --duration 60 > log.txt\n",
-                to);
-}
-
-static bool take_options(sensor_options_t *options, int argc, char **argv, bool *wants_help)
-{
-    const char *values[OPTIONS] = {NULL};
-    const int rest = options_parse(command, argc, argv, table, values);
-    *wants_help = rest >= 0 && values[HELP] != NULL;
-    if (rest < 0 || *wants_help) return rest >= 0;
-    if (!sensor_options(options, command, argv + rest, argc - rest, values, NULL, NULL) ||
-        !reading_options(options->stations, options->station_count, command, values))
-        return false;
+    if (!sensors_read(options, arguments, arguments->settings, arguments->count, false)) return false;
     for (size_t i = 0; i != options->station_count; i++)
         options->stations[i]->settings.repeat_us = 250000; /* a column */
-    sensor_options_tell_useless(options, NULL, values);
     return true;
 }
 
-static int run(const host_t *host, int argc, char **argv)
+static int start(const host_t *host, const arguments_t *arguments)
 {
     static const poll_loop_user_t user = {take_reading, take_failure, take_absence, take_remark,
                                           take_port,    tick,         is_over};
     static watch_t watch; /* too large for any stack */
     poll_loop_t *const loop = &watch.loop;
-    bool wants_help = false;
     memset(&watch, 0, offsetof(watch_t, lanes));
     poll_loop_begin(loop, host, &user, &watch);
-    if (!take_options(&loop->options, argc, argv, &wants_help)) return STATUS_USAGE;
-    if (wants_help) return command_help(&watch_command);
+    if (!set_up(&loop->options, arguments)) return STATUS_USAGE;
     if (!host->begin(host->ctx)) return STATUS_FAILED;
     lanes_begin(&watch.lanes, &loop->options);
     watch.draws = terminal_can_draw();
@@ -293,4 +238,18 @@ static int run(const host_t *host, int argc, char **argv)
 }
 
 const command_t watch_command = {
-    .name = "watch", .summary = "shows sensors live in the terminal", .help = help, .run = run};
+    .name = "watch",
+    .summary = "Show the distances of sensors live in the terminal",
+    .usage = "[NAME=]SENSOR[:ADDRESS][:MODE][@PORT]... [OPTIONS]",
+    .tables = tables,
+    .common = "port interval duration window reconnect",
+    .examples = "  fathom watch a16 --port /dev/ttyUSB0\n"
+                "  fathom watch a05:2:modbus hps167s:7 --port /dev/ttyUSB0 --interval 500\n"
+                "  fathom watch hps167s --port /dev/ttyUSB0 --duration 60 > log.txt\n",
+    .status = "Press q or Ctrl-C to end. 'fathom help picture' explains the picture.\n"
+              "Exit status: 0 success, 1 an attempt or the port failed, 2 wrong usage.\n",
+    .topics = "picture, sensors, ports, pins, values",
+    .operands = operands_sensors,
+    .settings_size = sizeof(sensor_settings_t),
+    .start = start,
+};
