@@ -260,8 +260,10 @@ TEST(what_is_wrong_usage_says_what_to_write)
     expect_usage("a16:modbus@gpiochip0,in=5",
                  "a16 in mode modbus needs a serial port, and gpiochip0 is a GPIO chip");
     expect_usage("a05:pwm@gpiochip0,in=5", "unknown mode of a05 'pwm'.");
-    expect_usage("a16:pwm@gpiochip0,trigger=17,echo=17", "line 17 of gpiochip0 is used twice, as trigger= and as echo=");
-    expect_usage("a16:switch@gpiochip0,in=5,bias=sideways", "bias is 'sideways'. It takes as-is, up, down or off.");
+    expect_usage("a16:pwm@gpiochip0,trigger=17,echo=17",
+                 "line 17 of gpiochip0 is used twice, as trigger= and as echo=");
+    expect_usage("a16:switch@gpiochip0,in=5,bias=sideways",
+                 "bias is 'sideways'. It takes as-is, up, down or off.");
     expect_usage("a16:switch@gpiochip0,in=5,near=by", "near is 'by'. It takes low or high.");
     expect_usage("a16:switch@gpiochip0,in=5,near=", "near is ''.");
     expect_usage(PWM ",near=high", "a16 in mode pwm reports distances and has no near=");

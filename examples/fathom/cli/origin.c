@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "cli/origin.h"
 
+#include <ctype.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -36,7 +37,8 @@ static size_t distance(const char *one, const char *other)
         for (size_t j = 0; j <= m; j++) {
             d[i][j] = i + j;
             if (i == 0 || j == 0) continue;
-            d[i][j] = d[i - 1][j - 1] + (one[i - 1] != other[j - 1]);
+            d[i][j] = d[i - 1][j - 1] +
+                      (tolower((unsigned char)one[i - 1]) != tolower((unsigned char)other[j - 1]));
             if (d[i - 1][j] + 1 < d[i][j]) d[i][j] = d[i - 1][j] + 1;
             if (d[i][j - 1] + 1 < d[i][j]) d[i][j] = d[i][j - 1] + 1;
             if (i > 1 && j > 1 && one[i - 1] == other[j - 2] && one[i - 2] == other[j - 1] &&

@@ -45,7 +45,7 @@ bool options_suit(const option_table_t *tables, const option_given_t *given, sta
                   size_t count, bool is_quiet, const origin_t *origin);
 
 /* Reads the first `count` words of a command as sensors, with what the options set for them. False after rejecting. */
-bool sensors_read(sensor_options_t *options, const arguments_t *arguments, const sensor_settings_t *settings, int count,
-                  bool is_quiet);
+bool sensors_read(sensor_options_t *options, const arguments_t *arguments, const sensor_settings_t *settings,
+                  int count, bool is_quiet);
 
 #endif

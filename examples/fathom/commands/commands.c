@@ -5,40 +5,119 @@
 #include <string.h>
 
 #include "cli/arguments.h"
-#include "cli/help.h"
-#include "cli/options.h"
+#include "cli/complete.h"
+#include "commands/topics.h"
 #include "fathom/version.h"
+#include "output/words.h"
 
 static const command_t *const commands[] = {
-    &scan_command,    &read_command,  &watch_command,      &publish_command,   &info_command,
-    &get_command,     &set_command,   &commission_command, &calibrate_command, &save_command,
-    &restore_command, &reset_command, &request_command,    &decode_command,    &sim_command,
+    &scan_command,      &read_command,   &watch_command,   &publish_command,
+    &info_command,      &get_command,    &set_command,     &commission_command,
+    &calibrate_command, &save_command,   &restore_command, &reset_command,
+    &request_command,   &decode_command, &sim_command,     NULL,
 };
-enum { COMMANDS = sizeof commands / sizeof commands[0] };
 
-static int no_command(void)
+/* ---- help ---- */
+
+static const struct {
+    size_t first; /* the first command of the section */
+    const char *head;
+} sections[] = {{0, "Find and read sensors"}, {4, "Set up sensors"}, {12, "Look closer"}};
+
+static void print_overview(void)
 {
-    char names[160] = "";
-    for (size_t i = 0; i != COMMANDS; i++) {
-        list_add(names, sizeof names, commands[i]->name);
+    size_t section = 0;
+    (void)printf("Usage: fathom COMMAND [ARGUMENTS]\n\n"
+                 "Read and set up the range sensors A16, A05 and HPS-167S.\n");
+    for (size_t i = 0; commands[i] != NULL; i++) {
+        if (section != sizeof sections / sizeof sections[0] && sections[section].first == i)
+            (void)printf("\n%s:\n", sections[section++].head);
+        (void)printf("  %-11s %s\n", commands[i]->name, commands[i]->summary);
     }
-    return usage_error("", "a command is missing: %s", names);
+    (void)printf("\nFirst steps:\n"
+                 "  Find the sensors on a line:   fathom scan --port /dev/ttyUSB0\n"
+                 "  Log a sensor for a day:       fathom read a16 --port /dev/ttyUSB0\n"
+                 "                                  --duration 86400 --format csv --output a16.csv\n"
+                 "  Set an address:               fathom set hps167s --port /dev/ttyUSB0 address 7\n"
+                 "  Publish to a broker:          fathom publish site.yaml (fathom help config)\n"
+                 "  Find out why nothing responds: fathom help trouble\n"
+                 "  Try it without a sensor:      fathom sim a16 --link ./tank, and in another\n"
+                 "                                  terminal fathom read a16 --port ./tank\n"
+                 "\nHelp:\n"
+                 "  fathom COMMAND --help         the options of a command, with examples\n"
+                 "  fathom help TOPIC             TOPIC is one of:\n");
+    for (const topic_t *topic = topics; topic->name != NULL; topic++)
+        (void)printf("    %-10s %s\n", topic->name, topic->summary);
+    (void)printf("  fathom --version              the version\n"
+                 "\nExit status: 0 success, 1 failure, 2 wrong usage, 3 an alarm is on (read).\n");
 }
 
-static void print_help(void)
+static const command_t *find(const char *name)
 {
-    (void)printf("fathom reads the range sensors A16, A05 and HPS-167S on a serial port.\n\n"
-                 "usage: fathom COMMAND [ARGUMENTS]\n\n");
-    for (size_t i = 0; i != COMMANDS; i++)
-        (void)printf("  %-10s %s\n", commands[i]->name, commands[i]->summary);
-    (void)printf("\nfathom COMMAND --help   explains a command, with examples\n"
-                 "fathom --version        prints the version\n\n"
-                 "Without a sensor at hand, in two terminals:\n\n"
-                 "  fathom sim  a16 --link ./tank\n"
-                 "  fathom read a16 --port ./tank\n\n"
-                 "Exit status: 0 when nothing failed, 1 when the line, the port or the output did, 2 for "
-                 "wrong usage,\n3 when `fathom read --until-alarm` was ended by an alarm.\n");
+    for (size_t i = 0; commands[i] != NULL; i++)
+        if (strcmp(name, commands[i]->name) == 0) return commands[i];
+    return NULL;
 }
+
+static int reject_name(const char *what, const char *name, bool has_topics)
+{
+    static const origin_t origin;
+    nearest_t nearest = {.word = name};
+    char known[200] = "";
+    for (size_t i = 0; commands[i] != NULL; i++) {
+        nearest_try(&nearest, commands[i]->name);
+        list_add(known, sizeof known, commands[i]->name);
+    }
+    for (const topic_t *topic = topics; has_topics && topic->name != NULL; topic++) {
+        nearest_try(&nearest, topic->name);
+        list_add(known, sizeof known, topic->name);
+    }
+    (void)reject_unknown(&origin, what, "", &nearest, known);
+    return STATUS_USAGE;
+}
+
+static int finish(void) { return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED; }
+
+/* `fathom help --man [COMMAND]`, and `fathom help --completion SHELL`: for the installation. */
+static bool print_installed(int argc, char **argv)
+{
+    if (argc == 2 && strcmp(argv[0], "--completion") == 0) return complete_stub(stdout, argv[1]);
+    if (argc == 0 || argc > 2 || strcmp(argv[0], "--man") != 0) return false;
+    const command_t *const command = argc == 2 ? find(argv[1]) : NULL;
+    if (argc == 2 && command == NULL) return false;
+    if (command != NULL)
+        man_print(stdout, command);
+    else
+        man_print_tool(stdout, commands, topics);
+    return true;
+}
+
+/* `fathom help`, `fathom help COMMAND` and `fathom help TOPIC`, argv behind "help". */
+static int help(int argc, char **argv)
+{
+    static const origin_t origin;
+    if (print_installed(argc, argv)) return finish();
+    if (argc > 1) {
+        (void)reject(&origin, "help takes one command or topic.");
+        return STATUS_USAGE;
+    }
+    const command_t *const command = argc == 1 ? find(argv[0]) : NULL;
+    const topic_t *topic = topics;
+    while (argc == 1 && topic->name != NULL && strcmp(topic->name, argv[0]) != 0) topic++;
+    if (argc == 0)
+        print_overview();
+    else if (command != NULL && command->help != NULL)
+        command->help(stdout);
+    else if (command != NULL)
+        help_print(stdout, command);
+    else if (topic->name != NULL)
+        topic->print(stdout);
+    else
+        return reject_name("command or topic", argv[0], true);
+    return finish();
+}
+
+/* ---- commands ---- */
 
 static int start(const host_t *host, const command_t *command, int argc, char **argv)
 {
@@ -47,13 +126,12 @@ static int start(const host_t *host, const command_t *command, int argc, char **
     if (command->start == NULL) return command->run(host, argc, argv);
     void *const settings = calloc(1, command->settings_size);
     if (settings == NULL) {
-        (void)fputs("fathom: there is no memory left.\n", stderr);
+        (void)fputs("fathom: not enough memory.\n", stderr);
         return STATUS_FAILED;
     }
     if (arguments_parse(&arguments, command, argc, argv, settings)) {
         if (arguments.wants_help) help_print(stdout, command);
-        status = arguments.wants_help ? (fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED)
-                                      : command->start(host, &arguments);
+        status = arguments.wants_help ? finish() : command->start(host, &arguments);
     }
     free(settings);
     return status;
@@ -61,16 +139,21 @@ static int start(const host_t *host, const command_t *command, int argc, char **
 
 int run_command(const host_t *host, int argc, char **argv)
 {
-    if (argc < 2) return no_command();
-    const char *const name = argv[1];
-    for (size_t i = 0; i != COMMANDS; i++)
-        if (strcmp(name, commands[i]->name) == 0) return start(host, commands[i], argc - 1, argv + 1);
-    if (strcmp(name, "--version") == 0) {
-        (void)printf("fathom %s\n", FATHOM_VERSION_STRING);
-    } else if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) {
-        print_help();
-    } else {
-        return usage_error("", "there is no command '%s'", name);
+    static const origin_t origin;
+    if (argc < 2) {
+        (void)reject(&origin, "no command is named.");
+        return STATUS_USAGE;
     }
-    return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
+    const char *const name = argv[1];
+    const command_t *const command = find(name);
+    if (command != NULL) return start(host, command, argc - 1, argv + 1);
+    if (strcmp(name, "help") == 0) return help(argc - 2, argv + 2);
+    if (strcmp(name, "--help") == 0 || strcmp(name, "-h") == 0) return help(0, NULL);
+    if (strcmp(name, "--version") == 0 || strcmp(name, "-v") == 0)
+        (void)printf("fathom %s\n", FATHOM_VERSION_STRING);
+    else if (strcmp(name, "complete") == 0)
+        complete(stdout, commands, topics, argv + 2, argc - 2);
+    else
+        return reject_name(name[0] == '-' ? "option" : "command", name, false);
+    return finish();
 }

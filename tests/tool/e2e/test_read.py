@@ -76,7 +76,7 @@ class FirstContact(e2e.Case):
         a_zero_is_unknown=('0', '', 'unknown', False, 1),
         a_zero_that_is_no_target=('0', '--means 0=no-target', 'no_target', False, 0),
         a_zero_that_is_too_near=('0', '--means fffd=fault,0=too-near', 'too_near', False, 0),
-        fffd_that_is_unknown=('no-target', '--means FFFD=unknown', 'unknown', False, 1),
+        fffd_that_is_unknown=('no-target', '--means fffd=unknown', 'unknown', False, 1),
         fffe_that_is_a_fault=('interference', '--means fffe=fault', 'fault', False, 0),
         ffff_that_is_interference=('65535', '--means ffff=interference', 'no_target', True, 0))
     def means(self, sent, option, status, interference, code):

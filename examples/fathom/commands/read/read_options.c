@@ -32,8 +32,13 @@ static const option_t read_rows[] = {
 
 #define SENSORS(member) offsetof(read_options_t, sensors.member)
 const option_table_t read_tables[] = {
-    {word_rows, SENSORS(defaults)},    {interval_rows, SENSORS(reader)}, {request_rows, SENSORS(reader)},
-    {reading_rows, SENSORS(reader)},   {port_rows, SENSORS(defaults)},   {reconnect_rows, SENSORS(run)},
-    {read_rows, 0},                    {result_rows, offsetof(read_options_t, results)},
+    {word_rows, SENSORS(defaults)},
+    {interval_rows, SENSORS(reader)},
+    {request_rows, SENSORS(reader)},
+    {reading_rows, SENSORS(reader)},
+    {port_rows, SENSORS(defaults)},
+    {reconnect_rows, SENSORS(run)},
+    {read_rows, 0},
+    {result_rows, offsetof(read_options_t, results)},
     {NULL, 0},
 };

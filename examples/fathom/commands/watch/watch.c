@@ -13,8 +13,12 @@
 
 #define SENSORS(member) offsetof(sensor_settings_t, member)
 static const option_table_t tables[] = {
-    {word_rows, SENSORS(defaults)},  {interval_rows, SENSORS(reader)}, {request_rows, SENSORS(reader)},
-    {reading_rows, SENSORS(reader)}, {port_rows, SENSORS(defaults)},   {reconnect_rows, SENSORS(run)},
+    {word_rows, SENSORS(defaults)},
+    {interval_rows, SENSORS(reader)},
+    {request_rows, SENSORS(reader)},
+    {reading_rows, SENSORS(reader)},
+    {port_rows, SENSORS(defaults)},
+    {reconnect_rows, SENSORS(run)},
     {NULL, 0},
 };
 

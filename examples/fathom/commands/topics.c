@@ -1,0 +1,275 @@
+/* SPDX-License-Identifier: MIT */
+#include "commands/topics.h"
+
+#include <string.h>
+
+#include "cli/rows.h"
+#include "commands/sim/sim.h"
+#include "device/setting_text.h"
+#include "ports/line_text.h"
+#include "reading/fields.h"
+
+/* Prints the keys of an option of some rows. */
+static void print_keys(FILE *to, const option_t *rows, const char *name)
+{
+    const option_table_t tables[] = {{rows, 0}, {NULL, 0}};
+    option_walk_t walk;
+    if (option_find(&walk, tables, name, strlen(name))) help_print_keys(to, walk.row->keys, 2);
+}
+
+static void print_mode(FILE *to, const model_mode_t *mode)
+{
+    (void)fprintf(to, "  :%-12s ", mode->name);
+    if (mode_is_asked(mode))
+        (void)fprintf(to, "Send requests (%s)\n", mode->protocol);
+    else if (mode->is_contact)
+        (void)fputs("Read a switch or a relay contact on a GPIO line\n", to);
+    else if (mode->has_pulses)
+        (void)fputs("Trigger and measure pulses on GPIO lines\n", to);
+    else if (mode->is_triggered)
+        (void)fputs("Trigger each measurement by a break\n", to);
+    else
+        (void)fputs("Receive what the sensor sends automatically\n", to);
+}
+
+static void print_sensors(FILE *to)
+{
+    (void)fputs("A sensor is written [NAME=]SENSOR[:ADDRESS][:MODE][@PORT[,KEY=VALUE...]].\n\n", to);
+    for (size_t i = 0; i != MODELS; i++) {
+        char line[LINE_TEXT];
+        (void)fprintf(to, "%s, %s, %s, addresses 1 to %u\n", models[i]->name, models[i]->what,
+                      line_text(&models[i]->line, line), models[i]->max_address);
+        for (size_t m = 0; m != MODEL_MODES && models[i]->modes[m].name != NULL; m++)
+            print_mode(to, &models[i]->modes[m]);
+    }
+    (void)fputs(
+        "\nWithout :MODE, a sensor is read in its first mode. If it has an address or\n"
+        "shares its port, it is read in the first mode that sends requests.\n\n"
+        "Without :ADDRESS, the address is 1, the factory setting. An a16 or a05 can also\n"
+        "have address 0.\n\n"
+        "NAME stands in the output. Without it, the name is SENSOR:ADDRESS.\n\n"
+        "Sensors that receive requests can share a line, also with different line\n"
+        "settings. If a sensor does not respond three times in succession, it is read\n"
+        "less often, so that it does not delay the others.\n\n"
+        "The first Modbus request stops the automatic output of an A16 or A05. An A05\n"
+        "resumes it only after a power cycle.\n",
+        to);
+}
+
+static void print_ports(FILE *to)
+{
+    (void)fputs("--port PORT is the port of all sensors without @PORT. Without it, the environment\n"
+                "variable FATHOM_PORT names the port. PORT is one of:\n\n"
+                "  /dev/ttyUSB0          a serial port, or the link of 'fathom sim'\n"
+                "  tcp:HOST[:TCPPORT]    a Modbus TCP server or gateway, for mode modbus;\n"
+                "                        TCPPORT is 502 if it is left out; tcp:[IPV6]:TCPPORT\n"
+                "  gpiochip0             a GPIO chip, for modes on pins (fathom help pins)\n\n"
+                "Keys behind @PORT apply to this port, and before the options. They apply to all\n"
+                "sensors at the port. A port over TCP has none. Keys of a serial port:\n\n",
+                to);
+    help_print_keys(to, serial_keys, 2);
+    (void)fputs("\nKeys of a GPIO chip:\n\n", to);
+    help_print_keys(to, chip_keys, 2);
+    (void)fputs("\necho: an RS485 adapter with local echo returns the bytes that it sends. 'auto'\n"
+                "finds this out.\n\n"
+                "--reconnect: a USB adapter is found again by its serial number, also as another\n"
+                "/dev/ttyUSB. An adapter without a serial number is found again in the same USB\n"
+                "socket. Other ports are found again by their path.\n",
+                to);
+}
+
+static void print_pins(FILE *to)
+{
+    (void)fputs("Some modes use lines of a GPIO chip of this board (Linux 5.10 or later). Lines are\n"
+                "numbered from 0; gpioinfo lists them.\n\n"
+                "  a16:pwm@gpiochip0,trigger=17,echo=27\n"
+                "      trigger is an output to the sensor's RX. echo receives the pulses of its\n"
+                "      TX. The sensor measures every 221 ms.\n"
+                "  a16:switch@gpiochip0,in=5\n"
+                "      in is the sensor's TX. It is high if a target is nearer than the\n"
+                "      threshold; write near=low for the other polarity. near or far is printed\n"
+                "      at first and at each change, and with --interval repeatedly.\n"
+                "  a05:relay@gpiochip0,in=5,bias=up\n"
+                "      in is the normally open contact, to ground with bias=up or to 3.3 V with\n"
+                "      bias=down. For the normally closed contact, write near=high with bias=up\n"
+                "      and near=low with bias=down.\n\n"
+                "Only the trigger line is driven. A broken wire of a switch or a relay looks like\n"
+                "a valid state: choose the bias so that it reads as the safe one.\n\n"
+                "Pins of most boards take 3.3 V. 5 V or RS232 levels destroy them. The TX of an A16\n"
+                "is 3 V high, and its RX accepts 5 V.\n\n"
+                "The accuracy of a pulse depends on the time at which the kernel stamps an edge: on\n"
+                "the load, on sleep states, and on the chip's driver. 1 us is 0.17 mm. To measure\n"
+                "it, keep the target still and run 'fathom read ... --stats=10'.\n",
+                to);
+}
+
+static void print_values(FILE *to)
+{
+    (void)fputs("--window MIN-MAX: distances outside are rejected. Defaults: 1-16350 (a16), 1-6000\n"
+                "(a05), 80-30000 (hps167s). An hps167s that is nearer reports 'unknown'.\n\n"
+                "--means KEYS: meanings of the values of a16 and a05 that are no distance, such as\n"
+                "--means 0=no-target,ffff=unknown:\n\n",
+                to);
+    print_keys(to, reading_rows, "means");
+    (void)fputs("\n  MEANING is unknown, no-target, interference, too-near, fault or refused.\n\n"
+                "--value: 'processed' is steady and follows slowly; 'real-time' is the last\n"
+                "measurement. In mode modbus, requests select it (default: processed). In mode auto,\n"
+                "the sensor samples its RX pin. For real-time values, fathom holds the port's TX low\n"
+                "until it ends, so the serial port must support a break. An a16 with automatic UART\n"
+                "output follows within 0.5 s, and back within 2.5 to 7.5 s. An a16 with RS232 does\n"
+                "not: use 'fathom set a16 automatic-value'. An a05 samples its RX pin only at\n"
+                "power-on: fathom asks for a power cycle, and prints nothing before.\n\n"
+                "--probes LIST: an a05 has four probes. In mode dyp a single probe is measured\n"
+                "alone, in 0.1 s instead of 0.25 s.\n\n"
+                "--temperature[=S]: the temperature is read between measurements. It is null if it is\n"
+                "not known, or older than three times S.\n\n"
+                "--timeout: default 500 to 1000 ms for a response, 10 s for a good frame of a\n"
+                "sensor that sends automatically (hps167s: 2 s).\n",
+                to);
+}
+
+static void print_output(FILE *to)
+{
+    (void)fputs("Readings go to standard output, messages and --stats to standard error. 'No target'\n"
+                "and a fault that the sensor reports are readings. In json and csv, a failed attempt\n"
+                "is a row too, with its reason in 'status'. json is one object a line.\n\n"
+                "--output FILE appends to FILE. csv has a header line if FILE is empty.\n"
+                "--rotate day: log.csv becomes log-2026-11-23.csv.\n",
+                to);
+    reading_help(to);
+}
+
+static void print_level(FILE *to)
+{
+    (void)fputs("--level KEYS: the level in a tank, from the distance to its surface, for all sensors:\n"
+                "level_mm, level_per_mille and volume. Keys, such as\n"
+                "--level mounting=2300,height=2000,capacity=5000:\n\n",
+                to);
+    print_keys(to, result_rows, "level");
+    (void)fputs("\nshape=table needs points= instead of capacity=, such as\n"
+                "points=500:400/1500:4000/2000:5000. The last point is the full tank.\n\n"
+                "--median N prints the median of the last N readings of each probe, nothing before\n"
+                "there are N. It starts again after 5 s (or three intervals) without a reading.\n"
+                "--gate MM drops a reading that is MM or more off the median; the third in\n"
+                "succession counts, since the target has moved. --stats has the number of dropped\n"
+                "readings.\n",
+                to);
+}
+
+static void print_alarm(FILE *to)
+{
+    (void)fputs("--alarm KEYS: an alarm for each probe. Only its changes are printed. Quote it, since\n"
+                "the shell uses < and >:\n"
+                "--alarm 'near<500/600,unknown=on,no-response=on'\n\n",
+                to);
+    print_keys(to, result_rows, "alarm");
+    (void)fputs("\nwhen= may be left out at the beginning. Without /OFF, the alarm switches off at the\n"
+                "same distance. The first state is printed with the first distance that decides\n"
+                "it, or after unknown-after (default 5 s, or three intervals).\n\n"
+                "--until-alarm ends the command with exit status 3 when an alarm is on.\n",
+                to);
+}
+
+static void print_picture(FILE *to)
+{
+    (void)fputs("'fathom watch' has a lane for each probe: the present value, readings a second, and\n"
+                "the number of failed attempts. Time runs from left to right; a column is 0.25 s or\n"
+                "one --interval. A letter stands for a reading without a distance:\n\n"
+                "  -  no target                   x  no response\n"
+                "  ~  no target, interference     !  damaged, wrong or impossible response\n"
+                "  ?  a value without a meaning   s  nothing for too long\n"
+                "  n  nearer than it can measure  F  the sensor reports a fault\n"
+                "  N  near (switch, relay)        P  the port is lost\n"
+                "  _  far (switch, relay)\n\n"
+                "NO_COLOR=1 switches colours off. Without UTF-8, bars are made of # and dots. In a\n"
+                "pipe or a file, one line a second is printed instead.\n",
+                to);
+}
+
+static void print_settings(FILE *to)
+{
+    (void)fputs("'fathom get SENSOR SETTING' reads and 'fathom set SENSOR SETTING VALUE' changes\n"
+                "these settings. 'fathom get SENSOR --port PORT' lists their values.\n",
+                to);
+    for (size_t i = 0; i != MODELS; i++) {
+        (void)fprintf(to, "\n%s:\n", models[i]->name);
+        settings_print(to, models[i]->settings);
+    }
+}
+
+static void print_sim(FILE *to)
+{
+    (void)fputs("'fathom sim' makes a pseudo terminal with up to 64 sensors on one line. At most one\n"
+                "of them may send automatically. Sensors with the same address respond at once, as\n"
+                "real ones do. SIGUSR1 cuts their power for a second.\n\n"
+                "Write options of one sensor behind it: a05:2,distance=1500,fault=silence=10%.\n"
+                "Options without a sensor apply to all sensors that can have them.\n\n"
+                "distance: 0 to 65535 mm, or no-target, interference (a16, a05) or fault (hps167s). An\n"
+                "a05 takes up to four, with commas between them. Without it, the target moves.\n\n"
+                "baud: the rate that an hps167s was set to. Each sensor responds only at its own rate.\n\n"
+                "with: a state that was set before, or a behaviour that the datasheets leave open:\n",
+                to);
+    sim_print_traits(to);
+    (void)fputs("\nfault=KIND[=P[@N]]: damages frames that the sensor sends, each with the probability P,\n"
+                "such as 0.05 or 5% (default 1), or only frame N, counted from 1:\n",
+                to);
+    sim_print_faults(to);
+}
+
+static void print_trouble(FILE *to)
+{
+    (void)fputs(
+        "Nothing responds? Work through these in this order:\n\n"
+        "  1. fathom scan --port PORT\n"
+        "     It listens first, then sends requests with factory settings to addresses 1 to 32.\n"
+        "  2. Is the port right? Without other adapters, 'ls /dev/ttyUSB*' names it.\n"
+        "     If the port cannot be opened: add yourself to the group dialout, and end other\n"
+        "     programs that use it.\n"
+        "  3. Is the sensor powered? Measure the supply at the sensor.\n"
+        "  4. Swap A and B (RS485), or TX and RX (UART, RS232). Connect the grounds.\n"
+        "  5. Settings that were changed: fathom scan --port PORT --baud all --parity all\n"
+        "     --address 1-254\n"
+        "  6. Damaged frames: shorten the line, terminate both of its ends, and try a lower rate.\n"
+        "     'fathom read ... --stats' counts what fails, and names the likely cause.\n"
+        "  7. Two sensors with the same address respond at once. Connect one alone, and give it\n"
+        "     another address: fathom set hps167s --port PORT address 7\n"
+        "  8. Bytes that you do not understand: fathom decode HEX...\n",
+        to);
+}
+
+static void print_config(FILE *to)
+{
+    (void)fputs("'fathom publish FILE' reads a YAML file:\n\n"
+                "  site: mill\n"
+                "  broker: {host: mqtt.example.org, user: mill, password-file: /etc/fathom/password}\n"
+                "  lines:\n"
+                "    - port: /dev/ttyUSB0\n"
+                "      sensors:\n"
+                "        - {name: tank, sensor: 'a16:1', level: {mounting: 2300, height: 2000,\n"
+                "           capacity: 5000}}\n"
+                "        - {name: gate, sensor: 'hps167s:7', interval: 500}\n\n"
+                "Its keys:\n\n",
+                to);
+    (void)fputs("  'fathom publish --help' lists them.\n", to);
+    (void)fputs("\nTopics are PREFIX/SITE/status and publisher, and for each sensor\n"
+                "PREFIX/SITE/NAME/state, availability and, if it has them, level and alarm.\n"
+                "SIGHUP reads the file again: sensors that have not changed are read on. While the\n"
+                "broker is not connected, messages wait in memory.\n",
+                to);
+}
+
+const topic_t topics[] = {
+    {"sensors", "Sensors, modes and addresses", print_sensors},
+    {"ports", "Ports and their keys", print_ports},
+    {"pins", "Modes on GPIO lines", print_pins},
+    {"values", "What is a distance: window, means, value", print_values},
+    {"output", "Fields of JSON and CSV", print_output},
+    {"level", "Level of a tank, and medians", print_level},
+    {"alarm", "Alarms", print_alarm},
+    {"picture", "The picture of fathom watch", print_picture},
+    {"settings", "Settings of the sensors", print_settings},
+    {"config", "The configuration file of fathom publish", print_config},
+    {"faults", "Traits and faults of simulated sensors", print_sim},
+    {"trouble", "What to do if nothing responds", print_trouble},
+    {.name = NULL},
+};
