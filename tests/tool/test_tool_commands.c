@@ -190,11 +190,11 @@ TEST(scan_calls_nothing_a_distance_that_is_none)
         const char *text;
     } rows[] = {{1, "  1 mm  "},
                 {16350, "  16350 mm  "},
-                {0, "  the value 0, which is no distance  "},
-                {16351, "  the value 16351, which is no distance  "},
-                {0xFFFD, "  no target  "},
-                {0xFFFE, "  no target, interference  "},
-                {0xFFFF, "  the value 65535, which is no distance  "}};
+                {0, "  unknown (value 0)  "},
+                {16351, "  unknown (value 16351)  "},
+                {0xFFFD, "  no_target (value 65533)  "},
+                {0xFFFE, "  no_target (value 65534)  "},
+                {0xFFFF, "  unknown (value 65535)  "}};
     for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
         bench_begin();
         bench_a16(any_a16);

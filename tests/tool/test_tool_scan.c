@@ -33,10 +33,10 @@ static void add_eight(void)
 static uint64_t estimate_us(const char *options)
 {
     const tool_run_t *const run = tool_run(&bench.tool, "scan --estimate --format json %s", options);
-    const char *const seconds = strstr(run->out, "\"seconds\":");
+    const char *const seconds = strstr(run->out, "\"duration_s\":");
     assert_non_null(seconds);
     assert_string_equal(run->err, "");
-    return strtoull(seconds + strlen("\"seconds\":"), NULL, 10) * 1000000u;
+    return strtoull(seconds + strlen("\"duration_s\":"), NULL, 10) * 1000000u;
 }
 
 /* ---- what a scan finds ---- */
@@ -51,8 +51,8 @@ TEST(eight_sensors_of_three_models_are_found_and_their_identities_printed)
     /* HPS-167S #3: the example is version 3.9 of 2019-09-23 */
     assert_says(run,
                 "hps167s  address 6    19200 8E1    interface 2.1.0 of 2020-09-27, sensor 3.9 of 2019-09-23, "
-                "termination off  ->  fathom read hps167s --address 6 --port line\n");
-    assert_says(run, "termination on  ->  fathom read hps167s --address 8 --port line\n");
+                "termination off  ->  fathom read hps167s:6:modbus --port line\n");
+    assert_says(run, "termination on  ->  fathom read hps167s:8:modbus --port line\n");
     assert_says(
         run,
         "fathom: 2 HPS-167S have their termination resistor on, as from the factory, which overloads the "
@@ -110,7 +110,7 @@ TEST(a_sensor_at_another_rate_is_found_there_and_other_parities_are_not_tried)
 {
     (void)add_hps167s((fathom_sim_hps167s_config_t){.address = 12, .baud_code = 2});
     const tool_run_t *const run = scan_finds("hps167s 12 57600 8E1", "--baud all --parity all");
-    assert_says(run, "fathom read hps167s --address 12 --baud 57600 --port line\n");
+    assert_says(run, "fathom read hps167s:12:modbus --port line --baud 57600\n");
     assert_int_equal(scans.probed[2][FATHOM_PARITY_EVEN], 32);
     assert_int_equal(scans.probed[2][FATHOM_PARITY_NONE], 31);
     assert_int_equal(scans.probed[2][FATHOM_PARITY_ODD], 31);
@@ -127,7 +127,7 @@ TEST(a_late_response_is_found_while_the_next_address_is_asked)
 TEST(an_a05_with_frames_55_aa_is_found_at_an_address_beyond_the_range)
 {
     (void)add_a05((fathom_sim_a05_config_t){.address = 100, .mode = FATHOM_SIM_A05_DYP});
-    assert_says(scan_finds("a05 100 9600 8N1", ""), "fathom read a05 --mode dyp --address 100 --port line\n");
+    assert_says(scan_finds("a05 100 9600 8N1", ""), "fathom read a05:100:dyp --port line\n");
 }
 
 TEST(an_a16_at_address_0_is_found_and_no_broadcast_is_sent)
@@ -169,10 +169,10 @@ TEST(a_line_of_json_has_the_identity_and_the_next_command)
     assert_string_equal(
         scan("--address 13 --baud 19200 --format json")->out,
         "{\"kind\":\"sensor\",\"model\":\"hps167s\",\"address\":13,\"baud\":19200,\"parity\":\"even\","
-        "\"stop_bits\":1,\"mode\":\"modbus\",\"interface_version\":\"2.1.0\","
-        "\"interface_date\":\"2020-09-27\",\"sensor_version\":\"3.9\",\"sensor_date\":\"2019-09-23\","
+        "\"stop_bits\":1,\"mode\":\"modbus\",\"interface_version\":\"2.1.0 of 2020-09-27\","
+        "\"sensor_version\":\"3.9 of 2019-09-23\","
         "\"uuid\":\"00390025423457142034383501060705\",\"termination\":true,"
-        "\"next\":\"fathom read hps167s --address 13 --port line\"}\n");
+        "\"is_double\":false,\"next\":\"fathom read hps167s:13:modbus --port line\"}\n");
 }
 
 /* ---- how long it takes ---- */
@@ -207,7 +207,7 @@ TEST(the_default_is_32_addresses_at_the_factory_settings_in_18_s)
     assert_string_equal(
         run->out, "addresses 1 to 32 at 9600 8N1, 19200 8E1: about 18 s, and a second for each sensor\n");
     assert_string_equal(tool_run(&bench.tool, "scan --estimate --format json")->out,
-                        "{\"settings\":2,\"addresses\":32,\"seconds\":18}\n");
+                        "{\"settings\":2,\"addresses\":32,\"duration_s\":18}\n");
     assert_says(scan("--address 1-2"),
                 "fathom: asks addresses 1 to 2 at 9600 8N1, 19200 8E1; takes about 10 s, and a "
                 "second for each sensor\n");

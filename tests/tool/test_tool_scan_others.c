@@ -46,8 +46,8 @@ TEST(an_a16_and_an_a05_that_send_automatically_are_named_and_nothing_is_sent)
         const tool_run_t *const run =
             hears(i / 2 % 2 == 0 ? "a16 - 9600 8N1" : "a05 - 9600 8N1",
                   "even a read ends what an A16 or A05 sends by itself (of an A05 until power-off)");
-        assert_says(run, i / 2 % 2 == 0 ? "sends by itself  ->  fathom read a16 --port line\n"
-                                        : "sends by itself  ->  fathom read a05 --port line\n");
+        assert_says(run, i / 2 % 2 == 0 ? "sends without requests  ->  fathom read a16 --port line\n"
+                                        : "sends without requests  ->  fathom read a05 --port line\n");
         assert_int_equal(run->status, 0);
     }
 }
@@ -75,7 +75,7 @@ static void hear_hps167s_at_115200(uint32_t period_us)
     (void)add_speaker(&fast, period_us, hps_response, sizeof hps_response);
     const tool_run_t *const run = hears("hps167s 1 115200 8E1", "requests would go into what it sends");
     assert_says(run,
-                "sends responses unasked  ->  fathom read hps167s --address 1 --baud 115200 --port line\n");
+                "sends unsolicited responses  ->  fathom read hps167s:1:modbus --port line --baud 115200\n");
 }
 
 TEST(an_hps167s_that_sends_unsolicited_frames_is_found_at_its_rate)
@@ -93,7 +93,7 @@ TEST(another_master_is_not_disturbed)
 {
     (void)add_speaker(&dyp_line, 500000, a16_request, sizeof a16_request);
     const tool_run_t *const run = hears("? 1 9600 8N1", "another master asks on this line");
-    assert_says(run, "another master asks this address\n");
+    assert_says(run, "another master sends requests to this address\n");
     assert_int_equal(run->status, 1);
 }
 
@@ -122,7 +122,7 @@ TEST(two_units_with_one_address_are_named_and_their_neighbours_found)
         (void)add_hps167s((fathom_sim_hps167s_config_t){.address = 5});
         const tool_run_t *const run =
             scan_finds("a16 2 9600 8N1, ? 1 9600 8N1, hps167s 5 19200 8E1, ? 4 19200 8E1", "");
-        assert_says(run, "its responses are damaged: two sensors with one address?\n");
+        assert_says(run, "damaged responses: two sensors with one address?\n");
         assert_says(run, "responses at address 1 (9600 8N1) are damaged: two sensors with one address?");
         assert_says(run, "responses at address 4 (19200 8E1) are damaged: two sensors with one address?");
     }
@@ -134,7 +134,7 @@ TEST(two_responses_to_one_request_are_two_units)
     (void)add_a16((fathom_sim_a16_config_t){.address = 6});
     (void)add_a16((fathom_sim_a16_config_t){.address = 6, .settings_us = 40000});
     const tool_run_t *const run = scan_finds("? 6 9600 8N1", "");
-    assert_says(run, "answered twice: two sensors with one address?\n");
+    assert_says(run, "responds twice: two sensors with one address?\n");
     assert_says(run, "two responses came from address 6: two sensors with one address?");
 }
 
@@ -160,8 +160,8 @@ TEST(responses_that_are_not_modbus_are_one_finding)
 TEST(junk_from_one_address_of_two_is_damage_and_from_the_only_one_another_protocol)
 {
     add_speaker(&dyp_line, 0, junk, sizeof junk)->address = 3;
-    assert_says(scan_finds("? - 9600 8N1", "--address 3"), "something answers, but not Modbus\n");
-    assert_says(scan_finds("? 3 9600 8N1", "--address 3-4"), "its responses are damaged");
+    assert_says(scan_finds("? - 9600 8N1", "--address 3"), "a response that is not Modbus\n");
+    assert_says(scan_finds("? 3 9600 8N1", "--address 3-4"), "damaged responses");
 }
 
 /* ---- other Modbus devices ---- */
@@ -172,7 +172,7 @@ static void is_other(stranger_t with, const fathom_line_settings_t *line)
     add_stranger(9, with, line);
     const tool_run_t *const run =
         scan_finds(line == &dyp_line ? "? 9 9600 8N1" : "? 9 19200 8E1", "--address 8-10");
-    assert_says(run, "another Modbus device: none of the three sensors\n");
+    assert_says(run, "a Modbus device that is none of the known sensors\n");
     assert_int_equal(run->status, 1);
 }
 

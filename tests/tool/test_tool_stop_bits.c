@@ -78,7 +78,7 @@ TEST(a_device_that_has_moved_is_told_with_its_two_stop_bits)
 
 TEST(scan_asks_with_two_stop_bits_only_when_told)
 {
-    const char *const next = "fathom read hps167s --address 3 --parity none --stop-bits 2 --port line\n";
+    const char *const next = "fathom read hps167s:3:modbus --port line --parity none --stop-bits 2\n";
     ASSERT_RUN(0, "scan --address 1-4 --baud all --parity all --port line");
     assert_int_equal(set_to_two, 0);
     const tool_run_t *const run = tool_run(&bench.tool, "scan --address 1-4 --stop-bits 2 --port line");

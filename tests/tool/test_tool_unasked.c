@@ -53,7 +53,7 @@ TEST(scan_names_it_and_sends_nothing)
 {
     const tool_run_t *const run = tool_run(&bench.tool, "scan --port line");
     assert_int_equal(run->status, 0);
-    assert_non_null(strstr(run->out, "hps167s  address 1    19200 8E1    sends responses unasked"));
+    assert_non_null(strstr(run->out, "hps167s  address 1    19200 8E1    sends unsolicited responses"));
     assert_int_equal(bench.hps167s.device.counters.requests, 0);
 }
 

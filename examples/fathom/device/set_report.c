@@ -3,7 +3,7 @@
 
 #include "cli/command.h"
 #include "device/setting_text.h"
-#include "ports/line_text.h"
+#include "sensors/read_command.h"
 
 static void print_value(const setting_t *setting, const char *text)
 {
@@ -11,19 +11,18 @@ static void print_value(const setting_t *setting, const char *text)
     (void)printf("%s%s%s", text, has_unit ? " " : "", has_unit ? setting->unit : "");
 }
 
-/* Where the device is asked from now on. */
+/* Prints how to read the sensor after its address or baud rate has changed. */
 static void print_next(const change_t *change)
 {
     const setting_t *const setting = change->setting;
     const station_t *const station = change->session->station;
-    const model_t *const model = station->model;
     const reader_facts_t facts = reader_facts(station->reader);
     const fathom_line_settings_t *const line = facts.line != NULL ? facts.line : &station->line;
-    char options[LINE_OPTIONS];
     if (!setting->moves) return;
-    (void)printf("from now on: fathom read %s:%u:%s --port %s%s\n", model->name, facts.address,
-                 station->mode->name, session_port(change->session)->path,
-                 line_options(line, &model->line, options));
+    (void)fputs("from now on: ", stdout);
+    read_command_print(stdout, station->model, station->mode->name, facts.address, line,
+                       session_port(change->session)->path);
+    (void)fputs("\n", stdout);
 }
 
 static bool is_later(const change_t *change)

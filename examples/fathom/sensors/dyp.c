@@ -52,24 +52,15 @@ void dyp_put_distance(char text[SETTING_TEXT], fathom_status_t status, const fat
 
 /* ---- scan ---- */
 
-/* FFFD and FFFE are not in the datasheets; sister models say these. */
-void dyp_print_finding(FILE *to, const model_t *model, const scan_finding_t *finding)
+/* FFFD and FFFE are not in the datasheets of A16 and A05, but in those of their family. */
+void dyp_describe(const model_t *model, const scan_finding_t *finding, finding_facts_t *facts)
 {
-    const char *const probe = model->probes > 1 ? "probe 1: " : "";
+    const uint16_t value = finding->value;
+    const bool is_target = value != 0 && value <= model->max_mm;
     if (!finding->has_value) return;
-    if (finding->value == 0xFFFD)
-        (void)fprintf(to, "%sno target", probe);
-    else if (finding->value == 0xFFFE)
-        (void)fprintf(to, "%sno target, interference", probe);
-    else if (finding->value != 0 && finding->value <= model->max_mm)
-        (void)fprintf(to, "%s%u mm", probe, finding->value);
-    else
-        (void)fprintf(to, "%sthe value %u, which is no distance", probe, finding->value);
-}
-
-void dyp_print_finding_json(FILE *to, const scan_finding_t *finding)
-{
-    if (finding->has_value) (void)fprintf(to, ",\"raw\":%u", finding->value);
+    facts->raw = value;
+    if (is_target) facts->distance_mm = value;
+    facts->status = is_target ? "target" : value == 0xFFFD || value == 0xFFFE ? "no_target" : "unknown";
 }
 
 /* ---- decoding ---- */

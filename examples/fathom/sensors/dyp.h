@@ -34,8 +34,7 @@ void dyp_put_distance(char text[SETTING_TEXT], fathom_status_t status, const fat
 /* ---- scan ---- */
 
 /* The distance that it has answered with. */
-void dyp_print_finding(FILE *to, const model_t *model, const scan_finding_t *finding);
-void dyp_print_finding_json(FILE *to, const scan_finding_t *finding);
+void dyp_describe(const model_t *model, const scan_finding_t *finding, finding_facts_t *facts);
 
 /* ---- decoding ---- */
 

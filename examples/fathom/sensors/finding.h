@@ -7,6 +7,7 @@
 
 #include "fathom/codec/hps167s_registers.h"
 #include "fathom/hal.h"
+#include "output/record.h"
 
 /* What a scan finds. */
 typedef enum {
@@ -41,5 +42,16 @@ typedef struct {
     fathom_hps167s_version_t interface;
     fathom_hps167s_details_t details;
 } scan_finding_t;
+
+/* What a sensor has reported to a scan, for text and JSON. Words that are not known are "" or NULL, numbers NO_VALUE. */
+typedef struct {
+    char interface_version[32];
+    char sensor_version[32];
+    char uuid[2 * FATHOM_HPS167S_UUID_LENGTH + 1];
+    int64_t termination; /* 1: the resistor is on */
+    const char *status;  /* of the value, a word of status_word.h */
+    int64_t distance_mm;
+    int64_t raw;
+} finding_facts_t;
 
 #endif

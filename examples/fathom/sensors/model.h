@@ -98,8 +98,8 @@ struct model {
         /* Instead of `own`: decides by the response to the first read, and what it asks besides. */
         bool (*is_it)(inquiry_t *inquiry);
     } scan;
-    void (*print_finding)(FILE *to, const model_t *model, const scan_finding_t *finding);
-    void (*print_finding_json)(FILE *to, const scan_finding_t *finding); /* members, each after a comma */
+    /* Fills in what is known. *facts is empty before. */
+    void (*describe)(const model_t *model, const scan_finding_t *finding, finding_facts_t *facts);
 
     /* ---- what its frames say ---- */
 

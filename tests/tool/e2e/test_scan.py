@@ -29,7 +29,7 @@ class Case(e2e.Case):
                           *f'--address 7 --baud 19200 {PATIENT}'.split()], 0)
         self.assertNotIn('\r', done.out + done.err)
         words = shlex.split(done.out.split('->')[1])
-        self.assertEqual(words[-1], self.path("it's here"))
+        self.assertEqual(words[4], self.path("it's here"))
         self.assertEqual(self.read_json(words[2:], '--count 1')[0]['address'], 7)
 
     def test_the_plan_is_printed_before_the_first_request(self):

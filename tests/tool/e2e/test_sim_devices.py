@@ -53,7 +53,7 @@ class Link(Case):
     def test_the_path_is_the_only_line_of_stdout_and_the_link_is_there_by_then(self):
         sim = self.sim(f'hps167s --link {self.link}')
         self.assertEqual(os.readlink(self.link), sim.port)
-        sim.expect('simulates hps167s, mode modbus, address 1, 19200 8E1.*fathom read hps167s --port '
+        sim.expect('simulates hps167s, mode modbus, address 1, 19200 8E1.*fathom read hps167s:1:modbus --port '
                    f'{self.link}$', 'err')
         self.ends(sim.end(), 0, out=f'{sim.port}\n')
 
@@ -104,7 +104,7 @@ class Link(Case):
 
     def test_the_hint_names_what_is_not_the_factorys(self):
         sim = self.sim('a16:7:modbus')
-        sim.expect(rf'fathom read a16 --mode modbus --address 7 --port {sim}$', 'err')
+        sim.expect(rf'fathom read a16:7:modbus --port {sim}$', 'err')
 
 
 class Port(Case):
@@ -166,7 +166,7 @@ class Several(Bus):
     def test_three_models_answer_each_at_its_own_address_and_rate(self):
         sim = self.sim('a16:1:modbus,distance=754 a05:2:modbus,distance=316 hps167s:7,distance=2083 --counters')
         self.assertEqual([self.mm(sim, sensor) for sensor in (HPS, A16, A05)], [2083, 754, 316])
-        told = self.counters(sim, 'device', 'sensor', 'mode', 'address', 'baud', 'requests', 'answered',
+        told = self.counters(sim, 'device', 'model', 'mode', 'address', 'baud', 'requests', 'answered',
                              'writes', 'resets', 'wrong_settings', 'others')
         self.assertEqual([one[:9] for one in told], [(1, 'a16', 'modbus', 1, 9600, 1, 1, 0, 0),
                                                      (2, 'a05', 'modbus', 2, 9600, 1, 1, 0, 0),
@@ -199,7 +199,7 @@ class Several(Bus):
 
     def test_an_hps167s_at_another_rate_is_deaf_at_the_factorys(self):
         sim = self.sim('hps167s:7 --baud 115200 --distance 2083 --counters')
-        sim.expect(r'115200 8E1, until .*fathom read hps167s --address 7 --baud 115200 --port', 'err')
+        sim.expect(r'115200 8E1, until .*fathom read hps167s:7:modbus --port .* --baud 115200', 'err')
         self.fails(sim, HPS)
         self.assertEqual(self.mm(sim, HPS, '--baud 115200'), 2083)
         self.assertEqual(self.counters(sim, 'requests', 'wrong_settings', 'baud'), [(1, 8, 115200)])

@@ -6,6 +6,7 @@
 #include "commands/commands.h"
 #include "commands/scan/scan.h"
 #include "commands/scan/scan_report.h"
+#include "output/json.h"
 #include "ports/line_text.h"
 #include "sensors/models.h"
 
@@ -70,8 +71,13 @@ static int print_estimate(const scan_options_t *options)
     const scan_plan_t *const plan = &options->plan;
     const uint64_t all_us = scan_plan_us(plan);
     if (options->is_json) {
-        (void)printf("{\"settings\":%u,\"addresses\":%" PRIu32 ",\"seconds\":%" PRIu64 "}\n",
-                     plan->setting_count, scan_addresses(plan), (all_us + 999999u) / 1000000u);
+        json_t json = {.to = stdout};
+        json_begin(&json, NULL, '{');
+        json_value(&json, "settings", "%u", plan->setting_count);
+        json_value(&json, "addresses", "%" PRIu32, scan_addresses(plan));
+        json_value(&json, "duration_s", "%" PRIu64, (all_us + 999999u) / 1000000u);
+        json_end(&json, '}');
+        (void)puts("");
     } else {
         char duration[DURATION_TEXT];
         print_plan(stdout, plan);

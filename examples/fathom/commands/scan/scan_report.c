@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): fmemopen */
 #include "commands/scan/scan_report.h"
 
 #include <inttypes.h>
-#include <string.h>
+#include <stdio.h>
 
 #include "ports/line_text.h"
 #include "sensors/models.h"
+#include "sensors/read_command.h"
 
 enum { NEXT_TEXT = 1024 };
 
@@ -25,121 +27,64 @@ static const char *mode_name(const scan_finding_t *finding)
     return names[finding->mode];
 }
 
-/* Adds to a text of `capacity` bytes; what does not fit is left out. */
-#define ADD(text, capacity, ...) (void)snprintf((text) + strlen(text), (capacity)-strlen(text), __VA_ARGS__)
-
-/* ---- what to type next ---- */
-
-/* As a word of a shell's command line. */
-static void add_word(char *text, size_t capacity, const char *word)
-{
-    static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./:@%+=,-";
-    if (word[0] != '\0' && strspn(word, plain) == strlen(word)) {
-        ADD(text, capacity, "%s", word);
-        return;
-    }
-    ADD(text, capacity, "'");
-    for (; *word != '\0'; word++)
-        if (*word == '\'')
-            ADD(text, capacity, "'\\''");
-        else
-            ADD(text, capacity, "%c", *word);
-    ADD(text, capacity, "'");
-}
-
-/* 0 is one where a sensor was asked there. */
+/* Address 0 is one only if a sensor responded there. */
 static bool has_address(const scan_finding_t *finding)
 {
     return finding->address != 0 || (finding->kind == SCAN_SENSOR && finding->mode == SCAN_MODBUS);
 }
 
-/* "" where there is nothing to type. */
+/* Writes the command to type next; "" if there is none. */
 static void next_command(const scan_finding_t *finding, const char *port, char text[NEXT_TEXT])
 {
+    FILE *const to = finding->kind == SCAN_SENSOR ? fmemopen(text, NEXT_TEXT, "w") : NULL;
     text[0] = '\0';
-    if (finding->kind != SCAN_SENSOR) return;
-    char options[LINE_OPTIONS];
-    const model_t *const model = model_of(finding->model);
-    const char *const mode = mode_name(finding);
-    ADD(text, NEXT_TEXT, "fathom read %s", model->name);
-    if (strcmp(mode, model->modes[0].name) != 0) ADD(text, NEXT_TEXT, " --mode %s", mode);
-    if (finding->mode != SCAN_AUTO) ADD(text, NEXT_TEXT, " --address %u", finding->address);
-    ADD(text, NEXT_TEXT, "%s --port ", line_options(&finding->line, &model->line, options));
-    add_word(text, NEXT_TEXT, port);
+    if (to == NULL) return;
+    read_command_print(to, model_of(finding->model), mode_name(finding),
+                       finding->mode == SCAN_AUTO ? -1 : finding->address, &finding->line, port);
+    (void)fclose(to);
 }
 
-/* ---- text ---- */
+/* ---- a finding as a record ---- */
 
-static void tell_sensor(FILE *to, const scan_finding_t *finding)
+typedef struct {
+    const char *kind, *model, *parity, *mode, *interface_version, *sensor_version, *uuid, *status, *next;
+    int64_t address, baud, stop_bits, termination, distance_mm, raw, is_double;
+} row_t;
+
+enum { SENSOR = 1, OPTICS = 2, VALUE = 4 };
+
+#define AT(member) offsetof(row_t, member)
+static const field_t fields[] = {
+    {"kind", "", "sensor, other_modbus, damaged, not_modbus, sender or master", FIELD_WORD, 0, AT(kind)},
+    {"model", "", "Model; null unless it is one of the known sensors", FIELD_WORD, 0, AT(model)},
+    {"address", "", "Address; null if there is none", FIELD_NUMBER, 0, AT(address)},
+    {"baud", "", "Baud rate", FIELD_NUMBER, 0, AT(baud)},
+    {"parity", "", "Parity", FIELD_WORD, 0, AT(parity)},
+    {"stop_bits", "", "Stop bits", FIELD_NUMBER, 0, AT(stop_bits)},
+    {"mode", "", "Mode in which the sensor can be read", FIELD_WORD, SENSOR, AT(mode)},
+    {"interface_version", "", "Version of the interface (hps167s)", FIELD_WORD, OPTICS,
+     AT(interface_version)},
+    {"sensor_version", "", "Version of the sensor (hps167s)", FIELD_WORD, OPTICS, AT(sensor_version)},
+    {"uuid", "", "Unique number of the sensor (hps167s)", FIELD_WORD, OPTICS, AT(uuid)},
+    {"termination", "", "Whether the termination resistor is on (hps167s)", FIELD_FLAG, OPTICS,
+     AT(termination)},
+    {"status", "", "Kind of the first value", FIELD_WORD, VALUE, AT(status)},
+    {"distance_mm", "mm", "Distance of the first probe", FIELD_NUMBER, VALUE, AT(distance_mm)},
+    {"raw", "", "Value that the sensor sent", FIELD_NUMBER, VALUE, AT(raw)},
+    {"is_double", "", "Whether one request had two responses", FIELD_FLAG, 0, AT(is_double)},
+    {"next", "", "Command to type next", FIELD_WORD, 0, AT(next)},
+    {.key = NULL},
+};
+#undef AT
+
+static const char *word_of(const char *text) { return text[0] != '\0' ? text : NULL; }
+
+static finding_facts_t facts_of(const scan_finding_t *finding)
 {
-    const model_t *const model = model_of(finding->model);
-    if (finding->mode == SCAN_AUTO)
-        (void)fputs("sends by itself", to);
-    else
-        model->print_finding(to, model, finding);
-    if (finding->is_double) (void)fputs(", answered twice", to);
-}
-
-static void tell_other(FILE *to, const scan_finding_t *finding)
-{
-    switch (finding->kind) {
-    case SCAN_OTHER:
-        (void)fputs(finding->is_double ? "answered twice: two sensors with one address?"
-                                       : "another Modbus device: none of the three sensors",
-                    to);
-        break;
-    case SCAN_DAMAGED:
-        (void)fputs("its responses are damaged: two sensors with one address?", to);
-        break;
-    case SCAN_NOT_MODBUS:
-        (void)fputs("something answers, but not Modbus", to);
-        break;
-    case SCAN_MASTER:
-        (void)fputs("another master asks this address", to);
-        break;
-    default:
-        (void)fputs("something sends by itself, but no frames of these sensors", to);
-        break;
-    }
-}
-
-static void tell(FILE *to, const scan_finding_t *finding)
-{
-    if (finding->kind == SCAN_SENSOR)
-        tell_sensor(to, finding);
-    else
-        tell_other(to, finding);
-}
-
-void scan_print_text(FILE *to, const scan_finding_t *finding, const char *port)
-{
-    char line[LINE_TEXT];
-    char address[16] = "-";
-    char next[NEXT_TEXT];
-    if (has_address(finding)) (void)snprintf(address, sizeof address, "address %u", finding->address);
-    next_command(finding, port, next);
-    (void)fprintf(to, "%-8s %-12s %-11s  ",
-                  finding->kind == SCAN_SENSOR ? model_of(finding->model)->name : "?", address,
-                  line_text(&finding->line, line));
-    tell(to, finding);
-    if (next[0] != '\0') (void)fprintf(to, "  ->  %s", next);
-    (void)fputs("\n", to);
-}
-
-/* ---- JSON ---- */
-
-static void print_string(FILE *to, const char *text)
-{
-    (void)fputs("\"", to);
-    for (; *text != '\0'; text++) {
-        if (*text == '"' || *text == '\\')
-            (void)fprintf(to, "\\%c", *text);
-        else if ((unsigned char)*text < 0x20)
-            (void)fprintf(to, "\\u%04x", (unsigned)(unsigned char)*text);
-        else
-            (void)fputc(*text, to);
-    }
-    (void)fputs("\"", to);
+    finding_facts_t facts = {.termination = NO_VALUE, .distance_mm = NO_VALUE, .raw = NO_VALUE};
+    const model_t *const model = finding->kind == SCAN_SENSOR ? model_of(finding->model) : NULL;
+    if (model != NULL) model->describe(model, finding, &facts);
+    return facts;
 }
 
 void scan_print_json(FILE *to, const scan_finding_t *finding, const char *port)
@@ -147,31 +92,95 @@ void scan_print_json(FILE *to, const scan_finding_t *finding, const char *port)
     static const char *const kinds[] = {
         [SCAN_SENSOR] = "sensor",         [SCAN_OTHER] = "other_modbus", [SCAN_DAMAGED] = "damaged",
         [SCAN_NOT_MODBUS] = "not_modbus", [SCAN_SENDER] = "sender",      [SCAN_MASTER] = "master"};
+    const finding_facts_t facts = facts_of(finding);
+    const bool is_sensor = finding->kind == SCAN_SENSOR;
+    const bool has_optics = is_sensor && model_of(finding->model)->has_optics;
     char next[NEXT_TEXT];
     next_command(finding, port, next);
-    (void)fprintf(to, "{\"kind\":\"%s\",\"model\":", kinds[finding->kind]);
-    if (finding->kind == SCAN_SENSOR)
-        print_string(to, model_of(finding->model)->name);
+    const row_t row = {.kind = kinds[finding->kind],
+                       .model = is_sensor ? model_of(finding->model)->name : NULL,
+                       .parity = parity_name(finding->line.parity),
+                       .mode = is_sensor ? mode_name(finding) : NULL,
+                       .interface_version = word_of(facts.interface_version),
+                       .sensor_version = word_of(facts.sensor_version),
+                       .uuid = word_of(facts.uuid),
+                       .status = facts.status,
+                       .next = word_of(next),
+                       .address = has_address(finding) ? finding->address : NO_VALUE,
+                       .baud = finding->line.baud,
+                       .stop_bits = finding->line.stop_bits,
+                       .termination = facts.termination,
+                       .distance_mm = facts.distance_mm,
+                       .raw = facts.raw,
+                       .is_double = finding->is_double};
+    record_json_line(to, fields, &row,
+                     (is_sensor ? SENSOR : 0u) | (has_optics ? OPTICS : 0u) |
+                         (facts.raw != NO_VALUE ? VALUE : 0u));
+}
+
+void scan_help_fields(FILE *to) { record_help(to, fields); }
+
+/* ---- text ---- */
+
+static void print_value(FILE *to, const model_t *model, const finding_facts_t *facts)
+{
+    if (model->probes > 1) (void)fputs("probe 1: ", to);
+    if (facts->distance_mm != NO_VALUE)
+        (void)fprintf(to, "%" PRId64 " mm", facts->distance_mm);
     else
-        (void)fputs("null", to);
-    (void)fputs(",\"address\":", to);
-    if (has_address(finding))
-        (void)fprintf(to, "%u", finding->address);
-    else
-        (void)fputs("null", to);
-    (void)fprintf(to, ",\"baud\":%" PRIu32 ",\"parity\":\"%s\",\"stop_bits\":%u", finding->line.baud,
-                  parity_name(finding->line.parity), finding->line.stop_bits);
-    if (finding->kind == SCAN_SENSOR) {
-        (void)fprintf(to, ",\"mode\":\"%s\"", mode_name(finding));
-        model_of(finding->model)->print_finding_json(to, finding);
+        (void)fprintf(to, "%s (value %" PRId64 ")", facts->status, facts->raw);
+}
+
+static void print_versions(FILE *to, const finding_facts_t *facts)
+{
+    const char *comma = "";
+    if (facts->interface_version[0] == '\0' && facts->sensor_version[0] == '\0')
+        (void)fputs("sends unsolicited responses", to);
+    if (facts->interface_version[0] != '\0') {
+        (void)fprintf(to, "interface %s", facts->interface_version);
+        comma = ", ";
     }
-    if (finding->is_double) (void)fputs(",\"double\":true", to);
-    (void)fputs(",\"next\":", to);
-    if (next[0] != '\0')
-        print_string(to, next);
+    if (facts->sensor_version[0] != '\0') (void)fprintf(to, "%ssensor %s", comma, facts->sensor_version);
+    if (facts->termination != NO_VALUE)
+        (void)fprintf(to, ", termination %s", facts->termination != 0 ? "on" : "off");
+}
+
+static void print_sensor(FILE *to, const scan_finding_t *finding)
+{
+    const model_t *const model = model_of(finding->model);
+    const finding_facts_t facts = facts_of(finding);
+    if (finding->mode == SCAN_AUTO)
+        (void)fputs("sends without requests", to);
+    else if (facts.raw != NO_VALUE)
+        print_value(to, model, &facts);
+    else if (model->has_optics)
+        print_versions(to, &facts);
+    if (finding->is_double) (void)fputs(", responds twice", to);
+}
+
+void scan_print_text(FILE *to, const scan_finding_t *finding, const char *port)
+{
+    static const char *const others[] = {[SCAN_OTHER] = "a Modbus device that is none of the known sensors",
+                                         [SCAN_DAMAGED] = "damaged responses: two sensors with one address?",
+                                         [SCAN_NOT_MODBUS] = "a response that is not Modbus",
+                                         [SCAN_SENDER] =
+                                             "sends without requests, but no frames of the known sensors",
+                                         [SCAN_MASTER] = "another master sends requests to this address"};
+    const bool is_sensor = finding->kind == SCAN_SENSOR;
+    char line[LINE_TEXT];
+    char address[16] = "-";
+    char next[NEXT_TEXT];
+    if (has_address(finding)) (void)snprintf(address, sizeof address, "address %u", finding->address);
+    next_command(finding, port, next);
+    (void)fprintf(to, "%-8s %-12s %-11s  ", is_sensor ? model_of(finding->model)->name : "?", address,
+                  line_text(&finding->line, line));
+    if (is_sensor)
+        print_sensor(to, finding);
     else
-        (void)fputs("null", to);
-    (void)fputs("}\n", to);
+        (void)fprintf(to, "%s%s", others[finding->kind],
+                      finding->is_double ? ", responds twice: two sensors with one address?" : "");
+    if (next[0] != '\0') (void)fprintf(to, "  ->  %s", next);
+    (void)fputs("\n", to);
 }
 
 /* ---- advice ---- */

@@ -2,7 +2,9 @@
 #include <inttypes.h>
 
 #include "commands/sim/sim.h"
+#include "output/json.h"
 #include "ports/line_text.h"
+#include "sensors/read_command.h"
 
 static void print_sensor(FILE *to, const sim_sensor_t *sensor)
 {
@@ -13,13 +15,9 @@ static void print_sensor(FILE *to, const sim_sensor_t *sensor)
 
 static void print_reader(FILE *to, const sim_sensor_t *sensor, const char *port)
 {
-    (void)fprintf(to, "fathom read %s", sensor->model->name);
-    if (sensor->mode != &sensor->model->modes[0]) (void)fprintf(to, " --mode %s", sensor->mode->name);
-    if (sensor->mode->has_address && sensor->address != FACTORY_ADDRESS)
-        (void)fprintf(to, " --address %u", sensor->address);
-    if (sensor->line.baud != sensor->model->line.baud)
-        (void)fprintf(to, " --baud %" PRIu32, sensor->line.baud);
-    (void)fprintf(to, " --port %s\n", port);
+    read_command_print(to, sensor->model, sensor->mode->name,
+                       sensor->mode->has_address ? sensor->address : -1, &sensor->line, port);
+    (void)fputs("\n", to);
 }
 
 /* Sensors that disturb each other are mostly intended, but the user should know. */
@@ -94,9 +92,14 @@ void sim_print_counters(FILE *to, const sim_options_t *options, uint32_t i, cons
         {"measurements", counters->measurements},
         {"line_collisions", line->counters.collisions},
     };
-    (void)fprintf(to, "{\"device\":%" PRIu32 ",\"sensor\":\"%s\",\"mode\":\"%s\",\"address\":%u", i + 1,
-                  options->sensors[i].model->name, options->sensors[i].mode->name, device->address);
+    json_t json = {.to = to};
+    json_begin(&json, NULL, '{');
+    json_value(&json, "device", "%" PRIu32, i + 1);
+    json_string(&json, "model", options->sensors[i].model->name);
+    json_string(&json, "mode", options->sensors[i].mode->name);
+    json_value(&json, "address", "%u", device->address);
     for (size_t f = 0; f != sizeof fields / sizeof fields[0]; f++)
-        (void)fprintf(to, ",\"%s\":%" PRIu32, fields[f].name, fields[f].value);
-    (void)fprintf(to, "}\n");
+        json_value(&json, fields[f].name, "%" PRIu32, fields[f].value);
+    json_end(&json, '}');
+    (void)fputc('\n', to);
 }

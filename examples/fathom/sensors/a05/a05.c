@@ -118,8 +118,7 @@ const model_t model_a05 = {
               1u << DEVICE_ANSWERS_FROM_NEW,
     /* Probe 1. */
     .scan = {.first = DYP_ADDRESS, .count = 1, .frame_length = FATHOM_DYP_A05_LENGTH, .own = 0x0106},
-    .print_finding = dyp_print_finding,
-    .print_finding_json = dyp_print_finding_json,
+    .describe = dyp_describe,
     .protocols = DECODE_MODBUS | DECODE_DYP | DECODE_STREAM_FOUR,
     .decode = a05_decode,
     .decode_sum = a05_decode_sum,

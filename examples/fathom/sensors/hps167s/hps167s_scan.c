@@ -3,7 +3,7 @@
 
 #include "sensors/hps167s/hps167s.h"
 
-/* What a scan asks of an HPS-167S, and tells of it: #1, #2 and #3. */
+/* What a scan reads from an HPS-167S and reports: #1, #2 and #3. */
 
 /* Registers of #2 and of #5, whose responses have one shape. */
 enum { FOUR = FATHOM_HPS167S_CONFIGURATION_COUNT };
@@ -57,60 +57,33 @@ bool hps167s_identify(inquiry_t *inquiry)
     return finding->has_interface && (finding->has_details || finding->has_config);
 }
 
-/* What #1 and #3 tell of a part of the device. */
-typedef struct {
-    uint16_t year;
-    uint8_t month;
-    uint8_t day;
-    char version[16];
-} part_t;
-
-static part_t part_of_interface(const fathom_hps167s_version_t *is)
+void hps167s_interface_text(char *text, size_t capacity, const fathom_hps167s_version_t *version)
 {
-    part_t part = {.year = is->year, .month = is->month, .day = is->day};
-    (void)snprintf(part.version, sizeof part.version, "%u.%u.%u", is->major, is->minor, is->revision);
-    return part;
+    (void)snprintf(text, capacity, "%u.%u.%u of %04u-%02u-%02u", version->major, version->minor,
+                   version->revision, version->year, version->month, version->day);
 }
 
-static part_t part_of_sensor(const fathom_hps167s_details_t *is)
+void hps167s_sensor_text(char *text, size_t capacity, const fathom_hps167s_details_t *details)
 {
-    part_t part = {.year = is->year, .month = is->month, .day = is->day};
-    (void)snprintf(part.version, sizeof part.version, "%u.%u", is->major, is->minor);
-    return part;
+    (void)snprintf(text, capacity, "%u.%u of %04u-%02u-%02u", details->major, details->minor, details->year,
+                   details->month, details->day);
 }
 
-static void print_part(FILE *to, const char *gap, const char *what, part_t part)
+void hps167s_uuid_text(char *text, size_t capacity, const fathom_hps167s_details_t *details)
 {
-    (void)fprintf(to, "%s%s %s of %u-%02u-%02u", gap, what, part.version, part.year, part.month, part.day);
+    for (size_t i = 0; i != FATHOM_HPS167S_UUID_LENGTH; i++)
+        (void)snprintf(text + 2 * i, capacity - 2 * i, "%02x", details->uuid[i]);
 }
 
-void hps167s_print_finding(FILE *to, const model_t *model, const scan_finding_t *finding)
+void hps167s_describe(const model_t *model, const scan_finding_t *finding, finding_facts_t *facts)
 {
     (void)model;
-    if (finding->has_interface) print_part(to, "", "interface", part_of_interface(&finding->interface));
-    if (finding->has_details)
-        print_part(to, finding->has_interface ? ", " : "", "sensor", part_of_sensor(&finding->details));
-    if (finding->has_config) (void)fprintf(to, ", termination %s", finding->has_termination ? "on" : "off");
-    if (!finding->has_interface && !finding->has_details && !finding->has_config)
-        (void)fputs("sends responses unasked", to);
-}
-
-static void print_part_json(FILE *to, const char *name, part_t part)
-{
-    (void)fprintf(to, ",\"%s_version\":\"%s\",\"%s_date\":\"%u-%02u-%02u\"", name, part.version, name,
-                  part.year, part.month, part.day);
-}
-
-void hps167s_print_finding_json(FILE *to, const scan_finding_t *finding)
-{
-    if (finding->has_interface) print_part_json(to, "interface", part_of_interface(&finding->interface));
+    if (finding->has_interface)
+        hps167s_interface_text(facts->interface_version, sizeof facts->interface_version,
+                               &finding->interface);
     if (finding->has_details) {
-        print_part_json(to, "sensor", part_of_sensor(&finding->details));
-        (void)fputs(",\"uuid\":\"", to);
-        for (size_t i = 0; i != sizeof finding->details.uuid; i++)
-            (void)fprintf(to, "%02x", finding->details.uuid[i]);
-        (void)fputs("\"", to);
+        hps167s_sensor_text(facts->sensor_version, sizeof facts->sensor_version, &finding->details);
+        hps167s_uuid_text(facts->uuid, sizeof facts->uuid, &finding->details);
     }
-    if (finding->has_config)
-        (void)fprintf(to, ",\"termination\":%s", finding->has_termination ? "true" : "false");
+    if (finding->has_config) facts->termination = finding->has_termination;
 }

@@ -24,9 +24,7 @@ static fathom_status_t get_version(reader_t *reader, char text[SETTING_TEXT])
 {
     fathom_hps167s_version_t version;
     const fathom_status_t status = fathom_hps167s_get_interface_version(driver(reader), &version);
-    if (status == FATHOM_OK)
-        (void)snprintf(text, SETTING_TEXT, "%u.%u.%u of %04u-%02u-%02u", version.major, version.minor,
-                       version.revision, version.year, version.month, version.day);
+    if (status == FATHOM_OK) hps167s_interface_text(text, SETTING_TEXT, &version);
     return status;
 }
 
@@ -34,9 +32,7 @@ static fathom_status_t get_details(reader_t *reader, char text[SETTING_TEXT])
 {
     fathom_hps167s_details_t details;
     const fathom_status_t status = fathom_hps167s_get_details(driver(reader), &details);
-    if (status == FATHOM_OK)
-        (void)snprintf(text, SETTING_TEXT, "%u.%u of %04u-%02u-%02u", details.major, details.minor,
-                       details.year, details.month, details.day);
+    if (status == FATHOM_OK) hps167s_sensor_text(text, SETTING_TEXT, &details);
     return status;
 }
 
@@ -44,8 +40,7 @@ static fathom_status_t get_uuid(reader_t *reader, char text[SETTING_TEXT])
 {
     fathom_hps167s_details_t details;
     const fathom_status_t status = fathom_hps167s_get_details(driver(reader), &details);
-    for (size_t i = 0; status == FATHOM_OK && i != FATHOM_HPS167S_UUID_LENGTH; i++)
-        (void)snprintf(text + 2 * i, SETTING_TEXT - 2 * i, "%02x", details.uuid[i]);
+    if (status == FATHOM_OK) hps167s_uuid_text(text, SETTING_TEXT, &details);
     return status;
 }
 
