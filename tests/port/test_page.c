@@ -273,61 +273,12 @@ TEST(the_clock_wraps_at_2_to_the_32)
     assert_int_equal(now(), 2);
 }
 
-/* From the last value of a counter to its next: as many us as really pass, or not? */
-TEST_IN(plain, a_divided_counter_and_a_16_bit_tick_wrap_wrongly_and_a_32_bit_tick_does_not)
-{
-    const uint32_t cycles = UINT32_MAX;
-    const uint16_t tick_16 = UINT16_MAX;
-    const uint32_t tick_32 = UINT32_MAX;
-    assert_int_equal(cycles / 64, 67108863);
-    assert_int_not_equal(fathom_elapsed_us((uint32_t)(cycles + 1) / 64, cycles / 64), 1);
-    assert_int_not_equal(fathom_elapsed_us((uint16_t)(tick_16 + 1) * 1000u, tick_16 * 1000u), 1000);
-    assert_int_equal(fathom_elapsed_us((uint32_t)(tick_32 + 1) * 1000u, tick_32 * 1000u), 1000);
-}
-
 static int read_port(uint8_t *bytes, size_t capacity, uint8_t *flags)
 {
     fathom_rx_t rx = {0, 0};
     const int n = port_uart.read(port_uart.ctx, bytes, capacity, &rx);
     *flags = rx.flags;
     return n;
-}
-
-TEST(a_read_never_spans_a_wrong_byte)
-{
-    static const struct {
-        int count;
-        uint8_t first, flags;
-    } reads[] = {{2, 1, 0}, {1, 3, FATHOM_RX_PARITY}, {1, 4, 0}};
-    uint8_t bytes[8], flags;
-    for (uint8_t byte = 1; byte <= 4; byte++) come(byte, byte == 3 ? FATHOM_RX_PARITY : 0);
-    for (unsigned i = 0; i != 3; i++) {
-        assert_int_equal(read_port(bytes, sizeof bytes, &flags), reads[i].count);
-        assert_int_equal(bytes[0], reads[i].first);
-        assert_int_equal(flags, reads[i].flags);
-    }
-    assert_int_equal(read_port(bytes, sizeof bytes, &flags), 0);
-}
-
-TEST(the_indices_wrap_and_bytes_stay_in_order)
-{
-    uint8_t byte, flags;
-    for (unsigned i = 0; i != 1000; i++) {
-        come((uint8_t)(7 * i), 0);
-        assert_int_equal(read_port(&byte, 1, &flags), 1);
-        assert_int_equal(byte, (uint8_t)(7 * i));
-    }
-}
-
-TEST(a_full_ring_loses_what_comes_and_says_so)
-{
-    uint8_t bytes[255], flags;
-    for (unsigned i = 0; i != FATHOM_SERIAL_RING + 3; i++) come((uint8_t)i, 0);
-    assert_int_equal(read_port(bytes, sizeof bytes, &flags), FATHOM_SERIAL_RING);
-    assert_int_equal(flags, 0);
-    come(99, 0);
-    assert_int_equal(read_port(bytes, sizeof bytes, &flags), 1);
-    assert_int_equal(flags, FATHOM_RX_OVERRUN);
 }
 
 /* late_us: between the bytes, where the interrupt puts the next one after the one before has left. */

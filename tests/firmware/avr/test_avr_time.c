@@ -96,40 +96,6 @@ static int64_t zero_of_stall;
 static int phase_of_stall;
 static bool has_stalled;
 
-/* To so many cycles from the next overflow, if it is near; else not at all. */
-static uint64_t to_the_overflow(uint64_t cycle)
-{
-    const uint64_t left = PERIOD_CYCLES - (cycle - (uint64_t)zero_of_stall) % PERIOD_CYCLES;
-    if (left > 2500 || left < 100) return 0;
-    has_stalled = true;
-    return left + (uint64_t)phase_of_stall - 60;
-}
-
-static void sweep_the_overflow(uint8_t masked, int64_t interrupt_cycles)
-{
-    zero_of_stall = set_off();
-    watch(masked);
-    for (phase_of_stall = 0; phase_of_stall < 120; phase_of_stall++) {
-        reading_t reading, before = next_reading(NULL);
-        has_stalled = false;
-        for (int readings = 0; !has_stalled; readings++) {
-            assert_true(readings < 50000);
-            reading = next_reading(to_the_overflow);
-            assert_nearly_right(reading, zero_of_stall, 0, interrupt_cycles);
-            assert_true(reading.us > before.us);
-            before = reading;
-        }
-        for (int i = 0; i < 3; i++)
-            assert_nearly_right(next_reading(NULL), zero_of_stall, 0, interrupt_cycles);
-    }
-}
-
-/* The timer overflows at every cycle of the reading, while its interrupt is held back. */
-TEST(an_overflow_at_any_cycle_of_a_reading_is_counted_once) { sweep_the_overflow(1, 0); }
-
-/* Its interrupt, which comes before the reading then or after it, takes less than 80 cycles. */
-TEST(with_interrupts_on_it_is_counted_once_too) { sweep_the_overflow(0, 80); }
-
 /* With interrupts off for 16 ms at a time, most overflows are counted late; each reading looks at them itself. */
 TEST(overflows_that_wait_for_16_ms_are_in_each_reading)
 {
@@ -169,26 +135,6 @@ TEST(idle_sleeps_for_one_period_of_the_timer_at_most_and_not_at_all_for_no_time)
         begin_cycle = board.avr->cycle;
         remote_idle(most_us);
         assert_in_range(board.avr->cycle - begin_cycle, 0, (most_us + 40) * BOARD_CYCLES_PER_US);
-    }
-}
-
-TEST(a_byte_ends_the_sleep_and_one_that_waits_prevents_it)
-{
-    static const uint8_t byte = 0x5A;
-    uint8_t got, flags;
-    assert_true(remote_begin(&line, false, 8));
-    remote_idle(0);
-    /* at every cycle of going to sleep */
-    for (uint16_t phase = 0; phase < 400; phase++) {
-        const uint64_t begin_cycle = board.avr->cycle;
-        board_feed(&byte, NULL, 1, begin_cycle + phase, 1);
-        remote_idle(20000);
-        assert_true(board.avr->cycle - begin_cycle < 1200);
-        const uint64_t again_cycle = board.avr->cycle;
-        remote_idle(20000);
-        assert_true(board.avr->cycle - again_cycle < 1200);
-        assert_int_equal(remote_read(&got, 1, &flags), 1);
-        assert_int_equal(got, byte);
     }
 }
 

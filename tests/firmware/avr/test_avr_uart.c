@@ -167,28 +167,6 @@ TEST(a_byte_that_comes_at_any_cycle_of_the_end_of_the_last_one_keeps_the_driver_
     assert_in_range(pauses, 20, 220); /* it was early and it was late */
 }
 
-/* The interrupt writes the driver's register, and so does the main loop. */
-TEST(a_pin_of_the_same_port_may_be_set_at_any_cycle_of_the_drivers_fall)
-{
-    enum { PORTD_AT = 0x2B, PD4 = 0x10, NEAR = 1500 };
-    for (uint64_t phase = 0; phase < 160; phase++) {
-        const bool high = phase % 2 != 0;
-        forget();
-        remote_write(request, 1);
-        board_run_us((uint32_t)(board.bytes[0].end_cycle - board.avr->cycle - NEAR) / BOARD_CYCLES_PER_US);
-        board.taken = board.recorded;
-        remote_call(REMOTE_PIN)->flags = high;
-        board_await(REMOTE_MARK, 1000);
-        const uint64_t left = board.bytes[0].end_cycle - board.avr->cycle;
-        assert_in_range(left, 100, NEAR);
-        board_stall(left + phase - 100);
-        board_run_us(100);
-        assert_int_equal(board.bytes_seen, 1);
-        assert_false(board.driver_on);
-        assert_int_equal(board.avr->data[PORTD_AT] & PD4, high ? PD4 : 0);
-    }
-}
-
 TEST(sent_is_exact_to_the_stop_bit)
 {
     assert_true(remote_sent());

@@ -92,42 +92,6 @@ TEST(a_thousand_bytes_come_whole_while_they_are_read_in_pieces_of_any_size)
     assert_counters(0, 0, 0);
 }
 
-/* The index of the ring is looked at by the main loop while the interrupt moves it on: read in two halves it would be
- * wrong when the low half overflows in between. So a byte comes at every cycle of a read, and of the bytes before it
- * there are as many as bring an index, however it counts, to the end of its low half. */
-TEST(a_byte_that_comes_at_any_cycle_of_a_read_is_read_once_and_nothing_else_is)
-{
-    uint8_t bytes[64];
-    uint16_t sent = 0, seen[2] = {0, 0};
-    for (uint16_t phase = 0; phase < 240; phase++) {
-        while ((uint8_t)(sent + 1) != 0) { /* 255 more, read as they come */
-            const uint8_t burst = (uint8_t)((uint8_t)~sent > 60 ? 60 : (uint8_t)~sent);
-            board_feed(pattern, NULL, burst, board.avr->cycle, 150);
-            board_run_us(600);
-            assert_int_equal(read_all(bytes, 64), burst);
-            sent = (uint16_t)(sent + burst);
-        }
-        static const uint8_t last = 0xA5;
-        uint8_t flags;
-        board.taken = board.recorded;
-        remote_call(REMOTE_READ)->length = 64;
-        board_await(REMOTE_MARK, 1000);
-        board_feed(&last, NULL, 1, board.avr->cycle + phase - 150, 150);
-        board_run_us(200);
-        sent++;
-        const volatile remote_t *const remote = remote_call(0);
-        const int count = remote->result;
-        assert_in_range(count, 0, 1);
-        seen[count]++;
-        if (count == 1) assert_int_equal(remote->bytes[0], last);
-        const int more = remote_read(bytes, 64, &flags);
-        assert_int_equal(count + more, 1);
-        if (more == 1) assert_int_equal(bytes[0], last);
-    }
-    assert_true(seen[0] > 20 && seen[1] > 20); /* it did come on both sides of the look */
-    assert_counters(0, 0, 0);
-}
-
 TEST(errors_are_told_of_their_byte_and_counted)
 {
     static const uint8_t bytes[] = {1, 2, 3, 4, 5, 6, 7};

@@ -58,24 +58,6 @@ test('idle returns when a byte has come, and when a request has left', () => {
   assert.strictEqual(desk.call('sent'), 1);
 });
 
-test('a byte that comes at any instruction of idle ends it', () => {
-  // One instruction later each time: before the look at the news, between that and WFI, in WFI.
-  for (let instructions = 1; instructions < 120; instructions++) {
-    const desk = new Desk();
-    desk.begin('19200 8E1');
-    desk.call('idle', 0);
-    desk.ask('idle', NO_DEADLINE);
-    const come = () => [1, 2, 3, 4].forEach((value) => desk.machine.uart[1].receive(value));
-    const one = desk.machine.beforeInstruction(instructions, come);
-    desk.machine.after(1000, () => { // if it sleeps before that
-      if (one.isDue) come();
-      one.isDue = false;
-    });
-    desk.machine.until(() => desk.isDone, 10);
-    assert.deepStrictEqual(desk.read().bytes, [1, 2, 3, 4]);
-  }
-});
-
 test('idle ends in time although something holds it up at any of its instructions', () => {
   for (let instructions = 1; instructions < 120; instructions++) {
     const desk = new Desk();

@@ -181,22 +181,6 @@ test('the driver stays on if a request follows at once', () => {
   assert.ok(!levels[levels.length - 1].high);
 });
 
-test('the alarm of the request before leaves the driver on, at whichever instruction of write it comes', () => {
-  for (let instructions = 1; instructions < 200; instructions++) {
-    const {levels, ...bench} = beginDriven('115200 8N1');
-    const {mcu} = bench.machine;
-    bench.desk.write([1]);
-    bench.machine.until(() => bench.uart.sent.length === 1);
-    bench.machine.beforeInstruction(instructions, () => mcu.peripherals[TIMER].fireAlarm(DE_ALARM));
-    bench.desk.write([2]);
-    bench.machine.until(() => bench.uart.sent.length === 2);
-    const {start, end: over} = bench.uart.sent[1];
-    const before = levels.filter(({at}) => at <= start);
-    assert.ok(before[before.length - 1].high, `off when alarm came at instruction ${instructions}`);
-    assert.ok(!levels.some(({at}) => at > start && at < over));
-  }
-});
-
 test('the driver is let go in time when the clock wraps while bytes leave', () => {
   for (let early = 0; early < 8; early++) {
     const {levels, ...bench} = beginDriven('19200 8E1', {startUs: 2 ** 32 - 1000});
@@ -206,20 +190,6 @@ test('the driver is let go in time when the clock wraps while bytes leave', () =
     bench.machine.until(() => levels.length === 2, 3);
     assert.ok(bench.machine.us > 2 ** 32);
     assert.ok(levels[1].at >= bench.uart.sent[0].end);
-  }
-});
-
-test('the driver is let go in time when a receive interrupt comes at any instruction of write', () => {
-  // Of a character that takes 1.28 us, so that the alarm for its end has passed when the interrupt is over.
-  const {levels, ...bench} = beginDriven('7812500 8N1');
-  for (let instructions = 1; instructions < 250; instructions++) {
-    const come = () => [1, 2, 3, 4].forEach((value) => bench.uart.receive(value));
-    const one = bench.machine.beforeInstruction(instructions, come);
-    bench.desk.write([1]);
-    bench.machine.run(0.02);
-    assert.strictEqual(levels.length, 2 * instructions, 'it still drives');
-    assert.ok(!one.isDue);
-    assert.deepStrictEqual(bench.desk.read().bytes, [1, 2, 3, 4]);
   }
 });
 
