@@ -78,7 +78,7 @@ static void sleep_for(void *ctx, fathom_loop_t *loop, uint32_t max_us)
         fathom_loop_wake(source);
 }
 
-static void wait_for(void *ctx, const fathom_posix_uart_t *port, uint32_t max_us, bool watch_output)
+static void wait_for(void *ctx, int fd, short events, uint32_t max_us, bool watch_output)
 {
     fathom_sim_clock_idle(&bench.clock, max_us != 0 ? max_us : 1);
 }

@@ -180,23 +180,22 @@ static int take(void *ctx, fathom_pulse_t *pulse)
     return taken;
 }
 
-static bool open_pins(void *ctx, const char *path, const pin_options_t *wanted, pins_t *pins,
-                      fathom_posix_uart_t *port)
+static bool refuse_chip(pins_t *pins, fathom_gpio_status_t error, const char *path, const char *text)
+{
+    pins->lines[0].error = error;
+    (void)snprintf(pins->lines[0].text, sizeof pins->lines[0].text, "%s: %s", path, text);
+    return false;
+}
+
+static bool open_pins(void *ctx, const char *path, const pin_options_t *wanted, pins_t *pins)
 {
     machine_t *const machine = ctx;
     tool_chip_t *const chip = machine->line->chip;
     memset(pins, 0, sizeof *pins);
-    memset(port, 0, sizeof *port);
-    port->fd = -1;
-    (void)snprintf(port->path, sizeof port->path, "%s", path);
-    if (chip == NULL || strcmp(chip->path, path) != 0 || chip->is_away) {
-        refuse(port, FATHOM_POSIX_ERR_NOT_FOUND, "no such chip");
-        return false;
-    }
-    if (chip->refusal != NULL) {
-        refuse(port, FATHOM_POSIX_ERR_IN_USE, chip->refusal);
-        return false;
-    }
+    pins->fd = -1;
+    if (chip == NULL || strcmp(chip->path, path) != 0 || chip->is_away)
+        return refuse_chip(pins, FATHOM_GPIO_ERR_NOT_FOUND, path, "no such chip");
+    if (chip->refusal != NULL) return refuse_chip(pins, FATHOM_GPIO_ERR_IN_USE, path, chip->refusal);
     opened_pins_t *const opened = &machine->pins[chip->opened++ % CHIPS];
     *opened = (opened_pins_t){machine, chip, pins};
     chip->asked = *wanted;
@@ -210,10 +209,7 @@ static bool open_pins(void *ctx, const char *path, const pin_options_t *wanted, 
     return true;
 }
 
-static void close_pins(void *ctx, pins_t *pins, fathom_posix_uart_t *port)
-{
-    ((machine_t *)ctx)->line->chip->closed++;
-}
+static void close_pins(void *ctx, pins_t *pins) { ((machine_t *)ctx)->line->chip->closed++; }
 
 static bool begin(void *ctx) { return true; }
 
@@ -228,7 +224,7 @@ static bool has_ended(void *ctx)
 
 static bool is_output_gone(void *ctx) { return false; }
 
-static void wait_for(void *ctx, const fathom_posix_uart_t *port, uint32_t max_us, bool watch_output)
+static void wait_for(void *ctx, int fd, short events, uint32_t max_us, bool watch_output)
 {
     const tool_line_t *const line = ((const machine_t *)ctx)->line;
     line->idle(line->ctx, max_us != 0 ? max_us : 1);
@@ -238,7 +234,7 @@ static void wait_for(void *ctx, const fathom_posix_uart_t *port, uint32_t max_us
 /* Whatever has happened may have been on any port. */
 static void sleep_for(void *ctx, fathom_loop_t *loop, uint32_t max_us)
 {
-    wait_for(ctx, NULL, max_us, true);
+    wait_for(ctx, -1, 0, max_us, true);
     for (fathom_loop_source_t *source = loop->sources; source != NULL; source = source->next)
         fathom_loop_wake(source);
 }

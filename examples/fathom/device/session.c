@@ -122,7 +122,7 @@ bool session_can_set(const session_t *session, const char *command)
 
 const setting_t *session_settings(const session_t *session) { return session->station->model->settings; }
 
-void session_listen(session_t *session, uint32_t for_us) { channel_listen(&session->channel, for_us); }
+void session_listen(session_t *session, uint32_t for_us) { port_listen(&session->channel, for_us); }
 
 /* Its driver, from the beginning. */
 static bool begin(session_t *session)
@@ -138,28 +138,27 @@ static bool begin(session_t *session)
         (void)fprintf(stderr, "fathom: %s\n", text);
         return false;
     }
-    if (session->channel.tcp == NULL) reader_listen_unasked(station->reader);
+    if (port_has_line(&session->channel)) reader_listen_unasked(station->reader);
     return true;
 }
 
 bool session_open(session_t *session, const host_t *host)
 {
-    const port_options_t *const port = session_port(session);
-    session->channel.echo = port->echo;
-    session->channel.rs485 = port->rs485;
+    port_settings_t settings = port_options_settings(session_port(session));
+    settings.line = session->station->line;
     if (!session->has_begun && !host->begin(host->ctx)) return false;
     session->has_begun = true;
-    if (!channel_open(&session->channel, host, port->path, &session->station->line)) {
-        (void)fprintf(stderr, "fathom: %s\n", fathom_posix_error_text(&session->channel.port));
+    if (!port_open_now(&session->channel, host, &settings)) {
+        (void)fprintf(stderr, "fathom: %s\n", port_error(&session->channel));
         return false;
     }
     counters_begin_port(&session->port_counts, &session->channel);
     if (!begin(session)) {
-        channel_close(&session->channel);
+        port_close(&session->channel);
         return false;
     }
     /* What the device sends unasked is known before the first request, which leaves room for it (line.h). */
-    if (session->channel.tcp == NULL) channel_listen(&session->channel, CHANNEL_UNASKED_US);
+    if (port_has_line(&session->channel)) port_listen(&session->channel, PORT_LISTEN_US);
     return true;
 }
 
@@ -173,22 +172,20 @@ bool session_move(session_t *session, uint8_t address, const fathom_line_setting
     return begin(session);
 }
 
-void session_close(session_t *session) { channel_close(&session->channel); }
+void session_close(session_t *session) { port_close(&session->channel); }
 
 fathom_status_t session_call(session_t *session, session_call_t call, void *ctx)
 {
     reader_t *const reader = session->station->reader;
-    const host_t *const host = session->channel.host;
-    const fathom_posix_uart_t *const port = &session->channel.port;
+    fathom_status_t waited = FATHOM_OK;
     counters_begin_attempt(&session->station->counters);
     listener_forget(&session->channel.listener);
-    while (!host->has_ended(host->ctx)) {
+    while (waited == FATHOM_OK) {
         const fathom_status_t status = call(reader, ctx);
         if (status != FATHOM_PENDING) return status;
-        if (fathom_posix_error(port) == FATHOM_POSIX_ERR_LOST) return FATHOM_ERR_PORT;
-        host->wait(host->ctx, port, reader_due_us(reader), false);
+        waited = port_wait(&session->channel, reader_due_us(reader));
     }
-    return FATHOM_ERR_CANCELLED;
+    return waited;
 }
 
 /* ---- settings ---- */
@@ -246,9 +243,7 @@ fathom_status_t session_set(session_t *session, const setting_t *setting, int32_
 
 const char *session_line_text(const session_t *session, char text[LINE_TEXT])
 {
-    if (session->channel.tcp == NULL) return line_text(&session->station->line, text);
-    (void)snprintf(text, LINE_TEXT, "Modbus TCP");
-    return text;
+    return port_line_text(&session->channel, &session->station->line, text);
 }
 
 void session_explain(session_t *session, fathom_status_t status)

@@ -6,7 +6,6 @@
 
 #include "diagnosis/advice_pins.h"
 #include "ports/line_text.h"
-#include "ports/sysfs_adapter.h"
 #include "sensors/modbus_exception.h"
 
 /* "--baud and --parity (now 9600 8E1; ...)": and which others to try. */
@@ -77,7 +76,7 @@ static bool print_others(FILE *to, const failure_t *failure)
 /* Nothing was understood, over TCP. */
 static void print_tcp(FILE *to, const failure_t *failure)
 {
-    const uint8_t exception = tcp_gateway_exception(failure->channel->tcp);
+    const uint8_t exception = port_gateway_exception(failure->channel);
     if (exception != 0)
         (void)fprintf(to, "the gateway says exception %02u (%s); check %s, and there the line and the supply",
                       exception, modbus_exception(exception).name, address_word(failure));
@@ -111,11 +110,11 @@ static void print_untriggered(FILE *to, const failure_t *failure)
 static bool print_unasked(FILE *to, const failure_t *failure)
 {
     enum { LEAST = 3, LITTLE_MS = 2 };
-    const char *const path = failure->channel->port.path;
-    if (failure->channel->tcp != NULL || !mode_is_asked(failure->mode) || !failure->model->may_send_unasked ||
-        failure->evidence.own < LEAST)
+    const char *const path = port_name(failure->channel);
+    if (port_has_gateway(failure->channel) || !mode_is_asked(failure->mode) ||
+        !failure->model->may_send_unasked || failure->evidence.own < LEAST)
         return false;
-    const unsigned latency_ms = sysfs_adapter_latency_ms(SYSFS_ROOT, path);
+    const unsigned latency_ms = port_latency_ms(failure->channel);
     (void)fprintf(to,
                   "it sends measurements by itself, %" PRIu32
                   " were heard, and a request has to fit between two of them; ",
@@ -139,7 +138,7 @@ static void print_no_response(FILE *to, const failure_t *failure)
         print_late(to, evidence->slowest_us);
     } else if (print_others(to, failure) || print_unasked(to, failure)) {
         return;
-    } else if (failure->channel->tcp != NULL) {
+    } else if (port_has_gateway(failure->channel)) {
         print_tcp(to, failure);
     } else if (is_only_echo(evidence)) {
         (void)fprintf(to,
@@ -177,7 +176,7 @@ static void print_line_busy(FILE *to, const failure_t *failure)
     const evidence_t *const evidence = &failure->evidence;
     (void)fprintf(to, "no request to address %u could be sent safely: the line was never silent; ",
                   failure->address);
-    if (failure->channel->tcp != NULL) {
+    if (port_has_gateway(failure->channel)) {
         (void)fputs(
             "the server sends without a pause; check that the server is one of Modbus TCP, and restart it",
             to);
@@ -212,7 +211,7 @@ static void print_damaged(FILE *to, const failure_t *failure)
     const counters_t *const counters = failure->counters;
     (void)fprintf(to, "the response of address %u was damaged; ", failure->address);
     if (print_others(to, failure) || print_unasked(to, failure)) return;
-    if (failure->channel->tcp != NULL)
+    if (port_has_gateway(failure->channel))
         (void)fputs("its length is not what it says; check that the server is one of Modbus TCP", to);
     else if (counters->readings != 0)
         (void)fprintf(to,
@@ -328,13 +327,13 @@ static void print_values(FILE *to, const failure_t *failure, const reader_facts_
 
 static void print_port(FILE *to, const failure_t *failure)
 {
-    const fathom_posix_uart_t *const port = &failure->channel->port;
-    if (fathom_posix_error(port) != FATHOM_POSIX_ERR_LOST) {
-        (void)fprintf(to, "%s: the port did not send the request; check the adapter", port->path);
+    const port_t *const port = failure->channel;
+    if (!port_is_lost(port)) {
+        (void)fprintf(to, "%s: the port did not send the request; check the adapter", port_name(port));
         return;
     }
-    (void)fputs(fathom_posix_error_text(port), to);
-    if (!failure->waits && failure->channel->tcp != NULL)
+    (void)fputs(port_error(port), to);
+    if (!failure->waits && port_has_gateway(failure->channel))
         (void)fputs("; start again (with --reconnect it is connected again)", to);
     else if (!failure->waits)
         (void)fputs("; connect it again and start again (with --reconnect it is waited for)", to);
@@ -345,7 +344,7 @@ static void print_port(FILE *to, const failure_t *failure)
 void advice_print(FILE *to, const failure_t *failure)
 {
     const reader_facts_t facts = reader_facts(failure->reader);
-    if (failure->channel->is_chip && advice_print_pins(to, failure, &facts)) return;
+    if (port_has_pins(failure->channel) && advice_print_pins(to, failure, &facts)) return;
     if (failure->mode->is_triggered &&
         (failure->status == FATHOM_ERR_NO_RESPONSE || failure->status == FATHOM_ERR_CHECKSUM)) {
         print_untriggered(to, failure);

@@ -46,7 +46,7 @@ static void take(uint16_t *from, uint64_t *attempt, uint64_t *total, size_t coun
 static bool read_port(const port_counts_t *port, channel_t *channel, fathom_posix_line_errors_t *now)
 {
     /* Most ports that do not count say so at the first look; a lost one would only say that again. */
-    return port->is_there && fathom_posix_line_errors(&channel->port, now) == FATHOM_POSIX_OK;
+    return port->is_there && port_line_errors(channel, now);
 }
 
 void counters_begin_port(port_counts_t *port, channel_t *channel)

@@ -1,43 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 #include "ports/pins.h"
 
-#include <stdio.h>
+#include <poll.h>
+#include <stddef.h>
 #include <string.h>
 
-enum { TRIGGER, ECHO, IN, LINES };
+#include "ports/port.h"
 
-/* As a serial port would say it, to which the commands listen. */
-static fathom_posix_status_t as_posix(fathom_gpio_status_t status)
-{
-    switch (status) {
-    case FATHOM_GPIO_OK:
-        return FATHOM_POSIX_OK;
-    case FATHOM_GPIO_ERR_ARGUMENT:
-        return FATHOM_POSIX_ERR_ARGUMENT;
-    case FATHOM_GPIO_ERR_NOT_FOUND:
-        return FATHOM_POSIX_ERR_NOT_FOUND;
-    case FATHOM_GPIO_ERR_PERMISSION:
-        return FATHOM_POSIX_ERR_PERMISSION;
-    case FATHOM_GPIO_ERR_IN_USE:
-        return FATHOM_POSIX_ERR_IN_USE;
-    case FATHOM_GPIO_ERR_NOT_A_CHIP:
-        return FATHOM_POSIX_ERR_NOT_A_TTY;
-    case FATHOM_GPIO_ERR_NO_LINE: /* to wait for it makes no sense */
-        return FATHOM_POSIX_ERR_REFUSED;
-    case FATHOM_GPIO_ERR_UNSUPPORTED:
-        return FATHOM_POSIX_ERR_UNSUPPORTED;
-    case FATHOM_GPIO_ERR_LOST:
-        return FATHOM_POSIX_ERR_LOST;
-    default:
-        return FATHOM_POSIX_ERR_SYSTEM;
-    }
-}
-
-static void take_error(const fathom_gpio_t *line, fathom_posix_uart_t *port)
-{
-    port->error = as_posix(fathom_gpio_error(line));
-    (void)snprintf(port->text, sizeof port->text, "%s", fathom_gpio_error_text(line));
-}
+enum { TRIGGER, ECHO, IN };
 
 static bool open_trigger(pins_t *pins, const char *chip, uint32_t number)
 {
@@ -58,7 +28,7 @@ static bool open_echo(pins_t *pins, const char *chip, uint32_t number)
     return true;
 }
 
-/* With edges, so that a change ends a sleep; a line that does not tell them is looked at again and again. */
+/* With edges, so that a change ends a sleep. A line without edges is sampled again and again. */
 static bool open_in(pins_t *pins, const char *chip, uint32_t number)
 {
     const fathom_gpio_bias_t bias = (fathom_gpio_bias_t)pins->wanted.bias;
@@ -71,46 +41,65 @@ static bool open_in(pins_t *pins, const char *chip, uint32_t number)
     return true;
 }
 
-static bool open_lines(pins_t *pins, const char *chip, const pin_options_t *wanted, fathom_posix_uart_t *port)
+bool pins_open(pins_t *pins, const char *chip, const pin_options_t *wanted)
 {
-    const int32_t numbers[LINES] = {wanted->trigger, wanted->echo, wanted->in};
-    bool (*const opens[LINES])(pins_t *, const char *, uint32_t) = {open_trigger, open_echo, open_in};
-    for (size_t i = LINES; i != 0; i--) { /* nothing is driven before the inputs are there */
-        if (numbers[i - 1] < 0 || opens[i - 1](pins, chip, (uint32_t)numbers[i - 1])) continue;
-        take_error(&pins->lines[i - 1], port);
-        return false;
-    }
-    return true;
-}
-
-bool pins_open(pins_t *pins, const char *chip, const pin_options_t *wanted, fathom_posix_uart_t *port)
-{
+    const int32_t numbers[PINS_LINES] = {wanted->trigger, wanted->echo, wanted->in};
+    bool (*const opens[PINS_LINES])(pins_t *, const char *, uint32_t) = {open_trigger, open_echo, open_in};
     memset(pins, 0, sizeof *pins);
-    memset(port, 0, sizeof *port);
-    port->fd = -1;
-    (void)snprintf(port->path, sizeof port->path, "%s", chip);
     pins->wanted = *wanted;
-    if (!open_lines(pins, chip, wanted, port)) {
-        pins_close(pins, port);
+    pins->fd = -1;
+    for (size_t i = PINS_LINES; i != 0; i--) { /* Nothing is driven before the inputs are open. */
+        if (numbers[i - 1] < 0 || opens[i - 1](pins, chip, (uint32_t)numbers[i - 1])) continue;
+        pins_close(pins);
         return false;
     }
-    port->fd = fathom_gpio_fd(&pins->lines[wanted->echo >= 0 ? ECHO : IN]);
-    port->is_open = true;
+    pins->fd = fathom_gpio_fd(&pins->lines[wanted->echo >= 0 ? ECHO : IN]);
     return true;
 }
 
-void pins_close(pins_t *pins, fathom_posix_uart_t *port)
+/* The error of a line stays after this. */
+void pins_close(pins_t *pins)
 {
-    for (size_t i = 0; i != LINES; i++) fathom_gpio_close(&pins->lines[i]);
-    port->is_open = false;
-    port->fd = -1;
+    for (size_t i = 0; i != PINS_LINES; i++) fathom_gpio_close(&pins->lines[i]);
+    pins->fd = -1;
 }
 
-void pins_look(const pins_t *pins, fathom_posix_uart_t *port)
+/* ---- the driver of port.h ---- */
+
+static fathom_status_t fail(port_t *port, const fathom_gpio_t *line)
 {
-    for (size_t i = 0; i != LINES; i++) {
-        if (!pins->lines[i].is_lost) continue;
-        take_error(&pins->lines[i], port);
-        port->is_lost = true;
-    }
+    const fathom_gpio_status_t error = fathom_gpio_error(line);
+    return port_set_error(port,
+                          error == FATHOM_GPIO_ERR_LOST        ? PORT_LOST
+                          : error == FATHOM_GPIO_ERR_NOT_FOUND ? PORT_ABSENT
+                                                               : PORT_FAILED,
+                          fathom_gpio_error_text(line));
 }
+
+static fathom_status_t open_chip(port_t *port)
+{
+    const host_t *const host = port->host;
+    const fathom_gpio_t *line = port->pins.lines;
+    if (host->open_pins(host->ctx, port->settings.path, &port->settings.pins, &port->pins)) return FATHOM_OK;
+    while (fathom_gpio_error(line) == FATHOM_GPIO_OK && line != &port->pins.lines[PINS_LINES - 1]) line++;
+    return fail(port, line);
+}
+
+static fathom_status_t poll_chip(port_t *port)
+{
+    for (size_t i = 0; i != PINS_LINES; i++)
+        if (port->pins.lines[i].is_lost) return fail(port, &port->pins.lines[i]);
+    return FATHOM_OK;
+}
+
+static void close_chip(port_t *port) { port->host->close_pins(port->host->ctx, &port->pins); }
+
+static int chip_fd(const port_t *port) { return port->pins.fd; }
+
+static short chip_events(const port_t *port)
+{
+    (void)port;
+    return POLLIN;
+}
+
+const port_driver_t port_chip = {open_chip, poll_chip, close_chip, chip_fd, chip_events};

@@ -70,3 +70,9 @@ void port_options_line(const port_options_t *port, const port_keys_t *defaults, 
     }
     if (get(&port->keys, defaults, KEY_PARITY, &value)) line->parity = (uint8_t)value;
 }
+
+port_settings_t port_options_settings(const port_options_t *port)
+{
+    return (port_settings_t){
+        .path = port->path, .line = port->line, .echo = port->echo, .rs485 = port->rs485, .pins = port->pins};
+}

@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "fathom/hal.h"
+#include "fathom_loop.h"
 #include "ports/pins.h"
 
 /* A port as a user names it, with its settings. */
@@ -49,6 +50,16 @@ typedef struct {
     bool has[PORT_KEYS]; /* the user set this one */
 } port_keys_t;
 
+/* What port_open() needs (port.h). */
+typedef struct {
+    const char *path;             /* of a serial port, tcp:HOST[:PORT], or of a GPIO chip; copied */
+    fathom_line_settings_t line;  /* of a serial port */
+    uint8_t echo;                 /* of a serial port: fathom_line_parts_t.echo */
+    bool rs485;                   /* of a serial port: the kernel's driver switches the transceiver */
+    pin_options_t pins;           /* of a GPIO chip */
+    fathom_loop_source_t *source; /* the port is read only after this source became ready; NULL: always */
+} port_settings_t;
+
 /* A port, and the line behind it. */
 typedef struct {
     const char *path;   /* of a serial port; tcp:HOST[:PORT]; of a GPIO chip, "gpiochip0" too */
@@ -68,5 +79,7 @@ void port_options_take(port_options_t *port, const port_keys_t *defaults);
 
 /* Changes the line settings of one of its sensors in the same way. */
 void port_options_line(const port_options_t *port, const port_keys_t *defaults, fathom_line_settings_t *line);
+
+port_settings_t port_options_settings(const port_options_t *port);
 
 #endif

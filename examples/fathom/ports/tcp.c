@@ -1,63 +1,68 @@
 /* SPDX-License-Identifier: MIT */
+#define _GNU_SOURCE 1 /* SOCK_NONBLOCK, getaddrinfo */
 #include "ports/tcp.h"
 
 #include <errno.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <poll.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include "fathom_libmodbus.h"
+#include "ports/port.h"
 #include "ports/tcp_address.h"
 
+/* A host may have several addresses, which are tried one after the other. */
+enum { CONNECT_US = 5000000 };
+
 struct tcp {
-    fathom_libmodbus_t libmodbus;
-    fathom_uart_t inner; /* its HAL, behind ours */
-    fathom_clock_t clock;
-    modbus_t *modbus; /* NULL: the connection is under way */
+    port_t *port;
     tcp_address_t address;
-    uint64_t deadline_us;
-    fathom_posix_uart_t *port; /* what stands in for the connection */
+    struct addrinfo *addresses;  /* of the host, as long as it connects */
+    const struct addrinfo *next; /* to try if the present one fails */
+    int fd;                      /* -1: none */
+    uint64_t deadline_us;        /* of the present address */
+    fathom_libmodbus_t libmodbus;
+    modbus_t *modbus;    /* NULL: it connects */
+    fathom_uart_t inner; /* that of libmodbus */
 };
 
-static void say(fathom_posix_uart_t *port, fathom_posix_status_t error, const char *text)
-{
-    port->error = error;
-    (void)snprintf(port->text, sizeof port->text, "%s: %s", port->path, text);
-}
+/* ---- a connection ---- */
 
+/* Explains why the server is lost. Some servers serve one program at a time. */
 static void lose(const tcp_t *tcp)
 {
     static const char alone[] = "; some serve one program at a time: is another one connected?";
-    char text[200];
-    const char *what = "the server closed the connection";
-    const char *advice = alone;
-    if (tcp->port->is_lost) return;
+    const int error = tcp->libmodbus.system_error;
+    port_t *const port = tcp->port;
+    if (port->error == PORT_LOST) return;
     switch (fathom_libmodbus_error(&tcp->libmodbus)) {
     case FATHOM_LIBMODBUS_ERR_NONSENSE:
-        what = "what was answered is no Modbus TCP";
-        advice = "; check the port (502 is usual), and that it is no server of something else";
+        (void)port_fail(port, PORT_LOST,
+                        "the received bytes are no Modbus TCP; check the port (502 is usual), and that it is "
+                        "no server of something else");
         break;
     case FATHOM_LIBMODBUS_ERR_TRUNCATED:
-        what = "the system took a part of a request only";
-        advice = "";
+        (void)port_fail(port, PORT_LOST, "the system accepted only a part of a request");
         break;
     case FATHOM_LIBMODBUS_ERR_SYSTEM:
-        what = strerror(tcp->libmodbus.system_error);
-        if (tcp->libmodbus.system_error == ECONNRESET || tcp->libmodbus.system_error == EPIPE)
-            what = "the server reset the connection";
+        if (error == ECONNRESET || error == EPIPE)
+            (void)port_fail(port, PORT_LOST, "the server reset the connection%s", alone);
         else
-            advice = "";
+            (void)port_fail(port, PORT_LOST, "%s", strerror(error));
         break;
     default:
+        (void)port_fail(port, PORT_LOST, "the server closed the connection%s", alone);
         break;
     }
-    tcp->port->is_lost = true;
-    (void)snprintf(text, sizeof text, "%s%s", what, advice);
-    say(tcp->port, FATHOM_POSIX_ERR_LOST, text);
 }
 
-static int tcp_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
+static int read_bytes(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
 {
     tcp_t *const tcp = ctx;
     const int n = tcp->inner.read(tcp->inner.ctx, bytes, capacity, rx);
@@ -65,7 +70,7 @@ static int tcp_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
     return n;
 }
 
-static int tcp_write(void *ctx, const uint8_t *bytes, size_t length)
+static int write_bytes(void *ctx, const uint8_t *bytes, size_t length)
 {
     tcp_t *const tcp = ctx;
     const int n = tcp->inner.write(tcp->inner.ctx, bytes, length);
@@ -74,96 +79,148 @@ static int tcp_write(void *ctx, const uint8_t *bytes, size_t length)
     return n;
 }
 
-static bool tcp_sent(void *ctx)
+static bool is_sent(void *ctx)
 {
     tcp_t *const tcp = ctx;
     return tcp->inner.sent(tcp->inner.ctx);
 }
 
-/* The connection stands. False: no memory. */
-static bool begin(tcp_t *tcp, fathom_uart_t *uart)
+/* The connection is established: the line on it. Responses arrive whole, and need no silence between them. The server
+ * assigns each response to its request. */
+static fathom_status_t start(tcp_t *tcp)
 {
+    port_t *const port = tcp->port;
     tcp->modbus = modbus_new_tcp_pi(tcp->address.host, tcp->address.service);
-    if (tcp->modbus == NULL) return false;
-    (void)modbus_set_socket(tcp->modbus, tcp->port->fd);
-    tcp->clock = fathom_posix_clock();
-    const fathom_libmodbus_config_t config = {.clock = &tcp->clock};
+    if (tcp->modbus == NULL) return port_fail(port, PORT_FAILED, "%s", strerror(ENOMEM));
+    (void)modbus_set_socket(tcp->modbus, tcp->fd);
+    const fathom_libmodbus_config_t config = {.clock = &port->clock};
     (void)fathom_libmodbus_init(&tcp->libmodbus, tcp->modbus, &config); /* all of it is there */
     tcp->inner = fathom_libmodbus_uart(&tcp->libmodbus);
-    *uart = (fathom_uart_t){.read = tcp_read, .write = tcp_write, .sent = tcp_sent, .ctx = tcp};
-    return true;
+    port->uart = (fathom_uart_t){.read = read_bytes, .write = write_bytes, .sent = is_sent, .ctx = tcp};
+    port->parts.silence_us = 100; /* the least (line.h) */
+    port->parts.gap_us = 1000;
+    port->parts.echo = FATHOM_LINE_ECHO_OFF;
+    port->parts.senders = NULL;
+    port->parts.masters = NULL;
+    return FATHOM_OK;
 }
 
-/* With a connection that stands, or, where there is a turn, is under way. NULL: *port has the error. */
-static tcp_t *new_tcp(const char *path, const unsigned *turn, fathom_posix_uart_t *port)
+uint8_t tcp_gateway_exception(const tcp_t *tcp) { return tcp != NULL ? tcp->libmodbus.gateway_exception : 0; }
+
+/* ---- connecting ---- */
+
+static const char *advice_for(int error)
 {
-    tcp_address_t address;
-    char text[200];
-    bool may_pass = false;
-    memset(port, 0, sizeof *port);
-    (void)snprintf(port->path, sizeof port->path, "%s", path);
-    const char *const wrong = tcp_parse(path, &address);
-    if (wrong != NULL) {
-        say(port, FATHOM_POSIX_ERR_ARGUMENT, wrong);
-        return NULL;
+    switch (error) {
+    case ECONNREFUSED:
+        return "nothing serves this port; check it (502 is usual), and that Modbus TCP is switched on there";
+    case ETIMEDOUT:
+        return "nothing answers at this address; check it, the supply of what should be there, and firewalls";
+    case EHOSTUNREACH:
+    case ENETUNREACH:
+    case EADDRNOTAVAIL:
+        return "there is no way to this address; check it, and the network of this machine";
+    default:
+        return "the connection failed";
     }
-    const int fd = turn == NULL ? tcp_connect(&address, text, sizeof text, &may_pass)
-                                : tcp_connect_begin(&address, *turn, text, sizeof text, &may_pass);
-    if (fd < 0) {
-        say(port, may_pass ? FATHOM_POSIX_ERR_NOT_FOUND : FATHOM_POSIX_ERR_SYSTEM, text);
-        return NULL;
-    }
-    tcp_t *const tcp = calloc(1, sizeof *tcp);
-    if (tcp == NULL) {
-        (void)close(fd);
-        say(port, FATHOM_POSIX_ERR_SYSTEM, strerror(ENOMEM));
-        return NULL;
-    }
-    tcp->address = address;
-    tcp->deadline_us = fathom_posix_now_us() + TCP_CONNECT_S * 1000000u;
-    tcp->port = port;
-    port->fd = fd;
-    port->is_open = true;
-    return tcp;
 }
 
-tcp_t *tcp_open(const char *path, fathom_posix_uart_t *port, fathom_uart_t *uart)
+/* Starts to connect to an address. Returns 0 or the error. */
+static int start_connecting(tcp_t *tcp, const struct addrinfo *to)
 {
-    tcp_t *const tcp = new_tcp(path, NULL, port);
-    if (tcp == NULL || begin(tcp, uart)) return tcp;
-    tcp_close(tcp);
-    say(port, FATHOM_POSIX_ERR_SYSTEM, strerror(ENOMEM));
-    return NULL;
+    const int on = 1;
+    tcp->fd = socket(to->ai_family, to->ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, to->ai_protocol);
+    if (tcp->fd < 0) return errno;
+    /* A request is small, and waits for nothing. */
+    (void)setsockopt(tcp->fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+    tcp->deadline_us = fathom_posix_now_us() + CONNECT_US;
+    return connect(tcp->fd, to->ai_addr, to->ai_addrlen) == 0 || errno == EINPROGRESS ? 0 : errno;
 }
 
-tcp_t *tcp_begin(const char *path, unsigned turn, fathom_posix_uart_t *port)
+/* Goes on to the next address of the host after an error of the present one. */
+static fathom_status_t connect_next(tcp_t *tcp, int error)
 {
-    return new_tcp(path, &turn, port);
+    do {
+        if (tcp->fd >= 0) (void)close(tcp->fd);
+        tcp->fd = -1;
+        if (tcp->next == NULL)
+            return port_fail(tcp->port, PORT_ABSENT, "%s: %s", strerror(error), advice_for(error));
+        error = start_connecting(tcp, tcp->next);
+        tcp->next = tcp->next->ai_next;
+    } while (error != 0);
+    return FATHOM_PENDING;
 }
 
-fathom_status_t tcp_go_on(tcp_t *tcp, fathom_uart_t *uart)
+static int connect_error(int fd)
 {
-    char text[200];
-    int error = tcp_connect_look(tcp->port->fd);
-    if (error == EINPROGRESS && fathom_posix_now_us() < tcp->deadline_us) return FATHOM_PENDING;
-    if (error == EINPROGRESS) error = ETIMEDOUT;
-    if (error == 0 && begin(tcp, uart)) return FATHOM_OK;
-    tcp_connect_text(error != 0 ? error : ENOMEM, text, sizeof text);
-    say(tcp->port, FATHOM_POSIX_ERR_NOT_FOUND, text);
-    return FATHOM_ERR_PORT;
+    struct pollfd entry = {fd, POLLOUT, 0};
+    if (poll(&entry, 1, 0) <= 0) return EINPROGRESS;
+    int error = 0;
+    socklen_t length = sizeof error;
+    return getsockopt(fd, SOL_SOCKET, SO_ERROR, &error, &length) == 0 ? error : errno;
 }
 
-void tcp_close(tcp_t *tcp)
+/* ---- the driver ---- */
+
+static void close_tcp(port_t *port)
 {
+    tcp_t *const tcp = port->tcp;
+    port->tcp = NULL;
     if (tcp == NULL) return;
-    tcp->port->is_open = false;
-    if (tcp->modbus == NULL) {
-        (void)close(tcp->port->fd);
-    } else {
+    if (tcp->addresses != NULL) freeaddrinfo(tcp->addresses);
+    if (tcp->modbus != NULL) {
         modbus_close(tcp->modbus);
         modbus_free(tcp->modbus);
+    } else if (tcp->fd >= 0) {
+        (void)close(tcp->fd);
     }
     free(tcp);
 }
 
-uint8_t tcp_gateway_exception(const tcp_t *tcp) { return tcp->libmodbus.gateway_exception; }
+static fathom_status_t poll_tcp(port_t *port)
+{
+    tcp_t *const tcp = port->tcp;
+    if (tcp->modbus != NULL) return port->error == PORT_OK ? FATHOM_OK : FATHOM_ERR_PORT;
+    int error = connect_error(tcp->fd);
+    if (error == EINPROGRESS && fathom_posix_now_us() < tcp->deadline_us) return FATHOM_PENDING;
+    if (error == EINPROGRESS) error = ETIMEDOUT;
+    const fathom_status_t status = error != 0 ? connect_next(tcp, error) : start(tcp);
+    if (status == FATHOM_ERR_PORT) close_tcp(port);
+    return status;
+}
+
+static fathom_status_t open_tcp(port_t *port)
+{
+    const struct addrinfo hints = {.ai_family = AF_UNSPEC, .ai_socktype = SOCK_STREAM};
+    tcp_address_t address;
+    const char *const wrong = tcp_parse(port->settings.path, &address);
+    if (wrong != NULL) return port_fail(port, PORT_FAILED, "%s", wrong);
+    tcp_t *const tcp = calloc(1, sizeof *tcp);
+    if (tcp == NULL) return port_fail(port, PORT_FAILED, "%s", strerror(ENOMEM));
+    tcp->port = port;
+    tcp->address = address;
+    tcp->fd = -1;
+    port->tcp = tcp;
+    const int looked_up = getaddrinfo(address.host, address.service, &hints, &tcp->addresses);
+    fathom_status_t status = FATHOM_ERR_PORT;
+    if (looked_up != 0) {
+        tcp->addresses = NULL;
+        (void)port_fail(port, looked_up == EAI_AGAIN ? PORT_ABSENT : PORT_FAILED,
+                        "the host is not known: %s; check its name, or give its address in numbers",
+                        gai_strerror(looked_up));
+    } else {
+        tcp->next = tcp->addresses;
+        status = connect_next(tcp, 0);
+    }
+    if (status == FATHOM_ERR_PORT) close_tcp(port);
+    return status;
+}
+
+static int tcp_fd(const port_t *port) { return port->tcp != NULL ? port->tcp->fd : -1; }
+
+static short tcp_events(const port_t *port)
+{
+    return port->tcp != NULL && port->tcp->modbus == NULL ? POLLOUT : POLLIN;
+}
+
+const port_driver_t port_tcp = {open_tcp, poll_tcp, close_tcp, tcp_fd, tcp_events};

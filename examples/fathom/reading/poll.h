@@ -5,7 +5,7 @@
 #include "diagnosis/advice.h"
 #include "diagnosis/counters_print.h"
 #include "fathom_loop.h"
-#include "ports/usb_adapter.h"
+#include "ports/channel.h"
 #include "reading/station.h"
 
 /* What poll_loop.c, poll_port.c and poll_attempt.c have in common. */
@@ -40,9 +40,7 @@ typedef struct {
     station_t *stations; /* the first of them, and then station_t.next */
     size_t station_count;
     channel_t channel;
-    usb_adapter_t adapter;
     port_counts_t counts;
-    unsigned tries;  /* of a connection */
     bool is_waiting; /* for a connection that is under way */
     bool was_open;   /* once */
     bool is_lost;    /* or has not been there yet */

@@ -41,7 +41,7 @@ void poll_adapt(poll_port_t *port, station_t *const *stations, size_t count)
         if (i == count) reader_cancel(at->reader);
     }
     for (size_t i = count; i != 0; i--) poll_port_add(port, stations[i - 1]);
-    channel_suit(&port->channel, &port->options->line);
+    port_set_slowest(&port->channel, &port->options->line);
     bool is_good = true;
     for (size_t i = 0; i != count; i++)
         if (!is_new[i]) go_on(port, stations[i]);

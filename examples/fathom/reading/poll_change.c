@@ -181,8 +181,6 @@ static void place_ports(plan_t *plan)
         if (here >= plan->options.port_count) plan->options.port_count = here + 1;
     }
     loop->options = plan->options;
-    for (size_t here = 0; here != MAX_PORTS; here++)
-        if (is_open(plan, here)) loop->ports[here].adapter.path = loop->options.ports[here].path;
 }
 
 static void open_ports(plan_t *plan)

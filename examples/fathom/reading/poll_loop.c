@@ -87,7 +87,7 @@ static void end_stations(poll_loop_t *loop)
     const host_t *const host = loop->host;
     bool has_ended = false;
     for (unsigned times = 0; times != TIMES && !has_ended; times++) {
-        if (times != 0) host->wait(host->ctx, NULL, AGAIN_US, false);
+        if (times != 0) host->wait(host->ctx, -1, 0, AGAIN_US, false);
         has_ended = true;
         for (size_t i = 0; i != loop->options.port_count; i++) {
             poll_port_t *const port = &loop->ports[i];

@@ -1,9 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "reading/poll_port.h"
 
-#include <poll.h>
-
-#include "ports/tcp_address.h"
 #include "reading/poll_attempt.h"
 
 /* So often in a row its sensors are polled at most, so that none keeps the other ports waiting; so soon again the end of
@@ -89,25 +86,11 @@ static bool begin_stations(poll_port_t *port)
     return true;
 }
 
-/* By what it is: pins, a tty, or a connection, for which alone a single port waits here. FATHOM_ERR_PORT: channel.port
- * has the reason. */
 static fathom_status_t connect_port(poll_port_t *port)
 {
-    const poll_loop_t *const loop = port->loop;
-    const port_options_t *const options = port->options;
-    if (options->is_chip)
-        return channel_open_pins(&port->channel, loop->host, options->path, &options->pins) ? FATHOM_OK
-                                                                                            : FATHOM_ERR_PORT;
-    port->channel.echo = port->options->echo;
-    port->channel.rs485 = port->options->rs485;
-    port->channel.source = &port->source;
-    if (tcp_names(port->options->path) && loop->options.port_count > 1)
-        return channel_begin_tcp(&port->channel, loop->host, port->options->path, port->tries++)
-                   ? FATHOM_PENDING
-                   : FATHOM_ERR_PORT;
-    return usb_adapter_try(&port->adapter, &port->channel, loop->host, &port->options->line)
-               ? FATHOM_OK
-               : FATHOM_ERR_PORT;
+    port_settings_t settings = port_options_settings(port->options);
+    settings.source = &port->source;
+    return port_open(&port->channel, port->loop->host, &settings);
 }
 
 static void tell_away(const poll_port_t *port)
@@ -121,12 +104,11 @@ static void tell_away(const poll_port_t *port)
 static void take_absence(poll_port_t *port)
 {
     const sensor_options_t *const options = &port->loop->options;
-    const bool may_come = fathom_posix_error(&port->channel.port) == FATHOM_POSIX_ERR_NOT_FOUND ||
-                          options->port_count > 1 || options->persists;
+    const bool may_come = port_is_absent(&port->channel) || options->port_count > 1 || options->persists;
     char text[TEXT];
     port->is_lost = true;
     port->waits = options->reconnect && may_come;
-    (void)snprintf(text, sizeof text, "%s%s", fathom_posix_error_text(&port->channel.port),
+    (void)snprintf(text, sizeof text, "%s%s", port_error(&port->channel),
                    port->waits ? "; waiting until it is there" : "");
     tell(port, text, port->waits ? POLL_PORT_WAITED_FOR : POLL_PORT_GIVEN_UP);
     if (!port->waits) poll_port_give_up(port);
@@ -136,8 +118,18 @@ static void take_absence(poll_port_t *port)
 static void tell_waiting(const poll_port_t *port)
 {
     char text[TEXT];
-    if (!port->waits || !usb_adapter_is_overdue(&port->adapter)) return;
-    (void)snprintf(text, sizeof text, "still waiting: %s", fathom_posix_error_text(&port->channel.port));
+    if (!port->waits || !port_is_overdue(&port->channel)) return;
+    (void)snprintf(text, sizeof text, "still waiting: %s", port_error(&port->channel));
+    tell(port, text, POLL_PORT_WAITED_FOR);
+}
+
+/* How the adapter is found again. */
+static void tell_advice(poll_port_t *port)
+{
+    char text[TEXT];
+    const char *const advice = port_advice(&port->channel);
+    if (advice == NULL) return;
+    (void)snprintf(text, sizeof text, "%s: %s", port_name(&port->channel), advice);
     tell(port, text, POLL_PORT_WAITED_FOR);
 }
 
@@ -146,20 +138,19 @@ static void take_failed_try(poll_port_t *port)
     if (!port->is_lost) take_absence(port);
     if (port->waits) tell_away(port);
     tell_waiting(port);
+    if (port->waits) tell_advice(port);
 }
 
 /* False: it cannot be used. */
 static bool begin_reading(poll_port_t *port)
 {
-    /* A tty; what stands in for one in a test need not. */
-    port->source.reads_all = port->channel.tcp == NULL && fathom_posix_fd(&port->channel.port) >= 0;
     if (!begin_stations(port)) {
         poll_port_give_up(port);
         return false;
     }
     if (port->is_lost) {
         char text[TEXT];
-        (void)snprintf(text, sizeof text, "%s: %s", usb_adapter_path(&port->adapter),
+        (void)snprintf(text, sizeof text, "%s: %s", port_name(&port->channel),
                        port->was_open ? "it is back; reading goes on" : "it is there; reading begins");
         if (port->was_open) port->loop->reconnects++;
         tell(port, text, POLL_PORT_THERE);
@@ -177,20 +168,20 @@ static bool open_port(fathom_loop_source_t *source)
     port->is_waiting = status == FATHOM_PENDING;
     if (status == FATHOM_ERR_PORT) take_failed_try(port);
     if (status != FATHOM_OK || begin_reading(port)) return status != FATHOM_ERR_PORT;
-    channel_close(&port->channel);
+    port_close(&port->channel);
     return false;
 }
 
 /* False: the connection does not come to stand. */
 static bool wait_for_connection(poll_port_t *port)
 {
-    const fathom_status_t status = channel_go_on(&port->channel);
+    const fathom_status_t status = port_poll(&port->channel);
     port->is_waiting = status == FATHOM_PENDING;
     if (status == FATHOM_ERR_PORT) take_failed_try(port);
     return status == FATHOM_OK ? begin_reading(port) : status == FATHOM_PENDING;
 }
 
-static void close_port(fathom_loop_source_t *source) { channel_close(&port_of(source)->channel); }
+static void close_port(fathom_loop_source_t *source) { port_close(&port_of(source)->channel); }
 
 /* ---- losing ---- */
 
@@ -207,8 +198,6 @@ static bool has_more_to_do(const poll_port_t *port)
 static void lose(poll_port_t *port)
 {
     poll_loop_t *const loop = port->loop;
-    const sysfs_adapter_t *const sysfs = &port->adapter.sysfs;
-    char text[TEXT];
     bool is_told = false;
     port->waits = loop->options.reconnect && has_more_to_do(port);
     for (station_t *station = port->stations; station != NULL; station = station->next) {
@@ -217,27 +206,19 @@ static void lose(poll_port_t *port)
         is_told = true;
     }
     take_counters(port);
-    if (!port->waits) {
+    if (port->waits)
+        tell_advice(port);
+    else
         end_with_counters(port);
-    } else if (sysfs->vendor[0] != '\0' && sysfs->needs_socket) {
-        (void)snprintf(text, sizeof text,
-                       "%s: this adapter has no serial number of its own: use the same USB socket again",
-                       usb_adapter_path(&port->adapter));
-        tell(port, text, POLL_PORT_WAITED_FOR);
-    }
 }
 
 /* ---- polling ---- */
 
-static int port_fd(const fathom_loop_source_t *source)
-{
-    return fathom_posix_fd(&const_port_of(source)->channel.port);
-}
+static int source_fd(const fathom_loop_source_t *source) { return port_fd(&const_port_of(source)->channel); }
 
-static short port_events(const fathom_loop_source_t *source)
+static short source_events(const fathom_loop_source_t *source)
 {
-    if (const_port_of(source)->is_waiting) return POLLOUT;
-    return fathom_posix_poll_events(&const_port_of(source)->channel.port);
+    return port_events(&const_port_of(source)->channel);
 }
 
 static void tell_remark(const poll_loop_t *loop, station_t *station)
@@ -254,9 +235,8 @@ static bool poll_station(poll_port_t *port, station_t *station)
         const fathom_status_t status = reader_poll(station->reader, &sample);
         tell_remark(port->loop, station);
         poll_take_late(port);
-        channel_look(&port->channel);
-        /* Between two requests a driver does not tell it, and waiting for the port would not wait. */
-        port->is_lost = fathom_posix_error(&port->channel.port) == FATHOM_POSIX_ERR_LOST;
+        /* Between two requests a driver does not report it, and waiting for the port would not wait. */
+        port->is_lost = port_poll(&port->channel) == FATHOM_ERR_PORT;
         if (port->is_lost && (status == FATHOM_PENDING || status == FATHOM_ERR_PORT)) return true;
         if (status == FATHOM_PENDING) return false;
         poll_take_outcome(port, station, status, &sample);
@@ -322,11 +302,10 @@ void poll_port_add(poll_port_t *port, station_t *station)
 
 void poll_port_begin(poll_port_t *port, poll_loop_t *loop, const port_options_t *options)
 {
-    static const fathom_loop_kind_t kind = {open_port, close_port, port_fd, port_events,
+    static const fathom_loop_kind_t kind = {open_port, close_port, source_fd, source_events,
                                             poll_port, due_us,     NULL};
     port->loop = loop;
     port->options = options;
-    port->adapter.path = options->path;
     port->source.kind = &kind;
     fathom_loop_add(&loop->sources, &port->source);
 }

@@ -162,7 +162,7 @@ reader_facts_t reader_facts(const reader_t *reader)
 
 bool driver_has_break(reader_t *reader, const channel_t *channel)
 {
-    if (channel_has_break(channel)) return true;
+    if (port_can_break(channel)) return true;
     reader->refusal =
         "this port cannot hold its TX low (a break), which selects real-time values; try another "
         "adapter, or connect the sensor's RX to its ground and leave --value out";
@@ -177,7 +177,7 @@ void driver_end_break(channel_t *channel)
 fathom_modbus_config_t driver_config(const channel_t *channel, const reader_settings_t *settings)
 {
     return (fathom_modbus_config_t){
-        .line_settings = channel->tcp == NULL ? settings->line : NULL, /* a connection has none */
+        .line_settings = port_has_line(channel) ? settings->line : NULL, /* a connection has none */
         .period_us = settings->period_us,
         .timeout_us = settings->timeout_us,
         .backoff_us = settings->backoff_us,

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """fathom publish where a library was not there when the tool was built: fathom_without_publish and fathom_without_openssl are
-the tool with publish_none.c and with tls_none.c."""
+the tool with without.c."""
 import os
 
 import e2e

@@ -67,7 +67,7 @@ class NoConnection(Case):
         while not self.has_socket(f'/proc/{reader.process.pid}/fd'):
             self.assertLess(time.monotonic(), deadline)
             time.sleep(0.005)
-        self.assertNotIn('timed out', self.ends(reader.end(), 1).err)
+        self.assertNotIn('timed out', self.ends(reader.end(), 0).err)
 
     @staticmethod
     def has_socket(folder):
@@ -255,7 +255,7 @@ class Broken(Case):
     def test_nonsense(self):
         for nonsense in (b'HTTP/1.1 400 Bad Request\r\n\r\n', b'SSH-2.0-x\r\n', bytes(5) + b'\1\0\0',
                          b'\xff' * 300):
-            self.breaks('what was answered is no Modbus TCP; check the port (502 is usual)',
+            self.breaks('the received bytes are no Modbus TCP; check the port (502 is usual)',
                         lambda _, nonsense=nonsense: nonsense)
 
     def test_with_reconnect_it_goes_on_at_the_next_connection(self):

@@ -114,26 +114,30 @@ static bool open_port(void *ctx, const char *path, const fathom_line_settings_t 
     return refuse(port, path);
 }
 
-static bool open_pins(void *ctx, const char *path, const pin_options_t *wanted, pins_t *pins,
-                      fathom_posix_uart_t *port)
+static bool open_pins(void *ctx, const char *path, const pin_options_t *wanted, pins_t *pins)
 {
-    return refuse(port, path);
+    memset(pins, 0, sizeof *pins);
+    pins->fd = -1;
+    pins->lines[0].error = FATHOM_GPIO_ERR_NOT_FOUND;
+    (void)snprintf(pins->lines[0].text, sizeof pins->lines[0].text, "%.100s: not here", path);
+    tool.opens++;
+    return false;
 }
 
 static void close_port(void *ctx, fathom_posix_uart_t *port) {}
-static void close_pins(void *ctx, pins_t *pins, fathom_posix_uart_t *port) {}
+static void close_pins(void *ctx, pins_t *pins) {}
 static uint64_t now_us(void *ctx) { return time_us; }
 static uint64_t utc_us(void *ctx) { return UINT64_C(1764000000000000) + time_us; }
 static bool begin(void *ctx) { return true; }
 static bool has_ended(void *ctx) { return time_us > 3000000; }
 static bool is_output_gone(void *ctx) { return false; }
-static void wait_for(void *ctx, const fathom_posix_uart_t *port, uint32_t max_us, bool watch_output)
+static void wait_for(void *ctx, int fd, short events, uint32_t max_us, bool watch_output)
 {
     time_us += max_us < 1000000 ? max_us + 1 : 1000000;
 }
 static void sleep_for(void *ctx, fathom_loop_t *loop, uint32_t max_us)
 {
-    wait_for(ctx, NULL, max_us, true);
+    wait_for(ctx, -1, 0, max_us, true);
     for (fathom_loop_source_t *source = loop->sources; source != NULL; source = source->next)
         fathom_loop_wake(source);
 }

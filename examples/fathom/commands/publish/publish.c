@@ -9,7 +9,7 @@
 #include "diagnosis/status_word.h"
 #include "mqtt/notify.h"
 #include "mqtt/publisher.h"
-#include "ports/events.h"
+#include "ports/host.h"
 #include "reading/poll_loop.h"
 
 static const char command[] = "publish";
@@ -119,7 +119,7 @@ static uint32_t tick(void *ctx)
     publish_t *const publish = ctx;
     const uint64_t now_us = publish->loop.host->now_us(publish->loop.host->ctx);
     uint32_t this_us = notify_tick(&publish->notify, now_us);
-    if (events_noted()) take_hangup(publish, now_us);
+    if (host_had_signal()) take_hangup(publish, now_us);
     if (reload_tick(&publish->reload)) {
         (void)fprintf(stderr, "fathom: %s was read anew\n", publish->config.path);
         notify_ready(&publish->notify);
@@ -172,7 +172,7 @@ static bool begin(publish_t *publish, const host_t *host)
     if (!host->begin(host->ctx) ||
         !publisher_begin(&publish->publisher, host, &publish->config, publish->results_configs))
         return false;
-    events_note(SIGHUP);
+    host_watch_signal(SIGHUP);
     results_begin(&publish->results, loop, take_result, publish);
     publish->reload = (reload_t){.config = &publish->config,
                                  .configs = publish->results_configs,

@@ -92,15 +92,15 @@ static int run(const host_t *host, int argc, char **argv)
     if (request_effects(&request) && !request.is_meant)
         return usage_error("request", "nothing was sent; --yes sends it all the same");
     memset(&channel, 0, sizeof channel);
-    channel.echo = request.echo;
-    channel.rs485 = request.rs485;
     if (!host->begin(host->ctx)) return STATUS_FAILED;
-    if (!channel_open(&channel, host, request.path, &request.line)) {
-        (void)fprintf(stderr, "fathom: %s\n", fathom_posix_error_text(&channel.port));
+    const port_settings_t settings = {
+        .path = request.path, .line = request.line, .echo = request.echo, .rs485 = request.rs485};
+    if (!port_open_now(&channel, host, &settings)) {
+        (void)fprintf(stderr, "fathom: %s\n", port_error(&channel));
         return STATUS_FAILED;
     }
     const int status = ask(&request);
-    channel_close(&channel);
+    port_close(&channel);
     return status;
 }
 

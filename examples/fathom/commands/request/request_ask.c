@@ -135,7 +135,7 @@ static request_outcome_t judge_copy(const request_ask_t *ask, const channel_t *c
     const uint64_t took_us = ask->evidence.slowest_us;
     if (ask->evidence.echoes != 1 || ask->evidence.rest != 0) return REQUEST_NO_RESPONSE;
     if (took_us > wire_us + CHANNEL_RESPONSE_GAP_US) return REQUEST_ANSWERED;
-    if (!channel->port.is_pty && took_us < 2 * wire_us + silence_us) return REQUEST_NO_RESPONSE;
+    if (port_has_wire(channel) && took_us < 2 * wire_us + silence_us) return REQUEST_NO_RESPONSE;
     return REQUEST_ECHO;
 }
 
@@ -171,21 +171,6 @@ static request_outcome_t outcome_of(const request_ask_t *ask, const channel_t *c
     }
 }
 
-static fathom_status_t wait_for_response(request_ask_t *ask, channel_t *channel)
-{
-    const host_t *const host = channel->host;
-    fathom_transaction_t *const transaction = &ask->transaction;
-    for (;;) {
-        (void)fathom_line_poll(&channel->line); /* a broken port ends the transaction */
-        if (transaction->status != FATHOM_PENDING) return transaction->status;
-        if (host->has_ended(host->ctx)) {
-            fathom_line_cancel(&channel->line, transaction);
-            return transaction->status;
-        }
-        host->wait(host->ctx, &channel->port, fathom_line_due_us(&channel->line), false);
-    }
-}
-
 /* Counts the bytes besides the response and the echo, such as those of another unit at the same address. */
 static uint32_t count_more(const request_ask_t *ask, const channel_t *channel)
 {
@@ -202,11 +187,11 @@ void request_ask(request_ask_t *ask, const request_t *request, channel_t *channe
     ask->transaction.protocol = protocol_of(request);
     ask->transaction.address = request->frame[REQUEST_UNIT];
     ask->transaction.timeout_us = request->timeout_us;
-    if (channel->tcp == NULL) channel_listen(channel, CHANNEL_UNASKED_US);
+    if (port_has_line(channel)) port_listen(channel, PORT_LISTEN_US);
     listener_forget(&channel->listener);
     fathom_status_t status = fathom_line_submit(&channel->line, &ask->transaction);
-    if (status == FATHOM_PENDING) status = wait_for_response(ask, channel);
-    if (ask->length != 0 && channel->tcp == NULL) channel_listen(channel, CHANNEL_RESPONSE_GAP_US);
+    if (status == FATHOM_PENDING) status = port_finish(channel, &ask->transaction);
+    if (ask->length != 0 && port_has_line(channel)) port_listen(channel, PORT_RESPONSE_GAP_US);
     listener_judge(&channel->listener, request->frame[REQUEST_UNIT], &ask->evidence);
     ask->outcome = outcome_of(ask, channel, status);
     ask->more = count_more(ask, channel);

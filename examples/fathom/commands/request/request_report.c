@@ -203,8 +203,8 @@ static void advise(const request_ask_t *ask, const channel_t *channel, const cou
 static void tell_failed(const request_ask_t *ask, const channel_t *channel)
 {
     const bool was_sent = channel->listener.request_length != 0;
-    if (fathom_posix_error(&channel->port) == FATHOM_POSIX_ERR_LOST)
-        (void)fputs(fathom_posix_error_text(&channel->port), stderr);
+    if (port_is_lost(channel))
+        (void)fputs(port_error(channel), stderr);
     else if (ask->transaction.status != FATHOM_ERR_CANCELLED)
         (void)fprintf(stderr, "%s: the port did not send the request; check the adapter", ask->request->path);
     else if (was_sent)

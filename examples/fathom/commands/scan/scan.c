@@ -46,12 +46,9 @@ static void show_progress(scan_t *scan)
 
 bool scan_wait(scan_t *scan, uint32_t max_us)
 {
-    const host_t *const host = scan->host;
-    if (host->has_ended(host->ctx) || host->is_output_gone(host->ctx) || scan->output_error != 0)
-        return false;
+    if (scan->output_error != 0) return false;
     if (scan->progress.is_terminal) show_progress(scan);
-    host->wait(host->ctx, &scan->channel.port, max_us < PROGRESS_US ? max_us : PROGRESS_US, true);
-    return true;
+    return port_wait(&scan->channel, max_us < PROGRESS_US ? max_us : PROGRESS_US) != FATHOM_ERR_CANCELLED;
 }
 
 /* Prints "addresses 1 to 32 at 9600 8N1, 19200 8E1". */
@@ -104,13 +101,13 @@ static fathom_status_t scan_line(scan_t *scan)
     return status != FATHOM_OK || (scan->has_sender && !scan->options.wake) ? status : scan_walk(scan);
 }
 
-static void print_port_failure(const fathom_posix_uart_t *port)
+static void print_port_failure(const port_t *port)
 {
-    if (fathom_posix_error(port) == FATHOM_POSIX_ERR_LOST)
-        (void)fprintf(stderr, "fathom: %s; connect it again and start again\n",
-                      fathom_posix_error_text(port));
+    if (port_is_lost(port))
+        (void)fprintf(stderr, "fathom: %s; connect it again and start again\n", port_error(port));
     else
-        (void)fprintf(stderr, "fathom: %s: the port did not send a request; check the adapter\n", port->path);
+        (void)fprintf(stderr, "fathom: %s: the port did not send a request; check the adapter\n",
+                      port_name(port));
 }
 
 static int finish(scan_t *scan, fathom_status_t status)
@@ -125,7 +122,7 @@ static int finish(scan_t *scan, fathom_status_t status)
     if (scan->output_error != 0)
         (void)fprintf(stderr, "fathom: cannot write the output: %s\n", strerror(scan->output_error));
     else if (status == FATHOM_ERR_PORT)
-        print_port_failure(&scan->channel.port);
+        print_port_failure(&scan->channel);
     else if (status != FATHOM_OK)
         (void)fprintf(stderr, "fathom: ended before all addresses were asked; sensors found: %" PRIu32 "\n",
                       scan->sensors);
@@ -142,13 +139,15 @@ static int run(const host_t *host, int argc, char **argv)
     if (scan.options.wants_help) return command_help(&scan_command);
     if (scan.options.estimate) return print_estimate(&scan.options);
     if (!host->begin(host->ctx)) return STATUS_FAILED;
-    if (!channel_open(&scan.channel, host, scan.options.port, &scan_dyp_line)) {
-        (void)fprintf(stderr, "fathom: %s\n", fathom_posix_error_text(&scan.channel.port));
+    scan.channel.watches_output = true;
+    if (!port_open_now(&scan.channel, host,
+                       &(port_settings_t){.path = scan.options.port, .line = scan_dyp_line})) {
+        (void)fprintf(stderr, "fathom: %s\n", port_error(&scan.channel));
         return STATUS_FAILED;
     }
     scan.channel.parts.silence_us = scan_silence_us(&scan.options.plan);
     const int status = finish(&scan, scan_line(&scan));
-    channel_close(&scan.channel);
+    port_close(&scan.channel);
     return status;
 }
 

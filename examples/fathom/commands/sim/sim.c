@@ -7,7 +7,7 @@
 
 #include "commands/commands.h"
 #include "commands/sim/sim.h"
-#include "ports/events.h"
+#include "ports/host.h"
 #include "sim/pty.h"
 
 enum { POWER_OFF_US = 1000000, CONNECT_US = 1000000 };
@@ -114,17 +114,17 @@ static uint32_t connect_next(simulation_t *simulation, uint32_t due_us)
     return 0;
 }
 
-static int serve(simulation_t *simulation)
+static int serve(simulation_t *simulation, const host_t *host)
 {
     uint32_t due_us = 0;
-    while (!events_ended()) {
-        if (events_noted()) cycle_power(simulation);
+    while (!host->has_ended(host->ctx)) {
+        if (host_had_signal()) cycle_power(simulation);
         if (fathom_sim_pty_pump(&simulation->pty, &due_us) < 0) {
             (void)fprintf(stderr, "fathom: the simulated port has failed: %s\n", strerror(errno));
             return STATUS_FAILED;
         }
         due_us = connect_next(simulation, due_us);
-        events_wait(fathom_sim_pty_fd(&simulation->pty), POLLIN, due_us, false);
+        host->wait(host->ctx, fathom_sim_pty_fd(&simulation->pty), POLLIN, due_us, false);
     }
     return STATUS_OK;
 }
@@ -138,12 +138,11 @@ static void print_counters(const simulation_t *simulation)
 static int run(const host_t *host, int argc, char **argv)
 {
     static simulation_t simulation;
-    (void)host; /* it runs in real time, on a pseudo terminal */
     if (!sim_options(&simulation.options, argc, argv)) return STATUS_USAGE;
     if (simulation.options.wants_help) return command_help(&sim_command);
-    if (!events_begin() || !open_line(&simulation)) return STATUS_FAILED;
-    events_note(SIGUSR1); /* before the path is printed, by which the process can be known */
-    const int status = announce(&simulation) ? serve(&simulation) : STATUS_FAILED;
+    if (!host->begin(host->ctx) || !open_line(&simulation)) return STATUS_FAILED;
+    host_watch_signal(SIGUSR1); /* before the path is printed, by which the process can be known */
+    const int status = announce(&simulation) ? serve(&simulation, host) : STATUS_FAILED;
     if (simulation.options.counters) print_counters(&simulation);
     fathom_sim_pty_close(&simulation.pty);
     return status;

@@ -9,7 +9,7 @@
 #include "cli/rows.h"
 #include "commands/commands.h"
 #include "commands/watch/watch_terminal.h"
-#include "ports/events.h"
+#include "ports/host.h"
 
 #define SENSORS(member) offsetof(sensor_settings_t, member)
 static const option_table_t tables[] = {
@@ -166,7 +166,7 @@ static uint32_t tick(void *ctx)
     watch_t *const watch = ctx;
     const uint64_t now_us = poll_loop_time_us(&watch->loop);
     const uint32_t every_us = watch->draws ? PICTURE_US : LINE_US;
-    if (events_noted()) {
+    if (host_had_signal()) {
         terminal_size(&watch->rows, &watch->columns);
         watch->wants_all = true;
         watch->next_us = now_us;
@@ -225,7 +225,7 @@ static int start(const host_t *host, const arguments_t *arguments)
     lanes_begin(&watch.lanes, &loop->options);
     watch.draws = terminal_can_draw();
     if (watch.draws) {
-        events_note(SIGWINCH);
+        host_watch_signal(SIGWINCH);
         terminal_take();
     }
     terminal_size(&watch.rows, &watch.columns);

@@ -10,7 +10,7 @@
 #include <termios.h>
 #include <unistd.h>
 
-#include "ports/events.h"
+#include "ports/host.h"
 
 enum { OUTPUT = 65536, MARGIN = 64, STUCK_MS = 200 };
 
@@ -62,9 +62,9 @@ static int write_all(const char *text)
 {
     size_t left = strlen(text);
     while (left != 0) {
-        if (events_ended() && is_stuck()) return EINTR;
+        if (host_posix.has_ended(NULL) && is_stuck()) return EINTR;
         const ssize_t n = write(STDOUT_FILENO, text, left);
-        if (n < 0 && (errno != EINTR || events_ended())) return errno;
+        if (n < 0 && (errno != EINTR || host_posix.has_ended(NULL))) return errno;
         if (n < 0) continue;
         text += n;
         left -= (size_t)n;

@@ -1,0 +1,97 @@
+/* SPDX-License-Identifier: MIT */
+/* Stands for the sources whose libraries were not found: it says what is missing, and what to install. */
+#include <stddef.h>
+#include <stdio.h>
+#include <string.h>
+
+#ifdef FATHOM_WITHOUT_LIBMODBUS
+#include "ports/port.h"
+
+static fathom_status_t open_tcp(port_t *port)
+{
+    return port_fail(port, PORT_FAILED,
+                     "this fathom was built without libmodbus, which tcp: needs; install libmodbus-dev and "
+                     "build it again");
+}
+
+const port_driver_t port_tcp = {.open = open_tcp};
+
+uint8_t tcp_gateway_exception(const tcp_t *tcp)
+{
+    (void)tcp;
+    return 0;
+}
+#endif
+
+#ifdef FATHOM_WITHOUT_GPIO
+#include "ports/port.h"
+
+bool pins_open(pins_t *pins, const char *chip, const pin_options_t *wanted)
+{
+    (void)pins;
+    (void)chip;
+    (void)wanted;
+    return false;
+}
+
+void pins_close(pins_t *pins) { (void)pins; }
+
+static fathom_status_t open_chip(port_t *port)
+{
+    return port_fail(port, PORT_FAILED,
+                     "this fathom was built without linux/gpio.h of Linux 5.10 or later, which pins need");
+}
+
+const port_driver_t port_chip = {.open = open_chip};
+#endif
+
+#ifdef FATHOM_PUBLISH_LACKS
+#include "commands/commands.h"
+
+static void publish_help(FILE *to)
+{
+    (void)fputs("fathom publish publishes what sensors say to an MQTT broker. This fathom was built "
+                "without " FATHOM_PUBLISH_LACKS ", which that needs.\n",
+                to);
+}
+
+static int run_publish(const host_t *host, int argc, char **argv)
+{
+    (void)host;
+    if (argc > 1 && strcmp(argv[1], "--help") == 0) return command_help(&publish_command);
+    return usage_error("publish", "this fathom was built without " FATHOM_PUBLISH_LACKS
+                                  "; install the development files and build it again");
+}
+
+const command_t publish_command = {.name = "publish",
+                                   .summary = "publishes sensors to an MQTT broker (not in this build)",
+                                   .help = publish_help,
+                                   .run = run_publish};
+#endif
+
+#ifdef FATHOM_WITHOUT_OPENSSL
+#include "mqtt/broker.h"
+
+/* libmosquitto's own settings and words. */
+static const char authorities[] = "/etc/ssl/certs";
+
+static const char *or_null(const char *text) { return text[0] != '\0' ? text : NULL; }
+
+/* NOLINTNEXTLINE(readability-non-const-parameter): tls.c writes it */
+bool tls_set(struct mosquitto *mosq, const broker_config_t *config, int *error, char *reason, size_t capacity)
+{
+    const char *const ca_file = or_null(config->ca_file);
+    const int result = mosquitto_tls_set(mosq, ca_file, ca_file == NULL ? authorities : NULL,
+                                         or_null(config->certificate_file), or_null(config->key_file), NULL);
+    (void)error;
+    (void)snprintf(reason, capacity, "%s",
+                   result == MOSQ_ERR_INVAL ? "one of the files cannot be read" : mosquitto_strerror(result));
+    return result == MOSQ_ERR_SUCCESS;
+}
+
+const char *tls_reason(int error)
+{
+    (void)error;
+    return "";
+}
+#endif
