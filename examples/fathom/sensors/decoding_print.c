@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "sensors/decoding_print.h"
 
+enum { KEY = 64 };
+
 static void put_value(FILE *to, const decode_field_t *field)
 {
     (void)fprintf(to, "%s%s%s", field->value, field->unit[0] != '\0' ? " " : "", field->unit);
@@ -25,40 +27,40 @@ void decoding_put_text(FILE *to, const decode_meaning_t *meaning)
     }
 }
 
-/* The name and the unit of a field, as one word. */
-static void put_key(FILE *to, const decode_field_t *field)
+/* The name and the unit of a field as a key: "real-time distance" in mm is real_time_distance_mm. */
+static const char *key_of(const decode_field_t *field, char key[KEY])
 {
-    (void)fputc('"', to);
-    for (const char *at = field->name; *at != '\0'; at++) {
-        const char low = *at >= 'A' && *at <= 'Z' ? (char)(*at - 'A' + 'a') : *at;
-        (void)fputc(low == ' ' || low == '-' ? '_' : low, to);
+    const char *const unit = field->unit[0] == 'F' ? "degf" : field->unit[0] == 'C' ? "degc" : field->unit;
+    (void)snprintf(key, KEY, "%s%s%s", field->name, unit[0] != '\0' ? "_" : "", unit);
+    for (char *at = key; *at != '\0'; at++) {
+        if (*at >= 'A' && *at <= 'Z') *at = (char)(*at - 'A' + 'a');
+        if (*at == ' ' || *at == '-') *at = '_';
     }
-    if (field->unit[0] != '\0')
-        (void)fprintf(to, "_%s", field->unit[0] == 'F' ? "f" : field->unit[0] == 'C' ? "c" : field->unit);
-    (void)fputs("\":", to);
+    return key;
 }
 
-void decoding_put_json(FILE *to, const decode_meaning_t *meaning)
+void decoding_put_json(json_t *json, const decode_meaning_t *meaning)
 {
-    bool any = false;
-    (void)fputc('{', to);
-    if (meaning->sensor[0] != '\0')
-        (void)fprintf(to, "\"sensor\":\"%s\",\"source\":\"%s\",", meaning->sensor, meaning->source);
-    (void)fprintf(to, "\"what\":\"%s\",\"fields\":{", meaning->what);
+    char key[KEY];
+    json_begin(json, NULL, '{');
+    if (meaning->sensor[0] != '\0') {
+        json_string(json, "model", meaning->sensor);
+        json_string(json, "source", meaning->source);
+    }
+    json_string(json, "what", meaning->what);
+    json_begin(json, "fields", '{');
     for (uint8_t i = 0; i != meaning->count; i++) {
         const decode_field_t *const field = &meaning->fields[i];
-        const char *const quote = field->is_number ? "" : "\"";
-        if (i != 0) (void)fputc(',', to);
-        put_key(to, field);
-        (void)fprintf(to, "%s%s%s", quote, field->value, quote);
+        if (field->is_number)
+            json_value(json, key_of(field, key), "%s", field->value);
+        else
+            json_string(json, key_of(field, key), field->value);
     }
-    (void)fputs("},\"notes\":{", to);
-    for (uint8_t i = 0; i != meaning->count; i++) {
-        if (meaning->fields[i].note == NULL) continue;
-        if (any) (void)fputc(',', to);
-        any = true;
-        put_key(to, &meaning->fields[i]);
-        (void)fprintf(to, "\"%s\"", meaning->fields[i].note);
-    }
-    (void)fputs("}}", to);
+    json_end(json, '}');
+    json_begin(json, "notes", '{');
+    for (uint8_t i = 0; i != meaning->count; i++)
+        if (meaning->fields[i].note != NULL)
+            json_string(json, key_of(&meaning->fields[i], key), meaning->fields[i].note);
+    json_end(json, '}');
+    json_end(json, '}');
 }

@@ -4,12 +4,13 @@
 
 #include <stdio.h>
 
+#include "output/json.h"
 #include "sensors/decoding.h"
 
 /* Indented lines; what has one field stands in one. */
 void decoding_put_text(FILE *to, const decode_meaning_t *meaning);
 
-/* An object. All texts are the program's own: nothing in them needs to be escaped. */
-void decoding_put_json(FILE *to, const decode_meaning_t *meaning);
+/* Writes an element of the open array. */
+void decoding_put_json(json_t *json, const decode_meaning_t *meaning);
 
 #endif

@@ -98,7 +98,7 @@ class Datasheets(Case):
                              (name, 1, int(text.split()[1], 16)))
         check = text[-5:] if protocol == 'modbus' else text[-2:]
         self.assertEqual(found['checksum'], {'right': True, 'found': check, 'expected': check})
-        self.assertEqual([f'{one.get("sensor", "")} {one["what"]}' for one in found['meanings']],
+        self.assertEqual([f'{one.get("model", "")} {one["what"]}' for one in found['meanings']],
                          [what] if isinstance(what, str) else what)
         self.assertEqual(found['meanings'][-1]['fields'], fields)
 
@@ -269,7 +269,7 @@ class Meaning(Case):
             (0x0100, {'distance_mm': 1}), (0x0205, {'polarity': 'positive'}), (0x0206, {'threshold_mm': 1}),
             (0x0207, {'output': 'real-time'}), (0x0108, {'probe_3_mm': 1}), (0x0010, {'probe_1_mm': 1}),
             (0x0013, {'probe_4_mm': 1}), (0x0009, {'result': 'success'}), (0x0200, {'address': 1}),
-            (0x0004, {'temperature_f': 1, 'temperature_c': -17.2}))],  # (1 - 32) * 5 / 9 = -17.22
+            (0x0004, {'temperature_degf': 1, 'temperature_degc': -17.2}))],  # (1 - 32) * 5 / 9 = -17.22
         a_response_of_another_length_is_not_the_one=[([ASK_A16, registers(1, 700, 800)], {'note': UNKNOWN})],
         a_damaged_request_explains_nothing=[
             (['01 03 01 00 00 01 85 F7', registers(1, 754)], {'note': UNKNOWN, 'code': 1})],
@@ -296,7 +296,7 @@ class Meaning(Case):
                (answered(2, 0x0100, 0x0500, 0x0000, 0xB505),  # 01, 181 ms, code 5
                 {'notes': ['termination', 'reconnect_time_ms', 'baud_code']})],
            '4_is_fahrenheit_and_celsius': [
-               ([HPS, *answered(4, said)], {'fields': {'temperature_f': degrees_f, 'temperature_c': celsius}})
+               ([HPS, *answered(4, said)], {'fields': {'temperature_degf': degrees_f, 'temperature_degc': celsius}})
                for said, degrees_f, celsius in ((77, 77, 25.0), (14, 14, -10.0), (0x10000 - 40, -40, -40.0),
                                                 (100, 100, 37.8), (31, 31, -0.6), (32, 32, 0.0))],
            '5_tells_targets_from_what_is_none': [
@@ -399,7 +399,7 @@ class Meaning(Case):
             self.assertTrue(any(word in what for what in whats), (word, whats))
 
     def sensors(self, *words):
-        return [one.get('sensor') for one in self.one(*words)['meanings']]
+        return [one.get('model') for one in self.one(*words)['meanings']]
 
     def test_a_named_sensor_leaves_the_others_out(self):
         for sensor, count in (('a16', 6), ('a05', 2), ('hps167s', 2)):

@@ -1,59 +1,61 @@
 /* SPDX-License-Identifier: MIT */
-#include <inttypes.h>
-
 #include "commands/decode/decode_print.h"
 #include "sensors/decoding_print.h"
 
-static void put_bytes(FILE *to, const uint8_t *bytes, size_t count)
+static json_t begin(FILE *to, const uint8_t *bytes, const decode_piece_t *piece)
 {
-    (void)fputc('"', to);
-    for (size_t i = 0; i != count; i++) (void)fprintf(to, "%s%02X", i != 0 ? " " : "", bytes[i]);
-    (void)fputc('"', to);
+    json_t json = {.to = to};
+    json_begin(&json, NULL, '{');
+    json_value(&json, "offset", "%zu", piece->offset);
+    json_value(&json, "length", "%zu", piece->length);
+    json_bytes(&json, "bytes", bytes, piece->length);
+    return json;
 }
 
-/* Only texts of the program's own: nothing in them needs to be escaped. */
-static void put_text(FILE *to, const char *name, const char *value)
+static void end(json_t *json)
 {
-    (void)fprintf(to, ",\"%s\":\"%s\"", name, value);
+    json_end(json, '}');
+    (void)fputc('\n', json->to);
 }
 
-static void put_head(FILE *to, const uint8_t *bytes, const decode_piece_t *piece)
+static void put_checksum(json_t *json, const decode_frame_t *frame)
 {
-    (void)fprintf(to, "{\"offset\":%zu,\"length\":%zu,\"bytes\":", piece->offset, piece->length);
-    put_bytes(to, bytes, piece->length);
+    const size_t length = frame->checksum_length;
+    json_begin(json, "checksum", '{');
+    json_flag(json, "right", !frame->piece->is_damaged);
+    json_bytes(json, "found", frame->bytes + frame->piece->length - length, length);
+    json_bytes(json, "expected", frame->checksum, length);
+    json_end(json, '}');
 }
 
 static void put_frame(FILE *to, const decode_frame_t *frame)
 {
     static const char *const directions[] = {
         [DECODE_REQUEST] = "request", [DECODE_RESPONSE] = "response", [DECODE_BOTH] = "both"};
-    const decode_piece_t *const piece = frame->piece;
-    put_head(to, frame->bytes, piece);
-    put_text(to, "protocol", decode_protocol_name(piece->protocol));
-    put_text(to, "direction", directions[piece->direction]);
-    if (frame->unit >= 0) (void)fprintf(to, ",\"address\":%d", frame->unit);
-    if (frame->code >= 0) (void)fprintf(to, ",\"%s\":%d", frame->code_is, frame->code);
-    if (frame->what[0] != '\0') put_text(to, "name", frame->what);
-    (void)fprintf(to, ",\"checksum\":{\"right\":%s,\"found\":", piece->is_damaged ? "false" : "true");
-    put_bytes(to, frame->bytes + piece->length - frame->checksum_length, frame->checksum_length);
-    (void)fputs(",\"expected\":", to);
-    put_bytes(to, frame->checksum, frame->checksum_length);
-    (void)fputs("},\"meanings\":[", to);
-    for (uint8_t i = 0; i != frame->meanings; i++) {
-        if (i != 0) (void)fputc(',', to);
-        decoding_put_json(to, &frame->meaning[i]);
-    }
-    (void)fputs("],\"notes\":[", to);
-    for (uint8_t i = 0; i != frame->notes; i++)
-        (void)fprintf(to, "%s\"%s\"", i != 0 ? "," : "", frame->note[i]);
-    (void)fputs("]}\n", to);
+    json_t json = begin(to, frame->bytes, frame->piece);
+    json_string(&json, "protocol", decode_protocol_name(frame->piece->protocol));
+    json_string(&json, "direction", directions[frame->piece->direction]);
+    if (frame->unit >= 0) json_value(&json, "address", "%d", frame->unit);
+    if (frame->code >= 0) json_value(&json, frame->code_is, "%d", frame->code);
+    if (frame->what[0] != '\0') json_string(&json, "name", frame->what);
+    put_checksum(&json, frame);
+    json_begin(&json, "meanings", '[');
+    for (uint8_t i = 0; i != frame->meanings; i++) decoding_put_json(&json, &frame->meaning[i]);
+    json_end(&json, ']');
+    json_begin(&json, "notes", '[');
+    for (uint8_t i = 0; i != frame->notes; i++) json_string(&json, NULL, frame->note[i]);
+    json_end(&json, ']');
+    end(&json);
 }
 
 static void put_leftover(FILE *to, const uint8_t *bytes, const decode_piece_t *piece, const char *why)
 {
-    put_head(to, bytes, piece);
-    (void)fprintf(to, ",\"protocol\":null,\"notes\":[%s%s%s]}\n", why[0] != '\0' ? "\"" : "", why,
-                  why[0] != '\0' ? "\"" : "");
+    json_t json = begin(to, bytes, piece);
+    json_string(&json, "protocol", NULL);
+    json_begin(&json, "notes", '[');
+    if (why[0] != '\0') json_string(&json, NULL, why);
+    json_end(&json, ']');
+    end(&json);
 }
 
 const decode_format_t decode_json = {"json", put_frame, put_leftover};

@@ -37,18 +37,13 @@ static int value_signed(uint16_t value)
     return value > INT16_MAX ? (int)value - UINT16_MAX - 1 : (int)value;
 }
 
-static void put_bytes(const uint8_t *bytes, size_t count)
-{
-    for (size_t i = 0; i != count; i++) (void)printf("%s%02X", i != 0 ? " " : "", bytes[i]);
-}
-
 /* ---- text ---- */
 
 static void print_bytes(const char *name, const uint8_t *bytes, size_t count)
 {
     if (count == 0) return;
-    (void)printf("%-9s ", name);
-    put_bytes(bytes, count);
+    (void)printf("%-9s", name);
+    for (size_t i = 0; i != count; i++) (void)printf(" %02X", bytes[i]);
     (void)puts("");
 }
 
@@ -78,67 +73,60 @@ static void print_text(const request_ask_t *ask, const channel_t *channel, const
 
 /* ---- JSON ---- */
 
-static void put_field(const char *name, const uint8_t *bytes, size_t count)
-{
-    (void)printf(",\"%s\":\"", name);
-    put_bytes(bytes, count);
-    (void)fputs("\"", stdout);
-}
-
-static void put_ascii(uint16_t value)
-{
-    char text[REGISTER_TEXT];
-    if (ascii(value, text)[0] == '\0') {
-        (void)fputs("null", stdout);
-        return;
-    }
-    (void)fputs("\"", stdout);
-    for (const char *at = text; *at != '\0'; at++)
-        (void)printf("%s%c", *at == '"' || *at == '\\' ? "\\" : "", *at);
-    (void)fputs("\"", stdout);
-}
-
-static void put_registers(const request_ask_t *ask)
+static void put_registers(json_t *json, const request_ask_t *ask)
 {
     uint16_t at = request_word(ask->request, REQUEST_FIRST);
-    (void)fputs(",\"registers\":[", stdout);
+    json_begin(json, "registers", '[');
     for (uint8_t i = 0; i != ask->response[CODE] / 2u; i++, at++) {
         const uint16_t value = decode_get16(ask->response + DATA + (size_t)2 * i);
-        (void)printf("%s{\"register\":\"0x%04X\",\"unsigned\":%u,\"signed\":%d,\"hex\":\"%04X\",\"ascii\":",
-                     i != 0 ? "," : "", at, value, value_signed(value), value);
-        put_ascii(value);
-        (void)fputs("}", stdout);
+        char text[REGISTER_TEXT];
+        (void)ascii(value, text);
+        json_begin(json, NULL, '{');
+        json_value(json, "register", "\"0x%04X\"", at);
+        json_value(json, "unsigned", "%u", value);
+        json_value(json, "signed", "%d", value_signed(value));
+        json_value(json, "hex", "\"%04X\"", value);
+        json_string(json, "ascii", text[0] != '\0' ? text : NULL);
+        json_end(json, '}');
     }
-    (void)fputs("]", stdout);
+    json_end(json, ']');
+}
+
+static void put_exception(json_t *json, uint8_t code)
+{
+    json_begin(json, "exception", '{');
+    json_value(json, "code", "%u", code);
+    json_string(json, "name", modbus_exception(code).name);
+    json_end(json, '}');
 }
 
 static void print_json(const request_ask_t *ask, const channel_t *channel, const decode_frame_t *frame)
 {
-    static const char *const names[] = {
+    static const char *const statuses[] = {
         [REQUEST_ANSWERED] = "answered",         [REQUEST_SENT] = "sent",
         [REQUEST_ECHO] = "answered_or_echo",     [REQUEST_REFUSED] = "exception",
-        [REQUEST_UNEXPECTED] = "unexpected",     [REQUEST_DAMAGED] = "damaged",
+        [REQUEST_UNEXPECTED] = "other_response", [REQUEST_DAMAGED] = "damaged",
         [REQUEST_NO_RESPONSE] = "no_response",   [REQUEST_LINE_BUSY] = "line_busy",
         [REQUEST_OTHER_MASTER] = "other_master", [REQUEST_FAILED] = "failed"};
     const request_t *const request = ask->request;
     const bool was_sent = channel->listener.request_length != 0;
-    (void)printf("{\"unit\":%u,\"function\":%u,\"status\":\"%s\"", request->frame[REQUEST_UNIT],
-                 request->frame[REQUEST_FUNCTION], names[ask->outcome]);
-    if (was_sent) put_field("sent", request->frame, request->length);
+    json_t json = {.to = stdout};
+    json_begin(&json, NULL, '{');
+    json_value(&json, "address", "%u", request->frame[REQUEST_UNIT]);
+    json_value(&json, "function", "%u", request->frame[REQUEST_FUNCTION]);
+    json_string(&json, "status", statuses[ask->outcome]);
+    if (was_sent) json_bytes(&json, "sent", request->frame, request->length);
     if (ask->length != 0)
-        put_field("received", ask->response, ask->length);
+        json_bytes(&json, "received", ask->response, ask->length);
     else if (was_sent)
-        put_field("heard", channel->listener.window, channel->listener.have);
-    if (has_registers(ask)) put_registers(ask);
-    if (ask->outcome == REQUEST_REFUSED)
-        (void)printf(",\"exception\":{\"code\":%u,\"name\":\"%s\"}", ask->response[CODE],
-                     modbus_exception(ask->response[CODE]).name);
-    (void)fputs(",\"meanings\":[", stdout);
-    for (uint8_t i = 0; i != frame->meanings; i++) {
-        if (i != 0) (void)fputs(",", stdout);
-        decoding_put_json(stdout, &frame->meaning[i]);
-    }
-    (void)puts("]}");
+        json_bytes(&json, "heard", channel->listener.window, channel->listener.have);
+    if (has_registers(ask)) put_registers(&json, ask);
+    if (ask->outcome == REQUEST_REFUSED) put_exception(&json, ask->response[CODE]);
+    json_begin(&json, "meanings", '[');
+    for (uint8_t i = 0; i != frame->meanings; i++) decoding_put_json(&json, &frame->meaning[i]);
+    json_end(&json, ']');
+    json_end(&json, '}');
+    (void)puts("");
 }
 
 void request_print(const request_ask_t *ask, const channel_t *channel)
