@@ -24,57 +24,6 @@ static void send(void)
     assert_int_equal(due_us(), TIMEOUT_US);
 }
 
-/* "FATHOM_NO_DEADLINE when only a byte or a submit can bring that": however late the request. */
-TEST(an_idle_line_has_no_deadline_at_any_time)
-{
-    after(100);
-    assert_int_equal(due_us(), FATHOM_NO_DEADLINE);
-    bench.fake.now_us += 10;
-    assert_int_equal(due_us(), FATHOM_NO_DEADLINE);
-    bench.fake.now_us += 0x80000000;
-    assert_int_equal(due_us(), FATHOM_NO_DEADLINE);
-}
-
-/* The bytes of a damaged response have been dropped; the attempt ends with its gap or its time-out. */
-TEST(after_a_damaged_response_the_earlier_of_gap_and_time_out_is_due)
-{
-    static const uint8_t damaged[] = {0x01, 0x03, 0x02, 0x02, 0xF2, 0x00, 0x00}; /* nothing begins with 00 */
-    for (uint32_t left_us = 2000; left_us <= 8000; left_us += 3000) {
-        set_up(state);
-        send();
-        after(TIMEOUT_US - left_us);
-        receive(damaged, sizeof damaged);
-        after(0);
-        assert_true(bench.line.received_count == 0);
-        assert_int_equal(due_us(), left_us < GAP_US ? left_us : GAP_US);
-    }
-}
-
-/* "While the port is sending it is 1000": also where something has come meanwhile. */
-TEST(while_the_port_sends_it_is_1000_us_with_bytes_held_too)
-{
-    ask(&bench.request, 1, &bench.value, 0);
-    after(T3_5_US);
-    receive(response_1_754, 1);
-    after(100);
-    assert_true(bench.line.received_count == 1);
-    assert_int_equal(due_us(), 1000);
-}
-
-/* A part of a response is there: its time-out does not end it, the gap does. */
-TEST(with_a_part_of_a_response_it_is_the_rest_of_the_gap)
-{
-    send();
-    after(TIMEOUT_US - 2000);
-    receive(response_1_754, 1);
-    after(0);
-    assert_int_equal(due_us(), GAP_US);
-    after(1500);
-    assert_int_equal(due_us(), GAP_US - 1500);
-    bench.fake.now_us += 300;
-    assert_int_equal(due_us(), GAP_US - 1800);
-}
-
 /* The same of a late response, while another request waits: that needs a silence of 3646 us, and an empty frame. */
 TEST(with_a_part_of_a_late_response_the_next_request_is_due_after_the_gap)
 {
