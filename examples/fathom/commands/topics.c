@@ -201,7 +201,8 @@ static void print_sim(FILE *to)
 {
     (void)fputs("'fathom sim' makes a pseudo terminal with up to 64 sensors on one line. At most one\n"
                 "of them may send automatically. Sensors with the same address respond at once, as\n"
-                "real ones do. SIGUSR1 cuts their power for a second.\n\n"
+                "real ones do. SIGUSR1 cuts their power for a second; they keep the settings that real\n"
+                "ones keep. --link replaces nothing but a link that a killed 'fathom sim' left behind.\n\n"
                 "Write options of one sensor behind it: a05:2,distance=1500,fault=silence=10%.\n"
                 "Options without a sensor apply to all sensors that can have them.\n\n"
                 "distance: 0 to 65535 mm, or no-target, interference (a16, a05) or fault (hps167s). An\n"

@@ -151,69 +151,6 @@ WRONG = [
         *told('a16 --port /nowhere --means', '', '0', '0=', '0=far', '=unknown', '1=unknown', 'fffc=fault',
               '0=unknown,', '0=no-target=1', '0=' + 'x' * 40),
     ]),
-    ('wrong_usage', 'sim', [
-        ('', 'which sensor?'),
-        ('a17', "there is no sensor 'a17'"),
-        ('a16' * 30, "there is no sensor 'a16a16"),
-        ('a16:0', "the address of a16 is a number from 1 to 254, not '0'"),
-        ('a16:255', "not '255'"),
-        ('a16:1x', "not '1x'"),
-        ('hps167s:33', 'from 1 to 32'),
-        ('a16:1:wave', "there is no mode 'wave' for a16, only auto, modbus"),
-        ('a16:pwm', 'a16 in mode pwm has pins and no line, and is not simulated here'),
-        ('a16:1:auto:1', "there is no mode 'auto:1'"),
-        ('a16:1:', "there is no mode ''"),
-        ('a16 --distance 1000,2000', "distance '1000,2000' is more than the 1 of a16"),
-        ('a05 --distance 1,2,3,4,5', 'more than the 4 of a05'),
-        ('a16 --distance 65536', "distance of a16 takes 0..65535 mm, no-target, interference, not '65536'"),
-        *told('a16 --distance', '-1', '', 'fault', '1' * 40),
-        ('a05 --distance 1000,', "not ''"),
-        ('a05 --distance ,1000', "not ''"),
-        ('hps167s --distance interference', 'no-target, fault'),
-        ('a16 --seed 4294967296', '--seed takes a whole number from 0 to 4294967295'),
-        ('a16 --port /nowhere', 'there is no option --port'),
-    ]),
-    ('two_that_send_by_themselves_are_refused', 'sim', [
-        ('a16 a05', 'a16 and a05 would both send by themselves'),
-        ('a16 hps167s:2 a05', 'a16 and a05 would both send by themselves'),
-    ]),
-    ('more_than_64_are_refused', 'sim', [('a16:1:modbus ' * 65, 'up to 64 sensors a line, not 65')]),
-    ('a_wrong_key_behind_a_sensor_is_refused', 'sim', [
-        *((f'a16{keys}', f"a sensor takes distance=, baud=, with= and fault=, not '{keys[1:]}'")
-          for keys in (',', ',fault', ',1500', ',colour=red', ',Distance=1', ',=1')),
-        ('a16,distance=1,fault=drop=2', "not 'drop=2'"),
-        ('a05,distance=1000,2000,fault', "not 'fault'"),
-    ]),
-    ('what_one_of_them_cannot_have_is_refused', 'sim', [
-        ('a16 --baud 9600', 'a16 has one baud rate only'),
-        ('a05 a16::modbus --baud 19200', 'a05 has one baud rate only'),
-    ]),
-    ('what_none_of_them_has_is_refused', 'sim', [
-        ('a16 --with unasked=5',
-         "there is no 'unasked' for a16, only exceptions, broadcast, real-time, new-address"),
-    ]),
-    ('what_one_of_them_cannot_have_is_refused', 'sim a16:1:modbus a05:2:modbus hps167s:7', [
-        ('--fault interference', "there is no fault 'interference' for hps167s"),
-        ('--distance 1,2', "distance '1,2' is more than the 1 of a16"),
-    ]),
-    ('what_one_of_them_cannot_have_is_refused', 'sim', [
-        ('hps167s:7 a16:1:modbus,baud=19200', 'a16 has one baud rate only'),
-        ('hps167s:7 a16:1:modbus,with=count-03', "there is no 'count-03' for a16"),
-    ]),
-    ('what_none_of_them_has_is_refused', 'sim a16:1:modbus a05:2:modbus hps167s:7', [
-        ('--with x', "there is no 'x' for a16"),
-    ]),
-    ('a_rate_that_an_hps167s_does_not_have_is_refused', 'sim hps167s', [
-        (f"--baud '{rate}'", f"--baud of hps167s takes 19200, 57600, 115200 or 230400, not '{rate}'")
-        for rate in ('9600', '38400', '19200x', '', '0')]),
-    ('what_none_of_them_has_is_refused', 'sim hps167s', [
-        *((f'--with {value}', f"with takes warm-up=S, a whole number from 1 to 255, not '{value}'")
-          for value in ('warm-up', 'warm-up=', 'warm-up=0', 'warm-up=256', 'warm-up=1s')),
-        ('--with count-03=1', "with count-03 takes no value, so not 'count-03=1'"),
-        *((f'--with {value}', f"with takes unasked=MS, a number from 1 to 60000, not '{value}'")
-          for value in ('unasked', 'unasked=', 'unasked=0.9', 'unasked=60000.001', 'unasked=18.',
-                        'unasked=.5', 'unasked=18.5555', 'unasked=18.5s', 'unasked=100000')),
-    ]),
     ('wrong_usage_is_2_and_one_line', 'scan', [
         ('', '--port is missing'),
         ('--port tcp:127.0.0.1',
@@ -316,11 +253,7 @@ class Help(e2e.Case):
         the_help_names_every_option_and_its_examples_are_right_usage=(
             'scan', '--port --address --baud --parity --stop-bits --timeout --retries --listen --wake --estimate '
                     '--format '
-            'examples:'),
-        help_of_sim_names_sensors_options_and_examples=(
-            'sim', 'a16 a05 hps167s --link --distance --seed examples'),
-        the_help_names_it_all=(
-            'sim', 'SENSOR[:ADDRESS][:MODE][,KEY=VALUE...]... --baud --echo --counters --with warm-up=S 64 SIGUSR1'))
+            'examples:'))
     def names(self, command, words, *more):
         text = self.told(f'{command} --help')
         for word in (*words.split(), *more, 'Exit status'):

@@ -5,6 +5,7 @@
 #include <signal.h>
 #include <string.h>
 
+#include "cli/complete.h"
 #include "commands/commands.h"
 #include "commands/sim/sim.h"
 #include "ports/host.h"
@@ -13,7 +14,8 @@
 enum { POWER_OFF_US = 1000000, CONNECT_US = 1000000 };
 
 typedef struct {
-    sim_options_t options;
+    const sim_settings_t *settings;
+    sim_site_t site;
     fathom_sim_line_t line;
     fathom_sim_pty_t pty;
     uint32_t connected; /* the first sensors */
@@ -33,14 +35,14 @@ static void attach_faults(const sim_sensor_t *sensor, fathom_sim_fault_t *fault)
 
 static void connect_sensor(simulation_t *simulation, uint32_t i, uint32_t now_us)
 {
-    const sim_sensor_t *const sensor = &simulation->options.sensors[i];
+    const sim_sensor_t *const sensor = &simulation->site.sensors[i];
     device_t *const device = &simulation->devices[i];
     device_settings_t settings = {.address = sensor->address,
                                   .baud = sensor->line.baud,
                                   .seed = sensor->seed,
                                   .scene = sensor->scene.scene};
     for (uint32_t j = 0; j != i; j++)
-        if (simulation->options.sensors[j].model == sensor->model) settings.number++;
+        if (simulation->site.sensors[j].model == sensor->model) settings.number++;
     memcpy(settings.traits, sensor->traits, sizeof settings.traits);
     sensor->model->simulate(device, &settings, sensor->mode->simulated_as);
     attach_faults(sensor, &simulation->faults[i]);
@@ -51,25 +53,25 @@ static void connect_sensor(simulation_t *simulation, uint32_t i, uint32_t now_us
 
 static bool open_line(simulation_t *simulation)
 {
-    const sim_options_t *const options = &simulation->options;
-    const fathom_sim_pty_config_t config = {.link = options->link};
+    const sim_site_t *const site = &simulation->site;
+    const char *const link = simulation->settings->link;
+    const fathom_sim_pty_config_t config = {.link = link};
     const uint32_t now_us = fathom_sim_pty_now_us();
-    fathom_sim_line_init(&simulation->line, &options->sensors[0].line, now_us);
+    fathom_sim_line_init(&simulation->line, &site->sensors[0].line, now_us);
     /* A sensor without an address has a wire in each direction; the others share an RS485 pair. */
-    simulation->line.full_duplex = options->count == 1 && !options->sensors[0].mode->has_address;
-    simulation->line.echo = options->echo;
-    const uint32_t first = options->one_by_one ? 1 : options->count;
+    simulation->line.full_duplex = site->count == 1 && !site->sensors[0].mode->has_address;
+    simulation->line.echo = simulation->settings->has_echo;
+    const uint32_t first = simulation->settings->one_by_one ? 1 : site->count;
     for (uint32_t i = 0; i != first; i++) connect_sensor(simulation, i, now_us);
     if (fathom_sim_pty_open(&simulation->pty, &simulation->line, &config) == 0) return true;
-    if (options->link != NULL && errno == EEXIST)
+    if (link != NULL && errno == EEXIST)
         (void)fprintf(stderr,
                       "fathom: %s is there already, and is no link that a killed fathom sim has left behind; "
                       "choose another --link, or remove it first\n",
-                      options->link);
+                      link);
     else
-        (void)fprintf(stderr, "fathom: the simulated port%s%s: %s\n",
-                      options->link != NULL ? " and its link " : "",
-                      options->link != NULL ? options->link : "", strerror(errno));
+        (void)fprintf(stderr, "fathom: the simulated port%s%s: %s\n", link != NULL ? " and its link " : "",
+                      link != NULL ? link : "", strerror(errno));
     return false;
 }
 
@@ -77,12 +79,12 @@ static bool open_line(simulation_t *simulation)
 static bool announce(const simulation_t *simulation)
 {
     const char *const path = fathom_sim_pty_path(&simulation->pty);
+    const char *const link = simulation->settings->link;
     if (printf("%s\n", path) < 0 || fflush(stdout) != 0) {
-        (void)fprintf(stderr, "fathom: the path of the port cannot be written: %s\n", strerror(errno));
+        (void)fprintf(stderr, "fathom: cannot write the path of the port: %s\n", strerror(errno));
         return false;
     }
-    sim_announce(stderr, &simulation->options,
-                 simulation->options.link != NULL ? simulation->options.link : path);
+    sim_announce(stderr, &simulation->site, simulation->settings->one_by_one, link != NULL ? link : path);
     return true;
 }
 
@@ -100,9 +102,9 @@ static void cycle_power(simulation_t *simulation)
 static uint32_t connect_next(simulation_t *simulation, uint32_t due_us)
 {
     const uint32_t next = simulation->connected;
-    if (next == simulation->options.count) return due_us;
+    if (next == simulation->site.count) return due_us;
     const uint32_t now_us = fathom_sim_pty_now_us();
-    if (simulation->devices[next - 1].base->address == simulation->options.sensors[next - 1].address)
+    if (simulation->devices[next - 1].base->address == simulation->site.sensors[next - 1].address)
         return due_us;
     if (!simulation->has_left) simulation->left_us = now_us;
     simulation->has_left = true;
@@ -132,21 +134,40 @@ static int serve(simulation_t *simulation, const host_t *host)
 static void print_counters(const simulation_t *simulation)
 {
     for (uint32_t i = 0; i != simulation->connected; i++)
-        sim_print_counters(stderr, &simulation->options, i, simulation->devices[i].base, &simulation->line);
+        sim_print_counters(stderr, &simulation->site, i, simulation->devices[i].base, &simulation->line);
 }
 
-static int run(const host_t *host, int argc, char **argv)
+static int start(const host_t *host, const arguments_t *arguments)
 {
     static simulation_t simulation;
-    if (!sim_options(&simulation.options, argc, argv)) return STATUS_USAGE;
-    if (simulation.options.wants_help) return command_help(&sim_command);
+    memset(&simulation, 0, sizeof simulation);
+    simulation.settings = arguments->settings;
+    if (!sim_sensors(&simulation.site, arguments)) return STATUS_USAGE;
     if (!host->begin(host->ctx) || !open_line(&simulation)) return STATUS_FAILED;
     host_watch_signal(SIGUSR1); /* before the path is printed, by which the process can be known */
     const int status = announce(&simulation) ? serve(&simulation, host) : STATUS_FAILED;
-    if (simulation.options.counters) print_counters(&simulation);
+    if (simulation.settings->has_counters) print_counters(&simulation);
     fathom_sim_pty_close(&simulation.pty);
     return status;
 }
 
 const command_t sim_command = {
-    .name = "sim", .summary = "puts simulated sensors behind a serial port", .help = sim_help, .run = run};
+    .name = "sim",
+    .summary = "Simulate sensors behind a serial port until interrupted",
+    .usage = "SENSOR[:ADDRESS][:MODE][,KEY=VALUE...]... [OPTIONS]",
+    .tables = sim_tables,
+    .common = "link distance fault counters",
+    .own_group = "Simulation",
+    .about = "It prints the path of a pseudo terminal, which any program can open like a\n"
+             "serial port. Write an option of one sensor behind it:\n"
+             "a05:2,distance=1500,fault=drop=5%. An option without a sensor applies to all\n"
+             "sensors that can have it. SIGUSR1 cuts the power of all sensors for a second.\n",
+    .examples = "  fathom sim a16 --link ./tank\n"
+                "  fathom sim a05::modbus --link ./bumper --distance 1000,2000,1953,no-target\n"
+                "  fathom sim a16:1:modbus a05:2:modbus hps167s:7,distance=2083 --link ./bus\n",
+    .status = "Exit status: 0 after Ctrl-C, 1 the port or the link cannot be made, 2 wrong usage.\n",
+    .topics = "faults, sensors",
+    .operands = operands_sensors,
+    .settings_size = sizeof(sim_settings_t),
+    .start = start,
+};

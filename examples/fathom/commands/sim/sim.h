@@ -2,8 +2,7 @@
 #ifndef SIM_H
 #define SIM_H
 
-#include <stdio.h>
-
+#include "cli/command.h"
 #include "sensors/models.h"
 #include "sim/fault.h"
 #include "sim/scene.h"
@@ -37,26 +36,47 @@ typedef struct {
     sim_fault_t faults[FATHOM_SIM_FAULT_RULES];
 } sim_sensor_t;
 
+/* Texts of an option that can be given several times. */
+typedef struct {
+    uint8_t count;
+    const char *text[FATHOM_SIM_FAULT_RULES];
+} sim_texts_t;
+
+/* Options that apply to all sensors that can have them, or keys behind a sensor. */
+typedef struct {
+    const char *distance; /* NULL: the target moves */
+    uint32_t baud;        /* 0: of the factory */
+    sim_texts_t with;
+    sim_texts_t faults;
+} sim_keys_t;
+
 typedef struct {
     const char *link; /* NULL: none */
-    bool echo;
-    bool counters;
+    bool has_echo;
+    bool has_counters;
     bool one_by_one; /* connects each sensor when the sensor before it has left its first address */
-    bool wants_help;
-    uint32_t count; /* of sensors */
+    uint32_t seed;
+    sim_keys_t keys; /* of all sensors */
+} sim_settings_t;
+
+extern const option_table_t sim_tables[];
+
+/* The sensors of a line. */
+typedef struct {
+    uint32_t count;
     sim_sensor_t sensors[SIM_SENSORS];
-} sim_options_t;
+} sim_site_t;
 
-/* Returns false after a usage error. The scenes are in *options, so the options may not be moved. */
-bool sim_options(sim_options_t *options, int argc, char **argv);
-void sim_help(FILE *to);
+/* Reads the words of the sensors with their keys. Returns false after rejecting one. The scenes are in *site, so the site
+ * may not be moved. */
+bool sim_sensors(sim_site_t *site, const arguments_t *arguments);
 
-/* ---- the keys of a sensor: distance=, baud=, with=, fault= ---- */
+/* ---- the keys of a sensor ---- */
 
-/* Each of these returns false after a usage error. */
-bool sim_set_distance(sim_sensor_t *sensor, const char *list);
-bool sim_add_trait(sim_sensor_t *sensor, const char *text);
-bool sim_add_fault(sim_sensor_t *sensor, const char *text);
+/* Each of these returns false after rejecting the text. */
+bool sim_set_distance(sim_sensor_t *sensor, const char *list, const origin_t *origin);
+bool sim_add_trait(sim_sensor_t *sensor, const char *text, const origin_t *origin);
+bool sim_add_fault(sim_sensor_t *sensor, const char *text, const origin_t *origin);
 
 /* Makes the target of each probe move to and fro, each at another speed. */
 void sim_move(sim_sensor_t *sensor, uint32_t now_us);
@@ -72,18 +92,22 @@ bool sim_can_have_fault(const sim_sensor_t *sensor, uint8_t kind);
 bool sim_decimal(const char *text, size_t length, uint32_t places, uint32_t min, uint32_t max,
                  uint32_t *number);
 
-/* The tables of the help. */
+/* The names of all traits and faults, for option_t.list. */
+const char *sim_trait_name(size_t n);
+const char *sim_fault_name(size_t n);
+
+/* The tables of `fathom help faults`. */
 void sim_print_traits(FILE *to);
 void sim_print_faults(FILE *to);
 
 /* ---- what the command prints ---- */
 
 /* Prints which sensors the line has and how to read them. port: the name to open. */
-void sim_announce(FILE *to, const sim_options_t *options, const char *port);
+void sim_announce(FILE *to, const sim_site_t *site, bool one_by_one, const char *port);
 
 /* Prints a JSON object of sensor i: its place on the command line, its present address and rate, its counters, and the
  * collisions on the line. */
-void sim_print_counters(FILE *to, const sim_options_t *options, uint32_t i, const fathom_sim_device_t *device,
+void sim_print_counters(FILE *to, const sim_site_t *site, uint32_t i, const fathom_sim_device_t *device,
                         const fathom_sim_line_t *line);
 
 #endif

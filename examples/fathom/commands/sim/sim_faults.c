@@ -1,13 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
-#include "cli/command.h"
-#include "cli/options.h"
 #include "commands/sim/sim.h"
+#include "output/words.h"
 
-static const char command[] = "sim";
-
-enum { KINDS_TEXT = 400, MAX_KIND = 16 };
+enum { KINDS_TEXT = 400, MAX_KIND = 24 };
 
 /* A port has no clock that could jump. */
 static bool is_offered(uint8_t kind) { return kind != FATHOM_SIM_FAULT_CLOCK_JUMP; }
@@ -52,46 +49,48 @@ static bool parse_rest(const char *text, sim_fault_t *fault)
     return text[length] == '\0' || number_parse(text + length + 1, 1, UINT32_MAX, &fault->at_frame);
 }
 
-static bool reject_kind(const sim_sensor_t *sensor, const char *text)
+static bool reject_kind(const sim_sensor_t *sensor, const char *name, const origin_t *origin)
 {
+    nearest_t nearest = {.word = name};
     char known[KINDS_TEXT] = "";
-    for (uint8_t kind = 1; kind != FATHOM_SIM_FAULT_END; kind++)
-        if (sim_can_have_fault(sensor, kind)) list_add(known, sizeof known, fathom_sim_fault_name(kind));
-    (void)usage_error(command, "there is no fault '%.*s' for %s in mode %s, only %s", (int)strcspn(text, "="),
-                      text, sensor->model->name, sensor->mode->name, known);
-    return false;
+    for (uint8_t kind = 1; kind != FATHOM_SIM_FAULT_END; kind++) {
+        if (!sim_can_have_fault(sensor, kind)) continue;
+        nearest_try(&nearest, fathom_sim_fault_name(kind));
+        list_add(known, sizeof known, fathom_sim_fault_name(kind));
+    }
+    char what[80];
+    (void)snprintf(what, sizeof what, "fault of %s in mode %s", sensor->model->name, sensor->mode->name);
+    return reject_unknown(origin, what, "", &nearest, known);
 }
 
-bool sim_add_fault(sim_sensor_t *sensor, const char *text)
+bool sim_add_fault(sim_sensor_t *sensor, const char *text, const origin_t *origin)
 {
-    if (sensor->fault_count == FATHOM_SIM_FAULT_RULES) {
-        (void)usage_error(command, "fault may be given up to %u times", FATHOM_SIM_FAULT_RULES);
-        return false;
-    }
-    sim_fault_t *const fault = &sensor->faults[sensor->fault_count++];
     const size_t length = strcspn(text, "=");
     char name[MAX_KIND] = "";
-    if (length < sizeof name) memcpy(name, text, length);
+    if (sensor->fault_count == FATHOM_SIM_FAULT_RULES)
+        return reject(origin, "a sensor has at most %u faults.", FATHOM_SIM_FAULT_RULES);
+    sim_fault_t *const fault = &sensor->faults[sensor->fault_count++];
+    (void)snprintf(name, sizeof name, "%.*s", (int)length, text);
     fault->kind = fathom_sim_fault_find(name);
     fault->chance_ppm = FATHOM_SIM_FAULT_ALWAYS_PPM;
-    if (fault->kind == 0 || !sim_can_have_fault(sensor, fault->kind)) return reject_kind(sensor, text);
+    if (fault->kind == 0 || !sim_can_have_fault(sensor, fault->kind))
+        return reject_kind(sensor, name, origin);
     if (text[length] == '\0' || parse_rest(text + length + 1, fault)) return true;
-    (void)usage_error(command, "fault takes KIND[=P[@N]], P from 0.000001 to 1 or as 5%%, N from 1, not '%s'",
-                      text);
-    return false;
+    return reject(origin, "fault is '%s'. It takes KIND[=P[@N]], P from 0.000001 to 1 or as 5%%, N from 1.",
+                  text);
+}
+
+const char *sim_fault_name(size_t n)
+{
+    return n + 1 < FATHOM_SIM_FAULT_CLOCK_JUMP ? fathom_sim_fault_name((uint8_t)(n + 1)) : NULL;
 }
 
 void sim_print_faults(FILE *to)
 {
-    bool is_second = false;
-    for (uint8_t kind = 1; kind != FATHOM_SIM_FAULT_END; kind++) {
-        if (!is_offered(kind)) continue;
-        (void)fprintf(to, is_second ? "%-12s  %s\n" : "    %-12s  %-41s  ", fathom_sim_fault_name(kind),
-                      fathom_sim_fault_text(kind));
-        is_second = !is_second;
-    }
-    if (is_second) (void)fputc('\n', to);
-    (void)fputs("A pseudo terminal cannot mark a byte: with parity, framing and break it comes as a terminal "
-                "without\nchecks delivers it, wrong or 00, and with overrun it is missing.\n",
+    for (uint8_t kind = 1; kind != FATHOM_SIM_FAULT_END; kind++)
+        if (is_offered(kind))
+            (void)fprintf(to, "    %-13s  %s\n", fathom_sim_fault_name(kind), fathom_sim_fault_text(kind));
+    (void)fputs("A pseudo terminal cannot mark a byte: with parity, framing and break the byte arrives as a\n"
+                "terminal without checks delivers it, wrong or 00, and with overrun it is missing.\n",
                 to);
 }

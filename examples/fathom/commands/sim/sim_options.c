@@ -2,81 +2,90 @@
 #include <inttypes.h>
 #include <string.h>
 
-#include "cli/command.h"
-#include "cli/options.h"
 #include "cli/sensor_word.h"
 #include "commands/sim/sim.h"
+#include "output/words.h"
 #include "sim/pty.h"
 
-static const char command[] = "sim";
+static bool parse_another(const char *text, void *member)
+{
+    sim_texts_t *const texts = member;
+    if (texts->count == sizeof texts->text / sizeof texts->text[0]) return false;
+    texts->text[texts->count++] = text;
+    return true;
+}
 
-enum { LINK, SEED, ECHO_ON, COUNTERS, ONE_BY_ONE, HELP, DISTANCE, BAUD, WITH, FAULT, OPTIONS };
-
-static const struct option table[OPTIONS + 1] = {
-    [LINK] = {"link", required_argument, NULL, 256},
-    [SEED] = {"seed", required_argument, NULL, 256},
-    [ECHO_ON] = {"echo", no_argument, NULL, 256},
-    [COUNTERS] = {"counters", no_argument, NULL, 256},
-    [ONE_BY_ONE] = {"one-by-one", no_argument, NULL, 256},
-    [HELP] = {"help", no_argument, NULL, 256},
-    [DISTANCE] = {"distance", required_argument, NULL, 256},
-    [BAUD] = {"baud", required_argument, NULL, 256},
-    [WITH] = {"with", required_argument, NULL, 256},
-    [FAULT] = {"fault", required_argument, NULL, 256},
+static const option_t sim_rows[] = {
+    {"link", "PATH", "Make a link to the port, and remove it at the end", KIND_TEXT, GROUP_COMMAND,
+     .is_path = true, AT(sim_settings_t, link)},
+    {"echo", .help = "Return each request, as an adapter with local echo does", .group = GROUP_COMMAND,
+     AT(sim_settings_t, has_echo)},
+    {"counters", .help = "Print at the end what each sensor did, as JSON", .group = GROUP_COMMAND,
+     AT(sim_settings_t, has_counters)},
+    {"one-by-one", .help = "Connect each sensor after the one before left its address",
+     .group = GROUP_COMMAND, AT(sim_settings_t, one_by_one)},
+    {"seed", "N", "Vary movement, response times and faults (default 0)", KIND_NUMBER, GROUP_COMMAND,
+     .max = UINT32_MAX, AT(sim_settings_t, seed)},
+    {.name = NULL},
 };
 
-/* ---- the keys that a sensor has ---- */
+static const option_t key_rows[] = {
+    {"distance", "MM", "Measure MM; an a05 takes up to four, as 700,900", KIND_TEXT, GROUP_SENSOR,
+     AT(sim_keys_t, distance)},
+    {"baud", "RATE", "Use the rate that an hps167s was set to", KIND_ONE_OF, GROUP_SENSOR,
+     .words = "19200 57600 115200 230400", AT(sim_keys_t, baud)},
+    {"with", "NAME", "Start with a state or behaviour (fathom help faults)", KIND_CUSTOM, GROUP_SENSOR,
+     .takes = "at most 32 traits", .parse = parse_another, .list = sim_trait_name, AT(sim_keys_t, with)},
+    {"fault", "KIND", "Damage frames: KIND[=P[@N]] (fathom help faults)", KIND_CUSTOM, GROUP_SENSOR,
+     .takes = "at most 32 faults", .parse = parse_another, .list = sim_fault_name, AT(sim_keys_t, faults)},
+    {.name = NULL},
+};
 
-static bool has_rates(const sim_sensor_t *sensor, const char *text)
+const option_table_t sim_tables[] = {{sim_rows, 0}, {key_rows, offsetof(sim_settings_t, keys)}, {NULL, 0}};
+
+/* ---- keys ---- */
+
+static bool has_rates(const sim_sensor_t *sensor) { return sensor->model->rates != NULL; }
+
+/* Applies the keys to a sensor. */
+static bool apply(sim_sensor_t *sensor, const sim_keys_t *keys, const origin_t *origin)
 {
-    (void)text;
-    return sensor->model->rates != NULL;
+    if (keys->distance != NULL && !sim_set_distance(sensor, keys->distance, origin)) return false;
+    if (keys->baud != 0 && !model_has_rate(sensor->model, keys->baud))
+        return reject(origin, "%s does not have the rate %" PRIu32 ".", sensor->model->name, keys->baud);
+    if (keys->baud != 0) sensor->line.baud = keys->baud;
+    for (uint8_t i = 0; i != keys->with.count; i++)
+        if (!sim_add_trait(sensor, keys->with.text[i], origin)) return false;
+    for (uint8_t i = 0; i != keys->faults.count; i++)
+        if (!sim_add_fault(sensor, keys->faults.text[i], origin)) return false;
+    return true;
 }
 
-static bool set_baud(sim_sensor_t *sensor, const char *text)
+static bool can_any_have_trait(const sim_site_t *site, const char *text)
 {
-    uint32_t baud = 0;
-    if (!has_rates(sensor, text)) {
-        (void)usage_error(command, "%s has one baud rate only", sensor->model->name);
-        return false;
-    }
-    if (number_parse(text, 1, UINT32_MAX, &baud) && model_has_rate(sensor->model, baud)) {
-        sensor->line.baud = baud;
-        return true;
-    }
-    char rates[64] = "";
-    for (const uint32_t *rate = sensor->model->rates; *rate != 0; rate++) {
-        const size_t length = strlen(rates);
-        const char *const gap = rate == sensor->model->rates ? "" : rate[1] != 0 ? ", " : " or ";
-        (void)snprintf(rates + length, sizeof rates - length, "%s%" PRIu32, gap, *rate);
-    }
-    (void)usage_error(command, "--baud of %s takes %s, not '%s'", sensor->model->name, rates, text);
-    return false;
+    uint32_t i = 0;
+    while (i != site->count && !sim_can_have_trait(&site->sensors[i], text)) i++;
+    return i != site->count;
 }
 
-/* As options they apply to all sensors that can have them, behind a sensor to that sensor. */
-static const struct {
-    int row; /* whose name the key has */
-    bool (*fits)(const sim_sensor_t *sensor,
-                 const char *text); /* NULL: every sensor must be able to have it */
-    bool (*set)(sim_sensor_t *sensor, const char *text);
-} keys[] = {{DISTANCE, NULL, sim_set_distance},
-            {BAUD, has_rates, set_baud},
-            {WITH, sim_can_have_trait, sim_add_trait},
-            {FAULT, NULL, sim_add_fault}};
-enum { KEYS = sizeof keys / sizeof keys[0] };
-
-/* Applies KEY=VALUE to a sensor. */
-static bool set_key(sim_sensor_t *sensor, const char *text)
+/* Applies the options to all sensors. A rate and a trait are for the sensors that can have it, if there are any. */
+static bool apply_to_all(sim_site_t *site, const sim_keys_t *keys, const origin_t *origin)
 {
-    const size_t length = strcspn(text, "=");
-    for (size_t i = 0; i != KEYS; i++) {
-        const char *const name = table[keys[i].row].name;
-        if (text[length] == '=' && strlen(name) == length && memcmp(name, text, length) == 0)
-            return keys[i].set(sensor, text + length + 1);
+    bool any_has_rates = false;
+    for (uint32_t i = 0; i != site->count; i++) any_has_rates = any_has_rates || has_rates(&site->sensors[i]);
+    for (uint32_t i = 0; i != site->count; i++) {
+        sim_sensor_t *const sensor = &site->sensors[i];
+        sim_keys_t fitting = *keys;
+        fitting.with.count = 0;
+        for (uint8_t t = 0; t != keys->with.count; t++) {
+            const char *const text = keys->with.text[t];
+            if (sim_can_have_trait(sensor, text) || !can_any_have_trait(site, text))
+                fitting.with.text[fitting.with.count++] = text;
+        }
+        if (any_has_rates && !has_rates(sensor)) fitting.baud = 0;
+        if (!apply(sensor, &fitting, origin)) return false;
     }
-    (void)usage_error(command, "a sensor takes distance=, baud=, with= and fault=, not '%s'", text);
-    return false;
+    return true;
 }
 
 /* Returns the comma before the next KEY=; other commas belong to a list of distances. NULL: there is none. */
@@ -87,51 +96,24 @@ static char *next_key(char *text)
     return comma;
 }
 
-static bool set_keys(sim_sensor_t *sensor, char *text)
+/* Reads KEY=VALUE,KEY=VALUE... and applies the keys to a sensor. */
+static bool apply_own(sim_sensor_t *sensor, char *text, const origin_t *origin)
 {
+    static const option_table_t tables[] = {{key_rows, 0}, {NULL, 0}};
+    sim_keys_t keys = {.baud = 0};
     while (text != NULL) {
+        option_walk_t walk;
         char *const next = next_key(text);
         if (next != NULL) *next = '\0';
-        if (!set_key(sensor, text)) return false;
+        char *const equals = strchr(text, '=');
+        if (equals != NULL) *equals = '\0';
+        if (!option_find(&walk, tables, text, strlen(text)))
+            return option_reject_unknown(tables, "key", text, origin);
+        if (equals == NULL) return reject(origin, "%s has no value.", text);
+        if (!option_set(walk.row, equals + 1, &keys, origin)) return false;
         text = next != NULL ? next + 1 : NULL;
     }
-    return true;
-}
-
-/* ---- options for all sensors ---- */
-
-enum { MAX_GIVEN = 64 };
-
-typedef struct {
-    struct {
-        int row;
-        const char *text;
-    } list[MAX_GIVEN];
-    uint32_t count; /* including those that the list has no room for */
-} givens_t;
-
-static void note(void *ctx, int row, const char *text)
-{
-    givens_t *const givens = ctx;
-    if (row < DISTANCE) return;
-    if (givens->count < MAX_GIVEN) {
-        givens->list[givens->count].row = row;
-        givens->list[givens->count].text = text;
-    }
-    givens->count++;
-}
-
-static bool set_of_all(sim_options_t *options, int row, const char *text)
-{
-    const size_t i = (size_t)(row - DISTANCE);
-    bool fits_any = false;
-    for (uint32_t s = 0; s != options->count && keys[i].fits != NULL; s++)
-        fits_any = fits_any || keys[i].fits(&options->sensors[s], text);
-    for (uint32_t s = 0; s != options->count; s++) {
-        if (fits_any && !keys[i].fits(&options->sensors[s], text)) continue;
-        if (!keys[i].set(&options->sensors[s], text)) return false;
-    }
-    return true;
+    return apply(sensor, &keys, origin);
 }
 
 /* ---- the sensors ---- */
@@ -140,89 +122,61 @@ static bool set_of_all(sim_options_t *options, int row, const char *text)
 enum { SEED_STEP = 1000003 };
 
 /* Reads SENSOR[:ADDRESS][:MODE]. */
-static bool parse_sensor(sim_sensor_t *sensor, char *text)
+static bool parse_sensor(sim_sensor_t *sensor, char *text, const origin_t *origin)
 {
-    sensor_word_t parsed;
-    const origin_t origin = {.command = command};
-    if (!sensor_word_parse(&parsed, text, &origin)) return false;
-    sensor->model = parsed.model;
-    sensor->mode =
-        parsed.mode != NULL ? mode_word(parsed.model, parsed.mode, &origin) : &parsed.model->modes[0];
+    sensor_word_t word;
+    if (!sensor_word_parse(&word, text, origin)) return false;
+    sensor->model = word.model;
+    sensor->mode = word.mode != NULL ? mode_word(word.model, word.mode, origin) : &word.model->modes[0];
     sensor->address = FACTORY_ADDRESS;
-    sensor->line = parsed.model->line;
+    sensor->line = word.model->line;
     if (sensor->mode == NULL) return false;
     if (sensor->mode->simulated_as != 0)
-        return sensor_word_address(&parsed, sensor->mode, &sensor->address, &origin);
-    (void)usage_error(command, "%s in mode %s has pins and no line, and is not simulated here",
-                      parsed.model->name, sensor->mode->name);
-    return false;
+        return sensor_word_address(&word, sensor->mode, &sensor->address, origin);
+    return reject(origin, "%s in mode %s has pins and no line, and is not simulated here.", word.model->name,
+                  sensor->mode->name);
 }
 
 /* One line cannot carry the frames of two sensors that both send automatically. */
-static bool has_one_sender(const sim_options_t *options)
+static bool has_one_sender(const sim_site_t *site, const origin_t *origin)
 {
     const sim_sensor_t *sender = NULL;
-    for (uint32_t i = 0; i != options->count; i++) {
-        const sim_sensor_t *const sensor = &options->sensors[i];
+    for (uint32_t i = 0; i != site->count; i++) {
+        const sim_sensor_t *const sensor = &site->sensors[i];
         if (mode_is_asked(sensor->mode)) continue;
-        if (sender != NULL) {
-            (void)usage_error(command,
-                              "%s and %s would both send by themselves, which one line cannot carry; "
-                              "give one of them a mode in which it is asked",
-                              sender->model->name, sensor->model->name);
-            return false;
-        }
+        if (sender != NULL)
+            return reject(origin,
+                          "%s and %s would both send automatically, which one line cannot carry. Give one of "
+                          "them a mode in which it receives requests.",
+                          sender->model->name, sensor->model->name);
         sender = sensor;
     }
     return true;
 }
 
-/* Cuts each word behind its sensor; the keys that follow it are in keys_of[], NULL if there are none. */
-static bool parse_sensors(sim_options_t *options, int count, char **words, char *keys_of[SIM_SENSORS],
-                          uint32_t seed)
+bool sim_sensors(sim_site_t *site, const arguments_t *arguments)
 {
-    if (count == 0) (void)usage_error(command, "which sensor? a16, a05 or hps167s");
-    if (count > SIM_SENSORS)
-        (void)usage_error(command, "up to %d sensors a line, not %d", SIM_SENSORS, count);
-    if (count == 0 || count > SIM_SENSORS) return false;
+    const sim_settings_t *const settings = arguments->settings;
+    const origin_t origin = {.command = "sim"};
     const uint32_t now_us = fathom_sim_pty_now_us();
-    for (; options->count != (uint32_t)count; options->count++) {
-        sim_sensor_t *const sensor = &options->sensors[options->count];
-        char *const comma = strchr(words[options->count], ',');
-        keys_of[options->count] = comma != NULL ? comma + 1 : NULL;
+    char *keys_of[SIM_SENSORS];
+    if (arguments->count == 0) return reject(&origin, "no sensor is named: a16, a05 or hps167s.");
+    if (arguments->count > SIM_SENSORS)
+        return reject(&origin, "a line has at most %d sensors, not %d.", SIM_SENSORS, arguments->count);
+    for (; site->count != (uint32_t)arguments->count; site->count++) {
+        sim_sensor_t *const sensor = &site->sensors[site->count];
+        char *const word = arguments->words[site->count];
+        char *const comma = strchr(word, ',');
         if (comma != NULL) *comma = '\0';
-        if (!parse_sensor(sensor, words[options->count])) return false;
-        sensor->seed = seed + options->count * SEED_STEP;
+        keys_of[site->count] = comma != NULL ? comma + 1 : NULL;
+        if (!parse_sensor(sensor, word, &origin)) return false;
+        sensor->seed = settings->seed + site->count * SEED_STEP;
         sim_move(sensor, now_us);
     }
-    return has_one_sender(options);
-}
-
-bool sim_options(sim_options_t *options, int argc, char **argv)
-{
-    const char *values[OPTIONS] = {NULL};
-    char *keys_of[SIM_SENSORS];
-    givens_t givens = {.count = 0};
-    uint32_t seed = 0;
-    memset(options, 0, sizeof *options);
-    const int rest = options_parse_each(command, argc, argv, table, values, note, &givens);
-    if (rest < 0) return false;
-    options->wants_help = values[HELP] != NULL;
-    if (options->wants_help) return true;
-    options->link = values[LINK];
-    options->echo = values[ECHO_ON] != NULL;
-    options->counters = values[COUNTERS] != NULL;
-    options->one_by_one = values[ONE_BY_ONE] != NULL;
-    if (givens.count > MAX_GIVEN) {
-        (void)usage_error(command, "there are more than %d options", MAX_GIVEN);
-        return false;
+    if (!has_one_sender(site, &origin) || !apply_to_all(site, &settings->keys, &origin)) return false;
+    for (uint32_t i = 0; i != site->count; i++) {
+        const origin_t own = {.command = "sim", .within = arguments->words[i]};
+        if (!apply_own(&site->sensors[i], keys_of[i], &own)) return false;
     }
-    if (!option_number(command, "seed", values[SEED], 0, UINT32_MAX, &seed) ||
-        !parse_sensors(options, argc - rest, argv + rest, keys_of, seed))
-        return false;
-    for (uint32_t i = 0; i != givens.count; i++)
-        if (!set_of_all(options, givens.list[i].row, givens.list[i].text)) return false;
-    for (uint32_t i = 0; i != options->count; i++)
-        if (!set_keys(&options->sensors[i], keys_of[i])) return false;
     return true;
 }

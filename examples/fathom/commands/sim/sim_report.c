@@ -21,23 +21,23 @@ static void print_reader(FILE *to, const sim_sensor_t *sensor, const char *port)
 }
 
 /* Sensors that disturb each other are mostly intended, but the user should know. */
-static void print_clashes(FILE *to, const sim_options_t *options)
+static void print_clashes(FILE *to, const sim_site_t *site, bool one_by_one)
 {
-    if (options->one_by_one) {
+    if (one_by_one) {
         (void)fputs(
             "fathom: one by one: each further sensor is connected a second after the one before has left "
             "its address\n",
             to);
         return;
     }
-    for (uint32_t i = 0; i != options->count; i++) {
-        const sim_sensor_t *const one = &options->sensors[i];
+    for (uint32_t i = 0; i != site->count; i++) {
+        const sim_sensor_t *const one = &site->sensors[i];
         if (!mode_is_asked(one->mode))
             (void)fprintf(to, "fathom: sensor %" PRIu32 " sends by itself, into what the others say\n",
                           i + 1);
-        for (uint32_t other = i + 1; other != options->count; other++)
-            if (options->sensors[other].address == one->address &&
-                options->sensors[other].line.baud == one->line.baud)
+        for (uint32_t other = i + 1; other != site->count; other++)
+            if (site->sensors[other].address == one->address &&
+                site->sensors[other].line.baud == one->line.baud)
                 (void)fprintf(to,
                               "fathom: sensors %" PRIu32 " and %" PRIu32
                               " have the address %u both and will answer into each other\n",
@@ -45,27 +45,27 @@ static void print_clashes(FILE *to, const sim_options_t *options)
     }
 }
 
-void sim_announce(FILE *to, const sim_options_t *options, const char *port)
+void sim_announce(FILE *to, const sim_site_t *site, bool one_by_one, const char *port)
 {
-    if (options->count == 1) {
+    if (site->count == 1) {
         (void)fprintf(to, "fathom: simulates ");
-        print_sensor(to, &options->sensors[0]);
+        print_sensor(to, &site->sensors[0]);
         (void)fprintf(to, ", until Ctrl-C; to read it: ");
-        print_reader(to, &options->sensors[0], port);
+        print_reader(to, &site->sensors[0], port);
         return;
     }
-    print_clashes(to, options);
+    print_clashes(to, site, one_by_one);
     (void)fprintf(to, "fathom: simulates %" PRIu32 " sensors on one line, until Ctrl-C; to read each:\n",
-                  options->count);
-    for (uint32_t i = 0; i != options->count; i++) {
+                  site->count);
+    for (uint32_t i = 0; i != site->count; i++) {
         (void)fprintf(to, "  %2" PRIu32 "  ", i + 1);
-        print_sensor(to, &options->sensors[i]);
+        print_sensor(to, &site->sensors[i]);
         (void)fprintf(to, ": ");
-        print_reader(to, &options->sensors[i], port);
+        print_reader(to, &site->sensors[i], port);
     }
 }
 
-void sim_print_counters(FILE *to, const sim_options_t *options, uint32_t i, const fathom_sim_device_t *device,
+void sim_print_counters(FILE *to, const sim_site_t *site, uint32_t i, const fathom_sim_device_t *device,
                         const fathom_sim_line_t *line)
 {
     const fathom_sim_counters_t *const counters = &device->counters;
@@ -95,8 +95,8 @@ void sim_print_counters(FILE *to, const sim_options_t *options, uint32_t i, cons
     json_t json = {.to = to};
     json_begin(&json, NULL, '{');
     json_value(&json, "device", "%" PRIu32, i + 1);
-    json_string(&json, "model", options->sensors[i].model->name);
-    json_string(&json, "mode", options->sensors[i].mode->name);
+    json_string(&json, "model", site->sensors[i].model->name);
+    json_string(&json, "mode", site->sensors[i].mode->name);
     json_value(&json, "address", "%u", device->address);
     for (size_t f = 0; f != sizeof fields / sizeof fields[0]; f++)
         json_value(&json, fields[f].name, "%" PRIu32, fields[f].value);

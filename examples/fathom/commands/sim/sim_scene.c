@@ -1,13 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
-#include "cli/command.h"
-#include "cli/options.h"
 #include "commands/sim/sim.h"
+#include "output/words.h"
 
-static const char command[] = "sim";
-
-enum { MAX_MM = 65535, MAX_WORD = 16 };
+enum { MAX_MM = 65535, MAX_WORD = 24 };
 
 /* What a sensor may report instead of a distance; the faults of the same name do it by chance. */
 static const struct {
@@ -31,32 +28,28 @@ static bool parse_value(const sim_sensor_t *sensor, const char *word, int32_t *v
     return true;
 }
 
-static bool reject_value(const sim_sensor_t *sensor, const char *text)
+static bool reject_value(const sim_sensor_t *sensor, const char *word, const origin_t *origin)
 {
     char words[64] = "";
     for (size_t i = 0; i != CONDITIONS; i++)
         if (sim_can_have_fault(sensor, conditions[i].fault))
             list_add(words, sizeof words, fathom_sim_fault_name(conditions[i].fault));
-    (void)usage_error(command, "distance of %s takes 0..%d mm, %s, not '%.*s'", sensor->model->name, MAX_MM,
-                      words, (int)strcspn(text, ","), text);
-    return false;
+    return reject(origin, "distance of %s is '%s'. It takes 0 to %d mm, %s.", sensor->model->name, word,
+                  MAX_MM, words);
 }
 
-bool sim_set_distance(sim_sensor_t *sensor, const char *list)
+bool sim_set_distance(sim_sensor_t *sensor, const char *list, const origin_t *origin)
 {
     sim_scene_t *const scene = &sensor->scene;
     uint8_t count = 0;
     int32_t value = 0;
     for (const char *rest = list; rest != NULL;) {
-        const char *const text = rest;
         char word[MAX_WORD];
-        rest = next_word(text, ',', word, sizeof word);
-        if (count == sensor->model->probes) {
-            (void)usage_error(command, "distance '%s' is more than the %u of %s", list, sensor->model->probes,
-                              sensor->model->name);
-            return false;
-        }
-        if (!parse_value(sensor, word, &value)) return reject_value(sensor, text);
+        rest = next_word(rest, ',', word, sizeof word);
+        if (count == sensor->model->probes)
+            return reject(origin, "distance '%s' is more than the %u of %s.", list, sensor->model->probes,
+                          sensor->model->name);
+        if (!parse_value(sensor, word, &value)) return reject_value(sensor, word, origin);
         scene->fixed.value[count++] = value;
     }
     for (; count != SIM_PROBES; count++) scene->fixed.value[count] = value;

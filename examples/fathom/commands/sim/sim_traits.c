@@ -2,11 +2,8 @@
 #include <inttypes.h>
 #include <string.h>
 
-#include "cli/command.h"
-#include "cli/options.h"
 #include "commands/sim/sim.h"
-
-static const char command[] = "sim";
+#include "output/words.h"
 
 enum { NAMES_TEXT = 300 };
 
@@ -54,14 +51,20 @@ bool sim_can_have_trait(const sim_sensor_t *sensor, const char *text)
     return has(sensor->model, find(text));
 }
 
-static bool reject_name(const model_t *model, const char *text)
+static bool reject_name(const model_t *model, const char *text, const origin_t *origin)
 {
+    char name[24];
     char known[NAMES_TEXT] = "";
-    for (size_t i = 0; i != DEVICE_TRAITS; i++)
-        if (has(model, &traits[i])) list_add(known, sizeof known, traits[i].name);
-    (void)usage_error(command, "there is no '%.*s' for %s, only %s", (int)strcspn(text, "="), text,
-                      model->name, known);
-    return false;
+    (void)snprintf(name, sizeof name, "%.*s", (int)strcspn(text, "="), text);
+    nearest_t nearest = {.word = name};
+    for (size_t i = 0; i != DEVICE_TRAITS; i++) {
+        if (!has(model, &traits[i])) continue;
+        nearest_try(&nearest, traits[i].name);
+        list_add(known, sizeof known, traits[i].name);
+    }
+    char what[40];
+    (void)snprintf(what, sizeof what, "trait of %s", model->name);
+    return reject_unknown(origin, what, "", &nearest, known);
 }
 
 static bool parse_value(const trait_t *trait, const char *text, uint32_t *value)
@@ -71,22 +74,21 @@ static bool parse_value(const trait_t *trait, const char *text, uint32_t *value)
     return sim_decimal(text, strlen(text), trait->places, one, trait->max * one, value);
 }
 
-bool sim_add_trait(sim_sensor_t *sensor, const char *text)
+bool sim_add_trait(sim_sensor_t *sensor, const char *text, const origin_t *origin)
 {
     const trait_t *const trait = find(text);
     const char *const value = strchr(text, '=');
-    if (!has(sensor->model, trait)) return reject_name(sensor->model, text);
+    if (!has(sensor->model, trait)) return reject_name(sensor->model, text, origin);
     uint32_t *const set = &sensor->traits[trait - traits];
     *set = 1;
     if (trait->unit == NULL && value == NULL) return true;
     if (trait->unit != NULL && value != NULL && parse_value(trait, value + 1, set)) return true;
-    if (trait->unit == NULL)
-        (void)usage_error(command, "with %s takes no value, so not '%s'", trait->name, text);
-    else
-        (void)usage_error(command, "with takes %s=%s, a %snumber from 1 to %" PRIu32 ", not '%s'",
-                          trait->name, trait->unit, trait->places != 0 ? "" : "whole ", trait->max, text);
-    return false;
+    if (trait->unit == NULL) return reject(origin, "with is '%s'. %s takes no value.", text, trait->name);
+    return reject(origin, "with is '%s'. It takes %s=%s, a %snumber from 1 to %" PRIu32 ".", text,
+                  trait->name, trait->unit, trait->places != 0 ? "" : "whole ", trait->max);
 }
+
+const char *sim_trait_name(size_t n) { return n < DEVICE_TRAITS ? traits[n].name : NULL; }
 
 void sim_print_traits(FILE *to)
 {
