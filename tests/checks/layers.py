@@ -28,11 +28,7 @@ UPWARDS = {
     ('device/set_report.c', 'cli/command.h'),
     ('device/setting_text.c', 'cli/command.h'),
     ('device/setting_text.c', 'cli/options.h'),
-    ('diagnosis/counters_print.h', 'reading/station.h'),
-    ('mqtt/broker.h', 'cli/config.h'),
-    ('mqtt/publisher.c', 'cli/command.h'),
-    ('mqtt/queue.h', 'commands/publish/streams.h'),
-    ('mqtt/topics.h', 'cli/config.h'),
+    ('diagnosis/counters_print.h', 'reading/site.h'),
 }
 
 STANDARD = {'stdbool.h', 'stddef.h', 'stdint.h'}

@@ -14,7 +14,7 @@ static const suite_t suite = {.set_up = begins};
 
 enum { WORDS = 8, TEXT = 256 };
 
-static sensor_options_t options;
+static site_t site;
 
 /* `text`: words with blanks between them. */
 static void set(const char *text, const sensor_defaults_t *defaults)
@@ -27,18 +27,26 @@ static void set(const char *text, const sensor_defaults_t *defaults)
     (void)strcpy(copy, text);
     for (char *word = strtok(copy, " "); word != NULL; word = strtok(NULL, " ")) words[count++] = word;
     for (int i = 0; i != count; i++) origins[i] = (origin_t){.command = "read"};
-    memset(&options, 0, sizeof options);
-    assert_true(sensor_words(&options, defaults, words, count, origins));
+    site_free(&site);
+    assert_true(sensor_words(&site, defaults, words, count, origins));
 }
 
 #define SET(text, ...)   set(text, &(const sensor_defaults_t){__VA_ARGS__})
 #define KEY(key, number) .keys.value[key] = (number), .keys.has[key] = true
 
-static void expect_station(size_t i, const char *name, const char *mode, size_t port)
+static const port_options_t *port(size_t number)
 {
-    assert_string_equal(options.stations[i]->name, name);
-    assert_string_equal(options.stations[i]->mode->name, mode);
-    assert_int_equal(options.stations[i]->port, port);
+    const line_t *line = site.lines;
+    for (; number != 0 && line != NULL; number--) line = line->next;
+    assert_non_null(line);
+    return &line->port;
+}
+
+static void expect_sensor(size_t i, const char *name, const char *mode, size_t number)
+{
+    assert_string_equal(site.sensors[i]->name, name);
+    assert_string_equal(site.sensors[i]->mode->name, mode);
+    assert_ptr_equal(site.sensors[i]->port, port(number));
 }
 
 static void expect_line(const fathom_line_settings_t *line, uint32_t baud, uint8_t parity, uint8_t stop_bits)
@@ -51,75 +59,75 @@ static void expect_line(const fathom_line_settings_t *line, uint32_t baud, uint8
 TEST(sensors_with_one_port_share_it_and_are_asked)
 {
     SET("a16 hps167s:2@y a05:2 a16@x hps167s:5@y", .path = "z");
-    assert_int_equal(options.port_count, 3);
-    assert_string_equal(options.ports[0].path, "z");
-    assert_string_equal(options.ports[1].path, "y");
-    assert_string_equal(options.ports[2].path, "x");
-    expect_station(0, "a16:1", "modbus", 0);
-    expect_station(1, "hps167s:2", "modbus", 1);
-    expect_station(2, "a05:2", "modbus", 0);
-    expect_station(3, "a16", "auto", 2); /* alone, and without an address */
-    expect_station(4, "hps167s:5", "modbus", 1);
-    assert_int_equal(options.ports[1].station_count, 2);
+    assert_int_equal(site.line_count, 3);
+    assert_string_equal(port(0)->path, "z");
+    assert_string_equal(port(1)->path, "y");
+    assert_string_equal(port(2)->path, "x");
+    expect_sensor(0, "a16:1", "modbus", 0);
+    expect_sensor(1, "hps167s:2", "modbus", 1);
+    expect_sensor(2, "a05:2", "modbus", 0);
+    expect_sensor(3, "a16", "auto", 2); /* alone, and without an address */
+    expect_sensor(4, "hps167s:5", "modbus", 1);
+    assert_int_equal(port(1)->station_count, 2);
 }
 
 TEST(the_port_of_an_option_is_the_same_as_one_behind_a_sensor)
 {
     SET("a16:3 hps167s:2@x", .path = "x");
-    assert_int_equal(options.port_count, 1);
+    assert_int_equal(site.line_count, 1);
     /* 9600 8N1 and 19200 8E1: opened at the slower */
-    assert_true(options.ports[0].has_mixed_lines);
-    expect_line(&options.ports[0].line, 9600, FATHOM_PARITY_NONE, 1);
-    expect_line(&options.stations[1]->line, 19200, FATHOM_PARITY_EVEN, 1);
+    assert_true(port(0)->has_mixed_lines);
+    expect_line(&port(0)->line, 9600, FATHOM_PARITY_NONE, 1);
+    expect_line(&site.sensors[1]->line, 19200, FATHOM_PARITY_EVEN, 1);
 }
 
 TEST(names_that_are_the_same_have_the_port_behind_them)
 {
     SET("a16@/dev/ttyUSB0 a16@/dev/ttyUSB1 a05@/dev/ttyS2 a16:1@tcp:h hps167s:7@x gate=hps167s:7@y",
         .path = NULL);
-    expect_station(0, "a16@ttyUSB0", "auto", 0);
-    expect_station(1, "a16@ttyUSB1", "auto", 1);
-    expect_station(2, "a05", "auto", 2);
-    expect_station(3, "a16:1", "modbus", 3);
-    expect_station(4, "hps167s:7", "modbus", 4);
-    expect_station(5, "gate", "modbus", 5);
+    expect_sensor(0, "a16@ttyUSB0", "auto", 0);
+    expect_sensor(1, "a16@ttyUSB1", "auto", 1);
+    expect_sensor(2, "a05", "auto", 2);
+    expect_sensor(3, "a16:1", "modbus", 3);
+    expect_sensor(4, "hps167s:7", "modbus", 4);
+    expect_sensor(5, "gate", "modbus", 5);
     SET("a05=a16@1/x a05@2/y", .path = NULL);
-    expect_station(0, "a05", "auto", 0);
-    expect_station(1, "a05@y", "auto", 1);
+    expect_sensor(0, "a05", "auto", 0);
+    expect_sensor(1, "a05@y", "auto", 1);
 }
 
 TEST(a_port_s_own_keys_win_over_the_options)
 {
     SET("hps167s@x,baud=57600,rs485=off,echo=off hps167s@y hps167s@tcp:h", KEY(KEY_BAUD, 115200),
         KEY(KEY_PARITY, FATHOM_PARITY_ODD), KEY(KEY_ECHO, 2), .rs485 = true);
-    expect_line(&options.stations[0]->line, 57600, FATHOM_PARITY_ODD, 1);
-    assert_false(options.ports[0].rs485);
-    assert_int_equal(options.ports[0].echo, 1);
-    expect_line(&options.stations[1]->line, 115200, FATHOM_PARITY_ODD, 1);
-    assert_true(options.ports[1].rs485);
-    assert_int_equal(options.ports[1].echo, 2);
+    expect_line(&site.sensors[0]->line, 57600, FATHOM_PARITY_ODD, 1);
+    assert_false(port(0)->rs485);
+    assert_int_equal(port(0)->echo, 1);
+    expect_line(&site.sensors[1]->line, 115200, FATHOM_PARITY_ODD, 1);
+    assert_true(port(1)->rs485);
+    assert_int_equal(port(1)->echo, 2);
     /* of no serial port */
-    assert_false(options.ports[2].rs485);
-    assert_int_equal(options.ports[2].echo, 0);
+    assert_false(port(2)->rs485);
+    assert_int_equal(port(2)->echo, 0);
 }
 
 /* HPS-167S 2.2.2: a character has 11 bits. */
 TEST(two_stop_bits_take_the_place_of_the_parity_unless_it_is_given_too)
 {
     SET("hps167s@x,stop=2 hps167s@y,stop=2,parity=even", .path = NULL);
-    expect_line(&options.stations[0]->line, 19200, FATHOM_PARITY_NONE, 2);
-    expect_line(&options.stations[1]->line, 19200, FATHOM_PARITY_EVEN, 2);
+    expect_line(&site.sensors[0]->line, 19200, FATHOM_PARITY_NONE, 2);
+    expect_line(&site.sensors[1]->line, 19200, FATHOM_PARITY_EVEN, 2);
     SET("hps167s@x hps167s@y,stop=1", KEY(KEY_STOP_BITS, 2));
-    expect_line(&options.stations[0]->line, 19200, FATHOM_PARITY_NONE, 2);
-    expect_line(&options.stations[1]->line, 19200, FATHOM_PARITY_EVEN, 1);
+    expect_line(&site.sensors[0]->line, 19200, FATHOM_PARITY_NONE, 2);
+    expect_line(&site.sensors[1]->line, 19200, FATHOM_PARITY_EVEN, 1);
 }
 
 TEST(keys_behind_one_sensor_go_for_all_at_the_port)
 {
     SET("hps167s:1@x hps167s:2@x,baud=57600 hps167s:3@x,baud=57600,echo=on", .path = NULL);
-    for (size_t i = 0; i != 3; i++) expect_line(&options.stations[i]->line, 57600, FATHOM_PARITY_EVEN, 1);
-    assert_false(options.ports[0].has_mixed_lines);
-    assert_int_equal(options.ports[0].echo, 2);
+    for (size_t i = 0; i != 3; i++) expect_line(&site.sensors[i]->line, 57600, FATHOM_PARITY_EVEN, 1);
+    assert_false(port(0)->has_mixed_lines);
+    assert_int_equal(port(0)->echo, 2);
 }
 
 /* ---- fathom info ---- */

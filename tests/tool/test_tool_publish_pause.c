@@ -14,7 +14,7 @@ enum { PATIENCE = 500, TRIES = 10 };
 
 static fathom_loop_t loop;
 static broker_t broker;
-static config_t config;
+static broker_settings_t settings;
 static uint64_t time_us;
 static unsigned remarks;
 
@@ -37,18 +37,19 @@ static int refusing_socket(uint16_t *port)
 static int set_up(void **state)
 {
     static const host_t host = {.now_us = now_us};
-    static const broker_user_t user = {nothing, nothing, nothing, tell};
+    static const broker_user_t user = {nothing, nothing, tell};
     static int fd;
-    memset(&config, 0, sizeof config);
-    (void)strcpy(config.broker.host, "127.0.0.1");
-    (void)strcpy(config.broker.client_id, "test");
-    config.broker.keep_alive_s = 30;
-    fd = refusing_socket(&config.broker.port);
+    memset(&settings, 0, sizeof settings);
+    (void)strcpy(settings.host, "127.0.0.1");
+    (void)strcpy(settings.client_id, "test");
+    settings.keep_alive_s = 30;
+    fd = refusing_socket(&settings.port);
     *state = &fd;
     time_us = 1000;
     remarks = 0;
     assert_int_equal(fathom_loop_init(&loop, NULL), FATHOM_POSIX_OK);
-    assert_true(broker_begin(&broker, &host, &loop, &config, "fathom/mill/status", &user, NULL));
+    assert_true(
+        broker_begin(&broker, &host, &loop, &settings, "site.yaml", "fathom/mill/status", &user, NULL));
     return 0;
 }
 

@@ -17,15 +17,15 @@ static stream_t *gate;
 static int set_up(void **state)
 {
     assert_true(queue_begin(&queue, MOST, SIZE));
-    tank = streams_get(&streams, "mill/tank");
-    gate = streams_get(&streams, "mill/gate");
+    tank = streams_want(&streams, "mill/tank", STREAM_READINGS, NULL);
+    gate = streams_want(&streams, "mill/gate", STREAM_READINGS, NULL);
     return 0;
 }
 
 static int tear_down(void **state)
 {
     queue_end(&queue);
-    streams_end(&streams);
+    streams_free(&streams);
     return 0;
 }
 
@@ -163,12 +163,46 @@ TEST(other_bounds_keep_what_fits)
     assert_int_equal(queue.dropped, 1);
 }
 
-/* A sensor that was taken out and is named again goes on where it was. */
-TEST(a_topic_has_one_stream)
+/* ---- streams ---- */
+
+TEST(a_sensor_that_is_named_again_goes_on_with_its_numbers)
 {
     tank->seq = 7;
-    assert_ptr_equal(streams_get(&streams, "mill/tank"), tank);
+    streams_forget(&streams);
+    streams_clean(&streams);
+    assert_ptr_equal(streams_want(&streams, "mill/tank", STREAM_READINGS, NULL), tank);
     assert_ptr_not_equal(tank, gate);
-    assert_int_equal(streams_get(&streams, "mill/tank")->seq, 7);
+    assert_int_equal(tank->seq, 7);
     assert_string_equal(gate->topic, "mill/gate");
+}
+
+/* A topic that was never sent is not deleted. */
+TEST(a_retained_topic_that_is_not_wanted_any_more_is_deleted_once)
+{
+    stream_t *const online = streams_want(&streams, "mill/status", STREAM_STATUS, NULL);
+    stream_t *const other = streams_want(&streams, "mill/publisher", STREAM_COUNTERS, NULL);
+    tank->is_known = gate->is_known = online->is_known = true;
+    assert_null(streams_gone(&streams));
+    streams_forget(&streams);
+    streams_clean(&streams);
+    assert_ptr_equal(streams_gone(&streams), online);
+    online->is_known = false;
+    assert_null(streams_gone(&streams));
+    assert_false(other->is_known);
+}
+
+TEST(a_retained_topic_is_due_when_it_is_new_or_of_another_sensor_or_when_the_client_has_just_connected)
+{
+    static const sensor_t one, two;
+    stream_t *const stream = streams_want(&streams, "a", STREAM_AVAILABILITY, &one);
+    assert_ptr_equal(streams_due(&streams, STREAM_AVAILABILITY), stream);
+    assert_null(streams_due(&streams, STREAM_DISCOVERY));
+    stream->is_due = false;
+    assert_ptr_equal(streams_want(&streams, "a", STREAM_AVAILABILITY, &one), stream);
+    assert_null(streams_due(&streams, STREAM_AVAILABILITY));
+    (void)streams_want(&streams, "a", STREAM_AVAILABILITY, &two);
+    assert_ptr_equal(streams_due(&streams, STREAM_AVAILABILITY), stream);
+    stream->is_due = false;
+    streams_repeat(&streams);
+    assert_ptr_equal(streams_due(&streams, STREAM_AVAILABILITY), stream);
 }

@@ -6,12 +6,13 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cli/config.h"
 #include "mqtt/discovery.h"
 #include "mqtt/state.h"
 #include "sensors/driver.h"
 
-static config_t config;
-static config_results_t results;
+static publish_settings_t settings;
+static site_t site;
 
 static const char file[] =
     "site: mill/north\n"
@@ -33,12 +34,12 @@ static void begin(void)
     bench_begin();
     desk_begin();
     desk_write("site.yaml", file);
-    assert_true(config_load(&config, results, "publish", desk_path("site.yaml")));
+    assert_true(config_load(&settings, &site, "publish", desk_path("site.yaml")));
 }
 
 static int tear_down(void **state)
 {
-    config_free(&config);
+    site_free(&site);
     return desk_end(state);
 }
 
@@ -46,20 +47,20 @@ EACH_BEGINS(begin())
 
 static const suite_t suite = {.set_up = begins, .tear_down = tear_down};
 
-static station_t *station(size_t number) { return config.sensors.stations[number]; }
+static sensor_t *sensor(size_t number) { return site.sensors[number]; }
 
 /* ---- topics ---- */
 
 TEST(a_topic_has_the_prefix_the_site_the_sensor_and_its_probe)
 {
     char topic[TOPIC];
-    topic_of_site(&config, "status", topic);
+    topic_of_site(&settings, "status", topic);
     assert_string_equal(topic, "fathom/mill/north/status");
-    topic_of_sensor(&config, station(TANK), "availability", topic);
+    topic_of_sensor(&settings, sensor(TANK), "availability", topic);
     assert_string_equal(topic, "fathom/mill/north/tank/availability");
-    topic_of_probe(&config, station(TANK), 1, TOPIC_LEVEL, topic);
+    topic_of_probe(&settings, sensor(TANK), 1, TOPIC_LEVEL, topic);
     assert_string_equal(topic, "fathom/mill/north/tank/level");
-    topic_of_probe(&config, station(BUMPER), 3, TOPIC_STATE, topic);
+    topic_of_probe(&settings, sensor(BUMPER), 3, TOPIC_STATE, topic);
     assert_string_equal(topic, "fathom/mill/north/bumper.1/3/state");
 }
 
@@ -69,17 +70,16 @@ TEST(a_sensor_has_the_topics_of_the_probes_that_are_wanted)
     static const uint8_t wanted[] = {[TANK] = 1, [BUMPER] = 1 + 4, [GATE] = 1, [PIT] = 1, [DOOR] = 1};
     for (size_t i = 0; i != sizeof wanted; i++)
         for (uint8_t probe = 1; probe <= 4; probe++)
-            assert_int_equal(topic_wants_probe(station(i), probe), wanted[i] >> (probe - 1) & 1);
-    for (size_t i = 0; i != sizeof wanted; i++) assert_int_equal(topic_has_probes(station(i)), i == BUMPER);
+            assert_int_equal(sensor_has_probe(sensor(i), probe), wanted[i] >> (probe - 1) & 1);
+    for (size_t i = 0; i != sizeof wanted; i++) assert_int_equal(topic_has_probes(sensor(i)), i == BUMPER);
 }
 
 TEST(level_and_alarm_are_topics_of_those_that_have_them)
 {
-    for (size_t i = 0; i != config.sensors.station_count; i++) {
-        const results_config_t *const of = &results[station(i)->slot];
-        assert_true(topic_is_there(of, TOPIC_STATE));
-        assert_int_equal(topic_is_there(of, TOPIC_LEVEL), i == TANK);
-        assert_int_equal(topic_is_there(of, TOPIC_ALARM), i == GATE);
+    for (size_t i = 0; i != site.sensor_count; i++) {
+        assert_true(topic_is_there(sensor(i), TOPIC_STATE));
+        assert_int_equal(topic_is_there(sensor(i), TOPIC_LEVEL), i == TANK);
+        assert_int_equal(topic_is_there(sensor(i), TOPIC_ALARM), i == GATE);
     }
 }
 
@@ -89,39 +89,35 @@ TEST(the_longest_topic_fits)
     char topic[TOPIC];
     char discovered[DISCOVERY_TOPIC];
     char payload[DISCOVERY_TEXT];
-    memset(config.site, 's', CONFIG_NAME - 1);
-    memset(config.prefix, 'p', CONFIG_NAME - 1);
-    memset(config.discovery, 'd', CONFIG_NAME - 1);
-    memset(station(BUMPER)->name, 'n', 31);
-    topic_of_sensor(&config, station(BUMPER), "availability", topic);
+    memset(settings.site, 's', SETTINGS_NAME - 1);
+    memset(settings.prefix, 'p', SETTINGS_NAME - 1);
+    memset(settings.discovery, 'd', SETTINGS_NAME - 1);
+    memset(sensor(BUMPER)->name, 'n', 31);
+    topic_of_sensor(&settings, sensor(BUMPER), "availability", topic);
     assert_int_equal(strlen(topic), 100 + 1 + 100 + 1 + 31 + 1 + 12);
-    topic_of_probe(&config, station(BUMPER), 4, TOPIC_STATE, topic);
+    topic_of_probe(&settings, sensor(BUMPER), 4, TOPIC_STATE, topic);
     assert_string_equal(topic + 100 + 1 + 100 + 1 + 31, "/4/state");
-    discovery_topic(&config, station(BUMPER), 3 * ENTITIES, discovered);
+    discovery_topic(&settings, sensor(BUMPER), 3 * ENTITIES, discovered);
     assert_string_equal(discovered + strlen(discovered) - 19, "n_4_distance/config");
-    discovery_payload(&config, station(BUMPER), 3 * ENTITIES, payload);
+    discovery_payload(&settings, sensor(BUMPER), 3 * ENTITIES, payload);
     assert_int_equal(payload[strlen(payload) - 1], '}');
 }
 
 /* ---- states ---- */
 
 /* 2026-11-23 09:43:12.345678 is 1795426992.345678 s after 1970: `date -u -d 2026-11-23T09:43:12 +%s`. */
-static state_t state_of(size_t number, const result_t *result)
+static reading_t reading_of(size_t number, const result_t *result)
 {
-    return (state_t){.station = station(number),
-                     .result = result,
-                     .utc_us = UINT64_C(1795426992345678),
-                     .boot = "0123456789abcdef",
-                     .seq = 7};
+    return (reading_t){.sensor = sensor(number), .result = result, .utc_us = UINT64_C(1795426992345678)};
 }
 
 #define BEGIN "{\"utc\":\"2026-11-23T09:43:12.345678Z\","
 #define END   ",\"boot\":\"0123456789abcdef\",\"seq\":7,\"age_ms\":1500,\"dropped\":3}"
 
-static void expect(const state_t *state, topic_t topic, const char *expected)
+static void expect(const reading_t *reading, topic_t topic, const char *expected)
 {
     char text[STATE_TEXT];
-    const uint32_t length = state_begin(state, topic, text);
+    const uint32_t length = state_begin(reading, topic, "0123456789abcdef", 7, text);
     assert_int_equal(length, strlen(text));
     state_finish(text, 1500999, 3);
     assert_string_equal(text, expected);
@@ -130,14 +126,14 @@ static void expect(const state_t *state, topic_t topic, const char *expected)
 TEST(a_reading_is_a_state)
 {
     const result_t result = {.sample = {.kind = FATHOM_TARGET, .distance_mm = 1500, .probe = 1}};
-    const state_t message = state_of(BUMPER, &result);
+    const reading_t message = reading_of(BUMPER, &result);
     expect(&message, TOPIC_STATE, BEGIN "\"status\":\"target\",\"distance_mm\":1500" END);
 }
 
 TEST(what_is_no_distance_has_none)
 {
     const result_t result = {.sample = {.kind = FATHOM_NO_TARGET, .distance_mm = 1500, .probe = 1}};
-    const state_t message = state_of(TANK, &result);
+    const reading_t message = reading_of(TANK, &result);
     expect(&message, TOPIC_STATE, BEGIN "\"status\":\"no_target\",\"distance_mm\":null" END);
     expect(&message, TOPIC_LEVEL,
            BEGIN "\"status\":\"no_target\",\"level_mm\":null,\"level_per_mille\":null,\"volume\":null" END);
@@ -148,7 +144,7 @@ TEST(a_level_is_told_as_such)
     const result_t result = {.sample = {.kind = FATHOM_TARGET, .distance_mm = 1500, .probe = 1},
                              .has_level = true,
                              .level = {.level_mm = -5, .per_mille = 400, .volume = 2000}};
-    const state_t message = state_of(TANK, &result);
+    const reading_t message = reading_of(TANK, &result);
     expect(&message, TOPIC_LEVEL,
            BEGIN "\"status\":\"target\",\"level_mm\":-5,\"level_per_mille\":400,\"volume\":2000" END);
 }
@@ -156,16 +152,16 @@ TEST(a_level_is_told_as_such)
 TEST(a_temperature_is_told_in_degrees_once_it_is_known)
 {
     const result_t result = {.sample = {.kind = FATHOM_TARGET, .distance_mm = 900, .probe = 1}};
-    const state_t message = state_of(GATE, &result);
+    const reading_t message = reading_of(GATE, &result);
     reader_t reader = {.temperature = {.is_known = false}};
-    station(GATE)->reader = &reader;
+    sensor(GATE)->reader = &reader;
     expect(&message, TOPIC_STATE,
            BEGIN "\"status\":\"target\",\"distance_mm\":900,\"temperature_degc\":null" END);
     reader.temperature.is_known = true;
     reader.temperature.dc = -5;
     expect(&message, TOPIC_STATE,
            BEGIN "\"status\":\"target\",\"distance_mm\":900,\"temperature_degc\":-0.5" END);
-    station(GATE)->reader = NULL;
+    sensor(GATE)->reader = NULL;
 }
 
 TEST(a_change_of_an_alarm_is_told_with_its_distance)
@@ -175,8 +171,8 @@ TEST(a_change_of_an_alarm_is_told_with_its_distance)
                              .is_on = true};
     const result_t silent = {.sample = {.kind = FATHOM_UNKNOWN, .probe = 1},
                              .alarm = FATHOM_ALARM_NO_RESPONSE};
-    const state_t on = state_of(GATE, &result);
-    const state_t off = state_of(GATE, &silent);
+    const reading_t on = reading_of(GATE, &result);
+    const reading_t off = reading_of(GATE, &silent);
     expect(&on, TOPIC_ALARM, BEGIN "\"alarm\":\"on\",\"is_on\":true,\"distance_mm\":480" END);
     expect(&off, TOPIC_ALARM, BEGIN "\"alarm\":\"no_response\",\"is_on\":false,\"distance_mm\":null" END);
 }
@@ -184,13 +180,13 @@ TEST(a_change_of_an_alarm_is_told_with_its_distance)
 TEST(an_attempt_that_has_failed_says_so_and_tells_no_value)
 {
     const result_t none = {.has_level = false};
-    state_t message = state_of(GATE, &none);
+    reading_t message = reading_of(GATE, &none);
     message.failure = "no_response";
     reader_t reader = {.temperature = {.is_known = true}};
-    station(GATE)->reader = &reader;
+    sensor(GATE)->reader = &reader;
     expect(&message, TOPIC_STATE,
            BEGIN "\"status\":\"no_response\",\"distance_mm\":null,\"temperature_degc\":null" END);
-    station(GATE)->reader = NULL;
+    sensor(GATE)->reader = NULL;
 }
 
 TEST(the_longest_state_fits_into_a_place_of_the_queue)
@@ -199,9 +195,8 @@ TEST(the_longest_state_fits_into_a_place_of_the_queue)
     const result_t result = {.sample = {.kind = FATHOM_TARGET, .distance_mm = UINT16_MAX, .probe = 1},
                              .has_level = true,
                              .level = {.level_mm = INT32_MIN, .per_mille = UINT16_MAX, .volume = UINT32_MAX}};
-    state_t message = state_of(TANK, &result);
-    message.seq = UINT64_MAX;
-    assert_true(state_begin(&message, TOPIC_LEVEL, text) < QUEUE_TEXT / 2);
+    reading_t message = reading_of(TANK, &result);
+    assert_true(state_begin(&message, TOPIC_LEVEL, "0123456789abcdef", UINT64_MAX, text) < QUEUE_TEXT / 2);
     assert_non_null(strstr(text, "\"seq\":18446744073709551615"));
 }
 
@@ -234,10 +229,7 @@ TEST(each_start_has_a_number_of_its_own)
 
 /* ---- discovery ---- */
 
-static uint32_t bits_of(size_t number)
-{
-    return discovery_all(&config, station(number), &results[station(number)->slot]);
-}
+static uint32_t bits_of(size_t number) { return discovery_all(&settings, sensor(number)); }
 
 TEST(each_entity_that_a_sensor_has_is_told)
 {
@@ -246,7 +238,7 @@ TEST(each_entity_that_a_sensor_has_is_told)
     assert_int_equal(bits_of(BUMPER), DISTANCE | DISTANCE << 2 * ENTITIES);
     assert_int_equal(bits_of(GATE), DISTANCE | 1 << ENTITY_TEMPERATURE | 1 << ENTITY_ALARM);
     assert_int_equal(bits_of(PIT), DISTANCE);
-    config.discovery[0] = '\0';
+    settings.discovery[0] = '\0';
     assert_int_equal(bits_of(TANK), 0);
 }
 
@@ -255,9 +247,9 @@ TEST(an_entity_is_told_with_what_its_topics_have)
 {
     char topic[DISCOVERY_TOPIC];
     char text[DISCOVERY_TEXT];
-    discovery_topic(&config, station(GATE), ENTITY_TEMPERATURE, topic);
+    discovery_topic(&settings, sensor(GATE), ENTITY_TEMPERATURE, topic);
     assert_string_equal(topic, "homeassistant/sensor/fathom_mill_north_gate_temperature/config");
-    discovery_payload(&config, station(GATE), ENTITY_TEMPERATURE, text);
+    discovery_payload(&settings, sensor(GATE), ENTITY_TEMPERATURE, text);
     static const char expected[] =
         "{\"name\":\"temperature\",\"unique_id\":\"fathom_mill_north_gate_temperature\","
         "\"state_topic\":\"fathom/mill/north/gate/state\",\"qos\":1,"
@@ -275,7 +267,7 @@ TEST(an_entity_is_told_with_what_its_topics_have)
 TEST(a_contact_tells_a_word_and_no_distance)
 {
     char text[DISCOVERY_TEXT];
-    discovery_payload(&config, station(PIT), ENTITY_DISTANCE, text);
+    discovery_payload(&settings, sensor(PIT), ENTITY_DISTANCE, text);
     assert_non_null(strstr(text, "{\"name\":\"contact\","));
     assert_non_null(strstr(text, "\"value_template\":\"{{ value_json.status }}\",\"expire_after\""));
     assert_null(strstr(text, "unit_of_measurement"));
@@ -286,9 +278,9 @@ TEST(an_alarm_is_a_binary_sensor_that_does_not_expire)
 {
     char topic[DISCOVERY_TOPIC];
     char text[DISCOVERY_TEXT];
-    discovery_topic(&config, station(GATE), ENTITY_ALARM, topic);
+    discovery_topic(&settings, sensor(GATE), ENTITY_ALARM, topic);
     assert_string_equal(topic, "homeassistant/binary_sensor/fathom_mill_north_gate_alarm/config");
-    discovery_payload(&config, station(GATE), ENTITY_ALARM, text);
+    discovery_payload(&settings, sensor(GATE), ENTITY_ALARM, text);
     assert_non_null(strstr(text, "\"state_topic\":\"fathom/mill/north/gate/alarm\""));
     assert_non_null(strstr(text, "\"value_template\":\"{{ 'ON' if value_json.is_on else 'OFF' }}\","
                                  "\"device_class\":\"problem\""));

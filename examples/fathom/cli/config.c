@@ -24,7 +24,7 @@ enum {
 
 /* What is being read. */
 typedef struct {
-    config_t *config;
+    publish_settings_t *config;
     config_file_t *file;
     const char *command;
 } reading_t;
@@ -53,11 +53,11 @@ static bool take_number(const reading_t *reading, const config_values_t *values,
 
 /* ---- names ---- */
 
-bool config_name(char text[CONFIG_NAME], const char *value, bool slashes)
+bool config_name(char text[SETTINGS_NAME], const char *value, bool slashes)
 {
     static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./";
     const size_t length = strlen(value);
-    if (length == 0 || length >= CONFIG_NAME || strspn(value, letters) != length) return false;
+    if (length == 0 || length >= SETTINGS_NAME || strspn(value, letters) != length) return false;
     if (value[0] == '/' || value[length - 1] == '/' || strstr(value, "//") != NULL) return false;
     if (!slashes && strpbrk(value, "/.") != NULL) return false;
     memcpy(text, value, length + 1);
@@ -67,7 +67,7 @@ bool config_name(char text[CONFIG_NAME], const char *value, bool slashes)
 static bool take_site(const reading_t *reading, const config_values_t *values)
 {
     char *const site = reading->config->site;
-    char host[CONFIG_NAME] = "";
+    char host[SETTINGS_NAME] = "";
     const char *const text = text_of(reading, values, CONFIG_SITE);
     if (text != NULL) return config_name(site, text, true) || refuse(reading, CONFIG_SITE, text);
     if (gethostname(host, sizeof host - 1) == 0 && config_name(site, host, false)) return true;
@@ -80,7 +80,7 @@ static bool take_site(const reading_t *reading, const config_values_t *values)
 
 static bool take_names(const reading_t *reading, const config_values_t *values)
 {
-    config_t *const config = reading->config;
+    publish_settings_t *const config = reading->config;
     const char *const prefix = text_of(reading, values, CONFIG_PREFIX);
     if (!config_name(config->prefix, prefix != NULL ? prefix : "fathom", true))
         return refuse(reading, CONFIG_PREFIX, prefix);
@@ -95,11 +95,11 @@ static bool take_names(const reading_t *reading, const config_values_t *values)
 
 /* A path, of a file that can be read. Without a value it stays "". */
 static bool take_file(const reading_t *reading, const config_values_t *values, config_key_t key,
-                      char path[CONFIG_PATH])
+                      char path[SETTINGS_PATH])
 {
     const char *const text = text_of(reading, values, key);
     if (text == NULL) return true;
-    if (strlen(text) >= CONFIG_PATH) return refuse(reading, key, text);
+    if (strlen(text) >= SETTINGS_PATH) return refuse(reading, key, text);
     memcpy(path, text, strlen(text) + 1);
     if (access(path, R_OK) == 0) return true;
     (void)usage_error(reading->command, "%s: %s cannot be read: %s", config_rows[key].name, path,
@@ -109,7 +109,7 @@ static bool take_file(const reading_t *reading, const config_values_t *values, c
 
 static bool take_tls(const reading_t *reading, const yaml_node_t *map)
 {
-    broker_config_t *const broker = &reading->config->broker;
+    broker_settings_t *const broker = &reading->config->broker;
     config_values_t values;
     broker->has_tls = map != NULL;
     if (map == NULL) return true;
@@ -129,8 +129,8 @@ static bool take_tls(const reading_t *reading, const yaml_node_t *map)
 /* systemd hands credentials over as files of a folder that it names. */
 static bool take_credential(const reading_t *reading, const config_values_t *values)
 {
-    broker_config_t *const broker = &reading->config->broker;
-    char name[CONFIG_NAME];
+    broker_settings_t *const broker = &reading->config->broker;
+    char name[SETTINGS_NAME];
     const char *const text = text_of(reading, values, BROKER_PASSWORD_CREDENTIAL);
     const char *const folder =
         getenv("CREDENTIALS_DIRECTORY"); /* NOLINT(concurrency-mt-unsafe): one thread */
@@ -145,7 +145,7 @@ static bool take_credential(const reading_t *reading, const config_values_t *val
                           "password-credential: no CREDENTIALS_DIRECTORY is set; the unit needs a line "
                           "LoadCredential=%s:/path/to/the/password, or write password-file: here",
                           name);
-    else if (snprintf(broker->password_file, CONFIG_PATH, "%s/%s", folder, name) < CONFIG_PATH &&
+    else if (snprintf(broker->password_file, SETTINGS_PATH, "%s/%s", folder, name) < SETTINGS_PATH &&
              access(broker->password_file, R_OK) == 0)
         return true;
     else
@@ -158,7 +158,7 @@ static bool take_credential(const reading_t *reading, const config_values_t *val
 
 static bool take_login(const reading_t *reading, const config_values_t *values)
 {
-    broker_config_t *const broker = &reading->config->broker;
+    broker_settings_t *const broker = &reading->config->broker;
     const char *const user = text_of(reading, values, BROKER_USER);
     if (user != NULL && strlen(user) >= sizeof broker->user) return refuse(reading, BROKER_USER, user);
     if (user != NULL) memcpy(broker->user, user, strlen(user) + 1);
@@ -173,11 +173,11 @@ static bool take_login(const reading_t *reading, const config_values_t *values)
 /* One broker knows a client by its id: two with the same one would end each other's connection for ever. */
 static bool take_client_id(const reading_t *reading, const config_values_t *values)
 {
-    const config_t *const config = reading->config;
+    const publish_settings_t *const config = reading->config;
     char *const id = reading->config->broker.client_id;
     const char *const text = text_of(reading, values, BROKER_CLIENT_ID);
     if (text != NULL) return config_name(id, text, false) || refuse(reading, BROKER_CLIENT_ID, text);
-    (void)snprintf(id, CONFIG_NAME, "%.49s-%.49s", config->prefix, config->site);
+    (void)snprintf(id, SETTINGS_NAME, "%.49s-%.49s", config->prefix, config->site);
     for (char *at = id; *at != '\0'; at++)
         if (*at == '/' || *at == '.') *at = '-';
     return true;
@@ -185,7 +185,7 @@ static bool take_client_id(const reading_t *reading, const config_values_t *valu
 
 static bool take_broker(const reading_t *reading, const yaml_node_t *map)
 {
-    broker_config_t *const broker = &reading->config->broker;
+    broker_settings_t *const broker = &reading->config->broker;
     config_values_t values;
     uint32_t keep_alive_s = KEEP_ALIVE_S;
     if (!config_take(reading->file, reading->command, map, SECTION_BROKER, &values)) return false;
@@ -209,7 +209,7 @@ static bool take_broker(const reading_t *reading, const yaml_node_t *map)
 
 static bool take_queue(const reading_t *reading, const yaml_node_t *map)
 {
-    config_t *const config = reading->config;
+    publish_settings_t *const config = reading->config;
     config_values_t values;
     config->queue_messages = MESSAGES;
     config->queue_bytes = BYTES;
@@ -219,7 +219,7 @@ static bool take_queue(const reading_t *reading, const yaml_node_t *map)
             take_number(reading, &values, QUEUE_BYTES, MIN_BYTES, MAX_BYTES, &config->queue_bytes));
 }
 
-static bool take_all(const reading_t *reading, config_results_t results)
+static bool take_all(const reading_t *reading, site_t *site)
 {
     config_values_t values;
     const yaml_node_t *const top = config_file_top(reading->file);
@@ -231,31 +231,23 @@ static bool take_all(const reading_t *reading, config_results_t results)
     return config_take(reading->file, reading->command, top, SECTION_TOP, &values) &&
            take_names(reading, &values) && take_broker(reading, values.at[CONFIG_BROKER]) &&
            take_queue(reading, values.at[CONFIG_QUEUE]) &&
-           config_sensors(reading->config, results, reading->file, reading->command, &values);
+           config_sensors(site, reading->file, reading->command, &values);
 }
 
-bool config_load(config_t *config, config_results_t results, const char *command, const char *path)
+bool config_load(publish_settings_t *settings, site_t *site, const char *command, const char *path)
 {
     config_file_t file;
-    const struct sensor_options *const beside = config->sensors.beside;
-    const reading_t reading = {config, &file, command};
-    memset(config, 0, sizeof *config);
-    config->sensors.beside = beside;
-    if (strlen(path) >= sizeof config->path) {
+    const reading_t reading = {settings, &file, command};
+    memset(settings, 0, sizeof *settings);
+    if (strlen(path) >= sizeof settings->path) {
         (void)usage_error(command, "the path of the file is too long");
         return false;
     }
-    memcpy(config->path, path, strlen(path) + 1);
+    memcpy(settings->path, path, strlen(path) + 1);
     if (!config_file_load(&file, command, path)) return false;
-    const bool is_good = take_all(&reading, results);
+    const bool is_good = take_all(&reading, site);
     usage_at(NULL);
     config_file_free(&file);
-    if (!is_good) config_free(config);
+    if (!is_good) site_free(site);
     return is_good;
-}
-
-void config_free(config_t *config)
-{
-    for (size_t i = 0; i != config->word_count; i++) free(config->words[i]);
-    config->word_count = 0;
 }

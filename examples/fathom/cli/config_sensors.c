@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): strdup */
 #include <stdlib.h>
 #include <string.h>
 
@@ -12,12 +13,14 @@
 enum { WORD = 640, PAIRS = 1024 };
 
 typedef struct {
-    config_t *config;
+    site_t *site;
     config_file_t *file;
     const char *command;
     const config_values_t *top;
     config_values_t line; /* the present one */
-    unsigned lines[MAX_STATIONS];
+    size_t word_count;
+    char *words[MAX_SENSORS];
+    unsigned lines[MAX_SENSORS];
     config_values_t *values; /* of each sensor */
 } sensors_t;
 
@@ -94,8 +97,8 @@ static bool add_word(sensors_t *sensors, const config_values_t *values)
         (void)usage_error(sensors->command, "there is no memory left");
         return false;
     }
-    const size_t number = sensors->config->word_count++;
-    sensors->config->words[number] = word;
+    const size_t number = sensors->word_count++;
+    sensors->words[number] = word;
     sensors->lines[number] = config_file_line(values->at[SENSOR_SENSOR]);
     sensors->values[number] = *values;
     (void)snprintf(word, WORD, "%s=%s@%s", config_file_text(values->at[SENSOR_NAME]),
@@ -108,9 +111,9 @@ static bool add_sensor(sensors_t *sensors, const yaml_node_t *map)
 {
     config_values_t values;
     if (!config_take(sensors->file, sensors->command, map, SECTION_SENSOR, &values)) return false;
-    if (sensors->config->word_count != MAX_STATIONS) return add_word(sensors, &values);
+    if (sensors->word_count != MAX_SENSORS) return add_word(sensors, &values);
     config_file_at(sensors->file, map);
-    (void)usage_error(sensors->command, "up to %d sensors may be named; this is one more", MAX_STATIONS);
+    (void)usage_error(sensors->command, "up to %d sensors may be named; this is one more", MAX_SENSORS);
     return false;
 }
 
@@ -212,12 +215,25 @@ static bool take_text(const sensors_t *sensors, const char *name, const yaml_nod
     return false;
 }
 
-static bool take_options(const sensors_t *sensors, results_config_t *results, size_t number)
+/* Two lines with the same text are the same: what a sensor is, and every value that the file has for it. */
+static bool add_line_text(const sensors_t *sensors, sensor_t *sensor, const char *name, const char *text)
+{
+    line_t *line = sensors->site->lines;
+    while (&line->port != sensor->port) line = line->next;
+    if (line_add_text(line, name) && line_add_text(line, "=") && line_add_text(line, text) &&
+        line_add_text(line, "\n"))
+        return true;
+    (void)usage_error(sensors->command, "there is no memory left");
+    return false;
+}
+
+static bool take_options(const sensors_t *sensors, size_t number)
 {
     static char texts[OPTIONS][PAIRS]; /* too large for a small stack */
     const char *values[RESULT_OPTIONS] = {NULL};
     const char *temperature = NULL;
-    station_t *const *const station = &sensors->config->sensors.stations[number];
+    sensor_t *const *const station = &sensors->site->sensors[number];
+    results_config_t *const results = &(*station)->processing;
     const place_t place = {sensors, &sensors->values[number]};
     const usage_place_t lines = {sensors->file->path, sensors->lines[number], NULL, line_of, &place};
     for (size_t i = 0; i != OPTIONS; i++) {
@@ -226,9 +242,10 @@ static bool take_options(const sensors_t *sensors, results_config_t *results, si
         *value = node != NULL ? texts[i] : options[i].otherwise;
         if (node != NULL && !take_text(sensors, config_rows[options[i].key].name, node, texts[i]))
             return false;
+        if (*value != NULL && !add_line_text(sensors, *station, config_rows[options[i].key].name, *value))
+            return false;
     }
     usage_at(&lines);
-    memset(results, 0, sizeof *results);
     results->has_readings = true;
     return station_options(station, 1, sensors->command, values) &&
            reading_options(station, 1, sensors->command, values) &&
@@ -236,39 +253,55 @@ static bool take_options(const sensors_t *sensors, results_config_t *results, si
            result_options(results, (*station)->settings.period_us, sensors->command, values);
 }
 
-static bool take_sensors(sensors_t *sensors, config_results_t results)
+/* The word of each sensor, as it is before sensor_options() cuts it, and its options. */
+static bool describe_lines(const sensors_t *sensors, char *const *texts)
 {
-    static const char *const none[SENSOR_OPTIONS];
-    config_t *const config = sensors->config;
-    const usage_place_t lines = {.file = sensors->file->path, .lines = sensors->lines};
-    usage_at(&lines);
-    if (!sensor_options(&config->sensors, sensors->command, config->words, (int)config->word_count, none,
-                        NULL, NULL))
-        return false;
-    for (size_t i = 0; i != config->word_count; i++)
-        if (!take_options(sensors, &results[config->sensors.stations[i]->slot], i)) return false;
-    config->sensors.reconnect = true;
-    config->sensors.persists = true;
+    for (size_t i = 0; i != sensors->word_count; i++)
+        if (!add_line_text(sensors, sensors->site->sensors[i], "sensor", texts[i]) ||
+            !take_options(sensors, i))
+            return false;
     return true;
 }
 
-bool config_sensors(config_t *config, config_results_t results, config_file_t *file, const char *command,
-                    const config_values_t *top)
+static bool take_sensors(sensors_t *sensors)
 {
-    sensors_t sensors = {.config = config, .file = file, .command = command, .top = top};
+    static const char *const none[SENSOR_OPTIONS];
+    site_t *const site = sensors->site;
+    const usage_place_t lines = {.file = sensors->file->path, .lines = sensors->lines};
+    char *texts[MAX_SENSORS];
+    bool is_good = true;
+    for (size_t i = 0; i != sensors->word_count; i++) {
+        texts[i] = strdup(sensors->words[i]);
+        if (texts[i] == NULL) is_good = false;
+    }
+    usage_at(&lines);
+    is_good =
+        is_good &&
+        sensor_options(site, sensors->command, sensors->words, (int)sensors->word_count, none, NULL, NULL) &&
+        describe_lines(sensors, texts);
+    for (size_t i = 0; i != sensors->word_count; i++) free(texts[i]);
+    site->reconnect = true;
+    site->persists = true;
+    return is_good;
+}
+
+bool config_sensors(site_t *site, config_file_t *file, const char *command, const config_values_t *top)
+{
+    sensors_t sensors = {.site = site, .file = file, .command = command, .top = top};
     const yaml_node_t *const list = top->at[CONFIG_LINES];
-    sensors.values = calloc(MAX_STATIONS, sizeof *sensors.values);
+    sensors.values = calloc(MAX_SENSORS, sizeof *sensors.values);
     bool is_good = sensors.values != NULL;
     for (const int *item = list->data.sequence.items.start; is_good && item != list->data.sequence.items.top;
          item++)
         is_good = add_line(&sensors, config_file_node(file, *item));
-    if (is_good && config->word_count == 0) {
+    if (is_good && sensors.word_count == 0) {
         config_file_at(file, list);
         (void)usage_error(command, "lines: no sensor is named here; it takes %s",
                           config_rows[CONFIG_LINES].takes);
         is_good = false;
     }
-    is_good = is_good && take_sensors(&sensors, results);
+    is_good = is_good && take_sensors(&sensors);
+    for (size_t i = 0; i != sensors.word_count; i++) free(sensors.words[i]);
     free(sensors.values);
     return is_good;
 }

@@ -9,7 +9,7 @@
 #include "cli/options.h"
 #include "fathom/sensor/a05_modbus.h"
 
-bool reading_options(station_t *const *stations, size_t count, const char *command, const char *const *values)
+bool reading_options(sensor_t *const *stations, size_t count, const char *command, const char *const *values)
 {
     const option_table_t tables[] = {{reading_rows, 0}, {NULL, 0}};
     static const int rows[] = {OPTION_WINDOW, OPTION_MEANS, OPTION_PROBES, OPTION_VALUE};
@@ -29,7 +29,7 @@ bool reading_options(station_t *const *stations, size_t count, const char *comma
     return true;
 }
 
-bool temperature_option(station_t *const *stations, size_t count, const char *command, const char *text)
+bool temperature_option(sensor_t *const *stations, size_t count, const char *command, const char *text)
 {
     const option_t *const row = &reading_rows[4];
     const option_table_t tables[] = {{row, 0}, {NULL, 0}};

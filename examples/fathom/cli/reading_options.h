@@ -23,17 +23,16 @@ enum {
                         [OPTION_FIRST_REGISTER] = {"first-register", required_argument, NULL, 256}
 
 /* After sensor_options, for all of these: values as there. False after saying what is wrong. */
-bool reading_options(station_t *const *stations, size_t count, const char *command,
-                     const char *const *values);
+bool reading_options(sensor_t *const *stations, size_t count, const char *command, const char *const *values);
 
 /* Has --NAME, one of READER_TAKES_..., an effect on any of the sensors? False after a usage error that says on which it
  * would have one. */
-bool reading_option_suits(station_t *const *stations, size_t count, const char *command, const char *name,
+bool reading_option_suits(sensor_t *const *stations, size_t count, const char *command, const char *name,
                           uint8_t takes);
 
 /* The same for --temperature[=SECONDS], which not all of these commands have. text: "" where no number was given; NULL: it
  * was not given. */
-bool temperature_option(station_t *const *stations, size_t count, const char *command, const char *text);
+bool temperature_option(sensor_t *const *stations, size_t count, const char *command, const char *text);
 
 /* Their help, a line each. */
 void reading_options_help(FILE *to);

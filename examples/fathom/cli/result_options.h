@@ -3,7 +3,7 @@
 #define RESULT_OPTIONS_H
 
 #include "cli/reading_options.h"
-#include "reading/results.h"
+#include "reading/site.h"
 
 /* What is made of the readings: options of the commands that tell results, the next rows of their tables. */
 enum { OPTION_MEDIAN = READING_OPTIONS, OPTION_GATE, OPTION_LEVEL, OPTION_ALARM, RESULT_OPTIONS };

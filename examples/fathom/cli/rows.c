@@ -121,7 +121,7 @@ static void fitting_modes(uint16_t fits, char *list, size_t capacity)
     }
 }
 
-bool options_suit(const option_table_t *tables, const option_given_t *given, station_t *const *stations,
+bool options_suit(const option_table_t *tables, const option_given_t *given, sensor_t *const *stations,
                   size_t count, bool is_quiet, const origin_t *origin)
 {
     uint16_t all = 0;
@@ -147,16 +147,16 @@ bool options_suit(const option_table_t *tables, const option_given_t *given, sta
     return true;
 }
 
-bool sensors_read(sensor_options_t *options, const arguments_t *arguments, const sensor_settings_t *settings,
-                  int count, bool is_quiet)
+bool sensors_read(site_t *site, const arguments_t *arguments, const sensor_settings_t *settings, int count,
+                  bool is_quiet)
 {
     const origin_t origin = {.command = arguments->command->name};
-    origin_t origins[MAX_STATIONS];
-    for (int i = 0; i != MAX_STATIONS; i++) origins[i] = origin;
-    if (!sensor_words(options, &settings->defaults, arguments->words, count, origins)) return false;
-    options->duration_us = settings->run.duration_us;
-    options->reconnect = settings->run.reconnect;
-    for (size_t i = 0; i != options->station_count; i++) options->stations[i]->settings = settings->reader;
-    return options_suit(arguments->command->tables, &arguments->given, options->stations,
-                        options->station_count, is_quiet, &origin);
+    origin_t origins[MAX_SENSORS];
+    for (int i = 0; i != MAX_SENSORS; i++) origins[i] = origin;
+    if (!sensor_words(site, &settings->defaults, arguments->words, count, origins)) return false;
+    site->duration_us = settings->run.duration_us;
+    site->reconnect = settings->run.reconnect;
+    for (size_t i = 0; i != site->sensor_count; i++) site->sensors[i]->settings = settings->reader;
+    return options_suit(arguments->command->tables, &arguments->given, site->sensors, site->sensor_count,
+                        is_quiet, &origin);
 }

@@ -41,11 +41,11 @@ bool results_finish(results_config_t *results, uint32_t interval_us, const origi
 
 /* Does each option that was given have an effect on at least one of the sensors? Else rejects it, or prints a notice
  * unless is_quiet. `lines` of the file where each was given, if it is one. */
-bool options_suit(const option_table_t *tables, const option_given_t *given, station_t *const *stations,
+bool options_suit(const option_table_t *tables, const option_given_t *given, sensor_t *const *stations,
                   size_t count, bool is_quiet, const origin_t *origin);
 
 /* Reads the first `count` words of a command as sensors, with what the options set for them. False after rejecting. */
-bool sensors_read(sensor_options_t *options, const arguments_t *arguments, const sensor_settings_t *settings,
-                  int count, bool is_quiet);
+bool sensors_read(site_t *site, const arguments_t *arguments, const sensor_settings_t *settings, int count,
+                  bool is_quiet);
 
 #endif

@@ -31,7 +31,7 @@ bool values_store(const option_t *rows, const char *const *values, void *structu
     return true;
 }
 
-bool station_options(station_t *const *stations, size_t count, const char *command, const char *const *values)
+bool station_options(sensor_t *const *stations, size_t count, const char *command, const char *const *values)
 {
     for (size_t i = 0; i != count; i++)
         if (!values_store(interval_rows, values, &stations[i]->settings, command) ||
@@ -40,43 +40,42 @@ bool station_options(station_t *const *stations, size_t count, const char *comma
     return true;
 }
 
-bool sensor_options(sensor_options_t *options, const char *command, char **words, int word_count,
+bool sensor_options(site_t *site, const char *command, char **words, int word_count,
                     const char *const *values, const char *address, const char *mode)
 {
-    origin_t origins[MAX_STATIONS + 1];
+    origin_t origins[MAX_SENSORS + 1];
     sensor_defaults_t defaults = {.mode = mode, .has_address = address != NULL};
     run_settings_t run = {0};
-    for (int i = 0; i <= word_count && i <= MAX_STATIONS; i++) origins[i] = usage_origin(command, (size_t)i);
+    for (int i = 0; i <= word_count && i <= MAX_SENSORS; i++) origins[i] = usage_origin(command, (size_t)i);
     if (!option_number(command, "address", address, 0, 254, &defaults.address) ||
         !values_store(port_rows, values, &defaults, command) ||
         !values_store(reconnect_rows, values, &run, command) ||
-        !sensor_words(options, &defaults, words, word_count, origins) ||
-        !station_options(options->stations, options->station_count, command, values))
+        !sensor_words(site, &defaults, words, word_count, origins) ||
+        !station_options(site->sensors, site->sensor_count, command, values))
         return false;
-    options->duration_us = run.duration_us;
-    options->reconnect = run.reconnect;
+    site->duration_us = run.duration_us;
+    site->reconnect = run.reconnect;
     return true;
 }
 
-static void tell_useless(const sensor_options_t *options, const station_t *station, bool has_effect,
-                         const char *name, const char *value)
+static void tell_useless(const site_t *site, const sensor_t *station, bool has_effect, const char *name,
+                         const char *value)
 {
-    const bool is_alone = options->station_count == 1;
+    const bool is_alone = site->sensor_count == 1;
     if (value != NULL && !has_effect)
         (void)fprintf(stderr, "fathom: %s%sin mode %s nothing is asked, so %s has no effect\n",
                       is_alone ? "" : station->name, is_alone ? "" : ": ", station->mode->name, name);
 }
 
-void sensor_options_tell_useless(const sensor_options_t *options, const char *address,
-                                 const char *const *values)
+void sensor_options_tell_useless(const site_t *site, const char *address, const char *const *values)
 {
-    for (size_t i = 0; i != options->station_count; i++) {
-        const station_t *const station = options->stations[i];
+    for (size_t i = 0; i != site->sensor_count; i++) {
+        const sensor_t *const station = site->sensors[i];
         const model_mode_t *const mode = station->mode;
-        const bool has_key = options->ports[station->port].keys.has[KEY_ECHO];
-        tell_useless(options, station, mode->has_address, "--address", address);
-        tell_useless(options, station, mode_is_asked(mode), "--retries", values[OPTION_RETRIES]);
-        tell_useless(options, station, mode_is_asked(mode), has_key ? "echo=" : "--echo",
+        const bool has_key = station->port->keys.has[KEY_ECHO];
+        tell_useless(site, station, mode->has_address, "--address", address);
+        tell_useless(site, station, mode_is_asked(mode), "--retries", values[OPTION_RETRIES]);
+        tell_useless(site, station, mode_is_asked(mode), has_key ? "echo=" : "--echo",
                      has_key ? "" : values[OPTION_ECHO]);
     }
 }

@@ -6,7 +6,7 @@
 
 #include "cli/options.h"
 #include "cli/rows.h"
-#include "reading/station.h"
+#include "reading/site.h"
 
 /* The options of every command that reads sensors: the first rows of its table. */
 enum {
@@ -42,16 +42,14 @@ enum {
  * words: of sensor_word.h, word_count of them, which it cuts. values: what options_parse has found. address and mode: what
  * further options have said of the one sensor; NULL: nothing. False after saying what is wrong.
  */
-bool sensor_options(sensor_options_t *options, const char *command, char **words, int word_count,
+bool sensor_options(site_t *site, const char *command, char **words, int word_count,
                     const char *const *values, const char *address, const char *mode);
 
 /* Those of the above that each sensor has for itself, of these: --interval, --timeout and --retries. */
-bool station_options(station_t *const *stations, size_t count, const char *command,
-                     const char *const *values);
+bool station_options(sensor_t *const *stations, size_t count, const char *command, const char *const *values);
 
 /* Says which of these options, and keys, have no effect on a sensor because nothing is asked. */
-void sensor_options_tell_useless(const sensor_options_t *options, const char *address,
-                                 const char *const *values);
+void sensor_options_tell_useless(const site_t *site, const char *address, const char *const *values);
 
 /* Stores what `values` has for the options of these rows, found by their names. */
 bool values_store(const option_t *rows, const char *const *values, void *structure, const char *command);

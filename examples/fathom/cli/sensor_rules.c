@@ -50,8 +50,9 @@ static bool suits_chip(const station_t *station, const port_options_t *port, con
     return true;
 }
 
-bool sensor_suits_port(const station_t *station, const port_options_t *port, const origin_t *origin)
+bool sensor_suits_port(const station_t *station, const origin_t *origin)
 {
+    const port_options_t *const port = station->port;
     const model_mode_t *const mode = station->mode;
     const char *const model = station->model->name;
     char example[PORT_EXAMPLE];
@@ -67,14 +68,6 @@ bool sensor_suits_port(const station_t *station, const port_options_t *port, con
 
 /* ---- the lines of GPIO chips ---- */
 
-static const port_options_t *next_chip(const sensor_options_t *options, const port_options_t *port)
-{
-    const port_options_t *const end = options->ports + options->port_count;
-    do port++;
-    while (port != end && !port->is_chip);
-    return port;
-}
-
 /* "gpiochip0" is "/dev/gpiochip0". */
 static bool is_same_chip(const char *one, const char *other)
 {
@@ -84,24 +77,28 @@ static bool is_same_chip(const char *one, const char *other)
     return strcmp(one, other) == 0;
 }
 
-/* The kernel gives a line to one user only. */
-bool sensors_suit_pins(const sensor_options_t *options, const port_options_t *port, const origin_t *origin)
+/* The kernel gives a line to one user only. `other` may be the same port. */
+static bool suit_pins(const port_options_t *port, const port_options_t *other, const origin_t *origin)
 {
-    const port_options_t *const end = options->ports + options->port_count;
-    for (const port_options_t *other = port; other != end; other = next_chip(options, other)) {
-        if (!is_same_chip(port->path, other->path)) continue;
-        for (int one = KEY_TRIGGER; one <= KEY_IN; one++)
-            for (int two = KEY_TRIGGER; two <= KEY_IN; two++) {
-                const bool is_one = port == other && one >= two;
-                if (is_one || !port->keys.has[one] || !other->keys.has[two] ||
-                    port->keys.value[one] != other->keys.value[two])
-                    continue;
-                return reject(origin,
-                              "line %u of %s is used twice, as %s= and as %s=. Each needs its own line.",
-                              (unsigned)port->keys.value[one], port->path, port_key_name((port_key_t)one),
-                              port_key_name((port_key_t)two));
-            }
-    }
+    for (int one = KEY_TRIGGER; one <= KEY_IN; one++)
+        for (int two = KEY_TRIGGER; two <= KEY_IN; two++) {
+            const bool is_one = port == other && one >= two;
+            if (is_one || !port->keys.has[one] || !other->keys.has[two] ||
+                port->keys.value[one] != other->keys.value[two])
+                continue;
+            return reject(origin, "line %u of %s is used twice, as %s= and as %s=. Each needs its own line.",
+                          (unsigned)port->keys.value[one], port->path, port_key_name((port_key_t)one),
+                          port_key_name((port_key_t)two));
+        }
+    return true;
+}
+
+bool sensors_suit_pins(const site_t *site, const port_options_t *port, const origin_t *origin)
+{
+    for (const line_t *line = site->lines; line != NULL; line = line->next)
+        if (line->port.is_chip && is_same_chip(port->path, line->port.path) &&
+            !suit_pins(port, &line->port, origin))
+            return false;
     return true;
 }
 
@@ -125,15 +122,15 @@ static void add_port(station_t *station, const char *path)
         if (*at == '"' || *at == '\\' || *at == ',' || (unsigned char)*at < ' ') *at = '_';
 }
 
-bool sensors_set_names(const sensor_options_t *options, const origin_t *origins)
+bool sensors_set_names(const site_t *site, const origin_t *origins)
 {
-    station_t *const *const stations = options->stations;
-    const size_t count = options->station_count;
-    bool is_ambiguous[MAX_STATIONS];
+    sensor_t *const *const stations = site->sensors;
+    const size_t count = site->sensor_count;
+    bool is_ambiguous[MAX_SENSORS];
     for (size_t i = 0; i != count; i++)
         is_ambiguous[i] = !stations[i]->has_own_name && has_namesake(stations, count, stations[i], true);
     for (size_t i = 0; i != count; i++)
-        if (is_ambiguous[i]) add_port(stations[i], options->ports[stations[i]->port].path);
+        if (is_ambiguous[i]) add_port(stations[i], stations[i]->port->path);
     for (size_t i = 0; i != count; i++) {
         if (!has_namesake(stations, i, stations[i], false)) continue;
         return reject(&origins[i], "two sensors have the name %s. Give each its own name, such as one=%s.",
@@ -163,9 +160,9 @@ static bool suit_each_other(const station_t *one, const station_t *other, bool h
 
 static bool suits_line(const station_t *station, const port_options_t *port, const origin_t *origin)
 {
-    if (port->station_count > MAX_STATIONS_ON_A_LINE)
+    if (port->station_count > MAX_SENSORS_ON_A_LINE)
         return reject(origin, "%s has %zu sensors. A line has at most %d.", port->path, port->station_count,
-                      MAX_STATIONS_ON_A_LINE);
+                      MAX_SENSORS_ON_A_LINE);
     if (port->station_count == 1 || mode_is_asked(station->mode)) return true;
     return reject(
         origin,
@@ -174,15 +171,15 @@ static bool suits_line(const station_t *station, const port_options_t *port, con
         station->model->name, station->mode->name, station->model->name, station->address);
 }
 
-bool sensors_suit_lines(const sensor_options_t *options, const origin_t *origins)
+bool sensors_suit_lines(const site_t *site, const origin_t *origins)
 {
-    for (size_t i = 0; i != options->station_count; i++) {
-        const station_t *const one = options->stations[i];
-        const port_options_t *const port = &options->ports[one->port];
-        if (!suits_line(one, port, &origins[i])) return false;
+    for (size_t i = 0; i != site->sensor_count; i++) {
+        const sensor_t *const one = site->sensors[i];
+        const bool has_settings = !tcp_names(one->port->path);
+        if (!suits_line(one, one->port, &origins[i])) return false;
         for (size_t j = 0; j != i; j++)
-            if (options->stations[j]->port == one->port &&
-                !suit_each_other(options->stations[j], one, !tcp_names(port->path), &origins[i]))
+            if (site->sensors[j]->port == one->port &&
+                !suit_each_other(site->sensors[j], one, has_settings, &origins[i]))
                 return false;
     }
     return true;

@@ -7,16 +7,16 @@
 
 /* ---- ports ---- */
 
-/* Returns the row of a port; a chip has one for each sensor. */
-static size_t port_of(sensor_options_t *options, const char *path)
+/* Returns the line of a port; a chip has one for each sensor. NULL: no memory left. */
+static line_t *line_of(site_t *site, const char *path)
 {
     const bool is_chip = port_kind(path) == PORT_CHIP;
-    size_t i = 0;
-    while (i != options->port_count && (is_chip || !port_is_same(options->ports[i].path, path))) i++;
-    if (i != options->port_count) return i;
-    options->port_count++;
-    options->ports[i] = (port_options_t){.path = path, .is_chip = is_chip};
-    return i;
+    line_t *line = site->lines;
+    while (line != NULL && (is_chip || !port_is_same(line->port.path, path))) line = line->next;
+    if (line != NULL) return line;
+    line = site_add_line(site, path);
+    if (line != NULL) line->port.is_chip = is_chip;
+    return line;
 }
 
 /* An example of the port of a sensor without one. False: a serial port. */
@@ -57,44 +57,46 @@ static bool add_keys(port_keys_t *keys, const sensor_word_t *sensor, const origi
     return true;
 }
 
-static bool set_port(sensor_options_t *options, station_t *station, const sensor_word_t *sensor,
-                     const char *path, const origin_t *origin)
+static bool reject_memory(const origin_t *origin) { return reject(origin, "no memory is left."); }
+
+static bool set_port(site_t *site, sensor_t *sensor, const sensor_word_t *word, const char *path,
+                     const origin_t *origin)
 {
-    if (sensor->port == NULL && !check_common_port(sensor, path, origin)) return false;
-    station->port = port_of(options, sensor->port != NULL ? sensor->port : path);
-    port_options_t *const port = &options->ports[station->port];
-    port->station_count++;
-    return add_keys(&port->keys, sensor, origin);
+    if (word->port == NULL && !check_common_port(word, path, origin)) return false;
+    line_t *const line = line_of(site, word->port != NULL ? word->port : path);
+    if (line == NULL) return reject_memory(origin);
+    line_add(line, sensor);
+    return add_keys(&line->port.keys, word, origin);
 }
 
-static void set_lines(sensor_options_t *options, const port_keys_t *defaults)
+static void set_lines(const site_t *site, const port_keys_t *defaults)
 {
-    for (size_t i = 0; i != options->station_count; i++) {
-        fathom_line_settings_t *const line = &options->stations[i]->line;
-        port_options_t *const port = &options->ports[options->stations[i]->port];
-        *line = options->stations[i]->model->line;
-        port_options_line(port, defaults, line);
-        if (port->line.baud == 0 || line->baud < port->line.baud) port->line = *line;
+    for (size_t i = 0; i != site->sensor_count; i++) {
+        sensor_t *const sensor = site->sensors[i];
+        port_options_t *const port = sensor->port;
+        sensor->line = sensor->model->line;
+        port_options_line(port, defaults, &sensor->line);
+        if (port->line.baud == 0 || sensor->line.baud < port->line.baud) port->line = sensor->line;
     }
-    for (size_t i = 0; i != options->station_count; i++) {
-        const fathom_line_settings_t *const line = &options->stations[i]->line;
-        port_options_t *const port = &options->ports[options->stations[i]->port];
+    for (size_t i = 0; i != site->sensor_count; i++) {
+        const fathom_line_settings_t *const line = &site->sensors[i]->line;
+        port_options_t *const port = site->sensors[i]->port;
         if (line->baud != port->line.baud || line->parity != port->line.parity) port->has_mixed_lines = true;
     }
 }
 
-static bool set_ports(sensor_options_t *options, const sensor_defaults_t *defaults, const origin_t *origins)
+static bool set_ports(const site_t *site, const sensor_defaults_t *defaults, const origin_t *origins)
 {
     port_keys_t keys = defaults->keys;
     if (defaults->rs485) {
         keys.has[KEY_RS485] = true;
         keys.value[KEY_RS485] = 1;
     }
-    set_lines(options, &keys);
-    for (size_t i = 0; i != options->port_count; i++) port_options_take(&options->ports[i], &keys);
-    for (size_t i = 0; i != options->station_count; i++) {
-        const port_options_t *const port = &options->ports[options->stations[i]->port];
-        if (port->is_chip && !sensors_suit_pins(options, port, &origins[i])) return false;
+    set_lines(site, &keys);
+    for (line_t *line = site->lines; line != NULL; line = line->next) port_options_take(&line->port, &keys);
+    for (size_t i = 0; i != site->sensor_count; i++) {
+        const port_options_t *const port = site->sensors[i]->port;
+        if (port->is_chip && !sensors_suit_pins(site, port, &origins[i])) return false;
     }
     return true;
 }
@@ -110,7 +112,7 @@ static const model_mode_t *asked_mode(const model_t *model)
 
 /* Without a MODE a sensor is read in its first one; with an ADDRESS, or if sends_requests, in the first that sends
  * requests. */
-static bool set_mode(station_t *station, const sensor_word_t *sensor, const char *mode, bool sends_requests,
+static bool set_mode(sensor_t *station, const sensor_word_t *sensor, const char *mode, bool sends_requests,
                      const origin_t *origin)
 {
     if (sensor->mode != NULL) mode = sensor->mode;
@@ -123,7 +125,7 @@ static bool set_mode(station_t *station, const sensor_word_t *sensor, const char
     return station->mode != NULL;
 }
 
-static bool set_address(station_t *station, const sensor_word_t *sensor, const sensor_defaults_t *defaults,
+static bool set_address(sensor_t *station, const sensor_word_t *sensor, const sensor_defaults_t *defaults,
                         const origin_t *origin)
 {
     const uint8_t least = model_least_address(sensor->model, station->mode);
@@ -136,7 +138,7 @@ static bool set_address(station_t *station, const sensor_word_t *sensor, const s
     return sensor_word_address(sensor, station->mode, &station->address, origin);
 }
 
-static bool set_station(station_t *station, const sensor_word_t *sensor, const sensor_defaults_t *defaults,
+static bool set_station(sensor_t *station, const sensor_word_t *sensor, const sensor_defaults_t *defaults,
                         bool sends_requests, const origin_t *origin)
 {
     if (sensor->address != NULL && defaults->has_address)
@@ -149,24 +151,22 @@ static bool set_station(station_t *station, const sensor_word_t *sensor, const s
         return false;
     station->has_own_name = sensor->name[0] != '\0';
     (void)snprintf(station->name, sizeof station->name, "%s", sensor->name);
-    station_name(station);
+    sensor_set_name(station);
     return true;
 }
 
-static bool set_stations(sensor_options_t *options, const sensor_defaults_t *defaults, char **words,
+static bool set_stations(site_t *site, const sensor_defaults_t *defaults, char **words,
                          const origin_t *origins)
 {
-    static sensor_word_t sensors[MAX_STATIONS];
-    const size_t count = options->station_count;
+    static sensor_word_t sensors[MAX_SENSORS];
+    const size_t count = site->sensor_count;
     for (size_t i = 0; i != count; i++)
         if (!sensor_word_parse(&sensors[i], words[i], &origins[i])) return false;
     for (size_t i = 0; i != count; i++)
-        if (!set_port(options, options->stations[i], &sensors[i], defaults->path, &origins[i])) return false;
+        if (!set_port(site, site->sensors[i], &sensors[i], defaults->path, &origins[i])) return false;
     for (size_t i = 0; i != count; i++) {
-        const size_t at_port = options->ports[options->stations[i]->port].station_count;
-        if (!set_station(options->stations[i], &sensors[i], defaults, options->asks_all || at_port > 1,
-                         &origins[i]))
-            return false;
+        const bool sends_requests = site->asks_all || site->sensors[i]->port->station_count > 1;
+        if (!set_station(site->sensors[i], &sensors[i], defaults, sends_requests, &origins[i])) return false;
     }
     return true;
 }
@@ -174,45 +174,25 @@ static bool set_stations(sensor_options_t *options, const sensor_defaults_t *def
 static bool check_count(int count, const sensor_defaults_t *defaults, const origin_t *origin)
 {
     if (count == 0) return reject(origin, "no sensor is named. Name one of a16, a05 and hps167s.");
-    if (count > MAX_STATIONS)
-        return reject(origin, "%d sensors are named. At most %d can be.", count, MAX_STATIONS);
+    if (count > MAX_SENSORS)
+        return reject(origin, "%d sensors are named. At most %d can be.", count, MAX_SENSORS);
     if (count > 1 && (defaults->has_address || defaults->mode != NULL))
         return reject(origin, "with several sensors, write --address and --mode behind each, such as "
                               "a16:1:modbus.");
     return true;
 }
 
-/* Takes as many stations, all zeros, of which options->beside has none. */
-static void take_slots(sensor_options_t *options, size_t count)
-{
-    static station_t slots[STATION_SLOTS];
-    const sensor_options_t *const beside = options->beside;
-    bool is_taken[STATION_SLOTS] = {false};
-    for (size_t i = 0; beside != NULL && i != beside->station_count; i++)
-        is_taken[beside->stations[i]->slot] = true;
-    size_t slot = 0;
-    for (options->station_count = 0; options->station_count != count; slot++) {
-        if (is_taken[slot]) continue;
-        reader_free(&slots[slot].reader);
-        memset(&slots[slot], 0, sizeof slots[slot]);
-        slots[slot].slot = slot;
-        options->stations[options->station_count++] = &slots[slot];
-    }
-}
-
 /* In the order in which a user corrects it. */
-bool sensor_words(sensor_options_t *options, const sensor_defaults_t *defaults, char **words, int count,
+bool sensor_words(site_t *site, const sensor_defaults_t *defaults, char **words, int count,
                   const origin_t *origins)
 {
     if (!check_count(count, defaults, &origins[0])) return false;
-    take_slots(options, (size_t)count);
-    options->port_count = 0;
-    if (!set_stations(options, defaults, words, origins) || !set_ports(options, defaults, origins) ||
-        !sensors_suit_lines(options, origins) || !sensors_set_names(options, origins))
+    for (int i = 0; i != count; i++)
+        if (site_add_sensor(site) == NULL) return reject_memory(&origins[0]);
+    if (!set_stations(site, defaults, words, origins) || !set_ports(site, defaults, origins) ||
+        !sensors_suit_lines(site, origins) || !sensors_set_names(site, origins))
         return false;
-    for (size_t i = 0; i != options->station_count; i++)
-        if (!sensor_suits_port(options->stations[i], &options->ports[options->stations[i]->port],
-                               &origins[i]))
-            return false;
+    for (size_t i = 0; i != site->sensor_count; i++)
+        if (!sensor_suits_port(site->sensors[i], &origins[i])) return false;
     return true;
 }

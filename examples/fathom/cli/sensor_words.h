@@ -3,7 +3,7 @@
 #define SENSOR_WORDS_H
 
 #include "cli/sensor_word.h"
-#include "reading/station.h"
+#include "reading/site.h"
 
 /* What options set for the sensors of a command: for their ports, unless a key stands behind one, and for a single
  * sensor. */
@@ -18,25 +18,24 @@ typedef struct {
 
 /*
  * Reads the words that name sensors, and finds out which share a port. `origins` has one for each word. The words are
- * cut, and the ports' paths point into them. `asks_all` and `beside` are set before, all else is set here but what a
- * reader is to do. False after rejecting what cannot be.
+ * cut. `asks_all` is set before, all else is set here but what a reader is to do. False after rejecting what cannot be.
  */
-bool sensor_words(sensor_options_t *options, const sensor_defaults_t *defaults, char **words, int count,
+bool sensor_words(site_t *site, const sensor_defaults_t *defaults, char **words, int count,
                   const origin_t *origins);
 
 /* ---- rules, for sensor_words; false after rejecting what breaks one ---- */
 
 /* Can a sensor be read in its mode at this port? */
-bool sensor_suits_port(const station_t *station, const port_options_t *port, const origin_t *origin);
+bool sensor_suits_port(const sensor_t *sensor, const origin_t *origin);
 
 /* Can these sensors be read together at their ports? */
-bool sensors_suit_lines(const sensor_options_t *options, const origin_t *origins);
+bool sensors_suit_lines(const site_t *site, const origin_t *origins);
 
 /* Is no line of a GPIO chip used twice? */
-bool sensors_suit_pins(const sensor_options_t *options, const port_options_t *port, const origin_t *origin);
+bool sensors_suit_pins(const site_t *site, const port_options_t *port, const origin_t *origin);
 
 /* Gives sensors with the same name others by their ports. */
-bool sensors_set_names(const sensor_options_t *options, const origin_t *origins);
+bool sensors_set_names(const site_t *site, const origin_t *origins);
 
 /* The port of a mode on pins, as an example: "gpiochip0,in=5". False: the mode has no pins. */
 enum { PORT_EXAMPLE = 80 };

@@ -22,7 +22,7 @@ static void print_text(const setting_t *setting, fathom_status_t status, const c
 }
 
 /* Does each tell whose it is? */
-static bool has_name(void) { return session.options.station_count > 1 || session.station->has_own_name; }
+static bool has_name(void) { return session.site.sensor_count > 1 || session.station->has_own_name; }
 
 static bool can_be_printed(const setting_t *setting)
 {
@@ -37,7 +37,7 @@ static void begin_json(const setting_t *settings, size_t count, const char *line
         if (can_be_printed(&settings[i]) && strcmp(settings[i].name, "address") == 0) has_address = true;
     json = (json_t){.to = stdout};
     json_begin(&json, NULL, '{');
-    station_json(&json, session.station);
+    sensor_json(&json, session.station);
     if (!has_address) json_value(&json, "address", "%u", session.station->address);
     json_string(&json, "line", line);
 }
@@ -45,9 +45,9 @@ static void begin_json(const setting_t *settings, size_t count, const char *line
 static void begin_text(const char *line)
 {
     const station_t *const station = session.station;
-    (void)printf("%s%s%s%s, %s, asked at address %u, %s\n",
-                 station != session.options.stations[0] ? "\n" : "", has_name() ? station->name : "",
-                 has_name() ? ": " : "", station->model->name, station->model->what, station->address, line);
+    (void)printf("%s%s%s%s, %s, asked at address %u, %s\n", station != session.site.sensors[0] ? "\n" : "",
+                 has_name() ? station->name : "", has_name() ? ": " : "", station->model->name,
+                 station->model->what, station->address, line);
 }
 
 static void begin(const setting_t *settings, size_t count)
@@ -209,11 +209,11 @@ static int run_info(const host_t *host, int argc, char **argv)
     int status = STATUS_OK;
     if (!session_options_of_several(&session, &info_command, argc, argv, session_table, values, &status))
         return status;
-    const sensor_options_t *const options = &session.options;
+    const site_t *const site = &session.site;
     status = STATUS_OK;
-    for (size_t i = 0; i != options->station_count; i++) {
+    for (size_t i = 0; i != site->sensor_count; i++) {
         if (i != 0 && host->has_ended(host->ctx)) return STATUS_FAILED;
-        session.station = options->stations[i];
+        session.station = site->sensors[i];
         if (tell_on_port(host, session_settings(&session), SIZE_MAX) != STATUS_OK) status = STATUS_FAILED;
     }
     return status;

@@ -14,10 +14,10 @@ const struct option session_table[SESSION_OPTIONS + 1] = {
 };
 
 /* Nothing can be asked for in a mode in which a sensor is only listened to, or on pins. */
-static bool check_modes(const sensor_options_t *options, const char *command)
+static bool check_modes(const site_t *site, const char *command)
 {
-    for (size_t i = 0; i != options->station_count; i++) {
-        const model_mode_t *const mode = options->stations[i]->mode;
+    for (size_t i = 0; i != site->sensor_count; i++) {
+        const model_mode_t *const mode = site->sensors[i]->mode;
         if (mode_is_asked(mode) && mode->pins == 0) continue;
         (void)usage_error(command, "in mode %s nothing is asked; leave it out", mode->name);
         return false;
@@ -42,20 +42,21 @@ static bool take_options(session_t *session, const char *command, int argc, char
                          const struct option *table, const char **values, int most, char ***words, int *count,
                          bool *wants_help)
 {
+    site_free(&session->site);
     memset(session, 0, sizeof *session);
     const int rest = options_parse(command, argc, argv, table, values);
     if (rest < 0) return false;
     *wants_help = values[SESSION_HELP] != NULL;
     if (*wants_help) return true;
     const int taken = argc - rest < most ? argc - rest : most;
-    session->options.asks_all = true;
+    session->site.asks_all = true;
     if (!check_repetition(values, command) ||
         !option_json(command, values[SESSION_FORMAT], &session->is_json) ||
-        !sensor_options(&session->options, command, argv + rest, taken, values, values[SESSION_ADDRESS],
+        !sensor_options(&session->site, command, argv + rest, taken, values, values[SESSION_ADDRESS],
                         values[SESSION_MODE]) ||
-        !check_modes(&session->options, command))
+        !check_modes(&session->site, command))
         return false;
-    session->station = session->options.stations[0];
+    session->station = session->site.sensors[0];
     *words = argv + rest + taken;
     *count = argc - rest - taken;
     return true;
@@ -96,10 +97,7 @@ bool session_options_of_several(session_t *session, const command_t *command, in
     return take_sensors(session, command, argc, argv, table, values, INT_MAX, status);
 }
 
-const port_options_t *session_port(const session_t *session)
-{
-    return &session->options.ports[session->station->port];
-}
+const port_options_t *session_port(const session_t *session) { return session->station->port; }
 
 bool session_set_mode(session_t *session, const char *command, const char *const *values, const char *mode)
 {
@@ -127,14 +125,14 @@ void session_listen(session_t *session, uint32_t for_us) { port_listen(&session-
 /* Its driver, from the beginning. */
 static bool begin(session_t *session)
 {
-    station_t *const station = session->station;
+    sensor_t *const station = session->station;
     reader_settings_t settings = station->settings;
     settings.line = &station->line;
     settings.backoff_us = READER_BACKOFF_US;
     settings.address = station->address;
-    if (!station_begin(station, &session->channel, &settings)) {
+    if (!sensor_start(station, &session->channel, &settings)) {
         char text[256];
-        station_refusal(station, text, sizeof text);
+        sensor_refusal(station, text, sizeof text);
         (void)fprintf(stderr, "fathom: %s\n", text);
         return false;
     }
@@ -164,11 +162,11 @@ bool session_open(session_t *session, const host_t *host)
 
 bool session_move(session_t *session, uint8_t address, const fathom_line_settings_t *line)
 {
-    station_t *const station = session->station;
+    sensor_t *const station = session->station;
     reader_cancel(station->reader);
     station->address = address;
     station->line = *line;
-    station_name(station);
+    sensor_set_name(station);
     return begin(session);
 }
 
@@ -248,7 +246,7 @@ const char *session_line_text(const session_t *session, char text[LINE_TEXT])
 
 void session_explain(session_t *session, fathom_status_t status)
 {
-    station_t *const station = session->station;
+    sensor_t *const station = session->station;
     failure_t failure = {.status = status,
                          .model = station->model,
                          .mode = station->mode,

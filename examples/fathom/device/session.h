@@ -9,9 +9,9 @@
 
 /* A session with one sensor at a port: what all commands share that ask for, or change, more than distances. */
 typedef struct {
-    sensor_options_t options;
-    station_t *station; /* the only one; with session_options_of_several each in turn */
-    bool has_begun;     /* the host */
+    site_t site;
+    sensor_t *station; /* the only one; with session_options_of_several each in turn */
+    bool has_begun;    /* the host */
     channel_t channel;
     port_counts_t port_counts;
     bool is_json;

@@ -38,7 +38,7 @@ static void print_json(const change_t *change, change_outcome_t outcome)
     const bool is_confirmed = is_unchanged || (outcome == CHANGE_DONE && change_is_read_back(change));
     json_t json = {.to = stdout};
     json_begin(&json, NULL, '{');
-    station_json(&json, station);
+    sensor_json(&json, station);
     json_value(&json, "address", "%u",
                change->is_for_all ? 0u : (unsigned)reader_facts(station->reader).address);
     json_string(&json, "setting", change->setting->name);

@@ -59,8 +59,8 @@ typedef struct {
 /* Is there a sensor that is asked, or that is not? */
 static bool has_some(const account_t *account, bool is_asked)
 {
-    for (size_t i = 0; i != account->station_count; i++)
-        if (mode_is_asked(account->stations[i]->mode) == is_asked) return true;
+    for (size_t i = 0; i != account->sensor_count; i++)
+        if (mode_is_asked(account->sensors[i]->mode) == is_asked) return true;
     return false;
 }
 
@@ -103,11 +103,11 @@ static void print_attempts(const counters_t *counters, FILE *to, const char *of,
 }
 
 /* Time-outs in a row, and for how long the driver leaves it alone because of them. */
-static void print_back_off(const station_t *station, FILE *to)
+static void print_back_off(const sensor_t *sensor, FILE *to)
 {
     (void)fprintf(to, ", time-outs in a row %u, left alone for %.1f s",
-                  reader_facts(station->reader).timeouts_in_row,
-                  reader_facts(station->reader).backoff_left_us / 1000000.0);
+                  reader_facts(sensor->reader).timeouts_in_row,
+                  reader_facts(sensor->reader).backoff_left_us / 1000000.0);
 }
 
 void counters_print(const account_t *account, FILE *to)
@@ -115,10 +115,10 @@ void counters_print(const account_t *account, FILE *to)
     const counts_t *const total = &account->sum.total;
     print_attempts(&account->sum, to, "", "");
     (void)fputs("\n", to);
-    for (size_t i = 0; i != account->station_count && account->station_count > 1; i++) {
-        const station_t *const station = account->stations[i];
-        print_attempts(&station->counters, to, station->name, ": ");
-        if (reader_facts(station->reader).timeouts_in_row != 0) print_back_off(station, to);
+    for (size_t i = 0; i != account->sensor_count && account->sensor_count > 1; i++) {
+        const sensor_t *const sensor = account->sensors[i];
+        print_attempts(&sensor->counters, to, sensor->name, ": ");
+        if (reader_facts(sensor->reader).timeouts_in_row != 0) print_back_off(sensor, to);
         (void)fputs("\n", to);
     }
     bool is_empty = print(to, total->stream, stream_names, FATHOM_STREAM_COUNTERS, true);
@@ -138,14 +138,14 @@ static void print_time(const counters_t *counters, FILE *to, const char *start)
                   counters->time_min_us / 1000.0, mean_us(counters) / 1000.0, counters->time_max_us / 1000.0);
 }
 
-static void print_unit(const station_t *station, FILE *to)
+static void print_unit(const sensor_t *sensor, FILE *to)
 {
-    const uint64_t *const unit = station->counters.total.unit;
-    print_attempts(&station->counters, to, station->name, ": ");
+    const uint64_t *const unit = sensor->counters.total.unit;
+    print_attempts(&sensor->counters, to, sensor->name, ": ");
     (void)fprintf(to, ", responses %" PRIu64 ", failures %" PRIu64, unit[UNIT_RESPONSES],
                   unit[UNIT_FAILURES]);
-    print_back_off(station, to);
-    print_time(&station->counters, to, ", ");
+    print_back_off(sensor, to);
+    print_time(&sensor->counters, to, ", ");
     (void)fputs("\n", to);
 }
 
@@ -170,8 +170,8 @@ void counters_print_all(const account_t *account, FILE *to)
         }
         (void)fputs("\n", to);
     }
-    for (size_t i = 0; i != account->station_count; i++)
-        if (mode_is_asked(account->stations[i]->mode)) print_unit(account->stations[i], to);
+    for (size_t i = 0; i != account->sensor_count; i++)
+        if (mode_is_asked(account->sensors[i]->mode)) print_unit(account->sensors[i], to);
 }
 
 /* ---- for programs ---- */
@@ -218,19 +218,18 @@ static void print_json_group(const group_t *group, FILE *to)
     (void)fputs("}", to);
 }
 
-static void print_json_unit(const station_t *station, FILE *to)
+static void print_json_unit(const sensor_t *sensor, FILE *to)
 {
-    const uint64_t *const counts = station->counters.total.unit;
-    (void)fprintf(to, "{\"name\":\"%s\",\"sensor\":\"%s\",\"mode\":\"%s\",\"address\":%u,", station->name,
-                  station->model->name, station->mode->name, station->address);
-    print_json_attempts(&station->counters, to);
+    const uint64_t *const counts = sensor->counters.total.unit;
+    (void)fprintf(to, "{\"name\":\"%s\",\"sensor\":\"%s\",\"mode\":\"%s\",\"address\":%u,", sensor->name,
+                  sensor->model->name, sensor->mode->name, sensor->address);
+    print_json_attempts(&sensor->counters, to);
     (void)fprintf(to,
                   ",\"responses\":%" PRIu64 ",\"failures\":%" PRIu64
                   ",\"timeouts_in_row\":%u,\"backoff_left_us\":%" PRIu32,
-                  counts[UNIT_RESPONSES], counts[UNIT_FAILURES],
-                  reader_facts(station->reader).timeouts_in_row,
-                  reader_facts(station->reader).backoff_left_us);
-    print_json_time(&station->counters, to);
+                  counts[UNIT_RESPONSES], counts[UNIT_FAILURES], reader_facts(sensor->reader).timeouts_in_row,
+                  reader_facts(sensor->reader).backoff_left_us);
+    print_json_time(&sensor->counters, to);
     (void)fputs("}", to);
 }
 
@@ -249,10 +248,10 @@ void counters_print_json(const account_t *account, FILE *to)
     print_json_time(&account->sum, to);
     (void)fputs(",\"units\":[", to);
     const char *gap = "";
-    for (size_t i = 0; i != account->station_count; i++) {
-        if (!mode_is_asked(account->stations[i]->mode)) continue;
+    for (size_t i = 0; i != account->sensor_count; i++) {
+        if (!mode_is_asked(account->sensors[i]->mode)) continue;
         (void)fputs(gap, to);
-        print_json_unit(account->stations[i], to);
+        print_json_unit(account->sensors[i], to);
         gap = ",";
     }
     (void)fputs("]}\n", to);

@@ -4,13 +4,13 @@
 
 #include <stdio.h>
 
-#include "reading/station.h"
+#include "reading/site.h"
 
 /* All that has been counted, to be told. */
 typedef struct {
     counters_t sum; /* of all sensors */
-    station_t *const *stations;
-    size_t station_count;
+    sensor_t *const *sensors;
+    size_t sensor_count;
     uint64_t requests; /* that were sent */
     uint64_t reconnects;
     uint64_t dropped_spikes; /* of the medians, ... */

@@ -107,10 +107,10 @@ static bool hand_over(broker_t *broker, broker_sent_t *sent)
 
 static void take_readiness(broker_t *broker)
 {
-    const broker_config_t *const config = &broker->config->broker;
+    const broker_settings_t *const settings = broker->settings;
     char text[BROKER_TEXT];
-    (void)snprintf(text, sizeof text, "broker %s port %u: connected", config->host, config->port);
-    if (broker->is_told) broker->user->tell(broker->ctx, text);
+    (void)snprintf(text, sizeof text, "broker %s port %u: connected", settings->host, settings->port);
+    if (broker->is_told) broker->user->print(broker->ctx, text);
     broker->is_told = false;
     /* That another client had under way. One that is the same sends them again by itself. */
     for (unsigned i = 0; broker->is_other && i != broker->count; i++)
@@ -213,14 +213,14 @@ static uint32_t part_of(uint32_t pause_us)
 
 static void tell_away(broker_t *broker)
 {
-    const broker_config_t *const config = &broker->config->broker;
+    const broker_settings_t *const settings = broker->settings;
     char text[2 * BROKER_TEXT];
     if (broker->is_told && strcmp(broker->told_reason, broker->reason) == 0) return;
     broker->is_told = true;
     memcpy(broker->told_reason, broker->reason, sizeof broker->told_reason);
-    (void)snprintf(text, sizeof text, "broker %s port %u: %s; it is tried again and again", config->host,
-                   config->port, broker->reason);
-    broker->user->tell(broker->ctx, text);
+    (void)snprintf(text, sizeof text, "broker %s port %u: %s; it is tried again and again", settings->host,
+                   settings->port, broker->reason);
+    broker->user->print(broker->ctx, text);
 }
 
 /* For broker->reason. */
@@ -229,7 +229,6 @@ static void fail(broker_t *broker)
     const bool was_ready = broker->phase == BROKER_READY;
     remove_socket(broker);
     if (was_ready) {
-        broker->user->lost(broker->ctx);
         /* One that accepts and ends it again, as where two clients have the same id, is not asked as fast as can be. */
         if (now_us(broker) - broker->began_us >= STEADY_US) broker->pause_us = 0;
     }
@@ -262,10 +261,10 @@ static void make_client(broker_t *broker)
 
 static void begin_connecting(broker_t *broker)
 {
-    const broker_config_t *const config = &broker->config->broker;
-    (void)snprintf(broker->connect_host, sizeof broker->connect_host, "%s", config->host);
-    broker->connect_port = config->port;
-    broker->keep_alive_s = config->keep_alive_s;
+    const broker_settings_t *const settings = broker->settings;
+    (void)snprintf(broker->connect_host, sizeof broker->connect_host, "%s", settings->host);
+    broker->connect_port = settings->port;
+    broker->keep_alive_s = settings->keep_alive_s;
     broker->reason[0] = broker->log[0] = '\0';
     broker->is_lost = false;
     broker->tls_error = 0;
@@ -317,20 +316,22 @@ uint32_t broker_tick(broker_t *broker)
 
 /* ---- begin, send, end ---- */
 
-bool broker_begin(broker_t *broker, const host_t *host, fathom_loop_t *loop, const config_t *config,
-                  const char *will, const broker_user_t *user, void *ctx)
+bool broker_begin(broker_t *broker, const host_t *host, fathom_loop_t *loop,
+                  const broker_settings_t *settings, const char *file, const char *will,
+                  const broker_user_t *user, void *ctx)
 {
     static const fathom_loop_kind_t kind = {.fd = source_fd, .poll = poll_thread};
     memset(broker, 0, sizeof *broker);
     broker->host = host;
     broker->loop = loop;
-    broker->config = config;
+    broker->settings = settings;
+    broker->file = file;
     broker->user = user;
     broker->ctx = ctx;
     (void)snprintf(broker->will, sizeof broker->will, "%s", will);
     broker->thread.fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
     if (broker->thread.fd < 0 || mosquitto_lib_init() != MOSQ_ERR_SUCCESS) {
-        user->tell(ctx, "the system has no descriptor or no memory left; end other programs");
+        user->print(ctx, "the system has no descriptor or no memory left; end other programs");
         return false;
     }
     broker->thread.broker = broker;
@@ -386,6 +387,7 @@ bool broker_wait(broker_t *broker, uint32_t max_us)
 
 void broker_end(broker_t *broker)
 {
+    if (broker->loop == NULL) return;
     if (broker->phase == BROKER_CONNECTING) {
         (void)pthread_detach(broker->connecting); /* it may wait for minutes, and ends with the program */
         return;

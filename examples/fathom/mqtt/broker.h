@@ -4,9 +4,10 @@
 
 #include <mosquitto.h>
 #include <pthread.h>
+#include <stdio.h>
 
-#include "cli/config.h"
 #include "fathom_loop.h"
+#include "mqtt/settings.h"
 #include "ports/host.h"
 
 /*
@@ -20,13 +21,9 @@
  */
 
 typedef struct {
-    /* The broker has accepted the client. */
-    void (*connected)(void *ctx);
-    void (*lost)(void *ctx);
-    /* It has a message that was sent, or more. */
-    void (*acknowledged)(void *ctx);
-    /* A line of text for the user. */
-    void (*tell)(void *ctx, const char *text);
+    void (*connected)(void *ctx);               /* the broker accepted the client */
+    void (*acknowledged)(void *ctx);            /* the broker has one more message, or several */
+    void (*print)(void *ctx, const char *text); /* a line for the user */
 } broker_user_t;
 
 typedef enum { BROKER_PAUSE, BROKER_CONNECTING, BROKER_GREETING, BROKER_READY } broker_phase_t;
@@ -56,7 +53,8 @@ struct broker {
     broker_source_t thread; /* told by it that it has ended */
     fathom_loop_t *loop;
     const host_t *host;
-    const config_t *config;
+    const broker_settings_t *settings;
+    const char *file; /* that has the settings, for messages */
     const broker_user_t *user;
     void *ctx;
     struct mosquitto *mosq;
@@ -64,10 +62,10 @@ struct broker {
     int connect_result; /* the thread's */
     int connect_errno;
     broker_phase_t phase;
-    uint64_t next_us;               /* when it is tried again */
-    uint64_t began_us;              /* when it was tried last */
-    uint32_t pause_us;              /* the last one */
-    char connect_host[CONFIG_HOST]; /* for the thread, which may outlive a config */
+    uint64_t next_us;                 /* when it is tried again */
+    uint64_t began_us;                /* when it was tried last */
+    uint32_t pause_us;                /* the last one */
+    char connect_host[SETTINGS_HOST]; /* for the thread, which may outlive a config */
     int connect_port;
     int keep_alive_s;
     broker_sent_t sent[BROKER_WINDOW];
@@ -79,7 +77,7 @@ struct broker {
     bool thread_has_ended;
     bool is_told;  /* that it is away, for `told_reason` */
     int tls_error; /* what is wrong with its certificate; 0: nothing that is known */
-    char will[CONFIG_PATH];
+    char will[SETTINGS_PATH];
     char reason[BROKER_TEXT];
     char told_reason[BROKER_TEXT];
     char log[BROKER_TEXT]; /* libmosquitto's last error */
@@ -87,8 +85,9 @@ struct broker {
 
 /* Begins to connect; config stays where it is. will: the topic at which "offline" stands when it is lost. False after saying why.
  */
-bool broker_begin(broker_t *broker, const host_t *host, fathom_loop_t *loop, const config_t *config,
-                  const char *will, const broker_user_t *user, void *ctx);
+bool broker_begin(broker_t *broker, const host_t *host, fathom_loop_t *loop,
+                  const broker_settings_t *settings, const char *file, const char *will,
+                  const broker_user_t *user, void *ctx);
 
 /* From outside of the loop's steps, before each sleep. Returns how long that may take. */
 uint32_t broker_tick(broker_t *broker);
@@ -107,7 +106,7 @@ bool broker_send(broker_t *broker, const char *topic, const char *payload, bool 
 /* Goes on for so long at most, without the loop: until something has happened. False: it is not connected. */
 bool broker_wait(broker_t *broker, uint32_t max_us);
 
-/* Ends the connection; the will is not told then. */
+/* Also without broker_begin(). Ends the connection; the will is not told then. */
 void broker_end(broker_t *broker);
 
 /* ---- for broker.c: the client that the config asks for ---- */
@@ -126,7 +125,7 @@ void broker_explain_refusal(broker_t *broker, int code);
 
 /* Secures the client as the config says. *error has what is wrong with the certificate of the far end, whenever that is found
  * out. False, with what is wrong with the files. */
-bool tls_set(struct mosquitto *mosq, const broker_config_t *config, int *error, char *reason,
+bool tls_set(struct mosquitto *mosq, const broker_settings_t *settings, int *error, char *reason,
              size_t capacity);
 
 /* In words; "" where it is not known. */

@@ -24,17 +24,17 @@ static const char *or_null(const char *text) { return text[0] != '\0' ? text : N
 
 static bool set_tls(broker_t *broker, struct mosquitto *mosq)
 {
-    const broker_config_t *const config = &broker->config->broker;
+    const broker_settings_t *const settings = broker->settings;
     char reason[BROKER_TEXT / 2];
-    if (!config->has_tls || tls_set(mosq, config, &broker->tls_error, reason, sizeof reason)) return true;
-    explain(broker, "%s:%u: tls: %s", broker->config->path, config->tls_line, reason);
+    if (!settings->has_tls || tls_set(mosq, settings, &broker->tls_error, reason, sizeof reason)) return true;
+    explain(broker, "%s:%u: tls: %s", broker->file, settings->tls_line, reason);
     return false;
 }
 
 struct mosquitto *broker_client(broker_t *broker)
 {
     static const char offline[] = "offline";
-    struct mosquitto *const mosq = mosquitto_new(broker->config->broker.client_id, true, broker);
+    struct mosquitto *const mosq = mosquitto_new(broker->settings->client_id, true, broker);
     if (mosq == NULL) {
         explain(broker, "no client can be made: %s", strerror(errno));
         return NULL;
@@ -49,10 +49,10 @@ struct mosquitto *broker_client(broker_t *broker)
 
 bool broker_login(broker_t *broker)
 {
-    const broker_config_t *const config = &broker->config->broker;
+    const broker_settings_t *const settings = broker->settings;
     char password[PASSWORD] = "";
-    const char *const path = or_null(config->password_file);
-    if (config->user[0] == '\0') return true;
+    const char *const path = or_null(settings->password_file);
+    if (settings->user[0] == '\0') return true;
     FILE *const file = path != NULL ? fopen(path, "r") : NULL;
     if (path != NULL && file == NULL) {
         explain(broker, "%s cannot be read: %s", path, strerror(errno));
@@ -64,7 +64,8 @@ bool broker_login(broker_t *broker)
         password[strcspn(password, "\r\n")] = '\0';
         (void)fclose(file);
     }
-    const int result = mosquitto_username_pw_set(broker->mosq, config->user, path != NULL ? password : NULL);
+    const int result =
+        mosquitto_username_pw_set(broker->mosq, settings->user, path != NULL ? password : NULL);
     explicit_bzero(password, sizeof password);
     if (result == MOSQ_ERR_SUCCESS) return true;
     explain(broker, "%s", mosquitto_strerror(result));
@@ -75,16 +76,16 @@ bool broker_login(broker_t *broker)
 
 static void explain_tls(broker_t *broker)
 {
-    const broker_config_t *const config = &broker->config->broker;
+    const broker_settings_t *const settings = broker->settings;
     const char *const reason = tls_reason(broker->tls_error);
     if (reason[0] != '\0')
         explain(broker,
                 "%s:%u: tls: its certificate is not accepted: %s; the broker needs another one, or ca-file: "
                 "the authority "
                 "that has signed it, or host: the name that it is for",
-                broker->config->path, config->tls_line, reason);
+                broker->file, settings->tls_line, reason);
     else
-        explain(broker, "%s:%u: tls: no secure connection: %s", broker->config->path, config->tls_line,
+        explain(broker, "%s:%u: tls: no secure connection: %s", broker->file, settings->tls_line,
                 broker->log[0] != '\0' ? broker->log : "the broker has ended it; does this port speak TLS?");
 }
 
@@ -92,13 +93,13 @@ void broker_explain(broker_t *broker, int result, int error)
 {
     if (result == MOSQ_ERR_EAI)
         explain(broker, "its name is not known: %s", gai_strerror(error));
-    else if (result == MOSQ_ERR_TLS || (broker->phase == BROKER_GREETING && broker->config->broker.has_tls))
+    else if (result == MOSQ_ERR_TLS || (broker->phase == BROKER_GREETING && broker->settings->has_tls))
         explain_tls(broker);
     else if (result == MOSQ_ERR_ERRNO)
         explain(broker, "%s", strerror(error));
     else if (result == MOSQ_ERR_CONN_LOST && broker->phase == BROKER_GREETING)
         explain(broker, "it ends the connection at once%s",
-                broker->config->broker.has_tls ? "" : "; does this port want tls: ?");
+                broker->settings->has_tls ? "" : "; does this port want tls: ?");
     else if (result == MOSQ_ERR_CONN_LOST)
         explain(broker, "the connection is lost");
     else
@@ -107,19 +108,18 @@ void broker_explain(broker_t *broker, int result, int error)
 
 void broker_explain_refusal(broker_t *broker, int code)
 {
-    const config_t *const config = broker->config;
-    const broker_config_t *const login = &config->broker;
+    const broker_settings_t *const settings = broker->settings;
     if (code != 4 && code != 5)
-        explain(broker, "it refuses the client %s: %s", login->client_id, mosquitto_connack_string(code));
-    else if (login->user[0] == '\0')
+        explain(broker, "it refuses the client %s: %s", settings->client_id, mosquitto_connack_string(code));
+    else if (settings->user[0] == '\0')
         explain(broker,
-                "%s:%u: it refuses a client without a name; write user: and password-file:", config->path,
-                login->line);
+                "%s:%u: it refuses a client without a name; write user: and password-file:", broker->file,
+                settings->line);
     else
         explain(
             broker,
             "%s:%u: it refuses the user %s with the password of %s; mend that, or the broker's password file",
-            config->path, login->line, login->user,
-            login->password_file[0] != '\0' ? login->password_file
-                                            : "no file, since password-file: is missing");
+            broker->file, settings->line, settings->user,
+            settings->password_file[0] != '\0' ? settings->password_file
+                                               : "no file, since password-file: is missing");
 }

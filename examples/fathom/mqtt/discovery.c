@@ -35,19 +35,17 @@ static const struct {
 
 static uint8_t probe_of(unsigned bit) { return (uint8_t)(bit / ENTITIES + 1); }
 
-static bool is_contact(const station_t *station) { return station->mode->is_contact; }
-
-static bool has_entity(const station_t *station, const results_config_t *results, entity_t entity)
+static bool has_entity(const sensor_t *sensor, entity_t entity)
 {
-    if (entity == ENTITY_TEMPERATURE && station->settings.temperature_us == 0) return false;
-    return topic_is_there(results, entities[entity].topic);
+    if (entity == ENTITY_TEMPERATURE && sensor->settings.temperature_us == 0) return false;
+    return topic_is_there(sensor, entities[entity].topic);
 }
 
-uint32_t discovery_all(const config_t *config, const station_t *station, const results_config_t *results)
+uint32_t discovery_all(const publish_settings_t *settings, const sensor_t *sensor)
 {
     uint32_t bits = 0;
-    for (unsigned bit = 0; bit != DISCOVERY_BITS && config->discovery[0] != '\0'; bit++)
-        if (topic_wants_probe(station, probe_of(bit)) && has_entity(station, results, bit % ENTITIES))
+    for (unsigned bit = 0; bit != DISCOVERY_BITS && settings->discovery[0] != '\0'; bit++)
+        if (sensor_has_probe(sensor, probe_of(bit)) && has_entity(sensor, bit % ENTITIES))
             bits |= UINT32_C(1) << bit;
     return bits;
 }
@@ -63,48 +61,48 @@ static void add_id(char id[ID], const char *word)
         if (*at == '/' || *at == '.') *at = '_';
 }
 
-static void device_id(const config_t *config, const station_t *station, char id[ID])
+static void device_id(const publish_settings_t *settings, const sensor_t *sensor, char id[ID])
 {
     id[0] = '\0';
-    add_id(id, config->prefix);
-    add_id(id, config->site);
-    add_id(id, station->name);
+    add_id(id, settings->prefix);
+    add_id(id, settings->site);
+    add_id(id, sensor->name);
 }
 
-static void entity_id(const config_t *config, const station_t *station, unsigned bit, char id[ID])
+static void entity_id(const publish_settings_t *settings, const sensor_t *sensor, unsigned bit, char id[ID])
 {
     char number[4];
     (void)snprintf(number, sizeof number, "%u", probe_of(bit));
-    device_id(config, station, id);
-    if (topic_has_probes(station)) add_id(id, number);
+    device_id(settings, sensor, id);
+    if (topic_has_probes(sensor)) add_id(id, number);
     add_id(id, entities[bit % ENTITIES].name);
 }
 
-void discovery_topic(const config_t *config, const station_t *station, unsigned bit,
+void discovery_topic(const publish_settings_t *settings, const sensor_t *sensor, unsigned bit,
                      char text[DISCOVERY_TOPIC])
 {
     char id[ID];
-    entity_id(config, station, bit, id);
-    (void)snprintf(text, DISCOVERY_TOPIC, "%s/%s/%s/config", config->discovery,
+    entity_id(settings, sensor, bit, id);
+    (void)snprintf(text, DISCOVERY_TOPIC, "%s/%s/%s/config", settings->discovery,
                    entities[bit % ENTITIES].component, id);
 }
 
 /* ---- what they are ---- */
 
 /* A value that does not come for so long is none any more: three intervals, and the pause before a port is tried again. */
-static uint32_t expire_s(const station_t *station)
+static uint32_t expire_s(const sensor_t *sensor)
 {
     enum { INTERVALS = 3, AWAY_S = 30 };
-    return (uint32_t)((uint64_t)INTERVALS * station->settings.period_us / 1000000u) + AWAY_S;
+    return (uint32_t)((uint64_t)INTERVALS * sensor->settings.period_us / 1000000u) + AWAY_S;
 }
 
-static void add_availability(const config_t *config, const station_t *station, json_t *json)
+static void add_availability(const publish_settings_t *settings, const sensor_t *sensor, json_t *json)
 {
     char site[TOPIC];
-    char sensor[TOPIC];
-    topic_of_site(config, "status", site);
-    topic_of_sensor(config, station, "availability", sensor);
-    const char *const topics[] = {site, sensor};
+    char availability[TOPIC];
+    topic_of_site(settings, "status", site);
+    topic_of_sensor(settings, sensor, "availability", availability);
+    const char *const topics[] = {site, availability};
     json_begin(json, "availability", '[');
     for (size_t i = 0; i != sizeof topics / sizeof topics[0]; i++) {
         json_begin(json, NULL, '{');
@@ -115,18 +113,18 @@ static void add_availability(const config_t *config, const station_t *station, j
     json_string(json, "availability_mode", "all");
 }
 
-static void add_device(const config_t *config, const station_t *station, json_t *json)
+static void add_device(const publish_settings_t *settings, const sensor_t *sensor, json_t *json)
 {
     char id[ID];
     char name[TOPIC];
-    device_id(config, station, id);
-    (void)snprintf(name, sizeof name, "%s %s", config->site, station->name);
+    device_id(settings, sensor, id);
+    (void)snprintf(name, sizeof name, "%s %s", settings->site, sensor->name);
     json_begin(json, "device", '{');
     json_begin(json, "identifiers", '[');
     json_string(json, NULL, id);
     json_end(json, ']');
     json_string(json, "name", name);
-    json_string(json, "model", station->model->name);
+    json_string(json, "model", sensor->model->name);
     json_end(json, '}');
     json_begin(json, "origin", '{');
     json_string(json, "name", "fathom");
@@ -135,9 +133,9 @@ static void add_device(const config_t *config, const station_t *station, json_t 
 }
 
 /* A contact reports near or far as words. */
-static void add_value(const station_t *station, entity_t entity, json_t *json)
+static void add_value(const sensor_t *sensor, entity_t entity, json_t *json)
 {
-    if (entity == ENTITY_DISTANCE && is_contact(station)) {
+    if (entity == ENTITY_DISTANCE && sensor_is_contact(sensor)) {
         json_string(json, "value_template", "{{ value_json.status }}");
         return;
     }
@@ -149,31 +147,31 @@ static void add_value(const station_t *station, entity_t entity, json_t *json)
     json_string(json, "state_class", "measurement");
 }
 
-void discovery_payload(const config_t *config, const station_t *station, unsigned bit,
+void discovery_payload(const publish_settings_t *settings, const sensor_t *sensor, unsigned bit,
                        char text[DISCOVERY_TEXT])
 {
     const entity_t entity = bit % ENTITIES;
-    const bool is_word = entity == ENTITY_DISTANCE && is_contact(station);
+    const bool is_word = entity == ENTITY_DISTANCE && sensor_is_contact(sensor);
     char id[ID];
     char topic[TOPIC];
     char name[ID];
     json_t json = {.to = fmemopen(text, DISCOVERY_TEXT, "w")};
     text[0] = '\0';
     if (json.to == NULL) return;
-    entity_id(config, station, bit, id);
-    topic_of_probe(config, station, probe_of(bit), entities[entity].topic, topic);
-    (void)snprintf(name, sizeof name, topic_has_probes(station) ? "%s %u" : "%s",
+    entity_id(settings, sensor, bit, id);
+    topic_of_probe(settings, sensor, probe_of(bit), entities[entity].topic, topic);
+    (void)snprintf(name, sizeof name, topic_has_probes(sensor) ? "%s %u" : "%s",
                    is_word ? "contact" : entities[entity].name, probe_of(bit));
     json_begin(&json, NULL, '{');
     json_string(&json, "name", name);
     json_string(&json, "unique_id", id);
     json_string(&json, "state_topic", topic);
     json_value(&json, "qos", "1");
-    add_value(station, entity, &json);
+    add_value(sensor, entity, &json);
     /* Only the changes of an alarm are published. */
-    if (entity != ENTITY_ALARM) json_value(&json, "expire_after", "%" PRIu32, expire_s(station));
-    add_availability(config, station, &json);
-    add_device(config, station, &json);
+    if (entity != ENTITY_ALARM) json_value(&json, "expire_after", "%" PRIu32, expire_s(sensor));
+    add_availability(settings, sensor, &json);
+    add_device(settings, sensor, &json);
     json_end(&json, '}');
     (void)fclose(json.to);
 }

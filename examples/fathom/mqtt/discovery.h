@@ -4,10 +4,10 @@
 
 #include "mqtt/topics.h"
 
-/* Home Assistant's discovery messages: retained, one for each of its entities, which it finds by them.
+/* Home Assistant's discovery messages: one for each entity, retained.
  * https://www.home-assistant.io/integrations/mqtt/#mqtt-discovery */
 
-/* What a probe is for Home Assistant; several may be told by one topic. */
+/* What Home Assistant shows of a probe. Several of them may have one topic. */
 typedef enum {
     ENTITY_DISTANCE,
     ENTITY_TEMPERATURE,
@@ -19,13 +19,13 @@ typedef enum {
 
 enum { DISCOVERY_BITS = FATHOM_DYP_PROBES * ENTITIES, DISCOVERY_TOPIC = 512, DISCOVERY_TEXT = 3072 };
 
-/* Which there are of this sensor: bits ENTITIES * (probe - 1) + entity; none where discovery is off. */
-uint32_t discovery_all(const config_t *config, const station_t *station, const results_config_t *results);
+/* Returns the entities of this sensor: bits ENTITIES * (probe - 1) + entity; 0 if discovery is off. */
+uint32_t discovery_all(const publish_settings_t *settings, const sensor_t *sensor);
 
-/* Of one of these bits. */
-void discovery_topic(const config_t *config, const station_t *station, unsigned bit,
+/* The message of one of these bits. */
+void discovery_topic(const publish_settings_t *settings, const sensor_t *sensor, unsigned bit,
                      char text[DISCOVERY_TOPIC]);
-void discovery_payload(const config_t *config, const station_t *station, unsigned bit,
+void discovery_payload(const publish_settings_t *settings, const sensor_t *sensor, unsigned bit,
                        char text[DISCOVERY_TEXT]);
 
 #endif

@@ -2,130 +2,104 @@
 #include "mqtt/publisher.h"
 
 #include <inttypes.h>
+#include <stdlib.h>
 #include <string.h>
 
-#include "cli/command.h"
 #include "mqtt/discovery.h"
 
+/* Failures in a row after which a sensor is away; the least time between two messages about the publisher. */
 enum { FAILURES = 3, NEWS_US = 1000000 };
 
 static uint64_t now_us(const publisher_t *publisher) { return publisher->host->now_us(publisher->host->ctx); }
 
-/* ---- what is retained ---- */
-
-static bool send_status(publisher_t *publisher)
+static void print(void *ctx, const char *text)
 {
-    char topic[TOPIC];
-    topic_of_site(publisher->config, "status", topic);
-    publisher->has_status = !broker_send(&publisher->broker, topic, "online", true);
-    return true;
+    (void)ctx;
+    (void)fprintf(stderr, "fathom: %s\n", text);
 }
 
-static bool send_deletion(publisher_t *publisher)
+/* ---- retained messages ---- */
+
+static void send_retained(publisher_t *publisher, stream_t *stream, const char *payload)
 {
-    char topic[DISCOVERY_TOPIC];
-    (void)snprintf(topic, sizeof topic, "%s", publisher->gone->topic);
-    if (broker_send(&publisher->broker, topic, "", true)) retained_remove(&publisher->gone, topic);
-    return true;
+    if (!broker_send(&publisher->broker, stream->topic, payload, true)) return;
+    stream->is_due = false;
+    stream->is_known = true;
 }
 
-static bool send_discovery(publisher_t *publisher, publisher_sensor_t *sensor)
+static void send_deletion(publisher_t *publisher, stream_t *stream)
 {
-    char topic[DISCOVERY_TOPIC];
+    if (!broker_send(&publisher->broker, stream->topic, "", true)) return;
+    stream->is_known = false;
+    stream->is_due = true;
+}
+
+static void send_discovery(publisher_t *publisher, stream_t *stream)
+{
     char payload[DISCOVERY_TEXT];
-    unsigned bit = 0;
-    if (sensor->undiscovered == 0) return false;
-    while ((sensor->undiscovered >> bit & 1) == 0) bit++;
-    discovery_topic(publisher->config, sensor->station, bit, topic);
-    discovery_payload(publisher->config, sensor->station, bit, payload);
-    if (broker_send(&publisher->broker, topic, payload, true)) sensor->undiscovered &= ~(UINT32_C(1) << bit);
-    return true;
+    discovery_payload(publisher->settings, stream->sensor, stream->bit, payload);
+    send_retained(publisher, stream, payload);
 }
 
-static bool send_availability(publisher_t *publisher, publisher_sensor_t *sensor)
+static void send_availability(publisher_t *publisher, stream_t *stream)
 {
-    char topic[TOPIC];
-    if (!sensor->has_news) return false;
-    topic_of_sensor(publisher->config, sensor->station, "availability", topic);
-    sensor->has_news =
-        !broker_send(&publisher->broker, topic, sensor->is_available ? "online" : "offline", true);
-    return true;
+    const publisher_sensor_t *const sensor = &publisher->sensors[stream->sensor->number];
+    send_retained(publisher, stream, sensor->is_available ? "online" : "offline");
 }
 
-/* The first sensor that has one of these to be sent. */
-static bool send_first(publisher_t *publisher,
-                       bool (*send)(publisher_t *publisher, publisher_sensor_t *sensor))
+static void print_dropped(publisher_t *publisher, uint64_t dropped)
 {
-    for (size_t slot = 0; slot != STATION_SLOTS; slot++)
-        if (publisher->sensors[slot].station != NULL && send(publisher, &publisher->sensors[slot]))
-            return true;
-    return false;
+    (void)fprintf(stderr,
+                  "fathom: the queue was full: %" PRIu64 " messages were dropped, %" PRIu64
+                  " since the start\n",
+                  dropped - publisher->printed_dropped, dropped);
+    publisher->printed_dropped = dropped;
 }
 
 static bool has_counters(const publisher_t *publisher)
 {
-    const bool is_due = publisher->told_us == 0 || now_us(publisher) - publisher->told_us >= NEWS_US;
-    return is_due && publisher->queue.dropped != publisher->told_dropped;
-}
-
-static void tell_dropped(publisher_t *publisher, uint64_t dropped)
-{
-    (void)fprintf(stderr,
-                  "fathom: the queue was full: %" PRIu64 " messages were dropped, %" PRIu64
-                  " since the begin\n",
-                  dropped - publisher->said_dropped, dropped);
-    publisher->said_dropped = dropped;
+    const bool is_due = publisher->sent_us == 0 || now_us(publisher) - publisher->sent_us >= NEWS_US;
+    return is_due && publisher->queue.dropped != publisher->sent_dropped;
 }
 
 static bool send_counters(publisher_t *publisher)
 {
     char topic[TOPIC];
     char payload[STATE_TEXT];
-    size_t sensors = 0;
-    for (size_t slot = 0; slot != STATION_SLOTS; slot++)
-        if (publisher->sensors[slot].station != NULL) sensors++;
     const publisher_state_t state = {publisher->boot,
                                      publisher->host->utc_us(publisher->host->ctx),
                                      now_us(publisher) - publisher->start_us,
                                      publisher->queue.dropped,
                                      publisher->queue.count,
-                                     sensors};
-    topic_of_site(publisher->config, "publisher", topic);
+                                     publisher->sensor_count};
+    topic_of_site(publisher->settings, "publisher", topic);
     state_of_publisher(&state, payload);
     if (!broker_send(&publisher->broker, topic, payload, true)) return false;
-    if (state.dropped > publisher->said_dropped) tell_dropped(publisher, state.dropped);
-    publisher->told_dropped = state.dropped;
-    publisher->told_us = now_us(publisher);
+    if (state.dropped > publisher->printed_dropped) print_dropped(publisher, state.dropped);
+    publisher->sent_dropped = state.dropped;
+    publisher->sent_us = now_us(publisher);
     return true;
 }
 
-/* Who has just connected is told all of it, whatever the broker still knows. */
-static void take_connected(void *ctx)
-{
-    publisher_t *const publisher = ctx;
-    for (size_t slot = 0; slot != STATION_SLOTS; slot++) {
-        publisher_sensor_t *const sensor = &publisher->sensors[slot];
-        if (sensor->station == NULL) continue;
-        sensor->has_news = true;
-        sensor->undiscovered = sensor->discovered;
-    }
-    publisher->has_status = true;
-    publisher->has_facts = true;
-    publisher->told_us = 0;
-    publisher->told_dropped = UINT64_MAX;
-}
+/* ---- one message after another ---- */
 
-/* ---- one after another ---- */
-
+/* True: a message was sent, or will be. */
 static bool send_fact(publisher_t *publisher)
 {
-    if (publisher->has_status) return send_status(publisher);
-    if (publisher->gone != NULL) return send_deletion(publisher);
-    if (has_counters(publisher) && send_counters(publisher)) return true;
-    if (!publisher->has_facts) return false;
-    if (send_first(publisher, send_discovery) || send_first(publisher, send_availability)) return true;
-    publisher->has_facts = false;
-    return false;
+    const streams_t *const streams = &publisher->streams;
+    stream_t *stream = NULL;
+    if (publisher->has_facts && (stream = streams_due(streams, STREAM_STATUS)) != NULL)
+        send_retained(publisher, stream, "online");
+    else if (publisher->has_facts && (stream = streams_gone(streams)) != NULL)
+        send_deletion(publisher, stream);
+    else if (has_counters(publisher) && send_counters(publisher))
+        return true;
+    else if (publisher->has_facts && (stream = streams_due(streams, STREAM_DISCOVERY)) != NULL)
+        send_discovery(publisher, stream);
+    else if (publisher->has_facts && (stream = streams_due(streams, STREAM_AVAILABILITY)) != NULL)
+        send_availability(publisher, stream);
+    publisher->has_facts = stream != NULL;
+    return publisher->has_facts;
 }
 
 static bool send_message(publisher_t *publisher)
@@ -133,206 +107,229 @@ static bool send_message(publisher_t *publisher)
     message_t message;
     char text[STATE_TEXT];
     if (!queue_take(&publisher->queue, &message, text)) return false;
-    state_finish(text, now_us(publisher) - message.time_us, message.stream->dropped);
-    if (broker_send(&publisher->broker, message.stream->topic, text, message.stream->is_retained))
+    stream_t *const stream = message.stream;
+    /* A deleted topic must not come back. */
+    if (stream->is_retained && !stream->is_wanted) return true;
+    state_finish(text, now_us(publisher) - message.time_us, stream->dropped);
+    if (broker_send(&publisher->broker, stream->topic, text, stream->is_retained)) {
+        stream->is_known = true;
         return true;
-    message.stream->dropped++;
+    }
+    stream->dropped++;
     publisher->queue.dropped++;
     return true;
 }
 
-/* As much as the broker takes. */
+/* As many as the broker accepts. */
 static void send_next(publisher_t *publisher)
 {
     for (unsigned turn = 0; turn != BROKER_WINDOW && broker_is_free(&publisher->broker); turn++)
         if (!send_fact(publisher) && !send_message(publisher)) return;
 }
 
-static void take_acknowledged(void *ctx) { send_next(ctx); }
-
-static void take_lost(void *ctx) { (void)ctx; }
-
-static void tell(void *ctx, const char *text)
+static void send_counters_soon(publisher_t *publisher)
 {
-    (void)ctx;
-    (void)fprintf(stderr, "fathom: %s\n", text);
+    publisher->sent_us = 0;
+    publisher->sent_dropped = UINT64_MAX;
 }
 
-/* ---- what is measured ---- */
+static void on_connected(void *ctx)
+{
+    publisher_t *const publisher = ctx;
+    streams_repeat(&publisher->streams);
+    publisher->has_facts = true;
+    send_counters_soon(publisher);
+}
 
-static void put(publisher_t *publisher, state_t *state, topic_t topic, uint8_t probe, uint64_t time_us)
+static void on_acknowledged(void *ctx) { send_next(ctx); }
+
+/* ---- readings ---- */
+
+static void put(publisher_t *publisher, const reading_t *reading, topic_t topic, uint8_t probe)
 {
     char text[QUEUE_TEXT];
-    stream_t *const stream = publisher->sensors[state->station->slot].streams[probe - 1][topic];
+    stream_t *const stream = publisher->sensors[reading->sensor->number].streams[probe - 1][topic];
     if (stream == NULL) return;
-    state->boot = publisher->boot;
-    state->seq = ++stream->seq;
-    const message_t message = {stream, time_us, state_begin(state, topic, text)};
+    const uint32_t length = state_begin(reading, topic, publisher->boot, ++stream->seq, text);
+    const message_t message = {stream, publisher->start_us + reading->time_us, length};
     queue_put(&publisher->queue, &message, text);
     send_next(publisher);
 }
 
-/* True: that is new. */
-static bool set_away(publisher_t *publisher, const station_t *station, bool is_away)
+/* Returns true if that is new. */
+static bool set_away(publisher_t *publisher, publisher_sensor_t *sensor, bool is_away)
 {
-    publisher_sensor_t *const sensor = &publisher->sensors[station->slot];
     const bool is_new = sensor->is_away != is_away;
     sensor->is_away = is_away;
     if (sensor->is_available != is_away) return is_new;
     sensor->is_available = !is_away;
-    sensor->has_news = true;
+    sensor->availability->is_due = true;
     publisher->has_facts = true;
     send_next(publisher);
     return is_new;
 }
 
-static uint64_t utc_of(const publisher_t *publisher, uint64_t time_us)
+static void put_reading(publisher_t *publisher, publisher_sensor_t *sensor, const reading_t *reading)
 {
-    const host_t *const host = publisher->host;
-    return host->utc_us(host->ctx) - (now_us(publisher) - time_us);
+    const uint8_t probe = topic_has_probes(reading->sensor) ? reading->result->sample.probe : 1;
+    if (reading->result->alarm != 0) {
+        put(publisher, reading, TOPIC_ALARM, probe);
+        return;
+    }
+    sensor->failures = 0;
+    (void)set_away(publisher, sensor, false);
+    put(publisher, reading, TOPIC_STATE, probe);
+    put(publisher, reading, TOPIC_LEVEL, probe);
 }
 
-bool publisher_result(publisher_t *publisher, const station_t *station, const result_t *result,
-                      uint64_t time_us)
+/* A sensor that sends by itself and whose frames are all damaged sent no reading within its time-out. */
+static bool is_grave(const reading_t *reading)
 {
-    const uint8_t probe = topic_has_probes(station) ? result->sample.probe : 1;
-    state_t state = {.station = station, .result = result, .utc_us = utc_of(publisher, time_us)};
-    if (result->alarm != 0) {
-        put(publisher, &state, TOPIC_ALARM, probe, time_us);
+    return reading->status == FATHOM_ERR_PORT || reading->status == FATHOM_ERR_STALE ||
+           (reading->status == FATHOM_ERR_CHECKSUM && !mode_is_asked(reading->sensor->mode));
+}
+
+bool publisher_reading(publisher_t *publisher, const reading_t *reading)
+{
+    publisher_sensor_t *const sensor = &publisher->sensors[reading->sensor->number];
+    const uint8_t probe = reading->result->sample.probe; /* 0: the failure is of all probes */
+    if (reading->failure == NULL) {
+        put_reading(publisher, sensor, reading);
         return false;
     }
-    publisher->sensors[station->slot].failures = 0;
-    const bool is_new = set_away(publisher, station, false);
-    put(publisher, &state, TOPIC_STATE, probe, time_us);
-    put(publisher, &state, TOPIC_LEVEL, probe, time_us);
-    return is_new;
-}
-
-bool publisher_failure(publisher_t *publisher, const station_t *station, const char *word, uint8_t probe,
-                       bool is_grave)
-{
-    const uint64_t time_us = now_us(publisher);
-    const result_t none = {.has_level = false};
-    state_t state = {.station = station,
-                     .result = &none,
-                     .failure = word,
-                     .utc_us = publisher->host->utc_us(publisher->host->ctx)};
-    publisher_sensor_t *const sensor = &publisher->sensors[station->slot];
     if (sensor->failures != FAILURES) sensor->failures++;
-    const bool is_new = (is_grave || sensor->failures == FAILURES) && set_away(publisher, station, true);
+    const bool is_away = is_grave(reading) || sensor->failures == FAILURES;
+    const bool is_new = is_away && set_away(publisher, sensor, true);
     for (uint8_t i = 1; i <= FATHOM_DYP_PROBES; i++) {
-        if (!topic_wants_probe(station, i) || (probe != 0 && topic_has_probes(station) && probe != i))
-            continue;
-        put(publisher, &state, TOPIC_STATE, i, time_us);
-        put(publisher, &state, TOPIC_LEVEL, i, time_us);
+        if (!sensor_has_probe(reading->sensor, i)) continue;
+        if (probe != 0 && topic_has_probes(reading->sensor) && probe != i) continue;
+        put(publisher, reading, TOPIC_STATE, i);
+        put(publisher, reading, TOPIC_LEVEL, i);
     }
     return is_new;
 }
 
-/* ---- begin and end ---- */
+/* ---- the sensors ---- */
 
-bool publisher_add(publisher_t *publisher, const station_t *station)
+static bool want_of_site(publisher_t *publisher, const char *word, stream_kind_t kind)
 {
-    publisher_sensor_t *const sensor = &publisher->sensors[station->slot];
-    if (sensor->station != station) memset(sensor, 0, sizeof *sensor);
-    memset(sensor->streams, 0, sizeof sensor->streams);
+    char topic[TOPIC];
+    topic_of_site(publisher->settings, word, topic);
+    return streams_want(&publisher->streams, topic, kind, NULL) != NULL;
+}
+
+static bool want_readings(publisher_t *publisher, publisher_sensor_t *sensor)
+{
     for (uint8_t probe = 1; probe <= FATHOM_DYP_PROBES; probe++)
         for (topic_t topic = 0; topic != TOPICS; topic++) {
             char text[TOPIC];
-            if (!topic_wants_probe(station, probe) ||
-                !topic_is_there(&publisher->results[station->slot], topic))
-                continue;
-            topic_of_probe(publisher->config, station, probe, topic, text);
-            stream_t *const stream = streams_get(&publisher->streams, text);
+            if (!sensor_has_probe(sensor->sensor, probe) || !topic_is_there(sensor->sensor, topic)) continue;
+            topic_of_probe(publisher->settings, sensor->sensor, probe, topic, text);
+            stream_t *const stream = streams_want(&publisher->streams, text, STREAM_READINGS, sensor->sensor);
             if (stream == NULL) return false;
             stream->is_retained = topic == TOPIC_ALARM;
             sensor->streams[probe - 1][topic] = stream;
         }
-    sensor->station = station;
-    sensor->discovered = discovery_all(publisher->config, station, &publisher->results[station->slot]);
-    sensor->undiscovered = sensor->discovered;
-    sensor->has_news = true;
-    publisher->has_facts = true;
     return true;
 }
 
-bool publisher_begin(publisher_t *publisher, const host_t *host, const config_t *config,
-                     config_results_t results)
+static bool want_discovery(publisher_t *publisher, const sensor_t *sensor)
+{
+    const uint32_t all = discovery_all(publisher->settings, sensor);
+    for (unsigned bit = 0; bit != DISCOVERY_BITS; bit++) {
+        char topic[DISCOVERY_TOPIC];
+        if ((all >> bit & 1) == 0) continue;
+        discovery_topic(publisher->settings, sensor, bit, topic);
+        stream_t *const stream = streams_want(&publisher->streams, topic, STREAM_DISCOVERY, sensor);
+        if (stream == NULL) return false;
+        stream->bit = bit;
+    }
+    return true;
+}
+
+/* before: what was known of the sensor with this name; NULL: nothing. */
+static bool want_sensor(publisher_t *publisher, publisher_sensor_t *sensor, const publisher_sensor_t *before)
+{
+    char topic[TOPIC];
+    if (before != NULL) {
+        sensor->failures = before->failures;
+        sensor->is_available = before->is_available;
+        sensor->is_away = before->is_away;
+    }
+    (void)snprintf(sensor->name, sizeof sensor->name, "%s", sensor->sensor->name);
+    topic_of_sensor(publisher->settings, sensor->sensor, "availability", topic);
+    sensor->availability = streams_want(&publisher->streams, topic, STREAM_AVAILABILITY, sensor->sensor);
+    return sensor->availability != NULL && want_readings(publisher, sensor) &&
+           want_discovery(publisher, sensor->sensor);
+}
+
+static const publisher_sensor_t *find(const publisher_sensor_t *sensors, size_t count, const char *name)
+{
+    for (size_t i = 0; i != count; i++)
+        if (strcmp(sensors[i].name, name) == 0) return &sensors[i];
+    return NULL;
+}
+
+/* Names all streams anew. */
+static bool set_sensors(publisher_t *publisher, const site_t *site)
+{
+    publisher_sensor_t *const before = publisher->sensors;
+    const size_t count = publisher->sensor_count;
+    publisher_sensor_t *const sensors = calloc(site->sensor_count, sizeof *sensors);
+    bool is_good = sensors != NULL;
+    if (!is_good) return false;
+    publisher->sensors = sensors;
+    publisher->sensor_count = site->sensor_count;
+    streams_forget(&publisher->streams);
+    is_good = want_of_site(publisher, "status", STREAM_STATUS) &&
+              want_of_site(publisher, "publisher", STREAM_COUNTERS);
+    for (size_t i = 0; i != site->sensor_count && is_good; i++) {
+        sensors[i].sensor = site->sensors[i];
+        is_good = want_sensor(publisher, &sensors[i], find(before, count, site->sensors[i]->name));
+    }
+    streams_clean(&publisher->streams);
+    free(before);
+    publisher->has_facts = true;
+    return is_good;
+}
+
+/* ---- start and end ---- */
+
+bool publisher_init(publisher_t *publisher, const host_t *host, const publish_settings_t *settings,
+                    const site_t *site, uint64_t start_us)
 {
     memset(publisher, 0, sizeof *publisher);
     publisher->host = host;
-    publisher->config = config;
-    publisher->results = results;
-    publisher->start_us = now_us(publisher);
+    publisher->settings = settings;
+    publisher->start_us = start_us;
     state_boot(publisher->boot);
-    if (queue_begin(&publisher->queue, config->queue_messages, config->queue_bytes)) return true;
-    tell(NULL, "there is no memory left for the queue; make bytes: less");
+    if (queue_begin(&publisher->queue, settings->queue_messages, settings->queue_bytes) &&
+        set_sensors(publisher, site))
+        return true;
+    print(NULL, "no memory left for the queue; choose a smaller number of bytes");
     return false;
 }
 
 bool publisher_connect(publisher_t *publisher, fathom_loop_t *loop)
 {
-    static const broker_user_t user = {take_connected, take_lost, take_acknowledged, tell};
+    static const broker_user_t user = {on_connected, on_acknowledged, print};
     char topic[TOPIC];
-    topic_of_site(publisher->config, "status", topic);
-    return broker_begin(&publisher->broker, publisher->host, loop, publisher->config, topic, &user,
-                        publisher);
+    topic_of_site(publisher->settings, "status", topic);
+    return broker_begin(&publisher->broker, publisher->host, loop, &publisher->settings->broker,
+                        publisher->settings->path, topic, &user, publisher);
 }
 
-/* ---- another config ---- */
-
-/* Of a sensor, and of each of its probes. */
-static bool each_of_sensor(publisher_t *publisher, size_t slot,
-                           bool (*take)(retained_t **list, const char *topic))
+bool publisher_change(publisher_t *publisher, const site_t *site, bool has_other_broker)
 {
-    const publisher_sensor_t *const sensor = &publisher->sensors[slot];
-    char topic[DISCOVERY_TOPIC];
-    topic_of_sensor(publisher->config, sensor->station, "availability", topic);
-    if (!take(&publisher->gone, topic)) return false;
-    for (size_t i = 0; i != FATHOM_DYP_PROBES * (size_t)TOPICS; i++) {
-        const stream_t *const stream = sensor->streams[i / TOPICS][i % TOPICS];
-        if (stream != NULL && stream->is_retained && !take(&publisher->gone, stream->topic)) return false;
-    }
-    for (unsigned bit = 0; bit != DISCOVERY_BITS; bit++) {
-        if ((sensor->discovered >> bit & 1) == 0) continue;
-        discovery_topic(publisher->config, sensor->station, bit, topic);
-        if (!take(&publisher->gone, topic)) return false;
-    }
-    return true;
-}
-
-static bool each_retained(publisher_t *publisher, bool (*take)(retained_t **list, const char *topic))
-{
+    const publish_settings_t *const settings = publisher->settings;
     char topic[TOPIC];
-    topic_of_site(publisher->config, "status", topic);
-    if (!take(&publisher->gone, topic)) return false;
-    topic_of_site(publisher->config, "publisher", topic);
-    if (!take(&publisher->gone, topic)) return false;
-    for (size_t slot = 0; slot != STATION_SLOTS; slot++)
-        if (publisher->sensors[slot].station != NULL && !each_of_sensor(publisher, slot, take)) return false;
+    topic_of_site(settings, "status", topic);
+    if (!set_sensors(publisher, site)) return false;
+    if (!queue_resize(&publisher->queue, settings->queue_messages, settings->queue_bytes))
+        print(NULL, "no memory left for another queue; the queue stays as it was");
+    send_counters_soon(publisher);
+    if (has_other_broker) broker_change(&publisher->broker, topic);
     return true;
-}
-
-static bool is_still_there(retained_t **list, const char *topic)
-{
-    retained_remove(list, topic);
-    return true;
-}
-
-bool publisher_begin_change(publisher_t *publisher) { return each_retained(publisher, retained_add); }
-
-void publisher_remove(publisher_t *publisher, size_t slot) { publisher->sensors[slot].station = NULL; }
-
-void publisher_end_change(publisher_t *publisher, bool is_other_broker)
-{
-    char topic[TOPIC];
-    topic_of_site(publisher->config, "status", topic);
-    (void)each_retained(publisher, is_still_there);
-    if (!queue_resize(&publisher->queue, publisher->config->queue_messages, publisher->config->queue_bytes))
-        tell(NULL, "there is no memory left for another queue; it stays as it was");
-    publisher->has_facts = true;
-    publisher->told_dropped = UINT64_MAX;
-    if (is_other_broker) broker_change(&publisher->broker, topic);
 }
 
 uint32_t publisher_tick(publisher_t *publisher)
@@ -344,43 +341,45 @@ uint32_t publisher_tick(publisher_t *publisher)
 
 void publisher_status(const publisher_t *publisher, char *text, size_t capacity)
 {
-    size_t sensors = 0;
     size_t away = 0;
-    for (size_t slot = 0; slot != STATION_SLOTS; slot++) {
-        if (publisher->sensors[slot].station == NULL) continue;
-        sensors++;
-        if (publisher->sensors[slot].is_away) away++;
-    }
-    (void)snprintf(text, capacity, "%zu sensors, %zu away; broker %s %s; dropped %" PRIu64, sensors, away,
-                   publisher->config->broker.host,
+    for (size_t i = 0; i != publisher->sensor_count; i++)
+        if (publisher->sensors[i].is_away) away++;
+    (void)snprintf(text, capacity, "%zu sensors, %zu away; broker %s %s; dropped %" PRIu64,
+                   publisher->sensor_count, away, publisher->settings->broker.host,
                    broker_is_connected(&publisher->broker) ? "connected" : "away", publisher->queue.dropped);
 }
 
-/* What still waits is sent, as far as that goes in END_US, and at last that it is offline. */
-static void say_goodbye(publisher_t *publisher)
+static bool wait_until_sent(publisher_t *publisher, uint64_t until_us)
 {
-    enum { END_US = 2000000, TURN_US = 100000 };
+    enum { TURN_US = 100000 };
     broker_t *const broker = &publisher->broker;
+    while (now_us(publisher) < until_us && !broker_is_idle(broker))
+        if (!broker_wait(broker, TURN_US)) return false;
+    return broker_is_connected(broker);
+}
+
+/* Sends what still waits, within END_US, and at last that the publisher is offline. */
+static void send_last(publisher_t *publisher)
+{
+    enum { END_US = 2000000 };
     const uint64_t until_us = now_us(publisher) + END_US;
     char topic[TOPIC];
     send_next(publisher);
-    while (now_us(publisher) < until_us && !broker_is_idle(broker))
-        if (!broker_wait(broker, TURN_US)) return;
-    if (!broker_is_connected(broker)) return;
-    topic_of_site(publisher->config, "status", topic);
-    if (!broker_send(broker, topic, "offline", true)) return;
+    if (!wait_until_sent(publisher, until_us)) return;
+    topic_of_site(publisher->settings, "status", topic);
+    if (!broker_send(&publisher->broker, topic, "offline", true)) return;
     /* Nothing more is sent when that is acknowledged. */
-    publisher->has_facts = publisher->has_status = false;
-    publisher->told_us = now_us(publisher);
-    while (now_us(publisher) < until_us && !broker_is_idle(broker))
-        if (!broker_wait(broker, TURN_US)) return;
+    publisher->has_facts = false;
+    publisher->sent_us = now_us(publisher);
+    (void)wait_until_sent(publisher, until_us);
 }
 
-void publisher_end(publisher_t *publisher)
+void publisher_deinit(publisher_t *publisher)
 {
-    say_goodbye(publisher);
+    send_last(publisher);
     broker_end(&publisher->broker);
     queue_end(&publisher->queue);
-    streams_end(&publisher->streams);
-    retained_end(&publisher->gone);
+    streams_free(&publisher->streams);
+    free(publisher->sensors);
+    publisher->sensors = NULL;
 }

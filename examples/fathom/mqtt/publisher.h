@@ -3,77 +3,61 @@
 #define PUBLISHER_H
 
 #include "mqtt/broker.h"
-#include "mqtt/retained.h"
 #include "mqtt/state.h"
 
 /*
- * What goes to the broker, and in which order. First what is retained, of which only the last word counts: that the publisher
- * is online, how the sensors are found, which of them are available, and the publisher's counters. Then the messages of the
- * queue, one after another.
+ * What is sent to the broker, and in which order. First the retained messages, of which only the last one counts: that the
+ * publisher is online, how Home Assistant finds the sensors, which of them are available, and the publisher's counters.
+ * Then the messages of the queue, one after another.
  */
 
-/* What is known of a sensor, by its station's slot. */
+/* What the publisher knows of a sensor. */
 typedef struct {
+    const sensor_t *sensor;
     stream_t *streams[FATHOM_DYP_PROBES][TOPICS];
-    const station_t *station; /* NULL: none is read there */
-    uint32_t discovered;      /* bits of discovery.h: what Home Assistant knows or gets to know, ... */
-    uint32_t undiscovered;    /* ... and is still to be told */
-    uint8_t failures;         /* in a row */
+    stream_t *availability;
+    uint8_t failures; /* in a row */
     bool is_available;
-    bool is_away;  /* by a failure; before the first reading it is neither */
-    bool has_news; /* that it is available, or is not */
+    bool is_away; /* because of a failure; before the first reading a sensor is neither away nor available */
+    char name[FULL_NAME_SIZE];
 } publisher_sensor_t;
 
 typedef struct {
-    const config_t *config;
-    results_config_t *results; /* by slot */
+    const publish_settings_t *settings;
     const host_t *host;
     uint64_t start_us;
     broker_t broker;
     queue_t queue;
     streams_t streams;
     char boot[BOOT];
-    publisher_sensor_t sensors[STATION_SLOTS];
-    retained_t *gone;      /* topics at which nothing is retained any more */
-    uint64_t told_dropped; /* in what was told of the publisher last, ... */
-    uint64_t told_us;      /* ... and when */
-    uint64_t said_dropped; /* on the standard error */
-    bool has_status;       /* "online" is still to be told */
-    bool has_facts;        /* there may be something before the queue */
+    publisher_sensor_t *sensors; /* by sensor_t.number */
+    size_t sensor_count;
+    uint64_t sent_dropped;    /* in the last message about the publisher, ... */
+    uint64_t sent_us;         /* ... and when it was sent */
+    uint64_t printed_dropped; /* on the standard error */
+    bool has_facts;           /* a retained message may be due */
 } publisher_t;
 
-/* config stays where it is. What is measured waits in the queue until publisher_connect was called. False after saying why. */
-bool publisher_begin(publisher_t *publisher, const host_t *host, const config_t *config,
-                     config_results_t results);
+/* *settings must stay valid. What is measured waits in the queue until publisher_connect() was called. start_us: of the
+ * loop. False: the user knows why. */
+bool publisher_init(publisher_t *publisher, const host_t *host, const publish_settings_t *settings,
+                    const site_t *site, uint64_t start_us);
 bool publisher_connect(publisher_t *publisher, fathom_loop_t *loop);
 
-/* For each station that is read. False: there is no memory left. */
-bool publisher_add(publisher_t *publisher, const station_t *station);
+/* The sensors are those of this site from now on, and *settings changed. Retained topics that are not used any more are
+ * deleted. False: no memory left. */
+bool publisher_change(publisher_t *publisher, const site_t *site, bool has_other_broker);
 
-/*
- * The config is about to be another one: to be called with the one before, then with the other, of which all stations that are
- * read have been added, and removed what are not read any more. What is retained and told no more is deleted.
- */
-bool publisher_begin_change(publisher_t *publisher);
-void publisher_remove(publisher_t *publisher, size_t slot);
-void publisher_end_change(publisher_t *publisher, bool is_other_broker);
+/* Publishes what the loop reports. Returns true if the sensor was not away before this failure. */
+bool publisher_reading(publisher_t *publisher, const reading_t *reading);
 
-/* A reading, or a change of an alarm. True: its sensor was away, and is not any more. */
-bool publisher_result(publisher_t *publisher, const station_t *station, const result_t *result,
-                      uint64_t time_us);
-
-/* An attempt that has failed, or is not even made since the port is away. word: of status_word.h; probe: 0: it is not of one
- * alone. is_grave: the sensor is not available any more; else it is not after a few in a row. True: it was not away before. */
-bool publisher_failure(publisher_t *publisher, const station_t *station, const char *word, uint8_t probe,
-                       bool is_grave);
-
-/* From outside of the loop's steps, before each sleep. Returns how long that may take. */
+/* Call it before each sleep, outside of a step of the loop. Returns the longest time to sleep in us. */
 uint32_t publisher_tick(publisher_t *publisher);
 
-/* How things are, in a line. */
+/* The state of the publisher in a line. */
 void publisher_status(const publisher_t *publisher, char *text, size_t capacity);
 
-/* Tells that it goes offline, if it can, and waits a little for that. */
-void publisher_end(publisher_t *publisher);
+/* Publishes that the publisher is offline, if it can, and waits a little for that. */
+void publisher_deinit(publisher_t *publisher);
 
 #endif

@@ -4,7 +4,7 @@
 
 #include <stddef.h>
 
-#include "commands/publish/streams.h"
+#include "mqtt/streams.h"
 
 /* Messages that wait for the broker, the oldest first. It has room for so many messages and so many bytes; where one more
  * does not fit, the oldest are dropped, and counted in their streams. One piece of memory, of which pages that were never

@@ -19,34 +19,24 @@ void state_boot(char boot[BOOT])
     (void)snprintf(boot, BOOT, "%016" PRIx64, number);
 }
 
-/* Columns of reading/fields.h that a topic has. */
-static uint8_t columns_of(const state_t *state, topic_t topic)
+static unsigned columns_of(const sensor_t *sensor, topic_t topic)
 {
     if (topic == TOPIC_ALARM) return COLUMNS_ALARM | COLUMNS_DISTANCE;
     if (topic == TOPIC_LEVEL) return COLUMNS_READING | COLUMNS_LEVEL;
-    const bool has_temperature = state->station->settings.temperature_us != 0;
-    return COLUMNS_READING | COLUMNS_DISTANCE | (has_temperature ? COLUMNS_TEMPERATURE : 0);
+    return COLUMNS_READING | COLUMNS_DISTANCE |
+           (sensor->settings.temperature_us != 0 ? COLUMNS_TEMPERATURE : 0);
 }
 
-uint32_t state_begin(const state_t *state, topic_t topic, char text[QUEUE_TEXT])
+uint32_t state_begin(const reading_t *reading, topic_t topic, const char *boot, uint64_t seq,
+                     char text[QUEUE_TEXT])
 {
-    const station_t *const station = state->station;
-    const reading_t reading = {.model = station->model,
-                               .mode = station->mode,
-                               .reader = station->reader,
-                               .name = station->name,
-                               .failure = state->failure,
-                               .result = state->result,
-                               .sample = &state->result->sample,
-                               .utc_us = state->utc_us,
-                               .own = columns_of(state, topic)};
     json_t json = {.to = fmemopen(text, QUEUE_TEXT, "w")};
     text[0] = '\0';
     if (json.to == NULL) return 0;
     json_begin(&json, NULL, '{');
-    reading_json(&json, &reading);
-    json_string(&json, "boot", state->boot);
-    json_value(&json, "seq", "%" PRIu64, state->seq);
+    reading_json(&json, reading, columns_of(reading->sensor, topic));
+    json_string(&json, "boot", boot);
+    json_value(&json, "seq", "%" PRIu64, seq);
     (void)fclose(json.to);
     return (uint32_t)strlen(text);
 }

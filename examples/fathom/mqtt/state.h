@@ -4,33 +4,25 @@
 
 #include "mqtt/queue.h"
 #include "mqtt/topics.h"
+#include "reading/reading.h"
 
-/* What is published, as JSON. A message is written in two parts: what was measured, when it is put into the queue; and how old
- * that is and how many were dropped before it, when it leaves. */
+/* What is published, as JSON. A message is written in two parts: the reading, when it is put into the queue; and the age
+ * of the reading and the number of messages that were dropped before it, when it is sent. */
 
-/* The program's start, as 16 hexadecimal digits; drawn at random. */
+/* A random number of 16 hexadecimal digits for each start of the program. */
 enum { BOOT = 17 };
 void state_boot(char boot[BOOT]);
 
-/* A reading, a change of an alarm, or an attempt that has failed, of one probe. */
-typedef struct {
-    const station_t *station;
-    const result_t *result;
-    const char *failure; /* a word of status_word.h; NULL: it has not failed */
-    uint64_t utc_us;     /* when */
-    const char *boot;
-    uint64_t seq;
-} state_t;
-
 enum { STATE_TEXT = QUEUE_TEXT + 64 };
 
-/* The first part, without an end. Its length. */
-uint32_t state_begin(const state_t *state, topic_t topic, char text[QUEUE_TEXT]);
+/* Writes the first part, without an end. Returns its length. */
+uint32_t state_begin(const reading_t *reading, topic_t topic, const char *boot, uint64_t seq,
+                     char text[QUEUE_TEXT]);
 
 /* Adds the second part. */
 void state_finish(char text[STATE_TEXT], uint64_t age_us, uint64_t dropped);
 
-/* All that is told of the publisher itself. */
+/* The state of the publisher itself. */
 typedef struct {
     const char *boot;
     uint64_t utc_us;

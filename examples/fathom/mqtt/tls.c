@@ -15,17 +15,17 @@ static int verify(X509_STORE_CTX *certificate, void *ctx)
     return result;
 }
 
-static bool take_authorities(SSL_CTX *ssl, const broker_config_t *config)
+static bool take_authorities(SSL_CTX *ssl, const broker_settings_t *settings)
 {
-    if (config->ca_file[0] == '\0') return SSL_CTX_set_default_verify_paths(ssl) == 1;
-    return SSL_CTX_load_verify_locations(ssl, config->ca_file, NULL) == 1;
+    if (settings->ca_file[0] == '\0') return SSL_CTX_set_default_verify_paths(ssl) == 1;
+    return SSL_CTX_load_verify_locations(ssl, settings->ca_file, NULL) == 1;
 }
 
-static bool take_own(SSL_CTX *ssl, const broker_config_t *config)
+static bool take_own(SSL_CTX *ssl, const broker_settings_t *settings)
 {
-    return config->certificate_file[0] == '\0' ||
-           (SSL_CTX_use_certificate_chain_file(ssl, config->certificate_file) == 1 &&
-            SSL_CTX_use_PrivateKey_file(ssl, config->key_file, SSL_FILETYPE_PEM) == 1 &&
+    return settings->certificate_file[0] == '\0' ||
+           (SSL_CTX_use_certificate_chain_file(ssl, settings->certificate_file) == 1 &&
+            SSL_CTX_use_PrivateKey_file(ssl, settings->key_file, SSL_FILETYPE_PEM) == 1 &&
             SSL_CTX_check_private_key(ssl) == 1);
 }
 
@@ -37,15 +37,15 @@ static bool take_name(SSL_CTX *ssl, const char *host)
            X509_VERIFY_PARAM_set1_host(param, host, 0) == 1;
 }
 
-static bool set_up(SSL_CTX *ssl, const broker_config_t *config, char *reason, size_t capacity)
+static bool set_up(SSL_CTX *ssl, const broker_settings_t *settings, char *reason, size_t capacity)
 {
     const char *what = NULL;
-    if (!take_authorities(ssl, config))
-        what = config->ca_file[0] != '\0' ? config->ca_file : "the system's authorities";
-    else if (!take_own(ssl, config))
-        what = config->certificate_file;
-    else if (!take_name(ssl, config->host) || SSL_CTX_set_min_proto_version(ssl, TLS1_2_VERSION) != 1)
-        what = config->host;
+    if (!take_authorities(ssl, settings))
+        what = settings->ca_file[0] != '\0' ? settings->ca_file : "the system's authorities";
+    else if (!take_own(ssl, settings))
+        what = settings->certificate_file;
+    else if (!take_name(ssl, settings->host) || SSL_CTX_set_min_proto_version(ssl, TLS1_2_VERSION) != 1)
+        what = settings->host;
     if (what == NULL) return true;
     const char *const error = ERR_reason_error_string(ERR_peek_last_error());
     (void)snprintf(reason, capacity, "%s cannot be used: %s", what,
@@ -54,14 +54,15 @@ static bool set_up(SSL_CTX *ssl, const broker_config_t *config, char *reason, si
     return false;
 }
 
-bool tls_set(struct mosquitto *mosq, const broker_config_t *config, int *error, char *reason, size_t capacity)
+bool tls_set(struct mosquitto *mosq, const broker_settings_t *settings, int *error, char *reason,
+             size_t capacity)
 {
     SSL_CTX *const ssl = SSL_CTX_new(TLS_client_method());
     (void)snprintf(reason, capacity, "there is no memory left");
     if (ssl == NULL) return false;
     SSL_CTX_set_verify(ssl, SSL_VERIFY_PEER, NULL);
     SSL_CTX_set_cert_verify_callback(ssl, verify, error);
-    const bool is_good = set_up(ssl, config, reason, capacity) &&
+    const bool is_good = set_up(ssl, settings, reason, capacity) &&
                          mosquitto_int_option(mosq, MOSQ_OPT_SSL_CTX_WITH_DEFAULTS, 0) == MOSQ_ERR_SUCCESS &&
                          mosquitto_void_option(mosq, MOSQ_OPT_SSL_CTX, ssl) == MOSQ_ERR_SUCCESS;
     SSL_CTX_free(ssl); /* libmosquitto has a reference of its own */

@@ -1,47 +1,43 @@
 /* SPDX-License-Identifier: MIT */
 #include "mqtt/topics.h"
 
-const char *const topic_words[TOPICS] = {
+#include <stdio.h>
+
+static const char *const words[TOPICS] = {
     [TOPIC_STATE] = "state",
     [TOPIC_LEVEL] = "level",
     [TOPIC_ALARM] = "alarm",
 };
 
-void topic_of_site(const config_t *config, const char *word, char text[TOPIC])
+void topic_of_site(const publish_settings_t *settings, const char *word, char text[TOPIC])
 {
-    (void)snprintf(text, TOPIC, "%s/%s/%s", config->prefix, config->site, word);
+    (void)snprintf(text, TOPIC, "%s/%s/%s", settings->prefix, settings->site, word);
 }
 
-void topic_of_sensor(const config_t *config, const station_t *station, const char *word, char text[TOPIC])
+void topic_of_sensor(const publish_settings_t *settings, const sensor_t *sensor, const char *word,
+                     char text[TOPIC])
 {
-    (void)snprintf(text, TOPIC, "%s/%s/%.31s/%s", config->prefix, config->site, station->name, word);
+    (void)snprintf(text, TOPIC, "%s/%s/%.31s/%s", settings->prefix, settings->site, sensor->name, word);
 }
 
-void topic_of_probe(const config_t *config, const station_t *station, uint8_t probe, topic_t topic,
+void topic_of_probe(const publish_settings_t *settings, const sensor_t *sensor, uint8_t probe, topic_t topic,
                     char text[TOPIC])
 {
-    if (topic_has_probes(station))
-        (void)snprintf(text, TOPIC, "%s/%s/%.31s/%u/%s", config->prefix, config->site, station->name, probe,
-                       topic_words[topic]);
+    if (topic_has_probes(sensor))
+        (void)snprintf(text, TOPIC, "%s/%s/%.31s/%u/%s", settings->prefix, settings->site, sensor->name,
+                       probe, words[topic]);
     else
-        topic_of_sensor(config, station, topic_words[topic], text);
+        topic_of_sensor(settings, sensor, words[topic], text);
 }
 
-bool topic_has_probes(const station_t *station)
+bool topic_has_probes(const sensor_t *sensor)
 {
-    return station->model->probes > 1 && !station->mode->is_contact;
+    return sensor->model->probes > 1 && !sensor_is_contact(sensor);
 }
 
-bool topic_wants_probe(const station_t *station, uint8_t probe)
+bool topic_is_there(const sensor_t *sensor, topic_t topic)
 {
-    const uint8_t wanted = station->settings.probes;
-    if (!topic_has_probes(station)) return probe == 1;
-    return probe <= station->model->probes && (wanted == 0 || (wanted >> (probe - 1) & 1) != 0);
-}
-
-bool topic_is_there(const results_config_t *results, topic_t topic)
-{
-    if (topic == TOPIC_LEVEL) return results->has_level;
-    if (topic == TOPIC_ALARM) return results->has_alarm;
+    if (topic == TOPIC_LEVEL) return sensor->processing.has_level;
+    if (topic == TOPIC_ALARM) return sensor->processing.has_alarm;
     return true;
 }

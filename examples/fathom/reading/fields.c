@@ -49,24 +49,34 @@ static const field_t fields[] = {
 };
 #undef AT
 
-bool reading_is_contact(const reading_t *reading) { return reading->mode->is_contact; }
+unsigned sensor_columns(const sensor_t *sensor)
+{
+    const results_config_t *const processing = &sensor->processing;
+    const unsigned row = COLUMNS_ROW | COLUMNS_DISTANCE | (processing->has_level ? COLUMNS_LEVEL : 0);
+    if (processing->has_alarm) return COLUMNS_ALARM | row;
+    const bool has_temperature =
+        sensor->settings.temperature_us != 0 && (sensor->mode->takes & READER_TAKES_TEMPERATURE) != 0;
+    return COLUMNS_READING | row | (sensor->model->has_optics ? COLUMNS_OPTICS : 0) |
+           (has_temperature ? COLUMNS_TEMPERATURE : 0);
+}
 
 bool reading_has_probe(const reading_t *reading)
 {
-    return !reading_is_contact(reading) || reading->model->probes == 1;
+    return !sensor_is_contact(reading->sensor) || reading->sensor->model->probes == 1;
 }
 
 const char *reading_status(const reading_t *reading)
 {
-    return reading->failure != NULL ? reading->failure : status_word(reading->mode, reading->sample->kind);
+    return reading->failure != NULL ? reading->failure
+                                    : status_word(reading->sensor->mode, reading->result->sample.kind);
 }
 
 /* Values of a failed attempt are null. */
 static void fill_sample(row_t *row, const reading_t *reading)
 {
-    const fathom_sample_t *const sample = reading->sample;
+    const fathom_sample_t *const sample = &reading->result->sample;
     const bool is_good = reading->failure == NULL;
-    const reader_facts_t facts = reader_facts(reading->reader);
+    const reader_facts_t facts = reader_facts(reading->sensor->reader);
     row->sequence = is_good ? sample->sequence : NO_VALUE;
     row->interference = is_good ? sample->interference : NO_VALUE;
     row->distance_mm = is_good && sample->kind == FATHOM_TARGET ? sample->distance_mm : NO_VALUE;
@@ -79,16 +89,16 @@ static void fill_sample(row_t *row, const reading_t *reading)
 
 static void fill(row_t *row, const reading_t *reading, char utc[UTC_TEXT])
 {
-    const fathom_sample_t *const sample = reading->sample;
+    const fathom_sample_t *const sample = &reading->result->sample;
     const result_t *const result = reading->result;
     const bool has_level = reading->failure == NULL && result->has_level;
-    row->sensor = reading->name;
-    row->model = reading->model->name;
-    row->mode = reading->mode->name;
+    row->sensor = reading->sensor->name;
+    row->model = reading->sensor->model->name;
+    row->mode = reading->sensor->mode->name;
     row->utc = utc_text(reading->utc_us, utc);
     row->alarm = alarm_word(result->alarm);
     row->status = reading_status(reading);
-    row->address = reading->mode->has_address ? sample->address : NO_VALUE;
+    row->address = reading->sensor->mode->has_address ? sample->address : NO_VALUE;
     row->probe = sample->probe != 0 && reading_has_probe(reading) ? sample->probe : NO_VALUE;
     row->time_us = (int64_t)reading->time_us;
     row->is_on = result->is_on;
@@ -98,22 +108,22 @@ static void fill(row_t *row, const reading_t *reading, char utc[UTC_TEXT])
     fill_sample(row, reading);
 }
 
-void reading_json(json_t *json, const reading_t *reading)
+void reading_json(json_t *json, const reading_t *reading, unsigned columns)
 {
     char utc[UTC_TEXT];
     row_t row;
     fill(&row, reading, utc);
-    record_json(json, fields, &row, reading->own);
+    record_json(json, fields, &row, columns);
 }
 
 void reading_csv_header(FILE *to, unsigned columns) { record_csv_header(to, fields, columns); }
 
-void reading_csv(FILE *to, const reading_t *reading)
+void reading_csv(FILE *to, const reading_t *reading, unsigned columns)
 {
     char utc[UTC_TEXT];
     row_t row;
     fill(&row, reading, utc);
-    record_csv(to, fields, &row, reading->own, reading->columns);
+    record_csv(to, fields, &row, sensor_columns(reading->sensor), columns);
 }
 
 void reading_help(FILE *to)

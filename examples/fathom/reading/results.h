@@ -2,80 +2,74 @@
 #ifndef RESULTS_H
 #define RESULTS_H
 
+#include <stdio.h>
+
 #include "fathom/processing/alarm.h"
 #include "fathom/processing/level.h"
 #include "fathom/processing/median.h"
-#include "reading/poll.h"
 
-/* What is made of the samples of each probe before they are told: a median, then a level or an alarm. */
+/* What is computed from the samples of each probe before they are reported: a median, then a level or an alarm. */
 
 enum { RESULTS_POINTS = 32 };
 
-/* What the user wants, for all probes of a sensor; nothing: each sample is told as it came. It stays where it is, since
- * `tank` points at `points`. */
+/* What the user wants for all probes of a sensor. All zeros: each sample is reported as it was received. */
 typedef struct {
-    fathom_level_config_t tank;
+    fathom_level_config_t tank; /* tank.points: `points` of this structure, or NULL */
     fathom_level_point_t points[RESULTS_POINTS];
     fathom_alarm_config_t alarm;
     uint32_t unknown_us; /* fathom_median_config_t.unknown_us */
     uint16_t gate_mm;
-    uint8_t median; /* of so many samples; 0: none */
+    uint8_t median; /* of N samples; 0: none */
     bool has_level;
-    bool has_alarm;    /* its changes are told, and no readings, ... */
+    bool has_alarm;    /* its changes are reported, and no readings, ... */
     bool has_readings; /* ... unless this is set too */
 } results_config_t;
 
-/* Do both want the same? And takes another one's place. */
-bool results_config_is_same(const results_config_t *one, const results_config_t *other);
 void results_config_copy(results_config_t *to, const results_config_t *from);
 
 /* A reading, or the change of an alarm. */
 typedef struct {
-    /* As it came, or with the kind and the distance of the median. A change that no sample has brought: its time and its
-     * probe, and FATHOM_UNKNOWN. */
+    /* As received, or with the kind and the distance of the median. If a change was not caused by a sample: the time,
+     * the probe, and FATHOM_UNKNOWN. */
     fathom_sample_t sample;
     fathom_level_t level;
-    bool has_level; /* there is a distance to have one from */
-    uint8_t alarm;  /* the new fathom_alarm_state_t; 0: it is a reading */
+    bool has_level; /* there is a distance to compute it from */
+    uint8_t alarm;  /* the new fathom_alarm_state_t; 0: the result is a reading */
     bool is_on;     /* the alarm, in that state */
 } result_t;
 
-/* False: it could not be told. */
-typedef bool (*results_tell_t)(void *ctx, const station_t *station, const result_t *result);
-
+/* The state of a probe. */
 typedef struct {
     fathom_median_t median;
     uint16_t window[FATHOM_MEDIAN_MAX_COUNT];
     uint64_t dropped; /* spikes */
     fathom_alarm_t alarm;
     uint32_t began_us;
-    bool is_known; /* a state of the alarm has been told */
+    bool is_known; /* a state of the alarm was reported */
 } result_probe_t;
 
+/* Where results go. */
+struct sensor;
 typedef struct {
-    poll_loop_t *loop;
-    results_tell_t tell;
+    void (*report)(void *ctx, struct sensor *sensor, const result_t *result);
     void *ctx;
-    const results_config_t *configs[STATION_SLOTS];
-    result_probe_t probes[STATION_SLOTS][FATHOM_DYP_PROBES];
-} results_t;
+} results_to_t;
 
-void results_begin(results_t *results, poll_loop_t *loop, results_tell_t tell, void *ctx);
-
-/* From now on this is made of the samples of this station, from the beginning; several may have the same config. To be
- * called for each one before the first sample. */
-void results_add(results_t *results, const station_t *station, const results_config_t *config);
+/* Starts the processing of a sensor. Call it before the first sample. */
+void results_start(struct sensor *sensor, uint32_t now_us);
 
 /*
- * For poll_loop_user_t's reading, failure and tick, which returns how long it may be until it is called again. The first
- * state of an alarm is told when there is a distance to have it from, or unknown_us after the begin.
+ * For each sample and each failed attempt, and from time to time: the first state of an alarm is reported when a distance
+ * decides it, or unknown_us after the start.
  */
-bool results_sample(results_t *results, const station_t *station, const fathom_sample_t *sample);
-void results_failure(results_t *results, const station_t *station, fathom_status_t status);
-uint32_t results_tick(results_t *results);
+void results_sample(struct sensor *sensor, const fathom_sample_t *sample, const results_to_t *to);
+void results_failure(struct sensor *sensor, fathom_status_t status, uint32_t now_us, const results_to_t *to);
+void results_pass(struct sensor *sensor, uint32_t now_us, const results_to_t *to);
 
-/* Spikes that were dropped so far: of all probes, and a line for each that had some. */
-uint64_t results_dropped(const results_t *results);
-void results_print_dropped(const results_t *results, FILE *to);
+/* Spikes of all probes that were dropped. */
+uint64_t results_dropped(const struct sensor *sensor);
+
+/* Prints a line for each probe that had spikes. */
+void results_print_dropped(const struct sensor *sensor, FILE *to);
 
 #endif

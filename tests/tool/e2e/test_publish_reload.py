@@ -11,7 +11,7 @@ import time
 import e2e
 import mqtt
 
-READ_ANEW = 'site.yaml was read anew$'
+READ_AGAIN = 'site.yaml was read again$'
 
 
 class Case(mqtt.Case):
@@ -32,7 +32,7 @@ class Case(mqtt.Case):
     def change(self, *lines, **options):
         self.config(*lines, **options)
         self.publisher.send(signal.SIGHUP)
-        self.publisher.expect(READ_ANEW, 'err')
+        self.publisher.expect(READ_AGAIN, 'err')
 
     def has(self, topic, count=1):
         """So many more of them come."""
@@ -64,7 +64,7 @@ class Changes(Case):
         available = [one.payload for one in self.messages(self.subscriber, '/gate/availability')]
         self.assertNotIn('offline', available[available.index('online'):])
 
-    def test_a_sensor_on_the_same_port_comes_and_goes_and_the_first_loses_nothing(self):
+    def test_a_sensor_on_the_same_line_comes_and_goes_and_the_first_goes_on(self):
         gate = 'gate hps167s:8 interval: 100'
         self.begin(self.two(gate))
         self.has('/gate/state', 3)
@@ -85,7 +85,7 @@ class Changes(Case):
         self.check_nothing_is_missing('/gate/state', longest=10)
         self.check_nothing_is_missing('/door/state')
 
-    def test_what_is_made_of_its_readings_may_change_and_the_port_stays_open(self):
+    def test_a_level_may_be_added(self):
         self.begin(self.one)
         self.has('/gate/state', 3)
         self.change(self.one.replace('interval', 'level: {mounting: 9000, height: 9000, capacity: 1}, interval'))
@@ -108,7 +108,7 @@ class Changes(Case):
         with open(path, 'w', encoding='utf-8') as file:
             file.write(text.replace('site: mill', 'site: moor'))
         self.publisher.send(signal.SIGHUP)
-        self.publisher.expect(READ_ANEW, 'err')
+        self.publisher.expect(READ_AGAIN, 'err')
         self.has('moor/gate/state', 3)
         late = self.subscribe('#')
         self.wait_for(late, 'moor/status', lambda one: one.payload == 'online')

@@ -12,35 +12,32 @@ static void check_text(const char *text, size_t size, const char *sentence)
         PROMISE(text[i] == '\n' || (text[i] & 0x80) != 0 || (text[i] >= ' ' && text[i] <= '~'), sentence);
 }
 
-static void check_names(const config_t *config)
+static void check_names(const site_t *site)
 {
-    const sensor_options_t *const sensors = &config->sensors;
-    PROMISE(sensors->station_count >= 1 && sensors->station_count <= MAX_STATIONS,
-            "config.h: there are sensors");
-    for (size_t i = 0; i != sensors->station_count; i++)
+    PROMISE(site->sensor_count >= 1 && site->sensor_count <= MAX_SENSORS, "config.h: there are sensors");
+    for (size_t i = 0; i != site->sensor_count; i++)
         for (size_t other = 0; other != i; other++)
-            PROMISE(strcmp(sensors->stations[i]->name, sensors->stations[other]->name) != 0,
+            PROMISE(strcmp(site->sensors[i]->name, site->sensors[other]->name) != 0,
                     "config.h: each has a name of its own");
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
 {
-    static config_t config;
-    static config_results_t results;
+    static publish_settings_t settings;
+    site_t site = {.lines = NULL};
     size_t length;
     fuzz_begin(data, size);
     uint8_t *const bytes = fuzz_rest(4000, &length);
     tool_file(bytes, length);
     tool_capture();
-    config.sensors.beside = NULL;
-    const bool is_good = config_load(&config, results, "publish", "site.yaml");
-    if (is_good) explain(&config, results, stdout);
+    const bool is_good = config_load(&settings, &site, "publish", "site.yaml");
+    if (is_good) explain(&settings, &site, stdout);
     tool_release();
     if (is_good) {
-        PROMISE(tool.err_size == 0 && tool.out_size != 0, "explain.h: in words");
-        check_names(&config);
-        check_text(tool.out, tool.out_size, "nothing that drives a terminal is explained");
-        config_free(&config);
+        PROMISE(tool.err_size == 0 && tool.out_size != 0, "explain.h: prints a table");
+        check_names(&site);
+        check_text(tool.out, tool.out_size, "the table drives no terminal");
+        site_free(&site);
     } else {
         PROMISE(tool.err_size != 0 && tool.out_size == 0 && tool.err[tool.err_size - 1] == '\n' &&
                     strncmp(tool.err, "fathom publish: ", 16) == 0,

@@ -172,7 +172,7 @@ static void print_json(const session_t *session, const calibrate_plan_t *plan, b
     const size_t count = calibrate_offsets(plan, offsets);
     json_t json = {.to = stdout};
     json_begin(&json, NULL, '{');
-    station_json(&json, session->station);
+    sensor_json(&json, session->station);
     json_value(&json, "address", "%u", session->station->address);
     json_string(&json, "status", is_dry ? "dry_run" : whys[plan->why]);
     json_value(&json, "known_mm", "%" PRId32, plan->known_mm);

@@ -2,9 +2,12 @@
 #ifndef EXPLAIN_H
 #define EXPLAIN_H
 
-#include "cli/config.h"
+#include <stdio.h>
 
-/* What a configuration means, in words: what is read where and how, and the topics of all that is published. */
-void explain(const config_t *config, config_results_t results, FILE *to);
+#include "mqtt/settings.h"
+#include "reading/site.h"
+
+/* Prints a table of the sensors, and the topics under which they are published. */
+void explain(const publish_settings_t *settings, const site_t *site, FILE *to);
 
 #endif

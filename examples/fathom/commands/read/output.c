@@ -11,15 +11,15 @@
 /* Writes why a pulse, or a value that the sensor sent, is no distance. */
 static void write_reason(FILE *to, const reading_t *reading)
 {
-    const fathom_sample_t *const sample = reading->sample;
-    const bool is_pulse = reading->mode->has_pulses;
+    const fathom_sample_t *const sample = &reading->result->sample;
+    const bool is_pulse = reading->sensor->mode->has_pulses;
     const bool is_unknown = sample->kind == FATHOM_UNKNOWN;
     if (is_unknown && is_pulse)
         (void)fprintf(to, ": all pulses are too short for the sensor; the longest has %" PRIu32 " us",
                       sample->raw);
     else if (is_unknown)
         (void)fprintf(to, ": the value %" PRIu32 "%s", sample->raw,
-                      reading->model->has_optics ? "" : " has no known meaning (--means)");
+                      reading->sensor->model->has_optics ? "" : " has no known meaning (--means)");
     else if (!is_pulse)
         (void)fputs(": the sensor reports a fault", to);
     else if (sample->raw == 0)
@@ -31,22 +31,22 @@ static void write_reason(FILE *to, const reading_t *reading)
 /* Writes the status of a reading that has no distance. */
 static void write_status(FILE *to, const reading_t *reading)
 {
-    const fathom_sample_t *const sample = reading->sample;
+    const fathom_sample_t *const sample = &reading->result->sample;
     (void)fprintf(to, "%s%s", reading_status(reading), sample->interference ? " (interference)" : "");
     if (sample->kind == FATHOM_UNKNOWN || sample->kind == FATHOM_FAULT) write_reason(to, reading);
 }
 
 static void write_text_reading(FILE *to, const reading_t *reading)
 {
-    const fathom_sample_t *const sample = reading->sample;
-    const reader_facts_t facts = reader_facts(reading->reader);
+    const fathom_sample_t *const sample = &reading->result->sample;
+    const reader_facts_t facts = reader_facts(reading->sensor->reader);
     (void)fputs("  ", to);
     if (sample->kind == FATHOM_TARGET)
         (void)fprintf(to, "%6u mm  %3u.%03u m", sample->distance_mm, sample->distance_mm / 1000u,
                       sample->distance_mm % 1000u);
     else
         write_status(to, reading);
-    if (reading->model->has_optics && sample->kind != FATHOM_FAULT)
+    if (reading->sensor->model->has_optics && sample->kind != FATHOM_FAULT)
         (void)fprintf(to, "  magnitude %" PRIu32 ".%04" PRIu32 "  ambient %u  precision %u",
                       sample->magnitude / 10000, sample->magnitude % 10000, sample->ambient,
                       sample->precision);
@@ -63,19 +63,20 @@ static void write_text_change(FILE *to, const reading_t *reading)
         return;
     }
     (void)fputs(", ", to);
-    if (reading->sample->kind == FATHOM_TARGET)
-        (void)fprintf(to, "%u mm", reading->sample->distance_mm);
+    if (reading->result->sample.kind == FATHOM_TARGET)
+        (void)fprintf(to, "%u mm", reading->result->sample.distance_mm);
     else
         write_status(to, reading);
 }
 
-static void write_text(FILE *to, const reading_t *reading)
+static void write_text(FILE *to, const reading_t *reading, unsigned columns)
 {
     const result_t *const result = reading->result;
+    (void)columns;
     (void)fprintf(to, "%6" PRIu64 ".%03u s  %s", reading->time_us / 1000000u,
-                  (unsigned)(reading->time_us / 1000u % 1000u), reading->label);
-    if (reading->model->probes > 1 && reading_has_probe(reading))
-        (void)fprintf(to, " probe %u", reading->sample->probe);
+                  (unsigned)(reading->time_us / 1000u % 1000u), sensor_label(reading->sensor));
+    if (reading->sensor->model->probes > 1 && reading_has_probe(reading))
+        (void)fprintf(to, " probe %u", reading->result->sample.probe);
     if (result->alarm != 0)
         write_text_change(to, reading);
     else
@@ -86,11 +87,12 @@ static void write_text(FILE *to, const reading_t *reading)
     (void)fputs("\n", to);
 }
 
-static void write_json(FILE *to, const reading_t *reading)
+static void write_json(FILE *to, const reading_t *reading, unsigned columns)
 {
+    (void)columns;
     json_t json = {.to = to};
     json_begin(&json, NULL, '{');
-    reading_json(&json, reading);
+    reading_json(&json, reading, sensor_columns(reading->sensor));
     json_end(&json, '}');
     (void)fputc('\n', to);
 }

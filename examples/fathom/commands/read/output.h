@@ -12,7 +12,7 @@ typedef struct {
     bool is_json;
     bool has_failures; /* a row for each attempt, also for one that has failed */
     void (*begin)(FILE *to, unsigned columns);
-    void (*write)(FILE *to, const reading_t *reading);
+    void (*write)(FILE *to, const reading_t *reading, unsigned columns);
 } format_t;
 
 /* text, json, csv, in the order of the words of --format. */

@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <inttypes.h>
 #include <signal.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "cli/complete.h"
@@ -26,105 +27,99 @@ static const option_table_t tables[] = {
 enum { PICTURE_US = 125000, LINE_US = 1000000, MESSAGE_US = 5000000, MESSAGE = 512, PORTS = 256 };
 
 typedef struct {
-    poll_loop_t loop;
+    loop_t loop;
     picture_t picture;
+    lanes_t lanes;
     uint16_t rows; /* of the window */
     uint16_t columns;
-    uint64_t next_us;      /* when the next picture or line is due */
-    char message[MESSAGE]; /* the last failure, or what has happened to the port */
-    uint64_t message_end_us;
-    char loss[MESSAGE];                      /* what was said of a port that was lost last */
-    fathom_status_t reported[STATION_SLOTS]; /* for lines: what was printed of each sensor's last failure */
-    bool draws;                              /* pictures, else lines */
-    bool wants_all;   /* of the next picture, because something else may have written to the terminal */
+    uint64_t next_us;          /* when the next picture or line is due */
+    char message[MESSAGE];     /* below the lanes */
+    uint64_t message_end_us;   /* when it disappears */
+    char loss[MESSAGE];        /* the last message about a port that was lost */
+    fathom_status_t *reported; /* for lines: the last failure of each sensor that was printed */
+    bool draws;                /* pictures, else lines */
+    bool wants_all;   /* the next picture is drawn as a whole: others may have written to the terminal */
     int output_error; /* errno */
-    lanes_t lanes;    /* last: only those of them that are used are ever touched */
 } watch_t;
 
-static void say(watch_t *watch, const char *text, uint64_t for_us)
+/* Shows a message below the lanes; without a picture it is printed. */
+static void show(watch_t *watch, const char *text, uint64_t for_us)
 {
     (void)snprintf(watch->message, sizeof watch->message, "%s", text);
-    watch->message_end_us = poll_loop_time_us(&watch->loop) + for_us;
+    watch->message_end_us = loop_time_us(&watch->loop) + for_us;
 }
 
-static bool take_reading(void *ctx, const station_t *station, const fathom_sample_t *sample)
+static void print(const watch_t *watch, const char *text)
 {
-    watch_t *const watch = ctx;
-    lanes_pass(&watch->lanes, poll_loop_time_us(&watch->loop));
-    lanes_reading(&watch->lanes, station, sample);
-    const uint64_t end_us = poll_loop_time_us(&watch->loop) + MESSAGE_US;
-    if (watch->message_end_us > end_us) watch->message_end_us = end_us;
-    watch->reported[station->slot] = FATHOM_OK;
-    return true;
+    if (!watch->draws) (void)fprintf(stderr, "fathom: %s\n", text);
 }
 
-/* What to try, as fathom read has it. */
-static void get_advice(char text[MESSAGE], const failure_t *failure, const station_t *station)
+/* The advice of fathom read. */
+static void get_advice(char text[MESSAGE], const reading_t *reading)
 {
-    const int start = failure->status != FATHOM_ERR_PORT ? snprintf(text, MESSAGE, "%s: ", station->name) : 0;
+    const int start =
+        reading->status != FATHOM_ERR_PORT ? snprintf(text, MESSAGE, "%s: ", reading->sensor->name) : 0;
     FILE *const to = fmemopen(text + start, (size_t)(MESSAGE - start), "w");
     if (to == NULL) return;
-    advice_print(to, failure);
+    advice_print(to, reading->evidence);
     (void)fclose(to);
     text[MESSAGE - 1] = '\0';
 }
 
-static void take_failure(void *ctx, const failure_t *failure, const station_t *station)
+static void show_failure(watch_t *watch, const reading_t *reading)
 {
-    watch_t *const watch = ctx;
-    fathom_status_t *const reported = &watch->reported[station->slot];
+    fathom_status_t *const reported = &watch->reported[reading->sensor->number];
     char text[MESSAGE] = "";
-    lanes_pass(&watch->lanes, poll_loop_time_us(&watch->loop));
-    lanes_failure(&watch->lanes, failure, station);
-    get_advice(text, failure, station);
-    if (!failure->is_told) say(watch, text, MESSAGE_US);
-    if (failure->status == FATHOM_ERR_PORT && !failure->is_told)
-        (void)snprintf(watch->loss, sizeof watch->loss, "%s", text);
-    if (!watch->draws && !failure->is_told && *reported != failure->status)
-        (void)fprintf(stderr, "fathom: %s\n", text);
-    *reported = failure->status;
+    if (!reading->evidence->is_told) {
+        get_advice(text, reading);
+        show(watch, text, MESSAGE_US);
+        if (reading->status == FATHOM_ERR_PORT) (void)snprintf(watch->loss, sizeof watch->loss, "%s", text);
+        if (*reported != reading->status) print(watch, text);
+    }
+    *reported = reading->status;
 }
 
-static void take_absence(void *ctx, const station_t *station)
+static void take_reading(void *ctx, const reading_t *reading)
 {
     watch_t *const watch = ctx;
-    lanes_pass(&watch->lanes, poll_loop_time_us(&watch->loop));
-    lanes_away(&watch->lanes, station);
+    const uint64_t now_us = loop_time_us(&watch->loop);
+    lanes_pass(&watch->lanes, now_us);
+    lanes_add(&watch->lanes, reading);
+    if (reading->evidence != NULL) show_failure(watch, reading);
+    if (reading->failure != NULL) return;
+    if (watch->message_end_us > now_us + MESSAGE_US) watch->message_end_us = now_us + MESSAGE_US;
+    watch->reported[reading->sensor->number] = FATHOM_OK;
 }
 
-/* It stays until there are readings: it may be something to do. */
-static void take_remark(void *ctx, const station_t *station, const char *text)
+/* A message that may ask for something stays until there are readings. */
+static void take_notice(void *ctx, const notice_t *notice)
 {
     watch_t *const watch = ctx;
     char line[MESSAGE];
-    (void)snprintf(line, sizeof line, "%s: %s", station->name, text);
-    say(watch, line, UINT32_MAX);
-    if (!watch->draws) (void)fprintf(stderr, "fathom: %s\n", line);
-}
-
-static void take_port(void *ctx, const char *text, poll_port_state_t state)
-{
-    watch_t *const watch = ctx;
-    say(watch, text, state == POLL_PORT_THERE ? MESSAGE_US : UINT32_MAX);
+    (void)snprintf(line, sizeof line, "%s%s%s", notice->sensor != NULL ? notice->sensor->name : "",
+                   notice->sensor != NULL ? ": " : "", notice->text);
+    show(watch, line, notice->kind == NOTICE_OPEN ? MESSAGE_US : UINT32_MAX);
+    print(watch, line);
+    if (notice->kind == NOTICE_REMARK) return;
     watch->wants_all = true;
-    if (state != POLL_PORT_THERE) (void)snprintf(watch->loss, sizeof watch->loss, "%s", text);
-    if (!watch->draws) (void)fprintf(stderr, "fathom: %s\n", text);
+    if (notice->kind != NOTICE_OPEN) (void)snprintf(watch->loss, sizeof watch->loss, "%s", line);
 }
 
 /* "/dev/ttyUSB0", or "ttyUSB0, ttyUSB1, ttyUSB2 and 3 more". */
-static void name_ports(const sensor_options_t *options, char text[PORTS])
+static void name_ports(const site_t *site, char text[PORTS])
 {
     enum { NAMED = 3 };
-    const size_t count = options->port_count;
     size_t at = 0;
-    if (count == 1) {
-        (void)snprintf(text, PORTS, "%s", options->ports[0].path);
+    size_t count = 0;
+    if (site->line_count == 1) {
+        (void)snprintf(text, PORTS, "%s", site->lines->port.path);
         return;
     }
-    for (size_t i = 0; i != count && i != NAMED && at < PORTS; i++)
-        at += (size_t)snprintf(text + at, PORTS - at, "%s%s", i != 0 ? ", " : "",
-                               port_last_part(options->ports[i].path));
-    if (count > NAMED && at < PORTS) (void)snprintf(text + at, PORTS - at, " and %zu more", count - NAMED);
+    for (const line_t *line = site->lines; line != NULL && count != NAMED && at < PORTS; line = line->next)
+        at += (size_t)snprintf(text + at, PORTS - at, "%s%s", count++ != 0 ? ", " : "",
+                               port_last_part(line->port.path));
+    if (site->line_count > NAMED && at < PORTS)
+        (void)snprintf(text + at, PORTS - at, " and %zu more", site->line_count - NAMED);
 }
 
 static void draw(watch_t *watch, uint64_t now_us)
@@ -132,7 +127,7 @@ static void draw(watch_t *watch, uint64_t now_us)
     const uint32_t seconds = (uint32_t)(now_us / 1000000u);
     char title[MESSAGE];
     char ports[PORTS];
-    name_ports(&watch->loop.options, ports);
+    name_ports(&watch->loop.site, ports);
     (void)snprintf(title, sizeof title,
                    "fathom watch %s   %02" PRIu32 ":%02" PRIu32 ":%02" PRIu32 "   %sCtrl-C ends", ports,
                    seconds / 3600, seconds / 60 % 60, seconds % 60, terminal_has_keys() ? "q or " : "");
@@ -140,7 +135,7 @@ static void draw(watch_t *watch, uint64_t now_us)
                  now_us < watch->message_end_us ? watch->message : "");
     watch->output_error = terminal_show(&watch->picture, watch->wants_all);
     /* While a port is waited for, others may write to the terminal. */
-    watch->wants_all = poll_loop_is_lost(&watch->loop);
+    watch->wants_all = loop_is_lost(&watch->loop);
 }
 
 /* All lanes in one line. */
@@ -164,27 +159,24 @@ static void print_line(watch_t *watch, uint64_t now_us)
 static uint32_t tick(void *ctx)
 {
     watch_t *const watch = ctx;
-    const uint64_t now_us = poll_loop_time_us(&watch->loop);
+    const uint64_t now_us = loop_time_us(&watch->loop);
     const uint32_t every_us = watch->draws ? PICTURE_US : LINE_US;
     if (host_had_signal()) {
         terminal_size(&watch->rows, &watch->columns);
         watch->wants_all = true;
         watch->next_us = now_us;
     }
+    if (terminal_wants_end()) loop_stop(&watch->loop);
     if (now_us < watch->next_us) return (uint32_t)(watch->next_us - now_us);
     lanes_pass(&watch->lanes, now_us);
     if (watch->draws)
         draw(watch, now_us);
     else
         print_line(watch, now_us);
+    if (watch->output_error != 0) loop_stop(&watch->loop);
     watch->next_us += every_us;
     if (watch->next_us <= now_us) watch->next_us = now_us + every_us;
     return (uint32_t)(watch->next_us - now_us);
-}
-
-static bool is_over(const void *ctx)
-{
-    return ((const watch_t *)ctx)->output_error != 0 || terminal_wants_end();
 }
 
 static int finish(watch_t *watch)
@@ -197,47 +189,63 @@ static int finish(watch_t *watch)
     if (watch->output_error != 0)
         (void)fprintf(stderr, "fathom: the picture cannot be written: %s\n", strerror(watch->output_error));
     /* On the screen that has just gone, this stood last. */
-    if ((poll_loop_is_lost(&watch->loop) || watch->loop.has_failed) && watch->draws)
+    if ((loop_is_lost(&watch->loop) || watch->loop.has_failed) && watch->draws)
         (void)fprintf(stderr, "fathom: %s\n", watch->loss);
-    poll_loop_account(&watch->loop, &account);
+    loop_account(&watch->loop, &account);
     counters_print(&account, stderr);
-    return !poll_loop_is_good(&watch->loop) || watch->output_error != 0 ? STATUS_FAILED : STATUS_OK;
+    return !loop_is_good(&watch->loop) || watch->output_error != 0 ? STATUS_FAILED : STATUS_OK;
 }
 
-static bool set_up(sensor_options_t *options, const arguments_t *arguments)
+static bool set_up(site_t *site, const arguments_t *arguments)
 {
-    if (!sensors_read(options, arguments, arguments->settings, arguments->count, false)) return false;
-    for (size_t i = 0; i != options->station_count; i++)
-        options->stations[i]->settings.repeat_us = 250000; /* a column */
+    if (!sensors_read(site, arguments, arguments->settings, arguments->count, false)) return false;
+    for (size_t i = 0; i != site->sensor_count; i++)
+        site->sensors[i]->settings.repeat_us = 250000; /* a column */
     return true;
+}
+
+static int watch_site(watch_t *watch)
+{
+    loop_t *const loop = &watch->loop;
+    const host_t *const host = loop->host;
+    int status = STATUS_FAILED;
+    watch->reported = calloc(loop->site.sensor_count, sizeof *watch->reported);
+    if (watch->reported == NULL || !lanes_init(&watch->lanes, &loop->site)) {
+        (void)fprintf(stderr, "fathom: no memory left\n");
+        return STATUS_FAILED;
+    }
+    if (!host->begin(host->ctx)) return STATUS_FAILED;
+    watch->draws = terminal_can_draw();
+    if (watch->draws) {
+        host_watch_signal(SIGWINCH);
+        terminal_take();
+    }
+    terminal_size(&watch->rows, &watch->columns);
+    if (loop_open(loop)) {
+        if (watch->draws) terminal_attend(&loop->sources);
+        loop_run(loop);
+        status = finish(watch);
+    } else if (terminal_give_back() && watch->draws) {
+        (void)fprintf(stderr, "fathom: %s\n", watch->loss);
+    }
+    loop_close(loop);
+    return status;
 }
 
 static int start(const host_t *host, const arguments_t *arguments)
 {
-    static const poll_loop_user_t user = {take_reading, take_failure, take_absence, take_remark,
-                                          take_port,    tick,         is_over};
-    static watch_t watch; /* too large for any stack */
-    poll_loop_t *const loop = &watch.loop;
-    memset(&watch, 0, offsetof(watch_t, lanes));
-    poll_loop_begin(loop, host, &user, &watch);
-    if (!set_up(&loop->options, arguments)) return STATUS_USAGE;
-    if (!host->begin(host->ctx)) return STATUS_FAILED;
-    lanes_begin(&watch.lanes, &loop->options);
-    watch.draws = terminal_can_draw();
-    if (watch.draws) {
-        host_watch_signal(SIGWINCH);
-        terminal_take();
+    static const sink_t sink = {take_reading, take_notice, tick};
+    watch_t *const watch = calloc(1, sizeof *watch);
+    if (watch == NULL) {
+        (void)fprintf(stderr, "fathom: no memory left\n");
+        return STATUS_FAILED;
     }
-    terminal_size(&watch.rows, &watch.columns);
-    int status = STATUS_FAILED;
-    if (poll_loop_open(loop)) {
-        if (watch.draws) terminal_attend(&loop->sources);
-        poll_loop_run(loop);
-        status = finish(&watch);
-    } else {
-        if (terminal_give_back() && watch.draws) (void)fprintf(stderr, "fathom: %s\n", watch.loss);
-    }
-    poll_loop_close(loop);
+    loop_init(&watch->loop, host, &sink, watch);
+    const int status = set_up(&watch->loop.site, arguments) ? watch_site(watch) : STATUS_USAGE;
+    loop_deinit(&watch->loop);
+    lanes_free(&watch->lanes);
+    free(watch->reported);
+    free(watch);
     return status;
 }
 

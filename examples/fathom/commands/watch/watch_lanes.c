@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "commands/watch/watch_lanes.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 /* A step is as long as the user's interval, and not shorter than an eye can follow. */
@@ -40,33 +41,34 @@ const char *mark_name(mark_t mark) { return marks[mark].name; }
 
 bool mark_is_loss(mark_t mark) { return marks[mark].is_loss; }
 
-static bool is_contact(const station_t *station) { return station->mode->is_contact; }
-
-void lanes_begin(lanes_t *lanes, const sensor_options_t *options)
+static void init_lane(lanes_t *lanes, const sensor_t *sensor, uint8_t probe)
 {
-    const uint32_t interval_us = options->stations[0]->settings.period_us; /* which all have */
+    lane_t *const lane = &lanes->lane[lanes->count++];
+    const bool has_probes = sensor->model->probes > 1 && !sensor_is_contact(sensor);
+    lane->sensor = sensor;
+    lane->probe = probe;
+    (void)snprintf(lane->name, sizeof lane->name, has_probes ? "%s probe %u" : "%s", sensor->name, probe);
+    const size_t length = strlen(lane->name);
+    if (length > lanes->name_width) lanes->name_width = (uint16_t)(length < MOST_NAME ? length : MOST_NAME);
+}
+
+bool lanes_init(lanes_t *lanes, const site_t *site)
+{
+    const uint32_t interval_us = site->sensors[0]->settings.period_us; /* of all sensors */
     lanes->step_us = interval_us > LEAST_STEP_US ? interval_us : LEAST_STEP_US;
-    lanes->count = 0;
     lanes->name_width = LEAST_NAME;
-    lanes->now_us = 0;
-    lanes->seen = 0;
-    for (size_t i = 0; i != options->station_count; i++) {
-        const station_t *const station = options->stations[i];
-        const uint8_t probes = is_contact(station) ? 1 : station->model->probes;
-        for (uint8_t probe = 1; probe <= probes; probe++) {
-            const uint8_t wanted = station->settings.probes;
-            if (probes > 1 && wanted != 0 && (wanted >> (probe - 1) & 1) == 0) continue;
-            lane_t *const lane = &lanes->lane[lanes->count++];
-            memset(lane, 0, sizeof *lane);
-            lane->station = station;
-            lane->probe = probe;
-            (void)snprintf(lane->name, sizeof lane->name, probes > 1 ? "%s probe %u" : "%s", station->name,
-                           probe);
-            const size_t length = strlen(lane->name);
-            if (length > lanes->name_width)
-                lanes->name_width = (uint16_t)(length < MOST_NAME ? length : MOST_NAME);
-        }
-    }
+    lanes->lane = calloc(site->sensor_count * FATHOM_DYP_PROBES, sizeof *lanes->lane);
+    if (lanes->lane == NULL) return false;
+    for (size_t i = 0; i != site->sensor_count; i++)
+        for (uint8_t probe = 1; probe <= FATHOM_DYP_PROBES; probe++)
+            if (sensor_has_probe(site->sensors[i], probe)) init_lane(lanes, site->sensors[i], probe);
+    return true;
+}
+
+void lanes_free(lanes_t *lanes)
+{
+    free(lanes->lane);
+    lanes->lane = NULL;
 }
 
 static uint64_t number_now(const lanes_t *lanes) { return lanes->now_us / lanes->step_us; }
@@ -92,7 +94,7 @@ static uint8_t hold_of(const lanes_t *lanes, const lane_t *lane)
 }
 
 /* Something has come for this lane: a distance if mark is MARK_NONE. */
-static void take(lanes_t *lanes, lane_t *lane, mark_t mark, uint16_t distance_mm)
+static void add(lanes_t *lanes, lane_t *lane, mark_t mark, uint16_t distance_mm)
 {
     step_t *const step = &lane->steps[number_now(lanes) % LANE_STEPS];
     if (mark > step->mark) step->mark = (uint8_t)mark;
@@ -111,43 +113,67 @@ static void take(lanes_t *lanes, lane_t *lane, mark_t mark, uint16_t distance_mm
     if (mark_is_loss(mark)) lane->lost++;
 }
 
-void lanes_reading(lanes_t *lanes, const station_t *station, const fathom_sample_t *sample)
+static mark_t mark_of_sample(const reading_t *reading)
 {
-    mark_t mark = MARK_NONE;
-    if (sample->kind == FATHOM_NO_TARGET) mark = sample->interference ? MARK_INTERFERENCE : MARK_NO_TARGET;
-    if (sample->kind == FATHOM_UNKNOWN) mark = MARK_UNKNOWN;
-    if (sample->kind == FATHOM_NEAR) mark = is_contact(station) ? MARK_NEAR : MARK_TOO_NEAR;
-    if (sample->kind == FATHOM_FAR) mark = MARK_FAR;
-    if (sample->kind == FATHOM_FAULT) mark = MARK_FAULT;
-    for (size_t i = 0; i != lanes->count; i++)
-        if (lanes->lane[i].station == station && lanes->lane[i].probe == sample->probe)
-            take(lanes, &lanes->lane[i], mark, sample->distance_mm);
+    const fathom_sample_t *const sample = &reading->result->sample;
+    switch (sample->kind) {
+    case FATHOM_NO_TARGET:
+        return sample->interference ? MARK_INTERFERENCE : MARK_NO_TARGET;
+    case FATHOM_UNKNOWN:
+        return MARK_UNKNOWN;
+    case FATHOM_NEAR:
+        return sensor_is_contact(reading->sensor) ? MARK_NEAR : MARK_TOO_NEAR;
+    case FATHOM_FAR:
+        return MARK_FAR;
+    case FATHOM_FAULT:
+        return MARK_FAULT;
+    default:
+        return MARK_NONE;
+    }
 }
 
-void lanes_failure(lanes_t *lanes, const failure_t *failure, const station_t *station)
+static mark_t mark_of_failure(fathom_status_t status)
 {
-    const fathom_status_t status = failure->status;
-    /* 0: it is the failure of all */
-    const bool is_of_one = status == FATHOM_ERR_MALFORMED && !failure->is_whole;
-    const uint8_t probe = is_of_one ? reader_facts(station->reader).refused_probe : 0;
-    mark_t mark = MARK_BAD_RESPONSE;
-    if (status == FATHOM_ERR_NO_RESPONSE || status == FATHOM_ERR_ECHO) mark = MARK_NO_RESPONSE;
-    if (status == FATHOM_ERR_LINE_BUSY) mark = MARK_LINE_BUSY;
-    if (status == FATHOM_ERR_OTHER_MASTER) mark = MARK_OTHER_MASTER;
-    if (status == FATHOM_ERR_STALE) mark = MARK_STALE;
-    if (status == FATHOM_ERR_PORT) mark = MARK_PORT;
-    for (size_t i = 0; i != lanes->count; i++)
-        if (lanes->lane[i].station == station && (probe == 0 || lanes->lane[i].probe == probe))
-            take(lanes, &lanes->lane[i], mark, 0);
+    switch (status) {
+    case FATHOM_ERR_NO_RESPONSE:
+    case FATHOM_ERR_ECHO:
+        return MARK_NO_RESPONSE;
+    case FATHOM_ERR_LINE_BUSY:
+        return MARK_LINE_BUSY;
+    case FATHOM_ERR_OTHER_MASTER:
+        return MARK_OTHER_MASTER;
+    case FATHOM_ERR_STALE:
+        return MARK_STALE;
+    case FATHOM_ERR_PORT:
+        return MARK_PORT;
+    default:
+        return MARK_BAD_RESPONSE;
+    }
 }
 
-void lanes_away(lanes_t *lanes, const station_t *station)
+/* A port that is waited for is no attempt. */
+static void add_absence(const lanes_t *lanes, lane_t *lane)
 {
+    lane->mark = MARK_PORT;
+    lane->has_outcome = true;
+    lane->steps[number_now(lanes) % LANE_STEPS].mark = MARK_PORT;
+}
+
+void lanes_add(lanes_t *lanes, const reading_t *reading)
+{
+    const bool is_good = reading->failure == NULL;
+    const fathom_sample_t *const sample = &reading->result->sample;
+    const failure_t *const evidence = reading->evidence;
+    const bool is_of_one = is_good || (evidence != NULL && !evidence->is_whole && sample->probe != 0);
     for (size_t i = 0; i != lanes->count; i++) {
-        if (lanes->lane[i].station != station) continue;
-        lanes->lane[i].mark = MARK_PORT;
-        lanes->lane[i].has_outcome = true;
-        lanes->lane[i].steps[number_now(lanes) % LANE_STEPS].mark = MARK_PORT;
+        lane_t *const lane = &lanes->lane[i];
+        if (lane->sensor != reading->sensor || (is_of_one && lane->probe != sample->probe)) continue;
+        if (is_good)
+            add(lanes, lane, mark_of_sample(reading), sample->distance_mm);
+        else if (evidence != NULL)
+            add(lanes, lane, mark_of_failure(reading->status), 0);
+        else
+            add_absence(lanes, lane);
     }
 }
 

@@ -2,7 +2,7 @@
 #ifndef WATCH_LANES_H
 #define WATCH_LANES_H
 
-#include "reading/poll_loop.h"
+#include "reading/loop.h"
 
 /* What `fathom watch` knows of each probe: the last few hundred steps of time, and how it is now. */
 
@@ -41,10 +41,10 @@ typedef struct {
     uint16_t readings;
 } step_t;
 
-enum { LANE_STEPS = 512, LANE_NAME = STATION_NAME + 16 };
+enum { LANE_STEPS = 512, LANE_NAME = FULL_NAME_SIZE + 16 };
 
 typedef struct {
-    const station_t *station;
+    const sensor_t *sensor;
     uint8_t probe;
     char name[LANE_NAME];     /* "a16:1", "a05:2 probe 3" */
     step_t steps[LANE_STEPS]; /* number n, counted from the start, stands at n % LANE_STEPS */
@@ -58,10 +58,8 @@ typedef struct {
 
 enum { LEAST_NAME = 13, MOST_NAME = 39 }; /* a NAME of 31 characters and " probe 1"; what is longer is cut */
 
-enum { MAX_LANES = MAX_STATIONS * 4 };
-
 typedef struct {
-    lane_t lane[MAX_LANES];
+    lane_t *lane;
     size_t count;
     uint16_t name_width; /* the longest name's in characters, LEAST_NAME to MOST_NAME */
     uint64_t now_us;     /* since the start */
@@ -69,16 +67,15 @@ typedef struct {
     uint32_t step_us;
 } lanes_t;
 
-void lanes_begin(lanes_t *lanes, const sensor_options_t *options);
+/* False: no memory left. */
+bool lanes_init(lanes_t *lanes, const site_t *site);
+void lanes_free(lanes_t *lanes);
 
 /* The time has come so far: steps in which nothing has happened yet are empty. */
 void lanes_pass(lanes_t *lanes, uint64_t now_us);
 
-void lanes_reading(lanes_t *lanes, const station_t *station, const fathom_sample_t *sample);
-void lanes_failure(lanes_t *lanes, const failure_t *failure, const station_t *station);
-
-/* Those of this sensor: its port is not there. */
-void lanes_away(lanes_t *lanes, const station_t *station);
+/* Adds what the loop reports. */
+void lanes_add(lanes_t *lanes, const reading_t *reading);
 
 /* The step so many steps ago, 0: the present one, as it is to be shown: between two outcomes the distance stands.
  * ago: less than LANE_STEPS. */

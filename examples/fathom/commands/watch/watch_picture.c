@@ -92,7 +92,7 @@ static uint16_t longer_names(const lanes_t *lanes) { return (uint16_t)(lanes->na
 static void draw_words(picture_t *picture, const lanes_t *lanes, const lane_t *lane, uint16_t row,
                        bool is_short)
 {
-    const reader_facts_t facts = reader_facts(lane->station->reader);
+    const reader_facts_t facts = reader_facts(lane->sensor->reader);
     const uint32_t rate = lane_rate_tenths(lanes, lane);
     char value[LANE_VALUE];
     char text[96];
