@@ -209,13 +209,16 @@ fathom_status_t port_finish(port_t *port, fathom_transaction_t *transaction)
     }
 }
 
-void port_listen(port_t *port, uint32_t for_us)
+fathom_status_t port_listen(port_t *port, uint32_t for_us)
 {
     const host_t *const host = port->host;
     const uint64_t end_us = host->now_us(host->ctx) + for_us;
-    for (uint64_t at_us; (at_us = host->now_us(host->ctx)) < end_us;)
-        if (fathom_line_poll(&port->line) < 0 || port_wait(port, (uint32_t)(end_us - at_us)) != FATHOM_OK)
-            return;
+    fathom_status_t status = FATHOM_OK;
+    for (uint64_t at_us; status == FATHOM_OK && (at_us = host->now_us(host->ctx)) < end_us;) {
+        if (fathom_line_poll(&port->line) < 0) return FATHOM_ERR_PORT;
+        status = port_wait(port, (uint32_t)(end_us - at_us));
+    }
+    return status;
 }
 
 /* ---- properties ---- */

@@ -98,8 +98,8 @@ fathom_status_t port_wait(port_t *port, uint32_t max_us);
 /* Waits for the end of a transaction on the port's line, and returns its status. A signal cancels the transaction. */
 fathom_status_t port_finish(port_t *port, fathom_transaction_t *transaction);
 
-/* Listens without a request. What is received is added to port->listener. A signal ends it. */
-void port_listen(port_t *port, uint32_t for_us);
+/* Listens without a request. What is received is added to port->listener. A signal ends it. Returns as port_wait(). */
+fathom_status_t port_listen(port_t *port, uint32_t for_us);
 
 /* ---- properties ---- */
 

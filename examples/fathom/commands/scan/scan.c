@@ -10,9 +10,7 @@
 #include "ports/line_text.h"
 #include "sensors/models.h"
 
-enum { PROGRESS_US = 100000 };
-
-static uint64_t now_us(const scan_t *scan) { return scan->host->now_us(scan->host->ctx); }
+uint64_t scan_now_us(const scan_t *scan) { return scan->port.host->now_us(scan->port.host->ctx); }
 
 void scan_report(scan_t *scan, const scan_finding_t *finding)
 {
@@ -32,9 +30,9 @@ void scan_report(scan_t *scan, const scan_finding_t *finding)
         scan->awakened++;
 }
 
-static void show_progress(scan_t *scan)
+void scan_show_progress(scan_t *scan)
 {
-    const uint64_t now = now_us(scan);
+    const uint64_t now = scan_now_us(scan);
     char settings[LINE_TEXT];
     char doing[LINE_TEXT + 16] = "listens";
     if (scan->line != NULL)
@@ -42,13 +40,6 @@ static void show_progress(scan_t *scan)
     scan_progress_show(
         &scan->progress, now,
         scan->line != NULL ? scan->options.plan.listen_us + scan->done_us : now - scan->start_us, doing);
-}
-
-bool scan_wait(scan_t *scan, uint32_t max_us)
-{
-    if (scan->output_error != 0) return false;
-    if (scan->progress.is_terminal) show_progress(scan);
-    return port_wait(&scan->channel, max_us < PROGRESS_US ? max_us : PROGRESS_US) != FATHOM_ERR_CANCELLED;
 }
 
 /* Prints "addresses 1 to 32 at 9600 8N1, 19200 8E1". */
@@ -95,7 +86,7 @@ static void announce(const scan_plan_t *plan)
 static fathom_status_t scan_line(scan_t *scan)
 {
     announce(&scan->options.plan);
-    scan->start_us = now_us(scan);
+    scan->start_us = scan_now_us(scan);
     scan_progress_begin(&scan->progress, stderr, scan_plan_us(&scan->options.plan));
     const fathom_status_t status = scan_listen(scan);
     return status != FATHOM_OK || (scan->has_sender && !scan->options.wake) ? status : scan_walk(scan);
@@ -112,7 +103,7 @@ static void print_port_failure(const port_t *port)
 
 static int finish(scan_t *scan, fathom_status_t status)
 {
-    const host_t *const host = scan->host;
+    const host_t *const host = scan->port.host;
     scan_progress_clear(&scan->progress);
     if (scan->output_error == EINTR && host->has_ended(host->ctx)) scan->output_error = 0;
     /* The reader of a pipe has read enough, as head does. That needs no message. */
@@ -122,7 +113,7 @@ static int finish(scan_t *scan, fathom_status_t status)
     if (scan->output_error != 0)
         (void)fprintf(stderr, "fathom: cannot write the output: %s\n", strerror(scan->output_error));
     else if (status == FATHOM_ERR_PORT)
-        print_port_failure(&scan->channel);
+        print_port_failure(&scan->port);
     else if (status != FATHOM_OK)
         (void)fprintf(stderr, "fathom: ended before all addresses were asked; sensors found: %" PRIu32 "\n",
                       scan->sensors);
@@ -134,20 +125,19 @@ static int run(const host_t *host, int argc, char **argv)
 {
     static scan_t scan;
     memset(&scan, 0, sizeof scan);
-    scan.host = host;
     if (!scan_options(&scan.options, argc, argv)) return STATUS_USAGE;
     if (scan.options.wants_help) return command_help(&scan_command);
     if (scan.options.estimate) return print_estimate(&scan.options);
     if (!host->begin(host->ctx)) return STATUS_FAILED;
-    scan.channel.watches_output = true;
-    if (!port_open_now(&scan.channel, host,
+    scan.port.watches_output = true;
+    if (!port_open_now(&scan.port, host,
                        &(port_settings_t){.path = scan.options.port, .line = scan_dyp_line})) {
-        (void)fprintf(stderr, "fathom: %s\n", port_error(&scan.channel));
+        (void)fprintf(stderr, "fathom: %s\n", port_error(&scan.port));
         return STATUS_FAILED;
     }
-    scan.channel.parts.silence_us = scan_silence_us(&scan.options.plan);
+    scan.port.parts.silence_us = scan_silence_us(&scan.options.plan);
     const int status = finish(&scan, scan_line(&scan));
-    port_close(&scan.channel);
+    port_close(&scan.port);
     return status;
 }
 

@@ -4,7 +4,7 @@
 
 #include "commands/scan/scan_options.h"
 #include "commands/scan/scan_progress.h"
-#include "ports/channel.h"
+#include "ports/port.h"
 #include "sensors/finding.h"
 
 enum { SCAN_ADDRESSES = 256 };
@@ -23,9 +23,8 @@ typedef struct {
 } scan_heard_t;
 
 typedef struct {
-    const host_t *host;
     scan_options_t options;
-    channel_t channel;
+    port_t port;
     scan_progress_t progress;
     uint64_t start_us;
     uint64_t done_us; /* part of scan_plan_us() that is done */
@@ -79,8 +78,10 @@ fathom_status_t scan_walk(scan_t *scan);
 /* Reports a finding. Called at once, except for what follows from all addresses of a line setting. */
 void scan_report(scan_t *scan, const scan_finding_t *finding);
 
-/* Sleeps until a byte arrives, at most `max_us`. Returns false if the scan has to end. */
-bool scan_wait(scan_t *scan, uint32_t max_us);
+void scan_show_progress(scan_t *scan);
+
+/* Returns the time of the clock. */
+uint64_t scan_now_us(const scan_t *scan);
 
 /* ---- one request ---- */
 

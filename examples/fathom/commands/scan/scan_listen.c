@@ -27,7 +27,7 @@ static bool understand(scan_t *scan, const fathom_line_settings_t *line)
 {
     scan_finding_t *const finding = &scan->sender;
     evidence_t evidence;
-    listener_judge(&scan->channel.listener, 0, &evidence);
+    listener_judge(&scan->port.listener, 0, &evidence);
     finding->line = *line;
     const model_t *const sender = find_sender(&evidence);
     if (sender != NULL) return name_sensor(finding, sender, SCAN_AUTO);
@@ -65,7 +65,7 @@ static fathom_status_t try_rates(scan_t *scan)
 fathom_status_t scan_listen(scan_t *scan)
 {
     const fathom_status_t status = scan_hear(scan, &scan_dyp_line, scan->options.plan.listen_us);
-    scan->has_sender = scan->channel.listener.bytes >= LEAST_BYTES;
+    scan->has_sender = scan->port.listener.bytes >= LEAST_BYTES;
     if (status != FATHOM_OK || !scan->has_sender || understand(scan, &scan_dyp_line)) return status;
     return try_rates(scan);
 }

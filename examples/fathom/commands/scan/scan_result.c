@@ -85,7 +85,6 @@ void scan_print_result(const scan_t *scan)
                       scan->options.is_default
                           ? "; a sensor that was set otherwise is found with --address 1-254 --baud all"
                           : "");
-    const uint64_t now_us = scan->host->now_us(scan->host->ctx);
     (void)fprintf(stderr, "fathom: sensors found: %" PRIu32 ", after %s\n", scan->sensors,
-                  duration_text(now_us - scan->start_us, duration));
+                  duration_text(scan_now_us(scan) - scan->start_us, duration));
 }

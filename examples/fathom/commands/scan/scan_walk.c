@@ -202,6 +202,7 @@ static fathom_status_t visit_all(scan_t *scan, const fathom_line_settings_t *lin
     scan->asked = 0;
     for (unsigned address = plan->first; address <= plan->last && status == FATHOM_OK; address++) {
         scan->address = (uint8_t)address;
+        scan_show_progress(scan);
         if (scan->found_baud[address] != line->baud) status = visit(scan, line, scan->address, 0);
         scan->done_us += scan_probe_us(plan, line);
     }
