@@ -109,7 +109,7 @@ TEST(a_device_that_does_not_respond_is_a_state_of_its_own)
         alarm_of("a16:1:modbus", "near<500,unknown-after=2000,no-response=on,unknown=off", "--count 10");
     assert_int_equal(run->status, 1);
     expect_text(run, "0 a16: alarm off, 700 mm\n5 a16: alarm no_response (on)\n8 a16: alarm off, 700 mm\n");
-    expect_err(run, "nothing was heard at all");
+    expect_err(run, "no byte was received");
     SEES_A16(700);
     steps.off_us = 3800000;
     run = alarm_of("a16:1:modbus", "near<500,unknown-after=2000,no-response=off,unknown=on", "--count 7");

@@ -107,8 +107,9 @@ TEST(a_level_that_does_not_stand_still_says_what_to_check)
     with_relay((fathom_sim_a05_config_t){0});
     chip.in.get = get_noise;
     EXPECT(1, 0, "far", "read a05:relay@gpiochip0,in=5 --count 1");
-    expect_err("attempt 1: the level does not stand still; check for a loose wire");
-    expect_err("bias=up or bias=down");
+    expect_err(
+        "attempt 1: no reading from a05 at gpiochip0: the level is not stable. Check for a loose wire");
+    expect_err("bias=up, bias=down");
 }
 
 TEST(watch_has_a_lane_of_near_and_far)

@@ -138,11 +138,11 @@ TEST(one_is_lost_and_comes_back_one_is_silent_and_the_third_does_not_pause)
     expect_err(run, "fathom: lost: attempts 15, failed 1, readings 14,");
     expect_err(run, "fathom: mute: attempts 20, failed 20, readings 0");
     expect_err(run, "fathom: fine: attempts 20, failed 0, readings 20,");
-    assert_int_equal(times(run->err, "p0: unplugged; waiting until it is back\n"), 1);
+    assert_int_equal(times(run->err, "p0: unplugged. Waiting until it is back\n"), 1);
     assert_int_equal(times(run->err, "fathom: p0: it is back; reading goes on\n"), 1);
     assert_int_equal(times(run->err, "p0: "), 2);
     assert_int_equal(times(run->err, "p2"), 0);
-    expect_err(run, "fathom: mute: attempt 20: no response from address 1");
+    expect_err(run, "fathom: mute: attempt 20: no response from hps167s:1");
 }
 
 /* Rows of csv that begin with the name and have this status. */
@@ -180,7 +180,8 @@ TEST(without_reconnect_the_others_are_read_to_their_end)
     RUN(1, "read lost=hps167s@p0 fine=hps167s@p2 --interval 500 --count 12 --stats");
     assert_int_equal(readings_of(run, "lost").count, 5);
     assert_int_equal(readings_of(run, "fine").count, 12);
-    expect_err(run, "p0: unplugged; connect it again and start again (with --reconnect it is waited for)\n");
+    expect_err(run,
+               "p0: unplugged. Connect it again and start again. With --reconnect, fathom waits for it\n");
     expect_err(run, "fathom: lost: attempts 6, failed 1, readings 5,");
     expect_err(run, "fathom: fine: attempts 12, failed 0, readings 12,");
     assert_in_range(run->took_us, 5500000, 5600000); /* 11 intervals, and a response */
@@ -335,7 +336,8 @@ TEST(a_silent_one_among_others_is_told_by_its_own_line)
     hps167s(1, (fathom_sim_hps167s_config_t){0});
     RUN(1, "read mute=hps167s@p0 fine=hps167s@p1 --count 2 --interval 1000");
     /* Not "while others on this line answer", since they are on another one. */
-    expect_err(run, "fathom: mute: attempt 1: no response from address 1: nothing was heard at all;");
+    expect_err(
+        run, "fathom: mute: attempt 1: no response from hps167s:1 at p0 (19200 8E1): no byte was received.");
 }
 
 TEST(two_hundred_and_fifty_six_ports_are_read_side_by_side)

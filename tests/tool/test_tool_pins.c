@@ -57,16 +57,16 @@ TEST(no_pulse_says_what_to_check)
     with_a16(FATHOM_SIM_A16_PWM);
     fathom_sim_tx_wire(&pins, FATHOM_SIM_WIRE_LOW);
     EXPECT(1, 0, "mm", "read " PWM " --count 1");
-    expect_err("attempt 1: no pulse came back; check the sensor's supply");
-    expect_err("the numbers of the chip's lines");
-    expect_err("5 V or RS232 at a pin for 3.3 V");
+    expect_err("attempt 1: no reading from a16 at gpiochip0: no pulse was received. Check the supply");
+    expect_err("line numbers of the chip");
+    expect_err("5 V or RS232 destroy a pin for 3.3 V");
 }
 
 TEST(a_distance_outside_the_window_is_refused)
 {
     with_a16(FATHOM_SIM_A16_PWM);
     EXPECT(1, 0, "mm", "read " PWM " --count 1 --window 2000-3000");
-    expect_err("a pulse came that is no distance from 2000 to 3000 mm");
+    expect_err("a pulse is no distance from 2000 to 3000 mm");
 }
 
 static void spike_of(uint32_t width_us)
@@ -99,7 +99,7 @@ TEST(noise_alone_is_told_as_such)
     at_us = 50000;
     happens = cut_with_noise;
     EXPECT(1, 0, "mm", "read " PWM " --count 1");
-    expect_err("no pulse of the sensor came back, but 1 shorter ones: noise");
+    expect_err("no pulse of the sensor, but 1 shorter ones: noise");
 }
 
 static void cut_with_short_pulse(void)

@@ -167,7 +167,7 @@ TEST(info_goes_on_where_a_sensor_or_its_port_fails)
         run->out,
         "{\"sensor\":\"tank\",\"model\":\"a16\",\"mode\":\"modbus\",\"line\":\"9600 8N1\",\"address\":3,");
     assert_string_equal(strchr(run->out, '\n'), "\n"); /* one object, in one line */
-    expect_begin(run->err, "fathom: gone: no such device\nfathom: mute: address: no response from address 9");
+    expect_begin(run->err, "fathom: gone: no such device\nfathom: mute: address: no response from a16:9");
 }
 
 TEST(info_of_one_has_no_name_before_its_text_unless_the_user_has_given_one)

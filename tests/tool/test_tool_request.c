@@ -168,7 +168,7 @@ TEST(a_read_beside_0x0009_needs_no_yes)
                                         "1 3 8 1", "1 4 0x0101", "1 1 00 09 00 01", "1 2 00 09 00 01"};
     for (size_t i = 0; i != sizeof lines / sizeof lines[0]; i++) {
         far_answers("");
-        far_run(1, "", "nothing was heard at all", lines[i]);
+        far_run(1, "", "no byte was received", lines[i]);
         assert_int_equal(far_end.writes, 1);
     }
 }
@@ -190,7 +190,7 @@ TEST(numbers_are_decimal_or_hex_and_bytes_are_hex)
     };
     for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
         far_answers("");
-        far_run(1, "", "no response from address 1", rows[i].line);
+        far_run(1, "", "no response from unit 1 at ", rows[i].line);
         far_expect_sent(rows[i].bytes);
     }
 }

@@ -47,9 +47,9 @@ TEST(what_comes_back_is_told)
          "received  01 2B 0E 01 01 00 00 01 00 03 41 42 43 2D 63\n", ""},
         /* refused */
         {"1 3 0x0101", "01 83 02 C0 F1", 1, "received  01 83 02 C0 F1\n",
-         "unit 1 refused: exception 02 (illegal data address): it has no such register\n"},
+         "unit 1 refused: exception 02 (illegal data address): the sensor has no such register\n"},
         {"1 3 0x0101 --sensor hps167s", "01 83 02 C0 F1", 1, "",
-         "it has no such register; HPS table 39: illegal start address or register address\n"},
+         "the sensor has no such register; HPS table 39: illegal start address or register address\n"},
         {"1 3 0x0101 --sensor a16", "01 83 02 C0 F1", 1, "", "no exceptions are in the datasheet of a16\n"},
         {"1 6 0x0200 5 --yes", "01 86 04 43 A3", 1, "", "exception 04 (server device failure): "},
         {"1 0x2b 0e 01 00 --yes", "01 AB 01 9E F0", 1, "", "exception 01 (illegal function): "},
@@ -58,28 +58,31 @@ TEST(what_comes_back_is_told)
          "\"exception\":{\"code\":2,\"name\":\"illegal data address\"}",
          ""},
         /* damaged: a bit of the CRC, of the value; half a frame, which leaves open what is the rest */
-        {"1 3 0x0101", "01 03 02 02 EF F8 A9", 1, "heard     01 03 02 02 EF F8 A9\n", "was damaged; "},
-        {"1 3 0x0101", "01 03 02 12 EF F8 A8", 1, "heard     01 03 02 12 EF F8 A8\n", "was damaged; "},
+        {"1 3 0x0101", "01 03 02 02 EF F8 A9", 1, "heard     01 03 02 02 EF F8 A9\n",
+         "damaged response from unit 1 at "},
+        {"1 3 0x0101", "01 03 02 12 EF F8 A8", 1, "heard     01 03 02 12 EF F8 A8\n",
+         "damaged response from unit 1 at "},
         {"1 3 0x0101 --format json", "01 03 02 02 EF F8 A9", 1,
          "\"status\":\"damaged\",\"sent\":\"01 03 01 01 00 01 D4 36\",\"heard\":\"01 03 02 02 EF F8 A9\"",
          ""},
-        {"1 3 0x0101", "01 03 02 02", 1, "heard     01 03 02 02\n", "was damaged; "},
+        {"1 3 0x0101", "01 03 02 02", 1, "heard     01 03 02 02\n", "damaged response from unit 1 at "},
         {"1 0x2b 0e 01 00 --yes", "01 2B 0E 01 01 00 00 01 00 03 41 42 43 2D 64", 1,
-         "heard     01 2B 0E 01 01 00 00 01 00 03 41 42 43 2D 64\n", "was damaged; "},
+         "heard     01 2B 0E 01 01 00 00 01 00 03 41 42 43 2D 64\n", "damaged response from unit 1 at "},
         /* another unit, another function, another count, another register */
         {"1 3 0x0101", "02 03 02 02 EF BC A8", 1, "heard     02 03 02 02 EF BC A8\n",
-         "it was address 2 that was heard; try UNIT 2"},
+         "but address 2 responds. Try UNIT 2"},
         {"1 3 0x0101", "01 04 02 02 EF F9 DC", 1, "heard     01 04 02 02 EF F9 DC\n",
-         "unit 1 answered something else than was asked"},
-        {"1 3 0x0101 2", "01 03 02 02 EF F8 A8", 1, "", "unit 1 answered something else than was asked"},
+         "the response does not fit the request"},
+        {"1 3 0x0101 2", "01 03 02 02 EF F8 A8", 1, "", "the response does not fit the request"},
         /* a write of one register that is not ours: the acknowledgement equals the request of another master */
         {"1 6 0x0200 5 --yes", "01 06 02 05 00 01 59 B3", 1, "",
-         "another master sent a request to address 1 at the same time"},
-        {"1 5 00 00 ff 00 --yes", "01 05 00 01 FF 00 DD FA", 1, "", "unit 1 answered something else"},
+         "another master asked this unit at the same time"},
+        {"1 5 00 00 ff 00 --yes", "01 05 00 01 FF 00 DD FA", 1, "", "the response does not fit the request"},
         /* no frame, and nothing */
-        {"1 3 0x0101", "55 FE 80", 1, "heard     55 FE 80\n", "bytes were heard, but no Modbus frame; "},
+        {"1 3 0x0101", "55 FE 80", 1, "heard     55 FE 80\n", "bytes were received, but no Modbus frame. "},
         {"1 3 0x0101", "", 1, "sent      01 03 01 01 00 01 D4 36\n",
-         "nothing was heard at all; check the supply, A and B (or RX and TX) swapped, UNIT, and --baud"},
+         "no byte was received. Check the power, whether A and B (or RX and TX) are swapped, UNIT, and "
+         "--baud"},
         {"1 3 0x0101 --format json", "", 1, "\"status\":\"no_response\"", ""},
         /* noise before it, and more behind it */
         {"1 3 0x0101", "55 FE 80 01 03 02 02 EF F8 A8", 0, "received  01 03 02 02 EF F8 A8\n",
@@ -132,7 +135,7 @@ TEST(an_answer_after_the_time_out_is_none_and_the_time_out_is_kept)
 TEST(the_user_can_end_it)
 {
     far_end.tool.ctrl_c_us = 200000;
-    far_run(1, "sent ", "fathom: ended before the response came\n", "1 3 0x0101");
+    far_run(1, "sent ", "fathom: the command ended before the response arrived\n", "1 3 0x0101");
     assert_in_range(far_end.now_us, 200000, 210000);
 }
 
@@ -140,7 +143,8 @@ TEST(the_user_can_end_it)
 TEST(a_read_leaves_after_1_s_on_a_line_that_is_never_silent)
 {
     far_end.babbles = true;
-    far_run(1, "sent ", "fathom: no request to address 1 could be sent safely: the line was never silent; ",
+    far_run(1, "sent ",
+            "fathom: cannot send a request to unit 1 at line (9600 8N1): the line was never silent, ",
             "1 3 0x0101");
     assert_int_equal(far_end.writes, 1);
     assert_in_range(far_end.now_us, 2074000, 2180000);
@@ -149,7 +153,7 @@ TEST(a_read_leaves_after_1_s_on_a_line_that_is_never_silent)
 TEST(a_write_does_not_leave_on_a_line_that_is_never_silent)
 {
     far_end.babbles = true;
-    far_run(1, "", "fathom: no request to address 1 could be sent safely: the line was never silent; ",
+    far_run(1, "", "fathom: cannot send a request to unit 1 at line (9600 8N1): the line was never silent, ",
             "--yes 1 6 0x0200 2");
     assert_int_equal(far_end.writes, 0);
     assert_in_range(far_end.now_us, 1066000, 1180000);
@@ -159,7 +163,7 @@ TEST(a_write_does_not_leave_on_a_line_that_is_never_silent)
 TEST(a_read_that_resets_does_not_leave_on_a_line_that_is_never_silent)
 {
     far_end.babbles = true;
-    far_run(1, "", "the line was never silent; ", "--yes 1 3 0x0009");
+    far_run(1, "", "the line was never silent, ", "--yes 1 3 0x0009");
     assert_int_equal(far_end.writes, 0);
 }
 
@@ -195,7 +199,7 @@ TEST(an_echo_alone_is_no_answer)
     for (size_t i = 0; i != sizeof lines / sizeof lines[0]; i++) {
         far_answers("");
         far_end.echoes = true;
-        far_run(1, "heard ", "only the tool's own request came back", lines[i]);
+        far_run(1, "heard ", "only the tool's own request was received", lines[i]);
     }
 }
 
@@ -203,12 +207,12 @@ TEST(an_echo_alone_is_no_answer)
 TEST(a_copy_of_what_is_acknowledged_otherwise_is_an_echo)
 {
     far_answers("01 03 01 01 00 01 D4 36");
-    far_run(1, "heard ", "only the tool's own request came back", "1 3 0x0101");
+    far_run(1, "heard ", "only the tool's own request was received", "1 3 0x0101");
     far_answers("01 10 02 05 00 01 02 00 01 44 05");
-    far_run(1, "heard ", "only the tool's own request came back", "1 16 0x0205 1 --yes");
+    far_run(1, "heard ", "only the tool's own request was received", "1 16 0x0205 1 --yes");
     /* this one has the shape of a response, of three bytes */
     far_answers("01 03 03 01 00 01 D5 8E");
-    far_run(1, "heard ", "only the tool's own request came back", "1 3 0x0301");
+    far_run(1, "heard ", "only the tool's own request was received", "1 3 0x0301");
 }
 
 /* A copy is an acknowledgement or an echo. 8 characters leave in 8.3 ms; an adapter holds their echo back for up to
@@ -222,7 +226,7 @@ TEST(one_copy_of_a_write_is_judged_by_its_time)
         const char *out;
         const char *err;
     } rows[] = {
-        {1000, "", 1, "heard ", "only the tool's own request came back"},
+        {1000, "", 1, "heard ", "only the tool's own request was received"},
         {5000, "", 0, "heard ", "unit 1 has acknowledged, unless the adapter returns what it sends"},
         {40000, "", 0, "\"status\":\"answered_or_echo\"", "has acknowledged, unless"},
         {60000, "", 0, "received  01 06 02 00 00 05 48 71\n", ""},
@@ -246,5 +250,5 @@ TEST(a_request_keeps_nothing_of_the_one_before)
     far_end.echoes = true;
     far_run(0, "received ", "", "1 3 0x0101");
     far_answers("");
-    far_run(1, "sent      01 03 01 01 00 01 D4 36\n", "nothing was heard at all", "1 3 0x0101");
+    far_run(1, "sent      01 03 01 01 00 01 D4 36\n", "no byte was received", "1 3 0x0101");
 }

@@ -97,7 +97,7 @@ TEST(an_echo_alone_is_no_device_at_any_address)
     bench.line.echo = true;
     const tool_run_t *const run = scan_finds("", "--address 1-254");
     assert_int_equal(run->status, 1);
-    assert_says(run, "only the tool's own requests came back");
+    assert_says(run, "only the tool's own request was received");
 
     scan_begin();
     bench.line.echo = true;
@@ -294,7 +294,7 @@ TEST(a_port_that_fails_ends_the_scan)
     scans.is_broken = true;
     const tool_run_t *const run = scan_finds("", "");
     assert_int_equal(run->status, 1);
-    assert_says(run, "the port did not send a request; check the adapter");
+    assert_says(run, "the port did not send the request. Check the adapter");
 }
 
 TEST(a_port_that_does_not_exist_is_named)
@@ -311,10 +311,10 @@ TEST(a_line_without_a_sound_is_explained)
 {
     const tool_run_t *run = scan("--address 1");
     assert_int_equal(run->status, 1);
-    assert_says(run, "no sensor was found: nothing was heard at all; check the supply, and A and B");
+    assert_says(run, "no sensor was found at line: no byte was received. Check the power, whether A and B");
     assert_says(run, "sensors found: 0");
     assert_null(strstr(run->err, "--baud all")); /* the user chose the range */
-    assert_says(scan(""), "found with --address 1-254 --baud all");
+    assert_says(scan(""), "use --address 1-254 --baud all");
 }
 
 TEST(neither_the_reset_nor_a_broadcast_can_be_sent)

@@ -92,7 +92,7 @@ TEST(a_rate_that_the_port_does_not_have_does_not_end_the_listening)
 TEST(another_master_is_not_disturbed)
 {
     (void)add_speaker(&dyp_line, 500000, a16_request, sizeof a16_request);
-    const tool_run_t *const run = hears("? 1 9600 8N1", "another master asks on this line");
+    const tool_run_t *const run = hears("? 1 9600 8N1", "another master sends requests on this line");
     assert_says(run, "another master sends requests to this address\n");
     assert_int_equal(run->status, 1);
 }
@@ -100,7 +100,7 @@ TEST(another_master_is_not_disturbed)
 TEST(unknown_bytes_are_a_sender_and_a_few_bytes_are_noise)
 {
     (void)add_speaker(&dyp_line, 1000000, junk, sizeof junk); /* three times in 3 s */
-    (void)hears("? - 9600 8N1", "something sends by itself: an HPS-167S made before 2020-09");
+    (void)hears("? - 9600 8N1", "something sends without a request: an HPS-167S made before 2020-09");
 
     scan_begin();
     (void)add_speaker(&dyp_line, 2000000, junk, sizeof junk); /* once */
@@ -144,7 +144,7 @@ TEST(one_spike_is_no_device)
     const fathom_sim_device_t *const spike = add_speaker(&dyp_line, 2200000, junk, 1);
     const tool_run_t *const run = scan_finds("", "--baud 9600 --address 1-12 --listen 1"); /* 2 s */
     assert_true(spike->counters.automatic != 0);
-    assert_says(run, "bytes were heard, but no response");
+    assert_says(run, "bytes were received, but no Modbus frame");
 }
 
 TEST(responses_that_are_not_modbus_are_one_finding)
@@ -228,7 +228,7 @@ TEST(another_master_that_starts_later_is_mentioned)
 {
     (void)add_speaker(&dyp_line, 0, a16_request, sizeof a16_request);
     const tool_run_t *const run = scan_finds("", "--address 2-4");
-    assert_says(run, "requests of another master were heard (it asked address 1)");
+    assert_says(run, "another master sends requests on this line (to address 1)");
     assert_null(strstr(run->err, "a frame of address"));
 }
 

@@ -117,7 +117,8 @@ TEST(what_was_acknowledged_and_reads_otherwise_is_said_to_be_so)
 TEST(a_refusal_is_a_refusal)
 {
     faulty(FATHOM_SIM_FAULT_EXCEPTION, 5, 6);
-    says(1, "termination off: refused: address 1 refused: exception ", "set hps167s termination off");
+    says(1, "termination off: refused: hps167s:1 at line (19200 8E1) refused the request: exception ",
+         "set hps167s termination off");
 }
 
 TEST(info_fails_when_it_could_not_read_all)

@@ -164,6 +164,7 @@ bool session_move(session_t *session, uint8_t address, const fathom_line_setting
 {
     sensor_t *const station = session->station;
     reader_cancel(station->reader);
+    memset(&station->counters, 0, sizeof station->counters); /* they prove nothing about another place */
     station->address = address;
     station->line = *line;
     sensor_set_name(station);
@@ -254,18 +255,11 @@ void session_explain(session_t *session, fathom_status_t status)
                          .channel = &session->channel,
                          .counters = &station->counters,
                          .line = &station->line,
-                         .address = station->address};
+                         .address = station->address,
+                         .is_setting = true};
     (void)counters_take(&station->counters, &session->port_counts, &session->channel, station->reader);
     listener_judge(&session->channel.listener, station->address, &failure.evidence);
-    if (status == FATHOM_ERR_CANCELLED)
-        (void)fputs("ended before the response came", stderr);
-    else if (status == FATHOM_ERR_MALFORMED && !reader_facts(station->reader).is_unexpected)
-        (void)fprintf(
-            stderr, "its responses cannot be that%s; check that it is %s, and alone at this address",
-            station->model->may_send_unasked ? ", or what it sends unasked stands between them" : "",
-            station->model->name);
-    else
-        advice_print(stderr, &failure);
+    advice_print(stderr, &failure);
 }
 
 void session_line_help(FILE *to)

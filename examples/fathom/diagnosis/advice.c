@@ -1,403 +1,376 @@
 /* SPDX-License-Identifier: MIT */
 #include "diagnosis/advice.h"
 
-#include <inttypes.h>
-#include <string.h>
+#include "diagnosis/advice_words.h"
 
-#include "diagnosis/advice_pins.h"
-#include "ports/line_text.h"
-#include "sensors/modbus_exception.h"
+/* ---- evidence ---- */
 
-/* "--baud and --parity (now 9600 8E1; ...)": and which others to try. */
-static void print_settings(FILE *to, const failure_t *failure)
+enum {
+    /* how the sensor is read: one of these */
+    ASKED = 1 << 0,
+    LISTENED = 1 << 1,  /* it sends automatically */
+    TRIGGERED = 1 << 2, /* by a break on TX */
+    PINS = 1 << 3,      /* lines of a GPIO chip */
+    /* what is known */
+    TCP = 1 << 4,
+    LOST = 1 << 5,   /* the port */
+    WAITS = 1 << 6,  /* for the lost port */
+    PULSES = 1 << 7, /* the sensor sends pulses */
+    SHORT = 1 << 8,  /* pulses that are too short */
+    WORKED = 1 << 9, /* the sensor has responded in this run, so its settings are right */
+    ADDRESS = 1 << 10,
+    OTHERS = 1 << 11, /* others on this line respond */
+    REQUEST = 1 << 12,
+    SETTING = 1 << 13,
+    /* what was received */
+    SILENCE = 1 << 14,
+    BYTES = 1 << 15,
+    LATE = 1 << 16,
+    MASTER = 1 << 17,      /* requests of another master */
+    FOREIGN = 1 << 18,     /* frames of another address */
+    IMPOSSIBLE = 1 << 19,  /* which the model cannot have */
+    STREAM = 1 << 20,      /* automatic frames of another model, or of any if the sensor was asked */
+    MODBUS = 1 << 21,      /* frames that are no measurement of a sensor that sends automatically */
+    AMBIGUOUS = 1 << 22,   /* automatic frames whose start is not certain */
+    OWN = 1 << 23,         /* frames of the address */
+    UNSOLICITED = 1 << 24, /* so many of them that a request hardly fits between two */
+    ECHO = 1 << 25,        /* only the tool's own request */
+    OLD = 1 << 26,         /* bytes of unknown age */
+    GATEWAY = 1 << 27,     /* an exception of the gateway */
+    /* the refused response */
+    UNEXPECTED = 1 << 28, /* it does not fit the request */
+    REFUSED = 1 << 29,    /* a value of it was refused */
+    CODE = 1 << 30        /* this value is a code without a meaning */
+};
+
+static bool is_only_echo(const evidence_t *heard)
 {
-    const fathom_line_settings_t *const now = failure->line;
-    const fathom_line_settings_t *const factory = &failure->model->line;
-    const uint64_t *const port = failure->counters->attempt.port;
-    char text[LINE_TEXT];
-    (void)fprintf(to, "check --baud and --parity (now %s)", line_text(now, text));
-    if (now->baud != factory->baud || now->parity != factory->parity || now->stop_bits != factory->stop_bits)
-        (void)fprintf(to, ", try without them (%s, as from the factory)", line_text(factory, text));
-    else if (failure->model->other_settings != NULL)
-        (void)fprintf(to, ", try %s", failure->model->other_settings);
-    if (port[PORT_FRAMING] != 0)
-        (void)fputs("; the port saw characters without an end, so most likely --baud", to);
-    else if (port[PORT_PARITY] != 0)
-        (void)fputs("; the port saw wrong parity, so most likely --parity", to);
+    return heard->echoes != 0 && heard->rest == 0 && heard->own == 0 && heard->foreign == 0 &&
+           heard->masters == 0;
 }
 
-static bool is_only_echo(const evidence_t *evidence)
+static bool is_stream(const failure_t *failure, bool is_asked)
 {
-    return evidence->echoes != 0 && evidence->rest == 0 && evidence->own == 0 && evidence->foreign == 0 &&
-           evidence->masters == 0;
+    const bool is_a05 = failure->evidence.streamed_a05 != 0;
+    const bool is_a16 = failure->evidence.streamed_a16 != 0;
+    if (is_asked || failure->mode->has_address) return is_asked && (is_a05 || is_a16);
+    return failure->model->probes > 1 ? is_a16 && !is_a05 : is_a05 && !is_a16;
 }
 
-static void print_late(FILE *to, uint32_t slowest_us)
+/* Unsolicited frames leave little time for a request, and none if the adapter delays them. */
+static bool is_crowded(const failure_t *failure)
 {
-    /* Twice as long as it took, in steps of 100 ms. */
-    const uint32_t try_ms = (slowest_us / 500u + 99u) / 100u * 100u;
-    (void)fprintf(to, "it answers, but too late; try a longer --timeout");
-    if (slowest_us != 0)
-        (void)fprintf(to, ": it took %" PRIu32 " ms, so --timeout %" PRIu32, slowest_us / 1000u, try_ms);
+    enum { LEAST = 3 };
+    return !port_has_gateway(failure->channel) && mode_is_asked(failure->mode) &&
+           failure->model->may_send_unasked && failure->evidence.own >= LEAST;
 }
 
-/* By what the user tells the address. */
-static const char *address_word(const failure_t *failure)
+static unsigned evidence_of(const failure_t *failure)
 {
-    return failure->is_request ? "UNIT" : "--address";
-}
-
-/* What else is on the line, if that explains why nothing was understood. */
-static bool print_others(FILE *to, const failure_t *failure)
-{
-    const evidence_t *const evidence = &failure->evidence;
-    if (evidence->masters != 0)
-        (void)fprintf(to,
-                      "requests of another master were heard (it asked address %u), so two ask on this line; "
-                      "disconnect the other one or stop its program",
-                      evidence->masters_address);
-    else if (evidence->foreign_address > failure->model->max_address)
-        (void)fprintf(to, "the line works, but it was address %u that was heard, which no %s can have",
-                      evidence->foreign_address, failure->model->name);
-    else if (evidence->foreign != 0)
-        (void)fprintf(to, "the line works, but it was address %u that was heard; try %s%s%u",
-                      evidence->foreign_address,
-                      failure->shared != NULL ? failure->model->name : address_word(failure),
-                      failure->shared != NULL ? ":" : " ", evidence->foreign_address);
-    else if (evidence->streamed_a05 != 0 || evidence->streamed_a16 != 0)
-        (void)fprintf(to, "frames of %s that sends by itself were heard; try: fathom read %s --mode auto",
-                      evidence->streamed_a05 != 0 ? "an a05" : "an a16",
-                      evidence->streamed_a05 != 0 ? "a05" : "a16");
-    else
-        return false;
-    return true;
-}
-
-/* Nothing was understood, over TCP. */
-static void print_tcp(FILE *to, const failure_t *failure)
-{
-    const uint8_t exception = port_gateway_exception(failure->channel);
-    if (exception != 0)
-        (void)fprintf(to, "the gateway says exception %02u (%s); check %s, and there the line and the supply",
-                      exception, modbus_exception(exception).name, address_word(failure));
-    else if (failure->evidence.bytes != 0)
-        (void)fputs("a response came that does not fit; check that the server is one of Modbus TCP", to);
-    else
-        (void)fprintf(to,
-                      "the connection stands, but nothing came back; check %s, the sensor's line and "
-                      "supply, and try a --timeout that is longer than the gateway's own",
-                      address_word(failure));
-}
-
-/* Of a sensor without an address: a break on our TX is its trigger. */
-static void print_untriggered(FILE *to, const failure_t *failure)
-{
-    if (failure->status == FATHOM_ERR_CHECKSUM) {
-        (void)fputs("what came after the trigger is no frame; ", to);
-        print_settings(to, failure);
-        (void)fputs(", and for noise", to);
-    } else {
-        (void)fputs(
-            "no response to the trigger; check the supply, the wires from the adapter's TX to the module's "
-            "RX "
-            "and back, that the adapter can send a break, and that the module is a UART-controlled one (if "
-            "not: --mode auto or modbus)",
-            to);
-    }
-}
-
-/* A device that sends by itself leaves little room, and none at all where its frames are known late. */
-static bool print_unasked(FILE *to, const failure_t *failure)
-{
-    enum { LEAST = 3, LITTLE_MS = 2 };
-    const char *const path = port_name(failure->channel);
-    if (port_has_gateway(failure->channel) || !mode_is_asked(failure->mode) ||
-        !failure->model->may_send_unasked || failure->evidence.own < LEAST)
-        return false;
-    const unsigned latency_ms = port_latency_ms(failure->channel);
-    (void)fprintf(to,
-                  "it sends measurements by itself, %" PRIu32
-                  " were heard, and a request has to fit between two of them; ",
-                  failure->evidence.own);
-    if (latency_ms != 0 && latency_ms < LITTLE_MS)
-        (void)fputs("try again", to);
-    else if (latency_ms != 0)
-        (void)fprintf(to, "the adapter keeps them back for %u ms: `setserial %s low_latency` ends that",
-                      latency_ms, path);
-    else
-        (void)fprintf(to, "if the adapter keeps them back, as USB adapters do: `setserial %s low_latency`",
-                      path);
-    return true;
-}
-
-static void print_no_response(FILE *to, const failure_t *failure)
-{
-    const evidence_t *const evidence = &failure->evidence;
-    (void)fprintf(to, "no response from address %u: ", failure->address);
-    if (failure->counters->attempt.line[FATHOM_LINE_LATE_RESPONSES] != 0) {
-        print_late(to, evidence->slowest_us);
-    } else if (print_others(to, failure) || print_unasked(to, failure)) {
-        return;
-    } else if (port_has_gateway(failure->channel)) {
-        print_tcp(to, failure);
-    } else if (is_only_echo(evidence)) {
-        (void)fprintf(to,
-                      "only the tool's own request came back, so the adapter works and echoes, but no sensor "
-                      "answers behind it; check the wiring behind the adapter (A, B, ground), the sensor's "
-                      "supply, and %s",
-                      address_word(failure));
-    } else if (evidence->own != 0) {
-        (void)fputs("frames of this address were heard, but none that answers; check that no other master "
-                    "asks, and that only one sensor has this address",
-                    to);
-    } else if (evidence->bytes != 0) {
-        (void)fprintf(to, "bytes were heard, but no %s frame; ", failure->mode->protocol);
-        print_settings(to, failure);
-        (void)fputs("; A and B swapped and noise look like this too", to);
-    } else if (failure->others_answer) {
-        char settings[LINE_TEXT];
-        (void)fprintf(
-            to,
-            "nothing was heard of it, while others on this line answer; check its supply, its wires, "
-            "its address and its settings (asked at %s)",
-            line_text(failure->line, settings));
-    } else {
-        char settings[LINE_TEXT];
-        (void)fprintf(to,
-                      "nothing was heard at all; check the supply, A and B (or RX and TX) swapped, %s, and "
-                      "--baud and --parity (now %s)",
-                      address_word(failure), line_text(failure->line, settings));
-    }
-}
-
-/* The line was never silent: says nothing about the unit, only about what was heard. */
-static void print_line_busy(FILE *to, const failure_t *failure)
-{
-    const evidence_t *const evidence = &failure->evidence;
-    (void)fprintf(to, "no request to address %u could be sent safely: the line was never silent; ",
-                  failure->address);
-    if (port_has_gateway(failure->channel)) {
-        (void)fputs(
-            "the server sends without a pause; check that the server is one of Modbus TCP, and restart it",
-            to);
-        return;
-    }
-    if (print_unasked(to, failure) || print_others(to, failure)) return;
-    if (evidence->own != 0) {
-        (void)fprintf(to, "frames of address %u were heard all the time; let it send less often",
-                      failure->address);
-        return;
-    }
-    (void)fputs(
-        "the bytes form no frames; check the bias and termination resistors and the wiring (A, B, ground), "
-        "disconnect other devices one by one, and ",
-        to);
-    print_settings(to, failure);
-}
-
-static void print_other_master(FILE *to, const failure_t *failure)
-{
-    (void)fprintf(to,
-                  "another master sent a request to address %u at the same time, so the response cannot be "
-                  "assigned; disconnect the other master or stop its program, or try again",
-                  failure->address);
-    if (failure->is_request)
-        (void)fputs("; a unit that acknowledges another write of function 06 than it was sent looks the same",
-                    to);
-}
-
-static void print_damaged(FILE *to, const failure_t *failure)
-{
+    const reader_facts_t facts = reader_facts(failure->reader);
+    const model_mode_t *const mode = failure->mode;
+    const channel_t *const port = failure->channel;
+    const bool has_pins = port_has_pins(port);
+    const evidence_t *const heard = &failure->evidence;
     const counters_t *const counters = failure->counters;
-    (void)fprintf(to, "the response of address %u was damaged; ", failure->address);
-    if (print_others(to, failure) || print_unasked(to, failure)) return;
-    if (port_has_gateway(failure->channel))
-        (void)fputs("its length is not what it says; check that the server is one of Modbus TCP", to);
-    else if (counters->readings != 0)
-        (void)fprintf(to,
-                      "other responses were good, so the settings are right and it is the line: check the "
-                      "screw terminals, the cable, its termination and its ground, and keep it away from "
-                      "motors (%" PRIu64 " of %" PRIu64 " attempts damaged)",
-                      counters->failures[-FATHOM_ERR_CHECKSUM], counters->attempts + 1);
-    else
-        (void)fputs("check --parity, the cable and its termination, and that no other unit has this address",
-                    to);
+    const uint64_t *const line = counters->attempt.line;
+    const uint64_t *const stream = counters->attempt.stream;
+    const bool is_asked = mode_is_asked(mode) && !has_pins;
+    const uint32_t own = mode->has_address ? heard->own : 0;
+    const struct {
+        bool is_known;
+        int evidence;
+    } rows[] = {
+        {is_asked, ASKED},
+        {!is_asked && !mode->is_triggered && !has_pins, LISTENED},
+        {mode->is_triggered && !has_pins, TRIGGERED},
+        {has_pins, PINS},
+        {port_has_gateway(port), TCP},
+        {port_is_lost(port), LOST},
+        {failure->waits, WAITS},
+        {mode->has_pulses, PULSES},
+        {failure->noises != 0, SHORT},
+        {counters->readings + counters->total.unit[UNIT_RESPONSES] != 0, WORKED},
+        {mode->has_address, ADDRESS},
+        {failure->others_answer, OTHERS},
+        {failure->is_request, REQUEST},
+        {failure->is_setting, SETTING},
+        {heard->bytes == 0, SILENCE},
+        {heard->bytes != 0, BYTES},
+        {line[FATHOM_LINE_LATE_RESPONSES] != 0, LATE},
+        {heard->masters != 0, MASTER},
+        {heard->foreign != 0, FOREIGN},
+        {heard->foreign_address > failure->model->max_address, IMPOSSIBLE},
+        {is_stream(failure, is_asked), STREAM},
+        {heard->masters + heard->foreign + own != 0, MODBUS},
+        {stream[FATHOM_STREAM_AMBIGUOUS] + stream[FATHOM_STREAM_UNSURE] != 0, AMBIGUOUS},
+        {heard->own != 0, OWN},
+        {is_crowded(failure), UNSOLICITED},
+        {is_only_echo(heard), ECHO},
+        {line[FATHOM_LINE_OLD_BYTES] != 0, OLD},
+        {port_gateway_exception(port) != 0, GATEWAY},
+        {facts.is_unexpected, UNEXPECTED},
+        {facts.refused_probe != 0, REFUSED},
+        {facts.refused_raw == 0 || facts.refused_raw >= 0xFFFD, CODE},
+    };
+    unsigned evidence = 0;
+    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++)
+        if (rows[i].is_known) evidence |= (unsigned)rows[i].evidence;
+    return evidence;
 }
 
-/* Of a sensor that sends by itself: what the driver dropped in this attempt. */
-static void print_dropped(FILE *to, const failure_t *failure)
+/* ---- causes ---- */
+
+struct cause {
+    unsigned statuses; /* bits AT(status): one of these, ... */
+    unsigned evidence; /* ... and all of this */
+    const char *why;
+    const char *advice; /* NULL: `why` has it */
+};
+
+#define AT(status) (1u << -(int)(status))
+
+enum {
+    PORT = AT(FATHOM_ERR_PORT),
+    UNSUPPORTED = AT(FATHOM_ERR_UNSUPPORTED),
+    CANCELLED = AT(FATHOM_ERR_CANCELLED),
+    NO_RESPONSE = AT(FATHOM_ERR_NO_RESPONSE),
+    CHECKSUM = AT(FATHOM_ERR_CHECKSUM),
+    EXCEPTION = AT(FATHOM_ERR_EXCEPTION),
+    MALFORMED = AT(FATHOM_ERR_MALFORMED),
+    STALE = AT(FATHOM_ERR_STALE),
+    LINE_BUSY = AT(FATHOM_ERR_LINE_BUSY),
+    OTHER_MASTER = AT(FATHOM_ERR_OTHER_MASTER)
+};
+
+#define SAME_EFFECT "Swapped wires A and B and noise have the same effect"
+#define DISTURBANCE                                                                                          \
+    "Check the screw terminals, the cable, its termination and ground, and keep it away from motors"
+#define NO_MASTER "Disconnect the other master or stop its program"
+#define PULSE_WIRES                                                                                          \
+    "Check the supply and ground of the sensor, the wires from trigger to its RX and from its TX to echo, "  \
+    "that these are line numbers of the chip (gpioinfo lists them) and not of the header's pins, and that "  \
+    "the sensor is the PWM variant. 5 V or RS232 destroy a pin for 3.3 V"
+
+/* The first row that fits is the cause. */
+static const cause_t causes[] = {
+    {PORT, LOST | WAITS, "{port-error}", "Waiting until it is back"},
+    {PORT, LOST | TCP, "{port-error}", "Start again[reads:. With --reconnect, fathom connects again]"},
+    {PORT, LOST, "{port-error}",
+     "Connect it again and start again[reads:. With --reconnect, fathom waits for it]"},
+    {PORT, 0, "{path}: the port did not send the request", "Check the adapter"},
+    {UNSUPPORTED, 0, "the port does not support this, and nothing was sent",
+     "Choose other line settings or another adapter"},
+    {CANCELLED, 0, "the command ended before the response arrived", NULL},
+
+    {NO_RESPONSE, PINS | SHORT,
+     "no pulse of the sensor, but {noises} shorter ones: noise on the wire of echo",
+     "Keep this wire away from motors and from the wire of trigger. " PULSE_WIRES},
+    {NO_RESPONSE, PINS, "no pulse was received", PULSE_WIRES},
+    {MALFORMED, PINS, "a pulse is no distance from {min} to {max} mm (--window)",
+     "Check for noise, and that nothing is nearer than 50 cm"},
+    {STALE, PINS | PULSES, "the pulse was read more than 2.5 s after its end",
+     "The computer is too busy, or it was asleep"},
+    {STALE, PINS, "the level is not stable",
+     "Check for a loose wire or a worn contact, that something pulls the input to one side (bias=up, "
+     "bias=down or a resistor), and that this is a line number of the chip (gpioinfo lists them)"},
+
+    {NO_RESPONSE, TRIGGERED, "nothing followed the trigger",
+     "Check the supply, the wires from the adapter's TX to the sensor's RX and back, that the adapter can "
+     "send a break, and that the sensor is the UART controlled variant (if not: --mode auto or --mode "
+     "modbus)"},
+    {CHECKSUM, TRIGGERED, "the bytes after the trigger form no frame",
+     "Check {settings}, and look for noise"},
+
+    {STALE | CHECKSUM, LISTENED | SILENCE | WORKED, "no byte was received. Earlier readings were good",
+     "Check the power and the wires of the sensor"},
+    {STALE | CHECKSUM, LISTENED | SILENCE | ADDRESS, "no byte was received",
+     "Check the power and whether A and B are swapped. If the sensor does not send automatically, use "
+     "--mode modbus"},
+    {STALE | CHECKSUM, LISTENED | SILENCE, "no byte was received",
+     "Check the power and the wire of the sensor's TX. If the sensor does not send automatically, use "
+     "--mode modbus"},
+    {STALE | CHECKSUM, LISTENED | STREAM, "frames of {streamed} in automatic mode were received",
+     "Try 'fathom read {streamed} --mode auto'"},
+    {STALE | CHECKSUM, LISTENED | ADDRESS | FOREIGN, "the line works, but address {foreign} sends",
+     "Try {other}"},
+    {STALE | CHECKSUM, LISTENED | MODBUS, "Modbus frames were received, but no measurement of {sensor}",
+     "If the sensor does not send automatically, use --mode modbus"},
+    {STALE | CHECKSUM, LISTENED | AMBIGUOUS,
+     "the bytes look like frames of {model}, but the start of a frame is not certain[dropped: (damaged "
+     "frames: {damaged-frames}, bytes in no frame: {dropped})]",
+     "Check that nothing else sends on this line, and look for noise"},
+    {STALE | CHECKSUM, LISTENED | WORKED,
+     "the bytes form no frame[dropped: (damaged frames: {damaged-frames}, bytes in no frame: {dropped})]. "
+     "Earlier readings were good, so the settings are right",
+     DISTURBANCE},
+    {STALE | CHECKSUM, LISTENED,
+     "the bytes form no frame of {model}[dropped: (damaged frames: {damaged-frames}, bytes in no frame: "
+     "{dropped})]",
+     "Check {settings}, and that the sensor is {model}. " SAME_EFFECT},
+
+    {EXCEPTION, 0, "exception {exception}", NULL},
+
+    {NO_RESPONSE, ASKED | LATE, "the response arrived after the time-out[took: (it took {took} ms)]",
+     "Try a longer --timeout[took:, such as --timeout {timeout}]"},
+    {NO_RESPONSE | CHECKSUM | LINE_BUSY, ASKED | MASTER,
+     "another master sends requests on this line (to address {asked})", NO_MASTER},
+    {NO_RESPONSE | CHECKSUM | LINE_BUSY, ASKED | FOREIGN | IMPOSSIBLE,
+     "the line works, but address {foreign} responds, which no {model} can have",
+     "Check which sensor is connected"},
+    {NO_RESPONSE | CHECKSUM | LINE_BUSY, ASKED | FOREIGN, "the line works, but address {foreign} responds",
+     "Try {other}"},
+    {NO_RESPONSE | CHECKSUM | LINE_BUSY, ASKED | STREAM,
+     "frames of {streamed} in automatic mode were received", "Try 'fathom read {streamed} --mode auto'"},
+    {NO_RESPONSE | CHECKSUM | LINE_BUSY | MALFORMED, ASKED | UNSOLICITED,
+     "the sensor sends measurements without a request ({own} received), and a request has to fit between two "
+     "of them",
+     "[latency:The adapter delays bytes by {latency} ms. ]If an adapter delays bytes, run 'setserial {path} "
+     "low_latency'. Else try again"},
+
+    {NO_RESPONSE, ASKED | GATEWAY, "the gateway responds with exception {exception}",
+     "Check {option}, and the line and the supply behind the gateway"},
+    {NO_RESPONSE, ASKED | TCP | BYTES, "the response does not fit the request",
+     "Check that the server speaks Modbus TCP"},
+    {NO_RESPONSE, ASKED | TCP, "the connection is open, but nothing was received",
+     "Check {option} and the line and supply of the sensor, and try a --timeout longer than the gateway's"},
+    {CHECKSUM, ASKED | TCP, "the response has a wrong length", "Check that the server speaks Modbus TCP"},
+    {LINE_BUSY, ASKED | TCP, "the server sends without a pause",
+     "Check that the server speaks Modbus TCP, and restart it"},
+
+    {NO_RESPONSE, ASKED | ECHO,
+     "only the tool's own request was received: the adapter works and echoes, but no sensor responds behind "
+     "it",
+     "Check the wires behind the adapter (A, B, ground), the supply, and {option}"},
+    {NO_RESPONSE, ASKED | OLD, "{old} bytes of unknown age were received and dropped",
+     "The computer was busy or asleep, or the adapter delays bytes. Try again, or try a longer --timeout"},
+    {NO_RESPONSE, ASKED | OWN, "frames of this address were received, but no response",
+     "Check that no other master asks, and that only one sensor has this address"},
+    {NO_RESPONSE, ASKED | BYTES | WORKED,
+     "bytes were received, but no {protocol} frame. Earlier responses were good, so the settings are right",
+     DISTURBANCE},
+    {NO_RESPONSE, ASKED | BYTES, "bytes were received, but no {protocol} frame",
+     "Check {settings}. " SAME_EFFECT},
+    {NO_RESPONSE, ASKED | WORKED,
+     "no byte was received. Earlier responses were good, so the settings are right",
+     "Check the power and the wires of the sensor"},
+    {NO_RESPONSE, ASKED | OTHERS, "no byte was received, but other sensors on this line respond",
+     "Check the power, the wires, the address and the settings of this sensor"},
+    {NO_RESPONSE, ASKED, "no byte was received",
+     "Check the power, whether A and B (or RX and TX) are swapped, {option}, and --baud and "
+     "--parity[not-scan:, or run 'fathom scan']"},
+
+    {CHECKSUM, ASKED | WORKED,
+     "earlier responses were good, so the settings are right and the line is disturbed[damaged: ({damaged} "
+     "of {attempts} attempts)]",
+     DISTURBANCE},
+    {CHECKSUM, ASKED, "its checksum is wrong",
+     "Check --parity, the cable and its termination, and that no other sensor has this address"},
+
+    {LINE_BUSY, ASKED | OWN, "frames of this address fill the line", "Let the sensor send less often"},
+    {LINE_BUSY, ASKED | WORKED, "the line was never silent", DISTURBANCE},
+    {LINE_BUSY, ASKED, "the line was never silent, and the bytes form no frames",
+     "Check the bias and termination resistors and the wires (A, B, ground), disconnect other devices one by "
+     "one, and check {settings}"},
+
+    {OTHER_MASTER, REQUEST,
+     "another master asked this unit at the same time, or the unit acknowledged another write of function 06",
+     NO_MASTER ", or try again"},
+    {OTHER_MASTER, 0, "another master asked this sensor at the same time", NO_MASTER ", or try again"},
+
+    {MALFORMED, UNEXPECTED, "the response does not fit the request",
+     "Check that the sensor is {model}, and the only one at address {address}"},
+    {MALFORMED, SETTING, "the response has a value that this setting cannot have",
+     "Check that the sensor is {model}, and the only one at address {address}"},
+    {MALFORMED, REFUSED | CODE,
+     "[probe:probe {probe}: ]{raw} (hex {hex}) has no known meaning[whole:. The other probes of this frame "
+     "may "
+     "be damaged and are refused too]",
+     "If you know it, use --means {hex}=MEANING. [probe:If this probe is not fitted, leave it out with "
+     "--probes. ]Check that the sensor is {model}, and look for "
+     "noise"},
+    {MALFORMED, REFUSED,
+     "[probe:probe {probe}: ]{raw} is no distance from {min} to {max} mm[whole:. The other probes of this "
+     "frame may be damaged and are refused too]",
+     "[probe:If this probe is not fitted, leave it out with --probes. ]Check that the sensor is {model}, and "
+     "look for noise"},
+    {MALFORMED, 0, "the values cannot be a distance: {values}",
+     "Check that the sensor is {model}, and look for noise"},
+
+    {~0u, 0, "{library}", NULL},
+};
+
+failure_t failure_of_request(fathom_status_t status, const channel_t *channel)
 {
-    const uint64_t *const stream = failure->counters->attempt.stream;
-    if (stream[FATHOM_STREAM_DROPPED_BYTES] == 0) return;
-    (void)fprintf(to, " (damaged frames: %" PRIu64 "; bytes in no frame: %" PRIu64 ")",
-                  stream[FATHOM_STREAM_DAMAGED], stream[FATHOM_STREAM_DROPPED_BYTES]);
+    static const model_t model = {.name = "the one that you expect", .max_address = UINT8_MAX};
+    static const model_mode_t mode = {.protocol = "Modbus", .is_modbus = true};
+    static const counters_t counters;
+    return (failure_t){
+        .status = status, .model = &model, .mode = &mode, .channel = channel, .counters = &counters};
 }
 
-/* Of a sensor that is heard at an address and not asked. */
-static void print_unheard(FILE *to, const failure_t *failure)
+/* A damaged response that is only the tool's own request is no response. */
+static fathom_status_t status_of(const failure_t *failure, unsigned evidence)
 {
-    const evidence_t *const evidence = &failure->evidence;
-    if (evidence->bytes == 0)
-        (void)fputs(
-            "nothing was heard at all; check the supply, A and B swapped, and that it sends by itself (if "
-            "not: --mode modbus)",
-            to);
-    else if (evidence->foreign != 0)
-        (void)print_others(to, failure);
-    else if (evidence->masters + evidence->own != 0)
-        (void)fprintf(
-            to,
-            "Modbus was heard on this line, and no measurement of address %u; if it does not send by itself: "
-            "--mode modbus",
-            failure->address);
-    else {
-        (void)fprintf(to, "bytes were heard, but no frame of %s; ", failure->model->name);
-        print_settings(to, failure);
-        (void)fputs("; A and B swapped and noise look like this too", to);
-        print_dropped(to, failure);
+    const bool is_echo =
+        failure->status == FATHOM_ERR_CHECKSUM && (evidence & (ASKED | ECHO)) == (ASKED | ECHO);
+    return is_echo ? FATHOM_ERR_NO_RESPONSE : failure->status;
+}
+
+const cause_t *diagnose(const failure_t *failure)
+{
+    const unsigned evidence = evidence_of(failure);
+    const fathom_status_t status = status_of(failure, evidence);
+    const cause_t *cause = causes;
+    while ((cause->statuses & AT(status)) == 0 || (cause->evidence & ~evidence) != 0) cause++;
+    return cause;
+}
+
+void advice_print_cause(FILE *to, const failure_t *failure)
+{
+    const cause_t *const cause = diagnose(failure);
+    advice_print_template(to, cause->why, failure);
+    if (cause->advice == NULL) return;
+    (void)fputs(". ", to);
+    advice_print_template(to, cause->advice, failure);
+}
+
+/* What failed. "": the cause has it. */
+static const char *what(const failure_t *failure)
+{
+    const unsigned evidence = evidence_of(failure);
+    if (failure->is_scan) return "no sensor was found{place}";
+    switch (status_of(failure, evidence)) {
+    case FATHOM_ERR_PORT:
+    case FATHOM_ERR_CANCELLED:
+        return "";
+    case FATHOM_ERR_UNSUPPORTED:
+        return "cannot set {path} to {line}";
+    case FATHOM_ERR_NO_RESPONSE:
+    case FATHOM_ERR_STALE:
+        return (evidence & PINS) != 0       ? "no reading from {sensor}{place}"
+               : (evidence & LISTENED) != 0 ? "no frame from {sensor}{place}"
+                                            : "no response from {sensor}{place}";
+    case FATHOM_ERR_CHECKSUM:
+        return (evidence & LISTENED) != 0 ? "no valid frame from {sensor}{place}"
+                                          : "damaged response from {sensor}{place}";
+    case FATHOM_ERR_EXCEPTION:
+        return "{sensor}{place} refused the request";
+    case FATHOM_ERR_MALFORMED:
+        return "refused response from {sensor}{place}";
+    case FATHOM_ERR_LINE_BUSY:
+        return "cannot send a request to {sensor}{place}";
+    case FATHOM_ERR_OTHER_MASTER:
+        return "cannot assign the response of {sensor}{place}";
+    default:
+        return "{sensor}{place} failed";
     }
-}
-
-static void print_stale(FILE *to, const failure_t *failure)
-{
-    const uint64_t *const stream = failure->counters->attempt.stream;
-    const evidence_t *const evidence = &failure->evidence;
-    const bool is_other =
-        failure->model->probes > 1 ? evidence->streamed_a05 == 0 : evidence->streamed_a16 == 0;
-    if (evidence->bytes == 0) {
-        (void)fputs(
-            "nothing was heard at all; check the supply, the wire from the sensor's TX, and that it sends by "
-            "itself (if not: --mode modbus)",
-            to);
-    } else if (is_other && (evidence->streamed_a05 != 0 || evidence->streamed_a16 != 0)) {
-        (void)print_others(to, failure);
-    } else if (evidence->masters + evidence->foreign != 0) {
-        (void)fputs(
-            "Modbus was heard on this line, and no frame of a sensor that sends by itself; try --mode modbus",
-            to);
-    } else if (stream[FATHOM_STREAM_AMBIGUOUS] + stream[FATHOM_STREAM_UNSURE] != 0) {
-        (void)fprintf(
-            to,
-            "bytes were heard that look like frames of %s, but not where one begins; check that nothing else "
-            "sends on this line, and for noise",
-            failure->model->name);
-        print_dropped(to, failure);
-    } else {
-        (void)fprintf(to, "bytes were heard, but no frame of %s; ", failure->model->name);
-        print_settings(to, failure);
-        (void)fprintf(to, ", that it is an %s, and for noise", failure->model->name);
-        print_dropped(to, failure);
-    }
-}
-
-/* A sensor that sends by itself has sent no good frame. */
-static void print_silence(FILE *to, const failure_t *failure)
-{
-    if (failure->mode->has_address)
-        print_unheard(to, failure);
-    else
-        print_stale(to, failure);
-}
-
-/* Which value of an A16 or A05 was refused and why, and what became of the other probes. */
-static void print_refused(FILE *to, const failure_t *failure, const reader_facts_t *facts)
-{
-    const uint16_t raw = facts->refused_raw;
-    const bool is_code = raw == 0 || raw >= 0xFFFD;
-    const bool has_probes = failure->model->probes > 1;
-    if (has_probes) (void)fprintf(to, "probe %u: ", facts->refused_probe);
-    if (is_code)
-        (void)fprintf(to, "%u (%X) is refused", raw, raw);
-    else
-        (void)fprintf(to, "%u is refused: no distance from %u to %u mm", raw, facts->min_mm, facts->max_mm);
-    if (failure->is_whole)
-        (void)fputs(", and with it the other probes of this frame, which may be damaged", to);
-    if (is_code) (void)fprintf(to, "; --means %X=... says what it is", raw);
-    if (has_probes) (void)fputs("; --probes leaves out a probe that is not fitted", to);
-    (void)fprintf(to, "; check that the sensor is %s, and for noise", failure->model->name);
-}
-
-/* Which values of an HPS-167S were refused. */
-static void print_values(FILE *to, const failure_t *failure, const reader_facts_t *facts)
-{
-    (void)fputs("a value that cannot be a distance:", to);
-    for (uint8_t i = 0; i != facts->value_count; i++) (void)fprintf(to, " %u", facts->values[i]);
-    (void)fprintf(to, "; check that the sensor is %s, and for noise", failure->model->name);
-}
-
-static void print_port(FILE *to, const failure_t *failure)
-{
-    const port_t *const port = failure->channel;
-    if (!port_is_lost(port)) {
-        (void)fprintf(to, "%s: the port did not send the request; check the adapter", port_name(port));
-        return;
-    }
-    (void)fputs(port_error(port), to);
-    if (!failure->waits && port_has_gateway(failure->channel))
-        (void)fputs("; start again (with --reconnect it is connected again)", to);
-    else if (!failure->waits)
-        (void)fputs("; connect it again and start again (with --reconnect it is waited for)", to);
-    else
-        (void)fputs("; waiting until it is back", to);
 }
 
 void advice_print(FILE *to, const failure_t *failure)
 {
-    const reader_facts_t facts = reader_facts(failure->reader);
-    if (port_has_pins(failure->channel) && advice_print_pins(to, failure, &facts)) return;
-    if (failure->mode->is_triggered &&
-        (failure->status == FATHOM_ERR_NO_RESPONSE || failure->status == FATHOM_ERR_CHECKSUM)) {
-        print_untriggered(to, failure);
-        return;
-    }
-    switch (failure->status) {
-    case FATHOM_ERR_CHECKSUM:
-        if (!mode_is_asked(failure->mode))
-            print_silence(to, failure);
-        else if (is_only_echo(&failure->evidence))
-            print_no_response(to, failure);
-        else
-            print_damaged(to, failure);
-        break;
-    case FATHOM_ERR_STALE:
-        print_silence(to, failure);
-        break;
-    case FATHOM_ERR_MALFORMED:
-        if (print_unasked(to, failure)) break;
-        if (facts.is_unexpected)
-            (void)fprintf(to,
-                          "address %u answered something else than was asked; check that it is %s, and alone "
-                          "at this address",
-                          failure->address, failure->model->name);
-        else if (facts.refused_probe != 0)
-            print_refused(to, failure, &facts);
-        else
-            print_values(to, failure, &facts);
-        break;
-    case FATHOM_ERR_EXCEPTION: {
-        const modbus_exception_t text = modbus_exception(facts.exception);
-        (void)fprintf(to, "address %u refused: exception %02u (%s): %s", failure->address, facts.exception,
-                      text.name, text.meaning);
-        if (text.is_other_sensor) (void)fprintf(to, "; check that it is %s", failure->model->name);
-        break;
-    }
-    case FATHOM_ERR_PORT:
-        print_port(to, failure);
-        break;
-    case FATHOM_ERR_UNSUPPORTED: {
-        char settings[LINE_TEXT];
-        (void)fprintf(to, "the port cannot be set to %s; nothing was sent",
-                      line_text(failure->line, settings));
-        break;
-    }
-    case FATHOM_ERR_LINE_BUSY:
-        print_line_busy(to, failure);
-        break;
-    case FATHOM_ERR_OTHER_MASTER:
-        print_other_master(to, failure);
-        break;
-    default: /* FATHOM_ERR_NO_RESPONSE, and that only the echo came */
-        print_no_response(to, failure);
-        break;
-    }
+    const char *const text = what(failure);
+    advice_print_template(to, text, failure);
+    if (text[0] != '\0') (void)fputs(": ", to);
+    advice_print_cause(to, failure);
 }

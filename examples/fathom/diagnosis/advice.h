@@ -7,27 +7,42 @@
 #include "diagnosis/counters.h"
 #include "sensors/models.h"
 
-/* A failed attempt. */
+/* A failed attempt, and the evidence from which its cause is judged. */
 typedef struct {
     fathom_status_t status;
     const model_t *model;
     const model_mode_t *mode;
-    const reader_t *reader;
+    const reader_t *reader; /* NULL: a request without a driver */
     const channel_t *channel;
-    const counters_t *counters;
-    const fathom_line_settings_t *line; /* at which it was asked */
-    const char *shared;                 /* its name among others that are read; NULL: it is alone */
-    evidence_t evidence;                /* of this attempt */
+    const counters_t *counters;         /* of the attempt and of the whole run */
+    const fathom_line_settings_t *line; /* with which the sensor was asked; NULL: with several */
+    const char *shared;                 /* name of the sensor among others; NULL: it is the only one */
+    evidence_t evidence;                /* what was received in this attempt */
     uint32_t noises;                    /* pulses of this attempt that were too short */
     uint8_t address;
-    bool others_answer; /* on this line */
-    bool waits;         /* for a lost port, which is opened again */
-    bool is_told;       /* of another sensor on this port, which is lost to all of them */
-    bool is_request;    /* of `fathom request`, which takes the address as UNIT */
+    bool others_answer; /* other sensors on this line respond */
+    bool waits;         /* the command waits for a lost port */
+    bool is_told;       /* a failure of the same port was already reported for another sensor */
+    bool is_setting;    /* a setting was read or written, and no distance */
+    bool is_request;    /* of `fathom request`, whose user enters the address as UNIT */
+    bool is_scan;       /* of `fathom scan`: no sensor responded */
     bool is_whole;      /* with FATHOM_ERR_MALFORMED: the other probes were refused too */
 } failure_t;
 
-/* What happened and what to try, without a line feed: the cause as far as the evidence tells it. */
+/* Returns a failed Modbus request to a sensor of unknown model. The caller adds the evidence. */
+failure_t failure_of_request(fathom_status_t status, const channel_t *channel);
+
+/* A cause: what it is and what to try, as templates. */
+typedef struct cause cause_t;
+
+/* Returns the cause that fits the evidence best, never NULL. After good readings the settings are right, so the cause is
+ * the wiring, the power or a disturbance. */
+const cause_t *diagnose(const failure_t *failure);
+
+/* Prints what failed, why, and what to try, without a line feed. */
 void advice_print(FILE *to, const failure_t *failure);
+
+/* Prints why, and what to try. */
+void advice_print_cause(FILE *to, const failure_t *failure);
 
 #endif

@@ -7,17 +7,17 @@
 modbus_exception_t modbus_exception(uint8_t number)
 {
     static const modbus_exception_t texts[] = {
-        [1] = {"illegal function", "it does not know this kind of request", true},
-        [2] = {"illegal data address", "it has no such register", true},
-        [3] = {"illegal data value", "it does not take so many registers", true},
-        [4] = {"server device failure", "it has failed; switch its supply off and on", false},
-        [5] = {"acknowledge", "it is still at work; try a longer --interval", false},
-        [6] = {"server device busy", "try --retries 2 or a longer --interval", false},
-        [8] = {"memory parity error", "its memory is damaged; switch its supply off and on", false},
-        [10] = {"gateway path unavailable", "a gateway in between cannot reach it; check the gateway", false},
+        [1] = {"illegal function", "the sensor does not support this function", true},
+        [2] = {"illegal data address", "the sensor has no such register", true},
+        [3] = {"illegal data value", "the sensor refuses this value or this number of registers", true},
+        [4] = {"server device failure", "the sensor has failed. Switch its supply off and on", false},
+        [5] = {"acknowledge", "the sensor is still busy. Try a longer --interval", false},
+        [6] = {"server device busy", "the sensor is busy. Try --retries 2 or a longer --interval", false},
+        [8] = {"memory parity error", "the sensor's memory is damaged. Switch its supply off and on", false},
+        [10] = {"gateway path unavailable", "a gateway cannot reach the sensor. Check the gateway", false},
         [11] = {"gateway target device failed to respond",
-                "a gateway in between hears nothing of it; check the wiring there", false},
+                "a gateway receives no response of the sensor. Check the wires there", false},
     };
-    static const modbus_exception_t unknown = {"unknown", "no code of the Modbus standard", true};
+    static const modbus_exception_t unknown = {"unknown", "the Modbus standard has no such code", true};
     return number < sizeof texts / sizeof texts[0] && texts[number].name != NULL ? texts[number] : unknown;
 }

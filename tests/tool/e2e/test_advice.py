@@ -38,27 +38,27 @@ class Asked(e2e.Case):
 
     @e2e.each(
         nothing_heard_is_wiring_supply_address_and_rate=(
-            b'', ['nothing was heard at all', 'supply', 'A and B', '--address', '--baud'], 'echo'),
+            b'', ['no byte was received', 'power', 'A and B', '--address', '--baud'], 'echo'),
         bytes_without_a_frame_are_rate_or_parity_and_no_other_rate_is_offered_where_there_is_none=(
-            NOISE, ['bytes were heard, but no Modbus frame', 'check --baud and --parity (now 9600 8N1)',
-                    'A and B swapped'], ', try'),
+            NOISE, ['bytes were received, but no Modbus frame', 'Check --baud and --parity (now 9600 8N1)',
+                    'Swapped wires A and B'], 'try'),
         bytes_without_a_frame_offer_the_rates_that_the_sensor_can_be_set_to=(
-            NOISE, ['(now 19200 8E1), try --baud 57600, 115200 or 230400'], 'from the factory', HPS),
+            NOISE, ['(now 19200 8E1; try --baud 57600, 115200 or 230400'], 'factory settings', HPS),
         bytes_without_a_frame_at_other_settings_offer_the_factorys=(
-            NOISE, ['(now 57600 8N1), try without them (19200 8E1, as from the factory)'], ', 115200',
+            NOISE, ['(now 57600 8N1; with factory settings 19200 8E1)'], ', 115200',
             'hps167s --baud 57600 --parity none'),
         another_units_response_names_its_address=(
-            e2e.registers(7, 754), ['address 7', 'try --address 7'], '--baud'),
-        another_units_exception_names_its_address_too=(e2e.adu(9, 0x83, 2), ['try --address 9'], '--baud'),
+            e2e.registers(7, 754), ['address 7', 'Try --address 7'], '--baud'),
+        another_units_exception_names_its_address_too=(e2e.adu(9, 0x83, 2), ['Try --address 9'], '--baud'),
         # it asks address 5 for four registers of an HPS-167S, and that one answers
         another_masters_requests_are_told=(
             e2e.adu(5, 3, 0, 8, 0, 4) + e2e.registers(5, 2083, 0xDCB2, 0x0701, 0),
-            ['requests of another master were heard (it asked address 5)'], '--address'),
+            ['another master sends requests on this line (to address 5)'], '--address'),
         with_echo_told_to_be_off_it_is_the_same_advice=(
-            e2e.ASK_A16, ["only the tool's own request came back", 'wiring behind the adapter'],
-            'nothing was heard', A16 + ' --echo off'),
+            e2e.ASK_A16, ["only the tool's own request was received", 'wires behind the adapter'],
+            'no byte was received', A16 + ' --echo off'),
         damaged_from_the_start_may_be_the_settings=(
-            DAMAGED, ['was damaged', '--parity', 'termination', 'no other unit'], 'other responses'))
+            DAMAGED, ['damaged response from ', '--parity', 'termination', 'no other sensor'], 'earlier responses'))
     def once(self, response, words, never, sensor=A16):
         self.advised(self.ask(response, sensor=sensor), 1, *words, never=never)
 
@@ -66,8 +66,8 @@ class Asked(e2e.Case):
         for sensor, request in ((A16, e2e.ASK_A16), (HPS, e2e.ASK_HPS)):
             done = self.ask(request, request, sensor=sensor)
             for attempt in (1, 2):
-                self.advised(done, attempt, "only the tool's own request came back",
-                             'wiring behind the adapter', 'supply', never='nothing was heard')
+                self.advised(done, attempt, "only the tool's own request was received",
+                             'wires behind the adapter', 'supply', never='no byte was received')
 
     def test_an_echo_and_a_response_are_a_reading_without_advice(self):
         for echo in ('auto', 'on'):
@@ -79,53 +79,52 @@ class Asked(e2e.Case):
     def test_a_late_response_names_a_time_out_that_is_long_enough(self):
         device, reader = self.beside(f'read {A16} --count 2 --timeout 500')
         device.read(8)
-        reader.expect('attempt 1: no response from address 1: nothing was heard at all', 'err')
+        reader.expect('attempt 1: .*: no byte was received', 'err')
         device.write(GOOD)  # some 500 ms after the request: twice that, and more if this machine is slow
         device.read(8)
         done = self.ends(reader, 1, out='')
-        line = self.advised(done, 2, 'it answers, but too late; try a longer --timeout')
-        took, offered = map(int, re.search(r'it took (\d+) ms, so --timeout (\d+)$', line).groups())
+        line = self.advised(done, 2, 'the response arrived after the time-out')
+        took, offered = map(int, re.search(r'it took (\d+) ms\)\. Try a longer --timeout, such as --timeout (\d+)$', line).groups())
         self.assertGreaterEqual(took, 500)
         self.assertGreaterEqual(offered, 2 * took)
         self.assertLess(offered, 2 * took + 102)
 
     def test_damaged_now_and_then_is_the_line_and_not_the_settings(self):
         done = self.ask(GOOD, DAMAGED, GOOD)
-        self.advised(done, 2, 'was damaged', 'other responses were good', 'cable', 'termination', 'ground',
-                     '(1 of 2 attempts damaged)', never='--parity')
+        self.advised(done, 2, 'damaged response from ', 'earlier responses were good', 'cable', 'termination', 'ground',
+                     '(1 of 2 attempts)', never='--parity')
         self.assertEqual(done.out.count(' 754 mm'), 2)
 
     def test_exceptions_are_told_by_name_and_what_they_mean(self):
-        rows = ((1, 'illegal function', 'check that it is a16'),
-                (2, 'illegal data address', 'no such register; check that it is a16'),
-                (3, 'illegal data value', 'check that it is a16'), (4, 'server device failure', 'supply off and on'),
+        rows = ((1, 'illegal function', 'Check that the sensor is a16'),
+                (2, 'illegal data address', 'no such register. Check that the sensor is a16'),
+                (3, 'illegal data value', 'Check that the sensor is a16'), (4, 'server device failure', 'supply off and on'),
                 (6, 'server device busy', '--retries'), (11, 'gateway target device failed to respond', 'gateway'),
-                (7, 'unknown', 'no code of'))
+                (7, 'unknown', 'no such code'))
         done = self.ask(*(e2e.adu(1, 0x83, row[0]) for row in rows))
         for attempt, (number, name, meaning) in enumerate(rows, 1):
-            line = self.advised(done, attempt, f'address 1 refused: exception {number:02} ({name}): ',
+            line = self.advised(done, attempt, f'refused the request: exception {number:02} ({name}): ',
                                 meaning)
-            self.assertEqual('check that it is' in line, number in (1, 2, 3, 7))
+            self.assertEqual('Check that the sensor is a16' in line, number in (1, 2, 3, 7))
 
     def test_a_sensor_that_sends_by_itself_is_named(self):
         for data, name in ((e2e.frame(1953) * 3, 'a16'), (TO_A05 * 2, 'a05')):
-            self.advised(self.ask(data), 1, f'frames of an {name} that sends by itself were heard',
+            self.advised(self.ask(data), 1, f'frames of {name} in automatic mode were received',
                          f'fathom read {name} --mode auto')
 
 
 class Sending(e2e.Case):
     @e2e.each(
-        nothing_heard_is_wiring_and_supply=('a16', b'', 'nothing was heard at all; check the supply, the '
-                                                        'wire .*--mode modbus'),
+        nothing_heard_is_wiring_and_supply=('a16', b'', 'no byte was received. Check the power and the wire .*--mode modbus'),
         bytes_without_a_frame_are_rate_or_parity=(
             'a05', NOISE * 6,
-            r'bytes were heard, but no frame of a05; check --baud and --parity \(now 9600 8N1\)'),
+            r'the bytes form no frame of a05\. Check --baud and --parity \(now 9600 8N1\)'),
         frames_of_the_other_sensor_name_it=(
-            'a16', TO_A05 * 3, 'frames of an a05 that sends by itself were heard; try: fathom read a05'),
+            'a16', TO_A05 * 3, "frames of a05 in automatic mode were received. Try 'fathom read a05 --mode auto'"),
         frames_of_the_other_sensor_name_it_too=(
             'a05', e2e.frame(1953) * 4,
-            'frames of an a16 that sends by itself were heard; try: fathom read a16'),
-        modbus_on_the_line_of_a_sensor_that_should_send=('a16', e2e.ASK_A16, 'Modbus was heard on this line'))
+            "frames of a16 in automatic mode were received. Try 'fathom read a16 --mode auto'"),
+        modbus_on_the_line_of_a_sensor_that_should_send=('a16', e2e.ASK_A16, 'Modbus frames were received, but no measurement of a16'))
     def hear(self, sensor, data, words):
         """One attempt of 1 s, in which this comes once."""
         device, reader = self.beside(f'read {sensor} --count 1 --timeout 1000 --format csv')

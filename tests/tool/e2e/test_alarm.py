@@ -30,7 +30,7 @@ class Alarm(e2e.Case):
         device = self.device()
         reader = self.begin(device.port, '--until-alarm --format csv')
         device.asked(e2e.ASK_A16, e2e.registers(1, 700))
-        done = self.ends(reader, 3, 'nothing was heard')
+        done = self.ends(reader, 3, 'no byte was received')
         self.assertEqual([(row['alarm'], row['is_on'], row['distance_mm']) for row in done.rows],
                          [('off', 'false', '700'), ('no_response', 'true', '')])
 
@@ -43,7 +43,7 @@ class Alarm(e2e.Case):
         reader.expect('alarm off, 700 mm')
         os.unlink(port)
         device.hang_up()
-        self.assertRegex(self.ends(reader, 3, 'waiting').out, r'a16: alarm no_response \(on\)\n$')
+        self.assertRegex(self.ends(reader, 3, 'Waiting').out, r'a16: alarm no_response \(on\)\n$')
 
     def test_a_port_that_is_lost_is_no_response_of_any_sensor(self):
         """Also of those that have just responded."""

@@ -39,7 +39,7 @@ class Calibrate(e2e.Case):
 
     def test_a_dead_line_is_explained(self):
         self.ends(f'calibrate hps167s --port {self.device()} --known 2000 --timeout 100', 1,
-                  'nothing was heard at all', 'nothing was written', out='')
+                  'no byte was received', 'nothing was written', out='')
 
 
 if __name__ == '__main__':

@@ -49,7 +49,7 @@ class Lost(Case):
         reader = self.begin(one, two, three, options='--reconnect --stats')
         self.has(reader, 'two', 5)
         self.sims['two'].end(signal.SIGKILL)
-        reader.expect(f'{self.path("two")}: .*; waiting until it is back$', 'err')
+        reader.expect(f'{self.path("two")}: .*. Waiting until it is back$', 'err')
         before = len(self.times(reader, 'two'))
         self.has(reader, 'one', 20)
         self.assertEqual(len(self.times(reader, 'two')), before)
@@ -64,15 +64,15 @@ class Lost(Case):
         times = self.times(reader, 'two')
         between = [one for one in self.times(reader, 'one') if times[before - 1] < one < times[before]]
         self.assertGreaterEqual(len(between), 20)
-        self.assertEqual(done.err.count('waiting until'), 1)
+        self.assertEqual(done.err.count('Waiting until'), 1)
 
     def test_without_reconnect_the_others_are_read_on(self):
         reader = self.begin(self.sensor('one'), self.sensor('two'), options='--count 30 --stats')
         self.has(reader, 'one', 3)
         self.sims['one'].end()
-        done = self.ends(reader, 1, '(with --reconnect it is waited for)', 'two: attempts 30, failed 0, readings 30,')
+        done = self.ends(reader, 1, 'With --reconnect, fathom waits for it', 'two: attempts 30, failed 0, readings 30,')
         self.assertEqual(len(self.times(reader, 'two')), 30)
-        self.assertEqual(done.err.count('connect it again'), 1)
+        self.assertEqual(done.err.count('Connect it again'), 1)
 
     def test_a_port_that_is_away_takes_next_to_no_cpu(self):
         reader = self.fathom('read', [self.sensor('one'), f'a16@{self.path("nowhere")}'],
@@ -134,7 +134,7 @@ class Connections(Case):
             server.say(tcp_server.registers(transaction, unit, mm, 0xDCB2, 0x0701, 0))
             reader.expect(f' far +{mm} mm')
             server.reset()
-        reader.expect('waiting until it is back', 'err')
+        reader.expect('Waiting until it is back', 'err')
         self.has(reader, 'one', 10)
         self.ends(reader.end(signal.SIGINT), 1, 'it is back; reading goes on')
         self.assertLess(self.longest(reader, 'one'), PAUSE)

@@ -112,7 +112,7 @@ class Availability(mqtt.Case):
         sim.end()
         self.wait_for(subscriber, '/tank/availability', lambda one: one.payload == 'offline', 2)
         self.wait_for(subscriber, '/tank/state', lambda one: one.json['status'] == 'port')
-        publisher.expect('waiting until it is back', 'err')
+        publisher.expect('Waiting until it is back', 'err')
         self.sim(f'a16:1:modbus --link {self.path("bus")}')
         self.wait_for(subscriber, '/tank/availability', lambda one: one.payload == 'online', 2)
         seqs = [state['seq'] for state in mqtt.states(self.messages(subscriber, '/tank/state'))]

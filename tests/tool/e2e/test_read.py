@@ -60,9 +60,9 @@ class FirstContact(e2e.Case):
         done = self.ends(f'read a05 --port {sim} --count 3 --format csv --stats', 1, 'attempts 3, failed 3, readings 9\n')
         self.assertEqual([(row['probe'], row['distance_mm']) for row in done.rows],
                          [('1', '1000'), ('2', '2000'), ('4', '3000')] * 3)
-        self.assertEqual(re.findall(r'attempt (\d): (probe 3: 7000 is refused: no distance from 1 to 6000 mm); '
-                                    r'--probes leaves out', done.err),
-                         [(n, 'probe 3: 7000 is refused: no distance from 1 to 6000 mm') for n in '123'])
+        self.assertEqual(re.findall(r'attempt (\d): .*: (probe 3: 7000 is no distance from 1 to 6000 mm)\. '
+                                    r'If this probe is not fitted, leave it out', done.err),
+                         [(n, 'probe 3: 7000 is no distance from 1 to 6000 mm') for n in '123'])
 
     @e2e.each(auto='auto', modbus='modbus', dyp='dyp')
     def probes(self, mode):
@@ -88,8 +88,8 @@ class FirstContact(e2e.Case):
                              (status, interference, None))
 
     @e2e.each(
-        refused_by_default=('65535', '', r'attempt 1: 65535 \(FFFF\) is refused; --means FFFF='),
-        refused_on_request=('no-target', '--means fffd=refused', r'65533 \(FFFD\) is refused; --means FFFD='))
+        refused_by_default=('65535', '', r'65535 \(hex FFFF\) has no known meaning. If you know it, use --means FFFF='),
+        refused_on_request=('no-target', '--means fffd=refused', r'65533 \(hex FFFD\) has no known meaning. If you know it, use --means FFFD='))
     def refused(self, sent, option, words):
         sim = self.sim(f'a16 --distance {sent}')
         self.assertRegex(self.ends(f'read a16 --port {sim} --count 1 {option}', 1).err, words)
@@ -188,9 +188,9 @@ class Choices(e2e.Case):
             'a16 --value real-time', 'fathom: a16: this port cannot hold its TX low (a break)'),
         an_a05_needs_it_too=(
             'a05 --value real-time', 'fathom: a05: this port cannot hold its TX low (a break)'),
-        without_the_option_rx_is_left_alone=('a16 --timeout 300', 'nothing was heard'),
+        without_the_option_rx_is_left_alone=('a16 --timeout 300', 'no byte was received'),
         an_hps167s_that_is_not_asked_is_sent_nothing=(
-            'hps167s:1:auto --timeout 300', 'nothing was heard at all; check the supply, A and B swapped'))
+            'hps167s:1:auto --timeout 300', 'no byte was received. Check the power and whether A and B are swapped'))
     def silent(self, line, said):
         """A byte 0 would stand for a break."""
         device, reader = self.beside(f'read {line} --count 1')
@@ -200,8 +200,8 @@ class Choices(e2e.Case):
     def test_what_an_hps167s_says_to_another_client_is_no_measurement(self):
         device, reader = self.beside('read hps167s:1:auto --count 1 --timeout 1000 --format csv')
         device.write(e2e.registers(1, 77))  # the response to #4
-        self.ends(reader, 1, 'Modbus was heard on this line, and no measurement of address 1; if it does not send '
-                             'by itself: --mode modbus')
+        self.ends(reader, 1, 'Modbus frames were received, but no measurement of hps167s:1. If the sensor does not send '
+                             'automatically, use --mode modbus')
 
     def test_the_simulated_hps167s_that_sends_by_itself_names_the_command_that_reads_it(self):
         self.assertIn('fathom read hps167s --mode auto --address 7 --port', self.sim('hps167s:7:auto').end().err)

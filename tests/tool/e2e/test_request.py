@@ -22,7 +22,7 @@ class Request(e2e.Case):
 
     def test_one_request_leaves_and_no_other(self):
         device, request = self.asked(b'', '--timeout 200')
-        self.ends(request, 1, 'nothing was heard at all')
+        self.ends(request, 1, 'no byte was received')
         self.assertEqual(device.rest(), b'')
 
     def test_without_yes_nothing_leaves_and_the_port_is_not_opened(self):

@@ -74,7 +74,7 @@ class Case(e2e.Case):
         program = self.fathom(f'scan --port {device} --listen 1')
         device.read(8)
         device.hang_up()
-        self.ends(program, 1, re.compile(r'connect it again and start again.*\n\Z'))
+        self.ends(program, 1, re.compile(r'Connect it again and start again.*\n\Z'))
 
     def test_ctrl_c_keeps_what_was_found(self):
         program = self.fathom(f'scan --port {self.sim("hps167s:1")} --baud 19200 --address 1-254 {PATIENT}')

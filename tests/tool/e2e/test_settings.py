@@ -71,7 +71,7 @@ class What(Settings):
 
     def test_one_that_leaves_no_room_for_a_request_is_told_apart_from_a_bad_line(self):
         sim = self.sim('hps167s --with unasked=12')
-        self.ends(f'info hps167s --port {sim}', 1, 'it sends measurements by itself',
+        self.ends(f'info hps167s --port {sim}', 1, 'the sensor sends measurements without a request',
                   f'setserial {sim} low_latency')
 
     @e2e.each(
@@ -227,7 +227,7 @@ class Failure(Settings):
     @e2e.each(**{f'a_dead_line_is_explained_to_{line.split()[0]}': line for line in
                  ('info a16', 'get hps167s termination', 'set a05 address 5')})
     def dead(self, line):
-        self.ends(f'{line} --port {self.device()}', 1, 'nothing was heard at all', out='')
+        self.ends(f'{line} --port {self.device()}', 1, 'no byte was received', out='')
 
     def test_a_port_that_is_not_there(self):
         self.told('info a16 --port /nowhere', 'no such device', code=1)

@@ -127,13 +127,13 @@ class Responses(Case):
         transaction = self.asked(server)
         reader.until_asleep()
         server.say(adu(transaction, 1, 0x83, 2))
-        self.reads(reader, 1, [2083], 'attempt 2: address 1 refused: exception 02')
+        self.reads(reader, 1, [2083], 'refused the request: exception 02')
 
     def test_half_a_response_is_none_and_costs_no_time_of_the_processor(self):
         server, reader = self.reader('--count 1 --timeout 1500')
         server.say(registers(self.asked(server), 1, *SAID)[:11])
         self.reads(reader, 1, [],
-                   'attempt 1: no response from address 1: the connection stands, but nothing came back; ')
+                   ': the connection is open, but nothing was received. ')
         self.needs_little(reader.done)
 
     def test_the_rest_of_a_response_that_came_too_late_does_not_disturb(self):
@@ -163,17 +163,17 @@ class Responses(Case):
         a_wrong_transaction_is_no_response=(lambda asked: registers(asked ^ 1, 1, *OTHER),
                                           'attempt 1: no response'),
         another_unit=(lambda asked: registers(asked, 9, *OTHER),
-                      'the line works, but it was address 9 that was heard; try --address 9'),
+                      'the line works, but address 9 responds. Try --address 9'),
         fewer_registers_than_were_asked_for=(lambda asked: registers(asked, 1, *OTHER[:3]),
-                                             'address 1 answered something else than was asked'),
+                                             'the response does not fit the request'),
         a_byte_count_that_is_not_the_headers=(
             lambda asked: adu(asked, 1, 3, 8, 0x03, 0xE8),
-            'attempt 1: the response of address 1 was damaged; its length is not what it says'),
+            ': the response has a wrong length'),
         a_function_that_was_not_asked=(
             lambda asked: adu(asked, 1, 0x2B, 0x0E, 1, 1, 0, 0, 0),
-            'a response came that does not fit; check that the server is one of Modbus TCP'),
+            'the response does not fit the request. Check that the server speaks Modbus TCP'),
         an_exception_of_the_sensor=(lambda asked: adu(asked, 1, 0x83, 2),
-                                    'attempt 1: address 1 refused: exception 02 (illegal data address): '))
+                                    'refused the request: exception 02 (illegal data address): '))
     def wrong(self, response, words):
         """The next right response is read."""
         server, reader = self.reader('--count 2 --timeout 1000')
@@ -190,16 +190,15 @@ class Responses(Case):
         self.asked(server)  # about which the gateway says nothing
         self.reads(reader, 1, [])
         first, second = re.findall(r'attempt \d: .*', reader.done.err)
-        self.assertIn(f'no response from address 1: the gateway says exception {number} (gateway {name}); '
-                      'check ', first)
-        self.assertIn('the connection stands, but nothing came back', second)
+        self.assertIn(f'the gateway responds with exception {number} (gateway {name}). Check ', first)
+        self.assertIn('the connection is open, but nothing was received', second)
 
     def test_a_silent_server(self):
         server, reader = self.reader('--count 3 --timeout 100')
         for _ in range(3):
             self.asked(server)
         self.reads(reader, 1, [])
-        words = 'no response from address 1: the connection stands, but nothing came back; check --address, '
+        words = 'the connection is open, but nothing was received. Check --address'
         self.assertEqual(reader.done.err.count(words), 3, reader.done.err)
         self.needs_little(reader.done)
 
@@ -226,7 +225,7 @@ class Responses(Case):
             elif unit == 250:
                 self.assertEqual(request, bytes((3, 1, 0, 0, 1)))  # A16: the processed distance
                 server.say(registers(transaction, 250, 754))
-        done = self.ends(reader, 1, 'no response from address 2: the connection stands, but nothing came back')
+        done = self.ends(reader, 1, re.compile('no response from hps167s:2 at .*: the connection is open, but nothing was received'))
         self.assertEqual(sorted(done.mm), ['2083', '2083', '754', '754'])
         self.assertEqual(done.err.count('hps167s:2: attempt '), 2, done.err)
 
@@ -239,7 +238,7 @@ class Broken(Case):
         server.say(response(self.asked(server)))
         end(server)
         self.reads(reader, 1, [], f'fathom: attempt 1: {server}: {words}',
-                   '; start again (with --reconnect it is connected again)')
+                   '. Start again. With --reconnect, fathom connects again')
         self.assertEqual(reader.done.err.count('attempt 1:'), 1, reader.done.err)
 
     def test_reset_by_the_server(self):
@@ -263,7 +262,7 @@ class Broken(Case):
         server.say(registers(self.asked(server), 1, *SAID))
         self.asked(server)
         server.reset()
-        reader.expect('attempt 2: .*the server reset the connection.*; waiting until it is back', 'err')
+        reader.expect('attempt 2: .*the server reset the connection.*. Waiting until it is back', 'err')
         server.accept()
         server.say(registers(self.asked(server), 1, *OTHER))
         self.reads(reader, 1, [2083, 1000], f'fathom: {server}: it is back; reading goes on')

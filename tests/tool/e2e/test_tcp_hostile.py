@@ -81,7 +81,7 @@ class Reading(Case):
         drip = iter(adu(transaction, 1, 3, 250, *bytes(250)))
         self.meanwhile(lambda: server.say((next(drip),)) is None and not reader.process.poll() and
                        not time.sleep(1))
-        done = self.ends(reader, 1, 'attempt 2: no response from address 1')
+        done = self.ends(reader, 1, 'attempt 2: no response from hps167s:1 ')
         self.assertEqual(done.mm, [])
         self.needs_little(done)
 

@@ -99,7 +99,7 @@ class Picture(Case):
             self.assertTrue(columns, name)
             self.assertTrue(all(column[0] == FULL for column in columns), columns)
         # The advice of fathom read stands at the bottom.
-        self.assertTrue(any(line.startswith('a16:9: no response from address 9: ') for line in lines),
+        self.assertTrue(any(line.startswith('a16:9: no response from a16:9 at ') for line in lines),
                         screen.text())
 
     def test_a_name_moves_what_stands_behind_it(self):
@@ -299,7 +299,7 @@ class End(Case):
         sim, it = self.begin()
         sim.end()
         self.ends(it, 1)
-        self.assertIn('connect it again and start again', it.screen.main)
+        self.assertIn('Connect it again and start again', it.screen.main)
 
     def test_a_port_that_is_not_there(self):
         it = self.watch('a16 --port /nowhere')
@@ -317,7 +317,7 @@ class End(Case):
         it = self.watch(f'hps167s --port {link} --reconnect')
         it.wait(lambda screen: FULL in screen.text())
         sim.end()
-        it.wait(lambda screen: 'port lost  ' in screen.text() and 'waiting until it is back' in screen.text()
+        it.wait(lambda screen: 'port lost  ' in screen.text() and 'Waiting until it is back' in screen.text()
                 and
                 'P' in foot_of(screen, 'hps167s:1'))
         self.sim(f'hps167s --distance 2000 --link {link}')
@@ -345,7 +345,7 @@ class Ports(Case):
         lost, it = self.begin('--reconnect')
         lost.end()
         it.wait(lambda screen: re.search(r'(?m)^lost +port lost ', screen.text()) and
-                'P' in foot_of(screen, 'lost') and 'waiting until it is back' in screen.text())
+                'P' in foot_of(screen, 'lost') and 'Waiting until it is back' in screen.text())
         for _ in range(8):
             it.changes()
         it.wait(lambda screen: ' now' in screen.text())  # the whole of a picture
@@ -363,7 +363,7 @@ class Ports(Case):
         it.type(b'q')
         self.ends(it, 1)
         self.assertIn(f'fathom: {self.link}: ', it.screen.main)
-        self.assertIn('connect it again and start again', it.screen.main)
+        self.assertIn('Connect it again and start again', it.screen.main)
 
 
 class Lines(Case):
@@ -391,7 +391,7 @@ class Lines(Case):
     def test_losses_are_in_the_lines_and_advice_is_given_once(self):
         done = self.ends(f'watch a16:1 --port {self.device()} --timeout 200 --duration 3', 1)
         self.assertRegex(done.out.splitlines()[-1], r'  a16:1 no response 0\.0/s lost (\d+) of \1$')
-        self.assertEqual(done.err.count('no response from address 1'), 1, done.err)
+        self.assertEqual(done.err.count('no response from a16:1 at '), 1, done.err)
 
     @e2e.each(a_terminal_that_can_do_nothing_gets_lines_too='dumb',
               a_terminal_that_is_not_told_gets_lines_too='')

@@ -60,7 +60,7 @@ class Servers:
 class Rtu(Servers):
     def test_another_unit_is_not_there(self):
         port = self.served(LINE, 1, FIRST, [1])
-        found = self.ask(port, f'9 3 {FIRST} --timeout 300', 1, 'no response from address 9: nothing was heard at all')
+        found = self.ask(port, f'9 3 {FIRST} --timeout 300', 1, 'no response from unit 9')
         self.assertEqual((found['status'], found['heard']), ('no_response', ''))
 
     def test_all_units_obey_what_goes_to_unit_0(self):

@@ -7,7 +7,7 @@ from test_servers_read import DATASHEET, NAMES, Servers
 
 
 class Tcp(interop.Tcp, Servers):
-    SILENCE = 'the connection stands, but nothing came back; check --address, '
+    SILENCE = 'the connection is open, but nothing was received. Check --address'
 
     def test_a_name_instead_of_an_address(self):
         """localhost may be ::1 first, where nothing serves this port."""
@@ -44,7 +44,7 @@ class Libmodbus(interop.LibmodbusServer, Tcp, interop.Case):
     def gateway(self, number):
         done = self.read('hps167s', 8, [f'!{number}', '0', '0', '0'], '--timeout 100', code=1)
         self.assertEqual(done.rows, [])
-        words = f'no response from address 1: the gateway says exception {number} ({NAMES[number]}); check '
+        words = f'the gateway responds with exception {number} ({NAMES[number]}). Check '
         self.assertEqual(done.err.count(words), 3, done.err)
         self.assertIn(', requests without a response 3, ', done.err)
 

@@ -171,35 +171,29 @@ static fathom_status_t status_of(request_outcome_t outcome)
     }
 }
 
-static void advise(const request_ask_t *ask, const channel_t *channel, const counters_t *counters)
+static void print_advice(const request_ask_t *ask, const channel_t *channel, const counters_t *counters,
+                         fathom_status_t status)
 {
-    /* Not named: it has the line that was told, and can have any address. */
-    const model_t any = {.name = "sensor of these", .line = ask->request->line, .max_address = UINT8_MAX};
-    static const model_mode_t mode = {.name = "modbus", .protocol = "Modbus", .is_modbus = true};
-    failure_t failure = {.status = status_of(ask->outcome),
-                         .model = ask->request->model != NULL ? ask->request->model : &any,
-                         .mode = &mode,
-                         .channel = channel,
-                         .counters = counters,
-                         .line = &ask->request->line,
-                         .evidence = ask->evidence,
-                         .address = ask->request->frame[REQUEST_UNIT],
-                         .is_request = true};
+    failure_t failure = failure_of_request(status, channel);
+    if (ask->request->model != NULL) failure.model = ask->request->model;
+    failure.counters = counters;
+    failure.line = &ask->request->line;
+    failure.evidence = ask->evidence;
+    failure.address = ask->request->frame[REQUEST_UNIT];
+    failure.is_request = true;
     advice_print(stderr, &failure);
 }
 
-static void tell_failed(const request_ask_t *ask, const channel_t *channel)
+static void print_failure(const request_ask_t *ask, const channel_t *channel, const counters_t *counters)
 {
     const bool was_sent = channel->listener.request_length != 0;
-    if (port_is_lost(channel))
-        (void)fputs(port_error(channel), stderr);
-    else if (ask->transaction.status != FATHOM_ERR_CANCELLED)
-        (void)fprintf(stderr, "%s: the port did not send the request; check the adapter", ask->request->path);
+    const bool is_lost = port_is_lost(channel);
+    if (is_lost || ask->transaction.status != FATHOM_ERR_CANCELLED)
+        print_advice(ask, channel, counters, FATHOM_ERR_PORT);
     else if (was_sent)
-        (void)fputs("ended before the response came", stderr);
+        print_advice(ask, channel, counters, FATHOM_ERR_CANCELLED);
     else
-        (void)fputs("ended before the request could leave: the line was not silent; nothing was sent",
-                    stderr);
+        (void)fputs("the command ended before the line was silent, and nothing was sent", stderr);
 }
 
 static void tell_more(const request_ask_t *ask)
@@ -228,11 +222,12 @@ void request_tell(const request_ask_t *ask, const channel_t *channel, const coun
         tell_refused(ask);
     else if (ask->outcome == REQUEST_UNEXPECTED)
         (void)fprintf(
-            stderr, "unit %u answered something else than was asked; check that it is alone at this address",
+            stderr,
+            "unit %u: the response does not fit the request. Check that no other unit has this address",
             unit);
     else if (ask->outcome == REQUEST_FAILED)
-        tell_failed(ask, channel);
+        print_failure(ask, channel, counters);
     else
-        advise(ask, channel, counters);
+        print_advice(ask, channel, counters, status_of(ask->outcome));
     (void)fputs("\n", stderr);
 }

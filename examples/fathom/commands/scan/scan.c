@@ -92,15 +92,6 @@ static fathom_status_t scan_line(scan_t *scan)
     return status != FATHOM_OK || (scan->has_sender && !scan->options.wake) ? status : scan_walk(scan);
 }
 
-static void print_port_failure(const port_t *port)
-{
-    if (port_is_lost(port))
-        (void)fprintf(stderr, "fathom: %s; connect it again and start again\n", port_error(port));
-    else
-        (void)fprintf(stderr, "fathom: %s: the port did not send a request; check the adapter\n",
-                      port_name(port));
-}
-
 static int finish(scan_t *scan, fathom_status_t status)
 {
     const host_t *const host = scan->port.host;
@@ -113,7 +104,7 @@ static int finish(scan_t *scan, fathom_status_t status)
     if (scan->output_error != 0)
         (void)fprintf(stderr, "fathom: cannot write the output: %s\n", strerror(scan->output_error));
     else if (status == FATHOM_ERR_PORT)
-        print_port_failure(&scan->port);
+        scan_print_port_failure(scan);
     else if (status != FATHOM_OK)
         (void)fprintf(stderr, "fathom: ended before all addresses were asked; sensors found: %" PRIu32 "\n",
                       scan->sensors);

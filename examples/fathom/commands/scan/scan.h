@@ -147,4 +147,7 @@ fathom_status_t scan_identify(scan_t *scan, const scan_request_t *request, const
 /* Prints the result of a scan that went to its end, and what to check, on stderr. */
 void scan_print_result(const scan_t *scan);
 
+/* Prints why the port failed. */
+void scan_print_port_failure(const scan_t *scan);
+
 #endif

@@ -3,17 +3,19 @@
 
 #include "commands/scan/scan.h"
 #include "commands/scan/scan_report.h"
+#include "diagnosis/advice.h"
 #include "sensors/models.h"
 
 /* Says why the scan sent nothing, although the user did not choose that. */
 static const char *why_nothing_was_sent(const scan_finding_t *sender)
 {
     if (sender->kind == SCAN_MASTER)
-        return "another master asks on this line; disconnect it or stop its program, and scan again (--wake "
-               "asks all the same)";
+        return "another master sends requests on this line. Disconnect the other master or stop its program, "
+               "and scan again. To ask anyway, use --wake";
     if (sender->kind == SCAN_SENDER && sender->address == 0)
-        return "something sends by itself: an HPS-167S made before 2020-09 speaks another protocol; another "
-               "rate, A and B swapped and noise look like this too; --wake asks all the same";
+        return "something sends without a request: an HPS-167S made before 2020-09 speaks another protocol. "
+               "Another rate, swapped wires A and B and noise have the same effect. To ask anyway, use "
+               "--wake";
     if (sender->mode == SCAN_AUTO)
         return "even a read ends what an A16 or A05 sends by itself (of an A05 until power-off); --wake asks "
                "all the same";
@@ -33,32 +35,56 @@ static void print_sender(const scan_t *scan)
     }
 }
 
-static const char *why_nothing_was_found(const scan_heard_t *heard)
+static failure_t failure_of(const scan_t *scan, fathom_status_t status)
 {
-    if (heard->not_asked != 0) return "not all addresses could be asked";
-    if (heard->bytes != 0)
-        return "bytes were heard, but no response; check A and B swapped, --baud and --parity, and for noise";
-    if (heard->echoes != 0)
-        return "only the tool's own requests came back, so the adapter works and echoes, but no sensor "
-               "answers behind it; check the wiring behind the adapter (A, B, ground) and the supply";
-    return "nothing was heard at all; check the supply, and A and B (or RX and TX) swapped";
+    failure_t failure = failure_of_request(status, &scan->port);
+    failure.evidence.bytes = scan->heard.bytes;
+    failure.evidence.echoes = scan->heard.echoes;
+    failure.is_scan = true;
+    return failure;
 }
 
-static void print_others(const scan_heard_t *heard)
+static void print_cause(const scan_t *scan, fathom_status_t status)
 {
-    if (heard->has_master)
-        (void)fprintf(stderr,
-                      "fathom: requests of another master were heard (it asked address %u); disconnect it or "
-                      "stop its program, and scan again\n",
-                      heard->master_address);
-    if (heard->not_asked != 0)
-        (void)fprintf(stderr,
-                      "fathom: %" PRIu32 " addresses could not be asked, because %s, and scan again\n",
-                      heard->not_asked,
-                      heard->has_other_master
-                          ? "another master asked there at the same time; disconnect it"
-                          : "the line was never silent; disconnect what else sends on this line, check bias "
-                            "and termination");
+    failure_t failure = failure_of(scan, status);
+    failure.evidence.masters = scan->heard.has_master;
+    failure.evidence.masters_address = scan->heard.master_address;
+    advice_print_cause(stderr, &failure);
+    (void)fputs(". Then scan again\n", stderr);
+}
+
+static void print_nothing(const scan_t *scan)
+{
+    const failure_t failure = failure_of(scan, FATHOM_ERR_NO_RESPONSE);
+    (void)fputs("fathom: ", stderr);
+    if (scan->heard.not_asked != 0)
+        (void)fputs("no sensor was found", stderr);
+    else
+        advice_print(stderr, &failure);
+    if (scan->options.is_default)
+        (void)fputs(". To find a sensor with other settings, use --address 1-254 --baud all", stderr);
+    (void)fputs(". A sensor that was just switched on may need 5 s\n", stderr);
+}
+
+void scan_print_port_failure(const scan_t *scan)
+{
+    const failure_t failure = failure_of(scan, FATHOM_ERR_PORT);
+    (void)fputs("fathom: ", stderr);
+    advice_print(stderr, &failure);
+    (void)fputs("\n", stderr);
+}
+
+static void print_others(const scan_t *scan)
+{
+    const scan_heard_t *const heard = &scan->heard;
+    if (heard->has_master) {
+        (void)fputs("fathom: ", stderr);
+        print_cause(scan, FATHOM_ERR_LINE_BUSY);
+    }
+    if (heard->not_asked != 0) {
+        (void)fprintf(stderr, "fathom: %" PRIu32 " addresses could not be asked: ", heard->not_asked);
+        print_cause(scan, heard->has_other_master ? FATHOM_ERR_OTHER_MASTER : FATHOM_ERR_LINE_BUSY);
+    }
     if (heard->outside != 0)
         (void)fprintf(stderr,
                       "fathom: a frame of address %u was heard, which was not asked; try --address %u\n",
@@ -70,21 +96,14 @@ void scan_print_result(const scan_t *scan)
     char duration[DURATION_TEXT];
     if (scan->has_sender) print_sender(scan);
     if (scan->has_sender && !scan->options.wake) return;
-    print_others(&scan->heard);
+    print_others(scan);
     if (scan->terminations > 1)
         (void)fprintf(stderr,
                       "fathom: %" PRIu32 " HPS-167S have their termination resistor on, as from the factory, "
                       "which overloads the line: switch it off in all but the last one, as fathom set "
                       "hps167s:ADDRESS --port %s termination off does\n",
                       scan->terminations, scan->options.port);
-    if (scan->sensors == 0)
-        (void)fprintf(stderr,
-                      "fathom: no sensor was found: %s%s; one that was switched on just now may need "
-                      "5 s\n",
-                      why_nothing_was_found(&scan->heard),
-                      scan->options.is_default
-                          ? "; a sensor that was set otherwise is found with --address 1-254 --baud all"
-                          : "");
+    if (scan->sensors == 0) print_nothing(scan);
     (void)fprintf(stderr, "fathom: sensors found: %" PRIu32 ", after %s\n", scan->sensors,
                   duration_text(scan_now_us(scan) - scan->start_us, duration));
 }
