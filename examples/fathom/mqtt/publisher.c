@@ -64,7 +64,6 @@ static bool has_counters(const publisher_t *publisher)
 
 static bool send_counters(publisher_t *publisher)
 {
-    char topic[TOPIC];
     char payload[STATE_TEXT];
     const publisher_state_t state = {publisher->boot,
                                      publisher->host->utc_us(publisher->host->ctx),
@@ -72,9 +71,9 @@ static bool send_counters(publisher_t *publisher)
                                      publisher->queue.dropped,
                                      publisher->queue.count,
                                      publisher->sensor_count};
-    topic_of_site(publisher->settings, "publisher", topic);
     state_of_publisher(&state, payload);
-    if (!broker_send(&publisher->broker, topic, payload, true)) return false;
+    if (!broker_send(&publisher->broker, publisher->counters->topic, payload, true)) return false;
+    publisher->counters->is_known = true;
     if (state.dropped > publisher->printed_dropped) print_dropped(publisher, state.dropped);
     publisher->sent_dropped = state.dropped;
     publisher->sent_us = now_us(publisher);
@@ -211,11 +210,11 @@ bool publisher_reading(publisher_t *publisher, const reading_t *reading)
 
 /* ---- the sensors ---- */
 
-static bool want_of_site(publisher_t *publisher, const char *word, stream_kind_t kind)
+static stream_t *want_of_site(publisher_t *publisher, const char *word, stream_kind_t kind)
 {
     char topic[TOPIC];
     topic_of_site(publisher->settings, word, topic);
-    return streams_want(&publisher->streams, topic, kind, NULL) != NULL;
+    return streams_want(&publisher->streams, topic, kind, NULL);
 }
 
 static bool want_readings(publisher_t *publisher, publisher_sensor_t *sensor)
@@ -281,8 +280,8 @@ static bool set_sensors(publisher_t *publisher, const site_t *site)
     publisher->sensors = sensors;
     publisher->sensor_count = site->sensor_count;
     streams_forget(&publisher->streams);
-    is_good = want_of_site(publisher, "status", STREAM_STATUS) &&
-              want_of_site(publisher, "publisher", STREAM_COUNTERS);
+    publisher->counters = want_of_site(publisher, "publisher", STREAM_COUNTERS);
+    is_good = publisher->counters != NULL && want_of_site(publisher, "status", STREAM_STATUS) != NULL;
     for (size_t i = 0; i != site->sensor_count && is_good; i++) {
         sensors[i].sensor = site->sensors[i];
         is_good = want_sensor(publisher, &sensors[i], find(before, count, site->sensors[i]->name));

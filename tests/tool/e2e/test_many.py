@@ -113,7 +113,7 @@ class Paths(Case):
     def test_what_they_may_not_share_is_said(self):
         link, port = self.begin_bus()
         self.ends(['read', f'one=hps167s:1@{link}', f'two=hps167s:1@{port}', '--count', '2'], 2,
-                  'one and two have the same address, so both would answer at once')
+                  'one and two have the same address, so both would respond at once')
 
 
 class Connections(Case):
