@@ -139,16 +139,6 @@ static inline const second_event_t *last_event(const second_device_t *device, se
     return NULL;
 }
 
-static inline size_t count_events(const second_device_t *device, second_event_kind_t kind)
-{
-    size_t count = 0;
-    for (uint64_t i = 0; i < second_log_count(device); i++) {
-        const second_event_t *event = second_log_at(device, i);
-        if (event != NULL && event->kind == kind) count++;
-    }
-    return count;
-}
-
 /* The host of a file of tests. */
 static host_t host;
 
