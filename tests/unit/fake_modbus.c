@@ -187,12 +187,6 @@ void fake_modbus_forget(fake_modbus_t *fake)
     fake->ends = FATHOM_PENDING;
 }
 
-void fake_modbus_end_unsent(fake_modbus_t *fake, fathom_status_t status)
-{
-    assert_non_null(fake->request);
-    fake->ends = status;
-}
-
 void fake_modbus_assert_asked(const fake_modbus_t *fake, unsigned submits, uint8_t unit, uint16_t first,
                               uint16_t count)
 {

@@ -90,22 +90,6 @@ TEST(one_poll_gives_one_sample_in_the_order_of_the_probes)
     PENDS(rig_poll());
 }
 
-TEST(a_new_frame_does_not_mix_into_the_samples_of_the_old_one)
-{
-    uint8_t newer[10];
-    rig_dyp_stream(newer, (const uint16_t[]){301, 302, 303, 304}, 4);
-    example_is_there();
-    takes(1, 1000, 1);
-    rig.fake.now_us += 10000;
-    takes(2, 2000, 1);
-    fake_receive(&rig.fake, 0, newer, 10);
-    takes(3, 1953, 1);
-    takes(4, 3562, 1);
-    PENDS(rig_poll());
-    rig.fake.now_us += RIG_GAP_US;
-    for (uint16_t i = 1; i <= 4; i++) takes(i, 300 + i, 2);
-}
-
 TEST(a_value_that_is_no_distance_has_its_meaning_for_its_probe_alone)
 {
     static const uint8_t kinds[] = {FATHOM_NO_TARGET, FATHOM_NO_TARGET, FATHOM_UNKNOWN, FATHOM_TARGET};
@@ -224,34 +208,6 @@ TEST(a_silence_behind_the_second_frame_alone_makes_no_place_sure)
     assert_int_equal(rig.samples, 0);
 }
 
-/* 7000 2000 2047 1459 mm, the first odd: FF + 1B + 58 + 07 + D0 + 07 + FF + 05 + B3 = 407. Six bytes on it reads 1459
- * 2047 7000 2000 with a right sum, as test_probes_permuted.c explains. */
-static const uint8_t permutable[] = {0xFF, 0x1B, 0x58, 0x07, 0xD0, 0x07, 0xFF, 0x05, 0xB3, 0x07};
-
-TEST(probes_with_an_odd_one_are_never_permuted_wherever_listening_begins)
-{
-    for (unsigned gaps = 0; gaps != 2; gaps++) {
-        for (unsigned first = 0; first != 10; first++) {
-            start();
-            if (gaps != 0) rig_run(10000, 1000);
-            fake_receive(&rig.fake, 0, permutable + first, 10 - first);
-            rig_run(gaps != 0 ? 10000 : 1000, 1000);
-            for (unsigned n = 0; n != 20; n++) {
-                fake_receive(&rig.fake, 0, permutable, 10);
-                rig_run(gaps != 0 ? 10000 : 1000, 1000);
-                if (rig.samples == 0) continue;
-                assert_int_equal(rig.last[0].probe, 0);
-                assert_int_equal(rig.last[1].distance_mm, 2000);
-                assert_int_equal(rig.last[2].distance_mm, 2047);
-                assert_int_equal(rig.last[3].distance_mm, 1459);
-            }
-            /* Without pauses nothing tells the one place from the other. */
-            if (gaps != 0) assert_int_equal(rig.samples, first == 0 ? 63 : 60);
-            if (gaps == 0) assert_int_equal(rig.samples, 0);
-        }
-    }
-}
-
 TEST(an_odd_probe_that_is_not_fitted_is_neither_given_nor_told_in_any_place)
 {
     config.probes = 0x0B;
@@ -302,39 +258,6 @@ TEST(rx_is_low_for_a_second_and_a_half_for_real_time_values)
     }
 }
 
-TEST(rx_is_high_for_processed_values)
-{
-    power_on(FATHOM_PROCESSED, FATHOM_OK);
-    assert_int_equal(rig.fake.breaks, 0);
-    start_at(RIG_START_US, true);
-    pin.level = false;
-    power_on(FATHOM_PROCESSED, FATHOM_OK);
-    assert_true(pin.level);
-}
-
-TEST(a_second_power_on_begins_anew)
-{
-    for (unsigned i = 0; i != 2; i++) {
-        power_on(FATHOM_REAL_TIME, FATHOM_OK);
-        rig_run(1000000, 1000);
-    }
-    assert_true(rig.fake.in_break);
-    power_on(FATHOM_PROCESSED, FATHOM_OK);
-    assert_false(rig.fake.in_break);
-}
-
-TEST(the_deadline_for_a_frame_begins_with_power_and_what_came_before_is_forgotten)
-{
-    rig_run(1900000, 1000);
-    power_on(FATHOM_PROCESSED, FATHOM_OK);
-    rig_run(1999000, 1000);
-    assert_int_equal(rig.stales, 0);
-    rig_run(1000, 1000);
-    assert_int_equal(rig.stales, 1);
-    rig_send(example, sizeof example, 500);
-    assert_int_equal(rig.samples, 4);
-}
-
 TEST(a_port_that_cannot_is_said_and_a_pin_helps)
 {
     rig.fake.uart.set_break = NULL;
@@ -348,45 +271,4 @@ TEST(a_port_that_cannot_is_said_and_a_pin_helps)
     rig.fake.uart.set_break = NULL;
     power_on(FATHOM_REAL_TIME, FATHOM_OK);
     assert_int_equal(pin.sets, 1);
-}
-
-TEST(a_line_that_sends_is_busy_and_another_value_is_none)
-{
-    rig.fake.busy_until_us = rig.fake.now_us + 1000;
-    power_on(FATHOM_REAL_TIME, FATHOM_ERR_BUSY);
-    assert_false(rig.fake.in_break);
-    rig.fake.now_us += 1000;
-    power_on(FATHOM_REAL_TIME, FATHOM_OK);
-    power_on((fathom_dyp_value_t)2, FATHOM_ERR_ARGUMENT);
-}
-
-TEST(who_stops_listening_lets_rx_go)
-{
-    power_on(FATHOM_REAL_TIME, FATHOM_OK);
-    for (unsigned i = 0; i != 2; i++) {
-        fathom_a05_auto_deinit(&a05);
-        assert_false(rig.fake.in_break);
-        assert_null(rig.line.listener);
-    }
-    assert_int_equal(rig.fake.breaks, 1);
-}
-
-TEST(in_a_slow_loop_rx_is_low_for_longer_and_never_for_less)
-{
-    power_on(FATHOM_REAL_TIME, FATHOM_OK);
-    rig_run(1480000, 20000);
-    assert_true(rig.fake.in_break);
-    rig.fake.now_us += 100000; /* one turn that takes longer */
-    assert_int_equal(fathom_due_us(&rig.sensor, 1), 0);
-    (void)rig_poll();
-    assert_false(rig.fake.in_break);
-}
-
-/* test_a16_auto.c shows what it is good for. */
-TEST(the_gap_is_that_of_the_line_if_it_is_longer)
-{
-    rig.line_parts.gap_us = 25000;
-    assert_int_equal(fathom_line_init(&rig.line, &rig.line_parts), FATHOM_OK);
-    assert_int_equal(fathom_a05_auto_init(&a05, &rig.line, NULL), FATHOM_OK);
-    assert_int_equal(a05.base.stream.listener.gap_us, 25000);
 }

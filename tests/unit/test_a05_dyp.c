@@ -94,59 +94,6 @@ static void takes(unsigned probe)
 
 /* ---- probes ---- */
 
-TEST(four_samples_share_sequence_and_time)
-{
-    for (uint16_t response = 1; response <= 3; response++) {
-        tell(response - 1u, four, sizeof four);
-        const uint32_t heard_us = rig.fake.now_us;
-        for (uint8_t probe = 1; probe <= 4; probe++) {
-            if (probe != 1) assert_int_equal(fathom_due_us(&rig.sensor, 1), 0);
-            takes(probe);
-            assert_sample(&rig.sample, (fathom_sample_t){.time_us = heard_us,
-                                                         .raw = four_mm[probe - 1],
-                                                         .sequence = response,
-                                                         .distance_mm = four_mm[probe - 1],
-                                                         .kind = FATHOM_TARGET,
-                                                         .model = FATHOM_A05,
-                                                         .address = 1,
-                                                         .probe = probe});
-            rig.fake.now_us += STEP_US;
-        }
-        nothing_for(1000);
-    }
-}
-
-TEST(every_choice_of_several_probes_measures_all_and_hands_over_the_wanted)
-{
-    for (uint8_t probes = 1; probes != 16; probes++) {
-        if ((probes & (probes - 1)) == 0) continue;
-        start_with(probes, 0, 0);
-        tell(0, four, sizeof four);
-        for (uint8_t probe = 1; probe <= 4; probe++)
-            if ((probes >> (probe - 1) & 1) != 0) takes(probe);
-        nothing_for(1000);
-    }
-}
-
-TEST(one_probe_is_measured_alone)
-{
-    for (uint8_t probe = 1; probe <= 4; probe++) {
-        const uint8_t command = (uint8_t)(0x0F + probe);
-        const uint8_t request[] = {0x55, 0xAA, 0x01, command, command}; /* FF + 01 = 100 */
-        const uint8_t response[] = {0x55, 0xAA, 0x01, command, 0x07, 0xA1, (uint8_t)(0xA8 + command)};
-        start_with((uint8_t)(1u << (probe - 1)), 0, 0);
-        until_written(0);
-        assert_int_equal(rig.fake.writes[0].length, sizeof request);
-        assert_memory_equal(rig.fake.writes[0].bytes, request, sizeof request);
-        nothing_for(70000);
-        receive(response, sizeof response);
-        assert_int_equal(rig_poll(), FATHOM_OK);
-        assert_int_equal(rig.sample.probe, probe);
-        assert_int_equal(rig.sample.distance_mm, 1953);
-        nothing_for(1000);
-    }
-}
-
 /* Each probe's value for itself: FFFD is no object, FFFE interference of sister models (dyp.h), 0 unknown; 6001 is
  * outside. FF + 01 + 01 = 101; FF + FD = 1FC; FF + FE = 1FD; 0; 17 + 71 = 88: 01 + FC + FD + 88 =
  * 282. */
@@ -195,35 +142,12 @@ static void assert_period(uint32_t expected_us)
     }
 }
 
-TEST(commands_keep_the_least_time_between_them)
-{
-    static const uint32_t rows[][3] = {{0, 0, 250000},     {1, 0, 100000},      {0, 249999, 250000},
-                                       {1, 99999, 100000}, {0, 300000, 300000}, {1, 250000, 250000}};
-    for (unsigned i = 0; i != COUNT(rows); i++) {
-        start_with((uint8_t)rows[i][0], rows[i][1], 0);
-        assert_period(rows[i][2]);
-    }
-}
-
 TEST(the_period_is_kept_across_the_wrap_of_the_clock)
 {
     for (uint32_t before_us = 20000; before_us < 600000; before_us += 70000) {
         set_up_at(UINT32_MAX - before_us);
         start();
         assert_period(250000);
-    }
-}
-
-TEST(silence_is_said_after_the_time_out)
-{
-    static const uint32_t rows[][3] = {
-        {0, 0, 500000}, {8, 0, 200000}, {0, 220000, 220000}, {1, 80000, 80000}};
-    for (unsigned i = 0; i != COUNT(rows); i++) {
-        start_with((uint8_t)rows[i][0], 0, rows[i][1]);
-        until_written(0);
-        nothing_for(REQUEST_US + rows[i][2] - 1000);
-        assert_int_equal(next_within(2000, rig_poll), FATHOM_ERR_NO_RESPONSE);
-        nothing_for(1000);
     }
 }
 
@@ -250,41 +174,7 @@ TEST(a_dead_sensor_is_asked_less_often_and_no_less_than_the_config_says)
     }
 }
 
-/* 1.5 s, or as the config says, and then a time-out and a quarantine. */
-TEST(after_power_on_silence_is_warming_up)
-{
-    static const uint32_t starts_us[][2] = {{0, 1500000}, {700000, 700000}};
-    for (unsigned i = 0; i != 2; i++) {
-        fathom_status_t status = FATHOM_ERR_WARMING_UP;
-        set_up_at(RIG_START_US);
-        config.start_us = starts_us[i][0];
-        start();
-        fathom_a05_dyp_power_on(&a05);
-        while (status == FATHOM_ERR_WARMING_UP) status = next_within(2000000, rig_poll);
-        assert_int_equal(status, FATHOM_ERR_NO_RESPONSE);
-        assert_in_range(rig.fake.now_us - RIG_START_US, starts_us[i][1], starts_us[i][1] + 1600000);
-    }
-}
-
 /* ---- errors ---- */
-
-TEST(errors_leave_the_sample_alone_and_the_sensor_goes_on)
-{
-    uint8_t damaged[sizeof four];
-    memcpy(damaged, four, sizeof four);
-    damaged[12] = 0x60; /* as A05 2(3)3 prints it */
-    tell(0, damaged, sizeof damaged);
-    assert_int_equal(next_within(20000, rig_poll), FATHOM_ERR_CHECKSUM);
-    tell(1, four, 9);
-    assert_int_equal(next_within(20000, rig_poll), FATHOM_ERR_CHECKSUM);
-    until_written(2);
-    rig.fake.read_fails = true;
-    for (unsigned i = 0; i != 2; i++) assert_int_equal(rig_poll(), FATHOM_ERR_PORT);
-    rig.fake.read_fails = false;
-    tell(3, four, sizeof four);
-    takes(1);
-    assert_int_equal(rig.sample.sequence, 1);
-}
 
 TEST(address_and_settings_are_the_configs)
 {
@@ -298,24 +188,9 @@ TEST(address_and_settings_are_the_configs)
     assert_int_equal(rig.fake.writes[0].baud, 9600);
 }
 
-TEST(after_deinit_a_response_changes_nothing)
-{
-    until_written(0);
-    fathom_a05_dyp_deinit(&a05);
-    assert_null(rig.line.head);
-    receive(four, sizeof four);
-    fathom_line_poll(&rig.line);
-    rig.fake.now_us += 1000;
-    fathom_line_poll(&rig.line);
-    for (unsigned i = 0; i != 4; i++) assert_int_equal(a05.values[i], 0); /* as init left them */
-}
-
 /* ---- which address has the one A05 on this line? ---- */
 
-static const uint8_t ask_any[] = {0x55, 0xAA, 0xFF, 0x10, 0x0E}; /* FF + FF + 10 = 20E */
 /* 1953 mm from 5: FF + 05 + 10 + 07 + A1 = 1BC; from 254: FF + FE + 10 + 07 + A1 = 2B5. */
-static const uint8_t from_5[] = {0x55, 0xAA, 0x05, 0x10, 0x07, 0xA1, 0xBC};
-static const uint8_t from_254[] = {0x55, 0xAA, 0xFE, 0x10, 0x07, 0xA1, 0xB5};
 
 static fathom_a05_dyp_find_t sought;
 static uint8_t address;
@@ -334,98 +209,6 @@ static fathom_status_t find(void) { return fathom_a05_dyp_find(&sought, &rig.lin
 static void finds_within(uint32_t us, fathom_status_t status)
 {
     assert_int_equal(next_within(us, find), status);
-}
-
-static void until_asked(size_t written)
-{
-    for (unsigned i = 0; rig.fake.written != written; i++) {
-        assert_true(i < 5000);
-        finds_within(STEP_US, FATHOM_PENDING);
-    }
-    assert_int_equal(rig.fake.writes[written - 1].length, sizeof ask_any);
-    assert_memory_equal(rig.fake.writes[written - 1].bytes, ask_any, sizeof ask_any);
-    finds_within(70000, FATHOM_PENDING);
-    assert_int_equal(rig.fake.written, written);
-}
-
-static void finds(size_t written, const uint8_t *response, uint8_t where)
-{
-    until_asked(written);
-    receive(response, sizeof from_5);
-    finds_within(STEP_US, FATHOM_OK);
-    assert_int_equal(address, where);
-}
-
-TEST_IN(finding, the_address_is_where_the_response_came_from_and_the_next_call_asks_anew)
-{
-    finds(1, from_5, 5);
-    finds(2, from_254, 254);
-}
-
-TEST_IN(finding, silence_is_no_response_and_leaves_the_address_alone)
-{
-    until_asked(1);
-    finds_within(REQUEST_US + 200000 - 70000 - 1000, FATHOM_PENDING);
-    finds_within(2000, FATHOM_ERR_NO_RESPONSE);
-    assert_int_equal(address, GUARD);
-}
-
-TEST_IN(finding, what_is_damaged_gives_no_address)
-{
-    uint8_t damaged[sizeof from_5];
-    for (unsigned bit = 0; bit != 8 * sizeof from_5; bit++) {
-        set_up_find(state);
-        memcpy(damaged, from_5, sizeof damaged);
-        damaged[bit / 8] ^= (uint8_t)(1u << bit % 8);
-        until_asked(1);
-        receive(damaged, sizeof damaged);
-        assert_true(next_within(200000, find) < 0);
-        assert_int_equal(address, GUARD);
-    }
-}
-
-TEST_IN(finding, of_two_responses_the_first_is_taken)
-{
-    uint8_t glued[sizeof from_5 + sizeof from_254];
-    memcpy(glued, from_254, sizeof from_254);
-    memcpy(glued + sizeof from_254, from_5, sizeof from_5);
-    until_asked(1);
-    receive(glued, sizeof glued);
-    finds_within(STEP_US, FATHOM_OK);
-    assert_int_equal(address, 254);
-    assert_int_equal(sought.value, 1953);
-}
-
-TEST_IN(finding, on_an_echoing_line_the_echo_is_no_device)
-{
-    rig.line_parts.echo = FATHOM_LINE_ECHO_AUTO;
-    assert_int_equal(fathom_line_init(&rig.line, &rig.line_parts), FATHOM_OK);
-    while (rig.fake.written == 0) finds_within(STEP_US, FATHOM_PENDING);
-    fake_trickle(&rig.fake, 0, RIG_BYTE_US, ask_any, sizeof ask_any);
-    fake_trickle(&rig.fake, 70000, RIG_BYTE_US, from_5, sizeof from_5);
-    finds_within(100000, FATHOM_OK);
-    assert_int_equal(address, 5);
-    assert_int_equal(fathom_line_get_echo(&rig.line), FATHOM_LINE_ECHO_ON);
-}
-
-TEST_IN(finding, it_can_be_given_up)
-{
-    until_asked(1);
-    for (unsigned i = 0; i != 2; i++) { /* the second time there is nothing to give up */
-        fathom_a05_dyp_find_cancel(&sought, &rig.line);
-        assert_null(rig.line.head);
-    }
-    finds_within(2 * 200000 - 75000, FATHOM_PENDING);
-    assert_int_equal(rig.fake.written, 1); /* all are quarantined */
-    finds(2, from_5, 5);
-}
-
-TEST_IN(finding, a_broken_port_ends_it)
-{
-    until_asked(1);
-    rig.fake.read_fails = true;
-    finds_within(STEP_US, FATHOM_ERR_PORT);
-    assert_int_equal(address, GUARD);
 }
 
 TEST_IN(finding, a_line_without_room_says_so)
@@ -501,12 +284,4 @@ TEST(what_was_refused_or_given_up_leaves_the_transport_closed)
     fathom_a05_dyp_cancel(&a05);
     assert_refused();
     assert_int_equal(rig.fake.written, 0);
-}
-
-TEST(its_responses_are_counted_by_its_unit)
-{
-    assert_int_equal(fathom_modbus_unit_responses(fathom_a05_dyp_unit(&a05)), 0);
-    tell(0, four, sizeof four);
-    takes(1);
-    assert_int_equal(fathom_modbus_unit_responses(fathom_a05_dyp_unit(&a05)), 1);
 }

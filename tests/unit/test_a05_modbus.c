@@ -99,18 +99,6 @@ TEST(every_choice_of_probes_is_one_read_with_its_own_time_out_and_pace) { ask_sp
 /* A05 3(3) remark 2 prints "same function as 0x0106~0x0108"; the table beside it has 0013 for No. 4 too. */
 TEST(every_choice_of_probes_in_the_other_block_of_registers) { ask_spans(0x0010); }
 
-TEST(a_period_that_the_probes_cannot_keep_is_stretched)
-{
-    config.modbus.period_us = 399999;
-    start();
-    IS_TOLD(1001, 2001, 3001, 4001);
-    take_samples(0xF, 1);
-    desk_waits(399999);
-    assert_int_equal(fake.submits, 1);
-    desk_waits(1);
-    assert_int_equal(fake.submits, 2);
-}
-
 /* ---- what comes back ---- */
 
 TEST(the_samples_of_one_response_share_sequence_and_time)
@@ -146,33 +134,6 @@ TEST(a_value_that_cannot_be_is_refused_alone)
     }
     assert_int_equal(a05.base.measurement.implausible, 2);
     desk_waits(0);
-}
-
-TEST(a_probe_between_that_is_not_wanted_gives_nothing_whatever_it_reads)
-{
-    config.probes = 0x9;
-    start();
-    IS_TOLD(1001, 0xFFFF, 6001, 4001);
-    take_samples(0x9, 1);
-    desk_waits(0);
-    assert_int_equal(a05.base.measurement.implausible, 0);
-}
-
-/* Samples say where they were read. */
-static fathom_status_t move(void) { return fathom_a05_modbus_set_address(&a05, 5); }
-
-TEST(an_a05_that_has_moved_measures_at_its_new_address)
-{
-    start();
-    PLAY(move, FATHOM_OK, READ(1, 0x0200, FATHOM_OK, 1), READ(5, 0x0200, FATHOM_ERR_NO_RESPONSE, 0),
-         WRITE(1, 0x0200, 5, FATHOM_OK), READ(5, 0x0200, FATHOM_OK, 5));
-    assert_true(fathom_a05_modbus_is_written(&a05));
-    IS_TOLD(1001, 2001, 3001, 4001);
-    fake_modbus_assert_asked(&fake, 1, 5, 0x0106, 4);
-    for (unsigned probe = 1; probe <= 4; probe++) {
-        assert_int_equal(desk_poll(), FATHOM_OK);
-        assert_int_equal(desk.sample.address, 5);
-    }
 }
 
 /* A05 3(4)1 example 3, byte for byte: probes 2, 3, 4 read 250, 659, 2426 mm. */

@@ -29,14 +29,6 @@ static void read_as(uint8_t wiring, uint8_t level_of_it, uint8_t low, uint8_t hi
     }
 }
 
-/* A05 4(1): closed, and so conducting, when a probe has something nearer than the threshold. */
-TEST(a_normally_open_contact_that_conducts_is_near)
-{
-    read_as(0, 0, FATHOM_NEAR, FATHOM_FAR);
-    read_as(OPEN, LOW_CONDUCTS, FATHOM_NEAR, FATHOM_FAR);
-    read_as(OPEN, HIGH_CONDUCTS, FATHOM_FAR, FATHOM_NEAR);
-}
-
 TEST(a_normally_closed_contact_that_conducts_is_far)
 {
     read_as(CLOSED, 0, FATHOM_FAR, FATHOM_NEAR);

@@ -35,78 +35,6 @@ static const suite_t suite = {.set_up = set_up};
 
 /* ---- readings ---- */
 
-TEST(a_sample_is_there_5_ms_after_its_last_byte_and_says_when_that_came)
-{
-    rig_run(20000, 500);
-    fake_receive(&rig.fake, 0, mm_1953, 3);
-    PENDS(rig_poll());
-    fake_receive(&rig.fake, 0, mm_1953 + 3, 1);
-    const uint32_t came_us = rig.fake.now_us;
-    PENDS(rig_poll());
-    rig.fake.now_us += 4999;
-    PENDS(rig_poll());
-    assert_int_equal(fathom_due_us(&rig.sensor, 1), 1);
-    rig.fake.now_us += 1;
-    assert_int_equal(fathom_due_us(&rig.sensor, 1), 0);
-    assert_int_equal(rig_poll(), FATHOM_OK);
-    assert_int_equal(rig.sample.time_us, came_us);
-    assert_int_equal(rig.sample.distance_mm, 1953);
-    PENDS(rig_poll());
-}
-
-/* A USB adapter holds bytes back for up to 16 ms in the middle of a frame, and the parts of its line say so (line.h). */
-TEST(a_frame_in_two_pieces_is_whole_if_the_line_has_a_long_gap)
-{
-    rig.line_parts.gap_us = 25000;
-    assert_int_equal(fathom_line_init(&rig.line, &rig.line_parts), FATHOM_OK);
-    assert_int_equal(fathom_a16_auto_init(&a16, &rig.line, NULL), FATHOM_OK);
-    rig_run(30000, 500);
-    fake_receive(&rig.fake, 0, mm_1953, 2);
-    rig_run(16000, 500);
-    fake_receive(&rig.fake, 0, mm_1953 + 2, 2);
-    rig_run(24000, 500);
-    assert_int_equal(rig.samples, 0); /* it may go on */
-    rig_run(2000, 500);
-    assert_int_equal(rig.samples, 1);
-    assert_int_equal(rig.sample.distance_mm, 1953);
-    assert_int_equal(rig.damaged, 0);
-}
-
-/* The gap of a connection whose responses come whole is 1000 us, which is less than a character here. */
-TEST(a_short_gap_of_the_line_changes_nothing)
-{
-    rig.line_parts.gap_us = 1000;
-    assert_int_equal(fathom_line_init(&rig.line, &rig.line_parts), FATHOM_OK);
-    assert_int_equal(fathom_a16_auto_init(&a16, &rig.line, NULL), FATHOM_OK);
-    assert_int_equal(a16.base.stream.listener.gap_us, 5000);
-}
-
-/* The byte behind it has come in time, but is read only when the silence would have been long enough. */
-TEST(a_byte_that_has_come_is_looked_at_before_the_silence)
-{
-    rig_run(20000, 500);
-    fake_receive(&rig.fake, 0, mm_1953, 4);
-    PENDS(rig_poll());
-    fake_receive(&rig.fake, 1042, mm_1953 + 3, 1); /* A7 begins nothing */
-    rig_run(20000, 20000);
-    assert_int_equal(rig.samples, 0);
-    assert_int_equal(a16.base.stream.counters[FATHOM_STREAM_UNSURE], 1);
-}
-
-TEST(the_time_is_the_ports_stamp_where_it_has_one)
-{
-    static const uint32_t starts_us[] = {1000, UINT32_MAX - 60000, UINT32_MAX - 45000};
-    for (unsigned i = 0; i != 3; i++) {
-        start_at(starts_us[i]);
-        rig_run(40000, 20000);
-        const uint32_t came_us = rig.fake.now_us + 7000;
-        fake_receive_rx(&rig.fake, 8000, mm_1953, 4, (fathom_rx_t){came_us, FATHOM_RX_TIMED});
-        rig_run(20000, 20000);
-        assert_int_equal(rig.samples, 1);
-        assert_int_equal(rig.sample.time_us, came_us);
-    }
-}
-
 TEST(it_is_due_when_a_gap_is_seen_and_then_when_it_turns_stale)
 {
     assert_int_equal(fathom_due_us(&rig.sensor, 1), 5000);
@@ -192,23 +120,6 @@ TEST(by_default_nothing_is_driven)
     assert_int_equal(pin.sets, 0);
 }
 
-TEST(a_pin_is_driven_at_init_and_when_told)
-{
-    config.select = fathom_output_pin(&pin.trigger);
-    inits(FATHOM_OK);
-    assert_true(pin.level);
-    config.value = FATHOM_REAL_TIME;
-    inits(FATHOM_OK);
-    assert_false(pin.level);
-    selects(FATHOM_PROCESSED, FATHOM_OK);
-    assert_true(pin.level);
-    selects(FATHOM_REAL_TIME, FATHOM_OK);
-    assert_false(pin.level);
-    fathom_a16_auto_deinit(&a16);
-    assert_int_equal(rig.fake.breaks, 0);
-    assert_null(rig.line.listener);
-}
-
 TEST(a_break_selects_until_deinit)
 {
     config.select = fathom_output_line_break(&rig.line);
@@ -221,17 +132,6 @@ TEST(a_break_selects_until_deinit)
     fathom_a16_auto_deinit(&a16);
     assert_false(rig.fake.in_break);
     assert_null(rig.line.listener);
-}
-
-TEST(frames_are_read_in_a_break)
-{
-    config.select = fathom_output_line_break(&rig.line);
-    config.value = FATHOM_REAL_TIME;
-    inits(FATHOM_OK);
-    rig.sensor = fathom_a16_auto_sensor(&a16);
-    rig_send(mm_1953, 4, 500);
-    assert_true(rig.fake.in_break);
-    assert_int_equal(rig.sample.distance_mm, 1953);
 }
 
 TEST(a_port_that_cannot_is_said_by_init_and_nothing_listens)
@@ -272,16 +172,4 @@ TEST(without_anything_that_drives_rx_nothing_is_selected)
     selects(FATHOM_PROCESSED, FATHOM_ERR_UNSUPPORTED);
     config.value = FATHOM_REAL_TIME;
     inits(FATHOM_ERR_UNSUPPORTED);
-}
-
-TEST(a_selection_that_failed_has_changed_nothing)
-{
-    config.select = fathom_output_line_break(&rig.line);
-    inits(FATHOM_OK);
-    rig.fake.never_sent = true;
-    selects(FATHOM_REAL_TIME, FATHOM_PENDING);
-    assert_int_equal(a16.value, FATHOM_PROCESSED);
-    rig.fake.never_sent = false;
-    selects(FATHOM_REAL_TIME, FATHOM_OK);
-    assert_int_equal(a16.value, FATHOM_REAL_TIME);
 }

@@ -3,8 +3,6 @@
 
 /* The trigger, and when a response is one; test_driver_contract.c has the rest. */
 
-static const uint8_t wrong_sum[] = {0xFF, 0x07, 0xA1, 0xA6};
-
 static const suite_t suite = {.set_up = controlled_set_up};
 
 /* ---- the trigger ---- */
@@ -78,56 +76,6 @@ TEST(a_slow_loop_leaves_the_pin_high_for_the_low_time_before_the_next_edge)
 
 /* ---- in time or not ---- */
 
-/* One trigger, answered so much later; what comes of it. */
-static fathom_status_t answered_after(const uint8_t frame[4], uint32_t us, uint32_t step_us)
-{
-    controlled_start();
-    controlled_run_to_break(1, step_us);
-    controlled_response(frame, us);
-    return controlled_outcome(step_us);
-}
-
-static void comes(fathom_status_t status) { assert_int_equal(controlled_outcome(100), status); }
-
-TEST(a_sample_is_told_5_ms_after_its_last_byte)
-{
-    assert_int_equal(answered_after(controlled_1953, 100 * MS, 100), FATHOM_OK);
-    assert_int_equal(rig.sample.distance_mm, 1953);
-    assert_in_range(rig.fake.now_us, rig.sample.time_us + 5000, rig.sample.time_us + 5100);
-}
-
-/* What begins in time and ends too late is damaged as far as it came: CHECKSUM. */
-TEST(a_frame_answers_80_to_130_ms_after_the_edge_and_is_late_else)
-{
-    static const struct {
-        uint32_t after_us;
-        fathom_status_t status;
-    } times[] = {{30 * MS, FATHOM_ERR_NO_RESPONSE},
-                 {79900, FATHOM_ERR_NO_RESPONSE},
-                 {80 * MS, FATHOM_OK},
-                 {94 * MS, FATHOM_OK},
-                 {114 * MS, FATHOM_OK},
-                 {130 * MS, FATHOM_OK},
-                 {130200, FATHOM_ERR_CHECKSUM},
-                 {133 * MS, FATHOM_ERR_CHECKSUM},
-                 {134 * MS, FATHOM_ERR_NO_RESPONSE}};
-    for (unsigned i = 0; i != COUNT(times); i++) {
-        assert_int_equal(answered_after(controlled_1953, times[i].after_us, 50), times[i].status);
-        rig_run(20 * MS, 50);
-        assert_int_equal(controlled.a16.late, times[i].status != FATHOM_OK);
-        assert_int_equal(rig.samples, times[i].status == FATHOM_OK);
-    }
-}
-
-TEST(both_ends_of_the_time_are_options)
-{
-    static const uint32_t after_us[] = {39900, 40 * MS, 60 * MS, 60200};
-    controlled.config.earliest_us = 40 * MS;
-    controlled.config.latest_us = 60 * MS;
-    for (unsigned i = 0; i != 4; i++)
-        assert_int_equal(answered_after(controlled_1953, after_us[i], 50) == FATHOM_OK, i == 1 || i == 2);
-}
-
 TEST(no_response_is_said_at_130_ms_and_the_next_trigger_follows)
 {
     controlled_run_to_break(1, 100);
@@ -137,46 +85,6 @@ TEST(no_response_is_said_at_130_ms_and_the_next_trigger_follows)
     assert_int_equal(fathom_due_us(&rig.sensor, 1), 0);
     assert_int_equal(rig_poll(), FATHOM_ERR_NO_RESPONSE);
     assert_int_equal(rig.fake.breaks, 2);
-}
-
-/* Bytes before the time of a response are none. */
-TEST(a_damaged_response_is_a_wrong_checksum_and_noise_right_after_the_trigger_is_none)
-{
-    assert_int_equal(answered_after(wrong_sum, 100 * MS, 100), FATHOM_ERR_CHECKSUM);
-    comes(FATHOM_ERR_NO_RESPONSE);
-    controlled_response(wrong_sum, 20 * MS);
-    comes(FATHOM_ERR_NO_RESPONSE);
-    controlled_response(wrong_sum, 20 * MS);
-    controlled_response(controlled_1953, 100 * MS);
-    comes(FATHOM_OK);
-}
-
-TEST(a_late_response_is_not_that_of_the_next_trigger_and_the_count_stops)
-{
-    controlled.a16.late = UINT16_MAX - 1;
-    controlled_run_to_break(1, 100);
-    for (unsigned i = 0; i != 3; i++) {
-        comes(FATHOM_ERR_NO_RESPONSE);
-        controlled_response(controlled_511, 30 * MS); /* of the trigger before, 160 ms after it */
-    }
-    comes(FATHOM_ERR_NO_RESPONSE);
-    assert_int_equal(rig.samples, 0);
-    assert_int_equal(controlled.a16.late, UINT16_MAX);
-    controlled_response(controlled_1953, 100 * MS);
-    comes(FATHOM_OK);
-    assert_int_equal(rig.sample.distance_mm, 1953);
-}
-
-/* With a response taken, a second one to the same trigger has no business. */
-TEST(a_second_frame_to_one_trigger_is_late)
-{
-    controlled_run_to_break(1, 100);
-    controlled_response(controlled_1953, 90 * MS);
-    controlled_response(controlled_511, 105 * MS);
-    comes(FATHOM_OK);
-    rig_run(24 * MS, 100);
-    assert_int_equal(rig.samples, 1);
-    assert_int_equal(controlled.a16.late, 1);
 }
 
 /* Stamped at 131 ms, read at 139 ms, when the poll before was at 119 ms: it may have come in time but for the stamp. */
@@ -365,44 +273,6 @@ TEST(a_frame_of_before_the_trigger_is_not_the_response)
         assert_int_equal(rig_poll(), FATHOM_OK);
         assert_int_equal(rig.sample.distance_mm, 511);
         assert_int_equal(controlled.a16.late, 1);
-    }
-}
-
-/* A frame that arrives between the read and the edge of one poll, as on a machine that does something else there. */
-TEST(a_frame_that_arrives_while_the_poll_triggers_is_not_the_response)
-{
-    unsigned tried = 0;
-    for (uint32_t after_us = 0; after_us <= 20 * MS; after_us += 500) {
-        run_to_second_trigger();
-        rig.fake.now_us += 5 * MS;
-        const uint32_t arrives_us = rig.fake.now_us + after_us;
-        fake_receive(&rig.fake, after_us, controlled_1953, 4);
-        rig.fake.step_us = 2 * MS; /* each look at the clock */
-        PENDS(rig_poll());
-        rig.fake.step_us = 0;
-        assert_int_equal(rig.fake.breaks, 2);
-        if (arrives_us > controlled.a16.edge_us) break;
-        tried++;
-        rig_run(100 * MS, 100 * MS);
-        rig_run(10 * MS, 10 * MS);
-        assert_int_equal(rig.samples, 1);
-    }
-    assert_in_range(tried, 5, 40);
-}
-
-/* line.h, rule 14: the response waits for 300 s in the port, and would be a sample of now. */
-TEST(a_response_that_waited_in_the_port_is_no_sample)
-{
-    for (uint32_t sleep_us = 500 * MS; sleep_us <= 300000 * MS; sleep_us *= 10) {
-        const bool is_old = sleep_us > 130 * MS + FATHOM_LINE_LATE_US;
-        controlled_start();
-        controlled_run_to_break(1, 100);
-        controlled_response(controlled_1953, 100 * MS);
-        rig_run(20 * MS, 1 * MS);
-        rig.fake.now_us += sleep_us;
-        assert_int_equal(rig_poll(), is_old ? FATHOM_ERR_NO_RESPONSE : FATHOM_PENDING);
-        rig_run(20 * MS, 1000);
-        assert_int_equal(rig.samples, !is_old);
     }
 }
 

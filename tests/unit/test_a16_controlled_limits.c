@@ -59,43 +59,6 @@ TEST(a_frame_answers_from_80_to_130_ms_after_the_edge)
     }
 }
 
-/* "period_us ... 0 and anything less: 121 ms". */
-TEST(the_next_trigger_comes_121_ms_after_the_last)
-{
-    trigger();
-    assert_int_equal(answered_after(100 * MS, controlled_1953), FATHOM_OK);
-    poll_after(121 * MS - 105 * MS - 1);
-    assert_int_equal(rig.fake.breaks, 1);
-    poll_after(1);
-    assert_int_equal(rig.fake.breaks, 2);
-}
-
-TEST(a_period_of_1_us_more_than_the_default_is_kept)
-{
-    controlled.config.period_us = 121 * MS + 1;
-    controlled_start();
-    trigger();
-    assert_int_equal(answered_after(100 * MS, controlled_1953), FATHOM_OK);
-    poll_after(121 * MS - 105 * MS);
-    assert_int_equal(rig.fake.breaks, 1);
-    poll_after(1);
-    assert_int_equal(rig.fake.breaks, 2);
-}
-
-/* "window ... 0: 1 and 16350 mm". 3FDE: FF + 3F + DE = 21C; 3FDF: 21D. */
-TEST(distances_up_to_16350_mm_are_believed)
-{
-    static const uint8_t mm_16350[] = {0xFF, 0x3F, 0xDE, 0x1C};
-    static const uint8_t mm_16351[] = {0xFF, 0x3F, 0xDF, 0x1D};
-    trigger();
-    assert_int_equal(answered_after(100 * MS, mm_16350), FATHOM_OK);
-    assert_int_equal(rig.sample.distance_mm, 16350);
-    controlled_start();
-    trigger();
-    assert_int_equal(answered_after(100 * MS, mm_16351), FATHOM_ERR_MALFORMED);
-    assert_int_equal(controlled.a16.measurement.implausible, 1);
-}
-
 /* sample.h: the number is that of the response, of which one was refused. */
 TEST(a_refused_frame_takes_a_number)
 {
@@ -125,40 +88,6 @@ TEST(earliest_and_latest_may_be_the_same)
 }
 
 /* ---- when it is due ---- */
-
-TEST(where_the_port_was_busy_it_is_due_in_1_ms)
-{
-    rig.fake.busy_until_us = rig.fake.now_us + 100 * MS;
-    poll_after(2 * MS);
-    assert_int_equal(rig.fake.breaks, 0);
-    assert_int_equal(due_us(), 1000);
-    rig.fake.now_us += 400;
-    assert_int_equal(due_us(), 600);
-}
-
-/* After latest_us a response that came in time may still wait for its silence. */
-TEST(where_a_frame_waits_for_its_end_it_is_due_in_1_ms)
-{
-    trigger();
-    fake_receive(&rig.fake, 129 * MS, controlled_1953, 4);
-    release();
-    poll_after(119 * MS);
-    assert_int_equal(poll_after(1 * MS), FATHOM_PENDING); /* 4 ms are left */
-    assert_int_equal(due_us(), 1000);
-    rig.fake.now_us += 400;
-    assert_int_equal(due_us(), 600);
-}
-
-TEST(while_a_response_may_come_it_is_due_at_the_end_of_that)
-{
-    trigger();
-    release();
-    assert_int_equal(due_us(), 120 * MS);
-    rig.fake.now_us += 70 * MS;
-    assert_int_equal(due_us(), 50 * MS);
-    rig.fake.now_us += 100 * MS;
-    assert_int_equal(due_us(), 0);
-}
 
 /* After the response the next trigger is due, however long the period is: the stream's own deadline means nothing. */
 TEST(between_two_triggers_it_is_due_at_the_next_one)
@@ -194,33 +123,6 @@ TEST(a_frame_that_a_poll_of_the_line_has_brought_is_due_at_once)
 }
 
 /* ---- what it leaves alone ---- */
-
-static unsigned set_breaks;
-
-static int counted_set_break(void *ctx, bool on)
-{
-    set_breaks++;
-    return rig.fake.uart.set_break(ctx, on);
-}
-
-TEST(a_break_is_ended_only_where_one_has_begun)
-{
-    static fathom_uart_t uart;
-    uart = rig.fake.uart;
-    uart.set_break = counted_set_break;
-    set_breaks = 0;
-    rig.line_parts.uart = &uart;
-    assert_int_equal(controlled_init(), FATHOM_OK);
-    assert_int_equal(set_breaks, 0);
-    fathom_a16_controlled_deinit(&controlled.a16);
-    assert_int_equal(set_breaks, 0);
-    assert_int_equal(controlled_init(), FATHOM_OK);
-    trigger();
-    assert_int_equal(set_breaks, 1);
-    fathom_a16_controlled_deinit(&controlled.a16);
-    assert_int_equal(set_breaks, 2);
-    assert_false(rig.fake.in_break);
-}
 
 TEST(a_pin_that_is_high_is_not_set_when_the_sensor_is_given_up)
 {

@@ -69,34 +69,3 @@ TEST(the_examples_of_the_datasheet_go_over_a_line)
         assert_int_equal(rig.sample.distance_mm, i == 0 ? 754 : 751);
     }
 }
-
-/* Two units on one line, in a loop that comes to one of them every 10 ms. The first one's response is read, and
- * the second one's request sent, in the second one's poll. sample.h: time_us is the clock when the last byte
- * of the response came; the port's stamp says when that was. */
-TEST(the_time_is_the_responses_own_when_anothers_poll_brought_it)
-{
-    static fathom_a16_modbus_t other;
-    start_line();
-    rig.fake.byte_us = RIG_BYTE_US;
-    const fathom_sensor_t first = start(&a16);
-    config.modbus.address = 2;
-    const fathom_sensor_t second = start(&other);
-    uint32_t came_us = 0;
-    for (unsigned i = 0; i != 10; i++) {
-        if (i == 8) {
-            assert_int_equal(rig.fake.written, 1);
-            assert_int_equal(rig.fake.writes[0].bytes[0], 1);
-            came_us = rig.fake.now_us + 14000;
-            fake_receive_rx(&rig.fake, 15000, responses[0], 7, (fathom_rx_t){came_us, FATHOM_RX_TIMED});
-        }
-        rig.fake.now_us += 10000;
-        rig.sensor = i % 2 == 0 ? first : second;
-        PENDS(rig_poll());
-    }
-    assert_int_equal(rig.fake.written, 2); /* the other's turn */
-    rig.fake.now_us += 10000;
-    rig.sensor = first;
-    assert_int_equal(rig_poll(), FATHOM_OK);
-    assert_int_equal(rig.sample.distance_mm, 754);
-    assert_int_equal(rig.sample.time_us, came_us);
-}

@@ -78,12 +78,6 @@ TEST(no_target_and_faults_are_samples_without_a_distance)
     is(cycle(0), FATHOM_FAULT, 0, 0);
 }
 
-TEST(no_pulse_is_no_response_and_never_no_target)
-{
-    measures(0, FATHOM_ERR_NO_RESPONSE);
-    assert_int_equal(cycle(0), FATHOM_ERR_NO_RESPONSE);
-}
-
 TEST(samples_are_numbered_and_errors_are_not)
 {
     unsigned no_responses = 0;
@@ -166,25 +160,4 @@ TEST(it_is_due_as_its_engine_is)
     }
     fake.now_us += 100 * MS;
     assert_int_equal(fathom_due_us(&sensor, 1), 119 * MS);
-}
-
-TEST(a_break_triggers_where_there_is_no_pin)
-{
-    output = fathom_output_break(&fake.uart);
-    start();
-    fake.now_us += 2 * MS;
-    assert_int_equal(fathom_poll(&sensor, &last), FATHOM_PENDING);
-    assert_true(fake.in_break);
-    fathom_a16_pwm_deinit(&a16);
-    assert_false(fake.in_break);
-}
-
-TEST(in_air_a_window_may_be_wider)
-{
-    config.in_air = true;
-    config.window.min_mm = 16351;
-    assert_int_equal(fathom_a16_pwm_init(&a16, &pin.capture, &fake.clock, &output, &config), FATHOM_OK);
-    config.window.min_mm = 18001;
-    assert_int_equal(fathom_a16_pwm_init(&a16, &pin.capture, &fake.clock, &output, &config),
-                     FATHOM_ERR_ARGUMENT);
 }

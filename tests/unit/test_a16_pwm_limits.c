@@ -68,16 +68,6 @@ TEST(the_nearest_distance_is_an_option)
     assert_int_equal(sample.distance_mm, 100);
 }
 
-/* FATHOM_ERR_ARGUMENT: "min_mm over max_mm". */
-TEST(a_window_of_one_distance_is_one)
-{
-    config.window.min_mm = 100;
-    config.window.max_mm = 100;
-    assert_int_equal(pulse_of(573), FATHOM_OK);
-    config.window.max_mm = 99;
-    assert_int_equal(init(), FATHOM_ERR_ARGUMENT);
-}
-
 TEST(a_sample_is_without_interference)
 {
     const bool no = false;

@@ -123,22 +123,6 @@ TEST(a_value_that_a_register_cannot_have_is_refused)
     }
 }
 
-TEST(while_it_is_asked_and_when_that_fails_it_is_left_alone)
-{
-    static const fathom_status_t errors[] = {SILENT, FATHOM_ERR_CHECKSUM, FATHOM_ERR_PORT,
-                                             FATHOM_ERR_EXCEPTION};
-    forget();
-    for (unsigned i = 0; i != GETS; i++) {
-        for (unsigned k = 0; k != COUNT(errors); k++) {
-            fake.now_us += FATHOM_A16_MIN_PERIOD_US;
-            PENDS(rows[i].get());
-            assert_untouched_but(GETS);
-            PLAY(rows[i].get, errors[k], READ(1, rows[i].address, errors[k], 2));
-            assert_untouched_but(GETS);
-        }
-    }
-}
-
 TEST(a_command_that_is_busy_leaves_it_alone)
 {
     forget();
@@ -245,11 +229,6 @@ TEST(the_operating_mode_is_write_only_and_its_acknowledgement_all_there_is)
 {
     desk.argument = 1; /* is it there, and does the line echo? */
     PLAY(set_mode, OK, READ(1, 0x0200, OK, 1), WRITE(1, 0x0202, 1, OK));
-}
-
-TEST(the_operating_mode_of_one_that_does_not_answer_is_not_written)
-{
-    PLAY(set_mode, SILENT, READ(1, 0x0200, SILENT, 0));
 }
 
 /* modbus_unit.h, rule 5: a setting that is not called for 5 s and 16 calls of other functions ends. */

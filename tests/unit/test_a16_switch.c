@@ -154,23 +154,6 @@ TEST(a_response_on_the_pin_is_no_change_in_any_loop)
     }
 }
 
-TEST(a_level_that_turns_during_a_transaction_is_a_sample_after_it)
-{
-    asks(threshold_2000);
-    pins_expect(1, FATHOM_FAR);
-    pins_turn(0);
-    pins_run(100 * MS, 1000);
-    assert_int_equal(pins.samples, 1); /* it has stood for 100 ms: not looked at */
-    response(0, true, threshold_2000);
-    const uint32_t ended_us = pins.fake.now_us + 8 * BYTE_US;
-    while (pins.samples == 1) pins_run(100, 100);
-    assert_int_equal(status(), FATHOM_OK);
-    pins_expect(2, FATHOM_NEAR);
-    /* 5 ms of silence, and 20 ms in which the level stood */
-    assert_in_range(pins.fake.now_us - ended_us, 25000, 25300);
-    assert_in_range(pins.sample.time_us - ended_us, 5000, 5300);
-}
-
 TEST(a_level_that_has_all_but_settled_when_a_request_leaves_waits)
 {
     stands_as(FATHOM_FAR);
@@ -180,41 +163,6 @@ TEST(a_level_that_has_all_but_settled_when_a_request_leaves_waits)
     pins_run(1 * MS, 1000);
     assert_int_equal(pins.fake.written, 1);
     after_ms(100, 1, FATHOM_FAR);
-}
-
-/* To the host's UART a low level is a break: 00 without a stop bit, before the response and after it. A port that
- * cannot tell: the bytes of a break are noise before the response. */
-TEST(garbage_with_framing_errors_around_a_response_or_unmarked_before_it_is_dropped_and_counted)
-{
-    static const uint32_t damaged_us[] = {2 * MS, 30 * MS, 31 * MS, 31 * MS + 9 * BYTE_US};
-    for (unsigned marked = 0; marked != 2; marked++) {
-        const fathom_rx_t rx = {0, marked != 0 ? FATHOM_RX_FRAMING : 0};
-        start(false);
-        asks(threshold_2000);
-        for (unsigned i = marked != 0 ? 0 : 2; i != 3; i++)
-            fake_receive_rx(&pins.fake, damaged_us[i], &nothing, 1, rx);
-        fake_trickle(&pins.fake, 31 * MS, BYTE_US, threshold_2000, 8);
-        if (marked != 0) fake_receive_rx(&pins.fake, damaged_us[3], &nothing, 1, rx);
-        pins_run(100 * MS, 1000);
-        assert_int_equal(status(), FATHOM_OK);
-        assert_int_equal(counters[FATHOM_LINE_BAD_BYTES], 4 * marked);
-        assert_int_equal(counters[FATHOM_LINE_DROPPED_BYTES], !marked);
-        assert_int_equal(counters[FATHOM_LINE_RESPONSES], 1);
-        pins_expect(1, FATHOM_FAR);
-    }
-}
-
-TEST(a_response_after_its_time_out_is_no_change_either)
-{
-    asks(threshold_2000);
-    until_ended();
-    assert_int_equal(status(), FATHOM_ERR_NO_RESPONSE);
-    pins_run(60 * MS, 1000);
-    response(3 * MS, false, threshold_2000);
-    pins_run(200 * MS, 1000);
-    assert_int_equal(counters[FATHOM_LINE_LATE_RESPONSES], 1);
-    pins_expect(1, FATHOM_FAR);
-    assert_int_equal(pins.stales, 0);
 }
 
 /* The unit is quarantined, so the next request waits; the pin is free. */

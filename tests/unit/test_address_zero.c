@@ -10,52 +10,6 @@ static const suite_t suite = {.set_up = set_up};
 
 /* ---- on the line ---- */
 
-/* 00 03 01 00 00 01, as A16 6(4) asks unit 1. */
-TEST(a_read_of_unit_0_is_answered_by_unit_0)
-{
-    static const uint8_t head[] = {0x00, 0x03, 0x01, 0x00, 0x00, 0x01};
-    for (unsigned i = 0; i != 3; i++) {
-        ask(&bench.request, 0, &bench.value, 0);
-        run(REQUEST_US);
-        expect_written(i + 1);
-        assert_memory_equal(bench.fake.writes[i].bytes, head, sizeof head);
-        run(20000);
-        receive_response(0, (uint16_t)(100 + i));
-        run(100);
-        expect_mm((uint16_t)(100 + i));
-        run(T3_5_US); /* and no unit is quarantined */
-    }
-}
-
-TEST(no_other_unit_answers_for_unit_0)
-{
-    static const uint8_t others[] = {1, 240, 16, 254};
-    for (unsigned i = 0; i != COUNT_OF(others); i++) {
-        set_up(state);
-        ask(&bench.request, 0, &bench.value, 0);
-        run(REQUEST_US);
-        deliver_response(others[i], 111);
-        expect(FATHOM_PENDING);
-        expect_count(FATHOM_LINE_STRAYS, 1);
-        run(TIMEOUT_US + 1000);
-        expect_failed(FATHOM_ERR_NO_RESPONSE);
-    }
-}
-
-TEST(nor_does_unit_0_answer_for_another)
-{
-    static const uint8_t others[] = {1, 240};
-    for (unsigned i = 0; i != COUNT_OF(others); i++) {
-        set_up(state);
-        ask(&bench.request, others[i], &bench.value, 0);
-        run(REQUEST_US);
-        deliver_response(0, 111);
-        expect(FATHOM_PENDING);
-        deliver_response(others[i], 222);
-        expect_mm(222);
-    }
-}
-
 TEST(a_frame_of_unit_0_is_noise_where_it_has_not_been_asked)
 {
     ask_1_and_send(0);
@@ -63,33 +17,6 @@ TEST(a_frame_of_unit_0_is_noise_where_it_has_not_been_asked)
     run(GAP_US);
     expect_count(FATHOM_LINE_STRAYS, 0);
     expect_count(FATHOM_LINE_DROPPED_BYTES, 7);
-}
-
-/* 239 and 241 are quarantined by another bit than 0 is, modulo 16. */
-TEST(a_late_response_of_another_unit_is_taken_while_unit_0_is_asked)
-{
-    static const uint8_t others[] = {1, 239, 241};
-    for (unsigned i = 0; i != COUNT_OF(others); i++) {
-        set_up(state);
-        ask(&bench.request, others[i], &bench.value, 1);
-        run(REQUEST_US + TIMEOUT_US);
-        ask_other(0);
-        run(REQUEST_US);
-        expect_written(2);
-        expect_unit(1, 0);
-        deliver_response(others[i], 111);
-        expect_mm(111);
-        expect_count(FATHOM_LINE_LATE_RESPONSES, 1);
-        response_other(0, 222);
-    }
-}
-
-TEST(what_is_written_to_unit_0_is_a_broadcast_as_ever)
-{
-    ask_to_write(&bench.request, 0);
-    run(REQUEST_US);
-    expect_written(1);
-    expect_after(TIMEOUT_US + 1000, FATHOM_OK); /* that is the time that the units need */
 }
 
 TEST(a_unit_0_that_does_not_answer_is_quarantined_and_asked_again)
@@ -167,17 +94,6 @@ TEST_IN(finding, one_that_answers_from_255_says_where_it_is)
         assert_int_equal(find_after(100), rows[i].status);
         assert_int_equal(address, rows[i].status == FATHOM_OK ? rows[i].says : 0xA5);
     }
-}
-
-/* "FATHOM_ERR_NO_RESPONSE: nothing in a second", once the last byte of the 8 has left. */
-TEST_IN(finding, a_response_is_waited_for_a_second)
-{
-    for (unsigned i = 0; i != 100 && bench.fake.written == 0; i++)
-        assert_int_equal(find_after(100), FATHOM_PENDING);
-    expect_written(1);
-    assert_int_equal(find_after(8 * BYTE_US), FATHOM_PENDING);
-    assert_int_equal(find_after(999999), FATHOM_PENDING);
-    assert_int_equal(find_after(1), FATHOM_ERR_NO_RESPONSE);
 }
 
 TEST_IN(finding, each_outcome_of_finding_comes_once)

@@ -172,75 +172,6 @@ TEST(a_threshold_has_to_be_passed_for_its_hold_time)
     expect_mm(10 * S, 499, ON);
 }
 
-TEST(time_alone_switches_neither_on_nor_off)
-{
-    config.on_hold_us = 2 * S;
-    start();
-    expect_mm(0, 601, OFF);
-    expect_mm(S, 499, OFF);
-    expect_nothing(3 * S, OFF);
-    expect_nothing(5 * S, OFF);
-    expect_mm(5 * S, 499, ON);
-}
-
-TEST(a_distance_that_is_not_beyond_the_threshold_begins_the_hold_time_anew)
-{
-    config.on_hold_us = 2 * S;
-    config.off_hold_us = 2 * S;
-    start();
-    expect_mm(0, 601, UNKNOWN);
-    expect_mm(2 * S, 601, OFF);
-    expect_mm(3 * S, 499, OFF);
-    expect_mm(4 * S, 500, OFF);
-    expect_mm(5 * S, 499, OFF);
-    expect_mm(7 * S - 1, 499, OFF);
-    expect_mm(7 * S, 499, ON);
-    expect_mm(8 * S, 601, ON);
-    expect_mm(9 * S, 499, ON);
-    expect_mm(10 * S, 601, ON);
-    expect_mm(12 * S - 1, 601, ON);
-    expect_mm(12 * S, 601, OFF);
-}
-
-TEST(a_short_time_without_a_distance_does_not_begin_it_anew)
-{
-    config.on_hold_us = 7 * S;
-    start();
-    expect_mm(0, 601, OFF);
-    expect_mm(S, 499, OFF);
-    expect_kind(2 * S, FATHOM_FAULT, 0, OFF);
-    expect_kind(3 * S, FATHOM_UNKNOWN, 0, OFF);
-    expect_status(4 * S, FATHOM_ERR_NO_RESPONSE, OFF);
-    expect_status(6 * S, FATHOM_ERR_MALFORMED, OFF);
-    expect_mm(6 * S, 499, OFF);
-    expect_mm(8 * S, 499, ON);
-}
-
-TEST(unknown_us_without_a_distance_begins_it_anew)
-{
-    config.on_hold_us = 7 * S;
-    config.off_hold_us = 1;
-    start();
-    expect_mm(0, 601, UNKNOWN);
-    expect_mm(1, 601, OFF);
-    expect_mm(S, 499, OFF);
-    expect_nothing(6 * S + 1, UNKNOWN);
-    expect_mm(7 * S, 499, UNKNOWN);
-    expect_mm(11 * S, 499, UNKNOWN);
-    expect_mm(14 * S - 1, 499, UNKNOWN);
-    expect_mm(14 * S, 499, ON);
-}
-
-/* 2100 s are 35 minutes; samples 300 s apart. */
-TEST(hold_times_may_be_35_minutes)
-{
-    config.on_hold_us = 2100000000u;
-    config.unknown_us = 2100000000u;
-    start();
-    for (uint32_t s = 0; s != 2100; s += 300) expect_mm(s * S, 499, UNKNOWN);
-    expect_mm(2100000000u, 499, ON);
-}
-
 /* 71.58 minutes are a turn of the clock: what is 71.6 minutes ago looks like 1 s ago, less than the hold time. */
 TEST(a_state_that_has_lasted_for_a_turn_of_the_clock_stays)
 {
@@ -345,14 +276,6 @@ TEST(samples_without_a_distance_show_that_the_device_responds)
     }
 }
 
-TEST(a_distance_shows_that_the_device_responds)
-{
-    expect_mm(0, 499, ON);
-    expect_status(S, FATHOM_ERR_NO_RESPONSE, ON);
-    expect_mm(2 * S, 499, ON);
-    expect_nothing(7 * S + 1, UNKNOWN);
-}
-
 /* In a silence as long as half a turn of the clock and longer, too: 4295 s are a turn. */
 TEST(unknown_and_no_response_follow_what_came_last_for_hours)
 {
@@ -397,37 +320,7 @@ TEST(from_init_on_it_is_unknown_and_after_unknown_us_what_came_tells)
     expect_nothing(5 * S + 1, NONE);
 }
 
-TEST(a_sample_a_little_before_the_first_call_is_a_sample)
-{
-    expect_nothing(0, UNKNOWN);
-    expect_mm((uint32_t)-1000, 499, ON);
-    expect_nothing(5 * S - 1000, ON);
-    expect_nothing(5 * S - 999, UNKNOWN);
-}
-
 /* ---- out of it ---- */
-
-TEST(a_distance_leads_out_after_its_hold_time_until_which_the_state_stays)
-{
-    config.on_hold_us = 2 * S;
-    config.off_hold_us = 3 * S;
-    start();
-    expect_status(0, FATHOM_ERR_NO_RESPONSE, UNKNOWN);
-    expect_status(6 * S, FATHOM_ERR_NO_RESPONSE, NONE);
-    expect_mm(7 * S, 499, NONE);
-    expect_nothing(8 * S, NONE);
-    expect_kind(8 * S, FATHOM_FAULT, 0, NONE);
-    expect_mm(9 * S, 499, ON);
-    expect_kind(15 * S, FATHOM_FAULT, 0, UNKNOWN);
-    expect_mm(16 * S, 601, UNKNOWN);
-    expect_status(17 * S, FATHOM_ERR_NO_RESPONSE, UNKNOWN);
-    expect_mm(19 * S - 1, 601, UNKNOWN);
-    expect_mm(19 * S, 601, OFF);
-    expect_kind(25 * S, FATHOM_FAULT, 0, UNKNOWN);
-    expect_mm(26 * S, 601, UNKNOWN); /* to the state before likewise */
-    expect_mm(29 * S - 1, 601, UNKNOWN);
-    expect_mm(29 * S, 601, OFF);
-}
 
 TEST(between_the_thresholds_is_the_state_before_at_once)
 {
@@ -444,42 +337,6 @@ TEST(between_the_thresholds_is_the_state_before_at_once)
         expect_mm(13 * S, before == ON ? 601 : 499, NONE); /* the other one, but not for its hold time */
         expect_mm(14 * S - 1, 550, before);
     }
-}
-
-TEST(between_the_thresholds_without_a_state_before_is_what_if_unknown_says)
-{
-    for (uint8_t side = ON; side <= OFF; side++) {
-        config.if_unknown = side;
-        config.if_no_response = side == ON ? OFF : ON;
-        start();
-        expect_mm(0, 550, side);
-        start();
-        expect_nothing(0, UNKNOWN);
-        expect_nothing(6 * S, NONE);
-        expect_mm(6 * S, 550, side);
-    }
-}
-
-/* A loop that slept: the sample that ends a silence is the first thing that is told after it. */
-TEST(one_sample_that_ends_a_silence_with_the_state_before_changes_nothing)
-{
-    expect_mm(0, 499, ON);
-    expect_mm(6 * S, 499, ON);
-    expect_mm(12 * S, 550, ON);
-    expect_mm(18 * S, 601, OFF);
-}
-
-TEST(one_sample_that_ends_a_silence_and_has_to_be_held_shows_what_the_silence_was)
-{
-    config.on_hold_us = S;
-    start();
-    expect_mm(0, 499, UNKNOWN);
-    expect_mm(S, 499, ON);
-    expect_mm(6 * S + 1, 499, UNKNOWN);
-    expect_mm(7 * S + 1, 499, ON);
-    expect_status(8 * S, FATHOM_ERR_NO_RESPONSE, ON);
-    expect_mm(13 * S, 499, NONE);
-    expect_mm(14 * S, 499, ON);
 }
 
 /* ---- is it on ---- */

@@ -78,21 +78,6 @@ TEST(a_value_of_256_is_refused)
     assert_int_equal(fathom_a05_auto_select(&a05, (fathom_dyp_value_t)256), FATHOM_ERR_ARGUMENT);
 }
 
-/* "To be called right before the sensor gets power": what the one before has said is over. The frame is A05 1(3). */
-TEST(after_power_on_no_sample_of_before_is_handed_over)
-{
-    static const uint8_t four[] = {0xFF, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x60};
-    start_a05(false);
-    poll_after(10000);
-    fake_receive(&rig.fake, 0, four, sizeof four);
-    assert_int_equal(poll_after(100), FATHOM_PENDING);
-    assert_int_equal(poll_after(RIG_GAP_US), FATHOM_OK);
-    assert_int_equal(rig.sample.probe, 1);
-    assert_int_equal(fathom_a05_auto_select(&a05, FATHOM_PROCESSED), FATHOM_OK);
-    assert_int_equal(poll_after(100), FATHOM_PENDING);
-    assert_int_equal(due_us(), 2000000 - 100);
-}
-
 /* FATHOM_A05_SELECT_US, some time after the last poll too. */
 TEST(the_end_of_selecting_is_due_after_1500_ms)
 {
@@ -107,21 +92,6 @@ TEST(the_end_of_selecting_is_due_after_1500_ms)
     assert_int_equal(due_us(), 0);
     assert_int_equal(poll_after(0), FATHOM_PENDING);
     assert_false(rig.fake.in_break);
-}
-
-/* "Stops listening": what it had taken hold of it has let go before. */
-TEST(after_selecting_nothing_is_driven_when_the_sensor_is_given_up)
-{
-    for (unsigned has_pin = 0; has_pin != 2; has_pin++) {
-        set_up(state);
-        start_a05(has_pin != 0);
-        assert_int_equal(fathom_a05_auto_select(&a05, FATHOM_REAL_TIME), FATHOM_OK);
-        poll_after(FATHOM_A05_SELECT_US);
-        const unsigned driven = set_breaks + pin.sets;
-        assert_int_equal(driven, 2); /* low, and high again */
-        fathom_a05_auto_deinit(&a05);
-        assert_int_equal(set_breaks + pin.sets, driven);
-    }
 }
 
 /* ---- A16 ---- */

@@ -97,20 +97,6 @@ TEST(deinit_tells_whether_rx_is_high)
     }
 }
 
-/* No poll is needed between the calls. */
-TEST(deinit_gives_the_port_a_second)
-{
-    for (unsigned i = 0; i != COUNT_OF(sensors); i++) {
-        sensors[i].hold();
-        refuse(sensors[i].fake, FOR_EVER, 0);
-        for (unsigned ms = 0; ms != 1000; ms++) {
-            assert_int_equal(sensors[i].deinit(), FATHOM_PENDING);
-            sensors[i].fake->now_us += 1000;
-        }
-        assert_int_equal(sensors[i].deinit(), FATHOM_ERR_PORT);
-    }
-}
-
 /* ---- A05 and A16, automatic ---- */
 
 TEST(a_selection_of_an_a05_ends_although_the_port_refused_that_once)
@@ -166,23 +152,6 @@ TEST(a_selection_of_an_a05_that_does_not_end_is_said_once_a_second_beside_the_sa
     assert_int_equal(rig_poll(), FATHOM_ERR_PORT);
 }
 
-TEST(a_selection_that_has_not_ended_is_not_forgotten)
-{
-    select_a05();
-    refuse(&rig.fake, 2, 0);
-    rig_run(SELECT_US, 1000);
-    assert_true(rig.fake.in_break);
-    assert_int_equal(fathom_a05_auto_select(&a05, FATHOM_PROCESSED), FATHOM_ERR_BUSY);
-    assert_int_equal(fathom_a05_auto_select(&a05, FATHOM_PROCESSED), FATHOM_OK);
-    assert_false(rig.fake.in_break);
-
-    select_a16();
-    refuse(&rig.fake, 1, 0);
-    assert_int_equal(fathom_a16_auto_select(&a16, FATHOM_PROCESSED), FATHOM_PENDING);
-    assert_int_equal(fathom_a16_auto_deinit(&a16), FATHOM_OK);
-    assert_false(rig.fake.in_break);
-}
-
 /* ---- A16, controlled ---- */
 
 TEST(a_trigger_of_an_a16_ends_although_the_port_refused_that_once)
@@ -200,26 +169,6 @@ TEST(a_trigger_of_an_a16_ends_although_the_port_refused_that_once)
         assert_int_equal(controlled_outcome(1000), FATHOM_OK);
         assert_int_equal(rig.sample.distance_mm, 1953);
     }
-}
-
-TEST(a_trigger_of_an_a16_that_does_not_end_is_said_once_a_second)
-{
-    trigger_controlled();
-    refuse(&rig.fake, FOR_EVER, 0);
-    rig_run(2 * MS + 999 * MS, 1000);
-    assert_int_equal(rig.ports, 0);
-    rig_run(1 * MS, 1000);
-    assert_int_equal(rig.ports, 1);
-    assert_in_range(rig.sensor.due_us(rig.sensor.ctx), 1, 1000);
-    rig_run(3000 * MS, 1000);
-    assert_int_equal(rig.ports, 3);
-    assert_int_equal(rig.fake.breaks, 1);
-    rig.fake.refusals = 0;
-    rig_run(1 * MS, 1000);
-    assert_false(rig.fake.in_break);
-    controlled_run_to_break(2, 1000);
-    controlled_response(controlled_511, 100 * MS);
-    assert_int_equal(controlled_outcome(1000), FATHOM_OK);
 }
 
 /* Something else is sent there without end, or what is sent does not leave. */
@@ -265,23 +214,6 @@ static unsigned ports_in(uint32_t for_us)
     const unsigned before = stand.port_errors;
     run_meter_in_steps(for_us, 1000);
     return stand.port_errors - before;
-}
-
-TEST(a_trigger_of_a_pulse_that_does_not_end_is_said_once_a_second)
-{
-    trigger_pulse();
-    refuse(&stand.fake, FOR_EVER, 0);
-    assert_int_equal(ports_in(2 * MS + 999 * MS), 0);
-    assert_int_equal(ports_in(1 * MS), 1);
-    assert_in_range(fathom_pulse_due_us(&stand.meter), 1, 1000);
-    assert_int_equal(ports_in(999 * MS), 0);
-    assert_int_equal(ports_in(1 * MS), 1);
-    assert_true(stand.fake.in_break);
-    stand.fake.refusals = 0;
-    assert_int_equal(ports_in(1 * MS), 0);
-    assert_false(stand.fake.in_break);
-    assert_int_equal(ports_in(2 * MS), 0);
-    assert_int_equal(stand.fake.breaks, 2);
 }
 
 TEST(a_trigger_of_a_pulse_that_cannot_begin_is_said_once_a_second)

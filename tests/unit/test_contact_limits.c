@@ -82,35 +82,6 @@ TEST(a_sample_has_a_level_and_nothing_that_is_measured)
     assert_int_equal(pins.sample.probe, 1);
 }
 
-/* "FATHOM_ERR_ARGUMENT: no clock, or no pin that can be read". */
-TEST(a_pin_that_cannot_be_read_is_no_contact)
-{
-    static const fathom_pin_t output = {NULL, NULL, NULL};
-    contact.pin = &output;
-    assert_int_equal(fathom_contact_init(&contact, &timing), FATHOM_ERR_ARGUMENT);
-    contact.clock = &pins.fake.clock;
-    assert_int_equal(fathom_contact_init(&contact, &timing), FATHOM_ERR_ARGUMENT);
-    contact.pin = &pins.pin;
-    assert_int_equal(fathom_contact_init(&contact, &timing), FATHOM_ERR_ARGUMENT);
-}
-
-/* "time_us is the look at which it was first seen to stand, or the present one when it repeats"; and due_us: "in
- * interval_us at the latest", or when it repeats. */
-TEST(a_level_that_repeats_has_the_time_of_its_look)
-{
-    timing.period_us = 70000;
-    timing.interval_us = 1000000;
-    start_on(0, NULL);
-    assert_int_equal(poll_after(20000), FATHOM_OK);
-    assert_int_equal(pins.sample.time_us, START_US);
-    assert_int_equal(due_us(), 70000);
-    assert_int_equal(poll_after(69999), FATHOM_PENDING);
-    assert_int_equal(due_us(), 1);
-    assert_int_equal(poll_after(1), FATHOM_OK);
-    assert_int_equal(pins.sample.time_us, START_US + 90000);
-    assert_int_equal(pins.sample.sequence, 2);
-}
-
 /* fathom_contact_set_near_is_high(): "The level has to settle anew". */
 TEST(a_level_settles_anew_when_it_means_something_else)
 {
@@ -121,21 +92,6 @@ TEST(a_level_settles_anew_when_it_means_something_else)
     assert_int_equal(poll_after(1), FATHOM_OK);
     pins_expect(2, FATHOM_NEAR);
     assert_int_equal(pins.sample.time_us, START_US + 20000);
-}
-
-/* "FATHOM_NO_DEADLINE where an interrupt of the pin wakes the program": at any time after the last look. */
-TEST(if_an_interrupt_wakes_the_program_only_the_period_is_due_once_the_level_counts)
-{
-    timing.interval_us = FATHOM_NO_DEADLINE;
-    timing.period_us = FATHOM_MAX_DURATION_US;
-    start_on(0, NULL);
-    assert_int_equal(due_us(), 20000);
-    assert_int_equal(poll_after(20000), FATHOM_OK);
-    assert_int_equal(due_us(), FATHOM_MAX_DURATION_US);
-    pins.fake.now_us += 10;
-    assert_int_equal(due_us(), FATHOM_MAX_DURATION_US - 10);
-    pins.fake.now_us += 0x80000000;
-    assert_int_equal(due_us(), 0);
 }
 
 /* "The longest that due_us advises between looks". */

@@ -63,28 +63,6 @@ static fathom_status_t poll_after(uint32_t us)
 
 /* ---- a contact that never changes ---- */
 
-TEST(by_default_a_level_that_does_not_change_is_a_sample_each_second)
-{
-    pins_run(20 * MS, 1 * MS);
-    pins_expect(1, FATHOM_FAR);
-    for (unsigned n = 2; n != 12; n++) {
-        pins_run(999 * MS, 1 * MS);
-        pins_expect(n - 1, FATHOM_FAR);
-        pins_run(1 * MS, 1 * MS);
-        pins_expect(n, FATHOM_FAR);
-        assert_int_equal(pins.sample.time_us, pins.fake.now_us);
-    }
-    assert_int_equal(pins.stales, 0);
-}
-
-TEST(polls_every_10_minutes_each_have_an_outcome)
-{
-    for (unsigned n = 1; n != 10; n++) {
-        assert_int_equal(poll_after(600 * SECOND), FATHOM_OK);
-        assert_int_equal(pins.sample.time_us, pins.fake.now_us);
-    }
-}
-
 /* ---- a level that does not count ---- */
 
 TEST(a_contact_that_bounces_for_ever_is_stale_every_2_s)
@@ -249,14 +227,6 @@ TEST(wait_returns_for_a_contact_that_never_changes)
     for (unsigned n = 0; n != 5; n++) assert_int_equal(wait_for(stand_still), FATHOM_OK);
     /* 20 ms and 4 times 35 minutes */
     assert_true(pins.fake.now_us == (uint32_t)(START_US + 20 * MS + 4ull * FATHOM_MAX_DURATION_US));
-}
-
-TEST(wait_returns_for_a_guard_that_is_never_clear)
-{
-    is_guard_clear = false;
-    start_with(&guard, START_US);
-    for (unsigned n = 0; n != 5; n++) assert_int_equal(wait_for(sleep_for), FATHOM_ERR_STALE);
-    assert_true(fathom_elapsed_us(pins.fake.now_us, START_US) <= 5 * (2 * SECOND + 5 * MS));
 }
 
 TEST(wait_returns_for_a_contact_that_bounces)

@@ -35,25 +35,3 @@ TEST(a_setting_over_modbus_keeps_no_pointer_to_its_parameter)
     assert_int_equal(modbus.log[1][4] * 256 + modbus.log[1][5], 500);
     assert_true(lives(modbus.request->message.values, &a16, sizeof a16));
 }
-
-TEST(the_address_of_every_a05_is_set_without_a_pointer_to_a_parameter)
-{
-    static const uint8_t one_754[] = {0x55, 0xAA, 0x01, 0x10, 0x02, 0xF2, 0x04}; /* the sum is 204 */
-    fathom_a05_dyp_t a05;
-    (void)set_up(state);
-    const fathom_a05_dyp_config_t config = {.probes = 1};
-    assert_int_equal(fathom_a05_dyp_init(&a05, &bench.line, &config), FATHOM_OK);
-    bool is_answered = false;
-    for (unsigned i = 0; bench.fake.written != 3; i++) {
-        assert_true(i != 10000);
-        if (bench.fake.written == 1 && !is_answered) /* there is one at its address, and none at the new */
-            fake_receive(&bench.fake, 65000, one_754, sizeof one_754);
-        is_answered = bench.fake.written != 0;
-        bench.fake.now_us += 1000;
-        assert_int_equal(fathom_a05_dyp_broadcast_address(&a05, 2), FATHOM_PENDING);
-    }
-    static const uint8_t set_2[] = {0x55, 0xAA, 0x02, 0x03, 0x04}; /* the sum is 104 */
-    assert_int_equal(bench.fake.writes[2].length, sizeof set_2);
-    assert_memory_equal(bench.fake.writes[2].bytes, set_2, sizeof set_2);
-    assert_true(lives(a05.base.unit.request.message.values, &a05, sizeof a05));
-}

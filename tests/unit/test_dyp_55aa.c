@@ -163,40 +163,6 @@ TEST(what_lies_behind_a_frame_does_not_count)
 
 /* ---- responses ---- */
 
-TEST(every_command_from_every_address_goes_both_ways)
-{
-    static const uint8_t commands[] = {0x01, 0x03, 0x10, 0x11, 0x12, 0x13};
-    unsigned tried = 0;
-    for (unsigned i = 0; i != sizeof commands; i++) {
-        const uint8_t length = length_by_the_datasheet(commands[i]);
-        const unsigned count = (length - 5u) / 2;
-        for (unsigned address = 0; address != BYTES; address++, tried++) {
-            /* Values that move with the address, all bytes of them different. */
-            const uint16_t sent[] = {(uint16_t)(address * 257 + 1), (uint16_t)(address * 514 + 0x1234),
-                                     (uint16_t)(65535 - address), (uint16_t)(address * 256)};
-            uint8_t expected[MOST + 1] = {0x55, 0xAA, (uint8_t)address, commands[i]};
-            uint8_t frame[MOST + 1];
-            uint16_t values[5];
-            for (unsigned n = 0; n != count; n++) {
-                expected[4 + 2 * n] = (uint8_t)(sent[n] / 256);
-                expected[5 + 2 * n] = (uint8_t)(sent[n] % 256);
-            }
-            expected[length - 1] = sum_of(expected, length - 1u);
-            expected[length] = GUARD;
-            memset(frame, GUARD, sizeof frame);
-            assert_int_equal(fathom_dyp_55aa_encode_response(frame, (uint8_t)address, commands[i], sent),
-                             length);
-            assert_memory_equal(frame, expected, length + 1u);
-            assert_true(fathom_dyp_55aa_is_valid(expected, length));
-            memset(values, GUARD, sizeof values);
-            fathom_dyp_55aa_decode(expected, values);
-            assert_memory_equal(values, sent, count * sizeof *sent);
-            assert_int_equal(values[count], GUARD16);
-        }
-    }
-    assert_int_equal(tried, 6 * 256);
-}
-
 /* SUM = 00 + 10 + H + L for address 1: 55 + AA + 01 is 100. */
 TEST(every_value_of_one_probe_goes_both_ways)
 {

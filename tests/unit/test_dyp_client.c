@@ -3,8 +3,6 @@
 
 /* 55 AA frames on a line. SUM is the low byte of the sum of all before it, and 55 + AA = FF. */
 
-static const uint8_t address_5[] = {0x55, 0xAA, 0x05, 0x03, 0x07}; /* A05 2(3)5 */
-
 static uint16_t values[6]; /* two guards behind the four */
 
 static void fill(uint8_t unit, uint16_t first, uint8_t count)
@@ -66,24 +64,7 @@ typedef struct {
     uint8_t bytes[5];
 } request_t;
 
-static const request_t requests[] = {
-    {1, 0x0106, 4, {0x55, 0xAA, 0x01, 0x01, 0x01}},   {1, 0x0106, 1, {0x55, 0xAA, 0x01, 0x10, 0x10}},
-    {1, 0x0107, 1, {0x55, 0xAA, 0x01, 0x11, 0x11}},   {1, 0x0108, 1, {0x55, 0xAA, 0x01, 0x12, 0x12}},
-    {1, 0x0109, 1, {0x55, 0xAA, 0x01, 0x13, 0x13}},   {254, 0x0106, 4, {0x55, 0xAA, 0xFE, 0x01, 0xFE}},
-    {254, 0x0109, 1, {0x55, 0xAA, 0xFE, 0x13, 0x10}}, {255, 0x0106, 1, {0x55, 0xAA, 0xFF, 0x10, 0x0E}},
-};
-
 static const suite_t suite = {.set_up = set_up};
-
-TEST(each_read_is_its_command)
-{
-    for (size_t i = 0; i != COUNT_OF(requests); i++) {
-        set_up(state);
-        fill(requests[i].unit, requests[i].first, requests[i].count);
-        send_request();
-        expect_bytes(0, requests[i].bytes, 5);
-    }
-}
 
 TEST(each_probe_is_answered_by_its_own_command)
 {
@@ -113,17 +94,6 @@ TEST(the_example_with_four_distances_is_read)
     deliver_all(dyp_four);
     expect_four();
     assert_int_equal(bench.request.message.head[0], 1);
-}
-
-TEST(setting_the_address_is_acknowledged_by_its_own_words)
-{
-    expect_set_address(5, FATHOM_PENDING);
-    run(REQUEST_US - 3 * BYTE_US);
-    expect_bytes(0, address_5, 5);
-    deliver_all(dyp_first_1953);
-    expect(FATHOM_PENDING);
-    deliver_all(address_5);
-    expect(FATHOM_OK);
 }
 
 /* ---- refusals ---- */
@@ -181,91 +151,7 @@ TEST(a_line_without_room_for_the_longest_response_is_refused)
     }
 }
 
-TEST(a_request_under_way_is_busy)
-{
-    ask_four();
-    expect_submitted(FATHOM_ERR_BUSY);
-    deliver_all(dyp_four);
-    expect_four();
-    fill(1, 0x0107, 1);
-    expect_submitted(FATHOM_PENDING);
-}
-
 /* ---- what comes back ---- */
-
-TEST(a_response_of_another_unit_is_a_stray)
-{
-    uint8_t of_unit_2[sizeof dyp_four];
-    memcpy(of_unit_2, dyp_four, sizeof dyp_four);
-    of_unit_2[2]++, of_unit_2[12]++;
-    ask_four();
-    deliver_all(of_unit_2);
-    expect_nothing(FATHOM_PENDING);
-    expect_count(FATHOM_LINE_STRAYS, 1);
-
-    deliver_all(dyp_four);
-    expect_four();
-}
-
-TEST(a_response_to_another_command_is_malformed_unless_the_right_one_follows)
-{
-    for (unsigned follows = 0; follows != 2; follows++) {
-        set_up(state);
-        ask_four();
-        deliver_all(dyp_first_1953);
-        expect_nothing(FATHOM_PENDING);
-
-        if (follows != 0) receive_all(dyp_four);
-        run(TIMEOUT_US);
-        if (follows != 0)
-            expect_four();
-        else
-            expect_nothing(FATHOM_ERR_MALFORMED);
-    }
-}
-
-/* One bit makes the command 03 of 01, and 1H = 03 the right sum of what is then a whole frame. Every other bit damages
- * the sum or the shape. */
-TEST(a_response_with_one_wrong_bit_is_never_taken)
-{
-    uint8_t damaged[sizeof dyp_four];
-    for (unsigned bit = 0; bit != 8 * sizeof dyp_four; bit++) {
-        set_up(state);
-        memcpy(damaged, dyp_four, sizeof dyp_four);
-        damaged[bit / 8] ^= (uint8_t)(1u << bit % 8);
-        ask_four();
-        receive_all(damaged);
-        run(TIMEOUT_US + 400);
-        if (bit == 8 * 3 + 1)
-            expect(FATHOM_ERR_MALFORMED);
-        else
-            assert_true(status_of(&bench.request) == FATHOM_ERR_CHECKSUM ||
-                        status_of(&bench.request) == FATHOM_ERR_NO_RESPONSE);
-        expect_untouched(0);
-    }
-}
-
-TEST(a_wrong_sum_is_a_checksum_error_after_a_gap)
-{
-    uint8_t printed[sizeof dyp_four]; /* the sum that A05 2(3)3 prints */
-    memcpy(printed, dyp_four, sizeof dyp_four);
-    printed[12] = 0x60;
-    ask_four();
-    receive_all(printed);
-    run(GAP_US + 300);
-    expect_nothing(FATHOM_ERR_CHECKSUM);
-}
-
-TEST(a_response_that_breaks_off_is_a_checksum_error)
-{
-    for (size_t length = 3; length != sizeof dyp_four; length++) {
-        set_up(state);
-        ask_four();
-        receive(dyp_four, length);
-        run(GAP_US + 300);
-        expect_nothing(FATHOM_ERR_CHECKSUM);
-    }
-}
 
 TEST(a_response_glued_to_noise_is_found)
 {
@@ -285,70 +171,6 @@ TEST(a_response_glued_to_noise_is_found)
             run(GAP_US + 300);
             expect_four();
         }
-}
-
-TEST(every_cut_of_a_response_into_two_reads_is_put_together)
-{
-    for (size_t cut = 1; cut != sizeof dyp_four; cut++) {
-        set_up(state);
-        ask_four();
-        receive(dyp_four, cut);
-        receive(dyp_four + cut, sizeof dyp_four - cut);
-        poll_line();
-        expect_four();
-    }
-}
-
-TEST(a_late_response_serves_the_retry_and_no_other_request)
-{
-    for (uint8_t retries = 0; retries != 2; retries++) {
-        set_up(state);
-        bench.request.transaction.retries = retries;
-        ask_four();
-        expect_after(TIMEOUT_US + 400, retries != 0 ? FATHOM_PENDING : FATHOM_ERR_NO_RESPONSE);
-        if (retries == 0) {
-            fill(1, 0x0106, 4);
-            expect_submitted(FATHOM_PENDING);
-        }
-        deliver_all(dyp_four);
-        expect_count(FATHOM_LINE_LATE_RESPONSES, 1);
-        expect(retries != 0 ? FATHOM_OK : FATHOM_PENDING);
-        assert_int_equal(values[0], retries != 0 ? 1000 : 0xA5A5);
-        expect_written(1);
-    }
-}
-
-TEST(a_late_response_of_another_unit_is_known_as_such)
-{
-    uint8_t of_unit_2[sizeof dyp_first_1953];
-    memcpy(of_unit_2, dyp_first_1953, sizeof dyp_first_1953);
-    of_unit_2[2]++, of_unit_2[6]++;
-    ask_four();
-    run(TIMEOUT_US + 400);
-    fill(2, 0x0106, 1);
-    expect_submitted(FATHOM_PENDING);
-    expect_written_after(REQUEST_US - 3 * BYTE_US, 2);
-    expect_bytes(0, requests[0].bytes, 5);
-    receive_all(dyp_four);
-    deliver_all(of_unit_2);
-    expect_count(FATHOM_LINE_LATE_RESPONSES, 1);
-    expect(FATHOM_OK);
-    assert_int_equal(values[0], 1953);
-}
-
-/* Nor does it serve that one's retry: 55 AA names no register, so that the unit alone tells them apart. */
-TEST(a_late_response_of_another_unit_serves_no_retry)
-{
-    ask_dyp(&bench.other, 1, 1, &bench.other_value);
-    run(REQUEST_US);
-    cancel(&bench.other); /* unit 1 is quarantined for 200 ms */
-    fill(2, 0x0106, 1);
-    bench.request.transaction.retries = 1;
-    expect_submitted(FATHOM_PENDING);
-    run(REQUEST_US + TIMEOUT_US);
-    deliver_all(dyp_first_1953);
-    expect_count(FATHOM_LINE_LATE_RESPONSES, 1);
-    expect_nothing(FATHOM_PENDING);
 }
 
 /* ---- the transport ---- */

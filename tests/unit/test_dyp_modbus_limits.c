@@ -128,18 +128,6 @@ TEST(a_register_that_is_0_or_1_is_not_0100)
     assert_int_equal(polarity, FATHOM_A16_POSITIVE);
 }
 
-/* "FATHOM_OK with *out written, or" an error, without. */
-TEST(a_register_that_cannot_be_read_writes_nothing)
-{
-    fathom_a16_polarity_t polarity = FATHOM_A16_POSITIVE;
-    start_a16(0);
-    assert_int_equal(fathom_a16_modbus_get_switch_polarity(&a16, &polarity), FATHOM_PENDING);
-    assert_int_equal(polarity, FATHOM_A16_POSITIVE);
-    fake_modbus_fail(&fake, FATHOM_ERR_NO_RESPONSE);
-    assert_int_equal(fathom_a16_modbus_get_switch_polarity(&a16, &polarity), FATHOM_ERR_NO_RESPONSE);
-    assert_int_equal(polarity, FATHOM_A16_POSITIVE);
-}
-
 /* "FATHOM_ERR_ARGUMENT: out of range; nothing was sent": not 256 either, where an enumeration can hold it at all. */
 TEST(a_choice_of_256_is_refused)
 {
@@ -168,17 +156,4 @@ TEST(commands_of_two_registers_are_told_apart)
             assert_int_equal(fathom_dyp_modbus_get_register(&a16.base, registers[j], &value),
                              i == j ? FATHOM_PENDING : FATHOM_ERR_BUSY);
         }
-}
-
-/* The response to a read says nothing of a write. */
-TEST(a_blind_write_has_to_wait_for_a_read_of_its_register)
-{
-    static const uint16_t is_0[] = {0};
-    fathom_a16_polarity_t polarity = FATHOM_A16_POSITIVE;
-    start_a16(0);
-    assert_int_equal(fathom_a16_modbus_get_switch_polarity(&a16, &polarity), FATHOM_PENDING);
-    fake_modbus_response(&fake, is_0, 1);
-    assert_int_equal(fathom_a16_modbus_write_next_unchecked(&a16), FATHOM_OK);
-    assert_int_equal(fathom_a16_modbus_set_switch_polarity(&a16, FATHOM_A16_POSITIVE), FATHOM_ERR_BUSY);
-    assert_int_equal(fake.submits, 1);
 }

@@ -71,33 +71,3 @@ TEST(the_sum_of_0_to_255_bytes_is_the_low_byte)
     assert_int_equal(fathom_dyp_checksum(bytes, 255), 0x01);
     assert_int_equal(fathom_dyp_checksum(a05_frame, 9), 0x60);
 }
-
-/* Why stream.h has further rules. Each of these is a valid frame that no sensor sent. */
-TEST(a_good_sum_does_not_prove_where_a_frame_begins)
-{
-    /* 511 mm held still is FF 01 FF FF, FF + 01 + FF = 1FF; a byte early it is FF FF 01 FF, 65281 mm. */
-    static const uint8_t shifted_by_one[] = {0xFF, 0xFF, 0x01, 0xFF};
-    /* FF 03 E8 07 D0 07 FF 05 3B 07, 1000 2000 2047 1339 mm: FF + 03 + E8 + 07 + D0 + 07 + FF + 05 + 3B = 407.
-     * Six bytes on, FF + 05 + 3B + 07 + FF + 03 + E8 + 07 + D0 = 407 too. */
-    static const uint8_t right[] = {0xFF, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xFF, 0x05, 0x3B, 0x07};
-    static const uint8_t shifted_by_six[] = {0xFF, 0x05, 0x3B, 0x07, 0xFF, 0x03, 0xE8, 0x07, 0xD0, 0x07};
-    static const uint16_t permuted[] = {1339, 2047, 1000, 2000};
-    uint16_t values[4];
-    assert_true(fathom_dyp_stream_is_valid(shifted_by_one, 4));
-    fathom_dyp_stream_decode(shifted_by_one, values, 1);
-    assert_int_equal(values[0], 65281);
-    assert_true(fathom_dyp_stream_is_valid(right, 10));
-    assert_true(fathom_dyp_stream_is_valid(shifted_by_six, 10));
-    fathom_dyp_stream_decode(shifted_by_six, values, 4);
-    assert_memory_equal(values, permuted, sizeof permuted);
-}
-
-/* "No object" is FF FF FD FB: FF + FF + FD = 2FB. No rule such as "the second byte is not FF" may be made. */
-TEST(FF_may_follow_the_start)
-{
-    static const uint8_t frame[] = {0xFF, 0xFF, 0xFD, 0xFB};
-    uint16_t value = 0;
-    assert_true(fathom_dyp_stream_is_valid(frame, 4));
-    fathom_dyp_stream_decode(frame, &value, 1);
-    assert_int_equal(value, 0xFFFD);
-}

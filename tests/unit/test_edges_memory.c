@@ -17,12 +17,6 @@ static void init_on(uint8_t fill)
     capture = fathom_edges_capture(&edges);
 }
 
-static void feed_pulse(uint32_t at_us)
-{
-    fathom_edges_feed(&edges, true, at_us);
-    fathom_edges_feed(&edges, false, at_us + 3000);
-}
-
 static const uint8_t fills[] = {0x00, 0x01, 0xA5, 0xFF};
 enum { FILLS = sizeof fills };
 
@@ -39,26 +33,6 @@ TEST(new_edges_hold_no_pulse_and_have_lost_none)
     }
 }
 
-/* "FATHOM_EDGES_PULSES that wait to be taken": from the very first, with or without arm, which forgets those before
- * it. */
-TEST(four_pulses_wait_to_be_taken_from_the_first_on)
-{
-    for (unsigned i = 0; i != FILLS; i++)
-        for (unsigned armed = 0; armed != 2; armed++) {
-            fathom_pulse_t pulse;
-            init_on(fills[i]);
-            if (armed != 0) capture.arm(capture.ctx);
-            for (uint32_t n = 0; n != FATHOM_EDGES_PULSES; n++) feed_pulse(10000 * n);
-            assert_int_equal(edges.lost, 0);
-            for (uint32_t n = 0; n != FATHOM_EDGES_PULSES; n++) {
-                assert_int_equal(capture.take(capture.ctx, &pulse), 1);
-                assert_int_equal(pulse.width_us, 3000);
-                assert_int_equal(pulse.end_us, 10000 * n + 3000);
-            }
-            assert_int_equal(capture.take(capture.ctx, &pulse), 0);
-        }
-}
-
 /* "the line is taken as low until the first edge": a fall is the end of nothing. */
 TEST(a_fall_before_the_first_rise_is_no_pulse)
 {
@@ -67,15 +41,5 @@ TEST(a_fall_before_the_first_rise_is_no_pulse)
         init_on(fills[i]);
         fathom_edges_feed(&edges, false, 5000);
         assert_int_equal(capture.take(capture.ctx, &pulse), 0);
-    }
-}
-
-TEST(pulses_are_taken_one_by_one_without_arm)
-{
-    fathom_pulse_t pulse;
-    init_on(0xA5);
-    for (uint32_t n = 0; n != 300; n++) {
-        feed_pulse(10000 * n);
-        assert_int_equal(capture.take(capture.ctx, &pulse), 1);
     }
 }

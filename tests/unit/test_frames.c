@@ -175,56 +175,6 @@ TEST(hps_the_printed_crc_C5_C8_is_refused_and_C5_CB_is_right)
     assert_int_equal(fathom_crc16(right, 8), 0);
 }
 
-/* That looks like a misprint and is none: tables 15 and 17. */
-TEST(hps_commands_4_and_5_do_share_the_crc_C5_CB)
-{
-    static const uint8_t temperature[] = {0x01, 0x03, 0x00, 0x04, 0x00, 0x01};
-    static const uint8_t measurement[] = {0x01, 0x03, 0x00, 0x08, 0x00, 0x04};
-    assert_int_equal(fathom_crc16(temperature, 6), 0xCBC5);
-    assert_int_equal(fathom_crc16(measurement, 6), 0xCBC5);
-}
-
-/* HPS-167S table 40 prints address, code, CRC: 4 bytes. Its example is 01 83 02 C0 F1. */
-TEST(hps_an_exception_has_the_function_that_table_40_leaves_out)
-{
-    static const uint8_t as_table_40[] = {0x01, 0x02, 0xC0, 0xF1};
-    static const uint8_t example[] = {0x01, 0x83, 0x02, 0xC0, 0xF1};
-    uint8_t frame[13];
-    fathom_modbus_message_t message;
-    assert_int_equal(fathom_modbus_rtu_response_length(as_table_40, 4), 0);
-    assert_int_equal(fathom_modbus_rtu_response_length(example, 5), 5);
-    fathom_modbus_read_holding_registers(&message, 1, 0x0008, 4, NULL);
-    message.exception = 2;
-    assert_int_equal(fathom_modbus_rtu_encode_response(&message, frame), 5);
-    assert_memory_equal(frame, example, 5);
-}
-
-/* HPS-167S tables 9 to 38 head the last two bytes "CRC high byte, CRC low byte"; the low byte goes first. 2.2.5
- * gives the value 1241, which MODBUS over Serial Line V1.02, 6.2.2 sends as 41 12 after the message 02 07. */
-TEST(hps_the_low_byte_of_the_crc_goes_first)
-{
-    static const uint8_t message_0207[] = {0x02, 0x07};
-    static const uint8_t table_9[] = {0x01, 0x03, 0x00, 0x01, 0x00, 0x03};
-    uint8_t frame[8];
-    fathom_modbus_message_t message;
-    assert_int_equal(fathom_crc16(message_0207, 2), 0x1241);
-    assert_int_equal(fathom_crc16(table_9, 6), 0x0B54);
-    fathom_modbus_read_holding_registers(&message, 1, 0x0001, 3, NULL);
-    assert_int_equal(fathom_modbus_rtu_encode_request(&message, frame), 8);
-    assert_int_equal(frame[6], 0x54);
-    assert_int_equal(frame[7], 0x0B);
-}
-
-/* HPS-167S 2.2.4.3 limits a write to 0x78 and to 0x7B registers; the Modbus specification (6.12) to 0x7B. */
-TEST(hps_a_write_of_many_takes_123_registers_not_120)
-{
-    fathom_modbus_message_t message;
-    fathom_modbus_write_multiple_registers(&message, 1, 0, 123, NULL);
-    assert_int_equal(fathom_modbus_rtu_frame_size(&message), 255);
-    fathom_modbus_write_multiple_registers(&message, 1, 0, 124, NULL);
-    assert_int_equal(fathom_modbus_rtu_frame_size(&message), 0);
-}
-
 /* HPS-167S tables 4 and 7: 0 to 252 bytes of data, 0 to 256. The longest response that Modbus knows carries 250
  * bytes of registers and their count. */
 TEST(hps_a_response_carries_at_most_251_bytes_of_data)
@@ -233,38 +183,6 @@ TEST(hps_a_response_carries_at_most_251_bytes_of_data)
     static const uint8_t longer[] = {0x01, 0x03, 252};
     assert_int_equal(fathom_modbus_rtu_response_length(longest, 3), 255);
     assert_int_equal(fathom_modbus_rtu_response_length(longer, 3), 0);
-}
-
-/* HPS-167S appendix: a stray C0 at index 106, and 60 entries missing. The right high bytes are what eight bits
- * of the polynomial A001 do to each low byte, and so the low byte of our CRC of one byte, whose state is
- * FF FF: crc(b) = table[b ^ FF] ^ 00FF. */
-TEST(hps_the_printed_table_has_197_entries_and_ours_is_right)
-{
-    uint8_t right[256];
-    unsigned same = 0;
-    for (unsigned i = 0; i != 256; i++) {
-        unsigned crc = i;
-        for (int bit = 0; bit != 8; bit++) crc = (crc & 1) != 0 ? crc >> 1 ^ 0xA001 : crc >> 1;
-        const uint8_t byte = (uint8_t)(i ^ 0xFF);
-        assert_int_equal(fathom_crc16(&byte, 1) ^ 0x00FF, crc);
-        right[i] = (uint8_t)crc;
-    }
-    assert_int_equal(sizeof printed_auchCRCHi, 256 - 60 + 1);
-    while (printed_auchCRCHi[same] == right[same]) same++;
-    assert_int_equal(same, 106);
-    assert_int_equal(printed_auchCRCHi[106], 0xC0);
-    while (printed_auchCRCHi[same + 1] == right[same]) same++;
-    assert_int_equal(same, 124); /* here begins what is missing */
-    assert_memory_equal(printed_auchCRCHi + 125, right + 184, 72);
-}
-
-/* A16 2(3), 3(4), 5(3) print the start as "0XFF 0XFF", 1 byte; the examples have one FF. */
-TEST(a16_a_frame_begins_with_one_FF)
-{
-    static const uint8_t example[] = {0xFF, 0x07, 0xA1, 0xA7};
-    static const uint8_t as_printed[] = {0xFF, 0xFF, 0x07, 0xA1, 0xA7};
-    assert_true(fathom_dyp_stream_is_valid(example, 4));
-    assert_false(fathom_dyp_stream_is_valid(as_printed, 4));
 }
 
 /* ---- all of them ---- */

@@ -10,8 +10,6 @@ enum { PACE_US = 18519 };
 static fathom_hps167s_version_t version;
 static fathom_hps167s_details_t details;
 
-/* Table 10 has no example: 2020-09-27, 2.1, revision 0. Command #3. */
-static const uint16_t versioned[3] = {0x1409, 0x1B02, 0x0100};
 static const uint16_t detailed[11] = {0xB000, 0x3900, 0x2542, 0x3457, 0x1420, 0x3438,
                                       0x3501, 0x0607, 0x0513, 0x0917, 0x0309};
 
@@ -59,8 +57,6 @@ static void is_after(uint32_t us, fathom_status_t (*call)(void), fathom_status_t
     assert_int_equal(after(us, call), status);
 }
 
-static void measures(void) { fake_modbus_response(&fake, hps_measured, 4); }
-
 static void assert_version(void)
 {
     assert_int_equal(version.year, 2020);
@@ -93,28 +89,7 @@ TEST(the_abnormal_packet_is_a_fault)
     }
 }
 
-TEST(figures_that_it_cannot_mean_are_an_error_and_no_sample)
-{
-    static const uint16_t wrong[][2] = {{0, 0x0701}, {30001, 0x0701}, {65529, 0x0701}, {2083, 0x1101}};
-    for (unsigned i = 0; i != COUNT(wrong); i++)
-        PLAY(desk_poll, FATHOM_ERR_MALFORMED, HPS_5(OK, wrong[i][0], 0xDCB2, wrong[i][1], 0));
-    PLAY(desk_poll, OK, HPS_5(OK, 0x0823, 0xDCB2, 0x0701, 0));
-    assert_int_equal(desk.sample.sequence, 1);
-}
-
 /* ---- commands ---- */
-
-TEST(every_error_passes_through_and_leaves_all_outputs_alone)
-{
-    static const fathom_status_t errors[] = {FATHOM_ERR_CHECKSUM,  FATHOM_ERR_EXCEPTION,
-                                             FATHOM_ERR_MALFORMED, FATHOM_ERR_PORT,
-                                             FATHOM_ERR_CANCELLED, FATHOM_ERR_NO_RESPONSE};
-    for (unsigned i = 0; i != COUNT(errors); i++) {
-        PLAY(ask_version, errors[i], HPS_1(1, errors[i], 0));
-        PLAY(ask_details, errors[i], {{1, 3, 0, 3, 0, 11}, errors[i], {0x14, 0, 0, 0}, 0});
-        if (errors[i] == FATHOM_ERR_EXCEPTION) assert_int_equal(fathom_hps167s_exception(&hps), 0x14);
-    }
-}
 
 TEST(the_interface_version_is_read_byte_by_byte)
 {
@@ -152,78 +127,6 @@ TEST(details_with_any_other_ack_byte_are_malformed)
         assert_int_equal(nothing_else_was_sent(NULL), 0);
         fake.submits = 0;
     }
-}
-
-TEST(a_command_takes_its_turn_after_a_measurement_under_way)
-{
-    desk_waits(0);
-    is_after(1000, ask_details, FATHOM_PENDING);
-    assert_int_equal(fake.submits, 1);
-    desk_waits(0);
-    measures();
-    is_after(1000, ask_details, FATHOM_PENDING);
-    assert_int_equal(fake.submits, 1); /* its pace is kept */
-    is_after(PACE_US, ask_details, FATHOM_PENDING);
-    fake_modbus_assert_asked(&fake, 2, 1, 0x0003, 11);
-    desk_waits(1000);
-    fake_modbus_response(&fake, detailed, 11);
-    is_after(1000, ask_details, OK);
-    assert_int_equal(details.year, 2019);
-}
-
-/* The device answers whatever it is asked 12 ms later. A loop of 1 ms polls and asks for the details in turns. */
-static unsigned ms_until_details_are_asked(bool poll_first)
-{
-    unsigned response_in_ms = 0;
-    for (unsigned ms = 0; ms != 1000; ms++) {
-        fake.now_us += 1000;
-        if (fake.request == NULL) response_in_ms = 12;
-        if (fake.request != NULL && fake.request->message.head[3] == 3) return ms;
-        if (fake.request != NULL && response_in_ms != 0) {
-            if (--response_in_ms == 11) fake_modbus_send(&fake);
-            if (response_in_ms == 0) measures();
-        }
-        if (poll_first) desk_poll();
-        PENDS(ask_details());
-        if (!poll_first) desk_poll();
-        fake.submits = fake.submits % 32;
-    }
-    return 1000;
-}
-
-/* hps167s.h: "A command takes its turn after a measurement that is under way", "with the loop going on". */
-TEST(a_command_is_not_starved_by_a_loop_that_goes_on_polling)
-{
-    assert_in_range(ms_until_details_are_asked(false), 0, 60);
-    hps_set_up(NULL);
-    assert_in_range(ms_until_details_are_asked(true), 0, 60);
-}
-
-TEST(measurements_wait_until_the_outcome_of_a_command_was_taken)
-{
-    PENDS(ask_version());
-    desk_waits(1000);
-    fake_modbus_response(&fake, versioned, 3);
-    for (unsigned i = 0; i != 4; i++) desk_waits(PACE_US);
-    assert_int_equal(fake.submits, 1);
-    is_after(0, ask_version, OK);
-    assert_version();
-    desk_waits(0);
-    fake_modbus_assert_asked(&fake, 2, 1, 0x0008, 4);
-    measures();
-    is_after(9000, desk_poll, OK);
-    assert_int_equal(desk.sample.distance_mm, 2083);
-}
-
-TEST(a_second_command_is_told_busy)
-{
-    PENDS(ask_version());
-    is_after(1000, ask_details, FATHOM_ERR_BUSY);
-    fake_modbus_response(&fake, versioned, 3);
-    is_after(1000, ask_details, FATHOM_ERR_BUSY);
-    is_after(0, ask_version, OK);
-    is_after(PACE_US, ask_details, FATHOM_PENDING);
-    assert_int_equal(fake.submits, 2);
 }
 
 /* ---- over a line ---- */

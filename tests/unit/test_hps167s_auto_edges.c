@@ -45,28 +45,6 @@ TEST(the_first_frame_needs_its_address_whatever_stood_in_the_memory)
     assert_int_equal(comes(example, 13), FATHOM_OK);
 }
 
-TEST(every_frame_needs_its_own_address)
-{
-    assert_int_equal(comes(example, 13), FATHOM_OK);
-    assert_int_equal(comes(example + 1, 12), FATHOM_PENDING);
-    assert_int_equal(comes(example, 13), FATHOM_OK);
-}
-
-TEST(after_lost_bytes_a_frame_needs_its_address)
-{
-    assert_int_equal(comes(example, 5), FATHOM_PENDING);
-    fake_receive_rx(&bench.fake, 0, example + 1, 12, (fathom_rx_t){0, FATHOM_RX_OVERRUN});
-    assert_int_equal(poll_after(100), FATHOM_PENDING);
-    assert_int_equal(comes(example, 13), FATHOM_OK);
-}
-
-/* It asks the line for no silence: the CRC tells where a frame is. Then only the deadline is due. */
-TEST(nothing_is_due_but_the_deadline)
-{
-    assert_int_equal(fathom_line_due_us(&bench.line), FATHOM_NO_DEADLINE);
-    assert_int_equal(sensor.due_us(sensor.ctx), 2000000);
-}
-
 /* A line whose buffer holds no frame is refused. */
 TEST(the_buffer_of_the_line_holds_13_bytes)
 {

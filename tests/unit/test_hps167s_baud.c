@@ -45,13 +45,6 @@ TEST(only_the_four_rates_are_taken_and_only_where_the_settings_are_named)
     assert_int_equal(fake.submits + fake.polls, 0);
 }
 
-TEST(the_rate_that_it_has_is_not_written)
-{
-    PLAY_AT(1, &hps_factory, 19200, set_baud, OK, IS(1, 1, 19200));
-    assert_int_equal(hps.next_baud, 0);
-    hps_asks(1, 19200);
-}
-
 /* Table 12 has no encoding of the rate: with a code that #9 does not have, where it answers says more. */
 TEST(a_code_that_is_not_ours_keeps_no_rate_from_being_set_or_found)
 {
@@ -76,18 +69,6 @@ TEST(only_a_code_of_9_tells_a_rate_that_waits_for_power_on)
     assert_int_equal(hps.next_baud, 0);
 }
 
-TEST(a_rate_that_was_written_blind_is_sought_at_both)
-{
-    hps_start_at(1, &hps_factory);
-    desk.argument = 57600;
-    assert_int_equal(fathom_hps167s_write_next_unchecked(&hps), OK);
-    PLAY(set_baud, FATHOM_ERR_UNCONFIRMED, RATE(1, 2, OK, 19200));
-    hps_asks(1, 19200);
-    hps_is_silent(SILENT);
-    hps_asks(1, 57600);
-    hps_answers();
-}
-
 TEST(a_rate_that_no_sensor_has_is_refused_and_the_next_setting_is_not_blind)
 {
     hps_start_at(1, &hps_factory);
@@ -108,22 +89,6 @@ FOLLOWS(a_rate_where_a_device_answers_is_in_use, 3, 19200, 3, &hps_factory, 5760
 #define LATER(code, baud)                                                                                    \
     IS(1, 1, 19200), TWO(1, SILENT, 0, baud), RATE(1, code, OK, 19200), TWO(1, SILENT, 0, baud),             \
         IS(1, code, 19200)
-
-TEST(a_rate_from_the_next_power_on_is_asked_at_then)
-{
-    PLAY_AT(1, &hps_factory, 115200, set_baud, OK, LATER(3, 115200));
-    assert_int_equal(hps.next_baud, 115200);
-    hps_asks(1, 19200);
-    hps_answers();
-    fathom_hps167s_power_on(&hps);
-    assert_int_equal(hps.next_baud, 0);
-    hps_asks(1, 115200);
-    hps_answers();
-    for (unsigned i = 0; i != 3; i++) { /* and it stays there */
-        hps_asks(1, 115200);
-        hps_is_silent(SILENT);
-    }
-}
 
 TEST(after_power_on_both_rates_are_asked_in_turns_until_it_answers)
 {
@@ -174,24 +139,6 @@ TEST(a_setting_goes_on_when_a_measurement_has_told_meanwhile_where_the_device_is
     assert_int_equal(set_baud(), FATHOM_PENDING);
     hps_answers();
     PLAY(set_baud, OK, IS(1, 3, 115200), TWO(1, SILENT, 0, 19200), RATE(1, 1, OK, 115200), IS(1, 1, 19200));
-}
-
-/* Code 3 is 115200, which another setting has as its value. */
-TEST(a_rate_keeps_out_of_another_setting_that_is_under_way)
-{
-    hps_start_at(1, &hps_factory);
-    assert_int_equal(fathom_hps167s_set_warm_up_s(&hps, 3), FATHOM_PENDING);
-    assert_int_equal(fathom_hps167s_set_baud(&hps, 115200), FATHOM_ERR_BUSY);
-    assert_null(hps.setting.line_settings);
-}
-
-TEST(a_setting_waits_for_a_command_that_waits)
-{
-    fathom_hps167s_details_t details;
-    hps_start_at(1, &hps_factory);
-    hps_asks(1, 19200);
-    assert_int_equal(fathom_hps167s_get_details(&hps, &details), FATHOM_PENDING);
-    assert_int_equal(fathom_hps167s_set_warm_up_s(&hps, 3), FATHOM_ERR_BUSY);
 }
 
 /* Whatever it says, it says it there. */
@@ -250,25 +197,4 @@ TEST(a_setting_waits_until_the_device_is_found)
     PLAY(set_baud, OK, HPS_1(1, OK, 57600), IS(1, 2, 57600), TWO(1, SILENT, 0, 230400), RATE(1, 4, OK, 57600),
          IS(1, 4, 230400));
     hps_asks(1, 230400);
-}
-
-TEST(an_unconfirmed_code_at_the_same_rate_is_not_looked_for_elsewhere)
-{
-    PLAY_AT(1, &hps_factory, 19200, set_baud, FATHOM_ERR_UNCONFIRMED, IS(1, 3, 19200), RATE(1, 1, OK, 19200),
-            TWO(1, SILENT, 0, 19200));
-    hps_asks(1, 19200);
-    hps_is_silent(SILENT);
-    hps_asks(1, 19200);
-}
-
-TEST(another_setting_does_not_touch_the_rate_that_is_being_set)
-{
-    hps_start_at(1, &hps_factory);
-    PENDS(fathom_hps167s_set_baud(&hps, 57600));
-    assert_int_equal(fathom_hps167s_set_baud(&hps, 115200), FATHOM_ERR_BUSY);
-    assert_int_equal(fathom_hps167s_restore_factory_settings(&hps), FATHOM_ERR_BUSY);
-    assert_int_equal(fathom_hps167s_set_termination(&hps, true), FATHOM_ERR_BUSY);
-    fathom_hps167s_cancel(&hps);
-    desk.argument = 57600;
-    PLAY(set_baud, OK, IS(1, 1, 19200), TWO(1, SILENT, 0, 57600), RATE(1, 2, OK, 19200), IS(1, 2, 57600));
 }

@@ -55,15 +55,6 @@ TEST(every_distance_is_what_the_rule_says)
     assert_int_equal(counted[FATHOM_NO_TARGET], 5);
 }
 
-/* #5: of the abnormal packet "the values of Distance, Ambient, and Precision are all 0xFF". */
-TEST(a_distance_beside_the_other_figures_of_the_abnormal_packet_is_a_distance)
-{
-    static const uint16_t registers[4] = {2083, 0x0000, 0x00FF, 0xFFFF};
-    assert_int_equal(fathom_hps167s_decode(registers, &sample), FATHOM_OK);
-    assert_int_equal(sample.kind, FATHOM_TARGET);
-    assert_int_equal(sample.distance_mm, 2083);
-}
-
 TEST(decode_leaves_the_members_that_are_not_the_devices)
 {
     memset(&sample, GUARD, sizeof sample);

@@ -106,35 +106,3 @@ TEST(every_temperature_is_exact_to_half_a_tenth_or_refused)
         assert_int_equal(refused, rows[i].refused);
     }
 }
-
-/* The table of rule 5 of hps167s.h, in milliseconds. Silence and request take 7 ms, which add up over the attempts. */
-TEST(errors_of_an_unplugged_sensor_come_at_the_times_of_the_header)
-{
-    static const uint32_t at_ms[] = {500, 1500, 2500, 3500, 5000, 7500, 12000, 20500, 29000, 37500};
-    enum { COUNT = sizeof at_ms / sizeof *at_ms, MOST_LATE_MS = 100, START_US = 5000 };
-    static fake_t fake;
-    static uint8_t frame[32];
-    static fathom_line_t line;
-    static const fathom_line_parts_t parts = {.uart = &fake.uart,
-                                              .clock = &fake.clock,
-                                              .frame = frame,
-                                              .frame_size = sizeof frame,
-                                              .echo = FATHOM_LINE_ECHO_OFF,
-                                              .senders = &fathom_line_senders,
-                                              .silence_us = FATHOM_T3_5_US(19200, 11)};
-    fake_init(&fake);
-    fake.byte_us = 11 * 1000000 / 19200;
-    fake.now_us = START_US;
-    assert_int_equal(fathom_line_init(&line, &parts), FATHOM_OK);
-    const fathom_modbus_t transport = fathom_modbus_client(&line);
-    assert_int_equal(fathom_hps167s_init(&hps, &transport, NULL), FATHOM_OK);
-    for (unsigned i = 0; i != COUNT; fake.now_us += 1000) {
-        fathom_sample_t sample;
-        const fathom_status_t status = fathom_hps167s_poll(&hps, &sample);
-        if (status == FATHOM_PENDING) continue;
-        const uint32_t ms = (fake.now_us - START_US) / 1000;
-        assert_int_equal(status, FATHOM_ERR_NO_RESPONSE);
-        assert_in_range(ms, at_ms[i], at_ms[i] + MOST_LATE_MS);
-        i++;
-    }
-}

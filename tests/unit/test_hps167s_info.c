@@ -76,33 +76,6 @@ TEST(every_member_of_the_configuration_is_its_own_bytes)
     }
 }
 
-TEST(a_measurement_in_its_place_is_passed_over_and_then_three_responses_have_to_agree)
-{
-    PLAY(configuration, OK, HPS_2(1, OK, 0, MEASURES), HPS_2(1, OK, 0, RATE_1), HPS_2(1, OK, 0, MEASURES),
-         HPS_2(1, OK, 0, RATE_2), HPS_2(1, OK, 0, MEASURES), HPS_2(1, OK, 0, RATE_2),
-         HPS_2(1, OK, 0, RATE_2));
-    assert_int_equal(is.baud, 57600);
-}
-
-/* "for 2 s", and if more are asked for, more. */
-TEST(after_an_unsolicited_frame_three_responses_have_to_agree_for_2_s)
-{
-    static const row_t four[] = {TELLS(RATE_1), TELLS(RATE_1)};
-    static const uint16_t frame[4] = {MEASURES};
-    static const struct {
-        uint32_t after_us;
-        uint8_t same_responses, needed;
-    } rows[] = {{0, 1, 3}, {0, 2, 3}, {1000000, 2, 3}, {0, 4, 4}, {2000000, 2, 2}, {2000000, 1, 1}};
-    for (unsigned i = 0; i != COUNT(rows); i++) {
-        hps_set_up(NULL);
-        hps_config.same_responses = rows[i].same_responses;
-        hps_start();
-        assert_true(fathom_hps167s_accept_unsolicited(&hps, frame, fake.now_us));
-        fake.now_us += rows[i].after_us;
-        assert_int_equal(desk_play(configuration, four, rows[i].needed), OK);
-    }
-}
-
 /* The same bytes by themselves and as a response: 255 mm that hold, or a response that comes late. */
 TEST(what_is_heard_unasked_between_two_responses_takes_away_their_agreement)
 {
@@ -122,12 +95,6 @@ TEST(what_is_heard_unasked_between_two_responses_takes_away_their_agreement)
     for (unsigned i = 0; i != 2; i++)
         assert_false(fathom_hps167s_accept_unsolicited(&hps, registers, fake.now_us));
     PLAY(configuration, OK, TELLS(RATE_1), HPS_2(1, OK, 0, RATE_1));
-}
-
-TEST(two_responses_that_differ_are_not_enough)
-{
-    PLAY(configuration, OK, HPS_2(1, OK, 0, RATE_1), TELLS(RATE_2));
-    assert_int_equal(is.baud, 57600);
 }
 
 #define TWICE HPS_2(1, OK, 0, RATE_1), HPS_2(1, OK, 0, RATE_2)
@@ -200,17 +167,6 @@ TEST(what_cannot_be_a_response_to_2_never_counts)
     }
 }
 
-TEST(an_error_ends_it_and_the_next_time_begins_anew)
-{
-    static const fathom_status_t errors[] = {SILENT, FATHOM_ERR_CHECKSUM, FATHOM_ERR_EXCEPTION};
-    for (unsigned i = 0; i != 3; i++)
-        PLAY(configuration, errors[i], HPS_2(1, OK, 0, RATE_1), HPS_2(1, errors[i], 0, 2));
-    PLAY(configuration, OK, TELLS(RATE_1));
-    const row_t none = HPS_2(1, OK, 0, MEASURES);
-    const row_t eighth = HPS_2(1, SILENT, 0, 2);
-    PLAY(configuration, SILENT, none, none, none, none, none, none, none, eighth);
-}
-
 /* A target at exactly 255 mm with just these figures, sent unasked: it was measured just before. */
 TEST(what_was_measured_last_is_no_configuration)
 {
@@ -238,21 +194,6 @@ TEST(what_was_told_last_is_no_measurement)
     PLAY(desk_poll, OK, HPS_5(OK, 0x00FF, 0x0500, 0x0000, 0xB402));
     assert_int_equal(desk.sample.distance_mm, 255);
     assert_false(fathom_hps167s_accept_unsolicited(&hps, registers, fake.now_us));
-}
-
-/* A program that measures in each turn, more slowly than the period of 18519 us: each measurement would begin a new
- * pause, and the wait for the last response would never end. */
-TEST(a_program_that_measures_meanwhile_does_not_put_off_the_end)
-{
-    const row_t row = HPS_2(1, OK, 0, MEASURES);
-    reads_32(&row);
-    fathom_status_t status = FATHOM_PENDING;
-    for (unsigned turns = 0; status == FATHOM_PENDING; turns++) {
-        assert_true(turns <= 51); /* 1 s in turns of 20 ms */
-        PENDS(desk_poll_after(20000));
-        status = configuration();
-    }
-    assert_int_equal(status, FATHOM_ERR_MALFORMED);
 }
 
 /* modbus_unit.h, rule 5: the responses of a read that was abandoned do not count for the next one. */
@@ -283,15 +224,6 @@ TEST(the_configuration_given_up_begins_anew)
     PLAY(configuration, OK, TELLS(RATE_1));
 }
 
-TEST(a_second_command_does_not_disturb_it)
-{
-    PENDS(read_temperature());
-    assert_int_equal(configuration(), FATHOM_ERR_BUSY);
-    desk_says(77);
-    assert_int_equal(read_temperature(), OK);
-    assert_int_equal(temperature.temperature_dc, 250);
-}
-
 /* ---- its options ---- */
 
 TEST(how_many_responses_have_to_agree_is_an_option)
@@ -303,15 +235,6 @@ TEST(how_many_responses_have_to_agree_is_an_option)
         hps_start();
         assert_int_equal(desk_play(configuration, eight, responses[i]), OK);
     }
-}
-
-/* 0001 0012 is 65554 the one way, 18 * 65536 + 1 the other; 0012 0000 the other way is 18. */
-TEST(the_reconnect_time_can_have_its_low_word_first)
-{
-    hps_config.low_word_first = true;
-    hps_start();
-    PLAY(configuration, OK, TELLS(0xFF00, 0x0500, 0x1200, 0x0001));
-    assert_int_equal(is.reconnect_time_ms, 18);
 }
 
 /* ---- #4 ---- */
@@ -361,9 +284,4 @@ TEST(the_temperature_can_count_in_finer_steps)
     assert_int_equal(temperature.temperature_dc, 250);
     PLAY(read_temperature, OK, HPS_4(OK, 0xFFFF));
     assert_int_equal(temperature.temperature_dc, -178); /* (-0.1 - 32) * 50 / 9 = -178.3 */
-}
-
-TEST(an_error_of_the_temperature_writes_nothing)
-{
-    PLAY(read_temperature, FATHOM_ERR_CHECKSUM, HPS_4(FATHOM_ERR_CHECKSUM, 0));
 }

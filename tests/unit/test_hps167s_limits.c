@@ -13,7 +13,6 @@ static fathom_hps167s_temperature_t temperature;
 static fathom_status_t configuration(void) { return fathom_hps167s_get_configuration(&hps, &is); }
 static fathom_status_t read_temperature(void) { return fathom_hps167s_get_temperature(&hps, &temperature); }
 static fathom_status_t set_termination(void) { return fathom_hps167s_set_termination(&hps, false); }
-static fathom_status_t set_baud(void) { return fathom_hps167s_set_baud(&hps, 115200); }
 
 #define ON  0xFF00, 0x0500, 0x0000, 0xB401
 #define OFF 0x0000, 0x0500, 0x0000, 0xB401
@@ -179,23 +178,6 @@ TEST(who_is_told_busy_costs_a_setting_no_response)
 }
 
 /* ---- where it is ---- */
-
-/* hps167s_settings.h: "the driver asks at both in turns until it is answered": a turn is a request, not a call. */
-TEST(calls_before_the_next_request_do_not_change_the_rate)
-{
-    hps_config.modbus.line_settings = &hps_factory;
-    hps_config.modbus.backoff_us = 1; /* else it is left alone for longer than hps_asks() waits */
-    hps_start();
-    PLAY(set_baud, FATHOM_ERR_UNCONFIRMED, {{1, 3, 0, 2, 0, 4}, OK, {ON}, 19200},
-         {{1, 3, 0, 2, 0, 4}, OK, {ON}, 19200}, {{1, 3, 0, 2, 0, 4}, SILENT, {0}, 115200},
-         {{1, 6, 0, 0x11, 0, 3}, SILENT, {0}, 19200}, {{1, 3, 0, 2, 0, 4}, SILENT, {0}, 115200},
-         {{1, 3, 0, 2, 0, 4}, SILENT, {0}, 19200});
-    for (unsigned n = 0; n != 4; n++) {
-        hps_asks(1, n % 2 == 0 ? 19200 : 115200);
-        hps_is_silent(SILENT);
-        for (unsigned calls = 0; calls != n; calls++) PENDS(desk_poll());
-    }
-}
 
 /* ---- #4 ---- */
 

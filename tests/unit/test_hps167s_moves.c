@@ -38,8 +38,6 @@ TEST(addresses_are_1_to_32)
     }
 }
 
-TEST(the_address_that_it_has_is_not_written) { PLAY_AT(1, NULL, 1, set_address, OK, HPS_1(1, OK, 0)); }
-
 FOLLOWS(an_address_where_a_device_answers_is_in_use, 1, 0, 1, NULL, 5, set_address, FATHOM_ERR_IN_USE,
         HPS_1(1, OK, 0), HPS_1(5, OK, 0))
 
@@ -53,14 +51,6 @@ FOLLOWS(a_device_that_answers_at_neither_address_is_unconfirmed, 1, 0, 1, NULL, 
 
 /* ---- #6 ---- */
 
-TEST(a_reset_device_is_followed_to_address_1)
-{
-    PLAY_AT(7, NULL, 0, reset, OK, IS(7, 1, 0), TWO(1, SILENT, 0, 0), HPS_6(7, OK, 1, 0), IS(1, 1, 0));
-    assert_int_equal(hps.reset_response, 1);
-    assert_int_equal(fake.cancelled_unit, 7);
-    hps_asks(1, 0);
-}
-
 TEST(a_reset_device_is_followed_to_19200)
 {
     PLAY_AT(7, &fast, 0, reset, OK, IS(7, 3, 115200), TWO(1, SILENT, 0, 19200), HPS_6(7, OK, 1, 115200),
@@ -70,14 +60,6 @@ TEST(a_reset_device_is_followed_to_19200)
     PLAY_AT(1, &fast, 0, reset, OK, IS(1, 3, 115200), TWO(1, SILENT, 0, 19200), HPS_6(1, OK, 1, 115200),
             IS(1, 1, 19200));
     hps_asks(1, 19200);
-}
-
-TEST(where_it_is_at_home_already_its_word_and_a_reading_are_enough)
-{
-    PLAY_AT(1, &hps_factory, 0, reset, OK, IS(1, 1, 19200), HPS_6(1, OK, 1, 19200), IS(1, 1, 19200));
-    hps_asks(1, 19200);
-    PLAY_AT(1, &hps_factory, 0, reset, FATHOM_ERR_UNCONFIRMED, IS(1, 1, 19200), HPS_6(1, OK, 1, 19200),
-            TWO(1, SILENT, 0, 19200));
 }
 
 TEST(a_reset_whose_rate_waits_for_power_on_is_followed_then)
@@ -95,27 +77,6 @@ TEST(no_other_device_may_be_at_address_1)
     PLAY_AT(7, NULL, 0, reset, FATHOM_ERR_IN_USE, IS(7, 1, 0), IS(1, 1, 0));
     assert_int_equal(hps.reset_response, FATHOM_HPS167S_NO_RESET_RESPONSE);
     hps_asks(7, 0);
-}
-
-/* Table 20: "otherwise an error code will be returned". */
-TEST(the_devices_own_error_code_is_kept)
-{
-    static const uint16_t codes[] = {0, 2, 0x00FF, 0x0100};
-    for (unsigned i = 0; i != 4; i++) {
-        PLAY_AT(7, NULL, 0, reset, FATHOM_ERR_EXCEPTION, IS(7, 1, 0), TWO(1, SILENT, 0, 0),
-                HPS_6(7, OK, codes[i], 0));
-        assert_int_equal(hps.reset_response, codes[i]);
-        hps_asks(7, 0);
-        PLAY_AT(1, NULL, 0, reset, FATHOM_ERR_EXCEPTION, IS(1, 1, 0), HPS_6(1, OK, codes[i], 0));
-        assert_int_equal(hps.reset_response, codes[i]);
-    }
-}
-
-TEST(a_modbus_exception_is_told_from_that)
-{
-    PLAY_AT(1, NULL, 0, reset, FATHOM_ERR_EXCEPTION, IS(1, 1, 0), HPS_6(1, EXCEPTION, 4, 0));
-    assert_int_equal(hps.reset_response, FATHOM_HPS167S_NO_RESET_RESPONSE);
-    assert_int_equal(fathom_hps167s_exception(&hps), 4);
 }
 
 TEST(a_reset_without_a_response_shows_in_where_the_device_is)
@@ -140,8 +101,6 @@ TEST(a_reset_without_a_response_at_address_1_is_unconfirmed)
     PLAY_AT(1, &fast, 0, reset, FATHOM_ERR_UNCONFIRMED, IS(1, 3, 115200), TWO(1, SILENT, 0, 19200),
             HPS_6(1, SILENT, 0, 115200), TWO(1, SILENT, 0, 19200), IS(1, 3, 115200));
 }
-
-TEST(a_device_that_is_not_there_is_not_reset) { PLAY_AT(1, NULL, 0, reset, SILENT, TWO(1, SILENT, 0, 0)); }
 
 TEST(a_reset_is_never_retried_and_can_be_done_again)
 {

@@ -43,14 +43,6 @@ TEST(silence_damage_refusal_and_the_abnormal_packet_are_warming_up)
     assert_int_equal(says(hps_abnormal), FATHOM_ERR_WARMING_UP);
 }
 
-TEST(without_power_on_they_are_what_they_are)
-{
-    assert_int_equal(ends_after(10000, SILENT), SILENT);
-    assert_int_equal(ends_after(10000, FATHOM_ERR_EXCEPTION), FATHOM_ERR_EXCEPTION);
-    assert_int_equal(says(hps_abnormal), OK);
-    assert_int_equal(desk.sample.kind, FATHOM_FAULT);
-}
-
 /* Until when is silence no error: seconds of the config and one time-out. 0 is the factory's 5. */
 TEST(the_warm_up_is_an_option_and_its_last_request_counts)
 {
@@ -73,23 +65,6 @@ TEST(the_warm_up_is_an_option_and_its_last_request_counts)
 
 #define WARMS_UP(s) TELLS(0xFFFF, (s)*256, 0x0000, 0xB401)
 
-static fathom_status_t none(void) { return fathom_hps167s_set_warm_up_s(&hps, 0); }
-
-/* #7 takes 0 s, with which silence is an error one time-out after power-on. */
-TEST(a_warm_up_of_0_s_can_be_told_and_can_be_set)
-{
-    for (unsigned is_set = 0; is_set != 2; is_set++) {
-        hps_set_up(NULL);
-        hps_config.no_warm_up = is_set == 0;
-        hps_start();
-        if (is_set == 1) PLAY(none, OK, WARMS_UP(5), HPS_WRITE(1, 0x0A, 0, OK, 0), WARMS_UP(0));
-        fake.now_us += 20000;
-        fathom_hps167s_power_on(&hps);
-        assert_int_equal(ends_after(499999, SILENT), FATHOM_ERR_WARMING_UP);
-        assert_int_equal(ends_after(1, SILENT), SILENT);
-    }
-}
-
 static fathom_status_t nine(void) { return fathom_hps167s_set_warm_up_s(&hps, 9); }
 static fathom_status_t reset(void) { return fathom_hps167s_restore_factory_settings(&hps); }
 
@@ -106,15 +81,6 @@ TEST(a_warm_up_that_was_set_counts_from_then_on)
     fathom_hps167s_power_on(&hps);
     assert_int_equal(ends_after(5400000, SILENT), FATHOM_ERR_WARMING_UP);
     assert_int_equal(ends_after(100000, SILENT), SILENT);
-}
-
-TEST(power_forgets_what_was_under_way)
-{
-    fathom_hps167s_configuration_t is;
-    PENDS(fathom_hps167s_get_configuration(&hps, &is));
-    fathom_hps167s_power_on(&hps);
-    assert_null(fake.request);
-    assert_int_equal(says(hps_measured), OK);
 }
 
 /* ---- what is a distance ---- */
@@ -174,18 +140,6 @@ TEST(limits_that_are_out_of_order_are_refused_and_change_nothing)
     assert_int_equal(fathom_hps167s_set_limits(&hps, &wrong), FATHOM_ERR_ARGUMENT);
     assert_int_equal(says(largest), OK);
     assert_int_equal(desk.sample.kind, FATHOM_TARGET);
-}
-
-TEST(a_value_below_its_range_is_in_raw_and_is_no_distance)
-{
-    static const uint16_t near[4] = {79, 0xDCB2, 0x0701, 0x0003};
-    assert_int_equal(says(near), OK);
-    assert_int_equal(desk.sample.kind, FATHOM_UNKNOWN);
-    assert_int_equal(desk.sample.raw, 79);
-    assert_int_equal(desk.sample.distance_mm, 0);
-    assert_int_equal(desk.sample.magnitude, 7231744); /* the rest is as ever */
-    assert_int_equal(desk.sample.precision, 3);
-    assert_int_equal(hps.implausible, 0);
 }
 
 /* Each differs from the abnormal packet (#5, table 18) in one thing: it does not say that the sensor has failed. */

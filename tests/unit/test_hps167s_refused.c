@@ -8,10 +8,6 @@ static const fathom_line_settings_t fast = {115200, FATHOM_PARITY_EVEN, 1};
 static fathom_status_t set_baud(void) { return fathom_hps167s_set_baud(&hps, (uint32_t)desk.argument); }
 static fathom_status_t set_warm_up(void) { return fathom_hps167s_set_warm_up_s(&hps, 200); }
 static fathom_status_t set_address_1(void) { return fathom_hps167s_set_address(&hps, 1); }
-static fathom_status_t set_reconnect(void)
-{
-    return fathom_hps167s_set_reconnect_time_ms(&hps, (uint32_t)desk.argument);
-}
 static fathom_status_t reset(void) { return fathom_hps167s_restore_factory_settings(&hps); }
 
 #define EXCEPTION FATHOM_ERR_EXCEPTION
@@ -54,14 +50,6 @@ TEST(after_a_baud_rate_that_was_refused_power_on_moves_nothing)
     hps_asks(1, 19200);
     hps_is_silent(FATHOM_ERR_WARMING_UP);
     hps_asks(1, 19200);
-}
-
-/* The rate is the one that the driver is at, so there is no other one to look for it. */
-TEST(after_an_unconfirmed_code_of_the_same_rate_the_next_setting_looks_for_no_device)
-{
-    PLAY_AT(1, &hps_factory, 19200, set_baud, FATHOM_ERR_UNCONFIRMED, IS_OF(1, 5, 3, 19200),
-            HPS_WRITE(1, 0x11, 1, OK, 19200), TWO_OF(1, SILENT, 5, 1, 19200));
-    PLAY(set_warm_up, OK, IS_OF(1, 200, 1, 19200));
 }
 
 /* The same where it is not: "from now on the driver asks at both in turns until it is answered", and no setting begins
@@ -121,32 +109,4 @@ TEST(it_is_not_looked_for_either_when_the_configuration_has_been_answered_before
         fake_modbus_response(&fake, is, 4);
     }
     PLAY(reset, OK, HPS_6(1, OK, 1, 0), IS_OF(1, 5, 1, 0));
-}
-
-/* #9: "from now on the driver asks at both in turns": also where the port breaks before the old rate could be asked. */
-static fathom_status_t set_baud_until_the_port_breaks(void)
-{
-    if (fake.ends == FATHOM_ERR_PORT) fake.transport = FATHOM_ERR_PORT;
-    return set_baud();
-}
-
-TEST(a_device_is_sought_at_both_rates_when_the_port_breaks_while_the_new_one_is_confirmed)
-{
-    PLAY_AT(1, &hps_factory, 57600, set_baud_until_the_port_breaks, FATHOM_ERR_UNCONFIRMED,
-            IS_OF(1, 5, 1, 19200), TWO_OF(1, SILENT, 5, 1, 57600), HPS_WRITE(1, 0x11, 2, OK, 19200),
-            TWO_OF(1, FATHOM_ERR_PORT, 5, 1, 57600));
-    fake.transport = FATHOM_PENDING;
-    hps_asks(1, 19200);
-    hps_is_silent(SILENT);
-    hps_asks(1, 57600);
-    hps_answers();
-}
-
-/* #15. 01000008 hexadecimal = 16777224 = 18 * 932068. */
-TEST(a_reconnect_time_of_four_bytes_is_written_with_all_of_them)
-{
-    desk.argument = 16777224;
-    PLAY(set_reconnect, OK, IS_OF(1, 5, 1, 0), {{1, 0x10, 0, 0x20, 0, 2}, OK, {0x0100, 0x0008}, 0},
-         {{1, 3, 0, 2, 0, 4}, OK, {0xFFFF, 0x0501, 0x0000, 0x0801}, 0},
-         {{1, 3, 0, 2, 0, 4}, OK, {0xFFFF, 0x0501, 0x0000, 0x0801}, 0});
 }

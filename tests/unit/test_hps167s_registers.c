@@ -62,17 +62,6 @@ TEST(every_baud_code_means_what_command_9_says)
         assert_int_equal(fathom_hps167s_baud((uint16_t)code), code < 5 ? bauds[code] : 19200);
 }
 
-TEST(a_rate_has_its_code_and_others_have_none)
-{
-    static const struct {
-        uint32_t baud;
-        uint8_t code;
-    } rows[] = {{19200, 1}, {57600, 2}, {115200, 3}, {230400, 4},    {9600, 0},
-                {0, 0},     {19201, 0}, {38400, 0},  {0xFFFFFFFF, 0}};
-    for (unsigned i = 0; i != sizeof rows / sizeof rows[0]; i++)
-        assert_int_equal(fathom_hps167s_baud_code(rows[i].baud), rows[i].code);
-}
-
 /* Table 10. */
 TEST(the_version_is_read_byte_by_byte)
 {
@@ -178,32 +167,6 @@ TEST(a_register_with_a_sign_is_int16)
     assert_int_equal(fathom_hps167s_to_signed(0x7FFF), 32767);
     assert_int_equal(fathom_hps167s_to_signed(0x8000), -32768);
     assert_int_equal(fathom_hps167s_to_signed(0), 0);
-}
-
-/* (F - 32) * 50 / 9 tenths: 77 F are 25 C; (32767 - 32) * 50 / 9 = 181861.1; (-32768 - 32) * 50 / 9 = -182222.2; of
- * tenths of a degree 770 are 25 C, and -1 is (-0.1 - 32) * 50 / 9 = -178.3. */
-TEST(a_temperature_is_told_in_tenths_of_a_degree_celsius)
-{
-    assert_int_equal(fathom_hps167s_temperature_dc(77, 1), 250);
-    assert_int_equal(fathom_hps167s_temperature_dc(-40, 1), -400);
-    assert_int_equal(fathom_hps167s_temperature_dc(32767, 1), 181861);
-    assert_int_equal(fathom_hps167s_temperature_dc(-32768, 1), -182222);
-    assert_int_equal(fathom_hps167s_temperature_dc(770, 10), 250);
-    assert_int_equal(fathom_hps167s_temperature_dc(-1, 10), -178);
-}
-
-/* The defaults: 80, 30000 and 65530. */
-TEST(limits_that_are_0_get_their_defaults)
-{
-    static const fathom_hps167s_limits_t all = {18000, 65000, 100};
-    fathom_hps167s_limits_t limits = {0, 0, 0};
-    assert_int_equal(fathom_hps167s_complete_limits(&limits), FATHOM_OK);
-    assert_int_equal(limits.max_mm, 30000);
-    assert_int_equal(limits.over_range_mm, 65530);
-    assert_int_equal(limits.min_mm, 80);
-    limits = all;
-    assert_int_equal(fathom_hps167s_complete_limits(&limits), FATHOM_OK);
-    assert_memory_equal(&limits, &all, sizeof limits);
 }
 
 TEST(limits_that_are_out_of_order_are_refused)

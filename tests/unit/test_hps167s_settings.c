@@ -55,16 +55,6 @@ static const struct {
 
 HPS_SUITE;
 
-TEST(each_value_is_read_written_once_and_read_back)
-{
-    for (unsigned i = 0; i != COUNT(changes); i++) {
-        const uint16_t *const r = changes[i].after;
-        hps_set_up(NULL);
-        desk.argument = changes[i].value;
-        PLAY(changes[i].set, OK, FACTORY, changes[i].write, TELLS(r[0], r[1], r[2], r[3]));
-    }
-}
-
 TEST(what_is_so_already_is_not_written)
 {
     for (unsigned i = 0; i != COUNT(changes); i++) {
@@ -80,16 +70,6 @@ TEST(on_is_ff)
     desk.argument = 1;
     PLAY(measures, OK, TELLS(0xFF00, 0x0500, 0x0000, 0xB401), PUTS(0x12, 0xFF, OK), FACTORY);
     PLAY(termination, OK, TELLS(0x00FF, 0x0500, 0x0000, 0xB401), PUTS(0x13, 0xFF, OK), FACTORY);
-}
-
-TEST(a_reconnect_time_is_a_multiple_of_18)
-{
-    static const uint32_t wrong[] = {1, 17, 19, 181, 0xFFFFFFFF};
-    for (unsigned i = 0; i != 5; i++)
-        assert_int_equal(fathom_hps167s_set_reconnect_time_ms(&hps, wrong[i]), FATHOM_ERR_ARGUMENT);
-    assert_int_equal(fake.submits + fake.polls, 0);
-    /* 4294967292 = 18 * 238609294 */
-    PENDS(fathom_hps167s_set_reconnect_time_ms(&hps, 0xFFFFFFFC));
 }
 
 TEST(the_reconnect_time_goes_with_its_low_word_first_as_an_option)
@@ -110,20 +90,6 @@ TEST(a_write_is_not_retried_and_the_readings_are)
     PLAY(warm_up, OK, FACTORY, PUTS(0x0A, 9, OK), TELLS(0xFFFF, 0x0900, 0x0000, 0xB401));
 }
 
-TEST(what_goes_wrong_is_told_as_it_is)
-{
-    desk.argument = 9;
-    PLAY(warm_up, SILENT, FAILS(SILENT));
-    assert_false(fathom_hps167s_is_written(&hps));
-    PLAY(warm_up, FATHOM_ERR_EXCEPTION, FACTORY, PUTS(0x0A, 9, FATHOM_ERR_EXCEPTION));
-    assert_int_equal(fathom_hps167s_exception(&hps), 2);
-    PLAY(warm_up, FATHOM_ERR_DIFFERS, FACTORY, PUTS(0x0A, 9, OK), FACTORY);
-    assert_true(fathom_hps167s_is_written(&hps));
-    PLAY(warm_up, FATHOM_ERR_UNCONFIRMED, FACTORY, PUTS(0x0A, 9, OK), FAILS(FATHOM_ERR_CHECKSUM));
-    PLAY(warm_up, SILENT, FACTORY, PUTS(0x0A, 9, SILENT), FACTORY);
-    PLAY(warm_up, OK, FACTORY, PUTS(0x0A, 9, SILENT), TELLS(0xFFFF, 0x0900, 0x0000, 0xB401));
-}
-
 /* modbus_setting.h, 1: where one was written and did not read so, that is no word of another. */
 TEST(a_value_that_did_not_show_is_doubted_until_it_is_set_and_no_other_is)
 {
@@ -137,29 +103,6 @@ TEST(a_value_that_did_not_show_is_doubted_until_it_is_set_and_no_other_is)
     PLAY(termination, OK, FACTORY, PUTS(0x13, 0, OK), TELLS(0x00FF, 0x0500, 0x0000, 0xB401));
     desk.argument = 5;
     PLAY(warm_up, OK, FACTORY, PUTS(0x0A, 5, OK), FACTORY);
-}
-
-/* Six settings of a device whose reconnect time is 1000 ms and whose rate has the code 00 (table 12 has no encoding):
- * #6, #7, #10, #11 and #15; test_hps167s_baud.c has #9. */
-TEST(a_reconnect_time_or_rate_that_is_not_ours_keeps_nothing_from_being_set)
-{
-    static const struct {
-        fathom_status_t (*set)(void);
-        row_t write;
-        uint16_t after[4];
-    } rows[] = {
-        {reset, HPS_6(1, OK, 1, 0), {0xFFFF, 0x0500, 0x0003, 0xE800}},
-        {warm_up, PUTS(0x0A, 0, OK), {0xFFFF, 0x0000, 0x0003, 0xE800}},
-        {measures, PUTS(0x12, 0, OK), {0xFF00, 0x0500, 0x0003, 0xE800}},
-        {termination, PUTS(0x13, 0, OK), {0x00FF, 0x0500, 0x0003, 0xE800}},
-        {reconnect, RECONNECT(0, 0), {0xFFFF, 0x0500, 0x0000, 0x0000}},
-    };
-    for (unsigned i = 0; i != COUNT(rows); i++) {
-        const uint16_t *const r = rows[i].after;
-        hps_set_up(NULL);
-        PLAY(rows[i].set, OK, TELLS(0xFFFF, 0x0500, 0x0003, 0xE800), rows[i].write,
-             TELLS(r[0], r[1], r[2], r[3]));
-    }
 }
 
 /* ---- blind ---- */
@@ -228,21 +171,6 @@ static fathom_status_t termination_all(void)
     return fathom_hps167s_broadcast_termination(&hps, desk.argument != 0);
 }
 
-TEST(no_setting_begins_while_a_blind_one_or_a_broadcast_is_in_progress)
-{
-    for (unsigned is_for_all = 0; is_for_all != 2; is_for_all++) {
-        const row_t write = HPS_WRITE(is_for_all != 0 ? 0 : 1, 0x12, 0, OK, 0);
-        fathom_status_t (*const set)(void) = is_for_all != 0 ? measures_all : measures;
-        hps_set_up(NULL);
-        desk.argument = 0;
-        if (is_for_all == 0) assert_int_equal(fathom_hps167s_write_next_unchecked(&hps), OK);
-        desk_part(set, &write, 1);
-        assert_int_equal(offset(), FATHOM_ERR_BUSY);
-        assert_int_equal(reset(), FATHOM_ERR_BUSY);
-        assert_int_equal(set(), FATHOM_ERR_UNCONFIRMED);
-    }
-}
-
 /* modbus_unit.h, rule 5: a setting that is not called for 5 s and 16 calls of other functions ends. */
 static void begins_behind_the_abandoned_one(fathom_status_t (*set)(void), int32_t argument)
 {
@@ -279,32 +207,6 @@ TEST(an_abandoned_setting_gives_way_to_a_broadcast_which_reads_nothing)
 {
     begins_behind_an_abandoned_setting(measures_all, 1);
     PLAY(measures_all, FATHOM_ERR_UNCONFIRMED, HPS_WRITE(0, 0x12, 0xFF, OK, 0));
-}
-
-TEST(behind_an_abandoned_move_a_broadcast_leaves_the_driver_at_its_former_address)
-{
-    desk.argument = 5;
-    PART(address, ASK_1);
-    PENDS(address()); /* The new address is probed. */
-    assert_int_equal(hps.unit.address, 5);
-    begins_behind_the_abandoned_one(measures_all, 1);
-    PLAY(measures_all, FATHOM_ERR_UNCONFIRMED, HPS_WRITE(0, 0x12, 0xFF, OK, 0));
-    hps_asks(1, 0);
-    hps_answers();
-}
-
-/* 2.2.1: "For the request sent by the host in broadcast mode, the slave does not respond": the line ends it as sent. */
-TEST(what_goes_to_all_units_is_sent_once_and_not_confirmed)
-{
-    for (int32_t is_on = 0; is_on != 2; is_on++) {
-        desk.argument = is_on;
-        PLAY(measures_all, FATHOM_ERR_UNCONFIRMED, HPS_WRITE(0, 0x12, is_on * 0xFF, OK, 0));
-        PLAY(termination_all, FATHOM_ERR_UNCONFIRMED, HPS_WRITE(0, 0x13, is_on * 0xFF, OK, 0));
-        assert_true(fathom_hps167s_is_written(&hps));
-        hps_asks(1, 0); /* the driver is where it was */
-        hps_answers();
-        fake.submits = 0;
-    }
 }
 
 TEST(one_unit_and_all_are_not_mixed_and_a_cancelled_one_leaves_the_driver_where_it_was)
@@ -377,27 +279,6 @@ TEST(the_users_and_the_factorys_settings_are_loaded_by_functions_of_their_own)
     PLAY(load_factory, OK, ASK_1, LOAD(0xFF, OK));
 }
 
-TEST(one_is_not_taken_for_the_other_while_it_is_under_way)
-{
-    PART(load_user, ASK_1, LOAD(0, OK));
-    assert_int_equal(load_factory(), FATHOM_ERR_BUSY);
-    assert_int_equal(offset(), FATHOM_ERR_BUSY);
-    assert_int_equal(load_factory(), FATHOM_ERR_BUSY);
-    assert_int_equal(load_user(), OK);
-    assert_int_equal(fake.submits, 0);
-}
-
-TEST(a_setting_under_way_is_not_mixed_with_another_value)
-{
-    desk.argument = 9;
-    PENDS(warm_up());
-    desk.argument = 10;
-    assert_int_equal(warm_up(), FATHOM_ERR_BUSY);
-    assert_int_equal(fathom_hps167s_set_reconnect_time_ms(&hps, 18), FATHOM_ERR_BUSY);
-    fathom_hps167s_cancel(&hps);
-    PLAY(warm_up, OK, FACTORY, PUTS(0x0A, 10, OK), TELLS(0xFFFF, 0x0A00, 0x0000, 0xB401));
-}
-
 TEST(a_setting_under_way_is_not_mixed_with_another_one_of_the_same_value)
 {
     desk.argument = 18;
@@ -422,18 +303,5 @@ TEST(a_device_that_is_not_there_is_told_nothing)
         assert_true(fathom_hps167s_is_written(&hps));
         PLAY(commands[i], SILENT, HPS_1(1, SILENT, 0));
         assert_false(fathom_hps167s_is_written(&hps));
-    }
-}
-
-TEST(an_error_of_a_write_only_command_is_told_and_it_is_not_sent_again)
-{
-    static const fathom_status_t errors[] = {FATHOM_ERR_EXCEPTION, SILENT, FATHOM_ERR_CHECKSUM,
-                                             FATHOM_ERR_ECHO, FATHOM_ERR_MALFORMED};
-    for (unsigned i = 0; i != 5; i++) {
-        hps_set_up(NULL);
-        hps_config.modbus.retries = desk.retries = 3;
-        hps_start();
-        PLAY(load_factory, i == 0 ? errors[i] : FATHOM_ERR_UNCONFIRMED, ASK_1, LOAD(0xFF, errors[i]));
-        hps_asks(1, 0);
     }
 }

@@ -40,28 +40,6 @@ TEST(the_level_is_from_the_bottom_up_and_the_sensor_measures_down)
     expect_level(1100, 1000, 500, 2500);
 }
 
-/* A mm is 0.5 per mille and 2.5 l: 0.5 is 1, 2.5 is 3, 999.5 is 1000 and 4997.5 is 4998. */
-TEST(at_and_beside_the_bottom_and_the_brim)
-{
-    expect_level(2102, -2, 0, 0);
-    expect_level(2101, -1, 0, 0);
-    expect_level(2100, 0, 0, 0);
-    expect_level(2099, 1, 1, 3);
-    expect_level(101, 1999, 1000, 4998);
-    expect_level(100, 2000, 1000, 5000);
-    expect_level(99, 2001, 1000, 5000);
-    expect_level(0, 2100, 1000, 5000);
-}
-
-TEST(the_offset_is_added_to_the_distance)
-{
-    tank.offset_mm = 100;
-    expect_level(600, 1400, 700, 3500);
-    tank.offset_mm = -100;
-    expect_level(600, 1600, 800, 4000);
-    expect_level(50, 2150, 1000, 5000);
-}
-
 /* 1 - 65535 - 32767 and 65535 - 0 + 32768 */
 TEST(no_distance_wraps_the_level)
 {
@@ -267,20 +245,6 @@ TEST(points_beyond_their_count_do_not_exist)
     expect_by_table(150, 50);
     use_points(NULL, 0);
     expect_by_table(150, 0);
-}
-
-TEST(the_first_point_may_be_at_the_bottom_or_without_a_volume)
-{
-    static const fathom_level_point_t below_the_bottom[] = {{30, 0}, {130, 100}};
-    static const fathom_level_point_t dead[] = {{0, 100}, {100, 200}};
-    use_points(below_the_bottom, 2);
-    expect_by_table(0, 30);
-    expect_by_table(1, 31);
-    expect_level(2200, -100, 0, 30);
-    use_points(dead, 2);
-    expect_by_table(99, 0);
-    expect_by_table(100, 0);
-    expect_by_table(101, 1);
 }
 
 /* 4294967294 over 65534 mm: half of them are at 1 + 32767 mm. 4294967293 over 65535 mm are 65536.99997 a mm. */

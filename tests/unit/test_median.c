@@ -88,42 +88,6 @@ TEST(the_median_of_three_is_there_with_the_third)
     expect_mm(2, 3); /* 3 3 2: equal ones */
 }
 
-TEST(the_median_of_four_is_the_nearer_of_the_two_in_the_middle)
-{
-    start_with(4, 0);
-    expect_none(FATHOM_TARGET, 10);
-    expect_none(FATHOM_TARGET, 40);
-    expect_none(FATHOM_TARGET, 20);
-    expect_mm(30, 20);
-    expect_mm(50, 30); /* 40 20 30 50 */
-    expect_mm(50, 30); /* 20 30 50 50 */
-    expect_mm(50, 50);
-}
-
-/* The first is the lowest, the middle one, and the highest of all. */
-TEST(the_median_of_every_count_is_there_with_the_last_wherever_it_stands)
-{
-    for (uint8_t count = 3; count <= 15; count++)
-        for (uint8_t turn = 0; turn != count; turn++) {
-            start_with(count, 0);
-            for (uint8_t i = 0; i != count; i++) {
-                const uint16_t mm =
-                    (uint16_t)(100 * ((i + turn) % count)); /* 0, 100, ... (count - 1) * 100 */
-                assert_int_equal(next(FATHOM_TARGET, (uint16_t)(mm + 7)), i == count - 1);
-            }
-            assert_int_equal(out.distance_mm, 100 * ((count - 1) / 2) + 7);
-        }
-}
-
-TEST(the_window_holds_so_many_and_no_place_behind_it_is_written)
-{
-    for (uint8_t count = 3; count != 15; count++) {
-        start_with(count, 0);
-        for (int i = 0; i != 40; i++) (void)next(FATHOM_TARGET, 1);
-        for (uint8_t i = 0; i != 15; i++) assert_int_equal(window[i], i < count ? 1 : 0x5A5A);
-    }
-}
-
 TEST(a_config_without_a_window_or_with_another_count_than_3_to_15_is_refused)
 {
     for (unsigned count = 0; count <= 255; count++) {
@@ -305,16 +269,6 @@ TEST(the_gate_is_about_the_median_and_not_the_last_sample)
     expect_mm(1000, 1100); /* 1100 1190 1000: the spike is not among them */
 }
 
-TEST(while_the_window_is_not_full_nothing_is_a_spike)
-{
-    start_with(4, 1);
-    fill(1000, 1);
-    expect_none(FATHOM_NO_TARGET, 0);
-    expect_none(FATHOM_NEAR, 0);
-    expect_mm(5000, 1000);
-    assert_int_equal(median.dropped, 0);
-}
-
 TEST(after_gate_row_spikes_the_next_is_the_first_of_a_new_window)
 {
     for (unsigned gate_row = 0; gate_row <= 255; gate_row = 2 * gate_row + 1) {
@@ -378,12 +332,6 @@ static void expect_time(uint32_t after_us, bool empties)
     assert_int_equal(fathom_median_advance(&median, now_us + after_us), empties);
 }
 
-static bool next_after(uint32_t after_us, uint8_t kind, uint16_t mm)
-{
-    now_us += after_us - 100000;
-    return next(kind, mm);
-}
-
 TEST(without_a_sample_for_5_s_or_as_the_config_says_the_window_is_emptied)
 {
     for (uint32_t s = 5; s <= 1000; s += 995) {
@@ -400,64 +348,6 @@ TEST(without_a_sample_for_5_s_or_as_the_config_says_the_window_is_emptied)
         fill(2000, 2);
         expect_mm(2000, 2000);
     }
-}
-
-TEST(a_window_that_is_not_full_is_emptied_too)
-{
-    fill(1000, 1);
-    expect_time(5000001, true);
-    fill(2000, 2);
-    expect_mm(2000, 2000);
-}
-
-TEST(the_next_sample_that_counts_empties_the_window_too)
-{
-    start_with(3, 100);
-    fill(1000, 2);
-    expect_mm(1000, 1000);
-    assert_true(next_after(5000000, FATHOM_TARGET, 1000));
-    assert_false(next_after(5000001, FATHOM_TARGET, 3000)); /* no spike: the window is empty */
-    fill(3000, 1);
-    expect_mm(3000, 3000);
-    assert_int_equal(median.dropped, 0);
-}
-
-/* Else the caller, who asks for the time after it, would not be told. */
-TEST(a_sample_that_counts_for_nothing_does_not_empty_the_window)
-{
-    static const uint8_t kinds[] = {FATHOM_FAULT, FATHOM_UNKNOWN};
-    for (int i = 0; i != 2; i++) {
-        start();
-        fill(1000, 2);
-        expect_mm(1000, 1000);
-        assert_false(next_after(4900000, kinds[i], 0));
-        assert_false(next_after(100001, kinds[i], 0)); /* nor does it put off the time */
-        expect_time(0, true);
-    }
-}
-
-TEST(a_spike_counts_for_the_time)
-{
-    start_with(3, 100);
-    fill(1000, 2);
-    expect_mm(1000, 1000);
-    assert_false(next_after(4000000, FATHOM_TARGET, 2000));
-    expect_time(5000000, false);
-    expect_time(5000001, true);
-}
-
-TEST(behind_a_silence_a_row_of_spikes_begins_anew)
-{
-    start_with(3, 100);
-    fill(1000, 2);
-    expect_mm(1000, 1000);
-    fill(2000, 2);
-    expect_time(5000001, true);
-    fill(1000, 2);
-    expect_mm(1000, 1000);
-    fill(2000, 2);
-    assert_int_equal(median.dropped, 4);
-    expect_mm(1000, 1000);
 }
 
 /* "A time a little before that of the last sample does no harm": half a turn of the clock, 2^31 us, is before. */

@@ -37,30 +37,6 @@ TEST(what_does_not_fit_the_frame_is_refused)
     assert_int_equal(submit_write_of_many(11, values), FATHOM_PENDING);
 }
 
-/* A05 3(4)1 example 3. */
-TEST(several_registers_are_read_in_one_transaction)
-{
-    static const uint8_t request[] = {0x01, 0x03, 0x01, 0x07, 0x00, 0x03, 0xB5, 0xF6};
-    static const uint16_t expected[] = {250, 659, 2426};
-    uint16_t values[3] = {0};
-    fathom_modbus_read_holding_registers(&bench.request.message, 1, 0x0107, 3, values);
-    submit(&bench.request);
-    run(20000);
-    expect_bytes(0, request, sizeof request);
-    deliver_all(response_1_three);
-    expect(FATHOM_OK);
-    assert_memory_equal(values, expected, sizeof expected);
-}
-
-TEST(a_write_of_many_is_acknowledged_by_start_and_count)
-{
-    ask_to_write_36_ms();
-    run(30000);
-    expect_bytes(0, set_36_ms, sizeof set_36_ms);
-    deliver_all(set_ms_done);
-    expect(FATHOM_OK);
-}
-
 TEST(every_byte_of_an_acknowledgement_counts)
 {
     uint16_t values[5] = {0};
@@ -76,24 +52,4 @@ TEST(every_byte_of_an_acknowledgement_counts)
         expect_after(200, FATHOM_PENDING);
         expect_after(TIMEOUT_US, FATHOM_ERR_MALFORMED);
     }
-}
-
-TEST(the_transport_is_the_same_client)
-{
-    const fathom_modbus_t modbus = fathom_modbus_client(&bench.line);
-    assert_ptr_equal(modbus.line, &bench.line);
-    bench.request.transaction.timeout_us = TIMEOUT_US;
-    fathom_modbus_read_holding_registers(&bench.request.message, 1, 0x0100, 1, &bench.value);
-    assert_int_equal(modbus.submit(modbus.line, &bench.request), FATHOM_PENDING);
-    assert_int_equal(modbus.submit(modbus.line, &bench.request), FATHOM_ERR_BUSY);
-    fathom_line_poll(&bench.line);
-    assert_int_equal(fathom_line_due_us(&bench.line), T3_5_US);
-    run(20000);
-    receive_all(response_1_754);
-    fathom_line_poll(&bench.line);
-    expect_mm(754);
-    assert_int_equal(bench.request.transaction.link.heard_us, bench.fake.now_us);
-    modbus.submit(modbus.line, &bench.request);
-    fathom_modbus_client_cancel(modbus.line, &bench.request);
-    expect(FATHOM_ERR_CANCELLED);
 }

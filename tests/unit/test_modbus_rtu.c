@@ -80,32 +80,6 @@ TEST(the_room_of_every_count)
     }
 }
 
-TEST(a_read_of_every_count_is_8_bytes)
-{
-    for (unsigned n = 1; n <= 125; n++) {
-        const uint8_t head[] = {0x01, 0x03, 0x00, 0x20, 0x00, (uint8_t)n};
-        ask(READ, (uint8_t)n);
-        assert_int_equal(fathom_modbus_rtu_encode_request(&message, frame), 8);
-        assert_memory_equal(frame, head, sizeof head);
-        assert_untouched_from(frame, 8, CAPACITY);
-    }
-}
-
-TEST(a_write_of_one_carries_0000_8000_and_FFFF)
-{
-    static const uint8_t expected[][8] = {
-        {0x01, 0x06, 0x00, 0x14, 0x00, 0x00, 0xC9, 0xCE},
-        {0x01, 0x06, 0x00, 0x14, 0x80, 0x00, 0xA8, 0x0E},
-        {0x01, 0x06, 0x00, 0x14, 0xFF, 0xFF, 0xC8, 0x7E},
-    };
-    static const uint16_t written[] = {0x0000, 0x8000, 0xFFFF};
-    for (unsigned i = 0; i != 3; i++) {
-        fathom_modbus_write_single_register(&message, 1, 0x0014, written[i]);
-        expect_encoded_request(expected[i], 8);
-        expect_response(expected[i], FATHOM_OK);
-    }
-}
-
 static const uint8_t three_values[] = {0x01, 0x03, 0x06, 0x00, 0x00, 0x80, 0x00, 0xFF, 0xFF, 0x09, 0x05};
 static const uint8_t write_three[] = {0x01, 0x10, 0x00, 0x20, 0x00, 0x03, 0x06, 0x00,
                                       0x00, 0x80, 0x00, 0xFF, 0xFF, 0xCF, 0x9A};
@@ -201,33 +175,6 @@ TEST(the_length_of_a_response_for_every_function_and_third_byte)
             if (function == 0x83 || function == 0x86 || function == 0x90) expected = 5;
             assert_int_equal(fathom_modbus_rtu_response_length(bytes, 3), expected);
         }
-    }
-}
-
-TEST(an_exception_of_any_code_is_kept_as_a_number)
-{
-    static const uint8_t functions[] = {READ, WRITE, WRITE_MANY};
-    for (unsigned i = 0; i != 3; i++) {
-        for (unsigned code = 0; code != 256; code++) {
-            const uint8_t response[] = {0x01, (uint8_t)(functions[i] | 0x80), (uint8_t)code, 0x00, 0x00};
-            ask(READ, 3);
-            message.head[1] = functions[i];
-            expect_response(response, FATHOM_ERR_EXCEPTION);
-            assert_int_equal(message.exception, code);
-            assert_int_equal(values[0], GUARD16);
-        }
-    }
-}
-
-/* modbus_rtu.h: "where one answers, message.head[0] becomes its address". */
-TEST(a_response_to_any_unit_says_whose_it_is)
-{
-    for (unsigned unit = 1; unit != 256; unit++) {
-        const uint8_t response[] = {(uint8_t)unit, 0x03, 0x02, 0x02, 0xF2, 0x00, 0x00};
-        fathom_modbus_read_holding_registers(&message, FATHOM_MODBUS_ANY_UNIT, 0x0100, 1, values);
-        expect_response(response, FATHOM_OK);
-        assert_int_equal(message.head[0], unit);
-        assert_int_equal(values[0], 754);
     }
 }
 
@@ -363,60 +310,3 @@ typedef struct {
     uint8_t length;
     uint8_t bytes[13];
 } request_t;
-
-static const request_t requests[] = {
-    {8, {0x01, 0x03, 0x01, 0x00, 0x00, 0x01, 0x85, 0xF6}},
-    {8, {0x01, 0x06, 0x02, 0x00, 0x00, 0x05, 0x48, 0x71}},
-    {13, {0x01, 0x10, 0x00, 0x20, 0x00, 0x02, 0x04, 0x00, 0x00, 0x00, 0x24, 0xF1, 0xAC}},
-};
-
-static void fill(size_t which)
-{
-    values[0] = 0;
-    values[1] = 36;
-    if (which == 0) fathom_modbus_read_holding_registers(&message, 1, 0x0100, 1, values);
-    if (which == 1) fathom_modbus_write_single_register(&message, 1, 0x0200, 5);
-    if (which == 2) fathom_modbus_write_multiple_registers(&message, 1, 0x0020, 2, values);
-}
-
-TEST(every_beginning_of_a_request_is_like_it)
-{
-    for (size_t which = 0; which != 3; which++) {
-        fill(which);
-        for (uint8_t have = 1; have <= requests[which].length; have++)
-            expect_alike(requests[which].bytes, have, true);
-    }
-}
-
-TEST(more_bytes_behind_a_request_do_not_matter)
-{
-    uint8_t bytes[32];
-    for (size_t which = 0; which != 3; which++) {
-        fill(which);
-        memset(bytes, 0xFF, sizeof bytes);
-        memcpy(bytes, requests[which].bytes, requests[which].length);
-        expect_alike(bytes, sizeof bytes, true);
-    }
-}
-
-/* Six bytes are compared; what follows is for the CRC to check. */
-TEST(one_other_bit_in_the_beginning_makes_it_no_request)
-{
-    uint8_t bytes[13];
-    for (size_t which = 0; which != 3; which++)
-        for (unsigned bit = 0; bit != 48; bit++)
-            for (uint8_t have = 1; have <= requests[which].length; have++) {
-                fill(which);
-                memcpy(bytes, requests[which].bytes, requests[which].length);
-                bytes[bit / 8] ^= (uint8_t)(1u << bit % 8);
-                expect_alike(bytes, have, have <= bit / 8);
-            }
-}
-
-TEST(the_longest_write_has_255_bytes)
-{
-    fathom_modbus_write_multiple_registers(&message, 1, 0x0020, 123, values);
-    assert_int_equal(fathom_modbus_rtu_encode_request(&message, frame), 255);
-    assert_int_equal(frame[6], 246);
-    for (unsigned have = 1; have != 256; have++) expect_alike(frame, (uint8_t)have, true);
-}

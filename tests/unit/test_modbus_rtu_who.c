@@ -5,18 +5,6 @@
 
 /* modbus_rtu.h, FATHOM_MODBUS_ANY_UNIT: "where one answers, message.head[0] becomes its address". */
 
-TEST(after_a_response_to_a_request_to_any_unit_its_address_stands_in_the_head)
-{
-    static const uint8_t response[] = {0x05, 0x03, 0x02, 0x02, 0xF2, 0xC9, 0x61};
-    uint16_t value = 0;
-    fathom_modbus_message_t message;
-    fathom_modbus_read_holding_registers(&message, FATHOM_MODBUS_ANY_UNIT, 0x0100, 1, &value);
-    assert_int_equal(message.head[0], 255);
-    assert_int_equal(fathom_modbus_rtu_parse_response(&message, response), FATHOM_OK);
-    assert_int_equal(message.head[0], 5);
-    assert_int_equal(value, 754);
-}
-
 TEST(after_a_refusal_or_another_response_it_is_still_a_request_to_any_unit)
 {
     static const uint8_t exception[] = {0x05, 0x83, 0x02, 0x81, 0x30};

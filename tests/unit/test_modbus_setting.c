@@ -92,16 +92,6 @@ TEST(a_value_is_read_written_once_and_read_back_and_can_be_set_again)
     assert_int_equal(fake.unit_cancels, 0);
 }
 
-TEST(what_cannot_be_looked_at_is_not_written)
-{
-    static const fathom_status_t errors[] = {SILENT, FATHOM_ERR_CHECKSUM, FATHOM_ERR_MALFORMED,
-                                             FATHOM_ERR_EXCEPTION, FATHOM_ERR_PORT};
-    for (size_t i = 0; i != COUNT(errors); i++) {
-        SETS(errors[i], HERE, FAILS(HERE, errors[i]));
-        was_written(false);
-    }
-}
-
 SETTING(a_refusal_ends_it, 0, FATHOM_ERR_EXCEPTION, HERE, IS(HERE, OLD), PUT(FATHOM_ERR_EXCEPTION))
 
 TEST(what_is_never_sent_ends_it)
@@ -120,23 +110,6 @@ TEST(what_is_never_sent_ends_it)
     set_up(state); /* the port cannot do the line settings, which is seen when the request is to leave */
     SETS(FATHOM_ERR_UNSUPPORTED, HERE, IS(HERE, OLD), PUT(FATHOM_ERR_UNSUPPORTED));
     was_written(false);
-}
-
-TEST(a_port_that_is_broken_before_the_write_is_asked_is_not_unconfirmed)
-{
-    PART(set, IS(HERE, OLD));
-    fake.transport = FATHOM_ERR_PORT;
-    fathom_status_t status = set(); /* takes the response */
-    if (status == FATHOM_PENDING) status = set();
-    assert_int_equal(status, FATHOM_ERR_PORT);
-    was_written(false);
-}
-
-/* It was acknowledged and reads otherwise: nothing malformed has come. */
-TEST(a_device_that_acknowledges_and_does_not_obey_is_found_out)
-{
-    SETS(FATHOM_ERR_DIFFERS, HERE, IS(HERE, OLD), PUT(OK), IS(HERE, OLD));
-    was_written(true);
 }
 
 static void want(uint16_t value) { setting.value = setting.write.last = value; }
@@ -187,35 +160,6 @@ TEST(a_value_that_was_written_and_did_not_show_is_taken_back_by_writing)
     was_written(false);
 }
 
-TEST(after_power_on_nothing_is_doubted)
-{
-    fathom_modbus_unit_power_on(&unit, 0);
-    for (setting.write.id = 0xC0; setting.write.id != 0xD0; setting.write.id++) {
-        SETS(OK, HERE, IS(HERE, NEW));
-        was_written(false);
-    }
-}
-
-TEST(a_value_that_has_shown_is_not_doubted_after_another_setting)
-{
-    SETS(OK, HERE, IS(HERE, OLD), PUT(OK), IS(HERE, NEW));
-    setting.write.id = 0xC2;
-    SETS(OK, HERE, IS(HERE, OLD), PUT(OK), IS(HERE, NEW));
-    setting.write.id = put.id;
-    SETS(OK, HERE, IS(HERE, NEW));
-    was_written(false);
-}
-
-TEST(where_a_device_is_is_not_doubted)
-{
-    setting.address = THERE;
-    SETS(FATHOM_ERR_DIFFERS, HERE, IS(HERE, OLD), FAILS(THERE, SILENT), PUT(OK), IS(THERE, OLD),
-         IS(HERE, OLD));
-    want(OLD);
-    SETS(OK, HERE, IS(HERE, OLD));
-    was_written(false);
-}
-
 TEST(a_lost_acknowledgement_is_no_failure_if_the_value_holds)
 {
     static const fathom_status_t errors[] = {SILENT, FATHOM_ERR_CHECKSUM, FATHOM_ERR_MALFORMED,
@@ -243,41 +187,6 @@ TEST(what_cannot_be_read_is_acknowledged_or_unconfirmed_or_refused)
 
 /* ---- blind ---- */
 
-TEST(a_blind_setting_is_written_once_and_nothing_is_read)
-{
-    static const fathom_status_t ends[] = {OK, SILENT, FATHOM_ERR_CHECKSUM, FATHOM_ERR_MALFORMED,
-                                           FATHOM_ERR_PORT};
-    for (size_t i = 0; i != COUNT(ends); i++) {
-        setting.address = i % 2 != 0 ? THERE : 0;
-        assert_int_equal(fathom_modbus_write_next_unchecked(&unit), OK);
-        SETS(FATHOM_ERR_UNCONFIRMED, HERE, PUT(ends[i]));
-        was_written(true);
-    }
-    assert_int_equal(fathom_modbus_write_next_unchecked(&unit), OK);
-    SETS(FATHOM_ERR_EXCEPTION, HERE, PUT(FATHOM_ERR_EXCEPTION));
-    setting.address = 0;
-    SETS(OK, HERE, IS(HERE, OLD), PUT(OK), IS(HERE, NEW)); /* the next is none */
-}
-
-TEST(what_is_under_way_cannot_become_blind)
-{
-    PART(set, IS(HERE, OLD));
-    assert_int_equal(fathom_modbus_write_next_unchecked(&unit), FATHOM_ERR_BUSY);
-    SETS(OK, HERE, PUT(OK), IS(HERE, NEW));
-}
-
-TEST(cancelling_and_power_forget_that_the_next_is_blind)
-{
-    for (unsigned is_power = 0; is_power != 2; is_power++) {
-        assert_int_equal(fathom_modbus_write_next_unchecked(&unit), OK);
-        if (is_power != 0)
-            fathom_modbus_unit_power_on(&unit, 0);
-        else
-            fathom_modbus_unit_cancel(&unit);
-        SETS(OK, HERE, IS(HERE, NEW));
-    }
-}
-
 /* ---- to another address ---- */
 
 TEST(an_address_is_looked_at_first_and_followed)
@@ -299,39 +208,6 @@ TEST(an_address_that_answers_is_in_use)
         SETS(FATHOM_ERR_IN_USE, HERE, IS(HERE, OLD), FAILS(THERE, responses[i]));
 }
 
-/* modbus_setting.h, rule 2: a busy line and another master prove nothing about the new address. */
-TEST(an_address_that_could_not_be_asked_is_neither_free_nor_in_use)
-{
-    static const fathom_status_t errors[] = {FATHOM_ERR_LINE_BUSY, FATHOM_ERR_OTHER_MASTER};
-    setting.address = THERE;
-    for (size_t i = 0; i != COUNT(errors); i++) {
-        SETS(errors[i], HERE, IS(HERE, OLD), FAILS(THERE, errors[i]));
-        was_written(false);
-        SETS(errors[i], HERE, FAILS(HERE, errors[i]));
-        was_written(false);
-    }
-}
-
-TEST(a_write_that_a_busy_line_kept_from_leaving_was_not_written)
-{
-    PART(set, IS(HERE, OLD));
-    PENDS(set());
-    fake_modbus_end_unsent(&fake, FATHOM_ERR_LINE_BUSY);
-    assert_int_equal(set(), FATHOM_ERR_LINE_BUSY);
-    was_written(false);
-    fake.submits = 0;
-    SETS(OK, HERE, IS(HERE, OLD), PUT(OK), IS(HERE, NEW));
-    was_written(true);
-}
-
-TEST(a_write_that_left_into_a_busy_line_is_read_back)
-{
-    SETS(OK, HERE, IS(HERE, OLD), PUT(FATHOM_ERR_LINE_BUSY), IS(HERE, NEW));
-    was_written(true);
-    SETS(FATHOM_ERR_LINE_BUSY, HERE, IS(HERE, OLD), PUT(FATHOM_ERR_LINE_BUSY), IS(HERE, OLD));
-    was_written(true);
-}
-
 SETTING(a_port_that_breaks_before_the_write_is_told_and_nothing_was_changed, THERE, FATHOM_ERR_PORT, HERE,
         IS(HERE, OLD), FAILS(THERE, FATHOM_ERR_PORT))
 
@@ -344,7 +220,6 @@ SETTING(a_device_that_answers_at_neither_is_at_one_of_the_two, THERE, FATHOM_ERR
 /* ---- to other line settings ---- */
 
 static const row_t is_fast = {{HERE, 3, HIGH(REGISTER), LOW(REGISTER), 0, 1}, OK, {NEW}, 57600};
-static const row_t not_fast = {{HERE, 3, HIGH(REGISTER), LOW(REGISTER), 0, 1}, SILENT, {0}, 57600};
 
 TEST(line_settings_are_followed_without_a_look_at_the_new_ones)
 {
@@ -352,13 +227,6 @@ TEST(line_settings_are_followed_without_a_look_at_the_new_ones)
     SETS(OK, HERE, IS(HERE, OLD), PUT(OK), is_fast);
     assert_int_equal(fake.cancelled_unit, HERE); /* what waits names the settings of before */
     assert_ptr_equal(unit.line_settings, &fast);
-}
-
-TEST(settings_that_take_effect_later_are_read_at_the_old_ones)
-{
-    setting.line_settings = &fast;
-    SETS(OK, HERE, IS(HERE, OLD), PUT(OK), not_fast, IS(HERE, NEW));
-    assert_null(unit.line_settings);
 }
 
 /* ---- meanwhile ---- */
@@ -390,40 +258,6 @@ TEST(the_outcome_of_a_settings_own_request_is_kept_for_it)
     SETS(OK, HERE, IS(HERE, NEW));
 }
 
-TEST(a_setting_waits_for_no_command_of_another_driver)
-{
-    PENDS(asks(&command));
-    assert_int_equal(set(), FATHOM_ERR_BUSY);
-    desk_says(3);
-    assert_int_equal(asks(&command), OK);
-    SETS(OK, HERE, IS(HERE, OLD), PUT(OK), IS(HERE, NEW));
-}
-
-TEST(the_same_register_measured_is_another_request)
-{
-    static const fathom_modbus_unit_request_t same = {&found, REGISTER, 1, 3, 2};
-    PENDS(asks(&same));
-    PENDS(set());
-    desk_says(NEW);
-    fake.submits = 0;
-    SETS(OK, HERE, IS(HERE, NEW)); /* the look comes after it, and is no part of it */
-}
-
-TEST(what_is_given_up_in_the_middle_leaves_the_driver_where_it_was)
-{
-    setting.address = THERE;
-    setting.line_settings = &fast;
-    PART(set, IS(HERE, OLD));
-    PENDS(set());
-    assert_int_equal(fake.request->message.head[0], THERE);
-    assert_ptr_equal(fake.request->transaction.line_settings, &fast);
-    fathom_modbus_unit_cancel(&unit);
-    assert_null(fake.request);
-    assert_int_equal(unit.address, HERE);
-    assert_null(unit.line_settings);
-    PENDS(asks(&command));
-}
-
 /* ---- after power-on ---- */
 
 TEST(after_power_on_silence_refusal_and_damage_are_warming_up)
@@ -451,27 +285,4 @@ TEST(after_power_on_a_busy_line_and_another_master_are_told_as_they_are)
         fake_modbus_fail(&fake, errors[i]);
         assert_int_equal(asks(&measure), errors[i]);
     }
-}
-
-TEST(a_unit_that_warms_up_is_not_left_alone)
-{
-    fathom_modbus_unit_power_on(&unit, 10000000);
-    for (unsigned i = 0; i != 10; i++) {
-        PENDS(asks(&measure));
-        assert_int_equal(fake.submits, i + 1);
-        fake_modbus_fail(&fake, SILENT);
-        assert_int_equal(asks(&measure), FATHOM_ERR_WARMING_UP);
-    }
-}
-
-TEST(power_ends_what_was_under_way)
-{
-    setting.address = THERE;
-    PART(set, IS(HERE, OLD));
-    PENDS(set());
-    assert_int_equal(fake.request->message.head[0], THERE);
-    fathom_modbus_unit_power_on(&unit, 0);
-    assert_null(fake.request);
-    assert_int_equal(unit.address, HERE);
-    assert_false(fathom_modbus_unit_is_warming_up(&unit));
 }

@@ -130,40 +130,7 @@ TEST(the_first_request_goes_out_at_once_just_as_it_was_asked)
     assert_ptr_equal(fake.request->message.values, values);
 }
 
-TEST(a_command_has_the_time_out_of_commands)
-{
-    GO(P(0, version, 1));
-    assert_int_equal(fake.request->transaction.timeout_us, FATHOM_MODBUS_DEFAULT_COMMAND_TIMEOUT_US);
-}
-
 /* ---- outcomes ---- */
-
-TEST(a_response_is_handed_over_once)
-{
-    fake.heard_us = 4711;
-    GO(TAKEN(10, measure, 1), P(10, measure, 1), P(10, measure, 1));
-    assert_int_equal(values[0], 754);
-    assert_int_equal(fathom_modbus_unit_heard_us(&unit), 4711);
-    assert_int_equal(fathom_modbus_unit_responses(&unit), 1);
-    assert_int_equal(fathom_modbus_unit_failures(&unit), 0);
-}
-
-TEST(every_error_is_handed_over_once_and_the_next_attempt_follows)
-{
-    static const fathom_status_t errors[] = {FATHOM_ERR_NO_RESPONSE, FATHOM_ERR_CHECKSUM,
-                                             FATHOM_ERR_EXCEPTION,   FATHOM_ERR_MALFORMED,
-                                             FATHOM_ERR_PORT,        FATHOM_ERR_CANCELLED};
-    fake.exception = 171;
-    for (uint8_t i = 1; i <= COUNT(errors); i++) {
-        GO(ON_WIRE(measure, i), ENDS(errors[i - 1]), IS(errors[i - 1], 10, measure, i),
-           P(PACE_US - 11, measure, i));
-        assert_int_equal(fathom_modbus_unit_failures(&unit), i);
-        assert_int_equal(fathom_modbus_unit_responses(&unit), 0);
-        assert_int_equal(values[0], GUARD16);
-        assert_int_equal(fathom_modbus_unit_exception(&unit), i == 3 ? 171 : 0);
-        fake.now_us += 1;
-    }
-}
 
 TEST(a_request_that_the_transport_does_not_take_is_tried_again_each_time)
 {
@@ -190,13 +157,6 @@ TEST(the_counters_stop_at_65535)
 }
 
 /* ---- pace ---- */
-
-TEST(the_pace_counts_from_the_request_on_the_wire)
-{
-    for (unsigned i = 0; i != 100; i++) GO(P(PACE_US, measure, 1)); /* in a long queue */
-    GO(SENT, P(20, measure, 1), ANSWERED, IS(FATHOM_OK, 40000, measure, 1),
-       ASKED_IN(PACE_US - 40000, measure, 2));
-}
 
 /* A slow loop: sent and answered since the last poll. */
 STEPS(the_pace_does_not_count_what_passed_before_the_poll_that_sent_it, P(0, measure, 1), ANSWERED,
@@ -232,28 +192,6 @@ TEST(the_pace_holds_across_the_wrap_of_the_clock_and_due_tells_it)
 
 /* ---- commands beside the repeated request ---- */
 
-/* The measurement's outcome is dropped. */
-TEST(a_command_waits_for_a_measurement_and_takes_its_place)
-{
-    GO(ON_WIRE(measure, 1), P(10, version, 1), ANSWERED, P(10, version, 1),
-       ASKED_IN(PACE_US - 20, version, 2));
-    assert_int_equal(fathom_modbus_unit_responses(&unit), 1);
-    GO(ANSWERED, IS(FATHOM_OK, 10, version, 2));
-    assert_memory_equal(values, three_values, sizeof three_values);
-}
-
-TEST(a_measurement_waits_until_the_outcome_of_a_command_was_taken)
-{
-    GO(ON_WIRE(version, 1), P(10, measure, 1), ANSWERED);
-    for (unsigned i = 0; i != 5; i++) {
-        GO(P(PACE_US, measure, 1));
-        assert_int_equal(due(), 0); /* with an outcome to take */
-    }
-    assert_memory_equal(values, three_values, sizeof three_values);
-    GO(IS(FATHOM_OK, 10, version, 1), P(0, measure, 2));
-    assert_int_equal(fathom_modbus_unit_responses(&unit), 1);
-}
-
 STEPS(an_error_of_a_command_waits_for_who_asked_too, ON_WIRE(version, 1), ENDS(FATHOM_ERR_EXCEPTION),
       P(PACE_US, measure, 1), P(PACE_US, measure, 1), IS(FATHOM_ERR_EXCEPTION, 0, version, 1))
 
@@ -274,43 +212,7 @@ STEPS(a_command_that_waits_for_the_pace_comes_before_the_repeated_request, TAKEN
 
 /* ---- cancel ---- */
 
-TEST(cancel_ends_a_request_under_way_once_and_keeps_the_pace)
-{
-    fathom_modbus_unit_cancel(&unit); /* nothing */
-    assert_int_equal(fake.cancels, 0);
-    GO(ON_WIRE(version, 1));
-    fathom_modbus_unit_cancel(&unit);
-    fathom_modbus_unit_cancel(&unit);
-    assert_int_equal(fake.cancels, 1);
-    assert_null(fake.request);
-    GO(ASKED_IN(PACE_US, measure, 2));
-}
-
-TEST(cancel_forgets_an_outcome_that_was_not_taken)
-{
-    GO(ON_WIRE(version, 1), ANSWERED, P(10, measure, 1));
-    fathom_modbus_unit_cancel(&unit);
-    assert_int_equal(fake.cancels, 0);
-    GO(P(PACE_US, version, 2));
-}
-
-TEST(cancel_gives_up_a_command_that_waits)
-{
-    GO(TAKEN(1000, measure, 1), P(1000, version, 1));
-    fathom_modbus_unit_cancel(&unit);
-    GO(P(PACE_US, measure, 2));
-}
-
 /* ---- due ---- */
-
-TEST(it_is_due_when_the_transport_is_while_it_waits)
-{
-    GO(ON_WIRE(measure, 1));
-    fake.due_us = 1234;
-    assert_int_equal(due(), 1234);
-    fake.due_us = FATHOM_NO_DEADLINE;
-    assert_true(due() == FATHOM_NO_DEADLINE);
-}
 
 /* Several drivers share a transport, so that one driver's poll may end another's request. */
 TEST(it_is_due_at_once_when_anothers_poll_has_ended_its_request)
@@ -321,30 +223,6 @@ TEST(it_is_due_at_once_when_anothers_poll_has_ended_its_request)
 }
 
 /* ---- a broken transport ---- */
-
-TEST(a_broken_transport_is_said_by_every_read_and_nothing_is_asked)
-{
-    fake.transport = FATHOM_ERR_PORT;
-    GO(IS(FATHOM_ERR_PORT, 0, measure, 0), IS(FATHOM_ERR_PORT, 0, version, 0));
-    fake.transport = FATHOM_PENDING;
-    GO(P(0, measure, 1));
-}
-
-TEST(a_command_that_waits_when_the_transport_breaks_has_ended)
-{
-    GO(ON_WIRE(measure, 1), P(0, version, 1));
-    fake.transport = FATHOM_ERR_PORT;
-    GO(IS(FATHOM_ERR_PORT, 0, version, 1));
-    fake.transport = FATHOM_PENDING;
-    GO(P(0, details, 1));
-}
-
-TEST(what_was_under_way_when_the_transport_broke_has_its_own_outcome_first)
-{
-    GO(ON_WIRE(measure, 1));
-    fake.transport = FATHOM_ERR_PORT;
-    GO(ANSWERED, IS(FATHOM_OK, 0, measure, 1), IS(FATHOM_ERR_PORT, 0, measure, 1));
-}
 
 /* ---- requests about one register that are not the same request: a read, a write, a measurement ---- */
 
@@ -364,16 +242,3 @@ STEPS(while_a_register_is_written_a_read_is_told_busy_and_a_measurement_waits, P
 STEPS(a_write_of_a_register_that_is_being_read_is_told_busy, P(0, reading, 1),
       IS(FATHOM_ERR_BUSY, 0, one_write, 1), IS(FATHOM_ERR_BUSY, 0, two_written, 1), ANSWERED,
       IS(FATHOM_ERR_BUSY, 0, one_write, 1), IS(FATHOM_OK, 0, reading, 1), P(PACE_US, two_written, 2))
-
-TEST(the_transport_may_be_a_local_variable)
-{
-    fathom_modbus_unit_t other;
-    const fathom_modbus_config_t config = {.address = 1};
-    fathom_modbus_t transport = fake.modbus;
-    assert_int_equal(init_unit(&other, &transport, &config, 1000, 0), FATHOM_OK);
-    memset(&transport, 0x5A, sizeof transport);
-    fathom_modbus_unit_poll(&other);
-    assert_int_equal(fathom_modbus_unit_measure(&other, 0x0100, 1, other.request.message.values),
-                     FATHOM_PENDING);
-    assert_non_null(fake.request);
-}

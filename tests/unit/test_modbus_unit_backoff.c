@@ -121,25 +121,6 @@ CAP(a_pause_shorter_than_the_pace_keeps_the_pace, 300000, 1200000, 1000000, 7000
 CAP(the_longest_pause_is_half_the_clock, 300000000, 0x7FFFFFFFu, PACE_US, 0, 0, 300000000, 600000000,
     1200000000, 0x7FFFFFFFu)
 
-TEST(the_first_thing_that_it_says_ends_that)
-{
-    static const fathom_status_t outcomes[] = {FATHOM_OK, FATHOM_ERR_EXCEPTION, FATHOM_ERR_CHECKSUM,
-                                               FATHOM_ERR_MALFORMED};
-    for (unsigned i = 0; i != COUNT(outcomes); i++)
-        for (unsigned before = 1; before != 8; before++) {
-            set_up(state);
-            timeouts_in_row(before, time_outs_us, COUNT(time_outs_us));
-            end_with(&measure, outcomes[i]);
-            assert_paused_for(0);
-            silence(); /* and the count begins anew */
-            assert_paused_for(0);
-            silence();
-            assert_paused_for(0);
-            silence();
-            assert_paused_for(TIMEOUT_US);
-        }
-}
-
 /* They prove nothing about the unit: the count of its time-outs stays, and so does the length of the pause. */
 TEST(a_busy_line_and_another_master_leave_the_back_off_as_it_is)
 {
@@ -171,30 +152,6 @@ TEST(the_pause_holds_across_the_wrap_of_the_clock)
     }
 }
 
-/* A command of the user goes out at once, and is no reason to pause more. */
-TEST(a_command_is_not_held_back)
-{
-    silent_for(7);
-    (void)read_after(1000, &measure);
-    assert_int_equal(fake.submits, 7);
-    PENDS(read_after(0, &version));
-    fake_modbus_assert_asked(&fake, 8, UNIT, 0x0001, 3);
-    end_with(&version, FATHOM_OK);
-    assert_paused_for(0); /* it has answered */
-}
-
-TEST(a_command_is_not_held_back_by_a_silence_that_comes_while_it_waits)
-{
-    silent_for(6);
-    assert_paused_for(8 * TIMEOUT_US);
-    fake_modbus_send(&fake);
-    PENDS(read_after(0, &version)); /* the measurement is on the wire */
-    fake_modbus_fail(&fake, FATHOM_ERR_NO_RESPONSE);
-    (void)read_after(TIMEOUT_US, &version);
-    (void)read_after(PACE_US, &version);
-    fake_modbus_assert_asked(&fake, 8, UNIT, 0x0001, 3);
-}
-
 /* The device's own pace holds for it all the same, and due says how long that is. */
 TEST(a_command_waits_for_the_pace_and_not_for_the_back_off)
 {
@@ -210,20 +167,4 @@ TEST(a_command_waits_for_the_pace_and_not_for_the_back_off)
     assert_int_equal(fake.submits, before);
     PENDS(read_after(1, &version));
     assert_int_equal(fake.submits, before + 1);
-}
-
-TEST(a_command_that_no_unit_answers_counts_too)
-{
-    silent_for(2);
-    PENDS(read_after(0, &version));
-    fake_modbus_assert_asked(&fake, 3, UNIT, 0x0001, 3);
-    end_with(&version, FATHOM_ERR_NO_RESPONSE);
-    assert_paused_for(1000000); /* its own time-out */
-}
-
-TEST(cancel_does_not_end_the_pause)
-{
-    silent_for(4);
-    fathom_modbus_unit_cancel(&unit);
-    assert_paused_for(2 * TIMEOUT_US);
 }

@@ -59,41 +59,6 @@ TEST(the_three_widths_are_options)
     expect_kind(60001, FATHOM_FAULT);
 }
 
-/* "T1 = 110ms" is information: a module that answers at once, or late, is right too. */
-TEST(a_pulse_anywhere_after_the_trigger_counts)
-{
-    static const uint32_t after_us[] = {0, 1, 1000, 2500, 90000, 110000, 130000, 200000, 217999};
-    for (unsigned i = 0; i != COUNT_OF(after_us); i++) {
-        measure(after_us[i], 3000);
-        expect_readings(1);
-        expect_last(FATHOM_TARGET, 3000);
-        expect_no_responses(0);
-    }
-}
-
-TEST(noise_is_passed_over_and_the_pulse_behind_it_counts)
-{
-    run_to_trigger();
-    for (uint32_t i = 0; i != 20; i++) pulse_in(5 * MS + i * 4 * MS, 10 + i * 100);
-    pulse_in(110 * MS, 10 * MS);
-    run_meter(222 * MS);
-    expect_readings(1);
-    expect_last(FATHOM_TARGET, 10 * MS);
-    assert_int_equal(stand.meter.noises, 20);
-}
-
-TEST(more_noise_than_one_poll_takes_is_taken_by_the_next_ones)
-{
-    run_to_trigger();
-    for (uint32_t i = 0; i != 20; i++) pulse_in(5 * MS + i * MS, 99);
-    pulse_in(110 * MS, 10 * MS);
-    stand.fake.now_us += 200 * MS;
-    expect_poll(FATHOM_PENDING); /* 16 of them */
-    assert_int_equal(stand.meter.noises, 16);
-    expect_poll(FATHOM_OK);
-    expect_last(FATHOM_TARGET, 10 * MS);
-}
-
 TEST(the_count_of_noise_stops_at_65535)
 {
     stand.meter.noises = 65534;
@@ -101,48 +66,6 @@ TEST(the_count_of_noise_stops_at_65535)
     for (uint32_t i = 0; i != 3; i++) pulse_in(5 * MS + i * MS, 100);
     run_meter(100 * MS);
     assert_int_equal(stand.meter.noises, 65535);
-}
-
-TEST(a_pulse_that_began_before_the_trigger_does_not_count)
-{
-    pulse_in(500, 20 * MS);
-    run_to_trigger();
-    run_meter(222 * MS);
-    expect_readings(0);
-    expect_no_responses(1);
-}
-
-TEST(no_pulse_at_all_is_no_response_when_the_cycle_is_over_and_it_tries_again)
-{
-    run_to_trigger();
-    run_meter(220900);
-    expect_no_responses(0);
-    stand.fake.now_us += 100;
-    expect_poll(FATHOM_ERR_NO_RESPONSE);
-    expect_falls(2); /* at once */
-    run_meter(10 * 221 * MS);
-    expect_no_responses(11);
-    expect_readings(0);
-    pulse_in(110 * MS, 10 * MS);
-    run_meter(222 * MS);
-    expect_readings(1);
-}
-
-TEST(a_line_that_is_high_when_the_cycle_is_over_is_a_fault)
-{
-    stand.pin.stuck_high = true;
-    run_to_trigger();
-    const uint32_t edge_us = stand.fake.now_us;
-    run_meter(221 * MS);
-    expect_readings(1);
-    expect_last(FATHOM_FAULT, 0);
-    assert_int_equal(stand.last.time_us, edge_us + 221 * MS);
-    run_meter(221 * MS);
-    expect_readings(2);
-    stand.pin.stuck_high = false;
-    run_meter(221 * MS);
-    expect_readings(2);
-    expect_no_responses(1);
 }
 
 TEST(a_pulse_that_never_ends_is_a_fault_when_the_cycle_is_over)

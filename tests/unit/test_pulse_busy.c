@@ -50,16 +50,6 @@ static void is_busy_for(uint32_t us) { stand.fake.busy_until_us = stand.fake.now
 
 static uint32_t due_us(void) { return fathom_pulse_due_us(&stand.meter); }
 
-/* "Makes a meter ready and the trigger pin high": a TX that is not held low is high. */
-TEST(init_leaves_the_break_of_a_uart_alone)
-{
-    assert_int_equal(set_breaks, 0);
-    poll_after(2 * MS - 1);
-    assert_int_equal(set_breaks, 0);
-    poll_after(1);
-    assert_int_equal(set_breaks, 1);
-}
-
 /* "never FATHOM_NO_DEADLINE": a port that was busy is asked again in 1 ms. */
 TEST(where_the_port_was_busy_it_is_due_in_1_ms)
 {
@@ -120,22 +110,4 @@ TEST_IN(with_pin, every_negative_result_of_take_is_a_broken_port)
     stand.pin.capture.take = failing_take;
     run_to_trigger();
     assert_int_equal(poll_after(100), FATHOM_ERR_PORT);
-}
-
-/* "cycle_us: time between two falling edges, at least: 221000 us.. ; 0 selects 221000 us". */
-TEST_IN(with_pin, without_a_pulse_the_next_cycle_begins_221_ms_after_the_last)
-{
-    static const uint32_t cycles_us[] = {0, 221000, 221001};
-    for (unsigned i = 0; i != 3; i++) {
-        set_up_meter(state);
-        stand.config.cycle_us = cycles_us[i];
-        start_meter();
-        run_to_trigger();
-        poll_after(2 * MS);
-        /* 2 ms of it have passed */
-        assert_int_equal(poll_after((i == 2 ? 219001u : 219000u) - 1), FATHOM_PENDING);
-        assert_int_equal(stand.pin.falls, 1);
-        assert_int_equal(poll_after(1), FATHOM_ERR_NO_RESPONSE);
-        assert_int_equal(stand.pin.falls, 2);
-    }
 }

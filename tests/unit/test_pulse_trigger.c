@@ -11,63 +11,6 @@ static void poll_after(uint32_t us)
 
 /* ---- the trigger ---- */
 
-TEST(the_pin_is_high_for_2_ms_then_low_for_2_ms_and_then_high)
-{
-    assert_true(stand.pin.level);
-    stand.fake.now_us += 1999;
-    expect_due(1);
-    poll_meter();
-    assert_true(stand.pin.level);
-    stand.fake.now_us += 1;
-    expect_due(0);
-    poll_meter();
-    assert_false(stand.pin.level);
-    assert_int_equal(stand.pin.arms, 1);
-    expect_due(2000);
-    poll_after(1999);
-    assert_false(stand.pin.level);
-    poll_after(1);
-    assert_true(stand.pin.level);
-    expect_due(219 * MS);
-}
-
-TEST(the_low_time_is_an_option)
-{
-    stand.config.low_us = 30000;
-    start_meter();
-    run_meter(29900);
-    expect_falls(0);
-    run_meter(100);
-    expect_falls(1);
-    run_meter(100 * MS);
-    assert_int_equal(stand.pin.low_us, 30000);
-}
-
-/* "This cycle period of the module must be greater than 220ms" (A16 1(2)) */
-TEST(a_cycle_is_221_ms_from_edge_to_edge)
-{
-    response_with(110 * MS, 10 * MS);
-    run_to_trigger();
-    run_meter(220900);
-    expect_falls(1);
-    run_meter(100);
-    expect_falls(2);
-    run_meter(2210 * MS);
-    expect_falls(12);
-    assert_int_equal(stand.pin.least_us, 221 * MS);
-    expect_readings(11);
-}
-
-TEST(a_longer_cycle_is_kept)
-{
-    stand.config.cycle_us = 500 * MS;
-    start_meter();
-    run_to_trigger();
-    run_meter(2000 * MS);
-    expect_falls(5);
-    assert_int_equal(stand.pin.least_us, 500 * MS);
-}
-
 /* An interrupt holds the program up for 5 ms between its look at the clock and the edge, and not in the next cycle. */
 TEST(the_cycle_counts_from_a_look_at_the_clock_after_the_edge)
 {
@@ -77,22 +20,6 @@ TEST(the_cycle_counts_from_a_look_at_the_clock_after_the_edge)
     }
     expect_falls(10);
     assert_int_equal(stand.pin.least_us, 221 * MS);
-}
-
-TEST(a_loop_of_300_ms_leaves_the_pin_high_for_2_ms_before_the_next_edge)
-{
-    response_with(110 * MS, 10 * MS);
-    run_meter_in_steps(12000 * MS, 300 * MS);
-    assert_true(stand.pin.falls >= 15);
-    assert_int_equal(stand.pin.least_high_us, 300 * MS);
-    expect_no_responses(0);
-    start_meter();
-    response_with(110 * MS, 10 * MS);
-    for (unsigned i = 0; i != 100; i++) { /* in turn 300 ms and 500 us */
-        poll_after(i % 2 != 0 ? 300 * MS : 500);
-    }
-    assert_true(stand.pin.falls >= 10);
-    assert_in_range(stand.pin.least_high_us, 2 * MS, 301 * MS);
 }
 
 /* ---- loops and the clock ---- */
@@ -126,20 +53,6 @@ TEST(every_cycle_is_one_reading_in_loops_from_50_us_to_200_ms_and_across_the_wra
     }
 }
 
-TEST(what_is_over_stays_over_however_late_the_poll)
-{
-    static const uint32_t late_us[] = {221000, 1000000, UINT32_C(0x80000000), UINT32_MAX - 105000};
-    for (unsigned i = 0; i != 4; i++) {
-        start_meter();
-        run_to_trigger();
-        stand.fake.now_us += late_us[i];
-        expect_due(0);
-        expect_poll(FATHOM_ERR_NO_RESPONSE);
-        poll_after(3 * MS);
-        expect_falls(2);
-    }
-}
-
 TEST(who_sleeps_as_long_as_it_is_due_gets_a_reading_a_cycle)
 {
     response_with(110 * MS, 10 * MS);
@@ -148,19 +61,6 @@ TEST(who_sleeps_as_long_as_it_is_due_gets_a_reading_a_cycle)
     }
     assert_int_equal(stand.readings + stand.no_responses, 15);
     expect_no_responses(0);
-}
-
-/* A module that answers at once. */
-TEST(a_pulse_that_ends_while_the_trigger_is_low_counts_and_the_low_time_is_kept)
-{
-    stand.config.low_us = 30 * MS;
-    start_meter();
-    response_with(500, 3000);
-    run_meter(2000 * MS);
-    expect_falls(9); /* 30 ms, 8 * 221 ms */
-    expect_readings(9);
-    assert_int_equal(stand.pin.low_us, 30 * MS);
-    assert_int_equal(stand.pin.least_us, 221 * MS);
 }
 
 /* trigger.h: "period_us: low_us + 1..FATHOM_MAX_DURATION_US". */
@@ -185,96 +85,9 @@ TEST(the_period_of_a_trigger_is_longer_than_its_low_time)
 
 /* ---- the break ---- */
 
-static void trigger_by_break(void)
-{
-    stand.trigger = fathom_output_break(&stand.fake.uart);
-    start_meter();
-}
-
-TEST(without_a_pin_a_break_of_the_uart_triggers)
-{
-    trigger_by_break();
-    run_meter(1900);
-    assert_int_equal(stand.fake.breaks, 0);
-    stand.fake.busy_until_us = stand.fake.now_us + 5 * MS; /* bytes are leaving */
-    run_meter(4900);
-    assert_int_equal(stand.fake.breaks, 0);
-    assert_in_range(fathom_pulse_due_us(&stand.meter), 1, 1 * MS);
-    run_meter(200);
-    assert_int_equal(stand.fake.breaks, 1);
-    assert_true(stand.fake.in_break);
-    pulse_in(110 * MS, 10 * MS);
-    stand.fake.busy_until_us = stand.fake.now_us + 5 * MS;
-    run_meter(4900);
-    assert_true(stand.fake.in_break);
-    run_meter(200);
-    assert_false(stand.fake.in_break);
-    run_meter(120 * MS);
-    expect_readings(1);
-}
-
 /* ---- the capture looks for pulses before the trigger falls ---- */
 
-/* Or what an interrupt lets pass between the two would be lost. The sensor answers in the very moment of the edge. */
-static void expect_every_trigger_answered(void)
-{
-    static const uint32_t starts_us[] = {1000, UINT32_MAX - 300000};
-    static const uint32_t loops_us[] = {500, 20000};
-    int (*const set_break)(void *ctx, bool on) = stand.fake.uart.set_break;
-    for (unsigned i = 0; i != 4; i++) {
-        start_meter_at(starts_us[i / 2]);
-        stand.fake.uart.set_break = set_break;
-        stand.fake.busy_until_us = stand.fake.now_us + 5 * MS; /* a break cannot begin yet */
-        response_with(0, 10 * MS);
-        run_meter_in_steps(2100 * MS, loops_us[i % 2]);
-        assert_in_range(stand.readings, 8, 10); /* cycles of 221 to 240 ms */
-        expect_readings(stand.pin.falls + stand.fake.breaks);
-        expect_no_responses(0);
-        assert_int_equal(stand.port_errors, 0); /* a busy port is none */
-        expect_last(FATHOM_TARGET, 10 * MS);
-    }
-}
-
-TEST(a_pulse_that_begins_with_the_edge_counts) { expect_every_trigger_answered(); }
-
-static int break_and_response(void *ctx, bool on)
-{
-    fake_t *const fake = ctx;
-    if (on && (int32_t)(fake->now_us - fake->busy_until_us) < 0) return 0;
-    if (on && !fake->in_break) pulse_in(0, 10 * MS);
-    fake->breaks += on && !fake->in_break;
-    fake->in_break = on;
-    return 1;
-}
-
-TEST(a_pulse_that_begins_with_a_break_counts)
-{
-    trigger_by_break();
-    stand.fake.uart.set_break = break_and_response;
-    expect_every_trigger_answered();
-}
-
 /* ---- a port that fails ---- */
-
-static int broken(void *ctx, bool on) { return (void)ctx, (void)on, -1; }
-
-TEST(a_break_that_fails_is_said_by_every_poll_until_it_works_again)
-{
-    int (*const works)(void *ctx, bool on) = stand.fake.uart.set_break;
-    trigger_by_break();
-    stand.fake.uart.set_break = broken;
-    stand.fake.now_us += 2 * MS;
-    for (unsigned i = 0; i != 3; i++) expect_poll(FATHOM_ERR_PORT);
-    stand.fake.uart.set_break = works;
-    expect_poll(FATHOM_PENDING);
-    assert_true(stand.fake.in_break);
-    stand.fake.uart.set_break = broken;
-    stand.fake.now_us += 2 * MS;
-    for (unsigned i = 0; i != 3; i++) expect_poll(FATHOM_ERR_PORT);
-    stand.fake.uart.set_break = works;
-    expect_poll(FATHOM_PENDING);
-    assert_false(stand.fake.in_break);
-}
 
 TEST(a_capture_that_fails_is_said_by_every_poll_until_it_works_again)
 {

@@ -242,37 +242,6 @@ TEST(every_default_is_inside_its_range)
     }
 }
 
-/* "below no_target_us" */
-TEST(noise_is_below_no_target)
-{
-    pwm.pulse.no_target_us = 50000;
-    pwm.pulse.noise_us = 49999;
-    assert_int_equal(init_pulse(), FATHOM_OK);
-    pwm.pulse.noise_us = 50000;
-    assert_int_equal(init_pulse(), FATHOM_ERR_ARGUMENT);
-    pwm.pulse.noise_us = UINT16_MAX;
-    assert_int_equal(init_pulse(), FATHOM_ERR_ARGUMENT);
-}
-
-TEST(the_farthest_distance_is_not_nearer_than_the_nearest)
-{
-    pwm.window.min_mm = 100;
-    pwm.window.max_mm = 100;
-    assert_int_equal(init_pwm(), FATHOM_OK);
-    pwm.window.max_mm = 99;
-    assert_int_equal(init_pwm(), FATHOM_ERR_ARGUMENT);
-    pwm.window.max_mm = 1;
-    assert_int_equal(init_pwm(), FATHOM_ERR_ARGUMENT);
-}
-
-TEST(an_alarm_of_something_far_has_its_thresholds_the_other_way_round)
-{
-    alarm.when = FATHOM_FAR;
-    assert_int_equal(init_alarm(), FATHOM_ERR_ARGUMENT);
-    alarm.off_mm = 500;
-    assert_int_equal(init_alarm(), FATHOM_OK);
-}
-
 TEST(a_missing_function_is_refused)
 {
     const fathom_clock_t clock = {NULL, NULL};

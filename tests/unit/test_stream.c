@@ -155,37 +155,6 @@ TEST(a_run_that_is_broken_begins_anew)
     }
 }
 
-TEST(a_frame_may_come_in_any_two_pieces)
-{
-    for (uint8_t cut = 1; cut != 10; cut++) {
-        begin(10);
-        feed(four, cut, true, 10);
-        expect(15, FATHOM_PENDING);
-        feed(four + cut, (uint8_t)(10 - cut), false, 20);
-        expect_frame(5020, four, 20);
-    }
-}
-
-TEST(without_a_gap_the_second_of_two_frames_in_step_is_believed_when_a_third_begins)
-{
-    feed_frame(10);
-    expect(10, FATHOM_PENDING);
-    expect_counted(FATHOM_STREAM_UNSURE, 1);
-    feed_frame(20);
-    expect(20, FATHOM_PENDING);
-    feed_start(30);
-    expect_frame(30, mm_1953, 20); /* when it came, not when it was believed */
-    expect_counted(FATHOM_STREAM_FRAMES, 1);
-}
-
-TEST(a_silence_ends_a_frame_as_well_as_the_next_one_does)
-{
-    feed_frame(10);
-    feed_frame(20);
-    feed(mm_1953, 2, true, 30);
-    expect_frame(30, mm_1953, 20);
-}
-
 /* Not polled in between: what begins after the silence is no frame, and the one before it has ended all the same. */
 TEST(a_silence_that_no_poll_saw_ends_a_frame_whatever_comes_after_it)
 {
@@ -193,34 +162,6 @@ TEST(a_silence_that_no_poll_saw_ends_a_frame_whatever_comes_after_it)
     feed(mm_1953 + 1, 3, true, 20000);
     expect_frame(20000, mm_1953, 10);
     expect_counted(FATHOM_STREAM_UNSURE, 0);
-}
-
-/* A byte of FF 80 xx 80 is lost, and what is left makes a right sum with the FF of the next frame: FF + 80 + 80 =
- * 1FF. What follows it, 07, begins nothing. */
-TEST(a_right_sum_that_no_frame_follows_is_not_believed)
-{
-    feed_first(10);
-    feed_hex("FF 80 80", false, 20);
-    expect(20, FATHOM_OK);
-    feed_frame(30);
-    expect(30, FATHOM_PENDING);
-    assert_true(stream.counters[FATHOM_STREAM_UNSURE] + stream.counters[FATHOM_STREAM_AMBIGUOUS] >= 1);
-    expect_counted(FATHOM_STREAM_FRAMES, 1);
-}
-
-TEST(frames_that_follow_without_a_pause_are_believed_while_they_stay_in_step)
-{
-    feed_first(10);
-    expect(10, FATHOM_PENDING);
-    feed_frame(20);
-    expect_frame(20, mm_1953, 10);
-    feed_start(25); /* the rest of this frame is lost */
-    expect(25, FATHOM_OK);
-    feed_frame(30);
-    expect(30, FATHOM_PENDING); /* in step with nothing */
-    feed_frame(40);
-    feed_start(50);
-    expect_frame(50, mm_1953, 40);
 }
 
 TEST(a_value_that_is_valid_in_two_alignments_is_never_shown_without_a_gap)
@@ -235,20 +176,6 @@ TEST(a_value_that_is_valid_in_two_alignments_is_never_shown_without_a_gap)
     for (int i = 0; i != 100; i++) feed(permutable, 10, false, 10);
     expect(20, FATHOM_PENDING);
     expect_counted(FATHOM_STREAM_FRAMES, 0);
-}
-
-TEST(the_same_value_is_shown_rightly_where_gaps_are_seen)
-{
-    feed(mm_511 + 2, 2, false, 5); /* the end of a frame that had begun before */
-    for (int i = 0; i != 100; i++) {
-        feed(mm_511, 4, true, 10);
-        expect_frame(5010, mm_511, 10);
-    }
-    begin(10);
-    for (int i = 0; i != 100; i++) {
-        feed(permutable, 10, true, 10);
-        expect_frame(5010, permutable, 10);
-    }
 }
 
 TEST(a_frame_that_broke_off_before_a_gap_leaves_no_trace)
@@ -299,29 +226,6 @@ TEST(the_deadline_is_two_seconds_by_default)
     expect_init(FATHOM_OK);
     expect(1999999, FATHOM_PENDING);
     expect(2000000, FATHOM_ERR_STALE);
-}
-
-TEST(only_a_good_frame_moves_the_deadline)
-{
-    for (uint32_t now_us = 0; now_us != 1900000; now_us += 100000) {
-        feed(mm_1953, 3, true, now_us);
-        expect(now_us, FATHOM_PENDING);
-    }
-    expect(2000000, FATHOM_ERR_CHECKSUM); /* bytes arrived */
-    feed_first(2995000);
-    expect(3000000, FATHOM_OK);
-    expect(4999999, FATHOM_PENDING);
-    expect(5000000, FATHOM_ERR_STALE);
-}
-
-/* FATHOM_LINE_LATE_US is 500 ms. */
-TEST(a_frame_that_waits_comes_before_the_deadline_until_it_is_too_old)
-{
-    feed_first(10);
-    expect(2500010, FATHOM_OK);
-    feed_first(3000000);
-    expect(5500001, FATHOM_ERR_STALE);
-    expect(5500002, FATHOM_PENDING);
 }
 
 TEST(the_deadline_holds_across_the_wrap_of_the_clock)
@@ -437,21 +341,6 @@ TEST(a_sum_that_is_right_across_a_loss_is_no_frame_for_the_next_one_to_follow)
     expect_counted(FATHOM_STREAM_UNSURE, 1);
 }
 
-TEST(a_loss_in_a_value_that_is_valid_twice_shows_no_wrong_value)
-{
-    for (uint8_t lost = 0; lost != 4; lost++) {
-        begin(4);
-        feed(mm_511, 4, true, 0);
-        expect(5000, FATHOM_OK);
-        feed_loss(10);
-        feed(mm_511 + lost, (uint8_t)(4 - lost), false, 10);
-        for (uint32_t i = 0; i != 20; i++) {
-            feed(mm_511, 4, false, 20 + i);
-            if (poll_at(20 + i) == FATHOM_OK) assert_memory_equal(fathom_stream_frame(&stream), mm_511, 4);
-        }
-    }
-}
-
 /* ---- what comes behind a frame decides whether it was one: FF, or a silence of gap_us ---- */
 
 /* 4321 mm is FF 10 E1 F0 (FF + 10 + E1 = 1F0). Behind a silence its third byte is lost, and the next frame follows
@@ -474,46 +363,6 @@ TEST(a_byte_too_many_does_not_make_the_last_value_a_sum)
     expect_counted(FATHOM_STREAM_UNSURE, 1);
 }
 
-/* Every byte behind a frame that is first after a silence: FF alone begins another one. */
-TEST(of_all_bytes_behind_a_frame_only_FF_lets_it_pass)
-{
-    for (unsigned next = 0; next != 256; next++) {
-        const uint8_t byte = (uint8_t)next;
-        begin(4);
-        feed_first(10);
-        feed(&byte, 1, false, 20);
-        expect(20, next == 0xFF ? FATHOM_OK : FATHOM_PENDING);
-        expect(20 + GAP_US, FATHOM_PENDING);
-        expect_counted(FATHOM_STREAM_UNSURE, next != 0xFF);
-        if (next == 0xFF) assert_int_equal(stream.time_us, 10);
-    }
-}
-
-TEST(a_silence_lets_it_pass_when_it_has_lasted_from_its_last_byte_on)
-{
-    begin_with(4, 0, 25000);
-    feed(mm_1953, 3, true, 10);
-    feed(mm_1953 + 3, 1, false, 1000);
-    expect(25999, FATHOM_PENDING);
-    expect_frame(26000, mm_1953, 1000);
-}
-
-/* Pauses of 20 ms with gap_us 25 ms: after the first, no gap is seen and no poll comes late enough. */
-TEST(where_gap_us_is_longer_than_the_pauses_the_next_frame_decides)
-{
-    unsigned readings = 0;
-    begin_with(4, 0, 25000);
-    for (uint32_t now_us = 0; now_us != 200000; now_us += 20000) {
-        feed(mm_1953, 4, now_us == 0, now_us);
-        const bool is_ready = poll_at(now_us) == FATHOM_OK;
-        readings += is_ready;
-        if (is_ready) assert_int_equal(stream.time_us, now_us - 20000);
-        expect(now_us + 19999, FATHOM_PENDING);
-    }
-    assert_int_equal(readings, 9); /* of ten, all but the last */
-    expect(180000 + 25000, FATHOM_OK);
-}
-
 TEST(the_silence_is_measured_across_the_wrap_of_the_clock)
 {
     const uint32_t came_us = UINT32_MAX - 1999; /* 2000 us before the wrap */
@@ -534,16 +383,6 @@ TEST(who_sleeps_as_long_as_it_may_has_the_frame_when_it_wakes)
     assert_int_equal(wake_us, 1000 + GAP_US);
     expect(wake_us, FATHOM_OK);
     expect_due(wake_us, 2000000);
-}
-
-/* A deadline that passes while the silence lasts is an error, and the frame is no older for that. */
-TEST(a_frame_that_waits_when_the_deadline_passes_is_still_shown)
-{
-    feed_first(1998000);
-    expect_due(1998000, 2000);
-    expect(2000000, FATHOM_ERR_CHECKSUM);
-    expect(2002999, FATHOM_PENDING);
-    expect_frame(2003000, mm_1953, 1998000);
 }
 
 /* The frame ended before the deadline and was not polled since: it is returned before the error. */

@@ -45,14 +45,6 @@ TEST(bytes_after_a_gap_end_the_frame_before_it)
     assert_1953(9000, 1500);
 }
 
-/* 65537 us have 1 us in their lower 16 bits. */
-TEST(a_silence_of_more_than_65536_us_ends_a_frame)
-{
-    feed(mm_1953, 4, true, 1500);
-    assert_int_equal(fathom_stream_due_us(&stream, 1500 + 65537), 0);
-    assert_1953(1500 + 65537, 1500);
-}
-
 /*
  * "it follows right upon another valid frame and no other alignment of the bytes of both was valid"; AMBIGUOUS: "in a
  * place where another alignment was right too"; UNSURE: "with neither a silence nor an unambiguous frame before them".
