@@ -188,14 +188,19 @@ short port_events(const port_t *port) { return port->driver->events(port); }
 
 /* ---- waiting ---- */
 
+static bool has_ended(const port_t *port)
+{
+    const host_t *const host = port->host;
+    return host->has_ended(host->ctx) || (port->watches_output && host->is_output_gone(host->ctx));
+}
+
 fathom_status_t port_wait(port_t *port, uint32_t max_us)
 {
     const host_t *const host = port->host;
     if (port_is_lost(port)) return FATHOM_ERR_PORT;
-    if (host->has_ended(host->ctx) || (port->watches_output && host->is_output_gone(host->ctx)))
-        return FATHOM_ERR_CANCELLED;
-    host->wait(host->ctx, port_fd(port), port_events(port), max_us, port->watches_output);
-    return FATHOM_OK;
+    if (!has_ended(port))
+        host->wait(host->ctx, port_fd(port), port_events(port), max_us, port->watches_output);
+    return has_ended(port) ? FATHOM_ERR_CANCELLED : FATHOM_OK; /* so that no request starts after a signal */
 }
 
 fathom_status_t port_finish(port_t *port, fathom_transaction_t *transaction)
