@@ -70,23 +70,19 @@ static const char of_hps167s[] = MIDDLE
     "address = 7                              # Modbus address (#8)\n"
     "baud = 19200                             # of the line (#9)\n"
     "\n# How it is set.\n"
-    "warm-up = 5                              # s, how long it is silent after power-on (#7)\n"
-    "measure-after-power-on = on              # whether it measures all the time, so that a response is "
-    "ready "
-    "sooner (#10)\n"
+    "warm-up = 5                              # s, time without a response after power-on (#7)\n"
+    "measure-after-power-on = on              # whether it measures continuously, so that a response is "
+    "ready sooner (#10)\n"
     "termination = off                        # the termination resistor, on in every unit from the factory "
     "(#11)\n"
-    "reconnect-time = 180                     # ms, without data from its sensor for so long it sends "
-    "abnormal "
-    "packets (#15)\n"
+    "reconnect-time = 180                     # ms, after this time without data from its sensor it "
+    "sends abnormal packets (#15)\n"
     "\n# What the unit does not tell. It is restored only if you fill it in, and then written each time.\n"
-    "load-settings = not readable             # takes the settings that the user has saved (#13); for the "
-    "factory's: fathom reset\n"
-    "distance-offset = not readable           # mm, added to what it measures; whether to an offset from "
-    "before "
-    "too is not in the datasheet (#12)\n"
-    "filter-sensitivity = not readable        # larger is steadier and slower; 0 from the factory, within "
-    "-100 to "
+    "load-settings = not readable             # loads the settings that the user has saved (#13); for "
+    "those of the factory: fathom reset\n"
+    "distance-offset = not readable           # mm, added to what it measures; whether to an earlier "
+    "offset too is not in the datasheet (#12)\n"
+    "filter-sensitivity = not readable        # larger is steadier and slower; 0 from the factory, -100 to "
     "100 is recommended (#14)\n";
 
 TEST(the_file_of_an_hps167s_has_what_it_is_where_it_is_and_how_it_is_set)
@@ -120,17 +116,18 @@ TEST(what_a_variant_of_the_a16_does_not_have_is_not_there)
     char text[DESK_TEXT];
     bench_a16((fathom_sim_a16_config_t){.address = 200, .real_time = true, .faults = &no_switch});
     says(0, "", "save a16:200");
-    is_text(desk_read("unit", text), BEGIN("address 200, 9600 8N1"),
-            MIDDLE
-            "sensor = a16                             # one ultrasonic probe\n" PLACE
-            "address = 200                            # Modbus address (register 0x0200)\n"
-            "\n# How it is set.\n"
-            "switch-polarity = not there              # switch variant: the level when something is nearer "
-            "than the threshold (0x0205); no response; not every variant has it\n"
-            "switch-threshold = not there             # mm, switch variant: the distance at which it "
-            "switches (0x0206); no response; not every variant has it\n"
-            "automatic-value = real-time              # RS232 variant: the distance that automatic output "
-            "sends (0x0207)\n");
+    is_text(
+        desk_read("unit", text), BEGIN("address 200, 9600 8N1"),
+        MIDDLE
+        "sensor = a16                             # one ultrasonic probe\n" PLACE
+        "address = 200                            # Modbus address (register 0x0200)\n"
+        "\n# How it is set.\n"
+        "switch-polarity = not there              # switch variant: the level when something is nearer "
+        "than the threshold (0x0205); no response; not every variant has it\n"
+        "switch-threshold = not there             # mm, switch variant: the distance at which it "
+        "switches (0x0206); no response; not every variant has it\n"
+        "automatic-value = real-time              # RS232 variant: the distance that the automatic output "
+        "sends (0x0207)\n");
     says(0, "nothing differs", "restore a16:200");
     change("switch-threshold = not there", "switch-threshold = 1500");
     says(1, "switch-threshold         not there      -> 1500 mm  this unit does not have it",
@@ -147,7 +144,7 @@ TEST(the_file_of_an_a05_has_its_address)
     is_text(desk_read("unit", text), BEGIN("address 9, 9600 8N1"),
             MIDDLE
             "sensor = a05                             # four ultrasonic probes\n" PLACE
-            "address = 9                              # Modbus address (register 0x0200), of 55 AA too\n");
+            "address = 9                              # Modbus address (register 0x0200), also of 55 AA\n");
     says(0, "whether it is the same unit is not known", "restore a05:9");
 }
 

@@ -107,7 +107,7 @@ TEST(only_the_sensor_that_was_named_and_could_be_there_is_guessed)
 {
     far_answers("01 03 02 00 05 78 47");
     const tool_run_t *run = tool_run(&far_end.tool, "request 1 3 0x0200 --sensor a05 --port line");
-    assert_non_null(strstr(run->out, "a05      0x0200 slave address: address 5\n"));
+    assert_non_null(strstr(run->out, "a05      0x0200 address 5\n"));
     assert_null(strstr(run->out, "a16"));
     run = tool_run(&far_end.tool, "request 1 6 0x0200 5 --sensor a05 --port line");
     assert_non_null(strstr(run->err, "if it is a05: set 0x0200"));

@@ -36,8 +36,8 @@ static void offer_words(const offer_t *to, const char *words)
 
 static void print_models(FILE *to, bool only_asked, bool only_resettable)
 {
-    for (size_t i = 0; i != MODELS; i++) {
-        const model_t *const model = models[i];
+    for (size_t i = 0; i != model_count; i++) {
+        const model_t *const model = &models[i];
         if (only_resettable && model->reset.restore == NULL) continue;
         (void)fprintf(to, "%s\t%s\n", model->name, model->what);
         for (size_t m = 0; m != MODEL_MODES && model->modes[m].name != NULL && !only_resettable; m++)
@@ -79,9 +79,9 @@ void operands_file(FILE *to, char **words, int count)
 static const setting_t *settings_of(const char *sensor)
 {
     const size_t length = strcspn(sensor, ":@");
-    for (size_t i = 0; i != MODELS; i++)
-        if (strlen(models[i]->name) == length && strncmp(models[i]->name, sensor, length) == 0)
-            return models[i]->settings;
+    for (size_t i = 0; i != model_count; i++)
+        if (strlen(models[i].name) == length && strncmp(models[i].name, sensor, length) == 0)
+            return models[i].settings;
     return NULL;
 }
 
@@ -111,7 +111,7 @@ void operands_setting_value(FILE *to, char **words, int count)
             (void)fprintf(to, "%s\n", *word);
 }
 
-const char *model_name(size_t n) { return n < MODELS ? models[n]->name : NULL; }
+const char *model_name(size_t n) { return n < model_count ? models[n].name : NULL; }
 
 /* Prints what operands() prints, as far as it begins like the word. */
 static void offer_operands(const offer_t *to, const command_t *command, char **words, int count)

@@ -109,8 +109,8 @@ static uint16_t suits(const model_mode_t *mode)
 static void fitting_modes(uint16_t fits, char *list, size_t capacity)
 {
     list[0] = '\0';
-    for (size_t i = 0; i != MODELS; i++) {
-        const model_t *const model = models[i];
+    for (size_t i = 0; i != model_count; i++) {
+        const model_t *const model = &models[i];
         char modes[64] = "";
         char text[96];
         for (size_t m = 0; m != MODEL_MODES && model->modes[m].name != NULL; m++)

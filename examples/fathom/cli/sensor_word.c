@@ -54,10 +54,10 @@ const model_t *model_word(const char *name, const origin_t *origin)
 {
     char known[80] = "";
     nearest_t nearest = {.word = name};
-    for (size_t i = 0; i != MODELS; i++) {
-        if (strcmp(name, models[i]->name) == 0) return models[i];
-        nearest_try(&nearest, models[i]->name);
-        list_add(known, sizeof known, models[i]->name);
+    for (size_t i = 0; i != model_count; i++) {
+        if (strcmp(name, models[i].name) == 0) return &models[i];
+        nearest_try(&nearest, models[i].name);
+        list_add(known, sizeof known, models[i].name);
     }
     (void)reject_unknown(origin, "sensor", "", &nearest, known);
     return NULL;

@@ -26,7 +26,7 @@ static bool has_name(void) { return session.site.sensor_count > 1 || session.sta
 
 static bool can_be_printed(const setting_t *setting)
 {
-    return setting->get != NULL && strcmp(setting->mode, session.station->mode->name) == 0;
+    return setting->get != NULL && model_mode_of(session.station->model, setting) == session.station->mode;
 }
 
 /* `address` is the value of a sensor that can report it, and else the address that the requests have. */
@@ -82,19 +82,18 @@ typedef struct {
     size_t count;
     bool is_known;    /* The device has sent a response to at least one request. */
     unsigned printed; /* Number of values that were read. */
-    /* The shared command that failed last and its error. Its other values are not requested again: one failure can take
-     * several seconds. */
-    uint8_t failed_command;
+    /* The read that failed last and its error. Its other values are not requested again: one failure can take several
+     * seconds. */
+    uint16_t failed_read;
     fathom_status_t failure;
 } progress_t;
 
 static fathom_status_t get_one(const setting_t *setting, progress_t *progress, char text[SETTING_TEXT])
 {
-    if (setting->shared_command != 0 && setting->shared_command == progress->failed_command)
-        return progress->failure;
+    if (setting->read_at != 0 && setting->read_at == progress->failed_read) return progress->failure;
     const fathom_status_t status = session_get(&session, setting, text);
     if (status != FATHOM_OK) {
-        progress->failed_command = setting->shared_command;
+        progress->failed_read = setting->read_at;
         progress->failure = status;
     }
     return status;
@@ -238,7 +237,8 @@ static int run_get(const host_t *host, int argc, char **argv)
     if (setting == NULL) return STATUS_USAGE;
     if (setting->get == NULL)
         return usage_error("get", "%s is write-only: the device does not tell it", setting->name);
-    if (!session_set_mode(&session, "get", values, setting->mode)) return STATUS_USAGE;
+    if (!session_set_mode(&session, "get", values, model_mode_of(session.station->model, setting)))
+        return STATUS_USAGE;
     return tell_on_port(host, setting, 1);
 }
 

@@ -211,7 +211,8 @@ static int run(const host_t *host, int argc, char **argv)
     const char *const path = values[FILE_NAME];
     if (path == NULL) return usage_error(command, "--file is missing, as fathom save has written it");
     if (values[SESSION_FORMAT] != NULL) return usage_error(command, "it has one format; leave --format out");
-    if (!session_set_mode(&session, command, values, "modbus") || !session_can_set(&session, command))
+    if (!session_set_mode(&session, command, values, model_mode_of(session.station->model, NULL)) ||
+        !session_can_set(&session, command))
         return STATUS_USAGE;
     status = backup_parse(path, session.station->model, &file);
     if (status == STATUS_OK && values[AS_NEW] != NULL) status = check_address(path, &file);

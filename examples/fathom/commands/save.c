@@ -74,7 +74,8 @@ static int run(const host_t *host, int argc, char **argv)
     int status = STATUS_OK;
     if (!session_options_of_one(&session, &save_command, argc, argv, table, values, &status)) return status;
     if (values[SESSION_FORMAT] != NULL) return usage_error(command, "it has one format; leave --format out");
-    if (!session_set_mode(&session, command, values, "modbus")) return STATUS_USAGE;
+    if (!session_set_mode(&session, command, values, model_mode_of(session.station->model, NULL)))
+        return STATUS_USAGE;
     if (values[FILE_NAME] != NULL && !new_file_is_free(values[FILE_NAME])) return STATUS_FAILED;
     if (!session_open(&session, host)) return STATUS_FAILED;
     status = save(host, values[FILE_NAME]);

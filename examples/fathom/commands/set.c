@@ -23,7 +23,7 @@ static const struct option table[OPTIONS + 1] = {
 static fathom_status_t call_all(reader_t *reader, void *ctx)
 {
     const change_t *const change = ctx;
-    return change->setting->set_all(reader, change->value);
+    return change->setting->set_all(reader, change->setting, change->value);
 }
 
 static int set(change_t *change)
@@ -154,7 +154,8 @@ static int run(const host_t *host, int argc, char **argv)
         return usage_error(command, "%s is told by the device and cannot be set", setting->name);
     change.setting = setting;
     if (!take_value(&change, words[1], values[LOST] != NULL) ||
-        !session_set_mode(&session, command, values, setting->mode) || !take_kind(&change, values))
+        !session_set_mode(&session, command, values, model_mode_of(session.station->model, setting)) ||
+        !take_kind(&change, values))
         return STATUS_USAGE;
     if (!session_can_set(&session, command)) return STATUS_USAGE;
     if (!session_open(&session, host)) return STATUS_FAILED;

@@ -35,25 +35,24 @@ static void print_mode(FILE *to, const model_mode_t *mode)
 static void print_sensors(FILE *to)
 {
     (void)fputs("A sensor is written [NAME=]SENSOR[:ADDRESS][:MODE][@PORT[,KEY=VALUE...]].\n\n", to);
-    for (size_t i = 0; i != MODELS; i++) {
+    for (size_t i = 0; i != model_count; i++) {
         char line[LINE_TEXT];
-        (void)fprintf(to, "%s, %s, %s, addresses 1 to %u\n", models[i]->name, models[i]->what,
-                      line_text(&models[i]->line, line), models[i]->max_address);
-        for (size_t m = 0; m != MODEL_MODES && models[i]->modes[m].name != NULL; m++)
-            print_mode(to, &models[i]->modes[m]);
+        (void)fprintf(to, "%s, %s, %s, addresses 1 to %u\n", models[i].name, models[i].what,
+                      line_text(&models[i].line, line), models[i].max_address);
+        for (size_t m = 0; m != MODEL_MODES && models[i].modes[m].name != NULL; m++)
+            print_mode(to, &models[i].modes[m]);
     }
-    (void)fputs(
-        "\nWithout :MODE, a sensor is read in its first mode. If it has an address or\n"
-        "shares its port, it is read in the first mode that sends requests.\n\n"
-        "Without :ADDRESS, the address is 1, the factory setting. An a16 or a05 can also\n"
-        "have address 0.\n\n"
-        "NAME stands in the output. Without it, the name is SENSOR:ADDRESS.\n\n"
-        "Sensors that receive requests can share a line, also with different line\n"
-        "settings. If a sensor does not respond three times in succession, it is read\n"
-        "less often, so that it does not delay the others.\n\n"
-        "The first Modbus request stops the automatic output of an A16 or A05. An A05\n"
-        "resumes it only after a power cycle.\n",
-        to);
+    (void)fputs("\nWithout :MODE, a sensor is read in its first mode. If it has an address or\n"
+                "shares its port, it is read in the first mode that sends requests.\n\n"
+                "Without :ADDRESS, the address is 1, the factory setting. An a16 or a05 can also\n"
+                "have address 0.\n\n"
+                "NAME stands in the output. Without it, the name is SENSOR:ADDRESS.\n\n"
+                "Sensors that receive requests can share a line, also with different line\n"
+                "settings. If a sensor does not respond three times in succession, it is read\n"
+                "less often, so that it does not delay the others.\n\n"
+                "The first Modbus request stops the automatic output of an A16 or A05. An A05\n"
+                "resumes it only after a power cycle.\n",
+                to);
 }
 
 static void print_ports(FILE *to)
@@ -191,9 +190,9 @@ static void print_settings(FILE *to)
     (void)fputs("'fathom get SENSOR SETTING' reads and 'fathom set SENSOR SETTING VALUE' changes\n"
                 "these settings. 'fathom get SENSOR --port PORT' lists their values.\n",
                 to);
-    for (size_t i = 0; i != MODELS; i++) {
-        (void)fprintf(to, "\n%s:\n", models[i]->name);
-        settings_print(to, models[i]->settings);
+    for (size_t i = 0; i != model_count; i++) {
+        (void)fprintf(to, "\n%s:\n", models[i].name);
+        settings_print(to, models[i].settings);
     }
 }
 
@@ -219,23 +218,22 @@ static void print_sim(FILE *to)
 
 static void print_trouble(FILE *to)
 {
-    (void)fputs(
-        "Nothing responds? Work through these in this order:\n\n"
-        "  1. fathom scan --port PORT\n"
-        "     It listens first, then sends requests with factory settings to addresses 1 to 32.\n"
-        "  2. Is the port right? Without other adapters, 'ls /dev/ttyUSB*' names it.\n"
-        "     If the port cannot be opened: add yourself to the group dialout, and end other\n"
-        "     programs that use it.\n"
-        "  3. Is the sensor powered? Measure the supply at the sensor.\n"
-        "  4. Swap A and B (RS485), or TX and RX (UART, RS232). Connect the grounds.\n"
-        "  5. Settings that were changed: fathom scan --port PORT --baud all --parity all\n"
-        "     --address 1-254\n"
-        "  6. Damaged frames: shorten the line, terminate both of its ends, and try a lower rate.\n"
-        "     'fathom read ... --stats' counts what fails, and names the likely cause.\n"
-        "  7. Two sensors with the same address respond at once. Connect one alone, and give it\n"
-        "     another address: fathom set hps167s --port PORT address 7\n"
-        "  8. Bytes that you do not understand: fathom decode HEX...\n",
-        to);
+    (void)fputs("Nothing responds? Work through these in this order:\n\n"
+                "  1. fathom scan --port PORT\n"
+                "     It listens first, then sends requests with factory settings to addresses 1 to 32.\n"
+                "  2. Is the port right? Without other adapters, 'ls /dev/ttyUSB*' names it.\n"
+                "     If the port cannot be opened: add yourself to the group dialout, and end other\n"
+                "     programs that use it.\n"
+                "  3. Is the sensor powered? Measure the supply at the sensor.\n"
+                "  4. Swap A and B (RS485), or TX and RX (UART, RS232). Connect the grounds.\n"
+                "  5. Settings that were changed: fathom scan --port PORT --baud all --parity all\n"
+                "     --address 1-254\n"
+                "  6. Damaged frames: shorten the line, terminate both of its ends, and try a lower rate.\n"
+                "     'fathom read ... --stats' counts what fails, and names the likely cause.\n"
+                "  7. Two sensors with the same address respond at once. Connect one alone, and give it\n"
+                "     another address: fathom set hps167s --port PORT address 7\n"
+                "  8. Bytes that you do not understand: fathom decode HEX...\n",
+                to);
 }
 
 static void print_config(FILE *to)

@@ -14,7 +14,7 @@ size_t backup_count(const model_t *model)
 
 bool backup_has(const setting_t *setting)
 {
-    return setting->kind != SETTING_PRESENT && strcmp(setting->mode, "modbus") == 0;
+    return setting->kind != SETTING_PRESENT && setting->mode == NULL;
 }
 
 const char *backup_word(held_t held)

@@ -8,11 +8,7 @@
 enum {
     READS = 3,
     /* Fewer bytes are no response: an open line may produce them. The shortest frame has 5. */
-    LEAST_BYTES = 3,
-    /* Within this time the response of a second sensor arrives. An HPS-167S needs 20 ms, behind an adapter that delays
-     * bytes by 16 ms. An A16 or A05 that is measuring needs longer (A16 3: 110 ms, A05 2(3): 210 ms). */
-    SECOND_RESPONSE_US = 250000,
-    SECOND_RESPONSE_HPS167S_US = 60000
+    LEAST_BYTES = 3
 };
 
 static evidence_t evidence_of(const session_t *session)
@@ -71,8 +67,7 @@ static present_t find(session_t *session, unsigned times, presence_t *presence)
 
 static present_t ask(session_t *session, unsigned times, presence_t *presence)
 {
-    const uint32_t listen_us =
-        session->station->model->is_dyp ? SECOND_RESPONSE_US : SECOND_RESPONSE_HPS167S_US;
+    const uint32_t listen_us = session->station->model->second_response_us;
     const present_t found = find(session, times, presence);
     if (found != PRESENT_ONE) return found;
     for (unsigned i = 0; i != READS; i++) {

@@ -99,16 +99,15 @@ bool session_options_of_several(session_t *session, const command_t *command, in
 
 const port_options_t *session_port(const session_t *session) { return session->station->port; }
 
-bool session_set_mode(session_t *session, const char *command, const char *const *values, const char *mode)
+bool session_set_mode(session_t *session, const char *command, const char *const *values,
+                      const model_mode_t *mode)
 {
-    if (strcmp(session->station->mode->name, mode) == 0) return true;
-    if (values[SESSION_MODE] != NULL) {
-        (void)usage_error(command, "this takes --mode %s", mode);
+    if (values[SESSION_MODE] != NULL && session->station->mode != mode) {
+        (void)usage_error(command, "this takes --mode %s", mode->name);
         return false;
     }
-    const origin_t origin = {.command = command};
-    session->station->mode = mode_word(session->station->model, mode, &origin);
-    return session->station->mode != NULL;
+    session->station->mode = mode;
+    return true;
 }
 
 bool session_can_set(const session_t *session, const char *command)
@@ -198,13 +197,13 @@ typedef struct {
 static fathom_status_t call_get(reader_t *reader, void *ctx)
 {
     const what_t *const what = ctx;
-    return what->setting->get(reader, what->text);
+    return what->setting->get(reader, what->setting, what->text);
 }
 
 static fathom_status_t call_set(reader_t *reader, void *ctx)
 {
     const what_t *const what = ctx;
-    return what->setting->set(reader, what->value);
+    return what->setting->set(reader, what->setting, what->value);
 }
 
 /*

@@ -48,7 +48,8 @@ bool session_options_of_several(session_t *session, const command_t *command, in
 const port_options_t *session_port(const session_t *session);
 
 /* The same sensor in another of its modes; after a usage error false: the user has asked for another one. */
-bool session_set_mode(session_t *session, const char *command, const char *const *values, const char *mode);
+bool session_set_mode(session_t *session, const char *command, const char *const *values,
+                      const model_mode_t *mode);
 
 /* Can anything be set at its address? False after a usage error. */
 bool session_can_set(const session_t *session, const char *command);

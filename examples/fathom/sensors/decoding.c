@@ -77,3 +77,63 @@ decode_field_t *decode_string(decode_meaning_t *meaning, const char *name, const
     va_end(arguments);
     return field;
 }
+
+void decode_remark(decode_field_t *field, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    (void)vsnprintf(field->note, sizeof field->note, format, arguments);
+    va_end(arguments);
+}
+
+/* ---- settings ---- */
+
+static void remark_range(decode_field_t *field, const setting_t *setting, int64_t value)
+{
+    const int32_t least = setting->has_zero ? 0 : setting->least;
+    if (setting->words != NULL)
+        decode_remark(field, "not one of its values");
+    else if (value < least || value > setting->most)
+        decode_remark(field, "not from %" PRId32 " to %" PRId32, least, setting->most);
+    else
+        decode_remark(field, "no multiple of %" PRId32, setting->step);
+}
+
+/* Returns true if its values are numbers, also if only some are allowed. */
+static bool is_number(const setting_t *setting)
+{
+    if (setting->words != NULL) return setting->words[0][0] >= '0' && setting->words[0][0] <= '9';
+    return setting->print == NULL || setting->unit != NULL;
+}
+
+void decode_setting(decode_meaning_t *meaning, const setting_t *setting, int64_t value)
+{
+    const char *const note = setting->note != NULL ? setting->note(value) : NULL;
+    const int32_t word = setting->words != NULL ? setting_word(setting, value) : -1;
+    decode_field_t *field = NULL;
+    if (setting->words == NULL)
+        field = decode_number(meaning, setting->name, value, setting->unit != NULL ? setting->unit : "");
+    else if (word < 0)
+        field = decode_string(meaning, setting->name, "0x%04X", (unsigned)value);
+    else
+        field = decode_string(meaning, setting->name, "%s", setting->words[word]);
+    field->is_number = is_number(setting) && (setting->words == NULL || word >= 0);
+    if (note != NULL)
+        decode_remark(field, "%s", note);
+    else if (!setting_can_be(setting, value))
+        remark_range(field, setting, value);
+}
+
+void decode_response(decode_meaning_t *meaning, const setting_t *setting, const uint16_t *registers)
+{
+    const int64_t value = setting_decode(setting, registers);
+    if (setting->print == NULL) {
+        decode_setting(meaning, setting, value);
+        return;
+    }
+    char text[SETTING_TEXT] = "";
+    setting->print(text, registers);
+    decode_field_t *const field = decode_string(meaning, setting->name, "%s", text);
+    if (setting->unit != NULL) field->unit = setting->unit;
+    field->is_number = is_number(setting);
+}

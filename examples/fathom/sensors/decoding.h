@@ -6,6 +6,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "sensors/setting.h"
+
 /* A frame from the wire, and what it says, before that is written as text or JSON. */
 
 /* What may be in the input; sets of them. */
@@ -37,12 +39,19 @@ enum {
     DECODE_AT_VALUE = 4
 };
 
-enum { DECODE_TEXT = 160, DECODE_VALUE = 64, DECODE_FIELDS = 10, DECODE_MEANINGS = 12, DECODE_NOTES = 6 };
+enum {
+    DECODE_TEXT = 160,
+    DECODE_VALUE = 64,
+    DECODE_REMARK = 96,
+    DECODE_FIELDS = 10,
+    DECODE_MEANINGS = 12,
+    DECODE_NOTES = 6
+};
 
 typedef struct {
     const char *name;
-    const char *unit; /* "": none */
-    const char *note; /* NULL: none */
+    const char *unit;         /* "": none */
+    char note[DECODE_REMARK]; /* "": none */
     bool is_number;
     char value[DECODE_VALUE];
 } decode_field_t;
@@ -87,5 +96,12 @@ decode_field_t *decode_number(decode_meaning_t *meaning, const char *name, int64
 decode_field_t *decode_decimal(decode_meaning_t *meaning, const char *name, int64_t value, uint8_t places,
                                const char *unit);
 decode_field_t *decode_string(decode_meaning_t *meaning, const char *name, const char *format, ...);
+
+/* Sets the note of a field. */
+void decode_remark(decode_field_t *field, const char *format, ...);
+
+/* A value of a setting as on the wire, with a note if the setting cannot have it; and the value of a response. */
+void decode_setting(decode_meaning_t *meaning, const setting_t *setting, int64_t value);
+void decode_response(decode_meaning_t *meaning, const setting_t *setting, const uint16_t *registers);
 
 #endif

@@ -7,7 +7,10 @@
 #include "output/json.h"
 #include "sensors/decoding.h"
 
-/* Indented lines; what has one field stands in one. */
+/* Prints the meaning and its first value, without a line feed. */
+void decoding_put_line(FILE *to, const decode_meaning_t *meaning);
+
+/* Prints indented lines; a meaning with one value is one line. */
 void decoding_put_text(FILE *to, const decode_meaning_t *meaning);
 
 /* Writes an element of the open array. */

@@ -53,6 +53,7 @@ struct reader {
     fathom_dyp_measurement_t *response; /* of A16 and A05; NULL: a response is one sample */
     const fathom_dyp_window_t *window;  /* the limits of a distance; NULL: the sensor has others */
     uint16_t *sequence;                 /* of the newest response; not NULL once the driver is initialised */
+    fathom_dyp_modbus_t *dyp;           /* of an A16 or A05 that receives requests; NULL: of another */
     fathom_modbus_unit_t *unit;         /* NULL: the driver sends no requests */
     uint16_t *frames;                   /* FATHOM_STREAM_COUNTERS of them; NULL: it receives no stream */
     const uint32_t *period_us;          /* at which the driver asks; NULL: it keeps no period */

@@ -4,9 +4,9 @@
 
 #include "sensors/driver.h"
 
-/* What the A16 and the A05 have in common: DYP makes both. */
+/* What the A16 and the A05 share: DYP makes both. */
 
-/* The line settings from the factory, which cannot be changed. */
+/* The factory line settings, which cannot be changed. */
 #define DYP_LINE                                                                                             \
     {                                                                                                        \
         9600, FATHOM_PARITY_NONE, 1                                                                          \
@@ -25,11 +25,14 @@ bool dyp_open_asked(reader_t *reader, fathom_dyp_modbus_t *base, fathom_sensor_t
 
 /* ---- settings ---- */
 
-#define DYP_KEPT_UNSAID "at once; whether it is kept over power-off is not in the datasheet"
+#define DYP_EFFECT "at once; whether it is kept over power-off is not in the datasheet"
 
-/* Into `text` if the status is OK, else nothing is done. */
-void dyp_put_number(char text[SETTING_TEXT], fathom_status_t status, uint32_t number);
-void dyp_put_distance(char text[SETTING_TEXT], fathom_status_t status, const fathom_sample_t *sample);
+/* Members get and set of a setting that is one register. The address 0 is a value of the address. */
+fathom_status_t dyp_get(reader_t *reader, const setting_t *setting, char text[SETTING_TEXT]);
+fathom_status_t dyp_set(reader_t *reader, const setting_t *setting, int32_t value);
+
+/* Prints a distance if the status is FATHOM_OK. */
+void dyp_print_distance(char text[SETTING_TEXT], fathom_status_t status, const fathom_sample_t *sample);
 
 /* ---- scan ---- */
 
@@ -38,14 +41,8 @@ void dyp_describe(const model_t *model, const scan_finding_t *finding, finding_f
 
 /* ---- decoding ---- */
 
-/* Has the frame the values of registers in it, not where they are? */
-bool dyp_is_read_response(const decode_frame_t *frame);
-
-/* Is it a distance that a sensor of that range sends, or one of its family's words for no target? */
-bool dyp_is_likely(uint16_t value, uint16_t far_mm);
-
-/* A distance, and the address, as fields. */
-void dyp_decode_distance(decode_meaning_t *meaning, const char *name, uint16_t value);
-void dyp_decode_address(decode_meaning_t *meaning, uint16_t value);
+/* Members decode and decode_sum of a model: its registers are the rows of its settings. */
+void dyp_decode(decode_frame_t *frame, const model_t *model, const uint8_t *request);
+void dyp_decode_sum(decode_frame_t *frame, const model_t *model);
 
 #endif

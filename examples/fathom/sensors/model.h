@@ -44,84 +44,87 @@ static inline bool mode_is_automatic(const model_mode_t *mode)
     return mode->protocol == NULL && !mode->is_triggered && !mode->is_contact;
 }
 
-enum { MODEL_MODES = 5 };
+enum { MODEL_MODES = 5, MODEL_PROBE_REGISTERS = 2 };
 
-/* All that the tool knows of a sensor model. What is NULL or 0 it has not. */
+/* All that the tool knows of a sensor model. A member that is NULL or 0 does not apply. */
 typedef struct model model_t;
 struct model {
-    const char *name;
+    const char *name; /* NULL ends the table */
     const char *what;
     fathom_model_t id;
 
-    /* ---- its line and how it is read; the first mode is the default, the line is the factory's ---- */
+    /* ---- its line, and how it is read ---- */
 
-    fathom_line_settings_t line;
-    const uint32_t *rates;           /* to which it can be set, ended by 0 */
+    fathom_line_settings_t line;     /* with factory settings */
+    const uint32_t *rates;           /* baud rates that can be set, ended by 0 */
     const char *other_settings;      /* the same as options to try */
-    model_mode_t modes[MODEL_MODES]; /* rows without a name end it */
+    model_mode_t modes[MODEL_MODES]; /* the first one is the default; a row without a name ends them */
     uint8_t max_address;
-    /* An A16 or A05: address 0 is one too, 0xFF is all units, and values can be given a meaning. */
-    bool is_dyp;
-    bool has_optics; /* magnitude, ambient light and precision, and it can report a fault */
-    uint8_t probes;
-    uint16_t max_mm;       /* beyond this a value is no distance */
+    bool has_address_zero; /* 0 is an address as well, and all units obey 255 */
+    bool has_optics;       /* a measurement has magnitude, ambient light and precision */
     bool may_send_unasked; /* measurements between the responses */
-
-    const char *automatic_again; /* what makes it send by itself again after a request, besides power-off */
+    uint8_t probes;
+    uint16_t max_mm;             /* a greater value is no distance */
+    uint32_t second_response_us; /* a second unit at the same address responds within this time */
+    const char *automatic_again; /* what restarts the automatic output, besides a power cycle */
 
     /* ---- its settings ---- */
 
     const setting_t *settings;
-    /* Its factory settings: of its interface, and of the sensor behind it. To be called until they are not
-     * FATHOM_PENDING. is_sent: has a request left that may have reset it? */
+    const char *offset; /* name of the setting that corrects its distances */
     struct {
+        /* Restore the factory settings of the interface, and of the sensor behind it. Call until they are not
+         * FATHOM_PENDING. is_sent: a request that may have reset it has left. */
         fathom_status_t (*restore)(reader_t *reader);
         fathom_status_t (*load)(reader_t *reader);
         bool (*is_sent)(const reader_t *reader);
     } reset;
-
-    /* ---- as it is simulated ---- */
-
-    void (*simulate)(device_t *device, const device_settings_t *settings, uint8_t simulated_as);
-    uint32_t traits;  /* bits 1 << DEVICE_...: those that it can have */
-    uint16_t near_mm; /* between these the target moves if nothing else is asked for */
-    uint16_t far_mm;
-
-    /* ---- how a scan knows it; two models may have the first read in common ---- */
-
-    struct {
-        uint16_t first; /* the read by which it is looked for */
-        uint8_t count;
-        uint8_t frame_length; /* of what it sends by itself */
-        uint16_t own;         /* a register that only it has, of those with the same first read, ... */
-        uint16_t slow_own; /* ... and one to ask for within INQUIRY_SLOW_US if none of them responses that */
-        /* Instead of `own`: decides by the response to the first read, and what it asks besides. */
-        bool (*is_it)(inquiry_t *inquiry);
-    } scan;
-    /* Fills in what is known. *facts is empty before. */
-    void (*describe)(const model_t *model, const scan_finding_t *finding, finding_facts_t *facts);
-
-    /* ---- what its frames say ---- */
-
-    uint8_t protocols; /* DECODE_... */
-    /* A Modbus frame. A response to a read may have no request (NULL); the bytes of a request are those of the
-     * frame. */
-    void (*decode)(decode_frame_t *frame, const uint8_t *request);
-    void (*decode_sum)(decode_frame_t *frame); /* of another of its protocols */
-    const char *(*exception_name)(uint8_t code);
-    const char *exception_source; /* section of its datasheet */
 
     /* ---- what a Modbus request does to it ---- */
 
     const char *request_ends; /* what its first request ends, and how to start that again; NULL: nothing */
     /* Returns what a read (function 3 or 4) changes, NULL: nothing. */
     const char *(*read_changes)(const uint8_t *request);
+
+    /* ---- its simulation ---- */
+
+    void (*simulate)(device_t *device, const device_settings_t *settings, uint8_t simulated_as);
+    uint32_t traits;  /* bits 1 << DEVICE_...: those that it can have */
+    uint16_t near_mm; /* the target moves between these */
+    uint16_t far_mm;
+
+    /* ---- how a scan identifies it; two models may share the first read ---- */
+
+    struct {
+        uint16_t first; /* the first read */
+        uint8_t count;
+        uint8_t frame_length;    /* of its automatic output */
+        uint16_t own;            /* a register that no other model with the same first read has ... */
+        uint16_t slow_own;       /* ... and one for INQUIRY_SLOW_US, if none of them responds to that */
+        uint32_t timeout_us;     /* of the first read; 0: the default of a scan */
+        const model_mode_t *any; /* the mode in which one unit responds whatever its address is */
+        /* Instead of `own`: identifies it by the response to the first read, and by further reads. */
+        bool (*is_it)(inquiry_t *inquiry);
+    } scan;
+    /* Fills in what is known. *facts is empty before. */
+    void (*describe)(const model_t *model, const scan_finding_t *finding, finding_facts_t *facts);
+
+    /* ---- its frames ---- */
+
+    uint8_t protocols; /* DECODE_... */
+    /* Decodes a Modbus frame. request: the request, which is the frame itself or the one before it; NULL: not known. */
+    void (*decode)(decode_frame_t *frame, const model_t *model, const uint8_t *request);
+    /* Decodes a frame of another of its protocols. */
+    void (*decode_sum)(decode_frame_t *frame, const model_t *model);
+    uint16_t probe_registers[MODEL_PROBE_REGISTERS]; /* first register of all distances, and the same again */
+    const char *register_source;                     /* sections of its datasheet */
+    const char *stream_source;
+    const char *exception_source;
+    const char *(*exception_name)(uint8_t code);
 };
 
-/* Can it have this address? */
+/* Returns true if a unit can have this address, or this baud rate. */
 bool model_has_address(const model_t *model, uint8_t address);
-
-/* Can it have this rate? */
 bool model_has_rate(const model_t *model, uint32_t baud);
 
 #endif

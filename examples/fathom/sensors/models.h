@@ -6,18 +6,29 @@
 
 #include "sensors/model.h"
 
-/* The models, a row each. Where several fit, a later one is tried before an earlier one. A new one is its folder, its
- * row, and its place in the two unions: reader_t.driver and device_t.simulator. */
-enum { MODELS = 3 };
-extern const model_t *const models[MODELS];
+/* The models, a row each. If several can be a device, a later one is tried first. A model with a driver of its own also
+ * needs a place in the unions of driver.h and device.h. */
+extern const model_t models[];
+extern const size_t model_count;
+enum { MAX_MODELS = 16 };
 
 enum { FACTORY_ADDRESS = 1 };
 
-/* The one with this id, which is one of the table. */
+/* Returns the model with this id. */
 const model_t *model_of(uint8_t id);
 
-/* 0 where that is an address, as over Modbus of an A16 and an A05; else 1. */
+/* Returns the least address: 0 or 1. */
 uint8_t model_least_address(const model_t *model, const model_mode_t *mode);
+
+/* Returns the mode in which a setting can be read and set; NULL: the mode that uses Modbus. */
+const model_mode_t *model_mode_of(const model_t *model, const setting_t *setting);
+
+/* Returns true if no model loses settings by this read. At address 0, which is a broadcast to some models, the register
+ * must belong to a model that can have that address. */
+bool models_allow_read(uint8_t address, uint16_t first, uint16_t count);
+
+/* Returns the first model that has one of these protocols (DECODE_...). */
+const model_t *model_with(uint8_t protocols);
 
 /* The table, for help texts. */
 void models_print(FILE *to);

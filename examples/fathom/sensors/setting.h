@@ -9,51 +9,79 @@
 #include "sensors/reader.h"
 
 /*
- * What a device tells and what can be set in it: the rows that `fathom info`, `get` and `set` work from. A new setting
- * is a row in the table of its model, which a row without a name ends.
+ * The values of a sensor: `fathom info`, `get`, `set`, `save`, `restore` and `decode` work from these rows. A new value
+ * is a row in the table of its sensor, which a row without a name ends.
  */
 enum { SETTING_TEXT = 64 };
 
-/* What a row is of: what `fathom save` keeps of a unit, and `fathom restore` writes. */
+/* What `fathom save` keeps and `fathom restore` writes. */
 typedef enum {
-    SETTING_KEPT = 0, /* what can be set and holds over power-off */
-    SETTING_VERSION,  /* which make of unit it is; cannot be set */
-    SETTING_IDENTITY, /* which unit it is, of all of its model; cannot be set */
-    SETTING_PRESENT   /* of the moment: measured, a command, or what another row tells in another way */
+    SETTING_KEPT = 0, /* it can be set, and is kept over power-off */
+    SETTING_VERSION,  /* of the make of the unit; it cannot be set */
+    SETTING_IDENTITY, /* of this unit alone; it cannot be set */
+    SETTING_PRESENT   /* a measurement, a command, or another form of another row */
 } setting_kind_t;
 
-typedef struct {
+typedef struct setting setting_t;
+struct setting {
     const char *name;
     const char *what;
-    const char *mode;         /* in which it can be asked: "modbus", "dyp" */
-    const char *unit;         /* of the value; NULL: it has none */
-    const char *effect;       /* of a change: when it holds and how long; NULL: it cannot be changed */
-    const char *const *words; /* the values by name, 0 the first, ended by NULL; or NULL: numbers, ... */
+
+    /* ---- in the frames of the sensor; `decode` and the functions get and set use it ---- */
+
+    uint16_t read_at;  /* register whose response has the value, perhaps with those of other rows; 0: none */
+    uint16_t write_at; /* register that sets it; 0: none */
+    uint8_t byte;      /* position in the response */
+    uint8_t size;      /* bytes; 0: a register of two bytes */
+    uint16_t first_word; /* on the wire: the value of words[0] ... */
+    uint16_t word_step;  /* ... and the distance to that of words[1]; 0: 1 */
+    /* Prints the value of a response, instead of a number or a word. */
+    void (*print)(char text[SETTING_TEXT], const uint16_t *registers);
+    const char *(*note)(int64_t value); /* why this value is odd, besides its range; NULL: it is not */
+
+    /* ---- its values ---- */
+
+    const char *unit;         /* NULL: none */
+    const char *const *words; /* names of the values from 0 on, ended by NULL. NULL: numbers, ... */
     int32_t least;            /* ... from here */
     int32_t most;             /* to here, */
     int32_t step;             /* a multiple of this */
     setting_kind_t kind;
-    /* Number of the command whose response has the values of several rows. 0: the response has only this value, or the
-     * rows fail for different reasons. */
-    uint8_t shared_command;
-    bool has_zero;       /* 0 is a value too, at which it may not be found again */
-    bool moves;          /* from then on the device is elsewhere: its address, ... */
-    bool is_baud;        /* ... or its line settings */
-    bool is_never_blind; /* it has to be read before it is written, or afterwards */
-    bool is_of_variant;  /* not every variant of the device has it */
-    const char *risk;    /* what writing it may do to a unit whose value is not known; NULL: nothing else */
-    /* Where it cannot be read: what shows that it holds; NULL: its acknowledgement alone. */
-    const char *confirmed;
-    const char *unconfirmed; /* the same for what does not */
-    /* Called until they are not FATHOM_PENDING. get leaves the value in `text`; NULL: it cannot be read. set takes a
-     * number or the number of a word. */
-    fathom_status_t (*get)(reader_t *reader, char text[SETTING_TEXT]);
-    fathom_status_t (*set)(reader_t *reader, int32_t value);
-    /* Of all units on a line; NULL: there is none. */
-    fathom_status_t (*set_all)(reader_t *reader, int32_t value);
-    /* After a set: does it hold from the next power-on only? NULL: it holds now, or as `effect` says. */
+    bool has_zero;           /* 0 is a value as well, at which the unit may not be found again */
+    bool moves;              /* a change moves the unit to another address ... */
+    bool is_baud;            /* ... or to another baud rate */
+    bool is_never_blind;     /* it must be read before or after it is written */
+    bool is_of_variant;      /* not every variant of the sensor has it */
+    const char *mode;        /* name of the mode that it needs; NULL: the mode that uses Modbus */
+    const char *effect;      /* of a change: when it takes effect, and how long; NULL: it cannot be set */
+    const char *risk;        /* of writing it to a unit whose value is not known; NULL: none */
+    const char *confirmed;   /* if it cannot be read: what shows its effect; NULL: the acknowledgement */
+    const char *unconfirmed; /* the same if nothing does */
+
+    /* ---- to call until it is not FATHOM_PENDING ---- */
+
+    /* NULL: it cannot be read. */
+    fathom_status_t (*get)(reader_t *reader, const setting_t *setting, char text[SETTING_TEXT]);
+    /* Of a word: its number. NULL: it cannot be set. */
+    fathom_status_t (*set)(reader_t *reader, const setting_t *setting, int32_t value);
+    /* Sets it in all units on the line. NULL: it cannot. */
+    fathom_status_t (*set_all)(reader_t *reader, const setting_t *setting, int32_t value);
+
+    /* After set: it takes effect at the next power-on only. NULL: it does not, or as `effect` says. */
     bool (*is_later)(const reader_t *reader);
-    void (*remark)(FILE *to, const char *text); /* what to know of this value; NULL: nothing */
-} setting_t;
+    void (*remark)(FILE *to, const char *text); /* prints what to know of this value; NULL: nothing */
+};
+
+/* Returns the value in the registers of a response. */
+int64_t setting_decode(const setting_t *setting, const uint16_t *registers);
+
+/* Returns the number of the word with this value on the wire; -1: no word has it. */
+int32_t setting_word(const setting_t *setting, int64_t value);
+
+/* Returns true if the value is one of the words, or in the range. */
+bool setting_can_be(const setting_t *setting, int64_t value);
+
+/* Prints the value of a response as `get` does. Returns FATHOM_ERR_MALFORMED if no word has it. */
+fathom_status_t setting_print(const setting_t *setting, const uint16_t *registers, char text[SETTING_TEXT]);
 
 #endif

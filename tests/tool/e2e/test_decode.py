@@ -12,33 +12,35 @@ from e2e import ASK_A16, adu, registers
 
 WHOLE = '01 03 02 02 F2 38 A1'
 READ, WRITE, WRITE_MANY = 'read holding registers', 'write single register', 'write multiple registers'
-FIRST, SECOND = 'a16 0x0100 processed distance', 'a16 0x0101 real-time distance'
+FIRST, SECOND = 'a16 0x0100 distance', 'a16 0x0101 real-time-distance'
 FOUR = {'probe_1_mm': 1000, 'probe_2_mm': 2000, 'probe_3_mm': 1953, 'probe_4_mm': 3562}
-ADDRESSES = ['a16 set 0x0200 slave address', 'a05 set 0x0200 slave address']
+ADDRESSES = ['a16 set 0x0200 address', 'a05 set 0x0200 address']
 DETAILS, MEASURE, RESET = ('hps167s #3 sensor details', 'hps167s #5 single measurement',
                            'hps167s #6 factory reset of the interface')
 
 # Every frame that the datasheets print (misprints corrected), in their order, so that a response follows its
 # request: bytes, protocol, direction, what each sensor takes it for, fields of the last of these.
 FRAMES = [
-    ('FF 07 A1 A7', 'stream', 'response', 'a16 automatic or controlled output', {'distance_mm': 1953}),
+    ('FF 07 A1 A7', 'stream', 'response', 'a16 measurement', {'distance_mm': 1953}),
     ('01 03 01 00 00 01 85 F6', READ, 'request', FIRST, {}),
     ('01 03 02 02 F2 38 A1', READ, 'response', FIRST, {'distance_mm': 754}),
     ('01 03 01 01 00 01 D4 36', READ, 'request', SECOND, {}),
-    ('01 03 02 02 EF F8 A8', READ, 'response', SECOND, {'distance_mm': 751}),
+    ('01 03 02 02 EF F8 A8', READ, 'response', SECOND, {'real_time_distance_mm': 751}),
     ('01 06 02 00 00 05 48 71', WRITE, 'both', ADDRESSES, {'address': 5}),
-    ('01 06 02 02 00 01 E8 72', WRITE, 'both', 'a16 set 0x0202 operating mode', {'mode': 'automatic'}),
-    ('01 06 02 07 00 01 F8 73', WRITE, 'both', 'a16 set 0x0207 data type of the automatic output',
-     {'output': 'real-time'}),
-    ('01 06 02 05 00 00 98 73', WRITE, 'both', 'a16 set 0x0205 switch output polarity',
-     {'polarity': 'negative'}),
-    ('01 06 02 06 07 D0 6B DF', WRITE, 'both', 'a16 set 0x0206 switch threshold', {'threshold_mm': 2000}),
-    ('FF 03 E8 07 D0 07 A1 0D EA 60', 'stream', 'response', 'a05 automatic output', FOUR),
+    ('01 06 02 02 00 01 E8 72', WRITE, 'both', 'a16 set 0x0202 operating-mode',
+     {'operating_mode': 'automatic'}),
+    ('01 06 02 07 00 01 F8 73', WRITE, 'both', 'a16 set 0x0207 automatic-value',
+     {'automatic_value': 'real-time'}),
+    ('01 06 02 05 00 00 98 73', WRITE, 'both', 'a16 set 0x0205 switch-polarity',
+     {'switch_polarity': 'negative'}),
+    ('01 06 02 06 07 D0 6B DF', WRITE, 'both', 'a16 set 0x0206 switch-threshold',
+     {'switch_threshold_mm': 2000}),
+    ('FF 03 E8 07 D0 07 A1 0D EA 60', 'stream', 'response', 'a05 measurement', FOUR),
     ('55 AA 01 01 01', 'dyp', 'request', 'a05 measure with all probes', {}),
-    ('55 AA 01 01 03 E8 07 D0 07 A1 0D EA 62', 'dyp', 'response', 'a05 all probes have measured', FOUR),
+    ('55 AA 01 01 03 E8 07 D0 07 A1 0D EA 62', 'dyp', 'response', 'a05 measurement', FOUR),
     ('55 AA 01 10 10', 'dyp', 'request', 'a05 measure with probe 1', {}),
-    ('55 AA 01 10 07 A1 B8', 'dyp', 'response', 'a05 one probe has measured', {'probe_1_mm': 1953}),
-    ('55 AA 05 03 07', 'dyp', 'both', 'a05 set the address', {'new_address': 5}),
+    ('55 AA 01 10 07 A1 B8', 'dyp', 'response', 'a05 measurement', {'probe_1_mm': 1953}),
+    ('55 AA 05 03 07', 'dyp', 'both', 'a05 set the address', {'address': 5}),
     ('01 03 01 06 00 01 65 F7', READ, 'request', 'a05 0x0106 distance of probe 1', {}),
     ('01 03 02 01 3C B9 C5', READ, 'response', 'a05 0x0106 distance of probe 1', {'probe_1_mm': 316}),
     ('01 03 01 07 00 01 34 37', READ, 'request', 'a05 0x0107 distance of probe 2', {}),
@@ -52,7 +54,7 @@ FRAMES = [
     ('01 03 00 03 00 0B F4 0D', READ, 'request', DETAILS, {}),
     ('01 03 16 B0 00 39 00 25 42 34 57 14 20 34 38 35 01 06 07 05 13 09 17 03 09 1A DC', READ, 'response',
      DETAILS,
-     {'ack': 'B0', 'uuid': '00390025423457142034383501060705', 'date': '2019-09-23', 'version': '3.9'}),
+     {'sensor_version': '3.9 of 2019-09-23', 'uuid': '00390025423457142034383501060705', 'ack': 'B0'}),
     ('01 03 00 04 00 01 C5 CB', READ, 'request', 'hps167s #4 AFE temperature', {}),
     ('01 03 00 08 00 04 C5 CB', READ, 'request', MEASURE, {}),
     ('01 03 08 08 23 DC B2 07 01 00 00 FD 41', READ, 'response', MEASURE,
@@ -60,9 +62,9 @@ FRAMES = [
     ('01 03 00 09 00 01 54 08', READ, 'request', RESET, {}),
     ('01 03 02 00 01 79 84', READ, 'response', RESET, {'result': 'success'}),
     ('01 06 00 0A 00 05 69 CB', WRITE, 'both', 'hps167s #7 warm-up time', {'warm_up_s': 5}),
-    ('01 06 00 11 00 01 18 0F', WRITE, 'both', 'hps167s #9 baud rate', {'baud_code': 1, 'baud_rate': 19200}),
+    ('01 06 00 11 00 01 18 0F', WRITE, 'both', 'hps167s #9 baud rate', {'baud': 19200}),
     ('01 06 00 12 00 00 29 CF', WRITE, 'both', 'hps167s #10 measurement after power-on',
-     {'continuous_measurement': 'off'}),
+     {'measure_after_power_on': 'off'}),
     ('01 06 00 13 00 FF 38 4F', WRITE, 'both', 'hps167s #11 termination resistor', {'termination': 'on'}),
     ('01 10 00 20 00 02 40 02', WRITE_MANY, 'response', 'hps167s #15 reconnect time', {}),
     ('01 83 02 C0 F1', 'refuses to ' + READ, 'response',
@@ -143,10 +145,10 @@ class Datasheets(Case):
             '000008  01 03 08 08 23 DC B2 07 01 00 00 FD 41',
             '        Modbus RTU, response, address 1, function 03 read holding registers',
             '        hps167s  #5 single measurement',
-            '            distance          2083 mm',
-            '            magnitude         723.1744',
-            '            ambient           1',
-            '            precision         0',
+            '            distance               2083 mm',
+            '            magnitude              723.1744',
+            '            ambient                1',
+            '            precision              0',
             '        CRC FD 41 right'])
 
 
@@ -266,17 +268,17 @@ class Meaning(Case):
         one_response_is_explained_by_each_request=[
             (answered(address, 1), {'fields': fields, 'directions': ['request', 'response']})
             for address, fields in (
-            (0x0100, {'distance_mm': 1}), (0x0205, {'polarity': 'positive'}), (0x0206, {'threshold_mm': 1}),
-            (0x0207, {'output': 'real-time'}), (0x0108, {'probe_3_mm': 1}), (0x0010, {'probe_1_mm': 1}),
+            (0x0100, {'distance_mm': 1}), (0x0205, {'switch_polarity': 'positive'}), (0x0206, {'switch_threshold_mm': 1}),
+            (0x0207, {'automatic_value': 'real-time'}), (0x0108, {'probe_3_mm': 1}), (0x0010, {'probe_1_mm': 1}),
             (0x0013, {'probe_4_mm': 1}), (0x0009, {'result': 'success'}), (0x0200, {'address': 1}),
-            (0x0004, {'temperature_degf': 1, 'temperature_degc': -17.2}))],  # (1 - 32) * 5 / 9 = -17.22
+            (0x0004, {'temperature_degc': -17.2, 'temperature_degf': 1}))],  # (1 - 32) * 5 / 9 = -17.22
         a_response_of_another_length_is_not_the_one=[([ASK_A16, registers(1, 700, 800)], {'note': UNKNOWN})],
         a_damaged_request_explains_nothing=[
             (['01 03 01 00 00 01 85 F7', registers(1, 754)], {'note': UNKNOWN, 'code': 1})],
         a_response_from_another_unit_is_not_the_one=[
             ([ASK_A16, registers(2, 700)], {'note': UNKNOWN}),
             ([ASK_A16, registers(2, 700), registers(1, 754)],
-             {'what': '0x0100 processed distance', 'note': ''})],
+             {'what': '0x0100 distance', 'note': ''})],
         a_request_is_answered_once=[([ASK_A16, registers(1, 700)], {'note': ''}),
                                     ([ASK_A16, registers(1, 700), registers(1, 701)], {'note': UNKNOWN})],
         broadcast_to_a16_is_answered_from_another_address=[
@@ -287,16 +289,15 @@ class Meaning(Case):
             (['01 06 02 00 00 05 48 71'] * 2, {'note': 'acknowledges the request before, or is its echo'})],
         # 20 09 27, 2 1 0
         **{'1_is_a_date_and_a_version': [(answered(1, 0x1409, 0x1B02, 0x0100),
-                                          {'fields': {'date': '2020-09-27', 'version': '2.1.0'}})],
+                                          {'fields': {'interface_version': '2.1.0 of 2020-09-27'}})],
            '2_is_the_configuration': [
                (answered(2, 0xFF00, 0x0500, 0x0000, 0xB403),
-                {'fields': {'termination': 'on', 'continuous_output': 'off', 'warm_up_s': 5,
-                            'reconnect_time_ms': 180,
-                            'baud_code': 3, 'baud_rate': 115200}, 'notes': {}}),
+                {'fields': {'termination': 'on', 'measure_after_power_on': 'off', 'warm_up_s': 5,
+                            'reconnect_time_ms': 180, 'baud_code': 3, 'baud': 115200}, 'notes': {}}),
                (answered(2, 0x0100, 0x0500, 0x0000, 0xB505),  # 01, 181 ms, code 5
-                {'notes': ['termination', 'reconnect_time_ms', 'baud_code']})],
+                {'notes': ['baud_code', 'termination', 'reconnect_time_ms']})],
            '4_is_fahrenheit_and_celsius': [
-               ([HPS, *answered(4, said)], {'fields': {'temperature_degf': degrees_f, 'temperature_degc': celsius}})
+               ([HPS, *answered(4, said)], {'fields': {'temperature_degc': celsius, 'temperature_degf': degrees_f}})
                for said, degrees_f, celsius in ((77, 77, 25.0), (14, 14, -10.0), (0x10000 - 40, -40, -40.0),
                                                 (100, 100, 37.8), (31, 31, -0.6), (32, 32, 0.0))],
            '5_tells_targets_from_what_is_none': [
@@ -316,13 +317,13 @@ class Meaning(Case):
         what_is_written=[
             ([HPS, writes(address, value)], {'fields': fields, 'notes': [*fields][:bad]})
             for address, value, fields, bad in (
-                (0x0A, 256, {'warm_up_s': 256}, 1), (0x10, 32, {'new_address': 32}, 0),
-                (0x10, 33, {'new_address': 33}, 1), (0x11, 4, {'baud_code': 4, 'baud_rate': 230400}, 0),
-                (0x11, 9, {'baud_code': 9, 'baud_rate': 19200}, 1),
-                (0x12, 0xFF, {'continuous_measurement': 'on'}, 0),
-                (0x13, 7, {'termination': '0x0007'}, 1), (0x14, 0xFFF1, {'offset_mm': -15}, 0),
-                (0x15, 0, {'settings': 'of the user'}, 0), (0x15, 0xFF, {'settings': 'of the factory'}, 0),
-                (0x15, 1, {'settings': '0x0001'}, 1), (0x16, 0xFF9C, {'filter_sensitivity': -100}, 0),
+                (0x0A, 256, {'warm_up_s': 256}, 1), (0x10, 32, {'address': 32}, 0),
+                (0x10, 33, {'address': 33}, 1), (0x11, 4, {'baud': 230400}, 0),
+                (0x11, 9, {'baud': '0x0009'}, 1),
+                (0x12, 0xFF, {'measure_after_power_on': 'on'}, 0),
+                (0x13, 7, {'termination': '0x0007'}, 1), (0x14, 0xFFF1, {'distance_offset_mm': -15}, 0),
+                (0x15, 0, {'load_settings': 'user'}, 0), (0x15, 0xFF, {'load_settings': '0x00FF'}, 1),
+                (0x15, 1, {'load_settings': '0x0001'}, 1), (0x16, 0xFF9C, {'filter_sensitivity': -100}, 0),
                 (0x16, 101, {'filter_sensitivity': 101}, 1))],
         what_resets_the_device_says_so=[([asks(1, 9)], {'note': 'hps167s: resets the device'}),
                                         ([writes(0x15, 0xFF)],
@@ -336,23 +337,23 @@ class Meaning(Case):
                 ([dyp(9, 0x0F + probe), dyp(9, 0x0F + probe, 3, 0xE8)],
                  {'fields': {f'probe_{probe}_mm': 1000}}))],
         what_the_55_aa_protocol_does_not_have_is_told=[
-            ([dyp(1, 0x14)], {'what': 'no command of it', 'command': 0x14}),
-            ([dyp(0xFF, 3)], {'notes': {'new_address': 'not from 1 to 254'}}),
+            ([dyp(1, 0x14)], {'what': 'unknown command', 'command': 0x14}),
+            ([dyp(0xFF, 3)], {'notes': {'address': 'not from 1 to 254'}}),
             ([dyp(0xFF, 1)], {'note': 'FF is the broadcast address'}),
             ([dyp(5, 3)], {'note': 'every a05 on the line obeys'})],
         distances_that_are_none_are_told=[
-            row for value, note in ((0, 'unknown: no target, or something at the probe; --means of fathom read says which'),
+            row for value, note in ((0, 'unknown: no target, or something at the probe; see --means of fathom read'),
                                      (0xFFFF, 'refused: no distance, and no value of the family'), (0xFFFD, 'no target'),
                                     (0xFFFE, 'no target: interference by another unit')) for row in (
                 ([e2e.frame(value)], {'notes': {'distance_mm': note}}),
                 ([dyp(1, 0x10, *divmod(value, 256))], {'notes': {'probe_1_mm': note}}))],
         reads_that_an_a05_does_not_have_are_told=[
             (['--sensor a05', asks(1, 0x0108, 3)],
-             {'what': '0x0108 is probe 3, and a read may not go past the last one'})],
+             {'what': '0x0108 is probe 3; a read must not go past the last probe'})],
         registers_of_an_a16_that_go_one_way_are_told=[
-            ([asks(1, 0x0202)], {'note': 'a16: 0x0202 can be written only'}),
-            ([writes(0x0100, 1)], {'what': '0x0100 processed distance, which can be read only'}),
-            ([writes(0x0205, 2)], {'notes': {'polarity': 'not 0 or 1'}}),
+            ([asks(1, 0x0202)], {'note': 'a16: 0x0202 is write-only'}),
+            ([writes(0x0100, 1)], {'what': '0x0100 distance, which is read-only'}),
+            ([writes(0x0205, 2)], {'notes': {'switch_polarity': 'not one of its values'}}),
             ([writes(0x0200, 255)], {'notes': {'address': 'not from 0 to 254'}}),
             ([asks(1, 0x0100, 2)], {'note': 'a16: a read of several registers is not in its datasheet'})],
         what_no_sensor_has_is_told=[([asks(1, 0x1234, 2)], {'what': 'none of these sensors knows this',

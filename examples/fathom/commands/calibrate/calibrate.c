@@ -59,8 +59,8 @@ static void measure(calibrate_plan_t *plan, const calibrate_batch_t *batch)
 
 static int calibrate(calibrate_plan_t *plan, const calibrate_batch_t *batch, bool is_dry)
 {
-    const setting_t *const setting =
-        setting_find(command, session.station->model->name, session_settings(&session), "distance-offset");
+    const setting_t *const setting = setting_find(command, session.station->model->name,
+                                                  session_settings(&session), session.station->model->offset);
     if (setting == NULL) return STATUS_USAGE;
     while (plan->next != CALIBRATE_END) {
         if (plan->next == CALIBRATE_MEASURE)
@@ -112,7 +112,7 @@ static int run(const host_t *host, int argc, char **argv)
     calibrate_plan_t plan;
     if (!session_options_of_one(&session, &calibrate_command, argc, argv, table, values, &status))
         return status;
-    if (session.station->model->id != FATHOM_HPS167S)
+    if (session.station->model->offset == NULL)
         return usage_error(command, "%s has no distance offset. Only hps167s has one",
                            session.station->model->name);
     if (values[KNOWN] == NULL)

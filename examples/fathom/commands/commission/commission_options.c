@@ -121,8 +121,8 @@ bool commission_options(commission_options_t *options, session_t *session, int a
         (void)usage_error(command, "one model at a time; '%s' is too much", words[0]);
         return false;
     }
-    if (!session_set_mode(session, command, values, "modbus") || !is_suitable(session) ||
-        !take_addresses(options, model, values[ADDRESSES]) ||
+    if (!session_set_mode(session, command, values, model_mode_of(session->station->model, NULL)) ||
+        !is_suitable(session) || !take_addresses(options, model, values[ADDRESSES]) ||
         !take_terminated(options, model, values[TERMINATED]) ||
         !option_number(command, "wait", values[WAIT], 1, MAX_WAIT_S, &wait_s))
         return false;

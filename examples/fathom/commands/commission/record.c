@@ -42,8 +42,8 @@ record_unit_t *record_of(record_t *record, const model_t *model, const char *num
 
 static const model_t *model_named(const char *name)
 {
-    for (size_t i = 0; i != MODELS; i++)
-        if (strcmp(models[i]->name, name) == 0) return models[i];
+    for (size_t i = 0; i != model_count; i++)
+        if (strcmp(models[i].name, name) == 0) return &models[i];
     return NULL;
 }
 

@@ -24,7 +24,7 @@ static const struct option table[OPTIONS + 1] = {
 
 typedef struct {
     uint8_t protocols;
-    uint8_t models; /* as in decode_context_t */
+    const model_t *only; /* as in decode_context_t */
     const decode_format_t *format;
 } settings_t;
 
@@ -66,7 +66,7 @@ static const choice_t protocols[] = {{"auto", DECODE_ALL},
                                      {"modbus", DECODE_MODBUS},
                                      {"dyp", DECODE_DYP},
                                      {"stream", DECODE_STREAM_ONE | DECODE_STREAM_FOUR}};
-enum { PROTOCOLS = sizeof protocols / sizeof protocols[0], ALL_MODELS = (1 << MODELS) - 1 };
+enum { PROTOCOLS = sizeof protocols / sizeof protocols[0] };
 
 /* text NULL: it was not given. */
 static bool take_protocol(settings_t *settings, const char *text)
@@ -91,8 +91,7 @@ static bool take_model(settings_t *settings, const char *text)
     const origin_t origin = {.command = command};
     const model_t *const named = model_word(text, &origin);
     if (named == NULL) return false;
-    for (size_t i = 0; i != MODELS; i++)
-        if (models[i] == named) settings->models = (uint8_t)(1u << i);
+    settings->only = named;
     settings->protocols &= named->protocols;
     return true;
 }
@@ -137,7 +136,7 @@ static void guess(const decode_input_t *input, const decode_piece_t *piece, uint
 static int explain(const settings_t *settings, const decode_input_t *input, decode_finder_t *finder)
 {
     static decode_frame_t frame;
-    decode_context_t context = {settings->models, false, {0}};
+    decode_context_t context = {settings->only, false, {0}};
     decode_piece_t piece;
     char why[WHY_TEXT];
     int status = STATUS_OK;
@@ -174,7 +173,7 @@ static int run(const host_t *host, int argc, char **argv)
 {
     const char *values[OPTIONS] = {NULL};
     bool is_json = false;
-    settings_t settings = {DECODE_ALL, ALL_MODELS, NULL};
+    settings_t settings = {DECODE_ALL, NULL, NULL};
     decode_input_t input;
     (void)host; /* it opens no port */
     const int rest = options_parse(command, argc, argv, table, values);

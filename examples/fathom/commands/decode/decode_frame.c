@@ -8,8 +8,8 @@ static void decode_sum(decode_frame_t *frame)
 {
     frame->checksum_length = 1;
     frame->checksum[0] = fathom_dyp_checksum(frame->bytes, (uint8_t)(frame->piece->length - 1));
-    for (size_t i = 0; i != MODELS; i++)
-        if ((models[i]->protocols & frame->piece->protocol) != 0) models[i]->decode_sum(frame);
+    for (size_t i = 0; i != model_count; i++)
+        if ((models[i].protocols & frame->piece->protocol) != 0) models[i].decode_sum(frame, &models[i]);
 }
 
 void decode_frame(decode_frame_t *frame, decode_context_t *context, const decode_input_t *input,
@@ -20,7 +20,7 @@ void decode_frame(decode_frame_t *frame, decode_context_t *context, const decode
     frame->unit = frame->code = -1;
     frame->code_is = "";
     frame->what[0] = '\0';
-    frame->is_sure = (context->models & (context->models - 1u)) == 0;
+    frame->is_sure = context->only != NULL;
     frame->meanings = frame->notes = 0;
     if (piece->protocol == DECODE_MODBUS)
         decode_modbus(frame, context);

@@ -7,7 +7,7 @@
 
 /* What is remembered from frame to frame: a read whose response is due. */
 typedef struct {
-    uint8_t models; /* that may be there: bits of their places in the table */
+    const model_t *only; /* the sensor; NULL: any of the models */
     bool is_asked;
     uint8_t head[6]; /* the last good Modbus request, as on the wire */
 } decode_context_t;

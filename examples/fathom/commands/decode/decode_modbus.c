@@ -29,11 +29,11 @@ static void decode_exception(decode_frame_t *frame, const decode_context_t *cont
 {
     const uint8_t code = frame->bytes[DECODE_AT_SIZE];
     decode_meaning_t *const meaning = decode_mean(frame, "", "", "the request is refused");
-    decode_number(meaning, "exception", code, "")->note = modbus_exception(code).name;
+    decode_remark(decode_number(meaning, "exception", code, ""), "%s", modbus_exception(code).name);
     bool has_none = false;
-    for (size_t i = 0; i != MODELS; i++) {
-        const model_t *const model = models[i];
-        if ((context->models >> i & 1) == 0) continue;
+    for (size_t i = 0; i != model_count; i++) {
+        const model_t *const model = &models[i];
+        if (context->only != NULL && context->only != model) continue;
         if (model->exception_name == NULL)
             has_none = true;
         else if (model->exception_name(code) != NULL)
@@ -86,11 +86,10 @@ static void decode_checksum(decode_frame_t *frame)
 
 static void decode_meanings(decode_frame_t *frame, const decode_context_t *context, const uint8_t *request)
 {
-    for (size_t i = 0; i != MODELS; i++) {
-        const model_t *const model = models[i];
-        const bool is_only = context->models == 1u << i;
-        const bool is_beyond = !model->is_dyp && frame->unit > model->max_address;
-        if ((context->models >> i & 1) != 0 && (is_only || !is_beyond)) model->decode(frame, request);
+    for (size_t i = 0; i != model_count; i++) {
+        const model_t *const model = &models[i];
+        const bool is_beyond = !model->has_address_zero && frame->unit > model->max_address;
+        if (context->only != NULL ? context->only == model : !is_beyond) model->decode(frame, model, request);
     }
     if (frame->meanings == 0) decode_plain(frame);
 }

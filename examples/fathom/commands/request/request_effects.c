@@ -3,12 +3,13 @@
 #include <string.h>
 
 #include "commands/request/request.h"
+#include "sensors/decoding_print.h"
 
 /* Returns true if the request can be for this model. An HPS-167S obeys unit 0, and cannot have address 255. */
 static bool can_be(const model_t *model, const request_t *request)
 {
     if (request->model != NULL) return model == request->model;
-    return model->is_dyp || request->frame[REQUEST_UNIT] <= model->max_address;
+    return model->has_address_zero || request->frame[REQUEST_UNIT] <= model->max_address;
 }
 
 void request_decode(decode_frame_t *frame, decode_piece_t *piece, const request_t *request,
@@ -27,8 +28,8 @@ void request_decode(decode_frame_t *frame, decode_piece_t *piece, const request_
     /* The datasheets know no other functions, whose frames may have any shape. */
     if (frame->code != REQUEST_READ && frame->code != REQUEST_WRITE && frame->code != REQUEST_WRITE_MANY)
         return;
-    for (size_t i = 0; i != MODELS; i++)
-        if (can_be(models[i], request)) models[i]->decode(frame, request->frame);
+    for (size_t i = 0; i != model_count; i++)
+        if (can_be(&models[i], request)) models[i].decode(frame, &models[i], request->frame);
 }
 
 /* Returns what the read changes, NULL: nothing. Another model than the named one may be at the address. */
@@ -37,8 +38,8 @@ static const char *changes(const request_t *request)
     const char *text = NULL;
     const uint8_t function = request->frame[REQUEST_FUNCTION];
     if (function != REQUEST_READ && function != REQUEST_READ_INPUT) return NULL;
-    for (size_t i = 0; i != MODELS && text == NULL; i++)
-        if (models[i]->read_changes != NULL) text = models[i]->read_changes(request->frame);
+    for (size_t i = 0; i != model_count && text == NULL; i++)
+        if (models[i].read_changes != NULL) text = models[i].read_changes(request->frame);
     return text;
 }
 
@@ -49,11 +50,8 @@ static void print_meanings(const request_t *request)
     request_decode(&frame, &piece, request, NULL, 0);
     for (uint8_t i = 0; i != frame.meanings && !request_is_read(request); i++) {
         const decode_meaning_t *const meaning = &frame.meaning[i];
-        const decode_field_t *const field = &meaning->fields[0];
-        (void)fprintf(stderr, "fathom: if it is %s: %s", meaning->sensor, meaning->what);
-        if (meaning->count != 0)
-            (void)fprintf(stderr, ": %s %s%s%s", field->name, field->value, field->unit[0] != '\0' ? " " : "",
-                          field->unit);
+        (void)fprintf(stderr, "fathom: if it is %s: ", meaning->sensor);
+        decoding_put_line(stderr, meaning);
         (void)fputs("\n", stderr);
     }
     for (uint8_t i = 0; i != frame.notes; i++) (void)fprintf(stderr, "fathom: %s\n", frame.note[i]);
@@ -95,9 +93,9 @@ bool request_effects(const request_t *request)
 {
     const uint8_t unit = request->frame[REQUEST_UNIT];
     const char *const changed = changes(request);
-    for (size_t i = 0; i != MODELS; i++)
-        if (models[i]->request_ends != NULL && can_be(models[i], request))
-            (void)fprintf(stderr, "fathom: the request ends %s\n", models[i]->request_ends);
+    for (size_t i = 0; i != model_count; i++)
+        if (models[i].request_ends != NULL && can_be(&models[i], request))
+            (void)fprintf(stderr, "fathom: the request ends %s\n", models[i].request_ends);
     if (changed != NULL) (void)fprintf(stderr, "fathom: %s\n", changed);
     if (!request_is_read(request)) print_write(request->frame[REQUEST_FUNCTION]);
     print_meanings(request);

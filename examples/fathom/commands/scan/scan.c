@@ -122,7 +122,7 @@ static int run(const host_t *host, int argc, char **argv)
     if (!host->begin(host->ctx)) return STATUS_FAILED;
     scan.port.watches_output = true;
     if (!port_open_now(&scan.port, host,
-                       &(port_settings_t){.path = scan.options.port, .line = scan_dyp_line})) {
+                       &(port_settings_t){.path = scan.options.port, .line = *scan_listen_line()})) {
         (void)fprintf(stderr, "fathom: %s\n", port_error(&scan.port));
         return STATUS_FAILED;
     }

@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "commands/scan/scan.h"
-#include "fathom/codec/hps167s_registers.h"
+#include "sensors/models.h"
 
 enum { SET_LINE_POLL_US = 1000 };
 
@@ -40,13 +40,11 @@ fathom_status_t scan_hear(scan_t *scan, const fathom_line_settings_t *line, uint
     return status;
 }
 
-/* An A16 or A05 can have address 0. To an HPS-167S that is a broadcast, but it has none of their registers. */
 static bool is_harmless(const scan_request_t *request)
 {
-    enum { FIRST_OF_DYP = 0x0100 };
-    const bool is_to_all =
-        request->address == FATHOM_LINE_ALL_UNITS && (request->is_dyp || request->first < FIRST_OF_DYP);
-    return request->first != FATHOM_HPS167S_RESET && request->count <= SCAN_REGISTERS && !is_to_all;
+    if (request->is_dyp) return request->address != FATHOM_LINE_ALL_UNITS;
+    return request->count <= SCAN_REGISTERS &&
+           models_allow_read(request->address, request->first, request->count);
 }
 
 void scan_ask(scan_t *scan, const scan_request_t *request, scan_response_t *response)

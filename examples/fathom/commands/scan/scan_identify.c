@@ -12,9 +12,10 @@ enum { DAMAGED_TRIES = 4, ROUNDS = 2 };
 /* Returns the model that is most likely at an address. Its first read finds the other models too. */
 static const model_t *likely(const fathom_line_settings_t *line, uint8_t address)
 {
-    for (size_t i = MODELS; i-- != 0;)
-        if (model_has_rate(models[i], line->baud) && model_has_address(models[i], address)) return models[i];
-    return models[0];
+    for (size_t i = model_count; i-- != 0;)
+        if (model_has_rate(&models[i], line->baud) && model_has_address(&models[i], address))
+            return &models[i];
+    return &models[0];
 }
 
 void scan_first_request(const fathom_line_settings_t *line, uint8_t address, scan_request_t *request)
@@ -72,8 +73,8 @@ static const model_t *tell_apart(inquiry_t *inquiry, uint16_t first)
     for (uint8_t round = 0; round != ROUNDS; round++) {
         const model_t *found = NULL;
         bool has_answered = false;
-        for (size_t i = MODELS; i-- != 0;) {
-            const model_t *const model = models[i];
+        for (size_t i = model_count; i-- != 0;) {
+            const model_t *const model = &models[i];
             if (model->scan.first != first || !ask_value(inquiry, model->scan.own, INQUIRY_MEASURE_US))
                 continue;
             found = has_answered ? NULL : model;
@@ -81,8 +82,8 @@ static const model_t *tell_apart(inquiry_t *inquiry, uint16_t first)
         }
         if (has_answered) return found;
     }
-    for (size_t i = MODELS; i-- != 0;) {
-        const model_t *const model = models[i];
+    for (size_t i = model_count; i-- != 0;) {
+        const model_t *const model = &models[i];
         if (model->scan.first == first && model->scan.slow_own != 0 &&
             ask_value(inquiry, model->scan.slow_own, INQUIRY_SLOW_US))
             return model;
@@ -97,7 +98,7 @@ static const model_t *find_model(identification_t *identification)
     const model_t *model = likely(request->line, request->address);
     if (model->scan.is_it != NULL) {
         if (model->scan.is_it(inquiry)) return model;
-        model = models[0];
+        model = &models[0];
         if (!ask(inquiry, model->scan.first, model->scan.count, INQUIRY_MEASURE_US, 1)) return NULL;
     }
     /* The models with a register of their own share a first read that returns the address. A device that returns another

@@ -17,8 +17,8 @@ static const model_t *find_sender(const evidence_t *evidence)
 {
     const bool is_a05 = evidence->streamed_a05 > evidence->streamed_a16;
     const uint8_t length = is_a05 ? FATHOM_DYP_A05_LENGTH : FATHOM_DYP_A16_LENGTH;
-    for (size_t i = 0; i != MODELS && evidence->streamed_a05 + evidence->streamed_a16 != 0; i++)
-        if (models[i]->scan.frame_length == length) return models[i];
+    for (size_t i = 0; i != model_count && evidence->streamed_a05 + evidence->streamed_a16 != 0; i++)
+        if (models[i].scan.frame_length == length) return &models[i];
     return NULL;
 }
 
@@ -40,32 +40,32 @@ static bool understand(scan_t *scan, const fathom_line_settings_t *line)
     /* Responses without a request: tables 12, #10 and #15 of the HPS-167S describe continuous output. */
     finding->kind = SCAN_SENDER;
     finding->address = evidence.foreign_address;
-    for (size_t i = 0; i != MODELS; i++)
-        if (models[i]->may_send_unasked && model_has_rate(models[i], line->baud))
-            return name_sensor(finding, models[i], SCAN_MODBUS);
+    for (size_t i = 0; i != model_count; i++)
+        if (models[i].may_send_unasked && model_has_rate(&models[i], line->baud))
+            return name_sensor(finding, &models[i], SCAN_MODBUS);
     return true;
 }
 
 /* Listens at each rate to which a sensor can be set. */
 static fathom_status_t try_rates(scan_t *scan)
 {
-    for (size_t i = 0; i != MODELS; i++) {
-        for (const uint32_t *rate = models[i]->rates; rate != NULL && *rate != 0; rate++) {
-            const fathom_line_settings_t line = {*rate, models[i]->line.parity, 1};
+    for (size_t i = 0; i != model_count; i++) {
+        for (const uint32_t *rate = models[i].rates; rate != NULL && *rate != 0; rate++) {
+            const fathom_line_settings_t line = {*rate, models[i].line.parity, 1};
             const fathom_status_t status = scan_hear(scan, &line, OTHER_RATE_US);
             if (status == FATHOM_ERR_UNSUPPORTED) continue;
             if (status != FATHOM_OK || understand(scan, &line)) return status;
         }
     }
     scan->sender.kind = SCAN_SENDER;
-    scan->sender.line = scan_dyp_line;
+    scan->sender.line = *scan_listen_line();
     return FATHOM_OK;
 }
 
 fathom_status_t scan_listen(scan_t *scan)
 {
-    const fathom_status_t status = scan_hear(scan, &scan_dyp_line, scan->options.plan.listen_us);
+    const fathom_status_t status = scan_hear(scan, scan_listen_line(), scan->options.plan.listen_us);
     scan->has_sender = scan->port.listener.bytes >= LEAST_BYTES;
-    if (status != FATHOM_OK || !scan->has_sender || understand(scan, &scan_dyp_line)) return status;
+    if (status != FATHOM_OK || !scan->has_sender || understand(scan, scan_listen_line())) return status;
     return try_rates(scan);
 }

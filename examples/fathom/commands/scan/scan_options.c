@@ -65,9 +65,9 @@ static void add_rate(uint32_t bauds[SCAN_RATES + 1], uint32_t baud)
 /* All that a sensor can have. */
 static void add_all_rates(uint32_t bauds[SCAN_RATES + 1])
 {
-    for (size_t i = 0; i != MODELS; i++) {
-        add_rate(bauds, models[i]->line.baud);
-        for (const uint32_t *rate = models[i]->rates; rate != NULL && *rate != 0; rate++)
+    for (size_t i = 0; i != model_count; i++) {
+        add_rate(bauds, models[i].line.baud);
+        for (const uint32_t *rate = models[i].rates; rate != NULL && *rate != 0; rate++)
             add_rate(bauds, *rate);
     }
 }
@@ -132,9 +132,9 @@ static bool take_settings(scan_options_t *options, const char *const *values)
     const char *const baud_list = values[BAUD];
     const char *const parity_list = values[PARITY];
     uint32_t stop_bits = 1;
-    uint32_t bauds[SCAN_RATES + 1] = {scan_dyp_line.baud, scan_hps167s_line.baud};
+    uint32_t bauds[SCAN_RATES + 1] = {0};
     unsigned parities = 0;
-    if (baud_list != NULL) memset(bauds, 0, sizeof bauds);
+    for (size_t i = 0; baud_list == NULL && i != model_count; i++) add_rate(bauds, models[i].line.baud);
     if (baud_list != NULL && !take_bauds(baud_list, bauds)) return false;
     if (parity_list != NULL && !take_parities(parity_list, &parities)) return false;
     if (!option_number(command, "stop-bits", values[STOP_BITS], 1, 2, &stop_bits)) return false;

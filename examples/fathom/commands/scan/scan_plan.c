@@ -3,31 +3,40 @@
 
 #include "fathom/engine/line.h"
 #include "ports/line_text.h"
-#include "sensors/dyp.h"
-#include "sensors/hps167s/hps167s.h"
-
-const fathom_line_settings_t scan_dyp_line = DYP_LINE;
-const fathom_line_settings_t scan_hps167s_line = HPS167S_LINE;
+#include "sensors/models.h"
 
 enum { REQUEST_BYTES = 8 };
 
 /* The system wakes a program late, and a USB adapter tells late that a request has left. */
 enum { LATENESS_US = 5000 };
 
-uint8_t scan_factory_parity(uint32_t baud)
+const fathom_line_settings_t *scan_listen_line(void)
 {
-    return baud == scan_dyp_line.baud ? scan_dyp_line.parity : scan_hps167s_line.parity;
+    return &model_with(DECODE_STREAM_ONE | DECODE_STREAM_FOUR)->line;
 }
 
-bool scan_is_dyp_line(const fathom_line_settings_t *line)
+static bool is_of(const model_t *model, const fathom_line_settings_t *line)
 {
-    return line->baud == scan_dyp_line.baud && line->parity == scan_dyp_line.parity;
+    return line->baud == model->line.baud && line->parity == model->line.parity;
 }
+
+uint8_t scan_factory_parity(uint32_t baud)
+{
+    size_t i = 0;
+    while (i != model_count - 1 && !model_has_rate(&models[i], baud)) i++;
+    return models[i].line.parity;
+}
+
+bool scan_has_dyp(const fathom_line_settings_t *line) { return is_of(model_with(DECODE_DYP), line); }
 
 uint32_t scan_timeout_us(const scan_plan_t *plan, const fathom_line_settings_t *line)
 {
+    uint32_t timeout_us = SCAN_TIMEOUT_US;
     if (plan->timeout_us != 0) return plan->timeout_us;
-    return scan_is_dyp_line(line) ? SCAN_DYP_TIMEOUT_US : SCAN_TIMEOUT_US;
+    for (size_t i = 0; i != model_count; i++)
+        if (is_of(&models[i], line) && models[i].scan.timeout_us > timeout_us)
+            timeout_us = models[i].scan.timeout_us;
+    return timeout_us;
 }
 
 uint16_t scan_silence_us(const scan_plan_t *plan)
@@ -59,7 +68,7 @@ uint32_t scan_probe_us(const scan_plan_t *plan, const fathom_line_settings_t *li
 
 uint32_t scan_any_us(const scan_plan_t *plan)
 {
-    return scan_timeout_us(plan, &scan_dyp_line) + 2 * SCAN_ANY_TIMEOUT_US + LATENESS_US;
+    return scan_timeout_us(plan, &model_with(DECODE_DYP)->line) + 2 * SCAN_ANY_TIMEOUT_US + LATENESS_US;
 }
 
 uint64_t scan_plan_us(const scan_plan_t *plan)
@@ -67,7 +76,7 @@ uint64_t scan_plan_us(const scan_plan_t *plan)
     uint64_t sum_us = plan->listen_us;
     for (uint8_t i = 0; i != plan->setting_count; i++) {
         sum_us += (uint64_t)scan_probe_us(plan, &plan->settings[i]) * scan_addresses(plan);
-        if (scan_is_dyp_line(&plan->settings[i])) sum_us += scan_any_us(plan);
+        if (scan_has_dyp(&plan->settings[i])) sum_us += scan_any_us(plan);
     }
     return sum_us;
 }

@@ -22,24 +22,22 @@ typedef struct {
     uint8_t repeats; /* how often a silent address is asked again */
 } scan_plan_t;
 
-/* The sensors' factory settings, as lines of a plan and to tell them from others. */
-extern const fathom_line_settings_t scan_dyp_line;     /* A16, A05: 9600 8N1 */
-extern const fathom_line_settings_t scan_hps167s_line; /* 19200 8E1 */
+/* Returns the factory settings of the sensors that send automatically. */
+const fathom_line_settings_t *scan_listen_line(void);
 
-/* The parity that a sensor with this rate has from the factory: none at 9600, even at the others, which an HPS-167S
- * keeps at all its rates (HPS-167S 2.2.2). */
+/* Returns the factory parity of a sensor that has this rate: none at 9600, even at the others, which an HPS-167S keeps at
+ * all its rates (HPS-167S 2.2.2). */
 uint8_t scan_factory_parity(uint32_t baud);
 
-bool scan_is_dyp_line(const fathom_line_settings_t *line);
+/* Returns true if these are the factory settings of a sensor with frames 55 AA. */
+bool scan_has_dyp(const fathom_line_settings_t *line);
 
 /*
- * How long an address may take for the first byte of its response.
- *
- * 100 ms: an HPS-167S needs 2.5 to 20 ms, a USB adapter may hold bytes back for 16. 150 ms where A16 and A05 are: no
- * figure is printed, and a module that has just begun a measurement of 110 ms (A16 1) may want to finish it. What
- * comes later than that is heard while the next address is asked, and its sender is asked again.
+ * Returns the time-out of an address: that of the plan, the longest of the models that have these factory settings
+ * (model_t.scan), or the default. An HPS-167S needs 2.5 to 20 ms, and a USB adapter may delay bytes by 16 ms. A later
+ * response is heard while the next address is asked, and its sender is asked again.
  */
-enum { SCAN_TIMEOUT_US = 100000, SCAN_DYP_TIMEOUT_US = 150000 };
+enum { SCAN_TIMEOUT_US = 100000 };
 uint32_t scan_timeout_us(const scan_plan_t *plan, const fathom_line_settings_t *line);
 
 /* The silence before a request, of the slowest line of the plan: who is slower than the host has to see it too. */

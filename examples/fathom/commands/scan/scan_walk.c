@@ -114,21 +114,14 @@ static fathom_status_t probe(scan_t *scan, const scan_request_t *request, scan_r
     return FATHOM_OK;
 }
 
-/* Returns the model that responds to frames 55 AA. */
-static const model_t *dyp_model(void)
-{
-    size_t i = 0;
-    while ((models[i]->protocols & DECODE_DYP) == 0) i++;
-    return models[i];
-}
-
 static fathom_status_t identify(scan_t *scan, const scan_request_t *request, const scan_response_t *response)
 {
     scan_finding_t finding;
     const fathom_status_t status = scan_identify(scan, request, response, &finding);
     if (status != FATHOM_OK) return status;
     scan->found_baud[request->address] = request->line->baud;
-    if (finding.kind == SCAN_SENSOR && model_of(finding.model) == dyp_model()) scan->has_dyp = true;
+    if (finding.kind == SCAN_SENSOR && model_of(finding.model) == model_with(DECODE_DYP))
+        scan->has_dyp = true;
     scan_report(scan, &finding);
     return FATHOM_OK;
 }
@@ -170,7 +163,8 @@ static void judge_damaged(scan_t *scan, const fathom_line_settings_t *line)
  * responses. */
 static fathom_status_t ask_any_dyp(scan_t *scan)
 {
-    const scan_request_t request = {.line = &scan_dyp_line,
+    const model_t *const model = model_with(DECODE_DYP);
+    const scan_request_t request = {.line = &model->line,
                                     .timeout_us = SCAN_ANY_TIMEOUT_US,
                                     .first = FATHOM_DYP_FIRST_REGISTER,
                                     .count = 1,
@@ -181,9 +175,9 @@ static fathom_status_t ask_any_dyp(scan_t *scan)
     if (scan_has_ended(response.status)) return response.status;
     if (scan_is_of_line(response.status)) scan->heard.not_asked++;
     if (response.status != FATHOM_OK) return FATHOM_OK;
-    const scan_finding_t finding = {.line = scan_dyp_line,
+    const scan_finding_t finding = {.line = model->line,
                                     .kind = SCAN_SENSOR,
-                                    .model = (uint8_t)dyp_model()->id,
+                                    .model = (uint8_t)model->id,
                                     .mode = SCAN_DYP,
                                     .address = response.address,
                                     .has_value = true,
@@ -219,7 +213,7 @@ static fathom_status_t walk_line(scan_t *scan, const fathom_line_settings_t *lin
     for (unsigned address = plan->first; address <= plan->last; address++)
         if (scan->states[address] == BUSY) scan->heard.not_asked++;
     judge_damaged(scan, line);
-    if (!scan_is_dyp_line(line)) return FATHOM_OK;
+    if (!scan_has_dyp(line)) return FATHOM_OK;
     if (!scan->has_dyp) status = ask_any_dyp(scan);
     scan->done_us += scan_any_us(plan);
     return status;

@@ -99,9 +99,9 @@ void sim_print_traits(FILE *to)
         (void)fprintf(to, "    %s%s%-*s  %-46s ", trait->name, trait->unit != NULL ? "=" : "",
                       rest > 0 ? rest - (trait->unit != NULL ? 1 : 0) : 0,
                       trait->unit != NULL ? trait->unit : "", trait->text);
-        for (size_t m = 0; m != MODELS; m++) {
-            if (!has(models[m], trait)) continue;
-            (void)fprintf(to, "%s%s", gap, models[m]->name);
+        for (size_t m = 0; m != model_count; m++) {
+            if (!has(&models[m], trait)) continue;
+            (void)fprintf(to, "%s%s", gap, models[m].name);
             gap = " ";
         }
         (void)fputs(")\n", to);

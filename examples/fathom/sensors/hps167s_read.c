@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "sensors/hps167s/hps167s.h"
+#include "sensors/hps167s.h"
 
 /* ---- limits ---- */
 
@@ -30,7 +30,7 @@ bool hps167s_read_modbus(reader_t *reader, channel_t *channel, const reader_sett
     reader->sequence = &driver->sequence;
     reader->values = driver->measurement;
     reader->value_count = FATHOM_HPS167S_MEASUREMENT_COUNT;
-    if (settings->temperature_us != 0) hps167s_begin_temperature(reader, settings);
+    if (settings->temperature_us != 0) hps167s_add_temperature(reader, settings);
     return true;
 }
 

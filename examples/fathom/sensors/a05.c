@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-#include "sensors/a05/a05.h"
+#include "sensors/a05.h"
 
 #include "sensors/dyp.h"
 
 /* ---- reading ---- */
 
-static bool read_auto(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
+bool a05_read_auto(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
 {
     fathom_a05_auto_t *const driver = &reader->driver.a05_auto;
     const fathom_a05_auto_config_t config = {
@@ -20,7 +20,7 @@ static bool read_auto(reader_t *reader, channel_t *channel, const reader_setting
     return !settings->has_value || a05_select(reader, channel, settings->value);
 }
 
-static bool read_modbus(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
+bool a05_read_modbus(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
 {
     fathom_a05_modbus_t *const driver = &reader->driver.a05_modbus;
     const fathom_a05_modbus_config_t config = {
@@ -33,7 +33,7 @@ static bool read_modbus(reader_t *reader, channel_t *channel, const reader_setti
            dyp_open_asked(reader, &driver->base, fathom_a05_modbus_sensor(driver));
 }
 
-static bool read_dyp(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
+bool a05_read_dyp(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
 {
     fathom_a05_dyp_t *const driver = &reader->driver.a05_dyp;
     const fathom_a05_dyp_config_t config = {
@@ -47,7 +47,7 @@ static bool read_dyp(reader_t *reader, channel_t *channel, const reader_settings
 
 /* The contact (A05 4) goes to where the input's resistor does not pull; it is the normally open one, unless the user says
  * that near is the other level. */
-static bool read_relay(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
+bool a05_read_relay(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
 {
     fathom_a05_relay_t *const driver = &reader->driver.a05_relay;
     const pin_options_t *const wanted = &channel->pins.wanted;
@@ -64,7 +64,7 @@ static bool read_relay(reader_t *reader, channel_t *channel, const reader_settin
 
 /* ---- simulation ---- */
 
-static void simulate(device_t *device, const device_settings_t *settings, uint8_t simulated_as)
+void a05_simulate(device_t *device, const device_settings_t *settings, uint8_t simulated_as)
 {
     const uint32_t *const traits = settings->traits;
     const fathom_sim_a05_config_t config = {.address = settings->address,
@@ -79,48 +79,3 @@ static void simulate(device_t *device, const device_settings_t *settings, uint8_
     fathom_sim_a05_init(&device->simulator.a05, &config);
     device->base = &device->simulator.a05.device;
 }
-
-/* ---- the model ---- */
-
-const model_t model_a05 = {
-    .name = "a05",
-    .what = "four ultrasonic probes",
-    .id = FATHOM_A05,
-    .line = DYP_LINE,
-    .modes = {{.name = "auto",
-               .takes = DYP_TAKES | READER_TAKES_PROBES | READER_TAKES_VALUE,
-               .read = read_auto,
-               .simulated_as = FATHOM_SIM_A05_AUTO},
-              {.name = "modbus",
-               .protocol = "Modbus",
-               .is_modbus = true,
-               .has_address = true,
-               .takes = DYP_TAKES | READER_TAKES_PROBES | READER_TAKES_REGISTERS,
-               .read = read_modbus,
-               .simulated_as = FATHOM_SIM_A05_MODBUS},
-              {.name = "dyp",
-               .protocol = "55 AA",
-               .has_address = true,
-               .can_move_others = true, /* one wrong bit makes a response a command that sets the address */
-               .takes = DYP_TAKES | READER_TAKES_PROBES,
-               .read = read_dyp,
-               .simulated_as = FATHOM_SIM_A05_DYP},
-              {.name = "relay", .is_contact = true, .pins = MODEL_PIN_IN, .read = read_relay}},
-    .settings = a05_settings,
-    .max_address = DYP_MAX_ADDRESS,
-    .is_dyp = true,
-    .probes = FATHOM_DYP_PROBES,
-    .max_mm = FATHOM_A05_MAX_MM,
-    .simulate = simulate,
-    .near_mm = 250,
-    .far_mm = 4500,
-    .traits = 1u << DEVICE_EXCEPTIONS | 1u << DEVICE_ANSWERS_BROADCAST | 1u << DEVICE_REAL_TIME |
-              1u << DEVICE_ANSWERS_FROM_NEW,
-    /* Probe 1. */
-    .scan = {.first = DYP_ADDRESS, .count = 1, .frame_length = FATHOM_DYP_A05_LENGTH, .own = 0x0106},
-    .describe = dyp_describe,
-    .protocols = DECODE_MODBUS | DECODE_DYP | DECODE_STREAM_FOUR,
-    .decode = a05_decode,
-    .decode_sum = a05_decode_sum,
-    .request_ends = "the automatic output of an A05 with UART, until power-off",
-};

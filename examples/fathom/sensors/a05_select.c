@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "sensors/a05/a05.h"
+#include "sensors/a05.h"
 
 /* Processed or real-time values, by RX in the first second after power-on (A05 1(1)). The port's TX is held at that
  * level, until what the sensor sends has been away and has come back. Nothing is told of what comes before. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "sensors/a16/a16.h"
+#include "sensors/a16.h"
 
 static fathom_status_t end_pwm(reader_t *reader) { return fathom_a16_pwm_deinit(&reader->driver.a16_pwm); }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
-#include "sensors/hps167s/hps167s.h"
+#include "sensors/hps167s.h"
 
 /* What a scan reads from an HPS-167S and reports: #1, #2 and #3. */
 

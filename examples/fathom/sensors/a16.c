@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "sensors/a16/a16.h"
+#include "sensors/a16.h"
 
 #include "sensors/dyp.h"
 
@@ -14,7 +14,7 @@ static fathom_status_t end_controlled(reader_t *reader)
 }
 
 /* A level at RX selects (A16 2(2)): that of the port's TX. */
-static bool read_auto(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
+bool a16_read_auto(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
 {
     fathom_a16_auto_t *const driver = &reader->driver.a16_auto;
     fathom_a16_auto_config_t config = {
@@ -34,7 +34,7 @@ static bool read_auto(reader_t *reader, channel_t *channel, const reader_setting
 }
 
 /* Triggered by a break of the port, whose TX is the module's RX. */
-static bool read_controlled(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
+bool a16_read_controlled(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
 {
     fathom_a16_controlled_t *const driver = &reader->driver.a16_controlled;
     const fathom_output_t trigger = fathom_output_line_break(&channel->line);
@@ -56,7 +56,7 @@ static bool read_controlled(reader_t *reader, channel_t *channel, const reader_s
     return true;
 }
 
-static bool read_modbus(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
+bool a16_read_modbus(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
 {
     fathom_a16_modbus_t *const driver = &reader->driver.a16_modbus;
     const fathom_a16_modbus_config_t config = {
@@ -70,7 +70,7 @@ static bool read_modbus(reader_t *reader, channel_t *channel, const reader_setti
 
 /* ---- simulation ---- */
 
-static void simulate(device_t *device, const device_settings_t *settings, uint8_t simulated_as)
+void a16_simulate(device_t *device, const device_settings_t *settings, uint8_t simulated_as)
 {
     const uint32_t *const traits = settings->traits;
     const fathom_sim_a16_config_t config = {.address = settings->address,
@@ -85,58 +85,3 @@ static void simulate(device_t *device, const device_settings_t *settings, uint8_
     fathom_sim_a16_init(&device->simulator.a16, &config);
     device->base = &device->simulator.a16.device;
 }
-
-/* ---- the model ---- */
-
-const model_t model_a16 = {
-    .name = "a16",
-    .what = "one ultrasonic probe",
-    .id = FATHOM_A16,
-    .line = DYP_LINE,
-    .modes = {{.name = "auto",
-               .takes = DYP_TAKES | READER_TAKES_VALUE,
-               .read = read_auto,
-               .simulated_as = FATHOM_SIM_A16_AUTO},
-              {.name = "modbus",
-               .protocol = "Modbus",
-               .is_modbus = true,
-               .has_address = true,
-               .takes = DYP_TAKES | READER_TAKES_VALUE,
-               .read = read_modbus,
-               .simulated_as = FATHOM_SIM_A16_MODBUS},
-              {.name = "controlled",
-               .is_triggered = true,
-               .takes = DYP_TAKES,
-               .read = read_controlled,
-               .simulated_as = FATHOM_SIM_A16_CONTROLLED},
-              {.name = "pwm",
-               .is_triggered = true,
-               .has_pulses = true,
-               .takes = READER_TAKES_WINDOW,
-               .pins = MODEL_PIN_TRIGGER | MODEL_PIN_ECHO,
-               .read = a16_read_pwm},
-              {.name = "switch", .is_contact = true, .pins = MODEL_PIN_IN, .read = a16_read_switch}},
-    .automatic_again = ", or when 1 is written to its register 0x0202",
-    .settings = a16_settings,
-    .max_address = DYP_MAX_ADDRESS,
-    .is_dyp = true,
-    .probes = 1,
-    .max_mm = FATHOM_A16_MAX_MM,
-    .simulate = simulate,
-    .near_mm = 500,
-    .far_mm = 5000,
-    .traits = 1u << DEVICE_EXCEPTIONS | 1u << DEVICE_ANSWERS_BROADCAST | 1u << DEVICE_REAL_TIME |
-              1u << DEVICE_ANSWERS_FROM_NEW,
-    /* The last measurement (0x0101), and where that is not there the processed distance (0x0100). */
-    .scan = {.first = DYP_ADDRESS,
-             .count = 1,
-             .frame_length = FATHOM_DYP_A16_LENGTH,
-             .own = 0x0101,
-             .slow_own = 0x0100},
-    .describe = dyp_describe,
-    .protocols = DECODE_MODBUS | DECODE_STREAM_ONE,
-    .decode = a16_decode,
-    .decode_sum = a16_decode_sum,
-    .request_ends =
-        "the automatic output of an A16 with RS232, until power-off or `fathom set a16 automatic-output on`",
-};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/sensor/hps167s_info.h"
-#include "sensors/hps167s/hps167s.h"
+#include "sensors/hps167s.h"
 
 /* The temperature (#4) between measurements (#5). The driver's pace holds for all requests, so the interval of the
  * measurements is kept here. A measurement's outcome that was not taken would give way to another request: so
@@ -102,7 +102,7 @@ static uint32_t due_us(void *ctx)
     return ask_us < measure_us ? ask_us : measure_us;
 }
 
-void hps167s_begin_temperature(reader_t *reader, const reader_settings_t *settings)
+void hps167s_add_temperature(reader_t *reader, const reader_settings_t *settings)
 {
     driver_temperature_t *const temperature = &reader->temperature;
     temperature->measuring = reader->sensor;
