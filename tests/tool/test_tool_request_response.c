@@ -115,7 +115,7 @@ TEST(only_the_sensor_that_was_named_and_could_be_there_is_guessed)
     run = tool_run(&far_end.tool, "request 255 6 0x0200 5 --port line");
     assert_non_null(strstr(run->err, "if it is a16: set 0x0200"));
     run = tool_run(&far_end.tool, "request 32 6 0x0016 5 --port line");
-    assert_non_null(strstr(run->err, "if it is hps167s: #14 filter sensitivity: filter sensitivity 5\n"));
+    assert_non_null(strstr(run->err, "if it is hps167s: #14 filter sensitivity: filter-sensitivity 5\n"));
     run = tool_run(&far_end.tool, "request 33 6 0x0016 5 --port line"); /* beyond its addresses */
     assert_null(strstr(run->err, "if it is"));
 }

@@ -57,6 +57,8 @@ const model_t models[] = {
         .probes = 1,
         .max_mm = FATHOM_A16_MAX_MM,
         .second_response_us = DYP_SECOND_RESPONSE_US,
+        .request_ends = "the automatic output of an A16 with RS232, until power-off or `fathom set a16 "
+                        "automatic-output on`",
         .automatic_again = ", or when 1 is written to its register 0x0202",
         .settings = a16_settings,
         .simulate = a16_simulate,
