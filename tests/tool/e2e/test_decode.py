@@ -196,7 +196,7 @@ class Input(Case):
     def test_wrong_usage_is_told(self):
         for words, line in (("there is no protocol 'rtu', only auto, modbus, dyp, stream",
                              '--protocol rtu 01'),
-                            ("there is no sensor 'a17', only a16, a05, hps167s", '--sensor a17 01'),
+                            ("unknown sensor 'a17'. Did you mean a16?", '--sensor a17 01'),
                             ("there is no format 'csv', only text, json", '--format csv 01'),
                             ('a16 does not speak dyp', '--sensor a16 --protocol dyp 01'),
                             ('--raw takes one file', '--raw 01 02')):
