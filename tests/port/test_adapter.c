@@ -388,7 +388,8 @@ TEST(a_tty_that_is_no_usb_adapter_is_found_by_its_path)
 TEST(an_adapter_about_which_nothing_is_known_is_found_by_its_path_and_that_is_reported)
 {
     run("touch %s/ttyUSB0", dev);
-    assert_null(adapter_advice(&adapter));
+    assert_null(adapter_find(&adapter, named("ttyUSB0")));
+    assert_null(adapter_advice(&adapter)); /* it was not open yet */
     open_adapter(named("ttyUSB0"));
     adapter_close(&adapter);
     assert_null(adapter_find(&adapter, named("ttyUSB0")));
@@ -396,13 +397,33 @@ TEST(an_adapter_about_which_nothing_is_known_is_found_by_its_path_and_that_is_re
     expect_advice("nothing is known about this adapter, so any adapter at this path will be read");
 }
 
-TEST(another_path_begins_without_knowledge)
+TEST(a_link_by_id_finds_neither_of_two_twins)
 {
-    open_first("0001");
-    adapter_close(&adapter);
-    plug_in("ttyUSB1", "1-1.3", "OTHER7");
-    assert_null(adapter_find(&adapter, named("ttyUSB1")));
-    assert_string_equal(adapter.path, named("ttyUSB1"));
+    char link[LONG];
+    plug_in("ttyUSB0", "1-1.2", "0002");
+    run("mkdir -p %s/serial/by-id && ln -s ../../ttyUSB0 %s/serial/by-id/usb-0002", dev, dev);
+    (void)snprintf(link, sizeof link, "%s/serial/by-id/usb-0002", dev);
+    assert_null(adapter_find(&adapter, link));
+    assert_string_equal(adapter.path, named("ttyUSB0"));
+    plug_in("ttyUSB1", "1-1.3", "0002");
+    assert_non_null(strstr(adapter_find(&adapter, link), "several adapters have this identity"));
+    assert_null(adapter_find(&adapter, named("ttyUSB0"))); /* the other names are clear */
+}
+
+TEST(an_open_adapter_that_was_named_by_id_keeps_its_socket_when_a_twin_comes)
+{
+    char link[LONG];
+    plug_in("ttyUSB0", "1-1.2", "0002");
+    run("mkdir -p %s/serial/by-id && ln -s ../../ttyUSB0 %s/serial/by-id/usb-0002", dev, dev);
+    (void)snprintf(link, sizeof link, "%s/serial/by-id/usb-0002", dev);
+    open_adapter(link);
+    plug_in("ttyUSB1", "1-1.3", "0002");
+    run("ln -sf ../../ttyUSB1 %s/serial/by-id/usb-0002", dev);
+    lose_first();
+    assert_string_equal(adapter_find(&adapter, link), "");
+    plug_in("ttyUSB5", "1-1.2", "0002");
+    assert_null(adapter_find(&adapter, link));
+    assert_string_equal(adapter.path, named("ttyUSB5"));
 }
 
 /* FTDI's, which `setserial PORT low_latency` reduces to 1. */

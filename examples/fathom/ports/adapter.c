@@ -2,78 +2,125 @@
 #define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): realpath */
 #include "ports/adapter.h"
 
+#include <ctype.h>
+#include <dirent.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/inotify.h>
+#include <unistd.h>
 
-#include "ports/adapter_identity.h"
+const char *adapter_sysfs = "/sys";
+const char *adapter_dev = "/dev";
 
-/* Why an adapter is not found by its identity. */
-enum { ADVICE_NONE, ADVICE_NO_SERIAL, ADVICE_COUNTED, ADVICE_SHARED, ADVICE_DOUBTFUL, ADVICE_PATH };
+static adapter_t *open_ones;
+static int changes_fd = -1; /* inotify(7), of the folder of the device files */
 
-static bool begins_with(const char *text, const char *beginning)
+static const char *last_name(const char *path)
 {
-    return strncmp(text, beginning, strlen(beginning)) == 0;
+    const char *const slash = strrchr(path, '/');
+    return slash != NULL ? slash + 1 : path;
 }
 
-static bool is_by_path(const adapter_t *adapter)
-{
-    return begins_with(adapter->wanted, "/dev/serial/by-path/");
-}
+/* ---- sysfs ---- */
 
-/* A serial number that makers give to a whole series, such as 0001, 000000 or 123456789: each character repeats the one
- * before it or follows it. */
-static bool is_counted(const char *serial)
+/* Reads the only line of an attribute. Returns false and sets "" if there is none. */
+static bool read_attribute(const char *folder, const char *name, char word[ADAPTER_SERIAL])
 {
-    for (; serial[0] != '\0' && serial[1] != '\0'; serial++) {
-        const bool is_wrapped = serial[0] == '9' && (serial[1] == '0' || serial[1] == 'A');
-        if (serial[1] != serial[0] && serial[1] != serial[0] + 1 && !is_wrapped) return false;
-    }
+    char path[PATH_MAX];
+    word[0] = '\0';
+    if (snprintf(path, sizeof path, "%s/%s", folder, name) >= (int)sizeof path) return false;
+    FILE *const file = fopen(path, "re");
+    if (file == NULL) return false;
+    if (fgets(word, ADAPTER_SERIAL, file) == NULL) word[0] = '\0';
+    (void)fclose(file);
+    word[strcspn(word, "\n")] = '\0';
     return true;
 }
 
-static int advice_for(const adapter_t *adapter)
+static bool tty_folder(const char *name, char folder[PATH_MAX])
 {
-    const adapter_identity_t *const known = &adapter->known;
-    if (known->vendor[0] == '\0')
-        return adapter->was_open && adapter_identity_is_expected(adapter->wanted) ? ADVICE_PATH : ADVICE_NONE;
-    if (is_by_path(adapter)) return ADVICE_NONE;
-    if (adapter->is_doubtful) return ADVICE_DOUBTFUL;
-    if (known->serial[0] == '\0') return ADVICE_NO_SERIAL;
-    if (adapter->is_shared) return ADVICE_SHARED;
-    return is_counted(known->serial) ? ADVICE_COUNTED : ADVICE_NONE;
+    char link[PATH_MAX];
+    return snprintf(link, sizeof link, "%s/class/tty/%s/device", adapter_sysfs, name) < (int)sizeof link &&
+           realpath(link, folder) != NULL;
 }
 
-const char *adapter_advice(adapter_t *adapter)
+/*
+ * The socket of the USB device in a folder such as /sys/devices/pci0000:00/0000:00:14.0/usb1/1-1/1-1.2: the folder of
+ * the controller, and 1.2. The number of the bus does not count, since the kernel may find the controllers again in
+ * another order.
+ */
+static void name_socket(adapter_facts_t *facts, const char *folder)
 {
-    static const char *const reasons[] = {[ADVICE_NO_SERIAL] = "this adapter has no serial number",
-                                          [ADVICE_COUNTED] = "other adapters may have the same serial number",
-                                          [ADVICE_SHARED] =
-                                              "another adapter has, or may have had, the same serial number"};
-    static char text[256];
-    const int advice = advice_for(adapter);
-    if (advice == adapter->advice) return NULL;
-    adapter->advice = advice;
-    if (advice == ADVICE_PATH)
-        (void)snprintf(text, sizeof text,
-                       "nothing is known about this adapter, so any adapter at this path will be read");
-    else if (advice == ADVICE_DOUBTFUL)
-        (void)snprintf(text, sizeof text, "%s", adapter_find(adapter, adapter->wanted));
-    else if (advice != ADVICE_NONE)
-        (void)snprintf(text, sizeof text, "%s: use the same USB socket (%s) again", reasons[advice],
-                       adapter->known.place);
-    return advice != ADVICE_NONE ? text : NULL;
+    const char *const name = last_name(folder);
+    const char *bus = strstr(folder, "/usb");
+    while (bus != NULL && isdigit((unsigned char)bus[4]) == 0) bus = strstr(bus + 1, "/usb");
+    if (bus == NULL) bus = name;
+    (void)snprintf(facts->place, sizeof facts->place, "%.*s", ADAPTER_NAME - 1, name);
+    (void)snprintf(facts->socket, sizeof facts->socket, "%.*s %s", (int)(bus - folder), folder,
+                   name + strcspn(name, "-"));
+}
+
+/*
+ * The `device` of a tty is the interface (cdc_acm: .../1-2/1-2:1.0), or a port below it (usb-serial:
+ * .../1-2/1-2:1.0/ttyUSB0). The USB device is the first folder above that has an idVendor. False: there is none.
+ */
+static bool read_facts(adapter_facts_t *facts, const char *name)
+{
+    char folder[PATH_MAX];
+    char port[ADAPTER_SERIAL];
+    char interface[ADAPTER_SERIAL] = "";
+    char vendor[ADAPTER_SERIAL] = "";
+    char product[ADAPTER_SERIAL];
+    memset(facts, 0, sizeof *facts);
+    if (!tty_folder(name, folder)) return false;
+    (void)read_attribute(folder, "port_number", port);
+    while (strchr(folder, '/') != NULL && !read_attribute(folder, "idVendor", vendor)) {
+        if (interface[0] == '\0') (void)read_attribute(folder, "bInterfaceNumber", interface);
+        *strrchr(folder, '/') = '\0';
+    }
+    if (vendor[0] == '\0') return false;
+    (void)read_attribute(folder, "idProduct", product);
+    (void)read_attribute(folder, "serial", facts->serial);
+    (void)snprintf(facts->name, sizeof facts->name, "%.*s", ADAPTER_NAME - 1, name);
+    (void)snprintf(facts->identity, sizeof facts->identity, "%.8s %.8s %s %.8s %.8s", vendor, product,
+                   facts->serial, interface, port);
+    name_socket(facts, folder);
+    return true;
+}
+
+unsigned adapter_latency_ms(const char *path)
+{
+    char real[PATH_MAX];
+    char folder[PATH_MAX];
+    char word[ADAPTER_SERIAL];
+    if (realpath(path, real) == NULL || !tty_folder(last_name(real), folder)) return 0;
+    return read_attribute(folder, "latency_timer", word) ? (unsigned)strtoul(word, NULL, 10) : 0;
+}
+
+/* Looks among all ttys for adapters with this identity. Returns how many there are; *in_socket is the one in the same
+ * socket, *elsewhere one in another socket. */
+static unsigned search(const adapter_facts_t *wanted, adapter_facts_t *in_socket, adapter_facts_t *elsewhere)
+{
+    char folder[PATH_MAX];
+    unsigned count = 0;
+    memset(in_socket, 0, sizeof *in_socket);
+    memset(elsewhere, 0, sizeof *elsewhere);
+    (void)snprintf(folder, sizeof folder, "%s/class/tty", adapter_sysfs);
+    DIR *const ttys = opendir(folder);
+    const struct dirent *entry = NULL;
+    while (ttys != NULL && (entry = readdir(ttys)) != NULL) { /* NOLINT(concurrency-mt-unsafe): one thread */
+        adapter_facts_t other;
+        if (!read_facts(&other, entry->d_name) || strcmp(wanted->identity, other.identity) != 0) continue;
+        count++;
+        *(strcmp(wanted->socket, other.socket) == 0 ? in_socket : elsewhere) = other;
+    }
+    if (ttys != NULL) (void)closedir(ttys);
+    return count;
 }
 
 /* ---- twins ---- */
-
-static adapter_t *open_ones;
-
-static bool is_twin(const adapter_identity_t *one, const adapter_identity_t *other)
-{
-    return adapter_identity_is_same(one, other) && strcmp(one->socket, other->socket) != 0;
-}
 
 static void note_twin(adapter_t *adapter)
 {
@@ -83,114 +130,183 @@ static void note_twin(adapter_t *adapter)
 
 bool adapter_is_doubtful(const adapter_t *adapter) { return adapter->is_doubtful; }
 
-/* A device file appeared. If what was behind it is gone again, it may have been a twin. */
-static void note_new(const char *name)
+static bool is_there(const char *name)
 {
-    adapter_identity_t other;
-    const bool is_usb = adapter_identity_read(&other, name);
-    const bool is_gone = !is_usb && !adapter_identity_is_there(name);
+    char path[PATH_MAX];
+    return snprintf(path, sizeof path, "%s/class/tty/%s", adapter_sysfs, name) < (int)sizeof path &&
+           access(path, F_OK) == 0;
+}
+
+/* A device file appeared. If the tty behind it is gone already, it may have been a twin. */
+static void note_new(adapter_t *adapter, const char *name)
+{
+    adapter_facts_t other;
+    if (!adapter->is_present) return;
+    if (!read_facts(&other, name))
+        adapter->is_shared = adapter->is_shared || !is_there(name);
+    else if (strcmp(adapter->known.identity, other.identity) == 0 &&
+             strcmp(adapter->known.socket, other.socket) != 0)
+        note_twin(adapter);
+}
+
+static void note_change(const struct inotify_event *event)
+{
+    const bool is_tty = event->len != 0 && strncmp(event->name, "tty", 3) == 0;
     for (adapter_t *adapter = open_ones; adapter != NULL; adapter = adapter->next) {
-        if (!adapter->is_present) continue;
-        if (is_gone) adapter->is_shared = true;
-        if (is_usb && is_twin(&adapter->known, &other)) note_twin(adapter);
+        if ((event->mask & IN_Q_OVERFLOW) != 0) adapter->is_shared = true;
+        if (is_tty && (event->mask & IN_CREATE) != 0) note_new(adapter, event->name);
+        if (is_tty && (event->mask & IN_DELETE) != 0 && strcmp(adapter->known.name, event->name) == 0)
+            adapter->is_present = false;
     }
 }
 
-static void note_removed(const char *name)
+/* In their order: a twin that came after the loss of an adapter is its own return. */
+static void read_changes(void)
 {
-    for (adapter_t *adapter = open_ones; adapter != NULL; adapter = adapter->next)
-        if (strcmp(adapter_last_name(adapter->path), name) == 0) adapter->is_present = false;
+    union {
+        struct inotify_event event; /* for its alignment */
+        char bytes[4096];
+    } buffer;
+    ssize_t length = 0;
+    while (changes_fd >= 0 && (length = read(changes_fd, buffer.bytes, sizeof buffer.bytes)) > 0) {
+        for (const char *at = buffer.bytes; at < buffer.bytes + length;) {
+            const struct inotify_event *const event = (const struct inotify_event *)(const void *)at;
+            note_change(event);
+            at += sizeof *event + event->len;
+        }
+    }
 }
 
-static void note_missed(void)
+static bool start_watching(void)
 {
-    for (adapter_t *adapter = open_ones; adapter != NULL; adapter = adapter->next) adapter->is_shared = true;
+    if (changes_fd >= 0) return true;
+    changes_fd = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
+    if (changes_fd < 0 || inotify_add_watch(changes_fd, adapter_dev, IN_CREATE | IN_DELETE) >= 0)
+        return changes_fd >= 0;
+    (void)close(changes_fd);
+    changes_fd = -1;
+    return false;
 }
 
-static const adapter_changes_t changes = {note_new, note_removed, note_missed};
+static int source_fd(const fathom_loop_source_t *source)
+{
+    (void)source;
+    return changes_fd;
+}
 
-void adapter_watch(fathom_loop_t *loop) { adapter_changes_watch(loop, &changes); }
+static bool poll_source(fathom_loop_source_t *source)
+{
+    (void)source;
+    read_changes();
+    return true;
+}
+
+void adapter_watch(fathom_loop_t *loop)
+{
+    static const fathom_loop_kind_t kind = {.fd = source_fd, .poll = poll_source};
+    static fathom_loop_source_t source;
+    if (!start_watching()) return;
+    source = (fathom_loop_source_t){.kind = &kind};
+    fathom_loop_add(loop, &source);
+}
+
+/* ---- advice ---- */
+
+enum { ADVICE_NONE, ADVICE_NO_SERIAL, ADVICE_COUNTED, ADVICE_SHARED, ADVICE_DOUBTFUL, ADVICE_PATH };
+
+/* Makers give such serial numbers to a whole series: 0001, 000000, 123456789. Each character repeats the one before it
+ * or follows it. */
+static bool is_counted(const char *serial)
+{
+    for (; serial[0] != '\0' && serial[1] != '\0'; serial++) {
+        const bool is_wrapped = serial[0] == '9' && (serial[1] == '0' || serial[1] == 'A');
+        if (serial[1] != serial[0] && serial[1] != serial[0] + 1 && !is_wrapped) return false;
+    }
+    return true;
+}
+
+/* Why the identity does not find the adapter. */
+static int advice_for(const adapter_t *adapter)
+{
+    const char *const name = last_name(adapter->wanted);
+    const bool is_usb = strncmp(name, "ttyUSB", 6) == 0 || strncmp(name, "ttyACM", 6) == 0;
+    if (adapter->known.name[0] == '\0') return adapter->was_open && is_usb ? ADVICE_PATH : ADVICE_NONE;
+    if (adapter->is_doubtful) return ADVICE_DOUBTFUL;
+    if (adapter->known.serial[0] == '\0') return ADVICE_NO_SERIAL;
+    if (adapter->is_shared) return ADVICE_SHARED;
+    return is_counted(adapter->known.serial) ? ADVICE_COUNTED : ADVICE_NONE;
+}
+
+const char *adapter_advice(adapter_t *adapter)
+{
+    static const char *const reasons[] = {
+        [ADVICE_NO_SERIAL] = "this adapter has no serial number",
+        [ADVICE_COUNTED] = "other adapters may have the same serial number",
+        [ADVICE_SHARED] = "another adapter has, or may have had, the same serial number",
+        [ADVICE_PATH] = "nothing is known about this adapter, so any adapter at this path will be read"};
+    static char text[256];
+    const int advice = advice_for(adapter);
+    if (advice == adapter->advice) return NULL;
+    adapter->advice = advice;
+    if (advice == ADVICE_NONE || advice == ADVICE_DOUBTFUL) return NULL; /* port_error() reports the doubt */
+    if (advice == ADVICE_PATH) return reasons[advice];
+    (void)snprintf(text, sizeof text, "%s: use the same USB socket (%s) again", reasons[advice],
+                   adapter->known.place);
+    return text;
+}
 
 /* ---- finding ---- */
-
-typedef struct {
-    const adapter_t *adapter;
-    const adapter_identity_t *wanted;
-    adapter_identity_t in_socket; /* vendor "": none */
-    adapter_identity_t elsewhere;
-    unsigned count; /* of adapters with this identity */
-} search_t;
-
-static void examine(void *ctx, const adapter_identity_t *other)
-{
-    search_t *const search = ctx;
-    const bool is_same = adapter_identity_is_same(search->wanted, other);
-    const bool is_there = strcmp(search->wanted->socket, other->socket) == 0;
-    if (is_same) search->count++;
-    if (is_same && !is_there) search->elsewhere = *other;
-    if (is_there &&
-        (is_same || (is_by_path(search->adapter) && adapter_identity_is_same_port(search->wanted, other))))
-        search->in_socket = *other;
-}
-
-static search_t search_for(const adapter_t *adapter, const adapter_identity_t *wanted)
-{
-    search_t search = {.adapter = adapter, .wanted = wanted};
-    adapter_identities_each(examine, &search);
-    return search;
-}
 
 /* Nothing is known yet: the adapter behind the path. */
 static const char *find_first(adapter_t *adapter)
 {
     char real[PATH_MAX];
-    adapter->found = (adapter_identity_t){0};
+    char by_id[PATH_MAX];
+    adapter_facts_t in_socket;
+    adapter_facts_t elsewhere;
     adapter->path[0] = '\0';
-    if (realpath(adapter->wanted, real) == NULL ||
-        !adapter_identity_read(&adapter->found, adapter_last_name(real)))
-        return NULL;
-    (void)snprintf(adapter->path, sizeof adapter->path, "%s/%s", adapter_dev, adapter_last_name(real));
-    if (begins_with(adapter->wanted, "/dev/serial/by-id/") && search_for(adapter, &adapter->found).count > 1)
-        return "several adapters have this serial number; name one of them by its path in "
-               "/dev/serial/by-path";
+    memset(&adapter->found, 0, sizeof adapter->found);
+    if (realpath(adapter->wanted, real) == NULL || !read_facts(&adapter->found, last_name(real))) return NULL;
+    (void)snprintf(adapter->path, sizeof adapter->path, "%s/%s", adapter_dev, adapter->found.name);
+    (void)snprintf(by_id, sizeof by_id, "%s/serial/by-id/", adapter_dev);
+    if (strncmp(adapter->wanted, by_id, strlen(by_id)) == 0 &&
+        search(&adapter->found, &in_socket, &elsewhere) > 1)
+        return "several adapters have this identity; name the right one by its link in /dev/serial/by-path";
     return NULL;
 }
 
 const char *adapter_find(adapter_t *adapter, const char *wanted)
 {
-    adapter_changes_read(&changes);
-    if (adapter->wanted == NULL || strcmp(adapter->wanted, wanted) != 0)
-        *adapter = (adapter_t){.wanted = wanted};
-    if (adapter->known.vendor[0] == '\0') return find_first(adapter);
-    const search_t search = search_for(adapter, &adapter->known);
-    if (search.count > 1) note_twin(adapter);
+    adapter_facts_t elsewhere;
+    read_changes();
+    adapter->wanted = wanted;
+    if (adapter->known.name[0] == '\0') return find_first(adapter);
+    if (search(&adapter->known, &adapter->found, &elsewhere) > 1) note_twin(adapter);
     if (adapter->is_doubtful)
         return "another adapter with the same serial number was plugged in after this one had moved to "
                "another "
-               "USB socket, so the right one is unknown; start again with its path in /dev/serial/by-path";
-    adapter->found = search.in_socket;
-    if (search.in_socket.vendor[0] == '\0' && advice_for(adapter) == ADVICE_NONE && !is_by_path(adapter))
-        adapter->found = search.elsewhere;
-    if (adapter->found.vendor[0] == '\0') return "";
+               "USB socket, so the right one is unknown; start again with its link in /dev/serial/by-path";
+    if (adapter->found.name[0] == '\0' && advice_for(adapter) == ADVICE_NONE) adapter->found = elsewhere;
+    if (adapter->found.name[0] == '\0') return "";
     (void)snprintf(adapter->path, sizeof adapter->path, "%s/%s", adapter_dev, adapter->found.name);
     return NULL;
 }
 
 bool adapter_open(adapter_t *adapter)
 {
-    adapter_identity_t now;
-    const adapter_identity_t *const found = &adapter->found;
+    const adapter_facts_t found = adapter->found;
+    adapter_facts_t now;
+    adapter_facts_t elsewhere;
     adapter->was_open = true;
-    if (found->vendor[0] == '\0') return true;
-    /* The watch comes before the search, so that no twin is missed. */
-    if (!adapter_changes_start()) adapter->is_shared = true;
-    if (!adapter_identity_read(&now, adapter_last_name(adapter->path)) ||
-        !adapter_identity_is_same(&now, found) || strcmp(now.socket, found->socket) != 0)
-        return false;
-    if (adapter->known.vendor[0] != '\0' && strcmp(adapter->known.socket, found->socket) != 0)
+    if (found.name[0] == '\0') return true;
+    /* The watch starts before the search, so that no twin is missed. */
+    if (!start_watching()) adapter->is_shared = true;
+    const unsigned count = search(&found, &now, &elsewhere);
+    if (strcmp(now.name, found.name) != 0) return false;
+    if (adapter->known.name[0] != '\0' && strcmp(adapter->known.socket, found.socket) != 0)
         adapter->is_moved = true;
-    adapter->known = *found;
-    if (search_for(adapter, found).count > 1) note_twin(adapter);
+    if (count > 1) note_twin(adapter);
+    adapter->known = found;
     adapter->is_present = true;
     adapter->advice = ADVICE_NONE;
     adapter->next = open_ones;
@@ -201,7 +317,7 @@ bool adapter_open(adapter_t *adapter)
 void adapter_close(adapter_t *adapter)
 {
     adapter_t **link = &open_ones;
-    adapter_changes_read(&changes);
+    read_changes();
     while (*link != NULL && *link != adapter) link = &(*link)->next;
     if (*link != NULL) *link = adapter->next;
     adapter->is_present = false;

@@ -14,32 +14,29 @@
  *    identity in another USB socket is a twin.
  * 2. The identity alone finds the adapter if the serial number can be its own, and if no twin was plugged in since the
  *    adapter was opened. Otherwise the adapter is found in the same socket only.
- * 3. A path in /dev/serial/by-path names a socket: any adapter in that socket is opened. A path in /dev/serial/by-id
- *    names an identity: if a twin is plugged in, neither is opened.
+ * 3. A link in /dev/serial/by-id names an identity. While a twin is plugged in, the link finds neither.
  * 4. If nothing is known about an adapter, it is found by its path.
  */
 
-enum { ADAPTER_HEX = 8, ADAPTER_NAME = 32, ADAPTER_SERIAL = 64, ADAPTER_SOCKET = 192, ADAPTER_PATH = 128 };
+enum { ADAPTER_NAME = 32, ADAPTER_SERIAL = 64, ADAPTER_TEXT = 192 };
 
 typedef struct {
-    char name[ADAPTER_NAME];     /* of the tty, "ttyUSB0" */
-    char vendor[ADAPTER_HEX];    /* idVendor; "": this is no USB adapter, or nothing is known about it */
-    char product[ADAPTER_HEX];   /* idProduct */
+    char name
+        [ADAPTER_NAME]; /* of the tty, "ttyUSB0"; "": this is no USB adapter, or nothing is known about it */
     char serial[ADAPTER_SERIAL]; /* "": none, as in a CH340 */
-    char interface[ADAPTER_HEX]; /* of an adapter with several ports, "00" */
-    char port[ADAPTER_HEX];      /* of an interface with several ports: the driver's number of it */
+    char identity[ADAPTER_TEXT]; /* rule 1, in one text */
+    char socket[ADAPTER_TEXT];   /* the controller, and the ports of the hubs from there */
     char place[ADAPTER_NAME];    /* the socket as the kernel names it, "1-2.3" */
-    char socket[ADAPTER_SOCKET]; /* the same with the controller, which the kernel may number anew */
-} adapter_identity_t;
+} adapter_facts_t;
 
 /* All zeros: nothing is known. Do not move it while it is open. */
 typedef struct adapter adapter_t;
 struct adapter {
-    char path[ADAPTER_PATH]; /* the present one, such as "/dev/ttyUSB1"; "": the path that the user named */
+    char path[ADAPTER_TEXT]; /* the present one, such as "/dev/ttyUSB1"; "": the path that the user named */
     /* private */
-    const char *wanted;       /* the path that the user named */
-    adapter_identity_t known; /* of the adapter that was open; vendor "": none was */
-    adapter_identity_t found; /* by adapter_find() */
+    const char *wanted;    /* the path that the user named */
+    adapter_facts_t known; /* about the adapter that was open */
+    adapter_facts_t found; /* by adapter_find() */
     bool was_open;
     bool is_shared;   /* a twin is, or may have been, plugged in */
     bool is_moved;    /* it was found in another socket */
@@ -51,8 +48,7 @@ struct adapter {
 
 /*
  * Finds the adapter and sets `path`. Call it before each opening. wanted: the path that the user named, which may be a
- * link; if it is not that of the last call, nothing is known about the adapter. Returns NULL, or "" if the adapter is
- * not plugged in, or the reason why it must not be opened.
+ * link. Returns NULL, or "" if the adapter is not plugged in, or the reason why it must not be opened.
  */
 const char *adapter_find(adapter_t *adapter, const char *wanted);
 
