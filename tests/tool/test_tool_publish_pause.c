@@ -92,7 +92,7 @@ TEST(the_pause_grows_from_half_a_second_to_a_minute)
     assert_true(shorter > TRIES / 2);
 }
 
-TEST(it_is_told_once_as_long_as_the_reason_is_the_same)
+TEST(it_is_reported_once_as_long_as_the_reason_is_the_same)
 {
     for (unsigned i = 0; i != 3; i++) time_us += pause_after_a_try();
     assert_int_equal(remarks, 1);

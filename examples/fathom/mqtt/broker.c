@@ -17,14 +17,14 @@ enum {
     LONGEST_PAUSE_US = 60000000,
     STEADY_US = 10000000,
     GREETING_US = 20000000,
-    LOOK_US = 1000000, /* how often the keep-alive is looked after */
+    LOOK_US = 1000000, /* from one check of the keep-alive to the next */
     READS = 16,
     QOS = 1
 };
 
 static uint64_t now_us(const broker_t *broker) { return broker->host->now_us(broker->host->ctx); }
 
-/* ---- what libmosquitto tells ---- */
+/* ---- callbacks of libmosquitto ---- */
 
 static void on_connect(struct mosquitto *mosq, void *ctx, int code)
 {
@@ -38,7 +38,7 @@ static void on_connect(struct mosquitto *mosq, void *ctx, int code)
     broker->is_lost = true;
 }
 
-/* Of the messages under way, from the oldest, 0. */
+/* Returns an unacknowledged message; 0: the oldest one. */
 static broker_sent_t *sent_at(broker_t *broker, unsigned number)
 {
     return &broker->sent[(broker->first + number) % BROKER_WINDOW];
@@ -76,28 +76,28 @@ static short socket_events(const fathom_loop_source_t *source)
     return mosquitto_want_write(broker->mosq) ? POLLIN | POLLOUT : POLLIN;
 }
 
-static void take_result(broker_t *broker, int result)
+static void check(broker_t *broker, int result)
 {
     const int error = errno;
     if (result == MOSQ_ERR_SUCCESS || broker->is_lost) return;
-    broker_explain(broker, result, error);
+    broker_explain_result(broker, result, error);
     broker->is_lost = true;
 }
 
-/* All that has come, since it is not told again that it has. */
+/* Reads everything that was received, since the loop reports each event once. */
 static void read_all(broker_t *broker)
 {
     for (unsigned turn = 0; turn != READS && !broker->is_lost; turn++) {
         errno = 0;
         const int result = mosquitto_loop_read(broker->mosq, 1);
         const bool is_all = errno == EAGAIN || errno == EWOULDBLOCK;
-        take_result(broker, result);
+        check(broker, result);
         if (is_all) return;
     }
 }
 
-/* False: libmosquitto does not take it. What it has in its list it sends, and sends again, by itself. */
-static bool hand_over(broker_t *broker, broker_sent_t *sent)
+/* False: libmosquitto does not accept the message. What it accepted it sends, and repeats, by itself. */
+static bool submit(broker_t *broker, broker_sent_t *sent)
 {
     const int result = mosquitto_publish(broker->mosq, &sent->number, sent->topic, (int)strlen(sent->payload),
                                          sent->payload, QOS, sent->is_retained);
@@ -105,17 +105,17 @@ static bool hand_over(broker_t *broker, broker_sent_t *sent)
            result != MOSQ_ERR_MALFORMED_UTF8;
 }
 
-static void take_readiness(broker_t *broker)
+static void start_sending(broker_t *broker)
 {
-    const broker_settings_t *const settings = broker->settings;
     char text[BROKER_TEXT];
-    (void)snprintf(text, sizeof text, "broker %s port %u: connected", settings->host, settings->port);
-    if (broker->is_told) broker->user->print(broker->ctx, text);
-    broker->is_told = false;
-    /* That another client had under way. One that is the same sends them again by itself. */
-    for (unsigned i = 0; broker->is_other && i != broker->count; i++)
-        if (!sent_at(broker, i)->is_acknowledged) (void)hand_over(broker, sent_at(broker, i));
-    broker->is_other = false;
+    (void)snprintf(text, sizeof text, "broker %s port %u: connected", broker->settings->host,
+                   broker->settings->port);
+    if (broker->is_reported) broker->user->print(broker->ctx, text);
+    broker->is_reported = false;
+    /* A new client does not know the messages of the client before. */
+    for (unsigned i = 0; broker->is_new && i != broker->count; i++)
+        if (!sent_at(broker, i)->is_acknowledged) (void)submit(broker, sent_at(broker, i));
+    broker->is_new = false;
     broker->user->connected(broker->ctx);
 }
 
@@ -128,13 +128,13 @@ static bool poll_socket(fathom_loop_source_t *source)
     if (source->is_readable) read_all(broker);
     if (!broker->is_lost && mosquitto_want_write(broker->mosq)) {
         errno = 0;
-        take_result(broker, mosquitto_loop_write(broker->mosq, 1));
+        check(broker, mosquitto_loop_write(broker->mosq, 1));
     }
-    if (!broker->is_lost) take_result(broker, mosquitto_loop_misc(broker->mosq));
-    /* A handshake of TLS does not tell libmosquitto of its end. */
-    if (broker->phase == BROKER_GREETING && source->is_hung_up) take_result(broker, MOSQ_ERR_CONN_LOST);
+    if (!broker->is_lost) check(broker, mosquitto_loop_misc(broker->mosq));
+    /* libmosquitto does not notice that the broker ended a TLS handshake. */
+    if (broker->phase == BROKER_GREETING && source->is_hung_up) check(broker, MOSQ_ERR_CONN_LOST);
     if (broker->is_lost) return true;
-    if (!was_ready && broker->phase == BROKER_READY) take_readiness(broker);
+    if (!was_ready && broker->phase == BROKER_READY) start_sending(broker);
     if (broker->count < count) broker->user->acknowledged(broker->ctx);
     return true;
 }
@@ -145,8 +145,7 @@ static uint32_t socket_due_us(fathom_loop_source_t *source)
     return LOOK_US;
 }
 
-/* Of its own, so that the number is no other file's while the loop waits for it: libmosquitto closes its own when it
- * likes. */
+/* A duplicate of libmosquitto's descriptor, which may be closed at any time while the loop waits for it. */
 static bool add_socket(broker_t *broker)
 {
     static const fathom_loop_kind_t kind = {
@@ -180,8 +179,8 @@ static void *connect_in_thread(void *ctx)
     return NULL;
 }
 
-/* Signals are for the thread that sleeps. */
-static int begin_thread(broker_t *broker)
+/* Signals must reach the thread that sleeps. */
+static int start_thread(broker_t *broker)
 {
     sigset_t all;
     sigset_t before;
@@ -201,9 +200,9 @@ static bool poll_thread(fathom_loop_source_t *source)
     return true;
 }
 
-/* ---- trying again ---- */
+/* ---- connecting again ---- */
 
-/* Between a half and the whole of it, so that the clients of a broker that is back do not come all at once. */
+/* Returns between half and all of it, so that the clients of a broker that is back do not connect all at once. */
 static uint32_t part_of(uint32_t pause_us)
 {
     uint32_t random = 0;
@@ -211,46 +210,38 @@ static uint32_t part_of(uint32_t pause_us)
     return pause_us / 2 + (uint32_t)((uint64_t)random * (pause_us - pause_us / 2) >> 32);
 }
 
-static void tell_away(broker_t *broker)
+static void report_away(broker_t *broker)
 {
-    const broker_settings_t *const settings = broker->settings;
     char text[2 * BROKER_TEXT];
-    if (broker->is_told && strcmp(broker->told_reason, broker->reason) == 0) return;
-    broker->is_told = true;
-    memcpy(broker->told_reason, broker->reason, sizeof broker->told_reason);
-    (void)snprintf(text, sizeof text, "broker %s port %u: %s; it is tried again and again", settings->host,
-                   settings->port, broker->reason);
+    if (broker->is_reported && strcmp(broker->reported, broker->reason) == 0) return;
+    broker->is_reported = true;
+    memcpy(broker->reported, broker->reason, sizeof broker->reported);
+    (void)snprintf(text, sizeof text, "broker %s port %u: %s; it is tried again and again",
+                   broker->settings->host, broker->settings->port, broker->reason);
     broker->user->print(broker->ctx, text);
 }
 
-/* For broker->reason. */
-static void fail(broker_t *broker)
+/* broker->reason says why. */
+static void pause_connecting(broker_t *broker)
 {
     const bool was_ready = broker->phase == BROKER_READY;
     remove_socket(broker);
-    if (was_ready) {
-        /* One that accepts and ends it again, as where two clients have the same id, is not asked as fast as can be. */
-        if (now_us(broker) - broker->began_us >= STEADY_US) broker->pause_us = 0;
-    }
+    /* A broker that accepts the client and ends the connection again, as with two clients of the same id, gets pauses that
+     * grow too. */
+    if (was_ready && now_us(broker) - broker->began_us >= STEADY_US) broker->pause_us = 0;
     broker->pause_us = broker->pause_us == 0 ? FIRST_PAUSE_US : broker->pause_us * 2;
     if (broker->pause_us > LONGEST_PAUSE_US) broker->pause_us = LONGEST_PAUSE_US;
     broker->next_us = now_us(broker) + part_of(broker->pause_us);
     broker->phase = BROKER_PAUSE;
     broker->is_lost = false;
-    tell_away(broker);
-}
-
-static void fail_for(broker_t *broker, const char *reason)
-{
-    (void)snprintf(broker->reason, sizeof broker->reason, "%s", reason);
-    fail(broker);
+    report_away(broker);
 }
 
 static void make_client(broker_t *broker)
 {
     if (broker->mosq != NULL && !broker->has_changed) return;
     if (broker->mosq != NULL) mosquitto_destroy(broker->mosq);
-    broker->is_other = true;
+    broker->is_new = true;
     broker->has_changed = false;
     broker->mosq = broker_client(broker);
     if (broker->mosq == NULL) return;
@@ -259,7 +250,7 @@ static void make_client(broker_t *broker)
     mosquitto_log_callback_set(broker->mosq, on_log);
 }
 
-static void begin_connecting(broker_t *broker)
+static void connect_again(broker_t *broker)
 {
     const broker_settings_t *const settings = broker->settings;
     (void)snprintf(broker->connect_host, sizeof broker->connect_host, "%s", settings->host);
@@ -271,14 +262,14 @@ static void begin_connecting(broker_t *broker)
     broker->began_us = now_us(broker);
     make_client(broker);
     if (broker->mosq == NULL || !broker_login(broker)) {
-        fail(broker);
+        pause_connecting(broker);
         return;
     }
-    const int error = begin_thread(broker);
-    if (error != 0)
-        fail_for(broker, strerror(error));
-    else
-        broker->phase = BROKER_CONNECTING;
+    const int error = start_thread(broker);
+    broker->phase = BROKER_CONNECTING;
+    if (error == 0) return;
+    broker_explain(broker, "%s", strerror(error));
+    pause_connecting(broker);
 }
 
 static void end_connecting(broker_t *broker)
@@ -286,35 +277,35 @@ static void end_connecting(broker_t *broker)
     broker->thread_has_ended = false;
     (void)pthread_join(broker->connecting, NULL);
     if (broker->has_changed) {
-        begin_connecting(broker);
+        connect_again(broker);
         return;
     }
     broker->phase = BROKER_GREETING;
     broker->began_us = now_us(broker);
-    if (broker->connect_result != MOSQ_ERR_SUCCESS) {
-        broker_explain(broker, broker->connect_result, broker->connect_errno);
-        fail(broker);
-    } else if (!add_socket(broker)) {
-        fail_for(broker, strerror(errno));
-    }
+    if (broker->connect_result != MOSQ_ERR_SUCCESS)
+        broker_explain_result(broker, broker->connect_result, broker->connect_errno);
+    else if (!add_socket(broker))
+        broker_explain(broker, "%s", strerror(errno));
+    else
+        return;
+    pause_connecting(broker);
 }
 
 uint32_t broker_tick(broker_t *broker)
 {
     const uint64_t now = now_us(broker);
-    if (broker->phase == BROKER_PAUSE && now >= broker->next_us) begin_connecting(broker);
+    if (broker->phase == BROKER_PAUSE && now >= broker->next_us) connect_again(broker);
     if (broker->phase == BROKER_CONNECTING && broker->thread_has_ended) end_connecting(broker);
     if (broker->phase == BROKER_GREETING && !broker->is_lost && now > broker->began_us + GREETING_US) {
-        (void)snprintf(broker->reason, sizeof broker->reason,
-                       "it takes the connection, and says nothing; is it MQTT?");
+        broker_explain(broker, "it accepts the connection and does not respond; is it an MQTT broker?");
         broker->is_lost = true;
     }
-    if (broker->is_lost) fail(broker);
+    if (broker->is_lost) pause_connecting(broker);
     if (broker->phase == BROKER_PAUSE) return broker->next_us > now ? (uint32_t)(broker->next_us - now) : 0;
     return broker->phase == BROKER_GREETING ? LOOK_US : FATHOM_NO_DEADLINE;
 }
 
-/* ---- begin, send, end ---- */
+/* ---- start, send, end ---- */
 
 bool broker_begin(broker_t *broker, const host_t *host, fathom_loop_t *loop,
                   const broker_settings_t *settings, const char *file, const char *will,
@@ -356,7 +347,7 @@ bool broker_send(broker_t *broker, const char *topic, const char *payload, bool 
     sent->is_retained = is_retained;
     (void)snprintf(sent->topic, sizeof sent->topic, "%s", topic);
     (void)snprintf(sent->payload, sizeof sent->payload, "%s", payload);
-    if (!hand_over(broker, sent)) return false;
+    if (!submit(broker, sent)) return false;
     broker->count++;
     if (mosquitto_want_write(broker->mosq)) fathom_loop_wake(&broker->socket.source);
     return true;
@@ -366,7 +357,7 @@ void broker_change(broker_t *broker, const char *will)
 {
     (void)snprintf(broker->will, sizeof broker->will, "%s", will);
     broker->has_changed = true;
-    broker->is_told = false;
+    broker->is_reported = false;
     if (broker->phase == BROKER_CONNECTING) return;
     if (broker->phase == BROKER_READY) (void)mosquitto_disconnect(broker->mosq);
     remove_socket(broker);
@@ -389,7 +380,7 @@ void broker_end(broker_t *broker)
 {
     if (broker->loop == NULL) return;
     if (broker->phase == BROKER_CONNECTING) {
-        (void)pthread_detach(broker->connecting); /* it may wait for minutes, and ends with the program */
+        (void)pthread_detach(broker->connecting); /* it may wait for minutes */
         return;
     }
     if (broker->phase == BROKER_READY) (void)mosquitto_disconnect(broker->mosq);

@@ -25,7 +25,7 @@ static int connect_to(const char *path)
     const size_t length = strlen(path);
     if ((path[0] != '/' && path[0] != '@') || length >= sizeof address.sun_path) return -1;
     memcpy(address.sun_path, path, length);
-    if (path[0] == '@') address.sun_path[0] = '\0'; /* a name without a file */
+    if (path[0] == '@') address.sun_path[0] = '\0'; /* an abstract name */
     const int fd = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
     const socklen_t size = (socklen_t)(offsetof(struct sockaddr_un, sun_path) + length);
     if (fd >= 0 && connect(fd, (const struct sockaddr *)&address, size) == 0) return fd;
@@ -33,7 +33,7 @@ static int connect_to(const char *path)
     return -1;
 }
 
-void notify_begin(notify_t *notify)
+void notify_init(notify_t *notify)
 {
     memset(notify, 0, sizeof *notify);
     notify->fd = connect_to(variable("NOTIFY_SOCKET"));
@@ -44,27 +44,27 @@ void notify_begin(notify_t *notify)
     if (is_ours && usec / 2 < FATHOM_NO_DEADLINE) notify->watchdog_us = (uint32_t)(usec / 2);
 }
 
-void notify_end(notify_t *notify)
+void notify_deinit(notify_t *notify)
 {
     if (notify->fd >= 0) (void)close(notify->fd);
     notify->fd = -1;
 }
 
-static void tell(const notify_t *notify, const char *text)
+static void send_text(const notify_t *notify, const char *text)
 {
     if (notify->fd >= 0 && send(notify->fd, text, strlen(text), MSG_NOSIGNAL) < 0)
-        return; /* it does not listen now */
+        return; /* the manager does not listen now */
 }
 
-void notify_ready(const notify_t *notify) { tell(notify, "READY=1"); }
+void notify_ready(const notify_t *notify) { send_text(notify, "READY=1"); }
 
-void notify_stopping(const notify_t *notify) { tell(notify, "STOPPING=1"); }
+void notify_stopping(const notify_t *notify) { send_text(notify, "STOPPING=1"); }
 
 void notify_reloading(const notify_t *notify, uint64_t monotonic_us)
 {
     char text[64];
     (void)snprintf(text, sizeof text, "RELOADING=1\nMONOTONIC_USEC=%" PRIu64, monotonic_us);
-    tell(notify, text);
+    send_text(notify, text);
 }
 
 void notify_status(notify_t *notify, const char *text)
@@ -73,7 +73,7 @@ void notify_status(notify_t *notify, const char *text)
     if (strncmp(notify->status, text, NOTIFY_TEXT - 1) == 0) return;
     (void)snprintf(notify->status, NOTIFY_TEXT, "%s", text);
     (void)snprintf(line, sizeof line, "STATUS=%s", notify->status);
-    tell(notify, line);
+    send_text(notify, line);
 }
 
 uint32_t notify_tick(notify_t *notify, uint64_t now_us)
@@ -81,7 +81,7 @@ uint32_t notify_tick(notify_t *notify, uint64_t now_us)
     if (notify->watchdog_us == 0 || notify->fd < 0) return FATHOM_NO_DEADLINE;
     if (notify->watched_us == 0 || now_us - notify->watched_us >= notify->watchdog_us) {
         notify->watched_us = now_us;
-        tell(notify, "WATCHDOG=1");
+        send_text(notify, "WATCHDOG=1");
     }
     return (uint32_t)(notify->watched_us + notify->watchdog_us - now_us);
 }

@@ -5,9 +5,9 @@
 
 #include "mqtt/broker.h"
 
-/* A context of our own, because libmosquitto 2.0 tells that a certificate was not accepted, and not why. */
+/* An own context, because libmosquitto 2.0 reports that a certificate was not accepted, and not why. */
 
-/* In the place of OpenSSL's own verification, which it calls. It may be called in the thread that connects. */
+/* Verifies as OpenSSL does, and stores the error. It may run in the thread that connects. */
 static int verify(X509_STORE_CTX *certificate, void *ctx)
 {
     const int result = X509_verify_cert(certificate);
@@ -15,13 +15,13 @@ static int verify(X509_STORE_CTX *certificate, void *ctx)
     return result;
 }
 
-static bool take_authorities(SSL_CTX *ssl, const broker_settings_t *settings)
+static bool set_authorities(SSL_CTX *ssl, const broker_settings_t *settings)
 {
     if (settings->ca_file[0] == '\0') return SSL_CTX_set_default_verify_paths(ssl) == 1;
     return SSL_CTX_load_verify_locations(ssl, settings->ca_file, NULL) == 1;
 }
 
-static bool take_own(SSL_CTX *ssl, const broker_settings_t *settings)
+static bool set_certificate(SSL_CTX *ssl, const broker_settings_t *settings)
 {
     return settings->certificate_file[0] == '\0' ||
            (SSL_CTX_use_certificate_chain_file(ssl, settings->certificate_file) == 1 &&
@@ -29,8 +29,8 @@ static bool take_own(SSL_CTX *ssl, const broker_settings_t *settings)
             SSL_CTX_check_private_key(ssl) == 1);
 }
 
-/* The far end has to be the one that the user has named. */
-static bool take_name(SSL_CTX *ssl, const char *host)
+/* The certificate must be for the host that the user named. */
+static bool set_name(SSL_CTX *ssl, const char *host)
 {
     X509_VERIFY_PARAM *const param = SSL_CTX_get0_param(ssl);
     return X509_VERIFY_PARAM_set1_ip_asc(param, host) == 1 ||
@@ -40,11 +40,11 @@ static bool take_name(SSL_CTX *ssl, const char *host)
 static bool set_up(SSL_CTX *ssl, const broker_settings_t *settings, char *reason, size_t capacity)
 {
     const char *what = NULL;
-    if (!take_authorities(ssl, settings))
+    if (!set_authorities(ssl, settings))
         what = settings->ca_file[0] != '\0' ? settings->ca_file : "the system's authorities";
-    else if (!take_own(ssl, settings))
+    else if (!set_certificate(ssl, settings))
         what = settings->certificate_file;
-    else if (!take_name(ssl, settings->host) || SSL_CTX_set_min_proto_version(ssl, TLS1_2_VERSION) != 1)
+    else if (!set_name(ssl, settings->host) || SSL_CTX_set_min_proto_version(ssl, TLS1_2_VERSION) != 1)
         what = settings->host;
     if (what == NULL) return true;
     const char *const error = ERR_reason_error_string(ERR_peek_last_error());
@@ -65,7 +65,7 @@ bool tls_set(struct mosquitto *mosq, const broker_settings_t *settings, int *err
     const bool is_good = set_up(ssl, settings, reason, capacity) &&
                          mosquitto_int_option(mosq, MOSQ_OPT_SSL_CTX_WITH_DEFAULTS, 0) == MOSQ_ERR_SUCCESS &&
                          mosquitto_void_option(mosq, MOSQ_OPT_SSL_CTX, ssl) == MOSQ_ERR_SUCCESS;
-    SSL_CTX_free(ssl); /* libmosquitto has a reference of its own */
+    SSL_CTX_free(ssl); /* libmosquitto keeps a reference */
     return is_good;
 }
 

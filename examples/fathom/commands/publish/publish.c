@@ -162,7 +162,7 @@ static int publish_site(const host_t *host)
     loop_t *const loop = &publish.loop;
     publisher_t *const publisher = &publish.publisher;
     int status = STATUS_FAILED;
-    notify_begin(&publish.notify);
+    notify_init(&publish.notify);
     if (!host->begin(host->ctx) ||
         !publisher_init(publisher, host, &publish.settings, &loop->site, loop->start_us))
         return STATUS_FAILED;
@@ -175,7 +175,7 @@ static int publish_site(const host_t *host)
     }
     publisher_deinit(publisher);
     loop_close(loop);
-    notify_end(&publish.notify);
+    notify_deinit(&publish.notify);
     return status;
 }
 
