@@ -173,7 +173,7 @@ static int restore(const backup_t *file, const char *path, bool is_dry, bool is_
         return STATUS_FAILED;
     }
     /* the rate of a gateway's line is not its unit's alone */
-    plan_begin(&plan, file, &unit, is_new, is_new && port_has_line(&session.channel));
+    plan_begin(&plan, file, &unit, is_new, is_new && port_has_line(&session.port));
     plan_print(&plan);
     if (is_dry) return plan.count == 0 && !plan.is_impossible ? STATUS_OK : STATUS_FAILED;
     if (fflush(stdout) != 0 || ferror(stdout) != 0) return STATUS_FAILED; /* unseen, nothing is written */

@@ -14,7 +14,7 @@ enum {
 static evidence_t evidence_of(const session_t *session)
 {
     evidence_t evidence;
-    listener_judge(&session->channel.listener, session->station->address, &evidence);
+    listener_judge(&session->port.listener, session->station->address, &evidence);
     return evidence;
 }
 
@@ -49,7 +49,7 @@ static bool is_of_line(fathom_status_t status)
 
 static bool has_stopped(const session_t *session, fathom_status_t status)
 {
-    const host_t *const host = session->channel.host;
+    const host_t *const host = session->port.host;
     return status == FATHOM_ERR_CANCELLED || status == FATHOM_ERR_PORT || host->has_ended(host->ctx);
 }
 

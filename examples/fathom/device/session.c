@@ -119,7 +119,7 @@ bool session_can_set(const session_t *session, const char *command)
 
 const setting_t *session_settings(const session_t *session) { return session->station->model->settings; }
 
-void session_listen(session_t *session, uint32_t for_us) { port_listen(&session->channel, for_us); }
+void session_listen(session_t *session, uint32_t for_us) { port_listen(&session->port, for_us); }
 
 /* Its driver, from the beginning. */
 static bool begin(session_t *session)
@@ -129,13 +129,13 @@ static bool begin(session_t *session)
     settings.line = &station->line;
     settings.backoff_us = READER_BACKOFF_US;
     settings.address = station->address;
-    if (!sensor_start(station, &session->channel, &settings)) {
+    if (!sensor_start(station, &session->port, &settings)) {
         char text[256];
         sensor_refusal(station, text, sizeof text);
         (void)fprintf(stderr, "fathom: %s\n", text);
         return false;
     }
-    if (port_has_line(&session->channel)) reader_listen_unasked(station->reader);
+    if (port_has_line(&session->port)) reader_listen_unasked(station->reader);
     return true;
 }
 
@@ -145,17 +145,17 @@ bool session_open(session_t *session, const host_t *host)
     settings.line = session->station->line;
     if (!session->has_begun && !host->begin(host->ctx)) return false;
     session->has_begun = true;
-    if (!port_open_now(&session->channel, host, &settings)) {
-        (void)fprintf(stderr, "fathom: %s\n", port_error(&session->channel));
+    if (!port_open_now(&session->port, host, &settings)) {
+        (void)fprintf(stderr, "fathom: %s\n", port_error(&session->port));
         return false;
     }
-    counters_begin_port(&session->port_counts, &session->channel);
+    counters_begin_port(&session->port_counts, &session->port);
     if (!begin(session)) {
-        port_close(&session->channel);
+        port_close(&session->port);
         return false;
     }
     /* What the device sends unasked is known before the first request, which leaves room for it (line.h). */
-    if (port_has_line(&session->channel)) port_listen(&session->channel, PORT_LISTEN_US);
+    if (port_has_line(&session->port)) port_listen(&session->port, PORT_LISTEN_US);
     return true;
 }
 
@@ -170,18 +170,18 @@ bool session_move(session_t *session, uint8_t address, const fathom_line_setting
     return begin(session);
 }
 
-void session_close(session_t *session) { port_close(&session->channel); }
+void session_close(session_t *session) { port_close(&session->port); }
 
 fathom_status_t session_call(session_t *session, session_call_t call, void *ctx)
 {
     reader_t *const reader = session->station->reader;
     fathom_status_t waited = FATHOM_OK;
     counters_begin_attempt(&session->station->counters);
-    listener_forget(&session->channel.listener);
+    listener_forget(&session->port.listener);
     while (waited == FATHOM_OK) {
         const fathom_status_t status = call(reader, ctx);
         if (status != FATHOM_PENDING) return status;
-        waited = port_wait(&session->channel, reader_due_us(reader));
+        waited = port_wait(&session->port, reader_due_us(reader));
     }
     return waited;
 }
@@ -241,7 +241,7 @@ fathom_status_t session_set(session_t *session, const setting_t *setting, int32_
 
 const char *session_line_text(const session_t *session, char text[LINE_TEXT])
 {
-    return port_line_text(&session->channel, &session->station->line, text);
+    return port_line_text(&session->port, &session->station->line, text);
 }
 
 void session_explain(session_t *session, fathom_status_t status)
@@ -251,13 +251,13 @@ void session_explain(session_t *session, fathom_status_t status)
                          .model = station->model,
                          .mode = station->mode,
                          .reader = station->reader,
-                         .channel = &session->channel,
+                         .port = &session->port,
                          .counters = &station->counters,
                          .line = &station->line,
                          .address = station->address,
                          .is_setting = true};
-    (void)counters_take(&station->counters, &session->port_counts, &session->channel, station->reader);
-    listener_judge(&session->channel.listener, station->address, &failure.evidence);
+    (void)counters_take(&station->counters, &session->port_counts, &session->port, station->reader);
+    listener_judge(&session->port.listener, station->address, &failure.evidence);
     advice_print(stderr, &failure);
 }
 

@@ -12,7 +12,7 @@ typedef struct {
     site_t site;
     sensor_t *station; /* the only one; with session_options_of_several each in turn */
     bool has_begun;    /* the host */
-    channel_t channel;
+    port_t port;
     port_counts_t port_counts;
     bool is_json;
 } session_t;

@@ -61,7 +61,7 @@ static bool is_stream(const failure_t *failure, bool is_asked)
 static bool is_crowded(const failure_t *failure)
 {
     enum { LEAST = 3 };
-    return !port_has_gateway(failure->channel) && mode_is_asked(failure->mode) &&
+    return !port_has_gateway(failure->port) && mode_is_asked(failure->mode) &&
            failure->model->may_send_unasked && failure->evidence.own >= LEAST;
 }
 
@@ -69,7 +69,7 @@ static unsigned evidence_of(const failure_t *failure)
 {
     const reader_facts_t facts = reader_facts(failure->reader);
     const model_mode_t *const mode = failure->mode;
-    const channel_t *const port = failure->channel;
+    const port_t *const port = failure->port;
     const bool has_pins = port_has_pins(port);
     const evidence_t *const heard = &failure->evidence;
     const counters_t *const counters = failure->counters;
@@ -300,13 +300,12 @@ static const cause_t causes[] = {
     {~0u, 0, "{library}", NULL},
 };
 
-failure_t failure_of_request(fathom_status_t status, const channel_t *channel)
+failure_t failure_of_request(fathom_status_t status, const port_t *port)
 {
     static const model_t model = {.name = "the one that you expect", .max_address = UINT8_MAX};
     static const model_mode_t mode = {.protocol = "Modbus", .is_modbus = true};
     static const counters_t counters;
-    return (failure_t){
-        .status = status, .model = &model, .mode = &mode, .channel = channel, .counters = &counters};
+    return (failure_t){.status = status, .model = &model, .mode = &mode, .port = port, .counters = &counters};
 }
 
 /* A damaged response that is only the tool's own request is no response. */

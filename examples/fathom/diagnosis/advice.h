@@ -13,7 +13,7 @@ typedef struct {
     const model_t *model;
     const model_mode_t *mode;
     const reader_t *reader; /* NULL: a request without a driver */
-    const channel_t *channel;
+    const port_t *port;
     const counters_t *counters;         /* of the attempt and of the whole run */
     const fathom_line_settings_t *line; /* with which the sensor was asked; NULL: with several */
     const char *shared;                 /* name of the sensor among others; NULL: it is the only one */
@@ -30,7 +30,7 @@ typedef struct {
 } failure_t;
 
 /* Returns a failed Modbus request to a sensor of unknown model. The caller adds the evidence. */
-failure_t failure_of_request(fathom_status_t status, const channel_t *channel);
+failure_t failure_of_request(fathom_status_t status, const port_t *port);
 
 /* A cause: what it is and what to try, as templates. */
 typedef struct cause cause_t;

@@ -43,52 +43,51 @@ static void take(uint16_t *from, uint64_t *attempt, uint64_t *total, size_t coun
     }
 }
 
-static bool read_port(const port_counts_t *port, channel_t *channel, fathom_posix_line_errors_t *now)
+static bool read_port(const port_counts_t *counts, port_t *port, fathom_posix_line_errors_t *now)
 {
     /* Most ports that do not count say so at the first look; a lost one would only say that again. */
-    return port->is_there && port_line_errors(channel, now);
+    return counts->is_there && port_line_errors(port, now);
 }
 
-void counters_begin_port(port_counts_t *port, channel_t *channel)
+void counters_begin_port(port_counts_t *counts, port_t *port)
 {
-    port->is_there = true;
-    port->is_there = read_port(port, channel, &port->at);
+    counts->is_there = true;
+    counts->is_there = read_port(counts, port, &counts->at);
 }
 
-static void take_port(counters_t *counters, port_counts_t *port, channel_t *channel)
+static void take_port(counters_t *counters, port_counts_t *counts, port_t *port)
 {
     fathom_posix_line_errors_t now;
-    if (!read_port(port, channel, &now)) return;
+    if (!read_port(counts, port, &now)) return;
     const uint32_t passed[PORT_COUNTERS] = {
-        [PORT_PARITY] = now.parity - port->at.parity,
-        [PORT_FRAMING] = now.framing - port->at.framing,
-        [PORT_OVERRUN] = now.overrun - port->at.overrun,
-        [PORT_BREAKS] = now.breaks - port->at.breaks,
+        [PORT_PARITY] = now.parity - counts->at.parity,
+        [PORT_FRAMING] = now.framing - counts->at.framing,
+        [PORT_OVERRUN] = now.overrun - counts->at.overrun,
+        [PORT_BREAKS] = now.breaks - counts->at.breaks,
     };
     for (size_t i = 0; i != PORT_COUNTERS; i++) {
         counters->attempt.port[i] += passed[i];
         counters->total.port[i] += passed[i];
     }
-    port->at = now;
+    counts->at = now;
 }
 
-reader_counters_t counters_take(counters_t *counters, port_counts_t *port, channel_t *channel,
-                                reader_t *reader)
+reader_counters_t counters_take(counters_t *counters, port_counts_t *counts, port_t *port, reader_t *reader)
 {
     reader_counters_t counted;
     reader_take_counters(reader, &counted);
     uint16_t unit[UNIT_COUNTERS] = {[UNIT_RESPONSES] = counted.responses, [UNIT_FAILURES] = counted.failures};
-    take(channel->counters, counters->attempt.line, counters->total.line, FATHOM_LINE_COUNTERS);
+    take(port->counters, counters->attempt.line, counters->total.line, FATHOM_LINE_COUNTERS);
     take(counted.stream, counters->attempt.stream, counters->total.stream, FATHOM_STREAM_COUNTERS);
     take(unit, counters->attempt.unit, counters->total.unit, UNIT_COUNTERS);
-    take_port(counters, port, channel);
+    take_port(counters, counts, port);
     return counted;
 }
 
-void counters_take_late(counters_t *counters, channel_t *channel)
+void counters_take_late(counters_t *counters, port_t *port)
 {
     enum { LATE = FATHOM_LINE_LATE_RESPONSES };
-    take(&channel->counters[LATE], &counters->attempt.line[LATE], &counters->total.line[LATE], 1);
+    take(&port->counters[LATE], &counters->attempt.line[LATE], &counters->total.line[LATE], 1);
 }
 
 void counters_begin_attempt(counters_t *counters) { memset(&counters->attempt, 0, sizeof counters->attempt); }

@@ -4,7 +4,7 @@
 
 #include <stdio.h>
 
-#include "ports/channel.h"
+#include "ports/port.h"
 #include "sensors/reader.h"
 
 /* What the port's driver counts, where it does. */
@@ -48,14 +48,13 @@ typedef struct {
 } port_counts_t;
 
 /* A port has been opened: the driver's counters begin here. */
-void counters_begin_port(port_counts_t *port, channel_t *channel);
+void counters_begin_port(port_counts_t *counts, port_t *port);
 
 /* Moves the counters of the line, the sensor and the port. Returns those of the sensor. */
-reader_counters_t counters_take(counters_t *counters, port_counts_t *port, channel_t *channel,
-                                reader_t *reader);
+reader_counters_t counters_take(counters_t *counters, port_counts_t *counts, port_t *port, reader_t *reader);
 
 /* Takes the line's late responses alone: they are this sensor's. */
-void counters_take_late(counters_t *counters, channel_t *channel);
+void counters_take_late(counters_t *counters, port_t *port);
 
 void counters_begin_attempt(counters_t *counters);
 

@@ -42,7 +42,7 @@ static sensor_t *sensor_at(const line_t *line, uint8_t address)
 
 void attempt_count_late(line_t *line)
 {
-    const channel_t *const channel = &line->channel;
+    const port_t *const channel = &line->channel;
     if (!is_shared(line) || channel->counters[FATHOM_LINE_LATE_RESPONSES] == 0) return;
     for (sensor_t *sensor = line->sensors; sensor != NULL; sensor = sensor->next) {
         evidence_t evidence;
@@ -132,7 +132,7 @@ static void fail(line_t *line, sensor_t *sensor, fathom_status_t status, bool is
         .model = sensor->model,
         .mode = sensor->mode,
         .reader = sensor->reader,
-        .channel = &line->channel,
+        .port = &line->channel,
         .counters = &sensor->counters,
         .line = &sensor->line,
         .shared = loop->site.sensor_count > 1 ? sensor->name : NULL,

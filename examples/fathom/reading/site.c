@@ -121,7 +121,7 @@ const char *sensor_label(const sensor_t *sensor)
     return sensor->is_named ? sensor->name : sensor->model->name;
 }
 
-bool sensor_start(sensor_t *sensor, channel_t *channel, const reader_settings_t *settings)
+bool sensor_start(sensor_t *sensor, port_t *channel, const reader_settings_t *settings)
 {
     return reader_open(&sensor->reader, sensor->mode, channel, settings);
 }

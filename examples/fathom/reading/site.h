@@ -5,7 +5,7 @@
 #include "diagnosis/counters.h"
 #include "fathom_loop.h"
 #include "output/json.h"
-#include "ports/channel.h"
+#include "ports/port.h"
 #include "ports/port_settings.h"
 #include "reading/pulses.h"
 #include "reading/results.h"
@@ -61,7 +61,7 @@ struct line {
     char *
         text; /* how the user describes this line: a reload leaves a line with the same text alone. NULL: unknown */
     struct loop *loop;
-    channel_t channel;
+    port_t channel;
     port_counts_t counts;
     bool is_connecting; /* the connection is not established yet */
     bool was_open;
@@ -113,7 +113,7 @@ void sensor_json(json_t *json, const sensor_t *sensor);
 const char *sensor_label(const sensor_t *sensor);
 
 /* Starts to read the sensor through an open channel. False: sensor_refusal() has the reason. */
-bool sensor_start(sensor_t *sensor, channel_t *channel, const reader_settings_t *settings);
+bool sensor_start(sensor_t *sensor, port_t *channel, const reader_settings_t *settings);
 void sensor_refusal(const sensor_t *sensor, char *text, size_t capacity);
 
 /* Returns true, once, if the driver's interval is longer than the one that the user chose; *text says so. */

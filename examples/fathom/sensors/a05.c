@@ -5,60 +5,60 @@
 
 /* ---- reading ---- */
 
-bool a05_read_auto(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
+bool a05_read_auto(reader_t *reader, port_t *port, const reader_settings_t *settings)
 {
     fathom_a05_auto_t *const driver = &reader->driver.a05_auto;
     const fathom_a05_auto_config_t config = {
-        .select = fathom_output_line_break(&channel->line),
+        .select = fathom_output_line_break(&port->line),
         .stale_us = settings->timeout_us,
-        .gap_us = CHANNEL_STREAM_GAP_US,
+        .gap_us = PORT_STREAM_GAP_US,
         .window = settings->window,
         .probes = settings->probes,
     };
-    if (fathom_a05_auto_init(driver, &channel->line, &config) != FATHOM_OK) return false;
+    if (fathom_a05_auto_init(driver, &port->line, &config) != FATHOM_OK) return false;
     (void)dyp_open_stream(reader, &driver->base, fathom_a05_auto_sensor(driver));
-    return !settings->has_value || a05_select(reader, channel, settings->value);
+    return !settings->has_value || a05_select(reader, port, settings->value);
 }
 
-bool a05_read_modbus(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
+bool a05_read_modbus(reader_t *reader, port_t *port, const reader_settings_t *settings)
 {
     fathom_a05_modbus_t *const driver = &reader->driver.a05_modbus;
     const fathom_a05_modbus_config_t config = {
-        .modbus = driver_config(channel, settings),
+        .modbus = driver_config(port, settings),
         .window = settings->window,
         .registers = settings->registers,
         .probes = settings->probes,
     };
-    return fathom_a05_modbus_init(driver, &channel->modbus, &config) == FATHOM_OK &&
+    return fathom_a05_modbus_init(driver, &port->modbus, &config) == FATHOM_OK &&
            dyp_open_asked(reader, &driver->base, fathom_a05_modbus_sensor(driver));
 }
 
-bool a05_read_dyp(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
+bool a05_read_dyp(reader_t *reader, port_t *port, const reader_settings_t *settings)
 {
     fathom_a05_dyp_t *const driver = &reader->driver.a05_dyp;
     const fathom_a05_dyp_config_t config = {
-        .modbus = driver_config(channel, settings),
+        .modbus = driver_config(port, settings),
         .window = settings->window,
         .probes = settings->probes,
     };
-    return fathom_a05_dyp_init(driver, &channel->line, &config) == FATHOM_OK &&
+    return fathom_a05_dyp_init(driver, &port->line, &config) == FATHOM_OK &&
            dyp_open_asked(reader, &driver->base, fathom_a05_dyp_sensor(driver));
 }
 
 /* The contact (A05 4) goes to where the input's resistor does not pull; it is the normally open one, unless the user says
  * that near is the other level. */
-bool a05_read_relay(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
+bool a05_read_relay(reader_t *reader, port_t *port, const reader_settings_t *settings)
 {
     fathom_a05_relay_t *const driver = &reader->driver.a05_relay;
-    const pin_options_t *const wanted = &channel->pins.wanted;
+    const pin_options_t *const wanted = &port->pins.wanted;
     const bool conducts_high = wanted->bias == FATHOM_GPIO_BIAS_PULL_DOWN;
     const bool is_normally_closed = wanted->near == (conducts_high ? PINS_NEAR_LOW : PINS_NEAR_HIGH);
     const fathom_a05_relay_config_t config = {
-        .timing = driver_contact_timing(channel, settings),
+        .timing = driver_contact_timing(port, settings),
         .wiring = is_normally_closed ? FATHOM_A05_RELAY_NORMALLY_CLOSED : FATHOM_A05_RELAY_NORMALLY_OPEN,
         .level = conducts_high ? FATHOM_A05_RELAY_CONDUCTS_HIGH : FATHOM_A05_RELAY_CONDUCTS_LOW,
     };
-    return fathom_a05_relay_init(driver, &channel->pins.in, &channel->clock, &config) == FATHOM_OK &&
+    return fathom_a05_relay_init(driver, &port->pins.in, &port->clock, &config) == FATHOM_OK &&
            driver_open_contact(reader, &driver->base, fathom_a05_relay_sensor(driver));
 }
 

@@ -54,12 +54,12 @@ static fathom_status_t end(reader_t *reader)
     return status == FATHOM_OK ? fathom_output_set(&reader->selection.rx, FATHOM_OUTPUT_FREE) : status;
 }
 
-bool a05_select(reader_t *reader, channel_t *channel, uint8_t value)
+bool a05_select(reader_t *reader, port_t *port, uint8_t value)
 {
     driver_selection_t *const selection = &reader->selection;
     const bool is_low = value == FATHOM_REAL_TIME;
-    if (is_low && !driver_has_break(reader, channel)) return false;
-    driver_end_break(channel);
+    if (is_low && !driver_has_break(reader, port)) return false;
+    driver_end_break(port);
     selection->rx = fathom_output_line_break(reader->line);
     if (is_low && fathom_output_set(&selection->rx, FATHOM_OUTPUT_LOW) != FATHOM_OK) return false;
     selection->listening = reader->sensor;

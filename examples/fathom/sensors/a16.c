@@ -14,36 +14,36 @@ static fathom_status_t end_controlled(reader_t *reader)
 }
 
 /* A level at RX selects (A16 2(2)): that of the port's TX. */
-bool a16_read_auto(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
+bool a16_read_auto(reader_t *reader, port_t *port, const reader_settings_t *settings)
 {
     fathom_a16_auto_t *const driver = &reader->driver.a16_auto;
     fathom_a16_auto_config_t config = {
         .stale_us = settings->timeout_us,
-        .gap_us = CHANNEL_STREAM_GAP_US,
+        .gap_us = PORT_STREAM_GAP_US,
         .window = settings->window,
         .value = settings->value,
     };
     if (settings->has_value) {
-        driver_end_break(channel);
-        config.select = fathom_output_line_break(&channel->line);
+        driver_end_break(port);
+        config.select = fathom_output_line_break(&port->line);
     }
-    if (settings->value == FATHOM_REAL_TIME && !driver_has_break(reader, channel)) return false;
-    if (fathom_a16_auto_init(driver, &channel->line, &config) != FATHOM_OK) return false;
+    if (settings->value == FATHOM_REAL_TIME && !driver_has_break(reader, port)) return false;
+    if (fathom_a16_auto_init(driver, &port->line, &config) != FATHOM_OK) return false;
     reader->end = end_auto;
     return dyp_open_stream(reader, &driver->base, fathom_a16_auto_sensor(driver));
 }
 
 /* Triggered by a break of the port, whose TX is the module's RX. */
-bool a16_read_controlled(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
+bool a16_read_controlled(reader_t *reader, port_t *port, const reader_settings_t *settings)
 {
     fathom_a16_controlled_t *const driver = &reader->driver.a16_controlled;
-    const fathom_output_t trigger = fathom_output_line_break(&channel->line);
+    const fathom_output_t trigger = fathom_output_line_break(&port->line);
     const fathom_a16_controlled_config_t config = {
         .period_us = settings->period_us,
-        .gap_us = CHANNEL_STREAM_GAP_US,
+        .gap_us = PORT_STREAM_GAP_US,
         .window = settings->window,
     };
-    if (fathom_a16_controlled_init(driver, &channel->line, &trigger, &config) != FATHOM_OK) return false;
+    if (fathom_a16_controlled_init(driver, &port->line, &trigger, &config) != FATHOM_OK) return false;
     reader->sensor = fathom_a16_controlled_sensor(driver);
     reader->end = end_controlled;
     reader->frames = driver->stream.counters;
@@ -56,15 +56,15 @@ bool a16_read_controlled(reader_t *reader, channel_t *channel, const reader_sett
     return true;
 }
 
-bool a16_read_modbus(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
+bool a16_read_modbus(reader_t *reader, port_t *port, const reader_settings_t *settings)
 {
     fathom_a16_modbus_t *const driver = &reader->driver.a16_modbus;
     const fathom_a16_modbus_config_t config = {
-        .modbus = driver_config(channel, settings),
+        .modbus = driver_config(port, settings),
         .window = settings->window,
         .value = settings->value,
     };
-    return fathom_a16_modbus_init(driver, &channel->modbus, &config) == FATHOM_OK &&
+    return fathom_a16_modbus_init(driver, &port->modbus, &config) == FATHOM_OK &&
            dyp_open_asked(reader, &driver->base, fathom_a16_modbus_sensor(driver));
 }
 

@@ -8,11 +8,11 @@
 
 extern const setting_t a16_settings[];
 
-bool a16_read_auto(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
-bool a16_read_modbus(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
-bool a16_read_controlled(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
-bool a16_read_pwm(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
-bool a16_read_switch(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
+bool a16_read_auto(reader_t *reader, port_t *port, const reader_settings_t *settings);
+bool a16_read_modbus(reader_t *reader, port_t *port, const reader_settings_t *settings);
+bool a16_read_controlled(reader_t *reader, port_t *port, const reader_settings_t *settings);
+bool a16_read_pwm(reader_t *reader, port_t *port, const reader_settings_t *settings);
+bool a16_read_switch(reader_t *reader, port_t *port, const reader_settings_t *settings);
 
 void a16_simulate(device_t *device, const device_settings_t *settings, uint8_t simulated_as);
 

@@ -20,7 +20,7 @@ static fathom_status_t set_automatic_output(reader_t *reader, const setting_t *s
     (void)setting;
     (void)value;
     if (!is_started) {
-        const fathom_a16_auto_config_t config = {.gap_us = CHANNEL_STREAM_GAP_US};
+        const fathom_a16_auto_config_t config = {.gap_us = PORT_STREAM_GAP_US};
         if (fathom_a16_auto_init(&automatic, reader->line, &config) != FATHOM_OK) return FATHOM_ERR_ARGUMENT;
         fathom_a16_rs232_init(&rs232, &reader->driver.a16_modbus, &automatic);
         is_started = true;

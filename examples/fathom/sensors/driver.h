@@ -83,16 +83,16 @@ struct reader {
 };
 
 /* Returns true if the port can hold its TX low (a break). Otherwise the reader has a refusal. */
-bool driver_has_break(reader_t *reader, const channel_t *channel);
+bool driver_has_break(reader_t *reader, const port_t *port);
 
 /* Lets TX go high. */
-void driver_end_break(channel_t *channel);
+void driver_end_break(port_t *port);
 
 /* The configuration that all drivers with requests share. A driver refuses address 0 if its sensor cannot have it. */
-fathom_modbus_config_t driver_config(const channel_t *channel, const reader_settings_t *settings);
+fathom_modbus_config_t driver_config(const port_t *port, const reader_settings_t *settings);
 
 /* The configuration that all contacts share, and the last step of opening one. Returns true. */
-fathom_contact_timing_t driver_contact_timing(const channel_t *channel, const reader_settings_t *settings);
+fathom_contact_timing_t driver_contact_timing(const port_t *port, const reader_settings_t *settings);
 bool driver_open_contact(reader_t *reader, fathom_contact_t *contact, fathom_sensor_t sensor);
 
 /* The clock of the line. */

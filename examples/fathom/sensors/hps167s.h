@@ -8,8 +8,8 @@
 
 extern const setting_t hps167s_settings[];
 
-bool hps167s_read_modbus(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
-bool hps167s_read_auto(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
+bool hps167s_read_modbus(reader_t *reader, port_t *port, const reader_settings_t *settings);
+bool hps167s_read_auto(reader_t *reader, port_t *port, const reader_settings_t *settings);
 void hps167s_listen_unasked(reader_t *reader);
 
 /* Of mode modbus: reads the temperature as well. */

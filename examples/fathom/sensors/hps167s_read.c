@@ -13,16 +13,16 @@ static fathom_hps167s_limits_t *limits_of(reader_t *reader, const reader_setting
 
 /* ---- it is asked ---- */
 
-bool hps167s_read_modbus(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
+bool hps167s_read_modbus(reader_t *reader, port_t *port, const reader_settings_t *settings)
 {
     fathom_hps167s_t *const driver = &reader->driver.hps167s;
     fathom_hps167s_config_t config = {
-        .modbus = driver_config(channel, settings),
+        .modbus = driver_config(port, settings),
     };
     /* The driver's period is also that of the temperature. */
     if (settings->temperature_us != 0) config.modbus.period_us = 0;
     fathom_hps167s_limits_t *const limits = limits_of(reader, settings);
-    if (fathom_hps167s_init(driver, &channel->modbus, &config) != FATHOM_OK) return false;
+    if (fathom_hps167s_init(driver, &port->modbus, &config) != FATHOM_OK) return false;
     if (limits != NULL && fathom_hps167s_set_limits(driver, limits) != FATHOM_OK) return false;
     reader->sensor = fathom_hps167s_sensor(driver);
     reader->unit = &driver->unit;
@@ -75,7 +75,7 @@ static uint32_t due_us_auto(void *ctx)
     return fathom_due_us(&sensor, 1);
 }
 
-bool hps167s_read_auto(reader_t *reader, channel_t *channel, const reader_settings_t *settings)
+bool hps167s_read_auto(reader_t *reader, port_t *port, const reader_settings_t *settings)
 {
     fathom_hps167s_auto_t *const driver = &reader->unasked;
     const fathom_hps167s_auto_config_t config = {
@@ -83,7 +83,7 @@ bool hps167s_read_auto(reader_t *reader, channel_t *channel, const reader_settin
         .address = settings->address,
     };
     fathom_hps167s_limits_t *const limits = limits_of(reader, settings);
-    if (fathom_hps167s_auto_init(driver, &channel->line, &config) != FATHOM_OK) return false;
+    if (fathom_hps167s_auto_init(driver, &port->line, &config) != FATHOM_OK) return false;
     if (limits != NULL && fathom_hps167s_auto_set_limits(driver, limits) != FATHOM_OK) return false;
     reader->sensor = (fathom_sensor_t){poll_auto, due_us_auto, reader};
     reader->frames = reader->unasked_frames;

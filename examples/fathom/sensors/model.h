@@ -29,8 +29,8 @@ typedef struct model_mode {
     uint8_t pins;         /* MODEL_PIN_...: those that it needs; 0: it has a serial line */
     uint8_t may_pins;     /* and that it may have as well */
     uint8_t simulated_as; /* for model_t.simulate; 0: `fathom sim` does not simulate it */
-    /* Initialises the driver through an open channel. Returns false if the driver refuses the settings. */
-    bool (*read)(reader_t *reader, channel_t *channel, const reader_settings_t *settings);
+    /* Initialises the driver through an open port. Returns false if the driver refuses the settings. */
+    bool (*read)(reader_t *reader, port_t *port, const reader_settings_t *settings);
     void (*listen_unasked)(
         reader_t *reader); /* reader_listen_unasked; NULL: the sensor sends nothing unasked */
 } model_mode_t;

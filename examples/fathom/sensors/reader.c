@@ -9,16 +9,15 @@
 
 /* ---- open and close ---- */
 
-bool reader_open(reader_t **reader, const model_mode_t *mode, channel_t *channel,
-                 const reader_settings_t *settings)
+bool reader_open(reader_t **reader, const model_mode_t *mode, port_t *port, const reader_settings_t *settings)
 {
     if (*reader == NULL) *reader = calloc(1, sizeof **reader);
     if (*reader == NULL) return false;
     const uint16_t sequence = (*reader)->sequence != NULL ? *(*reader)->sequence : 0;
     memset(*reader, 0, sizeof **reader);
     (*reader)->mode = mode;
-    (*reader)->line = &channel->line;
-    if (!mode->read(*reader, channel, settings)) return false;
+    (*reader)->line = &port->line;
+    if (!mode->read(*reader, port, settings)) return false;
     *(*reader)->sequence = sequence;
     return true;
 }
@@ -160,24 +159,24 @@ reader_facts_t reader_facts(const reader_t *reader)
 
 /* ---- what drivers share ---- */
 
-bool driver_has_break(reader_t *reader, const channel_t *channel)
+bool driver_has_break(reader_t *reader, const port_t *port)
 {
-    if (port_can_break(channel)) return true;
+    if (port_can_break(port)) return true;
     reader->refusal =
         "this port cannot hold its TX low (a break), which selects real-time values; try another "
         "adapter, or connect the sensor's RX to its ground and leave --value out";
     return false;
 }
 
-void driver_end_break(channel_t *channel)
+void driver_end_break(port_t *port)
 {
-    (void)fathom_line_break(&channel->line, false); /* a port that cannot end a break holds none */
+    (void)fathom_line_break(&port->line, false); /* a port that cannot end a break holds none */
 }
 
-fathom_modbus_config_t driver_config(const channel_t *channel, const reader_settings_t *settings)
+fathom_modbus_config_t driver_config(const port_t *port, const reader_settings_t *settings)
 {
     return (fathom_modbus_config_t){
-        .line_settings = port_has_line(channel) ? settings->line : NULL, /* a connection has none */
+        .line_settings = port_has_line(port) ? settings->line : NULL, /* a connection has none */
         .period_us = settings->period_us,
         .timeout_us = settings->timeout_us,
         .backoff_us = settings->backoff_us,
@@ -187,13 +186,13 @@ fathom_modbus_config_t driver_config(const channel_t *channel, const reader_sett
     };
 }
 
-fathom_contact_timing_t driver_contact_timing(const channel_t *channel, const reader_settings_t *settings)
+fathom_contact_timing_t driver_contact_timing(const port_t *port, const reader_settings_t *settings)
 {
     enum { WITHOUT_EVENT_US = 1000000 }; /* A change without an event is seen within this time. */
     /* Without an interval, changes alone are readings, as far as the library allows. */
     const uint32_t repeat_us = settings->repeat_us != 0 ? settings->repeat_us : FATHOM_MAX_DURATION_US;
     return (fathom_contact_timing_t){.period_us = settings->period_us != 0 ? settings->period_us : repeat_us,
-                                     .interval_us = channel->pins.wakes ? WITHOUT_EVENT_US : 0,
+                                     .interval_us = port->pins.wakes ? WITHOUT_EVENT_US : 0,
                                      .stale_us = settings->timeout_us};
 }
 

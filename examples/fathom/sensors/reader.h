@@ -7,7 +7,7 @@
 
 #include "fathom/engine/stream.h"
 #include "fathom/sensor/internal/dyp.h"
-#include "ports/channel.h"
+#include "ports/port.h"
 
 /* Settings of the user that only some sensors have, or only in some modes. */
 enum {
@@ -49,11 +49,11 @@ typedef struct reader reader_t;
 struct model_mode;
 
 /*
- * Starts to read through an open channel, which must stay valid. *reader is NULL before the first call. A later call
+ * Starts to read through an open port, which must stay valid. *reader is NULL before the first call. A later call
  * starts again, for example after the port was lost, and continues the sequence numbers. Returns false if the port or
  * the driver refuses the settings; reader_refusal() has the reason.
  */
-bool reader_open(reader_t **reader, const struct model_mode *mode, channel_t *channel,
+bool reader_open(reader_t **reader, const struct model_mode *mode, port_t *port,
                  const reader_settings_t *settings);
 const char *reader_refusal(const reader_t *reader);
 

@@ -54,7 +54,7 @@ static bool read_sample(session_t *session, fathom_sample_t *sample)
 
 static bool discard_samples(session_t *session, uint32_t for_us)
 {
-    const host_t *const host = session->channel.host;
+    const host_t *const host = session->port.host;
     const uint64_t end_us = host->now_us(host->ctx) + for_us;
     fathom_sample_t sample;
     do

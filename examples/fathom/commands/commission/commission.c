@@ -142,7 +142,7 @@ static commission_end_t try_next(commission_t *run, uint8_t address)
 static void work(commission_t *run)
 {
     enum { PAUSE_US = 200000 };
-    const host_t *const host = run->session.channel.host;
+    const host_t *const host = run->session.port.host;
     uint64_t since_us = host->now_us(host->ctx);
     for (uint8_t address; (address = next_address(run)) != 0;) {
         const commission_end_t end = try_next(run, address);

@@ -21,7 +21,7 @@ void commission_prompt(commission_t *run, const char *format, ...)
 
 bool commission_has_ended(const commission_t *run)
 {
-    const host_t *const host = run->session.channel.host;
+    const host_t *const host = run->session.port.host;
     return host->has_ended(host->ctx);
 }
 

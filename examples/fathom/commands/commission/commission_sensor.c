@@ -107,7 +107,7 @@ static commission_end_t check_places(commission_t *run, const record_unit_t *pla
 
 static uint64_t utc_us(const commission_t *run)
 {
-    const host_t *const host = run->session.channel.host;
+    const host_t *const host = run->session.port.host;
     return host->utc_us(host->ctx);
 }
 

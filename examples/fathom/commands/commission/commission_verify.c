@@ -94,7 +94,7 @@ static fathom_status_t measure(commission_t *run, fathom_sample_t *best)
 
 static bool measures(commission_t *run, const record_unit_t *unit, fathom_sample_t *sample)
 {
-    const host_t *const host = run->session.channel.host;
+    const host_t *const host = run->session.port.host;
     const uint64_t begin_us = host->now_us(host->ctx);
     fathom_status_t status = FATHOM_PENDING;
     do {

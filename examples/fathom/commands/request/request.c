@@ -8,7 +8,7 @@
 
 /* fathom request: one Modbus request, as the user has written it. */
 
-static channel_t channel;
+static port_t port;
 
 static void help(FILE *to)
 {
@@ -72,13 +72,13 @@ static int ask(const request_t *request)
     port_counts_t port_counts;
     counters_t counters;
     memset(&counters, 0, sizeof counters);
-    counters_begin_port(&port_counts, &channel);
-    request_ask(&asked, request, &channel);
-    (void)counters_take(&counters, &port_counts, &channel, NULL);
+    counters_begin_port(&port_counts, &port);
+    request_ask(&asked, request, &port);
+    (void)counters_take(&counters, &port_counts, &port, NULL);
     errno = 0;
-    request_print(&asked, &channel);
+    request_print(&asked, &port);
     const int error = output_flush();
-    request_tell(&asked, &channel, &counters);
+    request_tell(&asked, &port, &counters);
     if (error != 0) (void)fprintf(stderr, "fathom: the output cannot be written: %s\n", strerror(error));
     return error == 0 && request_is_good(&asked) ? STATUS_OK : STATUS_FAILED;
 }
@@ -91,16 +91,16 @@ static int run(const host_t *host, int argc, char **argv)
     if (wants_help) return command_help(&request_command);
     if (request_effects(&request) && !request.is_meant)
         return usage_error("request", "nothing was sent; --yes sends it all the same");
-    memset(&channel, 0, sizeof channel);
+    memset(&port, 0, sizeof port);
     if (!host->begin(host->ctx)) return STATUS_FAILED;
     const port_settings_t settings = {
         .path = request.path, .line = request.line, .echo = request.echo, .rs485 = request.rs485};
-    if (!port_open_now(&channel, host, &settings)) {
-        (void)fprintf(stderr, "fathom: %s\n", port_error(&channel));
+    if (!port_open_now(&port, host, &settings)) {
+        (void)fprintf(stderr, "fathom: %s\n", port_error(&port));
         return STATUS_FAILED;
     }
     const int status = ask(&request);
-    port_close(&channel);
+    port_close(&port);
     return status;
 }
 

@@ -3,7 +3,7 @@
 #define REQUEST_H
 
 #include "commands/request/request_options.h"
-#include "ports/channel.h"
+#include "ports/port.h"
 
 typedef enum {
     REQUEST_ANSWERED,
@@ -29,8 +29,8 @@ typedef struct {
     uint8_t length;        /* 0: there is no response */
 } request_ask_t;
 
-/* Sends the request once on an open channel and waits for its outcome. */
-void request_ask(request_ask_t *ask, const request_t *request, channel_t *channel);
+/* Sends the request once on an open port and waits for its outcome. */
+void request_ask(request_ask_t *ask, const request_t *request, port_t *port);
 
 /* Prints on stderr what the request may do, a line for each effect. Returns true if it needs --yes. */
 bool request_effects(const request_t *request);

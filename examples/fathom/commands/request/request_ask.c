@@ -126,7 +126,7 @@ static const fathom_protocol_t *protocol_of(const request_t *request)
  * ends after the request, a silence of 3.5 characters and its own characters; an echo arrives at the latest when the
  * adapter releases it.
  */
-static request_outcome_t judge_copy(const request_ask_t *ask, const channel_t *channel)
+static request_outcome_t judge_copy(const request_ask_t *ask, const port_t *port)
 {
     const request_t *const request = ask->request;
     const uint64_t bits = fathom_character_bits(&request->line);
@@ -134,8 +134,8 @@ static request_outcome_t judge_copy(const request_ask_t *ask, const channel_t *c
     const uint64_t silence_us = FATHOM_T3_5_US(request->line.baud, bits);
     const uint64_t took_us = ask->evidence.slowest_us;
     if (ask->evidence.echoes != 1 || ask->evidence.rest != 0) return REQUEST_NO_RESPONSE;
-    if (took_us > wire_us + CHANNEL_RESPONSE_GAP_US) return REQUEST_ANSWERED;
-    if (port_has_wire(channel) && took_us < 2 * wire_us + silence_us) return REQUEST_NO_RESPONSE;
+    if (took_us > wire_us + PORT_RESPONSE_GAP_US) return REQUEST_ANSWERED;
+    if (port_has_wire(port) && took_us < 2 * wire_us + silence_us) return REQUEST_NO_RESPONSE;
     return REQUEST_ECHO;
 }
 
@@ -146,8 +146,7 @@ static bool equals_acknowledgement(const request_t *request)
     return !request_is_read(request) && function != WRITE_COILS && function != REQUEST_WRITE_MANY;
 }
 
-static request_outcome_t outcome_of(const request_ask_t *ask, const channel_t *channel,
-                                    fathom_status_t status)
+static request_outcome_t outcome_of(const request_ask_t *ask, const port_t *port, fathom_status_t status)
 {
     switch (status) {
     case FATHOM_OK:
@@ -159,7 +158,7 @@ static request_outcome_t outcome_of(const request_ask_t *ask, const channel_t *c
     case FATHOM_ERR_CHECKSUM:
         return REQUEST_DAMAGED;
     case FATHOM_ERR_ECHO:
-        return equals_acknowledgement(ask->request) ? judge_copy(ask, channel) : REQUEST_NO_RESPONSE;
+        return equals_acknowledgement(ask->request) ? judge_copy(ask, port) : REQUEST_NO_RESPONSE;
     case FATHOM_ERR_NO_RESPONSE:
         return REQUEST_NO_RESPONSE;
     case FATHOM_ERR_LINE_BUSY:
@@ -172,29 +171,28 @@ static request_outcome_t outcome_of(const request_ask_t *ask, const channel_t *c
 }
 
 /* Counts the bytes besides the response and the echo, such as those of another unit at the same address. */
-static uint32_t count_more(const request_ask_t *ask, const channel_t *channel)
+static uint32_t count_more(const request_ask_t *ask, const port_t *port)
 {
-    const uint32_t echo =
-        fathom_line_get_echo(&channel->line) == FATHOM_LINE_ECHO_ON ? ask->request->length : 0;
+    const uint32_t echo = fathom_line_get_echo(&port->line) == FATHOM_LINE_ECHO_ON ? ask->request->length : 0;
     const uint32_t known = ask->length + echo;
     return ask->length != 0 && ask->evidence.bytes > known ? ask->evidence.bytes - known : 0;
 }
 
-void request_ask(request_ask_t *ask, const request_t *request, channel_t *channel)
+void request_ask(request_ask_t *ask, const request_t *request, port_t *port)
 {
     memset(ask, 0, sizeof *ask);
     ask->request = request;
     ask->transaction.protocol = protocol_of(request);
     ask->transaction.address = request->frame[REQUEST_UNIT];
     ask->transaction.timeout_us = request->timeout_us;
-    if (port_has_line(channel)) port_listen(channel, PORT_LISTEN_US);
-    listener_forget(&channel->listener);
-    fathom_status_t status = fathom_line_submit(&channel->line, &ask->transaction);
-    if (status == FATHOM_PENDING) status = port_finish(channel, &ask->transaction);
-    if (ask->length != 0 && port_has_line(channel)) port_listen(channel, PORT_RESPONSE_GAP_US);
-    listener_judge(&channel->listener, request->frame[REQUEST_UNIT], &ask->evidence);
-    ask->outcome = outcome_of(ask, channel, status);
-    ask->more = count_more(ask, channel);
+    if (port_has_line(port)) port_listen(port, PORT_LISTEN_US);
+    listener_forget(&port->listener);
+    fathom_status_t status = fathom_line_submit(&port->line, &ask->transaction);
+    if (status == FATHOM_PENDING) status = port_finish(port, &ask->transaction);
+    if (ask->length != 0 && port_has_line(port)) port_listen(port, PORT_RESPONSE_GAP_US);
+    listener_judge(&port->listener, request->frame[REQUEST_UNIT], &ask->evidence);
+    ask->outcome = outcome_of(ask, port, status);
+    ask->more = count_more(ask, port);
     if (ask->outcome != REQUEST_ANSWERED || ask->length != 0) return;
     memcpy(ask->response, request->frame, request->length); /* the copy, which is no echo */
     ask->length = request->length;

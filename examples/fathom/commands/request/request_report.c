@@ -59,14 +59,14 @@ static void print_registers(const request_ask_t *ask)
     }
 }
 
-static void print_text(const request_ask_t *ask, const channel_t *channel, const decode_frame_t *frame)
+static void print_text(const request_ask_t *ask, const port_t *port, const decode_frame_t *frame)
 {
-    const bool was_sent = channel->listener.request_length != 0;
+    const bool was_sent = port->listener.request_length != 0;
     if (was_sent) print_bytes("sent", ask->request->frame, ask->request->length);
     if (ask->length != 0)
         print_bytes("received", ask->response, ask->length);
     else if (was_sent)
-        print_bytes("heard", channel->listener.window, channel->listener.have);
+        print_bytes("heard", port->listener.window, port->listener.have);
     if (has_registers(ask)) print_registers(ask);
     for (uint8_t i = 0; i != frame->meanings; i++) decoding_put_text(stdout, &frame->meaning[i]);
 }
@@ -100,7 +100,7 @@ static void put_exception(json_t *json, uint8_t code)
     json_end(json, '}');
 }
 
-static void print_json(const request_ask_t *ask, const channel_t *channel, const decode_frame_t *frame)
+static void print_json(const request_ask_t *ask, const port_t *port, const decode_frame_t *frame)
 {
     static const char *const statuses[] = {
         [REQUEST_ANSWERED] = "answered",         [REQUEST_SENT] = "sent",
@@ -109,7 +109,7 @@ static void print_json(const request_ask_t *ask, const channel_t *channel, const
         [REQUEST_NO_RESPONSE] = "no_response",   [REQUEST_LINE_BUSY] = "line_busy",
         [REQUEST_OTHER_MASTER] = "other_master", [REQUEST_FAILED] = "failed"};
     const request_t *const request = ask->request;
-    const bool was_sent = channel->listener.request_length != 0;
+    const bool was_sent = port->listener.request_length != 0;
     json_t json = {.to = stdout};
     json_begin(&json, NULL, '{');
     json_value(&json, "address", "%u", request->frame[REQUEST_UNIT]);
@@ -119,7 +119,7 @@ static void print_json(const request_ask_t *ask, const channel_t *channel, const
     if (ask->length != 0)
         json_bytes(&json, "received", ask->response, ask->length);
     else if (was_sent)
-        json_bytes(&json, "heard", channel->listener.window, channel->listener.have);
+        json_bytes(&json, "heard", port->listener.window, port->listener.have);
     if (has_registers(ask)) put_registers(&json, ask);
     if (ask->outcome == REQUEST_REFUSED) put_exception(&json, ask->response[CODE]);
     json_begin(&json, "meanings", '[');
@@ -129,7 +129,7 @@ static void print_json(const request_ask_t *ask, const channel_t *channel, const
     (void)puts("");
 }
 
-void request_print(const request_ask_t *ask, const channel_t *channel)
+void request_print(const request_ask_t *ask, const port_t *port)
 {
     decode_frame_t frame;
     decode_piece_t piece;
@@ -137,9 +137,9 @@ void request_print(const request_ask_t *ask, const channel_t *channel)
     if (ask->request->model != NULL && ask->outcome == REQUEST_ANSWERED && ask->length != 0)
         request_decode(&frame, &piece, ask->request, ask->response, ask->length);
     if (ask->request->is_json)
-        print_json(ask, channel, &frame);
+        print_json(ask, port, &frame);
     else
-        print_text(ask, channel, &frame);
+        print_text(ask, port, &frame);
 }
 
 /* ---- what went wrong ---- */
@@ -171,10 +171,10 @@ static fathom_status_t status_of(request_outcome_t outcome)
     }
 }
 
-static void print_advice(const request_ask_t *ask, const channel_t *channel, const counters_t *counters,
+static void print_advice(const request_ask_t *ask, const port_t *port, const counters_t *counters,
                          fathom_status_t status)
 {
-    failure_t failure = failure_of_request(status, channel);
+    failure_t failure = failure_of_request(status, port);
     if (ask->request->model != NULL) failure.model = ask->request->model;
     failure.counters = counters;
     failure.line = &ask->request->line;
@@ -184,14 +184,14 @@ static void print_advice(const request_ask_t *ask, const channel_t *channel, con
     advice_print(stderr, &failure);
 }
 
-static void print_failure(const request_ask_t *ask, const channel_t *channel, const counters_t *counters)
+static void print_failure(const request_ask_t *ask, const port_t *port, const counters_t *counters)
 {
-    const bool was_sent = channel->listener.request_length != 0;
-    const bool is_lost = port_is_lost(channel);
+    const bool was_sent = port->listener.request_length != 0;
+    const bool is_lost = port_is_lost(port);
     if (is_lost || ask->transaction.status != FATHOM_ERR_CANCELLED)
-        print_advice(ask, channel, counters, FATHOM_ERR_PORT);
+        print_advice(ask, port, counters, FATHOM_ERR_PORT);
     else if (was_sent)
-        print_advice(ask, channel, counters, FATHOM_ERR_CANCELLED);
+        print_advice(ask, port, counters, FATHOM_ERR_CANCELLED);
     else
         (void)fputs("the command ended before the line was silent, and nothing was sent", stderr);
 }
@@ -205,7 +205,7 @@ static void tell_more(const request_ask_t *ask)
                                                : " than the response");
 }
 
-void request_tell(const request_ask_t *ask, const channel_t *channel, const counters_t *counters)
+void request_tell(const request_ask_t *ask, const port_t *port, const counters_t *counters)
 {
     const uint8_t unit = ask->request->frame[REQUEST_UNIT];
     tell_more(ask);
@@ -226,8 +226,8 @@ void request_tell(const request_ask_t *ask, const channel_t *channel, const coun
             "unit %u: the response does not fit the request. Check that no other unit has this address",
             unit);
     else if (ask->outcome == REQUEST_FAILED)
-        print_failure(ask, channel, counters);
+        print_failure(ask, port, counters);
     else
-        print_advice(ask, channel, counters, status_of(ask->outcome));
+        print_advice(ask, port, counters, status_of(ask->outcome));
     (void)fputs("\n", stderr);
 }
