@@ -265,6 +265,32 @@ TEST(an_address_has_150_ms_on_the_line_of_a16_and_a05_and_100_ms_elsewhere)
                     1010000 + 4583 + 100000);
 }
 
+/* ---- wrong usage ---- */
+
+REFUSES(a_scan_needs_a_serial_port, "scan", {"", "--port is missing"},
+        {"--port /nowhere a16", "takes options only, not 'a16'"},
+        {"--port tcp:127.0.0.1",
+         "scan needs a serial port. The rates behind 'tcp:127.0.0.1' are those of the gateway."},
+        {"--port /nowhere --port /elsewhere", "--port is given twice"})
+
+#define ADDRESSES "It takes an address from 1 to 254, a range such as 1-32, or 0."
+REFUSES(a_wrong_range_of_addresses_is_refused, "scan --port line --address",
+        {"0-5", "--address is '0-5'. " ADDRESSES}, {"255", ADDRESSES}, {"00", ADDRESSES},
+        {"1-255", ADDRESSES}, {"9-8", ADDRESSES}, {"1-", ADDRESSES}, {"-5", ADDRESSES}, {"1-5-9", ADDRESSES})
+
+REFUSES(a_wrong_list_is_refused, "scan --port line",
+        {"--baud 4800", "--baud is '4800'. It takes all, or some of 9600, "},
+        {"--baud All", "--baud is 'All'"}, {"--baud 9600,", "--baud is '9600,'"},
+        {"--baud ,9600", "--baud is ',9600'"},
+        {"--parity mark",
+         "--parity is 'mark'. It takes all, or some of none, even and odd with commas between them."},
+        {"--parity none,", "--parity is 'none,'"})
+
+REFUSES(a_wrong_number_or_word_is_refused, "scan --port line",
+        {"--stop-bits 0", "a whole number from 1 to 2"}, {"--timeout 0", "a whole number from 1 to 10000"},
+        {"--retries 10", "a whole number from 0 to 9"}, {"--listen 0", "a whole number from 1 to 60"},
+        {"--format csv", "--format is 'csv'. It takes text or json."}, {"--fast", "unknown option '--fast'"})
+
 /* ---- how it ends ---- */
 
 TEST(a_rate_that_the_port_does_not_have_is_left_out)

@@ -8,54 +8,32 @@
 EACH_BEGINS(bench_begin())
 static const suite_t suite = {.set_up = begins};
 
-/* Refuses the words in one line. */
-static void refuses(const char *words, const char *message)
-{
-    const tool_run_t *const run = tool_run(&bench.tool, "sim %s", words);
-    const char *const end = strchr(run->err, '\n');
-    if (run->status != 2 || run->out[0] != '\0' || strstr(run->err, message) == NULL || end == NULL ||
-        end[1] != '\0')
-        fail_msg("sim %s: exit status %d\n%s%s", words, run->status, run->out, run->err);
-}
-
-typedef struct {
-    const char *words;
-    const char *message;
-} row_t;
-
-#define REFUSES(name, ...)                                                                                   \
-    TEST(name)                                                                                               \
-    {                                                                                                        \
-        const row_t rows[] = {__VA_ARGS__};                                                                  \
-        for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) refuses(rows[i].words, rows[i].message);  \
-    }
-
 /* ---- sensors ---- */
 
-REFUSES(a_sensor_that_does_not_exist_is_refused, {"", "no sensor is named"}, {"a17", "unknown sensor 'a17'"},
-        {"a16:0", "from 1 to 254"}, {"a16:255", "255"}, {"a16:1x", "1x"}, {"hps167s:33", "from 1 to 32"},
-        {"a16:1:wave", "wave"}, {"a16:1:auto:1", "auto:1"})
+REFUSES(a_sensor_that_does_not_exist_is_refused, "sim", {"", "no sensor is named"},
+        {"a17", "unknown sensor 'a17'"}, {"a16:0", "from 1 to 254"}, {"a16:255", "255"}, {"a16:1x", "1x"},
+        {"hps167s:33", "from 1 to 32"}, {"a16:1:wave", "wave"}, {"a16:1:auto:1", "auto:1"})
 
-REFUSES(a_mode_on_pins_is_not_simulated, {"a16:pwm", "a16 in mode pwm has pins and no line"})
+REFUSES(a_mode_on_pins_is_not_simulated, "sim", {"a16:pwm", "a16 in mode pwm has pins and no line"})
 
-REFUSES(two_sensors_that_send_automatically_are_refused,
+REFUSES(two_sensors_that_send_automatically_are_refused, "sim",
         {"a16 a05", "a16 and a05 would both send automatically"},
         {"a16 hps167s:2 a05", "a16 and a05 would both send automatically"})
 
 TEST(more_than_64_sensors_are_refused)
 {
-    char words[65 * sizeof "a16::modbus"] = "";
+    char words[65 * sizeof "a16::modbus" + 4] = "sim ";
     for (int i = 0; i != 65; i++) strcat(words, "a16::modbus ");
-    refuses(words, "a line has at most 64 sensors, not 65");
+    assert_refused(words, "a line has at most 64 sensors, not 65");
 }
 
 /* ---- options and keys ---- */
 
-REFUSES(a_wrong_option_is_refused, {"a16 --port /nowhere", "unknown option '--port'"},
+REFUSES(a_wrong_option_is_refused, "sim", {"a16 --port /nowhere", "unknown option '--port'"},
         {"a16 --seed 4294967296", "It takes a whole number from 0 to 4294967295"},
         {"a16 --fault", "--fault needs a value"})
 
-REFUSES(a_wrong_key_is_refused_with_its_sensor, {"a16,", "a16: unknown key ''"},
+REFUSES(a_wrong_key_is_refused_with_its_sensor, "sim", {"a16,", "a16: unknown key ''"},
         {"a16:1,1500", "a16:1: unknown key '1500'"}, {"a16,colour=red", "unknown key 'colour'"},
         {"a16,Distance=1", "Did you mean distance?"}, {"a16,=1", "unknown key ''"},
         {"a16,fault", "fault has no value"},
@@ -63,7 +41,7 @@ REFUSES(a_wrong_key_is_refused_with_its_sensor, {"a16,", "a16: unknown key ''"},
         {"hps167s:7 a16:1:modbus,with=count-03", "a16:1:modbus: unknown trait of a16 'count-03'"},
         {"a05,distance=1000,2000,fault", "distance of a05 is 'fault'"})
 
-REFUSES(a_wrong_distance_is_refused,
+REFUSES(a_wrong_distance_is_refused, "sim",
         {"a16 --distance 1000,2000", "distance '1000,2000' is more than the 1 of a16"},
         {"a05 --distance 1,2,3,4,5", "more than the 4 of a05"},
         {"a16 --distance 65536",
@@ -74,7 +52,7 @@ REFUSES(a_wrong_distance_is_refused,
         {"hps167s --distance interference", "no-target, fault."},
         {"a16:1:modbus a05:2:modbus hps167s:7 --distance 1,2", "distance '1,2' is more than the 1 of a16"})
 
-REFUSES(a_rate_that_no_sensor_has_is_refused, {"a16 --baud 19200", "a16 does not have the rate 19200"},
+REFUSES(a_rate_that_no_sensor_has_is_refused, "sim", {"a16 --baud 19200", "a16 does not have the rate 19200"},
         {"a05 a16::modbus --baud 19200", "a05 does not have the rate 19200"},
         {"hps167s --baud 9600", "It takes 19200, 57600, 115200 or 230400"},
         {"hps167s --baud 38400", "'38400'"}, {"hps167s --baud 19200x", "'19200x'"}, {"hps167s --baud=", "''"},
@@ -82,7 +60,7 @@ REFUSES(a_rate_that_no_sensor_has_is_refused, {"a16 --baud 19200", "a16 does not
 
 #define TAKES_S  "It takes warm-up=S, a whole number from 1 to 255."
 #define TAKES_MS "It takes unasked=MS, a number from 1 to 60000."
-REFUSES(a_wrong_trait_is_refused, {"a16 --with unasked=5", "unknown trait of a16 'unasked'"},
+REFUSES(a_wrong_trait_is_refused, "sim", {"a16 --with unasked=5", "unknown trait of a16 'unasked'"},
         {"a16:1:modbus a05:2:modbus hps167s:7 --with x",
          "unknown trait of a16 'x'. It is one of exceptions, broadcast, "},
         {"hps167s --with warm-up", TAKES_S}, {"hps167s --with warm-up=", TAKES_S},
@@ -113,7 +91,7 @@ TEST(the_help_lists_every_fault)
     }
 }
 
-REFUSES(a_wrong_fault_is_refused,
+REFUSES(a_wrong_fault_is_refused, "sim",
         {"a16 --fault flip", "unknown fault of a16 in mode auto 'flip'. It is one of stuck, "},
         {"a16 --fault flip-bt", "Did you mean flip-bit?"}, {"a16 --fault=", "fault of a16 in mode auto ''"},
         {"a16 --fault =0.5", "fault of a16 in mode auto ''"},
@@ -136,27 +114,28 @@ TEST(a_wrong_chance_of_a_fault_is_refused)
     for (size_t i = 0; i != sizeof chances / sizeof chances[0]; i++) {
         char words[80];
         char message[160];
-        (void)snprintf(words, sizeof words, "a16 --fault drop=%s", chances[i]);
+        (void)snprintf(words, sizeof words, "sim a16 --fault drop=%s", chances[i]);
         (void)snprintf(message, sizeof message,
                        "fault is 'drop=%s'. It takes KIND[=P[@N]], P from 0.000001 to 1 or as 5%%, N from 1.",
                        chances[i]);
-        refuses(words, message);
+        assert_refused(words, message);
     }
 }
 
 TEST(more_than_32_faults_are_refused)
 {
-    char words[500] = "a16";
+    char words[500] = "sim a16";
     for (int i = 0; i != 33; i++) strcat(words, " --fault drop");
-    refuses(words, "--fault is 'drop'. It takes at most 32 faults.");
-    refuses("a16,fault=drop --fault stuck --fault stuck --fault stuck --fault stuck --fault stuck --fault "
-            "stuck --fault "
-            "stuck --fault stuck --fault stuck --fault stuck --fault stuck --fault stuck --fault stuck "
-            "--fault stuck "
-            "--fault stuck --fault stuck --fault stuck --fault stuck --fault stuck --fault stuck --fault "
-            "stuck --fault "
-            "stuck --fault stuck --fault stuck --fault stuck --fault stuck --fault stuck --fault stuck "
-            "--fault stuck "
-            "--fault stuck --fault stuck --fault stuck",
-            "a16: a sensor has at most 32 faults.");
+    assert_refused(words, "--fault is 'drop'. It takes at most 32 faults.");
+    assert_refused(
+        "sim a16,fault=drop --fault stuck --fault stuck --fault stuck --fault stuck --fault stuck --fault "
+        "stuck --fault "
+        "stuck --fault stuck --fault stuck --fault stuck --fault stuck --fault stuck --fault stuck "
+        "--fault stuck "
+        "--fault stuck --fault stuck --fault stuck --fault stuck --fault stuck --fault stuck --fault "
+        "stuck --fault "
+        "stuck --fault stuck --fault stuck --fault stuck --fault stuck --fault stuck --fault stuck "
+        "--fault stuck "
+        "--fault stuck --fault stuck --fault stuck",
+        "a16: a sensor has at most 32 faults.");
 }

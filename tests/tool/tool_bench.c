@@ -42,3 +42,12 @@ void bench_hps167s(fathom_sim_hps167s_config_t config)
     fathom_sim_hps167s_init(&bench.hps167s, &config);
     fathom_sim_attach(&bench.line, &bench.hps167s.device, bench.clock.now_us);
 }
+
+void assert_refused(const char *line, const char *text)
+{
+    const tool_run_t *const run = tool_run(&bench.tool, "%s", line);
+    const char *const end = strchr(run->err, '\n');
+    if (run->status != 2 || run->out[0] != '\0' || strstr(run->err, text) == NULL || end == NULL ||
+        end[1] != '\0')
+        fail_msg("%s: exit status %d\n%s%s", line, run->status, run->out, run->err);
+}

@@ -2,6 +2,8 @@
 #ifndef FATHOM_TESTS_TOOL_BENCH_H
 #define FATHOM_TESTS_TOOL_BENCH_H
 
+#include <stdio.h>
+
 #include "sim/a05.h"
 #include "sim/a16.h"
 #include "sim/hps167s.h"
@@ -38,5 +40,25 @@ void bench_hps167s(fathom_sim_hps167s_config_t config);
         if (asserted->status != (exit_status))                                                               \
             fail_msg("exit status %d\n%s%s", asserted->status, asserted->out, asserted->err);                \
     } while (0)
+
+/* Runs a command that is refused: exit status 2, and one line on standard error, which has this text. */
+void assert_refused(const char *line, const char *text);
+
+/* A test of several of them: {line, text}, ... */
+typedef struct {
+    const char *line;
+    const char *text;
+} refused_t;
+
+#define REFUSES(name, command, ...)                                                                          \
+    TEST(name)                                                                                               \
+    {                                                                                                        \
+        const refused_t rows[] = {__VA_ARGS__};                                                              \
+        for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {                                         \
+            char line[1024];                                                                                 \
+            (void)snprintf(line, sizeof line, "%s %s", command, rows[i].line);                               \
+            assert_refused(line, rows[i].text);                                                              \
+        }                                                                                                    \
+    }
 
 #endif

@@ -14,13 +14,12 @@ uint64_t scan_now_us(const scan_t *scan) { return scan->port.host->now_us(scan->
 
 void scan_report(scan_t *scan, const scan_finding_t *finding)
 {
-    const scan_options_t *const options = &scan->options;
-    scan_progress_clear(&scan->progress);
+    progress_clear(&scan->progress);
     errno = 0;
-    if (options->is_json)
-        scan_print_json(stdout, finding, options->port);
+    if (scan->settings->is_json)
+        scan_print_json(stdout, finding, scan->settings->port);
     else
-        scan_print_text(stdout, finding, options->port);
+        scan_print_text(stdout, finding, scan->settings->port);
     scan->output_error = output_flush();
     scan_print_advice(stderr, finding);
     if (finding->kind != SCAN_SENSOR) return;
@@ -37,32 +36,30 @@ void scan_show_progress(scan_t *scan)
     char doing[LINE_TEXT + 16] = "listens";
     if (scan->line != NULL)
         (void)snprintf(doing, sizeof doing, "%s address %u", line_text(scan->line, settings), scan->address);
-    scan_progress_show(
-        &scan->progress, now,
-        scan->line != NULL ? scan->options.plan.listen_us + scan->done_us : now - scan->start_us, doing);
+    progress_show(&scan->progress, now,
+                  scan->line != NULL ? scan->plan.listen_us + scan->done_us : now - scan->start_us, doing);
 }
 
 /* Prints "addresses 1 to 32 at 9600 8N1, 19200 8E1". */
 static void print_plan(FILE *to, const scan_plan_t *plan)
 {
     char settings[LINE_TEXT];
-    if (plan->first == plan->last)
-        (void)fprintf(to, "address %u at", plan->first);
+    if (plan->addresses.first == plan->addresses.last)
+        (void)fprintf(to, "address %u at", plan->addresses.first);
     else
-        (void)fprintf(to, "addresses %u to %u at", plan->first, plan->last);
+        (void)fprintf(to, "addresses %u to %u at", plan->addresses.first, plan->addresses.last);
     for (uint8_t i = 0; i != plan->setting_count; i++)
         (void)fprintf(to, "%s %s", i != 0 ? "," : "", line_text(&plan->settings[i], settings));
 }
 
-static int print_estimate(const scan_options_t *options)
+static int print_estimate(const scan_plan_t *plan, bool is_json)
 {
-    const scan_plan_t *const plan = &options->plan;
     const uint64_t all_us = scan_plan_us(plan);
-    if (options->is_json) {
+    if (is_json) {
         json_t json = {.to = stdout};
         json_begin(&json, NULL, '{');
         json_value(&json, "settings", "%u", plan->setting_count);
-        json_value(&json, "addresses", "%" PRIu32, scan_addresses(plan));
+        json_value(&json, "addresses", "%" PRIu32, scan_address_count(plan));
         json_value(&json, "duration_s", "%" PRIu64, (all_us + 999999u) / 1000000u);
         json_end(&json, '}');
         (void)puts("");
@@ -85,17 +82,17 @@ static void announce(const scan_plan_t *plan)
 
 static fathom_status_t scan_line(scan_t *scan)
 {
-    announce(&scan->options.plan);
+    announce(&scan->plan);
     scan->start_us = scan_now_us(scan);
-    scan_progress_begin(&scan->progress, stderr, scan_plan_us(&scan->options.plan));
+    progress_init(&scan->progress, stderr, scan_plan_us(&scan->plan));
     const fathom_status_t status = scan_listen(scan);
-    return status != FATHOM_OK || (scan->has_sender && !scan->options.wake) ? status : scan_walk(scan);
+    return status != FATHOM_OK || (scan->has_sender && !scan->settings->wake) ? status : scan_walk(scan);
 }
 
 static int finish(scan_t *scan, fathom_status_t status)
 {
     const host_t *const host = scan->port.host;
-    scan_progress_clear(&scan->progress);
+    progress_clear(&scan->progress);
     if (scan->output_error == EINTR && host->has_ended(host->ctx)) scan->output_error = 0;
     /* The reader of a pipe has read enough, as head does. That needs no message. */
     if (scan->output_error == EPIPE || host->is_output_gone(host->ctx)) return STATUS_FAILED;
@@ -112,25 +109,56 @@ static int finish(scan_t *scan, fathom_status_t status)
                                                                                       : STATUS_FAILED;
 }
 
-static int run(const host_t *host, int argc, char **argv)
+static int run(scan_t *scan, const host_t *host)
 {
-    static scan_t scan;
-    memset(&scan, 0, sizeof scan);
-    if (!scan_options(&scan.options, argc, argv)) return STATUS_USAGE;
-    if (scan.options.wants_help) return command_help(&scan_command);
-    if (scan.options.estimate) return print_estimate(&scan.options);
     if (!host->begin(host->ctx)) return STATUS_FAILED;
-    scan.port.watches_output = true;
-    if (!port_open_now(&scan.port, host,
-                       &(port_settings_t){.path = scan.options.port, .line = *scan_listen_line()})) {
-        (void)fprintf(stderr, "fathom: %s\n", port_error(&scan.port));
+    if (!port_open_now(&scan->port, host,
+                       &(port_settings_t){.path = scan->settings->port, .line = *scan_listen_line()})) {
+        (void)fprintf(stderr, "fathom: %s\n", port_error(&scan->port));
         return STATUS_FAILED;
     }
-    scan.port.parts.silence_us = scan_silence_us(&scan.options.plan);
-    const int status = finish(&scan, scan_line(&scan));
-    port_close(&scan.port);
+    scan->port.parts.silence_us = scan_silence_us(&scan->plan);
+    const int status = finish(scan, scan_line(scan));
+    port_close(&scan->port);
     return status;
 }
 
+static int start(const host_t *host, const arguments_t *arguments)
+{
+    static scan_t scan;
+    const scan_settings_t *const settings = arguments->settings;
+    const origin_t origin = {.command = "scan"};
+    scan = (scan_t){.settings = settings, .port.watches_output = true};
+    scan_make_plan(&scan.plan, settings);
+    if (arguments->count != 0)
+        (void)reject(&origin, "scan takes options only, not '%s'.", arguments->words[0]);
+    else if (settings->port == NULL && !settings->estimate)
+        (void)reject(&origin,
+                     "--port is missing, such as --port /dev/ttyUSB0. 'fathom help ports' explains ports.");
+    else if (settings->port != NULL && port_kind(settings->port) != PORT_TTY)
+        (void)reject(&origin, "scan needs a serial port. The rates behind '%s' are those of the gateway.",
+                     settings->port);
+    else
+        return settings->estimate ? print_estimate(&scan.plan, settings->is_json) : run(&scan, host);
+    return STATUS_USAGE;
+}
+
 const command_t scan_command = {
-    .name = "scan", .summary = "finds sensors on a serial port", .help = scan_help, .run = run};
+    .name = "scan",
+    .summary = "Find the sensors on a serial line",
+    .usage = "--port PATH [OPTIONS]",
+    .tables = scan_tables,
+    .common = "port address baud wake format",
+    .own_group = "Scan",
+    .about = "It only reads: no request can change a setting. But even a read ends the\n"
+             "automatic output of an A16 or A05, so the scan listens first, and sends nothing\n"
+             "if a sensor sends. At an address where a device responds, other parities of the\n"
+             "same rate are not tried.\n",
+    .examples = "  fathom scan --port /dev/ttyUSB0\n"
+                "  fathom scan --port /dev/ttyUSB0 --address 1-254 --baud all --parity all\n"
+                "  fathom scan --port /dev/ttyUSB0 --baud 57600,115200 --format json\n",
+    .status = "Exit status: 0 a sensor was found, 1 none was or the port failed, 2 wrong usage.\n",
+    .topics = "trouble, ports, output",
+    .settings_size = sizeof(scan_settings_t),
+    .start = start,
+};

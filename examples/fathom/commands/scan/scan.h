@@ -2,10 +2,90 @@
 #ifndef SCAN_H
 #define SCAN_H
 
-#include "commands/scan/scan_options.h"
-#include "commands/scan/scan_progress.h"
+#include "cli/command.h"
+#include "output/progress.h"
 #include "ports/port.h"
 #include "sensors/finding.h"
+
+/* ---- what to ask ---- */
+
+enum { SCAN_RATES = 6, SCAN_PARITIES = 3, SCAN_SETTINGS = SCAN_RATES * SCAN_PARITIES };
+
+/* Rates, each once, in the order in which they are tried. */
+typedef struct {
+    uint8_t count;
+    uint32_t baud[SCAN_RATES];
+} scan_rates_t;
+
+typedef struct {
+    uint8_t first;
+    uint8_t last;
+} scan_addresses_t;
+
+/* The options. */
+typedef struct {
+    const char *port; /* NULL: none */
+    scan_addresses_t addresses;
+    bool has_addresses;
+    scan_rates_t rates; /* count 0: those of the factory */
+    uint8_t parities;   /* bits 1 << FATHOM_PARITY_...; 0: those of the factory */
+    uint8_t stop_bits;  /* 0: 1 */
+    uint32_t timeout_us;
+    uint8_t retries;
+    uint32_t listen_us; /* 0: the default */
+    bool wake;
+    bool estimate;
+    bool is_json;
+} scan_settings_t;
+
+extern const option_table_t scan_tables[];
+
+/* The order is: each line setting in turn, and each address at it. */
+typedef struct {
+    fathom_line_settings_t settings[SCAN_SETTINGS];
+    uint32_t timeout_us; /* of every probe; 0: the defaults below */
+    uint32_t listen_us;  /* before the first request */
+    uint8_t setting_count;
+    scan_addresses_t addresses;
+    uint8_t repeats; /* of a request to a silent address */
+} scan_plan_t;
+
+void scan_make_plan(scan_plan_t *plan, const scan_settings_t *settings);
+
+/* Adds a rate that is not there yet. */
+void scan_add_rate(scan_rates_t *rates, uint32_t baud);
+
+/* Returns the factory settings of the sensors that send automatically. */
+const fathom_line_settings_t *scan_listen_line(void);
+
+/* Returns true if these are the factory settings of a sensor with frames 55 AA. */
+bool scan_has_dyp(const fathom_line_settings_t *line);
+
+/*
+ * Returns the time-out of an address: that of the plan, the longest of the models that have these factory settings
+ * (model_t.scan), or the default. An HPS-167S needs 2.5 to 20 ms, and a USB adapter may delay bytes by 16 ms. A later
+ * response is heard while the next address is asked, and its sender is asked again.
+ */
+enum { SCAN_TIMEOUT_US = 100000 };
+uint32_t scan_timeout_us(const scan_plan_t *plan, const fathom_line_settings_t *line);
+
+/* The silence before a request, of the slowest line of the plan, since a slower unit has to recognise it too. */
+uint16_t scan_silence_us(const scan_plan_t *plan);
+
+/* Time for one silent address, and for the whole plan if no unit responds. A device that responds adds at most
+ * SCAN_FOUND_US. */
+enum { SCAN_FOUND_US = 1500000 };
+uint32_t scan_probe_us(const scan_plan_t *plan, const fathom_line_settings_t *line);
+uint64_t scan_plan_us(const scan_plan_t *plan);
+
+uint32_t scan_address_count(const scan_plan_t *plan);
+
+/* Time for the request to any A05 by 55 AA on the line of A16 and A05. It waits until no unit may respond late, and
+ * after it any unit may, so it takes three time-outs. */
+enum { SCAN_ANY_TIMEOUT_US = 300000 };
+uint32_t scan_any_us(const scan_plan_t *plan);
+
+/* ---- the scan ---- */
 
 enum { SCAN_ADDRESSES = 256 };
 
@@ -23,9 +103,10 @@ typedef struct {
 } scan_heard_t;
 
 typedef struct {
-    scan_options_t options;
+    const scan_settings_t *settings;
+    scan_plan_t plan;
     port_t port;
-    scan_progress_t progress;
+    progress_t progress;
     uint64_t start_us;
     uint64_t done_us; /* part of scan_plan_us() that is done */
     int output_error; /* errno */

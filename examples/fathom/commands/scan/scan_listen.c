@@ -64,7 +64,7 @@ static fathom_status_t try_rates(scan_t *scan)
 
 fathom_status_t scan_listen(scan_t *scan)
 {
-    const fathom_status_t status = scan_hear(scan, scan_listen_line(), scan->options.plan.listen_us);
+    const fathom_status_t status = scan_hear(scan, scan_listen_line(), scan->plan.listen_us);
     scan->has_sender = scan->port.listener.bytes >= LEAST_BYTES;
     if (status != FATHOM_OK || !scan->has_sender || understand(scan, scan_listen_line())) return status;
     return try_rates(scan);

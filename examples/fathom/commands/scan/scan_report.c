@@ -11,16 +11,6 @@
 
 enum { NEXT_TEXT = 1024 };
 
-const char *duration_text(uint64_t us, char text[DURATION_TEXT])
-{
-    const uint64_t s = (us + 999999u) / 1000000u;
-    if (s < 60)
-        (void)snprintf(text, DURATION_TEXT, "%" PRIu64 " s", s);
-    else
-        (void)snprintf(text, DURATION_TEXT, "%" PRIu64 " min %" PRIu64 " s", s / 60, s % 60);
-    return text;
-}
-
 static const char *mode_name(const scan_finding_t *finding)
 {
     static const char *const names[] = {[SCAN_MODBUS] = "modbus", [SCAN_AUTO] = "auto", [SCAN_DYP] = "dyp"};

@@ -16,8 +16,4 @@ void scan_help_fields(FILE *to);
 /* What the finding calls for besides its line, on `to`; nothing for most. */
 void scan_print_advice(FILE *to, const scan_finding_t *finding);
 
-/* "12 s", "7 min 2 s". */
-enum { DURATION_TEXT = 32 };
-const char *duration_text(uint64_t us, char text[DURATION_TEXT]);
-
 #endif

@@ -25,7 +25,7 @@ static const char *why_nothing_was_sent(const scan_finding_t *sender)
 static void print_sender(const scan_t *scan)
 {
     const scan_finding_t *const sender = &scan->sender;
-    if (!scan->options.wake) {
+    if (!scan->settings->wake) {
         (void)fprintf(stderr, "fathom: nothing was sent, because %s\n", why_nothing_was_sent(sender));
     } else if (scan->awakened != 0 && sender->mode == SCAN_AUTO) {
         const char *const again = model_of(sender->model)->automatic_again;
@@ -53,6 +53,12 @@ static void print_cause(const scan_t *scan, fathom_status_t status)
     (void)fputs(". Then scan again\n", stderr);
 }
 
+static bool is_default(const scan_settings_t *settings)
+{
+    return !settings->has_addresses && settings->rates.count == 0 && settings->parities == 0 &&
+           settings->stop_bits == 0;
+}
+
 static void print_nothing(const scan_t *scan)
 {
     const failure_t failure = failure_of(scan, FATHOM_ERR_NO_RESPONSE);
@@ -61,7 +67,7 @@ static void print_nothing(const scan_t *scan)
         (void)fputs("no sensor was found", stderr);
     else
         advice_print(stderr, &failure);
-    if (scan->options.is_default)
+    if (is_default(scan->settings))
         (void)fputs(". To find a sensor with other settings, use --address 1-254 --baud all", stderr);
     (void)fputs(". A sensor that was just switched on may need 5 s\n", stderr);
 }
@@ -95,14 +101,14 @@ void scan_print_result(const scan_t *scan)
 {
     char duration[DURATION_TEXT];
     if (scan->has_sender) print_sender(scan);
-    if (scan->has_sender && !scan->options.wake) return;
+    if (scan->has_sender && !scan->settings->wake) return;
     print_others(scan);
     if (scan->terminations > 1)
         (void)fprintf(stderr,
                       "fathom: %" PRIu32 " HPS-167S have their termination resistor on, as from the factory, "
                       "which overloads the line: switch it off in all but the last one, as fathom set "
                       "hps167s:ADDRESS --port %s termination off does\n",
-                      scan->terminations, scan->options.port);
+                      scan->terminations, scan->settings->port);
     if (scan->sensors == 0) print_nothing(scan);
     (void)fprintf(stderr, "fathom: sensors found: %" PRIu32 ", after %s\n", scan->sensors,
                   duration_text(scan_now_us(scan) - scan->start_us, duration));

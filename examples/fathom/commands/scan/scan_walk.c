@@ -21,7 +21,7 @@ enum { LATE_TIMEOUT_US = 1000000 };
 /* Notes what was heard of other units. */
 static void note(scan_t *scan, const evidence_t *evidence)
 {
-    const scan_plan_t *const plan = &scan->options.plan;
+    const scan_plan_t *const plan = &scan->plan;
     scan_heard_t *const heard = &scan->heard;
     const uint8_t other = evidence->foreign_address;
     heard->echoes += evidence->echoes;
@@ -31,7 +31,7 @@ static void note(scan_t *scan, const evidence_t *evidence)
         heard->master_address = evidence->masters_address;
     }
     if (evidence->foreign == 0) return;
-    if (other < plan->first || other > plan->last)
+    if (other < plan->addresses.first || other > plan->addresses.last)
         heard->outside = other;
     else if (scan->states[other] == SILENT)
         scan->states[other] = LATE;
@@ -46,7 +46,7 @@ static bool is_troubled(const scan_response_t *response)
 /* Returns how often an address is asked again after this number of damaged responses. */
 static uint8_t repeats(const scan_t *scan, uint8_t troubles)
 {
-    if (troubles == 0) return scan->options.plan.repeats;
+    if (troubles == 0) return scan->plan.repeats;
     return scan->has_sender || scan->garbled >= FEW_GARBLED ? 1 : DAMAGED_REPEATS;
 }
 
@@ -133,7 +133,7 @@ static fathom_status_t visit(scan_t *scan, const fathom_line_settings_t *line, u
     scan_request_t request;
     scan_response_t response;
     scan_first_request(line, address, &request);
-    request.timeout_us = scan_timeout_us(&scan->options.plan, line);
+    request.timeout_us = scan_timeout_us(&scan->plan, line);
     if (request.timeout_us < timeout_us) request.timeout_us = timeout_us;
     scan->asked++;
     const fathom_status_t status = probe(scan, &request, &response);
@@ -152,7 +152,7 @@ static void judge_damaged(scan_t *scan, const fathom_line_settings_t *line)
 {
     const bool is_other_protocol = 2 * scan->garbled > scan->asked;
     if (is_other_protocol) report_damaged(scan, line, SCAN_NOT_MODBUS, 0);
-    for (unsigned address = scan->options.plan.first; address <= scan->options.plan.last; address++) {
+    for (unsigned address = scan->plan.addresses.first; address <= scan->plan.addresses.last; address++) {
         const uint8_t state = scan->states[address];
         if (state == DAMAGED || (state == GARBLED && !is_other_protocol))
             report_damaged(scan, line, SCAN_DAMAGED, (uint8_t)address);
@@ -189,28 +189,30 @@ static fathom_status_t ask_any_dyp(scan_t *scan)
 /* Asks all addresses at these settings. */
 static fathom_status_t visit_all(scan_t *scan, const fathom_line_settings_t *line)
 {
-    const scan_plan_t *const plan = &scan->options.plan;
+    const scan_plan_t *const plan = &scan->plan;
     fathom_status_t status = FATHOM_OK;
     memset(scan->states, NOT_ASKED, sizeof scan->states);
     scan->garbled = 0;
     scan->asked = 0;
-    for (unsigned address = plan->first; address <= plan->last && status == FATHOM_OK; address++) {
+    for (unsigned address = plan->addresses.first; address <= plan->addresses.last && status == FATHOM_OK;
+         address++) {
         scan->address = (uint8_t)address;
         scan_show_progress(scan);
         if (scan->found_baud[address] != line->baud) status = visit(scan, line, scan->address, 0);
         scan->done_us += scan_probe_us(plan, line);
     }
-    for (unsigned address = plan->first; address <= plan->last && status == FATHOM_OK; address++)
+    for (unsigned address = plan->addresses.first; address <= plan->addresses.last && status == FATHOM_OK;
+         address++)
         if (scan->states[address] == LATE) status = visit(scan, line, (uint8_t)address, LATE_TIMEOUT_US);
     return status;
 }
 
 static fathom_status_t walk_line(scan_t *scan, const fathom_line_settings_t *line)
 {
-    const scan_plan_t *const plan = &scan->options.plan;
+    const scan_plan_t *const plan = &scan->plan;
     fathom_status_t status = visit_all(scan, line);
     if (status != FATHOM_OK) return status;
-    for (unsigned address = plan->first; address <= plan->last; address++)
+    for (unsigned address = plan->addresses.first; address <= plan->addresses.last; address++)
         if (scan->states[address] == BUSY) scan->heard.not_asked++;
     judge_damaged(scan, line);
     if (!scan_has_dyp(line)) return FATHOM_OK;
@@ -221,7 +223,7 @@ static fathom_status_t walk_line(scan_t *scan, const fathom_line_settings_t *lin
 
 fathom_status_t scan_walk(scan_t *scan)
 {
-    const scan_plan_t *const plan = &scan->options.plan;
+    const scan_plan_t *const plan = &scan->plan;
     for (uint8_t i = 0; i != plan->setting_count; i++) {
         const uint64_t began_us = scan->done_us;
         scan->line = &plan->settings[i];
@@ -229,10 +231,10 @@ fathom_status_t scan_walk(scan_t *scan)
         if (scan_has_ended(status)) return status;
         if (status == FATHOM_OK) continue;
         char settings[LINE_TEXT];
-        scan_progress_clear(&scan->progress);
+        progress_clear(&scan->progress);
         (void)fprintf(stderr, "fathom: this port does not have %s, so the scan leaves it out\n",
                       line_text(scan->line, settings));
-        scan->done_us = began_us + (uint64_t)scan_probe_us(plan, scan->line) * scan_addresses(plan);
+        scan->done_us = began_us + (uint64_t)scan_probe_us(plan, scan->line) * scan_address_count(plan);
     }
     return FATHOM_OK;
 }

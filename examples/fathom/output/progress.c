@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 #define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): fileno */
-#include "commands/scan/scan_progress.h"
+#include "output/progress.h"
 
 #include <inttypes.h>
 #include <unistd.h>
 
-/* Together with the words it fits 80 columns. */
+/* With the words the bar fits 80 columns. */
 enum { BAR = 24, EVERY_US = 100000 };
 
-void scan_progress_begin(scan_progress_t *progress, FILE *to, uint64_t total_us)
+void progress_init(progress_t *progress, FILE *to, uint64_t total_us)
 {
     progress->to = to;
     progress->is_terminal = isatty(fileno(to)) != 0;
@@ -17,7 +17,7 @@ void scan_progress_begin(scan_progress_t *progress, FILE *to, uint64_t total_us)
     progress->shown_us = 0;
 }
 
-void scan_progress_show(scan_progress_t *progress, uint64_t now_us, uint64_t done_us, const char *what)
+void progress_show(progress_t *progress, uint64_t now_us, uint64_t done_us, const char *doing)
 {
     const uint64_t total_us = progress->total_us;
     if (!progress->is_terminal || total_us == 0 ||
@@ -30,17 +30,27 @@ void scan_progress_show(scan_progress_t *progress, uint64_t now_us, uint64_t don
     for (unsigned i = 0; i != BAR; i++) bar[i] = i < filled ? '#' : '.';
     bar[BAR] = '\0';
     const uint64_t left_s = (total_us - done_us + 999999u) / 1000000u;
-    /* ESC [ K: nothing is left of a longer line before */
-    (void)fprintf(progress->to, "\r[%s] %3u %%  %s, %" PRIu64 " s left\033[K", bar, percent, what, left_s);
+    /* ESC [ K removes the rest of a longer line. */
+    (void)fprintf(progress->to, "\r[%s] %3u %%  %s, %" PRIu64 " s left\033[K", bar, percent, doing, left_s);
     (void)fflush(progress->to);
     progress->is_shown = true;
     progress->shown_us = now_us;
 }
 
-void scan_progress_clear(scan_progress_t *progress)
+void progress_clear(progress_t *progress)
 {
     if (!progress->is_shown) return;
     (void)fputs("\r\033[K", progress->to);
     (void)fflush(progress->to);
     progress->is_shown = false;
+}
+
+const char *duration_text(uint64_t us, char text[DURATION_TEXT])
+{
+    const uint64_t s = (us + 999999u) / 1000000u;
+    if (s < 60)
+        (void)snprintf(text, DURATION_TEXT, "%" PRIu64 " s", s);
+    else
+        (void)snprintf(text, DURATION_TEXT, "%" PRIu64 " min %" PRIu64 " s", s / 60, s % 60);
+    return text;
 }
