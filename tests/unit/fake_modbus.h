@@ -58,7 +58,6 @@ void fake_modbus_acknowledge(fake_modbus_t *fake); /* a write */
 void fake_modbus_refuse(fake_modbus_t *fake, uint8_t exception);
 void fake_modbus_fail(fake_modbus_t *fake, fathom_status_t status);
 
-
 /* The line is initialised again: it has forgotten the request, which never ends. */
 void fake_modbus_forget(fake_modbus_t *fake);
 
