@@ -149,26 +149,6 @@ TEST(between_silences_an_odd_probe_is_refused_alone_and_reported)
     }
 }
 
-/* Of damage an 8-bit sum misses one in 256, and it may have hit more probes than the odd one. */
-TEST(the_frame_in_which_a_probe_turns_odd_is_refused_whole_and_those_after_it_are_not)
-{
-    for (unsigned n = 0; n != 3; n++) send(1000, 2000, 3000, 4000);
-    send(1001, 2001, 7001, 4001);
-    assert_int_equal(rig.samples, 12);
-    assert_int_equal(rig.malformed, 1);
-    assert_int_equal(a05.base.measurement.refused_probe, 3);
-    assert_int_equal(a05.base.measurement.refused_raw, 7001);
-    send(1002, 7002, 3002, 4002); /* another one, which makes no difference */
-    assert_int_equal(rig.samples, 15);
-    assert_int_equal(rig.malformed, 2);
-    assert_int_equal(rig.last[0].distance_mm, 1002);
-    assert_int_equal(rig.last[1].distance_mm, 2000);
-    send(1003, 2003, 3003, 4003);
-    assert_int_equal(rig.samples, 19);
-    send(1004, 2004, 7004, 4004);
-    assert_int_equal(rig.samples, 19);
-}
-
 /* 1000 2000 7000 3000 mm, of which the third is out of the window: FF + 03 + E8 + 07 + D0 + 1B + 58 + 0B + B8 = 3F7. */
 static const uint8_t odd_third[] = {0xFF, 0x03, 0xE8, 0x07, 0xD0, 0x1B, 0x58, 0x0B, 0xB8, 0xF7};
 

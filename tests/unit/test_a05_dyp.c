@@ -11,7 +11,6 @@ enum { STEP_US = 250, REQUEST_US = 5 * RIG_BYTE_US };
 static const uint8_t ask_all[] = {0x55, 0xAA, 0x01, 0x01, 0x01};
 static const uint8_t four[] = {0x55, 0xAA, 0x01, 0x01, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x62};
 static const uint16_t four_mm[] = {1000, 2000, 1953, 3562};
-static const uint8_t first_1953[] = {0x55, 0xAA, 0x01, 0x10, 0x07, 0xA1, 0xB8};
 
 static fathom_a05_dyp_config_t config;
 static fathom_a05_dyp_t a05;
@@ -94,6 +93,28 @@ static void takes(unsigned probe)
 
 /* ---- probes ---- */
 
+TEST(four_samples_share_sequence_and_time)
+{
+    for (uint16_t response = 1; response <= 3; response++) {
+        tell(response - 1u, four, sizeof four);
+        const uint32_t heard_us = rig.fake.now_us;
+        for (uint8_t probe = 1; probe <= 4; probe++) {
+            if (probe != 1) assert_int_equal(fathom_due_us(&rig.sensor, 1), 0);
+            takes(probe);
+            assert_sample(&rig.sample, (fathom_sample_t){.time_us = heard_us,
+                                                         .raw = four_mm[probe - 1],
+                                                         .sequence = response,
+                                                         .distance_mm = four_mm[probe - 1],
+                                                         .kind = FATHOM_TARGET,
+                                                         .model = FATHOM_A05,
+                                                         .address = 1,
+                                                         .probe = probe});
+            rig.fake.now_us += STEP_US;
+        }
+        nothing_for(1000);
+    }
+}
+
 /* Each probe's value for itself: FFFD is no object, FFFE interference of sister models (dyp.h), 0 unknown; 6001 is
  * outside. FF + 01 + 01 = 101; FF + FD = 1FC; FF + FE = 1FD; 0; 17 + 71 = 88: 01 + FC + FD + 88 =
  * 282. */
@@ -120,77 +141,12 @@ TEST(a_value_that_cannot_be_is_refused_alone)
     nothing_for(1000);
 }
 
-/* ---- time ---- */
-
-/* From one command to the next at least 250 ms for all probes, 100 ms for one (A05 2(3)1); the responses are
- * instant. */
-static void assert_period(uint32_t expected_us)
-{
-    uint32_t last_us = 0;
-    for (unsigned n = 0; n != 4; n++) {
-        const uint32_t at_us = until_written(n);
-        if (n != 0) assert_in_range(at_us - last_us, expected_us, expected_us + 2 * STEP_US);
-        last_us = at_us;
-        nothing_for(10000);
-        if (config.probes == 0)
-            receive(four, sizeof four);
-        else
-            receive(first_1953, sizeof first_1953);
-        for (unsigned i = config.probes == 0 ? 4 : 1; i != 0; i--) assert_int_equal(rig_poll(), FATHOM_OK);
-        nothing_for(STEP_US);
-        assert_in_range(fathom_due_us(&rig.sensor, 1), expected_us - 12000, expected_us - 10000);
-    }
-}
-
-TEST(the_period_is_kept_across_the_wrap_of_the_clock)
-{
-    for (uint32_t before_us = 20000; before_us < 600000; before_us += 70000) {
-        set_up_at(UINT32_MAX - before_us);
-        start();
-        assert_period(250000);
-    }
-}
-
-TEST(retries_are_the_configs)
-{
-    config.probes = 1;
-    config.modbus.retries = 2;
-    start();
-    assert_int_equal(next_within(2000000, rig_poll), FATHOM_ERR_NO_RESPONSE);
-    assert_int_equal(rig.fake.written, 3);
-}
-
-TEST(a_dead_sensor_is_asked_less_often_and_no_less_than_the_config_says)
-{
-    config.probes = 1;
-    config.modbus.backoff_us = 300000;
-    start();
-    for (unsigned n = 0; n != 8; n++) {
-        const uint32_t at_us = until_written(n);
-        assert_int_equal(next_within(300000, rig_poll), FATHOM_ERR_NO_RESPONSE);
-        /* 200 ms of time-out and as much of quarantine; from the third on the pause: 200, then 300 ms after it. */
-        if (n >= 4) assert_true(at_us - rig.fake.writes[n - 1].at_us >= 500000);
-        if (n >= 1) assert_true(at_us - rig.fake.writes[n - 1].at_us <= 520000);
-    }
-}
-
-/* ---- errors ---- */
-
-TEST(address_and_settings_are_the_configs)
-{
-    static const uint8_t ask_254[] = {0x55, 0xAA, 0xFE, 0x01, 0xFE}; /* FF + FE + 01 = 1FE */
-    static const fathom_line_settings_t settings = {9600, FATHOM_PARITY_NONE, 1};
-    config.modbus.address = 254;
-    config.modbus.line_settings = &settings;
-    start();
-    until_written(0);
-    assert_memory_equal(rig.fake.writes[0].bytes, ask_254, sizeof ask_254);
-    assert_int_equal(rig.fake.writes[0].baud, 9600);
-}
-
 /* ---- which address has the one A05 on this line? ---- */
 
+static const uint8_t ask_any[] = {0x55, 0xAA, 0xFF, 0x10, 0x0E}; /* FF + FF + 10 = 20E */
 /* 1953 mm from 5: FF + 05 + 10 + 07 + A1 = 1BC; from 254: FF + FE + 10 + 07 + A1 = 2B5. */
+static const uint8_t from_5[] = {0x55, 0xAA, 0x05, 0x10, 0x07, 0xA1, 0xBC};
+static const uint8_t from_254[] = {0x55, 0xAA, 0xFE, 0x10, 0x07, 0xA1, 0xB5};
 
 static fathom_a05_dyp_find_t sought;
 static uint8_t address;
@@ -209,6 +165,42 @@ static fathom_status_t find(void) { return fathom_a05_dyp_find(&sought, &rig.lin
 static void finds_within(uint32_t us, fathom_status_t status)
 {
     assert_int_equal(next_within(us, find), status);
+}
+
+static void until_asked(size_t written)
+{
+    for (unsigned i = 0; rig.fake.written != written; i++) {
+        assert_true(i < 5000);
+        finds_within(STEP_US, FATHOM_PENDING);
+    }
+    assert_int_equal(rig.fake.writes[written - 1].length, sizeof ask_any);
+    assert_memory_equal(rig.fake.writes[written - 1].bytes, ask_any, sizeof ask_any);
+    finds_within(70000, FATHOM_PENDING);
+    assert_int_equal(rig.fake.written, written);
+}
+
+TEST_IN(finding, of_two_responses_the_first_is_taken)
+{
+    uint8_t glued[sizeof from_5 + sizeof from_254];
+    memcpy(glued, from_254, sizeof from_254);
+    memcpy(glued + sizeof from_254, from_5, sizeof from_5);
+    until_asked(1);
+    receive(glued, sizeof glued);
+    finds_within(STEP_US, FATHOM_OK);
+    assert_int_equal(address, 254);
+    assert_int_equal(sought.value, 1953);
+}
+
+TEST_IN(finding, on_an_echoing_line_the_echo_is_no_device)
+{
+    rig.line_parts.echo = FATHOM_LINE_ECHO_AUTO;
+    assert_int_equal(fathom_line_init(&rig.line, &rig.line_parts), FATHOM_OK);
+    while (rig.fake.written == 0) finds_within(STEP_US, FATHOM_PENDING);
+    fake_trickle(&rig.fake, 0, RIG_BYTE_US, ask_any, sizeof ask_any);
+    fake_trickle(&rig.fake, 70000, RIG_BYTE_US, from_5, sizeof from_5);
+    finds_within(100000, FATHOM_OK);
+    assert_int_equal(address, 5);
+    assert_int_equal(fathom_line_get_echo(&rig.line), FATHOM_LINE_ECHO_ON);
 }
 
 TEST_IN(finding, a_line_without_room_says_so)
@@ -266,22 +258,4 @@ TEST(a_write_through_the_transport_is_refused_at_every_time)
     assert_true(fathom_a05_dyp_is_written(&a05));
     assert_int_equal(seen, COUNT(steps));
     assert_refused();
-}
-
-TEST(what_was_refused_or_given_up_leaves_the_transport_closed)
-{
-    assert_int_equal(fathom_a05_dyp_broadcast_address(&a05, 0), FATHOM_ERR_ARGUMENT);
-    assert_refused();
-    assert_int_equal(fathom_a05_dyp_broadcast_address(&a05, 255), FATHOM_ERR_ARGUMENT);
-    assert_refused();
-    assert_int_equal(fathom_modbus_write_next_unchecked(&a05.base.unit), FATHOM_OK); /* an address never is */
-    assert_int_equal(set_7(), FATHOM_ERR_ARGUMENT);
-    assert_refused();
-    assert_int_equal(fathom_modbus_write_next_unchecked(&a05.base.unit), FATHOM_OK);
-    assert_int_equal(fathom_a05_dyp_broadcast_address(&a05, 0), FATHOM_ERR_ARGUMENT);
-    assert_int_equal(set_7(), FATHOM_PENDING); /* the refused ones were the blind ones */
-    assert_false(fathom_a05_dyp_is_written(&a05));
-    fathom_a05_dyp_cancel(&a05);
-    assert_refused();
-    assert_int_equal(rig.fake.written, 0);
 }

@@ -120,22 +120,6 @@ TEST(the_samples_of_one_response_share_sequence_and_time)
     desk_waits(0);
 }
 
-TEST(a_value_that_cannot_be_is_refused_alone)
-{
-    config.window = (fathom_dyp_window_t){.min_mm = 250, .max_mm = 4500};
-    start();
-    IS_TOLD(249, 250, 4501, 4500);
-    for (unsigned probe = 1; probe <= 4; probe++) {
-        assert_int_equal(desk_poll(), probe % 2 != 0 ? FATHOM_ERR_MALFORMED : FATHOM_OK);
-        assert_int_equal(a05.base.measurement.refused_probe, probe < 3 ? 1 : 3);
-        assert_int_equal(a05.base.measurement.refused_raw, probe < 3 ? 249 : 4501);
-        if (probe % 2 == 0) assert_int_equal(desk.sample.probe, probe);
-        if (probe % 2 == 0) assert_int_equal(desk.sample.distance_mm, probe == 2 ? 250 : 4500);
-    }
-    assert_int_equal(a05.base.measurement.implausible, 2);
-    desk_waits(0);
-}
-
 /* A05 3(4)1 example 3, byte for byte: probes 2, 3, 4 read 250, 659, 2426 mm. */
 TEST(the_example_of_the_datasheet_goes_over_a_line)
 {

@@ -76,6 +76,40 @@ TEST(a_slow_loop_leaves_the_pin_high_for_the_low_time_before_the_next_edge)
 
 /* ---- in time or not ---- */
 
+/* One trigger, answered so much later; what comes of it. */
+static fathom_status_t answered_after(const uint8_t frame[4], uint32_t us, uint32_t step_us)
+{
+    controlled_start();
+    controlled_run_to_break(1, step_us);
+    controlled_response(frame, us);
+    return controlled_outcome(step_us);
+}
+
+static void comes(fathom_status_t status) { assert_int_equal(controlled_outcome(100), status); }
+
+/* What begins in time and ends too late is damaged as far as it came: CHECKSUM. */
+TEST(a_frame_answers_80_to_130_ms_after_the_edge_and_is_late_else)
+{
+    static const struct {
+        uint32_t after_us;
+        fathom_status_t status;
+    } times[] = {{30 * MS, FATHOM_ERR_NO_RESPONSE},
+                 {79900, FATHOM_ERR_NO_RESPONSE},
+                 {80 * MS, FATHOM_OK},
+                 {94 * MS, FATHOM_OK},
+                 {114 * MS, FATHOM_OK},
+                 {130 * MS, FATHOM_OK},
+                 {130200, FATHOM_ERR_CHECKSUM},
+                 {133 * MS, FATHOM_ERR_CHECKSUM},
+                 {134 * MS, FATHOM_ERR_NO_RESPONSE}};
+    for (unsigned i = 0; i != COUNT(times); i++) {
+        assert_int_equal(answered_after(controlled_1953, times[i].after_us, 50), times[i].status);
+        rig_run(20 * MS, 50);
+        assert_int_equal(controlled.a16.late, times[i].status != FATHOM_OK);
+        assert_int_equal(rig.samples, times[i].status == FATHOM_OK);
+    }
+}
+
 TEST(no_response_is_said_at_130_ms_and_the_next_trigger_follows)
 {
     controlled_run_to_break(1, 100);
@@ -85,6 +119,22 @@ TEST(no_response_is_said_at_130_ms_and_the_next_trigger_follows)
     assert_int_equal(fathom_due_us(&rig.sensor, 1), 0);
     assert_int_equal(rig_poll(), FATHOM_ERR_NO_RESPONSE);
     assert_int_equal(rig.fake.breaks, 2);
+}
+
+TEST(a_late_response_is_not_that_of_the_next_trigger_and_the_count_stops)
+{
+    controlled.a16.late = UINT16_MAX - 1;
+    controlled_run_to_break(1, 100);
+    for (unsigned i = 0; i != 3; i++) {
+        comes(FATHOM_ERR_NO_RESPONSE);
+        controlled_response(controlled_511, 30 * MS); /* of the trigger before, 160 ms after it */
+    }
+    comes(FATHOM_ERR_NO_RESPONSE);
+    assert_int_equal(rig.samples, 0);
+    assert_int_equal(controlled.a16.late, UINT16_MAX);
+    controlled_response(controlled_1953, 100 * MS);
+    comes(FATHOM_OK);
+    assert_int_equal(rig.sample.distance_mm, 1953);
 }
 
 /* Stamped at 131 ms, read at 139 ms, when the poll before was at 119 ms: it may have come in time but for the stamp. */
@@ -135,28 +185,6 @@ TEST(every_trigger_is_one_sample_in_loops_from_100_us_to_300_ms_and_across_the_w
             assert_int_equal(controlled.a16.late, 0);
         }
     }
-}
-
-TEST(who_sleeps_as_long_as_it_is_due_gets_a_sample_a_trigger)
-{
-    unsigned polls = 0;
-    unsigned answered = 0;
-    while (rig.samples != 5) {
-        uint32_t due_us = fathom_due_us(&rig.sensor, 1);
-        assert_true(++polls < 200);
-        if (rig.fake.breaks > answered) { /* the bytes wake it */
-            answered = rig.fake.breaks;
-            fake_receive(&rig.fake, 100 * MS, controlled_1953, 4);
-        }
-        if (!fake_drained(&rig.fake)) {
-            const uint32_t comes_us = rig.fake.chunks[rig.fake.first].at_us - rig.fake.now_us;
-            if (comes_us < due_us) due_us = comes_us;
-        }
-        rig.fake.now_us += due_us;
-        rig_poll();
-    }
-    assert_int_equal(rig.fake.breaks, 5);
-    assert_int_equal(controlled.a16.late, 0);
 }
 
 /* The stream turns stale without a trigger, which is no error of the driver. */

@@ -134,26 +134,6 @@ TEST(a_config_without_sense_is_refused)
     }
 }
 
-static void expect_init(uint8_t when, uint16_t on_mm, uint16_t off_mm, fathom_status_t status)
-{
-    config.when = when;
-    config.on_mm = on_mm;
-    config.off_mm = off_mm;
-    assert_int_equal(fathom_alarm_init(&alarm, &config), status);
-}
-
-TEST(off_on_the_wrong_side_of_on_is_refused)
-{
-    expect_init(FATHOM_NEAR, 500, 499, FATHOM_ERR_ARGUMENT);
-    expect_init(FATHOM_NEAR, 500, 500, FATHOM_OK);
-    expect_init(FATHOM_NEAR, 0, 65535, FATHOM_OK);
-    expect_init(FATHOM_NEAR, 65535, 0, FATHOM_ERR_ARGUMENT);
-    expect_init(FATHOM_FAR, 500, 501, FATHOM_ERR_ARGUMENT);
-    expect_init(FATHOM_FAR, 500, 500, FATHOM_OK);
-    expect_init(FATHOM_FAR, 65535, 0, FATHOM_OK);
-    expect_init(FATHOM_FAR, 0, 65535, FATHOM_ERR_ARGUMENT);
-}
-
 /* ---- hold times ---- */
 
 TEST(a_threshold_has_to_be_passed_for_its_hold_time)

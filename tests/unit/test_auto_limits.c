@@ -132,33 +132,3 @@ TEST(a_pin_that_selected_is_left_as_it_is)
         assert_int_equal(set_breaks, 0);
     }
 }
-
-/* "FATHOM_ERR_ARGUMENT: no line": whatever else the config wants. */
-TEST(an_a16_without_a_line_is_refused_before_anything_is_selected)
-{
-    const fathom_a16_auto_config_t config = {.select = select_by(true), .value = FATHOM_REAL_TIME};
-    const fathom_a16_auto_config_t by_break = {.select = select_by(false), .value = FATHOM_REAL_TIME};
-    assert_int_equal(fathom_a16_auto_init(&a16, NULL, &config), FATHOM_ERR_ARGUMENT);
-    assert_int_equal(fathom_a16_auto_init(&a16, NULL, &by_break), FATHOM_ERR_ARGUMENT);
-    assert_int_equal(pin.sets, 0);
-}
-
-/* ---- beside a transaction ---- */
-
-/* "FATHOM_ERR_STALE: no good frame for stale_us": a part of a response, which the line holds back, is no frame that
- * waits for its end. */
-TEST(it_is_stale_while_the_line_holds_a_part_of_a_response)
-{
-    static const uint8_t part[] = {0x01, 0x03, 0x02, 0x02};
-    uint16_t value;
-    fathom_modbus_request_t request = {.transaction = {.timeout_us = 1000000}};
-    fathom_modbus_read_holding_registers(&request.message, 1, 0x0100, 1, &value);
-    start_a16(0, false, 50000);
-    assert_int_equal(fathom_modbus_client_submit(&rig.line, &request), FATHOM_PENDING);
-    poll_after(10000);
-    poll_after(10000);
-    fake_receive(&rig.fake, 0, part, sizeof part);
-    assert_int_equal(poll_after(29000), FATHOM_PENDING);
-    assert_int_equal(poll_after(1000), FATHOM_ERR_STALE); /* 10 + 10 + 29 + 1 = 50 */
-    fathom_line_cancel(&rig.line, &request.transaction);
-}

@@ -154,23 +154,6 @@ TEST(a_selection_of_an_a05_that_does_not_end_is_said_once_a_second_beside_the_sa
 
 /* ---- A16, controlled ---- */
 
-TEST(a_trigger_of_an_a16_ends_although_the_port_refused_that_once)
-{
-    for (int how = 0; how >= -1; how--) {
-        trigger_controlled();
-        refuse(&rig.fake, 1, how);
-        rig_run(1000, 1000);
-        rig.fake.now_us += 1000;
-        assert_int_equal(rig_poll(), said_of(how));
-        assert_true(rig.fake.in_break);
-        rig_run(1000, 1000);
-        assert_false(rig.fake.in_break);
-        controlled_response(controlled_1953, 97 * MS);
-        assert_int_equal(controlled_outcome(1000), FATHOM_OK);
-        assert_int_equal(rig.sample.distance_mm, 1953);
-    }
-}
-
 /* Something else is sent there without end, or what is sent does not leave. */
 TEST(a_trigger_of_an_a16_that_cannot_begin_is_said_once_a_second)
 {
@@ -231,25 +214,4 @@ TEST(a_trigger_of_a_pulse_that_cannot_begin_is_said_once_a_second)
     stand.fake.refusals = 0;
     assert_int_equal(ports_in(1 * MS), 0);
     assert_int_equal(stand.fake.breaks, 1);
-}
-
-/* What was taken in between ends a refusal, and so does an error. */
-TEST(refusals_of_less_than_a_second_are_never_added_up)
-{
-    start_pulse();
-    for (unsigned i = 0; i != 4; i++) {
-        stand.fake.refuses_begin = i % 2 == 0;
-        refuse(&stand.fake, FOR_EVER, 0);
-        assert_int_equal(ports_in(900 * MS), 0);
-        stand.fake.refusals = 0;
-        assert_int_equal(ports_in(1 * MS), 0);
-        assert_int_equal(stand.fake.in_break, i % 2 == 0);
-    }
-    stand.fake.refuses_begin = true;
-    refuse(&stand.fake, FOR_EVER, 0);
-    assert_int_equal(ports_in(900 * MS), 0);
-    stand.fake.refusal = -1;
-    assert_int_equal(ports_in(1 * MS), 1);
-    stand.fake.refusal = 0;
-    assert_int_equal(ports_in(999 * MS), 0);
 }

@@ -61,28 +61,7 @@ static fathom_status_t poll_after(uint32_t us)
     return pins_poll();
 }
 
-/* ---- a contact that never changes ---- */
-
 /* ---- a level that does not count ---- */
-
-TEST(a_contact_that_bounces_for_ever_is_stale_every_2_s)
-{
-    for (unsigned i = 1; i != 10000; i++) {
-        pins.level = !pins.level;
-        pins_run(1 * MS, 1 * MS);
-        assert_int_equal(pins.stales, i / 2000);
-    }
-    assert_int_equal(pins.samples, 0);
-}
-
-TEST(a_guard_that_is_never_clear_is_stale_every_2_s)
-{
-    is_guard_clear = false;
-    start_with(&guard, START_US);
-    pins_run(10 * SECOND, 5 * MS);
-    assert_int_equal(pins.stales, 5);
-    assert_int_equal(pins.samples, 0);
-}
 
 TEST(the_error_of_a_guard_is_returned_if_there_is_nothing_else)
 {
@@ -202,15 +181,6 @@ TEST(any_levels_any_guard_any_polls_and_any_clock_have_an_outcome_within_the_bou
 
 /* ---- fathom_wait ---- */
 
-/* Sleeps as long as it may. */
-static void sleep_for(void *ctx, uint32_t max_us)
-{
-    (void)ctx;
-    assert_int_not_equal(max_us, FATHOM_NO_DEADLINE);
-    pins.fake.now_us += max_us;
-    if (below(10) == 0) pins.level = !pins.level;
-}
-
 static fathom_status_t wait_for(void (*idle)(void *ctx, uint32_t max_us))
 {
     fathom_sample_t sample;
@@ -227,14 +197,6 @@ TEST(wait_returns_for_a_contact_that_never_changes)
     for (unsigned n = 0; n != 5; n++) assert_int_equal(wait_for(stand_still), FATHOM_OK);
     /* 20 ms and 4 times 35 minutes */
     assert_true(pins.fake.now_us == (uint32_t)(START_US + 20 * MS + 4ull * FATHOM_MAX_DURATION_US));
-}
-
-TEST(wait_returns_for_a_contact_that_bounces)
-{
-    for (unsigned n = 0; n != 1000; n++) {
-        const fathom_status_t status = wait_for(sleep_for);
-        assert_true(status == FATHOM_OK || status == FATHOM_ERR_STALE);
-    }
 }
 
 /* ---- zeroed memory ---- */

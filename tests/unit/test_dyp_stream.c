@@ -46,21 +46,6 @@ TEST(every_value_of_every_probe_of_an_A05_goes_both_ways)
     }
 }
 
-TEST(every_other_start_and_every_other_sum_is_refused)
-{
-    for (unsigned byte = 0; byte != 256; byte++) {
-        /* The sum is made right for the wrong start, so that the start alone is at fault. */
-        const uint8_t start[] = {(uint8_t)byte, 0x07, 0xA1, (uint8_t)(byte + 0x07 + 0xA1)};
-        const uint8_t sum[] = {0xFF, 0x07, 0xA1, (uint8_t)byte};
-        uint8_t sum_of_ten[10];
-        memcpy(sum_of_ten, a05_frame, 10);
-        sum_of_ten[9] = (uint8_t)byte;
-        assert_true(fathom_dyp_stream_is_valid(start, 4) == (byte == 0xFF));
-        assert_true(fathom_dyp_stream_is_valid(sum, 4) == (byte == 0xA7));
-        assert_true(fathom_dyp_stream_is_valid(sum_of_ten, 10) == (byte == 0x60));
-    }
-}
-
 /* 255 bytes of FF are 65025 = FE01; of n bytes of FF the sum is 256 - n. What lies behind does not count. */
 TEST(the_sum_of_0_to_255_bytes_is_the_low_byte)
 {

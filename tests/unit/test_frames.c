@@ -166,15 +166,6 @@ TEST(every_55_AA_frame_goes_both_ways)
 
 /* ---- mistakes in the datasheets ---- */
 
-/* HPS-167S, abnormal response code: "01 03 00 08 00 04 C5 C8"; table 17 and the CRC itself say C5 CB. */
-TEST(hps_the_printed_crc_C5_C8_is_refused_and_C5_CB_is_right)
-{
-    static const uint8_t printed[] = {0x01, 0x03, 0x00, 0x08, 0x00, 0x04, 0xC5, 0xC8};
-    static const uint8_t right[] = {0x01, 0x03, 0x00, 0x08, 0x00, 0x04, 0xC5, 0xCB};
-    assert_int_not_equal(fathom_crc16(printed, 8), 0);
-    assert_int_equal(fathom_crc16(right, 8), 0);
-}
-
 /* HPS-167S tables 4 and 7: 0 to 252 bytes of data, 0 to 256. The longest response that Modbus knows carries 250
  * bytes of registers and their count. */
 TEST(hps_a_response_carries_at_most_251_bytes_of_data)

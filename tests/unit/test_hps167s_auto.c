@@ -65,21 +65,6 @@ static void ask_too(void)
 
 /* ---- frames ---- */
 
-TEST(no_target_and_the_abnormal_packet_are_samples_too_and_the_limits_are_options)
-{
-    fathom_hps167s_limits_t limits = {.max_mm = 18000, .over_range_mm = 65500};
-    fathom_hps167s_limits_t wrong = {.over_range_mm = 65535};
-    hears(FATHOM_OK, 1, 65530, 0, 0, 0);
-    assert_int_equal(rig.sample.kind, FATHOM_NO_TARGET);
-    hears(FATHOM_OK, 1, 0xFFFF, 0, 0x00FF, 0xFFFF);
-    assert_int_equal(rig.sample.kind, FATHOM_FAULT);
-    assert_int_equal(fathom_hps167s_auto_set_limits(&hps, &limits), FATHOM_OK);
-    assert_int_equal(fathom_hps167s_auto_set_limits(&hps, &wrong), FATHOM_ERR_ARGUMENT);
-    hears(FATHOM_ERR_MALFORMED, 1, 18001, 0, 0, 0);
-    hears(FATHOM_OK, 1, 65500, 0, 0, 0);
-    assert_int_equal(rig.sample.kind, FATHOM_NO_TARGET);
-}
-
 TEST(only_its_address_counts)
 {
     config.address = 32;
@@ -172,16 +157,6 @@ TEST(the_deadline_is_an_option_and_due_tells_it)
     fathom_line_poll(&rig.line); /* another driver's poll brings a frame */
     assert_int_equal(fathom_due_us(&rig.sensor, 1), 0);
     assert_int_equal(rig_poll(), FATHOM_OK);
-}
-
-TEST(a_request_of_another_is_due_before_it_is_stale)
-{
-    fathom_sample_t sample;
-    ask_too();
-    const fathom_sensor_t measuring = fathom_hps167s_sensor(&driver);
-    rig_run(10000, 1000);
-    PENDS(fathom_poll(&measuring, &sample));
-    assert_in_range(fathom_due_us(&rig.sensor, 1), 0, 300000);
 }
 
 /* ---- beside a driver that asks ---- */

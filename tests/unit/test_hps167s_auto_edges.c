@@ -39,12 +39,6 @@ static fathom_status_t comes(const uint8_t *bytes, size_t length)
     return poll_after(100);
 }
 
-TEST(the_first_frame_needs_its_address_whatever_stood_in_the_memory)
-{
-    assert_int_equal(comes(example + 1, 12), FATHOM_PENDING);
-    assert_int_equal(comes(example, 13), FATHOM_OK);
-}
-
 /* A line whose buffer holds no frame is refused. */
 TEST(the_buffer_of_the_line_holds_13_bytes)
 {

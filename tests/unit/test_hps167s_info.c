@@ -37,8 +37,6 @@ HPS_SUITE;
 
 /* ---- #2 ---- */
 
-TEST(the_configuration_is_believed_when_two_responses_agree) { PLAY(configuration, OK, TELLS(RATE_1)); }
-
 TEST(every_member_of_the_configuration_is_its_own_bytes)
 {
     static const struct {
@@ -213,15 +211,6 @@ TEST(the_responses_of_an_abandoned_configuration_do_not_count)
     assert_int_equal(desk_poll(), OK);
     fake.submits = 0;
     PLAY(configuration, OK, TELLS(RATE_2));
-}
-
-TEST(the_configuration_given_up_begins_anew)
-{
-    PART(configuration, HPS_2(1, OK, 0, RATE_1));
-    PENDS(configuration());
-    assert_int_equal(read_temperature(), FATHOM_ERR_BUSY);
-    fathom_hps167s_cancel(&hps);
-    PLAY(configuration, OK, TELLS(RATE_1));
 }
 
 /* ---- its options ---- */

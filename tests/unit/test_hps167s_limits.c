@@ -29,13 +29,6 @@ static void asks(fathom_status_t (*command)(void))
     }
 }
 
-static void measures(fathom_status_t as, const uint16_t *registers)
-{
-    asks(desk_poll);
-    fake_modbus_response(&fake, registers, 4);
-    assert_int_equal(desk_poll(), as);
-}
-
 HPS_SUITE;
 
 /* ---- memory that is not zero ---- */
@@ -53,16 +46,6 @@ TEST(a_new_driver_has_written_nothing_whatever_stood_in_the_memory)
     assert_false(fathom_hps167s_is_written(&hps));
 }
 
-/* "neither may be what the other was last": there was none, whatever stands in the memory. */
-TEST(the_first_measurement_is_believed_whatever_stood_in_the_memory)
-{
-    static const uint16_t first[4] = {0x0823, 0x0101, 0x0701, 0x0000};
-    memcpy(hps.last_configuration, first, sizeof first);
-    hps_start();
-    measures(OK, first);
-    assert_int_equal(desk.sample.distance_mm, 2083);
-}
-
 /* 01000008 hexadecimal = 16777224. */
 TEST(the_first_configuration_is_believed_whatever_stood_in_the_memory)
 {
@@ -74,33 +57,7 @@ TEST(the_first_configuration_is_believed_whatever_stood_in_the_memory)
     assert_int_equal(is.reconnect_time_ms, 16777224);
 }
 
-/* fathom_hps167s_decode: sets "interference (false)". */
-TEST(decoding_sets_interference)
-{
-    const bool no = false;
-    fathom_sample_t sample;
-    memset(&sample, 0xFF, sizeof sample);
-    assert_int_equal(fathom_hps167s_decode(hps_measured, &sample), OK);
-    assert_memory_equal(&sample.interference, &no, sizeof no);
-}
-
 /* ---- how often it is asked ---- */
-
-/* modbus_unit.h: after the third silence in a row one time-out, then two; the config says how much at most. */
-TEST(a_dead_sensor_is_left_alone_no_longer_than_the_config_says)
-{
-    hps_config.modbus.backoff_us = 700000;
-    hps_start();
-    for (unsigned n = 1; n != 7; n++) {
-        asks(desk_poll);
-        fake_modbus_send(&fake);
-        PENDS(desk_poll());
-        fake.now_us += 500000;
-        hps_is_silent(SILENT);
-        assert_int_equal(due_us(), n < 3 ? 0 : n == 3 ? 500000 : 700000);
-        fake.now_us += due_us();
-    }
-}
 
 /* hps167s_info.h: the requests come at irregular intervals, or a slow loop could keep step with the device. Of 31
  * intervals, at least one is in each eighth of the device's period. */
@@ -128,19 +85,6 @@ TEST(among_measured_frames_that_were_heard_it_is_asked_out_of_step_from_the_firs
     assert_in_range(due_us(), PERIOD_US + 1, PERIOD_US + 131070);
 }
 
-/* No response came, so none was a measurement, whatever the registers hold from before. */
-TEST(a_configuration_that_is_not_answered_puts_nothing_off)
-{
-    measures(OK, hps_measured);
-    asks(configuration);
-    fake_modbus_send(&fake);
-    PENDS(configuration());
-    fake.now_us += 1000000;
-    fake_modbus_fail(&fake, SILENT);
-    assert_int_equal(configuration(), SILENT);
-    assert_int_equal(due_us(), 0);
-}
-
 /* ---- how many responses to #2 ---- */
 
 /* "For 2 s after such a frame": of the last row there was none. */
@@ -158,15 +102,6 @@ TEST(for_2_s_to_the_microsecond_one_response_is_not_enough_and_a_new_driver_has_
     }
 }
 
-TEST(after_power_on_the_configuration_is_asked_as_often_as_ever)
-{
-    asks(configuration);
-    fake_modbus_response(&fake, tells, 4);
-    PENDS(configuration()); /* one of two */
-    fathom_hps167s_power_on(&hps);
-    PLAY(configuration, OK, TELLS(ON));
-}
-
 /* FATHOM_ERR_BUSY: "another command or setting is not finished": that one does not notice. */
 TEST(who_is_told_busy_costs_a_setting_no_response)
 {
@@ -176,8 +111,6 @@ TEST(who_is_told_busy_costs_a_setting_no_response)
     assert_int_equal(configuration(), FATHOM_ERR_BUSY);
     PLAY(set_termination, OK, HPS_2(1, OK, 0, ON), {{1, 6, 0, 0x13, 0, 0}, OK, {0}, 0}, TELLS(OFF));
 }
-
-/* ---- where it is ---- */
 
 /* ---- #4 ---- */
 

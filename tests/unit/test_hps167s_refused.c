@@ -3,10 +3,7 @@
 
 /* hps167s_settings.h: what holds after a setting that the device refused, or that was not confirmed. */
 
-static const fathom_line_settings_t fast = {115200, FATHOM_PARITY_EVEN, 1};
-
 static fathom_status_t set_baud(void) { return fathom_hps167s_set_baud(&hps, (uint32_t)desk.argument); }
-static fathom_status_t set_warm_up(void) { return fathom_hps167s_set_warm_up_s(&hps, 200); }
 static fathom_status_t set_address_1(void) { return fathom_hps167s_set_address(&hps, 1); }
 static fathom_status_t reset(void) { return fathom_hps167s_restore_factory_settings(&hps); }
 
@@ -18,27 +15,7 @@ static fathom_status_t reset(void) { return fathom_hps167s_restore_factory_setti
 #define IS_OF(unit, warm_up, code, baud)                                                                     \
     TWO_OF(unit, OK, warm_up, code, baud), TWO_OF(unit, OK, warm_up, code, baud)
 
-/* Until when is silence no error? Of warm_up_s seconds and one time-out of 500 ms. */
-static void assert_warm_up(uint32_t warm_up_s)
-{
-    fathom_hps167s_power_on(&hps);
-    PENDS(desk_poll());
-    fake.now_us += warm_up_s * 1000000u + 499999;
-    hps_is_silent(FATHOM_ERR_WARMING_UP);
-    fathom_hps167s_power_on(&hps);
-    PENDS(desk_poll());
-    fake.now_us += warm_up_s * 1000000u + 500000;
-    hps_is_silent(SILENT);
-}
-
 HPS_SUITE;
-
-/* #7: "fathom_hps167s_power_on then counts with it": with what the device has. */
-TEST(a_warm_up_that_was_refused_does_not_count)
-{
-    PLAY(set_warm_up, FATHOM_ERR_EXCEPTION, IS_OF(1, 5, 1, 0), HPS_WRITE(1, 0x0A, 200, EXCEPTION, 0));
-    assert_warm_up(5);
-}
 
 /* #9: "sensor->next_baud is not 0, and fathom_hps167s_power_on moves the driver": only where the device says so. */
 TEST(after_a_baud_rate_that_was_refused_power_on_moves_nothing)
@@ -65,48 +42,10 @@ TEST(nothing_is_reset_before_a_device_that_is_sought_has_answered)
     hps_asks(1, 19200);
 }
 
-/* #6: "it refused". Nothing of the factory's holds then. */
-TEST(after_a_reset_that_was_refused_rate_and_warm_up_are_as_before)
-{
-    hps_start_at(1, &fast);
-    hps_config.warm_up_s = 9;
-    hps_start();
-    PLAY(reset, FATHOM_ERR_EXCEPTION, IS_OF(1, 9, 3, 115200), TWO_OF(1, SILENT, 9, 1, 19200),
-         HPS_6(1, EXCEPTION, 4, 115200));
-    assert_int_equal(hps.next_baud, 0);
-    assert_warm_up(9);
-    hps_asks(1, 115200);
-}
-
-/* Its own error code stays in reset_response; that is not the next setting's. */
-TEST(after_a_reset_that_was_refused_other_settings_can_be_made)
-{
-    PLAY(reset, FATHOM_ERR_EXCEPTION, IS_OF(1, 5, 1, 0), HPS_6(1, OK, 2, 0));
-    assert_int_equal(hps.reset_response, 2);
-    PLAY(set_warm_up, OK, IS_OF(1, 5, 1, 0), HPS_WRITE(1, 0x0A, 200, OK, 0), IS_OF(1, 200, 1, 0));
-    assert_warm_up(200);
-}
-
 /* Address 1 at 19200 is probed if the device is elsewhere: it is not elsewhere by now. */
 TEST(a_device_that_was_moved_to_address_1_is_reset_without_looking_there)
 {
     PLAY_AT(7, NULL, 0, set_address_1, OK, HPS_1(7, OK, 0), HPS_1(1, SILENT, 0), HPS_WRITE(7, 0x10, 1, OK, 0),
             HPS_1(1, OK, 0));
     PLAY(reset, OK, IS_OF(1, 5, 1, 0), HPS_6(1, OK, 1, 0), IS_OF(1, 5, 1, 0));
-}
-
-/* The same where another caller has asked #2 and left its outcome, which the first call of the reset then takes. */
-TEST(it_is_not_looked_for_either_when_the_configuration_has_been_answered_before)
-{
-    static const uint16_t is[4] = {0xFFFF, 0x0500, 0x0000, 0xB401};
-    fathom_hps167s_configuration_t configuration;
-    PLAY_AT(7, NULL, 0, set_address_1, OK, HPS_1(7, OK, 0), HPS_1(1, SILENT, 0), HPS_WRITE(7, 0x10, 1, OK, 0),
-            HPS_1(1, OK, 0));
-    for (unsigned n = 0; n != 2; n++) {
-        PENDS(fathom_hps167s_get_configuration(&hps, &configuration));
-        fake.now_us += 20000;
-        PENDS(fathom_hps167s_get_configuration(&hps, &configuration));
-        fake_modbus_response(&fake, is, 4);
-    }
-    PLAY(reset, OK, HPS_6(1, OK, 1, 0), IS_OF(1, 5, 1, 0));
 }

@@ -53,15 +53,6 @@ TEST(the_values_that_have_names_are_those_of_the_datasheet)
     assert_int_equal(FATHOM_HPS167S_MAX_ADDRESS, 32);
 }
 
-/* #9: "01 represents 19200, 02 represents 57600, 03 represents 115200, 04 represents 230400, and the others are all
- * 19200bps". */
-TEST(every_baud_code_means_what_command_9_says)
-{
-    static const uint32_t bauds[] = {19200, 19200, 57600, 115200, 230400};
-    for (uint32_t code = 0; code != 65536; code++)
-        assert_int_equal(fathom_hps167s_baud((uint16_t)code), code < 5 ? bauds[code] : 19200);
-}
-
 /* Table 10. */
 TEST(the_version_is_read_byte_by_byte)
 {

@@ -65,13 +65,6 @@ TEST(what_is_so_already_is_not_written)
     }
 }
 
-TEST(on_is_ff)
-{
-    desk.argument = 1;
-    PLAY(measures, OK, TELLS(0xFF00, 0x0500, 0x0000, 0xB401), PUTS(0x12, 0xFF, OK), FACTORY);
-    PLAY(termination, OK, TELLS(0x00FF, 0x0500, 0x0000, 0xB401), PUTS(0x13, 0xFF, OK), FACTORY);
-}
-
 TEST(the_reconnect_time_goes_with_its_low_word_first_as_an_option)
 {
     hps_config.low_word_first = true;

@@ -132,20 +132,6 @@ TEST(an_upright_tanks_volume_is_to_the_nearest)
     assert_int_equal(volume_of(fathom_tank_upright, 0, 3, 2), 0);
 }
 
-/*
- * 2^32 - 1 = 65535 * 65537, so a mm of 65535 is 65537. Of one less 65534 mm are 65534 less 65534 / 65535:
- * 4294836224 + 65533.00002. That has the greatest rest.
- */
-TEST(an_upright_tanks_products_do_not_wrap)
-{
-    assert_int_equal(volume_of(fathom_tank_upright, 4294967295u, 65535, 65535), 4294967295u);
-    assert_int_equal(volume_of(fathom_tank_upright, 4294967295u, 65535, 65534), 4294901758u);
-    assert_int_equal(volume_of(fathom_tank_upright, 4294967295u, 65535, 1), 65537);
-    assert_int_equal(volume_of(fathom_tank_upright, 4294967294u, 65535, 65534), 4294901757u);
-    assert_int_equal(volume_of(fathom_tank_upright, 4294967294u, 65535, 65535), 4294967294u);
-    assert_int_equal(volume_of(fathom_tank_upright, 4294967295u, 1, 1), 4294967295u);
-}
-
 /* ---- a horizontal cylinder ---- */
 
 /* 0.0431 per mille of 10^6 units are 43.1; then half a unit, and half of one by which `volume` is rounded. */
@@ -322,17 +308,4 @@ TEST(points_whose_levels_or_volumes_do_not_grow_are_refused)
     expect_points(FATHOM_ERR_ARGUMENT, a, b, (p){20, 300});
     expect_points(FATHOM_ERR_ARGUMENT, a, b, (p){30, 199});
     expect_points(FATHOM_ERR_ARGUMENT, a, b, (p){19, 300});
-}
-
-TEST(a_table_without_points_or_without_a_volume_is_refused)
-{
-    static const fathom_level_point_t nothing[] = {{0, 100}};
-    use_points(NULL, 0);
-    expect_checked(FATHOM_ERR_ARGUMENT);
-    use_points(NULL, 1);
-    expect_checked(FATHOM_ERR_ARGUMENT);
-    use_points(cone, 0);
-    expect_checked(FATHOM_ERR_ARGUMENT);
-    use_points(nothing, 1);
-    expect_checked(FATHOM_ERR_ARGUMENT);
 }

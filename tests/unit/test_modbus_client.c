@@ -26,17 +26,6 @@ TEST(a_count_out_of_range_is_refused)
     assert_null(bench.line.head);
 }
 
-/* 13 registers are 31 bytes of response, 14 are 33; the frame has 32. 11 written are 31 bytes, 12 are 33. */
-TEST(what_does_not_fit_the_frame_is_refused)
-{
-    uint16_t values[14] = {0};
-    assert_int_equal(submit_read(1, 14, values), FATHOM_ERR_CAPACITY);
-    assert_int_equal(submit_read(1, 13, values), FATHOM_PENDING);
-    cancel(&bench.request);
-    assert_int_equal(submit_write_of_many(12, values), FATHOM_ERR_CAPACITY);
-    assert_int_equal(submit_write_of_many(11, values), FATHOM_PENDING);
-}
-
 TEST(every_byte_of_an_acknowledgement_counts)
 {
     uint16_t values[5] = {0};

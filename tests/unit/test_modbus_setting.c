@@ -16,7 +16,6 @@ static const fathom_line_settings_t fast = {57600, FATHOM_PARITY_EVEN, 1};
 static const fathom_modbus_unit_request_t look = {&found, REGISTER, 1, 3, 0x81};
 static const fathom_modbus_unit_request_t put = {NULL, REGISTER, NEW, 6, 0xCF};
 static const fathom_modbus_unit_request_t measure = {&found, 0x0100, 1, 3, 1};
-static const fathom_modbus_unit_request_t command = {&found, 0x0101, 1, 3, 0x82};
 
 static fathom_status_t asks(const fathom_modbus_unit_request_t *request)
 {
@@ -185,8 +184,6 @@ TEST(what_cannot_be_read_is_acknowledged_or_unconfirmed_or_refused)
     was_written(true);
 }
 
-/* ---- blind ---- */
-
 /* ---- to another address ---- */
 
 TEST(an_address_is_looked_at_first_and_followed)
@@ -230,20 +227,6 @@ TEST(line_settings_are_followed_without_a_look_at_the_new_ones)
 }
 
 /* ---- meanwhile ---- */
-
-TEST(measurements_rest_and_other_commands_are_refused_meanwhile)
-{
-    const fathom_modbus_setting_t another = {
-        .read = read_it, .driver = &unit, .write = {NULL, 0x0205, 1, 6, 0xC2}, .value = 1};
-    PART(set, IS(HERE, OLD));
-    PENDS(asks(&measure)); /* ends the look ... */
-    assert_int_equal(asks(&command), FATHOM_ERR_BUSY);
-    assert_int_equal(fathom_modbus_set(&unit, &another), FATHOM_ERR_BUSY);
-    assert_int_equal(fake.submits, 0); /* ... and asks nothing of its own */
-    SETS(OK, HERE, PUT(OK), IS(HERE, NEW));
-    PENDS(asks(&measure));
-    assert_int_equal(fake.submits, 1);
-}
 
 /* The application asks for the same register as the setting does: the response is the setting's. */
 TEST(the_outcome_of_a_settings_own_request_is_kept_for_it)

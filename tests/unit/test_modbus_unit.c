@@ -145,17 +145,6 @@ TEST(a_request_that_the_transport_does_not_take_is_tried_again_each_time)
     assert_int_equal(fathom_modbus_unit_failures(&unit), 0);
 }
 
-TEST(the_counters_stop_at_65535)
-{
-    unit.responses = unit.failures = 65534;
-    for (uint8_t i = 1; i <= 5; i += 2) {
-        GO(TAKEN(PACE_US, measure, i), ON_WIRE(measure, i + 1), ENDS(FATHOM_ERR_NO_RESPONSE),
-           IS(FATHOM_ERR_NO_RESPONSE, PACE_US, measure, i + 1));
-        assert_int_equal(fathom_modbus_unit_responses(&unit), 65535);
-        assert_int_equal(fathom_modbus_unit_failures(&unit), 65535);
-    }
-}
-
 /* ---- pace ---- */
 
 /* A slow loop: sent and answered since the last poll. */
@@ -172,23 +161,6 @@ STEPS(the_pace_counts_from_the_last_attempt, ON_WIRE(measure, 1), P(6 * PACE_US,
       P(0, measure, 1), ANSWERED, IS(FATHOM_OK, 25000, measure, 1), ASKED_IN(PACE_US - 25000, measure, 2))
 
 STEPS(a_response_slower_than_the_pace_is_followed_at_once, TAKEN(PACE_US, measure, 1), P(0, measure, 2))
-
-TEST(the_pace_holds_across_the_wrap_of_the_clock_and_due_tells_it)
-{
-    for (uint32_t before_us = 0; before_us <= PACE_US; before_us += 10000) {
-        set_up_at(UINT32_MAX - before_us);
-        GO(TAKEN(30000, measure, 1));
-        for (uint32_t left_us = PACE_US - 30000; left_us != 0; left_us -= 10000) {
-            assert_int_equal(due(), left_us);
-            fake.now_us += 10000;
-        }
-        assert_int_equal(due(), 0);
-        fake.now_us += 1;
-        assert_int_equal(due(), 0);
-        fake.now_us -= PACE_US - 30000 + 1;
-        GO(ASKED_IN(PACE_US - 30000, measure, 2));
-    }
-}
 
 /* ---- commands beside the repeated request ---- */
 
@@ -210,8 +182,6 @@ STEPS(a_command_that_waits_for_the_pace_comes_before_the_repeated_request, TAKEN
       IS(FATHOM_ERR_BUSY, 0, details, 1),          /* another one must not overtake it */
       P(0, version, 2))
 
-/* ---- cancel ---- */
-
 /* ---- due ---- */
 
 /* Several drivers share a transport, so that one driver's poll may end another's request. */
@@ -221,8 +191,6 @@ TEST(it_is_due_at_once_when_anothers_poll_has_ended_its_request)
     fathom_line_poll(&fake.line);
     assert_int_equal(due(), 0);
 }
-
-/* ---- a broken transport ---- */
 
 /* ---- requests about one register that are not the same request: a read, a write, a measurement ---- */
 

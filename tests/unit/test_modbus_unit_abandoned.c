@@ -175,13 +175,3 @@ TEST(a_line_that_is_not_initialised_any_more_is_reported_and_serves_the_unit_aga
     PENDS(asks(&measure));
     measures();
 }
-
-TEST(a_second_init_is_refused_while_the_request_is_queued_and_changes_nothing)
-{
-    PENDS(asks(&measure));
-    const fathom_modbus_unit_t before = unit;
-    assert_int_equal(init_unit(&unit, &fake.modbus, &config, TIMEOUT_US, 0), FATHOM_ERR_BUSY);
-    assert_memory_equal(&unit, &before, sizeof unit);
-    measures();
-    assert_int_equal(init_unit(&unit, &fake.modbus, &config, TIMEOUT_US, 0), FATHOM_OK);
-}

@@ -143,15 +143,6 @@ TEST(a_busy_line_and_another_master_leave_the_back_off_as_it_is)
         }
 }
 
-TEST(the_pause_holds_across_the_wrap_of_the_clock)
-{
-    for (uint32_t before_us = 0; before_us < 12 * TIMEOUT_US; before_us += 50000) {
-        set_up_at(UINT32_MAX - before_us);
-        silent_for(6);
-        assert_paused_for(8 * TIMEOUT_US);
-    }
-}
-
 /* The device's own pace holds for it all the same, and due says how long that is. */
 TEST(a_command_waits_for_the_pace_and_not_for_the_back_off)
 {

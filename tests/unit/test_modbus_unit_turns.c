@@ -50,8 +50,6 @@ static void ask_and_send(const fathom_modbus_unit_request_t *request)
     pending_after(0, request);
 }
 
-/* ---- the pace: "from this request to the next one to the unit, at least" ---- */
-
 /* ---- commands and the repeated request ---- */
 
 /* An outcome of the repeated request may be replaced by a newer one: once it has given way it is not handed over. */
@@ -74,5 +72,3 @@ TEST(the_outcome_of_a_command_is_due_at_once_within_the_pace)
     pending_after(0, &measure); /* in which the command ends */
     assert_int_equal(fathom_modbus_unit_due_us(&unit), 0);
 }
-
-/* ---- "FATHOM_ERR_PORT: ... and nothing was asked" ---- */

@@ -58,21 +58,3 @@ TEST(the_three_widths_are_options)
     expect_kind(60000, FATHOM_NO_TARGET);
     expect_kind(60001, FATHOM_FAULT);
 }
-
-TEST(the_count_of_noise_stops_at_65535)
-{
-    stand.meter.noises = 65534;
-    run_to_trigger();
-    for (uint32_t i = 0; i != 3; i++) pulse_in(5 * MS + i * MS, 100);
-    run_meter(100 * MS);
-    assert_int_equal(stand.meter.noises, 65535);
-}
-
-TEST(a_pulse_that_never_ends_is_a_fault_when_the_cycle_is_over)
-{
-    run_to_trigger();
-    pulse_in(110 * MS, 5000 * MS);
-    run_meter(221 * MS);
-    expect_readings(1);
-    assert_int_equal(stand.last.kind, FATHOM_FAULT);
-}

@@ -9,19 +9,6 @@ static void poll_after(uint32_t us)
     poll_meter();
 }
 
-/* ---- the trigger ---- */
-
-/* An interrupt holds the program up for 5 ms between its look at the clock and the edge, and not in the next cycle. */
-TEST(the_cycle_counts_from_a_look_at_the_clock_after_the_edge)
-{
-    for (unsigned i = 0; i != 5; i++) {
-        stand.pin.delay_us = 5 * MS;
-        run_meter(2 * 221 * MS);
-    }
-    expect_falls(10);
-    assert_int_equal(stand.pin.least_us, 221 * MS);
-}
-
 /* ---- loops and the clock ---- */
 
 TEST(every_cycle_is_one_reading_in_loops_from_50_us_to_200_ms_and_across_the_wrap)
@@ -82,10 +69,6 @@ TEST(the_period_of_a_trigger_is_longer_than_its_low_time)
         assert_int_equal(fathom_trigger_init(&trigger), rows[i].status);
     }
 }
-
-/* ---- the break ---- */
-
-/* ---- the capture looks for pulses before the trigger falls ---- */
 
 /* ---- a port that fails ---- */
 

@@ -297,16 +297,6 @@ TEST(what_is_made_of_readings_does_nothing_in_zeroed_memory)
     assert_int_equal(fathom_level_check(&none), FATHOM_ERR_ARGUMENT);
 }
 
-TEST(an_a16_in_zeroed_memory_has_an_error_in_each_poll)
-{
-    fathom_sample_t sample;
-    memset(&driver, 0, sizeof driver);
-    const fathom_sensor_t sensor = fathom_a16_pwm_sensor(&driver.pwm);
-    assert_int_equal(fathom_poll(&sensor, &sample), FATHOM_ERR_ARGUMENT);
-    assert_int_equal(fathom_due_us(&sensor, 1), 0);
-    assert_int_equal(fathom_a16_pwm_deinit(&driver.pwm), FATHOM_OK);
-}
-
 /* ---- a clock that is set back ---- */
 
 TEST(a_clock_that_is_set_back_does_not_end_a_hold_time)

@@ -165,14 +165,6 @@ TEST(it_idles_until_the_driver_is_due_and_no_longer)
     assert_int_equal(driver.told_us[2], 1003);
 }
 
-TEST(every_error_ends_it_and_leaves_the_sample_alone)
-{
-    for (unsigned i = 2; i != COUNT(all); i++) {
-        driver_t driver = {.pendings = 1, .status = all[i]};
-        assert_int_equal(waits(&driver, idle), all[i]);
-    }
-}
-
 TEST(without_an_idle_hook_it_spins)
 {
     driver_t driver = {.pendings = 1000, .status = FATHOM_OK};

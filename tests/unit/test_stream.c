@@ -326,21 +326,6 @@ TEST(after_a_loss_two_frames_in_step_or_a_silence_are_needed_again)
     expect(11050, FATHOM_OK);
 }
 
-/* 511 mm held still, FF 01 FF FF: without the two bytes FF 01 it reads FF FF FF 01, FF FF 01 FF. */
-/* FF FF, bytes that were lost, 02 00: FF + FF + 02 = 200, a right sum of bytes that never stood together. It vouches for
- * no place: what follows, FF A1 02 A2 (FF + A1 + 02 = 1A2), may be made of the halves of two frames. */
-TEST(a_sum_that_is_right_across_a_loss_is_no_frame_for_the_next_one_to_follow)
-{
-    feed_first(10);
-    expect_frame(10 + GAP_US, mm_1953, 10);
-    feed_hex("FF FF", false, 20);
-    feed_loss(20);
-    feed_hex("02 00 FF A1 02 A2", false, 20);
-    expect(20 + GAP_US, FATHOM_PENDING);
-    expect_counted(FATHOM_STREAM_FRAMES, 1);
-    expect_counted(FATHOM_STREAM_UNSURE, 1);
-}
-
 /* ---- what comes behind a frame decides whether it was one: FF, or a silence of gap_us ---- */
 
 /* 4321 mm is FF 10 E1 F0 (FF + 10 + E1 = 1F0). Behind a silence its third byte is lost, and the next frame follows
@@ -361,28 +346,6 @@ TEST(a_byte_too_many_does_not_make_the_last_value_a_sum)
     feed_hex("FF 07 9B A1 A7", true, 10);
     expect(10 + GAP_US, FATHOM_PENDING);
     expect_counted(FATHOM_STREAM_UNSURE, 1);
-}
-
-TEST(the_silence_is_measured_across_the_wrap_of_the_clock)
-{
-    const uint32_t came_us = UINT32_MAX - 1999; /* 2000 us before the wrap */
-    begin_with(4, came_us - 100, 0);
-    feed_first(came_us);
-    expect_due(came_us, GAP_US);
-    expect(2999, FATHOM_PENDING);
-    expect_due(2999, 1);
-    expect_frame(3000, mm_1953, came_us);
-}
-
-/* Due at the end of the silence, and what is due then is the frame. */
-TEST(who_sleeps_as_long_as_it_may_has_the_frame_when_it_wakes)
-{
-    feed_first(1000);
-    expect(2500, FATHOM_PENDING);
-    const uint32_t wake_us = 2500 + fathom_stream_due_us(&stream, 2500);
-    assert_int_equal(wake_us, 1000 + GAP_US);
-    expect(wake_us, FATHOM_OK);
-    expect_due(wake_us, 2000000);
 }
 
 /* The frame ended before the deadline and was not polled since: it is returned before the error. */

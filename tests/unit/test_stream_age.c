@@ -71,17 +71,6 @@ TEST(a_loss_that_the_caller_reports_keeps_the_halves_of_a_frame_apart)
     assert_int_equal(stream.counters[FATHOM_STREAM_DAMAGED], 1);
 }
 
-/* "After the pause, call fathom_stream_start()": 71 min 35 s later the clock has wrapped, and all seems recent. */
-TEST(after_a_start_nothing_of_before_a_pause_beyond_the_wrap_is_left)
-{
-    feed(mm_1953, 4, true, 10);
-    assert_int_equal(fathom_stream_start(&stream, start_us + 2000), FATHOM_OK);
-    expect(20000, FATHOM_PENDING);
-    feed(mm_1953, 4, true, 30000);
-    expect(35000, FATHOM_OK);
-    assert_int_equal(stream.counters[FATHOM_STREAM_FRAMES], 1);
-}
-
 /* Less than 100 ms: the clock stands still, and nothing is old or stale for that. */
 TEST(a_clock_that_was_set_back_a_little_costs_no_frame)
 {

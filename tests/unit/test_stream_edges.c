@@ -34,17 +34,6 @@ static void assert_1953(uint32_t now_us, uint32_t time_us)
     assert_int_equal(stream.time_us, time_us);
 }
 
-/* "a silence of gap_us": also one that only the next bytes tell of, whatever they are. */
-TEST(bytes_after_a_gap_end_the_frame_before_it)
-{
-    static const uint8_t other[] = {0x07};
-    feed(mm_1953, 4, true, 1500);
-    feed(other, 1, true, 9000);
-    assert_int_equal(stream.counters[FATHOM_STREAM_FRAMES], 1);
-    assert_int_equal(stream.counters[FATHOM_STREAM_UNSURE], 0);
-    assert_1953(9000, 1500);
-}
-
 /*
  * "it follows right upon another valid frame and no other alignment of the bytes of both was valid"; AMBIGUOUS: "in a
  * place where another alignment was right too"; UNSURE: "with neither a silence nor an unambiguous frame before them".
@@ -70,20 +59,6 @@ TEST(a_frame_right_upon_an_ambiguous_one_is_unsure)
     feed(bytes + 12, 4, false, 10100);
     assert_1953(20000, 10100);
     assert_int_equal(stream.counters[FATHOM_STREAM_FRAMES], 1);
-}
-
-/* "it stands in a believable place": the very first frame does not, unless a silence was seen before it, whatever the
- * memory held: the bytes since the last frame, too. */
-TEST(the_first_frame_without_a_silence_is_unsure_whatever_stood_in_the_memory)
-{
-    static const uint8_t fills[] = {0x00, 0x01, 0x04, 0xFF};
-    for (unsigned i = 0; i != sizeof fills; i++) {
-        memset(&stream, fills[i], sizeof stream);
-        assert_int_equal(fathom_stream_init(&stream, &config, 0), FATHOM_OK);
-        feed(mm_1953, 4, false, 1500);
-        assert_int_equal(fathom_stream_poll(&stream, 9000), FATHOM_PENDING);
-        assert_int_equal(stream.counters[FATHOM_STREAM_UNSURE], 1);
-    }
 }
 
 /* MISSED: "good ones that a newer one replaced before it was polled". */
