@@ -39,7 +39,7 @@ static const port_options_t *port(size_t number)
     const line_t *line = site.lines;
     for (; number != 0 && line != NULL; number--) line = line->next;
     assert_non_null(line);
-    return &line->port;
+    return &line->settings;
 }
 
 static void expect_sensor(size_t i, const char *name, const char *mode, size_t number)

@@ -219,7 +219,7 @@ static bool take_text(const sensors_t *sensors, const char *name, const yaml_nod
 static bool add_line_text(const sensors_t *sensors, sensor_t *sensor, const char *name, const char *text)
 {
     line_t *line = sensors->site->lines;
-    while (&line->port != sensor->port) line = line->next;
+    while (&line->settings != sensor->port) line = line->next;
     if (line_add_text(line, name) && line_add_text(line, "=") && line_add_text(line, text) &&
         line_add_text(line, "\n"))
         return true;

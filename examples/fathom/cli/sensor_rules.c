@@ -19,7 +19,7 @@ bool pins_example(const model_mode_t *mode, const char *chip, char text[PORT_EXA
     return mode->pins != 0;
 }
 
-static bool suits_tcp(const station_t *station, const char *path, const origin_t *origin)
+static bool suits_tcp(const sensor_t *station, const char *path, const origin_t *origin)
 {
     tcp_address_t address;
     const char *const wrong = tcp_parse(path, &address);
@@ -29,7 +29,7 @@ static bool suits_tcp(const station_t *station, const char *path, const origin_t
                   station->model->name, station->mode->name, station->model->name);
 }
 
-static bool suits_chip(const station_t *station, const port_options_t *port, const origin_t *origin)
+static bool suits_chip(const sensor_t *station, const port_options_t *port, const origin_t *origin)
 {
     const model_mode_t *const mode = station->mode;
     const char *const model = station->model->name;
@@ -50,7 +50,7 @@ static bool suits_chip(const station_t *station, const port_options_t *port, con
     return true;
 }
 
-bool sensor_suits_port(const station_t *station, const origin_t *origin)
+bool sensor_suits_port(const sensor_t *station, const origin_t *origin)
 {
     const port_options_t *const port = station->port;
     const model_mode_t *const mode = station->mode;
@@ -96,15 +96,15 @@ static bool suit_pins(const port_options_t *port, const port_options_t *other, c
 bool sensors_suit_pins(const site_t *site, const port_options_t *port, const origin_t *origin)
 {
     for (const line_t *line = site->lines; line != NULL; line = line->next)
-        if (line->port.is_chip && is_same_chip(port->path, line->port.path) &&
-            !suit_pins(port, &line->port, origin))
+        if (line->settings.is_chip && is_same_chip(port->path, line->settings.path) &&
+            !suit_pins(port, &line->settings, origin))
             return false;
     return true;
 }
 
 /* ---- names ---- */
 
-static bool has_namesake(station_t *const *stations, size_t count, const station_t *station, bool elsewhere)
+static bool has_namesake(sensor_t *const *stations, size_t count, const sensor_t *station, bool elsewhere)
 {
     for (size_t i = 0; i != count; i++) {
         if (elsewhere && stations[i]->port == station->port) continue;
@@ -114,7 +114,7 @@ static bool has_namesake(station_t *const *stations, size_t count, const station
 }
 
 /* Adds the port to a name that the user did not choose. Characters that JSON or CSV would have to quote become "_". */
-static void add_port(station_t *station, const char *path)
+static void add_port(sensor_t *station, const char *path)
 {
     const size_t length = strlen(station->name);
     (void)snprintf(station->name + length, sizeof station->name - length, "@%s", port_last_part(path));
@@ -142,7 +142,7 @@ bool sensors_set_names(const site_t *site, const origin_t *origins)
 /* ---- sensors that share a line ---- */
 
 /* has_settings: each sensor is read at its own line settings; not so behind a gateway. */
-static bool suit_each_other(const station_t *one, const station_t *other, bool has_settings,
+static bool suit_each_other(const sensor_t *one, const sensor_t *other, bool has_settings,
                             const origin_t *origin)
 {
     const bool is_same_line = one->line.baud == other->line.baud && one->line.parity == other->line.parity;
@@ -158,7 +158,7 @@ static bool suit_each_other(const station_t *one, const station_t *other, bool h
     return true;
 }
 
-static bool suits_line(const station_t *station, const port_options_t *port, const origin_t *origin)
+static bool suits_line(const sensor_t *station, const port_options_t *port, const origin_t *origin)
 {
     if (port->station_count > MAX_SENSORS_ON_A_LINE)
         return reject(origin, "%s has %zu sensors. A line has at most %d.", port->path, port->station_count,

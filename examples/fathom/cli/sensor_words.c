@@ -12,10 +12,10 @@ static line_t *line_of(site_t *site, const char *path)
 {
     const bool is_chip = port_kind(path) == PORT_CHIP;
     line_t *line = site->lines;
-    while (line != NULL && (is_chip || !port_is_same(line->port.path, path))) line = line->next;
+    while (line != NULL && (is_chip || !port_is_same(line->settings.path, path))) line = line->next;
     if (line != NULL) return line;
     line = site_add_line(site, path);
-    if (line != NULL) line->port.is_chip = is_chip;
+    if (line != NULL) line->settings.is_chip = is_chip;
     return line;
 }
 
@@ -66,7 +66,7 @@ static bool set_port(site_t *site, sensor_t *sensor, const sensor_word_t *word, 
     line_t *const line = line_of(site, word->port != NULL ? word->port : path);
     if (line == NULL) return reject_memory(origin);
     line_add(line, sensor);
-    return add_keys(&line->port.keys, word, origin);
+    return add_keys(&line->settings.keys, word, origin);
 }
 
 static void set_lines(const site_t *site, const port_keys_t *defaults)
@@ -93,7 +93,7 @@ static bool set_ports(const site_t *site, const sensor_defaults_t *defaults, con
         keys.value[KEY_RS485] = 1;
     }
     set_lines(site, &keys);
-    for (line_t *line = site->lines; line != NULL; line = line->next) port_options_take(&line->port, &keys);
+    for (line_t *line = site->lines; line != NULL; line = line->next) port_options_take(&line->settings, &keys);
     for (size_t i = 0; i != site->sensor_count; i++) {
         const port_options_t *const port = site->sensors[i]->port;
         if (port->is_chip && !sensors_suit_pins(site, port, &origins[i])) return false;

@@ -44,7 +44,7 @@ static void begin_json(const setting_t *settings, size_t count, const char *line
 
 static void begin_text(const char *line)
 {
-    const station_t *const station = session.station;
+    const sensor_t *const station = session.station;
     (void)printf("%s%s%s%s, %s, asked at address %u, %s\n", station != session.site.sensors[0] ? "\n" : "",
                  has_name() ? station->name : "", has_name() ? ": " : "", station->model->name,
                  station->model->what, station->address, line);

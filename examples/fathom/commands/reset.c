@@ -35,7 +35,7 @@ static fathom_status_t load(reader_t *reader, void *ctx)
 
 static int finish(bool is_restore, fathom_status_t status)
 {
-    const station_t *const station = session.station;
+    const sensor_t *const station = session.station;
     if (status == FATHOM_OK) {
         if (is_restore)
             (void)printf("%s: the interface has its factory settings: address 1, "

@@ -34,7 +34,7 @@ change_outcome_t change_outcome(const change_t *change, fathom_status_t status)
 /* The two places at which the device may be, or what else is not known. */
 static void print_unknown(FILE *to, const change_t *change)
 {
-    const station_t *const station = change->session->station;
+    const sensor_t *const station = change->session->station;
     const setting_t *const setting = change->setting;
     const reader_facts_t facts = reader_facts(station->reader);
     const bool is_acknowledged = !facts.is_setting && facts.acknowledgement == FATHOM_OK;

@@ -139,7 +139,7 @@ bool presence_is_free(session_t *session, uint8_t address, uint32_t baud)
 
 bool presence_follow(session_t *session)
 {
-    const station_t *const station = session->station;
+    const sensor_t *const station = session->station;
     const reader_facts_t facts = reader_facts(station->reader);
     const fathom_line_settings_t line = facts.line != NULL ? *facts.line : station->line;
     return session_move(session, facts.address, &line);

@@ -15,7 +15,7 @@ static void print_value(const setting_t *setting, const char *text)
 static void print_next(const change_t *change)
 {
     const setting_t *const setting = change->setting;
-    const station_t *const station = change->session->station;
+    const sensor_t *const station = change->session->station;
     const reader_facts_t facts = reader_facts(station->reader);
     const fathom_line_settings_t *const line = facts.line != NULL ? facts.line : &station->line;
     if (!setting->moves) return;
@@ -33,7 +33,7 @@ static bool is_later(const change_t *change)
 
 static void print_json(const change_t *change, change_outcome_t outcome)
 {
-    const station_t *const station = change->session->station;
+    const sensor_t *const station = change->session->station;
     const bool is_unchanged = outcome == CHANGE_UNCHANGED;
     const bool is_confirmed = is_unchanged || (outcome == CHANGE_DONE && change_is_read_back(change));
     json_t json = {.to = stdout};

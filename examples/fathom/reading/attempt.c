@@ -9,7 +9,7 @@ bool attempt_was_last(const loop_t *loop, const sensor_t *sensor)
     return count != 0 && sensor->counters.attempts >= count;
 }
 
-static bool is_shared(const line_t *line) { return line->port.station_count > 1; }
+static bool is_shared(const line_t *line) { return line->settings.station_count > 1; }
 
 uint32_t attempt_backoff_us(const line_t *line)
 {
@@ -18,7 +18,7 @@ uint32_t attempt_backoff_us(const line_t *line)
 
 listener_t *attempt_listener(line_t *line, sensor_t *sensor)
 {
-    return is_shared(line) ? &sensor->own_listener : &line->channel.listener;
+    return is_shared(line) ? &sensor->own_listener : &line->port.listener;
 }
 
 /* ---- what was received, and from whom ---- */
@@ -28,7 +28,7 @@ listener_t *attempt_whose(void *ctx)
     const line_t *const line = ctx;
     if (!is_shared(line)) return NULL;
     for (sensor_t *sensor = line->sensors; sensor != NULL; sensor = sensor->next)
-        if (reader_has_sent(sensor->reader, line->channel.line.head)) return sensor->listener;
+        if (reader_has_sent(sensor->reader, line->port.line.head)) return sensor->listener;
     return NULL;
 }
 
@@ -42,14 +42,14 @@ static sensor_t *sensor_at(const line_t *line, uint8_t address)
 
 void attempt_count_late(line_t *line)
 {
-    const port_t *const channel = &line->channel;
-    if (!is_shared(line) || channel->counters[FATHOM_LINE_LATE_RESPONSES] == 0) return;
+    const port_t *const port = &line->port;
+    if (!is_shared(line) || port->counters[FATHOM_LINE_LATE_RESPONSES] == 0) return;
     for (sensor_t *sensor = line->sensors; sensor != NULL; sensor = sensor->next) {
         evidence_t evidence;
-        if (channel->listener.now != sensor->listener) continue;
+        if (port->listener.now != sensor->listener) continue;
         listener_judge(sensor->listener, sensor->address, &evidence);
         sensor_t *const other = evidence.foreign != 0 ? sensor_at(line, evidence.foreign_address) : NULL;
-        counters_take_late(other != NULL ? &other->counters : &sensor->counters, &line->channel);
+        counters_take_late(other != NULL ? &other->counters : &sensor->counters, &line->port);
         return;
     }
 }
@@ -132,7 +132,7 @@ static void fail(line_t *line, sensor_t *sensor, fathom_status_t status, bool is
         .model = sensor->model,
         .mode = sensor->mode,
         .reader = sensor->reader,
-        .port = &line->channel,
+        .port = &line->port,
         .counters = &sensor->counters,
         .line = &sensor->line,
         .shared = loop->site.sensor_count > 1 ? sensor->name : NULL,
@@ -198,7 +198,7 @@ void attempt_outcome(line_t *line, sensor_t *sensor, fathom_status_t status, con
 {
     loop_t *const loop = line->loop;
     const reader_counters_t counted =
-        counters_take(&sensor->counters, &line->counts, &line->channel, sensor->reader);
+        counters_take(&sensor->counters, &line->counts, &line->port, sensor->reader);
     if (sensor->mode->has_pulses) pulses_take(&sensor->pulses, &counted, status == FATHOM_OK ? sample : NULL);
     if (status != FATHOM_ERR_PORT && is_early(loop, sensor, status)) return;
     if (status == FATHOM_OK && mode_is_asked(sensor->mode) && !sensor->answering)
@@ -214,7 +214,7 @@ void attempt_outcome(line_t *line, sensor_t *sensor, fathom_status_t status, con
 
 void attempt_lost(line_t *line, sensor_t *sensor, bool is_known)
 {
-    (void)counters_take(&sensor->counters, &line->counts, &line->channel, sensor->reader);
+    (void)counters_take(&sensor->counters, &line->counts, &line->port, sensor->reader);
     fail(line, sensor, FATHOM_ERR_PORT, false, is_known);
     end(line->loop, sensor);
 }

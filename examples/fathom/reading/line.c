@@ -35,7 +35,7 @@ static void finish(line_t *line)
 static void save_counters(line_t *line)
 {
     for (sensor_t *sensor = line->sensors; sensor != NULL && line->was_open; sensor = sensor->next)
-        (void)counters_take(&sensor->counters, &line->counts, &line->channel, sensor->reader);
+        (void)counters_take(&sensor->counters, &line->counts, &line->port, sensor->reader);
 }
 
 static void leave(line_t *line)
@@ -59,10 +59,10 @@ static bool start_sensor(line_t *line, sensor_t *sensor)
 {
     char text[TEXT];
     reader_settings_t settings = sensor->settings;
-    settings.line = line->port.has_mixed_lines ? &sensor->line : NULL;
+    settings.line = line->settings.has_mixed_lines ? &sensor->line : NULL;
     settings.backoff_us = attempt_backoff_us(line);
     settings.address = sensor->address;
-    if (!sensor_start(sensor, &line->channel, &settings)) {
+    if (!sensor_start(sensor, &line->port, &settings)) {
         sensor_refusal(sensor, text, sizeof text);
         notify(line, text, NOTICE_GIVEN_UP);
         return false;
@@ -80,17 +80,17 @@ static bool start_sensors(line_t *line)
 {
     for (sensor_t *sensor = line->sensors; sensor != NULL; sensor = sensor->next)
         if (!start_sensor(line, sensor)) return false;
-    line->channel.listener.whose = line->port.station_count > 1 ? attempt_whose : NULL;
-    line->channel.listener.ctx = line;
-    counters_begin_port(&line->counts, &line->channel);
+    line->port.listener.whose = line->settings.station_count > 1 ? attempt_whose : NULL;
+    line->port.listener.ctx = line;
+    counters_begin_port(&line->counts, &line->port);
     return true;
 }
 
 static fathom_status_t connect_port(line_t *line)
 {
-    port_settings_t settings = port_options_settings(&line->port);
+    port_settings_t settings = port_options_settings(&line->settings);
     settings.source = &line->source;
-    return port_open(&line->channel, line->loop->host, &settings);
+    return port_open(&line->port, line->loop->host, &settings);
 }
 
 static void report_absence(line_t *line)
@@ -104,11 +104,11 @@ static void report_absence(line_t *line)
 static void miss(line_t *line)
 {
     const site_t *const site = &line->loop->site;
-    const bool may_come = port_is_absent(&line->channel) || site->line_count > 1 || site->persists;
+    const bool may_come = port_is_absent(&line->port) || site->line_count > 1 || site->persists;
     char text[TEXT];
     line->is_lost = true;
     line->waits = site->reconnect && may_come;
-    (void)snprintf(text, sizeof text, "%s%s", port_error(&line->channel),
+    (void)snprintf(text, sizeof text, "%s%s", port_error(&line->port),
                    line->waits ? "; waiting until it is there" : "");
     notify(line, text, line->waits ? NOTICE_WAITING : NOTICE_GIVEN_UP);
     if (!line->waits) give_up(line);
@@ -118,9 +118,9 @@ static void miss(line_t *line)
 static void notify_advice(line_t *line)
 {
     char text[TEXT];
-    const char *const advice = port_advice(&line->channel);
+    const char *const advice = port_advice(&line->port);
     if (advice == NULL) return;
-    (void)snprintf(text, sizeof text, "%s: %s", port_name(&line->channel), advice);
+    (void)snprintf(text, sizeof text, "%s: %s", port_name(&line->port), advice);
     notify(line, text, NOTICE_WAITING);
 }
 
@@ -131,8 +131,8 @@ static void fail_to_open(line_t *line)
     if (!line->waits) return;
     report_absence(line);
     /* The user has to know, some time, about a port that is there and cannot be opened. */
-    if (port_is_overdue(&line->channel)) {
-        (void)snprintf(text, sizeof text, "still waiting: %s", port_error(&line->channel));
+    if (port_is_overdue(&line->port)) {
+        (void)snprintf(text, sizeof text, "still waiting: %s", port_error(&line->port));
         notify(line, text, NOTICE_WAITING);
     }
     notify_advice(line);
@@ -147,7 +147,7 @@ static bool start_reading(line_t *line)
     }
     if (line->is_lost) {
         char text[TEXT];
-        (void)snprintf(text, sizeof text, "%s: %s", port_name(&line->channel),
+        (void)snprintf(text, sizeof text, "%s: %s", port_name(&line->port),
                        line->was_open ? "it is back; reading goes on" : "it is there; reading begins");
         if (line->was_open) line->loop->reconnects++;
         notify(line, text, NOTICE_OPEN);
@@ -165,20 +165,20 @@ static bool open_line(fathom_loop_source_t *source)
     line->is_connecting = status == FATHOM_PENDING;
     if (status == FATHOM_ERR_PORT) fail_to_open(line);
     if (status != FATHOM_OK || start_reading(line)) return status != FATHOM_ERR_PORT;
-    port_close(&line->channel);
+    port_close(&line->port);
     return false;
 }
 
 /* False: the connection cannot be established. */
 static bool wait_for_connection(line_t *line)
 {
-    const fathom_status_t status = port_poll(&line->channel);
+    const fathom_status_t status = port_poll(&line->port);
     line->is_connecting = status == FATHOM_PENDING;
     if (status == FATHOM_ERR_PORT) fail_to_open(line);
     return status == FATHOM_OK ? start_reading(line) : status == FATHOM_PENDING;
 }
 
-static void close_line(fathom_loop_source_t *source) { port_close(&line_of(source)->channel); }
+static void close_line(fathom_loop_source_t *source) { port_close(&line_of(source)->port); }
 
 /* ---- losing ---- */
 
@@ -211,11 +211,11 @@ static void lose(line_t *line)
 
 /* ---- polling ---- */
 
-static int line_fd(const fathom_loop_source_t *source) { return port_fd(&const_line_of(source)->channel); }
+static int line_fd(const fathom_loop_source_t *source) { return port_fd(&const_line_of(source)->port); }
 
 static short line_events(const fathom_loop_source_t *source)
 {
-    return port_events(&const_line_of(source)->channel);
+    return port_events(&const_line_of(source)->port);
 }
 
 static void pass_remark(const line_t *line, sensor_t *sensor)
@@ -233,7 +233,7 @@ static bool poll_sensor(line_t *line, sensor_t *sensor)
         pass_remark(line, sensor);
         attempt_count_late(line);
         /* Between two requests a driver does not report a lost port, and waiting for the port would return at once. */
-        line->is_lost = port_poll(&line->channel) == FATHOM_ERR_PORT;
+        line->is_lost = port_poll(&line->port) == FATHOM_ERR_PORT;
         if (line->is_lost && (status == FATHOM_PENDING || status == FATHOM_ERR_PORT)) return true;
         if (status == FATHOM_PENDING) return false;
         attempt_outcome(line, sensor, status, &sample);

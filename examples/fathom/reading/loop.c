@@ -217,7 +217,7 @@ static void add_line(account_t *account, line_t *line)
     for (sensor_t *sensor = line->sensors; sensor != NULL; sensor = sensor->next) {
         /* The first sensor gets what the line counted; the sums are right nevertheless. */
         if (sensor->reader != NULL)
-            (void)counters_take(&sensor->counters, &line->counts, &line->channel, sensor->reader);
+            (void)counters_take(&sensor->counters, &line->counts, &line->port, sensor->reader);
         counters_add(&account->sum, &sensor->counters);
         account->requests += sensor->listener != NULL ? sensor->listener->requests : 0;
     }

@@ -21,7 +21,7 @@ line_t *site_add_line(site_t *site, const char *path)
     while (*end != NULL) end = &(*end)->next;
     line_t *const line = calloc(1, sizeof *line + strlen(path) + 1);
     if (line == NULL) return NULL;
-    line->port.path = strcpy(line->path, path);
+    line->settings.path = strcpy(line->path, path);
     *end = line;
     site->line_count++;
     return line;
@@ -33,8 +33,8 @@ void line_add(line_t *line, sensor_t *sensor)
     while (*end != NULL) end = &(*end)->next;
     *end = sensor;
     sensor->next = NULL;
-    sensor->port = &line->port;
-    line->port.station_count++;
+    sensor->port = &line->settings;
+    line->settings.station_count++;
 }
 
 bool line_add_text(line_t *line, const char *text)
@@ -121,9 +121,9 @@ const char *sensor_label(const sensor_t *sensor)
     return sensor->is_named ? sensor->name : sensor->model->name;
 }
 
-bool sensor_start(sensor_t *sensor, port_t *channel, const reader_settings_t *settings)
+bool sensor_start(sensor_t *sensor, port_t *port, const reader_settings_t *settings)
 {
-    return reader_open(&sensor->reader, sensor->mode, channel, settings);
+    return reader_open(&sensor->reader, sensor->mode, port, settings);
 }
 
 void sensor_refusal(const sensor_t *sensor, char *text, size_t capacity)

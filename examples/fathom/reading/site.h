@@ -17,7 +17,6 @@
 enum { MAX_SENSORS = 256, MAX_SENSORS_ON_A_LINE = 32, FULL_NAME_SIZE = 80 };
 
 typedef struct sensor sensor_t;
-typedef sensor_t station_t; /* the old name */
 typedef struct line line_t;
 
 struct sensor {
@@ -55,13 +54,13 @@ struct sensor {
 /* A port and the sensors on it. */
 struct line {
     fathom_loop_source_t source; /* first: the loop passes it to line.c */
-    port_options_t port;
+    port_options_t settings;
     sensor_t *sensors; /* the first one; sensor_t.next has the others */
     line_t *next;
     char *
         text; /* how the user describes this line: a reload leaves a line with the same text alone. NULL: unknown */
     struct loop *loop;
-    port_t channel;
+    port_t port;
     port_counts_t counts;
     bool is_connecting; /* the connection is not established yet */
     bool was_open;
@@ -112,8 +111,8 @@ void sensor_json(json_t *json, const sensor_t *sensor);
 /* Returns the name, or the model if the sensor need not be named. */
 const char *sensor_label(const sensor_t *sensor);
 
-/* Starts to read the sensor through an open channel. False: sensor_refusal() has the reason. */
-bool sensor_start(sensor_t *sensor, port_t *channel, const reader_settings_t *settings);
+/* Starts to read the sensor through an open port. False: sensor_refusal() has the reason. */
+bool sensor_start(sensor_t *sensor, port_t *port, const reader_settings_t *settings);
 void sensor_refusal(const sensor_t *sensor, char *text, size_t capacity);
 
 /* Returns true, once, if the driver's interval is longer than the one that the user chose; *text says so. */

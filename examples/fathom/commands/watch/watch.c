@@ -112,12 +112,12 @@ static void name_ports(const site_t *site, char text[PORTS])
     size_t at = 0;
     size_t count = 0;
     if (site->line_count == 1) {
-        (void)snprintf(text, PORTS, "%s", site->lines->port.path);
+        (void)snprintf(text, PORTS, "%s", site->lines->settings.path);
         return;
     }
     for (const line_t *line = site->lines; line != NULL && count != NAMED && at < PORTS; line = line->next)
         at += (size_t)snprintf(text + at, PORTS - at, "%s%s", count++ != 0 ? ", " : "",
-                               port_last_part(line->port.path));
+                               port_last_part(line->settings.path));
     if (site->line_count > NAMED && at < PORTS)
         (void)snprintf(text + at, PORTS - at, " and %zu more", site->line_count - NAMED);
 }
