@@ -137,13 +137,19 @@ static bool is_there(const char *name)
            access(path, F_OK) == 0;
 }
 
-/* A device file appeared. If the tty behind it is gone already, it may have been a twin. */
+static bool is_usb_name(const char *name)
+{
+    return strncmp(name, "ttyUSB", 6) == 0 || strncmp(name, "ttyACM", 6) == 0;
+}
+
+/* A device file appeared. If nothing is known about the tty behind it, since it is being removed or was removed, it may
+ * have been a twin. */
 static void note_new(adapter_t *adapter, const char *name)
 {
     adapter_facts_t other;
     if (!adapter->is_present) return;
     if (!read_facts(&other, name))
-        adapter->is_shared = adapter->is_shared || !is_there(name);
+        adapter->is_shared = adapter->is_shared || is_usb_name(name) || !is_there(name);
     else if (strcmp(adapter->known.identity, other.identity) == 0 &&
              strcmp(adapter->known.socket, other.socket) != 0)
         note_twin(adapter);
@@ -228,8 +234,7 @@ static bool is_counted(const char *serial)
 /* Why the identity does not find the adapter. */
 static int advice_for(const adapter_t *adapter)
 {
-    const char *const name = last_name(adapter->wanted);
-    const bool is_usb = strncmp(name, "ttyUSB", 6) == 0 || strncmp(name, "ttyACM", 6) == 0;
+    const bool is_usb = is_usb_name(last_name(adapter->wanted));
     if (adapter->known.name[0] == '\0') return adapter->was_open && is_usb ? ADVICE_PATH : ADVICE_NONE;
     if (adapter->is_doubtful) return ADVICE_DOUBTFUL;
     if (adapter->known.serial[0] == '\0') return ADVICE_NO_SERIAL;

@@ -4,6 +4,7 @@
 terminal, and comes back as another one. It needs real time: CTest runs one such file at a time."""
 import fcntl
 import os
+import shutil
 import signal
 import time
 
@@ -12,7 +13,7 @@ import e2e
 LOST = 'the device was unplugged or its far end closed'
 
 
-class Plug(e2e.Case):
+class PlugCase(e2e.Case):
     def setUp(self):
         super().setUp()
         self.port = self.path('port')
@@ -49,6 +50,8 @@ class Plug(e2e.Case):
     def rows(self, done):
         return [(int(row['sequence']), int(row['distance_mm'])) for row in done.rows]
 
+
+class Plug(PlugCase):
     def test_a_sensor_that_is_asked_is_read_on_and_the_count_goes_on(self):
         reader = self.lose('--count 5 --stats', 1111, 1112)
         self.answer(self.plug_in(), 1113, 1114)
@@ -169,6 +172,98 @@ class Plug(e2e.Case):
         done = reader.finish()
         self.assertEqual(self.rows(done), [(1, 1111), (2, 1113)])
         self.assertEqual(done.err.count('still waiting'), 1)
+
+
+class Adapters(PlugCase):
+    """USB adapters that share a serial number or have none: the sensor at the port tank is in socket 1-1.2."""
+    SAME_SOCKET = r': use the same USB socket \(1-1.2\) again$'
+
+    def setUp(self):
+        super().setUp()
+        for folder in ('sys/class/tty', 'sys/devices', 'dev'):
+            os.makedirs(self.path(folder))
+        self.environment = self.preload('usb_shim.c', USB_ROOT=self.path(''))
+
+    def plug(self, tty, socket, serial):
+        """An adapter in a socket, with a device behind it. Its device file appears last, as the kernel does it."""
+        device = self.device()
+        usb = self.path(f'sys/devices/usb1/1-1/{socket}')
+        port = f'{usb}/{socket}:1.0/{tty}'
+        os.makedirs(port)
+        facts = {f'{usb}/idVendor': '10c4', f'{usb}/idProduct': 'ea60', f'{usb}/serial': serial,
+                 f'{usb}/{socket}:1.0/bInterfaceNumber': '00', f'{port}/port_number': '0'}
+        for name, text in facts.items():
+            if text:
+                with open(name, 'w', encoding='ascii') as file:
+                    file.write(text + '\n')
+        os.makedirs(self.path(f'sys/class/tty/{tty}'))
+        os.symlink(port, self.path(f'sys/class/tty/{tty}/device'))
+        os.symlink(device.port, self.path(f'dev/{tty}'))
+        return device
+
+    def unplug(self, tty, socket, device):
+        shutil.rmtree(self.path(f'sys/devices/usb1/1-1/{socket}'))
+        shutil.rmtree(self.path(f'sys/class/tty/{tty}'))
+        os.unlink(self.path(f'dev/{tty}'))
+        device.hang_up()
+
+    def begin_tank(self, serial):
+        tank = self.plug('ttyUSB0', '1-1.2', serial)
+        reader = self.fathom('read tank=a16:modbus --port /dev/ttyUSB0 --timeout 2000 --format csv --reconnect',
+                             env=self.environment)
+        return tank, reader
+
+    def lose_tank(self, tank, reader):
+        tank.asked(e2e.ASK_A16)
+        self.unplug('ttyUSB0', '1-1.2', tank)
+        reader.expect(LOST, 'err')
+
+    def ends_with_tank(self, reader, tty, serial, *others):
+        """Two tries leave the others alone; then the adapter is plugged in again, under another name."""
+        for other in others:
+            self.assertTrue(other.is_silent(1.8))
+        self.answer(self.plug(tty, '1-1.2', serial), 1500)
+        reader.expect(f'fathom: /dev/{tty}: it is back; reading goes on', 'err')
+        reader.expect(',1500,')
+        self.assertEqual({mm for _, mm in self.rows(reader.end())}, {1500})
+        for other in others:
+            self.assertTrue(other.is_silent())
+
+    @e2e.each(a_twin_with_the_same_number_is_not_read=(
+        '0002', 'another adapter has, or may have had, the same serial number'),
+              a_twin_without_a_number_is_not_read=('', 'this adapter has no serial number'))
+    def begins(self, serial, reason):
+        twin = self.plug('ttyUSB1', '1-1.3', serial)
+        tank, reader = self.begin_tank(serial)
+        self.answer(tank, 1500)
+        self.lose_tank(tank, reader)
+        reader.expect(f'fathom: /dev/ttyUSB0: {reason}{self.SAME_SOCKET}', 'err')
+        self.ends_with_tank(reader, 'ttyUSB0', serial, twin)
+
+    def test_a_twin_that_was_plugged_in_for_a_moment_is_not_read_later(self):
+        tank, reader = self.begin_tank('0002')
+        self.answer(tank, 1500)
+        self.unplug('ttyUSB1', '1-1.3', self.plug('ttyUSB1', '1-1.3', '0002'))
+        self.answer(tank, 1500)
+        self.lose_tank(tank, reader)
+        reader.expect(f'another adapter has, or may have had, the same serial number{self.SAME_SOCKET}', 'err')
+        self.ends_with_tank(reader, 'ttyUSB1', '0002', self.plug('ttyUSB0', '1-1.3', '0002'))
+
+    def test_a_twin_with_a_counted_number_that_comes_under_the_old_name_is_not_read(self):
+        tank, reader = self.begin_tank('0001')
+        self.answer(tank, 1500)
+        self.lose_tank(tank, reader)
+        reader.expect(f'other adapters may have the same serial number{self.SAME_SOCKET}', 'err')
+        self.ends_with_tank(reader, 'ttyUSB1', '0001', self.plug('ttyUSB0', '1-1.3', '0001'))
+
+    def test_an_adapter_with_its_own_number_is_read_in_another_socket(self):
+        tank, reader = self.begin_tank('0002')
+        self.answer(tank, 1500)
+        self.lose_tank(tank, reader)
+        self.answer(self.plug('ttyUSB4', '1-1.4', '0002'), 1501)
+        reader.expect('fathom: /dev/ttyUSB4: it is back; reading goes on', 'err')
+        reader.expect(',1501,')
+        self.assertNotIn('USB socket', reader.end().err)
 
 
 if __name__ == '__main__':
