@@ -72,8 +72,9 @@ static void print_ports(FILE *to)
     (void)fputs("\necho: an RS485 adapter with local echo returns the bytes that it sends. 'auto'\n"
                 "finds this out.\n\n"
                 "--reconnect: a USB adapter is found again by its serial number, also as another\n"
-                "/dev/ttyUSB. An adapter without a serial number is found again in the same USB\n"
-                "socket. Other ports are found again by their path.\n",
+                "/dev/ttyUSB. If it has no serial number, or if another adapter has or may have\n"
+                "the same one (0001), it is found in the same USB socket only, and a message names\n"
+                "the socket. Other ports are found again by their path.\n",
                 to);
 }
 
