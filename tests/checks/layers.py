@@ -28,7 +28,6 @@ UPWARDS = {
     ('device/set_report.c', 'cli/command.h'),
     ('device/setting_text.c', 'cli/command.h'),
     ('device/setting_text.c', 'cli/options.h'),
-    ('diagnosis/counters_print.h', 'reading/site.h'),
 }
 
 STANDARD = {'stdbool.h', 'stddef.h', 'stdint.h'}

@@ -92,13 +92,28 @@ TEST(csv_has_the_columns_of_the_table_and_quotes_what_needs_it)
            "-7,-0.5,,true,\"a,\"\"b\"\"\"\n,,,,\n");
 }
 
-TEST(text_has_keys_with_blanks_and_a_dash_for_null)
+TEST(text_has_a_dash_for_null)
 {
     record_print(begin(), fields, &some, 0);
     (void)fputs("; ", to);
     record_print(to, fields, &none, 0);
-    expect("number mm -7, tenths degc -0.5, is on true, word a,\"b\"; number mm -, tenths degc -, is on -, "
-           "word -");
+    expect("number_mm -7, tenths_degc -0.5, is_on true, word a,\"b\"; "
+           "number_mm -, tenths_degc -, is_on -, word -");
+}
+
+TEST(text_of_counters_leaves_out_those_that_are_0)
+{
+    static const sample_t counts = {.number = 3, .fine = 2};
+    static const field_t counters[] = {
+        {"first", "", NULL, FIELD_NUMBER, 0, offsetof(sample_t, number)},
+        {"second", "", NULL, FIELD_NUMBER, 0, offsetof(sample_t, tenths)},
+        {"third", "", NULL, FIELD_NUMBER, 0, offsetof(sample_t, fine)},
+        {.key = NULL},
+    };
+    static const sample_t zero;
+    assert_true(record_print_used(begin(), "line: ", counters, &counts));
+    assert_false(record_print_used(to, "line: ", counters, &zero));
+    expect("line: first 3, third 2");
 }
 
 TEST(help_lists_the_fields_that_have_one)

@@ -84,7 +84,7 @@ TEST(noise_is_rejected_and_counted)
     at_us = 50000;
     happens = spike;
     EXPECT(0, 1, "1234 mm", "read " PWM " --count 1 --stats");
-    expect_err("rejected: noises 1, faults 0, missed edges 0, lost events 0");
+    expect_err("noises 1, faults 0, missed_edges 0, lost_events 0");
 }
 
 static void cut_with_noise(void)
@@ -151,16 +151,17 @@ TEST(stats_tell_the_spread_of_the_widths_and_what_was_rejected)
     chip.lost_events = 5;
     EXPECT(0, 5, "s  a16", "read " PWM " --count 5 --stats");
     expect_err(
-        "fathom: a16: pulses: 3 of a distance, 9990 to 10010 us wide, mean 10000.0 us, standard deviation "
-        "10.0 us (1.7 mm); 1 without a target; rejected: noises 0, faults 1, missed edges 3, lost events "
-        "5\n");
+        "fathom: a16: pulses: distances 3, min_us 9990, max_us 10010, mean_us 10000.0, deviation_us 10.0, "
+        "deviation_mm 1.7, no_targets 1, noises 0, faults 1, missed_edges 3, lost_events 5\n");
     with_widths(list);
     chip.missed = 3;
     chip.lost_events = 5;
     EXPECT(0, 5, "\"mode\":\"pwm\"", "read " PWM " --count 5 --stats --format json");
-    expect_err("{\"pulses\":\"a16\",\"distances\":3,\"least_us\":9990,\"most_us\":10010,\"mean_us\":10000.0,"
-               "\"deviation_us\":10.0,\"no_targets\":1,\"noises\":0,\"faults\":1,\"missed_edges\":3,"
-               "\"lost_events\":5}\n");
+    expect_err("{\"sensor\":\"a16\",\"pulses\":{\"distances\":3,\"min_us\":9990,\"max_us\":10010,\"mean_us\":"
+               "10000.0,"
+               "\"deviation_us\":10.0,\"deviation_mm\":1.7,\"no_targets\":1,\"noises\":0,\"faults\":1,"
+               "\"missed_edges\":3,"
+               "\"lost_events\":5}}\n");
 }
 
 TEST(stats_of_one_pulse_and_of_none_have_no_spread)
@@ -168,11 +169,11 @@ TEST(stats_of_one_pulse_and_of_none_have_no_spread)
     static const uint32_t one[] = {10000, 0};
     with_widths(one);
     EXPECT(0, 1, "1739 mm", "read " PWM " --count 1 --stats");
-    expect_err("pulses: 1 of a distance, 10000 to 10000 us wide, mean 10000.0 us; 0 without");
+    expect_err("pulses: distances 1, min_us 10000, max_us 10000, mean_us 10000.0, deviation_us -, ");
     static const uint32_t none[] = {0};
     with_widths(none);
     EXPECT(1, 1, "\"status\":\"no_response\",", "read " PWM " --count 1 --stats --format json");
-    expect_err("\"distances\":0,\"least_us\":null,\"most_us\":null,\"mean_us\":null,\"deviation_us\":null");
+    expect_err("\"distances\":0,\"min_us\":null,\"max_us\":null,\"mean_us\":null,\"deviation_us\":null");
 }
 
 /* Each second has its own: 4 pulses of 9000 us in the first, then those of 20000. */
@@ -181,8 +182,8 @@ TEST(stats_each_second_begin_anew)
     static const uint32_t list[] = {9000, 9000, 9000, 9000, 9000, 20000, 20000, 20000, 20000, 0};
     with_widths(list);
     EXPECT(0, 9, "s  a16", "read " PWM " --count 9 --stats=1");
-    expect_err("pulses: 5 of a distance, 9000 to 9000 us wide");
-    expect_err("pulses: 4 of a distance, 20000 to 20000 us wide");
+    expect_err("pulses: distances 5, min_us 9000, max_us 9000,");
+    expect_err("pulses: distances 4, min_us 20000, max_us 20000,");
 }
 
 /* ---- the chip ---- */

@@ -70,11 +70,12 @@ TEST(json_is_an_object_with_the_bytes)
         tool_run(&bench.tool, "request 1 3 0x0101 1 --sensor a16 --format json --port line");
     assert_int_equal(run->status, 0);
     assert_string_equal(
-        run->out, "{\"address\":1,\"function\":3,\"status\":\"answered\",\"sent\":\"01 03 01 01 00 01 D4 36\","
-                  "\"received\":\"01 03 02 04 D2 3A D9\",\"registers\":[{\"register\":\"0x0101\","
-                  "\"unsigned\":1234,\"signed\":1234,\"hex\":\"04D2\",\"ascii\":null}],\"meanings\":"
-                  "[{\"model\":\"a16\",\"source\":\"A16 6(3)\",\"what\":\"0x0101 real-time-distance\","
-                  "\"fields\":{\"real_time_distance_mm\":1234},\"notes\":{}}]}\n");
+        run->out,
+        "{\"address\":1,\"function\":3,\"status\":\"answered\",\"sent\":\"01 03 01 01 00 01 D4 36\","
+        "\"received\":\"01 03 02 04 D2 3A D9\",\"registers\":[{\"register\":\"0x0101\","
+        "\"unsigned\":1234,\"signed\":1234,\"hex\":\"04D2\",\"ascii\":null}],\"meanings\":"
+        "[{\"model\":\"a16\",\"source\":\"A16 6(3)\",\"what\":\"0x0101 real-time-distance\","
+        "\"fields\":{\"real_time_distance_mm\":1234},\"notes\":{}}]}\n");
 }
 
 TEST(a_write_sets_the_register)

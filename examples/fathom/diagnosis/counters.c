@@ -3,36 +3,7 @@
 
 #include <string.h>
 
-/* Those that can end an attempt; the others have no name. */
-static const struct {
-    const char *name;
-    const char *what;
-} failure_kinds[FAILURE_KINDS] = {
-    [FAILURE_VALUE] = {"impossible values",
-                       "a value that can be no distance, or that --window or --means refuses"},
-    [-FATHOM_ERR_PORT] = {"port", "the port is lost, or it is waited for"},
-    [-FATHOM_ERR_NO_RESPONSE] = {"no response", "nothing that was asked for came within --timeout"},
-    [-FATHOM_ERR_CHECKSUM] = {"damaged", "the received bytes have a wrong checksum, or form no frame"},
-    [-FATHOM_ERR_EXCEPTION] = {"exception", "the sensor has refused the request by a Modbus exception"},
-    [-FATHOM_ERR_MALFORMED] = {"other response", "a response that does not fit the request"},
-    [-FATHOM_ERR_STALE] = {"stale", "a sensor that sends by itself sent nothing within --timeout"},
-    [-FATHOM_ERR_LINE_BUSY] = {"line busy", "the line was never silent, so no request could be sent safely"},
-    [-FATHOM_ERR_OTHER_MASTER] = {"other master", "another master asked the same sensor at the same time"},
-    [FAILURE_KINDS - 1] = {"other", "anything else"},
-};
-
-const char *counters_failure_name(size_t kind) { return failure_kinds[kind].name; }
-
-const char *counters_failure_what(size_t kind) { return failure_kinds[kind].what; }
-
-const char *counters_member(const char *name, char text[COUNTERS_MEMBER])
-{
-    size_t i = 0;
-    for (; name[i] != '\0' && i != COUNTERS_MEMBER - 1; i++) text[i] = name[i];
-    text[i] = '\0';
-    for (char *space = text; (space = strchr(space, ' ')) != NULL;) *space = '_';
-    return text;
-}
+#include "diagnosis/status_word.h"
 
 static void take(uint16_t *from, uint64_t *attempt, uint64_t *total, size_t count)
 {
@@ -96,7 +67,7 @@ size_t counters_failure_kind(fathom_status_t status, const reader_t *reader)
 {
     const size_t kind = (size_t)-status;
     if (status == FATHOM_ERR_MALFORMED && !reader_facts(reader).is_unexpected) return FAILURE_VALUE;
-    return kind >= FAILURE_KINDS || counters_failure_name(kind) == NULL ? FAILURE_KINDS - 1 : kind;
+    return kind >= FAILURE_KINDS || status_word_of_failure(kind) == NULL ? FAILURE_KINDS - 1 : kind;
 }
 
 void counters_failure(counters_t *counters, fathom_status_t status, const reader_t *reader)

@@ -61,14 +61,6 @@ void counters_begin_attempt(counters_t *counters);
 /* Of a failure: FAILURE_VALUE, -status, or the last one, "other". */
 size_t counters_failure_kind(fathom_status_t status, const reader_t *reader);
 
-/* Its name, NULL where it cannot end an attempt; and what that means. */
-const char *counters_failure_name(size_t kind);
-const char *counters_failure_what(size_t kind);
-
-/* A name as programs want it: with underscores for spaces. */
-enum { COUNTERS_MEMBER = 40 };
-const char *counters_member(const char *name, char text[COUNTERS_MEMBER]);
-
 void counters_failure(counters_t *counters, fathom_status_t status, const reader_t *reader);
 
 void counters_time(counters_t *counters, uint32_t took_us);

@@ -6,18 +6,18 @@
 
 #include "sensors/model.h"
 
-/* The words for programs, in `status` and `alarm`, of all commands that tell readings. */
+/* The words of `status` and `alarm` in text, JSON, CSV and MQTT. */
 
-/* What a sample of this kind is; one of a contact has its own. */
+/* Returns the word for a kind of sample. A contact has its own words. */
 const char *status_word(const model_mode_t *mode, uint8_t kind);
 
-/* An attempt that has failed; kind: of counters.h. text: a buffer of COUNTERS_MEMBER. */
-const char *status_word_of_failure(size_t kind, char *text);
+/* Returns the word for a failure; `kind` as in counters.h. NULL if no attempt can end so. */
+const char *status_word_of_failure(size_t kind);
 
-/* fathom_alarm_state_t */
+/* Returns the word for a fathom_alarm_state_t. */
 const char *alarm_word(uint8_t state);
 
-/* The words of `status`, a line each. */
+/* Writes a line for each word of `status`. */
 void status_words_help(FILE *to);
 
 #endif

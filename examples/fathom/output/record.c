@@ -102,11 +102,21 @@ void record_print(FILE *to, const field_t *fields, const void *record, unsigned 
         char text[VALUE];
         if (!is_there(fields, columns)) continue;
         const char *const value = value_of(fields, record, text);
-        (void)fputs(comma, to);
-        for (const char *at = fields->key; *at != '\0'; at++) (void)fputc(*at == '_' ? ' ' : *at, to);
-        (void)fprintf(to, " %s", value != NULL ? value : "-");
+        (void)fprintf(to, "%s%s %s", comma, fields->key, value != NULL ? value : "-");
         comma = ", ";
     }
+}
+
+bool record_print_used(FILE *to, const char *before, const field_t *fields, const void *record)
+{
+    bool is_used = false;
+    for (; fields->key != NULL; fields++) {
+        const int64_t number = *(const int64_t *)(const void *)((const char *)record + fields->at);
+        if (number == 0) continue;
+        (void)fprintf(to, "%s%s %" PRId64, is_used ? ", " : before, fields->key, number);
+        is_used = true;
+    }
+    return is_used;
 }
 
 void record_help(FILE *to, const field_t *fields)

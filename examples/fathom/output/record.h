@@ -9,7 +9,7 @@
 #include "output/json.h"
 
 /* A record is a structure that a table of fields describes. JSON, CSV and text are printed from the table, so a field is
- * one row in it. Every member that a row names is an int64_t or a const char *. */
+ * one row in it. Every member that a row names is an int64_t (or a uint64_t less than 2^63) or a const char *. */
 
 /* The value of an int64_t member that is null. A const char * that is null is NULL. */
 #define NO_VALUE INT64_MIN
@@ -46,8 +46,11 @@ void record_csv_header(FILE *to, const field_t *fields, unsigned columns);
 /* Writes a row of a table that has the columns `all`. What is null or not in `columns` is empty. */
 void record_csv(FILE *to, const field_t *fields, const void *record, unsigned columns, unsigned all);
 
-/* Writes the fields for people, as "missed frames 3, temperature degc 21.5": keys with blanks; null is "-". */
+/* Writes the fields for people, as "missed_frames 3, temperature_degc 21.5"; null is "-". */
 void record_print(FILE *to, const field_t *fields, const void *record, unsigned columns);
+
+/* Writes the numbers that are not 0 in the same way, with `before` in front. Returns false if there are none. */
+bool record_print_used(FILE *to, const char *before, const field_t *fields, const void *record);
 
 /* Writes a line for each field: its key, its unit and its help. */
 void record_help(FILE *to, const field_t *fields);

@@ -91,7 +91,6 @@ results_to_t attempt_results(loop_t *loop) { return (results_to_t){report, loop}
 static void report_failure(loop_t *loop, sensor_t *sensor, const failure_t *failure, size_t kind,
                            uint8_t probe)
 {
-    char word[COUNTERS_MEMBER];
     const result_t result = {.sample = {.time_us = (uint32_t)loop_now_us(loop),
                                         .kind = FATHOM_UNKNOWN,
                                         .address = sensor->address,
@@ -99,7 +98,7 @@ static void report_failure(loop_t *loop, sensor_t *sensor, const failure_t *fail
     const uint64_t time_us = loop_sample_us(loop, result.sample.time_us);
     const reading_t reading = {.sensor = sensor,
                                .status = failure != NULL ? failure->status : FATHOM_ERR_PORT,
-                               .failure = status_word_of_failure(kind, word),
+                               .failure = status_word_of_failure(kind),
                                .evidence = failure,
                                .result = &result,
                                .time_us = time_us,

@@ -40,8 +40,8 @@ static const field_t fields[] = {
      AT(magnitude)},
     {"ambient", "", "Ambient infrared light (hps167s)", FIELD_NUMBER, OPTICS, AT(ambient)},
     {"precision", "", "Precision; less is better (hps167s)", FIELD_NUMBER, OPTICS, AT(precision)},
-    {"temperature_degc", "degC", "Temperature of the sensor; null if it is older than three periods",
-     FIELD_TENTHS, TEMPERATURE, AT(temperature_dc)},
+    {"temperature_degc", "degC", "Temperature; null if older than three periods", FIELD_TENTHS, TEMPERATURE,
+     AT(temperature_dc)},
     {"level_mm", "mm", "Level in the tank", FIELD_NUMBER, LEVEL, AT(level_mm)},
     {"level_per_mille", "1/1000", "Level as a part of the height", FIELD_NUMBER, LEVEL, AT(level_per_mille)},
     {"volume", "", "Volume in the unit of the capacity", FIELD_NUMBER, LEVEL, AT(volume)},
@@ -128,8 +128,8 @@ void reading_csv(FILE *to, const reading_t *reading, unsigned columns)
 
 void reading_help(FILE *to)
 {
-    (void)fputs("\nfields of json and csv, in this order, and their units; null is empty in csv:\n", to);
+    (void)fputs("\nFields of json and csv, in this order; null is empty in csv:\n\n", to);
     record_help(to, fields);
-    (void)fputs("\nstatus of a reading, and of an attempt that has failed:\n", to);
+    (void)fputs("\nWords of 'status', for a reading or a failed attempt:\n\n", to);
     status_words_help(to);
 }

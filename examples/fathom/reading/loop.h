@@ -3,6 +3,7 @@
 #define LOOP_H
 
 #include "reading/reading.h"
+#include "reading/stats.h"
 
 /*
  * Reads all sensors of a site, in one loop, until the user, a count, a duration, a loss or the sink ends it. `fathom read`,

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "reading/pulses.h"
 
-#include <inttypes.h>
 #include <string.h>
+
+#include "output/record.h"
 
 static void take_width(pulses_t *pulses, uint32_t width_us)
 {
@@ -38,36 +39,68 @@ static double deviation_us(const pulses_t *pulses)
     return pulses->count > 1 ? root(pulses->squares / (double)(pulses->count - 1)) : 0;
 }
 
-static void begin(pulses_t *pulses) { memset(pulses, 0, sizeof *pulses); }
+typedef struct {
+    int64_t distances, min_us, max_us, mean_dus, deviation_dus, deviation_dmm;
+    int64_t no_targets, noises, faults, missed_edges, lost_events;
+} row_t;
+
+#define AT(member) offsetof(row_t, member)
+static const field_t fields[] = {
+    {"distances", "", NULL, FIELD_NUMBER, 0, AT(distances)},
+    {"min_us", "us", NULL, FIELD_NUMBER, 0, AT(min_us)},
+    {"max_us", "us", NULL, FIELD_NUMBER, 0, AT(max_us)},
+    {"mean_us", "us", NULL, FIELD_TENTHS, 0, AT(mean_dus)},
+    {"deviation_us", "us", NULL, FIELD_TENTHS, 0, AT(deviation_dus)},
+    {"deviation_mm", "mm", NULL, FIELD_TENTHS, 0, AT(deviation_dmm)},
+    {"no_targets", "", NULL, FIELD_NUMBER, 0, AT(no_targets)},
+    {"noises", "", NULL, FIELD_NUMBER, 0, AT(noises)},
+    {"faults", "", NULL, FIELD_NUMBER, 0, AT(faults)},
+    {"missed_edges", "", NULL, FIELD_NUMBER, 0, AT(missed_edges)},
+    {"lost_events", "", NULL, FIELD_NUMBER, 0, AT(lost_events)},
+    {.key = NULL},
+};
+#undef AT
+
+static int64_t tenths(double value) { return (int64_t)(value * 10 + 0.5); }
+
+static row_t row_of(const pulses_t *pulses)
+{
+    const bool is_any = pulses->count != 0;
+    const bool has_spread = pulses->count > 1;
+    const double deviation = deviation_us(pulses);
+    return (row_t){.distances = (int64_t)pulses->count,
+                   .min_us = is_any ? pulses->least_us : NO_VALUE,
+                   .max_us = is_any ? pulses->most_us : NO_VALUE,
+                   .mean_dus = is_any ? tenths(pulses->mean_us) : NO_VALUE,
+                   .deviation_dus = has_spread ? tenths(deviation) : NO_VALUE,
+                   .deviation_dmm =
+                       has_spread ? tenths(deviation * 4 / 23) : NO_VALUE, /* A16 1: T / 57.5 cm */
+                   .no_targets = (int64_t)pulses->no_targets,
+                   .noises = (int64_t)pulses->noises,
+                   .faults = (int64_t)pulses->faults,
+                   .missed_edges = (int64_t)pulses->missed,
+                   .lost_events = (int64_t)pulses->lost_events};
+}
 
 void pulses_print(pulses_t *pulses, const char *name, FILE *to)
 {
-    const double deviation = deviation_us(pulses);
-    (void)fprintf(to, "fathom: %s: pulses: %" PRIu64 " of a distance", name, pulses->count);
-    if (pulses->count != 0)
-        (void)fprintf(to, ", %" PRIu32 " to %" PRIu32 " us wide, mean %.1f us", pulses->least_us,
-                      pulses->most_us, pulses->mean_us);
-    if (pulses->count > 1) /* A16 1: S[cm] = T[us] / 57.5 */
-        (void)fprintf(to, ", standard deviation %.1f us (%.1f mm)", deviation, deviation * 4 / 23);
-    (void)fprintf(to,
-                  "; %" PRIu64 " without a target; rejected: noises %" PRIu64 ", faults %" PRIu64
-                  ", missed edges %" PRIu64 ", lost events %" PRIu64 "\n",
-                  pulses->no_targets, pulses->noises, pulses->faults, pulses->missed, pulses->lost_events);
-    begin(pulses);
+    const row_t row = row_of(pulses);
+    (void)fprintf(to, "fathom: %s: pulses: ", name);
+    record_print(to, fields, &row, 0);
+    (void)fputs("\n", to);
+    memset(pulses, 0, sizeof *pulses);
 }
 
 void pulses_print_json(pulses_t *pulses, const char *name, FILE *to)
 {
-    (void)fprintf(to, "{\"pulses\":\"%s\",\"distances\":%" PRIu64, name, pulses->count);
-    if (pulses->count != 0)
-        (void)fprintf(
-            to, ",\"least_us\":%" PRIu32 ",\"most_us\":%" PRIu32 ",\"mean_us\":%.1f,\"deviation_us\":%.1f",
-            pulses->least_us, pulses->most_us, pulses->mean_us, deviation_us(pulses));
-    else
-        (void)fputs(",\"least_us\":null,\"most_us\":null,\"mean_us\":null,\"deviation_us\":null", to);
-    (void)fprintf(to,
-                  ",\"no_targets\":%" PRIu64 ",\"noises\":%" PRIu64 ",\"faults\":%" PRIu64
-                  ",\"missed_edges\":%" PRIu64 ",\"lost_events\":%" PRIu64 "}\n",
-                  pulses->no_targets, pulses->noises, pulses->faults, pulses->missed, pulses->lost_events);
-    begin(pulses);
+    const row_t row = row_of(pulses);
+    json_t json = {.to = to};
+    json_begin(&json, NULL, '{');
+    json_string(&json, "sensor", name);
+    json_begin(&json, "pulses", '{');
+    record_json(&json, fields, &row, 0);
+    json_end(&json, '}');
+    json_end(&json, '}');
+    (void)fputs("\n", to);
+    memset(pulses, 0, sizeof *pulses);
 }

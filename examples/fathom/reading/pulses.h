@@ -25,7 +25,7 @@ typedef struct {
 /* An attempt of a sensor that has pulses has ended. sample: NULL unless the status is FATHOM_OK. */
 void pulses_take(pulses_t *pulses, const reader_counters_t *counted, const fathom_sample_t *sample);
 
-/* A line, and then it begins anew. */
+/* Prints one line and resets the counters. */
 void pulses_print(pulses_t *pulses, const char *name, FILE *to);
 void pulses_print_json(pulses_t *pulses, const char *name, FILE *to);
 

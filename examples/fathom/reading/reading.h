@@ -3,8 +3,6 @@
 #define READING_H
 
 #include "diagnosis/advice.h"
-
-#include "diagnosis/counters_print.h"
 #include "reading/site.h"
 
 /* What the loop reports of a sensor: a reading, the change of an alarm, or an attempt that failed or could not be made

@@ -93,7 +93,7 @@ class Silence(e2e.Case):
         device = self.device()
         done = self.fails('no response', f'a16 --mode modbus --port {device} --timeout 50 --retries 2')
         self.assertEqual(device.rest(), e2e.ASK_A16 * 3)
-        self.assertIn('requests without a response 3', done.err)
+        self.assertIn('no_responses 3', done.err)
 
     def test_the_wrong_baud_rate_of_a_sensor_that_sends(self):
         reader = self.fathom(f'read a16 --port {self.sim("a16 --distance 754")} --baud 19200 --timeout 500')

@@ -22,7 +22,7 @@ class Late(e2e.Case):
         device.asked(e2e.ASK_A16)  # only when the late one has come
         say(2222)
         done = self.ends(reader, 1, 'attempts 2, failed 1, readings 1\n',
-                         re.compile(r'line: responses 1, .*requests without a response 1, .*late responses 1, '))
+                         re.compile(r'line: responses 1, .*no_responses 1, .*late_responses 1, '))
         self.assertEqual(done.mm, ['2222'])
 
     def test_the_next_request_waits_for_the_late_response_at_least_another_time_out(self):
@@ -42,7 +42,7 @@ class Late(e2e.Case):
             reader.expect(f'attempt {number}: no response', 'err')
             if number != 5:
                 say(1000 + number)
-        done = self.ends(reader, 1, 'late responses 4')
+        done = self.ends(reader, 1, 'late_responses 4')
         self.assertEqual(done.mm, [])
         self.assertEqual(re.findall(r'attempt (\d): .*: the response arrived after the time-out',
                                     done.err),
@@ -53,7 +53,7 @@ class Late(e2e.Case):
         device.asked(e2e.ASK_A16)
         self.assertTrue(device.is_silent(0.6))  # the time-out has passed, the retry waits
         say(1111)
-        self.assertEqual(self.ends(reader, 0, 'late responses 1').mm, ['1111'])
+        self.assertEqual(self.ends(reader, 0, 'late_responses 1').mm, ['1111'])
 
     def test_a_unit_that_never_answers_is_asked_again(self):
         device, _, reader = self.begin(3, 150)

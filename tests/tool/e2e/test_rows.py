@@ -14,7 +14,6 @@ DAMAGED = bytes((*GOOD[:4], GOOD[4] ^ 0x10, *GOOD[5:]))
 SCRIPT = [GOOD, b'', DAMAGED, e2e.adu(1, 0x83, 2), e2e.registers(1, 754, 755), e2e.registers(1, 40000), GOOD]
 STATUSES = ['target', 'no_response', 'damaged', 'exception', 'other_response', 'impossible_values', 'target']
 HEADER = 'sensor,model,mode,address,probe,sequence,time_us,utc,status,interference,distance_mm,raw'
-MANUAL = f'{e2e.ROOT}/examples/fathom/README.md'
 
 
 class Failures(e2e.Case):
@@ -276,20 +275,6 @@ class Help(e2e.Case):
         has_port = re.search('^  --port', done.out, re.M) is not None
         self.assertEqual(has_port, command not in ('sim', 'decode'))
         self.ends(f'{command} -p', 2, '-p needs a value' if has_port else 'there is no option -p')
-
-    def test_the_manual_has_the_fields_and_the_statuses_of_the_help(self):
-        text = self.ends('read --help', 0).out
-        with open(MANUAL, encoding='utf-8') as file:
-            manual = file.read()
-        fields, statuses = (re.findall(r'^  (\w+) +(.*)$', part.split('\n\n')[0], re.M)
-                            for part in text.split('\nfields of json')[1].split('\nstatus of a reading'))
-        shown = [(name, ' '.join((unit + ' ' + what).split())) for name, unit, what in
-                 re.findall(r'^\| `(\w+)` \| (\S*) *\| (.+) \|$', manual.split('## Options')[0], re.M)]
-        self.assertEqual([(name, ' '.join(what.split())) for name, what in fields], shown)
-        self.assertEqual(len(shown), 21)
-        told = re.findall(r'^\| `(\w+)` \| ([^|]+) \|$', manual.split('| `status` | of a reading')[1].split('\n###')[0], re.M)
-        self.assertEqual(statuses, told)
-        self.assertEqual([name for name, _ in told if name in e2e.FAILURES], e2e.FAILURES)
 
 
 if __name__ == '__main__':

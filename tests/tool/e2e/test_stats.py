@@ -7,13 +7,12 @@ import os
 
 import e2e
 
-LINE = ['responses', 'bytes_of_no_frame', 'port_errors', 'requests_without_a_response', 'damaged_responses',
-        'exceptions',
-        'responses_that_do_not_fit', 'late_responses', 'unasked_frames', 'bad_bytes', 'old_bytes',
-        'requests_of_other_masters', 'responses_that_may_be_unasked', 'busy_lines',
-        'attempts_disturbed_by_another_master']
-STREAM = ['frames', 'missed_frames', 'ambiguous_frames', 'unsure_frames', 'stale', 'bytes', 'dropped_bytes',
-          'damaged_frames']
+LINE = ['responses', 'dropped_bytes', 'port_errors', 'no_responses', 'damaged_responses', 'exceptions', 'other_responses',
+        'late_responses', 'unsolicited_frames', 'maybe_unsolicited_responses', 'bad_bytes', 'old_bytes',
+        'busy_attempts', 'other_master_attempts', 'other_master_requests']
+STREAM = ['frames', 'missed_frames', 'ambiguous_frames', 'unsure_frames', 'damaged_frames', 'stale', 'bytes',
+          'dropped_bytes']
+RESPONSE = ['response_min_us', 'response_mean_us', 'response_max_us']
 JSON = '--stats --format json'
 GOOD = e2e.SAYS_754
 
@@ -39,25 +38,22 @@ class Stats(e2e.Case):
                          e2e.registers(1, 40000), GOOD, e2e.registers(2, 754)], JSON)
         self.assertEqual(done.code, 1)
         one = self.told(done)
-        self.assertEqual(list(one), ['time_us', 'attempts', 'failed', 'readings', 'requests',
-                                     'skipped_frames',
-                                     'reconnects', 'failures', 'line', 'stream', 'unit', 'port', 'response_us',
-                                     'units'])
-        self.assertEqual((list(one['failures']), list(one['line']), list(one['unit'])),
-                         (e2e.FAILURES, LINE, ['responses', 'failures']))
+        self.assertEqual(list(one), ['time_us', 'attempts', 'failed', 'readings', 'requests', 'skipped_frames',
+                                     'reconnects', 'failures', 'line', 'stream', 'port', *RESPONSE, 'sensors'])
+        self.assertEqual((list(one['failures']), list(one['line'])), (e2e.FAILURES, LINE))
         self.assertEqual([one[name] for name in ('attempts', 'failed', 'readings', 'requests', 'reconnects')],
                          [8, 6, 2, 8, 0])
         self.assertEqual(one['failures'], dict(zip(e2e.FAILURES, (1, 0, 2, 1, 1, 1, 0, 0, 0, 0))))
         # 754, 754 and 40000 were responses; the foreign frame was dropped: 7 bytes, and the damaged and the
         # long one
         self.assertEqual(one['line'], dict(zip(LINE, (3, 7 + 9 + 7, 0, 2, 1, 1, 1, 0, 1, 0, 0, 0, 0, 0, 0))))
-        self.assertEqual(one['unit'], {'responses': 3, 'failures': 5})
-        self.assertEqual([unit['name'] for unit in one['units']], ['a16:1'])
+        sensor, = one['sensors']
+        self.assertEqual([sensor[name] for name in ('sensor', 'model', 'responses', 'failed_requests')],
+                         ['a16:1', 'a16', 3, 5])
         self.assertEqual((one['stream'], one['port']), (None, None))
-        times = one['response_us']
-        self.assertEqual(times['responses'], 2)
+        shortest, mean, longest = (one[name] for name in RESPONSE)
         # eight characters of ten bits at 9600 baud leave before a response is looked for
-        self.assertTrue(0 < times['min'] <= times['mean'] <= times['max'] < 1200000 + 60000, times)
+        self.assertTrue(0 < shortest <= mean <= longest < 1200000 + 60000, one)
 
     def test_a_name_that_is_made_up_of_a_port_needs_no_quotes(self):
         words = []
@@ -66,30 +62,25 @@ class Stats(e2e.Case):
             words.append(f'hps167s:1@{self.path(name)}')
         done = self.ends(self.fathom(f'read --count 1 {JSON}', words), 0)
         names = ['hps167s:1@plain', 'hps167s:1@a_b_c']
-        self.assertEqual([unit['name'] for unit in self.told(done)['units']], names)
+        self.assertEqual([one['sensor'] for one in self.told(done)['sensors']], names)
         self.assertEqual(sorted(one['sensor'] for one in done.all_json), sorted(names))
 
     def test_text_has_every_counter_too(self):
         lines = self.ask([GOOD, b''], '--stats').err.splitlines()[1:]
-        self.assertEqual(lines[:5], [
-            'fathom: attempts 2, failed 1, readings 1', 'fathom: requests 2, skipped frames 0, reconnects 0',
-            'fathom: failures: impossible values 0, port 0, no response 1, damaged 0, exception 0, other '
-            'response 0, stale 0, line busy 0, other master 0, other 0',
-            'fathom: line: responses 1, bytes of no frame 0, port errors 0, requests without a response 1, '
-            'damaged '
-            'responses 0, exceptions 0, responses that do not fit 0, late responses 0, unasked frames 0, '
-            'bad bytes 0, old bytes 0, requests of other masters 0, responses that may be unasked 0, busy lines 0, '
-            'attempts disturbed by another master 0', 'fathom: unit: responses 1, failures 1'])
-        self.assertRegex(lines[5], r'^fathom: a16:1: attempts 2, failed 1, readings 1, responses 1, failures '
-                                   r'1, time-outs in a row 1, left alone for 0\.0 s, '
-                                   r'time to answer: shortest [\d.]+ ms, mean [\d.]+ ms, longest [\d.]+ ms$')
-        self.assertEqual(len(lines), 6)
+        self.assertEqual(lines[:4], [
+            'fathom: attempts 2, failed 1, readings 1', 'fathom: requests 2, skipped_frames 0, reconnects 0',
+            'fathom: failures: ' + ', '.join(f'{name} {int(name == "no_response")}' for name in e2e.FAILURES),
+            'fathom: line: ' + ', '.join(f'{name} {int(name in ("responses", "no_responses"))}' for name in LINE)])
+        self.assertRegex(lines[4], r'^fathom: a16:1: attempts 2, failed 1, readings 1, responses 1, failed_requests 1, '
+                                   r'timeouts_in_row 1, backoff_left_us \d, response_min_us (\d+), '
+                                   r'response_mean_us \1, response_max_us \1$')
+        self.assertEqual(len(lines), 5)
 
     def test_retries_are_requests(self):
         _, reader = self.beside(f'read a16 --mode modbus --count 1 --timeout 60 --retries 2 {JSON}')
         one = self.told(reader.finish())
         self.assertEqual((one['attempts'], one['requests'], one['failures']['no_response']), (1, 3, 1))
-        self.assertIsNone(one['response_us'])
+        self.assertIsNone(one['response_min_us'])
 
     def test_every_frame_of_a_stream_is_accounted_for(self):
         device, reader = self.beside(f'read a16 --count 4 --interval 800 {JSON}')
@@ -98,7 +89,7 @@ class Stats(e2e.Case):
             device.write(frames[0])
             frames.reverse()
         one = self.told(reader.finish())
-        self.assertEqual((list(one['stream']), one['unit']), (STREAM, None))
+        self.assertEqual((list(one['stream']), one['sensors']), (STREAM, []))
         self.assertEqual(one['attempts'], 4)
         self.assertEqual(one['readings'] + one['failures']['impossible_values'], 4)
         self.assertGreater(one['skipped_frames'], 3)

@@ -131,7 +131,7 @@ class Raw(e2e.Case):
     def test_a_late_response_is_told_and_not_shown(self):
         """As late as two time-outs, the last moment in which it can be told from the next one's response."""
         late = e2e.registers(1, *[2222] * len(SAID[self.sensor]))
-        self.plays([[1.5 * TIMEOUT, late], [self.right()]], 1, 1, 'late responses 1')
+        self.plays([[1.5 * TIMEOUT, late], [self.right()]], 1, 1, 'late_responses 1')
 
     def test_the_echo_of_the_request_before_the_response(self):
         echo, right = self.request(), self.right()
@@ -148,7 +148,7 @@ class Raw(e2e.Case):
         self.plays([[self.request()]], 0, 1)
 
     def test_a_response_behind_another_units_is_read(self):
-        self.plays([[e2e.registers(2, 1, 2, 3, 4), self.right()]], 1, 0, 'unasked frames 1,')
+        self.plays([[e2e.registers(2, 1, 2, 3, 4), self.right()]], 1, 0, 'unsolicited_frames 1,')
 
     def test_random_bytes(self):
         """A good response between."""

@@ -46,7 +46,7 @@ class Libmodbus(interop.LibmodbusServer, Tcp, interop.Case):
         self.assertEqual(done.rows, [])
         words = f'the gateway responds with exception {number} ({NAMES[number]}). Check '
         self.assertEqual(done.err.count(words), 3, done.err)
-        self.assertIn(', requests without a response 3, ', done.err)
+        self.assertIn(', no_responses 3, ', done.err)
 
 
 if __name__ == '__main__':

@@ -128,7 +128,7 @@ static void print_stats(run_t *run)
     const site_t *const site = &run->loop.site;
     account_t account;
     loop_account(&run->loop, &account);
-    (is_json ? counters_print_json : counters_print_all)(&account, stderr);
+    (is_json ? stats_print_json : stats_print)(&account, stderr);
     for (size_t i = 0; i != site->sensor_count && !is_json; i++)
         results_print_dropped(site->sensors[i], stderr);
     for (size_t i = 0; i != site->sensor_count; i++) {

@@ -192,7 +192,7 @@ static int finish(watch_t *watch)
     if ((loop_is_lost(&watch->loop) || watch->loop.has_failed) && watch->draws)
         (void)fprintf(stderr, "fathom: %s\n", watch->loss);
     loop_account(&watch->loop, &account);
-    counters_print(&account, stderr);
+    stats_print_short(&account, stderr);
     return !loop_is_good(&watch->loop) || watch->output_error != 0 ? STATUS_FAILED : STATUS_OK;
 }
 
