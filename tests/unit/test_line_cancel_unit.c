@@ -82,13 +82,3 @@ TEST(a_request_to_all_or_to_any_is_no_units_own)
     fathom_line_cancel_unit(&bench.line, 7);
     assert_statuses(FATHOM_PENDING, FATHOM_PENDING, FATHOM_ERR_CANCELLED, FATHOM_PENDING);
 }
-
-TEST(a_unit_of_which_nothing_was_asked_changes_nothing)
-{
-    static const uint8_t units[4] = {2, 3, 5, 8};
-    fathom_line_cancel_unit(&bench.line, 4);
-    ask_all(units);
-    fathom_line_cancel_unit(&bench.line, 4);
-    fathom_line_cancel_unit(&bench.line, 18); /* 2, but for a bit that quarantine does not tell */
-    assert_statuses(FATHOM_PENDING, FATHOM_PENDING, FATHOM_PENDING, FATHOM_PENDING);
-}

@@ -14,7 +14,6 @@ static void receive_half_in_time(void)
 }
 
 static const suite_t suite = {.set_up = set_up};
-static const suite_t asked = {.set_up = set_up_asked};
 
 /* Of a response that began in time half has come when the time-out is over: what is next is a byte, or the gap. */
 TEST(a_response_that_has_begun_when_its_time_is_over_is_waited_for_until_the_gap)
@@ -23,52 +22,6 @@ TEST(a_response_that_has_begun_when_its_time_is_over_is_waited_for_until_the_gap
     assert_in_range(due(), 1, GAP_US);
     deliver(response_1_754 + 4, 3);
     expect_mm(754);
-}
-
-TEST(one_that_breaks_off_ends_with_the_gap)
-{
-    receive_half_in_time();
-    unsigned sleeps = 0;
-    while (status_of(&bench.request) == FATHOM_PENDING) {
-        const uint32_t due_us = due();
-        assert_in_range(due_us, 1, GAP_US);
-        run_in_steps(due_us, due_us);
-        sleeps++;
-    }
-    expect(FATHOM_ERR_CHECKSUM);
-    assert_int_equal(sleeps, 1);
-}
-
-/* The CRC is 38 A1. None of it can begin a response, so that it is dropped at once. */
-TEST_IN(asked, the_end_of_a_damaged_response_is_due_at_its_gap)
-{
-    receive_hex("01 03 02 02 F2 00 00");
-    poll_line();
-    expect(FATHOM_PENDING);
-    expect_due(GAP_US);
-    run_in_steps(GAP_US, GAP_US);
-    expect(FATHOM_ERR_CHECKSUM);
-}
-
-TEST_IN(asked, a_damaged_response_at_the_end_of_the_time_out_does_not_put_that_off)
-{
-    run(TIMEOUT_US - 2000);
-    receive_hex("01 03 02 02 F2 00 00");
-    poll_line();
-    const uint32_t due_us = due();
-    assert_in_range(due_us, 1000, 2000);
-    run_in_steps(due_us, due_us);
-    expect(FATHOM_ERR_CHECKSUM);
-}
-
-/* Not every port can say by an event that it has sent. */
-TEST(bytes_that_come_while_the_request_leaves_do_not_put_off_the_next_look)
-{
-    ask_1(0);
-    expect_written_after(T3_5_US + 200, 1);
-    deliver(response_1_754, 4);
-    assert_int_equal(bench.line.received_count, 4);
-    expect_due(1000);
 }
 
 TEST(where_nothing_is_due_no_time_that_passes_brings_it_nearer)

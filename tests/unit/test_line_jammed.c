@@ -45,16 +45,6 @@ TEST(while_noise_leaves_no_silence_a_write_ends_after_a_second_and_was_not_sent)
     deliver_all(set_address_5);
 }
 
-TEST(a_response_that_survives_noise_is_taken_although_the_line_was_busy)
-{
-    ask_1(0);
-    jam(1000000 + 2 * BYTE_US);
-    expect_written(1);
-    jam(8 * BYTE_US);
-    response_1(754);
-    expect_count(FATHOM_LINE_BUSY_ATTEMPTS, 0);
-}
-
 /* They are no part of the response: after them the unit is waited for until its time-out. */
 TEST(a_read_that_leaves_into_noise_discards_the_bytes_before_it)
 {
@@ -140,17 +130,6 @@ TEST(copies_of_the_request_without_end_do_not_hold_a_transaction)
         set_up(state);
         expect_copies_to_end(echoes[i]);
     }
-}
-
-/* A loop slower than the time-out finds both at once. */
-TEST(an_echo_and_its_response_count_when_they_are_found_late)
-{
-    set_up_echo(FATHOM_LINE_ECHO_AUTO);
-    ask_1_and_send(0);
-    receive_all(ask_1_processed);
-    receive_all(response_1_754);
-    run_in_steps(3 * TIMEOUT_US, 3 * TIMEOUT_US);
-    expect_mm(754);
 }
 
 TEST_IN(asked, a_poll_ends_though_the_port_has_ever_more)

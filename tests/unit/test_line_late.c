@@ -125,67 +125,6 @@ TEST(after_the_next_request_no_echo_of_a_cancelled_one_is_expected)
  * over. */
 static unsigned heard;
 
-static void hear(fathom_listener_t *listener, const uint8_t *bytes, uint8_t count, bool after_gap,
-                 uint32_t time_us)
-{
-    (void)listener, (void)bytes, (void)after_gap, (void)time_us;
-    heard += count;
-}
-
-static void serve_a_retry(fathom_listener_t *listener)
-{
-    heard = 0;
-    ask_1_and_send(1);
-    run(TIMEOUT_US);
-    assert_int_equal(status_of(&bench.request), FATHOM_PENDING); /* the retry waits for the quarantine */
-    assert_int_equal(bench.fake.written, 1);
-    (void)fathom_line_replace_listener(&bench.line, listener);
-    receive(response_1_754, sizeof response_1_754);
-    run(100);
-    assert_int_equal(status_of(&bench.request), FATHOM_OK);
-    assert_int_equal(bench.value, 754);
-    assert_int_equal(counter(FATHOM_LINE_RESPONSES), 1);
-    run(2 * GAP_US);
-}
-
-TEST(no_byte_of_a_late_response_that_is_taken_is_dropped)
-{
-    serve_a_retry(NULL);
-    assert_int_equal(counter(FATHOM_LINE_DROPPED_BYTES), 0);
-}
-
-TEST(no_byte_of_a_late_response_that_is_taken_goes_to_the_listener)
-{
-    fathom_listener_t listener = {.receive = hear, .gap_us = 2000};
-    serve_a_retry(&listener);
-    assert_int_equal(heard, 0);
-}
-
-/* A unit that has not been asked cannot answer. */
-TEST(what_comes_while_the_port_refuses_the_request_is_no_response_to_it)
-{
-    bench.fake.write_busy = true;
-    ask(&bench.request, 1, &bench.value, 0);
-    run(T3_5_US + 200);
-    receive(response_1_754, sizeof response_1_754);
-    run(100);
-    assert_int_equal(status_of(&bench.request), FATHOM_PENDING);
-    assert_int_equal(bench.value, 0xDEAD);
-    assert_int_equal(counter(FATHOM_LINE_DROPPED_BYTES), 7);
-    bench.fake.write_busy = false;
-    assert_true(goes_out());
-}
-
-/* cancel: the wire is free for the others, whether the line echoes or not. */
-TEST(the_next_request_goes_out_after_one_was_cancelled_on_a_line_of_unknown_echo)
-{
-    set_up_echo(FATHOM_LINE_ECHO_AUTO);
-    ask_1_and_send(0);
-    fathom_line_cancel(&bench.line, &bench.request.transaction);
-    ask(&bench.other, 2, &bench.other_value, 0);
-    assert_true(goes_out());
-}
-
 /* after_gap: "before the first of them". The listener's gap is shorter than the one that ends a frame. */
 static unsigned gaps;
 

@@ -80,40 +80,6 @@ TEST(the_silence_after_a_broadcast_is_kept_to_its_end)
     assert_int_equal(bench.fake.written, 2);
 }
 
-/* FATHOM_LINE_SEND_US: "how long a port may refuse a request, or take to send it, before it counts as broken"; and
- * fathom_line_poll: "FATHOM_ERR_PORT: the port is broken", in that very call. */
-TEST(a_port_has_a_second_to_take_a_request)
-{
-    bench.fake.write_busy = true;
-    ask(&bench.request, 1, &bench.value, 0);
-    after(T3_5_US);
-    assert_int_equal(after(999999), FATHOM_PENDING);
-    assert_int_equal(status_of(&bench.request), FATHOM_PENDING);
-    assert_int_equal(after(1), FATHOM_ERR_PORT);
-    assert_int_equal(status_of(&bench.request), FATHOM_ERR_PORT);
-}
-
-TEST(a_port_has_a_second_to_send_a_request)
-{
-    bench.fake.never_sent = true;
-    ask(&bench.request, 1, &bench.value, 0);
-    after(T3_5_US);
-    assert_int_equal(bench.fake.written, 1);
-    assert_int_equal(after(999999), FATHOM_PENDING);
-    assert_int_equal(status_of(&bench.request), FATHOM_PENDING);
-    assert_int_equal(after(1), FATHOM_ERR_PORT);
-    assert_int_equal(status_of(&bench.request), FATHOM_ERR_PORT);
-}
-
-/* "Counters; each stops at 65535": not at 255. */
-TEST(a_counter_counts_beyond_255)
-{
-    static const uint8_t noise[30] = {0};
-    for (unsigned i = 0; i != 10; i++) receive(noise, sizeof noise);
-    after(100);
-    assert_int_equal(counter(FATHOM_LINE_DROPPED_BYTES), 300); /* 10 * 30 */
-}
-
 /* A poll is cheap while nothing comes: of the 16 reads that it may do the first tells it. */
 TEST(a_poll_that_finds_nothing_reads_the_port_once)
 {
@@ -185,7 +151,6 @@ static void write_many(uint8_t count, size_t length)
     assert_int_equal(status_of(&bench.request), FATHOM_OK);
 }
 
-TEST(a_request_of_129_bytes_goes_out_and_is_acknowledged) { write_many(60, 129); }
 TEST(a_request_of_255_bytes_goes_out_and_is_acknowledged) { write_many(123, 255); }
 
 /* ---- a port of the test's own ---- */

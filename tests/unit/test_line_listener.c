@@ -88,14 +88,6 @@ TEST(a_pause_between_polls_is_no_gap)
     assert_int_equal(bench_listener.gaps, 0);
 }
 
-TEST(a_silence_that_the_port_saw_is_a_gap)
-{
-    listen_for(5000);
-    receive_rx(auto_frame, 4, FATHOM_RX_SILENCE);
-    run(100);
-    assert_int_equal(bench_listener.gaps, 1);
-}
-
 TEST(after_a_broken_port_no_silence_is_known)
 {
     listen_for(5000);
@@ -132,29 +124,6 @@ TEST(what_comes_behind_a_response_does_not_follow_what_came_before_it)
     expect_heard(auto_frame, 1, auto_frame + 1, 3);
     assert_int_equal(bench_listener.gaps, 1);
     assert_int_equal(bench_listener.gap_at, 1);
-}
-
-TEST(only_the_first_of_unasked_bytes_during_a_transaction_is_after_the_gap)
-{
-    listen_for(5000);
-    ask_1_and_send(0);
-    run(6000);
-    receive(auto_frame, 4); /* given one by one: each might have begun a response */
-    run(2 * GAP_US);
-    assert_int_equal(bench_listener.length, 4);
-    assert_int_equal(bench_listener.calls, 4);
-    assert_int_equal(bench_listener.gaps, 1);
-    assert_int_equal(bench_listener.gap_at, 0);
-}
-
-TEST(our_own_request_is_no_silence)
-{
-    listen_for(5000);
-    ask_1_and_send(0); /* 8 ms of it */
-    receive(auto_frame, 4);
-    run(2 * GAP_US);
-    assert_int_equal(bench_listener.length, 4);
-    assert_int_equal(bench_listener.gaps, 0);
 }
 
 TEST(whole_foreign_frames_go_to_the_listener)
@@ -308,14 +277,4 @@ TEST(lost_bytes_while_nothing_is_asked_are_only_counted)
     expect_count(FATHOM_LINE_DROPPED_BYTES, 4);
     ask_1_and_send(0);
     response_1(754);
-}
-
-TEST(due_makes_room_for_the_listener_to_see_its_gap)
-{
-    listen_for(5000);
-    receive(auto_frame, 4);
-    poll_line();
-    expect_due(5000);
-    run_in_steps(5000, 5000);
-    expect_due(FATHOM_NO_DEADLINE);
 }

@@ -91,14 +91,6 @@ TEST(a_line_that_only_listens_lives_through_a_broken_port)
     expect_heard(auto_frame, sizeof auto_frame, NULL, 0);
 }
 
-TEST(a_line_that_only_listens_can_hold_its_output_low)
-{
-    assert_int_equal(fathom_line_break(&bench.line, true), FATHOM_OK);
-    assert_true(bench.fake.in_break);
-    assert_int_equal(fathom_line_break(&bench.line, false), FATHOM_OK);
-    assert_false(bench.fake.in_break);
-}
-
 /* Marks of the port count where they are named: the bytes are the CRC's to judge. */
 TEST_IN(bare, without_marks_the_bytes_that_the_port_marks_are_as_any_other)
 {
@@ -124,22 +116,6 @@ TEST_IN(bare, what_is_told_of_an_echo_stays)
     assert_int_equal(fathom_line_get_echo(&bench.line), FATHOM_LINE_ECHO_OFF);
     break_port();
     assert_int_equal(fathom_line_get_echo(&bench.line), FATHOM_LINE_ECHO_OFF);
-}
-
-TEST_IN(bare, a_write_is_acknowledged_by_one_copy_without_echo_and_by_two_with_it)
-{
-    for (unsigned echoes = 0; echoes != 2; echoes++) {
-        set_up(state);
-        keep_only_what_is_needed();
-        set_up_echo(echoes != 0 ? FATHOM_LINE_ECHO_ON : FATHOM_LINE_ECHO_OFF);
-        ask_to_write(&bench.request, 1);
-        run(REQUEST_US);
-        deliver_all(set_address_5);
-        expect(echoes != 0 ? FATHOM_PENDING : FATHOM_OK);
-        if (echoes == 0) continue;
-        deliver_all(set_address_5);
-        expect(FATHOM_OK);
-    }
 }
 
 TEST_IN(bare, an_exception_a_late_response_and_a_damaged_one_end_as_on_any_line)

@@ -112,25 +112,6 @@ TEST(a_glitch_before_the_first_request_delays_nothing)
     expect_written(1);
 }
 
-/* Nor do three bytes, and one more when there has been a silence of 65 ms. */
-TEST(a_glitch_before_a_long_silence_is_forgotten)
-{
-    deliver_hex("00 00 00");
-    run((uint32_t)QUIET_US + 200);
-    deliver_hex("00");
-    run(T3_5_US + 200);
-    ask_1(0);
-    expect_written_after(200, 1);
-}
-
-TEST(eight_bytes_at_once_are_another_sender_as_four_are)
-{
-    deliver(unasked, 8);
-    run(T3_5_US + 200);
-    ask_1(0);
-    expect_behind_the_next_frame(0);
-}
-
 /* It is not quarantined for what comes later in the silence: the next request leaves as on any line. */
 TEST(what_is_left_of_a_damaged_response_is_no_other_sender)
 {

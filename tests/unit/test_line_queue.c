@@ -76,17 +76,6 @@ TEST(a_late_exception_ends_the_retry)
 
 /* ---- how long until poll has something to do ---- */
 
-TEST(after_a_long_silence_a_request_is_due_at_once)
-{
-    run(20000);
-    expect_due(FATHOM_NO_DEADLINE);
-    ask_1(0);
-    expect_due(0);
-    poll_line();
-    expect_written(1);
-    expect_due(1000); /* while it leaves */
-}
-
 TEST_IN(quarantined, what_only_waits_for_a_quarantine_is_due_when_that_ends)
 {
     ask_1(0);

@@ -97,18 +97,6 @@ TEST(a_program_that_forgets_to_poll_the_line_loses_nothing)
     }
 }
 
-/* A program that sleeps: a round when a byte arrives, and when a sensor is due. */
-TEST(a_program_that_sleeps_needs_at_most_twelve_reads_for_a_reading)
-{
-    const unsigned before = bench.fake.reads;
-    for (unsigned turn = 0; readings != 3 * UNITS; turn++) {
-        assert_true(turn < 10000);
-        const uint32_t due_us = fathom_due_us(sensors, UNITS);
-        round_after((bench.fake.first != bench.fake.last) ? 1u : due_us + 1u, false);
-    }
-    assert_in_range(bench.fake.reads - before, 1, 12 * readings);
-}
-
 TEST(one_unit_alone_polls_the_line_at_each_call)
 {
     (void)poll_sensor(0);
@@ -132,19 +120,6 @@ TEST(a_unit_that_is_polled_twice_in_a_round_polls_the_line_again)
     assert_int_equal(bench.fake.reads, before + 1);
 }
 
-TEST(units_that_are_polled_in_another_order_lose_nothing)
-{
-    for (unsigned turn = 0; readings != UNITS; turn++) {
-        assert_true(turn < 10000);
-        const size_t written = bench.fake.written;
-        bench.fake.now_us += LOOP_US;
-        (void)poll_sensor((turn * 5) % UNITS);
-        if (bench.fake.written == written) continue;
-        const uint8_t unit = bench.fake.writes[written].bytes[0];
-        receive_response(unit, (uint16_t)(99 + unit));
-    }
-}
-
 /* A request that is submitted now would leave too late in the silence (rule 11). */
 TEST(a_poll_of_the_line_before_a_sleep_does_not_count)
 {
@@ -157,15 +132,6 @@ TEST(a_poll_of_the_line_before_a_sleep_does_not_count)
         (void)poll_sensor(0);
         assert_int_equal(bench.fake.reads, before + (asleep_us == 1000));
     }
-}
-
-TEST(if_the_clock_does_not_move_every_unit_polls_the_line)
-{
-    a_round(); /* each driver knows the poll of set_up() now */
-    a_round();
-    const unsigned before = bench.fake.reads;
-    for (unsigned i = 0; i != UNITS; i++) (void)poll_sensor(i);
-    assert_int_equal(bench.fake.reads, before + UNITS);
 }
 
 TEST(a_broken_port_is_reported_to_each_unit_at_each_poll)

@@ -35,13 +35,6 @@ static void expect_written_with(size_t which, uint8_t unit, const fathom_line_se
 }
 
 static const suite_t suite = {.set_up = set_up};
-static const suite_t asked = {.set_up = set_up_asked};
-
-TEST_IN(asked, a_transaction_without_settings_leaves_the_line_as_it_is)
-{
-    response_1(111);
-    assert_int_equal(bench.fake.set_lines, 0);
-}
 
 TEST(settings_hold_before_the_request_is_written)
 {
@@ -68,17 +61,6 @@ TEST(two_sensors_with_their_own_settings_share_a_line)
         expect_written_with(2 * round + 1, 2, &e19200);
         response_other(2, (uint16_t)(200 + round));
     }
-}
-
-TEST(each_attempt_sets_its_settings_again)
-{
-    ask_1_with(2, &e19200);
-    ask_2_with(&n9600);
-    run(8 * TIMEOUT_US);
-    assert_int_equal(bench.request.transaction.attempts, 3);
-    expect_written(4);
-    for (size_t i = 0; i != 4; i++)
-        assert_int_equal(bench.fake.writes[i].baud, bench.fake.writes[i].bytes[0] == 1 ? 19200 : 9600);
 }
 
 /* hal.h: 0 means that bytes are still leaving. */
@@ -121,18 +103,6 @@ TEST(settings_that_the_port_cannot_do_end_that_transaction_alone)
     assert_int_equal(bench.value, 0xDEAD);
 }
 
-TEST(retries_do_not_help_against_settings_that_the_port_cannot_do)
-{
-    bench.fake.unsupported_baud = 19200;
-    ask_1_with(5, &e19200);
-    bench.fake.now_us += T3_5_US;
-    assert_int_equal(poll_line(), FATHOM_PENDING);
-    expect(FATHOM_ERR_UNSUPPORTED);
-    assert_int_equal(bench.fake.set_lines, 1);
-    ask_1_with(0, &n9600); /* nothing was sent, so no unit is quarantined */
-    expect_written_after(1000, 1);
-}
-
 TEST(settings_on_a_port_whose_settings_are_fixed_are_unsupported)
 {
     bench.fake.uart.set_line = NULL;
@@ -152,17 +122,6 @@ TEST(settings_that_turn_out_unsupported_after_a_busy_port_end_the_transaction)
     bench.fake.unsupported_baud = 19200;
     expect_after(100, FATHOM_ERR_UNSUPPORTED);
     expect_due(FATHOM_NO_DEADLINE);
-}
-
-/* The port took the settings and is then too busy for the request. */
-TEST(a_port_that_is_busy_with_the_settings_set_gets_the_request_when_it_is_free)
-{
-    bench.fake.write_busy = true;
-    ask_1_with(0, &e19200);
-    expect_written_after(20000, 0);
-    bench.fake.write_busy = false;
-    run(100);
-    expect_written_with(0, 1, &e19200);
 }
 
 TEST(a_transaction_that_waits_for_its_settings_can_be_cancelled_and_quarantines_none)

@@ -22,7 +22,6 @@ static void ask_any(void)
 }
 
 static const suite_t suite = {.set_up = set_up};
-static const suite_t quarantined = {.set_up = set_up_quarantined};
 
 TEST(any_unit_may_answer_who_asked_them_all)
 {
@@ -36,15 +35,6 @@ TEST(any_unit_may_answer_who_asked_them_all)
     }
 }
 
-TEST(what_is_damaged_is_no_units_response)
-{
-    ask_any();
-    receive_first_probe(9, 0xA1, 5);
-    run(GAP_US + 300);
-    expect_failed(FATHOM_ERR_CHECKSUM);
-    assert_int_equal(bench.request.message.head[0], 255);
-}
-
 TEST(after_a_request_to_unit_255_none_is_asked_until_twice_its_time_out)
 {
     for (unsigned unit = 1; unit != 255; unit++) {
@@ -56,12 +46,6 @@ TEST(after_a_request_to_unit_255_none_is_asked_until_twice_its_time_out)
         expect_written(1);
         expect_written_after(1500, 2);
     }
-}
-
-TEST_IN(quarantined, unit_255_is_not_asked_while_a_unit_is_quarantined)
-{
-    ask_dyp(&bench.other, 255, 1, &bench.other_value);
-    expect_sent(TIMEOUT_US - 1000, 1500);
 }
 
 TEST(a_late_response_to_a_request_to_unit_255_is_no_other_requests)
