@@ -1,16 +1,16 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# A site: eight lines with simulated sensors, a Mosquitto on this machine, `fathom publish`, and what a subscriber gets of it.
-# It builds Fathom and ends by itself, in less than a minute. What is missing it names; it installs nothing, and needs neither
-# root nor the network.
+# Builds the tool, simulates a site of eight lines, starts Mosquitto on this machine and `fathom publish`, and shows what a
+# subscriber receives. It takes less than a minute. If a package is missing, the script names it. It installs nothing, and
+# needs neither root nor the network.
 set -eu
 cd "$(dirname "$0")/.."
-PATH=$PATH:/usr/sbin # where Debian has the broker
+PATH=$PATH:/usr/sbin # the folder of the broker on Debian
 name=site
 . examples/prepare.sh
 
-# ---- what it needs ----
+# ---- packages ----
 
 need pkg-config command -v pkg-config
 need libmosquitto-dev pkg-config --exists libmosquitto
@@ -23,7 +23,7 @@ build_tool
 
 # ---- the lines ----
 
-say 'eight lines, simulated'
+say 'simulate eight lines'
 simulate line1 a16:1:modbus --distance 1300
 simulate line2 a16:1:modbus --distance 2100
 simulate line3 a05:2:modbus --distance 900
@@ -36,19 +36,19 @@ done
 
 # ---- the broker ----
 
-begin_broker() { # on the first port that is free
+start_broker() { # on the first free port
     for port in 18831 18832 18833 18834 18835 18836 18837 18838; do
         printf '%s\n' "listener $port 127.0.0.1" 'allow_anonymous true' "user $(id -un)" 'log_dest stderr' >"$folder/broker.conf"
         mosquitto -c "$folder/broker.conf" >"$folder/broker.log" 2>&1 &
         running="$running $!"
-        until_so 'the broker did not begin' grep -q 'mosquitto version .* running' "$folder/broker.log" && return
+        wait_for 'the broker did not start' grep -q 'mosquitto version .* running' "$folder/broker.log" && return
     done
     cat "$folder/broker.log" >&2
     fail 'no port for the broker is free'
 }
 
-begin_broker
-say "mosquitto on port $port of this machine"
+start_broker
+say "mosquitto listens on port $port of this machine"
 
 # ---- the site ----
 
@@ -83,10 +83,10 @@ say 'fathom publish --check site.yaml'
 publisher=$!
 running="$running $publisher"
 say "mosquitto_sub -p $port -v -t 'fathom/#'    (40 messages)"
-mosquitto_sub -h 127.0.0.1 -p "$port" -q 1 -C 40 -W 30 -v -t 'fathom/#' || fail '40 messages did not come within 30 s'
+mosquitto_sub -h 127.0.0.1 -p "$port" -q 1 -C 40 -W 30 -v -t 'fathom/#' || fail 'less than 40 messages arrived within 30 s'
 
 kill "$publisher"
-wait "$publisher" || fail 'fathom publish did not end as it should'
-say "what is retained now that it has ended"
+wait "$publisher" || fail 'fathom publish failed at its end'
+say "the retained status after the publisher has ended"
 mosquitto_sub -h 127.0.0.1 -p "$port" -q 1 -C 1 -W 5 -v -t 'fathom/mill/north/status'
-say 'Yours: a file like the one above; build/fathom publish --help and examples/fathom/README.md tell what it takes'
+say 'To publish your site, write a file like the one above. See build/fathom publish --help and fathom help config.'
