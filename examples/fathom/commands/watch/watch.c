@@ -30,8 +30,8 @@ typedef struct {
     loop_t loop;
     picture_t picture;
     lanes_t lanes;
-    uint16_t rows; /* of the window */
-    uint16_t columns;
+    int rows; /* of the window */
+    int columns;
     uint64_t next_us;          /* when the next picture or line is due */
     char message[MESSAGE];     /* below the lanes */
     uint64_t message_end_us;   /* when it disappears */
@@ -144,7 +144,7 @@ static void print_line(watch_t *watch, uint64_t now_us)
     const lanes_t *const lanes = &watch->lanes;
     errno = 0;
     (void)printf("%6" PRIu64 ".%" PRIu64 " s", now_us / 1000000u, now_us / 100000u % 10);
-    for (size_t i = 0; i != lanes->count; i++) {
+    for (int i = 0; i != lanes->count; i++) {
         const lane_t *const lane = &lanes->lane[i];
         const uint32_t rate = lane_rate_tenths(lanes, lane);
         char value[LANE_VALUE];
@@ -183,7 +183,7 @@ static int finish(watch_t *watch)
 {
     const host_t *const host = watch->loop.host;
     account_t account;
-    if (!terminal_give_back()) return STATUS_FAILED;
+    if (!terminal_close()) return STATUS_FAILED;
     if (watch->output_error == EINTR && host->has_ended(host->ctx)) watch->output_error = 0;
     if (watch->output_error == EPIPE || host->is_output_gone(host->ctx)) return STATUS_FAILED;
     if (watch->output_error != 0)
@@ -218,14 +218,14 @@ static int watch_site(watch_t *watch)
     watch->draws = terminal_can_draw();
     if (watch->draws) {
         host_watch_signal(SIGWINCH);
-        terminal_take();
+        terminal_open();
     }
     terminal_size(&watch->rows, &watch->columns);
     if (loop_open(loop)) {
-        if (watch->draws) terminal_attend(&loop->sources);
+        if (watch->draws) terminal_add_keys(&loop->sources);
         loop_run(loop);
         status = finish(watch);
-    } else if (terminal_give_back() && watch->draws) {
+    } else if (terminal_close() && watch->draws) {
         (void)fprintf(stderr, "fathom: %s\n", watch->loss);
     }
     loop_close(loop);

@@ -4,42 +4,26 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A step is as long as the user's interval, and not shorter than an eye can follow. */
-enum { LEAST_STEP_US = 250000 };
+/* A step lasts as long as the user's interval, but not shorter than an eye can follow. A distance is shown for as long as
+ * the last gap and half of it, at most LONGEST_HOLD steps. The rate is a mean of RATE_US. */
+enum { LEAST_STEP_US = 250000, LONGEST_HOLD = 40, RATE_US = 5000000 };
 
-/* How long a distance stands in the picture until the next outcome: as long as the last one took and half as long
- * again, but not for ever. */
-enum { LONGEST_HOLD = 40 };
-
-/* Over so long the rate is a mean. */
-enum { RATE_US = 5000000 };
-
-static const struct {
-    char character;
-    bool is_loss;
-    const char *name;
-} marks[MARKS] = {
-    [MARK_NONE] = {' ', false, ""},
-    [MARK_NO_TARGET] = {'-', false, "no target"},
-    [MARK_INTERFERENCE] = {'~', false, "interference"},
-    [MARK_UNKNOWN] = {'?', false, "unknown"},
-    [MARK_TOO_NEAR] = {'n', false, "too near"},
-    [MARK_FAR] = {'_', false, "far"},
-    [MARK_NEAR] = {'N', false, "near"},
-    [MARK_STALE] = {'s', true, "stale"},
-    [MARK_NO_RESPONSE] = {'x', true, "no response"},
-    [MARK_LINE_BUSY] = {'b', true, "line busy"},
-    [MARK_OTHER_MASTER] = {'m', true, "other master"},
-    [MARK_BAD_RESPONSE] = {'!', true, "unusable"},
-    [MARK_FAULT] = {'F', false, "fault"},
-    [MARK_PORT] = {'P', true, "port lost"},
+const mark_row_t marks[MARKS] = {
+    [MARK_NONE] = {' ', false, false, ""},
+    [MARK_NO_TARGET] = {'-', false, false, "no target"},
+    [MARK_INTERFERENCE] = {'~', false, false, "interference"},
+    [MARK_UNKNOWN] = {'?', false, true, "unknown"},
+    [MARK_TOO_NEAR] = {'n', false, true, "too near"},
+    [MARK_FAR] = {'_', false, true, "far"},
+    [MARK_NEAR] = {'N', false, true, "near"},
+    [MARK_STALE] = {'s', true, false, "stale"},
+    [MARK_NO_RESPONSE] = {'x', true, false, "no response"},
+    [MARK_LINE_BUSY] = {'b', true, true, "line busy"},
+    [MARK_OTHER_MASTER] = {'m', true, true, "other master"},
+    [MARK_BAD_RESPONSE] = {'!', true, false, "unusable"},
+    [MARK_FAULT] = {'F', false, false, "fault"},
+    [MARK_PORT] = {'P', true, false, "port lost"},
 };
-
-char mark_character(mark_t mark) { return marks[mark].character; }
-
-const char *mark_name(mark_t mark) { return marks[mark].name; }
-
-bool mark_is_loss(mark_t mark) { return marks[mark].is_loss; }
 
 static void init_lane(lanes_t *lanes, const sensor_t *sensor, uint8_t probe)
 {
@@ -48,8 +32,8 @@ static void init_lane(lanes_t *lanes, const sensor_t *sensor, uint8_t probe)
     lane->sensor = sensor;
     lane->probe = probe;
     (void)snprintf(lane->name, sizeof lane->name, has_probes ? "%s probe %u" : "%s", sensor->name, probe);
-    const size_t length = strlen(lane->name);
-    if (length > lanes->name_width) lanes->name_width = (uint16_t)(length < MOST_NAME ? length : MOST_NAME);
+    const int length = (int)strlen(lane->name);
+    if (length > lanes->name_width) lanes->name_width = length < MOST_NAME ? length : MOST_NAME;
 }
 
 bool lanes_init(lanes_t *lanes, const site_t *site)
@@ -65,11 +49,7 @@ bool lanes_init(lanes_t *lanes, const site_t *site)
     return true;
 }
 
-void lanes_free(lanes_t *lanes)
-{
-    free(lanes->lane);
-    lanes->lane = NULL;
-}
+void lanes_free(lanes_t *lanes) { free(lanes->lane); }
 
 static uint64_t number_now(const lanes_t *lanes) { return lanes->now_us / lanes->step_us; }
 
@@ -78,13 +58,12 @@ void lanes_pass(lanes_t *lanes, uint64_t now_us)
     const uint64_t before = number_now(lanes);
     lanes->now_us = now_us;
     const uint64_t passed = number_now(lanes) - before;
-    for (size_t i = 0; i != lanes->count; i++)
+    for (int i = 0; i != lanes->count; i++)
         for (uint64_t n = passed < LANE_STEPS ? passed : LANE_STEPS; n != 0; n--)
             lanes->lane[i].steps[(number_now(lanes) - n + 1) % LANE_STEPS] = (step_t){.mark = MARK_NONE};
 }
 
-/* Does it stand until the next one? */
-static bool is_held(mark_t mark) { return mark == MARK_NONE || mark == MARK_NEAR || mark == MARK_FAR; }
+static bool is_held(uint8_t mark) { return mark == MARK_NONE || mark == MARK_NEAR || mark == MARK_FAR; }
 
 static uint8_t hold_of(const lanes_t *lanes, const lane_t *lane)
 {
@@ -93,7 +72,7 @@ static uint8_t hold_of(const lanes_t *lanes, const lane_t *lane)
     return steps < LONGEST_HOLD ? (uint8_t)steps : LONGEST_HOLD;
 }
 
-/* Something has come for this lane: a distance if mark is MARK_NONE. */
+/* Adds an outcome: a distance if mark is MARK_NONE. */
 static void add(lanes_t *lanes, lane_t *lane, mark_t mark, uint16_t distance_mm)
 {
     step_t *const step = &lane->steps[number_now(lanes) % LANE_STEPS];
@@ -103,91 +82,67 @@ static void add(lanes_t *lanes, lane_t *lane, mark_t mark, uint16_t distance_mm)
         step->has_distance = true;
         step->distance_mm = distance_mm;
     }
-    step->hold = is_held(mark) ? hold_of(lanes, lane) : 0;
-    if (!mark_is_loss(mark)) step->readings++;
+    step->hold = is_held((uint8_t)mark) ? hold_of(lanes, lane) : 0;
     lane->heard_us = lanes->now_us;
     lane->has_outcome = true;
     lane->mark = mark;
     lane->distance_mm = distance_mm;
     lane->outcomes++;
-    if (mark_is_loss(mark)) lane->lost++;
+    if (marks[mark].is_loss)
+        lane->lost++;
+    else
+        step->readings++;
 }
 
-static mark_t mark_of_sample(const reading_t *reading)
+static mark_t mark_of(const reading_t *reading)
 {
+    static const uint8_t failures[] = {
+        [-FATHOM_ERR_NO_RESPONSE] = MARK_NO_RESPONSE,   [-FATHOM_ERR_ECHO] = MARK_NO_RESPONSE,
+        [-FATHOM_ERR_LINE_BUSY] = MARK_LINE_BUSY,       [-FATHOM_ERR_STALE] = MARK_STALE,
+        [-FATHOM_ERR_OTHER_MASTER] = MARK_OTHER_MASTER, [-FATHOM_ERR_PORT] = MARK_PORT,
+    };
+    static const uint8_t kinds[] = {
+        [FATHOM_TARGET] = MARK_NONE, [FATHOM_NO_TARGET] = MARK_NO_TARGET, [FATHOM_UNKNOWN] = MARK_UNKNOWN,
+        [FATHOM_FAR] = MARK_FAR,     [FATHOM_NEAR] = MARK_TOO_NEAR,       [FATHOM_FAULT] = MARK_FAULT,
+    };
     const fathom_sample_t *const sample = &reading->result->sample;
-    switch (sample->kind) {
-    case FATHOM_NO_TARGET:
-        return sample->interference ? MARK_INTERFERENCE : MARK_NO_TARGET;
-    case FATHOM_UNKNOWN:
-        return MARK_UNKNOWN;
-    case FATHOM_NEAR:
-        return sensor_is_contact(reading->sensor) ? MARK_NEAR : MARK_TOO_NEAR;
-    case FATHOM_FAR:
-        return MARK_FAR;
-    case FATHOM_FAULT:
-        return MARK_FAULT;
-    default:
-        return MARK_NONE;
-    }
-}
-
-static mark_t mark_of_failure(fathom_status_t status)
-{
-    switch (status) {
-    case FATHOM_ERR_NO_RESPONSE:
-    case FATHOM_ERR_ECHO:
-        return MARK_NO_RESPONSE;
-    case FATHOM_ERR_LINE_BUSY:
-        return MARK_LINE_BUSY;
-    case FATHOM_ERR_OTHER_MASTER:
-        return MARK_OTHER_MASTER;
-    case FATHOM_ERR_STALE:
-        return MARK_STALE;
-    case FATHOM_ERR_PORT:
-        return MARK_PORT;
-    default:
-        return MARK_BAD_RESPONSE;
-    }
-}
-
-/* A port that is waited for is no attempt. */
-static void add_absence(const lanes_t *lanes, lane_t *lane)
-{
-    lane->mark = MARK_PORT;
-    lane->has_outcome = true;
-    lane->steps[number_now(lanes) % LANE_STEPS].mark = MARK_PORT;
+    const size_t failure = (size_t)-reading->status;
+    if (reading->failure != NULL)
+        return failure < sizeof failures && failures[failure] != 0 ? failures[failure] : MARK_BAD_RESPONSE;
+    if (sample->kind == FATHOM_NO_TARGET && sample->interference) return MARK_INTERFERENCE;
+    if (sample->kind == FATHOM_NEAR && sensor_is_contact(reading->sensor)) return MARK_NEAR;
+    return kinds[sample->kind];
 }
 
 void lanes_add(lanes_t *lanes, const reading_t *reading)
 {
-    const bool is_good = reading->failure == NULL;
     const fathom_sample_t *const sample = &reading->result->sample;
     const failure_t *const evidence = reading->evidence;
-    const bool is_of_one = is_good || (evidence != NULL && !evidence->is_whole && sample->probe != 0);
-    for (size_t i = 0; i != lanes->count; i++) {
+    const bool is_absent = reading->failure != NULL && evidence == NULL; /* no attempt */
+    const bool is_of_all = sample->probe == 0 || is_absent || (evidence != NULL && evidence->is_whole);
+    for (int i = 0; i != lanes->count; i++) {
         lane_t *const lane = &lanes->lane[i];
-        if (lane->sensor != reading->sensor || (is_of_one && lane->probe != sample->probe)) continue;
-        if (is_good)
-            add(lanes, lane, mark_of_sample(reading), sample->distance_mm);
-        else if (evidence != NULL)
-            add(lanes, lane, mark_of_failure(reading->status), 0);
-        else
-            add_absence(lanes, lane);
+        if (lane->sensor != reading->sensor || (!is_of_all && lane->probe != sample->probe)) continue;
+        if (!is_absent) {
+            add(lanes, lane, mark_of(reading), sample->distance_mm);
+            continue;
+        }
+        lane->mark = MARK_PORT;
+        lane->has_outcome = true;
+        lane->steps[number_now(lanes) % LANE_STEPS].mark = MARK_PORT;
     }
 }
 
-static bool is_empty(const step_t *step) { return !step->has_distance && step->mark == MARK_NONE; }
-
-step_t lane_step(const lanes_t *lanes, const lane_t *lane, uint32_t ago)
+step_t lane_step(const lanes_t *lanes, const lane_t *lane, int ago)
 {
     step_t shown = {.mark = MARK_NONE};
     const uint64_t now = number_now(lanes);
-    for (uint64_t held = 0; held <= LONGEST_HOLD && ago + held < LANE_STEPS && ago + held <= now; held++) {
-        const step_t *const step = &lane->steps[(now - ago - held) % LANE_STEPS];
-        if (is_empty(step)) continue;
+    for (int held = 0; held <= LONGEST_HOLD && ago + held < LANE_STEPS && (uint64_t)(ago + held) <= now;
+         held++) {
+        const step_t *const step = &lane->steps[(now - (uint64_t)(ago + held)) % LANE_STEPS];
+        if (!step->has_distance && step->mark == MARK_NONE) continue;
         if (held == 0 || held <= step->hold) shown = *step;
-        if (held != 0 && !is_held((mark_t)step->mark)) shown.mark = MARK_NONE; /* of its own step only */
+        if (held != 0 && !is_held(step->mark)) shown.mark = MARK_NONE; /* other marks do not last */
         return shown;
     }
     return shown;
@@ -212,6 +167,6 @@ const char *lane_value(const lane_t *lane, char text[LANE_VALUE])
     else if (lane->mark == MARK_NONE)
         (void)snprintf(text, LANE_VALUE, "%u.%03u m", lane->distance_mm / 1000u, lane->distance_mm % 1000u);
     else
-        (void)snprintf(text, LANE_VALUE, "%s", mark_name(lane->mark));
+        (void)snprintf(text, LANE_VALUE, "%s", marks[lane->mark].name);
     return text;
 }

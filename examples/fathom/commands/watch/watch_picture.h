@@ -5,32 +5,28 @@
 #include "commands/watch/watch_lanes.h"
 
 /* The picture that `fathom watch` shows: characters in rows and columns. */
-enum { PICTURE_ROWS = 200, PICTURE_COLUMNS = 400 };
+enum { PICTURE_ROWS = 200, PICTURE_COLUMNS = 400, PICTURE_ROW_TEXT = PICTURE_COLUMNS * 16 };
 
-typedef enum { COLOUR_PLAIN = 0, COLOUR_BAR, COLOUR_CALM, COLOUR_LOSS, COLOUR_BOLD } colour_t;
-
-/* Characters from 128 on: a block that is filled from below, so many eighths (1..8) over 128. */
+/* Glyphs above GLYPH_BLOCK are blocks that are filled from below: 1 to 8 eighths. */
 enum { GLYPH_BLOCK = 128 };
 
 typedef struct {
     uint8_t glyph;
-    uint8_t colour; /* colour_t */
+    uint8_t colour;
 } cell_t;
 
 typedef struct {
-    uint16_t rows;
-    uint16_t columns;
+    int rows;
+    int columns;
     cell_t cells[PICTURE_ROWS][PICTURE_COLUMNS];
 } picture_t;
 
-/* All of it. rows and columns: the window's, what is over the limits above stays empty. title, message: a line each,
- * cut to the width. */
-void picture_draw(picture_t *picture, uint16_t rows, uint16_t columns, const lanes_t *lanes,
-                  const char *title, const char *message);
+/* Draws everything. rows, columns: of the window. The title is cut to the width, the message wrapped. */
+void picture_draw(picture_t *picture, int rows, int columns, const lanes_t *lanes, const char *title,
+                  const char *message);
 
-/* A row as it goes to the terminal, without its place: text of `capacity` bytes, PICTURE_ROW_TEXT is enough. Blanks at
- * its end are left out; returns how many columns it fills. */
-enum { PICTURE_ROW_TEXT = PICTURE_COLUMNS * 16 };
-uint16_t picture_row(const picture_t *picture, uint16_t row, bool has_colours, bool is_utf8, char *text);
+/* Writes a row for the terminal, without its position and the blanks at its end. Returns the columns that it fills. */
+int picture_row(const picture_t *picture, int row, bool has_colours, bool is_utf8,
+                char text[PICTURE_ROW_TEXT]);
 
 #endif

@@ -16,7 +16,7 @@ enum { OUTPUT = 65536, MARGIN = 64, STUCK_MS = 200 };
 
 static struct {
     struct termios before;
-    bool is_taken;
+    bool is_open;
     bool has_input; /* `before` is set */
     bool wants_end;
     fathom_loop_source_t keys;
@@ -35,10 +35,10 @@ bool terminal_can_draw(void)
     return isatty(fileno(stdout)) == 1 && type[0] != '\0' && strcmp(type, "dumb") != 0;
 }
 
-bool terminal_has_colours(void) { return environment("NO_COLOR")[0] == '\0'; }
+static bool has_colours(void) { return environment("NO_COLOR")[0] == '\0'; }
 
-/* The locale's name is asked and not the locale, which need not be installed. */
-bool terminal_is_utf8(void)
+/* By the name of the locale, which need not be installed. */
+static bool is_utf8(void)
 {
     static const char *const names[] = {"LC_ALL", "LC_CTYPE", "LANG"};
     for (size_t i = 0; i != sizeof names / sizeof names[0]; i++) {
@@ -50,14 +50,14 @@ bool terminal_is_utf8(void)
     return false;
 }
 
-/* Has it no room for so long, as one that was stopped (Ctrl-S), or whose other end reads nothing? */
+/* Returns true if the terminal accepts nothing, as after Ctrl-S. */
 static bool is_stuck(void)
 {
     struct pollfd entry = {STDOUT_FILENO, POLLOUT, 0};
     return poll(&entry, 1, STUCK_MS) == 0;
 }
 
-/* A signal that asks to end also ends a write to a terminal that is stuck; then nothing more is written to it. */
+/* A signal that ends the command also ends a write to a terminal that is stuck. */
 static int write_all(const char *text)
 {
     size_t left = strlen(text);
@@ -72,7 +72,7 @@ static int write_all(const char *text)
     return 0;
 }
 
-void terminal_take(void)
+void terminal_open(void)
 {
     /* A program in the background would be stopped for changing it. */
     terminal.has_input =
@@ -86,25 +86,25 @@ void terminal_take(void)
         quiet.c_cc[VTIME] = 0;
         (void)tcsetattr(STDIN_FILENO, TCSADRAIN, &quiet);
     }
-    terminal.is_taken = true;
+    terminal.is_open = true;
     terminal.wants_end = false;
     terminal.shown.rows = 0;
-    /* Another screen, no cursor, no new line at the right edge, nothing on it. */
+    /* Another screen, no cursor, no wrap at the right edge, nothing on the screen. */
     (void)write_all("\x1B[?1049h\x1B[?25l\x1B[?7l\x1B[2J");
 }
 
-bool terminal_give_back(void)
+bool terminal_close(void)
 {
-    if (!terminal.is_taken) return true;
-    terminal.is_taken = false;
+    if (!terminal.is_open) return true;
+    terminal.is_open = false;
     const bool is_shown = write_all("\x1B[0m\x1B[?7h\x1B[?25h\x1B[?1049l") != EINTR;
-    /* What was typed meanwhile was meant for no program. TCSAFLUSH would wait for what cannot leave. */
+    /* What was typed is dropped. TCSAFLUSH would wait for output that a stuck terminal does not accept. */
     if (terminal.has_input) (void)tcsetattr(STDIN_FILENO, is_shown ? TCSAFLUSH : TCSANOW, &terminal.before);
     if (terminal.has_input && !is_shown) (void)tcflush(STDIN_FILENO, TCIFLUSH);
     return is_shown;
 }
 
-bool terminal_has_keys(void) { return terminal.is_taken && terminal.has_input; }
+bool terminal_has_keys(void) { return terminal.is_open && terminal.has_input; }
 
 bool terminal_wants_end(void) { return terminal.wants_end; }
 
@@ -114,7 +114,6 @@ static int keys_fd(const fathom_loop_source_t *source)
     return STDIN_FILENO;
 }
 
-/* All that were pressed. A terminal that has gone says so by SIGHUP too. */
 static bool poll_keys(fathom_loop_source_t *source)
 {
     char keys[64];
@@ -126,7 +125,7 @@ static bool poll_keys(fathom_loop_source_t *source)
     return true;
 }
 
-void terminal_attend(fathom_loop_t *loop)
+void terminal_add_keys(fathom_loop_t *loop)
 {
     static const fathom_loop_kind_t kind = {.fd = keys_fd, .poll = poll_keys};
     if (!terminal_has_keys()) return;
@@ -135,7 +134,7 @@ void terminal_attend(fathom_loop_t *loop)
     fathom_loop_add(loop, &terminal.keys);
 }
 
-void terminal_size(uint16_t *rows, uint16_t *columns)
+void terminal_size(int *rows, int *columns)
 {
     struct winsize size = {0, 0, 0, 0};
     const bool is_known =
@@ -144,33 +143,34 @@ void terminal_size(uint16_t *rows, uint16_t *columns)
     *columns = is_known ? size.ws_col : 80;
 }
 
-static bool is_same_row(const picture_t *one, const picture_t *other, uint16_t row)
+static bool is_same_row(const picture_t *one, const picture_t *other, int row)
 {
-    return memcmp(one->cells[row], other->cells[row], one->columns * sizeof one->cells[row][0]) == 0;
+    return memcmp(one->cells[row], other->cells[row], (size_t)one->columns * sizeof one->cells[row][0]) == 0;
 }
 
 /* In one write as a rule, so that no half picture is seen. */
 int terminal_show(const picture_t *picture, bool all)
 {
     static char text[OUTPUT];
-    const bool has_colours = terminal_has_colours();
-    const bool is_utf8 = terminal_is_utf8();
-    size_t at = 0;
+    const bool colours = has_colours();
+    const bool utf8 = is_utf8();
+    char *at = text;
     int error = 0;
     if (picture->rows != terminal.shown.rows || picture->columns != terminal.shown.columns) all = true;
-    if (all) at += (size_t)snprintf(text, sizeof text, "\x1B[0m\x1B[2J");
-    for (uint16_t row = 0; row != picture->rows && error == 0; row++) {
+    if (all) at += snprintf(text, sizeof text, "\x1B[0m\x1B[2J");
+    for (int row = 0; row != picture->rows && error == 0; row++) {
         if (!all && is_same_row(picture, &terminal.shown, row)) continue;
-        at += (size_t)snprintf(text + at, sizeof text - at, "\x1B[%u;1H", row + 1u);
-        const uint16_t columns = picture_row(picture, row, has_colours, is_utf8, text + at);
-        at += strlen(text + at);
-        /* At the right edge it could take the last character. */
-        if (columns != picture->columns) at += (size_t)snprintf(text + at, sizeof text - at, "\x1B[K");
-        if (sizeof text - at > PICTURE_ROW_TEXT + MARGIN) continue;
+        at += snprintf(at, MARGIN, "\x1B[%d;1H", row + 1);
+        const int columns = picture_row(picture, row, colours, utf8, at);
+        at += strlen(at);
+        /* At the right edge this would erase the last character. */
+        if (columns != picture->columns) at = strcpy(at, "\x1B[K") + strlen("\x1B[K");
+        if (text + sizeof text - at > PICTURE_ROW_TEXT + MARGIN) continue;
         error = write_all(text);
-        at = 0;
+        at = text;
     }
-    if (at != 0 && error == 0) error = write_all(text);
+    *at = '\0';
+    if (at != text && error == 0) error = write_all(text);
     terminal.shown = *picture;
     return error;
 }
