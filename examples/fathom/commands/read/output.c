@@ -19,8 +19,9 @@ static void write_reason(FILE *to, const reading_t *reading)
                       sample->raw);
     else if (is_unknown)
         (void)fprintf(to, ": the value %" PRIu32 "%s", sample->raw,
-                      (reading->sensor->mode->takes & READER_TAKES_MEANINGS) != 0 ? " has no known meaning (--means)"
-                                                                          : "");
+                      (reading->sensor->mode->takes & READER_TAKES_MEANINGS) != 0
+                          ? " has no known meaning (--means)"
+                          : "");
     else if (!is_pulse)
         (void)fputs(": the sensor reports a fault", to);
     else if (sample->raw == 0)
