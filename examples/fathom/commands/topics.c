@@ -73,8 +73,8 @@ static void print_ports(FILE *to)
                 "finds this out.\n\n"
                 "--reconnect: a USB adapter is found again by its serial number, also as another\n"
                 "/dev/ttyUSB. If it has no serial number, or if another adapter has or may have\n"
-                "the same one (0001), it is found in the same USB socket only, and a message names\n"
-                "the socket. Other ports are found again by their path.\n",
+                "the same one (0001), it is found in the same USB socket only, and a message\n"
+                "names the socket. Other ports are found again by their path.\n",
                 to);
 }
 
