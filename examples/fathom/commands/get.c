@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
+#include "cli/session_options.h"
 #include "commands/commands.h"
-#include "device/session.h"
 #include "device/setting_text.h"
 #include "ports/line_text.h"
 

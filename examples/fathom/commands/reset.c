@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
+#include "cli/session_options.h"
 #include "commands/commands.h"
-#include "device/session.h"
 #include "fathom/sensor/hps167s_settings.h"
 #include "ports/line_text.h"
 

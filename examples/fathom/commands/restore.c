@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "cli/options.h"
+#include "cli/session_options.h"
 #include "commands/commands.h"
 #include "device/backup_file.h"
 #include "device/plan.h"

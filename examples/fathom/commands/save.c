@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include "cli/session_options.h"
 #include "commands/commands.h"
 #include "device/backup_file.h"
 #include "device/new_file.h"

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
+#include "cli/session_options.h"
 #include "commands/commands.h"
 #include "device/set_report.h"
 #include "device/setting_text.h"

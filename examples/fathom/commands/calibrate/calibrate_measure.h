@@ -2,7 +2,7 @@
 #ifndef CALIBRATE_MEASURE_H
 #define CALIBRATE_MEASURE_H
 
-#include "device/session.h"
+#include "cli/session_options.h"
 
 enum { CALIBRATE_LEAST_SAMPLES = 5, CALIBRATE_SAMPLES = 25, CALIBRATE_MOST_SAMPLES = 200 };
 

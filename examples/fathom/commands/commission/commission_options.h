@@ -2,7 +2,7 @@
 #ifndef COMMISSION_OPTIONS_H
 #define COMMISSION_OPTIONS_H
 
-#include "device/session.h"
+#include "cli/session_options.h"
 
 /* What `fathom commission` was asked to do. */
 enum { COMMISSION_ADDRESSES = 254 };
