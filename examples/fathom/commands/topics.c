@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "cli/rows.h"
+#include "commands/scan/scan_report.h"
 #include "commands/sim/sim.h"
 #include "device/setting_text.h"
 #include "ports/line_text.h"
@@ -258,12 +259,54 @@ static void print_config(FILE *to)
                 to);
 }
 
+/* What each command prints with --format json. The kinds are those of schema.json. */
+static const struct {
+    const char *command;
+    const char *what;
+} records[] = {
+    {"read", "A reading, a failed attempt, or the change of an alarm"},
+    {"read --stats", "The counters of the run, and of pulses (on standard error)"},
+    {"scan", "Something that was found on the line"},
+    {"scan --estimate", "The duration of a scan"},
+    {"info, get", "Settings and values; 'switch-threshold' is switch_threshold"},
+    {"set, restore", "The change of a setting"},
+    {"calibrate", "Measurements, and the offsets that were written"},
+    {"commission", "A sensor with its new address"},
+    {"request", "A request, its response, and the meaning"},
+    {"decode", "A frame, or bytes that belong to no frame"},
+    {"sim --counters", "What a simulated sensor received (on standard error)"},
+    {"publish", "MQTT: state, level, alarm, publisher, and discovery messages"},
+};
+
+static void print_json(FILE *to)
+{
+    (void)fputs("One line is one JSON object. Keys are snake_case and end in their unit. A value\n"
+                "that is not known is null. The file examples/fathom/schema.json (JSON Schema)\n"
+                "defines each kind of object.\n\n"
+                "One thing has one key in all commands:\n\n"
+                "  sensor            Name of the sensor: tank, or a16:1 without a name\n"
+                "  model             Model of the sensor: a16, a05 or hps167s\n"
+                "  mode              Mode in which it is read\n"
+                "  address           Address; null if there is none\n"
+                "  time_us           Time since the start of the program\n"
+                "  utc               Date and time\n"
+                "  status            What happened, as one word (fathom help output)\n"
+                "  distance_mm       Distance; null unless status is target\n\n"
+                "Objects of each command:\n\n",
+                to);
+    for (size_t i = 0; i != sizeof records / sizeof records[0]; i++)
+        (void)fprintf(to, "  %-17s %s\n", records[i].command, records[i].what);
+    (void)fputs("\nFields of 'scan':\n\n", to);
+    scan_help_fields(to);
+}
+
 const topic_t topics[] = {
     {"sensors", "Sensors, modes and addresses", print_sensors},
     {"ports", "Ports and their keys", print_ports},
     {"pins", "Modes on GPIO lines", print_pins},
     {"values", "What is a distance: window, means, value", print_values},
     {"output", "Fields of JSON and CSV", print_output},
+    {"json", "Objects of JSON", print_json},
     {"level", "Level of a tank, and medians", print_level},
     {"alarm", "Alarms", print_alarm},
     {"picture", "The picture of fathom watch", print_picture},

@@ -27,6 +27,8 @@ import time
 import tty
 import unittest
 
+import schema
+
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))))
 HERE = os.path.dirname(os.path.abspath(__file__))
 FATHOM = os.path.abspath(os.environ.get('FATHOM') or os.path.join(ROOT, 'build', 'fathom'))
@@ -136,7 +138,9 @@ class Program:
         _, status, usage = os.wait4(self.process.pid, 0)
         os.close(self.pidfd)
         self.process.returncode = os.waitstatus_to_exitcode(status)
-        said = (self.said[name].decode() for name in ('out', 'err'))
+        said = [self.said[name].decode() for name in ('out', 'err')]
+        if FATHOM in self.command:
+            schema.expect_records(''.join(said))
         self.done = Done(self.process.returncode, *said, usage.ru_utime + usage.ru_stime,
                          time.monotonic() - self.began)
 

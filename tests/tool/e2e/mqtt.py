@@ -7,6 +7,7 @@ import socket
 import subprocess
 
 import e2e
+import schema
 
 
 READY = 'ready'
@@ -37,6 +38,7 @@ class Message:
 
     @property
     def json(self):
+        schema.expect_records(self.payload + '\n')
         return json.loads(self.payload)
 
 

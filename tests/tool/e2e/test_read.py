@@ -204,7 +204,7 @@ class Choices(e2e.Case):
                              'automatically, use --mode modbus')
 
     def test_the_simulated_hps167s_that_sends_by_itself_names_the_command_that_reads_it(self):
-        self.assertIn('fathom read hps167s --mode auto --address 7 --port', self.sim('hps167s:7:auto').end().err)
+        self.assertIn('fathom read hps167s:7:auto --port', self.sim('hps167s:7:auto').end().err)
 
     def test_what_sends_by_itself_needs_a_serial_port(self):
         self.ends('read hps167s:1:auto --port tcp:127.0.0.1:1', 2, 'needs a serial port')
