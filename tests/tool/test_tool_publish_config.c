@@ -77,14 +77,17 @@ TEST(check_prints_a_table_of_sensors_and_topics)
                                    "           fathom/mill/north/tank/state\n"
                                    "           fathom/mill/north/tank/level\n"
                                    "           fathom/mill/north/tank/availability\n"
+                                   "           fathom/mill/north/tank/counters\n"
                                    "bumper     a05:2:modbus@/dev/ttyUSB0, 500 ms\n"
                                    "           fathom/mill/north/bumper/1/state\n"
                                    "           fathom/mill/north/bumper/2/state\n"
                                    "           fathom/mill/north/bumper/availability\n"
+                                   "           fathom/mill/north/bumper/counters\n"
                                    "gate       hps167s:7:modbus@tcp:10.0.0.7, 1000 ms, alarm near<500/600\n"
                                    "           fathom/mill/north/gate/state\n"
                                    "           fathom/mill/north/gate/alarm\n"
-                                   "           fathom/mill/north/gate/availability\n";
+                                   "           fathom/mill/north/gate/availability\n"
+                                   "           fathom/mill/north/gate/counters\n";
     const tool_run_t *const run = check(0, "");
     assert_int_equal(run->status, 0);
     assert_string_equal(run->err, "");

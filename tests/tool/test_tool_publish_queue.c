@@ -180,7 +180,7 @@ TEST(a_sensor_that_is_named_again_goes_on_with_its_numbers)
 TEST(a_retained_topic_that_is_not_wanted_any_more_is_deleted_once)
 {
     stream_t *const online = streams_want(&streams, "mill/status", STREAM_STATUS, NULL);
-    stream_t *const other = streams_want(&streams, "mill/publisher", STREAM_COUNTERS, NULL);
+    stream_t *const other = streams_want(&streams, "mill/publisher", STREAM_PUBLISHER, NULL);
     tank->is_known = gate->is_known = online->is_known = true;
     assert_null(streams_gone(&streams));
     streams_forget(&streams);

@@ -200,6 +200,35 @@ TEST(the_longest_state_fits_into_a_place_of_the_queue)
     assert_non_null(strstr(text, "\"seq\":18446744073709551615"));
 }
 
+TEST(the_counters_of_a_sensor_have_busy_lines_other_masters_and_old_bytes)
+{
+    char text[COUNTERS_TEXT];
+    counters_t *const counters = &sensor(GATE)->counters;
+    counters->attempts = 9;
+    counters->failures[-FATHOM_ERR_LINE_BUSY] = 3;
+    counters->failures[-FATHOM_ERR_OTHER_MASTER] = 2;
+    counters->total.line[FATHOM_LINE_BUSY_ATTEMPTS] = 3;
+    counters->total.line[FATHOM_LINE_OTHER_MASTERS] = 2;
+    counters->total.line[FATHOM_LINE_OLD_BYTES] = 17;
+    state_of_counters(sensor(GATE), UINT64_C(1795426992345678), "0123456789abcdef", text);
+    assert_non_null(strstr(text, BEGIN "\"boot\":\"0123456789abcdef\",\"attempts\":9,"));
+    assert_non_null(strstr(text, "\"line_busy\":3"));
+    assert_non_null(strstr(text, "\"other_master\":2"));
+    assert_non_null(strstr(text, "\"old_bytes\":17"));
+    assert_non_null(strstr(text, "\"busy_attempts\":3"));
+    assert_non_null(strstr(text, "\"other_master_attempts\":2"));
+    assert_int_equal(text[strlen(text) - 1], '}');
+}
+
+TEST(the_longest_counters_fit)
+{
+    char text[COUNTERS_TEXT];
+    memset(&sensor(GATE)->counters, 0x7F, sizeof sensor(GATE)->counters);
+    state_of_counters(sensor(GATE), 0, "0123456789abcdef", text);
+    assert_true(strlen(text) < COUNTERS_TEXT - 100);
+    assert_int_equal(text[strlen(text) - 1], '}');
+}
+
 TEST(the_publisher_tells_of_itself)
 {
     char text[STATE_TEXT];

@@ -253,9 +253,9 @@ static void print_config(FILE *to)
                 to);
     (void)fputs("  'fathom publish --help' lists them.\n", to);
     (void)fputs("\nTopics are PREFIX/SITE/status and publisher, and for each sensor\n"
-                "PREFIX/SITE/NAME/state, availability and, if it has them, level and alarm.\n"
-                "SIGHUP reads the file again: sensors that have not changed are read on. While the\n"
-                "broker is not connected, messages wait in memory.\n",
+                "PREFIX/SITE/NAME/state, availability, counters and, if it has them, level and\n"
+                "alarm. SIGHUP reads the file again: lines that have not changed go on, others are\n"
+                "opened again. While the broker is not connected, messages wait in memory.\n",
                 to);
 }
 

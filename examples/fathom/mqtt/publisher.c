@@ -7,8 +7,9 @@
 
 #include "mqtt/discovery.h"
 
-/* Failures in a row after which a sensor is away; the least time between two messages about the publisher. */
-enum { FAILURES = 3, NEWS_US = 1000000 };
+/* Failures in a row after which a sensor is away; the least time between two messages about the publisher; the time from
+ * one message with the counters of the sensors to the next. */
+enum { FAILURES = 3, NEWS_US = 1000000, COUNTERS_US = 60000000 };
 
 static uint64_t now_us(const publisher_t *publisher) { return publisher->host->now_us(publisher->host->ctx); }
 
@@ -47,6 +48,14 @@ static void send_availability(publisher_t *publisher, stream_t *stream)
     send_retained(publisher, stream, sensor->is_available ? "online" : "offline");
 }
 
+static void send_counters(publisher_t *publisher, stream_t *stream)
+{
+    const uint64_t utc_us = publisher->host->utc_us(publisher->host->ctx);
+    char payload[COUNTERS_TEXT];
+    state_of_counters(publisher->sensors[stream->sensor->number].sensor, utc_us, publisher->boot, payload);
+    send_retained(publisher, stream, payload);
+}
+
 static void print_dropped(publisher_t *publisher, uint64_t dropped)
 {
     (void)fprintf(stderr,
@@ -56,13 +65,13 @@ static void print_dropped(publisher_t *publisher, uint64_t dropped)
     publisher->printed_dropped = dropped;
 }
 
-static bool has_counters(const publisher_t *publisher)
+static bool has_news(const publisher_t *publisher)
 {
     const bool is_due = publisher->sent_us == 0 || now_us(publisher) - publisher->sent_us >= NEWS_US;
     return is_due && publisher->queue.dropped != publisher->sent_dropped;
 }
 
-static bool send_counters(publisher_t *publisher)
+static bool send_news(publisher_t *publisher)
 {
     char payload[STATE_TEXT];
     const publisher_state_t state = {publisher->boot,
@@ -72,8 +81,8 @@ static bool send_counters(publisher_t *publisher)
                                      publisher->queue.count,
                                      publisher->sensor_count};
     state_of_publisher(&state, payload);
-    if (!broker_send(&publisher->broker, publisher->counters->topic, payload, true)) return false;
-    publisher->counters->is_known = true;
+    if (!broker_send(&publisher->broker, publisher->news->topic, payload, true)) return false;
+    publisher->news->is_known = true;
     if (state.dropped > publisher->printed_dropped) print_dropped(publisher, state.dropped);
     publisher->sent_dropped = state.dropped;
     publisher->sent_us = now_us(publisher);
@@ -91,12 +100,14 @@ static bool send_fact(publisher_t *publisher)
         send_retained(publisher, stream, "online");
     else if (publisher->has_facts && (stream = streams_gone(streams)) != NULL)
         send_deletion(publisher, stream);
-    else if (has_counters(publisher) && send_counters(publisher))
+    else if (has_news(publisher) && send_news(publisher))
         return true;
     else if (publisher->has_facts && (stream = streams_due(streams, STREAM_DISCOVERY)) != NULL)
         send_discovery(publisher, stream);
     else if (publisher->has_facts && (stream = streams_due(streams, STREAM_AVAILABILITY)) != NULL)
         send_availability(publisher, stream);
+    else if (publisher->has_facts && (stream = streams_due(streams, STREAM_COUNTERS)) != NULL)
+        send_counters(publisher, stream);
     publisher->has_facts = stream != NULL;
     return publisher->has_facts;
 }
@@ -126,7 +137,7 @@ static void send_next(publisher_t *publisher)
         if (!send_fact(publisher) && !send_message(publisher)) return;
 }
 
-static void send_counters_soon(publisher_t *publisher)
+static void send_news_soon(publisher_t *publisher)
 {
     publisher->sent_us = 0;
     publisher->sent_dropped = UINT64_MAX;
@@ -137,7 +148,7 @@ static void on_connected(void *ctx)
     publisher_t *const publisher = ctx;
     streams_repeat(&publisher->streams);
     publisher->has_facts = true;
-    send_counters_soon(publisher);
+    send_news_soon(publisher);
 }
 
 static void on_acknowledged(void *ctx) { send_next(ctx); }
@@ -258,8 +269,10 @@ static bool want_sensor(publisher_t *publisher, publisher_sensor_t *sensor, cons
     (void)snprintf(sensor->name, sizeof sensor->name, "%s", sensor->sensor->name);
     topic_of_sensor(publisher->settings, sensor->sensor, "availability", topic);
     sensor->availability = streams_want(&publisher->streams, topic, STREAM_AVAILABILITY, sensor->sensor);
-    return sensor->availability != NULL && want_readings(publisher, sensor) &&
-           want_discovery(publisher, sensor->sensor);
+    topic_of_sensor(publisher->settings, sensor->sensor, "counters", topic);
+    return sensor->availability != NULL &&
+           streams_want(&publisher->streams, topic, STREAM_COUNTERS, sensor->sensor) != NULL &&
+           want_readings(publisher, sensor) && want_discovery(publisher, sensor->sensor);
 }
 
 static const publisher_sensor_t *find(const publisher_sensor_t *sensors, size_t count, const char *name)
@@ -280,8 +293,8 @@ static bool set_sensors(publisher_t *publisher, const site_t *site)
     publisher->sensors = sensors;
     publisher->sensor_count = site->sensor_count;
     streams_forget(&publisher->streams);
-    publisher->counters = want_of_site(publisher, "publisher", STREAM_COUNTERS);
-    is_good = publisher->counters != NULL && want_of_site(publisher, "status", STREAM_STATUS) != NULL;
+    publisher->news = want_of_site(publisher, "publisher", STREAM_PUBLISHER);
+    is_good = publisher->news != NULL && want_of_site(publisher, "status", STREAM_STATUS) != NULL;
     for (size_t i = 0; i != site->sensor_count && is_good; i++) {
         sensors[i].sensor = site->sensors[i];
         is_good = want_sensor(publisher, &sensors[i], find(before, count, site->sensors[i]->name));
@@ -300,7 +313,7 @@ bool publisher_init(publisher_t *publisher, const host_t *host, const publish_se
     memset(publisher, 0, sizeof *publisher);
     publisher->host = host;
     publisher->settings = settings;
-    publisher->start_us = start_us;
+    publisher->start_us = publisher->counted_us = start_us;
     state_boot(publisher->boot);
     if (queue_begin(&publisher->queue, settings->queue_messages, settings->queue_bytes) &&
         set_sensors(publisher, site))
@@ -326,7 +339,7 @@ bool publisher_change(publisher_t *publisher, const site_t *site, bool has_other
     if (!set_sensors(publisher, site)) return false;
     if (!queue_resize(&publisher->queue, settings->queue_messages, settings->queue_bytes))
         print(NULL, "no memory left for another queue; the queue stays as it was");
-    send_counters_soon(publisher);
+    send_news_soon(publisher);
     if (has_other_broker) broker_change(&publisher->broker, topic);
     return true;
 }
@@ -334,6 +347,11 @@ bool publisher_change(publisher_t *publisher, const site_t *site, bool has_other
 uint32_t publisher_tick(publisher_t *publisher)
 {
     const uint32_t broker_us = broker_tick(&publisher->broker);
+    if (now_us(publisher) - publisher->counted_us >= COUNTERS_US) {
+        publisher->counted_us = now_us(publisher);
+        streams_make_due(&publisher->streams, STREAM_COUNTERS);
+        publisher->has_facts = true;
+    }
     send_next(publisher);
     return broker_us < NEWS_US ? broker_us : NEWS_US;
 }

@@ -7,13 +7,13 @@
 
 /*
  * What is sent to the broker, and in which order. First the retained messages, of which only the last one counts: that the
- * publisher is online, how Home Assistant finds the sensors, which of them are available, and the publisher's counters.
+ * publisher is online, how Home Assistant finds the sensors, which of them are available, what they have counted, and how the publisher is.
  * Then the messages of the queue, one after another.
  */
 
 /* What the publisher knows of a sensor. */
 typedef struct {
-    const sensor_t *sensor;
+    sensor_t *sensor;
     stream_t *streams[FATHOM_DYP_PROBES][TOPICS];
     stream_t *availability;
     uint8_t failures; /* in a row */
@@ -29,13 +29,14 @@ typedef struct {
     broker_t broker;
     queue_t queue;
     streams_t streams;
-    stream_t *counters; /* of the publisher */
+    stream_t *news; /* how the publisher is */
     char boot[BOOT];
     publisher_sensor_t *sensors; /* by sensor_t.number */
     size_t sensor_count;
     uint64_t sent_dropped;    /* in the last message about the publisher, ... */
     uint64_t sent_us;         /* ... and when it was sent */
     uint64_t printed_dropped; /* on the standard error */
+    uint64_t counted_us;      /* when the counters of the sensors became due */
     bool has_facts;           /* a retained message may be due */
 } publisher_t;
 

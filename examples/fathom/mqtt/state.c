@@ -11,6 +11,7 @@
 #include "fathom/version.h"
 #include "output/timestamp.h"
 #include "reading/fields.h"
+#include "reading/stats.h"
 
 void state_boot(char boot[BOOT])
 {
@@ -46,6 +47,20 @@ void state_finish(char text[STATE_TEXT], uint64_t age_us, uint64_t dropped)
     const size_t length = strlen(text);
     (void)snprintf(text + length, STATE_TEXT - length, ",\"age_ms\":%" PRIu64 ",\"dropped\":%" PRIu64 "}",
                    age_us / 1000, dropped);
+}
+
+void state_of_counters(sensor_t *sensor, uint64_t utc_us, const char *boot, char text[COUNTERS_TEXT])
+{
+    char utc[UTC_TEXT];
+    json_t json = {.to = fmemopen(text, COUNTERS_TEXT, "w")};
+    text[0] = '\0';
+    if (json.to == NULL) return;
+    json_begin(&json, NULL, '{');
+    json_string(&json, "utc", utc_text(utc_us, utc));
+    json_string(&json, "boot", boot);
+    stats_json_of_sensor(&json, sensor);
+    json_end(&json, '}');
+    (void)fclose(json.to);
 }
 
 void state_of_publisher(const publisher_state_t *state, char text[STATE_TEXT])

@@ -22,6 +22,10 @@ uint32_t state_begin(const reading_t *reading, topic_t topic, const char *boot, 
 /* Adds the second part. */
 void state_finish(char text[STATE_TEXT], uint64_t age_us, uint64_t dropped);
 
+/* The counters of a sensor. */
+enum { COUNTERS_TEXT = 2048 };
+void state_of_counters(sensor_t *sensor, uint64_t utc_us, const char *boot, char text[COUNTERS_TEXT]);
+
 /* The state of the publisher itself. */
 typedef struct {
     const char *boot;

@@ -47,6 +47,12 @@ void streams_repeat(streams_t *streams)
         if (stream->is_wanted) stream->is_due = true;
 }
 
+void streams_make_due(streams_t *streams, stream_kind_t kind)
+{
+    for (stream_t *stream = streams->first; stream != NULL; stream = stream->next)
+        if (stream->is_wanted && stream->kind == kind) stream->is_due = true;
+}
+
 stream_t *streams_due(const streams_t *streams, stream_kind_t kind)
 {
     stream_t *stream = streams->first;

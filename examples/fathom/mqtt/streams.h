@@ -13,7 +13,8 @@ typedef enum {
     STREAM_STATUS,       /* of the publisher: online or offline */
     STREAM_DISCOVERY,    /* how Home Assistant finds an entity of a sensor */
     STREAM_AVAILABILITY, /* of a sensor */
-    STREAM_COUNTERS,     /* of the publisher */
+    STREAM_COUNTERS,     /* of a sensor */
+    STREAM_PUBLISHER,    /* how the publisher is */
     STREAM_READINGS      /* of a probe */
 } stream_kind_t;
 
@@ -48,6 +49,9 @@ void streams_clean(streams_t *streams);
 
 /* A client that has just connected: every wanted retained stream is due, whatever the broker still knows. */
 void streams_repeat(streams_t *streams);
+
+/* All wanted streams of this kind are due. */
+void streams_make_due(streams_t *streams, stream_kind_t kind);
 
 /* Returns a wanted stream of this kind that is due; NULL: none is. */
 stream_t *streams_due(const streams_t *streams, stream_kind_t kind);

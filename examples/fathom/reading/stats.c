@@ -260,3 +260,16 @@ void stats_print_json(const account_t *account, FILE *to)
     json_end(&json, '}');
     (void)fputs("\n", to);
 }
+
+void stats_json_of_sensor(json_t *json, sensor_t *sensor)
+{
+    const account_t account = {.sum = sensor->counters, .sensors = &sensor, .sensor_count = 1};
+    const response_row_t response = response_of(&sensor->counters);
+    group_t groups[GROUPS];
+    list_groups(&account, groups);
+    record_json(json, attempt_fields, &sensor->counters, 0);
+    put_failures(json, &account);
+    for (size_t i = 0; i != GROUPS; i++)
+        if (groups[i].is_there) put_group(json, &groups[i], &account);
+    record_json(json, response_fields, &response, 0);
+}

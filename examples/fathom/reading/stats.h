@@ -26,4 +26,7 @@ void stats_print_short(const account_t *account, FILE *to);
 void stats_print(const account_t *account, FILE *to);
 void stats_print_json(const account_t *account, FILE *to);
 
+/* Writes the counters of one sensor as members of the open object. */
+void stats_json_of_sensor(json_t *json, sensor_t *sensor);
+
 #endif

@@ -56,6 +56,8 @@ static void print_topics(const publish_settings_t *settings, const sensor_t *sen
         }
     topic_of_sensor(settings, sensor, "availability", topic);
     (void)fprintf(to, "           %s\n", topic);
+    topic_of_sensor(settings, sensor, "counters", topic);
+    (void)fprintf(to, "           %s\n", topic);
 }
 
 void explain(const publish_settings_t *settings, const site_t *site, FILE *to)
