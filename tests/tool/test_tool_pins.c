@@ -4,6 +4,36 @@
 
 static const suite_t suite = {.set_up = set_up};
 
+/* ---- A16 controlled, its trigger on a GPIO line and its response on a serial port ---- */
+
+#define CONTROLLED "a16:controlled@line,trigger=gpiochip0/17"
+
+TEST(controlled_is_triggered_by_a_gpio_line)
+{
+    with_a16(FATHOM_SIM_A16_CONTROLLED);
+    EXPECT(0, 3, "1234 mm    1.234 m", "read " CONTROLLED " --count 3");
+    assert_int_equal(chip.asked.trigger, 17);
+    assert_int_equal(chip.asked.in, -1);
+    assert_int_equal(chip.opened, 1);
+    assert_int_equal(chip.closed, 1);
+    EXPECT(1, 0, "mm", "read a16:controlled@line,trigger=gpiochip1/17 --count 1");
+    expect_err("gpiochip1: no such chip");
+}
+
+static void drive_nothing(void *ctx, bool level)
+{
+    (void)ctx;
+    (void)level;
+}
+
+TEST(a_wire_of_the_trigger_that_is_broken_says_what_to_check)
+{
+    with_a16(FATHOM_SIM_A16_CONTROLLED);
+    chip.trigger = (fathom_pin_t){.set = drive_nothing};
+    EXPECT(1, 0, "mm", "read " CONTROLLED " --count 1");
+    expect_err("nothing followed the trigger. Check the supply");
+}
+
 /* ---- A16 PWM ---- */
 
 TEST(pwm_reads_a_pulse_a_cycle_at_the_lines_that_were_named)
@@ -267,6 +297,9 @@ TEST(what_is_wrong_usage_says_what_to_write)
                  "bias is 'sideways'. It takes as-is, up, down or off.");
     expect_usage("a16:switch@gpiochip0,in=5,near=by", "near is 'by'. It takes low or high.");
     expect_usage("a16:switch@gpiochip0,in=5,near=", "near is ''.");
+    expect_usage("a16:controlled@line,trigger=17", "It takes a chip and a line, such as gpiochip0/17.");
+    expect_usage("a16:controlled@line,trigger=gpiochip0/x", "such as gpiochip0/17.");
+    expect_usage("a16:auto@line,trigger=gpiochip0/17", "a16 in mode auto has no trigger=. Leave it out.");
     expect_usage(PWM ",near=high", "a16 in mode pwm reports distances and has no near=");
     expect_usage(PWM " --probes 1", "--probes");
     expect_usage(PWM " --value real-time", "--value");

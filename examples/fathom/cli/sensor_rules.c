@@ -40,7 +40,7 @@ static bool suits_chip(const sensor_t *station, const port_options_t *port, cons
         const char *const name = port_key_name(KEY_TRIGGER + i);
         if ((mode->pins >> i & 1u) != 0 && !is_given)
             return reject(origin, "%s in mode %s needs %s=, such as @%s.", model, mode->name, name, example);
-        if (((mode->pins | mode->may_pins) >> i & 1u) == 0 && is_given)
+        if ((mode->pins >> i & 1u) == 0 && is_given)
             return reject(origin, "%s in mode %s has no %s=. Write it such as @%s.", model, mode->name, name,
                           example);
     }
@@ -58,6 +58,8 @@ bool sensor_suits_port(const sensor_t *station, const origin_t *origin)
     char example[PORT_EXAMPLE];
     if (tcp_names(port->path)) return suits_tcp(station, port->path, origin);
     const bool has_pins = pins_example(mode, "gpiochip0", example);
+    if (!port->is_chip && port->keys.has[KEY_TRIGGER] && (mode->may_pins & MODEL_PIN_TRIGGER) == 0)
+        return reject(origin, "%s in mode %s has no trigger=. Leave it out.", model, mode->name);
     if (port->is_chip == has_pins) return !has_pins || suits_chip(station, port, origin);
     if (port->is_chip)
         return reject(origin, "%s in mode %s needs a serial port, and %s is a GPIO chip.", model, mode->name,

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "cli/sensor_word.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #include "output/words.h"
@@ -10,6 +11,24 @@
 #define KEY(key) .at = offsetof(port_keys_t, value[key]), .size = sizeof(uint32_t), HAS(port_keys_t, has[key])
 #define BAUDS    "9600 19200 38400 57600 115200 230400"
 
+/* "gpiochip0/17": stores the number of the chip above that of the line. */
+static bool parse_chip_line(const char *text, void *member)
+{
+    static const char name[] = "gpiochip";
+    char chip[sizeof "65535"];
+    uint32_t number = 0;
+    uint32_t line = 0;
+    const char *const slash = strchr(text, '/');
+    if (slash == NULL || strncmp(text, name, sizeof name - 1) != 0) return false;
+    text += sizeof name - 1;
+    if (slash < text || (size_t)(slash - text) >= sizeof chip) return false;
+    (void)snprintf(chip, sizeof chip, "%.*s", (int)(slash - text), text);
+    if (!number_parse(chip, 0, UINT16_MAX, &number) || !number_parse(slash + 1, 0, UINT16_MAX, &line))
+        return false;
+    *(uint32_t *)member = number << 16 | line;
+    return true;
+}
+
 /* The words of a choice stand in the order of its enumeration. */
 const option_t serial_keys[] = {
     {"baud", "N", "Baud rate", KIND_ONE_OF, .words = BAUDS, KEY(KEY_BAUD)},
@@ -18,6 +37,8 @@ const option_t serial_keys[] = {
     {"rs485", "on|off", "Transceiver switched by the kernel's driver", KIND_CHOICE, .words = "off on",
      KEY(KEY_RS485)},
     {"echo", "E", "Echo of the adapter", KIND_CHOICE, .words = "auto off on", KEY(KEY_ECHO)},
+    {"trigger", "CHIP/LINE", "GPIO line to the sensor's RX, instead of a break", KIND_CUSTOM,
+     .parse = parse_chip_line, .takes = "a chip and a line, such as gpiochip0/17", KEY(KEY_TRIGGER)},
     {.name = NULL},
 };
 

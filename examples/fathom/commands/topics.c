@@ -28,7 +28,7 @@ static void print_mode(FILE *to, const model_mode_t *mode)
     else if (mode->has_pulses)
         (void)fputs("Trigger and measure pulses on GPIO lines\n", to);
     else if (mode->is_triggered)
-        (void)fputs("Trigger each measurement by a break\n", to);
+        (void)fputs("Trigger each measurement by a break or a GPIO line\n", to);
     else
         (void)fputs("Receive what the sensor sends automatically\n", to);
 }
@@ -86,6 +86,9 @@ static void print_pins(FILE *to)
                 "  a16:pwm@gpiochip0,trigger=17,echo=27\n"
                 "      trigger is an output to the sensor's RX. echo receives the pulses of its\n"
                 "      TX. The sensor measures every 221 ms.\n"
+                "  a16:controlled@/dev/ttyUSB0,trigger=gpiochip0/17\n"
+                "      trigger is an output to the sensor's RX. The serial port receives the\n"
+                "      responses. Without trigger, a break of the serial port triggers.\n"
                 "  a16:switch@gpiochip0,in=5\n"
                 "      in is the sensor's TX. It is high if a target is nearer than the\n"
                 "      threshold; write near=low for the other polarity. near or far is printed\n"

@@ -176,8 +176,9 @@ static const cause_t causes[] = {
      "bias=down or a resistor), and that this is a line number of the chip (gpioinfo lists them)"},
 
     {NO_RESPONSE, TRIGGERED, "nothing followed the trigger",
-     "Check the supply, the wires from the adapter's TX to the sensor's RX and back, that the adapter can "
-     "send a break, and that the sensor is the UART controlled variant (if not: --mode auto or --mode "
+     "Check the supply, the wires from the adapter's TX (or the line trigger=) to the sensor's RX and back, "
+     "that the adapter can send a break, and that the sensor is the UART controlled variant (if not: --mode "
+     "auto or --mode "
      "modbus)"},
     {CHECKSUM, TRIGGERED, "the bytes after the trigger form no frame",
      "Check {settings}, and look for noise"},

@@ -76,14 +76,16 @@ static fathom_status_t fail(port_t *port, const fathom_gpio_t *line)
                           fathom_gpio_error_text(line));
 }
 
-static fathom_status_t open_chip(port_t *port)
+fathom_status_t pins_open_port(port_t *port, const char *chip)
 {
     const host_t *const host = port->host;
     const fathom_gpio_t *line = port->pins.lines;
-    if (host->open_pins(host->ctx, port->settings.path, &port->settings.pins, &port->pins)) return FATHOM_OK;
+    if (host->open_pins(host->ctx, chip, &port->settings.pins, &port->pins)) return FATHOM_OK;
     while (fathom_gpio_error(line) == FATHOM_GPIO_OK && line != &port->pins.lines[PINS_LINES - 1]) line++;
     return fail(port, line);
 }
+
+static fathom_status_t open_chip(port_t *port) { return pins_open_port(port, port->settings.path); }
 
 static fathom_status_t poll_chip(port_t *port)
 {

@@ -6,6 +6,7 @@
 #include <stdint.h>
 
 #include "fathom/hal.h"
+#include "fathom/status.h"
 #include "fathom_gpio.h"
 
 /* Lines of a GPIO chip to which a sensor is connected instead of a serial port. */
@@ -20,6 +21,7 @@ typedef enum {
 /* Numbers of lines; -1: none. */
 typedef struct {
     int32_t trigger; /* to the sensor's RX; an output */
+    uint32_t chip;   /* of a serial port: 1 + the number of the chip that has the trigger; 0: no trigger */
     int32_t echo;    /* from the sensor's TX: pulses */
     int32_t in;      /* a switch, or the contact of a relay */
     uint8_t bias;    /* of the inputs; fathom_gpio_bias_t */
@@ -45,5 +47,9 @@ typedef struct {
  * move *pins. */
 bool pins_open(pins_t *pins, const char *chip, const pin_options_t *wanted);
 void pins_close(pins_t *pins);
+
+/* Opens the lines of port->settings.pins as the port's pins. Returns FATHOM_OK, or FATHOM_ERR_PORT with the reason. */
+struct port;
+fathom_status_t pins_open_port(struct port *port, const char *chip);
 
 #endif

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "ports/port.h"
 
+#include <inttypes.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -43,8 +44,11 @@ static fathom_status_t fail_serial(port_t *port)
                           fathom_posix_error_text(&port->serial));
 }
 
+static bool has_trigger(const port_t *port) { return port->settings.pins.chip != 0; }
+
 static void close_serial(port_t *port)
 {
+    if (has_trigger(port)) port->host->close_pins(port->host->ctx, &port->pins);
     adapter_close(&port->adapter);
     port->host->close(port->host->ctx, &port->serial);
 }
@@ -67,6 +71,14 @@ static fathom_status_t open_serial(port_t *port)
         (void)fail_serial(port);
         close_serial(port);
         return FATHOM_ERR_PORT;
+    }
+    if (has_trigger(port)) {
+        char chip[sizeof "gpiochip4294967295"];
+        (void)snprintf(chip, sizeof chip, "gpiochip%" PRIu32, settings->pins.chip - 1);
+        if (pins_open_port(port, chip) != FATHOM_OK) {
+            close_serial(port);
+            return FATHOM_ERR_PORT;
+        }
     }
     port->parts.gap_us = PORT_RESPONSE_GAP_US;
     port->parts.echo = settings->echo;

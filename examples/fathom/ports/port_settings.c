@@ -37,9 +37,10 @@ static bool get(const port_keys_t *keys, const port_keys_t *defaults, port_key_t
     return true;
 }
 
+/* -1: none. The trigger of a serial port has the number of its chip above (sensor_word.c). */
 static int32_t pin(const port_keys_t *keys, port_key_t key)
 {
-    return keys->has[key] ? (int32_t)keys->value[key] : -1;
+    return keys->has[key] ? (int32_t)(keys->value[key] & UINT16_MAX) : -1;
 }
 
 void port_options_take(port_options_t *port, const port_keys_t *defaults)
@@ -52,11 +53,13 @@ void port_options_take(port_options_t *port, const port_keys_t *defaults)
     (void)get(&port->keys, defaults, KEY_ECHO, &echo);
     port->rs485 = rs485 != 0;
     port->echo = (uint8_t)echo;
-    port->pins = (pin_options_t){.trigger = pin(&port->keys, KEY_TRIGGER),
-                                 .echo = pin(&port->keys, KEY_PULSE),
-                                 .in = pin(&port->keys, KEY_IN),
-                                 .bias = (uint8_t)port->keys.value[KEY_BIAS],
-                                 .near = (uint8_t)port->keys.value[KEY_NEAR]};
+    port->pins =
+        (pin_options_t){.trigger = pin(&port->keys, KEY_TRIGGER),
+                        .chip = port->keys.has[KEY_TRIGGER] ? (port->keys.value[KEY_TRIGGER] >> 16) + 1 : 0,
+                        .echo = pin(&port->keys, KEY_PULSE),
+                        .in = pin(&port->keys, KEY_IN),
+                        .bias = (uint8_t)port->keys.value[KEY_BIAS],
+                        .near = (uint8_t)port->keys.value[KEY_NEAR]};
 }
 
 void port_options_line(const port_options_t *port, const port_keys_t *defaults, fathom_line_settings_t *line)

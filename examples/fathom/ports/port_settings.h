@@ -37,8 +37,8 @@ typedef enum {
     KEY_RS485, /* 0 or 1: the kernel's driver switches the transceiver */
     KEY_ECHO,  /* fathom_line_parts_t.echo */
     /* of a GPIO chip: lines, by their number on it */
-    KEY_TRIGGER,
-    KEY_PULSE, /* written echo= */
+    KEY_TRIGGER, /* of a serial port as well, with its chip */
+    KEY_PULSE,   /* written echo= */
     KEY_IN,
     KEY_BIAS, /* fathom_gpio_bias_t */
     KEY_NEAR, /* pins_near_t */
@@ -56,7 +56,7 @@ typedef struct {
     fathom_line_settings_t line;  /* of a serial port */
     uint8_t echo;                 /* of a serial port: fathom_line_parts_t.echo */
     bool rs485;                   /* of a serial port: the kernel's driver switches the transceiver */
-    pin_options_t pins;           /* of a GPIO chip */
+    pin_options_t pins;           /* of a GPIO chip; of a serial port: the trigger */
     fathom_loop_source_t *source; /* the port is read only after this source became ready; NULL: always */
 } port_settings_t;
 

@@ -33,11 +33,12 @@ bool a16_read_auto(reader_t *reader, port_t *port, const reader_settings_t *sett
     return dyp_open_stream(reader, &driver->base, fathom_a16_auto_sensor(driver));
 }
 
-/* Triggered by a break of the port, whose TX is the module's RX. */
+/* The trigger is a GPIO line, or a break of the port, whose TX is the module's RX. */
 bool a16_read_controlled(reader_t *reader, port_t *port, const reader_settings_t *settings)
 {
     fathom_a16_controlled_t *const driver = &reader->driver.a16_controlled;
-    const fathom_output_t trigger = fathom_output_line_break(&port->line);
+    const fathom_output_t trigger = port->settings.pins.chip != 0 ? fathom_output_pin(&port->pins.trigger)
+                                                                  : fathom_output_line_break(&port->line);
     const fathom_a16_controlled_config_t config = {
         .period_us = settings->period_us,
         .gap_us = PORT_STREAM_GAP_US,

@@ -27,7 +27,7 @@ typedef struct model_mode {
     bool can_move_others; /* a damaged response can change the address of another sensor of this model */
     uint8_t takes;        /* READER_TAKES_...: which settings of the user have an effect */
     uint8_t pins;         /* MODEL_PIN_...: those that it needs; 0: it has a serial line */
-    uint8_t may_pins;     /* and that it may have as well */
+    uint8_t may_pins;     /* and those that it may have beside its serial line */
     uint8_t simulated_as; /* for model_t.simulate; 0: `fathom sim` does not simulate it */
     /* Initialises the driver through an open port. Returns false if the driver refuses the settings. */
     bool (*read)(reader_t *reader, port_t *port, const reader_settings_t *settings);

@@ -43,6 +43,7 @@ const model_t models[] = {
                   {.name = "controlled",
                    .is_triggered = true,
                    .takes = DYP_TAKES,
+                   .may_pins = MODEL_PIN_TRIGGER,
                    .read = a16_read_controlled,
                    .simulated_as = FATHOM_SIM_A16_CONTROLLED},
                   {.name = "pwm",
