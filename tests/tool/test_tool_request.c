@@ -110,7 +110,7 @@ TEST(all_units_obey_a_broadcast_and_none_is_waited_for)
         tool_run(&bench.tool, "request 0 6 0x0205 1 --yes --timeout 9000 --port line");
     assert_int_equal(run->status, 0);
     assert_string_equal(run->out, "sent      00 06 02 05 00 01 58 62\n");
-    assert_non_null(strstr(run->err, "sent to all units, none of which answers"));
+    assert_non_null(strstr(run->err, "sent to all units. None of them responds"));
     /* 66 ms of listening, 8.3 of the request and 200 of the turnaround */
     assert_in_range(run->took_us, 266000, 300000);
 }

@@ -50,7 +50,7 @@ TEST(what_comes_back_is_told)
          "unit 1 refused: exception 02 (illegal data address): the sensor has no such register\n"},
         {"1 3 0x0101 --sensor hps167s", "01 83 02 C0 F1", 1, "",
          "the sensor has no such register; HPS table 39: illegal start address or register address\n"},
-        {"1 3 0x0101 --sensor a16", "01 83 02 C0 F1", 1, "", "no exceptions are in the datasheet of a16\n"},
+        {"1 3 0x0101 --sensor a16", "01 83 02 C0 F1", 1, "", "the datasheet of a16 has no exceptions\n"},
         {"1 6 0x0200 5 --yes", "01 86 04 43 A3", 1, "", "exception 04 (server device failure): "},
         {"1 0x2b 0e 01 00 --yes", "01 AB 01 9E F0", 1, "", "exception 01 (illegal function): "},
         {"1 3 0x0101 --format json", "01 83 02 C0 F1", 1,
@@ -86,11 +86,11 @@ TEST(what_comes_back_is_told)
         {"1 3 0x0101 --format json", "", 1, "\"status\":\"no_response\"", ""},
         /* noise before it, and more behind it */
         {"1 3 0x0101", "55 FE 80 01 03 02 02 EF F8 A8", 0, "received  01 03 02 02 EF F8 A8\n",
-         "3 bytes more came than the response\n"},
+         "3 bytes arrived besides the response\n"},
         {"1 3 0x0101", "01 03 02 02 EF F8 A8 01 03 02 02 EF F8 A8", 0, "received  01 03 02 02 EF F8 A8\n",
-         "7 bytes more came: two units may have this address\n"},
+         "7 bytes arrived besides the response: two units may have this address\n"},
         {"1 3 0x0101", "01 03 02 02 EF F8 A8 02 03 02 02 EF BC A8", 0, "received  01 03 02 02 EF F8 A8\n",
-         "7 bytes more came: another unit has answered too\n"},
+         "7 bytes arrived besides the response: another unit responded too\n"},
         /* addresses with a meaning of their own */
         {"255 3 0x0101 --yes", "05 03 02 02 EF 09 68", 0, "received  05 03 02 02 EF 09 68\n", ""},
         {"0 3 0x0101 --yes", "00 03 02 02 EF C5 68", 0, "received  00 03 02 02 EF C5 68\n", ""},
@@ -227,8 +227,8 @@ TEST(one_copy_of_a_write_is_judged_by_its_time)
         const char *err;
     } rows[] = {
         {1000, "", 1, "heard ", "only the tool's own request was received"},
-        {5000, "", 0, "heard ", "unit 1 has acknowledged, unless the adapter returns what it sends"},
-        {40000, "", 0, "\"status\":\"answered_or_echo\"", "has acknowledged, unless"},
+        {5000, "", 0, "heard ", "unit 1 acknowledged the request, unless the adapter returned it"},
+        {40000, "", 0, "\"status\":\"answered_or_echo\"", "acknowledged the request, unless"},
         {60000, "", 0, "received  01 06 02 00 00 05 48 71\n", ""},
         {5000, "--echo off", 0, "received  01 06 02 00 00 05 48 71\n", ""},
     };

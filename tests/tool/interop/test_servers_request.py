@@ -72,7 +72,7 @@ class Rtu(Servers):
         """A pseudo terminal has no wire, and so nothing takes its time."""
         port = self.served(LINE, 1, FIRST, [1])
         done = self.ends(f'request 1 6 {FIRST} 5 --yes --timeout 500 --port {port}', 0,
-                         'unit 1 has acknowledged, unless the adapter returns what it sends')
+                         'unit 1 acknowledged the request, unless the adapter returned it')
         self.assertIn('heard     01 06 02 00 00 05 48 71\n', done.out)  # A16 6(4), example 3
 
 

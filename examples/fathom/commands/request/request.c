@@ -78,7 +78,7 @@ static int ask(const request_t *request)
     errno = 0;
     request_print(&asked, &port);
     const int error = output_flush();
-    request_tell(&asked, &port, &counters);
+    request_print_problem(&asked, &port, &counters);
     if (error != 0) (void)fprintf(stderr, "fathom: the output cannot be written: %s\n", strerror(error));
     return error == 0 && request_is_good(&asked) ? STATUS_OK : STATUS_FAILED;
 }

@@ -15,8 +15,14 @@ typedef enum {
     REQUEST_NO_RESPONSE,
     REQUEST_LINE_BUSY,    /* the line was never silent */
     REQUEST_OTHER_MASTER, /* another master asked the same unit at the same time */
-    REQUEST_FAILED        /* the port failed, or the user ended the command */
+    REQUEST_FAILED,       /* the port failed, or the user ended the command */
+    REQUEST_OUTCOMES
 } request_outcome_t;
+
+extern const struct request_outcome_row {
+    const char *name; /* in JSON */
+    fathom_status_t status;
+} request_outcomes[REQUEST_OUTCOMES];
 
 /* The request on a line, and its outcome. */
 typedef struct {

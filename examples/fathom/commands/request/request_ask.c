@@ -146,28 +146,27 @@ static bool equals_acknowledgement(const request_t *request)
     return !request_is_read(request) && function != WRITE_COILS && function != REQUEST_WRITE_MANY;
 }
 
+const struct request_outcome_row request_outcomes[REQUEST_OUTCOMES] = {
+    [REQUEST_ANSWERED] = {"answered", FATHOM_OK},
+    [REQUEST_SENT] = {"sent", FATHOM_OK},
+    [REQUEST_ECHO] = {"answered_or_echo", FATHOM_ERR_ECHO},
+    [REQUEST_REFUSED] = {"exception", FATHOM_ERR_EXCEPTION},
+    [REQUEST_UNEXPECTED] = {"other_response", FATHOM_ERR_MALFORMED},
+    [REQUEST_DAMAGED] = {"damaged", FATHOM_ERR_CHECKSUM},
+    [REQUEST_NO_RESPONSE] = {"no_response", FATHOM_ERR_NO_RESPONSE},
+    [REQUEST_LINE_BUSY] = {"line_busy", FATHOM_ERR_LINE_BUSY},
+    [REQUEST_OTHER_MASTER] = {"other_master", FATHOM_ERR_OTHER_MASTER},
+    [REQUEST_FAILED] = {"failed", FATHOM_ERR_PORT},
+};
+
 static request_outcome_t outcome_of(const request_ask_t *ask, const port_t *port, fathom_status_t status)
 {
-    switch (status) {
-    case FATHOM_OK:
-        return request_is_broadcast(ask->request) ? REQUEST_SENT : REQUEST_ANSWERED;
-    case FATHOM_ERR_EXCEPTION:
-        return REQUEST_REFUSED;
-    case FATHOM_ERR_MALFORMED:
-        return REQUEST_UNEXPECTED;
-    case FATHOM_ERR_CHECKSUM:
-        return REQUEST_DAMAGED;
-    case FATHOM_ERR_ECHO:
+    request_outcome_t outcome = REQUEST_ANSWERED;
+    if (status == FATHOM_OK && request_is_broadcast(ask->request)) return REQUEST_SENT;
+    if (status == FATHOM_ERR_ECHO)
         return equals_acknowledgement(ask->request) ? judge_copy(ask, port) : REQUEST_NO_RESPONSE;
-    case FATHOM_ERR_NO_RESPONSE:
-        return REQUEST_NO_RESPONSE;
-    case FATHOM_ERR_LINE_BUSY:
-        return REQUEST_LINE_BUSY;
-    case FATHOM_ERR_OTHER_MASTER:
-        return REQUEST_OTHER_MASTER;
-    default:
-        return REQUEST_FAILED;
-    }
+    while (outcome != REQUEST_FAILED && request_outcomes[outcome].status != status) outcome++;
+    return outcome;
 }
 
 /* Counts the bytes besides the response and the echo, such as those of another unit at the same address. */

@@ -23,7 +23,7 @@ static bool has_registers(const request_ask_t *ask)
 
 static bool is_printable(uint8_t byte) { return byte >= 0x20 && byte <= 0x7E; }
 
-/* The two characters of a register; "": not both can be printed. */
+/* Writes the two characters of a register; "" if one of them cannot be printed. */
 static const char *ascii(uint16_t value, char text[REGISTER_TEXT])
 {
     const uint8_t bytes[] = {(uint8_t)(value >> 8), (uint8_t)value};
@@ -102,19 +102,13 @@ static void put_exception(json_t *json, uint8_t code)
 
 static void print_json(const request_ask_t *ask, const port_t *port, const decode_frame_t *frame)
 {
-    static const char *const statuses[] = {
-        [REQUEST_ANSWERED] = "answered",         [REQUEST_SENT] = "sent",
-        [REQUEST_ECHO] = "answered_or_echo",     [REQUEST_REFUSED] = "exception",
-        [REQUEST_UNEXPECTED] = "other_response", [REQUEST_DAMAGED] = "damaged",
-        [REQUEST_NO_RESPONSE] = "no_response",   [REQUEST_LINE_BUSY] = "line_busy",
-        [REQUEST_OTHER_MASTER] = "other_master", [REQUEST_FAILED] = "failed"};
     const request_t *const request = ask->request;
     const bool was_sent = port->listener.request_length != 0;
     json_t json = {.to = stdout};
     json_begin(&json, NULL, '{');
     json_value(&json, "address", "%u", request->frame[REQUEST_UNIT]);
     json_value(&json, "function", "%u", request->frame[REQUEST_FUNCTION]);
-    json_string(&json, "status", statuses[ask->outcome]);
+    json_string(&json, "status", request_outcomes[ask->outcome].name);
     if (was_sent) json_bytes(&json, "sent", request->frame, request->length);
     if (ask->length != 0)
         json_bytes(&json, "received", ask->response, ask->length);
@@ -142,9 +136,9 @@ void request_print(const request_ask_t *ask, const port_t *port)
         print_text(ask, port, &frame);
 }
 
-/* ---- what went wrong ---- */
+/* ---- problems ---- */
 
-static void tell_refused(const request_ask_t *ask)
+static void print_refusal(const request_ask_t *ask)
 {
     const uint8_t code = ask->response[CODE];
     const modbus_exception_t exception = modbus_exception(code);
@@ -154,27 +148,19 @@ static void tell_refused(const request_ask_t *ask)
     if (model != NULL && model->exception_name != NULL && model->exception_name(code) != NULL)
         (void)fprintf(stderr, "; %s: %s", model->exception_source, model->exception_name(code));
     if (model != NULL && model->exception_name == NULL)
-        (void)fprintf(stderr, "; no exceptions are in the datasheet of %s", model->name);
+        (void)fprintf(stderr, "; the datasheet of %s has no exceptions", model->name);
 }
 
-static fathom_status_t status_of(request_outcome_t outcome)
+static void print_advice(const request_ask_t *ask, const port_t *port, const counters_t *counters)
 {
-    switch (outcome) {
-    case REQUEST_DAMAGED:
-        return FATHOM_ERR_CHECKSUM;
-    case REQUEST_LINE_BUSY:
-        return FATHOM_ERR_LINE_BUSY;
-    case REQUEST_OTHER_MASTER:
-        return FATHOM_ERR_OTHER_MASTER;
-    default:
-        return FATHOM_ERR_NO_RESPONSE;
+    const bool was_sent = port->listener.request_length != 0;
+    const bool is_cancelled = ask->transaction.status == FATHOM_ERR_CANCELLED && !port_is_lost(port);
+    failure_t failure =
+        failure_of_request(is_cancelled ? FATHOM_ERR_CANCELLED : request_outcomes[ask->outcome].status, port);
+    if (is_cancelled && !was_sent) {
+        (void)fputs("the command ended before the line was silent, and nothing was sent", stderr);
+        return;
     }
-}
-
-static void print_advice(const request_ask_t *ask, const port_t *port, const counters_t *counters,
-                         fathom_status_t status)
-{
-    failure_t failure = failure_of_request(status, port);
     if (ask->request->model != NULL) failure.model = ask->request->model;
     failure.counters = counters;
     failure.line = &ask->request->line;
@@ -184,50 +170,38 @@ static void print_advice(const request_ask_t *ask, const port_t *port, const cou
     advice_print(stderr, &failure);
 }
 
-static void print_failure(const request_ask_t *ask, const port_t *port, const counters_t *counters)
-{
-    const bool was_sent = port->listener.request_length != 0;
-    const bool is_lost = port_is_lost(port);
-    if (is_lost || ask->transaction.status != FATHOM_ERR_CANCELLED)
-        print_advice(ask, port, counters, FATHOM_ERR_PORT);
-    else if (was_sent)
-        print_advice(ask, port, counters, FATHOM_ERR_CANCELLED);
-    else
-        (void)fputs("the command ended before the line was silent, and nothing was sent", stderr);
-}
-
-static void tell_more(const request_ask_t *ask)
+static void print_more(const request_ask_t *ask)
 {
     if (ask->more == 0) return;
-    (void)fprintf(stderr, "fathom: %" PRIu32 " bytes more came%s\n", ask->more,
+    (void)fprintf(stderr, "fathom: %" PRIu32 " bytes arrived besides the response%s\n", ask->more,
                   ask->evidence.own > 1        ? ": two units may have this address"
-                  : ask->evidence.foreign != 0 ? ": another unit has answered too"
-                                               : " than the response");
+                  : ask->evidence.foreign != 0 ? ": another unit responded too"
+                                               : "");
 }
 
-void request_tell(const request_ask_t *ask, const port_t *port, const counters_t *counters)
+void request_print_problem(const request_ask_t *ask, const port_t *port, const counters_t *counters)
 {
     const uint8_t unit = ask->request->frame[REQUEST_UNIT];
-    tell_more(ask);
+    print_more(ask);
     if (ask->outcome == REQUEST_ANSWERED) return;
     (void)fputs("fathom: ", stderr);
     if (ask->outcome == REQUEST_SENT)
-        (void)fputs("sent to all units, none of which answers; what became of it is not known", stderr);
+        (void)fputs("the request was sent to all units. None of them responds, so its effect is unknown",
+                    stderr);
     else if (ask->outcome == REQUEST_ECHO)
-        (void)fprintf(stderr,
-                      "unit %u has acknowledged, unless the adapter returns what it sends: the bytes are the "
-                      "same; read it back, or say --echo off or on",
-                      unit);
+        (void)fprintf(
+            stderr,
+            "unit %u acknowledged the request, unless the adapter returned it: both have the same bytes. "
+            "Read the register back, or use --echo off or on",
+            unit);
     else if (ask->outcome == REQUEST_REFUSED)
-        tell_refused(ask);
+        print_refusal(ask);
     else if (ask->outcome == REQUEST_UNEXPECTED)
         (void)fprintf(
             stderr,
             "unit %u: the response does not fit the request. Check that no other unit has this address",
             unit);
-    else if (ask->outcome == REQUEST_FAILED)
-        print_failure(ask, port, counters);
     else
-        print_advice(ask, port, counters, status_of(ask->outcome));
+        print_advice(ask, port, counters);
     (void)fputs("\n", stderr);
 }

@@ -5,13 +5,13 @@
 #include "commands/request/request.h"
 #include "diagnosis/counters.h"
 
-/* Writes what came of it: bytes and what they say to stdout, as text or JSON. */
+/* Writes the bytes and their meaning to standard output, as text or JSON. */
 void request_print(const request_ask_t *ask, const port_t *port);
 
-/* Says on stderr what went wrong, or what else is to be known. counters: of this attempt. */
-void request_tell(const request_ask_t *ask, const port_t *port, const counters_t *counters);
+/* Prints on standard error what failed, or what else the user has to know. counters: of this attempt. */
+void request_print_problem(const request_ask_t *ask, const port_t *port, const counters_t *counters);
 
-/* Has the request been answered, or been sent to all units? */
+/* Returns true if a unit responded, or if the request was sent to all units. */
 bool request_is_good(const request_ask_t *ask);
 
 #endif
