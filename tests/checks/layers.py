@@ -16,7 +16,8 @@ COMMON = 'src/common.h'  # what the sources of engine/ and sensor/ share
 # The same for the tool. commands/ stands on top: a file or a folder for each command, which includes no other command.
 TOOL = ('output', 'ports', 'sensors', 'diagnosis', 'reading', 'device', 'mqtt', 'cli', 'commands')
 TOOL_FOLDER = 'examples/fathom/'
-ANYWHERE = TOOL_FOLDER + 'commands/commands.h'  # declares the commands
+# Declare the commands and the topics of the help.
+ANYWHERE = (TOOL_FOLDER + 'commands/commands.h', TOOL_FOLDER + 'commands/topics.h')
 
 # Arrows that still point up. Each has to go; none may be added.
 UPWARDS = {
@@ -79,7 +80,7 @@ def check_tool(path, text, tool):
     """path: of a source or header of the tool, whose files are `tool`."""
     folder = os.path.dirname(path[len(TOOL_FOLDER):])
     for _, target in includes(text):
-        if TOOL_FOLDER + target not in tool or TOOL_FOLDER + target == ANYWHERE or not folder:
+        if TOOL_FOLDER + target not in tool or TOOL_FOLDER + target in ANYWHERE or not folder:
             continue
         module, other = folder.split('/')[0], target.split('/')[0]
         if TOOL.index(other) < TOOL.index(module) or other == module != 'commands' or \

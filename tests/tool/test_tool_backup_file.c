@@ -168,13 +168,13 @@ TEST(a_command_line_without_what_it_needs_is_refused)
     static const char *const rows[][2] = {
         {"restore hps167s --port line", "--file is missing"},
         {"restore hps167s --file x", "--port is missing"},
-        {"restore hps167s --file x --port line --format json", "leave --format out"},
-        {"restore hps167s --file x --port line more", "one sensor at a time; 'more' is too much"},
-        {"restore a05 --file x --port line --mode dyp", "this takes --mode modbus"},
-        {"restore a16:0 --file x --port line", "what is written to address 0 goes to all units"},
-        {"save hps167s --port line --format json", "leave --format out"},
-        {"save hps167s --port line more", "one sensor at a time; 'more' is too much"},
-        {"save hps167s --port line --dry-run", "there is no option --dry-run"}};
+        {"restore hps167s --file x --port line --format json", "unknown option '--format'"},
+        {"restore hps167s --file x --port line more", "'more' is one word too many."},
+        {"restore a05 --file x --port line --mode dyp", "--mode is dyp, but this needs mode modbus."},
+        {"restore a16:0 --file x --port line", "a write to address 0 goes to all units"},
+        {"save hps167s --port line --format json", "unknown option '--format'"},
+        {"save hps167s --port line more", "'more' is one word too many."},
+        {"save hps167s --port line --dry-run", "unknown option '--dry-run'"}};
     for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
         const tool_run_t *const run = tool_run(&bench.tool, "%s", rows[i][0]);
         if (run->status != 2 || strstr(run->err, rows[i][1]) == NULL)

@@ -195,13 +195,13 @@ TEST(one_sample_without_a_target_does_not_stop_the_calibration)
 
 TEST(wrong_usage)
 {
-    writes_nothing(2, "a16 has no distance offset. Only hps167s has one",
+    writes_nothing(2, "a16 has no distance offset. Only an hps167s has one.",
                    "calibrate a16 --port line --known 2000");
     writes_nothing(2, "--known is missing", "calibrate hps167s --port line");
     writes_nothing(2, "from 80 to 18000", "calibrate hps167s --port line --known 79");
     writes_nothing(2, "from 80 to 18000", "calibrate hps167s --port line --known 18001");
     writes_nothing(2, "from 5 to 200", CALIBRATE " --samples 4");
     writes_nothing(2, "from 5 to 200", CALIBRATE " --samples 201");
-    writes_nothing(2, "'2000' is too much", "calibrate hps167s --port line 2000");
+    writes_nothing(2, "'2000' is one word too many.", "calibrate hps167s --port line --known 2000 2000");
     writes_nothing(2, "--port is missing", "calibrate hps167s --known 2000");
 }

@@ -105,24 +105,25 @@ TEST(wrong_words_are_usage_errors)
         const char *more;
         const char *says;
     } rows[] = {
-        {"hps167s", "which addresses are to be given? --addresses is missing"},
+        {"hps167s", "--addresses is missing. It takes addresses and ranges"},
         {"hps167s --addresses 2-33", "from 1 to 32"},
         {"hps167s --addresses 5-2", "such as 2-9"},
         {"hps167s --addresses 2,,3", "such as 2-9"},
-        {"hps167s --addresses 1-8", "put it at the end"},
-        {"hps167s --addresses 2-4,3", "address 3 stands twice"},
-        {"hps167s --addresses 2-4 --terminated 5", "--terminated takes one of --addresses, or none, not '5'"},
-        {"a16 --addresses 2-4 --terminated 4", "a16 has no termination"},
-        {"hps167s:3 --addresses 2", "address 1, with which they come; leave 3 out"},
-        {"hps167s a16 --addresses 2", "one model at a time; 'a16' is too much"},
-        {"a05 --mode dyp --addresses 2", "this takes --mode modbus"},
-        {"hps167s --addresses 2 --wait 0", "--wait takes a whole number from 1"},
+        {"hps167s --addresses 1-8", "has address 1 before its end."},
+        {"hps167s --addresses 2-4,3", "--addresses has address 3 twice."},
+        {"hps167s --addresses 2-4 --terminated 5",
+         "--terminated is '5'. It takes one of --addresses, or none."},
+        {"a16 --addresses 2-4 --terminated 4", "--terminated has no effect on a16"},
+        {"hps167s:3 --addresses 2", "new sensors have address 1. Leave address 3 out."},
+        {"hps167s a16 --addresses 2", "'a16' is one word too many."},
+        {"a05 --mode dyp --addresses 2", "--mode is dyp, but this needs mode modbus."},
+        {"hps167s --addresses 2 --wait 0", "--wait is '0'. It takes a whole number from 1 to 86400."},
     };
     for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++)
         expect(commission(rows[i].more), 2, rows[i].says);
     expect(tool_run(&bench.tool, "commission hps167s --port line --addresses 2"), 2, "--record is missing");
     expect(tool_run(&bench.tool, "commission hps167s --port tcp:localhost --addresses 2 --record r"), 2,
-           "it needs a serial port");
+           "tcp:localhost is no serial port.");
     write_record(TITLE "a16 2 - done now\n");
     expect(commission("hps167s --addresses 2-4"), 2, "address 2 belongs to an a16 in the record");
     write_record(TITLE "a16 1 - done now\n");

@@ -309,7 +309,7 @@ TEST(what_asks_and_what_simulates_has_no_pins)
 {
     with_a16(FATHOM_SIM_A16_PWM);
     EXPECT(2, 0, "mm", "info " PWM);
-    expect_err("in mode pwm nothing is asked");
+    expect_err("a16 in mode pwm receives no requests.");
     EXPECT(2, 0, "mm", "get " PWM);
     EXPECT(2, 0, "mm", "sim a16:pwm");
     expect_err("a16 in mode pwm has pins and no line");

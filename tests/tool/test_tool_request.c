@@ -157,7 +157,7 @@ TEST(without_yes_nothing_dangerous_leaves)
     for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
         far_answers("01 06 02 00 00 05 48 71");
         far_run(2, "", rows[i].says, rows[i].line);
-        far_run(2, "", "nothing was sent; --yes sends it all the same", rows[i].line);
+        far_run(2, "", "Nothing was sent yet. To confirm that, add --yes.", rows[i].line);
         assert_int_equal(far_end.sent_length, 0);
     }
 }
@@ -202,8 +202,8 @@ TEST(wrong_usage_is_told_and_nothing_leaves)
         const char *line;
         const char *says;
     } rows[] = {
-        {"", "which unit?"},
-        {"1", "which function?"},
+        {"", "the unit is missing."},
+        {"1", "the function is missing."},
         {"256 3 1", "UNIT is from 0 to 255, in decimal or as 0x in hex, not '256'"},
         {"-1 3 1", "UNIT is from 0 to 255, in decimal or as 0x in hex, not '-1'"},
         {"a16 3 1", "UNIT is from 0 to 255, in decimal or as 0x in hex, not 'a16'"},
@@ -231,9 +231,9 @@ TEST(wrong_usage_is_told_and_nothing_leaves)
         {"1 3 1 --parity mark", "--parity is 'mark'. It takes none, even or odd."},
         {"1 3 1 --stop-bits 3", "--stop-bits is '3'. It takes a whole number from 1 to 2"},
         {"1 3 1 --echo yes", "--echo is 'yes'. It takes auto, off or on."},
-        {"1 3 1 --timeout 0", "--timeout takes a whole number from 1 to 600000"},
-        {"1 3 1 --format csv", "there is no format 'csv', only text, json"},
-        {"1 3 1 --retries 2", "there is no option --retries"},
+        {"1 3 1 --timeout 0", "--timeout is '0'. It takes a whole number from 1 to 600000."},
+        {"1 3 1 --format csv", "--format is 'csv'. It takes text or json."},
+        {"1 3 1 --retries 2", "unknown option '--retries'."},
     };
     for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) far_run(2, "", rows[i].says, rows[i].line);
     assert_int_equal(far_end.sent_length, 0);

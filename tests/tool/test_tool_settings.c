@@ -148,10 +148,11 @@ TEST(what_is_written_blind_is_written_once_and_not_confirmed)
 TEST(what_has_to_be_read_is_not_written_blind)
 {
     bench_hps167s(any_hps167s);
-    says(2, "distance-offset is not written --blind", "set hps167s distance-offset 5 --blind");
-    says(2, "address is not written --blind", "set a16 address 5 --blind");
-    says(2, "address is not written --blind", "set a05 address 5 --blind");
-    says(2, "every-address is not written --blind", "set a05 every-address 5 --blind");
+    says(2, "distance-offset must be read before or after it is written.",
+         "set hps167s distance-offset 5 --blind");
+    says(2, "address must be read before or after it is written.", "set a16 address 5 --blind");
+    says(2, "address must be read before or after it is written.", "set a05 address 5 --blind");
+    says(2, "every-address must be read before or after it is written.", "set a05 every-address 5 --blind");
     assert_int_equal(counters()->requests, 0);
 }
 

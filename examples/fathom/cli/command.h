@@ -6,6 +6,7 @@
 #include <stdio.h>
 
 #include "cli/option.h"
+#include "output/status.h"
 #include "ports/host.h"
 
 /* What a command was given. */
@@ -38,14 +39,6 @@ struct command {
     const char *topics;                                  /* topics to read on, "sensors, ports"; NULL: none */
     size_t settings_size; /* of the structure that the options fill; it is all zeros at first */
     int (*start)(const host_t *host, const arguments_t *arguments); /* returns the exit status */
-};
-
-/* Exit statuses of every command. */
-enum {
-    STATUS_OK = 0,
-    STATUS_FAILED = 1, /* the line, the port or the output failed */
-    STATUS_USAGE = 2,
-    STATUS_ALARM = 3 /* `fathom read --until-alarm` alone: an alarm is on */
 };
 
 /* Prints its help on stdout; returns the exit status. */

@@ -58,6 +58,17 @@ void operands_asked(FILE *to, char **words, int count)
     print_models(to, true, false);
 }
 
+void operands_simulated(FILE *to, char **words, int count)
+{
+    (void)words, (void)count;
+    for (size_t i = 0; i != model_count; i++) {
+        (void)fprintf(to, "%s\t%s\n", models[i].name, models[i].what);
+        for (size_t m = 0; m != MODEL_MODES && models[i].modes[m].name != NULL; m++)
+            if (models[i].modes[m].simulated_as != 0)
+                (void)fprintf(to, "%s:%s\t%s\n", models[i].name, models[i].modes[m].name, models[i].what);
+    }
+}
+
 void operands_one(FILE *to, char **words, int count)
 {
     (void)words;

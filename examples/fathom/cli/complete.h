@@ -15,6 +15,7 @@ bool complete_stub(FILE *to, const char *shell);
 
 void operands_sensors(FILE *to, char **words, int count);       /* several */
 void operands_asked(FILE *to, char **words, int count);         /* several that receive requests */
+void operands_simulated(FILE *to, char **words, int count);     /* several that can be simulated */
 void operands_one(FILE *to, char **words, int count);           /* one that receives requests */
 void operands_resettable(FILE *to, char **words, int count);    /* one that has a reset */
 void operands_setting(FILE *to, char **words, int count);       /* one, and a setting to read */

@@ -1,130 +1,101 @@
 /* SPDX-License-Identifier: MIT */
 #include "cli/session_options.h"
 
-#include <limits.h>
+#include <stdarg.h>
 #include <string.h>
+#include <unistd.h>
 
-#include "cli/options.h"
+#include "device/setting_text.h"
+#include "output/words.h"
 
-const struct option session_table[SESSION_OPTIONS + 1] = {
-    SESSION_OPTION_ROWS,
+const option_t session_format_rows[] = {
+    {"format", "FORMAT", "Print text or json (default text)", KIND_CHOICE, GROUP_OUTPUT, .words = "text json",
+     AT(session_settings_t, is_json)},
+    {.name = NULL},
 };
 
-/* Nothing can be asked for in a mode in which a sensor is only listened to, or on pins. */
-static bool check_modes(const site_t *site, const char *command)
+const option_t session_yes_rows[] = {
+    {"yes", .help = "Do not ask for confirmation", .group = GROUP_COMMAND,
+     AT(session_settings_t, is_confirmed)},
+    {.name = NULL},
+};
+
+static origin_t origin_of(const arguments_t *arguments)
 {
-    for (size_t i = 0; i != site->sensor_count; i++) {
-        const model_mode_t *const mode = site->sensors[i]->mode;
-        if (mode_is_asked(mode) && mode->pins == 0) continue;
-        (void)usage_error(command, "in mode %s nothing is asked; leave it out", mode->name);
-        return false;
-    }
-    return true;
+    return (origin_t){.command = arguments->command->name};
 }
 
-/* Rows of what reads again and again, of no use to what asks once. */
-static bool check_repetition(const char **values, const char *command)
+bool session_read(session_t *session, const arguments_t *arguments, int most, int rest)
 {
-    static const int rows[] = {OPTION_INTERVAL, OPTION_RECONNECT, OPTION_DURATION};
-    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
-        if (values[rows[i]] == NULL) continue;
-        (void)usage_error(command, "there is no option --%s", session_table[rows[i]].name);
-        return false;
-    }
-    return true;
-}
-
-/* The same as session_options, of so many of the words, if there are that many. */
-static bool take_options(session_t *session, const char *command, int argc, char **argv,
-                         const struct option *table, const char **values, int most, char ***words, int *count,
-                         bool *wants_help)
-{
+    const session_settings_t *const settings = arguments->settings;
+    const origin_t origin = origin_of(arguments);
+    const int count = arguments->count < most ? arguments->count : most;
     site_free(&session->site);
     memset(session, 0, sizeof *session);
-    const int rest = options_parse(command, argc, argv, table, values);
-    if (rest < 0) return false;
-    *wants_help = values[SESSION_HELP] != NULL;
-    if (*wants_help) return true;
-    const int taken = argc - rest < most ? argc - rest : most;
     session->site.asks_all = true;
-    if (!check_repetition(values, command) ||
-        !option_json(command, values[SESSION_FORMAT], &session->is_json) ||
-        !sensor_options(&session->site, command, argv + rest, taken, values, values[SESSION_ADDRESS],
-                        values[SESSION_MODE]) ||
-        !check_modes(&session->site, command))
-        return false;
+    session->is_json = settings->is_json;
+    if (!sensors_read(&session->site, arguments, &settings->sensors, count, false)) return false;
+    for (size_t i = 0; i != session->site.sensor_count; i++) {
+        const sensor_t *const station = session->site.sensors[i];
+        if (!mode_is_asked(station->mode) || station->mode->pins != 0)
+            return reject(&origin, "%s in mode %s receives no requests. Leave the mode out.",
+                          station->model->name, station->mode->name);
+    }
     session->station = session->site.sensors[0];
-    *words = argv + rest + taken;
-    *count = argc - rest - taken;
+    if (arguments->count - count > rest)
+        return reject(&origin, "'%s' is one word too many.", arguments->words[count + rest]);
     return true;
 }
 
-bool session_options(session_t *session, const char *command, int argc, char **argv,
-                     const struct option *table, const char **values, char ***words, int *count,
-                     bool *wants_help)
+bool session_set_mode(session_t *session, const arguments_t *arguments, const model_mode_t *mode)
 {
-    return take_options(session, command, argc, argv, table, values, 1, words, count, wants_help);
-}
-
-static bool take_sensors(session_t *session, const command_t *command, int argc, char **argv,
-                         const struct option *table, const char **values, int most, int *status)
-{
-    char **words = NULL;
-    int count = 0;
-    bool wants_help = false;
-    *status = STATUS_USAGE;
-    if (!take_options(session, command->name, argc, argv, table, values, most, &words, &count, &wants_help))
-        return false;
-    if (wants_help)
-        *status = command_help(command);
-    else if (count != 0)
-        (void)usage_error(command->name, "one sensor at a time; '%s' is too much", words[0]);
-    return !wants_help && count == 0;
-}
-
-bool session_options_of_one(session_t *session, const command_t *command, int argc, char **argv,
-                            const struct option *table, const char **values, int *status)
-{
-    return take_sensors(session, command, argc, argv, table, values, 1, status);
-}
-
-bool session_options_of_several(session_t *session, const command_t *command, int argc, char **argv,
-                                const struct option *table, const char **values, int *status)
-{
-    return take_sensors(session, command, argc, argv, table, values, INT_MAX, status);
-}
-
-bool session_set_mode(session_t *session, const char *command, const char *const *values,
-                      const model_mode_t *mode)
-{
-    if (values[SESSION_MODE] != NULL && session->station->mode != mode) {
-        (void)usage_error(command, "this takes --mode %s", mode->name);
-        return false;
-    }
+    const session_settings_t *const settings = arguments->settings;
+    const origin_t origin = origin_of(arguments);
+    if (settings->sensors.defaults.mode != NULL && session->station->mode != mode)
+        return reject(&origin, "--mode is %s, but this needs mode %s.", session->station->mode->name, mode->name);
     session->station->mode = mode;
     return true;
 }
 
-bool session_can_set(const session_t *session, const char *command)
+bool session_can_set(const session_t *session, const arguments_t *arguments)
 {
+    const origin_t origin = origin_of(arguments);
     if (session->station->address != 0) return true;
-    (void)usage_error(command, "what is written to address 0 goes to all units, so nothing can be set there");
+    return reject(&origin, "a write to address 0 goes to all units, so no setting can be changed there.");
+}
+
+const setting_t *setting_named(const session_t *session, const char *name, const arguments_t *arguments)
+{
+    const setting_t *const settings = session->station->model->settings;
+    const origin_t origin = origin_of(arguments);
+    const setting_t *const found = setting_of(settings, name);
+    char what[64];
+    char known[SETTING_VALUES] = "";
+    nearest_t nearest = {.word = name};
+    if (found != NULL) return found;
+    for (const setting_t *setting = settings; setting->name != NULL; setting++) {
+        nearest_try(&nearest, setting->name);
+        list_add(known, sizeof known, setting->name);
+    }
+    (void)snprintf(what, sizeof what, "setting of %s", session->station->model->name);
+    (void)reject_unknown(&origin, what, "", &nearest, known);
+    return NULL;
+}
+
+bool confirm(const arguments_t *arguments, bool is_confirmed, const char *format, ...)
+{
+    const origin_t origin = origin_of(arguments);
+    char text[300];
+    char answer[8] = "";
+    va_list list;
+    if (is_confirmed) return true;
+    va_start(list, format);
+    (void)vsnprintf(text, sizeof text, format, list);
+    va_end(list);
+    if (isatty(STDIN_FILENO) != 1 || isatty(STDERR_FILENO) != 1)
+        return reject(&origin, "%s To confirm that, add --yes.", text);
+    (void)fprintf(stderr, "%s Continue? [y/N] ", text);
+    if (fgets(answer, sizeof answer, stdin) != NULL && (answer[0] == 'y' || answer[0] == 'Y')) return true;
+    (void)fputs("fathom: nothing was written.\n", stderr);
     return false;
-}
-
-void session_line_help(FILE *to)
-{
-    port_options_help(to);
-    (void)fputs(
-        "  --address N       1 from the factory; also as in hps167s:7\n"
-        "  --mode MODE       modbus (default), or dyp for an a05 with frames 55 AA\n"
-        "  --timeout MS      how long to wait for a measurement\n"
-        "  --retries N       how often a failed request is repeated; what changes something never is\n",
-        to);
-}
-
-void session_options_help(FILE *to)
-{
-    session_line_help(to);
-    (void)fputs("  --format FORMAT   text (default) or json\n", to);
 }

@@ -2,46 +2,43 @@
 #ifndef SESSION_OPTIONS_H
 #define SESSION_OPTIONS_H
 
-#include "cli/command.h"
-#include "cli/sensor_options.h"
+#include "cli/complete.h"
+#include "cli/rows.h"
 #include "device/session.h"
 
-/* The options of these commands: the first rows of a command's table. */
-enum { SESSION_MODE = SENSOR_OPTIONS, SESSION_ADDRESS, SESSION_FORMAT, SESSION_HELP, SESSION_OPTIONS };
-#define SESSION_OPTION_ROWS                                                                                  \
-    SENSOR_OPTION_ROWS, [SESSION_MODE] = {"mode", required_argument, NULL, 256},                             \
-                        [SESSION_ADDRESS] = {"address", required_argument, NULL, 256},                       \
-                        [SESSION_FORMAT] = {"format", required_argument, NULL, 256},                         \
-                        [SESSION_HELP] = {"help", no_argument, NULL, 256}
-extern const struct option session_table[SESSION_OPTIONS + 1];
+/* The options of commands that send requests to one sensor; the first member of the settings of such a command. */
+typedef struct {
+    sensor_settings_t sensors;
+    bool is_json;
+    bool is_confirmed; /* --yes */
+} session_settings_t;
 
-/*
- * Reads the options and the sensor, argv's first word that is no option; the words behind it are left in words[0] to
- * words[*count - 1]. The mode is the one in which the sensor is asked. False after a usage error. wants_help: --help was
- * given, nothing else was looked at.
- */
-bool session_options(session_t *session, const char *command, int argc, char **argv,
-                     const struct option *table, const char **values, char ***words, int *count,
-                     bool *wants_help);
+extern const option_t session_format_rows[];
+extern const option_t session_yes_rows[];
 
-/* The same for a command that takes a sensor and no word behind it. False: the command is over, and *status is its exit
- * status: --help was printed, or a usage error. */
-bool session_options_of_one(session_t *session, const command_t *command, int argc, char **argv,
-                            const struct option *table, const char **values, int *status);
+/* The tables of these commands, before their own. */
+#define SESSION_TABLES                                                                                       \
+    {word_rows, offsetof(session_settings_t, sensors.defaults)},                                             \
+        {request_rows, offsetof(session_settings_t, sensors.reader)},                                        \
+    {                                                                                                        \
+        port_rows, offsetof(session_settings_t, sensors.defaults)                                            \
+    }
 
-/* The same for a command that takes several sensors, and nothing else. */
-bool session_options_of_several(session_t *session, const command_t *command, int argc, char **argv,
-                                const struct option *table, const char **values, int *status);
+/* Reads the first words of a command, at most `most` of them, as sensors in modes that send requests, and begins a
+ * session with the first. At most `rest` words may follow. False after rejecting what is wrong. */
+bool session_read(session_t *session, const arguments_t *arguments, int most, int rest);
 
-/* The same sensor in another of its modes; after a usage error false: the user has asked for another one. */
-bool session_set_mode(session_t *session, const char *command, const char *const *values,
-                      const model_mode_t *mode);
+/* Changes the mode of the sensor, unless the user has chosen another one. False after rejecting that. */
+bool session_set_mode(session_t *session, const arguments_t *arguments, const model_mode_t *mode);
 
-/* Can anything be set at its address? False after a usage error. */
-bool session_can_set(const session_t *session, const char *command);
+/* Can settings be written at the sensor's address? False after rejecting it. */
+bool session_can_set(const session_t *session, const arguments_t *arguments);
 
-/* The help of the options, and of those of a command that has no --format. */
-void session_options_help(FILE *to);
-void session_line_help(FILE *to);
+/* The setting of the session's sensor with this name. NULL after rejecting it. */
+const setting_t *setting_named(const session_t *session, const char *name, const arguments_t *arguments);
+
+/* Is what is dangerous confirmed? With --yes, else the user is asked at a terminal; elsewhere it is rejected. */
+bool confirm(const arguments_t *arguments, bool is_confirmed, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 
 #endif

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include <limits.h>
 #include <string.h>
 
 #include "cli/session_options.h"
@@ -147,49 +148,16 @@ static int tell(const setting_t *settings, size_t count)
     return is_good && progress.printed == all ? STATUS_OK : STATUS_FAILED;
 }
 
-static void help(FILE *to, bool is_info)
+/* Lists the settings of a sensor without a port. */
+static int list(const char *word, const origin_t *origin)
 {
-    if (is_info)
-        (void)fputs(
-            "fathom info prints everything that a device tells: versions, settings, what it measures.\n\n"
-            "usage: fathom info [NAME=]SENSOR[:ADDRESS][:MODE][@PORT[,KEY=VALUE...]]... [--port PATH] "
-            "[OPTIONS]\n\n"
-            "Several sensors are asked one after the other; where one fails, the others are told all the "
-            "same.\n\n",
-            to);
-    else
-        (void)fputs(
-            "fathom get prints a setting of a device. It changes nothing.\n\n"
-            "usage: fathom get SENSOR[:ADDRESS][:MODE][@PORT] [--port PATH] SETTING [OPTIONS]\n"
-            "       fathom get SENSOR        lists the settings, their values, and when they take effect\n\n",
-            to);
-    models_print(to);
-    (void)fputs("\n", to);
-    session_options_help(to);
-    (void)fputs(
-        "\nThe first request ends the automatic output of an A16 with RS232 or an A05 with UART; for an A05 "
-        "until\npower-off, for an A16 `fathom set a16 automatic-output on` brings it back.\n"
-        "Exit status: 0 when all of it was printed, 1 when some of it was not, 2 for wrong usage.\n\n"
-        "examples:\n",
-        to);
-    (void)fputs(is_info ? "  fathom info hps167s:7 --port /dev/ttyUSB0\n"
-                          "  fathom info a05 --port /dev/ttyUSB0 --format json\n"
-                          "  fathom info tank=a16@/dev/ttyUSB0 gate=hps167s:7@/dev/ttyUSB1,baud=57600\n"
-                        : "  fathom get hps167s:7 --port /dev/ttyUSB0 termination\n"
-                          "  fathom get a16 --port /dev/ttyUSB0 switch-threshold\n",
-                to);
-}
-
-/* `fathom get SENSOR` and nothing else. */
-static int list(const char *name)
-{
-    const origin_t origin = {.command = "get"};
-    const model_t *const model = model_word(name, &origin);
+    char name[16];
+    (void)snprintf(name, sizeof name, "%.*s", (int)strcspn(word, ":"), word);
+    const model_t *const model = model_word(name, origin);
     if (model == NULL) return STATUS_USAGE;
-    (void)printf("%s, %s, tells and takes:\n\n", model->name, model->what);
+    (void)printf("%s, %s, has these settings. Add --port PORT to read their values.\n\n", model->name,
+                 model->what);
     settings_print(stdout, model->settings);
-    (void)printf("\nfathom get %s --port PATH SETTING          fathom set %s --port PATH SETTING VALUE\n",
-                 model->name, model->name);
     return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
 }
 
@@ -201,15 +169,12 @@ static int tell_on_port(const host_t *host, const setting_t *settings, size_t co
     return status;
 }
 
-/* One after the other; what fails keeps none of the others from being told. */
-static int run_info(const host_t *host, int argc, char **argv)
+/* A sensor that fails keeps none of the others from being read. */
+static int start_info(const host_t *host, const arguments_t *arguments)
 {
-    const char *values[SESSION_OPTIONS] = {NULL};
-    int status = STATUS_OK;
-    if (!session_options_of_several(&session, &info_command, argc, argv, session_table, values, &status))
-        return status;
     const site_t *const site = &session.site;
-    status = STATUS_OK;
+    int status = STATUS_OK;
+    if (!session_read(&session, arguments, INT_MAX, 0)) return STATUS_USAGE;
     for (size_t i = 0; i != site->sensor_count; i++) {
         if (i != 0 && host->has_ended(host->ctx)) return STATUS_FAILED;
         session.station = site->sensors[i];
@@ -218,36 +183,56 @@ static int run_info(const host_t *host, int argc, char **argv)
     return status;
 }
 
-static int run_get(const host_t *host, int argc, char **argv)
+static int start_get(const host_t *host, const arguments_t *arguments)
 {
-    const char *values[SESSION_OPTIONS] = {NULL};
-    char **words = NULL;
-    int count = 0;
-    bool wants_help = false;
-    if (argc == 2 && argv[1][0] != '-' && strchr(argv[1], '@') == NULL) return list(argv[1]);
-    if (!session_options(&session, "get", argc, argv, session_table, values, &words, &count, &wants_help))
-        return STATUS_USAGE;
-    if (wants_help) return command_help(&get_command);
-    if (count != 1)
-        return usage_error("get",
-                           count == 0 ? "which setting? `fathom get %s` lists them" : "one setting at a time",
-                           session.station->model->name);
-    const setting_t *const setting =
-        setting_find("get", session.station->model->name, session_settings(&session), words[0]);
+    const session_settings_t *const settings = arguments->settings;
+    const origin_t origin = {.command = arguments->command->name};
+    if (arguments->count == 1 && settings->sensors.defaults.path == NULL &&
+        strchr(arguments->words[0], '@') == NULL)
+        return list(arguments->words[0], &origin);
+    if (!session_read(&session, arguments, 1, 1)) return STATUS_USAGE;
+    if (arguments->count == 1) return tell_on_port(host, session_settings(&session), SIZE_MAX);
+    const setting_t *const setting = setting_named(&session, arguments->words[1], arguments);
     if (setting == NULL) return STATUS_USAGE;
-    if (setting->get == NULL)
-        return usage_error("get", "%s is write-only: the device does not tell it", setting->name);
-    if (!session_set_mode(&session, "get", values, model_mode_of(session.station->model, setting)))
+    if (setting->get == NULL) {
+        (void)reject(&origin, "%s is write-only. The sensor does not report it.", setting->name);
         return STATUS_USAGE;
+    }
+    if (!session_set_mode(&session, arguments, model_mode_of(session.station->model, setting))) return STATUS_USAGE;
     return tell_on_port(host, setting, 1);
 }
 
-static void help_info(FILE *to) { help(to, true); }
-static void help_get(FILE *to) { help(to, false); }
+static const option_table_t tables[] = {SESSION_TABLES, {session_format_rows, 0}, {NULL, 0}};
 
 const command_t info_command = {
-    .name = "info", .summary = "prints everything that a device tells", .help = help_info, .run = run_info};
-const command_t get_command = {.name = "get",
-                               .summary = "prints a setting of a device, or lists the settings",
-                               .help = help_get,
-                               .run = run_get};
+    .name = "info",
+    .summary = "Print everything that sensors report: versions, settings and values",
+    .usage = "[NAME=]SENSOR[:ADDRESS][:MODE][@PORT]... [OPTIONS]",
+    .tables = tables,
+    .common = "port address mode baud format",
+    .examples = "  fathom info hps167s:7 --port /dev/ttyUSB0\n"
+                "  fathom info a05 --port /dev/ttyUSB0 --format json\n"
+                "  fathom info tank=a16@/dev/ttyUSB0 gate=hps167s:7@/dev/ttyUSB1,baud=57600\n",
+    .status = "Exit status: 0 all was read, 1 a part was not, 2 wrong usage.\n",
+    .topics = "settings, sensors, ports",
+    .operands = operands_asked,
+    .settings_size = sizeof(session_settings_t),
+    .start = start_info,
+};
+
+const command_t get_command = {
+    .name = "get",
+    .summary = "Print a setting of a sensor, or all of them",
+    .usage = "SENSOR[:ADDRESS][:MODE][@PORT] [SETTING] [OPTIONS]",
+    .about = "Without a port, the settings and their possible values are listed.\n",
+    .tables = tables,
+    .common = "port address mode baud format",
+    .examples = "  fathom get hps167s\n"
+                "  fathom get hps167s:7 --port /dev/ttyUSB0\n"
+                "  fathom get hps167s:7 --port /dev/ttyUSB0 termination\n",
+    .status = "Exit status: 0 all was read, 1 a part was not, 2 wrong usage.\n",
+    .topics = "settings, sensors, ports",
+    .operands = operands_setting,
+    .settings_size = sizeof(session_settings_t),
+    .start = start_get,
+};

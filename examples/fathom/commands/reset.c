@@ -9,15 +9,22 @@
 /* fathom reset: the two commands of an HPS-167S that throw settings away.
  * Nothing else of the tool sends them. */
 
-static const char command[] = "reset";
+typedef struct {
+    session_settings_t session;
+    bool restores_interface; /* the old words for the operand and --yes */
+    bool restores_sensor;
+} reset_settings_t;
 
-enum { RESTORE = SESSION_OPTIONS, LOAD, OPTIONS };
-
-static const struct option table[OPTIONS + 1] = {
-    SESSION_OPTION_ROWS,
-    [RESTORE] = {"yes-restore-factory-settings", no_argument, NULL, 256},
-    [LOAD] = {"yes-load-factory-sensor-settings", no_argument, NULL, 256},
+static const option_t rows[] = {
+    {"yes-restore-factory-settings", .help = "Reset the interface", .is_hidden = true,
+     AT(reset_settings_t, restores_interface)},
+    {"yes-load-factory-sensor-settings", .help = "Reset the sensor", .is_hidden = true,
+     AT(reset_settings_t, restores_sensor)},
+    {.name = NULL},
 };
+
+static const option_table_t tables[] = {
+    {session_yes_rows, 0}, {rows, 0}, SESSION_TABLES, {session_format_rows, 0}, {NULL, 0}};
 
 static session_t session;
 
@@ -72,47 +79,53 @@ static int finish(bool is_restore, fathom_status_t status)
     return STATUS_FAILED;
 }
 
-static void help(FILE *to)
+static bool set_up(const arguments_t *arguments, bool *is_restore)
 {
-    (void)fputs("fathom reset gives an HPS-167S its factory settings back. What "
-                "was set is lost.\n\n"
-                "usage: fathom reset hps167s[:ADDRESS] --port PATH "
-                "--yes-restore-factory-settings [OPTIONS]\n"
-                "       fathom reset hps167s[:ADDRESS] --port PATH "
-                "--yes-load-factory-sensor-settings [OPTIONS]\n\n"
-                "  --yes-restore-factory-settings\n"
-                "                    of the RS485 interface (#6): address 1, "
-                "19200 8E1, warm-up, termination on\n"
-                "  --yes-load-factory-sensor-settings\n"
-                "                    of the sensor behind it (#13): its filter "
-                "and its distance offset\n",
-                to);
-    session_options_help(to);
-    (void)fputs("\nOn a line with several units, see first that none of the "
-                "others has address 1.\n"
-                "Exit status: 0 when it is done, 1 when not or when that is not "
-                "known, 2 for wrong usage.\n",
-                to);
+    const reset_settings_t *const settings = arguments->settings;
+    const origin_t origin = {.command = arguments->command->name};
+    if (!session_read(&session, arguments, 1, 1)) return false;
+    if (session.station->model->reset.restore == NULL)
+        return reject(&origin, "%s cannot be reset. Only an hps167s can.", session.station->model->name);
+    const char *const word = arguments->count == 2          ? arguments->words[1]
+                             : settings->restores_interface ? "interface"
+                             : settings->restores_sensor    ? "sensor"
+                                                            : "";
+    *is_restore = strcmp(word, "interface") == 0;
+    if (!*is_restore && strcmp(word, "sensor") != 0)
+        return reject(&origin, "what is to be reset is '%s'. Write interface or sensor.", word);
+    if (settings->restores_interface && settings->restores_sensor)
+        return reject(&origin, "only one of interface and sensor can be reset at a time.");
+    return confirm(arguments,
+                   settings->session.is_confirmed || settings->restores_interface ||
+                       settings->restores_sensor,
+                   *is_restore ? "This sets %s to address 1, 19200 8E1, and termination on."
+                               : "This overwrites the filter and the distance offset of %s.",
+                   session.station->name);
 }
 
-static int run(const host_t *host, int argc, char **argv)
+static int start(const host_t *host, const arguments_t *arguments)
 {
-    const char *values[OPTIONS] = {NULL};
-    int status = STATUS_OK;
-    if (!session_options_of_one(&session, &reset_command, argc, argv, table, values, &status)) return status;
-    if (session.station->model->reset.restore == NULL)
-        return usage_error(command, "only an hps167s can be reset; %s has no such command",
-                           session.station->model->name);
-    const bool is_restore = values[RESTORE] != NULL;
-    if (is_restore == (values[LOAD] != NULL))
-        return usage_error(command, "what was set is lost: say so by "
-                                    "--yes-restore-factory-settings (the interface) or "
-                                    "--yes-load-factory-sensor-settings");
+    bool is_restore = false;
+    if (!set_up(arguments, &is_restore)) return STATUS_USAGE;
     if (!session_open(&session, host)) return STATUS_FAILED;
-    status = finish(is_restore, session_call(&session, is_restore ? restore : load, NULL));
+    const int status = finish(is_restore, session_call(&session, is_restore ? restore : load, NULL));
     session_close(&session);
     return status;
 }
 
 const command_t reset_command = {
-    .name = "reset", .summary = "gives an HPS-167S its factory settings back", .help = help, .run = run};
+    .name = "reset",
+    .summary = "Restore the factory settings of an hps167s",
+    .usage = "hps167s[:ADDRESS][@PORT] interface [OPTIONS]\nhps167s[:ADDRESS][@PORT] sensor [OPTIONS]",
+    .about = "\n  interface  the RS485 interface (#6): address 1, 19200 8E1, warm-up, termination\n"
+             "  sensor     the sensor behind it (#13): its filter and its distance offset\n",
+    .tables = tables,
+    .common = "port address baud yes timeout",
+    .examples = "  fathom reset hps167s:7 interface --port /dev/ttyUSB0 --yes\n",
+    .status = "Before you reset one of several units, make sure that no other has address 1.\n"
+              "Exit status: 0 done, 1 not done or unknown, 2 wrong usage.\n",
+    .topics = "settings, ports",
+    .operands = operands_resettable,
+    .settings_size = sizeof(reset_settings_t),
+    .start = start,
+};

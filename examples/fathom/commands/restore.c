@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
-#include "cli/options.h"
 #include "cli/session_options.h"
 #include "commands/commands.h"
 #include "device/backup_file.h"
@@ -9,50 +8,30 @@
 #include "device/presence.h"
 #include "device/set_report.h"
 #include "device/setting_text.h"
+#include "output/words.h"
 
 /* fathom restore: what a file of fathom save has, into a unit. */
 
-static const char command[] = "restore";
-static session_t session;
+typedef struct {
+    session_settings_t session;
+    const char *path;
+    bool is_dry;
+    bool is_new;
+} restore_settings_t;
 
-enum { FILE_NAME = SESSION_OPTIONS, DRY_RUN, AS_NEW, OPTIONS };
-
-static const struct option table[OPTIONS + 1] = {
-    SESSION_OPTION_ROWS,
-    [FILE_NAME] = {"file", required_argument, NULL, 256},
-    [DRY_RUN] = {"dry-run", no_argument, NULL, 256},
-    [AS_NEW] = {"as-new", no_argument, NULL, 256},
+static const option_t rows[] = {
+    {"file", "FILE", "Read the settings from FILE, which 'fathom save' wrote", KIND_TEXT, GROUP_COMMAND,
+     AT(restore_settings_t, path), .is_path = true, .is_required = true, .takes = "the name of a file"},
+    {"dry-run", .help = "Print the differences and write nothing", .group = GROUP_COMMAND,
+     AT(restore_settings_t, is_dry)},
+    {"as-new", .help = "Also set the address and baud rate of the saved sensor", .group = GROUP_COMMAND,
+     AT(restore_settings_t, is_new)},
+    {.name = NULL},
 };
 
-static void help(FILE *to)
-{
-    (void)fputs(
-        "fathom restore gives a unit the settings that `fathom save` has written into a file: it reads the "
-        "unit, tells in\nwhat it differs, and writes that alone.\n\n"
-        "usage: fathom restore SENSOR[:ADDRESS] --port PATH --file FILE [--dry-run] [--as-new] [OPTIONS]\n\n"
-        "  --file FILE       of fathom save\n"
-        "  --dry-run         tells in what they differ and writes nothing; exit status 1 when restore would "
-        "write\n"
-        "                    something, or could not, 0 when not\n"
-        "  --as-new          the unit takes the place of the saved one: at last it gets its address and its "
-        "rate too.\n"
-        "                    Without it the unit stays where it is\n",
-        to);
-    session_line_help(to);
-    (void)fputs(
-        "\nBefore --as-new writes anything, the new place has to be silent. What stands in the file as `not "
-        "readable` is written\nonly if it was filled in, and then each time. At the first write that fails, "
-        "or is not confirmed, it ends and tells what\nis written and what is not; run again, it writes what "
-        "still differs.\n"
-        "Exit status: 0 when the unit has what the file has, but for the place where it stays; 1 when not or "
-        "when that is\nnot known; 2 for wrong usage, or a line of the file that is wrong: then nothing is "
-        "sent.\n\n"
-        "examples:\n"
-        "  fathom restore hps167s:7 --port /dev/ttyUSB0 --file gate.txt --dry-run\n"
-        "  fathom restore hps167s:7 --port /dev/ttyUSB0 --file gate.txt\n"
-        "  fathom restore hps167s --port /dev/ttyUSB0 --file gate.txt --as-new\n",
-        to);
-}
+static const option_table_t tables[] = {{rows, 0}, SESSION_TABLES, {NULL, 0}};
+
+static session_t session;
 
 /* ---- writing ---- */
 
@@ -202,24 +181,18 @@ static int check_address(const char *path, const backup_t *file)
     return STATUS_OK;
 }
 
-static int run(const host_t *host, int argc, char **argv)
+static int start(const host_t *host, const arguments_t *arguments)
 {
-    const char *values[OPTIONS] = {NULL};
-    int status = STATUS_OK;
+    const restore_settings_t *const settings = arguments->settings;
     backup_t file;
-    if (!session_options_of_one(&session, &restore_command, argc, argv, table, values, &status))
-        return status;
-    const char *const path = values[FILE_NAME];
-    if (path == NULL) return usage_error(command, "--file is missing, as fathom save has written it");
-    if (values[SESSION_FORMAT] != NULL) return usage_error(command, "it has one format; leave --format out");
-    if (!session_set_mode(&session, command, values, model_mode_of(session.station->model, NULL)) ||
-        !session_can_set(&session, command))
+    if (!session_read(&session, arguments, 1, 0) || !session_set_mode(&session, arguments, model_mode_of(session.station->model, NULL)) ||
+        !session_can_set(&session, arguments))
         return STATUS_USAGE;
-    status = backup_parse(path, session.station->model, &file);
-    if (status == STATUS_OK && values[AS_NEW] != NULL) status = check_address(path, &file);
+    int status = backup_parse(settings->path, session.station->model, &file);
+    if (status == STATUS_OK && settings->is_new) status = check_address(settings->path, &file);
     if (status != STATUS_OK) return status;
     if (!session_open(&session, host)) return STATUS_FAILED;
-    status = restore(&file, path, values[DRY_RUN] != NULL, values[AS_NEW] != NULL);
+    status = restore(&file, settings->path, settings->is_dry, settings->is_new);
     session_close(&session);
     if (fflush(stdout) == 0 && ferror(stdout) == 0) return status;
     (void)fputs("fathom: the output cannot be written\n", stderr);
@@ -227,4 +200,22 @@ static int run(const host_t *host, int argc, char **argv)
 }
 
 const command_t restore_command = {
-    .name = "restore", .summary = "writes the settings of a file into a unit", .help = help, .run = run};
+    .name = "restore",
+    .summary = "Write the settings of a file to a sensor",
+    .usage = "SENSOR[:ADDRESS][@PORT] --file FILE [OPTIONS]",
+    .about = "The sensor is read first, and only what differs is written. With --as-new,\n"
+             "nothing may respond at the new address. A setting that the file marks as\n"
+             "'not readable' is written only if you fill in its value. After a failed write\n"
+             "the command ends and prints what was written; run it again.\n",
+    .tables = tables,
+    .common = "port file dry-run as-new baud",
+    .examples = "  fathom restore hps167s:7 --port /dev/ttyUSB0 --file gate.txt --dry-run\n"
+                "  fathom restore hps167s:7 --port /dev/ttyUSB0 --file gate.txt\n"
+                "  fathom restore hps167s --port /dev/ttyUSB0 --file gate.txt --as-new\n",
+    .status = "Exit status: 0 the sensor has the settings of the file (with --dry-run: already),\n"
+              "1 it does not or that is unknown, 2 wrong usage or a wrong line in the file.\n",
+    .topics = "settings, sensors, ports",
+    .operands = operands_one,
+    .settings_size = sizeof(restore_settings_t),
+    .start = start,
+};

@@ -7,37 +7,20 @@
 
 /* fathom save: the settings of a unit as a file, for fathom restore. */
 
-static const char command[] = "save";
-static session_t session;
+typedef struct {
+    session_settings_t session;
+    const char *path; /* NULL: standard output */
+} save_settings_t;
 
-enum { FILE_NAME = SESSION_OPTIONS, OPTIONS };
-
-static const struct option table[OPTIONS + 1] = {
-    SESSION_OPTION_ROWS,
-    [FILE_NAME] = {"file", required_argument, NULL, 256},
+static const option_t rows[] = {
+    {"file", "FILE", "Write to a new FILE instead of standard output", KIND_TEXT, GROUP_OUTPUT,
+     AT(save_settings_t, path), .is_path = true},
+    {.name = NULL},
 };
 
-static void help(FILE *to)
-{
-    (void)fputs("fathom save writes the settings of a unit as a text that a person can read and change, for "
-                "`fathom restore`.\nIt changes nothing.\n\n"
-                "usage: fathom save SENSOR[:ADDRESS] --port PATH [--file FILE] [OPTIONS]\n\n"
-                "  --file FILE       a new file, which is there as a whole or not at all; without it: the "
-                "standard output.\n"
-                "                    A file that is there already is never overwritten\n",
-                to);
-    session_line_help(to);
-    (void)fputs(
-        "\nA line is NAME = VALUE, with the names and values of `fathom get` and `fathom set`. What the unit "
-        "does not tell,\nas the distance-offset of an hps167s, stands there as `not readable`; what this "
-        "variant does not have, as `not there`.\nWhat it measures is not in it. The first request ends the "
-        "automatic output of an A16 with RS232 or an A05 with UART.\n"
-        "Exit status: 0 when all is written, 1 when not (then there is no file), 2 for wrong usage.\n\n"
-        "examples:\n"
-        "  fathom save hps167s:7 --port /dev/ttyUSB0 --file gate.txt\n"
-        "  fathom save a16 --port /dev/ttyUSB0\n",
-        to);
-}
+static const option_table_t tables[] = {{rows, 0}, SESSION_TABLES, {NULL, 0}};
+
+static session_t session;
 
 static void print(FILE *to, const host_t *host, const backup_t *unit)
 {
@@ -69,20 +52,30 @@ static int save(const host_t *host, const char *path)
     return STATUS_FAILED;
 }
 
-static int run(const host_t *host, int argc, char **argv)
+static int start(const host_t *host, const arguments_t *arguments)
 {
-    const char *values[OPTIONS] = {NULL};
-    int status = STATUS_OK;
-    if (!session_options_of_one(&session, &save_command, argc, argv, table, values, &status)) return status;
-    if (values[SESSION_FORMAT] != NULL) return usage_error(command, "it has one format; leave --format out");
-    if (!session_set_mode(&session, command, values, model_mode_of(session.station->model, NULL)))
+    const save_settings_t *const settings = arguments->settings;
+    if (!session_read(&session, arguments, 1, 0) || !session_set_mode(&session, arguments, model_mode_of(session.station->model, NULL)))
         return STATUS_USAGE;
-    if (values[FILE_NAME] != NULL && !new_file_is_free(values[FILE_NAME])) return STATUS_FAILED;
+    if (settings->path != NULL && !new_file_is_free(settings->path)) return STATUS_FAILED;
     if (!session_open(&session, host)) return STATUS_FAILED;
-    status = save(host, values[FILE_NAME]);
+    const int status = save(host, settings->path);
     session_close(&session);
     return status;
 }
 
 const command_t save_command = {
-    .name = "save", .summary = "writes the settings of a unit into a file", .help = help, .run = run};
+    .name = "save",
+    .summary = "Write the settings of a sensor to a file",
+    .usage = "SENSOR[:ADDRESS][@PORT] [OPTIONS]",
+    .about = "The file is text. 'fathom restore' writes it to the same or another sensor.\n",
+    .tables = tables,
+    .common = "port address baud file timeout",
+    .examples = "  fathom save hps167s:7 --port /dev/ttyUSB0 --file gate.txt\n"
+                "  fathom save a16 --port /dev/ttyUSB0\n",
+    .status = "Exit status: 0 success, 1 the sensor could not be read, 2 wrong usage.\n",
+    .topics = "settings, sensors, ports",
+    .operands = operands_one,
+    .settings_size = sizeof(save_settings_t),
+    .start = start,
+};

@@ -8,18 +8,27 @@
 
 /* fathom set: one setting of one device, confirmed by reading it back where that can be. */
 
-static const char command[] = "set";
-static session_t session;
+typedef struct {
+    session_settings_t session;
+    bool is_blind;
+    bool is_for_all;
+    bool may_be_lost; /* the old word for --yes with address 0 */
+} set_settings_t;
 
-enum { BLIND = SESSION_OPTIONS, ALL_UNITS, YES, LOST, OPTIONS };
-
-static const struct option table[OPTIONS + 1] = {
-    SESSION_OPTION_ROWS,
-    [BLIND] = {"blind", no_argument, NULL, 256},
-    [ALL_UNITS] = {"all-units", no_argument, NULL, 256},
-    [YES] = {"yes", no_argument, NULL, 256},
-    [LOST] = {"may-not-be-found-again", no_argument, NULL, 256},
+static const option_t rows[] = {
+    {"blind", .help = "Write once without reading, for a sensor that cannot be read", .group = GROUP_COMMAND,
+     AT(set_settings_t, is_blind)},
+    {"all-units", .help = "Write to every hps167s on the line, whatever its address", .group = GROUP_COMMAND,
+     AT(set_settings_t, is_for_all)},
+    {"may-not-be-found-again", .help = "Confirm address 0", .is_hidden = true,
+     AT(set_settings_t, may_be_lost)},
+    {.name = NULL},
 };
+
+static const option_table_t tables[] = {
+    {session_yes_rows, 0}, {rows, 0}, SESSION_TABLES, {session_format_rows, 0}, {NULL, 0}};
+
+static session_t session;
 
 static fathom_status_t call_all(reader_t *reader, void *ctx)
 {
@@ -41,124 +50,61 @@ static int set(change_t *change)
     return set_report(change, session_set(&session, change->setting, change->value));
 }
 
-static void help(FILE *to)
+static bool set_kind(change_t *change, const arguments_t *arguments, const origin_t *origin)
 {
-    (void)fputs("fathom set changes a setting of a device: it asks for the value, writes it if it is another "
-                "one, and "
-                "reads it\nback. It follows a device to its new address or baud rate.\n\n"
-                "usage: fathom set SENSOR[:ADDRESS][:MODE][@PORT] [--port PATH] SETTING VALUE [OPTIONS]\n\n"
-                "`fathom get SENSOR` lists the settings, their values, and when they take effect.\n\n",
-                to);
-    session_options_help(to);
-    (void)fputs(
-        "  --blind           write it once without reading anything, for a device whose settings cannot be "
-        "made out;\n"
-        "                    not for an address of a16 and a05 nor a distance-offset\n"
-        "  --all-units       tell every hps167s on the line at once, whatever its address; for termination "
-        "and\n"
-        "                    measure-after-power-on, and with --yes only\n"
-        "  --yes             says so, of --all-units\n"
-        "  --may-not-be-found-again   for address 0 of an a16 or a05, at which it can be read and not set\n"
-        "\nA new address is asked first whether a device is there. What the device does not tell is written "
-        "without a look.\n"
-        "The status is unchanged (the sensor had this value), written, not_written, not_confirmed (written, "
-        "but not "
-        "read\nback), differs (it reads back another value), refused, or sent (to all units).\n"
-        "Exit status: 0 when it holds (or was acknowledged, where it is not read), or was sent to all units; "
-        "1 when not\nor when that is not known, 2 for wrong usage.\n\n"
-        "examples:\n"
-        "  fathom set hps167s --port /dev/ttyUSB0 address 7\n"
-        "  fathom set hps167s:7 --port /dev/ttyUSB0 termination off\n"
-        "  fathom set hps167s --port /dev/ttyUSB0 baud 115200\n"
-        "  fathom set hps167s --port /dev/ttyUSB0 termination off --all-units --yes\n"
-        "  fathom set a16 --port /dev/ttyUSB0 switch-threshold 2000\n"
-        "  fathom set hps167s --port /dev/ttyUSB0 distance-offset -15\n",
-        to);
-}
-
-enum { MAX_WORDS = 64 };
-
-/* A negative value at the end is no option: "--" says so. The words are copied to `copy`, ended by NULL. */
-static char **mark_negative(int *argc, char **argv, char *copy[MAX_WORDS])
-{
-    static char dashes[] = "--";
-    const char *const last = argv[*argc - 1];
-    bool is_marked = *argc + 2 > MAX_WORDS || last[0] != '-' || last[1] < '0' || last[1] > '9';
-    for (int i = 0; i != *argc && !is_marked; i++) is_marked = strcmp(argv[i], dashes) == 0;
-    if (is_marked) return argv;
-    for (int i = 0; i != *argc; i++) copy[i < *argc - 1 ? i : i + 1] = argv[i];
-    copy[*argc - 1] = dashes;
-    copy[++*argc] = NULL;
-    return copy;
-}
-
-/* False after a usage error. */
-static bool take_kind(change_t *change, const char *const *values)
-{
+    const set_settings_t *const settings = arguments->settings;
     const setting_t *const setting = change->setting;
-    change->is_blind = values[BLIND] != NULL;
-    change->is_for_all = values[ALL_UNITS] != NULL;
+    change->is_blind = settings->is_blind;
+    change->is_for_all = settings->is_for_all;
     if (change->is_blind && change->is_for_all)
-        (void)usage_error(command, "--all-units reads nothing anyway; leave --blind out");
-    else if (change->is_blind && setting->is_never_blind)
-        (void)usage_error(command, "%s is not written --blind: it has to be read before or afterwards",
-                          setting->name);
-    else if (change->is_for_all && setting->set_all == NULL)
-        (void)usage_error(command,
-                          "%s is of one unit; --all-units is for termination and "
-                          "measure-after-power-on of an hps167s",
-                          setting->name);
-    else if (change->is_for_all && values[YES] == NULL)
-        (void)usage_error(
-            command,
-            "with --all-units every hps167s on the line obeys, whatever its address: say so by --yes");
-    else
-        return true;
-    return false;
+        return reject(origin, "--all-units reads nothing anyway. Leave --blind out.");
+    if (change->is_blind && setting->is_never_blind)
+        return reject(origin, "%s must be read before or after it is written. Leave --blind out.",
+                      setting->name);
+    if (change->is_for_all && setting->set_all == NULL)
+        return reject(origin,
+                      "%s belongs to one unit. --all-units is for termination and "
+                      "measure-after-power-on of an hps167s.",
+                      setting->name);
+    return !change->is_for_all ||
+           confirm(arguments, settings->session.is_confirmed,
+                   "--all-units changes every hps167s on the line, whatever its address.");
 }
 
-/* The value; address 0 only if the user says what that means. False after a usage error. */
-static bool take_value(change_t *change, const char *text, bool may_be_lost)
+static bool set_value(change_t *change, const char *text, const arguments_t *arguments,
+                      const origin_t *origin)
 {
+    const set_settings_t *const settings = arguments->settings;
     const setting_t *const setting = change->setting;
-    const bool is_zero = setting->has_zero && strcmp(text, "0") == 0;
-    if (is_zero == may_be_lost) return is_zero || setting_parse(command, setting, text, &change->value);
-    (void)usage_error(
-        command, is_zero ? "a unit at address 0 may not be found again, and nothing of it can be set any "
-                           "more; if it is to be so: --may-not-be-found-again"
-                         : "--may-not-be-found-again is for address 0 of an a16 or a05");
-    return false;
+    char values[SETTING_VALUES];
+    if (setting->has_zero && strcmp(text, "0") == 0)
+        return confirm(
+            arguments, settings->session.is_confirmed || settings->may_be_lost,
+            "A unit at address 0 may not be found again, and none of its settings can be changed.");
+    if (setting_value(setting, text, &change->value)) return true;
+    return reject(origin, "%s is '%s'. It takes %s.", setting->name, text,
+                  setting_values_text(setting, values));
 }
 
-static int run(const host_t *host, int argc, char **argv)
+static bool set_up(change_t *change, const arguments_t *arguments)
 {
-    char *copy[MAX_WORDS];
-    argv = mark_negative(&argc, argv, copy);
-    const char *values[OPTIONS] = {NULL};
-    char **words = NULL;
-    int count = 0;
+    const origin_t origin = {.command = arguments->command->name};
+    if (!session_read(&session, arguments, 1, 2)) return false;
+    if (arguments->count < 3)
+        return reject(&origin, "the %s is missing. 'fathom get %s' lists the settings.",
+                      arguments->count == 1 ? "setting" : "value", session.station->model->name);
+    const setting_t *const setting = setting_named(&session, arguments->words[1], arguments);
+    if (setting == NULL) return false;
+    if (setting->set == NULL) return reject(&origin, "%s is read-only.", setting->name);
+    change->setting = setting;
+    return session_set_mode(&session, arguments, model_mode_of(session.station->model, setting)) && session_can_set(&session, arguments) &&
+           set_value(change, arguments->words[2], arguments, &origin) && set_kind(change, arguments, &origin);
+}
+
+static int start(const host_t *host, const arguments_t *arguments)
+{
     change_t change = {.session = &session};
-    bool wants_help = false;
-    if (!session_options(&session, command, argc, argv, table, values, &words, &count, &wants_help))
-        return STATUS_USAGE;
-    if (wants_help) return command_help(&set_command);
-    const char *const model = session.station->model->name;
-    if (count != 2)
-        return usage_error(command,
-                           count == 0   ? "which setting? `fathom get %s` lists them"
-                           : count == 1 ? "a value is missing; `fathom get %s` lists them"
-                                        : "one setting and one value of %s at a time",
-                           model);
-    const setting_t *const setting = setting_find(command, model, session_settings(&session), words[0]);
-    if (setting == NULL) return STATUS_USAGE;
-    if (setting->set == NULL)
-        return usage_error(command, "%s is told by the device and cannot be set", setting->name);
-    change.setting = setting;
-    if (!take_value(&change, words[1], values[LOST] != NULL) ||
-        !session_set_mode(&session, command, values, model_mode_of(session.station->model, setting)) ||
-        !take_kind(&change, values))
-        return STATUS_USAGE;
-    if (!session_can_set(&session, command)) return STATUS_USAGE;
+    if (!set_up(&change, arguments)) return STATUS_USAGE;
     if (!session_open(&session, host)) return STATUS_FAILED;
     const int status = set(&change);
     session_close(&session);
@@ -166,4 +112,22 @@ static int run(const host_t *host, int argc, char **argv)
 }
 
 const command_t set_command = {
-    .name = "set", .summary = "changes a setting of a device and confirms it", .help = help, .run = run};
+    .name = "set",
+    .summary = "Change a setting of a sensor and confirm it by reading it back",
+    .usage = "SENSOR[:ADDRESS][:MODE][@PORT] SETTING VALUE [OPTIONS]",
+    .about = "A value that the sensor has already is not written. The command follows a\n"
+             "sensor to its new address or baud rate.\n",
+    .tables = tables,
+    .common = "port address baud yes format",
+    .examples = "  fathom set hps167s --port /dev/ttyUSB0 address 7\n"
+                "  fathom set hps167s:7 --port /dev/ttyUSB0 termination off\n"
+                "  fathom set hps167s --port /dev/ttyUSB0 termination off --all-units --yes\n"
+                "  fathom set a16 --port /dev/ttyUSB0 switch-threshold 2000\n"
+                "  fathom set hps167s --port /dev/ttyUSB0 distance-offset -15\n",
+    .status = "Exit status: 0 the setting holds, was acknowledged or was sent to all units,\n"
+              "1 it does not or that is unknown, 2 wrong usage.\n",
+    .topics = "settings, sensors, ports",
+    .operands = operands_setting_value,
+    .settings_size = sizeof(set_settings_t),
+    .start = start,
+};

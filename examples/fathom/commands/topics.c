@@ -5,7 +5,6 @@
 
 #include "cli/rows.h"
 #include "commands/scan/scan_report.h"
-#include "commands/sim/sim.h"
 #include "device/setting_text.h"
 #include "ports/line_text.h"
 #include "reading/fields.h"
@@ -201,26 +200,6 @@ static void print_settings(FILE *to)
     }
 }
 
-static void print_sim(FILE *to)
-{
-    (void)fputs("'fathom sim' makes a pseudo terminal with up to 64 sensors on one line. At most one\n"
-                "of them may send automatically. Sensors with the same address respond at once, as\n"
-                "real ones do. SIGUSR1 cuts their power for a second; they keep the settings that real\n"
-                "ones keep. --link replaces nothing but a link that a killed 'fathom sim' left behind.\n\n"
-                "Write options of one sensor behind it: a05:2,distance=1500,fault=silence=10%.\n"
-                "Options without a sensor apply to all sensors that can have them.\n\n"
-                "distance: 0 to 65535 mm, or no-target, interference (a16, a05) or fault (hps167s). An\n"
-                "a05 takes up to four, with commas between them. Without it, the target moves.\n\n"
-                "baud: the rate that an hps167s was set to. Each sensor responds only at its own rate.\n\n"
-                "with: a state that was set before, or a behaviour that the datasheets leave open:\n",
-                to);
-    sim_print_traits(to);
-    (void)fputs("\nfault=KIND[=P[@N]]: damages frames that the sensor sends, each with the probability P,\n"
-                "such as 0.05 or 5% (default 1), or only frame N, counted from 1:\n",
-                to);
-    sim_print_faults(to);
-}
-
 static void print_trouble(FILE *to)
 {
     (void)fputs("Nothing responds? Work through these in this order:\n\n"
@@ -315,7 +294,7 @@ const topic_t topics[] = {
     {"picture", "The picture of fathom watch", print_picture},
     {"settings", "Settings of the sensors", print_settings},
     {"config", "The configuration file of fathom publish", print_config},
-    {"faults", "Traits and faults of simulated sensors", print_sim},
+    {"faults", "Traits and faults of simulated sensors", topic_faults},
     {"trouble", "What to do if nothing responds", print_trouble},
     {.name = NULL},
 };

@@ -7,4 +7,7 @@
 /* The topics of `fathom help`; a row without a name ends them. */
 extern const topic_t topics[];
 
+/* The topic `faults`, in the folder of `fathom sim`. */
+void topic_faults(FILE *to);
+
 #endif

@@ -5,9 +5,9 @@
 #include <stdarg.h>
 #include <string.h>
 
-#include "cli/command.h"
 #include "device/setting_text.h"
 #include "fathom/version.h"
+#include "output/status.h"
 
 static const char sensor[] = "sensor"; /* of the line with the model */
 

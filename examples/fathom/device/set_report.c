@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "device/set_report.h"
 
-#include "cli/command.h"
 #include "device/setting_text.h"
+#include "output/status.h"
 #include "sensors/read_command.h"
 
 static void print_value(const setting_t *setting, const char *text)

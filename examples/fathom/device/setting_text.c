@@ -5,8 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/command.h"
-#include "cli/options.h"
+#include "output/words.h"
 
 const char *setting_values_text(const setting_t *setting, char text[SETTING_VALUES])
 {
@@ -36,18 +35,6 @@ const setting_t *setting_of(const setting_t *settings, const char *name)
     return NULL;
 }
 
-const setting_t *setting_find(const char *command, const char *model, const setting_t *settings,
-                              const char *name)
-{
-    char known[SETTING_VALUES] = "";
-    const setting_t *const found = setting_of(settings, name);
-    if (found != NULL) return found;
-    for (const setting_t *setting = settings; setting->name != NULL; setting++)
-        list_add(known, SETTING_VALUES, setting->name);
-    (void)usage_error(command, "%s has no setting '%s', only %s", model, name, known);
-    return NULL;
-}
-
 static bool parse_number(const setting_t *setting, const char *text, int32_t *value)
 {
     char *end = NULL;
@@ -68,15 +55,6 @@ bool setting_value(const setting_t *setting, const char *text, int32_t *value)
         *value = i;
         return true;
     }
-    return false;
-}
-
-bool setting_parse(const char *command, const setting_t *setting, const char *text, int32_t *value)
-{
-    char values[SETTING_VALUES];
-    if (setting_value(setting, text, value)) return true;
-    (void)usage_error(command, "%s takes %s, not '%s'", setting->name, setting_values_text(setting, values),
-                      text);
     return false;
 }
 

@@ -10,19 +10,12 @@
 /* By name; NULL: there is none. */
 const setting_t *setting_of(const setting_t *settings, const char *name);
 
-/* The same; NULL after a usage error that lists what there is. */
-const setting_t *setting_find(const char *command, const char *model, const setting_t *settings,
-                              const char *name);
-
 /* Its value, where the text is one. */
 bool setting_value(const setting_t *setting, const char *text, int32_t *value);
 
 /* What it may be, "0 to 255 s" or "off, on". */
 enum { SETTING_VALUES = 400 };
 const char *setting_values_text(const setting_t *setting, char text[SETTING_VALUES]);
-
-/* False after a usage error. */
-bool setting_parse(const char *command, const setting_t *setting, const char *text, int32_t *value);
 
 /* A word, or a number. */
 void setting_print_value(const setting_t *setting, int32_t value, char text[SETTING_TEXT]);

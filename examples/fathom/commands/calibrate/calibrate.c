@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-#include "cli/options.h"
+#include "cli/arguments.h"
+#include "cli/session_options.h"
 #include "commands/calibrate/calibrate_report.h"
 #include "commands/commands.h"
 #include "device/setting_text.h"
@@ -7,20 +8,29 @@
 /* fathom calibrate finds the distance offset of an HPS-167S with a target at a known distance. calibrate_plan.h explains
  * the steps. */
 
-static const char command[] = "calibrate";
-
 /* Table 1 of the datasheet: its range. */
 enum { LEAST_MM = 80, MOST_MM = 18000, SPREAD_MM = 20, MOST_SPREAD_MM = 1000 };
 
-enum { SAMPLES = SESSION_OPTIONS, SPREAD, KNOWN, DRY_RUN, OPTIONS };
+typedef struct {
+    session_settings_t session;
+    uint32_t known_mm;
+    calibrate_batch_t batch;
+    bool is_dry;
+} calibrate_settings_t;
 
-static const struct option table[OPTIONS + 1] = {
-    SESSION_OPTION_ROWS,
-    [SAMPLES] = {"samples", required_argument, NULL, 256},
-    [SPREAD] = {"spread", required_argument, NULL, 256},
-    [KNOWN] = {"known", required_argument, NULL, 256},
-    [DRY_RUN] = {"dry-run", no_argument, NULL, 256},
+static const option_t rows[] = {
+    {"known", "MM", "Set the true distance of the target", KIND_NUMBER, GROUP_COMMAND, .min = LEAST_MM,
+     .max = MOST_MM, AT(calibrate_settings_t, known_mm), .is_required = true},
+    {"samples", "N", "Measure with N samples (default 25)", KIND_NUMBER, GROUP_COMMAND,
+     .min = CALIBRATE_LEAST_SAMPLES, .max = CALIBRATE_MOST_SAMPLES, AT(calibrate_settings_t, batch.samples)},
+    {"spread", "MM", "Accept samples that differ by at most MM (default 20)", KIND_NUMBER, GROUP_COMMAND,
+     .max = MOST_SPREAD_MM, AT(calibrate_settings_t, batch.spread_mm)},
+    {"dry-run", .help = "Measure, and print the offset without writing it", .group = GROUP_COMMAND,
+     AT(calibrate_settings_t, is_dry)},
+    {.name = NULL},
 };
+
+static const option_table_t tables[] = {{rows, 0}, SESSION_TABLES, {session_format_rows, 0}, {NULL, 0}};
 
 static session_t session;
 
@@ -59,9 +69,7 @@ static void measure(calibrate_plan_t *plan, const calibrate_batch_t *batch)
 
 static int calibrate(calibrate_plan_t *plan, const calibrate_batch_t *batch, bool is_dry)
 {
-    const setting_t *const setting = setting_find(command, session.station->model->name,
-                                                  session_settings(&session), session.station->model->offset);
-    if (setting == NULL) return STATUS_USAGE;
+    const setting_t *const setting = setting_of(session_settings(&session), session.station->model->offset);
     while (plan->next != CALIBRATE_END) {
         if (plan->next == CALIBRATE_MEASURE)
             measure(plan, batch);
@@ -75,61 +83,42 @@ static int calibrate(calibrate_plan_t *plan, const calibrate_batch_t *batch, boo
     return calibrate_report(&session, plan, plan->next == CALIBRATE_WRITE);
 }
 
-static void help(FILE *to)
+static int start(const host_t *host, const arguments_t *arguments)
 {
-    (void)fputs(
-        "Find the distance offset of an HPS-167S (#12) with a target at a known distance, and write it.\n\n"
-        "usage: fathom calibrate hps167s[:ADDRESS] --port PATH --known MM [OPTIONS]\n\n"
-        "  --known MM        true distance from the sensor to the target, 80 to 18000\n"
-        "  --samples N       samples of a measurement, 5 to 200; default 25\n"
-        "  --spread MM       largest difference of these samples, 0 to 1000; default 20\n"
-        "  --dry-run         measure, and print the offset without writing it\n",
-        to);
-    session_options_help(to);
-    (void)fputs(
-        "\nUse a flat, light target at a right angle, and let nothing move. The sensor is measured before "
-        "and\n"
-        "after each write until two medians agree. It is right within half the spread, and at least 2 mm.\n"
-        "Flash is written at most twice, and each write is announced. A write without an acknowledgement is\n"
-        "not repeated: the next measurement shows whether the sensor accepted it. If the command stops, it\n"
-        "prints the offsets that the sensor may have. If an offset was written since the last power-on,\n"
-        "switch the power off and on first.\n\n"
-        "Exit status: 0 when the sensor is right, 1 when it is not (also with --dry-run) or that is "
-        "unknown,\n"
-        "2 for wrong usage.\n\n"
-        "examples:\n"
-        "  fathom calibrate hps167s --port /dev/ttyUSB0 --known 2000 --dry-run\n"
-        "  fathom calibrate hps167s:7 --port /dev/ttyUSB0 --known 2000 --samples 100\n",
-        to);
-}
-
-static int run(const host_t *host, int argc, char **argv)
-{
-    const char *values[OPTIONS] = {NULL};
-    int status = STATUS_OK;
-    uint32_t known_mm = 0;
-    calibrate_batch_t batch = {.samples = CALIBRATE_SAMPLES, .spread_mm = SPREAD_MM};
+    calibrate_settings_t *const settings = arguments->settings;
+    const origin_t origin = {.command = arguments->command->name};
     calibrate_plan_t plan;
-    if (!session_options_of_one(&session, &calibrate_command, argc, argv, table, values, &status))
-        return status;
-    if (session.station->model->offset == NULL)
-        return usage_error(command, "%s has no distance offset. Only hps167s has one",
-                           session.station->model->name);
-    if (values[KNOWN] == NULL)
-        return usage_error(command, "--known is missing. It is the true distance of the target in mm");
-    if (!option_number(command, "known", values[KNOWN], LEAST_MM, MOST_MM, &known_mm) ||
-        !option_number(command, "samples", values[SAMPLES], CALIBRATE_LEAST_SAMPLES, CALIBRATE_MOST_SAMPLES,
-                       &batch.samples) ||
-        !option_number(command, "spread", values[SPREAD], 0, MOST_SPREAD_MM, &batch.spread_mm))
+    if (!arguments_have(arguments, "samples")) settings->batch.samples = CALIBRATE_SAMPLES;
+    if (!arguments_have(arguments, "spread")) settings->batch.spread_mm = SPREAD_MM;
+    if (!session_read(&session, arguments, 1, 0)) return STATUS_USAGE;
+    if (session.station->model->offset == NULL) {
+        (void)reject(&origin, "%s has no distance offset. Only an hps167s has one.",
+                     session.station->model->name);
         return STATUS_USAGE;
+    }
     if (!session_open(&session, host)) return STATUS_FAILED;
-    calibrate_start(&plan, (int32_t)known_mm);
-    status = calibrate(&plan, &batch, values[DRY_RUN] != NULL);
+    calibrate_start(&plan, (int32_t)settings->known_mm);
+    const int status = calibrate(&plan, &settings->batch, settings->is_dry);
     session_close(&session);
     return status;
 }
 
-const command_t calibrate_command = {.name = "calibrate",
-                                     .summary = "finds the distance offset of an HPS-167S by measuring",
-                                     .help = help,
-                                     .run = run};
+const command_t calibrate_command = {
+    .name = "calibrate",
+    .summary = "Find the distance offset of an hps167s by measuring, and write it",
+    .usage = "hps167s[:ADDRESS][@PORT] --known MM [OPTIONS]",
+    .about = "Use a flat, light target at a right angle, and let nothing move. The distance is\n"
+             "measured before and after each write. It is right within half the spread, and\n"
+             "at least 2 mm. Flash is written at most twice. If an offset was written since\n"
+             "the last power-on, switch the power off and on first.\n",
+    .tables = tables,
+    .common = "port known samples spread dry-run",
+    .examples = "  fathom calibrate hps167s --port /dev/ttyUSB0 --known 2000 --dry-run\n"
+                "  fathom calibrate hps167s:7 --port /dev/ttyUSB0 --known 2000 --samples 100\n",
+    .status = "Exit status: 0 the sensor is right, 1 it is not (also with --dry-run) or that is\n"
+              "unknown, 2 wrong usage.\n",
+    .topics = "settings, ports",
+    .operands = operands_resettable,
+    .settings_size = sizeof(calibrate_settings_t),
+    .start = start,
+};

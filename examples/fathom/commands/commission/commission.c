@@ -8,7 +8,7 @@
 
 /* fathom commission assigns addresses to new sensors that all have address 1, one after the other. */
 
-static const char command[] = "commission";
+static const origin_t origin = {.command = "commission"};
 
 static bool is_open(const commission_t *run, const record_unit_t *unit)
 {
@@ -183,27 +183,25 @@ static bool is_suitable(commission_t *run)
         const uint8_t address = run->options.addresses[i];
         const record_unit_t *const unit = record_at(&run->record, address);
         if (unit == NULL || unit->model == run->model) continue;
-        (void)usage_error(command, "address %u belongs to an %s in the record %s", address, unit->model->name,
-                          run->record.path);
+        (void)reject(&origin, "address %u belongs to an %s in the record %s.", address, unit->model->name,
+                     run->record.path);
         return false;
     }
     const record_unit_t *const first = record_at(&run->record, FACTORY_ADDRESS);
     if (first == NULL || next_address(run) == 0 || next_address(run) == FACTORY_ADDRESS) return true;
-    (void)usage_error(command,
-                      "a sensor keeps address %d in the record %s, where the next one would appear. Give it "
-                      "another address, and remove its line",
-                      FACTORY_ADDRESS, run->record.path);
+    (void)reject(&origin,
+                 "a sensor keeps address %d in the record %s, where the next one would appear. Give it "
+                 "another address, and remove its line.",
+                 FACTORY_ADDRESS, run->record.path);
     return false;
 }
 
-static int run_commission(const host_t *host, int argc, char **argv)
+int commission_start(const host_t *host, const arguments_t *arguments)
 {
     enum { LATE_US = 1000000 };
     static commission_t run;
-    bool wants_help = false;
     memset(&run, 0, sizeof run);
-    if (!commission_options(&run.options, &run.session, argc, argv, &wants_help)) return STATUS_USAGE;
-    if (wants_help) return command_help(&commission_command);
+    if (!commission_options(&run.options, &run.session, arguments)) return STATUS_USAGE;
     run.model = run.session.station->model;
     if (!record_read(&run.record, run.options.record)) return STATUS_FAILED;
     if (!is_suitable(&run)) return STATUS_USAGE;
@@ -218,8 +216,3 @@ static int run_commission(const host_t *host, int argc, char **argv)
     session_close(&run.session);
     return status;
 }
-
-const command_t commission_command = {.name = "commission",
-                                      .summary = "assigns addresses to new sensors that all have address 1",
-                                      .help = commission_help,
-                                      .run = run_commission};

@@ -2,7 +2,8 @@
 #ifndef COMMISSION_OPTIONS_H
 #define COMMISSION_OPTIONS_H
 
-#include "cli/session_options.h"
+#include "cli/command.h"
+#include "device/session.h"
 
 /* What `fathom commission` was asked to do. */
 enum { COMMISSION_ADDRESSES = 254 };
@@ -15,10 +16,10 @@ typedef struct {
     const char *record;
 } commission_options_t;
 
-/* Reads the options and the sensor. False, after saying why: wrong usage. wants_help: nothing else was looked at. */
-bool commission_options(commission_options_t *options, session_t *session, int argc, char **argv,
-                        bool *wants_help);
+/* Checks the options and reads the sensor. False after rejecting what is wrong. */
+bool commission_options(commission_options_t *options, session_t *session, const arguments_t *arguments);
 
-void commission_help(FILE *to);
+/* command_t.start */
+int commission_start(const host_t *host, const arguments_t *arguments);
 
 #endif

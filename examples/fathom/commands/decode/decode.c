@@ -2,7 +2,7 @@
 #include <errno.h>
 #include <string.h>
 
-#include "cli/options.h"
+#include "cli/complete.h"
 #include "cli/sensor_word.h"
 #include "commands/commands.h"
 #include "commands/decode/decode_print.h"
@@ -10,90 +10,42 @@
 #include "fathom/codec/dyp_stream.h"
 #include "fathom/codec/modbus_rtu.h"
 
-static const char command[] = "decode";
-
-enum { PROTOCOL, SENSOR, FORMAT, RAW, HELP, OPTIONS };
-
-static const struct option table[OPTIONS + 1] = {
-    [PROTOCOL] = {"protocol", required_argument, NULL, 256},
-    [SENSOR] = {"sensor", required_argument, NULL, 256},
-    [FORMAT] = {"format", required_argument, NULL, 256},
-    [RAW] = {"raw", no_argument, NULL, 256},
-    [HELP] = {"help", no_argument, NULL, 256},
-};
-
 typedef struct {
-    uint8_t protocols;
+    const char *sensor; /* NULL: not given */
+    uint8_t protocol;   /* its place in protocols[] */
+    bool is_json;
+    bool is_raw;
+    uint8_t protocols; /* DECODE_... */
     const model_t *only; /* as in decode_context_t */
     const decode_format_t *format;
 } settings_t;
 
-static void help(FILE *to)
+static const option_t rows[] = {
+    {"protocol", "NAME", "Look for frames of one protocol: auto, modbus, dyp or stream", KIND_CHOICE,
+     GROUP_COMMAND, .words = "auto modbus dyp stream", AT(settings_t, protocol)},
+    {"sensor", "MODEL", "Decode frames for one sensor: a16, a05 or hps167s", KIND_TEXT, GROUP_COMMAND,
+     AT(settings_t, sensor), .list = model_name},
+    {"raw", .help = "Read FILE as bytes instead of hex", .group = GROUP_COMMAND, AT(settings_t, is_raw)},
+    {"format", "FORMAT", "Print text or json (default text)", KIND_CHOICE, GROUP_OUTPUT, .words = "text json",
+     AT(settings_t, is_json)},
+    {.name = NULL},
+};
+
+static const option_table_t tables[] = {{rows, 0}, {NULL, 0}};
+
+static bool set_up(settings_t *settings, const origin_t *origin)
 {
-    (void)fputs(
-        "fathom decode explains bytes that were seen on the wire of an A16, A05 or HPS-167S: where the "
-        "frames\n"
-        "are, what each says, and whether its checksum is right.\n\n"
-        "usage: fathom decode [OPTIONS] HEX...    bytes in hex: 01 03, 0103, 0x01,0x03\n"
-        "       fathom decode [OPTIONS] [FILE]    a file of them, or - or nothing for the standard input; # "
-        "and\n"
-        "                                         what follows it in a line is left out\n\n"
-        "  --protocol NAME   only this one: modbus, dyp (55 AA), or stream (FF ... SUM); default auto: all\n"
-        "  --sensor NAME     only this one: a16, a05 or hps167s; default all that the frame fits\n"
-        "  --format NAME     text (default) or json, an object a line\n"
-        "  --raw             FILE has the bytes themselves\n\n"
-        "A response that follows its request is explained by it; alone, by all that it can be. A frame may "
-        "go\n"
-        "across lines, but where there is doubt one begins with a line. A sum of 8 bits proves little: what\n"
-        "begins in the middle of a stream may be read a byte or more out of step.\n\n"
-        "Exit status: 0 when every byte is part of a good frame, 1 when one is not or nothing can be read, 2 "
-        "for\n"
-        "wrong usage and for what is no hex.\n\n"
-        "examples:\n"
-        "  fathom decode 01 03 01 00 00 01 85 F6  01 03 02 02 F2 38 A1\n"
-        "  fathom decode --sensor hps167s 01 03 08 08 23 DC B2 07 01 00 00 FD 41\n"
-        "  fathom decode --format json capture.txt\n"
-        "  fathom decode --raw capture.bin\n",
-        to);
-}
-
-typedef struct {
-    const char *name;
-    uint8_t protocols;
-} choice_t;
-
-static const choice_t protocols[] = {{"auto", DECODE_ALL},
-                                     {"modbus", DECODE_MODBUS},
-                                     {"dyp", DECODE_DYP},
-                                     {"stream", DECODE_STREAM_ONE | DECODE_STREAM_FOUR}};
-enum { PROTOCOLS = sizeof protocols / sizeof protocols[0] };
-
-/* text NULL: it was not given. */
-static bool take_protocol(settings_t *settings, const char *text)
-{
-    char known[80] = "";
-    if (text == NULL) return true;
-    for (size_t i = 0; i != PROTOCOLS; i++) {
-        if (strcmp(text, protocols[i].name) == 0) {
-            settings->protocols &= protocols[i].protocols;
-            return true;
-        }
-        list_add(known, sizeof known, protocols[i].name);
-    }
-    (void)usage_error(command, "there is no protocol '%s', only %s", text, known);
-    return false;
-}
-
-/* The same. */
-static bool take_model(settings_t *settings, const char *text)
-{
-    if (text == NULL) return true;
-    const origin_t origin = {.command = command};
-    const model_t *const named = model_word(text, &origin);
-    if (named == NULL) return false;
-    settings->only = named;
-    settings->protocols &= named->protocols;
-    return true;
+    static const uint8_t protocols[] = {DECODE_ALL, DECODE_MODBUS, DECODE_DYP,
+                                        DECODE_STREAM_ONE | DECODE_STREAM_FOUR};
+    settings->protocols = protocols[settings->protocol];
+    settings->format = settings->is_json ? &decode_json : &decode_text;
+    if (settings->sensor == NULL) return true;
+    const model_t *const model = model_word(settings->sensor, origin);
+    if (model == NULL) return false;
+    settings->only = model;
+    settings->protocols &= model->protocols;
+    if (settings->protocols != 0) return true;
+    return reject(origin, "%s has no frames of this --protocol.", model->name);
 }
 
 enum { WHY_TEXT = 120 };
@@ -169,27 +121,34 @@ static int decode(const settings_t *settings, const decode_input_t *input)
     return status;
 }
 
-static int run(const host_t *host, int argc, char **argv)
+static int start(const host_t *host, const arguments_t *arguments)
 {
-    const char *values[OPTIONS] = {NULL};
-    bool is_json = false;
-    settings_t settings = {DECODE_ALL, NULL, NULL};
+    settings_t *const settings = arguments->settings;
+    const origin_t origin = {.command = arguments->command->name};
     decode_input_t input;
     (void)host; /* it opens no port */
-    const int rest = options_parse(command, argc, argv, table, values);
-    if (rest < 0) return STATUS_USAGE;
-    if (values[HELP] != NULL) return command_help(&decode_command);
-    if (!take_protocol(&settings, values[PROTOCOL]) || !take_model(&settings, values[SENSOR]) ||
-        !option_json(command, values[FORMAT], &is_json))
-        return STATUS_USAGE;
-    settings.format = is_json ? &decode_json : &decode_text;
-    if (settings.protocols == 0)
-        return usage_error(command, "%s does not speak %s", values[SENSOR], values[PROTOCOL]);
-    int status = decode_input_take(&input, command, argc - rest, argv + rest, values[RAW] != NULL);
-    if (status == STATUS_OK) status = decode(&settings, &input);
+    if (!set_up(settings, &origin)) return STATUS_USAGE;
+    int status = decode_input_take(&input, &origin, arguments->count, arguments->words, settings->is_raw);
+    if (status == STATUS_OK) status = decode(settings, &input);
     decode_input_free(&input);
     return status;
 }
 
 const command_t decode_command = {
-    .name = "decode", .summary = "explains bytes that were seen on the wire", .help = help, .run = run};
+    .name = "decode",
+    .summary = "Explain bytes that were seen on the wire",
+    .usage = "[OPTIONS] HEX...\n[OPTIONS] [FILE]",
+    .about = "HEX is bytes such as 01 03, 0103 or 0x01,0x03. FILE has such bytes; without\n"
+             "FILE, or with -, they are read from standard input. A # begins a comment. A\n"
+             "response behind its request is explained by it. A sum of 8 bits proves little:\n"
+             "a stream that begins inside a frame may be read out of step.\n",
+    .tables = tables,
+    .common = "sensor protocol format raw",
+    .examples = "  fathom decode 01 03 01 00 00 01 85 F6  01 03 02 02 F2 38 A1\n"
+                "  fathom decode --sensor hps167s 01 03 08 08 23 DC B2 07 01 00 00 FD 41\n"
+                "  fathom decode --format json capture.txt\n",
+    .status = "Exit status: 0 every byte is part of a good frame, 1 not, 2 wrong usage or hex.\n",
+    .operands = operands_file,
+    .settings_size = sizeof(settings_t),
+    .start = start,
+};

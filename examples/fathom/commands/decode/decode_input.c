@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/command.h"
+#include "output/status.h"
 
 static const char separators[] = " \t\r\n\v\f,;:{}";
 
@@ -108,7 +108,7 @@ enum { WHOLE_FRAME = 8 };
 
 enum { PLACE_TEXT = 40, COMPLAINT_TEXT = 120 };
 
-static int take_arguments(decode_input_t *input, const char *command, int count, char **arguments,
+static int take_arguments(decode_input_t *input, const origin_t *origin, int count, char **arguments,
                           const char *besides)
 {
     size_t most = 0;
@@ -122,7 +122,7 @@ static int take_arguments(decode_input_t *input, const char *command, int count,
         if (take_text(input, arguments[i], length, length >= WHOLE_FRAME, &complaint)) continue;
         (void)snprintf(place, sizeof place, "argument %d", i + 1);
         describe(&complaint, place, text, sizeof text);
-        (void)usage_error(command, "%s%s", text, besides);
+        (void)reject(origin, "%s%s.", text, besides);
         return STATUS_USAGE;
     }
     return STATUS_OK;
@@ -155,7 +155,7 @@ static char *read_all(const char *name, FILE *file, size_t *length)
     return NULL;
 }
 
-static int take_file(decode_input_t *input, const char *command, const char *name, FILE *file, bool raw)
+static int take_file(decode_input_t *input, const origin_t *origin, const char *name, FILE *file, bool raw)
 {
     size_t length = 0;
     complaint_t complaint = {NULL, 0, 0, 0};
@@ -172,7 +172,8 @@ static int take_file(decode_input_t *input, const char *command, const char *nam
         char what[COMPLAINT_TEXT];
         (void)snprintf(place, sizeof place, "line %zu", complaint.line);
         describe(&complaint, place, what, sizeof what);
-        status = usage_error(command, "%s: %s; for a file of the bytes themselves give --raw", name, what);
+        (void)reject(origin, "%s: %s. For a file of bytes instead of hex, add --raw.", name, what);
+        status = STATUS_USAGE;
     }
     if (status == STATUS_OK && input->count > DECODE_MAX_BYTES) {
         (void)fprintf(stderr, "fathom: %s is more than the %d bytes that are explained at a time\n", name,
@@ -190,15 +191,15 @@ static bool is_hex(const char *text)
     return true;
 }
 
-int decode_input_take(decode_input_t *input, const char *command, int count, char **arguments, bool raw)
+int decode_input_take(decode_input_t *input, const origin_t *origin, int count, char **arguments, bool raw)
 {
     memset(input, 0, sizeof *input);
     if (count == 0 || (count == 1 && strcmp(arguments[0], "-") == 0))
-        return take_file(input, command, "the standard input", stdin, raw);
+        return take_file(input, origin, "the standard input", stdin, raw);
     if (count == 1 && (raw || !is_hex(arguments[0]))) {
         FILE *const file = fopen(arguments[0], "rbe");
         if (file != NULL) {
-            const int status = take_file(input, command, arguments[0], file, raw);
+            const int status = take_file(input, origin, arguments[0], file, raw);
             (void)fclose(file);
             return status;
         }
@@ -207,9 +208,12 @@ int decode_input_take(decode_input_t *input, const char *command, int count, cha
             return STATUS_FAILED;
         }
     }
-    if (raw) return usage_error(command, "--raw takes one file");
+    if (raw) {
+        (void)reject(origin, "--raw takes one file.");
+        return STATUS_USAGE;
+    }
     const bool was_file = count == 1 && !is_hex(arguments[0]);
-    return take_arguments(input, command, count, arguments,
+    return take_arguments(input, origin, count, arguments,
                           was_file ? ", and there is no file of that name" : "");
 }
 

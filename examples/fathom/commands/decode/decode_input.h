@@ -2,9 +2,9 @@
 #ifndef DECODE_INPUT_H
 #define DECODE_INPUT_H
 
-#include <stdbool.h>
-#include <stddef.h>
 #include <stdint.h>
+
+#include "cli/origin.h"
 
 enum { DECODE_MAX_BYTES = 4 * 1024 * 1024 };
 
@@ -21,7 +21,7 @@ typedef struct {
  * after saying why STATUS_FAILED when it cannot be read, and STATUS_USAGE when it is no hex. The memory is the
  * input's and is given back by decode_input_free, in any case.
  */
-int decode_input_take(decode_input_t *input, const char *command, int count, char **arguments, bool raw);
+int decode_input_take(decode_input_t *input, const origin_t *origin, int count, char **arguments, bool raw);
 void decode_input_free(decode_input_t *input);
 
 #endif

@@ -5,33 +5,18 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/command.h"
-#include "cli/options.h"
-#include "cli/sensor_options.h"
+#include "cli/complete.h"
+#include "cli/rows.h"
+#include "commands/commands.h"
 #include "fathom/codec/crc16.h"
 #include "fathom/codec/modbus_rtu.h"
+#include "output/words.h"
 
-static const char command[] = "request";
-
-enum { PORT, SENSOR, BAUD, PARITY, STOP_BITS, TIMEOUT, ECHO, RS485, FORMAT, YES, HELP, OPTIONS };
-
-static const struct option table[OPTIONS + 1] = {
-    [PORT] = {"port", required_argument, NULL, OPTION_ONCE},
-    [SENSOR] = {"sensor", required_argument, NULL, 256},
-    [BAUD] = {"baud", required_argument, NULL, 256},
-    [PARITY] = {"parity", required_argument, NULL, 256},
-    [STOP_BITS] = {"stop-bits", required_argument, NULL, 256},
-    [TIMEOUT] = {"timeout", required_argument, NULL, 256},
-    [ECHO] = {"echo", required_argument, NULL, 256},
-    [RS485] = {"rs485", no_argument, NULL, 256},
-    [FORMAT] = {"format", required_argument, NULL, 256},
-    [YES] = {"yes", no_argument, NULL, 256},
-    [HELP] = {"help", no_argument, NULL, 256},
-};
+static const origin_t origin = {.command = "request"};
 
 /* As long as a broadcast gives the units (MODBUS over Serial Line V1.02, 2.4.1: 100 to 200 ms). */
-enum { TURNAROUND_US = 200000, TIMEOUT_MS = 1000, MAX_TIMEOUT_MS = 600000 };
-enum { MAX_BYTES = 251, MAX_FUNCTION = 127, MAX_WORDS = 300, WORD = 16 };
+enum { TURNAROUND_US = 200000, TIMEOUT_US = 1000000 };
+enum { MAX_BYTES = 251, MAX_FUNCTION = 127 };
 
 uint16_t request_word(const request_t *request, size_t at) { return decode_get16(request->frame + at); }
 
@@ -59,28 +44,24 @@ static bool parse(const char *text, uint32_t min, uint32_t max, uint32_t *number
     return true;
 }
 
-/* As the user has written it: see hide_minus. */
-static const char *as_given(const char *text) { return text + (text[0] == ' ' ? 1 : 0); }
-
 static bool take(const char *name, const char *text, uint32_t min, uint32_t max, uint32_t *number)
 {
     if (parse(text, min, max, number)) return true;
-    (void)usage_error(command, "%s is from %" PRIu32 " to %" PRIu32 ", in decimal or as 0x in hex, not '%s'",
-                      name, min, max, as_given(text));
+    (void)reject(&origin, "%s is from %" PRIu32 " to %" PRIu32 ", in decimal or as 0x in hex, not '%s'.",
+                 name, min, max, text);
     return false;
 }
 
 /* A negative one is on the wire in two's complement. */
 static bool take_value(const char *text, uint32_t *value)
 {
-    const char *const given = as_given(text);
     uint32_t size = 0;
-    if (given[0] == '-' && number_parse(given + 1, 1, -INT16_MIN, &size)) {
+    if (text[0] == '-' && number_parse(text + 1, 1, -INT16_MIN, &size)) {
         *value = UINT16_MAX + 1u - size;
         return true;
     }
     if (parse(text, 0, UINT16_MAX, value)) return true;
-    (void)usage_error(command, "VALUE is from -32768 to 65535, in decimal or as 0x in hex, not '%s'", given);
+    (void)reject(&origin, "VALUE is from -32768 to 65535, in decimal or as 0x in hex, not '%s'.", text);
     return false;
 }
 
@@ -95,7 +76,7 @@ static void put16(request_t *request, uint32_t word)
 static bool take_first(request_t *request, char **words, int count, uint32_t *first)
 {
     if (count == 0) {
-        (void)usage_error(command, "which register? such as 0x0101");
+        (void)reject(&origin, "which register? such as 0x0101.");
         return false;
     }
     if (!take("REGISTER", words[0], 0, UINT16_MAX, first)) return false;
@@ -109,12 +90,12 @@ static bool take_read(request_t *request, char **words, int count)
     uint32_t registers = 1;
     if (!take_first(request, words, count, &first)) return false;
     if (count > 2) {
-        (void)usage_error(command, "a read takes a register and how many; '%s' is too much", words[2]);
+        (void)reject(&origin, "a read takes a register and how many; '%s' is too much.", words[2]);
         return false;
     }
     if (count == 2 && !take("COUNT", words[1], 1, FATHOM_MODBUS_MAX_READ, &registers)) return false;
     if (first + registers > UINT16_MAX + 1u) {
-        (void)usage_error(command, "%" PRIu32 " registers from %s on go beyond 0xFFFF", registers, words[0]);
+        (void)reject(&origin, "%" PRIu32 " registers from %s on go beyond 0xFFFF.", registers, words[0]);
         return false;
     }
     put16(request, registers);
@@ -136,7 +117,7 @@ static bool take_write(request_t *request, char **words, int count)
     uint32_t first = 0;
     if (!take_first(request, words, count, &first)) return false;
     if (count == 2) return take_values(request, words + 1, 1);
-    (void)usage_error(command, "function 6 writes one value (several: function 16), not %d", count - 1);
+    (void)reject(&origin, "function 6 writes one value (several: function 16), not %d.", count - 1);
     return false;
 }
 
@@ -146,9 +127,8 @@ static bool take_write_many(request_t *request, char **words, int count)
     const int values = count - 1;
     if (!take_first(request, words, count, &first)) return false;
     if (values < 1 || values > FATHOM_MODBUS_MAX_WRITE || first + (uint32_t)values > UINT16_MAX + 1u) {
-        (void)usage_error(command,
-                          "function 16 writes 1 to 123 values, up to register 0xFFFF; not %d from %s on",
-                          values, words[0]);
+        (void)reject(&origin, "function 16 writes 1 to 123 values, up to register 0xFFFF; not %d from %s on.",
+                     values, words[0]);
         return false;
     }
     put16(request, (uint32_t)values);
@@ -159,16 +139,16 @@ static bool take_write_many(request_t *request, char **words, int count)
 static bool take_bytes(request_t *request, char **words, int count)
 {
     if (count > MAX_BYTES) {
-        (void)usage_error(command, "a request has %d bytes behind its function at most, not %d", MAX_BYTES,
-                          count);
+        (void)reject(&origin, "a request has %d bytes behind its function at most, not %d.", MAX_BYTES,
+                     count);
         return false;
     }
     for (int i = 0; i != count; i++) {
         const char *const digits = words[i] + (strncmp(words[i], "0x", 2) == 0 ? 2 : 0);
         const size_t length = strlen(digits);
         if (length < 1 || length > 2 || strspn(digits, "0123456789abcdefABCDEF") != length) {
-            (void)usage_error(command, "function %u takes bytes in hex, such as 0e, not '%s'",
-                              request->frame[REQUEST_FUNCTION], words[i]);
+            (void)reject(&origin, "function %u takes bytes in hex, such as 0e, not '%s'.",
+                         request->frame[REQUEST_FUNCTION], words[i]);
             return false;
         }
         put(request, (uint32_t)strtoul(digits, NULL, 16));
@@ -183,8 +163,9 @@ static bool take_frame(request_t *request, char **words, int count)
     uint32_t function = 0;
     bool is_taken = false;
     if (count < 2) {
-        (void)usage_error(command, count == 0 ? "which unit? and then the function, such as: 1 3 0x0101"
-                                              : "which function? 3, 4, 6, 16, or another and its bytes");
+        (void)reject(&origin, "the %s",
+                     count == 0 ? "unit is missing. Write it and then the function, such as: 1 3 0x0101."
+                                : "function is missing. It is 3, 4, 6, 16, or another one and its bytes.");
         return false;
     }
     if (!take("UNIT", words[0], 0, UINT8_MAX, &unit) ||
@@ -211,72 +192,84 @@ static bool take_frame(request_t *request, char **words, int count)
 
 /* ---- options ---- */
 
-/* A negative value is no option: a blank before it keeps getopt from it. */
-static bool hide_minus(int argc, char **argv, char *copy[MAX_WORDS + 1], char texts[MAX_WORDS][WORD])
-{
-    if (argc > MAX_WORDS) {
-        (void)usage_error(command, "there are too many words");
-        return false;
-    }
-    for (int i = 0; i != argc; i++) {
-        copy[i] = argv[i];
-        if (argv[i][0] != '-' || argv[i][1] < '0' || argv[i][1] > '9') continue;
-        (void)snprintf(texts[i], WORD, " %s", argv[i]);
-        copy[i] = texts[i];
-    }
-    copy[argc] = NULL;
-    return true;
-}
+/* The options before the frame is known. */
+typedef struct {
+    sensor_defaults_t line;
+    const char *sensor; /* NULL: not given */
+    uint32_t timeout_us;
+    bool is_json;
+    bool is_confirmed;
+} request_settings_t;
 
-static bool take_line(request_t *request, const char *const *values)
+static const option_t rows[] = {
+    {"sensor", "MODEL", "Use the line settings of MODEL, and decode the response for it", KIND_TEXT,
+     GROUP_COMMAND, AT(request_settings_t, sensor), .list = model_name},
+    {"timeout", "MS", "Wait at most MS for the response (default 1000)", KIND_NUMBER, GROUP_COMMAND, .min = 1,
+     .max = 600000, .scale = 1000, AT(request_settings_t, timeout_us)},
+    {"format", "FORMAT", "Print text or json (default text)", KIND_CHOICE, GROUP_OUTPUT, .words = "text json",
+     AT(request_settings_t, is_json)},
+    {"yes", .help = "Do not ask before a request that can change something", .group = GROUP_COMMAND,
+     AT(request_settings_t, is_confirmed)},
+    {.name = NULL},
+};
+
+static const option_table_t tables[] = {{rows, 0}, {port_rows, 0}, {NULL, 0}};
+
+static bool set_line(request_t *request, const request_settings_t *settings)
 {
-    const char *const given[SENSOR_OPTIONS] = {[OPTION_BAUD] = values[BAUD],
-                                               [OPTION_PARITY] = values[PARITY],
-                                               [OPTION_STOP_BITS] = values[STOP_BITS],
-                                               [OPTION_ECHO] = values[ECHO]};
-    sensor_defaults_t defaults = {.path = NULL};
-    if (!values_store(port_rows, given, &defaults, command)) return false;
-    port_options_t port = {.path = values[PORT], .keys = defaults.keys};
-    port.keys.has[KEY_RS485] = values[RS485] != NULL;
-    port.keys.value[KEY_RS485] = values[RS485] != NULL;
-    if (!option_port(command, port.path)) return false;
+    port_options_t port = {.path = settings->line.path, .keys = settings->line.keys};
+    request->line = (fathom_line_settings_t){9600, FATHOM_PARITY_NONE, 1};
+    if (settings->sensor != NULL) {
+        request->model = model_word(settings->sensor, &origin);
+        if (request->model == NULL) return false;
+        request->line = request->model->line;
+    }
+    if (port.path == NULL)
+        return reject(&origin,
+                      "--port is missing, such as --port /dev/ttyUSB0. 'fathom help ports' explains ports.");
     port_options_take(&port, &port.keys);
     port_options_line(&port, &port.keys, &request->line);
     request->echo = port.echo;
-    request->rs485 = port.rs485;
+    request->rs485 = settings->line.rs485;
     request->path = port.path;
     return true;
 }
 
-static bool take_options(request_t *request, const char *const *values)
+bool request_options(request_t *request, const arguments_t *arguments)
 {
-    uint32_t timeout_ms = TIMEOUT_MS;
-    request->line = (fathom_line_settings_t){9600, FATHOM_PARITY_NONE, 1};
-    if (values[SENSOR] != NULL) {
-        const origin_t origin = {.command = command};
-        request->model = model_word(values[SENSOR], &origin);
-        if (request->model == NULL) return false;
-        request->line = request->model->line;
-    }
-    if (!take_line(request, values) ||
-        !option_number(command, "timeout", values[TIMEOUT], 1, MAX_TIMEOUT_MS, &timeout_ms) ||
-        !option_json(command, values[FORMAT], &request->is_json))
+    const request_settings_t *const settings = arguments->settings;
+    const uint32_t timeout_us = settings->timeout_us != 0 ? settings->timeout_us : TIMEOUT_US;
+    memset(request, 0, sizeof *request);
+    if (!take_frame(request, arguments->words, arguments->count) || !set_line(request, settings))
         return false;
-    request->timeout_us = request_is_broadcast(request) ? TURNAROUND_US : timeout_ms * 1000u;
-    request->is_meant = values[YES] != NULL;
+    request->timeout_us = request_is_broadcast(request) ? TURNAROUND_US : timeout_us;
+    request->is_json = settings->is_json;
+    request->is_confirmed = settings->is_confirmed;
     return true;
 }
 
-bool request_options(request_t *request, int argc, char **argv, bool *wants_help)
-{
-    const char *values[OPTIONS] = {NULL};
-    char *copy[MAX_WORDS + 1];
-    char texts[MAX_WORDS][WORD];
-    memset(request, 0, sizeof *request);
-    if (!hide_minus(argc, argv, copy, texts)) return false;
-    const int rest = options_parse(command, argc, copy, table, values);
-    if (rest < 0) return false;
-    *wants_help = values[HELP] != NULL;
-    if (*wants_help) return true;
-    return take_frame(request, copy + rest, argc - rest) && take_options(request, values);
-}
+const command_t request_command = {
+    .name = "request",
+    .summary = "Send one Modbus request and print the response",
+    .usage = "UNIT 3 REGISTER [COUNT] [OPTIONS]\n"
+             "UNIT 6 REGISTER VALUE [OPTIONS]\n"
+             "UNIT 16 REGISTER VALUE... [OPTIONS]\n"
+             "UNIT FUNCTION [BYTE...] [OPTIONS]",
+    .about = "Numbers are decimal, or hex behind 0x; BYTE is hex. REGISTER is the address on\n"
+             "the wire, as the datasheets print it (0x0101). VALUE may be negative. The CRC\n"
+             "is added. Nothing is repeated. Unit 0 is all units, which do not respond.\n"
+             "What can change something is printed first, and must be confirmed: writes,\n"
+             "functions other than 1 to 4, units 0 and 255, and reads of 0x0009, which\n"
+             "reset an hps167s. Any request stops the automatic output of an A16 or A05.\n",
+    .tables = tables,
+    .common = "port sensor yes timeout format",
+    .examples = "  fathom request 1 3 0x0101 --port /dev/ttyUSB0 --sensor a16\n"
+                "  fathom request 7 3 0x0008 4 --port /dev/ttyUSB0 --sensor hps167s\n"
+                "  fathom request 1 6 0x0206 2000 --port /dev/ttyUSB0 --yes\n"
+                "  fathom request 1 0x2b 0e 01 00 --port /dev/ttyUSB0 --yes\n",
+    .status = "Exit status: 0 a response or an echo, or sent to all units; 1 no or a damaged\n"
+              "response, or an exception; 2 wrong usage, or not confirmed.\n",
+    .topics = "ports",
+    .settings_size = sizeof(request_settings_t),
+    .start = request_start,
+};

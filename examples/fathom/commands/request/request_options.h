@@ -2,6 +2,7 @@
 #ifndef REQUEST_OPTIONS_H
 #define REQUEST_OPTIONS_H
 
+#include "cli/command.h"
 #include "sensors/models.h"
 
 /* Where it stands in a request. */
@@ -18,13 +19,16 @@ typedef struct {
     uint8_t echo; /* fathom_line_parts_t.echo */
     bool rs485;   /* the kernel's driver is to drive the transceiver */
     bool is_json;
-    bool is_meant;      /* --yes */
+    bool is_confirmed;  /* --yes */
     uint8_t frame[255]; /* with its CRC */
     uint8_t length;
 } request_t;
 
-/* False after a usage error. *wants_help: --help was given, nothing else was looked at. */
-bool request_options(request_t *request, int argc, char **argv, bool *wants_help);
+/* Reads the words and the options. False after rejecting what is wrong. */
+bool request_options(request_t *request, const arguments_t *arguments);
+
+/* command_t.start */
+int request_start(const host_t *host, const arguments_t *arguments);
 
 /* The register or the number that stands there in the request. */
 uint16_t request_word(const request_t *request, size_t at);

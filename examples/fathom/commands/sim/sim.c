@@ -167,7 +167,7 @@ const command_t sim_command = {
                 "  fathom sim a16:1:modbus a05:2:modbus hps167s:7,distance=2083 --link ./bus\n",
     .status = "Exit status: 0 after Ctrl-C, 1 the port or the link cannot be made, 2 wrong usage.\n",
     .topics = "faults, sensors",
-    .operands = operands_sensors,
+    .operands = operands_simulated,
     .settings_size = sizeof(sim_settings_t),
     .start = start,
 };
