@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "cli/rows.h"
-#include "commands/scan/scan_report.h"
 #include "device/setting_text.h"
 #include "ports/line_text.h"
 #include "reading/fields.h"

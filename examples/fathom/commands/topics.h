@@ -10,4 +10,7 @@ extern const topic_t topics[];
 /* The topic `faults`, in the folder of `fathom sim`. */
 void topic_faults(FILE *to);
 
+/* Writes a line for each field of the JSON of `fathom scan`. */
+void scan_help_fields(FILE *to);
+
 #endif

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): fmemopen */
 #include "commands/scan/scan_report.h"
+#include "commands/topics.h"
 
 #include <inttypes.h>
 #include <stdio.h>

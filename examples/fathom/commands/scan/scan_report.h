@@ -10,9 +10,6 @@
 void scan_print_text(FILE *to, const scan_finding_t *finding, const char *port);
 void scan_print_json(FILE *to, const scan_finding_t *finding, const char *port);
 
-/* Writes a line for each field of the JSON. */
-void scan_help_fields(FILE *to);
-
 /* What the finding calls for besides its line, on `to`; nothing for most. */
 void scan_print_advice(FILE *to, const scan_finding_t *finding);
 
