@@ -44,26 +44,26 @@ typedef struct {
 
 enum { SENSOR = 1, OPTICS = 2, VALUE = 4 };
 
-#define AT(member) offsetof(row_t, member)
+#define FOUND(member) offsetof(row_t, member)
 static const field_t fields[] = {
-    {"kind", "", "sensor, other_modbus, damaged, not_modbus, sender or master", FIELD_WORD, 0, AT(kind)},
-    {"model", "", "Model; null unless it is one of the known sensors", FIELD_WORD, 0, AT(model)},
-    {"address", "", "Address; null if there is none", FIELD_NUMBER, 0, AT(address)},
-    {"baud", "", "Baud rate", FIELD_NUMBER, 0, AT(baud)},
-    {"parity", "", "Parity", FIELD_WORD, 0, AT(parity)},
-    {"stop_bits", "", "Stop bits", FIELD_NUMBER, 0, AT(stop_bits)},
-    {"mode", "", "Mode in which the sensor can be read", FIELD_WORD, SENSOR, AT(mode)},
+    {"kind", "", "sensor, other_modbus, damaged, not_modbus, sender or master", FIELD_WORD, 0, FOUND(kind)},
+    {"model", "", "Model; null unless it is one of the known sensors", FIELD_WORD, 0, FOUND(model)},
+    {"address", "", "Address; null if there is none", FIELD_NUMBER, 0, FOUND(address)},
+    {"baud", "", "Baud rate", FIELD_NUMBER, 0, FOUND(baud)},
+    {"parity", "", "Parity", FIELD_WORD, 0, FOUND(parity)},
+    {"stop_bits", "", "Stop bits", FIELD_NUMBER, 0, FOUND(stop_bits)},
+    {"mode", "", "Mode in which the sensor can be read", FIELD_WORD, SENSOR, FOUND(mode)},
     {"interface_version", "", "Version of the interface (hps167s)", FIELD_WORD, OPTICS,
-     AT(interface_version)},
-    {"sensor_version", "", "Version of the sensor (hps167s)", FIELD_WORD, OPTICS, AT(sensor_version)},
-    {"uuid", "", "Unique number of the sensor (hps167s)", FIELD_WORD, OPTICS, AT(uuid)},
+     FOUND(interface_version)},
+    {"sensor_version", "", "Version of the sensor (hps167s)", FIELD_WORD, OPTICS, FOUND(sensor_version)},
+    {"uuid", "", "Unique number of the sensor (hps167s)", FIELD_WORD, OPTICS, FOUND(uuid)},
     {"termination", "", "Whether the termination resistor is on (hps167s)", FIELD_FLAG, OPTICS,
-     AT(termination)},
-    {"status", "", "Kind of the first value", FIELD_WORD, VALUE, AT(status)},
-    {"distance_mm", "mm", "Distance of the first probe", FIELD_NUMBER, VALUE, AT(distance_mm)},
-    {"raw", "", "Value that the sensor sent", FIELD_NUMBER, VALUE, AT(raw)},
-    {"is_double", "", "Whether one request had two responses", FIELD_FLAG, 0, AT(is_double)},
-    {"next", "", "Command to type next", FIELD_WORD, 0, AT(next)},
+     FOUND(termination)},
+    {"status", "", "Kind of the first value", FIELD_WORD, VALUE, FOUND(status)},
+    {"distance_mm", "mm", "Distance of the first probe", FIELD_NUMBER, VALUE, FOUND(distance_mm)},
+    {"raw", "", "Value that the sensor sent", FIELD_NUMBER, VALUE, FOUND(raw)},
+    {"is_double", "", "Whether one request had two responses", FIELD_FLAG, 0, FOUND(is_double)},
+    {"next", "", "Command to type next", FIELD_WORD, 0, FOUND(next)},
     {.key = NULL},
 };
 #undef AT
