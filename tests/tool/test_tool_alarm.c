@@ -37,21 +37,6 @@ TEST(near_goes_on_and_off_at_thresholds_of_its_own)
     expect_err(run, "fathom: attempts 8, failed 0, readings 8\n");
 }
 
-TEST(far_goes_on_and_off_at_thresholds_of_its_own)
-{
-    SEES_A16(1800, 2000, 2001, 1950, 1900, 1899, 2000);
-    expect_text(alarm_of("a16:1:modbus", "far>2000/1900" SAFE, "--count 7"),
-                "0 a16: alarm off, 1800 mm\n2 a16: alarm on, 2001 mm\n5 a16: alarm off, 1899 mm\n");
-}
-
-/* At 500 it is neither nearer nor farther. */
-TEST(a_single_threshold_is_both)
-{
-    SEES_A16(501, 500, 499, 500, 501);
-    expect_text(alarm_of("a16:1:modbus", "near<500" SAFE, "--count 5"),
-                "0 a16: alarm off, 501 mm\n2 a16: alarm on, 499 mm\n4 a16: alarm off, 501 mm\n");
-}
-
 /* alarm.h: between the thresholds, and nothing before: as the user says of "unknown" */
 TEST(a_first_distance_between_the_thresholds_is_as_unknown)
 {
@@ -75,17 +60,6 @@ TEST(no_target_is_far_or_unknown)
     expect_text(
         alarm_of("a16:1:modbus", "near<500,unknown=off,no-response=on,no-target=unknown", "--count 8"),
         "0 a16: alarm on, 400 mm\n5 a16: alarm unknown (off)\n");
-}
-
-/* Off after 2.5 s: with the fourth sample; on after 1.5 s: with the third one. */
-TEST(a_distance_has_to_hold)
-{
-    SEES_A16(700, 700, 700, 700, 400, 400, 400, 700, 400);
-    expect_text(alarm_of("a16:1:modbus", "near<500,hold=1500/2500" SAFE, "--count 9"),
-                "3 a16: alarm off, 700 mm\n6 a16: alarm on, 400 mm\n");
-    SEES_A16(700, 700, 700, 400, 400, 400, 400);
-    expect_text(alarm_of("a16:1:modbus", "near<500,hold=1500" SAFE, "--count 7"),
-                "2 a16: alarm off, 700 mm\n5 a16: alarm on, 400 mm\n");
 }
 
 /* Of 700 700 700 it is 700, of 700 700 400 too, of 700 400 400 it is 400. */
@@ -272,20 +246,6 @@ TEST(until_alarm_ends_with_3_when_one_is_on)
     assert_int_equal(run->status, 3);
     assert_in_range(run->took_us, 5000000, 5200000);
     expect_err(run, "fathom: attempts 2, failed 2, readings 0\n");
-}
-
-TEST(until_alarm_ends_as_ever_when_none_goes_on)
-{
-    SEES_A16(700);
-    assert_int_equal(alarm_of("a16:1:modbus", "near<500" SAFE, "--until-alarm --count 3")->status, 0);
-    SEES_A16(700);
-    bench.tool.ctrl_c_us = 3000000;
-    assert_int_equal(alarm_of("a16:1:modbus", "near<500" SAFE, "--until-alarm")->status, 0);
-    (void)set_up(NULL);
-    const tool_run_t *const run =
-        alarm_of("a16:1:modbus", "near<500,unknown=on,no-response=off", "--until-alarm --count 8");
-    assert_int_equal(run->status, 1);
-    expect_text(run, "5 a16: alarm no_response (off)\n");
 }
 
 TEST(without_until_alarm_an_alarm_is_no_exit_status)

@@ -28,17 +28,6 @@ TEST(a_spike_is_dropped_and_the_median_of_the_others_is_printed)
     expect_err(run, "fathom: a16:1: spikes dropped 1\n");
 }
 
-/* 3000 is one of 1010 990 3000, whose middle one is 1010. */
-TEST(without_a_gate_nothing_is_dropped)
-{
-    SEES_A16(1000, 1010, 990, 3000);
-    const tool_run_t *const run = read_steps("a16:1:modbus", "--count 4 --median 3 --stats --format json");
-    assert_non_null(strstr(run->out, "\"distance_mm\":1000,"));
-    assert_non_null(strstr(run->out, "\"distance_mm\":1010,\"raw\":3000}"));
-    expect_err(run, ",\"dropped_spikes\":0,");
-    assert_null(strstr(run->err, "spikes dropped"));
-}
-
 TEST(the_counters_have_the_spikes_where_there_is_a_median)
 {
     SEES_A16(1000, 1000, 1000, 3000, 1000, 3000);
@@ -117,15 +106,6 @@ TEST(a_reading_has_the_level_in_an_upright_tank)
     expect_level(200, "capacity=5000", "2100 mm  1000 per mille  volume 5000");
     expect_level(2400, "capacity=5000", "-100 mm  0 per mille  volume 0");
     expect_level(FATHOM_SIM_NO_TARGET, "capacity=5000", NULL);
-}
-
-/* At three quarters of the diameter (acos(-1/2) + sqrt(3)/4) / pi = 0.8045 of the area, of 100 80.45; half and full
- * are exact. */
-TEST(a_reading_has_the_level_in_a_horizontal_cylinder)
-{
-    expect_level(1300, "capacity=5000,shape=horizontal-cylinder", "1000 mm  500 per mille  volume 2500");
-    expect_level(300, "capacity=5000,shape=horizontal-cylinder", "2000 mm  1000 per mille  volume 5000");
-    expect_level(800, "capacity=100,shape=horizontal-cylinder", "1500 mm  750 per mille  volume 80");
 }
 
 /* 1000 mm is half way from 500 to 1500: (400 + 4000) / 2; 250 mm half way from the bottom */

@@ -18,22 +18,6 @@ class Alarm(e2e.Case):
         """A simulated A16 takes up to 0.5 s."""
         return self.fathom(f'read a16 --mode modbus --port {sim.port}', options, ['--alarm', ALARM])
 
-    def test_until_alarm_ends_with_3_as_soon_as_something_is_near(self):
-        device = self.device()
-        reader = self.begin(device.port, '--until-alarm --stats')
-        for mm in (700, 550, 499):
-            device.asked(e2e.ASK_A16, e2e.registers(1, mm))
-        done = self.ends(reader, 3, 'fathom: attempts 3, failed 0, readings 3')
-        self.assertRegex(done.out, r'^ +[\d.]+ s  a16: alarm off, 700 mm\n +[\d.]+ s  a16: alarm on, 499 mm\n$')
-
-    def test_until_alarm_ends_with_3_when_the_sensor_falls_silent(self):
-        device = self.device()
-        reader = self.begin(device.port, '--until-alarm --format csv')
-        device.asked(e2e.ASK_A16, e2e.registers(1, 700))
-        done = self.ends(reader, 3, 'no byte was received')
-        self.assertEqual([(row['alarm'], row['is_on'], row['distance_mm']) for row in done.rows],
-                         [('off', 'false', '700'), ('no_response', 'true', '')])
-
     def test_until_alarm_ends_with_3_when_the_port_is_lost_and_waited_for(self):
         port = self.path('port')
         device = self.device()
@@ -67,10 +51,6 @@ class Alarm(e2e.Case):
         reader = self.look(sim, '--until-alarm')
         reader.expect('alarm off, 700 mm')
         self.assertEqual(reader.end(signal.SIGINT).code, 0)
-
-    def test_without_until_alarm_it_reads_on(self):
-        sim = self.sim('a16::modbus --distance 400')
-        self.assertEqual(self.ends(self.look(sim, '--count 3'), 0).out.count('alarm on, 400 mm\n'), 1)
 
 
 if __name__ == '__main__':

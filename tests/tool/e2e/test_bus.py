@@ -38,12 +38,6 @@ class Read(e2e.Case):
                                ('hps167s', 'modbus', 7, 1, 'target', 2083): 4})
         self.assertEqual(done.err, '')
 
-    def test_each_line_of_text_names_sensor_and_address(self):
-        lines = self.ends(f'read {BUS} --port {self.bus()} --count 1', 0).out.splitlines()
-        self.assertEqual(sorted(re.sub(r'^ *[\d.]+ s  ', '', line).split('  ')[0] for line in lines),
-                         ['a05:2 probe 1', 'a05:2 probe 2', 'a05:2 probe 3', 'a05:2 probe 4', 'a16:1',
-                          'hps167s:7'])
-
     def test_a_table_has_the_columns_of_all(self):
         done = self.ends(f'read a16:1 hps167s:7 --port {self.bus()} --count 1 --format csv', 0)
         header, *rows = [line.split(',') for line in done.out.splitlines()]
@@ -71,12 +65,6 @@ class Read(e2e.Case):
             device.read(8)
             self.assertEqual(device.baud(), termios.B57600)
         self.ends(reader, 1)
-
-    def test_a_form_with_colons_is_the_form_with_options(self):
-        sim = self.sim('a16:5:modbus --distance 754')
-        for words in ('a16:5:modbus', 'a16:5', 'a16 --address 5 --mode modbus'):
-            one, = self.read_json(f'{words} --port {sim} --count 1')
-            self.assertEqual((one['mode'], one['address'], one['distance_mm']), ('modbus', 5, 754))
 
     def test_the_end_comes_after_so_many_seconds(self):
         done = self.ends(f'read {BUS} --port {self.bus()} --duration 2', 0)
@@ -140,16 +128,6 @@ class Dead(e2e.Case):
         self.assertEqual(stats['attempts'], sum(one['attempts'] for one in stats['sensors']))
         self.assertEqual(stats['requests'], sum(requests.values()))
 
-    def test_text_tells_the_same_of_each(self):
-        done, requests = self.read('--count 4 --timeout 1000 --stats')
-        self.assertEqual(requests, {1: 4, 2: 4, 3: 4})
-        self.assertRegex(done.err, r'(?m)^fathom: a16:1: attempts 4, failed 0, readings 4, responses 4, '
-                                   r'failed_requests 0, timeouts_in_row 0, backoff_left_us 0, '
-                                   r'response_min_us \d+')
-        self.assertRegex(done.err, r'(?m)^fathom: a16:2: attempts 4, failed 4, readings 0, responses 0, '
-                                   r'failed_requests 4, timeouts_in_row 4, backoff_left_us (2000000|[01]?\d{1,6})$')
-        self.assertRegex(done.err, '(?m)^fathom: a05:3: attempts 4, failed 0, readings 16, ')
-
     def test_the_only_one_on_a_line_is_asked_again_and_again(self):
         _, reader = self.beside('read a16:2 --timeout 60 --count 8 --stats --format json')
         one, = reader.finish().told[0]['sensors']
@@ -193,14 +171,6 @@ class Gateway(tcp_server.Case):
 
 
 class Port(e2e.Case):
-    def test_the_loss_of_the_port_is_told_once_and_ends_it(self):
-        device, reader = self.beside('read a16:1 hps167s:2')
-        device.read(8)
-        device.hang_up()
-        done = self.ends(reader, 1)
-        self.assertEqual(done.err.count('attempt '), 1, done.err)
-        self.assertNotRegex(done.err, r'a16:1: attempt \d')
-
     def test_ctrl_c_ends_it_in_order(self):
         reader = self.fathom(f'read {BUS} --port {self.sim(SEEN)}')
         reader.expect('hps167s:7')

@@ -25,16 +25,6 @@ class Late(e2e.Case):
                          re.compile(r'line: responses 1, .*no_responses 1, .*late_responses 1, '))
         self.assertEqual(done.mm, ['2222'])
 
-    def test_the_next_request_waits_for_the_late_response_at_least_another_time_out(self):
-        device, say, reader = self.begin(2, 1000)
-        device.asked(e2e.ASK_A16)
-        reader.expect('attempt 1: no response', 'err')
-        self.assertTrue(device.is_silent(0.7))
-        say(1111)
-        device.asked(e2e.ASK_A16)
-        say(2222)
-        self.assertEqual(reader.finish().mm, ['2222'])
-
     def test_each_response_one_request_too_late(self):
         device, say, reader = self.begin(5, 500)
         for number in range(1, 6):
@@ -47,30 +37,6 @@ class Late(e2e.Case):
         self.assertEqual(re.findall(r'attempt (\d): .*: the response arrived after the time-out',
                                     done.err),
                          ['2', '3', '4', '5'])
-
-    def test_a_late_response_serves_a_retry_of_its_own_request(self):
-        device, say, reader = self.begin(1, 500, '--retries 1')
-        device.asked(e2e.ASK_A16)
-        self.assertTrue(device.is_silent(0.6))  # the time-out has passed, the retry waits
-        say(1111)
-        self.assertEqual(self.ends(reader, 0, 'late_responses 1').mm, ['1111'])
-
-    def test_a_unit_that_never_answers_is_asked_again(self):
-        device, _, reader = self.begin(3, 150)
-        for number in range(1, 4):
-            device.asked(e2e.ASK_A16)
-            reader.expect(f'attempt {number}: no response', 'err')
-        self.ends(reader, 1)
-
-    def test_an_unasked_response_in_a_pause_is_not_the_next_reading(self):
-        device, say, reader = self.begin(2, 1000, '--interval 1500')
-        device.asked(e2e.ASK_A16)
-        say(1111)
-        reader.expect(',1111,')
-        say(3333)
-        device.asked(e2e.ASK_A16)
-        say(2222)
-        self.assertEqual(self.ends(reader, 0).mm, ['1111', '2222'])
 
 
 if __name__ == '__main__':

@@ -66,14 +66,6 @@ class Lost(Case):
         self.assertGreaterEqual(len(between), 20)
         self.assertEqual(done.err.count('Waiting until'), 1)
 
-    def test_without_reconnect_the_others_are_read_on(self):
-        reader = self.begin(self.sensor('one'), self.sensor('two'), options='--count 30 --stats')
-        self.has(reader, 'one', 3)
-        self.sims['one'].end()
-        done = self.ends(reader, 1, 'With --reconnect, fathom waits for it', 'two: attempts 30, failed 0, readings 30,')
-        self.assertEqual(len(self.times(reader, 'two')), 30)
-        self.assertEqual(done.err.count('Connect it again'), 1)
-
     def test_a_port_that_is_away_takes_next_to_no_cpu(self):
         reader = self.fathom('read', [self.sensor('one'), f'a16@{self.path("nowhere")}'],
                              '--interval 1000 --reconnect --duration 4')
@@ -109,11 +101,6 @@ class Paths(Case):
         for other in (port, f'{self.folder}/./bus'):
             self.ends(['read', f'one=hps167s:1@{link}', f'seven=hps167s:7@{other}', '--count', '2', '--stats'], 0,
                       'one: attempts 2, failed 0', 'seven: attempts 2, failed 0')
-
-    def test_what_they_may_not_share_is_said(self):
-        link, port = self.begin_bus()
-        self.ends(['read', f'one=hps167s:1@{link}', f'two=hps167s:1@{port}', '--count', '2'], 2,
-                  'one and two have the same address, so both would respond at once')
 
 
 class Connections(Case):
