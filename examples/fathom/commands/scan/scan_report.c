@@ -46,7 +46,7 @@ enum { SENSOR = 1, OPTICS = 2, VALUE = 4 };
 
 #define FOUND(member) offsetof(row_t, member)
 static const field_t fields[] = {
-    {"kind", "", "sensor, other_modbus, damaged, not_modbus, sender or master", FIELD_WORD, 0, FOUND(kind)},
+    {"kind", "", "What was found: sensor, other_modbus, damaged, ...", FIELD_WORD, 0, FOUND(kind)},
     {"model", "", "Model; null unless it is one of the known sensors", FIELD_WORD, 0, FOUND(model)},
     {"address", "", "Address; null if there is none", FIELD_NUMBER, 0, FOUND(address)},
     {"baud", "", "Baud rate", FIELD_NUMBER, 0, FOUND(baud)},
@@ -66,7 +66,7 @@ static const field_t fields[] = {
     {"next", "", "Command to type next", FIELD_WORD, 0, FOUND(next)},
     {.key = NULL},
 };
-#undef AT
+#undef FOUND
 
 static const char *word_of(const char *text) { return text[0] != '\0' ? text : NULL; }
 
