@@ -15,17 +15,14 @@ typedef struct {
     uint32_t us;
 } reading_t;
 
-/* The next reading of those that remote_watch_clock makes; after its mark, `stall` cycles pass at once. */
-static reading_t next_reading(uint64_t (*stall)(uint64_t cycle))
+/* The next reading of those that remote_watch_clock makes. */
+static reading_t next_reading(void)
 {
     reading_t reading = {0, 0};
     for (;;) {
         const board_record_t *const record = board_next_record(100000);
         assert_non_null(record);
-        if (record->kind == REMOTE_MARK) {
-            if (stall != NULL) board_stall(stall(record->cycle));
-            reading.cycle = board.avr->cycle;
-        }
+        if (record->kind == REMOTE_MARK) reading.cycle = board.avr->cycle;
         if (record->kind != REMOTE_CLOCK || reading.cycle == 0) continue;
         assert_int_equal(record->length, 4);
         reading.us = board_number(record->bytes, 4);
@@ -46,24 +43,18 @@ static int64_t zero_cycle(reading_t reading)
     return (int64_t)reading.cycle - (int64_t)reading.us * BOARD_CYCLES_PER_US;
 }
 
-/* interrupt_cycles: of one that may have come between the mark and the reading. */
-static void assert_nearly_right(reading_t reading, int64_t zero, uint64_t wraps, int64_t interrupt_cycles)
-{
-    const int64_t off = zero_cycle(reading) - zero - (int64_t)(wraps * BOARD_CYCLES_PER_US << 32);
-    assert_true(off > -BOARD_CYCLES_PER_US - 4 - interrupt_cycles && off < BOARD_CYCLES_PER_US + 4);
-}
-
 static void assert_right(reading_t reading, int64_t zero, uint64_t wraps)
 {
-    assert_nearly_right(reading, zero, wraps, 0);
+    const int64_t off = zero_cycle(reading) - zero - (int64_t)(wraps * BOARD_CYCLES_PER_US << 32);
+    assert_true(off > -BOARD_CYCLES_PER_US - 4 && off < BOARD_CYCLES_PER_US + 4);
 }
 
 /* Takes a few readings away from any overflow, which has all later ones compared with them. */
 static int64_t set_off(void)
 {
     watch(0);
-    const int64_t zero = zero_cycle(next_reading(NULL));
-    for (int i = 0; i < 100; i++) assert_right(next_reading(NULL), zero, 0);
+    const int64_t zero = zero_cycle(next_reading());
+    for (int i = 0; i < 100; i++) assert_right(next_reading(), zero, 0);
     remote_watch_clock(false, 0);
     board_run_us(100);
     return zero;
@@ -80,7 +71,7 @@ TEST(it_is_right_to_the_microsecond_for_72_minutes_with_a_wrap)
         remote_idle(32000);
         if (slept % 500 != 0) continue;
         watch(0);
-        const reading_t reading = next_reading(NULL);
+        const reading_t reading = next_reading();
         const uint64_t since = reading.cycle - (uint64_t)zero;
         remote_watch_clock(false, 0);
         board_run_us(100);
@@ -92,10 +83,6 @@ TEST(it_is_right_to_the_microsecond_for_72_minutes_with_a_wrap)
     assert_true(board.asleep_cycles > board.avr->cycle / 100 * 99);
 }
 
-static int64_t zero_of_stall;
-static int phase_of_stall;
-static bool has_stalled;
-
 /* With interrupts off for 16 ms at a time, most overflows are counted late; each reading looks at them itself. */
 TEST(overflows_that_wait_for_16_ms_are_in_each_reading)
 {
@@ -103,7 +90,7 @@ TEST(overflows_that_wait_for_16_ms_are_in_each_reading)
     uint32_t last_us = 0, pending = 0;
     watch(255); /* 261120 cycles */
     for (int i = 0; i < 400; i++) {
-        const reading_t reading = next_reading(NULL);
+        const reading_t reading = next_reading();
         assert_right(reading, zero, 0);
         assert_true(reading.us > last_us);
         if ((reading.cycle - (uint64_t)zero) % PERIOD_CYCLES < 261120) pending++;
