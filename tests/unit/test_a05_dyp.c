@@ -11,6 +11,7 @@ enum { STEP_US = 250, REQUEST_US = 5 * RIG_BYTE_US };
 static const uint8_t ask_all[] = {0x55, 0xAA, 0x01, 0x01, 0x01};
 static const uint8_t four[] = {0x55, 0xAA, 0x01, 0x01, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x62};
 static const uint16_t four_mm[] = {1000, 2000, 1953, 3562};
+static const uint8_t first_1953[] = {0x55, 0xAA, 0x01, 0x10, 0x07, 0xA1, 0xB8};
 
 static fathom_a05_dyp_config_t config;
 static fathom_a05_dyp_t a05;
@@ -115,6 +116,37 @@ TEST(four_samples_share_sequence_and_time)
     }
 }
 
+TEST(every_choice_of_several_probes_measures_all_and_hands_over_the_wanted)
+{
+    for (uint8_t probes = 1; probes != 16; probes++) {
+        if ((probes & (probes - 1)) == 0) continue;
+        start_with(probes, 0, 0);
+        tell(0, four, sizeof four);
+        for (uint8_t probe = 1; probe <= 4; probe++)
+            if ((probes >> (probe - 1) & 1) != 0) takes(probe);
+        nothing_for(1000);
+    }
+}
+
+TEST(one_probe_is_measured_alone)
+{
+    for (uint8_t probe = 1; probe <= 4; probe++) {
+        const uint8_t command = (uint8_t)(0x0F + probe);
+        const uint8_t request[] = {0x55, 0xAA, 0x01, command, command}; /* FF + 01 = 100 */
+        const uint8_t response[] = {0x55, 0xAA, 0x01, command, 0x07, 0xA1, (uint8_t)(0xA8 + command)};
+        start_with((uint8_t)(1u << (probe - 1)), 0, 0);
+        until_written(0);
+        assert_int_equal(rig.fake.writes[0].length, sizeof request);
+        assert_memory_equal(rig.fake.writes[0].bytes, request, sizeof request);
+        nothing_for(70000);
+        receive(response, sizeof response);
+        assert_int_equal(rig_poll(), FATHOM_OK);
+        assert_int_equal(rig.sample.probe, probe);
+        assert_int_equal(rig.sample.distance_mm, 1953);
+        nothing_for(1000);
+    }
+}
+
 /* Each probe's value for itself: FFFD is no object, FFFE interference of sister models (dyp.h), 0 unknown; 6001 is
  * outside. FF + 01 + 01 = 101; FF + FD = 1FC; FF + FE = 1FD; 0; 17 + 71 = 88: 01 + FC + FD + 88 =
  * 282. */
@@ -139,6 +171,82 @@ TEST(a_value_that_cannot_be_is_refused_alone)
     takes(3);
     assert_int_equal(rig_poll(), FATHOM_ERR_MALFORMED);
     nothing_for(1000);
+}
+
+/* ---- time ---- */
+
+/* From one command to the next at least 250 ms for all probes, 100 ms for one (A05 2(3)1); the responses are
+ * instant. */
+static void assert_period(uint32_t expected_us)
+{
+    uint32_t last_us = 0;
+    for (unsigned n = 0; n != 4; n++) {
+        const uint32_t at_us = until_written(n);
+        if (n != 0) assert_in_range(at_us - last_us, expected_us, expected_us + 2 * STEP_US);
+        last_us = at_us;
+        nothing_for(10000);
+        if (config.probes == 0)
+            receive(four, sizeof four);
+        else
+            receive(first_1953, sizeof first_1953);
+        for (unsigned i = config.probes == 0 ? 4 : 1; i != 0; i--) assert_int_equal(rig_poll(), FATHOM_OK);
+        nothing_for(STEP_US);
+        assert_in_range(fathom_due_us(&rig.sensor, 1), expected_us - 12000, expected_us - 10000);
+    }
+}
+
+TEST(commands_keep_the_least_time_between_them)
+{
+    static const uint32_t rows[][3] = {{0, 0, 250000},     {1, 0, 100000},      {0, 249999, 250000},
+                                       {1, 99999, 100000}, {0, 300000, 300000}, {1, 250000, 250000}};
+    for (unsigned i = 0; i != COUNT(rows); i++) {
+        start_with((uint8_t)rows[i][0], rows[i][1], 0);
+        assert_period(rows[i][2]);
+    }
+}
+
+TEST(a_dead_sensor_is_asked_less_often_and_no_less_than_the_config_says)
+{
+    config.probes = 1;
+    config.modbus.backoff_us = 300000;
+    start();
+    for (unsigned n = 0; n != 8; n++) {
+        const uint32_t at_us = until_written(n);
+        assert_int_equal(next_within(300000, rig_poll), FATHOM_ERR_NO_RESPONSE);
+        /* 200 ms of time-out and as much of quarantine; from the third on the pause: 200, then 300 ms after it. */
+        if (n >= 4) assert_true(at_us - rig.fake.writes[n - 1].at_us >= 500000);
+        if (n >= 1) assert_true(at_us - rig.fake.writes[n - 1].at_us <= 520000);
+    }
+}
+
+/* 1.5 s, or as the config says, and then a time-out and a quarantine. */
+TEST(after_power_on_silence_is_warming_up)
+{
+    static const uint32_t starts_us[][2] = {{0, 1500000}, {700000, 700000}};
+    for (unsigned i = 0; i != 2; i++) {
+        fathom_status_t status = FATHOM_ERR_WARMING_UP;
+        set_up_at(RIG_START_US);
+        config.start_us = starts_us[i][0];
+        start();
+        fathom_a05_dyp_power_on(&a05);
+        while (status == FATHOM_ERR_WARMING_UP) status = next_within(2000000, rig_poll);
+        assert_int_equal(status, FATHOM_ERR_NO_RESPONSE);
+        assert_in_range(rig.fake.now_us - RIG_START_US, starts_us[i][1], starts_us[i][1] + 1600000);
+    }
+}
+
+/* ---- errors ---- */
+
+TEST(after_deinit_a_response_changes_nothing)
+{
+    until_written(0);
+    fathom_a05_dyp_deinit(&a05);
+    assert_null(rig.line.head);
+    receive(four, sizeof four);
+    fathom_line_poll(&rig.line);
+    rig.fake.now_us += 1000;
+    fathom_line_poll(&rig.line);
+    for (unsigned i = 0; i != 4; i++) assert_int_equal(a05.values[i], 0); /* as init left them */
 }
 
 /* ---- which address has the one A05 on this line? ---- */
@@ -179,6 +287,20 @@ static void until_asked(size_t written)
     assert_int_equal(rig.fake.written, written);
 }
 
+static void finds(size_t written, const uint8_t *response, uint8_t where)
+{
+    until_asked(written);
+    receive(response, sizeof from_5);
+    finds_within(STEP_US, FATHOM_OK);
+    assert_int_equal(address, where);
+}
+
+TEST_IN(finding, the_address_is_where_the_response_came_from_and_the_next_call_asks_anew)
+{
+    finds(1, from_5, 5);
+    finds(2, from_254, 254);
+}
+
 TEST_IN(finding, of_two_responses_the_first_is_taken)
 {
     uint8_t glued[sizeof from_5 + sizeof from_254];
@@ -201,6 +323,26 @@ TEST_IN(finding, on_an_echoing_line_the_echo_is_no_device)
     finds_within(100000, FATHOM_OK);
     assert_int_equal(address, 5);
     assert_int_equal(fathom_line_get_echo(&rig.line), FATHOM_LINE_ECHO_ON);
+}
+
+TEST_IN(finding, it_can_be_given_up)
+{
+    until_asked(1);
+    for (unsigned i = 0; i != 2; i++) { /* the second time there is nothing to give up */
+        fathom_a05_dyp_find_cancel(&sought, &rig.line);
+        assert_null(rig.line.head);
+    }
+    finds_within(2 * 200000 - 75000, FATHOM_PENDING);
+    assert_int_equal(rig.fake.written, 1); /* all are quarantined */
+    finds(2, from_5, 5);
+}
+
+TEST_IN(finding, a_broken_port_ends_it)
+{
+    until_asked(1);
+    rig.fake.read_fails = true;
+    finds_within(STEP_US, FATHOM_ERR_PORT);
+    assert_int_equal(address, GUARD);
 }
 
 TEST_IN(finding, a_line_without_room_says_so)
@@ -258,4 +400,22 @@ TEST(a_write_through_the_transport_is_refused_at_every_time)
     assert_true(fathom_a05_dyp_is_written(&a05));
     assert_int_equal(seen, COUNT(steps));
     assert_refused();
+}
+
+TEST(what_was_refused_or_given_up_leaves_the_transport_closed)
+{
+    assert_int_equal(fathom_a05_dyp_broadcast_address(&a05, 0), FATHOM_ERR_ARGUMENT);
+    assert_refused();
+    assert_int_equal(fathom_a05_dyp_broadcast_address(&a05, 255), FATHOM_ERR_ARGUMENT);
+    assert_refused();
+    assert_int_equal(fathom_modbus_write_next_unchecked(&a05.base.unit), FATHOM_OK); /* an address never is */
+    assert_int_equal(set_7(), FATHOM_ERR_ARGUMENT);
+    assert_refused();
+    assert_int_equal(fathom_modbus_write_next_unchecked(&a05.base.unit), FATHOM_OK);
+    assert_int_equal(fathom_a05_dyp_broadcast_address(&a05, 0), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(set_7(), FATHOM_PENDING); /* the refused ones were the blind ones */
+    assert_false(fathom_a05_dyp_is_written(&a05));
+    fathom_a05_dyp_cancel(&a05);
+    assert_refused();
+    assert_int_equal(rig.fake.written, 0);
 }

@@ -3,6 +3,8 @@
 
 /* The trigger, and when a response is one; test_driver_contract.c has the rest. */
 
+static const uint8_t wrong_sum[] = {0xFF, 0x07, 0xA1, 0xA6};
+
 static const suite_t suite = {.set_up = controlled_set_up};
 
 /* ---- the trigger ---- */
@@ -121,6 +123,18 @@ TEST(no_response_is_said_at_130_ms_and_the_next_trigger_follows)
     assert_int_equal(rig.fake.breaks, 2);
 }
 
+/* Bytes before the time of a response are none. */
+TEST(a_damaged_response_is_a_wrong_checksum_and_noise_right_after_the_trigger_is_none)
+{
+    assert_int_equal(answered_after(wrong_sum, 100 * MS, 100), FATHOM_ERR_CHECKSUM);
+    comes(FATHOM_ERR_NO_RESPONSE);
+    controlled_response(wrong_sum, 20 * MS);
+    comes(FATHOM_ERR_NO_RESPONSE);
+    controlled_response(wrong_sum, 20 * MS);
+    controlled_response(controlled_1953, 100 * MS);
+    comes(FATHOM_OK);
+}
+
 TEST(a_late_response_is_not_that_of_the_next_trigger_and_the_count_stops)
 {
     controlled.a16.late = UINT16_MAX - 1;
@@ -135,6 +149,18 @@ TEST(a_late_response_is_not_that_of_the_next_trigger_and_the_count_stops)
     controlled_response(controlled_1953, 100 * MS);
     comes(FATHOM_OK);
     assert_int_equal(rig.sample.distance_mm, 1953);
+}
+
+/* With a response taken, a second one to the same trigger has no business. */
+TEST(a_second_frame_to_one_trigger_is_late)
+{
+    controlled_run_to_break(1, 100);
+    controlled_response(controlled_1953, 90 * MS);
+    controlled_response(controlled_511, 105 * MS);
+    comes(FATHOM_OK);
+    rig_run(24 * MS, 100);
+    assert_int_equal(rig.samples, 1);
+    assert_int_equal(controlled.a16.late, 1);
 }
 
 /* Stamped at 131 ms, read at 139 ms, when the poll before was at 119 ms: it may have come in time but for the stamp. */
@@ -302,6 +328,28 @@ TEST(a_frame_of_before_the_trigger_is_not_the_response)
         assert_int_equal(rig.sample.distance_mm, 511);
         assert_int_equal(controlled.a16.late, 1);
     }
+}
+
+/* A frame that arrives between the read and the edge of one poll, as on a machine that does something else there. */
+TEST(a_frame_that_arrives_while_the_poll_triggers_is_not_the_response)
+{
+    unsigned tried = 0;
+    for (uint32_t after_us = 0; after_us <= 20 * MS; after_us += 500) {
+        run_to_second_trigger();
+        rig.fake.now_us += 5 * MS;
+        const uint32_t arrives_us = rig.fake.now_us + after_us;
+        fake_receive(&rig.fake, after_us, controlled_1953, 4);
+        rig.fake.step_us = 2 * MS; /* each look at the clock */
+        PENDS(rig_poll());
+        rig.fake.step_us = 0;
+        assert_int_equal(rig.fake.breaks, 2);
+        if (arrives_us > controlled.a16.edge_us) break;
+        tried++;
+        rig_run(100 * MS, 100 * MS);
+        rig_run(10 * MS, 10 * MS);
+        assert_int_equal(rig.samples, 1);
+    }
+    assert_in_range(tried, 5, 40);
 }
 
 /* test_a16_auto.c shows what it is good for. */

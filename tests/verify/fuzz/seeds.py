@@ -164,10 +164,3 @@ def options(frames):
               b'\5tank-1=a16:2:modbus@/dev/ttyUSB0,baud=9600,parity=none', b'\5hps167s:7@tcp:host:502',
               b'\5a16::pwm@gpiochip0,trigger=17,echo=27', b'\5a05:auto']
     return found
-
-
-@makes('pins')
-def pins(frames):
-    """Cycles with pulses of many widths, edges by themselves, and none."""
-    return [b'\0\0\0' + b'\x07\x07' + (b'\2' + bytes([width]) + b'\6\7') * 3 for width in range(0, 256, 15)] + [
-        b'\xff\xff\1' + b'\x0b\x29\x03\7' * 4, b'\0\0\2' + b'\x0b\6\7\x14\3']

@@ -44,7 +44,6 @@ TARGETS = [
     Target('dyp', (build.core,), 5000, 200, 105, 128),
     Target('line', (build.core,), 1500, 620, 40, 96, more=('tests/verify/fuzz/wire.c',)),
     Target('drivers', (build.core,), 500, 1270, 20, 128, more=('tests/verify/fuzz/wire.c',)),
-    Target('pins', (build.core,), 1500, 185, 50, 96),
     Target('tcp', (build.core, build.libmodbus), 1000, 500, 25, 160,
            link=(*wrap('recv', 'send', 'poll', 'shutdown', 'setsockopt'), *LIBMODBUS)),
     Target('libmodbus', (build.core,), 8000, 145, 190, 280, link=LIBMODBUS),
