@@ -29,7 +29,7 @@ typedef struct {
 static bool add_port_keys(sensors_t *sensors, char *word, size_t capacity)
 {
     const char *const port = config_file_text(sensors->line.at[LINE_PORT]);
-    const option_t *const rows = port_kind(port) == PORT_CHIP ? chip_keys : serial_keys;
+    const option_t *const rows = port_path_has_pins(port) ? chip_keys : serial_keys;
     for (size_t i = 0; i != PORT_KEYS; i++) {
         const yaml_node_t *const node = sensors->line.port_keys[i];
         port_keys_t keys = {{0}, {false}};
@@ -47,7 +47,7 @@ static bool add_port_keys(sensors_t *sensors, char *word, size_t capacity)
         char copy[WORD / 8];
         const origin_t origin = usage_origin(sensors->command, 0);
         memcpy(copy, pair, sizeof copy);
-        if (port_kind(port) == PORT_TCP)
+        if (port_path_has_gateway(port))
             return reject(&origin, "%s has no keys, for it is a port over TCP. Set the line in the gateway.",
                           port);
         if (!option_set_keys(rows, copy, &keys, &origin)) return false;

@@ -2,7 +2,6 @@
 #include <string.h>
 
 #include "cli/sensor_words.h"
-#include "ports/tcp_address.h"
 
 /* ---- the port of a sensor ---- */
 
@@ -21,8 +20,7 @@ bool pins_example(const model_mode_t *mode, const char *chip, char text[PORT_EXA
 
 static bool suits_tcp(const sensor_t *station, const char *path, const origin_t *origin)
 {
-    tcp_address_t address;
-    const char *const wrong = tcp_parse(path, &address);
+    const char *const wrong = port_path_error(path);
     if (wrong != NULL) return reject(origin, "%s: %s.", path, wrong);
     if (station->mode->is_modbus) return true;
     return reject(origin, "%s in mode %s needs a serial port. Over TCP, use Modbus: %s:modbus.",
@@ -56,12 +54,12 @@ bool sensor_suits_port(const sensor_t *station, const origin_t *origin)
     const model_mode_t *const mode = station->mode;
     const char *const model = station->model->name;
     char example[PORT_EXAMPLE];
-    if (tcp_names(port->path)) return suits_tcp(station, port->path, origin);
+    if (port_path_has_gateway(port->path)) return suits_tcp(station, port->path, origin);
     const bool has_pins = pins_example(mode, "gpiochip0", example);
-    if (!port->is_chip && port->keys.has[KEY_TRIGGER] && (mode->may_pins & MODEL_PIN_TRIGGER) == 0)
+    if (!port->has_pins && port->keys.has[KEY_TRIGGER] && (mode->may_pins & MODEL_PIN_TRIGGER) == 0)
         return reject(origin, "%s in mode %s has no trigger=. Leave it out.", model, mode->name);
-    if (port->is_chip == has_pins) return !has_pins || suits_chip(station, port, origin);
-    if (port->is_chip)
+    if (port->has_pins == has_pins) return !has_pins || suits_chip(station, port, origin);
+    if (port->has_pins)
         return reject(origin, "%s in mode %s needs a serial port, and %s is a GPIO chip.", model, mode->name,
                       port->path);
     return reject(origin, "%s in mode %s needs GPIO lines, such as %s:%s@%s.", model, mode->name, model,
@@ -98,7 +96,7 @@ static bool suit_pins(const port_options_t *port, const port_options_t *other, c
 bool sensors_suit_pins(const site_t *site, const port_options_t *port, const origin_t *origin)
 {
     for (const line_t *line = site->lines; line != NULL; line = line->next)
-        if (line->settings.is_chip && is_same_chip(port->path, line->settings.path) &&
+        if (line->settings.has_pins && is_same_chip(port->path, line->settings.path) &&
             !suit_pins(port, &line->settings, origin))
             return false;
     return true;
@@ -177,7 +175,7 @@ bool sensors_suit_lines(const site_t *site, const origin_t *origins)
 {
     for (size_t i = 0; i != site->sensor_count; i++) {
         const sensor_t *const one = site->sensors[i];
-        const bool has_settings = !tcp_names(one->port->path);
+        const bool has_settings = !port_path_has_gateway(one->port->path);
         if (!suits_line(one, one->port, &origins[i])) return false;
         for (size_t j = 0; j != i; j++)
             if (site->sensors[j]->port == one->port &&

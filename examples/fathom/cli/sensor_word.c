@@ -156,12 +156,12 @@ static bool parse_port(sensor_word_t *sensor, char *port, const origin_t *origin
         return reject(origin, "%s names no port. Write the port behind @, such as @/dev/ttyUSB0.",
                       sensor->word);
     if (comma == NULL) return true;
-    const port_kind_t kind = port_kind(port);
-    if (kind == PORT_TCP)
+    if (port_path_has_gateway(port))
         return reject(origin, "%s has keys, but a port over TCP has none. Set the line in the gateway.",
                       sensor->word);
     its.within = sensor->word;
-    return option_set_keys(kind == PORT_CHIP ? chip_keys : serial_keys, comma + 1, &sensor->keys, &its);
+    return option_set_keys(port_path_has_pins(port) ? chip_keys : serial_keys, comma + 1, &sensor->keys,
+                           &its);
 }
 
 bool sensor_word_parse(sensor_word_t *sensor, char *word, const origin_t *origin)

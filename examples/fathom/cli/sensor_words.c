@@ -10,12 +10,12 @@
 /* Returns the line of a port; a chip has one for each sensor. NULL: no memory left. */
 static line_t *line_of(site_t *site, const char *path)
 {
-    const bool is_chip = port_kind(path) == PORT_CHIP;
+    const bool has_pins = port_path_has_pins(path);
     line_t *line = site->lines;
-    while (line != NULL && (is_chip || !port_is_same(line->settings.path, path))) line = line->next;
+    while (line != NULL && (has_pins || !port_is_same(line->settings.path, path))) line = line->next;
     if (line != NULL) return line;
     line = site_add_line(site, path);
-    if (line != NULL) line->settings.is_chip = is_chip;
+    if (line != NULL) line->settings.has_pins = has_pins;
     return line;
 }
 
@@ -93,10 +93,11 @@ static bool set_ports(const site_t *site, const sensor_defaults_t *defaults, con
         keys.value[KEY_RS485] = 1;
     }
     set_lines(site, &keys);
-    for (line_t *line = site->lines; line != NULL; line = line->next) port_options_take(&line->settings, &keys);
+    for (line_t *line = site->lines; line != NULL; line = line->next)
+        port_options_take(&line->settings, &keys);
     for (size_t i = 0; i != site->sensor_count; i++) {
         const port_options_t *const port = site->sensors[i]->port;
-        if (port->is_chip && !sensors_suit_pins(site, port, &origins[i])) return false;
+        if (port->has_pins && !sensors_suit_pins(site, port, &origins[i])) return false;
     }
     return true;
 }

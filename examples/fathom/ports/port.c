@@ -152,14 +152,14 @@ static fathom_status_t note_opening(port_t *port, fathom_status_t status)
 
 fathom_status_t port_open(port_t *port, const host_t *host, const port_settings_t *settings)
 {
-    static const port_driver_t *const drivers[] = {
-        [PORT_TTY] = &port_serial, [PORT_TCP] = &port_tcp, [PORT_CHIP] = &port_chip};
     if (strcmp(port->path, settings->path) != 0) memset(&port->adapter, 0, sizeof port->adapter);
     port->host = host;
     port->settings = *settings;
     port->settings.path = port->path;
     (void)snprintf(port->path, sizeof port->path, "%s", settings->path);
-    port->driver = drivers[port_kind(settings->path)];
+    port->driver = port_path_has_line(settings->path)   ? &port_serial
+                   : port_path_has_pins(settings->path) ? &port_chip
+                                                        : &port_tcp;
     port->clock = (fathom_clock_t){now_us, port};
     port->error = PORT_OK;
     port->text[0] = '\0';

@@ -6,11 +6,23 @@
 
 #include "ports/tcp_address.h"
 
-port_kind_t port_kind(const char *path)
+bool port_path_has_gateway(const char *path) { return tcp_names(path); }
+
+bool port_path_has_pins(const char *path)
 {
     static const char chip[] = "gpiochip";
-    if (tcp_names(path)) return PORT_TCP;
-    return strncmp(port_last_part(path), chip, sizeof chip - 1) == 0 ? PORT_CHIP : PORT_TTY;
+    return !tcp_names(path) && strncmp(port_last_part(path), chip, sizeof chip - 1) == 0;
+}
+
+bool port_path_has_line(const char *path)
+{
+    return !port_path_has_gateway(path) && !port_path_has_pins(path);
+}
+
+const char *port_path_error(const char *path)
+{
+    tcp_address_t address;
+    return tcp_names(path) ? tcp_parse(path, &address) : NULL;
 }
 
 const char *port_last_part(const char *path)
@@ -48,7 +60,7 @@ void port_options_take(port_options_t *port, const port_keys_t *defaults)
     static const port_keys_t none;
     uint32_t rs485 = 0;
     uint32_t echo = 0;
-    if (port_kind(port->path) != PORT_TTY) defaults = &none;
+    if (!port_path_has_line(port->path)) defaults = &none;
     (void)get(&port->keys, defaults, KEY_RS485, &rs485);
     (void)get(&port->keys, defaults, KEY_ECHO, &echo);
     port->rs485 = rs485 != 0;

@@ -12,13 +12,14 @@
 
 /* A port as a user names it, with its settings. */
 
-typedef enum {
-    PORT_TTY,
-    PORT_TCP, /* tcp:HOST[:PORT] */
-    PORT_CHIP /* of GPIO lines: the last part of its path begins with gpiochip */
-} port_kind_t;
+/* What a path promises, as the functions of port.h say it of an open port: a serial line; Modbus behind tcp:HOST[:PORT];
+ * or the lines of a GPIO chip, if the last part of the path begins with gpiochip. */
+bool port_path_has_line(const char *path);
+bool port_path_has_gateway(const char *path);
+bool port_path_has_pins(const char *path);
 
-port_kind_t port_kind(const char *path);
+/* Returns NULL, or what is wrong with the path. */
+const char *port_path_error(const char *path);
 
 /* The part of a path behind its last slash. */
 const char *port_last_part(const char *path);
@@ -63,7 +64,7 @@ typedef struct {
 /* A port, and the line behind it. */
 typedef struct {
     const char *path;   /* of a serial port; tcp:HOST[:PORT]; of a GPIO chip, "gpiochip0" too */
-    bool is_chip;       /* it belongs to one sensor; another sensor at this chip has a row of its own */
+    bool has_pins;      /* it belongs to one sensor; another sensor at this chip has a row of its own */
     pin_options_t pins; /* of a chip */
     bool rs485;         /* the kernel's driver switches the transceiver */
     fathom_line_settings_t line; /* with which it is opened: those of its slowest sensor */

@@ -81,14 +81,13 @@ class NoConnection(Case):
         ('the port is a number', 'h:0', 'h:65536', 'h:', 'h:5 ', '[::1]502'), ('too long', 'h' * 256))})
     def none(self, words, *paths):
         for path in paths:
-            self.fails(f'tcp:{path}', words, '; try: fathom read --help', code=2)
+            self.fails(f'tcp:{path}', words, "See 'fathom read --help'.", code=2)
 
     @e2e.each(**{f'what_needs_a_serial_port_is_refused_{sensor}_{mode}': (sensor, mode) for sensor, mode in
                  (('a16', 'auto'), ('a05', 'auto'), ('a05', 'dyp'))})
     def serial(self, sensor, mode):
         self.ends(f'read {sensor} --mode {mode} --port {self.server()}', 2,
-                  f'mode {mode} needs a serial port; over '
-                  f'tcp: a sensor is asked by Modbus: {sensor}:modbus', out='')
+                  f'mode {mode} needs a serial port. Over TCP, use Modbus: {sensor}:modbus.', out='')
 
 
 class Responses(Case):

@@ -95,7 +95,7 @@ static bool is_suitable(const session_t *session, const origin_t *origin)
     if (session->station->address != FACTORY_ADDRESS)
         return reject(origin, "new sensors have address %d. Leave address %u out.", FACTORY_ADDRESS,
                       session->station->address);
-    if (port_kind(port) != PORT_TCP) return true;
+    if (!port_path_has_gateway(port)) return true;
     return reject(origin, "%s is no serial port. Behind a gateway, two sensors at one address look like one.",
                   port);
 }

@@ -135,7 +135,7 @@ static int start(const host_t *host, const arguments_t *arguments)
     else if (settings->port == NULL && !settings->estimate)
         (void)reject(&origin,
                      "--port is missing, such as --port /dev/ttyUSB0. 'fathom help ports' explains ports.");
-    else if (settings->port != NULL && port_kind(settings->port) != PORT_TTY)
+    else if (settings->port != NULL && !port_path_has_line(settings->port))
         (void)reject(&origin, "scan needs a serial port. The rates behind '%s' are those of the gateway.",
                      settings->port);
     else
