@@ -175,17 +175,18 @@ class Input(Case):
         self.assertEqual(len(done.err.splitlines()), 1)
 
     @e2e.each(**{f'what_is_no_hex_is_told_with_its_place_{number}': row for number, row in enumerate((
-        ("'G' (line 2, character 5) is no hex digit", '01 03\n 02 G2\n'),
-        ("'x' (line 1, character 3) is no hex digit", '01x03'),
-        ('a byte has two hex digits (line 3, character 4)', '01\n\n02 3 04'),
-        ("'?' (line 1, character 1) is no hex digit", '\xe4'), ('give --raw', '\x01\x03')))})
+        ("line 2, character 5: 'G' is no hex digit", '01 03\n 02 G2\n'),
+        ("line 1, character 3: 'x' is no hex digit", '01x03'),
+        ('line 3, character 4: a byte has two hex digits', '01\n\n02 3 04'),
+        ("line 1, character 1: '?' is no hex digit", '\xe4'), ('add --raw', '\x01\x03'),
+        ("line 1, character 4: '?' is no hex digit", '01 \x00\x03')))})
     def no_hex(self, words, text):
         self.wrong(words, self.file(text))
 
     def test_what_is_no_hex_in_an_argument_is_told_with_its_place(self):
-        self.wrong("'G' (argument 3, character 2) is no hex digit", '01', '03', '0G')
-        self.wrong('a byte has two hex digits (argument 1, character 1)', '010')
-        self.wrong("'n' (argument 1, character 1) is no hex digit, and there is no file of that name",
+        self.wrong("argument 3, character 2: 'G' is no hex digit", '01', '03', '0G')
+        self.wrong('argument 1, character 1: a byte has two hex digits', '010')
+        self.wrong("argument 1, character 1: 'n' is no hex digit, and there is no file of that name",
                    'nowhere')
 
     def test_what_cannot_be_read_is_told(self):
@@ -194,11 +195,10 @@ class Input(Case):
         self.wrong(f'{self.folder}: Is a directory', self.folder, code=1)
 
     def test_wrong_usage_is_told(self):
-        for words, line in (("there is no protocol 'rtu', only auto, modbus, dyp, stream",
-                             '--protocol rtu 01'),
+        for words, line in (("--protocol is 'rtu'. It takes auto, modbus, dyp or stream.", '--protocol rtu 01'),
                             ("unknown sensor 'a17'. Did you mean a16?", '--sensor a17 01'),
-                            ("there is no format 'csv', only text, json", '--format csv 01'),
-                            ('a16 does not speak dyp', '--sensor a16 --protocol dyp 01'),
+                            ("--format is 'csv'. It takes text or json.", '--format csv 01'),
+                            ('a16 has no frames of this --protocol', '--sensor a16 --protocol dyp 01'),
                             ('--raw takes one file', '--raw 01 02')):
             self.wrong(words, *line.split())
 
@@ -209,7 +209,7 @@ class Input(Case):
     def test_more_than_4_mib_are_refused(self):
         for count in ((1 << 22) + 1, 1 << 26):
             self.ends(['decode', '--raw', self.file(bytes(count))], 1, re.compile(
-                'is more than (the 4194304 bytes that are|can be) explained at a time'), out='')
+                'more than the 4194304 bytes that are decoded at a time'), out='')
 
     def test_the_examples_of_the_help_work(self):
         text = self.run_fathom('decode --help').out

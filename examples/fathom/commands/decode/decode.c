@@ -15,7 +15,7 @@ typedef struct {
     uint8_t protocol;   /* its place in protocols[] */
     bool is_json;
     bool is_raw;
-    uint8_t protocols; /* DECODE_... */
+    uint8_t protocols;   /* DECODE_... */
     const model_t *only; /* as in decode_context_t */
     const decode_format_t *format;
 } settings_t;
@@ -128,7 +128,7 @@ static int start(const host_t *host, const arguments_t *arguments)
     decode_input_t input;
     (void)host; /* it opens no port */
     if (!set_up(settings, &origin)) return STATUS_USAGE;
-    int status = decode_input_take(&input, &origin, arguments->count, arguments->words, settings->is_raw);
+    int status = decode_input_read(&input, &origin, arguments->count, arguments->words, settings->is_raw);
     if (status == STATUS_OK) status = decode(settings, &input);
     decode_input_free(&input);
     return status;
