@@ -7,7 +7,7 @@
 
 #include "mqtt/queue.h"
 
-enum { MOST = 4, SIZE = 4096 };
+enum { MOST = 4, BYTES = 4096 };
 
 static queue_t queue;
 static streams_t streams;
@@ -16,7 +16,8 @@ static stream_t *gate;
 
 static int set_up(void **state)
 {
-    assert_true(queue_begin(&queue, MOST, SIZE));
+    memset(&queue, 0, sizeof queue);
+    queue_set_bounds(&queue, MOST, BYTES);
     tank = streams_want(&streams, "mill/tank", STREAM_READINGS, NULL);
     gate = streams_want(&streams, "mill/gate", STREAM_READINGS, NULL);
     return 0;
@@ -24,47 +25,41 @@ static int set_up(void **state)
 
 static int tear_down(void **state)
 {
-    queue_end(&queue);
+    queue_free(&queue);
     streams_free(&streams);
     return 0;
 }
 
 static const suite_t suite = {.set_up = set_up, .tear_down = tear_down};
 
-static void put(stream_t *stream, const char *text)
-{
-    const message_t message = {stream, ++stream->seq, (uint32_t)strlen(text)};
-    queue_put(&queue, &message, text);
-}
+static void put(stream_t *stream, const char *text) { queue_put(&queue, stream, ++stream->seq, text); }
 
 static void expect(const stream_t *stream, uint64_t time_us, const char *expected)
 {
-    message_t message;
-    char text[QUEUE_TEXT];
-    assert_true(queue_take(&queue, &message, text));
-    assert_ptr_equal(message.stream, stream);
-    assert_int_equal(message.time_us, time_us);
-    assert_string_equal(text, expected);
-}
-
-static void expect_nothing(void)
-{
-    message_t message;
-    char text[QUEUE_TEXT];
-    assert_false(queue_take(&queue, &message, text));
+    message_t *const message = queue_take(&queue);
+    assert_non_null(message);
+    assert_ptr_equal(message->stream, stream);
+    assert_int_equal(message->time_us, time_us);
+    assert_string_equal(message->text, expected);
+    free(message);
 }
 
 TEST(what_was_put_in_first_comes_out_first)
 {
-    expect_nothing();
+    assert_null(queue_take(&queue));
     put(tank, "one");
     put(gate, "two");
     put(tank, "");
     expect(tank, 1, "one");
+    put(gate, "three");
     expect(gate, 1, "two");
     expect(tank, 2, "");
-    expect_nothing();
+    expect(gate, 2, "three");
+    assert_null(queue_take(&queue));
+    put(tank, "four");
+    expect(tank, 3, "four");
     assert_int_equal(queue.dropped, 0);
+    assert_int_equal(queue.used, 0);
 }
 
 TEST(where_one_more_does_not_fit_the_oldest_is_dropped_and_counted_in_its_stream)
@@ -85,66 +80,28 @@ TEST(where_one_more_does_not_fit_the_oldest_is_dropped_and_counted_in_its_stream
     expect(gate, 4, "5");
     expect(gate, 5, "6");
     expect(tank, 2, "7");
-    expect_nothing();
+    assert_null(queue_take(&queue));
 }
 
-/* So many bytes as three messages of 400 take, less one: the third one drops the first. */
+/* Three messages of 400 bytes, and the 0 at the end of each, take exactly as many bytes; one byte less is too few. */
 TEST(the_bytes_are_a_bound_too)
 {
+    enum { THREE = 3 * (401 + sizeof(message_t)) };
     char text[401] = "";
     memset(text, 'x', 400);
-    assert_true(queue_resize(&queue, 100, 3 * (400 + QUEUE_OVERHEAD) - 1));
-    put(tank, text);
-    put(tank, text);
-    assert_int_equal(queue.dropped, 0);
-    put(gate, "short");
-    assert_int_equal(queue.dropped, 0);
-    put(tank, text);
-    assert_int_equal(queue.dropped, 1);
-    expect(tank, 2, text);
-    expect(gate, 1, "short");
-    expect(tank, 3, text);
-    expect_nothing();
-}
-
-TEST(exactly_as_many_bytes_as_there_are_fit)
-{
-    char text[401] = "";
-    memset(text, 'x', 400);
-    assert_true(queue_resize(&queue, 100, 3 * (400 + QUEUE_OVERHEAD)));
+    queue_set_bounds(&queue, 100, THREE);
     for (int i = 0; i != 3; i++) put(tank, text);
     assert_int_equal(queue.dropped, 0);
-    put(tank, text);
+    queue_set_bounds(&queue, 100, THREE - 1);
     assert_int_equal(queue.dropped, 1);
-}
-
-/* Messages of all lengths, in and out at random, beside a list that has them as well: whatever goes round the end. */
-TEST(it_is_a_list_whatever_goes_in_and_out)
-{
-    enum { ROUNDS = 20000, LIST = 64 };
-    static char list[LIST][QUEUE_TEXT];
-    size_t count = 0;
-    uint64_t dropped = 0;
-    srand(18);
-    assert_true(queue_resize(&queue, LIST - 1, 5000));
-    for (int round = 0; round != ROUNDS; round++) {
-        if (rand() % 3 != 0) {
-            const size_t length = (size_t)rand() % (QUEUE_TEXT - 1);
-            for (size_t i = 0; i != length; i++) list[count][i] = (char)('a' + rand() % 26);
-            list[count][length] = '\0';
-            put(tank, list[count++]);
-        } else if (count != 0) {
-            message_t message;
-            char text[QUEUE_TEXT];
-            assert_true(queue_take(&queue, &message, text));
-            assert_string_equal(text, list[0]);
-            memmove(list[0], list[1], --count * QUEUE_TEXT);
-        }
-        for (; dropped != queue.dropped; dropped++) memmove(list[0], list[1], --count * QUEUE_TEXT);
-        assert_int_equal(queue.count, count);
-        assert_true(queue.used <= queue.size);
-    }
-    assert_true(dropped > 100);
+    put(gate, "short");
+    assert_int_equal(queue.dropped, 1);
+    put(tank, text);
+    assert_int_equal(queue.dropped, 2);
+    expect(tank, 3, text);
+    expect(gate, 1, "short");
+    expect(tank, 4, text);
+    assert_null(queue_take(&queue));
 }
 
 TEST(other_bounds_keep_what_fits)
@@ -152,10 +109,10 @@ TEST(other_bounds_keep_what_fits)
     put(tank, "1");
     put(gate, "2");
     put(tank, "3");
-    assert_true(queue_resize(&queue, 2, SIZE));
+    queue_set_bounds(&queue, 2, BYTES);
     assert_int_equal(tank->dropped, 1);
     assert_int_equal(queue.dropped, 1);
-    assert_true(queue_resize(&queue, 10, 2 * SIZE));
+    queue_set_bounds(&queue, 10, 2 * BYTES);
     put(gate, "4");
     expect(gate, 1, "2");
     expect(tank, 2, "3");

@@ -117,8 +117,7 @@ static reading_t reading_of(size_t number, const result_t *result)
 static void expect(const reading_t *reading, topic_t topic, const char *expected)
 {
     char text[STATE_TEXT];
-    const uint32_t length = state_begin(reading, topic, "0123456789abcdef", 7, text);
-    assert_int_equal(length, strlen(text));
+    state_begin(reading, topic, "0123456789abcdef", 7, text);
     state_finish(text, 1500999, 3);
     assert_string_equal(text, expected);
 }
@@ -196,7 +195,8 @@ TEST(the_longest_state_fits_into_a_place_of_the_queue)
                              .has_level = true,
                              .level = {.level_mm = INT32_MIN, .per_mille = UINT16_MAX, .volume = UINT32_MAX}};
     reading_t message = reading_of(TANK, &result);
-    assert_true(state_begin(&message, TOPIC_LEVEL, "0123456789abcdef", UINT64_MAX, text) < QUEUE_TEXT / 2);
+    state_begin(&message, TOPIC_LEVEL, "0123456789abcdef", UINT64_MAX, text);
+    assert_true(strlen(text) < QUEUE_TEXT / 2);
     assert_non_null(strstr(text, "\"seq\":18446744073709551615"));
 }
 

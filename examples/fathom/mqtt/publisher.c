@@ -114,19 +114,21 @@ static bool send_fact(publisher_t *publisher)
 
 static bool send_message(publisher_t *publisher)
 {
-    message_t message;
+    message_t *const message = queue_take(&publisher->queue);
     char text[STATE_TEXT];
-    if (!queue_take(&publisher->queue, &message, text)) return false;
-    stream_t *const stream = message.stream;
+    if (message == NULL) return false;
+    stream_t *const stream = message->stream;
+    (void)snprintf(text, sizeof text, "%s", message->text);
+    state_finish(text, now_us(publisher) - message->time_us, stream->dropped);
     /* A deleted topic must not come back. */
-    if (stream->is_retained && !stream->is_wanted) return true;
-    state_finish(text, now_us(publisher) - message.time_us, stream->dropped);
-    if (broker_send(&publisher->broker, stream->topic, text, stream->is_retained)) {
+    if (stream->is_retained && !stream->is_wanted) {
+        free(message);
+    } else if (broker_send(&publisher->broker, stream->topic, text, stream->is_retained)) {
         stream->is_known = true;
-        return true;
+        free(message);
+    } else {
+        queue_drop(&publisher->queue, message);
     }
-    stream->dropped++;
-    publisher->queue.dropped++;
     return true;
 }
 
@@ -160,9 +162,8 @@ static void put(publisher_t *publisher, const reading_t *reading, topic_t topic,
     char text[QUEUE_TEXT];
     stream_t *const stream = publisher->sensors[reading->sensor->number].streams[probe - 1][topic];
     if (stream == NULL) return;
-    const uint32_t length = state_begin(reading, topic, publisher->boot, ++stream->seq, text);
-    const message_t message = {stream, publisher->start_us + reading->time_us, length};
-    queue_put(&publisher->queue, &message, text);
+    state_begin(reading, topic, publisher->boot, ++stream->seq, text);
+    queue_put(&publisher->queue, stream, publisher->start_us + reading->time_us, text);
     send_next(publisher);
 }
 
@@ -294,7 +295,8 @@ static bool set_sensors(publisher_t *publisher, const site_t *site)
     publisher->sensor_count = site->sensor_count;
     streams_forget(&publisher->streams);
     publisher->news = want_of_site(publisher, "publisher", STREAM_PUBLISHER);
-    is_good = publisher->news != NULL && want_of_site(publisher, "status", STREAM_STATUS) != NULL;
+    publisher->status = want_of_site(publisher, "status", STREAM_STATUS);
+    is_good = publisher->news != NULL && publisher->status != NULL;
     for (size_t i = 0; i != site->sensor_count && is_good; i++) {
         sensors[i].sensor = site->sensors[i];
         is_good = want_sensor(publisher, &sensors[i], find(before, count, site->sensors[i]->name));
@@ -315,32 +317,26 @@ bool publisher_init(publisher_t *publisher, const host_t *host, const publish_se
     publisher->settings = settings;
     publisher->start_us = publisher->counted_us = start_us;
     state_boot(publisher->boot);
-    if (queue_begin(&publisher->queue, settings->queue_messages, settings->queue_bytes) &&
-        set_sensors(publisher, site))
-        return true;
-    print(NULL, "no memory left for the queue; choose a smaller number of bytes");
+    queue_set_bounds(&publisher->queue, settings->queue_messages, settings->queue_bytes);
+    if (set_sensors(publisher, site)) return true;
+    print(NULL, "no memory left");
     return false;
 }
 
 bool publisher_connect(publisher_t *publisher, fathom_loop_t *loop)
 {
     static const broker_user_t user = {on_connected, on_acknowledged, print};
-    char topic[TOPIC];
-    topic_of_site(publisher->settings, "status", topic);
     return broker_begin(&publisher->broker, publisher->host, loop, &publisher->settings->broker,
-                        publisher->settings->path, topic, &user, publisher);
+                        publisher->settings->path, publisher->status->topic, &user, publisher);
 }
 
 bool publisher_change(publisher_t *publisher, const site_t *site, bool has_other_broker)
 {
     const publish_settings_t *const settings = publisher->settings;
-    char topic[TOPIC];
-    topic_of_site(settings, "status", topic);
     if (!set_sensors(publisher, site)) return false;
-    if (!queue_resize(&publisher->queue, settings->queue_messages, settings->queue_bytes))
-        print(NULL, "no memory left for another queue; the queue stays as it was");
+    queue_set_bounds(&publisher->queue, settings->queue_messages, settings->queue_bytes);
     send_news_soon(publisher);
-    if (has_other_broker) broker_change(&publisher->broker, topic);
+    if (has_other_broker) broker_change(&publisher->broker, publisher->status->topic);
     return true;
 }
 
@@ -380,11 +376,9 @@ static void send_last(publisher_t *publisher)
 {
     enum { END_US = 2000000 };
     const uint64_t until_us = now_us(publisher) + END_US;
-    char topic[TOPIC];
     send_next(publisher);
     if (!wait_until_sent(publisher, until_us)) return;
-    topic_of_site(publisher->settings, "status", topic);
-    if (!broker_send(&publisher->broker, topic, "offline", true)) return;
+    if (!broker_send(&publisher->broker, publisher->status->topic, "offline", true)) return;
     /* Nothing more is sent when that is acknowledged. */
     publisher->has_facts = false;
     publisher->sent_us = now_us(publisher);
@@ -395,7 +389,7 @@ void publisher_deinit(publisher_t *publisher)
 {
     send_last(publisher);
     broker_end(&publisher->broker);
-    queue_end(&publisher->queue);
+    queue_free(&publisher->queue);
     streams_free(&publisher->streams);
     free(publisher->sensors);
     publisher->sensors = NULL;

@@ -29,6 +29,7 @@ typedef struct {
     broker_t broker;
     queue_t queue;
     streams_t streams;
+    stream_t *status;
     stream_t *news; /* how the publisher is */
     char boot[BOOT];
     publisher_sensor_t *sensors; /* by sensor_t.number */

@@ -6,42 +6,42 @@
 
 #include "mqtt/streams.h"
 
-/* Messages that wait for the broker, the oldest first. It has room for so many messages and so many bytes; where one more
- * does not fit, the oldest are dropped, and counted in their streams. One piece of memory, of which pages that were never
- * needed are not used. */
+/* Messages that wait for the broker, the oldest first, in a list on the heap. If one more exceeds the bounds, the oldest
+ * messages are dropped and counted in their streams. */
 
 enum { QUEUE_TEXT = 512 };
 
-typedef struct {
+typedef struct message message_t;
+struct message {
+    message_t *next;
     stream_t *stream;
-    uint64_t time_us; /* of the clock, when it was measured */
-    uint32_t length;  /* of the text, less than QUEUE_TEXT */
-} message_t;
+    uint64_t time_us; /* of the reading, by the host's clock */
+    size_t size;      /* of the message with its text */
+    char text[];
+};
 
 typedef struct {
-    unsigned char *memory;
-    size_t size;
-    size_t begin; /* of the oldest */
-    size_t used;
+    message_t *first;
+    message_t *last;
+    size_t used; /* bytes */
+    size_t bytes;
     uint32_t count;
     uint32_t most;
-    uint64_t dropped; /* so far */
+    uint64_t dropped; /* since the start */
 } queue_t;
 
-/* What a message takes of the bytes besides its text. */
-enum { QUEUE_OVERHEAD = sizeof(message_t) };
+/* Sets the bounds, also of a queue in use. */
+void queue_set_bounds(queue_t *queue, uint32_t most, size_t bytes);
 
-/* size: so many bytes, at least one whole message. False: there is no memory left. */
-bool queue_begin(queue_t *queue, uint32_t most, size_t size);
-void queue_end(queue_t *queue);
+/* Adds a message of less than QUEUE_TEXT bytes. */
+void queue_put(queue_t *queue, stream_t *stream, uint64_t time_us, const char *text);
 
-/* Other bounds. What does not fit any more is dropped. False: there is no memory left, and nothing has changed. */
-bool queue_resize(queue_t *queue, uint32_t most, size_t size);
+/* Returns the oldest message, which the caller frees; NULL: there is none. */
+message_t *queue_take(queue_t *queue);
 
-/* message->length bytes of text. */
-void queue_put(queue_t *queue, const message_t *message, const char *text);
+/* Counts a message as dropped, and frees it. */
+void queue_drop(queue_t *queue, message_t *message);
 
-/* Takes the oldest one out. text: with a 0 at its end. False: there is none. */
-bool queue_take(queue_t *queue, message_t *message, char text[QUEUE_TEXT]);
+void queue_free(queue_t *queue);
 
 #endif

@@ -28,18 +28,17 @@ static unsigned columns_of(const sensor_t *sensor, topic_t topic)
            (sensor->settings.temperature_us != 0 ? COLUMNS_TEMPERATURE : 0);
 }
 
-uint32_t state_begin(const reading_t *reading, topic_t topic, const char *boot, uint64_t seq,
-                     char text[QUEUE_TEXT])
+void state_begin(const reading_t *reading, topic_t topic, const char *boot, uint64_t seq,
+                 char text[QUEUE_TEXT])
 {
     json_t json = {.to = fmemopen(text, QUEUE_TEXT, "w")};
     text[0] = '\0';
-    if (json.to == NULL) return 0;
+    if (json.to == NULL) return;
     json_begin(&json, NULL, '{');
     reading_json(&json, reading, columns_of(reading->sensor, topic));
     json_string(&json, "boot", boot);
     json_value(&json, "seq", "%" PRIu64, seq);
     (void)fclose(json.to);
-    return (uint32_t)strlen(text);
 }
 
 void state_finish(char text[STATE_TEXT], uint64_t age_us, uint64_t dropped)

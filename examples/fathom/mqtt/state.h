@@ -15,9 +15,9 @@ void state_boot(char boot[BOOT]);
 
 enum { STATE_TEXT = QUEUE_TEXT + 64 };
 
-/* Writes the first part, without an end. Returns its length. */
-uint32_t state_begin(const reading_t *reading, topic_t topic, const char *boot, uint64_t seq,
-                     char text[QUEUE_TEXT]);
+/* Writes the first part, without an end. */
+void state_begin(const reading_t *reading, topic_t topic, const char *boot, uint64_t seq,
+                 char text[QUEUE_TEXT]);
 
 /* Adds the second part. */
 void state_finish(char text[STATE_TEXT], uint64_t age_us, uint64_t dropped);
