@@ -77,19 +77,6 @@ TEST(any_probe_nearer_than_the_threshold_closes)
     }
 }
 
-TEST(it_closes_with_the_probe_that_is_near_and_opens_with_the_last_one)
-{
-    static const uint16_t mm[2][4] = {{1001, 999, 999, 4000}, {NONE, NONE, 1001, 1001}};
-    for (unsigned i = 0; i != 2; i++) {
-        begin_after(1000000);
-        for (uint8_t n = 0; n != 4; n++)
-            assert_int_equal(
-                give((uint8_t)(n + 1), mm[i][n] == NONE ? FATHOM_NO_TARGET : FATHOM_TARGET, mm[i][n]),
-                n == (i == 0 ? 1 : 3));
-        is(i == 0 ? FATHOM_NEAR : FATHOM_FAR);
-    }
-}
-
 /* ---- Decision: each state lasts at least 1 s ---- */
 
 TEST(each_state_lasts_at_least_1_s)
@@ -104,28 +91,7 @@ TEST(each_state_lasts_at_least_1_s)
     all(999, true);
 }
 
-TEST(how_long_a_state_lasts_is_an_option)
-{
-    for (uint32_t halves = 1; halves <= 3; halves += 2) {
-        config.hold_us = halves == 1 ? 1 : halves * HALF_S;
-        start();
-        all(999, true);
-        for (uint32_t n = 1; n <= halves; n++) all(1001, n == halves);
-    }
-}
-
 /* ---- Decision: what is not fitted never closes it ---- */
-
-TEST(a_probe_that_is_not_fitted_counts_for_nothing)
-{
-    config.probes = 0x05; /* 1 and 3 */
-    start();
-    changes_to(FATHOM_FAR, 1001, 1, 1001, 1);
-    for (int i = 0; i != 5; i++) assert_false(measure(2000, 1, 2000, 1));
-    changes_to(FATHOM_NEAR, 2000, 3000, 999, 3000);
-    measure(2000, 1, 2000, 1);
-    changes_to(FATHOM_FAR, 2000, 1, 2000, 1);
-}
 
 TEST(every_mask_of_probes_heeds_its_own_and_no_other)
 {
@@ -138,23 +104,6 @@ TEST(every_mask_of_probes_heeds_its_own_and_no_other)
                        (near & 8) != 0 ? 999 : 1001);
         }
     }
-}
-
-/* ---- what is missing ---- */
-
-TEST(a_measurement_without_one_of_its_probes_holds_unless_another_is_near)
-{
-    all(999, true);
-    for (int i = 0; i != 9; i++) {
-        begin_after(HALF_S);
-        for (uint8_t probe = 1; probe <= 3; probe++) assert_false(give(probe, FATHOM_TARGET, 2000));
-        if (i > 4) assert_false(give(4, i % 2 != 0 ? FATHOM_FAULT : FATHOM_UNKNOWN, 0));
-    }
-    is(FATHOM_NEAR);
-    all(2000, true);
-    begin_after(1000000);
-    assert_true(give(4, FATHOM_TARGET, 999));
-    is(FATHOM_NEAR);
 }
 
 /* ---- First contact 3 and 4 ---- */
@@ -199,38 +148,6 @@ TEST(an_unknown_probe_neither_opens_it_nor_holds_it_for_ever)
         }
         all(2000, true);
         is(FATHOM_FAR);
-    }
-}
-
-TEST(without_samples_the_loop_finds_it_unknown)
-{
-    all(999, true);
-    assert_false(fathom_debounce_advance(&rule.debounce, now_us + 5000000));
-    assert_true(fathom_debounce_advance(&rule.debounce, now_us + 5000001));
-    is(FATHOM_UNKNOWN);
-}
-
-TEST(a_sample_of_a_measurement_before_completes_none)
-{
-    for (uint8_t probe = 1; probe <= 4; probe++, sequence++) assert_false(give(probe, FATHOM_TARGET, 2000));
-    is(0);
-}
-
-TEST(a_probe_that_speaks_twice_in_a_measurement_is_heard_once)
-{
-    for (int i = 0; i != 5; i++) assert_false(give(1, FATHOM_TARGET, i != 4 ? 2000 : 999));
-    for (uint8_t probe = 2; probe <= 4; probe++)
-        assert_int_equal(give(probe, FATHOM_TARGET, 2000), probe == 4);
-    is(FATHOM_FAR);
-}
-
-TEST(a_first_measurement_of_any_number_counts)
-{
-    static const uint16_t numbers[] = {0, 1, 255, UINT16_MAX};
-    for (int i = 0; i != 4; i++) {
-        start();
-        sequence = (uint16_t)(numbers[i] - 1);
-        all(2000, true);
     }
 }
 

@@ -123,65 +123,7 @@ TEST(a_contact_that_bounces_is_one_change)
     }
 }
 
-TEST(a_level_that_does_not_stand_for_20_ms_is_nothing)
-{
-    run(100);
-    for (uint32_t i = 0; i != 5; i++) {
-        pins_turn(1000 + i * 50000);
-        pins_turn(20000 + i * 50000);
-    }
-    run(300);
-    pins_expect(1, FATHOM_FAR);
-    pins_turn(1000);
-    pins_turn(22000);
-    expect_next(21, FATHOM_NEAR);
-    run(30);
-    pins_expect(3, FATHOM_FAR);
-}
-
-TEST(how_long_a_level_stands_is_an_option)
-{
-    timing.settle_us = 1;
-    start();
-    assert_int_equal(pins_poll(), FATHOM_PENDING); /* no time has passed */
-    pins_run(50, 50);
-    pins_expect(1, FATHOM_FAR);
-    pins_turn(50);
-    pins_run(100, 50);
-    pins_expect(2, FATHOM_NEAR);
-    timing.settle_us = 300000;
-    start();
-    expect_next(300, FATHOM_FAR);
-}
-
-TEST(what_a_high_level_means_is_an_option)
-{
-    near_is_high = false;
-    start();
-    run(20);
-    pins_expect(1, FATHOM_NEAR);
-    assert_int_equal(pins.sample.raw, 0);
-    pins_turn(0);
-    run(21);
-    pins_expect(2, FATHOM_FAR);
-    assert_int_equal(pins.sample.raw, 1);
-}
-
 /* ---- the meaning changes ---- */
-
-TEST(a_meaning_and_a_level_that_turn_together_are_no_change)
-{
-    run(50);
-    pins_expect(1, FATHOM_FAR);
-    fathom_contact_set_near_is_high(&contact, false);
-    pins_turn(15 * MS);
-    run(500);
-    pins_expect(1, FATHOM_FAR);
-    pins_turn(0);
-    run(50);
-    pins_expect(2, FATHOM_NEAR);
-    assert_int_equal(pins.sample.raw, 0);
-}
 
 TEST(a_level_that_stays_when_the_meaning_turns_is_a_change_after_it_has_settled)
 {
@@ -210,17 +152,6 @@ TEST(with_a_period_the_level_is_repeated)
     }
 }
 
-TEST(a_level_that_is_settling_is_not_repeated)
-{
-    timing.period_us = 50000;
-    start();
-    run(20);
-    pins_expect(1, FATHOM_FAR);
-    /* it flickers from 40 ms after that to 80 ms */
-    for (uint32_t i = 0; i != 20; i++) pins_turn(40 * MS + i * 2000);
-    expect_next(98, FATHOM_FAR);
-}
-
 /* ---- stale ---- */
 
 TEST(a_level_that_never_stands_still_is_stale_every_2_s)
@@ -237,34 +168,6 @@ TEST(a_level_that_never_stands_still_is_stale_every_2_s)
     pins.level = !pins.level;
     run(2000);
     assert_int_equal(pins.stales, 2);
-}
-
-TEST(when_it_is_stale_is_an_option)
-{
-    timing.stale_us = 100000;
-    start();
-    for (unsigned i = 0; i != 110; i++) {
-        pins.level = !pins.level;
-        run(1);
-        assert_int_equal(pins.stales, i >= 99);
-    }
-}
-
-/* A change that is first seen after a long pause has not flickered for that long. */
-TEST(a_loop_slower_than_the_limit_does_not_make_a_level_stale)
-{
-    pins_run(9000 * MS, 3000 * MS);
-    for (unsigned i = 0; i != 10; i++) {
-        pins_turn(1000);
-        pins_run(9000 * MS, 3000 * MS);
-    }
-    assert_int_equal(pins.samples, 11);
-    assert_int_equal(pins.stales, 0);
-    for (unsigned i = 0; i != 10; i++) {
-        pins.level = !pins.level;
-        pins_run(3000 * MS, 3000 * MS);
-    }
-    assert_int_equal(pins.stales, 9);
 }
 
 /* ---- when to look ---- */
@@ -301,24 +204,6 @@ TEST(if_an_interrupt_wakes_the_program_only_the_period_is_due_while_the_level_st
     start();
     pins_run(20 * MS, 20000);
     expect_due(500000);
-}
-
-TEST(a_loop_that_sleeps_until_it_is_due_misses_nothing)
-{
-    timing.period_us = 45000;
-    start_at(UINT32_MAX - 500 * MS, false);
-    pins_turn(100 * MS);
-    pins_turn(333 * MS);
-    const uint32_t from_us = pins.fake.now_us;
-    unsigned looks = 0;
-    for (; fathom_elapsed_us(pins.fake.now_us, from_us) < 1000 * MS; looks++) {
-        pins.fake.now_us += fathom_due_us(&pins.sensor, 1);
-        pins_poll();
-    }
-    /* At 20, 65; changed by 130, 175, ..; and so on: one in 45 ms and the changes */
-    assert_in_range(pins.samples, 22, 25);
-    assert_in_range(looks, 100, 130);
-    assert_int_equal(pins.sample.kind, FATHOM_FAR);
 }
 
 /* ---- init ---- */
@@ -389,16 +274,4 @@ TEST(every_sequence_of_levels_at_14_looks_is_right)
             }
         }
     }
-}
-
-/* sensor.h: as fathom_poll() and fathom_due_us() with the contact's sensor. The level settles in 20 ms. */
-TEST(a_contact_is_polled_without_a_sensor_too)
-{
-    fathom_sample_t sample;
-    start_at(START_US, true);
-    assert_int_equal(fathom_contact_poll(&contact, &sample), FATHOM_PENDING);
-    assert_int_equal(fathom_contact_due_us(&contact), fathom_due_us(&pins.sensor, 1));
-    for (unsigned ms = 0; ms != 25 && fathom_contact_poll(&contact, &sample) == FATHOM_PENDING; ms++)
-        pins.fake.now_us += 1000;
-    assert_int_equal(sample.address, 7);
 }

@@ -118,26 +118,6 @@ TEST(the_first_look_is_the_time_of_a_sample_for_up_to_2_s)
     }
 }
 
-/* ---- the clock ---- */
-
-TEST(a_clock_that_is_set_back_by_100_ms_does_not_make_a_level_count)
-{
-    timing.settle_us = 300 * MS;
-    start_with(NULL, START_US);
-    for (uint32_t left_us = 300 * MS; left_us != 1 * MS; left_us -= 1 * MS) {
-        pins.fake.now_us -= 100 * MS;
-        assert_int_equal(pins_poll(), FATHOM_PENDING);
-        assert_int_equal(poll_after(1 * MS), FATHOM_PENDING);
-    }
-    assert_int_equal(poll_after(1 * MS), FATHOM_OK);
-}
-
-TEST(a_clock_that_stands_still_costs_its_time_and_no_more)
-{
-    for (uint32_t n = 0; n != 1000; n++) assert_int_equal(pins_poll(), FATHOM_PENDING);
-    assert_int_equal(poll_after(20 * MS), FATHOM_OK);
-}
-
 /* ---- any of it ---- */
 
 /* "period_us + stale_us + 2 * P", by the clock and without its jumps. */

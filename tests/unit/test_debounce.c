@@ -65,22 +65,7 @@ TEST(three_nearer_in_a_row_make_near_and_five_farther_far)
     assert_int_equal(gate.level, FATHOM_NEAR);
 }
 
-TEST(the_first_level_is_far_after_five)
-{
-    expect_changes("ffffF");
-    assert_int_equal(gate.level, FATHOM_FAR);
-}
-
-TEST(a_row_that_is_broken_begins_anew) { expect_changes("nnfnnfnnN"); }
-
 /* ---- Decision: equality holds the level ---- */
-
-TEST(a_distance_that_equals_the_threshold_holds_the_level_and_breaks_the_row)
-{
-    expect_changes("nnenneennNffffeffffF");
-    for (int i = 0; i != 300; i++) assert_false(distance(1000));
-    assert_int_equal(gate.level, FATHOM_FAR);
-}
 
 TEST(equality_can_be_made_near)
 {
@@ -103,21 +88,6 @@ TEST(a_config_without_sense_is_refused)
     assert_int_equal(fathom_debounce_init(&gate, &config), FATHOM_ERR_ARGUMENT);
 }
 
-/* ---- options ---- */
-
-TEST(threshold_and_counts_are_options)
-{
-    start_with((fathom_debounce_config_t){.threshold_mm = 300, .near_count = 1, .far_count = 2});
-    expect_changes("NfFNf");
-}
-
-TEST(rows_of_255_are_counted_and_longer_ones_do_not_wrap)
-{
-    start_with((fathom_debounce_config_t){.near_count = 255, .far_count = 255});
-    for (int i = 1; i <= 1000; i++) assert_int_equal(distance(1), i == 255);
-    for (int i = 1; i <= 1000; i++) assert_int_equal(distance(2000), i == 255);
-}
-
 /* ---- a level lasts a while ---- */
 
 TEST(a_level_lasts_at_least_hold_us)
@@ -129,40 +99,6 @@ TEST(a_level_lasts_at_least_hold_us)
     expect_at(1000000, 1001, true);
     expect_at(1999999, 999, false);
     expect_at(2000000, 999, true);
-}
-
-TEST(the_first_level_need_not_wait)
-{
-    start_with((fathom_debounce_config_t){.hold_us = 1000000, .near_count = 1});
-    expect_at(0, 999, true);
-}
-
-TEST(what_is_held_back_comes_only_if_its_row_is_unbroken)
-{
-    start_with((fathom_debounce_config_t){.hold_us = 1000000, .near_count = 1, .far_count = 2});
-    expect_at(0, 999, true);
-    expect_at(300000, 1001, false);
-    expect_at(600000, 1001, false);
-    expect_at(900000, 999, false);
-    expect_at(1200000, 1001, false);
-    expect_at(1500000, 1001, true);
-}
-
-TEST(a_row_that_is_held_back_for_long_is_not_forgotten)
-{
-    start_with((fathom_debounce_config_t){.hold_us = 258 * HALF_S, .near_count = 1, .far_count = 5});
-    assert_true(distance(999));
-    for (int i = 1; i <= 258; i++) assert_int_equal(distance(1001), i == 258);
-}
-
-/* 71.58 minutes are one turn of the clock: 2 * 2147.48 s and a little would look like a little. */
-TEST(a_level_that_has_lasted_for_a_turn_of_the_clock_is_not_held_again)
-{
-    start_with((fathom_debounce_config_t){
-        .hold_us = 1000000, .unknown_us = UINT32_MAX, .near_count = 1, .far_count = 1});
-    expect_at(0, 999, true);
-    expect_at(0x80000000u, 999, false);
-    expect_at(10, 1001, true);
 }
 
 /* ---- samples ---- */
@@ -195,25 +131,6 @@ TEST(interference_counts_as_farther)
 
 /* ---- First contact 4: what counts for nothing holds a level for a while, and not for ever ---- */
 
-static const uint8_t silent_kinds[] = {FATHOM_FAULT, FATHOM_UNKNOWN};
-
-TEST(a_fault_or_an_unknown_value_holds_the_level_and_the_row_goes_on_behind_it)
-{
-    for (unsigned i = 0; i != 2; i++) {
-        start();
-        expect_sample(FATHOM_TARGET, 999, false);
-        expect_sample(silent_kinds[i], 0, false);
-        expect_sample(FATHOM_TARGET, 999, false);
-        for (int n = 0; n != 9; n++) expect_sample(silent_kinds[i], 0, false);
-        expect_sample(FATHOM_TARGET, 999, true); /* 5 s after the last measurement */
-        for (int n = 1; n <= 30; n++) {
-            expect_sample(silent_kinds[i], 0, n == 11);
-            assert_int_equal(gate.level, n < 11 ? FATHOM_NEAR : FATHOM_UNKNOWN);
-        }
-        expect_changes("nnNffffF");
-    }
-}
-
 static void expect_time(uint32_t after_us, bool changes)
 {
     assert_int_equal(fathom_debounce_advance(&gate, now_us + after_us), changes);
@@ -236,15 +153,6 @@ TEST(a_level_without_measurements_becomes_unknown_after_5_s_or_as_the_config_say
     }
 }
 
-TEST(a_measurement_at_the_threshold_is_one_and_keeps_the_level)
-{
-    start_with((fathom_debounce_config_t){.near_count = 1});
-    expect_at(0, 999, true);
-    for (uint32_t n = 1; n <= 10; n++) expect_at(n * 4000000, 1000, false);
-    expect_time(45000000, false);
-    expect_time(45000001, true);
-}
-
 TEST(behind_a_silence_a_row_begins_anew_and_does_not_wait_for_hold_us)
 {
     start_with((fathom_debounce_config_t){.hold_us = 60000000, .near_count = 2, .far_count = 2});
@@ -256,44 +164,6 @@ TEST(behind_a_silence_a_row_begins_anew_and_does_not_wait_for_hold_us)
     assert_int_equal(gate.level, FATHOM_UNKNOWN);
     expect_at(11500000, 1001, true);
     assert_int_equal(gate.level, FATHOM_FAR);
-}
-
-TEST(a_sample_as_old_as_the_one_before_the_silence_does_not_wait_for_hold_us_either)
-{
-    start_with((fathom_debounce_config_t){.hold_us = 60000000, .near_count = 1, .far_count = 1});
-    expect_at(0, 999, true);
-    expect_time(5000001, true);
-    expect_at(0, 1001, true);
-    assert_int_equal(gate.level, FATHOM_FAR);
-}
-
-/* "A time a little before that of the last measurement does no harm": half a turn of the clock, 2^31 us, is before. */
-TEST(a_time_up_to_half_a_turn_of_the_clock_is_after_the_last_measurement)
-{
-    start_with((fathom_debounce_config_t){.near_count = 1});
-    expect_at(0, 999, true);
-    expect_time(2147483648, false);
-    expect_time(2147483647, true);
-}
-
-/* The same level again is no change. */
-TEST(one_measurement_that_ends_a_silence_with_the_level_before_changes_nothing)
-{
-    start_with((fathom_debounce_config_t){.near_count = 1, .far_count = 1});
-    expect_at(0, 999, true);
-    expect_at(6000000, 999, false);
-    assert_int_equal(gate.level, FATHOM_NEAR);
-    expect_at(12000000, 1001, true);
-    assert_int_equal(gate.level, FATHOM_FAR);
-}
-
-TEST(a_level_is_kept_for_ever_on_request)
-{
-    start_with((fathom_debounce_config_t){.unknown_us = UINT32_MAX, .near_count = 1});
-    expect_at(0, 999, true);
-    expect_time(2147483647, false);
-    expect_time(2147483648, false);
-    expect_time(UINT32_MAX, false);
 }
 
 /* ---- everything, against a slow reference ---- */

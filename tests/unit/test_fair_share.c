@@ -126,15 +126,6 @@ static void play(uint32_t for_us)
 #define expect_ratio(many, few, low, high)                                                                   \
     assert_true((many)->left >= (low) * (few)->left && (many)->left <= (high) * (few)->left)
 
-TEST(those_that_take_as_long_go_in_turn)
-{
-    asker_t *const a = add(1, 50 * MS, 0);
-    asker_t *const b = add(2, 50 * MS, 0);
-    play(10 * SECOND);
-    assert_true(a->left > 50);
-    assert_in_range(a->left - b->left + 1, 0, 2);
-}
-
 /* The slow one takes 3.6 ms of silence, 8.3 of request and 400 of work. The fast one takes 8.3 and 2, and rests for 4
  * ms, the silence among them, in which the slow one could begin: 14.3 ms, up to 15 in this loop. 412 is 27.5 to 28.8
  * times that. */
@@ -197,46 +188,6 @@ TEST(for_one_that_asks_no_more_the_line_is_idle_for_the_hold_time_once)
     assert_in_range(askers[1].left, before + 24, before + 25); /* 10 s / 412 ms */
 }
 
-TEST(one_that_comes_again_goes_at_once)
-{
-    asker_t *const fast = begin_fast_and_slow(4 * MS);
-    const unsigned before = fast->left;
-    play(5 * MS);
-    assert_int_equal(fast->left, before + 1);
-}
-
-/* Its requests come 55 ms after its responses. */
-TEST(for_one_that_asks_more_slowly_nothing_is_held_back)
-{
-    asker_t *const fast = add(7, 2 * MS, 55 * MS);
-    asker_t *const slow = add(2, 400 * MS, 0);
-    play(60 * SECOND);
-    assert_in_range(fast->left - slow->left + 1, 0, 2);
-    assert_true(slow->left > 60000 / 440);
-}
-
-/* An eighth of 12 ms is less than the rest of 4 ms. */
-TEST(what_is_short_is_not_held_back)
-{
-    (void)add(7, 2 * MS, 4 * MS);
-    (void)add(6, 2 * MS, 4 * MS);
-    play(10 * SECOND);
-    assert_in_range(askers[0].left + askers[1].left, 10000 / 15, 10000 / 13);
-}
-
-/* The loop that submits it while the slow one is on the wire comes round 100 ms later. */
-TEST(how_soon_one_asks_again_counts_from_its_submission)
-{
-    asker_t *const fast = add(7, 2 * MS, 10 * MS);
-    asker_t *const slow = add(2, 400 * MS, 0);
-    play(SECOND);
-    while (!slow->has_left || fast->is_asked) play(STEP_US);
-    while (!fast->is_asked) play(STEP_US);
-    bench.fake.now_us += 100 * MS;
-    poll_line();
-    assert_in_range(share.units[7].again_us, 10 * MS, 11 * MS);
-}
-
 /* Its time-out is 20 ms, and its quarantine as long again: the slow one leaves at once, since the line has been
  * silent. */
 TEST(for_a_quarantined_unit_nothing_is_held_back)
@@ -251,51 +202,6 @@ TEST(for_a_quarantined_unit_nothing_is_held_back)
     while (fast->has_left) play(STEP_US);
     play(2 * STEP_US);
     assert_true(slow->has_left);
-}
-
-TEST(what_goes_next_is_due_after_the_silence)
-{
-    play(20 * MS);
-    (void)add(1, 50 * MS, 0);
-    step(&askers[0]);
-    expect_due(0);
-    play(100 * MS);
-    add(2, 50 * MS, 0)->ask_at_us += SECOND;
-    askers[0].is_left_alone = true;
-    play(SECOND);
-    askers[0].is_left_alone = false;
-    while (askers[1].left == 0) play(STEP_US);
-    while (askers[1].has_left) play(STEP_US);
-    expect_due(T3_5_US - (bench.fake.now_us - fathom_line_last_byte_us(&bench.line)));
-}
-
-/* ---- what is kept, and what is not ---- */
-
-/* One that had nothing to ask for 20 s does not have the line to itself for 20 s then. */
-TEST(time_that_was_not_used_is_lost)
-{
-    asker_t *const a = add(1, 50 * MS, 0);
-    asker_t *const b = add(2, 50 * MS, 0);
-    play(SECOND);
-    b->is_left_alone = true;
-    play(20 * SECOND);
-    b->is_left_alone = false;
-    a->left = b->left = 0;
-    play(10 * SECOND);
-    assert_in_range(a->left - b->left + 2, 0, 4);
-}
-
-/* Nor has it used the time in which the line was idle. */
-TEST(an_idle_line_is_not_what_the_last_unit_used)
-{
-    asker_t *const a = add(1, 50 * MS, 3 * SECOND);
-    play(10 * SECOND);
-    assert_in_range(share.units[1].ahead_us, 61 * MS, 63 * MS); /* 3.6 + 8.3 + 50 */
-    assert_int_equal(a->left, 4);
-    bench.config.silence_us = 0; /* 4.0 */
-    play(3 * SECOND);
-    assert_int_equal(a->left, 5);
-    assert_in_range(share.units[1].ahead_us, 62 * MS, 63 * MS);
 }
 
 /* ---- silence, quarantine, broadcasts, cancels ---- */
@@ -325,18 +231,6 @@ TEST(where_all_are_quarantined_it_is_due_when_that_ends)
     expect_due(bench.line.quarantine_left_us);
     play(550 * MS);
     assert_int_equal(dead->left, 2);
-}
-
-/* Each broadcast has the line for its time-out, 100 ms, with 12 of silence and request. */
-TEST(a_broadcast_is_used_time_of_unit_0)
-{
-    asker_t *const all = add(0, 0, 0);
-    asker_t *const fast = add(7, 2 * MS, 4 * MS);
-    all->is_dead = true;
-    all->timeout_us = 100 * MS;
-    play(20 * SECOND);
-    assert_in_range(all->line_us, 9 * SECOND, 11 * SECOND);
-    assert_true(fast->left > 600);
 }
 
 /* What was on the wire when it was cancelled has been used until then; the unit is quarantined, and not waited for. */

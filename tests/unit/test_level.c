@@ -121,17 +121,6 @@ static uint32_t volume_of(fathom_tank_volume_t volume, uint32_t capacity, uint16
     return volume(&tank, level_mm);
 }
 
-/* 10 / 4 = 2.5, 10 / 3 = 3.33, 20 / 3 = 6.67 */
-TEST(an_upright_tanks_volume_is_to_the_nearest)
-{
-    assert_int_equal(volume_of(fathom_tank_upright, 10, 4, 1), 3);
-    assert_int_equal(volume_of(fathom_tank_upright, 10, 3, 1), 3);
-    assert_int_equal(volume_of(fathom_tank_upright, 10, 3, 2), 7);
-    assert_int_equal(volume_of(fathom_tank_upright, 1, 65535, 32767), 0);
-    assert_int_equal(volume_of(fathom_tank_upright, 1, 65535, 32768), 1);
-    assert_int_equal(volume_of(fathom_tank_upright, 0, 3, 2), 0);
-}
-
 /* ---- a horizontal cylinder ---- */
 
 /* 0.0431 per mille of 10^6 units are 43.1; then half a unit, and half of one by which `volume` is rounded. */
@@ -248,23 +237,6 @@ TEST(a_tables_products_do_not_wrap)
 /* ---- the check of a config ---- */
 
 static void expect_checked(fathom_status_t status) { assert_int_equal(fathom_level_check(&tank), status); }
-
-TEST(a_config_of_each_shape_is_good)
-{
-    expect_checked(FATHOM_OK);
-    tank.volume = fathom_tank_horizontal_cylinder;
-    expect_checked(FATHOM_OK);
-    tank.mounting_mm = tank.height_mm = 1;
-    tank.capacity = 1;
-    expect_checked(FATHOM_OK);
-    tank.mounting_mm = tank.height_mm = 65535;
-    expect_checked(FATHOM_OK);
-    tank.capacity = 0;
-    use_points(cone, 3);
-    expect_checked(FATHOM_OK);
-    use_points(cone, 1);
-    expect_checked(FATHOM_OK);
-}
 
 TEST(a_config_without_a_shape_a_mounting_a_height_or_a_volume_is_refused)
 {
