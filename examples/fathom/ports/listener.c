@@ -32,7 +32,6 @@ static int listener_write(void *ctx, const uint8_t *bytes, size_t length)
     const uint32_t asked_us = now_us(tap); /* a response may be there before the write returns */
     const int n = tap->inner.write(tap->inner.ctx, bytes, length);
     if (n <= 0 || length > sizeof tap->request) return n;
-    tap->passed++;
     if (tap->whose != NULL) tap->now = tap->whose(tap->ctx);
     listener_t *const listener = tap->now != NULL ? tap->now : tap;
     memcpy(listener->request, bytes, length);
@@ -82,17 +81,6 @@ void listener_begin(listener_t *listener, fathom_uart_t *uart, const fathom_cloc
     uart->ctx = listener;
 }
 
-void listener_take_over(listener_t *listener, const listener_t *other)
-{
-    memcpy(listener->window, other->window, sizeof listener->window);
-    memcpy(listener->request, other->request, sizeof listener->request);
-    listener->have = other->have;
-    listener->bytes = other->bytes;
-    listener->slowest_us = other->slowest_us;
-    listener->request_length = other->request_length;
-    listener->asked_us = other->asked_us;
-}
-
 void listener_forget(listener_t *listener)
 {
     listener->have = 0;
@@ -100,20 +88,13 @@ void listener_forget(listener_t *listener)
     listener->slowest_us = 0;
 }
 
-static uint8_t room_of(const listener_t *listener, uint16_t at)
-{
-    const unsigned left = (unsigned)listener->have - at;
-    return left < UINT8_MAX ? (uint8_t)left : UINT8_MAX;
-}
-
-/* The length of the frame at the front, if there is a whole one with a right CRC; else 0. */
+/* Returns the length of the frame at the front if it is whole and its CRC is right, else 0. */
 static uint8_t whole(const uint8_t *bytes, uint8_t have, uint8_t length)
 {
     return length != 0 && length <= have && fathom_crc16(bytes, length) == 0 ? length : 0;
 }
 
-/* The bytes that two or more frames FF..SUM of this length in a row take; 0: there are none. One alone may be
- * chance. */
+/* Returns the bytes of at least two frames FF..SUM of this length in a row, else 0. A single one may be chance. */
 static uint16_t streamed(const listener_t *listener, uint16_t at, uint8_t length, uint32_t *frames)
 {
     uint16_t end = at;
@@ -148,8 +129,8 @@ static bool is_fitting(const listener_t *listener, const uint8_t *response, uint
            listener->request_length != READ_REQUEST || length == READ_RESPONSE + 2 * listener->request[COUNT];
 }
 
-/* As account, for the frames 55 AA. A request that is no echo has the length and the sum of one and the command of a
- * measurement. */
+/* As account(), for the frames 55 AA. A request of another master has the length and the sum of a request, and the
+ * command of a measurement. */
 static uint8_t account_dyp(const uint8_t *bytes, uint8_t have, uint8_t address, evidence_t *evidence)
 {
     enum { ADDRESS = 2, COMMAND = 3 };
@@ -166,11 +147,12 @@ static uint8_t account_dyp(const uint8_t *bytes, uint8_t have, uint8_t address, 
     return FATHOM_DYP_REQUEST_LENGTH;
 }
 
-/* What begins at the front of these bytes: how many of them are accounted for, 0 if none. */
+/* Counts the frame or echo that begins at this place of the window. Returns its length, 0 if there is none. */
 static uint16_t account(const listener_t *listener, uint16_t at, uint8_t address, evidence_t *evidence)
 {
     const uint8_t *const bytes = listener->window + at;
-    const uint8_t have = room_of(listener, at);
+    const unsigned left = (unsigned)listener->have - at;
+    const uint8_t have = left < UINT8_MAX ? (uint8_t)left : UINT8_MAX;
     if (listener->request_length != 0 && have >= listener->request_length &&
         memcmp(bytes, listener->request, listener->request_length) == 0) {
         evidence->echoes++;

@@ -92,7 +92,8 @@ static fathom_status_t poll_serial(port_t *port)
 {
     if (adapter_is_doubtful(&port->adapter))
         return port_fail(port, PORT_LOST, "%s", adapter_find(&port->adapter, port->settings.path));
-    return fathom_posix_error(&port->serial) == FATHOM_POSIX_ERR_LOST ? fail_serial(port) : FATHOM_OK;
+    if (fathom_posix_error(&port->serial) == FATHOM_POSIX_ERR_LOST) return fail_serial(port);
+    return has_trigger(port) ? port_chip.poll(port) : FATHOM_OK;
 }
 
 static int serial_fd(const port_t *port) { return fathom_posix_fd(&port->serial); }
