@@ -26,7 +26,7 @@ class Request(e2e.Case):
         self.assertEqual(device.rest(), b'')
 
     def test_without_yes_nothing_leaves_and_the_port_is_not_opened(self):
-        self.ends(f'request 1 6 0x0200 5 --port {self.path("none")}', 2, 'nothing was sent; --yes', out='')
+        self.ends(f'request 1 6 0x0200 5 --port {self.path("none")}', 2, 'Nothing was sent yet. To confirm that, add --yes', out='')
 
     def test_more_than_a_frame_holds_is_wrong_usage(self):
         for words in ('16 0 ' + '1 ' * 124, '65 ' + 'ff ' * 252, '3 0 126', '65 ' + 'ff ' * 400):

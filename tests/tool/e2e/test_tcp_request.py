@@ -15,7 +15,7 @@ class Request(tcp_server.Case):
         transaction, unit, rest = server.request()
         self.assertEqual((unit, rest), (1, bytes((3, 1, 1, 0, 1))))
         server.say(tcp_server.adu(transaction, 1, 0x83, number))
-        self.ends(request, 1, f'the gateway says exception {number} ({name}); check UNIT')
+        self.ends(request, 1, f'the gateway responds with exception {number} ({name}). Check UNIT')
 
 
 if __name__ == '__main__':

@@ -32,7 +32,7 @@ class Servers:
 
     def test_nothing_is_written_without_yes(self):
         port = self.served(LINE, 1, FIRST, [1, 2, 3, 4])
-        self.ends(f'request 1 6 0x0201 9 --port {port}', 2, 'nothing was sent', out='')
+        self.ends(f'request 1 6 0x0201 9 --port {port}', 2, 'Nothing was sent', out='')
         self.assertEqual(self.registers(port), [1, 2, 3, 4])
 
     def test_as_many_registers_as_a_frame_holds(self):

@@ -2,8 +2,41 @@
 #ifndef REQUEST_H
 #define REQUEST_H
 
-#include "commands/request/request_options.h"
+#include "cli/command.h"
+#include "diagnosis/counters.h"
 #include "ports/port.h"
+#include "sensors/models.h"
+
+/* Positions in a request. */
+enum { REQUEST_UNIT = 0, REQUEST_FUNCTION = 1, REQUEST_FIRST = 2, REQUEST_COUNT = 4, REQUEST_VALUE = 4 };
+
+enum { REQUEST_READ = 3, REQUEST_READ_INPUT = 4, REQUEST_WRITE = 6, REQUEST_WRITE_MANY = 16 };
+
+/* A request and its options. */
+typedef struct {
+    const char *path;
+    const model_t *model; /* NULL: not given */
+    fathom_line_settings_t line;
+    uint32_t timeout_us;
+    uint8_t echo; /* fathom_line_parts_t.echo */
+    bool rs485;   /* the kernel's driver switches the transceiver */
+    bool is_json;
+    bool is_confirmed;  /* --yes */
+    uint8_t frame[255]; /* with its CRC */
+    uint8_t length;
+} request_t;
+
+/* Reads UNIT FUNCTION and what belongs to the function, and adds the CRC. Returns false after rejecting a word. */
+bool request_words(request_t *request, char **words, int count);
+
+/* Returns the register or the number at a position of the request. */
+uint16_t request_word(const request_t *request, size_t at);
+
+/* Returns true for functions 1 to 4, which change nothing by the standard. */
+bool request_is_read(const request_t *request);
+
+/* Returns true if no unit responds. A read of unit 0 is no broadcast, since an A16 or A05 can have that address. */
+bool request_is_broadcast(const request_t *request);
 
 typedef enum {
     REQUEST_ANSWERED,
@@ -48,5 +81,14 @@ bool request_may_collide(const request_t *request);
  * have this address. The frame points to `piece`. */
 void request_decode(decode_frame_t *frame, decode_piece_t *piece, const request_t *request,
                     const uint8_t *response, uint8_t length);
+
+/* Writes the bytes and their meaning to standard output, as text or JSON. */
+void request_print(const request_ask_t *ask, const port_t *port);
+
+/* Prints on standard error what failed, or what else the user has to know. counters: of this attempt. */
+void request_print_problem(const request_ask_t *ask, const port_t *port, const counters_t *counters);
+
+/* Returns true if a unit responded, or if the request was sent to all units. */
+bool request_is_good(const request_ask_t *ask);
 
 #endif

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include "commands/request/request_report.h"
-
 #include <inttypes.h>
 #include <stdio.h>
 
+#include "commands/request/request.h"
 #include "diagnosis/advice.h"
 #include "sensors/decoding_print.h"
 #include "sensors/modbus_exception.h"
