@@ -13,7 +13,7 @@ enum { ID = 320 };
 
 #define DEGREES "\xC2\xB0\x43" /* the sign for degrees in UTF-8, and C */
 
-/* template: of what the topic tells. Where it is null, Home Assistant knows no value. */
+/* template: of the JSON at the topic. If it is null, the value is unknown. */
 static const struct {
     const char *component;
     const char *name;
@@ -50,9 +50,9 @@ uint32_t discovery_all(const publish_settings_t *settings, const sensor_t *senso
     return bits;
 }
 
-/* ---- what they are called ---- */
+/* ---- identifiers ---- */
 
-/* Of letters, digits, - and _ alone, as Home Assistant wants it. */
+/* Home Assistant allows letters, digits, - and _. */
 static void add_id(char id[ID], const char *word)
 {
     const size_t before = strlen(id);
@@ -87,9 +87,9 @@ void discovery_topic(const publish_settings_t *settings, const sensor_t *sensor,
                    entities[bit % ENTITIES].component, id);
 }
 
-/* ---- what they are ---- */
+/* ---- messages ---- */
 
-/* A value that does not come for so long is none any more: three intervals, and the pause before a port is tried again. */
+/* A value expires after three intervals and the pause before a port is opened again. */
 static uint32_t expire_s(const sensor_t *sensor)
 {
     enum { INTERVALS = 3, AWAY_S = 30 };

@@ -198,7 +198,7 @@ void attempt_outcome(line_t *line, sensor_t *sensor, fathom_status_t status, con
     loop_t *const loop = line->loop;
     const reader_counters_t counted =
         counters_take(&sensor->counters, &line->counts, &line->port, sensor->reader);
-    if (sensor->mode->has_pulses) pulses_take(&sensor->pulses, &counted, status == FATHOM_OK ? sample : NULL);
+    if (sensor->mode->has_pulses) pulses_add(&sensor->pulses, &counted, status == FATHOM_OK ? sample : NULL);
     if (status != FATHOM_ERR_PORT && is_early(loop, sensor, status)) return;
     if (status == FATHOM_OK && mode_is_asked(sensor->mode) && !sensor->answering)
         counters_time(&sensor->counters, fathom_elapsed_us(sample->time_us, sensor->listener->asked_us));

@@ -5,7 +5,7 @@
 
 #include "output/record.h"
 
-static void take_width(pulses_t *pulses, uint32_t width_us)
+static void add_width(pulses_t *pulses, uint32_t width_us)
 {
     if (pulses->count++ == 0 || width_us < pulses->least_us) pulses->least_us = width_us;
     if (width_us > pulses->most_us) pulses->most_us = width_us;
@@ -15,9 +15,9 @@ static void take_width(pulses_t *pulses, uint32_t width_us)
     pulses->squares += off_us * ((double)width_us - pulses->mean_us);
 }
 
-void pulses_take(pulses_t *pulses, const reader_counters_t *counted, const fathom_sample_t *sample)
+void pulses_add(pulses_t *pulses, const reader_counters_t *counted, const fathom_sample_t *sample)
 {
-    if (sample != NULL && sample->kind == FATHOM_TARGET) take_width(pulses, sample->raw);
+    if (sample != NULL && sample->kind == FATHOM_TARGET) add_width(pulses, sample->raw);
     if (sample != NULL && sample->kind == FATHOM_NO_TARGET) pulses->no_targets++;
     if (sample != NULL && sample->kind == FATHOM_FAULT) pulses->faults++;
     pulses->attempt_noises = counted->noises;

@@ -23,7 +23,7 @@ typedef struct {
 } pulses_t;
 
 /* An attempt of a sensor that has pulses has ended. sample: NULL unless the status is FATHOM_OK. */
-void pulses_take(pulses_t *pulses, const reader_counters_t *counted, const fathom_sample_t *sample);
+void pulses_add(pulses_t *pulses, const reader_counters_t *counted, const fathom_sample_t *sample);
 
 /* Prints one line and resets the counters. */
 void pulses_print(pulses_t *pulses, const char *name, FILE *to);

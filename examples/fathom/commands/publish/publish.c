@@ -37,7 +37,7 @@ static struct {
 /* ---- the sink ---- */
 
 /* Each failure is published. Only those that make a sensor unavailable are printed: it may be away for weeks. */
-static void take_reading(void *ctx, const reading_t *reading)
+static void on_reading(void *ctx, const reading_t *reading)
 {
     (void)ctx;
     if (!publisher_reading(&publish.publisher, reading) || reading->evidence == NULL ||
@@ -51,7 +51,7 @@ static void take_reading(void *ctx, const reading_t *reading)
     (void)fputs("\n", stderr);
 }
 
-static void print_notice(void *ctx, const notice_t *notice)
+static void on_notice(void *ctx, const notice_t *notice)
 {
     (void)ctx;
     if (notice->sensor != NULL)
@@ -132,7 +132,7 @@ static uint32_t tick(void *ctx)
 
 static void help(FILE *to)
 {
-    (void)fputs("fathom publish reads all sensors of a site and publishes what they say to an MQTT broker, "
+    (void)fputs("fathom publish reads all sensors of a site and publishes their readings to an MQTT broker, "
                 "until it is "
                 "ended.\n"
                 "It writes to no device, and subscribes to nothing.\n\n"
@@ -153,7 +153,7 @@ static void help(FILE *to)
         "\nexamples:\n"
         "  fathom publish --check site.yaml               is it right, and what will be published?\n"
         "  fathom publish site.yaml\n"
-        "  fathom publish site.yaml 2>> publish.log       what it has to tell, in a file\n",
+        "  fathom publish site.yaml 2>> publish.log       its messages in a file\n",
         to);
 }
 
@@ -181,7 +181,7 @@ static int publish_site(const host_t *host)
 
 static int run(const host_t *host, int argc, char **argv)
 {
-    static const sink_t sink = {take_reading, print_notice, tick};
+    static const sink_t sink = {on_reading, on_notice, tick};
     const char *values[OPTIONS] = {NULL};
     loop_t *const loop = &publish.loop;
     int status = STATUS_OK;

@@ -98,7 +98,7 @@ static void print_failure(const run_t *run, const reading_t *reading)
     (void)fputs("\n", stderr);
 }
 
-static void take_reading(void *ctx, const reading_t *reading)
+static void on_reading(void *ctx, const reading_t *reading)
 {
     run_t *const run = ctx;
     const bool has_row =
@@ -112,7 +112,7 @@ static void take_reading(void *ctx, const reading_t *reading)
 }
 
 /* What ends the command is printed also with --quiet. */
-static void print_notice(void *ctx, const notice_t *notice)
+static void on_notice(void *ctx, const notice_t *notice)
 {
     const run_t *const run = ctx;
     if (run->options->quiet && notice->kind != NOTICE_GIVEN_UP) return;
@@ -218,7 +218,7 @@ static bool set_up(run_t *run, const arguments_t *arguments)
 
 static int start(const host_t *host, const arguments_t *arguments)
 {
-    static const sink_t sink = {take_reading, print_notice, tick};
+    static const sink_t sink = {on_reading, on_notice, tick};
     run_t run = {.output_error = 0};
     loop_init(&run.loop, host, &sink, &run);
     const int status = set_up(&run, arguments) ? read_site(&run) : STATUS_USAGE;

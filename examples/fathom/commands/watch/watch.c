@@ -79,7 +79,7 @@ static void show_failure(watch_t *watch, const reading_t *reading)
     *reported = reading->status;
 }
 
-static void take_reading(void *ctx, const reading_t *reading)
+static void on_reading(void *ctx, const reading_t *reading)
 {
     watch_t *const watch = ctx;
     const uint64_t now_us = loop_time_us(&watch->loop);
@@ -92,7 +92,7 @@ static void take_reading(void *ctx, const reading_t *reading)
 }
 
 /* A message that may ask for something stays until there are readings. */
-static void take_notice(void *ctx, const notice_t *notice)
+static void on_notice(void *ctx, const notice_t *notice)
 {
     watch_t *const watch = ctx;
     char line[MESSAGE];
@@ -234,7 +234,7 @@ static int watch_site(watch_t *watch)
 
 static int start(const host_t *host, const arguments_t *arguments)
 {
-    static const sink_t sink = {take_reading, take_notice, tick};
+    static const sink_t sink = {on_reading, on_notice, tick};
     watch_t *const watch = calloc(1, sizeof *watch);
     if (watch == NULL) {
         (void)fprintf(stderr, "fathom: no memory left\n");
