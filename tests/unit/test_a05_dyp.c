@@ -11,7 +11,6 @@ enum { STEP_US = 250, REQUEST_US = 5 * RIG_BYTE_US };
 static const uint8_t ask_all[] = {0x55, 0xAA, 0x01, 0x01, 0x01};
 static const uint8_t four[] = {0x55, 0xAA, 0x01, 0x01, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x62};
 static const uint16_t four_mm[] = {1000, 2000, 1953, 3562};
-static const uint8_t first_1953[] = {0x55, 0xAA, 0x01, 0x10, 0x07, 0xA1, 0xB8};
 
 static fathom_a05_dyp_config_t config;
 static fathom_a05_dyp_t a05;
@@ -175,50 +174,6 @@ TEST(a_value_that_cannot_be_is_refused_alone)
 
 /* ---- time ---- */
 
-/* From one command to the next at least 250 ms for all probes, 100 ms for one (A05 2(3)1); the responses are
- * instant. */
-static void assert_period(uint32_t expected_us)
-{
-    uint32_t last_us = 0;
-    for (unsigned n = 0; n != 4; n++) {
-        const uint32_t at_us = until_written(n);
-        if (n != 0) assert_in_range(at_us - last_us, expected_us, expected_us + 2 * STEP_US);
-        last_us = at_us;
-        nothing_for(10000);
-        if (config.probes == 0)
-            receive(four, sizeof four);
-        else
-            receive(first_1953, sizeof first_1953);
-        for (unsigned i = config.probes == 0 ? 4 : 1; i != 0; i--) assert_int_equal(rig_poll(), FATHOM_OK);
-        nothing_for(STEP_US);
-        assert_in_range(fathom_due_us(&rig.sensor, 1), expected_us - 12000, expected_us - 10000);
-    }
-}
-
-TEST(commands_keep_the_least_time_between_them)
-{
-    static const uint32_t rows[][3] = {{0, 0, 250000},     {1, 0, 100000},      {0, 249999, 250000},
-                                       {1, 99999, 100000}, {0, 300000, 300000}, {1, 250000, 250000}};
-    for (unsigned i = 0; i != COUNT(rows); i++) {
-        start_with((uint8_t)rows[i][0], rows[i][1], 0);
-        assert_period(rows[i][2]);
-    }
-}
-
-TEST(a_dead_sensor_is_asked_less_often_and_no_less_than_the_config_says)
-{
-    config.probes = 1;
-    config.modbus.backoff_us = 300000;
-    start();
-    for (unsigned n = 0; n != 8; n++) {
-        const uint32_t at_us = until_written(n);
-        assert_int_equal(next_within(300000, rig_poll), FATHOM_ERR_NO_RESPONSE);
-        /* 200 ms of time-out and as much of quarantine; from the third on the pause: 200, then 300 ms after it. */
-        if (n >= 4) assert_true(at_us - rig.fake.writes[n - 1].at_us >= 500000);
-        if (n >= 1) assert_true(at_us - rig.fake.writes[n - 1].at_us <= 520000);
-    }
-}
-
 /* 1.5 s, or as the config says, and then a time-out and a quarantine. */
 TEST(after_power_on_silence_is_warming_up)
 {
@@ -236,18 +191,6 @@ TEST(after_power_on_silence_is_warming_up)
 }
 
 /* ---- errors ---- */
-
-TEST(after_deinit_a_response_changes_nothing)
-{
-    until_written(0);
-    fathom_a05_dyp_deinit(&a05);
-    assert_null(rig.line.head);
-    receive(four, sizeof four);
-    fathom_line_poll(&rig.line);
-    rig.fake.now_us += 1000;
-    fathom_line_poll(&rig.line);
-    for (unsigned i = 0; i != 4; i++) assert_int_equal(a05.values[i], 0); /* as init left them */
-}
 
 /* ---- which address has the one A05 on this line? ---- */
 
@@ -293,12 +236,6 @@ static void finds(size_t written, const uint8_t *response, uint8_t where)
     receive(response, sizeof from_5);
     finds_within(STEP_US, FATHOM_OK);
     assert_int_equal(address, where);
-}
-
-TEST_IN(finding, the_address_is_where_the_response_came_from_and_the_next_call_asks_anew)
-{
-    finds(1, from_5, 5);
-    finds(2, from_254, 254);
 }
 
 TEST_IN(finding, of_two_responses_the_first_is_taken)
