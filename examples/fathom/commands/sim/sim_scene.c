@@ -10,10 +10,17 @@ enum { MAX_MM = 65535, MAX_WORD = 24 };
 static const struct {
     uint8_t fault;
     int32_t value;
-} conditions[] = {{FATHOM_SIM_FAULT_NO_TARGET, FATHOM_SIM_NO_TARGET},
-                  {FATHOM_SIM_FAULT_INTERFERENCE, FATHOM_SIM_INTERFERENCE},
-                  {FATHOM_SIM_FAULT_FAULT, FATHOM_SIM_FAULT}};
+    bool is_optical; /* optical sensors report it */
+    bool is_sonic;   /* ultrasonic sensors report it */
+} conditions[] = {{FATHOM_SIM_FAULT_NO_TARGET, FATHOM_SIM_NO_TARGET, true, true},
+                  {FATHOM_SIM_FAULT_INTERFERENCE, FATHOM_SIM_INTERFERENCE, false, true},
+                  {FATHOM_SIM_FAULT_FAULT, FATHOM_SIM_FAULT, true, false}};
 enum { CONDITIONS = sizeof conditions / sizeof conditions[0] };
+
+static bool can_report(const sim_sensor_t *sensor, size_t condition)
+{
+    return sensor->model->has_optics ? conditions[condition].is_optical : conditions[condition].is_sonic;
+}
 
 static bool parse_value(const sim_sensor_t *sensor, const char *word, int32_t *value)
 {
@@ -21,7 +28,7 @@ static bool parse_value(const sim_sensor_t *sensor, const char *word, int32_t *v
     for (size_t i = 0; i != CONDITIONS; i++) {
         if (strcmp(word, fathom_sim_fault_name(conditions[i].fault)) != 0) continue;
         *value = conditions[i].value;
-        return sim_can_have_fault(sensor, conditions[i].fault);
+        return can_report(sensor, i);
     }
     if (!number_parse(word, 0, MAX_MM, &mm)) return false;
     *value = (int32_t)mm;
@@ -32,8 +39,7 @@ static bool reject_value(const sim_sensor_t *sensor, const char *word, const ori
 {
     char words[64] = "";
     for (size_t i = 0; i != CONDITIONS; i++)
-        if (sim_can_have_fault(sensor, conditions[i].fault))
-            list_add(words, sizeof words, fathom_sim_fault_name(conditions[i].fault));
+        if (can_report(sensor, i)) list_add(words, sizeof words, fathom_sim_fault_name(conditions[i].fault));
     return reject(origin, "distance of %s is '%s'. It takes 0 to %d mm, %s.", sensor->model->name, word,
                   MAX_MM, words);
 }
