@@ -123,9 +123,9 @@ TEST(what_a_variant_of_the_a16_does_not_have_is_not_there)
         "address = 200                            # Modbus address (register 0x0200)\n"
         "\n# How it is set.\n"
         "switch-polarity = not there              # switch variant: the level when something is nearer "
-        "than the threshold (0x0205); no response; not every variant has it\n"
+        "than the threshold (0x0205); no response. Not every variant has it\n"
         "switch-threshold = not there             # mm, switch variant: the distance at which it "
-        "switches (0x0206); no response; not every variant has it\n"
+        "switches (0x0206); no response. Not every variant has it\n"
         "automatic-value = real-time              # RS232 variant: the distance that the automatic output "
         "sends (0x0207)\n");
     says(0, "nothing differs", "restore a16:200");
@@ -307,12 +307,12 @@ TEST(what_the_unit_does_not_tell_is_written_when_it_is_filled_in)
     says(0, "", "save hps167s");
     change("distance-offset = not readable", "distance-offset = -15");
     change("filter-sensitivity = not readable", "filter-sensitivity = 20");
-    says(1, "distance-offset: a unit that has an offset already may get the sum",
+    says(1, "distance-offset: a sensor that has an offset already may add the new one",
          "restore hps167s --dry-run");
     says(1, "distance-offset          not readable   -> -15 mm  is written whatever it is",
          "restore hps167s --dry-run");
     assert_int_equal(counters()->writes, 0);
-    says(0, "distance-offset is -15 mm as far as the device has acknowledged it", "restore hps167s");
+    says(0, "distance-offset is -15 mm: acknowledged", "restore hps167s");
     assert_int_equal(counters()->writes, 2);
     assert_int_equal(bench.hps167s.user.offset_mm, -15);
     assert_int_equal(bench.hps167s.user.filter, 20);

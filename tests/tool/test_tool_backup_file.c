@@ -189,7 +189,7 @@ TEST(address_0_is_nothing_that_a_new_unit_gets)
     const tool_run_t *const run =
         tool_run(&bench.tool, "restore a16 --port line --as-new --file %s", desk_path("unit"));
     assert_int_equal(run->status, 2);
-    assert_non_null(strstr(run->err, "unit:2: with --as-new no unit gets address 0"));
+    assert_non_null(strstr(run->err, "unit:2: with --as-new no sensor gets address 0"));
     assert_int_equal(requests(), 0);
     ASSERT_RUN(0, "restore a16 --port line --file %s", desk_path("unit"));
     assert_int_equal(bench.a16.device.counters.writes, 0);

@@ -32,7 +32,8 @@ TEST(a_sensor_that_falls_silent_is_where_the_record_has_it)
         silence(0, frame, 12);
         const tool_run_t *const done = commission("hps167s --addresses 2 --terminated none --wait 60");
         if (done->status != 0) {
-            const bool is_told = strstr(done->err, "it is at address 1 or at address 2, 19200 8E1") != NULL;
+            const bool is_told =
+                strstr(done->err, "The sensor is at address 1 or at address 2, 19200 8E1") != NULL;
             unconfirmed += is_told;
             assert_non_null(strstr(record_text(), "\nhps167s 2 " FIRST " planned "));
             assert_true(site.device[0]->address == 1 || is_told ||

@@ -95,21 +95,19 @@ TEST(of_a_setting_that_was_refused_nothing_is_claimed)
 TEST(what_cannot_be_read_afterwards_is_not_confirmed)
 {
     faulty(FATHOM_SIM_FAULT_SILENCE, 5, 60);
-    says(1, "termination off: not_confirmed: no acknowledgement came; it may hold or not",
+    says(1, "termination off: not_confirmed: no acknowledgement was received. The value may be set or not",
          "set hps167s termination off");
     assert_false(bench.hps167s.termination);
     /* #1 is read before what is write-only */
     faulty(FATHOM_SIM_FAULT_SILENCE, 2, 60);
-    says(1, "not_confirmed: no acknowledgement came", "set hps167s filter-sensitivity 5");
+    says(1, "not_confirmed: no acknowledgement was received", "set hps167s filter-sensitivity 5");
 }
 
 /* #9 holds from the next power-on here, and #2 tells nothing of it. */
 TEST(what_was_acknowledged_and_reads_otherwise_is_said_to_be_so)
 {
     bench_hps167s((fathom_sim_hps167s_config_t){.no_baud_code = true, .baud_at_power_on = true});
-    says(1,
-         "baud 115200: differs: it was acknowledged, and the device tells another "
-         "value",
+    says(1, "baud 115200: differs: the sensor acknowledged the write, but it reads back another value",
          "set hps167s baud 115200");
     assert_int_equal(counters()->writes, 1);
 }
@@ -142,7 +140,7 @@ TEST(what_is_written_blind_is_written_once_and_not_confirmed)
     says(0, "not_confirmed", "set a16 switch-threshold 2000 --blind");
     assert_int_equal(bench.a16.device.counters.requests, 1);
     bench_begin(); /* of a dead line that is not all that there is to say */
-    says(1, "not_confirmed: no acknowledgement came", "set hps167s termination off --blind");
+    says(1, "not_confirmed: no acknowledgement was received", "set hps167s termination off --blind");
 }
 
 TEST(what_has_to_be_read_is_not_written_blind)

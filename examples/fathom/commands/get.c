@@ -7,35 +7,55 @@
 #include "device/setting_text.h"
 #include "ports/line_text.h"
 
-/* fathom info and fathom get: all that a device tells, or some of it. */
+/* fathom info prints everything that a sensor reports, fathom get one setting or all. */
 
 static session_t session;
 static json_t json;
 
-static void print_text(const setting_t *setting, fathom_status_t status, const char *text)
+/* Selects the values to print. */
+typedef enum { SHOW_ALL, SHOW_SETTINGS, SHOW_ONE } show_t;
+
+/* The progress through the values of one sensor. */
+typedef struct {
+    const setting_t *settings; /* with SHOW_ONE: this one */
+    show_t show;
+    bool is_known;       /* the sensor has responded to at least one request */
+    unsigned count;      /* values to read */
+    unsigned read_count; /* values that were read */
+    uint16_t
+        failed_read; /* the read that failed last. Its other values are not requested: that takes seconds */
+    fathom_status_t failure; /* of that read */
+} progress_t;
+
+/* Returns the next value to print behind `last`, or the first one if `last` is NULL. NULL: there is none. */
+static const setting_t *next_value(const progress_t *progress, const setting_t *last)
 {
-    const bool has_unit = setting->unit != NULL && strspn(text, "0123456789-., ") == strlen(text);
-    if (status == FATHOM_OK)
-        (void)printf("%-26s %s%s%s\n", setting->name, text, has_unit ? " " : "",
-                     has_unit ? setting->unit : "");
-    else
-        (void)printf("%-26s - (%s)\n", setting->name, setting_reason(status));
+    const setting_t *setting = last != NULL ? last + 1 : progress->settings;
+    if (progress->show == SHOW_ONE) return last == NULL ? setting : NULL;
+    for (; setting->name != NULL; setting++) {
+        const bool is_shown = progress->show == SHOW_ALL ? setting->get != NULL : setting->set != NULL;
+        if (is_shown && model_mode_of(session.station->model, setting) == session.station->mode)
+            return setting;
+    }
+    return NULL;
 }
 
-/* Does each tell whose it is? */
+/* Messages name the sensor if there are several, or if the user named it. */
 static bool has_name(void) { return session.site.sensor_count > 1 || session.station->has_own_name; }
 
-static bool can_be_printed(const setting_t *setting)
+/* The start of a message on stderr. */
+static void print_start(void)
 {
-    return setting->get != NULL && model_mode_of(session.station->model, setting) == session.station->mode;
+    (void)fflush(stdout);
+    (void)fprintf(stderr, "fathom: %s%s", has_name() ? session.station->name : "", has_name() ? ": " : "");
 }
 
-/* `address` is the value of a sensor that can report it, and else the address that the requests have. */
-static void begin_json(const setting_t *settings, size_t count, const char *line)
+/* `address` is the value of a sensor that can report it, and else the address at which the sensor is asked. */
+static void begin_json(const progress_t *progress, const char *line)
 {
     bool has_address = false;
-    for (size_t i = 0; i != count && settings[i].name != NULL; i++)
-        if (can_be_printed(&settings[i]) && strcmp(settings[i].name, "address") == 0) has_address = true;
+    for (const setting_t *setting = NULL; (setting = next_value(progress, setting)) != NULL;)
+        if (strcmp(setting->name, "address") == 0) has_address = true;
     json = (json_t){.to = stdout};
     json_begin(&json, NULL, '{');
     sensor_json(&json, session.station);
@@ -43,109 +63,120 @@ static void begin_json(const setting_t *settings, size_t count, const char *line
     json_string(&json, "line", line);
 }
 
-static void begin_text(const char *line)
+static void begin(const progress_t *progress)
 {
-    const sensor_t *const station = session.station;
-    (void)printf("%s%s%s%s, %s, asked at address %u, %s\n", station != session.site.sensors[0] ? "\n" : "",
-                 has_name() ? station->name : "", has_name() ? ": " : "", station->model->name,
-                 station->model->what, station->address, line);
-}
-
-static void begin(const setting_t *settings, size_t count)
-{
+    const sensor_t *const sensor = session.station;
     char line[LINE_TEXT];
     (void)session_line_text(&session, line);
     if (session.is_json)
-        begin_json(settings, count, line);
+        begin_json(progress, line);
     else
-        begin_text(line);
+        (void)printf("%s%s%s%s, %s, asked at address %u, %s\n", sensor != session.site.sensors[0] ? "\n" : "",
+                     has_name() ? sensor->name : "", has_name() ? ": " : "", sensor->model->name,
+                     sensor->model->what, sensor->address, line);
 }
 
-/* Before what is said on the standard error. */
-static void say_whose(void)
+static void print_value(const setting_t *setting, fathom_status_t status, const char *text)
 {
-    (void)fflush(stdout);
-    (void)fprintf(stderr, "fathom: %s%s", has_name() ? session.station->name : "", has_name() ? ": " : "");
+    const bool has_unit = setting->unit != NULL && strspn(text, "0123456789-., ") == strlen(text);
+    if (session.is_json)
+        setting_json(&json, NULL, setting, status == FATHOM_OK ? text : NULL);
+    else if (status == FATHOM_OK)
+        (void)printf("%-26s %s%s%s\n", setting->name, text, has_unit ? " " : "",
+                     has_unit ? setting->unit : "");
+    else
+        (void)printf("%-26s - (%s)\n", setting->name,
+                     setting->get != NULL ? setting_reason(status) : "write-only");
 }
 
-static void tell_remark(const setting_t *setting, const char *text)
+static fathom_status_t read_value(const setting_t *setting, progress_t *progress, char text[SETTING_TEXT])
 {
-    if (has_name()) {
-        say_whose();
-        (void)fprintf(stderr, "%s is %s\n", setting->name, text);
+    text[0] = '\0';
+    if (setting->get == NULL) {
+        if (strcmp(setting->name, "address") != 0) return FATHOM_ERR_UNSUPPORTED;
+        (void)snprintf(text, SETTING_TEXT, "%u", session.station->address); /* it responds there */
+        return FATHOM_OK;
     }
-    setting->remark(stderr, text);
-}
-
-/* The progress of `tell` through the values of one device. */
-typedef struct {
-    const setting_t *settings;
-    size_t count;
-    bool is_known;    /* The device has sent a response to at least one request. */
-    unsigned printed; /* Number of values that were read. */
-    /* The read that failed last and its error. Its other values are not requested again: one failure can take several
-     * seconds. */
-    uint16_t failed_read;
-    fathom_status_t failure;
-} progress_t;
-
-static fathom_status_t get_one(const setting_t *setting, progress_t *progress, char text[SETTING_TEXT])
-{
     if (setting->read_at != 0 && setting->read_at == progress->failed_read) return progress->failure;
     const fathom_status_t status = session_get(&session, setting, text);
-    if (status != FATHOM_OK) {
-        progress->failed_read = setting->read_at;
-        progress->failure = status;
-    }
+    if (status == FATHOM_OK) return status;
+    progress->failed_read = setting->read_at;
+    progress->failure = status;
     return status;
 }
 
-/* False: nothing further can be told, for a reason that was said. */
-static bool print_one(const setting_t *setting, progress_t *progress)
+static bool fail(const setting_t *setting, fathom_status_t status)
+{
+    print_start();
+    (void)fprintf(stderr, "%s: ", setting->name);
+    session_explain(&session, status);
+    (void)fputs("\n", stderr);
+    return false;
+}
+
+/* Returns false after printing why no other value can be read either. */
+static bool show_value(const setting_t *setting, progress_t *progress)
 {
     char text[SETTING_TEXT];
-    const fathom_status_t status = get_one(setting, progress, text);
-    if (status != FATHOM_OK && (!progress->is_known || setting_reason(status) == NULL)) {
-        say_whose();
-        (void)fprintf(stderr, "%s: ", setting->name);
-        session_explain(&session, status);
-        (void)fputs("\n", stderr);
-        return false;
-    }
-    if (!progress->is_known) begin(progress->settings, progress->count);
+    const fathom_status_t status = read_value(setting, progress, text);
+    const bool is_read = status == FATHOM_OK || setting->get == NULL;
+    if (!is_read && (!progress->is_known || setting_reason(status) == NULL)) return fail(setting, status);
+    if (!progress->is_known) begin(progress);
     progress->is_known = true;
-    progress->printed += status == FATHOM_OK;
-    if (session.is_json)
-        setting_json(&json, NULL, setting, status == FATHOM_OK ? text : NULL);
-    else
-        print_text(setting, status, text);
-    if (setting->remark != NULL && status == FATHOM_OK) tell_remark(setting, text);
+    if (is_read) progress->read_count++;
+    print_value(setting, status, text);
+    if (setting->remark == NULL || status != FATHOM_OK) return true;
+    if (has_name()) {
+        print_start();
+        (void)fprintf(stderr, "%s is %s\n", setting->name, text);
+    }
+    setting->remark(stderr, text);
     return true;
 }
 
-static int tell(const setting_t *settings, size_t count)
+/* A setting that is write-only does not show that the sensor is there, so one that can be read comes first. */
+static bool responds(progress_t *progress)
 {
-    progress_t progress = {.settings = settings, .count = count};
-    bool is_good = true;
-    unsigned all = 0;
-    for (size_t i = 0; i != count && settings[i].name != NULL; i++) {
-        if (!can_be_printed(&settings[i])) continue;
-        if (is_good) is_good = print_one(&settings[i], &progress);
-        all++;
+    const setting_t *setting = NULL;
+    char text[SETTING_TEXT];
+    do setting = next_value(progress, setting);
+    while (setting != NULL && setting->get == NULL);
+    if (setting == NULL) return true;
+    const fathom_status_t status = session_get(&session, setting, text);
+    return status == FATHOM_OK || fail(setting, status);
+}
+
+/* Prints the values of the sensor on the open port. Returns false if one of them could not be read. */
+static bool show_values(const setting_t *settings, show_t show)
+{
+    progress_t progress = {.settings = settings, .show = show};
+    bool is_good = show != SHOW_SETTINGS || responds(&progress);
+    for (const setting_t *setting = NULL; (setting = next_value(&progress, setting)) != NULL;) {
+        if (is_good) is_good = show_value(setting, &progress);
+        progress.count++;
     }
     if (progress.is_known && session.is_json) {
         json_end(&json, '}');
         (void)fputc('\n', stdout);
     }
     if (fflush(stdout) != 0 || ferror(stdout)) {
-        (void)fputs("fathom: the output cannot be written\n", stderr);
-        is_good = false;
+        (void)fputs("fathom: cannot write the output\n", stderr);
+        return false;
     }
-    if (progress.is_known && progress.printed != all) {
-        say_whose();
-        (void)fprintf(stderr, "%u of %u values could not be read\n", all - progress.printed, all);
+    if (progress.is_known && progress.read_count != progress.count) {
+        print_start();
+        (void)fprintf(stderr, "%u of %u values could not be read\n", progress.count - progress.read_count,
+                      progress.count);
     }
-    return is_good && progress.printed == all ? STATUS_OK : STATUS_FAILED;
+    return is_good && progress.read_count == progress.count;
+}
+
+static bool show_on_port(const host_t *host, const setting_t *settings, show_t show)
+{
+    if (!session_open(&session, host)) return false;
+    const bool is_good = show_values(settings, show);
+    session_close(&session);
+    return is_good;
 }
 
 /* Lists the settings of a sensor without a port. */
@@ -161,14 +192,6 @@ static int list(const char *word, const origin_t *origin)
     return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
 }
 
-static int tell_on_port(const host_t *host, const setting_t *settings, size_t count)
-{
-    if (!session_open(&session, host)) return STATUS_FAILED;
-    const int status = tell(settings, count);
-    session_close(&session);
-    return status;
-}
-
 /* A sensor that fails keeps none of the others from being read. */
 static int start_info(const host_t *host, const arguments_t *arguments)
 {
@@ -178,7 +201,7 @@ static int start_info(const host_t *host, const arguments_t *arguments)
     for (size_t i = 0; i != site->sensor_count; i++) {
         if (i != 0 && host->has_ended(host->ctx)) return STATUS_FAILED;
         session.station = site->sensors[i];
-        if (tell_on_port(host, session_settings(&session), SIZE_MAX) != STATUS_OK) status = STATUS_FAILED;
+        if (!show_on_port(host, session_settings(&session), SHOW_ALL)) status = STATUS_FAILED;
     }
     return status;
 }
@@ -191,15 +214,17 @@ static int start_get(const host_t *host, const arguments_t *arguments)
         strchr(arguments->words[0], '@') == NULL)
         return list(arguments->words[0], &origin);
     if (!session_read(&session, arguments, 1, 1)) return STATUS_USAGE;
-    if (arguments->count == 1) return tell_on_port(host, session_settings(&session), SIZE_MAX);
+    if (arguments->count == 1)
+        return show_on_port(host, session_settings(&session), SHOW_SETTINGS) ? STATUS_OK : STATUS_FAILED;
     const setting_t *const setting = setting_named(&session, arguments->words[1], arguments);
     if (setting == NULL) return STATUS_USAGE;
     if (setting->get == NULL) {
         (void)reject(&origin, "%s is write-only. The sensor does not report it.", setting->name);
         return STATUS_USAGE;
     }
-    if (!session_set_mode(&session, arguments, model_mode_of(session.station->model, setting))) return STATUS_USAGE;
-    return tell_on_port(host, setting, 1);
+    if (!session_set_mode(&session, arguments, model_mode_of(session.station->model, setting)))
+        return STATUS_USAGE;
+    return show_on_port(host, setting, SHOW_ONE) ? STATUS_OK : STATUS_FAILED;
 }
 
 static const option_table_t tables[] = {SESSION_TABLES, {session_format_rows, 0}, {NULL, 0}};

@@ -4,9 +4,9 @@
 #include "cli/session_options.h"
 #include "commands/commands.h"
 #include "device/backup_file.h"
+#include "device/change.h"
 #include "device/plan.h"
 #include "device/presence.h"
-#include "device/set_report.h"
 #include "device/setting_text.h"
 #include "output/words.h"
 
@@ -40,8 +40,7 @@ static const setting_t *row_of(const plan_t *plan, size_t n)
     return &plan->unit->model->settings[plan->order[n]];
 }
 
-/* Returns the exit status. */
-static int write_row(const plan_t *plan, size_t n)
+static bool write_row(const plan_t *plan, size_t n)
 {
     const setting_t *const setting = row_of(plan, n);
     const backup_row_t *const unit = &plan->unit->rows[plan->order[n]];
@@ -49,9 +48,8 @@ static int write_row(const plan_t *plan, size_t n)
         .session = &session, .setting = setting, .value = plan->file->rows[plan->order[n]].value};
     setting_print_value(setting, change.value, change.wanted);
     (void)snprintf(change.was, sizeof change.was, "%s", unit->text);
-    const int status = set_report(&change, session_set(&session, setting, change.value));
-    if (status == STATUS_OK && setting->moves && !presence_follow(&session)) return STATUS_FAILED;
-    return status;
+    return change_report(&change, session_set(&session, setting, change.value)) &&
+           (!setting->moves || presence_follow(&session));
 }
 
 /* Of the rows from one to another, the names; of those that the unit does not tell alone, if that is asked for. */
@@ -92,7 +90,7 @@ static void print_stop(const plan_t *plan, size_t n, const char *path)
 static int write_all(const plan_t *plan, const char *path)
 {
     for (size_t n = 0; n != plan->count; n++) {
-        if (write_row(plan, n) == STATUS_OK) continue;
+        if (write_row(plan, n)) continue;
         print_stop(plan, n, path);
         return STATUS_FAILED;
     }
@@ -171,28 +169,29 @@ static int restore(const backup_t *file, const char *path, bool is_dry, bool is_
     return STATUS_FAILED;
 }
 
-/* Address 0 is nothing that is restored. */
-static int check_address(const char *path, const backup_t *file)
+/* No sensor gets address 0 by restore. */
+static backup_result_t check_address(const char *path, const backup_t *file)
 {
     for (size_t i = 0; i != backup_count(file->model); i++)
         if (file->model->settings[i].has_zero && file->rows[i].held == HELD_VALUE && file->rows[i].value == 0)
             return backup_refuse(path, &file->rows[i],
-                                 "with --as-new no unit gets address 0; `fathom set` can do that");
-    return STATUS_OK;
+                                 "with --as-new no sensor gets address 0. 'fathom set' can do that");
+    return BACKUP_OK;
 }
 
 static int start(const host_t *host, const arguments_t *arguments)
 {
     const restore_settings_t *const settings = arguments->settings;
     backup_t file;
-    if (!session_read(&session, arguments, 1, 0) || !session_set_mode(&session, arguments, model_mode_of(session.station->model, NULL)) ||
+    if (!session_read(&session, arguments, 1, 0) ||
+        !session_set_mode(&session, arguments, model_mode_of(session.station->model, NULL)) ||
         !session_can_set(&session, arguments))
         return STATUS_USAGE;
-    int status = backup_parse(settings->path, session.station->model, &file);
-    if (status == STATUS_OK && settings->is_new) status = check_address(settings->path, &file);
-    if (status != STATUS_OK) return status;
+    backup_result_t result = backup_parse(settings->path, session.station->model, &file);
+    if (result == BACKUP_OK && settings->is_new) result = check_address(settings->path, &file);
+    if (result != BACKUP_OK) return result == BACKUP_INVALID ? STATUS_USAGE : STATUS_FAILED;
     if (!session_open(&session, host)) return STATUS_FAILED;
-    status = restore(&file, settings->path, settings->is_dry, settings->is_new);
+    const int status = restore(&file, settings->path, settings->is_dry, settings->is_new);
     session_close(&session);
     if (fflush(stdout) == 0 && ferror(stdout) == 0) return status;
     (void)fputs("fathom: the output cannot be written\n", stderr);

@@ -3,7 +3,7 @@
 
 #include "cli/session_options.h"
 #include "commands/commands.h"
-#include "device/set_report.h"
+#include "device/change.h"
 #include "device/setting_text.h"
 
 /* fathom set: one setting of one device, confirmed by reading it back where that can be. */
@@ -36,18 +36,18 @@ static fathom_status_t call_all(reader_t *reader, void *ctx)
     return change->setting->set_all(reader, change->setting, change->value);
 }
 
-static int set(change_t *change)
+static bool set(change_t *change)
 {
     setting_print_value(change->setting, change->value, change->wanted);
     change->was[0] = '\0';
-    if (change->is_for_all) return set_report(change, session_call(&session, call_all, change));
+    if (change->is_for_all) return change_report(change, session_call(&session, call_all, change));
     if (change->is_blind) {
         reader_write_next_unchecked(session.station->reader);
     } else if (change->setting->get != NULL) {
         const fathom_status_t status = session_get(&session, change->setting, change->was);
-        if (status != FATHOM_OK) return set_report(change, status);
+        if (status != FATHOM_OK) return change_report(change, status);
     }
-    return set_report(change, session_set(&session, change->setting, change->value));
+    return change_report(change, session_set(&session, change->setting, change->value));
 }
 
 static bool set_kind(change_t *change, const arguments_t *arguments, const origin_t *origin)
@@ -97,7 +97,8 @@ static bool set_up(change_t *change, const arguments_t *arguments)
     if (setting == NULL) return false;
     if (setting->set == NULL) return reject(&origin, "%s is read-only.", setting->name);
     change->setting = setting;
-    return session_set_mode(&session, arguments, model_mode_of(session.station->model, setting)) && session_can_set(&session, arguments) &&
+    return session_set_mode(&session, arguments, model_mode_of(session.station->model, setting)) &&
+           session_can_set(&session, arguments) &&
            set_value(change, arguments->words[2], arguments, &origin) && set_kind(change, arguments, &origin);
 }
 
@@ -106,9 +107,9 @@ static int start(const host_t *host, const arguments_t *arguments)
     change_t change = {.session = &session};
     if (!set_up(&change, arguments)) return STATUS_USAGE;
     if (!session_open(&session, host)) return STATUS_FAILED;
-    const int status = set(&change);
+    const bool is_set = set(&change);
     session_close(&session);
-    return status;
+    return is_set ? STATUS_OK : STATUS_FAILED;
 }
 
 const command_t set_command = {

@@ -104,9 +104,10 @@ typedef struct {
     bool has_sensor;
 } parser_t;
 
-static int wrong(const parser_t *parser, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static backup_result_t wrong(const parser_t *parser, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 
-static int wrong(const parser_t *parser, const char *format, ...)
+static backup_result_t wrong(const parser_t *parser, const char *format, ...)
 {
     va_list arguments;
     (void)fprintf(stderr, "fathom: %s:", parser->path);
@@ -116,10 +117,10 @@ static int wrong(const parser_t *parser, const char *format, ...)
     (void)vfprintf(stderr, format, arguments);
     va_end(arguments);
     (void)fputs("\n", stderr);
-    return STATUS_USAGE;
+    return BACKUP_INVALID;
 }
 
-int backup_refuse(const char *path, const backup_row_t *row, const char *why)
+backup_result_t backup_refuse(const char *path, const backup_row_t *row, const char *why)
 {
     const parser_t parser = {.path = path, .line = row->line};
     return wrong(&parser, "%s", why);
@@ -133,17 +134,18 @@ static char *trim(char *text)
     return text + strspn(text, " \t");
 }
 
-static int take_sensor(parser_t *parser, const char *value)
+static backup_result_t parse_sensor(parser_t *parser, const char *value)
 {
     if (parser->has_sensor) return wrong(parser, "%s stands here a second time", sensor);
     if (strcmp(value, parser->backup->model->name) != 0)
         return wrong(parser, "the file is of '%s', and the unit is to be an %s", value,
                      parser->backup->model->name);
     parser->has_sensor = true;
-    return STATUS_OK;
+    return BACKUP_OK;
 }
 
-static int take_value(const parser_t *parser, const setting_t *setting, backup_row_t *row, const char *value)
+static backup_result_t parse_value(const parser_t *parser, const setting_t *setting, backup_row_t *row,
+                                   const char *value)
 {
     if (strlen(value) >= sizeof row->text) return wrong(parser, "the value of %s is too long", setting->name);
     if (row->line != 0) return wrong(parser, "%s stands in line %u already", setting->name, row->line);
@@ -151,7 +153,7 @@ static int take_value(const parser_t *parser, const setting_t *setting, backup_r
     for (held_t held = HELD_NOT_READABLE; held <= HELD_NOT_SETTABLE; held++) {
         if (strcmp(value, backup_word(held)) != 0) continue;
         row->held = held;
-        return STATUS_OK;
+        return BACKUP_OK;
     }
     if (setting->set != NULL && !backup_value(setting, value, &row->value)) {
         char values[SETTING_VALUES];
@@ -160,7 +162,7 @@ static int take_value(const parser_t *parser, const setting_t *setting, backup_r
     }
     row->held = HELD_VALUE;
     (void)snprintf(row->text, sizeof row->text, "%s", value);
-    return STATUS_OK;
+    return BACKUP_OK;
 }
 
 /* Names and values are printed, in messages and in what differs: what drives a terminal may not be among them. */
@@ -171,13 +173,13 @@ static bool is_printable(const char *text)
     return true;
 }
 
-static int take_line(parser_t *parser, char *line)
+static backup_result_t parse_line(parser_t *parser, char *line)
 {
     const model_t *const model = parser->backup->model;
     line[strcspn(line, "#")] = '\0';
     char *const name = trim(line);
     char *const sign = strchr(name, '=');
-    if (name[0] == '\0') return STATUS_OK;
+    if (name[0] == '\0') return BACKUP_OK;
     if (!is_printable(name))
         return wrong(parser,
                      "before any # the line has a character that cannot be printed, or is not of ASCII");
@@ -185,11 +187,11 @@ static int take_line(parser_t *parser, char *line)
     *sign = '\0';
     const char *const value = trim(sign + 1);
     (void)trim(name);
-    if (strcmp(name, sensor) == 0) return take_sensor(parser, value);
+    if (strcmp(name, sensor) == 0) return parse_sensor(parser, value);
     if (!parser->has_sensor) return wrong(parser, "'%s' before the line %s = %s", name, sensor, model->name);
     for (size_t i = 0; i != backup_count(model); i++)
         if (backup_has(&model->settings[i]) && strcmp(model->settings[i].name, name) == 0)
-            return take_value(parser, &model->settings[i], &parser->backup->rows[i], value);
+            return parse_value(parser, &model->settings[i], &parser->backup->rows[i], value);
     return wrong(parser, "'%s' is nothing that is kept of an %s; fathom save prints what is", name,
                  model->name);
 }
@@ -207,34 +209,34 @@ static bool get_line(FILE *from, char line[BACKUP_LINE + 2], size_t *length, boo
     return c != EOF || *length != 0;
 }
 
-static int parse(parser_t *parser, FILE *from)
+static backup_result_t parse(parser_t *parser, FILE *from)
 {
     char line[BACKUP_LINE + 2];
     size_t length;
     bool has_zero = false;
-    int status = STATUS_OK;
+    backup_result_t result = BACKUP_OK;
     errno = 0;
-    while (status == STATUS_OK && get_line(from, line, &length, &has_zero)) {
+    while (result == BACKUP_OK && get_line(from, line, &length, &has_zero)) {
         parser->line++;
         if (length > BACKUP_LINE)
-            status = wrong(parser, "the line is longer than %d characters", BACKUP_LINE);
+            result = wrong(parser, "the line is longer than %d characters", BACKUP_LINE);
         else if (has_zero)
-            status = wrong(parser, "the line has a byte 0; this is no text");
+            result = wrong(parser, "the line has a byte 0; this is no text");
         else
-            status = take_line(parser, line);
+            result = parse_line(parser, line);
     }
     if (ferror(from) != 0) {
         parser->line = 0;
         (void)wrong(parser, "%s", strerror(errno));
-        return STATUS_FAILED;
+        return BACKUP_UNREADABLE;
     }
-    if (status != STATUS_OK || parser->has_sensor) return status;
+    if (result != BACKUP_OK || parser->has_sensor) return result;
     parser->line = 0;
     return wrong(parser, "there is no line %s = %s; is it a file of fathom save?", sensor,
                  parser->backup->model->name);
 }
 
-int backup_parse(const char *path, const model_t *model, backup_t *file)
+backup_result_t backup_parse(const char *path, const model_t *model, backup_t *file)
 {
     parser_t parser = {.path = path, .backup = file};
     memset(file, 0, sizeof *file);
@@ -242,9 +244,9 @@ int backup_parse(const char *path, const model_t *model, backup_t *file)
     FILE *const from = fopen(path, "r");
     if (from == NULL) {
         (void)wrong(&parser, "%s", strerror(errno));
-        return STATUS_FAILED;
+        return BACKUP_UNREADABLE;
     }
-    const int status = parse(&parser, from);
+    const backup_result_t result = parse(&parser, from);
     (void)fclose(from);
-    return status;
+    return result;
 }

@@ -62,11 +62,11 @@ const char *setting_reason(fathom_status_t status)
 {
     switch (status) {
     case FATHOM_ERR_NO_RESPONSE:
-        return "no response; not every variant has it";
+        return "no response. Not every variant has it";
     case FATHOM_ERR_EXCEPTION:
-        return "refused; not every variant has it";
+        return "refused. Not every variant has it";
     case FATHOM_ERR_MALFORMED:
-        return "its responses cannot be that";
+        return "the response has an impossible value";
     default:
         return NULL;
     }

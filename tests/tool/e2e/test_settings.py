@@ -40,6 +40,17 @@ class What(Settings):
         for word in words:
             self.assertIn(word, out)
 
+    def test_without_a_setting_get_prints_the_present_values(self):
+        sim = self.sim('hps167s:7 --counters')
+        got = self.json(f'get hps167s:7 --port {sim}')
+        self.assertEqual({name: got[name] for name in ('address', 'baud', 'termination', 'warm_up', 'distance_offset')},
+                         {'address': 7, 'baud': 19200, 'termination': True, 'warm_up': 0, 'distance_offset': None})
+        self.assertNotIn('uuid', got)
+        out = self.told(f'get hps167s:7 --port {sim}')
+        self.assertRegex(out, r'(?m)^termination +on$')
+        self.assertRegex(out, r'(?m)^distance-offset +- \(write-only\)$')
+        self.assertEqual(self.counters(sim, 'writes'), [(0,)])
+
     # Between two frames there is room for a request where the machine has the time to send it by then, so each is tried
     # three times. 54 a second: test_tool_unasked, in simulated time.
     def test_an_hps167s_that_sends_unasked_is_told_and_set(self):
@@ -125,7 +136,7 @@ class Change(Settings):
         # the writing, and from then on all is lost
         sim = self.sim(f'hps167s --counters {lost(5, 30)}')
         self.told(f'set hps167s --port {sim} baud 115200',
-                  'it is at 19200 or at 115200 baud, perhaps from the next '
+                  'The sensor is at 19200 or at 115200 baud, perhaps from its next '
                   'power-on', f'fathom scan --port {sim} --baud 19200,115200', code=1)
         self.assertEqual(self.counters(sim, 'baud', 'writes'), [(115200, 1)])
 
@@ -148,13 +159,13 @@ class Change(Settings):
 
     def test_without_confirmation_both_addresses_are_named(self):
         sim = self.sim(f'a16:1:modbus --counters {lost(3, 20)}')
-        self.told(f'set a16 --port {sim} address 5', 'it is at address 1 or at address 5', code=1)
+        self.told(f'set a16 --port {sim} address 5', 'The sensor is at address 1 or at address 5', code=1)
         self.assertEqual(self.counters(sim, 'address'), [(5,)])
 
     def test_an_address_in_use_is_not_given(self):
         sim = self.sim('a05:1:modbus a16:5:modbus --counters')
         self.told(f'set a05 --port {sim} address 5',
-                  'not_written: a device answers at address 5 already', code=1)
+                  'not_written: a sensor responds at address 5 already', code=1)
         self.assertEqual(self.counters(sim, 'writes'), [(0,), (0,)])
 
     def test_every_a05_gets_the_address_by_55_aa(self):
@@ -224,8 +235,8 @@ class Change(Settings):
 
 
 class Failure(Settings):
-    @e2e.each(**{f'a_dead_line_is_explained_to_{line.split()[0]}': line for line in
-                 ('info a16', 'get hps167s termination', 'set a05 address 5')})
+    @e2e.each(**{'a_dead_line_is_explained_to_' + line.replace(' ', '_'): line for line in
+                 ('info a16', 'get hps167s', 'get hps167s termination', 'set a05 address 5')})
     def dead(self, line):
         self.ends(f'{line} --port {self.device()}', 1, 'no byte was received', out='')
 
@@ -238,12 +249,12 @@ class Failure(Settings):
 
     def test_a_setting_that_cannot_be_read_back_may_hold_or_not(self):
         sim = self.sim(f'a16:1:modbus {lost(3, 5)}')
-        self.told(f'set a16 --port {sim} switch-threshold 2000', 'it may hold or not', code=1)
+        self.told(f'set a16 --port {sim} switch-threshold 2000', 'The value may be set or not', code=1)
 
     def test_a_full_output_is_said(self):
         sim = self.sim('a16:1:modbus')
         with open('/dev/full', 'w', encoding='ascii') as full:
-            self.ends(f'info a16 --port {sim}', 1, 'cannot be written', stdout=full)
+            self.ends(f'info a16 --port {sim}', 1, 'cannot write the output', stdout=full)
 
 
 class Reset(Settings):
