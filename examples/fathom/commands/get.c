@@ -79,6 +79,7 @@ static void begin(const progress_t *progress)
 static void print_value(const setting_t *setting, fathom_status_t status, const char *text)
 {
     const bool has_unit = setting->unit != NULL && strspn(text, "0123456789-., ") == strlen(text);
+    if (session.is_json && setting->get == NULL && status != FATHOM_OK) return; /* write-only */
     if (session.is_json)
         setting_json(&json, NULL, setting, status == FATHOM_OK ? text : NULL);
     else if (status == FATHOM_OK)

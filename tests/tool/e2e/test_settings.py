@@ -43,9 +43,10 @@ class What(Settings):
     def test_without_a_setting_get_prints_the_present_values(self):
         sim = self.sim('hps167s:7 --counters')
         got = self.json(f'get hps167s:7 --port {sim}')
-        self.assertEqual({name: got[name] for name in ('address', 'baud', 'termination', 'warm_up', 'distance_offset')},
-                         {'address': 7, 'baud': 19200, 'termination': True, 'warm_up': 0, 'distance_offset': None})
+        self.assertEqual({name: got[name] for name in ('address', 'baud', 'termination', 'warm_up')},
+                         {'address': 7, 'baud': 19200, 'termination': True, 'warm_up': 0})
         self.assertNotIn('uuid', got)
+        self.assertNotIn('distance_offset', got)  # write-only
         out = self.told(f'get hps167s:7 --port {sim}')
         self.assertRegex(out, r'(?m)^termination +on$')
         self.assertRegex(out, r'(?m)^distance-offset +- \(write-only\)$')
@@ -69,8 +70,7 @@ class What(Settings):
               address_0_of_an_a05_is_set_read_and_found='a05')
     def address_0(self, sensor):
         sim = self.sim(f'{sensor}::modbus --counters')
-        self.ends(f'set {sensor} --port {sim} address 0', 2, 'may not be found again',
-                  '--may-not-be-found-again')
+        self.ends(f'set {sensor} --port {sim} address 0', 2, 'may not be found again', '--yes')
         self.assertIn('from now on: fathom read',
                       self.told(f'set {sensor} --port {sim} address 0 --may-not-be-found-again'))
         self.assertEqual(self.json(f'info {sensor}:0 --port {sim}')['address'], 0)
