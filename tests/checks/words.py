@@ -35,7 +35,7 @@ TABLE = [  # the word, as it is in names (None: allowed there), as it is in pros
     ('talk', r'talks?', None, 'session'),
     ('tally', r'tally|tallies', r'tally|tallies', 'counters'),
     ('scenery', r'scenery', r'scenery', 'scene'),
-    ('plug', r'plug(?! in\b)', None, 'usb_adapter'),
+    ('plug', r'plug(?! in\b)', None, 'adapter'),
     ('dyp_frame', r'dyp frame', None, 'dyp_stream'),
     ('dyp_protocol', r'dyp protocol', None, 'dyp_55aa'),
     ('told', r'^told$', None, 'last_configuration; what was reported'),

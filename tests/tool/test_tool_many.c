@@ -315,9 +315,8 @@ TEST(each_port_has_its_own_settings_and_its_own_stations)
     assert_int_equal(times(run->err, "response_min_us"), 3);
 }
 
-/* A request is stuck after 10 s and twice its time-out (channel.h): here one leaves every 33 ms, and another one always
- * waits behind it. */
-TEST(a_line_on_which_a_request_always_waits_is_not_stuck)
+/* One request leaves every 33 ms, and another one always waits behind it. */
+TEST(a_line_on_which_a_request_always_waits_is_not_busy)
 {
     ports(1);
     hps167s(0, (fathom_sim_hps167s_config_t){.no_auto_output = true});

@@ -14,15 +14,14 @@
  *    identity in another USB socket is a twin.
  * 2. The identity alone finds the adapter if the serial number can be its own, and if no twin was plugged in since the
  *    adapter was opened. Otherwise the adapter is found in the same socket only.
- * 3. A link in /dev/serial/by-id names an identity. While a twin is plugged in, the link finds neither.
+ * 3. A link in /dev/serial/by-id names an identity. If a twin is plugged in, the link opens neither.
  * 4. If nothing is known about an adapter, it is found by its path.
  */
 
 enum { ADAPTER_NAME = 32, ADAPTER_SERIAL = 64, ADAPTER_TEXT = 192 };
 
 typedef struct {
-    char name
-        [ADAPTER_NAME]; /* of the tty, "ttyUSB0"; "": this is no USB adapter, or nothing is known about it */
+    char name[ADAPTER_NAME];     /* of the tty, "ttyUSB0"; "": nothing is known */
     char serial[ADAPTER_SERIAL]; /* "": none, as in a CH340 */
     char identity[ADAPTER_TEXT]; /* rule 1, in one text */
     char socket[ADAPTER_TEXT];   /* the controller, and the ports of the hubs from there */

@@ -120,11 +120,6 @@ class Plug(PlugCase):
         self.answer(self.plug_in(), 1111)
         self.assertEqual(self.rows(self.ends(reader, 0, ': it is there; reading begins\n')), [(1, 1111)])
 
-    def test_a_port_that_never_comes_can_be_given_up(self):
-        reader = self.fathom(f'read a16 --port {self.port} --reconnect --stats')
-        reader.expect('waiting until it is there$', 'err')
-        self.ends(reader.end(signal.SIGTERM), 0, 'attempts 0, failed 0, readings 0\n', out='')
-
     def test_what_is_no_port_is_not_waited_for(self):
         with open(self.port, 'w', encoding='ascii'):
             pass
