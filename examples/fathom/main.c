@@ -14,7 +14,7 @@ static int check_descriptors(void)
     for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; fd++) {
         if (fcntl(fd, F_GETFD) != -1) continue;
         if (fd == STDOUT_FILENO) {
-            (void)fprintf(stderr, "fathom: the standard output is closed, there is nowhere to write to\n");
+            (void)fprintf(stderr, "fathom: the standard output is closed, there is nowhere to write to.\n");
             return STATUS_FAILED;
         }
         if (open("/dev/null", O_RDWR) != fd) return STATUS_FAILED;

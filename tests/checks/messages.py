@@ -42,6 +42,9 @@ WORDS = [
     (r'so many|so long|as long as that', 'a number'),
 ]
 WRONG = [(re.compile(rf'\b(?:{word})\b'), better) for word, better in WORDS]
+# A message that one call prints as a whole is a sentence, unless it ends with a text from elsewhere.
+WHOLE = re.compile(r'^fathom: .*[\w)]\\n$')
+FOREIGN = re.compile(r'%[\w.*]*s\\n$')
 INTERNAL = re.compile(r'\b(FATHOM_(?!PORT\b)[A-Z]\w+|\w+_t|NULL|struct|stdin|stderr)\b')
 
 
@@ -136,16 +139,18 @@ def check(root, only):
         plain = re.sub(r"'[^']*'|`[^`]*`|--[\w-]+", '', text)
         problems += [f'{path}:{line}: {found[0]!r} in {text!r}; write {better}'
                      for wrong, better in WRONG for found in wrong.finditer(plain.lower())]
+        if WHOLE.search(text) and not FOREIGN.search(text):
+            problems.append(f'{path}:{line}: {text!r} ends without a full stop')
         problems += [f'{path}:{line}: {found[0]} is an internal name, in {text!r}' for found in INTERNAL.finditer(plain)]
     return problems
 
 
-FAULTS = [('examples/fathom/device/set_report.c', None, 'void planted(void)\n{\n    (void)fputs("it is told anew\\n", stderr);\n}\n',
-           'is told')]
+FAULT = ('examples/fathom/commands/get.c', None, 'void planted(void)\n{\n    (void)fputs("it is told anew\\n", stderr);\n}\n',
+         'is told')
 
 if __name__ == '__main__':
     if '--list' in sys.argv[1:]:
         for path, line, name, text in messages(ROOT):
             print(f'{path[len(TOOL):]}:{line}: {name}: {text}')
     else:
-        main(check, FAULTS)
+        main(check, FAULT)

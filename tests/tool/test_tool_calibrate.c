@@ -133,11 +133,11 @@ static void expect(int status, const char *out, const char *err, const char *lin
 #define ONE   "hps167s:1: writing offset -15 mm to flash (write 1 of at most 2)\n"
 #define RIGHT "hps167s:1: right within 2 mm: measured 2000 mm, known 2000 mm; "
 #define AGAIN                                                                                                \
-    "fathom: before you calibrate again, switch the power off and on, and measure\n"                         \
+    "fathom: before you calibrate again, switch the power off and on, and measure.\n"                        \
     "fathom: if the sensor then measures as before, set distance-offset to 0, switch the power off and on, " \
-    "and calibrate again\n"                                                                                  \
+    "and calibrate again.\n"                                                                                 \
     "fathom: if it measures another wrong distance X, #12 replaces the old offset, and the right offset is " \
-    "1985 - X\n" /* 2000 - 15 */
+    "1985 - X.\n" /* 2000 - 15 */
 
 TEST(a_device_without_an_old_offset_is_right_after_one_write)
 {
@@ -245,7 +245,7 @@ TEST(a_second_write_that_is_lost_names_both_offsets)
         run->err,
         "fathom: hps167s:1: offset -10 mm was not acknowledged, and the sensor still measures 1995 mm\n"
         "fathom: hps167s:1: flash writes: 2; the offset is now, or from the next power-on: -10 mm or -15 mm\n"
-        "fathom: #12 replaces the old offset, so you can calibrate again\n");
+        "fathom: #12 replaces the old offset, so you can calibrate again.\n");
 }
 
 /* It says so, whatever it has done. */
@@ -264,7 +264,7 @@ TEST(a_refused_write_stops_the_calibration)
     assert_string_equal(run->out, FAR ONE);
     assert_non_null(strstr(run->err, "fathom: hps167s:1: offset -15 mm was not written: "));
     assert_non_null(strstr(run->err, "refused"));
-    assert_non_null(strstr(run->err, "\nfathom: hps167s:1: nothing was written\n"));
+    assert_non_null(strstr(run->err, "\nfathom: hps167s:1: nothing was written.\n"));
     assert_int_equal(writes.requests, 1);
 }
 
@@ -275,7 +275,7 @@ TEST(a_write_that_was_not_sent_stops_the_calibration)
     assert_int_equal(run->status, 1);
     assert_string_equal(run->out, FAR ONE);
     assert_non_null(strstr(run->err, "fathom: hps167s:1: offset -15 mm was not written: no response"));
-    assert_non_null(strstr(run->err, "\nfathom: hps167s:1: nothing was written\n"));
+    assert_non_null(strstr(run->err, "\nfathom: hps167s:1: nothing was written.\n"));
     assert_int_equal(writes.requests, 0);
 }
 

@@ -53,7 +53,7 @@ TEST(samples_that_differ_too_much_are_not_used)
     writes_nothing(1,
                    "the samples differ by 22 mm, more than --spread 20. Hold the sensor and the target still",
                    CALIBRATE);
-    writes_nothing(1, "fathom: hps167s:1: nothing was written\n", CALIBRATE);
+    writes_nothing(1, "fathom: hps167s:1: nothing was written.\n", CALIBRATE);
     /* half the spread is 11 mm, and d = -15 within twice that: the result may be ambiguous, but never wrong */
     const tool_run_t *const run = tool_run(&bench.tool, CALIBRATE " --spread 22");
     const int off_mm = 15 + bench.hps167s.sensor.offset_mm;

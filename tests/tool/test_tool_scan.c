@@ -53,11 +53,10 @@ TEST(eight_sensors_of_three_models_are_found_and_their_identities_printed)
                 "hps167s  address 6    19200 8E1    interface 2.1.0 of 2020-09-27, sensor 3.9 of 2019-09-23, "
                 "termination off  ->  fathom read hps167s:6:modbus --port line\n");
     assert_says(run, "termination on  ->  fathom read hps167s:8:modbus --port line\n");
-    assert_says(
-        run,
-        "fathom: 2 HPS-167S have their termination resistor on, as from the factory, which overloads the "
-        "line");
-    assert_says(run, "as fathom set hps167s:ADDRESS --port line termination off does");
+    assert_says(run, "fathom: 2 HPS-167S have their termination resistor on, as with factory settings. "
+                     "Together they overload the "
+                     "line: switch it off in all but the last one with 'fathom set hps167s:ADDRESS --port "
+                     "line termination off'.\n");
     assert_says(run, "fathom: sensors found: 8, after ");
     assert_null(strstr(run->out, "twice"));
 }
@@ -298,7 +297,7 @@ TEST(a_rate_that_the_port_does_not_have_is_left_out)
     scans.refused_baud = 230400;
     (void)add_hps167s((fathom_sim_hps167s_config_t){.address = 1});
     assert_says(scan_finds("hps167s 1 19200 8E1", "--baud 9600,230400,19200"),
-                "fathom: this port does not have 230400 8E1, so the scan leaves it out\n");
+                "fathom: this port does not have 230400 8E1, so the scan leaves it out.\n");
 }
 
 TEST(ctrl_c_ends_the_scan_at_once_and_keeps_what_was_found)

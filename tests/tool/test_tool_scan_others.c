@@ -56,10 +56,10 @@ TEST(a_sensor_that_sends_automatically_is_asked_if_the_user_says_so)
 {
     bench.line.full_duplex = true;
     (void)add_a16((fathom_sim_a16_config_t){.address = 7, .mode = FATHOM_SIM_A16_AUTO});
-    assert_says(
-        scan_finds("a16 7 9600 8N1", "--wake"),
-        "it sent by itself until it was asked, and sends again after power-off, or when 1 is written to its "
-        "register 0x0202");
+    assert_says(scan_finds("a16 7 9600 8N1", "--wake"),
+                "the sensor sent automatically until the first request. It does so again after a power "
+                "cycle, or when 1 is written to its "
+                "register 0x0202");
 }
 
 TEST(a_sensor_that_hears_no_request_and_goes_on_sending_is_named)
@@ -123,8 +123,8 @@ TEST(two_units_with_one_address_are_named_and_their_neighbours_found)
         const tool_run_t *const run =
             scan_finds("a16 2 9600 8N1, ? 1 9600 8N1, hps167s 5 19200 8E1, ? 4 19200 8E1", "");
         assert_says(run, "damaged responses: two sensors with one address?\n");
-        assert_says(run, "responses at address 1 (9600 8N1) are damaged: two sensors with one address?");
-        assert_says(run, "responses at address 4 (19200 8E1) are damaged: two sensors with one address?");
+        assert_says(run, "responses at address 1 (9600 8N1) are damaged. Two sensors may have this address");
+        assert_says(run, "responses at address 4 (19200 8E1) are damaged. Two sensors may have this address");
     }
 }
 
@@ -135,7 +135,7 @@ TEST(two_responses_to_one_request_are_two_units)
     (void)add_a16((fathom_sim_a16_config_t){.address = 6, .settings_us = 40000});
     const tool_run_t *const run = scan_finds("? 6 9600 8N1", "");
     assert_says(run, "responds twice: two sensors with one address?\n");
-    assert_says(run, "two responses came from address 6: two sensors with one address?");
+    assert_says(run, "address 6 sent two responses to one request. Two sensors may have this address");
 }
 
 TEST(one_spike_is_no_device)
@@ -152,7 +152,7 @@ TEST(responses_that_are_not_modbus_are_one_finding)
     (void)add_speaker(&hps167s_line, 0, junk, sizeof junk);
     (void)add_a16((fathom_sim_a16_config_t){.address = 3});
     const tool_run_t *const run = scan_finds("a16 3 9600 8N1, ? - 19200 8E1", "");
-    assert_says(run, "something answers at 19200 8E1, but not Modbus: an HPS-167S made before 2020-09");
+    assert_says(run, "a response at 19200 8E1 is not Modbus. An HPS-167S made before 2020-09");
     /* 32 addresses, most of them asked twice and not four times */
     assert_in_range(scans.probed[1][FATHOM_PARITY_EVEN], 64, 80);
 }
@@ -220,7 +220,7 @@ TEST(a_frame_of_an_address_beyond_the_range_is_mentioned)
 {
     (void)add_speaker(&dyp_line, 0, a16_response, sizeof a16_response);
     const tool_run_t *const run = scan_finds("", "--address 2-4");
-    assert_says(run, "a frame of address 1 was heard, which was not asked; try --address 1\n");
+    assert_says(run, "a frame of address 1 was heard, which was not asked; try --address 1.\n");
     assert_null(strstr(run->err, "another master"));
 }
 

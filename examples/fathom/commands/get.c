@@ -161,7 +161,7 @@ static bool show_values(const setting_t *settings, show_t show)
         (void)fputc('\n', stdout);
     }
     if (fflush(stdout) != 0 || ferror(stdout)) {
-        (void)fputs("fathom: cannot write the output\n", stderr);
+        (void)fputs("fathom: cannot write the output.\n", stderr);
         return false;
     }
     if (progress.is_known && progress.read_count != progress.count) {

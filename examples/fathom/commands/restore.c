@@ -70,7 +70,7 @@ static void print_again(const plan_t *plan, size_t count, const char *path)
     if (names(plan, 0, count, true, unseen)[0] == '\0') return;
     (void)fflush(stdout);
     (void)fprintf(stderr,
-                  "fathom: run again it would also write %s again; put `not readable` there in %s first\n",
+                  "fathom: run again it would also write %s again; put `not readable` there in %s first.\n",
                   unseen, path);
 }
 
@@ -131,14 +131,14 @@ static int look_again(const backup_t *unit)
     backup_t now;
     char line[LINE_TEXT];
     if (!backup_read(&session, &now)) {
-        (void)fputs("fathom: all that differed is written; whether it is the same unit there is not known\n",
+        (void)fputs("fathom: all that differed is written; whether it is the same unit there is not known.\n",
                     stderr);
         return STATUS_FAILED;
     }
     (void)printf("%s: it answers there, %s\n", session.station->name, session_line_text(&session, line));
     if (plan_print_identity(unit, "before", &now, "now")) return STATUS_OK;
     (void)fflush(stdout);
-    (void)fputs("fathom: another unit answers at the new place; try fathom scan\n", stderr);
+    (void)fputs("fathom: another unit answers at the new place; try fathom scan.\n", stderr);
     return STATUS_FAILED;
 }
 
@@ -147,7 +147,7 @@ static int restore(const backup_t *file, const char *path, bool is_dry, bool is_
     backup_t unit;
     plan_t plan;
     if (!backup_read(&session, &unit)) {
-        (void)fputs("fathom: nothing was written\n", stderr);
+        (void)fputs("fathom: nothing was written.\n", stderr);
         return STATUS_FAILED;
     }
     /* the rate of a gateway's line is not its unit's alone */
@@ -158,7 +158,7 @@ static int restore(const backup_t *file, const char *path, bool is_dry, bool is_
     if (plan.is_impossible) {
         (void)fprintf(stderr,
                       "fathom: nothing was written: this unit does not have all that the file has; put "
-                      "`not there` in %s for what it is to do without\n",
+                      "`not there` in %s for what it is to do without.\n",
                       path);
         return STATUS_FAILED;
     }
@@ -194,7 +194,7 @@ static int start(const host_t *host, const arguments_t *arguments)
     const int status = restore(&file, settings->path, settings->is_dry, settings->is_new);
     session_close(&session);
     if (fflush(stdout) == 0 && ferror(stdout) == 0) return status;
-    (void)fputs("fathom: the output cannot be written\n", stderr);
+    (void)fputs("fathom: the output cannot be written.\n", stderr);
     return STATUS_FAILED;
 }
 

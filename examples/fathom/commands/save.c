@@ -48,14 +48,15 @@ static int save(const host_t *host, const char *path)
         (void)printf("%s: its settings are in %s\n", session.station->name, path);
     }
     if (fflush(stdout) == 0 && ferror(stdout) == 0) return STATUS_OK;
-    (void)fputs("fathom: the output cannot be written\n", stderr);
+    (void)fputs("fathom: the output cannot be written.\n", stderr);
     return STATUS_FAILED;
 }
 
 static int start(const host_t *host, const arguments_t *arguments)
 {
     const save_settings_t *const settings = arguments->settings;
-    if (!session_read(&session, arguments, 1, 0) || !session_set_mode(&session, arguments, model_mode_of(session.station->model, NULL)))
+    if (!session_read(&session, arguments, 1, 0) ||
+        !session_set_mode(&session, arguments, model_mode_of(session.station->model, NULL)))
         return STATUS_USAGE;
     if (settings->path != NULL && !new_file_is_free(settings->path)) return STATUS_FAILED;
     if (!session_open(&session, host)) return STATUS_FAILED;

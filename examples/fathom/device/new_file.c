@@ -15,7 +15,8 @@ static bool failed(const char *path, int error)
     if (error == EEXIST)
         (void)fprintf(
             stderr,
-            "fathom: %s is there already and is not overwritten; take another name, or move it away\n", path);
+            "fathom: %s is there already and is not overwritten; take another name, or move it away.\n",
+            path);
     else
         (void)fprintf(stderr, "fathom: %s cannot be written: %s\n", path, strerror(error));
     return false;

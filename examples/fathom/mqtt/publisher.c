@@ -60,7 +60,7 @@ static void print_dropped(publisher_t *publisher, uint64_t dropped)
 {
     (void)fprintf(stderr,
                   "fathom: the queue was full: %" PRIu64 " messages were dropped, %" PRIu64
-                  " since the start\n",
+                  " since the start.\n",
                   dropped - publisher->printed_dropped, dropped);
     publisher->printed_dropped = dropped;
 }

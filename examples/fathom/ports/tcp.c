@@ -43,9 +43,9 @@ static void lose(const tcp_t *tcp)
     if (port->error == PORT_LOST) return;
     switch (fathom_libmodbus_error(&tcp->libmodbus)) {
     case FATHOM_LIBMODBUS_ERR_NONSENSE:
-        (void)port_fail(port, PORT_LOST,
-                        "the received bytes are no Modbus TCP; check the port (502 is usual), and that it is "
-                        "no server of something else");
+        (void)port_fail(
+            port, PORT_LOST,
+            "the received bytes are not Modbus TCP. Check the port number (usually 502) and the server");
         break;
     case FATHOM_LIBMODBUS_ERR_TRUNCATED:
         (void)port_fail(port, PORT_LOST, "the system accepted only a part of a request");

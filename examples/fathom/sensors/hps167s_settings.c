@@ -59,7 +59,7 @@ static void remark_termination(FILE *to, const char *text)
     if (text[1] == 'n')
         (void)fputs("fathom: the termination resistor is on, as in every unit from the factory; on a line "
                     "with several, leave it on in the\nfathom: last one only: fathom set ... "
-                    "termination off\n",
+                    "termination off.\n",
                     to);
 }
 

@@ -184,7 +184,7 @@ class Several(Bus):
 
     def test_two_units_with_one_address_answer_into_each_other(self):
         sim = self.sim('hps167s,distance=2083 hps167s,distance=1000 --counters')
-        sim.expect('sensors 1 and 2 have the address 1 both', 'err')
+        sim.expect('sensors 1 and 2 have the same address, 1,', 'err')
         garbled = self.ask(self.open(sim), ASK_HPS, 13)
         self.assertNotEqual(garbled, SAYS_2083)
         self.assertNotEqual(e2e.crc16(garbled[:-2]), garbled[-2:])
@@ -237,7 +237,7 @@ class Several(Bus):
 
     def test_one_that_sends_by_itself_beside_others_is_told(self):
         sim = self.sim('a16:1:auto hps167s:7 --distance 754')
-        sim.expect('sensor 1 sends by itself, into what the others say', 'err')
+        sim.expect('sensor 1 sends automatically, also while others respond', 'err')
         self.assertIn(bytes.fromhex('FF 02 F2 F3'), self.open(sim).read(12))  # FF + 02 + F2 = 1F3
 
 

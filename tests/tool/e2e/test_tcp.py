@@ -253,7 +253,7 @@ class Broken(Case):
     def test_nonsense(self):
         for nonsense in (b'HTTP/1.1 400 Bad Request\r\n\r\n', b'SSH-2.0-x\r\n', bytes(5) + b'\1\0\0',
                          b'\xff' * 300):
-            self.breaks('the received bytes are no Modbus TCP; check the port (502 is usual)',
+            self.breaks('the received bytes are not Modbus TCP. Check the port number (usually 502)',
                         lambda _, nonsense=nonsense: nonsense)
 
     def test_with_reconnect_it_goes_on_at_the_next_connection(self):

@@ -113,16 +113,16 @@ static void print_next(const calibrate_plan_t *plan)
 {
     const bool is_unmoved = plan->why == CALIBRATE_NOT_MOVED || plan->why == CALIBRATE_NOT_SEEN;
     if (plan->replaces) {
-        (void)fputs("fathom: #12 replaces the old offset, so you can calibrate again\n", stderr);
+        (void)fputs("fathom: #12 replaces the old offset, so you can calibrate again.\n", stderr);
         return;
     }
-    (void)fputs("fathom: before you calibrate again, switch the power off and on, and measure\n", stderr);
+    (void)fputs("fathom: before you calibrate again, switch the power off and on, and measure.\n", stderr);
     if (is_unmoved)
         (void)fprintf(stderr,
                       "fathom: if the sensor then measures as before, set distance-offset to 0, switch the "
-                      "power off and on, and calibrate again\n"
+                      "power off and on, and calibrate again.\n"
                       "fathom: if it measures another wrong distance X, #12 replaces the old offset, and the "
-                      "right offset is %" PRId32 " - X\n",
+                      "right offset is %" PRId32 " - X.\n",
                       plan->written_mm[0] + plan->known_mm);
 }
 
@@ -137,7 +137,7 @@ static void print_failure(const session_t *session, const calibrate_plan_t *plan
         (void)fputs("\n", stderr);
     }
     if (plan->writes == 0) {
-        (void)fprintf(stderr, "fathom: %s: nothing was written\n", name);
+        (void)fprintf(stderr, "fathom: %s: nothing was written.\n", name);
         return;
     }
     (void)fprintf(stderr,
@@ -205,6 +205,6 @@ int calibrate_report(const session_t *session, const calibrate_plan_t *plan, boo
         print_right(session, plan);
     if (!is_dry && plan->why != CALIBRATE_DONE) print_failure(session, plan);
     if (output_flush() == 0) return plan->is_right ? STATUS_OK : STATUS_FAILED;
-    (void)fprintf(stderr, "fathom: cannot write the output; flash writes: %zu\n", plan->writes);
+    (void)fprintf(stderr, "fathom: cannot write the output; flash writes: %zu.\n", plan->writes);
     return STATUS_FAILED;
 }

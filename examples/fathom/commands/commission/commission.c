@@ -150,7 +150,7 @@ static void work(commission_t *run)
         const uint64_t now_us = host->now_us(host->ctx);
         if (end == COMMISSION_DONE) since_us = now_us;
         if (run->options.wait_us != 0 && now_us - since_us > run->options.wait_us) {
-            (void)fprintf(stderr, "fathom: no sensor was commissioned for %" PRIu64 " s\n",
+            (void)fprintf(stderr, "fathom: no sensor was commissioned for %" PRIu64 " s.\n",
                           run->options.wait_us / 1000000);
             return;
         }

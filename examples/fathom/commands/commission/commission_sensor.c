@@ -16,7 +16,7 @@ enum {
 static bool has_output(void)
 {
     if (output_flush() == 0) return true;
-    (void)fputs("fathom: cannot write the output. The command ends\n", stderr);
+    (void)fputs("fathom: cannot write the output. The command ends.\n", stderr);
     return false;
 }
 
@@ -53,7 +53,7 @@ static commission_end_t end_unset(commission_t *run, const change_t *change, cha
     change_explain(change, outcome, status);
     if (status == FATHOM_ERR_DIFFERS)
         (void)fputs("fathom: the new value may take effect at the next power-on. Switch the sensor off and "
-                    "on, and run the command again\n",
+                    "on, and run the command again.\n",
                     stderr);
     if (outcome == CHANGE_NOT_WRITTEN && status != FATHOM_ERR_CANCELLED && status != FATHOM_ERR_PORT &&
         ++run->unwritten_count < MOST_UNWRITTEN)

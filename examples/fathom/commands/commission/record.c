@@ -103,7 +103,7 @@ static bool parse_lines(record_t *record, FILE *file)
             wrong = parse_line(record, text);
         if (wrong == NULL) continue;
         (void)fprintf(stderr,
-                      "fathom: %s:%u: %s. Nothing was sent. Correct the line, or use another --record\n",
+                      "fathom: %s:%u: %s. Nothing was sent. Correct the line, or use another --record.\n",
                       record->path, line, wrong);
         return false;
     }
@@ -125,7 +125,7 @@ bool record_read(record_t *record, const char *path)
     bool is_good = parse_lines(record, file);
     if (is_good && ferror(file) != 0) is_good = fail(record, "read");
     if (is_good && ftell(file) == 0) {
-        (void)fprintf(stderr, "fathom: the record %s is empty. Remove the file to start a new record\n",
+        (void)fprintf(stderr, "fathom: the record %s is empty. Remove the file to start a new record.\n",
                       path);
         is_good = false;
     }

@@ -111,7 +111,7 @@ static int decode(const settings_t *settings, const decode_input_t *input)
 {
     decode_finder_t finder;
     if (input->count == 0) {
-        (void)fprintf(stderr, "fathom: there are no bytes to explain\n");
+        (void)fprintf(stderr, "fathom: there are no bytes to explain.\n");
         return STATUS_FAILED;
     }
     const int status = decode_find_begin(&finder, input, settings->protocols)

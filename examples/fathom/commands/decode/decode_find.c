@@ -184,7 +184,7 @@ bool decode_find_begin(decode_finder_t *finder, const decode_input_t *input, uin
     finder->at = 0;
     finder->choices = calloc(input->count + 1, sizeof *finder->choices);
     if (finder->choices == NULL) {
-        (void)fprintf(stderr, "fathom: there is no memory to look at %zu bytes\n", input->count);
+        (void)fprintf(stderr, "fathom: there is no memory to look at %zu bytes.\n", input->count);
         return false;
     }
     for (size_t at = input->count; at != 0; at--) choose(finder, at - 1);

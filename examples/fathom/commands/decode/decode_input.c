@@ -74,10 +74,10 @@ static int reject_line(const origin_t *origin, const char *place, const char *li
 {
     const unsigned column = (unsigned)(wrong - line) + 1;
     if (errno == EFBIG)
-        (void)fprintf(stderr, "fathom: %s: there are more than the %d bytes that are decoded at a time\n",
+        (void)fprintf(stderr, "fathom: %s: there are more than the %d bytes that are decoded at a time.\n",
                       place, DECODE_MAX_BYTES);
     else if (errno != 0)
-        (void)fprintf(stderr, "fathom: %s: there is not enough memory\n", place);
+        (void)fprintf(stderr, "fathom: %s: there is not enough memory.\n", place);
     else if (strspn(wrong, DIGITS) != 0)
         (void)reject(origin, "%s, character %u: a byte has two hex digits%s.", place, column, hint);
     else

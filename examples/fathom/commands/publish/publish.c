@@ -93,7 +93,7 @@ static void load_again(uint64_t now_us)
     publish.is_changing = config_load(&publish.next_settings, &publish.next, command, path);
     publish.since_us = now_us;
     if (publish.is_changing) return;
-    (void)fprintf(stderr, "fathom: nothing has changed\n");
+    (void)fprintf(stderr, "fathom: nothing has changed.\n");
     notify_ready(&publish.notify);
 }
 
@@ -110,7 +110,7 @@ static void change(uint64_t now_us)
     publish.settings = publish.next_settings;
     if (!publisher_change(&publish.publisher, &publish.loop.site, is_other)) loop_stop(&publish.loop);
     site_free(&old);
-    (void)fprintf(stderr, "fathom: %s was read again\n", publish.settings.path);
+    (void)fprintf(stderr, "fathom: %s was read again.\n", publish.settings.path);
     notify_ready(&publish.notify);
 }
 

@@ -158,10 +158,11 @@ static void print_output_error(const run_t *run)
 {
     const char *const path = run->options->file.path;
     if (run->output_error == OTHER_COLUMNS)
-        (void)fprintf(stderr,
-                      "fathom: %s has a header with other columns; choose another --output, or --no-header "
-                      "adds the rows all the same\n",
-                      run->options->file.name);
+        (void)fprintf(
+            stderr,
+            "fathom: %s has a header with other columns. Choose another --output, or append the rows with "
+            "--no-header.\n",
+            run->options->file.name);
     else if (run->output_error != 0)
         (void)fprintf(stderr, "fathom: the readings cannot be written%s%s: %s\n", path != NULL ? " to " : "",
                       path != NULL ? path : "", strerror(run->output_error));

@@ -61,15 +61,15 @@ static void print_write(uint8_t function)
 {
     if (function == REQUEST_WRITE || function == REQUEST_WRITE_MANY)
         (void)fputs(
-            "fathom: the request writes: the unit may keep that in flash, which wears, and may move to "
-            "another address or rate\n",
+            "fathom: the request writes. The unit may store the value in flash, which wears out, and may "
+            "change its address or baud rate.\n",
             stderr);
     else
         (void)fprintf(stderr,
-                      "fathom: function %u (0x%02X) is in none of the datasheets; its effect is unknown\n",
+                      "fathom: function %u (0x%02X) is in none of the datasheets; its effect is unknown.\n",
                       function, function);
     if (function == 10)
-        (void)fputs("fathom: the function 10 that the datasheets print is in hex: 0x10, which is 16\n",
+        (void)fputs("fathom: the function 10 that the datasheets print is in hex: 0x10, which is 16.\n",
                     stderr);
 }
 
@@ -77,7 +77,7 @@ static void print_unit(const request_t *request)
 {
     const uint8_t unit = request->frame[REQUEST_UNIT];
     if (unit == FATHOM_MODBUS_ANY_UNIT)
-        (void)fputs("fathom: unit 255: each A16 and A05 obeys it, whatever its address\n", stderr);
+        (void)fputs("fathom: unit 255: each A16 and A05 obeys it, whatever its address.\n", stderr);
     else if (unit == FATHOM_MODBUS_BROADCAST)
         (void)fprintf(stderr, "fathom: unit 0 is all units%s\n",
                       request_is_broadcast(request) ? ": all obey, and none responds"

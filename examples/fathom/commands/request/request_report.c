@@ -172,9 +172,9 @@ static void print_advice(const request_ask_t *ask, const port_t *port, const cou
 static void print_more(const request_ask_t *ask)
 {
     if (ask->more == 0) return;
-    (void)fprintf(stderr, "fathom: %" PRIu32 " bytes arrived besides the response%s\n", ask->more,
+    (void)fprintf(stderr, "fathom: %" PRIu32 " bytes arrived in addition to the response%s.\n", ask->more,
                   ask->evidence.own > 1        ? ": two units may have this address"
-                  : ask->evidence.foreign != 0 ? ": another unit responded too"
+                  : ask->evidence.foreign != 0 ? ": another unit responded also"
                                                : "");
 }
 

@@ -103,7 +103,7 @@ static int finish(scan_t *scan, fathom_status_t status)
     else if (status == FATHOM_ERR_PORT)
         scan_print_port_failure(scan);
     else if (status != FATHOM_OK)
-        (void)fprintf(stderr, "fathom: ended before all addresses were asked; sensors found: %" PRIu32 "\n",
+        (void)fprintf(stderr, "fathom: ended before all addresses were asked; sensors found: %" PRIu32 ".\n",
                       scan->sensors);
     return scan->sensors != 0 && scan->output_error == 0 && status != FATHOM_ERR_PORT ? STATUS_OK
                                                                                       : STATUS_FAILED;

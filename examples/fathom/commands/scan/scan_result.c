@@ -29,9 +29,11 @@ static void print_sender(const scan_t *scan)
         (void)fprintf(stderr, "fathom: nothing was sent, because %s\n", why_nothing_was_sent(sender));
     } else if (scan->awakened != 0 && sender->mode == SCAN_AUTO) {
         const char *const again = model_of(sender->model)->automatic_again;
-        (void)fprintf(stderr,
-                      "fathom: it sent by itself until it was asked, and sends again after power-off%s\n",
-                      again != NULL ? again : "");
+        (void)fprintf(
+            stderr,
+            "fathom: the sensor sent automatically until the first request. It does so again after a power "
+            "cycle%s.\n",
+            again != NULL ? again : "");
     }
 }
 
@@ -93,7 +95,7 @@ static void print_others(const scan_t *scan)
     }
     if (heard->outside != 0)
         (void)fprintf(stderr,
-                      "fathom: a frame of address %u was heard, which was not asked; try --address %u\n",
+                      "fathom: a frame of address %u was heard, which was not asked; try --address %u.\n",
                       heard->outside, heard->outside);
 }
 
@@ -105,9 +107,10 @@ void scan_print_result(const scan_t *scan)
     print_others(scan);
     if (scan->terminations > 1)
         (void)fprintf(stderr,
-                      "fathom: %" PRIu32 " HPS-167S have their termination resistor on, as from the factory, "
-                      "which overloads the line: switch it off in all but the last one, as fathom set "
-                      "hps167s:ADDRESS --port %s termination off does\n",
+                      "fathom: %" PRIu32
+                      " HPS-167S have their termination resistor on, as with factory settings. Together "
+                      "they overload the line: switch it off in all but the last one with 'fathom set "
+                      "hps167s:ADDRESS --port %s termination off'.\n",
                       scan->terminations, scan->settings->port);
     if (scan->sensors == 0) print_nothing(scan);
     (void)fprintf(stderr, "fathom: sensors found: %" PRIu32 ", after %s\n", scan->sensors,

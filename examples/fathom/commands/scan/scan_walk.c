@@ -232,7 +232,7 @@ fathom_status_t scan_walk(scan_t *scan)
         if (status == FATHOM_OK) continue;
         char settings[LINE_TEXT];
         progress_clear(&scan->progress);
-        (void)fprintf(stderr, "fathom: this port does not have %s, so the scan leaves it out\n",
+        (void)fprintf(stderr, "fathom: this port does not have %s, so the scan leaves it out.\n",
                       line_text(scan->line, settings));
         scan->done_us = began_us + (uint64_t)scan_probe_us(plan, scan->line) * scan_address_count(plan);
     }

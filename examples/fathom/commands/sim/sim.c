@@ -67,7 +67,7 @@ static bool open_line(simulation_t *simulation)
     if (link != NULL && errno == EEXIST)
         (void)fprintf(stderr,
                       "fathom: %s is there already, and is no link that a killed fathom sim has left behind; "
-                      "choose another --link, or remove it first\n",
+                      "choose another --link, or remove it first.\n",
                       link);
     else
         (void)fprintf(stderr, "fathom: the simulated port%s%s: %s\n", link != NULL ? " and its link " : "",
@@ -94,7 +94,7 @@ static void cycle_power(simulation_t *simulation)
     const uint32_t now_us = fathom_sim_pty_now_us();
     for (uint32_t i = 0; i != simulation->connected; i++)
         fathom_sim_power_cycle(&simulation->line, simulation->devices[i].base, POWER_OFF_US, now_us);
-    (void)fprintf(stderr, "fathom: power off for a second\n");
+    (void)fprintf(stderr, "fathom: power off for a second.\n");
 }
 
 /* Connects the next sensor a second after the last one has left its address, as a person would. Returns the time until
@@ -112,7 +112,7 @@ static uint32_t connect_next(simulation_t *simulation, uint32_t due_us)
     if (passed_us < CONNECT_US) return due_us < CONNECT_US - passed_us ? due_us : CONNECT_US - passed_us;
     simulation->has_left = false;
     connect_sensor(simulation, next, now_us);
-    (void)fprintf(stderr, "fathom: sensor %u is connected\n", (unsigned)next + 1);
+    (void)fprintf(stderr, "fathom: sensor %u is connected.\n", (unsigned)next + 1);
     return 0;
 }
 

@@ -25,23 +25,23 @@ static void print_reader(FILE *to, const sim_sensor_t *sensor, const char *port)
 static void print_clashes(FILE *to, const sim_site_t *site, bool one_by_one)
 {
     if (one_by_one) {
-        (void)fputs(
-            "fathom: one by one: each further sensor is connected a second after the one before has left "
-            "its address\n",
-            to);
+        (void)fputs("fathom: one by one: each further sensor is connected a second after the previous one "
+                    "has left its "
+                    "address.\n",
+                    to);
         return;
     }
     for (uint32_t i = 0; i != site->count; i++) {
         const sim_sensor_t *const one = &site->sensors[i];
         if (!mode_is_asked(one->mode))
-            (void)fprintf(to, "fathom: sensor %" PRIu32 " sends by itself, into what the others say\n",
+            (void)fprintf(to, "fathom: sensor %" PRIu32 " sends automatically, also while others respond.\n",
                           i + 1);
         for (uint32_t other = i + 1; other != site->count; other++)
             if (site->sensors[other].address == one->address &&
                 site->sensors[other].line.baud == one->line.baud)
                 (void)fprintf(to,
                               "fathom: sensors %" PRIu32 " and %" PRIu32
-                              " have the address %u both and will answer into each other\n",
+                              " have the same address, %u, and will respond at the same time.\n",
                               i + 1, other + 1, one->address);
     }
 }

@@ -211,7 +211,7 @@ static int watch_site(watch_t *watch)
     int status = STATUS_FAILED;
     watch->reported = calloc(loop->site.sensor_count, sizeof *watch->reported);
     if (watch->reported == NULL || !lanes_init(&watch->lanes, &loop->site)) {
-        (void)fprintf(stderr, "fathom: no memory left\n");
+        (void)fprintf(stderr, "fathom: no memory left.\n");
         return STATUS_FAILED;
     }
     if (!host->begin(host->ctx)) return STATUS_FAILED;
@@ -237,7 +237,7 @@ static int start(const host_t *host, const arguments_t *arguments)
     static const sink_t sink = {on_reading, on_notice, tick};
     watch_t *const watch = calloc(1, sizeof *watch);
     if (watch == NULL) {
-        (void)fprintf(stderr, "fathom: no memory left\n");
+        (void)fprintf(stderr, "fathom: no memory left.\n");
         return STATUS_FAILED;
     }
     loop_init(&watch->loop, host, &sink, watch);
