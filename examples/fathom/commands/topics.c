@@ -56,8 +56,8 @@ static void print_sensors(FILE *to)
 
 static void print_ports(FILE *to)
 {
-    (void)fputs("--port PORT is the port of all sensors without @PORT. Without it, the environment\n"
-                "variable FATHOM_PORT names the port. PORT is one of:\n\n"
+    (void)fputs("--port PORT is the port of all sensors without @PORT. Without it, the\n"
+                "environment variable FATHOM_PORT names the port. PORT is one of:\n\n"
                 "  /dev/ttyUSB0          a serial port, or the link of 'fathom sim'\n"
                 "  tcp:HOST[:TCPPORT]    a Modbus TCP server or gateway, for mode modbus;\n"
                 "                        TCPPORT is 502 if it is left out; tcp:[IPV6]:TCPPORT\n"
@@ -79,8 +79,8 @@ static void print_ports(FILE *to)
 
 static void print_pins(FILE *to)
 {
-    (void)fputs("Some modes use lines of a GPIO chip of this board (Linux 5.10 or later). Lines are\n"
-                "numbered from 0; gpioinfo lists them.\n\n"
+    (void)fputs("Some modes use lines of a GPIO chip of this board (Linux 5.10 or later). Lines\n"
+                "are numbered from 0; gpioinfo lists them.\n\n"
                 "  a16:pwm@gpiochip0,trigger=17,echo=27\n"
                 "      trigger is an output to the sensor's RX. echo receives the pulses of its\n"
                 "      TX. The sensor measures every 221 ms.\n"
@@ -97,34 +97,36 @@ static void print_pins(FILE *to)
                 "      and near=low with bias=down.\n\n"
                 "Only the trigger line is driven. A broken wire of a switch or a relay looks like\n"
                 "a valid state: choose the bias so that it reads as the safe one.\n\n"
-                "Pins of most boards take 3.3 V. 5 V or RS232 levels destroy them. The TX of an A16\n"
-                "is 3 V high, and its RX accepts 5 V.\n\n"
-                "The accuracy of a pulse depends on the time at which the kernel stamps an edge: on\n"
-                "the load, on sleep states, and on the chip's driver. 1 us is 0.17 mm. To measure\n"
-                "it, keep the target still and run 'fathom read ... --stats=10'.\n",
+                "Pins of most boards take 3.3 V. 5 V or RS232 levels destroy them. The TX of an\n"
+                "A16 is 3 V high, and its RX accepts 5 V.\n\n"
+                "The accuracy of a pulse depends on the time at which the kernel stamps an edge:\n"
+                "on the load, on sleep states, and on the chip's driver. 1 us is 0.17 mm. To\n"
+                "measure it, keep the target still and run 'fathom read ... --stats=10'.\n",
                 to);
 }
 
 static void print_values(FILE *to)
 {
-    (void)fputs("--window MIN-MAX: distances outside are rejected. Defaults: 1-16350 (a16), 1-6000\n"
-                "(a05), 80-30000 (hps167s). An hps167s that is nearer reports 'unknown'.\n\n"
-                "--means KEYS: meanings of the values of a16 and a05 that are no distance, such as\n"
-                "--means 0=no-target,ffff=unknown:\n\n",
+    (void)fputs("--window MIN-MAX: distances outside are rejected. Defaults: 1-16350 (a16),\n"
+                "1-6000 (a05), 80-30000 (hps167s). An hps167s that is nearer reports 'unknown'.\n\n"
+                "--means KEYS: meanings of the values of a16 and a05 that are no distance, such\n"
+                "as --means 0=no-target,ffff=unknown:\n\n",
                 to);
     print_keys(to, reading_rows, "means");
-    (void)fputs("\n  MEANING is unknown, no-target, interference, too-near, fault or refused.\n\n"
+    (void)fputs("\n"
+                "  MEANING is unknown, no-target, interference, too-near, fault or refused.\n\n"
                 "--value: 'processed' is steady and follows slowly; 'real-time' is the last\n"
-                "measurement. In mode modbus, requests select it (default: processed). In mode auto,\n"
-                "the sensor samples its RX pin. For real-time values, fathom holds the port's TX low\n"
-                "until it ends, so the serial port must support a break. An a16 with automatic UART\n"
-                "output follows within 0.5 s, and back within 2.5 to 7.5 s. An a16 with RS232 does\n"
-                "not: use 'fathom set a16 automatic-value'. An a05 samples its RX pin only at\n"
-                "power-on: fathom asks for a power cycle, and prints nothing before.\n\n"
+                "measurement. In mode modbus, requests select it (default: processed). In mode\n"
+                "auto, the sensor samples its RX pin. For real-time values, fathom holds the\n"
+                "port's TX low until it ends, so the serial port must support a break. An a16\n"
+                "with automatic UART output follows within 0.5 s, and back within 2.5 to 7.5 s.\n"
+                "An a16 with RS232 does not: use 'fathom set a16 automatic-value'. An a05\n"
+                "samples its RX pin only at power-on: fathom asks for a power cycle, and prints\n"
+                "nothing before.\n\n"
                 "--probes LIST: an a05 has four probes. In mode dyp a single probe is measured\n"
                 "alone, in 0.1 s instead of 0.25 s.\n\n"
-                "--temperature[=S]: the temperature is read between measurements. It is null if it is\n"
-                "not known, or older than three times S.\n\n"
+                "--temperature[=S]: the temperature is read between measurements. It is null if\n"
+                "it is not known, or older than three times S.\n\n"
                 "--timeout: default 500 to 1000 ms for a response, 10 s for a good frame of a\n"
                 "sensor that sends automatically (hps167s: 2 s).\n",
                 to);
@@ -132,9 +134,10 @@ static void print_values(FILE *to)
 
 static void print_output(FILE *to)
 {
-    (void)fputs("Readings go to standard output, messages and --stats to standard error. 'No target'\n"
-                "and a fault that the sensor reports are readings. In json and csv, a failed attempt\n"
-                "is a row too, with its reason in 'status'. json is one object a line.\n\n"
+    (void)fputs("Readings go to standard output, messages and --stats to standard error. 'No\n"
+                "target' and a fault that the sensor reports are readings. In json and csv, a\n"
+                "failed attempt is a row too, with its reason in 'status'. json is one object a\n"
+                "line.\n\n"
                 "--output FILE appends to FILE. csv has a header line if FILE is empty.\n"
                 "--rotate day: log.csv becomes log-2026-11-23.csv.\n",
                 to);
@@ -143,48 +146,49 @@ static void print_output(FILE *to)
 
 static void print_level(FILE *to)
 {
-    (void)fputs("--level KEYS: the level in a tank, from the distance to its surface, for all sensors:\n"
-                "level_mm, level_per_mille and volume. Keys, such as\n"
-                "--level mounting=2300,height=2000,capacity=5000:\n\n",
+    (void)fputs("--level KEYS: the level in a tank, from the distance to its surface, for all\n"
+                "sensors: level_mm, level_per_mille and volume. Keys, such as --level\n"
+                "mounting=2300,height=2000,capacity=5000:\n\n",
                 to);
     print_keys(to, result_rows, "level");
-    (void)fputs("\nshape=table needs points= instead of capacity=, such as\n"
+    (void)fputs("\n"
+                "shape=table needs points= instead of capacity=, such as\n"
                 "points=500:400/1500:4000/2000:5000. The last point is the full tank.\n\n"
-                "--median N prints the median of the last N readings of each probe, nothing before\n"
-                "there are N. It starts again after 5 s (or three intervals) without a reading.\n"
-                "--gate MM drops a reading that is MM or more off the median; the third in\n"
-                "succession counts, since the target has moved. --stats has the number of dropped\n"
-                "readings.\n",
+                "--median N prints the median of the last N readings of each probe, nothing\n"
+                "before there are N. It starts again after 5 s (or three intervals) without a\n"
+                "reading. --gate MM drops a reading that is MM or more off the median; the third\n"
+                "in succession counts, since the target has moved. --stats has the number of\n"
+                "dropped readings.\n",
                 to);
 }
 
 static void print_alarm(FILE *to)
 {
-    (void)fputs("--alarm KEYS: an alarm for each probe. Only its changes are printed. Quote it, since\n"
-                "the shell uses < and >:\n"
-                "--alarm 'near<500/600,unknown=on,no-response=on'\n\n",
+    (void)fputs("--alarm KEYS: an alarm for each probe. Only its changes are printed. Quote it,\n"
+                "since the shell uses < and >: --alarm 'near<500/600,unknown=on,no-response=on'\n\n",
                 to);
     print_keys(to, result_rows, "alarm");
-    (void)fputs("\nwhen= may be left out at the beginning. Without /OFF, the alarm switches off at the\n"
-                "same distance. The first state is printed with the first distance that decides\n"
-                "it, or after unknown-after (default 5 s, or three intervals).\n\n"
+    (void)fputs("\n"
+                "when= may be left out at the beginning. Without /OFF, the alarm switches off at\n"
+                "the same distance. The first state is printed with the first distance that\n"
+                "decides it, or after unknown-after (default 5 s, or three intervals).\n\n"
                 "--until-alarm ends the command with exit status 3 when an alarm is on.\n",
                 to);
 }
 
 static void print_picture(FILE *to)
 {
-    (void)fputs("'fathom watch' has a lane for each probe: the present value, readings a second, and\n"
-                "the number of failed attempts. Time runs from left to right; a column is 0.25 s or\n"
-                "one --interval. A letter stands for a reading without a distance:\n\n"
+    (void)fputs("'fathom watch' has a lane for each probe: the present value, readings a second,\n"
+                "and the number of failed attempts. Time runs from left to right; a column is\n"
+                "0.25 s or one --interval. A letter stands for a reading without a distance:\n\n"
                 "  -  no target                   x  no response\n"
                 "  ~  no target, interference     !  damaged, wrong or impossible response\n"
                 "  ?  a value without a meaning   s  nothing for too long\n"
                 "  n  nearer than it can measure  F  the sensor reports a fault\n"
                 "  N  near (switch, relay)        P  the port is lost\n"
                 "  _  far (switch, relay)\n\n"
-                "NO_COLOR=1 switches colours off. Without UTF-8, bars are made of # and dots. In a\n"
-                "pipe or a file, one line a second is printed instead.\n",
+                "NO_COLOR=1 switches colours off. Without UTF-8, bars are made of # and dots. In\n"
+                "a pipe or a file, one line a second is printed instead.\n",
                 to);
 }
 
@@ -202,19 +206,20 @@ static void print_settings(FILE *to)
 static void print_trouble(FILE *to)
 {
     (void)fputs("Nothing responds? Work through these in this order:\n\n"
-                "  1. fathom scan --port PORT\n"
-                "     It listens first, then sends requests with factory settings to addresses 1 to 32.\n"
-                "  2. Is the port right? Without other adapters, 'ls /dev/ttyUSB*' names it.\n"
-                "     If the port cannot be opened: add yourself to the group dialout, and end other\n"
-                "     programs that use it.\n"
+                "  1. fathom scan --port PORT It listens first, then sends requests with factory\n"
+                "     settings to addresses 1 to 32.\n"
+                "  2. Is the port right? Without other adapters, 'ls /dev/ttyUSB*' names it. If\n"
+                "     the port cannot be opened: add yourself to the group dialout, and end\n"
+                "     other programs that use it.\n"
                 "  3. Is the sensor powered? Measure the supply at the sensor.\n"
                 "  4. Swap A and B (RS485), or TX and RX (UART, RS232). Connect the grounds.\n"
                 "  5. Settings that were changed: fathom scan --port PORT --baud all --parity all\n"
                 "     --address 1-254\n"
-                "  6. Damaged frames: shorten the line, terminate both of its ends, and try a lower rate.\n"
-                "     'fathom read ... --stats' counts what fails, and names the likely cause.\n"
-                "  7. Two sensors with the same address respond at once. Connect one alone, and give it\n"
-                "     another address: fathom set hps167s --port PORT address 7\n"
+                "  6. Damaged frames: shorten the line, terminate both of its ends, and try a\n"
+                "     lower rate. 'fathom read ... --stats' counts what fails, and names the\n"
+                "     likely cause.\n"
+                "  7. Two sensors with the same address respond at once. Connect one alone, and\n"
+                "     give it another address: fathom set hps167s --port PORT address 7\n"
                 "  8. Bytes that you do not understand: fathom decode HEX...\n",
                 to);
 }
@@ -222,21 +227,18 @@ static void print_trouble(FILE *to)
 static void print_config(FILE *to)
 {
     (void)fputs("'fathom publish FILE' reads a YAML file:\n\n"
-                "  site: mill\n"
-                "  broker: {host: mqtt.example.org, user: mill, password-file: /etc/fathom/password}\n"
-                "  lines:\n"
-                "    - port: /dev/ttyUSB0\n"
-                "      sensors:\n"
-                "        - {name: tank, sensor: 'a16:1', level: {mounting: 2300, height: 2000,\n"
-                "           capacity: 5000}}\n"
-                "        - {name: gate, sensor: 'hps167s:7', interval: 500}\n\n"
+                "  site: mill broker: {host: mqtt.example.org, user: mill, password-file:\n"
+                "  /etc/fathom/password} lines: - port: /dev/ttyUSB0 sensors: - {name: tank,\n"
+                "  sensor: 'a16:1', level: {mounting: 2300, height: 2000, capacity: 5000}} -\n"
+                "  {name: gate, sensor: 'hps167s:7', interval: 500}\n\n"
                 "Its keys:\n\n",
                 to);
     (void)fputs("  'fathom publish --help' lists them.\n", to);
-    (void)fputs("\nTopics are PREFIX/SITE/status and publisher, and for each sensor\n"
+    (void)fputs("\n"
+                "Topics are PREFIX/SITE/status and publisher, and for each sensor\n"
                 "PREFIX/SITE/NAME/state, availability, counters and, if it has them, level and\n"
-                "alarm. SIGHUP reads the file again: lines that have not changed go on, others are\n"
-                "opened again. While the broker is not connected, messages wait in memory.\n",
+                "alarm. SIGHUP reads the file again: lines that have not changed go on, others\n"
+                "are opened again. While the broker is not connected, messages wait in memory.\n",
                 to);
 }
 
@@ -292,7 +294,16 @@ const topic_t topics[] = {
     {"alarm", "Alarms", print_alarm},
     {"picture", "The picture of fathom watch", print_picture},
     {"settings", "Settings of the sensors", print_settings},
+    {"log", "A log that goes on for years", topic_log},
     {"config", "The configuration file of fathom publish", print_config},
+    {"publishing", "Topics and messages of fathom publish", topic_publish},
+    {"delivery", "What fathom publish loses, and what not", topic_delivery},
+    {"boxes", "Several computers, Home Assistant, security", topic_boxes},
+    {"service", "The service of systemd", topic_service},
+    {"commissioning", "Addresses for new sensors", topic_commission},
+    {"calibration", "The distance offset of an HPS-167S", topic_calibrate},
+    {"backup", "Settings as a file: save and restore", topic_backup},
+    {"requests", "A Modbus request by hand", topic_request},
     {"faults", "Traits and faults of simulated sensors", topic_faults},
     {"trouble", "What to do if nothing responds", print_trouble},
     {.name = NULL},

@@ -7,6 +7,17 @@
 /* The topics of `fathom help`; a row without a name ends them. */
 extern const topic_t topics[];
 
+/* Topics that explain a task from its beginning to its end. */
+void topic_log(FILE *to);
+void topic_publish(FILE *to);
+void topic_delivery(FILE *to);
+void topic_boxes(FILE *to);
+void topic_service(FILE *to);
+void topic_commission(FILE *to);
+void topic_calibrate(FILE *to);
+void topic_backup(FILE *to);
+void topic_request(FILE *to);
+
 /* The topic `faults`, in the folder of `fathom sim`. */
 void topic_faults(FILE *to);
 
