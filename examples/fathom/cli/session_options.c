@@ -52,7 +52,8 @@ bool session_set_mode(session_t *session, const arguments_t *arguments, const mo
     const session_settings_t *const settings = arguments->settings;
     const origin_t origin = origin_of(arguments);
     if (settings->sensors.defaults.mode != NULL && session->station->mode != mode)
-        return reject(&origin, "--mode is %s, but this needs mode %s.", session->station->mode->name, mode->name);
+        return reject(&origin, "--mode is %s, but this needs mode %s.", session->station->mode->name,
+                      mode->name);
     session->station->mode = mode;
     return true;
 }

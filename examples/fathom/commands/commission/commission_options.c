@@ -104,7 +104,8 @@ bool commission_options(commission_options_t *options, session_t *session, const
 {
     const commission_settings_t *const settings = arguments->settings;
     const origin_t origin = {.command = arguments->command->name};
-    if (!session_read(session, arguments, 1, 0) || !session_set_mode(session, arguments, model_mode_of(session->station->model, NULL)) ||
+    if (!session_read(session, arguments, 1, 0) ||
+        !session_set_mode(session, arguments, model_mode_of(session->station->model, NULL)) ||
         !is_suitable(session, &origin))
         return false;
     const model_t *const model = session->station->model;
