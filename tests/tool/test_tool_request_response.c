@@ -49,7 +49,7 @@ TEST(what_comes_back_is_told)
         {"1 3 0x0101", "01 83 02 C0 F1", 1, "received  01 83 02 C0 F1\n",
          "unit 1 refused: exception 02 (illegal data address): the sensor has no such register\n"},
         {"1 3 0x0101 --sensor hps167s", "01 83 02 C0 F1", 1, "",
-         "the sensor has no such register; HPS table 39: illegal start address or register address.\n"},
+         "the sensor has no such register; HPS table 39: illegal start address or register address\n"},
         {"1 3 0x0101 --sensor a16", "01 83 02 C0 F1", 1, "", "the datasheet of a16 has no exceptions\n"},
         {"1 6 0x0200 5 --yes", "01 86 04 43 A3", 1, "", "exception 04 (server device failure): "},
         {"1 0x2b 0e 01 00 --yes", "01 AB 01 9E F0", 1, "", "exception 01 (illegal function): "},
