@@ -53,10 +53,9 @@ TEST(eight_sensors_of_three_models_are_found_and_their_identities_printed)
                 "hps167s  address 6    19200 8E1    interface 2.1.0 of 2020-09-27, sensor 3.9 of 2019-09-23, "
                 "termination off  ->  fathom read hps167s:6:modbus --port line\n");
     assert_says(run, "termination on  ->  fathom read hps167s:8:modbus --port line\n");
-    assert_says(run, "fathom: 2 HPS-167S have their termination resistor on, as with factory settings. "
-                     "Together they overload the "
-                     "line: switch it off in all but the last one with 'fathom set hps167s:ADDRESS --port "
-                     "line termination off'.\n");
+    assert_says(run, "fathom: 2 sensors have their termination resistor on, the factory setting, which "
+                     "overloads the line. ");
+    assert_says(run, "with 'fathom set hps167s:ADDRESS --port line termination off'.\n");
     assert_says(run, "fathom: sensors found: 8, after ");
     assert_null(strstr(run->out, "twice"));
 }
@@ -208,7 +207,7 @@ TEST(the_default_is_32_addresses_at_the_factory_settings_in_18_s)
     assert_string_equal(tool_run(&bench.tool, "scan --estimate --format json")->out,
                         "{\"settings\":2,\"addresses\":32,\"duration_s\":18}\n");
     assert_says(scan("--address 1-2"),
-                "fathom: asks addresses 1 to 2 at 9600 8N1, 19200 8E1; takes about 10 s, and a "
+                "fathom: asking addresses 1 to 2 at 9600 8N1, 19200 8E1 takes about 10 s, and a "
                 "second for each sensor\n");
 }
 
@@ -309,7 +308,7 @@ TEST(ctrl_c_ends_the_scan_at_once_and_keeps_what_was_found)
         /* The signal ends a wait of the bench with its time-out, which is at most that for any A05. */
         assert_in_range(run->took_us, ms * 1000, ms * 1000 + SCAN_ANY_TIMEOUT_US);
         assert_int_equal(run->status, run->out[0] != '\0' ? 0 : 1);
-        assert_says(run, "fathom: ended before all addresses were asked; sensors found: ");
+        assert_says(run, "fathom: the scan ended before all addresses were asked. Sensors found: ");
     }
 }
 

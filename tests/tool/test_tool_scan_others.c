@@ -43,9 +43,10 @@ TEST(an_a16_and_an_a05_that_send_automatically_are_named_and_nothing_is_sent)
             (void)add_a16((fathom_sim_a16_config_t){.mode = FATHOM_SIM_A16_AUTO, .scene = scene});
         else
             (void)add_a05((fathom_sim_a05_config_t){.mode = FATHOM_SIM_A05_AUTO, .scene = scene});
-        const tool_run_t *const run =
-            hears(i / 2 % 2 == 0 ? "a16 - 9600 8N1" : "a05 - 9600 8N1",
-                  "even a read ends what an A16 or A05 sends by itself (of an A05 until power-off)");
+        const tool_run_t *const run = hears(
+            i / 2 % 2 == 0 ? "a16 - 9600 8N1" : "a05 - 9600 8N1",
+            i / 2 % 2 == 0 ? "even a read ends the automatic output of an A16 with RS232, until power-off or "
+                           : "even a read ends the automatic output of an A05 with UART, until power-off. ");
         assert_says(run, i / 2 % 2 == 0 ? "sends without requests  ->  fathom read a16 --port line\n"
                                         : "sends without requests  ->  fathom read a05 --port line\n");
         assert_int_equal(run->status, 0);
@@ -57,23 +58,23 @@ TEST(a_sensor_that_sends_automatically_is_asked_if_the_user_says_so)
     bench.line.full_duplex = true;
     (void)add_a16((fathom_sim_a16_config_t){.address = 7, .mode = FATHOM_SIM_A16_AUTO});
     assert_says(scan_finds("a16 7 9600 8N1", "--wake"),
-                "the sensor sent automatically until the first request. It does so again after a power "
-                "cycle, or when 1 is written to its "
-                "register 0x0202");
+                "the sensor sent automatically until the scan asked it. It sends again after a power cycle, "
+                "or when 1 is written to its register 0x0202");
 }
 
 TEST(a_sensor_that_hears_no_request_and_goes_on_sending_is_named)
 {
     bench.line.full_duplex = true;
     (void)add_a16((fathom_sim_a16_config_t){.address = 7, .mode = FATHOM_SIM_A16_UART});
-    assert_null(strstr(scan_finds("a16 - 9600 8N1", "--wake")->err, "until it was asked"));
+    assert_null(strstr(scan_finds("a16 - 9600 8N1", "--wake")->err, "until the scan asked it"));
 }
 
 static void hear_hps167s_at_115200(uint32_t period_us)
 {
     const fathom_line_settings_t fast = {115200, FATHOM_PARITY_EVEN, 1};
     (void)add_speaker(&fast, period_us, hps_response, sizeof hps_response);
-    const tool_run_t *const run = hears("hps167s 1 115200 8E1", "requests would go into what it sends");
+    const tool_run_t *const run =
+        hears("hps167s 1 115200 8E1", "requests would collide with its unsolicited frames");
     assert_says(run,
                 "sends unsolicited responses  ->  fathom read hps167s:1:modbus --port line --baud 115200\n");
 }
@@ -100,7 +101,7 @@ TEST(another_master_is_not_disturbed)
 TEST(unknown_bytes_are_a_sender_and_a_few_bytes_are_noise)
 {
     (void)add_speaker(&dyp_line, 1000000, junk, sizeof junk); /* three times in 3 s */
-    (void)hears("? - 9600 8N1", "something sends without a request: an HPS-167S made before 2020-09");
+    (void)hears("? - 9600 8N1", "something sends without a request. An HPS-167S made before 2020-09");
 
     scan_begin();
     (void)add_speaker(&dyp_line, 2000000, junk, sizeof junk); /* once */
@@ -123,8 +124,10 @@ TEST(two_units_with_one_address_are_named_and_their_neighbours_found)
         const tool_run_t *const run =
             scan_finds("a16 2 9600 8N1, ? 1 9600 8N1, hps167s 5 19200 8E1, ? 4 19200 8E1", "");
         assert_says(run, "damaged responses: two sensors with one address?\n");
-        assert_says(run, "responses at address 1 (9600 8N1) are damaged. Two sensors may have this address");
-        assert_says(run, "responses at address 4 (19200 8E1) are damaged. Two sensors may have this address");
+        assert_says(run,
+                    "responses from address 1 (9600 8N1) are damaged: do two sensors have this address?");
+        assert_says(run,
+                    "responses from address 4 (19200 8E1) are damaged: do two sensors have this address?");
     }
 }
 
@@ -135,7 +138,7 @@ TEST(two_responses_to_one_request_are_two_units)
     (void)add_a16((fathom_sim_a16_config_t){.address = 6, .settings_us = 40000});
     const tool_run_t *const run = scan_finds("? 6 9600 8N1", "");
     assert_says(run, "responds twice: two sensors with one address?\n");
-    assert_says(run, "address 6 sent two responses to one request. Two sensors may have this address");
+    assert_says(run, "a request to address 6 had two responses: do two sensors have this address?");
 }
 
 TEST(one_spike_is_no_device)
@@ -152,7 +155,7 @@ TEST(responses_that_are_not_modbus_are_one_finding)
     (void)add_speaker(&hps167s_line, 0, junk, sizeof junk);
     (void)add_a16((fathom_sim_a16_config_t){.address = 3});
     const tool_run_t *const run = scan_finds("a16 3 9600 8N1, ? - 19200 8E1", "");
-    assert_says(run, "a response at 19200 8E1 is not Modbus. An HPS-167S made before 2020-09");
+    assert_says(run, "something responds at 19200 8E1, but not in Modbus. An HPS-167S made before 2020-09");
     /* 32 addresses, most of them asked twice and not four times */
     assert_in_range(scans.probed[1][FATHOM_PARITY_EVEN], 64, 80);
 }
@@ -220,7 +223,7 @@ TEST(a_frame_of_an_address_beyond_the_range_is_mentioned)
 {
     (void)add_speaker(&dyp_line, 0, a16_response, sizeof a16_response);
     const tool_run_t *const run = scan_finds("", "--address 2-4");
-    assert_says(run, "a frame of address 1 was heard, which was not asked; try --address 1.\n");
+    assert_says(run, "a frame from address 1 was heard, which the scan did not ask. Use --address 1.\n");
     assert_null(strstr(run->err, "another master"));
 }
 
@@ -229,7 +232,7 @@ TEST(another_master_that_starts_later_is_mentioned)
     (void)add_speaker(&dyp_line, 0, a16_request, sizeof a16_request);
     const tool_run_t *const run = scan_finds("", "--address 2-4");
     assert_says(run, "another master sends requests on this line (to address 1)");
-    assert_null(strstr(run->err, "a frame of address"));
+    assert_null(strstr(run->err, "a frame from address"));
 }
 
 /* ---- HPS-167S #2 ---- */

@@ -35,7 +35,7 @@ class Case(e2e.Case):
     def test_the_plan_is_printed_before_the_first_request(self):
         device = self.device()
         program = self.fathom(f'scan --port {device} --address 1-2 --listen 1')
-        program.expect('^fathom: asks addresses 1 to 2 at 9600 8N1, 19200 8E1; takes about ', 'err')
+        program.expect('^fathom: asking addresses 1 to 2 at 9600 8N1, 19200 8E1 takes about ', 'err')
         device.asked(e2e.adu(1, 3, 2, 0, 0, 1))  # A16 6: the address register, which measures nothing
         self.assertEqual(device.baud(), termios.B9600)
         self.ends(program, 1)
@@ -79,7 +79,7 @@ class Case(e2e.Case):
     def test_ctrl_c_keeps_what_was_found(self):
         program = self.fathom(f'scan --port {self.sim("hps167s:1")} --baud 19200 --address 1-254 {PATIENT}')
         program.expect('^hps167s +address 1 ')
-        self.ends(program.end(signal.SIGINT), 0, 'ended before all addresses were asked; sensors found: 1')
+        self.ends(program.end(signal.SIGINT), 0, 'the scan ended before all addresses were asked. Sensors found: 1')
 
     def test_a_closed_pipe_ends_the_scan(self):
         sim = self.sim('hps167s:1 hps167s:2')

@@ -72,7 +72,7 @@ class Link(Case):
         self.assertFalse(os.path.lexists(self.link))
 
     def refuses_the_link(self):
-        self.ends(f'sim a16 --link {self.link}', 1, f'fathom: {self.link} is there already, and is no link that',
+        self.ends(f'sim a16 --link {self.link}', 1, f'fathom: {self.link} exists, and is not the link of a killed fathom sim',
                   out='')
 
     def test_a_link_of_the_users_is_neither_replaced_nor_removed(self):
@@ -95,7 +95,7 @@ class Link(Case):
 
     def test_a_folder_that_is_not_there_is_told(self):
         self.ends(f'sim a16 --link {self.path("no/tof")}', 1, re.compile(
-            r'^fathom: the simulated port and its link .*/no/tof: No such file or directory\n$'), out='')
+            r'^fathom: cannot make the simulated port and its link .*/no/tof: No such file or directory\n$'), out='')
 
     def test_the_hint_names_what_is_not_the_factorys(self):
         sim = self.sim('a16:7:modbus')
@@ -184,7 +184,7 @@ class Several(Bus):
 
     def test_two_units_with_one_address_answer_into_each_other(self):
         sim = self.sim('hps167s,distance=2083 hps167s,distance=1000 --counters')
-        sim.expect('sensors 1 and 2 have the same address, 1,', 'err')
+        sim.expect('sensors 1 and 2 both have address 1', 'err')
         garbled = self.ask(self.open(sim), ASK_HPS, 13)
         self.assertNotEqual(garbled, SAYS_2083)
         self.assertNotEqual(e2e.crc16(garbled[:-2]), garbled[-2:])
@@ -237,7 +237,7 @@ class Several(Bus):
 
     def test_one_that_sends_by_itself_beside_others_is_told(self):
         sim = self.sim('a16:1:auto hps167s:7 --distance 754')
-        sim.expect('sensor 1 sends automatically, also while others respond', 'err')
+        sim.expect('sensor 1 sends automatically, into the frames of the others', 'err')
         self.assertIn(bytes.fromhex('FF 02 F2 F3'), self.open(sim).read(12))  # FF + 02 + F2 = 1F3
 
 

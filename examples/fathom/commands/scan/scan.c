@@ -24,7 +24,10 @@ void scan_report(scan_t *scan, const scan_finding_t *finding)
     scan_print_advice(stderr, finding);
     if (finding->kind != SCAN_SENSOR) return;
     scan->sensors++;
-    if (finding->has_config && finding->has_termination) scan->terminations++;
+    if (finding->has_config && finding->has_termination) {
+        scan->terminations++;
+        scan->terminated = finding->model;
+    }
     if (scan->has_sender && finding->model == scan->sender.model && finding->mode != SCAN_AUTO)
         scan->awakened++;
 }
@@ -74,9 +77,9 @@ static int print_estimate(const scan_plan_t *plan, bool is_json)
 static void announce(const scan_plan_t *plan)
 {
     char duration[DURATION_TEXT];
-    (void)fputs("fathom: asks ", stderr);
+    (void)fputs("fathom: asking ", stderr);
     print_plan(stderr, plan);
-    (void)fprintf(stderr, "; takes about %s, and a second for each sensor\n",
+    (void)fprintf(stderr, " takes about %s, and a second for each sensor\n",
                   duration_text(scan_plan_us(plan), duration));
 }
 
@@ -103,7 +106,8 @@ static int finish(scan_t *scan, fathom_status_t status)
     else if (status == FATHOM_ERR_PORT)
         scan_print_port_failure(scan);
     else if (status != FATHOM_OK)
-        (void)fprintf(stderr, "fathom: ended before all addresses were asked; sensors found: %" PRIu32 ".\n",
+        (void)fprintf(stderr,
+                      "fathom: the scan ended before all addresses were asked. Sensors found: %" PRIu32 ".\n",
                       scan->sensors);
     return scan->sensors != 0 && scan->output_error == 0 && status != FATHOM_ERR_PORT ? STATUS_OK
                                                                                       : STATUS_FAILED;

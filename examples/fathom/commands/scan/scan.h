@@ -115,7 +115,8 @@ typedef struct {
     scan_finding_t sender; /* with `has_sender` */
     scan_heard_t heard;
     uint32_t sensors;                    /* found */
-    uint32_t terminations;               /* HPS-167S among them whose termination resistor is on */
+    uint32_t terminations;               /* sensors whose termination resistor is on */
+    uint8_t terminated;                  /* model of these sensors */
     uint32_t awakened;                   /* sensors of the model that sent automatically */
     bool has_dyp;                        /* a sensor that can have frames 55 AA was found */
     uint32_t found_baud[SCAN_ADDRESSES]; /* of the device that was found at an address; 0: none */

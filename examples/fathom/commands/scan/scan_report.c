@@ -181,21 +181,22 @@ void scan_print_advice(FILE *to, const scan_finding_t *finding)
     char line[LINE_TEXT];
     (void)line_text(&finding->line, line);
     if (finding->kind == SCAN_DAMAGED)
-        (void)fprintf(to,
-                      "fathom: responses at address %u (%s) are damaged. Two sensors may have this address: "
-                      "connect one at a "
-                      "time. If there is only one, check --parity, the cable and its termination.\n",
-                      finding->address, line);
+        (void)fprintf(
+            to,
+            "fathom: responses from address %u (%s) are damaged: do two sensors have this address? Connect "
+            "one at a time. If the sensor is alone, check --parity, the cable and its termination.\n",
+            finding->address, line);
     else if (finding->kind == SCAN_NOT_MODBUS)
         (void)fprintf(
             to,
-            "fathom: a response at %s is not Modbus. An HPS-167S made before 2020-09 uses another protocol. "
-            "Another --baud or --parity, swapped A and B, or noise can also be the cause.\n",
+            "fathom: something responds at %s, but not in Modbus. An HPS-167S made before 2020-09 has "
+            "another protocol. Another --baud or --parity, swapped wires A and B and noise have the same "
+            "effect.\n",
             line);
     else if (finding->is_double)
-        (void)fprintf(to,
-                      "fathom: address %u sent two responses to one request. Two sensors may have this "
-                      "address: connect one at a "
-                      "time.\n",
-                      finding->address);
+        (void)fprintf(
+            to,
+            "fathom: a request to address %u had two responses: do two sensors have this address? Connect "
+            "one at a time.\n",
+            finding->address);
 }

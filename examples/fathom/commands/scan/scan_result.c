@@ -6,32 +6,34 @@
 #include "diagnosis/advice.h"
 #include "sensors/models.h"
 
-/* Says why the scan sent nothing, although the user did not choose that. */
-static const char *why_nothing_was_sent(const scan_finding_t *sender)
+static void print_why_nothing_was_sent(const scan_finding_t *sender)
 {
+    (void)fputs("fathom: nothing was sent, because ", stderr);
     if (sender->kind == SCAN_MASTER)
-        return "another master sends requests on this line. Disconnect the other master or stop its program, "
-               "and scan again. To ask anyway, use --wake";
-    if (sender->kind == SCAN_SENDER && sender->address == 0)
-        return "something sends without a request: an HPS-167S made before 2020-09 speaks another protocol. "
-               "Another rate, swapped wires A and B and noise have the same effect. To ask anyway, use "
-               "--wake";
-    if (sender->mode == SCAN_AUTO)
-        return "even a read ends what an A16 or A05 sends by itself (of an A05 until power-off); --wake asks "
-               "all the same";
-    return "requests would go into what it sends; --wake asks all the same";
+        (void)fputs(
+            "another master sends requests on this line. Disconnect it or stop its program, and scan again",
+            stderr);
+    else if (sender->kind == SCAN_SENDER && sender->address == 0)
+        (void)fputs(
+            "something sends without a request. An HPS-167S made before 2020-09 has another protocol. "
+            "Another rate, swapped wires A and B and noise have the same effect",
+            stderr);
+    else if (sender->mode == SCAN_AUTO)
+        (void)fprintf(stderr, "even a read ends %s", model_of(sender->model)->request_ends);
+    else
+        (void)fputs("requests would collide with its unsolicited frames", stderr);
+    (void)fputs(". To ask anyway, use --wake.\n", stderr);
 }
 
 static void print_sender(const scan_t *scan)
 {
-    const scan_finding_t *const sender = &scan->sender;
     if (!scan->settings->wake) {
-        (void)fprintf(stderr, "fathom: nothing was sent, because %s\n", why_nothing_was_sent(sender));
-    } else if (scan->awakened != 0 && sender->mode == SCAN_AUTO) {
-        const char *const again = model_of(sender->model)->automatic_again;
+        print_why_nothing_was_sent(&scan->sender);
+    } else if (scan->awakened != 0 && scan->sender.mode == SCAN_AUTO) {
+        const char *const again = model_of(scan->sender.model)->automatic_again;
         (void)fprintf(
             stderr,
-            "fathom: the sensor sent automatically until the first request. It does so again after a power "
+            "fathom: the sensor sent automatically until the scan asked it. It sends again after a power "
             "cycle%s.\n",
             again != NULL ? again : "");
     }
@@ -94,9 +96,10 @@ static void print_others(const scan_t *scan)
         print_cause(scan, heard->has_other_master ? FATHOM_ERR_OTHER_MASTER : FATHOM_ERR_LINE_BUSY);
     }
     if (heard->outside != 0)
-        (void)fprintf(stderr,
-                      "fathom: a frame of address %u was heard, which was not asked; try --address %u.\n",
-                      heard->outside, heard->outside);
+        (void)fprintf(
+            stderr,
+            "fathom: a frame from address %u was heard, which the scan did not ask. Use --address %u.\n",
+            heard->outside, heard->outside);
 }
 
 void scan_print_result(const scan_t *scan)
@@ -106,12 +109,12 @@ void scan_print_result(const scan_t *scan)
     if (scan->has_sender && !scan->settings->wake) return;
     print_others(scan);
     if (scan->terminations > 1)
-        (void)fprintf(stderr,
-                      "fathom: %" PRIu32
-                      " HPS-167S have their termination resistor on, as with factory settings. Together "
-                      "they overload the line: switch it off in all but the last one with 'fathom set "
-                      "hps167s:ADDRESS --port %s termination off'.\n",
-                      scan->terminations, scan->settings->port);
+        (void)fprintf(
+            stderr,
+            "fathom: %" PRIu32 " sensors have their termination resistor on, the factory setting, which "
+            "overloads the line. Switch it off in all but the last sensor with 'fathom set %s:ADDRESS "
+            "--port %s termination off'.\n",
+            scan->terminations, model_of(scan->terminated)->name, scan->settings->port);
     if (scan->sensors == 0) print_nothing(scan);
     (void)fprintf(stderr, "fathom: sensors found: %" PRIu32 ", after %s\n", scan->sensors,
                   duration_text(scan_now_us(scan) - scan->start_us, duration));

@@ -66,12 +66,12 @@ static bool open_line(simulation_t *simulation)
     if (fathom_sim_pty_open(&simulation->pty, &simulation->line, &config) == 0) return true;
     if (link != NULL && errno == EEXIST)
         (void)fprintf(stderr,
-                      "fathom: %s is there already, and is no link that a killed fathom sim has left behind; "
-                      "choose another --link, or remove it first.\n",
+                      "fathom: %s exists, and is not the link of a killed fathom sim. "
+                      "Choose another --link, or remove it.\n",
                       link);
     else
-        (void)fprintf(stderr, "fathom: the simulated port%s%s: %s\n", link != NULL ? " and its link " : "",
-                      link != NULL ? link : "", strerror(errno));
+        (void)fprintf(stderr, "fathom: cannot make the simulated port%s%s: %s\n",
+                      link != NULL ? " and its link " : "", link != NULL ? link : "", strerror(errno));
     return false;
 }
 
@@ -122,7 +122,7 @@ static int serve(simulation_t *simulation, const host_t *host)
     while (!host->has_ended(host->ctx)) {
         if (host_had_signal()) cycle_power(simulation);
         if (fathom_sim_pty_pump(&simulation->pty, &due_us) < 0) {
-            (void)fprintf(stderr, "fathom: the simulated port has failed: %s\n", strerror(errno));
+            (void)fprintf(stderr, "fathom: the simulated port failed: %s\n", strerror(errno));
             return STATUS_FAILED;
         }
         due_us = connect_next(simulation, due_us);

@@ -25,8 +25,7 @@ static void print_reader(FILE *to, const sim_sensor_t *sensor, const char *port)
 static void print_clashes(FILE *to, const sim_site_t *site, bool one_by_one)
 {
     if (one_by_one) {
-        (void)fputs("fathom: one by one: each further sensor is connected a second after the previous one "
-                    "has left its "
+        (void)fputs("fathom: each further sensor is connected a second after the sensor before it left its "
                     "address.\n",
                     to);
         return;
@@ -34,14 +33,15 @@ static void print_clashes(FILE *to, const sim_site_t *site, bool one_by_one)
     for (uint32_t i = 0; i != site->count; i++) {
         const sim_sensor_t *const one = &site->sensors[i];
         if (!mode_is_asked(one->mode))
-            (void)fprintf(to, "fathom: sensor %" PRIu32 " sends automatically, also while others respond.\n",
+            (void)fprintf(to,
+                          "fathom: sensor %" PRIu32 " sends automatically, into the frames of the others.\n",
                           i + 1);
         for (uint32_t other = i + 1; other != site->count; other++)
             if (site->sensors[other].address == one->address &&
                 site->sensors[other].line.baud == one->line.baud)
                 (void)fprintf(to,
                               "fathom: sensors %" PRIu32 " and %" PRIu32
-                              " have the same address, %u, and will respond at the same time.\n",
+                              " both have address %u, and their responses collide.\n",
                               i + 1, other + 1, one->address);
     }
 }
