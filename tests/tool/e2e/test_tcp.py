@@ -60,14 +60,16 @@ class NoConnection(Case):
         self.assertGreaterEqual(done.elapsed, 5)
         self.needs_little(done)
 
-    def test_a_signal_ends_the_wait_for_a_connection(self):
-        reader = self.fathom(f'read hps167s --port {self.full()}')
+    @e2e.each(a_signal_ends_the_wait_of_read_for_a_connection=('read hps167s', 0),
+              a_signal_ends_the_wait_of_a_session_for_a_connection=('get hps167s baud', 1))
+    def ended(self, command, code):
+        reader = self.fathom(f'{command} --port {self.full()}')
         # It connects when it has its socket; a signal before that ends it as well.
         deadline = time.monotonic() + e2e.PATIENCE
         while not self.has_socket(f'/proc/{reader.process.pid}/fd'):
             self.assertLess(time.monotonic(), deadline)
             time.sleep(0.005)
-        self.assertNotIn('timed out', self.ends(reader.end(), 0).err)
+        self.assertNotIn('timed out', self.ends(reader.end(), code).err)
 
     @staticmethod
     def has_socket(folder):
