@@ -41,7 +41,7 @@ bool session_read(session_t *session, const arguments_t *arguments, int most, in
             return reject(&origin, "%s in mode %s receives no requests. Leave the mode out.",
                           station->model->name, station->mode->name);
     }
-    session->station = session->site.sensors[0];
+    session->sensor = session->site.sensors[0];
     if (arguments->count - count > rest)
         return reject(&origin, "'%s' is one word too many.", arguments->words[count + rest]);
     return true;
@@ -51,23 +51,23 @@ bool session_set_mode(session_t *session, const arguments_t *arguments, const mo
 {
     const session_settings_t *const settings = arguments->settings;
     const origin_t origin = origin_of(arguments);
-    if (settings->sensors.defaults.mode != NULL && session->station->mode != mode)
-        return reject(&origin, "--mode is %s, but this needs mode %s.", session->station->mode->name,
+    if (settings->sensors.defaults.mode != NULL && session->sensor->mode != mode)
+        return reject(&origin, "--mode is %s, but this needs mode %s.", session->sensor->mode->name,
                       mode->name);
-    session->station->mode = mode;
+    session->sensor->mode = mode;
     return true;
 }
 
 bool session_can_set(const session_t *session, const arguments_t *arguments)
 {
     const origin_t origin = origin_of(arguments);
-    if (session->station->address != 0) return true;
+    if (session->sensor->address != 0) return true;
     return reject(&origin, "a write to address 0 goes to all units, so no setting can be changed there.");
 }
 
 const setting_t *setting_named(const session_t *session, const char *name, const arguments_t *arguments)
 {
-    const setting_t *const settings = session->station->model->settings;
+    const setting_t *const settings = session->sensor->model->settings;
     const origin_t origin = origin_of(arguments);
     const setting_t *const found = setting_of(settings, name);
     char what[64];
@@ -78,7 +78,7 @@ const setting_t *setting_named(const session_t *session, const char *name, const
         nearest_try(&nearest, setting->name);
         list_add(known, sizeof known, setting->name);
     }
-    (void)snprintf(what, sizeof what, "setting of %s", session->station->model->name);
+    (void)snprintf(what, sizeof what, "setting of %s", session->sensor->model->name);
     (void)reject_unknown(&origin, what, "", &nearest, known);
     return NULL;
 }

@@ -34,20 +34,19 @@ static const setting_t *next_value(const progress_t *progress, const setting_t *
     if (progress->show == SHOW_ONE) return last == NULL ? setting : NULL;
     for (; setting->name != NULL; setting++) {
         const bool is_shown = progress->show == SHOW_ALL ? setting->get != NULL : setting->set != NULL;
-        if (is_shown && model_mode_of(session.station->model, setting) == session.station->mode)
-            return setting;
+        if (is_shown && model_mode_of(session.sensor->model, setting) == session.sensor->mode) return setting;
     }
     return NULL;
 }
 
 /* Messages name the sensor if there are several, or if the user named it. */
-static bool has_name(void) { return session.site.sensor_count > 1 || session.station->has_own_name; }
+static bool has_name(void) { return session.site.sensor_count > 1 || session.sensor->has_own_name; }
 
 /* The start of a message on stderr. */
 static void print_start(void)
 {
     (void)fflush(stdout);
-    (void)fprintf(stderr, "fathom: %s%s", has_name() ? session.station->name : "", has_name() ? ": " : "");
+    (void)fprintf(stderr, "fathom: %s%s", has_name() ? session.sensor->name : "", has_name() ? ": " : "");
 }
 
 /* `address` is the value of a sensor that can report it, and else the address at which the sensor is asked. */
@@ -58,14 +57,14 @@ static void begin_json(const progress_t *progress, const char *line)
         if (strcmp(setting->name, "address") == 0) has_address = true;
     json = (json_t){.to = stdout};
     json_begin(&json, NULL, '{');
-    sensor_json(&json, session.station);
-    if (!has_address) json_value(&json, "address", "%u", session.station->address);
+    sensor_json(&json, session.sensor);
+    if (!has_address) json_value(&json, "address", "%u", session.sensor->address);
     json_string(&json, "line", line);
 }
 
 static void begin(const progress_t *progress)
 {
-    const sensor_t *const sensor = session.station;
+    const sensor_t *const sensor = session.sensor;
     char line[LINE_TEXT];
     (void)session_line_text(&session, line);
     if (session.is_json)
@@ -95,7 +94,7 @@ static fathom_status_t read_value(const setting_t *setting, progress_t *progress
     text[0] = '\0';
     if (setting->get == NULL) {
         if (strcmp(setting->name, "address") != 0) return FATHOM_ERR_UNSUPPORTED;
-        (void)snprintf(text, SETTING_TEXT, "%u", session.station->address); /* it responds there */
+        (void)snprintf(text, SETTING_TEXT, "%u", session.sensor->address); /* it responds there */
         return FATHOM_OK;
     }
     if (setting->read_at != 0 && setting->read_at == progress->failed_read) return progress->failure;
@@ -201,7 +200,7 @@ static int start_info(const host_t *host, const arguments_t *arguments)
     if (!session_read(&session, arguments, INT_MAX, 0)) return STATUS_USAGE;
     for (size_t i = 0; i != site->sensor_count; i++) {
         if (i != 0 && host->has_ended(host->ctx)) return STATUS_FAILED;
-        session.station = site->sensors[i];
+        session.sensor = site->sensors[i];
         if (!show_on_port(host, session_settings(&session), SHOW_ALL)) status = STATUS_FAILED;
     }
     return status;
@@ -223,7 +222,7 @@ static int start_get(const host_t *host, const arguments_t *arguments)
         (void)reject(&origin, "%s is write-only. The sensor does not report it.", setting->name);
         return STATUS_USAGE;
     }
-    if (!session_set_mode(&session, arguments, model_mode_of(session.station->model, setting)))
+    if (!session_set_mode(&session, arguments, model_mode_of(session.sensor->model, setting)))
         return STATUS_USAGE;
     return show_on_port(host, setting, SHOW_ONE) ? STATUS_OK : STATUS_FAILED;
 }

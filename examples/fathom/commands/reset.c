@@ -31,18 +31,18 @@ static session_t session;
 static fathom_status_t restore(reader_t *reader, void *ctx)
 {
     (void)ctx;
-    return session.station->model->reset.restore(reader);
+    return session.sensor->model->reset.restore(reader);
 }
 
 static fathom_status_t load(reader_t *reader, void *ctx)
 {
     (void)ctx;
-    return session.station->model->reset.load(reader);
+    return session.sensor->model->reset.load(reader);
 }
 
 static int finish(bool is_restore, fathom_status_t status)
 {
-    const sensor_t *const station = session.station;
+    const sensor_t *const station = session.sensor;
     if (status == FATHOM_OK) {
         if (is_restore)
             (void)printf("%s: the interface has its factory settings: address 1, "
@@ -84,8 +84,8 @@ static bool set_up(const arguments_t *arguments, bool *is_restore)
     const reset_settings_t *const settings = arguments->settings;
     const origin_t origin = {.command = arguments->command->name};
     if (!session_read(&session, arguments, 1, 1)) return false;
-    if (session.station->model->reset.restore == NULL)
-        return reject(&origin, "%s cannot be reset. Only an hps167s can.", session.station->model->name);
+    if (session.sensor->model->reset.restore == NULL)
+        return reject(&origin, "%s cannot be reset. Only an hps167s can.", session.sensor->model->name);
     const char *const word = arguments->count == 2          ? arguments->words[1]
                              : settings->restores_interface ? "interface"
                              : settings->restores_sensor    ? "sensor"
@@ -100,7 +100,7 @@ static bool set_up(const arguments_t *arguments, bool *is_restore)
                        settings->restores_sensor,
                    *is_restore ? "This sets %s to address 1, 19200 8E1, and termination on."
                                : "This overwrites the filter and the distance offset of %s.",
-                   session.station->name);
+                   session.sensor->name);
 }
 
 static int start(const host_t *host, const arguments_t *arguments)

@@ -78,7 +78,7 @@ static void print_stop(const plan_t *plan, size_t n, const char *path)
 {
     char before[SETTING_VALUES];
     char after[SETTING_VALUES];
-    const bool is_written = reader_facts(session.station->reader).is_written;
+    const bool is_written = reader_facts(session.sensor->reader).is_written;
     (void)names(plan, 0, n, false, before);
     (void)names(plan, n + 1, plan->count, false, after);
     (void)fprintf(stderr, "fathom: it has ended at %s; written before: %s; not written: %s\n",
@@ -112,8 +112,8 @@ static bool finds(const plan_t *plan, bool is_baud, const backup_row_t **row)
 static bool is_place_free(const plan_t *plan)
 {
     const backup_row_t *row = NULL;
-    uint8_t address = session.station->address;
-    uint32_t baud = session.station->line.baud;
+    uint8_t address = session.sensor->address;
+    uint32_t baud = session.sensor->line.baud;
     if (finds(plan, false, &row)) address = (uint8_t)row->value;
     if (finds(plan, true, &row)) (void)number_parse(row->text, 0, UINT32_MAX, &baud);
     return presence_is_free(&session, address, baud);
@@ -135,7 +135,7 @@ static int look_again(const backup_t *unit)
                     stderr);
         return STATUS_FAILED;
     }
-    (void)printf("%s: it answers there, %s\n", session.station->name, session_line_text(&session, line));
+    (void)printf("%s: it answers there, %s\n", session.sensor->name, session_line_text(&session, line));
     if (plan_print_identity(unit, "before", &now, "now")) return STATUS_OK;
     (void)fflush(stdout);
     (void)fputs("fathom: another unit answers at the new place; try fathom scan.\n", stderr);
@@ -184,10 +184,10 @@ static int start(const host_t *host, const arguments_t *arguments)
     const restore_settings_t *const settings = arguments->settings;
     backup_t file;
     if (!session_read(&session, arguments, 1, 0) ||
-        !session_set_mode(&session, arguments, model_mode_of(session.station->model, NULL)) ||
+        !session_set_mode(&session, arguments, model_mode_of(session.sensor->model, NULL)) ||
         !session_can_set(&session, arguments))
         return STATUS_USAGE;
-    backup_result_t result = backup_parse(settings->path, session.station->model, &file);
+    backup_result_t result = backup_parse(settings->path, session.sensor->model, &file);
     if (result == BACKUP_OK && settings->is_new) result = check_address(settings->path, &file);
     if (result != BACKUP_OK) return result == BACKUP_INVALID ? STATUS_USAGE : STATUS_FAILED;
     if (!session_open(&session, host)) return STATUS_FAILED;

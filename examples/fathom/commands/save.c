@@ -28,7 +28,7 @@ static void print(FILE *to, const host_t *host, const backup_t *unit)
     char place[2 * LINE_TEXT];
     char utc[UTC_TEXT];
     char when[UTC_TEXT];
-    (void)snprintf(place, sizeof place, "address %u, %s", session.station->address,
+    (void)snprintf(place, sizeof place, "address %u, %s", session.sensor->address,
                    session_line_text(&session, line));
     (void)snprintf(when, sizeof when, "%.19sZ", utc_text(host->utc_us(host->ctx), utc)); /* to the second */
     backup_print(to, unit, place, when);
@@ -45,7 +45,7 @@ static int save(const host_t *host, const char *path)
         if (!new_file_begin(&file, path)) return STATUS_FAILED;
         print(file.file, host, &unit);
         if (!new_file_end(&file)) return STATUS_FAILED;
-        (void)printf("%s: its settings are in %s\n", session.station->name, path);
+        (void)printf("%s: its settings are in %s\n", session.sensor->name, path);
     }
     if (fflush(stdout) == 0 && ferror(stdout) == 0) return STATUS_OK;
     (void)fputs("fathom: the output cannot be written.\n", stderr);
@@ -56,7 +56,7 @@ static int start(const host_t *host, const arguments_t *arguments)
 {
     const save_settings_t *const settings = arguments->settings;
     if (!session_read(&session, arguments, 1, 0) ||
-        !session_set_mode(&session, arguments, model_mode_of(session.station->model, NULL)))
+        !session_set_mode(&session, arguments, model_mode_of(session.sensor->model, NULL)))
         return STATUS_USAGE;
     if (settings->path != NULL && !new_file_is_free(settings->path)) return STATUS_FAILED;
     if (!session_open(&session, host)) return STATUS_FAILED;

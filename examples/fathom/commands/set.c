@@ -42,7 +42,7 @@ static bool set(change_t *change)
     change->was[0] = '\0';
     if (change->is_for_all) return change_report(change, session_call(&session, call_all, change));
     if (change->is_blind) {
-        reader_write_next_unchecked(session.station->reader);
+        reader_write_next_unchecked(session.sensor->reader);
     } else if (change->setting->get != NULL) {
         const fathom_status_t status = session_get(&session, change->setting, change->was);
         if (status != FATHOM_OK) return change_report(change, status);
@@ -92,12 +92,12 @@ static bool set_up(change_t *change, const arguments_t *arguments)
     if (!session_read(&session, arguments, 1, 2)) return false;
     if (arguments->count < 3)
         return reject(&origin, "the %s is missing. 'fathom get %s' lists the settings.",
-                      arguments->count == 1 ? "setting" : "value", session.station->model->name);
+                      arguments->count == 1 ? "setting" : "value", session.sensor->model->name);
     const setting_t *const setting = setting_named(&session, arguments->words[1], arguments);
     if (setting == NULL) return false;
     if (setting->set == NULL) return reject(&origin, "%s is read-only.", setting->name);
     change->setting = setting;
-    return session_set_mode(&session, arguments, model_mode_of(session.station->model, setting)) &&
+    return session_set_mode(&session, arguments, model_mode_of(session.sensor->model, setting)) &&
            session_can_set(&session, arguments) &&
            set_value(change, arguments->words[2], arguments, &origin) && set_kind(change, arguments, &origin);
 }

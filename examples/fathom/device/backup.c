@@ -61,7 +61,7 @@ static fathom_status_t read_row(session_t *session, const setting_t *setting, ba
     if (setting->get == NULL && !setting->moves) {
         row->held = HELD_NOT_READABLE;
     } else if (setting->get == NULL) { /* the address at which it answers */
-        row->value = session->station->address;
+        row->value = session->sensor->address;
         setting_print_value(setting, row->value, row->text);
     } else {
         row->status = read_patiently(session, setting, row->text);
@@ -79,7 +79,7 @@ static fathom_status_t read_row(session_t *session, const setting_t *setting, ba
 static bool failed(session_t *session, const setting_t *setting, fathom_status_t status)
 {
     (void)fflush(stdout);
-    (void)fprintf(stderr, "fathom: %s: %s: ", session->station->name, setting->name);
+    (void)fprintf(stderr, "fathom: %s: %s: ", session->sensor->name, setting->name);
     session_explain(session, status);
     (void)fputs("\n", stderr);
     return false;
@@ -91,7 +91,7 @@ bool backup_read(session_t *session, backup_t *unit)
     const setting_t *known = NULL; /* the first one that it has told, */
     const setting_t *missing = NULL;
     memset(unit, 0, sizeof *unit);
-    unit->model = session->station->model;
+    unit->model = session->sensor->model;
     for (size_t i = 0; i != backup_count(unit->model); i++) {
         backup_row_t *const row = &unit->rows[i];
         if (!backup_has(&settings[i])) continue;

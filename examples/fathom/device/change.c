@@ -24,7 +24,7 @@ static bool is_read_back(const change_t *change)
 
 change_outcome_t change_outcome(const change_t *change, fathom_status_t status)
 {
-    const reader_facts_t facts = reader_facts(change->session->station->reader);
+    const reader_facts_t facts = reader_facts(change->session->sensor->reader);
     if (!facts.is_written) return status == FATHOM_OK ? CHANGE_UNCHANGED : CHANGE_NOT_WRITTEN;
     if (status == FATHOM_OK) return CHANGE_DONE;
     if (change->is_for_all) return facts.acknowledgement == FATHOM_OK ? CHANGE_SENT : CHANGE_UNCONFIRMED;
@@ -38,7 +38,7 @@ change_outcome_t change_outcome(const change_t *change, fathom_status_t status)
 
 static const char *acknowledgement(const change_t *change)
 {
-    const reader_facts_t facts = reader_facts(change->session->station->reader);
+    const reader_facts_t facts = reader_facts(change->session->sensor->reader);
     return !facts.is_setting && facts.acknowledgement == FATHOM_OK ? "the sensor acknowledged the write"
                                                                    : "no acknowledgement was received";
 }
@@ -46,7 +46,7 @@ static const char *acknowledgement(const change_t *change)
 /* Where the sensor may be, or what else is unknown. */
 static void print_unconfirmed(const change_t *change)
 {
-    const sensor_t *const sensor = change->session->station;
+    const sensor_t *const sensor = change->session->sensor;
     const setting_t *const setting = change->setting;
     (void)fprintf(stderr, "%s. ", acknowledgement(change));
     if (setting->is_baud) {
@@ -71,7 +71,7 @@ static void print_unconfirmed(const change_t *change)
 void change_explain(const change_t *change, change_outcome_t outcome, fathom_status_t status)
 {
     (void)fflush(stdout);
-    (void)fprintf(stderr, "fathom: %s: %s %s: %s: ", change->session->station->name, change->setting->name,
+    (void)fprintf(stderr, "fathom: %s: %s %s: %s: ", change->session->sensor->name, change->setting->name,
                   change->wanted, words[outcome]);
     if (outcome == CHANGE_UNCONFIRMED)
         print_unconfirmed(change);
@@ -95,7 +95,7 @@ void change_explain(const change_t *change, change_outcome_t outcome, fathom_sta
 
 static void print_json(const change_t *change, change_outcome_t outcome)
 {
-    const sensor_t *const sensor = change->session->station;
+    const sensor_t *const sensor = change->session->sensor;
     const bool is_unchanged = outcome == CHANGE_UNCHANGED;
     json_t json = {.to = stdout};
     json_begin(&json, NULL, '{');
@@ -115,7 +115,7 @@ static void print_json(const change_t *change, change_outcome_t outcome)
 /* How to read the sensor after its address or baud rate has changed. */
 static void print_next(const change_t *change)
 {
-    const sensor_t *const sensor = change->session->station;
+    const sensor_t *const sensor = change->session->sensor;
     const reader_facts_t facts = reader_facts(sensor->reader);
     (void)fputs("from now on: ", stdout);
     read_command_print(stdout, sensor->model, sensor->mode->name, facts.address,
@@ -127,8 +127,8 @@ static void print_done(const change_t *change, change_outcome_t outcome)
 {
     const setting_t *const setting = change->setting;
     const bool has_unit = setting->unit != NULL && setting->words == NULL;
-    const bool is_later = setting->is_later != NULL && setting->is_later(change->session->station->reader);
-    (void)printf("%s: %s is %s%s%s", change->session->station->name, setting->name, change->wanted,
+    const bool is_later = setting->is_later != NULL && setting->is_later(change->session->sensor->reader);
+    (void)printf("%s: %s is %s%s%s", change->session->sensor->name, setting->name, change->wanted,
                  has_unit ? " " : "", has_unit ? setting->unit : "");
     if (is_later)
         (void)printf(" from the next power-on (%s until then)\n", change->was);
@@ -146,7 +146,7 @@ static void print_done(const change_t *change, change_outcome_t outcome)
 /* Nothing was read that could confirm the value, so an acknowledgement, or what may be an echo of it, is a success. */
 static bool is_done_blind(const change_t *change, change_outcome_t outcome)
 {
-    const int8_t response = reader_facts(change->session->station->reader).acknowledgement;
+    const int8_t response = reader_facts(change->session->sensor->reader).acknowledgement;
     const bool is_acknowledged = response == FATHOM_OK || response == FATHOM_ERR_ECHO;
     return outcome == CHANGE_SENT || (change->is_blind && outcome == CHANGE_UNCONFIRMED && is_acknowledged);
 }
@@ -160,7 +160,7 @@ bool change_report(const change_t *change, fathom_status_t status)
     if (!is_done)
         change_explain(change, outcome, status);
     else if (is_blind && !change->session->is_json)
-        (void)printf("%s: %s %s: %s\n", change->is_for_all ? "all units" : change->session->station->name,
+        (void)printf("%s: %s %s: %s\n", change->is_for_all ? "all units" : change->session->sensor->name,
                      change->setting->name, change->wanted, words[outcome]);
     else if (!change->session->is_json)
         print_done(change, outcome);

@@ -14,7 +14,7 @@ enum {
 static evidence_t evidence_of(const session_t *session)
 {
     evidence_t evidence;
-    listener_judge(&session->port.listener, session->station->address, &evidence);
+    listener_judge(&session->port.listener, session->sensor->address, &evidence);
     return evidence;
 }
 
@@ -35,7 +35,7 @@ static fathom_status_t read_number(session_t *session, char number[SETTING_TEXT]
         session_get(session, uuid != NULL ? uuid : setting_of(settings, "address"), number);
     if (status != FATHOM_OK || uuid != NULL) return status;
     char address[SETTING_TEXT];
-    (void)snprintf(address, sizeof address, "%u", session->station->address);
+    (void)snprintf(address, sizeof address, "%u", session->sensor->address);
     if (strcmp(number, address) != 0) return FATHOM_ERR_MALFORMED;
     (void)snprintf(number, SETTING_TEXT, "-");
     return status;
@@ -67,7 +67,7 @@ static present_t find(session_t *session, unsigned times, presence_t *presence)
 
 static present_t ask(session_t *session, unsigned times, presence_t *presence)
 {
-    const uint32_t listen_us = session->station->model->second_response_us;
+    const uint32_t listen_us = session->sensor->model->second_response_us;
     const present_t found = find(session, times, presence);
     if (found != PRESENT_ONE) return found;
     for (unsigned i = 0; i != READS; i++) {
@@ -96,7 +96,7 @@ presence_t presence_ask(session_t *session, uint8_t address, const fathom_line_s
 void presence_explain(session_t *session, const presence_t *presence)
 {
     if (presence->is_two)
-        (void)fprintf(stderr, "two sensors respond at address %u", session->station->address);
+        (void)fprintf(stderr, "two sensors respond at address %u", session->sensor->address);
     else
         session_explain(session, presence->status);
 }
@@ -128,8 +128,8 @@ static bool is_free_at(session_t *session, uint8_t address, const fathom_line_se
 
 bool presence_is_free(session_t *session, uint8_t address, uint32_t baud)
 {
-    const uint8_t home = session->station->address;
-    const fathom_line_settings_t home_line = session->station->line;
+    const uint8_t home = session->sensor->address;
+    const fathom_line_settings_t home_line = session->sensor->line;
     fathom_line_settings_t line = home_line;
     line.baud = baud;
     const bool is_free = (address == home || is_free_at(session, address, &home_line)) &&
@@ -139,7 +139,7 @@ bool presence_is_free(session_t *session, uint8_t address, uint32_t baud)
 
 bool presence_follow(session_t *session)
 {
-    const sensor_t *const station = session->station;
+    const sensor_t *const station = session->sensor;
     const reader_facts_t facts = reader_facts(station->reader);
     const fathom_line_settings_t line = facts.line != NULL ? *facts.line : station->line;
     return session_move(session, facts.address, &line);

@@ -45,13 +45,12 @@ static bool is_refusal(uint8_t exception)
 static calibrate_outcome_t write_offset(const setting_t *setting, int32_t offset_mm)
 {
     const fathom_status_t status = session_set(&session, setting, offset_mm);
-    const reader_facts_t facts = reader_facts(session.station->reader);
+    const reader_facts_t facts = reader_facts(session.sensor->reader);
     const bool is_refused = status == FATHOM_ERR_EXCEPTION && is_refusal(facts.exception);
     if (status == FATHOM_OK) return CALIBRATE_ACKNOWLEDGED;
     if (facts.is_written && !is_refused) return CALIBRATE_UNANSWERED;
     (void)fflush(stdout);
-    (void)fprintf(stderr, "fathom: %s: offset %d mm was not written: ", session.station->name,
-                  (int)offset_mm);
+    (void)fprintf(stderr, "fathom: %s: offset %d mm was not written: ", session.sensor->name, (int)offset_mm);
     session_explain(&session, status);
     (void)fputs("\n", stderr);
     return CALIBRATE_NOT_WRITTEN;
@@ -69,7 +68,7 @@ static void measure(calibrate_plan_t *plan, const calibrate_batch_t *batch)
 
 static int calibrate(calibrate_plan_t *plan, const calibrate_batch_t *batch, bool is_dry)
 {
-    const setting_t *const setting = setting_of(session_settings(&session), session.station->model->offset);
+    const setting_t *const setting = setting_of(session_settings(&session), session.sensor->model->offset);
     while (plan->next != CALIBRATE_END) {
         if (plan->next == CALIBRATE_MEASURE)
             measure(plan, batch);
@@ -91,9 +90,9 @@ static int start(const host_t *host, const arguments_t *arguments)
     if (!arguments_have(arguments, "samples")) settings->batch.samples = CALIBRATE_SAMPLES;
     if (!arguments_have(arguments, "spread")) settings->batch.spread_mm = SPREAD_MM;
     if (!session_read(&session, arguments, 1, 0)) return STATUS_USAGE;
-    if (session.station->model->offset == NULL) {
+    if (session.sensor->model->offset == NULL) {
         (void)reject(&origin, "%s has no distance offset. Only an hps167s has one.",
-                     session.station->model->name);
+                     session.sensor->model->name);
         return STATUS_USAGE;
     }
     if (!session_open(&session, host)) return STATUS_FAILED;

@@ -34,7 +34,7 @@ static fathom_status_t poll(reader_t *reader, void *ctx)
 static void print_start(const session_t *session)
 {
     (void)fflush(stdout);
-    (void)fprintf(stderr, "fathom: %s: cannot measure: ", session->station->name);
+    (void)fprintf(stderr, "fathom: %s: cannot measure: ", session->sensor->name);
 }
 
 /* Reads a sample and repeats a failed read. Returns false after printing why there is none. */

@@ -14,7 +14,7 @@ bool calibrate_report_measurement(const session_t *session, const calibrate_plan
     errno = 0;
     (void)printf("%s: measured %" PRId32 " mm (median of %" PRIu32 ", spread %" PRIu32 " mm), known %" PRId32
                  " mm",
-                 session->station->name, measurement->median_mm, batch->samples, measurement->spread_mm,
+                 session->sensor->name, measurement->median_mm, batch->samples, measurement->spread_mm,
                  plan->known_mm);
     if (off_mm != 0)
         (void)printf(": %" PRId32 " mm too %s", off_mm < 0 ? -off_mm : off_mm, off_mm < 0 ? "near" : "far");
@@ -27,8 +27,8 @@ bool calibrate_report_write(const session_t *session, const calibrate_plan_t *pl
     FILE *const to = session->is_json ? stderr : stdout;
     errno = 0;
     (void)fprintf(to, "%s%s: writing offset %" PRId32 " mm to flash (write %zu of at most %d)\n",
-                  session->is_json ? "fathom: " : "", session->station->name, plan->write_mm,
-                  plan->writes + 1, CALIBRATE_WRITES);
+                  session->is_json ? "fathom: " : "", session->sensor->name, plan->write_mm, plan->writes + 1,
+                  CALIBRATE_WRITES);
     return session->is_json ? fflush(to) == 0 : output_flush() == 0;
 }
 
@@ -60,7 +60,7 @@ static int32_t last_mm(const calibrate_plan_t *plan) { return plan->measured_mm[
 static void print_right(const session_t *session, const calibrate_plan_t *plan)
 {
     (void)printf("%s: right within %" PRId32 " mm: measured %" PRId32 " mm, known %" PRId32 " mm; ",
-                 session->station->name, plan->tolerance_mm, last_mm(plan), plan->known_mm);
+                 session->sensor->name, plan->tolerance_mm, last_mm(plan), plan->known_mm);
     if (plan->writes == 0) {
         (void)puts("nothing was written");
         return;
@@ -128,7 +128,7 @@ static void print_next(const calibrate_plan_t *plan)
 
 static void print_failure(const session_t *session, const calibrate_plan_t *plan)
 {
-    const char *const name = session->station->name;
+    const char *const name = session->sensor->name;
     (void)fflush(stdout);
     /* the other two reasons were printed when they occurred */
     if (plan->why != CALIBRATE_REFUSED && plan->why != CALIBRATE_NOT_MEASURED) {
@@ -172,8 +172,8 @@ static void print_json(const session_t *session, const calibrate_plan_t *plan, b
     const size_t count = calibrate_offsets(plan, offsets);
     json_t json = {.to = stdout};
     json_begin(&json, NULL, '{');
-    sensor_json(&json, session->station);
-    json_value(&json, "address", "%u", session->station->address);
+    sensor_json(&json, session->sensor);
+    json_value(&json, "address", "%u", session->sensor->address);
     json_string(&json, "status", is_dry ? "dry_run" : whys[plan->why]);
     json_value(&json, "known_mm", "%" PRId32, plan->known_mm);
     print_list(&json, "measured_mm", plan->measured_mm, plan->measurements);
@@ -200,7 +200,7 @@ int calibrate_report(const session_t *session, const calibrate_plan_t *plan, boo
         print_json(session, plan, is_dry);
     else if (is_dry)
         (void)printf("%s: nothing was written; without --dry-run, offset %" PRId32 " mm would be\n",
-                     session->station->name, plan->write_mm);
+                     session->sensor->name, plan->write_mm);
     else if (plan->is_right)
         print_right(session, plan);
     if (!is_dry && plan->why != CALIBRATE_DONE) print_failure(session, plan);

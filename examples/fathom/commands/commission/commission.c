@@ -41,7 +41,7 @@ static bool is_same(const record_unit_t *unit, const presence_t *presence)
 
 static presence_t look_at(commission_t *run, uint8_t address, unsigned times)
 {
-    return presence_ask(&run->session, address, &run->session.station->line, times);
+    return presence_ask(&run->session, address, &run->session.sensor->line, times);
 }
 
 /* ---- resuming ---- */
@@ -202,7 +202,7 @@ int commission_start(const host_t *host, const arguments_t *arguments)
     static commission_t run;
     memset(&run, 0, sizeof run);
     if (!commission_options(&run.options, &run.session, arguments)) return STATUS_USAGE;
-    run.model = run.session.station->model;
+    run.model = run.session.sensor->model;
     if (!record_read(&run.record, run.options.record)) return STATUS_FAILED;
     if (!is_suitable(&run)) return STATUS_USAGE;
     if (!session_open(&run.session, host)) return STATUS_FAILED;

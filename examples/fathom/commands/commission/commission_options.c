@@ -92,9 +92,9 @@ static bool set_terminated(commission_options_t *options, const model_t *model, 
 static bool is_suitable(const session_t *session, const origin_t *origin)
 {
     const char *const port = session_port(session)->path;
-    if (session->station->address != FACTORY_ADDRESS)
+    if (session->sensor->address != FACTORY_ADDRESS)
         return reject(origin, "new sensors have address %d. Leave address %u out.", FACTORY_ADDRESS,
-                      session->station->address);
+                      session->sensor->address);
     if (!port_path_has_gateway(port)) return true;
     return reject(origin, "%s is no serial port. Behind a gateway, two sensors at one address look like one.",
                   port);
@@ -105,10 +105,10 @@ bool commission_options(commission_options_t *options, session_t *session, const
     const commission_settings_t *const settings = arguments->settings;
     const origin_t origin = {.command = arguments->command->name};
     if (!session_read(session, arguments, 1, 0) ||
-        !session_set_mode(session, arguments, model_mode_of(session->station->model, NULL)) ||
+        !session_set_mode(session, arguments, model_mode_of(session->sensor->model, NULL)) ||
         !is_suitable(session, &origin))
         return false;
-    const model_t *const model = session->station->model;
+    const model_t *const model = session->sensor->model;
     options->wait_us = settings->wait_us;
     options->record = settings->record;
     return set_addresses(options, model, settings->addresses, &origin) &&

@@ -73,7 +73,7 @@ static commission_end_t set(commission_t *run, const char *name, int32_t value)
     if (!announce(run, &change)) return COMMISSION_STOPPED;
     run->write_count++;
     status = session_set(&run->session, change.setting, value);
-    if (!reader_facts(run->session.station->reader).is_written) run->write_count--;
+    if (!reader_facts(run->session.sensor->reader).is_written) run->write_count--;
     const change_outcome_t outcome = change_outcome(&change, status);
     if (outcome == CHANGE_UNCHANGED || outcome == CHANGE_DONE) return COMMISSION_DONE;
     /* the termination was acknowledged; the datasheet does not state what #2 reads until the next power-on */
@@ -86,7 +86,7 @@ static commission_end_t set(commission_t *run, const char *name, int32_t value)
 /* No sensor may respond at the new address, and the sensor must still be the one that was found. */
 static commission_end_t check_places(commission_t *run, const record_unit_t *plan, uint8_t at)
 {
-    const fathom_line_settings_t *const line = &run->session.station->line;
+    const fathom_line_settings_t *const line = &run->session.sensor->line;
     if (at == plan->address) return COMMISSION_DONE;
     /* Once is enough: the driver asks there again right before the write (modbus_setting.h). */
     const presence_t target = presence_ask(&run->session, plan->address, line, 1);

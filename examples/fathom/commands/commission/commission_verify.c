@@ -31,7 +31,7 @@ static bool is_same_sensor(commission_t *run, const record_unit_t *unit)
     presence_t presence = {.what = PRESENT_UNCLEAR};
     for (unsigned i = 0; i != TRIES && (presence.what == PRESENT_UNCLEAR || presence.what == PRESENT_UNKNOWN);
          i++)
-        presence = presence_ask(&run->session, unit->address, &run->session.station->line, 2);
+        presence = presence_ask(&run->session, unit->address, &run->session.sensor->line, 2);
     switch (presence.what) {
     case PRESENT_STOPPED:
         return false;
@@ -87,7 +87,7 @@ static fathom_status_t measure(commission_t *run, fathom_sample_t *best)
         const bool is_better = found != FATHOM_OK || best->kind != FATHOM_TARGET;
         if (status == FATHOM_OK && is_better) *best = sample;
         if (status == FATHOM_OK) found = FATHOM_OK;
-        if (!reader_has_more(run->session.station->reader)) return found;
+        if (!reader_has_more(run->session.sensor->reader)) return found;
         status = session_call(&run->session, call_measure, &sample);
     }
 }
@@ -110,7 +110,7 @@ static bool measures(commission_t *run, const record_unit_t *unit, fathom_sample
 static bool has_left(commission_t *run, const record_unit_t *unit)
 {
     if (unit->address == FACTORY_ADDRESS) return true;
-    const presence_t presence = presence_ask(&run->session, FACTORY_ADDRESS, &run->session.station->line, 1);
+    const presence_t presence = presence_ask(&run->session, FACTORY_ADDRESS, &run->session.sensor->line, 1);
     if (presence.what == PRESENT_STOPPED) return false;
     if (presence.what != PRESENT_ONE || !record_has_numbers(unit->model) ||
         strcmp(presence.number, unit->number) != 0)
