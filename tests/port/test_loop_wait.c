@@ -72,14 +72,6 @@ TEST(a_descriptor_of_two_pins_wakes_one_and_the_other_is_polled)
     assert_int_equal(first.polls, 2);
 }
 
-TEST(a_pin_that_is_added_twice_is_there_once)
-{
-    add_pin(&pin, &first, ends[0]);
-    fathom_loop_add_pin(&rig.loop, &pin, ends[0]);
-    (void)pass(SOON_US);
-    assert_int_equal(first.polls, 1);
-}
-
 /* If the chip of a line goes away, the kernel reports EPOLLHUP and EPOLLERR; a level would stay as it was. The loop tries
  * again after pauses of 5, 10, 20, 40 and 80 ms, and 80 ms from then on: at 5, 15, 35, 75, 155, 235, 315 and 395 ms. */
 TEST(a_pin_whose_chip_has_gone_is_lost_and_said_once_a_pause)

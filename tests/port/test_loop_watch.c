@@ -24,15 +24,6 @@ static int tear_down(void **state)
 
 static const suite_t suite = {.set_up = ends_set_up, .tear_down = tear_down};
 
-static int a_file(void)
-{
-    char path[] = "/tmp/fathom-loop-XXXXXX";
-    const int file = mkstemp(path);
-    assert_true(file >= 0);
-    assert_int_equal(unlink(path), 0);
-    return file;
-}
-
 /* Makes it the descriptor 0, until the test is over. */
 static void put_at_0(int fd)
 {
@@ -70,16 +61,6 @@ TEST(the_descriptor_0_is_one_like_any_other)
     send_bytes(1);
     (void)pass(SOON_US);
     assert_int_equal(first.polls, 2);
-}
-
-TEST(a_file_at_0_is_polled_as_any_other)
-{
-    const int file = a_file();
-    put_at_0(file);
-    (void)close(file);
-    add_pin(&pin, &first, 0);
-    (void)pass(200000);
-    assert_int_equal(first.polls, 21); /* at 0, 10, ..., 200 ms */
 }
 
 /* -1: the first poll, and no other. */

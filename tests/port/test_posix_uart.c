@@ -53,33 +53,6 @@ TEST(every_byte_value_arrives_as_it_was_sent)
     assert_int_equal(posix_pty_receive(&rig.pty, got, sizeof got), 0); /* no echo */
 }
 
-TEST(every_byte_value_leaves_as_it_was_written)
-{
-    uint8_t all[ALL], got[ALL];
-    fill_all(all);
-    for (size_t at = 0; at != sizeof all; at += 256) assert_int_equal(port_rig_write(all + at, 256), 256);
-    posix_pty_receive_all(&rig.pty, got, sizeof all);
-    assert_memory_equal(got, all, sizeof all);
-}
-
-TEST(reading_an_empty_port_returns_zero_every_time)
-{
-    uint8_t byte;
-    for (int i = 0; i != 3; i++) assert_int_equal(port_rig_read(&byte, 1), 0);
-    assert_int_equal(fathom_posix_error(&rig.port), FATHOM_POSIX_OK);
-    assert_string_equal(fathom_posix_error_text(&rig.port), "");
-}
-
-TEST(a_small_buffer_gets_the_bytes_in_portions)
-{
-    uint8_t got[4] = {0};
-    come("abc");
-    assert_int_equal(port_rig_read(got, 0), 0); /* no room is no hang-up */
-    assert_int_equal(port_rig_read(got, 2), 2);
-    assert_int_equal(port_rig_read(got + 2, 2), 1);
-    assert_memory_equal(got, "abc", 3);
-}
-
 TEST(after_a_hang_up_every_read_and_write_fails)
 {
     assert_int_equal(port_rig_read_one(), 0);

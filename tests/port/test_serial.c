@@ -50,17 +50,6 @@ TEST(bytes_come_out_as_they_went_in_through_many_rounds)
     assert_int_equal(serial.overruns, 0);
 }
 
-TEST(a_read_takes_no_more_than_its_capacity)
-{
-    put(10, 5);
-    assert_int_equal(read_all(0), 0);
-    assert_int_equal(read_all(2), 2);
-    assert_int_equal(got[1], 11);
-    assert_int_equal(read_all(sizeof got), 3);
-    assert_int_equal(got[0], 12);
-    assert_int_equal(read_all(sizeof got), 0);
-}
-
 TEST(the_ring_holds_128_bytes_and_the_next_one_after_a_loss_is_told_of_it)
 {
     put(0, 77); /* so that it does not stand at its beginning */

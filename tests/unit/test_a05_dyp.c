@@ -190,8 +190,6 @@ TEST(after_power_on_silence_is_warming_up)
     }
 }
 
-/* ---- errors ---- */
-
 /* ---- which address has the one A05 on this line? ---- */
 
 static const uint8_t ask_any[] = {0x55, 0xAA, 0xFF, 0x10, 0x0E}; /* FF + FF + 10 = 20E */

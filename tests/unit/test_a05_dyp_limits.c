@@ -142,14 +142,6 @@ TEST(setting_the_address_is_waited_for_as_one_probe_is)
     assert_int_equal(counter(FATHOM_LINE_NO_RESPONSES), 2);
 }
 
-/* fathom_a05_dyp_find(): "FATHOM_ERR_NO_RESPONSE: nothing in 200 ms". */
-TEST(who_is_there_is_waited_for_200_ms)
-{
-    memset(&find, 0, sizeof find);
-    is_sent(find_address);
-    is_silent_for(200000, find_address);
-}
-
 TEST(finding_ends_if_the_line_is_initialised_again)
 {
     memset(&find, 0, sizeof find);

@@ -81,24 +81,6 @@ TEST(without_silence_a_value_with_one_alignment_is_shown)
     assert_int_equal(a16.base.stream.counters[FATHOM_STREAM_UNSURE], 1);
 }
 
-/* 511 mm held still can be read in two ways, with pauses of 20 ms, which 5000 us would call gaps. */
-TEST(where_gap_us_is_longer_than_the_pauses_no_frame_is_shown)
-{
-    static const uint8_t mm_511[] = {0xFF, 0x01, 0xFF, 0xFF};
-    config.gap_us = 25000;
-    start();
-    for (unsigned i = 0; i != 6; i++) {
-        rig_run(i == 0 ? 10000 : i != 5 ? 20000 : 25500, 500);
-        assert_int_equal(rig.samples, 0);
-        fake_receive(&rig.fake, 0, mm_511, 4);
-        rig_poll();
-    }
-    rig_run(24500, 500);
-    assert_int_equal(rig.samples, 0);
-    rig_run(500, 500);
-    assert_int_equal(rig.samples, 1);
-}
-
 /* ---- which value is sent: its RX pin high or open, the processed one; low, the real-time one (A16 2(2)) ---- */
 
 static void inits(fathom_status_t status)

@@ -213,22 +213,6 @@ TEST(every_trigger_is_one_sample_in_loops_from_100_us_to_300_ms_and_across_the_w
     }
 }
 
-/* The stream turns stale without a trigger, which is no error of the driver. */
-TEST(hours_without_a_response_are_one_no_response_a_trigger)
-{
-    unsigned no_responses = 0;
-    for (unsigned i = 0; i != 40000; i++) {
-        rig.fake.now_us += 135 * MS;
-        rig.fake.busy_until_us = rig.fake.now_us; /* what left 35 minutes ago would come, to the fake */
-        const fathom_status_t status = rig_poll();
-        assert_true(status == FATHOM_PENDING || status == FATHOM_ERR_NO_RESPONSE);
-        no_responses += status == FATHOM_ERR_NO_RESPONSE;
-    }
-    assert_true(no_responses > 15000);
-    assert_int_equal(rig.stales, 0);
-    assert_int_equal(controlled.a16.late, 0);
-}
-
 /* ---- the port ---- */
 
 TEST(a_busy_port_delays_the_edges_and_costs_no_response)

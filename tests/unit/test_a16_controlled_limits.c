@@ -59,24 +59,6 @@ TEST(a_frame_answers_from_80_to_130_ms_after_the_edge)
     }
 }
 
-/* sample.h: the number is that of the response, of which one was refused. */
-TEST(a_refused_frame_takes_a_number)
-{
-    static const uint8_t mm_16351[] = {0xFF, 0x3F, 0xDF, 0x1D};
-    trigger();
-    assert_int_equal(answered_after(100 * MS, controlled_1953), FATHOM_OK);
-    assert_int_equal(rig.sample.sequence, 1);
-    poll_after(16 * MS);
-    assert_int_equal(rig.fake.breaks, 2);
-    assert_int_equal(answered_after(100 * MS, mm_16351), FATHOM_ERR_MALFORMED);
-    poll_after(16 * MS);
-    assert_int_equal(rig.fake.breaks, 3);
-    assert_int_equal(controlled.a16.measurement.refused_raw, 16351);
-    assert_int_equal(controlled.a16.measurement.refused_probe, 1);
-    assert_int_equal(answered_after(100 * MS, controlled_1953), FATHOM_OK);
-    assert_int_equal(rig.sample.sequence, 3);
-}
-
 /* FATHOM_ERR_ARGUMENT: "earliest_us over latest_us". */
 TEST(earliest_and_latest_may_be_the_same)
 {

@@ -101,6 +101,13 @@ TEST(a_level_lasts_at_least_hold_us)
     expect_at(2000000, 999, true);
 }
 
+TEST(a_row_that_is_held_back_for_long_is_not_forgotten)
+{
+    start_with((fathom_debounce_config_t){.hold_us = 258 * HALF_S, .near_count = 1, .far_count = 5});
+    assert_true(distance(999));
+    for (int i = 1; i <= 258; i++) assert_int_equal(distance(1001), i == 258);
+}
+
 /* ---- samples ---- */
 
 static void expect_sample(uint8_t kind, uint16_t mm, bool changes)
@@ -164,6 +171,15 @@ TEST(behind_a_silence_a_row_begins_anew_and_does_not_wait_for_hold_us)
     assert_int_equal(gate.level, FATHOM_UNKNOWN);
     expect_at(11500000, 1001, true);
     assert_int_equal(gate.level, FATHOM_FAR);
+}
+
+/* "A time a little before that of the last measurement does no harm": half a turn of the clock, 2^31 us, is before. */
+TEST(a_time_up_to_half_a_turn_of_the_clock_is_after_the_last_measurement)
+{
+    start_with((fathom_debounce_config_t){.near_count = 1});
+    expect_at(0, 999, true);
+    expect_time(2147483648, false);
+    expect_time(2147483647, true);
 }
 
 /* ---- everything, against a slow reference ---- */

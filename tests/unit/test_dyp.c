@@ -42,14 +42,6 @@ static void expect_next(fathom_status_t status)
     if (status != FATHOM_OK) assert_sample_untouched();
 }
 
-/* The next one is of this probe. */
-static void expect_mm(uint8_t probe, uint16_t mm)
-{
-    expect_next(FATHOM_OK);
-    assert_int_equal(sample.probe, probe);
-    assert_int_equal(sample.distance_mm, mm);
-}
-
 /* The rule, stated apart: 0 is unknown, FFFD is no object, FFFE is no object and interference, FFFF is refused, the
  * window is a target, everything else is refused too. */
 typedef enum { CANNOT_BE, TARGET, NOTHING, INTERFERENCE, UNKNOWN } meaning_t;
@@ -165,84 +157,4 @@ TEST(the_default_windows_are_16350_and_6000_mm)
     assert_int_equal(response.window.max_mm, 6000);
 }
 
-TEST(a_window_upside_down_is_refused)
-{
-    static const uint16_t refused[][2] = {{1000, 999}, {65535, 1}, {6001, 0}};
-    for (unsigned i = 0; i != 3; i++) {
-        response.window.min_mm = refused[i][0];
-        response.window.max_mm = refused[i][1];
-        assert_int_equal(fathom_dyp_measurement_init(&response, 6000), FATHOM_ERR_ARGUMENT);
-    }
-}
-
 TEST(nothing_is_there_before_a_response) { expect_next(FATHOM_PENDING); }
-
-TEST(a_response_gives_one_sample_a_probe_in_their_order)
-{
-    static const uint8_t order[] = {1, 2, 4};
-    values[0] = 1000;
-    values[1] = 0xFFFD;
-    values[2] = 1953;
-    values[3] = 0xFFFE;
-    fathom_dyp_measurement_set(&response, 0x0B, 777);
-    for (unsigned i = 0; i != 3; i++) {
-        expect_next(FATHOM_OK);
-        assert_int_equal(sample.probe, order[i]);
-        assert_int_equal(sample.raw, values[order[i] - 1]);
-        assert_int_equal(sample.time_us, 777);
-        assert_int_equal(sample.sequence, 1);
-        assert_int_equal(sample.model, FATHOM_A05);
-        assert_int_equal(sample.address, 7);
-        assert_int_equal(sample.magnitude | sample.precision | sample.ambient, 0);
-    }
-    expect_next(FATHOM_PENDING);
-}
-
-TEST(the_values_begin_with_the_first_probe_that_was_read)
-{
-    response.first = 3;
-    values[0] = 333;
-    values[1] = 444;
-    fathom_dyp_measurement_set(&response, 0x0C, 0);
-    expect_mm(3, 333);
-    expect_mm(4, 444);
-}
-
-TEST(after_a_value_that_cannot_be_the_next_probe_follows)
-{
-    values[0] = 6001;
-    values[1] = 2000;
-    fathom_dyp_measurement_set(&response, 0x03, 0);
-    expect_next(FATHOM_ERR_MALFORMED);
-    assert_int_equal(response.refused_probe, 1);
-    assert_int_equal(response.refused_raw, 6001);
-    expect_mm(2, 2000);
-    assert_int_equal(response.implausible, 1);
-}
-
-TEST(a_new_response_replaces_what_was_left_of_the_old_one)
-{
-    values[0] = 1000;
-    values[1] = 2000;
-    fathom_dyp_measurement_set(&response, 0x03, 1);
-    expect_next(FATHOM_OK);
-    fathom_dyp_measurement_set(&response, 0x01, 2);
-    expect_next(FATHOM_OK);
-    assert_int_equal(sample.probe, 1);
-    assert_int_equal(sample.sequence, 2);
-    assert_int_equal(sample.time_us, 2);
-    expect_next(FATHOM_PENDING);
-}
-
-TEST(the_sequence_wraps_and_the_counter_stops)
-{
-    response.sequence = 65535;
-    response.implausible = 65534;
-    for (unsigned i = 0; i != 3; i++) {
-        values[0] = 65535;
-        fathom_dyp_measurement_set(&response, 1, 0);
-        assert_int_equal(response.sequence, i);
-        expect_next(FATHOM_ERR_MALFORMED);
-        assert_int_equal(response.implausible, 65535);
-    }
-}

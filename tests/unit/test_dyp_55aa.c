@@ -95,17 +95,6 @@ TEST(the_length_of_every_response_is_known_from_its_fourth_byte)
     assert_int_equal(tried, 256 * 13);
 }
 
-TEST(no_address_changes_the_length)
-{
-    for (unsigned address = 0; address != BYTES; address++) {
-        uint8_t bytes[MOST];
-        memcpy(bytes, all_probes, MOST);
-        bytes[2] = (uint8_t)address;
-        for (uint8_t have = 1; have <= MOST; have++)
-            assert_int_equal(fathom_dyp_55aa_frame_length(bytes, have), have < 4 ? 4 : 13);
-    }
-}
-
 TEST(what_does_not_begin_with_55_AA_is_no_response_from_any_prefix)
 {
     unsigned refused = 0;

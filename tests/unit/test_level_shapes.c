@@ -138,3 +138,16 @@ TEST(every_level_of_a_lying_cylinder_is_within_0_0431_per_mille_and_no_less_than
     for (uint32_t mm = 1; mm <= 2000; mm++) expect_lying((uint16_t)mm);
     for (uint32_t mm = 2000; mm <= 65535; mm += 997) expect_lying((uint16_t)mm);
 }
+
+/* Of 65536 units the volume is the part itself; of another capacity it is the same part, to the nearest. */
+TEST(the_part_of_a_lying_cylinder_does_not_depend_on_its_capacity)
+{
+    for (uint32_t mm = 0; mm <= 2000; mm++) {
+        const fathom_level_config_t whole = tank_of(fathom_tank_horizontal_cylinder, 2000, 65536);
+        const uint64_t part = level_of(&whole, mm).volume;
+        for (uint32_t capacity = 1; capacity <= 1000; capacity++) {
+            const fathom_level_config_t tank = tank_of(fathom_tank_horizontal_cylinder, 2000, capacity);
+            assert_int_equal(level_of(&tank, mm).volume, to_nearest(part * capacity, 65536));
+        }
+    }
+}

@@ -48,22 +48,6 @@ TEST(a_short_quarantine_of_another_unit_does_not_end_a_long_one)
     assert_int_equal(bench.fake.written, 3);
 }
 
-/* 2 is quarantined for 80 ms, and when 3 has been silent for 60 ms it is so for as long again. */
-TEST(a_long_quarantine_outlasts_a_short_one_that_was_there_before)
-{
-    ask_and_send(&bench.request, 2, &bench.value, 80000);
-    run(80000);
-    assert_int_equal(status_of(&bench.request), FATHOM_ERR_NO_RESPONSE);
-    ask_and_send(&bench.other, 3, &bench.other_value, 60000);
-    run(60000);
-    assert_int_equal(status_of(&bench.other), FATHOM_ERR_NO_RESPONSE);
-    ask(&bench.other, 3, &bench.other_value, 0);
-    run(50000); /* by then the quarantine of 2 is over */
-    assert_int_equal(bench.fake.written, 2);
-    run(20000);
-    assert_int_equal(bench.fake.written, 3);
-}
-
 /* LATE_RESPONSES: from a quarantined unit; STRAYS: whole frames that were not asked for. Unit 9 has its bit in the
  * upper byte. */
 TEST(a_frame_of_a_unit_not_quarantined_is_a_stray_and_leaves_the_quarantine_of_another)

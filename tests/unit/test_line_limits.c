@@ -34,14 +34,6 @@ TEST(the_longest_silence_of_a_config_is_kept_and_over)
     assert_int_equal(bench.fake.written, 1);
 }
 
-TEST(the_longest_silence_is_over_after_a_longer_one)
-{
-    bench.config.silence_us = 65535;
-    ask(&bench.request, 1, &bench.value, 0);
-    after(70000);
-    assert_int_equal(bench.fake.written, 1);
-}
-
 /* 65536 does not fit in 16 bits: it must not become 0. */
 TEST(a_first_poll_after_65536_us_has_seen_the_silence)
 {

@@ -97,29 +97,6 @@ TEST(a_program_that_forgets_to_poll_the_line_loses_nothing)
     }
 }
 
-TEST(one_unit_alone_polls_the_line_at_each_call)
-{
-    (void)poll_sensor(0);
-    for (unsigned turn = 0; turn != 5; turn++) {
-        const unsigned before = bench.fake.reads;
-        bench.fake.now_us += LOOP_US;
-        (void)poll_sensor(0);
-        assert_int_equal(bench.fake.reads, before + 1);
-    }
-}
-
-/* A program polls one unit more often than the others. */
-TEST(a_unit_that_is_polled_twice_in_a_round_polls_the_line_again)
-{
-    a_round();
-    bench.fake.now_us += LOOP_US;
-    (void)poll_sensor(3);
-    bench.fake.now_us += LOOP_US;
-    const unsigned before = bench.fake.reads;
-    (void)poll_sensor(3);
-    assert_int_equal(bench.fake.reads, before + 1);
-}
-
 /* A request that is submitted now would leave too late in the silence (rule 11). */
 TEST(a_poll_of_the_line_before_a_sleep_does_not_count)
 {

@@ -184,28 +184,6 @@ TEST(all_stops_when_they_are_switched_off_and_goes_on_again)
     assert_true(bench.fault.frames_hit > hit + 30);
 }
 
-TEST(everything_at_once_still_ends)
-{
-    for (setting_t setting = 0; setting < SETTINGS; setting++) {
-        set_faulty(setting, 4);
-        add_many(200000);
-        for (int i = 0; i < 2000; i++) next(setting);
-        assert_true(bench.fault.frames > 100);
-        for (uint8_t kind = FIRST; kind <= LAST; kind++) {
-            const bool can =
-                kind != FATHOM_SIM_FAULT_CLOCK_JUMP && fathom_sim_fault_applies(kind, bench.device);
-            const bool asked_only = kind == FATHOM_SIM_FAULT_UNIT || kind == FATHOM_SIM_FAULT_FUNCTION ||
-                                    kind == FATHOM_SIM_FAULT_EXCEPTION || kind == FATHOM_SIM_FAULT_ECHO;
-            const bool modbus_only = kind == FATHOM_SIM_FAULT_EXCEPTION;
-            if (!can || (asked_only && golden[setting].request == NULL) ||
-                (modbus_only && setting == A05_DYP)) /* it is not asked in Modbus here */
-                assert_int_equal(bench.fault.counters[kind], 0);
-            else
-                assert_true(bench.fault.counters[kind] > 0);
-        }
-    }
-}
-
 TEST(kinds_have_names_and_can_be_found)
 {
     for (uint8_t kind = FIRST; kind <= LAST; kind++) {

@@ -65,12 +65,6 @@ TEST(a_hook_that_does_nothing_changes_nothing)
     assert_int_equal(out.seen, 1);
 }
 
-TEST(a_bit_can_be_flipped)
-{
-    out.flip = 0x10;
-    transact(A16_ASKED, 200, "01 03 02 12 EF F8 A8");
-}
-
 TEST(a_response_can_be_shorter_or_longer)
 {
     out.length = 4;
