@@ -2,9 +2,13 @@
 # SPDX-License-Identifier: MIT
 """include/README.md's table of the datasheets: a row for each section of tests/unit/sections.csv, and what a row names
 is there: functions and headers, commands of the tool, a link to a test. The headers that the pages name elsewhere are
-there too, and the first page's table of sensors and modes has every driver."""
+there too, and the first page's table of sensors and modes has every driver. The tool covers the sections of its modes:
+
+  datasheets.py --update    writes the command of a mode into each row of its section that has none
+"""
 import os
 import re
+import sys
 
 import common
 from common import code_of, files, main, read
@@ -12,6 +16,8 @@ from common import code_of, files, main, read
 common.COPIED = (*common.COPIED, 'tests', 'README.md')
 
 LIST = 'tests/unit/sections.csv'
+MODELS = 'examples/fathom/sensors/models.c'
+NONE = '–'
 PAGE, FIRST = 'include/README.md', 'README.md'
 DRIVER = re.compile(r'(a16|a05|hps167s)(_|\.h$)(?!registers)')
 BEGIN, END = '<!-- datasheets: ', '<!-- end -->'
@@ -37,6 +43,43 @@ def quoted(cell):
     return re.findall(r'`([^`]+)`', cell)
 
 
+def modes(text):
+    """{section: the command that reads the mode} of the rows of the tool."""
+    pins = {'TRIGGER': 'trigger=17', 'ECHO': 'echo=27', 'IN': 'in=5'}
+    found, sensor = {}, None
+    for line in re.findall(r'^        \.name = "\w+"|\{\.name = "\w+",\s*\.section[^}]*\}', text, re.M):
+        name = re.search(r'"(\w+)"', line)[1]
+        if not line.startswith('{'):
+            sensor = name
+            continue
+        needs = re.search(r'\.pins = ([^,}]*)', line)
+        keys = [pins[pin] for pin in re.findall(r'MODEL_PIN_(\w+)', needs[1])] if needs else []
+        port = f'@{",".join(["gpiochip0", *keys])}' if keys else ' --port P'
+        found[re.search(r'\.section = "([^"]*)"', line)[1]] = f'read {sensor}:{name}{port}'
+    return found
+
+
+def mode_of(section, commands):
+    """The command of the mode that a section describes; None: it describes none."""
+    for name, command in commands.items():
+        if section.startswith(name) and not section[len(name):][:1].isdigit():
+            return command
+    return None
+
+
+def update(root):
+    text = read(root, PAGE)
+    commands = modes(read(root, MODELS))
+    lines = text.split('\n')
+    for number, line in enumerate(lines):
+        cells = line.split('|')
+        if len(cells) == 7 and cells[4].strip() == NONE and mode_of(cells[1].strip(), commands):
+            cells[4] = f' `{mode_of(cells[1].strip(), commands)}` '
+            lines[number] = '|'.join(cells)
+    with open(os.path.join(root, PAGE), 'w', encoding='utf-8') as file:
+        file.write('\n'.join(lines))
+
+
 class Tree:
     def __init__(self, root):
         self.root = root
@@ -59,8 +102,11 @@ def check(root, only):
     wanted = sections(read(root, LIST))
     found = rows(read(root, PAGE))
     names = [row[0] for row in found]
+    commands = modes(read(root, MODELS))
     problems = [f'{PAGE}: no row for {name} of {LIST}' for name in wanted if name not in names]
     problems += [f'{PAGE}: {name} is no section of {LIST}' for name in names if name not in wanted]
+    problems += [f'{MODELS}: {name} is no section of {LIST}' for name in commands
+                 if not any(section.startswith(name) for section in wanted)]
     problems += [f'{PAGE}: {name} stands there twice' for name in set(names) if names.count(name) > 1]
     for name, api, tool, tests in found:
         if not quoted(api):
@@ -70,6 +116,8 @@ def check(root, only):
         for words in quoted(tool):
             if words.split()[0] not in tree.commands:
                 problems.append(f'{PAGE}: {name}: the tool has no command {words.split()[0]}')
+        if tool == NONE and mode_of(name, commands):
+            problems.append(f'{PAGE}: {name}: the tool reads it by {mode_of(name, commands)} (datasheets.py --update)')
         if not re.search(r'\]\(\.\./tests/', tests): # pages.py follows the link
             problems.append(f'{PAGE}: {name}: no link to a test')
     first = set()
@@ -86,4 +134,6 @@ def check(root, only):
 FAULT = (PAGE, '`fathom_a16_modbus_set_address`', '`fathom_a16_modbus_set_adress`', 'is not in include/fathom')
 
 if __name__ == '__main__':
+    if sys.argv[1:] == ['--update']:
+        sys.exit(update('.'))
     main(check, FAULT)

@@ -85,6 +85,29 @@ def check_tool(path, text, tool):
             yield f'{path}: {folder}/ may not include {target}'
 
 
+# What differs between sensors stands in sensors/: others ask for facts in the rows of models and modes.
+SENSORS = 'sensors/'
+PARTICULAR = re.compile(
+    r'\bFATHOM_(?:A16|A05|HPS167S)(?:_\w+)?\b|\b(?:fathom_)?(?:a16|a05|hps167s)_\w+ *\('
+    r'|"fathom/sensor/(?!internal/)|"fathom/codec/hps167s|"sensors/(?:driver|dyp|a16|a05|hps167s)\.h"'
+    r'|\bstrn?cmp\([^;]*"(?:a16|a05|hps167s|auto|modbus|dyp|controlled|pwm|switch|relay)"'
+    r'|->(?:id|name) *[!=]= *(?:"|FATHOM_)')
+# path: what it may say of one sensor, with the reason beside it
+MAY_SAY = {'commands/scan/scan_listen.c': 'the frames of the two that send automatically',  # codec, not driver
+           'ports/listener.c': 'the same'}
+
+
+def check_particular(path, text):
+    """path: of a source or header of the tool, below examples/fathom/."""
+    if path.startswith(SENSORS) or path in MAY_SAY:
+        return
+    for number, line in enumerate(text.splitlines(), 1):
+        found = PARTICULAR.search(line)
+        if found:
+            yield (f'{TOOL_FOLDER}{path}:{number}: {found[0].strip()}: asks which sensor it is; '
+                   f'make it a fact of a row in {SENSORS}models.c')
+
+
 def check(root, only):
     problems = []
     headers, sources = files(root, 'include', ends='.h'), files(root, 'src')
@@ -112,6 +135,8 @@ def check(root, only):
     tool = files(root, 'examples/fathom')
     for path in tool:
         problems += check_tool(path, read(root, path), tool)
+        if path.endswith(('.c', '.h')):
+            problems += check_particular(path[len(TOOL_FOLDER):], read(root, path))
     return problems
 
 

@@ -7,7 +7,6 @@
 
 #include "cli/command.h"
 #include "cli/options.h"
-#include "fathom/sensor/a05_modbus.h"
 
 bool reading_options(sensor_t *const *stations, size_t count, const char *command, const char *const *values)
 {

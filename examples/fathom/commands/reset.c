@@ -3,7 +3,6 @@
 
 #include "cli/session_options.h"
 #include "commands/commands.h"
-#include "fathom/sensor/hps167s_settings.h"
 #include "ports/line_text.h"
 
 /* fathom reset: the two commands of an HPS-167S that throw settings away.

@@ -18,17 +18,16 @@ static void print_keys(FILE *to, const option_t *rows, const char *name)
 
 static void print_mode(FILE *to, const model_mode_t *mode)
 {
-    (void)fprintf(to, "  :%-12s ", mode->name);
+    const char *const text = mode->is_contact     ? "Read a switch or a relay contact on a GPIO line"
+                             : mode->has_pulses   ? "Trigger and measure pulses on GPIO lines"
+                             : mode->is_triggered ? "Trigger each measurement by a break or a GPIO line"
+                                                  : "Receive what the sensor sends automatically";
+    (void)fprintf(to, "  :%-11s ", mode->name);
     if (mode_is_asked(mode))
-        (void)fprintf(to, "Send requests (%s)\n", mode->protocol);
-    else if (mode->is_contact)
-        (void)fputs("Read a switch or a relay contact on a GPIO line\n", to);
-    else if (mode->has_pulses)
-        (void)fputs("Trigger and measure pulses on GPIO lines\n", to);
-    else if (mode->is_triggered)
-        (void)fputs("Trigger each measurement by a break or a GPIO line\n", to);
+        (void)fprintf(to, "Send requests (%s)", mode->protocol);
     else
-        (void)fputs("Receive what the sensor sends automatically\n", to);
+        (void)fputs(text, to);
+    (void)fprintf(to, " [%s]\n", mode->section);
 }
 
 static void print_sensors(FILE *to)
@@ -41,7 +40,8 @@ static void print_sensors(FILE *to)
         for (size_t m = 0; m != MODEL_MODES && models[i].modes[m].name != NULL; m++)
             print_mode(to, &models[i].modes[m]);
     }
-    (void)fputs("\nWithout :MODE, a sensor is read in its first mode. If it has an address or\n"
+    (void)fputs("\nIn brackets: the section of the datasheet.\n\n"
+                "Without :MODE, a sensor is read in its first mode. If it has an address or\n"
                 "shares its port, it is read in the first mode that sends requests.\n\n"
                 "Without :ADDRESS, the address is 1, the factory setting. An a16 or a05 can also\n"
                 "have address 0.\n\n"

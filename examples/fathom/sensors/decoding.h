@@ -6,6 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "fathom/codec/hps167s_registers.h"
 #include "sensors/setting.h"
 
 /* A frame from the wire, and what it says, before that is written as text or JSON. */
@@ -18,6 +19,9 @@ enum {
     DECODE_STREAM_FOUR = 8, /* FF, four distances, SUM */
     DECODE_ALL = 15
 };
+
+/* The most registers in a response of these sensors, and their greatest address. */
+enum { DECODE_MAX_REGISTERS = FATHOM_HPS167S_MAX_REGISTERS, DECODE_MAX_ADDRESS = 0x0207 };
 
 enum { DECODE_REQUEST = 1, DECODE_RESPONSE = 2, DECODE_BOTH = 3 };
 

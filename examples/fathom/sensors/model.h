@@ -18,6 +18,7 @@ enum {
 /* One way in which a sensor can be read and simulated. */
 typedef struct model_mode {
     const char *name;
+    const char *section;  /* of the datasheet; include/README.md names the mode beside it */
     const char *protocol; /* in which the tool sends requests: "Modbus", "55 AA"; NULL: it sends none */
     bool is_modbus;       /* of these: also through a gateway */
     bool is_triggered;    /* a level at the sensor's RX triggers a measurement */

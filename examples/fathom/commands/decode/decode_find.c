@@ -7,7 +7,6 @@
 #include "fathom/codec/crc16.h"
 #include "fathom/codec/dyp_55aa.h"
 #include "fathom/codec/dyp_stream.h"
-#include "fathom/codec/hps167s_registers.h"
 #include "fathom/codec/modbus_rtu.h"
 
 /*
@@ -85,10 +84,7 @@ static bool is_ours(uint8_t function)
 }
 
 /* With a wrong CRC only what these sensors could send passes for a frame; else noise would be full of them. */
-enum {
-    MOST_REGISTERS = FATHOM_HPS167S_MAX_REGISTERS,
-    LAST_PAGE = 0x02 /* no register is beyond 0x0207 */
-};
+enum { MOST_REGISTERS = DECODE_MAX_REGISTERS, LAST_PAGE = DECODE_MAX_ADDRESS >> 8 };
 
 static bool is_likely_response(const uint8_t *bytes)
 {
