@@ -26,7 +26,6 @@ bool a05_read_modbus(reader_t *reader, port_t *port, const reader_settings_t *se
     const fathom_a05_modbus_config_t config = {
         .modbus = driver_config(port, settings),
         .window = settings->window,
-        .registers = settings->registers,
         .probes = settings->probes,
     };
     return fathom_a05_modbus_init(driver, &port->modbus, &config) == FATHOM_OK &&

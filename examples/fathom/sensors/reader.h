@@ -15,7 +15,6 @@ enum {
     READER_TAKES_MEANINGS = 2,
     READER_TAKES_WINDOW = 4,
     READER_TAKES_VALUE = 8,
-    READER_TAKES_REGISTERS = 16,
     READER_TAKES_TEMPERATURE = 32
 };
 
@@ -28,7 +27,6 @@ typedef struct {
     uint32_t backoff_us;                /* longest pause after requests without a response */
     fathom_dyp_window_t window;         /* limits and meanings of values */
     uint32_t temperature_us;            /* between two reads of the temperature; 0: it is not read */
-    uint16_t registers;                 /* address of the first probe's distance */
     uint8_t probes;                     /* bit probe - 1 */
     uint8_t value;                      /* fathom_dyp_value_t if has_value; otherwise RX is not driven */
     bool has_value;
