@@ -51,25 +51,27 @@ const port_driver_t port_chip = {.open = open_chip};
 #ifdef FATHOM_PUBLISH_LACKS
 #include "commands/commands.h"
 
-static void publish_help(FILE *to)
+static int start_publish(const host_t *host, const arguments_t *arguments)
 {
-    (void)fputs("fathom publish publishes what sensors say to an MQTT broker. This fathom was built "
-                "without " FATHOM_PUBLISH_LACKS ", which that needs.\n",
-                to);
-}
-
-static int run_publish(const host_t *host, int argc, char **argv)
-{
+    static const origin_t origin = {.command = "publish"};
     (void)host;
-    if (argc > 1 && strcmp(argv[1], "--help") == 0) return command_help(&publish_command);
-    return usage_error("publish", "this fathom was built without " FATHOM_PUBLISH_LACKS
-                                  "; install the development files and build it again");
+    (void)arguments;
+    (void)reject(&origin, "this fathom was built without " FATHOM_PUBLISH_LACKS
+                          ". Install the development files and build it again.");
+    return STATUS_USAGE;
 }
 
-const command_t publish_command = {.name = "publish",
-                                   .summary = "publishes sensors to an MQTT broker (not in this build)",
-                                   .help = publish_help,
-                                   .run = run_publish};
+static const option_table_t publish_tables[] = {{NULL, 0}};
+
+const command_t publish_command = {
+    .name = "publish",
+    .summary = "Publish readings to an MQTT broker (not in this build)",
+    .usage = "FILE",
+    .about = "This fathom was built without " FATHOM_PUBLISH_LACKS ", which this command needs.\n",
+    .tables = publish_tables,
+    .settings_size = 1,
+    .start = start_publish,
+};
 #endif
 
 #ifdef FATHOM_WITHOUT_OPENSSL

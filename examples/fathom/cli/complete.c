@@ -216,7 +216,7 @@ static void complete_command(FILE *to, const command_t *command, char **words, i
         offer_operands(&it, command, words, operand_count);
 }
 
-void complete(FILE *to, const command_t *const *commands, const topic_t *topics, char **words, int count)
+void complete(FILE *to, const command_t *const *commands, const help_topic_t *topics, char **words, int count)
 {
     if (count == 0) return;
     const offer_t it = {.to = to, .word = words[count - 1], .before = ""};
@@ -227,7 +227,7 @@ void complete(FILE *to, const command_t *const *commands, const topic_t *topics,
         if (count > 1 && strcmp(words[0], (*command)->name) == 0)
             complete_command(to, *command, words + 1, count - 1);
     }
-    for (const topic_t *topic = topics; is_help && topic->name != NULL; topic++)
+    for (const help_topic_t *topic = topics; is_help && topic->name != NULL; topic++)
         offer(&it, topic->name, strlen(topic->name), topic->summary);
     if (count == 1) offer_words(&it, it.word[0] == '-' ? "--help --version" : "help");
 }

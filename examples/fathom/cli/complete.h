@@ -6,7 +6,8 @@
 
 /* `fathom complete WORD...`: prints what can stand in place of the last word, one candidate in a line, with its help
  * behind a tabulator. The line ":files" stands for files. The words are those behind "fathom" on the command line. */
-void complete(FILE *to, const command_t *const *commands, const topic_t *topics, char **words, int count);
+void complete(FILE *to, const command_t *const *commands, const help_topic_t *topics, char **words,
+              int count);
 
 /* The stub of a shell, which runs `fathom complete`: bash, zsh or fish. False: there is none. */
 bool complete_stub(FILE *to, const char *shell);

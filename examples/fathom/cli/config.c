@@ -3,251 +3,260 @@
 #include "cli/config.h"
 
 #include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
-#include "cli/command.h"
-#include "cli/options.h"
+#include "cli/config_file.h"
+#include "cli/publish_rows.h"
 
-enum {
-    PORT = 1883,
-    PORT_WITH_TLS = 8883,
-    KEEP_ALIVE_S = 30,
-    MAX_KEEP_ALIVE_S = 3600,
-    MESSAGES = 10000,
-    MAX_MESSAGES = 1000000,
-    BYTES = 4194304,
-    MIN_BYTES = 4096,
-    MAX_BYTES = 1073741824
-};
+enum { PORT = 1883, PORT_WITH_TLS = 8883, KEEP_ALIVE_S = 30, MESSAGES = 10000, BYTES = 4194304 };
+enum { INTERVAL_US = 1000000, SENSOR_TEXT = 2048 };
 
-/* What is being read. */
+/* A sensor of the file. */
 typedef struct {
-    publish_settings_t *config;
-    config_file_t *file;
-    const char *command;
-} reading_t;
+    publish_sensor_t settings;
+    char text
+        [SENSOR_TEXT]; /* everything that the file has for it: two sensors with the same text are the same */
+} entry_t;
 
-/* The text of a key, NULL where it is not there; what is wrong with it stands there. */
-static const char *text_of(const reading_t *reading, const config_values_t *values, config_key_t key)
+typedef struct {
+    config_file_t file;
+    publish_top_t top;
+    entry_t *entries; /* MAX_SENSORS of each */
+    sensor_word_t *words;
+    origin_t *origins;
+    int count;
+} config_t;
+
+/* ---- the broker ---- */
+
+/* systemd passes credentials as files in a folder. */
+static bool set_credential(const config_t *config, broker_settings_t *broker, const origin_t *origin)
 {
-    if (values->at[key] == NULL) return NULL;
-    config_file_at(reading->file, values->at[key]);
-    return config_file_text(values->at[key]);
+    const char *const name = config->top.broker.credential;
+    const char *const folder =
+        getenv("CREDENTIALS_DIRECTORY"); /* NOLINT(concurrency-mt-unsafe): one thread */
+    if (name[0] == '\0') return true;
+    if (broker->password_file[0] != '\0')
+        return reject(origin,
+                      "password-credential and password-file name two passwords. Leave one of them out.");
+    if (folder == NULL)
+        return reject(origin,
+                      "password-credential: CREDENTIALS_DIRECTORY is not set. The unit needs a line "
+                      "LoadCredential=%s:/path/to/the/password.",
+                      name);
+    if (snprintf(broker->password_file, SETTINGS_PATH, "%s/%s", folder, name) < SETTINGS_PATH &&
+        access(broker->password_file, R_OK) == 0)
+        return true;
+    return reject(origin,
+                  "password-credential: cannot read %s: %s. The unit needs a line "
+                  "LoadCredential=%s:/path/to/the/password.",
+                  broker->password_file, strerror(errno), name);
 }
 
-static bool refuse(const reading_t *reading, config_key_t key, const char *value)
+/* A broker knows a client by its id: of two with the same id, each would end the connection of the other. */
+static void set_client_id(const publish_settings_t *settings, char id[SETTINGS_NAME])
 {
-    (void)usage_error(reading->command, "%s: takes %s; not '%.60s'%s", config_rows[key].name,
-                      config_rows[key].takes, value, strlen(value) > 60 ? ", and so on" : "");
-    return false;
+    (void)snprintf(id, SETTINGS_NAME, "%.49s-%.49s", settings->prefix, settings->site);
+    for (char *at = id; *at != '\0'; at++)
+        if (*at == '/' || *at == '.') *at = '-';
 }
 
-static bool take_number(const reading_t *reading, const config_values_t *values, config_key_t key,
-                        uint32_t min, uint32_t max, uint32_t *number)
+/* The line of the first of two keys that is there. */
+static unsigned line_of(config_t *config, const yaml_node_t *map, const char *key, const char *other)
 {
-    const char *const text = text_of(reading, values, key);
-    return text == NULL || number_parse(text, min, max, number) || refuse(reading, key, text);
+    const yaml_node_t *const node = config_file_find(&config->file, map, key);
+    const yaml_node_t *const second = config_file_find(&config->file, map, other);
+    if (node == NULL && second == NULL) return config_file_at(&config->file, map).line;
+    return config_file_at(&config->file, node != NULL ? node : second).line;
+}
+
+static bool set_broker(config_t *config, publish_settings_t *settings)
+{
+    const yaml_node_t *const map = config_file_find(&config->file, config_file_top(&config->file), "broker");
+    const yaml_node_t *const tls = config_file_find(&config->file, map, "tls");
+    broker_settings_t *const broker = &settings->broker;
+    *broker = config->top.broker.settings;
+    broker->line = line_of(config, map, "user", "host");
+    if (tls != NULL) broker->tls_line = line_of(config, tls, "ca-file", "ca-file");
+    if (broker->port == 0) broker->port = broker->has_tls ? PORT_WITH_TLS : PORT;
+    if (broker->keep_alive_s == 0) broker->keep_alive_s = KEEP_ALIVE_S;
+    if (broker->client_id[0] == '\0') set_client_id(settings, broker->client_id);
+    origin_t origin = config->file.origin;
+    origin.line = line_of(config, map, "password-credential", "password-file");
+    if (!set_credential(config, broker, &origin)) return false;
+    return broker->password_file[0] == '\0' || broker->user[0] != '\0' ||
+           reject(&origin, "there is a password, but no user beside it.");
 }
 
 /* ---- names ---- */
 
-bool config_name(char text[SETTINGS_NAME], const char *value, bool slashes)
+static bool set_site(config_t *config, char site[SETTINGS_NAME])
 {
-    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./";
-    const size_t length = strlen(value);
-    if (length == 0 || length >= SETTINGS_NAME || strspn(value, letters) != length) return false;
-    if (value[0] == '/' || value[length - 1] == '/' || strstr(value, "//") != NULL) return false;
-    if (!slashes && strpbrk(value, "/.") != NULL) return false;
-    memcpy(text, value, length + 1);
-    return true;
-}
-
-static bool take_site(const reading_t *reading, const config_values_t *values)
-{
-    char *const site = reading->config->site;
     char host[SETTINGS_NAME] = "";
-    const char *const text = text_of(reading, values, CONFIG_SITE);
-    if (text != NULL) return config_name(site, text, true) || refuse(reading, CONFIG_SITE, text);
-    if (gethostname(host, sizeof host - 1) == 0 && config_name(site, host, false)) return true;
-    if (config_name(site, host, true)) return true;
-    (void)usage_error(reading->command,
-                      "site: is missing, and the host's name '%s' cannot stand for it; it takes %s", host,
-                      config_rows[CONFIG_SITE].takes);
-    return false;
-}
-
-static bool take_names(const reading_t *reading, const config_values_t *values)
-{
-    publish_settings_t *const config = reading->config;
-    const char *const prefix = text_of(reading, values, CONFIG_PREFIX);
-    if (!config_name(config->prefix, prefix != NULL ? prefix : "fathom", true))
-        return refuse(reading, CONFIG_PREFIX, prefix);
-    const char *const discovery = text_of(reading, values, CONFIG_DISCOVERY);
-    const bool is_off = discovery != NULL && strcmp(discovery, "off") == 0;
-    if (!is_off && !config_name(config->discovery, discovery != NULL ? discovery : "homeassistant", true))
-        return refuse(reading, CONFIG_DISCOVERY, discovery);
-    return take_site(reading, values);
-}
-
-/* ---- the broker ---- */
-
-/* A path, of a file that can be read. Without a value it stays "". */
-static bool take_file(const reading_t *reading, const config_values_t *values, config_key_t key,
-                      char path[SETTINGS_PATH])
-{
-    const char *const text = text_of(reading, values, key);
-    if (text == NULL) return true;
-    if (strlen(text) >= SETTINGS_PATH) return refuse(reading, key, text);
-    memcpy(path, text, strlen(text) + 1);
-    if (access(path, R_OK) == 0) return true;
-    (void)usage_error(reading->command, "%s: %s cannot be read: %s", config_rows[key].name, path,
-                      strerror(errno));
-    return false;
-}
-
-static bool take_tls(const reading_t *reading, const yaml_node_t *map)
-{
-    broker_settings_t *const broker = &reading->config->broker;
-    config_values_t values;
-    broker->has_tls = map != NULL;
-    if (map == NULL) return true;
-    if (!config_take(reading->file, reading->command, map, SECTION_TLS, &values) ||
-        !take_file(reading, &values, TLS_CA_FILE, broker->ca_file) ||
-        !take_file(reading, &values, TLS_CERTIFICATE_FILE, broker->certificate_file) ||
-        !take_file(reading, &values, TLS_KEY_FILE, broker->key_file))
-        return false;
-    broker->tls_line = config_file_line(values.at[TLS_CA_FILE] != NULL ? values.at[TLS_CA_FILE] : map);
-    if ((broker->certificate_file[0] != '\0') == (broker->key_file[0] != '\0')) return true;
-    config_file_at(reading->file, map);
-    (void)usage_error(reading->command,
-                      "certificate-file: and key-file: belong together; one of them is missing");
-    return false;
-}
-
-/* systemd hands credentials over as files of a folder that it names. */
-static bool take_credential(const reading_t *reading, const config_values_t *values)
-{
-    broker_settings_t *const broker = &reading->config->broker;
-    char name[SETTINGS_NAME];
-    const char *const text = text_of(reading, values, BROKER_PASSWORD_CREDENTIAL);
-    const char *const folder =
-        getenv("CREDENTIALS_DIRECTORY"); /* NOLINT(concurrency-mt-unsafe): one thread */
-    if (text == NULL) return true;
-    if (!config_name(name, text, true) || strchr(name, '/') != NULL || name[0] == '.')
-        return refuse(reading, BROKER_PASSWORD_CREDENTIAL, text);
-    if (values->at[BROKER_PASSWORD_FILE] != NULL)
-        (void)usage_error(reading->command,
-                          "password-credential: and password-file: say the same; leave one of them out");
-    else if (folder == NULL)
-        (void)usage_error(reading->command,
-                          "password-credential: no CREDENTIALS_DIRECTORY is set; the unit needs a line "
-                          "LoadCredential=%s:/path/to/the/password, or write password-file: here",
-                          name);
-    else if (snprintf(broker->password_file, SETTINGS_PATH, "%s/%s", folder, name) < SETTINGS_PATH &&
-             access(broker->password_file, R_OK) == 0)
+    memcpy(site, config->top.site, SETTINGS_NAME);
+    if (site[0] != '\0') return true;
+    if (gethostname(host, sizeof host - 1) == 0 && topic_name_is_good(host, true)) {
+        memcpy(site, host, SETTINGS_NAME);
         return true;
-    else
-        (void)usage_error(reading->command,
-                          "password-credential: %s cannot be read: %s; the unit needs a line "
-                          "LoadCredential=%s:/path/to/the/password",
-                          broker->password_file, strerror(errno), name);
-    return false;
+    }
+    return reject(&config->file.origin, "site is missing, and the host's name '%s' cannot be used.", host);
 }
 
-static bool take_login(const reading_t *reading, const config_values_t *values)
+static bool set_names(config_t *config, publish_settings_t *settings)
 {
-    broker_settings_t *const broker = &reading->config->broker;
-    const char *const user = text_of(reading, values, BROKER_USER);
-    if (user != NULL && strlen(user) >= sizeof broker->user) return refuse(reading, BROKER_USER, user);
-    if (user != NULL) memcpy(broker->user, user, strlen(user) + 1);
-    if (!take_file(reading, values, BROKER_PASSWORD_FILE, broker->password_file) ||
-        !take_credential(reading, values))
+    const publish_top_t *const top = &config->top;
+    (void)snprintf(settings->prefix, SETTINGS_NAME, "%s", top->prefix[0] != '\0' ? top->prefix : "fathom");
+    (void)snprintf(settings->discovery, SETTINGS_NAME, "%s",
+                   top->discovery[0] != '\0' ? top->discovery : "homeassistant");
+    if (strcmp(settings->discovery, "off") == 0) settings->discovery[0] = '\0';
+    settings->queue_messages = top->queue_messages != 0 ? top->queue_messages : MESSAGES;
+    settings->queue_bytes = top->queue_bytes != 0 ? top->queue_bytes : BYTES;
+    return set_site(config, settings->site);
+}
+
+/* ---- lines and sensors ---- */
+
+/* Everything that the file has for a sensor: of its line, of itself, and of all sensors. */
+static bool print_entry(config_t *config, entry_t *entry, const yaml_node_t *line, const yaml_node_t *map)
+{
+    const reader_settings_t *const reader = &entry->settings.reader;
+    const origin_t origin = config_file_at(&config->file, map);
+    (void)snprintf(entry->text, sizeof entry->text, "%u %u %u ", (unsigned)reader->period_us,
+                   (unsigned)reader->timeout_us, reader->retries);
+    return (config_file_print(&config->file, line, entry->text, sizeof entry->text - 1) &&
+            config_file_print(&config->file, map, entry->text, sizeof entry->text - 1)) ||
+           reject(&origin, "this sensor has more than %d characters.", SENSOR_TEXT);
+}
+
+static bool read_sensor(config_t *config, const publish_line_t *line, const yaml_node_t *line_map,
+                        const yaml_node_t *map)
+{
+    origin_t origin = config_file_at(&config->file, map);
+    if (config->count == MAX_SENSORS)
+        return reject(&origin, "this is sensor %d. At most %d can be named.", MAX_SENSORS + 1, MAX_SENSORS);
+    entry_t *const entry = &config->entries[config->count];
+    publish_sensor_t *const sensor = &entry->settings;
+    sensor_word_t *const word = &config->words[config->count];
+    sensor->reader = config->top.reader;
+    sensor->results.has_readings = true;
+    if (!print_entry(config, entry, line_map, map) ||
+        !config_file_read(&config->file, map, publish_sensor_tables, sensor, "sensors", &sensor->given))
         return false;
-    if (broker->password_file[0] == '\0' || user != NULL) return true;
-    (void)usage_error(reading->command, "a password stands here, and no user: beside it");
-    return false;
+    origin = config_file_at(&config->file, config_file_find(&config->file, map, "sensor"));
+    config->origins[config->count++] = origin;
+    if (strpbrk(sensor->sensor, "@=") != NULL)
+        return reject(&origin, "sensor is '%s'. Write its name and its port in keys of their own.",
+                      sensor->sensor);
+    if (!sensor_word_parse(word, sensor->sensor, &origin)) return false;
+    word->port = line->port;
+    word->keys = line->keys;
+    if (sensor_name_is_good(sensor->name, strlen(sensor->name))) {
+        (void)snprintf(word->name, sizeof word->name, "%s", sensor->name);
+        return true;
+    }
+    origin = config_file_at(&config->file, config_file_find(&config->file, map, "name"));
+    return reject(&origin,
+                  "name is '%s'. It takes at most %d letters, digits, '-', '_' and '.', the first a "
+                  "letter or a digit.",
+                  sensor->name, SENSOR_NAME_SIZE - 1);
 }
 
-/* One broker knows a client by its id: two with the same one would end each other's connection for ever. */
-static bool take_client_id(const reading_t *reading, const config_values_t *values)
+static bool read_line(config_t *config, const yaml_node_t *map)
 {
-    const publish_settings_t *const config = reading->config;
-    char *const id = reading->config->broker.client_id;
-    const char *const text = text_of(reading, values, BROKER_CLIENT_ID);
-    if (text != NULL) return config_name(id, text, false) || refuse(reading, BROKER_CLIENT_ID, text);
-    (void)snprintf(id, SETTINGS_NAME, "%.49s-%.49s", config->prefix, config->site);
-    for (char *at = id; *at != '\0'; at++)
-        if (*at == '/' || *at == '.') *at = '-';
+    const yaml_node_t *const node = config_file_find(&config->file, map, "port");
+    const char *const port =
+        node != NULL && node->type == YAML_SCALAR_NODE ? (const char *)node->data.scalar.value : "";
+    static const option_t none[] = {{.name = NULL}};
+    const option_table_t tables[] = {
+        {publish_line_keys, 0},
+        {port_path_has_gateway(port) ? none : (port_path_has_pins(port) ? chip_keys : serial_keys),
+         offsetof(publish_line_t, keys)},
+        {NULL, 0}};
+    publish_line_t line = {.port = NULL};
+    option_given_t given = {{0}};
+    if (!config_file_read(&config->file, map, tables, &line, "lines", &given)) return false;
+    if (strchr(line.port, ',') != NULL) {
+        const origin_t origin = config_file_at(&config->file, node);
+        return reject(&origin, "port is '%s'. Write keys in lines of their own, such as baud: 9600.",
+                      line.port);
+    }
+    const yaml_node_t *const list = line.sensors;
+    for (const int *item = list->data.sequence.items.start; item != list->data.sequence.items.top; item++)
+        if (!read_sensor(config, &line, map, config_file_node(&config->file, *item))) return false;
     return true;
 }
 
-static bool take_broker(const reading_t *reading, const yaml_node_t *map)
+/* Fills the site's sensors with what the file has for each. */
+static bool fill_sensors(const config_t *config, site_t *site)
 {
-    broker_settings_t *const broker = &reading->config->broker;
-    config_values_t values;
-    uint32_t keep_alive_s = KEEP_ALIVE_S;
-    if (!config_take(reading->file, reading->command, map, SECTION_BROKER, &values)) return false;
-    const char *const host = text_of(reading, &values, BROKER_HOST);
-    if (strlen(host) >= sizeof broker->host || strpbrk(host, " /@") != NULL)
-        return refuse(reading, BROKER_HOST, host);
-    memcpy(broker->host, host, strlen(host) + 1);
-    uint32_t port = values.at[BROKER_TLS] != NULL ? PORT_WITH_TLS : PORT;
-    if (!take_number(reading, &values, BROKER_PORT, 1, UINT16_MAX, &port) ||
-        !take_number(reading, &values, BROKER_KEEP_ALIVE, 5, MAX_KEEP_ALIVE_S, &keep_alive_s) ||
-        !take_client_id(reading, &values) || !take_login(reading, &values) ||
-        !take_tls(reading, values.at[BROKER_TLS]))
-        return false;
-    broker->port = (uint16_t)port;
-    broker->keep_alive_s = (uint16_t)keep_alive_s;
-    broker->line = config_file_line(values.at[values.at[BROKER_USER] != NULL ? BROKER_USER : BROKER_HOST]);
+    for (size_t i = 0; i != site->sensor_count; i++) {
+        sensor_t *const sensor = site->sensors[i];
+        publish_sensor_t *const from = &config->entries[i].settings;
+        line_t *line = site->lines;
+        sensor->settings = from->reader;
+        if (!options_suit(publish_sensor_tables, &from->given, &sensor, 1, true, &config->origins[i]) ||
+            !results_finish(&from->results, from->reader.period_us, &config->origins[i]))
+            return false;
+        results_config_copy(&sensor->processing, &from->results);
+        while (&line->settings != sensor->port) line = line->next;
+        if (!line_add_text(line, config->entries[i].text) || !line_add_text(line, "\n"))
+            return reject(&config->origins[i], "no memory is left.");
+    }
+    site->reconnect = true;
+    site->persists = true;
     return true;
+}
+
+static bool read_sensors(config_t *config, site_t *site)
+{
+    static const sensor_defaults_t none;
+    const yaml_node_t *const list = config->top.lines;
+    for (const int *item = list->data.sequence.items.start; item != list->data.sequence.items.top; item++)
+        if (!read_line(config, config_file_node(&config->file, *item))) return false;
+    const origin_t origin = config_file_at(&config->file, list);
+    if (config->count == 0) return reject(&origin, "lines names no sensor.");
+    return sensors_add(site, &none, config->words, config->count, config->origins) &&
+           fill_sensors(config, site);
 }
 
 /* ---- all of it ---- */
 
-static bool take_queue(const reading_t *reading, const yaml_node_t *map)
+static bool read_file(config_t *config, publish_settings_t *settings, site_t *site)
 {
-    publish_settings_t *const config = reading->config;
-    config_values_t values;
-    config->queue_messages = MESSAGES;
-    config->queue_bytes = BYTES;
-    return map == NULL ||
-           (config_take(reading->file, reading->command, map, SECTION_QUEUE, &values) &&
-            take_number(reading, &values, QUEUE_MESSAGES, 1, MAX_MESSAGES, &config->queue_messages) &&
-            take_number(reading, &values, QUEUE_BYTES, MIN_BYTES, MAX_BYTES, &config->queue_bytes));
-}
-
-static bool take_all(const reading_t *reading, site_t *site)
-{
-    config_values_t values;
-    const yaml_node_t *const top = config_file_top(reading->file);
-    if (top == NULL) {
-        (void)usage_error(reading->command,
-                          "%s is empty; it takes at least broker: and lines:", reading->file->path);
-        return false;
-    }
-    return config_take(reading->file, reading->command, top, SECTION_TOP, &values) &&
-           take_names(reading, &values) && take_broker(reading, values.at[CONFIG_BROKER]) &&
-           take_queue(reading, values.at[CONFIG_QUEUE]) &&
-           config_sensors(site, reading->file, reading->command, &values);
+    const yaml_node_t *const top = config_file_top(&config->file);
+    option_given_t given = {{0}};
+    if (top == NULL)
+        return reject(&config->file.origin, "the file is empty. It takes at least broker and lines.");
+    config->top.reader.period_us = INTERVAL_US;
+    return config_file_read(&config->file, top, publish_top_tables, &config->top, NULL, &given) &&
+           set_names(config, settings) && set_broker(config, settings) && read_sensors(config, site);
 }
 
 bool config_load(publish_settings_t *settings, site_t *site, const char *command, const char *path)
 {
-    config_file_t file;
-    const reading_t reading = {settings, &file, command};
+    const origin_t origin = {.command = command};
+    bool is_good = false;
     memset(settings, 0, sizeof *settings);
-    if (strlen(path) >= sizeof settings->path) {
-        (void)usage_error(command, "the path of the file is too long");
-        return false;
-    }
+    if (strlen(path) >= sizeof settings->path) return reject(&origin, "the path of the file is too long.");
     memcpy(settings->path, path, strlen(path) + 1);
-    if (!config_file_load(&file, command, path)) return false;
-    const bool is_good = take_all(&reading, site);
-    usage_at(NULL);
-    config_file_free(&file);
+    config_t *const config = calloc(1, sizeof *config);
+    if (config == NULL) return reject(&origin, "no memory is left.");
+    config->entries = calloc(MAX_SENSORS, sizeof *config->entries);
+    config->words = calloc(MAX_SENSORS, sizeof *config->words);
+    config->origins = calloc(MAX_SENSORS, sizeof *config->origins);
+    if (config->entries == NULL || config->words == NULL || config->origins == NULL) {
+        (void)reject(&origin, "no memory is left.");
+    } else if (config_file_load(&config->file, command, settings->path)) {
+        is_good = read_file(config, settings, site);
+        config_file_free(&config->file);
+    }
     if (!is_good) site_free(site);
+    free(config->entries);
+    free(config->words);
+    free(config->origins);
+    free(config);
     return is_good;
 }

@@ -2,31 +2,36 @@
 #ifndef CONFIG_FILE_H
 #define CONFIG_FILE_H
 
-#include <stdbool.h>
 #include <yaml.h>
 
-/* A file of YAML in memory, and what is wrong with it: each message has the file and the line, and says what to write
- * instead. */
+#include "cli/option.h"
 
+/* A YAML file in memory. */
 typedef struct {
-    const char *path;
+    origin_t origin; /* its command and path; the line is that of the last message */
     yaml_document_t document;
 } config_file_t;
 
-/* False after saying why; then there is nothing to free. A text that cannot be printed is wrong. path stays where it is. */
+/* False after rejecting the file; then there is nothing to free. A text that cannot be printed is wrong. `path` is not
+ * copied. */
 bool config_file_load(config_file_t *file, const char *command, const char *path);
 void config_file_free(config_file_t *file);
 
-/* What stands at the top: of an empty file NULL. */
-const yaml_node_t *config_file_top(config_file_t *file);
+/* Reads a map by rows: each key stores its value in the structure. `within` names the map in messages; NULL: the file.
+ * given: the lines of the keys. False after rejecting what is wrong. */
+bool config_file_read(config_file_t *file, const yaml_node_t *map, const option_table_t *tables,
+                      void *structure, const char *within, option_given_t *given);
 
+/* The value of a key of a map; NULL: there is none. */
+const yaml_node_t *config_file_find(config_file_t *file, const yaml_node_t *map, const char *key);
+
+const yaml_node_t *config_file_top(config_file_t *file); /* NULL: the file is empty */
 const yaml_node_t *config_file_node(config_file_t *file, int number);
-unsigned config_file_line(const yaml_node_t *node);
 
-/* Its text, which can be printed; NULL: it is none. */
-const char *config_file_text(const yaml_node_t *node);
+/* Where a node stands. */
+origin_t config_file_at(const config_file_t *file, const yaml_node_t *node);
 
-/* From now on wrong usage stands where this node does. */
-void config_file_at(const config_file_t *file, const yaml_node_t *node);
+/* Appends the text of a node, as one line, to `text` of `size` bytes. False: it is too long. */
+bool config_file_print(config_file_t *file, const yaml_node_t *node, char *text, size_t size);
 
 #endif

@@ -8,11 +8,16 @@
 
 enum { COLUMN = 24, WIDTH = 80 };
 
-const char *const help_groups[GROUPS] = {
+static const char *const headings[GROUPS] = {
     [GROUP_COMMON] = "Common options", [GROUP_COMMAND] = "Options",
     [GROUP_SENSOR] = "Sensor",         [GROUP_LINE] = "Line",
     [GROUP_OUTPUT] = "Output",         [GROUP_PROCESSING] = "Processing",
 };
+
+const char *help_heading(const command_t *command, option_group_t group)
+{
+    return group == GROUP_COMMAND && command->own_group != NULL ? command->own_group : headings[group];
+}
 
 option_group_t help_group(const command_t *command, const option_t *row)
 {
@@ -53,7 +58,7 @@ static void print_row(FILE *to, const option_t *row)
 /* Prints the options that a command names as the most common, in that order. */
 static void print_common(FILE *to, const command_t *command)
 {
-    (void)fprintf(to, "\n%s:\n", help_groups[GROUP_COMMON]);
+    (void)fprintf(to, "\n%s:\n", headings[GROUP_COMMON]);
     for (const char *names = command->common; names != NULL;) {
         char name[32];
         option_walk_t walk;
@@ -67,7 +72,7 @@ static void print_group(FILE *to, const command_t *command, option_group_t group
     bool has_begun = false;
     for (option_walk_t walk = {.table = command->tables}; option_next(&walk);) {
         if (walk.row->is_hidden || help_group(command, walk.row) != group) continue;
-        if (!has_begun) (void)fprintf(to, "\n%s:\n", help_groups[group]);
+        if (!has_begun) (void)fprintf(to, "\n%s:\n", help_heading(command, group));
         has_begun = true;
         print_row(to, walk.row);
     }
@@ -85,7 +90,7 @@ void help_print(FILE *to, const command_t *command)
     }
     (void)fprintf(to, "\n%s.\n", command->summary);
     if (command->about != NULL) (void)fputs(command->about, to);
-    print_common(to, command);
+    if (command->common != NULL) print_common(to, command);
     for (option_group_t group = GROUP_COMMAND; group != GROUPS; group++) print_group(to, command, group);
     if (command->examples != NULL) (void)fprintf(to, "\nExamples:\n%s", command->examples);
     if (command->status != NULL) (void)fprintf(to, "\n%s", command->status);

@@ -77,7 +77,7 @@ static void print_group(FILE *to, const command_t *command, option_group_t group
     bool has_begun = false;
     for (option_walk_t walk = {.table = command->tables}; option_next(&walk);) {
         if (walk.row->is_hidden || help_group(command, walk.row) != group) continue;
-        if (!has_begun) (void)fprintf(to, ".SS %s\n", help_groups[group]);
+        if (!has_begun) (void)fprintf(to, ".SS %s\n", help_heading(command, group));
         has_begun = true;
         print_option(to, walk.row);
     }
@@ -107,7 +107,7 @@ void man_print(FILE *to, const command_t *command)
 }
 
 /* What a topic prints, as lines. */
-static void print_topic(FILE *to, const topic_t *topic)
+static void print_topic(FILE *to, const help_topic_t *topic)
 {
     char *text = NULL;
     size_t size = 0;
@@ -122,7 +122,7 @@ static void print_topic(FILE *to, const topic_t *topic)
     free(text);
 }
 
-void man_print_tool(FILE *to, const command_t *const *commands, const topic_t *topics)
+void man_print_tool(FILE *to, const command_t *const *commands, const help_topic_t *topics)
 {
     print_title(to, "", "read and set up the range sensors A16, A05 and HPS-167S");
     (void)fputs(".B fathom\nCOMMAND [ARGUMENTS]\n.br\n.B fathom help\n[COMMAND | TOPIC]\n.SH COMMANDS\n", to);

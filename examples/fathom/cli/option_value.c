@@ -135,7 +135,8 @@ bool option_set(const option_t *row, char *text, void *structure, const origin_t
         if (row->check != NULL && !row->check(member, &its)) return false;
     } else if (!set_value(row, text, member)) {
         option_takes(row, takes);
-        return reject(origin, "%s%s is '%s'. It takes %s.", is_option ? "--" : "", row->name, text, takes);
+        return reject(origin, "%s%s is '%.80s%s'. It takes %s.", is_option ? "--" : "", row->name, text,
+                      strlen(text) > 80 ? "..." : "", takes);
     }
     if (row->has != 0) *(bool *)((char *)structure + row->has - 1) = true;
     return true;

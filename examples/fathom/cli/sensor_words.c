@@ -156,13 +156,10 @@ static bool set_station(sensor_t *station, const sensor_word_t *sensor, const se
     return true;
 }
 
-static bool set_stations(site_t *site, const sensor_defaults_t *defaults, char **words,
+static bool set_stations(site_t *site, const sensor_defaults_t *defaults, const sensor_word_t *sensors,
                          const origin_t *origins)
 {
-    static sensor_word_t sensors[MAX_SENSORS];
     const size_t count = site->sensor_count;
-    for (size_t i = 0; i != count; i++)
-        if (!sensor_word_parse(&sensors[i], words[i], &origins[i])) return false;
     for (size_t i = 0; i != count; i++)
         if (!set_port(site, site->sensors[i], &sensors[i], defaults->path, &origins[i])) return false;
     for (size_t i = 0; i != count; i++) {
@@ -184,16 +181,25 @@ static bool check_count(int count, const sensor_defaults_t *defaults, const orig
 }
 
 /* In the order in which a user corrects it. */
-bool sensor_words(site_t *site, const sensor_defaults_t *defaults, char **words, int count,
-                  const origin_t *origins)
+bool sensors_add(site_t *site, const sensor_defaults_t *defaults, const sensor_word_t *sensors, int count,
+                 const origin_t *origins)
 {
-    if (!check_count(count, defaults, &origins[0])) return false;
     for (int i = 0; i != count; i++)
         if (site_add_sensor(site) == NULL) return reject_memory(&origins[0]);
-    if (!set_stations(site, defaults, words, origins) || !set_ports(site, defaults, origins) ||
+    if (!set_stations(site, defaults, sensors, origins) || !set_ports(site, defaults, origins) ||
         !sensors_suit_lines(site, origins) || !sensors_set_names(site, origins))
         return false;
     for (size_t i = 0; i != site->sensor_count; i++)
         if (!sensor_suits_port(site->sensors[i], &origins[i])) return false;
     return true;
+}
+
+bool sensor_words(site_t *site, const sensor_defaults_t *defaults, char **words, int count,
+                  const origin_t *origins)
+{
+    static sensor_word_t sensors[MAX_SENSORS];
+    if (!check_count(count, defaults, &origins[0])) return false;
+    for (int i = 0; i != count; i++)
+        if (!sensor_word_parse(&sensors[i], words[i], &origins[i])) return false;
+    return sensors_add(site, defaults, sensors, count, origins);
 }

@@ -23,6 +23,10 @@ typedef struct {
 bool sensor_words(site_t *site, const sensor_defaults_t *defaults, char **words, int count,
                   const origin_t *origins);
 
+/* The same for sensors whose words were parsed. */
+bool sensors_add(site_t *site, const sensor_defaults_t *defaults, const sensor_word_t *sensors, int count,
+                 const origin_t *origins);
+
 /* ---- rules, for sensor_words; false after rejecting what breaks one ---- */
 
 /* Can a sensor be read in its mode at this port? */

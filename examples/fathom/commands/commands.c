@@ -46,7 +46,7 @@ static void print_overview(void)
                  "\nHelp:\n"
                  "  fathom COMMAND --help         the options of a command, with examples\n"
                  "  fathom help TOPIC             TOPIC is one of:\n");
-    for (const topic_t *topic = topics; topic->name != NULL; topic++)
+    for (const help_topic_t *topic = topics; topic->name != NULL; topic++)
         (void)printf("    %-10s %s\n", topic->name, topic->summary);
     (void)printf("  fathom --version              the version\n"
                  "\nExit status: 0 success, 1 failure, 2 wrong usage, 3 an alarm is on (read).\n");
@@ -68,7 +68,7 @@ static int reject_name(const char *what, const char *name, bool has_topics)
         nearest_try(&nearest, commands[i]->name);
         list_add(known, sizeof known, commands[i]->name);
     }
-    for (const topic_t *topic = topics; has_topics && topic->name != NULL; topic++) {
+    for (const help_topic_t *topic = topics; has_topics && topic->name != NULL; topic++) {
         nearest_try(&nearest, topic->name);
         list_add(known, sizeof known, topic->name);
     }
@@ -102,12 +102,10 @@ static int help(int argc, char **argv)
         return STATUS_USAGE;
     }
     const command_t *const command = argc == 1 ? find(argv[0]) : NULL;
-    const topic_t *topic = topics;
+    const help_topic_t *topic = topics;
     while (argc == 1 && topic->name != NULL && strcmp(topic->name, argv[0]) != 0) topic++;
     if (argc == 0)
         print_overview();
-    else if (command != NULL && command->help != NULL)
-        command->help(stdout);
     else if (command != NULL)
         help_print(stdout, command);
     else if (topic->name != NULL)
@@ -123,7 +121,6 @@ static int start(const host_t *host, const command_t *command, int argc, char **
 {
     arguments_t arguments;
     int status = STATUS_USAGE;
-    if (command->start == NULL) return command->run(host, argc, argv);
     void *const settings = calloc(1, command->settings_size);
     if (settings == NULL) {
         (void)fputs("fathom: not enough memory.\n", stderr);

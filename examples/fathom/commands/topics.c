@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "cli/rows.h"
+#include "cli/publish_rows.h"
 #include "device/setting_text.h"
 #include "ports/line_text.h"
 #include "reading/fields.h"
@@ -233,9 +233,8 @@ static void print_config(FILE *to)
                 "  {name: gate, sensor: 'hps167s:7', interval: 500}\n\n"
                 "Its keys:\n\n",
                 to);
-    (void)fputs("  'fathom publish --help' lists them.\n", to);
-    (void)fputs("\n"
-                "Topics are PREFIX/SITE/status and publisher, and for each sensor\n"
+    publish_print_keys(to);
+    (void)fputs("\nTopics are PREFIX/SITE/status and publisher, and for each sensor\n"
                 "PREFIX/SITE/NAME/state, availability, counters and, if it has them, level and\n"
                 "alarm. SIGHUP reads the file again: lines that have not changed go on, others\n"
                 "are opened again. While the broker is not connected, messages wait in memory.\n",
@@ -283,7 +282,7 @@ static void print_json(FILE *to)
     scan_help_fields(to);
 }
 
-const topic_t topics[] = {
+const help_topic_t topics[] = {
     {"sensors", "Sensors, modes and addresses", print_sensors},
     {"ports", "Ports and their keys", print_ports},
     {"pins", "Modes on GPIO lines", print_pins},

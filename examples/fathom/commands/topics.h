@@ -5,7 +5,7 @@
 #include "cli/help.h"
 
 /* The topics of `fathom help`; a row without a name ends them. */
-extern const topic_t topics[];
+extern const help_topic_t topics[];
 
 /* Topics that explain a task from its beginning to its end. */
 void topic_log(FILE *to);

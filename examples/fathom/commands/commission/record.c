@@ -7,9 +7,9 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "cli/options.h"
 #include "device/setting_text.h"
 #include "output/timestamp.h"
+#include "output/words.h"
 
 static const char title[] = "# fathom commission: which unit has which address, or is to have it";
 static const char columns[] =

@@ -2,8 +2,8 @@
 #include <signal.h>
 #include <string.h>
 
+#include "cli/complete.h"
 #include "cli/config.h"
-#include "cli/options.h"
 #include "commands/commands.h"
 #include "commands/publish/explain.h"
 #include "mqtt/notify.h"
@@ -13,12 +13,17 @@
 
 static const char command[] = "publish";
 
-enum { CHECK, HELP, OPTIONS };
+typedef struct {
+    bool check;
+} publish_options_t;
 
-static const struct option table[OPTIONS + 1] = {
-    [CHECK] = {"check", no_argument, NULL, 256},
-    [HELP] = {"help", no_argument, NULL, 256},
+static const option_t rows[] = {
+    {"check", .help = "Print the sensors and topics of FILE, and open nothing", .group = GROUP_COMMAND,
+     AT(publish_options_t, check)},
+    {.name = NULL},
 };
+
+static const option_table_t tables[] = {{rows, 0}, {NULL, 0}};
 
 /* Static: a thread that connects may outlive the command. */
 static struct {
@@ -130,33 +135,6 @@ static uint32_t tick(void *ctx)
 
 /* ---- start and end ---- */
 
-static void help(FILE *to)
-{
-    (void)fputs("fathom publish reads all sensors of a site and publishes their readings to an MQTT broker, "
-                "until it is "
-                "ended.\n"
-                "It writes to no device, and subscribes to nothing.\n\n"
-                "usage: fathom publish [--check] FILE\n\n"
-                "  --check           prints a table of the sensors and topics. Nothing is opened or sent\n"
-                "\nFILE is YAML, of these keys:\n\n",
-                to);
-    config_keys_help(to);
-    (void)fputs(
-        "\nThe topics are PREFIX/SITE/status and publisher, and for each sensor PREFIX/SITE/NAME/state, "
-        "availability and,\n"
-        "where it has them, level and alarm. The manual has what is in them.\n"
-        "SIGHUP reads FILE again: lines that have not changed are read on. While the broker is away, "
-        "messages wait in "
-        "memory.\n"
-        "Exit status: 0 when a signal has ended it, 1 when it could not begin, 2 for wrong usage or a wrong "
-        "FILE.\n"
-        "\nexamples:\n"
-        "  fathom publish --check site.yaml               is it right, and what will be published?\n"
-        "  fathom publish site.yaml\n"
-        "  fathom publish site.yaml 2>> publish.log       its messages in a file\n",
-        to);
-}
-
 static int publish_site(const host_t *host)
 {
     loop_t *const loop = &publish.loop;
@@ -179,20 +157,21 @@ static int publish_site(const host_t *host)
     return status;
 }
 
-static int run(const host_t *host, int argc, char **argv)
+static int start(const host_t *host, const arguments_t *arguments)
 {
     static const sink_t sink = {on_reading, on_notice, tick};
-    const char *values[OPTIONS] = {NULL};
+    const publish_options_t *const options = arguments->settings;
+    const origin_t origin = {.command = command};
     loop_t *const loop = &publish.loop;
     int status = STATUS_OK;
-    const int rest = options_parse(command, argc, argv, table, values);
-    if (rest < 0) return STATUS_USAGE;
-    if (values[HELP] != NULL) return command_help(&publish_command);
-    if (argc - rest != 1)
-        return usage_error(command, "which configuration file? One, such as /etc/fathom/site.yaml");
+    if (arguments->count != 1) {
+        (void)reject(&origin, "%d files are named. Name one, such as /etc/fathom/site.yaml.",
+                     arguments->count);
+        return STATUS_USAGE;
+    }
     loop_init(loop, host, &sink, NULL);
-    if (!config_load(&publish.settings, &loop->site, command, argv[rest])) return STATUS_USAGE;
-    if (values[CHECK] != NULL) {
+    if (!config_load(&publish.settings, &loop->site, command, arguments->words[0])) return STATUS_USAGE;
+    if (options->check) {
         explain(&publish.settings, &loop->site, stdout);
         if (fflush(stdout) != 0) status = STATUS_FAILED;
     } else {
@@ -205,4 +184,20 @@ static int run(const host_t *host, int argc, char **argv)
 }
 
 const command_t publish_command = {
-    .name = "publish", .summary = "publishes sensors to an MQTT broker", .help = help, .run = run};
+    .name = "publish",
+    .summary = "Publish the readings of all sensors of a site to an MQTT broker",
+    .usage = "FILE [OPTIONS]",
+    .about = "FILE is a YAML file with the broker, the lines and their sensors. The command\n"
+             "runs until a signal ends it. It writes to no sensor, and subscribes to nothing.\n"
+             "SIGHUP reads FILE again: lines that have not changed are read on.\n",
+    .tables = tables,
+    .common = "check",
+    .examples = "  fathom publish --check site.yaml\n"
+                "  fathom publish site.yaml\n"
+                "  fathom publish site.yaml 2>> publish.log\n",
+    .status = "Exit status: 0 a signal ended it, 1 it could not start, 2 wrong usage or FILE.\n",
+    .topics = "config, sensors, ports, level, alarm",
+    .operands = operands_file,
+    .settings_size = sizeof(publish_options_t),
+    .start = start,
+};
