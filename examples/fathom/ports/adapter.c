@@ -255,7 +255,7 @@ const char *adapter_advice(adapter_t *adapter)
     adapter->advice = advice;
     if (advice == ADVICE_NONE || advice == ADVICE_DOUBTFUL) return NULL; /* port_error() reports the doubt */
     if (advice == ADVICE_PATH) return reasons[advice];
-    (void)snprintf(text, sizeof text, "%s: use the same USB socket (%s) again", reasons[advice],
+    (void)snprintf(text, sizeof text, "%s. Plug this adapter into the same USB socket (%s)", reasons[advice],
                    adapter->known.place);
     return text;
 }
