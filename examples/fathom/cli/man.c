@@ -9,11 +9,19 @@
 #include "fathom/version.h"
 #include "output/words.h"
 
-/* Prints a text so that roff takes none of it as a request. */
-static void print_text(FILE *to, const char *text)
+/* Prints a text so that roff takes none of it as a request. Lines end at blanks, as far as they are filled anyway. */
+static void print_filled(FILE *to, const char *text, bool is_filled)
 {
+    enum { WIDTH = 64 };
     bool begins = true;
-    for (; *text != '\0'; text++) {
+    int column = 0;
+    for (; *text != '\0'; text++, column++) {
+        if (is_filled && *text == ' ' && column > WIDTH) {
+            (void)fputc('\n', to);
+            column = 0;
+            begins = true;
+            continue;
+        }
         if (begins && (*text == '.' || *text == '\'')) (void)fputs("\\&", to);
         if (*text == '-')
             (void)fputs("\\-", to);
@@ -22,14 +30,17 @@ static void print_text(FILE *to, const char *text)
         else
             (void)fputc(*text, to);
         begins = *text == '\n';
+        if (begins) column = 0;
     }
 }
+
+static void print_text(FILE *to, const char *text) { print_filled(to, text, true); }
 
 static void print_lines(FILE *to, const char *head, const char *lines)
 {
     if (lines == NULL) return;
     (void)fprintf(to, ".SH %s\n.nf\n", head);
-    print_text(to, lines);
+    print_filled(to, lines, false);
     (void)fputs(".fi\n", to);
 }
 
@@ -93,7 +104,7 @@ void man_print(FILE *to, const command_t *command)
         usage = next_word(usage, '\n', line, sizeof line);
         (void)fprintf(to, ".B fathom %s\n", command->name);
         print_text(to, line);
-        (void)fputs("\n.br\n", to);
+        (void)fputs(usage != NULL ? "\n.br\n" : "\n", to);
     }
     (void)fputs(".SH DESCRIPTION\n", to);
     print_text(to, command->summary);
@@ -125,11 +136,18 @@ static void print_topic(FILE *to, const help_topic_t *topic)
 void man_print_tool(FILE *to, const command_t *const *commands, const help_topic_t *topics)
 {
     print_title(to, "", "read and set up the range sensors A16, A05 and HPS-167S");
-    (void)fputs(".B fathom\nCOMMAND [ARGUMENTS]\n.br\n.B fathom help\n[COMMAND | TOPIC]\n.SH COMMANDS\n", to);
+    (void)fputs(".B fathom\nCOMMAND [ARGUMENTS]\n.br\n.B fathom help\n[COMMAND | TOPIC]\n.SH DESCRIPTION\n"
+                "Finds, reads and sets up the range sensors A16, A05 and HPS\\-167S on serial ports,\n"
+                "Modbus gateways and GPIO lines.\n.SH COMMANDS\n",
+                to);
     for (; *commands != NULL; commands++) {
         (void)fprintf(to, ".TP\n.BR fathom\\-%s (1)\n", (*commands)->name);
         print_text(to, (*commands)->summary);
         (void)fputs(".\n", to);
     }
     for (; topics->name != NULL; topics++) print_topic(to, topics);
+    print_lines(
+        to, "EXIT STATUS",
+        "0 success\n1 the line, the port or the output failed\n2 wrong usage\n3 an alarm is on (read)\n");
+    (void)fputs(".SH SEE ALSO\n.BR fathom\\-read (1),\n.BR fathom\\-scan (1)\n", to);
 }
