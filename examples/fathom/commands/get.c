@@ -25,10 +25,10 @@ typedef struct {
     uint16_t
         failed_read; /* the read that failed last. Its other values are not requested: that takes seconds */
     fathom_status_t failure; /* of that read */
-} progress_t;
+} values_t;
 
 /* Returns the next value to print behind `last`, or the first one if `last` is NULL. NULL: there is none. */
-static const setting_t *next_value(const progress_t *progress, const setting_t *last)
+static const setting_t *next_value(const values_t *progress, const setting_t *last)
 {
     const setting_t *setting = last != NULL ? last + 1 : progress->settings;
     if (progress->show == SHOW_ONE) return last == NULL ? setting : NULL;
@@ -50,7 +50,7 @@ static void print_start(void)
 }
 
 /* `address` is the value of a sensor that can report it, and else the address at which the sensor is asked. */
-static void begin_json(const progress_t *progress, const char *line)
+static void begin_json(const values_t *progress, const char *line)
 {
     bool has_address = false;
     for (const setting_t *setting = NULL; (setting = next_value(progress, setting)) != NULL;)
@@ -62,7 +62,7 @@ static void begin_json(const progress_t *progress, const char *line)
     json_string(&json, "line", line);
 }
 
-static void begin(const progress_t *progress)
+static void begin(const values_t *progress)
 {
     const sensor_t *const sensor = session.sensor;
     char line[LINE_TEXT];
@@ -89,7 +89,7 @@ static void print_value(const setting_t *setting, fathom_status_t status, const 
                      setting->get != NULL ? setting_reason(status) : "write-only");
 }
 
-static fathom_status_t read_value(const setting_t *setting, progress_t *progress, char text[SETTING_TEXT])
+static fathom_status_t read_value(const setting_t *setting, values_t *progress, char text[SETTING_TEXT])
 {
     text[0] = '\0';
     if (setting->get == NULL) {
@@ -115,7 +115,7 @@ static bool fail(const setting_t *setting, fathom_status_t status)
 }
 
 /* Returns false after printing why no other value can be read either. */
-static bool show_value(const setting_t *setting, progress_t *progress)
+static bool show_value(const setting_t *setting, values_t *progress)
 {
     char text[SETTING_TEXT];
     const fathom_status_t status = read_value(setting, progress, text);
@@ -135,7 +135,7 @@ static bool show_value(const setting_t *setting, progress_t *progress)
 }
 
 /* A setting that is write-only does not show that the sensor is there, so one that can be read comes first. */
-static bool responds(progress_t *progress)
+static bool responds(values_t *progress)
 {
     const setting_t *setting = NULL;
     char text[SETTING_TEXT];
@@ -149,7 +149,7 @@ static bool responds(progress_t *progress)
 /* Prints the values of the sensor on the open port. Returns false if one of them could not be read. */
 static bool show_values(const setting_t *settings, show_t show)
 {
-    progress_t progress = {.settings = settings, .show = show};
+    values_t progress = {.settings = settings, .show = show};
     bool is_good = show != SHOW_SETTINGS || responds(&progress);
     for (const setting_t *setting = NULL; (setting = next_value(&progress, setting)) != NULL;) {
         if (is_good) is_good = show_value(setting, &progress);

@@ -78,6 +78,7 @@ static fathom_status_t read_row(session_t *session, const setting_t *setting, ba
 
 static bool failed(session_t *session, const setting_t *setting, fathom_status_t status)
 {
+    session_end_task(session);
     (void)fflush(stdout);
     (void)fprintf(stderr, "fathom: %s: %s: ", session->sensor->name, setting->name);
     session_explain(session, status);
@@ -85,7 +86,7 @@ static bool failed(session_t *session, const setting_t *setting, fathom_status_t
     return false;
 }
 
-bool backup_read(session_t *session, backup_t *unit)
+static bool read_all(session_t *session, backup_t *unit)
 {
     const setting_t *const settings = session_settings(session);
     const setting_t *known = NULL; /* the first one that it has told, */
@@ -105,4 +106,12 @@ bool backup_read(session_t *session, backup_t *unit)
     char text[SETTING_TEXT]; /* and does it still? Else that another one is not there means nothing */
     const fathom_status_t status = read_patiently(session, known, text);
     return status == FATHOM_OK || failed(session, known, status);
+}
+
+bool backup_read(session_t *session, backup_t *unit)
+{
+    session_begin_task(session, "reading the settings");
+    const bool is_read = read_all(session, unit);
+    session_end_task(session);
+    return is_read;
 }

@@ -40,6 +40,8 @@ bool session_open(session_t *session, const host_t *host)
         (void)fprintf(stderr, "fathom: %s\n", port_error(&session->port));
         return false;
     }
+    progress_start_wait(&session->progress, stderr, host->now_us(host->ctx));
+    session->doing = NULL;
     counters_begin_port(&session->port_counts, &session->port);
     if (!start(session)) {
         port_close(&session->port);
@@ -60,20 +62,44 @@ bool session_move(session_t *session, uint8_t address, const fathom_line_setting
     return start(session);
 }
 
-void session_close(session_t *session) { port_close(&session->port); }
+void session_close(session_t *session)
+{
+    session_end_task(session);
+    port_close(&session->port);
+}
+
+void session_begin_task(session_t *session, const char *doing) { session->doing = doing; }
+
+void session_end_task(session_t *session)
+{
+    progress_clear(&session->progress);
+    session->doing = NULL;
+}
+
+/* Waits for the reader, and wakes often enough to show the seconds. */
+static fathom_status_t wait_for(session_t *session)
+{
+    enum { SHOW_US = 500000 };
+    progress_t *const progress = &session->progress;
+    const host_t *const host = session->port.host;
+    const uint32_t due_us = reader_due_us(session->sensor->reader);
+    progress_show_wait(progress, host->now_us(host->ctx),
+                       session->doing != NULL ? session->doing : "waiting for the sensor");
+    return port_wait(&session->port, progress->is_terminal && due_us > SHOW_US ? SHOW_US : due_us);
+}
 
 fathom_status_t session_call(session_t *session, session_call_t call, void *ctx)
 {
     reader_t *const reader = session->sensor->reader;
-    fathom_status_t waited = FATHOM_OK;
     counters_begin_attempt(&session->sensor->counters);
     listener_forget(&session->port.listener);
-    while (waited == FATHOM_OK) {
-        const fathom_status_t status = call(reader, ctx);
-        if (status != FATHOM_PENDING) return status;
-        waited = port_wait(&session->port, reader_due_us(reader));
+    fathom_status_t status = call(reader, ctx);
+    while (status == FATHOM_PENDING) {
+        const fathom_status_t waited = wait_for(session);
+        status = waited == FATHOM_OK ? call(reader, ctx) : waited;
     }
-    return waited;
+    if (session->doing == NULL) progress_clear(&session->progress);
+    return status;
 }
 
 /* ---- settings ---- */

@@ -3,6 +3,7 @@
 #define SESSION_H
 
 #include "diagnosis/advice.h"
+#include "output/progress.h"
 #include "reading/site.h"
 #include "sensors/setting.h"
 
@@ -13,6 +14,8 @@ typedef struct {
     bool has_begun;   /* host_t.begin was called */
     port_t port;
     port_counts_t port_counts;
+    progress_t progress;
+    const char *doing; /* shown while the calls of a longer task wait; NULL: each call is a task of its own */
     bool is_json;
 } session_t;
 
@@ -38,6 +41,11 @@ void session_listen(session_t *session, uint32_t for_us);
  * the port is lost: FATHOM_ERR_PORT. */
 typedef fathom_status_t (*session_call_t)(reader_t *reader, void *ctx);
 fathom_status_t session_call(session_t *session, session_call_t call, void *ctx);
+
+/* Shows on a terminal what the next calls do, such as "reading the settings", if that takes longer than two seconds. The
+ * end removes the line; it must come before anything is printed. */
+void session_begin_task(session_t *session, const char *doing);
+void session_end_task(session_t *session);
 
 /* Reads or writes a setting. Repeats a call that failed and wrote nothing, if the failure proves nothing about the
  * sensor. */

@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 /* With the words the bar fits 80 columns. */
-enum { BAR = 24, EVERY_US = 100000 };
+enum { BAR = 24, EVERY_US = 100000, PATIENCE_US = 2000000 };
 
 void progress_init(progress_t *progress, FILE *to, uint64_t total_us)
 {
@@ -32,6 +32,22 @@ void progress_show(progress_t *progress, uint64_t now_us, uint64_t done_us, cons
     const uint64_t left_s = (total_us - done_us + 999999u) / 1000000u;
     /* ESC [ K removes the rest of a longer line. */
     (void)fprintf(progress->to, "\r[%s] %3u %%  %s, %" PRIu64 " s left\033[K", bar, percent, doing, left_s);
+    (void)fflush(progress->to);
+    progress->is_shown = true;
+    progress->shown_us = now_us;
+}
+
+void progress_start_wait(progress_t *progress, FILE *to, uint64_t now_us)
+{
+    progress_init(progress, to, 0);
+    progress->start_us = now_us;
+}
+
+void progress_show_wait(progress_t *progress, uint64_t now_us, const char *doing)
+{
+    const uint64_t passed_us = now_us - progress->start_us;
+    if (!progress->is_terminal || passed_us < PATIENCE_US || now_us - progress->shown_us < EVERY_US) return;
+    (void)fprintf(progress->to, "\r%s, %" PRIu64 " s\033[K", doing, passed_us / 1000000u);
     (void)fflush(progress->to);
     progress->is_shown = true;
     progress->shown_us = now_us;

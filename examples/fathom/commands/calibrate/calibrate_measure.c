@@ -31,8 +31,9 @@ static fathom_status_t poll(reader_t *reader, void *ctx)
     return reader_poll(reader, sample);
 }
 
-static void print_start(const session_t *session)
+static void print_start(session_t *session)
 {
+    session_end_task(session);
     (void)fflush(stdout);
     (void)fprintf(stderr, "fathom: %s: cannot measure: ", session->sensor->name);
 }
@@ -95,7 +96,7 @@ static bool agree(const calibrate_measurement_t *one, const calibrate_measuremen
     return (apart_mm < 0 ? -apart_mm : apart_mm) <= calibrate_tolerance_mm(spread_mm) / 2;
 }
 
-static void print_why(const session_t *session, const calibrate_batch_t *batch, batch_result_t why,
+static void print_why(session_t *session, const calibrate_batch_t *batch, batch_result_t why,
                       const calibrate_measurement_t *last)
 {
     static const char *const texts[] = {
@@ -123,6 +124,7 @@ bool calibrate_measure(session_t *session, const calibrate_batch_t *batch, bool 
     calibrate_measurement_t last = {0, 0};
     batch_result_t why = BATCH_GOOD;
     bool has_last = false;
+    session_begin_task(session, "measuring");
     if (is_after_write && !discard_samples(session, AFTER_WRITE_US)) return false;
     for (unsigned batches = 0; batches != MOST_BATCHES; batches++) {
         if (batches != 0 && !discard_samples(session, REST_US)) return false;
@@ -132,6 +134,7 @@ bool calibrate_measure(session_t *session, const calibrate_batch_t *batch, bool 
         if (result == BATCH_GOOD && has_last && agree(&last, &now)) {
             *measurement = now;
             if (last.spread_mm > now.spread_mm) measurement->spread_mm = last.spread_mm;
+            session_end_task(session);
             return true;
         }
         if (result != BATCH_GOOD)
