@@ -5,7 +5,7 @@
 #include "cli/complete.h"
 #include "cli/sensor_word.h"
 #include "commands/commands.h"
-#include "commands/decode/decode_print.h"
+#include "commands/decode/decode.h"
 #include "fathom/codec/crc16.h"
 #include "fathom/codec/dyp_stream.h"
 #include "fathom/codec/modbus_rtu.h"

@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include "commands/decode/decode_find.h"
-
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "commands/decode/decode.h"
 #include "fathom/codec/crc16.h"
 #include "fathom/codec/dyp_55aa.h"
 #include "fathom/codec/dyp_stream.h"

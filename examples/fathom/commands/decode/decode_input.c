@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 #define _POSIX_C_SOURCE 200809L /* NOLINT(bugprone-reserved-identifier): getline */
-#include "commands/decode/decode_input.h"
-
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/command.h"
+#include "commands/decode/decode.h"
 
 #define SEPARATORS " \t\r\n\v\f,;:{}"
 #define DIGITS     "0123456789abcdefABCDEF"

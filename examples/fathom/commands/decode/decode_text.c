@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
-#include "commands/decode/decode_print.h"
+#include "commands/decode/decode.h"
 #include "sensors/decoding_print.h"
 
 enum { BYTES_A_LINE = 20 };

@@ -5,7 +5,6 @@
 
 #include "commands/commands.h"
 #include "commands/scan/scan.h"
-#include "commands/scan/scan_report.h"
 #include "output/json.h"
 #include "ports/line_text.h"
 #include "sensors/models.h"

@@ -226,6 +226,15 @@ void scan_first_request(const fathom_line_settings_t *line, uint8_t address, sca
 fathom_status_t scan_identify(scan_t *scan, const scan_request_t *request, const scan_response_t *first,
                               scan_finding_t *finding);
 
+/* ---- the output ---- */
+
+/* Prints a finding in a line, with the command to type next. port: as the user entered it. */
+void scan_print_text(FILE *to, const scan_finding_t *finding, const char *port);
+void scan_print_json(FILE *to, const scan_finding_t *finding, const char *port);
+
+/* Prints what to do about a finding; nothing for most. */
+void scan_print_advice(FILE *to, const scan_finding_t *finding);
+
 /* Prints the result of a scan that went to its end, and what to check, on stderr. */
 void scan_print_result(const scan_t *scan);
 

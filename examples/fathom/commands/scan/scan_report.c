@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 #define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): fmemopen */
-#include "commands/scan/scan_report.h"
-#include "commands/topics.h"
-
 #include <inttypes.h>
 #include <stdio.h>
 
+#include "commands/scan/scan.h"
+#include "commands/topics.h"
 #include "ports/line_text.h"
 #include "sensors/models.h"
 #include "sensors/read_command.h"

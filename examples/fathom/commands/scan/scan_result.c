@@ -2,7 +2,6 @@
 #include <inttypes.h>
 
 #include "commands/scan/scan.h"
-#include "commands/scan/scan_report.h"
 #include "diagnosis/advice.h"
 #include "sensors/models.h"
 
