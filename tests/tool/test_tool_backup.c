@@ -45,7 +45,7 @@ static void change(const char *from, const char *to)
 }
 
 #define BEGIN(place)                                                                                         \
-    "# The settings of a range sensor, as fathom save " FATHOM_VERSION_STRING " has read them at\n"          \
+    "# The settings of a range sensor, read by fathom save " FATHOM_VERSION_STRING " at\n"                   \
     "# " place ", 2025-11-24T16:00:"
 #define MIDDLE                                                                                               \
     "Z. fathom restore writes them into a unit.\n"                                                           \
@@ -89,7 +89,7 @@ TEST(the_file_of_an_hps167s_has_what_it_is_where_it_is_and_how_it_is_set)
 {
     char text[DESK_TEXT];
     bench_hps167s((fathom_sim_hps167s_config_t){.address = 7, .warm_up_s = 5, .no_termination = true});
-    says(0, "hps167s:7: its settings are in ", "save hps167s:7");
+    says(0, "hps167s:7: the settings are in ", "save hps167s:7");
     is_text(desk_read("unit", text), BEGIN("address 7, 19200 8E1"), of_hps167s);
     assert_int_equal(desk_count(), 1);
     assert_int_equal(counters()->writes, 0);
@@ -128,11 +128,11 @@ TEST(what_a_variant_of_the_a16_does_not_have_is_not_there)
         "switches (0x0206); no response. Not every variant has it\n"
         "automatic-value = real-time              # RS232 variant: the distance that the automatic output "
         "sends (0x0207)\n");
-    says(0, "nothing differs", "restore a16:200");
+    says(0, "no differences", "restore a16:200");
     change("switch-threshold = not there", "switch-threshold = 1500");
-    says(1, "switch-threshold         not there      -> 1500 mm  this unit does not have it",
+    says(1, "switch-threshold         not there      -> 1500 mm  this sensor does not have it",
          "restore a16:200 --dry-run");
-    says(1, "nothing was written: this unit does not have all that the file has", "restore a16:200");
+    says(1, "nothing was written: this sensor does not have all settings of the file", "restore a16:200");
     assert_int_equal(bench.a16.device.counters.writes, 0);
 }
 
@@ -145,7 +145,7 @@ TEST(the_file_of_an_a05_has_its_address)
             MIDDLE
             "sensor = a05                             # four ultrasonic probes\n" PLACE
             "address = 9                              # Modbus address (register 0x0200), also of 55 AA\n");
-    says(0, "whether it is the same unit is not known", "restore a05:9");
+    says(0, "unknown whether it is the same sensor", "restore a05:9");
 }
 
 /* ---- where a save fails there is no file ---- */
@@ -182,7 +182,7 @@ TEST(a_unit_that_falls_silent_leaves_no_file)
     }
     bench_begin();
     bench_a16((fathom_sim_a16_config_t){.faults = &falls_silent});
-    says(0, "its settings are in", "save a16");
+    says(0, "the settings are in", "save a16");
 }
 
 TEST(a_response_that_is_lost_is_asked_for_again)
@@ -207,7 +207,7 @@ TEST(a_file_that_is_there_is_never_overwritten)
     char text[DESK_TEXT];
     bench_hps167s(any_hps167s);
     desk_write("unit", "mine");
-    says(1, "unit is there already and is not overwritten", "save hps167s");
+    says(1, "unit exists and is not overwritten", "save hps167s");
     assert_string_equal(desk_read("unit", text), "mine");
     assert_int_equal(desk_count(), 1);
     assert_int_equal(counters()->requests, 0);
@@ -227,7 +227,7 @@ TEST(a_file_that_comes_while_the_unit_is_read_is_not_overwritten_either)
     bench_hps167s(any_hps167s);
     inner_write = bench.tool.uart.write;
     bench.tool.uart.write = write_file_too;
-    says(1, "unit is there already and is not overwritten", "save hps167s");
+    says(1, "unit exists and is not overwritten", "save hps167s");
     assert_string_equal(desk_read("unit", text), "mine");
     assert_int_equal(desk_count(), 1);
 }
@@ -238,7 +238,7 @@ TEST(a_file_that_cannot_be_made_is_an_error)
     const tool_run_t *const run =
         tool_run(&bench.tool, "save hps167s --port line --file %s/none/file", desk_path("unit"));
     assert_int_equal(run->status, 1);
-    assert_non_null(strstr(run->err, "cannot be written: No such file or directory"));
+    assert_non_null(strstr(run->err, "none/file") != NULL ? strstr(run->err, ": No such file or directory") : NULL);
 }
 
 /* ---- restore ---- */
@@ -247,9 +247,9 @@ TEST(where_nothing_differs_nothing_is_written)
 {
     bench_hps167s((fathom_sim_hps167s_config_t){.address = 7, .reconnect_ms = 36});
     says(0, "", "save hps167s:7");
-    says(0, "nothing differs", "restore hps167s:7 --dry-run");
-    says(0, "in the unit: the same unit\n", "restore hps167s:7");
-    says(0, "nothing differs", "restore hps167s:7 --as-new");
+    says(0, "no differences", "restore hps167s:7 --dry-run");
+    says(0, "in the sensor: the same sensor\n", "restore hps167s:7");
+    says(0, "no differences", "restore hps167s:7 --as-new");
     assert_int_equal(counters()->writes, 0);
     assert_int_equal(counters()->flash_writes, 0);
 }
@@ -270,7 +270,7 @@ TEST(each_setting_that_differs_is_written_once)
         says(1, " -> ", "restore hps167s --dry-run");
         assert_int_equal(counters()->writes, 0);
         says(0, rows[i][2], "restore hps167s");
-        says(0, "nothing differs", "restore hps167s");
+        says(0, "no differences", "restore hps167s");
         assert_int_equal(counters()->writes, 1);
         desk_remove("unit");
     }
@@ -309,7 +309,7 @@ TEST(what_the_unit_does_not_tell_is_written_when_it_is_filled_in)
     change("filter-sensitivity = not readable", "filter-sensitivity = 20");
     says(1, "distance-offset: a sensor that has an offset already may add the new one",
          "restore hps167s --dry-run");
-    says(1, "distance-offset          not readable   -> -15 mm  is written whatever it is",
+    says(1, "distance-offset          not readable   -> -15 mm  is written without comparison",
          "restore hps167s --dry-run");
     assert_int_equal(counters()->writes, 0);
     says(0, "distance-offset is -15 mm: acknowledged", "restore hps167s");
@@ -329,7 +329,7 @@ TEST(a_value_that_cannot_be_set_is_no_line_to_restore)
     assert_non_null(strstr(desk_read("unit", text), "\nreconnect-time = not settable "));
     assert_non_null(
         strstr(text, "; it has 1000, which cannot be set: 0 to 2147483646, a multiple of 18 ms\n"));
-    says(0, "nothing differs", "restore hps167s");
+    says(0, "no differences", "restore hps167s");
     change("reconnect-time = not settable", "reconnect-time = 990");
     says(0, "reconnect-time is 990 ms (was 1000)", "restore hps167s");
 }
@@ -341,7 +341,7 @@ TEST(the_rate_of_a_unit_that_does_not_tell_it_is_that_at_which_it_answers)
     bench_hps167s((fathom_sim_hps167s_config_t){.baud_code = 3, .no_baud_code = true});
     says(0, "", "save hps167s --baud 115200");
     assert_non_null(strstr(desk_read("unit", text), "\nbaud = 115200 "));
-    says(0, "nothing differs", "restore hps167s --baud 115200 --as-new");
+    says(0, "no differences", "restore hps167s --baud 115200 --as-new");
 }
 
 TEST(another_unit_is_told)
@@ -353,5 +353,5 @@ TEST(another_unit_is_told)
     details[1] ^= 0x10; /* of the UUID, behind the acknowledgement's byte */
     bench_begin();
     bench_hps167s((fathom_sim_hps167s_config_t){.details = details});
-    says(0, " in the unit: another unit\n", "restore hps167s");
+    says(0, " in the sensor: another sensor\n", "restore hps167s");
 }

@@ -39,12 +39,12 @@ static void refuses(int status, const char *sensor, const char *words)
 TEST(every_mistake_in_a_file_is_told_with_its_line_and_nothing_is_sent)
 {
     static const char *const rows[][2] = {
-        {"", " there is no line sensor = hps167s; is it a file of fathom save?"},
-        {"# nothing\n\n", " there is no line sensor = hps167s; is it a file of fathom save?"},
-        {"warm-up = 5\n", "1: 'warm-up' before the line sensor = hps167s"},
-        {"sensor = a16\n", "1: the file is of 'a16', and the unit is to be an hps167s"},
-        {"sensor = hps167s\nsensor = hps167s\n", "2: sensor stands here a second time"},
-        {"sensor = hps167s\n\nwarm-up 5\n", "3: 'warm-up 5' is no line of the form NAME = VALUE"},
+        {"", " the line 'sensor = hps167s' is missing. Is this a file of 'fathom save'?"},
+        {"# nothing\n\n", " the line 'sensor = hps167s' is missing. Is this a file of 'fathom save'?"},
+        {"warm-up = 5\n", "1: the line 'warm-up' comes before the line 'sensor = hps167s'"},
+        {"sensor = a16\n", "1: the file belongs to 'a16', and the sensor is an hps167s"},
+        {"sensor = hps167s\nsensor = hps167s\n", "2: sensor occurs twice"},
+        {"sensor = hps167s\n\nwarm-up 5\n", "3: 'warm-up 5' does not have the form NAME = VALUE"},
         {"sensor = hps167s\nwarm-up = 256\n", "2: warm-up takes 0 to 255 s, not '256'"},
         {"sensor = hps167s\nwarm-up = 5 s\n", "2: warm-up takes 0 to 255 s, not '5 s'"},
         {"sensor = hps167s\nwarm-up =\n", "2: warm-up takes 0 to 255 s, not ''"},
@@ -53,18 +53,17 @@ TEST(every_mistake_in_a_file_is_told_with_its_line_and_nothing_is_sent)
         {"sensor = hps167s\nreconnect-time = 100\n",
          "2: reconnect-time takes 0 to 2147483646, a multiple of 18 ms, not '100'"},
         {"sensor = hps167s\naddress = 0\n", "2: address takes 1 to 32, not '0'"},
-        {"sensor = hps167s\nwarm-up = 5\nwarm-up = 5\n", "3: warm-up stands in line 2 already"},
-        {"sensor = hps167s\nwarm-up = not readable\nwarm-up = 5\n", "3: warm-up stands in line 2 already"},
+        {"sensor = hps167s\nwarm-up = 5\nwarm-up = 5\n", "3: warm-up occurs in line 2 already"},
+        {"sensor = hps167s\nwarm-up = not readable\nwarm-up = 5\n", "3: warm-up occurs in line 2 already"},
         {"sensor = hps167s\nwarmup = 5\n",
-         "2: 'warmup' is nothing that is kept of an hps167s; fathom save prints what is"},
+         "2: 'warmup' is no setting that 'fathom save' prints for an hps167s"},
         {"sensor = hps167s\nWarm-up = 5\n",
-         "2: 'Warm-up' is nothing that is kept of an hps167s; fathom save prints what is"},
-        {"sensor = hps167s\n= 5\n",
-         "2: '' is nothing that is kept of an hps167s; fathom save prints what is"},
+         "2: 'Warm-up' is no setting that 'fathom save' prints for an hps167s"},
+        {"sensor = hps167s\n= 5\n", "2: '' is no setting that 'fathom save' prints for an hps167s"},
         {"sensor = hps167s\ntemperature = 25.0\n",
-         "2: 'temperature' is nothing that is kept of an hps167s; fathom save prints what is"},
+         "2: 'temperature' is no setting that 'fathom save' prints for an hps167s"},
         {"sensor = hps167s\nbaud-code = 1\n",
-         "2: 'baud-code' is nothing that is kept of an hps167s; fathom save prints what is"},
+         "2: 'baud-code' is no setting that 'fathom save' prints for an hps167s"},
         {"sensor = hps167s\nuuid = 0039002542345714203438350106070500390025423457142034383501060705\n",
          "2: the value of uuid is too long"},
     };
@@ -92,12 +91,10 @@ TEST(what_drives_a_terminal_is_refused_and_not_printed)
         char text[128];
         (void)snprintf(text, sizeof text, "sensor = hps167s\n%s\n", rows[i]);
         desk_write("unit", text);
-        refuses(2, "hps167s",
-                "2: before any # the line has a character that cannot be printed, or is not of ASCII");
+        refuses(2, "hps167s", "2: the line has a character that cannot be printed or is not ASCII");
     }
     desk_write("unit", "sensor = \x1b[2J\n");
-    refuses(2, "hps167s",
-            "1: before any # the line has a character that cannot be printed, or is not of ASCII");
+    refuses(2, "hps167s", "1: the line has a character that cannot be printed or is not ASCII");
     desk_write("unit", "sensor = hps167s # \xc3\xa4 and \x1b[2J\n");
     const tool_run_t *const run =
         tool_run(&bench.tool, "restore hps167s --port line --file %s", desk_path("unit"));
@@ -109,9 +106,9 @@ TEST(what_drives_a_terminal_is_refused_and_not_printed)
 TEST(a_command_of_an_a16_is_no_line_of_a_file)
 {
     desk_write("unit", "sensor = a16\noperating-mode = automatic\n");
-    refuses(2, "a16", "2: 'operating-mode' is nothing that is kept of an a16; fathom save prints what is");
+    refuses(2, "a16", "2: 'operating-mode' is no setting that 'fathom save' prints for an a16");
     desk_write("unit", "sensor = a16\nautomatic-output = on\n");
-    refuses(2, "a16", "2: 'automatic-output' is nothing that is kept of an a16; fathom save prints what is");
+    refuses(2, "a16", "2: 'automatic-output' is no setting that 'fathom save' prints for an a16");
 }
 
 /* A line of `length` bytes in all, second in the file. */
@@ -140,7 +137,7 @@ TEST(what_is_no_text_is_refused)
     assert_non_null(file);
     assert_int_equal(fwrite("sensor = hps167s\nwarm\0-up = 5\n", 1, 30, file), 30);
     assert_int_equal(fclose(file), 0);
-    refuses(2, "hps167s", "2: the line has a byte 0; this is no text");
+    refuses(2, "hps167s", "2: the line has a byte 0, so this is no text file");
 }
 
 TEST(a_file_that_cannot_be_read_is_told)

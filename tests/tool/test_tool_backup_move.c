@@ -53,7 +53,7 @@ TEST(a_new_unit_takes_the_place_of_the_saved_one)
     assert_int_equal(bench.hps167s.device.address, 7);
     assert_int_equal(bench.hps167s.baud_code, 2);
     assert_int_equal(bench.hps167s.warm_up_s, 5);
-    says(0, "nothing differs", "restore hps167s:7 --baud 57600 --as-new");
+    says(0, "no differences", "restore hps167s:7 --baud 57600 --as-new");
 }
 
 /* Its settings, then its address, then its rate; and then it is looked at again. */
@@ -65,8 +65,8 @@ TEST(the_settings_come_before_the_address_and_the_rate_last)
                                         "reconnect-time is",
                                         "hps167s:1: address is 7\n",
                                         "hps167s:7: baud is 57600 (was 19200)\n",
-                                        "hps167s:7: it answers there, 57600 8E1\n",
-                                        "now: the same unit\n"};
+                                        "hps167s:7: responds at the new place, 57600 8E1\n",
+                                        "now: the same sensor\n"};
     desk_write("unit", hps167s_file);
     bench_hps167s(any_hps167s);
     const tool_run_t *const run =
@@ -86,7 +86,7 @@ TEST(a_rate_of_the_next_power_on_is_told_and_the_unit_is_found_where_it_is)
     desk_write("unit", hps167s_file);
     bench_hps167s((fathom_sim_hps167s_config_t){.baud_at_power_on = true});
     says(0, "baud is 57600 from the next power-on (19200 until then)\n", "restore hps167s --as-new");
-    says(0, "nothing differs", "restore hps167s:7 --as-new");
+    says(0, "no differences", "restore hps167s:7 --as-new");
     assert_int_equal(counters()->writes, 6);
 }
 
@@ -94,13 +94,13 @@ TEST(an_a16_and_an_a05_move_to_their_addresses)
 {
     bench_a16(any_a16);
     desk_write("unit", "sensor = a16\naddress = 200\nswitch-threshold = 500\n");
-    says(0, "a16:200: it answers there, 9600 8N1\n", "restore a16 --as-new");
+    says(0, "a16:200: responds at the new place, 9600 8N1\n", "restore a16 --as-new");
     assert_int_equal(bench.a16.device.address, 200);
     assert_int_equal(bench.a16.threshold_mm, 500);
     bench_begin();
     bench_a05(any_a05);
     desk_write("unit", "sensor = a05\naddress = 2\n");
-    says(0, "a05:2: it answers there, 9600 8N1\n", "restore a05 --as-new");
+    says(0, "a05:2: responds at the new place, 9600 8N1\n", "restore a05 --as-new");
     assert_int_equal(bench.a05.device.address, 2);
 }
 
@@ -170,7 +170,7 @@ TEST(one_that_sends_unasked_moves_too)
         bench_begin();
         bench_hps167s((fathom_sim_hps167s_config_t){.unasked_us = 18500, .seed = phase_us});
         fathom_sim_clock_advance(&bench.clock, 1000000 + phase_us);
-        says(0, "hps167s:7: it answers there, ", "restore hps167s --as-new");
+        says(0, "hps167s:7: responds at the new place, ", "restore hps167s --as-new");
         assert_int_equal(counters()->writes, 2);
     }
 }
@@ -193,9 +193,9 @@ TEST(another_unit_at_the_new_place_is_no_success)
     inner_write = bench.tool.uart.write;
     bench.tool.uart.write = swap;
     desk_write("unit", "sensor = hps167s\naddress = 7\n");
-    says(1, " now: another unit\n", "restore hps167s --as-new");
+    says(1, " now: another sensor\n", "restore hps167s --as-new");
     desk_write("unit", "sensor = hps167s\naddress = 8\n");
-    says(1, "another unit answers at the new place", "restore hps167s:7 --as-new");
+    says(1, "another sensor responds at the new place", "restore hps167s:7 --as-new");
 }
 
 /* ---- interrupted ---- */
@@ -247,7 +247,7 @@ TEST(what_was_interrupted_is_carried_on_by_the_next_run)
         if (written_count != 0) {
             after_a_write++;
             /* it answers at last behind all that is written; the others are named */
-            assert_true(strstr(run->err, "it has ended at ") != NULL || written_count == 6);
+            assert_true(strstr(run->err, "stopped at ") != NULL || written_count == 6);
         } else {
             assert_true(strstr(run->err, "not_written") != NULL ||
                         strstr(run->err, "nothing was written") != NULL);
@@ -266,7 +266,7 @@ TEST(what_was_interrupted_is_carried_on_by_the_next_run)
     assert_true(ended > 300 && after_a_write > 100);
 }
 
-/* What is written whatever it is comes behind what is compared, and is named where the run ends after it. */
+/* What is written without comparison comes behind what is compared, and is named where the run ends after it. */
 TEST(what_would_be_written_again_is_named)
 {
     bool was_named = false;
@@ -279,8 +279,8 @@ TEST(what_would_be_written_again_is_named)
         if (run->status == 0) break;
         const bool is_written = bench.hps167s.user.offset_mm == -15;
         const bool is_named =
-            strstr(run->err,
-                   "run again it would also write distance-offset again; put `not readable` there") != NULL;
+            strstr(run->err, "before you run restore again, write `not readable` for distance-offset in ") !=
+            NULL;
         if (is_written && !is_named) fail_msg("%u us: %s", (unsigned)end_us, run->err);
         if (is_named) assert_int_equal(bench.hps167s.warm_up_s, 9);
         was_named = was_named || is_named;

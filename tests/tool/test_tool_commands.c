@@ -161,10 +161,10 @@ TEST(a_reset_that_is_not_acknowledged_says_what_is_not_known)
 {
     assert_string_equal(
         reset_unheard("--yes-load-factory-sensor-settings"),
-        "fathom: hps167s:7: it was sent, and no acknowledgement came: it may hold or not, and "
-        "cannot be read back\n");
+        "fathom: hps167s:7: the reset was sent, and no acknowledgement was received. The sensor "
+        "may have its factory settings or not; they cannot be read back\n");
     assert_non_null(strstr(reset_unheard("--yes-restore-factory-settings"),
-                           "it is at address 1, 19200 8E1, or still at address 7, 19200 8E1"));
+                           "It is at address 1, 19200 8E1, or still at address 7, 19200 8E1"));
 }
 
 TEST(scan_finds_one_of_each_sensor_on_a_line)

@@ -5,8 +5,7 @@
 #include "commands/commands.h"
 #include "ports/line_text.h"
 
-/* fathom reset: the two commands of an HPS-167S that throw settings away.
- * Nothing else of the tool sends them. */
+/* fathom reset sends the two commands of an HPS-167S that discard settings. Nothing else sends them. */
 
 typedef struct {
     session_settings_t session;
@@ -39,38 +38,41 @@ static fathom_status_t load(reader_t *reader, void *ctx)
     return session.sensor->model->reset.load(reader);
 }
 
-static int finish(bool is_restore, fathom_status_t status)
+static int print_done(bool is_restore)
 {
-    const sensor_t *const station = session.sensor;
-    if (status == FATHOM_OK) {
-        if (is_restore)
-            (void)printf("%s: the interface has its factory settings: address 1, "
-                         "19200 8E1, termination on\n"
-                         "from now on: fathom read hps167s --port %s\n",
-                         station->name, session_port(&session)->path);
-        else
-            (void)printf("%s: the sensor has acknowledged that it loads its factory "
-                         "settings; they cannot be read "
-                         "back\n",
-                         station->name);
-        return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
-    }
-    const bool is_sent = station->model->reset.is_sent(station->reader);
-    const bool is_told = status == FATHOM_ERR_UNCONFIRMED || status == FATHOM_ERR_EXCEPTION;
-    (void)fprintf(stderr, "fathom: %s: %s", station->name,
-                  !is_sent  ? "nothing was written: "
-                  : is_told ? ""
-                            : "it was sent, and is not confirmed: ");
-    if (status == FATHOM_ERR_UNCONFIRMED && !is_restore) {
-        (void)fputs("it was sent, and no acknowledgement came: it may hold or not, and cannot be read back",
-                    stderr);
-    } else if (status == FATHOM_ERR_UNCONFIRMED) {
+    if (is_restore)
+        (void)printf("%s: the interface has its factory settings: address 1, 19200 8E1, termination on\n"
+                     "from now on: fathom read hps167s --port %s\n",
+                     session.sensor->name, session_port(&session)->path);
+    else
+        (void)printf(
+            "%s: the sensor acknowledged that it loads its factory settings; they cannot be read back\n",
+            session.sensor->name);
+    return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
+}
+
+static int print_failure(bool is_restore, fathom_status_t status)
+{
+    const sensor_t *const sensor = session.sensor;
+    const bool is_unconfirmed = status == FATHOM_ERR_UNCONFIRMED;
+    const char *start = "the reset was sent, and is not confirmed: ";
+    if (!sensor->model->reset.is_sent(sensor->reader))
+        start = "nothing was written: ";
+    else if (is_unconfirmed || status == FATHOM_ERR_EXCEPTION)
+        start = "";
+    (void)fprintf(stderr, "fathom: %s: %s", sensor->name, start);
+    if (is_unconfirmed && is_restore) {
         char line[LINE_TEXT];
-        (void)fprintf(stderr,
-                      "the reset was sent, and then the device could not be read: "
-                      "it is at address 1, 19200 8E1, or "
-                      "still at address %u, %s; try fathom scan --port %s",
-                      station->address, line_text(&station->line, line), session_port(&session)->path);
+        (void)fprintf(
+            stderr,
+            "the reset was sent, but then the sensor could not be read. It is at address 1, 19200 8E1, "
+            "or still at address %u, %s. Run 'fathom scan --port %s'",
+            sensor->address, line_text(&sensor->line, line), session_port(&session)->path);
+    } else if (is_unconfirmed) {
+        (void)fputs(
+            "the reset was sent, and no acknowledgement was received. The sensor may have its factory "
+            "settings or not; they cannot be read back",
+            stderr);
     } else {
         session_explain(&session, status);
     }
@@ -107,7 +109,8 @@ static int start(const host_t *host, const arguments_t *arguments)
     bool is_restore = false;
     if (!set_up(arguments, &is_restore)) return STATUS_USAGE;
     if (!session_open(&session, host)) return STATUS_FAILED;
-    const int status = finish(is_restore, session_call(&session, is_restore ? restore : load, NULL));
+    const fathom_status_t result = session_call(&session, is_restore ? restore : load, NULL);
+    const int status = result == FATHOM_OK ? print_done(is_restore) : print_failure(is_restore, result);
     session_close(&session);
     return status;
 }

@@ -10,7 +10,7 @@
 #include "device/setting_text.h"
 #include "output/words.h"
 
-/* fathom restore: what a file of fathom save has, into a unit. */
+/* fathom restore writes the settings of a file of fathom save to a sensor. */
 
 typedef struct {
     session_settings_t session;
@@ -52,7 +52,7 @@ static bool write_row(const plan_t *plan, size_t n)
            (!setting->moves || presence_follow(&session));
 }
 
-/* Of the rows from one to another, the names; of those that the unit does not tell alone, if that is asked for. */
+/* Lists the names of rows `from` to `to` - 1, or only the write-only ones among them. */
 static const char *names(const plan_t *plan, size_t from, size_t to, bool is_unseen,
                          char text[SETTING_VALUES])
 {
@@ -63,15 +63,16 @@ static const char *names(const plan_t *plan, size_t from, size_t to, bool is_uns
     return text;
 }
 
-/* Of the first `count` rows: what the next run would write once more. */
+/* Prints which of the first `count` rows the next run would write again. */
 static void print_again(const plan_t *plan, size_t count, const char *path)
 {
     char unseen[SETTING_VALUES];
     if (names(plan, 0, count, true, unseen)[0] == '\0') return;
     (void)fflush(stdout);
-    (void)fprintf(stderr,
-                  "fathom: run again it would also write %s again; put `not readable` there in %s first.\n",
-                  unseen, path);
+    (void)fprintf(
+        stderr,
+        "fathom: before you run restore again, write `not readable` for %s in %s, or it is written again.\n",
+        unseen, path);
 }
 
 static void print_stop(const plan_t *plan, size_t n, const char *path)
@@ -81,26 +82,26 @@ static void print_stop(const plan_t *plan, size_t n, const char *path)
     const bool is_written = reader_facts(session.sensor->reader).is_written;
     (void)names(plan, 0, n, false, before);
     (void)names(plan, n + 1, plan->count, false, after);
-    (void)fprintf(stderr, "fathom: it has ended at %s; written before: %s; not written: %s\n",
+    (void)fprintf(stderr, "fathom: stopped at %s. Written before: %s. Not written: %s\n",
                   row_of(plan, n)->name, before[0] != '\0' ? before : "nothing",
                   after[0] != '\0' ? after : "nothing else");
     print_again(plan, is_written ? n + 1 : n, path);
 }
 
-static int write_all(const plan_t *plan, const char *path)
+static bool write_all(const plan_t *plan, const char *path)
 {
     for (size_t n = 0; n != plan->count; n++) {
         if (write_row(plan, n)) continue;
         print_stop(plan, n, path);
-        return STATUS_FAILED;
+        return false;
     }
-    return STATUS_OK;
+    return true;
 }
 
-/* ---- the whole ---- */
+/* ---- moving ---- */
 
-/* Where the plan has this kind of place: what the file has of it. */
-static bool finds(const plan_t *plan, bool is_baud, const backup_row_t **row)
+/* Finds the address or the baud rate that the plan writes. */
+static bool find_place(const plan_t *plan, bool is_baud, const backup_row_t **row)
 {
     for (size_t n = 0; n != plan->count; n++) {
         *row = &plan->file->rows[plan->order[n]];
@@ -114,32 +115,33 @@ static bool is_place_free(const plan_t *plan)
     const backup_row_t *row = NULL;
     uint8_t address = session.sensor->address;
     uint32_t baud = session.sensor->line.baud;
-    if (finds(plan, false, &row)) address = (uint8_t)row->value;
-    if (finds(plan, true, &row)) (void)number_parse(row->text, 0, UINT32_MAX, &baud);
+    if (find_place(plan, false, &row)) address = (uint8_t)row->value;
+    if (find_place(plan, true, &row)) (void)number_parse(row->text, 0, UINT32_MAX, &baud);
     return presence_is_free(&session, address, baud);
 }
 
 static bool has_moved(const plan_t *plan)
 {
     const backup_row_t *row = NULL;
-    return finds(plan, false, &row) || finds(plan, true, &row);
+    return find_place(plan, false, &row) || find_place(plan, true, &row);
 }
 
-/* At its new place: is it the same one? */
-static int look_again(const backup_t *unit)
+/* Returns true if the same sensor responds at the new place. */
+static bool is_still_same(const backup_t *unit)
 {
     backup_t now;
     char line[LINE_TEXT];
     if (!backup_read(&session, &now)) {
-        (void)fputs("fathom: all that differed is written; whether it is the same unit there is not known.\n",
+        (void)fputs("fathom: all differences are written, but the sensor cannot be read at its new place.\n",
                     stderr);
-        return STATUS_FAILED;
+        return false;
     }
-    (void)printf("%s: it answers there, %s\n", session.sensor->name, session_line_text(&session, line));
-    if (plan_print_identity(unit, "before", &now, "now")) return STATUS_OK;
+    (void)printf("%s: responds at the new place, %s\n", session.sensor->name,
+                 session_line_text(&session, line));
+    if (plan_print_identity(unit, "before", &now, "now")) return true;
     (void)fflush(stdout);
-    (void)fputs("fathom: another unit answers at the new place; try fathom scan.\n", stderr);
-    return STATUS_FAILED;
+    (void)fputs("fathom: another sensor responds at the new place. Run 'fathom scan'\n", stderr);
+    return false;
 }
 
 static int restore(const backup_t *file, const char *path, bool is_dry, bool is_new)
@@ -150,21 +152,22 @@ static int restore(const backup_t *file, const char *path, bool is_dry, bool is_
         (void)fputs("fathom: nothing was written.\n", stderr);
         return STATUS_FAILED;
     }
-    /* the rate of a gateway's line is not its unit's alone */
-    plan_begin(&plan, file, &unit, is_new, is_new && port_has_line(&session.port));
+    /* the baud rate of a gateway belongs to all sensors on its line */
+    plan_init(&plan, file, &unit, is_new, is_new && port_has_line(&session.port));
     plan_print(&plan);
     if (is_dry) return plan.count == 0 && !plan.is_impossible ? STATUS_OK : STATUS_FAILED;
-    if (fflush(stdout) != 0 || ferror(stdout) != 0) return STATUS_FAILED; /* unseen, nothing is written */
+    if (fflush(stdout) != 0 || ferror(stdout) != 0)
+        return STATUS_FAILED; /* without the plan on stdout nothing is written */
     if (plan.is_impossible) {
         (void)fprintf(stderr,
-                      "fathom: nothing was written: this unit does not have all that the file has; put "
-                      "`not there` in %s for what it is to do without.\n",
+                      "fathom: nothing was written: this sensor does not have all settings of the file. "
+                      "Write `not there` for those in %s\n",
                       path);
         return STATUS_FAILED;
     }
     if (has_moved(&plan) && !is_place_free(&plan)) return STATUS_FAILED;
-    if (write_all(&plan, path) != STATUS_OK) return STATUS_FAILED;
-    if (!has_moved(&plan) || look_again(&unit) == STATUS_OK) return STATUS_OK;
+    if (!write_all(&plan, path)) return STATUS_FAILED;
+    if (!has_moved(&plan) || is_still_same(&unit)) return STATUS_OK;
     print_again(&plan, plan.count, path);
     return STATUS_FAILED;
 }
@@ -194,7 +197,7 @@ static int start(const host_t *host, const arguments_t *arguments)
     const int status = restore(&file, settings->path, settings->is_dry, settings->is_new);
     session_close(&session);
     if (fflush(stdout) == 0 && ferror(stdout) == 0) return status;
-    (void)fputs("fathom: the output cannot be written.\n", stderr);
+    (void)fputs("fathom: cannot write the output.\n", stderr);
     return STATUS_FAILED;
 }
 

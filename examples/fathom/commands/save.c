@@ -5,7 +5,7 @@
 #include "device/new_file.h"
 #include "output/timestamp.h"
 
-/* fathom save: the settings of a unit as a file, for fathom restore. */
+/* fathom save writes the settings of a sensor to a file, for fathom restore. */
 
 typedef struct {
     session_settings_t session;
@@ -42,13 +42,13 @@ static int save(const host_t *host, const char *path)
     if (path == NULL) {
         print(stdout, host, &unit);
     } else {
-        if (!new_file_begin(&file, path)) return STATUS_FAILED;
+        if (!new_file_open(&file, path)) return STATUS_FAILED;
         print(file.file, host, &unit);
-        if (!new_file_end(&file)) return STATUS_FAILED;
-        (void)printf("%s: its settings are in %s\n", session.sensor->name, path);
+        if (!new_file_close(&file)) return STATUS_FAILED;
+        (void)printf("%s: the settings are in %s\n", session.sensor->name, path);
     }
     if (fflush(stdout) == 0 && ferror(stdout) == 0) return STATUS_OK;
-    (void)fputs("fathom: the output cannot be written.\n", stderr);
+    (void)fputs("fathom: cannot write the output.\n", stderr);
     return STATUS_FAILED;
 }
 

@@ -41,8 +41,8 @@ bool backup_is_same(const setting_t *setting, const backup_row_t *one, const bac
     return setting->set != NULL ? one->value == other->value : strcmp(one->text, other->text) == 0;
 }
 
-/* A single response may be lost; a backup without it, or with "not there", would be wrong for years. */
-static fathom_status_t read_patiently(session_t *session, const setting_t *setting, char text[SETTING_TEXT])
+/* One response may be lost, and a backup without this value, or with "not there", would be wrong. */
+static fathom_status_t read_repeatedly(session_t *session, const setting_t *setting, char text[SETTING_TEXT])
 {
     enum { TIMES = 3 };
     fathom_status_t status = FATHOM_ERR_NO_RESPONSE;
@@ -60,11 +60,11 @@ static fathom_status_t read_row(session_t *session, const setting_t *setting, ba
     row->held = HELD_VALUE;
     if (setting->get == NULL && !setting->moves) {
         row->held = HELD_NOT_READABLE;
-    } else if (setting->get == NULL) { /* the address at which it answers */
+    } else if (setting->get == NULL) { /* the address at which the sensor responds */
         row->value = session->sensor->address;
         setting_print_value(setting, row->value, row->text);
     } else {
-        row->status = read_patiently(session, setting, row->text);
+        row->status = read_repeatedly(session, setting, row->text);
         const bool may_be_missing = setting->is_of_variant || setting->set == NULL;
         if (row->status != FATHOM_OK && (!may_be_missing || setting_reason(row->status) == NULL))
             return row->status;
@@ -76,7 +76,7 @@ static fathom_status_t read_row(session_t *session, const setting_t *setting, ba
     return FATHOM_OK;
 }
 
-static bool failed(session_t *session, const setting_t *setting, fathom_status_t status)
+static bool fail(session_t *session, const setting_t *setting, fathom_status_t status)
 {
     session_end_task(session);
     (void)fflush(stdout);
@@ -89,7 +89,7 @@ static bool failed(session_t *session, const setting_t *setting, fathom_status_t
 static bool read_all(session_t *session, backup_t *unit)
 {
     const setting_t *const settings = session_settings(session);
-    const setting_t *known = NULL; /* the first one that it has told, */
+    const setting_t *known = NULL; /* the first setting that was read */
     const setting_t *missing = NULL;
     memset(unit, 0, sizeof *unit);
     unit->model = session->sensor->model;
@@ -97,15 +97,16 @@ static bool read_all(session_t *session, backup_t *unit)
         backup_row_t *const row = &unit->rows[i];
         if (!backup_has(&settings[i])) continue;
         const fathom_status_t status = read_row(session, &settings[i], row);
-        if (status != FATHOM_OK) return failed(session, &settings[i], status);
+        if (status != FATHOM_OK) return fail(session, &settings[i], status);
         if (row->held == HELD_NOT_THERE) missing = &settings[i];
         if (known == NULL && settings[i].get != NULL && row->held != HELD_NOT_THERE) known = &settings[i];
     }
     if (missing == NULL) return true;
-    if (known == NULL) return failed(session, missing, FATHOM_ERR_NO_RESPONSE);
-    char text[SETTING_TEXT]; /* and does it still? Else that another one is not there means nothing */
-    const fathom_status_t status = read_patiently(session, known, text);
-    return status == FATHOM_OK || failed(session, known, status);
+    if (known == NULL) return fail(session, missing, FATHOM_ERR_NO_RESPONSE);
+    /* A setting is missing only if the sensor still responds. */
+    char text[SETTING_TEXT];
+    const fathom_status_t status = read_repeatedly(session, known, text);
+    return status == FATHOM_OK || fail(session, known, status);
 }
 
 bool backup_read(session_t *session, backup_t *unit)

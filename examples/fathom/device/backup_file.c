@@ -86,7 +86,7 @@ static void print_group(FILE *to, const backup_t *unit, size_t group)
 void backup_print(FILE *to, const backup_t *unit, const char *place, const char *when)
 {
     (void)fprintf(to,
-                  "# The settings of a range sensor, as fathom save %s has read them at\n"
+                  "# The settings of a range sensor, read by fathom save %s at\n"
                   "# %s, %s. fathom restore writes them into a unit.\n"
                   "# A value may be changed; a line may be taken out, then restore leaves that as it is.\n\n",
                   FATHOM_VERSION_STRING, place, when);
@@ -126,7 +126,7 @@ backup_result_t backup_refuse(const char *path, const backup_row_t *row, const c
     return wrong(&parser, "%s", why);
 }
 
-/* Without the blanks at both ends. */
+/* Returns the text without blanks at both ends. */
 static char *trim(char *text)
 {
     size_t length = strlen(text);
@@ -136,9 +136,9 @@ static char *trim(char *text)
 
 static backup_result_t parse_sensor(parser_t *parser, const char *value)
 {
-    if (parser->has_sensor) return wrong(parser, "%s stands here a second time", sensor);
+    if (parser->has_sensor) return wrong(parser, "%s occurs twice", sensor);
     if (strcmp(value, parser->backup->model->name) != 0)
-        return wrong(parser, "the file is of '%s', and the unit is to be an %s", value,
+        return wrong(parser, "the file belongs to '%s', and the sensor is an %s", value,
                      parser->backup->model->name);
     parser->has_sensor = true;
     return BACKUP_OK;
@@ -148,7 +148,7 @@ static backup_result_t parse_value(const parser_t *parser, const setting_t *sett
                                    const char *value)
 {
     if (strlen(value) >= sizeof row->text) return wrong(parser, "the value of %s is too long", setting->name);
-    if (row->line != 0) return wrong(parser, "%s stands in line %u already", setting->name, row->line);
+    if (row->line != 0) return wrong(parser, "%s occurs in line %u already", setting->name, row->line);
     row->line = parser->line;
     for (held_t held = HELD_NOT_READABLE; held <= HELD_NOT_SETTABLE; held++) {
         if (strcmp(value, backup_word(held)) != 0) continue;
@@ -165,7 +165,7 @@ static backup_result_t parse_value(const parser_t *parser, const setting_t *sett
     return BACKUP_OK;
 }
 
-/* Names and values are printed, in messages and in what differs: what drives a terminal may not be among them. */
+/* Names and values are printed, so they must not contain what controls a terminal. */
 static bool is_printable(const char *text)
 {
     for (; *text != '\0'; text++)
@@ -181,22 +181,21 @@ static backup_result_t parse_line(parser_t *parser, char *line)
     char *const sign = strchr(name, '=');
     if (name[0] == '\0') return BACKUP_OK;
     if (!is_printable(name))
-        return wrong(parser,
-                     "before any # the line has a character that cannot be printed, or is not of ASCII");
-    if (sign == NULL) return wrong(parser, "'%s' is no line of the form NAME = VALUE", name);
+        return wrong(parser, "the line has a character that cannot be printed or is not ASCII");
+    if (sign == NULL) return wrong(parser, "'%s' does not have the form NAME = VALUE", name);
     *sign = '\0';
     const char *const value = trim(sign + 1);
     (void)trim(name);
     if (strcmp(name, sensor) == 0) return parse_sensor(parser, value);
-    if (!parser->has_sensor) return wrong(parser, "'%s' before the line %s = %s", name, sensor, model->name);
+    if (!parser->has_sensor)
+        return wrong(parser, "the line '%s' comes before the line '%s = %s'", name, sensor, model->name);
     for (size_t i = 0; i != backup_count(model); i++)
         if (backup_has(&model->settings[i]) && strcmp(model->settings[i].name, name) == 0)
             return parse_value(parser, &model->settings[i], &parser->backup->rows[i], value);
-    return wrong(parser, "'%s' is nothing that is kept of an %s; fathom save prints what is", name,
-                 model->name);
+    return wrong(parser, "'%s' is no setting that 'fathom save' prints for an %s", name, model->name);
 }
 
-/* A line without its end. Returns false at the end of the file; *length: more than BACKUP_LINE where it is too long. */
+/* Reads a line without its end. Returns false at the end of the file. *length exceeds BACKUP_LINE if it is too long. */
 static bool get_line(FILE *from, char line[BACKUP_LINE + 2], size_t *length, bool *has_zero)
 {
     int c;
@@ -221,7 +220,7 @@ static backup_result_t parse(parser_t *parser, FILE *from)
         if (length > BACKUP_LINE)
             result = wrong(parser, "the line is longer than %d characters", BACKUP_LINE);
         else if (has_zero)
-            result = wrong(parser, "the line has a byte 0; this is no text");
+            result = wrong(parser, "the line has a byte 0, so this is no text file");
         else
             result = parse_line(parser, line);
     }
@@ -232,7 +231,7 @@ static backup_result_t parse(parser_t *parser, FILE *from)
     }
     if (result != BACKUP_OK || parser->has_sensor) return result;
     parser->line = 0;
-    return wrong(parser, "there is no line %s = %s; is it a file of fathom save?", sensor,
+    return wrong(parser, "the line '%s = %s' is missing. Is this a file of 'fathom save'?", sensor,
                  parser->backup->model->name);
 }
 

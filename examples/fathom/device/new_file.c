@@ -8,42 +8,40 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { ANY_MAY = 0666 }; /* less what the user's umask takes away */
+enum { ALL_READ_WRITE = 0666 }; /* without the bits of the umask */
 
-static bool failed(const char *path, int error)
+static bool fail(const char *path, int error)
 {
     if (error == EEXIST)
-        (void)fprintf(
-            stderr,
-            "fathom: %s is there already and is not overwritten; take another name, or move it away.\n",
-            path);
+        (void)fprintf(stderr,
+                      "fathom: %s exists and is not overwritten. Use another name, or move the file.\n", path);
     else
-        (void)fprintf(stderr, "fathom: %s cannot be written: %s\n", path, strerror(error));
+        (void)fprintf(stderr, "fathom: cannot write %s: %s\n", path, strerror(error));
     return false;
 }
 
 bool new_file_is_free(const char *path)
 {
     struct stat is;
-    return lstat(path, &is) != 0 || failed(path, EEXIST);
+    return lstat(path, &is) != 0 || fail(path, EEXIST);
 }
 
-bool new_file_begin(new_file_t *file, const char *path)
+bool new_file_open(new_file_t *file, const char *path)
 {
     const int length = snprintf(file->temporary, sizeof file->temporary, "%s.%ld.part", path, (long)getpid());
     file->path = path;
     file->file = NULL;
-    if (length < 0 || (size_t)length >= sizeof file->temporary) return failed(path, ENAMETOOLONG);
-    const int fd = open(file->temporary, O_WRONLY | O_CREAT | O_EXCL, ANY_MAY);
-    if (fd < 0) return failed(file->temporary, errno);
+    if (length < 0 || (size_t)length >= sizeof file->temporary) return fail(path, ENAMETOOLONG);
+    const int fd = open(file->temporary, O_WRONLY | O_CREAT | O_EXCL, ALL_READ_WRITE);
+    if (fd < 0) return fail(file->temporary, errno);
     file->file = fdopen(fd, "w");
     if (file->file != NULL) return true;
     (void)close(fd);
     (void)unlink(file->temporary);
-    return failed(path, ENOMEM);
+    return fail(path, ENOMEM);
 }
 
-/* Whole and on the disk. Returns 0, or errno. */
+/* Writes the file to the disk. Returns 0, or errno. */
 static int finish(FILE *file)
 {
     errno = 0;
@@ -52,10 +50,11 @@ static int finish(FILE *file)
     return fclose(file) == 0 || error != 0 ? error : errno;
 }
 
-/* Takes the name, which only one can, and then the place. Also where there are no hard links, as on a USB stick. */
-static int take_name(const new_file_t *file)
+/* Creates the name, which only one program can, and renames the file to it. Needs no hard links, which a USB stick does
+ * not have. */
+static int set_name(const new_file_t *file)
 {
-    const int fd = open(file->path, O_WRONLY | O_CREAT | O_EXCL, ANY_MAY);
+    const int fd = open(file->path, O_WRONLY | O_CREAT | O_EXCL, ALL_READ_WRITE);
     if (fd < 0) return errno;
     (void)close(fd);
     if (rename(file->temporary, file->path) == 0) return 0;
@@ -64,11 +63,11 @@ static int take_name(const new_file_t *file)
     return error;
 }
 
-bool new_file_end(new_file_t *file)
+bool new_file_close(new_file_t *file)
 {
     int error = finish(file->file);
-    if (error == 0) error = take_name(file);
+    if (error == 0) error = set_name(file);
     if (error == 0) return true;
     (void)unlink(file->temporary);
-    return failed(file->path, error);
+    return fail(file->path, error);
 }

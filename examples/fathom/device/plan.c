@@ -3,8 +3,8 @@
 
 #include <string.h>
 
-/* What moves a unit comes behind what does not, and its rate last; what the unit does not tell behind what it does, so
- * that it is not written where another one fails. */
+/* A setting that moves the sensor is written after the others, and the baud rate last. A write-only setting is written
+ * after those that can be read, so that it is not written if one of them fails. */
 static unsigned rank(const setting_t *setting, plan_step_t step)
 {
     if (setting->is_baud) return 3;
@@ -22,7 +22,7 @@ static plan_step_t step_of(const setting_t *setting, const backup_row_t *file, c
     return unit->held == HELD_NOT_READABLE ? PLAN_WRITE_UNSEEN : PLAN_WRITE;
 }
 
-void plan_begin(plan_t *plan, const backup_t *file, const backup_t *unit, bool moves, bool changes_rate)
+void plan_init(plan_t *plan, const backup_t *file, const backup_t *unit, bool moves, bool changes_rate)
 {
     enum { RANKS = 4 };
     const setting_t *const settings = unit->model->settings;
@@ -45,7 +45,7 @@ void plan_begin(plan_t *plan, const backup_t *file, const backup_t *unit, bool m
     }
 }
 
-/* ---- in words ---- */
+/* ---- printing ---- */
 
 static const char *text_of(const backup_row_t *row)
 {
@@ -65,7 +65,7 @@ bool plan_print_identity(const backup_t *one, const char *one_is, const backup_t
         if (setting->set != NULL || a->held == HELD_NOTHING || b->held == HELD_NOTHING) continue;
         (void)printf("%s: %s %s, %s %s: ", setting->name, text_of(a), one_is, text_of(b), other_is);
         if (a->held != HELD_VALUE || b->held != HELD_VALUE) {
-            (void)puts("not known");
+            (void)puts("unknown");
             continue;
         }
         const bool same = backup_is_same(setting, a, b);
@@ -73,10 +73,9 @@ bool plan_print_identity(const backup_t *one, const char *one_is, const backup_t
             is_known = true;
             is_same = same;
         }
-        (void)printf("%s %s\n", same ? "the same" : "another", is_unit ? "unit" : "version");
+        (void)printf("%s %s\n", same ? "the same" : "another", is_unit ? "sensor" : "version");
     }
-    if (!is_known)
-        (void)puts("whether it is the same unit is not known: there is no number of it to compare");
+    if (!is_known) (void)puts("unknown whether it is the same sensor: it has no number to compare");
     return is_same;
 }
 
@@ -95,11 +94,11 @@ static const char *note(const plan_t *plan, plan_step_t step)
 {
     switch (step) {
     case PLAN_WRITE_UNSEEN:
-        return "  is written whatever it is";
+        return "  is written without comparison";
     case PLAN_STAYS:
-        return plan->moves ? "  stays: the line is the gateway's" : "  stays, without --as-new";
+        return plan->moves ? "  stays: the baud rate is the gateway's" : "  stays, without --as-new";
     case PLAN_IMPOSSIBLE:
-        return "  this unit does not have it";
+        return "  this sensor does not have it";
     default:
         return "";
     }
@@ -108,19 +107,19 @@ static const char *note(const plan_t *plan, plan_step_t step)
 void plan_print(const plan_t *plan)
 {
     const model_t *const model = plan->unit->model;
-    bool is_begun = false;
-    (void)plan_print_identity(plan->file, "in the file", plan->unit, "in the unit");
+    bool has_header = false;
+    (void)plan_print_identity(plan->file, "in the file", plan->unit, "in the sensor");
     for (size_t i = 0; i != backup_count(model); i++) {
         const setting_t *const setting = &model->settings[i];
         char is[CELL];
         char to[CELL];
         if (plan->steps[i] == PLAN_NOTHING) continue;
-        if (!is_begun) (void)printf("%-24s %-14s    %s\n", "setting", "in the unit", "in the file");
-        is_begun = true;
+        if (!has_header) (void)printf("%-24s %-14s    %s\n", "setting", "in the sensor", "in the file");
+        has_header = true;
         (void)printf("%-24s %-14s -> %s%s\n", setting->name, cell(setting, &plan->unit->rows[i], is),
                      cell(setting, &plan->file->rows[i], to), note(plan, plan->steps[i]));
     }
-    if (!is_begun) (void)puts("nothing differs");
+    if (!has_header) (void)puts("no differences");
     for (size_t i = 0; i != backup_count(model); i++) {
         const char *const risk = model->settings[i].risk;
         if (plan->steps[i] != PLAN_WRITE_UNSEEN || risk == NULL) continue;

@@ -88,7 +88,7 @@ presence_t presence_ask(session_t *session, uint8_t address, const fathom_line_s
                         unsigned times)
 {
     presence_t presence = {.what = PRESENT_STOPPED, .status = FATHOM_ERR_ARGUMENT};
-    const fathom_line_settings_t copy = *line; /* session_move() writes the station's, which *line may be */
+    const fathom_line_settings_t copy = *line; /* session_move() writes the sensor's, which *line may be */
     if (session_move(session, address, &copy)) presence.what = ask(session, times, &presence);
     return presence;
 }
@@ -139,8 +139,8 @@ bool presence_is_free(session_t *session, uint8_t address, uint32_t baud)
 
 bool presence_follow(session_t *session)
 {
-    const sensor_t *const station = session->sensor;
-    const reader_facts_t facts = reader_facts(station->reader);
-    const fathom_line_settings_t line = facts.line != NULL ? *facts.line : station->line;
+    const sensor_t *const sensor = session->sensor;
+    const reader_facts_t facts = reader_facts(sensor->reader);
+    const fathom_line_settings_t line = facts.line != NULL ? *facts.line : sensor->line;
     return session_move(session, facts.address, &line);
 }

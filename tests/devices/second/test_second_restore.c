@@ -193,9 +193,9 @@ static void restore(const char *sensor, const wish_t *wishes, size_t count)
         finding("it is not where it is said to be", "baud");
     if (run->status == 0 && (says("address is 3") || says("baud is 57600")) && !says("it answers there"))
         finding("moved, and not looked at again", "restore");
-    if (run->status == 0 && announced == 0 && !says("nothing differs"))
+    if (run->status == 0 && announced == 0 && !says("no differences"))
         finding("success of nothing", "restore");
-    if (run->status != 0 && !says("nothing was written") && !says("it has ended at ") &&
+    if (run->status != 0 && !says("nothing was written") && !says("stopped at ") &&
         !says("all that differed is written"))
         finding("it does not say how it ended", "restore");
     if (rig.to_all != 0) finding("a write to all units", "restore");

@@ -32,18 +32,18 @@ class Backup(e2e.Case):
         self.save('hps167s:7', sim, 'unit')
         self.assertEqual(os.listdir(self.folder), ['unit'])
         self.assertIn('\nwarm-up = 0  ', self.text('unit'))
-        self.assertIn('nothing differs', self.restore('hps167s:7', sim, 'unit', '--dry-run'))
+        self.assertIn('no differences', self.restore('hps167s:7', sim, 'unit', '--dry-run'))
         self.change('unit', 'warm-up = 0  ', 'warm-up = 12 ')
         self.assertIn('0 s            -> 12 s', self.restore('hps167s:7', sim, 'unit', '--dry-run', code=1))
         self.assertIn('warm-up is 12 s (was 0)', self.restore('hps167s:7', sim, 'unit'))
-        self.assertIn('nothing differs', self.restore('hps167s:7', sim, 'unit'))
+        self.assertIn('no differences', self.restore('hps167s:7', sim, 'unit'))
         self.assertEqual(self.writes(sim), [1])
 
     def test_a_file_that_is_there_is_refused_and_a_text_goes_to_the_standard_output(self):
         sim = self.sim('a16:1:modbus')
         self.save('a16', sim, 'unit')
         before = self.text('unit')
-        self.save('a16', sim, 'unit', 1, 'is there already and is not overwritten', out='')
+        self.save('a16', sim, 'unit', 1, 'exists and is not overwritten', out='')
         self.assertEqual(self.text('unit'), before)
         # but for the time of the third line
         out = self.ends(f'save a16 --port {sim}', 0).out
@@ -54,14 +54,14 @@ class Backup(e2e.Case):
         self.ends(f'set hps167s:7 --port {old} baud 57600', 0)
         self.ends(f'save hps167s:7 --baud 57600 --port {old} --file {self.path("unit")}', 0)
         new = self.sim('hps167s --counters')
-        self.assertIn('hps167s:7: it answers there, 57600 8E1', self.restore('hps167s', new, 'unit', '--as-new'))
+        self.assertIn('hps167s:7: responds at the new place, 57600 8E1', self.restore('hps167s', new, 'unit', '--as-new'))
         self.assertEqual(len(self.read_json(f'hps167s:7 --baud 57600 --port {new} --count 1')), 1)
         self.assertEqual(self.writes(new), [2])
 
     def test_an_output_that_is_full_is_an_error_and_leaves_no_file(self):
         sim = self.sim('a05:1:modbus')
         with open('/dev/full', 'w', encoding='ascii') as full:
-            self.ends(f'save a05 --port {sim}', 1, 'the output cannot be written', stdout=full)
+            self.ends(f'save a05 --port {sim}', 1, 'cannot write the output', stdout=full)
         os.mkdir(self.path('closed'), 0o555)
         if os.getuid() != 0:  # whom nothing is closed to
             self.save('a05', sim, 'closed/unit', 1, 'Permission denied')
@@ -72,7 +72,7 @@ class Backup(e2e.Case):
         self.save('a16', sim, 'unit')
         self.change('unit', 'switch-threshold = 1000', 'switch-threshold = 2000')
         with open('/dev/full', 'w', encoding='ascii') as full:
-            self.ends(f'restore a16 --port {sim} --file {self.path("unit")}', 1, 'the output cannot be written',
+            self.ends(f'restore a16 --port {sim} --file {self.path("unit")}', 1, 'cannot write the output',
                       stdout=full)
         self.assertEqual(self.writes(sim), [0])
 

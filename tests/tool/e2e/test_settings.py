@@ -284,7 +284,7 @@ class Reset(Settings):
         # frames 1 to 4 at most response #2 before; what follows is lost
         sim = self.sim(f'hps167s:7 --counters {lost(3, 30)}')
         self.told(f'reset hps167s:7 --port {sim} {self.RESTORE}',
-                  'it is at address 1, 19200 8E1, or still at address 7, 19200 8E1', code=1)
+                  'It is at address 1, 19200 8E1, or still at address 7, 19200 8E1', code=1)
         self.assertEqual(self.counters(sim, 'resets'), [(1,)])
 
 
