@@ -157,7 +157,7 @@ static void expect_advice(const char *advice)
     if (advice != NULL) assert_string_equal(text, advice);
 }
 
-#define SAME_SOCKET ": use the same USB socket (1-1.2) again"
+#define SAME_SOCKET ". Plug this adapter into the same USB socket (1-1.2)"
 #define SHARED      "another adapter has, or may have had, the same serial number" SAME_SOCKET
 #define COUNTED     "other adapters may have the same serial number" SAME_SOCKET
 #define NO_SERIAL   "this adapter has no serial number" SAME_SOCKET

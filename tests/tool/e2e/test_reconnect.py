@@ -171,7 +171,7 @@ class Plug(PlugCase):
 
 class Adapters(PlugCase):
     """USB adapters that share a serial number or have none: the sensor at the port tank is in socket 1-1.2."""
-    SAME_SOCKET = r': use the same USB socket \(1-1.2\) again$'
+    SAME_SOCKET = r'\. Plug this adapter into the same USB socket \(1-1\.2\)$'
 
     def setUp(self):
         super().setUp()
