@@ -236,19 +236,23 @@ void complete(FILE *to, const command_t *const *commands, const help_topic_t *to
 
 bool complete_stub(FILE *to, const char *shell)
 {
-    static const char bash[] = "_fathom() {\n"
-                               "    local cur prev words cword line\n"
-                               "    _init_completion -n := || return\n"
-                               "    COMPREPLY=()\n"
-                               "    while IFS= read -r line; do\n"
-                               "        case $line in\n"
-                               "        :files) [[ $cur == --*=* ]] && cur=${cur#*=}; _filedir ;;\n"
-                               "        *) COMPREPLY+=(\"${line%%$'\\t'*}\") ;;\n"
-                               "        esac\n"
-                               "    done < <(fathom complete \"${words[@]:1:cword}\" 2>/dev/null)\n"
-                               "    [[ ${COMPREPLY-} == *= ]] && compopt -o nospace\n"
-                               "    __ltrim_colon_completions \"$cur\"\n"
-                               "} && complete -F _fathom fathom\n";
+    static const char bash[] =
+        "_fathom() {\n"
+        "    local cur prev words cword line\n"
+        "    _init_completion -n := || return\n"
+        "    COMPREPLY=()\n"
+        "    while IFS= read -r line; do\n"
+        "        case $line in\n"
+        "        :files) [[ $cur == --*=* ]] && cur=${cur#*=}; _filedir ;;\n"
+        "        *)\n"
+        "            [[ $cur == --*=* ]] && line=${line#*=} # bash keeps what stands before =\n"
+        "            COMPREPLY+=(\"${line%%$'\\t'*}\")\n"
+        "            ;;\n"
+        "        esac\n"
+        "    done < <(fathom complete \"${words[@]:1:cword}\" 2>/dev/null)\n"
+        "    [[ ${COMPREPLY-} == *= ]] && compopt -o nospace\n"
+        "    __ltrim_colon_completions \"$cur\"\n"
+        "} && complete -F _fathom fathom\n";
     static const char zsh[] =
         "#compdef fathom\n"
         "local line\n"
@@ -256,10 +260,14 @@ bool complete_stub(FILE *to, const char *shell)
         "for line in \"${(@f)$(fathom complete \"${(@)words[2,CURRENT]}\" 2>/dev/null)}\"; do\n"
         "    case $line in\n"
         "    '') ;;\n"
-        "    :files) [[ -prefix --*= ]] && compset -P 1 '*='; _files ;;\n"
-        "    *) names+=(\"${line%%$'\\t'*}\"); helps+=(\"${line/$'\\t'/ -- }\") ;;\n"
+        "    :files) [[ -prefix --*= ]] && compset -P 1 '*='; _files; return ;;\n"
+        "    *)\n"
+        "        [[ $PREFIX == --*=* ]] && line=${line#*=}\n"
+        "        names+=(\"${line%%$'\\t'*}\"); helps+=(\"${line/$'\\t'/ -- }\")\n"
+        "        ;;\n"
         "    esac\n"
         "done\n"
+        "[[ -prefix --*= ]] && compset -P 1 '*='\n"
         "compadd -l -d helps -S '' -q -a names\n";
     static const char fish[] = "function __fathom\n"
                                "    set -l words (commandline -opc) (commandline -ct)\n"

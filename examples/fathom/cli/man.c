@@ -137,8 +137,8 @@ void man_print_tool(FILE *to, const command_t *const *commands, const help_topic
 {
     print_title(to, "", "read and set up the range sensors A16, A05 and HPS-167S");
     (void)fputs(".B fathom\nCOMMAND [ARGUMENTS]\n.br\n.B fathom help\n[COMMAND | TOPIC]\n.SH DESCRIPTION\n"
-                "Finds, reads and sets up the range sensors A16, A05 and HPS\\-167S on serial ports,\n"
-                "Modbus gateways and GPIO lines.\n.SH COMMANDS\n",
+                "Finds, reads and sets up the range sensors A16, A05 and HPS\\-167S\non serial ports, Modbus "
+                "gateways and GPIO lines.\n.SH COMMANDS\n",
                 to);
     for (; *commands != NULL; commands++) {
         (void)fprintf(to, ".TP\n.BR fathom\\-%s (1)\n", (*commands)->name);

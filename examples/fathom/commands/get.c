@@ -231,7 +231,7 @@ static const option_table_t tables[] = {SESSION_TABLES, {session_format_rows, 0}
 
 const command_t info_command = {
     .name = "info",
-    .summary = "Print everything that sensors report: versions, settings and values",
+    .summary = "Print all versions, settings and values of sensors",
     .usage = "[NAME=]SENSOR[:ADDRESS][:MODE][@PORT]... [OPTIONS]",
     .tables = tables,
     .common = "port address mode baud format",

@@ -10,7 +10,8 @@ import time
 import e2e
 
 PAGES = os.path.join(os.environ.get('FATHOM_BUILD') or os.path.dirname(e2e.FATHOM), 'examples/fathom/install/pages')
-ENVIRONMENT = {'PATH': '/usr/bin:/bin', 'LC_ALL': 'C.UTF-8', 'TERM': 'dumb', 'HOME': '/nonexistent'}
+# The stubs run `fathom`.
+ENVIRONMENT = {'PATH': f'{os.path.dirname(os.path.abspath(e2e.FATHOM))}:/usr/bin:/bin', 'LC_ALL': 'C.UTF-8', 'TERM': 'dumb', 'HOME': '/nonexistent'}
 
 BASH = r'''
 . /usr/share/bash-completion/bash_completion

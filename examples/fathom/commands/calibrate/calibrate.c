@@ -104,7 +104,7 @@ static int start(const host_t *host, const arguments_t *arguments)
 
 const command_t calibrate_command = {
     .name = "calibrate",
-    .summary = "Find the distance offset of an hps167s by measuring, and write it",
+    .summary = "Find the distance offset of an hps167s by measuring",
     .usage = "hps167s[:ADDRESS][@PORT] --known MM [OPTIONS]",
     .about = "Use a flat, light target at a right angle, and let nothing move. The distance is\n"
              "measured before and after each write. It is right within half the spread, and\n"

@@ -185,7 +185,7 @@ static int start(const host_t *host, const arguments_t *arguments)
 
 const command_t publish_command = {
     .name = "publish",
-    .summary = "Publish the readings of all sensors of a site to an MQTT broker",
+    .summary = "Publish the readings of a site to an MQTT broker",
     .usage = "FILE [OPTIONS]",
     .about = "FILE is a YAML file with the broker, the lines and their sensors. The command\n"
              "runs until a signal ends it. It writes to no sensor, and subscribes to nothing.\n"
