@@ -235,6 +235,16 @@ TEST(another_master_that_starts_later_is_mentioned)
     assert_null(strstr(run->err, "a frame from address"));
 }
 
+/* Each address is asked three times, and twice after four addresses in a row; so is any A05, once. */
+TEST(a_line_that_is_never_silent_proves_nothing_about_its_addresses)
+{
+    (void)add_speaker(&dyp_line, 6000, junk, sizeof junk); /* 6.3 ms long */
+    const tool_run_t *const run = scan_finds("? - 9600 8N1", "--wake --baud 9600 --address 1-8 --listen 1");
+    assert_says(run, "fathom: 9 addresses could not be asked: ");
+    assert_null(strstr(run->err, "nothing was heard"));
+    assert_int_equal(scans.probed[0][FATHOM_PARITY_NONE], 4 * 3 + 4 * 2);
+}
+
 /* ---- HPS-167S #2 ---- */
 
 /* Table 12 prints no encoding of the rate, and the multiple of 18 of #15 is a rule for what is written. */

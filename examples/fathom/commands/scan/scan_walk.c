@@ -43,13 +43,6 @@ static bool is_troubled(const scan_response_t *response)
     return response->status == FATHOM_ERR_CHECKSUM || response->evidence.rest != 0;
 }
 
-/* Returns how often an address is asked again after this number of damaged responses. */
-static uint8_t repeats(const scan_t *scan, uint8_t troubles)
-{
-    if (troubles == 0) return scan->plan.repeats;
-    return scan->has_sender || scan->garbled >= FEW_GARBLED ? 1 : DAMAGED_REPEATS;
-}
-
 /* How the requests to one address ended. */
 typedef struct {
     uint8_t timeouts;
@@ -58,27 +51,21 @@ typedef struct {
     bool has_checksum;
 } attempts_t;
 
-/* Counts a request that the line prevented. Returns true if the address gets no further request. */
-static bool is_too_busy(scan_t *scan, attempts_t *attempts, const scan_response_t *response)
+/* Counts a request without a whole response. Returns true if the address gets another request. */
+static bool count_failure(scan_t *scan, attempts_t *attempts, const scan_response_t *response)
 {
-    if (response->status == FATHOM_ERR_OTHER_MASTER) scan->heard.has_other_master = true;
-    attempts->busy++;
-    if (attempts->busy <= (scan->busy_in_row < BUSY_LINE ? BUSY_REPEATS : 1)) return false;
-    scan->busy_in_row++;
-    return true;
-}
-
-/* Counts a request without a whole response. Returns true if the address gets no further request. */
-static bool is_silent(scan_t *scan, attempts_t *attempts, const scan_response_t *response)
-{
-    scan->busy_in_row = 0;
-    if (!is_troubled(response)) {
-        attempts->timeouts++;
-    } else {
-        attempts->troubles++;
-        if (response->status == FATHOM_ERR_CHECKSUM) attempts->has_checksum = true;
+    if (scan_is_of_line(response->status)) {
+        if (response->status == FATHOM_ERR_OTHER_MASTER) scan->heard.has_other_master = true;
+        return ++attempts->busy <= (scan->busy_in_row < BUSY_LINE ? BUSY_REPEATS : 1);
     }
-    return attempts->timeouts + attempts->troubles > repeats(scan, attempts->troubles);
+    if (response->status == FATHOM_ERR_CHECKSUM) attempts->has_checksum = true;
+    if (is_troubled(response))
+        attempts->troubles++;
+    else
+        attempts->timeouts++;
+    const bool is_hopeless = scan->has_sender || scan->garbled >= FEW_GARBLED;
+    const unsigned repeats = attempts->troubles == 0 ? scan->plan.repeats : is_hopeless ? 1 : DAMAGED_REPEATS;
+    return attempts->timeouts + attempts->troubles <= repeats;
 }
 
 /* A single damaged response may be noise. If a device sends automatically, the others may be its frames. */
@@ -94,20 +81,18 @@ static fathom_status_t probe(scan_t *scan, const scan_request_t *request, scan_r
 {
     uint8_t *const state = &scan->states[request->address];
     attempts_t attempts = {0};
-    bool is_over = false;
-    while (!is_over) {
+    do {
         scan_ask(scan, request, response);
-        const fathom_status_t status = response->status;
-        if (scan_has_ended(status) || status == FATHOM_ERR_UNSUPPORTED) return status;
+        if (scan_has_ended(response->status) || response->status == FATHOM_ERR_UNSUPPORTED)
+            return response->status;
         note(scan, &response->evidence);
-        *state = ANSWERED;
-        if (scan_is_answered(status)) return FATHOM_OK;
-        if (scan_is_of_line(status)) {
-            *state = BUSY;
-            if (is_too_busy(scan, &attempts, response)) return FATHOM_OK;
-        } else {
-            is_over = is_silent(scan, &attempts, response);
-        }
+        *state = scan_is_answered(response->status) ? ANSWERED : BUSY;
+        if (*state == ANSWERED) return FATHOM_OK;
+        if (!scan_is_of_line(response->status)) scan->busy_in_row = 0;
+    } while (count_failure(scan, &attempts, response));
+    if (scan_is_of_line(response->status)) {
+        scan->busy_in_row++;
+        return FATHOM_OK;
     }
     *state = conclude(scan, &attempts);
     if (*state == GARBLED) scan->garbled++;
