@@ -183,17 +183,6 @@ TEST(a_loop_that_gets_no_descriptor_says_so_and_keeps_none)
     }
 }
 
-TEST(a_loop_may_have_the_descriptor_0)
-{
-    static fathom_loop_t loop;
-    put_at_0(ends[0]);
-    (void)close(0);
-    assert_int_equal(fathom_loop_init(&loop, NULL), FATHOM_POSIX_OK);
-    assert_int_equal(fathom_loop_fd(&loop), 0);
-    fathom_loop_deinit(&loop);
-    assert_int_equal(next_fd(), 0);
-}
-
 TEST(a_second_deinit_closes_nothing_that_was_opened_since)
 {
     static fathom_loop_t loop;

@@ -270,15 +270,6 @@ TEST(unknown_and_no_response_follow_what_came_last_for_hours)
     expect_mm((uint32_t)20000 * S, 500, ON);
 }
 
-/* "A now_us a little before the last sample does no harm": half a turn of the clock, 2^31 us, is before. */
-TEST(a_time_up_to_half_a_turn_of_the_clock_is_after_the_last_sample)
-{
-    expect_mm(0, 499, ON);
-    expect_nothing((uint32_t)-1000, ON);
-    expect_nothing(2147483648u, ON);
-    expect_nothing(2147483647u, UNKNOWN);
-}
-
 /* ---- from init on ---- */
 
 TEST(from_init_on_it_is_unknown_and_after_unknown_us_what_came_tells)

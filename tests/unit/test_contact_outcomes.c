@@ -61,6 +61,22 @@ static fathom_status_t poll_after(uint32_t us)
     return pins_poll();
 }
 
+/* ---- a contact that never changes ---- */
+
+TEST(by_default_a_level_that_does_not_change_is_a_sample_each_second)
+{
+    pins_run(20 * MS, 1 * MS);
+    pins_expect(1, FATHOM_FAR);
+    for (unsigned n = 2; n != 12; n++) {
+        pins_run(999 * MS, 1 * MS);
+        pins_expect(n - 1, FATHOM_FAR);
+        pins_run(1 * MS, 1 * MS);
+        pins_expect(n, FATHOM_FAR);
+        assert_int_equal(pins.sample.time_us, pins.fake.now_us);
+    }
+    assert_int_equal(pins.stales, 0);
+}
+
 /* ---- a level that does not count ---- */
 
 TEST(the_error_of_a_guard_is_returned_if_there_is_nothing_else)
@@ -94,18 +110,6 @@ TEST(a_level_that_counts_after_a_sleep_is_of_now)
     assert_int_equal(poll_after(300 * SECOND), FATHOM_OK);
     pins_expect(2, FATHOM_NEAR);
     assert_int_equal(pins.sample.time_us, pins.fake.now_us);
-}
-
-TEST(a_level_that_changed_in_a_sleep_is_not_the_old_one)
-{
-    pins_run(20 * MS, 1 * MS);
-    pins_expect(1, FATHOM_FAR);
-    pins.level = true;
-    assert_int_equal(poll_after(300 * SECOND), FATHOM_PENDING);
-    assert_int_equal(poll_after(20 * MS), FATHOM_OK);
-    pins_expect(2, FATHOM_NEAR);
-    assert_int_equal(pins.sample.raw, 1);
-    assert_int_equal(pins.sample.time_us, pins.fake.now_us - 20 * MS);
 }
 
 /* "if ... that look was at most stale_us ago" */

@@ -88,6 +88,15 @@ TEST(a_config_without_sense_is_refused)
     assert_int_equal(fathom_debounce_init(&gate, &config), FATHOM_ERR_ARGUMENT);
 }
 
+/* ---- options ---- */
+
+TEST(rows_of_255_are_counted_and_longer_ones_do_not_wrap)
+{
+    start_with((fathom_debounce_config_t){.near_count = 255, .far_count = 255});
+    for (int i = 1; i <= 1000; i++) assert_int_equal(distance(1), i == 255);
+    for (int i = 1; i <= 1000; i++) assert_int_equal(distance(2000), i == 255);
+}
+
 /* ---- a level lasts a while ---- */
 
 TEST(a_level_lasts_at_least_hold_us)

@@ -233,6 +233,18 @@ TEST(where_all_are_quarantined_it_is_due_when_that_ends)
     assert_int_equal(dead->left, 2);
 }
 
+/* Each broadcast has the line for its time-out, 100 ms, with 12 of silence and request. */
+TEST(a_broadcast_is_used_time_of_unit_0)
+{
+    asker_t *const all = add(0, 0, 0);
+    asker_t *const fast = add(7, 2 * MS, 4 * MS);
+    all->is_dead = true;
+    all->timeout_us = 100 * MS;
+    play(20 * SECOND);
+    assert_in_range(all->line_us, 9 * SECOND, 11 * SECOND);
+    assert_true(fast->left > 600);
+}
+
 /* What was on the wire when it was cancelled has been used until then; the unit is quarantined, and not waited for. */
 TEST(a_request_that_is_cancelled_has_used_its_time)
 {

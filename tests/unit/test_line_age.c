@@ -150,15 +150,3 @@ TEST(bytes_before_and_after_an_error_of_the_port_do_not_add_up_to_a_device_that_
     ask_1(0);
     expect_written_after(1000, 1);
 }
-
-TEST(the_end_of_a_response_before_an_error_of_the_port_is_no_gap_after_it)
-{
-    listen_for(GAP_US);
-    ask_1_and_send(0);
-    response_1(754);
-    break_port();
-    run(100);
-    deliver(auto_frame, 4);
-    assert_int_equal(bench_listener.length, 4);
-    assert_int_equal(bench_listener.gaps, 0);
-}

@@ -7,7 +7,6 @@
 static uint16_t values[4];
 
 static const suite_t suite = {.set_up = set_up};
-static const suite_t asked = {.set_up = set_up_asked};
 
 static void refuse_set_address(void)
 {
@@ -47,19 +46,6 @@ TEST(bytes_after_an_overrun_are_not_the_first_after_a_silence)
     assert_int_equal(bench_listener.length, sizeof rest);
     assert_int_equal(bench_listener.losses, 1);
     assert_int_equal(bench_listener.gaps, 0);
-}
-
-/* line.h: "A response is complete by its length, at once". */
-TEST_IN(asked, after_a_broken_port_a_response_is_complete_at_once)
-{
-    deliver_hex("01 03 14 00");
-    break_port();
-    ask_other(2);
-    run_until_written(2, 100);
-    run(9 * BYTE_US);
-    receive_response(2, 222);
-    poll_line();
-    expect_other(FATHOM_OK);
 }
 
 /* A write on an echoing line, whose request has been handed over. */

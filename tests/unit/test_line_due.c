@@ -137,11 +137,3 @@ TEST(a_port_that_takes_no_request_is_asked_again_when_it_has_sent)
     run_in_steps(3 * BYTE_US, 3 * BYTE_US);
     expect_written(1);
 }
-
-/* Bytes that came wait for the gap behind them, and that is sooner. */
-TEST_IN(leaving, the_gap_behind_what_has_come_is_due_before_the_request_has_left)
-{
-    deliver(response_1_754, 4);
-    assert_int_equal(bench.line.received_count, 4);
-    expect_due(GAP_US);
-}

@@ -48,21 +48,6 @@ TEST(a_short_quarantine_of_another_unit_does_not_end_a_long_one)
     assert_int_equal(bench.fake.written, 3);
 }
 
-/* LATE_RESPONSES: from a quarantined unit; STRAYS: whole frames that were not asked for. Unit 9 has its bit in the
- * upper byte. */
-TEST(a_frame_of_a_unit_not_quarantined_is_a_stray_and_leaves_the_quarantine_of_another)
-{
-    ask_and_send(&bench.request, 9, &bench.value, TIMEOUT_US);
-    run(TIMEOUT_US);
-    assert_int_equal(status_of(&bench.request), FATHOM_ERR_NO_RESPONSE);
-    receive_response(1, 111);
-    run(100);
-    assert_int_equal(counter(FATHOM_LINE_STRAYS), 1);
-    assert_int_equal(counter(FATHOM_LINE_LATE_RESPONSES), 0);
-    ask(&bench.request, 9, &bench.value, 0);
-    assert_false(goes_out());
-}
-
 /* cancel: the unit is then quarantined. The first copy of the request is its echo, the second the response. */
 TEST(after_the_echo_of_a_cancelled_write_its_response_is_late_and_ends_the_quarantine)
 {

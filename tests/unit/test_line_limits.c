@@ -34,14 +34,6 @@ TEST(the_longest_silence_of_a_config_is_kept_and_over)
     assert_int_equal(bench.fake.written, 1);
 }
 
-/* 65536 does not fit in 16 bits: it must not become 0. */
-TEST(a_first_poll_after_65536_us_has_seen_the_silence)
-{
-    ask(&bench.request, 1, &bench.value, 0);
-    after(65536);
-    assert_int_equal(bench.fake.written, 1);
-}
-
 /* fathom_line_parts_t: "more than a slow sender or a slow port pauses: 25000 behind an operating system". */
 TEST(a_pause_shorter_than_the_gap_of_the_config_does_not_end_a_response)
 {

@@ -129,32 +129,8 @@ static inline const char *host_response(host_t *h, uint64_t wait_us)
     return hex;
 }
 
-static inline const second_event_t *last_event(const second_device_t *device, second_event_kind_t kind)
-{
-    for (uint64_t i = second_log_count(device); i-- > 0;) {
-        const second_event_t *event = second_log_at(device, i);
-        if (event == NULL) return NULL;
-        if (event->kind == kind) return event;
-    }
-    return NULL;
-}
-
 /* The host of a file of tests. */
 static host_t host;
-
-#define OVERRIDES(...)                                                                                       \
-    (const second_override_t[]){__VA_ARGS__},                                                                \
-        sizeof((const second_override_t[]){__VA_ARGS__}) / sizeof(second_override_t)
-
-static inline void open_device(second_kind_t kind, int32_t mm, const second_override_t *overrides,
-                               size_t count)
-{
-    second_config_t config = {
-        .kind = kind, .scene = {{mm, mm, mm, mm}}, .overrides = overrides, .override_count = count};
-    host_open(&host, &config);
-    host_power(&host, true);
-    host_run(&host, 12000000);
-}
 
 static inline const char *ask(const char *request)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Every choice is drawn at each of its ends at least 50 times in 1,000 seeds, and hangs on no other one. */
+/* Every choice is drawn at each of its ends at least 50 times in 1,000 seeds. */
 #include "second_host.h"
 
 #define SEEDS 1000
@@ -52,45 +52,6 @@ TEST(every_end_is_drawn)
                 at_least(c, row->values[i].value);
             else
                 assert_int_equal(count_of(c, row->values[i].value), 0);
-        }
-    }
-}
-
-/* Whether a choice stands at its most frequent value: no two choices agree in (nearly) all seeds. */
-TEST(choices_are_independent)
-{
-    static bool usual[CHOICE_COUNT][SEEDS];
-    for (int c = 0; c < CHOICE_COUNT; c++) {
-        int64_t value = second_choice_draw((second_choice_t)c, 0);
-        for (int i = 0; i < SEEDS; i++) usual[c][i] = drawn[c][i] == value;
-    }
-    for (int a = 0; a < CHOICE_COUNT; a++) {
-        for (int b = 0; b < a; b++) {
-            int both = 0, only_a = 0, only_b = 0;
-            for (int i = 0; i < SEEDS; i++) {
-                both += usual[a][i] && usual[b][i] ? 1 : 0;
-                only_a += usual[a][i] && !usual[b][i] ? 1 : 0;
-                only_b += !usual[a][i] && usual[b][i] ? 1 : 0;
-            }
-            assert_true(only_a > 0 && only_b > 0 && both > 0);
-        }
-    }
-}
-
-/* A draw is the same in every kind of device, and seed 0 draws nothing. */
-TEST(draws_hang_on_the_seed_alone)
-{
-    for (int kind = 0; kind < SECOND_KINDS; kind++) {
-        second_config_t config = {.kind = (second_kind_t)kind, .seed = 77};
-        host_open(&host, &config);
-        for (int c = 0; c < CHOICE_COUNT; c++)
-            assert_true(second_choice(&host.device[0], (second_choice_t)c) == drawn[c][76]);
-        config.seed = 0;
-        host_open(&host, &config);
-        for (int c = 0; c < CHOICE_COUNT; c++) {
-            const second_choice_row_t *row = second_choice_row((second_choice_t)c);
-            int64_t usual = row->values != NULL ? row->values[0].value : row->usual;
-            assert_true(second_choice(&host.device[0], (second_choice_t)c) == usual);
         }
     }
 }

@@ -4,8 +4,6 @@
 
 #include "second_device.h" /* the check codes */
 
-static host_t again;
-
 static bool checked_frame(const second_event_t *event, bool odd_sum)
 {
     if (event->raw[0] == 0xFF && event->raw_len != 0 && event->function == 0) { /* an automatic frame */
@@ -80,39 +78,4 @@ TEST(all_seeds_keep_the_wire_in_order)
         }
         assert_true(frames > 300);
     }
-}
-
-/* The same seed gives the same bytes, in whatever steps the device is run. */
-TEST(all_seeds_are_repeatable)
-{
-    for (int kind = 0; kind < SECOND_TALKERS; kind++) {
-        for (uint64_t seed = 1; seed <= 60; seed++) {
-            live(&host, (second_kind_t)kind, seed, 0);
-            live(&again, (second_kind_t)kind, seed, 333);
-            assert_int_equal(host.got_len, again.got_len);
-            for (size_t i = 0; i < host.got_len; i++) {
-                assert_int_equal(host.got[i].value, again.got[i].value);
-                assert_true(host.got[i].start_us == again.got[i].start_us);
-            }
-            assert_true(second_log_count(&host.device[0]) == second_log_count(&again.device[0]));
-        }
-    }
-}
-
-TEST(breaks_and_power_off)
-{
-    for (int64_t as = 0; as < 2; as++) {
-        open_device(SECOND_A16_RS485, 754, OVERRIDES({"any_break_as", as}));
-        second_rx_level(&host.device[0], true, host.now_us);
-        second_rx_level(&host.device[0], false, host.now_us + 5000);
-        host_run(&host, host.now_us + 10000);
-        const second_event_t *noise = last_event(&host.device[0], SECOND_EVENT_NOISE);
-        assert_true(noise != NULL && noise->new_value == as);
-        assert_string_equal(ask("01 03 01 00 00 01"), "01 03 02 02 F2 38 A1");
-    }
-    host_request(&host, "01 03 01 00 00 01");
-    host_run(&host, host.now_us + 12000); /* 10 ms and two of the seven bytes */
-    host_power(&host, false);
-    assert_int_equal(last_event(&host.device[0], SECOND_EVENT_POWER)->old_value, 6);
-    assert_true(second_next_us(&host.device[0]) == SECOND_NEVER);
 }

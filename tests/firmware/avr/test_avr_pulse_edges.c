@@ -79,14 +79,3 @@ TEST(a_bounce_in_the_interrupt_costs_no_more_than_itself)
         }
     }
 }
-
-/* With nothing else to delay it. */
-TEST(int0_tells_a_pulse_alone_within_1_us)
-{
-    for (uint64_t more = 0; more < 8 * US; more += 5) {
-        place();
-        board_drive_at('D', 2, true, rise_cycle);
-        board_drive_at('D', 2, false, rise_cycle + PULSE_CYCLES + more);
-        assert_told(told_us(BY_INT0), PULSE_CYCLES + more, PULSE_CYCLES + more);
-    }
-}

@@ -6,7 +6,7 @@ const {assert, test, figure} = require('./runner.js');
 const {Machine} = require('./machine.js');
 const {PE, FE} = require('./pl011.js');
 const {
-  A16, Hps167s, Terminal, CHARACTER_NS, T3_5_NS, US, MS, READING, MEASURING, NEVER, NO_RESPONSE, CHECKSUM, WRAP_NS,
+  A16, Hps167s, Terminal, CHARACTER_NS, T3_5_NS, US, MS, READING, MEASURING, NO_RESPONSE, CHECKSUM, WRAP_NS,
 } = require('./devices.js');
 
 const EXAMPLE = 'hps167s_rs485';
@@ -80,17 +80,6 @@ test('the line is 19200 8E1: divider, format and pins', () => {
   assert.ok(machine.pin(RO).inputEnable && machine.pin(RO).pullupEnabled);
   assert.strictEqual(machine.pin(DE).functionSelect, 5);
   assert.strictEqual(bench.hps.driver[0].high, false);
-});
-
-test('no response and a late one are errors, and no reading is made of them', () => {
-  // The time-out of a measurement is 500 ms; the unit is quarantined until its late response has come.
-  const bench = start(EXAMPLE, [MEASURING, NEVER, {after: 620000}, MEASURING]);
-  const said = lines(bench, 4, 6000);
-  assert.deepStrictEqual(said, [READING, NO_RESPONSE, NO_RESPONSE, READING]);
-  const {transactions} = bench.hps;
-  assert.ok(transactions[3].start > transactions[2].answered + T3_5_NS);
-  assertDriven(bench);
-  assertSilence(bench);
 });
 
 // The second response of three is damaged at that byte, and the port counts it.
