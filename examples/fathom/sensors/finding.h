@@ -9,6 +9,8 @@
 #include "fathom/hal.h"
 #include "output/record.h"
 
+struct model;
+
 /* What a scan finds. */
 typedef enum {
     SCAN_SENSOR = 1, /* one of the three */
@@ -24,11 +26,11 @@ typedef enum { SCAN_MODBUS = 1, SCAN_AUTO, SCAN_DYP } scan_mode_t;
 
 typedef struct {
     fathom_line_settings_t line;
-    uint8_t kind;    /* scan_kind_t */
-    uint8_t model;   /* fathom_model_t, of a sensor */
-    uint8_t mode;    /* scan_mode_t, of a sensor */
-    uint8_t address; /* 0: none */
-    bool is_double;  /* two responses came to one request */
+    const struct model *model; /* of a sensor */
+    uint8_t kind;              /* scan_kind_t */
+    uint8_t mode;              /* scan_mode_t, of a sensor */
+    uint8_t address;           /* 0: none */
+    bool is_double;            /* two responses came to one request */
 
     /* of an A16 or A05 that was asked */
     bool has_value;

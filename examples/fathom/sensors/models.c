@@ -192,13 +192,6 @@ const model_t models[] = {
 };
 const size_t model_count = sizeof models / sizeof models[0];
 
-const model_t *model_of(uint8_t id)
-{
-    size_t i = model_count - 1;
-    while (i != 0 && models[i].id != id) i--;
-    return &models[i];
-}
-
 bool model_has_address(const model_t *model, uint8_t address)
 {
     return model->has_address_zero || (address != 0 && address <= model->max_address);

@@ -10,12 +10,8 @@
  * needs a place in the unions of driver.h and device.h. */
 extern const model_t models[];
 extern const size_t model_count;
-enum { MAX_MODELS = 16 };
 
 enum { FACTORY_ADDRESS = 1 };
-
-/* Returns the model with this id. */
-const model_t *model_of(uint8_t id);
 
 /* Returns the least address: 0 or 1. */
 uint8_t model_least_address(const model_t *model, const model_mode_t *mode);

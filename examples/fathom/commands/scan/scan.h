@@ -5,7 +5,7 @@
 #include "cli/command.h"
 #include "output/progress.h"
 #include "ports/port.h"
-#include "sensors/finding.h"
+#include "sensors/models.h"
 
 /* ---- what to ask ---- */
 
@@ -116,7 +116,7 @@ typedef struct {
     scan_heard_t heard;
     uint32_t sensors;                    /* found */
     uint32_t terminations;               /* sensors whose termination resistor is on */
-    uint8_t terminated;                  /* model of these sensors */
+    const model_t *terminated;           /* model of these sensors */
     uint32_t awakened;                   /* sensors of the model that sent automatically */
     bool has_dyp;                        /* a sensor that can have frames 55 AA was found */
     uint32_t found_baud[SCAN_ADDRESSES]; /* of the device that was found at an address; 0: none */

@@ -13,7 +13,8 @@ enum { DAMAGED_TRIES = 4, ROUNDS = 2 };
 static const model_t *likely(const fathom_line_settings_t *line, uint8_t address)
 {
     for (size_t i = model_count; i-- != 0;)
-        if (model_has_rate(&models[i], line->baud) && model_has_address(&models[i], address))
+        if (models[i].scan.count != 0 && model_has_rate(&models[i], line->baud) &&
+            model_has_address(&models[i], address))
             return &models[i];
     return &models[0];
 }
@@ -122,6 +123,6 @@ fathom_status_t scan_identify(scan_t *scan, const scan_request_t *request, const
     finding->is_double = first->evidence.fitting >= 2;
     const model_t *const model = find_model(&identification);
     finding->kind = model != NULL ? SCAN_SENSOR : SCAN_OTHER;
-    if (model != NULL) finding->model = (uint8_t)model->id;
+    finding->model = model;
     return identification.failed;
 }

@@ -7,7 +7,7 @@ enum { LEAST_BYTES = 2 * FATHOM_DYP_A16_LENGTH, OTHER_RATE_US = 1000000 };
 static bool name_sensor(scan_finding_t *finding, const model_t *model, scan_mode_t mode)
 {
     finding->kind = SCAN_SENSOR;
-    finding->model = (uint8_t)model->id;
+    finding->model = model;
     finding->mode = (uint8_t)mode;
     return true;
 }

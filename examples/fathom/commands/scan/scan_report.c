@@ -29,7 +29,7 @@ static void next_command(const scan_finding_t *finding, const char *port, char t
     FILE *const to = finding->kind == SCAN_SENSOR ? fmemopen(text, NEXT_TEXT, "w") : NULL;
     text[0] = '\0';
     if (to == NULL) return;
-    read_command_print(to, model_of(finding->model), mode_name(finding),
+    read_command_print(to, finding->model, mode_name(finding),
                        finding->mode == SCAN_AUTO ? -1 : finding->address, &finding->line, port);
     (void)fclose(to);
 }
@@ -72,7 +72,7 @@ static const char *word_of(const char *text) { return text[0] != '\0' ? text : N
 static finding_facts_t facts_of(const scan_finding_t *finding)
 {
     finding_facts_t facts = {.termination = NO_VALUE, .distance_mm = NO_VALUE, .raw = NO_VALUE};
-    const model_t *const model = finding->kind == SCAN_SENSOR ? model_of(finding->model) : NULL;
+    const model_t *const model = finding->kind == SCAN_SENSOR ? finding->model : NULL;
     if (model != NULL) model->describe(model, finding, &facts);
     return facts;
 }
@@ -84,11 +84,11 @@ void scan_print_json(FILE *to, const scan_finding_t *finding, const char *port)
         [SCAN_NOT_MODBUS] = "not_modbus", [SCAN_SENDER] = "sender",      [SCAN_MASTER] = "master"};
     const finding_facts_t facts = facts_of(finding);
     const bool is_sensor = finding->kind == SCAN_SENSOR;
-    const bool has_optics = is_sensor && model_of(finding->model)->has_optics;
+    const bool has_optics = is_sensor && finding->model->has_optics;
     char next[NEXT_TEXT];
     next_command(finding, port, next);
     const row_t row = {.kind = kinds[finding->kind],
-                       .model = is_sensor ? model_of(finding->model)->name : NULL,
+                       .model = is_sensor ? finding->model->name : NULL,
                        .parity = parity_name(finding->line.parity),
                        .mode = is_sensor ? mode_name(finding) : NULL,
                        .interface_version = word_of(facts.interface_version),
@@ -137,7 +137,7 @@ static void print_versions(FILE *to, const finding_facts_t *facts)
 
 static void print_sensor(FILE *to, const scan_finding_t *finding)
 {
-    const model_t *const model = model_of(finding->model);
+    const model_t *const model = finding->model;
     const finding_facts_t facts = facts_of(finding);
     if (finding->mode == SCAN_AUTO)
         (void)fputs("sends without requests", to);
@@ -162,7 +162,7 @@ void scan_print_text(FILE *to, const scan_finding_t *finding, const char *port)
     char next[NEXT_TEXT];
     if (has_address(finding)) (void)snprintf(address, sizeof address, "address %u", finding->address);
     next_command(finding, port, next);
-    (void)fprintf(to, "%-8s %-12s %-11s  ", is_sensor ? model_of(finding->model)->name : "?", address,
+    (void)fprintf(to, "%-8s %-12s %-11s  ", is_sensor ? finding->model->name : "?", address,
                   line_text(&finding->line, line));
     if (is_sensor)
         print_sensor(to, finding);

@@ -18,7 +18,7 @@ static void print_why_nothing_was_sent(const scan_finding_t *sender)
             "Another rate, swapped wires A and B and noise have the same effect",
             stderr);
     else if (sender->mode == SCAN_AUTO)
-        (void)fprintf(stderr, "even a read ends %s", model_of(sender->model)->request_ends);
+        (void)fprintf(stderr, "even a read ends %s", sender->model->request_ends);
     else
         (void)fputs("requests would collide with its unsolicited frames", stderr);
     (void)fputs(". To ask anyway, use --wake.\n", stderr);
@@ -29,7 +29,7 @@ static void print_sender(const scan_t *scan)
     if (!scan->settings->wake) {
         print_why_nothing_was_sent(&scan->sender);
     } else if (scan->awakened != 0 && scan->sender.mode == SCAN_AUTO) {
-        const char *const again = model_of(scan->sender.model)->automatic_again;
+        const char *const again = scan->sender.model->automatic_again;
         (void)fprintf(
             stderr,
             "fathom: the sensor sent automatically until the scan asked it. It sends again after a power "
@@ -113,7 +113,7 @@ void scan_print_result(const scan_t *scan)
             "fathom: %" PRIu32 " sensors have their termination resistor on, the factory setting, which "
             "overloads the line. Switch it off in all but the last sensor with 'fathom set %s:ADDRESS "
             "--port %s termination off'.\n",
-            scan->terminations, model_of(scan->terminated)->name, scan->settings->port);
+            scan->terminations, scan->terminated->name, scan->settings->port);
     if (scan->sensors == 0) print_nothing(scan);
     (void)fprintf(stderr, "fathom: sensors found: %" PRIu32 ", after %s\n", scan->sensors,
                   duration_text(scan_now_us(scan) - scan->start_us, duration));

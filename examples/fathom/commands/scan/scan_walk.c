@@ -105,8 +105,7 @@ static fathom_status_t identify(scan_t *scan, const scan_request_t *request, con
     const fathom_status_t status = scan_identify(scan, request, response, &finding);
     if (status != FATHOM_OK) return status;
     scan->found_baud[request->address] = request->line->baud;
-    if (finding.kind == SCAN_SENSOR && model_of(finding.model) == model_with(DECODE_DYP))
-        scan->has_dyp = true;
+    if (finding.kind == SCAN_SENSOR && finding.model == model_with(DECODE_DYP)) scan->has_dyp = true;
     scan_report(scan, &finding);
     return FATHOM_OK;
 }
@@ -162,7 +161,7 @@ static fathom_status_t ask_any_dyp(scan_t *scan)
     if (response.status != FATHOM_OK) return FATHOM_OK;
     const scan_finding_t finding = {.line = model->line,
                                     .kind = SCAN_SENSOR,
-                                    .model = (uint8_t)model->id,
+                                    .model = model,
                                     .mode = SCAN_DYP,
                                     .address = response.address,
                                     .has_value = true,
