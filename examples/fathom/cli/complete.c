@@ -269,18 +269,22 @@ bool complete_stub(FILE *to, const char *shell)
         "done\n"
         "[[ -prefix --*= ]] && compset -P 1 '*='\n"
         "compadd -l -d helps -S '' -q -a names\n";
-    static const char fish[] = "function __fathom\n"
-                               "    set -l words (commandline -opc) (commandline -ct)\n"
-                               "    for line in (fathom complete $words[2..-1] 2>/dev/null)\n"
-                               "        switch $line\n"
-                               "            case :files\n"
-                               "                __fish_complete_path (commandline -ct)\n"
-                               "            case '*'\n"
-                               "                echo $line\n"
-                               "        end\n"
-                               "    end\n"
-                               "end\n"
-                               "complete -c fathom -f -a '(__fathom)'\n";
+    static const char fish[] =
+        "function __fathom\n"
+        "    set -l words (commandline -opc) (commandline -ct)\n"
+        "    for line in (fathom complete $words[2..-1] 2>/dev/null)\n"
+        "        switch $line\n"
+        "            case :files\n"
+        "                set -l parts (string match -r -- '^(--[^=]*=)?(.*)$' (commandline -ct))\n"
+        "                for path in (__fish_complete_path $parts[-1])\n"
+        "                    test (count $parts) -eq 3; and echo $parts[2]$path; or echo $path\n"
+        "                end\n"
+        "            case '*'\n"
+        "                echo $line\n"
+        "        end\n"
+        "    end\n"
+        "end\n"
+        "complete -c fathom -f -a '(__fathom)'\n";
     const char *const text = strcmp(shell, "bash") == 0   ? bash
                              : strcmp(shell, "zsh") == 0  ? zsh
                              : strcmp(shell, "fish") == 0 ? fish
