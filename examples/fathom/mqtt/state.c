@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): getentropy, fmemopen */
+#define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): getentropy, open_memstream */
 #include "mqtt/state.h"
 
 #include <inttypes.h>
@@ -20,6 +20,29 @@ void state_boot(char boot[BOOT])
     (void)snprintf(boot, BOOT, "%016" PRIx64, number);
 }
 
+/* A stream in memory that is kept, since to open one for each message takes longer than to write the message. */
+static struct {
+    FILE *to;
+    char *text;
+    size_t length;
+} memory;
+
+static FILE *begin_text(void)
+{
+    if (memory.to == NULL)
+        memory.to = open_memstream(&memory.text, &memory.length);
+    else
+        rewind(memory.to);
+    return memory.to;
+}
+
+static void end_text(char *text, size_t capacity)
+{
+    const size_t length = fflush(memory.to) == 0 && memory.length < capacity ? memory.length : 0;
+    memcpy(text, memory.text, length);
+    text[length] = '\0';
+}
+
 static unsigned columns_of(const sensor_t *sensor, topic_t topic)
 {
     if (topic == TOPIC_ALARM) return COLUMNS_ALARM | COLUMNS_DISTANCE;
@@ -31,14 +54,14 @@ static unsigned columns_of(const sensor_t *sensor, topic_t topic)
 void state_begin(const reading_t *reading, topic_t topic, const char *boot, uint64_t seq,
                  char text[QUEUE_TEXT])
 {
-    json_t json = {.to = fmemopen(text, QUEUE_TEXT, "w")};
+    json_t json = {.to = begin_text()};
     text[0] = '\0';
     if (json.to == NULL) return;
     json_begin(&json, NULL, '{');
     reading_json(&json, reading, columns_of(reading->sensor, topic));
     json_string(&json, "boot", boot);
     json_value(&json, "seq", "%" PRIu64, seq);
-    (void)fclose(json.to);
+    end_text(text, QUEUE_TEXT);
 }
 
 void state_finish(char text[STATE_TEXT], uint64_t age_us, uint64_t dropped)
@@ -51,7 +74,7 @@ void state_finish(char text[STATE_TEXT], uint64_t age_us, uint64_t dropped)
 void state_of_counters(sensor_t *sensor, uint64_t utc_us, const char *boot, char text[COUNTERS_TEXT])
 {
     char utc[UTC_TEXT];
-    json_t json = {.to = fmemopen(text, COUNTERS_TEXT, "w")};
+    json_t json = {.to = begin_text()};
     text[0] = '\0';
     if (json.to == NULL) return;
     json_begin(&json, NULL, '{');
@@ -59,13 +82,13 @@ void state_of_counters(sensor_t *sensor, uint64_t utc_us, const char *boot, char
     json_string(&json, "boot", boot);
     stats_json_of_sensor(&json, sensor);
     json_end(&json, '}');
-    (void)fclose(json.to);
+    end_text(text, COUNTERS_TEXT);
 }
 
 void state_of_publisher(const publisher_state_t *state, char text[STATE_TEXT])
 {
     char utc[UTC_TEXT];
-    json_t json = {.to = fmemopen(text, STATE_TEXT, "w")};
+    json_t json = {.to = begin_text()};
     text[0] = '\0';
     if (json.to == NULL) return;
     json_begin(&json, NULL, '{');
@@ -77,5 +100,5 @@ void state_of_publisher(const publisher_state_t *state, char text[STATE_TEXT])
     json_value(&json, "queued", "%" PRIu32, state->queued);
     json_value(&json, "dropped", "%" PRIu64, state->dropped);
     json_end(&json, '}');
-    (void)fclose(json.to);
+    end_text(text, STATE_TEXT);
 }

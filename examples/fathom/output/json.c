@@ -8,10 +8,12 @@ static void put_string(FILE *to, const char *text)
     (void)fputc('"', to);
     for (; *text != '\0'; text++) {
         const unsigned char c = (unsigned char)*text;
-        if (c < 0x20)
+        if (c < 0x20) {
             (void)fprintf(to, "\\u%04x", c);
-        else
-            (void)fprintf(to, c == '"' || c == '\\' ? "\\%c" : "%c", c);
+            continue;
+        }
+        if (c == '"' || c == '\\') (void)fputc('\\', to);
+        (void)fputc(c, to);
     }
     (void)fputc('"', to);
 }
