@@ -3,17 +3,20 @@
 
 #include <stdarg.h>
 
+static bool is_plain(unsigned char c) { return c >= 0x20 && c != '"' && c != '\\'; }
+
+/* Writes plain characters as a whole: a stream takes a lock in each call. */
 static void put_string(FILE *to, const char *text)
 {
     (void)fputc('"', to);
-    for (; *text != '\0'; text++) {
-        const unsigned char c = (unsigned char)*text;
-        if (c < 0x20) {
-            (void)fprintf(to, "\\u%04x", c);
-            continue;
-        }
-        if (c == '"' || c == '\\') (void)fputc('\\', to);
-        (void)fputc(c, to);
+    while (*text != '\0') {
+        size_t length = 0;
+        while (is_plain((unsigned char)text[length])) length++;
+        (void)fwrite(text, 1, length, to);
+        text += length;
+        if (*text == '\0') break;
+        (void)fprintf(to, (unsigned char)*text < 0x20 ? "\\u%04x" : "\\%c", *text);
+        text++;
     }
     (void)fputc('"', to);
 }
@@ -47,6 +50,12 @@ void json_value(json_t *json, const char *key, const char *format, ...)
     va_start(arguments, format);
     (void)vfprintf(json->to, format, arguments);
     va_end(arguments);
+}
+
+void json_number(json_t *json, const char *key, const char *digits)
+{
+    put_key(json, key);
+    (void)fputs(digits, json->to);
 }
 
 void json_flag(json_t *json, const char *key, bool flag) { json_value(json, key, flag ? "true" : "false"); }

@@ -29,6 +29,9 @@ void json_end(json_t *json, char bracket);
 /* Writes a number, true, false or null, formatted as by printf. */
 void json_value(json_t *json, const char *key, const char *format, ...) __attribute__((format(printf, 3, 4)));
 
+/* Writes a number, true, false or null that is text already. */
+void json_number(json_t *json, const char *key, const char *digits);
+
 /* Writes true or false. */
 void json_flag(json_t *json, const char *key, bool flag);
 

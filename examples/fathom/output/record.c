@@ -45,7 +45,7 @@ void record_json(json_t *json, const field_t *fields, const void *record, unsign
         if (fields->type == FIELD_WORD)
             json_string(json, fields->key, value);
         else
-            json_value(json, fields->key, "%s", value != NULL ? value : "null");
+            json_number(json, fields->key, value != NULL ? value : "null");
     }
 }
 
