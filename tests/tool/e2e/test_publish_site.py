@@ -18,7 +18,7 @@ class Site(test_demo.Case):
         for name in ('pit', 'bumper/1', 'dock/1', 'gate', 'bay1', 'bay2', 'bay3'):
             self.assertRegex(shown, rf'(?m)^fathom/mill/north/{name}/state {{.*"status":"target"')
         self.assertRegex(shown, r'(?m)^fathom/mill/north/gate/alarm {.*"is_on":true,')
-        self.assertRegex(shown, r'(?s)is retained .*\nfathom/mill/north/status offline\n')
+        self.assertRegex(shown, r'(?s)the retained status .*\nfathom/mill/north/status offline\n')
         self.assertEqual(list(self.processes()), [])
         self.assertEqual(os.listdir(self.path('tmp')), [])
 
