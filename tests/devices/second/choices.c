@@ -55,8 +55,6 @@ static const second_choice_row_t rows[] = {
 #include "choice_rows.h"
 };
 
-const second_choice_row_t *second_choice_row(second_choice_t choice) { return &rows[choice]; }
-
 static uint64_t mix(uint64_t value)
 {
     value += 0x9E3779B97F4A7C15U;

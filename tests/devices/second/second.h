@@ -144,8 +144,7 @@ typedef struct {
     int64_t low, high, usual;
 } second_choice_row_t;
 
-/* choices.c: the table and what a seed draws. */
-const second_choice_row_t *second_choice_row(second_choice_t choice);
+/* choices.c: what a seed draws. */
 int64_t second_choice_draw(second_choice_t choice, uint64_t seed);
 bool second_choice_allows(second_choice_t choice, int64_t value);
 const char *second_choice_meaning(second_choice_t choice, int64_t value);
