@@ -15,12 +15,6 @@ static fathom_status_t open_tcp(port_t *port)
 }
 
 const port_driver_t port_tcp = {.open = open_tcp};
-
-uint8_t tcp_gateway_exception(const tcp_t *tcp)
-{
-    (void)tcp;
-    return 0;
-}
 #endif
 
 #ifdef FATHOM_WITHOUT_GPIO

@@ -163,6 +163,7 @@ fathom_status_t port_open(port_t *port, const host_t *host, const port_settings_
                                                         : &port_tcp;
     port->clock = (fathom_clock_t){now_us, port};
     port->error = PORT_OK;
+    port->gateway_exception = 0;
     port->text[0] = '\0';
     if (strlen(settings->path) >= sizeof port->path)
         return port_fail(port, PORT_FAILED, "the path is too long");
@@ -284,7 +285,7 @@ bool port_has_wire(const port_t *port) { return !port->serial.is_pty; }
 
 bool port_can_break(const port_t *port) { return port->uart.set_break != NULL && port_has_wire(port); }
 
-uint8_t port_gateway_exception(const port_t *port) { return tcp_gateway_exception(port->tcp); }
+uint8_t port_gateway_exception(const port_t *port) { return port->gateway_exception; }
 
 bool port_line_errors(port_t *port, fathom_posix_line_errors_t *errors)
 {

@@ -14,7 +14,6 @@
 #include "ports/line_text.h"
 #include "ports/listener.h"
 #include "ports/port_settings.h"
-#include "ports/tcp.h"
 
 /*
  * A port: a tty, a connection to a Modbus TCP server, or lines of a GPIO chip. Which of them it is, only ports/ knows;
@@ -46,8 +45,9 @@ typedef struct port {
     /* private */
     const port_driver_t *driver;
     fathom_posix_uart_t serial;
-    adapter_t adapter; /* behind the tty; it is kept while the port is closed */
-    tcp_t *tcp;
+    adapter_t adapter;         /* behind the tty; it is kept while the port is closed */
+    struct tcp *tcp;           /* a connection */
+    uint8_t gateway_exception; /* 10 or 11, since the last request; 0: none */
     fathom_uart_t uart;
     port_error_t error;
     bool is_connecting;

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #define _GNU_SOURCE 1 /* SOCK_NONBLOCK, getaddrinfo */
-#include "ports/tcp.h"
-
 #include <errno.h>
 #include <netdb.h>
 #include <netinet/in.h>
@@ -17,10 +15,11 @@
 #include "ports/port.h"
 #include "ports/tcp_address.h"
 
-/* A host may have several addresses, which are tried one after the other. */
+/* A connection to a Modbus TCP server as a driver of port.h: a UART that carries RTU frames, by port/libmodbus. A host may
+ * have several addresses, which are tried one after another. */
 enum { CONNECT_US = 5000000 };
 
-struct tcp {
+typedef struct tcp {
     port_t *port;
     tcp_address_t address;
     struct addrinfo *addresses;  /* of the host, as long as it connects */
@@ -30,7 +29,7 @@ struct tcp {
     fathom_libmodbus_t libmodbus;
     modbus_t *modbus;    /* NULL: it connects */
     fathom_uart_t inner; /* that of libmodbus */
-};
+} tcp_t;
 
 /* ---- a connection ---- */
 
@@ -67,6 +66,7 @@ static int read_bytes(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *r
     tcp_t *const tcp = ctx;
     const int n = tcp->inner.read(tcp->inner.ctx, bytes, capacity, rx);
     if (n < 0) lose(tcp);
+    tcp->port->gateway_exception = tcp->libmodbus.gateway_exception;
     return n;
 }
 
@@ -75,7 +75,7 @@ static int write_bytes(void *ctx, const uint8_t *bytes, size_t length)
     tcp_t *const tcp = ctx;
     const int n = tcp->inner.write(tcp->inner.ctx, bytes, length);
     if (n < 0) lose(tcp);
-    if (n > 0) tcp->libmodbus.gateway_exception = 0;
+    if (n > 0) tcp->port->gateway_exception = tcp->libmodbus.gateway_exception = 0;
     return n;
 }
 
@@ -104,8 +104,6 @@ static fathom_status_t start(tcp_t *tcp)
     port->parts.masters = NULL;
     return FATHOM_OK;
 }
-
-uint8_t tcp_gateway_exception(const tcp_t *tcp) { return tcp != NULL ? tcp->libmodbus.gateway_exception : 0; }
 
 /* ---- connecting ---- */
 

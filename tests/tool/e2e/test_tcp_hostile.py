@@ -12,7 +12,7 @@ from tcp_server import adu, registers
 
 SAID = (0x0823, 0xDCB2, 0x0701, 0)  # HPS-167S #5: 2083 mm
 OTHER = (0x03E8, 0xDCB2, 0x0701, 0)  # 1000 mm
-NONSENSE = 'the received bytes are no Modbus TCP; check the port (502 is usual)'
+NONSENSE = 'the received bytes are not Modbus TCP. Check the port number (usually 502)'
 
 
 class Case(tcp_server.Case):
