@@ -50,8 +50,10 @@ static size_t distance(const char *one, const char *other)
 
 void nearest_try(nearest_t *nearest, const char *name)
 {
-    const size_t this_distance = distance(nearest->word, name);
-    const size_t limit = nearest->name != NULL ? nearest->distance : strlen(nearest->word) / 3 + 2;
+    const size_t length = strlen(nearest->word);
+    const bool is_begin = length > 1 && strncmp(nearest->word, name, length) == 0;
+    const size_t this_distance = is_begin ? 1 : distance(nearest->word, name);
+    const size_t limit = nearest->name != NULL ? nearest->distance : length / 3 + 2;
     if (this_distance >= limit || this_distance >= strlen(name)) return;
     nearest->name = name;
     nearest->distance = this_distance;

@@ -119,7 +119,7 @@ const command_t reset_command = {
     .name = "reset",
     .summary = "Restore the factory settings of an hps167s",
     .usage = "hps167s[:ADDRESS][@PORT] interface [OPTIONS]\nhps167s[:ADDRESS][@PORT] sensor [OPTIONS]",
-    .about = "\n  interface  the RS485 interface (#6): address 1, 19200 8E1, warm-up, termination\n"
+    .about = "\n  interface  the RS485 interface (#6): address 1, 19200 8E1, termination on\n"
              "  sensor     the sensor behind it (#13): its filter and its distance offset\n",
     .tables = tables,
     .common = "port address baud yes timeout",

@@ -214,7 +214,7 @@ const command_t restore_command = {
     .examples = "  fathom restore hps167s:7 --port /dev/ttyUSB0 --file gate.txt --dry-run\n"
                 "  fathom restore hps167s:7 --port /dev/ttyUSB0 --file gate.txt\n"
                 "  fathom restore hps167s --port /dev/ttyUSB0 --file gate.txt --as-new\n",
-    .status = "Exit status: 0 the sensor has the settings of the file (with --dry-run: already),\n"
+    .status = "Exit status: 0 the sensor has the settings of the file (--dry-run: already),\n"
               "1 it does not or that is unknown, 2 wrong usage or a wrong line in the file.\n",
     .topics = "settings, sensors, ports",
     .operands = operands_one,

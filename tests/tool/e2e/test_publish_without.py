@@ -18,7 +18,7 @@ class Publish(e2e.Case):
             file.write('site: mill\n')
         for words in (['--check', self.path('site.yaml')], [self.path('site.yaml')], []):
             done = self.start([built('fathom_without_publish'), 'publish', *words]).finish()
-            self.ends(done, 2, 'fathom publish: this fathom was built without libmosquitto and libyaml; install ', out='')
+            self.ends(done, 2, 'fathom publish: this fathom was built without libmosquitto and libyaml. Install ', out='')
 
     def test_the_help_says_so_too(self):
         done = self.start([built('fathom_without_publish'), 'publish', '--help']).finish()

@@ -264,9 +264,9 @@ class Help(e2e.Case):
         """-h of all commands, -p of those that have a port."""
         done = self.ends(f'{command} -h', 0)
         self.assertEqual(done.out, self.ends(f'{command} --help', 0).out)
-        has_port = re.search('^  --port', done.out, re.M) is not None
+        has_port = re.search('^  -p, --port', done.out, re.M) is not None
         self.assertEqual(has_port, command not in ('sim', 'decode'))
-        self.ends(f'{command} -p', 2, '-p needs a value' if has_port else 'there is no option -p')
+        self.ends(f'{command} -p', 2, '--port needs a value' if has_port else "unknown option '-p'")
 
 
 if __name__ == '__main__':

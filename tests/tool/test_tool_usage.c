@@ -1,0 +1,168 @@
+/* SPDX-License-Identifier: MIT */
+/* Wrong usage: exit status 2 and one line that says what is wrong, before anything is sent; and the help. */
+#include "tool_bench.h"
+
+#include <stdio.h>
+#include <string.h>
+
+EACH_BEGINS(bench_begin())
+
+static const suite_t suite = {.set_up = begins};
+
+static const struct {
+    const char *line;
+    const char *says;
+} rows[] = {
+    {"reed", "unknown command 'reed'. Did you mean read?"},
+    {"--versoin", "unknown option '--versoin'."},
+    {"help poort", "unknown command or topic 'poort'. Did you mean ports?"},
+    {"help read set", "help takes one command or topic."},
+    /* options */
+    {"read a16 -p x --fast", "unknown option '--fast'."},
+    {"read a16 -p x --prot y", "unknown option '--prot'. Did you mean --port?"},
+    {"read a16 -p x --inter 5",
+     "unknown option '--inter'. Did you mean "}, /* options cannot be abbreviated */
+    {"read a16 -p x -x", "unknown option '-x'."},
+    {"read a16 -p", "--port needs a value: PORT."},
+    {"read a16 -p x -p y", "--port is given twice."},
+    {"read a16 -p x --reconnect=1", "--reconnect takes no value."},
+    {"read a16 -p x --count 0", "--count is '0'. It takes a whole number from 1 to 1000000000."},
+    {"read a16 -p x --count -1", "--count is '-1'."},
+    {"read a16 -p x --count +1", "--count is '+1'."},
+    {"read a16 -p x --count 1e3", "--count is '1e3'."},
+    {"read a16 -p x --count 18446744073709551617", "--count is '18446744073709551617'."},
+    {"read a16 -p x --count=", "--count is ''."},
+    {"read a16 -p x --interval 2147484",
+     "--interval is '2147484'. It takes a whole number from 0 to 2147483."},
+    {"read a16 -p x --timeout 600001", "--timeout is '600001'. It takes a whole number from 1 to 600000."},
+    {"read a16 -p x --retries 255", "--retries is '255'."},
+    {"read a16 -p x --address 255", "--address is '255'."},
+    {"read hps167s -p x --address 33", "--address is 33. hps167s takes a whole number from 1 to 32."},
+    {"read a16 -p x --format jsno", "--format is 'jsno'. It takes text, json or csv."},
+    {"read a16 -p x --parity Even", "--parity is 'Even'. It takes none, even or odd."},
+    {"read a16 -p x --stop-bits 3", "--stop-bits is '3'."},
+    {"read a16 -p x --baud 12345",
+     "--baud is '12345'. It takes 9600, 19200, 38400, 57600, 115200 or 230400."},
+    {"read a16 -p x --echo yes", "--echo is 'yes'. It takes auto, off or on."},
+    {"read a16 -p x --stats=0", "--stats is '0'. It takes a whole number from 1 to 4000."},
+    {"read a16 -p x --stats 5", "unknown sensor '5'."},
+    {"read a16 -p x --no-header", "--no-header has no effect without --format csv."},
+    {"read a16 -p x --output o --rotate hour", "--rotate is 'hour'. It takes day."},
+    {"read a16 -p x --output=", "--output is ''. It takes the name of a file."},
+    {"read a05 -p x --probes 1,1",
+     "--probes is '1,1'. It takes numbers from 1 to 4, each once, such as 1,2."},
+    {"read a05 -p x --probes 1,", "--probes is '1,'."},
+    {"read a05 -p x --probes 1-3", "--probes is '1-3'."},
+    {"read a16 -p x --means 0", "--means: 0 has no value."},
+    {"read a16 -p x --means 0=far", "--means: 0 is 'far'. It takes unknown, no-target, interference, "},
+    {"read a16 -p x --means FFFD=fault", "--means: unknown key 'FFFD'. Did you mean fffd?"},
+    {"read a16 -p x --means 0=fault,", "--means: unknown key ''."},
+    {"watch a16 -p x --count 3", "unknown option '--count'."},
+    /* sensors */
+    {"read", "no sensor is named."},
+    {"read a16", "--port is missing, such as --port /dev/ttyUSB0."},
+    {"read hps167s -p x --mode dyp", "unknown mode of hps167s 'dyp'."},
+    {"read a16:1: -p x", "unknown mode of a16 ''."},
+    {"read a16:1:modbsu -p x", "unknown mode of a16 'modbsu'. Did you mean modbus?"},
+    {"read a16:0:auto -p x", "'0' is no address of a16. It takes a whole number from 1 to 254."},
+    {"read a05:255:modbus -p x", "'255' is no address of a05. It takes a whole number from 0 to 254."},
+    {"read hps167s:33 -p x", "'33' is no address of hps167s. It takes a whole number from 1 to 32."},
+    {"read a16:1 --address 5 -p x", "'a16:1' has an address already. Leave --address out."},
+    {"read a16:modbus --mode auto -p x", "'a16:modbus' has a mode already. Leave --mode out."},
+    {"read a16:1 a05:2 --mode modbus -p x", "with several sensors, write --address and --mode behind each"},
+    /* sensors that share a line */
+    {"read a16 a05:2:auto -p x", "a05 in mode auto sends automatically and cannot share a line."},
+    {"read a16:1 a05:1 -p x", "a16:1 and a05:1 have the same address, so both would respond at once."},
+    {"read a05:1:modbus a05:2:dyp -p x",
+     "a damaged response in mode dyp can change the address of another a05"},
+    {"read t=a16@x t=a05@y", "two sensors have the name t. Give each its own name, such as one=a05."},
+    {"read a16:3@x,baud=9600 a16:4@x,baud=19200", "a16:4@x: another sensor at this port has another baud=."},
+    /* ports */
+    {"read hps167s -p x,baud=57600",
+     "--port takes no keys. Write them behind the sensor: hps167s@x,baud=57600."},
+    {"read a05:relay", "the GPIO lines are missing. Write them behind the sensor: a05:relay@gpiochip0,in=5."},
+    {"read hps167s@tcp:", "tcp:: "},
+    {"read a16@tcp:h", "a16 in mode auto needs a serial port. Over TCP, use Modbus: a16:modbus."},
+    {"read a16@/dev/gpiochip0,in=1",
+     "a16 in mode auto needs a serial port, and /dev/gpiochip0 is a GPIO chip."},
+    {"read a=a16:switch@gpiochip0,in=3 b=a05:relay@/dev/gpiochip0,in=3", "line 3 of gpiochip0 is used twice"},
+    /* commands for one sensor */
+    {"info a16:1:auto -p x", "a16 in mode auto receives no requests. Leave the mode out."},
+    {"get a16 address", "--port is missing"},
+    {"get a16 -p x colour", "unknown setting of a16 'colour'. It is one of "},
+    {"get a16 -p x switch-treshold",
+     "unknown setting of a16 'switch-treshold'. Did you mean switch-threshold?"},
+    {"get a16 -p x operating-mode", "operating-mode is write-only."},
+    {"get a16 -p x address more", "'more' is one word too many."},
+    {"info a16 -p x --interval 5", "unknown option '--interval'."},
+    {"set a16 -p x", "the setting is missing. 'fathom get a16' lists the settings."},
+    {"set a16 -p x address", "the value is missing."},
+    {"set a16 -p x address 255", "address is '255'. It takes 1 to 254."},
+    {"set a16 -p x address 0", "A unit at address 0 may not be found again"},
+    {"set hps167s -p x address 0 --may-not-be-found-again", "address is '0'. It takes 1 to 32."},
+    {"set a16:0 -p x switch-threshold 500", "a write to address 0 goes to all units"},
+    {"set a16 -p x distance 5", "distance is read-only."},
+    {"set hps167s -p x reconnect-time 19", "reconnect-time is '19'."},
+    {"set a05 --mode modbus -p x every-address 5", "--mode is modbus, but this needs mode dyp."},
+    {"reset a16 interface -p x", "a16 cannot be reset. Only an hps167s can."},
+    {"reset hps167s -p x", "what is to be reset is ''. Write interface or sensor."},
+    {"reset hps167s interface -p x", "To confirm that, add --yes."},
+};
+
+TEST(wrong_usage_is_rejected_in_one_line_before_anything_is_sent)
+{
+    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
+        const tool_run_t *const run = tool_run(&bench.tool, "%s", rows[i].line);
+        const char *const end = strchr(run->err, '\n');
+        if (run->status != 2 || strstr(run->err, rows[i].says) == NULL || run->out[0] != '\0' ||
+            strncmp(run->err, "fathom", 6) != 0 || end == NULL || end[1] != '\0')
+            fail_msg("%s: exit status %d\n%snot: %s", rows[i].line, run->status, run->err, rows[i].says);
+    }
+    assert_int_equal(bench.a16.device.counters.requests, 0);
+}
+
+/* A number below zero is a value or a word wherever it stands. */
+TEST(a_negative_value_may_stand_between_options)
+{
+    static const char *const lines[] = {"set hps167s distance-offset -15 --port line",
+                                        "set --port line hps167s distance-offset -15",
+                                        "set hps167s --port line distance-offset -15 --timeout 900"};
+    for (size_t i = 0; i != sizeof lines / sizeof lines[0]; i++) {
+        bench_begin();
+        bench_hps167s((fathom_sim_hps167s_config_t){0});
+        const tool_run_t *const run = tool_run(&bench.tool, "%s", lines[i]);
+        if (run->status != 0) fail_msg("%s: exit status %d\n%s", lines[i], run->status, run->err);
+    }
+}
+
+/* At most 60 lines of 80 columns, on the standard output, with exit status 0. */
+TEST(each_help_fits_a_terminal)
+{
+    static const char *const commands[] = {"scan",      "read",       "watch", "publish", "info",
+                                           "get",       "set",        "save",  "restore", "reset",
+                                           "calibrate", "commission", "sim",   "request", "decode"};
+    for (size_t i = 0; i != sizeof commands / sizeof commands[0]; i++) {
+        unsigned lines = 0;
+        char usage[40];
+        const tool_run_t *const run = tool_run(&bench.tool, "%s --help", commands[i]);
+        assert_int_equal(run->status, 0);
+        assert_string_equal(run->err, "");
+        (void)snprintf(usage, sizeof usage, "Usage: fathom %s ", commands[i]);
+        assert_memory_equal(run->out, usage, strlen(usage));
+        for (const char *at = run->out; *at != '\0'; lines++) {
+            const size_t length = strcspn(at, "\n");
+            if (length > 80) fail_msg("%s: %.*s", commands[i], (int)length, at);
+            at += length + 1;
+        }
+        if (lines > 60) fail_msg("%s: %u lines", commands[i], lines);
+    }
+}
+
+TEST(an_option_without_an_effect_is_a_notice)
+{
+    const tool_run_t *run = tool_run(&bench.tool, "read a16 --port /nowhere --retries 7 --count 1");
+    assert_non_null(
+        strstr(run->err, "--retries has no effect on a16 in mode auto, which sends no requests."));
+    run = tool_run(&bench.tool, "read a16 --port /nowhere --retries 7 --count 1 --quiet");
+    assert_null(strstr(run->err, "no effect"));
+}
