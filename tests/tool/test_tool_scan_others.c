@@ -101,7 +101,7 @@ TEST(another_master_is_not_disturbed)
 TEST(unknown_bytes_are_a_sender_and_a_few_bytes_are_noise)
 {
     (void)add_speaker(&dyp_line, 1000000, junk, sizeof junk); /* three times in 3 s */
-    (void)hears("? - 9600 8N1", "something sends without a request. An HPS-167S made before 2020-09");
+    (void)hears("? - 9600 8N1", "a device sends without a request. An HPS-167S made before 2020-09");
 
     scan_begin();
     (void)add_speaker(&dyp_line, 2000000, junk, sizeof junk); /* once */
@@ -155,7 +155,7 @@ TEST(responses_that_are_not_modbus_are_one_finding)
     (void)add_speaker(&hps167s_line, 0, junk, sizeof junk);
     (void)add_a16((fathom_sim_a16_config_t){.address = 3});
     const tool_run_t *const run = scan_finds("a16 3 9600 8N1, ? - 19200 8E1", "");
-    assert_says(run, "something responds at 19200 8E1, but not in Modbus. An HPS-167S made before 2020-09");
+    assert_says(run, "a device responds at 19200 8E1, but not in Modbus. An HPS-167S made before 2020-09");
     /* 32 addresses, most of them asked twice and not four times */
     assert_in_range(scans.probed[1][FATHOM_PARITY_EVEN], 64, 80);
 }

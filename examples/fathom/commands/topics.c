@@ -257,7 +257,7 @@ static const struct {
     {"request", "A request, its response, and the meaning"},
     {"decode", "A frame, or bytes that belong to no frame"},
     {"sim --counters", "What a simulated sensor received (on standard error)"},
-    {"publish", "MQTT: state, level, alarm, publisher, and discovery messages"},
+    {"publish", "MQTT: state, level, alarm, counters, publisher, discovery"},
 };
 
 static void print_json(FILE *to)

@@ -44,7 +44,7 @@ class Away(Case):
         state = self.messages(subscriber, '/gate/state')[-1].json
         self.assertEqual(list(counters), ['utc', 'version', 'boot', 'uptime_s', 'sensors', 'queued', 'dropped'])
         self.assertEqual((counters['boot'], counters['dropped']), (state['boot'], state['dropped']))
-        publisher.expect(rf'the queue was full: \d+ messages were dropped, {counters["dropped"]} since the start$', 'err')
+        publisher.expect(rf'the queue was full: \d+ messages were dropped, {counters["dropped"]} since the start\.$', 'err')
 
     def test_one_that_is_killed_and_comes_back_gets_all_of_it(self):
         broker = self.broker()

@@ -24,6 +24,7 @@ class Topic(mqtt.Case):
         for topic in ('gate/state', 'gate/level', 'gate/alarm', 'gate/availability', 'gate/counters', 'mill/publisher'):
             self.wait_for(subscriber, topic)
         received = self.messages(subscriber)
+        self.assertTrue(all(one.json for one in received if one.payload.startswith('{')))  # each is a record of schema.json
         self.assertEqual({name.replace('NAME', 'gate') for name in topics},
                          {one.topic.removeprefix('fathom/mill/') for one in received})
         for topic in ('state', 'level', 'alarm'):

@@ -11,7 +11,7 @@ import time
 import e2e
 import mqtt
 
-READ_AGAIN = 'site.yaml was read again$'
+READ_AGAIN = r'site.yaml was read again\.$'
 
 
 class Case(mqtt.Case):
@@ -105,7 +105,7 @@ class Wrong(Case):
         self.config(self.one.replace('interval: 50', 'interval: fast'))
         self.publisher.send(signal.SIGHUP)
         self.publisher.expect(r"site\.yaml:\d+: interval is 'fast'\. It takes a whole number from 0 to 2147483\.$", 'err')
-        self.publisher.expect('nothing has changed$', 'err')
+        self.publisher.expect(r'nothing has changed\.$', 'err')
         self.has('/gate/state', 3)
         self.check_nothing_is_missing('/gate/state')
         self.change(self.one)

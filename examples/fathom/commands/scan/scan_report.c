@@ -188,7 +188,7 @@ void scan_print_advice(FILE *to, const scan_finding_t *finding)
     else if (finding->kind == SCAN_NOT_MODBUS)
         (void)fprintf(
             to,
-            "fathom: something responds at %s, but not in Modbus. An HPS-167S made before 2020-09 has "
+            "fathom: a device responds at %s, but not in Modbus. An HPS-167S made before 2020-09 has "
             "another protocol. Another --baud or --parity, swapped wires A and B and noise have the same "
             "effect.\n",
             line);

@@ -14,7 +14,7 @@ static void print_why_nothing_was_sent(const scan_finding_t *sender)
             stderr);
     else if (sender->kind == SCAN_SENDER && sender->address == 0)
         (void)fputs(
-            "something sends without a request. An HPS-167S made before 2020-09 has another protocol. "
+            "a device sends without a request. An HPS-167S made before 2020-09 has another protocol. "
             "Another rate, swapped wires A and B and noise have the same effect",
             stderr);
     else if (sender->mode == SCAN_AUTO)
