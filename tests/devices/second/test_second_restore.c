@@ -144,13 +144,13 @@ static bool is_made(const wish_t *wish)
     return strstr(run->out, text) != NULL;
 }
 
-/* "a16:1: NAME VALUE: written, ..." or "refused": one write that came to nothing, or is not known to hold. */
+/* "a16:1: NAME VALUE: not_confirmed", "differs" or "refused": a write that failed, or whose effect is unknown. */
 static bool is_sent(const wish_t *wish)
 {
     char text[80];
     (void)snprintf(text, sizeof text, ": %s %s: ", wish->name, wish->value);
     const char *const at = strstr(run->err, text);
-    return at != NULL && strncmp(at + strlen(text), "nothing", 7) != 0;
+    return at != NULL && strncmp(at + strlen(text), "not_written", 11) != 0;
 }
 
 static void check_row(const wish_t *wish, size_t n, uint64_t since)
@@ -182,8 +182,10 @@ static void restore(const char *sensor, const wish_t *wishes, size_t count)
     if (rig.writes - writes != announced) finding("other writes than it says", "restore");
     if (is.flash_writes - was.flash_writes > announced)
         finding("the flash was written more often", "restore");
-    const bool may_move = says("address is 3") || says("address 3: written");
-    const bool may_change = says("baud is 57600") || says("baud 57600: written");
+    const bool may_move =
+        says("address is 3") || says("address 3: not_confirmed") || says("address 3: differs");
+    const bool may_change =
+        says("baud is 57600") || says("baud 57600: not_confirmed") || says("baud 57600: differs");
     if (is.address != was.address && !(is.address == 3 && may_move))
         finding("it is nowhere that was said", "address");
     if (is.line.baud != was.line.baud && !(is.line.baud == 57600 && may_change))
@@ -191,12 +193,13 @@ static void restore(const char *sensor, const wish_t *wishes, size_t count)
     if (says("address is 3") && is.address != 3) finding("it is not where it is said to be", "address");
     if (says("baud is 57600 (was") && is.line.baud != 57600)
         finding("it is not where it is said to be", "baud");
-    if (run->status == 0 && (says("address is 3") || says("baud is 57600")) && !says("it answers there"))
+    if (run->status == 0 && (says("address is 3") || says("baud is 57600")) &&
+        !says(": responds at the new place, "))
         finding("moved, and not looked at again", "restore");
     if (run->status == 0 && announced == 0 && !says("no differences"))
         finding("success of nothing", "restore");
     if (run->status != 0 && !says("nothing was written") && !says("stopped at ") &&
-        !says("all that differed is written"))
+        !says("all differences are written"))
         finding("it does not say how it ended", "restore");
     if (rig.to_all != 0) finding("a write to all units", "restore");
     sums.written += announced;

@@ -118,7 +118,7 @@ class Sending(e2e.Case):
         nothing_heard_is_wiring_and_supply=('a16', b'', 'no byte was received. Check the power and the wire .*--mode modbus'),
         bytes_without_a_frame_are_rate_or_parity=(
             'a05', NOISE * 6,
-            r'the bytes form no frame of a05\. Check --baud and --parity \(now 9600 8N1\)'),
+            r'the bytes form no frame of a05.*\. Check --baud and --parity \(now 9600 8N1\)'),
         frames_of_the_other_sensor_name_it=(
             'a16', TO_A05 * 3, "frames of a05 in automatic mode were received. Try 'fathom read a05 --mode auto'"),
         frames_of_the_other_sensor_name_it_too=(
