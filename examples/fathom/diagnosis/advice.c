@@ -357,7 +357,7 @@ static const char *what(const failure_t *failure)
     case FATHOM_ERR_EXCEPTION:
         return "{sensor}{place} refused the request";
     case FATHOM_ERR_MALFORMED:
-        return "refused response from {sensor}{place}";
+        return "unusable response from {sensor}{place}";
     case FATHOM_ERR_LINE_BUSY:
         return "cannot send a request to {sensor}{place}";
     case FATHOM_ERR_OTHER_MASTER:
