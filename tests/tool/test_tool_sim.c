@@ -92,7 +92,8 @@ TEST(the_help_lists_every_fault)
 }
 
 REFUSES(a_wrong_fault_is_refused, "sim",
-        {"a16 --fault flip", "unknown fault of a16 in mode auto 'flip'. It is one of stuck, "},
+        {"a16 --fault flip", "unknown fault of a16 in mode auto 'flip'. Did you mean flip-bit?"},
+        {"a16 --fault xyz", "unknown fault of a16 in mode auto 'xyz'. It is one of stuck, "},
         {"a16 --fault flip-bt", "Did you mean flip-bit?"}, {"a16 --fault=", "fault of a16 in mode auto ''"},
         {"a16 --fault =0.5", "fault of a16 in mode auto ''"},
         {"a16 --fault clock-jump", "fault of a16 in mode auto 'clock-jump'"},
