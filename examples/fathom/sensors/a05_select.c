@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 #include "sensors/a05.h"
 
-/* Processed or real-time values, by RX in the first second after power-on (A05 1(1)). The port's TX is held at that
- * level, until what the sensor sends has been away and has come back. Nothing is told of what comes before. */
+/* An A05 samples its RX in the first second after power-on: high selects processed values, low real-time values
+ * (A05 1(1)). The reader holds the port's TX at this level until the frames of the sensor stop and start again. It reports
+ * no measurement before that. */
 
-/* A silence of so much is no pause between two frames: it was off. No period is printed, but a "response time" of 1.5 s
+/* A longer pause between two frames means that the sensor was off. No period is printed, but a "response time" of 1.5 s
  * (A05 1). */
 #define OFF_US 2000000u
 
-/* Low for another 1.5 s, if it is; the driver lets it go high then. */
+/* The driver holds RX low for another 1.5 s and then lets it go high. */
 static fathom_status_t go_on(reader_t *reader)
 {
     driver_selection_t *const selection = &reader->selection;

@@ -5,7 +5,7 @@
 
 /* ---- reading ---- */
 
-/* RX goes high again. */
+/* RX becomes high again. */
 static fathom_status_t end_auto(reader_t *reader) { return fathom_a16_auto_deinit(&reader->driver.a16_auto); }
 
 static fathom_status_t end_controlled(reader_t *reader)
@@ -13,7 +13,7 @@ static fathom_status_t end_controlled(reader_t *reader)
     return fathom_a16_controlled_deinit(&reader->driver.a16_controlled);
 }
 
-/* A level at RX selects (A16 2(2)): that of the port's TX. */
+/* The level of the port's TX at the module's RX selects the value (A16 2(2)). */
 bool a16_read_auto(reader_t *reader, port_t *port, const reader_settings_t *settings)
 {
     fathom_a16_auto_t *const driver = &reader->driver.a16_auto;

@@ -3,7 +3,7 @@
 
 static fathom_status_t end_pwm(reader_t *reader) { return fathom_a16_pwm_deinit(&reader->driver.a16_pwm); }
 
-/* A pulse a trigger (A16 1). */
+/* Each trigger returns one pulse (A16 1). */
 bool a16_read_pwm(reader_t *reader, port_t *port, const reader_settings_t *settings)
 {
     fathom_a16_pwm_t *const driver = &reader->driver.a16_pwm;
@@ -23,7 +23,7 @@ bool a16_read_pwm(reader_t *reader, port_t *port, const reader_settings_t *setti
     return true;
 }
 
-/* A level (A16 4); from the factory "less than 1 meter" is a high one. */
+/* With factory settings "less than 1 meter" is a high level (A16 4). */
 bool a16_read_switch(reader_t *reader, port_t *port, const reader_settings_t *settings)
 {
     fathom_a16_switch_t *const driver = &reader->driver.a16_switch;

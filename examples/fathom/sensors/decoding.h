@@ -9,9 +9,9 @@
 #include "fathom/codec/hps167s_registers.h"
 #include "sensors/setting.h"
 
-/* A frame from the wire, and what it says, before that is written as text or JSON. */
+/* A decoded frame, before it is printed as text or JSON. */
 
-/* What may be in the input; sets of them. */
+/* The protocols of the input, as bits. */
 enum {
     DECODE_MODBUS = 1,
     DECODE_DYP = 2,         /* 55 AA */
@@ -34,7 +34,7 @@ typedef struct {
     bool is_damaged;   /* the shape of a frame, but its checksum is wrong */
 } decode_piece_t;
 
-/* Where it stands in a Modbus frame; a read's response has its size in place of the first register. */
+/* Positions in a Modbus frame. The response of a read has its size instead of the first register. */
 enum {
     DECODE_AT_FUNCTION = 1,
     DECODE_AT_SIZE = 2,
@@ -60,7 +60,7 @@ typedef struct {
     char value[DECODE_VALUE];
 } decode_field_t;
 
-/* What it means if a certain sensor was meant; nothing but the fields where sensor is "". */
+/* The meaning of a frame for one sensor; without a sensor (""), of any Modbus frame. */
 typedef struct {
     const char *sensor;
     const char *source; /* section of its datasheet */
@@ -72,7 +72,7 @@ typedef struct {
 typedef struct {
     const decode_piece_t *piece;
     const uint8_t *bytes;
-    bool is_sure;            /* one sensor was named; else only what is likely is guessed */
+    bool is_sure;            /* the user named the sensor; otherwise only likely meanings are added */
     int unit;                /* -1: it has none */
     int code;                /* function or command; -1: it has none */
     const char *code_is;     /* "function" or "command" */
@@ -85,18 +85,18 @@ typedef struct {
     char note[DECODE_NOTES][DECODE_TEXT];
 } decode_frame_t;
 
-/* ---- for a model that fills it in ---- */
+/* ---- for model_t.decode ---- */
 
 uint16_t decode_get16(const uint8_t *at);
 
-/* A meaning with its name as printf makes it; further fields go to it. Full: the last one is overwritten. */
+/* Adds a meaning. If there is no room, it replaces the last one. */
 decode_meaning_t *decode_mean(decode_frame_t *frame, const char *sensor, const char *source,
                               const char *format, ...);
 void decode_note(decode_frame_t *frame, const char *format, ...);
 
-/* The field, for a note of its own. */
+/* Add a field and return it, for a note. */
 decode_field_t *decode_number(decode_meaning_t *meaning, const char *name, int64_t value, const char *unit);
-/* As many decimal places. */
+/* With `places` decimal places. */
 decode_field_t *decode_decimal(decode_meaning_t *meaning, const char *name, int64_t value, uint8_t places,
                                const char *unit);
 decode_field_t *decode_string(decode_meaning_t *meaning, const char *name, const char *format, ...);
@@ -104,7 +104,8 @@ decode_field_t *decode_string(decode_meaning_t *meaning, const char *name, const
 /* Sets the note of a field. */
 void decode_remark(decode_field_t *field, const char *format, ...);
 
-/* A value of a setting as on the wire, with a note if the setting cannot have it; and the value of a response. */
+/* Add a value of a setting as it is on the wire, with a note if the setting cannot have it, and the value of a
+ * response. */
 void decode_setting(decode_meaning_t *meaning, const setting_t *setting, int64_t value);
 void decode_response(decode_meaning_t *meaning, const setting_t *setting, const uint16_t *registers);
 

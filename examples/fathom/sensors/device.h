@@ -6,8 +6,8 @@
 #include "sim/a16.h"
 #include "sim/hps167s.h"
 
-/* What a device may have besides; 0: it has not. sim_traits.c says what each is, model_t.traits which model can have
- * it. */
+/* Traits of a simulated sensor; 0: it does not have the trait. sim_traits.c explains them, and model_t.traits has those
+ * that a model can have. */
 typedef enum {
     DEVICE_EXCEPTIONS,
     DEVICE_ANSWERS_BROADCAST,
@@ -29,9 +29,9 @@ typedef enum {
 
 typedef struct {
     uint8_t address;
-    uint32_t baud; /* 0: the factory's; only a sensor that can be set to another rate looks at it */
+    uint32_t baud; /* 0: the factory setting; for sensors with several rates */
     uint32_t seed;
-    uint8_t number; /* tells units of one model apart, where they have a number of their own */
+    uint8_t number; /* of the unit among those of its model that have a number of their own */
     uint32_t traits[DEVICE_TRAITS];
     fathom_sim_scene_t scene;
 } device_settings_t;

@@ -3,7 +3,7 @@
 
 /* ---- limits ---- */
 
-/* The user's, if there are any. */
+/* Returns the limits of the user; NULL: none. */
 static fathom_hps167s_limits_t *limits_of(reader_t *reader, const reader_settings_t *settings)
 {
     reader->limits.min_mm = settings->window.min_mm;
@@ -11,7 +11,7 @@ static fathom_hps167s_limits_t *limits_of(reader_t *reader, const reader_setting
     return settings->window.max_mm != 0 ? &reader->limits : NULL;
 }
 
-/* ---- it is asked ---- */
+/* ---- mode modbus ---- */
 
 bool hps167s_read_modbus(reader_t *reader, port_t *port, const reader_settings_t *settings)
 {
@@ -19,7 +19,7 @@ bool hps167s_read_modbus(reader_t *reader, port_t *port, const reader_settings_t
     fathom_hps167s_config_t config = {
         .modbus = driver_config(port, settings),
     };
-    /* The driver's period is also that of the temperature. */
+    /* The pace of the driver applies to the temperature as well. */
     if (settings->temperature_us != 0) config.modbus.period_us = 0;
     fathom_hps167s_limits_t *const limits = limits_of(reader, settings);
     if (fathom_hps167s_init(driver, &port->modbus, &config) != FATHOM_OK) return false;
@@ -34,7 +34,7 @@ bool hps167s_read_modbus(reader_t *reader, port_t *port, const reader_settings_t
     return true;
 }
 
-/* ---- it sends by itself ---- */
+/* ---- mode auto ---- */
 
 static void count(reader_t *reader, uint8_t counter, uint32_t more)
 {
@@ -49,7 +49,7 @@ static void take(reader_t *reader, uint8_t counter, uint16_t *from)
     *from = 0;
 }
 
-/* The driver, with the counters of a stream. */
+/* Polls the driver and fills in the counters of a stream. */
 static fathom_status_t poll_auto(void *ctx, fathom_sample_t *sample)
 {
     reader_t *const reader = ctx;

@@ -10,7 +10,7 @@ enum { FOUR = FATHOM_HPS167S_CONFIGURATION_COUNT };
 
 enum { NEXT_CENTURY = 2100 };
 
-/* True: the values are in four, too. */
+/* Reads four registers into `four`. Returns false if it cannot. */
 static bool ask_four(inquiry_t *inquiry, uint16_t first, uint16_t four[FOUR])
 {
     if (!inquiry->ask(inquiry, first, FOUR, INQUIRY_MEASURE_US, 2)) return false;

@@ -2,13 +2,13 @@
 #include "fathom/sensor/hps167s_info.h"
 #include "sensors/hps167s.h"
 
-/* The temperature (#4) between measurements (#5). The driver's pace holds for all requests, so the interval of the
- * measurements is kept here. A measurement's outcome that was not taken would give way to another request: so
- * the temperature is asked for only while none is under way. */
+/* Reads the temperature (#4) between measurements (#5). The pace of the driver applies to all requests, so this file keeps
+ * the interval of the measurements. Another request would replace the result of a measurement that was not polled, so the
+ * temperature is read only while no measurement is in progress. */
 
 enum { RESTING, MEASURING, READING_IT };
 
-/* One that is older is not shown. */
+/* An older temperature is not reported. */
 enum { PERIODS_SHOWN = 3 };
 
 static uint32_t left_us(bool has_begun, uint32_t began_us, uint32_t period_us, uint32_t now)
@@ -42,7 +42,7 @@ static void take(reader_t *reader, fathom_status_t status, const fathom_hps167s_
     }
 }
 
-/* False: it is still under way. */
+/* Returns false while the read is in progress. */
 static bool ask(reader_t *reader)
 {
     fathom_hps167s_temperature_t read;
@@ -56,7 +56,7 @@ static bool ask(reader_t *reader)
 static void begin_next(driver_temperature_t *temperature, uint32_t now)
 {
     const bool is_due = until_measured_us(temperature, now) == 0;
-    /* In turns, or a device that does not answer this would never be measured. */
+    /* Alternately: a sensor that does not respond to #4 is measured all the same. */
     const bool has_turn = !temperature->was_last || !is_due;
     if (has_turn && until_asked_us(temperature, now) == 0) {
         temperature->state = READING_IT;

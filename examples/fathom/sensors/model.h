@@ -5,7 +5,7 @@
 #include "fathom/sample.h"
 #include "sensors/decoding.h"
 #include "sensors/device.h"
-#include "sensors/inquiry.h"
+#include "sensors/finding.h"
 #include "sensors/setting.h"
 
 /* The lines of a GPIO chip on which a sensor hangs instead of a serial line: bits. */
