@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "reading/attempt.h"
 
+#include <stdlib.h>
+
 #include "diagnosis/status_word.h"
 
 bool attempt_was_last(const loop_t *loop, const sensor_t *sensor)
@@ -18,7 +20,9 @@ uint32_t attempt_backoff_us(const line_t *line)
 
 listener_t *attempt_listener(line_t *line, sensor_t *sensor)
 {
-    return is_shared(line) ? &sensor->own_listener : &line->port.listener;
+    if (is_shared(line) && sensor->own_listener == NULL)
+        sensor->own_listener = calloc(1, sizeof *sensor->own_listener);
+    return sensor->own_listener != NULL ? sensor->own_listener : &line->port.listener;
 }
 
 /* ---- what was received, and from whom ---- */

@@ -56,6 +56,7 @@ void site_free(site_t *site)
     }
     for (size_t i = 0; i != site->sensor_count; i++) {
         reader_free(&site->sensors[i]->reader);
+        free(site->sensors[i]->own_listener);
         free(site->sensors[i]);
     }
     free(site->sensors);

@@ -39,16 +39,15 @@ struct sensor {
     counters_t counters;
     pulses_t pulses;
     result_probe_t probes[FATHOM_DYP_PROBES];
-    listener_t
-        own_listener;      /* if several sensors share the line: what is received during this sensor's turn */
-    listener_t *listener;  /* the line's or its own */
-    uint64_t next_us;      /* the start of the present attempt */
-    sensor_t *next;        /* on the same line */
-    bool skipping;         /* the present response came before next_us */
-    bool answering;        /* the present attempt has delivered a part of a response */
-    bool has_failed;       /* a part of the present attempt failed */
-    bool has_good;         /* there was a reading other than FATHOM_UNKNOWN */
-    bool has_raise_notice; /* the user knows that the interval is longer than the chosen one */
+    listener_t *own_listener; /* if several sensors share the line: for this sensor's requests */
+    listener_t *listener;     /* the line's or its own */
+    uint64_t next_us;         /* the start of the present attempt */
+    sensor_t *next;           /* on the same line */
+    bool skipping;            /* the present response came before next_us */
+    bool answering;           /* the present attempt has delivered a part of a response */
+    bool has_failed;          /* a part of the present attempt failed */
+    bool has_good;            /* there was a reading other than FATHOM_UNKNOWN */
+    bool has_raise_notice;    /* the user knows that the interval is longer than the chosen one */
 };
 
 /* A port and the sensors on it. */
