@@ -103,7 +103,8 @@ typedef struct {
 static report_t report(void)
 {
     return (report_t){.made = run->status == 0,
-                      .not_written = says("not_written") || says("nothing was sent") || says("unchanged"),
+                      .not_written = says("not_written") || says("nothing was written") ||
+                                     says("nothing was sent") || says("unchanged"),
                       .not_confirmed = says("not_confirmed") || says("was sent"),
                       .otherwise = says("differs"),
                       .refused = !says("not_written") && says("refused")};
