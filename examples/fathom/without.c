@@ -55,7 +55,12 @@ static int start_publish(const host_t *host, const arguments_t *arguments)
     return STATUS_USAGE;
 }
 
-static const option_table_t publish_tables[] = {{NULL, 0}};
+static const option_t publish_rows[] = {
+    {"check", .help = "Print the sensors and topics of FILE, and open nothing", .is_hidden = true, .size = 1},
+    {.name = NULL},
+};
+
+static const option_table_t publish_tables[] = {{publish_rows, 0}, {NULL, 0}};
 
 const command_t publish_command = {
     .name = "publish",

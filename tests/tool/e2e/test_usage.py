@@ -37,7 +37,7 @@ class Help(e2e.Case):
             self.ends(re.sub('@/?', '@/nowhere/', re.sub(r'(--port|-p) \S+', '--port /nowhere', example)), 1)
 
     def test_options_may_stand_before_and_after_the_sensor_and_the_last_one_counts(self):
-        self.ends('read --interval 1s a16 --port /nowhere --interval 1', 1, '/nowhere: no such device')
+        self.ends('read --interval 5 a16 --port /nowhere --interval 1', 1, '/nowhere: no such device')
 
 
 if __name__ == '__main__':

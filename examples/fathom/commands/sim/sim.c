@@ -165,7 +165,7 @@ const command_t sim_command = {
     .examples = "  fathom sim a16 --link ./tank\n"
                 "  fathom sim a05::modbus --link ./bumper --distance 1000,2000,1953,no-target\n"
                 "  fathom sim a16:1:modbus a05:2:modbus hps167s:7,distance=2083 --link ./bus\n",
-    .status = "Exit status: 0 after Ctrl-C, 1 the port or the link cannot be made, 2 wrong usage.\n",
+    .status = "Exit status: 0 after Ctrl-C, 1 the port cannot be made, 2 wrong usage.\n",
     .topics = "faults, sensors",
     .operands = operands_simulated,
     .settings_size = sizeof(sim_settings_t),
