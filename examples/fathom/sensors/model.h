@@ -103,7 +103,6 @@ struct model {
         uint16_t own;            /* a register that no other model with the same first read has ... */
         uint16_t slow_own;       /* ... and one for INQUIRY_SLOW_US, if none of them responds to that */
         uint32_t timeout_us;     /* of the first read; 0: the default of a scan */
-        const model_mode_t *any; /* the mode in which one unit responds whatever its address is */
         /* Instead of `own`: identifies it by the response to the first read, and by further reads. */
         bool (*is_it)(inquiry_t *inquiry);
     } scan;

@@ -3,8 +3,6 @@
 
 #include <string.h>
 
-#include "output/words.h"
-#include "ports/line_text.h"
 #include "sensors/a05.h"
 #include "sensors/a16.h"
 #include "sensors/dyp.h"
@@ -240,19 +238,6 @@ const model_t *model_with(uint8_t protocols)
     size_t i = 0;
     while ((models[i].protocols & protocols) == 0) i++;
     return &models[i];
-}
-
-void models_print(FILE *to)
-{
-    for (size_t i = 0; i != model_count; i++) {
-        const model_t *const model = &models[i];
-        char modes[80] = "";
-        char line[LINE_TEXT];
-        for (size_t m = 0; m != MODEL_MODES && model->modes[m].name != NULL; m++)
-            list_add(modes, sizeof modes, model->modes[m].name);
-        (void)fprintf(to, "  %-8s %-24s %-10s address 1..%-4u modes: %s\n", model->name, model->what,
-                      line_text(&model->line, line), model->max_address, modes);
-    }
 }
 
 const model_mode_t *model_mode_of(const model_t *model, const setting_t *setting)

@@ -2,8 +2,6 @@
 #ifndef MODELS_H
 #define MODELS_H
 
-#include <stdio.h>
-
 #include "sensors/model.h"
 
 /* The models, a row each. If several can be a device, a later one is tried first. A model with a driver of its own also
@@ -25,8 +23,5 @@ bool models_allow_read(uint8_t address, uint16_t first, uint16_t count);
 
 /* Returns the first model that has one of these protocols (DECODE_...). */
 const model_t *model_with(uint8_t protocols);
-
-/* The table, for help texts. */
-void models_print(FILE *to);
 
 #endif

@@ -69,11 +69,6 @@ void reader_write_next_unchecked(reader_t *reader)
     if (reader != NULL && reader->unit != NULL) (void)fathom_modbus_write_next_unchecked(reader->unit);
 }
 
-void reader_set_backoff_us(reader_t *reader, uint32_t backoff_us)
-{
-    if (reader != NULL && reader->unit != NULL) reader->unit->backoff_us = backoff_us;
-}
-
 void reader_listen_unasked(reader_t *reader)
 {
     if (reader != NULL && reader->mode->listen_unasked != NULL) reader->mode->listen_unasked(reader);

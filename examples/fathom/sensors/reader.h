@@ -74,9 +74,6 @@ void reader_cancel(reader_t *reader);
 /* The next setting is written once, without a read before or after it (modbus_setting.h). */
 void reader_write_next_unchecked(reader_t *reader);
 
-/* Replaces reader_settings_t.backoff_us. */
-void reader_set_backoff_us(reader_t *reader, uint32_t backoff_us);
-
 /* Receives the measurements that the sensor sends without a request, between the requests. */
 void reader_listen_unasked(reader_t *reader);
 
