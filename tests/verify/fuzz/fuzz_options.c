@@ -3,11 +3,10 @@
 
 #include <ctype.h>
 
-#include "cli/options.h"
-#include "cli/place.h"
-#include "cli/result_options.h"
+#include "cli/rows.h"
 #include "commands/commands.h"
 #include "device/setting_text.h"
+#include "output/words.h"
 #include "ports/tcp_address.h"
 
 /*
@@ -27,7 +26,7 @@ static void take_text(void)
 
 /* ---- numbers ---- */
 
-/* options.h: "All of `text` is a decimal number", of 10 digits at most. */
+/* words.h: "All of `text` is a decimal number", of 10 digits at most. */
 static bool is_number(const char *from, const char *end, uint32_t min, uint32_t max, uint32_t *number)
 {
     uint64_t sum = 0;
@@ -49,16 +48,15 @@ static void check_numbers(uint8_t how)
     take_text();
     const char *const end = text + strlen(text);
     const bool is_taken = number_parse(text, min, max, is);
-    PROMISE(is_taken == is_number(text, end, min, max, should), "options.h: number_parse");
-    PROMISE(is[0] == (is_taken ? should[0] : 77),
-            "options.h: the number; one that is refused changes nothing");
+    PROMISE(is_taken == is_number(text, end, min, max, should), "words.h: number_parse");
+    PROMISE(is[0] == (is_taken ? should[0] : 77), "words.h: the number; one that is refused changes nothing");
     const char *const dash = strchr(text, '-');
     const bool is_range = dash == NULL ? is_number(text, end, min, max, should)
                                        : is_number(text, dash, min, max, should) &&
                                              is_number(dash + 1, end, should[0], max, should + 1);
     if (dash == NULL) should[1] = should[0];
-    PROMISE(range_parse(text, min, max, is, is + 1) == is_range, "options.h: range_parse");
-    if (is_range) PROMISE(is[0] == should[0] && is[1] == should[1], "options.h: the range");
+    PROMISE(range_parse(text, min, max, is, is + 1) == is_range, "words.h: range_parse");
+    if (is_range) PROMISE(is[0] == should[0] && is[1] == should[1], "words.h: the range");
 }
 
 /* The same text with every number written with zeros before it. */
@@ -79,21 +77,26 @@ static const char *padded(const char *from, size_t to_digits)
 
 /* ---- levels and alarms ---- */
 
-typedef bool (*option_t)(results_config_t *config, const char *command, const char *of);
-
-static bool take(option_t option, const char *of, results_config_t *result)
+/* Stores `of` as the value of --NAME. */
+static bool take(const char *name, const char *of, results_config_t *result)
 {
     static results_config_t config; /* it points at itself */
+    static char copy[TEXT * MANY_DIGITS];
+    const option_table_t tables[] = {{result_rows, 0}, {NULL, 0}};
+    const origin_t origin = {.command = "read"};
+    option_walk_t walk;
     memset(&config, 0, sizeof config);
+    (void)snprintf(copy, sizeof copy, "%s", of);
     tool_capture();
-    const bool is_taken = option(&config, "read", of);
+    const bool is_taken =
+        option_find(&walk, tables, name, strlen(name)) && option_set(walk.row, copy, &config, &origin);
     tool_release();
     PROMISE(is_taken == (tool.err_size == 0) && tool.out_size == 0, "what is wrong is said");
     *result = config;
     return is_taken;
 }
 
-static void check_option(option_t option)
+static void check_option(const char *option)
 {
     static results_config_t first;
     static results_config_t other;
@@ -102,7 +105,7 @@ static void check_option(option_t option)
     if (take(option, padded(text, fuzz_input.left % 2 == 0 ? DIGITS : MANY_DIGITS), &other))
         PROMISE(is_taken && memcmp(&first, &other, sizeof first) == 0,
                 "a number with zeros before it is the same");
-    if (!is_taken || option != alarm_option) return;
+    if (!is_taken || strcmp(option, "alarm") != 0) return;
     const fathom_alarm_config_t *const is = &first.alarm;
     char after[40] = "";
     if (is->unknown_us != 0) (void)snprintf(after, sizeof after, ",unknown-after=%u", is->unknown_us / 1000);
@@ -137,39 +140,40 @@ static void check_tcp(void)
             "tcp_address.h: what is written out is taken as the same");
 }
 
-static bool take_place(sensor_place_t *place, char *word)
+static bool take_place(sensor_word_t *place, char *word)
 {
     tool_capture();
-    const bool is_taken = place_parse(place, "read", word);
+    const origin_t origin = {.command = "read"};
+    const bool is_taken = sensor_word_parse(place, word, &origin);
     tool_release();
-    PROMISE(is_taken == (tool.err_size == 0), "place.h: false after a usage error");
+    PROMISE(is_taken == (tool.err_size == 0), "sensor_word.h: false after a usage error");
     return is_taken;
 }
 
 static void check_place(void)
 {
-    static sensor_place_t first;
-    static sensor_place_t again;
+    static sensor_word_t first;
+    static sensor_word_t again;
     char word[TEXT];
     take_text();
     if (!take_place(&first, text)) return;
-    const sensor_text_t *const sensor = &first.sensor;
-    PROMISE(sensor->model != NULL, "place.h: a sensor has a model");
+    const sensor_word_t *const sensor = &first;
+    PROMISE(sensor->model != NULL, "sensor_word.h: a sensor has a model");
     (void)snprintf(word, sizeof word, "%s%s%s%s%s%s%s%s%s", first.name, first.name[0] != '\0' ? "=" : "",
                    sensor->model->name, sensor->address != NULL ? ":" : "",
                    sensor->address != NULL ? sensor->address : "", sensor->mode != NULL ? ":" : "",
                    sensor->mode != NULL ? sensor->mode : "", first.port != NULL ? "@" : "",
                    first.port != NULL ? first.port : "");
-    PROMISE(take_place(&again, word), "place.h: what is written out is taken");
-    PROMISE(strcmp(first.name, again.name) == 0 && sensor->model == again.sensor.model &&
+    PROMISE(take_place(&again, word), "sensor_word.h: what is written out is taken");
+    PROMISE(strcmp(first.name, again.name) == 0 && sensor->model == again.model &&
                 (first.port == NULL) == (again.port == NULL) &&
                 (first.port == NULL || strcmp(first.port, again.port) == 0),
-            "place.h: what is written out is taken as the same");
+            "sensor_word.h: what is written out is taken as the same");
 }
 
 static void check_setting(uint8_t how)
 {
-    const setting_t *setting = models[how % MODELS]->settings;
+    const setting_t *setting = models[how % model_count].settings;
     char printed[SETTING_TEXT];
     int32_t value = 0;
     int32_t again = 0;
@@ -252,10 +256,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         check_setting(how >> 4);
         break;
     case 3:
-        check_option(alarm_option);
+        check_option("alarm");
         break;
     case 4:
-        check_option(level_option);
+        check_option("level");
         break;
     case 5:
         check_place();
