@@ -99,10 +99,10 @@ struct model {
     struct {
         uint16_t first; /* the first read */
         uint8_t count;
-        uint8_t frame_length;    /* of its automatic output */
-        uint16_t own;            /* a register that no other model with the same first read has ... */
-        uint16_t slow_own;       /* ... and one for INQUIRY_SLOW_US, if none of them responds to that */
-        uint32_t timeout_us;     /* of the first read; 0: the default of a scan */
+        uint8_t frame_length; /* of its automatic output */
+        uint16_t own;         /* a register that no other model with the same first read has ... */
+        uint16_t slow_own;    /* ... and one for INQUIRY_SLOW_US, if none of them responds to that */
+        uint32_t timeout_us;  /* of the first read; 0: the default of a scan */
         /* Instead of `own`: identifies it by the response to the first read, and by further reads. */
         bool (*is_it)(inquiry_t *inquiry);
     } scan;
