@@ -238,7 +238,8 @@ TEST(a_file_that_cannot_be_made_is_an_error)
     const tool_run_t *const run =
         tool_run(&bench.tool, "save hps167s --port line --file %s/none/file", desk_path("unit"));
     assert_int_equal(run->status, 1);
-    assert_non_null(strstr(run->err, "none/file") != NULL ? strstr(run->err, ": No such file or directory") : NULL);
+    assert_non_null(strstr(run->err, "none/file") != NULL ? strstr(run->err, ": No such file or directory")
+                                                          : NULL);
 }
 
 /* ---- restore ---- */

@@ -13,8 +13,8 @@ enum { ALL_READ_WRITE = 0666 }; /* without the bits of the umask */
 static bool fail(const char *path, int error)
 {
     if (error == EEXIST)
-        (void)fprintf(stderr,
-                      "fathom: %s exists and is not overwritten. Use another name, or move the file.\n", path);
+        (void)fprintf(
+            stderr, "fathom: %s exists and is not overwritten. Use another name, or move the file.\n", path);
     else
         (void)fprintf(stderr, "fathom: cannot write %s: %s\n", path, strerror(error));
     return false;

@@ -13,10 +13,9 @@ static void print_why_nothing_was_sent(const scan_finding_t *sender)
             "another master sends requests on this line. Disconnect it or stop its program, and scan again",
             stderr);
     else if (sender->kind == SCAN_SENDER && sender->address == 0)
-        (void)fputs(
-            "a device sends without a request. An HPS-167S made before 2020-09 has another protocol. "
-            "Another rate, swapped wires A and B and noise have the same effect",
-            stderr);
+        (void)fputs("a device sends without a request. An HPS-167S made before 2020-09 has another protocol. "
+                    "Another rate, swapped wires A and B and noise have the same effect",
+                    stderr);
     else if (sender->mode == SCAN_AUTO)
         (void)fprintf(stderr, "even a read ends %s", sender->model->request_ends);
     else
