@@ -61,11 +61,11 @@ static void read_some(const char *name, const char *sensor, const char *mode, co
 static bool tells(const char *name, int64_t held, const char *if_0, const char *if_not)
 {
     char key[64], value[64];
-    (void)snprintf(key, sizeof key, "\"%s\": ", name);
+    (void)snprintf(key, sizeof key, "\"%s\":", name);
     if (if_0 == NULL)
         (void)snprintf(value, sizeof value, "%lld,", (long long)held);
     else
-        (void)snprintf(value, sizeof value, "\"%s\"", held == 0 ? if_0 : if_not);
+        (void)snprintf(value, sizeof value, "%s,", held == 0 ? if_0 : if_not);
     const char *at = strstr(run->out, key);
     if (at == NULL || strncmp(at + strlen(key), "null", 4) == 0) return true;
     return strncmp(at + strlen(key), value, strlen(value) - 1) == 0;
@@ -75,13 +75,14 @@ static void ask(const char *name, const char *command, const char *sensor, const
 {
     begin(name);
     tool(command, sensor, mode, more);
-    judge_done(run->status == 0, tells("address", rig.device.address, NULL, NULL) &&
-                                     tells("switch-polarity", judge_held(0x0205), "negative", "positive") &&
-                                     tells("switch-threshold", judge_held(0x0206), NULL, NULL) &&
-                                     tells("automatic-value", judge_held(0x0207), "processed", "real-time") &&
-                                     tells("warm-up", judge_told_value(0x0A), NULL, NULL) &&
-                                     tells("measure-after-power-on", judge_told_value(0x12), "off", "on") &&
-                                     tells("termination", judge_told_value(0x13), "off", "on"));
+    judge_done(run->status == 0,
+               tells("address", rig.device.address, NULL, NULL) &&
+                   tells("switch_polarity", judge_held(0x0205), "\"negative\"", "\"positive\"") &&
+                   tells("switch_threshold", judge_held(0x0206), NULL, NULL) &&
+                   tells("automatic_value", judge_held(0x0207), "\"processed\"", "\"real-time\"") &&
+                   tells("warm_up", judge_told_value(0x0A), NULL, NULL) &&
+                   tells("measure_after_power_on", judge_told_value(0x12), "false", "true") &&
+                   tells("termination", judge_told_value(0x13), "false", "true"));
 }
 
 /* What is found is what is there. */
@@ -105,9 +106,9 @@ static report_t report(void)
     return (report_t){.made = run->status == 0,
                       .not_written = says("not_written") || says("nothing was written") ||
                                      says("nothing was sent") || says("unchanged"),
-                      .not_confirmed = says("not_confirmed") || says("was sent"),
+                      .not_confirmed = says("not_confirmed") || says("not confirmed") || says("was sent"),
                       .otherwise = says("differs"),
-                      .refused = !says("not_written") && says("refused")};
+                      .refused = !says("not_written") && !says("nothing was written") && says("refused")};
 }
 
 static void set(const char *sensor, const char *mode, const tool_set_t *rows, size_t count)
