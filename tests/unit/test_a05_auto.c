@@ -238,6 +238,16 @@ TEST(rx_is_low_for_a_second_and_a_half_for_real_time_values)
     }
 }
 
+TEST(rx_is_high_for_processed_values)
+{
+    power_on(FATHOM_PROCESSED, FATHOM_OK);
+    assert_int_equal(rig.fake.breaks, 0);
+    start_at(RIG_START_US, true);
+    pin.level = false;
+    power_on(FATHOM_PROCESSED, FATHOM_OK);
+    assert_true(pin.level);
+}
+
 TEST(a_port_that_cannot_is_said_and_a_pin_helps)
 {
     rig.fake.uart.set_break = NULL;

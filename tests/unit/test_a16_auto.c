@@ -146,3 +146,12 @@ TEST(no_other_value_is_selected)
     selects((fathom_dyp_value_t)256, FATHOM_ERR_ARGUMENT);
     assert_int_equal(pin.sets, sets);
 }
+
+TEST(without_anything_that_drives_rx_nothing_is_selected)
+{
+    inits(FATHOM_OK);
+    selects(FATHOM_REAL_TIME, FATHOM_ERR_UNSUPPORTED);
+    selects(FATHOM_PROCESSED, FATHOM_ERR_UNSUPPORTED);
+    config.value = FATHOM_REAL_TIME;
+    inits(FATHOM_ERR_UNSUPPORTED);
+}

@@ -173,6 +173,21 @@ TEST(a_response_glued_to_noise_is_found)
         }
 }
 
+/* Nor does it serve that one's retry: 55 AA names no register, so that the unit alone tells them apart. */
+TEST(a_late_response_of_another_unit_serves_no_retry)
+{
+    ask_dyp(&bench.other, 1, 1, &bench.other_value);
+    run(REQUEST_US);
+    cancel(&bench.other); /* unit 1 is quarantined for 200 ms */
+    fill(2, 0x0106, 1);
+    bench.request.transaction.retries = 1;
+    expect_submitted(FATHOM_PENDING);
+    run(REQUEST_US + TIMEOUT_US);
+    deliver_all(dyp_first_1953);
+    expect_count(FATHOM_LINE_LATE_RESPONSES, 1);
+    expect_nothing(FATHOM_PENDING);
+}
+
 /* ---- the transport ---- */
 
 TEST(the_transport_does_what_the_functions_do)

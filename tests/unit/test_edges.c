@@ -202,6 +202,17 @@ TEST(the_time_within_which_edges_are_the_same_is_the_users)
     expect_none();
 }
 
+TEST(the_counts_of_what_went_wrong_stop_at_255)
+{
+    for (uint32_t i = 0; i != 300; i++) {
+        rise(i * 1000);
+        feed(i * 1000 + 100, i * 1000 + 200);
+        feed(i * 1000 + 300, i * 1000 + 400);
+    }
+    assert_int_equal(edges.missed, 255);
+    assert_int_equal(edges.lost, 255);
+}
+
 /* ---- the level ---- */
 
 TEST(with_a_pin_the_level_is_its_and_not_that_of_the_last_edge)

@@ -64,6 +64,19 @@ TEST(the_silence_after_a_broadcast_is_kept_to_its_end)
     assert_int_equal(bench.fake.written, 2);
 }
 
+/* FATHOM_LINE_SEND_US: "how long a port may refuse a request, or take to send it, before it counts as broken"; and
+ * fathom_line_poll: "FATHOM_ERR_PORT: the port is broken", in that very call. */
+TEST(a_port_has_a_second_to_take_a_request)
+{
+    bench.fake.write_busy = true;
+    ask(&bench.request, 1, &bench.value, 0);
+    after(T3_5_US);
+    assert_int_equal(after(999999), FATHOM_PENDING);
+    assert_int_equal(status_of(&bench.request), FATHOM_PENDING);
+    assert_int_equal(after(1), FATHOM_ERR_PORT);
+    assert_int_equal(status_of(&bench.request), FATHOM_ERR_PORT);
+}
+
 /* A poll is cheap while nothing comes: of the 16 reads that it may do the first tells it. */
 TEST(a_poll_that_finds_nothing_reads_the_port_once)
 {

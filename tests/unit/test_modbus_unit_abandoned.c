@@ -18,6 +18,7 @@ static uint16_t value;
 
 static const fathom_modbus_unit_request_t measure = {&value, 0x0100, 1, 3, 1};
 static const fathom_modbus_unit_request_t version = {&value, 0x0001, 1, 3, 0x81};
+static const fathom_modbus_unit_request_t details = {&value, 0x0003, 1, 3, 0x83};
 
 static fathom_status_t look(const fathom_modbus_setting_t *setting, uint32_t *is)
 {
@@ -27,6 +28,7 @@ static fathom_status_t look(const fathom_modbus_setting_t *setting, uint32_t *is
 }
 
 static const fathom_modbus_setting_t move = {look, &unit, {NULL, 0x0200, OTHER, 6, 0xC8}, OTHER, NULL, OTHER};
+static const fathom_modbus_setting_t other_setting = {look, &unit, {NULL, 0x0201, 1, 6, 0xC9}, 1, NULL, 0};
 
 static const fathom_modbus_config_t config = {.address = UNIT};
 
@@ -68,6 +70,17 @@ static uint32_t until_measuring(void)
     return took_us;
 }
 
+/* Until one more call of another function finds the command abandoned. */
+static void others_call(void)
+{
+    for (unsigned i = 1; i != ABANDONED_US / STEP_US; i++) {
+        fake.now_us += STEP_US;
+        PENDS(asks(&measure));
+    }
+    fake.now_us += STEP_US;
+    fathom_modbus_unit_poll(&unit);
+}
+
 static void measures(void)
 {
     responds(754);
@@ -83,6 +96,44 @@ TEST(an_abandoned_setting_gives_way_and_the_driver_stays_where_it_was)
     assert_int_equal(until_measuring(), ABANDONED_US);
     assert_int_equal(fake.request->message.head[0], UNIT);
     measures();
+}
+
+TEST(the_setting_after_an_abandoned_blind_setting_is_not_blind)
+{
+    assert_int_equal(fathom_modbus_write_next_unchecked(&unit), FATHOM_OK);
+    PENDS(sets(&other_setting));
+    assert_int_equal(fake.request->message.head[1], 6);
+    others_call();
+    PENDS(sets(&move));
+    assert_int_equal(fake.request->message.head[1], 3); /* its present value is read first */
+}
+
+TEST(a_setting_that_begins_behind_an_abandoned_command_is_carried_out_whole)
+{
+    PENDS(asks(&details));
+    responds(8);
+    for (unsigned i = 0; i != ABANDONED_US / STEP_US; i++) {
+        fake.now_us += STEP_US;
+        PENDS(asks(&measure));
+        if (unit.current == measure.id) break;
+    }
+    /* Abandoned again: this time the setting is the next to call. */
+    responds(754);
+    assert_int_equal(asks(&measure), FATHOM_OK);
+    PENDS(asks(&details));
+    responds(8);
+    fathom_modbus_unit_poll(&unit);
+    unit.kept_us = (uint32_t)(fake.now_us - FATHOM_MODBUS_ABANDONED_US);
+    unit.calls_left = 0;
+    PENDS(sets(&other_setting));
+    assert_int_equal(unit.setting, other_setting.write.id);
+    responds(0);
+    PENDS(sets(&other_setting)); /* the write */
+    assert_true(unit.is_written);
+    fake_modbus_acknowledge(&fake);
+    PENDS(sets(&other_setting)); /* the read back */
+    responds(1);
+    assert_int_equal(sets(&other_setting), FATHOM_OK);
 }
 
 /* modbus_unit.h, fathom_modbus_unit_due_us(): a program that sleeps for it is not kept out longer than another. */

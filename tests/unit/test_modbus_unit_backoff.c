@@ -121,6 +121,25 @@ CAP(a_pause_shorter_than_the_pace_keeps_the_pace, 300000, 1200000, 1000000, 7000
 CAP(the_longest_pause_is_half_the_clock, 300000000, 0x7FFFFFFFu, PACE_US, 0, 0, 300000000, 600000000,
     1200000000, 0x7FFFFFFFu)
 
+TEST(the_first_thing_that_it_says_ends_that)
+{
+    static const fathom_status_t outcomes[] = {FATHOM_OK, FATHOM_ERR_EXCEPTION, FATHOM_ERR_CHECKSUM,
+                                               FATHOM_ERR_MALFORMED};
+    for (unsigned i = 0; i != COUNT(outcomes); i++)
+        for (unsigned before = 1; before != 8; before++) {
+            set_up(state);
+            timeouts_in_row(before, time_outs_us, COUNT(time_outs_us));
+            end_with(&measure, outcomes[i]);
+            assert_paused_for(0);
+            silence(); /* and the count begins anew */
+            assert_paused_for(0);
+            silence();
+            assert_paused_for(0);
+            silence();
+            assert_paused_for(TIMEOUT_US);
+        }
+}
+
 /* They prove nothing about the unit: the count of its time-outs stays, and so does the length of the pause. */
 TEST(a_busy_line_and_another_master_leave_the_back_off_as_it_is)
 {
