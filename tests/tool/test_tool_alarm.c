@@ -198,15 +198,15 @@ TEST(a_change_is_an_object)
     SEES_A05({480, REFUSED_A05, FATHOM_SIM_NO_TARGET, 700});
     expect_objects(alarm_of("a05:2:modbus", "near<500,unknown-after=1500,unknown=off,no-response=on",
                             "--probes 1,2,3 --count 3 --format json"),
-                   "{\"sensor\":\"a05:2\",\"model\":\"a05\",\"mode\":\"modbus\",\"address\":2,\"probe\":1,"
+                   "{\"name\":\"a05:2\",\"model\":\"a05\",\"mode\":\"modbus\",\"address\":2,\"probe\":1,"
                    "\"alarm\":\"on\",\"is_on\":true,\"distance_mm\":480}\n"
-                   "{\"sensor\":\"a05:2\",\"model\":\"a05\",\"mode\":\"modbus\",\"address\":2,\"probe\":3,"
+                   "{\"name\":\"a05:2\",\"model\":\"a05\",\"mode\":\"modbus\",\"address\":2,\"probe\":3,"
                    "\"alarm\":\"off\",\"is_on\":false,\"distance_mm\":null}\n"
-                   "{\"sensor\":\"a05:2\",\"model\":\"a05\",\"mode\":\"modbus\",\"address\":2,\"probe\":2,"
+                   "{\"name\":\"a05:2\",\"model\":\"a05\",\"mode\":\"modbus\",\"address\":2,\"probe\":2,"
                    "\"alarm\":\"unknown\",\"is_on\":false,\"distance_mm\":null}\n");
     (void)set_up(NULL);
     expect_objects(alarm_of("a16:1:modbus", "near<500" SAFE, "--count 7 --format json"),
-                   "{\"sensor\":\"a16:1\",\"model\":\"a16\",\"mode\":\"modbus\",\"address\":1,\"probe\":1,"
+                   "{\"name\":\"a16:1\",\"model\":\"a16\",\"mode\":\"modbus\",\"address\":1,\"probe\":1,"
                    "\"alarm\":\"no_response\",\"is_on\":true,\"distance_mm\":null}\n");
 }
 
@@ -217,7 +217,7 @@ TEST(a_change_is_a_row_of_csv_and_may_have_a_level)
     const tool_run_t *const run =
         alarm_of("a16:1:modbus", "near<500" SAFE,
                  "--level mounting=2300,height=2000,capacity=1000 --count 2 --format csv");
-    const char *const header = "sensor,model,mode,address,probe,time_us,utc,alarm,is_on,distance_mm,level_mm,"
+    const char *const header = "name,model,mode,address,probe,time_us,utc,alarm,is_on,distance_mm,level_mm,"
                                "level_per_mille,volume\n"
                                "a16:1,a16,modbus,1,1,";
     assert_memory_equal(run->out, header, strlen(header));

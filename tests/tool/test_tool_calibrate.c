@@ -192,7 +192,7 @@ TEST(a_dry_run_writes_nothing)
 TEST(json_is_one_object)
 {
     expect(0,
-           "{\"sensor\":\"hps167s:1\",\"model\":\"hps167s\",\"mode\":\"modbus\",\"address\":1,\"status\":"
+           "{\"name\":\"hps167s:1\",\"model\":\"hps167s\",\"mode\":\"modbus\",\"address\":1,\"status\":"
            "\"right\","
            "\"known_mm\":2000,\"measured_mm\":[2015,2000],\"spread_mm\":0,\"tolerance_mm\":2,\"written_mm\":["
            "-15],"

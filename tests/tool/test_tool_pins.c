@@ -187,7 +187,7 @@ TEST(stats_tell_the_spread_of_the_widths_and_what_was_rejected)
     chip.missed = 3;
     chip.lost_events = 5;
     EXPECT(0, 5, "\"mode\":\"pwm\"", "read " PWM " --count 5 --stats --format json");
-    expect_err("{\"sensor\":\"a16\",\"pulses\":{\"distances\":3,\"min_us\":9990,\"max_us\":10010,\"mean_us\":"
+    expect_err("{\"name\":\"a16\",\"pulses\":{\"distances\":3,\"min_us\":9990,\"max_us\":10010,\"mean_us\":"
                "10000.0,"
                "\"deviation_us\":10.0,\"deviation_mm\":1.7,\"no_targets\":1,\"noises\":0,\"faults\":1,"
                "\"missed_edges\":3,"

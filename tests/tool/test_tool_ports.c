@@ -165,7 +165,7 @@ TEST(info_goes_on_where_a_sensor_or_its_port_fails)
     assert_int_equal(run->status, 1);
     expect_begin(
         run->out,
-        "{\"sensor\":\"tank\",\"model\":\"a16\",\"mode\":\"modbus\",\"line\":\"9600 8N1\",\"address\":3,");
+        "{\"name\":\"tank\",\"model\":\"a16\",\"mode\":\"modbus\",\"line\":\"9600 8N1\",\"address\":3,");
     assert_string_equal(strchr(run->out, '\n'), "\n"); /* one object, in one line */
     expect_begin(run->err, "fathom: gone: no such device\nfathom: mute: address: no response from a16:9");
 }

@@ -309,7 +309,7 @@ TEST(unasked_frames_of_an_address_are_read_and_nothing_is_sent)
     const tool_run_t *const run =
         tool_run(&bench.tool, "read hps167s:7:auto --count 54 --format json --stats --port line");
     assert_int_equal(run->status, 0);
-    expect_all(run, 54, "{\"sensor\":\"hps167s:7\",\"model\":\"hps167s\",\"mode\":\"auto\",\"address\":7,");
+    expect_all(run, 54, "{\"name\":\"hps167s:7\",\"model\":\"hps167s\",\"mode\":\"auto\",\"address\":7,");
     /* DC B2 07: 56498 * 128 / 10000 (the example of #5) */
     expect_all(run, 54,
                "\"distance_mm\":1234,\"raw\":1234,\"magnitude\":723.1744,\"ambient\":1,\"precision\":0}");

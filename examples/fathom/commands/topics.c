@@ -266,7 +266,7 @@ static void print_json(FILE *to)
                 "that is not known is null. The file examples/fathom/schema.json (JSON Schema)\n"
                 "defines each kind of object.\n\n"
                 "One thing has one key in all commands:\n\n"
-                "  sensor            Name of the sensor: tank, or a16:1 without a name\n"
+                "  name              Name of the sensor: tank, or a16:1 without a name\n"
                 "  model             Model of the sensor: a16, a05 or hps167s\n"
                 "  mode              Mode in which it is read\n"
                 "  address           Address; null if there is none\n"

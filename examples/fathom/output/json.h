@@ -11,7 +11,7 @@
  *
  *     json_t json = {.to = stdout};
  *     json_begin(&json, NULL, '{');
- *     json_string(&json, "sensor", "tank");
+ *     json_string(&json, "name", "tank");
  *     json_end(&json, '}');
  */
 typedef struct {

@@ -19,7 +19,7 @@ enum {
     LEVEL = COLUMNS_LEVEL
 };
 static const field_t fields[] = {
-    {"sensor", "", "Name of the sensor; a16:1 unless the user chose one", FIELD_WORD, ROW, AT(sensor)},
+    {"name", "", "Name of the sensor; a16:1 unless the user chose one", FIELD_WORD, ROW, AT(sensor)},
     {"model", "", "Model of the sensor: a16, a05 or hps167s", FIELD_WORD, ROW, AT(model)},
     {"mode", "", "Mode in which the sensor is read", FIELD_WORD, ROW, AT(mode)},
     {"address", "", "Address; null in a mode without addresses", FIELD_NUMBER, ROW, AT(address)},

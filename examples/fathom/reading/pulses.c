@@ -96,7 +96,7 @@ void pulses_print_json(pulses_t *pulses, const char *name, FILE *to)
     const row_t row = row_of(pulses);
     json_t json = {.to = to};
     json_begin(&json, NULL, '{');
-    json_string(&json, "sensor", name);
+    json_string(&json, "name", name);
     json_begin(&json, "pulses", '{');
     record_json(&json, fields, &row, 0);
     json_end(&json, '}');

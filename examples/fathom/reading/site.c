@@ -146,7 +146,7 @@ bool sensor_is_slower(sensor_t *sensor, char *text, size_t capacity)
 
 void sensor_json(json_t *json, const sensor_t *sensor)
 {
-    json_string(json, "sensor", sensor->name);
+    json_string(json, "name", sensor->name);
     json_string(json, "model", sensor->model->name);
     json_string(json, "mode", sensor->mode->name);
 }

@@ -111,22 +111,22 @@ def check(rows, site, began, is_one_run=True):
     times, sequences = {}, {}  # of each sensor
     for row in rows:
         at = int(row['time_us']) / 1e6
-        if is_one_run and at < times.get(row['sensor'], 0):
+        if is_one_run and at < times.get(row['name'], 0):
             raise Wrong(f'a time that goes back: {row}')
-        times[row['sensor']] = at
+        times[row['name']] = at
         if row['status'] != 'target':
             if row['status'] not in (*e2e.FAILURES,):
                 raise Wrong(f'a status that no simulated sensor has: {row}')
             continue
         life = site.lives.get(int(row['distance_mm']))
-        if life is None or life.name != row['sensor']:
+        if life is None or life.name != row['name']:
             raise Wrong(f'a wrong reading: {row} of {site.lives}')
         if is_one_run and life.killed is not None and began + at > life.killed + LATE:
             raise Wrong(f'a reading of what was gone for {began + at - life.killed:.2f} s: {row}')
         if is_one_run:
-            if int(row['sequence']) < sequences.get(row['sensor'], 0):
+            if int(row['sequence']) < sequences.get(row['name'], 0):
                 raise Wrong(f'a sequence number that goes back: {row}')
-            sequences[row['sensor']] = int(row['sequence'])
+            sequences[row['name']] = int(row['sequence'])
     return sum(row['status'] == 'target' for row in rows)
 
 

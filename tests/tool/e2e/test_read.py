@@ -8,7 +8,7 @@ import time
 
 import e2e
 
-COMMON = ['sensor', 'model', 'mode', 'address', 'probe', 'sequence', 'time_us', 'utc', 'status', 'interference',
+COMMON = ['name', 'model', 'mode', 'address', 'probe', 'sequence', 'time_us', 'utc', 'status', 'interference',
           'distance_mm', 'raw']
 OPTICS = ['magnitude', 'ambient', 'precision']
 

@@ -13,7 +13,7 @@ DAMAGED = bytes((*GOOD[:4], GOOD[4] ^ 0x10, *GOOD[5:]))
 # In this order: no response, a wrong checksum, exception 2, two registers instead of one, a value over 16350 (A16).
 SCRIPT = [GOOD, b'', DAMAGED, e2e.adu(1, 0x83, 2), e2e.registers(1, 754, 755), e2e.registers(1, 40000), GOOD]
 STATUSES = ['target', 'no_response', 'damaged', 'exception', 'other_response', 'impossible_values', 'target']
-HEADER = 'sensor,model,mode,address,probe,sequence,time_us,utc,status,interference,distance_mm,raw'
+HEADER = 'name,model,mode,address,probe,sequence,time_us,utc,status,interference,distance_mm,raw'
 
 
 class Failures(e2e.Case):
@@ -27,7 +27,7 @@ class Failures(e2e.Case):
         rows = self.ends(self.ask('--format csv'), 1).all_rows
         self.assertEqual([row['status'] for row in rows], STATUSES)
         for row in rows:
-            self.assertEqual([row[name] for name in ('sensor', 'model', 'mode', 'address', 'probe')],
+            self.assertEqual([row[name] for name in ('name', 'model', 'mode', 'address', 'probe')],
                              ['a16:1', 'a16', 'modbus', '1', '1'])
             self.assertRegex(row['utc'], r'^\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d\.\d{6}Z$')
             known = ['754', '754', 'false'] if row['status'] == 'target' else ['', '', '']
@@ -59,12 +59,12 @@ class Failures(e2e.Case):
 
     def test_an_attempt_of_four_probes_that_fails_as_a_whole_is_one_row_of_none(self):
         done = self.ends(f'read a05:2:modbus --port {self.device()} --timeout 60 --count 2 --format json', 1)
-        self.assertEqual([(one['sensor'], one['probe'], one['status']) for one in done.all_json],
+        self.assertEqual([(one['name'], one['probe'], one['status']) for one in done.all_json],
                          [('a05:2', None, 'no_response')] * 2)
 
     def test_a_sensor_that_sends_by_itself_is_stale(self):
         done = self.ends(f'read a16 --port {self.device()} --timeout 60 --count 2 --format csv', 1)
-        self.assertEqual([(row['sensor'], row['address'], row['status']) for row in done.all_rows],
+        self.assertEqual([(row['name'], row['address'], row['status']) for row in done.all_rows],
                          [('a16', '', 'stale')] * 2)
 
     def test_a_port_that_is_lost_is_a_row(self):
@@ -132,7 +132,7 @@ class Files(e2e.Case):
         for options in ('', '--no-header'):
             with open(self.path('log.csv'), 'ab') as file:
                 self.ends(f'read a16:1 --port {sim} --count 2 --format csv {options}', 0, stdout=file)
-        self.assertEqual([line.split(',')[0] for line in self.content('log.csv').splitlines()], ['sensor'] + ['a16:1'] * 4)
+        self.assertEqual([line.split(',')[0] for line in self.content('log.csv').splitlines()], ['name'] + ['a16:1'] * 4)
 
     def test_a_file_that_is_emptied_meanwhile_goes_on_at_its_beginning(self):
         """As logrotate's copytruncate does."""

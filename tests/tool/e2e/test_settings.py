@@ -88,16 +88,16 @@ class What(Settings):
     @e2e.each(
         # the examples of #3; a temperature of 77 degrees Fahrenheit is (77 - 32) * 5 / 9 = 25.0
         everything_that_an_hps167s_tells=('hps167s:7', 'hps167s:7', {
-            'sensor': 'hps167s:7', 'model': 'hps167s', 'mode': 'modbus', 'address': 7, 'line': '19200 8E1',
+            'name': 'hps167s:7', 'model': 'hps167s', 'mode': 'modbus', 'address': 7, 'line': '19200 8E1',
             'interface_version': '2.1.0 of 2020-09-27', 'sensor_version': '3.9 of 2019-09-23',
             'uuid': '00390025423457142034383501060705', 'temperature': 25.0, 'baud': 19200, 'baud_code': 1,
             'warm_up': 0, 'measure_after_power_on': True, 'termination': True, 'reconnect_time': 180}),
         everything_that_an_a16_tells=('a16:1:modbus --distance 754', 'a16', {
-            'sensor': 'a16:1', 'model': 'a16', 'mode': 'modbus', 'line': '9600 8N1', 'address': 1,
+            'name': 'a16:1', 'model': 'a16', 'mode': 'modbus', 'line': '9600 8N1', 'address': 1,
             'switch_polarity': 'positive', 'switch_threshold': 1000, 'automatic_value': 'processed',
             'distance': 754, 'real_time_distance': 754}),
         everything_that_an_a05_tells=('a05:3:modbus --distance 1000,2000,1953,no-target', 'a05:3', {
-            'sensor': 'a05:3', 'model': 'a05', 'mode': 'modbus', 'line': '9600 8N1', 'address': 3,
+            'name': 'a05:3', 'model': 'a05', 'mode': 'modbus', 'line': '9600 8N1', 'address': 3,
             'distances': '1000, 2000, 1953, no_target'}))
     def everything(self, device, sensor, expected):
         self.assertEqual(self.json(f'info {sensor} --port {self.sim(device)}'), expected)

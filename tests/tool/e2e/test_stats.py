@@ -48,7 +48,7 @@ class Stats(e2e.Case):
         # long one
         self.assertEqual(one['line'], dict(zip(LINE, (3, 7 + 9 + 7, 0, 2, 1, 1, 1, 0, 1, 0, 0, 0, 0, 0, 0))))
         sensor, = one['sensors']
-        self.assertEqual([sensor[name] for name in ('sensor', 'model', 'responses', 'failed_requests')],
+        self.assertEqual([sensor[name] for name in ('name', 'model', 'responses', 'failed_requests')],
                          ['a16:1', 'a16', 3, 5])
         self.assertEqual((one['stream'], one['port']), (None, None))
         shortest, mean, longest = (one[name] for name in RESPONSE)
@@ -62,8 +62,8 @@ class Stats(e2e.Case):
             words.append(f'hps167s:1@{self.path(name)}')
         done = self.ends(self.fathom(f'read --count 1 {JSON}', words), 0)
         names = ['hps167s:1@plain', 'hps167s:1@a_b_c']
-        self.assertEqual([one['sensor'] for one in self.told(done)['sensors']], names)
-        self.assertEqual(sorted(one['sensor'] for one in done.all_json), sorted(names))
+        self.assertEqual([one['name'] for one in self.told(done)['sensors']], names)
+        self.assertEqual(sorted(one['name'] for one in done.all_json), sorted(names))
 
     def test_text_has_every_counter_too(self):
         lines = self.ask([GOOD, b''], '--stats').err.splitlines()[1:]
