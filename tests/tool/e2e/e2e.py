@@ -319,7 +319,7 @@ class Case(unittest.TestCase):
         device = self.device()
         program = self.fathom(*line, ['--port', device.port], **options)
         if '--format csv' in ' '.join(program.command):
-            program.expect('^sensor,')
+            program.expect('^name,')
         return device, program
 
     def play(self, line, request, *scripts):
