@@ -17,7 +17,8 @@ TIMEOUT = 1  # seconds; a script on a busy machine responses well within
 
 UNFIT = 'the response does not fit the request. Check that the sensor is '
 DAMAGED = 'damaged response from '
-SILENT = '.*: '
+NO_RESPONSE = 'no response from '
+SILENT = NO_RESPONSE + '.*: '
 OTHERS = SILENT + 'the line works, but address 2 responds. Try --address 2'
 NOBODYS = SILENT + 'the line works, but address 255 responds, which no '
 OTHER_MASTER = 'another master asked this sensor at the same time'
@@ -120,7 +121,7 @@ class Raw(e2e.Case):
     def all_fail(self, *responses):
         """Each of these is no response, and told as that."""
         done = self.plays([[response] for response in responses], 0, 1, timeout=0.3)
-        self.assertEqual(done.err.count(DAMAGED) + done.err.count(SILENT), len(responses), done)
+        self.assertEqual(done.err.count(DAMAGED) + done.err.count(NO_RESPONSE), len(responses), done)
 
     def test_a_truncated_response_at_every_length(self):
         self.all_fail(*(self.right()[:length] for length in range(1, len(self.right()))))
