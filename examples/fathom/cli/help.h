@@ -16,7 +16,8 @@ void help_print(FILE *to, const command_t *command);
 
 /* The same as a page of man, and the page of the tool, with all topics. Tables end with NULL and a row without a name. */
 void man_print(FILE *to, const command_t *command);
-void man_print_tool(FILE *to, const command_t *const *commands, const help_topic_t *topics);
+void man_print_tool(FILE *to, const command_t *const *commands, const help_topic_t *topics,
+                    const char *examples);
 
 /* Prints a text in lines of 80 columns, all but the first indented; `column` is where it begins. */
 void help_print_wrapped(FILE *to, const char *text, int indent, int column);

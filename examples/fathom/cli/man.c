@@ -133,7 +133,8 @@ static void print_topic(FILE *to, const help_topic_t *topic)
     free(text);
 }
 
-void man_print_tool(FILE *to, const command_t *const *commands, const help_topic_t *topics)
+void man_print_tool(FILE *to, const command_t *const *commands, const help_topic_t *topics,
+                    const char *examples)
 {
     print_title(to, "", "read and set up the range sensors A16, A05 and HPS-167S");
     (void)fputs(".B fathom\nCOMMAND [ARGUMENTS]\n.br\n.B fathom help\n[COMMAND | TOPIC]\n.SH DESCRIPTION\n"
@@ -149,5 +150,12 @@ void man_print_tool(FILE *to, const command_t *const *commands, const help_topic
     print_lines(
         to, "EXIT STATUS",
         "0 success\n1 the line, the port or the output failed\n2 wrong usage\n3 an alarm is on (read)\n");
+    (void)fputs(".SH FILES\n"
+                ".TP\n.I /dev/ttyUSB0\nA serial port. On Debian it belongs to the group dialout.\n"
+                ".TP\n.I /dev/serial/by\\-id/\n"
+                "The same ports by the names of their adapters,\nwhich stay the same in another socket.\n"
+                ".TP\n.I /dev/gpiochip0\nThe GPIO lines of a board.\n",
+                to);
+    print_lines(to, "EXAMPLES", examples);
     (void)fputs(".SH SEE ALSO\n.BR fathom\\-read (1),\n.BR fathom\\-scan (1)\n", to);
 }

@@ -24,6 +24,16 @@ static const struct {
     const char *head;
 } sections[] = {{0, "Find and read sensors"}, {4, "Set up sensors"}, {12, "Look closer"}};
 
+static const char first_steps[] =
+    "  Find the sensors on a line:   fathom scan --port /dev/ttyUSB0\n"
+    "  Log a sensor for a day:       fathom read a16 --port /dev/ttyUSB0\n"
+    "                                  --duration 86400 --format csv --output a16.csv\n"
+    "  Set an address:               fathom set hps167s --port /dev/ttyUSB0 address 7\n"
+    "  Publish to a broker:          fathom publish site.yaml (fathom help config)\n"
+    "  Find out why nothing responds: fathom help trouble\n"
+    "  Try it without a sensor:      fathom sim a16 --link ./tank, and in another\n"
+    "                                  terminal fathom read a16 --port ./tank\n";
+
 static void print_overview(void)
 {
     size_t section = 0;
@@ -34,18 +44,10 @@ static void print_overview(void)
             (void)printf("\n%s:\n", sections[section++].head);
         (void)printf("  %-11s %s\n", commands[i]->name, commands[i]->summary);
     }
-    (void)printf("\nFirst steps:\n"
-                 "  Find the sensors on a line:   fathom scan --port /dev/ttyUSB0\n"
-                 "  Log a sensor for a day:       fathom read a16 --port /dev/ttyUSB0\n"
-                 "                                  --duration 86400 --format csv --output a16.csv\n"
-                 "  Set an address:               fathom set hps167s --port /dev/ttyUSB0 address 7\n"
-                 "  Publish to a broker:          fathom publish site.yaml (fathom help config)\n"
-                 "  Find out why nothing responds: fathom help trouble\n"
-                 "  Try it without a sensor:      fathom sim a16 --link ./tank, and in another\n"
-                 "                                  terminal fathom read a16 --port ./tank\n"
-                 "\nHelp:\n"
+    (void)printf("\nFirst steps:\n%s\nHelp:\n"
                  "  fathom COMMAND --help         the options of a command, with examples\n"
-                 "  fathom help TOPIC             TOPIC is one of:\n");
+                 "  fathom help TOPIC             TOPIC is one of:\n",
+                 first_steps);
     for (const help_topic_t *topic = topics; topic->name != NULL; topic++)
         (void)printf("    %-10s %s\n", topic->name, topic->summary);
     (void)printf("  fathom --version              the version\n"
@@ -88,7 +90,7 @@ static bool print_installed(int argc, char **argv)
     if (command != NULL)
         man_print(stdout, command);
     else
-        man_print_tool(stdout, commands, topics);
+        man_print_tool(stdout, commands, topics, first_steps);
     return true;
 }
 

@@ -9,7 +9,8 @@ function(page name)
     file(READ ${FOLDER}/${name} text)
     string(REPLACE " 1 \"\" " " 1 \"${day}\" " text "${text}")
     file(WRITE ${FOLDER}/${name} "${text}")
-    file(ARCHIVE_CREATE OUTPUT ${FOLDER}/man1/${name}.gz PATHS ${FOLDER}/${name} FORMAT raw COMPRESSION GZip)
+    file(ARCHIVE_CREATE OUTPUT ${FOLDER}/man1/${name}.gz PATHS ${FOLDER}/${name} FORMAT raw
+        COMPRESSION GZip COMPRESSION_LEVEL 9)
     file(REMOVE ${FOLDER}/${name})
 endfunction()
 
@@ -23,6 +24,7 @@ if(EXISTS ${CHANGES})
     endif()
 endif()
 
+set(ENV{SOURCE_DATE_EPOCH} 0) # no time in a compressed page
 file(REMOVE_RECURSE ${FOLDER}) # the page of a command that is gone
 file(MAKE_DIRECTORY ${FOLDER}/man1 ${FOLDER}/bash ${FOLDER}/zsh ${FOLDER}/fish)
 execute_process(COMMAND ${FATHOM} complete "" OUTPUT_VARIABLE commands COMMAND_ERROR_IS_FATAL ANY)

@@ -84,7 +84,7 @@ def sections(page):
 def pages(root):
     """A page for each command that the help names, with its sections, and mandoc and groff find nothing in it."""
     tool = os.path.join(root, 'usr/bin/fathom')
-    commands = re.findall(r'^  (\w+) +\S', must([tool, '--help']).split('\n\n')[2], re.M)
+    commands = re.findall(r'^  (\w+) +\S', must([tool, '--help']).split('\nFirst steps:')[0], re.M)
     folder = os.path.join(root, 'usr/share/man/man1')
     wanted = {'fathom.1.gz', *(f'fathom-{command}.1.gz' for command in commands)}
     there = set(os.listdir(folder))

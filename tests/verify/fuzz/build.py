@@ -17,7 +17,8 @@ COMPILER = ['clang-14', '-g', '-O1', '-fno-omit-frame-pointer', f'-fsanitize=fuz
             '-fno-sanitize-recover=all', '-std=c99', '-Wall', '-Wextra', '-Werror', '-Wno-unused-parameter',
             '-Iinclude', '-Iport', '-isystem/usr/include/modbus', '-Iexamples/fathom',
             *[f'-Iport/{name}' for name in ('posix', 'gpio', 'sim', 'libmodbus')], '-Itests/verify/fuzz',
-            '-Itests/support']
+            '-Itests/support', '-DFATHOM_PUBLISH_LACKS=""']
+PUBLISH = re.compile(r'examples/fathom/(mqtt/|commands/publish/|cli/config)')
 
 
 class Failed(Exception):
@@ -37,20 +38,18 @@ def libmodbus():
     return sources('port/libmodbus/*.c')
 
 
-def commands(of_publish):
-    own = re.compile(r'examples/fathom/(mqtt/|commands/publish/|cli/config)')
-    found = sources('examples/fathom/*.c', 'examples/fathom/*/*.c', 'examples/fathom/*/*/*.c', 'port/posix/*.c',
-                    'port/gpio/*.c', 'port/sim/*.c', without=('main.c', 'tcp_none.c', 'pins_none.c'))
-    return libmodbus() + [path for path in found if not own.match(path) or of_publish(os.path.basename(path))]
+def commands(*without):
+    return libmodbus() + sources('examples/fathom/*.c', 'examples/fathom/*/*.c', 'examples/fathom/*/*/*.c',
+                                 'port/posix/*.c', 'port/gpio/*.c', 'port/sim/*.c', without=('main.c', *without))
 
 
 def tool():
-    """Without publish, which would look for its broker."""
-    return commands(lambda name: name == 'publish_none.c')
+    """Without publish, which would look for its broker. without.c stands for it."""
+    return [path for path in commands() if not PUBLISH.match(path)]
 
 
 def publish():
-    return commands(lambda name: not name.endswith('_none.c'))
+    return commands('without.c')
 
 
 def compile_one(source, to, text_at=None):

@@ -29,7 +29,7 @@ static void backup(uint8_t how, const uint8_t *bytes, size_t size)
 {
     static backup_t first;
     static backup_t again;
-    const model_t *const model = models[how % MODELS];
+    const model_t *const model = &models[how % model_count];
     tool_file(bytes, size);
     const int status = parse_backup(model, &first);
     PROMISE(status == 0 || status == 1 || status == 2, "backup_file.h: what parse returns");
