@@ -31,7 +31,7 @@ def sources(*patterns, without=()):
 
 
 def core():
-    return sources('src/*/*.c', without=('crc16_small.c',))
+    return sources('src/*.c', 'src/*/*.c', without=('crc16_small.c',))
 
 
 def libmodbus():

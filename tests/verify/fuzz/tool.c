@@ -4,7 +4,6 @@
 
 #include <dirent.h>
 #include <errno.h>
-#include <getopt.h>
 #include <netdb.h>
 #include <sys/stat.h>
 
@@ -202,7 +201,6 @@ void tool_run(int argc, char **argv)
     stdin = file_size != 0 ? fmemopen((void *)(uintptr_t)file, file_size, "r") : empty();
     if (stdin == NULL) abort();
     tool_capture();
-    optind = 0;
     tool.status = run_command(&host, argc, argv);
     tool_release();
     (void)fclose(stdin);
