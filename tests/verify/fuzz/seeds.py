@@ -146,7 +146,7 @@ def examples():
     """The command lines that the helps print."""
     for path in sorted(glob.glob(os.path.join(build.ROOT, 'examples', 'fathom', '**', '*.c'), recursive=True)):
         with open(path, encoding='utf-8') as file:
-            yield from re.findall(r'^\s+"  fathom ([a-z][^"]*?)(?:\\\\n)?"', file.read(), re.M)
+            yield from re.findall(r'^\s+"  fathom ([a-z][^"\\]*)', file.read(), re.M)
 
 
 @makes('options')
