@@ -276,3 +276,11 @@ TEST(an_idle_loop_sleeps)
     (void)pass(1000);
     assert_int_equal(pass(200000), 1);
 }
+
+TEST(a_pin_that_is_added_twice_is_there_once)
+{
+    add_pin(&pin, &first, ends[0]);
+    fathom_loop_add_pin(&rig.loop, &pin, ends[0]);
+    (void)pass(SOON_US);
+    assert_int_equal(first.polls, 1);
+}

@@ -250,3 +250,13 @@ TEST(a_pseudo_terminal_counts_no_line_errors)
     assert_int_equal(errors.parity, 1);
     assert_int_equal(port_rig_read_one(), 0); /* the port is none the worse */
 }
+
+TEST(a_small_buffer_gets_the_bytes_in_portions)
+{
+    uint8_t got[4] = {0};
+    come("abc");
+    assert_int_equal(port_rig_read(got, 0), 0); /* no room is no hang-up */
+    assert_int_equal(port_rig_read(got, 2), 2);
+    assert_int_equal(port_rig_read(got + 2, 2), 1);
+    assert_memory_equal(got, "abc", 3);
+}

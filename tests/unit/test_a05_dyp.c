@@ -354,3 +354,11 @@ TEST(what_was_refused_or_given_up_leaves_the_transport_closed)
     assert_refused();
     assert_int_equal(rig.fake.written, 0);
 }
+
+TEST(its_responses_are_counted_by_its_unit)
+{
+    assert_int_equal(fathom_modbus_unit_responses(fathom_a05_dyp_unit(&a05)), 0);
+    tell(0, four, sizeof four);
+    takes(1);
+    assert_int_equal(fathom_modbus_unit_responses(fathom_a05_dyp_unit(&a05)), 1);
+}

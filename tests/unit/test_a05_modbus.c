@@ -139,3 +139,20 @@ TEST(the_example_of_the_datasheet_goes_over_a_line)
         if (i != 2) assert_int_equal(rig_poll(), FATHOM_OK);
     }
 }
+
+/* Samples say where they were read. */
+static fathom_status_t move(void) { return fathom_a05_modbus_set_address(&a05, 5); }
+
+TEST(an_a05_that_has_moved_measures_at_its_new_address)
+{
+    start();
+    PLAY(move, FATHOM_OK, READ(1, 0x0200, FATHOM_OK, 1), READ(5, 0x0200, FATHOM_ERR_NO_RESPONSE, 0),
+         WRITE(1, 0x0200, 5, FATHOM_OK), READ(5, 0x0200, FATHOM_OK, 5));
+    assert_true(fathom_a05_modbus_is_written(&a05));
+    IS_TOLD(1001, 2001, 3001, 4001);
+    fake_modbus_assert_asked(&fake, 1, 5, 0x0106, 4);
+    for (unsigned probe = 1; probe <= 4; probe++) {
+        assert_int_equal(desk_poll(), FATHOM_OK);
+        assert_int_equal(desk.sample.address, 5);
+    }
+}

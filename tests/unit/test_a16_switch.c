@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "contact_rig.h"
 #include "drivers.h"
+#include "fake_modbus.h"
 #include "fathom/engine/line_pins.h"
 #include "fathom/engine/modbus_client.h"
 #include "fathom/sensor/a16_switch.h"
@@ -230,4 +231,49 @@ TEST(polarity_that_is_set_and_told_is_no_change)
         fathom_a16_switch_note_polarity(&a16, FATHOM_A16_POSITIVE);
         after_ms(50, 3, before);
     }
+}
+
+/* Sets the polarity of a module that holds `held`. `ends` is the end of each request. Meanwhile the level turns. */
+static fathom_status_t set_polarity(fathom_a16_polarity_t polarity, uint16_t held, fathom_status_t ends)
+{
+    fake_modbus_t fake;
+    fathom_a16_modbus_t modbus;
+    fathom_status_t result;
+    fake_modbus_init(&fake);
+    assert_int_equal(fathom_a16_modbus_init(&modbus, &fake.modbus, NULL), FATHOM_OK);
+    pins_turn(0);
+    while ((result = fathom_a16_switch_set_polarity(&a16, &modbus, polarity)) == FATHOM_PENDING) {
+        pins_run(50 * MS, 1000);
+        fake.now_us += 50 * MS;
+        if (fake.request == NULL) continue;
+        if (ends != FATHOM_OK) {
+            fake_modbus_fail(&fake, ends);
+        } else if (fake.request->message.head[1] == 6) {
+            held = fake.request->message.values[0];
+            fake_modbus_acknowledge(&fake);
+        } else {
+            fake_modbus_response(&fake, &held, 1);
+        }
+    }
+    return result;
+}
+
+TEST(while_the_polarity_is_set_no_level_counts_and_then_it_has_its_new_meaning)
+{
+    start(true);
+    stands_as(FATHOM_NEAR);
+    assert_int_equal(set_polarity(FATHOM_A16_NEGATIVE, 1, FATHOM_OK), FATHOM_OK);
+    pins_expect(1, FATHOM_NEAR);
+    after_ms(60, 1, FATHOM_NEAR); /* it is low now, and still near */
+    pins_turn(0);
+    after_ms(60, 2, FATHOM_FAR);
+}
+
+TEST(after_a_polarity_that_could_not_be_set_the_level_has_its_previous_meaning)
+{
+    start(true);
+    stands_as(FATHOM_NEAR);
+    assert_int_equal(set_polarity(FATHOM_A16_NEGATIVE, 1, FATHOM_ERR_NO_RESPONSE), FATHOM_ERR_NO_RESPONSE);
+    pins_expect(1, FATHOM_NEAR);
+    after_ms(60, 2, FATHOM_FAR);
 }

@@ -275,3 +275,15 @@ TEST(every_sequence_of_levels_at_14_looks_is_right)
         }
     }
 }
+
+/* sensor.h: as fathom_poll() and fathom_due_us() with the contact's sensor. The level settles in 20 ms. */
+TEST(a_contact_is_polled_without_a_sensor_too)
+{
+    fathom_sample_t sample;
+    start_at(START_US, true);
+    assert_int_equal(fathom_contact_poll(&contact, &sample), FATHOM_PENDING);
+    assert_int_equal(fathom_contact_due_us(&contact), fathom_due_us(&pins.sensor, 1));
+    for (unsigned ms = 0; ms != 25 && fathom_contact_poll(&contact, &sample) == FATHOM_PENDING; ms++)
+        pins.fake.now_us += 1000;
+    assert_int_equal(sample.address, 7);
+}

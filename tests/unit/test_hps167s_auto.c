@@ -265,3 +265,18 @@ TEST(commands_are_answered_while_frames_arrive)
     assert_int_equal(version.year, 2020);
     assert_int_equal(rig.samples, 2);
 }
+
+TEST(no_target_and_the_abnormal_packet_are_samples_too_and_the_limits_are_options)
+{
+    fathom_hps167s_limits_t limits = {.max_mm = 18000, .over_range_mm = 65500};
+    fathom_hps167s_limits_t wrong = {.over_range_mm = 65535};
+    hears(FATHOM_OK, 1, 65530, 0, 0, 0);
+    assert_int_equal(rig.sample.kind, FATHOM_NO_TARGET);
+    hears(FATHOM_OK, 1, 0xFFFF, 0, 0x00FF, 0xFFFF);
+    assert_int_equal(rig.sample.kind, FATHOM_FAULT);
+    assert_int_equal(fathom_hps167s_auto_set_limits(&hps, &limits), FATHOM_OK);
+    assert_int_equal(fathom_hps167s_auto_set_limits(&hps, &wrong), FATHOM_ERR_ARGUMENT);
+    hears(FATHOM_ERR_MALFORMED, 1, 18001, 0, 0, 0);
+    hears(FATHOM_OK, 1, 65500, 0, 0, 0);
+    assert_int_equal(rig.sample.kind, FATHOM_NO_TARGET);
+}

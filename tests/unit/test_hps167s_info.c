@@ -274,3 +274,22 @@ TEST(the_temperature_can_count_in_finer_steps)
     PLAY(read_temperature, OK, HPS_4(OK, 0xFFFF));
     assert_int_equal(temperature.temperature_dc, -178); /* (-0.1 - 32) * 50 / 9 = -178.3 */
 }
+
+/* "for 2 s", and if more are asked for, more. */
+TEST(after_an_unsolicited_frame_three_responses_have_to_agree_for_2_s)
+{
+    static const row_t four[] = {TELLS(RATE_1), TELLS(RATE_1)};
+    static const uint16_t frame[4] = {MEASURES};
+    static const struct {
+        uint32_t after_us;
+        uint8_t same_responses, needed;
+    } rows[] = {{0, 1, 3}, {0, 2, 3}, {1000000, 2, 3}, {0, 4, 4}, {2000000, 2, 2}, {2000000, 1, 1}};
+    for (unsigned i = 0; i != COUNT(rows); i++) {
+        hps_set_up(NULL);
+        hps_config.same_responses = rows[i].same_responses;
+        hps_start();
+        assert_true(fathom_hps167s_accept_unsolicited(&hps, frame, fake.now_us));
+        fake.now_us += rows[i].after_us;
+        assert_int_equal(desk_play(configuration, four, rows[i].needed), OK);
+    }
+}

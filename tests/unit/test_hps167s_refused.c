@@ -3,7 +3,10 @@
 
 /* hps167s_settings.h: what holds after a setting that the device refused, or that was not confirmed. */
 
+static const fathom_line_settings_t fast = {115200, FATHOM_PARITY_EVEN, 1};
+
 static fathom_status_t set_baud(void) { return fathom_hps167s_set_baud(&hps, (uint32_t)desk.argument); }
+static fathom_status_t set_warm_up(void) { return fathom_hps167s_set_warm_up_s(&hps, 200); }
 static fathom_status_t set_address_1(void) { return fathom_hps167s_set_address(&hps, 1); }
 static fathom_status_t reset(void) { return fathom_hps167s_restore_factory_settings(&hps); }
 
@@ -14,6 +17,19 @@ static fathom_status_t reset(void) { return fathom_hps167s_restore_factory_setti
     HPS_2(unit, ends, baud, 0xFFFF, (warm_up)*256u, 0x0000, 0xB400 + code)
 #define IS_OF(unit, warm_up, code, baud)                                                                     \
     TWO_OF(unit, OK, warm_up, code, baud), TWO_OF(unit, OK, warm_up, code, baud)
+
+/* Until when is silence no error? Of warm_up_s seconds and one time-out of 500 ms. */
+static void assert_warm_up(uint32_t warm_up_s)
+{
+    fathom_hps167s_power_on(&hps);
+    PENDS(desk_poll());
+    fake.now_us += warm_up_s * 1000000u + 499999;
+    hps_is_silent(FATHOM_ERR_WARMING_UP);
+    fathom_hps167s_power_on(&hps);
+    PENDS(desk_poll());
+    fake.now_us += warm_up_s * 1000000u + 500000;
+    hps_is_silent(SILENT);
+}
 
 HPS_SUITE;
 
@@ -48,4 +64,34 @@ TEST(a_device_that_was_moved_to_address_1_is_reset_without_looking_there)
     PLAY_AT(7, NULL, 0, set_address_1, OK, HPS_1(7, OK, 0), HPS_1(1, SILENT, 0), HPS_WRITE(7, 0x10, 1, OK, 0),
             HPS_1(1, OK, 0));
     PLAY(reset, OK, IS_OF(1, 5, 1, 0), HPS_6(1, OK, 1, 0), IS_OF(1, 5, 1, 0));
+}
+
+/* The rate is the one that the driver is at, so there is no other one to look for it. */
+TEST(after_an_unconfirmed_code_of_the_same_rate_the_next_setting_looks_for_no_device)
+{
+    PLAY_AT(1, &hps_factory, 19200, set_baud, FATHOM_ERR_UNCONFIRMED, IS_OF(1, 5, 3, 19200),
+            HPS_WRITE(1, 0x11, 1, OK, 19200), TWO_OF(1, SILENT, 5, 1, 19200));
+    PLAY(set_warm_up, OK, IS_OF(1, 200, 1, 19200));
+}
+
+/* #6: "it refused". Nothing of the factory's holds then. */
+TEST(after_a_reset_that_was_refused_rate_and_warm_up_are_as_before)
+{
+    hps_start_at(1, &fast);
+    hps_config.warm_up_s = 9;
+    hps_start();
+    PLAY(reset, FATHOM_ERR_EXCEPTION, IS_OF(1, 9, 3, 115200), TWO_OF(1, SILENT, 9, 1, 19200),
+         HPS_6(1, EXCEPTION, 4, 115200));
+    assert_int_equal(hps.next_baud, 0);
+    assert_warm_up(9);
+    hps_asks(1, 115200);
+}
+
+/* Its own error code stays in reset_response; that is not the next setting's. */
+TEST(after_a_reset_that_was_refused_other_settings_can_be_made)
+{
+    PLAY(reset, FATHOM_ERR_EXCEPTION, IS_OF(1, 5, 1, 0), HPS_6(1, OK, 2, 0));
+    assert_int_equal(hps.reset_response, 2);
+    PLAY(set_warm_up, OK, IS_OF(1, 5, 1, 0), HPS_WRITE(1, 0x0A, 200, OK, 0), IS_OF(1, 200, 1, 0));
+    assert_warm_up(200);
 }

@@ -281,3 +281,16 @@ TEST(points_whose_levels_or_volumes_do_not_grow_are_refused)
     expect_points(FATHOM_ERR_ARGUMENT, a, b, (p){30, 199});
     expect_points(FATHOM_ERR_ARGUMENT, a, b, (p){19, 300});
 }
+
+TEST(a_table_without_points_or_without_a_volume_is_refused)
+{
+    static const fathom_level_point_t nothing[] = {{0, 100}};
+    use_points(NULL, 0);
+    expect_checked(FATHOM_ERR_ARGUMENT);
+    use_points(NULL, 1);
+    expect_checked(FATHOM_ERR_ARGUMENT);
+    use_points(cone, 0);
+    expect_checked(FATHOM_ERR_ARGUMENT);
+    use_points(nothing, 1);
+    expect_checked(FATHOM_ERR_ARGUMENT);
+}

@@ -269,3 +269,10 @@ TEST(after_power_on_a_busy_line_and_another_master_are_told_as_they_are)
         assert_int_equal(asks(&measure), errors[i]);
     }
 }
+
+TEST(what_is_under_way_cannot_become_blind)
+{
+    PART(set, IS(HERE, OLD));
+    assert_int_equal(fathom_modbus_write_next_unchecked(&unit), FATHOM_ERR_BUSY);
+    SETS(OK, HERE, PUT(OK), IS(HERE, NEW));
+}

@@ -226,3 +226,18 @@ TEST(a_line_that_is_not_initialised_any_more_is_reported_and_serves_the_unit_aga
     PENDS(asks(&measure));
     measures();
 }
+
+TEST(an_abandoned_setting_gives_way_to_a_blind_setting)
+{
+    PENDS(sets(&move));
+    responds(UNIT);
+    PENDS(sets(&move));
+    assert_int_equal(fathom_modbus_write_next_unchecked(&unit), FATHOM_ERR_BUSY);
+    others_call();
+    assert_int_equal(fathom_modbus_write_next_unchecked(&unit), FATHOM_OK);
+    assert_int_equal(unit.address, UNIT);
+    PENDS(sets(&other_setting)); /* the write at once */
+    assert_int_equal(fake.request->message.head[1], 6);
+    fake_modbus_acknowledge(&fake);
+    assert_int_equal(sets(&other_setting), FATHOM_ERR_UNCONFIRMED);
+}
