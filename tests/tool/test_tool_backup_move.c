@@ -249,7 +249,7 @@ TEST(what_was_interrupted_is_carried_on_by_the_next_run)
             /* it answers at last behind all that is written; the others are named */
             assert_true(strstr(run->err, "stopped at ") != NULL || written_count == 6);
         } else {
-            assert_true(strstr(run->err, "not_written") != NULL ||
+            assert_true(strstr(run->err, "not written") != NULL ||
                         strstr(run->err, "nothing was written") != NULL);
         }
         bench.tool.ctrl_c_us = 0;

@@ -207,7 +207,7 @@ TEST(a_sensor_without_a_uuid_that_was_not_written_counts_as_new)
     add_a16_units(1);
     silence(0, 7, 3);
     const tool_run_t *const done = commission("a16 --addresses 2,3 --wait 20");
-    expect(done, 1, "not_written: no response");
+    expect(done, 1, "not written: no response");
     expect(done, 1, "1 of 2");
     assert_int_equal(site.device[0]->address, 2);
 }

@@ -117,7 +117,7 @@ TEST(wrong_words_are_usage_errors)
         {"hps167s:3 --addresses 2", "new sensors have address 1. Leave address 3 out."},
         {"hps167s a16 --addresses 2", "'a16' is one word too many."},
         {"a05 --mode dyp --addresses 2", "--mode is dyp, but this needs mode modbus."},
-        {"hps167s --addresses 2 --wait 0", "--wait is '0'. It takes a whole number from 1 to 86400."},
+        {"hps167s --addresses 2 --wait 0", "--wait is '0'. It takes a whole number from 1 to 86400 s."},
     };
     for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++)
         expect(commission(rows[i].more), 2, rows[i].says);

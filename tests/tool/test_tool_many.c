@@ -201,7 +201,7 @@ TEST(a_count_is_each_sensors_own)
     /* 5 readings and the loss: all that was asked for, so it is not waited for. */
     expect_err(run, "fathom: lost: attempts 6, failed 1, readings 5");
     expect_err(run, "fathom: fine: attempts 6, failed 0, readings 6");
-    expect_err(run, "requests 11, skipped_frames 0, reconnects 0\n");
+    expect_err(run, "requests 11\n");
     assert_int_equal(times(run->err, "waiting"), 0);
     assert_in_range(run->took_us, 2500000, 2600000);
 }
@@ -217,7 +217,7 @@ TEST(both_sensors_of_a_lost_port_fail_and_it_is_told_once)
     expect_err(run, "fathom: hps167s:1: attempts 6, failed 1, readings 5");
     expect_err(run, "fathom: hps167s:2: attempts 6, failed 1, readings 5");
     expect_err(run, "fathom: fine: attempts 6, failed 0, readings 6");
-    expect_err(run, "fathom: failures: impossible_values 0, port 2,");
+    expect_err(run, "fathom: failures: port 2\n");
     assert_int_equal(times(run->err, "unplugged"), 1);
 }
 
@@ -229,7 +229,7 @@ TEST(a_port_that_is_not_there_is_said_and_the_others_are_read)
     away(0, 0, 3000000);
     RUN(1, "read lost=hps167s@p0 fine=hps167s@p2 --interval 500 --count 4 --stats");
     expect_err(run, "fathom: p0: no such device\n");
-    expect_err(run, "fathom: lost: attempts 0, failed 0, readings 0,");
+    expect_err(run, "fathom: lost: attempts 0, failed 0, readings 0\n");
     assert_int_equal(readings_of(run, "fine").count, 4);
 }
 
@@ -255,7 +255,7 @@ TEST(a_port_that_is_not_there_yet_is_waited_for)
     assert_true(readings_of(run, "fine").longest_s < 0.510);
     expect_err(run, "fathom: p0: no such device; waiting until it is there\n");
     expect_err(run, "fathom: p0: it is there; reading begins\n");
-    expect_err(run, "reconnects 0\n");
+    assert_null(strstr(run->err, "reconnects"));
 }
 
 /* It has said nothing, and is forgiven; one whose port is there is not. */
@@ -309,9 +309,9 @@ TEST(each_port_has_its_own_settings_and_its_own_stations)
     static const char *const names[] = {"hps167s:7", "tank", "hps167s:1", "hps167s:2"};
     for (size_t i = 0; i != 4; i++) assert_int_equal(readings_of(run, names[i]).count, 3);
     /* Of those that are asked and of the one that is not. */
-    expect_err(run, "fathom: requests 9, ");
-    expect_err(run, "fathom: stream: frames 3,");
-    assert_int_equal(times(run->err, "responses 3, failed_requests 0,"), 3);
+    expect_err(run, "fathom: requests 9\n");
+    expect_err(run, "fathom: stream: frames 3, bytes ");
+    assert_int_equal(times(run->err, ", responses 3, response_min_us "), 3);
     assert_int_equal(times(run->err, "response_min_us"), 3);
 }
 

@@ -157,7 +157,7 @@ TEST(wrong_words_are_rejected_with_what_they_take)
         const char *says;
     } rows[] = {
         {"", "unknown sensor ''. It is one of a16, a05, hps167s."},
-        {"a17:1", "unknown sensor 'a17'. Did you mean a16?"},
+        {"a17:1", "unknown sensor 'a17'. It is one of a16, a05, hps167s."},
         {"tank=", "unknown sensor ''."},
         {"a=b=a16", "unknown sensor 'b=a16'."},
         {"hps167s1234567890123456789012345678901234567890:1", "unknown sensor 'hps167s1234567890"},

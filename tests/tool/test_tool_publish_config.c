@@ -149,12 +149,13 @@ static const struct {
      "sensors: median is a map. It takes a whole number from 3 to 15.\n"},
     {"a text for a list", 8, "lines: none\nx:", 8,
      "lines is a text. It takes a list of maps, each with port and sensors.\n"},
-    {"nothing at all", 2, "interval:", 2, "interval is empty. It takes a whole number from 0 to 2147483.\n"},
+    {"nothing at all", 2, "interval:", 2,
+     "interval is empty. It takes a whole number from 0 to 2147483 ms.\n"},
     {"a word for a number", 14, "        median: five", 14, "sensors: median is 'five'."},
     {"a number that is too large", 14, "        median: 16", 14,
      "sensors: median is '16'. It takes a whole number from 3 to 15.\n"},
     {"an interval of all that is wrong", 2, "interval: -1", 2,
-     "interval is '-1'. It takes a whole number from 0 to 2147483.\n"},
+     "interval is '-1'. It takes a whole number from 0 to 2147483 ms.\n"},
     {"a port of the broker", 6, "  port: 65536", 6,
      "broker: port is '65536'. It takes a whole number from 1 to 65535.\n"},
     {"a gate without a median", 14, "        gate: 5", 14, "sensors: gate has no effect without median.\n"},
@@ -162,12 +163,14 @@ static const struct {
     {"a key of another kind of port", 10, "    bias: up", 10, "lines: unknown key 'bias'."},
     {"a key of a port over TCP", 19, "  - port: tcp:10.0.0.7\n    baud: 9600", 20,
      "lines: unknown key 'baud'. It is one of port, sensors.\n"},
-    {"a model that there is not", 13, "        sensor: a17", 13, "unknown sensor 'a17'. Did you mean a16?\n"},
+    {"a model that there is not", 13, "        sensor: a17", 13,
+     "unknown sensor 'a17'. It is one of a16, a05, hps167s.\n"},
     {"a mode that there is not", 13, "        sensor: a16:1:telnet", 13, "unknown mode of a16 'telnet'."},
     {"an option of another sensor", 14, "        probes: 1,2", 14, "probes has no effect on a16 (modbus)."},
     {"two sensors at one place", 17, "        sensor: a05:1:modbus", 17,
      "tank and bumper have the same address, so both would respond at once.\n"},
-    {"two of the same name", 16, "      - name: tank", 17, "two sensors have the name tank."},
+    {"two of the same name", 16, "      - name: tank", 17,
+     "two sensors have the name tank. Give each its own name:.\n"},
     {"a name that no topic may have", 12, "      - name: a/b", 12,
      "name is 'a/b'. It takes at most 31 letters, digits, '-', '_' and '.'"},
     {"a site that no topic may have", 1, "site: mill/#", 1, "site is 'mill/#'. " TOPICS "\n"},
@@ -223,5 +226,5 @@ TEST(one_file_is_named)
 {
     ASSERT_RUN(2, "publish");
     ASSERT_RUN(2, "publish one two");
-    assert_non_null(strstr(tool_run(&bench.tool, "publish")->err, "0 files are named. Name one, such as "));
+    assert_non_null(strstr(tool_run(&bench.tool, "publish")->err, "FILE is missing, such as "));
 }

@@ -452,7 +452,7 @@ TEST(an_option_that_no_sensor_takes_is_wrong_usage)
         {"a05 --first-register 0x0010", "unknown option '--first-register'."},
         {"a16 --temperature", "--temperature has no effect on a16 (auto). It is for hps167s (modbus)."},
         {"hps167s:1:auto --temperature", "--temperature has no effect on hps167s (auto)."},
-        {"hps167s --temperature=0", "--temperature is '0'. It takes a whole number from 1 to 1000."},
+        {"hps167s --temperature=0", "--temperature is '0'. It takes a whole number from 1 to 1000 s."},
         {"a16 --window 300", "--window is '300'. It takes MIN-MAX, from 1 to 65529."},
         {"a16 --window 0-300", "--window is '0-300'."},
         {"a16 --window 300-299", "--window is '300-299'."},

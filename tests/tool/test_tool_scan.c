@@ -338,7 +338,8 @@ TEST(a_line_without_a_sound_is_explained)
     assert_says(run, "no sensor was found at line: no byte was received. Check the power, whether A and B");
     assert_says(run, "sensors found: 0");
     assert_null(strstr(run->err, "--baud all")); /* the user chose the range */
-    assert_says(scan(""), "use --address 1-254 --baud all");
+    assert_says(scan(""),
+                "run 'fathom scan --port line --address 1-254 --baud all --parity all' (about 7 minutes)");
 }
 
 TEST(neither_the_reset_nor_a_broadcast_can_be_sent)

@@ -77,17 +77,17 @@ TEST(what_it_had_is_unchanged)
 
 TEST(without_a_response_nothing_was_written)
 {
-    says(1, "termination off: not_written: no response", "set hps167s termination off");
+    says(1, "termination off: not written: no response", "set hps167s termination off");
     says(1, "\"written\":false,\"confirmed\":false,\"status\":\"not_written\"",
          "set hps167s termination off --format json");
-    says(1, "filter-sensitivity 5: not_written: no response", "set hps167s filter-sensitivity 5");
+    says(1, "filter-sensitivity 5: not written: no response", "set hps167s filter-sensitivity 5");
 }
 
 /* A faulted sensor that sends by itself: nothing can be made out between its packets at 54 Hz. */
 TEST(of_a_setting_that_was_refused_nothing_is_claimed)
 {
     faulty(FATHOM_SIM_FAULT_FUNCTION, 1, 60);
-    says(1, "not_written: ", "set hps167s termination off");
+    says(1, "not written: ", "set hps167s termination off");
     assert_int_equal(counters()->writes, 0);
 }
 
@@ -95,12 +95,12 @@ TEST(of_a_setting_that_was_refused_nothing_is_claimed)
 TEST(what_cannot_be_read_afterwards_is_not_confirmed)
 {
     faulty(FATHOM_SIM_FAULT_SILENCE, 5, 60);
-    says(1, "termination off: not_confirmed: no acknowledgement was received. The value may be set or not",
+    says(1, "termination off: not confirmed: no acknowledgement was received. The value may be set or not",
          "set hps167s termination off");
     assert_false(bench.hps167s.termination);
     /* #1 is read before what is write-only */
     faulty(FATHOM_SIM_FAULT_SILENCE, 2, 60);
-    says(1, "not_confirmed: no acknowledgement was received", "set hps167s filter-sensitivity 5");
+    says(1, "not confirmed: no acknowledgement was received", "set hps167s filter-sensitivity 5");
 }
 
 /* #9 holds from the next power-on here, and #2 tells nothing of it. */
@@ -110,6 +110,26 @@ TEST(what_was_acknowledged_and_reads_otherwise_is_said_to_be_so)
     says(1, "baud 115200: differs: the sensor acknowledged the write, but it reads back another value",
          "set hps167s baud 115200");
     assert_int_equal(counters()->writes, 1);
+}
+
+TEST(an_offset_that_may_be_added_is_announced_and_not_claimed)
+{
+    bench_hps167s((fathom_sim_hps167s_config_t){.offset_adds = true});
+    says(0,
+         "distance-offset: a sensor that has an offset already may add the new one to it. To check, measure ",
+         "set hps167s distance-offset -15");
+    says(0,
+         "hps167s:1: distance-offset: -15 mm was written and acknowledged; the setting cannot be read back\n",
+         "set hps167s distance-offset -15");
+    assert_int_equal(bench.hps167s.user.offset_mm, -30);
+}
+
+TEST(the_address_of_an_hps167s_is_the_one_at_which_it_responds)
+{
+    bench_hps167s((fathom_sim_hps167s_config_t){.address = 9});
+    says(0, "\naddress                    9\n", "get hps167s:9 address");
+    says(0, "\"address\":9}\n", "get hps167s:9 address --format json");
+    says(1, "no response from hps167s:8", "get hps167s:8 address");
 }
 
 TEST(a_refusal_is_a_refusal)
@@ -130,17 +150,17 @@ TEST(info_fails_when_it_could_not_read_all)
 TEST(what_is_written_blind_is_written_once_and_not_confirmed)
 {
     bench_hps167s(any_hps167s);
-    says(0, "termination off: not_confirmed\n", "set hps167s termination off --blind");
+    says(0, "termination off: not confirmed\n", "set hps167s termination off --blind");
     assert_false(bench.hps167s.termination);
     assert_int_equal(counters()->requests, 1);
     says(0, "\"written\":true,\"confirmed\":false,\"status\":\"not_confirmed\"",
          "set hps167s termination on --blind --format json");
     bench_begin();
     bench_a16(any_a16);
-    says(0, "not_confirmed", "set a16 switch-threshold 2000 --blind");
+    says(0, "not confirmed", "set a16 switch-threshold 2000 --blind");
     assert_int_equal(bench.a16.device.counters.requests, 1);
     bench_begin(); /* of a dead line that is not all that there is to say */
-    says(1, "not_confirmed: no acknowledgement was received", "set hps167s termination off --blind");
+    says(1, "not confirmed: no acknowledgement was received", "set hps167s termination off --blind");
 }
 
 TEST(what_has_to_be_read_is_not_written_blind)

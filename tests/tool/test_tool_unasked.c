@@ -44,7 +44,8 @@ WORKS(the_warm_up_is_set, "set hps167s warm-up 10", "warm-up is 10")
 WORKS(the_reconnect_time_is_set, "set hps167s reconnect-time 1800", "reconnect-time is 1800")
 WORKS(the_address_is_set, "set hps167s address 7", "address is 7")
 WORKS(the_rate_is_set, "set hps167s baud 57600", "baud is 57600")
-WORKS(the_filter_is_set, "set hps167s filter-sensitivity 10", "filter-sensitivity is 10")
+WORKS(the_filter_is_set, "set hps167s filter-sensitivity 10",
+      "filter-sensitivity: 10 was written and acknowledged")
 WORKS(the_interface_is_reset, "reset hps167s --yes-restore-factory-settings", "has its factory settings")
 WORKS(the_sensor_is_reset, "reset hps167s --yes-load-factory-sensor-settings",
       "it loads its factory settings")

@@ -62,6 +62,8 @@ static bool read_option(arguments_t *arguments, int argc, char **argv, int *i, v
     char otherwise[8] = "";
     if (!find(&walk, tables, argv[*i], &value)) return reject_option(tables, argv[*i], &origin);
     const option_t *const row = walk.row;
+    if (row->instead != NULL)
+        return reject(&origin, "unknown option '--%s'. Did you mean --%s?", row->name, row->instead);
     if (row->kind == KIND_FLAG && value != NULL) return reject(&origin, "--%s takes no value.", row->name);
     if (row->kind != KIND_FLAG && value == NULL && row->otherwise == NULL) {
         if (*i + 1 == argc) return reject(&origin, "--%s needs a value: %s.", row->name, row->value);

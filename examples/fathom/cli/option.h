@@ -65,10 +65,11 @@ struct option_row {
     const char *needs; /* another option without which this one has no effect */
     uint16_t fits;     /* SUITS_... of a sensor's mode; 0: every mode */
     char separator;
-    bool is_required; /* of a key */
-    bool is_once;     /* a second one is an error, and does not replace the first */
-    bool is_first;    /* of a key: "value" at the beginning of the list means "key=value" */
-    bool is_hidden;   /* an old name that still works */
+    bool is_required;    /* of a key */
+    bool is_once;        /* a second one is an error, and does not replace the first */
+    bool is_first;       /* of a key: "value" at the beginning of the list means "key=value" */
+    bool is_hidden;      /* an old name that still works */
+    const char *instead; /* of a hidden row that has no effect: the option that the user looks for */
 };
 
 #define AT(type, member)  .at = offsetof(type, member), .size = sizeof(((type *)0)->member)

@@ -175,16 +175,26 @@ static void takes_words(const char *words, char text[OPTION_TAKES])
                                n == 0 ? "" : (word[length] == '\0' ? " or " : ", "), (int)length, word);
 }
 
+/* The unit of a number, which the name of its value states; "": none. */
+static const char *unit_of(const option_t *row)
+{
+    static const char *const units[][2] = {{"MS", " ms"}, {"S", " s"}, {"[S]", " s"}, {"MM", " mm"}};
+    for (size_t i = 0; row->value != NULL && i != sizeof units / sizeof units[0]; i++)
+        if (strcmp(row->value, units[i][0]) == 0) return units[i][1];
+    return "";
+}
+
 void option_takes(const option_t *row, char text[OPTION_TAKES])
 {
     const char *const value = row->value != NULL ? row->value : "no value";
     (void)snprintf(text, OPTION_TAKES, "%s", row->takes != NULL ? row->takes : value);
     if (row->takes != NULL) return;
     if (row->kind == KIND_NUMBER)
-        (void)snprintf(text, OPTION_TAKES, "a whole number from %" PRIu32 " to %" PRIu32, row->min, row->max);
+        (void)snprintf(text, OPTION_TAKES, "a whole number from %" PRIu32 " to %" PRIu32 "%s", row->min,
+                       row->max, unit_of(row));
     else if (row->kind == KIND_SIGNED)
-        (void)snprintf(text, OPTION_TAKES, "a whole number from -%" PRIu32 " to %" PRIu32, row->max,
-                       row->max);
+        (void)snprintf(text, OPTION_TAKES, "a whole number from -%" PRIu32 " to %" PRIu32 "%s", row->max,
+                       row->max, unit_of(row));
     else if (row->kind == KIND_PAIR)
         (void)snprintf(text, OPTION_TAKES, "%s, from %" PRIu32 " to %" PRIu32, value, row->min, row->max);
     else if (row->kind == KIND_SET)

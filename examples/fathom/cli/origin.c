@@ -25,6 +25,13 @@ bool reject(const origin_t *origin, const char *format, ...)
     return false;
 }
 
+/* Another number is another thing, not a misspelt one, so a digit differs by two letters. */
+static size_t difference(char one, char other)
+{
+    if (tolower((unsigned char)one) == tolower((unsigned char)other)) return 0;
+    return isdigit((unsigned char)one) && isdigit((unsigned char)other) ? 2 : 1;
+}
+
 /* The number of letters to insert, delete, replace or swap to make `other` from `one`. */
 static size_t distance(const char *one, const char *other)
 {
@@ -37,8 +44,7 @@ static size_t distance(const char *one, const char *other)
         for (size_t j = 0; j <= m; j++) {
             d[i][j] = i + j;
             if (i == 0 || j == 0) continue;
-            d[i][j] = d[i - 1][j - 1] +
-                      (tolower((unsigned char)one[i - 1]) != tolower((unsigned char)other[j - 1]));
+            d[i][j] = d[i - 1][j - 1] + difference(one[i - 1], other[j - 1]);
             if (d[i - 1][j] + 1 < d[i][j]) d[i][j] = d[i - 1][j] + 1;
             if (d[i][j - 1] + 1 < d[i][j]) d[i][j] = d[i][j - 1] + 1;
             if (i > 1 && j > 1 && one[i - 1] == other[j - 2] && one[i - 2] == other[j - 1] &&
@@ -48,12 +54,13 @@ static size_t distance(const char *one, const char *other)
     return d[n][m];
 }
 
+/* Suggests a name if about a third of the letters differs at most. */
 void nearest_try(nearest_t *nearest, const char *name)
 {
     const size_t length = strlen(nearest->word);
     const bool is_begin = length > 1 && strncmp(nearest->word, name, length) == 0;
     const size_t this_distance = is_begin ? 1 : distance(nearest->word, name);
-    const size_t limit = nearest->name != NULL ? nearest->distance : length / 3 + 2;
+    const size_t limit = nearest->name != NULL ? nearest->distance : (length + 1) / 3 + 1;
     if (this_distance >= limit || this_distance >= strlen(name)) return;
     nearest->name = name;
     nearest->distance = this_distance;

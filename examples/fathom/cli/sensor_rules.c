@@ -133,6 +133,9 @@ bool sensors_set_names(const site_t *site, const origin_t *origins)
         if (is_ambiguous[i]) add_port(stations[i], stations[i]->port->path);
     for (size_t i = 0; i != count; i++) {
         if (!has_namesake(stations, i, stations[i], false)) continue;
+        if (origins[i].file != NULL)
+            return reject(&origins[i], "two sensors have the name %s. Give each its own name:.",
+                          stations[i]->name);
         return reject(&origins[i], "two sensors have the name %s. Give each its own name, such as one=%s.",
                       stations[i]->name, stations[i]->model->name);
     }

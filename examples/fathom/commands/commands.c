@@ -27,7 +27,8 @@ static const struct {
 static const char first_steps[] =
     "  Find the sensors on a line:   fathom scan --port /dev/ttyUSB0\n"
     "  Log a sensor for a day:       fathom read a16 --port /dev/ttyUSB0\n"
-    "                                  --duration 86400 --format csv --output a16.csv\n"
+    "                                  --interval 1000 --duration 86400\n"
+    "                                  --format csv --output a16.csv --rotate day\n"
     "  Set an address:               fathom set hps167s --port /dev/ttyUSB0 address 7\n"
     "  Publish to a broker:          fathom publish site.yaml (fathom help config)\n"
     "  Find out why nothing responds: fathom help trouble\n"
@@ -70,11 +71,9 @@ static int reject_name(const char *what, const char *name, bool has_topics)
         nearest_try(&nearest, commands[i]->name);
         list_add(known, sizeof known, commands[i]->name);
     }
-    for (const help_topic_t *topic = topics; has_topics && topic->name != NULL; topic++) {
+    for (const help_topic_t *topic = topics; has_topics && topic->name != NULL; topic++)
         nearest_try(&nearest, topic->name);
-        list_add(known, sizeof known, topic->name);
-    }
-    (void)reject_unknown(&origin, what, "", &nearest, known);
+    (void)reject_unknown(&origin, what, "", &nearest, has_topics ? NULL : known);
     return STATUS_USAGE;
 }
 

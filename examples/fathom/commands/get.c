@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): fmemopen */
 #include <limits.h>
 #include <string.h>
 
@@ -24,7 +25,9 @@ typedef struct {
     unsigned read_count; /* values that were read */
     uint16_t
         failed_read; /* the read that failed last. Its other values are not requested: that takes seconds */
-    fathom_status_t failure; /* of that read */
+    fathom_status_t failure;   /* of that read */
+    const setting_t *remarked; /* has a value with a remark, which follows the table; NULL: none has */
+    char remarked_text[SETTING_TEXT];
 } values_t;
 
 /* Returns the next value to print behind `last`, or the first one if `last` is NULL. NULL: there is none. */
@@ -38,6 +41,9 @@ static const setting_t *next_value(const values_t *progress, const setting_t *la
     }
     return NULL;
 }
+
+/* The address is known without a request for it: the sensor responds there. */
+static bool is_address(const setting_t *setting) { return strcmp(setting->name, "address") == 0; }
 
 /* Messages name the sensor if there are several, or if the user named it. */
 static bool has_name(void) { return session.site.sensor_count > 1 || session.sensor->has_own_name; }
@@ -54,7 +60,7 @@ static void begin_json(const values_t *progress, const char *line)
 {
     bool has_address = false;
     for (const setting_t *setting = NULL; (setting = next_value(progress, setting)) != NULL;)
-        if (strcmp(setting->name, "address") == 0) has_address = true;
+        if (is_address(setting)) has_address = true;
     json = (json_t){.to = stdout};
     json_begin(&json, NULL, '{');
     sensor_json(&json, session.sensor);
@@ -93,7 +99,7 @@ static fathom_status_t read_value(const setting_t *setting, values_t *progress, 
 {
     text[0] = '\0';
     if (setting->get == NULL) {
-        if (strcmp(setting->name, "address") != 0) return FATHOM_ERR_UNSUPPORTED;
+        if (!is_address(setting)) return FATHOM_ERR_UNSUPPORTED;
         (void)snprintf(text, SETTING_TEXT, "%u", session.sensor->address); /* it responds there */
         return FATHOM_OK;
     }
@@ -126,31 +132,43 @@ static bool show_value(const setting_t *setting, values_t *progress)
     if (is_read) progress->read_count++;
     print_value(setting, status, text);
     if (setting->remark == NULL || status != FATHOM_OK) return true;
-    if (has_name()) {
-        print_start();
-        (void)fprintf(stderr, "%s is %s\n", setting->name, text);
-    }
-    setting->remark(stderr, text);
+    progress->remarked = setting;
+    (void)snprintf(progress->remarked_text, sizeof progress->remarked_text, "%s", text);
     return true;
 }
 
 /* A setting that is write-only does not show that the sensor is there, so one that can be read comes first. */
-static bool responds(values_t *progress)
+static bool responds(void)
 {
+    const values_t all = {.settings = session_settings(&session), .show = SHOW_ALL};
     const setting_t *setting = NULL;
     char text[SETTING_TEXT];
-    do setting = next_value(progress, setting);
+    do setting = next_value(&all, setting);
     while (setting != NULL && setting->get == NULL);
     if (setting == NULL) return true;
     const fathom_status_t status = session_get(&session, setting, text);
     return status == FATHOM_OK || fail(setting, status);
 }
 
+static void print_remark(const values_t *progress)
+{
+    char text[256] = "";
+    if (progress->remarked == NULL) return;
+    FILE *const to = fmemopen(text, sizeof text, "w");
+    if (to == NULL) return;
+    progress->remarked->remark(to, progress->remarked_text);
+    (void)fclose(to);
+    if (text[0] == '\0') return;
+    print_start();
+    (void)fputs(text, stderr);
+}
+
 /* Prints the values of the sensor on the open port. Returns false if one of them could not be read. */
 static bool show_values(const setting_t *settings, show_t show)
 {
     values_t progress = {.settings = settings, .show = show};
-    bool is_good = show != SHOW_SETTINGS || responds(&progress);
+    const bool is_unsure = show == SHOW_SETTINGS || (show == SHOW_ONE && settings->get == NULL);
+    bool is_good = !is_unsure || responds();
     for (const setting_t *setting = NULL; (setting = next_value(&progress, setting)) != NULL;) {
         if (is_good) is_good = show_value(setting, &progress);
         progress.count++;
@@ -163,6 +181,7 @@ static bool show_values(const setting_t *settings, show_t show)
         (void)fputs("fathom: cannot write the output.\n", stderr);
         return false;
     }
+    print_remark(&progress);
     if (progress.is_known && progress.read_count != progress.count) {
         print_start();
         (void)fprintf(stderr, "%u of %u values could not be read\n", progress.count - progress.read_count,
@@ -218,7 +237,7 @@ static int start_get(const host_t *host, const arguments_t *arguments)
         return show_on_port(host, session_settings(&session), SHOW_SETTINGS) ? STATUS_OK : STATUS_FAILED;
     const setting_t *const setting = setting_named(&session, arguments->words[1], arguments);
     if (setting == NULL) return STATUS_USAGE;
-    if (setting->get == NULL) {
+    if (setting->get == NULL && !is_address(setting)) {
         (void)reject(&origin, "%s is write-only. The sensor does not report it.", setting->name);
         return STATUS_USAGE;
     }

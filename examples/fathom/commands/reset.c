@@ -91,6 +91,7 @@ static bool set_up(const arguments_t *arguments, bool *is_restore)
                              : settings->restores_interface ? "interface"
                              : settings->restores_sensor    ? "sensor"
                                                             : "";
+    if (word[0] == '\0') return reject(&origin, "say what to reset: interface or sensor.");
     *is_restore = strcmp(word, "interface") == 0;
     if (!*is_restore && strcmp(word, "sensor") != 0)
         return reject(&origin, "what is to be reset is '%s'. Write interface or sensor.", word);

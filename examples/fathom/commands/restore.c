@@ -216,7 +216,7 @@ const command_t restore_command = {
                 "  fathom restore hps167s --port /dev/ttyUSB0 --file gate.txt --as-new\n",
     .status = "Exit status: 0 the sensor has the settings of the file (--dry-run: already),\n"
               "1 it does not or that is unknown, 2 wrong usage or a wrong line in the file.\n",
-    .topics = "settings, sensors, ports",
+    .topics = "backup, settings, sensors, ports",
     .operands = operands_one,
     .settings_size = sizeof(restore_settings_t),
     .start = start,

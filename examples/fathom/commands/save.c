@@ -15,6 +15,7 @@ typedef struct {
 static const option_t rows[] = {
     {"file", "FILE", "Write to a new FILE instead of standard output", KIND_TEXT, GROUP_OUTPUT,
      AT(save_settings_t, path), .is_path = true},
+    {"output", .help = "Other commands have it", .group = GROUP_OUTPUT, .is_hidden = true, .instead = "file"},
     {.name = NULL},
 };
 
@@ -75,7 +76,7 @@ const command_t save_command = {
     .examples = "  fathom save hps167s:7 --port /dev/ttyUSB0 --file gate.txt\n"
                 "  fathom save a16 --port /dev/ttyUSB0\n",
     .status = "Exit status: 0 success, 1 the sensor could not be read, 2 wrong usage.\n",
-    .topics = "settings, sensors, ports",
+    .topics = "backup, settings, sensors, ports",
     .operands = operands_one,
     .settings_size = sizeof(save_settings_t),
     .start = start,

@@ -36,8 +36,19 @@ static fathom_status_t call_all(reader_t *reader, void *ctx)
     return change->setting->set_all(reader, change->setting, change->value);
 }
 
+/* Some settings can have an effect that the sensor does not report. */
+static void print_risk(const setting_t *setting)
+{
+    if (setting->risk == NULL) return;
+    (void)fprintf(stderr,
+                  "fathom: %s: %s. To check, measure a target at a known distance with 'fathom read', or use "
+                  "'fathom calibrate'.\n",
+                  setting->name, setting->risk);
+}
+
 static bool set(change_t *change)
 {
+    print_risk(change->setting);
     setting_print_value(change->setting, change->value, change->wanted);
     change->was[0] = '\0';
     if (change->is_for_all) return change_report(change, session_call(&session, call_all, change));
@@ -90,6 +101,11 @@ static bool set_up(change_t *change, const arguments_t *arguments)
 {
     const origin_t origin = {.command = arguments->command->name};
     if (!session_read(&session, arguments, 1, 2)) return false;
+    if (arguments->count == 2 && strchr(arguments->words[1], '=') != NULL) {
+        const int length = (int)strcspn(arguments->words[1], "=");
+        return reject(&origin, "the setting and its value are two words. Write: %.*s %s.", length,
+                      arguments->words[1], arguments->words[1] + length + 1);
+    }
     if (arguments->count < 3)
         return reject(&origin, "the %s is missing. 'fathom get %s' lists the settings.",
                       arguments->count == 1 ? "setting" : "value", session.sensor->model->name);
@@ -114,10 +130,11 @@ static int start(const host_t *host, const arguments_t *arguments)
 
 const command_t set_command = {
     .name = "set",
-    .summary = "Change a setting of a sensor and confirm it by reading it back",
+    .summary = "Change a setting of a sensor and read it back if possible",
     .usage = "SENSOR[:ADDRESS][:MODE][@PORT] SETTING VALUE [OPTIONS]",
     .about = "A value that the sensor has already is not written. The command follows a\n"
-             "sensor to its new address or baud rate.\n",
+             "sensor to its new address or baud rate. A write-only setting ('fathom get\n"
+             "SENSOR' lists them) cannot be read back: its write is acknowledged only.\n",
     .tables = tables,
     .common = "port address baud yes format",
     .examples = "  fathom set hps167s --port /dev/ttyUSB0 address 7\n"

@@ -138,7 +138,8 @@ static void print_output(FILE *to)
                 "target' and a fault that the sensor reports are readings. In json and csv, a\n"
                 "failed attempt is a row too, with its reason in 'status'. json is one object a\n"
                 "line.\n\n"
-                "--output FILE appends to FILE. csv has a header line if FILE is empty.\n"
+                "--output FILE appends to FILE. If FILE ends in .csv, .json or .jsonl, --format may\n"
+                "be left out. csv has a header line if FILE is empty.\n"
                 "--rotate day: log.csv becomes log-2026-11-23.csv.\n",
                 to);
     reading_help(to);
@@ -147,8 +148,9 @@ static void print_output(FILE *to)
 static void print_level(FILE *to)
 {
     (void)fputs("--level KEYS: the level in a tank, from the distance to its surface, for all\n"
-                "sensors: level_mm, level_per_mille and volume. Keys, such as --level\n"
-                "mounting=2300,height=2000,capacity=5000:\n\n",
+                "sensors: level_mm, level_per_mille and volume. An example:\n\n"
+                "  --level mounting=2300,height=2000,capacity=5000\n\n"
+                "Its keys:\n\n",
                 to);
     print_keys(to, result_rows, "level");
     (void)fputs("\n"
@@ -206,15 +208,16 @@ static void print_settings(FILE *to)
 static void print_trouble(FILE *to)
 {
     (void)fputs("Nothing responds? Work through these in this order:\n\n"
-                "  1. fathom scan --port PORT It listens first, then sends requests with factory\n"
-                "     settings to addresses 1 to 32.\n"
+                "  1. Search with factory settings. The command listens first, then sends\n"
+                "     requests to addresses 1 to 32:\n"
+                "       fathom scan --port PORT\n"
                 "  2. Is the port right? Without other adapters, 'ls /dev/ttyUSB*' names it. If\n"
                 "     the port cannot be opened: add yourself to the group dialout, and end\n"
                 "     other programs that use it.\n"
                 "  3. Is the sensor powered? Measure the supply at the sensor.\n"
                 "  4. Swap A and B (RS485), or TX and RX (UART, RS232). Connect the grounds.\n"
-                "  5. Settings that were changed: fathom scan --port PORT --baud all --parity all\n"
-                "     --address 1-254\n"
+                "  5. Search with settings that were changed, in about 7 minutes:\n"
+                "       fathom scan --port PORT --address 1-254 --baud all --parity all\n"
                 "  6. Damaged frames: shorten the line, terminate both of its ends, and try a\n"
                 "     lower rate. 'fathom read ... --stats' counts what fails, and names the\n"
                 "     likely cause.\n"
@@ -227,10 +230,20 @@ static void print_trouble(FILE *to)
 static void print_config(FILE *to)
 {
     (void)fputs("'fathom publish FILE' reads a YAML file:\n\n"
-                "  site: mill broker: {host: mqtt.example.org, user: mill, password-file:\n"
-                "  /etc/fathom/password} lines: - port: /dev/ttyUSB0 sensors: - {name: tank,\n"
-                "  sensor: 'a16:1', level: {mounting: 2300, height: 2000, capacity: 5000}} -\n"
-                "  {name: gate, sensor: 'hps167s:7', interval: 500}\n\n"
+                "  site: mill\n"
+                "  broker:\n"
+                "    host: mqtt.example.org\n"
+                "    user: mill\n"
+                "    password-file: /etc/fathom/password\n"
+                "  lines:\n"
+                "    - port: /dev/ttyUSB0\n"
+                "      sensors:\n"
+                "        - name: tank\n"
+                "          sensor: a16:1\n"
+                "          level: {mounting: 2300, height: 2000, capacity: 5000}\n"
+                "        - name: gate\n"
+                "          sensor: hps167s:7\n"
+                "          interval: 500\n\n"
                 "Its keys:\n\n",
                 to);
     publish_print_keys(to);

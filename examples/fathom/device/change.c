@@ -15,6 +15,14 @@ static const char *const words[] = {[CHANGE_UNCHANGED] = "unchanged",
                                     [CHANGE_NOT_WRITTEN] = "not_written",
                                     [CHANGE_SENT] = "sent"};
 
+/* The outcome as text has no underscore. */
+static const char *outcome_text(change_outcome_t outcome)
+{
+    return outcome == CHANGE_NOT_WRITTEN   ? "not written"
+           : outcome == CHANGE_UNCONFIRMED ? "not confirmed"
+                                           : words[outcome];
+}
+
 /* If the setting is read back, CHANGE_DONE is more than an acknowledgement. */
 static bool is_read_back(const change_t *change)
 {
@@ -72,7 +80,7 @@ void change_explain(const change_t *change, change_outcome_t outcome, fathom_sta
 {
     (void)fflush(stdout);
     (void)fprintf(stderr, "fathom: %s: %s %s: %s: ", change->session->sensor->name, change->setting->name,
-                  change->wanted, words[outcome]);
+                  change->wanted, outcome_text(outcome));
     if (outcome == CHANGE_UNCONFIRMED)
         print_unconfirmed(change);
     else if (outcome == CHANGE_DIFFERS)
@@ -128,8 +136,14 @@ static void print_done(const change_t *change, change_outcome_t outcome)
     const setting_t *const setting = change->setting;
     const bool has_unit = setting->unit != NULL && setting->words == NULL;
     const bool is_later = setting->is_later != NULL && setting->is_later(change->session->sensor->reader);
-    (void)printf("%s: %s is %s%s%s", change->session->sensor->name, setting->name, change->wanted,
-                 has_unit ? " " : "", has_unit ? setting->unit : "");
+    const char *const unit = has_unit ? setting->unit : "";
+    const char *const name = change->session->sensor->name;
+    if (setting->get == NULL && setting->confirmed == NULL && !setting->moves) {
+        (void)printf("%s: %s: %s%s%s was written and acknowledged; the setting cannot be read back\n", name,
+                     setting->name, change->wanted, has_unit ? " " : "", unit);
+        return;
+    }
+    (void)printf("%s: %s is %s%s%s", name, setting->name, change->wanted, has_unit ? " " : "", unit);
     if (is_later)
         (void)printf(" from the next power-on (%s until then)\n", change->was);
     else if (outcome == CHANGE_UNCHANGED)
@@ -139,7 +153,7 @@ static void print_done(const change_t *change, change_outcome_t outcome)
     else if (setting->confirmed != NULL)
         (void)printf(": %s\n", setting->confirmed);
     else
-        (void)puts(setting->moves ? "" : ": acknowledged; the setting cannot be read back");
+        (void)puts("");
     if (outcome != CHANGE_UNCHANGED && setting->moves) print_next(change);
 }
 
@@ -161,10 +175,10 @@ bool change_report(const change_t *change, fathom_status_t status)
         change_explain(change, outcome, status);
     else if (is_blind && !change->session->is_json)
         (void)printf("%s: %s %s: %s\n", change->is_for_all ? "all units" : change->session->sensor->name,
-                     change->setting->name, change->wanted, words[outcome]);
+                     change->setting->name, change->wanted, outcome_text(outcome));
     else if (!change->session->is_json)
         print_done(change, outcome);
     if (fflush(stdout) == 0 && ferror(stdout) == 0) return is_done;
-    (void)fprintf(stderr, "fathom: cannot write the output; the setting: %s\n", words[outcome]);
+    (void)fprintf(stderr, "fathom: cannot write the output; the setting: %s\n", outcome_text(outcome));
     return false;
 }

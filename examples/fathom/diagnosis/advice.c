@@ -187,10 +187,11 @@ static const cause_t causes[] = {
      "Check the power and the wires of the sensor"},
     {STALE | CHECKSUM, LISTENED | SILENCE | ADDRESS, "no byte was received",
      "Check the power and whether A and B are swapped. If the sensor does not send automatically, use "
-     "--mode modbus"},
+     "--mode modbus. To find its address, run 'fathom scan'"},
     {STALE | CHECKSUM, LISTENED | SILENCE, "no byte was received",
      "Check the power and the wire of the sensor's TX. If the sensor does not send automatically, use "
-     "--mode modbus"},
+     "--mode modbus. If it has an address, name it with its address, such as {model}:7; 'fathom scan' finds "
+     "it"},
     {STALE | CHECKSUM, LISTENED | STREAM, "frames of {streamed} in automatic mode were received",
      "Try 'fathom read {streamed} --mode auto'"},
     {STALE | CHECKSUM, LISTENED | ADDRESS | FOREIGN, "the line works, but address {foreign} sends",

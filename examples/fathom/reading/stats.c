@@ -170,11 +170,11 @@ static void print_failures(const account_t *account, FILE *to)
 {
     const char *before = "fathom: failures: ";
     for (size_t i = 0; i != FAILURE_KINDS; i++) {
-        if (status_word_of_failure(i) == NULL) continue;
+        if (status_word_of_failure(i) == NULL || account->sum.failures[i] == 0) continue;
         (void)fprintf(to, "%s%s %" PRIu64, before, status_word_of_failure(i), account->sum.failures[i]);
         before = ", ";
     }
-    (void)fputs("\n", to);
+    if (before[0] == ',') (void)fputs("\n", to);
 }
 
 static void print_sensor(const sensor_t *sensor, FILE *to)
@@ -182,24 +182,25 @@ static void print_sensor(const sensor_t *sensor, FILE *to)
     const requests_row_t requests = requests_of(sensor);
     const response_row_t response = response_of(&sensor->counters);
     print_attempts(sensor, to);
-    print_record(to, ", ", request_fields, &requests, 0);
+    (void)record_print_used(to, ", ", request_fields, &requests);
     if (sensor->counters.timed != 0) print_record(to, ", ", response_fields, &response, 0);
     (void)fputs("\n", to);
 }
 
+/* Counters that are 0 are left out. */
 void stats_print(const account_t *account, FILE *to)
 {
     group_t groups[GROUPS];
     list_groups(account, groups);
     print_record(to, "fathom: ", attempt_fields, &account->sum, 0);
-    print_record(to, "\nfathom: ", total_fields, account, account->has_median ? MEDIAN : 0);
     (void)fputs("\n", to);
+    if (record_print_used(to, "fathom: ", total_fields, account)) (void)fputs("\n", to);
     print_failures(account, to);
     for (size_t i = 0; i != GROUPS; i++) {
+        char before[32];
         if (!groups[i].is_there) continue;
-        (void)fprintf(to, "fathom: %s: ", groups[i].name);
-        record_print(to, groups[i].fields, &account->sum.total, 0);
-        (void)fputs("\n", to);
+        (void)snprintf(before, sizeof before, "fathom: %s: ", groups[i].name);
+        if (record_print_used(to, before, groups[i].fields, &account->sum.total)) (void)fputs("\n", to);
     }
     for (size_t i = 0; i != account->sensor_count; i++)
         if (mode_is_asked(account->sensors[i]->mode)) print_sensor(account->sensors[i], to);

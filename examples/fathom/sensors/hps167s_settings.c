@@ -57,9 +57,8 @@ static void print_baud(char text[SETTING_TEXT], const uint16_t *registers)
 static void remark_termination(FILE *to, const char *text)
 {
     if (text[1] == 'n')
-        (void)fputs("fathom: the termination resistor is on, as in every unit from the factory; on a line "
-                    "with several, leave it on in the\nfathom: last one only: fathom set ... "
-                    "termination off.\n",
+        (void)fputs("the termination resistor is on, as in every sensor from the factory; on a line with "
+                    "several, switch it off in all but the last with 'fathom set ... termination off'\n",
                     to);
 }
 

@@ -69,7 +69,7 @@ struct setting {
 
     /* After set: it takes effect at the next power-on only. NULL: it does not, or as `effect` says. */
     bool (*is_later)(const reader_t *reader);
-    void (*remark)(FILE *to, const char *text); /* prints what to know of this value; NULL: nothing */
+    void (*remark)(FILE *to, const char *text); /* completes a message about this value; NULL: none */
 };
 
 /* Returns the value in the registers of a response. */

@@ -196,7 +196,7 @@ class Input(Case):
 
     def test_wrong_usage_is_told(self):
         for words, line in (("--protocol is 'rtu'. It takes auto, modbus, dyp or stream.", '--protocol rtu 01'),
-                            ("unknown sensor 'a17'. Did you mean a16?", '--sensor a17 01'),
+                            ("unknown sensor 'a17'. It is one of a16, a05, hps167s.", '--sensor a17 01'),
                             ("--format is 'csv'. It takes text or json.", '--format csv 01'),
                             ('a16 has no frames of this --protocol', '--sensor a16 --protocol dyp 01'),
                             ('--raw takes one file', '--raw 01 02')):

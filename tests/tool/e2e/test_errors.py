@@ -63,7 +63,7 @@ class Silence(e2e.Case):
     def test_a_stream_of_nothing_is_stale(self):
         done = self.fails('no byte was received. Check the power',
                           f'a16 --port {self.device()} --timeout 200', 3, 0.6, 5)
-        self.assertIn(', stale 3, bytes ', done.err)
+        self.assertIn('fathom: stream: stale 3\n', done.err)
 
     @e2e.each(  # the shortest default of those that ask is 0.5 s
         the_same_for_an_a05=('a05 --timeout 200', 'no byte was received', 1, 0.2, 2),

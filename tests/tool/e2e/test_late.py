@@ -22,7 +22,7 @@ class Late(e2e.Case):
         device.asked(e2e.ASK_A16)  # only when the late one has come
         say(2222)
         done = self.ends(reader, 1, 'attempts 2, failed 1, readings 1\n',
-                         re.compile(r'line: responses 1, .*no_responses 1, .*late_responses 1, '))
+                         re.compile(r'line: responses 1, .*no_responses 1, .*late_responses 1'))
         self.assertEqual(done.mm, ['2222'])
 
     def test_each_response_one_request_too_late(self):

@@ -104,7 +104,7 @@ class Wrong(Case):
         self.has('/gate/state', 3)
         self.config(self.one.replace('interval: 50', 'interval: fast'))
         self.publisher.send(signal.SIGHUP)
-        self.publisher.expect(r"site\.yaml:\d+: sensors: interval is 'fast'\. It takes ", 'err')
+        self.publisher.expect(r"site\.yaml:\d+: sensors: interval is 'fast'\. It takes a whole number from 0 to 2147483 ms\.$", 'err')
         self.publisher.expect(r'nothing has changed\.$', 'err')
         self.has('/gate/state', 3)
         self.check_nothing_is_missing('/gate/state')

@@ -97,7 +97,7 @@ class Plug(PlugCase):
             device.asked(e2e.ASK_A16)
             self.pull(device, reader)
         done = self.ends(reader.end(signal.SIGINT), 1, 'attempts 6, failed 3, readings 3\n', 'reconnects 2\n',
-                         'port 3,')
+                         'failures: port 3\n')
         self.assertEqual(self.rows(done), [(1, 1000), (2, 1001), (3, 1002)])
 
     def test_it_ends_at_once_and_cleanly_while_it_waits(self):

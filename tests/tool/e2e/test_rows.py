@@ -158,6 +158,23 @@ class Files(e2e.Case):
         self.ends(f'{read} --no-header', 0, out='')
         self.assertEqual(len(self.content('log.csv').splitlines()), 2)
 
+    def test_text_is_not_added_to_a_file_of_csv(self):
+        sim, log = self.sim('hps167s:7 --distance 2083'), self.path('log')
+        with open(log, 'w', encoding='ascii') as file:
+            file.write(f'{HEADER}\n')
+        for form in ('text', 'json'):
+            self.ends(f'read hps167s:7 --port {sim} --count 1 --format {form} --output {log}', 1,
+                      f'fathom: {log} has the header of a CSV file. Append to it with --format csv', out='')
+        self.assertEqual(self.content('log'), f'{HEADER}\n')
+
+    @e2e.each(csv=('log.csv', '', '^name,'), json=('log.json', '', '^{"'), jsonl=('log.jsonl', '', '^{"'),
+              text=('log.txt', '', '^ +0'), the_option_counts=('log.csv', '--format json', '^{"'))
+    def ending(self, name, options, begin):
+        """The ending of the file chooses the format."""
+        sim = self.sim('hps167s:7 --distance 2083')
+        self.ends(f'read hps167s:7 --port {sim} --count 1 --output {self.path(name)} {options}', 0, out='')
+        self.assertRegex(self.content(name), begin)
+
     def test_one_without_a_header_is_added_to(self):
         sim, log = self.sim('hps167s:7 --distance 2083'), self.path('log.csv')
         for options in ('--no-header', ''):

@@ -35,12 +35,12 @@ class Second(e2e.Case):
                 self.assertEqual(reading['distance_mm'], reading['raw'], read)
         self.assertEqual(len(info.json), 1, info)
         taken = [int(words[2]) for words in did if words[0] == 'set' and int(words[1]) == register]
-        if 'not_written' in done.err or 'unchanged' in done.out:
+        if 'not written' in done.err or 'unchanged' in done.out:
             self.assertEqual(taken, [], done)
         elif done.code == 0:
             self.assertEqual(taken, [value], done)
         else:
-            self.assertRegex(done.err, 'not_confirmed|differs|refused', done)
+            self.assertRegex(done.err, 'not confirmed|differs|refused', done)
 
 
 if __name__ == '__main__':

@@ -165,7 +165,7 @@ class Change(Settings):
     def test_an_address_in_use_is_not_given(self):
         sim = self.sim('a05:1:modbus a16:5:modbus --counters')
         self.told(f'set a05 --port {sim} address 5',
-                  'not_written: a sensor responds at address 5 already', code=1)
+                  'not written: a sensor responds at address 5 already', code=1)
         self.assertEqual(self.counters(sim, 'writes'), [(0,), (0,)])
 
     def test_every_a05_gets_the_address_by_55_aa(self):
@@ -213,7 +213,7 @@ class Change(Settings):
     def test_a_setting_is_written_without_reading_anything(self):
         sim = self.sim('hps167s --counters')
         self.assertEqual(self.told(f'set hps167s --port {sim} termination off --blind'),
-                         'hps167s:1: termination off: not_confirmed\n')
+                         'hps167s:1: termination off: not confirmed\n')
         self.assertEqual(self.counters(sim, 'writes', 'answered'), [(1, 1)])
 
     def test_what_cannot_be_read_back_is_said_to_be_acknowledged(self):

@@ -22,6 +22,28 @@ class Help(e2e.Case):
         for word in ('--help', '-h', 'help'):
             self.assertRegex(self.told(word), r'(?s)\n  scan .*\n  read .*\n  watch .*\n  sim .*Exit status')
 
+    def test_the_configuration_in_the_help_can_be_copied(self):
+        sample = self.told('help config').split('YAML file:\n\n')[1].split('\n\nIts keys')[0]
+        for name, text in (('password', 'secret\n'),
+                           ('site.yaml', sample.replace('/etc/fathom/password', self.path('password')) + '\n')):
+            with open(self.path(name), 'w', encoding='ascii') as file:
+                file.write(text)
+        checked = self.told(f'publish --check {self.path("site.yaml")}')
+        self.assertRegex(checked, r'(?s)fathom/mill/tank/level.*fathom/mill/gate/state')
+
+    def test_a_command_in_the_help_stands_on_its_own_line(self):
+        self.assertIn('\n  --level mounting=2300,height=2000,capacity=5000\n', self.told('help level'))
+        trouble = self.told('help trouble')
+        self.assertIn('\n       fathom scan --port PORT\n', trouble)
+        self.assertIn('\n       fathom scan --port PORT --address 1-254 --baud all --parity all\n', trouble)
+
+    @e2e.each(**{command: (command, topic) for command, topic in (
+        ('commission', 'commissioning'), ('save', 'backup'), ('restore', 'backup'), ('read', 'log'),
+        ('calibrate', 'calibration'), ('request', 'requests'), ('publish', 'publishing'))})
+    def topic(self, command, topic):
+        """The help of a command names the topic that explains its task."""
+        self.assertRegex(self.told(f'{command} --help'), rf'\nMore: fathom help (?:\w+, )*{topic}[,.]')
+
     def test_help_wins_over_what_is_missing(self):
         self.assertEqual(self.told('read a17 --help'), self.told('read --help'))
 

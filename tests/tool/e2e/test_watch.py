@@ -70,7 +70,7 @@ class Picture(Case):
         it = self.watch(f'{BUS} a16:9 --port {sim} --timeout 800')
         it.wait(lambda screen: re.search(r'(?m)^a16:9 +no response', screen.text())
                 and 'fault  ' in screen.text() and
-                'x' in ''.join(plot_of(screen, 'a16:9')) and 'a16:9: no response' in screen.text())
+                'x' in ''.join(plot_of(screen, 'a16:9')) and 'no response from a16:9 at ' in screen.text())
         screen = it.screen
         self.assertEqual((screen.is_other, screen.has_cursor), (True, False))
         lines = screen.text().split('\n')
@@ -99,7 +99,7 @@ class Picture(Case):
             self.assertTrue(columns, name)
             self.assertTrue(all(column[0] == FULL for column in columns), columns)
         # The advice of fathom read stands at the bottom.
-        self.assertTrue(any(line.startswith('a16:9: no response from a16:9 at ') for line in lines),
+        self.assertTrue(any(line.startswith('no response from a16:9 at ') for line in lines),
                         screen.text())
 
     def test_a_name_moves_what_stands_behind_it(self):

@@ -138,7 +138,7 @@ class Raw(e2e.Case):
         echo, right = self.request(), self.right()
         for options in ('', '--echo on'):
             self.plays([[echo, right], [echo, 0.05, right], [echo + right]], 3, 0,
-                       'fathom: line: responses 3, ',
+                       'fathom: line: responses 3',
                        options=options)
 
     def test_an_echo_and_a_damaged_response(self):
@@ -149,7 +149,7 @@ class Raw(e2e.Case):
         self.plays([[self.request()]], 0, 1)
 
     def test_a_response_behind_another_units_is_read(self):
-        self.plays([[e2e.registers(2, 1, 2, 3, 4), self.right()]], 1, 0, 'unsolicited_frames 1,')
+        self.plays([[e2e.registers(2, 1, 2, 3, 4), self.right()]], 1, 0, 'unsolicited_frames 1\n')
 
     def test_random_bytes(self):
         """A good response between."""

@@ -22,7 +22,7 @@ class Servers:
         # baud.
         port = self.served((19200, 'even'), 1, 0x0002, (0xFFFF, 0x0500, 0x0000, 0xB401))
         self.ends(f'set hps167s --port {port} baud 115200', 1,
-                  "not_written: the settings of this port's line cannot be changed")
+                  "not written: the settings of this port's line cannot be changed")
 
     def test_no_server_there_is_exit_status_1(self):
         self.ends(f'set a16 --port tcp:127.0.0.1:1 {NAME} 1200', 1,

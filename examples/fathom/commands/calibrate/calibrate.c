@@ -116,7 +116,7 @@ const command_t calibrate_command = {
                 "  fathom calibrate hps167s:7 --port /dev/ttyUSB0 --known 2000 --samples 100\n",
     .status = "Exit status: 0 the sensor is right, 1 it is not (also with --dry-run) or that is\n"
               "unknown, 2 wrong usage.\n",
-    .topics = "settings, ports",
+    .topics = "calibration, settings, ports",
     .operands = operands_resettable,
     .settings_size = sizeof(calibrate_settings_t),
     .start = start,

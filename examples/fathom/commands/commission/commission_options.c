@@ -130,7 +130,7 @@ const command_t commission_command = {
                 "  fathom commission a16 -p /dev/ttyUSB0 --addresses 2-8,1 --record tanks.txt\n"
                 "  fathom sim hps167s hps167s --one-by-one --link ./bus     # to try it\n",
     .status = "Exit status: 0 all addresses are assigned and verified, 1 not, 2 wrong usage.\n",
-    .topics = "settings, sensors, ports",
+    .topics = "commissioning, settings, sensors, ports",
     .operands = operands_one,
     .settings_size = sizeof(commission_settings_t),
     .start = commission_start,

@@ -164,9 +164,12 @@ static int start(const host_t *host, const arguments_t *arguments)
     const origin_t origin = {.command = command};
     loop_t *const loop = &publish.loop;
     int status = STATUS_OK;
+    if (arguments->count == 0) {
+        (void)reject(&origin, "FILE is missing, such as /etc/fathom/site.yaml.");
+        return STATUS_USAGE;
+    }
     if (arguments->count != 1) {
-        (void)reject(&origin, "%d files are named. Name one, such as /etc/fathom/site.yaml.",
-                     arguments->count);
+        (void)reject(&origin, "%d files are named. Name one.", arguments->count);
         return STATUS_USAGE;
     }
     loop_init(loop, host, &sink, NULL);
@@ -196,7 +199,7 @@ const command_t publish_command = {
                 "  fathom publish site.yaml\n"
                 "  fathom publish site.yaml 2>> publish.log\n",
     .status = "Exit status: 0 a signal ended it, 1 it could not start, 2 wrong usage or FILE.\n",
-    .topics = "config, sensors, ports, level, alarm",
+    .topics = "config, publishing, delivery, boxes, service",
     .operands = operands_file,
     .settings_size = sizeof(publish_options_t),
     .start = start,

@@ -102,7 +102,7 @@ static void write_json(FILE *to, const reading_t *reading, unsigned columns)
 /* ---- formats ---- */
 
 const format_t read_formats[] = {
-    {"text", false, false, NULL, write_text},
-    {"json", true, true, NULL, write_json},
-    {"csv", false, true, reading_csv_header, reading_csv},
+    [FORMAT_TEXT] = {"text", false, false, NULL, write_text},
+    [FORMAT_JSON] = {"json", true, true, NULL, write_json},
+    [FORMAT_CSV] = {"csv", false, true, reading_csv_header, reading_csv},
 };

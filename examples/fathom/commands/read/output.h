@@ -15,7 +15,8 @@ typedef struct {
     void (*write)(FILE *to, const reading_t *reading, unsigned columns);
 } format_t;
 
-/* text, json, csv, in the order of the words of --format. */
+/* In the order of the words of --format. */
+enum { FORMAT_TEXT, FORMAT_JSON, FORMAT_CSV };
 extern const format_t read_formats[];
 
 #endif

@@ -4,21 +4,22 @@
 #include <inttypes.h>
 #include <string.h>
 
+#include "cli/arguments.h"
 #include "cli/complete.h"
 #include "commands/commands.h"
 #include "commands/read/output.h"
 #include "commands/read/read_options.h"
 #include "reading/loop.h"
 
-/* Instead of an errno: the file has rows, and a header with other columns. */
-enum { OTHER_COLUMNS = -1 };
+/* Instead of an errno: the file has rows of CSV, and a header with other columns or the command another format. */
+enum { OTHER_COLUMNS = -1, OTHER_FORMAT = -2 };
 
 typedef struct {
     read_options_t *options;
     const format_t *format;
     loop_t loop;
     uint64_t stats_us; /* when all counters are printed next */
-    int output_error;  /* errno; or OTHER_COLUMNS */
+    int output_error;  /* errno, OTHER_COLUMNS or OTHER_FORMAT */
     bool has_begun;    /* the output */
     bool has_alarm;    /* an alarm is on, and ends the command */
 } run_t;
@@ -45,17 +46,19 @@ static unsigned columns_of_all(const run_t *run)
     return columns;
 }
 
-/* Returns true if the file has another header. Without a header (--no-header, or an emptied file) it has none. */
-static bool has_other_columns(const run_t *run)
+/* Returns OTHER_COLUMNS or OTHER_FORMAT if the rows do not suit the header of the file, and otherwise 0. Without a
+ * header (--no-header, or an emptied file) all rows suit. */
+static int check_header(const run_t *run)
 {
     enum { HEADER = 512 };
     char header[HEADER] = "";
     FILE *const to = fmemopen(header, sizeof header, "w");
-    if (to == NULL) return false;
-    run->format->begin(to, columns_of_all(run));
+    if (to == NULL) return 0;
+    reading_csv_header(to, columns_of_all(run));
     (void)fclose(to);
-    return output_file_begins(&run->options->file, header, strcspn(header, ",") + 1) &&
-           !output_file_begins(&run->options->file, header, strlen(header));
+    if (!output_file_begins(&run->options->file, header, strcspn(header, ",") + 1)) return 0;
+    if (run->format->begin == NULL) return OTHER_FORMAT;
+    return output_file_begins(&run->options->file, header, strlen(header)) ? 0 : OTHER_COLUMNS;
 }
 
 /* Before each row: opens the file of its day, and writes the header. */
@@ -67,9 +70,10 @@ static void begin_output(run_t *run, uint64_t utc_us)
     errno = 0;
     const output_file_turn_t turn = output_file_turn(&run->options->file, utc_us);
     if (turn == OUTPUT_FILE_FAILED) fail(run, errno);
-    if (turn == OUTPUT_FILE_FAILED || format->begin == NULL || run->options->no_header) return;
-    if (turn == OUTPUT_FILE_FILLED && has_other_columns(run)) fail(run, OTHER_COLUMNS);
-    if (turn != OUTPUT_FILE_EMPTY && !is_first) return;
+    if (turn == OUTPUT_FILE_FAILED || run->options->no_header) return;
+    const int refusal = turn == OUTPUT_FILE_FILLED ? check_header(run) : 0;
+    if (refusal != 0) fail(run, refusal);
+    if (format->begin == NULL || (turn != OUTPUT_FILE_EMPTY && !is_first)) return;
     format->begin(stdout, columns_of_all(run));
     flush(run);
 }
@@ -163,6 +167,11 @@ static void print_output_error(const run_t *run)
             "fathom: %s has a header with other columns. Choose another --output, or append the rows with "
             "--no-header.\n",
             run->options->file.name);
+    else if (run->output_error == OTHER_FORMAT)
+        (void)fprintf(stderr,
+                      "fathom: %s has the header of a CSV file. Append to it with --format csv, or choose "
+                      "another --output.\n",
+                      run->options->file.name);
     else if (run->output_error != 0)
         (void)fprintf(stderr, "fathom: the readings cannot be written%s%s: %s\n", path != NULL ? " to " : "",
                       path != NULL ? path : "", strerror(run->output_error));
@@ -199,12 +208,22 @@ static int read_site(run_t *run)
     return run->has_alarm ? STATUS_ALARM : status;
 }
 
+/* Returns the format that the ending of a file's name means, or text. */
+static uint8_t format_of(const char *path)
+{
+    const char *const dot = path != NULL ? strrchr(path, '.') : NULL;
+    if (dot == NULL) return FORMAT_TEXT;
+    if (strcmp(dot, ".csv") == 0) return FORMAT_CSV;
+    return strcmp(dot, ".json") == 0 || strcmp(dot, ".jsonl") == 0 ? FORMAT_JSON : FORMAT_TEXT;
+}
+
 static bool set_up(run_t *run, const arguments_t *arguments)
 {
     const origin_t origin = {.command = arguments->command->name};
     read_options_t *const options = arguments->settings;
     site_t *const site = &run->loop.site;
     run->options = options;
+    if (!arguments_have(arguments, "format")) options->format = format_of(options->file.path);
     run->format = &read_formats[options->format];
     site->count = options->count;
     if (options->no_header && run->format->begin == NULL)
@@ -237,7 +256,7 @@ const command_t read_command = {
                 "  fathom read hps167s:7 -p /dev/ttyUSB0 --format csv --output log.csv\n"
                 "  fathom read tank=a16@/dev/ttyUSB0 gate=hps167s:7@tcp:10.0.0.7\n",
     .status = "Exit status: 0 success, 1 an attempt or the port failed, 2 wrong usage, 3 alarm.\n",
-    .topics = "sensors, ports, pins, values, output, level, alarm",
+    .topics = "sensors, ports, pins, values, output, level, alarm, log",
     .operands = operands_sensors,
     .settings_size = sizeof(read_options_t),
     .start = start,

@@ -12,8 +12,8 @@ static bool parse_path(const char *text, void *member)
 static const option_t read_rows[] = {
     {"count", "N", "Stop after N attempts per sensor", KIND_NUMBER, GROUP_OUTPUT, .min = 1, .max = 1000000000,
      AT(read_options_t, count)},
-    {"format", "FORMAT", "Print text, json or csv (default text)", KIND_CHOICE, GROUP_OUTPUT,
-     .words = "text json csv", AT(read_options_t, format)},
+    {"format", "FORMAT", "Print text, json or csv (default: the ending of FILE, or text)", KIND_CHOICE,
+     GROUP_OUTPUT, .words = "text json csv", AT(read_options_t, format)},
     {"output", "FILE", "Append to FILE instead of standard output", KIND_CUSTOM, GROUP_OUTPUT,
      .takes = "the name of a file", .parse = parse_path, .is_path = true, AT(read_options_t, file.path)},
     {"rotate", "day", "Start a new FILE-YYYY-MM-DD every day (UTC)", KIND_CHOICE, GROUP_OUTPUT,

@@ -141,7 +141,7 @@ const command_t request_command = {
                 "  fathom request 1 0x2b 0e 01 00 --port /dev/ttyUSB0 --yes\n",
     .status = "Exit status: 0 a response or an echo, or sent to all units; 1 no or a damaged\n"
               "response, or an exception; 2 wrong usage, or not confirmed.\n",
-    .topics = "ports",
+    .topics = "requests, ports",
     .settings_size = sizeof(request_settings_t),
     .start = start,
 };

@@ -133,7 +133,9 @@ static int start(const host_t *host, const arguments_t *arguments)
     const origin_t origin = {.command = "scan"};
     scan = (scan_t){.settings = settings, .port.watches_output = true};
     scan_make_plan(&scan.plan, settings);
-    if (arguments->count != 0)
+    if (arguments->count != 0 && settings->port == NULL)
+        (void)reject(&origin, "scan takes options only. Use --port %s.", arguments->words[0]);
+    else if (arguments->count != 0)
         (void)reject(&origin, "scan takes options only, not '%s'.", arguments->words[0]);
     else if (settings->port == NULL && !settings->estimate)
         (void)reject(&origin,

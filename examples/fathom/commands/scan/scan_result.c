@@ -70,7 +70,10 @@ static void print_nothing(const scan_t *scan)
     else
         advice_print(stderr, &failure);
     if (is_default(scan->settings))
-        (void)fputs(". To find a sensor with other settings, use --address 1-254 --baud all", stderr);
+        (void)fprintf(stderr,
+                      ". To find a sensor with other settings, run 'fathom scan --port %s --address 1-254 "
+                      "--baud all --parity all' (about 7 minutes)",
+                      scan->settings->port);
     (void)fputs(". A sensor that was just switched on may need 5 s\n", stderr);
 }
 

@@ -57,8 +57,9 @@ static void print(const watch_t *watch, const char *text)
 /* The advice of fathom read. */
 static void get_advice(char text[MESSAGE], const reading_t *reading)
 {
-    const int start =
-        reading->status != FATHOM_ERR_PORT ? snprintf(text, MESSAGE, "%s: ", reading->sensor->name) : 0;
+    /* The advice names the model and the address itself, but neither if the port fails. */
+    const bool has_name = reading->sensor->has_own_name && reading->status != FATHOM_ERR_PORT;
+    const int start = has_name ? snprintf(text, MESSAGE, "%s: ", reading->sensor->name) : 0;
     FILE *const to = fmemopen(text + start, (size_t)(MESSAGE - start), "w");
     if (to == NULL) return;
     advice_print(to, reading->evidence);
