@@ -49,7 +49,7 @@ class Servers:
         self.assertEqual(done.rows, [])
         self.assertEqual(done.err.count(f'refused the request: exception {number:02} ({NAMES[number]}): '), 3,
                          done.err)
-        self.assertIn(', exceptions 3\n', done.err)
+        self.assertIn(' exceptions 3\n', done.err)
 
     SILENCE = 'no byte was received'
 

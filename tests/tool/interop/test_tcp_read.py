@@ -46,7 +46,7 @@ class Libmodbus(interop.LibmodbusServer, Tcp, interop.Case):
         self.assertEqual(done.rows, [])
         words = f'the gateway responds with exception {number} ({NAMES[number]}). Check '
         self.assertEqual(done.err.count(words), 3, done.err)
-        self.assertIn(', no_responses 3\n', done.err)
+        self.assertIn(' no_responses 3\n', done.err)
 
 
 if __name__ == '__main__':
