@@ -249,7 +249,7 @@ static fathom_status_t set_polarity(fathom_a16_polarity_t polarity, uint16_t hel
         if (ends != FATHOM_OK) {
             fake_modbus_fail(&fake, ends);
         } else if (fake.request->message.head[1] == 6) {
-            held = fake.request->message.values[0];
+            held = (uint16_t)(fake.request->message.head[4] << 8 | fake.request->message.head[5]);
             fake_modbus_acknowledge(&fake);
         } else {
             fake_modbus_response(&fake, &held, 1);
