@@ -170,7 +170,7 @@ static const struct {
     {"two sensors at one place", 17, "        sensor: a05:1:modbus", 17,
      "tank and bumper have the same address, so both would respond at once.\n"},
     {"two of the same name", 16, "      - name: tank", 17,
-     "two sensors have the name tank. Give each its own name:.\n"},
+     "two sensors have the name tank. Change name: of one of them.\n"},
     {"a name that no topic may have", 12, "      - name: a/b", 12,
      "name is 'a/b'. It takes at most 31 letters, digits, '-', '_' and '.'"},
     {"a site that no topic may have", 1, "site: mill/#", 1, "site is 'mill/#'. " TOPICS "\n"},

@@ -134,7 +134,7 @@ bool sensors_set_names(const site_t *site, const origin_t *origins)
     for (size_t i = 0; i != count; i++) {
         if (!has_namesake(stations, i, stations[i], false)) continue;
         if (origins[i].file != NULL)
-            return reject(&origins[i], "two sensors have the name %s. Give each its own name:.",
+            return reject(&origins[i], "two sensors have the name %s. Change name: of one of them.",
                           stations[i]->name);
         return reject(&origins[i], "two sensors have the name %s. Give each its own name, such as one=%s.",
                       stations[i]->name, stations[i]->model->name);

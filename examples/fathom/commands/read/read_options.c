@@ -20,7 +20,7 @@ static const option_t read_rows[] = {
      .words = "day", .min = 1, AT(read_options_t, file.is_by_day), .needs = "output"},
     {"no-header", .help = "Omit the header line of csv", .group = GROUP_OUTPUT,
      AT(read_options_t, no_header)},
-    {"stats", "[S]", "Print all counters at the end, or every S seconds", KIND_NUMBER, GROUP_OUTPUT, .min = 1,
+    {"stats", "[S]", "Print the counters at the end, or every S seconds", KIND_NUMBER, GROUP_OUTPUT, .min = 1,
      .max = 4000, .scale = 1000000, .otherwise = "", AT(read_options_t, stats_us),
      HAS(read_options_t, stats)},
     {"quiet", .help = "Suppress messages except fatal errors and --stats", .group = GROUP_OUTPUT,
