@@ -30,14 +30,14 @@ bool pins_open(pins_t *pins, const char *chip, const pin_options_t *wanted)
 
 void pins_close(pins_t *pins) { (void)pins; }
 
-fathom_status_t pins_open_port(struct port *port, const char *chip)
+fathom_status_t port_open_pins(port_t *port, const char *chip)
 {
     (void)chip;
     return port_fail(port, PORT_FAILED,
                      "this fathom was built without linux/gpio.h of Linux 5.10 or later, which pins need");
 }
 
-static fathom_status_t open_chip(port_t *port) { return pins_open_port(port, port->settings.path); }
+static fathom_status_t open_chip(port_t *port) { return port_open_pins(port, port->settings.path); }
 
 const port_driver_t port_chip = {.open = open_chip};
 #endif

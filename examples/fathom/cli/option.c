@@ -31,25 +31,6 @@ bool option_is_given(const option_given_t *given, const option_table_t *tables, 
     return option_find(&walk, tables, name, strlen(name)) && given->line[walk.number] != 0;
 }
 
-bool option_check_given(const option_table_t *tables, const option_given_t *given, const origin_t *origin)
-{
-    const char *const mark = origin->within == NULL && origin->file == NULL ? "--" : "";
-    for (option_walk_t walk = {.table = tables}; option_next(&walk);) {
-        const option_t *const row = walk.row;
-        const unsigned line = given->line[walk.number];
-        if (line == 0 && row->is_required) {
-            char takes[OPTION_TAKES];
-            option_takes(row, takes);
-            return reject(origin, "%s%s is missing. It takes %s.", mark, row->name, takes);
-        }
-        if (line == 0 || row->needs == NULL || option_is_given(given, tables, row->needs)) continue;
-        origin_t its = *origin;
-        if (its.file != NULL) its.line = line;
-        return reject(&its, "%s%s has no effect without %s%s.", mark, row->name, mark, row->needs);
-    }
-    return true;
-}
-
 bool option_reject_unknown(const option_table_t *tables, const char *what, const char *name,
                            const origin_t *origin)
 {

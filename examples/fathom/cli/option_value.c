@@ -142,6 +142,25 @@ bool option_set(const option_t *row, char *text, void *structure, const origin_t
     return true;
 }
 
+bool option_check_given(const option_table_t *tables, const option_given_t *given, const origin_t *origin)
+{
+    const char *const mark = origin->within == NULL && origin->file == NULL ? "--" : "";
+    for (option_walk_t walk = {.table = tables}; option_next(&walk);) {
+        const option_t *const row = walk.row;
+        const unsigned line = given->line[walk.number];
+        if (line == 0 && row->is_required) {
+            char takes[OPTION_TAKES];
+            option_takes(row, takes);
+            return reject(origin, "%s%s is missing. It takes %s.", mark, row->name, takes);
+        }
+        if (line == 0 || row->needs == NULL || option_is_given(given, tables, row->needs)) continue;
+        origin_t its = *origin;
+        if (its.file != NULL) its.line = line;
+        return reject(&its, "%s%s has no effect without %s%s.", mark, row->name, mark, row->needs);
+    }
+    return true;
+}
+
 bool option_set_keys(const option_t *keys, char *text, void *structure, const origin_t *origin)
 {
     const option_table_t tables[] = {{keys, 0}, {NULL, 0}};

@@ -2,7 +2,9 @@
 #ifndef ADVICE_WORDS_H
 #define ADVICE_WORDS_H
 
-#include "diagnosis/advice.h"
+#include <stdio.h>
+
+#include "diagnosis/failure.h"
 
 /* Prints a template. {word} is replaced by a fact of the failure. [number:text] is printed only if this number is not
  * 0. */

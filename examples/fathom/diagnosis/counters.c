@@ -3,8 +3,6 @@
 
 #include <string.h>
 
-#include "diagnosis/status_word.h"
-
 static void take(uint16_t *from, uint64_t *attempt, uint64_t *total, size_t count)
 {
     for (size_t i = 0; i != count; i++) {

@@ -4,6 +4,7 @@
 
 #include <stdio.h>
 
+#include "diagnosis/status_word.h"
 #include "ports/port.h"
 #include "sensors/reader.h"
 
@@ -12,9 +13,6 @@ enum { PORT_PARITY = 0, PORT_FRAMING = 1, PORT_OVERRUN = 2, PORT_BREAKS = 3, POR
 
 /* What the driver of a sensor that is asked counts. */
 enum { UNIT_RESPONSES = 0, UNIT_FAILURES = 1, UNIT_COUNTERS = 2 };
-
-/* Failures by kind: -status, and beside it those whose values were refused. */
-enum { FAILURE_VALUE = 0, FAILURE_KINDS = 20 };
 
 /*
  * The library's counters stop at 65535 and run from the beginning. Here they are taken out after each attempt:

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "diagnosis/status_word.h"
 
-#include "diagnosis/counters.h"
 #include "fathom/processing/alarm.h"
 
 /* FATHOM_NEAR of a contact. */

@@ -11,7 +11,10 @@
 /* Returns the word for a kind of sample. A contact has its own words. */
 const char *status_word(const model_mode_t *mode, uint8_t kind);
 
-/* Returns the word for a failure; `kind` as in counters.h. NULL if no attempt can end so. */
+/* Failures by kind: -status, and beside it those whose values were refused. The last kind is any other failure. */
+enum { FAILURE_VALUE = 0, FAILURE_KINDS = 20 };
+
+/* Returns the word for a failure. NULL if no attempt can end so. */
 const char *status_word_of_failure(size_t kind);
 
 /* Returns the word for a fathom_alarm_state_t. */

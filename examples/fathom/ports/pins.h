@@ -6,7 +6,6 @@
 #include <stdint.h>
 
 #include "fathom/hal.h"
-#include "fathom/status.h"
 #include "fathom_gpio.h"
 
 /* Lines of a GPIO chip to which a sensor is connected instead of a serial port. */
@@ -47,9 +46,5 @@ typedef struct {
  * move *pins. */
 bool pins_open(pins_t *pins, const char *chip, const pin_options_t *wanted);
 void pins_close(pins_t *pins);
-
-/* Opens the lines of port->settings.pins as the port's pins. Returns FATHOM_OK, or FATHOM_ERR_PORT with the reason. */
-struct port;
-fathom_status_t pins_open_port(struct port *port, const char *chip);
 
 #endif

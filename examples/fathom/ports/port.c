@@ -75,7 +75,7 @@ static fathom_status_t open_serial(port_t *port)
     if (has_trigger(port)) {
         char chip[sizeof "gpiochip4294967295"];
         (void)snprintf(chip, sizeof chip, "gpiochip%" PRIu32, settings->pins.chip - 1);
-        if (pins_open_port(port, chip) != FATHOM_OK) {
+        if (port_open_pins(port, chip) != FATHOM_OK) {
             close_serial(port);
             return FATHOM_ERR_PORT;
         }

@@ -146,6 +146,9 @@ struct port_driver {
 };
 extern const port_driver_t port_serial, port_tcp, port_chip;
 
+/* Opens the lines of port->settings.pins as the port's pins. Returns FATHOM_OK, or FATHOM_ERR_PORT with the reason. */
+fathom_status_t port_open_pins(port_t *port, const char *chip);
+
 /* Stores why the port is not open, and returns FATHOM_ERR_PORT. port_fail() puts the path before the text. */
 fathom_status_t port_set_error(port_t *port, port_error_t error, const char *text);
 fathom_status_t port_fail(port_t *port, port_error_t error, const char *format, ...)

@@ -2,7 +2,8 @@
 #ifndef ATTEMPT_H
 #define ATTEMPT_H
 
-#include "reading/loop.h"
+#include "reading/results.h"
+#include "reading/run.h"
 
 /* What the loop does with the outcomes of a sensor's attempts. */
 

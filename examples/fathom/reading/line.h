@@ -2,7 +2,7 @@
 #ifndef LINE_H
 #define LINE_H
 
-#include "reading/loop.h"
+#include "reading/run.h"
 
 /* A line of the loop: opens its port, polls its sensors, and waits for a lost port. */
 

@@ -7,8 +7,8 @@
 #include "output/json.h"
 #include "ports/port.h"
 #include "ports/port_settings.h"
+#include "reading/processing.h"
 #include "reading/pulses.h"
-#include "reading/results.h"
 #include "sensors/models.h"
 
 /* All sensors that a command reads, and the lines that they share. */
