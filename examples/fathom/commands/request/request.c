@@ -13,18 +13,6 @@ static const origin_t origin = {.command = "request"};
 /* The time that a broadcast gives the units (MODBUS over Serial Line V1.02, 2.4.1: 100 to 200 ms). */
 enum { TURNAROUND_US = 200000, TIMEOUT_US = 1000000 };
 
-uint16_t request_word(const request_t *request, size_t at) { return decode_get16(request->frame + at); }
-
-bool request_is_read(const request_t *request)
-{
-    return request->frame[REQUEST_FUNCTION] <= REQUEST_READ_INPUT;
-}
-
-bool request_is_broadcast(const request_t *request)
-{
-    return request->frame[REQUEST_UNIT] == FATHOM_MODBUS_BROADCAST && !request_is_read(request);
-}
-
 /* The options before the frame is known. */
 typedef struct {
     sensor_defaults_t line;

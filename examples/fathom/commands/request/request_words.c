@@ -10,6 +10,18 @@ static const origin_t origin = {.command = "request"};
 
 enum { MAX_BYTES = 251, MAX_FUNCTION = 127 };
 
+uint16_t request_word(const request_t *request, size_t at) { return decode_get16(request->frame + at); }
+
+bool request_is_read(const request_t *request)
+{
+    return request->frame[REQUEST_FUNCTION] <= REQUEST_READ_INPUT;
+}
+
+bool request_is_broadcast(const request_t *request)
+{
+    return request->frame[REQUEST_UNIT] == FATHOM_MODBUS_BROADCAST && !request_is_read(request);
+}
+
 static void put(request_t *request, long byte) { request->frame[request->length++] = (uint8_t)byte; }
 
 static void put16(request_t *request, long word)
