@@ -9,39 +9,6 @@
 #include "ports/line_text.h"
 #include "sensors/models.h"
 
-uint64_t scan_now_us(const scan_t *scan) { return scan->port.host->now_us(scan->port.host->ctx); }
-
-void scan_report(scan_t *scan, const scan_finding_t *finding)
-{
-    progress_clear(&scan->progress);
-    errno = 0;
-    if (scan->settings->is_json)
-        scan_print_json(stdout, finding, scan->settings->port);
-    else
-        scan_print_text(stdout, finding, scan->settings->port);
-    scan->output_error = output_flush();
-    scan_print_advice(stderr, finding);
-    if (finding->kind != SCAN_SENSOR) return;
-    scan->sensors++;
-    if (finding->has_config && finding->has_termination) {
-        scan->terminations++;
-        scan->terminated = finding->model;
-    }
-    if (scan->has_sender && finding->model == scan->sender.model && finding->mode != SCAN_AUTO)
-        scan->awakened++;
-}
-
-void scan_show_progress(scan_t *scan)
-{
-    const uint64_t now = scan_now_us(scan);
-    char settings[LINE_TEXT];
-    char doing[LINE_TEXT + 16] = "listens";
-    if (scan->line != NULL)
-        (void)snprintf(doing, sizeof doing, "%s address %u", line_text(scan->line, settings), scan->address);
-    progress_show(&scan->progress, now,
-                  scan->line != NULL ? scan->plan.listen_us + scan->done_us : now - scan->start_us, doing);
-}
-
 /* Prints "addresses 1 to 32 at 9600 8N1, 19200 8E1". */
 static void print_plan(FILE *to, const scan_plan_t *plan)
 {

@@ -157,14 +157,6 @@ fathom_status_t scan_listen(scan_t *scan);
  */
 fathom_status_t scan_walk(scan_t *scan);
 
-/* Reports a finding. Called at once, except for what follows from all addresses of a line setting. */
-void scan_report(scan_t *scan, const scan_finding_t *finding);
-
-void scan_show_progress(scan_t *scan);
-
-/* Returns the time of the clock. */
-uint64_t scan_now_us(const scan_t *scan);
-
 /* ---- one request ---- */
 
 enum { SCAN_REGISTERS = 11 }; /* of the longest response: HPS-167S #3 */
@@ -228,12 +220,13 @@ fathom_status_t scan_identify(scan_t *scan, const scan_request_t *request, const
 
 /* ---- the output ---- */
 
-/* Prints a finding in a line, with the command to type next. port: as the user entered it. */
-void scan_print_text(FILE *to, const scan_finding_t *finding, const char *port);
-void scan_print_json(FILE *to, const scan_finding_t *finding, const char *port);
+/* Reports a finding. Called at once, except for what follows from all addresses of a line setting. */
+void scan_report(scan_t *scan, const scan_finding_t *finding);
 
-/* Prints what to do about a finding; nothing for most. */
-void scan_print_advice(FILE *to, const scan_finding_t *finding);
+void scan_show_progress(scan_t *scan);
+
+/* Returns the time of the clock. */
+uint64_t scan_now_us(const scan_t *scan);
 
 /* Prints the result of a scan that went to its end, and what to check, on stderr. */
 void scan_print_result(const scan_t *scan);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): fmemopen */
+#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
 
@@ -77,7 +78,7 @@ static finding_facts_t facts_of(const scan_finding_t *finding)
     return facts;
 }
 
-void scan_print_json(FILE *to, const scan_finding_t *finding, const char *port)
+static void print_json(FILE *to, const scan_finding_t *finding, const char *port)
 {
     static const char *const kinds[] = {
         [SCAN_SENSOR] = "sensor",         [SCAN_OTHER] = "other_modbus", [SCAN_DAMAGED] = "damaged",
@@ -148,7 +149,8 @@ static void print_sensor(FILE *to, const scan_finding_t *finding)
     if (finding->is_double) (void)fputs(", responds twice", to);
 }
 
-void scan_print_text(FILE *to, const scan_finding_t *finding, const char *port)
+/* Prints a finding in a line, with the command to type next. port: as the user entered it. */
+static void print_text(FILE *to, const scan_finding_t *finding, const char *port)
 {
     static const char *const others[] = {[SCAN_OTHER] = "a Modbus device that is none of the known sensors",
                                          [SCAN_DAMAGED] = "damaged responses: two sensors with one address?",
@@ -175,7 +177,8 @@ void scan_print_text(FILE *to, const scan_finding_t *finding, const char *port)
 
 /* ---- advice ---- */
 
-void scan_print_advice(FILE *to, const scan_finding_t *finding)
+/* Prints what to do about a finding; nothing for most. */
+static void print_advice(FILE *to, const scan_finding_t *finding)
 {
     char line[LINE_TEXT];
     (void)line_text(&finding->line, line);
@@ -198,4 +201,39 @@ void scan_print_advice(FILE *to, const scan_finding_t *finding)
             "fathom: a request to address %u had two responses: do two sensors have this address? Connect "
             "one at a time.\n",
             finding->address);
+}
+
+/* ---- during the scan ---- */
+
+void scan_report(scan_t *scan, const scan_finding_t *finding)
+{
+    progress_clear(&scan->progress);
+    errno = 0;
+    if (scan->settings->is_json)
+        print_json(stdout, finding, scan->settings->port);
+    else
+        print_text(stdout, finding, scan->settings->port);
+    scan->output_error = output_flush();
+    print_advice(stderr, finding);
+    if (finding->kind != SCAN_SENSOR) return;
+    scan->sensors++;
+    if (finding->has_config && finding->has_termination) {
+        scan->terminations++;
+        scan->terminated = finding->model;
+    }
+    if (scan->has_sender && finding->model == scan->sender.model && finding->mode != SCAN_AUTO)
+        scan->awakened++;
+}
+
+uint64_t scan_now_us(const scan_t *scan) { return scan->port.host->now_us(scan->port.host->ctx); }
+
+void scan_show_progress(scan_t *scan)
+{
+    const uint64_t now = scan_now_us(scan);
+    char settings[LINE_TEXT];
+    char doing[LINE_TEXT + 16] = "listens";
+    if (scan->line != NULL)
+        (void)snprintf(doing, sizeof doing, "%s address %u", line_text(scan->line, settings), scan->address);
+    progress_show(&scan->progress, now,
+                  scan->line != NULL ? scan->plan.listen_us + scan->done_us : now - scan->start_us, doing);
 }
