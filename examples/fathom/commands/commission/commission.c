@@ -196,7 +196,7 @@ static bool is_suitable(commission_t *run)
     return false;
 }
 
-int commission_start(const host_t *host, const arguments_t *arguments)
+static int start(const host_t *host, const arguments_t *arguments)
 {
     enum { LATE_US = 1000000 };
     static commission_t run;
@@ -216,3 +216,24 @@ int commission_start(const host_t *host, const arguments_t *arguments)
     session_close(&run.session);
     return status;
 }
+
+const command_t commission_command = {
+    .name = "commission",
+    .summary = "Assign addresses to new sensors that all have address 1",
+    .usage = "SENSOR[@PORT] --addresses LIST --record FILE [OPTIONS]",
+    .about = "Connect the sensors one after the other. The command prints the address that\n"
+             "the next one gets, finds it at address 1, sets it up and verifies it. An\n"
+             "hps167s may then be taken off the line. Keep each a16 and a05 connected and\n"
+             "switched on, since it has no serial number. After a failed write the command\n"
+             "ends; run it again with the same FILE, and it continues.\n",
+    .tables = commission_tables,
+    .common = "port addresses record terminated wait",
+    .examples = "  fathom commission hps167s -p /dev/ttyUSB0 --addresses 2-9 --record hall.txt\n"
+                "  fathom commission a16 -p /dev/ttyUSB0 --addresses 2-8,1 --record tanks.txt\n"
+                "  fathom sim hps167s hps167s --one-by-one --link ./bus     # to try it\n",
+    .status = "Exit status: 0 all addresses are assigned and verified, 1 not, 2 wrong usage.\n",
+    .topics = "commissioning, settings, sensors, ports",
+    .operands = operands_one,
+    .settings_size = sizeof(commission_settings_t),
+    .start = start,
+};

@@ -3,19 +3,8 @@
 
 #include <string.h>
 
-#include "cli/session_options.h"
-#include "commands/commands.h"
 #include "device/setting_text.h"
 #include "output/words.h"
-
-/* The options before the sensor is known. */
-typedef struct {
-    session_settings_t session;
-    const char *addresses;
-    const char *record;
-    const char *terminated; /* NULL: not given */
-    uint64_t wait_us;
-} commission_settings_t;
 
 static const option_t rows[] = {
     {"addresses", "LIST", "Assign these addresses in this order, such as 2-9 or 5,7,10-12", KIND_TEXT,
@@ -31,7 +20,7 @@ static const option_t rows[] = {
     {.name = NULL},
 };
 
-static const option_table_t tables[] = {{rows, 0}, SESSION_TABLES, {session_format_rows, 0}, {NULL, 0}};
+const option_table_t commission_tables[] = {{rows, 0}, SESSION_TABLES, {session_format_rows, 0}, {NULL, 0}};
 
 static bool is_in(const commission_options_t *options, uint8_t address)
 {
@@ -114,24 +103,3 @@ bool commission_options(commission_options_t *options, session_t *session, const
     return set_addresses(options, model, settings->addresses, &origin) &&
            set_terminated(options, model, settings->terminated, &origin);
 }
-
-const command_t commission_command = {
-    .name = "commission",
-    .summary = "Assign addresses to new sensors that all have address 1",
-    .usage = "SENSOR[@PORT] --addresses LIST --record FILE [OPTIONS]",
-    .about = "Connect the sensors one after the other. The command prints the address that\n"
-             "the next one gets, finds it at address 1, sets it up and verifies it. An\n"
-             "hps167s may then be taken off the line. Keep each a16 and a05 connected and\n"
-             "switched on, since it has no serial number. After a failed write the command\n"
-             "ends; run it again with the same FILE, and it continues.\n",
-    .tables = tables,
-    .common = "port addresses record terminated wait",
-    .examples = "  fathom commission hps167s -p /dev/ttyUSB0 --addresses 2-9 --record hall.txt\n"
-                "  fathom commission a16 -p /dev/ttyUSB0 --addresses 2-8,1 --record tanks.txt\n"
-                "  fathom sim hps167s hps167s --one-by-one --link ./bus     # to try it\n",
-    .status = "Exit status: 0 all addresses are assigned and verified, 1 not, 2 wrong usage.\n",
-    .topics = "commissioning, settings, sensors, ports",
-    .operands = operands_one,
-    .settings_size = sizeof(commission_settings_t),
-    .start = commission_start,
-};

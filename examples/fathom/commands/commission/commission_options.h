@@ -2,8 +2,18 @@
 #ifndef COMMISSION_OPTIONS_H
 #define COMMISSION_OPTIONS_H
 
-#include "cli/command.h"
-#include "device/session.h"
+#include "cli/session_options.h"
+
+/* The options before the sensor is known. */
+typedef struct {
+    session_settings_t session;
+    const char *addresses;
+    const char *record;
+    const char *terminated; /* NULL: not given */
+    uint64_t wait_us;
+} commission_settings_t;
+
+extern const option_table_t commission_tables[];
 
 /* What `fathom commission` was asked to do. */
 enum { COMMISSION_ADDRESSES = 254 };
@@ -18,8 +28,5 @@ typedef struct {
 
 /* Checks the options and reads the sensor. False after rejecting what is wrong. */
 bool commission_options(commission_options_t *options, session_t *session, const arguments_t *arguments);
-
-/* command_t.start */
-int commission_start(const host_t *host, const arguments_t *arguments);
 
 #endif
