@@ -171,7 +171,7 @@ static bool read_value(config_file_t *file, const option_t *row, const yaml_node
     const bool is_map = node->type == YAML_MAPPING_NODE;
     char *const text = text_of(node);
     if (row->kind == KIND_NODE) {
-        *(const void **)(structure + row->at) = node;
+        memcpy(structure + row->at, &node, sizeof node);
         return node->type == YAML_SEQUENCE_NODE || reject_shape(row, node, origin);
     }
     if (is_map && (row->kind == KIND_MAP || row->kind == KIND_KEYS))

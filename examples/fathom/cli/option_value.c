@@ -99,7 +99,7 @@ static bool set_value(const option_t *row, char *text, char *member)
         *(bool *)member = true;
         return true;
     case KIND_TEXT:
-        *(const char **)member = text;
+        memcpy(member, &text, sizeof text);
         return true;
     case KIND_NUMBER:
         return set_number(row, text, member);

@@ -144,13 +144,13 @@ static bool is_made(const wish_t *wish)
     return strstr(run->out, text) != NULL;
 }
 
-/* "a16:1: NAME VALUE: not_confirmed", "differs" or "refused": a write that failed, or whose effect is unknown. */
+/* "a16:1: NAME VALUE: not confirmed", "differs" or "refused": a write that failed, or whose effect is unknown. */
 static bool is_sent(const wish_t *wish)
 {
     char text[80];
     (void)snprintf(text, sizeof text, ": %s %s: ", wish->name, wish->value);
     const char *const at = strstr(run->err, text);
-    return at != NULL && strncmp(at + strlen(text), "not_written", 11) != 0;
+    return at != NULL && strncmp(at + strlen(text), "not written", 11) != 0;
 }
 
 static void check_row(const wish_t *wish, size_t n, uint64_t since)
@@ -183,9 +183,9 @@ static void restore(const char *sensor, const wish_t *wishes, size_t count)
     if (is.flash_writes - was.flash_writes > announced)
         finding("the flash was written more often", "restore");
     const bool may_move =
-        says("address is 3") || says("address 3: not_confirmed") || says("address 3: differs");
+        says("address is 3") || says("address 3: not confirmed") || says("address 3: differs");
     const bool may_change =
-        says("baud is 57600") || says("baud 57600: not_confirmed") || says("baud 57600: differs");
+        says("baud is 57600") || says("baud 57600: not confirmed") || says("baud 57600: differs");
     if (is.address != was.address && !(is.address == 3 && may_move))
         finding("it is nowhere that was said", "address");
     if (is.line.baud != was.line.baud && !(is.line.baud == 57600 && may_change))

@@ -104,11 +104,11 @@ typedef struct {
 static report_t report(void)
 {
     return (report_t){.made = run->status == 0,
-                      .not_written = says("not_written") || says("nothing was written") ||
+                      .not_written = says("not written") || says("nothing was written") ||
                                      says("nothing was sent") || says("unchanged"),
-                      .not_confirmed = says("not_confirmed") || says("not confirmed") || says("was sent"),
+                      .not_confirmed = says("not confirmed") || says("was sent"),
                       .otherwise = says("differs"),
-                      .refused = !says("not_written") && !says("nothing was written") && says("refused")};
+                      .refused = !says("not written") && !says("nothing was written") && says("refused")};
 }
 
 static void set(const char *sensor, const char *mode, const tool_set_t *rows, size_t count)
