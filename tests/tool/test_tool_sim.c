@@ -22,7 +22,7 @@ REFUSES(two_sensors_that_send_automatically_are_refused, "sim",
 
 TEST(more_than_64_sensors_are_refused)
 {
-    char words[65 * sizeof "a16::modbus" + 4] = "sim ";
+    char words[65 * sizeof "a16::modbus" + sizeof "sim "] = "sim ";
     for (int i = 0; i != 65; i++) strcat(words, "a16::modbus ");
     assert_refused(words, "a line has at most 64 sensors, not 65");
 }

@@ -200,6 +200,7 @@ static int start(const host_t *host, const arguments_t *arguments)
 {
     enum { LATE_US = 1000000 };
     static commission_t run;
+    site_free(&run.session.site); /* of an earlier call */
     memset(&run, 0, sizeof run);
     if (!commission_options(&run.options, &run.session, arguments)) return STATUS_USAGE;
     run.model = run.session.sensor->model;
