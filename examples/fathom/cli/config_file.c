@@ -131,6 +131,7 @@ static bool append(char *text, size_t size, const char *more)
     return snprintf(text + length, size - length, "%s", more) < (int)(size - length);
 }
 
+/* NOLINTNEXTLINE(misc-no-recursion): libyaml limits the depth of a file */
 bool config_file_print(config_file_t *file, const yaml_node_t *node, char *text, size_t size)
 {
     if (node->type == YAML_SCALAR_NODE) return append(text, size, (const char *)node->data.scalar.value);
@@ -154,6 +155,7 @@ static bool reject_shape(const option_t *row, const yaml_node_t *node, const ori
     return reject(origin, "%s is %s. It takes %s.", row->name, shape_of(node), takes);
 }
 
+/* NOLINTNEXTLINE(misc-no-recursion): as deep as the rows */
 static bool read_map(config_file_t *file, const option_t *row, const yaml_node_t *node, char *structure)
 {
     const option_table_t tables[] = {{row->keys, 0}, {NULL, 0}};
@@ -165,13 +167,15 @@ static bool read_map(config_file_t *file, const option_t *row, const yaml_node_t
     return row->check == NULL || row->check(structure + row->at, &origin);
 }
 
+/* NOLINTNEXTLINE(misc-no-recursion): as deep as the rows */
 static bool read_value(config_file_t *file, const option_t *row, const yaml_node_t *node, char *structure,
                        const origin_t *origin)
 {
     const bool is_map = node->type == YAML_MAPPING_NODE;
     char *const text = text_of(node);
     if (row->kind == KIND_NODE) {
-        memcpy(structure + row->at, &node, sizeof node);
+        const void *const found = node;
+        memcpy(structure + row->at, &found, sizeof found);
         return node->type == YAML_SEQUENCE_NODE || reject_shape(row, node, origin);
     }
     if (is_map && (row->kind == KIND_MAP || row->kind == KIND_KEYS))
@@ -182,6 +186,7 @@ static bool read_value(config_file_t *file, const option_t *row, const yaml_node
     return reject(origin, "%s: cannot read %s: %s.", row->name, text, strerror(errno));
 }
 
+/* NOLINTNEXTLINE(misc-no-recursion): as deep as the rows */
 static bool read_pair(config_file_t *file, const yaml_node_pair_t *pair, const option_table_t *tables,
                       char *structure, const char *within, option_given_t *given)
 {
@@ -204,6 +209,7 @@ static bool read_pair(config_file_t *file, const yaml_node_pair_t *pair, const o
                       &origin);
 }
 
+/* NOLINTNEXTLINE(misc-no-recursion): as deep as the rows */
 bool config_file_read(config_file_t *file, const yaml_node_t *map, const option_table_t *tables,
                       void *structure, const char *within, option_given_t *given)
 {

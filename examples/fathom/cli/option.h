@@ -72,8 +72,10 @@ struct option_row {
     const char *instead; /* of a hidden row that has no effect: the option that the user looks for */
 };
 
+/* Members of a row. NOLINTBEGIN(bugprone-macro-parentheses) */
 #define AT(type, member)  .at = offsetof(type, member), .size = sizeof(((type *)0)->member)
 #define HAS(type, member) .has = 1 + offsetof(type, member)
+/* NOLINTEND(bugprone-macro-parentheses) */
 
 /* Some rows, whose structure is at this offset in the structure of all. A table without rows ends a list of them. */
 typedef struct {

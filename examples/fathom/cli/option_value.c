@@ -122,6 +122,7 @@ static bool set_value(const option_t *row, char *text, char *member)
     }
 }
 
+/* NOLINTNEXTLINE(misc-no-recursion): as deep as the rows */
 bool option_set(const option_t *row, char *text, void *structure, const origin_t *origin)
 {
     char takes[OPTION_TAKES];
@@ -161,6 +162,7 @@ bool option_check_given(const option_table_t *tables, const option_given_t *give
     return true;
 }
 
+/* NOLINTNEXTLINE(misc-no-recursion): as deep as the rows */
 bool option_set_keys(const option_t *keys, char *text, void *structure, const origin_t *origin)
 {
     const option_table_t tables[] = {{keys, 0}, {NULL, 0}};

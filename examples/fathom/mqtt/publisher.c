@@ -289,8 +289,8 @@ static bool set_sensors(publisher_t *publisher, const site_t *site)
     publisher_sensor_t *const before = publisher->sensors;
     const size_t count = publisher->sensor_count;
     publisher_sensor_t *const sensors = calloc(site->sensor_count, sizeof *sensors);
-    bool is_good = sensors != NULL;
-    if (!is_good) return false;
+    bool is_good = true;
+    if (sensors == NULL) return false;
     publisher->sensors = sensors;
     publisher->sensor_count = site->sensor_count;
     streams_forget(&publisher->streams);

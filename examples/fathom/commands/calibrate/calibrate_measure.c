@@ -101,8 +101,7 @@ static void print_why(session_t *session, const calibrate_batch_t *batch, batch_
 {
     static const char *const texts[] = {
         [BATCH_NO_TARGET] = "no target in range. Aim the sensor at a flat, light target at a right angle",
-        [BATCH_FAULT] = "the sensor reports a fault. Wait until it has warmed up, or switch its power off "
-                        "and on",
+        [BATCH_FAULT] = "the sensor reports a fault. Wait until it has warmed up, or power-cycle it",
         [BATCH_UNKNOWN] = "the distance is below the range, 80 mm. Place the target farther away",
         [BATCH_UNSETTLED] = "the median does not settle. Hold the sensor and the target still",
     };

@@ -137,9 +137,10 @@ step_t lane_step(const lanes_t *lanes, const lane_t *lane, int ago)
 {
     step_t shown = {.mark = MARK_NONE};
     const uint64_t now = number_now(lanes);
-    for (int held = 0; held <= LONGEST_HOLD && ago + held < LANE_STEPS && (uint64_t)(ago + held) <= now;
-         held++) {
-        const step_t *const step = &lane->steps[(now - (uint64_t)(ago + held)) % LANE_STEPS];
+    for (int held = 0; held <= LONGEST_HOLD && ago + held < LANE_STEPS; held++) {
+        const uint64_t back = (uint64_t)ago + (uint64_t)held;
+        if (back > now) break;
+        const step_t *const step = &lane->steps[(now - back) % LANE_STEPS];
         if (!step->has_distance && step->mark == MARK_NONE) continue;
         if (held == 0 || held <= step->hold) shown = *step;
         if (held != 0 && !is_held(step->mark)) shown.mark = MARK_NONE; /* other marks do not last */
