@@ -232,9 +232,9 @@ void complete(FILE *to, const command_t *const *commands, const help_topic_t *to
     if (count == 1) offer_words(&it, it.word[0] == '-' ? "--help --version" : "help");
 }
 
-/* ---- the stubs ---- */
+/* ---- the scripts of the shells ---- */
 
-bool complete_stub(FILE *to, const char *shell)
+bool complete_script(FILE *to, const char *shell)
 {
     static const char bash[] =
         "_fathom() {\n"

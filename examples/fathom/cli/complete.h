@@ -9,8 +9,9 @@
 void complete(FILE *to, const command_t *const *commands, const help_topic_t *topics, char **words,
               int count);
 
-/* The stub of a shell, which runs `fathom complete`: bash, zsh or fish. False: there is none. */
-bool complete_stub(FILE *to, const char *shell);
+/* Prints the completion script of a shell (bash, zsh or fish); the script runs `fathom complete`. Returns false for
+ * another shell. */
+bool complete_script(FILE *to, const char *shell);
 
 /* ---- operands of commands ---- */
 

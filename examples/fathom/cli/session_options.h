@@ -37,7 +37,8 @@ bool session_can_set(const session_t *session, const arguments_t *arguments);
 /* The setting of the session's sensor with this name. NULL after rejecting it. */
 const setting_t *setting_named(const session_t *session, const char *name, const arguments_t *arguments);
 
-/* Is what is dangerous confirmed? With --yes, else the user is asked at a terminal; elsewhere it is rejected. */
+/* Returns true if the user confirms a dangerous action: by --yes, or by "y" on a terminal. Without a terminal and
+ * --yes, the action is rejected. */
 bool confirm(const arguments_t *arguments, bool is_confirmed, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 

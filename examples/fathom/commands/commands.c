@@ -82,7 +82,7 @@ static int finish(void) { return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED
 /* `fathom help --man [COMMAND]`, and `fathom help --completion SHELL`: for the installation. */
 static bool print_installed(int argc, char **argv)
 {
-    if (argc == 2 && strcmp(argv[0], "--completion") == 0) return complete_stub(stdout, argv[1]);
+    if (argc == 2 && strcmp(argv[0], "--completion") == 0) return complete_script(stdout, argv[1]);
     if (argc == 0 || argc > 2 || strcmp(argv[0], "--man") != 0) return false;
     const command_t *const command = argc == 2 ? find(argv[1]) : NULL;
     if (argc == 2 && command == NULL) return false;

@@ -55,7 +55,7 @@ static void print_start(void)
     (void)fprintf(stderr, "fathom: %s%s", has_name() ? session.sensor->name : "", has_name() ? ": " : "");
 }
 
-/* `address` is the value of a sensor that can report it, and else the address at which the sensor is asked. */
+/* `address` is the value that the sensor reports, or the address of the requests if the sensor cannot report it. */
 static void begin_json(const values_t *progress, const char *line)
 {
     bool has_address = false;

@@ -62,7 +62,7 @@ typedef struct {
     fathom_transaction_t transaction; /* first, so that a pointer to it is one to the request_ask_t */
     const request_t *request;
     request_outcome_t outcome;
-    uint32_t more;         /* bytes that arrived besides the response, within 60 ms */
+    uint32_t more;         /* further bytes that arrived within 60 ms of the response */
     evidence_t evidence;   /* heard since the request */
     uint8_t response[255]; /* with its CRC */
     uint8_t length;        /* 0: there is no response */

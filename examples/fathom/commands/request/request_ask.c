@@ -169,7 +169,8 @@ static request_outcome_t outcome_of(const request_ask_t *ask, const port_t *port
     return outcome;
 }
 
-/* Counts the bytes besides the response and the echo, such as those of another unit at the same address. */
+/* Counts the bytes that belong neither to the response nor to the echo, such as those of another unit with the same
+ * address. */
 static uint32_t count_more(const request_ask_t *ask, const port_t *port)
 {
     const uint32_t echo = fathom_line_get_echo(&port->line) == FATHOM_LINE_ECHO_ON ? ask->request->length : 0;
