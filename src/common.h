@@ -60,6 +60,7 @@ static inline uint32_t or_default(uint32_t value, uint32_t default_value)
 static inline void count_one(uint16_t *counter)
 {
     const uint16_t incremented = (uint16_t)(*counter + 1u);
+    /* cppcheck-suppress knownConditionTrueFalse ; the sum is 0 if the counter was 65535 */
     if (incremented != 0u) *counter = incremented;
 }
 

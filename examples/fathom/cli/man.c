@@ -122,11 +122,11 @@ static void print_topic(FILE *to, const help_topic_t *topic)
 {
     char *text = NULL;
     size_t size = 0;
-    char head[80];
     FILE *const memory = open_memstream(&text, &size);
     if (memory == NULL) return;
     topic->print(memory);
     if (fclose(memory) == 0) {
+        char head[80];
         (void)snprintf(head, sizeof head, "\"%s (fathom help %s)\"", topic->summary, topic->name);
         print_lines(to, head, text);
     }

@@ -55,12 +55,12 @@ static int print_failure(bool is_restore, fathom_status_t status)
 {
     const sensor_t *const sensor = session.sensor;
     const bool is_unconfirmed = status == FATHOM_ERR_UNCONFIRMED;
-    const char *start = "the reset was sent, and is not confirmed: ";
+    const char *prefix = "the reset was sent, and is not confirmed: ";
     if (!sensor->model->reset.is_sent(sensor->reader))
-        start = "nothing was written: ";
+        prefix = "nothing was written: ";
     else if (is_unconfirmed || status == FATHOM_ERR_EXCEPTION)
-        start = "";
-    (void)fprintf(stderr, "fathom: %s: %s", sensor->name, start);
+        prefix = "";
+    (void)fprintf(stderr, "fathom: %s: %s", sensor->name, prefix);
     if (is_unconfirmed && is_restore) {
         char line[LINE_TEXT];
         (void)fprintf(

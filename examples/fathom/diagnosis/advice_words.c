@@ -21,10 +21,11 @@ static void print_sensor(FILE *to, const failure_t *failure)
 
 static void print_place(FILE *to, const failure_t *failure)
 {
-    char text[LINE_TEXT];
     (void)fprintf(to, " at %s", port_name(failure->port));
-    if (failure->line != NULL && port_has_line(failure->port))
+    if (failure->line != NULL && port_has_line(failure->port)) {
+        char text[LINE_TEXT];
         (void)fprintf(to, " (%s)", line_text(failure->line, text));
+    }
 }
 
 static void print_line(FILE *to, const failure_t *failure)

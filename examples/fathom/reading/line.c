@@ -126,12 +126,12 @@ static void notify_advice(line_t *line)
 
 static void fail_to_open(line_t *line)
 {
-    char text[TEXT];
     if (!line->is_lost) miss(line);
     if (!line->waits) return;
     report_absence(line);
     /* The user has to know, some time, about a port that is there and cannot be opened. */
     if (port_is_overdue(&line->port)) {
+        char text[TEXT];
         (void)snprintf(text, sizeof text, "still waiting: %s", port_error(&line->port));
         notify(line, text, NOTICE_WAITING);
     }

@@ -15,14 +15,14 @@ static uint32_t pass_alarms(loop_t *loop)
 {
     const results_to_t to = attempt_results(loop);
     const uint32_t now_us = (uint32_t)loop_now_us(loop);
-    uint32_t sleep_us = FATHOM_NO_DEADLINE;
+    uint32_t due_us = FATHOM_NO_DEADLINE;
     for (size_t i = 0; i != loop->site.sensor_count; i++) {
         sensor_t *const sensor = loop->site.sensors[i];
         if (!sensor->processing.has_alarm) continue;
-        sleep_us = ALARM_US;
+        due_us = ALARM_US;
         if (!attempt_was_last(loop, sensor)) results_pass(sensor, now_us, &to);
     }
-    return sleep_us;
+    return due_us;
 }
 
 static void start_lines(loop_t *loop);

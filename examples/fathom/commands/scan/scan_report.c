@@ -37,8 +37,11 @@ static void next_command(const scan_finding_t *finding, const char *port, char t
 
 /* ---- a finding as a record ---- */
 
+/* The fields below name the members by their offsets. */
 typedef struct {
+    /* cppcheck-suppress unusedStructMember */
     const char *kind, *model, *parity, *mode, *interface_version, *sensor_version, *uuid, *status, *next;
+    /* cppcheck-suppress unusedStructMember */
     int64_t address, baud, stop_bits, termination, distance_mm, raw, is_double;
 } row_t;
 
@@ -230,10 +233,11 @@ uint64_t scan_now_us(const scan_t *scan) { return scan->port.host->now_us(scan->
 void scan_show_progress(scan_t *scan)
 {
     const uint64_t now = scan_now_us(scan);
-    char settings[LINE_TEXT];
     char doing[LINE_TEXT + 16] = "listens";
-    if (scan->line != NULL)
+    if (scan->line != NULL) {
+        char settings[LINE_TEXT];
         (void)snprintf(doing, sizeof doing, "%s address %u", line_text(scan->line, settings), scan->address);
+    }
     progress_show(&scan->progress, now,
                   scan->line != NULL ? scan->plan.listen_us + scan->done_us : now - scan->start_us, doing);
 }

@@ -59,8 +59,8 @@ static void get_advice(char text[MESSAGE], const reading_t *reading)
 {
     /* The advice names the model and the address itself, but neither if the port fails. */
     const bool has_name = reading->sensor->has_own_name && reading->status != FATHOM_ERR_PORT;
-    const int start = has_name ? snprintf(text, MESSAGE, "%s: ", reading->sensor->name) : 0;
-    FILE *const to = fmemopen(text + start, (size_t)(MESSAGE - start), "w");
+    const int used = has_name ? snprintf(text, MESSAGE, "%s: ", reading->sensor->name) : 0;
+    FILE *const to = fmemopen(text + used, (size_t)(MESSAGE - used), "w");
     if (to == NULL) return;
     advice_print(to, reading->evidence);
     (void)fclose(to);
@@ -70,8 +70,8 @@ static void get_advice(char text[MESSAGE], const reading_t *reading)
 static void show_failure(watch_t *watch, const reading_t *reading)
 {
     fathom_status_t *const reported = &watch->reported[reading->sensor->number];
-    char text[MESSAGE] = "";
     if (!reading->evidence->is_told) {
+        char text[MESSAGE] = "";
         get_advice(text, reading);
         show(watch, text, MESSAGE_US);
         if (reading->status == FATHOM_ERR_PORT) (void)snprintf(watch->loss, sizeof watch->loss, "%s", text);
