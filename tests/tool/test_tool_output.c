@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The writer of JSON, and JSON, CSV and text from a table of fields. */
+/* The writer of JSON; JSON, CSV and text from a table of fields; and times. */
 #define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): open_memstream */
 #include "suite.h"
 
@@ -7,6 +7,7 @@
 #include <stdlib.h>
 
 #include "output/record.h"
+#include "output/words.h"
 
 static char *text;
 static size_t size;
@@ -84,7 +85,7 @@ TEST(json_has_the_columns_of_the_record)
 
 TEST(csv_has_the_columns_of_the_table_and_quotes_what_needs_it)
 {
-    record_csv_header(begin(), fields, EXTRA);
+    record_csv(begin(), fields, NULL, EXTRA, EXTRA);
     record_csv(to, fields, &some, EXTRA, EXTRA);
     record_csv(to, fields, &some, 0, EXTRA);
     record_csv(to, fields, &none, EXTRA, EXTRA);
@@ -94,9 +95,8 @@ TEST(csv_has_the_columns_of_the_table_and_quotes_what_needs_it)
 
 TEST(text_has_a_dash_for_null)
 {
-    record_print(begin(), fields, &some, 0);
-    (void)fputs("; ", to);
-    record_print(to, fields, &none, 0);
+    assert_true(record_print(begin(), "", fields, &some, 0, false));
+    assert_true(record_print(to, "; ", fields, &none, 0, false));
     expect("number_mm -7, tenths_degc -0.5, is_on true, word a,\"b\"; "
            "number_mm -, tenths_degc -, is_on -, word -");
 }
@@ -111,8 +111,8 @@ TEST(text_of_counters_leaves_out_those_that_are_0)
         {.key = NULL},
     };
     static const sample_t zero;
-    assert_true(record_print_used(begin(), "line: ", counters, &counts));
-    assert_false(record_print_used(to, "line: ", counters, &zero));
+    assert_true(record_print(begin(), "line: ", counters, &counts, 0, true));
+    assert_false(record_print(to, "line: ", counters, &zero, 0, true));
     expect("line: first 3, third 2");
 }
 
@@ -121,4 +121,29 @@ TEST(help_lists_the_fields_that_have_one)
     record_help(begin(), fields);
     expect("  number_mm         mm      A number\n  tenths_degc       degC    A decimal\n"
            "  is_on                     A flag\n  word                      A word\n");
+}
+
+/* ---- times ---- */
+
+TEST(a_time_of_32_bits_belongs_to_the_last_71_minutes)
+{
+    const uint64_t wrap = (uint64_t)1 << 32;
+    const uint32_t longest_us = (uint32_t)71 * 60 * 1000000;
+    const struct {
+        uint64_t now_us;
+        uint32_t then_us;
+        uint64_t expected_us;
+    } rows[] = {
+        {5 * wrap + 10, 10, 5 * wrap + 10},
+        {5 * wrap + 10, 9, 5 * wrap + 9},
+        {5 * wrap + 10, UINT32_MAX, 5 * wrap - 1},
+        {5 * wrap, UINT32_MAX, 5 * wrap - 1},
+        {5 * wrap, 0, 5 * wrap},
+        {5 * wrap + 10, (uint32_t)(wrap + 10 - longest_us), 5 * wrap + 10 - longest_us},
+        /* 1 us, and half a minute, ahead */
+        {5 * wrap - 1, 0, 5 * wrap - 1},
+        {wrap + 5, 30000005, wrap + 5},
+    };
+    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++)
+        assert_true(time_extend(rows[i].now_us, rows[i].then_us) == rows[i].expected_us);
 }

@@ -6,7 +6,7 @@
 #include <stdio.h>
 
 #include "cli/option.h"
-#include "output/status.h"
+#include "output/words.h"
 #include "ports/host.h"
 
 /* What a command was given. */

@@ -3,7 +3,7 @@
 #include "commands/commands.h"
 #include "device/backup_file.h"
 #include "device/new_file.h"
-#include "output/timestamp.h"
+#include "output/words.h"
 
 /* fathom save writes the settings of a sensor to a file, for fathom restore. */
 

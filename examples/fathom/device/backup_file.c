@@ -7,7 +7,7 @@
 
 #include "device/setting_text.h"
 #include "fathom/version.h"
-#include "output/status.h"
+#include "output/words.h"
 
 static const char sensor[] = "sensor"; /* of the line with the model */
 

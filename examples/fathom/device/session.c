@@ -40,7 +40,7 @@ bool session_open(session_t *session, const host_t *host)
         (void)fprintf(stderr, "fathom: %s\n", port_error(&session->port));
         return false;
     }
-    progress_start_wait(&session->progress, stderr, host->now_us(host->ctx));
+    progress_init(&session->progress, stderr, host->now_us(host->ctx), 0);
     session->doing = NULL;
     counters_begin_port(&session->port_counts, &session->port);
     if (!start(session)) {
@@ -83,8 +83,8 @@ static fathom_status_t wait_for(session_t *session)
     progress_t *const progress = &session->progress;
     const host_t *const host = session->port.host;
     const uint32_t due_us = reader_due_us(session->sensor->reader);
-    progress_show_wait(progress, host->now_us(host->ctx),
-                       session->doing != NULL ? session->doing : "waiting for the sensor");
+    progress_show(progress, host->now_us(host->ctx), 0,
+                  session->doing != NULL ? session->doing : "waiting for the sensor");
     return port_wait(&session->port, progress->is_terminal && due_us > SHOW_US ? SHOW_US : due_us);
 }
 

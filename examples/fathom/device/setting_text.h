@@ -2,7 +2,7 @@
 #ifndef SETTING_TEXT_H
 #define SETTING_TEXT_H
 
-#include "output/json.h"
+#include "output/record.h"
 #include "sensors/setting.h"
 
 /* The settings as text. */

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "fathom/version.h"
-#include "output/json.h"
+#include "output/record.h"
 
 enum { ID = 320 };
 

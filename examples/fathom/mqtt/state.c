@@ -9,7 +9,7 @@
 #include <unistd.h>
 
 #include "fathom/version.h"
-#include "output/timestamp.h"
+#include "output/words.h"
 #include "reading/fields.h"
 #include "reading/stats.h"
 

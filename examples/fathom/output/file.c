@@ -9,7 +9,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "output/timestamp.h"
+#include "output/words.h"
 
 /* The day stands before the last dot of the name, or at its end. */
 static void name_of(const output_file_t *file, uint64_t utc_us, char name[OUTPUT_FILE_NAME])

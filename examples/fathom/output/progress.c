@@ -8,46 +8,34 @@
 /* With the words the bar fits 80 columns. */
 enum { BAR = 24, EVERY_US = 100000, PATIENCE_US = 2000000 };
 
-void progress_init(progress_t *progress, FILE *to, uint64_t total_us)
+void progress_init(progress_t *progress, FILE *to, uint64_t now_us, uint64_t total_us)
 {
-    progress->to = to;
-    progress->is_terminal = isatty(fileno(to)) != 0;
-    progress->is_shown = false;
-    progress->total_us = total_us;
-    progress->shown_us = 0;
+    *progress = (progress_t){
+        .to = to, .is_terminal = isatty(fileno(to)) != 0, .start_us = now_us, .total_us = total_us};
+}
+
+static void print_bar(FILE *to, uint64_t done_us, uint64_t total_us, const char *doing)
+{
+    static const char full[] = "########################";
+    static const char empty[] = "........................";
+    if (done_us > total_us) done_us = total_us;
+    const int percent = (int)(done_us * 100 / total_us);
+    const int filled = percent * BAR / 100;
+    const uint64_t left_s = (total_us - done_us + 999999u) / 1000000u;
+    (void)fprintf(to, "\r[%.*s%.*s] %3d %%  %s, %" PRIu64 " s left", filled, full, BAR - filled, empty,
+                  percent, doing, left_s);
 }
 
 void progress_show(progress_t *progress, uint64_t now_us, uint64_t done_us, const char *doing)
 {
-    const uint64_t total_us = progress->total_us;
-    if (!progress->is_terminal || total_us == 0 ||
-        (progress->is_shown && now_us - progress->shown_us < EVERY_US))
-        return;
-    if (done_us > total_us) done_us = total_us;
-    const unsigned percent = (unsigned)(done_us * 100 / total_us);
-    const unsigned filled = percent * BAR / 100;
-    char bar[BAR + 1];
-    for (unsigned i = 0; i != BAR; i++) bar[i] = i < filled ? '#' : '.';
-    bar[BAR] = '\0';
-    const uint64_t left_s = (total_us - done_us + 999999u) / 1000000u;
-    /* ESC [ K removes the rest of a longer line. */
-    (void)fprintf(progress->to, "\r[%s] %3u %%  %s, %" PRIu64 " s left\033[K", bar, percent, doing, left_s);
-    (void)fflush(progress->to);
-    progress->is_shown = true;
-    progress->shown_us = now_us;
-}
-
-void progress_start_wait(progress_t *progress, FILE *to, uint64_t now_us)
-{
-    progress_init(progress, to, 0);
-    progress->start_us = now_us;
-}
-
-void progress_show_wait(progress_t *progress, uint64_t now_us, const char *doing)
-{
     const uint64_t passed_us = now_us - progress->start_us;
-    if (!progress->is_terminal || passed_us < PATIENCE_US || now_us - progress->shown_us < EVERY_US) return;
-    (void)fprintf(progress->to, "\r%s, %" PRIu64 " s\033[K", doing, passed_us / 1000000u);
+    if (!progress->is_terminal || (progress->is_shown && now_us - progress->shown_us < EVERY_US)) return;
+    if (progress->total_us == 0 && passed_us < PATIENCE_US) return;
+    if (progress->total_us != 0)
+        print_bar(progress->to, done_us, progress->total_us, doing);
+    else
+        (void)fprintf(progress->to, "\r%s, %" PRIu64 " s", doing, passed_us / 1000000u);
+    (void)fputs("\033[K", progress->to); /* removes the rest of a longer line */
     (void)fflush(progress->to);
     progress->is_shown = true;
     progress->shown_us = now_us;
@@ -59,14 +47,4 @@ void progress_clear(progress_t *progress)
     (void)fputs("\r\033[K", progress->to);
     (void)fflush(progress->to);
     progress->is_shown = false;
-}
-
-const char *duration_text(uint64_t us, char text[DURATION_TEXT])
-{
-    const uint64_t s = (us + 999999u) / 1000000u;
-    if (s < 60)
-        (void)snprintf(text, DURATION_TEXT, "%" PRIu64 " s", s);
-    else
-        (void)snprintf(text, DURATION_TEXT, "%" PRIu64 " min %" PRIu64 " s", s / 60, s % 60);
-    return text;
 }

@@ -11,25 +11,17 @@ typedef struct {
     FILE *to;
     bool is_terminal;
     bool is_shown;
-    uint64_t total_us;
-    uint64_t start_us; /* of progress_show_wait */
-    uint64_t shown_us; /* time at which the bar was last written */
+    uint64_t start_us;
+    uint64_t total_us; /* 0: unknown; then there is no bar, but the number of seconds from the third one on */
+    uint64_t shown_us; /* time at which the line was last written */
 } progress_t;
 
-void progress_init(progress_t *progress, FILE *to, uint64_t total_us);
+void progress_init(progress_t *progress, FILE *to, uint64_t now_us, uint64_t total_us);
 
 /* Shows `done_us` of the total, and what happens now in a few words. Writes at most ten times a second. */
 void progress_show(progress_t *progress, uint64_t now_us, uint64_t done_us, const char *doing);
 
-/* Shows what happens now and for how many seconds, if the total is not known. Writes nothing in the first two seconds. */
-void progress_start_wait(progress_t *progress, FILE *to, uint64_t now_us);
-void progress_show_wait(progress_t *progress, uint64_t now_us, const char *doing);
-
-/* Removes the bar, so that something else can be written. */
+/* Removes the line, so that something else can be written. */
 void progress_clear(progress_t *progress);
-
-/* Writes "12 s" or "7 min 2 s". */
-enum { DURATION_TEXT = 32 };
-const char *duration_text(uint64_t us, char text[DURATION_TEXT]);
 
 #endif

@@ -2,8 +2,82 @@
 #include "output/record.h"
 
 #include <inttypes.h>
-#include <stdbool.h>
+#include <stdarg.h>
 #include <string.h>
+
+#include "output/words.h"
+
+/* ---- JSON ---- */
+
+static bool is_plain(unsigned char c) { return c >= 0x20 && c != '"' && c != '\\'; }
+
+/* Writes plain characters as a whole: a stream takes a lock in each call. */
+static void put_string(FILE *to, const char *text)
+{
+    (void)fputc('"', to);
+    while (*text != '\0') {
+        size_t length = 0;
+        while (is_plain((unsigned char)text[length])) length++;
+        (void)fwrite(text, 1, length, to);
+        text += length;
+        if (*text == '\0') break;
+        (void)fprintf(to, (unsigned char)*text < 0x20 ? "\\u%04x" : "\\%c", *text);
+        text++;
+    }
+    (void)fputc('"', to);
+}
+
+static void put_key(json_t *json, const char *key)
+{
+    if (json->has_member) (void)fputc(',', json->to);
+    json->has_member = true;
+    if (key == NULL) return;
+    put_string(json->to, key);
+    (void)fputc(':', json->to);
+}
+
+void json_begin(json_t *json, const char *key, char bracket)
+{
+    put_key(json, key);
+    (void)fputc(bracket, json->to);
+    json->has_member = false;
+}
+
+void json_end(json_t *json, char bracket)
+{
+    (void)fputc(bracket, json->to);
+    json->has_member = true;
+}
+
+void json_value(json_t *json, const char *key, const char *format, ...)
+{
+    va_list arguments;
+    put_key(json, key);
+    va_start(arguments, format);
+    (void)vfprintf(json->to, format, arguments);
+    va_end(arguments);
+}
+
+void json_flag(json_t *json, const char *key, bool flag) { json_value(json, key, flag ? "true" : "false"); }
+
+void json_string(json_t *json, const char *key, const char *text)
+{
+    put_key(json, key);
+    if (text != NULL)
+        put_string(json->to, text);
+    else
+        (void)fputs("null", json->to);
+}
+
+void json_bytes(json_t *json, const char *key, const uint8_t *bytes, size_t count)
+{
+    put_key(json, key);
+    (void)fputc('"', json->to);
+    for (size_t i = 0; i != count; i++) (void)fprintf(json->to, "%s%02X", i != 0 ? " " : "", bytes[i]);
+    (void)fputc('"', json->to);
+}
+
+/* ---- records ---- */
 
 enum { VALUE = 32 };
 
@@ -12,27 +86,21 @@ static bool is_there(const field_t *field, unsigned columns)
     return (field->needs & columns) == field->needs;
 }
 
-static void print_decimal(char text[VALUE], int64_t value, int places, int64_t one)
+static const void *member_of(const field_t *field, const void *record)
 {
-    const int64_t size = value < 0 ? -value : value;
-    (void)snprintf(text, VALUE, "%s%" PRId64 ".%0*" PRId64, value < 0 ? "-" : "", size / one, places,
-                   size % one);
+    return (const char *)record + field->at;
 }
 
 /* Returns the value as text, in `text` unless it is a word. Returns NULL for null. */
 static const char *value_of(const field_t *field, const void *record, char text[VALUE])
 {
-    const void *const member = (const char *)record + field->at;
+    const void *const member = member_of(field, record);
     if (field->type == FIELD_WORD) return *(const char *const *)member;
     const int64_t number = *(const int64_t *)member;
     if (number == NO_VALUE) return NULL;
     if (field->type == FIELD_FLAG) return number != 0 ? "true" : "false";
-    if (field->type == FIELD_TENTHS)
-        print_decimal(text, number, 1, 10);
-    else if (field->type == FIELD_TEN_THOUSANDTHS)
-        print_decimal(text, number, 4, 10000);
-    else
-        (void)snprintf(text, VALUE, "%" PRId64, number);
+    const unsigned places = field->type == FIELD_TENTHS ? 1 : field->type == FIELD_TEN_THOUSANDTHS ? 4 : 0;
+    decimal_text(text, VALUE, number, places);
     return text;
 }
 
@@ -42,10 +110,12 @@ void record_json(json_t *json, const field_t *fields, const void *record, unsign
         char text[VALUE];
         if (!is_there(fields, columns)) continue;
         const char *const value = value_of(fields, record, text);
-        if (fields->type == FIELD_WORD)
+        if (fields->type == FIELD_WORD) {
             json_string(json, fields->key, value);
-        else
-            json_number(json, fields->key, value != NULL ? value : "null");
+        } else {
+            put_key(json, fields->key);
+            (void)fputs(value != NULL ? value : "null", json->to);
+        }
     }
 }
 
@@ -55,17 +125,6 @@ void record_json_line(FILE *to, const field_t *fields, const void *record, unsig
     json_begin(&json, NULL, '{');
     record_json(&json, fields, record, columns);
     json_end(&json, '}');
-    (void)fputc('\n', to);
-}
-
-void record_csv_header(FILE *to, const field_t *fields, unsigned columns)
-{
-    const char *comma = "";
-    for (; fields->key != NULL; fields++) {
-        if (!is_there(fields, columns)) continue;
-        (void)fprintf(to, "%s%s", comma, fields->key);
-        comma = ",";
-    }
     (void)fputc('\n', to);
 }
 
@@ -86,34 +145,29 @@ void record_csv(FILE *to, const field_t *fields, const void *record, unsigned co
     const char *comma = "";
     for (; fields->key != NULL; fields++) {
         char text[VALUE];
+        const char *value = NULL;
         if (!is_there(fields, all)) continue;
-        const char *const value = is_there(fields, columns) ? value_of(fields, record, text) : NULL;
+        if (record == NULL)
+            value = fields->key;
+        else if (is_there(fields, columns))
+            value = value_of(fields, record, text);
         (void)fputs(comma, to);
-        put_csv(to, value != NULL ? value : "");
+        if (value != NULL) put_csv(to, value);
         comma = ",";
     }
     (void)fputc('\n', to);
 }
 
-void record_print(FILE *to, const field_t *fields, const void *record, unsigned columns)
+bool record_print(FILE *to, const char *before, const field_t *fields, const void *record, unsigned columns,
+                  bool omits_zero)
 {
-    const char *comma = "";
+    bool is_used = false;
     for (; fields->key != NULL; fields++) {
         char text[VALUE];
         if (!is_there(fields, columns)) continue;
         const char *const value = value_of(fields, record, text);
-        (void)fprintf(to, "%s%s %s", comma, fields->key, value != NULL ? value : "-");
-        comma = ", ";
-    }
-}
-
-bool record_print_used(FILE *to, const char *before, const field_t *fields, const void *record)
-{
-    bool is_used = false;
-    for (; fields->key != NULL; fields++) {
-        const int64_t number = *(const int64_t *)(const void *)((const char *)record + fields->at);
-        if (number == 0) continue;
-        (void)fprintf(to, "%s%s %" PRId64, is_used ? ", " : before, fields->key, number);
+        if (omits_zero && (value == NULL || strcmp(value, "0") == 0)) continue;
+        (void)fprintf(to, "%s%s %s", is_used ? ", " : before, fields->key, value != NULL ? value : "-");
         is_used = true;
     }
     return is_used;

@@ -1,19 +1,25 @@
 /* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): gmtime_r */
 #include "output/words.h"
 
 #include <inttypes.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <time.h>
+
+#include "fathom/hal.h"
+
+/* ---- numbers and lists ---- */
 
 bool number_parse(const char *text, uint32_t min, uint32_t max, uint32_t *number)
 {
     enum { MOST_DIGITS = 10 };
-    uint64_t sum = 0;
     const size_t length = strlen(text);
     if (length == 0 || length > MOST_DIGITS || strspn(text, "0123456789") != length) return false;
-    for (; *text != '\0'; text++) sum = sum * 10 + (uint64_t)(*text - '0');
-    if (sum < min || sum > max) return false;
-    *number = (uint32_t)sum;
+    const uint64_t value = strtoull(text, NULL, 10);
+    if (value < min || value > max) return false;
+    *number = (uint32_t)value;
     return true;
 }
 
@@ -54,8 +60,43 @@ const char *next_word(const char *list, char separator, char *word, size_t capac
     return end != NULL ? end + 1 : NULL;
 }
 
-void tenths_text(char *text, size_t capacity, int32_t tenths)
+void decimal_text(char *text, size_t capacity, int64_t number, unsigned places)
 {
-    const uint32_t size = tenths < 0 ? (uint32_t)-tenths : (uint32_t)tenths;
-    (void)snprintf(text, capacity, "%s%" PRIu32 ".%" PRIu32, tenths < 0 ? "-" : "", size / 10, size % 10);
+    const uint64_t size = number < 0 ? 0 - (uint64_t)number : (uint64_t)number;
+    const char *const sign = number < 0 ? "-" : "";
+    uint64_t one = 1;
+    for (unsigned i = 0; i != places; i++) one *= 10;
+    if (places == 0)
+        (void)snprintf(text, capacity, "%" PRId64, number);
+    else
+        (void)snprintf(text, capacity, "%s%" PRIu64 ".%0*" PRIu64, sign, size / one, (int)places, size % one);
+}
+
+/* ---- times ---- */
+
+uint64_t time_extend(uint64_t now_us, uint32_t then_us)
+{
+    const uint32_t longest_us = 4260000000u; /* 71 minutes */
+    const uint32_t ago_us = fathom_elapsed_us((uint32_t)now_us, then_us);
+    return ago_us <= longest_us ? now_us - ago_us : now_us;
+}
+
+const char *utc_text(uint64_t utc_us, char text[UTC_TEXT])
+{
+    const time_t seconds = (time_t)(utc_us / 1000000u);
+    struct tm parts;
+    char whole[24] = "";
+    if (gmtime_r(&seconds, &parts) != NULL) (void)strftime(whole, sizeof whole, "%Y-%m-%dT%H:%M:%S", &parts);
+    (void)snprintf(text, UTC_TEXT, "%s.%06uZ", whole, (unsigned)(utc_us % 1000000u));
+    return text;
+}
+
+const char *duration_text(uint64_t us, char text[DURATION_TEXT])
+{
+    const uint64_t s = (us + 999999u) / 1000000u;
+    if (s < 60)
+        (void)snprintf(text, DURATION_TEXT, "%" PRIu64 " s", s);
+    else
+        (void)snprintf(text, DURATION_TEXT, "%" PRIu64 " min %" PRIu64 " s", s / 60, s % 60);
+    return text;
 }

@@ -6,7 +6,15 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Numbers and lists as text. */
+/* The exit statuses of every command. */
+enum {
+    STATUS_OK = 0,
+    STATUS_FAILED = 1, /* the line, the port or the output failed */
+    STATUS_USAGE = 2,
+    STATUS_ALARM = 3 /* `fathom read --until-alarm` alone: an alarm is on */
+};
+
+/* ---- numbers and lists ---- */
 
 /* All of `text` is a decimal number from min to max, of at most 10 digits. No sign, no space. */
 bool number_parse(const char *text, uint32_t min, uint32_t max, uint32_t *number);
@@ -14,8 +22,8 @@ bool number_parse(const char *text, uint32_t min, uint32_t max, uint32_t *number
 /* A number, or two as in "2-9", the first not above the last. */
 bool range_parse(const char *text, uint32_t min, uint32_t max, uint32_t *first, uint32_t *last);
 
-/* Tenths as a decimal, such as -0.5. */
-void tenths_text(char *text, size_t capacity, int32_t tenths);
+/* A number with so many decimal places: -5 with one is -0.5. */
+void decimal_text(char *text, size_t capacity, int64_t number, unsigned places);
 
 /* Adds a word to a list of `capacity` bytes, as in "a16, a05". A word that does not fit is left out in part. */
 void list_add(char *list, size_t capacity, const char *word);
@@ -29,5 +37,19 @@ size_t word_at(const char *words, size_t n, const char **word);
 
 /* Finds the place of `text` among the words of such a list. */
 bool word_find(const char *words, const char *text, uint32_t *n);
+
+/* ---- times ---- */
+
+/* The clock's 64 bits at a moment of which it gave the lower 32, in the last 71 minutes. What is up to half a minute in the
+ * future, by another clock's stamp, is now. */
+uint64_t time_extend(uint64_t now_us, uint32_t then_us);
+
+/* Writes "2025-11-21T09:43:12.123456Z", and returns it. */
+enum { UTC_TEXT = 48 };
+const char *utc_text(uint64_t utc_us, char text[UTC_TEXT]);
+
+/* Writes "12 s" or "7 min 2 s", and returns it. */
+enum { DURATION_TEXT = 32 };
+const char *duration_text(uint64_t us, char text[DURATION_TEXT]);
 
 #endif

@@ -2,7 +2,7 @@
 #include "reading/fields.h"
 
 #include "diagnosis/status_word.h"
-#include "output/timestamp.h"
+#include "output/words.h"
 
 typedef struct {
     const char *sensor, *model, *mode, *utc, *alarm, *status;
@@ -116,7 +116,7 @@ void reading_json(json_t *json, const reading_t *reading, unsigned columns)
     record_json(json, fields, &row, columns);
 }
 
-void reading_csv_header(FILE *to, unsigned columns) { record_csv_header(to, fields, columns); }
+void reading_csv_header(FILE *to, unsigned columns) { record_csv(to, fields, NULL, columns, columns); }
 
 void reading_csv(FILE *to, const reading_t *reading, unsigned columns)
 {

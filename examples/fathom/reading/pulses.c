@@ -86,7 +86,7 @@ void pulses_print(pulses_t *pulses, const char *name, FILE *to)
 {
     const row_t row = row_of(pulses);
     (void)fprintf(to, "fathom: %s: pulses: ", name);
-    record_print(to, fields, &row, 0);
+    (void)record_print(to, "", fields, &row, 0, false);
     (void)fputs("\n", to);
     memset(pulses, 0, sizeof *pulses);
 }

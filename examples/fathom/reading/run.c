@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "reading/run.h"
 
-#include "output/timestamp.h"
+#include "output/words.h"
 
 uint64_t loop_now_us(const loop_t *loop) { return loop->host->now_us(loop->host->ctx); }
 

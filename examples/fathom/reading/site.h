@@ -4,7 +4,7 @@
 
 #include "diagnosis/counters.h"
 #include "fathom_loop.h"
-#include "output/json.h"
+#include "output/record.h"
 #include "ports/port.h"
 #include "ports/port_settings.h"
 #include "reading/processing.h"

@@ -139,14 +139,13 @@ static void list_groups(const account_t *account, group_t groups[GROUPS])
 static void print_record(FILE *to, const char *before, const field_t *fields, const void *record,
                          unsigned columns)
 {
-    (void)fputs(before, to);
-    record_print(to, fields, record, columns);
+    (void)record_print(to, before, fields, record, columns, false);
 }
 
 static void print_attempts(const sensor_t *sensor, FILE *to)
 {
     (void)fprintf(to, "fathom: %s: ", sensor->name);
-    record_print(to, attempt_fields, &sensor->counters, 0);
+    (void)record_print(to, "", attempt_fields, &sensor->counters, 0, false);
 }
 
 void stats_print_short(const account_t *account, FILE *to)
@@ -161,8 +160,8 @@ void stats_print_short(const account_t *account, FILE *to)
         if (requests.timeouts_in_row != 0) print_record(to, ", ", request_fields, &requests, 0);
         (void)fputs("\n", to);
     }
-    if (record_print_used(to, before, stream_fields, &account->sum.total)) before = ", ";
-    if (record_print_used(to, before, line_fields, &account->sum.total)) before = ", ";
+    if (record_print(to, before, stream_fields, &account->sum.total, 0, true)) before = ", ";
+    if (record_print(to, before, line_fields, &account->sum.total, 0, true)) before = ", ";
     if (before[0] == ',') (void)fputs("\n", to);
 }
 
@@ -182,7 +181,7 @@ static void print_sensor(const sensor_t *sensor, FILE *to)
     const requests_row_t requests = requests_of(sensor);
     const response_row_t response = response_of(&sensor->counters);
     print_attempts(sensor, to);
-    (void)record_print_used(to, ", ", request_fields, &requests);
+    (void)record_print(to, ", ", request_fields, &requests, 0, true);
     if (sensor->counters.timed != 0) print_record(to, ", ", response_fields, &response, 0);
     (void)fputs("\n", to);
 }
@@ -194,13 +193,13 @@ void stats_print(const account_t *account, FILE *to)
     list_groups(account, groups);
     print_record(to, "fathom: ", attempt_fields, &account->sum, 0);
     (void)fputs("\n", to);
-    if (record_print_used(to, "fathom: ", total_fields, account)) (void)fputs("\n", to);
+    if (record_print(to, "fathom: ", total_fields, account, 0, true)) (void)fputs("\n", to);
     print_failures(account, to);
     for (size_t i = 0; i != GROUPS; i++) {
         char before[32];
         if (!groups[i].is_there) continue;
         (void)snprintf(before, sizeof before, "fathom: %s: ", groups[i].name);
-        if (record_print_used(to, before, groups[i].fields, &account->sum.total)) (void)fputs("\n", to);
+        if (record_print(to, before, groups[i].fields, &account->sum.total, 0, true)) (void)fputs("\n", to);
     }
     for (size_t i = 0; i != account->sensor_count; i++)
         if (mode_is_asked(account->sensors[i]->mode)) print_sensor(account->sensors[i], to);

@@ -4,7 +4,7 @@
 
 #include <stdio.h>
 
-#include "output/json.h"
+#include "output/record.h"
 #include "sensors/decoding.h"
 
 /* Prints the meaning and its first value, without a line feed. */

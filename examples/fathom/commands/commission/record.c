@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include "device/setting_text.h"
-#include "output/timestamp.h"
 #include "output/words.h"
 
 static const char title[] = "# fathom commission: which unit has which address, or is to have it";

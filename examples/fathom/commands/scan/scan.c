@@ -5,7 +5,7 @@
 
 #include "commands/commands.h"
 #include "commands/scan/scan.h"
-#include "output/json.h"
+#include "output/record.h"
 #include "ports/line_text.h"
 #include "sensors/models.h"
 
@@ -53,7 +53,7 @@ static fathom_status_t scan_line(scan_t *scan)
 {
     announce(&scan->plan);
     scan->start_us = scan_now_us(scan);
-    progress_init(&scan->progress, stderr, scan_plan_us(&scan->plan));
+    progress_init(&scan->progress, stderr, scan->start_us, scan_plan_us(&scan->plan));
     const fathom_status_t status = scan_listen(scan);
     return status != FATHOM_OK || (scan->has_sender && !scan->settings->wake) ? status : scan_walk(scan);
 }

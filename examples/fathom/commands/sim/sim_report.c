@@ -3,7 +3,7 @@
 
 #include "commands/sim/sim.h"
 #include "commands/topics.h"
-#include "output/json.h"
+#include "output/record.h"
 #include "ports/line_text.h"
 #include "sensors/read_command.h"
 
