@@ -93,8 +93,7 @@ PARTICULAR = re.compile(
     r'|\bstrn?cmp\([^;]*"(?:a16|a05|hps167s|auto|modbus|dyp|controlled|pwm|switch|relay)"'
     r'|->(?:id|name) *[!=]= *(?:"|FATHOM_)')
 # path: what it may say of one sensor, with the reason beside it
-MAY_SAY = {'commands/scan/scan_listen.c': 'the frames of the two that send automatically',  # codec, not driver
-           'ports/listener.c': 'the same'}
+MAY_SAY = {'ports/listener.c': 'the frames of the two that send automatically'}  # codec, not driver
 
 
 def check_particular(path, text):

@@ -9,6 +9,9 @@
 
 static const suite_t suite = {.set_up = scan_set_up};
 
+/* A device that responds adds at most this time to the estimate. */
+enum { FOUND_US = 1500000 };
+
 /* Address 4 is the dead one. */
 #define EIGHT                                                                                                \
     "a16 1 9600 8N1, a16 2 9600 8N1, a05 3 9600 8N1, a05 5 9600 8N1, a16 9 9600 8N1, hps167s 6 19200 8E1, "  \
@@ -47,7 +50,7 @@ TEST(eight_sensors_of_three_models_are_found_and_their_identities_printed)
     const uint64_t said_us = estimate_us("");
     const tool_run_t *const run = scan_finds(EIGHT, "");
     assert_int_equal(run->status, 0);
-    assert_true(run->took_us <= said_us + 8u * SCAN_FOUND_US);
+    assert_true(run->took_us <= said_us + 8u * FOUND_US);
     /* HPS-167S #3: the example is version 3.9 of 2019-09-23 */
     assert_says(run,
                 "hps167s  address 6    19200 8E1    interface 2.1.0 of 2020-09-27, sensor 3.9 of 2019-09-23, "
@@ -195,7 +198,7 @@ TEST(eight_sensors_add_less_than_their_surcharge_to_a_scan_of_every_address)
     add_eight();
     const tool_run_t *const run = scan_finds(EIGHT, everything);
     assert_true(run->took_us < UINT64_C(600000000));
-    assert_true(run->took_us <= estimate_us(everything) + 8u * SCAN_FOUND_US);
+    assert_true(run->took_us <= estimate_us(everything) + 8u * FOUND_US);
 }
 
 TEST(the_default_is_32_addresses_at_the_factory_settings_in_18_s)
@@ -306,7 +309,7 @@ TEST(ctrl_c_ends_the_scan_at_once_and_keeps_what_was_found)
         bench.tool.ctrl_c_us = ms * 1000;
         const tool_run_t *const run = scan("");
         /* The signal ends a wait of the bench with its time-out, which is at most that for any A05. */
-        assert_in_range(run->took_us, ms * 1000, ms * 1000 + SCAN_ANY_TIMEOUT_US);
+        assert_in_range(run->took_us, ms * 1000, ms * 1000 + 300000);
         assert_int_equal(run->status, run->out[0] != '\0' ? 0 : 1);
         assert_says(run, "fathom: the scan ended before all addresses were asked. Sensors found: ");
     }
@@ -344,18 +347,21 @@ TEST(a_line_without_a_sound_is_explained)
 
 TEST(neither_the_reset_nor_a_broadcast_can_be_sent)
 {
+    static const struct {
+        uint16_t first;
+        uint8_t count, address;
+    } reads[] = {{0x0009, 1, 1},
+                 {0x0009, SCAN_REGISTERS, 1},
+                 {0x0008, 2, 1},
+                 {0x0001, 3, 0}, /* unit 0 */
+                 {0x0001, SCAN_REGISTERS + 1, 1} /* more than a response has room for */};
     static scan_t none;
-    scan_request_t request = {.line = &hps167s_line, .first = 0x0009, .address = 1};
-    scan_response_t response;
-    for (request.count = 1; request.count <= SCAN_REGISTERS; request.count++) {
-        scan_ask(&none, &request, &response);
-        assert_int_equal(response.status, FATHOM_ERR_ARGUMENT);
+    for (size_t i = 0; i != sizeof reads / sizeof reads[0]; i++) {
+        none.read = (scan_read_t){.line = &hps167s_line,
+                                  .first = reads[i].first,
+                                  .count = reads[i].count,
+                                  .address = reads[i].address};
+        scan_ask(&none);
+        assert_int_equal(none.read.status, FATHOM_ERR_ARGUMENT);
     }
-    request = (scan_request_t){.line = &hps167s_line, .first = 1, .count = 3};
-    scan_ask(&none, &request, &response); /* unit 0 */
-    assert_int_equal(response.status, FATHOM_ERR_ARGUMENT);
-    request.address = 1;
-    request.count = SCAN_REGISTERS + 1; /* more than a response has room for */
-    scan_ask(&none, &request, &response);
-    assert_int_equal(response.status, FATHOM_ERR_ARGUMENT);
 }

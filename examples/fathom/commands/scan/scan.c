@@ -1,105 +1,537 @@
 /* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): open_memstream */
 #include <errno.h>
 #include <inttypes.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "commands/commands.h"
 #include "commands/scan/scan.h"
-#include "output/record.h"
-#include "ports/line_text.h"
-#include "sensors/models.h"
+#include "commands/topics.h"
+#include "diagnosis/advice.h"
+#include "output/words.h"
+#include "sensors/read_command.h"
+
+/* ---- the options ---- */
+
+enum { ITEM_TEXT = 16, FIRST_ADDRESS = 1, LAST_ADDRESS = 32 /* of an HPS-167S */, MAX_ADDRESS = 254 };
+
+/* Adds a rate that is not there yet. */
+static void add_rate(scan_rates_t *rates, uint32_t baud)
+{
+    for (uint8_t i = 0; i != rates->count; i++)
+        if (rates->baud[i] == baud) return;
+    rates->baud[rates->count++] = baud;
+}
+
+static void add_all_rates(scan_rates_t *rates)
+{
+    for (size_t i = 0; i != model_count; i++) {
+        add_rate(rates, models[i].line.baud);
+        for (const uint32_t *rate = models[i].rates; rate != NULL && *rate != 0; rate++)
+            add_rate(rates, *rate);
+    }
+}
+
+static bool parse_rates(const char *text, void *member)
+{
+    scan_rates_t *const rates = member;
+    *rates = (scan_rates_t){0};
+    if (strcmp(text, "all") == 0) {
+        add_all_rates(rates);
+        return true;
+    }
+    while (text != NULL) {
+        char item[ITEM_TEXT];
+        uint32_t baud = 0;
+        text = next_word(text, ',', item, sizeof item);
+        if (!baud_parse(item, &baud)) return false;
+        add_rate(rates, baud);
+    }
+    return true;
+}
+
+static bool parse_parities(const char *text, void *member)
+{
+    uint8_t *const parities = member;
+    *parities = 0;
+    if (strcmp(text, "all") == 0) text = "none,even,odd";
+    while (text != NULL) {
+        char item[ITEM_TEXT];
+        uint8_t parity = 0;
+        text = next_word(text, ',', item, sizeof item);
+        if (!parity_parse(item, &parity)) return false;
+        *parities |= (uint8_t)(1u << parity);
+    }
+    return true;
+}
+
+/* Address 0 stands alone, since most units obey it as a broadcast. */
+static bool parse_addresses(const char *text, void *member)
+{
+    scan_addresses_t *const addresses = member;
+    uint32_t first = 0;
+    uint32_t last = 0;
+    if (strcmp(text, "0") != 0 && !range_parse(text, 1, MAX_ADDRESS, &first, &last)) return false;
+    *addresses = (scan_addresses_t){(uint8_t)first, (uint8_t)last};
+    return true;
+}
+
+static const option_t rows[] = {
+    {"port", "PATH", "Use the serial port PATH (default: $FATHOM_PORT)", KIND_TEXT, GROUP_LINE,
+     AT(scan_settings_t, port), .is_once = true},
+    {"address", "A-B", "Ask the addresses A to B of 1-254, or 0 (default 1-32)", KIND_CUSTOM, GROUP_COMMAND,
+     .takes = "an address from 1 to 254, a range such as 1-32, or 0", .parse = parse_addresses,
+     AT(scan_settings_t, addresses), HAS(scan_settings_t, has_addresses)},
+    {"baud", "LIST", "Try these rates, or all (default 9600,19200)", KIND_CUSTOM, GROUP_LINE,
+     .takes = "all, or some of 9600, 19200, 38400, 57600, 115200 and 230400 with commas between them",
+     .words = "all 9600 19200 38400 57600 115200 230400", .parse = parse_rates, AT(scan_settings_t, rates)},
+    {"parity", "LIST", "Try these parities, or all (default: factory setting)", KIND_CUSTOM, GROUP_LINE,
+     .takes = "all, or some of none, even and odd with commas between them", .words = "all none even odd",
+     .parse = parse_parities, AT(scan_settings_t, parities)},
+    {"stop-bits", "N", "Set 1 or 2 stop bits; 2 implies no parity", KIND_NUMBER, GROUP_LINE, .min = 1,
+     .max = 2, AT(scan_settings_t, stop_bits)},
+    {"timeout", "MS", "Wait MS for a response (150 at 9600 8N1, else 100)", KIND_NUMBER, GROUP_COMMAND,
+     .min = 1, .max = 10000, .scale = 1000, AT(scan_settings_t, timeout_us)},
+    {"retries", "N", "Ask a silent address N more times (default 0)", KIND_NUMBER, GROUP_COMMAND, .max = 9,
+     AT(scan_settings_t, retries)},
+    {"listen", "S", "Listen for S seconds before the first request (8)", KIND_NUMBER, GROUP_COMMAND, .min = 1,
+     .max = 60, .scale = 1000000, AT(scan_settings_t, listen_us)},
+    {"wake", .help = "Send requests also if a sensor sends automatically", .group = GROUP_COMMAND,
+     AT(scan_settings_t, wake)},
+    {"estimate", .help = "Print how long the scan would take, and stop", .group = GROUP_COMMAND,
+     AT(scan_settings_t, estimate)},
+    {"format", "FORMAT", "Print text or json, one object a line (default text)", KIND_CHOICE, GROUP_OUTPUT,
+     .words = "text json", AT(scan_settings_t, is_json)},
+    {.name = NULL},
+};
+
+static const option_table_t tables[] = {{rows, 0}, {NULL, 0}};
+
+/* ---- the plan ---- */
+
+/* The datasheets print no period of the frames. A16 2(2) gives its value 7.5 s to settle. */
+enum { DEFAULT_LISTEN_US = 8000000 };
+
+/* Returns none at 9600 baud and even above, which an HPS-167S keeps at all its rates (HPS-167S 2.2.2). */
+static uint8_t factory_parity(uint32_t baud)
+{
+    size_t i = 0;
+    while (i != model_count - 1 && !model_has_rate(&models[i], baud)) i++;
+    return models[i].line.parity;
+}
+
+/* The parity of the factory comes first: at an address where a device responds, the others of this rate are left out. */
+static void add_lines(scan_settings_t *plan, uint32_t baud, unsigned parities)
+{
+    const uint8_t factory = factory_parity(baud);
+    if (parities == 0) parities = 1u << factory;
+    for (uint8_t i = 0; i <= SCAN_PARITIES; i++) {
+        const uint8_t parity = i == 0 ? factory : (uint8_t)(i - 1);
+        if ((parities & 1u << parity) == 0 || (i != 0 && parity == factory)) continue;
+        plan->lines[plan->line_count++] = (fathom_line_settings_t){baud, parity, plan->stop_bits};
+    }
+}
+
+/* Fills in the defaults, and the line settings. */
+static void make_plan(scan_settings_t *plan)
+{
+    unsigned parities = plan->parities;
+    if (parities == 0 && plan->stop_bits == 2) parities = 1u << FATHOM_PARITY_NONE; /* HPS-167S 2.2.2 */
+    plan->is_default =
+        !plan->has_addresses && plan->rates.count == 0 && plan->parities == 0 && plan->stop_bits == 0;
+    if (plan->stop_bits == 0) plan->stop_bits = 1;
+    if (plan->listen_us == 0) plan->listen_us = DEFAULT_LISTEN_US;
+    if (!plan->has_addresses) plan->addresses = (scan_addresses_t){FIRST_ADDRESS, LAST_ADDRESS};
+    if (plan->rates.count == 0)
+        for (size_t i = 0; i != model_count; i++) add_rate(&plan->rates, models[i].line.baud);
+    for (uint8_t i = 0; i != plan->rates.count; i++) add_lines(plan, plan->rates.baud[i], parities);
+}
+
+/* A slower unit has to recognise the silence before a request, too. */
+static const fathom_line_settings_t *slowest_of(const scan_settings_t *plan)
+{
+    const fathom_line_settings_t *slowest = &plan->lines[0];
+    for (uint8_t i = 1; i != plan->line_count; i++)
+        if (fathom_silence_us(&plan->lines[i]) > fathom_silence_us(slowest)) slowest = &plan->lines[i];
+    return slowest;
+}
 
 /* Prints "addresses 1 to 32 at 9600 8N1, 19200 8E1". */
-static void print_plan(FILE *to, const scan_plan_t *plan)
+static void print_plan(FILE *to, const scan_settings_t *plan)
 {
-    char settings[LINE_TEXT];
+    char line[LINE_TEXT];
     if (plan->addresses.first == plan->addresses.last)
         (void)fprintf(to, "address %u at", plan->addresses.first);
     else
         (void)fprintf(to, "addresses %u to %u at", plan->addresses.first, plan->addresses.last);
-    for (uint8_t i = 0; i != plan->setting_count; i++)
-        (void)fprintf(to, "%s %s", i != 0 ? "," : "", line_text(&plan->settings[i], settings));
+    for (uint8_t i = 0; i != plan->line_count; i++)
+        (void)fprintf(to, "%s %s", i != 0 ? "," : "", line_text(&plan->lines[i], line));
 }
 
-static int print_estimate(const scan_plan_t *plan, bool is_json)
+static int print_estimate(const scan_settings_t *plan)
 {
     const uint64_t all_us = scan_plan_us(plan);
-    if (is_json) {
-        json_t json = {.to = stdout};
-        json_begin(&json, NULL, '{');
-        json_value(&json, "settings", "%u", plan->setting_count);
-        json_value(&json, "addresses", "%" PRIu32, scan_address_count(plan));
-        json_value(&json, "duration_s", "%" PRIu64, (all_us + 999999u) / 1000000u);
-        json_end(&json, '}');
-        (void)puts("");
+    char duration[DURATION_TEXT];
+    if (plan->is_json) {
+        (void)printf("{\"settings\":%u,\"addresses\":%u,\"duration_s\":%" PRIu64 "}\n", plan->line_count,
+                     plan->addresses.last - plan->addresses.first + 1u, (all_us + 999999u) / 1000000u);
     } else {
-        char duration[DURATION_TEXT];
         print_plan(stdout, plan);
         (void)printf(": about %s, and a second for each sensor\n", duration_text(all_us, duration));
     }
     return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
 }
 
-static void announce(const scan_plan_t *plan)
+/* ---- a finding ---- */
+
+static const char *const modes[] = {[SCAN_MODBUS] = "modbus", [SCAN_AUTO] = "auto", [SCAN_DYP] = "dyp"};
+
+static const struct {
+    const char *name;
+    const char *text;
+} kinds[] = {
+    [SCAN_SENSOR] = {"sensor", NULL},
+    [SCAN_OTHER] = {"other_modbus", "a Modbus device that is none of the known sensors"},
+    [SCAN_DAMAGED] = {"damaged", "damaged responses: two sensors with one address?"},
+    [SCAN_NOT_MODBUS] = {"not_modbus", "a response that is not Modbus"},
+    [SCAN_SENDER] = {"sender", "sends without requests, but no frames of the known sensors"},
+    [SCAN_MASTER] = {"master", "another master sends requests to this address"},
+};
+
+/* Address 0 is one only if a sensor responded there. */
+static bool has_address(const scan_finding_t *finding)
 {
+    return finding->address != 0 || (finding->kind == SCAN_SENSOR && finding->mode == SCAN_MODBUS);
+}
+
+static void print_next(FILE *to, const scan_finding_t *finding, const char *port)
+{
+    read_command_print(to, finding->model, modes[finding->mode],
+                       finding->mode == SCAN_AUTO ? -1 : finding->address, &finding->line, port);
+}
+
+/* Returns what a sensor has reported; of another device nothing. */
+static finding_facts_t facts_of(const scan_finding_t *finding)
+{
+    finding_facts_t facts = {.termination = NO_VALUE, .distance_mm = NO_VALUE, .raw = NO_VALUE};
+    if (finding->kind == SCAN_SENSOR) finding->model->describe(finding->model, finding, &facts);
+    return facts;
+}
+
+/* The fields below name the members by their offsets. */
+typedef struct {
+    finding_facts_t facts;
+    /* cppcheck-suppress unusedStructMember */
+    const char *kind, *model, *parity, *mode, *interface_version, *sensor_version, *uuid;
+    char *next;
+    /* cppcheck-suppress unusedStructMember */
+    int64_t address, baud, stop_bits, is_double;
+} row_t;
+
+enum { SENSOR = 1, OPTICS = 2, VALUE = 4 };
+
+#define FOUND(member) offsetof(row_t, member)
+static const field_t fields[] = {
+    {"kind", "", "What was found: sensor, other_modbus, damaged, ...", FIELD_WORD, 0, FOUND(kind)},
+    {"model", "", "Model; null unless it is one of the known sensors", FIELD_WORD, 0, FOUND(model)},
+    {"address", "", "Address; null if there is none", FIELD_NUMBER, 0, FOUND(address)},
+    {"baud", "", "Baud rate", FIELD_NUMBER, 0, FOUND(baud)},
+    {"parity", "", "Parity", FIELD_WORD, 0, FOUND(parity)},
+    {"stop_bits", "", "Stop bits", FIELD_NUMBER, 0, FOUND(stop_bits)},
+    {"mode", "", "Mode in which the sensor can be read", FIELD_WORD, SENSOR, FOUND(mode)},
+    {"interface_version", "", "Version of the interface (hps167s)", FIELD_WORD, OPTICS,
+     FOUND(interface_version)},
+    {"sensor_version", "", "Version of the sensor (hps167s)", FIELD_WORD, OPTICS, FOUND(sensor_version)},
+    {"uuid", "", "Unique number of the sensor (hps167s)", FIELD_WORD, OPTICS, FOUND(uuid)},
+    {"termination", "", "Whether the termination resistor is on (hps167s)", FIELD_FLAG, OPTICS,
+     FOUND(facts.termination)},
+    {"status", "", "Kind of the first value", FIELD_WORD, VALUE, FOUND(facts.status)},
+    {"distance_mm", "mm", "Distance of the first probe", FIELD_NUMBER, VALUE, FOUND(facts.distance_mm)},
+    {"raw", "", "Value that the sensor sent", FIELD_NUMBER, VALUE, FOUND(facts.raw)},
+    {"is_double", "", "Whether one request had two responses", FIELD_FLAG, 0, FOUND(is_double)},
+    {"next", "", "Command to type next", FIELD_WORD, 0, FOUND(next)},
+    {.key = NULL},
+};
+#undef FOUND
+
+void scan_help_fields(FILE *to) { record_help(to, fields); }
+
+static const char *word_of(const char *text) { return text[0] != '\0' ? text : NULL; }
+
+static void print_json(const scan_finding_t *finding, const char *port)
+{
+    const bool is_sensor = finding->kind == SCAN_SENSOR;
+    row_t row = {.facts = facts_of(finding),
+                 .kind = kinds[finding->kind].name,
+                 .model = is_sensor ? finding->model->name : NULL,
+                 .parity = parity_name(finding->line.parity),
+                 .mode = is_sensor ? modes[finding->mode] : NULL,
+                 .address = has_address(finding) ? finding->address : NO_VALUE,
+                 .baud = finding->line.baud,
+                 .stop_bits = finding->line.stop_bits,
+                 .is_double = finding->is_double};
+    size_t size = 0;
+    FILE *const next = is_sensor ? open_memstream(&row.next, &size) : NULL;
+    if (next != NULL) {
+        print_next(next, finding, port);
+        (void)fclose(next);
+    }
+    row.interface_version = word_of(row.facts.interface_version);
+    row.sensor_version = word_of(row.facts.sensor_version);
+    row.uuid = word_of(row.facts.uuid);
+    record_json_line(stdout, fields, &row,
+                     (is_sensor ? SENSOR : 0u) | (is_sensor && finding->model->has_optics ? OPTICS : 0u) |
+                         (row.facts.raw != NO_VALUE ? VALUE : 0u));
+    free(row.next);
+}
+
+static void print_versions(const finding_facts_t *facts)
+{
+    const bool has_interface = facts->interface_version[0] != '\0';
+    const bool has_sensor = facts->sensor_version[0] != '\0';
+    if (!has_interface && !has_sensor) (void)printf("sends unsolicited responses");
+    if (has_interface) (void)printf("interface %s", facts->interface_version);
+    if (has_sensor) (void)printf("%ssensor %s", has_interface ? ", " : "", facts->sensor_version);
+    if (facts->termination != NO_VALUE)
+        (void)printf(", termination %s", facts->termination != 0 ? "on" : "off");
+}
+
+static void print_sensor(const scan_finding_t *finding)
+{
+    const finding_facts_t facts = facts_of(finding);
+    const char *const probe = finding->model->probes > 1 ? "probe 1: " : "";
+    if (finding->mode == SCAN_AUTO)
+        (void)printf("sends without requests");
+    else if (facts.distance_mm != NO_VALUE)
+        (void)printf("%s%" PRId64 " mm", probe, facts.distance_mm);
+    else if (facts.raw != NO_VALUE)
+        (void)printf("%s%s (value %" PRId64 ")", probe, facts.status, facts.raw);
+    else if (finding->model->has_optics)
+        print_versions(&facts);
+}
+
+/* Prints a finding in a line, with the command to type next. */
+static void print_text(const scan_finding_t *finding, const char *port)
+{
+    const bool is_sensor = finding->kind == SCAN_SENSOR;
+    char line[LINE_TEXT];
+    char address[16] = "-";
+    if (has_address(finding)) (void)snprintf(address, sizeof address, "address %u", finding->address);
+    (void)printf("%-8s %-12s %-11s  ", is_sensor ? finding->model->name : "?", address,
+                 line_text(&finding->line, line));
+    if (is_sensor)
+        print_sensor(finding);
+    else
+        (void)printf("%s", kinds[finding->kind].text);
+    if (finding->is_double)
+        (void)printf(", responds twice%s", is_sensor ? "" : ": two sensors with one address?");
+    if (is_sensor) {
+        (void)printf("  ->  ");
+        print_next(stdout, finding, port);
+    }
+    (void)printf("\n");
+}
+
+/* Prints what to do about a finding; nothing for most. */
+static void print_advice(const scan_finding_t *finding)
+{
+    char line[LINE_TEXT];
+    (void)line_text(&finding->line, line);
+    if (finding->kind == SCAN_DAMAGED)
+        (void)fprintf(stderr,
+                      "fathom: responses from address %u (%s) are damaged: do two sensors have this address? "
+                      "Connect one at a time. If the sensor is alone, check --parity, the cable and its "
+                      "termination.\n",
+                      finding->address, line);
+    else if (finding->kind == SCAN_NOT_MODBUS)
+        (void)fprintf(
+            stderr,
+            "fathom: a device responds at %s, but not in Modbus. An HPS-167S made before 2020-09 has "
+            "another protocol. Another --baud or --parity, swapped wires A and B and noise have the "
+            "same effect.\n",
+            line);
+    else if (finding->is_double)
+        (void)fprintf(stderr,
+                      "fathom: a request to address %u had two responses: do two sensors have this address? "
+                      "Connect one at a time.\n",
+                      finding->address);
+}
+
+void scan_report(scan_t *scan, const scan_finding_t *finding)
+{
+    progress_clear(&scan->progress);
+    errno = 0;
+    (scan->settings->is_json ? print_json : print_text)(finding, scan->settings->port);
+    scan->output_error = output_flush();
+    if (scan->output_error != 0) scan->status = FATHOM_ERR_CANCELLED;
+    print_advice(finding);
+    if (finding->kind != SCAN_SENSOR) return;
+    scan->sensors++;
+    if (finding->has_config && finding->has_termination) {
+        scan->terminations++;
+        scan->terminated = finding->model;
+    }
+    if (finding->model == scan->sender.model && finding->mode != SCAN_AUTO) scan->awakened++;
+}
+
+/* ---- the result ---- */
+
+static failure_t failure_of(const scan_t *scan, fathom_status_t status)
+{
+    failure_t failure = failure_of_request(status, &scan->port);
+    failure.evidence = scan->heard;
+    failure.is_scan = true;
+    return failure;
+}
+
+static void print_why_nothing_was_sent(const scan_finding_t *sender)
+{
+    (void)fputs("fathom: nothing was sent, because ", stderr);
+    if (sender->kind == SCAN_MASTER)
+        (void)fputs(
+            "another master sends requests on this line. Disconnect it or stop its program, and scan again",
+            stderr);
+    else if (sender->kind == SCAN_SENDER && sender->address == 0)
+        (void)fputs("a device sends without a request. An HPS-167S made before 2020-09 has another protocol. "
+                    "Another rate, swapped wires A and B and noise have the same effect",
+                    stderr);
+    else if (sender->mode == SCAN_AUTO)
+        (void)fprintf(stderr, "even a read ends %s", sender->model->request_ends);
+    else
+        (void)fputs("requests would collide with its unsolicited frames", stderr);
+    (void)fputs(". To ask anyway, use --wake.\n", stderr);
+}
+
+static void print_nothing(const scan_t *scan)
+{
+    failure_t failure = failure_of(scan, FATHOM_ERR_NO_RESPONSE);
+    failure.evidence.masters = 0; /* print_others() has said it */
+    (void)fputs("fathom: ", stderr);
+    if (scan->not_asked != 0)
+        (void)fputs("no sensor was found", stderr);
+    else
+        advice_print(stderr, &failure);
+    if (scan->settings->is_default)
+        (void)fprintf(stderr,
+                      ". To find a sensor with other settings, run 'fathom scan --port %s --address 1-254 "
+                      "--baud all --parity all' (about 7 minutes)",
+                      scan->settings->port);
+    (void)fputs(". A sensor that was just switched on may need 5 s\n", stderr);
+}
+
+static void print_others(const scan_t *scan)
+{
+    failure_t failure = failure_of(scan, FATHOM_ERR_LINE_BUSY);
+    if (scan->heard.masters != 0) {
+        (void)fputs("fathom: ", stderr);
+        advice_print_cause(stderr, &failure);
+        (void)fputs(". Then scan again\n", stderr);
+    }
+    if (scan->not_asked != 0) {
+        if (scan->has_other_master) failure.status = FATHOM_ERR_OTHER_MASTER;
+        (void)fprintf(stderr, "fathom: %" PRIu32 " addresses could not be asked: ", scan->not_asked);
+        advice_print_cause(stderr, &failure);
+        (void)fputs(". Then scan again\n", stderr);
+    }
+    if (scan->outside != 0)
+        (void)fprintf(
+            stderr,
+            "fathom: a frame from address %u was heard, which the scan did not ask. Use --address %u.\n",
+            scan->outside, scan->outside);
+}
+
+/* Prints the result of a scan that went to its end, and what to check. */
+static void print_result(const scan_t *scan)
+{
+    const scan_finding_t *const sender = &scan->sender;
     char duration[DURATION_TEXT];
-    (void)fputs("fathom: asking ", stderr);
-    print_plan(stderr, plan);
-    (void)fprintf(stderr, " takes about %s, and a second for each sensor\n",
-                  duration_text(scan_plan_us(plan), duration));
+    if (sender->kind != 0 && !scan->settings->wake) {
+        print_why_nothing_was_sent(sender);
+        return;
+    }
+    if (scan->awakened != 0 && sender->mode == SCAN_AUTO)
+        (void)fprintf(
+            stderr,
+            "fathom: the sensor sent automatically until the scan asked it. It sends again after a power "
+            "cycle%s.\n",
+            sender->model->automatic_again != NULL ? sender->model->automatic_again : "");
+    print_others(scan);
+    if (scan->terminations > 1)
+        (void)fprintf(
+            stderr,
+            "fathom: %" PRIu32 " sensors have their termination resistor on, the factory setting, which "
+            "overloads the line. Switch it off in all but the last sensor with 'fathom set %s:ADDRESS "
+            "--port %s termination off'.\n",
+            scan->terminations, scan->terminated->name, scan->settings->port);
+    if (scan->sensors == 0) print_nothing(scan);
+    (void)fprintf(stderr, "fathom: sensors found: %" PRIu32 ", after %s\n", scan->sensors,
+                  duration_text(scan_now_us(scan) - scan->start_us, duration));
 }
 
-static fathom_status_t scan_line(scan_t *scan)
-{
-    announce(&scan->plan);
-    scan->start_us = scan_now_us(scan);
-    progress_init(&scan->progress, stderr, scan->start_us, scan_plan_us(&scan->plan));
-    const fathom_status_t status = scan_listen(scan);
-    return status != FATHOM_OK || (scan->has_sender && !scan->settings->wake) ? status : scan_walk(scan);
-}
+/* ---- the command ---- */
 
-static int finish(scan_t *scan, fathom_status_t status)
+static int finish(scan_t *scan)
 {
     const host_t *const host = scan->port.host;
     progress_clear(&scan->progress);
     if (scan->output_error == EINTR && host->has_ended(host->ctx)) scan->output_error = 0;
     /* The reader of a pipe has read enough, as head does. That needs no message. */
     if (scan->output_error == EPIPE || host->is_output_gone(host->ctx)) return STATUS_FAILED;
-    if (status == FATHOM_OK && scan->has_sender && scan->awakened == 0) scan_report(scan, &scan->sender);
-    if (status == FATHOM_OK && scan->output_error == 0) scan_print_result(scan);
-    if (scan->output_error != 0)
+    if (scan->status == FATHOM_OK && scan->sender.kind != 0 && scan->awakened == 0)
+        scan_report(scan, &scan->sender);
+    if (scan->output_error != 0) {
         (void)fprintf(stderr, "fathom: cannot write the output: %s\n", strerror(scan->output_error));
-    else if (status == FATHOM_ERR_PORT)
-        scan_print_port_failure(scan);
-    else if (status != FATHOM_OK)
+        return STATUS_FAILED;
+    }
+    if (scan->status == FATHOM_ERR_PORT) {
+        const failure_t failure = failure_of(scan, FATHOM_ERR_PORT);
+        (void)fputs("fathom: ", stderr);
+        advice_print(stderr, &failure);
+        (void)fputs("\n", stderr);
+        return STATUS_FAILED;
+    }
+    if (scan->status == FATHOM_OK)
+        print_result(scan);
+    else
         (void)fprintf(stderr,
                       "fathom: the scan ended before all addresses were asked. Sensors found: %" PRIu32 ".\n",
                       scan->sensors);
-    return scan->sensors != 0 && scan->output_error == 0 && status != FATHOM_ERR_PORT ? STATUS_OK
-                                                                                      : STATUS_FAILED;
+    return scan->sensors != 0 ? STATUS_OK : STATUS_FAILED;
 }
 
 static int run(scan_t *scan, const host_t *host)
 {
+    const scan_settings_t *const settings = scan->settings;
+    const port_settings_t port = {.path = settings->port,
+                                  .line = model_with(DECODE_STREAM_ONE | DECODE_STREAM_FOUR)->line};
+    char duration[DURATION_TEXT];
     if (!host->begin(host->ctx)) return STATUS_FAILED;
-    if (!port_open_now(&scan->port, host,
-                       &(port_settings_t){.path = scan->settings->port, .line = *scan_listen_line()})) {
+    if (!port_open_now(&scan->port, host, &port)) {
         (void)fprintf(stderr, "fathom: %s\n", port_error(&scan->port));
         return STATUS_FAILED;
     }
-    scan->port.parts.silence_us = scan_silence_us(&scan->plan);
-    const int status = finish(scan, scan_line(scan));
+    port_set_slowest(&scan->port, slowest_of(settings));
+    (void)fputs("fathom: asking ", stderr);
+    print_plan(stderr, settings);
+    (void)fprintf(stderr, " takes about %s, and a second for each sensor\n",
+                  duration_text(scan_plan_us(settings), duration));
+    scan->start_us = scan_now_us(scan);
+    progress_init(&scan->progress, stderr, scan->start_us, scan_plan_us(settings));
+    scan_listen(scan);
+    if (scan->sender.kind == 0 || settings->wake) scan_walk(scan);
+    const int status = finish(scan);
     port_close(&scan->port);
     return status;
 }
 
 static int start(const host_t *host, const arguments_t *arguments)
 {
+    static const origin_t origin = {.command = "scan"};
     static scan_t scan;
-    const scan_settings_t *const settings = arguments->settings;
-    const origin_t origin = {.command = "scan"};
+    scan_settings_t *const settings = arguments->settings;
+    make_plan(settings);
     scan = (scan_t){.settings = settings, .port.watches_output = true};
-    scan_make_plan(&scan.plan, settings);
     if (arguments->count != 0 && settings->port == NULL)
         (void)reject(&origin, "scan takes options only. Use --port %s.", arguments->words[0]);
     else if (arguments->count != 0)
@@ -111,7 +543,7 @@ static int start(const host_t *host, const arguments_t *arguments)
         (void)reject(&origin, "scan needs a serial port. The rates behind '%s' are those of the gateway.",
                      settings->port);
     else
-        return settings->estimate ? print_estimate(&scan.plan, settings->is_json) : run(&scan, host);
+        return settings->estimate ? print_estimate(settings) : run(&scan, host);
     return STATUS_USAGE;
 }
 
@@ -119,7 +551,7 @@ const command_t scan_command = {
     .name = "scan",
     .summary = "Find the sensors on a serial line",
     .usage = "--port PATH [OPTIONS]",
-    .tables = scan_tables,
+    .tables = tables,
     .common = "port address baud wake format",
     .own_group = "Scan",
     .about = "It only reads: no request can change a setting. But even a read ends the\n"
