@@ -1,220 +1,623 @@
 /* SPDX-License-Identifier: MIT */
-#include "commands/commission/commission.h"
-
 #include <inttypes.h>
+#include <stdarg.h>
 #include <string.h>
 
+#include "cli/command.h"
+#include "cli/session_options.h"
 #include "commands/commands.h"
+#include "commands/commission/record.h"
+#include "device/change.h"
+#include "device/presence.h"
+#include "device/setting_text.h"
+#include "output/words.h"
 
 /* fathom commission assigns addresses to new sensors that all have address 1, one after the other. */
 
+enum {
+    TRIES = 3,          /* attempts to read a setting, or to find out what responds at an address */
+    MOST_UNWRITTEN = 3, /* times that a sensor may respond and then not be written, before the command ends */
+    /* An HPS-167S does not measure in the first 5 s after power-on, or longer (#7). */
+    MEASURED_WITHIN_US = 20000000,
+    PAUSE_US = 200000,
+    /* A response to the last request of an interrupted run could be mistaken for one of this run. */
+    LATE_US = 1000000
+};
+
+static session_t session;
+static struct {
+    const host_t *host;
+    record_t record;
+    const model_t *model;
+    FILE *text; /* for people: stdout, or stderr with JSON */
+    bool has_numbers;
+    uint8_t addresses[RECORD_UNITS]; /* to assign, in this order */
+    size_t count;
+    uint8_t terminated;       /* the address at which the termination stays on; 0: at none */
+    unsigned unwritten_count; /* how often in a row a sensor responded and then could not be written */
+    bool is_written;          /* something was written to the present sensor */
+    char prompt[200];         /* the last instruction to the user, which is not repeated */
+} run;
+
+/* The result for one sensor. */
+typedef enum {
+    DONE,   /* it has its address. Its record is `done`, or the user has to switch it off and on */
+    LATER,  /* nothing was written, and the user knows what to do */
+    STOPPED /* the command ends; the reason was printed, or the user has ended it */
+} end_t;
+
+/* ---- options ---- */
+
+typedef struct {
+    session_settings_t session;
+    const char *addresses;
+    const char *record;
+    const char *terminated; /* NULL: not given */
+    uint64_t wait_us;
+} commission_settings_t;
+
+static const option_t rows[] = {
+    {"addresses", "LIST", "Assign these addresses in this order, such as 2-9 or 5,7,10-12", KIND_TEXT,
+     GROUP_COMMAND, AT(commission_settings_t, addresses), .is_required = true,
+     .takes = "addresses and ranges, such as 2-9 or 5,7,10-12"},
+    {"record", "FILE", "Store in FILE which sensor has which address; continue if it exists", KIND_TEXT,
+     GROUP_COMMAND, AT(commission_settings_t, record), .is_required = true, .is_path = true,
+     .takes = "the name of a file"},
+    {"terminated", "N", "Leave the termination of an hps167s on at address N, or at none (default: the last)",
+     KIND_TEXT, GROUP_COMMAND, AT(commission_settings_t, terminated)},
+    {"wait", "S", "Stop if no sensor was commissioned for S seconds", KIND_NUMBER, GROUP_COMMAND, .min = 1,
+     .max = 86400, .scale = 1000000, AT(commission_settings_t, wait_us)},
+    {.name = NULL},
+};
+
+static const option_table_t tables[] = {{rows, 0}, SESSION_TABLES, {session_format_rows, 0}, {NULL, 0}};
+
 static const origin_t origin = {.command = "commission"};
 
-static bool is_open(const commission_t *run, const record_unit_t *unit)
-{
-    return unit->model == run->model && unit->state != RECORD_DONE;
-}
+static bool is_listed(uint32_t address) { return memchr(run.addresses, (int)address, run.count) != NULL; }
 
-static bool has_open(const commission_t *run)
+/* "2-9" or "5,7,10-12,1". */
+static bool set_addresses(const char *list)
 {
-    for (uint32_t i = 0; i != run->record.count; i++)
-        if (is_open(run, &run->record.units[i])) return true;
-    return false;
-}
-
-/* Returns the first address of the list that is not in the record, or 0. A sensor that keeps address 1 would be in the way
- * of all others, so it comes last. */
-static uint8_t next_address(commission_t *run)
-{
-    for (uint32_t i = 0; i != run->options.count; i++) {
-        const uint8_t address = run->options.addresses[i];
-        if (record_at(&run->record, address) == NULL && (address != FACTORY_ADDRESS || !has_open(run)))
-            return address;
+    while (list != NULL) {
+        char item[16];
+        uint32_t address = 0;
+        uint32_t last = 0;
+        list = next_word(list, ',', item, sizeof item);
+        if (!range_parse(item, 1, run.model->max_address, &address, &last))
+            return reject(&origin,
+                          "--addresses has '%s'. It takes addresses from 1 to %u and ranges with commas "
+                          "between them, such as 2-9 or 5,7,10-12.",
+                          item, run.model->max_address);
+        for (; address <= last; address++) {
+            if (is_listed(address))
+                return reject(&origin, "--addresses has address %u twice.", (unsigned)address);
+            run.addresses[run.count++] = (uint8_t)address;
+        }
     }
-    return 0;
+    if (!is_listed(FACTORY_ADDRESS) || run.addresses[run.count - 1] == FACTORY_ADDRESS) return true;
+    return reject(&origin,
+                  "--addresses has address %d before its end. All new sensors have it, so only the last "
+                  "one can keep it, such as --addresses 2-8,1.",
+                  FACTORY_ADDRESS);
 }
 
-static bool is_same(const record_unit_t *unit, const presence_t *presence)
+static bool set_terminated(const char *text)
 {
-    return presence->what == PRESENT_ONE && strcmp(unit->number, presence->number) == 0;
-}
-
-static presence_t look_at(commission_t *run, uint8_t address, unsigned times)
-{
-    return presence_ask(&run->session, address, &run->session.sensor->line, times);
-}
-
-/* ---- resuming ---- */
-
-/* Finishes a planned sensor, which is at its address or still at address 1. */
-static commission_end_t resume(commission_t *run, const record_unit_t *unit)
-{
-    presence_t presence = look_at(run, unit->address, 2);
-    if (presence.what == PRESENT_UNCLEAR || presence.what == PRESENT_UNKNOWN)
-        presence = look_at(run, unit->address, 2);
-    if (is_same(unit, &presence)) return commission_sensor(run, unit, unit->address);
-    if (presence.what == PRESENT_NONE) {
-        presence = look_at(run, FACTORY_ADDRESS, 2);
-        if (is_same(unit, &presence)) return commission_sensor(run, unit, FACTORY_ADDRESS);
-    }
-    if (presence.what == PRESENT_STOPPED) return COMMISSION_STOPPED;
-    (void)fprintf(commission_text(run), "address %u stays reserved: its sensor%s%s was not found\n",
-                  unit->address, record_has_numbers(run->model) ? " " : "",
-                  record_has_numbers(run->model) ? unit->number : "");
-    return COMMISSION_LATER;
-}
-
-static bool resume_all(commission_t *run)
-{
-    for (uint32_t i = 0; i != run->record.count; i++) {
-        const record_unit_t unit = run->record.units[i]; /* the record changes meanwhile */
-        if (is_open(run, &unit) && resume(run, &unit) == COMMISSION_STOPPED) return false;
-    }
+    uint32_t address = run.addresses[run.count - 1];
+    const bool has_termination = setting_of(run.model->settings, "termination") != NULL;
+    if (text != NULL && !has_termination)
+        return reject(&origin, "--terminated has no effect on %s, which has no such setting.",
+                      run.model->name);
+    if (!has_termination || (text != NULL && strcmp(text, "none") == 0)) return true;
+    if (text != NULL && (!number_parse(text, 1, run.model->max_address, &address) || !is_listed(address)))
+        return reject(&origin, "--terminated is '%s'. It takes one of --addresses, or none.", text);
+    run.terminated = (uint8_t)address;
     return true;
 }
 
-/* Sensors without a UUID have to stay connected. Otherwise a planned sensor that has already moved may be absent too, and
- * another one would get its address. */
-static bool is_present(commission_t *run, const record_unit_t *unit)
+static bool set_options(const arguments_t *arguments)
 {
-    const presence_t presence = look_at(run, unit->address, 2);
-    if (presence.what == PRESENT_STOPPED) return false;
-    if (presence.what != PRESENT_UNKNOWN && presence.what != PRESENT_NONE) return true;
-    (void)fprintf(stderr, "fathom: nothing was written: address %u is done in the record, but ",
-                  unit->address);
-    if (presence.what == PRESENT_NONE) {
-        (void)fputs("no sensor responds there. Connect it and switch it on. If you took it away, remove its "
-                    "line from the record and its address from --addresses\n",
-                    stderr);
+    const commission_settings_t *const settings = arguments->settings;
+    if (!session_read(&session, arguments, 1, 0) ||
+        !session_set_mode(&session, arguments, model_mode_of(session.sensor->model, NULL)))
         return false;
-    }
-    presence_explain(&run->session, &presence);
+    if (session.sensor->address != FACTORY_ADDRESS)
+        return reject(&origin, "new sensors have address %d. Leave address %u out.", FACTORY_ADDRESS,
+                      session.sensor->address);
+    if (port_path_has_gateway(session_port(&session)->path))
+        return reject(&origin,
+                      "%s is no serial port. Behind a gateway, two sensors at one address look like one.",
+                      session_port(&session)->path);
+    run.model = session.sensor->model;
+    run.has_numbers = record_has_numbers(run.model);
+    run.text = session.is_json ? stderr : stdout;
+    return set_addresses(settings->addresses) && set_terminated(settings->terminated);
+}
+
+/* ---- output and input ---- */
+
+static uint64_t now_us(void) { return run.host->now_us(run.host->ctx); }
+
+static bool has_ended(void) { return run.host->has_ended(run.host->ctx); }
+
+static bool store(const record_unit_t *unit)
+{
+    return record_put(&run.record, unit, run.host->utc_us(run.host->ctx));
+}
+
+/* Prints an instruction to the user, unless it is the same as the last one. */
+static void prompt(const char *format, ...) __attribute__((format(printf, 1, 2)));
+static void prompt(const char *format, ...)
+{
+    char text[sizeof run.prompt];
+    va_list arguments;
+    va_start(arguments, format);
+    (void)vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    if (strcmp(text, run.prompt) == 0) return;
+    memcpy(run.prompt, text, sizeof text);
+    (void)fprintf(run.text, "%s\n", text);
+    (void)fflush(run.text);
+}
+
+static bool has_output(void)
+{
+    if (output_flush() == 0) return true;
+    (void)fputs("fathom: cannot write the output. The command ends.\n", stderr);
+    return false;
+}
+
+static void print_number(FILE *to, const char *before, const record_unit_t *unit)
+{
+    if (run.has_numbers) (void)fprintf(to, "%s%s", before, unit->number);
+}
+
+static presence_t look(uint8_t address, unsigned times)
+{
+    return presence_ask(&session, address, &session.sensor->line, times);
+}
+
+static presence_t look_until_clear(uint8_t address)
+{
+    presence_t presence = {.what = PRESENT_UNCLEAR};
+    for (unsigned i = 0; i != TRIES && (presence.what == PRESENT_UNCLEAR || presence.what == PRESENT_UNKNOWN);
+         i++)
+        presence = look(address, 2);
+    return presence;
+}
+
+static bool is_of(const presence_t *presence, const record_unit_t *unit)
+{
+    return presence->what == PRESENT_ONE && strcmp(presence->number, unit->number) == 0;
+}
+
+/* Leaves `text` as it is if the setting cannot be read. */
+static fathom_status_t read_setting(const setting_t *setting, char text[SETTING_TEXT])
+{
+    fathom_status_t status = setting->get != NULL ? FATHOM_PENDING : FATHOM_OK;
+    for (unsigned i = 0; i != TRIES && status != FATHOM_OK && (i == 0 || !has_ended()); i++)
+        status = session_get(&session, setting, text);
+    return status;
+}
+
+/* ---- verifying one sensor ---- */
+
+/* What a sensor responded at its own address. */
+typedef struct {
+    char termination[SETTING_TEXT]; /* "": the model has none */
+    bool is_complete;               /* the termination reads as it was set */
+    fathom_sample_t sample;
+} proof_t;
+
+/* Prints what is wrong with a sensor, and unless `status` is FATHOM_OK its cause. */
+static bool fail(const record_unit_t *unit, const char *what, fathom_status_t status)
+{
+    (void)fprintf(stderr, "fathom: %s at address %u: %s", run.model->name, unit->address, what);
+    if (status != FATHOM_OK) (void)fputs(": ", stderr);
+    if (status != FATHOM_OK) session_explain(&session, status);
     (void)fputc('\n', stderr);
     return false;
 }
 
-static bool are_present(commission_t *run)
+static bool is_there(const record_unit_t *unit)
 {
-    for (uint32_t i = 0; i != run->record.count && !record_has_numbers(run->model); i++) {
-        const record_unit_t *const unit = &run->record.units[i];
-        if (unit->model == run->model && unit->state == RECORD_DONE && !is_present(run, unit)) return false;
+    const presence_t presence = look_until_clear(unit->address);
+    if (presence.what == PRESENT_STOPPED || is_of(&presence, unit)) return presence.what == PRESENT_ONE;
+    if (presence.what == PRESENT_NONE)
+        return fail(unit, "the sensor does not respond any more. Check its wires, and run the command again",
+                    FATHOM_OK);
+    if (presence.what == PRESENT_ONE)
+        return fail(unit, "a sensor with another UUID responds. Find out which, and run the command again",
+                    FATHOM_OK);
+    (void)fprintf(stderr, "fathom: %s at address %u: ", run.model->name, unit->address);
+    presence_explain(&session, &presence);
+    (void)fputs(presence.what == PRESENT_UNKNOWN
+                    ? ". Then run the command again\n"
+                    : ". If two sensors were at address 1, both may have this address now\n",
+                stderr);
+    return false;
+}
+
+static bool read_termination(const record_unit_t *unit, proof_t *proof)
+{
+    const setting_t *const setting = setting_of(run.model->settings, "termination");
+    char wanted[SETTING_TEXT];
+    proof->is_complete = true;
+    if (setting == NULL) return true;
+    const fathom_status_t status = read_setting(setting, proof->termination);
+    if (status != FATHOM_OK) return fail(unit, "cannot read the termination", status);
+    setting_print_value(setting, unit->address == run.terminated, wanted);
+    proof->is_complete = strcmp(proof->termination, wanted) == 0;
+    return true;
+}
+
+static fathom_status_t poll_reader(reader_t *reader, void *ctx)
+{
+    fathom_sample_t *const sample = ctx;
+    return reader_poll(reader, sample);
+}
+
+/* Measures once, at all probes. Prefers a sample with a distance: an A05 may have fewer than four probes. */
+static fathom_status_t measure(fathom_sample_t *best)
+{
+    fathom_status_t found = FATHOM_ERR_MALFORMED;
+    do {
+        fathom_sample_t sample;
+        const fathom_status_t status = session_call(&session, poll_reader, &sample);
+        if (status != FATHOM_OK && status != FATHOM_ERR_MALFORMED) return status;
+        if (status == FATHOM_OK && (found != FATHOM_OK || best->kind != FATHOM_TARGET)) *best = sample;
+        if (status == FATHOM_OK) found = FATHOM_OK;
+    } while (reader_has_more(session.sensor->reader));
+    return found;
+}
+
+static bool measures(const record_unit_t *unit, fathom_sample_t *sample)
+{
+    const uint64_t end_us = now_us() + MEASURED_WITHIN_US;
+    fathom_status_t status = FATHOM_PENDING;
+    do {
+        status = measure(sample);
+        if (status == FATHOM_OK && sample->kind != FATHOM_FAULT) return true;
+    } while (status != FATHOM_ERR_PORT && !has_ended() && now_us() < end_us);
+    if (status == FATHOM_OK)
+        return fail(unit, "the address is set, but the sensor reports a fault", FATHOM_OK);
+    return fail(unit, "the address is set, but the sensor does not measure", status);
+}
+
+/* At address 1, there may be the next sensor, but none with this UUID. */
+static bool has_left(const record_unit_t *unit)
+{
+    if (unit->address == FACTORY_ADDRESS) return true;
+    const presence_t presence = look(FACTORY_ADDRESS, 1);
+    if (!run.has_numbers || !is_of(&presence, unit)) return presence.what != PRESENT_STOPPED;
+    return fail(unit, "a sensor with the same UUID responds at address 1 too. Disconnect one of the two",
+                FATHOM_OK);
+}
+
+/* ---- results ---- */
+
+/* proof NULL: it is not done. */
+static void print_json(const record_unit_t *unit, const proof_t *proof)
+{
+    json_t json = {.to = stdout};
+    json_begin(&json, NULL, '{');
+    json_string(&json, "model", run.model->name);
+    json_value(&json, "address", "%u", unit->address);
+    json_string(&json, "uuid", run.has_numbers ? unit->number : NULL);
+    if (proof != NULL && proof->termination[0] != '\0')
+        json_flag(&json, "termination", strcmp(proof->termination, "on") == 0);
+    if (proof != NULL && proof->sample.kind == FATHOM_TARGET)
+        json_value(&json, "distance_mm", "%u", proof->sample.distance_mm);
+    json_string(&json, "status", record_states[unit->state]);
+    json_string(&json, "utc", unit->when);
+    json_end(&json, '}');
+    (void)fputc('\n', stdout);
+}
+
+static void print_done(const record_unit_t *unit, const proof_t *proof)
+{
+    if (!proof->is_complete) {
+        (void)printf("  address %u is set, but the termination reads %s until the next power-on. Switch the "
+                     "sensor off and on, and run the command again\n",
+                     unit->address, proof->termination);
+        return;
     }
+    (void)printf("  address %u is done: ", unit->address);
+    if (proof->termination[0] != '\0')
+        (void)printf("termination %s%s, ", proof->termination,
+                     strcmp(proof->termination, "off") == 0 ? " from the next power-on" : "");
+    if (proof->sample.kind == FATHOM_TARGET)
+        (void)printf("%u mm\n", proof->sample.distance_mm);
+    else
+        (void)puts(proof->sample.kind == FATHOM_NO_TARGET ? "no_target" : "a value without a known meaning");
+}
+
+static void print_open(const record_unit_t *unit)
+{
+    (void)printf("address %u is not done: the sensor", unit->address);
+    print_number(stdout, " with UUID ", unit);
+    if (unit->address == FACTORY_ADDRESS)
+        (void)puts(" is not verified");
+    else
+        (void)printf(" is at this address, not verified, or still at address %d\n", FACTORY_ADDRESS);
+}
+
+/* ---- writing to one sensor ---- */
+
+static bool announce(const change_t *change)
+{
+    const char *const open = strchr(change->setting->what, '('); /* "Modbus address (#8)" */
+    (void)fprintf(run.text, "  writes %s %s", change->setting->name, change->wanted);
+    if (open != NULL) (void)fprintf(run.text, " %.*s", (int)strcspn(open, ")") + 1, open);
+    (void)fputc('\n', run.text);
+    return has_output();
+}
+
+static end_t end_unset(const change_t *change, change_outcome_t outcome, fathom_status_t status)
+{
+    change_explain(change, outcome, status);
+    if (status == FATHOM_ERR_DIFFERS)
+        (void)fputs("fathom: the new value may take effect at the next power-on. Switch the sensor off and "
+                    "on, and run the command again.\n",
+                    stderr);
+    const bool is_over = outcome != CHANGE_NOT_WRITTEN || status == FATHOM_ERR_CANCELLED ||
+                         status == FATHOM_ERR_PORT || ++run.unwritten_count == MOST_UNWRITTEN;
+    return is_over ? STOPPED : LATER;
+}
+
+/* Writes a setting, unless the sensor has this value already. */
+static end_t set(const char *name, int32_t value)
+{
+    change_t change = {.session = &session, .setting = setting_of(run.model->settings, name), .value = value};
+    setting_print_value(change.setting, value, change.wanted);
+    fathom_status_t status = read_setting(change.setting, change.was);
+    if (status != FATHOM_OK) return end_unset(&change, CHANGE_NOT_WRITTEN, status);
+    if (strcmp(change.was, change.wanted) == 0) return DONE;
+    if (!announce(&change)) return STOPPED;
+    status = session_set(&session, change.setting, value);
+    if (reader_facts(session.sensor->reader).is_written) run.is_written = true;
+    const change_outcome_t outcome = change_outcome(&change, status);
+    if (outcome == CHANGE_UNCHANGED || outcome == CHANGE_DONE) return DONE;
+    /* the termination was acknowledged; the datasheet does not state what #2 reads until the next power-on */
+    if (status == FATHOM_ERR_DIFFERS && !change.setting->moves) return DONE;
+    return end_unset(&change, outcome, status);
+}
+
+/* Sets up and verifies a sensor whose record is planned. */
+static end_t set_up(const record_unit_t *unit, uint8_t at)
+{
+    end_t end = DONE;
+    proof_t proof = {.termination = ""};
+    if (setting_of(run.model->settings, "termination") != NULL)
+        end = set("termination", unit->address == run.terminated);
+    if (end == DONE && at != unit->address) end = set("address", unit->address);
+    if (end != DONE) return end;
+    if (!is_there(unit) || !read_termination(unit, &proof) || !measures(unit, &proof.sample) ||
+        !has_left(unit))
+        return STOPPED;
+    record_unit_t done = *unit;
+    if (proof.is_complete) done.state = RECORD_DONE;
+    if (!store(&done)) return STOPPED;
+    run.unwritten_count = 0;
+    run.prompt[0] = '\0';
+    if (session.is_json)
+        print_json(&run.record.units[unit->address], &proof);
+    else
+        print_done(unit, &proof);
+    return has_output() ? DONE : STOPPED;
+}
+
+/* No sensor may respond at the new address, and the sensor must still be the one that was found. */
+static end_t check_places(const record_unit_t *unit, uint8_t at)
+{
+    if (at == unit->address) return DONE;
+    /* Once is enough: the driver asks there again right before the write (modbus_setting.h). */
+    const presence_t target = look(unit->address, 1);
+    if (target.what == PRESENT_STOPPED) return STOPPED;
+    if (target.what != PRESENT_NONE) {
+        const bool is_unknown = target.what == PRESENT_UNKNOWN;
+        prompt("nothing was written: %s address %u, which the sensor at address %u is to get. %s",
+               is_unknown ? "cannot ask at" : "a sensor responds at", unit->address, at,
+               is_unknown ? "Disconnect what else sends on this line" : "Disconnect one of the two");
+        return LATER;
+    }
+    const presence_t here = look(at, 2);
+    if (here.what == PRESENT_STOPPED) return STOPPED;
+    return is_of(&here, unit) ? DONE : LATER;
+}
+
+/* Gives the only sensor at address `at` the address that is planned for it, and verifies it there. */
+static end_t commission(record_unit_t unit, uint8_t at)
+{
+    record_unit_t *const line = &run.record.units[unit.address];
+    const bool was_known = line->model != NULL;
+    const end_t places = check_places(&unit, at);
+    if (places != DONE) return places;
+    (void)fprintf(run.text, "%s at address %u", run.model->name, at);
+    print_number(run.text, ", UUID ", &unit);
+    if (at == unit.address)
+        (void)fputs(": verifying\n", run.text);
+    else
+        (void)fprintf(run.text, ": gets address %u\n", unit.address);
+    unit.state = RECORD_PLANNED;
+    run.is_written = false;
+    if (!store(&unit) || !has_output()) return STOPPED;
+    const end_t end = set_up(&unit, at);
+    if (end != LATER || was_known || run.is_written) return end;
+    /* A sensor to which nothing was written is as good as a new one, and may be one. */
+    line->model = NULL;
+    return record_write(&run.record) ? LATER : STOPPED;
+}
+
+/* ---- resuming ---- */
+
+static bool is_open(const record_unit_t *unit)
+{
+    return unit->model == run.model && unit->state != RECORD_DONE;
+}
+
+static bool has_open(void)
+{
+    for (size_t i = 0; i != RECORD_UNITS; i++)
+        if (is_open(&run.record.units[i])) return true;
+    return false;
+}
+
+/* Finishes a planned sensor, which is at its address or still at address 1. */
+static end_t resume(const record_unit_t *unit)
+{
+    presence_t presence = look_until_clear(unit->address);
+    if (is_of(&presence, unit)) return commission(*unit, unit->address);
+    if (presence.what == PRESENT_NONE) {
+        presence = look(FACTORY_ADDRESS, 2);
+        if (is_of(&presence, unit)) return commission(*unit, FACTORY_ADDRESS);
+    }
+    if (presence.what == PRESENT_STOPPED) return STOPPED;
+    (void)fprintf(run.text, "address %u stays reserved: its sensor", unit->address);
+    print_number(run.text, " ", unit);
+    (void)fputs(" was not found\n", run.text);
+    return LATER;
+}
+
+/* Sensors without a UUID have to stay connected. Otherwise a planned sensor that has already moved may be absent too, and
+ * another one would get its address. */
+static bool is_present(const record_unit_t *unit)
+{
+    const presence_t presence = look(unit->address, 2);
+    if (presence.what == PRESENT_STOPPED) return false;
+    if (presence.what != PRESENT_UNKNOWN && presence.what != PRESENT_NONE) return true;
+    (void)fprintf(stderr, "fathom: nothing was written: address %u is done in the record, but ",
+                  unit->address);
+    if (presence.what == PRESENT_NONE)
+        (void)fputs("no sensor responds there. Connect it and switch it on. If you took it away, remove its "
+                    "line from the record and its address from --addresses",
+                    stderr);
+    else
+        presence_explain(&session, &presence);
+    (void)fputc('\n', stderr);
+    return false;
+}
+
+static bool resume_all(void)
+{
+    const record_unit_t *const units = run.record.units;
+    for (size_t i = 0; i != RECORD_UNITS && !run.has_numbers; i++)
+        if (units[i].model == run.model && units[i].state == RECORD_DONE && !is_present(&units[i]))
+            return false;
+    for (size_t i = 0; i != RECORD_UNITS; i++)
+        if (is_open(&units[i]) && resume(&units[i]) == STOPPED) return false;
     return true;
 }
 
 /* ---- the next sensor ---- */
 
-static commission_end_t assign(commission_t *run, const presence_t *presence, uint8_t address)
+/* Returns the first address of the list that is not in the record, or 0. A sensor that keeps address 1 would be in the way
+ * of all others, so it comes last. */
+static uint8_t next_address(void)
 {
-    record_unit_t plan = {.model = run->model, .address = address};
-    const record_unit_t *const known = record_of(&run->record, run->model, presence->number);
-    (void)snprintf(plan.number, sizeof plan.number, "%s", presence->number);
-    if (known == NULL) return commission_sensor(run, &plan, FACTORY_ADDRESS);
-    if (known->state == RECORD_DONE)
-        commission_prompt(run, "the sensor at address 1 was at address %u and gets this address again",
-                          known->address);
-    return commission_sensor(run, known, FACTORY_ADDRESS);
+    for (size_t i = 0; i != run.count; i++)
+        if (run.record.units[run.addresses[i]].model == NULL &&
+            (run.addresses[i] != FACTORY_ADDRESS || !has_open()))
+            return run.addresses[i];
+    return 0;
 }
 
-static commission_end_t try_next(commission_t *run, uint8_t address)
+static end_t try_next(uint8_t address)
 {
-    const presence_t presence = look_at(run, FACTORY_ADDRESS, 1);
-    switch (presence.what) {
-    case PRESENT_STOPPED:
-        return COMMISSION_STOPPED;
-    case PRESENT_NONE:
-        commission_prompt(run, "connect the next sensor, which gets address %u", address);
-        return COMMISSION_LATER;
-    case PRESENT_UNKNOWN:
-        commission_prompt(run, "cannot ask at address 1: %s. Disconnect what else sends on this line",
-                          presence.status == FATHOM_ERR_OTHER_MASTER ? "another master asks there"
-                                                                     : "the line is never silent");
-        return COMMISSION_LATER;
-    case PRESENT_UNCLEAR:
-        commission_prompt(run, "two sensors at address 1, or a loose wire: %s. Connect one sensor only",
-                          presence.is_two ? "two responses to one request" : "a damaged response");
-        return COMMISSION_LATER;
-    default:
-        return assign(run, &presence, address);
+    const presence_t presence = look(FACTORY_ADDRESS, 1);
+    if (presence.what == PRESENT_STOPPED) return STOPPED;
+    if (presence.what == PRESENT_ONE) {
+        record_unit_t unit = {.model = run.model, .address = address};
+        const record_unit_t *const known = record_of(&run.record, run.model, presence.number);
+        (void)snprintf(unit.number, sizeof unit.number, "%s", presence.number);
+        if (known != NULL && known->state == RECORD_DONE)
+            prompt("the sensor at address 1 was at address %u and gets this address again", known->address);
+        return commission(known != NULL ? *known : unit, FACTORY_ADDRESS);
     }
+    if (presence.what == PRESENT_NONE)
+        prompt("connect the next sensor, which gets address %u", address);
+    else if (presence.what == PRESENT_UNKNOWN)
+        prompt("cannot ask at address 1: %s. Disconnect what else sends on this line",
+               presence.status == FATHOM_ERR_OTHER_MASTER ? "another master asks there"
+                                                          : "the line is never silent");
+    else
+        prompt("two sensors at address 1, or a loose wire: %s. Connect one sensor only",
+               presence.is_two ? "two responses to one request" : "a damaged response");
+    return LATER;
 }
 
-static void work(commission_t *run)
+/* wait_us: the longest time without a sensor; 0: no limit. */
+static void work(uint64_t wait_us)
 {
-    enum { PAUSE_US = 200000 };
-    const host_t *const host = run->session.port.host;
-    uint64_t since_us = host->now_us(host->ctx);
-    for (uint8_t address; (address = next_address(run)) != 0;) {
-        const commission_end_t end = try_next(run, address);
-        if (end == COMMISSION_STOPPED || commission_has_ended(run)) return;
-        const uint64_t now_us = host->now_us(host->ctx);
-        if (end == COMMISSION_DONE) since_us = now_us;
-        if (run->options.wait_us != 0 && now_us - since_us > run->options.wait_us) {
+    uint64_t since_us = now_us();
+    for (uint8_t address; (address = next_address()) != 0;) {
+        const end_t end = try_next(address);
+        if (end == STOPPED || has_ended()) return;
+        if (end == DONE) since_us = now_us();
+        if (wait_us != 0 && now_us() - since_us > wait_us) {
             (void)fprintf(stderr, "fathom: no sensor was commissioned for %" PRIu64 " s.\n",
-                          run->options.wait_us / 1000000);
+                          wait_us / 1000000);
             return;
         }
-        session_listen(&run->session, PAUSE_US);
+        session_listen(&session, PAUSE_US);
     }
 }
 
-/* ---- the end ---- */
+/* ---- the command ---- */
 
-static int finish(commission_t *run)
+/* Prints what is done and what is not. Returns the exit status. */
+static int finish(void)
 {
-    uint32_t done = 0;
-    const bool is_all = !has_open(run);
-    for (uint32_t i = 0; i != run->record.count; i++)
-        if (is_open(run, &run->record.units[i])) commission_report(run, &run->record.units[i], NULL);
-    for (uint32_t i = 0; i != run->options.count; i++) {
-        const record_unit_t *const unit = record_at(&run->record, run->options.addresses[i]);
-        if (unit != NULL && unit->state == RECORD_DONE) done++;
+    size_t done = 0;
+    for (size_t i = 0; i != RECORD_UNITS; i++) {
+        const record_unit_t *const unit = &run.record.units[i];
+        if (is_open(unit) && session.is_json)
+            print_json(unit, NULL);
+        else if (is_open(unit))
+            print_open(unit);
+        else if (unit->model != NULL && is_listed(unit->address))
+            done++;
     }
-    const bool is_good = is_all && done == run->options.count;
-    (void)fprintf(commission_text(run), "%" PRIu32 " of %" PRIu32 " addresses are assigned and verified%s\n",
-                  done, run->options.count, is_good ? "" : ". To continue, run the same command again");
+    const bool is_good = !has_open() && done == run.count;
+    (void)fprintf(run.text, "%zu of %zu addresses are assigned and verified%s\n", done, run.count,
+                  is_good ? "" : ". To continue, run the same command again");
     return fflush(stdout) == 0 && ferror(stdout) == 0 && is_good ? STATUS_OK : STATUS_FAILED;
 }
 
 /* Compares the record with the list of addresses. */
-static bool is_suitable(commission_t *run)
+static bool is_suitable(void)
 {
-    for (uint32_t i = 0; i != run->options.count; i++) {
-        const uint8_t address = run->options.addresses[i];
-        const record_unit_t *const unit = record_at(&run->record, address);
-        if (unit == NULL || unit->model == run->model) continue;
-        (void)reject(&origin, "address %u belongs to an %s in the record %s.", address, unit->model->name,
-                     run->record.path);
-        return false;
+    for (size_t i = 0; i != run.count; i++) {
+        const record_unit_t *const unit = &run.record.units[run.addresses[i]];
+        if (unit->model != NULL && unit->model != run.model)
+            return reject(&origin, "address %u belongs to an %s in the record %s.", unit->address,
+                          unit->model->name, run.record.path);
     }
-    const record_unit_t *const first = record_at(&run->record, FACTORY_ADDRESS);
-    if (first == NULL || next_address(run) == 0 || next_address(run) == FACTORY_ADDRESS) return true;
-    (void)reject(&origin,
-                 "a sensor keeps address %d in the record %s, where the next one would appear. Give it "
-                 "another address, and remove its line.",
-                 FACTORY_ADDRESS, run->record.path);
-    return false;
+    const uint8_t next = next_address();
+    if (run.record.units[FACTORY_ADDRESS].model == NULL || next == 0) return true;
+    return reject(&origin,
+                  "a sensor keeps address %d in the record %s, where the next one would appear. Give it "
+                  "another address, and remove its line.",
+                  FACTORY_ADDRESS, run.record.path);
 }
 
 static int start(const host_t *host, const arguments_t *arguments)
 {
-    enum { LATE_US = 1000000 };
-    static commission_t run;
-    site_free(&run.session.site); /* of an earlier call */
+    const commission_settings_t *const settings = arguments->settings;
     memset(&run, 0, sizeof run);
-    if (!commission_options(&run.options, &run.session, arguments)) return STATUS_USAGE;
-    run.model = run.session.sensor->model;
-    if (!record_read(&run.record, run.options.record)) return STATUS_FAILED;
-    if (!is_suitable(&run)) return STATUS_USAGE;
-    if (!session_open(&run.session, host)) return STATUS_FAILED;
+    run.host = host;
+    if (!set_options(arguments)) return STATUS_USAGE;
+    if (!record_read(&run.record, settings->record)) return STATUS_FAILED;
+    if (!is_suitable()) return STATUS_USAGE;
+    if (!session_open(&session, host)) return STATUS_FAILED;
     int status = STATUS_FAILED;
     if (record_write(&run.record)) { /* proves that the record can be written before anything is sent */
-        /* a response to the last request of an interrupted run could be mistaken for one of this run */
-        session_listen(&run.session, LATE_US);
-        if (are_present(&run) && resume_all(&run)) work(&run);
-        status = finish(&run);
+        session_listen(&session, LATE_US);
+        if (resume_all()) work(settings->wait_us);
+        status = finish();
     }
-    session_close(&run.session);
+    session_close(&session);
     return status;
 }
 
@@ -227,7 +630,7 @@ const command_t commission_command = {
              "hps167s may then be taken off the line. Keep each a16 and a05 connected and\n"
              "switched on, since it has no serial number. After a failed write the command\n"
              "ends; run it again with the same FILE, and it continues.\n",
-    .tables = commission_tables,
+    .tables = tables,
     .common = "port addresses record terminated wait",
     .examples = "  fathom commission hps167s -p /dev/ttyUSB0 --addresses 2-9 --record hall.txt\n"
                 "  fathom commission a16 -p /dev/ttyUSB0 --addresses 2-8,1 --record tanks.txt\n"

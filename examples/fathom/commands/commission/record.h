@@ -8,7 +8,7 @@
  * The record of `fathom commission`: a text file with a line for each sensor. A sensor is in the record before anything
  * is written to it, so the record shows after any interruption where each sensor can be.
  */
-enum { RECORD_UNITS = 254, RECORD_NUMBER = 64, RECORD_TIME = 24 };
+enum { RECORD_UNITS = 255, RECORD_NUMBER = 64, RECORD_TIME = 24 };
 
 typedef enum {
     RECORD_PLANNED, /* the sensor is at its address, or still at address 1 */
@@ -17,7 +17,7 @@ typedef enum {
 extern const char *const record_states[]; /* as words */
 
 typedef struct {
-    const model_t *model;
+    const model_t *model;       /* NULL: no sensor has or gets this address */
     char number[RECORD_NUMBER]; /* the UUID; "-" if the model has none */
     char when[RECORD_TIME];     /* time of the last change, UTC */
     uint8_t address;
@@ -26,8 +26,7 @@ typedef struct {
 
 typedef struct {
     const char *path;
-    uint32_t count;
-    record_unit_t units[RECORD_UNITS];
+    record_unit_t units[RECORD_UNITS]; /* by address */
 } record_t;
 
 /* Reads the file. A file that does not exist is an empty record. Returns false after printing what is wrong. */
@@ -36,16 +35,12 @@ bool record_read(record_t *record, const char *path);
 /* Replaces the file, or leaves it unchanged and returns false after printing the reason. */
 bool record_write(const record_t *record);
 
-/* Return the line of an address, or of a UUID; NULL if there is none. */
-record_unit_t *record_at(record_t *record, uint8_t address);
-record_unit_t *record_of(record_t *record, const model_t *model, const char *number);
+/* Stores a line with the time, in place of that of the same address, and writes the file. Returns false after printing
+ * the reason; the record is unchanged then. */
+bool record_put(record_t *record, const record_unit_t *unit, uint64_t utc_us);
 
-/* Stores a line in place of that of the same address, and writes the file. utc_us: the time now. Returns NULL after
- * printing the reason. */
-record_unit_t *record_put(record_t *record, const record_unit_t *unit, uint64_t utc_us);
-
-/* Removes a line and writes the file. Returns false after printing the reason. */
-bool record_drop(record_t *record, const record_unit_t *unit);
+/* Returns the line of a UUID; NULL if there is none. */
+const record_unit_t *record_of(const record_t *record, const model_t *model, const char *number);
 
 /* Returns true if the sensors of this model have a UUID. */
 bool record_has_numbers(const model_t *model);
