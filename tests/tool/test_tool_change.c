@@ -91,16 +91,15 @@ static void set(site_t *site, const char *text)
     char copy[TEXT];
     char *words[WORDS];
     char texts[WORDS][TEXT];
-    origin_t origins[WORDS];
     int count = 0;
     *site = (site_t){.reconnect = true, .persists = true};
     (void)strcpy(copy, text);
     for (char *word = strtok(copy, " "); word != NULL; word = strtok(NULL, " ")) {
         (void)strcpy(texts[count], word);
-        origins[count] = (origin_t){.command = "publish"};
         words[count++] = word;
     }
-    assert_true(sensor_words(site, &(const sensor_defaults_t){.path = NULL}, words, count, origins));
+    assert_true(sensor_words(site, &(const sensor_defaults_t){.path = NULL}, words, count,
+                             &(origin_t){.command = "publish"}));
     for (size_t i = 0; i != site->sensor_count; i++) {
         line_t *line = site->lines;
         while (&line->settings != site->sensors[i]->port) line = line->next;

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/sensor_word.h"
+#include "cli/sensor_words.h"
 
 /* ---- a word, and its place as a word again ---- */
 

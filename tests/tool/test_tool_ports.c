@@ -20,15 +20,13 @@ static site_t site;
 static void set(const char *text, const sensor_defaults_t *defaults)
 {
     static char copy[TEXT];
-    origin_t origins[WORDS];
     char *words[WORDS];
     int count = 0;
     assert_true(strlen(text) < sizeof copy);
     (void)strcpy(copy, text);
     for (char *word = strtok(copy, " "); word != NULL; word = strtok(NULL, " ")) words[count++] = word;
-    for (int i = 0; i != count; i++) origins[i] = (origin_t){.command = "read"};
     site_free(&site);
-    assert_true(sensor_words(&site, defaults, words, count, origins));
+    assert_true(sensor_words(&site, defaults, words, count, &(origin_t){.command = "read"}));
 }
 
 #define SET(text, ...)   set(text, &(const sensor_defaults_t){__VA_ARGS__})
@@ -99,7 +97,7 @@ TEST(names_that_are_the_same_have_the_port_behind_them)
 TEST(a_port_s_own_keys_win_over_the_options)
 {
     SET("hps167s@x,baud=57600,rs485=off,echo=off hps167s@y hps167s@tcp:h", KEY(KEY_BAUD, 115200),
-        KEY(KEY_PARITY, FATHOM_PARITY_ODD), KEY(KEY_ECHO, 2), .rs485 = true);
+        KEY(KEY_PARITY, FATHOM_PARITY_ODD), KEY(KEY_ECHO, 2), KEY(KEY_RS485, 1));
     expect_line(&site.sensors[0]->line, 57600, FATHOM_PARITY_ODD, 1);
     assert_false(port(0)->rs485);
     assert_int_equal(port(0)->echo, 1);

@@ -20,7 +20,7 @@ static bool set(const char *name, const char *text, results_config_t *config)
     const option_table_t tables[] = {{result_rows, 0}, {NULL, 0}};
     const origin_t origin = {.command = "read"};
     option_walk_t walk;
-    assert_true(option_find(&walk, tables, name, strlen(name)));
+    assert_true(option_find(&walk, tables, name));
     (void)snprintf(copy, sizeof copy, "%s", text);
     return option_set(walk.row, copy, config, &origin);
 }

@@ -26,7 +26,6 @@ typedef struct {
     publish_top_t top;
     entry_t *entries; /* MAX_SENSORS of each */
     sensor_word_t *words;
-    origin_t *origins;
     int count;
 } config_t;
 
@@ -146,7 +145,7 @@ static bool read_sensor(config_t *config, const publish_line_t *line, const yaml
         !config_file_read(&config->file, map, publish_sensor_tables, sensor, "sensors", &sensor->given))
         return false;
     origin = config_file_at(&config->file, config_file_find(&config->file, map, "sensor"));
-    config->origins[config->count++] = origin;
+    config->count++;
     if (strpbrk(sensor->sensor, "@=") != NULL)
         return reject(&origin, "sensor is '%s'. Write its name and its port in keys of their own.",
                       sensor->sensor);
@@ -197,13 +196,13 @@ static bool fill_sensors(const config_t *config, site_t *site)
         publish_sensor_t *const from = &config->entries[i].settings;
         line_t *line = site->lines;
         sensor->settings = from->reader;
-        if (!options_suit(publish_sensor_tables, &from->given, &sensor, 1, true, &config->origins[i]) ||
-            !results_finish(&from->results, from->reader.period_us, &config->origins[i]))
+        if (!options_suit(publish_sensor_tables, &from->given, &sensor, 1, true, &config->words[i].origin) ||
+            !results_finish(&from->results, from->reader.period_us, &config->words[i].origin))
             return false;
         results_config_copy(&sensor->processing, &from->results);
         while (&line->settings != sensor->port) line = line->next;
         if (!line_add_text(line, config->entries[i].text) || !line_add_text(line, "\n"))
-            return reject(&config->origins[i], "no memory is left.");
+            return reject(&config->words[i].origin, "no memory is left.");
     }
     site->reconnect = true;
     site->persists = true;
@@ -218,8 +217,7 @@ static bool read_sensors(config_t *config, site_t *site)
         if (!read_line(config, config_file_node(&config->file, *item))) return false;
     const origin_t origin = config_file_at(&config->file, list);
     if (config->count == 0) return reject(&origin, "lines names no sensor.");
-    return sensors_add(site, &none, config->words, config->count, config->origins) &&
-           fill_sensors(config, site);
+    return sensors_add(site, &none, config->words, config->count) && fill_sensors(config, site);
 }
 
 /* ---- all of it ---- */
@@ -246,8 +244,7 @@ bool config_load(publish_settings_t *settings, site_t *site, const char *command
     if (config == NULL) return reject(&origin, "no memory is left.");
     config->entries = calloc(MAX_SENSORS, sizeof *config->entries);
     config->words = calloc(MAX_SENSORS, sizeof *config->words);
-    config->origins = calloc(MAX_SENSORS, sizeof *config->origins);
-    if (config->entries == NULL || config->words == NULL || config->origins == NULL) {
+    if (config->entries == NULL || config->words == NULL) {
         (void)reject(&origin, "no memory is left.");
     } else if (config_file_load(&config->file, command, settings->path)) {
         is_good = read_file(config, settings, site);
@@ -256,7 +253,6 @@ bool config_load(publish_settings_t *settings, site_t *site, const char *command
     if (!is_good) site_free(site);
     free(config->entries);
     free(config->words);
-    free(config->origins);
     free(config);
     return is_good;
 }

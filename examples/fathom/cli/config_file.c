@@ -150,9 +150,7 @@ bool config_file_print(config_file_t *file, const yaml_node_t *node, char *text,
 
 static bool reject_shape(const option_t *row, const yaml_node_t *node, const origin_t *origin)
 {
-    char takes[OPTION_TAKES];
-    option_takes(row, takes);
-    return reject(origin, "%s is %s. It takes %s.", row->name, shape_of(node), takes);
+    return reject(origin, "%s is %s. It takes %s.", row->name, shape_of(node), option_takes(row));
 }
 
 /* NOLINTNEXTLINE(misc-no-recursion): as deep as the rows */
@@ -200,8 +198,7 @@ static bool read_pair(config_file_t *file, const yaml_node_pair_t *pair, const o
         return reject(&origin,
                       "a password does not belong in this file. Write it to a file that only this user "
                       "can read, and here password-file: /etc/fathom/password.");
-    if (!option_find(&walk, tables, name, strlen(name)))
-        return option_reject_unknown(tables, "key", name, &origin);
+    if (!option_find(&walk, tables, name)) return option_reject_unknown(tables, "key", name, &origin);
     unsigned *const line = &given->line[walk.number];
     if (*line != 0) return reject(&origin, "%s is given twice, in line %u too.", name, *line);
     *line = origin.line;

@@ -6,9 +6,43 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "cli/origin.h"
+/* ---- messages about wrong usage ---- */
+
+/* Where a text stands that the user wrote: on the command line, or in a line of a file. */
+typedef struct {
+    const char *command; /* NULL: no command is known yet */
+    const char *file;    /* NULL: the command line */
+    unsigned line;       /* of the file, from 1 */
+    const char *within;  /* the option, or the word, whose keys are read; NULL: none */
+    bool is_option;      /* `within` is an option */
+} origin_t;
+
+/* Prints one message to standard error: where, what is wrong, what to try. Returns false. */
+bool reject(const origin_t *origin, const char *format, ...) __attribute__((format(printf, 2, 3)));
+bool reject_memory(const origin_t *origin);
+
+/* What stands before the name of a row in messages: "--" for an option, "" for a key. */
+const char *origin_mark(const origin_t *origin);
+
+/* The name that is nearest to a word that is none of them. Start with {.word = word}, and try every name. */
+enum { NEAREST_KNOWN = 400 };
+typedef struct {
+    const char *word;
+    const char *name; /* NULL: no name is near enough to be meant */
+    size_t distance;
+    char known[NEAREST_KNOWN]; /* all names: "a16, a05" */
+} nearest_t;
+
+void nearest_try(nearest_t *nearest, const char *name);
+
+/* Rejects the word of `nearest`, which is no WHAT ("sensor", "key"): with the nearest name if there is one, else with
+ * all names if has_list. `mark` stands before names ("--" or ""). False. */
+bool reject_unknown(const origin_t *origin, const char *what, const char *mark, const nearest_t *nearest,
+                    bool has_list);
 
 /*
+ * ---- rows ----
+ *
  * The rows of options and keys. One row says everything about an option: the parser, the help, the man page, the
  * completion and the reader of configuration files work from it.
  */
@@ -31,7 +65,6 @@ typedef enum {
 } option_kind_t;
 
 typedef enum {
-    GROUP_COMMON, /* the options that most people need; a command names them */
     GROUP_COMMAND,
     GROUP_SENSOR,
     GROUP_LINE,
@@ -91,7 +124,10 @@ typedef struct {
 } option_walk_t;
 
 bool option_next(option_walk_t *walk);
-bool option_find(option_walk_t *walk, const option_table_t *tables, const char *name, size_t length);
+bool option_find(option_walk_t *walk, const option_table_t *tables, const char *name);
+
+/* The letter of an option, such as 'p' of "port"; '\0': it has none. */
+char option_letter(const char *name);
 
 /* Where each row was given. */
 enum { MOST_OPTIONS = 64 };
@@ -115,8 +151,8 @@ bool option_check_given(const option_table_t *tables, const option_given_t *give
 bool option_reject_unknown(const option_table_t *tables, const char *what, const char *name,
                            const origin_t *origin);
 
-/* What values a row takes, as an object: "a whole number from 1 to 254", "text, json or csv". */
-enum { OPTION_TAKES = 200 };
-void option_takes(const option_t *row, char text[OPTION_TAKES]);
+/* Returns what values a row takes, as an object: "a whole number from 1 to 254", "text, json or csv". The next call
+ * replaces the text. */
+const char *option_takes(const option_t *row);
 
 #endif

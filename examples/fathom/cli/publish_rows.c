@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "cli/help.h"
+#include "cli/command.h"
 
 bool topic_name_is_good(const char *text, bool has_slashes)
 {
@@ -145,10 +145,10 @@ static void print_rows(FILE *to, const char *head, const option_t *rows)
 {
     if (head != NULL) (void)fprintf(to, "\n  %s:\n", head);
     for (; rows->name != NULL; rows++) {
-        int column = fprintf(to, "  %s%s: %s", head != NULL ? "  " : "", rows->name,
-                             rows->value != NULL ? rows->value : "");
-        column += fprintf(to, "%*s", column < 29 ? 30 - column : 2, "");
-        help_print_wrapped(to, rows->help, 30, column);
+        char label[80];
+        (void)snprintf(label, sizeof label, "%s%s: %s", head != NULL ? "  " : "", rows->name,
+                       rows->value != NULL ? rows->value : "");
+        (void)fprintf(to, "  %-26s  %s\n", label, rows->help);
     }
 }
 

@@ -2,47 +2,71 @@
 #ifndef SENSOR_WORDS_H
 #define SENSOR_WORDS_H
 
-#include "cli/sensor_word.h"
+#include "cli/option.h"
 #include "reading/site.h"
+
+/*
+ * [NAME=]SENSOR[:ADDRESS][:MODE][@PORT[,key=value...]], as a user names a sensor and its port:
+ *
+ *     word   = [ NAME "=" ] sensor [ "@" PORT { "," key "=" value } ]
+ *     sensor = model [ ":" [ ADDRESS ] ] [ ":" MODE ]
+ *
+ * A PORT is any path without a comma. An ADDRESS is a number; what begins with a letter is a MODE.
+ */
+enum { SENSOR_NAME_SIZE = 32 };
+
+typedef struct {
+    origin_t origin;
+    const char *word;            /* all of it but the keys */
+    char name[SENSOR_NAME_SIZE]; /* "": none was given */
+    const model_t *model;
+    const char *address; /* NULL: none was given; "": the factory's */
+    const char *mode;    /* NULL: none was given */
+    const char *port;    /* NULL: none was given */
+    port_keys_t keys;
+    char parts[40];
+} sensor_word_t;
+
+/* The keys of serial ports and of GPIO chips: a port_keys_t. */
+#define BAUDS "9600 19200 38400 57600 115200 230400"
+extern const option_t serial_keys[];
+extern const option_t chip_keys[];
+
+/* The name of a key. */
+const char *port_key_name(port_key_t key);
+
+/* Can the first `length` bytes of it be a NAME? */
+bool sensor_name_is_good(const char *text, size_t length);
+
+/* Cuts the word, into which *sensor then points. *sensor may not be moved. False after rejecting it. */
+bool sensor_word_parse(sensor_word_t *sensor, char *word, const origin_t *origin);
+
+/* Parses the ADDRESS of a sensor in this mode. Without one *address stays. False after rejecting it. */
+bool sensor_word_address(const sensor_word_t *sensor, const model_mode_t *mode, uint8_t *address,
+                         const origin_t *origin);
+
+/* The model, or the mode of a model, with this name. NULL after rejecting it. */
+const model_t *model_word(const char *name, const origin_t *origin);
+const model_mode_t *mode_word(const model_t *model, const char *name, const origin_t *origin);
 
 /* What options set for the sensors of a command: for their ports, unless a key stands behind one, and for a single
  * sensor. */
 typedef struct {
     const char *path; /* NULL: not given */
     port_keys_t keys; /* of serial ports */
-    bool rs485;
     uint32_t address;
     bool has_address;
     const char *mode; /* NULL: not given */
 } sensor_defaults_t;
 
 /*
- * Reads the words that name sensors, and finds out which share a port. `origins` has one for each word. The words are
- * cut. `asks_all` is set before, all else is set here but what a reader is to do. False after rejecting what cannot be.
+ * Reads the words that name sensors, and finds out which share a port. The words are cut. `asks_all` is set before, all
+ * else is set here but what a reader is to do. False after rejecting what cannot be.
  */
 bool sensor_words(site_t *site, const sensor_defaults_t *defaults, char **words, int count,
-                  const origin_t *origins);
+                  const origin_t *origin);
 
 /* The same for sensors whose words were parsed. */
-bool sensors_add(site_t *site, const sensor_defaults_t *defaults, const sensor_word_t *sensors, int count,
-                 const origin_t *origins);
-
-/* ---- rules, for sensor_words; false after rejecting what breaks one ---- */
-
-/* Can a sensor be read in its mode at this port? */
-bool sensor_suits_port(const sensor_t *sensor, const origin_t *origin);
-
-/* Can these sensors be read together at their ports? */
-bool sensors_suit_lines(const site_t *site, const origin_t *origins);
-
-/* Is no line of a GPIO chip used twice? */
-bool sensors_suit_pins(const site_t *site, const port_options_t *port, const origin_t *origin);
-
-/* Gives sensors with the same name others by their ports. */
-bool sensors_set_names(const site_t *site, const origin_t *origins);
-
-/* The port of a mode on pins, as an example: "gpiochip0,in=5". False: the mode has no pins. */
-enum { PORT_EXAMPLE = 80 };
-bool pins_example(const model_mode_t *mode, const char *chip, char text[PORT_EXAMPLE]);
+bool sensors_add(site_t *site, const sensor_defaults_t *defaults, const sensor_word_t *words, int count);
 
 #endif

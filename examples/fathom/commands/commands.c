@@ -4,9 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/arguments.h"
-#include "cli/complete.h"
-#include "commands/topics.h"
+#include "cli/command.h"
 #include "fathom/version.h"
 #include "output/words.h"
 
@@ -66,23 +64,18 @@ static int reject_name(const char *what, const char *name, bool has_topics)
 {
     static const origin_t origin;
     nearest_t nearest = {.word = name};
-    char known[200] = "";
-    for (size_t i = 0; commands[i] != NULL; i++) {
-        nearest_try(&nearest, commands[i]->name);
-        list_add(known, sizeof known, commands[i]->name);
-    }
+    for (size_t i = 0; commands[i] != NULL; i++) nearest_try(&nearest, commands[i]->name);
     for (const help_topic_t *topic = topics; has_topics && topic->name != NULL; topic++)
         nearest_try(&nearest, topic->name);
-    (void)reject_unknown(&origin, what, "", &nearest, has_topics ? NULL : known);
+    (void)reject_unknown(&origin, what, "", &nearest, !has_topics);
     return STATUS_USAGE;
 }
 
 static int finish(void) { return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED; }
 
-/* `fathom help --man [COMMAND]`, and `fathom help --completion SHELL`: for the installation. */
+/* `fathom help --man [COMMAND]`, for the installation. */
 static bool print_installed(int argc, char **argv)
 {
-    if (argc == 2 && strcmp(argv[0], "--completion") == 0) return complete_script(stdout, argv[1]);
     if (argc == 0 || argc > 2 || strcmp(argv[0], "--man") != 0) return false;
     const command_t *const command = argc == 2 ? find(argv[1]) : NULL;
     if (argc == 2 && command == NULL) return false;
@@ -110,7 +103,7 @@ static int help(int argc, char **argv)
     else if (command != NULL)
         help_print(stdout, command);
     else if (topic->name != NULL)
-        topic->print(stdout);
+        help_print_topic(stdout, topic);
     else
         return reject_name("command or topic", argv[0], true);
     return finish();

@@ -3,7 +3,7 @@
 #include <limits.h>
 #include <string.h>
 
-#include "cli/session_options.h"
+#include "cli/rows.h"
 #include "commands/commands.h"
 #include "device/setting_text.h"
 #include "ports/line_text.h"
@@ -259,7 +259,7 @@ const command_t info_command = {
                 "  fathom info tank=a16@/dev/ttyUSB0 gate=hps167s:7@/dev/ttyUSB1,baud=57600\n",
     .status = "Exit status: 0 all was read, 1 a part was not, 2 wrong usage.\n",
     .topics = "settings, sensors, ports",
-    .operands = operands_asked,
+    .operands = OPERANDS_ASKED,
     .settings_size = sizeof(session_settings_t),
     .start = start_info,
 };
@@ -276,7 +276,7 @@ const command_t get_command = {
                 "  fathom get hps167s:7 --port /dev/ttyUSB0 termination\n",
     .status = "Exit status: 0 all was read, 1 a part was not, 2 wrong usage.\n",
     .topics = "settings, sensors, ports",
-    .operands = operands_setting,
+    .operands = OPERANDS_SETTING,
     .settings_size = sizeof(session_settings_t),
     .start = start_get,
 };

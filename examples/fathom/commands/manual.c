@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "commands/topics.h"
+#include "commands/commands.h"
 
 /* The topics that explain a task from its beginning to its end. Lines have 80 columns at most. */
 

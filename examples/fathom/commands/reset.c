@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
-#include "cli/session_options.h"
+#include "cli/rows.h"
 #include "commands/commands.h"
 #include "ports/line_text.h"
 
@@ -128,7 +128,7 @@ const command_t reset_command = {
     .status = "Before you reset one of several units, make sure that no other has address 1.\n"
               "Exit status: 0 done, 1 not done or unknown, 2 wrong usage.\n",
     .topics = "settings, ports",
-    .operands = operands_resettable,
+    .operands = OPERANDS_RESETTABLE,
     .settings_size = sizeof(reset_settings_t),
     .start = start,
 };

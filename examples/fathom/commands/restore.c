@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
-#include "cli/session_options.h"
+#include "cli/rows.h"
 #include "commands/commands.h"
 #include "device/backup_file.h"
 #include "device/change.h"
@@ -217,7 +217,7 @@ const command_t restore_command = {
     .status = "Exit status: 0 the sensor has the settings of the file (--dry-run: already),\n"
               "1 it does not or that is unknown, 2 wrong usage or a wrong line in the file.\n",
     .topics = "backup, settings, sensors, ports",
-    .operands = operands_one,
+    .operands = OPERANDS_ONE,
     .settings_size = sizeof(restore_settings_t),
     .start = start,
 };

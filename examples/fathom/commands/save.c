@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "cli/session_options.h"
+#include "cli/rows.h"
 #include "commands/commands.h"
 #include "device/backup_file.h"
 #include "device/new_file.h"
@@ -77,7 +77,7 @@ const command_t save_command = {
                 "  fathom save a16 --port /dev/ttyUSB0\n",
     .status = "Exit status: 0 success, 1 the sensor could not be read, 2 wrong usage.\n",
     .topics = "backup, settings, sensors, ports",
-    .operands = operands_one,
+    .operands = OPERANDS_ONE,
     .settings_size = sizeof(save_settings_t),
     .start = start,
 };

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include <string.h>
 
-#include "cli/session_options.h"
+#include "cli/rows.h"
 #include "commands/commands.h"
 #include "device/change.h"
 #include "device/setting_text.h"
@@ -145,7 +145,7 @@ const command_t set_command = {
     .status = "Exit status: 0 the setting holds, was acknowledged or was sent to all units,\n"
               "1 it does not or that is unknown, 2 wrong usage.\n",
     .topics = "settings, sensors, ports",
-    .operands = operands_setting_value,
+    .operands = OPERANDS_SETTING_VALUE,
     .settings_size = sizeof(set_settings_t),
     .start = start,
 };

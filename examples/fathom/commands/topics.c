@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "commands/topics.h"
+#include "commands/commands.h"
 
 #include <string.h>
 
@@ -13,7 +13,7 @@ static void print_keys(FILE *to, const option_t *rows, const char *name)
 {
     const option_table_t tables[] = {{rows, 0}, {NULL, 0}};
     option_walk_t walk;
-    if (option_find(&walk, tables, name, strlen(name))) help_print_keys(to, walk.row->keys, 2);
+    if (option_find(&walk, tables, name)) help_print_keys(to, walk.row->keys);
 }
 
 static void print_mode(FILE *to, const model_mode_t *mode)
@@ -65,9 +65,9 @@ static void print_ports(FILE *to)
                 "Keys behind @PORT apply to this port, and before the options. They apply to all\n"
                 "sensors at the port. A port over TCP has none. Keys of a serial port:\n\n",
                 to);
-    help_print_keys(to, serial_keys, 2);
+    help_print_keys(to, serial_keys);
     (void)fputs("\nKeys of a GPIO chip:\n\n", to);
-    help_print_keys(to, chip_keys, 2);
+    help_print_keys(to, chip_keys);
     (void)fputs("\necho: an RS485 adapter with local echo returns the bytes that it sends. 'auto'\n"
                 "finds this out.\n\n"
                 "--reconnect: a USB adapter is found again by its serial number, also as another\n"
@@ -296,27 +296,27 @@ static void print_json(FILE *to)
 }
 
 const help_topic_t topics[] = {
-    {"sensors", "Sensors, modes and addresses", print_sensors},
-    {"ports", "Ports and their keys", print_ports},
-    {"pins", "Modes on GPIO lines", print_pins},
-    {"values", "What is a distance: window, means, value", print_values},
-    {"output", "Fields of JSON and CSV", print_output},
-    {"json", "Objects of JSON", print_json},
-    {"level", "Level of a tank, and medians", print_level},
-    {"alarm", "Alarms", print_alarm},
-    {"picture", "The picture of fathom watch", print_picture},
-    {"settings", "Settings of the sensors", print_settings},
-    {"log", "A log that goes on for years", topic_log},
-    {"config", "The configuration file of fathom publish", print_config},
-    {"publishing", "Topics and messages of fathom publish", topic_publish},
-    {"delivery", "What fathom publish loses, and what not", topic_delivery},
-    {"boxes", "Several computers, Home Assistant, security", topic_boxes},
-    {"service", "The service of systemd", topic_service},
-    {"commissioning", "Addresses for new sensors", topic_commission},
-    {"calibration", "The distance offset of an HPS-167S", topic_calibrate},
-    {"backup", "Settings as a file: save and restore", topic_backup},
-    {"requests", "A Modbus request by hand", topic_request},
-    {"faults", "Traits and faults of simulated sensors", topic_faults},
-    {"trouble", "What to do if nothing responds", print_trouble},
+    {"sensors", "Sensors, modes and addresses", NULL, print_sensors},
+    {"ports", "Ports and their keys", NULL, print_ports},
+    {"pins", "Modes on GPIO lines", NULL, print_pins},
+    {"values", "What is a distance: window, means, value", NULL, print_values},
+    {"output", "Fields of JSON and CSV", NULL, print_output},
+    {"json", "Objects of JSON", NULL, print_json},
+    {"level", "Level of a tank, and medians", NULL, print_level},
+    {"alarm", "Alarms", NULL, print_alarm},
+    {"picture", "The picture of fathom watch", NULL, print_picture},
+    {"settings", "Settings of the sensors", NULL, print_settings},
+    {"log", "A log that goes on for years", NULL, topic_log},
+    {"config", "The configuration file of fathom publish", NULL, print_config},
+    {"publishing", "Topics and messages of fathom publish", NULL, topic_publish},
+    {"delivery", "What fathom publish loses, and what not", NULL, topic_delivery},
+    {"boxes", "Several computers, Home Assistant, security", NULL, topic_boxes},
+    {"service", "The service of systemd", NULL, topic_service},
+    {"commissioning", "Addresses for new sensors", NULL, topic_commission},
+    {"calibration", "The distance offset of an HPS-167S", NULL, topic_calibrate},
+    {"backup", "Settings as a file: save and restore", NULL, topic_backup},
+    {"requests", "A Modbus request by hand", NULL, topic_request},
+    {"faults", "Traits and faults of simulated sensors", NULL, topic_faults},
+    {"trouble", "What to do if nothing responds", NULL, print_trouble},
     {.name = NULL},
 };

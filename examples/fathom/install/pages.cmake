@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# cmake -DFATHOM=TOOL -DFOLDER=FOLDER -DCHANGES=FILE -P pages.cmake: writes the man pages and the completions, which the tool prints.
+# cmake -DFATHOM=TOOL -DFOLDER=FOLDER -DCHANGES=FILE -P pages.cmake: writes the man pages, which the tool prints.
 function(printed path)
     execute_process(COMMAND ${FATHOM} help ${ARGN} OUTPUT_FILE ${path} COMMAND_ERROR_IS_FATAL ANY)
 endfunction()
@@ -26,7 +26,7 @@ endif()
 
 set(ENV{SOURCE_DATE_EPOCH} 0) # no time in a compressed page
 file(REMOVE_RECURSE ${FOLDER}) # the page of a command that is gone
-file(MAKE_DIRECTORY ${FOLDER}/man1 ${FOLDER}/bash ${FOLDER}/zsh ${FOLDER}/fish)
+file(MAKE_DIRECTORY ${FOLDER}/man1)
 execute_process(COMMAND ${FATHOM} complete "" OUTPUT_VARIABLE commands COMMAND_ERROR_IS_FATAL ANY)
 string(REGEX MATCHALL "[a-z]+\t" commands "${commands}")
 page(fathom.1)
@@ -34,6 +34,3 @@ foreach(command IN LISTS commands)
     string(STRIP ${command} command)
     page(fathom-${command}.1 ${command})
 endforeach()
-printed(${FOLDER}/bash/fathom --completion bash)
-printed(${FOLDER}/zsh/_fathom --completion zsh)
-printed(${FOLDER}/fish/fathom.fish --completion fish)

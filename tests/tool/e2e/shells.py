@@ -9,6 +9,7 @@ import time
 
 import e2e
 
+COMPLETIONS = f'{e2e.ROOT}/examples/fathom/install/completions'
 PAGES = os.path.join(os.environ.get('FATHOM_BUILD') or os.path.dirname(e2e.FATHOM), 'examples/fathom/install/pages')
 # The stubs run `fathom`.
 ENVIRONMENT = {'PATH': f'{os.path.dirname(os.path.abspath(e2e.FATHOM))}:/usr/bin:/bin', 'LC_ALL': 'C.UTF-8', 'TERM': 'dumb', 'HOME': '/nonexistent'}
@@ -60,13 +61,13 @@ def by_bash(lines, folder):
         if re.search('[:=@]$', line):
             words.append('')
         kept = re.search(r'[^ ]*[:=@]$|$', line[:len(line) - len(words[-1])])[0]  # what bash leaves as it is
-        found = run('bash', '--norc', '-c', BASH, 'bash', f'{PAGES}/bash/fathom', line, *words, cwd=folder)
+        found = run('bash', '--norc', '-c', BASH, 'bash', f'{COMPLETIONS}/fathom', line, *words, cwd=folder)
         yield {kept + word for word in found if word}
 
 
 def by_fish(lines, folder):
     for line in lines:
-        script = f'source {PAGES}/fish/fathom.fish; complete -C $argv[1]'
+        script = f'source {COMPLETIONS}/fathom.fish; complete -C $argv[1]'
         found = run('fish', '--no-config', '-c', script, line, cwd=folder)
         yield {word.split('\t')[0] for word in found if word}
 
@@ -75,7 +76,7 @@ def by_zsh(lines, folder):
     """Typed into a shell at a terminal."""
     taken, script = os.path.join(folder, 'taken'), os.path.join(folder, 'script')
     with open(script, 'w', encoding='ascii') as file:
-        file.write(ZSH % {'folder': f'{PAGES}/zsh', 'taken': taken})
+        file.write(ZSH % {'folder': COMPLETIONS, 'taken': taken})
     pid, terminal = pty.fork()
     if pid == 0:
         os.chdir(folder)

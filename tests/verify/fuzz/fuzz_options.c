@@ -88,8 +88,7 @@ static bool take(const char *name, const char *of, results_config_t *result)
     memset(&config, 0, sizeof config);
     (void)snprintf(copy, sizeof copy, "%s", of);
     tool_capture();
-    const bool is_taken =
-        option_find(&walk, tables, name, strlen(name)) && option_set(walk.row, copy, &config, &origin);
+    const bool is_taken = option_find(&walk, tables, name) && option_set(walk.row, copy, &config, &origin);
     tool_release();
     PROMISE(is_taken == (tool.err_size == 0) && tool.out_size == 0, "what is wrong is said");
     *result = config;

@@ -5,8 +5,8 @@
 #include <stdarg.h>
 #include <stdlib.h>
 
-#include "cli/arguments.h"
-#include "cli/session_options.h"
+#include "cli/command.h"
+#include "cli/rows.h"
 #include "commands/commands.h"
 #include "device/setting_text.h"
 
@@ -496,7 +496,7 @@ const command_t calibrate_command = {
     .status = "Exit status: 0 the sensor is right, 1 it is not (also with --dry-run) or that is\n"
               "unknown, 2 wrong usage.\n",
     .topics = "calibration, settings, ports",
-    .operands = operands_resettable,
+    .operands = OPERANDS_RESETTABLE,
     .settings_size = sizeof(calibrate_settings_t),
     .start = start,
 };

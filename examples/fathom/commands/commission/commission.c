@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "cli/command.h"
-#include "cli/session_options.h"
+#include "cli/rows.h"
 #include "commands/commands.h"
 #include "commands/commission/record.h"
 #include "device/change.h"
@@ -637,7 +637,7 @@ const command_t commission_command = {
                 "  fathom sim hps167s hps167s --one-by-one --link ./bus     # to try it\n",
     .status = "Exit status: 0 all addresses are assigned and verified, 1 not, 2 wrong usage.\n",
     .topics = "commissioning, settings, sensors, ports",
-    .operands = operands_one,
+    .operands = OPERANDS_ONE,
     .settings_size = sizeof(commission_settings_t),
     .start = start,
 };

@@ -2,8 +2,8 @@
 #include <errno.h>
 #include <string.h>
 
-#include "cli/complete.h"
-#include "cli/sensor_word.h"
+#include "cli/command.h"
+#include "cli/sensor_words.h"
 #include "commands/commands.h"
 #include "commands/decode/decode.h"
 #include "fathom/codec/crc16.h"
@@ -148,7 +148,7 @@ const command_t decode_command = {
                 "  fathom decode --sensor hps167s 01 03 08 08 23 DC B2 07 01 00 00 FD 41\n"
                 "  fathom decode --format json capture.txt\n",
     .status = "Exit status: 0 every byte is part of a good frame, 1 not, 2 wrong usage or hex.\n",
-    .operands = operands_file,
+    .operands = OPERANDS_FILE,
     .settings_size = sizeof(settings_t),
     .start = start,
 };

@@ -4,7 +4,7 @@
 
 #include <stdio.h>
 
-#include "cli/origin.h"
+#include "cli/option.h"
 #include "sensors/models.h"
 
 /* ---- the bytes ---- */

@@ -2,7 +2,7 @@
 #include <signal.h>
 #include <string.h>
 
-#include "cli/complete.h"
+#include "cli/command.h"
 #include "cli/config.h"
 #include "commands/commands.h"
 #include "commands/publish/explain.h"
@@ -200,7 +200,7 @@ const command_t publish_command = {
                 "  fathom publish site.yaml 2>> publish.log\n",
     .status = "Exit status: 0 a signal ended it, 1 it could not start, 2 wrong usage or FILE.\n",
     .topics = "config, publishing, delivery, boxes, service",
-    .operands = operands_file,
+    .operands = OPERANDS_FILE,
     .settings_size = sizeof(publish_options_t),
     .start = start,
 };

@@ -4,8 +4,7 @@
 #include <inttypes.h>
 #include <string.h>
 
-#include "cli/arguments.h"
-#include "cli/complete.h"
+#include "cli/command.h"
 #include "commands/commands.h"
 #include "commands/read/output.h"
 #include "commands/read/read_options.h"
@@ -257,7 +256,7 @@ const command_t read_command = {
                 "  fathom read tank=a16@/dev/ttyUSB0 gate=hps167s:7@tcp:10.0.0.7\n",
     .status = "Exit status: 0 success, 1 an attempt or the port failed, 2 wrong usage, 3 alarm.\n",
     .topics = "sensors, ports, pins, values, output, level, alarm, log",
-    .operands = operands_sensors,
+    .operands = OPERANDS_SENSORS,
     .settings_size = sizeof(read_options_t),
     .start = start,
 };

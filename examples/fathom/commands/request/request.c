@@ -2,9 +2,8 @@
 #include <errno.h>
 #include <string.h>
 
-#include "cli/complete.h"
+#include "cli/command.h"
 #include "cli/rows.h"
-#include "cli/session_options.h"
 #include "commands/commands.h"
 #include "commands/request/request.h"
 
@@ -51,7 +50,7 @@ static bool set_line(request_t *request, const request_settings_t *settings)
     port_options_take(&port, &port.keys);
     port_options_line(&port, &port.keys, &request->line);
     request->echo = port.echo;
-    request->rs485 = settings->line.rs485;
+    request->rs485 = settings->line.keys.value[KEY_RS485] != 0;
     request->path = port.path;
     return true;
 }

@@ -7,7 +7,6 @@
 
 #include "commands/commands.h"
 #include "commands/scan/scan.h"
-#include "commands/topics.h"
 #include "diagnosis/advice.h"
 #include "output/words.h"
 #include "sensors/read_command.h"

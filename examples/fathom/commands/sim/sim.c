@@ -5,7 +5,7 @@
 #include <signal.h>
 #include <string.h>
 
-#include "cli/complete.h"
+#include "cli/command.h"
 #include "commands/commands.h"
 #include "commands/sim/sim.h"
 #include "ports/host.h"
@@ -167,7 +167,7 @@ const command_t sim_command = {
                 "  fathom sim a16:1:modbus a05:2:modbus hps167s:7,distance=2083 --link ./bus\n",
     .status = "Exit status: 0 after Ctrl-C, 1 the port cannot be made, 2 wrong usage.\n",
     .topics = "faults, sensors",
-    .operands = operands_simulated,
+    .operands = OPERANDS_SIMULATED,
     .settings_size = sizeof(sim_settings_t),
     .start = start,
 };

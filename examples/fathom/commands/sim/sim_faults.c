@@ -4,7 +4,7 @@
 #include "commands/sim/sim.h"
 #include "output/words.h"
 
-enum { KINDS_TEXT = 400, MAX_KIND = 24 };
+enum { MAX_KIND = 24 };
 
 /* A port has no clock that could jump. */
 static bool is_offered(uint8_t kind) { return kind != FATHOM_SIM_FAULT_CLOCK_JUMP; }
@@ -52,15 +52,11 @@ static bool parse_rest(const char *text, sim_fault_t *fault)
 static bool reject_kind(const sim_sensor_t *sensor, const char *name, const origin_t *origin)
 {
     nearest_t nearest = {.word = name};
-    char known[KINDS_TEXT] = "";
-    for (uint8_t kind = 1; kind != FATHOM_SIM_FAULT_END; kind++) {
-        if (!sim_can_have_fault(sensor, kind)) continue;
-        nearest_try(&nearest, fathom_sim_fault_name(kind));
-        list_add(known, sizeof known, fathom_sim_fault_name(kind));
-    }
+    for (uint8_t kind = 1; kind != FATHOM_SIM_FAULT_END; kind++)
+        if (sim_can_have_fault(sensor, kind)) nearest_try(&nearest, fathom_sim_fault_name(kind));
     char what[80];
     (void)snprintf(what, sizeof what, "fault of %s in mode %s", sensor->model->name, sensor->mode->name);
-    return reject_unknown(origin, what, "", &nearest, known);
+    return reject_unknown(origin, what, "", &nearest, true);
 }
 
 bool sim_add_fault(sim_sensor_t *sensor, const char *text, const origin_t *origin)

@@ -2,7 +2,7 @@
 #include <inttypes.h>
 #include <string.h>
 
-#include "cli/sensor_word.h"
+#include "cli/sensor_words.h"
 #include "commands/sim/sim.h"
 #include "output/words.h"
 #include "sim/pty.h"
@@ -107,8 +107,7 @@ static bool apply_own(sim_sensor_t *sensor, char *text, const origin_t *origin)
         if (next != NULL) *next = '\0';
         char *const equals = strchr(text, '=');
         if (equals != NULL) *equals = '\0';
-        if (!option_find(&walk, tables, text, strlen(text)))
-            return option_reject_unknown(tables, "key", text, origin);
+        if (!option_find(&walk, tables, text)) return option_reject_unknown(tables, "key", text, origin);
         if (equals == NULL) return reject(origin, "%s has no value.", text);
         if (!option_set(walk.row, equals + 1, &keys, origin)) return false;
         text = next != NULL ? next + 1 : NULL;

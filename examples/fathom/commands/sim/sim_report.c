@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include <inttypes.h>
 
+#include "commands/commands.h"
 #include "commands/sim/sim.h"
-#include "commands/topics.h"
 #include "output/record.h"
 #include "ports/line_text.h"
 #include "sensors/read_command.h"

@@ -5,8 +5,6 @@
 #include "commands/sim/sim.h"
 #include "output/words.h"
 
-enum { NAMES_TEXT = 300 };
-
 typedef struct {
     const char *name;
     const char *text;
@@ -54,17 +52,13 @@ bool sim_can_have_trait(const sim_sensor_t *sensor, const char *text)
 static bool reject_name(const model_t *model, const char *text, const origin_t *origin)
 {
     char name[24];
-    char known[NAMES_TEXT] = "";
     (void)snprintf(name, sizeof name, "%.*s", (int)strcspn(text, "="), text);
     nearest_t nearest = {.word = name};
-    for (size_t i = 0; i != DEVICE_TRAITS; i++) {
-        if (!has(model, &traits[i])) continue;
-        nearest_try(&nearest, traits[i].name);
-        list_add(known, sizeof known, traits[i].name);
-    }
+    for (size_t i = 0; i != DEVICE_TRAITS; i++)
+        if (has(model, &traits[i])) nearest_try(&nearest, traits[i].name);
     char what[40];
     (void)snprintf(what, sizeof what, "trait of %s", model->name);
-    return reject_unknown(origin, what, "", &nearest, known);
+    return reject_unknown(origin, what, "", &nearest, true);
 }
 
 static bool parse_value(const trait_t *trait, const char *text, uint32_t *value)

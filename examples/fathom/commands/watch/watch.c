@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "cli/complete.h"
+#include "cli/command.h"
 #include "cli/rows.h"
 #include "commands/commands.h"
 #include "commands/watch/watch_terminal.h"
@@ -262,7 +262,7 @@ const command_t watch_command = {
     .status = "Press q or Ctrl-C to end. 'fathom help picture' explains the picture.\n"
               "Exit status: 0 success, 1 an attempt or the port failed, 2 wrong usage.\n",
     .topics = "picture, sensors, ports, pins, values",
-    .operands = operands_sensors,
+    .operands = OPERANDS_SENSORS,
     .settings_size = sizeof(sensor_settings_t),
     .start = start,
 };
