@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "commands/watch/watch_lanes.h"
+#include "commands/watch/lanes.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -8,7 +8,7 @@
  * the last gap and half of it, at most LONGEST_HOLD steps. The rate is a mean of RATE_US. */
 enum { LEAST_STEP_US = 250000, LONGEST_HOLD = 40, RATE_US = 5000000 };
 
-const mark_row_t marks[MARKS] = {
+const mark_row_t marks[MARKS + 1] = {
     [MARK_NONE] = {' ', false, false, ""},
     [MARK_NO_TARGET] = {'-', false, false, "no target"},
     [MARK_INTERFERENCE] = {'~', false, false, "interference"},
@@ -23,6 +23,7 @@ const mark_row_t marks[MARKS] = {
     [MARK_BAD_RESPONSE] = {'!', true, false, "unusable"},
     [MARK_FAULT] = {'F', false, false, "fault"},
     [MARK_PORT] = {'P', true, false, "port lost"},
+    [MARK_WAITING] = {' ', false, false, "waiting"},
 };
 
 static void init_lane(lanes_t *lanes, const sensor_t *sensor, uint8_t probe)
@@ -31,6 +32,7 @@ static void init_lane(lanes_t *lanes, const sensor_t *sensor, uint8_t probe)
     const bool has_probes = sensor->model->probes > 1 && !sensor_is_contact(sensor);
     lane->sensor = sensor;
     lane->probe = probe;
+    lane->mark = MARK_WAITING;
     (void)snprintf(lane->name, sizeof lane->name, has_probes ? "%s probe %u" : "%s", sensor->name, probe);
     const int length = (int)strlen(lane->name);
     if (length > lanes->name_width) lanes->name_width = length < MOST_NAME ? length : MOST_NAME;
@@ -53,38 +55,60 @@ void lanes_free(lanes_t *lanes) { free(lanes->lane); }
 
 static uint64_t number_now(const lanes_t *lanes) { return lanes->now_us / lanes->step_us; }
 
-void lanes_pass(lanes_t *lanes, uint64_t now_us)
+/* The state of a contact lasts, as a distance does; other marks do not. */
+static bool lasts(uint8_t mark) { return mark == MARK_NONE || mark == MARK_NEAR || mark == MARK_FAR; }
+
+static void begin_step(lane_t *lane, uint64_t number)
 {
-    const uint64_t before = number_now(lanes);
-    lanes->now_us = now_us;
-    const uint64_t passed = number_now(lanes) - before;
-    for (int i = 0; i != lanes->count; i++)
-        for (uint64_t n = passed < LANE_STEPS ? passed : LANE_STEPS; n != 0; n--)
-            lanes->lane[i].steps[(number_now(lanes) - n + 1) % LANE_STEPS] = (step_t){.mark = MARK_NONE};
+    const step_t *const last = &lane->steps[(number - 1) % LANE_STEPS];
+    step_t *const step = &lane->steps[number % LANE_STEPS];
+    *step = (step_t){.mark = MARK_NONE};
+    if (number > lane->held_until) return;
+    step->is_held = true;
+    step->has_distance = last->has_distance;
+    step->distance_mm = last->distance_mm;
+    step->mark = lasts(last->mark) ? last->mark : MARK_NONE;
 }
 
-static bool is_held(uint8_t mark) { return mark == MARK_NONE || mark == MARK_NEAR || mark == MARK_FAR; }
-
-static uint8_t hold_of(const lanes_t *lanes, const lane_t *lane)
+void lanes_pass(lanes_t *lanes, uint64_t now_us)
 {
-    const uint64_t gap_us = lane->has_outcome ? lanes->now_us - lane->heard_us : 0;
+    uint64_t number = number_now(lanes);
+    lanes->now_us = now_us;
+    const uint64_t last = number_now(lanes);
+    if (last - number > LANE_STEPS + LONGEST_HOLD) number = last - LANE_STEPS;
+    while (number++ != last)
+        for (int i = 0; i != lanes->count; i++) begin_step(&lanes->lane[i], number);
+}
+
+/* Adds a mark to the present step, which nothing that is held stands in any more. */
+static step_t *mark_step(const lanes_t *lanes, lane_t *lane, mark_t mark)
+{
+    step_t *const step = &lane->steps[number_now(lanes) % LANE_STEPS];
+    if (step->is_held) *step = (step_t){.mark = MARK_NONE};
+    if (mark > step->mark) step->mark = (uint8_t)mark;
+    lane->held_until = 0;
+    return step;
+}
+
+/* Returns how long a distance is shown, in steps. */
+static uint64_t hold_of(const lanes_t *lanes, const lane_t *lane)
+{
+    const uint64_t gap_us = lane->mark != MARK_WAITING ? lanes->now_us - lane->heard_us : 0;
     const uint64_t steps = (gap_us * 3 / 2 + lanes->step_us) / lanes->step_us;
-    return steps < LONGEST_HOLD ? (uint8_t)steps : LONGEST_HOLD;
+    return steps < LONGEST_HOLD ? steps : LONGEST_HOLD;
 }
 
 /* Adds an outcome: a distance if mark is MARK_NONE. */
 static void add(lanes_t *lanes, lane_t *lane, mark_t mark, uint16_t distance_mm)
 {
-    step_t *const step = &lane->steps[number_now(lanes) % LANE_STEPS];
-    if (mark > step->mark) step->mark = (uint8_t)mark;
+    step_t *const step = mark_step(lanes, lane, mark);
     lanes->seen |= 1u << mark;
     if (mark == MARK_NONE) {
         step->has_distance = true;
         step->distance_mm = distance_mm;
     }
-    step->hold = is_held((uint8_t)mark) ? hold_of(lanes, lane) : 0;
+    if (lasts((uint8_t)mark)) lane->held_until = number_now(lanes) + hold_of(lanes, lane);
     lane->heard_us = lanes->now_us;
-    lane->has_outcome = true;
     lane->mark = mark;
     lane->distance_mm = distance_mm;
     lane->outcomes++;
@@ -123,30 +147,16 @@ void lanes_add(lanes_t *lanes, const reading_t *reading)
     for (int i = 0; i != lanes->count; i++) {
         lane_t *const lane = &lanes->lane[i];
         if (lane->sensor != reading->sensor || (!is_of_all && lane->probe != sample->probe)) continue;
-        if (!is_absent) {
+        if (is_absent)
+            (void)mark_step(lanes, lane, lane->mark = MARK_PORT);
+        else
             add(lanes, lane, mark_of(reading), sample->distance_mm);
-            continue;
-        }
-        lane->mark = MARK_PORT;
-        lane->has_outcome = true;
-        lane->steps[number_now(lanes) % LANE_STEPS].mark = MARK_PORT;
     }
 }
 
-step_t lane_step(const lanes_t *lanes, const lane_t *lane, int ago)
+const step_t *lane_step(const lanes_t *lanes, const lane_t *lane, int ago)
 {
-    step_t shown = {.mark = MARK_NONE};
-    const uint64_t now = number_now(lanes);
-    for (int held = 0; held <= LONGEST_HOLD && ago + held < LANE_STEPS; held++) {
-        const uint64_t back = (uint64_t)ago + (uint64_t)held;
-        if (back > now) break;
-        const step_t *const step = &lane->steps[(now - back) % LANE_STEPS];
-        if (!step->has_distance && step->mark == MARK_NONE) continue;
-        if (held == 0 || held <= step->hold) shown = *step;
-        if (held != 0 && !is_held(step->mark)) shown.mark = MARK_NONE; /* other marks do not last */
-        return shown;
-    }
-    return shown;
+    return &lane->steps[(number_now(lanes) - (uint64_t)ago) % LANE_STEPS];
 }
 
 uint32_t lane_rate_tenths(const lanes_t *lanes, const lane_t *lane)
@@ -155,19 +165,14 @@ uint32_t lane_rate_tenths(const lanes_t *lanes, const lane_t *lane)
     uint64_t steps = RATE_US / lanes->step_us + 1;
     uint64_t readings = 0;
     if (steps > now + 1) steps = now + 1;
-    if (steps > LANE_STEPS) steps = LANE_STEPS;
-    for (uint64_t n = 0; n != steps; n++) readings += lane->steps[(now - n) % LANE_STEPS].readings;
+    for (int ago = 0; ago != (int)steps; ago++) readings += lane_step(lanes, lane, ago)->readings;
     const uint64_t over_us = (steps - 1) * lanes->step_us + lanes->now_us % lanes->step_us;
     return over_us != 0 ? (uint32_t)(readings * 10000000u / over_us) : 0;
 }
 
 const char *lane_value(const lane_t *lane, char text[LANE_VALUE])
 {
-    if (!lane->has_outcome)
-        (void)snprintf(text, LANE_VALUE, "waiting");
-    else if (lane->mark == MARK_NONE)
-        (void)snprintf(text, LANE_VALUE, "%u.%03u m", lane->distance_mm / 1000u, lane->distance_mm % 1000u);
-    else
-        (void)snprintf(text, LANE_VALUE, "%s", marks[lane->mark].name);
+    if (lane->mark != MARK_NONE) return marks[lane->mark].name;
+    (void)snprintf(text, LANE_VALUE, "%u.%03u m", lane->distance_mm / 1000u, lane->distance_mm % 1000u);
     return text;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-#ifndef WATCH_LANES_H
-#define WATCH_LANES_H
+#ifndef LANES_H
+#define LANES_H
 
 #include "reading/loop.h"
 
@@ -22,7 +22,8 @@ typedef enum {
     MARK_BAD_RESPONSE, /* damaged, refused, or with an impossible value */
     MARK_FAULT,
     MARK_PORT,
-    MARKS
+    MARKS,
+    MARK_WAITING = MARKS /* of a lane without an outcome; in no step */
 } mark_t;
 
 typedef struct {
@@ -31,14 +32,15 @@ typedef struct {
     bool is_rare; /* most sensors never have this mark */
     const char *name;
 } mark_row_t;
-extern const mark_row_t marks[MARKS];
+extern const mark_row_t marks[MARKS + 1];
 
 typedef struct {
     uint16_t distance_mm; /* the last one in this step, if has_distance */
-    bool has_distance;
-    uint8_t mark; /* mark_t */
-    uint8_t hold; /* the number of steps for which it is shown if nothing else is received */
     uint16_t readings;
+    bool has_distance;
+    bool
+        is_held; /* nothing was received: the distance or the state of a contact is still that of the step before */
+    uint8_t mark; /* mark_t */
 } step_t;
 
 enum { LANE_STEPS = 512, LANE_NAME = FULL_NAME_SIZE + 16 };
@@ -49,10 +51,10 @@ typedef struct {
     uint8_t probe;
     char name[LANE_NAME];     /* "a16:1", "a05:2 probe 3" */
     step_t steps[LANE_STEPS]; /* a ring; step 0 is the first one after the start */
-    uint16_t distance_mm;     /* of the present outcome, if its mark is MARK_NONE */
-    mark_t mark;
-    bool has_outcome;
-    uint64_t heard_us; /* the time of that outcome */
+    mark_t mark;              /* the present outcome */
+    uint16_t distance_mm;     /* with MARK_NONE */
+    uint64_t heard_us;        /* the time of that outcome */
+    uint64_t held_until;      /* the last step in which it is shown if nothing else is received */
     uint64_t outcomes;
     uint64_t lost; /* of these */
 } lane_t;
@@ -70,15 +72,14 @@ typedef struct {
 bool lanes_init(lanes_t *lanes, const site_t *site);
 void lanes_free(lanes_t *lanes);
 
-/* Advances the time since the start. Steps without an outcome are empty. */
+/* Advances the time since the start. */
 void lanes_pass(lanes_t *lanes, uint64_t now_us);
 
 /* Adds what the loop reports. */
 void lanes_add(lanes_t *lanes, const reading_t *reading);
 
-/* Returns the step `ago` steps before the present one, less than LANE_STEPS, as it is shown: a distance lasts until the
- * next outcome. */
-step_t lane_step(const lanes_t *lanes, const lane_t *lane, int ago);
+/* Returns the step `ago` steps before the present one, less than LANE_STEPS. */
+const step_t *lane_step(const lanes_t *lanes, const lane_t *lane, int ago);
 
 /* Readings in ten seconds, as a mean of the last few. */
 uint32_t lane_rate_tenths(const lanes_t *lanes, const lane_t *lane);
