@@ -94,8 +94,7 @@ TEST(with_a_record_that_cannot_be_written_nothing_is_sent)
     add_hps_units(1);
     (void)snprintf(site.record, sizeof site.record, "/tmp/fathom-no-such-folder/record.txt");
     expect(commission("hps167s --addresses 2"), 1,
-           "fathom: cannot write the record /tmp/fathom-no-such-folder/record.txt: No such file or "
-           "directory\n");
+           "fathom: cannot write /tmp/fathom-no-such-folder/record.txt: No such file or directory\n");
     assert_int_equal(bench.line.counters.from_host, 0);
 }
 

@@ -6,7 +6,6 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "device/setting_text.h"
 #include "output/words.h"
 
 #define KEY(key)                                                                                             \

@@ -5,7 +5,7 @@
 
 #include "cli/rows.h"
 #include "commands/commands.h"
-#include "device/setting_text.h"
+#include "device/session.h"
 #include "ports/line_text.h"
 
 /* fathom info prints everything that a sensor reports, fathom get one setting or all. */
@@ -140,7 +140,7 @@ static bool show_value(const setting_t *setting, values_t *progress)
 /* A setting that is write-only does not show that the sensor is there, so one that can be read comes first. */
 static bool responds(void)
 {
-    const values_t all = {.settings = session_settings(&session), .show = SHOW_ALL};
+    const values_t all = {.settings = session.sensor->model->settings, .show = SHOW_ALL};
     const setting_t *setting = NULL;
     char text[SETTING_TEXT];
     do setting = next_value(&all, setting);
@@ -220,7 +220,7 @@ static int start_info(const host_t *host, const arguments_t *arguments)
     for (size_t i = 0; i != site->sensor_count; i++) {
         if (i != 0 && host->has_ended(host->ctx)) return STATUS_FAILED;
         session.sensor = site->sensors[i];
-        if (!show_on_port(host, session_settings(&session), SHOW_ALL)) status = STATUS_FAILED;
+        if (!show_on_port(host, session.sensor->model->settings, SHOW_ALL)) status = STATUS_FAILED;
     }
     return status;
 }
@@ -234,7 +234,7 @@ static int start_get(const host_t *host, const arguments_t *arguments)
         return list(arguments->words[0], &origin);
     if (!session_read(&session, arguments, 1, 1)) return STATUS_USAGE;
     if (arguments->count == 1)
-        return show_on_port(host, session_settings(&session), SHOW_SETTINGS) ? STATUS_OK : STATUS_FAILED;
+        return show_on_port(host, session.sensor->model->settings, SHOW_SETTINGS) ? STATUS_OK : STATUS_FAILED;
     const setting_t *const setting = setting_named(&session, arguments->words[1], arguments);
     if (setting == NULL) return STATUS_USAGE;
     if (setting->get == NULL && !is_address(setting)) {

@@ -43,7 +43,7 @@ static int print_done(bool is_restore)
     if (is_restore)
         (void)printf("%s: the interface has its factory settings: address 1, 19200 8E1, termination on\n"
                      "from now on: fathom read hps167s --port %s\n",
-                     session.sensor->name, session_port(&session)->path);
+                     session.sensor->name, session.sensor->port->path);
     else
         (void)printf(
             "%s: the sensor acknowledged that it loads its factory settings; they cannot be read back\n",
@@ -67,7 +67,7 @@ static int print_failure(bool is_restore, fathom_status_t status)
             stderr,
             "the reset was sent, but then the sensor could not be read. It is at address 1, 19200 8E1, "
             "or still at address %u, %s. Run 'fathom scan --port %s'",
-            sensor->address, line_text(&sensor->line, line), session_port(&session)->path);
+            sensor->address, line_text(&sensor->line, line), session.sensor->port->path);
     } else if (is_unconfirmed) {
         (void)fputs(
             "the reset was sent, and no acknowledgement was received. The sensor may have its factory "

@@ -3,8 +3,7 @@
 
 #include "cli/rows.h"
 #include "commands/commands.h"
-#include "device/change.h"
-#include "device/setting_text.h"
+#include "device/session.h"
 
 /* fathom set: one setting of one device, confirmed by reading it back where that can be. */
 

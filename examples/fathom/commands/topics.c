@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "cli/publish_rows.h"
-#include "device/setting_text.h"
+#include "device/session.h"
 #include "ports/line_text.h"
 #include "reading/fields.h"
 

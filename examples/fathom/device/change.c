@@ -1,26 +1,142 @@
 /* SPDX-License-Identifier: MIT */
-#include "device/change.h"
-
 #include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
 
-#include "device/setting_text.h"
-#include "ports/line_text.h"
+#include "device/session.h"
+#include "output/words.h"
 #include "sensors/read_command.h"
+
+/* ---- settings as text ---- */
+
+const setting_t *setting_of(const setting_t *settings, const char *name)
+{
+    for (const setting_t *setting = settings; setting->name != NULL; setting++)
+        if (strcmp(setting->name, name) == 0) return setting;
+    return NULL;
+}
+
+static bool parse_number(const setting_t *setting, const char *text, int32_t *value)
+{
+    char *end = NULL;
+    const char *const digits = text[0] == '-' ? text + 1 : text;
+    if (*digits < '0' || *digits > '9' || strlen(digits) > 10) return false;
+    const long long number = strtoll(text, &end, 10);
+    if (*end != '\0' || number < setting->least || number > setting->most) return false;
+    if (setting->step > 1 && number % setting->step != 0) return false;
+    *value = (int32_t)number;
+    return true;
+}
+
+bool setting_value(const setting_t *setting, const char *text, int32_t *value)
+{
+    if (setting->words == NULL) return parse_number(setting, text, value);
+    for (int32_t i = 0; setting->words[i] != NULL; i++) {
+        if (strcmp(setting->words[i], text) != 0) continue;
+        *value = i;
+        return true;
+    }
+    return false;
+}
+
+const char *setting_values_text(const setting_t *setting, char text[SETTING_VALUES])
+{
+    text[0] = '\0';
+    if (setting->words != NULL) {
+        for (const char *const *word = setting->words; *word != NULL; word++)
+            list_add(text, SETTING_VALUES, *word);
+        return text;
+    }
+    const int length =
+        snprintf(text, SETTING_VALUES, "%" PRId32 " to %" PRId32, setting->least, setting->most);
+    char *const end = text + length;
+    const size_t left = SETTING_VALUES - (size_t)length;
+    const char *const unit = setting->unit != NULL ? setting->unit : "";
+    const char *const blank = unit[0] != '\0' ? " " : "";
+    if (setting->step > 1)
+        (void)snprintf(end, left, ", a multiple of %" PRId32 "%s%s", setting->step, blank, unit);
+    else
+        (void)snprintf(end, left, "%s%s", blank, unit);
+    return text;
+}
+
+void setting_print_value(const setting_t *setting, int32_t value, char text[SETTING_TEXT])
+{
+    if (setting->words != NULL)
+        (void)snprintf(text, SETTING_TEXT, "%s", setting->words[value]);
+    else
+        (void)snprintf(text, SETTING_TEXT, "%" PRId32, value);
+}
+
+const char *setting_with_unit(const setting_t *setting, const char *text, char cell[SETTING_CELL])
+{
+    const bool has_unit = setting->unit != NULL && strspn(text, "0123456789-., ") == strlen(text);
+    (void)snprintf(cell, SETTING_CELL, "%s%s%s", text, has_unit ? " " : "", has_unit ? setting->unit : "");
+    return cell;
+}
+
+/* Keys and words of JSON have underscores. */
+static const char *json_word(const char *text, char word[SETTING_TEXT])
+{
+    (void)snprintf(word, SETTING_TEXT, "%s", text);
+    for (char *at = word; *at != '\0'; at++)
+        if (*at == '-' || *at == ' ') *at = '_';
+    return word;
+}
+
+void setting_json(json_t *json, const char *key, const setting_t *setting, const char *text)
+{
+    char name[SETTING_TEXT];
+    const bool can_be_number = setting->kind != SETTING_VERSION && setting->kind != SETTING_IDENTITY;
+    if (key == NULL) key = json_word(setting->name, name);
+    if (text != NULL && (strcmp(text, "on") == 0 || strcmp(text, "off") == 0))
+        json_flag(json, key, strcmp(text, "on") == 0);
+    else if (text != NULL && text[0] != '\0' && can_be_number && strspn(text, "-0123456789.") == strlen(text))
+        json_value(json, key, "%s", text);
+    else
+        json_string(json, key, text);
+}
+
+const char *setting_reason(fathom_status_t status)
+{
+    switch (status) {
+    case FATHOM_ERR_NO_RESPONSE:
+        return "no response. Not every variant has it";
+    case FATHOM_ERR_EXCEPTION:
+        return "refused. Not every variant has it";
+    case FATHOM_ERR_MALFORMED:
+        return "the response has an impossible value";
+    default:
+        return NULL;
+    }
+}
+
+void settings_print(FILE *to, const setting_t *settings)
+{
+    for (const setting_t *setting = settings; setting->name != NULL; setting++) {
+        char values[SETTING_VALUES];
+        (void)fprintf(to, "  %s%s\n      %s", setting->name, setting->get == NULL ? " (write-only)" : "",
+                      setting->what);
+        if (setting->effect == NULL)
+            (void)fputs("; cannot be set\n", to);
+        else
+            (void)fprintf(to, ": %s\n      %s\n", setting_values_text(setting, values), setting->effect);
+    }
+}
+
+/* ---- the outcome of a change ---- */
 
 static const char *const words[] = {[CHANGE_UNCHANGED] = "unchanged",
                                     [CHANGE_DONE] = "written",
-                                    [CHANGE_UNCONFIRMED] = "not_confirmed",
+                                    [CHANGE_UNCONFIRMED] = "not confirmed",
                                     [CHANGE_DIFFERS] = "differs",
                                     [CHANGE_REFUSED] = "refused",
-                                    [CHANGE_NOT_WRITTEN] = "not_written",
+                                    [CHANGE_NOT_WRITTEN] = "not written",
                                     [CHANGE_SENT] = "sent"};
 
-/* The outcome as text has no underscore. */
-static const char *outcome_text(change_outcome_t outcome)
+static reader_facts_t facts_of(const change_t *change)
 {
-    return outcome == CHANGE_NOT_WRITTEN   ? "not written"
-           : outcome == CHANGE_UNCONFIRMED ? "not confirmed"
-                                           : words[outcome];
+    return reader_facts(change->session->sensor->reader);
 }
 
 /* If the setting is read back, CHANGE_DONE is more than an acknowledgement. */
@@ -32,7 +148,7 @@ static bool is_read_back(const change_t *change)
 
 change_outcome_t change_outcome(const change_t *change, fathom_status_t status)
 {
-    const reader_facts_t facts = reader_facts(change->session->sensor->reader);
+    const reader_facts_t facts = facts_of(change);
     if (!facts.is_written) return status == FATHOM_OK ? CHANGE_UNCHANGED : CHANGE_NOT_WRITTEN;
     if (status == FATHOM_OK) return CHANGE_DONE;
     if (change->is_for_all) return facts.acknowledgement == FATHOM_OK ? CHANGE_SENT : CHANGE_UNCONFIRMED;
@@ -42,143 +158,121 @@ change_outcome_t change_outcome(const change_t *change, fathom_status_t status)
     return is_unknown || !is_read_back(change) ? CHANGE_UNCONFIRMED : CHANGE_DIFFERS;
 }
 
-/* ---- what went wrong ---- */
-
-static const char *acknowledgement(const change_t *change)
-{
-    const reader_facts_t facts = reader_facts(change->session->sensor->reader);
-    return !facts.is_setting && facts.acknowledgement == FATHOM_OK ? "the sensor acknowledged the write"
-                                                                   : "no acknowledgement was received";
-}
-
 /* Where the sensor may be, or what else is unknown. */
 static void print_unconfirmed(const change_t *change)
 {
     const sensor_t *const sensor = change->session->sensor;
     const setting_t *const setting = change->setting;
-    (void)fprintf(stderr, "%s. ", acknowledgement(change));
-    if (setting->is_baud) {
+    char line[LINE_TEXT];
+    if (setting->is_baud)
         (void)fprintf(stderr,
-                      "The sensor is at %" PRIu32
-                      " or at %s baud, perhaps from its next power-on. Run 'fathom "
-                      "scan --port %s --baud %" PRIu32 ",%s'",
-                      sensor->line.baud, change->wanted, session_port(change->session)->path,
-                      sensor->line.baud, change->wanted);
-    } else if (setting->moves) {
-        char line[LINE_TEXT];
+                      "The sensor is at %" PRIu32 " or at %s baud, perhaps from its next power-on. Run "
+                      "'fathom scan --port %s --baud %" PRIu32 ",%s'",
+                      sensor->line.baud, change->wanted, sensor->port->path, sensor->line.baud,
+                      change->wanted);
+    else if (setting->moves)
         (void)fprintf(stderr, "The sensor is at address %u or at address %s, %s. Read it at both",
                       sensor->address, change->wanted, session_line_text(change->session, line));
-    } else if (setting->unconfirmed != NULL) {
+    else if (setting->unconfirmed != NULL)
         (void)fputs(setting->unconfirmed, stderr);
-    } else {
+    else
         (void)fprintf(stderr, "The value may be set or not%s",
                       setting->get != NULL && !change->is_blind ? ". Read it with 'fathom get'" : "");
-    }
 }
 
 void change_explain(const change_t *change, change_outcome_t outcome, fathom_status_t status)
 {
+    const reader_facts_t facts = facts_of(change);
+    const bool is_acknowledged = !facts.is_setting && facts.acknowledgement == FATHOM_OK;
     (void)fflush(stdout);
     (void)fprintf(stderr, "fathom: %s: %s %s: %s: ", change->session->sensor->name, change->setting->name,
-                  change->wanted, outcome_text(outcome));
-    if (outcome == CHANGE_UNCONFIRMED)
+                  change->wanted, words[outcome]);
+    if (outcome == CHANGE_UNCONFIRMED || outcome == CHANGE_DIFFERS)
+        (void)fputs(is_acknowledged ? "the sensor acknowledged the write" : "no acknowledgement was received",
+                    stderr);
+    if (outcome == CHANGE_UNCONFIRMED) {
+        (void)fputs(". ", stderr);
         print_unconfirmed(change);
-    else if (outcome == CHANGE_DIFFERS)
-        (void)fprintf(stderr, "%s, but it reads back another value. Perhaps this variant does not have it",
-                      acknowledgement(change));
-    else if (status == FATHOM_ERR_IN_USE)
+    } else if (outcome == CHANGE_DIFFERS) {
+        (void)fputs(", but it reads back another value. Perhaps this variant does not have it", stderr);
+    } else if (status == FATHOM_ERR_IN_USE) {
         (void)fprintf(stderr,
                       "a sensor responds at address %s already. Two sensors at one address would respond at "
                       "the same time",
                       change->wanted);
-    else if (status == FATHOM_ERR_ARGUMENT || status == FATHOM_ERR_UNSUPPORTED)
+    } else if (status == FATHOM_ERR_ARGUMENT || status == FATHOM_ERR_UNSUPPORTED) {
         /* the value is in range, so the driver does not know the settings of the line */
         (void)fputs("the settings of this port's line cannot be changed", stderr);
-    else
+    } else {
         session_explain(change->session, status);
+    }
     (void)fputs("\n", stderr);
 }
 
-/* ---- what was done ---- */
-
 static void print_json(const change_t *change, change_outcome_t outcome)
 {
-    const sensor_t *const sensor = change->session->sensor;
     const bool is_unchanged = outcome == CHANGE_UNCHANGED;
+    char status[SETTING_TEXT];
     json_t json = {.to = stdout};
     json_begin(&json, NULL, '{');
-    sensor_json(&json, sensor);
-    json_value(&json, "address", "%u",
-               change->is_for_all ? 0u : (unsigned)reader_facts(sensor->reader).address);
+    sensor_json(&json, change->session->sensor);
+    json_value(&json, "address", "%u", change->is_for_all ? 0u : (unsigned)facts_of(change).address);
     json_string(&json, "setting", change->setting->name);
     setting_json(&json, "value", change->setting, change->wanted);
     setting_json(&json, "was", change->setting, change->was[0] != '\0' ? change->was : NULL);
     json_flag(&json, "written", !is_unchanged && outcome != CHANGE_NOT_WRITTEN);
     json_flag(&json, "confirmed", is_unchanged || (outcome == CHANGE_DONE && is_read_back(change)));
-    json_string(&json, "status", words[outcome]);
+    json_string(&json, "status", json_word(words[outcome], status));
     json_end(&json, '}');
     (void)fputc('\n', stdout);
-}
-
-/* How to read the sensor after its address or baud rate has changed. */
-static void print_next(const change_t *change)
-{
-    const sensor_t *const sensor = change->session->sensor;
-    const reader_facts_t facts = reader_facts(sensor->reader);
-    (void)fputs("from now on: ", stdout);
-    read_command_print(stdout, sensor->model, sensor->mode->name, facts.address,
-                       facts.line != NULL ? facts.line : &sensor->line, session_port(change->session)->path);
-    (void)fputs("\n", stdout);
 }
 
 static void print_done(const change_t *change, change_outcome_t outcome)
 {
     const setting_t *const setting = change->setting;
-    const bool has_unit = setting->unit != NULL && setting->words == NULL;
-    const bool is_later = setting->is_later != NULL && setting->is_later(change->session->sensor->reader);
-    const char *const unit = has_unit ? setting->unit : "";
-    const char *const name = change->session->sensor->name;
+    const sensor_t *const sensor = change->session->sensor;
+    const reader_facts_t facts = facts_of(change);
+    char value[SETTING_CELL];
+    (void)setting_with_unit(setting, change->wanted, value);
     if (setting->get == NULL && setting->confirmed == NULL && !setting->moves) {
-        (void)printf("%s: %s: %s%s%s was written and acknowledged; the setting cannot be read back\n", name,
-                     setting->name, change->wanted, has_unit ? " " : "", unit);
+        (void)printf("%s: %s: %s was written and acknowledged; the setting cannot be read back\n",
+                     sensor->name, setting->name, value);
         return;
     }
-    (void)printf("%s: %s is %s%s%s", name, setting->name, change->wanted, has_unit ? " " : "", unit);
-    if (is_later)
-        (void)printf(" from the next power-on (%s until then)\n", change->was);
+    (void)printf("%s: %s is %s", sensor->name, setting->name, value);
+    if (setting->is_later != NULL && setting->is_later(sensor->reader))
+        (void)printf(" from the next power-on (%s until then)", change->was);
     else if (outcome == CHANGE_UNCHANGED)
-        (void)printf(": %s\n", words[outcome]);
+        (void)printf(": %s", words[outcome]);
     else if (setting->get != NULL)
-        (void)printf(" (was %s)\n", change->was);
+        (void)printf(" (was %s)", change->was);
     else if (setting->confirmed != NULL)
-        (void)printf(": %s\n", setting->confirmed);
-    else
-        (void)puts("");
-    if (outcome != CHANGE_UNCHANGED && setting->moves) print_next(change);
-}
-
-/* Nothing was read that could confirm the value, so an acknowledgement, or what may be an echo of it, is a success. */
-static bool is_done_blind(const change_t *change, change_outcome_t outcome)
-{
-    const int8_t response = reader_facts(change->session->sensor->reader).acknowledgement;
-    const bool is_acknowledged = response == FATHOM_OK || response == FATHOM_ERR_ECHO;
-    return outcome == CHANGE_SENT || (change->is_blind && outcome == CHANGE_UNCONFIRMED && is_acknowledged);
+        (void)printf(": %s", setting->confirmed);
+    (void)puts("");
+    if (outcome == CHANGE_UNCHANGED || !setting->moves) return;
+    (void)fputs("from now on: ", stdout);
+    read_command_print(stdout, sensor->model, sensor->mode->name, facts.address,
+                       facts.line != NULL ? facts.line : &sensor->line, sensor->port->path);
+    (void)puts("");
 }
 
 bool change_report(const change_t *change, fathom_status_t status)
 {
     const change_outcome_t outcome = change_outcome(change, status);
-    const bool is_blind = is_done_blind(change, outcome);
+    /* Nothing was read that could confirm the value, so an acknowledgement, or what may be an echo of it, is a success. */
+    const int8_t response = facts_of(change).acknowledgement;
+    const bool is_blind = outcome == CHANGE_SENT || (change->is_blind && outcome == CHANGE_UNCONFIRMED &&
+                                                     (response == FATHOM_OK || response == FATHOM_ERR_ECHO));
     const bool is_done = outcome == CHANGE_UNCHANGED || outcome == CHANGE_DONE || is_blind;
     if (change->session->is_json) print_json(change, outcome);
     if (!is_done)
         change_explain(change, outcome, status);
     else if (is_blind && !change->session->is_json)
         (void)printf("%s: %s %s: %s\n", change->is_for_all ? "all units" : change->session->sensor->name,
-                     change->setting->name, change->wanted, outcome_text(outcome));
+                     change->setting->name, change->wanted, words[outcome]);
     else if (!change->session->is_json)
         print_done(change, outcome);
     if (fflush(stdout) == 0 && ferror(stdout) == 0) return is_done;
-    (void)fprintf(stderr, "fathom: cannot write the output; the setting: %s\n", outcome_text(outcome));
+    (void)fprintf(stderr, "fathom: cannot write the output; the setting: %s\n", words[outcome]);
     return false;
 }

@@ -1,16 +1,9 @@
 /* SPDX-License-Identifier: MIT */
-#include "device/session.h"
-
 #include <string.h>
 
-#include "diagnosis/advice.h"
-#include "ports/line_text.h"
+#include "device/session.h"
 
-const port_options_t *session_port(const session_t *session) { return session->sensor->port; }
-
-const setting_t *session_settings(const session_t *session) { return session->sensor->model->settings; }
-
-void session_listen(session_t *session, uint32_t for_us) { port_listen(&session->port, for_us); }
+/* ---- opening and closing ---- */
 
 /* Starts the driver of the sensor. */
 static bool start(session_t *session)
@@ -32,7 +25,7 @@ static bool start(session_t *session)
 
 bool session_open(session_t *session, const host_t *host)
 {
-    port_settings_t settings = port_options_settings(session_port(session));
+    port_settings_t settings = port_options_settings(session->sensor->port);
     settings.line = session->sensor->line;
     if (!session->has_begun && !host->begin(host->ctx)) return false;
     session->has_begun = true;
@@ -68,6 +61,8 @@ void session_close(session_t *session)
     port_close(&session->port);
 }
 
+/* ---- calls ---- */
+
 void session_begin_task(session_t *session, const char *doing) { session->doing = doing; }
 
 void session_end_task(session_t *session)
@@ -102,58 +97,54 @@ fathom_status_t session_call(session_t *session, session_call_t call, void *ctx)
     return status;
 }
 
-/* ---- settings ---- */
-
 typedef struct {
     const setting_t *setting;
-    char *text;
+    char *text; /* NULL: the setting is written */
     int32_t value;
 } operand_t;
 
-static fathom_status_t call_get(reader_t *reader, void *ctx)
+static fathom_status_t call_setting(reader_t *reader, void *ctx)
 {
     const operand_t *const operand = ctx;
-    return operand->setting->get(reader, operand->setting, operand->text);
+    const setting_t *const setting = operand->setting;
+    return operand->text != NULL ? setting->get(reader, setting, operand->text)
+                                 : setting->set(reader, setting, operand->value);
 }
 
-static fathom_status_t call_set(reader_t *reader, void *ctx)
+/* Returns true if the status proves nothing about the sensor. */
+static bool is_of_line(fathom_status_t status)
 {
-    const operand_t *const operand = ctx;
-    return operand->setting->set(reader, operand->setting, operand->value);
+    return status == FATHOM_ERR_LINE_BUSY || status == FATHOM_ERR_OTHER_MASTER;
 }
 
-/*
- * Repeats a call that failed and wrote nothing. A busy line and another master prove nothing about the sensor. If the
- * sensor sends by itself, one of its frames may have collided with the request or the response.
- */
-static fathom_status_t call_again(session_t *session, session_call_t call, operand_t *operand)
+/* Repeats a call that failed and wrote nothing. If the sensor sends by itself, one of its frames may have collided with
+ * the request or the response. */
+static fathom_status_t call_again(session_t *session, operand_t operand)
 {
     enum { TIMES = 4 };
-    reader_t *const reader = session->sensor->reader;
     fathom_status_t status = FATHOM_PENDING;
     for (unsigned times = 0; times != TIMES; times++) {
-        status = session_call(session, call, operand);
+        status = session_call(session, call_setting, &operand);
         const bool may_have_collided = status == FATHOM_ERR_NO_RESPONSE || status == FATHOM_ERR_CHECKSUM ||
                                        status == FATHOM_ERR_MALFORMED;
-        const reader_facts_t facts = reader_facts(reader);
-        const bool is_of_line = status == FATHOM_ERR_LINE_BUSY || status == FATHOM_ERR_OTHER_MASTER;
-        if (facts.is_written || !(is_of_line || (may_have_collided && facts.has_unasked))) break;
+        const reader_facts_t facts = reader_facts(session->sensor->reader);
+        if (facts.is_written || !(is_of_line(status) || (may_have_collided && facts.has_unasked))) break;
     }
     return status;
 }
 
 fathom_status_t session_get(session_t *session, const setting_t *setting, char text[SETTING_TEXT])
 {
-    operand_t operand = {.setting = setting, .text = text};
     text[0] = '\0';
-    return call_again(session, call_get, &operand);
+    return call_again(session, (operand_t){.setting = setting, .text = text});
 }
 
 fathom_status_t session_set(session_t *session, const setting_t *setting, int32_t value)
 {
-    operand_t operand = {.setting = setting, .value = value};
-    return call_again(session, call_set, &operand);
+    return call_again(session, (operand_t){.setting = setting, .value = value});
 }
+
+/* ---- messages ---- */
 
 const char *session_line_text(const session_t *session, char text[LINE_TEXT])
 {
@@ -175,4 +166,90 @@ void session_explain(session_t *session, fathom_status_t status)
     (void)counters_take(&sensor->counters, &session->port_counts, &session->port, sensor->reader);
     listener_judge(&session->port.listener, sensor->address, &failure.evidence);
     advice_print(stderr, &failure);
+}
+
+void session_fail(session_t *session, const setting_t *setting, fathom_status_t status)
+{
+    (void)fflush(stdout);
+    (void)fprintf(stderr, "fathom: %s: %s: ", session->sensor->name, setting->name);
+    session_explain(session, status);
+    (void)fputs("\n", stderr);
+}
+
+/* ---- which sensor responds at an address ---- */
+
+static evidence_t evidence_of(const session_t *session)
+{
+    evidence_t evidence;
+    listener_judge(&session->port.listener, session->sensor->address, &evidence);
+    return evidence;
+}
+
+/* If another sensor sends automatically, its first and last frame may be incomplete. Fewer than 3 bytes are no response:
+ * an open line may produce them. The shortest frame has 5. */
+static bool is_silent(const session_t *session)
+{
+    const evidence_t evidence = evidence_of(session);
+    const bool is_rest = evidence.rest >= 3 && evidence.foreign == 0;
+    return evidence.own == 0 && !is_rest && evidence.streamed_a16 == 0 && evidence.streamed_a05 == 0;
+}
+
+/* Reads the UUID. If the model has none, reads the address register, which must match. */
+static fathom_status_t read_number(session_t *session, char number[SETTING_TEXT])
+{
+    const setting_t *const settings = session->sensor->model->settings;
+    const setting_t *const uuid = setting_of(settings, "uuid");
+    char address[SETTING_TEXT];
+    const fathom_status_t status =
+        session_get(session, uuid != NULL ? uuid : setting_of(settings, "address"), number);
+    if (status != FATHOM_OK || uuid != NULL) return status;
+    (void)snprintf(address, sizeof address, "%u", session->sensor->address);
+    if (strcmp(number, address) != 0) return FATHOM_ERR_MALFORMED;
+    (void)snprintf(number, SETTING_TEXT, "-");
+    return status;
+}
+
+/* Reads until the sensor has reported one number three times, or has not responded to `times` requests. */
+static present_t ask(session_t *session, unsigned times, presence_t *presence)
+{
+    enum { READS = 3 };
+    const host_t *const host = session->port.host;
+    unsigned reads = 0;
+    unsigned no_responses = 0;
+    while (reads != READS && no_responses != times) {
+        char number[SETTING_TEXT];
+        const fathom_status_t status = read_number(session, number);
+        presence->status = status;
+        if (status == FATHOM_ERR_CANCELLED || status == FATHOM_ERR_PORT || host->has_ended(host->ctx))
+            return PRESENT_STOPPED;
+        if (is_of_line(status)) return PRESENT_UNKNOWN;
+        if (reads == 0 && status == FATHOM_ERR_NO_RESPONSE && is_silent(session)) {
+            no_responses++;
+            continue;
+        }
+        if (status != FATHOM_OK) return PRESENT_UNCLEAR;
+        port_listen(&session->port, session->sensor->model->second_response_us);
+        if (reads++ == 0) memcpy(presence->number, number, sizeof number);
+        presence->is_two = evidence_of(session).fitting > 1 || strcmp(number, presence->number) != 0;
+        if (presence->is_two) return PRESENT_UNCLEAR;
+    }
+    if (host->has_ended(host->ctx)) return PRESENT_STOPPED;
+    return reads == READS ? PRESENT_ONE : PRESENT_NONE;
+}
+
+presence_t presence_ask(session_t *session, uint8_t address, const fathom_line_settings_t *line,
+                        unsigned times)
+{
+    presence_t presence = {.what = PRESENT_STOPPED, .status = FATHOM_ERR_ARGUMENT};
+    const fathom_line_settings_t copy = *line; /* session_move() writes the sensor's, which *line may be */
+    if (session_move(session, address, &copy)) presence.what = ask(session, times, &presence);
+    return presence;
+}
+
+void presence_explain(session_t *session, const presence_t *presence)
+{
+    if (presence->is_two)
+        (void)fprintf(stderr, "two sensors respond at address %u", session->sensor->address);
+    else
+        session_explain(session, presence->status);
 }

@@ -3,10 +3,10 @@
 #include "tool.h"
 
 #include "commands/commission/record.h"
-#include "device/backup_file.h"
+#include "device/session.h"
 
 /*
- * The files that the tool reads again: the settings of a unit (backup_file.h) and the record of a commissioning
+ * The files that the tool reads again: the settings of a unit (device/session.h) and the record of a commissioning
  * (record.h), with anything in them. What is taken is written as the same, and what is refused is said.
  */
 static void check_refusal(bool is_refused)
@@ -20,7 +20,7 @@ static void check_refusal(bool is_refused)
 static int parse_backup(const model_t *model, backup_t *backup)
 {
     tool_capture();
-    const int status = backup_parse("unit", model, backup);
+    const int status = backup_parse("unit", model, false, backup);
     tool_release();
     return status;
 }
@@ -32,8 +32,8 @@ static void backup(uint8_t how, const uint8_t *bytes, size_t size)
     const model_t *const model = &models[how % model_count];
     tool_file(bytes, size);
     const int status = parse_backup(model, &first);
-    PROMISE(status == 0 || status == 1 || status == 2, "backup_file.h: what parse returns");
-    PROMISE((status == 1) == (size == 0), "backup_file.h: 1: it cannot be read");
+    PROMISE(status == 0 || status == 1 || status == 2, "session.h: what parse returns");
+    PROMISE((status == 1) == (size == 0), "session.h: 1: it cannot be read");
     check_refusal(status != 0);
     if (status != 0) return;
     char *text = NULL;
@@ -43,18 +43,18 @@ static void backup(uint8_t how, const uint8_t *bytes, size_t size)
     backup_print(to, &first, "address 1, 9600 8N1", "2026-01-01");
     (void)fclose(to);
     tool_file((const uint8_t *)text, length);
-    PROMISE(parse_backup(model, &again) == 0, "backup_file.h: what is printed is read");
-    for (size_t i = 0; i != backup_count(model); i++) {
+    PROMISE(parse_backup(model, &again) == 0, "session.h: what is printed is read");
+    for (size_t i = 0; model->settings[i].name != NULL; i++) {
         const setting_t *const setting = &model->settings[i];
         const backup_row_t *const row = &first.rows[i];
-        PROMISE(row->held == again.rows[i].held && row->value == again.rows[i].value &&
-                    strcmp(row->text, again.rows[i].text) == 0,
-                "backup_file.h: what is printed is read as the same");
-        PROMISE(row->held == HELD_NOTHING || backup_has(setting), "backup.h: this is of what is kept");
+        int32_t value = 0;
+        PROMISE(row->held == again.rows[i].held && strcmp(row->text, again.rows[i].text) == 0,
+                "session.h: what is printed is read as the same");
+        PROMISE(row->held == HELD_NOTHING || (setting->kind != SETTING_PRESENT && setting->mode == NULL),
+                "session.h: this is of what is kept");
         if (row->held == HELD_VALUE && setting->set != NULL)
-            PROMISE((row->value >= setting->least && row->value <= setting->most) ||
-                        (row->value == 0 && (setting->has_zero || setting->words != NULL)) ||
-                        setting->words != NULL,
+            PROMISE(setting_value(setting, row->text, &value) ||
+                        (setting->has_zero && strcmp(row->text, "0") == 0),
                     "setting.h: a value that can be set");
     }
     free(text);

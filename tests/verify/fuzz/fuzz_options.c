@@ -5,7 +5,7 @@
 
 #include "cli/rows.h"
 #include "commands/commands.h"
-#include "device/setting_text.h"
+#include "device/session.h"
 #include "output/words.h"
 #include "ports/tcp_address.h"
 
@@ -184,7 +184,7 @@ static void check_setting(uint8_t how)
             "setting.h: from least to most");
     setting_print_value(setting, value, printed);
     PROMISE(setting_value(setting, printed, &again) && again == value,
-            "setting_text.h: what is printed is the same");
+            "session.h: what is printed is the same");
 }
 
 /* ---- command lines ---- */

@@ -8,7 +8,7 @@
 #include "cli/command.h"
 #include "cli/rows.h"
 #include "commands/commands.h"
-#include "device/setting_text.h"
+#include "device/session.h"
 
 /* fathom calibrate finds the distance offset of an HPS-167S with a target at a known distance. */
 
@@ -276,7 +276,8 @@ static bool announce(const calibration_t *run)
 /* Returns false if the sensor has certainly not accepted the offset, after printing why. */
 static bool write_offset(calibration_t *run)
 {
-    const setting_t *const setting = setting_of(session_settings(&session), session.sensor->model->offset);
+    const setting_t *const setting =
+        setting_of(session.sensor->model->settings, session.sensor->model->offset);
     if (!announce(run)) return false;
     const fathom_status_t status = session_set(&session, setting, run->offset_mm);
     const reader_facts_t facts = reader_facts(session.sensor->reader);

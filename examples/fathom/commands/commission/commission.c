@@ -7,9 +7,7 @@
 #include "cli/rows.h"
 #include "commands/commands.h"
 #include "commands/commission/record.h"
-#include "device/change.h"
-#include "device/presence.h"
-#include "device/setting_text.h"
+#include "device/session.h"
 #include "output/words.h"
 
 /* fathom commission assigns addresses to new sensors that all have address 1, one after the other. */
@@ -125,10 +123,10 @@ static bool set_options(const arguments_t *arguments)
     if (session.sensor->address != FACTORY_ADDRESS)
         return reject(&origin, "new sensors have address %d. Leave address %u out.", FACTORY_ADDRESS,
                       session.sensor->address);
-    if (port_path_has_gateway(session_port(&session)->path))
+    if (port_path_has_gateway(session.sensor->port->path))
         return reject(&origin,
                       "%s is no serial port. Behind a gateway, two sensors at one address look like one.",
-                      session_port(&session)->path);
+                      session.sensor->port->path);
     run.model = session.sensor->model;
     run.has_numbers = record_has_numbers(run.model);
     run.text = session.is_json ? stderr : stdout;
@@ -560,7 +558,7 @@ static void work(uint64_t wait_us)
                           wait_us / 1000000);
             return;
         }
-        session_listen(&session, PAUSE_US);
+        port_listen(&session.port, PAUSE_US);
     }
 }
 
@@ -613,7 +611,7 @@ static int start(const host_t *host, const arguments_t *arguments)
     if (!session_open(&session, host)) return STATUS_FAILED;
     int status = STATUS_FAILED;
     if (record_write(&run.record)) { /* proves that the record can be written before anything is sent */
-        session_listen(&session, LATE_US);
+        port_listen(&session.port, LATE_US);
         if (resume_all()) work(settings->wait_us);
         status = finish();
     }

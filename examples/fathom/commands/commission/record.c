@@ -1,14 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-#define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): fsync, getline */
+#define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): getline */
 #include "commands/commission/record.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
-#include "device/setting_text.h"
+#include "device/session.h"
 #include "output/words.h"
 
 static const char title[] = "# fathom commission: which unit has which address, or is to have it";
@@ -27,9 +25,9 @@ const record_unit_t *record_of(const record_t *record, const model_t *model, con
     return NULL;
 }
 
-static bool fail(const record_t *record, const char *what)
+static bool fail(const record_t *record)
 {
-    (void)fprintf(stderr, "fathom: cannot %s the record %s: %s\n", what, record->path, strerror(errno));
+    (void)fprintf(stderr, "fathom: cannot read the record %s: %s\n", record->path, strerror(errno));
     return false;
 }
 
@@ -94,7 +92,7 @@ bool record_read(record_t *record, const char *path)
     memset(record, 0, sizeof *record);
     record->path = path;
     FILE *const file = fopen(path, "r");
-    if (file == NULL) return errno == ENOENT || fail(record, "read");
+    if (file == NULL) return errno == ENOENT || fail(record);
     while (wrong == NULL && (length = getline(&text, &size, file)) > 0) {
         char *const end = &text[length - 1];
         line++;
@@ -105,7 +103,7 @@ bool record_read(record_t *record, const char *path)
         else if (wrong == NULL && text[0] != '#' && text[0] != '\0')
             wrong = parse_line(record, text);
     }
-    const bool is_read = ferror(file) == 0 || fail(record, "read");
+    const bool is_read = ferror(file) == 0 || fail(record);
     if (wrong != NULL)
         (void)fprintf(stderr,
                       "fathom: %s:%u: %s. Nothing was sent. Correct the line, or use another --record.\n",
@@ -120,43 +118,19 @@ bool record_read(record_t *record, const char *path)
 
 /* ---- writing ---- */
 
-enum { PATH = 4096 };
-
-/* The new name is on the disk only when its folder is. Not every file system supports this. */
-static void sync_folder(const char *path)
+static void print_all(FILE *to, const void *ctx)
 {
-    char folder[PATH] = ".";
-    const char *const slash = strrchr(path, '/');
-    if (slash != NULL) (void)snprintf(folder, sizeof folder, "%.*s", (int)(slash - path) + 1, path);
-    const int fd = open(folder, O_RDONLY);
-    if (fd < 0) return;
-    (void)fsync(fd);
-    (void)close(fd);
-}
-
-bool record_write(const record_t *record)
-{
-    char fresh[PATH + 8]; /* record_read() could not open a longer path */
-    (void)snprintf(fresh, sizeof fresh, "%s.new", record->path);
-    FILE *const file = fopen(fresh, "w");
-    if (file == NULL) return fail(record, "write");
-    (void)fprintf(file, "%s\n%s", title, columns);
+    const record_t *const record = ctx;
+    (void)fprintf(to, "%s\n%s", title, columns);
     for (size_t i = 0; i != RECORD_UNITS; i++) {
         const record_unit_t *const unit = &record->units[i];
         if (unit->model == NULL) continue;
-        (void)fprintf(file, "%s %u %s %s %s\n", unit->model->name, unit->address, unit->number,
+        (void)fprintf(to, "%s %u %s %s %s\n", unit->model->name, unit->address, unit->number,
                       record_states[unit->state], unit->when);
     }
-    const bool is_put =
-        (fflush(file) == 0 && ferror(file) == 0 && fsync(fileno(file)) == 0) || fail(record, "write");
-    const bool is_closed = fclose(file) == 0;
-    if (is_put && ((is_closed && rename(fresh, record->path) == 0) || fail(record, "write"))) {
-        sync_folder(record->path);
-        return true;
-    }
-    (void)remove(fresh);
-    return false;
 }
+
+bool record_write(const record_t *record) { return file_write(record->path, true, print_all, record); }
 
 bool record_put(record_t *record, const record_unit_t *unit, uint64_t utc_us)
 {

@@ -1,0 +1,403 @@
+/* SPDX-License-Identifier: MIT */
+#include <inttypes.h>
+#include <string.h>
+
+#include "cli/rows.h"
+#include "commands/commands.h"
+#include "device/session.h"
+#include "output/words.h"
+
+/* fathom save writes the settings of a sensor to a file, and fathom restore those of a file to a sensor. */
+
+typedef struct {
+    session_settings_t session;
+    const char *path; /* NULL: standard output */
+    bool is_dry;
+    bool is_new;
+} backup_settings_t;
+
+static session_t session;
+
+static bool set_up(const arguments_t *arguments)
+{
+    return session_read(&session, arguments, 1, 0) &&
+           session_set_mode(&session, arguments, model_mode_of(session.sensor->model, NULL));
+}
+
+static bool has_output(void)
+{
+    if (fflush(stdout) == 0 && ferror(stdout) == 0) return true;
+    (void)fputs("fathom: cannot write the output.\n", stderr);
+    return false;
+}
+
+/* ---- fathom save ---- */
+
+static void print_unit(FILE *to, const void *unit)
+{
+    const host_t *const host = session.port.host;
+    char line[LINE_TEXT];
+    char place[2 * LINE_TEXT];
+    char utc[UTC_TEXT];
+    char when[UTC_TEXT];
+    (void)snprintf(place, sizeof place, "address %u, %s", session.sensor->address,
+                   session_line_text(&session, line));
+    (void)snprintf(when, sizeof when, "%.19sZ", utc_text(host->utc_us(host->ctx), utc)); /* to the second */
+    backup_print(to, unit, place, when);
+}
+
+static bool save(const char *path)
+{
+    backup_t unit;
+    if (!backup_read(&session, &unit)) return false;
+    if (path == NULL) {
+        print_unit(stdout, &unit);
+    } else {
+        if (!file_write(path, false, print_unit, &unit)) return false;
+        (void)printf("%s: the settings are in %s\n", session.sensor->name, path);
+    }
+    return has_output();
+}
+
+static int start_save(const host_t *host, const arguments_t *arguments)
+{
+    const backup_settings_t *const settings = arguments->settings;
+    if (!set_up(arguments)) return STATUS_USAGE;
+    if (settings->path != NULL && !file_is_free(settings->path)) return STATUS_FAILED;
+    if (!session_open(&session, host)) return STATUS_FAILED;
+    const bool is_saved = save(settings->path);
+    session_close(&session);
+    return is_saved ? STATUS_OK : STATUS_FAILED;
+}
+
+/* ---- fathom restore: the plan ---- */
+
+/* What is done with a setting. Those that are written come in the order of writing: a setting that can be compared is
+ * written before one that cannot, which is then not written if the first one fails; what moves the sensor comes last. */
+typedef enum {
+    STEP_NONE = 0,   /* the file does not have it, or has the same value */
+    STEP_STAYS,      /* an address or a baud rate that is not to change */
+    STEP_IMPOSSIBLE, /* the sensor does not have it */
+    STEP_WRITE,
+    STEP_WRITE_UNSEEN, /* it is write-only */
+    STEP_MOVE,
+    STEP_CHANGE_BAUD,
+    STEPS
+} step_t;
+
+/* What fathom restore does with the sensor. */
+static struct {
+    const char *path;
+    bool is_new;   /* the sensor gets the address of the file, */
+    bool has_baud; /* and its baud rate */
+    backup_t file;
+    backup_t unit;
+    const setting_t *settings;
+    step_t steps[BACKUP_ROWS];
+    size_t order[BACKUP_ROWS]; /* of the settings to write */
+    size_t count;              /* of these */
+    bool is_impossible;        /* a step is STEP_IMPOSSIBLE */
+    bool moves;                /* a step is STEP_MOVE or STEP_CHANGE_BAUD */
+} plan;
+
+static step_t step_of(const setting_t *setting, const backup_row_t *file, const backup_row_t *unit)
+{
+    const bool may_move = setting->is_baud ? plan.has_baud : plan.is_new;
+    if (setting->set == NULL || file->held != HELD_VALUE || backup_is_same(file, unit)) return STEP_NONE;
+    if (setting->moves && !may_move) return STEP_STAYS;
+    if (unit->held == HELD_NOT_THERE) return STEP_IMPOSSIBLE;
+    if (setting->moves) return setting->is_baud ? STEP_CHANGE_BAUD : STEP_MOVE;
+    return unit->held == HELD_NOT_READABLE ? STEP_WRITE_UNSEEN : STEP_WRITE;
+}
+
+static void make_plan(void)
+{
+    plan.settings = plan.unit.model->settings;
+    plan.count = 0;
+    for (step_t step = STEP_NONE; step != STEPS; step++) {
+        for (size_t i = 0; plan.settings[i].name != NULL; i++) {
+            plan.steps[i] = step_of(&plan.settings[i], &plan.file.rows[i], &plan.unit.rows[i]);
+            if (plan.steps[i] == STEP_IMPOSSIBLE) plan.is_impossible = true;
+            if (plan.steps[i] >= STEP_MOVE) plan.moves = true;
+            if (plan.steps[i] == step && step >= STEP_WRITE) plan.order[plan.count++] = i;
+        }
+    }
+}
+
+/* Prints the versions and numbers of both. Returns false if `other` is another sensor. */
+static bool print_identity(const backup_t *one, const char *one_is, const backup_t *other,
+                           const char *other_is)
+{
+    bool is_known = false;
+    bool is_same = true;
+    for (size_t i = 0; one->model->settings[i].name != NULL; i++) {
+        const setting_t *const setting = &one->model->settings[i];
+        const backup_row_t *const a = &one->rows[i];
+        const backup_row_t *const b = &other->rows[i];
+        const bool is_unit = setting->kind == SETTING_IDENTITY;
+        const bool is_equal = backup_is_same(a, b);
+        if (setting->set != NULL || a->held == HELD_NOTHING || b->held == HELD_NOTHING) continue;
+        (void)printf("%s: %s %s, %s %s: ", setting->name, backup_text(a), one_is, backup_text(b), other_is);
+        if (a->held != HELD_VALUE || b->held != HELD_VALUE) {
+            (void)puts("unknown");
+            continue;
+        }
+        (void)printf("%s %s\n", is_equal ? "the same" : "another", is_unit ? "sensor" : "version");
+        if (is_unit) is_known = true;
+        if (is_unit) is_same = is_equal;
+    }
+    if (!is_known) (void)puts("unknown whether it is the same sensor: it has no number to compare");
+    return is_same;
+}
+
+static const char *cell(const setting_t *setting, const backup_row_t *row, char text[SETTING_CELL])
+{
+    return setting_with_unit(setting, row->held == HELD_NOT_SETTABLE ? row->text : backup_text(row), text);
+}
+
+static void print_plan(void)
+{
+    const char *const notes[STEPS] = {[STEP_STAYS] = plan.is_new ? "  stays: the baud rate is the gateway's"
+                                                                 : "  stays, without --as-new",
+                                      [STEP_IMPOSSIBLE] = "  this sensor does not have it",
+                                      [STEP_WRITE_UNSEEN] = "  is written without comparison"};
+    bool has_header = false;
+    (void)print_identity(&plan.file, "in the file", &plan.unit, "in the sensor");
+    for (size_t i = 0; plan.settings[i].name != NULL; i++) {
+        const setting_t *const setting = &plan.settings[i];
+        const char *const note = notes[plan.steps[i]];
+        char is[SETTING_CELL];
+        char to[SETTING_CELL];
+        if (plan.steps[i] == STEP_NONE) continue;
+        if (!has_header) (void)printf("%-24s %-14s    %s\n", "setting", "in the sensor", "in the file");
+        has_header = true;
+        (void)printf("%-24s %-14s -> %s%s\n", setting->name, cell(setting, &plan.unit.rows[i], is),
+                     cell(setting, &plan.file.rows[i], to), note != NULL ? note : "");
+    }
+    if (!has_header) (void)puts("no differences");
+    (void)fflush(stdout);
+    for (size_t i = 0; plan.settings[i].name != NULL; i++)
+        if (plan.steps[i] == STEP_WRITE_UNSEEN && plan.settings[i].risk != NULL)
+            (void)fprintf(stderr, "fathom: %s: %s\n", plan.settings[i].name, plan.settings[i].risk);
+}
+
+/* ---- fathom restore: writing ---- */
+
+/* Lists the names of settings `from` to `to` - 1 in the order of writing, or only the write-only ones among them. */
+static const char *names(size_t from, size_t to, bool is_unseen, char text[SETTING_VALUES])
+{
+    text[0] = '\0';
+    for (size_t n = from; n < to; n++)
+        if (!is_unseen || plan.steps[plan.order[n]] == STEP_WRITE_UNSEEN)
+            list_add(text, SETTING_VALUES, plan.settings[plan.order[n]].name);
+    return text;
+}
+
+/* Prints which of the first `count` settings the next run would write again. */
+static void print_again(size_t count)
+{
+    char unseen[SETTING_VALUES];
+    if (names(0, count, true, unseen)[0] == '\0') return;
+    (void)fflush(stdout);
+    (void)fprintf(
+        stderr,
+        "fathom: before you run restore again, write `not readable` for %s in %s, or it is written again.\n",
+        unseen, plan.path);
+}
+
+static void print_stop(size_t n)
+{
+    char before[SETTING_VALUES];
+    char after[SETTING_VALUES];
+    (void)names(0, n, false, before);
+    (void)names(n + 1, plan.count, false, after);
+    (void)fprintf(stderr, "fathom: stopped at %s. Written before: %s. Not written: %s\n",
+                  plan.settings[plan.order[n]].name, before[0] != '\0' ? before : "nothing",
+                  after[0] != '\0' ? after : "nothing else");
+    print_again(reader_facts(session.sensor->reader).is_written ? n + 1 : n);
+}
+
+/* Moves the session to where the driver has followed the sensor. */
+static bool follow(void)
+{
+    const reader_facts_t facts = reader_facts(session.sensor->reader);
+    const fathom_line_settings_t line = facts.line != NULL ? *facts.line : session.sensor->line;
+    return session_move(&session, facts.address, &line);
+}
+
+static bool write_all(void)
+{
+    for (size_t n = 0; n != plan.count; n++) {
+        const size_t i = plan.order[n];
+        const setting_t *const setting = &plan.settings[i];
+        change_t change = {.session = &session, .setting = setting};
+        (void)setting_value(setting, plan.file.rows[i].text, &change.value);
+        (void)snprintf(change.wanted, sizeof change.wanted, "%s", plan.file.rows[i].text);
+        (void)snprintf(change.was, sizeof change.was, "%s", plan.unit.rows[i].text);
+        if (change_report(&change, session_set(&session, setting, change.value)) &&
+            (!setting->moves || follow()))
+            continue;
+        print_stop(n);
+        return false;
+    }
+    return true;
+}
+
+/* ---- fathom restore: the new place ---- */
+
+/* One response may be lost, so the place is asked twice. Bytes without a response do not occupy it: they may be frames of
+ * this sensor, heard at another rate. */
+static bool is_free_at(uint8_t address, const fathom_line_settings_t *line)
+{
+    char text[LINE_TEXT];
+    presence_t presence = presence_ask(&session, address, line, 1);
+    if (presence.status == FATHOM_ERR_NO_RESPONSE) presence = presence_ask(&session, address, line, 1);
+    if (presence.status == FATHOM_ERR_NO_RESPONSE) return true;
+    if (presence.status == FATHOM_ERR_ARGUMENT) return false; /* session_move() has printed the reason */
+    (void)fflush(stdout);
+    (void)fprintf(stderr, "fathom: nothing was written: at address %u, %s, ", address,
+                  session_line_text(&session, text));
+    if (presence.what == PRESENT_ONE || presence.what == PRESENT_UNCLEAR)
+        (void)fputs("a sensor responds already. Two sensors at one address would respond at the same time",
+                    stderr);
+    else
+        session_explain(&session, presence.status);
+    (void)fputs("\n", stderr);
+    return false;
+}
+
+/* Returns true if no sensor responds at the new address, neither at today's line settings, which the sensor passes, nor
+ * at the new rate. Then moves the session back. */
+static bool is_place_free(void)
+{
+    const fathom_line_settings_t home_line = session.sensor->line;
+    const uint8_t home = session.sensor->address;
+    fathom_line_settings_t line = home_line;
+    uint32_t address = home;
+    for (size_t n = 0; n != plan.count; n++) {
+        const size_t i = plan.order[n];
+        uint32_t *const number = plan.steps[i] == STEP_MOVE ? &address : &line.baud;
+        if (plan.steps[i] >= STEP_MOVE) (void)number_parse(plan.file.rows[i].text, 0, UINT32_MAX, number);
+    }
+    const bool is_free = (address == home || is_free_at((uint8_t)address, &home_line)) &&
+                         (line.baud == home_line.baud || is_free_at((uint8_t)address, &line));
+    return session_move(&session, home, &home_line) && is_free;
+}
+
+/* Returns true if the same sensor responds at the new place. */
+static bool is_still_same(void)
+{
+    backup_t now;
+    char line[LINE_TEXT];
+    if (!backup_read(&session, &now)) {
+        (void)fputs("fathom: all differences are written, but the sensor cannot be read at its new place.\n",
+                    stderr);
+        return false;
+    }
+    (void)printf("%s: responds at the new place, %s\n", session.sensor->name,
+                 session_line_text(&session, line));
+    if (print_identity(&plan.unit, "before", &now, "now")) return true;
+    (void)fflush(stdout);
+    (void)fputs("fathom: another sensor responds at the new place. Run 'fathom scan'\n", stderr);
+    return false;
+}
+
+static bool restore(bool is_dry)
+{
+    if (!backup_read(&session, &plan.unit)) {
+        (void)fputs("fathom: nothing was written.\n", stderr);
+        return false;
+    }
+    plan.has_baud =
+        plan.is_new && port_has_line(&session.port); /* that of a gateway belongs to all sensors */
+    make_plan();
+    print_plan();
+    if (!has_output()) return false; /* without the plan on stdout nothing is written */
+    if (is_dry) return plan.count == 0 && !plan.is_impossible;
+    if (plan.is_impossible) {
+        (void)fprintf(stderr,
+                      "fathom: nothing was written: this sensor does not have all settings of the file. "
+                      "Write `not there` for those in %s\n",
+                      plan.path);
+        return false;
+    }
+    if ((plan.moves && !is_place_free()) || !write_all()) return false;
+    if (!plan.moves || is_still_same()) return has_output();
+    print_again(plan.count);
+    return false;
+}
+
+static int start_restore(const host_t *host, const arguments_t *arguments)
+{
+    const backup_settings_t *const settings = arguments->settings;
+    memset(&plan, 0, sizeof plan);
+    plan.path = settings->path;
+    plan.is_new = settings->is_new;
+    if (!set_up(arguments) || !session_can_set(&session, arguments)) return STATUS_USAGE;
+    const int parsed = backup_parse(plan.path, session.sensor->model, plan.is_new, &plan.file);
+    if (parsed != STATUS_OK) return parsed;
+    if (!session_open(&session, host)) return STATUS_FAILED;
+    const bool is_restored = restore(settings->is_dry);
+    session_close(&session);
+    return is_restored ? STATUS_OK : STATUS_FAILED;
+}
+
+/* ---- the commands ---- */
+
+static const option_t save_rows[] = {
+    {"file", "FILE", "Write to a new FILE instead of standard output", KIND_TEXT, GROUP_OUTPUT,
+     AT(backup_settings_t, path), .is_path = true},
+    {"output", .help = "Other commands have it", .group = GROUP_OUTPUT, .is_hidden = true, .instead = "file"},
+    {.name = NULL},
+};
+
+static const option_table_t save_tables[] = {{save_rows, 0}, SESSION_TABLES, {NULL, 0}};
+
+const command_t save_command = {
+    .name = "save",
+    .summary = "Write the settings of a sensor to a file",
+    .usage = "SENSOR[:ADDRESS][@PORT] [OPTIONS]",
+    .about = "The file is text. 'fathom restore' writes it to the same or another sensor.\n",
+    .tables = save_tables,
+    .common = "port address baud file timeout",
+    .examples = "  fathom save hps167s:7 --port /dev/ttyUSB0 --file gate.txt\n"
+                "  fathom save a16 --port /dev/ttyUSB0\n",
+    .status = "Exit status: 0 success, 1 the sensor could not be read, 2 wrong usage.\n",
+    .topics = "backup, settings, sensors, ports",
+    .operands = OPERANDS_ONE,
+    .settings_size = sizeof(backup_settings_t),
+    .start = start_save,
+};
+
+static const option_t restore_rows[] = {
+    {"file", "FILE", "Read the settings from FILE, which 'fathom save' wrote", KIND_TEXT, GROUP_COMMAND,
+     AT(backup_settings_t, path), .is_path = true, .is_required = true, .takes = "the name of a file"},
+    {"dry-run", .help = "Print the differences and write nothing", .group = GROUP_COMMAND,
+     AT(backup_settings_t, is_dry)},
+    {"as-new", .help = "Also set the address and baud rate of the saved sensor", .group = GROUP_COMMAND,
+     AT(backup_settings_t, is_new)},
+    {.name = NULL},
+};
+
+static const option_table_t restore_tables[] = {{restore_rows, 0}, SESSION_TABLES, {NULL, 0}};
+
+const command_t restore_command = {
+    .name = "restore",
+    .summary = "Write the settings of a file to a sensor",
+    .usage = "SENSOR[:ADDRESS][@PORT] --file FILE [OPTIONS]",
+    .about = "The sensor is read first, and only what differs is written. With --as-new,\n"
+             "nothing may respond at the new address. A setting that the file marks as\n"
+             "'not readable' is written only if you fill in its value. After a failed write\n"
+             "the command ends and prints what was written; run it again.\n",
+    .tables = restore_tables,
+    .common = "port file dry-run as-new baud",
+    .examples = "  fathom restore hps167s:7 --port /dev/ttyUSB0 --file gate.txt --dry-run\n"
+                "  fathom restore hps167s:7 --port /dev/ttyUSB0 --file gate.txt\n"
+                "  fathom restore hps167s --port /dev/ttyUSB0 --file gate.txt --as-new\n",
+    .status = "Exit status: 0 the sensor has the settings of the file (--dry-run: already),\n"
+              "1 it does not or that is unknown, 2 wrong usage or a wrong line in the file.\n",
+    .topics = "backup, settings, sensors, ports",
+    .operands = OPERANDS_ONE,
+    .settings_size = sizeof(backup_settings_t),
+    .start = start_restore,
+};
