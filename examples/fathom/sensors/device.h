@@ -6,7 +6,7 @@
 #include "sim/a16.h"
 #include "sim/hps167s.h"
 
-/* Traits of a simulated sensor; 0: it does not have the trait. sim_traits.c explains them, and model_t.traits has those
+/* Traits of a simulated sensor; 0: it does not have the trait. commands/sim explains them, and model_t.traits has those
  * that a model can have. */
 typedef enum {
     DEVICE_EXCEPTIONS,
