@@ -16,7 +16,7 @@ from common import code_of, files, main, read
 common.COPIED = (*common.COPIED, 'tests', 'README.md')
 
 LIST = 'tests/unit/sections.csv'
-MODELS = 'examples/fathom/sensors/models.c'
+MODELS = 'examples/fathom/sensors'
 NONE = '–'
 PAGE, FIRST = 'include/README.md', 'README.md'
 DRIVER = re.compile(r'(a16|a05|hps167s)(_|\.h$)(?!registers)')
@@ -43,19 +43,17 @@ def quoted(cell):
     return re.findall(r'`([^`]+)`', cell)
 
 
-def modes(text):
-    """{section: the command that reads the mode} of the rows of the tool."""
+def modes(root):
+    """{section: the command that reads the mode} of the rows of the tool, in the tables SENSOR_modes."""
     pins = {'TRIGGER': 'trigger=17', 'ECHO': 'echo=27', 'IN': 'in=5'}
-    found, sensor = {}, None
-    for line in re.findall(r'^        \.name = "\w+"|\{\.name = "\w+",\s*\.section[^}]*\}', text, re.M):
-        name = re.search(r'"(\w+)"', line)[1]
-        if not line.startswith('{'):
-            sensor = name
-            continue
-        needs = re.search(r'\.pins = ([^,}]*)', line)
-        keys = [pins[pin] for pin in re.findall(r'MODEL_PIN_(\w+)', needs[1])] if needs else []
-        port = f'@{",".join(["gpiochip0", *keys])}' if keys else ' --port P'
-        found[re.search(r'\.section = "([^"]*)"', line)[1]] = f'read {sensor}:{name}{port}'
+    text = '\n'.join(read(root, path) for path in files(root, MODELS))
+    found = {}
+    for sensor, table in re.findall(r'^const model_mode_t (\w+)_modes\[MODEL_MODES\] = \{\n(.*?)^\};', text, re.M | re.S):
+        for name, section, row in re.findall(r'\{"(\w+)", "([^"]*)"([^}]*)\}', table):
+            needs = re.search(r'\.pins = ([^,}]*)', row)
+            keys = [pins[pin] for pin in re.findall(r'MODEL_PIN_(\w+)', needs[1])] if needs else []
+            port = f'@{",".join(["gpiochip0", *keys])}' if keys else ' --port P'
+            found[section] = f'read {sensor}:{name}{port}'
     return found
 
 
@@ -69,7 +67,7 @@ def mode_of(section, commands):
 
 def update(root):
     text = read(root, PAGE)
-    commands = modes(read(root, MODELS))
+    commands = modes(root)
     lines = text.split('\n')
     for number, line in enumerate(lines):
         cells = line.split('|')
@@ -102,11 +100,12 @@ def check(root, only):
     wanted = sections(read(root, LIST))
     found = rows(read(root, PAGE))
     names = [row[0] for row in found]
-    commands = modes(read(root, MODELS))
+    commands = modes(root)
     problems = [f'{PAGE}: no row for {name} of {LIST}' for name in wanted if name not in names]
     problems += [f'{PAGE}: {name} is no section of {LIST}' for name in names if name not in wanted]
     problems += [f'{MODELS}: {name} is no section of {LIST}' for name in commands
                  if not any(section.startswith(name) for section in wanted)]
+    problems += [] if commands else [f'{MODELS}: no modes']
     problems += [f'{PAGE}: {name} stands there twice' for name in set(names) if names.count(name) > 1]
     for name, api, tool, tests in found:
         if not quoted(api):

@@ -286,7 +286,7 @@ static bool takes_mode(operands_t operands, const model_mode_t *mode)
 static void offer_sensors(const offer_t *it, operands_t operands)
 {
     for (const model_t *model = models; model != models + model_count; model++) {
-        if (operands == OPERANDS_RESETTABLE && model->reset.restore == NULL) continue;
+        if (operands == OPERANDS_RESETTABLE && model->reset_interface == NULL) continue;
         offer(it, model->what, "%s", model->name);
         for (size_t m = 0; m != MODEL_MODES && model->modes[m].name != NULL; m++)
             if (takes_mode(operands, &model->modes[m]))
@@ -303,7 +303,7 @@ static void offer_settings(const offer_t *it, operands_t operands, char **words,
         if (strlen(model->name) == length && strncmp(model->name, words[0], length) == 0)
             setting = model->settings;
     for (; setting != NULL && setting->name != NULL; setting++) {
-        const bool is_it = operands == OPERANDS_SETTING ? setting->get != NULL : setting->set != NULL;
+        const bool is_it = operands == OPERANDS_SETTING ? setting->read_at != 0 : setting->effect != NULL;
         if (count == 1 && is_it) offer(it, setting->what, "%s", setting->name);
         if (count != 2 || operands == OPERANDS_SETTING || strcmp(setting->name, words[1]) != 0) continue;
         for (const char *const *word = setting->words; word != NULL && *word != NULL; word++)

@@ -103,7 +103,7 @@ static struct {
 static step_t step_of(const setting_t *setting, const backup_row_t *file, const backup_row_t *unit)
 {
     const bool may_move = setting->is_baud ? plan.has_baud : plan.is_new;
-    if (setting->set == NULL || file->held != HELD_VALUE || backup_is_same(file, unit)) return STEP_NONE;
+    if (setting->effect == NULL || file->held != HELD_VALUE || backup_is_same(file, unit)) return STEP_NONE;
     if (setting->moves && !may_move) return STEP_STAYS;
     if (unit->held == HELD_NOT_THERE) return STEP_IMPOSSIBLE;
     if (setting->moves) return setting->is_baud ? STEP_CHANGE_BAUD : STEP_MOVE;
@@ -136,7 +136,7 @@ static bool print_identity(const backup_t *one, const char *one_is, const backup
         const backup_row_t *const b = &other->rows[i];
         const bool is_unit = setting->kind == SETTING_IDENTITY;
         const bool is_equal = backup_is_same(a, b);
-        if (setting->set != NULL || a->held == HELD_NOTHING || b->held == HELD_NOTHING) continue;
+        if (setting->effect != NULL || a->held == HELD_NOTHING || b->held == HELD_NOTHING) continue;
         (void)printf("%s: %s %s, %s %s: ", setting->name, backup_text(a), one_is, backup_text(b), other_is);
         if (a->held != HELD_VALUE || b->held != HELD_VALUE) {
             (void)puts("unknown");

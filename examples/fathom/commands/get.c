@@ -1,5 +1,4 @@
 /* SPDX-License-Identifier: MIT */
-#define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): fmemopen */
 #include <limits.h>
 #include <string.h>
 
@@ -25,9 +24,8 @@ typedef struct {
     unsigned read_count; /* values that were read */
     uint16_t
         failed_read; /* the read that failed last. Its other values are not requested: that takes seconds */
-    fathom_status_t failure;   /* of that read */
-    const setting_t *remarked; /* has a value with a remark, which follows the table; NULL: none has */
-    char remarked_text[SETTING_TEXT];
+    fathom_status_t failure; /* of that read */
+    const char *remark;      /* about one of the values, which follows the table; NULL: none */
 } values_t;
 
 /* Returns the next value to print behind `last`, or the first one if `last` is NULL. NULL: there is none. */
@@ -36,7 +34,7 @@ static const setting_t *next_value(const values_t *progress, const setting_t *la
     const setting_t *setting = last != NULL ? last + 1 : progress->settings;
     if (progress->show == SHOW_ONE) return last == NULL ? setting : NULL;
     for (; setting->name != NULL; setting++) {
-        const bool is_shown = progress->show == SHOW_ALL ? setting->get != NULL : setting->set != NULL;
+        const bool is_shown = progress->show == SHOW_ALL ? setting->read_at != 0 : setting->effect != NULL;
         if (is_shown && model_mode_of(session.sensor->model, setting) == session.sensor->mode) return setting;
     }
     return NULL;
@@ -84,7 +82,7 @@ static void begin(const values_t *progress)
 static void print_value(const setting_t *setting, fathom_status_t status, const char *text)
 {
     const bool has_unit = setting->unit != NULL && strspn(text, "0123456789-., ") == strlen(text);
-    if (session.is_json && setting->get == NULL && status != FATHOM_OK) return; /* write-only */
+    if (session.is_json && setting->read_at == 0 && status != FATHOM_OK) return; /* write-only */
     if (session.is_json)
         setting_json(&json, NULL, setting, status == FATHOM_OK ? text : NULL);
     else if (status == FATHOM_OK)
@@ -92,13 +90,13 @@ static void print_value(const setting_t *setting, fathom_status_t status, const 
                      has_unit ? setting->unit : "");
     else
         (void)printf("%-26s - (%s)\n", setting->name,
-                     setting->get != NULL ? setting_reason(status) : "write-only");
+                     setting->read_at != 0 ? setting_reason(status) : "write-only");
 }
 
 static fathom_status_t read_value(const setting_t *setting, values_t *progress, char text[SETTING_TEXT])
 {
     text[0] = '\0';
-    if (setting->get == NULL) {
+    if (setting->read_at == 0) {
         if (!is_address(setting)) return FATHOM_ERR_UNSUPPORTED;
         (void)snprintf(text, SETTING_TEXT, "%u", session.sensor->address); /* it responds there */
         return FATHOM_OK;
@@ -125,15 +123,13 @@ static bool show_value(const setting_t *setting, values_t *progress)
 {
     char text[SETTING_TEXT];
     const fathom_status_t status = read_value(setting, progress, text);
-    const bool is_read = status == FATHOM_OK || setting->get == NULL;
+    const bool is_read = status == FATHOM_OK || setting->read_at == 0;
     if (!is_read && (!progress->is_known || setting_reason(status) == NULL)) return fail(setting, status);
     if (!progress->is_known) begin(progress);
     progress->is_known = true;
     if (is_read) progress->read_count++;
     print_value(setting, status, text);
-    if (setting->remark == NULL || status != FATHOM_OK) return true;
-    progress->remarked = setting;
-    (void)snprintf(progress->remarked_text, sizeof progress->remarked_text, "%s", text);
+    if (setting->remark != NULL && strcmp(text, setting->words[1]) == 0) progress->remark = setting->remark;
     return true;
 }
 
@@ -144,30 +140,17 @@ static bool responds(void)
     const setting_t *setting = NULL;
     char text[SETTING_TEXT];
     do setting = next_value(&all, setting);
-    while (setting != NULL && setting->get == NULL);
+    while (setting != NULL && setting->read_at == 0);
     if (setting == NULL) return true;
     const fathom_status_t status = session_get(&session, setting, text);
     return status == FATHOM_OK || fail(setting, status);
-}
-
-static void print_remark(const values_t *progress)
-{
-    char text[256] = "";
-    if (progress->remarked == NULL) return;
-    FILE *const to = fmemopen(text, sizeof text, "w");
-    if (to == NULL) return;
-    progress->remarked->remark(to, progress->remarked_text);
-    (void)fclose(to);
-    if (text[0] == '\0') return;
-    print_start();
-    (void)fputs(text, stderr);
 }
 
 /* Prints the values of the sensor on the open port. Returns false if one of them could not be read. */
 static bool show_values(const setting_t *settings, show_t show)
 {
     values_t progress = {.settings = settings, .show = show};
-    const bool is_unsure = show == SHOW_SETTINGS || (show == SHOW_ONE && settings->get == NULL);
+    const bool is_unsure = show == SHOW_SETTINGS || (show == SHOW_ONE && settings->read_at == 0);
     bool is_good = !is_unsure || responds();
     for (const setting_t *setting = NULL; (setting = next_value(&progress, setting)) != NULL;) {
         if (is_good) is_good = show_value(setting, &progress);
@@ -181,7 +164,10 @@ static bool show_values(const setting_t *settings, show_t show)
         (void)fputs("fathom: cannot write the output.\n", stderr);
         return false;
     }
-    print_remark(&progress);
+    if (progress.remark != NULL) {
+        print_start();
+        (void)fprintf(stderr, "%s\n", progress.remark);
+    }
     if (progress.is_known && progress.read_count != progress.count) {
         print_start();
         (void)fprintf(stderr, "%u of %u values could not be read\n", progress.count - progress.read_count,
@@ -237,7 +223,7 @@ static int start_get(const host_t *host, const arguments_t *arguments)
         return show_on_port(host, session.sensor->model->settings, SHOW_SETTINGS) ? STATUS_OK : STATUS_FAILED;
     const setting_t *const setting = setting_named(&session, arguments->words[1], arguments);
     if (setting == NULL) return STATUS_USAGE;
-    if (setting->get == NULL && !is_address(setting)) {
+    if (setting->read_at == 0 && !is_address(setting)) {
         (void)reject(&origin, "%s is write-only. The sensor does not report it.", setting->name);
         return STATUS_USAGE;
     }

@@ -29,13 +29,13 @@ static session_t session;
 static fathom_status_t restore(reader_t *reader, void *ctx)
 {
     (void)ctx;
-    return session.sensor->model->reset.restore(reader);
+    return session.sensor->model->reset_interface(reader);
 }
 
 static fathom_status_t load(reader_t *reader, void *ctx)
 {
     (void)ctx;
-    return session.sensor->model->reset.load(reader);
+    return session.sensor->model->reset_sensor(reader);
 }
 
 static int print_done(bool is_restore)
@@ -56,7 +56,7 @@ static int print_failure(bool is_restore, fathom_status_t status)
     const sensor_t *const sensor = session.sensor;
     const bool is_unconfirmed = status == FATHOM_ERR_UNCONFIRMED;
     const char *prefix = "the reset was sent, and is not confirmed: ";
-    if (!sensor->model->reset.is_sent(sensor->reader))
+    if (!reader_facts(sensor->reader).is_written)
         prefix = "nothing was written: ";
     else if (is_unconfirmed || status == FATHOM_ERR_EXCEPTION)
         prefix = "";
@@ -85,7 +85,7 @@ static bool set_up(const arguments_t *arguments, bool *is_restore)
     const reset_settings_t *const settings = arguments->settings;
     const origin_t origin = {.command = arguments->command->name};
     if (!session_read(&session, arguments, 1, 1)) return false;
-    if (session.sensor->model->reset.restore == NULL)
+    if (session.sensor->model->reset_interface == NULL)
         return reject(&origin, "%s cannot be reset. Only an hps167s can.", session.sensor->model->name);
     const char *const word = arguments->count == 2          ? arguments->words[1]
                              : settings->restores_interface ? "interface"

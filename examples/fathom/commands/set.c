@@ -32,7 +32,7 @@ static session_t session;
 static fathom_status_t call_all(reader_t *reader, void *ctx)
 {
     const change_t *const change = ctx;
-    return change->setting->set_all(reader, change->setting, change->value);
+    return session.sensor->model->set_all(reader, change->setting, change->value);
 }
 
 /* Some settings can have an effect that the sensor does not report. */
@@ -53,7 +53,7 @@ static bool set(change_t *change)
     if (change->is_for_all) return change_report(change, session_call(&session, call_all, change));
     if (change->is_blind) {
         reader_write_next_unchecked(session.sensor->reader);
-    } else if (change->setting->get != NULL) {
+    } else if (change->setting->read_at != 0) {
         const fathom_status_t status = session_get(&session, change->setting, change->was);
         if (status != FATHOM_OK) return change_report(change, status);
     }
@@ -71,7 +71,7 @@ static bool set_kind(change_t *change, const arguments_t *arguments, const origi
     if (change->is_blind && setting->is_never_blind)
         return reject(origin, "%s must be read before or after it is written. Leave --blind out.",
                       setting->name);
-    if (change->is_for_all && setting->set_all == NULL)
+    if (change->is_for_all && !setting->has_broadcast)
         return reject(origin,
                       "%s belongs to one unit. --all-units is for termination and "
                       "measure-after-power-on of an hps167s.",
@@ -110,7 +110,7 @@ static bool set_up(change_t *change, const arguments_t *arguments)
                       arguments->count == 1 ? "setting" : "value", session.sensor->model->name);
     const setting_t *const setting = setting_named(&session, arguments->words[1], arguments);
     if (setting == NULL) return false;
-    if (setting->set == NULL) return reject(&origin, "%s is read-only.", setting->name);
+    if (setting->effect == NULL) return reject(&origin, "%s is read-only.", setting->name);
     change->setting = setting;
     return session_set_mode(&session, arguments, model_mode_of(session.sensor->model, setting)) &&
            session_can_set(&session, arguments) &&

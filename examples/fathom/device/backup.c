@@ -35,7 +35,7 @@ static bool store(backup_row_t *row, const setting_t *setting, const char *text)
     int32_t value = 0;
     const bool is_zero = setting->has_zero && strcmp(text, "0") == 0;
     (void)snprintf(row->text, sizeof row->text, "%s", text);
-    if (setting->set == NULL) return true;
+    if (setting->effect == NULL) return true;
     if (!is_zero && !setting_value(setting, text, &value)) return false;
     setting_print_value(setting, value, row->text);
     return true;
@@ -61,9 +61,9 @@ static fathom_status_t read_row(session_t *session, const setting_t *setting, ba
 {
     char text[SETTING_TEXT];
     row->held = HELD_VALUE;
-    if (setting->get == NULL && !setting->moves) {
+    if (setting->read_at == 0 && !setting->moves) {
         row->held = HELD_NOT_READABLE;
-    } else if (setting->get == NULL) { /* the address at which the sensor responds */
+    } else if (setting->read_at == 0) { /* the address at which the sensor responds */
         setting_print_value(setting, session->sensor->address, row->text);
     } else {
         row->status = read_repeatedly(session, setting, text);
@@ -71,7 +71,7 @@ static fathom_status_t read_row(session_t *session, const setting_t *setting, ba
             if (!store(row, setting, text)) row->held = HELD_NOT_SETTABLE;
             return FATHOM_OK;
         }
-        const bool may_be_missing = setting->is_of_variant || setting->set == NULL;
+        const bool may_be_missing = setting->is_of_variant || setting->effect == NULL;
         if (!may_be_missing || setting_reason(row->status) == NULL) return row->status;
         row->held = HELD_NOT_THERE;
     }
@@ -99,7 +99,7 @@ bool backup_read(session_t *session, backup_t *unit)
         if (status != FATHOM_OK) return fail(session, setting, status);
         if (unit->rows[i].held == HELD_NOT_THERE)
             missing = setting;
-        else if (known == NULL && setting->get != NULL)
+        else if (known == NULL && setting->read_at != 0)
             known = setting;
     }
     if (missing != NULL) { /* only if the sensor still responds */
@@ -125,7 +125,7 @@ static const char *const headings[] = {
 
 static group_t group_of(const setting_t *setting, const backup_row_t *row)
 {
-    if (setting->set == NULL) return GROUP_IDENTITY;
+    if (setting->effect == NULL) return GROUP_IDENTITY;
     if (setting->moves) return GROUP_PLACE;
     return row->held == HELD_NOT_READABLE ? GROUP_NOT_READABLE : GROUP_SETTINGS;
 }

@@ -5,7 +5,7 @@
 
 #include "device/session.h"
 #include "output/words.h"
-#include "sensors/read_command.h"
+#include "sensors/models.h"
 
 /* ---- settings as text ---- */
 
@@ -115,7 +115,7 @@ void settings_print(FILE *to, const setting_t *settings)
 {
     for (const setting_t *setting = settings; setting->name != NULL; setting++) {
         char values[SETTING_VALUES];
-        (void)fprintf(to, "  %s%s\n      %s", setting->name, setting->get == NULL ? " (write-only)" : "",
+        (void)fprintf(to, "  %s%s\n      %s", setting->name, setting->read_at == 0 ? " (write-only)" : "",
                       setting->what);
         if (setting->effect == NULL)
             (void)fputs("; cannot be set\n", to);
@@ -143,7 +143,7 @@ static reader_facts_t facts_of(const change_t *change)
 static bool is_read_back(const change_t *change)
 {
     const setting_t *const setting = change->setting;
-    return !change->is_blind && (setting->get != NULL || setting->moves || setting->confirmed != NULL);
+    return !change->is_blind && (setting->read_at != 0 || setting->moves || setting->confirmed != NULL);
 }
 
 change_outcome_t change_outcome(const change_t *change, fathom_status_t status)
@@ -177,7 +177,7 @@ static void print_unconfirmed(const change_t *change)
         (void)fputs(setting->unconfirmed, stderr);
     else
         (void)fprintf(stderr, "The value may be set or not%s",
-                      setting->get != NULL && !change->is_blind ? ". Read it with 'fathom get'" : "");
+                      setting->read_at != 0 && !change->is_blind ? ". Read it with 'fathom get'" : "");
 }
 
 void change_explain(const change_t *change, change_outcome_t outcome, fathom_status_t status)
@@ -234,17 +234,17 @@ static void print_done(const change_t *change, change_outcome_t outcome)
     const reader_facts_t facts = facts_of(change);
     char value[SETTING_CELL];
     (void)setting_with_unit(setting, change->wanted, value);
-    if (setting->get == NULL && setting->confirmed == NULL && !setting->moves) {
+    if (setting->read_at == 0 && setting->confirmed == NULL && !setting->moves) {
         (void)printf("%s: %s: %s was written and acknowledged; the setting cannot be read back\n",
                      sensor->name, setting->name, value);
         return;
     }
     (void)printf("%s: %s is %s", sensor->name, setting->name, value);
-    if (setting->is_later != NULL && setting->is_later(sensor->reader))
+    if (setting->is_baud && reader_facts(sensor->reader).is_later)
         (void)printf(" from the next power-on (%s until then)", change->was);
     else if (outcome == CHANGE_UNCHANGED)
         (void)printf(": %s", words[outcome]);
-    else if (setting->get != NULL)
+    else if (setting->read_at != 0)
         (void)printf(" (was %s)", change->was);
     else if (setting->confirmed != NULL)
         (void)printf(": %s", setting->confirmed);

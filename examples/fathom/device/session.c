@@ -98,6 +98,7 @@ fathom_status_t session_call(session_t *session, session_call_t call, void *ctx)
 }
 
 typedef struct {
+    const model_t *model;
     const setting_t *setting;
     char *text; /* NULL: the setting is written */
     int32_t value;
@@ -107,8 +108,8 @@ static fathom_status_t call_setting(reader_t *reader, void *ctx)
 {
     const operand_t *const operand = ctx;
     const setting_t *const setting = operand->setting;
-    return operand->text != NULL ? setting->get(reader, setting, operand->text)
-                                 : setting->set(reader, setting, operand->value);
+    return operand->text != NULL ? operand->model->get(reader, setting, operand->text)
+                                 : operand->model->set(reader, setting, operand->value);
 }
 
 /* Returns true if the status proves nothing about the sensor. */
@@ -136,12 +137,12 @@ static fathom_status_t call_again(session_t *session, operand_t operand)
 fathom_status_t session_get(session_t *session, const setting_t *setting, char text[SETTING_TEXT])
 {
     text[0] = '\0';
-    return call_again(session, (operand_t){.setting = setting, .text = text});
+    return call_again(session, (operand_t){session->sensor->model, setting, .text = text});
 }
 
 fathom_status_t session_set(session_t *session, const setting_t *setting, int32_t value)
 {
-    return call_again(session, (operand_t){.setting = setting, .value = value});
+    return call_again(session, (operand_t){session->sensor->model, setting, .value = value});
 }
 
 /* ---- messages ---- */

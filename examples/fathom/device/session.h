@@ -5,7 +5,7 @@
 #include "diagnosis/advice.h"
 #include "output/progress.h"
 #include "reading/site.h"
-#include "sensors/setting.h"
+#include "sensors/models.h"
 
 /* ---- a session: one sensor at a port, for commands that read or change more than distances (session.c) ---- */
 

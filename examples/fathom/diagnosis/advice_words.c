@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "ports/line_text.h"
-#include "sensors/modbus_exception.h"
+#include "sensors/models.h"
 
 /* ---- words that are more than a number or a text ---- */
 

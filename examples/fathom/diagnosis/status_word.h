@@ -4,7 +4,7 @@
 
 #include <stdio.h>
 
-#include "sensors/model.h"
+#include "sensors/models.h"
 
 /* The words of `status` and `alarm` in text, JSON, CSV and MQTT. */
 

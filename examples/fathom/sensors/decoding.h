@@ -7,18 +7,10 @@
 #include <stdint.h>
 
 #include "fathom/codec/hps167s_registers.h"
-#include "sensors/setting.h"
+#include "output/record.h"
+#include "sensors/models.h"
 
 /* A decoded frame, before it is printed as text or JSON. */
-
-/* The protocols of the input, as bits. */
-enum {
-    DECODE_MODBUS = 1,
-    DECODE_DYP = 2,         /* 55 AA */
-    DECODE_STREAM_ONE = 4,  /* FF H L SUM */
-    DECODE_STREAM_FOUR = 8, /* FF, four distances, SUM */
-    DECODE_ALL = 15
-};
 
 /* The most registers in a response of these sensors, and their greatest address. */
 enum { DECODE_MAX_REGISTERS = FATHOM_HPS167S_MAX_REGISTERS, DECODE_MAX_ADDRESS = 0x0207 };
@@ -39,8 +31,10 @@ enum {
     DECODE_AT_FUNCTION = 1,
     DECODE_AT_SIZE = 2,
     DECODE_AT_FIRST = 2,
+    DECODE_AT_DATA = 3, /* the registers of a response to a read */
     DECODE_AT_COUNT = 4,
-    DECODE_AT_VALUE = 4
+    DECODE_AT_VALUE = 4,
+    DECODE_AT_MANY = 7 /* the registers of a write of several */
 };
 
 enum {
@@ -69,7 +63,7 @@ typedef struct {
     decode_field_t fields[DECODE_FIELDS];
 } decode_meaning_t;
 
-typedef struct {
+typedef struct decode_frame {
     const decode_piece_t *piece;
     const uint8_t *bytes;
     bool is_sure;            /* the user named the sensor; otherwise only likely meanings are added */
@@ -88,6 +82,7 @@ typedef struct {
 /* ---- for model_t.decode ---- */
 
 uint16_t decode_get16(const uint8_t *at);
+void decode_registers(const uint8_t *at, uint16_t *registers, uint8_t count);
 
 /* Adds a meaning. If there is no room, it replaces the last one. */
 decode_meaning_t *decode_mean(decode_frame_t *frame, const char *sensor, const char *source,
@@ -96,9 +91,6 @@ void decode_note(decode_frame_t *frame, const char *format, ...);
 
 /* Add a field and return it, for a note. */
 decode_field_t *decode_number(decode_meaning_t *meaning, const char *name, int64_t value, const char *unit);
-/* With `places` decimal places. */
-decode_field_t *decode_decimal(decode_meaning_t *meaning, const char *name, int64_t value, uint8_t places,
-                               const char *unit);
 decode_field_t *decode_string(decode_meaning_t *meaning, const char *name, const char *format, ...);
 
 /* Sets the note of a field. */
@@ -108,5 +100,16 @@ void decode_remark(decode_field_t *field, const char *format, ...);
  * response. */
 void decode_setting(decode_meaning_t *meaning, const setting_t *setting, int64_t value);
 void decode_response(decode_meaning_t *meaning, const setting_t *setting, const uint16_t *registers);
+
+/* ---- printing ---- */
+
+/* Prints the meaning and its first value, without a line feed. */
+void decoding_put_line(FILE *to, const decode_meaning_t *meaning);
+
+/* Prints indented lines; a meaning with one value is one line. */
+void decoding_put_text(FILE *to, const decode_meaning_t *meaning);
+
+/* Writes an element of the open array. */
+void decoding_put_json(json_t *json, const decode_meaning_t *meaning);
 
 #endif

@@ -14,26 +14,9 @@
 #include "fathom/sensor/a16_switch.h"
 #include "fathom/sensor/hps167s.h"
 #include "fathom/sensor/hps167s_auto.h"
-#include "sensors/model.h"
+#include "sensors/models.h"
 
-/* The inside of a reader, for sensors/ alone. */
-
-/* The temperature, which is read between measurements. */
-typedef struct {
-    fathom_sensor_t measuring; /* the driver's */
-    uint32_t period_us;        /* of reading it */
-    uint32_t interval_us;      /* of measuring */
-    uint32_t asked_us;         /* clock at its newest request, ... */
-    uint32_t read_us;          /* ... at its newest value, if it is known, ... */
-    uint32_t measured_us;      /* ... and at the start of the newest measurement */
-    uint8_t state;
-    bool was_asked; /* once */
-    bool has_measured;
-    bool was_last;    /* it was requested after the newest measurement */
-    bool is_reported; /* that it could not be read */
-    bool is_known;
-    int16_t dc; /* tenths of a degree Celsius */
-} driver_temperature_t;
+/* The inside of a reader, and the functions of the rows in models.c, for sensors/ alone. */
 
 /* An A05 that waits for a power cycle, at which it samples its RX. */
 typedef struct {
@@ -43,6 +26,21 @@ typedef struct {
     uint8_t value; /* fathom_dyp_value_t */
     bool has_been_off;
 } driver_selection_t;
+
+/* The measurements and the temperature of an HPS-167S, which take turns. */
+typedef enum { TURN_MEASUREMENT, TURN_TEMPERATURE, TURNS, TURN_NONE = TURNS } driver_turn_t;
+typedef struct {
+    fathom_sensor_t measuring; /* the driver's */
+    uint32_t period_us[TURNS]; /* from one start to the next */
+    uint32_t began_us[TURNS];  /* clock at the newest start, ... */
+    bool has_begun[TURNS];     /* ... if there was one */
+    uint8_t turn;              /* driver_turn_t: the request in progress */
+    uint8_t last;              /* the newest request, or the one in progress */
+    bool is_reported;          /* that the temperature could not be read */
+    bool is_known;             /* it was read, ... */
+    uint32_t read_us;          /* ... at this clock */
+    int16_t dc;                /* tenths of a degree Celsius */
+} driver_temperature_t;
 
 struct reader {
     const model_mode_t *mode;
@@ -55,6 +53,7 @@ struct reader {
     uint16_t *sequence;                 /* of the newest response; not NULL once the driver is initialised */
     fathom_dyp_modbus_t *dyp;           /* of an A16 or A05 that receives requests; NULL: of another */
     fathom_modbus_unit_t *unit;         /* NULL: the driver sends no requests */
+    const uint32_t *next_baud;          /* its rate from the next power-on, if not 0; NULL: it has one rate */
     uint16_t *frames;                   /* FATHOM_STREAM_COUNTERS of them; NULL: it receives no stream */
     const uint32_t *period_us;          /* at which the driver asks; NULL: it keeps no period */
     fathom_pulse_meter_t *meter;        /* NULL: it measures no pulses */
@@ -82,20 +81,45 @@ struct reader {
     driver_temperature_t temperature;
 };
 
-/* Returns true if the port can hold its TX low (a break). Otherwise the reader has a refusal. */
-bool driver_has_break(reader_t *reader, const port_t *port);
-
-/* Lets TX go high. */
-void driver_end_break(port_t *port);
-
 /* The configuration that all drivers with requests share. A driver refuses address 0 if its sensor cannot have it. */
 fathom_modbus_config_t driver_config(const port_t *port, const reader_settings_t *settings);
 
-/* The configuration that all contacts share, and the last step of opening one. Returns true. */
-fathom_contact_timing_t driver_contact_timing(const port_t *port, const reader_settings_t *settings);
-bool driver_open_contact(reader_t *reader, fathom_contact_t *contact, fathom_sensor_t sensor);
-
 /* The clock of the line. */
 uint32_t driver_now_us(const reader_t *reader);
+
+/* ---- A16 and A05: dyp.c and dyp_registers.c ---- */
+
+/* A16 6(3), A05 3(3). 0x00 is an address, 0xFF is for all units. */
+enum { DYP_ADDRESS = 0x0200, DYP_MAX_ADDRESS = 0xFE };
+
+extern const model_mode_t a16_modes[MODEL_MODES], a05_modes[MODEL_MODES];
+extern const setting_t a16_settings[], a05_settings[];
+
+void a16_simulate(device_t *device, const device_settings_t *settings, uint8_t simulated_as);
+fathom_status_t a16_get(reader_t *reader, const setting_t *setting, char text[SETTING_TEXT]);
+fathom_status_t a16_set(reader_t *reader, const setting_t *setting, int32_t value);
+
+void a05_simulate(device_t *device, const device_settings_t *settings, uint8_t simulated_as);
+fathom_status_t a05_get(reader_t *reader, const setting_t *setting, char text[SETTING_TEXT]);
+fathom_status_t a05_set(reader_t *reader, const setting_t *setting, int32_t value);
+
+void dyp_decode(struct decode_frame *frame, const model_t *model, const uint8_t *request);
+void dyp_decode_sum(struct decode_frame *frame, const model_t *model);
+
+/* ---- HPS-167S: hps167s.c and hps167s_registers.c ---- */
+
+extern const model_mode_t hps167s_modes[MODEL_MODES];
+extern const setting_t hps167s_settings[];
+
+void hps167s_simulate(device_t *device, const device_settings_t *settings, uint8_t simulated_as);
+fathom_status_t hps167s_get(reader_t *reader, const setting_t *setting, char text[SETTING_TEXT]);
+fathom_status_t hps167s_set(reader_t *reader, const setting_t *setting, int32_t value);
+fathom_status_t hps167s_set_all(reader_t *reader, const setting_t *setting, int32_t value);
+fathom_status_t hps167s_reset_interface(reader_t *reader);
+fathom_status_t hps167s_reset_sensor(reader_t *reader);
+bool hps167s_identify(inquiry_t *inquiry);
+void hps167s_decode(struct decode_frame *frame, const model_t *model, const uint8_t *request);
+const char *hps167s_read_changes(const uint8_t *request);
+const char *hps167s_exception_name(uint8_t code);
 
 #endif

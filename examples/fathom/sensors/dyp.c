@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include "sensors/dyp.h"
+#include "sensors/driver.h"
 
-/* ---- reading ---- */
+/* Reading and simulating the sensors of DYP: A16 and A05. */
 
 static bool open_response(reader_t *reader, fathom_dyp_measurement_t *measurement, uint8_t count,
                           fathom_sensor_t sensor)
@@ -15,13 +15,9 @@ static bool open_response(reader_t *reader, fathom_dyp_measurement_t *measuremen
     return true;
 }
 
-bool dyp_open_stream(reader_t *reader, fathom_dyp_auto_t *base, fathom_sensor_t sensor)
-{
-    reader->frames = base->stream.counters;
-    return open_response(reader, &base->measurement, (uint8_t)(base->stream.length / 2 - 1), sensor);
-}
+/* ---- with requests ---- */
 
-bool dyp_open_asked(reader_t *reader, fathom_dyp_modbus_t *base, fathom_sensor_t sensor)
+static bool open_asked(reader_t *reader, fathom_dyp_modbus_t *base, fathom_sensor_t sensor)
 {
     reader->dyp = base;
     reader->unit = &base->unit;
@@ -29,46 +25,300 @@ bool dyp_open_asked(reader_t *reader, fathom_dyp_modbus_t *base, fathom_sensor_t
     return open_response(reader, &base->measurement, base->count, sensor);
 }
 
-/* ---- settings ---- */
-
-fathom_status_t dyp_get(reader_t *reader, const setting_t *setting, char text[SETTING_TEXT])
+static bool a16_read_modbus(reader_t *reader, port_t *port, const reader_settings_t *settings)
 {
-    uint16_t value = 0;
-    const fathom_status_t status = fathom_dyp_modbus_get_register(reader->dyp, setting->read_at, &value);
-    if (status != FATHOM_OK) return status;
-    if (setting->moves && value > UINT8_MAX) return FATHOM_ERR_MALFORMED;
-    return setting_print(setting, &value, text);
+    fathom_a16_modbus_t *const driver = &reader->driver.a16_modbus;
+    const fathom_a16_modbus_config_t config = {
+        .modbus = driver_config(port, settings), .window = settings->window, .value = settings->value};
+    return fathom_a16_modbus_init(driver, &port->modbus, &config) == FATHOM_OK &&
+           open_asked(reader, &driver->base, fathom_a16_modbus_sensor(driver));
 }
 
-fathom_status_t dyp_set(reader_t *reader, const setting_t *setting, int32_t value)
+static bool a05_read_modbus(reader_t *reader, port_t *port, const reader_settings_t *settings)
 {
-    fathom_dyp_modbus_t *const dyp = reader->dyp;
-    if (setting->moves && value == 0) return fathom_dyp_modbus_set_address_0(dyp);
-    if (setting->moves) return fathom_dyp_modbus_set_address(dyp, (uint8_t)value);
-    return setting->read_at != 0 ? fathom_dyp_modbus_set_register(dyp, setting->write_at, (uint16_t)value)
-                                 : fathom_dyp_modbus_write_register(dyp, setting->write_at, (uint16_t)value);
+    fathom_a05_modbus_t *const driver = &reader->driver.a05_modbus;
+    const fathom_a05_modbus_config_t config = {
+        .modbus = driver_config(port, settings), .window = settings->window, .probes = settings->probes};
+    return fathom_a05_modbus_init(driver, &port->modbus, &config) == FATHOM_OK &&
+           open_asked(reader, &driver->base, fathom_a05_modbus_sensor(driver));
 }
 
-void dyp_print_distance(char text[SETTING_TEXT], fathom_status_t status, const fathom_sample_t *sample)
+static bool a05_read_dyp(reader_t *reader, port_t *port, const reader_settings_t *settings)
 {
-    if (status != FATHOM_OK) return;
-    if (sample->kind == FATHOM_TARGET)
-        (void)snprintf(text, SETTING_TEXT, "%u", sample->distance_mm);
-    else if (sample->kind == FATHOM_NO_TARGET)
-        (void)snprintf(text, SETTING_TEXT, "%s", sample->interference ? "interference" : "no_target");
-    else
-        (void)snprintf(text, SETTING_TEXT, "unknown value %u", (unsigned)sample->raw);
+    fathom_a05_dyp_t *const driver = &reader->driver.a05_dyp;
+    const fathom_a05_dyp_config_t config = {
+        .modbus = driver_config(port, settings), .window = settings->window, .probes = settings->probes};
+    return fathom_a05_dyp_init(driver, &port->line, &config) == FATHOM_OK &&
+           open_asked(reader, &driver->base, fathom_a05_dyp_sensor(driver));
 }
 
-/* ---- scan ---- */
+/* ---- automatic output ---- */
 
-/* FFFD and FFFE are not in the datasheets of A16 and A05, but in those of their family. */
-void dyp_describe(const model_t *model, const scan_finding_t *finding, finding_facts_t *facts)
+static bool open_stream(reader_t *reader, fathom_dyp_auto_t *base, fathom_sensor_t sensor)
 {
-    const uint16_t value = finding->value;
-    const bool is_target = value != 0 && value <= model->max_mm;
-    if (!finding->has_value) return;
-    facts->raw = value;
-    if (is_target) facts->distance_mm = value;
-    facts->status = is_target ? "target" : value == 0xFFFD || value == 0xFFFE ? "no_target" : "unknown";
+    reader->frames = base->stream.counters;
+    return open_response(reader, &base->measurement, (uint8_t)(base->stream.length / 2 - 1), sensor);
+}
+
+/* Lets the port's TX go high. For real-time values, returns false with a refusal if the port cannot hold it low. */
+static bool can_select(reader_t *reader, port_t *port, uint8_t value)
+{
+    (void)fathom_line_break(&port->line, false); /* a port that cannot end a break holds none */
+    if (value != FATHOM_REAL_TIME || port_can_break(port)) return true;
+    reader->refusal =
+        "this port cannot hold its TX low (a break), which selects real-time values; try another "
+        "adapter, or connect the sensor's RX to its ground and leave --value out";
+    return false;
+}
+
+static fathom_status_t end_a16_auto(reader_t *reader)
+{
+    return fathom_a16_auto_deinit(&reader->driver.a16_auto); /* RX becomes high again */
+}
+
+/* The level of the port's TX at the module's RX selects the value (A16 2(2)). */
+static bool a16_read_auto(reader_t *reader, port_t *port, const reader_settings_t *settings)
+{
+    fathom_a16_auto_t *const driver = &reader->driver.a16_auto;
+    fathom_a16_auto_config_t config = {.stale_us = settings->timeout_us,
+                                       .gap_us = PORT_STREAM_GAP_US,
+                                       .window = settings->window,
+                                       .value = settings->value};
+    if (settings->has_value) {
+        if (!can_select(reader, port, settings->value)) return false;
+        config.select = fathom_output_line_break(&port->line);
+    }
+    if (fathom_a16_auto_init(driver, &port->line, &config) != FATHOM_OK) return false;
+    reader->end = end_a16_auto;
+    return open_stream(reader, &driver->base, fathom_a16_auto_sensor(driver));
+}
+
+/*
+ * An A05 samples its RX in the first second after power-on: high selects processed values, low real-time values
+ * (A05 1(1)). The reader holds the port's TX at this level until the frames of the sensor stop and start again. It reports
+ * no measurement before that.
+ */
+
+/* A longer pause between two frames means that the sensor was off. No period is printed, but a "response time" of 1.5 s
+ * (A05 1). */
+#define OFF_US 2000000u
+
+/* The driver holds RX low for another 1.5 s and then lets it go high. */
+static fathom_status_t begin_readings(reader_t *reader)
+{
+    const driver_selection_t *const selection = &reader->selection;
+    const fathom_status_t status =
+        fathom_a05_auto_select(&reader->driver.a05_auto, (fathom_dyp_value_t)selection->value);
+    if (status != FATHOM_OK) return status == FATHOM_ERR_BUSY ? FATHOM_PENDING : status;
+    reader->sensor = selection->listening;
+    reader->remark = "it has been switched on: readings begin";
+    return FATHOM_PENDING;
+}
+
+static fathom_status_t poll_selection(void *ctx, fathom_sample_t *sample)
+{
+    reader_t *const reader = ctx;
+    driver_selection_t *const selection = &reader->selection;
+    fathom_sample_t unselected;
+    (void)sample;
+    const fathom_status_t status = fathom_poll(&selection->listening, &unselected);
+    const uint32_t now = driver_now_us(reader);
+    if (status == FATHOM_ERR_PORT) return status;
+    if (fathom_elapsed_us(now, selection->heard_us) >= OFF_US) selection->has_been_off = true;
+    /* Bytes that form no frame may be noise of a module without power. */
+    if (status == FATHOM_PENDING || status == FATHOM_ERR_STALE || status == FATHOM_ERR_CHECKSUM)
+        return FATHOM_PENDING;
+    selection->heard_us = now;
+    return selection->has_been_off ? begin_readings(reader) : FATHOM_PENDING;
+}
+
+static uint32_t due_us_selection(void *ctx)
+{
+    const reader_t *const reader = ctx;
+    const driver_selection_t *const selection = &reader->selection;
+    const uint32_t passed_us = fathom_elapsed_us(driver_now_us(reader), selection->heard_us);
+    const uint32_t listening_us = fathom_due_us(&selection->listening, 1);
+    if (selection->has_been_off || passed_us >= OFF_US) return listening_us;
+    return OFF_US - passed_us < listening_us ? OFF_US - passed_us : listening_us;
+}
+
+static fathom_status_t end_selection(reader_t *reader)
+{
+    const fathom_status_t status = fathom_a05_auto_deinit(&reader->driver.a05_auto);
+    return status == FATHOM_OK ? fathom_output_set(&reader->selection.rx, FATHOM_OUTPUT_FREE) : status;
+}
+
+static bool select_value(reader_t *reader, port_t *port, uint8_t value)
+{
+    driver_selection_t *const selection = &reader->selection;
+    const bool is_low = value == FATHOM_REAL_TIME;
+    if (!can_select(reader, port, value)) return false;
+    selection->rx = fathom_output_line_break(reader->line);
+    if (is_low && fathom_output_set(&selection->rx, FATHOM_OUTPUT_LOW) != FATHOM_OK) return false;
+    selection->listening = reader->sensor;
+    selection->value = value;
+    selection->heard_us = driver_now_us(reader);
+    reader->sensor = (fathom_sensor_t){poll_selection, due_us_selection, reader};
+    reader->end = end_selection;
+    reader->remark =
+        is_low ? "its RX is held low, which selects real-time values when it is switched on: switch its "
+                 "supply off for 3 seconds and on"
+               : "its RX is high, which selects processed values when it is switched on: switch its "
+                 "supply off for 3 seconds and on";
+    return true;
+}
+
+static bool a05_read_auto(reader_t *reader, port_t *port, const reader_settings_t *settings)
+{
+    fathom_a05_auto_t *const driver = &reader->driver.a05_auto;
+    const fathom_a05_auto_config_t config = {.select = fathom_output_line_break(&port->line),
+                                             .stale_us = settings->timeout_us,
+                                             .gap_us = PORT_STREAM_GAP_US,
+                                             .window = settings->window,
+                                             .probes = settings->probes};
+    if (fathom_a05_auto_init(driver, &port->line, &config) != FATHOM_OK) return false;
+    (void)open_stream(reader, &driver->base, fathom_a05_auto_sensor(driver));
+    return !settings->has_value || select_value(reader, port, settings->value);
+}
+
+/* ---- with a trigger ---- */
+
+static fathom_status_t end_controlled(reader_t *reader)
+{
+    return fathom_a16_controlled_deinit(&reader->driver.a16_controlled);
+}
+
+/* The trigger is a GPIO line, or a break of the port, whose TX is the module's RX. */
+static bool a16_read_controlled(reader_t *reader, port_t *port, const reader_settings_t *settings)
+{
+    fathom_a16_controlled_t *const driver = &reader->driver.a16_controlled;
+    const fathom_output_t trigger = port->settings.pins.chip != 0 ? fathom_output_pin(&port->pins.trigger)
+                                                                  : fathom_output_line_break(&port->line);
+    const fathom_a16_controlled_config_t config = {
+        .period_us = settings->period_us, .gap_us = PORT_STREAM_GAP_US, .window = settings->window};
+    if (fathom_a16_controlled_init(driver, &port->line, &trigger, &config) != FATHOM_OK) return false;
+    reader->end = end_controlled;
+    reader->frames = driver->stream.counters;
+    reader->period_us = &driver->trigger.period_us;
+    return open_response(reader, &driver->measurement, 1, fathom_a16_controlled_sensor(driver));
+}
+
+static fathom_status_t end_pwm(reader_t *reader) { return fathom_a16_pwm_deinit(&reader->driver.a16_pwm); }
+
+/* Each trigger returns one pulse (A16 1). */
+static bool a16_read_pwm(reader_t *reader, port_t *port, const reader_settings_t *settings)
+{
+    fathom_a16_pwm_t *const driver = &reader->driver.a16_pwm;
+    const pins_t *const pins = &port->pins;
+    const uint32_t cycle_us = settings->period_us > FATHOM_PULSE_DEFAULT_CYCLE_US ? settings->period_us : 0;
+    const fathom_output_t output = fathom_output_pin(&pins->trigger);
+    const fathom_a16_pwm_config_t config = {.pulse = {.cycle_us = cycle_us}, .window = settings->window};
+    if (fathom_a16_pwm_init(driver, &pins->capture, &port->clock, &output, &config) != FATHOM_OK)
+        return false;
+    reader->sensor = fathom_a16_pwm_sensor(driver);
+    reader->end = end_pwm;
+    reader->sequence = &driver->sequence;
+    reader->meter = &driver->meter;
+    reader->pins = pins;
+    reader->window = &driver->window;
+    reader->period_us = &driver->meter.trigger.period_us;
+    return true;
+}
+
+/* ---- contacts ---- */
+
+static fathom_contact_timing_t contact_timing(const port_t *port, const reader_settings_t *settings)
+{
+    enum { WITHOUT_EVENT_US = 1000000 }; /* A change without an event is seen within this time. */
+    /* Without an interval, changes alone are readings, as far as the library allows. */
+    const uint32_t repeat_us = settings->repeat_us != 0 ? settings->repeat_us : FATHOM_MAX_DURATION_US;
+    return (fathom_contact_timing_t){.period_us = settings->period_us != 0 ? settings->period_us : repeat_us,
+                                     .interval_us = port->pins.wakes ? WITHOUT_EVENT_US : 0,
+                                     .stale_us = settings->timeout_us};
+}
+
+static bool open_contact(reader_t *reader, fathom_contact_t *contact, fathom_sensor_t sensor)
+{
+    reader->sensor = sensor;
+    reader->sequence = &contact->sequence;
+    return true;
+}
+
+/* With factory settings "less than 1 meter" is a high level (A16 4). */
+static bool a16_read_switch(reader_t *reader, port_t *port, const reader_settings_t *settings)
+{
+    fathom_a16_switch_t *const driver = &reader->driver.a16_switch;
+    const fathom_a16_switch_config_t config = {.timing = contact_timing(port, settings),
+                                               .negative = port->pins.wanted.near == PINS_NEAR_LOW};
+    return fathom_a16_switch_init(driver, &port->pins.in, &port->clock, &config) == FATHOM_OK &&
+           open_contact(reader, &driver->base, fathom_a16_switch_sensor(driver));
+}
+
+/* The contact (A05 4) goes to where the input's resistor does not pull; it is the normally open one, unless the user says
+ * that near is the other level. */
+static bool a05_read_relay(reader_t *reader, port_t *port, const reader_settings_t *settings)
+{
+    fathom_a05_relay_t *const driver = &reader->driver.a05_relay;
+    const pin_options_t *const wanted = &port->pins.wanted;
+    const bool conducts_high = wanted->bias == FATHOM_GPIO_BIAS_PULL_DOWN;
+    const bool is_normally_closed = wanted->near == (conducts_high ? PINS_NEAR_LOW : PINS_NEAR_HIGH);
+    const fathom_a05_relay_config_t config = {
+        .timing = contact_timing(port, settings),
+        .wiring = is_normally_closed ? FATHOM_A05_RELAY_NORMALLY_CLOSED : FATHOM_A05_RELAY_NORMALLY_OPEN,
+        .level = conducts_high ? FATHOM_A05_RELAY_CONDUCTS_HIGH : FATHOM_A05_RELAY_CONDUCTS_LOW,
+    };
+    return fathom_a05_relay_init(driver, &port->pins.in, &port->clock, &config) == FATHOM_OK &&
+           open_contact(reader, &driver->base, fathom_a05_relay_sensor(driver));
+}
+
+/* ---- the modes ---- */
+
+enum { TAKES = READER_TAKES_MEANINGS | READER_TAKES_WINDOW };
+
+const model_mode_t a16_modes[MODEL_MODES] = {
+    {"auto", "A16 2", .takes = TAKES | READER_TAKES_VALUE, .simulated_as = FATHOM_SIM_A16_AUTO,
+     .read = a16_read_auto},
+    {"modbus", "A16 6", "Modbus", .is_modbus = true, .has_address = true, .takes = TAKES | READER_TAKES_VALUE,
+     .simulated_as = FATHOM_SIM_A16_MODBUS, .read = a16_read_modbus},
+    {"controlled", "A16 3", .is_triggered = true, .takes = TAKES, .may_pins = MODEL_PIN_TRIGGER,
+     .simulated_as = FATHOM_SIM_A16_CONTROLLED, .read = a16_read_controlled},
+    {"pwm", "A16 1", .is_triggered = true, .has_pulses = true, .takes = READER_TAKES_WINDOW,
+     .pins = MODEL_PIN_TRIGGER | MODEL_PIN_ECHO, .read = a16_read_pwm},
+    {"switch", "A16 4", .is_contact = true, .pins = MODEL_PIN_IN, .read = a16_read_switch},
+};
+
+const model_mode_t a05_modes[MODEL_MODES] = {
+    {"auto", "A05 1", .takes = TAKES | READER_TAKES_PROBES | READER_TAKES_VALUE,
+     .simulated_as = FATHOM_SIM_A05_AUTO, .read = a05_read_auto},
+    {"modbus", "A05 3", "Modbus", .is_modbus = true, .has_address = true,
+     .takes = TAKES | READER_TAKES_PROBES, .simulated_as = FATHOM_SIM_A05_MODBUS, .read = a05_read_modbus},
+    /* One wrong bit turns a response into the command that sets the address. */
+    {"dyp", "A05 2", "55 AA", .has_address = true, .can_move_others = true,
+     .takes = TAKES | READER_TAKES_PROBES, .simulated_as = FATHOM_SIM_A05_DYP, .read = a05_read_dyp},
+    {"relay", "A05 4", .is_contact = true, .pins = MODEL_PIN_IN, .read = a05_read_relay},
+};
+
+/* ---- simulation ---- */
+
+/* The members that the two simulators share. */
+#define SIMULATED(settings, simulated_as)                                                                    \
+    .address = (settings)->address, .address_zero = (settings)->address == 0, .mode = (simulated_as),        \
+    .exceptions = (settings)->traits[DEVICE_EXCEPTIONS] != 0,                                                \
+    .answers_broadcast = (settings)->traits[DEVICE_ANSWERS_BROADCAST] != 0,                                  \
+    .answers_from_new = (settings)->traits[DEVICE_ANSWERS_FROM_NEW] != 0,                                    \
+    .real_time = (settings)->traits[DEVICE_REAL_TIME] != 0, .seed = (settings)->seed,                        \
+    .scene = (settings)->scene
+
+void a16_simulate(device_t *device, const device_settings_t *settings, uint8_t simulated_as)
+{
+    const fathom_sim_a16_config_t config = {SIMULATED(settings, simulated_as)};
+    fathom_sim_a16_init(&device->simulator.a16, &config);
+    device->base = &device->simulator.a16.device;
+}
+
+void a05_simulate(device_t *device, const device_settings_t *settings, uint8_t simulated_as)
+{
+    const fathom_sim_a05_config_t config = {SIMULATED(settings, simulated_as)};
+    fathom_sim_a05_init(&device->simulator.a05, &config);
+    device->base = &device->simulator.a05.device;
 }

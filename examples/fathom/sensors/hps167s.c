@@ -1,32 +1,190 @@
 /* SPDX-License-Identifier: MIT */
-#include "sensors/hps167s.h"
-
-#include <string.h>
-
 #include "fathom/sensor/hps167s_info.h"
-#include "fathom/sensor/hps167s_settings.h"
+#include "sensors/driver.h"
 
-void hps167s_listen_unasked(reader_t *reader)
+/* Reading and simulating the HPS-167S. */
+
+/* Returns the limits of the user; NULL: none. */
+static fathom_hps167s_limits_t *limits_of(reader_t *reader, const reader_settings_t *settings)
+{
+    reader->limits.min_mm = settings->window.min_mm;
+    reader->limits.max_mm = settings->window.max_mm;
+    return settings->window.max_mm != 0 ? &reader->limits : NULL;
+}
+
+/*
+ * ---- the temperature ----
+ *
+ * It is read (#4) between measurements (#5). The pace of the driver applies to all requests, so this section keeps the
+ * interval of the measurements. Another request would replace the result of a measurement that was not polled, so the
+ * temperature is read only while no measurement is in progress.
+ */
+
+/* An older temperature is not reported. */
+enum { PERIODS_SHOWN = 3 };
+
+static uint32_t left_us(const driver_temperature_t *temperature, driver_turn_t turn, uint32_t now)
+{
+    const uint32_t period_us = temperature->period_us[turn];
+    const uint32_t passed_us = fathom_elapsed_us(now, temperature->began_us[turn]);
+    return temperature->has_begun[turn] && passed_us < period_us ? period_us - passed_us : 0;
+}
+
+/* Alternately if both are due: a sensor that does not respond to #4 is measured all the same. */
+static void begin_turn(driver_temperature_t *temperature, uint32_t now)
+{
+    driver_turn_t turn = temperature->last == TURN_TEMPERATURE ? TURN_MEASUREMENT : TURN_TEMPERATURE;
+    if (left_us(temperature, turn, now) != 0) turn = temperature->last;
+    if (left_us(temperature, turn, now) != 0) return;
+    temperature->turn = temperature->last = (uint8_t)turn;
+    temperature->began_us[turn] = now;
+    temperature->has_begun[turn] = true;
+}
+
+static void read_temperature(reader_t *reader, uint32_t now)
+{
+    driver_temperature_t *const temperature = &reader->temperature;
+    fathom_hps167s_temperature_t read;
+    const fathom_status_t status = fathom_hps167s_get_temperature(&reader->driver.hps167s, &read);
+    if (status == FATHOM_PENDING) return;
+    temperature->turn = TURN_NONE;
+    if (status == FATHOM_OK) {
+        temperature->dc = read.temperature_dc;
+        temperature->read_us = now;
+        temperature->is_known = true;
+    } else if (status != FATHOM_ERR_PORT && !temperature->is_reported) {
+        temperature->is_reported = true;
+        reader->remark =
+            "its temperature (#4) could not be read; it is measured all the same, and asked for its "
+            "temperature again";
+    }
+}
+
+static fathom_status_t poll_turns(void *ctx, fathom_sample_t *sample)
+{
+    reader_t *const reader = ctx;
+    driver_temperature_t *const temperature = &reader->temperature;
+    const uint32_t now = driver_now_us(reader);
+    if (fathom_elapsed_us(now, temperature->read_us) >
+        PERIODS_SHOWN * temperature->period_us[TURN_TEMPERATURE])
+        temperature->is_known = false;
+    if (temperature->turn == TURN_NONE) begin_turn(temperature, now);
+    if (temperature->turn == TURN_NONE) fathom_modbus_unit_poll(reader->unit);
+    if (temperature->turn == TURN_TEMPERATURE) read_temperature(reader, now);
+    if (temperature->turn != TURN_MEASUREMENT) return FATHOM_PENDING;
+    const fathom_status_t status = fathom_poll(&temperature->measuring, sample);
+    if (status != FATHOM_PENDING) temperature->turn = TURN_NONE;
+    return status;
+}
+
+static uint32_t due_us_turns(void *ctx)
+{
+    const reader_t *const reader = ctx;
+    const driver_temperature_t *const temperature = &reader->temperature;
+    if (temperature->turn != TURN_NONE) return fathom_due_us(&temperature->measuring, 1);
+    const uint32_t now = driver_now_us(reader);
+    const uint32_t read_us = left_us(temperature, TURN_TEMPERATURE, now);
+    const uint32_t measure_us = left_us(temperature, TURN_MEASUREMENT, now);
+    return read_us < measure_us ? read_us : measure_us;
+}
+
+static void add_temperature(reader_t *reader, const reader_settings_t *settings)
+{
+    reader->temperature.measuring = reader->sensor;
+    reader->temperature.period_us[TURN_TEMPERATURE] = settings->temperature_us;
+    reader->temperature.period_us[TURN_MEASUREMENT] = settings->period_us;
+    reader->temperature.turn = TURN_NONE;
+    reader->sensor = (fathom_sensor_t){poll_turns, due_us_turns, reader};
+}
+
+/* ---- mode modbus ---- */
+
+static bool read_modbus(reader_t *reader, port_t *port, const reader_settings_t *settings)
+{
+    fathom_hps167s_t *const driver = &reader->driver.hps167s;
+    fathom_hps167s_config_t config = {.modbus = driver_config(port, settings)};
+    /* The pace of the driver applies to the temperature as well. */
+    if (settings->temperature_us != 0) config.modbus.period_us = 0;
+    fathom_hps167s_limits_t *const limits = limits_of(reader, settings);
+    if (fathom_hps167s_init(driver, &port->modbus, &config) != FATHOM_OK) return false;
+    if (limits != NULL && fathom_hps167s_set_limits(driver, limits) != FATHOM_OK) return false;
+    reader->sensor = fathom_hps167s_sensor(driver);
+    reader->unit = &driver->unit;
+    reader->next_baud = &driver->next_baud;
+    reader->period_us = &driver->unit.pace_us;
+    reader->sequence = &driver->sequence;
+    reader->values = driver->measurement;
+    reader->value_count = FATHOM_HPS167S_MEASUREMENT_COUNT;
+    if (settings->temperature_us != 0) add_temperature(reader, settings);
+    return true;
+}
+
+static void listen_unasked(reader_t *reader)
 {
     (void)fathom_hps167s_auto_init(&reader->unasked, reader->line, NULL);
     fathom_hps167s_auto_follow(&reader->unasked, &reader->driver.hps167s);
 }
 
-/* ---- resetting ---- */
+/* ---- mode auto ---- */
 
-fathom_status_t hps167s_restore(reader_t *reader)
+static void count(reader_t *reader, uint8_t counter, uint32_t more)
 {
-    return fathom_hps167s_restore_factory_settings(&reader->driver.hps167s);
+    uint16_t *const frames = &reader->unasked_frames[counter];
+    *frames = (uint16_t)(more < (uint32_t)(UINT16_MAX - *frames) ? *frames + more : UINT16_MAX);
 }
 
-fathom_status_t hps167s_load(reader_t *reader)
+/* Polls the driver and moves its counters into those of a stream. */
+static fathom_status_t poll_auto(void *ctx, fathom_sample_t *sample)
 {
-    return fathom_hps167s_load_factory_settings(&reader->driver.hps167s);
+    reader_t *const reader = ctx;
+    fathom_hps167s_auto_t *const driver = &reader->unasked;
+    const fathom_status_t status = fathom_hps167s_auto_poll(driver, sample);
+    const bool is_frame = status == FATHOM_OK || status == FATHOM_ERR_MALFORMED;
+    const bool is_late = status == FATHOM_ERR_STALE || status == FATHOM_ERR_CHECKSUM;
+    const uint32_t frames = driver->missed + (is_frame ? 1u : 0u);
+    count(reader, FATHOM_STREAM_FRAMES, frames);
+    count(reader, FATHOM_STREAM_BYTES, FATHOM_HPS167S_FRAME_LENGTH * frames + driver->dropped_bytes);
+    count(reader, FATHOM_STREAM_STALES, is_late ? 1u : 0u);
+    count(reader, FATHOM_STREAM_MISSED, driver->missed);
+    count(reader, FATHOM_STREAM_DROPPED_BYTES, driver->dropped_bytes);
+    count(reader, FATHOM_STREAM_DAMAGED, driver->damaged);
+    driver->missed = driver->dropped_bytes = driver->damaged = 0;
+    return status;
 }
 
-bool hps167s_is_sent(const reader_t *reader) { return fathom_hps167s_is_written(&reader->driver.hps167s); }
+static uint32_t due_us_auto(void *ctx)
+{
+    reader_t *const reader = ctx;
+    return fathom_hps167s_auto_due_us(&reader->unasked);
+}
 
-/* ---- simulation ---- */
+static bool read_auto(reader_t *reader, port_t *port, const reader_settings_t *settings)
+{
+    fathom_hps167s_auto_t *const driver = &reader->unasked;
+    const fathom_hps167s_auto_config_t config = {.stale_us = settings->timeout_us,
+                                                 .address = settings->address};
+    fathom_hps167s_limits_t *const limits = limits_of(reader, settings);
+    if (fathom_hps167s_auto_init(driver, &port->line, &config) != FATHOM_OK) return false;
+    if (limits != NULL && fathom_hps167s_auto_set_limits(driver, limits) != FATHOM_OK) return false;
+    reader->sensor = (fathom_sensor_t){poll_auto, due_us_auto, reader};
+    reader->frames = reader->unasked_frames;
+    reader->sequence = &driver->sequence;
+    reader->values = driver->registers;
+    reader->value_count = FATHOM_HPS167S_MEASUREMENT_COUNT;
+    return true;
+}
+
+/* ---- the modes, and their simulation ---- */
+
+enum { SIMULATED_MODBUS = 1, SIMULATED_AUTO /* it sends each measurement without a request */ };
+
+const model_mode_t hps167s_modes[MODEL_MODES] = {
+    {"modbus", "HPS 3", "Modbus", .is_modbus = true, .has_address = true,
+     .takes = READER_TAKES_WINDOW | READER_TAKES_TEMPERATURE, .simulated_as = SIMULATED_MODBUS,
+     .read = read_modbus, .listen_unasked = listen_unasked},
+    {"auto", "HPS 3 #15", .has_address = true, .takes = READER_TAKES_WINDOW, .simulated_as = SIMULATED_AUTO,
+     .read = read_auto},
+};
 
 static uint8_t warm_up_says(const uint32_t *traits)
 {
@@ -36,7 +194,7 @@ static uint8_t warm_up_says(const uint32_t *traits)
 
 void hps167s_simulate(device_t *device, const device_settings_t *settings, uint8_t simulated_as)
 {
-    const uint32_t unasked_us = simulated_as == HPS167S_SIMULATED_AUTO ? FATHOM_HPS167S_MIN_PERIOD_US : 0;
+    const uint32_t unasked_us = simulated_as == SIMULATED_AUTO ? FATHOM_HPS167S_MIN_PERIOD_US : 0;
     const uint32_t *const traits = settings->traits;
     const fathom_sim_hps167s_config_t config = {
         .address = settings->address,
@@ -57,16 +215,4 @@ void hps167s_simulate(device_t *device, const device_settings_t *settings, uint8
         .scene = settings->scene};
     fathom_sim_hps167s_init(&device->simulator.hps167s, &config);
     device->base = &device->simulator.hps167s.device;
-}
-
-/* ---- decoding ---- */
-
-/* HPS-167S table 39. */
-const char *hps167s_exception_name(uint8_t code)
-{
-    static const char *const names[] = {[1] = "illegal function code",
-                                        [2] = "illegal start address or register address",
-                                        [3] = "illegal register count",
-                                        [4] = "device operation failed"};
-    return code != 0 && code < sizeof names / sizeof names[0] ? names[code] : NULL;
 }

@@ -2,14 +2,318 @@
 #ifndef MODELS_H
 #define MODELS_H
 
-#include "sensors/model.h"
+#include <stdio.h>
 
-/* The models, a row each. If several can be a device, a later one is tried first. A model with a driver of its own also
- * needs a place in the unions of driver.h and device.h. */
+#include "fathom/sample.h"
+#include "output/record.h"
+#include "sensors/reader.h"
+#include "sim/a05.h"
+#include "sim/a16.h"
+#include "sim/hps167s.h"
+
+/* All that the tool knows of the sensor models, as rows. */
+
+/* ---- settings ---- */
+
+/*
+ * The values of a sensor: `fathom info`, `get`, `set`, `save`, `restore` and `decode` work from these rows. A new value
+ * is a row in the table of its sensor, which a row without a name ends.
+ */
+enum { SETTING_TEXT = 64 };
+
+/* What `fathom save` keeps and `fathom restore` writes. */
+typedef enum {
+    SETTING_KEPT = 0, /* it can be set, and is kept over power-off */
+    SETTING_VERSION,  /* of the make of the unit; it cannot be set */
+    SETTING_IDENTITY, /* of this unit alone; it cannot be set */
+    SETTING_PRESENT   /* a measurement, a command, or another form of another row */
+} setting_kind_t;
+
+typedef struct {
+    const char *name;
+    const char *what;
+    setting_kind_t kind;
+
+    /* ---- in the frames of the sensor ---- */
+
+    uint16_t
+        read_at; /* register whose response has the value, perhaps with those of other rows; 0: write-only */
+    uint16_t write_at;   /* register that sets it; 0: none */
+    uint8_t byte;        /* position in the response */
+    uint8_t size;        /* bytes; 0: a register of two bytes */
+    uint16_t first_word; /* on the wire: the value of words[0] ... */
+    uint16_t word_step;  /* ... and the distance to that of words[1]; 0: 1 */
+    /* Prints the value of a response, instead of a number or a word. */
+    void (*print)(char text[SETTING_TEXT], const uint16_t *registers);
+    const char *(*note)(int64_t value); /* why this value is odd, besides its range; NULL: it is not */
+
+    /* ---- its values ---- */
+
+    const char *unit;         /* NULL: none */
+    const char *const *words; /* names of the values from 0 on, ended by NULL. NULL: numbers, ... */
+    int32_t least;            /* ... from here */
+    int32_t most;             /* to here, */
+    int32_t step;             /* a multiple of this */
+    bool has_zero;            /* 0 is a value as well, at which the unit may not be found again */
+
+    /* ---- a change ---- */
+
+    const char *effect;      /* when it takes effect, and how long; NULL: read-only */
+    const char *mode;        /* name of the mode that it needs; NULL: the mode that uses Modbus */
+    const char *risk;        /* of writing it to a unit whose value is not known; NULL: none */
+    const char *confirmed;   /* if it is write-only: what shows its effect; NULL: the acknowledgement */
+    const char *unconfirmed; /* the same if nothing does */
+    const char *remark;      /* a message for a value that is words[1]; NULL: none */
+    bool moves;              /* it moves the unit to another address ... */
+    bool is_baud;            /* ... or to another baud rate */
+    bool is_never_blind;     /* it must be read before or after it is written */
+    bool is_of_variant;      /* not every variant of the sensor has it */
+    bool has_broadcast;      /* it can be set in all units on the line */
+} setting_t;
+
+/* Returns the value in the registers of a response. */
+int64_t setting_decode(const setting_t *setting, const uint16_t *registers);
+
+/* Returns the number of the word with this value on the wire; -1: no word has it. */
+int32_t setting_word(const setting_t *setting, int64_t value);
+
+/* Returns true if the value is one of the words, or in the range. */
+bool setting_can_be(const setting_t *setting, int64_t value);
+
+/* Prints the value of a response as `get` does. Returns FATHOM_ERR_MALFORMED if no word has it. */
+fathom_status_t setting_print(const setting_t *setting, const uint16_t *registers, char text[SETTING_TEXT]);
+
+/* ---- modes ---- */
+
+/* The lines of a GPIO chip on which a sensor hangs instead of a serial line: bits. */
+enum {
+    MODEL_PIN_TRIGGER = 1, /* to its RX */
+    MODEL_PIN_ECHO = 2,    /* pulses, from its TX */
+    MODEL_PIN_IN = 4       /* a level: a switch, or a relay's contact */
+};
+
+/* One way in which a sensor can be read and simulated. */
+typedef struct model_mode {
+    const char *name;
+    const char *section;  /* of the datasheet; include/README.md names the mode beside it */
+    const char *protocol; /* in which the tool sends requests: "Modbus", "55 AA"; NULL: it sends none */
+    bool is_modbus;       /* of these: also through a gateway */
+    bool is_triggered;    /* a level at the sensor's RX triggers a measurement */
+    bool is_contact;      /* a level is all that the sensor sends */
+    bool has_pulses;      /* the width of a pulse is the distance */
+    bool has_address;     /* in the frames of the sensor */
+    bool can_move_others; /* a damaged response can change the address of another sensor of this model */
+    uint8_t takes;        /* READER_TAKES_...: which settings of the user have an effect */
+    uint8_t pins;         /* MODEL_PIN_...: those that it needs; 0: it has a serial line */
+    uint8_t may_pins;     /* and those that it may have beside its serial line */
+    uint8_t simulated_as; /* for model_t.simulate; 0: `fathom sim` does not simulate it */
+    /* Initialises the driver through an open port. Returns false if the driver refuses the settings. */
+    bool (*read)(reader_t *reader, port_t *port, const reader_settings_t *settings);
+    /* As reader_listen_unasked(); NULL: the sensor sends nothing unasked. */
+    void (*listen_unasked)(reader_t *reader);
+} model_mode_t;
+
+/* Returns true if the tool sends requests in this mode, at an address. */
+static inline bool mode_is_asked(const model_mode_t *mode) { return mode->protocol != NULL; }
+
+/* Returns true if the sensor sends at its own pace, and not at the user's interval. */
+static inline bool mode_is_automatic(const model_mode_t *mode)
+{
+    return mode->protocol == NULL && !mode->is_triggered && !mode->is_contact;
+}
+
+/* ---- a scan ---- */
+
+/* The kind of a device that a scan found. */
+typedef enum {
+    SCAN_SENSOR = 1, /* one of the models */
+    SCAN_OTHER,      /* it responds in Modbus, but is none of the models */
+    SCAN_DAMAGED,    /* none of its responses was whole */
+    SCAN_NOT_MODBUS, /* it responds at these line settings, but not in Modbus; it has no address */
+    SCAN_SENDER,     /* it sends automatically, and is none of the models; it has no address */
+    SCAN_MASTER      /* another master sends requests to this address */
+} scan_kind_t;
+
+/* How to read a sensor. */
+typedef enum { SCAN_MODBUS = 1, SCAN_AUTO, SCAN_DYP } scan_mode_t;
+
+typedef struct {
+    fathom_line_settings_t line;
+    const struct model *model; /* of a sensor */
+    uint8_t kind;              /* scan_kind_t */
+    uint8_t mode;              /* scan_mode_t, of a sensor */
+    uint8_t address;           /* 0: none */
+    bool is_double;            /* two responses to one request were received */
+
+    /* of an A16 or A05 that responded */
+    bool has_value;
+    uint16_t value; /* of its first probe, as it was sent */
+
+    /* of an HPS-167S: #1, #2 and #3; "" is not known */
+    char interface_version[SETTING_TEXT];
+    char sensor_version[SETTING_TEXT];
+    char uuid[SETTING_TEXT];
+    char termination[SETTING_TEXT]; /* "on" or "off" */
+} scan_finding_t;
+
+/* The reads by which a model identifies a device during a scan. */
+typedef struct inquiry inquiry_t;
+struct inquiry {
+    /* Reads `count` registers and repeats the read after a damaged or unsuitable response, and after silence up to
+     * silence_tries times. Returns true if status is FATHOM_OK. */
+    bool (*ask)(inquiry_t *inquiry, uint16_t first, uint8_t count, uint32_t timeout_us,
+                uint8_t silence_tries);
+    fathom_status_t status;  /* of the newest response; at first of that to model_t.scan.first */
+    const uint16_t *values;  /* of that response */
+    scan_finding_t *finding; /* to fill in */
+};
+
+/* An A16 responds to 0x0101 in about 120 ms and to 0x0100 in up to 520, an A05 needs about 100 ms a probe. */
+enum { INQUIRY_MEASURE_US = 300000, INQUIRY_SLOW_US = 1000000 };
+
+/* ---- simulated sensors ---- */
+
+/* Traits of a simulated sensor; 0: it does not have the trait. commands/sim explains them, and model_t.traits has those
+ * that a model can have. */
+typedef enum {
+    DEVICE_EXCEPTIONS,
+    DEVICE_ANSWERS_BROADCAST,
+    DEVICE_REAL_TIME,
+    DEVICE_ANSWERS_FROM_NEW,
+    DEVICE_WARM_UP, /* seconds */
+    DEVICE_WARM_UP_REFUSES,
+    DEVICE_WARM_UP_ABNORMAL,
+    DEVICE_UNASKED, /* microseconds */
+    DEVICE_NO_OUTPUT,
+    DEVICE_NO_TERMINATION,
+    DEVICE_BAUD_LATER,
+    DEVICE_OFFSET_ADDS,
+    DEVICE_RECONNECT, /* milliseconds */
+    DEVICE_NO_BAUD_CODE,
+    DEVICE_COUNT_EXCEPTION,
+    DEVICE_TRAITS
+} device_trait_t;
+
+typedef struct {
+    uint8_t address;
+    uint32_t baud; /* 0: the factory setting; for sensors with several rates */
+    uint32_t seed;
+    uint8_t number; /* of the unit among those of its model that have a number of their own */
+    uint32_t traits[DEVICE_TRAITS];
+    fathom_sim_scene_t scene;
+} device_settings_t;
+
+/* Any simulated sensor. */
+typedef struct {
+    fathom_sim_device_t *base; /* for fathom_sim_attach */
+    union {
+        fathom_sim_a16_t a16;
+        fathom_sim_a05_t a05;
+        fathom_sim_hps167s_t hps167s;
+    } simulator;
+} device_t;
+
+/* ---- models ---- */
+
+/* The protocols of the sensors, as bits. */
+enum {
+    DECODE_MODBUS = 1,
+    DECODE_DYP = 2,         /* 55 AA */
+    DECODE_STREAM_ONE = 4,  /* FF H L SUM */
+    DECODE_STREAM_FOUR = 8, /* FF, four distances, SUM */
+    DECODE_ALL = 15
+};
+
+enum { MODEL_MODES = 5, MODEL_PROBE_REGISTERS = 2 };
+
+struct decode_frame;
+
+/* A member that is NULL or 0 does not apply. */
+typedef struct model model_t;
+struct model {
+    const char *name;
+    const char *what;
+    fathom_model_t id;
+
+    /* ---- its line, and how it is read ---- */
+
+    fathom_line_settings_t line; /* with factory settings */
+    const uint32_t *rates;       /* baud rates that can be set, ended by 0 */
+    const char *other_settings;  /* the same as options to try */
+    const model_mode_t *modes; /* MODEL_MODES; the first one is the default, a row without a name ends them */
+    uint8_t max_address;
+    bool has_address_zero; /* 0 is an address as well, and all units obey 255 */
+    bool has_optics;       /* a measurement has magnitude, ambient light and precision */
+    bool may_send_unasked; /* measurements between the responses */
+    uint8_t probes;
+    uint16_t max_mm;             /* a greater value is no distance */
+    uint32_t second_response_us; /* a second unit at the same address responds within this time */
+    const char *automatic_again; /* what restarts the automatic output, besides a power cycle */
+
+    /* ---- its settings; call these functions until the result is not FATHOM_PENDING ---- */
+
+    const setting_t *settings;
+    const char *offset; /* name of the setting that corrects its distances */
+    /* Reads a setting whose `read_at` is not 0. */
+    fathom_status_t (*get)(reader_t *reader, const setting_t *setting, char text[SETTING_TEXT]);
+    /* Writes a setting that has an `effect`. value: of a word, its number. */
+    fathom_status_t (*set)(reader_t *reader, const setting_t *setting, int32_t value);
+    /* Writes a setting that has a broadcast, in all units on the line. */
+    fathom_status_t (*set_all)(reader_t *reader, const setting_t *setting, int32_t value);
+    /* Restores the factory settings of the interface, and of the sensor behind it. */
+    fathom_status_t (*reset_interface)(reader_t *reader);
+    fathom_status_t (*reset_sensor)(reader_t *reader);
+
+    /* ---- what a Modbus request does to it ---- */
+
+    const char *request_ends; /* what its first request ends, and how to start that again; NULL: nothing */
+    /* Returns what a read (function 3 or 4) changes, NULL: nothing. */
+    const char *(*read_changes)(const uint8_t *request);
+
+    /* ---- its simulation ---- */
+
+    void (*simulate)(device_t *device, const device_settings_t *settings, uint8_t simulated_as);
+    uint32_t traits;  /* bits 1 << DEVICE_...: those that it can have */
+    uint16_t near_mm; /* the target moves between these */
+    uint16_t far_mm;
+
+    /* ---- how a scan identifies it; two models may share the first read ---- */
+
+    struct {
+        uint16_t first; /* the first read */
+        uint8_t count;
+        uint8_t frame_length; /* of its automatic output */
+        uint16_t own;         /* a register that no other model with the same first read has ... */
+        uint16_t slow_own;    /* ... and one for INQUIRY_SLOW_US, if none of them responds to that */
+        uint32_t timeout_us;  /* of the first read; 0: the default of a scan */
+        /* Instead of `own`: identifies it by the response to the first read, and by further reads. */
+        bool (*is_it)(inquiry_t *inquiry);
+    } scan;
+
+    /* ---- its frames ---- */
+
+    uint8_t protocols; /* DECODE_... */
+    /* Decodes a Modbus frame. request: the request, which is the frame itself or the one before it; NULL: not known. */
+    void (*decode)(struct decode_frame *frame, const model_t *model, const uint8_t *request);
+    /* Decodes a frame of another of its protocols. */
+    void (*decode_sum)(struct decode_frame *frame, const model_t *model);
+    uint16_t probe_registers[MODEL_PROBE_REGISTERS]; /* first register of all distances, and the same again */
+    const char *register_source;                     /* sections of its datasheet */
+    const char *stream_source;
+    const char *exception_source;
+    const char *(*exception_name)(uint8_t code);
+};
+
+/* The models. If several can be a device, a later one is tried first. A model with a driver of its own also needs a
+ * place in the union of driver.h and in that of device_t. */
 extern const model_t models[];
 extern const size_t model_count;
 
 enum { FACTORY_ADDRESS = 1 };
+
+/* Returns true if a unit can have this address, or this baud rate. */
+bool model_has_address(const model_t *model, uint8_t address);
+bool model_has_rate(const model_t *model, uint32_t baud);
 
 /* Returns the least address: 0 or 1. */
 uint8_t model_least_address(const model_t *model, const model_mode_t *mode);
@@ -17,11 +321,30 @@ uint8_t model_least_address(const model_t *model, const model_mode_t *mode);
 /* Returns the mode in which a setting can be read and set; NULL: the mode that uses Modbus. */
 const model_mode_t *model_mode_of(const model_t *model, const setting_t *setting);
 
+/* Returns the first model that has one of these protocols (DECODE_...). */
+const model_t *model_with(uint8_t protocols);
+
+/* Returns what a value of an A16 or A05 means: "target", "no_target" or "unknown". Stores the distance, or NO_VALUE. */
+const char *model_value_status(const model_t *model, uint16_t value, int64_t *distance_mm);
+
 /* Returns true if no model loses settings by this read. At address 0, which is a broadcast to some models, the register
  * must belong to a model that can have that address. */
 bool models_allow_read(uint8_t address, uint16_t first, uint16_t count);
 
-/* Returns the first model that has one of these protocols (DECODE_...). */
-const model_t *model_with(uint8_t protocols);
+/* ---- texts ---- */
+
+/* What an exception of Modbus says. */
+typedef struct {
+    const char *name; /* the specification's */
+    const char *meaning;
+    bool is_other_sensor; /* than the user has named, most likely */
+} modbus_exception_t;
+
+modbus_exception_t modbus_exception(uint8_t number);
+
+/* Writes the command that reads a sensor: "fathom read hps167s:7:modbus --port './a port' --baud 57600". address: -1 if
+ * the command needs none. The port is quoted for a shell. */
+void read_command_print(FILE *to, const model_t *model, const char *mode, int address,
+                        const fathom_line_settings_t *line, const char *port);
 
 #endif

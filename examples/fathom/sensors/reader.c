@@ -135,6 +135,7 @@ reader_facts_t reader_facts(const reader_t *reader)
     reader_facts_t facts = {0};
     if (reader == NULL) return facts;
     if (reader->unit != NULL) get_unit_facts(reader->unit, &facts);
+    facts.is_later = reader->next_baud != NULL && *reader->next_baud != 0;
     if (reader->period_us != NULL) facts.least_period_us = *reader->period_us;
     facts.values = reader->values;
     facts.value_count = reader->value_count;
@@ -154,20 +155,6 @@ reader_facts_t reader_facts(const reader_t *reader)
 
 /* ---- what drivers share ---- */
 
-bool driver_has_break(reader_t *reader, const port_t *port)
-{
-    if (port_can_break(port)) return true;
-    reader->refusal =
-        "this port cannot hold its TX low (a break), which selects real-time values; try another "
-        "adapter, or connect the sensor's RX to its ground and leave --value out";
-    return false;
-}
-
-void driver_end_break(port_t *port)
-{
-    (void)fathom_line_break(&port->line, false); /* a port that cannot end a break holds none */
-}
-
 fathom_modbus_config_t driver_config(const port_t *port, const reader_settings_t *settings)
 {
     return (fathom_modbus_config_t){
@@ -179,23 +166,6 @@ fathom_modbus_config_t driver_config(const port_t *port, const reader_settings_t
         .address_zero = settings->address == 0,
         .retries = settings->retries,
     };
-}
-
-fathom_contact_timing_t driver_contact_timing(const port_t *port, const reader_settings_t *settings)
-{
-    enum { WITHOUT_EVENT_US = 1000000 }; /* A change without an event is seen within this time. */
-    /* Without an interval, changes alone are readings, as far as the library allows. */
-    const uint32_t repeat_us = settings->repeat_us != 0 ? settings->repeat_us : FATHOM_MAX_DURATION_US;
-    return (fathom_contact_timing_t){.period_us = settings->period_us != 0 ? settings->period_us : repeat_us,
-                                     .interval_us = port->pins.wakes ? WITHOUT_EVENT_US : 0,
-                                     .stale_us = settings->timeout_us};
-}
-
-bool driver_open_contact(reader_t *reader, fathom_contact_t *contact, fathom_sensor_t sensor)
-{
-    reader->sensor = sensor;
-    reader->sequence = &contact->sequence;
-    return true;
 }
 
 uint32_t driver_now_us(const reader_t *reader)

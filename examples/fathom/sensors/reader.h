@@ -115,6 +115,7 @@ typedef struct {
     /* The setting that was written last. */
     bool is_written;                    /* a request that changes the sensor has left */
     bool is_setting;                    /* the driver has not finished it */
+    bool is_later;                      /* the baud rate changes at the next power-on */
     int8_t acknowledgement;             /* the status of that request */
     uint8_t address;                    /* at which the driver now sends requests, ... */
     const fathom_line_settings_t *line; /* ... and at which line settings; NULL: those of the port */

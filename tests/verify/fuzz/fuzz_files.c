@@ -52,7 +52,7 @@ static void backup(uint8_t how, const uint8_t *bytes, size_t size)
                 "session.h: what is printed is read as the same");
         PROMISE(row->held == HELD_NOTHING || (setting->kind != SETTING_PRESENT && setting->mode == NULL),
                 "session.h: this is of what is kept");
-        if (row->held == HELD_VALUE && setting->set != NULL)
+        if (row->held == HELD_VALUE && setting->effect != NULL)
             PROMISE(setting_value(setting, row->text, &value) ||
                         (setting->has_zero && strcmp(row->text, "0") == 0),
                     "setting.h: a value that can be set");

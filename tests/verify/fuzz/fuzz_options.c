@@ -178,7 +178,7 @@ static void check_setting(uint8_t how)
     int32_t again = 0;
     for (uint8_t skipped = fuzz_byte() % 32; skipped != 0 && setting[1].name != NULL; skipped--) setting++;
     take_text();
-    if (setting->set == NULL || !setting_value(setting, text, &value)) return;
+    if (setting->effect == NULL || !setting_value(setting, text, &value)) return;
     PROMISE(setting->words != NULL || (value >= setting->least && value <= setting->most) ||
                 (value == 0 && setting->has_zero),
             "setting.h: from least to most");

@@ -193,7 +193,7 @@ static bool is_of(const presence_t *presence, const record_unit_t *unit)
 /* Leaves `text` as it is if the setting cannot be read. */
 static fathom_status_t read_setting(const setting_t *setting, char text[SETTING_TEXT])
 {
-    fathom_status_t status = setting->get != NULL ? FATHOM_PENDING : FATHOM_OK;
+    fathom_status_t status = setting->read_at != 0 ? FATHOM_PENDING : FATHOM_OK;
     for (unsigned i = 0; i != TRIES && status != FATHOM_OK && (i == 0 || !has_ended()); i++)
         status = session_get(&session, setting, text);
     return status;

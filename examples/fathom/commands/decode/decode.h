@@ -5,7 +5,7 @@
 #include <stdio.h>
 
 #include "cli/option.h"
-#include "sensors/models.h"
+#include "sensors/decoding.h"
 
 /* ---- the bytes ---- */
 

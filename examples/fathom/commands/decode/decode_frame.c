@@ -5,7 +5,6 @@
 #include "fathom/codec/crc16.h"
 #include "fathom/codec/dyp_stream.h"
 #include "fathom/codec/modbus_rtu.h"
-#include "sensors/modbus_exception.h"
 
 enum { UNIT = 0, HEAD = 6, ALL_UNITS = 0xFF };
 enum { READ = FATHOM_MODBUS_READ_HOLDING_REGISTERS, EXCEPTION = FATHOM_MODBUS_EXCEPTION };

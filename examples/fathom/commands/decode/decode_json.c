@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "commands/decode/decode.h"
-#include "sensors/decoding_print.h"
 
 static json_t begin(FILE *to, const uint8_t *bytes, const decode_piece_t *piece)
 {

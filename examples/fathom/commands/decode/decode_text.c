@@ -2,7 +2,6 @@
 #include <string.h>
 
 #include "commands/decode/decode.h"
-#include "sensors/decoding_print.h"
 
 enum { BYTES_A_LINE = 20 };
 

@@ -5,7 +5,7 @@
 #include "cli/command.h"
 #include "diagnosis/counters.h"
 #include "ports/port.h"
-#include "sensors/models.h"
+#include "sensors/decoding.h"
 
 /* Positions in a request. */
 enum { REQUEST_UNIT = 0, REQUEST_FUNCTION = 1, REQUEST_FIRST = 2, REQUEST_COUNT = 4, REQUEST_VALUE = 4 };

@@ -3,7 +3,6 @@
 #include <string.h>
 
 #include "commands/request/request.h"
-#include "sensors/decoding_print.h"
 
 /* Returns true if the request can be for this model. An HPS-167S obeys unit 0, and cannot have address 255. */
 static bool can_be(const model_t *model, const request_t *request)

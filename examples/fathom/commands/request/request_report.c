@@ -4,8 +4,6 @@
 
 #include "commands/request/request.h"
 #include "diagnosis/advice.h"
-#include "sensors/decoding_print.h"
-#include "sensors/modbus_exception.h"
 
 enum { CODE = 2, DATA = 3, REGISTER_TEXT = 3 };
 

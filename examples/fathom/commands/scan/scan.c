@@ -9,7 +9,6 @@
 #include "commands/scan/scan.h"
 #include "diagnosis/advice.h"
 #include "output/words.h"
-#include "sensors/read_command.h"
 
 /* ---- the options ---- */
 
@@ -210,22 +209,13 @@ static void print_next(FILE *to, const scan_finding_t *finding, const char *port
                        finding->mode == SCAN_AUTO ? -1 : finding->address, &finding->line, port);
 }
 
-/* Returns what a sensor has reported; of another device nothing. */
-static finding_facts_t facts_of(const scan_finding_t *finding)
-{
-    finding_facts_t facts = {.termination = NO_VALUE, .distance_mm = NO_VALUE, .raw = NO_VALUE};
-    if (finding->kind == SCAN_SENSOR) finding->model->describe(finding->model, finding, &facts);
-    return facts;
-}
-
 /* The fields below name the members by their offsets. */
 typedef struct {
-    finding_facts_t facts;
     /* cppcheck-suppress unusedStructMember */
-    const char *kind, *model, *parity, *mode, *interface_version, *sensor_version, *uuid;
+    const char *kind, *model, *parity, *mode, *interface_version, *sensor_version, *uuid, *status;
     char *next;
     /* cppcheck-suppress unusedStructMember */
-    int64_t address, baud, stop_bits, is_double;
+    int64_t address, baud, stop_bits, termination, distance_mm, raw, is_double;
 } row_t;
 
 enum { SENSOR = 1, OPTICS = 2, VALUE = 4 };
@@ -244,10 +234,10 @@ static const field_t fields[] = {
     {"sensor_version", "", "Version of the sensor (hps167s)", FIELD_WORD, OPTICS, FOUND(sensor_version)},
     {"uuid", "", "Unique number of the sensor (hps167s)", FIELD_WORD, OPTICS, FOUND(uuid)},
     {"termination", "", "Whether the termination resistor is on (hps167s)", FIELD_FLAG, OPTICS,
-     FOUND(facts.termination)},
-    {"status", "", "Kind of the first value", FIELD_WORD, VALUE, FOUND(facts.status)},
-    {"distance_mm", "mm", "Distance of the first probe", FIELD_NUMBER, VALUE, FOUND(facts.distance_mm)},
-    {"raw", "", "Value that the sensor sent", FIELD_NUMBER, VALUE, FOUND(facts.raw)},
+     FOUND(termination)},
+    {"status", "", "Kind of the first value", FIELD_WORD, VALUE, FOUND(status)},
+    {"distance_mm", "mm", "Distance of the first probe", FIELD_NUMBER, VALUE, FOUND(distance_mm)},
+    {"raw", "", "Value that the sensor sent", FIELD_NUMBER, VALUE, FOUND(raw)},
     {"is_double", "", "Whether one request had two responses", FIELD_FLAG, 0, FOUND(is_double)},
     {"next", "", "Command to type next", FIELD_WORD, 0, FOUND(next)},
     {.key = NULL},
@@ -256,19 +246,25 @@ static const field_t fields[] = {
 
 void scan_help_fields(FILE *to) { record_help(to, fields); }
 
+static bool is_terminated(const scan_finding_t *finding) { return strcmp(finding->termination, "on") == 0; }
+
 static const char *word_of(const char *text) { return text[0] != '\0' ? text : NULL; }
 
 static void print_json(const scan_finding_t *finding, const char *port)
 {
     const bool is_sensor = finding->kind == SCAN_SENSOR;
-    row_t row = {.facts = facts_of(finding),
-                 .kind = kinds[finding->kind].name,
+    row_t row = {.kind = kinds[finding->kind].name,
                  .model = is_sensor ? finding->model->name : NULL,
                  .parity = parity_name(finding->line.parity),
                  .mode = is_sensor ? modes[finding->mode] : NULL,
                  .address = has_address(finding) ? finding->address : NO_VALUE,
                  .baud = finding->line.baud,
                  .stop_bits = finding->line.stop_bits,
+                 .interface_version = word_of(finding->interface_version),
+                 .sensor_version = word_of(finding->sensor_version),
+                 .uuid = word_of(finding->uuid),
+                 .termination = finding->termination[0] != '\0' ? is_terminated(finding) : NO_VALUE,
+                 .raw = finding->has_value ? finding->value : NO_VALUE,
                  .is_double = finding->is_double};
     size_t size = 0;
     FILE *const next = is_sensor ? open_memstream(&row.next, &size) : NULL;
@@ -276,38 +272,42 @@ static void print_json(const scan_finding_t *finding, const char *port)
         print_next(next, finding, port);
         (void)fclose(next);
     }
-    row.interface_version = word_of(row.facts.interface_version);
-    row.sensor_version = word_of(row.facts.sensor_version);
-    row.uuid = word_of(row.facts.uuid);
+    if (finding->has_value) row.status = model_value_status(finding->model, finding->value, &row.distance_mm);
     record_json_line(stdout, fields, &row,
                      (is_sensor ? SENSOR : 0u) | (is_sensor && finding->model->has_optics ? OPTICS : 0u) |
-                         (row.facts.raw != NO_VALUE ? VALUE : 0u));
+                         (finding->has_value ? VALUE : 0u));
     free(row.next);
 }
 
-static void print_versions(const finding_facts_t *facts)
+static void print_value(const scan_finding_t *finding)
 {
-    const bool has_interface = facts->interface_version[0] != '\0';
-    const bool has_sensor = facts->sensor_version[0] != '\0';
+    int64_t distance_mm = 0;
+    const char *const status = model_value_status(finding->model, finding->value, &distance_mm);
+    if (finding->model->probes > 1) (void)printf("probe 1: ");
+    if (distance_mm != NO_VALUE)
+        (void)printf("%" PRId64 " mm", distance_mm);
+    else
+        (void)printf("%s (value %u)", status, finding->value);
+}
+
+static void print_versions(const scan_finding_t *finding)
+{
+    const bool has_interface = finding->interface_version[0] != '\0';
+    const bool has_sensor = finding->sensor_version[0] != '\0';
     if (!has_interface && !has_sensor) (void)printf("sends unsolicited responses");
-    if (has_interface) (void)printf("interface %s", facts->interface_version);
-    if (has_sensor) (void)printf("%ssensor %s", has_interface ? ", " : "", facts->sensor_version);
-    if (facts->termination != NO_VALUE)
-        (void)printf(", termination %s", facts->termination != 0 ? "on" : "off");
+    if (has_interface) (void)printf("interface %s", finding->interface_version);
+    if (has_sensor) (void)printf("%ssensor %s", has_interface ? ", " : "", finding->sensor_version);
+    if (finding->termination[0] != '\0') (void)printf(", termination %s", finding->termination);
 }
 
 static void print_sensor(const scan_finding_t *finding)
 {
-    const finding_facts_t facts = facts_of(finding);
-    const char *const probe = finding->model->probes > 1 ? "probe 1: " : "";
     if (finding->mode == SCAN_AUTO)
         (void)printf("sends without requests");
-    else if (facts.distance_mm != NO_VALUE)
-        (void)printf("%s%" PRId64 " mm", probe, facts.distance_mm);
-    else if (facts.raw != NO_VALUE)
-        (void)printf("%s%s (value %" PRId64 ")", probe, facts.status, facts.raw);
+    else if (finding->has_value)
+        print_value(finding);
     else if (finding->model->has_optics)
-        print_versions(&facts);
+        print_versions(finding);
 }
 
 /* Prints a finding in a line, with the command to type next. */
@@ -367,7 +367,7 @@ void scan_report(scan_t *scan, const scan_finding_t *finding)
     print_advice(finding);
     if (finding->kind != SCAN_SENSOR) return;
     scan->sensors++;
-    if (finding->has_config && finding->has_termination) {
+    if (is_terminated(finding)) {
         scan->terminations++;
         scan->terminated = finding->model;
     }

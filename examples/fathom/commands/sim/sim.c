@@ -13,7 +13,7 @@
 #include "output/words.h"
 #include "ports/host.h"
 #include "ports/line_text.h"
-#include "sensors/read_command.h"
+#include "sensors/models.h"
 #include "sim/fault.h"
 #include "sim/pty.h"
 #include "sim/scene.h"

@@ -1,0 +1,363 @@
+/* SPDX-License-Identifier: MIT */
+#include "fathom/codec/dyp_55aa.h"
+#include "fathom/codec/dyp_stream.h"
+#include "fathom/codec/modbus_rtu.h"
+#include "fathom/sensor/a16_rs232.h"
+#include "sensors/decoding.h"
+#include "sensors/driver.h"
+
+/* The registers of the sensors of DYP (A16 6(3), A05 3(3)), their frames, and what these mean. */
+
+enum { READ = FATHOM_MODBUS_READ_HOLDING_REGISTERS, WRITE = FATHOM_MODBUS_WRITE_SINGLE_REGISTER };
+enum { PROBES = FATHOM_DYP_PROBES };
+
+/* ---- the settings ---- */
+
+#define EFFECT "at once; whether it is kept over power-off is not in the datasheet"
+
+static const char *const modes[] = {"controlled", "automatic", NULL};
+static const char *const on_only[] = {"on", NULL};
+static const char *const polarities[] = {"negative", "positive", NULL};
+static const char *const values[] = {"processed", "real-time", NULL};
+
+const setting_t a16_settings[] = {
+    {"address", "Modbus address (register 0x0200)", .read_at = DYP_ADDRESS, .write_at = DYP_ADDRESS,
+     .effect = EFFECT, .least = 1, .most = DYP_MAX_ADDRESS, .has_zero = true, .moves = true,
+     .is_never_blind = true},
+    {"operating-mode", "the register alone (0x0202); automatic-output restarts the automatic output",
+     SETTING_PRESENT, .write_at = FATHOM_A16_REGISTER_OPERATING_MODE, .words = modes,
+     .effect = "at once; not kept over power-off. Any further command stops the automatic output again"},
+    {"automatic-output", "RS232 variant: restarts the output that a Modbus command has stopped (0x0202)",
+     SETTING_PRESENT, .words = on_only, .effect = "at once; any further Modbus command stops it again",
+     .confirmed = "frames are heard",
+     .unconfirmed = "no frame was heard in 10 s; only the RS232 variant sends by itself"},
+    {"switch-polarity", "switch variant: the level when something is nearer than the threshold (0x0205)",
+     .read_at = FATHOM_A16_REGISTER_SWITCH_POLARITY, .write_at = FATHOM_A16_REGISTER_SWITCH_POLARITY,
+     .is_of_variant = true, .effect = EFFECT, .words = polarities},
+    {"switch-threshold", "switch variant: the distance at which it switches (0x0206)",
+     .read_at = FATHOM_A16_REGISTER_SWITCH_THRESHOLD, .write_at = FATHOM_A16_REGISTER_SWITCH_THRESHOLD,
+     .is_of_variant = true, .unit = "mm", .effect = EFFECT, .least = 1, .most = FATHOM_A16_MAX_MM},
+    {"automatic-value", "RS232 variant: the distance that the automatic output sends (0x0207)",
+     .read_at = FATHOM_A16_REGISTER_AUTOMATIC_VALUE, .write_at = FATHOM_A16_REGISTER_AUTOMATIC_VALUE,
+     .is_of_variant = true, .effect = EFFECT, .words = values},
+    {"distance", "the processed distance (0x0100)", SETTING_PRESENT, .read_at = FATHOM_A16_REGISTER_PROCESSED,
+     .unit = "mm"},
+    {"real-time-distance", "the newest measurement (0x0101)", SETTING_PRESENT,
+     .read_at = FATHOM_A16_REGISTER_REAL_TIME, .unit = "mm"},
+    {.name = NULL},
+};
+
+const setting_t a05_settings[] = {
+    {"address", "Modbus address (register 0x0200), also of 55 AA", .read_at = DYP_ADDRESS,
+     .write_at = DYP_ADDRESS, .effect = EFFECT, .least = 1, .most = DYP_MAX_ADDRESS, .has_zero = true,
+     .moves = true, .is_never_blind = true},
+    {"every-address", "the same by 55 AA 03, which EVERY A05 on the line obeys; with --mode dyp",
+     SETTING_PRESENT, .mode = "dyp", .effect = EFFECT, .least = 1, .most = DYP_MAX_ADDRESS, .moves = true,
+     .is_never_blind = true},
+    {"distances", "of the four probes (0x0106 to 0x0109)", SETTING_PRESENT, .read_at = FATHOM_A05_REGISTERS,
+     .unit = "mm"},
+    {.name = NULL},
+};
+
+static bool is_distance(const setting_t *setting) { return setting->unit != NULL && setting->effect == NULL; }
+
+/* ---- reading a setting ---- */
+
+static fathom_status_t get_register(reader_t *reader, const setting_t *setting, char text[SETTING_TEXT])
+{
+    uint16_t value = 0;
+    const fathom_status_t status = fathom_dyp_modbus_get_register(reader->dyp, setting->read_at, &value);
+    if (status != FATHOM_OK) return status;
+    if (setting->moves && value > UINT8_MAX) return FATHOM_ERR_MALFORMED;
+    return setting_print(setting, &value, text);
+}
+
+static void print_sample(char text[SETTING_TEXT], const fathom_sample_t *sample)
+{
+    if (sample->kind == FATHOM_TARGET)
+        (void)snprintf(text, SETTING_TEXT, "%u", sample->distance_mm);
+    else if (sample->kind == FATHOM_NO_TARGET)
+        (void)snprintf(text, SETTING_TEXT, "%s", sample->interference ? "interference" : "no_target");
+    else
+        (void)snprintf(text, SETTING_TEXT, "unknown value %u", (unsigned)sample->raw);
+}
+
+fathom_status_t a16_get(reader_t *reader, const setting_t *setting, char text[SETTING_TEXT])
+{
+    if (!is_distance(setting)) return get_register(reader, setting, text);
+    const bool is_real_time = setting->read_at == FATHOM_A16_REGISTER_REAL_TIME;
+    fathom_sample_t sample;
+    const fathom_status_t status = fathom_a16_modbus_measure(
+        &reader->driver.a16_modbus, is_real_time ? FATHOM_REAL_TIME : FATHOM_PROCESSED, &sample);
+    if (status == FATHOM_OK) print_sample(text, &sample);
+    return status;
+}
+
+/* All probes in one text: the samples of one response. */
+fathom_status_t a05_get(reader_t *reader, const setting_t *setting, char text[SETTING_TEXT])
+{
+    if (!is_distance(setting)) return get_register(reader, setting, text);
+    fathom_sample_t sample;
+    fathom_status_t status = reader_poll(reader, &sample);
+    if (status == FATHOM_PENDING || (status < 0 && status != FATHOM_ERR_MALFORMED)) return status;
+    for (size_t length = 0; length < SETTING_TEXT; status = reader_poll(reader, &sample)) {
+        char one[SETTING_TEXT] = "no distance";
+        if (status == FATHOM_OK) print_sample(one, &sample);
+        length +=
+            (size_t)snprintf(text + length, SETTING_TEXT - length, "%s%s", length != 0 ? ", " : "", one);
+        if (!reader_has_more(reader)) break;
+    }
+    return FATHOM_OK;
+}
+
+/* ---- writing a setting ---- */
+
+static fathom_status_t set_register(reader_t *reader, const setting_t *setting, int32_t value)
+{
+    fathom_dyp_modbus_t *const dyp = reader->dyp;
+    if (setting->moves && value == 0) return fathom_dyp_modbus_set_address_0(dyp);
+    if (setting->moves) return fathom_dyp_modbus_set_address(dyp, (uint8_t)value);
+    return setting->read_at != 0 ? fathom_dyp_modbus_set_register(dyp, setting->write_at, (uint16_t)value)
+                                 : fathom_dyp_modbus_write_register(dyp, setting->write_at, (uint16_t)value);
+}
+
+/* The first frame of the automatic output is the result. */
+static fathom_status_t restart_automatic_output(reader_t *reader)
+{
+    static fathom_a16_auto_t automatic;
+    static fathom_a16_rs232_t rs232;
+    static bool is_started;
+    fathom_sample_t sample;
+    if (!is_started) {
+        const fathom_a16_auto_config_t config = {.gap_us = PORT_STREAM_GAP_US};
+        if (fathom_a16_auto_init(&automatic, reader->line, &config) != FATHOM_OK) return FATHOM_ERR_ARGUMENT;
+        fathom_a16_rs232_init(&rs232, &reader->driver.a16_modbus, &automatic);
+    }
+    const fathom_status_t status = fathom_a16_rs232_return_to_automatic(&rs232, &sample);
+    is_started = status == FATHOM_PENDING;
+    return status;
+}
+
+fathom_status_t a16_set(reader_t *reader, const setting_t *setting, int32_t value)
+{
+    return setting->write_at != 0 ? set_register(reader, setting, value) : restart_automatic_output(reader);
+}
+
+fathom_status_t a05_set(reader_t *reader, const setting_t *setting, int32_t value)
+{
+    return setting->write_at != 0 ? set_register(reader, setting, value)
+                                  : fathom_a05_dyp_broadcast_address(&reader->driver.a05_dyp, (uint8_t)value);
+}
+
+/* ---- the meaning of a value ---- */
+
+/* The special values are not in the datasheets of A16 and A05, but in those of their family. */
+enum { NO_TARGET = 0xFFFD, INTERFERENCE = 0xFFFE, REFUSED = 0xFFFF };
+
+static bool is_likely_distance(const model_t *model, uint16_t value)
+{
+    return value <= model->max_mm || value == NO_TARGET || value == INTERFERENCE;
+}
+
+const char *model_value_status(const model_t *model, uint16_t value, int64_t *distance_mm)
+{
+    const bool is_target = value != 0 && value <= model->max_mm;
+    *distance_mm = is_target ? value : NO_VALUE;
+    if (is_target) return "target";
+    return value == NO_TARGET || value == INTERFERENCE ? "no_target" : "unknown";
+}
+
+static void put_distance(decode_meaning_t *meaning, const char *name, uint16_t value)
+{
+    static const struct {
+        uint16_t value;
+        const char *note;
+    } special[] = {{0, "unknown: no target, or something at the probe; see --means of fathom read"},
+                   {NO_TARGET, "no target"},
+                   {INTERFERENCE, "no target: interference by another unit"},
+                   {REFUSED, "refused: no distance, and no value of the family"}};
+    decode_field_t *const field = decode_number(meaning, name, value, "mm");
+    for (size_t i = 0; i != sizeof special / sizeof special[0]; i++)
+        if (value == special[i].value) decode_remark(field, "%s", special[i].note);
+}
+
+static void put_value(decode_meaning_t *meaning, const setting_t *setting, uint16_t value)
+{
+    if (is_distance(setting))
+        put_distance(meaning, setting->name, value);
+    else
+        decode_setting(meaning, setting, value);
+}
+
+static const char *const probe_names[PROBES] = {"probe 1", "probe 2", "probe 3", "probe 4"};
+
+static void put_probes(decode_meaning_t *meaning, uint8_t first, const uint16_t *distances, uint8_t count)
+{
+    for (uint8_t i = 0; i != count; i++) put_distance(meaning, probe_names[first + i], distances[i]);
+}
+
+/* ---- Modbus: a response whose request is not known ---- */
+
+static void guess_probes(decode_frame_t *frame, const model_t *model, const uint16_t *distances,
+                         uint8_t count)
+{
+    static const char *const names[PROBES] = {"first", "second", "third", "fourth"};
+    for (uint8_t i = 0; i != count && !frame->is_sure; i++)
+        if (!is_likely_distance(model, distances[i])) return;
+    decode_meaning_t *const meaning =
+        decode_mean(frame, model->name, model->register_source,
+                    count == 1 ? "if a probe was read" : "if %u probes were read", count);
+    for (uint8_t i = 0; i != count; i++)
+        put_distance(meaning, count == 1 ? "distance" : names[i], distances[i]);
+}
+
+/* Adds each value that the response can be. */
+static void guess(decode_frame_t *frame, const model_t *model)
+{
+    const uint8_t count = (uint8_t)(frame->bytes[DECODE_AT_SIZE] / 2);
+    uint16_t registers[PROBES];
+    if (count == 0 || count > model->probes) return;
+    decode_registers(frame->bytes + DECODE_AT_DATA, registers, count);
+    for (const setting_t *setting = model->settings; setting->name != NULL; setting++) {
+        if (setting->read_at == 0) continue;
+        const bool is_likely = is_distance(setting) ? is_likely_distance(model, registers[0])
+                                                    : setting_can_be(setting, registers[0]);
+        if (setting->read_at == model->probe_registers[0])
+            guess_probes(frame, model, registers, count);
+        else if (count == 1 && (frame->is_sure || is_likely))
+            put_value(decode_mean(frame, model->name, model->register_source, "if 0x%04X was read: %s",
+                                  setting->read_at, setting->name),
+                      setting, registers[0]);
+    }
+}
+
+/* ---- Modbus: a request, and a response to a known request ---- */
+
+/* Returns the probe of a register, from 0 on; PROBES: none. */
+static uint8_t probe_at(const model_t *model, uint16_t address)
+{
+    for (unsigned i = 0; i != MODEL_PROBE_REGISTERS; i++) {
+        const uint16_t first = model->probe_registers[i];
+        if (first != 0 && address >= first && address < first + model->probes)
+            return (uint8_t)(address - first);
+    }
+    return PROBES;
+}
+
+static void explain_probes(decode_frame_t *frame, const model_t *model, uint8_t first, const uint8_t *request)
+{
+    const uint16_t count = decode_get16(request + DECODE_AT_COUNT);
+    const uint16_t address = decode_get16(request + DECODE_AT_FIRST);
+    const char *const source = model->register_source;
+    uint16_t distances[PROBES];
+    if (count == 0 || count > model->probes - first) {
+        (void)decode_mean(frame, model->name, source, "0x%04X is %s; a read must not go past the last probe",
+                          address, probe_names[first]);
+        return;
+    }
+    decode_meaning_t *const meaning =
+        count == 1
+            ? decode_mean(frame, model->name, source, "0x%04X distance of %s", address, probe_names[first])
+            : decode_mean(frame, model->name, source, "0x%04X distances of probes %u to %u", address,
+                          first + 1u, first + (unsigned)count);
+    if (frame->piece->direction != DECODE_RESPONSE) return;
+    decode_registers(frame->bytes + DECODE_AT_DATA, distances, (uint8_t)count);
+    put_probes(meaning, first, distances, (uint8_t)count);
+}
+
+static void explain_read(decode_frame_t *frame, const model_t *model, const setting_t *setting,
+                         const uint8_t *request)
+{
+    const uint16_t address = decode_get16(request + DECODE_AT_FIRST);
+    decode_meaning_t *const meaning =
+        decode_mean(frame, model->name, model->register_source, "0x%04X %s", address, setting->name);
+    if (setting->read_at == 0) decode_note(frame, "%s: 0x%04X is write-only", model->name, address);
+    if (decode_get16(request + DECODE_AT_COUNT) != 1)
+        decode_note(frame, "%s: a read of several registers is not in its datasheet", model->name);
+    if (frame->piece->direction == DECODE_RESPONSE)
+        put_value(meaning, setting, decode_get16(frame->bytes + DECODE_AT_DATA));
+}
+
+static void explain_write(decode_frame_t *frame, const model_t *model, const setting_t *setting)
+{
+    const char *const source = model->register_source;
+    if (setting->write_at == 0)
+        (void)decode_mean(frame, model->name, source, "0x%04X %s, which is read-only", setting->read_at,
+                          setting->name);
+    else
+        put_value(decode_mean(frame, model->name, source, "set 0x%04X %s", setting->write_at, setting->name),
+                  setting, decode_get16(frame->bytes + DECODE_AT_VALUE));
+}
+
+void dyp_decode(decode_frame_t *frame, const model_t *model, const uint8_t *request)
+{
+    const uint8_t function = frame->bytes[DECODE_AT_FUNCTION];
+    if (request == NULL) guess(frame, model);
+    if (request == NULL || (function != READ && function != WRITE)) return;
+    const uint16_t address = decode_get16(request + DECODE_AT_FIRST);
+    const uint8_t probe = probe_at(model, address);
+    if (probe != PROBES && function == READ) explain_probes(frame, model, probe, request);
+    for (const setting_t *setting = model->settings; probe == PROBES && setting->name != NULL; setting++) {
+        if (address == 0 || (setting->read_at != address && setting->write_at != address)) continue;
+        if (function == READ)
+            explain_read(frame, model, setting, request);
+        else
+            explain_write(frame, model, setting);
+    }
+}
+
+/* ---- frames with a sum ---- */
+
+static void decode_stream(decode_frame_t *frame, const model_t *model)
+{
+    uint16_t distances[PROBES];
+    fathom_dyp_stream_decode(frame->bytes, distances, model->probes);
+    decode_meaning_t *const meaning = decode_mean(frame, model->name, model->stream_source, "measurement");
+    if (model->probes == 1)
+        put_distance(meaning, "distance", distances[0]);
+    else
+        put_probes(meaning, 0, distances, model->probes);
+}
+
+static void decode_set_address(decode_frame_t *frame, const model_t *model)
+{
+    decode_meaning_t *const meaning = decode_mean(frame, model->name, "A05 2(3)5", "set the address");
+    decode_field_t *const field = decode_number(meaning, "address", frame->unit, "");
+    if (frame->unit == 0 || frame->unit == FATHOM_DYP_ANY_ADDRESS)
+        decode_remark(field, "not from 1 to %u", DYP_MAX_ADDRESS);
+    frame->unit = -1; /* every unit that receives it */
+    decode_note(frame, "it has no old address in it: every %s on the line obeys", model->name);
+}
+
+static void decode_55aa(decode_frame_t *frame, const model_t *model)
+{
+    const uint8_t command = frame->bytes[3];
+    const uint8_t count = fathom_dyp_55aa_value_count(command);
+    const uint8_t first = count == 1 ? (uint8_t)(command - FATHOM_DYP_FIRST_PROBE) : 0;
+    const char *const source = count == 1 ? "A05 2(3)4" : "A05 2(3)3";
+    frame->unit = frame->bytes[2];
+    frame->code = command;
+    frame->code_is = "command";
+    if (frame->unit == FATHOM_DYP_ANY_ADDRESS && command != FATHOM_DYP_SET_ADDRESS)
+        decode_note(frame, "FF is the broadcast address; whether a unit answers it is not in the datasheet");
+    if (command == FATHOM_DYP_SET_ADDRESS) {
+        decode_set_address(frame, model);
+    } else if (count == 0) {
+        (void)decode_mean(frame, model->name, "A05 2(3)2", "unknown command");
+    } else if (frame->piece->direction != DECODE_RESPONSE) {
+        (void)decode_mean(frame, model->name, source, "measure with %s",
+                          count == 1 ? probe_names[first] : "all probes");
+    } else {
+        uint16_t distances[PROBES];
+        fathom_dyp_55aa_decode(frame->bytes, distances);
+        put_probes(decode_mean(frame, model->name, source, "measurement"), first, distances, count);
+    }
+}
+
+void dyp_decode_sum(decode_frame_t *frame, const model_t *model)
+{
+    if (frame->piece->protocol == DECODE_DYP)
+        decode_55aa(frame, model);
+    else
+        decode_stream(frame, model);
+}
