@@ -43,7 +43,10 @@ const port_driver_t port_chip = {.open = open_chip};
 #endif
 
 #ifdef FATHOM_PUBLISH_LACKS
+#include "cli/config.h"
 #include "commands/commands.h"
+
+void config_print_keys(FILE *to) { (void)fputs("  (fathom publish is not in this build)\n", to); }
 
 static int start_publish(const host_t *host, const arguments_t *arguments)
 {

@@ -1,258 +1,580 @@
 /* SPDX-License-Identifier: MIT */
-#define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): gethostname */
+/* The configuration file of `fathom publish`: the tree of YAML is read by the same rows as options. */
+#define _GNU_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): gethostname, open_memstream */
 #include "cli/config.h"
 
 #include <errno.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
+#include <yaml.h>
 
-#include "cli/config_file.h"
-#include "cli/publish_rows.h"
+#include "cli/rows.h"
 
-enum { PORT = 1883, PORT_WITH_TLS = 8883, KEEP_ALIVE_S = 30, MESSAGES = 10000, BYTES = 4194304 };
-enum { INTERVAL_US = 1000000, SENSOR_TEXT = 2048 };
+/* ---- the keys ---- */
 
-/* A sensor of the file. */
+/* What the top of the file and the maps in it fill. */
 typedef struct {
-    publish_sensor_t settings;
-    char text
-        [SENSOR_TEXT]; /* everything that the file has for it: two sensors with the same text are the same */
-} entry_t;
+    publish_settings_t settings;
+    char credential[SETTINGS_NAME]; /* of systemd; "": none */
+    reader_settings_t reader;       /* of sensors without their own */
+    const yaml_node_t *lines;       /* a list */
+} top_t;
+
+static bool is_topic(const char *text, void *member)
+{
+    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_./";
+    const size_t length = strlen(text);
+    (void)member;
+    return length != 0 && strspn(text, letters) == length && text[0] != '/' && text[length - 1] != '/' &&
+           strstr(text, "//") == NULL;
+}
+
+static bool is_id(const char *text, void *member)
+{
+    return is_topic(text, member) && strpbrk(text, "/.") == NULL;
+}
+
+static bool is_credential(const char *text, void *member)
+{
+    return is_topic(text, member) && text[0] != '.' && strchr(text, '/') == NULL;
+}
+
+static bool is_host(const char *text, void *member)
+{
+    (void)member;
+    return strpbrk(text, " /@") == NULL;
+}
+
+static bool check_tls(void *structure, const origin_t *origin)
+{
+    const broker_settings_t *const broker = &((const top_t *)structure)->settings.broker;
+    if ((broker->certificate_file[0] != '\0') == (broker->key_file[0] != '\0')) return true;
+    return reject(origin, "certificate-file and key-file belong together. One of them is missing.");
+}
+
+#define TOPICS      "letters, digits, '-', '_' and '.', at most 100, with / between levels"
+#define TOP(member) AT(top_t, member)
+#define SET(member) AT(top_t, settings.member)
+
+static const option_t tls_keys[] = {
+    {"ca-file", "FILE", "Certificates of the trusted authorities", KIND_STRING, .is_path = true,
+     SET(broker.ca_file)},
+    {"certificate-file", "FILE", "Certificate of this client", KIND_STRING, .is_path = true,
+     SET(broker.certificate_file)},
+    {"key-file", "FILE", "Its private key, without a passphrase", KIND_STRING, .is_path = true,
+     SET(broker.key_file)},
+    {.name = NULL},
+};
+
+static const option_t broker_keys[] = {
+    {"host", "HOST", "Name or address of the broker", KIND_STRING, .parse = is_host, SET(broker.host),
+     .takes = "a name or an address", .is_required = true},
+    {"port", "N", "Port of the broker (1883, with tls 8883)", KIND_NUMBER, .min = 1, .max = UINT16_MAX,
+     SET(broker.port)},
+    {"client-id", "ID", "Identity of this client (from prefix and site)", KIND_STRING, .parse = is_id,
+     .takes = "at most 100 letters, digits, '-' and '_'", SET(broker.client_id)},
+    {"user", "NAME", "User to log in with", KIND_STRING, SET(broker.user)},
+    {"password-file", "FILE", "File whose first line is the password", KIND_STRING, .is_path = true,
+     SET(broker.password_file)},
+    {"password-credential", "NAME", "Credential of systemd with the password", KIND_STRING,
+     .parse = is_credential, .takes = "the name of a systemd credential", TOP(credential)},
+    {"keep-alive", "S", "Time without messages until the connection is tested (30)", KIND_NUMBER, .min = 5,
+     .max = 3600, SET(broker.keep_alive_s)},
+    {"tls", "MAP", "Use TLS; {} trusts the authorities of the system", KIND_MAP, .keys = tls_keys,
+     .takes = "a map, such as {} or {ca-file: FILE}", .check = check_tls,
+     HAS(top_t, settings.broker.has_tls)},
+    {.name = NULL},
+};
+
+static const option_t queue_keys[] = {
+    {"messages", "N", "Most messages to keep (10000)", KIND_NUMBER, .min = 1, .max = 1000000,
+     SET(queue_messages)},
+    {"bytes", "N", "Most bytes to keep (4194304)", KIND_NUMBER, .min = 4096, .max = 1073741824,
+     SET(queue_bytes)},
+    {.name = NULL},
+};
+
+static const option_t top_keys[] = {
+    {"site", "NAME", "Second level of all topics (the host's name)", KIND_STRING, .parse = is_topic,
+     .takes = TOPICS, SET(site)},
+    {"prefix", "NAME", "First level of all topics (fathom)", KIND_STRING, .parse = is_topic, .takes = TOPICS,
+     SET(prefix)},
+    {"discovery", "NAME", "Discovery prefix of Home Assistant, or off (homeassistant)", KIND_STRING,
+     .parse = is_topic, .takes = TOPICS ", or off", SET(discovery)},
+    {"broker", "MAP", "The MQTT broker", KIND_MAP, .keys = broker_keys, .takes = "a map with at least host",
+     .is_required = true},
+    {"queue", "MAP", "Messages to keep while the broker is not connected", KIND_MAP, .keys = queue_keys,
+     .takes = "a map with messages or bytes"},
+    {"lines", "LIST", "The lines of the site", KIND_NODE,
+     .takes = "a list of maps, each with port and sensors", .is_required = true, TOP(lines)},
+    {.name = NULL},
+};
+
+static const option_table_t top_tables[] = {{top_keys, 0},
+                                            {interval_rows, offsetof(top_t, reader)},
+                                            {request_rows, offsetof(top_t, reader)},
+                                            {NULL, 0}};
 
 typedef struct {
-    config_file_t file;
-    publish_top_t top;
-    entry_t *entries; /* MAX_SENSORS of each */
-    sensor_word_t *words;
+    const char *port;
+    port_keys_t keys;
+    const yaml_node_t *sensors; /* a list */
+} line_keys_t;
+
+/* Without the keys of its port. */
+static const option_t line_keys[] = {
+    {"port", "PORT", "Serial port, tcp:HOST[:PORT], or GPIO chip", KIND_TEXT, .is_required = true,
+     .takes = "a serial port, tcp:HOST[:PORT], or a GPIO chip", AT(line_keys_t, port)},
+    {"sensors", "LIST", "The sensors on the line", KIND_NODE, .is_required = true,
+     .takes = "a list of maps, each with name and sensor", AT(line_keys_t, sensors)},
+    {.name = NULL},
+};
+
+typedef struct {
+    const char *name;
+    char *sensor;
+    reader_settings_t reader;
+    results_config_t results;
+    option_given_t given;
+    const yaml_node_t *map;  /* which has these keys, */
+    const yaml_node_t *line; /* and that of its line */
+} sensor_keys_t;
+
+static const option_t sensor_keys[] = {
+    {"name", "NAME", "Level of the sensor in the topics", KIND_TEXT, .is_required = true,
+     .takes = "at most 31 letters, digits, '-', '_' and '.', the first a letter or a digit",
+     AT(sensor_keys_t, name)},
+    {"sensor", "SENSOR", "SENSOR[:ADDRESS][:MODE], such as hps167s:7", KIND_TEXT, .is_required = true,
+     .takes = "SENSOR[:ADDRESS][:MODE], such as hps167s:7", AT(sensor_keys_t, sensor)},
+    {.name = NULL},
+};
+
+static const option_table_t sensor_tables[] = {
+    {sensor_keys, 0},
+    {interval_rows, offsetof(sensor_keys_t, reader)},
+    {request_rows, offsetof(sensor_keys_t, reader)},
+    {reading_rows, offsetof(sensor_keys_t, reader)},
+    {result_rows, offsetof(sensor_keys_t, results)},
+    {NULL, 0},
+};
+
+static void print_keys(FILE *to, const char *head, const option_t *rows)
+{
+    if (head != NULL) (void)fprintf(to, "\n  %s:\n", head);
+    for (; rows->name != NULL; rows++) {
+        char label[80];
+        (void)snprintf(label, sizeof label, "%s%s: %s", head != NULL ? "  " : "", rows->name, rows->value);
+        (void)fprintf(to, "  %-26s  %s\n", label, rows->help);
+    }
+}
+
+void config_print_keys(FILE *to)
+{
+    print_keys(to, NULL, top_keys);
+    print_keys(to, NULL, interval_rows);
+    print_keys(to, NULL, request_rows);
+    print_keys(to, "broker", broker_keys);
+    print_keys(to, "tls", tls_keys);
+    print_keys(to, "queue", queue_keys);
+    print_keys(to, "lines", line_keys);
+    (void)fputs("    and the keys of ports (fathom help ports)\n", to);
+    print_keys(to, "sensors", sensor_keys);
+    (void)fputs("    and interval, timeout, retries, as above\n", to);
+    const option_table_t tables[] = {{reading_rows, 0}, {result_rows, 0}, {NULL, 0}};
+    for (option_walk_t walk = {.table = tables}; option_next(&walk);)
+        (void)fprintf(to, "    %s: %s, as --%s of fathom read\n", walk.row->name, walk.row->value,
+                      walk.row->name);
+}
+
+/* ---- the file ---- */
+
+typedef struct {
+    origin_t origin; /* the first line */
+    yaml_document_t document;
+    top_t top;
+    sensor_keys_t sensors[MAX_SENSORS];
+    sensor_word_t words[MAX_SENSORS]; /* of the sensors */
     int count;
 } config_t;
+
+/* libyaml counts lines from 0. */
+static origin_t at_mark(const config_t *config, const yaml_mark_t *mark)
+{
+    origin_t origin = config->origin;
+    origin.line = (unsigned)mark->line + 1;
+    return origin;
+}
+
+static origin_t at_node(const config_t *config, const yaml_node_t *node)
+{
+    return at_mark(config, &node->start_mark);
+}
+
+static bool reject_yaml(const config_t *config, const yaml_parser_t *parser)
+{
+    const origin_t origin =
+        at_mark(config, parser->error == YAML_READER_ERROR ? &parser->mark : &parser->problem_mark);
+    return reject(&origin, "this is no YAML: %s%s%s.",
+                  parser->problem != NULL ? parser->problem : "no memory", parser->context != NULL ? " " : "",
+                  parser->context != NULL ? parser->context : "");
+}
+
+/* A second document in the same file would be ignored silently. */
+static bool is_last(const config_t *config, yaml_parser_t *parser)
+{
+    yaml_document_t more;
+    if (!yaml_parser_load(parser, &more)) return reject_yaml(config, parser);
+    const bool is_there = yaml_document_get_root_node(&more) != NULL;
+    const origin_t origin = at_mark(config, &more.start_mark);
+    yaml_document_delete(&more);
+    return !is_there ||
+           reject(&origin, "a second document begins. Write all into one, without a line of ---.");
+}
+
+/* In UTF-8, which libyaml has checked: C0, DEL, and C1, U+0080 to U+009F. */
+static bool is_printable(const unsigned char *text, size_t length)
+{
+    for (size_t i = 0; i != length; i++)
+        if (text[i] < ' ' || text[i] == 0x7F || (text[i] == 0xC2 && text[i + 1] < 0xA0)) return false;
+    return true;
+}
+
+/* Messages print texts of the file, which may not drive a terminal. */
+static bool are_printable(const config_t *config)
+{
+    for (const yaml_node_t *node = config->document.nodes.start; node != config->document.nodes.top; node++) {
+        const origin_t origin = at_node(config, node);
+        if (node->type == YAML_SCALAR_NODE &&
+            !is_printable(node->data.scalar.value, node->data.scalar.length))
+            return reject(&origin,
+                          "a text has a character that cannot be printed, such as a tab. Leave it out.");
+    }
+    return true;
+}
+
+static bool parse_file(config_t *config, FILE *stream)
+{
+    yaml_parser_t parser;
+    if (!yaml_parser_initialize(&parser)) return reject_memory(&config->origin);
+    yaml_parser_set_input_file(&parser, stream);
+    bool is_good = yaml_parser_load(&parser, &config->document) || reject_yaml(config, &parser);
+    if (is_good && yaml_document_get_root_node(&config->document) != NULL &&
+        !(is_last(config, &parser) && are_printable(config))) {
+        yaml_document_delete(&config->document);
+        is_good = false;
+    }
+    yaml_parser_delete(&parser);
+    return is_good;
+}
+
+/* ---- nodes ---- */
+
+static const yaml_node_t *node_at(config_t *config, int number)
+{
+    return yaml_document_get_node(&config->document, number);
+}
+
+/* NULL: the node is no text, or an empty one without quotes. */
+static char *text_of(const yaml_node_t *node)
+{
+    if (node->type != YAML_SCALAR_NODE) return NULL;
+    if (node->data.scalar.length == 0 && node->data.scalar.style == YAML_PLAIN_SCALAR_STYLE) return NULL;
+    return (char *)node->data.scalar.value;
+}
+
+static const char *shape_of(const yaml_node_t *node)
+{
+    if (node->type == YAML_SEQUENCE_NODE) return "a list";
+    if (node->type == YAML_MAPPING_NODE) return "a map";
+    return text_of(node) != NULL ? "a text" : "empty";
+}
+
+static const yaml_node_t *find(config_t *config, const yaml_node_t *map, const char *key)
+{
+    if (map->type != YAML_MAPPING_NODE) return NULL;
+    for (const yaml_node_pair_t *pair = map->data.mapping.pairs.start; pair != map->data.mapping.pairs.top;
+         pair++) {
+        const char *const text = text_of(node_at(config, pair->key));
+        if (text != NULL && strcmp(text, key) == 0) return node_at(config, pair->value);
+    }
+    return NULL;
+}
+
+/* Where the first of two keys that is there stands, or else the map. */
+static origin_t at_key(config_t *config, const yaml_node_t *map, const char *key, const char *other)
+{
+    const yaml_node_t *node = find(config, map, key);
+    if (node == NULL) node = find(config, map, other);
+    return at_node(config, node != NULL ? node : map);
+}
+
+/* Prints what the node has, without its lists. NOLINTNEXTLINE(misc-no-recursion): as deep as the rows */
+static void print_node(config_t *config, const yaml_node_t *node, FILE *to)
+{
+    if (node->type == YAML_SCALAR_NODE) (void)fputs((const char *)node->data.scalar.value, to);
+    if (node->type != YAML_MAPPING_NODE) return;
+    for (const yaml_node_pair_t *pair = node->data.mapping.pairs.start; pair != node->data.mapping.pairs.top;
+         pair++) {
+        print_node(config, node_at(config, pair->key), to);
+        (void)fputc('=', to);
+        print_node(config, node_at(config, pair->value), to);
+        (void)fputc(';', to);
+    }
+}
+
+/* ---- maps by rows ---- */
+
+static bool read_map(config_t *config, const yaml_node_t *map, const option_table_t *tables, void *structure,
+                     const char *within, option_given_t *given);
+
+/* NOLINTNEXTLINE(misc-no-recursion): as deep as the rows */
+static bool read_value(config_t *config, const option_t *row, const yaml_node_t *node, char *structure,
+                       const origin_t *origin)
+{
+    const bool is_map = node->type == YAML_MAPPING_NODE;
+    char *const text = text_of(node);
+    if (row->kind == KIND_NODE && node->type == YAML_SEQUENCE_NODE) {
+        memcpy(structure + row->at, &node, sizeof node);
+        return true;
+    }
+    if (is_map && (row->kind == KIND_MAP || row->kind == KIND_KEYS)) {
+        const option_table_t tables[] = {{row->keys, 0}, {NULL, 0}};
+        option_given_t given = {{0}};
+        origin_t its = at_node(config, node);
+        its.within = row->name;
+        if (!read_map(config, node, tables, structure + row->at, row->name, &given)) return false;
+        if (row->has != 0) *(bool *)(structure + row->has - 1) = true;
+        return row->check == NULL || row->check(structure + row->at, &its);
+    }
+    if (text == NULL || row->kind == KIND_MAP || row->kind == KIND_NODE)
+        return reject(origin, "%s is %s. It takes %s.", row->name, shape_of(node), option_takes(row));
+    if (!option_set(row, text, structure, origin)) return false;
+    if (!row->is_path || access(text, R_OK) == 0) return true;
+    return reject(origin, "%s: cannot read %s: %s.", row->name, text, strerror(errno));
+}
+
+/* Each key stores its value in the structure. `within` names the map in messages; NULL: the file.
+ * NOLINTNEXTLINE(misc-no-recursion): as deep as the rows */
+static bool read_map(config_t *config, const yaml_node_t *map, const option_table_t *tables, void *structure,
+                     const char *within, option_given_t *given)
+{
+    origin_t origin = at_node(config, map);
+    origin.within = within;
+    if (map->type != YAML_MAPPING_NODE)
+        return reject(&origin, "this is %s. It takes a map, with a line for each key.", shape_of(map));
+    for (const yaml_node_pair_t *pair = map->data.mapping.pairs.start; pair != map->data.mapping.pairs.top;
+         pair++) {
+        const yaml_node_t *const key = node_at(config, pair->key);
+        const char *const name = text_of(key);
+        origin_t its = at_node(config, key);
+        option_walk_t walk;
+        its.within = within;
+        if (name == NULL) return reject(&its, "a key is %s. It takes a word.", shape_of(key));
+        if (tables->rows == broker_keys && strcmp(name, "password") == 0)
+            return reject(&its, "a password does not belong in this file. Write it to a file that only this "
+                                "user can read, and here password-file: /etc/fathom/password.");
+        if (!option_find(&walk, tables, name)) return option_reject_unknown(tables, "key", name, &its);
+        unsigned *const line = &given->line[walk.number];
+        if (*line != 0) return reject(&its, "%s is given twice, in line %u too.", name, *line);
+        *line = its.line;
+        if (!read_value(config, walk.row, node_at(config, pair->value), (char *)structure + walk.table->at,
+                        &its))
+            return false;
+    }
+    return option_check_given(tables, given, &origin);
+}
 
 /* ---- the broker ---- */
 
 /* systemd passes credentials as files in a folder. */
 static bool set_credential(const config_t *config, broker_settings_t *broker, const origin_t *origin)
 {
-    const char *const name = config->top.broker.credential;
+    const char *const name = config->top.credential;
     const char *const folder =
         getenv("CREDENTIALS_DIRECTORY"); /* NOLINT(concurrency-mt-unsafe): one thread */
+    char reason[SETTINGS_PATH + 100] = "CREDENTIALS_DIRECTORY is not set";
     if (name[0] == '\0') return true;
     if (broker->password_file[0] != '\0')
         return reject(origin,
                       "password-credential and password-file name two passwords. Leave one of them out.");
-    if (folder == NULL)
-        return reject(origin,
-                      "password-credential: CREDENTIALS_DIRECTORY is not set. The unit needs a line "
-                      "LoadCredential=%s:/path/to/the/password.",
-                      name);
-    if (snprintf(broker->password_file, SETTINGS_PATH, "%s/%s", folder, name) < SETTINGS_PATH &&
-        access(broker->password_file, R_OK) == 0)
-        return true;
+    if (folder != NULL) {
+        const bool fits =
+            snprintf(broker->password_file, SETTINGS_PATH, "%s/%s", folder, name) < SETTINGS_PATH;
+        if (fits && access(broker->password_file, R_OK) == 0) return true;
+        (void)snprintf(reason, sizeof reason, "cannot read %s: %s", broker->password_file, strerror(errno));
+    }
     return reject(origin,
-                  "password-credential: cannot read %s: %s. The unit needs a line "
-                  "LoadCredential=%s:/path/to/the/password.",
-                  broker->password_file, strerror(errno), name);
+                  "password-credential: %s. The unit needs a line LoadCredential=%s:/path/to/the/password.",
+                  reason, name);
 }
 
 /* A broker knows a client by its id: of two with the same id, each would end the connection of the other. */
-static void set_client_id(const publish_settings_t *settings, char id[SETTINGS_NAME])
+static void set_client_id(publish_settings_t *settings)
 {
+    char *const id = settings->broker.client_id;
+    if (id[0] != '\0') return;
     (void)snprintf(id, SETTINGS_NAME, "%.49s-%.49s", settings->prefix, settings->site);
     for (char *at = id; *at != '\0'; at++)
         if (*at == '/' || *at == '.') *at = '-';
 }
 
-/* The line of the first of two keys that is there. */
-static unsigned line_of(config_t *config, const yaml_node_t *map, const char *key, const char *other)
+static bool set_broker(config_t *config, const yaml_node_t *top)
 {
-    const yaml_node_t *const node = config_file_find(&config->file, map, key);
-    const yaml_node_t *const second = config_file_find(&config->file, map, other);
-    if (node == NULL && second == NULL) return config_file_at(&config->file, map).line;
-    return config_file_at(&config->file, node != NULL ? node : second).line;
-}
-
-static bool set_broker(config_t *config, publish_settings_t *settings)
-{
-    const yaml_node_t *const map = config_file_find(&config->file, config_file_top(&config->file), "broker");
-    const yaml_node_t *const tls = config_file_find(&config->file, map, "tls");
-    broker_settings_t *const broker = &settings->broker;
-    *broker = config->top.broker.settings;
-    broker->line = line_of(config, map, "user", "host");
-    if (tls != NULL) broker->tls_line = line_of(config, tls, "ca-file", "ca-file");
+    enum { PORT = 1883, PORT_WITH_TLS = 8883 };
+    broker_settings_t *const broker = &config->top.settings.broker;
+    const yaml_node_t *const map = find(config, top, "broker");
+    const yaml_node_t *const tls = find(config, map, "tls");
+    const origin_t origin = at_key(config, map, "password-credential", "password-file");
+    broker->line = at_key(config, map, "user", "host").line;
+    if (tls != NULL) broker->tls_line = at_key(config, tls, "ca-file", "ca-file").line;
     if (broker->port == 0) broker->port = broker->has_tls ? PORT_WITH_TLS : PORT;
-    if (broker->keep_alive_s == 0) broker->keep_alive_s = KEEP_ALIVE_S;
-    if (broker->client_id[0] == '\0') set_client_id(settings, broker->client_id);
-    origin_t origin = config->file.origin;
-    origin.line = line_of(config, map, "password-credential", "password-file");
-    if (!set_credential(config, broker, &origin)) return false;
-    return broker->password_file[0] == '\0' || broker->user[0] != '\0' ||
-           reject(&origin, "there is a password, but no user beside it.");
+    set_client_id(&config->top.settings);
+    return set_credential(config, broker, &origin) &&
+           (broker->password_file[0] == '\0' || broker->user[0] != '\0' ||
+            reject(&origin, "there is a password, but no user beside it."));
 }
 
-/* ---- names ---- */
-
-static bool set_site(config_t *config, char site[SETTINGS_NAME])
+static bool set_site(config_t *config)
 {
-    char host[SETTINGS_NAME] = "";
-    memcpy(site, config->top.site, SETTINGS_NAME);
-    if (site[0] != '\0') return true;
-    if (gethostname(host, sizeof host - 1) == 0 && topic_name_is_good(host, true)) {
-        memcpy(site, host, SETTINGS_NAME);
-        return true;
-    }
-    return reject(&config->file.origin, "site is missing, and the host's name '%s' cannot be used.", host);
-}
-
-static bool set_names(config_t *config, publish_settings_t *settings)
-{
-    const publish_top_t *const top = &config->top;
-    (void)snprintf(settings->prefix, SETTINGS_NAME, "%s", top->prefix[0] != '\0' ? top->prefix : "fathom");
-    (void)snprintf(settings->discovery, SETTINGS_NAME, "%s",
-                   top->discovery[0] != '\0' ? top->discovery : "homeassistant");
-    if (strcmp(settings->discovery, "off") == 0) settings->discovery[0] = '\0';
-    settings->queue_messages = top->queue_messages != 0 ? top->queue_messages : MESSAGES;
-    settings->queue_bytes = top->queue_bytes != 0 ? top->queue_bytes : BYTES;
-    return set_site(config, settings->site);
+    char *const site = config->top.settings.site;
+    if (site[0] != '\0' || (gethostname(site, SETTINGS_NAME - 1) == 0 && is_topic(site, NULL))) return true;
+    return reject(&config->origin, "site is missing, and the host's name '%s' cannot be used.", site);
 }
 
 /* ---- lines and sensors ---- */
 
-/* Everything that the file has for a sensor: of its line, of itself, and of all sensors. */
-static bool print_entry(config_t *config, entry_t *entry, const yaml_node_t *line, const yaml_node_t *map)
-{
-    const reader_settings_t *const reader = &entry->settings.reader;
-    const origin_t origin = config_file_at(&config->file, map);
-    (void)snprintf(entry->text, sizeof entry->text, "%u %u %u ", (unsigned)reader->period_us,
-                   (unsigned)reader->timeout_us, reader->retries);
-    return (config_file_print(&config->file, line, entry->text, sizeof entry->text - 1) &&
-            config_file_print(&config->file, map, entry->text, sizeof entry->text - 1)) ||
-           reject(&origin, "this sensor has more than %d characters.", SENSOR_TEXT);
-}
-
-static bool read_sensor(config_t *config, const publish_line_t *line, const yaml_node_t *line_map,
+static bool read_sensor(config_t *config, const line_keys_t *line, const yaml_node_t *line_map,
                         const yaml_node_t *map)
 {
-    origin_t origin = config_file_at(&config->file, map);
+    origin_t origin = at_node(config, map);
     if (config->count == MAX_SENSORS)
         return reject(&origin, "this is sensor %d. At most %d can be named.", MAX_SENSORS + 1, MAX_SENSORS);
-    entry_t *const entry = &config->entries[config->count];
-    publish_sensor_t *const sensor = &entry->settings;
-    sensor_word_t *const word = &config->words[config->count];
-    sensor->reader = config->top.reader;
+    sensor_keys_t *const sensor = &config->sensors[config->count];
+    sensor_word_t *const word = &config->words[config->count++];
+    *sensor = (sensor_keys_t){.reader = config->top.reader, .map = map, .line = line_map};
     sensor->results.has_readings = true;
-    if (!print_entry(config, entry, line_map, map) ||
-        !config_file_read(&config->file, map, publish_sensor_tables, sensor, "sensors", &sensor->given))
-        return false;
-    origin = config_file_at(&config->file, config_file_find(&config->file, map, "sensor"));
-    config->count++;
+    if (!read_map(config, map, sensor_tables, sensor, "sensors", &sensor->given)) return false;
+    origin = at_key(config, map, "sensor", "sensor");
     if (strpbrk(sensor->sensor, "@=") != NULL)
         return reject(&origin, "sensor is '%s'. Write its name and its port in keys of their own.",
                       sensor->sensor);
     if (!sensor_word_parse(word, sensor->sensor, &origin)) return false;
     word->port = line->port;
     word->keys = line->keys;
-    if (sensor_name_is_good(sensor->name, strlen(sensor->name))) {
-        (void)snprintf(word->name, sizeof word->name, "%s", sensor->name);
-        return true;
-    }
-    origin = config_file_at(&config->file, config_file_find(&config->file, map, "name"));
-    return reject(&origin,
-                  "name is '%s'. It takes at most %d letters, digits, '-', '_' and '.', the first a "
-                  "letter or a digit.",
-                  sensor->name, SENSOR_NAME_SIZE - 1);
+    origin = at_key(config, map, "name", "name");
+    if (!sensor_name_is_good(sensor->name, strlen(sensor->name)))
+        return reject(&origin, "name is '%s'. It takes %s.", sensor->name, sensor_keys[0].takes);
+    (void)snprintf(word->name, sizeof word->name, "%s", sensor->name);
+    return true;
 }
 
 static bool read_line(config_t *config, const yaml_node_t *map)
 {
-    const yaml_node_t *const node = config_file_find(&config->file, map, "port");
-    const char *const port =
-        node != NULL && node->type == YAML_SCALAR_NODE ? (const char *)node->data.scalar.value : "";
     static const option_t none[] = {{.name = NULL}};
+    const yaml_node_t *const node = find(config, map, "port");
+    const char *const port = node != NULL && text_of(node) != NULL ? text_of(node) : "";
+    const option_t *const port_keys = port_path_has_pins(port) ? chip_keys : serial_keys;
     const option_table_t tables[] = {
-        {publish_line_keys, 0},
-        {port_path_has_gateway(port) ? none : (port_path_has_pins(port) ? chip_keys : serial_keys),
-         offsetof(publish_line_t, keys)},
+        {line_keys, 0},
+        {port_path_has_gateway(port) ? none : port_keys, offsetof(line_keys_t, keys)},
         {NULL, 0}};
-    publish_line_t line = {.port = NULL};
+    line_keys_t line = {.port = NULL};
     option_given_t given = {{0}};
-    if (!config_file_read(&config->file, map, tables, &line, "lines", &given)) return false;
-    if (strchr(line.port, ',') != NULL) {
-        const origin_t origin = config_file_at(&config->file, node);
+    if (!read_map(config, map, tables, &line, "lines", &given)) return false;
+    const origin_t origin = at_key(config, map, "port", "port");
+    if (strchr(line.port, ',') != NULL)
         return reject(&origin, "port is '%s'. Write keys in lines of their own, such as baud: 9600.",
                       line.port);
-    }
     const yaml_node_t *const list = line.sensors;
     for (const int *item = list->data.sequence.items.start; item != list->data.sequence.items.top; item++)
-        if (!read_sensor(config, &line, map, config_file_node(&config->file, *item))) return false;
+        if (!read_sensor(config, &line, map, node_at(config, *item))) return false;
     return true;
 }
 
-/* Fills the site's sensors with what the file has for each. */
-static bool fill_sensors(const config_t *config, site_t *site)
+/* The text of a line is everything that the file has for its sensors: of the line, of each sensor, and of all. Two lines
+ * with the same text are the same. */
+static bool add_text(config_t *config, const sensor_t *sensor, const sensor_keys_t *from, line_t *line)
 {
-    for (size_t i = 0; i != site->sensor_count; i++) {
-        sensor_t *const sensor = site->sensors[i];
-        publish_sensor_t *const from = &config->entries[i].settings;
-        line_t *line = site->lines;
-        sensor->settings = from->reader;
-        if (!options_suit(publish_sensor_tables, &from->given, &sensor, 1, true, &config->words[i].origin) ||
-            !results_finish(&from->results, from->reader.period_us, &config->words[i].origin))
-            return false;
-        results_config_copy(&sensor->processing, &from->results);
-        while (&line->settings != sensor->port) line = line->next;
-        if (!line_add_text(line, config->entries[i].text) || !line_add_text(line, "\n"))
-            return reject(&config->words[i].origin, "no memory is left.");
-    }
-    site->reconnect = true;
-    site->persists = true;
-    return true;
+    char *text = NULL;
+    size_t size = 0;
+    FILE *const memory = open_memstream(&text, &size);
+    if (memory == NULL) return false;
+    while (&line->settings != sensor->port) line = line->next;
+    (void)fprintf(memory, "%u %u %u ", (unsigned)from->reader.period_us, (unsigned)from->reader.timeout_us,
+                  from->reader.retries);
+    print_node(config, from->line, memory);
+    print_node(config, from->map, memory);
+    (void)fputc('\n', memory);
+    const bool is_added = fclose(memory) == 0 && line_add_text(line, text);
+    free(text);
+    return is_added;
 }
 
 static bool read_sensors(config_t *config, site_t *site)
 {
     static const sensor_defaults_t none;
     const yaml_node_t *const list = config->top.lines;
+    const origin_t origin = at_node(config, list);
     for (const int *item = list->data.sequence.items.start; item != list->data.sequence.items.top; item++)
-        if (!read_line(config, config_file_node(&config->file, *item))) return false;
-    const origin_t origin = config_file_at(&config->file, list);
+        if (!read_line(config, node_at(config, *item))) return false;
     if (config->count == 0) return reject(&origin, "lines names no sensor.");
-    return sensors_add(site, &none, config->words, config->count) && fill_sensors(config, site);
+    if (!sensors_add(site, &none, config->words, config->count)) return false;
+    for (size_t i = 0; i != site->sensor_count; i++) {
+        sensor_t *const sensor = site->sensors[i];
+        sensor_keys_t *const from = &config->sensors[i];
+        const origin_t *const its = &config->words[i].origin;
+        sensor->settings = from->reader;
+        if (!options_suit(sensor_tables, &from->given, &sensor, 1, true, its) ||
+            !results_finish(&from->results, from->reader.period_us, its))
+            return false;
+        results_config_copy(&sensor->processing, &from->results);
+        if (!add_text(config, sensor, from, site->lines)) return reject_memory(its);
+    }
+    site->reconnect = true;
+    site->persists = true;
+    return true;
 }
 
 /* ---- all of it ---- */
 
-static bool read_file(config_t *config, publish_settings_t *settings, site_t *site)
+static bool read_file(config_t *config, site_t *site)
 {
-    const yaml_node_t *const top = config_file_top(&config->file);
+    const yaml_node_t *const top = yaml_document_get_root_node(&config->document);
+    publish_settings_t *const settings = &config->top.settings;
     option_given_t given = {{0}};
-    if (top == NULL)
-        return reject(&config->file.origin, "the file is empty. It takes at least broker and lines.");
-    config->top.reader.period_us = INTERVAL_US;
-    return config_file_read(&config->file, top, publish_top_tables, &config->top, NULL, &given) &&
-           set_names(config, settings) && set_broker(config, settings) && read_sensors(config, site);
+    if (top == NULL) return reject(&config->origin, "the file is empty. It takes at least broker and lines.");
+    *settings = (publish_settings_t){.prefix = "fathom",
+                                     .discovery = "homeassistant",
+                                     .broker.keep_alive_s = 30,
+                                     .queue_messages = 10000,
+                                     .queue_bytes = 4194304};
+    config->top.reader.period_us = 1000000;
+    if (!read_map(config, top, top_tables, &config->top, NULL, &given) || !set_site(config)) return false;
+    if (strcmp(settings->discovery, "off") == 0) settings->discovery[0] = '\0';
+    return set_broker(config, top) && read_sensors(config, site);
 }
 
 bool config_load(publish_settings_t *settings, site_t *site, const char *command, const char *path)
 {
     const origin_t origin = {.command = command};
-    bool is_good = false;
-    memset(settings, 0, sizeof *settings);
     if (strlen(path) >= sizeof settings->path) return reject(&origin, "the path of the file is too long.");
-    memcpy(settings->path, path, strlen(path) + 1);
+    FILE *const stream = fopen(path, "rb");
+    if (stream == NULL) return reject(&origin, "cannot read %s: %s.", path, strerror(errno));
     config_t *const config = calloc(1, sizeof *config);
-    if (config == NULL) return reject(&origin, "no memory is left.");
-    config->entries = calloc(MAX_SENSORS, sizeof *config->entries);
-    config->words = calloc(MAX_SENSORS, sizeof *config->words);
-    if (config->entries == NULL || config->words == NULL) {
-        (void)reject(&origin, "no memory is left.");
-    } else if (config_file_load(&config->file, command, settings->path)) {
-        is_good = read_file(config, settings, site);
-        config_file_free(&config->file);
+    bool is_good = config != NULL || reject_memory(&origin);
+    if (is_good) {
+        config->origin = (origin_t){.command = command, .file = path, .line = 1};
+        is_good = parse_file(config, stream);
     }
-    if (!is_good) site_free(site);
-    free(config->entries);
-    free(config->words);
+    (void)fclose(stream);
+    if (is_good) {
+        is_good = read_file(config, site);
+        yaml_document_delete(&config->document);
+        if (!is_good) site_free(site);
+        *settings = config->top.settings;
+        (void)snprintf(settings->path, sizeof settings->path, "%s", path);
+    }
     free(config);
     return is_good;
 }

@@ -208,7 +208,8 @@ static bool set_value(const option_t *row, char *text, char *member)
     case KIND_SET:
         return set_bits(row, text, member);
     case KIND_STRING:
-        if (length == 0 || length >= row->size) return false;
+        if (length == 0 || length >= row->size || (row->parse != NULL && !row->parse(text, member)))
+            return false;
         memcpy(member, text, length + 1);
         return true;
     case KIND_CUSTOM:

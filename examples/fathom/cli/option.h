@@ -57,7 +57,7 @@ typedef enum {
     KIND_CHOICE, /* the place of the word in `words`, from `min` on */
     KIND_SET,    /* "1,2,4": the bits n - 1 of a uint8_t */
     KIND_TEXT,   /* const char *: the text itself */
-    KIND_STRING, /* a copy in an array of characters */
+    KIND_STRING, /* a copy in an array of characters; `parse` may refuse the text */
     KIND_KEYS,   /* "key=value,key=value" of the rows `keys`, in a structure */
     KIND_CUSTOM, /* what `parse` stores */
     KIND_MAP,    /* of a file only: a map of the rows `keys`, in a structure */

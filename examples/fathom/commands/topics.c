@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "commands/commands.h"
 
-#include <string.h>
-
-#include "cli/publish_rows.h"
+#include "cli/config.h"
+#include "cli/rows.h"
 #include "device/session.h"
 #include "ports/line_text.h"
 #include "reading/fields.h"
@@ -246,7 +245,7 @@ static void print_config(FILE *to)
                 "          interval: 500\n\n"
                 "Its keys:\n\n",
                 to);
-    publish_print_keys(to);
+    config_print_keys(to);
     (void)fputs("\nTopics are PREFIX/SITE/status and publisher, and for each sensor\n"
                 "PREFIX/SITE/NAME/state, availability, counters and, if it has them, level and\n"
                 "alarm. SIGHUP reads the file again: lines that have not changed go on, others\n"
