@@ -5,7 +5,7 @@
 #include "cli/command.h"
 #include "cli/sensor_words.h"
 #include "device/session.h"
-#include "reading/results.h"
+#include "reading/site.h"
 
 /* Options that several commands have, and keys of a configuration file. */
 

@@ -13,10 +13,8 @@ static bool start(session_t *session)
     settings.line = &sensor->line;
     settings.backoff_us = READER_BACKOFF_US;
     settings.address = sensor->address;
-    if (!sensor_start(sensor, &session->port, &settings)) {
-        char text[256];
-        sensor_refusal(sensor, text, sizeof text);
-        (void)fprintf(stderr, "fathom: %s\n", text);
+    if (!reader_open(&sensor->reader, sensor->mode, &session->port, &settings)) {
+        (void)fprintf(stderr, "fathom: %s: %s\n", sensor->name, reader_refusal(sensor->reader));
         return false;
     }
     if (port_has_line(&session->port)) reader_listen_unasked(sensor->reader);

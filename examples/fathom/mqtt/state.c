@@ -11,7 +11,6 @@
 #include "fathom/version.h"
 #include "output/words.h"
 #include "reading/fields.h"
-#include "reading/stats.h"
 
 void state_boot(char boot[BOOT])
 {

@@ -4,7 +4,7 @@
 
 #include "mqtt/queue.h"
 #include "mqtt/topics.h"
-#include "reading/reading.h"
+#include "reading/loop.h"
 
 /* What is published, as JSON. A message is written in two parts: the reading, when it is put into the queue; and the age
  * of the reading and the number of messages that were dropped before it, when it is sent. */

@@ -116,6 +116,14 @@ void reading_json(json_t *json, const reading_t *reading, unsigned columns)
     record_json(json, fields, &row, columns);
 }
 
+void reading_json_line(FILE *to, const reading_t *reading)
+{
+    char utc[UTC_TEXT];
+    row_t row;
+    fill(&row, reading, utc);
+    record_json_line(to, fields, &row, sensor_columns(reading->sensor));
+}
+
 void reading_csv_header(FILE *to, unsigned columns) { record_csv(to, fields, NULL, columns, columns); }
 
 void reading_csv(FILE *to, const reading_t *reading, unsigned columns)

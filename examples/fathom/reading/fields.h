@@ -3,7 +3,7 @@
 #define FIELDS_H
 
 #include "output/record.h"
-#include "reading/reading.h"
+#include "reading/loop.h"
 
 /* The fields of a reading, for JSON, CSV and MQTT. A new field is a row, a member and an assignment in fields.c. */
 
@@ -31,12 +31,32 @@ bool reading_has_probe(const reading_t *reading);
 /* Writes these columns as members of the open object. */
 void reading_json(json_t *json, const reading_t *reading, unsigned columns);
 
-void reading_csv_header(FILE *to, unsigned columns);
+/* Writes the columns of the sensor as an object in a line of its own. */
+void reading_json_line(FILE *to, const reading_t *reading);
 
-/* Writes a row with the columns of a table. */
+/* Write a row with the columns of a table. */
+void reading_csv_header(FILE *to, unsigned columns);
 void reading_csv(FILE *to, const reading_t *reading, unsigned columns);
 
 /* Writes a line for each field, and a line for each word of `status`. */
 void reading_help(FILE *to);
+
+/* ---- counters (stats.c) ---- */
+
+/* Adds up the counters of these sensors. */
+account_t account_of(sensor_t *const *sensors, size_t count);
+
+/* Prints the sums in two lines, and a line for each of several sensors. Counters of the line that are 0 are left out. */
+void stats_print_short(const account_t *account, FILE *to);
+
+/* Prints all counters as lines of text, or as JSON objects in a line each. Counters of pulses begin again. */
+void stats_print(const account_t *account, FILE *to);
+void stats_print_json(const account_t *account, FILE *to);
+
+/* Writes the counters of one sensor as members of the open object. */
+void stats_json_of_sensor(json_t *json, sensor_t *sensor);
+
+/* An attempt of a sensor that has pulses has ended. sample: NULL unless the status is FATHOM_OK. */
+void pulses_add(pulses_t *pulses, const reader_counters_t *counted, const fathom_sample_t *sample);
 
 #endif

@@ -1,43 +1,519 @@
 /* SPDX-License-Identifier: MIT */
 #include "reading/loop.h"
 
+#include <inttypes.h>
+#include <stdlib.h>
 #include <string.h>
 
-#include "reading/attempt.h"
-#include "reading/line.h"
+#include "output/words.h"
+#include "reading/fields.h"
 
-/* The latest time at which the loop notices that an alarm had no distance for too long. */
-enum { ALARM_US = 100000 };
+/*
+ * TURNS: the most polls of the sensors of a line in a row, so that no line keeps the others waiting.
+ * ALARM_US: the latest time at which the loop notices that an alarm had no distance for too long.
+ * AGAIN_US, CONNECTION_US: when a sensor that ends, and a connection that is not established yet, are polled again.
+ */
+enum { TURNS = 16, ALARM_US = 100000, AGAIN_US = 1000, CONNECTION_US = 500000, TEXT = 512 };
+
+uint64_t loop_now_us(const loop_t *loop) { return loop->host->now_us(loop->host->ctx); }
+
+uint64_t loop_time_us(const loop_t *loop) { return loop_now_us(loop) - loop->start_us; }
 
 void loop_stop(loop_t *loop) { loop->is_stopped = true; }
 
-static uint32_t pass_alarms(loop_t *loop)
+static bool is_over_time(const loop_t *loop)
 {
-    const results_to_t to = attempt_results(loop);
-    const uint32_t now_us = (uint32_t)loop_now_us(loop);
-    uint32_t due_us = FATHOM_NO_DEADLINE;
-    for (size_t i = 0; i != loop->site.sensor_count; i++) {
-        sensor_t *const sensor = loop->site.sensors[i];
-        if (!sensor->processing.has_alarm) continue;
-        due_us = ALARM_US;
-        if (!attempt_was_last(loop, sensor)) results_pass(sensor, now_us, &to);
+    return loop->site.duration_us != 0 && loop_time_us(loop) >= loop->site.duration_us;
+}
+
+/* Returns true if nothing is left to read, or if the loop has to end. */
+static bool is_over(const loop_t *loop)
+{
+    const host_t *const host = loop->host;
+    return loop->is_stopped || host->has_ended(host->ctx) || host->is_output_gone(host->ctx) ||
+           loop->lines_left == 0 || is_over_time(loop);
+}
+
+/* ---- what the sink gets ---- */
+
+static void notify(const loop_t *loop, notice_kind_t kind, const sensor_t *sensor, const char *text)
+{
+    const notice_t notice = {kind, sensor, text};
+    loop->sink->notice(loop->ctx, &notice);
+}
+
+static void notify_port(line_t *line, notice_kind_t kind, const char *before, const char *text)
+{
+    char whole[TEXT];
+    (void)snprintf(whole, sizeof whole, "%s: %s", before, text);
+    notify(line->loop, kind, NULL, whole);
+}
+
+void notice_print(const notice_t *notice)
+{
+    const sensor_t *const sensor = notice->sensor;
+    (void)fprintf(stderr, "fathom: %s%s%s\n", sensor != NULL ? sensor->name : "", sensor != NULL ? ": " : "",
+                  notice->text);
+}
+
+static void pass(const loop_t *loop, reading_t reading)
+{
+    const host_t *const host = loop->host;
+    const uint64_t now_us = loop_now_us(loop);
+    const uint64_t then_us = time_extend(now_us, reading.result->sample.time_us);
+    reading.time_us = then_us - loop->start_us;
+    reading.utc_us = host->utc_us(host->ctx) - (now_us - then_us);
+    loop->sink->reading(loop->ctx, &reading);
+}
+
+void loop_report(loop_t *loop, sensor_t *sensor, const result_t *result)
+{
+    pass(loop, (reading_t){.sensor = sensor, .status = FATHOM_OK, .result = result});
+}
+
+/* failure: NULL if the port is waited for. probe: 0 if the failure is not of one alone. */
+static void report_failure(const loop_t *loop, sensor_t *sensor, const failure_t *failure, size_t kind,
+                           uint8_t probe)
+{
+    const result_t result = {.sample = {.time_us = (uint32_t)loop_now_us(loop),
+                                        .kind = FATHOM_UNKNOWN,
+                                        .address = sensor->address,
+                                        .probe = sensor->model->probes == 1 ? 1 : probe}};
+    pass(loop, (reading_t){.sensor = sensor,
+                           .status = failure != NULL ? failure->status : FATHOM_ERR_PORT,
+                           .failure = status_word_of_failure(kind),
+                           .evidence = failure,
+                           .result = &result});
+}
+
+/* ---- what was received, and from whom ---- */
+
+static bool is_shared(const line_t *line) { return line->settings.station_count > 1; }
+
+/* The listener of the sensor whose request is about to be sent, which the line has put first. */
+static listener_t *find_listener(void *ctx)
+{
+    const line_t *const line = ctx;
+    for (sensor_t *sensor = line->sensors; sensor != NULL; sensor = sensor->next)
+        if (reader_has_sent(sensor->reader, line->port.line.head)) return sensor->listener;
+    return NULL;
+}
+
+/* The sensor with this address on the line; NULL: none. */
+static sensor_t *sensor_at(const line_t *line, uint8_t address)
+{
+    for (sensor_t *sensor = line->sensors; sensor != NULL; sensor = sensor->next)
+        if (sensor->address == address) return sensor;
+    return NULL;
+}
+
+/* Counts late responses for the sensor that sent them: they explain its failures, and not those of the sensor whose
+ * request is pending. */
+static void count_late(line_t *line)
+{
+    const port_t *const port = &line->port;
+    if (!is_shared(line) || port->counters[FATHOM_LINE_LATE_RESPONSES] == 0) return;
+    for (sensor_t *sensor = line->sensors; sensor != NULL; sensor = sensor->next) {
+        evidence_t evidence;
+        if (port->listener.now != sensor->listener) continue;
+        listener_judge(sensor->listener, sensor->address, &evidence);
+        sensor_t *const other = evidence.foreign != 0 ? sensor_at(line, evidence.foreign_address) : NULL;
+        counters_take_late(other != NULL ? &other->counters : &sensor->counters, &line->port);
+        return;
     }
-    return due_us;
 }
 
-static void start_lines(loop_t *loop);
-
-static uint32_t sleep_us(loop_t *loop)
+/* Returns true if another sensor on this line gave a reading. */
+static bool others_answer(const line_t *line, const sensor_t *sensor)
 {
-    const uint64_t duration_us = loop->site.duration_us;
-    const uint32_t tick_us = loop->sink->tick(loop->ctx);
-    if (loop->has_new) start_lines(loop);
-    const uint32_t alarm_us = pass_alarms(loop);
-    const uint32_t longest_us = tick_us < alarm_us ? tick_us : alarm_us;
-    const uint64_t time_us = loop_time_us(loop);
-    const uint64_t left_us = time_us < duration_us ? duration_us - time_us : 0;
-    return duration_us != 0 && longest_us > left_us ? (uint32_t)left_us : longest_us;
+    for (const sensor_t *other = line->sensors; other != NULL; other = other->next)
+        if (other != sensor && other->counters.readings != 0) return true;
+    return false;
 }
+
+/* A late response of another sensor that is read on this line is no evidence of a stranger. */
+static void judge(const line_t *line, const sensor_t *sensor, evidence_t *evidence)
+{
+    listener_judge(sensor->listener, sensor->mode->has_address ? sensor->address : 0, evidence);
+    if (evidence->foreign == 0 || sensor_at(line, evidence->foreign_address) == NULL) return;
+    evidence->foreign = 0;
+    if (evidence->rest == 0 && evidence->own == 0) evidence->bytes = 0;
+}
+
+/* ---- attempts ---- */
+
+/* Returns true if the sensor had all attempts that the user asked for, when it has had so many more. */
+static bool is_finished(const loop_t *loop, const sensor_t *sensor, unsigned more)
+{
+    return loop->site.count != 0 && sensor->counters.attempts + more >= loop->site.count;
+}
+
+/* What is received and counted from now on belongs to the next attempt. */
+static void start_attempt(sensor_t *sensor)
+{
+    counters_begin_attempt(&sensor->counters);
+    listener_forget(sensor->listener);
+}
+
+static void end_attempt(const loop_t *loop, sensor_t *sensor)
+{
+    const uint64_t now_us = loop_now_us(loop);
+    sensor->counters.attempts++;
+    if (sensor->has_failed) sensor->counters.failed++;
+    sensor->has_failed = false;
+    sensor->answering = false;
+    sensor->next_us += sensor->settings.period_us;
+    if (sensor->next_us < now_us) sensor->next_us = now_us; /* no attempts in a burst after a delay */
+    start_attempt(sensor);
+}
+
+/*
+ * A sensor that sends by itself does not keep the user's interval: the responses between two attempts are dropped as a
+ * whole. The driver of a sensor that is asked keeps the interval itself.
+ */
+static bool is_early(const loop_t *loop, sensor_t *sensor, fathom_status_t status)
+{
+    if (!mode_is_automatic(sensor->mode) || sensor->answering) return false;
+    const bool is_first = !sensor->skipping;
+    if (is_first) sensor->skipping = loop_now_us(loop) < sensor->next_us;
+    if (!sensor->skipping) return false;
+    const bool is_late = status == FATHOM_ERR_STALE || status == FATHOM_ERR_CHECKSUM;
+    if (is_first && !is_late) sensor->counters.skipped++;
+    sensor->skipping = reader_has_more(sensor->reader);
+    start_attempt(sensor);
+    return true;
+}
+
+/* Returns true if the sensor delivers more than one probe. */
+static bool has_probes(const sensor_t *sensor)
+{
+    const uint8_t probes = sensor->settings.probes;
+    return sensor->model->probes > 1 && (probes == 0 || (probes & (probes - 1)) != 0);
+}
+
+/* is_first: of the outcomes of this attempt. is_known: the user knows it from another sensor on the line. */
+static void fail(line_t *line, sensor_t *sensor, fathom_status_t status, bool is_first, bool is_known)
+{
+    loop_t *const loop = line->loop;
+    reader_t *const reader = sensor->reader;
+    failure_t failure = {
+        .status = status,
+        .model = sensor->model,
+        .mode = sensor->mode,
+        .reader = reader,
+        .port = &line->port,
+        .counters = &sensor->counters,
+        .line = &sensor->line,
+        .shared = loop->site.sensor_count > 1 ? sensor->name : NULL,
+        .noises = sensor->noises,
+        .address = sensor->address,
+        .others_answer = others_answer(line, sensor),
+        .waits = line->state == LINE_WAITING,
+        .is_whole = is_first && !reader_has_more(reader) && has_probes(sensor),
+        .is_told = is_known,
+    };
+    counters_failure(&sensor->counters, status, reader);
+    judge(line, sensor, &failure.evidence);
+    sensor->has_failed = true;
+    report_failure(loop, sensor, &failure, counters_failure_kind(status, reader),
+                   status == FATHOM_ERR_MALFORMED ? reader_facts(reader).refused_probe : 0);
+    results_status(loop, sensor, status);
+}
+
+/* An outcome of the driver, which is not FATHOM_PENDING. */
+static void take_outcome(line_t *line, sensor_t *sensor, fathom_status_t status,
+                         const fathom_sample_t *sample)
+{
+    loop_t *const loop = line->loop;
+    const bool is_good = status == FATHOM_OK;
+    const reader_counters_t counted =
+        counters_take(&sensor->counters, &line->counts, &line->port, sensor->reader);
+    sensor->noises = counted.noises;
+    if (sensor->mode->has_pulses) pulses_add(&sensor->pulses, &counted, is_good ? sample : NULL);
+    if (status != FATHOM_ERR_PORT && is_early(loop, sensor, status)) return;
+    if (is_good && mode_is_asked(sensor->mode) && !sensor->answering)
+        counters_time(&sensor->counters, fathom_elapsed_us(sample->time_us, sensor->listener->asked_us));
+    const bool is_first = !sensor->answering;
+    sensor->answering = true;
+    if (is_good) {
+        results_sample(loop, sensor, sample);
+        sensor->counters.readings++;
+        if (sample->kind != FATHOM_UNKNOWN) sensor->has_good = true;
+    } else {
+        fail(line, sensor, status, is_first, false);
+    }
+    if (status == FATHOM_ERR_PORT || !reader_has_more(sensor->reader)) end_attempt(loop, sensor);
+}
+
+/* ---- a line ---- */
+
+static line_t *line_of(fathom_loop_source_t *source) { return (line_t *)source; }
+
+static const line_t *const_line_of(const fathom_loop_source_t *source) { return (const line_t *)source; }
+
+static bool is_open(const line_t *line) { return line->state == LINE_READING || line->state == LINE_ENDING; }
+
+static void set_state(line_t *line, line_state_t state)
+{
+    if (line->state < LINE_ENDING && state >= LINE_ENDING) line->loop->lines_left--;
+    if (state == LINE_LEFT) line->loop->has_left = true;
+    line->state = state;
+}
+
+/* The first sensor gets what the line and the port have counted; the sums are right nevertheless. */
+static void take_counters(line_t *line)
+{
+    for (sensor_t *sensor = line->sensors; sensor != NULL; sensor = sensor->next)
+        if (sensor->reader != NULL)
+            (void)counters_take(&sensor->counters, &line->counts, &line->port, sensor->reader);
+}
+
+static void give_up(line_t *line)
+{
+    line->loop->has_failed = true;
+    set_state(line, LINE_LEFT);
+}
+
+/* ---- opening it ---- */
+
+/* The user has to know, once, that the interval is longer than the chosen one. */
+static void remark_interval(const line_t *line, sensor_t *sensor)
+{
+    const uint32_t interval_us = sensor->settings.period_us;
+    const uint32_t least_us = reader_facts(sensor->reader).least_period_us;
+    char text[TEXT];
+    if (interval_us == 0 || interval_us >= least_us || sensor->has_raise_notice) return;
+    sensor->has_raise_notice = true;
+    (void)snprintf(text, sizeof text,
+                   "read every %.4g ms, the shortest interval of this sensor (--interval %" PRIu32 ")",
+                   least_us / 1000.0, interval_us / 1000);
+    notify(line->loop, NOTICE_REMARK, sensor, text);
+}
+
+/* False: the user knows why the driver does not accept its settings. */
+static bool start_sensor(line_t *line, sensor_t *sensor)
+{
+    reader_settings_t settings = sensor->settings;
+    settings.line = line->settings.has_mixed_lines ? &sensor->line : NULL;
+    /* The longest time for which a sensor that does not respond is left alone: it must not slow down the others. */
+    settings.backoff_us = is_shared(line) ? READER_BACKOFF_SHARED_US : READER_BACKOFF_US;
+    settings.address = sensor->address;
+    if (!reader_open(&sensor->reader, sensor->mode, &line->port, &settings)) {
+        notify_port(line, NOTICE_GIVEN_UP, sensor->name, reader_refusal(sensor->reader));
+        return false;
+    }
+    remark_interval(line, sensor);
+    if (is_shared(line) && sensor->own_listener == NULL)
+        sensor->own_listener = calloc(1, sizeof *sensor->own_listener);
+    sensor->listener = sensor->own_listener != NULL ? sensor->own_listener : &line->port.listener;
+    start_attempt(sensor);
+    sensor->next_us = loop_now_us(line->loop);
+    sensor->skipping = false;
+    sensor->answering = false;
+    return true;
+}
+
+/* False: a driver does not accept its settings. */
+static bool start_reading(line_t *line)
+{
+    bool is_good = true;
+    for (sensor_t *sensor = line->sensors; sensor != NULL && is_good; sensor = sensor->next)
+        is_good = start_sensor(line, sensor);
+    if (!is_good) {
+        give_up(line);
+        return false;
+    }
+    line->port.listener.whose = is_shared(line) ? find_listener : NULL;
+    line->port.listener.ctx = line;
+    counters_begin_port(&line->counts, &line->port);
+    if (line->is_lost && line->was_open) line->loop->reconnects++;
+    if (line->is_lost)
+        notify_port(line, NOTICE_OPEN, port_name(&line->port),
+                    line->was_open ? "it is back; reading goes on" : "it is there; reading begins");
+    line->is_lost = false;
+    line->was_open = true;
+    set_state(line, LINE_READING);
+    return true;
+}
+
+/* The port could not be opened when the command began. If there are others, their readings show that it is right to
+ * wait. */
+static void miss(line_t *line)
+{
+    const site_t *const site = &line->loop->site;
+    const bool may_come = port_is_absent(&line->port) || site->line_count > 1 || site->persists;
+    char text[TEXT];
+    line->is_lost = true;
+    if (site->reconnect && may_come) {
+        (void)snprintf(text, sizeof text, "%s; waiting until it is there", port_error(&line->port));
+        notify(line->loop, NOTICE_WAITING, NULL, text);
+        set_state(line, LINE_WAITING);
+    } else {
+        notify(line->loop, NOTICE_GIVEN_UP, NULL, port_error(&line->port));
+        give_up(line);
+    }
+}
+
+/* How the adapter is found again. */
+static void notify_advice(line_t *line)
+{
+    const char *const advice = port_advice(&line->port);
+    if (advice != NULL) notify_port(line, NOTICE_WAITING, port_name(&line->port), advice);
+}
+
+static void fail_to_open(line_t *line)
+{
+    if (!line->is_lost) miss(line);
+    if (line->state == LINE_LEFT) return;
+    set_state(line, LINE_WAITING);
+    for (sensor_t *sensor = line->sensors; sensor != NULL; sensor = sensor->next)
+        if (!is_finished(line->loop, sensor, 0))
+            report_failure(line->loop, sensor, NULL, (size_t)-FATHOM_ERR_PORT, 0);
+    /* The user has to know, some time, about a port that is there and cannot be opened. */
+    if (port_is_overdue(&line->port))
+        notify_port(line, NOTICE_WAITING, "still waiting", port_error(&line->port));
+    notify_advice(line);
+}
+
+/* The status of a port that was closed or connects. False: it is not open. */
+static bool take_port(line_t *line, fathom_status_t status)
+{
+    if (status == FATHOM_OK) return start_reading(line);
+    if (status == FATHOM_PENDING)
+        set_state(line, LINE_CONNECTING);
+    else
+        fail_to_open(line);
+    return status == FATHOM_PENDING;
+}
+
+static bool open_line(fathom_loop_source_t *source)
+{
+    line_t *const line = line_of(source);
+    port_settings_t settings = port_options_settings(&line->settings);
+    settings.source = source;
+    if (line->state >= LINE_ENDING) return false;
+    const fathom_status_t status = port_open(&line->port, line->loop->host, &settings);
+    if (take_port(line, status)) return true;
+    if (status == FATHOM_OK) port_close(&line->port);
+    return false;
+}
+
+static void close_line(fathom_loop_source_t *source) { port_close(&line_of(source)->port); }
+
+/* ---- losing it ---- */
+
+/* The attempt of each sensor fails. The line waits if there is anything left to read after that. */
+static void lose(line_t *line)
+{
+    const loop_t *const loop = line->loop;
+    bool has_more = false;
+    bool is_known = false;
+    for (const sensor_t *sensor = line->sensors; sensor != NULL; sensor = sensor->next)
+        if (!is_finished(loop, sensor, 1)) has_more = true;
+    set_state(line, loop->site.reconnect && has_more ? LINE_WAITING : LINE_LEFT);
+    for (sensor_t *sensor = line->sensors; sensor != NULL; sensor = sensor->next) {
+        if (is_finished(loop, sensor, 0)) continue;
+        (void)counters_take(&sensor->counters, &line->counts, &line->port, sensor->reader);
+        fail(line, sensor, FATHOM_ERR_PORT, false, is_known);
+        end_attempt(loop, sensor);
+        is_known = true;
+    }
+    take_counters(line); /* those of the line and the port are lost when the port is closed */
+    if (line->state == LINE_WAITING) notify_advice(line);
+}
+
+/* ---- polling it ---- */
+
+static int line_fd(const fathom_loop_source_t *source) { return port_fd(&const_line_of(source)->port); }
+
+static short line_events(const fathom_loop_source_t *source)
+{
+    return port_events(&const_line_of(source)->port);
+}
+
+/* True: the sensor had an outcome, or the port is lost. */
+static bool poll_sensor(line_t *line, sensor_t *sensor)
+{
+    do {
+        fathom_sample_t sample;
+        const fathom_status_t status = reader_poll(sensor->reader, &sample);
+        const char *const text = reader_remark(sensor->reader);
+        if (text != NULL) notify(line->loop, NOTICE_REMARK, sensor, text);
+        count_late(line);
+        /* Between two requests a driver does not report a lost port, and waiting for the port would return at once. */
+        line->is_lost = port_poll(&line->port) == FATHOM_ERR_PORT;
+        if (line->is_lost && (status == FATHOM_PENDING || status == FATHOM_ERR_PORT)) return true;
+        if (status == FATHOM_PENDING) return false;
+        take_outcome(line, sensor, status, &sample);
+    } while (reader_has_more(sensor->reader));
+    return true;
+}
+
+/* A sensor that had all its attempts is not polled, and sends no more requests. True: a sensor had an outcome. */
+static bool poll_sensors(line_t *line)
+{
+    bool has_outcome = false;
+    bool is_done = true;
+    for (sensor_t *sensor = line->sensors; sensor != NULL && !line->is_lost; sensor = sensor->next) {
+        if (is_finished(line->loop, sensor, 0)) continue;
+        if (poll_sensor(line, sensor)) has_outcome = true;
+        if (!is_finished(line->loop, sensor, 0)) is_done = false;
+    }
+    if (is_done) set_state(line, LINE_ENDING);
+    return has_outcome;
+}
+
+/* Lets the sensors leave their devices as they were before: the driver of some adapters does not end a break when the port
+ * is closed. False: call it again. */
+static bool end_sensors(line_t *line)
+{
+    bool has_ended = true;
+    for (sensor_t *sensor = line->sensors; sensor != NULL && is_open(line); sensor = sensor->next)
+        if (reader_close(sensor->reader) == FATHOM_PENDING) has_ended = false;
+    return has_ended;
+}
+
+static bool poll_line(fathom_loop_source_t *source)
+{
+    line_t *const line = line_of(source);
+    bool has_outcome = true;
+    if (line->state == LINE_CONNECTING && !take_port(line, port_poll(&line->port))) return false;
+    if (line->state == LINE_CONNECTING) source->is_readable = false; /* nothing is read yet */
+    for (unsigned turn = 0; turn != TURNS && has_outcome; turn++) {
+        if (line->state != LINE_READING || is_over(line->loop)) break;
+        has_outcome = poll_sensors(line);
+        if (!line->is_lost) continue;
+        lose(line);
+        return false;
+    }
+    if (line->state != LINE_ENDING || !end_sensors(line)) return true;
+    take_counters(line);
+    set_state(line, LINE_LEFT);
+    return true;
+}
+
+static uint32_t due_us(fathom_loop_source_t *source)
+{
+    const line_t *const line = line_of(source);
+    uint32_t soonest_us = FATHOM_NO_DEADLINE;
+    if (line->state == LINE_CONNECTING) return CONNECTION_US;
+    if (line->state != LINE_READING) return AGAIN_US;
+    for (sensor_t *sensor = line->sensors; sensor != NULL; sensor = sensor->next) {
+        if (is_finished(line->loop, sensor, 0)) continue;
+        const uint32_t this_us = reader_due_us(sensor->reader);
+        if (this_us < soonest_us) soonest_us = this_us;
+    }
+    return soonest_us;
+}
+
+/* Not within a step of the loop. */
+static void remove_line(line_t *line)
+{
+    if (line->source.loop != NULL) fathom_loop_remove(&line->source);
+    line->source.loop = NULL;
+}
+
+/* ---- all lines ---- */
 
 /* A source may not be removed while the sources are polled. */
 static void remove_left(loop_t *loop)
@@ -45,19 +521,71 @@ static void remove_left(loop_t *loop)
     if (!loop->has_left) return;
     loop->has_left = false;
     for (line_t *line = loop->site.lines; line != NULL; line = line->next)
-        if (line->is_left) line_remove(line);
+        if (line->state == LINE_LEFT) remove_line(line);
+}
+
+/* Adds a line to the loop's sources, and tries to open its port. */
+static void start_line(loop_t *loop, line_t *line)
+{
+    static const fathom_loop_kind_t kind = {open_line, close_line, line_fd, line_events,
+                                            poll_line, due_us,     NULL};
+    for (sensor_t *sensor = line->sensors; sensor != NULL; sensor = sensor->next) {
+        sensor->is_named = loop->site.sensor_count > 1 || sensor->has_own_name;
+        results_start(sensor, (uint32_t)loop_now_us(loop));
+    }
+    line->loop = loop;
+    line->source.kind = &kind;
+    line->state = LINE_WAITING;
+    fathom_loop_add(&loop->sources, &line->source);
+}
+
+static void start_lines(loop_t *loop)
+{
+    const host_t *const host = loop->host;
+    loop->has_new = false;
+    loop->has_alarms = false;
+    for (size_t i = 0; i != loop->site.sensor_count; i++)
+        if (loop->site.sensors[i]->processing.has_alarm) loop->has_alarms = true;
+    loop->lines_left = 0;
+    for (line_t *line = loop->site.lines; line != NULL; line = line->next)
+        if (line->state < LINE_ENDING) loop->lines_left++;
+    for (line_t *line = loop->site.lines; line != NULL && !host->has_ended(host->ctx); line = line->next)
+        if (line->state == LINE_NEW) start_line(loop, line);
+    remove_left(loop);
+}
+
+/* Returns the time until it has to be called again. */
+static uint32_t pass_alarms(loop_t *loop)
+{
+    if (!loop->has_alarms) return FATHOM_NO_DEADLINE;
+    for (size_t i = 0; i != loop->site.sensor_count; i++) {
+        sensor_t *const sensor = loop->site.sensors[i];
+        if (!is_finished(loop, sensor, 0)) results_status(loop, sensor, FATHOM_PENDING);
+    }
+    return ALARM_US;
+}
+
+static uint32_t sleep_us(loop_t *loop)
+{
+    const uint64_t duration_us = loop->site.duration_us;
+    uint32_t longest_us = loop->sink->tick(loop->ctx);
+    if (loop->has_new) start_lines(loop);
+    const uint32_t alarms_us = pass_alarms(loop);
+    if (alarms_us < longest_us) longest_us = alarms_us;
+    if (duration_us == 0) return longest_us;
+    const uint64_t time_us = loop_time_us(loop);
+    const uint64_t left_us = time_us < duration_us ? duration_us - time_us : 0;
+    return left_us < longest_us ? (uint32_t)left_us : longest_us;
 }
 
 void loop_run(loop_t *loop)
 {
-    while (!loop_is_over(loop)) {
+    while (!is_over(loop)) {
         const uint32_t longest_us = sleep_us(loop);
         if (!loop->is_stopped) fathom_loop_step(&loop->sources, longest_us);
         remove_left(loop);
     }
 }
-
-/* ---- open and close ---- */
 
 void loop_init(loop_t *loop, const host_t *host, const sink_t *sink, void *ctx)
 {
@@ -68,43 +596,11 @@ void loop_init(loop_t *loop, const host_t *host, const sink_t *sink, void *ctx)
     loop->ctx = ctx;
 }
 
-static void prepare_sensors(loop_t *loop, const line_t *line)
-{
-    const uint32_t now_us = (uint32_t)loop_now_us(loop);
-    for (sensor_t *sensor = line->sensors; sensor != NULL; sensor = sensor->next) {
-        sensor->is_named = loop->site.sensor_count > 1 || sensor->has_own_name;
-        results_start(sensor, now_us);
-    }
-}
-
-static void start_lines(loop_t *loop)
-{
-    const host_t *const host = loop->host;
-    loop->has_new = false;
-    loop->lines_left = 0;
-    for (line_t *line = loop->site.lines; line != NULL; line = line->next)
-        if (!line->is_done) loop->lines_left++;
-    for (line_t *line = loop->site.lines; line != NULL && !host->has_ended(host->ctx); line = line->next) {
-        if (line->loop != NULL) continue;
-        prepare_sensors(loop, line);
-        line_start(line, loop);
-    }
-    remove_left(loop);
-}
-
-static void number_sensors(loop_t *loop)
-{
-    for (size_t i = 0; i != loop->site.sensor_count; i++) loop->site.sensors[i]->number = i;
-}
-
 bool loop_open(loop_t *loop)
 {
     const host_t *const host = loop->host;
-    number_sensors(loop);
     if (fathom_loop_init(&loop->sources, &host->loop) != FATHOM_POSIX_OK) {
-        const notice_t notice = {NOTICE_GIVEN_UP, NULL,
-                                 "the system has no descriptor left; end other programs"};
-        loop->sink->notice(loop->ctx, &notice);
+        notify(loop, NOTICE_GIVEN_UP, NULL, "the system has no descriptor left; end other programs");
         return false;
     }
     host->attend(host->ctx, &loop->sources);
@@ -113,48 +609,45 @@ bool loop_open(loop_t *loop)
 }
 
 /* Waits until the sensors have left their devices as they were, at most TIMES. */
-static void end_sensors(loop_t *loop)
+void loop_close(loop_t *loop)
 {
-    enum { TIMES = 1000, AGAIN_US = 1000 };
+    enum { TIMES = 1000 };
     const host_t *const host = loop->host;
     bool has_ended = false;
     for (unsigned times = 0; times != TIMES && !has_ended; times++) {
         if (times != 0) host->wait(host->ctx, -1, 0, AGAIN_US, false);
         has_ended = true;
         for (line_t *line = loop->site.lines; line != NULL; line = line->next)
-            if (!line_end_sensors(line)) has_ended = false;
+            if (!end_sensors(line)) has_ended = false;
     }
-}
-
-void loop_close(loop_t *loop)
-{
-    end_sensors(loop);
     fathom_loop_deinit(&loop->sources);
 }
 
 void loop_deinit(loop_t *loop) { site_free(&loop->site); }
 
-/* ---- another site ---- */
+/* Returns true if a request on the line is pending. */
+static bool is_busy(const line_t *line)
+{
+    for (const sensor_t *sensor = line->sensors; sensor != NULL && is_open(line); sensor = sensor->next)
+        if (reader_facts(sensor->reader).is_in_progress) return true;
+    return false;
+}
 
 bool loop_set_site(loop_t *loop, site_t *site, bool is_urgent, site_t *old)
 {
     site_keep(site, &loop->site);
-    bool is_busy = false;
-    for (const line_t *line = loop->site.lines; line != NULL; line = line->next)
-        if (line_is_busy(line)) is_busy = true;
-    if (is_busy && !is_urgent) {
-        site_keep(&loop->site, site);
-        return false;
-    }
+    for (const line_t *line = loop->site.lines; line != NULL && !is_urgent; line = line->next)
+        if (is_busy(line)) {
+            site_keep(&loop->site, site);
+            return false;
+        }
     for (line_t *line = loop->site.lines; line != NULL; line = line->next) {
-        if (line->loop == NULL) continue;
-        (void)line_end_sensors(line);
-        line_remove(line);
+        (void)end_sensors(line);
+        remove_line(line);
     }
     *old = loop->site;
     loop->site = *site;
     *site = (site_t){.lines = NULL};
-    number_sensors(loop);
     loop->has_new = true;
     return true;
 }
@@ -168,46 +661,23 @@ bool loop_is_lost(const loop_t *loop)
     return false;
 }
 
-static bool is_good(const line_t *line, bool is_over_time)
-{
-    for (const sensor_t *sensor = line->sensors; sensor != NULL; sensor = sensor->next) {
-        if (sensor->counters.failed != 0) return false;
-        if (sensor->has_good) continue;
-        if (sensor->counters.readings != 0 || (is_over_time && !line->is_lost)) return false;
-    }
-    return true;
-}
-
 bool loop_is_good(const loop_t *loop)
 {
-    const uint64_t duration_us = loop->site.duration_us;
-    const bool is_over_time = duration_us != 0 && loop_time_us(loop) >= duration_us;
     for (const line_t *line = loop->site.lines; line != NULL; line = line->next)
-        if (!is_good(line, is_over_time)) return false;
+        for (const sensor_t *sensor = line->sensors; sensor != NULL; sensor = sensor->next) {
+            const bool is_silent = sensor->counters.readings == 0;
+            if (sensor->counters.failed != 0) return false;
+            if (!sensor->has_good && (!is_silent || (is_over_time(loop) && !line->is_lost))) return false;
+        }
     return !loop->has_failed;
-}
-
-static void add_line(account_t *account, line_t *line)
-{
-    for (sensor_t *sensor = line->sensors; sensor != NULL; sensor = sensor->next) {
-        /* The first sensor gets what the line counted; the sums are right nevertheless. */
-        if (sensor->reader != NULL)
-            (void)counters_take(&sensor->counters, &line->counts, &line->port, sensor->reader);
-        counters_add(&account->sum, &sensor->counters);
-        account->requests += sensor->listener != NULL ? sensor->listener->requests : 0;
-    }
-    if (line->counts.is_there) account->has_port = true;
 }
 
 void loop_account(loop_t *loop, account_t *account)
 {
-    *account = (account_t){.sensors = loop->site.sensors, .sensor_count = loop->site.sensor_count};
-    for (line_t *line = loop->site.lines; line != NULL; line = line->next) add_line(account, line);
-    account->reconnects = loop->reconnects;
-    account->time_us = loop_time_us(loop);
-    for (size_t i = 0; i != loop->site.sensor_count; i++) {
-        const sensor_t *const sensor = loop->site.sensors[i];
-        if (sensor->processing.median != 0) account->has_median = true;
-        account->dropped_spikes += results_dropped(sensor);
-    }
+    for (line_t *line = loop->site.lines; line != NULL; line = line->next) take_counters(line);
+    *account = account_of(loop->site.sensors, loop->site.sensor_count);
+    account->time_us = (int64_t)loop_time_us(loop);
+    account->reconnects = (int64_t)loop->reconnects;
+    for (const line_t *line = loop->site.lines; line != NULL; line = line->next)
+        if (line->counts.is_there) account->has_port = true;
 }

@@ -2,13 +2,66 @@
 #ifndef LOOP_H
 #define LOOP_H
 
-#include "reading/run.h"
-#include "reading/stats.h"
+#include "diagnosis/advice.h"
+#include "reading/site.h"
 
 /*
  * Reads all sensors of a site, in one loop, until the user, a count, a duration, a loss or the sink ends it. `fathom read`,
  * `fathom watch` and `fathom publish` are sinks of this loop.
  */
+
+/* What the loop reports of a sensor: a reading, the change of an alarm, or an attempt that failed or could not be made
+ * because the port is waited for. */
+typedef struct {
+    sensor_t *sensor;
+    fathom_status_t status;    /* FATHOM_OK: a reading or a change of an alarm */
+    const char *failure;       /* the word of `status` for programs; NULL with FATHOM_OK */
+    const failure_t *evidence; /* of an attempt that failed; else NULL */
+    const result_t *result;    /* of a failure: the time, the address, the probe if it is of one alone */
+    uint64_t time_us;          /* since the start of the program; does not wrap */
+    uint64_t utc_us;           /* since 1970 */
+} reading_t;
+
+typedef enum {
+    NOTICE_REMARK,  /* something to know about a sensor, or to do with it */
+    NOTICE_OPEN,    /* a port is there again, or for the first time after a wait */
+    NOTICE_WAITING, /* for a port */
+    NOTICE_GIVEN_UP /* a port is not read any more */
+} notice_kind_t;
+
+/* Something that the user has to know. */
+typedef struct {
+    notice_kind_t kind;
+    const sensor_t *sensor; /* of a remark; else NULL, and the text names the port */
+    const char *text;
+} notice_t;
+
+/* Prints it on the standard error. */
+void notice_print(const notice_t *notice);
+
+/* What a command does with it. */
+typedef struct {
+    void (*reading)(void *ctx, const reading_t *reading);
+    void (*notice)(void *ctx, const notice_t *notice);
+    /* Called before each sleep, outside of all other calls. Returns the longest time to sleep in us. */
+    uint32_t (*tick)(void *ctx);
+} sink_t;
+
+typedef struct loop {
+    site_t site;
+    const host_t *host;
+    const sink_t *sink;
+    void *ctx;
+    fathom_loop_t sources; /* the ports, and what else ends a sleep */
+    size_t lines_left;     /* that are read, or will be */
+    uint64_t start_us;     /* of the program */
+    uint64_t reconnects;
+    bool has_alarms;
+    bool has_left;   /* a line is LINE_LEFT */
+    bool has_new;    /* lines are LINE_NEW */
+    bool has_failed; /* a port could not be opened, or not be used as it should */
+    bool is_stopped;
+} loop_t;
 
 /* Clears everything. The time of readings starts here. */
 void loop_init(loop_t *loop, const host_t *host, const sink_t *sink, void *ctx);
@@ -32,6 +85,10 @@ void loop_stop(loop_t *loop);
 void loop_close(loop_t *loop);
 void loop_deinit(loop_t *loop);
 
+/* The clock of the host, and the time since the start. */
+uint64_t loop_now_us(const loop_t *loop);
+uint64_t loop_time_us(const loop_t *loop);
+
 /* Returns true if a port is lost, or was never there. */
 bool loop_is_lost(const loop_t *loop);
 
@@ -39,7 +96,36 @@ bool loop_is_lost(const loop_t *loop);
  * if the user ended the loop, or if its port was still waited for. */
 bool loop_is_good(const loop_t *loop);
 
+/* The counters of a run, or of one sensor. */
+typedef struct {
+    counters_t sum; /* of all sensors */
+    sensor_t *const *sensors;
+    size_t sensor_count;
+    int64_t time_us; /* since the start */
+    int64_t requests;
+    int64_t reconnects;
+    int64_t dropped_spikes;                                     /* if has_median */
+    int64_t timeouts_in_row, backoff_left_us;                   /* of one sensor */
+    int64_t response_min_us, response_mean_us, response_max_us; /* from a request to its response */
+    bool has_median;
+    bool has_stream; /* a sensor sends by itself */
+    bool has_port;   /* the driver of a port counts errors */
+} account_t;
+
 /* Adds up all counters. */
 void loop_account(loop_t *loop, account_t *account);
+
+/* ---- within reading/ ---- */
+
+/* Passes a result to the sink. */
+void loop_report(loop_t *loop, sensor_t *sensor, const result_t *result);
+
+/* Starts to compute results, before the first sample. The first state of an alarm is reported when a distance decides it,
+ * or unknown_us after the start. */
+void results_start(sensor_t *sensor, uint32_t now_us);
+
+/* For each sample, and for each failed attempt; from time to time with FATHOM_PENDING. */
+void results_sample(loop_t *loop, sensor_t *sensor, const fathom_sample_t *sample);
+void results_status(loop_t *loop, sensor_t *sensor, fathom_status_t status);
 
 #endif

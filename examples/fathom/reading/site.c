@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "reading/site.h"
 
-#include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -11,8 +10,9 @@ sensor_t *site_add_sensor(site_t *site)
     if (sensors == NULL) return NULL;
     site->sensors = sensors;
     sensor_t *const sensor = calloc(1, sizeof *sensor);
-    if (sensor != NULL) sensors[site->sensor_count++] = sensor;
-    return sensor;
+    if (sensor == NULL) return NULL;
+    sensor->number = site->sensor_count;
+    return sensors[site->sensor_count++] = sensor;
 }
 
 line_t *site_add_line(site_t *site, const char *path)
@@ -65,30 +65,23 @@ void site_free(site_t *site)
 
 /* ---- a reload ---- */
 
-/* The place of the line of `old` that can go on as `line`; NULL: there is none. */
-static line_t **find_same(site_t *old, const line_t *line)
+/* Returns the place of the line of `site` that has this text, or NULL. */
+static line_t **find_line(site_t *site, const char *text)
 {
-    for (line_t **at = &old->lines; *at != NULL; at = &(*at)->next)
-        if (!(*at)->is_left && (*at)->text != NULL && line->text != NULL &&
-            strcmp((*at)->text, line->text) == 0)
-            return at;
+    for (line_t **at = &site->lines; *at != NULL && text != NULL; at = &(*at)->next)
+        if ((*at)->state != LINE_LEFT && (*at)->text != NULL && strcmp((*at)->text, text) == 0) return at;
     return NULL;
 }
 
-static void replace_sensor(site_t *site, const sensor_t *sensor, sensor_t *by)
+/* Both lines have the same text, so their sensors are the same in number and order. */
+static void swap_sensors(site_t *site, sensor_t *sensor, site_t *old, sensor_t *other)
 {
-    for (size_t i = 0; i != site->sensor_count; i++)
-        if (site->sensors[i] == sensor) site->sensors[i] = by;
-}
-
-/* Both have the same text, so their sensors are the same in number and order. */
-static void swap_sensors(site_t *site, line_t *line, site_t *old, line_t *kept)
-{
-    sensor_t *there = kept->sensors;
-    for (sensor_t *here = line->sensors; here != NULL && there != NULL; here = here->next) {
-        replace_sensor(site, here, there);
-        replace_sensor(old, there, here);
-        there = there->next;
+    for (; sensor != NULL; sensor = sensor->next, other = other->next) {
+        const size_t number = sensor->number;
+        site->sensors[number] = other;
+        old->sensors[other->number] = sensor;
+        sensor->number = other->number;
+        other->number = number;
     }
 }
 
@@ -96,15 +89,14 @@ void site_keep(site_t *site, site_t *old)
 {
     for (line_t **at = &site->lines; *at != NULL; at = &(*at)->next) {
         line_t *const line = *at;
-        line_t **const same = find_same(old, line);
+        line_t *const behind = line->next;
+        line_t **const same = line->state != LINE_LEFT ? find_line(old, line->text) : NULL;
         if (same == NULL) continue;
-        line_t *const kept = *same;
-        line_t *const behind = kept->next;
-        swap_sensors(site, line, old, kept);
-        kept->next = line->next;
-        *at = kept;
-        line->next = behind;
+        swap_sensors(site, line->sensors, old, (*same)->sensors);
+        *at = *same;
         *same = line;
+        line->next = (*at)->next;
+        (*at)->next = behind;
     }
 }
 
@@ -115,33 +107,6 @@ void sensor_set_name(sensor_t *sensor)
     if (sensor->has_own_name) return;
     (void)snprintf(sensor->name, sizeof sensor->name, sensor->mode->has_address ? "%s:%u" : "%s",
                    sensor->model->name, sensor->address);
-}
-
-const char *sensor_label(const sensor_t *sensor)
-{
-    return sensor->is_named ? sensor->name : sensor->model->name;
-}
-
-bool sensor_start(sensor_t *sensor, port_t *port, const reader_settings_t *settings)
-{
-    return reader_open(&sensor->reader, sensor->mode, port, settings);
-}
-
-void sensor_refusal(const sensor_t *sensor, char *text, size_t capacity)
-{
-    (void)snprintf(text, capacity, "%s: %s", sensor->name, reader_refusal(sensor->reader));
-}
-
-bool sensor_is_slower(sensor_t *sensor, char *text, size_t capacity)
-{
-    const uint32_t interval_us = sensor->settings.period_us;
-    const uint32_t period_us = reader_facts(sensor->reader).least_period_us;
-    if (interval_us == 0 || interval_us >= period_us || sensor->has_raise_notice) return false;
-    sensor->has_raise_notice = true;
-    (void)snprintf(text, capacity,
-                   "read every %.4g ms, the shortest interval of this sensor (--interval %" PRIu32 ")",
-                   period_us / 1000.0, interval_us / 1000);
-    return true;
 }
 
 void sensor_json(json_t *json, const sensor_t *sensor)

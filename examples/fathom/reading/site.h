@@ -3,18 +3,73 @@
 #define SITE_H
 
 #include "diagnosis/counters.h"
+#include "fathom/processing/alarm.h"
+#include "fathom/processing/level.h"
+#include "fathom/processing/median.h"
 #include "fathom_loop.h"
 #include "output/record.h"
 #include "ports/port.h"
 #include "ports/port_settings.h"
-#include "reading/processing.h"
-#include "reading/pulses.h"
 #include "sensors/models.h"
 
 /* All sensors that a command reads, and the lines that they share. */
 
 /* A serial line has 32 unit loads. */
-enum { MAX_SENSORS = 256, MAX_SENSORS_ON_A_LINE = 32, FULL_NAME_SIZE = 80 };
+enum { MAX_SENSORS = 256, MAX_SENSORS_ON_A_LINE = 32, FULL_NAME_SIZE = 80, RESULTS_POINTS = 32 };
+
+/* ---- what is computed from the samples of each probe ---- */
+
+/* What the user wants for all probes of a sensor. All zeros: each sample is reported as it was received. */
+typedef struct {
+    fathom_level_config_t tank; /* tank.points: `points` of this structure, or NULL */
+    fathom_level_point_t points[RESULTS_POINTS];
+    fathom_alarm_config_t alarm;
+    uint32_t unknown_us; /* fathom_median_config_t.unknown_us */
+    uint16_t gate_mm;
+    uint8_t median; /* of N samples; 0: none */
+    bool has_level;
+    bool has_alarm;    /* its changes are reported, and no readings, ... */
+    bool has_readings; /* ... unless this is set too */
+} results_config_t;
+
+void results_config_copy(results_config_t *to, const results_config_t *from);
+
+/* A reading, or the change of an alarm. */
+typedef struct {
+    /* As received, or with the kind and the distance of the median. If a change was not caused by a sample: the time,
+     * the probe, and FATHOM_UNKNOWN. */
+    fathom_sample_t sample;
+    fathom_level_t level;
+    bool has_level; /* there is a distance to compute it from */
+    uint8_t alarm;  /* the new fathom_alarm_state_t; 0: the result is a reading */
+    bool is_on;     /* the alarm, in that state */
+} result_t;
+
+/* The state of a probe. */
+typedef struct {
+    fathom_median_t median;
+    uint16_t window[FATHOM_MEDIAN_MAX_COUNT];
+    uint64_t dropped; /* spikes */
+    fathom_alarm_t alarm;
+    uint32_t began_us;
+    bool is_known; /* a state of the alarm was reported */
+} result_probe_t;
+
+/* How exact pulses are measured on this board, since the last print: the widths of those that were distances, and what
+ * was rejected. It says something of the board while the target stands still. */
+typedef struct {
+    int64_t distances, min_us, max_us;
+    int64_t no_targets;
+    int64_t faults;       /* longer than any of the sensor, or without an end */
+    int64_t noises;       /* shorter */
+    int64_t missed_edges; /* of which no event came */
+    int64_t lost_events;  /* that found no place in the kernel's queue */
+    double mean_us;
+    double squares;                                 /* the sum of squared differences from the mean */
+    int64_t mean_dus, deviation_dus, deviation_dmm; /* in tenths, when they are printed */
+} pulses_t;
+
+/* ---- sensors and lines ---- */
 
 typedef struct sensor sensor_t;
 typedef struct line line_t;
@@ -28,21 +83,22 @@ struct sensor {
     reader_settings_t settings;  /* without line, backoff_us and address */
     results_config_t processing;
     uint8_t address;
-    size_t number;     /* in site_t.sensors, while the loop reads it */
     bool has_own_name; /* the user chose the name */
     bool is_named;     /* messages name the sensor: there are others, or the user chose the name */
-    char name
-        [FULL_NAME_SIZE]; /* "tank"; or "a16:1", "a16" without an address, "a16:1@ttyUSB0" if others have the same */
+    /* "tank"; or "a16:1", "a16" without an address, "a16:1@ttyUSB0" if others have the same */
+    char name[FULL_NAME_SIZE];
+    size_t number;  /* in site_t.sensors */
+    sensor_t *next; /* on the same line */
 
     /* How it is read. */
     reader_t *reader; /* NULL until it was opened */
     counters_t counters;
     pulses_t pulses;
+    uint32_t noises; /* pulses of the present attempt that were too short */
     result_probe_t probes[FATHOM_DYP_PROBES];
     listener_t *own_listener; /* if several sensors share the line: for this sensor's requests */
     listener_t *listener;     /* the line's or its own */
     uint64_t next_us;         /* the start of the present attempt */
-    sensor_t *next;           /* on the same line */
     bool skipping;            /* the present response came before next_us */
     bool answering;           /* the present attempt has delivered a part of a response */
     bool has_failed;          /* a part of the present attempt failed */
@@ -50,23 +106,31 @@ struct sensor {
     bool has_raise_notice;    /* the user knows that the interval is longer than the chosen one */
 };
 
+/* A line waits while its port is lost, or was never there; then it connects or is read at once. It ends when all attempts
+ * were made. A port that cannot be used or is lost for good ends it as well. */
+typedef enum {
+    LINE_NEW,        /* not part of the loop yet */
+    LINE_WAITING,    /* the loop opens the port again after a pause */
+    LINE_CONNECTING, /* the connection is not established yet */
+    LINE_READING,
+    LINE_ENDING, /* the sensors leave their devices as they were before */
+    LINE_LEFT    /* the loop removes the line from its sources */
+} line_state_t;
+
 /* A port and the sensors on it. */
 struct line {
-    fathom_loop_source_t source; /* first: the loop passes it to line.c */
+    fathom_loop_source_t source; /* first: the loop passes it to loop.c */
     port_options_t settings;
     sensor_t *sensors; /* the first one; sensor_t.next has the others */
     line_t *next;
-    char *
-        text; /* how the user describes this line: a reload leaves a line with the same text alone. NULL: unknown */
+    /* How the user describes this line: a reload leaves a line with the same text alone. NULL: unknown */
+    char *text;
     struct loop *loop;
     port_t port;
     port_counts_t counts;
-    bool is_connecting; /* the connection is not established yet */
+    line_state_t state;
     bool was_open;
-    bool is_lost; /* or was never there */
-    bool waits;   /* the loop tries to open the port again */
-    bool is_done; /* nothing is left to read, or the port is lost for good */
-    bool is_left; /* the loop may remove the line from its sources */
+    bool is_lost; /* the port, since it was open; or it was never there */
     char path[];  /* of the port */
 };
 
@@ -97,8 +161,7 @@ bool line_add_text(line_t *line, const char *text);
 /* Frees all sensors and lines; the site is empty then. */
 void site_free(site_t *site);
 
-/* Moves what has not changed: a line of `site` with the text of a line of `old` is replaced by that line, and its
- * sensors by the sensors there. `old` keeps the other lines and sensors. */
+/* Swaps what has not changed: lines of both sites that have the same text, and their sensors. */
 void site_keep(site_t *site, site_t *old);
 
 /* Gives the sensor a name made of its model and its address, unless the user chose one. */
@@ -106,16 +169,6 @@ void sensor_set_name(sensor_t *sensor);
 
 /* Writes `sensor`, `model` and `mode` as members of the open object. */
 void sensor_json(json_t *json, const sensor_t *sensor);
-
-/* Returns the name, or the model if the sensor need not be named. */
-const char *sensor_label(const sensor_t *sensor);
-
-/* Starts to read the sensor through an open port. False: sensor_refusal() has the reason. */
-bool sensor_start(sensor_t *sensor, port_t *port, const reader_settings_t *settings);
-void sensor_refusal(const sensor_t *sensor, char *text, size_t capacity);
-
-/* Returns true, once, if the driver's interval is longer than the one that the user chose; *text says so. */
-bool sensor_is_slower(sensor_t *sensor, char *text, size_t capacity);
 
 /* Returns true if probe 1 to 4 exists and is wanted. A relay contact has one for all probes. */
 bool sensor_has_probe(const sensor_t *sensor, uint8_t probe);

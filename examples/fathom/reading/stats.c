@@ -1,275 +1,323 @@
 /* SPDX-License-Identifier: MIT */
-#include "reading/stats.h"
-
+/* The counters of a run, and of a sensor. */
 #include <inttypes.h>
+#include <stdlib.h>
 
-#include "diagnosis/status_word.h"
-#include "output/record.h"
+#include "reading/fields.h"
 
-#define NUMBER(key, type, member)                                                                            \
+/* ---- pulses ---- */
+
+void pulses_add(pulses_t *pulses, const reader_counters_t *counted, const fathom_sample_t *sample)
+{
+    pulses->noises += counted->noises;
+    pulses->missed_edges += counted->missed;
+    pulses->lost_events += counted->lost_events;
+    if (sample == NULL) return;
+    if (sample->kind == FATHOM_NO_TARGET) pulses->no_targets++;
+    if (sample->kind == FATHOM_FAULT) pulses->faults++;
+    if (sample->kind != FATHOM_TARGET) return;
+    if (pulses->distances++ == 0 || sample->raw < pulses->min_us) pulses->min_us = sample->raw;
+    if (sample->raw > pulses->max_us) pulses->max_us = sample->raw;
+    /* Welford's way, which no sum of large squares makes inexact. */
+    const double off_us = sample->raw - pulses->mean_us;
+    pulses->mean_us += off_us / (double)pulses->distances;
+    pulses->squares += off_us * (sample->raw - pulses->mean_us);
+}
+
+/* Newton's way, which needs no further library; to a hundredth of what is measured. */
+static double root(double square)
+{
+    double guess = square > 1 ? square : 1;
+    for (unsigned steps = 0; steps != 64; steps++) guess = (guess + square / guess) / 2;
+    return guess;
+}
+
+static int64_t tenths(double value) { return (int64_t)(value * 10 + 0.5); }
+
+/* Takes them: they begin again. */
+static pulses_t take_pulses(sensor_t *sensor)
+{
+    pulses_t pulses = sensor->pulses;
+    const int64_t count = pulses.distances;
+    const double deviation_us = count > 1 ? root(pulses.squares / (double)(count - 1)) : 0;
+    pulses.mean_dus = tenths(pulses.mean_us);
+    pulses.deviation_dus = tenths(deviation_us);
+    pulses.deviation_dmm = tenths(deviation_us * 4 / 23); /* A16 1: T / 57.5 cm */
+    if (count < 2) pulses.deviation_dus = pulses.deviation_dmm = NO_VALUE;
+    if (count == 0) pulses.min_us = pulses.max_us = pulses.mean_dus = NO_VALUE;
+    sensor->pulses = (pulses_t){.distances = 0};
+    return pulses;
+}
+
+/* ---- the rows ---- */
+
+/* Columns: the parts of an account. */
+enum {
+    ATTEMPTS = 1,
+    TOTALS = 2,
+    MEDIAN = 4,
+    LINE = 8,
+    STREAM = 16,
+    PORT = 32,
+    REQUESTS = 64,
+    RESPONSE = 128
+};
+
+#define FIELD(key, part, type, member)                                                                       \
     {                                                                                                        \
-        key, "", NULL, FIELD_NUMBER, 0, offsetof(type, member)                                               \
+        key, "", NULL, FIELD_NUMBER, part, offsetof(type, member)                                            \
     }
+#define COUNT(key, part, member) FIELD(key, part, account_t, member)
 
-static const field_t attempt_fields[] = {
-    NUMBER("attempts", counters_t, attempts),
-    NUMBER("failed", counters_t, failed),
-    NUMBER("readings", counters_t, readings),
+static const field_t fields[] = {
+    COUNT("attempts", ATTEMPTS, sum.attempts),
+    COUNT("failed", ATTEMPTS, sum.failed),
+    COUNT("readings", ATTEMPTS, sum.readings),
+
+    COUNT("requests", TOTALS, requests),
+    COUNT("skipped_frames", TOTALS, sum.skipped),
+    COUNT("reconnects", TOTALS, reconnects),
+    COUNT("dropped_spikes", TOTALS | MEDIAN, dropped_spikes),
+
+    COUNT("responses", LINE, sum.total.line[FATHOM_LINE_RESPONSES]),
+    COUNT("dropped_bytes", LINE, sum.total.line[FATHOM_LINE_DROPPED_BYTES]),
+    COUNT("port_errors", LINE, sum.total.line[FATHOM_LINE_PORT_ERRORS]),
+    COUNT("no_responses", LINE, sum.total.line[FATHOM_LINE_NO_RESPONSES]),
+    COUNT("damaged_responses", LINE, sum.total.line[FATHOM_LINE_CHECKSUM_ERRORS]),
+    COUNT("exceptions", LINE, sum.total.line[FATHOM_LINE_EXCEPTIONS]),
+    COUNT("other_responses", LINE, sum.total.line[FATHOM_LINE_MALFORMED]),
+    COUNT("late_responses", LINE, sum.total.line[FATHOM_LINE_LATE_RESPONSES]),
+    COUNT("unsolicited_frames", LINE, sum.total.line[FATHOM_LINE_STRAYS]),
+    COUNT("maybe_unsolicited_responses", LINE, sum.total.line[FATHOM_LINE_MAYBE_UNSOLICITED]),
+    COUNT("bad_bytes", LINE, sum.total.line[FATHOM_LINE_BAD_BYTES]),
+    COUNT("old_bytes", LINE, sum.total.line[FATHOM_LINE_OLD_BYTES]),
+    COUNT("busy_attempts", LINE, sum.total.line[FATHOM_LINE_BUSY_ATTEMPTS]),
+    COUNT("other_master_attempts", LINE, sum.total.line[FATHOM_LINE_OTHER_MASTERS]),
+    COUNT("other_master_requests", LINE, sum.total.line[FATHOM_LINE_FOREIGN_REQUESTS]),
+
+    COUNT("frames", STREAM, sum.total.stream[FATHOM_STREAM_FRAMES]),
+    COUNT("missed_frames", STREAM, sum.total.stream[FATHOM_STREAM_MISSED]),
+    COUNT("ambiguous_frames", STREAM, sum.total.stream[FATHOM_STREAM_AMBIGUOUS]),
+    COUNT("unsure_frames", STREAM, sum.total.stream[FATHOM_STREAM_UNSURE]),
+    COUNT("damaged_frames", STREAM, sum.total.stream[FATHOM_STREAM_DAMAGED]),
+    COUNT("stale", STREAM, sum.total.stream[FATHOM_STREAM_STALES]),
+    COUNT("bytes", STREAM, sum.total.stream[FATHOM_STREAM_BYTES]),
+    COUNT("dropped_bytes", STREAM, sum.total.stream[FATHOM_STREAM_DROPPED_BYTES]),
+
+    COUNT("parity_errors", PORT, sum.total.port[PORT_PARITY]),
+    COUNT("framing_errors", PORT, sum.total.port[PORT_FRAMING]),
+    COUNT("overruns", PORT, sum.total.port[PORT_OVERRUN]),
+    COUNT("breaks", PORT, sum.total.port[PORT_BREAKS]),
+
+    COUNT("responses", REQUESTS, sum.total.unit[UNIT_RESPONSES]),
+    COUNT("failed_requests", REQUESTS, sum.total.unit[UNIT_FAILURES]),
+    COUNT("timeouts_in_row", REQUESTS, timeouts_in_row),
+    COUNT("backoff_left_us", REQUESTS, backoff_left_us),
+
+    COUNT("response_min_us", RESPONSE, response_min_us),
+    COUNT("response_mean_us", RESPONSE, response_mean_us),
+    COUNT("response_max_us", RESPONSE, response_max_us),
     {.key = NULL},
 };
 
-enum { MEDIAN = 1 };
-
-static const field_t total_fields[] = {
-    NUMBER("requests", account_t, requests),
-    NUMBER("skipped_frames", account_t, sum.skipped),
-    NUMBER("reconnects", account_t, reconnects),
-    {"dropped_spikes", "", NULL, FIELD_NUMBER, MEDIAN, offsetof(account_t, dropped_spikes)},
+static const field_t pulse_fields[] = {
+    FIELD("distances", 0, pulses_t, distances),
+    FIELD("min_us", 0, pulses_t, min_us),
+    FIELD("max_us", 0, pulses_t, max_us),
+    {"mean_us", "us", NULL, FIELD_TENTHS, 0, offsetof(pulses_t, mean_dus)},
+    {"deviation_us", "us", NULL, FIELD_TENTHS, 0, offsetof(pulses_t, deviation_dus)},
+    {"deviation_mm", "mm", NULL, FIELD_TENTHS, 0, offsetof(pulses_t, deviation_dmm)},
+    FIELD("no_targets", 0, pulses_t, no_targets),
+    FIELD("noises", 0, pulses_t, noises),
+    FIELD("faults", 0, pulses_t, faults),
+    FIELD("missed_edges", 0, pulses_t, missed_edges),
+    FIELD("lost_events", 0, pulses_t, lost_events),
     {.key = NULL},
 };
 
-static const field_t line_fields[] = {
-    NUMBER("responses", counts_t, line[FATHOM_LINE_RESPONSES]),
-    NUMBER("dropped_bytes", counts_t, line[FATHOM_LINE_DROPPED_BYTES]),
-    NUMBER("port_errors", counts_t, line[FATHOM_LINE_PORT_ERRORS]),
-    NUMBER("no_responses", counts_t, line[FATHOM_LINE_NO_RESPONSES]),
-    NUMBER("damaged_responses", counts_t, line[FATHOM_LINE_CHECKSUM_ERRORS]),
-    NUMBER("exceptions", counts_t, line[FATHOM_LINE_EXCEPTIONS]),
-    NUMBER("other_responses", counts_t, line[FATHOM_LINE_MALFORMED]),
-    NUMBER("late_responses", counts_t, line[FATHOM_LINE_LATE_RESPONSES]),
-    NUMBER("unsolicited_frames", counts_t, line[FATHOM_LINE_STRAYS]),
-    NUMBER("maybe_unsolicited_responses", counts_t, line[FATHOM_LINE_MAYBE_UNSOLICITED]),
-    NUMBER("bad_bytes", counts_t, line[FATHOM_LINE_BAD_BYTES]),
-    NUMBER("old_bytes", counts_t, line[FATHOM_LINE_OLD_BYTES]),
-    NUMBER("busy_attempts", counts_t, line[FATHOM_LINE_BUSY_ATTEMPTS]),
-    NUMBER("other_master_attempts", counts_t, line[FATHOM_LINE_OTHER_MASTERS]),
-    NUMBER("other_master_requests", counts_t, line[FATHOM_LINE_FOREIGN_REQUESTS]),
-    {.key = NULL},
-};
-
-static const field_t stream_fields[] = {
-    NUMBER("frames", counts_t, stream[FATHOM_STREAM_FRAMES]),
-    NUMBER("missed_frames", counts_t, stream[FATHOM_STREAM_MISSED]),
-    NUMBER("ambiguous_frames", counts_t, stream[FATHOM_STREAM_AMBIGUOUS]),
-    NUMBER("unsure_frames", counts_t, stream[FATHOM_STREAM_UNSURE]),
-    NUMBER("damaged_frames", counts_t, stream[FATHOM_STREAM_DAMAGED]),
-    NUMBER("stale", counts_t, stream[FATHOM_STREAM_STALES]),
-    NUMBER("bytes", counts_t, stream[FATHOM_STREAM_BYTES]),
-    NUMBER("dropped_bytes", counts_t, stream[FATHOM_STREAM_DROPPED_BYTES]),
-    {.key = NULL},
-};
-
-static const field_t port_fields[] = {
-    NUMBER("parity_errors", counts_t, port[PORT_PARITY]),
-    NUMBER("framing_errors", counts_t, port[PORT_FRAMING]),
-    NUMBER("overruns", counts_t, port[PORT_OVERRUN]),
-    NUMBER("breaks", counts_t, port[PORT_BREAKS]),
-    {.key = NULL},
-};
-
-/* What a sensor that receives requests has besides its attempts. */
-typedef struct {
-    int64_t responses, failed_requests, timeouts_in_row, backoff_left_us;
-} requests_row_t;
-
-static const field_t request_fields[] = {
-    NUMBER("responses", requests_row_t, responses),
-    NUMBER("failed_requests", requests_row_t, failed_requests),
-    NUMBER("timeouts_in_row", requests_row_t, timeouts_in_row),
-    NUMBER("backoff_left_us", requests_row_t, backoff_left_us),
-    {.key = NULL},
-};
-
-/* The time from a request to its response. */
-typedef struct {
-    int64_t min_us, mean_us, max_us;
-} response_row_t;
-
-static const field_t response_fields[] = {
-    NUMBER("response_min_us", response_row_t, min_us),
-    NUMBER("response_mean_us", response_row_t, mean_us),
-    NUMBER("response_max_us", response_row_t, max_us),
-    {.key = NULL},
-};
-
-static requests_row_t requests_of(const sensor_t *sensor)
+/* The words of the failures are the keys. */
+static const field_t *failure_fields(void)
 {
-    const reader_facts_t facts = reader_facts(sensor->reader);
-    const uint64_t *const unit = sensor->counters.total.unit;
-    return (requests_row_t){.responses = (int64_t)unit[UNIT_RESPONSES],
-                            .failed_requests = (int64_t)unit[UNIT_FAILURES],
-                            .timeouts_in_row = facts.timeouts_in_row,
-                            .backoff_left_us = facts.backoff_left_us};
+    static field_t rows[FAILURE_KINDS + 1];
+    field_t *row = rows;
+    for (size_t kind = 0; kind != FAILURE_KINDS; kind++)
+        if (status_word_of_failure(kind) != NULL)
+            *row++ = (field_t)COUNT(status_word_of_failure(kind), 0, sum.failures[kind]);
+    return rows;
 }
 
-static response_row_t response_of(const counters_t *counters)
+/* ---- accounts ---- */
+
+account_t account_of(sensor_t *const *sensors, size_t count)
 {
-    if (counters->timed == 0) return (response_row_t){NO_VALUE, NO_VALUE, NO_VALUE};
-    return (response_row_t){.min_us = counters->time_min_us,
-                            .mean_us = (int64_t)(counters->time_sum_us / counters->timed),
-                            .max_us = counters->time_max_us};
+    account_t account = {.sensors = sensors,
+                         .sensor_count = count,
+                         .response_min_us = NO_VALUE,
+                         .response_mean_us = NO_VALUE,
+                         .response_max_us = NO_VALUE};
+    counters_t *const sum = &account.sum;
+    for (size_t i = 0; i != count; i++) {
+        const sensor_t *const sensor = sensors[i];
+        const reader_facts_t facts = reader_facts(sensor->reader);
+        counters_add(sum, &sensor->counters);
+        if (sensor->listener != NULL) account.requests += (int64_t)sensor->listener->requests;
+        if (sensor->processing.median != 0) account.has_median = true;
+        if (!mode_is_asked(sensor->mode)) account.has_stream = true;
+        for (size_t p = 0; p != FATHOM_DYP_PROBES; p++)
+            account.dropped_spikes += (int64_t)sensor->probes[p].dropped;
+        account.timeouts_in_row = facts.timeouts_in_row;
+        account.backoff_left_us = facts.backoff_left_us;
+    }
+    if (sum->timed == 0) return account;
+    account.response_min_us = sum->time_min_us;
+    account.response_mean_us = (int64_t)(sum->time_sum_us / sum->timed);
+    account.response_max_us = sum->time_max_us;
+    return account;
 }
 
-/* ---- groups of counters ---- */
-
-enum { GROUPS = 3 };
-
+/* Counters with a name of their own. */
+enum { GROUPS = 4 };
 typedef struct {
     const char *name;
     const field_t *fields;
+    unsigned part;
     bool is_there; /* these sensors, or this port, have such counters */
 } group_t;
 
-static bool has_listener(const account_t *account)
-{
-    for (size_t i = 0; i != account->sensor_count; i++)
-        if (!mode_is_asked(account->sensors[i]->mode)) return true;
-    return false;
-}
-
 static void list_groups(const account_t *account, group_t groups[GROUPS])
 {
-    groups[0] = (group_t){"line", line_fields, true};
-    groups[1] = (group_t){"stream", stream_fields, has_listener(account)};
-    groups[2] = (group_t){"port", port_fields, account->has_port};
+    groups[0] = (group_t){"failures", failure_fields(), 0, true};
+    groups[1] = (group_t){"line", fields, LINE, true};
+    groups[2] = (group_t){"stream", fields, STREAM, account->has_stream};
+    groups[3] = (group_t){"port", fields, PORT, account->has_port};
 }
 
-/* ---- text ---- */
+/* ---- text: counters that are 0 are left out ---- */
 
-static void print_record(FILE *to, const char *before, const field_t *fields, const void *record,
-                         unsigned columns)
-{
-    (void)record_print(to, before, fields, record, columns, false);
-}
-
-static void print_attempts(const sensor_t *sensor, FILE *to)
+static void print_sensor(FILE *to, const sensor_t *sensor, const account_t *account)
 {
     (void)fprintf(to, "fathom: %s: ", sensor->name);
-    (void)record_print(to, "", attempt_fields, &sensor->counters, 0, false);
+    (void)record_print(to, "", fields, account, ATTEMPTS, false);
 }
 
 void stats_print_short(const account_t *account, FILE *to)
 {
     const char *before = "fathom: line: ";
-    print_record(to, "fathom: ", attempt_fields, &account->sum, 0);
+    (void)record_print(to, "fathom: ", fields, account, ATTEMPTS, false);
     (void)fputs("\n", to);
     for (size_t i = 0; i != account->sensor_count && account->sensor_count > 1; i++) {
-        const sensor_t *const sensor = account->sensors[i];
-        const requests_row_t requests = requests_of(sensor);
-        print_attempts(sensor, to);
-        if (requests.timeouts_in_row != 0) print_record(to, ", ", request_fields, &requests, 0);
+        const account_t one = account_of(&account->sensors[i], 1);
+        print_sensor(to, account->sensors[i], &one);
+        if (one.timeouts_in_row != 0) (void)record_print(to, ", ", fields, &one, REQUESTS, false);
         (void)fputs("\n", to);
     }
-    if (record_print(to, before, stream_fields, &account->sum.total, 0, true)) before = ", ";
-    if (record_print(to, before, line_fields, &account->sum.total, 0, true)) before = ", ";
+    if (record_print(to, before, fields, account, STREAM, true)) before = ", ";
+    if (record_print(to, before, fields, account, LINE, true)) before = ", ";
     if (before[0] == ',') (void)fputs("\n", to);
 }
 
-static void print_failures(const account_t *account, FILE *to)
+static void print_dropped(FILE *to, const sensor_t *sensor)
 {
-    const char *before = "fathom: failures: ";
-    for (size_t i = 0; i != FAILURE_KINDS; i++) {
-        if (status_word_of_failure(i) == NULL || account->sum.failures[i] == 0) continue;
-        (void)fprintf(to, "%s%s %" PRIu64, before, status_word_of_failure(i), account->sum.failures[i]);
-        before = ", ";
+    for (size_t p = 0; p != FATHOM_DYP_PROBES; p++) {
+        if (sensor->probes[p].dropped == 0) continue;
+        (void)fprintf(to, "fathom: %s", sensor->name);
+        if (sensor->model->probes > 1) (void)fprintf(to, " probe %zu", p + 1);
+        (void)fprintf(to, ": spikes dropped %" PRIu64 "\n", sensor->probes[p].dropped);
     }
-    if (before[0] == ',') (void)fputs("\n", to);
 }
 
-static void print_sensor(const sensor_t *sensor, FILE *to)
-{
-    const requests_row_t requests = requests_of(sensor);
-    const response_row_t response = response_of(&sensor->counters);
-    print_attempts(sensor, to);
-    (void)record_print(to, ", ", request_fields, &requests, 0, true);
-    if (sensor->counters.timed != 0) print_record(to, ", ", response_fields, &response, 0);
-    (void)fputs("\n", to);
-}
-
-/* Counters that are 0 are left out. */
 void stats_print(const account_t *account, FILE *to)
 {
     group_t groups[GROUPS];
     list_groups(account, groups);
-    print_record(to, "fathom: ", attempt_fields, &account->sum, 0);
+    (void)record_print(to, "fathom: ", fields, account, ATTEMPTS, false);
     (void)fputs("\n", to);
-    if (record_print(to, "fathom: ", total_fields, account, 0, true)) (void)fputs("\n", to);
-    print_failures(account, to);
+    if (record_print(to, "fathom: ", fields, account, TOTALS | MEDIAN, true)) (void)fputs("\n", to);
     for (size_t i = 0; i != GROUPS; i++) {
         char before[32];
-        if (!groups[i].is_there) continue;
         (void)snprintf(before, sizeof before, "fathom: %s: ", groups[i].name);
-        if (record_print(to, before, groups[i].fields, &account->sum.total, 0, true)) (void)fputs("\n", to);
+        if (groups[i].is_there && record_print(to, before, groups[i].fields, account, groups[i].part, true))
+            (void)fputs("\n", to);
     }
-    for (size_t i = 0; i != account->sensor_count; i++)
-        if (mode_is_asked(account->sensors[i]->mode)) print_sensor(account->sensors[i], to);
+    for (size_t i = 0; i != account->sensor_count; i++) {
+        const sensor_t *const sensor = account->sensors[i];
+        const account_t one = account_of(&account->sensors[i], 1);
+        if (!mode_is_asked(sensor->mode)) continue;
+        print_sensor(to, sensor, &one);
+        (void)record_print(to, ", ", fields, &one, REQUESTS | RESPONSE, true);
+        (void)fputs("\n", to);
+    }
+    for (size_t i = 0; i != account->sensor_count; i++) print_dropped(to, account->sensors[i]);
+    for (size_t i = 0; i != account->sensor_count; i++) {
+        if (!account->sensors[i]->mode->has_pulses) continue;
+        const pulses_t pulses = take_pulses(account->sensors[i]);
+        (void)fprintf(to, "fathom: %s: ", account->sensors[i]->name);
+        (void)record_print(to, "pulses: ", pulse_fields, &pulses, 0, false);
+        (void)fputs("\n", to);
+    }
 }
 
 /* ---- JSON ---- */
 
-static void put_failures(json_t *json, const account_t *account)
+static void put_object(json_t *json, const char *key, const field_t *rows, const void *record, unsigned part)
 {
-    json_begin(json, "failures", '{');
-    for (size_t i = 0; i != FAILURE_KINDS; i++)
-        if (status_word_of_failure(i) != NULL)
-            json_value(json, status_word_of_failure(i), "%" PRIu64, account->sum.failures[i]);
+    json_begin(json, key, '{');
+    record_json(json, rows, record, part);
     json_end(json, '}');
 }
 
-static void put_group(json_t *json, const group_t *group, const account_t *account)
+/* puts_null: also a group that is not there. */
+static void put_groups(json_t *json, const account_t *account, bool puts_null)
 {
-    if (!group->is_there) {
-        json_string(json, group->name, NULL);
-        return;
-    }
-    json_begin(json, group->name, '{');
-    record_json(json, group->fields, &account->sum.total, 0);
-    json_end(json, '}');
+    group_t groups[GROUPS];
+    list_groups(account, groups);
+    for (size_t i = 0; i != GROUPS; i++)
+        if (groups[i].is_there)
+            put_object(json, groups[i].name, groups[i].fields, account, groups[i].part);
+        else if (puts_null)
+            json_string(json, groups[i].name, NULL);
 }
 
-static void put_sensor(json_t *json, const sensor_t *sensor)
+void stats_json_of_sensor(json_t *json, sensor_t *sensor)
 {
-    const requests_row_t requests = requests_of(sensor);
-    const response_row_t response = response_of(&sensor->counters);
+    const account_t account = account_of(&sensor, 1);
+    record_json(json, fields, &account, ATTEMPTS);
+    put_groups(json, &account, false);
+    record_json(json, fields, &account, RESPONSE);
+}
+
+static void put_sensor(json_t *json, sensor_t *sensor)
+{
+    const account_t account = account_of(&sensor, 1);
     json_begin(json, NULL, '{');
     sensor_json(json, sensor);
     json_value(json, "address", "%u", sensor->address);
-    record_json(json, attempt_fields, &sensor->counters, 0);
-    record_json(json, request_fields, &requests, 0);
-    record_json(json, response_fields, &response, 0);
+    record_json(json, fields, &account, ATTEMPTS | REQUESTS | RESPONSE);
     json_end(json, '}');
 }
 
 void stats_print_json(const account_t *account, FILE *to)
 {
-    const response_row_t response = response_of(&account->sum);
-    group_t groups[GROUPS];
     json_t json = {.to = to};
-    list_groups(account, groups);
     json_begin(&json, NULL, '{');
-    json_value(&json, "time_us", "%" PRIu64, account->time_us);
-    record_json(&json, attempt_fields, &account->sum, 0);
-    record_json(&json, total_fields, account, account->has_median ? MEDIAN : 0);
-    put_failures(&json, account);
-    for (size_t i = 0; i != GROUPS; i++) put_group(&json, &groups[i], account);
-    record_json(&json, response_fields, &response, 0);
+    json_value(&json, "time_us", "%" PRId64, account->time_us);
+    record_json(&json, fields, account, ATTEMPTS | TOTALS | (account->has_median ? MEDIAN : 0));
+    put_groups(&json, account, true);
+    record_json(&json, fields, account, RESPONSE);
     json_begin(&json, "sensors", '[');
     for (size_t i = 0; i != account->sensor_count; i++)
         if (mode_is_asked(account->sensors[i]->mode)) put_sensor(&json, account->sensors[i]);
     json_end(&json, ']');
     json_end(&json, '}');
     (void)fputs("\n", to);
-}
-
-void stats_json_of_sensor(json_t *json, sensor_t *sensor)
-{
-    const account_t account = {.sum = sensor->counters, .sensors = &sensor, .sensor_count = 1};
-    const response_row_t response = response_of(&sensor->counters);
-    group_t groups[GROUPS];
-    list_groups(&account, groups);
-    record_json(json, attempt_fields, &sensor->counters, 0);
-    put_failures(json, &account);
-    for (size_t i = 0; i != GROUPS; i++)
-        if (groups[i].is_there) put_group(json, &groups[i], &account);
-    record_json(json, response_fields, &response, 0);
+    for (size_t i = 0; i != account->sensor_count; i++) {
+        if (!account->sensors[i]->mode->has_pulses) continue;
+        const pulses_t pulses = take_pulses(account->sensors[i]);
+        json = (json_t){.to = to};
+        json_begin(&json, NULL, '{');
+        json_string(&json, "name", account->sensors[i]->name);
+        put_object(&json, "pulses", pulse_fields, &pulses, 0);
+        json_end(&json, '}');
+        (void)fputs("\n", to);
+    }
 }

@@ -59,10 +59,7 @@ static void on_reading(void *ctx, const reading_t *reading)
 static void on_notice(void *ctx, const notice_t *notice)
 {
     (void)ctx;
-    if (notice->sensor != NULL)
-        (void)fprintf(stderr, "fathom: %s: %s\n", notice->sensor->name, notice->text);
-    else
-        (void)fprintf(stderr, "fathom: %s\n", notice->text);
+    notice_print(notice);
 }
 
 static void report_status(uint64_t now_us)

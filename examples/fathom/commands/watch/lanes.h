@@ -2,7 +2,7 @@
 #ifndef LANES_H
 #define LANES_H
 
-#include "reading/loop.h"
+#include "reading/fields.h"
 
 /* What `fathom watch` shows of each probe: the present value, and the last few hundred steps of time. */
 
