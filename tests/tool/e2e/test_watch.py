@@ -13,11 +13,14 @@ import terminal
 BUS = 'a16:1:modbus a05:2:modbus hps167s:7'
 
 
-def seen(distance):
-    """The same sensors and what they measure, as words of fathom sim."""
-    return f'a16:1:modbus,distance=1953 a05:2:modbus,distance=1000,no-target,1500,4500 hps167s:7,distance={distance}'
+SEEN = 'a16:1:modbus,distance=1953 a05:2:modbus,distance=1000,no-target,1500,4500 hps167s:7,distance='
 FULL = '█'  # an eighth to eight eighths: ▁▂▃▄▅▆▇█
 GUTTER = 8
+
+
+def has(screen, *patterns):
+    """Each at the begin of a line."""
+    return all(re.search(f'(?m)^{pattern}', screen.text()) for pattern in patterns)
 
 
 class Case(e2e.Case):
@@ -30,6 +33,10 @@ class Case(e2e.Case):
         """An HPS-167S that is watched, at 2.5 m; it and the terminal."""
         sim = self.sim('hps167s --distance 2500')
         return sim, self.watch(f'hps167s --port {sim} {options}', **more)
+
+    @staticmethod
+    def shows(it, *patterns):
+        it.wait(lambda screen: has(screen, *patterns))
 
     def assert_given_back(self, it):
         """As it was before: the screen, the cursor, the wrapping, the echo."""
@@ -66,49 +73,35 @@ def foot_of(screen, name):
 
 class Picture(Case):
     def test_three_models_fit_80x24_with_a_lane_for_each_probe(self):
-        sim = self.sim(seen('fault'))
+        sim = self.sim(f'{SEEN}fault')
         it = self.watch(f'{BUS} a16:9 --port {sim} --timeout 800')
-        it.wait(lambda screen: re.search(r'(?m)^a16:9 +no response', screen.text())
-                and 'fault  ' in screen.text() and
-                'x' in ''.join(plot_of(screen, 'a16:9')) and 'no response from a16:9 at ' in screen.text())
+        it.wait(lambda screen: has(screen, 'no response from a16:9 at ') and 'x' in foot_of(screen, 'a16:9'))
+        self.shows(it, f'fathom watch {sim}   00:00:', r'a16:1 +1\.953 m +\d+\.\d/s +lost 0 of \d+$',
+                   r'a05:2 probe 1 +1\.000 m +\d+\.\d/s +lost 0 of \d+$', r'a05:2 probe 2 +no target ',
+                   r'a05:2 probe 3 +1\.500 m ', r'a05:2 probe 4 +4\.500 m ', r'hps167s:7 +fault ',
+                   r'a16:9 +no response +0\.0/s +lost (\d+) of \1', r'.*\d s ago',
+                   '- no target ~ interference s stale x no response ! unusable F fault P port lost$',
+                   'no response from a16:9 at ')  # the advice of fathom read
         screen = it.screen
         self.assertEqual((screen.is_other, screen.has_cursor), (True, False))
-        lines = screen.text().split('\n')
-        self.assertTrue(lines[0].startswith(f'fathom watch {sim}   00:00:'), lines[0])
-        for words in (r'a16:1 +1\.953 m +\d+\.\d/s +lost 0 of \d+$',
-                      r'a05:2 probe 1 +1\.000 m +\d+\.\d/s +lost 0 of \d+$',
-                      r'a05:2 probe 2 +no target ', r'a05:2 probe 3 +1\.500 m ', r'a05:2 probe 4 +4\.500 m ',
-                      r'hps167s:7 +fault ', r'a16:9 +no response +0\.0/s +lost (\d+) of \1'):
-            self.assertRegex(screen.text(), f'(?m)^{words}')
         # Each has a scale in metres that its distances fit in.
-        for name, scale in (('a16:1', '   2.0 m'), ('a05:2 probe 1', '   1.0 m'),
-                            ('a05:2 probe 4', '   5.0 m')):
+        for name, scale in (('a16:1', '   2.0 m'), ('a05:2 probe 1', '   1.0 m'), ('a05:2 probe 4', '   5.0 m')):
             self.assertTrue(rows_of(screen, name)[1].startswith(scale))
-        self.assertIn('s ago', screen.text())
-        self.assertIn('- no target ~ interference s stale x no response ! unusable F fault P port lost',
-                      lines)
         # What is no distance is to be seen in the plot, over its whole height.
-        for name, mark in (('a05:2 probe 2', '-'), ('hps167s:7', 'F'), ('a16:9', 'x')):
-            marked = [column for column in plot_of(screen, name) if mark in column]
-            self.assertTrue(marked, name)
-            for column in marked:
-                self.assertEqual(set(column), {mark}, name)
-            self.assertFalse(any(FULL in column for column in plot_of(screen, name)), name)
-        for name in ('a16:1', 'a05:2 probe 1', 'a05:2 probe 3'):
+        for name, mark in (('a05:2 probe 2', '-'), ('hps167s:7', 'F'), ('a16:9', 'x'), ('a16:1', FULL),
+                           ('a05:2 probe 1', FULL), ('a05:2 probe 3', FULL)):
             columns = [column for column in plot_of(screen, name) if column.strip()]
             self.assertTrue(columns, name)
-            self.assertTrue(all(column[0] == FULL for column in columns), columns)
-        # The advice of fathom read stands at the bottom.
-        self.assertTrue(any(line.startswith('no response from a16:9 at ') for line in lines),
-                        screen.text())
+            for column in columns:
+                self.assertEqual(column[0], mark, name)
+                self.assertTrue(mark == FULL or set(column) == {mark}, name)
 
     def test_a_name_moves_what_stands_behind_it(self):
         long = 'n' * 31
         sims = [self.sim('hps167s --distance 2500'), self.sim('a05::modbus --distance 1000')]
         it = self.watch(f'gate=hps167s@{sims[0]} {long}=a05:1@{sims[1]}')
         # The longest has 39 columns, and two blanks stand behind it.
-        it.wait(lambda screen: re.search(f'(?m)^{long} probe 4  1\\.000 m ', screen.text())
-                and re.search(r'(?m)^gate {37}2\.500 m ', screen.text()))
+        self.shows(it, fr'{long} probe 4  1\.000 m ', r'gate {37}2\.500 m ')
 
     def test_a_bar_is_as_high_as_the_distance_on_its_scale(self):
         _, it = self.begin()
@@ -143,25 +136,19 @@ class Picture(Case):
         it.wait(lambda screen: re.search(r'(?m)^a16 +stale ', screen.text()))
         it.wait(lambda screen: re.search(f'{FULL} {{2,}}s', foot_of(screen, 'a16')))
 
-    def test_a_value_without_a_meaning_is_a_mark_that_stands_in_the_legend_from_then_on(self):
-        device = self.device()
-        it = self.watch(f'a16:1 --port {device} --interval 300')
-        device.asked(e2e.ASK_A16, e2e.registers(1, 1000))
-        it.wait(lambda screen: '1.000 m' in screen.text())
-        self.assertNotIn('? unknown', it.screen.text())
-        device.asked(e2e.ASK_A16, e2e.registers(1, 0))
-        it.wait(lambda screen: '~ interference ? unknown s stale' in screen.text() and
-                re.search(r'(?m)^a16:1 +unknown ', screen.text()) and '?' in foot_of(screen, 'a16:1'))
-
-    def test_another_master_has_a_mark_that_is_in_the_legend_from_then_on(self):
+    @e2e.each(
+        a_value_without_a_meaning=(e2e.registers(1, 0), '~ interference ? unknown s stale', 'unknown', '?'),
+        another_master_that_reads_register_0200=(
+            e2e.adu(1, 3, 2, 0, 0, 1), 'x no response m other master ! unusable', 'other master', 'm'))
+    def rare_mark_is_in_the_legend_after_its_first_use(self, received, legend, word, mark):
         device = self.device()
         it = self.watch(f'a16:1 --port {device} --interval 300 --timeout 500')
         device.asked(e2e.ASK_A16, e2e.registers(1, 1000))
         it.wait(lambda screen: '1.000 m' in screen.text())
-        self.assertNotIn('other master', it.screen.text())
-        device.asked(e2e.ASK_A16, e2e.adu(1, 3, 2, 0, 0, 1))  # it reads register 0x0200
-        it.wait(lambda screen: 'x no response m other master ! unusable' in screen.text() and
-                re.search(r'(?m)^a16:1 +other master ', screen.text()) and 'm' in foot_of(screen, 'a16:1'))
+        self.assertNotIn(f'{mark} {word}', it.screen.text())
+        device.asked(e2e.ASK_A16, received)
+        it.wait(lambda screen: has(screen, f'.*{re.escape(legend)}', f'a16:1 +{word} ') and
+                mark in foot_of(screen, 'a16:1'))
         self.assertNotIn('line busy', it.screen.text())
 
     def test_a_frame_in_which_a_probe_turns_odd_is_lost_for_all(self):
@@ -173,31 +160,15 @@ class Picture(Case):
             it.changes()
         it.wait(lambda screen: '3.000 m' in screen.text())
         device.write(e2e.frame(1000, 2000, 40000, 4000))
-        for probe in range(1, 5):
-            it.wait(lambda screen, which=probe: re.search(rf'(?m)^a05 probe {which} +unusable .* lost 1 of \d$',
-                                                          screen.text()))
+        self.shows(it, *(rf'a05 probe {probe} +unusable .* lost 1 of \d$' for probe in (1, 2, 3, 4)))
 
     def test_a_refused_value_is_its_probes_alone(self):
         device = self.device()
         it = self.watch(f'a05:1 --port {device}')
         device.read(8)
         device.write(e2e.registers(1, 1000, 40000, 3000, 4000))
-        it.wait(lambda screen: 'unusable  ' in screen.text())
-        for words in ('probe 1 +1.000 m ', 'probe 2 +unusable ', 'probe 3 +3.000 m ', 'probe 4 +4.000 m ',
-                      'probe 2 .* lost 1 of 1$'):
-            self.assertRegex(it.screen.text(), f'(?m)^a05:1 {words}')
-
-    def test_the_rate_is_that_of_the_readings(self):
-        it = self.watch(f'a16 --port {self.sim("a16 --distance 1000")} --duration 6')
-        rates = []
-        it.wait(lambda screen: screen.is_other)
-        while it.process.poll() is None and it.screen.is_other:
-            before = it.screen.text()
-            it.wait(lambda screen: screen.text() != before or not screen.is_other)
-            rates += [float(rate) for rate in re.findall(r'1\.000 m +([\d.]+)/s', it.screen.text())]
-        self.ends(it)
-        # It sends every 100 ms; a machine under load makes it less.
-        self.assertTrue(5 < rates[-1] <= 11, rates)
+        self.shows(it, 'a05:1 probe 1 +1.000 m ', 'a05:1 probe 2 +unusable .* lost 1 of 1$',
+                   'a05:1 probe 3 +3.000 m ', 'a05:1 probe 4 +4.000 m ')
 
 
 class Window(Case):
@@ -249,23 +220,17 @@ class End(Case):
         self.assertNotEqual(termios.tcgetattr(it.slave), it.before)
         return sim, it
 
-    def test_ctrl_c(self):
-        _, it = self.begin()
-        it.type(b'some keys, of which nothing is seen, and then \x03')
-        self.ends(it)
-        self.assertNotIn('keys', it.screen.main)
-        self.assertRegex(it.screen.main, r'^fathom: attempts \d+, failed 0, readings \d+\r\n')
-
-    @e2e.each(q='q', a_big_q_among_others='some keys and Q and more')
+    @e2e.each(ctrl_c='some keys, of which nothing is seen, and then \x03', q='q',
+              a_big_q_among_others='some keys and Q and more')
     def key(self, keys):
-        sim = self.sim('hps167s --distance 2500')
-        it = self.watch(f'hps167s --port {sim}')
-        it.wait(lambda screen: FULL in screen.text() and 'q or Ctrl-C ends' in screen.line(0))
+        _, it = self.begin()
+        it.wait(lambda screen: 'q or Ctrl-C ends' in screen.line(0))
         it.type(b'wetyuiop')
         it.changes()
         it.type(keys.encode())
         self.ends(it)
         self.assertNotIn('keys', it.screen.main)
+        self.assertRegex(it.screen.main, r'^fathom: attempts \d+, failed 0, readings \d+\r\n')
 
     @e2e.each(**{f'signals_{number.name}': number
                  for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)})
@@ -301,30 +266,12 @@ class End(Case):
         self.ends(it, 1)
         self.assertIn('Connect it again and start again', it.screen.main)
 
-    def test_a_port_that_is_not_there(self):
-        it = self.watch('a16 --port /nowhere')
+    @e2e.each(that_is_not_there=('a16 --port /nowhere', 'fathom: /nowhere: no such device'),
+              that_cannot_hold_its_tx=('a16 --value real-time --port {}', 'a16: this port cannot hold its TX low'))
+    def port(self, line, said):
+        it = self.watch(line.format(self.device()))
         self.ends(it, 1)
-        self.assertIn('fathom: /nowhere: no such device', it.screen.main)
-
-    def test_a_port_that_cannot_do_what_is_wanted(self):
-        it = self.watch(f'a16 --value real-time --port {self.device()}')
-        self.ends(it, 1)
-        self.assertIn('fathom: a16: this port cannot hold its TX low', it.screen.main)
-
-    def test_a_port_that_comes_back_is_watched_on(self):
-        link = self.path('port')
-        sim = self.sim(f'hps167s --distance 2500 --link {link}')
-        it = self.watch(f'hps167s --port {link} --reconnect')
-        it.wait(lambda screen: FULL in screen.text())
-        sim.end()
-        it.wait(lambda screen: 'port lost  ' in screen.text() and 'Waiting until it is back' in screen.text()
-                and
-                'P' in foot_of(screen, 'hps167s:1'))
-        self.sim(f'hps167s --distance 2000 --link {link}')
-        it.wait(lambda screen: '2.000 m' in screen.text() and 'it is back' in screen.text())
-        it.type(b'\x03')
-        it.finish()
-        self.assert_given_back(it)
+        self.assertIn(said, it.screen.main)
 
 
 class Ports(Case):
@@ -337,29 +284,26 @@ class Ports(Case):
         it = self.watch(f'lost=hps167s@{self.link} fine=hps167s@{fine} {options}')
         it.wait(lambda screen: FULL in screen.text() and FULL in foot_of(screen, 'lost') and
                 FULL in foot_of(screen, 'fine'))
-        self.assertRegex(it.screen.line(0), rf'^fathom watch lost, {os.path.basename(str(fine))}   00:00:\d\d   '
-                         'q or Ctrl-C ends$')
+        self.shows(it, rf'fathom watch lost, {os.path.basename(str(fine))}   00:00:\d\d   q or Ctrl-C ends$')
         return lost, it
 
     def test_a_lost_port_marks_its_lanes_only(self):
         lost, it = self.begin('--reconnect')
         lost.end()
-        it.wait(lambda screen: re.search(r'(?m)^lost +port lost ', screen.text()) and
-                'P' in foot_of(screen, 'lost') and 'Waiting until it is back' in screen.text())
+        it.wait(lambda screen: 'P' in foot_of(screen, 'lost') and has(screen, '.*Waiting until it is back'))
         for _ in range(8):
             it.changes()
-        it.wait(lambda screen: ' now' in screen.text())  # the whole of a picture
-        self.assertRegex(it.screen.text(), r'(?m)^fine +2\.000 m .* lost 0 of ')
+        self.shows(it, 'lost +port lost ', r'fine +2\.000 m .* lost 0 of ', '.* now$')  # a whole picture
         self.assertNotIn('P', foot_of(it.screen, 'fine'))
         self.sim(f'hps167s --distance 1500 --link {self.link}')
-        it.wait(lambda screen: re.search(r'(?m)^lost +1\.500 m ', screen.text()))
+        self.shows(it, r'lost +1\.500 m ', '.*it is back')
         it.type(b'q')
         self.ends(it, 1)
 
     def test_what_was_said_of_a_lost_port_stands_there_after_the_end(self):
         lost, it = self.begin()
         lost.end()
-        it.wait(lambda screen: re.search(r'(?m)^lost +port lost ', screen.text()))
+        self.shows(it, 'lost +port lost ')
         it.type(b'q')
         self.ends(it, 1)
         self.assertIn(f'fathom: {self.link}: ', it.screen.main)
@@ -370,7 +314,7 @@ class Lines(Case):
     ends = e2e.Case.ends
 
     def test_into_a_pipe_go_plain_lines_one_a_second(self):
-        sim = self.sim(seen(2500))
+        sim = self.sim(f'{SEEN}2500')
         done = self.ends(f'watch {BUS} --port {sim} --duration 4', 0)
         self.assertNotIn('\x1b', done.out + done.err)
         lines = done.out.splitlines()
@@ -379,8 +323,14 @@ class Lines(Case):
         self.assertTrue(all(0.5 < later - before < 2.5 for before, later in zip(times, times[1:])), times)
         told = ('a16:1 1.953 m', 'a05:2 probe 1 1.000 m', 'a05:2 probe 2 no target', 'a05:2 probe 3 1.500 m',
                 'a05:2 probe 4 4.500 m', 'hps167s:7 2.500 m')
-        self.assertRegex(lines[-1], r'^ +\d\.\d s' + ''.join(rf'  {re.escape(one)} \d\.\d/s'
-                                                             for one in told) + '$')
+        lanes = ''.join(rf'  {re.escape(one)} \d\.\d/s' for one in told)
+        self.assertRegex(lines[-1], rf'^ +\d\.\d s{lanes}$')
+
+    def test_the_rate_is_that_of_the_readings(self):
+        done = self.ends(f'watch a16 --port {self.sim("a16 --distance 1000")} --duration 6', 0)
+        rate = re.search(r'a16 1\.000 m ([\d.]+)/s$', done.out.splitlines()[-1])
+        # It sends every 100 ms; a machine under load makes it less.
+        self.assertTrue(5 < float(rate[1]) <= 11, rate)
 
     def test_probes_that_are_left_out_have_no_lane_and_values_have_their_meaning(self):
         sim = self.sim('a05 --distance 0,1000,7000,no-target')

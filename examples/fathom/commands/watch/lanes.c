@@ -51,8 +51,6 @@ bool lanes_init(lanes_t *lanes, const site_t *site)
     return true;
 }
 
-void lanes_free(lanes_t *lanes) { free(lanes->lane); }
-
 static uint64_t number_now(const lanes_t *lanes) { return lanes->now_us / lanes->step_us; }
 
 /* The state of a contact lasts, as a distance does; other marks do not. */

@@ -68,9 +68,8 @@ typedef struct {
     uint32_t step_us;
 } lanes_t;
 
-/* False: no memory left. */
+/* Allocates lanes->lane, which the caller frees. False: no memory left. */
 bool lanes_init(lanes_t *lanes, const site_t *site);
-void lanes_free(lanes_t *lanes);
 
 /* Advances the time since the start. */
 void lanes_pass(lanes_t *lanes, uint64_t now_us);

@@ -16,6 +16,7 @@
 #include "cli/rows.h"
 #include "commands/commands.h"
 #include "commands/watch/lanes.h"
+#include "output/words.h"
 #include "ports/host.h"
 
 /* fathom watch draws pictures of all lanes on a terminal, and prints lines into anything else. */
@@ -387,17 +388,14 @@ static int show_picture(bool all)
 static void name_ports(const site_t *site, char text[PORTS])
 {
     enum { NAMED = 3 };
-    size_t at = 0;
     size_t count = 0;
-    if (site->line_count == 1) {
-        (void)snprintf(text, PORTS, "%s", site->lines->settings.path);
-        return;
-    }
-    for (const line_t *line = site->lines; line != NULL && count != NAMED && at < PORTS; line = line->next)
-        at += (size_t)snprintf(text + at, PORTS - at, "%s%s", count++ != 0 ? ", " : "",
-                               port_last_part(line->settings.path));
-    if (site->line_count > NAMED && at < PORTS)
-        (void)snprintf(text + at, PORTS - at, " and %zu more", site->line_count - NAMED);
+    text[0] = '\0';
+    for (const line_t *line = site->lines; line != NULL && count++ != NAMED; line = line->next)
+        list_add(text, PORTS,
+                 site->line_count == 1 ? line->settings.path : port_last_part(line->settings.path));
+    const size_t length = strlen(text);
+    if (site->line_count > NAMED)
+        (void)snprintf(text + length, PORTS - length, " and %zu more", site->line_count - NAMED);
 }
 
 static void draw(uint64_t now_us)
@@ -442,16 +440,12 @@ static void print_line(uint64_t now_us)
 
 /* ---- what the loop reports ---- */
 
-/* Shows a message below the lanes; without a picture it is printed. */
-static void show_message(const char *text, uint64_t for_us)
+/* Shows a message below the lanes. Without a picture it is printed, unless it was printed before. */
+static void show_message(const char *text, uint64_t for_us, bool is_new)
 {
     (void)snprintf(watch.message, sizeof watch.message, "%s", text);
     watch.message_end_us = loop_time_us(&watch.loop) + for_us;
-}
-
-static void print_message(const char *text)
-{
-    if (!watch.draws) (void)fprintf(stderr, "fathom: %s\n", text);
+    if (!watch.draws && is_new) (void)fprintf(stderr, "fathom: %s\n", text);
 }
 
 /* Shows the advice of fathom read. */
@@ -466,9 +460,8 @@ static void show_failure(const reading_t *reading)
         if (has_name) (void)fprintf(to, "%s: ", reading->sensor->name);
         advice_print(to, reading->evidence);
         (void)fclose(to);
-        show_message(text, MESSAGE_US);
+        show_message(text, MESSAGE_US, *reported != reading->status);
         if (reading->status == FATHOM_ERR_PORT) memcpy(watch.loss, text, sizeof text);
-        if (*reported != reading->status) print_message(text);
     }
     *reported = reading->status;
 }
@@ -493,8 +486,7 @@ static void on_notice(void *ctx, const notice_t *notice)
     (void)ctx;
     (void)snprintf(line, sizeof line, "%s%s%s", has_sensor ? notice->sensor->name : "",
                    has_sensor ? ": " : "", notice->text);
-    show_message(line, notice->kind == NOTICE_OPEN ? MESSAGE_US : UINT32_MAX);
-    print_message(line);
+    show_message(line, notice->kind == NOTICE_OPEN ? MESSAGE_US : UINT32_MAX, true);
     if (notice->kind == NOTICE_REMARK) return;
     watch.wants_all = true;
     if (notice->kind != NOTICE_OPEN) memcpy(watch.loss, line, sizeof line);
@@ -586,7 +578,7 @@ static int start(const host_t *host, const arguments_t *arguments)
         status = watch_site(host);
     }
     loop_deinit(&watch.loop);
-    lanes_free(&watch.lanes);
+    free(watch.lanes.lane);
     return status;
 }
 
