@@ -48,28 +48,6 @@ class Commission(e2e.Case):
         self.assertEqual([one['address'] for one in counters], [2, 3, 4])
         self.assertEqual([one['flash_writes'] for one in counters], [2, 2, 1])
 
-    def test_the_objects(self):
-        sim = self.sim('a16:1:modbus a16:1:modbus --one-by-one --distance 1500')
-        done = self.commission(sim, 'a16 --addresses 9,1 --format json').finish(60)
-        self.ends(done, 0)
-        self.assertEqual([(one['model'], one['address'], one['uuid'], one['status'], one['distance_mm'])
-                          for one in done.json], [('a16', 9, None, 'done', 1500), ('a16', 1, None, 'done', 1500)])
-
-    def test_two_at_address_1_are_refused(self):
-        sim = self.sim('a05:1:modbus a05:1:modbus --counters')
-        done = self.commission(sim, 'a05 --addresses 2,3 --wait 2').finish(60)
-        self.ends(done, 1, 'no sensor was commissioned for 2 s')
-        self.assertIn('two sensors at address 1, or a loose wire', done.out)
-        self.assertEqual(self.units(), [])
-        self.assertEqual([one['writes'] for one in self.counters(sim)], [0, 0])
-
-    def test_a_damaged_record_is_an_error(self):
-        sim = self.sim('hps167s --counters')
-        with open(self.record, 'w', encoding='ascii') as file:
-            file.write('hps167s 2\n')
-        self.ends(self.commission(sim, 'hps167s --addresses 2'), 1, ':1: this file is no record', out='')
-        self.assertEqual(self.counters(sim)[0]['requests'], 0)
-
 
 class OneByOne(e2e.Case):
     def test_the_next_device_is_connected_when_the_one_before_has_left_its_address(self):
