@@ -9,37 +9,36 @@
 
 static fathom_status_t open_tcp(port_t *port)
 {
-    return port_fail(port, PORT_FAILED,
-                     "this fathom was built without libmodbus, which tcp: needs; install libmodbus-dev and "
-                     "build it again");
+    return port_fail(
+        port, PORT_FAILED,
+        "%s: this fathom was built without libmodbus, which tcp: needs; install libmodbus-dev and "
+        "build it again",
+        port->name);
 }
 
 const port_driver_t port_tcp = {.open = open_tcp};
 #endif
 
 #ifdef FATHOM_WITHOUT_GPIO
-#include "ports/port.h"
+#include "ports/host.h"
 
-bool pins_open(pins_t *pins, const char *chip, const pin_options_t *wanted)
+bool pins_open(void *ctx, const char *chip, const pin_options_t *wanted, pins_t *pins)
 {
-    (void)pins;
-    (void)chip;
+    (void)ctx;
     (void)wanted;
+    pins->lines[0].error = FATHOM_GPIO_ERR_UNSUPPORTED;
+    (void)snprintf(
+        pins->lines[0].text, sizeof pins->lines[0].text,
+        "%.99s: this fathom was built without linux/gpio.h of Linux 5.10 or later, which pins need", chip);
     return false;
 }
 
-void pins_close(pins_t *pins) { (void)pins; }
-
-fathom_status_t port_open_pins(port_t *port, const char *chip)
+/* NOLINTNEXTLINE(readability-non-const-parameter): pins.c writes it */
+void pins_close(void *ctx, pins_t *pins)
 {
-    (void)chip;
-    return port_fail(port, PORT_FAILED,
-                     "this fathom was built without linux/gpio.h of Linux 5.10 or later, which pins need");
+    (void)ctx;
+    (void)pins;
 }
-
-static fathom_status_t open_chip(port_t *port) { return port_open_pins(port, port->settings.path); }
-
-const port_driver_t port_chip = {.open = open_chip};
 #endif
 
 #ifdef FATHOM_PUBLISH_LACKS

@@ -18,6 +18,8 @@ static char root[64];
 static char sysfs[80];
 static char dev[80];
 static adapter_t adapter;
+static char
+    own[16]; /* a serial number that no other test has, since the tool remembers those that were shared */
 
 __attribute__((format(printf, 1, 2))) static void run(const char *format, ...)
 {
@@ -34,7 +36,9 @@ static void remove_root(void) { run("rm -rf %s", root); }
 /* The folder of the device files is the same in all tests, since it is watched from the first adapter on. */
 static int set_up(void **state)
 {
+    static unsigned tests;
     memset(&adapter, 0, sizeof adapter);
+    (void)snprintf(own, sizeof own, "A5%03uBI", ++tests);
     if (root[0] != '\0') return 0;
     strcpy(root, "/tmp/fathom-sysfs-XXXXXX");
     if (mkdtemp(root) == NULL || atexit(remove_root) != 0) return -1;
@@ -49,7 +53,6 @@ static int set_up(void **state)
 static int tear_down(void **state)
 {
     run("rm -rf %s/devices/* %s/class/tty/* %s/*", sysfs, sysfs, dev);
-    adapter_close(&adapter);
     return 0;
 }
 
@@ -87,17 +90,12 @@ static void add_device(const char *bus, const char *socket, const char *vendor, 
 }
 
 /* An adapter of usb-serial, a CP2102. */
-static void plug_in_to(const char *bus, const char *tty, const char *socket, const char *serial)
+static void plug_in(const char *bus, const char *tty, const char *socket, const char *serial)
 {
     char below[LONG];
     add_device(bus, socket, "10c4", "ea60", serial);
     (void)snprintf(below, sizeof below, "%s/%s/%s:1.0/%s", bus, socket, socket, tty);
     add_tty(tty, below);
-}
-
-static void plug_in(const char *tty, const char *socket, const char *serial)
-{
-    plug_in_to("usb1", tty, socket, serial);
 }
 
 /* As the kernel does: the entries of sysfs go first. */
@@ -122,242 +120,173 @@ static void open_adapter(const char *path)
     assert_true(adapter_open(&adapter));
 }
 
-/* ttyUSB0 is open in socket 1-1.2. */
-static void open_first(const char *serial)
+/* ---- conversations ---- */
+
+static const char *advice_of(const char *word)
 {
-    plug_in("ttyUSB0", "1-1.2", serial);
-    open_adapter(named("ttyUSB0"));
+#define SAME_SOCKET ". Plug this adapter into the same USB socket (1-1.2)"
+    static const char *const texts[][2] = {
+        {"shared", "another adapter has, or may have had, the same serial number" SAME_SOCKET},
+        {"counted", "other adapters may have the same serial number" SAME_SOCKET},
+        {"no-serial", "this adapter has no serial number" SAME_SOCKET},
+    };
+    for (size_t i = 0; i != sizeof texts / sizeof texts[0]; i++)
+        if (strcmp(texts[i][0], word) == 0) return texts[i][1];
+    return NULL;
 }
 
-static void lose_first(void)
-{
-    unplug("ttyUSB0", "1-1.2");
-    adapter_close(&adapter);
-}
-
-/* The adapter is found under that name. NULL: it is not plugged in. */
-static void expect_found(const char *tty)
+/* The user has named ttyUSB0. */
+static void find(const char *word)
 {
     const char *const reason = adapter_find(&adapter, named("ttyUSB0"));
-    if (tty == NULL) {
+    if (strncmp(word, "ttyUSB", 6) == 0) {
+        assert_null(reason);
+        assert_string_equal(adapter.path, named(word));
+    } else if (strcmp(word, "nothing") == 0) {
         assert_string_equal(reason, "");
-        return;
+    } else {
+        assert_string_equal(word, "doubt");
+        assert_non_null(strstr(reason, "the right one is unknown"));
+        assert_string_equal(adapter_doubt(&adapter), reason);
     }
-    assert_null(reason);
-    assert_string_equal(adapter.path, named(tty));
 }
 
-static void expect_advice(const char *advice)
+/*
+ * The steps of a conversation: "+ttyUSB0 2 SERIAL" and "-ttyUSB0 2" (an adapter appears in the socket 1-1.2 and goes),
+ * "open", "taken" (another adapter took the path), "find TTY", "find nothing", "find doubt", and "advice KIND". A SERIAL
+ * "own" is no other test's, and "none" is none.
+ */
+static void play(const char *steps)
 {
-    const char *const text = adapter_advice(&adapter);
-    if (advice == NULL)
-        assert_null(text);
-    else
-        assert_non_null(text);
-    if (advice != NULL) assert_string_equal(text, advice);
+    char copy[LONG];
+    char *rest = NULL;
+    (void)snprintf(copy, sizeof copy, "%s", steps);
+    for (char *step = strtok_r(copy, ";", &rest); step != NULL; step = strtok_r(NULL, ";", &rest)) {
+        char words[3][32] = {"", "", ""};
+        char socket[40];
+        (void)sscanf(step, "%31s %31s %31s", words[0], words[1], words[2]);
+        (void)snprintf(socket, sizeof socket, "1-1.%s", words[1]);
+        if (words[0][0] == '+')
+            plug_in("usb1", words[0] + 1, socket,
+                    strcmp(words[2], "own") == 0    ? own
+                    : strcmp(words[2], "none") == 0 ? NULL
+                                                    : words[2]);
+        else if (words[0][0] == '-')
+            unplug(words[0] + 1, socket);
+        else if (strcmp(words[0], "open") == 0)
+            open_adapter(named("ttyUSB0"));
+        else if (strcmp(words[0], "taken") == 0)
+            assert_false(adapter_open(&adapter));
+        else if (strcmp(words[0], "find") == 0)
+            find(words[1]);
+        else if (advice_of(words[1]) == NULL)
+            assert_null(adapter_advice(&adapter));
+        else
+            assert_string_equal(adapter_advice(&adapter), advice_of(words[1]));
+    }
 }
 
-#define SAME_SOCKET ". Plug this adapter into the same USB socket (1-1.2)"
-#define SHARED      "another adapter has, or may have had, the same serial number" SAME_SOCKET
-#define COUNTED     "other adapters may have the same serial number" SAME_SOCKET
-#define NO_SERIAL   "this adapter has no serial number" SAME_SOCKET
+#define CONVERSATION(name, steps)                                                                            \
+    TEST(name) { play(steps); }
 
-/* ---- alone ---- */
+CONVERSATION(
+    an_adapter_with_its_own_serial_number_is_found_in_another_socket_under_another_name,
+    "+ttyUSB0 2 own; open; -ttyUSB0 2; find nothing; +ttyUSB0 3 OTHER7; find nothing;" /* the old name */
+    "+ttyUSB1 4 own; find ttyUSB1; advice none")
 
-TEST(an_adapter_with_its_own_serial_number_is_found_in_another_socket_under_another_name)
-{
-    open_first("A50285BI");
-    lose_first();
-    expect_found(NULL);
-    plug_in("ttyUSB0", "1-1.3", "OTHER7"); /* has its old name */
-    expect_found(NULL);
-    plug_in("ttyUSB1", "1-1.4", "A50285BI");
-    expect_found("ttyUSB1");
-    expect_advice(NULL);
-}
+CONVERSATION(
+    a_second_loss_finds_it_in_the_third_socket,
+    "+ttyUSB0 2 own; open; -ttyUSB0 2; +ttyUSB1 4 own; open; -ttyUSB1 4; +ttyUSB2 1 own; find ttyUSB2")
 
-TEST(a_second_loss_finds_it_in_the_third_socket)
-{
-    open_first("A50285BI");
-    lose_first();
-    plug_in("ttyUSB1", "1-1.4", "A50285BI");
-    open_adapter(named("ttyUSB0"));
-    unplug("ttyUSB1", "1-1.4");
-    adapter_close(&adapter);
-    plug_in("ttyUSB2", "1-1.1", "A50285BI");
-    expect_found("ttyUSB2");
-}
+CONVERSATION(an_adapter_without_a_serial_number_is_found_in_its_socket_only,
+             "+ttyUSB0 2 none; open; -ttyUSB0 2; advice no-serial; advice none;" /* once */
+             "+ttyUSB0 3 none; find nothing; +ttyUSB5 2 none; find ttyUSB5")
 
-TEST(another_vendor_or_product_with_the_serial_number_is_another_adapter)
-{
-    open_first("A50285BI");
-    lose_first();
-    add_device("usb1", "1-1.2", "0403", "ea60", "A50285BI");
-    add_tty("ttyUSB0", "usb1/1-1.2/1-1.2:1.0/ttyUSB0");
-    expect_found(NULL);
-    unplug("ttyUSB0", "1-1.2");
-    add_device("usb1", "1-1.2", "10c4", "6010", "A50285BI");
-    add_tty("ttyUSB0", "usb1/1-1.2/1-1.2:1.0/ttyUSB0");
-    expect_found(NULL);
-}
+CONVERSATION(a_serial_number_that_is_programmed_for_a_site_is_its_own,
+             "+ttyUSB0 2 0002; open; -ttyUSB0 2; +ttyUSB1 3 0002; find ttyUSB1")
 
-TEST(an_adapter_without_a_serial_number_is_found_in_its_socket_only)
-{
-    open_first(NULL);
-    lose_first();
-    expect_advice(NO_SERIAL);
-    expect_advice(NULL); /* once */
-    plug_in("ttyUSB0", "1-1.3", NULL);
-    expect_found(NULL);
-    plug_in("ttyUSB5", "1-1.2", NULL);
-    expect_found("ttyUSB5");
-}
+CONVERSATION(a_twin_that_is_there_first_is_not_opened_instead,
+             "+ttyUSB1 3 own; +ttyUSB0 2 own; open; -ttyUSB0 2; advice shared; find nothing; +ttyUSB0 2 own;"
+             "find ttyUSB0")
+
+CONVERSATION(a_twin_that_comes_later_is_not_opened_instead,
+             "+ttyUSB0 2 own; open; +ttyUSB1 3 own; find ttyUSB0; -ttyUSB0 2; advice shared; find nothing")
+
+CONVERSATION(a_twin_that_was_plugged_in_for_a_moment_is_not_opened_instead,
+             "+ttyUSB0 2 own; open; +ttyUSB1 3 own; -ttyUSB1 3; -ttyUSB0 2; find nothing; advice shared;"
+             "+ttyUSB1 3 own; find nothing")
+
+CONVERSATION(another_adapter_that_stays_is_no_twin,
+             "+ttyUSB0 2 own; open; +ttyUSB1 3 OTHER7; -ttyUSB0 2; +ttyUSB2 4 own; find ttyUSB2")
+
+CONVERSATION(a_twin_that_comes_while_it_is_unplugged_is_not_opened_if_both_are_there,
+             "+ttyUSB0 2 own; open; -ttyUSB0 2; +ttyUSB0 3 own; +ttyUSB1 2 own; find ttyUSB1; -ttyUSB1 2;"
+             "find nothing; advice shared") /* the twin alone */
+
+CONVERSATION(its_own_return_in_another_socket_is_no_twin,
+             "+ttyUSB0 2 own; open; -ttyUSB0 2; +ttyUSB1 3 own; find ttyUSB1")
+
+CONVERSATION(after_a_move_a_twin_makes_both_doubtful,
+             "+ttyUSB0 2 own; open; -ttyUSB0 2; +ttyUSB1 3 own; open; +ttyUSB0 2 own; find doubt")
+
+CONVERSATION(
+    swapped_names_are_not_mixed_up,
+    "+ttyUSB1 3 0001; +ttyUSB0 2 0001; open; -ttyUSB0 2; -ttyUSB1 3; +ttyUSB0 3 0001; +ttyUSB1 2 0001;"
+    "find ttyUSB1; open")
+
+CONVERSATION(names_that_swap_between_finding_and_opening_are_noticed,
+             "+ttyUSB0 2 0001; find ttyUSB0; -ttyUSB0 2; +ttyUSB0 3 0001; taken")
 
 /* The makers of chips and of clones use such numbers for whole series. */
 TEST(an_adapter_with_a_counted_serial_number_is_found_in_its_socket_only)
 {
-    static const char *const serials[] = {"0001", "00000000", "12345678", "0123456789ABCDEF", "1"};
+    static const char *const serials[] = {"00000000", "12345678", "0123456789ABCDEF", "1"};
     for (size_t i = 0; i != sizeof serials / sizeof serials[0]; i++) {
-        open_first(serials[i]);
-        lose_first();
-        expect_advice(COUNTED);
-        plug_in("ttyUSB0", "1-1.3", serials[i]);
-        expect_found(NULL);
-        unplug("ttyUSB0", "1-1.3");
-        plug_in("ttyUSB0", "1-1.2", serials[i]);
-        expect_found("ttyUSB0");
-        unplug("ttyUSB0", "1-1.2");
+        char steps[LONG];
+        (void)snprintf(
+            steps, sizeof steps,
+            "+ttyUSB0 2 %s; open; -ttyUSB0 2; advice counted; +ttyUSB0 3 %s; find nothing; -ttyUSB0 3;"
+            "+ttyUSB0 2 %s; find ttyUSB0; -ttyUSB0 2",
+            serials[i], serials[i], serials[i]);
+        play(steps);
         memset(&adapter, 0, sizeof adapter);
     }
 }
 
-TEST(a_serial_number_that_is_programmed_for_a_site_is_its_own)
-{
-    open_first("0002");
-    lose_first();
-    plug_in("ttyUSB1", "1-1.3", "0002");
-    expect_found("ttyUSB1");
-}
+/* ---- others ---- */
 
-/* ---- twins ---- */
-
-TEST(a_twin_that_is_there_first_is_not_opened_instead)
+TEST(another_vendor_or_product_with_the_serial_number_is_another_adapter)
 {
-    plug_in("ttyUSB1", "1-1.3", "A50285BI");
-    open_first("A50285BI");
-    lose_first();
-    expect_advice(SHARED);
-    expect_found(NULL);
-    plug_in("ttyUSB0", "1-1.2", "A50285BI");
-    expect_found("ttyUSB0");
-}
-
-TEST(a_twin_that_comes_later_is_not_opened_instead)
-{
-    open_first("A50285BI");
-    plug_in("ttyUSB1", "1-1.3", "A50285BI");
-    lose_first();
-    expect_advice(SHARED);
-    expect_found(NULL);
-}
-
-TEST(a_twin_that_was_plugged_in_for_a_moment_is_not_opened_instead)
-{
-    open_first("A50285BI");
-    plug_in("ttyUSB1", "1-1.3", "A50285BI");
-    unplug("ttyUSB1", "1-1.3");
-    lose_first();
-    expect_advice(SHARED);
-    plug_in("ttyUSB1", "1-1.3", "A50285BI");
-    expect_found(NULL);
-}
-
-TEST(another_adapter_that_stays_is_no_twin)
-{
-    open_first("A50285BI");
-    plug_in("ttyUSB1", "1-1.3", "OTHER7");
-    lose_first();
-    plug_in("ttyUSB2", "1-1.4", "A50285BI");
-    expect_found("ttyUSB2");
-}
-
-TEST(a_twin_that_comes_while_it_is_unplugged_is_not_opened_if_both_are_there)
-{
-    open_first("A50285BI");
-    lose_first();
-    plug_in("ttyUSB0", "1-1.3", "A50285BI");
-    plug_in("ttyUSB1", "1-1.2", "A50285BI");
-    expect_found("ttyUSB1");
-    unplug("ttyUSB1", "1-1.2");
-    expect_found(NULL); /* the twin alone */
-    expect_advice(SHARED);
-}
-
-TEST(its_own_return_in_another_socket_is_no_twin)
-{
-    open_first("A50285BI");
-    unplug("ttyUSB0", "1-1.2");
-    plug_in("ttyUSB1", "1-1.3", "A50285BI"); /* before the loss was noticed */
-    adapter_close(&adapter);
-    expect_found("ttyUSB1");
-}
-
-TEST(after_a_move_a_twin_makes_both_doubtful)
-{
-    open_first("A50285BI");
-    lose_first();
-    plug_in("ttyUSB1", "1-1.3", "A50285BI");
-    open_adapter(named("ttyUSB0"));
-    assert_false(adapter_is_doubtful(&adapter));
-    plug_in("ttyUSB0", "1-1.2", "A50285BI");
-    assert_non_null(strstr(adapter_find(&adapter, named("ttyUSB0")), "the right one is unknown"));
-    assert_true(adapter_is_doubtful(&adapter));
-}
-
-TEST(swapped_names_are_not_mixed_up)
-{
-    plug_in("ttyUSB1", "1-1.3", "0001");
-    open_first("0001");
-    lose_first();
-    unplug("ttyUSB1", "1-1.3");
-    plug_in("ttyUSB0", "1-1.3", "0001");
-    plug_in("ttyUSB1", "1-1.2", "0001");
-    expect_found("ttyUSB1");
-    open_adapter(named("ttyUSB0"));
-}
-
-TEST(names_that_swap_between_finding_and_opening_are_noticed)
-{
-    plug_in("ttyUSB0", "1-1.2", "0001");
-    assert_null(adapter_find(&adapter, named("ttyUSB0")));
-    unplug("ttyUSB0", "1-1.2");
-    plug_in("ttyUSB0", "1-1.3", "0001");
-    assert_false(adapter_open(&adapter));
+    static const char *const others[][2] = {{"0403", "ea60"}, {"10c4", "6010"}};
+    play("+ttyUSB0 2 own; open; -ttyUSB0 2");
+    for (size_t i = 0; i != 2; i++) {
+        add_device("usb1", "1-1.2", others[i][0], others[i][1], own);
+        add_tty("ttyUSB0", "usb1/1-1.2/1-1.2:1.0/ttyUSB0");
+        play("find nothing; -ttyUSB0 2");
+    }
 }
 
 TEST(a_bus_that_is_numbered_anew_does_not_change_the_socket)
 {
-    plug_in_to("controller/usb1", "ttyUSB0", "1-1.2", "0001");
+    plug_in("controller/usb1", "ttyUSB0", "1-1.2", "0001");
     open_adapter(named("ttyUSB0"));
     run("rm -rf %s/devices/controller %s/class/tty/ttyUSB0 && rm %s/ttyUSB0", sysfs, sysfs, dev);
-    adapter_close(&adapter);
-    plug_in_to("other/usb1", "ttyUSB0", "1-1.2", "0001");
-    expect_found(NULL);
-    plug_in_to("controller/usb3", "ttyUSB1", "3-1.2", "0001");
-    expect_found("ttyUSB1");
+    plug_in("other/usb1", "ttyUSB0", "1-1.2", "0001");
+    find("nothing");
+    plug_in("controller/usb3", "ttyUSB1", "3-1.2", "0001");
+    find("ttyUSB1");
 }
 
 /* ---- several ports, other kinds, links ---- */
 
 TEST(the_ports_of_one_adapter_are_neither_twins_nor_mixed_up)
 {
-    plug_in("ttyUSB0", "1-1.2", "FT4ABC");
+    plug_in("usb1", "ttyUSB0", "1-1.2", own);
     add_tty("ttyUSB1", "usb1/1-1.2/1-1.2:1.1/ttyUSB1");
     write_file("usb1/1-1.2/1-1.2:1.1", "bInterfaceNumber", "01");
     open_adapter(named("ttyUSB1"));
     run("rm -rf %s/devices/usb1/1-1.2 %s/class/tty/ttyUSB* && rm %s/tty*", sysfs, sysfs, dev);
-    adapter_close(&adapter);
-    plug_in("ttyUSB1", "1-1.3", "FT4ABC"); /* the other interface has the old name */
+    plug_in("usb1", "ttyUSB1", "1-1.3", own); /* the other interface has the old name */
     assert_string_equal(adapter_find(&adapter, named("ttyUSB1")), "");
     add_tty("ttyUSB0", "usb1/1-1.3/1-1.3:1.1/ttyUSB0");
     write_file("usb1/1-1.3/1-1.3:1.1", "bInterfaceNumber", "01");
@@ -380,7 +309,6 @@ TEST(a_tty_that_is_no_usb_adapter_is_found_by_its_path)
     add_tty("ttyS0", "platform/serial8250");
     open_adapter(named("ttyS0"));
     assert_string_equal(adapter.path, "");
-    adapter_close(&adapter);
     assert_null(adapter_find(&adapter, named("ttyS0")));
     assert_null(adapter_advice(&adapter));
 }
@@ -391,37 +319,28 @@ TEST(an_adapter_about_which_nothing_is_known_is_found_by_its_path_and_that_is_re
     assert_null(adapter_find(&adapter, named("ttyUSB0")));
     assert_null(adapter_advice(&adapter)); /* it was not open yet */
     open_adapter(named("ttyUSB0"));
-    adapter_close(&adapter);
     assert_null(adapter_find(&adapter, named("ttyUSB0")));
     assert_string_equal(adapter.path, "");
-    expect_advice("nothing is known about this adapter, so any adapter at this path will be read");
+    assert_string_equal(adapter_advice(&adapter),
+                        "nothing is known about this adapter, so any adapter at this path will be read");
 }
 
-TEST(a_link_by_id_finds_neither_of_two_twins)
+TEST(a_link_by_id_finds_neither_of_two_twins_and_an_open_adapter_keeps_its_socket)
 {
     char link[LONG];
-    plug_in("ttyUSB0", "1-1.2", "0002");
-    run("mkdir -p %s/serial/by-id && ln -s ../../ttyUSB0 %s/serial/by-id/usb-0002", dev, dev);
-    (void)snprintf(link, sizeof link, "%s/serial/by-id/usb-0002", dev);
-    assert_null(adapter_find(&adapter, link));
-    assert_string_equal(adapter.path, named("ttyUSB0"));
-    plug_in("ttyUSB1", "1-1.3", "0002");
-    assert_non_null(strstr(adapter_find(&adapter, link), "several adapters have this identity"));
-    assert_null(adapter_find(&adapter, named("ttyUSB0"))); /* the other names are clear */
-}
-
-TEST(an_open_adapter_that_was_named_by_id_keeps_its_socket_when_a_twin_comes)
-{
-    char link[LONG];
-    plug_in("ttyUSB0", "1-1.2", "0002");
+    play("+ttyUSB0 2 own");
     run("mkdir -p %s/serial/by-id && ln -s ../../ttyUSB0 %s/serial/by-id/usb-0002", dev, dev);
     (void)snprintf(link, sizeof link, "%s/serial/by-id/usb-0002", dev);
     open_adapter(link);
-    plug_in("ttyUSB1", "1-1.3", "0002");
+    assert_string_equal(adapter.path, named("ttyUSB0"));
+    play("+ttyUSB1 3 own");
     run("ln -sf ../../ttyUSB1 %s/serial/by-id/usb-0002", dev);
-    lose_first();
+    adapter_t other = {.path = ""};
+    assert_non_null(strstr(adapter_find(&other, link), "several adapters have this identity"));
+    assert_null(adapter_find(&other, named("ttyUSB0"))); /* the other names are clear */
+    play("-ttyUSB0 2");
     assert_string_equal(adapter_find(&adapter, link), "");
-    plug_in("ttyUSB5", "1-1.2", "0002");
+    play("+ttyUSB5 2 own");
     assert_null(adapter_find(&adapter, link));
     assert_string_equal(adapter.path, named("ttyUSB5"));
 }
@@ -429,7 +348,7 @@ TEST(an_open_adapter_that_was_named_by_id_keeps_its_socket_when_a_twin_comes)
 /* FTDI's, which `setserial PORT low_latency` reduces to 1. */
 TEST(the_latency_is_reported_if_it_is_known)
 {
-    plug_in("ttyUSB0", "1-1.2", "A50285BI");
+    plug_in("usb1", "ttyUSB0", "1-1.2", own);
     assert_int_equal(adapter_latency_ms(named("ttyUSB0")), 0);
     write_file("usb1/1-1.2/1-1.2:1.0/ttyUSB0", "latency_timer", "16");
     assert_int_equal(adapter_latency_ms(named("ttyUSB0")), 16);

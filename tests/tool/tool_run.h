@@ -6,7 +6,7 @@
 #include <stdint.h>
 
 #include "fathom/hal.h"
-#include "ports/pins.h"
+#include "ports/host.h"
 
 /*
  * Runs commands of the tool in this process, against a device behind a UART in memory, in the device's time.

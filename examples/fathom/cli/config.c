@@ -474,10 +474,10 @@ static bool read_line(config_t *config, const yaml_node_t *map)
     static const option_t none[] = {{.name = NULL}};
     const yaml_node_t *const node = find(config, map, "port");
     const char *const port = node != NULL && text_of(node) != NULL ? text_of(node) : "";
-    const option_t *const port_keys = port_path_has_pins(port) ? chip_keys : serial_keys;
+    const option_t *const port_keys = port_kind(port) == PORT_PINS ? chip_keys : serial_keys;
     const option_table_t tables[] = {
         {line_keys, 0},
-        {port_path_has_gateway(port) ? none : port_keys, offsetof(line_keys_t, keys)},
+        {port_kind(port) == PORT_GATEWAY ? none : port_keys, offsetof(line_keys_t, keys)},
         {NULL, 0}};
     line_keys_t line = {.port = NULL};
     option_given_t given = {{0}};

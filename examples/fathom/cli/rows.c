@@ -15,9 +15,9 @@
 const option_t port_rows[] = {
     {"port", "PORT", "Use PORT: a serial port, tcp:HOST[:PORT], or a GPIO chip (default: $FATHOM_PORT)",
      KIND_TEXT, GROUP_LINE, AT(sensor_defaults_t, path), .is_once = true, .is_path = true},
-    {"baud", "N", "Set the baud rate (default: factory setting)", KIND_ONE_OF, GROUP_LINE, .words = BAUDS,
-     KEY(KEY_BAUD)},
-    {"parity", "P", "Set the parity: none, even or odd", KIND_CHOICE, GROUP_LINE, .words = "none even odd",
+    {"baud", "N", "Set the baud rate (default: factory setting)", KIND_ONE_OF, GROUP_LINE,
+     .words = PORT_BAUDS, KEY(KEY_BAUD)},
+    {"parity", "P", "Set the parity: none, even or odd", KIND_CHOICE, GROUP_LINE, .words = PORT_PARITIES,
      KEY(KEY_PARITY)},
     {"stop-bits", "N", "Set 1 or 2 stop bits; 2 implies no parity", KIND_NUMBER, GROUP_LINE, .min = 1,
      .max = 2, KEY(KEY_STOP_BITS)},

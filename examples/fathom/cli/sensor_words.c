@@ -28,8 +28,8 @@ static bool parse_chip_line(const char *text, void *member)
 
 /* The words of a choice stand in the order of its enumeration. */
 const option_t serial_keys[] = {
-    {"baud", "N", "Baud rate", KIND_ONE_OF, .words = BAUDS, KEY(KEY_BAUD)},
-    {"parity", "P", "Parity", KIND_CHOICE, .words = "none even odd", KEY(KEY_PARITY)},
+    {"baud", "N", "Baud rate", KIND_ONE_OF, .words = PORT_BAUDS, KEY(KEY_BAUD)},
+    {"parity", "P", "Parity", KIND_CHOICE, .words = PORT_PARITIES, KEY(KEY_PARITY)},
     {"stop", "N", "Stop bits, 1 or 2", KIND_NUMBER, .min = 1, .max = 2, KEY(KEY_STOP_BITS)},
     {"rs485", "on|off", "Transceiver switched by the kernel's driver", KIND_CHOICE, .words = "off on",
      KEY(KEY_RS485)},
@@ -138,11 +138,11 @@ static bool parse_port(sensor_word_t *sensor, char *port)
         return reject(&its, "%s names no port. Write the port behind @, such as @/dev/ttyUSB0.",
                       sensor->word);
     if (comma == NULL) return true;
-    if (port_path_has_gateway(port))
+    if (port_kind(port) == PORT_GATEWAY)
         return reject(&its, "%s has keys, but a port over TCP has none. Set the line in the gateway.",
                       sensor->word);
     its.within = sensor->word;
-    return option_set_keys(port_path_has_pins(port) ? chip_keys : serial_keys, comma + 1, &sensor->keys,
+    return option_set_keys(port_kind(port) == PORT_PINS ? chip_keys : serial_keys, comma + 1, &sensor->keys,
                            &its);
 }
 
@@ -216,12 +216,11 @@ static bool set_port(site_t *site, sensor_t *sensor, const sensor_word_t *word, 
 {
     if (word->port == NULL && !check_common_port(word, path)) return false;
     if (word->port != NULL) path = word->port;
-    const bool has_pins = port_path_has_pins(path);
+    const bool has_pins = port_kind(path) == PORT_PINS;
     line_t *line = site->lines;
     while (line != NULL && (has_pins || !port_is_same(line->settings.path, path))) line = line->next;
     if (line == NULL) line = site_add_line(site, path);
     if (line == NULL) return reject_memory(&word->origin);
-    line->settings.has_pins = has_pins;
     line_add(line, sensor);
     port_keys_t *const keys = &line->settings.keys;
     for (port_key_t key = 0; key != PORT_KEYS; key++) {
@@ -266,20 +265,21 @@ static bool suits_port(const sensor_t *sensor, const origin_t *origin)
     const model_mode_t *const mode = sensor->mode;
     const char *const model = sensor->model->name;
     char example[PORT_EXAMPLE];
-    if (port_path_has_gateway(port->path)) {
-        const char *const wrong = port_path_error(port->path);
+    if (port_kind(port->path) == PORT_GATEWAY) {
+        tcp_address_t address;
+        const char *const wrong = tcp_parse(port->path, &address);
         if (wrong != NULL) return reject(origin, "%s: %s.", port->path, wrong);
         return mode->is_modbus ||
                reject(origin, "%s in mode %s needs a serial port. Over TCP, use Modbus: %s:modbus.", model,
                       mode->name, model);
     }
     const bool has_pins = pins_example(mode, "gpiochip0", example);
-    if (!port->has_pins && port->keys.has[KEY_TRIGGER] && (mode->may_pins & MODEL_PIN_TRIGGER) == 0)
+    if (port->kind != PORT_PINS && port->keys.has[KEY_TRIGGER] && (mode->may_pins & MODEL_PIN_TRIGGER) == 0)
         return reject(origin, "%s in mode %s has no trigger=. Leave it out.", model, mode->name);
-    if (port->has_pins && !has_pins)
+    if (port->kind == PORT_PINS && !has_pins)
         return reject(origin, "%s in mode %s needs a serial port, and %s is a GPIO chip.", model, mode->name,
                       port->path);
-    if (!port->has_pins && has_pins)
+    if (port->kind != PORT_PINS && has_pins)
         return reject(origin, "%s in mode %s needs GPIO lines, such as %s:%s@%s.", model, mode->name, model,
                       mode->name, example);
     return !has_pins || suits_chip(sensor, origin);
@@ -317,8 +317,8 @@ static bool set_lines(const site_t *site, const sensor_defaults_t *defaults, con
         const fathom_line_settings_t *const its = &site->sensors[i]->line;
         port_options_t *const port = site->sensors[i]->port;
         if (its->baud != port->line.baud || its->parity != port->line.parity) port->has_mixed_lines = true;
-        for (const line_t *line = site->lines; port->has_pins && line != NULL; line = line->next)
-            if (line->settings.has_pins &&
+        for (const line_t *line = site->lines; port->kind == PORT_PINS && line != NULL; line = line->next)
+            if (line->settings.kind == PORT_PINS &&
                 strcmp(port_last_part(port->path), port_last_part(line->settings.path)) == 0 &&
                 !suit_pins(port, &line->settings, &words[i].origin))
                 return false;
@@ -397,7 +397,7 @@ static bool suits_line(const site_t *site, size_t i, const origin_t *origin)
                       model, sensor->mode->name, model, sensor->address);
     for (size_t j = 0; j != i; j++)
         if (site->sensors[j]->port == port &&
-            !suit_each_other(site->sensors[j], sensor, !port_path_has_gateway(port->path), origin))
+            !suit_each_other(site->sensors[j], sensor, port_kind(port->path) != PORT_GATEWAY, origin))
             return false;
     return true;
 }

@@ -28,7 +28,6 @@ typedef struct {
 } sensor_word_t;
 
 /* The keys of serial ports and of GPIO chips: a port_keys_t. */
-#define BAUDS "9600 19200 38400 57600 115200 230400"
 extern const option_t serial_keys[];
 extern const option_t chip_keys[];
 

@@ -309,7 +309,7 @@ static bool restore(bool is_dry)
         return false;
     }
     plan.has_baud =
-        plan.is_new && port_has_line(&session.port); /* that of a gateway belongs to all sensors */
+        plan.is_new && session.port.kind == PORT_SERIAL; /* that of a gateway belongs to all sensors */
     make_plan();
     print_plan();
     if (!has_output()) return false; /* without the plan on stdout nothing is written */

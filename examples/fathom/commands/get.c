@@ -5,7 +5,7 @@
 #include "cli/rows.h"
 #include "commands/commands.h"
 #include "device/session.h"
-#include "ports/line_text.h"
+#include "ports/port_options.h"
 
 /* fathom info prints everything that a sensor reports, fathom get one setting or all. */
 

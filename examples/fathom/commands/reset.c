@@ -3,7 +3,7 @@
 
 #include "cli/rows.h"
 #include "commands/commands.h"
-#include "ports/line_text.h"
+#include "ports/port_options.h"
 
 /* fathom reset sends the two commands of an HPS-167S that discard settings. Nothing else sends them. */
 

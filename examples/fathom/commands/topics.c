@@ -4,7 +4,7 @@
 #include "cli/config.h"
 #include "cli/rows.h"
 #include "device/session.h"
-#include "ports/line_text.h"
+#include "ports/port_options.h"
 #include "reading/fields.h"
 
 /* Prints the keys of an option of some rows. */

@@ -17,18 +17,18 @@ static bool start(session_t *session)
         (void)fprintf(stderr, "fathom: %s: %s\n", sensor->name, reader_refusal(sensor->reader));
         return false;
     }
-    if (port_has_line(&session->port)) reader_listen_unasked(sensor->reader);
+    if (session->port.kind == PORT_SERIAL) reader_listen_unasked(sensor->reader);
     return true;
 }
 
 bool session_open(session_t *session, const host_t *host)
 {
-    port_settings_t settings = port_options_settings(session->sensor->port);
-    settings.line = session->sensor->line;
+    port_options_t options = *session->sensor->port;
+    options.line = session->sensor->line;
     if (!session->has_begun && !host->begin(host->ctx)) return false;
     session->has_begun = true;
-    if (!port_open_now(&session->port, host, &settings)) {
-        (void)fprintf(stderr, "fathom: %s\n", port_error(&session->port));
+    if (!port_open_now(&session->port, host, &options)) {
+        (void)fprintf(stderr, "fathom: %s\n", session->port.error_text);
         return false;
     }
     progress_init(&session->progress, stderr, host->now_us(host->ctx), 0);
@@ -38,7 +38,7 @@ bool session_open(session_t *session, const host_t *host)
         port_close(&session->port);
         return false;
     }
-    if (port_has_line(&session->port)) port_listen(&session->port, PORT_LISTEN_US);
+    if (session->port.kind == PORT_SERIAL) port_listen(&session->port, PORT_LISTEN_US);
     return true;
 }
 
@@ -147,7 +147,7 @@ fathom_status_t session_set(session_t *session, const setting_t *setting, int32_
 
 const char *session_line_text(const session_t *session, char text[LINE_TEXT])
 {
-    return port_line_text(&session->port, &session->sensor->line, text);
+    return session->port.kind == PORT_GATEWAY ? "Modbus TCP" : line_text(&session->sensor->line, text);
 }
 
 void session_explain(session_t *session, fathom_status_t status)

@@ -61,7 +61,7 @@ static bool is_stream(const failure_t *failure, bool is_asked)
 static bool is_crowded(const failure_t *failure)
 {
     enum { LEAST = 3 };
-    return !port_has_gateway(failure->port) && mode_is_asked(failure->mode) &&
+    return failure->port->kind != PORT_GATEWAY && mode_is_asked(failure->mode) &&
            failure->model->may_send_unasked && failure->evidence.own >= LEAST;
 }
 
@@ -70,7 +70,7 @@ static unsigned evidence_of(const failure_t *failure)
     const reader_facts_t facts = reader_facts(failure->reader);
     const model_mode_t *const mode = failure->mode;
     const port_t *const port = failure->port;
-    const bool has_pins = port_has_pins(port);
+    const bool has_pins = port->kind == PORT_PINS;
     const evidence_t *const heard = &failure->evidence;
     const counters_t *const counters = failure->counters;
     const uint64_t *const line = counters->attempt.line;
@@ -85,8 +85,8 @@ static unsigned evidence_of(const failure_t *failure)
         {!is_asked && !mode->is_triggered && !has_pins, LISTENED},
         {mode->is_triggered && !has_pins, TRIGGERED},
         {has_pins, PINS},
-        {port_has_gateway(port), TCP},
-        {port_is_lost(port), LOST},
+        {port->kind == PORT_GATEWAY, TCP},
+        {port->error == PORT_LOST, LOST},
         {failure->waits, WAITS},
         {mode->has_pulses, PULSES},
         {failure->noises != 0, SHORT},
@@ -108,7 +108,7 @@ static unsigned evidence_of(const failure_t *failure)
         {is_crowded(failure), UNSOLICITED},
         {is_only_echo(heard), ECHO},
         {line[FATHOM_LINE_OLD_BYTES] != 0, OLD},
-        {port_gateway_exception(port) != 0, GATEWAY},
+        {port->gateway_exception != NULL && *port->gateway_exception != 0, GATEWAY},
         {facts.is_unexpected, UNEXPECTED},
         {facts.refused_probe != 0, REFUSED},
         {facts.refused_raw == 0 || facts.refused_raw >= 0xFFFD, CODE},

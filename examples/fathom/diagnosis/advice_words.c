@@ -4,7 +4,7 @@
 #include <inttypes.h>
 #include <string.h>
 
-#include "ports/line_text.h"
+#include "ports/port_options.h"
 #include "sensors/models.h"
 
 /* ---- words that are more than a number or a text ---- */
@@ -21,8 +21,8 @@ static void print_sensor(FILE *to, const failure_t *failure)
 
 static void print_place(FILE *to, const failure_t *failure)
 {
-    (void)fprintf(to, " at %s", port_name(failure->port));
-    if (failure->line != NULL && port_has_line(failure->port)) {
+    (void)fprintf(to, " at %s", failure->port->name);
+    if (failure->line != NULL && failure->port->kind == PORT_SERIAL) {
         char text[LINE_TEXT];
         (void)fprintf(to, " (%s)", line_text(failure->line, text));
     }
@@ -68,7 +68,8 @@ static void print_settings(FILE *to, const failure_t *failure)
 
 static void print_exception(FILE *to, const failure_t *failure)
 {
-    const uint8_t gateway = port_gateway_exception(failure->port);
+    const uint8_t *const place = failure->port->gateway_exception;
+    const uint8_t gateway = place != NULL ? *place : 0;
     const uint8_t number = gateway != 0 ? gateway : reader_facts(failure->reader).exception;
     const modbus_exception_t exception = modbus_exception(number);
     (void)fprintf(to, "%02u (%s)", number, exception.name);
@@ -108,11 +109,11 @@ static const char *text_of(const char *name, const failure_t *failure)
         const char *text;
     } texts[] = {
         {"model", failure->model->name},
-        {"path", port_name(failure->port)},
+        {"path", failure->port->name},
         {"protocol", failure->mode->protocol},
         {"option", failure->is_request ? "UNIT" : "--address"},
         {"streamed", failure->evidence.streamed_a05 != 0 ? "a05" : "a16"},
-        {"port-error", port_error(failure->port)},
+        {"port-error", failure->port->error_text},
         {"library", fathom_status_advice(failure->status)},
     };
     for (size_t i = 0; i != sizeof texts / sizeof texts[0]; i++)
@@ -138,7 +139,7 @@ static uint64_t number_of(const char *name, const failure_t *failure)
         {"took", evidence->slowest_us / 1000u},
         {"timeout",
          (evidence->slowest_us / 500u + 99u) / 100u * 100u}, /* twice the time, in steps of 100 ms */
-        {"latency", port_latency_ms(failure->port)},
+        {"latency", adapter_latency_ms(failure->port->name)},
         {"probe", has_probes ? facts.refused_probe : 0u},
         {"raw", facts.refused_raw},
         {"min", facts.min_mm},

@@ -15,7 +15,8 @@ static void take(uint16_t *from, uint64_t *attempt, uint64_t *total, size_t coun
 static bool read_port(const port_counts_t *counts, port_t *port, fathom_posix_line_errors_t *now)
 {
     /* Most ports that do not count say so at the first look; a lost one would only say that again. */
-    return counts->is_there && port_line_errors(port, now);
+    return counts->is_there && port->kind == PORT_SERIAL &&
+           fathom_posix_line_errors(&port->serial, now) == FATHOM_POSIX_OK;
 }
 
 void counters_begin_port(port_counts_t *counts, port_t *port)

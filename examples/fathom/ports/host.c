@@ -1,15 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-#define _GNU_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): ppoll */
+#define _GNU_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): ppoll, pipe2 */
 #include "ports/host.h"
 
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/epoll.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -20,7 +19,8 @@
 /* A byte in this pipe ends every sleep, also a sleep that begins just after the signal. */
 static int wake[2];
 static volatile sig_atomic_t ended;
-static volatile sig_atomic_t has_signal; /* that of host_watch_signal() */
+static volatile sig_atomic_t watched; /* the number of host_watch_signal() */
+static volatile sig_atomic_t has_watched;
 static bool output_gone;
 
 static void ring(void)
@@ -29,26 +29,21 @@ static void ring(void)
     if (write(wake[1], "", 1) < 0) errno = saved; /* a full pipe wakes as well */
 }
 
-static void on_end(int number)
-{
-    (void)number;
-    ended = 1;
-    ring();
-}
-
 static void on_signal(int number)
 {
-    (void)number;
-    has_signal = 1;
+    if (number == watched)
+        has_watched = 1;
+    else
+        ended = 1;
     ring();
 }
 
-static void handle(int number, void (*handler)(int))
+/* Without SA_RESTART, so that a signal also ends a write to an output without a reader. */
+static void handle(int number)
 {
     struct sigaction action;
     memset(&action, 0, sizeof action);
-    action.sa_handler = handler;
-    /* Without SA_RESTART, so that a signal also ends a write to an output without a reader. */
+    action.sa_handler = on_signal;
     (void)sigemptyset(&action.sa_mask);
     (void)sigaction(number, &action, NULL);
 }
@@ -58,28 +53,28 @@ static bool begin(void *ctx)
 {
     struct sigaction old;
     (void)ctx;
-    if (pipe(wake) != 0) {
+    if (pipe2(wake, O_NONBLOCK | O_CLOEXEC) != 0) {
         (void)fprintf(stderr, "fathom: %s\n", strerror(errno));
         return false;
     }
-    for (int i = 0; i != 2; i++) {
-        (void)fcntl(wake[i], F_SETFL, O_NONBLOCK);
-        (void)fcntl(wake[i], F_SETFD, FD_CLOEXEC);
-    }
-    handle(SIGINT, on_end);
-    handle(SIGTERM, on_end);
-    if (sigaction(SIGHUP, NULL, &old) == 0 && old.sa_handler != SIG_IGN) handle(SIGHUP, on_end);
+    handle(SIGINT);
+    handle(SIGTERM);
+    if (sigaction(SIGHUP, NULL, &old) == 0 && old.sa_handler != SIG_IGN) handle(SIGHUP);
     (void)signal(SIGPIPE, SIG_IGN);
     (void)signal(SIGXFSZ, SIG_IGN);
     return true;
 }
 
-void host_watch_signal(int number) { handle(number, on_signal); }
+void host_watch_signal(int number)
+{
+    watched = number;
+    handle(number);
+}
 
 bool host_had_signal(void)
 {
-    const bool had = has_signal != 0;
-    has_signal = 0;
+    const bool had = has_watched != 0;
+    has_watched = 0;
     return had;
 }
 
@@ -108,27 +103,14 @@ static bool open_port(void *ctx, const char *path, const fathom_line_settings_t 
                       fathom_posix_uart_t *port, fathom_uart_t *uart)
 {
     (void)ctx;
-    if (fathom_posix_open(port, path, settings) != FATHOM_POSIX_OK) return false;
     *uart = fathom_posix_uart(port);
-    return true;
+    return fathom_posix_open(port, path, settings) == FATHOM_POSIX_OK;
 }
 
 static void close_port(void *ctx, fathom_posix_uart_t *port)
 {
     (void)ctx;
     fathom_posix_close(port);
-}
-
-static bool open_pins(void *ctx, const char *chip, const pin_options_t *wanted, pins_t *pins)
-{
-    (void)ctx;
-    return pins_open(pins, chip, wanted);
-}
-
-static void close_pins(void *ctx, pins_t *pins)
-{
-    (void)ctx;
-    pins_close(pins);
 }
 
 /* ---- time ---- */
@@ -160,68 +142,54 @@ static void wait_for(void *ctx, int fd, short events, uint32_t max_us, bool watc
 
 /* ---- the same in a loop ---- */
 
-static int wake_fd(const fathom_loop_source_t *source)
-{
-    (void)source;
-    return wake[0];
-}
+typedef struct {
+    fathom_loop_source_t source;
+    int fd;
+    short events;
+    void (*look)(void);
+} event_t;
 
-static bool poll_wake(fathom_loop_source_t *source)
+static int event_fd(const fathom_loop_source_t *source) { return ((const event_t *)source)->fd; }
+
+static short event_events(const fathom_loop_source_t *source) { return ((const event_t *)source)->events; }
+
+static bool poll_event(fathom_loop_source_t *source)
 {
-    (void)source;
-    drain();
+    ((const event_t *)source)->look();
     return true;
 }
 
-static int output_fd(const fathom_loop_source_t *source)
-{
-    (void)source;
-    return STDOUT_FILENO;
-}
-
-/* A lost reader is reported without being asked for. */
-static short output_events(const fathom_loop_source_t *source)
-{
-    (void)source;
-    return 0;
-}
-
-static bool poll_output(fathom_loop_source_t *source)
+static void look_at_output(void)
 {
     struct pollfd entry = {STDOUT_FILENO, 0, 0};
-    (void)source;
     if (poll(&entry, 1, 0) > 0 && (entry.revents & (POLLERR | POLLHUP)) != 0) output_gone = true;
-    return true;
 }
 
-/* epoll refuses a file, which has no reader that could go away. */
-static bool has_reader(void)
+/* Returns STDOUT_FILENO, or -1 if it has no reader that could go away. epoll refuses a file. */
+static int output_fd(void)
 {
-    struct epoll_event event = {0};
-    const int fd = epoll_create1(EPOLL_CLOEXEC);
-    const bool has = fd >= 0 && epoll_ctl(fd, EPOLL_CTL_ADD, STDOUT_FILENO, &event) == 0;
-    if (fd >= 0) (void)close(fd);
-    return has;
+    struct stat status;
+    const bool is_known = fstat(STDOUT_FILENO, &status) == 0;
+    const bool is_stream = is_known && (S_ISFIFO(status.st_mode) || S_ISSOCK(status.st_mode));
+    return is_stream || isatty(STDOUT_FILENO) == 1 ? STDOUT_FILENO : -1;
 }
 
 static void attend(void *ctx, fathom_loop_t *loop)
 {
-    static const fathom_loop_kind_t wakes = {.fd = wake_fd, .poll = poll_wake};
-    static const fathom_loop_kind_t outputs = {.fd = output_fd, .events = output_events, .poll = poll_output};
-    static fathom_loop_source_t sources[2];
+    static const fathom_loop_kind_t kind = {.fd = event_fd, .events = event_events, .poll = poll_event};
+    static event_t events[3];
     (void)ctx;
-    memset(sources, 0, sizeof sources);
-    sources[0].kind = &wakes;
-    sources[1].kind = &outputs;
-    fathom_loop_add(loop, &sources[0]);
-    if (has_reader()) fathom_loop_add(loop, &sources[1]);
-    adapter_watch(loop);
+    events[0] = (event_t){{.kind = &kind}, wake[0], POLLIN, drain};
+    events[1] = (event_t){{.kind = &kind}, output_fd(), 0, look_at_output}; /* a loss needs no event */
+    events[2] = (event_t){{.kind = &kind}, adapter_fd(), POLLIN, adapter_look};
+    for (size_t i = 0; i != sizeof events / sizeof events[0]; i++)
+        if (events[i].fd >= 0) fathom_loop_add(loop, &events[i].source);
 }
 
 const host_t host_posix = {.open = open_port,
                            .close = close_port,
-                           .open_pins = open_pins,
-                           .close_pins = close_pins,
+                           .open_pins = pins_open,
+                           .close_pins = pins_close,
                            .now_us = now_us,
                            .utc_us = utc_us,
                            .begin = begin,

@@ -5,23 +5,20 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "fathom/hal.h"
-
 /*
- * Stands between a line and its port, changes nothing, and stores what passes: the evidence from which a failure is
- * explained. An attempt begins with listener_forget().
+ * What passed between a line and its port in an attempt: the evidence from which a failure is explained. An attempt
+ * begins with listener_forget().
  */
 enum { LISTENER_WINDOW = 512, LISTENER_REQUEST = 255 };
 
 typedef struct listener listener_t;
 struct listener {
-    fathom_uart_t inner;
-    fathom_clock_t clock;
-    /* If several sensors on the line are asked: returns the listener of the sensor whose request is about to leave, which
-     * stores what passes until the next request. NULL: this listener stores all. */
+    /* Of a port at which several sensors are asked: returns the listener of the sensor whose request is about to leave,
+     * which stores what passes until the next request. NULL: the port's own listener stores all. */
     listener_t *(*whose)(void *ctx);
     void *ctx;
-    listener_t *now;                   /* the listener that stores at present; NULL: this one */
+    listener_t *now; /* the listener that stores at present; NULL: the port's own */
+
     uint8_t window[LISTENER_WINDOW];   /* the first bytes that were received in this attempt */
     uint16_t have;                     /* bytes in `window` */
     uint32_t bytes;                    /* received in this attempt */
@@ -48,11 +45,12 @@ typedef struct {
     uint32_t slowest_us;
 } evidence_t;
 
-/* Puts the listener before *uart, which is replaced. Do not move the listener after this. */
-void listener_begin(listener_t *listener, fathom_uart_t *uart, const fathom_clock_t *clock);
-
 /* Starts an attempt: discards what was received. */
 void listener_forget(listener_t *listener);
+
+/* Stores a request, and received bytes. */
+void listener_sent(listener_t *listener, const uint8_t *request, uint8_t length, uint32_t now_us);
+void listener_received(listener_t *listener, const uint8_t *bytes, uint32_t count, uint32_t now_us);
 
 /* address: of the unit that is asked; 0: none is asked. */
 void listener_judge(const listener_t *listener, uint8_t address, evidence_t *evidence);

@@ -1,62 +1,55 @@
 /* SPDX-License-Identifier: MIT */
-#include "ports/pins.h"
+#include "ports/host.h"
 
 #include <stddef.h>
 #include <string.h>
 
 enum { TRIGGER, ECHO, IN };
 
-static bool open_trigger(pins_t *pins, const char *chip, uint32_t number)
-{
-    fathom_gpio_t *const line = &pins->lines[TRIGGER];
-    if (fathom_gpio_open_output(line, chip, number, true) != FATHOM_GPIO_OK) return false;
-    pins->trigger = fathom_gpio_pin(line);
-    return true;
-}
-
-static bool open_echo(pins_t *pins, const char *chip, uint32_t number)
-{
-    fathom_gpio_t *const line = &pins->lines[ECHO];
-    if (fathom_gpio_open_edges(line, chip, number, (fathom_gpio_bias_t)pins->wanted.bias) != FATHOM_GPIO_OK)
-        return false;
-    pins->capture = fathom_gpio_capture(line);
-    pins->missed = &line->edges.missed;
-    pins->lost_events = &line->lost_events;
-    return true;
-}
-
 /* With edges, so that a change ends a sleep. A line without edges is sampled again and again. */
-static bool open_in(pins_t *pins, const char *chip, uint32_t number)
+static fathom_gpio_status_t open_in(pins_t *pins, const char *chip, uint32_t number)
 {
     const fathom_gpio_bias_t bias = (fathom_gpio_bias_t)pins->wanted.bias;
-    fathom_gpio_t *const line = &pins->lines[IN];
-    fathom_gpio_status_t status = fathom_gpio_open_edges(line, chip, number, bias);
+    const fathom_gpio_status_t status = fathom_gpio_open_edges(&pins->lines[IN], chip, number, bias);
     pins->wakes = status == FATHOM_GPIO_OK;
-    if (status == FATHOM_GPIO_ERR_UNSUPPORTED) status = fathom_gpio_open_input(line, chip, number, bias);
-    if (status != FATHOM_GPIO_OK) return false;
-    pins->in = fathom_gpio_pin(line);
-    return true;
+    return status == FATHOM_GPIO_ERR_UNSUPPORTED
+               ? fathom_gpio_open_input(&pins->lines[IN], chip, number, bias)
+               : status;
 }
 
-bool pins_open(pins_t *pins, const char *chip, const pin_options_t *wanted)
+/* Nothing is driven before the inputs are open. */
+static bool open_lines(pins_t *pins, const char *chip)
 {
-    const int32_t numbers[PINS_LINES] = {wanted->trigger, wanted->echo, wanted->in};
-    bool (*const opens[PINS_LINES])(pins_t *, const char *, uint32_t) = {open_trigger, open_echo, open_in};
+    const pin_options_t *const wanted = &pins->wanted;
+    fathom_gpio_t *const lines = pins->lines;
+    return (wanted->in < 0 || open_in(pins, chip, (uint32_t)wanted->in) == FATHOM_GPIO_OK) &&
+           (wanted->echo < 0 || fathom_gpio_open_edges(&lines[ECHO], chip, (uint32_t)wanted->echo,
+                                                       (fathom_gpio_bias_t)wanted->bias) == FATHOM_GPIO_OK) &&
+           (wanted->trigger < 0 || fathom_gpio_open_output(&lines[TRIGGER], chip, (uint32_t)wanted->trigger,
+                                                           true) == FATHOM_GPIO_OK);
+}
+
+bool pins_open(void *ctx, const char *chip, const pin_options_t *wanted, pins_t *pins)
+{
+    fathom_gpio_t *const lines = pins->lines;
     memset(pins, 0, sizeof *pins);
     pins->wanted = *wanted;
-    pins->fd = -1;
-    for (size_t i = PINS_LINES; i != 0; i--) { /* Nothing is driven before the inputs are open. */
-        if (numbers[i - 1] < 0 || opens[i - 1](pins, chip, (uint32_t)numbers[i - 1])) continue;
-        pins_close(pins);
+    if (!open_lines(pins, chip)) {
+        pins_close(ctx, pins);
         return false;
     }
-    pins->fd = fathom_gpio_fd(&pins->lines[wanted->echo >= 0 ? ECHO : IN]);
+    pins->fd = fathom_gpio_fd(&lines[wanted->echo >= 0 ? ECHO : IN]);
+    pins->trigger = fathom_gpio_pin(&lines[TRIGGER]);
+    pins->in = fathom_gpio_pin(&lines[IN]);
+    pins->capture = fathom_gpio_capture(&lines[ECHO]);
+    pins->missed = &lines[ECHO].edges.missed;
+    pins->lost_events = &lines[ECHO].lost_events;
     return true;
 }
 
-/* The error of a line stays after this. */
-void pins_close(pins_t *pins)
+void pins_close(void *ctx, pins_t *pins)
 {
+    (void)ctx;
     for (size_t i = 0; i != PINS_LINES; i++) fathom_gpio_close(&pins->lines[i]);
     pins->fd = -1;
 }

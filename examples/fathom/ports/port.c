@@ -2,105 +2,204 @@
 #include "ports/port.h"
 
 #include <inttypes.h>
+#include <poll.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* ---- errors ---- */
-
 /* A user who set FATHOM_PORT long ago needs to know why it is this port. */
-fathom_status_t port_set_error(port_t *port, port_error_t error, const char *text)
+fathom_status_t port_fail(port_t *port, port_error_t error, const char *format, ...)
 {
     const char *const named = getenv("FATHOM_PORT"); /* NOLINT(concurrency-mt-unsafe): one thread */
-    const bool is_named = error != PORT_LOST && named != NULL && strcmp(named, port->settings.path) == 0;
-    (void)snprintf(port->text, sizeof port->text, "%.*s%s", (int)sizeof port->text - 64, text,
+    const bool is_named = error != PORT_LOST && named != NULL && strcmp(named, port->options.path) == 0;
+    char text[sizeof port->error_text - 64];
+    va_list arguments;
+    va_start(arguments, format);
+    (void)vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    (void)snprintf(port->error_text, sizeof port->error_text, "%s%s", text,
                    is_named ? " (FATHOM_PORT in the environment names this port)" : "");
     port->error = error;
     return FATHOM_ERR_PORT;
 }
 
-fathom_status_t port_fail(port_t *port, port_error_t error, const char *format, ...)
+/* ---- lines of a GPIO chip ---- */
+
+static fathom_status_t fail_pins(port_t *port, const fathom_gpio_t *line)
 {
-    char text[sizeof port->text];
-    va_list arguments;
-    const int head = snprintf(text, sizeof text / 2, "%.*s: ", (int)(sizeof text / 2 - 3), port_name(port));
-    va_start(arguments, format);
-    /* NOLINTNEXTLINE(clang-analyzer-valist.Uninitialized): clang-tidy 14 forgets the line above */
-    (void)vsnprintf(text + head, sizeof text - (size_t)head, format, arguments);
-    va_end(arguments);
-    return port_set_error(port, error, text);
+    return port_fail(port,
+                     line->error == FATHOM_GPIO_ERR_LOST        ? PORT_LOST
+                     : line->error == FATHOM_GPIO_ERR_NOT_FOUND ? PORT_ABSENT
+                                                                : PORT_FAILED,
+                     "%s", line->text);
 }
+
+static fathom_status_t open_pins(port_t *port, const char *chip)
+{
+    const host_t *const host = port->host;
+    const fathom_gpio_t *line = port->pins.lines;
+    if (host->open_pins(host->ctx, chip, &port->options.pins, &port->pins)) return FATHOM_OK;
+    while (line->error == FATHOM_GPIO_OK && line != &port->pins.lines[PINS_LINES - 1]) line++;
+    return fail_pins(port, line);
+}
+
+static fathom_status_t open_chip(port_t *port)
+{
+    const fathom_status_t status = open_pins(port, port->options.path);
+    port->fd = port->pins.fd;
+    return status;
+}
+
+static fathom_status_t poll_pins(port_t *port)
+{
+    for (size_t i = 0; i != PINS_LINES; i++)
+        if (port->pins.lines[i].is_lost) return fail_pins(port, &port->pins.lines[i]);
+    return FATHOM_OK;
+}
+
+static void close_pins(port_t *port) { port->host->close_pins(port->host->ctx, &port->pins); }
+
+static const port_driver_t driver_of_pins = {open_chip, poll_pins, close_pins, NULL};
 
 /* ---- a tty ---- */
 
 static fathom_status_t fail_serial(port_t *port)
 {
     const fathom_posix_status_t error = fathom_posix_error(&port->serial);
-    return port_set_error(port,
-                          error == FATHOM_POSIX_ERR_LOST        ? PORT_LOST
-                          : error == FATHOM_POSIX_ERR_NOT_FOUND ? PORT_ABSENT
-                                                                : PORT_FAILED,
-                          fathom_posix_error_text(&port->serial));
+    return port_fail(port,
+                     error == FATHOM_POSIX_ERR_LOST        ? PORT_LOST
+                     : error == FATHOM_POSIX_ERR_NOT_FOUND ? PORT_ABSENT
+                                                           : PORT_FAILED,
+                     "%s", fathom_posix_error_text(&port->serial));
 }
 
-static bool has_trigger(const port_t *port) { return port->settings.pins.chip != 0; }
+static bool is_serial_lost(const port_t *port)
+{
+    return fathom_posix_error(&port->serial) == FATHOM_POSIX_ERR_LOST;
+}
+
+static void lose_serial(port_t *port)
+{
+    if (is_serial_lost(port)) (void)fail_serial(port);
+}
+
+static bool has_trigger(const port_t *port) { return port->options.pins.chip != 0; }
 
 static void close_serial(port_t *port)
 {
-    if (has_trigger(port)) port->host->close_pins(port->host->ctx, &port->pins);
-    adapter_close(&port->adapter);
+    if (has_trigger(port)) close_pins(port);
     port->host->close(port->host->ctx, &port->serial);
+}
+
+/* The port is open: sets up what else belongs to it. */
+static fathom_status_t set_up_serial(port_t *port)
+{
+    char chip[sizeof "gpiochip4294967295"];
+    if (!adapter_open(&port->adapter))
+        return port_fail(port, PORT_ABSENT, "%s: another adapter took this path", port->name);
+    if (port->options.rs485 &&
+        fathom_posix_set_rs485(&port->serial, &(fathom_posix_rs485_t){0}) != FATHOM_POSIX_OK)
+        return fail_serial(port);
+    (void)snprintf(chip, sizeof chip, "gpiochip%" PRIu32, port->options.pins.chip - 1);
+    return has_trigger(port) ? open_pins(port, chip) : FATHOM_OK;
 }
 
 static fathom_status_t open_serial(port_t *port)
 {
-    const port_settings_t *const settings = &port->settings;
+    const port_options_t *const options = &port->options;
     const host_t *const host = port->host;
-    const char *const reason = adapter_find(&port->adapter, settings->path);
-    if (reason != NULL && reason[0] != '\0') return port_fail(port, PORT_FAILED, "%s", reason);
-    if (reason != NULL) return port_fail(port, PORT_ABSENT, "the adapter is not plugged in");
-    if (!host->open(host->ctx, port_name(port), &settings->line, &port->serial, &port->uart))
+    const char *const reason = adapter_find(&port->adapter, options->path);
+    if (port->adapter.path[0] != '\0') port->name = port->adapter.path;
+    if (reason != NULL && reason[0] != '\0')
+        return port_fail(port, PORT_FAILED, "%s: %s", port->name, reason);
+    if (reason != NULL) return port_fail(port, PORT_ABSENT, "%s: the adapter is not plugged in", port->name);
+    if (!host->open(host->ctx, port->name, &options->line, &port->serial, &port->inner))
         return fail_serial(port);
-    if (!adapter_open(&port->adapter)) {
-        close_serial(port);
-        return port_fail(port, PORT_ABSENT, "another adapter took this path");
-    }
-    if (settings->rs485 &&
-        fathom_posix_set_rs485(&port->serial, &(fathom_posix_rs485_t){0}) != FATHOM_POSIX_OK) {
-        (void)fail_serial(port);
+    if (set_up_serial(port) != FATHOM_OK) {
         close_serial(port);
         return FATHOM_ERR_PORT;
     }
-    if (has_trigger(port)) {
-        char chip[sizeof "gpiochip4294967295"];
-        (void)snprintf(chip, sizeof chip, "gpiochip%" PRIu32, settings->pins.chip - 1);
-        if (port_open_pins(port, chip) != FATHOM_OK) {
-            close_serial(port);
-            return FATHOM_ERR_PORT;
-        }
-    }
+    port->has_wire = !port->serial.is_pty;
+    port->parts.silence_us = fathom_silence_us(&options->line);
     port->parts.gap_us = PORT_RESPONSE_GAP_US;
-    port->parts.echo = settings->echo;
+    port->parts.echo = options->echo;
     port->parts.senders = &fathom_line_senders;
     port->parts.masters = &fathom_line_masters;
-    port_set_slowest(port, &settings->line);
     return FATHOM_OK;
 }
 
 static fathom_status_t poll_serial(port_t *port)
 {
-    if (adapter_is_doubtful(&port->adapter))
-        return port_fail(port, PORT_LOST, "%s", adapter_find(&port->adapter, port->settings.path));
-    if (fathom_posix_error(&port->serial) == FATHOM_POSIX_ERR_LOST) return fail_serial(port);
-    return has_trigger(port) ? port_chip.poll(port) : FATHOM_OK;
+    const char *const doubt = adapter_doubt(&port->adapter);
+    if (doubt != NULL) return port_fail(port, PORT_LOST, "%s: %s", port->name, doubt);
+    if (is_serial_lost(port)) return fail_serial(port);
+    return has_trigger(port) ? poll_pins(port) : FATHOM_OK;
 }
 
-static int serial_fd(const port_t *port) { return fathom_posix_fd(&port->serial); }
+static const port_driver_t driver_of_serial = {open_serial, poll_serial, close_serial, lose_serial};
 
-static short serial_events(const port_t *port) { return fathom_posix_poll_events(&port->serial); }
+/* ---- the listener, between the line and the driver ---- */
 
-const port_driver_t port_serial = {open_serial, poll_serial, close_serial, serial_fd, serial_events};
+static int listen_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
+{
+    port_t *const port = ctx;
+    listener_t *const listener = port->listener.now != NULL ? port->listener.now : &port->listener;
+    const int n = port->inner.read(port->inner.ctx, bytes, capacity, rx);
+    if (n < 0) port->driver->fail(port);
+    if (n > 0) listener_received(listener, bytes, (uint32_t)n, port->clock.now_us(port));
+    return n;
+}
+
+static int listen_write(void *ctx, const uint8_t *bytes, size_t length)
+{
+    port_t *const port = ctx;
+    listener_t *const own = &port->listener;
+    const uint32_t asked_us = port->clock.now_us(port); /* a response may be there before the write returns */
+    const int n = port->inner.write(port->inner.ctx, bytes, length);
+    if (n < 0) port->driver->fail(port);
+    if (n <= 0 || length > LISTENER_REQUEST) return n;
+    if (port->gateway_exception != NULL) *port->gateway_exception = 0;
+    if (own->whose != NULL) own->now = own->whose(own->ctx);
+    listener_sent(own->now != NULL ? own->now : own, bytes, (uint8_t)length, asked_us);
+    return n;
+}
+
+static bool listen_sent(void *ctx)
+{
+    const port_t *const port = ctx;
+    return port->inner.sent(port->inner.ctx);
+}
+
+static int listen_set_line(void *ctx, const fathom_line_settings_t *settings)
+{
+    const port_t *const port = ctx;
+    return port->inner.set_line(port->inner.ctx, settings);
+}
+
+static int listen_set_break(void *ctx, bool on)
+{
+    const port_t *const port = ctx;
+    return port->inner.set_break(port->inner.ctx, on);
+}
+
+static uint32_t listen_leaves_in_us(void *ctx)
+{
+    const port_t *const port = ctx;
+    return port->inner.leaves_in_us(port->inner.ctx);
+}
+
+static void start_listener(port_t *port)
+{
+    const fathom_uart_t *const inner = &port->inner;
+    port->uart = (fathom_uart_t){.read = listen_read,
+                                 .write = listen_write,
+                                 .sent = listen_sent,
+                                 .set_line = inner->set_line != NULL ? listen_set_line : NULL,
+                                 .set_break = inner->set_break != NULL ? listen_set_break : NULL,
+                                 .leaves_in_us = inner->leaves_in_us != NULL ? listen_leaves_in_us : NULL,
+                                 .ctx = port};
+}
 
 /* ---- opening ---- */
 
@@ -110,20 +209,13 @@ static uint32_t now_us(void *ctx)
     return (uint32_t)port->host->now_us(port->host->ctx);
 }
 
-void port_set_slowest(port_t *port, const fathom_line_settings_t *settings)
-{
-    if (port_has_line(port)) port->parts.silence_us = fathom_silence_us(settings);
-}
-
-/* The port is open: starts a line on it. */
 static void start_line(port_t *port)
 {
-    fathom_loop_source_t *const source = port->settings.source;
-    if (source != NULL) {
-        port->uart = fathom_loop_uart(source, &port->uart);
-        source->reads_all = port_has_line(port) && port_fd(port) >= 0;
+    if (port->source != NULL) {
+        port->inner = fathom_loop_uart(port->source, &port->inner);
+        port->source->reads_all = port->kind == PORT_SERIAL && port_fd(port) >= 0;
     }
-    listener_begin(&port->listener, &port->uart, &port->clock);
+    start_listener(port);
     port->parts.uart = &port->uart;
     port->parts.clock = &port->clock;
     port->parts.frame = port->frame;
@@ -139,48 +231,52 @@ static void start_line(port_t *port)
 /* After each call of the driver that opens or connects. */
 static fathom_status_t note_opening(port_t *port, fathom_status_t status)
 {
-    if (status == FATHOM_ERR_PORT) port->failures = port->error == PORT_ABSENT ? 0 : port->failures + 1;
-    if (status == FATHOM_OK) {
-        port->failures = 0;
-        if (port_has_pins(port))
-            listener_begin(&port->listener, &port->uart, &port->clock); /* which hears nothing */
-        else
-            start_line(port);
-    }
     port->is_connecting = status == FATHOM_PENDING;
+    if (status == FATHOM_ERR_PORT) port->failures = port->error == PORT_ABSENT ? 0 : port->failures + 1;
+    if (status != FATHOM_OK) return status;
+    port->failures = 0;
+    port->listener.now = NULL;
+    port->listener.request_length = 0;
+    listener_forget(&port->listener);
+    if (port->kind != PORT_PINS) start_line(port);
     return status;
 }
 
-fathom_status_t port_open(port_t *port, const host_t *host, const port_settings_t *settings)
+fathom_status_t port_open(port_t *port, const host_t *host, const port_options_t *options,
+                          fathom_loop_source_t *source)
 {
-    if (strcmp(port->path, settings->path) != 0) memset(&port->adapter, 0, sizeof port->adapter);
+    static const port_driver_t *const drivers[] = {
+        [PORT_SERIAL] = &driver_of_serial, [PORT_GATEWAY] = &port_tcp, [PORT_PINS] = &driver_of_pins};
+    if (port->options.path == NULL || strcmp(port->options.path, options->path) != 0)
+        memset(&port->adapter, 0, sizeof port->adapter);
     port->host = host;
-    port->settings = *settings;
-    port->settings.path = port->path;
-    (void)snprintf(port->path, sizeof port->path, "%s", settings->path);
-    port->driver = port_path_has_line(settings->path)   ? &port_serial
-                   : port_path_has_pins(settings->path) ? &port_chip
-                                                        : &port_tcp;
+    port->options = *options;
+    port->name = options->path;
+    port->kind = port_kind(options->path);
+    port->driver = drivers[port->kind];
+    port->source = source;
     port->clock = (fathom_clock_t){now_us, port};
     port->error = PORT_OK;
-    port->gateway_exception = 0;
-    port->text[0] = '\0';
-    if (strlen(settings->path) >= sizeof port->path)
-        return port_fail(port, PORT_FAILED, "the path is too long");
+    port->error_text[0] = '\0';
+    port->has_wire = true;
+    port->gateway_exception = NULL;
+    port->fd = -1;
+    port->events = POLLIN;
     return note_opening(port, port->driver->open(port));
 }
 
-bool port_open_now(port_t *port, const host_t *host, const port_settings_t *settings)
+bool port_open_now(port_t *port, const host_t *host, const port_options_t *options)
 {
     enum { LOOK_US = 500000 };
-    fathom_status_t status = port_open(port, host, settings);
+    fathom_status_t status = port_open(port, host, options, NULL);
     while (status == FATHOM_PENDING) {
         if (port_wait(port, LOOK_US) == FATHOM_OK) {
             status = port_poll(port);
             continue;
         }
         port_close(port);
-        status = port_fail(port, PORT_FAILED, "the command was ended before the connection was established");
+        status = port_fail(port, PORT_FAILED,
+                           "%s: the command was ended before the connection was established", port->name);
     }
     return status == FATHOM_OK;
 }
@@ -196,9 +292,15 @@ void port_close(port_t *port)
     if (port->driver != NULL && port->driver->close != NULL) port->driver->close(port);
 }
 
-int port_fd(const port_t *port) { return port->driver->fd(port); }
+int port_fd(const port_t *port)
+{
+    return port->kind == PORT_SERIAL ? fathom_posix_fd(&port->serial) : port->fd;
+}
 
-short port_events(const port_t *port) { return port->driver->events(port); }
+short port_events(const port_t *port)
+{
+    return port->kind == PORT_SERIAL ? fathom_posix_poll_events(&port->serial) : port->events;
+}
 
 /* ---- waiting ---- */
 
@@ -211,7 +313,7 @@ static bool has_ended(const port_t *port)
 fathom_status_t port_wait(port_t *port, uint32_t max_us)
 {
     const host_t *const host = port->host;
-    if (port_is_lost(port)) return FATHOM_ERR_PORT;
+    if (port->error == PORT_LOST) return FATHOM_ERR_PORT;
     if (!has_ended(port))
         host->wait(host->ctx, port_fd(port), port_events(port), max_us, port->watches_output);
     return has_ended(port) ? FATHOM_ERR_CANCELLED : FATHOM_OK; /* so that no request starts after a signal */
@@ -238,68 +340,4 @@ fathom_status_t port_listen(port_t *port, uint32_t for_us)
         status = port_wait(port, (uint32_t)(end_us - at_us));
     }
     return status;
-}
-
-/* ---- properties ---- */
-
-/* A read that failed has stored the error in port->serial. */
-static bool is_lost_since(const port_t *port)
-{
-    return port->error == PORT_OK && port->driver == &port_serial &&
-           fathom_posix_error(&port->serial) == FATHOM_POSIX_ERR_LOST;
-}
-
-bool port_is_lost(const port_t *port) { return port->error == PORT_LOST || is_lost_since(port); }
-
-bool port_is_absent(const port_t *port) { return port->error == PORT_ABSENT; }
-
-const char *port_error(const port_t *port)
-{
-    return is_lost_since(port) ? fathom_posix_error_text(&port->serial) : port->text;
-}
-
-const char *port_name(const port_t *port)
-{
-    const bool is_found = port->driver == &port_serial && port->adapter.path[0] != '\0';
-    return is_found ? port->adapter.path : port->settings.path;
-}
-
-bool port_is_overdue(const port_t *port)
-{
-    enum { TRIES = 3 };
-    return port->failures == TRIES;
-}
-
-const char *port_advice(port_t *port)
-{
-    return port->driver == &port_serial ? adapter_advice(&port->adapter) : NULL;
-}
-
-bool port_has_line(const port_t *port) { return port->driver == &port_serial; }
-
-bool port_has_gateway(const port_t *port) { return port->driver == &port_tcp; }
-
-bool port_has_pins(const port_t *port) { return port->driver == &port_chip; }
-
-bool port_has_wire(const port_t *port) { return !port->serial.is_pty; }
-
-bool port_can_break(const port_t *port) { return port->uart.set_break != NULL && port_has_wire(port); }
-
-uint8_t port_gateway_exception(const port_t *port) { return port->gateway_exception; }
-
-bool port_line_errors(port_t *port, fathom_posix_line_errors_t *errors)
-{
-    return port_has_line(port) && fathom_posix_line_errors(&port->serial, errors) == FATHOM_POSIX_OK;
-}
-
-unsigned port_latency_ms(const port_t *port)
-{
-    return port_has_line(port) ? adapter_latency_ms(port_name(port)) : 0;
-}
-
-const char *port_line_text(const port_t *port, const fathom_line_settings_t *line, char text[LINE_TEXT])
-{
-    if (!port_has_gateway(port)) return line_text(line, text);
-    (void)snprintf(text, LINE_TEXT, "Modbus TCP");
-    return text;
 }

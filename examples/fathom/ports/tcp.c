@@ -5,7 +5,6 @@
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/socket.h>
@@ -13,90 +12,69 @@
 
 #include "fathom_libmodbus.h"
 #include "ports/port.h"
-#include "ports/tcp_address.h"
 
 /* A connection to a Modbus TCP server as a driver of port.h: a UART that carries RTU frames, by port/libmodbus. A host may
  * have several addresses, which are tried one after another. */
 enum { CONNECT_US = 5000000 };
 
 typedef struct tcp {
-    port_t *port;
     tcp_address_t address;
-    struct addrinfo *addresses;  /* of the host, as long as it connects */
+    struct addrinfo *addresses;  /* of the host */
     const struct addrinfo *next; /* to try if the present one fails */
-    int fd;                      /* -1: none */
     uint64_t deadline_us;        /* of the present address */
     fathom_libmodbus_t libmodbus;
-    modbus_t *modbus;    /* NULL: it connects */
-    fathom_uart_t inner; /* that of libmodbus */
+    modbus_t *modbus; /* NULL: it connects */
 } tcp_t;
+
+static void close_tcp(port_t *port)
+{
+    tcp_t *const tcp = port->tcp;
+    if (port->fd >= 0) (void)close(port->fd);
+    port->fd = -1;
+    port->tcp = NULL;
+    port->gateway_exception = NULL;
+    if (tcp == NULL) return;
+    if (tcp->addresses != NULL) freeaddrinfo(tcp->addresses);
+    if (tcp->modbus != NULL) modbus_free(tcp->modbus);
+    free(tcp);
+}
 
 /* ---- a connection ---- */
 
 /* Explains why the server is lost. Some servers serve one program at a time. */
-static void lose(const tcp_t *tcp)
+static void lose(port_t *port)
 {
     static const char alone[] = "; some serve one program at a time: is another one connected?";
-    const int error = tcp->libmodbus.system_error;
-    port_t *const port = tcp->port;
+    const fathom_libmodbus_t *const libmodbus = &port->tcp->libmodbus;
+    const fathom_libmodbus_error_t error = fathom_libmodbus_error(libmodbus);
+    const char *reason = "the server closed the connection";
     if (port->error == PORT_LOST) return;
-    switch (fathom_libmodbus_error(&tcp->libmodbus)) {
-    case FATHOM_LIBMODBUS_ERR_NONSENSE:
-        (void)port_fail(
-            port, PORT_LOST,
-            "the received bytes are not Modbus TCP. Check the port number (usually 502) and the server");
-        break;
-    case FATHOM_LIBMODBUS_ERR_TRUNCATED:
-        (void)port_fail(port, PORT_LOST, "the system accepted only a part of a request");
-        break;
-    case FATHOM_LIBMODBUS_ERR_SYSTEM:
-        if (error == ECONNRESET || error == EPIPE)
-            (void)port_fail(port, PORT_LOST, "the server reset the connection%s", alone);
-        else
-            (void)port_fail(port, PORT_LOST, "%s", strerror(error));
-        break;
-    default:
-        (void)port_fail(port, PORT_LOST, "the server closed the connection%s", alone);
-        break;
-    }
-}
-
-static int read_bytes(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
-{
-    tcp_t *const tcp = ctx;
-    const int n = tcp->inner.read(tcp->inner.ctx, bytes, capacity, rx);
-    if (n < 0) lose(tcp);
-    tcp->port->gateway_exception = tcp->libmodbus.gateway_exception;
-    return n;
-}
-
-static int write_bytes(void *ctx, const uint8_t *bytes, size_t length)
-{
-    tcp_t *const tcp = ctx;
-    const int n = tcp->inner.write(tcp->inner.ctx, bytes, length);
-    if (n < 0) lose(tcp);
-    if (n > 0) tcp->port->gateway_exception = tcp->libmodbus.gateway_exception = 0;
-    return n;
-}
-
-static bool is_sent(void *ctx)
-{
-    tcp_t *const tcp = ctx;
-    return tcp->inner.sent(tcp->inner.ctx);
+    if (error == FATHOM_LIBMODBUS_ERR_NONSENSE)
+        reason = "the received bytes are not Modbus TCP. Check the port number (usually 502) and the server";
+    else if (error == FATHOM_LIBMODBUS_ERR_TRUNCATED)
+        reason = "the system accepted only a part of a request";
+    else if (error == FATHOM_LIBMODBUS_ERR_SYSTEM &&
+             (libmodbus->system_error == ECONNRESET || libmodbus->system_error == EPIPE))
+        reason = "the server reset the connection";
+    else if (error == FATHOM_LIBMODBUS_ERR_SYSTEM)
+        reason = strerror(libmodbus->system_error); /* NOLINT(concurrency-mt-unsafe): one thread */
+    (void)port_fail(port, PORT_LOST, "%s: %s%s", port->name, reason,
+                    strncmp(reason, "the server ", 11) == 0 ? alone : "");
 }
 
 /* The connection is established: the line on it. Responses arrive whole, and need no silence between them. The server
  * assigns each response to its request. */
-static fathom_status_t start(tcp_t *tcp)
+static fathom_status_t start(port_t *port)
 {
-    port_t *const port = tcp->port;
-    tcp->modbus = modbus_new_tcp_pi(tcp->address.host, tcp->address.service);
-    if (tcp->modbus == NULL) return port_fail(port, PORT_FAILED, "%s", strerror(ENOMEM));
-    (void)modbus_set_socket(tcp->modbus, tcp->fd);
+    tcp_t *const tcp = port->tcp;
     const fathom_libmodbus_config_t config = {.clock = &port->clock};
+    tcp->modbus = modbus_new_tcp_pi(tcp->address.host, tcp->address.service);
+    if (tcp->modbus == NULL) return port_fail(port, PORT_FAILED, "%s: %s", port->name, strerror(ENOMEM));
+    (void)modbus_set_socket(tcp->modbus, port->fd);
     (void)fathom_libmodbus_init(&tcp->libmodbus, tcp->modbus, &config); /* all of it is there */
-    tcp->inner = fathom_libmodbus_uart(&tcp->libmodbus);
-    port->uart = (fathom_uart_t){.read = read_bytes, .write = write_bytes, .sent = is_sent, .ctx = tcp};
+    port->inner = fathom_libmodbus_uart(&tcp->libmodbus);
+    port->gateway_exception = &tcp->libmodbus.gateway_exception;
+    port->events = POLLIN;
     port->parts.silence_us = 100; /* the least (line.h) */
     port->parts.gap_us = 1000;
     port->parts.echo = FATHOM_LINE_ECHO_OFF;
@@ -124,26 +102,27 @@ static const char *advice_for(int error)
 }
 
 /* Starts to connect to an address. Returns 0 or the error. */
-static int start_connecting(tcp_t *tcp, const struct addrinfo *to)
+static int start_connecting(port_t *port, const struct addrinfo *to)
 {
     const int on = 1;
-    tcp->fd = socket(to->ai_family, to->ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, to->ai_protocol);
-    if (tcp->fd < 0) return errno;
+    port->fd = socket(to->ai_family, to->ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, to->ai_protocol);
+    if (port->fd < 0) return errno;
     /* A request is small, and waits for nothing. */
-    (void)setsockopt(tcp->fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-    tcp->deadline_us = fathom_posix_now_us() + CONNECT_US;
-    return connect(tcp->fd, to->ai_addr, to->ai_addrlen) == 0 || errno == EINPROGRESS ? 0 : errno;
+    (void)setsockopt(port->fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+    port->tcp->deadline_us = fathom_posix_now_us() + CONNECT_US;
+    return connect(port->fd, to->ai_addr, to->ai_addrlen) == 0 || errno == EINPROGRESS ? 0 : errno;
 }
 
 /* Goes on to the next address of the host after an error of the present one. */
-static fathom_status_t connect_next(tcp_t *tcp, int error)
+static fathom_status_t connect_next(port_t *port, int error)
 {
+    tcp_t *const tcp = port->tcp;
     do {
-        if (tcp->fd >= 0) (void)close(tcp->fd);
-        tcp->fd = -1;
+        if (port->fd >= 0) (void)close(port->fd);
+        port->fd = -1;
         if (tcp->next == NULL)
-            return port_fail(tcp->port, PORT_ABSENT, "%s: %s", strerror(error), advice_for(error));
-        error = start_connecting(tcp, tcp->next);
+            return port_fail(port, PORT_ABSENT, "%s: %s: %s", port->name, strerror(error), advice_for(error));
+        error = start_connecting(port, tcp->next);
         tcp->next = tcp->next->ai_next;
     } while (error != 0);
     return FATHOM_PENDING;
@@ -160,65 +139,41 @@ static int connect_error(int fd)
 
 /* ---- the driver ---- */
 
-static void close_tcp(port_t *port)
-{
-    tcp_t *const tcp = port->tcp;
-    port->tcp = NULL;
-    if (tcp == NULL) return;
-    if (tcp->addresses != NULL) freeaddrinfo(tcp->addresses);
-    if (tcp->modbus != NULL) {
-        modbus_close(tcp->modbus);
-        modbus_free(tcp->modbus);
-    } else if (tcp->fd >= 0) {
-        (void)close(tcp->fd);
-    }
-    free(tcp);
-}
-
 static fathom_status_t poll_tcp(port_t *port)
 {
     tcp_t *const tcp = port->tcp;
     if (tcp->modbus != NULL) return port->error == PORT_OK ? FATHOM_OK : FATHOM_ERR_PORT;
-    int error = connect_error(tcp->fd);
+    int error = connect_error(port->fd);
     if (error == EINPROGRESS && fathom_posix_now_us() < tcp->deadline_us) return FATHOM_PENDING;
     if (error == EINPROGRESS) error = ETIMEDOUT;
-    const fathom_status_t status = error != 0 ? connect_next(tcp, error) : start(tcp);
+    const fathom_status_t status = error != 0 ? connect_next(port, error) : start(port);
     if (status == FATHOM_ERR_PORT) close_tcp(port);
     return status;
+}
+
+static fathom_status_t look_up(port_t *port)
+{
+    const struct addrinfo hints = {.ai_family = AF_UNSPEC, .ai_socktype = SOCK_STREAM};
+    tcp_t *const tcp = port->tcp;
+    const char *const wrong = tcp_parse(port->options.path, &tcp->address);
+    if (wrong != NULL) return port_fail(port, PORT_FAILED, "%s: %s", port->name, wrong);
+    const int error = getaddrinfo(tcp->address.host, tcp->address.service, &hints, &tcp->addresses);
+    if (error != 0)
+        return port_fail(port, error == EAI_AGAIN ? PORT_ABSENT : PORT_FAILED,
+                         "%s: the host is not known: %s; check its name, or give its address in numbers",
+                         port->name, gai_strerror(error));
+    tcp->next = tcp->addresses;
+    return connect_next(port, 0);
 }
 
 static fathom_status_t open_tcp(port_t *port)
 {
-    const struct addrinfo hints = {.ai_family = AF_UNSPEC, .ai_socktype = SOCK_STREAM};
-    tcp_address_t address;
-    const char *const wrong = tcp_parse(port->settings.path, &address);
-    if (wrong != NULL) return port_fail(port, PORT_FAILED, "%s", wrong);
-    tcp_t *const tcp = calloc(1, sizeof *tcp);
-    if (tcp == NULL) return port_fail(port, PORT_FAILED, "%s", strerror(ENOMEM));
-    tcp->port = port;
-    tcp->address = address;
-    tcp->fd = -1;
-    port->tcp = tcp;
-    const int looked_up = getaddrinfo(address.host, address.service, &hints, &tcp->addresses);
-    fathom_status_t status = FATHOM_ERR_PORT;
-    if (looked_up != 0) {
-        tcp->addresses = NULL;
-        (void)port_fail(port, looked_up == EAI_AGAIN ? PORT_ABSENT : PORT_FAILED,
-                        "the host is not known: %s; check its name, or give its address in numbers",
-                        gai_strerror(looked_up));
-    } else {
-        tcp->next = tcp->addresses;
-        status = connect_next(tcp, 0);
-    }
+    port->tcp = calloc(1, sizeof *port->tcp);
+    if (port->tcp == NULL) return port_fail(port, PORT_FAILED, "%s: %s", port->name, strerror(ENOMEM));
+    port->events = POLLOUT;
+    const fathom_status_t status = look_up(port);
     if (status == FATHOM_ERR_PORT) close_tcp(port);
     return status;
 }
 
-static int tcp_fd(const port_t *port) { return port->tcp != NULL ? port->tcp->fd : -1; }
-
-static short tcp_events(const port_t *port)
-{
-    return port->tcp != NULL && port->tcp->modbus == NULL ? POLLOUT : POLLIN;
-}
-
-const port_driver_t port_tcp = {open_tcp, poll_tcp, close_tcp, tcp_fd, tcp_events};
+const port_driver_t port_tcp = {open_tcp, poll_tcp, close_tcp, lose};

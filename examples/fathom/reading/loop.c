@@ -328,7 +328,7 @@ static bool start_reading(line_t *line)
     counters_begin_port(&line->counts, &line->port);
     if (line->is_lost && line->was_open) line->loop->reconnects++;
     if (line->is_lost)
-        notify_port(line, NOTICE_OPEN, port_name(&line->port),
+        notify_port(line, NOTICE_OPEN, line->port.name,
                     line->was_open ? "it is back; reading goes on" : "it is there; reading begins");
     line->is_lost = false;
     line->was_open = true;
@@ -341,15 +341,15 @@ static bool start_reading(line_t *line)
 static void miss(line_t *line)
 {
     const site_t *const site = &line->loop->site;
-    const bool may_come = port_is_absent(&line->port) || site->line_count > 1 || site->persists;
+    const bool may_come = line->port.error == PORT_ABSENT || site->line_count > 1 || site->persists;
     char text[TEXT];
     line->is_lost = true;
     if (site->reconnect && may_come) {
-        (void)snprintf(text, sizeof text, "%s; waiting until it is there", port_error(&line->port));
+        (void)snprintf(text, sizeof text, "%s; waiting until it is there", line->port.error_text);
         notify(line->loop, NOTICE_WAITING, NULL, text);
         set_state(line, LINE_WAITING);
     } else {
-        notify(line->loop, NOTICE_GIVEN_UP, NULL, port_error(&line->port));
+        notify(line->loop, NOTICE_GIVEN_UP, NULL, line->port.error_text);
         give_up(line);
     }
 }
@@ -357,8 +357,8 @@ static void miss(line_t *line)
 /* How the adapter is found again. */
 static void notify_advice(line_t *line)
 {
-    const char *const advice = port_advice(&line->port);
-    if (advice != NULL) notify_port(line, NOTICE_WAITING, port_name(&line->port), advice);
+    const char *const advice = adapter_advice(&line->port.adapter);
+    if (advice != NULL) notify_port(line, NOTICE_WAITING, line->port.name, advice);
 }
 
 static void fail_to_open(line_t *line)
@@ -370,8 +370,8 @@ static void fail_to_open(line_t *line)
         if (!is_finished(line->loop, sensor, 0))
             report_failure(line->loop, sensor, NULL, (size_t)-FATHOM_ERR_PORT, 0);
     /* The user has to know, some time, about a port that is there and cannot be opened. */
-    if (port_is_overdue(&line->port))
-        notify_port(line, NOTICE_WAITING, "still waiting", port_error(&line->port));
+    if (line->port.failures == PORT_TRIES)
+        notify_port(line, NOTICE_WAITING, "still waiting", line->port.error_text);
     notify_advice(line);
 }
 
@@ -389,10 +389,8 @@ static bool take_port(line_t *line, fathom_status_t status)
 static bool open_line(fathom_loop_source_t *source)
 {
     line_t *const line = line_of(source);
-    port_settings_t settings = port_options_settings(&line->settings);
-    settings.source = source;
     if (line->state >= LINE_ENDING) return false;
-    const fathom_status_t status = port_open(&line->port, line->loop->host, &settings);
+    const fathom_status_t status = port_open(&line->port, line->loop->host, &line->settings, source);
     if (take_port(line, status)) return true;
     if (status == FATHOM_OK) port_close(&line->port);
     return false;

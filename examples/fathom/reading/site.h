@@ -9,7 +9,7 @@
 #include "fathom_loop.h"
 #include "output/record.h"
 #include "ports/port.h"
-#include "ports/port_settings.h"
+#include "ports/port_options.h"
 #include "sensors/models.h"
 
 /* All sensors that a command reads, and the lines that they share. */

@@ -64,7 +64,7 @@ static bool open_stream(reader_t *reader, fathom_dyp_auto_t *base, fathom_sensor
 static bool can_select(reader_t *reader, port_t *port, uint8_t value)
 {
     (void)fathom_line_break(&port->line, false); /* a port that cannot end a break holds none */
-    if (value != FATHOM_REAL_TIME || port_can_break(port)) return true;
+    if (value != FATHOM_REAL_TIME || (port->has_wire && port->uart.set_break != NULL)) return true;
     reader->refusal =
         "this port cannot hold its TX low (a break), which selects real-time values; try another "
         "adapter, or connect the sensor's RX to its ground and leave --value out";
@@ -192,8 +192,8 @@ static fathom_status_t end_controlled(reader_t *reader)
 static bool a16_read_controlled(reader_t *reader, port_t *port, const reader_settings_t *settings)
 {
     fathom_a16_controlled_t *const driver = &reader->driver.a16_controlled;
-    const fathom_output_t trigger = port->settings.pins.chip != 0 ? fathom_output_pin(&port->pins.trigger)
-                                                                  : fathom_output_line_break(&port->line);
+    const fathom_output_t trigger = port->options.pins.chip != 0 ? fathom_output_pin(&port->pins.trigger)
+                                                                 : fathom_output_line_break(&port->line);
     const fathom_a16_controlled_config_t config = {
         .period_us = settings->period_us, .gap_us = PORT_STREAM_GAP_US, .window = settings->window};
     if (fathom_a16_controlled_init(driver, &port->line, &trigger, &config) != FATHOM_OK) return false;

@@ -4,7 +4,7 @@
 #include <inttypes.h>
 #include <string.h>
 
-#include "ports/line_text.h"
+#include "ports/port_options.h"
 #include "sensors/decoding.h"
 #include "sensors/driver.h"
 
@@ -214,12 +214,13 @@ static void print_word(FILE *to, const char *word)
 void read_command_print(FILE *to, const model_t *model, const char *mode, int address,
                         const fathom_line_settings_t *line, const char *port)
 {
-    char options[LINE_OPTIONS];
     const bool is_first_mode = strcmp(mode, model->modes[0].name) == 0;
     (void)fprintf(to, "fathom read %s", model->name);
     if (address >= 0) (void)fprintf(to, ":%d:%s", address, mode);
     if (address < 0 && !is_first_mode) (void)fprintf(to, "::%s", mode);
     (void)fputs(" --port ", to);
     print_word(to, port);
-    (void)fputs(line_options(line, &model->line, options), to);
+    if (line->baud != model->line.baud) (void)fprintf(to, " --baud %" PRIu32, line->baud);
+    if (line->parity != model->line.parity) (void)fprintf(to, " --parity %s", parity_name(line->parity));
+    if (line->stop_bits != model->line.stop_bits) (void)fprintf(to, " --stop-bits %u", line->stop_bits);
 }

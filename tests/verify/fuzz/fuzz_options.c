@@ -7,7 +7,7 @@
 #include "commands/commands.h"
 #include "device/session.h"
 #include "output/words.h"
-#include "ports/tcp_address.h"
+#include "ports/port_options.h"
 
 /*
  * What a user writes: whole command lines, a word a line, of every command; and the parsers of numbers, places, ports,
@@ -126,17 +126,17 @@ static void check_tcp(void)
     char path[TEXT] = "tcp:";
     take_text();
     (void)snprintf(path + 4, sizeof path - 4, "%s", text);
-    PROMISE(tcp_names(path), "tcp_address.h: a path over TCP, right or wrong");
+    PROMISE(port_kind(path) == PORT_GATEWAY, "port_options.h: a path over TCP, right or wrong");
     if (tcp_parse(path, &first) != NULL) return;
     uint32_t port;
     PROMISE(first.host[0] != '\0' && number_parse(first.service, 1, 65535, &port),
-            "tcp_address.h: a host and a port");
+            "port_options.h: a host and a port");
     const bool is_in_brackets = strchr(first.host, ':') != NULL || first.host[0] == '[';
     (void)snprintf(path, sizeof path, is_in_brackets ? "tcp:[%s]:%s" : "tcp:%s:%s", first.host,
                    first.service);
     PROMISE(tcp_parse(path, &again) == NULL && strcmp(first.host, again.host) == 0 &&
                 strcmp(first.service, again.service) == 0,
-            "tcp_address.h: what is written out is taken as the same");
+            "port_options.h: what is written out is taken as the same");
 }
 
 static bool take_place(sensor_word_t *place, char *word)

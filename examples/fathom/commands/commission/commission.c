@@ -123,7 +123,7 @@ static bool set_options(const arguments_t *arguments)
     if (session.sensor->address != FACTORY_ADDRESS)
         return reject(&origin, "new sensors have address %d. Leave address %u out.", FACTORY_ADDRESS,
                       session.sensor->address);
-    if (port_path_has_gateway(session.sensor->port->path))
+    if (port_kind(session.sensor->port->path) == PORT_GATEWAY)
         return reject(&origin,
                       "%s is no serial port. Behind a gateway, two sensors at one address look like one.",
                       session.sensor->port->path);

@@ -96,10 +96,10 @@ static int start(const host_t *host, const arguments_t *arguments)
         !confirm(arguments, request.is_confirmed, "This request can change something. Nothing was sent yet."))
         return STATUS_USAGE;
     if (!host->begin(host->ctx)) return STATUS_FAILED;
-    const port_settings_t settings = {
+    const port_options_t options = {
         .path = request.path, .line = request.line, .echo = request.echo, .rs485 = request.rs485};
-    if (!port_open_now(&port, host, &settings)) {
-        (void)fprintf(stderr, "fathom: %s\n", port_error(&port));
+    if (!port_open_now(&port, host, &options)) {
+        (void)fprintf(stderr, "fathom: %s\n", port.error_text);
         return STATUS_FAILED;
     }
     const int status = ask(&request, &port);

@@ -4,7 +4,7 @@
 #include "commands/request/request.h"
 #include "fathom/codec/crc16.h"
 #include "fathom/codec/modbus_rtu.h"
-#include "ports/line_text.h"
+#include "ports/port_options.h"
 
 enum { FUNCTION = 1, SIZE = 2, FIRST = 2, COUNT = 5 };
 enum { LEAST_LENGTH = 4, MAX_LENGTH = 255, EXCEPTION_LENGTH = 5, READ_OVERHEAD = 5, WRITE_LENGTH = 8 };
@@ -135,7 +135,7 @@ static request_outcome_t judge_copy(const request_ask_t *ask, const port_t *port
     const uint64_t took_us = ask->evidence.slowest_us;
     if (ask->evidence.echoes != 1 || ask->evidence.rest != 0) return REQUEST_NO_RESPONSE;
     if (took_us > wire_us + PORT_RESPONSE_GAP_US) return REQUEST_ANSWERED;
-    if (port_has_wire(port) && took_us < 2 * wire_us + silence_us) return REQUEST_NO_RESPONSE;
+    if (port->has_wire && took_us < 2 * wire_us + silence_us) return REQUEST_NO_RESPONSE;
     return REQUEST_ECHO;
 }
 
@@ -185,11 +185,11 @@ void request_ask(request_ask_t *ask, const request_t *request, port_t *port)
     ask->transaction.protocol = protocol_of(request);
     ask->transaction.address = request->frame[REQUEST_UNIT];
     ask->transaction.timeout_us = request->timeout_us;
-    if (port_has_line(port)) port_listen(port, PORT_LISTEN_US);
+    if (port->kind == PORT_SERIAL) port_listen(port, PORT_LISTEN_US);
     listener_forget(&port->listener);
     fathom_status_t status = fathom_line_submit(&port->line, &ask->transaction);
     if (status == FATHOM_PENDING) status = port_finish(port, &ask->transaction);
-    if (ask->length != 0 && port_has_line(port)) port_listen(port, PORT_RESPONSE_GAP_US);
+    if (ask->length != 0 && port->kind == PORT_SERIAL) port_listen(port, PORT_RESPONSE_GAP_US);
     listener_judge(&port->listener, request->frame[REQUEST_UNIT], &ask->evidence);
     ask->outcome = outcome_of(ask, port, status);
     ask->more = count_more(ask, port);

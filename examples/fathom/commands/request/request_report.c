@@ -151,7 +151,7 @@ static void print_refusal(const request_ask_t *ask)
 static void print_advice(const request_ask_t *ask, const port_t *port, const counters_t *counters)
 {
     const bool was_sent = port->listener.request_length != 0;
-    const bool is_cancelled = ask->transaction.status == FATHOM_ERR_CANCELLED && !port_is_lost(port);
+    const bool is_cancelled = ask->transaction.status == FATHOM_ERR_CANCELLED && port->error != PORT_LOST;
     failure_t failure =
         failure_of_request(is_cancelled ? FATHOM_ERR_CANCELLED : request_outcomes[ask->outcome].status, port);
     if (is_cancelled && !was_sent) {

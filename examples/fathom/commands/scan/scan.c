@@ -41,9 +41,10 @@ static bool parse_rates(const char *text, void *member)
     }
     while (text != NULL) {
         char item[ITEM_TEXT];
+        uint32_t place = 0;
         uint32_t baud = 0;
         text = next_word(text, ',', item, sizeof item);
-        if (!baud_parse(item, &baud)) return false;
+        if (!word_find(PORT_BAUDS, item, &place) || !number_parse(item, 1, UINT32_MAX, &baud)) return false;
         add_rate(rates, baud);
     }
     return true;
@@ -56,9 +57,9 @@ static bool parse_parities(const char *text, void *member)
     if (strcmp(text, "all") == 0) text = "none,even,odd";
     while (text != NULL) {
         char item[ITEM_TEXT];
-        uint8_t parity = 0;
+        uint32_t parity = 0;
         text = next_word(text, ',', item, sizeof item);
-        if (!parity_parse(item, &parity)) return false;
+        if (!word_find(PORT_PARITIES, item, &parity)) return false;
         *parities |= (uint8_t)(1u << parity);
     }
     return true;
@@ -502,15 +503,15 @@ static int finish(scan_t *scan)
 static int run(scan_t *scan, const host_t *host)
 {
     const scan_settings_t *const settings = scan->settings;
-    const port_settings_t port = {.path = settings->port,
-                                  .line = model_with(DECODE_STREAM_ONE | DECODE_STREAM_FOUR)->line};
+    const port_options_t port = {.path = settings->port,
+                                 .line = model_with(DECODE_STREAM_ONE | DECODE_STREAM_FOUR)->line};
     char duration[DURATION_TEXT];
     if (!host->begin(host->ctx)) return STATUS_FAILED;
     if (!port_open_now(&scan->port, host, &port)) {
-        (void)fprintf(stderr, "fathom: %s\n", port_error(&scan->port));
+        (void)fprintf(stderr, "fathom: %s\n", scan->port.error_text);
         return STATUS_FAILED;
     }
-    port_set_slowest(&scan->port, slowest_of(settings));
+    scan->port.parts.silence_us = fathom_silence_us(slowest_of(settings));
     (void)fputs("fathom: asking ", stderr);
     print_plan(stderr, settings);
     (void)fprintf(stderr, " takes about %s, and a second for each sensor\n",
@@ -538,7 +539,7 @@ static int start(const host_t *host, const arguments_t *arguments)
     else if (settings->port == NULL && !settings->estimate)
         (void)reject(&origin,
                      "--port is missing, such as --port /dev/ttyUSB0. 'fathom help ports' explains ports.");
-    else if (settings->port != NULL && !port_path_has_line(settings->port))
+    else if (settings->port != NULL && port_kind(settings->port) != PORT_SERIAL)
         (void)reject(&origin, "scan needs a serial port. The rates behind '%s' are those of the gateway.",
                      settings->port);
     else

@@ -132,7 +132,7 @@ static bool understand(scan_t *scan, const fathom_line_settings_t *line)
  * rate, so the scan then listens at each rate to which a sensor can be set. */
 void scan_listen(scan_t *scan)
 {
-    const fathom_line_settings_t *const first = &scan->port.settings.line;
+    const fathom_line_settings_t *const first = &scan->port.options.line;
     scan->status = hear(scan, first, scan->settings->listen_us);
     if (scan->status != FATHOM_OK || scan->port.listener.bytes < LEAST_BYTES || understand(scan, first))
         return;
