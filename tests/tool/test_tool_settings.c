@@ -142,7 +142,7 @@ TEST(a_refusal_is_a_refusal)
 TEST(info_fails_when_it_could_not_read_all)
 {
     faulty(FATHOM_SIM_FAULT_SILENCE, 4, 60); /* #1, #3 twice, and then nothing */
-    says(1, "fathom: 7 of 10 values could not be read\n", "info hps167s");
+    says(1, "fathom: hps167s:1: 7 of 10 values could not be read.\n", "info hps167s");
 }
 
 /* ---- blind ---- */

@@ -24,13 +24,6 @@ static bool set_up(const arguments_t *arguments)
            session_set_mode(&session, arguments, model_mode_of(session.sensor->model, NULL));
 }
 
-static bool has_output(void)
-{
-    if (fflush(stdout) == 0 && ferror(stdout) == 0) return true;
-    (void)fputs("fathom: cannot write the output.\n", stderr);
-    return false;
-}
-
 /* ---- fathom save ---- */
 
 static void print_unit(FILE *to, const void *unit)
@@ -56,7 +49,7 @@ static bool save(const char *path)
         if (!file_write(path, false, print_unit, &unit)) return false;
         (void)printf("%s: the settings are in %s\n", session.sensor->name, path);
     }
-    return has_output();
+    return session_flush();
 }
 
 static int start_save(const host_t *host, const arguments_t *arguments)
@@ -312,7 +305,7 @@ static bool restore(bool is_dry)
         plan.is_new && session.port.kind == PORT_SERIAL; /* that of a gateway belongs to all sensors */
     make_plan();
     print_plan();
-    if (!has_output()) return false; /* without the plan on stdout nothing is written */
+    if (!session_flush()) return false; /* without the plan on stdout nothing is written */
     if (is_dry) return plan.count == 0 && !plan.is_impossible;
     if (plan.is_impossible) {
         (void)fprintf(stderr,
@@ -322,7 +315,7 @@ static bool restore(bool is_dry)
         return false;
     }
     if ((plan.moves && !is_place_free()) || !write_all()) return false;
-    if (!plan.moves || is_still_same()) return has_output();
+    if (!plan.moves || is_still_same()) return session_flush();
     print_again(plan.count);
     return false;
 }

@@ -167,6 +167,13 @@ void session_explain(session_t *session, fathom_status_t status)
     advice_print(stderr, &failure);
 }
 
+bool session_flush(void)
+{
+    if (fflush(stdout) == 0 && ferror(stdout) == 0) return true;
+    (void)fputs("fathom: cannot write the output.\n", stderr);
+    return false;
+}
+
 void session_fail(session_t *session, const setting_t *setting, fathom_status_t status)
 {
     (void)fflush(stdout);

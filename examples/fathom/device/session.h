@@ -50,6 +50,9 @@ const char *session_line_text(const session_t *session, char text[LINE_TEXT]);
 /* Prints why the last call failed and what to try, without a line feed. */
 void session_explain(session_t *session, fathom_status_t status);
 
+/* Returns true if all that was printed on stdout is written. Otherwise prints that it is not. */
+bool session_flush(void);
+
 /* Prints in a line of its own that this setting could not be read, and why. */
 void session_fail(session_t *session, const setting_t *setting, fathom_status_t status);
 

@@ -1,0 +1,479 @@
+/* SPDX-License-Identifier: MIT */
+#include <limits.h>
+#include <string.h>
+
+#include "cli/rows.h"
+#include "commands/commands.h"
+#include "device/session.h"
+#include "ports/port_options.h"
+
+/* fathom info and get print values of a sensor, set changes one of them, and reset discards settings of an HPS-167S. */
+
+static session_t session;
+
+/* ---- fathom info, fathom get ---- */
+
+typedef struct {
+    const setting_t *setting;
+    fathom_status_t status; /* of the read; FATHOM_ERR_UNSUPPORTED: the setting is write-only */
+    char text[SETTING_TEXT];
+} value_t;
+
+/* The sensor responds at its address, so the address is known also if no register has it. */
+static bool is_address(const setting_t *setting) { return strcmp(setting->name, "address") == 0; }
+
+/* What is write-only does not show that the sensor is there, so another value is read. */
+static bool responds(void)
+{
+    char text[SETTING_TEXT];
+    const setting_t *setting = session.sensor->model->settings;
+    while (setting->name != NULL &&
+           (setting->read_at == 0 || model_mode_of(session.sensor->model, setting) != session.sensor->mode))
+        setting++;
+    if (setting->name == NULL) return true;
+    const fathom_status_t status = session_get(&session, setting, text);
+    if (status != FATHOM_OK) session_fail(&session, setting, status);
+    return status == FATHOM_OK;
+}
+
+/* Returns the number of values that can be printed: all, or those before one whose failure says that no other can be read
+ * either; this failure is printed. */
+static size_t read_values(value_t *values, size_t count)
+{
+    const value_t *failed =
+        NULL; /* its response has other values too, which are not requested: that takes seconds */
+    bool is_known = values[0].setting->read_at == 0; /* the sensor has responded */
+    if (is_known && !responds()) return 0;
+    for (size_t i = 0; i != count; i++) {
+        value_t *const value = &values[i];
+        const setting_t *const setting = value->setting;
+        if (setting->read_at == 0) {
+            value->status = is_address(setting) ? FATHOM_OK : FATHOM_ERR_UNSUPPORTED;
+            (void)snprintf(value->text, sizeof value->text, "%u", session.sensor->address);
+            continue;
+        }
+        if (failed != NULL && setting->read_at == failed->setting->read_at)
+            value->status = failed->status;
+        else
+            value->status = session_get(&session, setting, value->text);
+        if (value->status == FATHOM_OK) {
+            is_known = true;
+            continue;
+        }
+        failed = value;
+        if (is_known && setting_reason(value->status) != NULL) continue;
+        session_fail(&session, setting, value->status);
+        return is_known ? i : 0;
+    }
+    return count;
+}
+
+static void print_text(const value_t *values, size_t count)
+{
+    const sensor_t *const sensor = session.sensor;
+    const bool has_name = session.site.sensor_count > 1 || sensor->has_own_name;
+    char line[LINE_TEXT];
+    (void)printf("%s%s%s%s, %s, asked at address %u, %s\n", sensor != session.site.sensors[0] ? "\n" : "",
+                 has_name ? sensor->name : "", has_name ? ": " : "", sensor->model->name, sensor->model->what,
+                 sensor->address, session_line_text(&session, line));
+    for (const value_t *value = values; value != values + count; value++) {
+        char cell[SETTING_CELL];
+        if (value->status == FATHOM_OK)
+            (void)printf("%-26s %s\n", value->setting->name,
+                         setting_with_unit(value->setting, value->text, cell));
+        else
+            (void)printf("%-26s - (%s)\n", value->setting->name,
+                         value->setting->read_at != 0 ? setting_reason(value->status) : "write-only");
+    }
+}
+
+/* `address` is the value that the sensor reports, or the address of the requests if none of the values is an address. */
+static void print_json(const value_t *values, size_t count)
+{
+    json_t json = {.to = stdout};
+    char line[LINE_TEXT];
+    bool has_address = false;
+    for (size_t i = 0; i != count; i++)
+        if (is_address(values[i].setting)) has_address = true;
+    json_begin(&json, NULL, '{');
+    sensor_json(&json, session.sensor);
+    if (!has_address) json_value(&json, "address", "%u", session.sensor->address);
+    json_string(&json, "line", session_line_text(&session, line));
+    for (const value_t *value = values; value != values + count; value++)
+        if (value->status != FATHOM_ERR_UNSUPPORTED)
+            setting_json(&json, NULL, value->setting, value->status == FATHOM_OK ? value->text : NULL);
+    json_end(&json, '}');
+    (void)fputc('\n', stdout);
+}
+
+/* Prints on stderr what the user should know about the values. Returns true if all were read. */
+static bool print_remarks(const value_t *values, size_t count, size_t all)
+{
+    size_t missing = all - count;
+    for (const value_t *value = values; value != values + count; value++) {
+        const setting_t *const setting = value->setting;
+        const bool is_read = value->status == FATHOM_OK;
+        if (is_read && setting->remark != NULL && strcmp(value->text, setting->words[1]) == 0)
+            (void)fprintf(stderr, "fathom: %s: %s\n", session.sensor->name, setting->remark);
+        if (!is_read && setting->read_at != 0) missing++;
+    }
+    if (count != 0 && missing != 0)
+        (void)fprintf(stderr, "fathom: %s: %zu of %zu values could not be read.\n", session.sensor->name,
+                      missing, all);
+    return missing == 0;
+}
+
+typedef enum { SHOW_ALL, SHOW_SETTINGS, SHOW_ONE } show_t;
+
+static int show(const host_t *host, show_t what, const setting_t *one)
+{
+    const model_t *const model = session.sensor->model;
+    value_t values[BACKUP_ROWS];
+    size_t all = 0;
+    for (const setting_t *setting = model->settings; setting->name != NULL; setting++) {
+        const bool is_shown = what == SHOW_ALL        ? setting->read_at != 0
+                              : what == SHOW_SETTINGS ? setting->effect != NULL
+                                                      : setting == one;
+        if (is_shown && model_mode_of(model, setting) == session.sensor->mode)
+            values[all++] = (value_t){.setting = setting};
+    }
+    if (!session_open(&session, host)) return STATUS_FAILED;
+    const size_t count = read_values(values, all);
+    if (count != 0 && session.is_json) print_json(values, count);
+    if (count != 0 && !session.is_json) print_text(values, count);
+    const bool is_good = session_flush() && print_remarks(values, count, all);
+    session_close(&session);
+    return is_good ? STATUS_OK : STATUS_FAILED;
+}
+
+/* A sensor that fails keeps none of the others from being read. */
+static int start_info(const host_t *host, const arguments_t *arguments)
+{
+    int status = STATUS_OK;
+    if (!session_read(&session, arguments, INT_MAX, 0)) return STATUS_USAGE;
+    for (size_t i = 0; i != session.site.sensor_count; i++) {
+        if (i != 0 && host->has_ended(host->ctx)) return STATUS_FAILED;
+        session.sensor = session.site.sensors[i];
+        if (show(host, SHOW_ALL, NULL) != STATUS_OK) status = STATUS_FAILED;
+    }
+    return status;
+}
+
+/* Lists the settings of a sensor without a port. */
+static int list(const char *word, const origin_t *origin)
+{
+    char name[16];
+    (void)snprintf(name, sizeof name, "%.*s", (int)strcspn(word, ":"), word);
+    const model_t *const model = model_word(name, origin);
+    if (model == NULL) return STATUS_USAGE;
+    (void)printf("%s, %s, has these settings. Add --port PORT to read their values.\n\n", model->name,
+                 model->what);
+    settings_print(stdout, model->settings);
+    return session_flush() ? STATUS_OK : STATUS_FAILED;
+}
+
+static int start_get(const host_t *host, const arguments_t *arguments)
+{
+    const session_settings_t *const settings = arguments->settings;
+    const origin_t origin = {.command = arguments->command->name};
+    if (arguments->count == 1 && settings->sensors.defaults.path == NULL &&
+        strchr(arguments->words[0], '@') == NULL)
+        return list(arguments->words[0], &origin);
+    if (!session_read(&session, arguments, 1, 1)) return STATUS_USAGE;
+    if (arguments->count == 1) return show(host, SHOW_SETTINGS, NULL);
+    const setting_t *const setting = setting_named(&session, arguments->words[1], arguments);
+    if (setting == NULL) return STATUS_USAGE;
+    if (setting->read_at == 0 && !is_address(setting)) {
+        (void)reject(&origin, "%s is write-only. The sensor does not report it.", setting->name);
+        return STATUS_USAGE;
+    }
+    if (!session_set_mode(&session, arguments, model_mode_of(session.sensor->model, setting)))
+        return STATUS_USAGE;
+    return show(host, SHOW_ONE, setting);
+}
+
+static const option_table_t show_tables[] = {SESSION_TABLES, {session_format_rows, 0}, {NULL, 0}};
+
+const command_t info_command = {
+    .name = "info",
+    .summary = "Print all versions, settings and values of sensors",
+    .usage = "[NAME=]SENSOR[:ADDRESS][:MODE][@PORT]... [OPTIONS]",
+    .tables = show_tables,
+    .common = "port address mode baud format",
+    .examples = "  fathom info hps167s:7 --port /dev/ttyUSB0\n"
+                "  fathom info a05 --port /dev/ttyUSB0 --format json\n"
+                "  fathom info tank=a16@/dev/ttyUSB0 gate=hps167s:7@/dev/ttyUSB1,baud=57600\n",
+    .status = "Exit status: 0 all was read, 1 a part was not, 2 wrong usage.\n",
+    .topics = "settings, sensors, ports",
+    .operands = OPERANDS_ASKED,
+    .settings_size = sizeof(session_settings_t),
+    .start = start_info,
+};
+
+const command_t get_command = {
+    .name = "get",
+    .summary = "Print a setting of a sensor, or all of them",
+    .usage = "SENSOR[:ADDRESS][:MODE][@PORT] [SETTING] [OPTIONS]",
+    .about = "Without a port, the settings and their possible values are listed.\n",
+    .tables = show_tables,
+    .common = "port address mode baud format",
+    .examples = "  fathom get hps167s\n"
+                "  fathom get hps167s:7 --port /dev/ttyUSB0\n"
+                "  fathom get hps167s:7 --port /dev/ttyUSB0 termination\n",
+    .status = "Exit status: 0 all was read, 1 a part was not, 2 wrong usage.\n",
+    .topics = "settings, sensors, ports",
+    .operands = OPERANDS_SETTING,
+    .settings_size = sizeof(session_settings_t),
+    .start = start_get,
+};
+
+/* ---- fathom set ---- */
+
+typedef struct {
+    session_settings_t session;
+    bool is_blind;
+    bool is_for_all;
+} set_settings_t;
+
+static fathom_status_t call_all(reader_t *reader, void *ctx)
+{
+    const change_t *const change = ctx;
+    return session.sensor->model->set_all(reader, change->setting, change->value);
+}
+
+static bool set(change_t *change)
+{
+    const setting_t *const setting = change->setting;
+    if (setting->risk != NULL)
+        (void)fprintf(stderr,
+                      "fathom: %s: %s. To check, measure a target at a known distance with 'fathom read', or "
+                      "use 'fathom calibrate'.\n",
+                      setting->name, setting->risk);
+    setting_print_value(setting, change->value, change->wanted);
+    if (change->is_for_all) return change_report(change, session_call(&session, call_all, change));
+    if (change->is_blind) {
+        reader_write_next_unchecked(session.sensor->reader);
+    } else if (setting->read_at != 0) {
+        const fathom_status_t status = session_get(&session, setting, change->was);
+        if (status != FATHOM_OK) return change_report(change, status);
+    }
+    return change_report(change, session_set(&session, setting, change->value));
+}
+
+static bool suits(const change_t *change, const arguments_t *arguments, const origin_t *origin)
+{
+    const setting_t *const setting = change->setting;
+    const set_settings_t *const settings = arguments->settings;
+    if (change->is_blind && change->is_for_all)
+        return reject(origin, "--all-units reads nothing anyway. Leave --blind out.");
+    if (change->is_blind && setting->is_never_blind)
+        return reject(origin, "%s must be read before or after it is written. Leave --blind out.",
+                      setting->name);
+    if (change->is_for_all && !setting->has_broadcast)
+        return reject(origin,
+                      "%s belongs to one unit. --all-units is for termination and "
+                      "measure-after-power-on of an hps167s.",
+                      setting->name);
+    return !change->is_for_all ||
+           confirm(arguments, settings->session.is_confirmed,
+                   "--all-units changes every hps167s on the line, whatever its address.");
+}
+
+/* Stores the value. Returns false after rejecting it. */
+static bool read_value(change_t *change, const arguments_t *arguments, const origin_t *origin)
+{
+    const setting_t *const setting = change->setting;
+    const set_settings_t *const settings = arguments->settings;
+    const char *const text = arguments->words[2];
+    char values[SETTING_VALUES];
+    if (setting->has_zero && strcmp(text, "0") == 0)
+        return confirm(
+            arguments, settings->session.is_confirmed,
+            "A unit at address 0 may not be found again, and none of its settings can be changed.");
+    return setting_value(setting, text, &change->value) ||
+           reject(origin, "%s is '%s'. It takes %s.", setting->name, text,
+                  setting_values_text(setting, values));
+}
+
+static bool set_up_change(change_t *change, const arguments_t *arguments)
+{
+    const origin_t origin = {.command = arguments->command->name};
+    if (!session_read(&session, arguments, 1, 2)) return false;
+    if (arguments->count == 2 && strchr(arguments->words[1], '=') != NULL) {
+        const int length = (int)strcspn(arguments->words[1], "=");
+        return reject(&origin, "the setting and its value are two words. Write: %.*s %s.", length,
+                      arguments->words[1], arguments->words[1] + length + 1);
+    }
+    if (arguments->count < 3)
+        return reject(&origin, "the %s is missing. 'fathom get %s' lists the settings.",
+                      arguments->count == 1 ? "setting" : "value", session.sensor->model->name);
+    change->setting = setting_named(&session, arguments->words[1], arguments);
+    if (change->setting == NULL) return false;
+    if (change->setting->effect == NULL) return reject(&origin, "%s is read-only.", change->setting->name);
+    return session_set_mode(&session, arguments, model_mode_of(session.sensor->model, change->setting)) &&
+           session_can_set(&session, arguments) && read_value(change, arguments, &origin) &&
+           suits(change, arguments, &origin);
+}
+
+static int start_set(const host_t *host, const arguments_t *arguments)
+{
+    const set_settings_t *const settings = arguments->settings;
+    change_t change = {
+        .session = &session, .is_blind = settings->is_blind, .is_for_all = settings->is_for_all};
+    if (!set_up_change(&change, arguments)) return STATUS_USAGE;
+    if (!session_open(&session, host)) return STATUS_FAILED;
+    const bool is_set = set(&change);
+    session_close(&session);
+    return is_set ? STATUS_OK : STATUS_FAILED;
+}
+
+static const option_t set_rows[] = {
+    {"blind", .help = "Write once without reading, for a sensor that cannot be read", .group = GROUP_COMMAND,
+     AT(set_settings_t, is_blind)},
+    {"all-units", .help = "Write to every hps167s on the line, whatever its address", .group = GROUP_COMMAND,
+     AT(set_settings_t, is_for_all)},
+    {"may-not-be-found-again", .help = "The old word for --yes", .is_hidden = true,
+     AT(set_settings_t, session.is_confirmed)},
+    {.name = NULL},
+};
+
+static const option_table_t set_tables[] = {
+    {session_yes_rows, 0}, {set_rows, 0}, SESSION_TABLES, {session_format_rows, 0}, {NULL, 0}};
+
+const command_t set_command = {
+    .name = "set",
+    .summary = "Change a setting of a sensor and read it back if possible",
+    .usage = "SENSOR[:ADDRESS][:MODE][@PORT] SETTING VALUE [OPTIONS]",
+    .about = "A value that the sensor has already is not written. The command follows a\n"
+             "sensor to its new address or baud rate. A write-only setting ('fathom get\n"
+             "SENSOR' lists them) cannot be read back: its write is acknowledged only.\n",
+    .tables = set_tables,
+    .common = "port address baud yes format",
+    .examples = "  fathom set hps167s --port /dev/ttyUSB0 address 7\n"
+                "  fathom set hps167s:7 --port /dev/ttyUSB0 termination off\n"
+                "  fathom set hps167s --port /dev/ttyUSB0 termination off --all-units --yes\n"
+                "  fathom set a16 --port /dev/ttyUSB0 switch-threshold 2000\n"
+                "  fathom set hps167s --port /dev/ttyUSB0 distance-offset -15\n",
+    .status = "Exit status: 0 the setting holds, was acknowledged or was sent to all units,\n"
+              "1 it does not or that is unknown, 2 wrong usage.\n",
+    .topics = "settings, sensors, ports",
+    .operands = OPERANDS_SETTING_VALUE,
+    .settings_size = sizeof(set_settings_t),
+    .start = start_set,
+};
+
+/* ---- fathom reset: two commands of an HPS-167S, which nothing else sends ---- */
+
+typedef struct {
+    session_settings_t session;
+    bool is_interface; /* the old words for the operand and --yes */
+    bool is_sensor;
+} reset_settings_t;
+
+static fathom_status_t call_reset(reader_t *reader, void *ctx)
+{
+    const bool *const is_interface = ctx;
+    return *is_interface ? session.sensor->model->reset_interface(reader)
+                         : session.sensor->model->reset_sensor(reader);
+}
+
+static void print_reset(bool is_interface)
+{
+    if (is_interface)
+        (void)printf("%s: the interface has its factory settings: address 1, 19200 8E1, termination on\n"
+                     "from now on: fathom read hps167s --port %s\n",
+                     session.sensor->name, session.sensor->port->path);
+    else
+        (void)printf(
+            "%s: the sensor acknowledged that it loads its factory settings; they cannot be read back\n",
+            session.sensor->name);
+}
+
+static void print_unreset(bool is_interface, fathom_status_t status)
+{
+    const sensor_t *const sensor = session.sensor;
+    char line[LINE_TEXT];
+    (void)fprintf(stderr, "fathom: %s: ", sensor->name);
+    if (status == FATHOM_ERR_UNCONFIRMED && is_interface) {
+        (void)fprintf(stderr,
+                      "the reset was sent, but then the sensor could not be read. It is at address 1, 19200 "
+                      "8E1, or still at address %u, %s. Run 'fathom scan --port %s'",
+                      sensor->address, line_text(&sensor->line, line), sensor->port->path);
+    } else if (status == FATHOM_ERR_UNCONFIRMED) {
+        (void)fputs("the reset was sent, and no acknowledgement was received. The sensor may have its "
+                    "factory settings or not; they cannot be read back",
+                    stderr);
+    } else {
+        if (!reader_facts(sensor->reader).is_written)
+            (void)fputs("nothing was written: ", stderr);
+        else if (status != FATHOM_ERR_EXCEPTION)
+            (void)fputs("the reset was sent, and is not confirmed: ", stderr);
+        session_explain(&session, status);
+    }
+    (void)fputs("\n", stderr);
+}
+
+static bool set_up_reset(const arguments_t *arguments, bool *is_interface)
+{
+    const reset_settings_t *const settings = arguments->settings;
+    const origin_t origin = {.command = arguments->command->name};
+    if (!session_read(&session, arguments, 1, 1)) return false;
+    if (session.sensor->model->reset_interface == NULL)
+        return reject(&origin, "%s cannot be reset. Only an hps167s can.", session.sensor->model->name);
+    const char *const word = arguments->count == 2    ? arguments->words[1]
+                             : settings->is_interface ? "interface"
+                             : settings->is_sensor    ? "sensor"
+                                                      : "";
+    if (word[0] == '\0') return reject(&origin, "say what to reset: interface or sensor.");
+    *is_interface = strcmp(word, "interface") == 0;
+    if (!*is_interface && strcmp(word, "sensor") != 0)
+        return reject(&origin, "what is to be reset is '%s'. Write interface or sensor.", word);
+    if (settings->is_interface && settings->is_sensor)
+        return reject(&origin, "only one of interface and sensor can be reset at a time.");
+    return confirm(arguments, settings->session.is_confirmed || settings->is_interface || settings->is_sensor,
+                   *is_interface ? "This sets %s to address 1, 19200 8E1, and termination on."
+                                 : "This overwrites the filter and the distance offset of %s.",
+                   session.sensor->name);
+}
+
+static int start_reset(const host_t *host, const arguments_t *arguments)
+{
+    bool is_interface = false;
+    if (!set_up_reset(arguments, &is_interface)) return STATUS_USAGE;
+    if (!session_open(&session, host)) return STATUS_FAILED;
+    const fathom_status_t status = session_call(&session, call_reset, &is_interface);
+    if (status == FATHOM_OK)
+        print_reset(is_interface);
+    else
+        print_unreset(is_interface, status);
+    session_close(&session);
+    return session_flush() && status == FATHOM_OK ? STATUS_OK : STATUS_FAILED;
+}
+
+static const option_t reset_rows[] = {
+    {"yes-restore-factory-settings", .help = "Reset the interface", .is_hidden = true,
+     AT(reset_settings_t, is_interface)},
+    {"yes-load-factory-sensor-settings", .help = "Reset the sensor", .is_hidden = true,
+     AT(reset_settings_t, is_sensor)},
+    {.name = NULL},
+};
+
+static const option_table_t reset_tables[] = {
+    {session_yes_rows, 0}, {reset_rows, 0}, SESSION_TABLES, {NULL, 0}};
+
+const command_t reset_command = {
+    .name = "reset",
+    .summary = "Restore the factory settings of an hps167s",
+    .usage = "hps167s[:ADDRESS][@PORT] interface [OPTIONS]\nhps167s[:ADDRESS][@PORT] sensor [OPTIONS]",
+    .about = "\n  interface  the RS485 interface (#6): address 1, 19200 8E1, termination on\n"
+             "  sensor     the sensor behind it (#13): its filter and its distance offset\n",
+    .tables = reset_tables,
+    .common = "port address baud yes timeout",
+    .examples = "  fathom reset hps167s:7 interface --port /dev/ttyUSB0 --yes\n",
+    .status = "Before you reset one of several units, make sure that no other has address 1.\n"
+              "Exit status: 0 done, 1 not done or unknown, 2 wrong usage.\n",
+    .topics = "settings, ports",
+    .operands = OPERANDS_RESETTABLE,
+    .settings_size = sizeof(reset_settings_t),
+    .start = start_reset,
+};
