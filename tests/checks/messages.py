@@ -145,7 +145,7 @@ def check(root, only):
     return problems
 
 
-FAULT = ('examples/fathom/commands/get.c', None, 'void planted(void)\n{\n    (void)fputs("it is told anew\\n", stderr);\n}\n',
+FAULT = ('examples/fathom/commands/settings.c', None, 'void planted(void)\n{\n    (void)fputs("it is told anew\\n", stderr);\n}\n',
          'is told')
 
 if __name__ == '__main__':
