@@ -24,12 +24,6 @@ class Calibrate(e2e.Case):
         self.assertEqual(self.read_json(f'hps167s:7 --port {sim} --count 1')[0]['distance_mm'], 2000)
         self.assertEqual(self.flash_writes(sim), writes + 1)  # one by set
 
-    def test_a_dry_run_writes_nothing(self):
-        sim = self.sim('hps167s --distance 2015 --counters')
-        told, = self.ends(f'calibrate hps167s --port {sim} --known 2000 --dry-run --format json', 1).json
-        self.assertEqual((told['would_write_mm'], told['written_mm'], told['status']), (-15, [], 'dry_run'))
-        self.assertEqual(self.flash_writes(sim), 0)
-
     def test_what_cannot_be_announced_is_not_written(self):
         sim = self.sim('hps167s --distance 2015 --counters')
         with open('/dev/full', 'w', encoding='ascii') as full:
