@@ -53,9 +53,8 @@ struct command {
 /* A subject of several commands, or what is too long for the help of one. */
 typedef struct {
     const char *name;
-    const char *summary;     /* a line of `fathom help` */
-    const char *text;        /* lines, which may be longer than 80 columns; NULL: none */
-    void (*print)(FILE *to); /* prints what is below the text; NULL: nothing is */
+    const char *summary; /* a line of `fathom help` */
+    const char *text;    /* lines, which may be longer than 80 columns */
 } help_topic_t;
 
 /* Reads the options of a command from argv, the command's name in argv[0], in any order and between the words. The

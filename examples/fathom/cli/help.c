@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Help, man pages and completion: three printers of the same rows. */
-#define _GNU_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): open_memstream */
 #include <ctype.h>
 #include <stdarg.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "cli/command.h"
@@ -158,19 +156,7 @@ void help_print(FILE *to, const command_t *command)
     if (command->topics != NULL) (void)fprintf(to, "More: fathom help %s.\n", command->topics);
 }
 
-static void print_topic(FILE *to, const help_topic_t *topic, bool is_man)
-{
-    char *text = NULL;
-    size_t size = 0;
-    FILE *const memory = open_memstream(&text, &size);
-    if (memory == NULL) return;
-    if (topic->text != NULL) (void)fputs(topic->text, memory);
-    if (topic->print != NULL) topic->print(memory);
-    if (fclose(memory) == 0) print_text(to, text, is_man);
-    free(text);
-}
-
-void help_print_topic(FILE *to, const help_topic_t *topic) { print_topic(to, topic, false); }
+void help_print_topic(FILE *to, const help_topic_t *topic) { print_text(to, topic->text, false); }
 
 /* ---- man ---- */
 
@@ -227,7 +213,7 @@ void man_print_tool(FILE *to, const command_t *const *commands, const help_topic
         (void)fprintf(to, ".TP\n.BR fathom\\-%s (1)\n%s.\n", (*commands)->name, (*commands)->summary);
     for (; topics->name != NULL; topics++) {
         (void)fprintf(to, ".SH \"%s (fathom help %s)\"\n.nf\n", topics->summary, topics->name);
-        print_topic(to, topics, true);
+        print_text(to, topics->text, true);
         (void)fputs(".fi\n", to);
     }
     print_lines(

@@ -23,24 +23,10 @@ extern const command_t sim_command;
 /* The tool: argv[1] names the command. Returns the exit status. */
 int run_command(const host_t *host, int argc, char **argv);
 
-/* The topics of `fathom help`; a row without a name ends them. */
-extern const help_topic_t topics[];
+/* ---- tables in the topics of `fathom help`, a line for each row ---- */
 
-/* Topics that explain a task from its beginning to its end. */
-void topic_log(FILE *to);
-void topic_publish(FILE *to);
-void topic_delivery(FILE *to);
-void topic_boxes(FILE *to);
-void topic_service(FILE *to);
-void topic_commission(FILE *to);
-void topic_calibrate(FILE *to);
-void topic_backup(FILE *to);
-void topic_request(FILE *to);
-
-/* The topic `faults`, in the folder of `fathom sim`. */
-void topic_faults(FILE *to);
-
-/* Writes a line for each field of the JSON of `fathom scan`. */
-void scan_help_fields(FILE *to);
+void scan_help_fields(FILE *to); /* of the JSON of `fathom scan` */
+void sim_print_traits(FILE *to); /* of simulated sensors, */
+void sim_print_faults(FILE *to); /* and of what can happen to their frames */
 
 #endif

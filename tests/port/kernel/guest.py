@@ -77,6 +77,9 @@ def build(architecture, compiler, programs):
     folder = os.path.join(FOLDER, architecture)
     own = [f'tests/port/kernel/guest/{name}.c' for name in ('guest', *programs)]
     library, tool = sources(*LIBRARY), sources(*TOOL)
+    os.makedirs(folder, exist_ok=True)
+    tool.append(os.path.join(folder, 'topics.c'))  # of the help
+    ended('cmake', f'-DTO={tool[-1]}', '-P', 'examples/fathom/commands/topics.cmake')
     made = compiled(compiler, os.path.join(folder, 'objects'), own + library + tool)
     linked = {'init': made[:len(own) + len(library)], 'fathom': made[len(own):]}
     for name, objects in linked.items():

@@ -38,8 +38,15 @@ def libmodbus():
     return sources('port/libmodbus/*.c')
 
 
+def topics():
+    """The source that is made of the topics of the help."""
+    os.makedirs(FOLDER, exist_ok=True)
+    subprocess.run(['cmake', f'-DTO={FOLDER}/topics.c', '-P', 'examples/fathom/commands/topics.cmake'], cwd=ROOT, check=True)
+    return [os.path.relpath(f'{FOLDER}/topics.c', ROOT)]
+
+
 def commands(*without):
-    return libmodbus() + sources('examples/fathom/*.c', 'examples/fathom/*/*.c', 'examples/fathom/*/*/*.c',
+    return topics() + libmodbus() + sources('examples/fathom/*.c', 'examples/fathom/*/*.c', 'examples/fathom/*/*/*.c',
                                  'port/posix/*.c', 'port/gpio/*.c', 'port/sim/*.c', without=('main.c', *without))
 
 

@@ -544,25 +544,14 @@ static void print_counters(const simulation_t *simulation, uint32_t i)
     (void)fputc('\n', stderr);
 }
 
-void topic_faults(FILE *to)
+void sim_print_traits(FILE *to)
 {
-    (void)fputs("'fathom sim' makes a pseudo terminal with up to 64 sensors on one line. At most one\n"
-                "of them may send automatically. Sensors with the same address respond at once, as\n"
-                "real ones do. SIGUSR1 cuts their power for a second; they keep the settings that real\n"
-                "ones keep. --link replaces nothing but a link that a killed 'fathom sim' left behind.\n\n"
-                "Write options of one sensor behind it: a05:2,distance=1500,fault=silence=10%.\n"
-                "Options without a sensor apply to all sensors that can have them.\n\n"
-                "distance: 0 to 65535 mm, or no-target, interference (a16, a05) or fault (hps167s). An\n"
-                "a05 takes up to four, with commas between them. Without it, the target moves.\n\n"
-                "baud: the rate that an hps167s was set to. Each sensor responds only at its own rate.\n\n"
-                "with: a state that was set before, or a behaviour that the datasheets leave open:\n",
-                to);
     for (size_t i = 0; i != DEVICE_TRAITS; i++) {
         char name[WORD_TEXT];
         const char *gap = "(";
         (void)snprintf(name, sizeof name, "%s%s%s", traits[i].name, traits[i].unit != NULL ? "=" : "",
                        traits[i].unit != NULL ? traits[i].unit : "");
-        (void)fprintf(to, "    %-15s  %-46s ", name, traits[i].text);
+        (void)fprintf(to, "  %-15s  %-43s ", name, traits[i].text);
         for (size_t m = 0; m != model_count; m++) {
             if (!has_trait(&models[m], i)) continue;
             (void)fprintf(to, "%s%s", gap, models[m].name);
@@ -570,14 +559,12 @@ void topic_faults(FILE *to)
         }
         (void)fputs(")\n", to);
     }
-    (void)fputs("\nfault=KIND[=P[@N]]: damages frames that the sensor sends, each with the probability P,\n"
-                "such as 0.05 or 5% (default 1), or only frame N, counted from 1:\n",
-                to);
+}
+
+void sim_print_faults(FILE *to)
+{
     for (size_t n = 0; fault_name(n) != NULL; n++)
-        (void)fprintf(to, "    %-13s  %s\n", fault_name(n), fathom_sim_fault_text((uint8_t)(n + 1)));
-    (void)fputs("A pseudo terminal cannot mark a byte: with parity, framing and break the byte arrives as a\n"
-                "terminal without checks delivers it, wrong or 00, and with overrun it is missing.\n",
-                to);
+        (void)fprintf(to, "  %-13s  %s\n", fault_name(n), fathom_sim_fault_text((uint8_t)(n + 1)));
 }
 
 /* ---- the command ---- */
