@@ -86,7 +86,7 @@ TEST(the_help_lists_every_fault)
     const tool_run_t *const run = tool_run(&bench.tool, "help faults");
     for (size_t i = 0; i != sizeof kinds / sizeof kinds[0]; i++) {
         char line[20];
-        (void)snprintf(line, sizeof line, "\n    %s ", kinds[i]);
+        (void)snprintf(line, sizeof line, "\n  %s ", kinds[i]);
         if (strstr(run->out, line) == NULL) fail_msg("%s", kinds[i]);
     }
 }
