@@ -374,8 +374,7 @@ TEST(a_sensor_that_falls_silent_is_where_the_record_has_it)
                 strstr(done->err, "The sensor is at address 1 or at address 2, 19200 8E1") != NULL;
             unconfirmed += is_told;
             assert_non_null(strstr(record_text(), "\nhps167s 2 " FIRST " planned "));
-            assert_true(site.device[0]->address == 1 || is_told ||
-                        strstr(done->err, "at address 2: ") != NULL);
+            assert_true(site.device[0]->address == 1 || is_told || strstr(done->err, "hps167s:2: ") != NULL);
             assert_non_null(strstr(done->out, "To continue, run the same command again\n"));
         }
         fathom_sim_fault_init(&faults, 1);
@@ -429,7 +428,7 @@ TEST(two_units_with_one_number_do_not_get_one_address)
     add_hps_units(2);
     site.unit[1].hps.number = 0;
     expect(commission("hps167s --addresses 2,3 --wait 20"), 1,
-           "hps167s at address 2: a sensor with the same UUID responds at address 1 too");
+           "a sensor with the UUID of address 2 responds at address 1 too");
     assert_int_equal(site.device[1]->counters.writes, 0);
 }
 
@@ -470,7 +469,7 @@ TEST(a_sensor_that_reports_a_fault_is_not_done)
     add_hps_units(1);
     bench.scene.value[0] = FATHOM_SIM_FAULT;
     expect(commission("hps167s --addresses 2 --wait 20"), 1,
-           "fathom: hps167s at address 2: the address is set, but the sensor reports a fault\n");
+           "fathom: hps167s:2: the address is set, but the sensor reports a fault\n");
     assert_non_null(strstr(record_text(), " planned 2"));
 }
 
@@ -500,7 +499,7 @@ TEST(a_sensor_with_another_uuid_at_the_new_address_is_not_accepted)
     add_hps_units(1);
     site.watch = become_another;
     expect(commission("hps167s --addresses 2 --wait 20"), 1,
-           "fathom: hps167s at address 2: a sensor with another UUID responds");
+           "fathom: hps167s:2: a sensor with another UUID responds");
     assert_non_null(strstr(record_text(), " planned 2"));
 }
 

@@ -32,8 +32,7 @@ static bool responds(void)
         setting++;
     if (setting->name == NULL) return true;
     const fathom_status_t status = session_get(&session, setting, text);
-    if (status != FATHOM_OK) session_fail(&session, setting, status);
-    return status == FATHOM_OK;
+    return status == FATHOM_OK || session_fail(&session, status, "%s", setting->name);
 }
 
 /* Returns the number of values that can be printed: all, or those before one whose failure says that no other can be read
@@ -62,7 +61,7 @@ static size_t read_values(value_t *values, size_t count)
         }
         failed = value;
         if (is_known && setting_reason(value->status) != NULL) continue;
-        session_fail(&session, setting, value->status);
+        (void)session_fail(&session, value->status, "%s", setting->name);
         return is_known ? i : 0;
     }
     return count;

@@ -78,13 +78,6 @@ static fathom_status_t read_row(session_t *session, const setting_t *setting, ba
     return FATHOM_OK;
 }
 
-static bool fail(session_t *session, const setting_t *setting, fathom_status_t status)
-{
-    session_end_task(session);
-    session_fail(session, setting, status);
-    return false;
-}
-
 bool backup_read(session_t *session, backup_t *unit)
 {
     const setting_t *known = NULL; /* the first setting that was read */
@@ -96,16 +89,16 @@ bool backup_read(session_t *session, backup_t *unit)
         const setting_t *const setting = &unit->model->settings[i];
         if (!is_kept(setting)) continue;
         const fathom_status_t status = read_row(session, setting, &unit->rows[i]);
-        if (status != FATHOM_OK) return fail(session, setting, status);
+        if (status != FATHOM_OK) return session_fail(session, status, "%s", setting->name);
         if (unit->rows[i].held == HELD_NOT_THERE)
             missing = setting;
         else if (known == NULL && setting->read_at != 0)
             known = setting;
     }
     if (missing != NULL) { /* only if the sensor still responds */
-        if (known == NULL) return fail(session, missing, FATHOM_ERR_NO_RESPONSE);
+        if (known == NULL) return session_fail(session, FATHOM_ERR_NO_RESPONSE, "%s", missing->name);
         const fathom_status_t status = read_repeatedly(session, known, text);
-        if (status != FATHOM_OK) return fail(session, known, status);
+        if (status != FATHOM_OK) return session_fail(session, status, "%s", known->name);
     }
     session_end_task(session);
     return true;

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include <stdarg.h>
 #include <string.h>
 
 #include "device/session.h"
@@ -145,6 +146,17 @@ fathom_status_t session_set(session_t *session, const setting_t *setting, int32_
 
 /* ---- messages ---- */
 
+static fathom_status_t call_measure(reader_t *reader, void *ctx)
+{
+    fathom_sample_t *const sample = ctx;
+    return reader_poll(reader, sample);
+}
+
+fathom_status_t session_measure(session_t *session, fathom_sample_t *sample)
+{
+    return session_call(session, call_measure, sample);
+}
+
 const char *session_line_text(const session_t *session, char text[LINE_TEXT])
 {
     return session->port.kind == PORT_GATEWAY ? "Modbus TCP" : line_text(&session->sensor->line, text);
@@ -174,12 +186,19 @@ bool session_flush(void)
     return false;
 }
 
-void session_fail(session_t *session, const setting_t *setting, fathom_status_t status)
+bool session_fail(session_t *session, fathom_status_t status, const char *format, ...)
 {
+    va_list arguments;
+    session_end_task(session);
     (void)fflush(stdout);
-    (void)fprintf(stderr, "fathom: %s: %s: ", session->sensor->name, setting->name);
-    session_explain(session, status);
+    (void)fprintf(stderr, "fathom: %s: ", session->sensor->name);
+    va_start(arguments, format);
+    (void)vfprintf(stderr, format, arguments);
+    va_end(arguments);
+    if (status != FATHOM_OK) (void)fputs(": ", stderr);
+    if (status != FATHOM_OK) session_explain(session, status);
     (void)fputs("\n", stderr);
+    return false;
 }
 
 /* ---- which sensor responds at an address ---- */

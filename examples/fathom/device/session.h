@@ -44,6 +44,9 @@ void session_end_task(session_t *session);
 fathom_status_t session_get(session_t *session, const setting_t *setting, char text[SETTING_TEXT]);
 fathom_status_t session_set(session_t *session, const setting_t *setting, int32_t value);
 
+/* Measures once: a sample of a probe. */
+fathom_status_t session_measure(session_t *session, fathom_sample_t *sample);
+
 /* The line settings of the sensor, "9600 8N1". Behind a gateway "Modbus TCP". */
 const char *session_line_text(const session_t *session, char text[LINE_TEXT]);
 
@@ -53,8 +56,9 @@ void session_explain(session_t *session, fathom_status_t status);
 /* Returns true if all that was printed on stdout is written. Otherwise prints that it is not. */
 bool session_flush(void);
 
-/* Prints in a line of its own that this setting could not be read, and why. */
-void session_fail(session_t *session, const setting_t *setting, fathom_status_t status);
+/* Prints what failed in a line of its own on stderr and, unless the status is FATHOM_OK, why. Returns false. */
+bool session_fail(session_t *session, fathom_status_t status, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 
 /* ---- which sensor responds at an address (session.c) ---- */
 

@@ -2,7 +2,6 @@
 #include "commands/calibrate/calibrate.h"
 
 #include <errno.h>
-#include <stdarg.h>
 #include <stdlib.h>
 
 #include "cli/command.h"
@@ -133,43 +132,16 @@ typedef struct {
     int spread_mm;
 } batch_t;
 
-/* Prints a message about the sensor on stderr. */
-static void print_error(const char *format, ...) __attribute__((format(printf, 1, 2)));
-static void print_error(const char *format, ...)
-{
-    va_list arguments;
-    session_end_task(&session);
-    (void)fflush(stdout);
-    (void)fprintf(stderr, "fathom: %s: ", session.sensor->name);
-    va_start(arguments, format);
-    (void)vfprintf(stderr, format, arguments);
-    va_end(arguments);
-}
-
-static bool fail_by(fathom_status_t status)
-{
-    session_explain(&session, status);
-    (void)fputs("\n", stderr);
-    return false;
-}
-
-static fathom_status_t poll_reader(reader_t *reader, void *ctx)
-{
-    fathom_sample_t *const sample = ctx;
-    return reader_poll(reader, sample);
-}
-
 /* Reads a sample and repeats a failed read. Returns false after printing why there is none. */
 static bool read_sample(fathom_sample_t *sample)
 {
     fathom_status_t status = FATHOM_PENDING;
     for (unsigned i = 0; i != MOST_FAILURES_IN_ROW; i++) {
-        status = session_call(&session, poll_reader, sample);
+        status = session_measure(&session, sample);
         if (status == FATHOM_OK) return true;
         if (status == FATHOM_ERR_CANCELLED || status == FATHOM_ERR_PORT) break;
     }
-    print_error("cannot measure: ");
-    return fail_by(status);
+    return session_fail(&session, status, "cannot measure");
 }
 
 static bool discard_samples(uint32_t for_us)
@@ -241,15 +213,15 @@ static bool measure(const calibration_t *run, const calibrate_settings_t *settin
         if (batch.is_usable && last.is_usable) {
             *result = batch;
             if (last.spread_mm > batch.spread_mm) result->spread_mm = last.spread_mm;
-            session_end_task(&session);
-            if (abs(last.median_mm - batch.median_mm) <= calibrate_tolerance_mm(result->spread_mm) / 2)
+            if (abs(last.median_mm - batch.median_mm) <= calibrate_tolerance_mm(result->spread_mm) / 2) {
+                session_end_task(&session);
                 return true;
+            }
             (void)snprintf(why, WHY, "the median does not settle. Hold the sensor and the target still");
         }
         last = batch;
     }
-    print_error("cannot measure: %s\n", why);
-    return false;
+    return session_fail(&session, FATHOM_OK, "cannot measure: %s", why);
 }
 
 /* ---- writing ---- */
@@ -286,8 +258,7 @@ static bool write_offset(calibration_t *run)
         calibrate_wrote(run, status == FATHOM_OK);
         return true;
     }
-    print_error("offset %d mm was not written: ", run->offset_mm);
-    return fail_by(status);
+    return session_fail(&session, status, "offset %d mm was not written", run->offset_mm);
 }
 
 /* Prints a measurement, unless the output is JSON. Returns false if the output failed. */
@@ -306,7 +277,7 @@ static bool print_measurement(const calibration_t *run, const batch_t *batch, si
 static calibrate_next_t calibrate(calibration_t *run, const calibrate_settings_t *settings)
 {
     for (;;) {
-        batch_t batch;
+        batch_t batch = {.is_usable = false};
         if (!measure(run, settings, &batch) || !print_measurement(run, &batch, settings->samples))
             return CALIBRATE_NOT_MEASURED;
         const calibrate_next_t next = calibrate_measured(run, batch.median_mm, batch.spread_mm);
@@ -352,22 +323,28 @@ static void print_why(const calibration_t *run, calibrate_next_t why)
 {
     const int offset_mm = run->writes != 0 ? run->written_mm[run->writes - 1] : 0;
     if (why == CALIBRATE_NOT_MOVED)
-        print_error("offset %d mm was acknowledged, but the sensor still measures %d mm. The offset takes "
-                    "effect at the next power-on, or the sensor had this offset already, or it did not "
-                    "accept it\n",
-                    offset_mm, last_mm(run));
+        (void)session_fail(&session, FATHOM_OK,
+                           "offset %d mm was acknowledged, but the sensor still measures %d mm. The offset "
+                           "takes effect at the next power-on, or the sensor had this offset already, or it "
+                           "did not accept it",
+                           offset_mm, last_mm(run));
     else if (why == CALIBRATE_NOT_SEEN)
-        print_error("offset %d mm was not acknowledged, and the sensor still measures %d mm\n", offset_mm,
-                    last_mm(run));
+        (void)session_fail(&session, FATHOM_OK,
+                           "offset %d mm was not acknowledged, and the sensor still measures %d mm",
+                           offset_mm, last_mm(run));
     else if (why == CALIBRATE_UNCLEAR)
-        print_error("the distance before offset %d mm and the known distance are within %d mm of each "
-                    "other, so %d mm does not show whether the sensor accepted the offset\n",
-                    offset_mm, calibrate_tolerance_mm(run->spread_mm), last_mm(run));
+        (void)session_fail(&session, FATHOM_OK,
+                           "the distance before offset %d mm and the known distance are within %d mm of each "
+                           "other, so %d mm does not show whether the sensor accepted the offset",
+                           offset_mm, calibrate_tolerance_mm(run->spread_mm), last_mm(run));
     else if (why == CALIBRATE_UNEXPECTED)
-        print_error("%d mm after offset %d mm is not possible unless the sensor or the target has moved\n",
-                    last_mm(run), offset_mm);
+        (void)session_fail(
+            &session, FATHOM_OK,
+            "%d mm after offset %d mm is not possible unless the sensor or the target has moved",
+            last_mm(run), offset_mm);
     else if (why == CALIBRATE_TOO_LARGE)
-        print_error("the required offset does not fit into #12, -32768 to 32767 mm\n");
+        (void)session_fail(&session, FATHOM_OK,
+                           "the required offset does not fit into #12, -32768 to 32767 mm");
 }
 
 /* If the first write takes effect only at the next power-on: a sensor that adds is right then. A sensor that replaces
@@ -392,10 +369,11 @@ static void print_failure(const calibration_t *run, calibrate_next_t why)
 {
     print_why(run, why);
     if (run->writes == 0) {
-        print_error("nothing was written.\n");
+        (void)session_fail(&session, FATHOM_OK, "nothing was written.");
         return;
     }
-    print_error("flash writes: %zu; the offset is now, or from the next power-on: ", run->writes);
+    (void)fprintf(stderr, "fathom: %s: flash writes: %zu; the offset is now, or from the next power-on: ",
+                  session.sensor->name, run->writes);
     print_offsets(stderr, run);
     (void)fputs("\n", stderr);
     print_advice(run, why);

@@ -208,27 +208,18 @@ typedef struct {
     fathom_sample_t sample;
 } proof_t;
 
-/* Prints what is wrong with a sensor, and unless `status` is FATHOM_OK its cause. */
-static bool fail(const record_unit_t *unit, const char *what, fathom_status_t status)
-{
-    (void)fprintf(stderr, "fathom: %s at address %u: %s", run.model->name, unit->address, what);
-    if (status != FATHOM_OK) (void)fputs(": ", stderr);
-    if (status != FATHOM_OK) session_explain(&session, status);
-    (void)fputc('\n', stderr);
-    return false;
-}
-
 static bool is_there(const record_unit_t *unit)
 {
     const presence_t presence = look_until_clear(unit->address);
     if (presence.what == PRESENT_STOPPED || is_of(&presence, unit)) return presence.what == PRESENT_ONE;
     if (presence.what == PRESENT_NONE)
-        return fail(unit, "the sensor does not respond any more. Check its wires, and run the command again",
-                    FATHOM_OK);
+        return session_fail(
+            &session, FATHOM_OK,
+            "the sensor does not respond any more. Check its wires, and run the command again");
     if (presence.what == PRESENT_ONE)
-        return fail(unit, "a sensor with another UUID responds. Find out which, and run the command again",
-                    FATHOM_OK);
-    (void)fprintf(stderr, "fathom: %s at address %u: ", run.model->name, unit->address);
+        return session_fail(&session, FATHOM_OK,
+                            "a sensor with another UUID responds. Find out which, and run the command again");
+    (void)fprintf(stderr, "fathom: %s: ", session.sensor->name);
     presence_explain(&session, &presence);
     (void)fputs(presence.what == PRESENT_UNKNOWN
                     ? ". Then run the command again\n"
@@ -237,23 +228,17 @@ static bool is_there(const record_unit_t *unit)
     return false;
 }
 
-static bool read_termination(const record_unit_t *unit, proof_t *proof)
+static bool read_termination(uint8_t address, proof_t *proof)
 {
     const setting_t *const setting = setting_of(run.model->settings, "termination");
     char wanted[SETTING_TEXT];
     proof->is_complete = true;
     if (setting == NULL) return true;
     const fathom_status_t status = read_setting(setting, proof->termination);
-    if (status != FATHOM_OK) return fail(unit, "cannot read the termination", status);
-    setting_print_value(setting, unit->address == run.terminated, wanted);
+    if (status != FATHOM_OK) return session_fail(&session, status, "cannot read the termination");
+    setting_print_value(setting, address == run.terminated, wanted);
     proof->is_complete = strcmp(proof->termination, wanted) == 0;
     return true;
-}
-
-static fathom_status_t poll_reader(reader_t *reader, void *ctx)
-{
-    fathom_sample_t *const sample = ctx;
-    return reader_poll(reader, sample);
 }
 
 /* Measures once, at all probes. Prefers a sample with a distance: an A05 may have fewer than four probes. */
@@ -262,7 +247,7 @@ static fathom_status_t measure(fathom_sample_t *best)
     fathom_status_t found = FATHOM_ERR_MALFORMED;
     do {
         fathom_sample_t sample;
-        const fathom_status_t status = session_call(&session, poll_reader, &sample);
+        const fathom_status_t status = session_measure(&session, &sample);
         if (status != FATHOM_OK && status != FATHOM_ERR_MALFORMED) return status;
         if (status == FATHOM_OK && (found != FATHOM_OK || best->kind != FATHOM_TARGET)) *best = sample;
         if (status == FATHOM_OK) found = FATHOM_OK;
@@ -270,7 +255,7 @@ static fathom_status_t measure(fathom_sample_t *best)
     return found;
 }
 
-static bool measures(const record_unit_t *unit, fathom_sample_t *sample)
+static bool measures(fathom_sample_t *sample)
 {
     const uint64_t end_us = now_us() + MEASURED_WITHIN_US;
     fathom_status_t status = FATHOM_PENDING;
@@ -279,8 +264,8 @@ static bool measures(const record_unit_t *unit, fathom_sample_t *sample)
         if (status == FATHOM_OK && sample->kind != FATHOM_FAULT) return true;
     } while (status != FATHOM_ERR_PORT && !has_ended() && now_us() < end_us);
     if (status == FATHOM_OK)
-        return fail(unit, "the address is set, but the sensor reports a fault", FATHOM_OK);
-    return fail(unit, "the address is set, but the sensor does not measure", status);
+        return session_fail(&session, FATHOM_OK, "the address is set, but the sensor reports a fault");
+    return session_fail(&session, status, "the address is set, but the sensor does not measure");
 }
 
 /* At address 1, there may be the next sensor, but none with this UUID. */
@@ -289,8 +274,10 @@ static bool has_left(const record_unit_t *unit)
     if (unit->address == FACTORY_ADDRESS) return true;
     const presence_t presence = look(FACTORY_ADDRESS, 1);
     if (!run.has_numbers || !is_of(&presence, unit)) return presence.what != PRESENT_STOPPED;
-    return fail(unit, "a sensor with the same UUID responds at address 1 too. Disconnect one of the two",
-                FATHOM_OK);
+    return session_fail(&session, FATHOM_OK,
+                        "a sensor with the UUID of address %u responds at address 1 too. Disconnect one of "
+                        "the two",
+                        unit->address);
 }
 
 /* ---- results ---- */
@@ -391,7 +378,7 @@ static end_t set_up(const record_unit_t *unit, uint8_t at)
         end = set("termination", unit->address == run.terminated);
     if (end == DONE && at != unit->address) end = set("address", unit->address);
     if (end != DONE) return end;
-    if (!is_there(unit) || !read_termination(unit, &proof) || !measures(unit, &proof.sample) ||
+    if (!is_there(unit) || !read_termination(unit->address, &proof) || !measures(&proof.sample) ||
         !has_left(unit))
         return STOPPED;
     record_unit_t done = *unit;
