@@ -41,7 +41,7 @@ static void print_unit(FILE *to, const void *unit)
 
 static bool save(const char *path)
 {
-    backup_t unit;
+    values_t unit;
     if (!backup_read(&session, &unit)) return false;
     if (path == NULL) {
         print_unit(stdout, &unit);
@@ -83,20 +83,19 @@ static struct {
     const char *path;
     bool is_new;   /* the sensor gets the address of the file, */
     bool has_baud; /* and its baud rate */
-    backup_t file;
-    backup_t unit;
+    values_t file;
+    values_t unit;
     const setting_t *settings;
-    step_t steps[BACKUP_ROWS];
-    size_t order[BACKUP_ROWS]; /* of the settings to write */
-    size_t count;              /* of these */
-    bool is_impossible;        /* a step is STEP_IMPOSSIBLE */
-    bool moves;                /* a step is STEP_MOVE or STEP_CHANGE_BAUD */
+    step_t steps[VALUES];
+    step_t last;                 /* of these, in the order of writing */
+    bool is_impossible;          /* a step is STEP_IMPOSSIBLE */
+    char unseen[SETTING_VALUES]; /* names of the settings that were written without comparison */
 } plan;
 
-static step_t step_of(const setting_t *setting, const backup_row_t *file, const backup_row_t *unit)
+static step_t step_of(const setting_t *setting, const value_t *file, const value_t *unit)
 {
     const bool may_move = setting->is_baud ? plan.has_baud : plan.is_new;
-    if (setting->effect == NULL || file->held != HELD_VALUE || backup_is_same(file, unit)) return STEP_NONE;
+    if (setting->effect == NULL || file->held != HELD_VALUE || value_is_same(file, unit)) return STEP_NONE;
     if (setting->moves && !may_move) return STEP_STAYS;
     if (unit->held == HELD_NOT_THERE) return STEP_IMPOSSIBLE;
     if (setting->moves) return setting->is_baud ? STEP_CHANGE_BAUD : STEP_MOVE;
@@ -105,32 +104,27 @@ static step_t step_of(const setting_t *setting, const backup_row_t *file, const 
 
 static void make_plan(void)
 {
-    plan.settings = plan.unit.model->settings;
-    plan.count = 0;
-    for (step_t step = STEP_NONE; step != STEPS; step++) {
-        for (size_t i = 0; plan.settings[i].name != NULL; i++) {
-            plan.steps[i] = step_of(&plan.settings[i], &plan.file.rows[i], &plan.unit.rows[i]);
-            if (plan.steps[i] == STEP_IMPOSSIBLE) plan.is_impossible = true;
-            if (plan.steps[i] >= STEP_MOVE) plan.moves = true;
-            if (plan.steps[i] == step && step >= STEP_WRITE) plan.order[plan.count++] = i;
-        }
+    for (size_t i = 0; plan.settings[i].name != NULL; i++) {
+        plan.steps[i] = step_of(&plan.settings[i], &plan.file.rows[i], &plan.unit.rows[i]);
+        if (plan.steps[i] > plan.last) plan.last = plan.steps[i];
+        if (plan.steps[i] == STEP_IMPOSSIBLE) plan.is_impossible = true;
     }
 }
 
 /* Prints the versions and numbers of both. Returns false if `other` is another sensor. */
-static bool print_identity(const backup_t *one, const char *one_is, const backup_t *other,
+static bool print_identity(const values_t *one, const char *one_is, const values_t *other,
                            const char *other_is)
 {
     bool is_known = false;
     bool is_same = true;
     for (size_t i = 0; one->model->settings[i].name != NULL; i++) {
         const setting_t *const setting = &one->model->settings[i];
-        const backup_row_t *const a = &one->rows[i];
-        const backup_row_t *const b = &other->rows[i];
+        const value_t *const a = &one->rows[i];
+        const value_t *const b = &other->rows[i];
         const bool is_unit = setting->kind == SETTING_IDENTITY;
-        const bool is_equal = backup_is_same(a, b);
+        const bool is_equal = value_is_same(a, b);
         if (setting->effect != NULL || a->held == HELD_NOTHING || b->held == HELD_NOTHING) continue;
-        (void)printf("%s: %s %s, %s %s: ", setting->name, backup_text(a), one_is, backup_text(b), other_is);
+        (void)printf("%s: %s %s, %s %s: ", setting->name, value_text(a), one_is, value_text(b), other_is);
         if (a->held != HELD_VALUE || b->held != HELD_VALUE) {
             (void)puts("unknown");
             continue;
@@ -143,9 +137,9 @@ static bool print_identity(const backup_t *one, const char *one_is, const backup
     return is_same;
 }
 
-static const char *cell(const setting_t *setting, const backup_row_t *row, char text[SETTING_CELL])
+static const char *cell(const setting_t *setting, const value_t *row, char text[SETTING_CELL])
 {
-    return setting_with_unit(setting, row->held == HELD_NOT_SETTABLE ? row->text : backup_text(row), text);
+    return setting_with_unit(setting, row->held == HELD_NOT_SETTABLE ? row->text : value_text(row), text);
 }
 
 static void print_plan(void)
@@ -176,40 +170,6 @@ static void print_plan(void)
 
 /* ---- fathom restore: writing ---- */
 
-/* Lists the names of settings `from` to `to` - 1 in the order of writing, or only the write-only ones among them. */
-static const char *names(size_t from, size_t to, bool is_unseen, char text[SETTING_VALUES])
-{
-    text[0] = '\0';
-    for (size_t n = from; n < to; n++)
-        if (!is_unseen || plan.steps[plan.order[n]] == STEP_WRITE_UNSEEN)
-            list_add(text, SETTING_VALUES, plan.settings[plan.order[n]].name);
-    return text;
-}
-
-/* Prints which of the first `count` settings the next run would write again. */
-static void print_again(size_t count)
-{
-    char unseen[SETTING_VALUES];
-    if (names(0, count, true, unseen)[0] == '\0') return;
-    (void)fflush(stdout);
-    (void)fprintf(
-        stderr,
-        "fathom: before you run restore again, write `not readable` for %s in %s, or it is written again.\n",
-        unseen, plan.path);
-}
-
-static void print_stop(size_t n)
-{
-    char before[SETTING_VALUES];
-    char after[SETTING_VALUES];
-    (void)names(0, n, false, before);
-    (void)names(n + 1, plan.count, false, after);
-    (void)fprintf(stderr, "fathom: stopped at %s. Written before: %s. Not written: %s\n",
-                  plan.settings[plan.order[n]].name, before[0] != '\0' ? before : "nothing",
-                  after[0] != '\0' ? after : "nothing else");
-    print_again(reader_facts(session.sensor->reader).is_written ? n + 1 : n);
-}
-
 /* Moves the session to where the driver has followed the sensor. */
 static bool follow(void)
 {
@@ -218,22 +178,43 @@ static bool follow(void)
     return session_move(&session, facts.address, &line);
 }
 
+static bool write_row(size_t i)
+{
+    const setting_t *const setting = &plan.settings[i];
+    change_t change = {.session = &session, .setting = setting};
+    (void)setting_value(setting, plan.file.rows[i].text, &change.value);
+    (void)snprintf(change.wanted, sizeof change.wanted, "%s", plan.file.rows[i].text);
+    (void)snprintf(change.was, sizeof change.was, "%s", plan.unit.rows[i].text);
+    return change_report(&change, session_set(&session, setting, change.value)) &&
+           (!setting->moves || follow());
+}
+
+/* Writes step after step, until a write fails. */
 static bool write_all(void)
 {
-    for (size_t n = 0; n != plan.count; n++) {
-        const size_t i = plan.order[n];
-        const setting_t *const setting = &plan.settings[i];
-        change_t change = {.session = &session, .setting = setting};
-        (void)setting_value(setting, plan.file.rows[i].text, &change.value);
-        (void)snprintf(change.wanted, sizeof change.wanted, "%s", plan.file.rows[i].text);
-        (void)snprintf(change.was, sizeof change.was, "%s", plan.unit.rows[i].text);
-        if (change_report(&change, session_set(&session, setting, change.value)) &&
-            (!setting->moves || follow()))
-            continue;
-        print_stop(n);
-        return false;
+    const char *stopped = NULL;
+    char before[SETTING_VALUES] = "";
+    char after[SETTING_VALUES] = "";
+    for (step_t step = STEP_WRITE; step != STEPS; step++) {
+        for (size_t i = 0; plan.settings[i].name != NULL; i++) {
+            const char *const name = plan.settings[i].name;
+            if (plan.steps[i] != step) continue;
+            if (stopped != NULL) {
+                list_add(after, sizeof after, name);
+                continue;
+            }
+            if (write_row(i))
+                list_add(before, sizeof before, name);
+            else
+                stopped = name;
+            if (step == STEP_WRITE_UNSEEN && reader_facts(session.sensor->reader).is_written)
+                list_add(plan.unseen, sizeof plan.unseen, name);
+        }
     }
-    return true;
+    if (stopped != NULL)
+        (void)fprintf(stderr, "fathom: stopped at %s. Written before: %s. Not written: %s\n", stopped,
+                      before[0] != '\0' ? before : "nothing", after[0] != '\0' ? after : "nothing else");
+    return stopped == NULL;
 }
 
 /* ---- fathom restore: the new place ---- */
@@ -267,8 +248,7 @@ static bool is_place_free(void)
     const uint8_t home = session.sensor->address;
     fathom_line_settings_t line = home_line;
     uint32_t address = home;
-    for (size_t n = 0; n != plan.count; n++) {
-        const size_t i = plan.order[n];
+    for (size_t i = 0; plan.settings[i].name != NULL; i++) {
         uint32_t *const number = plan.steps[i] == STEP_MOVE ? &address : &line.baud;
         if (plan.steps[i] >= STEP_MOVE) (void)number_parse(plan.file.rows[i].text, 0, UINT32_MAX, number);
     }
@@ -280,7 +260,7 @@ static bool is_place_free(void)
 /* Returns true if the same sensor responds at the new place. */
 static bool is_still_same(void)
 {
-    backup_t now;
+    values_t now;
     char line[LINE_TEXT];
     if (!backup_read(&session, &now)) {
         (void)fputs("fathom: all differences are written, but the sensor cannot be read at its new place.\n",
@@ -306,7 +286,7 @@ static bool restore(bool is_dry)
     make_plan();
     print_plan();
     if (!session_flush()) return false; /* without the plan on stdout nothing is written */
-    if (is_dry) return plan.count == 0 && !plan.is_impossible;
+    if (is_dry) return plan.last < STEP_IMPOSSIBLE;
     if (plan.is_impossible) {
         (void)fprintf(stderr,
                       "fathom: nothing was written: this sensor does not have all settings of the file. "
@@ -314,19 +294,26 @@ static bool restore(bool is_dry)
                       plan.path);
         return false;
     }
-    if ((plan.moves && !is_place_free()) || !write_all()) return false;
-    if (!plan.moves || is_still_same()) return session_flush();
-    print_again(plan.count);
+    const bool moves = plan.last >= STEP_MOVE;
+    if (moves && !is_place_free()) return false;
+    if (write_all() && (!moves || is_still_same())) return session_flush();
+    (void)fflush(stdout);
+    if (plan.unseen[0] != '\0')
+        (void)fprintf(stderr,
+                      "fathom: before you run restore again, write `not readable` for %s in %s, or it is "
+                      "written again.\n",
+                      plan.unseen, plan.path);
     return false;
 }
 
 static int start_restore(const host_t *host, const arguments_t *arguments)
 {
     const backup_settings_t *const settings = arguments->settings;
+    if (!set_up(arguments) || !session_can_set(&session, arguments)) return STATUS_USAGE;
     memset(&plan, 0, sizeof plan);
     plan.path = settings->path;
     plan.is_new = settings->is_new;
-    if (!set_up(arguments) || !session_can_set(&session, arguments)) return STATUS_USAGE;
+    plan.settings = session.sensor->model->settings;
     const int parsed = backup_parse(plan.path, session.sensor->model, plan.is_new, &plan.file);
     if (parsed != STATUS_OK) return parsed;
     if (!session_open(&session, host)) return STATUS_FAILED;

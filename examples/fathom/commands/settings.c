@@ -13,110 +13,68 @@ static session_t session;
 
 /* ---- fathom info, fathom get ---- */
 
-typedef struct {
-    const setting_t *setting;
-    fathom_status_t status; /* of the read; FATHOM_ERR_UNSUPPORTED: the setting is write-only */
-    char text[SETTING_TEXT];
-} value_t;
+static values_t values;
 
 /* The sensor responds at its address, so the address is known also if no register has it. */
 static bool is_address(const setting_t *setting) { return strcmp(setting->name, "address") == 0; }
 
-/* What is write-only does not show that the sensor is there, so another value is read. */
-static bool responds(void)
+static bool has_text(const value_t *value)
 {
-    char text[SETTING_TEXT];
-    const setting_t *setting = session.sensor->model->settings;
-    while (setting->name != NULL &&
-           (setting->read_at == 0 || model_mode_of(session.sensor->model, setting) != session.sensor->mode))
-        setting++;
-    if (setting->name == NULL) return true;
-    const fathom_status_t status = session_get(&session, setting, text);
-    return status == FATHOM_OK || session_fail(&session, status, "%s", setting->name);
+    return value->held == HELD_VALUE || value->held == HELD_NOT_SETTABLE;
 }
 
-/* Returns the number of values that can be printed: all, or those before one whose failure says that no other can be read
- * either; this failure is printed. */
-static size_t read_values(value_t *values, size_t count)
-{
-    const value_t *failed =
-        NULL; /* its response has other values too, which are not requested: that takes seconds */
-    bool is_known = values[0].setting->read_at == 0; /* the sensor has responded */
-    if (is_known && !responds()) return 0;
-    for (size_t i = 0; i != count; i++) {
-        value_t *const value = &values[i];
-        const setting_t *const setting = value->setting;
-        if (setting->read_at == 0) {
-            value->status = is_address(setting) ? FATHOM_OK : FATHOM_ERR_UNSUPPORTED;
-            (void)snprintf(value->text, sizeof value->text, "%u", session.sensor->address);
-            continue;
-        }
-        if (failed != NULL && setting->read_at == failed->setting->read_at)
-            value->status = failed->status;
-        else
-            value->status = session_get(&session, setting, value->text);
-        if (value->status == FATHOM_OK) {
-            is_known = true;
-            continue;
-        }
-        failed = value;
-        if (is_known && setting_reason(value->status) != NULL) continue;
-        (void)session_fail(&session, value->status, "%s", setting->name);
-        return is_known ? i : 0;
-    }
-    return count;
-}
-
-static void print_text(const value_t *values, size_t count)
+static void print_text(void)
 {
     const sensor_t *const sensor = session.sensor;
     const bool has_name = session.site.sensor_count > 1 || sensor->has_own_name;
     char line[LINE_TEXT];
+    char cell[SETTING_CELL];
     (void)printf("%s%s%s%s, %s, asked at address %u, %s\n", sensor != session.site.sensors[0] ? "\n" : "",
                  has_name ? sensor->name : "", has_name ? ": " : "", sensor->model->name, sensor->model->what,
                  sensor->address, session_line_text(&session, line));
-    for (const value_t *value = values; value != values + count; value++) {
-        char cell[SETTING_CELL];
-        if (value->status == FATHOM_OK)
-            (void)printf("%-26s %s\n", value->setting->name,
-                         setting_with_unit(value->setting, value->text, cell));
-        else
-            (void)printf("%-26s - (%s)\n", value->setting->name,
-                         value->setting->read_at != 0 ? setting_reason(value->status) : "write-only");
+    for (size_t i = 0; values.model->settings[i].name != NULL; i++) {
+        const setting_t *const setting = &values.model->settings[i];
+        const value_t *const value = &values.rows[i];
+        if (has_text(value))
+            (void)printf("%-26s %s\n", setting->name, setting_with_unit(setting, value->text, cell));
+        else if (value->held > HELD_UNREAD)
+            (void)printf("%-26s - (%s)\n", setting->name,
+                         value->held == HELD_NOT_THERE ? setting_reason(value->status) : "write-only");
     }
 }
 
 /* `address` is the value that the sensor reports, or the address of the requests if none of the values is an address. */
-static void print_json(const value_t *values, size_t count)
+static void print_json(void)
 {
+    const setting_t *const settings = values.model->settings;
     json_t json = {.to = stdout};
     char line[LINE_TEXT];
-    bool has_address = false;
-    for (size_t i = 0; i != count; i++)
-        if (is_address(values[i].setting)) has_address = true;
     json_begin(&json, NULL, '{');
     sensor_json(&json, session.sensor);
-    if (!has_address) json_value(&json, "address", "%u", session.sensor->address);
+    if (values.rows[setting_of(settings, "address") - settings].held <= HELD_UNREAD)
+        json_value(&json, "address", "%u", session.sensor->address);
     json_string(&json, "line", session_line_text(&session, line));
-    for (const value_t *value = values; value != values + count; value++)
-        if (value->status != FATHOM_ERR_UNSUPPORTED)
-            setting_json(&json, NULL, value->setting, value->status == FATHOM_OK ? value->text : NULL);
+    for (size_t i = 0; settings[i].name != NULL; i++)
+        if (has_text(&values.rows[i]) || values.rows[i].held == HELD_NOT_THERE)
+            setting_json(&json, NULL, &settings[i], has_text(&values.rows[i]) ? values.rows[i].text : NULL);
     json_end(&json, '}');
     (void)fputc('\n', stdout);
 }
 
 /* Prints on stderr what the user should know about the values. Returns true if all were read. */
-static bool print_remarks(const value_t *values, size_t count, size_t all)
+static bool print_remarks(void)
 {
-    size_t missing = all - count;
-    for (const value_t *value = values; value != values + count; value++) {
-        const setting_t *const setting = value->setting;
-        const bool is_read = value->status == FATHOM_OK;
-        if (is_read && setting->remark != NULL && strcmp(value->text, setting->words[1]) == 0)
+    size_t all = 0;
+    size_t missing = 0;
+    for (size_t i = 0; values.model->settings[i].name != NULL; i++) {
+        const setting_t *const setting = &values.model->settings[i];
+        const value_t *const value = &values.rows[i];
+        if (value->held != HELD_NOTHING) all++;
+        if (value->held == HELD_UNREAD || value->held == HELD_NOT_THERE) missing++;
+        if (setting->remark != NULL && has_text(value) && strcmp(value->text, setting->words[1]) == 0)
             (void)fprintf(stderr, "fathom: %s: %s\n", session.sensor->name, setting->remark);
-        if (!is_read && setting->read_at != 0) missing++;
     }
-    if (count != 0 && missing != 0)
+    if (values.is_known && missing != 0)
         (void)fprintf(stderr, "fathom: %s: %zu of %zu values could not be read.\n", session.sensor->name,
                       missing, all);
     return missing == 0;
@@ -127,20 +85,20 @@ typedef enum { SHOW_ALL, SHOW_SETTINGS, SHOW_ONE } show_t;
 static int show(const host_t *host, show_t what, const setting_t *one)
 {
     const model_t *const model = session.sensor->model;
-    value_t values[BACKUP_ROWS];
-    size_t all = 0;
-    for (const setting_t *setting = model->settings; setting->name != NULL; setting++) {
+    values = (values_t){.model = model};
+    for (size_t i = 0; model->settings[i].name != NULL; i++) {
+        const setting_t *const setting = &model->settings[i];
         const bool is_shown = what == SHOW_ALL        ? setting->read_at != 0
                               : what == SHOW_SETTINGS ? setting->effect != NULL
                                                       : setting == one;
         if (is_shown && model_mode_of(model, setting) == session.sensor->mode)
-            values[all++] = (value_t){.setting = setting};
+            values.rows[i].held = HELD_UNREAD;
     }
     if (!session_open(&session, host)) return STATUS_FAILED;
-    const size_t count = read_values(values, all);
-    if (count != 0 && session.is_json) print_json(values, count);
-    if (count != 0 && !session.is_json) print_text(values, count);
-    const bool is_good = session_flush() && print_remarks(values, count, all);
+    const bool is_read = values_read(&session, &values, false);
+    if (values.is_known && session.is_json) print_json();
+    if (values.is_known && !session.is_json) print_text();
+    const bool is_good = session_flush() && print_remarks() && is_read;
     session_close(&session);
     return is_good ? STATUS_OK : STATUS_FAILED;
 }
@@ -283,15 +241,13 @@ static bool read_value(change_t *change, const arguments_t *arguments, const ori
 {
     const setting_t *const setting = change->setting;
     const set_settings_t *const settings = arguments->settings;
-    const char *const text = arguments->words[2];
-    char values[SETTING_VALUES];
-    if (setting->has_zero && strcmp(text, "0") == 0)
-        return confirm(
-            arguments, settings->session.is_confirmed,
-            "A unit at address 0 may not be found again, and none of its settings can be changed.");
-    return setting_value(setting, text, &change->value) ||
-           reject(origin, "%s is '%s'. It takes %s.", setting->name, text,
-                  setting_values_text(setting, values));
+    char text[SETTING_VALUES];
+    if (!setting_value(setting, arguments->words[2], &change->value))
+        return reject(origin, "%s is '%s'. It takes %s.", setting->name, arguments->words[2],
+                      setting_values_text(setting, text));
+    return !setting->has_zero || change->value != 0 ||
+           confirm(arguments, settings->session.is_confirmed,
+                   "A unit at address 0 may not be found again, and none of its settings can be changed.");
 }
 
 static bool set_up_change(change_t *change, const arguments_t *arguments)

@@ -13,12 +13,12 @@ static const char *const words[] = {[HELD_NOT_READABLE] = "not readable",
                                     [HELD_NOT_THERE] = "not there",
                                     [HELD_NOT_SETTABLE] = "not settable"};
 
-const char *backup_text(const backup_row_t *row)
+const char *value_text(const value_t *value)
 {
-    return row->held >= HELD_NOT_READABLE ? words[row->held] : row->text;
+    return value->held >= HELD_NOT_READABLE ? words[value->held] : value->text;
 }
 
-bool backup_is_same(const backup_row_t *one, const backup_row_t *other)
+bool value_is_same(const value_t *one, const value_t *other)
 {
     return one->held == HELD_VALUE && other->held == HELD_VALUE && strcmp(one->text, other->text) == 0;
 }
@@ -28,80 +28,104 @@ static bool is_kept(const setting_t *setting)
     return setting->kind != SETTING_PRESENT && setting->mode == NULL;
 }
 
-/* Stores the text as the sensor reports it. Returns false if that value cannot be set. A sensor can have address 0, which
- * restore does not write. */
-static bool store(backup_row_t *row, const setting_t *setting, const char *text)
+/* Stores a text from a file or from the sensor as the sensor reports it. Returns false if that cannot be set. */
+static bool store(value_t *value, const setting_t *setting, const char *text)
 {
-    int32_t value = 0;
-    const bool is_zero = setting->has_zero && strcmp(text, "0") == 0;
-    (void)snprintf(row->text, sizeof row->text, "%s", text);
+    int32_t number = 0;
+    value->held = HELD_VALUE;
+    (void)snprintf(value->text, sizeof value->text, "%s", text);
     if (setting->effect == NULL) return true;
-    if (!is_zero && !setting_value(setting, text, &value)) return false;
-    setting_print_value(setting, value, row->text);
-    return true;
+    if (setting_value(setting, text, &number))
+        setting_print_value(setting, number, value->text);
+    else
+        value->held = HELD_NOT_SETTABLE;
+    return value->held == HELD_VALUE;
 }
 
 /* ---- reading a sensor ---- */
 
 /* One response may be lost, and a backup without this value, or with "not there", would be wrong. */
-static fathom_status_t read_repeatedly(session_t *session, const setting_t *setting, char text[SETTING_TEXT])
+static fathom_status_t read_repeatedly(session_t *session, const setting_t *setting, unsigned times,
+                                       char text[SETTING_TEXT])
 {
-    enum { TIMES = 3 };
-    fathom_status_t status = FATHOM_ERR_NO_RESPONSE;
-    for (unsigned times = 0; times != TIMES; times++) {
-        status = session_get(session, setting, text);
-        if (setting_reason(status) == NULL && status != FATHOM_ERR_CHECKSUM &&
-            status != FATHOM_ERR_LINE_BUSY && status != FATHOM_ERR_OTHER_MASTER)
-            break;
-    }
+    fathom_status_t status;
+    do status = session_get(session, setting, text);
+    while (--times != 0 && (setting_reason(status) != NULL || status == FATHOM_ERR_CHECKSUM ||
+                            status == FATHOM_ERR_LINE_BUSY || status == FATHOM_ERR_OTHER_MASTER));
     return status;
 }
 
-static fathom_status_t read_row(session_t *session, const setting_t *setting, backup_row_t *row)
+/* Returns the first value that can be read in the sensor's mode; NULL: there is none. */
+static const setting_t *first_readable(const session_t *session)
 {
-    char text[SETTING_TEXT];
-    row->held = HELD_VALUE;
-    if (setting->read_at == 0 && !setting->moves) {
-        row->held = HELD_NOT_READABLE;
-    } else if (setting->read_at == 0) { /* the address at which the sensor responds */
-        setting_print_value(setting, session->sensor->address, row->text);
-    } else {
-        row->status = read_repeatedly(session, setting, text);
-        if (row->status == FATHOM_OK) {
-            if (!store(row, setting, text)) row->held = HELD_NOT_SETTABLE;
-            return FATHOM_OK;
-        }
-        const bool may_be_missing = setting->is_of_variant || setting->effect == NULL;
-        if (!may_be_missing || setting_reason(row->status) == NULL) return row->status;
-        row->held = HELD_NOT_THERE;
-    }
-    return FATHOM_OK;
+    const model_t *const model = session->sensor->model;
+    for (const setting_t *setting = model->settings; setting->name != NULL; setting++)
+        if (setting->read_at != 0 && model_mode_of(model, setting) == session->sensor->mode) return setting;
+    return NULL;
 }
 
-bool backup_read(session_t *session, backup_t *unit)
+/* Reads the values until it is uncertain that the sensor responds. Returns the value that shows this, or NULL. */
+static const setting_t *read_rows(session_t *session, values_t *values, bool is_backup,
+                                  fathom_status_t *status)
 {
-    const setting_t *known = NULL; /* the first setting that was read */
-    const setting_t *missing = NULL;
+    const setting_t *const settings = values->model->settings;
+    const unsigned times = is_backup ? 3 : 1;
+    const setting_t *known = NULL; /* a value that was read */
+    const setting_t *failed =
+        NULL; /* one that was not; others in the same response are not requested again */
     char text[SETTING_TEXT];
-    *unit = (backup_t){.model = session->sensor->model};
-    session_begin_task(session, "reading the settings");
-    for (size_t i = 0; unit->model->settings[i].name != NULL; i++) {
-        const setting_t *const setting = &unit->model->settings[i];
-        if (!is_kept(setting)) continue;
-        const fathom_status_t status = read_row(session, setting, &unit->rows[i]);
-        if (status != FATHOM_OK) return session_fail(session, status, "%s", setting->name);
-        if (unit->rows[i].held == HELD_NOT_THERE)
-            missing = setting;
-        else if (known == NULL && setting->read_at != 0)
+    for (size_t i = 0; settings[i].name != NULL; i++) {
+        const setting_t *const setting = &settings[i];
+        value_t *const value = &values->rows[i];
+        if (value->held != HELD_UNREAD) continue;
+        if (setting->read_at == 0) { /* of these, the address is known: the sensor responds there */
+            value->held = setting->moves && setting->mode == NULL ? HELD_VALUE : HELD_NOT_READABLE;
+            if (value->held == HELD_VALUE)
+                setting_print_value(setting, session->sensor->address, value->text);
+            continue;
+        }
+        const bool is_again = failed != NULL && setting->read_at == failed->read_at;
+        *status = is_again ? values->rows[failed - settings].status
+                           : read_repeatedly(session, setting, times, text);
+        if (*status == FATHOM_OK) {
+            (void)store(value, setting, text);
             known = setting;
+            values->is_known = true;
+            continue;
+        }
+        /* a backup without a setting that each sensor has would be wrong */
+        const bool may_fail = is_backup ? setting->is_of_variant || setting->effect == NULL : known != NULL;
+        if (!may_fail || setting_reason(*status) == NULL) return setting;
+        value->held = HELD_NOT_THERE;
+        value->status = *status;
+        failed = setting;
     }
-    if (missing != NULL) { /* only if the sensor still responds */
-        if (known == NULL) return session_fail(session, FATHOM_ERR_NO_RESPONSE, "%s", missing->name);
-        const fathom_status_t status = read_repeatedly(session, known, text);
-        if (status != FATHOM_OK) return session_fail(session, status, "%s", known->name);
-    }
+    if (known == NULL && failed != NULL) return failed;
+    if (known != NULL && (failed == NULL || !is_backup)) return NULL;
+    /* A setting is missing only if the sensor still responds, and nothing is known if nothing was requested. */
+    if (known == NULL) known = first_readable(session);
+    if (known == NULL) return NULL;
+    *status = read_repeatedly(session, known, times, text);
+    return *status != FATHOM_OK ? known : NULL;
+}
+
+bool values_read(session_t *session, values_t *values, bool is_backup)
+{
+    fathom_status_t status = FATHOM_OK;
+    session_begin_task(session, "reading the settings");
+    const setting_t *const failed = read_rows(session, values, is_backup, &status);
     session_end_task(session);
+    if (failed != NULL) return session_fail(session, status, "%s", failed->name);
+    values->is_known = true;
     return true;
+}
+
+bool backup_read(session_t *session, values_t *unit)
+{
+    *unit = (values_t){.model = session->sensor->model};
+    for (size_t i = 0; unit->model->settings[i].name != NULL; i++)
+        if (is_kept(&unit->model->settings[i])) unit->rows[i].held = HELD_UNREAD;
+    return values_read(session, unit, true);
 }
 
 /* ---- writing the file ---- */
@@ -116,7 +140,7 @@ static const char *const headings[] = {
     [GROUP_NOT_READABLE] =
         "What the unit does not tell. It is restored only if you fill it in, and then written each time."};
 
-static group_t group_of(const setting_t *setting, const backup_row_t *row)
+static group_t group_of(const setting_t *setting, const value_t *row)
 {
     if (setting->effect == NULL) return GROUP_IDENTITY;
     if (setting->moves) return GROUP_PLACE;
@@ -131,10 +155,10 @@ static void print_line(FILE *to, const char *name, const char *value, const char
                   unit != NULL ? ", " : "", what);
 }
 
-static void print_row(FILE *to, const setting_t *setting, const backup_row_t *row)
+static void print_row(FILE *to, const setting_t *setting, const value_t *row)
 {
     char values[SETTING_VALUES];
-    print_line(to, setting->name, backup_text(row), setting->unit, setting->what);
+    print_line(to, setting->name, value_text(row), setting->unit, setting->what);
     if (row->held == HELD_NOT_THERE) (void)fprintf(to, "; %s", setting_reason(row->status));
     if (row->held == HELD_NOT_SETTABLE)
         (void)fprintf(to, "; it has %s, which cannot be set: %s", row->text,
@@ -142,7 +166,7 @@ static void print_row(FILE *to, const setting_t *setting, const backup_row_t *ro
     (void)fputs("\n", to);
 }
 
-void backup_print(FILE *to, const backup_t *unit, const char *place, const char *when)
+void backup_print(FILE *to, const values_t *unit, const char *place, const char *when)
 {
     (void)fprintf(to,
                   "# The settings of a range sensor, read by fathom save %s at\n"
@@ -155,7 +179,7 @@ void backup_print(FILE *to, const backup_t *unit, const char *place, const char 
         const char *heading = headings[group];
         for (size_t i = 0; unit->model->settings[i].name != NULL; i++) {
             const setting_t *const setting = &unit->model->settings[i];
-            const backup_row_t *const row = &unit->rows[i];
+            const value_t *const row = &unit->rows[i];
             if (row->held == HELD_NOTHING || group_of(setting, row) != group) continue;
             if (heading != NULL) (void)fprintf(to, "\n# %s\n", heading);
             heading = NULL;
@@ -168,15 +192,13 @@ void backup_print(FILE *to, const backup_t *unit, const char *place, const char 
 
 typedef struct {
     const char *path;
-    backup_t *backup;
+    values_t *backup;
     unsigned line; /* 0: of the whole file */
     bool has_sensor;
     bool moves; /* the address is to be written */
 } parser_t;
 
-static int wrong(const parser_t *parser, const char *format, ...) __attribute__((format(printf, 2, 3)));
-
-static int wrong(const parser_t *parser, const char *format, ...)
+__attribute__((format(printf, 2, 3))) static int wrong(const parser_t *parser, const char *format, ...)
 {
     va_list arguments;
     (void)fprintf(stderr, "fathom: %s:", parser->path);
@@ -199,14 +221,13 @@ static char *trim(char *text)
 
 static int parse_value(const parser_t *parser, const setting_t *setting, const char *value)
 {
-    backup_row_t *const row = &parser->backup->rows[setting - parser->backup->model->settings];
+    value_t *const row = &parser->backup->rows[setting - parser->backup->model->settings];
     char values[SETTING_VALUES];
     if (strlen(value) >= sizeof row->text) return wrong(parser, "the value of %s is too long", setting->name);
     if (row->line != 0) return wrong(parser, "%s occurs in line %u already", setting->name, row->line);
     row->line = parser->line;
     for (row->held = HELD_NOT_READABLE; row->held <= HELD_NOT_SETTABLE; row->held++)
         if (strcmp(value, words[row->held]) == 0) return STATUS_OK;
-    row->held = HELD_VALUE;
     if (!store(row, setting, value))
         return wrong(parser, "%s takes %s, not '%s'", setting->name, setting_values_text(setting, values),
                      value);
@@ -283,10 +304,10 @@ static int parse(parser_t *parser, FILE *from)
                  parser->backup->model->name);
 }
 
-int backup_parse(const char *path, const model_t *model, bool moves, backup_t *file)
+int backup_parse(const char *path, const model_t *model, bool moves, values_t *file)
 {
     parser_t parser = {.path = path, .backup = file, .moves = moves};
-    *file = (backup_t){.model = model};
+    *file = (values_t){.model = model};
     FILE *const from = fopen(path, "r");
     if (from == NULL) {
         (void)wrong(&parser, "%s", strerror(errno));

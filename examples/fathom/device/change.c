@@ -16,27 +16,18 @@ const setting_t *setting_of(const setting_t *settings, const char *name)
     return NULL;
 }
 
-static bool parse_number(const setting_t *setting, const char *text, int32_t *value)
-{
-    char *end = NULL;
-    const char *const digits = text[0] == '-' ? text + 1 : text;
-    if (*digits < '0' || *digits > '9' || strlen(digits) > 10) return false;
-    const long long number = strtoll(text, &end, 10);
-    if (*end != '\0' || number < setting->least || number > setting->most) return false;
-    if (setting->step > 1 && number % setting->step != 0) return false;
-    *value = (int32_t)number;
-    return true;
-}
-
 bool setting_value(const setting_t *setting, const char *text, int32_t *value)
 {
-    if (setting->words == NULL) return parse_number(setting, text, value);
-    for (int32_t i = 0; setting->words[i] != NULL; i++) {
+    char *end = NULL;
+    for (int32_t i = 0; setting->words != NULL && setting->words[i] != NULL; i++) {
         if (strcmp(setting->words[i], text) != 0) continue;
         *value = i;
         return true;
     }
-    return false;
+    if (setting->words != NULL || strspn(text, "-0123456789") != strlen(text)) return false;
+    const long long number = strtoll(text, &end, 10);
+    *value = (int32_t)number;
+    return end != text && *end == '\0' && setting_can_be(setting, number);
 }
 
 const char *setting_values_text(const setting_t *setting, char text[SETTING_VALUES])

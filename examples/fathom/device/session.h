@@ -148,10 +148,11 @@ void change_explain(const change_t *change, change_outcome_t outcome, fathom_sta
 /* Prints the outcome. Returns true if the setting has its value, as far as that can be known, and the output worked. */
 bool change_report(const change_t *change, fathom_status_t status);
 
-/* ---- all settings of a sensor, as it reports them or as a file has them (backup.c) ---- */
+/* ---- values of a sensor, as it reports them or as a file has them (backup.c) ---- */
 
 typedef enum {
-    HELD_NOTHING = 0, /* the file does not have the setting */
+    HELD_NOTHING = 0, /* it is not wanted, or the file does not have it */
+    HELD_UNREAD,      /* it is to be read */
     HELD_VALUE,
     HELD_NOT_READABLE, /* write-only */
     HELD_NOT_THERE,    /* this variant of the sensor does not have it */
@@ -160,27 +161,31 @@ typedef enum {
 
 typedef struct {
     held_t held;
-    char text[SETTING_TEXT]; /* with HELD_VALUE and HELD_NOT_SETTABLE: the value as the sensor reports it */
+    char text[SETTING_TEXT]; /* with HELD_VALUE and HELD_NOT_SETTABLE: as the sensor reports it */
     fathom_status_t status;  /* with HELD_NOT_THERE: the reason */
     unsigned line;           /* of the file; 0: none */
-} backup_row_t;
+} value_t;
 
 /* Invariant: no model has more settings. */
-enum { BACKUP_ROWS = 32 };
+enum { VALUES = 32 };
 
 typedef struct {
     const model_t *model;
-    backup_row_t rows[BACKUP_ROWS]; /* in the order of the model's settings */
-} backup_t;
+    bool is_known;        /* the sensor has responded */
+    value_t rows[VALUES]; /* in the order of the model's settings */
+} values_t;
 
 /* Returns the value, or the words in its place, such as "not readable". */
-const char *backup_text(const backup_row_t *row);
+const char *value_text(const value_t *value);
 
-/* Returns true if both rows have the same value. */
-bool backup_is_same(const backup_row_t *one, const backup_row_t *other);
+bool value_is_same(const value_t *one, const value_t *other);
 
-/* Reads all settings of the sensor. Returns false after printing the reason. */
-bool backup_read(session_t *session, backup_t *unit);
+/* Reads the rows with HELD_UNREAD. Returns false after printing which value could not be read; this one and the next rows
+ * are not read. A single value may be missing; with is_backup only one that not each sensor has. */
+bool values_read(session_t *session, values_t *values, bool is_backup);
+
+/* Reads what `fathom save` keeps. */
+bool backup_read(session_t *session, values_t *unit);
 
 /*
  * The file of `fathom save`: lines of NAME = VALUE with the names and values of `fathom get` and `fathom set`, after the
@@ -189,11 +194,11 @@ bool backup_read(session_t *session, backup_t *unit);
  */
 
 /* Prints the file. place: "address 7, 19200 8E1"; when: UTC. */
-void backup_print(FILE *to, const backup_t *unit, const char *place, const char *when);
+void backup_print(FILE *to, const values_t *unit, const char *place, const char *when);
 
 /* Reads the file. moves: the sensor is to get its address. Returns STATUS_OK. After printing what is wrong returns
  * STATUS_FAILED if the file cannot be read, or STATUS_USAGE if a line is wrong. */
-int backup_parse(const char *path, const model_t *model, bool moves, backup_t *file);
+int backup_parse(const char *path, const model_t *model, bool moves, values_t *file);
 
 /* ---- a file that is complete or not there (file.c) ---- */
 

@@ -17,7 +17,7 @@ static void check_refusal(bool is_refused)
             "in a line of the tool's");
 }
 
-static int parse_backup(const model_t *model, backup_t *backup)
+static int parse_backup(const model_t *model, values_t *backup)
 {
     tool_capture();
     const int status = backup_parse("unit", model, false, backup);
@@ -27,8 +27,8 @@ static int parse_backup(const model_t *model, backup_t *backup)
 
 static void backup(uint8_t how, const uint8_t *bytes, size_t size)
 {
-    static backup_t first;
-    static backup_t again;
+    static values_t first;
+    static values_t again;
     const model_t *const model = &models[how % model_count];
     tool_file(bytes, size);
     const int status = parse_backup(model, &first);
@@ -46,16 +46,14 @@ static void backup(uint8_t how, const uint8_t *bytes, size_t size)
     PROMISE(parse_backup(model, &again) == 0, "session.h: what is printed is read");
     for (size_t i = 0; model->settings[i].name != NULL; i++) {
         const setting_t *const setting = &model->settings[i];
-        const backup_row_t *const row = &first.rows[i];
+        const value_t *const row = &first.rows[i];
         int32_t value = 0;
         PROMISE(row->held == again.rows[i].held && strcmp(row->text, again.rows[i].text) == 0,
                 "session.h: what is printed is read as the same");
         PROMISE(row->held == HELD_NOTHING || (setting->kind != SETTING_PRESENT && setting->mode == NULL),
                 "session.h: this is of what is kept");
         if (row->held == HELD_VALUE && setting->effect != NULL)
-            PROMISE(setting_value(setting, row->text, &value) ||
-                        (setting->has_zero && strcmp(row->text, "0") == 0),
-                    "setting.h: a value that can be set");
+            PROMISE(setting_value(setting, row->text, &value), "session.h: a value that can be set");
     }
     free(text);
 }
