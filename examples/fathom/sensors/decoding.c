@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "sensors/decoding.h"
 
+#include <ctype.h>
 #include <inttypes.h>
 #include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 
 uint16_t decode_get16(const uint8_t *at) { return (uint16_t)(at[0] * 256u + at[1]); }
@@ -19,9 +19,7 @@ decode_meaning_t *decode_mean(decode_frame_t *frame, const char *sensor, const c
     va_list arguments;
     if (frame->meanings != DECODE_MEANINGS) frame->meanings++;
     decode_meaning_t *const meaning = &frame->meaning[frame->meanings - 1];
-    memset(meaning, 0, sizeof *meaning);
-    meaning->sensor = sensor;
-    meaning->source = source;
+    *meaning = (decode_meaning_t){.sensor = sensor, .source = source};
     va_start(arguments, format);
     (void)vsnprintf(meaning->what, sizeof meaning->what, format, arguments);
     va_end(arguments);
@@ -33,36 +31,29 @@ void decode_note(decode_frame_t *frame, const char *format, ...)
     va_list arguments;
     if (frame->notes == DECODE_NOTES) return;
     va_start(arguments, format);
-    (void)vsnprintf(frame->note[frame->notes], sizeof frame->note[0], format, arguments);
+    (void)vsnprintf(frame->note[frame->notes++], sizeof frame->note[0], format, arguments);
     va_end(arguments);
-    frame->notes++;
 }
 
-static decode_field_t *add(decode_meaning_t *meaning, const char *name, const char *unit)
+/* ---- the values of a meaning ---- */
+
+decode_field_t *decode_string(decode_meaning_t *meaning, const char *name, const char *format, ...)
 {
+    va_list arguments;
     if (meaning->count != DECODE_FIELDS) meaning->count++;
     decode_field_t *const field = &meaning->fields[meaning->count - 1];
-    memset(field, 0, sizeof *field);
-    field->name = name;
-    field->unit = unit;
+    *field = (decode_field_t){.name = name, .unit = ""};
+    va_start(arguments, format);
+    (void)vsnprintf(field->value, sizeof field->value, format, arguments);
+    va_end(arguments);
     return field;
 }
 
 decode_field_t *decode_number(decode_meaning_t *meaning, const char *name, int64_t value, const char *unit)
 {
-    decode_field_t *const field = add(meaning, name, unit);
+    decode_field_t *const field = decode_string(meaning, name, "%" PRId64, value);
     field->is_number = true;
-    (void)snprintf(field->value, sizeof field->value, "%" PRId64, value);
-    return field;
-}
-
-decode_field_t *decode_string(decode_meaning_t *meaning, const char *name, const char *format, ...)
-{
-    decode_field_t *const field = add(meaning, name, "");
-    va_list arguments;
-    va_start(arguments, format);
-    (void)vsnprintf(field->value, sizeof field->value, format, arguments);
-    va_end(arguments);
+    field->unit = unit;
     return field;
 }
 
@@ -74,12 +65,27 @@ void decode_remark(decode_field_t *field, const char *format, ...)
     va_end(arguments);
 }
 
-/* ---- settings ---- */
+static decode_field_t *add_value(decode_meaning_t *meaning, const setting_t *setting, int64_t value)
+{
+    if (setting->words == NULL)
+        return decode_number(meaning, setting->name, value, setting->unit != NULL ? setting->unit : "");
+    const int32_t word = setting_word(setting, value);
+    if (word < 0) return decode_string(meaning, setting->name, "0x%04X", (unsigned)value);
+    decode_field_t *const field = decode_string(meaning, setting->name, "%s", setting->words[word]);
+    field->is_number = isdigit((unsigned char)setting->words[0][0]) != 0;
+    return field;
+}
 
-static void remark_range(decode_field_t *field, const setting_t *setting, int64_t value)
+void decode_setting(decode_meaning_t *meaning, const setting_t *setting, int64_t value)
 {
     const int32_t least = setting->has_zero ? 0 : setting->least;
-    if (setting->words != NULL)
+    const char *const note = setting->note != NULL ? setting->note(value) : NULL;
+    decode_field_t *const field = add_value(meaning, setting, value);
+    if (note != NULL)
+        decode_remark(field, "%s", note);
+    else if (setting_can_be(setting, value))
+        return;
+    else if (setting->words != NULL)
         decode_remark(field, "not one of its values");
     else if (value < least || value > setting->most)
         decode_remark(field, "not from %" PRId32 " to %" PRId32, least, setting->most);
@@ -87,48 +93,20 @@ static void remark_range(decode_field_t *field, const setting_t *setting, int64_
         decode_remark(field, "no multiple of %" PRId32, setting->step);
 }
 
-/* Returns true if its values are numbers, also if only some are allowed. */
-static bool is_number(const setting_t *setting)
-{
-    if (setting->words != NULL) return setting->words[0][0] >= '0' && setting->words[0][0] <= '9';
-    return setting->print == NULL || setting->unit != NULL;
-}
-
-void decode_setting(decode_meaning_t *meaning, const setting_t *setting, int64_t value)
-{
-    const char *const note = setting->note != NULL ? setting->note(value) : NULL;
-    const int32_t word = setting->words != NULL ? setting_word(setting, value) : -1;
-    decode_field_t *field = NULL;
-    if (setting->words == NULL)
-        field = decode_number(meaning, setting->name, value, setting->unit != NULL ? setting->unit : "");
-    else if (word < 0)
-        field = decode_string(meaning, setting->name, "0x%04X", (unsigned)value);
-    else
-        field = decode_string(meaning, setting->name, "%s", setting->words[word]);
-    field->is_number = is_number(setting) && (setting->words == NULL || word >= 0);
-    if (note != NULL)
-        decode_remark(field, "%s", note);
-    else if (!setting_can_be(setting, value))
-        remark_range(field, setting, value);
-}
-
 void decode_response(decode_meaning_t *meaning, const setting_t *setting, const uint16_t *registers)
 {
-    const int64_t value = setting_decode(setting, registers);
     if (setting->print == NULL) {
-        decode_setting(meaning, setting, value);
+        decode_setting(meaning, setting, setting_decode(setting, registers));
         return;
     }
     char text[SETTING_TEXT] = "";
     setting->print(text, registers);
     decode_field_t *const field = decode_string(meaning, setting->name, "%s", text);
+    field->is_number = setting->unit != NULL || setting->words != NULL;
     if (setting->unit != NULL) field->unit = setting->unit;
-    field->is_number = is_number(setting);
 }
 
 /* ---- printing ---- */
-
-enum { KEY = 64 };
 
 static void put_value(FILE *to, const decode_field_t *field)
 {
@@ -148,8 +126,10 @@ void decoding_put_line(FILE *to, const decode_meaning_t *meaning)
 {
     (void)fputs(meaning->what, to);
     if (meaning->count == 0) return;
-    (void)fputs(is_named(meaning) ? " " : ": ", to);
-    if (!is_named(meaning)) (void)fprintf(to, "%s ", meaning->fields[0].name);
+    if (is_named(meaning))
+        (void)fputs(" ", to);
+    else
+        (void)fprintf(to, ": %s ", meaning->fields[0].name);
     put_value(to, &meaning->fields[0]);
 }
 
@@ -157,33 +137,36 @@ void decoding_put_text(FILE *to, const decode_meaning_t *meaning)
 {
     (void)fputs("        ", to);
     if (meaning->sensor[0] != '\0') (void)fprintf(to, "%-8s ", meaning->sensor);
-    if (meaning->count == 1) {
+    if (meaning->count == 1)
         decoding_put_line(to, meaning);
-        (void)fputc('\n', to);
-        return;
-    }
-    (void)fprintf(to, "%s\n", meaning->what);
-    for (uint8_t i = 0; i != meaning->count; i++) {
+    else
+        (void)fputs(meaning->what, to);
+    (void)fputc('\n', to);
+    for (uint8_t i = 0; i != meaning->count && meaning->count != 1; i++) {
         (void)fprintf(to, "            %-22s ", meaning->fields[i].name);
         put_value(to, &meaning->fields[i]);
         (void)fputc('\n', to);
     }
 }
 
-/* The name and the unit of a field as a key: "real-time-distance" in mm is real_time_distance_mm. */
-static const char *key_of(const decode_field_t *field, char key[KEY])
+/* Writes `value`, or the note, by the name and the unit of the field: "real-time-distance" in mm is
+ * real_time_distance_mm. */
+static void put_member(json_t *json, const decode_field_t *field, bool is_note)
 {
-    (void)snprintf(key, KEY, "%s%s%s", field->name, field->unit[0] != '\0' ? "_" : "", field->unit);
-    for (char *at = key; *at != '\0'; at++) {
-        if (*at >= 'A' && *at <= 'Z') *at = (char)(*at - 'A' + 'a');
-        if (*at == ' ' || *at == '-') *at = '_';
-    }
-    return key;
+    char key[DECODE_VALUE];
+    (void)snprintf(key, sizeof key, "%s%s%s", field->name, field->unit[0] != '\0' ? "_" : "", field->unit);
+    for (char *at = key; *at != '\0'; at++)
+        *at = *at == ' ' || *at == '-' ? '_' : (char)tolower((unsigned char)*at);
+    if (is_note)
+        json_string(json, key, field->note);
+    else if (field->is_number)
+        json_value(json, key, "%s", field->value);
+    else
+        json_string(json, key, field->value);
 }
 
 void decoding_put_json(json_t *json, const decode_meaning_t *meaning)
 {
-    char key[KEY];
     json_begin(json, NULL, '{');
     if (meaning->sensor[0] != '\0') {
         json_string(json, "model", meaning->sensor);
@@ -191,18 +174,11 @@ void decoding_put_json(json_t *json, const decode_meaning_t *meaning)
     }
     json_string(json, "what", meaning->what);
     json_begin(json, "fields", '{');
-    for (uint8_t i = 0; i != meaning->count; i++) {
-        const decode_field_t *const field = &meaning->fields[i];
-        if (field->is_number)
-            json_value(json, key_of(field, key), "%s", field->value);
-        else
-            json_string(json, key_of(field, key), field->value);
-    }
+    for (uint8_t i = 0; i != meaning->count; i++) put_member(json, &meaning->fields[i], false);
     json_end(json, '}');
     json_begin(json, "notes", '{');
     for (uint8_t i = 0; i != meaning->count; i++)
-        if (meaning->fields[i].note[0] != '\0')
-            json_string(json, key_of(&meaning->fields[i], key), meaning->fields[i].note);
+        if (meaning->fields[i].note[0] != '\0') put_member(json, &meaning->fields[i], true);
     json_end(json, '}');
     json_end(json, '}');
 }

@@ -2,10 +2,6 @@
 #ifndef DECODING_H
 #define DECODING_H
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
 #include "fathom/codec/hps167s_registers.h"
 #include "output/record.h"
 #include "sensors/models.h"
@@ -37,14 +33,8 @@ enum {
     DECODE_AT_MANY = 7 /* the registers of a write of several */
 };
 
-enum {
-    DECODE_TEXT = 160,
-    DECODE_VALUE = 64,
-    DECODE_REMARK = 96,
-    DECODE_FIELDS = 10,
-    DECODE_MEANINGS = 12,
-    DECODE_NOTES = 6
-};
+enum { DECODE_TEXT = 160, DECODE_VALUE = 64, DECODE_REMARK = 96 };
+enum { DECODE_FIELDS = 10, DECODE_MEANINGS = 12, DECODE_NOTES = 6 };
 
 typedef struct {
     const char *name;

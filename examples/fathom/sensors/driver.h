@@ -87,39 +87,23 @@ fathom_modbus_config_t driver_config(const port_t *port, const reader_settings_t
 /* The clock of the line. */
 uint32_t driver_now_us(const reader_t *reader);
 
-/* ---- A16 and A05: dyp.c and dyp_registers.c ---- */
+/* ---- the rows and functions of models.c ---- */
 
 /* A16 6(3), A05 3(3). 0x00 is an address, 0xFF is for all units. */
 enum { DYP_ADDRESS = 0x0200, DYP_MAX_ADDRESS = 0xFE };
 
-extern const model_mode_t a16_modes[MODEL_MODES], a05_modes[MODEL_MODES];
-extern const setting_t a16_settings[], a05_settings[];
+extern const model_mode_t a16_modes[MODEL_MODES], a05_modes[MODEL_MODES], hps167s_modes[MODEL_MODES];
+extern const setting_t a16_settings[], a05_settings[], hps167s_settings[];
 
-void a16_simulate(device_t *device, const device_settings_t *settings, uint8_t simulated_as);
-fathom_status_t a16_get(reader_t *reader, const setting_t *setting, char text[SETTING_TEXT]);
-fathom_status_t a16_set(reader_t *reader, const setting_t *setting, int32_t value);
+model_get_t a16_get, a05_get, hps167s_get;
+model_set_t a16_set, a05_set, hps167s_set, hps167s_set_all;
+model_reset_t hps167s_reset_interface, hps167s_reset_sensor;
+model_simulate_t a16_simulate, a05_simulate, hps167s_simulate;
+model_decode_t dyp_decode, hps167s_decode;
 
-void a05_simulate(device_t *device, const device_settings_t *settings, uint8_t simulated_as);
-fathom_status_t a05_get(reader_t *reader, const setting_t *setting, char text[SETTING_TEXT]);
-fathom_status_t a05_set(reader_t *reader, const setting_t *setting, int32_t value);
-
-void dyp_decode(struct decode_frame *frame, const model_t *model, const uint8_t *request);
 void dyp_decode_sum(struct decode_frame *frame, const model_t *model);
-
-/* ---- HPS-167S: hps167s.c and hps167s_registers.c ---- */
-
-extern const model_mode_t hps167s_modes[MODEL_MODES];
-extern const setting_t hps167s_settings[];
-
-void hps167s_simulate(device_t *device, const device_settings_t *settings, uint8_t simulated_as);
-fathom_status_t hps167s_get(reader_t *reader, const setting_t *setting, char text[SETTING_TEXT]);
-fathom_status_t hps167s_set(reader_t *reader, const setting_t *setting, int32_t value);
-fathom_status_t hps167s_set_all(reader_t *reader, const setting_t *setting, int32_t value);
-fathom_status_t hps167s_reset_interface(reader_t *reader);
-fathom_status_t hps167s_reset_sensor(reader_t *reader);
 bool hps167s_identify(inquiry_t *inquiry);
-void hps167s_decode(struct decode_frame *frame, const model_t *model, const uint8_t *request);
-const char *hps167s_read_changes(const uint8_t *request);
+const char *hps167s_read_changes(uint8_t function, uint16_t first, uint16_t count);
 const char *hps167s_exception_name(uint8_t code);
 
 #endif

@@ -101,7 +101,8 @@ static bool a16_read_auto(reader_t *reader, port_t *port, const reader_settings_
 
 /* A longer pause between two frames means that the sensor was off. No period is printed, but a "response time" of 1.5 s
  * (A05 1). */
-#define OFF_US 2000000u
+#define OFF_US     2000000u
+#define SWITCH_OFF "when it is switched on: switch its supply off for 3 seconds and on"
 
 /* The driver holds RX low for another 1.5 s and then lets it go high. */
 static fathom_status_t begin_readings(reader_t *reader)
@@ -160,11 +161,8 @@ static bool select_value(reader_t *reader, port_t *port, uint8_t value)
     selection->heard_us = driver_now_us(reader);
     reader->sensor = (fathom_sensor_t){poll_selection, due_us_selection, reader};
     reader->end = end_selection;
-    reader->remark =
-        is_low ? "its RX is held low, which selects real-time values when it is switched on: switch its "
-                 "supply off for 3 seconds and on"
-               : "its RX is high, which selects processed values when it is switched on: switch its "
-                 "supply off for 3 seconds and on";
+    reader->remark = is_low ? "its RX is held low, which selects real-time values " SWITCH_OFF
+                            : "its RX is high, which selects processed values " SWITCH_OFF;
     return true;
 }
 

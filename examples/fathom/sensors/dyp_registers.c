@@ -11,39 +11,70 @@
 enum { READ = FATHOM_MODBUS_READ_HOLDING_REGISTERS, WRITE = FATHOM_MODBUS_WRITE_SINGLE_REGISTER };
 enum { PROBES = FATHOM_DYP_PROBES };
 
+/* ---- the meaning of a value ---- */
+
+/* The special values are not in the datasheets of A16 and A05, but in those of their family. */
+enum { NO_TARGET = 0xFFFD, INTERFERENCE = 0xFFFE, REFUSED = 0xFFFF };
+
+static bool is_likely_distance(const model_t *model, uint16_t value)
+{
+    return value <= model->max_mm || value == NO_TARGET || value == INTERFERENCE;
+}
+
+const char *model_value_status(const model_t *model, uint16_t value, int64_t *distance_mm)
+{
+    const bool is_target = value != 0 && value <= model->max_mm;
+    *distance_mm = is_target ? value : NO_VALUE;
+    if (is_target) return "target";
+    return value == NO_TARGET || value == INTERFERENCE ? "no_target" : "unknown";
+}
+
+static const char *note_distance(int64_t value)
+{
+    switch (value) {
+    case 0:
+        return "unknown: no target, or something at the probe; see --means of fathom read";
+    case NO_TARGET:
+        return "no target";
+    case INTERFERENCE:
+        return "no target: interference by another unit";
+    case REFUSED:
+        return "refused: no distance, and no value of the family";
+    default:
+        return NULL;
+    }
+}
+
 /* ---- the settings ---- */
 
-#define EFFECT "at once; whether it is kept over power-off is not in the datasheet"
-
-static const char *const modes[] = {"controlled", "automatic", NULL};
-static const char *const on_only[] = {"on", NULL};
-static const char *const polarities[] = {"negative", "positive", NULL};
-static const char *const values[] = {"processed", "real-time", NULL};
+#define EFFECT     "at once; whether it is kept over power-off is not in the datasheet"
+#define WORDS(...) ((const char *const[]){__VA_ARGS__, NULL})
 
 const setting_t a16_settings[] = {
     {"address", "Modbus address (register 0x0200)", .read_at = DYP_ADDRESS, .write_at = DYP_ADDRESS,
      .effect = EFFECT, .least = 1, .most = DYP_MAX_ADDRESS, .has_zero = true, .moves = true,
      .is_never_blind = true},
     {"operating-mode", "the register alone (0x0202); automatic-output restarts the automatic output",
-     SETTING_PRESENT, .write_at = FATHOM_A16_REGISTER_OPERATING_MODE, .words = modes,
+     SETTING_PRESENT, .write_at = FATHOM_A16_REGISTER_OPERATING_MODE,
+     .words = WORDS("controlled", "automatic"),
      .effect = "at once; not kept over power-off. Any further command stops the automatic output again"},
     {"automatic-output", "RS232 variant: restarts the output that a Modbus command has stopped (0x0202)",
-     SETTING_PRESENT, .words = on_only, .effect = "at once; any further Modbus command stops it again",
+     SETTING_PRESENT, .words = WORDS("on"), .effect = "at once; any further Modbus command stops it again",
      .confirmed = "frames are heard",
      .unconfirmed = "no frame was heard in 10 s; only the RS232 variant sends by itself"},
     {"switch-polarity", "switch variant: the level when something is nearer than the threshold (0x0205)",
      .read_at = FATHOM_A16_REGISTER_SWITCH_POLARITY, .write_at = FATHOM_A16_REGISTER_SWITCH_POLARITY,
-     .is_of_variant = true, .effect = EFFECT, .words = polarities},
+     .is_of_variant = true, .effect = EFFECT, .words = WORDS("negative", "positive")},
     {"switch-threshold", "switch variant: the distance at which it switches (0x0206)",
      .read_at = FATHOM_A16_REGISTER_SWITCH_THRESHOLD, .write_at = FATHOM_A16_REGISTER_SWITCH_THRESHOLD,
      .is_of_variant = true, .unit = "mm", .effect = EFFECT, .least = 1, .most = FATHOM_A16_MAX_MM},
     {"automatic-value", "RS232 variant: the distance that the automatic output sends (0x0207)",
      .read_at = FATHOM_A16_REGISTER_AUTOMATIC_VALUE, .write_at = FATHOM_A16_REGISTER_AUTOMATIC_VALUE,
-     .is_of_variant = true, .effect = EFFECT, .words = values},
+     .is_of_variant = true, .effect = EFFECT, .words = WORDS("processed", "real-time")},
     {"distance", "the processed distance (0x0100)", SETTING_PRESENT, .read_at = FATHOM_A16_REGISTER_PROCESSED,
-     .unit = "mm"},
+     .unit = "mm", .note = note_distance},
     {"real-time-distance", "the newest measurement (0x0101)", SETTING_PRESENT,
-     .read_at = FATHOM_A16_REGISTER_REAL_TIME, .unit = "mm"},
+     .read_at = FATHOM_A16_REGISTER_REAL_TIME, .unit = "mm", .note = note_distance},
     {.name = NULL},
 };
 
@@ -55,7 +86,7 @@ const setting_t a05_settings[] = {
      SETTING_PRESENT, .mode = "dyp", .effect = EFFECT, .least = 1, .most = DYP_MAX_ADDRESS, .moves = true,
      .is_never_blind = true},
     {"distances", "of the four probes (0x0106 to 0x0109)", SETTING_PRESENT, .read_at = FATHOM_A05_REGISTERS,
-     .unit = "mm"},
+     .unit = "mm", .note = note_distance},
     {.name = NULL},
 };
 
@@ -149,51 +180,18 @@ fathom_status_t a05_set(reader_t *reader, const setting_t *setting, int32_t valu
                                   : fathom_a05_dyp_broadcast_address(&reader->driver.a05_dyp, (uint8_t)value);
 }
 
-/* ---- the meaning of a value ---- */
-
-/* The special values are not in the datasheets of A16 and A05, but in those of their family. */
-enum { NO_TARGET = 0xFFFD, INTERFERENCE = 0xFFFE, REFUSED = 0xFFFF };
-
-static bool is_likely_distance(const model_t *model, uint16_t value)
-{
-    return value <= model->max_mm || value == NO_TARGET || value == INTERFERENCE;
-}
-
-const char *model_value_status(const model_t *model, uint16_t value, int64_t *distance_mm)
-{
-    const bool is_target = value != 0 && value <= model->max_mm;
-    *distance_mm = is_target ? value : NO_VALUE;
-    if (is_target) return "target";
-    return value == NO_TARGET || value == INTERFERENCE ? "no_target" : "unknown";
-}
-
-static void put_distance(decode_meaning_t *meaning, const char *name, uint16_t value)
-{
-    static const struct {
-        uint16_t value;
-        const char *note;
-    } special[] = {{0, "unknown: no target, or something at the probe; see --means of fathom read"},
-                   {NO_TARGET, "no target"},
-                   {INTERFERENCE, "no target: interference by another unit"},
-                   {REFUSED, "refused: no distance, and no value of the family"}};
-    decode_field_t *const field = decode_number(meaning, name, value, "mm");
-    for (size_t i = 0; i != sizeof special / sizeof special[0]; i++)
-        if (value == special[i].value) decode_remark(field, "%s", special[i].note);
-}
-
-static void put_value(decode_meaning_t *meaning, const setting_t *setting, uint16_t value)
-{
-    if (is_distance(setting))
-        put_distance(meaning, setting->name, value);
-    else
-        decode_setting(meaning, setting, value);
-}
+/* ---- decoding: values ---- */
 
 static const char *const probe_names[PROBES] = {"probe 1", "probe 2", "probe 3", "probe 4"};
+static const char *const only_name[] = {"distance"};
 
-static void put_probes(decode_meaning_t *meaning, uint8_t first, const uint16_t *distances, uint8_t count)
+static void put_distances(decode_meaning_t *meaning, const char *const *names, const uint16_t *distances,
+                          uint8_t count)
 {
-    for (uint8_t i = 0; i != count; i++) put_distance(meaning, probe_names[first + i], distances[i]);
+    for (uint8_t i = 0; i != count; i++) {
+        const setting_t distance = {.name = names[i], .unit = "mm", .note = note_distance};
+        decode_setting(meaning, &distance, distances[i]);
+    }
 }
 
 /* ---- Modbus: a response whose request is not known ---- */
@@ -207,8 +205,7 @@ static void guess_probes(decode_frame_t *frame, const model_t *model, const uint
     decode_meaning_t *const meaning =
         decode_mean(frame, model->name, model->register_source,
                     count == 1 ? "if a probe was read" : "if %u probes were read", count);
-    for (uint8_t i = 0; i != count; i++)
-        put_distance(meaning, count == 1 ? "distance" : names[i], distances[i]);
+    put_distances(meaning, count == 1 ? only_name : names, distances, count);
 }
 
 /* Adds each value that the response can be. */
@@ -225,9 +222,9 @@ static void guess(decode_frame_t *frame, const model_t *model)
         if (setting->read_at == model->probe_registers[0])
             guess_probes(frame, model, registers, count);
         else if (count == 1 && (frame->is_sure || is_likely))
-            put_value(decode_mean(frame, model->name, model->register_source, "if 0x%04X was read: %s",
-                                  setting->read_at, setting->name),
-                      setting, registers[0]);
+            decode_setting(decode_mean(frame, model->name, model->register_source, "if 0x%04X was read: %s",
+                                       setting->read_at, setting->name),
+                           setting, registers[0]);
     }
 }
 
@@ -262,31 +259,25 @@ static void explain_probes(decode_frame_t *frame, const model_t *model, uint8_t 
                           first + 1u, first + (unsigned)count);
     if (frame->piece->direction != DECODE_RESPONSE) return;
     decode_registers(frame->bytes + DECODE_AT_DATA, distances, (uint8_t)count);
-    put_probes(meaning, first, distances, (uint8_t)count);
+    put_distances(meaning, probe_names + first, distances, (uint8_t)count);
 }
 
-static void explain_read(decode_frame_t *frame, const model_t *model, const setting_t *setting,
-                         const uint8_t *request)
+static void explain(decode_frame_t *frame, const model_t *model, const setting_t *setting,
+                    const uint8_t *request)
 {
     const uint16_t address = decode_get16(request + DECODE_AT_FIRST);
+    const bool is_read = frame->bytes[DECODE_AT_FUNCTION] == READ;
+    const bool is_set = !is_read && setting->write_at != 0;
     decode_meaning_t *const meaning =
-        decode_mean(frame, model->name, model->register_source, "0x%04X %s", address, setting->name);
+        decode_mean(frame, model->name, model->register_source, "%s0x%04X %s%s", is_set ? "set " : "",
+                    address, setting->name, is_read || is_set ? "" : ", which is read-only");
+    if (is_set) decode_setting(meaning, setting, decode_get16(frame->bytes + DECODE_AT_VALUE));
+    if (!is_read) return;
     if (setting->read_at == 0) decode_note(frame, "%s: 0x%04X is write-only", model->name, address);
     if (decode_get16(request + DECODE_AT_COUNT) != 1)
         decode_note(frame, "%s: a read of several registers is not in its datasheet", model->name);
     if (frame->piece->direction == DECODE_RESPONSE)
-        put_value(meaning, setting, decode_get16(frame->bytes + DECODE_AT_DATA));
-}
-
-static void explain_write(decode_frame_t *frame, const model_t *model, const setting_t *setting)
-{
-    const char *const source = model->register_source;
-    if (setting->write_at == 0)
-        (void)decode_mean(frame, model->name, source, "0x%04X %s, which is read-only", setting->read_at,
-                          setting->name);
-    else
-        put_value(decode_mean(frame, model->name, source, "set 0x%04X %s", setting->write_at, setting->name),
-                  setting, decode_get16(frame->bytes + DECODE_AT_VALUE));
+        decode_setting(meaning, setting, decode_get16(frame->bytes + DECODE_AT_DATA));
 }
 
 void dyp_decode(decode_frame_t *frame, const model_t *model, const uint8_t *request)
@@ -297,13 +288,9 @@ void dyp_decode(decode_frame_t *frame, const model_t *model, const uint8_t *requ
     const uint16_t address = decode_get16(request + DECODE_AT_FIRST);
     const uint8_t probe = probe_at(model, address);
     if (probe != PROBES && function == READ) explain_probes(frame, model, probe, request);
-    for (const setting_t *setting = model->settings; probe == PROBES && setting->name != NULL; setting++) {
-        if (address == 0 || (setting->read_at != address && setting->write_at != address)) continue;
-        if (function == READ)
-            explain_read(frame, model, setting, request);
-        else
-            explain_write(frame, model, setting);
-    }
+    for (const setting_t *setting = model->settings; probe == PROBES && setting->name != NULL; setting++)
+        if (address != 0 && (setting->read_at == address || setting->write_at == address))
+            explain(frame, model, setting, request);
 }
 
 /* ---- frames with a sum ---- */
@@ -313,18 +300,13 @@ static void decode_stream(decode_frame_t *frame, const model_t *model)
     uint16_t distances[PROBES];
     fathom_dyp_stream_decode(frame->bytes, distances, model->probes);
     decode_meaning_t *const meaning = decode_mean(frame, model->name, model->stream_source, "measurement");
-    if (model->probes == 1)
-        put_distance(meaning, "distance", distances[0]);
-    else
-        put_probes(meaning, 0, distances, model->probes);
+    put_distances(meaning, model->probes == 1 ? only_name : probe_names, distances, model->probes);
 }
 
 static void decode_set_address(decode_frame_t *frame, const model_t *model)
 {
-    decode_meaning_t *const meaning = decode_mean(frame, model->name, "A05 2(3)5", "set the address");
-    decode_field_t *const field = decode_number(meaning, "address", frame->unit, "");
-    if (frame->unit == 0 || frame->unit == FATHOM_DYP_ANY_ADDRESS)
-        decode_remark(field, "not from 1 to %u", DYP_MAX_ADDRESS);
+    static const setting_t address = {.name = "address", .least = 1, .most = DYP_MAX_ADDRESS};
+    decode_setting(decode_mean(frame, model->name, "A05 2(3)5", "set the address"), &address, frame->unit);
     frame->unit = -1; /* every unit that receives it */
     decode_note(frame, "it has no old address in it: every %s on the line obeys", model->name);
 }
@@ -350,7 +332,8 @@ static void decode_55aa(decode_frame_t *frame, const model_t *model)
     } else {
         uint16_t distances[PROBES];
         fathom_dyp_55aa_decode(frame->bytes, distances);
-        put_probes(decode_mean(frame, model->name, source, "measurement"), first, distances, count);
+        put_distances(decode_mean(frame, model->name, source, "measurement"), probe_names + first, distances,
+                      count);
     }
 }
 

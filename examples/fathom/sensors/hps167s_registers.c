@@ -155,13 +155,13 @@ fathom_status_t hps167s_get(reader_t *reader, const setting_t *setting, char tex
 {
     fathom_hps167s_t *const sensor = &reader->driver.hps167s;
     const fathom_line_settings_t *const line = sensor->unit.line_settings;
-    const fathom_status_t status = read_command(sensor, setting->read_at);
-    if (status != FATHOM_OK) return status;
+    fathom_status_t status = read_command(sensor, setting->read_at);
+    if (status == FATHOM_OK) status = setting_print(setting, sensor->values, text);
     /* A code without a rate of its own shows nothing: the unit has the rate at which it responded. */
-    if (setting->is_baud && line != NULL &&
+    if (status == FATHOM_OK && setting->is_baud && line != NULL &&
         note_baud_code(fathom_hps167s_get_byte(sensor->values, FATHOM_HPS167S_BAUD_BYTE)) != NULL)
-        return snprintf(text, SETTING_TEXT, "%" PRIu32, line->baud) > 0 ? FATHOM_OK : FATHOM_ERR_MALFORMED;
-    return setting_print(setting, sensor->values, text);
+        (void)snprintf(text, SETTING_TEXT, "%" PRIu32, line->baud);
+    return status;
 }
 
 fathom_status_t hps167s_set(reader_t *reader, const setting_t *setting, int32_t value)
@@ -402,48 +402,36 @@ const char *hps167s_exception_name(uint8_t code)
  * A read of 0x0009 is command #6. The datasheet does not say what a read with another count, from a lower register or by
  * function 4 does, so each read that includes 0x0009 counts. #3 and #5 include it and are known to be harmless.
  */
-const char *hps167s_read_changes(const uint8_t *request)
+const char *hps167s_read_changes(uint8_t function, uint16_t first, uint16_t count)
 {
-    const bool is_holding = request[DECODE_AT_FUNCTION] == READ;
-    const uint16_t first = decode_get16(request + DECODE_AT_FIRST);
-    const uint16_t count = decode_get16(request + DECODE_AT_COUNT);
-    const bool is_known =
-        is_holding && ((first == FATHOM_HPS167S_DETAILS && count == FATHOM_HPS167S_DETAILS_COUNT) ||
-                       (first == FATHOM_HPS167S_MEASUREMENT && count == FATHOM_HPS167S_MEASUREMENT_COUNT));
-    if (is_known || first > FATHOM_HPS167S_RESET || (uint32_t)first + count <= FATHOM_HPS167S_RESET)
-        return NULL;
+    const bool is_details = first == FATHOM_HPS167S_DETAILS && count == FATHOM_HPS167S_DETAILS_COUNT;
+    const bool is_measurement_read =
+        first == FATHOM_HPS167S_MEASUREMENT && count == FATHOM_HPS167S_MEASUREMENT_COUNT;
+    if (function == READ && (is_details || is_measurement_read)) return NULL;
+    if (first > FATHOM_HPS167S_RESET || (uint32_t)first + count <= FATHOM_HPS167S_RESET) return NULL;
     return "a read of 0x0009 resets an HPS-167S: address 1, 19200 8E1, warm-up and termination as from the "
            "factory";
 }
 
 /* ---- a scan: #1, #2 and #3 ---- */
 
-/* Registers of #2 and of #5, whose responses have one shape. */
-enum { FOUR = FATHOM_HPS167S_CONFIGURATION_COUNT };
-
-/* Reads four registers into `four`. Returns false if it cannot. */
-static bool ask_four(inquiry_t *inquiry, uint16_t first, uint16_t four[FOUR])
-{
-    if (!inquiry->ask(inquiry, first, FOUR, INQUIRY_MEASURE_US, 2)) return false;
-    memcpy(four, inquiry->values, FOUR * sizeof *four);
-    return true;
-}
-
 /* The response of #2 has the shape of a measurement (#5), which may come unasked: so two have to agree, and to differ
  * from a measurement between them. */
 static bool ask_configuration(inquiry_t *inquiry)
 {
-    uint16_t configuration[FOUR];
-    uint16_t again[FOUR];
-    uint16_t measured[FOUR];
-    if (!ask_four(inquiry, FATHOM_HPS167S_CONFIGURATION, configuration) ||
-        !ask_four(inquiry, FATHOM_HPS167S_MEASUREMENT, measured) ||
-        !ask_four(inquiry, FATHOM_HPS167S_CONFIGURATION, again) ||
-        memcmp(configuration, again, sizeof configuration) != 0 ||
-        memcmp(configuration, measured, sizeof configuration) == 0 ||
-        !fathom_hps167s_may_be_configuration(configuration))
+    enum { COUNT = FATHOM_HPS167S_CONFIGURATION_COUNT, READS = 3 };
+    static const uint16_t reads[READS] = {FATHOM_HPS167S_CONFIGURATION, FATHOM_HPS167S_MEASUREMENT,
+                                          FATHOM_HPS167S_CONFIGURATION};
+    uint16_t values[READS][COUNT];
+    for (uint8_t i = 0; i != READS; i++) {
+        if (!inquiry->ask(inquiry, reads[i], COUNT, INQUIRY_MEASURE_US, 2)) return false;
+        memcpy(values[i], inquiry->values, sizeof values[i]);
+    }
+    if (memcmp(values[0], values[2], sizeof values[0]) != 0 ||
+        memcmp(values[0], values[1], sizeof values[0]) == 0 ||
+        !fathom_hps167s_may_be_configuration(values[0]))
         return false;
-    const bool is_on = fathom_hps167s_get_byte(configuration, FATHOM_HPS167S_TERMINATION_BYTE) != 0;
+    const bool is_on = fathom_hps167s_get_byte(values[0], FATHOM_HPS167S_TERMINATION_BYTE) != 0;
     (void)snprintf(inquiry->finding->termination, SETTING_TEXT, "%s", off_on[is_on]);
     return true;
 }

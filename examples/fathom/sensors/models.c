@@ -121,15 +121,11 @@ static bool has_value_at(const model_t *model, uint16_t address)
 
 bool models_allow_read(uint8_t address, uint16_t first, uint16_t count)
 {
-    const uint8_t request[] = {address,
-                               FATHOM_MODBUS_READ_HOLDING_REGISTERS,
-                               (uint8_t)(first >> 8),
-                               (uint8_t)first,
-                               (uint8_t)(count >> 8),
-                               (uint8_t)count};
     bool is_of_address_zero = false;
     for (const model_t *model = models; model != models + model_count; model++) {
-        if (model->read_changes != NULL && model->read_changes(request) != NULL) return false;
+        if (model->read_changes != NULL &&
+            model->read_changes(FATHOM_MODBUS_READ_HOLDING_REGISTERS, first, count) != NULL)
+            return false;
         if (model->has_address_zero && has_value_at(model, first)) is_of_address_zero = true;
     }
     return address != 0 || is_of_address_zero;

@@ -35,7 +35,6 @@ typedef struct {
     setting_kind_t kind;
 
     /* ---- in the frames of the sensor ---- */
-
     uint16_t
         read_at; /* register whose response has the value, perhaps with those of other rows; 0: write-only */
     uint16_t write_at;   /* register that sets it; 0: none */
@@ -48,7 +47,6 @@ typedef struct {
     const char *(*note)(int64_t value); /* why this value is odd, besides its range; NULL: it is not */
 
     /* ---- its values ---- */
-
     const char *unit;         /* NULL: none */
     const char *const *words; /* names of the values from 0 on, ended by NULL. NULL: numbers, ... */
     int32_t least;            /* ... from here */
@@ -57,7 +55,6 @@ typedef struct {
     bool has_zero;            /* 0 is a value as well, at which the unit may not be found again */
 
     /* ---- a change ---- */
-
     const char *effect;      /* when it takes effect, and how long; NULL: read-only */
     const char *mode;        /* name of the mode that it needs; NULL: the mode that uses Modbus */
     const char *risk;        /* of writing it to a unit whose value is not known; NULL: none */
@@ -227,16 +224,23 @@ enum {
 enum { MODEL_MODES = 5, MODEL_PROBE_REGISTERS = 2 };
 
 struct decode_frame;
+typedef struct model model_t;
+
+/* Call these three until the result is not FATHOM_PENDING. value: of a word, its number. */
+typedef fathom_status_t model_get_t(reader_t *reader, const setting_t *setting, char text[SETTING_TEXT]);
+typedef fathom_status_t model_set_t(reader_t *reader, const setting_t *setting, int32_t value);
+typedef fathom_status_t model_reset_t(reader_t *reader);
+typedef void model_simulate_t(device_t *device, const device_settings_t *settings, uint8_t simulated_as);
+/* request: the request, which is the frame itself or the one before it; NULL: not known. */
+typedef void model_decode_t(struct decode_frame *frame, const model_t *model, const uint8_t *request);
 
 /* A member that is NULL or 0 does not apply. */
-typedef struct model model_t;
 struct model {
     const char *name;
     const char *what;
     fathom_model_t id;
 
     /* ---- its line, and how it is read ---- */
-
     fathom_line_settings_t line; /* with factory settings */
     const uint32_t *rates;       /* baud rates that can be set, ended by 0 */
     const char *other_settings;  /* the same as options to try */
@@ -250,35 +254,27 @@ struct model {
     uint32_t second_response_us; /* a second unit at the same address responds within this time */
     const char *automatic_again; /* what restarts the automatic output, besides a power cycle */
 
-    /* ---- its settings; call these functions until the result is not FATHOM_PENDING ---- */
-
+    /* ---- its settings ---- */
     const setting_t *settings;
-    const char *offset; /* name of the setting that corrects its distances */
-    /* Reads a setting whose `read_at` is not 0. */
-    fathom_status_t (*get)(reader_t *reader, const setting_t *setting, char text[SETTING_TEXT]);
-    /* Writes a setting that has an `effect`. value: of a word, its number. */
-    fathom_status_t (*set)(reader_t *reader, const setting_t *setting, int32_t value);
-    /* Writes a setting that has a broadcast, in all units on the line. */
-    fathom_status_t (*set_all)(reader_t *reader, const setting_t *setting, int32_t value);
-    /* Restores the factory settings of the interface, and of the sensor behind it. */
-    fathom_status_t (*reset_interface)(reader_t *reader);
-    fathom_status_t (*reset_sensor)(reader_t *reader);
+    const char *offset;             /* name of the setting that corrects its distances */
+    model_get_t *get;               /* a setting with `read_at` */
+    model_set_t *set;               /* a setting with `effect` */
+    model_set_t *set_all;           /* a setting with `has_broadcast`, in all units on the line */
+    model_reset_t *reset_interface; /* to the factory settings */
+    model_reset_t *reset_sensor;    /* the same of the sensor behind the interface */
 
     /* ---- what a Modbus request does to it ---- */
-
     const char *request_ends; /* what its first request ends, and how to start that again; NULL: nothing */
     /* Returns what a read (function 3 or 4) changes, NULL: nothing. */
-    const char *(*read_changes)(const uint8_t *request);
+    const char *(*read_changes)(uint8_t function, uint16_t first, uint16_t count);
 
     /* ---- its simulation ---- */
-
-    void (*simulate)(device_t *device, const device_settings_t *settings, uint8_t simulated_as);
+    model_simulate_t *simulate;
     uint32_t traits;  /* bits 1 << DEVICE_...: those that it can have */
     uint16_t near_mm; /* the target moves between these */
     uint16_t far_mm;
 
     /* ---- how a scan identifies it; two models may share the first read ---- */
-
     struct {
         uint16_t first; /* the first read */
         uint8_t count;
@@ -291,12 +287,9 @@ struct model {
     } scan;
 
     /* ---- its frames ---- */
-
-    uint8_t protocols; /* DECODE_... */
-    /* Decodes a Modbus frame. request: the request, which is the frame itself or the one before it; NULL: not known. */
-    void (*decode)(struct decode_frame *frame, const model_t *model, const uint8_t *request);
-    /* Decodes a frame of another of its protocols. */
-    void (*decode_sum)(struct decode_frame *frame, const model_t *model);
+    uint8_t protocols;                                                    /* DECODE_... */
+    model_decode_t *decode;                                               /* a Modbus frame */
+    void (*decode_sum)(struct decode_frame *frame, const model_t *model); /* of another of its protocols */
     uint16_t probe_registers[MODEL_PROBE_REGISTERS]; /* first register of all distances, and the same again */
     const char *register_source;                     /* sections of its datasheet */
     const char *stream_source;

@@ -91,7 +91,7 @@ bool reader_has_sent(const reader_t *reader, const fathom_transaction_t *transac
 
 void reader_take_counters(reader_t *reader, reader_counters_t *counters)
 {
-    memset(counters, 0, sizeof *counters);
+    *counters = (reader_counters_t){0};
     if (reader == NULL) return;
     if (reader->frames != NULL) {
         memcpy(counters->stream, reader->frames, sizeof counters->stream);
@@ -115,30 +115,31 @@ void reader_take_counters(reader_t *reader, reader_counters_t *counters)
     }
 }
 
-static void get_unit_facts(const fathom_modbus_unit_t *unit, reader_facts_t *facts)
-{
-    const fathom_transaction_t *const transaction = &unit->request.transaction;
-    facts->is_unexpected = transaction->status == FATHOM_ERR_MALFORMED;
-    facts->exception = fathom_modbus_unit_exception(unit);
-    facts->is_in_progress = transaction->status == FATHOM_PENDING && transaction->attempts != 0;
-    facts->timeouts_in_row = unit->timeouts_in_row;
-    facts->backoff_left_us = unit->backoff_left_us;
-    facts->is_written = unit->is_written;
-    facts->is_setting = unit->setting != 0;
-    facts->acknowledgement = unit->outcome;
-    facts->address = unit->address;
-    facts->line = unit->line_settings;
-}
-
 reader_facts_t reader_facts(const reader_t *reader)
 {
-    reader_facts_t facts = {0};
-    if (reader == NULL) return facts;
-    if (reader->unit != NULL) get_unit_facts(reader->unit, &facts);
-    facts.is_later = reader->next_baud != NULL && *reader->next_baud != 0;
-    if (reader->period_us != NULL) facts.least_period_us = *reader->period_us;
-    facts.values = reader->values;
-    facts.value_count = reader->value_count;
+    static const fathom_modbus_unit_t no_unit;
+    if (reader == NULL) return (reader_facts_t){0};
+    const fathom_modbus_unit_t *const unit = reader->unit != NULL ? reader->unit : &no_unit;
+    const fathom_transaction_t *const transaction = &unit->request.transaction;
+    reader_facts_t facts = {
+        .least_period_us = reader->period_us != NULL ? *reader->period_us : 0,
+        .values = reader->values,
+        .value_count = reader->value_count,
+        .is_unexpected = transaction->status == FATHOM_ERR_MALFORMED,
+        .exception = fathom_modbus_unit_exception(unit),
+        .has_unasked = reader->unasked.is_new || reader->unasked.implausible != 0,
+        .is_in_progress = transaction->status == FATHOM_PENDING && transaction->attempts != 0,
+        .timeouts_in_row = unit->timeouts_in_row,
+        .backoff_left_us = unit->backoff_left_us,
+        .is_written = unit->is_written,
+        .is_setting = unit->setting != 0,
+        .is_later = reader->next_baud != NULL && *reader->next_baud != 0,
+        .acknowledgement = unit->outcome,
+        .address = unit->address,
+        .line = unit->line_settings,
+        .has_temperature = reader->temperature.is_known,
+        .temperature_dc = reader->temperature.dc,
+    };
     if (reader->response != NULL && !facts.is_unexpected) {
         facts.refused_probe = reader->response->refused_probe;
         facts.refused_raw = reader->response->refused_raw;
@@ -147,9 +148,6 @@ reader_facts_t reader_facts(const reader_t *reader)
         facts.min_mm = reader->window->min_mm != 0 ? reader->window->min_mm : 1;
         facts.max_mm = reader->window->max_mm;
     }
-    facts.has_unasked = reader->unasked.is_new || reader->unasked.implausible != 0;
-    facts.has_temperature = reader->temperature.is_known;
-    facts.temperature_dc = reader->temperature.dc;
     return facts;
 }
 

@@ -196,7 +196,9 @@ static const char *changes(const request_t *request)
 {
     const char *text = NULL;
     for (size_t i = 0; i != model_count && text == NULL && reads_registers(request); i++)
-        if (models[i].read_changes != NULL) text = models[i].read_changes(request->frame);
+        if (models[i].read_changes != NULL)
+            text = models[i].read_changes(request->frame[FUNCTION], decode_get16(request->frame + FIRST),
+                                          decode_get16(request->frame + COUNT));
     return text;
 }
 
