@@ -16,30 +16,12 @@ bool arguments_have(const arguments_t *arguments, const char *name)
     return option_is_given(&arguments->given, arguments->command->tables, name);
 }
 
-/* Finds the row of an option, and the value that is in the same word, which is cut there; NULL: none is. */
-static bool find(option_walk_t *walk, const option_table_t *tables, char *word, char **value)
-{
-    *value = NULL;
-    if (word[1] == '-') {
-        *value = strchr(word, '=');
-        if (*value != NULL) *(*value)++ = '\0';
-        return option_find(walk, tables, word + 2);
-    }
-    for (*walk = (option_walk_t){.table = tables}; option_next(walk);) {
-        if (option_letter(walk->row->name) != word[1]) continue;
-        if (word[2] != '\0') *value = word + 2;
-        return true;
-    }
-    return false;
-}
-
 /* Stores the value of the option that `walk` has found; NULL: it was left out. */
 static bool set(arguments_t *arguments, const option_walk_t *walk, char *value)
 {
     const option_t *const row = walk->row;
     char *const structure = (char *)arguments->settings + walk->table->at;
     char otherwise[8] = "";
-    arguments->given.line[walk->number] = 1;
     if (value == NULL && row->otherwise != NULL) {
         if (row->otherwise[0] == '\0') return *(bool *)(structure + row->has - 1) = true;
         value = strncpy(otherwise, row->otherwise, sizeof otherwise - 1);
@@ -47,18 +29,20 @@ static bool set(arguments_t *arguments, const option_walk_t *walk, char *value)
     return option_set(row, value != NULL ? value : otherwise, structure, &arguments->origin);
 }
 
-/* Reads the option in argv[*i], and its value in the next word if it needs one. */
+/* Reads the option in argv[*i], and its value behind it in the same word or, if it needs one, in the next. */
 static bool read_option(arguments_t *arguments, int argc, char **argv, int *i)
 {
     const option_table_t *const tables = arguments->command->tables;
     const origin_t *const origin = &arguments->origin;
     char *const word = argv[*i];
+    const bool is_long = word[1] == '-';
+    char *value = is_long ? strchr(word, '=') : word + 2;
     option_walk_t walk;
-    char *value = NULL;
-    if (!find(&walk, tables, word, &value)) {
-        if (word[1] == '-') return option_reject_unknown(tables, "option", word + 2, origin);
-        return reject(origin, "unknown option '%.2s'.", word);
-    }
+    if (is_long && value != NULL) *value++ = '\0';
+    if (!is_long && *value == '\0') value = NULL;
+    if (!option_find_word(&walk, tables, word))
+        return is_long ? option_reject_unknown(tables, "option", word + 2, origin)
+                       : reject(origin, "unknown option '%.2s'.", word);
     const option_t *const row = walk.row;
     if (row->instead != NULL)
         return reject(origin, "unknown option '--%s'. Did you mean --%s?", row->name, row->instead);
@@ -70,6 +54,7 @@ static bool read_option(arguments_t *arguments, int argc, char **argv, int *i)
     if (row->is_once && arguments->given.line[walk.number] != 0)
         return reject(origin, "--%s is given twice. Write the port behind a sensor instead: a16@PORT.",
                       row->name);
+    arguments->given.line[walk.number] = 1;
     return set(arguments, &walk, value);
 }
 

@@ -320,13 +320,10 @@ static void offer_value(const offer_t *it, const option_t *row)
 /* Returns the row of the option whose value is the next word; NULL: the word is no such option. */
 static const option_t *valued(const command_t *command, const char *word)
 {
-    for (option_walk_t walk = {.table = command->tables}; word[0] == '-' && option_next(&walk);) {
-        const option_t *const row = walk.row;
-        const bool is_it = word[1] == '-' ? strcmp(word + 2, row->name) == 0
-                                          : word[1] == option_letter(row->name) && word[2] == '\0';
-        if (is_it) return row->kind != KIND_FLAG && row->otherwise == NULL ? row : NULL;
-    }
-    return NULL;
+    option_walk_t walk;
+    if (word[0] != '-' || !option_find_word(&walk, command->tables, word)) return NULL;
+    if (word[1] != '-' && word[2] != '\0') return NULL;
+    return walk.row->kind != KIND_FLAG && walk.row->otherwise == NULL ? walk.row : NULL;
 }
 
 /* Words behind a command; the last one is completed. */

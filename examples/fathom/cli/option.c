@@ -119,6 +119,15 @@ char option_letter(const char *name)
     return word_find("help port quiet", name, &n) ? name[0] : '\0';
 }
 
+bool option_find_word(option_walk_t *walk, const option_table_t *tables, const char *word)
+{
+    if (word[1] == '-') return option_find(walk, tables, word + 2);
+    *walk = (option_walk_t){.table = tables};
+    while (option_next(walk))
+        if (word[1] == option_letter(walk->row->name) && word[1] != '\0') return true;
+    return false;
+}
+
 bool option_is_given(const option_given_t *given, const option_table_t *tables, const char *name)
 {
     option_walk_t walk;
@@ -204,7 +213,9 @@ static bool set_value(const option_t *row, char *text, char *member)
     case KIND_PAIR:
         return set_pair(row, text, member);
     case KIND_CHOICE:
-        return word_find(row->words, text, &number) && store(member, row->size, (int64_t)number + row->min);
+        return word_find(row->words, text, &number) &&
+               store(member, row->size,
+                     row->numbers != NULL ? row->numbers[number] : (int64_t)number + row->min);
     case KIND_SET:
         return set_bits(row, text, member);
     case KIND_STRING:

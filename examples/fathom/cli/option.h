@@ -54,7 +54,7 @@ typedef enum {
     KIND_SIGNED, /* from -`max` to `max` */
     KIND_ONE_OF, /* one of the numbers in `words` */
     KIND_PAIR, /* "500/600" into two members; "500" is both. With the separator '-' a range; the second is not less */
-    KIND_CHOICE, /* the place of the word in `words`, from `min` on */
+    KIND_CHOICE, /* the place of the word in `words`, from `min` on, or the number at that place of `numbers` */
     KIND_SET,    /* "1,2,4": the bits n - 1 of a uint8_t */
     KIND_TEXT,   /* const char *: the text itself */
     KIND_STRING, /* a copy in an array of characters; `parse` may refuse the text */
@@ -87,6 +87,7 @@ struct option_row {
     uint32_t max;
     uint32_t scale;                /* 0: 1 */
     const char *words;             /* "text json csv"; of a text, what completion offers */
+    const uint8_t *numbers;        /* of `words`; NULL: their places */
     const char *(*list)(size_t n); /* completion: name n; NULL: there are no more */
     bool is_path;                  /* the value is a file: completion offers files */
     const char *otherwise;         /* the value of an option whose value was left out */
@@ -128,6 +129,9 @@ bool option_find(option_walk_t *walk, const option_table_t *tables, const char *
 
 /* The letter of an option, such as 'p' of "port"; '\0': it has none. */
 char option_letter(const char *name);
+
+/* Finds the option of a word such as "--port" or "-p". */
+bool option_find_word(option_walk_t *walk, const option_table_t *tables, const char *word);
 
 /* Where each row was given. */
 enum { MOST_OPTIONS = 64 };

@@ -51,20 +51,11 @@ const option_t request_rows[] = {
 
 /* ---- what distances are ---- */
 
-static const char meanings[] = "unknown no-target interference too-near fault refused";
+static const uint8_t meanings[] = {FATHOM_MEANS_UNKNOWN,  FATHOM_MEANS_NO_TARGET, FATHOM_MEANS_INTERFERENCE,
+                                   FATHOM_MEANS_TOO_NEAR, FATHOM_MEANS_FAULT,     FATHOM_MEANS_REFUSED};
 
-static bool parse_meaning(const char *text, void *member)
-{
-    static const uint8_t numbers[] = {FATHOM_MEANS_UNKNOWN,      FATHOM_MEANS_NO_TARGET,
-                                      FATHOM_MEANS_INTERFERENCE, FATHOM_MEANS_TOO_NEAR,
-                                      FATHOM_MEANS_FAULT,        FATHOM_MEANS_REFUSED};
-    uint32_t n = 0;
-    if (!word_find(meanings, text, &n)) return false;
-    *(uint8_t *)member = numbers[n];
-    return true;
-}
-
-#define MEANING KIND_CUSTOM, .parse = parse_meaning, .words = meanings
+#define MEANING                                                                                              \
+    KIND_CHOICE, .numbers = meanings, .words = "unknown no-target interference too-near fault refused"
 static const option_t meaning_keys[] = {
     {"0", "MEANING", "Meaning of the value 0 (unknown)", MEANING, AT(fathom_dyp_window_t, value_0)},
     {"fffd", "MEANING", "Meaning of FFFD (no-target)", MEANING, AT(fathom_dyp_window_t, value_fffd)},

@@ -163,16 +163,15 @@ bool sensor_word_parse(sensor_word_t *sensor, char *word, const origin_t *origin
     return parse_sensor(sensor, word + begin, length - begin) && (at == NULL || parse_port(sensor, at + 1));
 }
 
-bool sensor_word_address(const sensor_word_t *sensor, const model_mode_t *mode, uint8_t *address,
-                         const origin_t *origin)
+bool sensor_word_address(const sensor_word_t *word, const model_mode_t *mode, uint8_t *address)
 {
-    const model_t *const model = sensor->model;
+    const model_t *const model = word->model;
     const uint8_t least = model_least_address(model, mode);
     uint32_t number = *address;
-    if (sensor->address == NULL || sensor->address[0] == '\0') return true;
-    if (!number_parse(sensor->address, least, model->max_address, &number))
-        return reject(origin, "'%s' is no address of %s. It takes a whole number from %u to %u.",
-                      sensor->address, model->name, least, model->max_address);
+    if (word->address == NULL || word->address[0] == '\0') return true;
+    if (!number_parse(word->address, least, model->max_address, &number))
+        return reject(&word->origin, "'%s' is no address of %s. It takes a whole number from %u to %u.",
+                      word->address, model->name, least, model->max_address);
     *address = (uint8_t)number;
     return true;
 }
@@ -357,7 +356,7 @@ static bool set_sensor(sensor_t *sensor, const sensor_word_t *word, const sensor
     if (defaults->has_address && (defaults->address < least || defaults->address > model->max_address))
         return reject(origin, "--address is %u. %s takes a whole number from %u to %u.",
                       (unsigned)defaults->address, model->name, least, model->max_address);
-    if (!sensor_word_address(word, sensor->mode, &sensor->address, origin)) return false;
+    if (!sensor_word_address(word, sensor->mode, &sensor->address)) return false;
     sensor->has_own_name = word->name[0] != '\0';
     (void)snprintf(sensor->name, sizeof sensor->name, "%s", word->name);
     sensor_set_name(sensor);

@@ -41,8 +41,7 @@ bool sensor_name_is_good(const char *text, size_t length);
 bool sensor_word_parse(sensor_word_t *sensor, char *word, const origin_t *origin);
 
 /* Parses the ADDRESS of a sensor in this mode. Without one *address stays. False after rejecting it. */
-bool sensor_word_address(const sensor_word_t *sensor, const model_mode_t *mode, uint8_t *address,
-                         const origin_t *origin);
+bool sensor_word_address(const sensor_word_t *word, const model_mode_t *mode, uint8_t *address);
 
 /* The model, or the mode of a model, with this name. NULL after rejecting it. */
 const model_t *model_word(const char *name, const origin_t *origin);

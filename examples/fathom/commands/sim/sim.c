@@ -386,7 +386,7 @@ static bool parse_sensor(simulated_t *sensor, char *text, const origin_t *origin
     sensor->line = word.model->line;
     if (sensor->mode == NULL) return false;
     if (sensor->mode->simulated_as != 0)
-        return sensor_word_address(&word, sensor->mode, &sensor->settings.address, origin);
+        return sensor_word_address(&word, sensor->mode, &sensor->settings.address);
     return reject(origin, "%s in mode %s has pins and no line, and is not simulated here.", word.model->name,
                   sensor->mode->name);
 }
