@@ -1,23 +1,399 @@
 /* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): getline */
+#include "commands/decode/decode.h"
+
 #include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "cli/command.h"
 #include "cli/sensor_words.h"
 #include "commands/commands.h"
-#include "commands/decode/decode.h"
 #include "fathom/codec/crc16.h"
 #include "fathom/codec/dyp_stream.h"
 #include "fathom/codec/modbus_rtu.h"
 
+/* ---- the input ---- */
+
+#define SEPARATORS " \t\r\n\v\f,;:{}"
+#define DIGITS     "0123456789abcdefABCDEF"
+
+/* Where bytes go and come from. */
 typedef struct {
-    const char *sensor; /* NULL: not given */
-    uint8_t protocol;   /* its place in protocols[] */
+    decode_input_t *input;
+    const origin_t *origin;
+    const char *hint; /* of an error in hex */
+    char place[256];  /* "capture.txt: line 2" */
+} source_t;
+
+/* Adds a byte. Returns the exit status. */
+static int add_byte(const source_t *source, uint8_t byte, bool starts_line)
+{
+    decode_input_t *const input = source->input;
+    if (input->count == DECODE_MAX_BYTES) {
+        (void)fprintf(stderr, "fathom: %s: there are more than the %d bytes that are decoded at a time.\n",
+                      source->place, DECODE_MAX_BYTES);
+        return STATUS_FAILED;
+    }
+    input->bytes[input->count] = byte;
+    input->line_starts[input->count++] = starts_line;
+    return STATUS_OK;
+}
+
+static int reject_text(const source_t *source, size_t at, const char *what)
+{
+    (void)reject(source->origin, "%s, character %zu: %s%s.", source->place, at + 1, what, source->hint);
+    return STATUS_USAGE;
+}
+
+static int reject_digit(const source_t *source, size_t at, char digit)
+{
+    char what[] = "'?' is no hex digit";
+    if (digit > ' ' && digit < '\x7f') what[1] = digit;
+    return reject_text(source, at, what);
+}
+
+/* Adds the bytes of a word of hex digits, with or without 0x. Returns the exit status. */
+static int add_word(const source_t *source, const char *line, size_t at, size_t length, bool starts_line)
+{
+    const char *const word = line + at;
+    const bool has_prefix = length > 2 && word[0] == '0' && (word[1] == 'x' || word[1] == 'X');
+    const size_t first = has_prefix ? 2 : 0;
+    const size_t last = first + strspn(word + first, DIGITS);
+    int status = STATUS_OK;
+    if (last != length) return reject_digit(source, at + last, word[last]);
+    if (length % 2 != 0) return reject_text(source, at, "a byte has two hex digits");
+    for (size_t i = first; i != length && status == STATUS_OK; i += 2) {
+        const char digits[] = {word[i], word[i + 1], '\0'};
+        status = add_byte(source, (uint8_t)strtoul(digits, NULL, 16), starts_line && i == first);
+    }
+    return status;
+}
+
+/* Adds the bytes of a line; a comment goes from # to its end. Returns the exit status. */
+static int add_line(const source_t *source, const char *line, bool starts_line)
+{
+    int status = STATUS_OK;
+    for (size_t at = strspn(line, SEPARATORS); line[at] != '\0' && line[at] != '#' && status == STATUS_OK;) {
+        const size_t length = strcspn(line + at, SEPARATORS "#");
+        status = add_word(source, line, at, length, starts_line);
+        starts_line = false;
+        at += length;
+        at += strspn(line + at, SEPARATORS);
+    }
+    return status;
+}
+
+static int read_arguments(source_t *source, int count, char **arguments)
+{
+    enum { WHOLE_FRAME = 8 }; /* an argument of this many characters is a frame rather than a byte of one */
+    int status = STATUS_OK;
+    for (int i = 0; i != count && status == STATUS_OK; i++) {
+        (void)snprintf(source->place, sizeof source->place, "argument %d", i + 1);
+        status = add_line(source, arguments[i], strlen(arguments[i]) >= WHOLE_FRAME);
+    }
+    return status;
+}
+
+static int read_text(source_t *source, const char *name, FILE *file)
+{
+    char *line = NULL;
+    size_t size = 0;
+    ssize_t length = 0;
+    int status = STATUS_OK;
+    for (unsigned number = 1; status == STATUS_OK && (length = getline(&line, &size, file)) >= 0; number++) {
+        (void)snprintf(source->place, sizeof source->place, "%.200s: line %u", name, number);
+        status = add_line(source, line, true);
+        if (status == STATUS_OK && strlen(line) != (size_t)length)
+            status = reject_digit(source, strlen(line), '\0');
+    }
+    free(line);
+    return status;
+}
+
+static int read_file(source_t *source, const char *name, FILE *file, bool is_raw)
+{
+    int status = STATUS_OK;
+    errno = 0;
+    if (!is_raw) {
+        source->hint = ". For a file of bytes instead of hex, add --raw";
+        status = read_text(source, name, file);
+    } else {
+        (void)snprintf(source->place, sizeof source->place, "%.200s", name);
+        for (int byte = 0; status == STATUS_OK && (byte = getc(file)) != EOF;)
+            status = add_byte(source, (uint8_t)byte, false);
+    }
+    if (ferror(file) == 0) return status;
+    (void)fprintf(stderr, "fathom: %s: %s\n", name, strerror(errno));
+    return STATUS_FAILED;
+}
+
+/* Reads bytes in hex from the arguments. A single argument that is no hex names a file; without an argument, or with "-",
+ * the bytes are those of the standard input. is_raw: the file has the bytes themselves. Returns the exit status. */
+static int read_input(decode_input_t *input, const arguments_t *arguments, bool is_raw)
+{
+    source_t source = {.input = input, .origin = &arguments->origin, .hint = ""};
+    const int count = arguments->count;
+    const char *const name = count == 1 ? arguments->words[0] : "";
+    const bool is_name = name[strspn(name, DIGITS "xX" SEPARATORS)] != '\0';
+    if (count == 0 || strcmp(name, "-") == 0) return read_file(&source, "the standard input", stdin, is_raw);
+    if (is_name || (is_raw && count == 1)) {
+        FILE *const file = fopen(name, "rbe");
+        if (file != NULL) {
+            const int status = read_file(&source, name, file, is_raw);
+            (void)fclose(file);
+            return status;
+        }
+        if (is_raw || errno != ENOENT) {
+            (void)fprintf(stderr, "fathom: %s: %s\n", name, strerror(errno));
+            return STATUS_FAILED;
+        }
+        source.hint = ", and there is no file of that name";
+    }
+    if (!is_raw) return read_arguments(&source, count, arguments->words);
+    (void)reject(source.origin, "--raw takes one file.");
+    return STATUS_USAGE;
+}
+
+/* ---- the meaning of a frame ---- */
+
+enum { UNIT = 0, HEAD = 6, ALL_UNITS = 0xFF };
+enum { READ = FATHOM_MODBUS_READ_HOLDING_REGISTERS, EXCEPTION = FATHOM_MODBUS_EXCEPTION };
+
+/* What is kept from frame to frame: a read that has no response yet. */
+typedef struct {
+    const model_t *only; /* the sensor; NULL: any model */
+    bool is_asked;
+    uint8_t head[HEAD]; /* of the last good Modbus request, as on the wire */
+} context_t;
+
+static const char *function_name(uint8_t function)
+{
+    switch (function & (uint8_t)~EXCEPTION) {
+    case FATHOM_MODBUS_READ_HOLDING_REGISTERS:
+        return "read holding registers";
+    case FATHOM_MODBUS_WRITE_SINGLE_REGISTER:
+        return "write single register";
+    case FATHOM_MODBUS_WRITE_MULTIPLE_REGISTERS:
+        return "write multiple registers";
+    default:
+        return "do what none of these sensors can";
+    }
+}
+
+static void decode_exception(decode_frame_t *frame, const context_t *context)
+{
+    const uint8_t code = frame->bytes[DECODE_AT_SIZE];
+    bool has_none = false;
+    decode_meaning_t *const meaning = decode_mean(frame, "", "", "the request is refused");
+    decode_remark(decode_number(meaning, "exception", code, ""), "%s", modbus_exception(code).name);
+    for (size_t i = 0; i != model_count; i++) {
+        const model_t *const model = &models[i];
+        if (context->only != NULL && context->only != model) continue;
+        if (model->exception_name == NULL)
+            has_none = true;
+        else if (model->exception_name(code) != NULL)
+            (void)decode_mean(frame, model->name, model->exception_source, "%s", model->exception_name(code));
+    }
+    if (has_none) decode_note(frame, "no exceptions are in the datasheets of a16 and a05");
+}
+
+/* Adds what each sensor that can have the address means by the frame, or the registers that no sensor knows. */
+static void decode_meanings(decode_frame_t *frame, const context_t *context, const uint8_t *request)
+{
+    const uint8_t *const bytes = frame->bytes;
+    const bool is_write = bytes[DECODE_AT_FUNCTION] == FATHOM_MODBUS_WRITE_SINGLE_REGISTER;
+    for (size_t i = 0; i != model_count; i++) {
+        const model_t *const model = &models[i];
+        const bool is_beyond = !model->has_address_zero && frame->unit > model->max_address;
+        if (context->only != NULL ? context->only == model : !is_beyond) model->decode(frame, model, request);
+    }
+    if (frame->meanings != 0) return;
+    if (bytes[DECODE_AT_FUNCTION] == READ && frame->piece->direction == DECODE_RESPONSE) {
+        (void)decode_mean(frame, "", "", "%u registers", bytes[DECODE_AT_SIZE] / 2u);
+        return;
+    }
+    decode_meaning_t *const meaning = decode_mean(frame, "", "", "none of these sensors knows this");
+    decode_string(meaning, "address", "0x%04X", decode_get16(bytes + DECODE_AT_FIRST));
+    decode_number(meaning, is_write ? "value" : "registers", decode_get16(bytes + DECODE_AT_COUNT), "");
+}
+
+/* Returns true if the frame is the response to the request before. */
+static bool responds(const decode_frame_t *frame, const context_t *context)
+{
+    const uint8_t *const bytes = frame->bytes;
+    const uint8_t *const head = context->head;
+    if (!context->is_asked || (frame->piece->direction & DECODE_RESPONSE) == 0) return false;
+    if (bytes[UNIT] != head[UNIT] && head[UNIT] != ALL_UNITS) return false;
+    if ((bytes[DECODE_AT_FUNCTION] & (uint8_t)~EXCEPTION) != head[DECODE_AT_FUNCTION]) return false;
+    if ((bytes[DECODE_AT_FUNCTION] & EXCEPTION) != 0) return true;
+    if (bytes[DECODE_AT_FUNCTION] == READ)
+        return bytes[DECODE_AT_SIZE] == 2 * decode_get16(head + DECODE_AT_COUNT);
+    return memcmp(bytes + DECODE_AT_FIRST, head + DECODE_AT_FIRST, HEAD - DECODE_AT_FIRST) == 0;
+}
+
+static void decode_modbus(decode_frame_t *frame, context_t *context)
+{
+    const decode_piece_t *const piece = frame->piece;
+    const uint8_t *const bytes = frame->bytes;
+    const uint8_t *const crc = bytes + piece->length - 2;
+    const uint16_t right = fathom_crc16(bytes, (uint8_t)(piece->length - 2));
+    const uint8_t function = bytes[DECODE_AT_FUNCTION];
+    const bool is_response = responds(frame, context);
+    frame->unit = bytes[UNIT];
+    frame->code = function;
+    frame->code_is = "function";
+    (void)snprintf(frame->what, sizeof frame->what, "%s%s", (function & EXCEPTION) != 0 ? "refuses to " : "",
+                   function_name(function));
+    frame->checksum_length = 2;
+    frame->checksum[0] = (uint8_t)right;
+    frame->checksum[1] = (uint8_t)(right >> 8);
+    if (piece->is_damaged && crc[0] == frame->checksum[1] && crc[1] == frame->checksum[0])
+        decode_note(frame, "the two bytes of the CRC are swapped: the low one goes first");
+    if (frame->unit == FATHOM_MODBUS_BROADCAST)
+        decode_note(frame, "0 is the broadcast address: all obey, none answers");
+    if (frame->unit == ALL_UNITS) decode_note(frame, "FF is the broadcast address of a16 and a05");
+    if ((function & EXCEPTION) != 0) {
+        decode_exception(frame, context);
+        if (is_response) decode_note(frame, "refuses the request before");
+    } else if (piece->direction == DECODE_RESPONSE && function == READ) {
+        decode_meanings(frame, context, is_response ? context->head : NULL);
+        if (!is_response) decode_note(frame, "its request is not here; what it answers hangs on that");
+    } else {
+        decode_meanings(frame, context, bytes);
+        if (is_response)
+            decode_note(frame, "acknowledges the request before%s",
+                        piece->direction == DECODE_BOTH ? ", or is its echo" : "");
+    }
+    if (is_response && !piece->is_damaged) context->is_asked = false;
+    if (is_response || piece->direction == DECODE_RESPONSE || piece->is_damaged) return;
+    memcpy(context->head, bytes, HEAD);
+    context->is_asked = true;
+}
+
+static void decode_frame(decode_frame_t *frame, context_t *context, const decode_finder_t *finder,
+                         const decode_piece_t *piece)
+{
+    char why[DECODE_TEXT] = "";
+    frame->piece = piece;
+    frame->bytes = finder->input->bytes + piece->offset;
+    frame->unit = frame->code = -1;
+    frame->code_is = "";
+    frame->what[0] = '\0';
+    frame->is_sure = context->only != NULL;
+    frame->meanings = frame->notes = 0;
+    if (piece->protocol == 0) {
+        const char *const text = decode_guess(finder, piece, why);
+        if (text[0] != '\0') decode_note(frame, "%s", text);
+    } else if (piece->protocol == DECODE_MODBUS) {
+        decode_modbus(frame, context);
+    } else {
+        frame->checksum_length = 1;
+        frame->checksum[0] = fathom_dyp_checksum(frame->bytes, (uint8_t)(piece->length - 1));
+        for (size_t i = 0; i != model_count; i++)
+            if ((models[i].protocols & piece->protocol) != 0) models[i].decode_sum(frame, &models[i]);
+    }
+    if (piece->is_damaged)
+        decode_note(frame, "a receiver drops the frame; which of its bytes are wrong is unknown");
+}
+
+/* ---- the output ---- */
+
+/* The words in JSON and in text. */
+typedef struct {
+    const char *name;
+    const char *text;
+} words_t;
+
+static const words_t protocols[] = {
+    [DECODE_MODBUS] = {"modbus", "Modbus RTU"},
+    [DECODE_DYP] = {"dyp", "55 AA protocol"},
+    [DECODE_STREAM_ONE] = {"stream", "FF frame of one distance"},
+    [DECODE_STREAM_FOUR] = {"stream", "FF frame of four distances"},
+};
+
+static const words_t directions[] = {
+    [DECODE_REQUEST] = {"request", "request"},
+    [DECODE_RESPONSE] = {"response", "response"},
+    [DECODE_BOTH] = {"both", "request or response, which are the same bytes"},
+};
+
+static void print_json(const decode_frame_t *frame)
+{
+    const decode_piece_t *const piece = frame->piece;
+    const size_t length = frame->checksum_length;
+    json_t json = {.to = stdout};
+    json_begin(&json, NULL, '{');
+    json_value(&json, "offset", "%zu", piece->offset);
+    json_value(&json, "length", "%zu", piece->length);
+    json_bytes(&json, "bytes", frame->bytes, piece->length);
+    json_string(&json, "protocol", protocols[piece->protocol].name);
+    if (piece->protocol != 0) {
+        json_string(&json, "direction", directions[piece->direction].name);
+        if (frame->unit >= 0) json_value(&json, "address", "%d", frame->unit);
+        if (frame->code >= 0) json_value(&json, frame->code_is, "%d", frame->code);
+        if (frame->what[0] != '\0') json_string(&json, "name", frame->what);
+        json_begin(&json, "checksum", '{');
+        json_flag(&json, "right", !piece->is_damaged);
+        json_bytes(&json, "found", frame->bytes + piece->length - length, length);
+        json_bytes(&json, "expected", frame->checksum, length);
+        json_end(&json, '}');
+        json_begin(&json, "meanings", '[');
+        for (uint8_t i = 0; i != frame->meanings; i++) decoding_put_json(&json, &frame->meaning[i]);
+        json_end(&json, ']');
+    }
+    json_begin(&json, "notes", '[');
+    for (uint8_t i = 0; i != frame->notes; i++) json_string(&json, NULL, frame->note[i]);
+    json_end(&json, ']');
+    json_end(&json, '}');
+    (void)puts("");
+}
+
+static void print_frame(const decode_frame_t *frame)
+{
+    const decode_piece_t *const piece = frame->piece;
+    const uint8_t *const found = frame->bytes + piece->length - frame->checksum_length;
+    const bool is_crc = frame->checksum_length == 2;
+    (void)printf("        %s", protocols[piece->protocol].text);
+    if ((piece->protocol & (DECODE_MODBUS | DECODE_DYP)) != 0)
+        (void)printf(", %s", directions[piece->direction].text);
+    if (frame->unit >= 0) (void)printf(", address %d", frame->unit);
+    if (frame->code >= 0) (void)printf(", %s %02X", frame->code_is, (unsigned)frame->code);
+    if (frame->what[0] != '\0') (void)printf(" %s", frame->what);
+    (void)puts("");
+    for (uint8_t i = 0; i != frame->meanings; i++) decoding_put_text(stdout, &frame->meaning[i]);
+    (void)printf("        %s %02X", is_crc ? "CRC" : "sum", found[0]);
+    if (is_crc) (void)printf(" %02X", found[1]);
+    if (piece->is_damaged) (void)printf(" WRONG, it should be %02X", frame->checksum[0]);
+    if (piece->is_damaged && is_crc) (void)printf(" %02X", frame->checksum[1]);
+    (void)puts(piece->is_damaged ? "" : " right");
+    for (uint8_t i = 0; i != frame->notes; i++) (void)printf("        note: %s\n", frame->note[i]);
+}
+
+static void print_text(const decode_frame_t *frame)
+{
+    enum { BYTES_A_LINE = 20 };
+    const decode_piece_t *const piece = frame->piece;
+    for (size_t i = 0; i != piece->length; i++) {
+        if (i % BYTES_A_LINE == 0) (void)printf("%s%06zu ", i != 0 ? "\n" : "", piece->offset + i);
+        (void)printf(" %02X", frame->bytes[i]);
+    }
+    (void)puts("");
+    if (piece->protocol != 0)
+        print_frame(frame);
+    else
+        (void)printf("        NO FRAME%s%s\n", frame->notes != 0 ? ": " : "",
+                     frame->notes != 0 ? frame->note[0] : "");
+}
+
+/* ---- the command ---- */
+
+typedef struct {
+    uint8_t protocol; /* its place among the words of the option */
+    const char *sensor;
     bool is_json;
     bool is_raw;
-    uint8_t protocols;   /* DECODE_... */
-    const model_t *only; /* as in decode_context_t */
-    const decode_format_t *format;
 } settings_t;
 
 static const option_t rows[] = {
@@ -33,104 +409,54 @@ static const option_t rows[] = {
 
 static const option_table_t tables[] = {{rows, 0}, {NULL, 0}};
 
-static bool set_up(settings_t *settings, const origin_t *origin)
-{
-    static const uint8_t protocols[] = {DECODE_ALL, DECODE_MODBUS, DECODE_DYP,
-                                        DECODE_STREAM_ONE | DECODE_STREAM_FOUR};
-    settings->protocols = protocols[settings->protocol];
-    settings->format = settings->is_json ? &decode_json : &decode_text;
-    if (settings->sensor == NULL) return true;
-    const model_t *const model = model_word(settings->sensor, origin);
-    if (model == NULL) return false;
-    settings->only = model;
-    settings->protocols &= model->protocols;
-    if (settings->protocols != 0) return true;
-    return reject(origin, "%s has no frames of this --protocol.", model->name);
-}
-
-enum { WHY_TEXT = 120 };
-
-/* What bytes of no frame may have been meant to be; "" mostly. */
-static void guess(const decode_input_t *input, const decode_piece_t *piece, uint8_t allowed,
-                  char why[WHY_TEXT])
-{
-    const uint8_t *const bytes = input->bytes + piece->offset;
-    uint8_t have = 255;
-    if (piece->length < have) have = (uint8_t)piece->length;
-    const bool has_function = have >= 3 && (bytes[1] == FATHOM_MODBUS_READ_HOLDING_REGISTERS ||
-                                            bytes[1] == FATHOM_MODBUS_WRITE_SINGLE_REGISTER ||
-                                            bytes[1] == FATHOM_MODBUS_WRITE_MULTIPLE_REGISTERS);
-    why[0] = '\0';
-    if ((allowed & DECODE_MODBUS) != 0 && has_function) {
-        const uint8_t response = fathom_modbus_rtu_response_length(bytes, have);
-        const uint8_t request = fathom_modbus_rtu_request_length(bytes, have);
-        const bool is_known = bytes[1] != FATHOM_MODBUS_WRITE_MULTIPLE_REGISTERS || have > 6;
-        if (response > have && request > have && is_known)
-            (void)snprintf(why, WHY_TEXT,
-                           "begins like a Modbus request of %u or a response of %u bytes, but ends early",
-                           request, response);
-        else if (response > have)
-            (void)snprintf(why, WHY_TEXT, "begins like a Modbus response of %u bytes, but ends early",
-                           response);
-    }
-    if ((allowed & DECODE_DYP) != 0 && have >= 2 && bytes[0] == 0x55 && bytes[1] == 0xAA)
-        (void)snprintf(why, WHY_TEXT, "begins like a 55 AA frame, but is none");
-    if ((allowed & DECODE_MODBUS) != 0 && have == 4 && fathom_crc16(bytes, have) == 0)
-        (void)snprintf(why, WHY_TEXT,
-                       "its CRC is right, but it has no function; HPS table 40 leaves it out so");
-    const size_t next = piece->offset + piece->length;
-    if (have == 1 && bytes[0] == FATHOM_DYP_START && next != input->count &&
-        input->bytes[next] == FATHOM_DYP_START)
-        (void)snprintf(why, WHY_TEXT, "an FF too many: a frame begins with one, though A16 2(3) prints two");
-}
-
 /* Returns the exit status. */
-static int explain(const settings_t *settings, const decode_input_t *input, decode_finder_t *finder)
+static int explain(decode_finder_t *finder, const model_t *only, bool is_json)
 {
     static decode_frame_t frame;
-    decode_context_t context = {settings->only, false, {0}};
+    context_t context = {.only = only};
     decode_piece_t piece;
-    char why[WHY_TEXT];
     int status = STATUS_OK;
     while (decode_find_next(finder, &piece)) {
         if (piece.protocol == 0 || piece.is_damaged) status = STATUS_FAILED;
-        if (piece.protocol != 0) {
-            decode_frame(&frame, &context, input, &piece);
-            settings->format->frame(stdout, &frame);
-        } else {
-            guess(input, &piece, settings->protocols, why);
-            settings->format->leftover(stdout, input->bytes + piece.offset, &piece, why);
-        }
+        decode_frame(&frame, &context, finder, &piece);
+        (is_json ? print_json : print_text)(&frame);
     }
     if (fflush(stdout) == 0 && ferror(stdout) == 0) return status;
     (void)fprintf(stderr, "fathom: the output cannot be written: %s\n", strerror(errno));
     return STATUS_FAILED;
 }
 
-static int decode(const settings_t *settings, const decode_input_t *input)
-{
-    decode_finder_t finder;
-    if (input->count == 0) {
-        (void)fprintf(stderr, "fathom: there are no bytes to explain.\n");
-        return STATUS_FAILED;
-    }
-    const int status = decode_find_begin(&finder, input, settings->protocols)
-                           ? explain(settings, input, &finder)
-                           : STATUS_FAILED;
-    decode_find_free(&finder);
-    return status;
-}
-
 static int start(const host_t *host, const arguments_t *arguments)
 {
-    settings_t *const settings = arguments->settings;
-    const origin_t origin = {.command = arguments->command->name};
-    decode_input_t input;
+    static const uint8_t sets[] = {DECODE_ALL, DECODE_MODBUS, DECODE_DYP,
+                                   DECODE_STREAM_ONE | DECODE_STREAM_FOUR};
+    const settings_t *const settings = arguments->settings;
+    const model_t *const only =
+        settings->sensor != NULL ? model_word(settings->sensor, &arguments->origin) : NULL;
+    const uint8_t wanted = sets[settings->protocol] & (only != NULL ? only->protocols : DECODE_ALL);
     (void)host; /* it opens no port */
-    if (!set_up(settings, &origin)) return STATUS_USAGE;
-    int status = decode_input_read(&input, &origin, arguments->count, arguments->words, settings->is_raw);
-    if (status == STATUS_OK) status = decode(settings, &input);
-    decode_input_free(&input);
+    if (settings->sensor != NULL && only == NULL) return STATUS_USAGE;
+    if (wanted == 0) {
+        (void)reject(&arguments->origin, "%s has no frames of this --protocol.", only->name);
+        return STATUS_USAGE;
+    }
+    decode_finder_t finder = {.choices = NULL};
+    decode_input_t input = {.bytes = malloc(DECODE_MAX_BYTES), .line_starts = malloc(DECODE_MAX_BYTES)};
+    int status = STATUS_FAILED;
+    if (input.bytes == NULL || input.line_starts == NULL)
+        (void)fputs("fathom: there is not enough memory.\n", stderr);
+    else
+        status = read_input(&input, arguments, settings->is_raw);
+    if (status == STATUS_OK && input.count == 0) {
+        (void)fputs("fathom: there are no bytes to explain.\n", stderr);
+        status = STATUS_FAILED;
+    }
+    if (status == STATUS_OK)
+        status = decode_find_begin(&finder, &input, wanted) ? explain(&finder, only, settings->is_json)
+                                                            : STATUS_FAILED;
+    free(finder.choices);
+    free(input.bytes);
+    free(input.line_starts);
     return status;
 }
 

@@ -2,12 +2,7 @@
 #ifndef DECODE_H
 #define DECODE_H
 
-#include <stdio.h>
-
-#include "cli/option.h"
 #include "sensors/decoding.h"
-
-/* ---- the bytes ---- */
 
 enum { DECODE_MAX_BYTES = 4 * 1024 * 1024 };
 
@@ -16,20 +11,7 @@ typedef struct {
     uint8_t *bytes;
     bool *line_starts; /* of each byte */
     size_t count;
-    size_t capacity;
 } decode_input_t;
-
-/*
- * Reads bytes in hex from the arguments. A single argument that is no hex names a file; without an argument, or with "-",
- * the bytes are those of the standard input. is_raw: the file has the bytes themselves. Returns an exit status:
- * STATUS_OK, or after a message STATUS_FAILED if the file cannot be read, and STATUS_USAGE if a text is no hex. Call
- * decode_input_free() in each case.
- */
-int decode_input_read(decode_input_t *input, const origin_t *origin, int count, char **arguments,
-                      bool is_raw);
-void decode_input_free(decode_input_t *input);
-
-/* ---- the frames ---- */
 
 /*
  * Divides the input into pieces so that as many bytes as possible are explained: frames with a right checksum count most,
@@ -38,41 +20,18 @@ void decode_input_free(decode_input_t *input);
  */
 typedef struct {
     const decode_input_t *input;
-    uint8_t protocols;
+    uint8_t protocols; /* DECODE_... */
     size_t at;
-    struct decode_choice *choices; /* one for each byte */
+    struct decode_choice *choices; /* one for each byte; free() it in each case */
 } decode_finder_t;
 
-/* Returns false after a message if there is not enough memory. Call decode_find_free() in each case. */
+/* Returns false after a message if there is not enough memory. */
 bool decode_find_begin(decode_finder_t *finder, const decode_input_t *input, uint8_t protocols);
 
 /* Finds the next piece. Returns false at the end. */
 bool decode_find_next(decode_finder_t *finder, decode_piece_t *piece);
 
-void decode_find_free(decode_finder_t *finder);
-
-/* What is kept from frame to frame: a read that has no response yet. */
-typedef struct {
-    const model_t *only; /* the sensor; NULL: any model */
-    bool is_asked;
-    uint8_t head[6]; /* of the last good Modbus request, as on the wire */
-} decode_context_t;
-
-/* Decodes a piece that is a frame. */
-void decode_frame(decode_frame_t *frame, decode_context_t *context, const decode_input_t *input,
-                  const decode_piece_t *piece);
-
-/* ---- the output ---- */
-
-typedef struct {
-    const char *name;
-    void (*frame)(FILE *to, const decode_frame_t *frame);
-    void (*leftover)(FILE *to, const uint8_t *bytes, const decode_piece_t *piece, const char *why);
-} decode_format_t;
-
-extern const decode_format_t decode_text;
-extern const decode_format_t decode_json;
-
-const char *decode_protocol_name(uint8_t protocol);
+/* Returns what bytes of no frame may have been meant to be; "" mostly. */
+const char *decode_guess(const decode_finder_t *finder, const decode_piece_t *piece, char text[DECODE_TEXT]);
 
 #endif
