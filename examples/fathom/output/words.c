@@ -10,6 +10,14 @@
 
 #include "fathom/hal.h"
 
+void *allocate(size_t size)
+{
+    void *const memory = calloc(1, size);
+    if (memory != NULL) return memory;
+    (void)fputs("fathom: no memory left\n", stderr);
+    _Exit(STATUS_FAILED);
+}
+
 /* ---- numbers and lists ---- */
 
 bool number_parse(const char *text, uint32_t min, uint32_t max, uint32_t *number)

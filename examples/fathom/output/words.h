@@ -14,6 +14,9 @@ enum {
     STATUS_ALARM = 3 /* `fathom read --until-alarm` alone: an alarm is on */
 };
 
+/* Returns `size` bytes of zeros, for free(). If no memory is left, prints that and ends the tool. */
+void *allocate(size_t size);
+
 /* ---- numbers and lists ---- */
 
 /* All of `text` is a decimal number from min to max, of at most 10 digits. No sign, no space. */
