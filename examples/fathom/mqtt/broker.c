@@ -1,28 +1,104 @@
 /* SPDX-License-Identifier: MIT */
-#define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): getentropy */
+#define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): explicit_bzero, getentropy */
 #include "mqtt/broker.h"
 
 #include <errno.h>
 #include <fcntl.h>
-#include <inttypes.h>
+#include <netdb.h>
 #include <poll.h>
 #include <signal.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
-#include <sys/eventfd.h>
 #include <sys/socket.h>
 #include <unistd.h>
+
+#include "mqtt/topics.h"
+#include "output/words.h"
 
 enum {
     FIRST_PAUSE_US = 500000,
     LONGEST_PAUSE_US = 60000000,
     STEADY_US = 10000000,
     GREETING_US = 20000000,
-    LOOK_US = 1000000, /* from one check of the keep-alive to the next */
+    LOOK_US = 1000000,
     READS = 16,
+    PASSWORD = 1024,
     QOS = 1
 };
 
 static uint64_t now_us(const broker_t *broker) { return broker->host->now_us(broker->host->ctx); }
+
+/* ---- what is wrong ---- */
+
+/* Ends the attempt or the connection. The first reason counts. */
+__attribute__((format(printf, 2, 3))) static void lose(broker_t *broker, const char *format, ...)
+{
+    va_list arguments;
+    if (broker->phase == BROKER_LOST) return;
+    va_start(arguments, format);
+    (void)vsnprintf(broker->reason, sizeof broker->reason, format, arguments);
+    va_end(arguments);
+    /* A broker that accepts the client and ends the connection again, as with two clients of the same id, gets pauses that
+     * grow too. */
+    if (broker->phase == BROKER_READY && now_us(broker) >= broker->until_us) broker->pause_us = 0;
+    broker->phase = BROKER_LOST;
+}
+
+static void lose_tls(broker_t *broker)
+{
+    const char *const path = broker->settings.path;
+    const unsigned line = broker->settings.broker.tls_line;
+    const char *const reason = tls_reason(broker->tls_error);
+    if (reason[0] != '\0')
+        lose(broker,
+             "%s:%u: tls: its certificate is not accepted: %s; the broker needs another one, or ca-file: the "
+             "authority that has signed it, or host: the name that it is for",
+             path, line, reason);
+    else
+        lose(broker, "%s:%u: tls: no secure connection: %s", path, line,
+             broker->log[0] != '\0' ? broker->log : "the broker has ended it; does this port speak TLS?");
+}
+
+/* Of a result of libmosquitto, and errno. Returns true if all is well. */
+static bool check(broker_t *broker, int result, int error)
+{
+    const bool is_greeting = broker->phase == BROKER_GREETING;
+    if (result == MOSQ_ERR_SUCCESS) return true;
+    if (result == MOSQ_ERR_EAI)
+        lose(broker, "its name is not known: %s", gai_strerror(error));
+    else if (result == MOSQ_ERR_TLS || (is_greeting && broker->settings.broker.has_tls))
+        lose_tls(broker);
+    else if (result == MOSQ_ERR_ERRNO)
+        lose(broker, "%s", strerror(error));
+    else if (result == MOSQ_ERR_CONN_LOST && is_greeting)
+        lose(broker, "it ends the connection at once; does this port want tls: ?");
+    else if (result == MOSQ_ERR_CONN_LOST)
+        lose(broker, "the connection is lost");
+    else
+        lose(broker, "%s", mosquitto_strerror(result));
+    return false;
+}
+
+/* Of the return code of MQTT 3.1.1 with which the broker refused the client. */
+static void lose_refused(broker_t *broker, int code)
+{
+    enum { BAD_LOGIN = 4, NOT_AUTHORIZED = 5 };
+    const broker_settings_t *const settings = &broker->settings.broker;
+    if (code != BAD_LOGIN && code != NOT_AUTHORIZED)
+        lose(broker, "it refuses the client %s: %s", settings->client_id, mosquitto_connack_string(code));
+    else if (settings->user[0] == '\0')
+        lose(broker, "%s:%u: it refuses a client without a name; write user: and password-file:",
+             broker->settings.path, settings->line);
+    else
+        lose(broker,
+             "%s:%u: it refuses the user %s with the password of %s; mend that, or the broker's password "
+             "file",
+             broker->settings.path, settings->line, settings->user,
+             settings->password_file[0] != '\0' ? settings->password_file
+                                                : "no file, since password-file: is missing");
+}
 
 /* ---- callbacks of libmosquitto ---- */
 
@@ -30,30 +106,23 @@ static void on_connect(struct mosquitto *mosq, void *ctx, int code)
 {
     broker_t *const broker = ctx;
     (void)mosq;
-    if (code == 0) {
-        broker->phase = BROKER_READY;
-        return;
-    }
-    broker_explain_refusal(broker, code);
-    broker->is_lost = true;
-}
-
-/* Returns an unacknowledged message; 0: the oldest one. */
-static broker_sent_t *sent_at(broker_t *broker, unsigned number)
-{
-    return &broker->sent[(broker->first + number) % BROKER_WINDOW];
+    if (code == 0)
+        broker->phase = BROKER_ACCEPTED;
+    else
+        lose_refused(broker, code);
 }
 
 static void on_publish(struct mosquitto *mosq, void *ctx, int number)
 {
     broker_t *const broker = ctx;
+    broker_sent_t **at = &broker->sent;
     (void)mosq;
-    for (unsigned i = 0; i != broker->count; i++)
-        if (sent_at(broker, i)->number == number) sent_at(broker, i)->is_acknowledged = true;
-    while (broker->count != 0 && sent_at(broker, 0)->is_acknowledged) {
-        broker->first = (broker->first + 1) % BROKER_WINDOW;
-        broker->count--;
-    }
+    while (*at != NULL && (*at)->number != number) at = &(*at)->next;
+    broker_sent_t *const sent = *at;
+    if (sent == NULL) return;
+    *at = sent->next;
+    broker->sent_count--;
+    free(sent);
 }
 
 static void on_log(struct mosquitto *mosq, void *ctx, int level, const char *text)
@@ -66,35 +135,60 @@ static void on_log(struct mosquitto *mosq, void *ctx, int level, const char *tex
 
 /* ---- the socket ---- */
 
-static broker_t *broker_of(fathom_loop_source_t *source) { return ((broker_source_t *)source)->broker; }
-
-static int source_fd(const fathom_loop_source_t *source) { return ((const broker_source_t *)source)->fd; }
+static int socket_fd(const fathom_loop_source_t *source) { return ((const broker_t *)source)->fd; }
 
 static short socket_events(const fathom_loop_source_t *source)
 {
-    const broker_t *const broker = ((const broker_source_t *)source)->broker;
-    return mosquitto_want_write(broker->mosq) ? POLLIN | POLLOUT : POLLIN;
-}
-
-static void check(broker_t *broker, int result)
-{
-    const int error = errno;
-    if (result == MOSQ_ERR_SUCCESS || broker->is_lost) return;
-    broker_explain_result(broker, result, error);
-    broker->is_lost = true;
+    return mosquitto_want_write(((const broker_t *)source)->mosq) ? POLLIN | POLLOUT : POLLIN;
 }
 
 /* Reads everything that was received, since the loop reports each event once. */
 static void read_all(broker_t *broker)
 {
-    for (unsigned turn = 0; turn != READS && !broker->is_lost; turn++) {
+    bool is_all = false;
+    for (unsigned turn = 0; turn != READS && !is_all && broker->phase != BROKER_LOST; turn++) {
         errno = 0;
         const int result = mosquitto_loop_read(broker->mosq, 1);
-        const bool is_all = errno == EAGAIN || errno == EWOULDBLOCK;
-        check(broker, result);
-        if (is_all) return;
+        is_all = errno == EAGAIN || errno == EWOULDBLOCK;
+        (void)check(broker, result, errno);
     }
 }
+
+static bool poll_socket(fathom_loop_source_t *source)
+{
+    broker_t *const broker = (broker_t *)source;
+    if (source->is_readable) read_all(broker);
+    if (broker->phase != BROKER_LOST && mosquitto_want_write(broker->mosq)) {
+        const int result = mosquitto_loop_write(broker->mosq, 1);
+        (void)check(broker, result, errno);
+    }
+    /* libmosquitto does not notice that the broker ended a TLS handshake. */
+    if (broker->phase == BROKER_GREETING && source->is_hung_up) (void)check(broker, MOSQ_ERR_CONN_LOST, 0);
+    return true;
+}
+
+/* A duplicate of libmosquitto's descriptor, which may be closed at any time while the loop waits for it. */
+static bool add_socket(broker_t *broker)
+{
+    static const fathom_loop_kind_t kind = {.fd = socket_fd, .events = socket_events, .poll = poll_socket};
+    broker->fd = fcntl(mosquitto_socket(broker->mosq), F_DUPFD_CLOEXEC, 0);
+    if (broker->fd < 0) return false;
+    broker->source = (fathom_loop_source_t){.kind = &kind};
+    fathom_loop_add(broker->loop, &broker->source);
+    return true;
+}
+
+static void disconnect(broker_t *broker)
+{
+    if (broker->phase == BROKER_ACCEPTED || broker->phase == BROKER_READY)
+        (void)mosquitto_disconnect(broker->mosq);
+    if (broker->source.loop == NULL) return;
+    fathom_loop_remove(&broker->source);
+    (void)shutdown(broker->fd, SHUT_RDWR);
+    (void)close(broker->fd);
+}
+
+/* ---- messages ---- */
 
 /* False: libmosquitto does not accept the message. What it accepted it sends, and repeats, by itself. */
 static bool submit(broker_t *broker, broker_sent_t *sent)
@@ -105,289 +199,233 @@ static bool submit(broker_t *broker, broker_sent_t *sent)
            result != MOSQ_ERR_MALFORMED_UTF8;
 }
 
+bool broker_send(broker_t *broker, const char *topic, const char *payload, bool is_retained)
+{
+    broker_sent_t *const sent = allocate(sizeof *sent + strlen(payload) + 1);
+    broker_sent_t **end = &broker->sent;
+    sent->topic = topic;
+    sent->is_retained = is_retained;
+    (void)strcpy(sent->payload, payload);
+    if (!submit(broker, sent)) {
+        free(sent);
+        return false;
+    }
+    while (*end != NULL) end = &(*end)->next;
+    *end = sent;
+    broker->sent_count++;
+    if (mosquitto_want_write(broker->mosq)) fathom_loop_wake(&broker->source);
+    return true;
+}
+
 static void start_sending(broker_t *broker)
 {
-    char text[BROKER_TEXT];
-    (void)snprintf(text, sizeof text, "broker %s port %u: connected", broker->settings->host,
-                   broker->settings->port);
-    if (broker->is_reported) broker->user->print(broker->ctx, text);
-    broker->is_reported = false;
-    /* A new client does not know the messages of the client before. */
-    for (unsigned i = 0; broker->is_new && i != broker->count; i++)
-        if (!sent_at(broker, i)->is_acknowledged) (void)submit(broker, sent_at(broker, i));
-    broker->is_new = false;
-    broker->user->connected(broker->ctx);
+    const broker_settings_t *const settings = &broker->settings.broker;
+    if (broker->reported[0] != '\0')
+        (void)fprintf(stderr, "fathom: broker %s port %u: connected\n", settings->host, settings->port);
+    broker->reported[0] = '\0';
+    for (broker_sent_t *sent = broker->sent; sent != NULL; sent = sent->next)
+        if (sent->number == 0) (void)submit(broker, sent);
+    broker->phase = BROKER_READY;
+    broker->until_us = now_us(broker) + STEADY_US;
+    broker->greetings++;
 }
 
-static bool poll_socket(fathom_loop_source_t *source)
+/* ---- the client ---- */
+
+static bool set_tls(broker_t *broker)
 {
-    broker_t *const broker = broker_of(source);
-    const unsigned count = broker->count;
-    const bool was_ready = broker->phase == BROKER_READY;
-    if (broker->is_lost) return true;
-    if (source->is_readable) read_all(broker);
-    if (!broker->is_lost && mosquitto_want_write(broker->mosq)) {
-        errno = 0;
-        check(broker, mosquitto_loop_write(broker->mosq, 1));
+    const broker_settings_t *const settings = &broker->settings.broker;
+    char reason[BROKER_TEXT / 2];
+    if (!settings->has_tls || tls_set(broker->mosq, settings, &broker->tls_error, reason, sizeof reason))
+        return true;
+    lose(broker, "%s:%u: tls: %s", broker->settings.path, settings->tls_line, reason);
+    return false;
+}
+
+/* Sets the user and the password, which is read from its file each time. */
+static bool set_login(broker_t *broker)
+{
+    const broker_settings_t *const settings = &broker->settings.broker;
+    const char *const path = settings->password_file;
+    char password[PASSWORD] = "";
+    if (settings->user[0] == '\0') return true;
+    if (path[0] != '\0') {
+        FILE *const file = fopen(path, "r");
+        if (file == NULL) {
+            lose(broker, "%s cannot be read: %s", path, strerror(errno));
+            return false;
+        }
+        (void)setvbuf(file, NULL, _IONBF, 0); /* no other memory keeps the password */
+        if (fgets(password, sizeof password, file) == NULL) password[0] = '\0';
+        password[strcspn(password, "\r\n")] = '\0';
+        (void)fclose(file);
     }
-    if (!broker->is_lost) check(broker, mosquitto_loop_misc(broker->mosq));
-    /* libmosquitto does not notice that the broker ended a TLS handshake. */
-    if (broker->phase == BROKER_GREETING && source->is_hung_up) check(broker, MOSQ_ERR_CONN_LOST);
-    if (broker->is_lost) return true;
-    if (!was_ready && broker->phase == BROKER_READY) start_sending(broker);
-    if (broker->count < count) broker->user->acknowledged(broker->ctx);
-    return true;
+    const int result =
+        mosquitto_username_pw_set(broker->mosq, settings->user, path[0] != '\0' ? password : NULL);
+    explicit_bzero(password, sizeof password);
+    return check(broker, result, errno);
 }
 
-static uint32_t socket_due_us(fathom_loop_source_t *source)
+static void end_client(broker_t *broker)
 {
-    (void)source;
-    return LOOK_US;
+    if (broker->mosq != NULL) mosquitto_destroy(broker->mosq);
+    broker->mosq = NULL;
+    broker->has_changed = false;
+    for (broker_sent_t *sent = broker->sent; sent != NULL; sent = sent->next) sent->number = 0;
 }
 
-/* A duplicate of libmosquitto's descriptor, which may be closed at any time while the loop waits for it. */
-static bool add_socket(broker_t *broker)
+static bool make_client(broker_t *broker)
 {
-    static const fathom_loop_kind_t kind = {
-        .fd = source_fd, .events = socket_events, .poll = poll_socket, .due_us = socket_due_us};
-    const int fd = fcntl(mosquitto_socket(broker->mosq), F_DUPFD_CLOEXEC, 0);
-    if (fd < 0) return false;
-    broker->socket = (broker_source_t){.source.kind = &kind, .broker = broker, .fd = fd};
-    fathom_loop_add(broker->loop, &broker->socket.source);
-    return true;
+    static const char offline[] = "offline";
+    char will[TOPIC_NAME];
+    if (broker->mosq != NULL && !broker->has_changed) return true;
+    end_client(broker);
+    broker->mosq = mosquitto_new(broker->settings.broker.client_id, true, broker);
+    if (broker->mosq == NULL) return check(broker, MOSQ_ERR_ERRNO, errno);
+    mosquitto_connect_callback_set(broker->mosq, on_connect);
+    mosquitto_publish_callback_set(broker->mosq, on_publish);
+    mosquitto_log_callback_set(broker->mosq, on_log);
+    (void)mosquitto_int_option(broker->mosq, MOSQ_OPT_TCP_NODELAY, 1);
+    topic_name(&broker->settings, TOPIC_STATUS, NULL, 0, will);
+    const int result = mosquitto_will_set(broker->mosq, will, sizeof offline - 1, offline, QOS, true);
+    if (check(broker, result, errno) && set_tls(broker)) return true;
+    end_client(broker);
+    return false;
 }
 
-static void remove_socket(broker_t *broker)
-{
-    if (broker->socket.source.loop == NULL) return;
-    fathom_loop_remove(&broker->socket.source);
-    (void)shutdown(broker->socket.fd, SHUT_RDWR);
-    (void)close(broker->socket.fd);
-}
-
-/* ---- the thread ---- */
+/* ---- connecting ---- */
 
 static void *connect_in_thread(void *ctx)
 {
     broker_t *const broker = ctx;
-    const uint64_t one = 1;
+    const broker_settings_t *const settings = &broker->settings.broker;
     errno = 0;
     broker->connect_result =
-        mosquitto_connect(broker->mosq, broker->connect_host, broker->connect_port, broker->keep_alive_s);
+        mosquitto_connect(broker->mosq, settings->host, settings->port, settings->keep_alive_s);
     broker->connect_errno = errno;
-    if (write(broker->thread.fd, &one, sizeof one) < 0) broker->connect_errno = errno;
+    __atomic_store_n(&broker->thread_has_ended, true, __ATOMIC_RELEASE);
+    fathom_loop_stop(broker->loop); /* ends its sleep */
     return NULL;
 }
 
-/* Signals must reach the thread that sleeps. */
-static int start_thread(broker_t *broker)
+static void start_connecting(broker_t *broker)
 {
     sigset_t all;
     sigset_t before;
+    broker->settings = *broker->wanted;
+    broker->log[0] = '\0';
+    broker->tls_error = 0;
+    if (!make_client(broker) || !set_login(broker)) return;
+    broker->phase = BROKER_CONNECTING;
+    __atomic_store_n(&broker->thread_has_ended, false, __ATOMIC_RELEASE);
+    /* Signals must reach the thread that sleeps. */
     (void)sigfillset(&all);
     (void)pthread_sigmask(SIG_SETMASK, &all, &before);
-    const int error = pthread_create(&broker->connecting, NULL, connect_in_thread, broker);
+    const int error = pthread_create(&broker->thread, NULL, connect_in_thread, broker);
     (void)pthread_sigmask(SIG_SETMASK, &before, NULL);
-    return error;
-}
-
-static bool poll_thread(fathom_loop_source_t *source)
-{
-    broker_t *const broker = broker_of(source);
-    uint64_t count;
-    if (read(broker->thread.fd, &count, sizeof count) == (ssize_t)sizeof count)
-        broker->thread_has_ended = true;
-    return true;
-}
-
-/* ---- connecting again ---- */
-
-/* Returns between half and all of it, so that the clients of a broker that is back do not connect all at once. */
-static uint32_t part_of(uint32_t pause_us)
-{
-    uint32_t random = 0;
-    if (getentropy(&random, sizeof random) != 0) random = 0;
-    return pause_us / 2 + (uint32_t)((uint64_t)random * (pause_us - pause_us / 2) >> 32);
-}
-
-static void report_away(broker_t *broker)
-{
-    char text[2 * BROKER_TEXT];
-    if (broker->is_reported && strcmp(broker->reported, broker->reason) == 0) return;
-    broker->is_reported = true;
-    memcpy(broker->reported, broker->reason, sizeof broker->reported);
-    (void)snprintf(text, sizeof text, "broker %s port %u: %s; it is tried again and again",
-                   broker->settings->host, broker->settings->port, broker->reason);
-    broker->user->print(broker->ctx, text);
-}
-
-/* broker->reason says why. */
-static void pause_connecting(broker_t *broker)
-{
-    const bool was_ready = broker->phase == BROKER_READY;
-    remove_socket(broker);
-    /* A broker that accepts the client and ends the connection again, as with two clients of the same id, gets pauses that
-     * grow too. */
-    if (was_ready && now_us(broker) - broker->began_us >= STEADY_US) broker->pause_us = 0;
-    broker->pause_us = broker->pause_us == 0 ? FIRST_PAUSE_US : broker->pause_us * 2;
-    if (broker->pause_us > LONGEST_PAUSE_US) broker->pause_us = LONGEST_PAUSE_US;
-    broker->next_us = now_us(broker) + part_of(broker->pause_us);
-    broker->phase = BROKER_PAUSE;
-    broker->is_lost = false;
-    report_away(broker);
-}
-
-static void make_client(broker_t *broker)
-{
-    if (broker->mosq != NULL && !broker->has_changed) return;
-    if (broker->mosq != NULL) mosquitto_destroy(broker->mosq);
-    broker->is_new = true;
-    broker->has_changed = false;
-    broker->mosq = broker_client(broker);
-    if (broker->mosq == NULL) return;
-    mosquitto_connect_callback_set(broker->mosq, on_connect);
-    mosquitto_publish_callback_set(broker->mosq, on_publish);
-    mosquitto_log_callback_set(broker->mosq, on_log);
-}
-
-static void connect_again(broker_t *broker)
-{
-    const broker_settings_t *const settings = broker->settings;
-    (void)snprintf(broker->connect_host, sizeof broker->connect_host, "%s", settings->host);
-    broker->connect_port = settings->port;
-    broker->keep_alive_s = settings->keep_alive_s;
-    broker->reason[0] = broker->log[0] = '\0';
-    broker->is_lost = false;
-    broker->tls_error = 0;
-    broker->began_us = now_us(broker);
-    make_client(broker);
-    if (broker->mosq == NULL || !broker_login(broker)) {
-        pause_connecting(broker);
-        return;
-    }
-    const int error = start_thread(broker);
-    broker->phase = BROKER_CONNECTING;
-    if (error == 0) return;
-    broker_explain(broker, "%s", strerror(error));
-    pause_connecting(broker);
+    if (error != 0) lose(broker, "%s", strerror(error));
 }
 
 static void end_connecting(broker_t *broker)
 {
-    broker->thread_has_ended = false;
-    (void)pthread_join(broker->connecting, NULL);
+    (void)pthread_join(broker->thread, NULL);
     if (broker->has_changed) {
-        connect_again(broker);
+        start_connecting(broker);
         return;
     }
     broker->phase = BROKER_GREETING;
-    broker->began_us = now_us(broker);
-    if (broker->connect_result != MOSQ_ERR_SUCCESS)
-        broker_explain_result(broker, broker->connect_result, broker->connect_errno);
-    else if (!add_socket(broker))
-        broker_explain(broker, "%s", strerror(errno));
-    else
-        return;
-    pause_connecting(broker);
+    broker->until_us = now_us(broker) + GREETING_US;
+    if (check(broker, broker->connect_result, broker->connect_errno) && !add_socket(broker))
+        lose(broker, "%s", strerror(errno));
+}
+
+/* The pause is shortened by up to a half, so that the clients of a broker that is back do not connect all at once. */
+static void pause_connecting(broker_t *broker)
+{
+    const broker_settings_t *const settings = &broker->settings.broker;
+    uint32_t random = 0;
+    disconnect(broker);
+    broker->pause_us = broker->pause_us == 0 ? FIRST_PAUSE_US : broker->pause_us * 2;
+    if (broker->pause_us > LONGEST_PAUSE_US) broker->pause_us = LONGEST_PAUSE_US;
+    if (getentropy(&random, sizeof random) != 0) random = 0;
+    broker->until_us = now_us(broker) + broker->pause_us - ((uint64_t)random * (broker->pause_us / 2) >> 32);
+    broker->phase = BROKER_PAUSE;
+    if (strcmp(broker->reported, broker->reason) == 0) return;
+    (void)strcpy(broker->reported, broker->reason);
+    (void)fprintf(stderr, "fathom: broker %s port %u: %s; it is tried again and again\n", settings->host,
+                  settings->port, broker->reason);
 }
 
 uint32_t broker_tick(broker_t *broker)
 {
     const uint64_t now = now_us(broker);
-    if (broker->phase == BROKER_PAUSE && now >= broker->next_us) connect_again(broker);
-    if (broker->phase == BROKER_CONNECTING && broker->thread_has_ended) end_connecting(broker);
-    if (broker->phase == BROKER_GREETING && !broker->is_lost && now > broker->began_us + GREETING_US) {
-        broker_explain(broker, "it accepts the connection and does not respond; is it an MQTT broker?");
-        broker->is_lost = true;
+    if (broker->phase == BROKER_PAUSE && now >= broker->until_us) start_connecting(broker);
+    if (broker->phase == BROKER_CONNECTING && __atomic_load_n(&broker->thread_has_ended, __ATOMIC_ACQUIRE))
+        end_connecting(broker);
+    if (broker->phase == BROKER_GREETING && now > broker->until_us)
+        lose(broker, "it accepts the connection and does not respond; is it an MQTT broker?");
+    if (broker->phase == BROKER_ACCEPTED) start_sending(broker);
+    if (broker->phase == BROKER_READY) {
+        const int result = mosquitto_loop_misc(broker->mosq); /* the keep-alive */
+        (void)check(broker, result, errno);
     }
-    if (broker->is_lost) pause_connecting(broker);
-    if (broker->phase == BROKER_PAUSE) return broker->next_us > now ? (uint32_t)(broker->next_us - now) : 0;
-    return broker->phase == BROKER_GREETING ? LOOK_US : FATHOM_NO_DEADLINE;
+    if (broker->phase == BROKER_LOST) pause_connecting(broker);
+    if (broker->phase == BROKER_PAUSE) return broker->until_us > now ? (uint32_t)(broker->until_us - now) : 0;
+    return broker->phase == BROKER_CONNECTING ? FATHOM_NO_DEADLINE : LOOK_US;
 }
 
-/* ---- start, send, end ---- */
+/* ---- start and end ---- */
 
-bool broker_begin(broker_t *broker, const host_t *host, fathom_loop_t *loop,
-                  const broker_settings_t *settings, const char *file, const char *will,
-                  const broker_user_t *user, void *ctx)
+void broker_begin(broker_t *broker, const host_t *host, fathom_loop_t *loop,
+                  const publish_settings_t *settings)
 {
-    static const fathom_loop_kind_t kind = {.fd = source_fd, .poll = poll_thread};
     memset(broker, 0, sizeof *broker);
     broker->host = host;
     broker->loop = loop;
-    broker->settings = settings;
-    broker->file = file;
-    broker->user = user;
-    broker->ctx = ctx;
-    (void)snprintf(broker->will, sizeof broker->will, "%s", will);
-    broker->thread.fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-    if (broker->thread.fd < 0 || mosquitto_lib_init() != MOSQ_ERR_SUCCESS) {
-        user->print(ctx, "the system has no descriptor or no memory left; end other programs");
-        return false;
-    }
-    broker->thread.broker = broker;
-    broker->thread.source.kind = &kind;
-    fathom_loop_add(loop, &broker->thread.source);
-    return true;
+    broker->wanted = settings;
+    (void)mosquitto_lib_init();
 }
-
-bool broker_is_connected(const broker_t *broker) { return broker->phase == BROKER_READY && !broker->is_lost; }
 
 bool broker_is_free(const broker_t *broker)
 {
-    return broker_is_connected(broker) && broker->count != BROKER_WINDOW;
+    return broker->phase == BROKER_READY && broker->sent_count < BROKER_WINDOW;
 }
 
-bool broker_is_idle(const broker_t *broker) { return broker_is_connected(broker) && broker->count == 0; }
+bool broker_is_idle(const broker_t *broker) { return broker->phase == BROKER_READY && broker->sent == NULL; }
 
-bool broker_send(broker_t *broker, const char *topic, const char *payload, bool is_retained)
+void broker_change(broker_t *broker)
 {
-    broker_sent_t *const sent = sent_at(broker, broker->count);
-    sent->is_acknowledged = false;
-    sent->is_retained = is_retained;
-    (void)snprintf(sent->topic, sizeof sent->topic, "%s", topic);
-    (void)snprintf(sent->payload, sizeof sent->payload, "%s", payload);
-    if (!submit(broker, sent)) return false;
-    broker->count++;
-    if (mosquitto_want_write(broker->mosq)) fathom_loop_wake(&broker->socket.source);
-    return true;
-}
-
-void broker_change(broker_t *broker, const char *will)
-{
-    (void)snprintf(broker->will, sizeof broker->will, "%s", will);
     broker->has_changed = true;
-    broker->is_reported = false;
+    broker->reported[0] = '\0';
     if (broker->phase == BROKER_CONNECTING) return;
-    if (broker->phase == BROKER_READY) (void)mosquitto_disconnect(broker->mosq);
-    remove_socket(broker);
+    disconnect(broker);
     broker->phase = BROKER_PAUSE;
-    broker->is_lost = false;
     broker->pause_us = 0;
-    broker->next_us = now_us(broker);
+    broker->until_us = 0;
 }
 
 bool broker_wait(broker_t *broker, uint32_t max_us)
 {
-    if (!broker_is_connected(broker)) return false;
-    struct pollfd entry = {broker->socket.fd, socket_events(&broker->socket.source), 0};
-    broker->socket.source.is_readable = poll(&entry, 1, (int)(max_us / 1000)) > 0;
-    (void)poll_socket(&broker->socket.source);
-    return broker_is_connected(broker);
+    if (broker->phase != BROKER_READY) return false;
+    struct pollfd entry = {broker->fd, socket_events(&broker->source), 0};
+    broker->source.is_readable = poll(&entry, 1, (int)(max_us / 1000)) > 0;
+    (void)poll_socket(&broker->source);
+    return broker->phase == BROKER_READY;
 }
 
 void broker_end(broker_t *broker)
 {
     if (broker->loop == NULL) return;
     if (broker->phase == BROKER_CONNECTING) {
-        (void)pthread_detach(broker->connecting); /* it may wait for minutes */
+        (void)pthread_detach(broker->thread); /* it may wait for minutes */
         return;
     }
-    if (broker->phase == BROKER_READY) (void)mosquitto_disconnect(broker->mosq);
-    remove_socket(broker);
-    if (broker->thread.source.loop != NULL) fathom_loop_remove(&broker->thread.source);
-    if (broker->thread.fd >= 0) (void)close(broker->thread.fd);
-    if (broker->mosq != NULL) mosquitto_destroy(broker->mosq);
-    broker->mosq = NULL;
+    disconnect(broker);
+    end_client(broker);
+    while (broker->sent != NULL) {
+        broker_sent_t *const sent = broker->sent;
+        broker->sent = sent->next;
+        free(sent);
+    }
     (void)mosquitto_lib_cleanup();
 }

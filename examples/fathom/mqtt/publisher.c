@@ -1,133 +1,238 @@
 /* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): getentropy, open_memstream */
 #include "mqtt/publisher.h"
 
 #include <inttypes.h>
+#include <stdio_ext.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
-#include "mqtt/discovery.h"
+#include "fathom/version.h"
+#include "output/words.h"
+#include "reading/fields.h"
+#include "reading/stats.h"
 
-/* Failures in a row after which a sensor is away; the least time between two messages about the publisher; the time from
+/* Failures in a row after which a sensor is away; the least time between two messages about dropped messages; the time from
  * one message with the counters of the sensors to the next. */
 enum { FAILURES = 3, NEWS_US = 1000000, COUNTERS_US = 60000000 };
 
 static uint64_t now_us(const publisher_t *publisher) { return publisher->host->now_us(publisher->host->ctx); }
 
-static void print(void *ctx, const char *text)
+/* ---- topics ---- */
+
+/* Marks a topic as wanted, a new one if needed. */
+static topic_t *want_topic(publisher_t *publisher, topic_kind_t kind, const sensor_t *sensor, uint8_t probe)
 {
-    (void)ctx;
-    (void)fprintf(stderr, "fathom: %s\n", text);
+    char name[TOPIC_NAME];
+    topic_t **at = &publisher->topics;
+    topic_name(publisher->settings, kind, sensor, probe, name);
+    while (*at != NULL && strcmp((*at)->name, name) != 0) at = &(*at)->next;
+    if (*at == NULL) *at = allocate(sizeof **at + strlen(name) + 1);
+    topic_t *const topic = *at;
+    (void)strcpy(topic->name, name);
+    topic->kind = kind;
+    topic->sensor = sensor;
+    topic->probe = probe;
+    topic->is_wanted = topic->is_due = true;
+    return topic;
 }
 
-/* ---- retained messages ---- */
-
-static void send_retained(publisher_t *publisher, stream_t *stream, const char *payload)
+/* All topics of a probe, or of a sensor (probe 0), or of the publisher (of NULL). */
+static void want_topics(publisher_t *publisher, publisher_sensor_t *of, uint8_t probe)
 {
-    if (!broker_send(&publisher->broker, stream->topic, payload, true)) return;
-    stream->is_due = false;
-    stream->is_known = true;
+    const sensor_t *const sensor = of != NULL ? of->sensor : NULL;
+    for (topic_kind_t kind = 0; kind != TOPICS; kind++) {
+        if (!topic_is_there(publisher->settings, kind, sensor, probe)) continue;
+        topic_t *const topic = want_topic(publisher, kind, sensor, probe);
+        if (probe != 0 && kind >= TOPIC_STATE) of->topics[probe - 1][kind - TOPIC_STATE] = topic;
+    }
 }
 
-static void send_deletion(publisher_t *publisher, stream_t *stream)
+/* Names all topics anew. Everything that is retained is due then. */
+static void set_sensors(publisher_t *publisher, const site_t *site)
 {
-    if (!broker_send(&publisher->broker, stream->topic, "", true)) return;
-    stream->is_known = false;
-    stream->is_due = true;
+    publisher_sensor_t *const before = publisher->sensors;
+    const size_t count = publisher->sensor_count;
+    publisher->sensors = allocate(site->sensor_count * sizeof *before);
+    publisher->sensor_count = site->sensor_count;
+    publisher->has_due = true;
+    for (topic_t *topic = publisher->topics; topic != NULL; topic = topic->next) topic->is_wanted = false;
+    want_topics(publisher, NULL, 0);
+    for (size_t i = 0; i != site->sensor_count; i++) {
+        publisher_sensor_t *const sensor = &publisher->sensors[i];
+        sensor->sensor = site->sensors[i];
+        for (size_t j = 0; j != count; j++) {
+            if (strcmp(before[j].sensor->name, sensor->sensor->name) != 0) continue;
+            sensor->failures = before[j].failures;
+            sensor->presence = before[j].presence;
+        }
+        for (uint8_t probe = 1; probe <= FATHOM_DYP_PROBES; probe++) want_topics(publisher, sensor, probe);
+        want_topics(publisher, sensor, 0);
+    }
+    free(before);
 }
 
-static void send_discovery(publisher_t *publisher, stream_t *stream)
+/* All topics of this kind are due, or of TOPICS all kinds; sensor: those of this one alone. */
+static void make_due(publisher_t *publisher, topic_kind_t kind, const sensor_t *sensor)
 {
-    char payload[DISCOVERY_TEXT];
-    discovery_payload(publisher->settings, stream->sensor, stream->bit, payload);
-    send_retained(publisher, stream, payload);
+    publisher->has_due = true;
+    for (topic_t *topic = publisher->topics; topic != NULL; topic = topic->next)
+        if ((kind == TOPICS || topic->kind == kind) && (sensor == NULL || topic->sensor == sensor))
+            topic->is_due = true;
 }
 
-static void send_availability(publisher_t *publisher, stream_t *stream)
+/* ---- the queue ---- */
+
+static message_t *take_message(queue_t *queue)
 {
-    const publisher_sensor_t *const sensor = &publisher->sensors[stream->sensor->number];
-    send_retained(publisher, stream, sensor->is_available ? "online" : "offline");
+    message_t *const message = queue->first;
+    queue->first = message->next;
+    queue->bytes -= message->size;
+    queue->count--;
+    return message;
 }
 
-static void send_counters(publisher_t *publisher, stream_t *stream)
+static void drop_message(queue_t *queue, message_t *message)
 {
-    const uint64_t utc_us = publisher->host->utc_us(publisher->host->ctx);
-    char payload[COUNTERS_TEXT];
-    state_of_counters(publisher->sensors[stream->sensor->number].sensor, utc_us, publisher->boot, payload);
-    send_retained(publisher, stream, payload);
+    message->topic->dropped++;
+    queue->dropped++;
+    free(message);
 }
 
-static void print_dropped(publisher_t *publisher, uint64_t dropped)
+/* Drops the oldest messages, so that `count` more of `size` bytes keep the bounds. */
+static void make_room(publisher_t *publisher, uint32_t count, size_t size)
 {
-    (void)fprintf(stderr,
-                  "fathom: the queue was full: %" PRIu64 " messages were dropped, %" PRIu64
-                  " since the start.\n",
-                  dropped - publisher->printed_dropped, dropped);
-    publisher->printed_dropped = dropped;
+    const publish_settings_t *const settings = publisher->settings;
+    queue_t *const queue = &publisher->queue;
+    while (queue->count != 0 &&
+           (queue->count + count > settings->queue_messages || queue->bytes + size > settings->queue_bytes))
+        drop_message(queue, take_message(queue));
 }
 
-static bool has_news(const publisher_t *publisher)
+static void put_message(publisher_t *publisher, topic_t *topic, uint64_t time_us, const char *text)
 {
-    const bool is_due = publisher->sent_us == 0 || now_us(publisher) - publisher->sent_us >= NEWS_US;
-    return is_due && publisher->queue.dropped != publisher->sent_dropped;
+    queue_t *const queue = &publisher->queue;
+    const size_t size = sizeof(message_t) + strlen(text) + 1;
+    message_t *const message = allocate(size);
+    make_room(publisher, 1, size);
+    *message = (message_t){.topic = topic, .time_us = time_us, .size = size};
+    (void)strcpy(message->text, text);
+    if (queue->first == NULL)
+        queue->first = message;
+    else
+        queue->last->next = message;
+    queue->last = message;
+    queue->bytes += size;
+    queue->count++;
 }
 
-static bool send_news(publisher_t *publisher)
+/* ---- payloads ---- */
+
+static json_t begin_payload(const publisher_t *publisher)
 {
-    char payload[STATE_TEXT];
-    const publisher_state_t state = {publisher->boot,
-                                     publisher->host->utc_us(publisher->host->ctx),
-                                     now_us(publisher) - publisher->start_us,
-                                     publisher->queue.dropped,
-                                     publisher->queue.count,
-                                     publisher->sensor_count};
-    state_of_publisher(&state, payload);
-    if (!broker_send(&publisher->broker, publisher->news->topic, payload, true)) return false;
-    publisher->news->is_known = true;
-    if (state.dropped > publisher->printed_dropped) print_dropped(publisher, state.dropped);
-    publisher->sent_dropped = state.dropped;
-    publisher->sent_us = now_us(publisher);
-    return true;
+    rewind(publisher->to);
+    return (json_t){.to = publisher->to};
+}
+
+static const char *end_payload(publisher_t *publisher)
+{
+    (void)fputc('\0', publisher->to);
+    return fflush(publisher->to) == 0 ? publisher->payload : "";
+}
+
+static void write_publisher(publisher_t *publisher, json_t *json)
+{
+    json_string(json, "version", FATHOM_VERSION_STRING);
+    json_string(json, "boot", publisher->boot);
+    json_value(json, "uptime_s", "%" PRIu64, (now_us(publisher) - publisher->start_us) / 1000000);
+    json_value(json, "sensors", "%zu", publisher->sensor_count);
+    json_value(json, "queued", "%" PRIu32, publisher->queue.count);
+    json_value(json, "dropped", "%" PRIu64, publisher->queue.dropped);
+}
+
+/* The present state under a retained topic. */
+static const char *payload_of(publisher_t *publisher, const topic_t *topic)
+{
+    const publisher_sensor_t *const sensor =
+        topic->sensor != NULL ? &publisher->sensors[topic->sensor->number] : NULL;
+    char utc[UTC_TEXT];
+    json_t json = begin_payload(publisher);
+    if (topic->kind == TOPIC_STATUS) {
+        (void)fputs(publisher->is_ending ? "offline" : "online", json.to);
+    } else if (topic->kind == TOPIC_AVAILABILITY) {
+        (void)fputs(sensor->presence == SENSOR_AVAILABLE ? "online" : "offline", json.to);
+    } else {
+        json_begin(&json, NULL, '{');
+        if (topic_is_entity(topic->kind))
+            topic_json_entity(&json, publisher->settings, topic->kind, topic->sensor, topic->probe);
+        else
+            json_string(&json, "utc", utc_text(publisher->host->utc_us(publisher->host->ctx), utc));
+        if (topic->kind == TOPIC_PUBLISHER) write_publisher(publisher, &json);
+        if (topic->kind == TOPIC_COUNTERS) {
+            json_string(&json, "boot", publisher->boot);
+            stats_json_of_sensor(&json, sensor->sensor);
+        }
+        json_end(&json, '}');
+    }
+    return end_payload(publisher);
 }
 
 /* ---- one message after another ---- */
 
-/* True: a message was sent, or will be. */
-static bool send_fact(publisher_t *publisher)
+/* The rank of a retained message that is due; TOPICS: none is. A topic that is not wanted any more is deleted as soon as the
+ * publisher is online. */
+static topic_kind_t rank_of(const topic_t *topic)
 {
-    const streams_t *const streams = &publisher->streams;
-    stream_t *stream = NULL;
-    if (publisher->has_facts && (stream = streams_due(streams, STREAM_STATUS)) != NULL)
-        send_retained(publisher, stream, "online");
-    else if (publisher->has_facts && (stream = streams_gone(streams)) != NULL)
-        send_deletion(publisher, stream);
-    else if (has_news(publisher) && send_news(publisher))
-        return true;
-    else if (publisher->has_facts && (stream = streams_due(streams, STREAM_DISCOVERY)) != NULL)
-        send_discovery(publisher, stream);
-    else if (publisher->has_facts && (stream = streams_due(streams, STREAM_AVAILABILITY)) != NULL)
-        send_availability(publisher, stream);
-    else if (publisher->has_facts && (stream = streams_due(streams, STREAM_COUNTERS)) != NULL)
-        send_counters(publisher, stream);
-    publisher->has_facts = stream != NULL;
-    return publisher->has_facts;
+    if (!topic->is_wanted)
+        return topic_is_retained(topic->kind) && topic->is_known ? TOPIC_STATUS + 1 : TOPICS;
+    return topic->is_due && topic->kind < TOPIC_STATE ? topic->kind : TOPICS;
+}
+
+static void report_dropped(publisher_t *publisher)
+{
+    const uint64_t dropped = publisher->queue.dropped;
+    if (dropped > publisher->sent_dropped)
+        (void)fprintf(stderr,
+                      "fathom: the queue was full: %" PRIu64 " messages were dropped, %" PRIu64
+                      " since the start.\n",
+                      dropped - publisher->sent_dropped, dropped);
+    publisher->sent_dropped = dropped;
+    publisher->sent_us = now_us(publisher);
+}
+
+static bool send_retained(publisher_t *publisher)
+{
+    topic_t *first = NULL;
+    if (!publisher->has_due) return false;
+    for (topic_t *topic = publisher->topics; topic != NULL; topic = topic->next)
+        if (rank_of(topic) < (first != NULL ? rank_of(first) : TOPICS)) first = topic;
+    publisher->has_due = first != NULL;
+    if (first == NULL) return false;
+    const char *const payload = first->is_wanted ? payload_of(publisher, first) : "";
+    first->is_known = broker_send(&publisher->broker, first->name, payload, true) && first->is_wanted;
+    first->is_due = false;
+    if (first->kind == TOPIC_PUBLISHER && first->is_wanted) report_dropped(publisher);
+    return true;
 }
 
 static bool send_message(publisher_t *publisher)
 {
-    message_t *const message = queue_take(&publisher->queue);
-    char text[STATE_TEXT];
-    if (message == NULL) return false;
-    stream_t *const stream = message->stream;
-    (void)snprintf(text, sizeof text, "%s", message->text);
-    state_finish(text, now_us(publisher) - message->time_us, stream->dropped);
+    if (publisher->queue.first == NULL) return false;
+    message_t *const message = take_message(&publisher->queue);
+    topic_t *const topic = message->topic;
+    const bool is_retained = topic_is_retained(topic->kind);
+    const json_t json = begin_payload(publisher);
+    (void)fprintf(json.to, "%s,\"age_ms\":%" PRIu64 ",\"dropped\":%" PRIu64 "}", message->text,
+                  (now_us(publisher) - message->time_us) / 1000, topic->dropped);
     /* A deleted topic must not come back. */
-    if (stream->is_retained && !stream->is_wanted) {
+    if (is_retained && !topic->is_wanted) {
         free(message);
-    } else if (broker_send(&publisher->broker, stream->topic, text, stream->is_retained)) {
-        stream->is_known = true;
+    } else if (broker_send(&publisher->broker, topic->name, end_payload(publisher), is_retained)) {
+        topic->is_known = true;
         free(message);
     } else {
-        queue_drop(&publisher->queue, message);
+        drop_message(&publisher->queue, message);
     }
     return true;
 }
@@ -135,49 +240,32 @@ static bool send_message(publisher_t *publisher)
 /* As many as the broker accepts. */
 static void send_next(publisher_t *publisher)
 {
-    for (unsigned turn = 0; turn != BROKER_WINDOW && broker_is_free(&publisher->broker); turn++)
-        if (!send_fact(publisher) && !send_message(publisher)) return;
+    while (broker_is_free(&publisher->broker) && (send_retained(publisher) || send_message(publisher))) {
+    }
 }
-
-static void send_news_soon(publisher_t *publisher)
-{
-    publisher->sent_us = 0;
-    publisher->sent_dropped = UINT64_MAX;
-}
-
-static void on_connected(void *ctx)
-{
-    publisher_t *const publisher = ctx;
-    streams_repeat(&publisher->streams);
-    publisher->has_facts = true;
-    send_news_soon(publisher);
-}
-
-static void on_acknowledged(void *ctx) { send_next(ctx); }
 
 /* ---- readings ---- */
 
-static void put(publisher_t *publisher, const reading_t *reading, topic_t topic, uint8_t probe)
+static void put(publisher_t *publisher, const reading_t *reading, topic_kind_t kind, uint8_t probe)
 {
-    char text[QUEUE_TEXT];
-    stream_t *const stream = publisher->sensors[reading->sensor->number].streams[probe - 1][topic];
-    if (stream == NULL) return;
-    state_begin(reading, topic, publisher->boot, ++stream->seq, text);
-    queue_put(&publisher->queue, stream, publisher->start_us + reading->time_us, text);
-    send_next(publisher);
+    topic_t *const topic = publisher->sensors[reading->sensor->number].topics[probe - 1][kind - TOPIC_STATE];
+    if (topic == NULL) return;
+    json_t json = begin_payload(publisher);
+    json_begin(&json, NULL, '{');
+    reading_json(&json, reading, topic_columns(kind, reading->sensor));
+    json_string(&json, "boot", publisher->boot);
+    json_value(&json, "seq", "%" PRIu64, ++topic->seq);
+    put_message(publisher, topic, publisher->start_us + reading->time_us, end_payload(publisher));
 }
 
 /* Returns true if that is new. */
-static bool set_away(publisher_t *publisher, publisher_sensor_t *sensor, bool is_away)
+static bool set_presence(publisher_t *publisher, publisher_sensor_t *sensor, presence_t presence)
 {
-    const bool is_new = sensor->is_away != is_away;
-    sensor->is_away = is_away;
-    if (sensor->is_available != is_away) return is_new;
-    sensor->is_available = !is_away;
-    sensor->availability->is_due = true;
-    publisher->has_facts = true;
-    send_next(publisher);
-    return is_new;
+    const presence_t before = sensor->presence;
+    sensor->presence = presence;
+    if ((before == SENSOR_AVAILABLE) != (presence == SENSOR_AVAILABLE))
+        make_due(publisher, TOPIC_AVAILABILITY, sensor->sensor);
+    return before != presence;
 }
 
 static void put_reading(publisher_t *publisher, publisher_sensor_t *sensor, const reading_t *reading)
@@ -188,7 +276,7 @@ static void put_reading(publisher_t *publisher, publisher_sensor_t *sensor, cons
         return;
     }
     sensor->failures = 0;
-    (void)set_away(publisher, sensor, false);
+    (void)set_presence(publisher, sensor, SENSOR_AVAILABLE);
     put(publisher, reading, TOPIC_STATE, probe);
     put(publisher, reading, TOPIC_LEVEL, probe);
 }
@@ -210,9 +298,8 @@ bool publisher_reading(publisher_t *publisher, const reading_t *reading)
     }
     if (sensor->failures != FAILURES) sensor->failures++;
     const bool is_away = is_grave(reading) || sensor->failures == FAILURES;
-    const bool is_new = is_away && set_away(publisher, sensor, true);
+    const bool is_new = is_away && set_presence(publisher, sensor, SENSOR_AWAY);
     for (uint8_t i = 1; i <= FATHOM_DYP_PROBES; i++) {
-        if (!sensor_has_probe(reading->sensor, i)) continue;
         if (probe != 0 && topic_has_probes(reading->sensor) && probe != i) continue;
         put(publisher, reading, TOPIC_STATE, i);
         put(publisher, reading, TOPIC_LEVEL, i);
@@ -220,133 +307,47 @@ bool publisher_reading(publisher_t *publisher, const reading_t *reading)
     return is_new;
 }
 
-/* ---- the sensors ---- */
-
-static stream_t *want_of_site(publisher_t *publisher, const char *word, stream_kind_t kind)
-{
-    char topic[TOPIC];
-    topic_of_site(publisher->settings, word, topic);
-    return streams_want(&publisher->streams, topic, kind, NULL);
-}
-
-static bool want_readings(publisher_t *publisher, publisher_sensor_t *sensor)
-{
-    for (uint8_t probe = 1; probe <= FATHOM_DYP_PROBES; probe++)
-        for (topic_t topic = 0; topic != TOPICS; topic++) {
-            char text[TOPIC];
-            if (!sensor_has_probe(sensor->sensor, probe) || !topic_is_there(sensor->sensor, topic)) continue;
-            topic_of_probe(publisher->settings, sensor->sensor, probe, topic, text);
-            stream_t *const stream = streams_want(&publisher->streams, text, STREAM_READINGS, sensor->sensor);
-            if (stream == NULL) return false;
-            stream->is_retained = topic == TOPIC_ALARM;
-            sensor->streams[probe - 1][topic] = stream;
-        }
-    return true;
-}
-
-static bool want_discovery(publisher_t *publisher, const sensor_t *sensor)
-{
-    const uint32_t all = discovery_all(publisher->settings, sensor);
-    for (unsigned bit = 0; bit != DISCOVERY_BITS; bit++) {
-        char topic[DISCOVERY_TOPIC];
-        if ((all >> bit & 1) == 0) continue;
-        discovery_topic(publisher->settings, sensor, bit, topic);
-        stream_t *const stream = streams_want(&publisher->streams, topic, STREAM_DISCOVERY, sensor);
-        if (stream == NULL) return false;
-        stream->bit = bit;
-    }
-    return true;
-}
-
-/* before: what was known of the sensor with this name; NULL: nothing. */
-static bool want_sensor(publisher_t *publisher, publisher_sensor_t *sensor, const publisher_sensor_t *before)
-{
-    char topic[TOPIC];
-    if (before != NULL) {
-        sensor->failures = before->failures;
-        sensor->is_available = before->is_available;
-        sensor->is_away = before->is_away;
-    }
-    (void)snprintf(sensor->name, sizeof sensor->name, "%s", sensor->sensor->name);
-    topic_of_sensor(publisher->settings, sensor->sensor, "availability", topic);
-    sensor->availability = streams_want(&publisher->streams, topic, STREAM_AVAILABILITY, sensor->sensor);
-    topic_of_sensor(publisher->settings, sensor->sensor, "counters", topic);
-    return sensor->availability != NULL &&
-           streams_want(&publisher->streams, topic, STREAM_COUNTERS, sensor->sensor) != NULL &&
-           want_readings(publisher, sensor) && want_discovery(publisher, sensor->sensor);
-}
-
-static const publisher_sensor_t *find(const publisher_sensor_t *sensors, size_t count, const char *name)
-{
-    for (size_t i = 0; i != count; i++)
-        if (strcmp(sensors[i].name, name) == 0) return &sensors[i];
-    return NULL;
-}
-
-/* Names all streams anew. */
-static bool set_sensors(publisher_t *publisher, const site_t *site)
-{
-    publisher_sensor_t *const before = publisher->sensors;
-    const size_t count = publisher->sensor_count;
-    publisher_sensor_t *const sensors = calloc(site->sensor_count, sizeof *sensors);
-    bool is_good = true;
-    if (sensors == NULL) return false;
-    publisher->sensors = sensors;
-    publisher->sensor_count = site->sensor_count;
-    streams_forget(&publisher->streams);
-    publisher->news = want_of_site(publisher, "publisher", STREAM_PUBLISHER);
-    publisher->status = want_of_site(publisher, "status", STREAM_STATUS);
-    is_good = publisher->news != NULL && publisher->status != NULL;
-    for (size_t i = 0; i != site->sensor_count && is_good; i++) {
-        sensors[i].sensor = site->sensors[i];
-        is_good = want_sensor(publisher, &sensors[i], find(before, count, site->sensors[i]->name));
-    }
-    streams_clean(&publisher->streams);
-    free(before);
-    publisher->has_facts = true;
-    return is_good;
-}
-
 /* ---- start and end ---- */
 
-bool publisher_init(publisher_t *publisher, const host_t *host, const publish_settings_t *settings,
+void publisher_init(publisher_t *publisher, const host_t *host, const publish_settings_t *settings,
                     const site_t *site, uint64_t start_us)
 {
+    uint64_t random = 0;
     memset(publisher, 0, sizeof *publisher);
     publisher->host = host;
     publisher->settings = settings;
     publisher->start_us = publisher->counted_us = start_us;
-    state_boot(publisher->boot);
-    queue_set_bounds(&publisher->queue, settings->queue_messages, settings->queue_bytes);
-    if (set_sensors(publisher, site)) return true;
-    print(NULL, "no memory left");
-    return false;
+    if (getentropy(&random, sizeof random) != 0) random = start_us;
+    (void)snprintf(publisher->boot, BOOT, "%016" PRIx64, random);
+    publisher->to = open_memstream(&publisher->payload, &publisher->payload_size);
+    if (publisher->to == NULL) end_without_memory();
+    (void)__fsetlocking(publisher->to, FSETLOCKING_BYCALLER); /* no other thread has it */
+    set_sensors(publisher, site);
 }
 
-bool publisher_connect(publisher_t *publisher, fathom_loop_t *loop)
+void publisher_connect(publisher_t *publisher, fathom_loop_t *loop)
 {
-    static const broker_user_t user = {on_connected, on_acknowledged, print};
-    return broker_begin(&publisher->broker, publisher->host, loop, &publisher->settings->broker,
-                        publisher->settings->path, publisher->status->topic, &user, publisher);
+    broker_begin(&publisher->broker, publisher->host, loop, publisher->settings);
 }
 
-bool publisher_change(publisher_t *publisher, const site_t *site, bool has_other_broker)
+void publisher_change(publisher_t *publisher, const site_t *site, bool has_other_broker)
 {
-    const publish_settings_t *const settings = publisher->settings;
-    if (!set_sensors(publisher, site)) return false;
-    queue_set_bounds(&publisher->queue, settings->queue_messages, settings->queue_bytes);
-    send_news_soon(publisher);
-    if (has_other_broker) broker_change(&publisher->broker, publisher->status->topic);
-    return true;
+    set_sensors(publisher, site);
+    make_room(publisher, 0, 0);
+    if (has_other_broker) broker_change(&publisher->broker);
 }
 
 uint32_t publisher_tick(publisher_t *publisher)
 {
     const uint32_t broker_us = broker_tick(&publisher->broker);
-    if (now_us(publisher) - publisher->counted_us >= COUNTERS_US) {
-        publisher->counted_us = now_us(publisher);
-        streams_make_due(&publisher->streams, STREAM_COUNTERS);
-        publisher->has_facts = true;
+    const uint64_t now = now_us(publisher);
+    if (publisher->greetings != publisher->broker.greetings) make_due(publisher, TOPICS, NULL);
+    publisher->greetings = publisher->broker.greetings;
+    if (publisher->queue.dropped != publisher->sent_dropped && now - publisher->sent_us >= NEWS_US)
+        make_due(publisher, TOPIC_PUBLISHER, NULL);
+    if (now - publisher->counted_us >= COUNTERS_US) {
+        publisher->counted_us = now;
+        make_due(publisher, TOPIC_COUNTERS, NULL);
     }
     send_next(publisher);
     return broker_us < NEWS_US ? broker_us : NEWS_US;
@@ -354,43 +355,39 @@ uint32_t publisher_tick(publisher_t *publisher)
 
 void publisher_status(const publisher_t *publisher, char *text, size_t capacity)
 {
+    const broker_t *const broker = &publisher->broker;
     size_t away = 0;
     for (size_t i = 0; i != publisher->sensor_count; i++)
-        if (publisher->sensors[i].is_away) away++;
+        if (publisher->sensors[i].presence == SENSOR_AWAY) away++;
     (void)snprintf(text, capacity, "%zu sensors, %zu away; broker %s %s; dropped %" PRIu64,
                    publisher->sensor_count, away, publisher->settings->broker.host,
-                   broker_is_connected(&publisher->broker) ? "connected" : "away", publisher->queue.dropped);
+                   broker->phase == BROKER_READY ? "connected" : "away", publisher->queue.dropped);
 }
 
-static bool wait_until_sent(publisher_t *publisher, uint64_t until_us)
+void publisher_end(publisher_t *publisher)
 {
-    enum { TURN_US = 100000 };
-    broker_t *const broker = &publisher->broker;
-    while (now_us(publisher) < until_us && !broker_is_idle(broker))
-        if (!broker_wait(broker, TURN_US)) return false;
-    return broker_is_connected(broker);
-}
-
-/* Sends what still waits, within END_US, and at last that the publisher is offline. */
-static void send_last(publisher_t *publisher)
-{
-    enum { END_US = 2000000 };
+    enum { END_US = 2000000, TURN_US = 100000 };
     const uint64_t until_us = now_us(publisher) + END_US;
-    send_next(publisher);
-    if (!wait_until_sent(publisher, until_us)) return;
-    if (!broker_send(&publisher->broker, publisher->status->topic, "offline", true)) return;
-    /* Nothing more is sent when that is acknowledged. */
-    publisher->has_facts = false;
-    publisher->sent_us = now_us(publisher);
-    (void)wait_until_sent(publisher, until_us);
+    broker_t *const broker = &publisher->broker;
+    do send_next(publisher);
+    while (!broker_is_idle(broker) && now_us(publisher) < until_us && broker_wait(broker, TURN_US));
+    publisher->is_ending = true;
+    make_due(publisher, TOPIC_STATUS, NULL);
+    if (broker->phase == BROKER_READY) (void)send_retained(publisher);
+    while (!broker_is_idle(broker) && now_us(publisher) < until_us && broker_wait(broker, TURN_US)) {
+    }
+    broker_end(broker);
 }
 
 void publisher_deinit(publisher_t *publisher)
 {
-    send_last(publisher);
-    broker_end(&publisher->broker);
-    queue_free(&publisher->queue);
-    streams_free(&publisher->streams);
+    while (publisher->queue.first != NULL) free(take_message(&publisher->queue));
+    while (publisher->topics != NULL) {
+        topic_t *const topic = publisher->topics;
+        publisher->topics = topic->next;
+        free(topic);
+    }
     free(publisher->sensors);
-    publisher->sensors = NULL;
+    if (publisher->to != NULL) (void)fclose(publisher->to);
+    free(publisher->payload);
 }

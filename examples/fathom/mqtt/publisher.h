@@ -3,24 +3,61 @@
 #define PUBLISHER_H
 
 #include "mqtt/broker.h"
-#include "mqtt/state.h"
+#include "mqtt/topics.h"
+#include "reading/reading.h"
 
 /*
- * What is sent to the broker, and in which order. First the retained messages, of which only the last one counts: that the
- * publisher is online, how Home Assistant finds the sensors, which of them are available, what they have counted, and how the publisher is.
- * Then the messages of the queue, one after another.
+ * What is sent to the broker, and in which order. First what is retained and due, of which only the last message counts:
+ * topic_kind_t has the order. Then the readings, which wait in a queue while the broker is away.
  */
+
+/* Everything that is published under one topic since the start of the program. A topic stays until the end, also while no
+ * sensor has it: a sensor that is named again goes on with its numbers. */
+typedef struct topic topic_t;
+struct topic {
+    topic_t *next;
+    topic_kind_t kind;
+    const sensor_t *sensor; /* while is_wanted; NULL: of the publisher */
+    uint8_t probe;          /* 0: of the sensor */
+    uint64_t seq;           /* of the last reading; 0: none yet */
+    uint64_t dropped;       /* messages */
+    bool is_wanted;         /* a sensor has the topic, or the publisher */
+    bool is_due;            /* the broker does not know the present state */
+    bool is_known;          /* the broker may have a retained message */
+    char name[];
+};
+
+/* A reading that waits: the beginning of a JSON object. The age of the reading, and the number of messages of its topic that
+ * were dropped before it, are added when it is sent. */
+typedef struct message message_t;
+struct message {
+    message_t *next;
+    topic_t *topic;
+    uint64_t time_us; /* of the reading, by the host's clock */
+    size_t size;      /* of the message with its text */
+    char text[];
+};
+
+/* The oldest message first. If one more exceeds the bounds of the settings, the oldest ones are dropped. */
+typedef struct {
+    message_t *first;
+    message_t *last;
+    size_t bytes;
+    uint32_t count;
+    uint64_t dropped; /* since the start */
+} queue_t;
+
+typedef enum { SENSOR_NEW, SENSOR_AVAILABLE, SENSOR_AWAY } presence_t;
 
 /* What the publisher knows of a sensor. */
 typedef struct {
     sensor_t *sensor;
-    stream_t *streams[FATHOM_DYP_PROBES][TOPICS];
-    stream_t *availability;
-    uint8_t failures; /* in a row */
-    bool is_available;
-    bool is_away; /* because of a failure; before the first reading a sensor is neither away nor available */
-    char name[FULL_NAME_SIZE];
+    topic_t *topics[FATHOM_DYP_PROBES][TOPICS - TOPIC_STATE]; /* of its readings; NULL: not published */
+    uint8_t failures;                                         /* in a row */
+    presence_t presence;
 } publisher_sensor_t;
+
+enum { BOOT = 17 };
 
 typedef struct {
     const publish_settings_t *settings;
@@ -28,28 +65,31 @@ typedef struct {
     uint64_t start_us;
     broker_t broker;
     queue_t queue;
-    streams_t streams;
-    stream_t *status;
-    stream_t *news; /* how the publisher is */
-    char boot[BOOT];
+    topic_t *topics;             /* in the order in which they were named */
+    char boot[BOOT];             /* a random number for each start of the program, in hexadecimal digits */
     publisher_sensor_t *sensors; /* by sensor_t.number */
     size_t sensor_count;
-    uint64_t sent_dropped;    /* in the last message about the publisher, ... */
-    uint64_t sent_us;         /* ... and when it was sent */
-    uint64_t printed_dropped; /* on the standard error */
-    uint64_t counted_us;      /* when the counters of the sensors became due */
-    bool has_facts;           /* a retained message may be due */
+    /* A stream in memory for payloads. It is kept, since to open one takes longer than to write a payload. */
+    FILE *to;
+    char *payload;
+    size_t payload_size;
+    uint32_t greetings;    /* of the broker, as far as the publisher repeated all that is retained */
+    uint64_t sent_dropped; /* in the last message about the publisher, ... */
+    uint64_t sent_us;      /* ... and when it was sent */
+    uint64_t counted_us;   /* when the counters of the sensors became due */
+    bool has_due;          /* a retained message may be due */
+    bool is_ending;
 } publisher_t;
 
 /* *settings must stay valid. What is measured waits in the queue until publisher_connect() was called. start_us: of the
- * loop. False: the user knows why. */
-bool publisher_init(publisher_t *publisher, const host_t *host, const publish_settings_t *settings,
+ * loop. */
+void publisher_init(publisher_t *publisher, const host_t *host, const publish_settings_t *settings,
                     const site_t *site, uint64_t start_us);
-bool publisher_connect(publisher_t *publisher, fathom_loop_t *loop);
+void publisher_connect(publisher_t *publisher, fathom_loop_t *loop);
 
 /* The sensors are those of this site from now on, and *settings changed. Retained topics that are not used any more are
- * deleted. False: no memory left. */
-bool publisher_change(publisher_t *publisher, const site_t *site, bool has_other_broker);
+ * deleted. */
+void publisher_change(publisher_t *publisher, const site_t *site, bool has_other_broker);
 
 /* Publishes what the loop reports. Returns true if the sensor was not away before this failure. */
 bool publisher_reading(publisher_t *publisher, const reading_t *reading);
@@ -60,7 +100,8 @@ uint32_t publisher_tick(publisher_t *publisher);
 /* The state of the publisher in a line. */
 void publisher_status(const publisher_t *publisher, char *text, size_t capacity);
 
-/* Publishes that the publisher is offline, if it can, and waits a little for that. */
+/* Publishes what still waits and that the publisher is offline, if it can, and ends the connection. */
+void publisher_end(publisher_t *publisher);
 void publisher_deinit(publisher_t *publisher);
 
 #endif

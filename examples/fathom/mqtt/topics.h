@@ -3,31 +3,53 @@
 #define TOPICS_H
 
 #include "mqtt/settings.h"
+#include "output/record.h"
 #include "reading/site.h"
 
-/* The topics: PREFIX/SITE/status and publisher, and PREFIX/SITE/NAME/state or, of a sensor with several probes,
- * PREFIX/SITE/NAME/PROBE/state. */
+/*
+ * What `fathom publish` publishes, as one table: topics, and the discovery messages by which Home Assistant finds
+ * entities (https://www.home-assistant.io/integrations/mqtt/#mqtt-discovery). A topic is PREFIX/SITE/WORD,
+ * PREFIX/SITE/SENSOR/WORD or, of a sensor with several probes, PREFIX/SITE/SENSOR/PROBE/WORD.
+ */
 
-enum { TOPIC = 256 };
+/* In the order in which the messages are sent. */
+typedef enum {
+    TOPIC_STATUS,    /* of the publisher: online or offline */
+    TOPIC_PUBLISHER, /* how the publisher is */
+    ENTITY_DISTANCE,
+    ENTITY_TEMPERATURE,
+    ENTITY_LEVEL,
+    ENTITY_FILLED,
+    ENTITY_ALARM,
+    TOPIC_AVAILABILITY, /* of a sensor */
+    TOPIC_COUNTERS,     /* of a sensor */
+    TOPIC_STATE,        /* the readings of a probe, each of which is sent: */
+    TOPIC_LEVEL,
+    TOPIC_ALARM,
+    TOPICS
+} topic_kind_t;
 
-/* What a topic has of a probe. */
-typedef enum { TOPIC_STATE, TOPIC_LEVEL, TOPIC_ALARM, TOPICS } topic_t;
+enum { TOPIC_NAME = 512 };
 
-/* PREFIX/SITE/word */
-void topic_of_site(const publish_settings_t *settings, const char *word, char text[TOPIC]);
-
-/* Of a sensor as a whole: its availability. */
-void topic_of_sensor(const publish_settings_t *settings, const sensor_t *sensor, const char *word,
-                     char text[TOPIC]);
-
-/* Of one of its probes, from 1. */
-void topic_of_probe(const publish_settings_t *settings, const sensor_t *sensor, uint8_t probe, topic_t topic,
-                    char text[TOPIC]);
+bool topic_is_entity(topic_kind_t kind);
+bool topic_is_retained(topic_kind_t kind);
 
 /* Returns true if each probe has its own topics. A single probe, and a relay of all probes, has one set. */
 bool topic_has_probes(const sensor_t *sensor);
 
-/* Returns true if the sensor has this topic. */
-bool topic_is_there(const sensor_t *sensor, topic_t topic);
+/* Returns true if this is published. sensor: NULL for the publisher; probe: from 1, or 0 for all of the sensor. */
+bool topic_is_there(const publish_settings_t *settings, topic_kind_t kind, const sensor_t *sensor,
+                    uint8_t probe);
+
+/* Writes the topic of what is there. */
+void topic_name(const publish_settings_t *settings, topic_kind_t kind, const sensor_t *sensor, uint8_t probe,
+                char name[TOPIC_NAME]);
+
+/* Returns the columns of a reading under TOPIC_STATE, TOPIC_LEVEL or TOPIC_ALARM. */
+unsigned topic_columns(topic_kind_t kind, const sensor_t *sensor);
+
+/* Writes a discovery message as members of the open object. */
+void topic_json_entity(json_t *json, const publish_settings_t *settings, topic_kind_t kind,
+                       const sensor_t *sensor, uint8_t probe);
 
 #endif

@@ -10,12 +10,17 @@
 
 #include "fathom/hal.h"
 
+void end_without_memory(void)
+{
+    (void)fputs("fathom: no memory left\n", stderr);
+    _Exit(STATUS_FAILED);
+}
+
 void *allocate(size_t size)
 {
     void *const memory = calloc(1, size);
-    if (memory != NULL) return memory;
-    (void)fputs("fathom: no memory left\n", stderr);
-    _Exit(STATUS_FAILED);
+    if (memory == NULL) end_without_memory();
+    return memory;
 }
 
 /* ---- numbers and lists ---- */

@@ -16,6 +16,7 @@ enum {
 
 /* Returns `size` bytes of zeros, for free(). If no memory is left, prints that and ends the tool. */
 void *allocate(size_t size);
+void end_without_memory(void) __attribute__((noreturn));
 
 /* ---- numbers and lists ---- */
 

@@ -1,17 +1,25 @@
 /* SPDX-License-Identifier: MIT */
+#define _GNU_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): SOCK_CLOEXEC */
+#include <inttypes.h>
 #include <signal.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
 
 #include "cli/command.h"
 #include "cli/config.h"
 #include "commands/commands.h"
-#include "commands/publish/explain.h"
-#include "mqtt/notify.h"
 #include "mqtt/publisher.h"
-#include "ports/host.h"
 #include "reading/loop.h"
 
 static const char command[] = "publish";
+
+enum { STATUS_TEXT = 256 };
 
 typedef struct {
     bool check;
@@ -30,14 +38,72 @@ static struct {
     publish_settings_t settings;
     loop_t loop;
     publisher_t publisher;
-    notify_t notify;
-    uint64_t status_us; /* when the state was reported last */
+    char status[STATUS_TEXT]; /* that the service manager has, */
+    uint64_t reported_us;     /* since when */
+    uint32_t watchdog_us;     /* from one message to its watchdog to the next; 0: it has none */
     /* A file that was read again, while requests on the lines that change are pending. */
     publish_settings_t next_settings;
     site_t next;
     bool is_changing;
     uint64_t since_us;
 } publish;
+
+/* ---- the service manager ---- */
+
+static const char *variable(const char *name)
+{
+    const char *const value = getenv(name); /* NOLINT(concurrency-mt-unsafe): no thread writes it */
+    return value != NULL ? value : "";
+}
+
+/* Sends a datagram of sd_notify(3). Without a service manager nothing is sent. */
+__attribute__((format(printf, 1, 2))) static void notify(const char *format, ...)
+{
+    struct sockaddr_un address = {.sun_family = AF_UNIX};
+    const char *const path = variable("NOTIFY_SOCKET");
+    const size_t length = strlen(path);
+    char text[STATUS_TEXT + 32];
+    va_list arguments;
+    if ((path[0] != '/' && path[0] != '@') || length >= sizeof address.sun_path) return;
+    memcpy(address.sun_path, path, length);
+    if (path[0] == '@') address.sun_path[0] = '\0'; /* an abstract name */
+    va_start(arguments, format);
+    (void)vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    const int fd = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+    if (fd < 0) return;
+    const socklen_t size = (socklen_t)(offsetof(struct sockaddr_un, sun_path) + length);
+    /* A manager that does not listen now misses it. */
+    (void)!sendto(fd, text, strlen(text), MSG_NOSIGNAL, (const struct sockaddr *)&address, size);
+    (void)close(fd);
+}
+
+/* Half of the time that the watchdog waits for, as sd_watchdog_enabled(3) advises. */
+static uint32_t watchdog_us(void)
+{
+    const char *const pid = variable("WATCHDOG_PID");
+    const unsigned long long us = strtoull(variable("WATCHDOG_USEC"), NULL, 10) / 2;
+    const bool is_ours = pid[0] == '\0' || strtol(pid, NULL, 10) == (long)getpid();
+    return is_ours && us < FATHOM_NO_DEADLINE ? (uint32_t)us : 0;
+}
+
+/* Sends the state if it has changed, and to a watchdog in any case. Returns the time until the next call in us. */
+static uint32_t report_status(uint64_t now_us)
+{
+    enum { STATUS_US = 1000000 };
+    const bool is_watched = publish.watchdog_us != 0;
+    const uint32_t period_us =
+        is_watched && publish.watchdog_us < STATUS_US ? publish.watchdog_us : STATUS_US;
+    char status[STATUS_TEXT];
+    if (publish.reported_us == 0 || now_us - publish.reported_us >= period_us) {
+        publish.reported_us = now_us;
+        publisher_status(&publish.publisher, status, sizeof status);
+        if (is_watched || strcmp(status, publish.status) != 0)
+            notify("STATUS=%s%s", status, is_watched ? "\nWATCHDOG=1" : "");
+        (void)strcpy(publish.status, status);
+    }
+    return (uint32_t)(publish.reported_us + period_us - now_us);
+}
 
 /* ---- the sink ---- */
 
@@ -62,16 +128,6 @@ static void on_notice(void *ctx, const notice_t *notice)
     notice_print(notice);
 }
 
-static void report_status(uint64_t now_us)
-{
-    enum { STATUS_US = 1000000 };
-    char text[NOTIFY_TEXT];
-    if (publish.notify.fd < 0 || (publish.status_us != 0 && now_us - publish.status_us < STATUS_US)) return;
-    publish.status_us = now_us;
-    publisher_status(&publish.publisher, text, sizeof text);
-    notify_status(&publish.notify, text);
-}
-
 /* ---- reading the file again ---- */
 
 /* With TLS the client is always another one, since the files may have changed. */
@@ -89,14 +145,14 @@ static bool has_other_broker(const publish_settings_t *one, const publish_settin
 static void load_again(uint64_t now_us)
 {
     char path[SETTINGS_PATH];
-    (void)snprintf(path, sizeof path, "%s", publish.settings.path);
-    notify_reloading(&publish.notify, now_us);
+    (void)strcpy(path, publish.settings.path);
+    notify("RELOADING=1\nMONOTONIC_USEC=%" PRIu64, now_us);
     site_free(&publish.next); /* of an earlier file that is out of date */
     publish.is_changing = config_load(&publish.next_settings, &publish.next, command, path);
     publish.since_us = now_us;
     if (publish.is_changing) return;
     (void)fprintf(stderr, "fathom: nothing has changed.\n");
-    notify_ready(&publish.notify);
+    notify("READY=1");
 }
 
 /* Waits for pending requests, but not for longer than PATIENCE_US. */
@@ -110,47 +166,83 @@ static void change(uint64_t now_us)
     publish.is_changing = false;
     const bool is_other = has_other_broker(&publish.settings, &publish.next_settings);
     publish.settings = publish.next_settings;
-    if (!publisher_change(&publish.publisher, &publish.loop.site, is_other)) loop_stop(&publish.loop);
+    publisher_change(&publish.publisher, &publish.loop.site, is_other);
     site_free(&old);
     (void)fprintf(stderr, "fathom: %s was read again.\n", publish.settings.path);
-    notify_ready(&publish.notify);
+    notify("READY=1");
 }
 
 static uint32_t tick(void *ctx)
 {
     enum { AGAIN_US = 5000 };
     const uint64_t now_us = loop_now_us(&publish.loop);
-    uint32_t sleep_us = notify_tick(&publish.notify, now_us);
     (void)ctx;
     if (host_had_signal()) load_again(now_us);
     change(now_us);
     const uint32_t publisher_us = publisher_tick(&publish.publisher);
-    report_status(now_us);
-    if (publish.is_changing && sleep_us > AGAIN_US) sleep_us = AGAIN_US;
-    return publisher_us < sleep_us ? publisher_us : sleep_us;
+    const uint32_t report_us = report_status(now_us);
+    const uint32_t sleep_us = publisher_us < report_us ? publisher_us : report_us;
+    return publish.is_changing && sleep_us > AGAIN_US ? AGAIN_US : sleep_us;
 }
 
 /* ---- start and end ---- */
 
+/* "tank       a16:1:modbus@/dev/ttyUSB0, 500 ms, median 5, level" */
+static void explain_sensor(const sensor_t *sensor)
+{
+    const results_config_t *const processing = &sensor->processing;
+    (void)printf("%-10s %s", sensor->name, sensor->model->name);
+    if (sensor->mode->has_address) (void)printf(":%u", sensor->address);
+    (void)printf(":%s@%s, %" PRIu32 " ms", sensor->mode->name, sensor->port->path,
+                 sensor->settings.period_us / 1000);
+    if (processing->median != 0) (void)printf(", median %u", processing->median);
+    if (processing->has_level) (void)printf(", level");
+    if (processing->has_alarm)
+        (void)printf(", alarm %s%u/%u", processing->alarm.when == FATHOM_NEAR ? "near<" : "far>",
+                     processing->alarm.on_mm, processing->alarm.off_mm);
+    (void)printf("\n");
+}
+
+/* Prints a table of the sensors, and the topics under which they are published. */
+static int explain(void)
+{
+    const publish_settings_t *const settings = &publish.settings;
+    const broker_settings_t *const broker = &settings->broker;
+    const sensor_t *sensor = NULL;
+    (void)printf("broker     %s port %u%s\n", broker->host, broker->port, broker->has_tls ? ", TLS" : "");
+    (void)printf("client     %s%s%s\n", broker->client_id, broker->user[0] != '\0' ? ", user " : "",
+                 broker->user);
+    (void)printf("queue      %" PRIu32 " messages, %" PRIu32 " bytes\n", settings->queue_messages,
+                 settings->queue_bytes);
+    (void)printf("discovery  %s\n", settings->discovery[0] != '\0' ? settings->discovery : "off");
+    for (const topic_t *topic = publish.publisher.topics; topic != NULL; topic = topic->next) {
+        if (topic->sensor != sensor) explain_sensor(topic->sensor);
+        sensor = topic->sensor;
+        if (!topic_is_entity(topic->kind)) (void)printf("           %s\n", topic->name);
+    }
+    return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
+}
+
 static int publish_site(const host_t *host)
 {
     loop_t *const loop = &publish.loop;
-    publisher_t *const publisher = &publish.publisher;
     int status = STATUS_FAILED;
-    notify_init(&publish.notify);
-    if (!host->begin(host->ctx) ||
-        !publisher_init(publisher, host, &publish.settings, &loop->site, loop->start_us))
-        return STATUS_FAILED;
+    if (!host->begin(host->ctx)) return status;
     host_watch_signal(SIGHUP);
-    if (loop_open(loop) && publisher_connect(publisher, &loop->sources)) {
-        notify_ready(&publish.notify);
+    publish.watchdog_us = watchdog_us();
+    publish.reported_us = 0;
+    publish.status[0] = '\0';
+    publish.is_changing = false;
+    if (loop_open(loop)) {
+        publisher_connect(&publish.publisher, &loop->sources);
+        notify("READY=1");
         loop_run(loop);
-        notify_stopping(&publish.notify);
+        notify("STOPPING=1");
         if (host->has_ended(host->ctx)) status = STATUS_OK;
     }
-    publisher_deinit(publisher);
+    publisher_end(&publish.publisher);
     loop_close(loop);
-    notify_deinit(&publish.notify);
+    site_free(&publish.next);
     return status;
 }
 
@@ -160,26 +252,21 @@ static int start(const host_t *host, const arguments_t *arguments)
     const publish_options_t *const options = arguments->settings;
     const origin_t origin = {.command = command};
     loop_t *const loop = &publish.loop;
-    int status = STATUS_OK;
+    int status = STATUS_USAGE;
     if (arguments->count == 0) {
         (void)reject(&origin, "FILE is missing, such as /etc/fathom/site.yaml.");
-        return STATUS_USAGE;
+        return status;
     }
     if (arguments->count != 1) {
         (void)reject(&origin, "%d files are named. Name one.", arguments->count);
-        return STATUS_USAGE;
+        return status;
     }
     loop_init(loop, host, &sink, NULL);
-    if (!config_load(&publish.settings, &loop->site, command, arguments->words[0])) return STATUS_USAGE;
-    if (options->check) {
-        explain(&publish.settings, &loop->site, stdout);
-        if (fflush(stdout) != 0) status = STATUS_FAILED;
-    } else {
-        status = publish_site(host);
-    }
+    if (!config_load(&publish.settings, &loop->site, command, arguments->words[0])) return status;
+    publisher_init(&publish.publisher, host, &publish.settings, &loop->site, loop->start_us);
+    status = options->check ? explain() : publish_site(host);
+    publisher_deinit(&publish.publisher);
     loop_deinit(loop);
-    site_free(&publish.next);
-    publish.is_changing = false;
     return status;
 }
 
