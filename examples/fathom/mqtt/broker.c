@@ -221,7 +221,7 @@ static void start_sending(broker_t *broker)
 {
     const broker_settings_t *const settings = &broker->settings.broker;
     if (broker->reported[0] != '\0')
-        (void)fprintf(stderr, "fathom: broker %s port %u: connected\n", settings->host, settings->port);
+        (void)fprintf(stderr, "fathom: broker %s port %u: connected.\n", settings->host, settings->port);
     broker->reported[0] = '\0';
     for (broker_sent_t *sent = broker->sent; sent != NULL; sent = sent->next)
         if (sent->number == 0) (void)submit(broker, sent);
@@ -352,7 +352,7 @@ static void pause_connecting(broker_t *broker)
     broker->phase = BROKER_PAUSE;
     if (strcmp(broker->reported, broker->reason) == 0) return;
     (void)strcpy(broker->reported, broker->reason);
-    (void)fprintf(stderr, "fathom: broker %s port %u: %s; it is tried again and again\n", settings->host,
+    (void)fprintf(stderr, "fathom: broker %s port %u: %s; it is tried again and again.\n", settings->host,
                   settings->port, broker->reason);
 }
 

@@ -11,7 +11,6 @@
 #include "fathom/version.h"
 #include "output/words.h"
 #include "reading/fields.h"
-#include "reading/stats.h"
 
 /* Failures in a row after which a sensor is away; the least time between two messages about dropped messages; the time from
  * one message with the counters of the sensors to the next. */

@@ -4,7 +4,7 @@
 
 #include "mqtt/broker.h"
 #include "mqtt/topics.h"
-#include "reading/reading.h"
+#include "reading/loop.h"
 
 /*
  * What is sent to the broker, and in which order. First what is retained and due, of which only the last message counts:

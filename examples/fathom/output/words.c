@@ -12,7 +12,7 @@
 
 void end_without_memory(void)
 {
-    (void)fputs("fathom: no memory left\n", stderr);
+    (void)fputs("fathom: no memory is left.\n", stderr);
     _Exit(STATUS_FAILED);
 }
 

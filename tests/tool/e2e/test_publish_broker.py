@@ -103,7 +103,7 @@ class Login(Case):
         path = self.secret('wrong')
         publisher = self.begin(broker=f'user: reader\npassword-file: {path}')
         publisher.expect(rf'broker .*: {self.path("site.yaml")}:6: it refuses the user reader with the password of {path}; '
-                         r'mend that, .*; it is tried again and again$', 'err')
+                         r'mend that, .*; it is tried again and again\.$', 'err')
         self.secret('right')
         subscriber = self.subscribe(options=['-u', 'reader', '-P', 'right'])
         self.wait_for(subscriber, '/gate/state', count=2)
@@ -145,7 +145,7 @@ class Secure(Case):
 
     def refused(self, ca, words):
         publisher = self.begin_secure(ca)
-        publisher.expect(rf'broker .*: {self.path("site.yaml")}:\d+: {words}.*; it is tried again and again$', 'err')
+        publisher.expect(rf'broker .*: {self.path("site.yaml")}:\d+: {words}.*; it is tried again and again\.$', 'err')
         publisher.has_ended(2)
         self.assertIsNone(publisher.done)
         self.assertEqual(publisher.said['err'].count(b'tried again'), 1, publisher.said['err'].decode())

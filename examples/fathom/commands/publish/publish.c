@@ -15,7 +15,6 @@
 #include "cli/config.h"
 #include "commands/commands.h"
 #include "mqtt/publisher.h"
-#include "reading/loop.h"
 
 static const char command[] = "publish";
 
@@ -144,11 +143,9 @@ static bool has_other_broker(const publish_settings_t *one, const publish_settin
 
 static void load_again(uint64_t now_us)
 {
-    char path[SETTINGS_PATH];
-    (void)strcpy(path, publish.settings.path);
     notify("RELOADING=1\nMONOTONIC_USEC=%" PRIu64, now_us);
     site_free(&publish.next); /* of an earlier file that is out of date */
-    publish.is_changing = config_load(&publish.next_settings, &publish.next, command, path);
+    publish.is_changing = config_load(&publish.next_settings, &publish.next, command, publish.settings.path);
     publish.since_us = now_us;
     if (publish.is_changing) return;
     (void)fprintf(stderr, "fathom: nothing has changed.\n");
