@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): putc_unlocked */
 #include "output/record.h"
 
 #include <inttypes.h>
@@ -11,10 +12,10 @@
 
 static bool is_plain(unsigned char c) { return c >= 0x20 && c != '"' && c != '\\'; }
 
-/* Writes plain characters as a whole: a stream takes a lock in each call. */
+/* Writes plain characters as a whole, and single ones without taking the lock of the stream: no other thread writes. */
 static void put_string(FILE *to, const char *text)
 {
-    (void)fputc('"', to);
+    (void)putc_unlocked('"', to);
     while (*text != '\0') {
         size_t length = 0;
         while (is_plain((unsigned char)text[length])) length++;
@@ -24,28 +25,28 @@ static void put_string(FILE *to, const char *text)
         (void)fprintf(to, (unsigned char)*text < 0x20 ? "\\u%04x" : "\\%c", *text);
         text++;
     }
-    (void)fputc('"', to);
+    (void)putc_unlocked('"', to);
 }
 
 static void put_key(json_t *json, const char *key)
 {
-    if (json->has_member) (void)fputc(',', json->to);
+    if (json->has_member) (void)putc_unlocked(',', json->to);
     json->has_member = true;
     if (key == NULL) return;
     put_string(json->to, key);
-    (void)fputc(':', json->to);
+    (void)putc_unlocked(':', json->to);
 }
 
 void json_begin(json_t *json, const char *key, char bracket)
 {
     put_key(json, key);
-    (void)fputc(bracket, json->to);
+    (void)putc_unlocked(bracket, json->to);
     json->has_member = false;
 }
 
 void json_end(json_t *json, char bracket)
 {
-    (void)fputc(bracket, json->to);
+    (void)putc_unlocked(bracket, json->to);
     json->has_member = true;
 }
 
@@ -72,14 +73,12 @@ void json_string(json_t *json, const char *key, const char *text)
 void json_bytes(json_t *json, const char *key, const uint8_t *bytes, size_t count)
 {
     put_key(json, key);
-    (void)fputc('"', json->to);
+    (void)putc_unlocked('"', json->to);
     for (size_t i = 0; i != count; i++) (void)fprintf(json->to, "%s%02X", i != 0 ? " " : "", bytes[i]);
-    (void)fputc('"', json->to);
+    (void)putc_unlocked('"', json->to);
 }
 
 /* ---- records ---- */
-
-enum { VALUE = 32 };
 
 static bool is_there(const field_t *field, unsigned columns)
 {
@@ -92,7 +91,7 @@ static const void *member_of(const field_t *field, const void *record)
 }
 
 /* Returns the value as text, in `text` unless it is a word. Returns NULL for null. */
-static const char *value_of(const field_t *field, const void *record, char text[VALUE])
+static const char *value_of(const field_t *field, const void *record, char text[DECIMAL_TEXT])
 {
     const void *const member = member_of(field, record);
     if (field->type == FIELD_WORD) return *(const char *const *)member;
@@ -100,14 +99,14 @@ static const char *value_of(const field_t *field, const void *record, char text[
     if (number == NO_VALUE) return NULL;
     if (field->type == FIELD_FLAG) return number != 0 ? "true" : "false";
     const unsigned places = field->type == FIELD_TENTHS ? 1 : field->type == FIELD_TEN_THOUSANDTHS ? 4 : 0;
-    decimal_text(text, VALUE, number, places);
+    decimal_text(text, number, places);
     return text;
 }
 
 void record_json(json_t *json, const field_t *fields, const void *record, unsigned columns)
 {
     for (; fields->key != NULL; fields++) {
-        char text[VALUE];
+        char text[DECIMAL_TEXT];
         if (!is_there(fields, columns)) continue;
         const char *const value = value_of(fields, record, text);
         if (fields->type == FIELD_WORD) {
@@ -144,7 +143,7 @@ void record_csv(FILE *to, const field_t *fields, const void *record, unsigned co
 {
     const char *comma = "";
     for (; fields->key != NULL; fields++) {
-        char text[VALUE];
+        char text[DECIMAL_TEXT];
         const char *value = NULL;
         if (!is_there(fields, all)) continue;
         if (record == NULL)
@@ -163,7 +162,7 @@ bool record_print(FILE *to, const char *before, const field_t *fields, const voi
 {
     bool is_used = false;
     for (; fields->key != NULL; fields++) {
-        char text[VALUE];
+        char text[DECIMAL_TEXT];
         if (!is_there(fields, columns)) continue;
         const char *const value = value_of(fields, record, text);
         if (omits_zero && (value == NULL || strcmp(value, "0") == 0)) continue;

@@ -73,16 +73,20 @@ const char *next_word(const char *list, char separator, char *word, size_t capac
     return end != NULL ? end + 1 : NULL;
 }
 
-void decimal_text(char *text, size_t capacity, int64_t number, unsigned places)
+/* Without printf, since each reading has a dozen of them. */
+void decimal_text(char text[DECIMAL_TEXT], int64_t number, unsigned places)
 {
-    const uint64_t size = number < 0 ? 0 - (uint64_t)number : (uint64_t)number;
-    const char *const sign = number < 0 ? "-" : "";
-    uint64_t one = 1;
-    for (unsigned i = 0; i != places; i++) one *= 10;
-    if (places == 0)
-        (void)snprintf(text, capacity, "%" PRId64, number);
-    else
-        (void)snprintf(text, capacity, "%s%" PRIu64 ".%0*" PRIu64, sign, size / one, (int)places, size % one);
+    uint64_t left = number < 0 ? 0 - (uint64_t)number : (uint64_t)number;
+    char digits[DECIMAL_TEXT];
+    size_t at = sizeof digits - 1;
+    digits[at] = '\0';
+    for (unsigned place = 0; place <= places || left != 0; place++) {
+        if (place == places && places != 0) digits[--at] = '.';
+        digits[--at] = (char)('0' + left % 10);
+        left /= 10;
+    }
+    if (number < 0) digits[--at] = '-';
+    memcpy(text, digits + at, sizeof digits - at);
 }
 
 /* ---- times ---- */
@@ -94,12 +98,16 @@ uint64_t time_extend(uint64_t now_us, uint32_t then_us)
     return ago_us <= longest_us ? now_us - ago_us : now_us;
 }
 
+/* Most calls are within the second of the call before, whose text is kept. */
 const char *utc_text(uint64_t utc_us, char text[UTC_TEXT])
 {
+    static char whole[24];
+    static time_t whole_s = -1;
     const time_t seconds = (time_t)(utc_us / 1000000u);
     struct tm parts;
-    char whole[24] = "";
-    if (gmtime_r(&seconds, &parts) != NULL) (void)strftime(whole, sizeof whole, "%Y-%m-%dT%H:%M:%S", &parts);
+    if (seconds != whole_s && gmtime_r(&seconds, &parts) != NULL)
+        (void)strftime(whole, sizeof whole, "%Y-%m-%dT%H:%M:%S", &parts);
+    whole_s = seconds;
     (void)snprintf(text, UTC_TEXT, "%s.%06uZ", whole, (unsigned)(utc_us % 1000000u));
     return text;
 }

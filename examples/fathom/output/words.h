@@ -27,7 +27,8 @@ bool number_parse(const char *text, uint32_t min, uint32_t max, uint32_t *number
 bool range_parse(const char *text, uint32_t min, uint32_t max, uint32_t *first, uint32_t *last);
 
 /* A number with so many decimal places: -5 with one is -0.5. */
-void decimal_text(char *text, size_t capacity, int64_t number, unsigned places);
+enum { DECIMAL_TEXT = 32 };
+void decimal_text(char text[DECIMAL_TEXT], int64_t number, unsigned places);
 
 /* Adds a word to a list of `capacity` bytes, as in "a16, a05". A word that does not fit is left out in part. */
 void list_add(char *list, size_t capacity, const char *word);

@@ -256,7 +256,6 @@ static bool is_open(const line_t *line) { return line->state == LINE_READING || 
 static void set_state(line_t *line, line_state_t state)
 {
     if (line->state < LINE_ENDING && state >= LINE_ENDING) line->loop->lines_left--;
-    if (state == LINE_LEFT) line->loop->has_left = true;
     line->state = state;
 }
 
@@ -487,7 +486,7 @@ static bool poll_line(fathom_loop_source_t *source)
     if (line->state != LINE_ENDING || !end_sensors(line)) return true;
     take_counters(line);
     set_state(line, LINE_LEFT);
-    return true;
+    return false;
 }
 
 static uint32_t due_us(fathom_loop_source_t *source)
@@ -504,23 +503,7 @@ static uint32_t due_us(fathom_loop_source_t *source)
     return soonest_us;
 }
 
-/* Not within a step of the loop. */
-static void remove_line(line_t *line)
-{
-    if (line->source.loop != NULL) fathom_loop_remove(&line->source);
-    line->source.loop = NULL;
-}
-
 /* ---- all lines ---- */
-
-/* A source may not be removed while the sources are polled. */
-static void remove_left(loop_t *loop)
-{
-    if (!loop->has_left) return;
-    loop->has_left = false;
-    for (line_t *line = loop->site.lines; line != NULL; line = line->next)
-        if (line->state == LINE_LEFT) remove_line(line);
-}
 
 /* Adds a line to the loop's sources, and tries to open its port. */
 static void start_line(loop_t *loop, line_t *line)
@@ -549,7 +532,6 @@ static void start_lines(loop_t *loop)
         if (line->state < LINE_ENDING) loop->lines_left++;
     for (line_t *line = loop->site.lines; line != NULL && !host->has_ended(host->ctx); line = line->next)
         if (line->state == LINE_NEW) start_line(loop, line);
-    remove_left(loop);
 }
 
 /* Returns the time until it has to be called again. */
@@ -581,7 +563,6 @@ void loop_run(loop_t *loop)
     while (!is_over(loop)) {
         const uint32_t longest_us = sleep_us(loop);
         if (!loop->is_stopped) fathom_loop_step(&loop->sources, longest_us);
-        remove_left(loop);
     }
 }
 
@@ -641,7 +622,7 @@ bool loop_set_site(loop_t *loop, site_t *site, bool is_urgent, site_t *old)
         }
     for (line_t *line = loop->site.lines; line != NULL; line = line->next) {
         (void)end_sensors(line);
-        remove_line(line);
+        if (line->source.loop != NULL) fathom_loop_remove(&line->source);
     }
     *old = loop->site;
     loop->site = *site;

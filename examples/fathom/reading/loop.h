@@ -57,7 +57,6 @@ typedef struct loop {
     uint64_t start_us;     /* of the program */
     uint64_t reconnects;
     bool has_alarms;
-    bool has_left;   /* a line is LINE_LEFT */
     bool has_new;    /* lines are LINE_NEW */
     bool has_failed; /* a port could not be opened, or not be used as it should */
     bool is_stopped;

@@ -114,7 +114,7 @@ typedef enum {
     LINE_CONNECTING, /* the connection is not established yet */
     LINE_READING,
     LINE_ENDING, /* the sensors leave their devices as they were before */
-    LINE_LEFT    /* the loop removes the line from its sources */
+    LINE_LEFT    /* closed, and not opened again */
 } line_state_t;
 
 /* A port and the sensors on it. */

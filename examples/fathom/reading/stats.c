@@ -175,24 +175,13 @@ account_t account_of(sensor_t *const *sensors, size_t count)
     return account;
 }
 
-/* Counters with a name of their own. */
-enum { GROUPS = 4 };
-typedef struct {
-    const char *name;
-    const field_t *fields;
-    unsigned part;
-    bool is_there; /* these sensors, or this port, have such counters */
-} group_t;
-
-static void list_groups(const account_t *account, group_t groups[GROUPS])
-{
-    groups[0] = (group_t){"failures", failure_fields(), 0, true};
-    groups[1] = (group_t){"line", fields, LINE, true};
-    groups[2] = (group_t){"stream", fields, STREAM, account->has_stream};
-    groups[3] = (group_t){"port", fields, PORT, account->has_port};
-}
-
 /* ---- text: counters that are 0 are left out ---- */
+
+static void print_line(FILE *to, const char *before, const field_t *rows, const void *record, unsigned part,
+                       bool omits_zero)
+{
+    if (record_print(to, before, rows, record, part, omits_zero)) (void)fputs("\n", to);
+}
 
 static void print_sensor(FILE *to, const sensor_t *sensor, const account_t *account)
 {
@@ -202,18 +191,16 @@ static void print_sensor(FILE *to, const sensor_t *sensor, const account_t *acco
 
 void stats_print_short(const account_t *account, FILE *to)
 {
-    const char *before = "fathom: line: ";
-    (void)record_print(to, "fathom: ", fields, account, ATTEMPTS, false);
-    (void)fputs("\n", to);
+    print_line(to, "fathom: ", fields, account, ATTEMPTS, false);
     for (size_t i = 0; i != account->sensor_count && account->sensor_count > 1; i++) {
         const account_t one = account_of(&account->sensors[i], 1);
         print_sensor(to, account->sensors[i], &one);
         if (one.timeouts_in_row != 0) (void)record_print(to, ", ", fields, &one, REQUESTS, false);
         (void)fputs("\n", to);
     }
-    if (record_print(to, before, fields, account, STREAM, true)) before = ", ";
-    if (record_print(to, before, fields, account, LINE, true)) before = ", ";
-    if (before[0] == ',') (void)fputs("\n", to);
+    const bool has_stream = record_print(to, "fathom: line: ", fields, account, STREAM, true);
+    if (record_print(to, has_stream ? ", " : "fathom: line: ", fields, account, LINE, true) || has_stream)
+        (void)fputs("\n", to);
 }
 
 static void print_dropped(FILE *to, const sensor_t *sensor)
@@ -228,22 +215,16 @@ static void print_dropped(FILE *to, const sensor_t *sensor)
 
 void stats_print(const account_t *account, FILE *to)
 {
-    group_t groups[GROUPS];
-    list_groups(account, groups);
-    (void)record_print(to, "fathom: ", fields, account, ATTEMPTS, false);
-    (void)fputs("\n", to);
-    if (record_print(to, "fathom: ", fields, account, TOTALS | MEDIAN, true)) (void)fputs("\n", to);
-    for (size_t i = 0; i != GROUPS; i++) {
-        char before[32];
-        (void)snprintf(before, sizeof before, "fathom: %s: ", groups[i].name);
-        if (groups[i].is_there && record_print(to, before, groups[i].fields, account, groups[i].part, true))
-            (void)fputs("\n", to);
-    }
+    print_line(to, "fathom: ", fields, account, ATTEMPTS, false);
+    print_line(to, "fathom: ", fields, account, TOTALS | MEDIAN, true);
+    print_line(to, "fathom: failures: ", failure_fields(), account, 0, true);
+    print_line(to, "fathom: line: ", fields, account, LINE, true);
+    if (account->has_stream) print_line(to, "fathom: stream: ", fields, account, STREAM, true);
+    print_line(to, "fathom: port: ", fields, account, PORT, true);
     for (size_t i = 0; i != account->sensor_count; i++) {
-        const sensor_t *const sensor = account->sensors[i];
         const account_t one = account_of(&account->sensors[i], 1);
-        if (!mode_is_asked(sensor->mode)) continue;
-        print_sensor(to, sensor, &one);
+        if (!mode_is_asked(account->sensors[i]->mode)) continue;
+        print_sensor(to, account->sensors[i], &one);
         (void)record_print(to, ", ", fields, &one, REQUESTS | RESPONSE, true);
         (void)fputs("\n", to);
     }
@@ -252,8 +233,7 @@ void stats_print(const account_t *account, FILE *to)
         if (!account->sensors[i]->mode->has_pulses) continue;
         const pulses_t pulses = take_pulses(account->sensors[i]);
         (void)fprintf(to, "fathom: %s: ", account->sensors[i]->name);
-        (void)record_print(to, "pulses: ", pulse_fields, &pulses, 0, false);
-        (void)fputs("\n", to);
+        print_line(to, "pulses: ", pulse_fields, &pulses, 0, false);
     }
 }
 
@@ -266,16 +246,19 @@ static void put_object(json_t *json, const char *key, const field_t *rows, const
     json_end(json, '}');
 }
 
-/* puts_null: also a group that is not there. */
+/* Counters with a name of their own. puts_null: also those that these sensors, or this port, do not have. */
 static void put_groups(json_t *json, const account_t *account, bool puts_null)
 {
-    group_t groups[GROUPS];
-    list_groups(account, groups);
-    for (size_t i = 0; i != GROUPS; i++)
-        if (groups[i].is_there)
-            put_object(json, groups[i].name, groups[i].fields, account, groups[i].part);
-        else if (puts_null)
-            json_string(json, groups[i].name, NULL);
+    put_object(json, "failures", failure_fields(), account, 0);
+    put_object(json, "line", fields, account, LINE);
+    if (account->has_stream)
+        put_object(json, "stream", fields, account, STREAM);
+    else if (puts_null)
+        json_string(json, "stream", NULL);
+    if (account->has_port)
+        put_object(json, "port", fields, account, PORT);
+    else if (puts_null)
+        json_string(json, "port", NULL);
 }
 
 void stats_json_of_sensor(json_t *json, sensor_t *sensor)

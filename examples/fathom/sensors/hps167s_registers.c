@@ -47,7 +47,7 @@ static void print_uuid(char text[SETTING_TEXT], const uint16_t *registers)
 static void print_temperature(char text[SETTING_TEXT], const uint16_t *registers)
 {
     const int16_t fahrenheit = fathom_hps167s_to_signed(registers[0]);
-    decimal_text(text, SETTING_TEXT, fathom_hps167s_temperature_dc(fahrenheit, 1), 1);
+    decimal_text(text, fathom_hps167s_temperature_dc(fahrenheit, 1), 1);
 }
 
 static void print_baud(char text[SETTING_TEXT], const uint16_t *registers)
