@@ -141,27 +141,29 @@ TEST(a_negative_value_may_stand_between_options)
     }
 }
 
-/* At most 60 lines of 80 columns, on the standard output, with exit status 0. */
-TEST(each_help_fits_a_terminal)
+/* The first words of its lines are the commands, the topics, and others. */
+TEST(each_help_fits_80_columns_and_that_of_a_command_60_lines)
 {
-    static const char *const commands[] = {"scan",      "read",       "watch", "publish", "info",
-                                           "get",       "set",        "save",  "restore", "reset",
-                                           "calibrate", "commission", "sim",   "request", "decode"};
-    for (size_t i = 0; i != sizeof commands / sizeof commands[0]; i++) {
+    char overview[4096];
+    unsigned pages = 0;
+    (void)snprintf(overview, sizeof overview, "%s", tool_run(&bench.tool, "help")->out);
+    for (const char *line = overview; line != NULL; line = strchr(line + 1, '\n')) {
+        char name[16] = "";
+        if (sscanf(line, "\n  %15[a-z]", name) != 1) continue;
+        const tool_run_t *const run = tool_run(&bench.tool, "help %s", name);
+        const bool is_command = strncmp(run->out, "Usage: fathom ", 14) == 0;
         unsigned lines = 0;
-        char usage[40];
-        const tool_run_t *const run = tool_run(&bench.tool, "%s --help", commands[i]);
-        assert_int_equal(run->status, 0);
+        if (run->status == 2) continue;
+        pages++;
         assert_string_equal(run->err, "");
-        (void)snprintf(usage, sizeof usage, "Usage: fathom %s ", commands[i]);
-        assert_memory_equal(run->out, usage, strlen(usage));
         for (const char *at = run->out; *at != '\0'; lines++) {
             const size_t length = strcspn(at, "\n");
-            if (length > 80) fail_msg("%s: %.*s", commands[i], (int)length, at);
+            if (length > 80) fail_msg("%s: %.*s", name, (int)length, at);
             at += length + 1;
         }
-        if (lines > 60) fail_msg("%s: %u lines", commands[i], lines);
+        if (is_command && lines > 60) fail_msg("%s: %u lines", name, lines);
     }
+    assert_int_equal(pages, 15 + 22);
 }
 
 TEST(an_option_without_an_effect_is_a_notice)
