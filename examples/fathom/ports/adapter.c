@@ -3,7 +3,7 @@
 #include "ports/adapter.h"
 
 #include <ctype.h>
-#include <glob.h>
+#include <dirent.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -102,8 +102,7 @@ static usb_t *present; /* the adapters that are plugged in */
 static size_t present_count;
 static char **shared; /* identities that two adapters had at the same time */
 static size_t shared_count;
-static unsigned
-    unknown_ttys; /* ttys that have appeared, and about which nothing is known; one may be a twin */
+static unsigned unknown_ttys; /* that have appeared, and about which nothing is known; one may be a twin */
 
 static void *grown(void *array, size_t count, size_t size)
 {
@@ -136,18 +135,16 @@ static void add_present(const usb_t *usb)
 
 static void list_present(void)
 {
-    static const char links[] = "class/tty/*/device";
-    char pattern[PATH_MAX];
-    glob_t found;
+    char folder[PATH_MAX];
+    (void)snprintf(folder, sizeof folder, "%s/class/tty", adapter_sysfs);
+    DIR *const ttys = opendir(folder);
+    const struct dirent *entry = NULL;
     present_count = 0;
-    (void)snprintf(pattern, sizeof pattern, "%s/%s", adapter_sysfs, links);
-    if (glob(pattern, GLOB_NOSORT, NULL, &found) != 0) return;
-    for (size_t i = 0; i != found.gl_pathc; i++) {
+    while (ttys != NULL && (entry = readdir(ttys)) != NULL) { /* NOLINT(concurrency-mt-unsafe): one thread */
         usb_t usb;
-        *strrchr(found.gl_pathv[i], '/') = '\0';
-        if (read_usb(&usb, last_name(found.gl_pathv[i]))) add_present(&usb);
+        if (read_usb(&usb, entry->d_name)) add_present(&usb);
     }
-    globfree(&found);
+    if (ttys != NULL) (void)closedir(ttys);
 }
 
 int adapter_fd(void)
