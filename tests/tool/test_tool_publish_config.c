@@ -94,30 +94,26 @@ TEST(check_prints_a_table_of_sensors_and_topics)
     assert_string_equal(run->out, expected);
 }
 
-TEST(a_level_and_an_alarm_may_be_written_as_on_a_command_line)
+/* Line `number` instead of the right one, and what the table has then. */
+TEST(a_line_may_be_otherwise)
 {
-    assert_int_equal(check(15, "        level: mounting=2300,height=2000,capacity=5000")->status, 0);
-    const tool_run_t *const run = check(24, "        alarm: near<500/600,unknown=on,no-response=off");
-    assert_int_equal(run->status, 0);
-    assert_non_null(strstr(run->out, ", alarm near<500/600\n"));
-}
-
-TEST(discovery_may_be_off)
-{
-    assert_non_null(strstr(check(2, "discovery: off")->out, "discovery  off\n"));
-    assert_non_null(strstr(check(2, "discovery: ha/x")->out, "discovery  ha/x\n"));
-}
-
-TEST(without_an_interval_a_sensor_is_read_each_second)
-{
-    assert_non_null(strstr(check(2, "prefix: p")->out, "a16:1:modbus@/dev/ttyUSB0, 1000 ms"));
-}
-
-TEST(a_broker_with_tls_is_at_8883)
-{
-    const tool_run_t *const run = check(6, "  tls: {}");
-    assert_int_equal(run->status, 0);
-    assert_non_null(strstr(run->out, "broker     mill.lan port 8883, TLS\n"));
+    static const struct {
+        unsigned number;
+        const char *line;
+        const char *out;
+    } lines[] = {
+        {15, "        level: mounting=2300,height=2000,capacity=5000", ", median 5, level\n"},
+        {24, "        alarm: near<500/600,unknown=on,no-response=off", ", alarm near<500/600\n"},
+        {2, "discovery: off", "discovery  off\n"},
+        {2, "discovery: ha/x", "discovery  ha/x\n"},
+        {2, "prefix: p", "a16:1:modbus@/dev/ttyUSB0, 1000 ms"}, /* without an interval */
+        {6, "  tls: {}", "broker     mill.lan port 8883, TLS\n"},
+    };
+    for (size_t i = 0; i != sizeof lines / sizeof lines[0]; i++) {
+        const tool_run_t *const run = check(lines[i].number, lines[i].line);
+        if (run->status != 0 || strstr(run->out, lines[i].out) == NULL)
+            fail_msg("%s:\n%s%s", lines[i].line, run->out, run->err);
+    }
 }
 
 /* ---- what is wrong in it ---- */
@@ -211,20 +207,14 @@ TEST(a_topic_that_is_too_long_is_refused)
     assert_null(strstr(check(1, "site: x")->err, "site"));
 }
 
-TEST(a_file_that_is_empty_or_not_there_is_told)
+TEST(one_file_that_is_not_empty_is_named)
 {
+    char line[400];
     desk_write("empty.yaml", "# nothing\n");
-    const tool_run_t *run = tool_run(&bench.tool, "publish --check %s", desk_path("empty.yaml"));
-    assert_int_equal(run->status, 2);
-    assert_non_null(strstr(run->err, "empty.yaml:1: the file is empty. It takes at least broker and lines."));
-    run = tool_run(&bench.tool, "publish --check %s", desk_path("none.yaml"));
-    assert_int_equal(run->status, 2);
-    assert_non_null(strstr(run->err, "none.yaml: No such file or directory."));
-}
-
-TEST(one_file_is_named)
-{
-    ASSERT_RUN(2, "publish");
-    ASSERT_RUN(2, "publish one two");
-    assert_non_null(strstr(tool_run(&bench.tool, "publish")->err, "FILE is missing, such as "));
+    (void)snprintf(line, sizeof line, "publish --check %s", desk_path("empty.yaml"));
+    assert_refused(line, "empty.yaml:1: the file is empty. It takes at least broker and lines.");
+    (void)snprintf(line, sizeof line, "publish --check %s", desk_path("none.yaml"));
+    assert_refused(line, "none.yaml: No such file or directory.");
+    assert_refused("publish", "FILE is missing, such as ");
+    assert_refused("publish one two", "2 files are named. Name one.");
 }

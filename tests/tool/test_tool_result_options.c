@@ -114,20 +114,10 @@ TEST(an_alarm_may_be_so)
     };
     for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
         results_config_t config = {0};
-        const fathom_alarm_config_t *const expected = &rows[i].alarm;
-        const fathom_alarm_config_t *const got = &config.alarm;
         assert_true(set("alarm", rows[i].text, &config));
         assert_true(config.has_alarm);
         assert_false(config.has_level);
-        assert_int_equal(got->when, expected->when);
-        assert_int_equal(got->on_mm, expected->on_mm);
-        assert_int_equal(got->off_mm, expected->off_mm);
-        assert_int_equal(got->on_hold_us, expected->on_hold_us);
-        assert_int_equal(got->off_hold_us, expected->off_hold_us);
-        assert_int_equal(got->unknown_us, expected->unknown_us);
-        assert_int_equal(got->if_unknown, expected->if_unknown);
-        assert_int_equal(got->if_no_response, expected->if_no_response);
-        assert_int_equal(got->no_target_is_unknown, expected->no_target_is_unknown);
+        assert_memory_equal(&config.alarm, &rows[i].alarm, sizeof config.alarm);
     }
 }
 
