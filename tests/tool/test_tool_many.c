@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /* Many ports in one command: each is read, lost and opened again on its own. */
-#include "tool_bench.h"
+#include "tool_steps.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -92,11 +92,6 @@ static readings_t readings_of(const tool_run_t *run, const char *name)
         readings.count++;
     }
     return readings;
-}
-
-static void expect_err(const tool_run_t *run, const char *text)
-{
-    if (strstr(run->err, text) == NULL) fail_msg("'%s' is not in\n%s%s", text, run->out, run->err);
 }
 
 static unsigned times(const char *text, const char *words)

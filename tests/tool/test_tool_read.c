@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* What read can choose of a sensor: its value, its probes, its registers, its limits, its temperature, and whether it
- * is asked at all. */
-#include "tool_bench.h"
+/* What read prints of each sensor, and what it can choose: its value, its probes, its limits, its temperature, and
+ * whether it is asked at all. */
+#include "tool_steps.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -74,9 +74,136 @@ static void expect_all(const tool_run_t *run, unsigned readings, const char *par
         fail_msg("not %u times '%s':\n%s%s", readings, part, run->out, run->err);
 }
 
-static void expect_err(const tool_run_t *run, const char *text)
+/* ---- what is printed ---- */
+
+/* The sensor that the word names, at its factory address, which sees this. */
+static const tool_run_t *read_factory(const char *words, const int32_t sees[4], const char *options)
 {
-    if (strstr(run->err, text) == NULL) fail_msg("'%s' is not in\n%s%s", text, run->out, run->err);
+    (void)set_up(NULL);
+    memcpy(bench.scene.value, sees, sizeof bench.scene.value);
+    bench.line.full_duplex = strchr(words, ':') == NULL && words[0] == 'a';
+    if (strncmp(words, "a16", 3) == 0)
+        bench_a16((fathom_sim_a16_config_t){.mode = bench.line.full_duplex ? FATHOM_SIM_A16_UART : 0});
+    else if (strncmp(words, "a05", 3) == 0)
+        bench_a05((fathom_sim_a05_config_t){.mode = bench.line.full_duplex          ? FATHOM_SIM_A05_AUTO
+                                                    : strstr(words, ":dyp") != NULL ? FATHOM_SIM_A05_DYP
+                                                                                    : 0});
+    else
+        bench_hps167s((fathom_sim_hps167s_config_t){.unasked_us = strstr(words, "auto") != NULL ? 18519 : 0});
+    return tool_run(&bench.tool, "read %s --count 1 --port line %s", words, options);
+}
+
+/* Replaces the two columns with times by T. */
+static void mask_times(const char *csv, char *to)
+{
+    unsigned commas = 0;
+    for (; *csv != '\0'; csv++) {
+        commas = *csv == '\n' ? 0 : commas + (*csv == ',' ? 1 : 0);
+        if (commas == 6 && *csv == ',') to += sprintf(to, ",T");
+        if (commas < 6 || commas > 7) *to++ = *csv;
+    }
+    *to = '\0';
+}
+
+#define NONE   FATHOM_SIM_NO_TARGET
+#define HIDDEN FATHOM_SIM_INTERFERENCE
+TEST(each_sensor_in_each_mode_has_exactly_what_it_sees)
+{
+    const struct {
+        const char *words;
+        int32_t sees[4];
+        const char *rows;
+    } rows[] = {
+        {"a16", {1953}, "a16,a16,auto,,1,1,T,target,false,1953,1953\n"},
+        /* FF 01 FF FF: out of step it would be 65281 */
+        {"a16", {511}, "a16,a16,auto,,1,1,T,target,false,511,511\n"},
+        {"a16", {NONE}, "a16,a16,auto,,1,1,T,no_target,false,,65533\n"},
+        {"a16", {HIDDEN}, "a16,a16,auto,,1,1,T,no_target,true,,65534\n"},
+        {"a16:1:modbus", {754}, "a16:1,a16,modbus,1,1,1,T,target,false,754,754\n"},
+        {"a05",
+         {1000, 2000, 1953, 3562},
+         "a05,a05,auto,,1,1,T,target,false,1000,1000\na05,a05,auto,,2,1,T,target,false,2000,2000\n"
+         "a05,a05,auto,,3,1,T,target,false,1953,1953\na05,a05,auto,,4,1,T,target,false,3562,3562\n"},
+        /* out of step by six it would be 1339 2047 1000 2000 */
+        {"a05",
+         {1000, 2000, 2047, 1339},
+         "a05,a05,auto,,1,1,T,target,false,1000,1000\na05,a05,auto,,2,1,T,target,false,2000,2000\n"
+         "a05,a05,auto,,3,1,T,target,false,2047,2047\na05,a05,auto,,4,1,T,target,false,1339,1339\n"},
+        {"a05:1:modbus",
+         {316, NONE, HIDDEN, 4500},
+         "a05:1,a05,modbus,1,1,1,T,target,false,316,316\na05:1,a05,modbus,1,2,1,T,no_target,false,,65533\n"
+         "a05:1,a05,modbus,1,3,1,T,no_target,true,,65534\na05:1,a05,modbus,1,4,1,T,target,false,4500,4500\n"},
+        {"hps167s", {2083}, "hps167s:1,hps167s,modbus,1,1,1,T,target,false,2083,2083,723.1744,1,0\n"},
+        {"hps167s", {NONE}, "hps167s:1,hps167s,modbus,1,1,1,T,no_target,false,,65530,0.0016,1,0\n"},
+        {"hps167s:1:auto", {2083}, "hps167s:1,hps167s,auto,1,1,1,T,target,false,2083,2083,723.1744,1,0\n"},
+    };
+    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
+        char got[1024];
+        char expected[1024];
+        const tool_run_t *const run = read_factory(rows[i].words, rows[i].sees, "--format csv");
+        const char *const optics = rows[i].words[0] == 'h' ? ",magnitude,ambient,precision" : "";
+        (void)snprintf(expected, sizeof expected,
+                       "name,model,mode,address,probe,sequence,T,status,interference,distance_mm,raw%s\n%s",
+                       optics, rows[i].rows);
+        mask_times(run->out, got);
+        assert_string_equal(got, expected);
+        assert_string_equal(run->err, "");
+        assert_int_equal(run->status, 0);
+    }
+}
+
+TEST(text_has_mm_and_m_and_the_reason_if_there_is_none)
+{
+    const struct {
+        const char *words;
+        int32_t sees[4];
+        const char *options;
+        const char *out;
+    } rows[] = {
+        {"a16", {754}, "", "0 a16     754 mm    0.754 m\n"},
+        {"a05",
+         {1000, 20, NONE, HIDDEN},
+         "--format text",
+         "0 a05 probe 1    1000 mm    1.000 m\n0 a05 probe 2      20 mm    0.020 m\n"
+         "0 a05 probe 3  no_target\n0 a05 probe 4  no_target (interference)\n"},
+        {"a05",
+         {0, 65533, 1000, 1000},
+         "--means fffd=too-near",
+         "0 a05 probe 1  unknown: the value 0 has no known meaning (--means)\n0 a05 probe 2  too_near\n"
+         "0 a05 probe 3    1000 mm    1.000 m\n0 a05 probe 4    1000 mm    1.000 m\n"},
+        {"hps167s",
+         {17999},
+         "",
+         "0 hps167s   17999 mm   17.999 m  magnitude 723.1744  ambient 1  precision 0\n"},
+        {"hps167s", {FATHOM_SIM_FAULT}, "", "0 hps167s  fault: the sensor reports a fault\n"},
+    };
+    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++)
+        expect_text(read_factory(rows[i].words, rows[i].sees, rows[i].options), rows[i].out);
+}
+
+/* Datasheets 3 and 4: 0 does not mean that nothing is in range, and a probe that is not fitted does not hide the others. */
+TEST(an_odd_probe_is_told_and_the_others_are_read_each_time)
+{
+    static const int32_t sees[] = {1000, 2000, 7000, 3000};
+    static const char *const modes[] = {"a05", "a05:1:modbus", "a05:1:dyp"};
+    const tool_run_t *run = read_factory("a05", sees, "--count 3 --stats");
+    assert_int_equal(run->status, 1);
+    expect_all(run, 9, "000 mm");
+    expect_err(run, "attempts 3, failed 3, readings 9\n");
+    for (unsigned attempt = 1; attempt <= 3; attempt++) {
+        char text[128];
+        (void)snprintf(text, sizeof text, "attempt %u: ", attempt);
+        expect_err(run, text);
+    }
+    assert_int_equal(count_of(run->err,
+                              "probe 3: 7000 is no distance from 1 to 6000 mm. If this probe is not fitted, "
+                              "leave it out"),
+                     3);
+    for (size_t i = 0; i != 3; i++) {
+        run = read_factory(modes[i], sees, "--probes 1,2,4");
+        assert_int_equal(run->status, 0);
+        expect_all(run, 3, "000 mm");
+    }
 }
 
 /* ---- processed or real-time ---- */
@@ -231,7 +358,6 @@ TEST(two_probes_of_an_a05_are_measured_with_the_others)
     assert_memory_equal(sent, request, sizeof request);
 }
 
-/* A05 3(3), remark 2 */
 /* ---- what is believed ---- */
 
 static const tool_run_t *read_of(const char *sensor, int32_t value, const char *options)
@@ -298,7 +424,12 @@ TEST(each_of_the_four_values_can_have_each_of_the_six_meanings)
                 expect_all(run, 1, meanings[m].status);
             else
                 expect_err(run, " has no known meaning. If you know it, use --means ");
+            /* An unknown value is a reading, but no good one. */
+            assert_int_equal(run->status, m == 0 || meanings[m].status == NULL ? 1 : 0);
         }
+    expect_all(read_of("a16:1:modbus", 0, ""), 1, meanings[0].status);
+    expect_err(read_of("a16:1:modbus", 0xFFFF, ""),
+               "65535 (hex FFFF) has no known meaning. If you know it, use --means FFFF=");
 }
 
 /* ---- an HPS-167S that is not asked ---- */
