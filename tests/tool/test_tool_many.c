@@ -61,6 +61,15 @@ static void hps167s(size_t port, fathom_sim_hps167s_config_t config)
     fathom_sim_attach(&many.lines[port], &many.hps167s[port].device, many.clock.now_us);
 }
 
+/* Another one at address 2, which takes the place of that at port 1. */
+static void beside(size_t port, fathom_sim_hps167s_config_t config)
+{
+    config.address = 2;
+    config.scene = fathom_sim_fixed(&many.scene);
+    fathom_sim_hps167s_init(&many.hps167s[1], &config);
+    fathom_sim_attach(&many.lines[port], &many.hps167s[1].device, many.clock.now_us);
+}
+
 static void away(size_t port, uint64_t off_us, uint64_t on_us)
 {
     many.pulled = port;
@@ -155,9 +164,7 @@ static unsigned rows_of(const tool_run_t *run, const char *name, const char *sta
 TEST(an_outage_is_rows_and_a_quiet_one_is_no_more)
 {
     three();
-    fathom_sim_hps167s_init(&many.hps167s[1], &(fathom_sim_hps167s_config_t){
-                                                  .address = 2, .scene = fathom_sim_fixed(&many.scene)});
-    fathom_sim_attach(&many.lines[0], &many.hps167s[1].device, many.clock.now_us);
+    beside(0, (fathom_sim_hps167s_config_t){0});
     RUN(1, "read lost=hps167s@p0 both=hps167s:2@p0 mute=hps167s@p1 fine=hps167s@p2 --interval 500 "
            "--timeout 100 --duration 10 --reconnect --quiet --format csv");
     assert_int_equal(rows_of(run, "lost,", ",target,"), 5 + 9);
@@ -169,63 +176,52 @@ TEST(an_outage_is_rows_and_a_quiet_one_is_no_more)
     assert_string_equal(run->err, "");
 }
 
-TEST(without_reconnect_the_others_are_read_to_their_end)
+#define BOTH "lost=hps167s@p0 fine=hps167s@p2 "
+TEST(each_way_to_lose_a_port_has_its_end)
 {
-    three();
-    RUN(1, "read lost=hps167s@p0 fine=hps167s@p2 --interval 500 --count 12 --stats");
-    assert_int_equal(readings_of(run, "lost").count, 5);
-    assert_int_equal(readings_of(run, "fine").count, 12);
-    expect_err(run,
-               "p0: unplugged. Connect it again and start again. With --reconnect, fathom waits for it\n");
-    expect_err(run, "fathom: lost: attempts 6, failed 1, readings 5,");
-    expect_err(run, "fathom: fine: attempts 12, failed 0, readings 12,");
-    assert_in_range(run->took_us, 5500000, 5600000); /* 11 intervals, and a response */
-}
-
-TEST(when_all_are_lost_it_ends)
-{
-    three();
-    RUN(1, "read hps167s@p0 --interval 500");
-    assert_in_range(run->took_us, 2200000, 2210000);
-}
-
-TEST(a_count_is_each_sensors_own)
-{
-    three();
-    RUN(1, "read lost=hps167s@p0 fine=hps167s@p2 --interval 500 --count 6 --reconnect --stats");
-    /* 5 readings and the loss: all that was asked for, so it is not waited for. */
-    expect_err(run, "fathom: lost: attempts 6, failed 1, readings 5");
-    expect_err(run, "fathom: fine: attempts 6, failed 0, readings 6");
-    expect_err(run, "requests 11\n");
-    assert_int_equal(times(run->err, "waiting"), 0);
-    assert_in_range(run->took_us, 2500000, 2600000);
-}
-
-TEST(both_sensors_of_a_lost_port_fail_and_it_is_told_once)
-{
-    three();
-    many.hps167s[1] = many.hps167s[2]; /* hangs on no line */
-    fathom_sim_hps167s_init(&many.hps167s[1], &(fathom_sim_hps167s_config_t){
-                                                  .address = 2, .scene = fathom_sim_fixed(&many.scene)});
-    fathom_sim_attach(&many.lines[0], &many.hps167s[1].device, many.clock.now_us);
-    RUN(1, "read hps167s:1@p0 hps167s:2@p0 fine=hps167s@p2 --interval 500 --count 6 --stats");
-    expect_err(run, "fathom: hps167s:1: attempts 6, failed 1, readings 5");
-    expect_err(run, "fathom: hps167s:2: attempts 6, failed 1, readings 5");
-    expect_err(run, "fathom: fine: attempts 6, failed 0, readings 6");
-    expect_err(run, "fathom: failures: port 2\n");
-    assert_int_equal(times(run->err, "unplugged"), 1);
-}
-
-/* ---- not there at the beginning ---- */
-
-TEST(a_port_that_is_not_there_is_said_and_the_others_are_read)
-{
-    three();
-    away(0, 0, 3000000);
-    RUN(1, "read lost=hps167s@p0 fine=hps167s@p2 --interval 500 --count 4 --stats");
-    expect_err(run, "fathom: p0: no such device\n");
-    expect_err(run, "fathom: lost: attempts 0, failed 0, readings 0\n");
-    assert_int_equal(readings_of(run, "fine").count, 4);
+    static const struct {
+        uint64_t off_us, on_us; /* when p0 is away */
+        const char *words;
+        int status;
+        unsigned lost, fine;        /* readings */
+        uint64_t least_us, most_us; /* what it takes */
+        const char *err;            /* parts of it, with | between them */
+    } rows[] = {
+        /* Without --reconnect the other one is read to its end: 11 intervals, and a response. */
+        {2200000, 5000000, BOTH "--count 12 --stats", 1, 5, 12, 5500000, 5600000,
+         "p0: unplugged. Connect it again and start again. With --reconnect, fathom waits for it\n|"
+         "fathom: lost: attempts 6, failed 1, readings 5,|fathom: fine: attempts 12, failed 0, readings 12,"},
+        /* When all are lost it ends. */
+        {2200000, 5000000, "lost=hps167s@p0", 1, 5, 0, 2200000, 2210000, "unplugged"},
+        /* A count is each sensor's own: 5 readings and the loss are all, so the port is not waited for. */
+        {2200000, 5000000, BOTH "--count 6 --reconnect --stats", 1, 5, 6, 2500000, 2600000,
+         "fathom: lost: attempts 6, failed 1, readings 5|fathom: fine: attempts 6, failed 0, readings 6|"
+         "requests 11\n"},
+        /* Not there at the beginning; tries at 0, 0.5, 1.5 and 3.5 s. */
+        {0, 3000000, BOTH "--count 4 --stats", 1, 0, 4, 1500000, 1600000,
+         "fathom: p0: no such device\n|fathom: lost: attempts 0, failed 0, readings 0\n"},
+        {0, 3000000, BOTH "--count 8 --reconnect --stats", 0, 8, 8, 7000000, 7030000,
+         "fathom: p0: no such device; waiting until it is there\n|"
+         "fathom: p0: it is there; reading begins\n|fathom: requests 16\n"},
+        /* A sensor that has said nothing is forgiven if its port has never come. */
+        {0, 9000000, BOTH "--reconnect --duration 2", 0, 0, 4, 2000000, 2000000, "waiting"},
+        {0, 0, "mute=a16:auto@p1 fine=hps167s@p2 --duration 2", 1, 0, 4, 2000000, 2000000, ""},
+        /* These UARTs hold no break. */
+        {0, 0, "fine=hps167s@p2 a16::controlled@p0 --count 3", 1, 0, 3, 1000000, 1100000, "fathom: a16: "},
+    };
+    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
+        char parts[512];
+        three();
+        away(0, rows[i].on_us != 0 ? rows[i].off_us : 1, rows[i].on_us);
+        RUN(rows[i].status, "read %s --interval 500", rows[i].words);
+        assert_int_equal(readings_of(run, "lost").count, rows[i].lost);
+        assert_int_equal(readings_of(run, "fine").count, rows[i].fine);
+        assert_in_range(run->took_us, rows[i].least_us, rows[i].most_us);
+        (void)strcpy(parts, rows[i].err);
+        for (const char *part = strtok(parts, "|"); part != NULL; part = strtok(NULL, "|"))
+            expect_err(run, part);
+        if (rows[i].err[0] == '\0') assert_string_equal(run->err, "");
+    }
 }
 
 TEST(when_none_is_there_it_ends)
@@ -238,53 +234,26 @@ TEST(when_none_is_there_it_ends)
     assert_int_equal(run->took_us, 0);
 }
 
-/* Tries at 0, 0.5, 1.5 and 3.5 s. */
-TEST(a_port_that_is_not_there_yet_is_waited_for)
-{
-    three();
-    away(0, 0, 3000000);
-    RUN(0, "read lost=hps167s@p0 fine=hps167s@p2 --interval 500 --count 8 --reconnect --stats");
-    const readings_t lost = readings_of(run, "lost");
-    assert_int_equal(lost.count, 8);
-    assert_true(lost.first_s > 3.5 && lost.first_s < 3.53);
-    assert_true(readings_of(run, "fine").longest_s < 0.510);
-    expect_err(run, "fathom: p0: no such device; waiting until it is there\n");
-    expect_err(run, "fathom: p0: it is there; reading begins\n");
-    assert_null(strstr(run->err, "reconnects"));
-}
-
-/* It has said nothing, and is forgiven; one whose port is there is not. */
-TEST(a_port_that_never_comes_is_no_failure_when_the_time_is_over)
-{
-    three();
-    away(0, 0, 9000000);
-    RUN(0, "read lost=hps167s@p0 fine=hps167s@p2 --interval 500 --reconnect --duration 2");
-    assert_int_equal(readings_of(run, "fine").count, 4); /* at 0, 0.5, 1 and 1.5 s */
-}
-
-TEST(one_whose_port_is_there_and_that_says_nothing_is_a_failure_when_the_time_is_over)
-{
-    three();
-    RUN(1, "read mute=a16:auto@p1 fine=hps167s@p2 --interval 500 --reconnect --duration 2");
-    assert_string_equal(run->err, "");
-}
-
 TEST(ctrl_c_ends_it_while_one_is_waited_for)
 {
     three();
     away(0, 0, 9000000);
     many.tool.ctrl_c_us = 3200000;
-    RUN(0, "read lost=hps167s@p0 fine=hps167s@p2 --interval 500 --reconnect");
+    RUN(0, "read " BOTH "--interval 500 --reconnect");
     assert_in_range(run->took_us, 3200000, 3210000);
     assert_int_equal(readings_of(run, "fine").count, 7); /* at 0 to 3 s */
 }
 
-TEST(a_port_that_refuses_its_settings_does_not_end_the_others)
+TEST(both_sensors_of_a_lost_port_fail_and_it_is_told_once)
 {
     three();
-    RUN(1, "read hps167s@p2 a16::controlled@p0 --count 3"); /* these UARTs hold no break */
-    assert_int_equal(readings_of(run, "hps167s:1").count, 3);
-    expect_err(run, "fathom: a16: ");
+    beside(0, (fathom_sim_hps167s_config_t){0});
+    RUN(1, "read hps167s:1@p0 hps167s:2@p0 fine=hps167s@p2 --interval 500 --count 6 --stats");
+    expect_err(run, "fathom: hps167s:1: attempts 6, failed 1, readings 5");
+    expect_err(run, "fathom: hps167s:2: attempts 6, failed 1, readings 5");
+    expect_err(run, "fathom: fine: attempts 6, failed 0, readings 6");
+    expect_err(run, "fathom: failures: port 2\n");
+    assert_int_equal(times(run->err, "unplugged"), 1);
 }
 
 /* ---- of several kinds ---- */
@@ -294,9 +263,7 @@ TEST(each_port_has_its_own_settings_and_its_own_stations)
     ports(3);
     hps167s(0, (fathom_sim_hps167s_config_t){.address = 7, .baud_code = 2});
     hps167s(2, (fathom_sim_hps167s_config_t){0});
-    fathom_sim_hps167s_init(&many.hps167s[1], &(fathom_sim_hps167s_config_t){
-                                                  .address = 2, .scene = fathom_sim_fixed(&many.scene)});
-    fathom_sim_attach(&many.lines[2], &many.hps167s[1].device, many.clock.now_us);
+    beside(2, (fathom_sim_hps167s_config_t){0});
     fathom_sim_a16_init(&many.a16, &(fathom_sim_a16_config_t){.mode = FATHOM_SIM_A16_AUTO,
                                                               .scene = fathom_sim_fixed(&many.scene)});
     fathom_sim_attach(&many.lines[1], &many.a16.device, many.clock.now_us);
@@ -315,10 +282,7 @@ TEST(a_line_on_which_a_request_always_waits_is_not_busy)
 {
     ports(1);
     hps167s(0, (fathom_sim_hps167s_config_t){.no_auto_output = true});
-    fathom_sim_hps167s_init(
-        &many.hps167s[1], &(fathom_sim_hps167s_config_t){
-                              .address = 2, .no_auto_output = true, .scene = fathom_sim_fixed(&many.scene)});
-    fathom_sim_attach(&many.lines[0], &many.hps167s[1].device, many.clock.now_us);
+    beside(0, (fathom_sim_hps167s_config_t){.no_auto_output = true});
     RUN(0, "read hps167s:1@p0 hps167s:2@p0 --duration 30 --stats");
     assert_true(readings_of(run, "hps167s:2").count > 400);
     expect_err(run, "failed 0, ");

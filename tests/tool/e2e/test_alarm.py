@@ -14,10 +14,6 @@ class Alarm(e2e.Case):
         return self.fathom(f'read a16 --mode modbus --port {port} --timeout 400', options,
                            ['--alarm', f'{ALARM},unknown-after=700'])
 
-    def look(self, sim, options):
-        """A simulated A16 takes up to 0.5 s."""
-        return self.fathom(f'read a16 --mode modbus --port {sim.port}', options, ['--alarm', ALARM])
-
     def test_until_alarm_ends_with_3_when_the_port_is_lost_and_waited_for(self):
         port = self.path('port')
         device = self.device()
@@ -45,12 +41,6 @@ class Alarm(e2e.Case):
         done = self.ends(self.begin(self.path('none'), '--until-alarm --reconnect --format csv'), 3)
         self.assertEqual([(row['address'], row['alarm'], row['is_on']) for row in done.rows],
                          [('1', 'no_response', 'true')])
-
-    def test_the_user_who_ends_it_is_no_alarm(self):
-        sim = self.sim('a16::modbus --distance 700')
-        reader = self.look(sim, '--until-alarm')
-        reader.expect('alarm off, 700 mm')
-        self.assertEqual(reader.end(signal.SIGINT).code, 0)
 
 
 if __name__ == '__main__':

@@ -71,14 +71,6 @@ class Lost(Case):
                              '--interval 1000 --reconnect --duration 4')
         self.needs_little(self.ends(reader, 0, 'nowhere: no such device'))
 
-    def test_all_that_can_end_it_end_it(self):
-        words = [self.sensor('one'), self.sensor('two')]
-        for end, code in ((signal.SIGINT, 0), (signal.SIGTERM, 0)):
-            reader = self.begin(*words, options='--interval 60000')
-            self.has(reader, 'two', 1)
-            self.has(reader, 'one', 1 - len(self.times(reader, 'one')))
-            self.ends(reader.end(end), code)  # in 20 s, and not after its minute
-
     def test_an_output_without_a_reader_ends_it(self):
         out, pipe = os.pipe()
         reader = self.fathom('read', [self.sensor('one'), self.sensor('two')], '--interval 60000', stdout=pipe)
@@ -125,12 +117,6 @@ class Connections(Case):
         self.has(reader, 'one', 10)
         self.ends(reader.end(signal.SIGINT), 1, 'it is back; reading goes on')
         self.assertLess(self.longest(reader, 'one'), PAUSE)
-
-    def test_a_server_that_is_not_there_is_said(self):
-        server = self.server(backlog=None)
-        reader = self.begin(self.sensor('one'), f'far=hps167s@{server}', options='--count 3')
-        self.ends(reader, 1, f'{server}: Connection refused: nothing serves this port')
-        self.assertEqual(len(self.times(reader, 'one')), 3)
 
 
 class Cost(Case):
