@@ -16,15 +16,7 @@
 /* Positions in a request, and in the response to a read. */
 enum { UNIT = 0, FUNCTION = 1, FIRST = 2, COUNT = 4, SIZE = 2, DATA = 3, CODE = 2 };
 
-enum {
-    READ_COILS = 1,
-    READ = 3,
-    READ_INPUT = 4,
-    WRITE_COIL = 5,
-    WRITE = 6,
-    WRITE_COILS = 15,
-    WRITE_MANY = 16
-};
+enum { READ_COILS = 1, READ = 3, READ_INPUT = 4, WRITE = 6, WRITE_COILS = 15, WRITE_MANY = 16 };
 
 typedef struct {
     sensor_defaults_t port;
@@ -251,14 +243,7 @@ static bool print_effects(const request_t *request)
 
 /* ---- the transaction ---- */
 
-enum {
-    LEAST_LENGTH = 4,
-    MAX_LENGTH = 255,
-    EXCEPTION_LENGTH = 5,
-    READ_OVERHEAD = 5,
-    WRITE_LENGTH = 8,
-    MAX_SIZE = 250
-};
+enum { LEAST_LENGTH = 4, EXCEPTION_LENGTH = 5, READ_OVERHEAD = 5, WRITE_LENGTH = 8, MAX_LENGTH = 255 };
 
 static uint8_t encode(const fathom_transaction_t *transaction, uint8_t *frame)
 {
@@ -292,7 +277,7 @@ static uint8_t known_length_with_zero(const uint8_t *frame, uint8_t have)
     if (function != frame[FUNCTION]) return EXCEPTION_LENGTH;
     if (function > READ_INPUT) return WRITE_LENGTH;
     const uint8_t size = frame[SIZE];
-    return size >= 1 && size <= MAX_SIZE ? (uint8_t)(size + READ_OVERHEAD) : 0;
+    return size >= 1 && size <= MAX_LENGTH - READ_OVERHEAD ? (uint8_t)(size + READ_OVERHEAD) : 0;
 }
 
 /* A response of another function ends where its CRC is right. */
@@ -394,106 +379,85 @@ static void send_request(request_t *request, port_t *port)
 
 /* ---- the response ---- */
 
-/* A register, with its two characters if both can be printed. */
-typedef struct {
-    unsigned at, value;
-    int is_signed;
-    char ascii[3]; /* "": it cannot be printed */
-} register_t;
-
-static register_t register_of(const request_t *request, uint8_t n)
+/* Returns the status in JSON. */
+static const char *status_name(const request_t *request)
 {
-    const uint8_t *const bytes = request->response + DATA + (size_t)2 * n;
-    const bool is_text = isprint(bytes[0]) && isprint(bytes[1]);
+    const size_t kind = counters_failure_kind(request->status, NULL);
+    if (request->status == FATHOM_OK) return is_broadcast(request) ? "sent" : "answered";
+    if (request->status == FATHOM_ERR_ECHO) return "answered_or_echo";
+    if (request->status == FATHOM_ERR_PORT || kind == FAILURE_KINDS - 1) return "failed";
+    return status_word_of_failure(kind);
+}
+
+/* The functions below write JSON, or text if `json` is NULL. */
+
+static void print_bytes(json_t *json, const char *name, const uint8_t *bytes, size_t count)
+{
+    if (json != NULL) {
+        json_bytes(json, name, bytes, count);
+    } else if (count != 0) {
+        (void)printf("%-9s", name);
+        for (size_t i = 0; i != count; i++) (void)printf(" %02X", bytes[i]);
+        (void)puts("");
+    }
+}
+
+static void print_register(json_t *json, uint16_t at, const uint8_t *bytes)
+{
     const uint16_t value = decode_get16(bytes);
-    register_t found = {.at = (uint16_t)(decode_get16(request->frame + FIRST) + n),
-                        .value = value,
-                        .is_signed = value > INT16_MAX ? value - UINT16_MAX - 1 : value};
-    if (is_text) memcpy(found.ascii, bytes, 2);
-    return found;
+    const int with_sign = value > INT16_MAX ? value - UINT16_MAX - 1 : value;
+    const bool is_text = isprint(bytes[0]) && isprint(bytes[1]);
+    const char text[] = {(char)bytes[0], (char)bytes[1], '\0'};
+    if (json == NULL) {
+        (void)printf("0x%04X    unsigned %5u  signed %6d  hex %04X", at, value, with_sign, value);
+        (void)printf(is_text ? "  ascii \"%s\"\n" : "\n", text);
+        return;
+    }
+    json_begin(json, NULL, '{');
+    json_value(json, "register", "\"0x%04X\"", at);
+    json_value(json, "unsigned", "%u", value);
+    json_value(json, "signed", "%d", with_sign);
+    json_value(json, "hex", "\"%04X\"", value);
+    json_string(json, "ascii", is_text ? text : NULL);
+    json_end(json, '}');
 }
 
-/* Returns the number of registers in the response. */
-static uint8_t register_count(const request_t *request)
+static void print_registers(json_t *json, const request_t *request)
 {
-    return request->status == FATHOM_OK && reads_registers(request) ? request->response[SIZE] / 2u : 0;
+    const uint16_t first = decode_get16(request->frame + FIRST);
+    if (request->status != FATHOM_OK || !reads_registers(request)) return;
+    if (json != NULL) json_begin(json, "registers", '[');
+    for (uint8_t i = 0; i != request->response[SIZE] / 2u; i++)
+        print_register(json, (uint16_t)(first + i), request->response + DATA + (size_t)2 * i);
+    if (json != NULL) json_end(json, ']');
 }
 
-static void print_bytes(const char *name, const uint8_t *bytes, size_t count)
+static void print_frames(json_t *json, const request_t *request, const port_t *port)
 {
-    if (count == 0) return;
-    (void)printf("%-9s", name);
-    for (size_t i = 0; i != count; i++) (void)printf(" %02X", bytes[i]);
-    (void)puts("");
+    const listener_t *const listener = &port->listener;
+    if (listener->request_length != 0) print_bytes(json, "sent", request->frame, request->length);
+    if (request->response_length != 0)
+        print_bytes(json, "received", request->response, request->response_length);
+    else if (listener->request_length != 0)
+        print_bytes(json, "heard", listener->window, listener->have);
+    print_registers(json, request);
 }
 
 static void print_text(const request_t *request, const port_t *port, const decode_frame_t *frame)
 {
-    const bool was_sent = port->listener.request_length != 0;
-    if (was_sent) print_bytes("sent", request->frame, request->length);
-    if (request->response_length != 0)
-        print_bytes("received", request->response, request->response_length);
-    else if (was_sent)
-        print_bytes("heard", port->listener.window, port->listener.have);
-    for (uint8_t i = 0; i != register_count(request); i++) {
-        const register_t found = register_of(request, i);
-        (void)printf("0x%04X    unsigned %5u  signed %6d  hex %04X", found.at, found.value, found.is_signed,
-                     found.value);
-        if (found.ascii[0] != '\0') (void)printf("  ascii \"%s\"", found.ascii);
-        (void)puts("");
-    }
+    print_frames(NULL, request, port);
     for (uint8_t i = 0; i != frame->meanings; i++) decoding_put_text(stdout, &frame->meaning[i]);
-}
-
-static const char *status_name(const request_t *request)
-{
-    static const struct {
-        fathom_status_t status;
-        const char *name;
-    } rows[] = {
-        {FATHOM_OK, "answered"},
-        {FATHOM_ERR_ECHO, "answered_or_echo"},
-        {FATHOM_ERR_EXCEPTION, "exception"},
-        {FATHOM_ERR_MALFORMED, "other_response"},
-        {FATHOM_ERR_CHECKSUM, "damaged"},
-        {FATHOM_ERR_NO_RESPONSE, "no_response"},
-        {FATHOM_ERR_LINE_BUSY, "line_busy"},
-        {FATHOM_ERR_OTHER_MASTER, "other_master"},
-    };
-    if (request->status == FATHOM_OK && is_broadcast(request)) return "sent";
-    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++)
-        if (rows[i].status == request->status) return rows[i].name;
-    return "failed";
 }
 
 static void print_json(const request_t *request, const port_t *port, const decode_frame_t *frame)
 {
-    const bool was_sent = port->listener.request_length != 0;
     const uint8_t code = request->response[CODE];
     json_t json = {.to = stdout};
     json_begin(&json, NULL, '{');
     json_value(&json, "address", "%u", request->frame[UNIT]);
     json_value(&json, "function", "%u", function_of(request));
     json_string(&json, "status", status_name(request));
-    if (was_sent) json_bytes(&json, "sent", request->frame, request->length);
-    if (request->response_length != 0)
-        json_bytes(&json, "received", request->response, request->response_length);
-    else if (was_sent)
-        json_bytes(&json, "heard", port->listener.window, port->listener.have);
-    if (request->status == FATHOM_OK && reads_registers(request)) {
-        json_begin(&json, "registers", '[');
-        for (uint8_t i = 0; i != register_count(request); i++) {
-            const register_t found = register_of(request, i);
-            json_begin(&json, NULL, '{');
-            json_value(&json, "register", "\"0x%04X\"", found.at);
-            json_value(&json, "unsigned", "%u", found.value);
-            json_value(&json, "signed", "%d", found.is_signed);
-            json_value(&json, "hex", "\"%04X\"", found.value);
-            json_string(&json, "ascii", found.ascii[0] != '\0' ? found.ascii : NULL);
-            json_end(&json, '}');
-        }
-        json_end(&json, ']');
-    }
+    print_frames(&json, request, port);
     if (request->status == FATHOM_ERR_EXCEPTION) {
         json_begin(&json, "exception", '{');
         json_value(&json, "code", "%u", code);
@@ -540,7 +504,6 @@ static void print_advice(const request_t *request, const port_t *port, const cou
 /* Prints what failed, or what else the user has to know. counters: of this attempt. */
 static void print_problem(const request_t *request, const port_t *port, const counters_t *counters)
 {
-    const uint8_t unit = request->frame[UNIT];
     if (request->more != 0)
         (void)fprintf(stderr, "fathom: %" PRIu32 " bytes arrived in addition to the response%s.\n",
                       request->more,
@@ -552,21 +515,17 @@ static void print_problem(const request_t *request, const port_t *port, const co
     if (request->status == FATHOM_OK)
         (void)fputs("the request was sent to all units. None of them responds, so its effect is unknown",
                     stderr);
-    else if (request->status == FATHOM_ERR_ECHO)
-        (void)fprintf(
-            stderr,
-            "unit %u acknowledged the request, unless the adapter returned it: both have the same bytes. "
-            "Read the register back, or use --echo off or on",
-            unit);
     else if (request->status == FATHOM_ERR_EXCEPTION)
         print_refusal(request);
-    else if (request->status == FATHOM_ERR_MALFORMED)
-        (void)fprintf(
-            stderr,
-            "unit %u: the response does not fit the request. Check that no other unit has this address",
-            unit);
-    else
+    else if (request->status != FATHOM_ERR_ECHO && request->status != FATHOM_ERR_MALFORMED)
         print_advice(request, port, counters);
+    else
+        (void)fprintf(
+            stderr, "unit %u%s", request->frame[UNIT],
+            request->status == FATHOM_ERR_ECHO
+                ? " acknowledged the request, unless the adapter returned it: both have the same bytes. "
+                  "Read the register back, or use --echo off or on"
+                : ": the response does not fit the request. Check that no other unit has this address");
     (void)fputs("\n", stderr);
 }
 
