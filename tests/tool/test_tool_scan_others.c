@@ -125,9 +125,9 @@ TEST(two_units_with_one_address_are_named_and_their_neighbours_found)
             scan_finds("a16 2 9600 8N1, ? 1 9600 8N1, hps167s 5 19200 8E1, ? 4 19200 8E1", "");
         assert_says(run, "damaged responses: two sensors with one address?\n");
         assert_says(run,
-                    "responses from address 1 (9600 8N1) are damaged: do two sensors have this address?");
+                    "address 1 at 9600 8N1: the responses are damaged: do two sensors have this address?");
         assert_says(run,
-                    "responses from address 4 (19200 8E1) are damaged: do two sensors have this address?");
+                    "address 4 at 19200 8E1: the responses are damaged: do two sensors have this address?");
     }
 }
 
@@ -138,7 +138,7 @@ TEST(two_responses_to_one_request_are_two_units)
     (void)add_a16((fathom_sim_a16_config_t){.address = 6, .settings_us = 40000});
     const tool_run_t *const run = scan_finds("? 6 9600 8N1", "");
     assert_says(run, "responds twice: two sensors with one address?\n");
-    assert_says(run, "a request to address 6 had two responses: do two sensors have this address?");
+    assert_says(run, "address 6 at 9600 8N1: a request had two responses: do two sensors have this address?");
 }
 
 TEST(one_spike_is_no_device)
@@ -155,7 +155,8 @@ TEST(responses_that_are_not_modbus_are_one_finding)
     (void)add_speaker(&hps167s_line, 0, junk, sizeof junk);
     (void)add_a16((fathom_sim_a16_config_t){.address = 3});
     const tool_run_t *const run = scan_finds("a16 3 9600 8N1, ? - 19200 8E1", "");
-    assert_says(run, "a device responds at 19200 8E1, but not in Modbus. An HPS-167S made before 2020-09");
+    assert_says(run,
+                "fathom: 19200 8E1: a device responds, but not in Modbus. An HPS-167S made before 2020-09");
     /* 32 addresses, most of them asked twice and not four times */
     assert_in_range(scans.probed[1][FATHOM_PARITY_EVEN], 64, 80);
 }

@@ -14,37 +14,34 @@
 
 enum { ITEM_TEXT = 16, FIRST_ADDRESS = 1, LAST_ADDRESS = 32 /* of an HPS-167S */, MAX_ADDRESS = 254 };
 
-/* Adds a rate that is not there yet. */
-static void add_rate(scan_rates_t *rates, uint32_t baud)
+/* Adds a rate that is not there yet. A 0 ends them. */
+static void add_rate(uint32_t *rates, uint32_t baud)
 {
-    for (uint8_t i = 0; i != rates->count; i++)
-        if (rates->baud[i] == baud) return;
-    rates->baud[rates->count++] = baud;
+    while (*rates != 0 && *rates != baud) rates++;
+    *rates = baud;
 }
 
-static void add_all_rates(scan_rates_t *rates)
+/* Adds the factory rates of the models, or all that can be set. */
+static void add_rates_of_models(uint32_t *rates, bool has_all)
 {
     for (size_t i = 0; i != model_count; i++) {
         add_rate(rates, models[i].line.baud);
-        for (const uint32_t *rate = models[i].rates; rate != NULL && *rate != 0; rate++)
+        for (const uint32_t *rate = models[i].rates; has_all && rate != NULL && *rate != 0; rate++)
             add_rate(rates, *rate);
     }
 }
 
 static bool parse_rates(const char *text, void *member)
 {
-    scan_rates_t *const rates = member;
-    *rates = (scan_rates_t){0};
-    if (strcmp(text, "all") == 0) {
-        add_all_rates(rates);
-        return true;
-    }
-    while (text != NULL) {
+    uint32_t *const rates = member;
+    const bool has_all = strcmp(text, "all") == 0;
+    memset(rates, 0, (SCAN_RATES + 1) * sizeof *rates);
+    if (has_all) add_rates_of_models(rates, true);
+    while (!has_all && text != NULL) {
         char item[ITEM_TEXT];
-        uint32_t place = 0;
         uint32_t baud = 0;
         text = next_word(text, ',', item, sizeof item);
-        if (!word_find(PORT_BAUDS, item, &place) || !number_parse(item, 1, UINT32_MAX, &baud)) return false;
+        if (!word_find(PORT_BAUDS, item, &baud) || !number_parse(item, 1, UINT32_MAX, &baud)) return false;
         add_rate(rates, baud);
     }
     return true;
@@ -84,9 +81,9 @@ static const option_t rows[] = {
      AT(scan_settings_t, addresses), HAS(scan_settings_t, has_addresses)},
     {"baud", "LIST", "Try these rates, or all (default 9600,19200)", KIND_CUSTOM, GROUP_LINE,
      .takes = "all, or some of 9600, 19200, 38400, 57600, 115200 and 230400 with commas between them",
-     .words = "all 9600 19200 38400 57600 115200 230400", .parse = parse_rates, AT(scan_settings_t, rates)},
+     .words = "all " PORT_BAUDS, .parse = parse_rates, AT(scan_settings_t, rates)},
     {"parity", "LIST", "Try these parities, or all (default: factory setting)", KIND_CUSTOM, GROUP_LINE,
-     .takes = "all, or some of none, even and odd with commas between them", .words = "all none even odd",
+     .takes = "all, or some of none, even and odd with commas between them", .words = "all " PORT_PARITIES,
      .parse = parse_parities, AT(scan_settings_t, parities)},
     {"stop-bits", "N", "Set 1 or 2 stop bits; 2 implies no parity", KIND_NUMBER, GROUP_LINE, .min = 1,
      .max = 2, AT(scan_settings_t, stop_bits)},
@@ -120,40 +117,26 @@ static uint8_t factory_parity(uint32_t baud)
     return models[i].line.parity;
 }
 
-/* The parity of the factory comes first: at an address where a device responds, the others of this rate are left out. */
-static void add_lines(scan_settings_t *plan, uint32_t baud, unsigned parities)
-{
-    const uint8_t factory = factory_parity(baud);
-    if (parities == 0) parities = 1u << factory;
-    for (uint8_t i = 0; i <= SCAN_PARITIES; i++) {
-        const uint8_t parity = i == 0 ? factory : (uint8_t)(i - 1);
-        if ((parities & 1u << parity) == 0 || (i != 0 && parity == factory)) continue;
-        plan->lines[plan->line_count++] = (fathom_line_settings_t){baud, parity, plan->stop_bits};
-    }
-}
-
-/* Fills in the defaults, and the line settings. */
+/* Fills in the defaults, and the line settings. The parity of the factory comes first: at an address where a device
+ * responds, the others of this rate are left out. */
 static void make_plan(scan_settings_t *plan)
 {
-    unsigned parities = plan->parities;
-    if (parities == 0 && plan->stop_bits == 2) parities = 1u << FATHOM_PARITY_NONE; /* HPS-167S 2.2.2 */
     plan->is_default =
-        !plan->has_addresses && plan->rates.count == 0 && plan->parities == 0 && plan->stop_bits == 0;
+        !plan->has_addresses && plan->rates[0] == 0 && plan->parities == 0 && plan->stop_bits == 0;
+    if (plan->parities == 0 && plan->stop_bits == 2)
+        plan->parities = 1u << FATHOM_PARITY_NONE; /* HPS-167S 2.2.2 */
     if (plan->stop_bits == 0) plan->stop_bits = 1;
     if (plan->listen_us == 0) plan->listen_us = DEFAULT_LISTEN_US;
     if (!plan->has_addresses) plan->addresses = (scan_addresses_t){FIRST_ADDRESS, LAST_ADDRESS};
-    if (plan->rates.count == 0)
-        for (size_t i = 0; i != model_count; i++) add_rate(&plan->rates, models[i].line.baud);
-    for (uint8_t i = 0; i != plan->rates.count; i++) add_lines(plan, plan->rates.baud[i], parities);
-}
-
-/* A slower unit has to recognise the silence before a request, too. */
-static const fathom_line_settings_t *slowest_of(const scan_settings_t *plan)
-{
-    const fathom_line_settings_t *slowest = &plan->lines[0];
-    for (uint8_t i = 1; i != plan->line_count; i++)
-        if (fathom_silence_us(&plan->lines[i]) > fathom_silence_us(slowest)) slowest = &plan->lines[i];
-    return slowest;
+    if (plan->rates[0] == 0) add_rates_of_models(plan->rates, false);
+    for (const uint32_t *baud = plan->rates; *baud != 0; baud++) {
+        const uint8_t factory = factory_parity(*baud);
+        const unsigned parities = plan->parities != 0 ? plan->parities : 1u << factory;
+        const uint8_t order[] = {factory, FATHOM_PARITY_NONE, FATHOM_PARITY_EVEN, FATHOM_PARITY_ODD};
+        for (size_t i = 0; i != sizeof order; i++)
+            if ((parities >> order[i] & 1) != 0 && (i == 0 || order[i] != factory))
+                plan->lines[plan->line_count++] = (fathom_line_settings_t){*baud, order[i], plan->stop_bits};
+    }
 }
 
 /* Prints "addresses 1 to 32 at 9600 8N1, 19200 8E1". */
@@ -189,13 +172,28 @@ static const char *const modes[] = {[SCAN_MODBUS] = "modbus", [SCAN_AUTO] = "aut
 static const struct {
     const char *name;
     const char *text;
+    const char *advice; /* NULL: there is nothing to do */
+    const char *why;    /* nothing was sent, because of this sender */
 } kinds[] = {
-    [SCAN_SENSOR] = {"sensor", NULL},
-    [SCAN_OTHER] = {"other_modbus", "a Modbus device that is none of the known sensors"},
-    [SCAN_DAMAGED] = {"damaged", "damaged responses: two sensors with one address?"},
-    [SCAN_NOT_MODBUS] = {"not_modbus", "a response that is not Modbus"},
-    [SCAN_SENDER] = {"sender", "sends without requests, but no frames of the known sensors"},
-    [SCAN_MASTER] = {"master", "another master sends requests to this address"},
+    [SCAN_SENSOR] = {"sensor", NULL, NULL, NULL},
+    [SCAN_OTHER] = {"other_modbus", "a Modbus device that is none of the known sensors", NULL, NULL},
+    [SCAN_DAMAGED] =
+        {"damaged", "damaged responses: two sensors with one address?",
+         "the responses are damaged: do two sensors have this address? Connect one at a time. If the "
+         "sensor is alone, check --parity, the cable and its termination.",
+         NULL},
+    [SCAN_NOT_MODBUS] =
+        {"not_modbus", "a response that is not Modbus",
+         "a device responds, but not in Modbus. An HPS-167S made before 2020-09 has another protocol. "
+         "Another --baud or --parity, swapped wires A and B and noise have the same effect.",
+         NULL},
+    [SCAN_SENDER] =
+        {"sender", "sends without requests, but no frames of the known sensors", NULL,
+         "a device sends without a request. An HPS-167S made before 2020-09 has another protocol. "
+         "Another rate, swapped wires A and B and noise have the same effect"},
+    [SCAN_MASTER] =
+        {"master", "another master sends requests to this address", NULL,
+         "another master sends requests on this line. Disconnect it or stop its program, and scan again"},
 };
 
 /* Address 0 is one only if a sensor responded there. */
@@ -336,26 +334,15 @@ static void print_text(const scan_finding_t *finding, const char *port)
 /* Prints what to do about a finding; nothing for most. */
 static void print_advice(const scan_finding_t *finding)
 {
+    const char *const advice =
+        finding->is_double
+            ? "a request had two responses: do two sensors have this address? Connect one at a time."
+            : kinds[finding->kind].advice;
     char line[LINE_TEXT];
-    (void)line_text(&finding->line, line);
-    if (finding->kind == SCAN_DAMAGED)
-        (void)fprintf(stderr,
-                      "fathom: responses from address %u (%s) are damaged: do two sensors have this address? "
-                      "Connect one at a time. If the sensor is alone, check --parity, the cable and its "
-                      "termination.\n",
-                      finding->address, line);
-    else if (finding->kind == SCAN_NOT_MODBUS)
-        (void)fprintf(
-            stderr,
-            "fathom: a device responds at %s, but not in Modbus. An HPS-167S made before 2020-09 has "
-            "another protocol. Another --baud or --parity, swapped wires A and B and noise have the "
-            "same effect.\n",
-            line);
-    else if (finding->is_double)
-        (void)fprintf(stderr,
-                      "fathom: a request to address %u had two responses: do two sensors have this address? "
-                      "Connect one at a time.\n",
-                      finding->address);
+    char address[32] = "";
+    if (finding->address != 0) (void)snprintf(address, sizeof address, "address %u at ", finding->address);
+    if (advice != NULL)
+        (void)fprintf(stderr, "fathom: %s%s: %s\n", address, line_text(&finding->line, line), advice);
 }
 
 void scan_report(scan_t *scan, const scan_finding_t *finding)
@@ -388,16 +375,10 @@ static failure_t failure_of(const scan_t *scan, fathom_status_t status)
 static void print_why_nothing_was_sent(const scan_finding_t *sender)
 {
     (void)fputs("fathom: nothing was sent, because ", stderr);
-    if (sender->kind == SCAN_MASTER)
-        (void)fputs(
-            "another master sends requests on this line. Disconnect it or stop its program, and scan again",
-            stderr);
-    else if (sender->kind == SCAN_SENDER && sender->address == 0)
-        (void)fputs("a device sends without a request. An HPS-167S made before 2020-09 has another protocol. "
-                    "Another rate, swapped wires A and B and noise have the same effect",
-                    stderr);
-    else if (sender->mode == SCAN_AUTO)
+    if (sender->kind == SCAN_SENSOR && sender->mode == SCAN_AUTO)
         (void)fprintf(stderr, "even a read ends %s", sender->model->request_ends);
+    else if (sender->kind == SCAN_MASTER || sender->address == 0)
+        (void)fputs(kinds[sender->kind].why, stderr);
     else
         (void)fputs("requests would collide with its unsolicited frames", stderr);
     (void)fputs(". To ask anyway, use --wake.\n", stderr);
@@ -420,19 +401,23 @@ static void print_nothing(const scan_t *scan)
     (void)fputs(". A sensor that was just switched on may need 5 s\n", stderr);
 }
 
+/* Prints why addresses could not be asked, or who disturbs. */
+static void print_cause(const scan_t *scan, fathom_status_t status)
+{
+    const failure_t failure = failure_of(scan, status);
+    advice_print_cause(stderr, &failure);
+    (void)fputs(". Then scan again\n", stderr);
+}
+
 static void print_others(const scan_t *scan)
 {
-    failure_t failure = failure_of(scan, FATHOM_ERR_LINE_BUSY);
     if (scan->heard.masters != 0) {
         (void)fputs("fathom: ", stderr);
-        advice_print_cause(stderr, &failure);
-        (void)fputs(". Then scan again\n", stderr);
+        print_cause(scan, FATHOM_ERR_LINE_BUSY);
     }
     if (scan->not_asked != 0) {
-        if (scan->has_other_master) failure.status = FATHOM_ERR_OTHER_MASTER;
         (void)fprintf(stderr, "fathom: %" PRIu32 " addresses could not be asked: ", scan->not_asked);
-        advice_print_cause(stderr, &failure);
-        (void)fputs(". Then scan again\n", stderr);
+        print_cause(scan, scan->has_other_master ? FATHOM_ERR_OTHER_MASTER : FATHOM_ERR_LINE_BUSY);
     }
     if (scan->outside != 0)
         (void)fprintf(
@@ -511,7 +496,11 @@ static int run(scan_t *scan, const host_t *host)
         (void)fprintf(stderr, "fathom: %s\n", scan->port.error_text);
         return STATUS_FAILED;
     }
-    scan->port.parts.silence_us = fathom_silence_us(slowest_of(settings));
+    for (uint8_t i = 0; i != settings->line_count;
+         i++) { /* a slower unit has to recognise the silence, too */
+        const uint16_t silence_us = fathom_silence_us(&settings->lines[i]);
+        if (i == 0 || silence_us > scan->port.parts.silence_us) scan->port.parts.silence_us = silence_us;
+    }
     (void)fputs("fathom: asking ", stderr);
     print_plan(stderr, settings);
     (void)fprintf(stderr, " takes about %s, and a second for each sensor\n",

@@ -14,19 +14,13 @@ typedef struct {
     uint8_t last;
 } scan_addresses_t;
 
-/* Rates, each once, in the order in which they are tried. */
-typedef struct {
-    uint8_t count;
-    uint32_t baud[SCAN_RATES];
-} scan_rates_t;
-
 /* The options, and the plan that follows from them: at each line setting, each address. */
 typedef struct {
     const char *port; /* NULL: none */
     scan_addresses_t addresses;
     bool has_addresses;
-    scan_rates_t rates;
-    uint8_t parities; /* bits 1 << FATHOM_PARITY_...; 0: those of the factory */
+    uint32_t rates[SCAN_RATES + 1]; /* each once, in the order in which they are tried; a 0 ends them */
+    uint8_t parities;               /* bits 1 << FATHOM_PARITY_...; 0: those of the factory */
     uint8_t stop_bits;
     uint32_t timeout_us; /* 0: the defaults of scan_walk.c */
     uint32_t listen_us;  /* before the first request */
