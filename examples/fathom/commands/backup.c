@@ -85,15 +85,15 @@ static struct {
     bool has_baud; /* and its baud rate */
     values_t file;
     values_t unit;
-    const setting_t *settings;
     step_t steps[VALUES];
     step_t last;                 /* of these, in the order of writing */
     bool is_impossible;          /* a step is STEP_IMPOSSIBLE */
     char unseen[SETTING_VALUES]; /* names of the settings that were written without comparison */
 } plan;
 
-static step_t step_of(const setting_t *setting, const value_t *file, const value_t *unit)
+static step_t step_of(const value_t *file, const value_t *unit)
 {
+    const setting_t *const setting = unit->setting;
     const bool may_move = setting->is_baud ? plan.has_baud : plan.is_new;
     if (setting->effect == NULL || file->held != HELD_VALUE || value_is_same(file, unit)) return STEP_NONE;
     if (setting->moves && !may_move) return STEP_STAYS;
@@ -104,8 +104,8 @@ static step_t step_of(const setting_t *setting, const value_t *file, const value
 
 static void make_plan(void)
 {
-    for (size_t i = 0; plan.settings[i].name != NULL; i++) {
-        plan.steps[i] = step_of(&plan.settings[i], &plan.file.rows[i], &plan.unit.rows[i]);
+    for (size_t i = 0; plan.unit.rows[i].setting != NULL; i++) {
+        plan.steps[i] = step_of(&plan.file.rows[i], &plan.unit.rows[i]);
         if (plan.steps[i] > plan.last) plan.last = plan.steps[i];
         if (plan.steps[i] == STEP_IMPOSSIBLE) plan.is_impossible = true;
     }
@@ -117,29 +117,28 @@ static bool print_identity(const values_t *one, const char *one_is, const values
 {
     bool is_known = false;
     bool is_same = true;
-    for (size_t i = 0; one->model->settings[i].name != NULL; i++) {
-        const setting_t *const setting = &one->model->settings[i];
+    for (size_t i = 0; one->rows[i].setting != NULL; i++) {
         const value_t *const a = &one->rows[i];
         const value_t *const b = &other->rows[i];
-        const bool is_unit = setting->kind == SETTING_IDENTITY;
-        const bool is_equal = value_is_same(a, b);
-        if (setting->effect != NULL || a->held == HELD_NOTHING || b->held == HELD_NOTHING) continue;
-        (void)printf("%s: %s %s, %s %s: ", setting->name, value_text(a), one_is, value_text(b), other_is);
+        const bool is_unit = a->setting->kind == SETTING_IDENTITY;
+        if (a->setting->effect != NULL || a->held == HELD_NOTHING) continue;
+        (void)printf("%s: %s %s, %s %s: ", a->setting->name, value_text(a), one_is, value_text(b), other_is);
         if (a->held != HELD_VALUE || b->held != HELD_VALUE) {
             (void)puts("unknown");
             continue;
         }
-        (void)printf("%s %s\n", is_equal ? "the same" : "another", is_unit ? "sensor" : "version");
+        (void)printf("%s %s\n", value_is_same(a, b) ? "the same" : "another", is_unit ? "sensor" : "version");
         if (is_unit) is_known = true;
-        if (is_unit) is_same = is_equal;
+        if (is_unit) is_same = value_is_same(a, b);
     }
     if (!is_known) (void)puts("unknown whether it is the same sensor: it has no number to compare");
     return is_same;
 }
 
-static const char *cell(const setting_t *setting, const value_t *row, char text[SETTING_CELL])
+static const char *cell(const value_t *value, char text[SETTING_CELL])
 {
-    return setting_with_unit(setting, row->held == HELD_NOT_SETTABLE ? row->text : value_text(row), text);
+    return setting_with_unit(value->setting,
+                             value->held == HELD_NOT_SETTABLE ? value->text : value_text(value), text);
 }
 
 static void print_plan(void)
@@ -147,25 +146,26 @@ static void print_plan(void)
     const char *const notes[STEPS] = {[STEP_STAYS] = plan.is_new ? "  stays: the baud rate is the gateway's"
                                                                  : "  stays, without --as-new",
                                       [STEP_IMPOSSIBLE] = "  this sensor does not have it",
-                                      [STEP_WRITE_UNSEEN] = "  is written without comparison"};
-    bool has_header = false;
+                                      [STEP_WRITE] = "",
+                                      [STEP_WRITE_UNSEEN] = "  is written without comparison",
+                                      [STEP_MOVE] = "",
+                                      [STEP_CHANGE_BAUD] = ""};
+    char is[SETTING_CELL];
+    char to[SETTING_CELL];
     (void)print_identity(&plan.file, "in the file", &plan.unit, "in the sensor");
-    for (size_t i = 0; plan.settings[i].name != NULL; i++) {
-        const setting_t *const setting = &plan.settings[i];
-        const char *const note = notes[plan.steps[i]];
-        char is[SETTING_CELL];
-        char to[SETTING_CELL];
-        if (plan.steps[i] == STEP_NONE) continue;
-        if (!has_header) (void)printf("%-24s %-14s    %s\n", "setting", "in the sensor", "in the file");
-        has_header = true;
-        (void)printf("%-24s %-14s -> %s%s\n", setting->name, cell(setting, &plan.unit.rows[i], is),
-                     cell(setting, &plan.file.rows[i], to), note != NULL ? note : "");
+    if (plan.last == STEP_NONE)
+        (void)puts("no differences");
+    else
+        (void)printf("%-24s %-14s    %s\n", "setting", "in the sensor", "in the file");
+    for (size_t i = 0; plan.unit.rows[i].setting != NULL; i++)
+        if (plan.steps[i] != STEP_NONE)
+            (void)printf("%-24s %-14s -> %s%s\n", plan.unit.rows[i].setting->name,
+                         cell(&plan.unit.rows[i], is), cell(&plan.file.rows[i], to), notes[plan.steps[i]]);
+    for (size_t i = 0; plan.unit.rows[i].setting != NULL; i++) {
+        const setting_t *const setting = plan.unit.rows[i].setting;
+        if (plan.steps[i] == STEP_WRITE_UNSEEN && setting->risk != NULL)
+            (void)session_fail(&session, FATHOM_OK, "%s: %s", setting->name, setting->risk);
     }
-    if (!has_header) (void)puts("no differences");
-    (void)fflush(stdout);
-    for (size_t i = 0; plan.settings[i].name != NULL; i++)
-        if (plan.steps[i] == STEP_WRITE_UNSEEN && plan.settings[i].risk != NULL)
-            (void)fprintf(stderr, "fathom: %s: %s\n", plan.settings[i].name, plan.settings[i].risk);
 }
 
 /* ---- fathom restore: writing ---- */
@@ -180,7 +180,7 @@ static bool follow(void)
 
 static bool write_row(size_t i)
 {
-    const setting_t *const setting = &plan.settings[i];
+    const setting_t *const setting = plan.unit.rows[i].setting;
     change_t change = {.session = &session, .setting = setting};
     (void)setting_value(setting, plan.file.rows[i].text, &change.value);
     (void)snprintf(change.wanted, sizeof change.wanted, "%s", plan.file.rows[i].text);
@@ -196,8 +196,8 @@ static bool write_all(void)
     char before[SETTING_VALUES] = "";
     char after[SETTING_VALUES] = "";
     for (step_t step = STEP_WRITE; step != STEPS; step++) {
-        for (size_t i = 0; plan.settings[i].name != NULL; i++) {
-            const char *const name = plan.settings[i].name;
+        for (size_t i = 0; plan.unit.rows[i].setting != NULL; i++) {
+            const char *const name = plan.unit.rows[i].setting->name;
             if (plan.steps[i] != step) continue;
             if (stopped != NULL) {
                 list_add(after, sizeof after, name);
@@ -211,10 +211,9 @@ static bool write_all(void)
                 list_add(plan.unseen, sizeof plan.unseen, name);
         }
     }
-    if (stopped != NULL)
-        (void)fprintf(stderr, "fathom: stopped at %s. Written before: %s. Not written: %s\n", stopped,
-                      before[0] != '\0' ? before : "nothing", after[0] != '\0' ? after : "nothing else");
-    return stopped == NULL;
+    return stopped == NULL ||
+           session_fail(&session, FATHOM_OK, "stopped at %s. Written before: %s. Not written: %s", stopped,
+                        before[0] != '\0' ? before : "nothing", after[0] != '\0' ? after : "nothing else");
 }
 
 /* ---- fathom restore: the new place ---- */
@@ -228,16 +227,13 @@ static bool is_free_at(uint8_t address, const fathom_line_settings_t *line)
     if (presence.status == FATHOM_ERR_NO_RESPONSE) presence = presence_ask(&session, address, line, 1);
     if (presence.status == FATHOM_ERR_NO_RESPONSE) return true;
     if (presence.status == FATHOM_ERR_ARGUMENT) return false; /* session_move() has printed the reason */
-    (void)fflush(stdout);
-    (void)fprintf(stderr, "fathom: nothing was written: at address %u, %s, ", address,
-                  session_line_text(&session, text));
-    if (presence.what == PRESENT_ONE || presence.what == PRESENT_UNCLEAR)
-        (void)fputs("a sensor responds already. Two sensors at one address would respond at the same time",
-                    stderr);
-    else
-        session_explain(&session, presence.status);
-    (void)fputs("\n", stderr);
-    return false;
+    const bool is_taken = presence.what == PRESENT_ONE || presence.what == PRESENT_UNCLEAR;
+    return session_fail(&session, is_taken ? FATHOM_OK : presence.status,
+                        "nothing was written: at address %u, %s%s", address,
+                        session_line_text(&session, text),
+                        is_taken ? ", a sensor responds already. Two sensors at one address would respond at "
+                                   "the same time"
+                                 : "");
 }
 
 /* Returns true if no sensor responds at the new address, neither at today's line settings, which the sensor passes, nor
@@ -248,7 +244,7 @@ static bool is_place_free(void)
     const uint8_t home = session.sensor->address;
     fathom_line_settings_t line = home_line;
     uint32_t address = home;
-    for (size_t i = 0; plan.settings[i].name != NULL; i++) {
+    for (size_t i = 0; plan.unit.rows[i].setting != NULL; i++) {
         uint32_t *const number = plan.steps[i] == STEP_MOVE ? &address : &line.baud;
         if (plan.steps[i] >= STEP_MOVE) (void)number_parse(plan.file.rows[i].text, 0, UINT32_MAX, number);
     }
@@ -262,47 +258,38 @@ static bool is_still_same(void)
 {
     values_t now;
     char line[LINE_TEXT];
-    if (!backup_read(&session, &now)) {
-        (void)fputs("fathom: all differences are written, but the sensor cannot be read at its new place.\n",
-                    stderr);
-        return false;
-    }
+    if (!backup_read(&session, &now))
+        return session_fail(&session, FATHOM_OK,
+                            "all differences are written, but the sensor cannot be read at its new place.");
     (void)printf("%s: responds at the new place, %s\n", session.sensor->name,
                  session_line_text(&session, line));
-    if (print_identity(&plan.unit, "before", &now, "now")) return true;
-    (void)fflush(stdout);
-    (void)fputs("fathom: another sensor responds at the new place. Run 'fathom scan'\n", stderr);
-    return false;
+    return print_identity(&plan.unit, "before", &now, "now") ||
+           session_fail(&session, FATHOM_OK, "another sensor responds at the new place. Run 'fathom scan'");
 }
 
 static bool restore(bool is_dry)
 {
-    if (!backup_read(&session, &plan.unit)) {
-        (void)fputs("fathom: nothing was written.\n", stderr);
-        return false;
-    }
+    if (!backup_read(&session, &plan.unit)) return session_fail(&session, FATHOM_OK, "nothing was written.");
     plan.has_baud =
         plan.is_new && session.port.kind == PORT_SERIAL; /* that of a gateway belongs to all sensors */
     make_plan();
     print_plan();
     if (!session_flush()) return false; /* without the plan on stdout nothing is written */
     if (is_dry) return plan.last < STEP_IMPOSSIBLE;
-    if (plan.is_impossible) {
-        (void)fprintf(stderr,
-                      "fathom: nothing was written: this sensor does not have all settings of the file. "
-                      "Write `not there` for those in %s\n",
-                      plan.path);
-        return false;
-    }
+    if (plan.is_impossible)
+        return session_fail(&session, FATHOM_OK,
+                            "nothing was written: this sensor does not have all settings of the file. Write "
+                            "`not there` for those in %s",
+                            plan.path);
     const bool moves = plan.last >= STEP_MOVE;
     if (moves && !is_place_free()) return false;
     if (write_all() && (!moves || is_still_same())) return session_flush();
-    (void)fflush(stdout);
     if (plan.unseen[0] != '\0')
-        (void)fprintf(stderr,
-                      "fathom: before you run restore again, write `not readable` for %s in %s, or it is "
-                      "written again.\n",
-                      plan.unseen, plan.path);
+        (void)session_fail(
+            &session, FATHOM_OK,
+            "before you run restore again, write `not readable` for %s in %s, or it is written "
+            "again.",
+            plan.unseen, plan.path);
     return false;
 }
 
@@ -313,7 +300,6 @@ static int start_restore(const host_t *host, const arguments_t *arguments)
     memset(&plan, 0, sizeof plan);
     plan.path = settings->path;
     plan.is_new = settings->is_new;
-    plan.settings = session.sensor->model->settings;
     const int parsed = backup_parse(plan.path, session.sensor->model, plan.is_new, &plan.file);
     if (parsed != STATUS_OK) return parsed;
     if (!session_open(&session, host)) return STATUS_FAILED;

@@ -32,31 +32,30 @@ static void print_text(void)
     (void)printf("%s%s%s%s, %s, asked at address %u, %s\n", sensor != session.site.sensors[0] ? "\n" : "",
                  has_name ? sensor->name : "", has_name ? ": " : "", sensor->model->name, sensor->model->what,
                  sensor->address, session_line_text(&session, line));
-    for (size_t i = 0; values.model->settings[i].name != NULL; i++) {
-        const setting_t *const setting = &values.model->settings[i];
-        const value_t *const value = &values.rows[i];
+    for (const value_t *value = values.rows; value->setting != NULL; value++)
         if (has_text(value))
-            (void)printf("%-26s %s\n", setting->name, setting_with_unit(setting, value->text, cell));
-        else if (value->held > HELD_UNREAD)
-            (void)printf("%-26s - (%s)\n", setting->name,
+            (void)printf("%-26s %s\n", value->setting->name,
+                         setting_with_unit(value->setting, value->text, cell));
+        else if (value->held != HELD_NOTHING)
+            (void)printf("%-26s - (%s)\n", value->setting->name,
                          value->held == HELD_NOT_THERE ? setting_reason(value->status) : "write-only");
-    }
 }
 
 /* `address` is the value that the sensor reports, or the address of the requests if none of the values is an address. */
 static void print_json(void)
 {
-    const setting_t *const settings = values.model->settings;
     json_t json = {.to = stdout};
     char line[LINE_TEXT];
+    bool has_address = false;
+    for (const value_t *value = values.rows; value->setting != NULL; value++)
+        if (is_address(value->setting)) has_address = true;
     json_begin(&json, NULL, '{');
     sensor_json(&json, session.sensor);
-    if (values.rows[setting_of(settings, "address") - settings].held <= HELD_UNREAD)
-        json_value(&json, "address", "%u", session.sensor->address);
+    if (!has_address) json_value(&json, "address", "%u", session.sensor->address);
     json_string(&json, "line", session_line_text(&session, line));
-    for (size_t i = 0; settings[i].name != NULL; i++)
-        if (has_text(&values.rows[i]) || values.rows[i].held == HELD_NOT_THERE)
-            setting_json(&json, NULL, &settings[i], has_text(&values.rows[i]) ? values.rows[i].text : NULL);
+    for (const value_t *value = values.rows; value->setting != NULL; value++)
+        if (has_text(value) || value->held == HELD_NOT_THERE)
+            setting_json(&json, NULL, value->setting, has_text(value) ? value->text : NULL);
     json_end(&json, '}');
     (void)fputc('\n', stdout);
 }
@@ -66,34 +65,30 @@ static bool print_remarks(void)
 {
     size_t all = 0;
     size_t missing = 0;
-    for (size_t i = 0; values.model->settings[i].name != NULL; i++) {
-        const setting_t *const setting = &values.model->settings[i];
-        const value_t *const value = &values.rows[i];
-        if (value->held != HELD_NOTHING) all++;
-        if (value->held == HELD_UNREAD || value->held == HELD_NOT_THERE) missing++;
+    for (const value_t *value = values.rows; value->setting != NULL; value++, all++) {
+        const setting_t *const setting = value->setting;
+        if (!has_text(value) && value->held != HELD_NOT_READABLE) missing++;
         if (setting->remark != NULL && has_text(value) && strcmp(value->text, setting->words[1]) == 0)
-            (void)fprintf(stderr, "fathom: %s: %s\n", session.sensor->name, setting->remark);
+            (void)session_fail(&session, FATHOM_OK, "%s", setting->remark);
     }
     if (values.is_known && missing != 0)
-        (void)fprintf(stderr, "fathom: %s: %zu of %zu values could not be read.\n", session.sensor->name,
-                      missing, all);
+        (void)session_fail(&session, FATHOM_OK, "%zu of %zu values could not be read.", missing, all);
     return missing == 0;
 }
 
-typedef enum { SHOW_ALL, SHOW_SETTINGS, SHOW_ONE } show_t;
+static const setting_t *shown; /* by fathom get SENSOR SETTING */
 
-static int show(const host_t *host, show_t what, const setting_t *one)
+static bool is_in_mode(const setting_t *setting)
 {
-    const model_t *const model = session.sensor->model;
-    values = (values_t){.model = model};
-    for (size_t i = 0; model->settings[i].name != NULL; i++) {
-        const setting_t *const setting = &model->settings[i];
-        const bool is_shown = what == SHOW_ALL        ? setting->read_at != 0
-                              : what == SHOW_SETTINGS ? setting->effect != NULL
-                                                      : setting == one;
-        if (is_shown && model_mode_of(model, setting) == session.sensor->mode)
-            values.rows[i].held = HELD_UNREAD;
-    }
+    return model_mode_of(session.sensor->model, setting) == session.sensor->mode;
+}
+static bool is_readable(const setting_t *setting) { return setting->read_at != 0 && is_in_mode(setting); }
+static bool is_settable(const setting_t *setting) { return setting->effect != NULL && is_in_mode(setting); }
+static bool is_shown(const setting_t *setting) { return setting == shown; }
+
+static int show(const host_t *host, bool (*is_wanted)(const setting_t *setting))
+{
+    values_begin(&values, session.sensor->model, is_wanted);
     if (!session_open(&session, host)) return STATUS_FAILED;
     const bool is_read = values_read(&session, &values, false);
     if (values.is_known && session.is_json) print_json();
@@ -111,7 +106,7 @@ static int start_info(const host_t *host, const arguments_t *arguments)
     for (size_t i = 0; i != session.site.sensor_count; i++) {
         if (i != 0 && host->has_ended(host->ctx)) return STATUS_FAILED;
         session.sensor = session.site.sensors[i];
-        if (show(host, SHOW_ALL, NULL) != STATUS_OK) status = STATUS_FAILED;
+        if (show(host, is_readable) != STATUS_OK) status = STATUS_FAILED;
     }
     return status;
 }
@@ -137,16 +132,16 @@ static int start_get(const host_t *host, const arguments_t *arguments)
         strchr(arguments->words[0], '@') == NULL)
         return list(arguments->words[0], &origin);
     if (!session_read(&session, arguments, 1, 1)) return STATUS_USAGE;
-    if (arguments->count == 1) return show(host, SHOW_SETTINGS, NULL);
-    const setting_t *const setting = setting_named(&session, arguments->words[1], arguments);
-    if (setting == NULL) return STATUS_USAGE;
-    if (setting->read_at == 0 && !is_address(setting)) {
-        (void)reject(&origin, "%s is write-only. The sensor does not report it.", setting->name);
+    if (arguments->count == 1) return show(host, is_settable);
+    shown = setting_named(&session, arguments->words[1], arguments);
+    if (shown == NULL) return STATUS_USAGE;
+    if (shown->read_at == 0 && !is_address(shown)) {
+        (void)reject(&origin, "%s is write-only. The sensor does not report it.", shown->name);
         return STATUS_USAGE;
     }
-    if (!session_set_mode(&session, arguments, model_mode_of(session.sensor->model, setting)))
+    if (!session_set_mode(&session, arguments, model_mode_of(session.sensor->model, shown)))
         return STATUS_USAGE;
-    return show(host, SHOW_ONE, setting);
+    return show(host, is_shown);
 }
 
 static const option_table_t show_tables[] = {SESSION_TABLES, {session_format_rows, 0}, {NULL, 0}};
@@ -344,28 +339,25 @@ static void print_reset(bool is_interface)
             session.sensor->name);
 }
 
-static void print_unreset(bool is_interface, fathom_status_t status)
+/* Prints why the reset is not confirmed. Returns false. */
+static bool fail_reset(bool is_interface, fathom_status_t status)
 {
     const sensor_t *const sensor = session.sensor;
     char line[LINE_TEXT];
-    (void)fprintf(stderr, "fathom: %s: ", sensor->name);
-    if (status == FATHOM_ERR_UNCONFIRMED && is_interface) {
-        (void)fprintf(stderr,
-                      "the reset was sent, but then the sensor could not be read. It is at address 1, 19200 "
-                      "8E1, or still at address %u, %s. Run 'fathom scan --port %s'",
-                      sensor->address, line_text(&sensor->line, line), sensor->port->path);
-    } else if (status == FATHOM_ERR_UNCONFIRMED) {
-        (void)fputs("the reset was sent, and no acknowledgement was received. The sensor may have its "
-                    "factory settings or not; they cannot be read back",
-                    stderr);
-    } else {
-        if (!reader_facts(sensor->reader).is_written)
-            (void)fputs("nothing was written: ", stderr);
-        else if (status != FATHOM_ERR_EXCEPTION)
-            (void)fputs("the reset was sent, and is not confirmed: ", stderr);
-        session_explain(&session, status);
-    }
-    (void)fputs("\n", stderr);
+    if (status == FATHOM_ERR_UNCONFIRMED && is_interface)
+        return session_fail(&session, FATHOM_OK,
+                            "the reset was sent, but then the sensor could not be read. It is at address 1, "
+                            "19200 8E1, or still at address %u, %s. Run 'fathom scan --port %s'",
+                            sensor->address, line_text(&sensor->line, line), sensor->port->path);
+    if (status == FATHOM_ERR_UNCONFIRMED)
+        return session_fail(&session, FATHOM_OK,
+                            "the reset was sent, and no acknowledgement was received. The sensor may have "
+                            "its factory settings or not; they cannot be read back");
+    const bool is_sent = reader_facts(sensor->reader).is_written;
+    return session_fail(&session, status, "%s",
+                        !is_sent                         ? "nothing was written"
+                        : status == FATHOM_ERR_EXCEPTION ? "the reset was refused"
+                                                         : "the reset was sent, and is not confirmed");
 }
 
 static bool set_up_reset(const arguments_t *arguments, bool *is_interface)
@@ -397,12 +389,10 @@ static int start_reset(const host_t *host, const arguments_t *arguments)
     if (!set_up_reset(arguments, &is_interface)) return STATUS_USAGE;
     if (!session_open(&session, host)) return STATUS_FAILED;
     const fathom_status_t status = session_call(&session, call_reset, &is_interface);
-    if (status == FATHOM_OK)
-        print_reset(is_interface);
-    else
-        print_unreset(is_interface, status);
+    if (status == FATHOM_OK) print_reset(is_interface);
+    const bool is_reset = status == FATHOM_OK ? session_flush() : fail_reset(is_interface, status);
     session_close(&session);
-    return session_flush() && status == FATHOM_OK ? STATUS_OK : STATUS_FAILED;
+    return is_reset ? STATUS_OK : STATUS_FAILED;
 }
 
 static const option_t reset_rows[] = {

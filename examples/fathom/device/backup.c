@@ -28,17 +28,22 @@ static bool is_kept(const setting_t *setting)
     return setting->kind != SETTING_PRESENT && setting->mode == NULL;
 }
 
+void values_begin(values_t *values, const model_t *model, bool (*is_wanted)(const setting_t *setting))
+{
+    size_t count = 0;
+    *values = (values_t){.model = model};
+    for (const setting_t *setting = model->settings; setting->name != NULL; setting++)
+        if (is_wanted(setting)) values->rows[count++].setting = setting;
+}
+
 /* Stores a text from a file or from the sensor as the sensor reports it. Returns false if that cannot be set. */
-static bool store(value_t *value, const setting_t *setting, const char *text)
+static bool store(value_t *value, const char *text)
 {
     int32_t number = 0;
-    value->held = HELD_VALUE;
+    const bool can_be_set = value->setting->effect != NULL && setting_value(value->setting, text, &number);
     (void)snprintf(value->text, sizeof value->text, "%s", text);
-    if (setting->effect == NULL) return true;
-    if (setting_value(setting, text, &number))
-        setting_print_value(setting, number, value->text);
-    else
-        value->held = HELD_NOT_SETTABLE;
+    if (can_be_set) setting_print_value(value->setting, number, value->text);
+    value->held = can_be_set || value->setting->effect == NULL ? HELD_VALUE : HELD_NOT_SETTABLE;
     return value->held == HELD_VALUE;
 }
 
@@ -64,31 +69,27 @@ static const setting_t *first_readable(const session_t *session)
     return NULL;
 }
 
-/* Reads the values until it is uncertain that the sensor responds. Returns the value that shows this, or NULL. */
+/* Reads the values until it is uncertain that the sensor responds. Returns the setting that shows this, or NULL. */
 static const setting_t *read_rows(session_t *session, values_t *values, bool is_backup,
                                   fathom_status_t *status)
 {
-    const setting_t *const settings = values->model->settings;
     const unsigned times = is_backup ? 3 : 1;
-    const setting_t *known = NULL; /* a value that was read */
-    const setting_t *failed =
-        NULL; /* one that was not; others in the same response are not requested again */
+    const setting_t *known = NULL; /* a setting that was read */
+    const value_t *failed = NULL;  /* was not read; others in the same response are not requested again */
     char text[SETTING_TEXT];
-    for (size_t i = 0; settings[i].name != NULL; i++) {
-        const setting_t *const setting = &settings[i];
-        value_t *const value = &values->rows[i];
-        if (value->held != HELD_UNREAD) continue;
+    for (value_t *value = values->rows; value->setting != NULL; value++) {
+        const setting_t *const setting = value->setting;
         if (setting->read_at == 0) { /* of these, the address is known: the sensor responds there */
             value->held = setting->moves && setting->mode == NULL ? HELD_VALUE : HELD_NOT_READABLE;
             if (value->held == HELD_VALUE)
                 setting_print_value(setting, session->sensor->address, value->text);
             continue;
         }
-        const bool is_again = failed != NULL && setting->read_at == failed->read_at;
-        *status = is_again ? values->rows[failed - settings].status
-                           : read_repeatedly(session, setting, times, text);
+        *status = failed != NULL && setting->read_at == failed->setting->read_at
+                      ? failed->status
+                      : read_repeatedly(session, setting, times, text);
         if (*status == FATHOM_OK) {
-            (void)store(value, setting, text);
+            (void)store(value, text);
             known = setting;
             values->is_known = true;
             continue;
@@ -98,9 +99,9 @@ static const setting_t *read_rows(session_t *session, values_t *values, bool is_
         if (!may_fail || setting_reason(*status) == NULL) return setting;
         value->held = HELD_NOT_THERE;
         value->status = *status;
-        failed = setting;
+        failed = value;
     }
-    if (known == NULL && failed != NULL) return failed;
+    if (known == NULL && failed != NULL) return failed->setting;
     if (known != NULL && (failed == NULL || !is_backup)) return NULL;
     /* A setting is missing only if the sensor still responds, and nothing is known if nothing was requested. */
     if (known == NULL) known = first_readable(session);
@@ -122,9 +123,7 @@ bool values_read(session_t *session, values_t *values, bool is_backup)
 
 bool backup_read(session_t *session, values_t *unit)
 {
-    *unit = (values_t){.model = session->sensor->model};
-    for (size_t i = 0; unit->model->settings[i].name != NULL; i++)
-        if (is_kept(&unit->model->settings[i])) unit->rows[i].held = HELD_UNREAD;
+    values_begin(unit, session->sensor->model, is_kept);
     return values_read(session, unit, true);
 }
 
@@ -140,11 +139,11 @@ static const char *const headings[] = {
     [GROUP_NOT_READABLE] =
         "What the unit does not tell. It is restored only if you fill it in, and then written each time."};
 
-static group_t group_of(const setting_t *setting, const value_t *row)
+static group_t group_of(const value_t *value)
 {
-    if (setting->effect == NULL) return GROUP_IDENTITY;
-    if (setting->moves) return GROUP_PLACE;
-    return row->held == HELD_NOT_READABLE ? GROUP_NOT_READABLE : GROUP_SETTINGS;
+    if (value->setting->effect == NULL) return GROUP_IDENTITY;
+    if (value->setting->moves) return GROUP_PLACE;
+    return value->held == HELD_NOT_READABLE ? GROUP_NOT_READABLE : GROUP_SETTINGS;
 }
 
 /* "warm-up = 5                     # s, how long ..." */
@@ -155,14 +154,15 @@ static void print_line(FILE *to, const char *name, const char *value, const char
                   unit != NULL ? ", " : "", what);
 }
 
-static void print_row(FILE *to, const setting_t *setting, const value_t *row)
+static void print_row(FILE *to, const value_t *value)
 {
-    char values[SETTING_VALUES];
-    print_line(to, setting->name, value_text(row), setting->unit, setting->what);
-    if (row->held == HELD_NOT_THERE) (void)fprintf(to, "; %s", setting_reason(row->status));
-    if (row->held == HELD_NOT_SETTABLE)
-        (void)fprintf(to, "; it has %s, which cannot be set: %s", row->text,
-                      setting_values_text(setting, values));
+    const setting_t *const setting = value->setting;
+    char text[SETTING_VALUES];
+    print_line(to, setting->name, value_text(value), setting->unit, setting->what);
+    if (value->held == HELD_NOT_THERE) (void)fprintf(to, "; %s", setting_reason(value->status));
+    if (value->held == HELD_NOT_SETTABLE)
+        (void)fprintf(to, "; it has %s, which cannot be set: %s", value->text,
+                      setting_values_text(setting, text));
     (void)fputs("\n", to);
 }
 
@@ -177,13 +177,11 @@ void backup_print(FILE *to, const values_t *unit, const char *place, const char 
     (void)fputs("\n", to);
     for (group_t group = GROUP_IDENTITY; group != GROUPS; group++) {
         const char *heading = headings[group];
-        for (size_t i = 0; unit->model->settings[i].name != NULL; i++) {
-            const setting_t *const setting = &unit->model->settings[i];
-            const value_t *const row = &unit->rows[i];
-            if (row->held == HELD_NOTHING || group_of(setting, row) != group) continue;
+        for (const value_t *value = unit->rows; value->setting != NULL; value++) {
+            if (value->held == HELD_NOTHING || group_of(value) != group) continue;
             if (heading != NULL) (void)fprintf(to, "\n# %s\n", heading);
             heading = NULL;
-            print_row(to, setting, row);
+            print_row(to, value);
         }
     }
 }
@@ -192,7 +190,7 @@ void backup_print(FILE *to, const values_t *unit, const char *place, const char 
 
 typedef struct {
     const char *path;
-    values_t *backup;
+    values_t *file;
     unsigned line; /* 0: of the whole file */
     bool has_sensor;
     bool moves; /* the address is to be written */
@@ -219,19 +217,20 @@ static char *trim(char *text)
     return text + strspn(text, " \t");
 }
 
-static int parse_value(const parser_t *parser, const setting_t *setting, const char *value)
+static int parse_value(const parser_t *parser, value_t *value, const char *text)
 {
-    value_t *const row = &parser->backup->rows[setting - parser->backup->model->settings];
+    const setting_t *const setting = value->setting;
     char values[SETTING_VALUES];
-    if (strlen(value) >= sizeof row->text) return wrong(parser, "the value of %s is too long", setting->name);
-    if (row->line != 0) return wrong(parser, "%s occurs in line %u already", setting->name, row->line);
-    row->line = parser->line;
-    for (row->held = HELD_NOT_READABLE; row->held <= HELD_NOT_SETTABLE; row->held++)
-        if (strcmp(value, words[row->held]) == 0) return STATUS_OK;
-    if (!store(row, setting, value))
+    if (strlen(text) >= sizeof value->text)
+        return wrong(parser, "the value of %s is too long", setting->name);
+    if (value->line != 0) return wrong(parser, "%s occurs in line %u already", setting->name, value->line);
+    value->line = parser->line;
+    for (value->held = HELD_NOT_READABLE; value->held <= HELD_NOT_SETTABLE; value->held++)
+        if (strcmp(text, words[value->held]) == 0) return STATUS_OK;
+    if (!store(value, text))
         return wrong(parser, "%s takes %s, not '%s'", setting->name, setting_values_text(setting, values),
-                     value);
-    if (parser->moves && setting->has_zero && strcmp(row->text, "0") == 0)
+                     text);
+    if (parser->moves && setting->has_zero && strcmp(value->text, "0") == 0)
         return wrong(parser, "with --as-new no sensor gets address 0. 'fathom set' can do that");
     return STATUS_OK;
 }
@@ -246,7 +245,7 @@ static bool is_printable(const char *text)
 
 static int parse_line(parser_t *parser, char *line)
 {
-    const model_t *const model = parser->backup->model;
+    const model_t *const model = parser->file->model;
     line[strcspn(line, "#")] = '\0';
     char *const name = trim(line);
     char *const sign = strchr(name, '=');
@@ -255,21 +254,20 @@ static int parse_line(parser_t *parser, char *line)
         return wrong(parser, "the line has a character that cannot be printed or is not ASCII");
     if (sign == NULL) return wrong(parser, "'%s' does not have the form NAME = VALUE", name);
     *sign = '\0';
-    const char *const value = trim(sign + 1);
+    const char *const text = trim(sign + 1);
     (void)trim(name);
     if (strcmp(name, "sensor") == 0) {
         if (parser->has_sensor) return wrong(parser, "sensor occurs twice");
-        if (strcmp(value, model->name) != 0)
-            return wrong(parser, "the file belongs to '%s', and the sensor is an %s", value, model->name);
+        if (strcmp(text, model->name) != 0)
+            return wrong(parser, "the file belongs to '%s', and the sensor is an %s", text, model->name);
         parser->has_sensor = true;
         return STATUS_OK;
     }
     if (!parser->has_sensor)
         return wrong(parser, "the line '%s' comes before the line 'sensor = %s'", name, model->name);
-    const setting_t *const setting = setting_of(model->settings, name);
-    if (setting == NULL || !is_kept(setting))
-        return wrong(parser, "'%s' is no setting that 'fathom save' prints for an %s", name, model->name);
-    return parse_value(parser, setting, value);
+    for (value_t *value = parser->file->rows; value->setting != NULL; value++)
+        if (strcmp(value->setting->name, name) == 0) return parse_value(parser, value, text);
+    return wrong(parser, "'%s' is no setting that 'fathom save' prints for an %s", name, model->name);
 }
 
 static int parse(parser_t *parser, FILE *from)
@@ -301,13 +299,13 @@ static int parse(parser_t *parser, FILE *from)
     }
     if (parser->has_sensor) return STATUS_OK;
     return wrong(parser, "the line 'sensor = %s' is missing. Is this a file of 'fathom save'?",
-                 parser->backup->model->name);
+                 parser->file->model->name);
 }
 
 int backup_parse(const char *path, const model_t *model, bool moves, values_t *file)
 {
-    parser_t parser = {.path = path, .backup = file, .moves = moves};
-    *file = (values_t){.model = model};
+    parser_t parser = {.path = path, .file = file, .moves = moves};
+    values_begin(file, model, is_kept);
     FILE *const from = fopen(path, "r");
     if (from == NULL) {
         (void)wrong(&parser, "%s", strerror(errno));

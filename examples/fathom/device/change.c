@@ -149,55 +149,55 @@ change_outcome_t change_outcome(const change_t *change, fathom_status_t status)
     return is_unknown || !is_read_back(change) ? CHANGE_UNCONFIRMED : CHANGE_DIFFERS;
 }
 
-/* Where the sensor may be, or what else is unknown. */
-static void print_unconfirmed(const change_t *change)
+/* Returns where the sensor may be, or what else is unknown. */
+enum { UNKNOWN_TEXT = 400 };
+static const char *unknown_text(const change_t *change, char text[UNKNOWN_TEXT])
 {
     const sensor_t *const sensor = change->session->sensor;
     const setting_t *const setting = change->setting;
+    const bool is_readable = setting->read_at != 0 && !change->is_blind;
     char line[LINE_TEXT];
     if (setting->is_baud)
-        (void)fprintf(stderr,
-                      "The sensor is at %" PRIu32 " or at %s baud, perhaps from its next power-on. Run "
-                      "'fathom scan --port %s --baud %" PRIu32 ",%s'",
-                      sensor->line.baud, change->wanted, sensor->port->path, sensor->line.baud,
-                      change->wanted);
+        (void)snprintf(text, UNKNOWN_TEXT,
+                       "The sensor is at %" PRIu32 " or at %s baud, perhaps from its next power-on. Run "
+                       "'fathom scan --port %s --baud %" PRIu32 ",%s'",
+                       sensor->line.baud, change->wanted, sensor->port->path, sensor->line.baud,
+                       change->wanted);
     else if (setting->moves)
-        (void)fprintf(stderr, "The sensor is at address %u or at address %s, %s. Read it at both",
-                      sensor->address, change->wanted, session_line_text(change->session, line));
-    else if (setting->unconfirmed != NULL)
-        (void)fputs(setting->unconfirmed, stderr);
+        (void)snprintf(text, UNKNOWN_TEXT,
+                       "The sensor is at address %u or at address %s, %s. Read it at both", sensor->address,
+                       change->wanted, session_line_text(change->session, line));
     else
-        (void)fprintf(stderr, "The value may be set or not%s",
-                      setting->read_at != 0 && !change->is_blind ? ". Read it with 'fathom get'" : "");
+        (void)snprintf(text, UNKNOWN_TEXT, "%s%s",
+                       setting->unconfirmed != NULL ? setting->unconfirmed : "The value may be set or not",
+                       is_readable ? ". Read it with 'fathom get'" : "");
+    return text;
 }
 
 void change_explain(const change_t *change, change_outcome_t outcome, fathom_status_t status)
 {
     const reader_facts_t facts = facts_of(change);
     const bool is_acknowledged = !facts.is_setting && facts.acknowledgement == FATHOM_OK;
-    (void)fflush(stdout);
-    (void)fprintf(stderr, "fathom: %s: %s %s: %s: ", change->session->sensor->name, change->setting->name,
-                  change->wanted, words[outcome]);
-    if (outcome == CHANGE_UNCONFIRMED || outcome == CHANGE_DIFFERS)
-        (void)fputs(is_acknowledged ? "the sensor acknowledged the write" : "no acknowledgement was received",
-                    stderr);
-    if (outcome == CHANGE_UNCONFIRMED) {
-        (void)fputs(". ", stderr);
-        print_unconfirmed(change);
-    } else if (outcome == CHANGE_DIFFERS) {
-        (void)fputs(", but it reads back another value. Perhaps this variant does not have it", stderr);
-    } else if (status == FATHOM_ERR_IN_USE) {
-        (void)fprintf(stderr,
-                      "a sensor responds at address %s already. Two sensors at one address would respond at "
-                      "the same time",
-                      change->wanted);
-    } else if (status == FATHOM_ERR_ARGUMENT || status == FATHOM_ERR_UNSUPPORTED) {
+    const char *const response =
+        is_acknowledged ? "the sensor acknowledged the write" : "no acknowledgement was received";
+    char text[UNKNOWN_TEXT];
+    char why[2 * UNKNOWN_TEXT] = "";
+    if (outcome == CHANGE_UNCONFIRMED)
+        (void)snprintf(why, sizeof why, ": %s. %s", response, unknown_text(change, text));
+    else if (outcome == CHANGE_DIFFERS)
+        (void)snprintf(why, sizeof why,
+                       ": %s, but it reads back another value. Perhaps this variant does not have it",
+                       response);
+    else if (status == FATHOM_ERR_IN_USE)
+        (void)snprintf(why, sizeof why,
+                       ": a sensor responds at address %s already. Two sensors at one address would respond "
+                       "at the same time",
+                       change->wanted);
+    else if (status == FATHOM_ERR_ARGUMENT || status == FATHOM_ERR_UNSUPPORTED)
         /* the value is in range, so the driver does not know the settings of the line */
-        (void)fputs("the settings of this port's line cannot be changed", stderr);
-    } else {
-        session_explain(change->session, status);
-    }
-    (void)fputs("\n", stderr);
+        (void)snprintf(why, sizeof why, ": the settings of this port's line cannot be changed");
+    (void)session_fail(change->session, why[0] != '\0' ? FATHOM_OK : status, "%s %s: %s%s",
+                       change->setting->name, change->wanted, words[outcome], why);
 }
 
 static void print_json(const change_t *change, change_outcome_t outcome)

@@ -70,29 +70,23 @@ void session_end_task(session_t *session)
     session->doing = NULL;
 }
 
-/* Waits for the reader, and wakes often enough to show the seconds. */
-static fathom_status_t wait_for(session_t *session)
-{
-    enum { SHOW_US = 500000 };
-    progress_t *const progress = &session->progress;
-    const host_t *const host = session->port.host;
-    const uint32_t due_us = reader_due_us(session->sensor->reader);
-    progress_show(progress, host->now_us(host->ctx), 0,
-                  session->doing != NULL ? session->doing : "waiting for the sensor");
-    return port_wait(&session->port, progress->is_terminal && due_us > SHOW_US ? SHOW_US : due_us);
-}
-
 fathom_status_t session_call(session_t *session, session_call_t call, void *ctx)
 {
+    enum { SHOW_US = 500000 }; /* on a terminal, the wait ends often enough to show the seconds */
     reader_t *const reader = session->sensor->reader;
+    progress_t *const progress = &session->progress;
+    const host_t *const host = session->port.host;
+    const char *const doing = session->doing != NULL ? session->doing : "waiting for the sensor";
     counters_begin_attempt(&session->sensor->counters);
     listener_forget(&session->port.listener);
     fathom_status_t status = call(reader, ctx);
     while (status == FATHOM_PENDING) {
-        const fathom_status_t waited = wait_for(session);
-        status = waited == FATHOM_OK ? call(reader, ctx) : waited;
+        const uint32_t due_us = reader_due_us(reader);
+        progress_show(progress, host->now_us(host->ctx), 0, doing);
+        status = port_wait(&session->port, progress->is_terminal && due_us > SHOW_US ? SHOW_US : due_us);
+        if (status == FATHOM_OK) status = call(reader, ctx);
     }
-    if (session->doing == NULL) progress_clear(&session->progress);
+    if (session->doing == NULL) progress_clear(progress);
     return status;
 }
 

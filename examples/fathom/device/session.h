@@ -151,8 +151,7 @@ bool change_report(const change_t *change, fathom_status_t status);
 /* ---- values of a sensor, as it reports them or as a file has them (backup.c) ---- */
 
 typedef enum {
-    HELD_NOTHING = 0, /* it is not wanted, or the file does not have it */
-    HELD_UNREAD,      /* it is to be read */
+    HELD_NOTHING = 0, /* it was not read, or the file does not have it */
     HELD_VALUE,
     HELD_NOT_READABLE, /* write-only */
     HELD_NOT_THERE,    /* this variant of the sensor does not have it */
@@ -160,29 +159,32 @@ typedef enum {
 } held_t;
 
 typedef struct {
+    const setting_t *setting; /* NULL: the end of the rows */
     held_t held;
     char text[SETTING_TEXT]; /* with HELD_VALUE and HELD_NOT_SETTABLE: as the sensor reports it */
     fathom_status_t status;  /* with HELD_NOT_THERE: the reason */
     unsigned line;           /* of the file; 0: none */
 } value_t;
 
-/* Invariant: no model has more settings. */
-enum { VALUES = 32 };
+enum { VALUES = 32 }; /* Invariant: no model has as many settings. */
 
 typedef struct {
     const model_t *model;
-    bool is_known;        /* the sensor has responded */
-    value_t rows[VALUES]; /* in the order of the model's settings */
+    bool is_known; /* the sensor has responded */
+    value_t rows[VALUES];
 } values_t;
+
+/* Begins with a row for each setting that is wanted. */
+void values_begin(values_t *values, const model_t *model, bool (*is_wanted)(const setting_t *setting));
+
+/* Reads the rows. Returns false after printing which value could not be read; this one and the next rows are not read. A
+ * single value may be missing; with is_backup only one that not each sensor has. */
+bool values_read(session_t *session, values_t *values, bool is_backup);
 
 /* Returns the value, or the words in its place, such as "not readable". */
 const char *value_text(const value_t *value);
 
 bool value_is_same(const value_t *one, const value_t *other);
-
-/* Reads the rows with HELD_UNREAD. Returns false after printing which value could not be read; this one and the next rows
- * are not read. A single value may be missing; with is_backup only one that not each sensor has. */
-bool values_read(session_t *session, values_t *values, bool is_backup);
 
 /* Reads what `fathom save` keeps. */
 bool backup_read(session_t *session, values_t *unit);

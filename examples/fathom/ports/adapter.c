@@ -108,7 +108,7 @@ static void *grown(void *array, size_t count, size_t size)
 {
     void *const larger = realloc(array, (count + 1) * size);
     if (larger != NULL) return larger;
-    (void)fputs("fathom: no memory is left\n", stderr);
+    (void)fputs("fathom: no memory is left.\n", stderr);
     exit(EXIT_FAILURE); /* NOLINT(concurrency-mt-unsafe): one thread */
 }
 
