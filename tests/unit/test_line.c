@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "line_bench.h"
+#include "line_conversation.h"
 
 static fathom_status_t init(void) { return fathom_line_init(&bench.line, &bench.config); }
 
@@ -12,6 +12,7 @@ static void set_clock(uint32_t now_us)
 
 static const suite_t suite = {.set_up = set_up};
 static const suite_t asked = {.set_up = set_up_asked};
+static const suite_t quarantined = {.set_up = set_up_quarantined};
 
 /* ---- setting up ---- */
 
@@ -58,7 +59,81 @@ TEST(zero_in_the_config_means_the_default_silence_and_gap)
     expect(FATHOM_ERR_CHECKSUM);
 }
 
-/* ---- asking ---- */
+/* ---- asking, cancelling, idle ---- */
+
+static const conversation_t conversations[] = {
+    {"a_write_is_acknowledged_by_its_own_words",
+     {WRITE(A, 1), WAIT(20000), RECEIVE("01 06 02 00 00 05 48 71"), ENDS(A, FATHOM_OK)},
+     {.responses = 1}},
+    {"transactions_are_served_first_come_first_served",
+     {QUEUE(A, 1), QUEUE(B, 2), WAIT(T3_5_US + 9 * BYTE_US), REQUEST_TO(0, 1), RESPONSE(1, 111),
+      WAIT(T3_5_US + 9 * BYTE_US), REQUEST_TO(1, 2), RESPONSE(2, 222), READS(B, 222), READS(A, 111)},
+     {.responses = 2}},
+    /* up to 400 us have passed since the last bit */
+    {"no_response_is_said_when_the_time_out_has_passed_since_the_request_left",
+     {ASK(A, 1), WAIT(TIMEOUT_US - 500), PENDS(A), WAIT(700), FAILS(A, NO_RESPONSE)},
+     {.no_responses = 1}},
+    {"a_broadcast_is_ready_after_its_turn_round_and_expects_no_response",
+     {WRITE(A, FATHOM_MODBUS_BROADCAST), QUEUE(B, 2), SENT(0, REQUEST_US - 200), WAIT(TIMEOUT_US - 1000),
+      ENDS(A, FATHOM_PENDING), WRITTEN(1), WAIT(2000), ENDS(A, FATHOM_OK), WRITTEN(2)},
+     {0}},
+    /* modulo 16 the same unit; one that responds to the broadcast all the same is not heard */
+    {"a_request_to_all_quarantines_none",
+     {WRITE(A, FATHOM_MODBUS_BROADCAST), WAIT(REQUEST_US), QUEUE(B, 16), RESPONSE(3, 333),
+      WAIT(TIMEOUT_US - 1100), ENDS(A, FATHOM_PENDING), WRITTEN(1), WAIT(1500), ENDS(A, FATHOM_OK),
+      WRITTEN(2)},
+     {.dropped = 7, .strays = 1}},
+    {"a_cancelled_broadcast_quarantines_none",
+     {WRITE(A, FATHOM_MODBUS_BROADCAST), WAIT(REQUEST_US), CANCEL(A), QUEUE(B, 16), SENT(0, T3_5_US + 400)},
+     {0}},
+
+    {"a_transaction_cancelled_before_it_is_sent_is_never_sent",
+     {QUEUE(A, 1), QUEUE(B, 2), CANCEL(A), SENT(0, 20000), REQUEST_TO(0, 2)},
+     {0}},
+    /* the one that waits was never asked, and the other one has answered: no unit is in quarantine */
+    {"one_that_waits_can_be_cancelled_without_harm_to_the_one_on_the_wire",
+     {ASK(A, 1), QUEUE(B, 2), CANCEL(B), PENDS(A), RESPONSE(1, 754), READS(A, 754), QUEUE(B, 2),
+      SENT(0, T3_5_US + 200), WAIT(8 * BYTE_US + 200), RESPONSE(2, 222), READS(B, 222), QUEUE(A, 1),
+      SENT(0, T3_5_US + 300)},
+     {.responses = 2}},
+    /* "when twice the time-out has passed since the request left": its eight bytes have to leave first */
+    {"a_transaction_cancelled_while_it_leaves_quarantines_as_long_as_any_other",
+     {QUEUE(A, 1), SENT(0, T3_5_US + 200), CANCEL(A), QUEUE(B, 1),
+      SENT(8 * BYTE_US + 2 * TIMEOUT_US - 1000, 2000)},
+     {0}},
+    /* the line keeps the silence from the last bit of the request that was cancelled */
+    {"the_next_request_waits_until_a_cancelled_one_has_left_and_a_silence_more",
+     {QUEUE(A, 1), SENT(0, T3_5_US + 200), CANCEL(A), IDLE(false), QUEUE(B, 2),
+      SENT(8 * BYTE_US + T3_5_US - 400, 1000)},
+     {0}},
+    {"a_cancelled_request_that_never_leaves_breaks_the_port_after_a_second",
+     {NEVER_SENT(true), QUEUE(A, 1), SENT(0, T3_5_US + 200), CANCEL(A), QUEUE(B, 2),
+      WAIT(FATHOM_LINE_SEND_US - 1000), PENDS(B), DUE(1000), WAIT(2000), FAILS(B, PORT), NEVER_SENT(false),
+      WAIT(100), QUEUE(B, 2), SENT(0, T3_5_US + 400)},
+     {.port_errors = 13} /* each poll finds the port broken until it sends */},
+    {"a_request_that_the_port_has_not_taken_quarantines_none_when_cancelled",
+     {PORT_REFUSES(true), QUEUE(A, 1), WAIT(10000), CANCEL(A), PORT_REFUSES(false), QUEUE(B, 1),
+      SENT(0, T3_5_US + 200)},
+     {0}},
+
+    /* fathom_line_is_idle(), for what shares a pin with the line; a silence before a request leaves it idle */
+    {"a_new_line_and_one_with_a_waiting_request_are_idle",
+     {IDLE(true), QUEUE(A, 1), IDLE(true), WAIT(1000), IDLE(true), WAIT(10000), IDLE(false)},
+     {0}},
+    {"a_line_is_busy_from_the_request_to_the_response",
+     {WAIT(10000), QUEUE(A, 1), SENT(0, 100), IDLE(false), WAIT(50000), IDLE(false),
+      RECEIVE("01 03 02 02 F2 38"), IDLE(false), RECEIVE("A1"), READS(A, 754), IDLE(true)},
+     {.responses = 1}},
+    {"a_port_that_takes_no_request_leaves_the_line_idle",
+     {PORT_REFUSES(true), WAIT(10000), QUEUE(A, 1), WAIT(5000), IDLE(true), PORT_REFUSES(false), WAIT(100),
+      IDLE(false)},
+     {0}},
+    {"a_quarantined_unit_keeps_the_line_busy_only_while_its_late_response_arrives",
+     {ASK(A, 1), WAIT(TIMEOUT_US + 1000), FAILS(A, NO_RESPONSE), IDLE(true), QUEUE(A, 1), WAIT(50000),
+      WRITTEN(1), IDLE(true), RECEIVE("01 03 02"), IDLE(false), RECEIVE("02 F2 38 A1"), IDLE(true)},
+     {.no_responses = 1, .late = 1, .dropped = 7}},
+};
+CONVERSATIONS(set_up, conversations)
 
 TEST(a_request_is_sent_after_the_silence_and_not_before)
 {
@@ -125,15 +200,6 @@ TEST(a_loop_of_20_ms_reads_a_response_that_is_spread_over_its_rounds)
     }
 }
 
-TEST(a_write_is_acknowledged_by_its_own_words)
-{
-    ask_to_write(&bench.request, 1);
-    run(20000);
-    expect_bytes(0, set_address_5, sizeof set_address_5);
-    deliver_all(set_address_5);
-    expect(FATHOM_OK);
-}
-
 TEST(an_exception_ends_the_transaction_and_keeps_its_number)
 {
     ask_1_and_send(3);
@@ -142,19 +208,6 @@ TEST(an_exception_ends_the_transaction_and_keeps_its_number)
     assert_int_equal(bench.request.message.exception, 2);
     assert_int_equal(bench.value, 0xDEAD);
     expect_count(FATHOM_LINE_EXCEPTIONS, 1);
-}
-
-TEST(transactions_are_served_first_come_first_served)
-{
-    ask_1(0);
-    ask_other(2);
-    run(T3_5_US + 9 * BYTE_US);
-    expect_unit(0, 1);
-    receive_response(1, 111);
-    run(T3_5_US + 9 * BYTE_US);
-    expect_unit(1, 2);
-    response_other(2, 222);
-    expect_mm(111);
 }
 
 TEST_IN(asked, a_transaction_may_be_submitted_again_when_it_has_ended_and_not_before)
@@ -167,15 +220,6 @@ TEST_IN(asked, a_transaction_may_be_submitted_again_when_it_has_ended_and_not_be
 }
 
 /* ---- time ---- */
-
-TEST_IN(asked, no_response_is_said_when_the_time_out_has_passed_since_the_request_left)
-{
-    run(TIMEOUT_US - 500); /* up to 400 us have passed since the last bit */
-    expect(FATHOM_PENDING);
-    expect_after(700, FATHOM_ERR_NO_RESPONSE);
-    expect_count(FATHOM_LINE_NO_RESPONSES, 1);
-    assert_int_equal(bench.value, 0xDEAD);
-}
 
 TEST_IN(asked, a_response_that_began_in_time_may_end_after_the_time_out)
 {
@@ -245,15 +289,6 @@ TEST(cancelling_what_is_not_queued_does_nothing)
     expect(FATHOM_ERR_CANCELLED);
 }
 
-TEST(a_transaction_cancelled_before_it_is_sent_is_never_sent)
-{
-    ask_1(0);
-    ask_other(2);
-    cancel(&bench.request);
-    expect_written_after(20000, 1);
-    expect_unit(0, 2);
-}
-
 TEST_IN(asked, a_transaction_cancelled_in_flight_leaves_a_response_that_is_not_taken)
 {
     cancel(&bench.request);
@@ -267,47 +302,6 @@ TEST_IN(asked, a_transaction_cancelled_in_flight_leaves_a_response_that_is_not_t
     response_other(1, 751);
 }
 
-/* "when twice the time-out has passed since the request left": its eight bytes have to leave first. */
-TEST(a_transaction_cancelled_while_it_leaves_quarantines_as_long_as_any_other)
-{
-    ask_1(0);
-    run(T3_5_US + 200);
-    expect_written(1);
-    cancel(&bench.request);
-    ask_other(1);
-    expect_sent(8 * BYTE_US + 2 * TIMEOUT_US - 1000, 2000);
-}
-
-/* The silence is kept from the last bit of the request that was cancelled. */
-TEST(the_next_request_waits_until_a_cancelled_one_has_left_and_a_silence_more)
-{
-    ask_1(0);
-    run(T3_5_US + 200);
-    expect_written(1);
-    cancel(&bench.request);
-    assert_false(fathom_line_is_idle(&bench.line));
-    ask_other(2);
-    expect_sent(8 * BYTE_US + T3_5_US - 400, 1000);
-}
-
-TEST(a_cancelled_request_that_never_leaves_breaks_the_port_after_a_second)
-{
-    bench.fake.never_sent = true;
-    ask_1(0);
-    run(T3_5_US + 200);
-    cancel(&bench.request);
-    ask_other(2);
-    run(FATHOM_LINE_SEND_US - 1000);
-    expect_other(FATHOM_PENDING);
-    expect_due(1000);
-    run(2000);
-    expect_other(FATHOM_ERR_PORT);
-    bench.fake.never_sent = false;
-    run(100);
-    ask_other(2);
-    expect_written_after(T3_5_US + 400, 2);
-}
-
 /* The poll that finds the port broken is the first after the request was handed over. */
 TEST(a_silence_comes_before_the_next_request_where_the_port_broke_while_one_left)
 {
@@ -318,30 +312,6 @@ TEST(a_silence_comes_before_the_next_request_where_the_port_broke_while_one_left
     bench.fake.busy_until_us = bench.fake.now_us;
     ask_other(2);
     expect_sent(T3_5_US - 400, 1000);
-}
-
-TEST(a_request_that_the_port_has_not_taken_quarantines_none_when_cancelled)
-{
-    bench.fake.write_busy = true;
-    ask_1(0);
-    run(10000);
-    cancel(&bench.request);
-    bench.fake.write_busy = false;
-    ask_other(1);
-    expect_written_after(T3_5_US + 200, 1);
-}
-
-/* ---- broadcast ---- */
-
-TEST(a_broadcast_is_ready_after_its_turn_round_and_expects_no_response)
-{
-    ask_to_write(&bench.request, FATHOM_MODBUS_BROADCAST);
-    ask_other(2);
-    expect_written_after(REQUEST_US - 200, 1);
-    expect_after(TIMEOUT_US - 1000, FATHOM_PENDING);
-    expect_written(1);
-    expect_after(2000, FATHOM_OK);
-    expect_written(2);
 }
 
 /* ---- due ---- */
@@ -414,4 +384,13 @@ TEST(a_poll_reads_the_port_a_bounded_number_of_times)
     poll_line();
     assert_int_equal(bench.fake.reads, 16);
     assert_false(fake_drained(&bench.fake));
+}
+
+TEST_IN(quarantined, what_only_waits_for_a_quarantine_is_due_when_that_ends)
+{
+    ask_1(0);
+    const uint32_t due_us = due();
+    assert_true(due_us > TIMEOUT_US - 1000 && due_us <= TIMEOUT_US);
+    run_in_steps(due_us, due_us);
+    expect_written(2);
 }

@@ -82,3 +82,19 @@ TEST(a_request_to_all_or_to_any_is_no_units_own)
     fathom_line_cancel_unit(&bench.line, 7);
     assert_statuses(FATHOM_PENDING, FATHOM_PENDING, FATHOM_ERR_CANCELLED, FATHOM_PENDING);
 }
+
+TEST(one_in_the_middle_of_the_queue_can_be_cancelled)
+{
+    fathom_modbus_request_t third;
+    uint16_t third_value;
+    memset(&third, 0, sizeof third);
+    ask_1_and_send(0);
+    ask_other(2);
+    ask(&third, 3, &third_value, 0);
+    cancel(&bench.other);
+    receive_all(response_1_754);
+    expect_written_after(REQUEST_US, 2);
+    expect_unit(1, 3);
+    deliver_response(3, 333);
+    assert_int_equal(third_value, 333);
+}

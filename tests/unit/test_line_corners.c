@@ -48,38 +48,6 @@ TEST(bytes_after_an_overrun_are_not_the_first_after_a_silence)
     assert_int_equal(bench_listener.gaps, 0);
 }
 
-/* A write on an echoing line, whose request has been handed over. */
-static void write_with_echo(void)
-{
-    set_up_with(FATHOM_LINE_ECHO_ON);
-    ask_to_write(&bench.request, 1);
-    run_until_written(1, 100);
-    come_all(0, set_address_5);
-}
-
-/* line.h: cancel: the unit is then quarantined, and no later transaction takes its response. The echo is no
- * response. */
-TEST(the_echo_of_a_cancelled_write_is_not_its_late_response)
-{
-    write_with_echo();
-    cancel(&bench.request);
-    run(9 * BYTE_US);
-    ask_to_write(&bench.other, 1);
-    expect_written_after(20000, 1); /* the unit is still quarantined */
-}
-
-/* After the echo the next copy is the late response. */
-TEST(the_response_after_the_echo_of_a_cancelled_write_ends_the_quarantine)
-{
-    write_with_echo();
-    run(9 * BYTE_US);
-    cancel(&bench.request);
-    deliver(set_address_5, 8);
-    expect_count(FATHOM_LINE_LATE_RESPONSES, 1);
-    ask_other(1);
-    expect_written_after(T3_5_US + 200, 2);
-}
-
 /* line.h, FATHOM_LINE_SEND_US: "how long a port may ... take to send it, before it counts as broken". */
 TEST(a_port_that_never_sends_is_broken_on_a_noisy_line_too)
 {

@@ -1,49 +1,32 @@
 /* SPDX-License-Identifier: MIT */
 /* A far end that never falls silent, and knows when the line is polled: what it can hold up, and for how long. */
-#include "line_bench.h"
+#include "line_conversation.h"
 
 static const suite_t suite = {.set_up = set_up};
 static const suite_t asked = {.set_up = set_up_asked};
 
 enum { FRAME = sizeof bench.frame };
 
-/* A byte in each poll for `for_us`: no silence. 00 begins no frame of Modbus. */
-static void jam(uint32_t for_us)
-{
-    for (uint32_t us = 0; us < for_us; us += BYTE_US) {
-        receive_hex("00");
-        run_in_steps(BYTE_US, BYTE_US);
-    }
-}
-
 /* busy_us is 1 s. Of 65 ms of silence, T3_5_US suffice. */
-TEST(while_noise_leaves_no_silence_a_read_leaves_after_a_second_and_the_line_is_said_to_be_busy)
-{
-    ask_1(0);
-    jam(1000000 - 2 * BYTE_US);
-    expect(FATHOM_PENDING);
-    expect_written(0);
-    jam(4 * BYTE_US);
-    expect_written(1);
-    jam(8 * BYTE_US + TIMEOUT_US + 2 * BYTE_US);
-    expect_failed(FATHOM_ERR_LINE_BUSY);
-    expect_count(FATHOM_LINE_BUSY_ATTEMPTS, 1);
-    expect_count(FATHOM_LINE_NO_RESPONSES, 0);
-}
-
-TEST(while_noise_leaves_no_silence_a_write_ends_after_a_second_and_was_not_sent)
-{
-    ask_to_write(&bench.request, 1);
-    jam(1000000 - 2 * BYTE_US);
-    expect(FATHOM_PENDING);
-    jam(4 * BYTE_US);
-    expect(FATHOM_ERR_LINE_BUSY);
-    expect_written(0);
-    expect_count(FATHOM_LINE_BUSY_ATTEMPTS, 1);
-    ask_to_write(&bench.request, 1); /* the wait begins anew; now the line falls silent */
-    expect_written_after(T3_5_US + BYTE_US, 1);
-    deliver_all(set_address_5);
-}
+static const conversation_t conversations[] = {
+    {"while_noise_leaves_no_silence_a_read_leaves_after_a_second_and_the_line_is_said_to_be_busy",
+     {QUEUE(A, 1), JAM(1000000 - 2 * BYTE_US), PENDS(A), WRITTEN(0), JAM(4 * BYTE_US), WRITTEN(1),
+      JAM(8 * BYTE_US + TIMEOUT_US + 2 * BYTE_US), FAILS(A, LINE_BUSY)},
+     {.busy = 1, .dropped = 1068}},
+    /* the wait of the second write begins anew; now the line falls silent */
+    {"while_noise_leaves_no_silence_a_write_ends_after_a_second_and_was_not_sent",
+     {WRITE(A, 1), JAM(1000000 - 2 * BYTE_US), ENDS(A, FATHOM_PENDING), JAM(4 * BYTE_US),
+      ENDS(A, FATHOM_ERR_LINE_BUSY), WRITTEN(0), COUNT(BUSY_ATTEMPTS, 1), WRITE(A, 1),
+      SENT(0, T3_5_US + BYTE_US)},
+     {.busy = 1, .dropped = 962}},
+    /* the port has FATHOM_LINE_SEND_US, a second, for the request; the wait for silence is another second. A request may
+     * leave at once here, so no wait for silence begins */
+    {"noise_does_not_prolong_the_time_of_a_busy_port",
+     {PORT_REFUSES(true), WAIT(10000), QUEUE(A, 1), WAIT(500000), JAM(500000 - 2 * BYTE_US), PENDS(A),
+      JAM(4 * BYTE_US), FAILS(A, PORT)},
+     {.port_errors = 1, .dropped = 482}},
+};
+CONVERSATIONS(set_up, conversations)
 
 /* They are no part of the response: after them the unit is waited for until its time-out. */
 TEST(a_read_that_leaves_into_noise_discards_the_bytes_before_it)
@@ -52,7 +35,7 @@ TEST(a_read_that_leaves_into_noise_discards_the_bytes_before_it)
     fathom_modbus_read_holding_registers(&bench.request.message, 1, 0x0200, 1, &bench.value);
     bench.request.transaction.timeout_us = TIMEOUT_US;
     assert_int_equal(fathom_modbus_client_submit(&bench.line, &bench.request), FATHOM_PENDING);
-    jam(1000000 - 2 * BYTE_US);
+    play_jam(&(step_t){.us = 1000000 - 2 * BYTE_US});
     receive_hex("02 03 02"); /* a response of another unit begins and breaks off */
     run_in_steps(3 * BYTE_US, BYTE_US);
     expect_written(1);
@@ -61,19 +44,6 @@ TEST(a_read_that_leaves_into_noise_discards_the_bytes_before_it)
     expect(FATHOM_PENDING);
     run(4 * BYTE_US);
     expect(FATHOM_ERR_LINE_BUSY);
-}
-
-/* The port has FATHOM_LINE_SEND_US, a second, for it; the wait for silence is another. */
-TEST(noise_does_not_prolong_the_time_of_a_busy_port)
-{
-    bench.fake.write_busy = true;
-    run(10000); /* a request may leave at once, so no wait for silence begins */
-    ask_1(0);
-    run(500000);
-    jam(500000 - 2 * BYTE_US);
-    expect(FATHOM_PENDING);
-    jam(4 * BYTE_US);
-    expect_failed(FATHOM_ERR_PORT);
 }
 
 /* Rule 5: FATHOM_LINE_FINISH_US after the time-out. 26 bytes of data, 19 ms from byte to byte. */

@@ -1,124 +1,97 @@
 /* SPDX-License-Identifier: MIT */
 #include "fathom/engine/line_turns.h"
-#include "line_bench.h"
+#include "line_conversation.h"
 
-/* line.h: whose response is late, whose is a stray, and until when a unit is asked nothing. */
+/* line.h: which response is late, which frame is a stray, and until when a unit receives no request. */
 
 static const suite_t suite = {.set_up = set_up};
 
-static void start_write(void)
+#define NO_RESPONSE_FROM_1 ASK(A, 1), WAIT(TIMEOUT_US + 200), FAILS(A, NO_RESPONSE)
+#define COPY               "01 06 02 00 00 05 48 71" /* set_address_5: its echo and its response are equal */
+
+static const conversation_t late[] = {
+    {"a_unit_is_asked_again_after_twice_its_time_out",
+     {NO_RESPONSE_FROM_1, QUEUE(B, 1), SENT(TIMEOUT_US - 1000, 1500)},
+     {.no_responses = 1}},
+    {"other_units_are_asked_while_one_is_quarantined",
+     {NO_RESPONSE_FROM_1, QUEUE(A, 1), ASK(B, 2), REQUEST_TO(1, 2), RESPONSE(2, 222), READS(B, 222),
+      PENDS(A)},
+     {.no_responses = 1, .responses = 1}},
+    {"a_late_response_during_the_transaction_of_another_unit_is_counted_and_harmless",
+     {NO_RESPONSE_FROM_1, ASK(B, 2), RESPONSE(1, 111), COUNT(LATE_RESPONSES, 1), PENDS(B), RESPONSE(2, 222),
+      READS(B, 222)},
+     {.no_responses = 1, .late = 1, .responses = 1, .dropped = 7}},
+    {"a_late_response_serves_the_retry_that_waits_for_it",
+     {ASK_TWICE(A, 1), WAIT(TIMEOUT_US + 200), PENDS(A), RESPONSE(1, 111), READS(A, 111), WRITTEN(1)},
+     {.no_responses = 1, .late = 1, .responses = 1}},
+    {"a_late_exception_ends_the_retry",
+     {ASK_TWICE(A, 1), WAIT(TIMEOUT_US + 200), RECEIVE("01 83 02 C0 F1"), FAILS(A, EXCEPTION)},
+     {.no_responses = 1, .late = 1, .exceptions = 1}},
+    /* from the quarantined unit, but three registers instead of one */
+    {"a_late_frame_that_does_not_answer_the_retry_ends_the_quarantine_and_no_more",
+     {ASK_TWICE(A, 1), WAIT(TIMEOUT_US + 200), RECEIVE("01 03 06 00 FA 02 93 09 7A 8F 47"), PENDS(A),
+      WAIT(REQUEST_US), WRITTEN(2), RESPONSE(1, 111), READS(A, 111)},
+     {.no_responses = 1, .late = 1, .dropped = 11, .responses = 1, .maybe_unsolicited = 1}},
+    {"a_damaged_response_quarantines_for_the_rest_of_the_time_out",
+     {ASK_TWICE(A, 1), RECEIVE("01 03 02 02 E2 38 A1"), WAIT(GAP_US + 200), COUNT(CHECKSUM_ERRORS, 1),
+      SENT(TIMEOUT_US - GAP_US - 1500, 2000)},
+     {.damaged = 1, .dropped = 7}},
+    /* it may be noise, and the response late */
+    {"a_response_that_broke_off_quarantines_for_twice_the_time_out",
+     {ASK_TWICE(A, 1), RECEIVE("01 03 02 02 F2"), WAIT(GAP_US + 200), COUNT(CHECKSUM_ERRORS, 1),
+      SENT(2 * TIMEOUT_US - GAP_US - 1500, 2000)},
+     {.damaged = 1, .dropped = 5}},
+    /* one deadline, the latest, serves all units in quarantine */
+    {"a_short_quarantine_of_another_unit_does_not_end_a_long_one",
+     {ASK_FOR(A, 2, 300000), WAIT(300000), FAILS(A, NO_RESPONSE), ASK_FOR(B, 3, 10000), WAIT(10000),
+      FAILS(B, NO_RESPONSE), QUEUE(A, 2), SENT(200000, 100000)},
+     {.no_responses = 2}},
+    {"a_quarantine_lasts_no_longer_because_of_one_that_has_ended",
+     {ASK_FOR(B, 2, 10 * TIMEOUT_US), CANCEL(B), RESPONSE(2, 222), COUNT(LATE_RESPONSES, 1), ASK_TWICE(A, 1),
+      WAIT(TIMEOUT_US - 400), SENT(TIMEOUT_US, 800)},
+     {.late = 1, .dropped = 7, .no_responses = 1}},
+    /* the first copy of the request is its echo, and the second one the response */
+    {"after_the_echo_of_a_cancelled_write_its_response_is_late_and_ends_the_quarantine",
+     {ECHO(AUTO), WRITE(A, 1), WAIT(T3_5_US + 200), CANCEL(A), WAIT(8 * BYTE_US), RECEIVE(COPY),
+      COUNT(STRAYS, 1), COUNT(LATE_RESPONSES, 0), RECEIVE(COPY), COUNT(LATE_RESPONSES, 1), QUEUE(B, 1),
+      SENT(0, T3_5_US + 200)},
+     {.strays = 1, .late = 1, .dropped = 16}},
+    {"the_echo_of_a_cancelled_write_does_not_end_the_quarantine",
+     {ECHO(ON), WRITE(A, 1), WAIT(T3_5_US + 200), CANCEL(A), WAIT(8 * BYTE_US), RECEIVE(COPY), WRITE(B, 1),
+      WAIT(20000), WRITTEN(1)},
+     {.strays = 1, .dropped = 8}},
+    {"the_response_after_the_echo_of_a_cancelled_write_ends_the_quarantine",
+     {ECHO(ON), WRITE(A, 1), WAIT(T3_5_US + 200), WAIT(8 * BYTE_US), RECEIVE(COPY), CANCEL(A), RECEIVE(COPY),
+      COUNT(LATE_RESPONSES, 1), QUEUE(B, 1), SENT(0, T3_5_US + 200)},
+     {.late = 1, .dropped = 8}},
+    /* the late response might have been what a device sends by itself */
+    {"after_the_next_request_no_echo_of_a_cancelled_one_is_expected",
+     {ECHO(AUTO), WRITE(A, 1), WAIT(T3_5_US + 200), CANCEL(A), QUEUE(B, 2), WAIT(8 * BYTE_US + T3_5_US + 200),
+      WRITTEN(2), WAIT(8 * BYTE_US), RECEIVE(COPY), COUNT(LATE_RESPONSES, 1), RESPONSE(2, 222), READS(B, 222),
+      WAIT(66000), QUEUE(A, 1), SENT(0, T3_5_US + 200)},
+     {.late = 1, .dropped = 8, .responses = 1}},
+    {"a_pause_within_bytes_that_the_line_held_back_is_no_gap_before_them",
+     {LISTEN(2000), ASK(A, 1), RECEIVE("01 03 02 02"), WAIT(3000), RECEIVE("00 00 00"), WAIT(2 * GAP_US),
+      HEARD(7, 0), FAILS(A, CHECKSUM)},
+     {.damaged = 1}},
+};
+CONVERSATIONS(set_up, late)
+
+/* The shape of both responses is the same, so only the quarantine can tell them apart. */
+TEST(a_late_response_is_never_the_reading_of_the_next_request)
 {
-    fathom_modbus_write_single_register(&bench.request.message, 1, 0x0200, 5);
-    bench.request.transaction.timeout_us = TIMEOUT_US;
-    assert_int_equal(fathom_modbus_client_submit(&bench.line, &bench.request), FATHOM_PENDING);
-}
-
-/* Submits a read and runs until it has left. */
-static void ask_and_send(fathom_modbus_request_t *request, uint8_t unit, uint16_t *value, uint32_t timeout_us)
-{
-    const size_t before = bench.fake.written;
-    ask(request, unit, value, 0);
-    request->transaction.timeout_us = timeout_us;
-    run(T3_5_US + 200);
-    assert_int_equal(bench.fake.written, before + 1);
-    run(8 * BYTE_US + 100);
-}
-
-/* Is what has been submitted sent after one silence? */
-static bool goes_out(void)
-{
-    const size_t before = bench.fake.written;
-    run(T3_5_US + 200);
-    return bench.fake.written != before;
-}
-
-/* One deadline, the latest, serves all units in quarantine: 2 for 300 ms after its time-out, 3 for 10 ms. */
-TEST(a_short_quarantine_of_another_unit_does_not_end_a_long_one)
-{
-    ask_and_send(&bench.request, 2, &bench.value, 300000);
-    run(300000);
-    assert_int_equal(status_of(&bench.request), FATHOM_ERR_NO_RESPONSE);
-    ask_and_send(&bench.other, 3, &bench.other_value, 10000);
-    run(10000);
-    assert_int_equal(status_of(&bench.other), FATHOM_ERR_NO_RESPONSE);
-    ask(&bench.request, 2, &bench.value, 0);
-    run(200000);
-    assert_int_equal(bench.fake.written, 2);
-    run(100000);
-    assert_int_equal(bench.fake.written, 3);
-}
-
-/* cancel: the unit is then quarantined. The first copy of the request is its echo, the second the response. */
-TEST(after_the_echo_of_a_cancelled_write_its_response_is_late_and_ends_the_quarantine)
-{
-    set_up_echo(FATHOM_LINE_ECHO_AUTO);
-    start_write();
-    run(T3_5_US + 200);
-    fathom_line_cancel(&bench.line, &bench.request.transaction);
-    run(8 * BYTE_US);
-    receive(set_address_5, sizeof set_address_5);
-    run(100);
-    assert_int_equal(counter(FATHOM_LINE_STRAYS), 1);
-    assert_int_equal(counter(FATHOM_LINE_LATE_RESPONSES), 0);
-    receive(set_address_5, sizeof set_address_5);
-    run(100);
-    assert_int_equal(counter(FATHOM_LINE_STRAYS), 1);
-    assert_int_equal(counter(FATHOM_LINE_LATE_RESPONSES), 1);
-    ask(&bench.other, 1, &bench.other_value, 0);
-    assert_true(goes_out());
-}
-
-/* The echo of a request can only come before the next one has left. */
-TEST(after_the_next_request_no_echo_of_a_cancelled_one_is_expected)
-{
-    set_up_echo(FATHOM_LINE_ECHO_AUTO);
-    start_write();
-    run(T3_5_US + 200);
-    fathom_line_cancel(&bench.line, &bench.request.transaction);
-    ask(&bench.other, 2, &bench.other_value, 0);
-    run(8 * BYTE_US + T3_5_US + 200);
-    assert_int_equal(bench.fake.written, 2);
-    run(8 * BYTE_US);
-    receive(set_address_5, sizeof set_address_5);
-    run(100);
-    assert_int_equal(counter(FATHOM_LINE_LATE_RESPONSES), 1);
-    receive_response(2, 222);
-    run(100);
-    assert_int_equal(status_of(&bench.other), FATHOM_OK);
-    run(66000); /* the late one might have been what a device sends by itself */
-    ask(&bench.request, 1, &bench.value, 0);
-    assert_true(goes_out());
-}
-
-/* "A late response does serve a retry of the same transaction": then it is a response, and none of its bytes is left
- * over. */
-static unsigned heard;
-
-/* after_gap: "before the first of them". The listener's gap is shorter than the one that ends a frame. */
-static unsigned gaps;
-
-static void hear_gaps(fathom_listener_t *listener, const uint8_t *bytes, uint8_t count, bool after_gap,
-                      uint32_t time_us)
-{
-    (void)listener, (void)bytes, (void)time_us;
-    heard += count;
-    gaps += after_gap;
-}
-
-TEST(a_pause_within_bytes_that_were_held_back_is_no_gap_before_them)
-{
-    static const uint8_t wrong[] = {0, 0, 0};
-    fathom_listener_t listener = {.receive = hear_gaps, .gap_us = 2000};
-    heard = gaps = 0;
-    (void)fathom_line_replace_listener(&bench.line, &listener);
-    ask_1_and_send(0);
-    receive(response_1_754, 4);
-    run(3000);
-    receive(wrong, sizeof wrong);
-    run(2 * GAP_US);
-    assert_int_equal(heard, 7);
-    assert_int_equal(gaps, 0);
-    assert_int_equal(status_of(&bench.request), FATHOM_ERR_CHECKSUM);
+    for (uint32_t late_us = TIMEOUT_US + 300; late_us < 2 * TIMEOUT_US - 1000; late_us += 1000) {
+        set_up_asked(state);
+        fake_receive(&bench.fake, late_us, response_1_754, sizeof response_1_754);
+        expect_after(TIMEOUT_US + 200, FATHOM_ERR_NO_RESPONSE);
+        ask_other(1);
+        expect_written_after(late_us - TIMEOUT_US, 1); /* it was not even asked */
+        expect_count(FATHOM_LINE_LATE_RESPONSES, 1);
+        expect_written_after(T3_5_US + 9 * BYTE_US, 2);
+        expect_other(FATHOM_PENDING);
+        assert_int_equal(bench.other_value, 0xDEAD);
+        response_other(1, 751);
+    }
 }
 
 /* line_attempt.c: units with equal addresses modulo 16 share a bit. Unit 255 stands for all. */

@@ -68,26 +68,3 @@ TEST(a_cancelled_request_to_unit_255_quarantines_all)
     ask_other(77);
     expect_sent(2 * TIMEOUT_US - 1000, 2000);
 }
-
-TEST(a_request_to_all_quarantines_none)
-{
-    ask_to_write(&bench.request, 0);
-    run(REQUEST_US);
-    ask_other(16);            /* modulo 16 the same */
-    receive_response(3, 333); /* a unit that answers all the same is not heard */
-    expect_after(TIMEOUT_US - 1000, FATHOM_PENDING);
-    expect_written(1);
-    expect_after(1500, FATHOM_OK);
-    expect_written(2);
-    assert_int_equal(counter(FATHOM_LINE_NO_RESPONSES) + counter(FATHOM_LINE_RESPONSES), 0);
-}
-
-TEST(a_cancelled_broadcast_quarantines_none)
-{
-    ask_to_write(&bench.request, 0);
-    run(REQUEST_US);
-    cancel(&bench.request);
-    expect(FATHOM_ERR_CANCELLED);
-    ask_other(16);
-    expect_written_after(T3_5_US + 400, 2);
-}

@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef FATHOM_TESTS_LINE_CONVERSATION_H
+#define FATHOM_TESTS_LINE_CONVERSATION_H
+
+#include "line_bench.h"
+
+/*
+ * A conversation is one test of the line: its name, its steps in their order, and the counters at its end. A counter
+ * that a row does not name must be 0. A is bench.request, and B is bench.other. Times are in microseconds.
+ *
+ *     {"a_late_response_is_counted_and_not_delivered",
+ *      {ASK(A, 1), WAIT(TIMEOUT_US + 200), RESPONSE(1, 754), FAILS(A, NO_RESPONSE)},
+ *      {.no_responses = 1, .late = 1, .dropped = 7}},
+ *
+ * A test with a loop or a branch is a function.
+ */
+typedef struct step {
+    void (*play)(const struct step *step);
+    uint8_t which; /* A or B, a counter, or a boolean */
+    uint8_t unit;
+    int32_t value; /* a status, a distance in mm, or a number of something */
+    uint32_t us;
+    const char *hex;
+} step_t;
+
+/* In the order of FATHOM_LINE_RESPONSES, FATHOM_LINE_DROPPED_BYTES, ... */
+typedef struct {
+    uint16_t responses, dropped, port_errors, no_responses, damaged, exceptions, malformed, late, strays, bad,
+        old, echoes, foreign, maybe_unsolicited, unused[3], busy, other_masters;
+} counts_t;
+
+typedef struct {
+    const char *name;
+    step_t steps[18];
+    counts_t counts;
+} conversation_t;
+
+enum { A, B };
+
+#define STEP(what, ...)                                                                                      \
+    {                                                                                                        \
+        .play = play_##what, __VA_ARGS__                                                                     \
+    }
+
+/* Actions. QUEUE submits a read; ASK also runs until its last bit has left. WRITE submits set_address_5 to a unit. */
+#define QUEUE(x, to)           STEP(queue, .which = (x), .unit = (to), .us = TIMEOUT_US)
+#define QUEUE_TWICE(x, to)     STEP(queue, .which = (x), .unit = (to), .us = TIMEOUT_US, .value = 1)
+#define ASK(x, to)             STEP(ask, .which = (x), .unit = (to), .us = TIMEOUT_US)
+#define ASK_TWICE(x, to)       STEP(ask, .which = (x), .unit = (to), .us = TIMEOUT_US, .value = 1)
+#define ASK_FOR(x, to, for_us) STEP(ask, .which = (x), .unit = (to), .us = (for_us))
+#define WRITE(x, to)           STEP(write, .which = (x), .unit = (to))
+#define CANCEL(x)              STEP(cancel, .which = (x))
+#define WAIT(for_us)           STEP(wait, .us = (for_us))
+#define POLL_AFTER(in_us)      STEP(poll_after, .us = (in_us)) /* one poll */
+#define RECEIVE(text)          STEP(receive, .hex = (text))
+#define RESPONSE(from, mm)     STEP(response, .unit = (from), .value = (mm))
+#define JAM(for_us)            STEP(jam, .us = (for_us)) /* a byte 00 in each character time */
+#define ECHO(known)            STEP(echo, .value = FATHOM_LINE_ECHO_##known)
+#define LISTEN(gap)            STEP(listen, .us = (gap))
+#define FLUSH                  STEP(flush, .which = 0)
+#define BREAK_PORT             STEP(break_port, .which = 0)
+#define PORT_REFUSES(on)       STEP(refuse, .which = (on))
+#define NEVER_SENT(on)         STEP(never_sent, .which = (on))
+
+/* Expectations. SENT: no request leaves for `after`, and one leaves within `within` after that. */
+#define FAILS(x, status)     STEP(fails, .which = (x), .value = FATHOM_ERR_##status)
+#define PENDS(x)             STEP(fails, .which = (x), .value = FATHOM_PENDING)
+#define ENDS(x, status)      STEP(ends, .which = (x), .value = (status)) /* of a write */
+#define READS(x, mm)         STEP(reads, .which = (x), .value = (mm))
+#define WRITTEN(n)           STEP(written, .value = (n))
+#define REQUEST_TO(n, id)    STEP(request_to, .value = (n), .unit = (id)) /* the n-th request, from 0 on */
+#define SENT(after, within)  STEP(sent, .us = (after), .value = (within))
+#define DUE(in_us)           STEP(due, .us = (in_us))
+#define IDLE(is_idle)        STEP(idle, .which = (is_idle))
+#define COUNT(counter, n)    STEP(count, .which = FATHOM_LINE_##counter, .value = (n))
+#define HEARD(bytes, pauses) STEP(heard, .value = (bytes), .which = (pauses))
+
+typedef void play_step_t(const step_t *step);
+play_step_t play_queue, play_ask, play_write, play_cancel, play_wait, play_poll_after, play_receive,
+    play_response, play_jam, play_echo, play_listen, play_flush, play_break_port, play_refuse,
+    play_never_sent, play_fails, play_ends, play_reads, play_written, play_request_to, play_sent, play_due,
+    play_idle, play_count, play_heard;
+
+/* Plays the row in *state on a line that `begin` sets up, such as set_up. */
+void play_conversation(void **state, int (*begin)(void **state));
+
+/* Registers each row of a table as a test of its own. */
+#define CONVERSATIONS(begin, table)                                                                          \
+    static void play_##table(void **state) { play_conversation(state, begin); }                              \
+    __attribute__((constructor)) static void add_##table(void)                                               \
+    {                                                                                                        \
+        static const suite_t of_rows;                                                                        \
+        static suite_test_t nodes[COUNT_OF(table)];                                                          \
+        for (size_t i = 0; i != COUNT_OF(table); i++)                                                        \
+            suite_add(&nodes[i], &of_rows, __FILE__, table[i].name, play_##table, &table[i]);                \
+    }
+
+#endif
