@@ -5,14 +5,15 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "cli/sensor_words.h"
+
+enum { WORD = 400 };
+
 EACH_BEGINS(bench_begin())
 
 static const suite_t suite = {.set_up = begins};
 
-static const struct {
-    const char *line;
-    const char *says;
-} rows[] = {
+static const refused_t wrong[] = {
     {"reed", "unknown command 'reed'. Did you mean read?"},
     {"--versoin", "unknown option '--versoin'."},
     {"help poort", "unknown command or topic 'poort'. Did you mean ports?"},
@@ -117,13 +118,7 @@ static const struct {
 
 TEST(wrong_usage_is_rejected_in_one_line_before_anything_is_sent)
 {
-    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
-        const tool_run_t *const run = tool_run(&bench.tool, "%s", rows[i].line);
-        const char *const end = strchr(run->err, '\n');
-        if (run->status != 2 || strstr(run->err, rows[i].says) == NULL || run->out[0] != '\0' ||
-            strncmp(run->err, "fathom", 6) != 0 || end == NULL || end[1] != '\0')
-            fail_msg("%s: exit status %d\n%snot: %s", rows[i].line, run->status, run->err, rows[i].says);
-    }
+    for (size_t i = 0; i != sizeof wrong / sizeof wrong[0]; i++) assert_refused(wrong[i].line, wrong[i].text);
     assert_int_equal(bench.a16.device.counters.requests, 0);
 }
 
@@ -174,3 +169,117 @@ TEST(an_option_without_an_effect_is_a_notice)
     run = tool_run(&bench.tool, "read a16 --port /nowhere --retries 7 --count 1 --quiet");
     assert_null(strstr(run->err, "no effect"));
 }
+
+/* ---- the word that names a sensor ---- */
+
+static void parse(sensor_word_t *place, const char *text, char word[WORD])
+{
+    (void)snprintf(word, WORD, "%s", text);
+    assert_true(sensor_word_parse(place, word, &(origin_t){.command = "read"}));
+}
+
+static void expect_part(const char *part, const char *expected, const char *word)
+{
+    if ((part == NULL) != (expected == NULL) || (part != NULL && strcmp(part, expected) != 0))
+        fail_msg("%s", word);
+}
+
+TEST(right_words_have_their_parts)
+{
+    static const struct {
+        const char *word;
+        const char *name;
+        const char *address;
+        const char *mode;
+        const char *port;
+    } rows[] = {
+        {"a16", "", NULL, NULL, NULL},
+        {"a16:3", "", "3", NULL, NULL},
+        {"a16:modbus", "", NULL, "modbus", NULL},
+        {"a16::modbus", "", "", "modbus", NULL},
+        {"a16:", "", "", NULL, NULL},
+        {"a05:2:dyp", "", "2", "dyp", NULL},
+        {"a16:x", "", NULL, "x", NULL}, /* the address and the mode are parsed with the sensor */
+        {"a16:1x", "", "1x", NULL, NULL},
+        {"a16:1:", "", "1", "", NULL},
+        {"a16:modbus:1", "", NULL, "modbus:1", NULL},
+        {"tank=hps167s:7", "tank", "7", NULL, NULL},
+        {"7=a16", "7", NULL, NULL, NULL},
+        {"A-z_9.=a16", "A-z_9.", NULL, NULL, NULL},
+        {"abcdefghijabcdefghijabcdefghijX=a16", "abcdefghijabcdefghijabcdefghijX", NULL, NULL, NULL},
+        {"a16@/dev/ttyUSB0", "", NULL, NULL, "/dev/ttyUSB0"},
+        {"a16@./a=b@c:1", "", NULL, NULL, "./a=b@c:1"},
+        {"hps167s:8@tcp:10.0.0.7", "", "8", NULL, "tcp:10.0.0.7"},
+        {"hps167s@tcp:[::1]:1502", "", NULL, NULL, "tcp:[::1]:1502"},
+        {"a=a16:1:modbus@x,baud=57600", "a", "1", "modbus", "x"},
+    };
+    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
+        sensor_word_t place;
+        char word[WORD];
+        parse(&place, rows[i].word, word);
+        assert_non_null(strstr(rows[i].word, place.model->name));
+        expect_part(place.name, rows[i].name, rows[i].word);
+        expect_part(place.address, rows[i].address, rows[i].word);
+        expect_part(place.mode, rows[i].mode, rows[i].word);
+        expect_part(place.port, rows[i].port, rows[i].word);
+    }
+}
+
+/* The numbers are those of other headers: hal.h, line.h and fathom_gpio.h. */
+TEST(values_are_those_of_the_library)
+{
+    static const struct {
+        const char *word;
+        port_key_t key;
+        uint32_t value;
+    } rows[] = {{"a16@x,baud=230400", KEY_BAUD, 230400},
+                {"a16@x,parity=even", KEY_PARITY, FATHOM_PARITY_EVEN},
+                {"a16@x,stop=1", KEY_STOP_BITS, 1},
+                {"a16@x,rs485=on", KEY_RS485, 1},
+                {"a16@x,echo=on", KEY_ECHO, 2},
+                {"a16@gpiochip0,in=5", KEY_IN, 5},
+                {"a16@gpiochip0,bias=down", KEY_BIAS, 2},
+                {"a16@gpiochip0,bias=off", KEY_BIAS, 3},
+                {"a16@x,baud=57600,parity=odd,stop=2,rs485=on,echo=off", KEY_ECHO, 1},
+                {"a16@x,echo=auto,rs485=off,baud=9600", KEY_RS485, 0},
+                {"a05@/dev/gpiochip12,in=0,bias=up", KEY_BIAS, 1},
+                {"a05@gpiochip1,in=65535,bias=as-is", KEY_IN, 65535},
+                {"a16@gpiochip0,trigger=17,echo=27", KEY_PULSE, 27},
+                {"a16@gpiochip/x,baud=9600", KEY_BAUD, 9600} /* what is no chip is a tty */};
+    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
+        sensor_word_t place;
+        char word[WORD];
+        parse(&place, rows[i].word, word);
+        assert_true(place.keys.has[rows[i].key]);
+        assert_int_equal(place.keys.value[rows[i].key], rows[i].value);
+    }
+}
+
+REFUSES(wrong_words_are_rejected_with_what_they_take, "read --port x",
+        {"a17:1", "unknown sensor 'a17'. It is one of a16, a05, hps167s."}, {"tank=", "unknown sensor ''."},
+        {"a=b=a16", "unknown sensor 'b=a16'."},
+        {"hps167s1234567890123456789012345678901234567890:1", "unknown sensor 'hps167s1234567890"},
+        {"=a16", "'' is no name of a sensor."},
+        {".a=a16", "'.a' is no name of a sensor. A name has at most 31 letters, digits, '-', '_' and '.'"},
+        {"a:1=a16", "'a:1' is no name"}, {"\xC3\xA4=a16", "is no name"},
+        {"abcdefghijabcdefghijabcdefghijXY=a16", "is no name"}, {"a16@", "a16@ names no port."},
+        {"a16@,baud=9600", "a16@ names no port."},
+        {"a16@x,", "a16@x: unknown key ''. It is one of baud, parity, stop, rs485, echo, trigger."},
+        {"a16@x,baud=9600,,echo=on", "unknown key ''"}, {"a16@x,=9600", "unknown key ''"},
+        {"a16@x,Baud=9600", "unknown key 'Baud'. Did you mean baud?"},
+        {"a16@x,bau=9600", "unknown key 'bau'. Did you mean baud?"},
+        {"a16@x,in=1", "unknown key 'in'. It is one of baud, parity, stop, rs485, echo, trigger."},
+        {"a16@gpiochip0,rs485=on", "unknown key 'rs485'. It is one of trigger, echo, in, bias, near."},
+        {"a16@gpiochip0,17", "unknown key '17'."}, {"a16@x,baud", "a16@x: baud has no value."},
+        {"a16@x,baud=", "baud is ''. It takes 9600, 19200, 38400, 57600, 115200 or 230400."},
+        {"a16@x,baud=9601", "baud is '9601'."},
+        {"a16@x,baud=00000000000009600", "baud is '00000000000009600'."},
+        {"a16@x,parity=even,parity=odd", "parity is given twice."},
+        {"a16@x,parity=e", "parity is 'e'. It takes none, even or odd."},
+        {"a16@x,stop=0", "stop is '0'. It takes a whole number from 1 to 2."},
+        {"a16@x,rs485=yes", "rs485 is 'yes'. It takes off or on."},
+        {"a16@x,echo=1", "echo is '1'. It takes auto, off or on."},
+        {"a16@gpiochip0,echo=on", "echo is 'on'. It takes a whole number from 0 to 65535."},
+        {"a16@gpiochip0,trigger=-1", "trigger is '-1'."}, {"a16@gpiochip0,in=65536", "in is '65536'."},
+        {"a16@gpiochip0,bias=", "bias is ''. It takes as-is, up, down or off."},
+        {"hps167s@tcp:h,baud=9600", "a port over TCP has none."})

@@ -47,7 +47,7 @@ void assert_refused(const char *line, const char *text)
 {
     const tool_run_t *const run = tool_run(&bench.tool, "%s", line);
     const char *const end = strchr(run->err, '\n');
-    if (run->status != 2 || run->out[0] != '\0' || strstr(run->err, text) == NULL || end == NULL ||
-        end[1] != '\0')
+    if (run->status != 2 || run->out[0] != '\0' || strncmp(run->err, "fathom", 6) != 0 ||
+        strstr(run->err, text) == NULL || end == NULL || end[1] != '\0')
         fail_msg("%s: exit status %d\n%s%s", line, run->status, run->out, run->err);
 }

@@ -10,7 +10,6 @@ import time
 import e2e
 
 COMPLETIONS = f'{e2e.ROOT}/examples/fathom/install/completions'
-PAGES = os.path.join(os.environ.get('FATHOM_BUILD') or os.path.dirname(e2e.FATHOM), 'examples/fathom/install/pages')
 # The stubs run `fathom`.
 ENVIRONMENT = {'PATH': f'{os.path.dirname(os.path.abspath(e2e.FATHOM))}:/usr/bin:/bin', 'LC_ALL': 'C.UTF-8', 'TERM': 'dumb', 'HOME': '/nonexistent'}
 

@@ -1,15 +1,21 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Help and version, and that the examples of the help are right. test_tool_usage.c has wrong usage."""
+"""Help, man pages and version, and that the examples of the help are right. test_tool_usage.c has wrong usage, and the
+width of each page; which sections a man page has is looked at in tests/tool/package."""
+import collections
 import re
+import subprocess
 
 import e2e
+
+WORD = re.compile(r"[^\s;`:,.()]+")
+HEADS = ('Usage:', 'Exit status:', 'Examples:', 'More: fathom help .*')  # sections in the pages
+
 
 class Help(e2e.Case):
     def told(self, line):
         done = self.run_fathom(line)
         self.assertEqual((done.code, done.err), (0, ''))
-        self.assertTrue(all(len(line) < 125 for line in done.out.splitlines()))
         return done.out
 
     def test_the_version_is_that_of_the_library(self):
@@ -60,6 +66,25 @@ class Help(e2e.Case):
 
     def test_options_may_stand_before_and_after_the_sensor_and_the_last_one_counts(self):
         self.ends('read --interval 5 a16 --port /nowhere --interval 1', 1, '/nowhere: no such device')
+
+    def lost(self, told, *page):
+        """The words of a help or of a topic that its man page, as mandoc shows it in lines without end, does not have."""
+        done = subprocess.run(['mandoc', '-T', 'ascii', '-O', 'width=999'], input=self.told(f'help --man {" ".join(page)}'),
+                              stdout=subprocess.PIPE, check=True, text=True)
+        for head in HEADS:
+            told = re.sub(rf'^{head}', '', told, flags=re.M)
+        words, kept = (collections.Counter(WORD.findall(text)) for text in (told, re.sub('.\b', '', done.stdout)))
+        return words - kept
+
+    def test_no_word_of_the_help_is_lost_in_a_man_page(self):
+        commands, topics = self.told('--help').split('TOPIC is one of')
+        commands = re.findall(r'^  (\w+) {2,}\S', commands.split('First steps')[0], re.M)
+        topics = re.findall(r'^    (\w+) +\S', topics, re.M)
+        self.assertEqual((len(commands), len(topics)), (15, 22))
+        for command in commands:
+            self.assertEqual(self.lost(self.told(f'{command} --help'), command), {}, command)
+        for topic in topics:
+            self.assertEqual(self.lost(self.told(f'help {topic}')), {}, topic)
 
 
 if __name__ == '__main__':
