@@ -51,7 +51,7 @@ static void begin(void)
     bench_begin();
     desk_begin();
     load(&settings, &site, file);
-    publisher_init(&publisher, &host, &settings, &site, 0);
+    publisher_init(&publisher, &host, NULL, &settings, &site, 0);
 }
 
 static int tear_down(void **state)
@@ -242,7 +242,7 @@ TEST(each_start_has_a_number_of_its_own)
     (void)strcpy(boot, publisher.boot);
     assert_int_equal(strspn(boot, "0123456789abcdef"), 16);
     publisher_deinit(&publisher);
-    publisher_init(&publisher, publisher.host, &settings, &site, 0);
+    publisher_init(&publisher, publisher.host, NULL, &settings, &site, 0);
     assert_string_not_equal(boot, publisher.boot);
 }
 

@@ -112,17 +112,21 @@ static void on_connect(struct mosquitto *mosq, void *ctx, int code)
         lose_refused(broker, code);
 }
 
+static void forget(broker_t *broker, broker_sent_t **at)
+{
+    broker_sent_t *const sent = *at;
+    *at = sent->next;
+    broker->sent_count--;
+    free(sent);
+}
+
 static void on_publish(struct mosquitto *mosq, void *ctx, int number)
 {
     broker_t *const broker = ctx;
     broker_sent_t **at = &broker->sent;
     (void)mosq;
     while (*at != NULL && (*at)->number != number) at = &(*at)->next;
-    broker_sent_t *const sent = *at;
-    if (sent == NULL) return;
-    *at = sent->next;
-    broker->sent_count--;
-    free(sent);
+    if (*at != NULL) forget(broker, at);
 }
 
 static void on_log(struct mosquitto *mosq, void *ctx, int level, const char *text)
@@ -232,28 +236,18 @@ static void start_sending(broker_t *broker)
 
 /* ---- the client ---- */
 
-static bool set_tls(broker_t *broker)
-{
-    const broker_settings_t *const settings = &broker->settings.broker;
-    char reason[BROKER_TEXT / 2];
-    if (!settings->has_tls || tls_set(broker->mosq, settings, &broker->tls_error, reason, sizeof reason))
-        return true;
-    lose(broker, "%s:%u: tls: %s", broker->settings.path, settings->tls_line, reason);
-    return false;
-}
-
 /* Sets the user and the password, which is read from its file each time. */
-static bool set_login(broker_t *broker)
+static void set_login(broker_t *broker)
 {
     const broker_settings_t *const settings = &broker->settings.broker;
     const char *const path = settings->password_file;
     char password[PASSWORD] = "";
-    if (settings->user[0] == '\0') return true;
+    if (settings->user[0] == '\0') return;
     if (path[0] != '\0') {
         FILE *const file = fopen(path, "r");
         if (file == NULL) {
             lose(broker, "%s cannot be read: %s", path, strerror(errno));
-            return false;
+            return;
         }
         (void)setvbuf(file, NULL, _IONBF, 0); /* no other memory keeps the password */
         if (fgets(password, sizeof password, file) == NULL) password[0] = '\0';
@@ -263,7 +257,7 @@ static bool set_login(broker_t *broker)
     const int result =
         mosquitto_username_pw_set(broker->mosq, settings->user, path[0] != '\0' ? password : NULL);
     explicit_bzero(password, sizeof password);
-    return check(broker, result, errno);
+    (void)check(broker, result, errno);
 }
 
 static void end_client(broker_t *broker)
@@ -274,23 +268,28 @@ static void end_client(broker_t *broker)
     for (broker_sent_t *sent = broker->sent; sent != NULL; sent = sent->next) sent->number = 0;
 }
 
-static bool make_client(broker_t *broker)
+static void make_client(broker_t *broker)
 {
     static const char offline[] = "offline";
+    const broker_settings_t *const settings = &broker->settings.broker;
     char will[TOPIC_NAME];
-    if (broker->mosq != NULL && !broker->has_changed) return true;
+    char reason[BROKER_TEXT / 2];
     end_client(broker);
-    broker->mosq = mosquitto_new(broker->settings.broker.client_id, true, broker);
-    if (broker->mosq == NULL) return check(broker, MOSQ_ERR_ERRNO, errno);
+    broker->mosq = mosquitto_new(settings->client_id, true, broker);
+    if (broker->mosq == NULL) {
+        lose(broker, "%s", strerror(errno));
+        return;
+    }
     mosquitto_connect_callback_set(broker->mosq, on_connect);
     mosquitto_publish_callback_set(broker->mosq, on_publish);
     mosquitto_log_callback_set(broker->mosq, on_log);
     (void)mosquitto_int_option(broker->mosq, MOSQ_OPT_TCP_NODELAY, 1);
     topic_name(&broker->settings, TOPIC_STATUS, NULL, 0, will);
-    const int result = mosquitto_will_set(broker->mosq, will, sizeof offline - 1, offline, QOS, true);
-    if (check(broker, result, errno) && set_tls(broker)) return true;
+    (void)mosquitto_will_set(broker->mosq, will, sizeof offline - 1, offline, QOS, true);
+    if (!settings->has_tls || tls_set(broker->mosq, settings, &broker->tls_error, reason, sizeof reason))
+        return;
+    lose(broker, "%s:%u: tls: %s", broker->settings.path, settings->tls_line, reason);
     end_client(broker);
-    return false;
 }
 
 /* ---- connecting ---- */
@@ -315,7 +314,9 @@ static void start_connecting(broker_t *broker)
     broker->settings = *broker->wanted;
     broker->log[0] = '\0';
     broker->tls_error = 0;
-    if (!make_client(broker) || !set_login(broker)) return;
+    if (broker->mosq == NULL || broker->has_changed) make_client(broker);
+    if (broker->phase != BROKER_LOST) set_login(broker);
+    if (broker->phase == BROKER_LOST) return;
     broker->phase = BROKER_CONNECTING;
     __atomic_store_n(&broker->thread_has_ended, false, __ATOMIC_RELEASE);
     /* Signals must reach the thread that sleeps. */
@@ -391,8 +392,6 @@ bool broker_is_free(const broker_t *broker)
     return broker->phase == BROKER_READY && broker->sent_count < BROKER_WINDOW;
 }
 
-bool broker_is_idle(const broker_t *broker) { return broker->phase == BROKER_READY && broker->sent == NULL; }
-
 void broker_change(broker_t *broker)
 {
     broker->has_changed = true;
@@ -415,17 +414,12 @@ bool broker_wait(broker_t *broker, uint32_t max_us)
 
 void broker_end(broker_t *broker)
 {
-    if (broker->loop == NULL) return;
     if (broker->phase == BROKER_CONNECTING) {
         (void)pthread_detach(broker->thread); /* it may wait for minutes */
         return;
     }
     disconnect(broker);
     end_client(broker);
-    while (broker->sent != NULL) {
-        broker_sent_t *const sent = broker->sent;
-        broker->sent = sent->next;
-        free(sent);
-    }
+    while (broker->sent != NULL) forget(broker, &broker->sent);
     (void)mosquitto_lib_cleanup();
 }

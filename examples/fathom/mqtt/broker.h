@@ -44,7 +44,7 @@ struct broker_sent {
 typedef struct {
     fathom_loop_source_t source; /* first: the loop passes it */
     int fd;
-    fathom_loop_t *loop; /* NULL: broker_begin() was not called */
+    fathom_loop_t *loop;
     const host_t *host;
     const publish_settings_t *wanted;
     publish_settings_t settings; /* of the present attempt */
@@ -66,7 +66,7 @@ typedef struct {
     char log[BROKER_TEXT];      /* the latest error of libmosquitto */
 } broker_t;
 
-/* Starts to connect. *settings must stay valid. When the client is lost, the broker publishes "offline" as the status. */
+/* The first broker_tick() connects. *settings must stay valid. When the client is lost, the broker publishes "offline" as the status. */
 void broker_begin(broker_t *broker, const host_t *host, fathom_loop_t *loop,
                   const publish_settings_t *settings);
 
@@ -76,8 +76,8 @@ uint32_t broker_tick(broker_t *broker);
 /* Connects again, since *settings changed. */
 void broker_change(broker_t *broker);
 
-bool broker_is_free(const broker_t *broker); /* connected, and one more message can be sent */
-bool broker_is_idle(const broker_t *broker); /* connected, and all messages are acknowledged */
+/* Returns true if the client is connected and one more message can be sent. */
+bool broker_is_free(const broker_t *broker);
 
 /* Sends a message; `topic` must stay valid. False: libmosquitto does not accept the message. */
 bool broker_send(broker_t *broker, const char *topic, const char *payload, bool is_retained);
@@ -85,7 +85,7 @@ bool broker_send(broker_t *broker, const char *topic, const char *payload, bool 
 /* Goes on without the loop until something happened, at most max_us. False: the broker is not connected. */
 bool broker_wait(broker_t *broker, uint32_t max_us);
 
-/* Ends the connection; the broker does not publish the will. Also without broker_begin(). */
+/* Ends the connection; the broker does not publish the will. */
 void broker_end(broker_t *broker);
 
 /* Secures the client. *error gets what is wrong with the broker's certificate, also later. False: the files are wrong. */

@@ -83,19 +83,17 @@ static void make_due(publisher_t *publisher, topic_kind_t kind, const sensor_t *
 
 /* ---- the queue ---- */
 
-static message_t *take_message(queue_t *queue)
+/* Frees the oldest message, which was sent or is dropped. */
+static void remove_message(queue_t *queue, bool is_dropped)
 {
     message_t *const message = queue->first;
     queue->first = message->next;
     queue->bytes -= message->size;
     queue->count--;
-    return message;
-}
-
-static void drop_message(queue_t *queue, message_t *message)
-{
-    message->topic->dropped++;
-    queue->dropped++;
+    if (is_dropped) {
+        message->topic->dropped++;
+        queue->dropped++;
+    }
     free(message);
 }
 
@@ -106,7 +104,7 @@ static void make_room(publisher_t *publisher, uint32_t count, size_t size)
     queue_t *const queue = &publisher->queue;
     while (queue->count != 0 &&
            (queue->count + count > settings->queue_messages || queue->bytes + size > settings->queue_bytes))
-        drop_message(queue, take_message(queue));
+        remove_message(queue, true);
 }
 
 static void put_message(publisher_t *publisher, topic_t *topic, uint64_t time_us, const char *text)
@@ -140,16 +138,6 @@ static const char *end_payload(publisher_t *publisher)
     return fflush(publisher->to) == 0 ? publisher->payload : "";
 }
 
-static void write_publisher(publisher_t *publisher, json_t *json)
-{
-    json_string(json, "version", FATHOM_VERSION_STRING);
-    json_string(json, "boot", publisher->boot);
-    json_value(json, "uptime_s", "%" PRIu64, (now_us(publisher) - publisher->start_us) / 1000000);
-    json_value(json, "sensors", "%zu", publisher->sensor_count);
-    json_value(json, "queued", "%" PRIu32, publisher->queue.count);
-    json_value(json, "dropped", "%" PRIu64, publisher->queue.dropped);
-}
-
 /* The present state under a retained topic. */
 static const char *payload_of(publisher_t *publisher, const topic_t *topic)
 {
@@ -167,10 +155,14 @@ static const char *payload_of(publisher_t *publisher, const topic_t *topic)
             topic_json_entity(&json, publisher->settings, topic->kind, topic->sensor, topic->probe);
         else
             json_string(&json, "utc", utc_text(publisher->host->utc_us(publisher->host->ctx), utc));
-        if (topic->kind == TOPIC_PUBLISHER) write_publisher(publisher, &json);
-        if (topic->kind == TOPIC_COUNTERS) {
-            json_string(&json, "boot", publisher->boot);
-            stats_json_of_sensor(&json, sensor->sensor);
+        if (topic->kind == TOPIC_PUBLISHER) json_string(&json, "version", FATHOM_VERSION_STRING);
+        if (!topic_is_entity(topic->kind)) json_string(&json, "boot", publisher->boot);
+        if (topic->kind == TOPIC_COUNTERS) stats_json_of_sensor(&json, sensor->sensor);
+        if (topic->kind == TOPIC_PUBLISHER) {
+            json_value(&json, "uptime_s", "%" PRIu64, (now_us(publisher) - publisher->start_us) / 1000000);
+            json_value(&json, "sensors", "%zu", publisher->sensor_count);
+            json_value(&json, "queued", "%" PRIu32, publisher->queue.count);
+            json_value(&json, "dropped", "%" PRIu64, publisher->queue.dropped);
         }
         json_end(&json, '}');
     }
@@ -217,22 +209,19 @@ static bool send_retained(publisher_t *publisher)
 
 static bool send_message(publisher_t *publisher)
 {
-    if (publisher->queue.first == NULL) return false;
-    message_t *const message = take_message(&publisher->queue);
+    const message_t *const message = publisher->queue.first;
+    if (message == NULL) return false;
     topic_t *const topic = message->topic;
     const bool is_retained = topic_is_retained(topic->kind);
     const json_t json = begin_payload(publisher);
     (void)fprintf(json.to, "%s,\"age_ms\":%" PRIu64 ",\"dropped\":%" PRIu64 "}", message->text,
                   (now_us(publisher) - message->time_us) / 1000, topic->dropped);
     /* A deleted topic must not come back. */
-    if (is_retained && !topic->is_wanted) {
-        free(message);
-    } else if (broker_send(&publisher->broker, topic->name, end_payload(publisher), is_retained)) {
-        topic->is_known = true;
-        free(message);
-    } else {
-        drop_message(&publisher->queue, message);
-    }
+    const bool is_obsolete = is_retained && !topic->is_wanted;
+    const bool is_sent =
+        !is_obsolete && broker_send(&publisher->broker, topic->name, end_payload(publisher), is_retained);
+    if (is_sent) topic->is_known = true;
+    remove_message(&publisher->queue, !is_sent && !is_obsolete);
     return true;
 }
 
@@ -245,13 +234,11 @@ static void send_next(publisher_t *publisher)
 
 /* ---- readings ---- */
 
-static void put(publisher_t *publisher, const reading_t *reading, topic_kind_t kind, uint8_t probe)
+static void put(publisher_t *publisher, const reading_t *reading, topic_t *topic)
 {
-    topic_t *const topic = publisher->sensors[reading->sensor->number].topics[probe - 1][kind - TOPIC_STATE];
-    if (topic == NULL) return;
     json_t json = begin_payload(publisher);
     json_begin(&json, NULL, '{');
-    reading_json(&json, reading, topic_columns(kind, reading->sensor));
+    reading_json(&json, reading, topic_columns(topic->kind, reading->sensor));
     json_string(&json, "boot", publisher->boot);
     json_value(&json, "seq", "%" PRIu64, ++topic->seq);
     put_message(publisher, topic, publisher->start_us + reading->time_us, end_payload(publisher));
@@ -267,19 +254,6 @@ static bool set_presence(publisher_t *publisher, publisher_sensor_t *sensor, pre
     return before != presence;
 }
 
-static void put_reading(publisher_t *publisher, publisher_sensor_t *sensor, const reading_t *reading)
-{
-    const uint8_t probe = topic_has_probes(reading->sensor) ? reading->result->sample.probe : 1;
-    if (reading->result->alarm != 0) {
-        put(publisher, reading, TOPIC_ALARM, probe);
-        return;
-    }
-    sensor->failures = 0;
-    (void)set_presence(publisher, sensor, SENSOR_AVAILABLE);
-    put(publisher, reading, TOPIC_STATE, probe);
-    put(publisher, reading, TOPIC_LEVEL, probe);
-}
-
 /* A sensor that sends by itself and whose frames are all damaged sent no reading within its time-out. */
 static bool is_grave(const reading_t *reading)
 {
@@ -290,26 +264,30 @@ static bool is_grave(const reading_t *reading)
 bool publisher_reading(publisher_t *publisher, const reading_t *reading)
 {
     publisher_sensor_t *const sensor = &publisher->sensors[reading->sensor->number];
-    const uint8_t probe = reading->result->sample.probe; /* 0: the failure is of all probes */
-    if (reading->failure == NULL) {
-        put_reading(publisher, sensor, reading);
-        return false;
+    const bool is_failure = reading->failure != NULL;
+    const bool is_alarm = !is_failure && reading->result->alarm != 0;
+    const uint8_t probe = topic_has_probes(reading->sensor) ? reading->result->sample.probe : 0; /* 0: all */
+    bool is_newly_away = false;
+    if (is_failure && sensor->failures != FAILURES) sensor->failures++;
+    if (is_failure && (is_grave(reading) || sensor->failures == FAILURES))
+        is_newly_away = set_presence(publisher, sensor, SENSOR_AWAY);
+    if (!is_failure && !is_alarm) {
+        sensor->failures = 0;
+        (void)set_presence(publisher, sensor, SENSOR_AVAILABLE);
     }
-    if (sensor->failures != FAILURES) sensor->failures++;
-    const bool is_away = is_grave(reading) || sensor->failures == FAILURES;
-    const bool is_new = is_away && set_presence(publisher, sensor, SENSOR_AWAY);
-    for (uint8_t i = 1; i <= FATHOM_DYP_PROBES; i++) {
-        if (probe != 0 && topic_has_probes(reading->sensor) && probe != i) continue;
-        put(publisher, reading, TOPIC_STATE, i);
-        put(publisher, reading, TOPIC_LEVEL, i);
-    }
-    return is_new;
+    for (size_t i = 0; i != FATHOM_DYP_PROBES; i++)
+        for (topic_kind_t kind = TOPIC_STATE; kind != TOPICS; kind++) {
+            topic_t *const topic = sensor->topics[i][kind - TOPIC_STATE];
+            const bool is_meant = topic != NULL && (probe == 0 || probe == i + 1);
+            if (is_meant && (kind == TOPIC_ALARM) == is_alarm) put(publisher, reading, topic);
+        }
+    return is_newly_away;
 }
 
 /* ---- start and end ---- */
 
-void publisher_init(publisher_t *publisher, const host_t *host, const publish_settings_t *settings,
-                    const site_t *site, uint64_t start_us)
+void publisher_init(publisher_t *publisher, const host_t *host, fathom_loop_t *loop,
+                    const publish_settings_t *settings, const site_t *site, uint64_t start_us)
 {
     uint64_t random = 0;
     memset(publisher, 0, sizeof *publisher);
@@ -321,12 +299,8 @@ void publisher_init(publisher_t *publisher, const host_t *host, const publish_se
     publisher->to = open_memstream(&publisher->payload, &publisher->payload_size);
     if (publisher->to == NULL) end_without_memory();
     (void)__fsetlocking(publisher->to, FSETLOCKING_BYCALLER); /* no other thread has it */
+    broker_begin(&publisher->broker, host, loop, settings);
     set_sensors(publisher, site);
-}
-
-void publisher_connect(publisher_t *publisher, fathom_loop_t *loop)
-{
-    broker_begin(&publisher->broker, publisher->host, loop, publisher->settings);
 }
 
 void publisher_change(publisher_t *publisher, const site_t *site, bool has_other_broker)
@@ -363,24 +337,31 @@ void publisher_status(const publisher_t *publisher, char *text, size_t capacity)
                    broker->phase == BROKER_READY ? "connected" : "away", publisher->queue.dropped);
 }
 
+/* Waits for the acknowledgement of all that was sent. Sends what still waits, too, unless that is the last message. */
+static void drain(publisher_t *publisher, uint64_t until_us)
+{
+    enum { TURN_US = 100000 };
+    do {
+        if (!publisher->is_ending) send_next(publisher);
+    } while (publisher->broker.sent != NULL && now_us(publisher) < until_us &&
+             broker_wait(&publisher->broker, TURN_US));
+}
+
 void publisher_end(publisher_t *publisher)
 {
-    enum { END_US = 2000000, TURN_US = 100000 };
+    enum { END_US = 2000000 };
     const uint64_t until_us = now_us(publisher) + END_US;
-    broker_t *const broker = &publisher->broker;
-    do send_next(publisher);
-    while (!broker_is_idle(broker) && now_us(publisher) < until_us && broker_wait(broker, TURN_US));
+    drain(publisher, until_us);
     publisher->is_ending = true;
     make_due(publisher, TOPIC_STATUS, NULL);
-    if (broker->phase == BROKER_READY) (void)send_retained(publisher);
-    while (!broker_is_idle(broker) && now_us(publisher) < until_us && broker_wait(broker, TURN_US)) {
-    }
-    broker_end(broker);
+    if (publisher->broker.phase == BROKER_READY) (void)send_retained(publisher);
+    drain(publisher, until_us);
+    broker_end(&publisher->broker);
 }
 
 void publisher_deinit(publisher_t *publisher)
 {
-    while (publisher->queue.first != NULL) free(take_message(&publisher->queue));
+    while (publisher->queue.first != NULL) remove_message(&publisher->queue, false);
     while (publisher->topics != NULL) {
         topic_t *const topic = publisher->topics;
         publisher->topics = topic->next;

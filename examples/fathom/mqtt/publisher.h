@@ -81,11 +81,9 @@ typedef struct {
     bool is_ending;
 } publisher_t;
 
-/* *settings must stay valid. What is measured waits in the queue until publisher_connect() was called. start_us: of the
- * loop. */
-void publisher_init(publisher_t *publisher, const host_t *host, const publish_settings_t *settings,
-                    const site_t *site, uint64_t start_us);
-void publisher_connect(publisher_t *publisher, fathom_loop_t *loop);
+/* *settings must stay valid. `loop` is needed from the first publisher_tick() on, which connects. start_us: of the program. */
+void publisher_init(publisher_t *publisher, const host_t *host, fathom_loop_t *loop,
+                    const publish_settings_t *settings, const site_t *site, uint64_t start_us);
 
 /* The sensors are those of this site from now on, and *settings changed. Retained topics that are not used any more are
  * deleted. */

@@ -49,9 +49,10 @@ static void notify_port(line_t *line, notice_kind_t kind, const char *before, co
     notify(line->loop, kind, NULL, whole);
 }
 
-void notice_print(const notice_t *notice)
+void notice_print(void *ctx, const notice_t *notice)
 {
     const sensor_t *const sensor = notice->sensor;
+    (void)ctx;
     (void)fprintf(stderr, "fathom: %s%s%s\n", sensor != NULL ? sensor->name : "", sensor != NULL ? ": " : "",
                   notice->text);
 }

@@ -37,7 +37,7 @@ typedef struct {
 } notice_t;
 
 /* Prints it on the standard error. */
-void notice_print(const notice_t *notice);
+void notice_print(void *ctx, const notice_t *notice);
 
 /* What a command does with it. */
 typedef struct {

@@ -43,8 +43,7 @@ static struct {
     /* A file that was read again, while requests on the lines that change are pending. */
     publish_settings_t next_settings;
     site_t next;
-    bool is_changing;
-    uint64_t since_us;
+    uint64_t changing_us; /* since when; 0: there is none */
 } publish;
 
 /* ---- the service manager ---- */
@@ -61,19 +60,16 @@ __attribute__((format(printf, 1, 2))) static void notify(const char *format, ...
     struct sockaddr_un address = {.sun_family = AF_UNIX};
     const char *const path = variable("NOTIFY_SOCKET");
     const size_t length = strlen(path);
-    char text[STATUS_TEXT + 32];
     va_list arguments;
     if ((path[0] != '/' && path[0] != '@') || length >= sizeof address.sun_path) return;
     memcpy(address.sun_path, path, length);
     if (path[0] == '@') address.sun_path[0] = '\0'; /* an abstract name */
-    va_start(arguments, format);
-    (void)vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
+    const socklen_t size = (socklen_t)(offsetof(struct sockaddr_un, sun_path) + length);
     const int fd = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
     if (fd < 0) return;
-    const socklen_t size = (socklen_t)(offsetof(struct sockaddr_un, sun_path) + length);
-    /* A manager that does not listen now misses it. */
-    (void)!sendto(fd, text, strlen(text), MSG_NOSIGNAL, (const struct sockaddr *)&address, size);
+    va_start(arguments, format);
+    if (connect(fd, (const struct sockaddr *)&address, size) == 0) (void)vdprintf(fd, format, arguments);
+    va_end(arguments);
     (void)close(fd);
 }
 
@@ -109,22 +105,13 @@ static uint32_t report_status(uint64_t now_us)
 /* Each failure is published. Only those that make a sensor unavailable are printed: it may be away for weeks. */
 static void on_reading(void *ctx, const reading_t *reading)
 {
+    const bool is_newly_away = publisher_reading(&publish.publisher, reading);
+    const bool is_port = reading->status == FATHOM_ERR_PORT;
     (void)ctx;
-    if (!publisher_reading(&publish.publisher, reading) || reading->evidence == NULL ||
-        reading->evidence->is_told)
-        return;
-    if (reading->status == FATHOM_ERR_PORT)
-        (void)fputs("fathom: ", stderr);
-    else
-        (void)fprintf(stderr, "fathom: %s: ", reading->sensor->name);
+    if (!is_newly_away || reading->evidence == NULL || reading->evidence->is_told) return;
+    (void)fprintf(stderr, "fathom: %s%s", is_port ? "" : reading->sensor->name, is_port ? "" : ": ");
     advice_print(stderr, reading->evidence);
     (void)fputs("\n", stderr);
-}
-
-static void on_notice(void *ctx, const notice_t *notice)
-{
-    (void)ctx;
-    notice_print(notice);
 }
 
 /* ---- reading the file again ---- */
@@ -145,9 +132,9 @@ static void load_again(uint64_t now_us)
 {
     notify("RELOADING=1\nMONOTONIC_USEC=%" PRIu64, now_us);
     site_free(&publish.next); /* of an earlier file that is out of date */
-    publish.is_changing = config_load(&publish.next_settings, &publish.next, command, publish.settings.path);
-    publish.since_us = now_us;
-    if (publish.is_changing) return;
+    publish.changing_us = now_us;
+    if (config_load(&publish.next_settings, &publish.next, command, publish.settings.path)) return;
+    publish.changing_us = 0;
     (void)fprintf(stderr, "fathom: nothing has changed.\n");
     notify("READY=1");
 }
@@ -157,10 +144,10 @@ static void change(uint64_t now_us)
 {
     enum { PATIENCE_US = 2000000 };
     site_t old;
-    if (!publish.is_changing ||
-        !loop_set_site(&publish.loop, &publish.next, now_us - publish.since_us > PATIENCE_US, &old))
+    if (publish.changing_us == 0 ||
+        !loop_set_site(&publish.loop, &publish.next, now_us - publish.changing_us > PATIENCE_US, &old))
         return;
-    publish.is_changing = false;
+    publish.changing_us = 0;
     const bool is_other = has_other_broker(&publish.settings, &publish.next_settings);
     publish.settings = publish.next_settings;
     publisher_change(&publish.publisher, &publish.loop.site, is_other);
@@ -179,7 +166,7 @@ static uint32_t tick(void *ctx)
     const uint32_t publisher_us = publisher_tick(&publish.publisher);
     const uint32_t report_us = report_status(now_us);
     const uint32_t sleep_us = publisher_us < report_us ? publisher_us : report_us;
-    return publish.is_changing && sleep_us > AGAIN_US ? AGAIN_US : sleep_us;
+    return publish.changing_us != 0 && sleep_us > AGAIN_US ? AGAIN_US : sleep_us;
 }
 
 /* ---- start and end ---- */
@@ -223,44 +210,37 @@ static int explain(void)
 static int publish_site(const host_t *host)
 {
     loop_t *const loop = &publish.loop;
-    int status = STATUS_FAILED;
-    if (!host->begin(host->ctx)) return status;
+    if (!host->begin(host->ctx)) return STATUS_FAILED;
     host_watch_signal(SIGHUP);
     publish.watchdog_us = watchdog_us();
-    publish.reported_us = 0;
-    publish.status[0] = '\0';
-    publish.is_changing = false;
-    if (loop_open(loop)) {
-        publisher_connect(&publish.publisher, &loop->sources);
+    const bool is_open = loop_open(loop);
+    if (is_open) {
         notify("READY=1");
         loop_run(loop);
         notify("STOPPING=1");
-        if (host->has_ended(host->ctx)) status = STATUS_OK;
     }
     publisher_end(&publish.publisher);
     loop_close(loop);
     site_free(&publish.next);
-    return status;
+    return is_open && host->has_ended(host->ctx) ? STATUS_OK : STATUS_FAILED;
 }
 
 static int start(const host_t *host, const arguments_t *arguments)
 {
-    static const sink_t sink = {on_reading, on_notice, tick};
+    static const sink_t sink = {on_reading, notice_print, tick};
     const publish_options_t *const options = arguments->settings;
-    const origin_t origin = {.command = command};
+    const origin_t *const origin = &arguments->origin;
     loop_t *const loop = &publish.loop;
     int status = STATUS_USAGE;
-    if (arguments->count == 0) {
-        (void)reject(&origin, "FILE is missing, such as /etc/fathom/site.yaml.");
-        return status;
-    }
-    if (arguments->count != 1) {
-        (void)reject(&origin, "%d files are named. Name one.", arguments->count);
-        return status;
-    }
+    if (arguments->count == 0)
+        (void)reject(origin, "FILE is missing, such as /etc/fathom/site.yaml.");
+    else if (arguments->count != 1)
+        (void)reject(origin, "%d files are named. Name one.", arguments->count);
+    if (arguments->count != 1) return status;
+    memset(&publish, 0, sizeof publish);
     loop_init(loop, host, &sink, NULL);
     if (!config_load(&publish.settings, &loop->site, command, arguments->words[0])) return status;
-    publisher_init(&publish.publisher, host, &publish.settings, &loop->site, loop->start_us);
+    publisher_init(&publish.publisher, host, &loop->sources, &publish.settings, &loop->site, loop->start_us);
     status = options->check ? explain() : publish_site(host);
     publisher_deinit(&publish.publisher);
     loop_deinit(loop);

@@ -299,7 +299,7 @@ static void on_reading(void *ctx, const reading_t *reading)
 static void on_notice(void *ctx, const notice_t *notice)
 {
     const run_t *const run = ctx;
-    if (!run->options->quiet || notice->kind == NOTICE_GIVEN_UP) notice_print(notice);
+    if (!run->options->quiet || notice->kind == NOTICE_GIVEN_UP) notice_print(ctx, notice);
 }
 
 static void print_stats(run_t *run)
