@@ -36,29 +36,53 @@ void steps_begin(void)
     bench.tool.idle = pass;
 }
 
-void steps_a16(uint8_t mode, const int32_t *distances, size_t count)
+static int32_t distance_of(const char *word)
 {
-    steps_begin();
-    assert_in_range(count, 1, STEPS);
-    for (size_t i = 0; i != count; i++) steps.distance[i][0] = distances[i];
-    steps.count = count;
-    bench_a16((fathom_sim_a16_config_t){.mode = mode, .scene = scene});
-    steps.device = &bench.a16.device;
+    if (strncmp(word, "none", 4) == 0) return FATHOM_SIM_NO_TARGET;
+    return strncmp(word, "fault", 5) == 0 ? FATHOM_SIM_FAULT : (int32_t)atoi(word);
 }
 
-void steps_a05(const int32_t rows[][4], size_t count)
+static void add_step(const char *word)
 {
-    steps_begin();
-    assert_in_range(count, 1, STEPS);
-    memcpy(steps.distance, rows, count * sizeof rows[0]);
-    steps.count = count;
-    bench_a05((fathom_sim_a05_config_t){.address = 2, .scene = scene});
-    steps.device = &bench.a05.device;
+    int32_t *const probes = steps.distance[steps.count++];
+    for (size_t p = 0; p != 4; p++) {
+        probes[p] = distance_of(word);
+        if (strchr(word, ',') != NULL) word = strchr(word, ',') + 1;
+    }
 }
 
-const tool_run_t *read_steps(const char *sensors, const char *options)
+void steps_see(const char *sees, const char *words)
 {
-    return tool_run(&bench.tool, "read %s --interval 1000 --port line %s", sensors, options);
+    char text[256];
+    steps_begin();
+    (void)strcpy(text, sees);
+    for (const char *word = strtok(text, " "); word != NULL; word = strtok(NULL, " ")) {
+        assert_in_range(steps.count, 0, STEPS - 1);
+        if (word[0] != '@') add_step(word);
+        if (word[0] != '@') continue;
+        steps.off_us = strtoul(word + 1, NULL, 10) * 1000;
+        steps.on_us = strtoul(strchr(word, '-') + 1, NULL, 10) * 1000;
+    }
+    if (steps.count == 0) return;
+    if (strchr(sees, ',') != NULL) {
+        bench_a05((fathom_sim_a05_config_t){.address = 2, .scene = scene});
+        if (strncmp(words, "a16:1 ", 6) == 0) bench_a16((fathom_sim_a16_config_t){.address = 1});
+        steps.device = &bench.a05.device;
+    } else if (strncmp(words, "a16", 3) == 0) {
+        const bool is_automatic = strncmp(words, "a16 ", 4) == 0;
+        bench_a16((fathom_sim_a16_config_t){
+            .mode = is_automatic ? FATHOM_SIM_A16_AUTO : FATHOM_SIM_A16_MODBUS, .scene = scene});
+        steps.device = &bench.a16.device;
+    } else {
+        bench_hps167s((fathom_sim_hps167s_config_t){.scene = scene});
+        steps.device = &bench.hps167s.device;
+    }
+}
+
+const tool_run_t *read_steps(const char *words)
+{
+    return tool_run(&bench.tool, "read %s --port line %s", words,
+                    strstr(words, "--interval") == NULL ? "--interval 1000" : "");
 }
 
 void expect_text(const tool_run_t *run, const char *expected)

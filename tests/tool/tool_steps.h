@@ -21,19 +21,13 @@ extern steps_t steps;
 /* The bench, without a sensor. */
 void steps_begin(void);
 
-/* Begins with an A16 at address 1, or an A05 at address 2, that sees this from second to second. */
-void steps_a16(uint8_t mode, const int32_t *distances, size_t count);
-void steps_a05(const int32_t rows[][4], size_t count);
+/* The bench with the sensors of these words, of which the first one sees this from second to second: "700 none fault",
+ * or "480,450,100,700 480,450,none,700" for four probes. "@3800-7500": it is cut off from 3.8 to 7.5 s. Nothing: there is
+ * no sensor. */
+void steps_see(const char *sees, const char *words);
 
-#define SEES_A16(...)                                                                                        \
-    steps_a16(FATHOM_SIM_A16_MODBUS, (const int32_t[]){__VA_ARGS__},                                         \
-              sizeof((const int32_t[]){__VA_ARGS__}) / sizeof(int32_t))
-#define SEES_A05(...)                                                                                        \
-    steps_a05((const int32_t[][4]){__VA_ARGS__},                                                             \
-              sizeof((const int32_t[][4]){__VA_ARGS__}) / sizeof(int32_t[4]))
-
-/* Reads once a second. */
-const tool_run_t *read_steps(const char *sensors, const char *options);
+/* Runs "read WORDS --port line", once a second unless the words have another interval. */
+const tool_run_t *read_steps(const char *words);
 
 /* Lines of text, each with the second in which it was, and without its fraction. */
 void expect_text(const tool_run_t *run, const char *expected);
