@@ -42,20 +42,6 @@ static void is_as_in_the_file(void)
     assert_false(bench.hps167s.termination);
 }
 
-TEST(a_new_unit_takes_the_place_of_the_saved_one)
-{
-    bench_hps167s((fathom_sim_hps167s_config_t){.address = 7, .baud_code = 2, .warm_up_s = 5});
-    says(0, "", "save hps167s:7 --baud 57600");
-    bench_begin();
-    bench_hps167s(any_hps167s);
-    says(0, "address is 7\n", "restore hps167s --as-new");
-    assert_int_equal(counters()->writes, 3);
-    assert_int_equal(bench.hps167s.device.address, 7);
-    assert_int_equal(bench.hps167s.baud_code, 2);
-    assert_int_equal(bench.hps167s.warm_up_s, 5);
-    says(0, "no differences", "restore hps167s:7 --baud 57600 --as-new");
-}
-
 /* Its settings, then its address, then its rate; and then it is looked at again. */
 TEST(the_settings_come_before_the_address_and_the_rate_last)
 {
@@ -78,7 +64,10 @@ TEST(the_settings_come_before_the_address_and_the_rate_last)
         if (at == NULL) fail_msg("'%s' is not in\n%s", order[i], run->out);
     }
     is_as_in_the_file();
+    assert_int_equal(bench.hps167s.device.address, 7);
+    assert_int_equal(bench.hps167s.baud_code, 2);
     assert_int_equal(counters()->writes, 6);
+    says(0, "no differences", "restore hps167s:7 --baud 57600 --as-new");
 }
 
 TEST(a_rate_of_the_next_power_on_is_told_and_the_unit_is_found_where_it_is)
@@ -104,26 +93,40 @@ TEST(an_a16_and_an_a05_move_to_their_addresses)
     assert_int_equal(bench.a05.device.address, 2);
 }
 
-/* Another unit at the new address: at the rate of today, and at the one to which it is to go. */
+static fathom_sim_hps167s_t other;
+
+static void begin_with_other(fathom_sim_hps167s_config_t config)
+{
+    bench_begin();
+    bench_hps167s(any_hps167s);
+    fathom_sim_hps167s_init(&other, &config);
+    fathom_sim_attach(&bench.line, &other.device, bench.clock.now_us);
+}
+
+/* Another unit at the new address, at the rate of today and at the one to which it is to go; and at the unit's own address,
+ * at the rate to which it is to go. */
 TEST(an_occupied_place_is_refused_before_anything_is_written)
 {
-    static fathom_sim_hps167s_t other;
-    static const char *const words[] = {
-        "nothing was written: at address 7, 19200 8E1, a sensor responds already",
-        "nothing was written: at address 7, 57600 8E1, a sensor responds already"};
-    desk_write("unit", hps167s_file);
-    for (uint8_t code = 1; code <= 2; code++) {
-        const fathom_sim_hps167s_config_t config = {.address = 7, .baud_code = code};
-        bench_begin();
-        bench_hps167s(any_hps167s);
-        fathom_sim_hps167s_init(&other, &config);
-        fathom_sim_attach(&bench.line, &other.device, bench.clock.now_us);
-        says(1, words[code - 1], "restore hps167s --as-new");
+    static const struct {
+        fathom_sim_hps167s_config_t other;
+        const char *file;
+        const char *words;
+    } rows[] = {{{.address = 7, .baud_code = 1},
+                 hps167s_file,
+                 "written: at address 7, 19200 8E1, a sensor responds already"},
+                {{.address = 7, .baud_code = 2},
+                 hps167s_file,
+                 "written: at address 7, 57600 8E1, a sensor responds already"},
+                {{.baud_code = 2},
+                 "sensor = hps167s\nbaud = 57600\nwarm-up = 9\n",
+                 "nothing was written: at address 1, 57600 8E1, a sensor responds already"}};
+    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
+        begin_with_other(rows[i].other);
+        desk_write("unit", rows[i].file);
+        says(1, rows[i].words, "restore hps167s --as-new");
         assert_int_equal(counters()->writes, 0);
-        assert_int_equal(other.device.counters.writes, 0);
         says(0, "", "restore hps167s"); /* where it is not to go that matters nothing */
-        assert_int_equal(counters()->writes, 4);
-        is_as_in_the_file();
+        assert_int_equal(bench.hps167s.warm_up_s, 9);
         assert_int_equal(other.device.counters.writes, 0);
     }
 }
@@ -131,32 +134,15 @@ TEST(an_occupied_place_is_refused_before_anything_is_written)
 /* Its first response is lost, which is no silence. */
 TEST(a_place_is_asked_twice)
 {
-    static fathom_sim_hps167s_t other;
     static fathom_sim_fault_t faults;
-    const fathom_sim_hps167s_config_t config = {.address = 7};
     desk_write("unit", hps167s_file);
-    bench_hps167s(any_hps167s);
-    fathom_sim_hps167s_init(&other, &config);
-    fathom_sim_attach(&bench.line, &other.device, bench.clock.now_us);
+    begin_with_other((fathom_sim_hps167s_config_t){.address = 7});
     fathom_sim_fault_init(&faults, 1);
     fathom_sim_fault_attach(&faults, &bench.line, &other.device);
     assert_non_null(fathom_sim_fault_add(&faults, FATHOM_SIM_FAULT_SILENCE, FATHOM_SIM_FAULT_ALWAYS_PPM, 1));
     says(1, "nothing was written: at address 7, 19200 8E1, a sensor responds already",
          "restore hps167s --as-new");
     assert_int_equal(counters()->writes, 0);
-}
-
-/* Another unit is at the unit's own address, at the rate to which it is to go. */
-TEST(an_occupied_rate_is_refused_before_anything_is_written)
-{
-    static fathom_sim_hps167s_t other;
-    const fathom_sim_hps167s_config_t config = {.baud_code = 2};
-    desk_write("unit", "sensor = hps167s\nbaud = 57600\nwarm-up = 9\n");
-    bench_hps167s(any_hps167s);
-    fathom_sim_hps167s_init(&other, &config);
-    fathom_sim_attach(&bench.line, &other.device, bench.clock.now_us);
-    says(1, "at address 1, 57600 8E1, a sensor responds already", "restore hps167s --as-new");
-    assert_int_equal(counters()->writes + other.device.counters.writes, 0);
 }
 
 TEST(one_that_sends_unasked_moves_too)
@@ -200,14 +186,6 @@ TEST(another_unit_at_the_new_place_is_no_success)
 
 /* ---- interrupted ---- */
 
-/* Runs it where the unit is now. */
-static const tool_run_t *restore_there(const char *more)
-{
-    static const unsigned rates[] = {0, 19200, 57600, 115200, 230400};
-    return tool_run(&bench.tool, "restore hps167s:%u --baud %u --as-new %s --port line --file %s",
-                    bench.hps167s.device.address, rates[bench.hps167s.baud_code], more, desk_path("unit"));
-}
-
 static uint16_t written[64];
 static unsigned written_count;
 
@@ -226,6 +204,26 @@ static unsigned writes_of(uint16_t reg)
     return count;
 }
 
+/* Runs it where the unit is now. */
+static const tool_run_t *restore_there(void)
+{
+    static const unsigned rates[] = {0, 19200, 57600, 115200, 230400};
+    return tool_run(&bench.tool, "restore hps167s:%u --baud %u --as-new --port line --file %s",
+                    bench.hps167s.device.address, rates[bench.hps167s.baud_code], desk_path("unit"));
+}
+
+/* Runs it with a new unit, until the user ends it. */
+static const tool_run_t *restore_until(uint64_t end_us)
+{
+    bench_begin();
+    bench_hps167s(any_hps167s);
+    inner_write = bench.tool.uart.write;
+    bench.tool.uart.write = spy;
+    written_count = 0;
+    bench.tool.ctrl_c_us = end_us;
+    return restore_there();
+}
+
 /* Ended at any time and run again, it comes to the same, and nothing is written a second time. */
 TEST(what_was_interrupted_is_carried_on_by_the_next_run)
 {
@@ -233,29 +231,18 @@ TEST(what_was_interrupted_is_carried_on_by_the_next_run)
     unsigned ended = 0;
     unsigned after_a_write = 0;
     desk_write("unit", hps167s_file);
-    for (uint64_t end_us = 20000; end_us != 0; end_us += 7000) {
-        bench_begin();
-        bench_hps167s(any_hps167s);
-        inner_write = bench.tool.uart.write;
-        bench.tool.uart.write = spy;
-        written_count = 0;
-        bench.tool.ctrl_c_us = end_us;
-        const tool_run_t *run = restore_there("");
+    for (;; ended++) {
+        const tool_run_t *run = restore_until(20000 + 7000 * (uint64_t)ended);
         if (run->status == 0) break;
         assert_int_equal(run->status, 1);
-        ended++;
-        if (written_count != 0) {
-            after_a_write++;
-            /* it answers at last behind all that is written; the others are named */
-            assert_true(strstr(run->err, "stopped at ") != NULL || written_count == 6);
-        } else {
-            assert_true(strstr(run->err, "not written") != NULL ||
-                        strstr(run->err, "nothing was written") != NULL);
-        }
+        after_a_write += written_count != 0;
+        /* if it fails behind all that is written, nothing is left to name */
+        if (written_count != 6)
+            assert_non_null(strstr(run->err, written_count != 0 ? "stopped at " : "written"));
         bench.tool.ctrl_c_us = 0;
         fathom_sim_clock_advance(&bench.clock, 1000000);
-        run = restore_there("");
-        if (run->status != 0) fail_msg("%u us: %s%s", (unsigned)end_us, run->out, run->err);
+        run = restore_there();
+        if (run->status != 0) fail_msg("run %u: %s%s", ended, run->out, run->err);
         is_as_in_the_file();
         assert_int_equal(bench.hps167s.device.address, 7);
         assert_int_equal(bench.hps167s.baud_code, 2);
@@ -270,13 +257,9 @@ TEST(what_was_interrupted_is_carried_on_by_the_next_run)
 TEST(what_would_be_written_again_is_named)
 {
     bool was_named = false;
+    const tool_run_t *run = NULL;
     desk_write("unit", "sensor = hps167s\naddress = 7\nwarm-up = 9\ndistance-offset = -15\n");
-    for (uint64_t end_us = 20000; end_us != 0; end_us += 7000) {
-        bench_begin();
-        bench_hps167s(any_hps167s);
-        bench.tool.ctrl_c_us = end_us;
-        const tool_run_t *const run = restore_there("");
-        if (run->status == 0) break;
+    for (uint64_t end_us = 20000; (run = restore_until(end_us))->status != 0; end_us += 7000) {
         const bool is_written = bench.hps167s.user.offset_mm == -15;
         const bool is_named =
             strstr(run->err, "before you run restore again, write `not readable` for distance-offset in ") !=
