@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "line_conversation.h"
 
+#include "hex.h"
+
 static unsigned number; /* of the step in progress, for the report of a failure */
 
 #define EXPECT_THAT(is_so, ...)                                                                              \
@@ -57,8 +59,27 @@ void play_cancel(const step_t *step)
 
 void play_wait(const step_t *step) { run(step->us); }
 void play_poll_after(const step_t *step) { run_in_steps(step->us, step->us); }
-void play_receive(const step_t *step) { deliver_hex(step->hex); }
 void play_response(const step_t *step) { deliver_response(step->unit, (uint16_t)step->value); }
+
+void play_arrive(const step_t *step)
+{
+    uint8_t bytes[32];
+    receive_rx(bytes, hex_parse(step->hex, bytes), step->which);
+}
+
+void play_receive(const step_t *step)
+{
+    play_arrive(step);
+    run(100);
+}
+
+void play_send(const step_t *step)
+{
+    uint8_t bytes[32];
+    const uint8_t length = hex_parse(step->hex, bytes);
+    fake_trickle(&bench.fake, 0, BYTE_US, bytes, length);
+    run((uint32_t)(length * BYTE_US / 100 * 100 + 100));
+}
 
 void play_jam(const step_t *step)
 {
@@ -125,8 +146,19 @@ void play_count(const step_t *step)
 
 void play_heard(const step_t *step)
 {
-    EXPECT_THAT(bench_listener.length == (size_t)step->value, "%u bytes", (unsigned)bench_listener.length);
+    uint8_t bytes[32];
+    const size_t length = hex_parse(step->hex, bytes);
+    EXPECT_THAT(bench_listener.length == length && memcmp(bench_listener.bytes, bytes, length) == 0,
+                "%u other bytes", (unsigned)bench_listener.length);
     EXPECT_THAT(bench_listener.gaps == step->which, "%u gaps", bench_listener.gaps);
+}
+
+void play_gap_at(const step_t *step) { assert_int_equal(bench_listener.gap_at, step->value); }
+
+void play_lost_at(const step_t *step)
+{
+    assert_int_equal(bench_listener.losses, step->which);
+    assert_int_equal(bench_listener.lost_at, step->value);
 }
 
 void play_conversation(void **state, int (*begin)(void **state))

@@ -43,43 +43,48 @@ enum { A, B };
     }
 
 /* Actions. QUEUE submits a read; ASK also runs until its last bit has left. WRITE submits set_address_5 to a unit. */
-#define QUEUE(x, to)           STEP(queue, .which = (x), .unit = (to), .us = TIMEOUT_US)
-#define QUEUE_TWICE(x, to)     STEP(queue, .which = (x), .unit = (to), .us = TIMEOUT_US, .value = 1)
-#define ASK(x, to)             STEP(ask, .which = (x), .unit = (to), .us = TIMEOUT_US)
-#define ASK_TWICE(x, to)       STEP(ask, .which = (x), .unit = (to), .us = TIMEOUT_US, .value = 1)
-#define ASK_FOR(x, to, for_us) STEP(ask, .which = (x), .unit = (to), .us = (for_us))
-#define WRITE(x, to)           STEP(write, .which = (x), .unit = (to))
-#define CANCEL(x)              STEP(cancel, .which = (x))
-#define WAIT(for_us)           STEP(wait, .us = (for_us))
-#define POLL_AFTER(in_us)      STEP(poll_after, .us = (in_us)) /* one poll */
-#define RECEIVE(text)          STEP(receive, .hex = (text))
-#define RESPONSE(from, mm)     STEP(response, .unit = (from), .value = (mm))
-#define JAM(for_us)            STEP(jam, .us = (for_us)) /* a byte 00 in each character time */
-#define ECHO(known)            STEP(echo, .value = FATHOM_LINE_ECHO_##known)
-#define LISTEN(gap)            STEP(listen, .us = (gap))
-#define FLUSH                  STEP(flush, .which = 0)
-#define BREAK_PORT             STEP(break_port, .which = 0)
-#define PORT_REFUSES(on)       STEP(refuse, .which = (on))
-#define NEVER_SENT(on)         STEP(never_sent, .which = (on))
+#define QUEUE(x, to)             STEP(queue, .which = (x), .unit = (to), .us = TIMEOUT_US)
+#define QUEUE_TWICE(x, to)       STEP(queue, .which = (x), .unit = (to), .us = TIMEOUT_US, .value = 1)
+#define ASK(x, to)               STEP(ask, .which = (x), .unit = (to), .us = TIMEOUT_US)
+#define ASK_TWICE(x, to)         STEP(ask, .which = (x), .unit = (to), .us = TIMEOUT_US, .value = 1)
+#define ASK_FOR(x, to, for_us)   STEP(ask, .which = (x), .unit = (to), .us = (for_us))
+#define WRITE(x, to)             STEP(write, .which = (x), .unit = (to))
+#define CANCEL(x)                STEP(cancel, .which = (x))
+#define WAIT(for_us)             STEP(wait, .us = (for_us))
+#define POLL_AFTER(in_us)        STEP(poll_after, .us = (in_us)) /* one poll */
+#define RECEIVE(text)            STEP(receive, .hex = (text))
+#define RECEIVE_WITH(flag, text) STEP(receive, .hex = (text), .which = FATHOM_RX_##flag)
+#define ARRIVE(text)             STEP(arrive, .hex = (text)) /* no poll */
+#define SEND(text)               STEP(send, .hex = (text)) /* a device, byte by byte until the last one has arrived */
+#define RESPONSE(from, mm)       STEP(response, .unit = (from), .value = (mm))
+#define JAM(for_us)              STEP(jam, .us = (for_us)) /* a byte 00 in each character time */
+#define ECHO(known)              STEP(echo, .value = FATHOM_LINE_ECHO_##known)
+#define LISTEN(gap)              STEP(listen, .us = (gap))
+#define FLUSH                    STEP(flush, .which = 0)
+#define BREAK_PORT               STEP(break_port, .which = 0)
+#define PORT_REFUSES(on)         STEP(refuse, .which = (on))
+#define NEVER_SENT(on)           STEP(never_sent, .which = (on))
 
 /* Expectations. SENT: no request leaves for `after`, and one leaves within `within` after that. */
-#define FAILS(x, status)     STEP(fails, .which = (x), .value = FATHOM_ERR_##status)
-#define PENDS(x)             STEP(fails, .which = (x), .value = FATHOM_PENDING)
-#define ENDS(x, status)      STEP(ends, .which = (x), .value = (status)) /* of a write */
-#define READS(x, mm)         STEP(reads, .which = (x), .value = (mm))
-#define WRITTEN(n)           STEP(written, .value = (n))
-#define REQUEST_TO(n, id)    STEP(request_to, .value = (n), .unit = (id)) /* the n-th request, from 0 on */
-#define SENT(after, within)  STEP(sent, .us = (after), .value = (within))
-#define DUE(in_us)           STEP(due, .us = (in_us))
-#define IDLE(is_idle)        STEP(idle, .which = (is_idle))
-#define COUNT(counter, n)    STEP(count, .which = FATHOM_LINE_##counter, .value = (n))
-#define HEARD(bytes, pauses) STEP(heard, .value = (bytes), .which = (pauses))
+#define FAILS(x, status)    STEP(fails, .which = (x), .value = FATHOM_ERR_##status)
+#define PENDS(x)            STEP(fails, .which = (x), .value = FATHOM_PENDING)
+#define ENDS(x, status)     STEP(ends, .which = (x), .value = (status)) /* of a write */
+#define READS(x, mm)        STEP(reads, .which = (x), .value = (mm))
+#define WRITTEN(n)          STEP(written, .value = (n))
+#define REQUEST_TO(n, id)   STEP(request_to, .value = (n), .unit = (id)) /* the n-th request, from 0 on */
+#define SENT(after, within) STEP(sent, .us = (after), .value = (within))
+#define DUE(in_us)          STEP(due, .us = (in_us))
+#define IDLE(is_idle)       STEP(idle, .which = (is_idle))
+#define COUNT(counter, n)   STEP(count, .which = FATHOM_LINE_##counter, .value = (n))
+#define HEARD(text, pauses) STEP(heard, .hex = (text), .which = (pauses)) /* by the listener, with gaps */
+#define GAP_AT(n)           STEP(gap_at, .value = (n))                    /* the last gap, behind n bytes */
+#define LOST_AT(n, times)   STEP(lost_at, .value = (n), .which = (times))
 
 typedef void play_step_t(const step_t *step);
 play_step_t play_queue, play_ask, play_write, play_cancel, play_wait, play_poll_after, play_receive,
-    play_response, play_jam, play_echo, play_listen, play_flush, play_break_port, play_refuse,
-    play_never_sent, play_fails, play_ends, play_reads, play_written, play_request_to, play_sent, play_due,
-    play_idle, play_count, play_heard;
+    play_arrive, play_send, play_gap_at, play_lost_at, play_response, play_jam, play_echo, play_listen,
+    play_flush, play_break_port, play_refuse, play_never_sent, play_fails, play_ends, play_reads,
+    play_written, play_request_to, play_sent, play_due, play_idle, play_count, play_heard;
 
 /* Plays the row in *state on a line that `begin` sets up, such as set_up. */
 void play_conversation(void **state, int (*begin)(void **state));

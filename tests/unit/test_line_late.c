@@ -72,7 +72,7 @@ static const conversation_t late[] = {
      {.late = 1, .dropped = 8, .responses = 1}},
     {"a_pause_within_bytes_that_the_line_held_back_is_no_gap_before_them",
      {LISTEN(2000), ASK(A, 1), RECEIVE("01 03 02 02"), WAIT(3000), RECEIVE("00 00 00"), WAIT(2 * GAP_US),
-      HEARD(7, 0), FAILS(A, CHECKSUM)},
+      HEARD("01 03 02 02 00 00 00", 0), FAILS(A, CHECKSUM)},
      {.damaged = 1}},
 };
 CONVERSATIONS(set_up, late)

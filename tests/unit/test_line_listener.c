@@ -1,19 +1,54 @@
 /* SPDX-License-Identifier: MIT */
-#include "line_bench.h"
+#include "line_conversation.h"
 
 static const suite_t suite = {.set_up = set_up};
 static const suite_t asked = {.set_up = set_up_asked};
 
-/* ---- what the port knows about bytes ---- */
+#define FRAME    "FF 07 A1 A7"          /* of an A16 that sends by itself */
+#define RESPONDS "01 03 02 02 F2 38 A1" /* 754 mm */
 
-TEST_IN(asked, a_silence_that_the_port_saw_ends_a_frame)
-{
-    receive(response_1_754, 4);
-    receive_rx(response_1_754, sizeof response_1_754, FATHOM_RX_SILENCE);
-    poll_line();
-    expect_mm(754);
-    expect_count(FATHOM_LINE_DROPPED_BYTES, 4);
-}
+static const conversation_t conversations[] = {
+    {"a_silence_that_the_port_saw_ends_a_frame",
+     {ASK(A, 1), ARRIVE("01 03 02 02"), RECEIVE_WITH(SILENCE, RESPONDS), READS(A, 754)},
+     {.responses = 1, .dropped = 4}},
+    {"an_overrun_ends_the_frame_before_it_and_keeps_the_bytes_after_it",
+     {ASK(A, 1), ARRIVE("01 03 02 02"), RECEIVE_WITH(OVERRUN, RESPONDS), READS(A, 754)},
+     {.responses = 1, .dropped = 4, .bad = 1}},
+    {"a_silence_behind_bytes_that_are_held_back_is_none_before_them",
+     {LISTEN(5000), ASK(A, 1), RECEIVE("01 03 02 02"), RECEIVE_WITH(SILENCE, RESPONDS), READS(A, 754),
+      HEARD("01 03 02 02", 0)},
+     {.responses = 1}},
+    /* the last two bytes may have followed at once: the line was not polled */
+    {"a_pause_between_polls_is_no_gap",
+     {LISTEN(5000), ARRIVE("FF 07"), POLL_AFTER(20000), ARRIVE("A1 A7"), POLL_AFTER(20000), HEARD(FRAME, 0)},
+     {0}},
+    {"after_a_broken_port_no_silence_is_known",
+     {LISTEN(5000), RECEIVE("FF 07"), BREAK_PORT, RECEIVE("A1 A7"), HEARD(FRAME, 0)},
+     {.port_errors = 1}},
+    {"unasked_bytes_around_a_response_go_to_the_listener_and_the_response_does_not",
+     {LISTEN(5000), ASK(A, 1), ARRIVE(FRAME), WAIT(200), ARRIVE(RESPONDS), WAIT(GAP_US + 200), ARRIVE(FRAME),
+      WAIT(200), READS(A, 754), HEARD(FRAME " " FRAME, 1)},
+     {.responses = 1}},
+    /* FF before the response and 00 00 FF behind it are no FF 00 00 FF */
+    {"what_comes_behind_a_response_does_not_follow_what_came_before_it",
+     {LISTEN(5000), ASK(A, 1), ARRIVE("FF"), ARRIVE(RESPONDS), ARRIVE("07 A1 A7"), WAIT(200), READS(A, 754),
+      WAIT(2 * GAP_US), HEARD(FRAME, 1), GAP_AT(1)},
+     {.responses = 1}},
+    {"a_listener_gets_the_bytes_after_an_overrun_and_is_told_of_it_before",
+     {LISTEN(5000), ARRIVE("FF"), RECEIVE_WITH(OVERRUN, "A1 A7"), HEARD("FF A1 A7", 0), LOST_AT(1, 1)},
+     {.bad = 1}},
+    /* what waited as the possible beginning of a response comes before the loss, in the order in which it came */
+    {"what_a_transaction_held_back_goes_to_the_listener_before_the_loss",
+     {LISTEN(5000), ASK(A, 1), RECEIVE("01 03 02 02"), HEARD("", 0), RECEIVE_WITH(OVERRUN, FRAME),
+      WAIT(2 * GAP_US), HEARD("01 03 02 02 " FRAME, 0), LOST_AT(4, 1), FAILS(A, CHECKSUM)},
+     {.damaged = 1, .bad = 1}},
+    {"lost_bytes_while_nothing_is_asked_are_only_counted",
+     {RECEIVE_WITH(FRAMING, FRAME), RECEIVE_WITH(OVERRUN, FRAME), ASK(A, 1), RESPONSE(1, 754), READS(A, 754)},
+     {.bad = 5, .dropped = 4, .responses = 1, .maybe_unsolicited = 1}},
+};
+CONVERSATIONS(set_up, conversations)
+
+/* ---- what the port knows about bytes ---- */
 
 TEST(bytes_that_the_port_marks_as_bad_never_become_part_of_a_response)
 {
@@ -25,25 +60,6 @@ TEST(bytes_that_the_port_marks_as_bad_never_become_part_of_a_response)
         expect_after(GAP_US + 300, FATHOM_ERR_CHECKSUM);
         expect_count(FATHOM_LINE_BAD_BYTES, 3);
     }
-}
-
-TEST_IN(asked, an_overrun_ends_the_frame_before_it_and_keeps_the_bytes_after_it)
-{
-    receive(response_1_754, 4);
-    receive_rx(response_1_754, sizeof response_1_754, FATHOM_RX_OVERRUN);
-    run(100);
-    expect_mm(754);
-}
-
-TEST_IN(asked, a_silence_behind_bytes_that_are_held_back_is_none_before_them)
-{
-    listen_for(5000);
-    deliver(response_1_754, 4);
-    receive_rx(response_1_754, sizeof response_1_754, FATHOM_RX_SILENCE);
-    run(100);
-    expect_mm(754);
-    expect_heard(response_1_754, 4, NULL, 0);
-    assert_int_equal(bench_listener.gaps, 0);
 }
 
 TEST_IN(asked, with_time_stamps_the_next_request_need_not_wait_for_the_loop)
@@ -74,56 +90,6 @@ TEST(a_listener_gets_unsolicited_bytes_with_the_gaps_that_were_seen)
     assert_int_equal(bench_listener.gap_at, 4);
     assert_int_equal(bench_listener.time_us, bench.fake.now_us);
     expect_count(FATHOM_LINE_DROPPED_BYTES, 0);
-}
-
-TEST(a_pause_between_polls_is_no_gap)
-{
-    listen_for(5000);
-    poll_line();
-    receive(auto_frame, 2);
-    run_in_steps(20000, 20000);
-    receive(auto_frame + 2, 2); /* may have followed at once; the line was not polled */
-    run_in_steps(20000, 20000);
-    assert_int_equal(bench_listener.length, 4);
-    assert_int_equal(bench_listener.gaps, 0);
-}
-
-TEST(after_a_broken_port_no_silence_is_known)
-{
-    listen_for(5000);
-    deliver(auto_frame, 2);
-    break_port();
-    deliver(auto_frame + 2, 2);
-    expect_heard(auto_frame, 2, auto_frame + 2, 2);
-    assert_int_equal(bench_listener.gaps, 0);
-}
-
-TEST(unasked_bytes_around_a_response_go_to_the_listener_and_the_response_does_not)
-{
-    listen_for(5000);
-    ask_1_and_send(0);
-    receive_all(auto_frame);
-    run(200);
-    receive_all(response_1_754);
-    run(GAP_US + 200);
-    receive_all(auto_frame);
-    expect_after(200, FATHOM_OK);
-    expect_heard(auto_frame, 4, auto_frame, 4);
-}
-
-/* FF before the response and 00 00 FF behind it are no FF 00 00 FF. */
-TEST(what_comes_behind_a_response_does_not_follow_what_came_before_it)
-{
-    listen_for(5000);
-    ask_1_and_send(0);
-    receive(auto_frame, 1);
-    receive_all(response_1_754);
-    receive(auto_frame + 1, 3);
-    expect_after(200, FATHOM_OK);
-    run(2 * GAP_US);
-    expect_heard(auto_frame, 1, auto_frame + 1, 3);
-    assert_int_equal(bench_listener.gaps, 1);
-    assert_int_equal(bench_listener.gap_at, 1);
 }
 
 TEST(whole_foreign_frames_go_to_the_listener)
@@ -204,33 +170,6 @@ TEST(a_listener_is_told_where_bytes_were_lost_and_never_gets_a_marked_one)
     }
 }
 
-TEST(a_listener_gets_the_bytes_after_an_overrun_and_is_told_of_it_before)
-{
-    listen_for(5000);
-    receive(auto_frame, 1);
-    receive_rx(auto_frame + 2, 2, FATHOM_RX_OVERRUN);
-    run(100);
-    expect_heard(auto_frame, 1, auto_frame + 2, 2);
-    assert_int_equal(bench_listener.losses, 1);
-    assert_int_equal(bench_listener.lost_at, 1);
-    expect_count(FATHOM_LINE_BAD_BYTES, 1);
-}
-
-/* What waited as the possible beginning of a response comes before the loss, in the order in which it came. */
-TEST(what_a_transaction_held_back_goes_to_the_listener_before_the_loss)
-{
-    listen_for(5000);
-    ask_1_and_send(0);
-    deliver(response_1_754, 4);
-    assert_int_equal(bench_listener.length, 0);
-    receive_rx(auto_frame, 4, FATHOM_RX_OVERRUN);
-    run(100);
-    run(2 * GAP_US);
-    expect_heard(response_1_754, 4, auto_frame, 4);
-    assert_int_equal(bench_listener.lost_at, 4);
-    expect(FATHOM_ERR_CHECKSUM);
-}
-
 /* Bytes were lost, and then these came: of an overrun the port tells with them, of a marked byte with that byte. */
 static void lose_and_receive(uint8_t flag, const uint8_t *bytes, size_t length)
 {
@@ -266,15 +205,4 @@ TEST(a_whole_response_after_lost_bytes_is_taken)
         run(100);
         expect_mm(751);
     }
-}
-
-TEST(lost_bytes_while_nothing_is_asked_are_only_counted)
-{
-    receive_rx(auto_frame, 4, FATHOM_RX_FRAMING);
-    receive_rx(auto_frame, 4, FATHOM_RX_OVERRUN);
-    run(100);
-    expect_count(FATHOM_LINE_BAD_BYTES, 5);
-    expect_count(FATHOM_LINE_DROPPED_BYTES, 4);
-    ask_1_and_send(0);
-    response_1(754);
 }

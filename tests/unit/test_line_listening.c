@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "line_bench.h"
+#include "line_conversation.h"
 
 /* A line that only listens, and one that is told nothing but what it cannot do without: no marks, no counters, no
  * search for an echo. */
@@ -34,6 +34,37 @@ static int set_up_bare(void **state)
 static const suite_t suite = {.set_up = set_up_listening};
 static const suite_t bare = {.set_up = set_up_bare};
 
+#define FRAME "FF 07 A1 A7" /* of an A16 that sends by itself */
+
+static const conversation_t listening[] = {
+    {"a_line_that_only_listens_hands_over_each_byte_as_it_comes",
+     {LISTEN(5000), RECEIVE("FF"), HEARD("FF", 0)},
+     {0}},
+    {"what_comes_to_no_listener_is_forgotten",
+     {RECEIVE(FRAME), LISTEN(500), RECEIVE("01 83 02 C0 F1"), HEARD("01 83 02 C0 F1", 0)},
+     {0}},
+    {"a_line_that_only_listens_is_due_when_the_silence_is_one_for_its_listener",
+     {DUE(FATHOM_NO_DEADLINE), LISTEN(5000), RECEIVE(FRAME), DUE(5000), WAIT(5100), DUE(FATHOM_NO_DEADLINE)},
+     {0}},
+    {"a_line_that_only_listens_lives_through_a_broken_port",
+     {LISTEN(5000), BREAK_PORT, RECEIVE(FRAME), HEARD(FRAME, 0)},
+     {0}},
+};
+CONVERSATIONS(set_up_listening, listening)
+
+static const conversation_t without_parts[] = {
+    {"without_its_parts_a_line_ends_a_transaction_by_an_exception",
+     {ASK(A, 1), RECEIVE("01 83 02 C0 F1"), FAILS(A, EXCEPTION)},
+     {0}},
+    {"without_its_parts_a_line_ends_a_transaction_by_a_damaged_response",
+     {ASK(A, 1), RECEIVE("01 03 02 02 E2 38 A1"), WAIT(GAP_US + 200), FAILS(A, CHECKSUM)},
+     {0}},
+    {"without_its_parts_a_line_accepts_a_late_response_to_the_retry",
+     {ASK_TWICE(A, 1), WAIT(TIMEOUT_US + 200), RESPONSE(1, 754), READS(A, 754)},
+     {0}},
+};
+CONVERSATIONS(set_up_bare, without_parts)
+
 TEST(a_line_that_only_listens_hands_over_what_comes_with_the_silence_before_it)
 {
     listen_for(5000);
@@ -47,14 +78,6 @@ TEST(a_line_that_only_listens_hands_over_what_comes_with_the_silence_before_it)
     assert_true(fathom_line_is_idle(&bench.line));
 }
 
-TEST(a_line_that_only_listens_hands_over_each_byte_as_it_comes)
-{
-    listen_for(5000);
-    receive(auto_frame, 1);
-    assert_int_equal(poll_line(), FATHOM_PENDING);
-    expect_heard(auto_frame, 1, NULL, 0);
-}
-
 TEST(a_line_that_only_listens_tells_of_lost_bytes_once)
 {
     bench.config.marks = fathom_line_marks;
@@ -63,32 +86,6 @@ TEST(a_line_that_only_listens_tells_of_lost_bytes_once)
     run(100);
     assert_int_equal(bench_listener.calls, 1);
     assert_int_equal(bench_listener.losses, 1);
-}
-
-TEST(what_comes_to_no_listener_is_forgotten)
-{
-    deliver_all(auto_frame);
-    listen_for(500);
-    deliver_all(exception_1_2);
-    expect_heard(exception_1_2, sizeof exception_1_2, NULL, 0);
-}
-
-TEST(a_line_that_only_listens_is_due_when_the_silence_is_one_for_its_listener)
-{
-    expect_due(FATHOM_NO_DEADLINE);
-    listen_for(5000);
-    deliver_all(auto_frame);
-    expect_due(5000);
-    run(5100);
-    expect_due(FATHOM_NO_DEADLINE);
-}
-
-TEST(a_line_that_only_listens_lives_through_a_broken_port)
-{
-    listen_for(5000);
-    break_port();
-    deliver_all(auto_frame);
-    expect_heard(auto_frame, sizeof auto_frame, NULL, 0);
 }
 
 /* Marks of the port count where they are named: the bytes are the CRC's to judge. */
@@ -116,22 +113,6 @@ TEST_IN(bare, what_is_told_of_an_echo_stays)
     assert_int_equal(fathom_line_get_echo(&bench.line), FATHOM_LINE_ECHO_OFF);
     break_port();
     assert_int_equal(fathom_line_get_echo(&bench.line), FATHOM_LINE_ECHO_OFF);
-}
-
-TEST_IN(bare, an_exception_a_late_response_and_a_damaged_one_end_as_on_any_line)
-{
-    ask_1_and_send(0);
-    deliver_all(exception_1_2);
-    expect(FATHOM_ERR_EXCEPTION);
-    set_up_bare(state);
-    ask_1_and_send(0);
-    receive_damaged();
-    expect_after(GAP_US + 300, FATHOM_ERR_CHECKSUM);
-    set_up_bare(state);
-    ask_1_and_send(1);
-    run(TIMEOUT_US + 200);
-    deliver_all(response_1_754);
-    expect_mm(754);
 }
 
 /* fathom_modbus_client_submit: "A read of unit 0: FATHOM_ERR_UNSUPPORTED". */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "line_bench.h"
+#include "line_conversation.h"
 
 /* A device that sends by itself: requests leave behind its frames, and nowhere else. */
 
@@ -10,6 +10,38 @@ static const uint8_t unasked[13] = {0x01, 0x03, 0x08, 0x08, 0x23, 0xDC, 0xB2,
                                     0x07, 0x01, 0x00, 0x00, 0x5B, 0xD8};
 
 static const suite_t suite = {.set_up = set_up};
+
+#define UNASKED "01 03 08 08 23 DC B2 07 01 00 00 5B D8" /* the same */
+
+static const conversation_t conversations[] = {
+    {"a_request_that_waits_when_a_frame_ends_leaves_behind_it",
+     {SEND(UNASKED), WAIT(T3_5_US / 2), QUEUE(A, 1), SENT(T3_5_US / 2 - 200, 400)},
+     {.dropped = 13}},
+    {"a_request_that_waits_when_a_frame_ends_leaves_behind_it_if_a_listener_gets_the_frame",
+     {LISTEN(500), SEND(UNASKED), WAIT(T3_5_US / 2), QUEUE(A, 1), SENT(T3_5_US / 2 - 200, 400)},
+     {0}},
+    /* a frame may have waited for the response, and comes as soon as a request might */
+    {"behind_a_response_no_request_leaves_before_the_next_frame",
+     {SEND(UNASKED), QUEUE(A, 1), WAIT(REQUEST_US), WRITTEN(1), RESPONSE(1, 111), READS(A, 111), QUEUE(A, 1),
+      WAIT(20000), WRITTEN(1), SEND(UNASKED), WRITTEN(1), SENT(T3_5_US - 200, 400)},
+     {.responses = 1, .dropped = 26, .maybe_unsolicited = 1}},
+    /* the CRC is F8 68. The unit is not quarantined for what comes later in the silence: the next request leaves as on any
+     * line */
+    {"what_is_left_of_a_damaged_response_is_no_other_sender",
+     {QUEUE(A, 1), WAIT(REQUEST_US), RECEIVE("01 03 02 00 6F 00 00"), WAIT(GAP_US + 100), FAILS(A, CHECKSUM),
+      QUEUE(B, 2), SENT(0, 200)},
+     {.damaged = 1, .dropped = 7}},
+    /* the port marks each of its bytes, and their end is the end of a frame all the same */
+    {"a_device_that_has_gone_to_another_rate_holds_up_nothing",
+     {SEND(UNASKED), WAIT(T3_5_US + 200), QUEUE(A, 1), WAIT(20000), WRITTEN(0),
+      RECEIVE_WITH(FRAMING, UNASKED), SENT(T3_5_US - 200, 400)},
+     {.dropped = 13, .bad = 13}},
+    /* rule 11: the device that sends by itself may have sent the frame */
+    {"a_response_on_a_line_with_unsolicited_bytes_counts_once_as_perhaps_unsolicited",
+     {RECEIVE("FF 07 A1 A7"), ASK(A, 1), RESPONSE(1, 754), READS(A, 754)},
+     {.responses = 1, .dropped = 4, .maybe_unsolicited = 1}},
+};
+CONVERSATIONS(set_up, conversations)
 
 /* A frame that begins now, byte by byte; it has ended when this returns. */
 static void send_unasked(uint8_t length)
@@ -36,30 +68,6 @@ TEST(a_request_in_the_middle_of_a_silence_waits_for_the_next_frame_of_a_device_t
         ask_1(0);
         expect_behind_the_next_frame(0);
     }
-}
-
-TEST(a_request_that_waits_when_a_frame_ends_leaves_behind_it)
-{
-    for (unsigned listens = 0; listens != 2; listens++) {
-        set_up(state);
-        if (listens != 0) listen_for(500);
-        send_unasked(13);
-        run(T3_5_US / 2);
-        ask_1(0);
-        expect_sent(T3_5_US / 2 - 200, 400);
-    }
-}
-
-/* A frame may have waited for the response, and comes as soon as a request might. */
-TEST(behind_a_response_no_request_leaves_before_the_next_frame)
-{
-    send_unasked(13);
-    ask_1(0);
-    run(REQUEST_US);
-    expect_written(1);
-    response_1(111);
-    ask_1(0);
-    expect_behind_the_next_frame(1);
 }
 
 TEST(what_is_sent_unasked_is_forgotten_after_65_ms_of_silence)
@@ -112,44 +120,10 @@ TEST(a_glitch_before_the_first_request_delays_nothing)
     expect_written(1);
 }
 
-/* It is not quarantined for what comes later in the silence: the next request leaves as on any line. */
-TEST(what_is_left_of_a_damaged_response_is_no_other_sender)
-{
-    ask_1(0);
-    run(REQUEST_US);
-    deliver_hex("01 03 02 00 6F 00 00"); /* the CRC is F8 68 */
-    run(GAP_US + 200);
-    assert_int_equal(status_of(&bench.request), FATHOM_ERR_CHECKSUM);
-    ask(&bench.other, 2, &bench.other_value, 0);
-    run(200);
-    expect_written(2);
-}
-
 TEST(bytes_that_belong_to_no_transaction_are_counted_without_coming_round)
 {
     for (unsigned i = 0; i != 20; i++) send_unasked(13); /* 260 of them */
     run(T3_5_US + 200);
     ask_1(0);
     expect_behind_the_next_frame(0);
-}
-
-/* At another rate: the port marks each of its bytes, and their end is the end of a frame all the same. */
-TEST(a_device_that_has_gone_to_another_rate_holds_up_nothing)
-{
-    send_unasked(13);
-    run(T3_5_US + 200);
-    ask_1(0);
-    expect_written_after(20000, 0);
-    receive_rx(unasked, 13, FATHOM_RX_FRAMING);
-    run(100);
-    expect_sent(T3_5_US - 200, 400);
-}
-
-/* Rule 11: the device that sends by itself may have sent the frame. */
-TEST(a_response_on_a_line_with_unsolicited_bytes_counts_once_as_perhaps_unsolicited)
-{
-    deliver(auto_frame, 4);
-    ask_1_and_send(0);
-    response_1(754);
-    expect_count(FATHOM_LINE_MAYBE_UNSOLICITED, 1);
 }
