@@ -30,7 +30,7 @@ TEST(a_new_line_knows_of_nothing)
         assert_true(fathom_line_is_idle(&bench.line));
         assert_false(fathom_line_is_queued(&bench.line, &bench.request.transaction));
         assert_int_equal(fathom_line_get_echo(&bench.line), FATHOM_LINE_ECHO_AUTO);
-        assert_int_equal(fathom_line_due_us(&bench.line), FATHOM_NO_DEADLINE);
+        expect_due(FATHOM_NO_DEADLINE);
         assert_int_equal(fathom_line_last_byte_us(&bench.line), bench.fake.now_us);
     }
 }
@@ -44,11 +44,11 @@ TEST(the_first_request_waits_for_one_silence_and_nothing_else)
         for (unsigned u = 0; u != sizeof units; u++) {
             set_up_on(fills[i]);
             ask(&bench.request, units[u], &bench.value, 0);
-            assert_int_equal(fathom_line_due_us(&bench.line), T3_5_US);
+            expect_due(T3_5_US);
             after(T3_5_US - 1);
-            assert_int_equal(bench.fake.written, 0);
+            expect_written(0);
             after(1);
-            assert_int_equal(bench.fake.written, 1);
+            expect_written(1);
         }
 }
 
@@ -59,8 +59,7 @@ TEST(the_first_response_is_complete_with_its_last_byte_and_shows_that_there_is_n
         ask_1_and_send(0);
         receive(response_1_754, sizeof response_1_754);
         after(0);
-        assert_int_equal(status_of(&bench.request), FATHOM_OK);
-        assert_int_equal(bench.value, 754);
+        expect_mm(754);
         assert_int_equal(fathom_line_get_echo(&bench.line), FATHOM_LINE_ECHO_OFF);
         assert_int_equal(counter(FATHOM_LINE_DROPPED_BYTES), 0);
     }
@@ -71,16 +70,16 @@ TEST(the_first_quarantine_ends_in_its_time)
 {
     for (unsigned i = 0; i != FILLS; i++) {
         set_up_on(fills[i]);
-        ask(&bench.request, 1, &bench.value, 0);
+        ask_1(0);
         after(T3_5_US);
         after(8 * BYTE_US); /* sent */
         after(TIMEOUT_US);
-        assert_int_equal(status_of(&bench.request), FATHOM_ERR_NO_RESPONSE);
-        ask(&bench.request, 1, &bench.value, 0);
+        expect(FATHOM_ERR_NO_RESPONSE);
+        ask_1(0);
         after(TIMEOUT_US - 1);
-        assert_int_equal(bench.fake.written, 1);
+        expect_written(1);
         after(1);
-        assert_int_equal(bench.fake.written, 2);
+        expect_written(2);
     }
 }
 

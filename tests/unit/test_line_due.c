@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "line_bench.h"
 
+#include "fathom/sensor/a16_auto.h"
+
 /* A program that sleeps for as long as fathom_line_due_us says makes progress with every sleep. */
 
 /* Half of the response came in time, and its time is over. */
@@ -136,4 +138,66 @@ TEST(a_port_that_takes_no_request_is_asked_again_when_it_has_sent)
     bench.fake.write_busy = false;
     run_in_steps(3 * BYTE_US, 3 * BYTE_US);
     expect_written(1);
+}
+
+/* ---- bytes that wait ---- */
+
+/* Asks unit 1; the request leaves with the last poll. */
+static void send(void)
+{
+    ask_1(0);
+    run_in_steps(T3_5_US, T3_5_US);
+    run_in_steps(8 * BYTE_US, 8 * BYTE_US);
+    expect_due(TIMEOUT_US);
+}
+
+/* The same of a late response, while another request waits: that needs a silence of 3646 us, and an empty frame. */
+TEST(with_a_part_of_a_late_response_the_next_request_is_due_after_the_gap)
+{
+    send();
+    run_in_steps(TIMEOUT_US, TIMEOUT_US);
+    expect(FATHOM_ERR_NO_RESPONSE);
+    receive(response_1_754, 4);
+    poll_line();
+    ask_other(2);
+    expect_due(GAP_US);
+    run_in_steps(GAP_US - 1, GAP_US - 1);
+    expect_written(1);
+    run_in_steps(1, 1);
+    expect_written(2);
+}
+
+/* sensor.h: "how long from now until any of the sensors has something to do": a frame that waits cannot be given while
+ * the line holds back what came behind it, which may begin the response. This is an A16 that sends by itself, which has
+ * sent two frames and four such bytes. */
+static fathom_sensor_t held(uint32_t stale_us)
+{
+    static const uint8_t came[] = {0xFF, 0x07, 0xA1, 0xA7, 0xFF, 0x07, 0xA1, 0xA7, 0x01, 0x03, 0x02, 0x02};
+    static fathom_a16_auto_t automatic;
+    const fathom_a16_auto_config_t config = {.stale_us = stale_us};
+    fathom_sample_t sample;
+    send();
+    assert_int_equal(fathom_a16_auto_init(&automatic, &bench.line, &config), FATHOM_OK);
+    const fathom_sensor_t sensor = fathom_a16_auto_sensor(&automatic);
+    run_in_steps(10000, 10000);
+    receive(came, sizeof came);
+    assert_int_equal(fathom_poll(&sensor, &sample), FATHOM_PENDING);
+    return sensor;
+}
+
+TEST(a_frame_that_waits_behind_bytes_that_are_held_is_due_with_their_gap)
+{
+    const fathom_sensor_t sensor = held(0);
+    fathom_sample_t sample;
+    assert_int_equal(fathom_due_us(&sensor, 1), GAP_US);
+    bench.fake.now_us += GAP_US;
+    assert_int_equal(fathom_poll(&sensor, &sample), FATHOM_OK);
+    assert_int_equal(sample.raw, 1953);
+}
+
+/* Nor can it be stale meanwhile. */
+TEST(a_frame_that_waits_beyond_its_deadline_is_due_with_the_gap_too)
+{
+    const fathom_sensor_t sensor = held(5000);
+    assert_int_equal(fathom_due_us(&sensor, 1), GAP_US);
 }

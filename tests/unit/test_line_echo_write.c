@@ -144,6 +144,24 @@ TEST(a_damaged_copy_does_not_count)
             }
 }
 
+/* FATHOM_ERR_ECHO: "one copy of the request came, and the line does not know yet whether it echoes". Bytes that the
+ * port marked before it, or with it, do not tell. */
+TEST(one_copy_behind_marked_bytes_is_no_acknowledgement)
+{
+    static const uint8_t flags[] = {FATHOM_RX_PARITY, FATHOM_RX_FRAMING, FATHOM_RX_OVERRUN};
+    for (size_t i = 0; i != COUNT_OF(flags); i++) {
+        const bool is_overrun =
+            flags[i] == FATHOM_RX_OVERRUN; /* the port reports it with the bytes behind it */
+        set_up_for(0, FATHOM_LINE_ECHO_AUTO);
+        start_write(0, 100);
+        run(8 * BYTE_US);
+        if (!is_overrun) receive_rx(auto_frame, 2, flags[i]);
+        run(100);
+        receive_rx(set_address_5, sizeof set_address_5, is_overrun ? FATHOM_RX_OVERRUN : 0);
+        expect_after(TIMEOUT_US + 100, FATHOM_ERR_ECHO);
+    }
+}
+
 /* ---- attempts ---- */
 
 TEST(each_attempt_of_a_write_needs_its_own_two_copies)

@@ -16,22 +16,22 @@ static fathom_status_t after(uint32_t us)
 TEST(the_default_silence_is_4011_us)
 {
     bench.config.silence_us = 0;
-    ask(&bench.request, 1, &bench.value, 0);
+    ask_1(0);
     after(4010);
-    assert_int_equal(bench.fake.written, 0);
+    expect_written(0);
     after(1);
-    assert_int_equal(bench.fake.written, 1);
+    expect_written(1);
 }
 
 /* silent_us stops at 65535, which is the longest silence that a config can name. */
 TEST(the_longest_silence_of_a_config_is_kept_and_over)
 {
     bench.config.silence_us = 65535;
-    ask(&bench.request, 1, &bench.value, 0);
+    ask_1(0);
     after(65534);
-    assert_int_equal(bench.fake.written, 0);
+    expect_written(0);
     after(1);
-    assert_int_equal(bench.fake.written, 1);
+    expect_written(1);
 }
 
 /* fathom_line_parts_t: "more than a slow sender or a slow port pauses: 25000 behind an operating system". */
@@ -44,7 +44,7 @@ TEST(a_pause_shorter_than_the_gap_of_the_config_does_not_end_a_response)
     after(24999);
     receive(response_1_754 + 4, 3);
     after(0);
-    assert_int_equal(status_of(&bench.request), FATHOM_OK);
+    expect(FATHOM_OK);
 }
 
 /* The silence counts from the poll that finds the request sent, also where nothing is to be waited for. */
@@ -53,15 +53,15 @@ TEST(the_silence_after_a_broadcast_is_kept_to_its_end)
     fathom_modbus_write_single_register(&bench.request.message, 0, 0x0200, 5);
     bench.request.transaction.timeout_us = 0;
     assert_int_equal(fathom_modbus_client_submit(&bench.line, &bench.request), FATHOM_PENDING);
-    ask(&bench.other, 2, &bench.other_value, 0);
+    ask_other(2);
     after(T3_5_US);
-    assert_int_equal(bench.fake.written, 1);
+    expect_written(1);
     after(8 * BYTE_US); /* sent */
     after(T3_5_US - 1);
-    assert_int_equal(status_of(&bench.request), FATHOM_OK);
-    assert_int_equal(bench.fake.written, 1);
+    expect(FATHOM_OK);
+    expect_written(1);
     after(1);
-    assert_int_equal(bench.fake.written, 2);
+    expect_written(2);
 }
 
 /* FATHOM_LINE_SEND_US: "how long a port may refuse a request, or take to send it, before it counts as broken"; and
@@ -69,12 +69,12 @@ TEST(the_silence_after_a_broadcast_is_kept_to_its_end)
 TEST(a_port_has_a_second_to_take_a_request)
 {
     bench.fake.write_busy = true;
-    ask(&bench.request, 1, &bench.value, 0);
+    ask_1(0);
     after(T3_5_US);
     assert_int_equal(after(999999), FATHOM_PENDING);
-    assert_int_equal(status_of(&bench.request), FATHOM_PENDING);
+    expect(FATHOM_PENDING);
     assert_int_equal(after(1), FATHOM_ERR_PORT);
-    assert_int_equal(status_of(&bench.request), FATHOM_ERR_PORT);
+    expect(FATHOM_ERR_PORT);
 }
 
 /* A poll is cheap while nothing comes: of the 16 reads that it may do the first tells it. */
@@ -86,6 +86,48 @@ TEST(a_poll_that_finds_nothing_reads_the_port_once)
     bench.fake.reads = 0;
     after(100);
     assert_int_equal(bench.fake.reads, 1);
+}
+
+/* The longest time-out is 2^31 - 1 us, 35 minutes: twice that, the quarantine, fits the clock. */
+
+#define LONGEST_US UINT32_C(0x7FFFFFFF)
+
+static fathom_status_t ask_for(uint32_t timeout_us)
+{
+    fathom_modbus_read_holding_registers(&bench.request.message, 1, 0x0100, 1, &bench.value);
+    bench.request.transaction.timeout_us = timeout_us;
+    bench.request.transaction.retries = 0;
+    return fathom_modbus_client_submit(&bench.line, &bench.request);
+}
+
+TEST(a_unit_is_quarantined_for_twice_the_longest_time_out)
+{
+    assert_int_equal(ask_for(LONGEST_US), FATHOM_PENDING);
+    run(T3_5_US + 200);
+    expect_written(1);
+    fathom_line_cancel(&bench.line, &bench.request.transaction); /* while it leaves */
+    after(10000);                                                /* now it has left */
+    assert_true(bench.line.quarantine_left_us == 2 * LONGEST_US);
+
+    assert_int_equal(ask_for(1000), FATHOM_PENDING);
+    assert_true(fathom_line_due_us(&bench.line) == 2 * LONGEST_US);
+    for (unsigned i = 0; i != 2; i++) after(LONGEST_US - 1000);
+    expect_written(1);
+    after(2000);
+    expect_written(2);
+}
+
+TEST(a_time_out_over_the_longest_is_refused_and_not_cut)
+{
+    static const uint32_t too_long_us[] = {LONGEST_US + 1, UINT32_C(0x90000000), UINT32_MAX};
+    for (unsigned i = 0; i != 3; i++) {
+        bench.request.transaction.status = FATHOM_OK;
+        assert_int_equal(ask_for(too_long_us[i]), FATHOM_ERR_ARGUMENT);
+        expect(FATHOM_OK);
+        assert_false(fathom_line_is_queued(&bench.line, &bench.request.transaction));
+    }
+    run(T3_5_US + 200);
+    expect_written(0);
 }
 
 /* ---- long frames ---- */
@@ -125,7 +167,7 @@ TEST(the_longest_response_may_come_in_one_read)
     after(8 * BYTE_US);
     receive(response, sizeof response);
     after(100);
-    assert_int_equal(status_of(&bench.request), FATHOM_OK);
+    expect(FATHOM_OK);
     assert_int_equal(registers[0], 0x0001);
     assert_int_equal(registers[124], 0xF8F9); /* bytes 248 and 249 */
     assert_int_equal(counter(FATHOM_LINE_BAD_BYTES), 0);
@@ -140,12 +182,12 @@ static void write_many(uint8_t count, size_t length)
     fathom_modbus_write_multiple_registers(&bench.request.message, 1, 0x0100, count, registers);
     assert_int_equal(fathom_modbus_client_submit(&bench.line, &bench.request), FATHOM_PENDING);
     assert_int_equal(after(T3_5_US), FATHOM_PENDING);
-    assert_int_equal(bench.fake.written, 1);
+    expect_written(1);
     assert_int_equal(bench.fake.writes[0].length, length);
     after((uint32_t)length * BYTE_US);
     receive(acknowledged, sizeof acknowledged);
     after(100);
-    assert_int_equal(status_of(&bench.request), FATHOM_OK);
+    expect(FATHOM_OK);
 }
 
 TEST(a_request_of_255_bytes_goes_out_and_is_acknowledged) { write_many(123, 255); }
@@ -173,10 +215,10 @@ TEST(every_negative_result_of_set_line_means_unsupported)
     set_up_uart();
     uart.set_line = set_line_fails;
     bench.request.transaction.line_settings = &settings;
-    ask(&bench.request, 1, &bench.value, 0);
+    ask_1(0);
     after(4011); /* fathom_silence_us() of 9600 baud: 38.5 / 9600 is 4010.4 us */
-    assert_int_equal(status_of(&bench.request), FATHOM_ERR_UNSUPPORTED);
-    assert_int_equal(bench.fake.written, 0);
+    expect(FATHOM_ERR_UNSUPPORTED);
+    expect_written(0);
 }
 
 static int set_break_fails(void *ctx, bool on)

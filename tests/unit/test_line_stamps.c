@@ -48,7 +48,7 @@ static void poll_with(const uint8_t *byte)
 {
     bench.fake.now_us += BYTE_US;
     fake_receive(&bench.fake, between_us, byte, 1);
-    (void)fathom_line_poll(&bench.line);
+    (void)poll_line();
 }
 
 static void begin_at(uint32_t now_us, void **state)
@@ -68,13 +68,12 @@ TEST(a_time_stamp_from_the_future_leaves_a_good_response_whole)
         ask_1_and_send(0);
         bench.fake.now_us += 9000;
         for (unsigned at = 0; at != 7; at++) {
-            assert_int_equal(status_of(&bench.request), FATHOM_PENDING);
+            expect(FATHOM_PENDING);
             between_us = at == i / 2 % 7 && i % 2 == 0 ? 3 : 0;
             ahead_us = at == i / 2 % 7 && i % 2 != 0 ? 3 : 0;
             poll_with(response_1_754 + at);
         }
-        assert_int_equal(status_of(&bench.request), FATHOM_OK);
-        assert_int_equal(bench.value, 754);
+        expect_mm(754);
         /* the sample's time: the stamp, or the clock where the stamp is later than that */
         assert_int_equal(bench.request.transaction.link.heard_us, stamp_us - ahead_us);
         assert_int_equal(fathom_line_last_byte_us(&bench.line), stamp_us - ahead_us);
@@ -87,8 +86,8 @@ TEST(a_time_stamp_in_the_past_is_believed)
     ahead_us = (uint32_t)-700;
     bench.fake.now_us += 9000;
     receive(response_1_754, 7);
-    (void)fathom_line_poll(&bench.line);
-    assert_int_equal(status_of(&bench.request), FATHOM_OK);
+    (void)poll_line();
+    expect(FATHOM_OK);
     assert_int_equal(bench.request.transaction.link.heard_us, bench.fake.now_us - 700);
 }
 
@@ -99,7 +98,7 @@ TEST(a_time_stamp_half_way_round_the_clock_is_in_the_future)
         ahead_us = (uint32_t)-ago_us;
         bench.fake.now_us += 9000;
         receive(response_1_754, 7);
-        (void)fathom_line_poll(&bench.line);
+        (void)poll_line();
         const uint32_t told_us = ago_us == INT32_MAX ? UINT16_MAX : 0;
         assert_int_equal(bench.fake.now_us - fathom_line_last_byte_us(&bench.line), told_us);
     }
@@ -110,18 +109,18 @@ TEST(no_request_leaves_while_the_port_may_hold_bytes_from_before_it)
 {
     ahead_us = (uint32_t)-9000000;
     run(T3_5_US);
-    ask(&bench.request, 1, &bench.value, 0);
+    ask_1(0);
     for (unsigned read = 0; read != 40; read++) fake_receive(&bench.fake, read + 1, response_1_754, 7);
     bench.fake.now_us += 100;
     for (unsigned poll = 0; poll != 2; poll++) {
-        (void)fathom_line_poll(&bench.line);
-        assert_int_equal(bench.fake.written, 0);
+        (void)poll_line();
+        expect_written(0);
         assert_false(fake_drained(&bench.fake));
-        assert_int_equal(fathom_line_due_us(&bench.line), T3_5_US); /* no silence is known */
+        expect_due(T3_5_US); /* no silence is known */
     }
     run(T3_5_US); /* the third finds the end of it, and the last stamp is older than any silence */
     assert_true(fake_drained(&bench.fake));
-    assert_int_equal(bench.fake.written, 1);
+    expect_written(1);
 }
 
 /* Another task has run for 20 ms; without stamps the bytes may be as new as the read. */
@@ -131,17 +130,17 @@ TEST(the_silence_before_a_request_is_counted_from_a_byte_that_came_after_the_loo
         (void)set_up_late(state);
         has_stamps = i == 0;
         ask_1_and_send(0);
-        ask(&bench.other, 2, &bench.other_value, 0);
+        ask_other(2);
         bench.fake.now_us += 9000;
         between_us = 20000;
         fake_receive(&bench.fake, between_us, response_1_754, 7);
-        (void)fathom_line_poll(&bench.line);
+        (void)poll_line();
         between_us = 0;
-        assert_int_equal(status_of(&bench.request), FATHOM_OK);
+        expect(FATHOM_OK);
         run(T3_5_US - 100);
-        assert_int_equal(bench.fake.written, 1);
+        expect_written(1);
         run(200);
-        assert_int_equal(bench.fake.written, 2);
+        expect_written(2);
         assert_true(bench.fake.writes[1].at_us - stamp_us >= T3_5_US);
     }
 }
@@ -155,15 +154,14 @@ TEST(a_frame_is_not_split_where_its_first_bytes_came_after_the_look_at_the_clock
         bench.fake.now_us += 9000;
         between_us = 2 * GAP_US;
         fake_receive(&bench.fake, between_us, response_1_754, 4);
-        (void)fathom_line_poll(&bench.line);
+        (void)poll_line();
         between_us = 0;
         run(1000);
-        assert_int_equal(status_of(&bench.request), FATHOM_PENDING);
+        expect(FATHOM_PENDING);
         assert_true(fathom_line_due_us(&bench.line) <= GAP_US - 1000);
         receive(response_1_754 + 4, 3);
         run(100);
-        assert_int_equal(status_of(&bench.request), FATHOM_OK);
-        assert_int_equal(bench.value, 754);
+        expect_mm(754);
     }
 }
 
@@ -208,7 +206,7 @@ TEST(the_time_that_a_read_takes_counts_against_the_time_out)
         assert_true(bench.fake.now_us - left_us < 2 * TIMEOUT_US);
         poll_with(&noise);
     }
-    assert_int_equal(status_of(&bench.request), FATHOM_ERR_NO_RESPONSE);
+    expect(FATHOM_ERR_NO_RESPONSE);
     assert_in_range(bench.fake.now_us - left_us, TIMEOUT_US - 400, TIMEOUT_US + 2 * BYTE_US);
     /* and against the quarantine: another time-out from here */
     assert_in_range(bench.line.quarantine_left_us, TIMEOUT_US - 2 * BYTE_US, TIMEOUT_US);
