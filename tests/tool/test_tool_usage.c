@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "cli/sensor_words.h"
+#include "cli/rows.h"
 
 enum { WORD = 400 };
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "cli/sensor_words.h"
+#include "cli/rows.h"
 
 #include <ctype.h>
 #include <string.h>

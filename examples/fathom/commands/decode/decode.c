@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "cli/command.h"
-#include "cli/sensor_words.h"
+#include "cli/rows.h"
 #include "commands/commands.h"
 #include "fathom/codec/crc16.h"
 #include "fathom/codec/dyp_stream.h"

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "cli/command.h"
-#include "cli/sensor_words.h"
+#include "cli/rows.h"
 #include "commands/commands.h"
 #include "output/record.h"
 #include "output/words.h"
