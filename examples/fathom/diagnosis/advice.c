@@ -1,47 +1,22 @@
 /* SPDX-License-Identifier: MIT */
 #include "diagnosis/advice.h"
 
-#include "diagnosis/advice_words.h"
+#include <assert.h>
+#include <inttypes.h>
+#include <string.h>
 
-/* ---- evidence ---- */
+/* ---- facts ---- */
 
-enum {
-    /* how the sensor is read: one of these */
-    ASKED = 1 << 0,
-    LISTENED = 1 << 1,  /* it sends automatically */
-    TRIGGERED = 1 << 2, /* by a break on TX */
-    PINS = 1 << 3,      /* lines of a GPIO chip */
-    /* what is known */
-    TCP = 1 << 4,
-    LOST = 1 << 5,   /* the port */
-    WAITS = 1 << 6,  /* for the lost port */
-    PULSES = 1 << 7, /* the sensor sends pulses */
-    SHORT = 1 << 8,  /* pulses that are too short */
-    WORKED = 1 << 9, /* the sensor has responded in this run, so its settings are right */
-    ADDRESS = 1 << 10,
-    OTHERS = 1 << 11, /* others on this line respond */
-    REQUEST = 1 << 12,
-    SETTING = 1 << 13,
-    /* what was received */
-    SILENCE = 1 << 14,
-    BYTES = 1 << 15,
-    LATE = 1 << 16,
-    MASTER = 1 << 17,      /* requests of another master */
-    FOREIGN = 1 << 18,     /* frames of another address */
-    IMPOSSIBLE = 1 << 19,  /* which the model cannot have */
-    STREAM = 1 << 20,      /* automatic frames of another model, or of any if the sensor was asked */
-    MODBUS = 1 << 21,      /* frames that are no measurement of a sensor that sends automatically */
-    AMBIGUOUS = 1 << 22,   /* automatic frames whose start is not certain */
-    OWN = 1 << 23,         /* frames of the address */
-    UNSOLICITED = 1 << 24, /* so many of them that a request hardly fits between two */
-    ECHO = 1 << 25,        /* only the tool's own request */
-    OLD = 1 << 26,         /* bytes of unknown age */
-    GATEWAY = 1 << 27,     /* an exception of the gateway */
-    /* the refused response */
-    UNEXPECTED = 1 << 28, /* it does not fit the request */
-    REFUSED = 1 << 29,    /* a value of it was refused */
-    CODE = 1 << 30        /* this value is a code without a meaning */
-};
+static uint8_t gateway_exception(const failure_t *failure)
+{
+    const uint8_t *const exception = failure->port->gateway_exception;
+    return exception != NULL ? *exception : 0;
+}
+
+static bool is_asked(const failure_t *failure)
+{
+    return mode_is_asked(failure->mode) && failure->port->kind != PORT_PINS;
+}
 
 static bool is_only_echo(const evidence_t *heard)
 {
@@ -49,11 +24,13 @@ static bool is_only_echo(const evidence_t *heard)
            heard->masters == 0;
 }
 
-static bool is_stream(const failure_t *failure, bool is_asked)
+/* Automatic frames of another model were received, or of any if the sensor is asked. */
+static bool is_stream(const failure_t *failure)
 {
     const bool is_a05 = failure->evidence.streamed_a05 != 0;
     const bool is_a16 = failure->evidence.streamed_a16 != 0;
-    if (is_asked || failure->mode->has_address) return is_asked && (is_a05 || is_a16);
+    if (is_asked(failure)) return is_a05 || is_a16;
+    if (failure->mode->has_address) return false;
     return failure->model->probes > 1 ? is_a16 && !is_a05 : is_a05 && !is_a16;
 }
 
@@ -65,71 +42,97 @@ static bool is_crowded(const failure_t *failure)
            failure->model->may_send_unasked && failure->evidence.own >= LEAST;
 }
 
-static unsigned evidence_of(const failure_t *failure)
+/* Returns a number that is known of a failure, by its name. 0: it is not so. */
+static uint64_t fact(const failure_t *failure, const char *name, size_t length)
 {
     const reader_facts_t facts = reader_facts(failure->reader);
+    const model_t *const model = failure->model;
     const model_mode_t *const mode = failure->mode;
     const port_t *const port = failure->port;
-    const bool has_pins = port->kind == PORT_PINS;
     const evidence_t *const heard = &failure->evidence;
     const counters_t *const counters = failure->counters;
     const uint64_t *const line = counters->attempt.line;
     const uint64_t *const stream = counters->attempt.stream;
-    const bool is_asked = mode_is_asked(mode) && !has_pins;
-    const uint32_t own = mode->has_address ? heard->own : 0;
+    const bool has_pins = port->kind == PORT_PINS;
     const struct {
-        bool is_known;
-        int evidence;
+        const char *name;
+        uint64_t value;
     } rows[] = {
-        {is_asked, ASKED},
-        {!is_asked && !mode->is_triggered && !has_pins, LISTENED},
-        {mode->is_triggered && !has_pins, TRIGGERED},
-        {has_pins, PINS},
-        {port->kind == PORT_GATEWAY, TCP},
-        {port->error == PORT_LOST, LOST},
-        {failure->waits, WAITS},
-        {mode->has_pulses, PULSES},
-        {failure->noises != 0, SHORT},
-        {counters->readings + counters->total.unit[UNIT_RESPONSES] != 0, WORKED},
-        {mode->has_address, ADDRESS},
-        {failure->others_answer, OTHERS},
-        {failure->is_request, REQUEST},
-        {failure->is_setting, SETTING},
-        {heard->bytes == 0, SILENCE},
-        {heard->bytes != 0, BYTES},
-        {line[FATHOM_LINE_LATE_RESPONSES] != 0, LATE},
-        {heard->masters != 0, MASTER},
-        {heard->foreign != 0, FOREIGN},
-        {heard->foreign_address > failure->model->max_address, IMPOSSIBLE},
-        {is_stream(failure, is_asked), STREAM},
-        {heard->masters + heard->foreign + own != 0, MODBUS},
-        {stream[FATHOM_STREAM_AMBIGUOUS] + stream[FATHOM_STREAM_UNSURE] != 0, AMBIGUOUS},
-        {heard->own != 0, OWN},
-        {is_crowded(failure), UNSOLICITED},
-        {is_only_echo(heard), ECHO},
-        {line[FATHOM_LINE_OLD_BYTES] != 0, OLD},
-        {port->gateway_exception != NULL && *port->gateway_exception != 0, GATEWAY},
-        {facts.is_unexpected, UNEXPECTED},
-        {facts.refused_probe != 0, REFUSED},
-        {facts.refused_raw == 0 || facts.refused_raw >= 0xFFFD, CODE},
+        /* how the sensor is read: one of these */
+        {"asked", is_asked(failure)},
+        {"listened", !mode_is_asked(mode) && !mode->is_triggered && !has_pins}, /* it sends automatically */
+        {"triggered", mode->is_triggered && !has_pins},                         /* by a break on TX */
+        {"pins", has_pins},                                                     /* lines of a GPIO chip */
+        /* what is known */
+        {"tcp", port->kind == PORT_GATEWAY},
+        {"lost", port->error == PORT_LOST},
+        {"waits", failure->waits}, /* for the lost port */
+        {"pulses", mode->has_pulses},
+        {"noises", failure->noises}, /* pulses that are too short */
+        /* the sensor has responded in this run, so its settings are right */
+        {"worked", counters->readings + counters->total.unit[UNIT_RESPONSES]},
+        {"addressed", mode->has_address},
+        {"address", failure->address},
+        {"others", failure->others_answer}, /* on this line */
+        {"request", failure->is_request},
+        {"setting", failure->is_setting},
+        {"scan", failure->is_scan},
+        {"not-scan", !failure->is_scan},
+        {"reads", !failure->is_scan && !failure->is_setting && !failure->is_request},
+        {"damaged", counters->failures[-FATHOM_ERR_CHECKSUM]}, /* attempts */
+        {"attempts", counters->attempts + 1},
+        /* what was received */
+        {"silence", heard->bytes == 0},
+        {"bytes", heard->bytes},
+        {"late", line[FATHOM_LINE_LATE_RESPONSES]},
+        {"took", heard->slowest_us / 1000u},
+        {"timeout", (heard->slowest_us / 500u + 99u) / 100u * 100u}, /* twice the time, in steps of 100 ms */
+        {"masters", heard->masters},                                 /* requests of another master, ... */
+        {"asked-address", heard->masters_address},                   /* ... to this unit */
+        {"foreign", heard->foreign},                                 /* frames of another address */
+        {"foreign-address", heard->foreign_address},
+        {"impossible", heard->foreign_address > model->max_address}, /* which the model cannot have */
+        {"stream", is_stream(failure)},
+        /* frames that are no measurement of a sensor that sends automatically */
+        {"modbus", heard->masters + heard->foreign + (mode->has_address ? heard->own : 0)},
+        /* automatic frames whose start is not certain */
+        {"ambiguous", stream[FATHOM_STREAM_AMBIGUOUS] + stream[FATHOM_STREAM_UNSURE]},
+        {"dropped", stream[FATHOM_STREAM_DROPPED_BYTES]},
+        {"damaged-frames", stream[FATHOM_STREAM_DAMAGED]},
+        {"own", heard->own}, /* frames of the address */
+        {"crowded", is_crowded(failure)},
+        {"only-echo", is_only_echo(heard)},
+        {"old", line[FATHOM_LINE_OLD_BYTES]}, /* of unknown age */
+        {"gateway", gateway_exception(failure)},
+        /* the refused response */
+        {"unexpected", facts.is_unexpected}, /* it does not fit the request */
+        {"refused", facts.refused_probe},    /* a value of it was refused */
+        {"probe", model->probes > 1 ? facts.refused_probe : 0u},
+        {"raw", facts.refused_raw},
+        {"code", facts.refused_raw == 0 || facts.refused_raw >= 0xFFFD}, /* this value has no meaning */
+        {"min", facts.min_mm},
+        {"max", facts.max_mm},
+        {"whole", failure->is_whole},
     };
-    unsigned evidence = 0;
-    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++)
-        if (rows[i].is_known) evidence |= (unsigned)rows[i].evidence;
-    return evidence;
+    size_t i = 0;
+    while (strncmp(rows[i].name, name, length) != 0 || rows[i].name[length] != '\0') {
+        i++;
+        assert(i != sizeof rows / sizeof rows[0]); /* the names stand in this file alone */
+    }
+    return rows[i].value;
 }
 
 /* ---- causes ---- */
 
-struct cause {
-    unsigned statuses; /* bits AT(status): one of these, ... */
-    unsigned evidence; /* ... and all of this */
-    const char *why;
-    const char *advice; /* NULL: `why` has it */
-};
+/* A row fits a failure with one of these statuses if all of these facts are not 0. */
+typedef struct {
+    unsigned statuses; /* bits AT(status) */
+    const char *facts;
+    const char *text;   /* what failed, or why */
+    const char *advice; /* NULL: there is none */
+} row_t;
 
 #define AT(status) (1u << -(int)(status))
-
 enum {
     PORT = AT(FATHOM_ERR_PORT),
     UNSUPPORTED = AT(FATHOM_ERR_UNSUPPORTED),
@@ -140,7 +143,9 @@ enum {
     MALFORMED = AT(FATHOM_ERR_MALFORMED),
     STALE = AT(FATHOM_ERR_STALE),
     LINE_BUSY = AT(FATHOM_ERR_LINE_BUSY),
-    OTHER_MASTER = AT(FATHOM_ERR_OTHER_MASTER)
+    OTHER_MASTER = AT(FATHOM_ERR_OTHER_MASTER),
+    NO_MATCH = NO_RESPONSE | CHECKSUM | LINE_BUSY,
+    ANY = INT32_MAX
 };
 
 #define SAME_EFFECT "Swapped wires A and B and noise have the same effect"
@@ -153,154 +158,316 @@ enum {
     "the sensor is the PWM variant. 5 V or RS232 destroy a pin for 3.3 V"
 
 /* The first row that fits is the cause. */
-static const cause_t causes[] = {
-    {PORT, LOST | WAITS, "{port-error}", "Waiting until it is back"},
-    {PORT, LOST | TCP, "{port-error}", "Start again[reads:. With --reconnect, fathom connects again]"},
-    {PORT, LOST, "{port-error}",
+static const row_t causes[] = {
+    {PORT, "lost waits", "{port-error}", "Waiting until it is back"},
+    {PORT, "lost tcp", "{port-error}", "Start again[reads:. With --reconnect, fathom connects again]"},
+    {PORT, "lost", "{port-error}",
      "Connect it again and start again[reads:. With --reconnect, fathom waits for it]"},
-    {PORT, 0, "{path}: the port did not send the request", "Check the adapter"},
-    {UNSUPPORTED, 0, "the port does not support this, and nothing was sent",
+    {PORT, "", "{path}: the port did not send the request", "Check the adapter"},
+    {UNSUPPORTED, "", "the port does not support this, and nothing was sent",
      "Choose other line settings or another adapter"},
-    {CANCELLED, 0, "the command ended before the response arrived", NULL},
+    {CANCELLED, "", "the command ended before the response arrived", NULL},
 
-    {NO_RESPONSE, PINS | SHORT,
+    {NO_RESPONSE, "pins noises",
      "no pulse of the sensor, but {noises} shorter ones: noise on the wire of echo",
      "Keep this wire away from motors and from the wire of trigger. " PULSE_WIRES},
-    {NO_RESPONSE, PINS, "no pulse was received", PULSE_WIRES},
-    {MALFORMED, PINS, "a pulse is no distance from {min} to {max} mm (--window)",
+    {NO_RESPONSE, "pins", "no pulse was received", PULSE_WIRES},
+    {MALFORMED, "pins", "a pulse is no distance from {min} to {max} mm (--window)",
      "Check for noise, and that nothing is nearer than 50 cm"},
-    {STALE, PINS | PULSES, "the pulse was read more than 2.5 s after its end",
+    {STALE, "pins pulses", "the pulse was read more than 2.5 s after its end",
      "The computer is too busy, or it was asleep"},
-    {STALE, PINS, "the level is not stable",
+    {STALE, "pins", "the level is not stable",
      "Check for a loose wire or a worn contact, that something pulls the input to one side (bias=up, "
      "bias=down or a resistor), and that this is a line number of the chip (gpioinfo lists them)"},
 
-    {NO_RESPONSE, TRIGGERED, "nothing followed the trigger",
+    {NO_RESPONSE, "triggered", "nothing followed the trigger",
      "Check the supply, the wires from the adapter's TX (or the line trigger=) to the sensor's RX and back, "
      "that the adapter can send a break, and that the sensor is the UART controlled variant (if not: --mode "
-     "auto or --mode "
-     "modbus)"},
-    {CHECKSUM, TRIGGERED, "the bytes after the trigger form no frame",
+     "auto or --mode modbus)"},
+    {CHECKSUM, "triggered", "the bytes after the trigger form no frame",
      "Check {settings}, and look for noise"},
 
-    {STALE | CHECKSUM, LISTENED | SILENCE | WORKED, "no byte was received. Earlier readings were good",
+    {STALE | CHECKSUM, "listened silence worked", "no byte was received. Earlier readings were good",
      "Check the power and the wires of the sensor"},
-    {STALE | CHECKSUM, LISTENED | SILENCE | ADDRESS, "no byte was received",
-     "Check the power and whether A and B are swapped. If the sensor does not send automatically, use "
-     "--mode modbus. To find its address, run 'fathom scan'"},
-    {STALE | CHECKSUM, LISTENED | SILENCE, "no byte was received",
-     "Check the power and the wire of the sensor's TX. If the sensor does not send automatically, use "
-     "--mode modbus. If it has an address, name it with its address, such as {model}:7; 'fathom scan' finds "
-     "it"},
-    {STALE | CHECKSUM, LISTENED | STREAM, "frames of {streamed} in automatic mode were received",
+    {STALE | CHECKSUM, "listened silence addressed", "no byte was received",
+     "Check the power and whether A and B are swapped. If the sensor does not send automatically, use --mode "
+     "modbus. To find its address, run 'fathom scan'"},
+    {STALE | CHECKSUM, "listened silence", "no byte was received",
+     "Check the power and the wire of the sensor's TX. If the sensor does not send automatically, use --mode "
+     "modbus. If it has an address, name it with its address, such as {model}:7; 'fathom scan' finds it"},
+    {STALE | CHECKSUM, "listened stream", "frames of {streamed} in automatic mode were received",
      "Try 'fathom read {streamed} --mode auto'"},
-    {STALE | CHECKSUM, LISTENED | ADDRESS | FOREIGN, "the line works, but address {foreign} sends",
+    {STALE | CHECKSUM, "listened addressed foreign", "the line works, but address {foreign-address} sends",
      "Try {other}"},
-    {STALE | CHECKSUM, LISTENED | MODBUS, "Modbus frames were received, but no measurement of {sensor}",
+    {STALE | CHECKSUM, "listened modbus", "Modbus frames were received, but no measurement of {sensor}",
      "If the sensor does not send automatically, use --mode modbus"},
-    {STALE | CHECKSUM, LISTENED | AMBIGUOUS,
+    {STALE | CHECKSUM, "listened ambiguous",
      "the bytes look like frames of {model}, but the start of a frame is not certain[dropped: (damaged "
      "frames: {damaged-frames}, bytes in no frame: {dropped})]",
      "Check that nothing else sends on this line, and look for noise"},
-    {STALE | CHECKSUM, LISTENED | WORKED,
+    {STALE | CHECKSUM, "listened worked",
      "the bytes form no frame[dropped: (damaged frames: {damaged-frames}, bytes in no frame: {dropped})]. "
      "Earlier readings were good, so the settings are right",
      DISTURBANCE},
-    {STALE | CHECKSUM, LISTENED,
+    {STALE | CHECKSUM, "listened",
      "the bytes form no frame of {model}[dropped: (damaged frames: {damaged-frames}, bytes in no frame: "
      "{dropped})]",
      "Check {settings}, and that the sensor is {model}. " SAME_EFFECT},
 
-    {EXCEPTION, 0, "exception {exception}", NULL},
+    {EXCEPTION, "", "exception {exception}", NULL},
 
-    {NO_RESPONSE, ASKED | LATE, "the response arrived after the time-out[took: (it took {took} ms)]",
+    {NO_RESPONSE, "asked late", "the response arrived after the time-out[took: (it took {took} ms)]",
      "Try a longer --timeout[took:, such as --timeout {timeout}]"},
-    {NO_RESPONSE | CHECKSUM | LINE_BUSY, ASKED | MASTER,
-     "another master sends requests on this line (to address {asked})", NO_MASTER},
-    {NO_RESPONSE | CHECKSUM | LINE_BUSY, ASKED | FOREIGN | IMPOSSIBLE,
-     "the line works, but address {foreign} responds, which no {model} can have",
+    {NO_MATCH, "asked masters", "another master sends requests on this line (to address {asked-address})",
+     NO_MASTER},
+    {NO_MATCH, "asked foreign impossible",
+     "the line works, but address {foreign-address} responds, which no {model} can have",
      "Check which sensor is connected"},
-    {NO_RESPONSE | CHECKSUM | LINE_BUSY, ASKED | FOREIGN, "the line works, but address {foreign} responds",
-     "Try {other}"},
-    {NO_RESPONSE | CHECKSUM | LINE_BUSY, ASKED | STREAM,
-     "frames of {streamed} in automatic mode were received", "Try 'fathom read {streamed} --mode auto'"},
-    {NO_RESPONSE | CHECKSUM | LINE_BUSY | MALFORMED, ASKED | UNSOLICITED,
+    {NO_MATCH, "asked foreign", "the line works, but address {foreign-address} responds", "Try {other}"},
+    {NO_MATCH, "asked stream", "frames of {streamed} in automatic mode were received",
+     "Try 'fathom read {streamed} --mode auto'"},
+    {NO_MATCH | MALFORMED, "asked crowded",
      "the sensor sends measurements without a request ({own} received), and a request has to fit between two "
      "of them",
-     "[latency:The adapter delays bytes by {latency} ms. ]If an adapter delays bytes, run 'setserial {path} "
-     "low_latency'. Else try again"},
+     "{delay}If an adapter delays bytes, run 'setserial {path} low_latency'. Else try again"},
 
-    {NO_RESPONSE, ASKED | GATEWAY, "the gateway responds with exception {exception}",
+    {NO_RESPONSE, "asked gateway", "the gateway responds with exception {exception}",
      "Check {option}, and the line and the supply behind the gateway"},
-    {NO_RESPONSE, ASKED | TCP | BYTES, "the response does not fit the request",
+    {NO_RESPONSE, "asked tcp bytes", "the response does not fit the request",
      "Check that the server speaks Modbus TCP"},
-    {NO_RESPONSE, ASKED | TCP, "the connection is open, but nothing was received",
+    {NO_RESPONSE, "asked tcp", "the connection is open, but nothing was received",
      "Check {option} and the line and supply of the sensor, and try a --timeout longer than the gateway's"},
-    {CHECKSUM, ASKED | TCP, "the response has a wrong length", "Check that the server speaks Modbus TCP"},
-    {LINE_BUSY, ASKED | TCP, "the server sends without a pause",
+    {CHECKSUM, "asked tcp", "the response has a wrong length", "Check that the server speaks Modbus TCP"},
+    {LINE_BUSY, "asked tcp", "the server sends without a pause",
      "Check that the server speaks Modbus TCP, and restart it"},
 
-    {NO_RESPONSE, ASKED | ECHO,
+    {NO_RESPONSE, "asked only-echo",
      "only the tool's own request was received: the adapter works and echoes, but no sensor responds behind "
      "it",
      "Check the wires behind the adapter (A, B, ground), the supply, and {option}"},
-    {NO_RESPONSE, ASKED | OLD, "{old} bytes of unknown age were received and dropped",
+    {NO_RESPONSE, "asked old", "{old} bytes of unknown age were received and dropped",
      "The computer was busy or asleep, or the adapter delays bytes. Try again, or try a longer --timeout"},
-    {NO_RESPONSE, ASKED | OWN, "frames of this address were received, but no response",
+    {NO_RESPONSE, "asked own", "frames of this address were received, but no response",
      "Check that no other master asks, and that only one sensor has this address"},
-    {NO_RESPONSE, ASKED | BYTES | WORKED,
+    {NO_RESPONSE, "asked bytes worked",
      "bytes were received, but no {protocol} frame. Earlier responses were good, so the settings are right",
      DISTURBANCE},
-    {NO_RESPONSE, ASKED | BYTES, "bytes were received, but no {protocol} frame",
+    {NO_RESPONSE, "asked bytes", "bytes were received, but no {protocol} frame",
      "Check {settings}. " SAME_EFFECT},
-    {NO_RESPONSE, ASKED | WORKED,
+    {NO_RESPONSE, "asked worked",
      "no byte was received. Earlier responses were good, so the settings are right",
      "Check the power and the wires of the sensor"},
-    {NO_RESPONSE, ASKED | OTHERS, "no byte was received, but other sensors on this line respond",
+    {NO_RESPONSE, "asked others", "no byte was received, but other sensors on this line respond",
      "Check the power, the wires, the address and the settings of this sensor"},
-    {NO_RESPONSE, ASKED, "no byte was received",
+    {NO_RESPONSE, "asked", "no byte was received",
      "Check the power, whether A and B (or RX and TX) are swapped, {option}, and --baud and "
      "--parity[not-scan:, or run 'fathom scan']"},
 
-    {CHECKSUM, ASKED | WORKED,
+    {CHECKSUM, "asked worked",
      "earlier responses were good, so the settings are right and the line is disturbed[damaged: ({damaged} "
      "of {attempts} attempts)]",
      DISTURBANCE},
-    {CHECKSUM, ASKED, "its checksum is wrong",
+    {CHECKSUM, "asked", "its checksum is wrong",
      "Check --parity, the cable and its termination, and that no other sensor has this address"},
 
-    {LINE_BUSY, ASKED | OWN, "frames of this address fill the line", "Let the sensor send less often"},
-    {LINE_BUSY, ASKED | WORKED, "the line was never silent", DISTURBANCE},
-    {LINE_BUSY, ASKED, "the line was never silent, and the bytes form no frames",
+    {LINE_BUSY, "asked own", "frames of this address fill the line", "Let the sensor send less often"},
+    {LINE_BUSY, "asked worked", "the line was never silent", DISTURBANCE},
+    {LINE_BUSY, "asked", "the line was never silent, and the bytes form no frames",
      "Check the bias and termination resistors and the wires (A, B, ground), disconnect other devices one by "
      "one, and check {settings}"},
 
-    {OTHER_MASTER, REQUEST,
+    {OTHER_MASTER, "request",
      "another master asked this unit at the same time, or the unit acknowledged another write of function 06",
      NO_MASTER ", or try again"},
-    {OTHER_MASTER, 0, "another master asked this sensor at the same time", NO_MASTER ", or try again"},
+    {OTHER_MASTER, "", "another master asked this sensor at the same time", NO_MASTER ", or try again"},
 
-    {MALFORMED, UNEXPECTED, "the response does not fit the request",
+    {MALFORMED, "unexpected", "the response does not fit the request",
      "Check that the sensor is {model}, and the only one at address {address}"},
-    {MALFORMED, SETTING, "the response has a value that this setting cannot have",
+    {MALFORMED, "setting", "the response has a value that this setting cannot have",
      "Check that the sensor is {model}, and the only one at address {address}"},
-    {MALFORMED, REFUSED | CODE,
+    {MALFORMED, "refused code",
      "[probe:probe {probe}: ]{raw} (hex {hex}) has no known meaning[whole:. The other probes of this frame "
-     "may "
-     "be damaged and are refused too]",
+     "may be damaged and are refused too]",
      "If you know it, use --means {hex}=MEANING. [probe:If this probe is not fitted, leave it out with "
-     "--probes. ]Check that the sensor is {model}, and look for "
-     "noise"},
-    {MALFORMED, REFUSED,
+     "--probes. ]Check that the sensor is {model}, and look for noise"},
+    {MALFORMED, "refused",
      "[probe:probe {probe}: ]{raw} is no distance from {min} to {max} mm[whole:. The other probes of this "
      "frame may be damaged and are refused too]",
      "[probe:If this probe is not fitted, leave it out with --probes. ]Check that the sensor is {model}, and "
      "look for noise"},
-    {MALFORMED, 0, "the values cannot be a distance: {values}",
+    {MALFORMED, "", "the values cannot be a distance: {values}",
      "Check that the sensor is {model}, and look for noise"},
 
-    {~0u, 0, "{library}", NULL},
+    {ANY, "", "{library}", NULL},
 };
+
+/* What failed; "": the cause has it. The first row that fits is right. */
+static const row_t failures[] = {
+    {ANY, "scan", "no sensor was found{place}: ", NULL},
+    {PORT | CANCELLED, "", "", NULL},
+    {UNSUPPORTED, "", "cannot set {path} to {line}: ", NULL},
+    {NO_RESPONSE | STALE, "pins", "no reading from {sensor}{place}: ", NULL},
+    {NO_RESPONSE | STALE, "listened", "no frame from {sensor}{place}: ", NULL},
+    {NO_RESPONSE | STALE, "", "no response from {sensor}{place}: ", NULL},
+    {CHECKSUM, "listened", "no valid frame from {sensor}{place}: ", NULL},
+    {CHECKSUM, "", "damaged response from {sensor}{place}: ", NULL},
+    {EXCEPTION, "", "{sensor}{place} refused the request: ", NULL},
+    {MALFORMED, "", "unusable response from {sensor}{place}: ", NULL},
+    {LINE_BUSY, "", "cannot send a request to {sensor}{place}: ", NULL},
+    {OTHER_MASTER, "", "cannot assign the response of {sensor}{place}: ", NULL},
+    {ANY, "", "{sensor}{place} failed: ", NULL},
+};
+
+static bool fits(const row_t *row, const failure_t *failure)
+{
+    /* A damaged response that is only the tool's own request is no response. */
+    const bool is_echo =
+        failure->status == FATHOM_ERR_CHECKSUM && is_asked(failure) && is_only_echo(&failure->evidence);
+    if ((row->statuses & (is_echo ? AT(FATHOM_ERR_NO_RESPONSE) : AT(failure->status))) == 0) return false;
+    for (const char *name = row->facts; *name != '\0';) {
+        const size_t length = strcspn(name, " ");
+        if (fact(failure, name, length) == 0) return false;
+        name += length + strspn(name + length, " ");
+    }
+    return true;
+}
+
+static const row_t *find(const row_t *row, const failure_t *failure)
+{
+    while (!fits(row, failure)) row++;
+    return row;
+}
+
+/* ---- words that are more than a number ---- */
+
+static void print_place(FILE *to, const failure_t *failure)
+{
+    char text[LINE_TEXT];
+    (void)fprintf(to, " at %s", failure->port->name);
+    if (failure->line != NULL && failure->port->kind == PORT_SERIAL)
+        (void)fprintf(to, " (%s)", line_text(failure->line, text));
+}
+
+/* "--baud and --parity (now 9600 8N1; ...)" */
+static void print_settings(FILE *to, const failure_t *failure)
+{
+    const fathom_line_settings_t *const now = failure->line;
+    const fathom_line_settings_t *const factory = &failure->model->line;
+    const uint64_t *const port = failure->counters->attempt.port;
+    char text[LINE_TEXT];
+    (void)fputs("--baud and --parity", to);
+    if (now == NULL) return;
+    (void)fprintf(to, " (now %s", line_text(now, text));
+    if (factory->baud != 0 && (now->baud != factory->baud || now->parity != factory->parity ||
+                               now->stop_bits != factory->stop_bits))
+        (void)fprintf(to, "; with factory settings %s", line_text(factory, text));
+    else if (failure->model->other_settings != NULL)
+        (void)fprintf(to, "; try %s", failure->model->other_settings);
+    if (port[PORT_FRAMING] + port[PORT_PARITY] != 0)
+        (void)fprintf(to, "; the port counts %s",
+                      port[PORT_FRAMING] != 0 ? "framing errors, so most likely --baud"
+                                              : "parity errors, so most likely --parity");
+    (void)fputs(")", to);
+}
+
+static void print_exception(FILE *to, const failure_t *failure)
+{
+    const uint8_t gateway = gateway_exception(failure);
+    const uint8_t number = gateway != 0 ? gateway : reader_facts(failure->reader).exception;
+    const modbus_exception_t exception = modbus_exception(number);
+    (void)fprintf(to, "%02u (%s)", number, exception.name);
+    if (gateway == 0) (void)fprintf(to, ": %s", exception.meaning);
+    if (gateway == 0 && exception.is_other_sensor)
+        (void)fprintf(to, ". Check that the sensor is %s", failure->model->name);
+}
+
+static void print_values(FILE *to, const failure_t *failure)
+{
+    const reader_facts_t facts = reader_facts(failure->reader);
+    for (uint8_t i = 0; i != facts.value_count; i++)
+        (void)fprintf(to, "%s%u", i != 0 ? " " : "", facts.values[i]);
+}
+
+/* Adapters delay received bytes. */
+static void print_delay(FILE *to, const failure_t *failure)
+{
+    const unsigned ms = adapter_latency_ms(failure->port->name);
+    if (ms != 0) (void)fprintf(to, "The adapter delays bytes by %u ms. ", ms);
+}
+
+static void print_word(FILE *to, const char *name, const failure_t *failure)
+{
+    const char *const model = failure->model->name;
+    const bool is_request = failure->is_request;
+    const char *const option = is_request ? "UNIT" : "--address";
+    char sensor[64];
+    char other[64];
+    char line[LINE_TEXT] = "";
+    char hex[8];
+    if (is_request)
+        (void)snprintf(sensor, sizeof sensor, "unit %u", failure->address);
+    else
+        (void)snprintf(sensor, sizeof sensor, failure->mode->has_address ? "%s:%u" : "%s", model,
+                       failure->address);
+    /* how the user enters the address that was received */
+    (void)snprintf(other, sizeof other, "%s%s%u", failure->shared != NULL ? model : option,
+                   failure->shared != NULL ? ":" : " ", failure->evidence.foreign_address);
+    (void)snprintf(hex, sizeof hex, "%X", reader_facts(failure->reader).refused_raw);
+    if (failure->line != NULL) (void)line_text(failure->line, line);
+    const struct {
+        const char *name;
+        const char *text;
+        void (*print)(FILE *to, const failure_t *failure);
+    } words[] = {
+        {"sensor", sensor, NULL},
+        {"other", other, NULL},
+        {"line", line, NULL},
+        {"hex", hex, NULL},
+        {"model", model, NULL},
+        {"path", failure->port->name, NULL},
+        {"protocol", failure->mode->protocol, NULL},
+        {"option", option, NULL},
+        {"streamed", failure->evidence.streamed_a05 != 0 ? "a05" : "a16", NULL},
+        {"port-error", failure->port->error_text, NULL},
+        {"library", fathom_status_advice(failure->status), NULL},
+        {"place", NULL, print_place},
+        {"settings", NULL, print_settings},
+        {"exception", NULL, print_exception},
+        {"values", NULL, print_values},
+        {"delay", NULL, print_delay},
+    };
+    for (size_t i = 0; i != sizeof words / sizeof words[0]; i++) {
+        if (strcmp(words[i].name, name) != 0) continue;
+        if (words[i].print != NULL)
+            words[i].print(to, failure);
+        else
+            (void)fputs(words[i].text, to);
+        return;
+    }
+    (void)fprintf(to, "%" PRIu64, fact(failure, name, strlen(name)));
+}
+
+/* Prints a text. {word} is replaced by a word or a fact. [fact:text] is printed only if the fact is not 0. */
+static void print(FILE *to, const char *text, const failure_t *failure)
+{
+    char name[20];
+    while (*text != '\0') {
+        const char mark = *text++;
+        const size_t length = mark == '{' ? strcspn(text, "}") : mark == '[' ? strcspn(text, ":") : 0;
+        if (length == 0) {
+            if (mark != ']') (void)fputc(mark, to);
+            continue;
+        }
+        (void)snprintf(name, sizeof name, "%.*s", (int)length, text);
+        text += length + 1;
+        if (mark == '{')
+            print_word(to, name, failure);
+        else if (fact(failure, name, length) == 0)
+            text += strcspn(text, "]");
+    }
+}
+
+/* ---- messages ---- */
 
 failure_t failure_of_request(fathom_status_t status, const port_t *port)
 {
@@ -310,68 +477,42 @@ failure_t failure_of_request(fathom_status_t status, const port_t *port)
     return (failure_t){.status = status, .model = &model, .mode = &mode, .port = port, .counters = &counters};
 }
 
-/* A damaged response that is only the tool's own request is no response. */
-static fathom_status_t status_of(const failure_t *failure, unsigned evidence)
-{
-    const bool is_echo =
-        failure->status == FATHOM_ERR_CHECKSUM && (evidence & (ASKED | ECHO)) == (ASKED | ECHO);
-    return is_echo ? FATHOM_ERR_NO_RESPONSE : failure->status;
-}
-
-const cause_t *diagnose(const failure_t *failure)
-{
-    const unsigned evidence = evidence_of(failure);
-    const fathom_status_t status = status_of(failure, evidence);
-    const cause_t *cause = causes;
-    while ((cause->statuses & AT(status)) == 0 || (cause->evidence & ~evidence) != 0) cause++;
-    return cause;
-}
-
 void advice_print_cause(FILE *to, const failure_t *failure)
 {
-    const cause_t *const cause = diagnose(failure);
-    advice_print_template(to, cause->why, failure);
+    const row_t *const cause = find(causes, failure);
+    print(to, cause->text, failure);
     if (cause->advice == NULL) return;
     (void)fputs(". ", to);
-    advice_print_template(to, cause->advice, failure);
-}
-
-/* What failed. "": the cause has it. */
-static const char *what(const failure_t *failure)
-{
-    const unsigned evidence = evidence_of(failure);
-    if (failure->is_scan) return "no sensor was found{place}";
-    switch (status_of(failure, evidence)) {
-    case FATHOM_ERR_PORT:
-    case FATHOM_ERR_CANCELLED:
-        return "";
-    case FATHOM_ERR_UNSUPPORTED:
-        return "cannot set {path} to {line}";
-    case FATHOM_ERR_NO_RESPONSE:
-    case FATHOM_ERR_STALE:
-        return (evidence & PINS) != 0       ? "no reading from {sensor}{place}"
-               : (evidence & LISTENED) != 0 ? "no frame from {sensor}{place}"
-                                            : "no response from {sensor}{place}";
-    case FATHOM_ERR_CHECKSUM:
-        return (evidence & LISTENED) != 0 ? "no valid frame from {sensor}{place}"
-                                          : "damaged response from {sensor}{place}";
-    case FATHOM_ERR_EXCEPTION:
-        return "{sensor}{place} refused the request";
-    case FATHOM_ERR_MALFORMED:
-        return "unusable response from {sensor}{place}";
-    case FATHOM_ERR_LINE_BUSY:
-        return "cannot send a request to {sensor}{place}";
-    case FATHOM_ERR_OTHER_MASTER:
-        return "cannot assign the response of {sensor}{place}";
-    default:
-        return "{sensor}{place} failed";
-    }
+    print(to, cause->advice, failure);
 }
 
 void advice_print(FILE *to, const failure_t *failure)
 {
-    const char *const text = what(failure);
-    advice_print_template(to, text, failure);
-    if (text[0] != '\0') (void)fputs(": ", to);
+    print(to, find(failures, failure)->text, failure);
     advice_print_cause(to, failure);
+}
+
+void advice_print_new(FILE *to, const failure_t *failure, reported_t *reported)
+{
+    const reader_facts_t facts = reader_facts(failure->reader);
+    const uint64_t *const port = failure->counters->attempt.port;
+    const uint8_t parts[] = {(uint8_t)(find(causes, failure) - causes),
+                             failure->evidence.foreign_address,
+                             failure->evidence.masters_address,
+                             gateway_exception(failure),
+                             facts.exception,
+                             facts.refused_probe,
+                             port[PORT_FRAMING] != 0  ? 1
+                             : port[PORT_PARITY] != 0 ? 2
+                                                      : 0};
+    uint64_t cause = facts.refused_probe != 0 && fact(failure, "code", 4) != 0 ? facts.refused_raw : 0;
+    for (size_t i = 0; i != sizeof parts; i++) cause = cause * UINT64_C(1099511628211) + parts[i];
+    const bool is_new =
+        reported->times == 0 || reported->cause != cause || failure->status == FATHOM_ERR_PORT;
+    *reported = (reported_t){cause, is_new ? 1 : reported->times + 1};
+    print(to, find(failures, failure)->text, failure);
+    if (is_new)
+        advice_print_cause(to, failure);
+    else
+        (void)fprintf(to, "the same cause as before, %" PRIu64 " times in a row", reported->times);
 }

@@ -3,6 +3,60 @@
 
 #include <string.h>
 
+#include "fathom/processing/alarm.h"
+
+/* ---- words ---- */
+
+/* First the kinds of a sample, then the failures that can end an attempt. */
+enum { KIND_NEAR = FATHOM_UNKNOWN + 1, KINDS, WORDS = KINDS + FAILURE_KINDS };
+static const struct {
+    const char *name;
+    const char *what;
+} words[WORDS] = {
+    [FATHOM_TARGET] = {"target", "There is a distance"},
+    [FATHOM_NO_TARGET] = {"no_target", "Nothing is in range"},
+    [FATHOM_NEAR] = {"too_near", "A target is nearer than the sensor can measure"},
+    [KIND_NEAR] = {"near", "A target is nearer than the threshold (switch, relay)"}, /* of a contact */
+    [FATHOM_FAR] = {"far", "No target is nearer than the threshold (switch, relay)"},
+    [FATHOM_UNKNOWN] = {"unknown", "No known meaning (--means), or all pulses are too short"},
+    [FATHOM_FAULT] = {"fault", "The sensor reports a fault"},
+#define FAILURE(kind) [KINDS + (kind)]
+    FAILURE(FAILURE_VALUE) = {"impossible_values", "No distance, or refused by --window or --means"},
+    FAILURE(-FATHOM_ERR_PORT) = {"port", "The port is lost, or the program waits for it"},
+    FAILURE(-FATHOM_ERR_NO_RESPONSE) = {"no_response", "The sensor did not respond within --timeout"},
+    FAILURE(-FATHOM_ERR_CHECKSUM) = {"damaged", "The bytes have a wrong checksum, or form no frame"},
+    FAILURE(-FATHOM_ERR_EXCEPTION) = {"exception", "The sensor refused the request by a Modbus exception"},
+    FAILURE(-FATHOM_ERR_MALFORMED) = {"other_response", "The response does not fit the request"},
+    FAILURE(-FATHOM_ERR_STALE) = {"stale", "No frame arrived within --timeout (without requests)"},
+    FAILURE(-FATHOM_ERR_LINE_BUSY) = {"line_busy", "The line was never silent; no request could be sent"},
+    FAILURE(-FATHOM_ERR_OTHER_MASTER) = {"other_master", "Another master sent requests to this sensor"},
+    FAILURE(FAILURE_KINDS - 1) = {"other", "Any other failure"},
+};
+
+const char *status_word(const model_mode_t *mode, uint8_t kind)
+{
+    return words[kind == FATHOM_NEAR && mode->is_contact ? KIND_NEAR : kind].name;
+}
+
+const char *status_word_of_failure(size_t kind) { return words[KINDS + kind].name; }
+
+const char *alarm_word(uint8_t state)
+{
+    static const char *const names[] = {[FATHOM_ALARM_ON] = "on",
+                                        [FATHOM_ALARM_OFF] = "off",
+                                        [FATHOM_ALARM_UNKNOWN] = "unknown",
+                                        [FATHOM_ALARM_NO_RESPONSE] = "no_response"};
+    return names[state];
+}
+
+void status_words_help(FILE *to)
+{
+    for (size_t i = 0; i != WORDS; i++)
+        if (words[i].name != NULL) (void)fprintf(to, "  %-17s %s\n", words[i].name, words[i].what);
+}
+
+/* ---- counters ---- */
+
 static void take(uint16_t *from, uint64_t *attempt, uint64_t *total, size_t count)
 {
     for (size_t i = 0; i != count; i++) {
@@ -62,16 +116,13 @@ void counters_take_late(counters_t *counters, port_t *port)
 
 void counters_begin_attempt(counters_t *counters) { memset(&counters->attempt, 0, sizeof counters->attempt); }
 
-size_t counters_failure_kind(fathom_status_t status, const reader_t *reader)
+size_t counters_failure(counters_t *counters, fathom_status_t status, const reader_t *reader)
 {
-    const size_t kind = (size_t)-status;
-    if (status == FATHOM_ERR_MALFORMED && !reader_facts(reader).is_unexpected) return FAILURE_VALUE;
-    return kind >= FAILURE_KINDS || status_word_of_failure(kind) == NULL ? FAILURE_KINDS - 1 : kind;
-}
-
-void counters_failure(counters_t *counters, fathom_status_t status, const reader_t *reader)
-{
-    counters->failures[counters_failure_kind(status, reader)]++;
+    size_t kind = (size_t)-status;
+    if (kind >= FAILURE_KINDS || status_word_of_failure(kind) == NULL) kind = FAILURE_KINDS - 1;
+    if (status == FATHOM_ERR_MALFORMED && !reader_facts(reader).is_unexpected) kind = FAILURE_VALUE;
+    counters->failures[kind]++;
+    return kind;
 }
 
 void counters_time(counters_t *counters, uint32_t took_us)

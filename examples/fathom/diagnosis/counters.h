@@ -4,9 +4,28 @@
 
 #include <stdio.h>
 
-#include "diagnosis/status_word.h"
 #include "ports/port.h"
+#include "sensors/models.h"
 #include "sensors/reader.h"
+
+/* ---- the words of `status` and `alarm` in text, JSON, CSV and MQTT ---- */
+
+/* Returns the word for a kind of sample. A contact has its own words. */
+const char *status_word(const model_mode_t *mode, uint8_t kind);
+
+/* Failures by kind: -status, and beside it those whose values were refused. The last kind is any other failure. */
+enum { FAILURE_VALUE = 0, FAILURE_KINDS = 20 };
+
+/* Returns the word for a failure. NULL if no attempt can end so. */
+const char *status_word_of_failure(size_t kind);
+
+/* Returns the word for a fathom_alarm_state_t. */
+const char *alarm_word(uint8_t state);
+
+/* Writes a line for each word of `status`. */
+void status_words_help(FILE *to);
+
+/* ---- counters ---- */
 
 /* What the port's driver counts, where it does. */
 enum { PORT_PARITY = 0, PORT_FRAMING = 1, PORT_OVERRUN = 2, PORT_BREAKS = 3, PORT_COUNTERS = 4 };
@@ -56,10 +75,8 @@ void counters_take_late(counters_t *counters, port_t *port);
 
 void counters_begin_attempt(counters_t *counters);
 
-/* Of a failure: FAILURE_VALUE, -status, or the last one, "other". */
-size_t counters_failure_kind(fathom_status_t status, const reader_t *reader);
-
-void counters_failure(counters_t *counters, fathom_status_t status, const reader_t *reader);
+/* Counts a failure. Returns its kind: FAILURE_VALUE, -status, or the last one, "other". */
+size_t counters_failure(counters_t *counters, fathom_status_t status, const reader_t *reader);
 
 void counters_time(counters_t *counters, uint32_t took_us);
 

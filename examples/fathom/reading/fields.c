@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "reading/fields.h"
 
-#include "diagnosis/status_word.h"
+#include "diagnosis/counters.h"
 #include "output/words.h"
 
 typedef struct {

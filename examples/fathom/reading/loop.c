@@ -213,10 +213,9 @@ static void fail(line_t *line, sensor_t *sensor, fathom_status_t status, bool is
         .is_whole = is_first && !reader_has_more(reader) && has_probes(sensor),
         .is_told = is_known,
     };
-    counters_failure(&sensor->counters, status, reader);
     judge(line, sensor, &failure.evidence);
     sensor->has_failed = true;
-    report_failure(loop, sensor, &failure, counters_failure_kind(status, reader),
+    report_failure(loop, sensor, &failure, counters_failure(&sensor->counters, status, reader),
                    status == FATHOM_ERR_MALFORMED ? reader_facts(reader).refused_probe : 0);
     results_status(loop, sensor, status);
 }

@@ -2,7 +2,7 @@
 #ifndef SITE_H
 #define SITE_H
 
-#include "diagnosis/counters.h"
+#include "diagnosis/advice.h"
 #include "fathom/processing/alarm.h"
 #include "fathom/processing/level.h"
 #include "fathom/processing/median.h"
@@ -93,6 +93,7 @@ struct sensor {
     /* How it is read. */
     reader_t *reader; /* NULL until it was opened */
     counters_t counters;
+    reported_t reported; /* its failures that were printed */
     pulses_t pulses;
     uint32_t noises; /* pulses of the present attempt that were too short */
     result_probe_t probes[FATHOM_DYP_PROBES];

@@ -64,10 +64,16 @@ class Asked(e2e.Case):
 
     def test_only_the_own_request_is_an_echo_without_a_sensor(self):
         for sensor, request in ((A16, e2e.ASK_A16), (HPS, e2e.ASK_HPS)):
-            done = self.ask(request, request, sensor=sensor)
-            for attempt in (1, 2):
-                self.advised(done, attempt, "only the tool's own request was received",
-                             'wires behind the adapter', 'supply', never='no byte was received')
+            self.advised(self.ask(request, sensor=sensor), 1, "only the tool's own request was received",
+                         'wires behind the adapter', 'supply', never='no byte was received')
+
+    def test_the_advice_is_printed_once_for_a_cause_and_another_cause_in_full(self):
+        """Another address that responds is another cause."""
+        full, again = 'Check |Try ', 'no response from .*: the same cause as before, {} times in a row$'
+        seven, nine = e2e.registers(7, 754), e2e.registers(9, 754)
+        done = self.ask(b'', b'', b'', NOISE, b'', seven, nine, nine)
+        for attempt, words in enumerate((full, again.format(2), again.format(3), full, full, full, full, again.format(2)), 1):
+            self.assertRegex(self.advised(done, attempt), words)
 
     def test_an_echo_and_a_response_are_a_reading_without_advice(self):
         for echo in ('auto', 'on'):

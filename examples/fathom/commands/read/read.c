@@ -272,13 +272,13 @@ static void write_row(run_t *run, const reading_t *reading)
 
 static void print_failure(const run_t *run, const reading_t *reading)
 {
-    const sensor_t *const sensor = reading->sensor;
+    sensor_t *const sensor = reading->sensor;
     const bool is_port = reading->status == FATHOM_ERR_PORT;
     const bool is_named = sensor->is_named && !is_port;
     if (reading->evidence->is_told || (run->options->quiet && (!is_port || reading->evidence->waits))) return;
     (void)fprintf(stderr, "fathom: %s%sattempt %" PRIu64 ": ", is_named ? sensor->name : "",
                   is_named ? ": " : "", sensor->counters.attempts + 1);
-    advice_print(stderr, reading->evidence);
+    advice_print_new(stderr, reading->evidence, &sensor->reported);
     (void)fputs("\n", stderr);
 }
 
