@@ -116,13 +116,11 @@ void counters_take_late(counters_t *counters, port_t *port)
 
 void counters_begin_attempt(counters_t *counters) { memset(&counters->attempt, 0, sizeof counters->attempt); }
 
-size_t counters_failure(counters_t *counters, fathom_status_t status, const reader_t *reader)
+size_t counters_failure_kind(fathom_status_t status, const reader_t *reader)
 {
-    size_t kind = (size_t)-status;
-    if (kind >= FAILURE_KINDS || status_word_of_failure(kind) == NULL) kind = FAILURE_KINDS - 1;
-    if (status == FATHOM_ERR_MALFORMED && !reader_facts(reader).is_unexpected) kind = FAILURE_VALUE;
-    counters->failures[kind]++;
-    return kind;
+    const size_t kind = (size_t)-status;
+    if (status == FATHOM_ERR_MALFORMED && !reader_facts(reader).is_unexpected) return FAILURE_VALUE;
+    return kind >= FAILURE_KINDS || status_word_of_failure(kind) == NULL ? FAILURE_KINDS - 1 : kind;
 }
 
 void counters_time(counters_t *counters, uint32_t took_us)

@@ -75,8 +75,8 @@ void counters_take_late(counters_t *counters, port_t *port);
 
 void counters_begin_attempt(counters_t *counters);
 
-/* Counts a failure. Returns its kind: FAILURE_VALUE, -status, or the last one, "other". */
-size_t counters_failure(counters_t *counters, fathom_status_t status, const reader_t *reader);
+/* Returns the kind of a failure: FAILURE_VALUE, -status, or the last one, "other". */
+size_t counters_failure_kind(fathom_status_t status, const reader_t *reader);
 
 void counters_time(counters_t *counters, uint32_t took_us);
 

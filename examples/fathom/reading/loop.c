@@ -213,9 +213,11 @@ static void fail(line_t *line, sensor_t *sensor, fathom_status_t status, bool is
         .is_whole = is_first && !reader_has_more(reader) && has_probes(sensor),
         .is_told = is_known,
     };
+    const size_t kind = counters_failure_kind(status, reader);
+    sensor->counters.failures[kind]++;
     judge(line, sensor, &failure.evidence);
     sensor->has_failed = true;
-    report_failure(loop, sensor, &failure, counters_failure(&sensor->counters, status, reader),
+    report_failure(loop, sensor, &failure, kind,
                    status == FATHOM_ERR_MALFORMED ? reader_facts(reader).refused_probe : 0);
     results_status(loop, sensor, status);
 }
