@@ -410,17 +410,20 @@ static const option_t rows[] = {
 static const option_table_t tables[] = {{rows, 0}, {NULL, 0}};
 
 /* Returns the exit status. */
-static int explain(decode_finder_t *finder, const model_t *only, bool is_json)
+static int explain(const decode_input_t *input, uint8_t wanted, const model_t *only, bool is_json)
 {
     static decode_frame_t frame;
+    decode_finder_t finder;
     context_t context = {.only = only};
     decode_piece_t piece;
     int status = STATUS_OK;
-    while (decode_find_next(finder, &piece)) {
+    decode_find_begin(&finder, input, wanted);
+    while (decode_find_next(&finder, &piece)) {
         if (piece.protocol == 0 || piece.is_damaged) status = STATUS_FAILED;
-        decode_frame(&frame, &context, finder, &piece);
+        decode_frame(&frame, &context, &finder, &piece);
         (is_json ? print_json : print_text)(&frame);
     }
+    free(finder.choices);
     if (fflush(stdout) == 0 && ferror(stdout) == 0) return status;
     (void)fprintf(stderr, "fathom: the output cannot be written: %s\n", strerror(errno));
     return STATUS_FAILED;
@@ -440,21 +443,13 @@ static int start(const host_t *host, const arguments_t *arguments)
         (void)reject(&arguments->origin, "%s has no frames of this --protocol.", only->name);
         return STATUS_USAGE;
     }
-    decode_finder_t finder = {.choices = NULL};
-    decode_input_t input = {.bytes = malloc(DECODE_MAX_BYTES), .line_starts = malloc(DECODE_MAX_BYTES)};
-    int status = STATUS_FAILED;
-    if (input.bytes == NULL || input.line_starts == NULL)
-        (void)fputs("fathom: there is not enough memory.\n", stderr);
-    else
-        status = read_input(&input, arguments, settings->is_raw);
+    decode_input_t input = {.bytes = allocate(DECODE_MAX_BYTES), .line_starts = allocate(DECODE_MAX_BYTES)};
+    int status = read_input(&input, arguments, settings->is_raw);
     if (status == STATUS_OK && input.count == 0) {
         (void)fputs("fathom: there are no bytes to explain.\n", stderr);
         status = STATUS_FAILED;
     }
-    if (status == STATUS_OK)
-        status = decode_find_begin(&finder, &input, wanted) ? explain(&finder, only, settings->is_json)
-                                                            : STATUS_FAILED;
-    free(finder.choices);
+    if (status == STATUS_OK) status = explain(&input, wanted, only, settings->is_json);
     free(input.bytes);
     free(input.line_starts);
     return status;

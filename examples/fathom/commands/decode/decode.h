@@ -22,11 +22,10 @@ typedef struct {
     const decode_input_t *input;
     uint8_t protocols; /* DECODE_... */
     size_t at;
-    struct decode_choice *choices; /* one for each byte; free() it in each case */
+    struct decode_choice *choices; /* one for each byte; free() it at the end */
 } decode_finder_t;
 
-/* Returns false after a message if there is not enough memory. */
-bool decode_find_begin(decode_finder_t *finder, const decode_input_t *input, uint8_t protocols);
+void decode_find_begin(decode_finder_t *finder, const decode_input_t *input, uint8_t protocols);
 
 /* Finds the next piece. Returns false at the end. */
 bool decode_find_next(decode_finder_t *finder, decode_piece_t *piece);

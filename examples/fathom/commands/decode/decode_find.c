@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 #include <stdio.h>
-#include <stdlib.h>
 
 #include "commands/decode/decode.h"
 #include "fathom/codec/crc16.h"
 #include "fathom/codec/dyp_55aa.h"
 #include "fathom/codec/dyp_stream.h"
 #include "fathom/codec/modbus_rtu.h"
+#include "output/words.h"
 
 /*
  * The price of each piece; the cheapest way through the input is taken. A damaged frame is dearer than the good ones that
@@ -152,14 +152,13 @@ static void choose(const decode_finder_t *finder, size_t at)
     if ((finder->protocols & DECODE_MODBUS) != 0) offer_modbus(&view);
 }
 
-bool decode_find_begin(decode_finder_t *finder, const decode_input_t *input, uint8_t protocols)
+void decode_find_begin(decode_finder_t *finder, const decode_input_t *input, uint8_t protocols)
 {
-    *finder = (decode_finder_t){
-        .input = input, .protocols = protocols, .choices = calloc(input->count + 1, sizeof *finder->choices)};
-    for (size_t at = input->count; at != 0 && finder->choices != NULL; at--) choose(finder, at - 1);
-    if (finder->choices == NULL)
-        (void)fprintf(stderr, "fathom: there is no memory to look at %zu bytes.\n", input->count);
-    return finder->choices != NULL;
+    finder->input = input;
+    finder->protocols = protocols;
+    finder->at = 0;
+    finder->choices = allocate((input->count + 1) * sizeof *finder->choices);
+    for (size_t at = input->count; at != 0; at--) choose(finder, at - 1);
 }
 
 bool decode_find_next(decode_finder_t *finder, decode_piece_t *piece)
