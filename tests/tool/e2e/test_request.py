@@ -20,17 +20,8 @@ class Request(e2e.Case):
             line = next(line for line in out.splitlines() if line.startswith(name))
             self.assertIn('CRC', self.ends(f'decode {line[len(name):]}', 0).out)
 
-    def test_one_request_leaves_and_no_other(self):
-        device, request = self.asked(b'', '--timeout 200')
-        self.ends(request, 1, 'no byte was received')
-        self.assertEqual(device.rest(), b'')
-
     def test_without_yes_nothing_leaves_and_the_port_is_not_opened(self):
         self.ends(f'request 1 6 0x0200 5 --port {self.path("none")}', 2, 'Nothing was sent yet. To confirm that, add --yes', out='')
-
-    def test_more_than_a_frame_holds_is_wrong_usage(self):
-        for words in ('16 0 ' + '1 ' * 124, '65 ' + 'ff ' * 252, '3 0 126', '65 ' + 'ff ' * 400):
-            self.ends(f'request 1 {words} --yes --port {self.path("none")}', 2, out='')
 
     def test_a_lost_port_is_told(self):
         device, request = self.asked(b'', '--timeout 600000')
