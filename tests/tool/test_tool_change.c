@@ -19,11 +19,9 @@ typedef struct {
 } outcome_t;
 
 static struct {
+    host_t inner;
     host_t host;
     loop_t loop;
-    uint32_t last_us;
-    uint64_t now_us;
-    uint64_t end_us;
     unsigned opened;
     unsigned closed;
     outcome_t outcomes[OUTCOMES];
@@ -42,46 +40,16 @@ static struct {
     fathom_sim_hps167s_t second;
 } rig;
 
-/* ---- the machine ---- */
-
-static uint64_t now_us(void *ctx)
-{
-    rig.now_us += fathom_elapsed_us(bench.clock.now_us, rig.last_us);
-    rig.last_us = bench.clock.now_us;
-    return rig.now_us;
-}
-
 static bool open_port(void *ctx, const char *path, const fathom_line_settings_t *settings,
                       fathom_posix_uart_t *port, fathom_uart_t *uart)
 {
-    uint8_t bytes[64];
-    fathom_rx_t rx;
-    memset(port, 0, sizeof *port);
-    port->fd = -1;
-    *uart = fathom_sim_uart(&bench.uart);
     rig.opened++;
-    assert_true(uart->set_line(uart->ctx, settings) >= 0);
-    do memset(&rx, 0, sizeof rx);
-    while (uart->read(uart->ctx, bytes, sizeof bytes, &rx) > 0);
-    return true;
+    return rig.inner.open(ctx, path, settings, port, uart);
 }
 
 static void close_port(void *ctx, fathom_posix_uart_t *port) { rig.closed++; }
-static bool has_ended(void *ctx) { return now_us(ctx) >= rig.end_us; }
-static bool is_output_gone(void *ctx) { return false; }
-static void attend(void *ctx, fathom_loop_t *loop) {}
 
-static void sleep_for(void *ctx, fathom_loop_t *loop, uint32_t max_us)
-{
-    fathom_sim_clock_idle(&bench.clock, max_us != 0 ? max_us : 1);
-    for (fathom_loop_source_t *source = loop->sources; source != NULL; source = source->next)
-        fathom_loop_wake(source);
-}
-
-static void wait_for(void *ctx, int fd, short events, uint32_t max_us, bool watch_output)
-{
-    fathom_sim_clock_idle(&bench.clock, max_us != 0 ? max_us : 1);
-}
+static uint64_t now_us(void) { return rig.host.now_us(rig.host.ctx); }
 
 /* ---- what is read ---- */
 
@@ -114,7 +82,7 @@ static void take_reading(void *ctx, const reading_t *reading)
     if (rig.outcome_count == OUTCOMES) return;
     outcome_t *const outcome = &rig.outcomes[rig.outcome_count++];
     (void)snprintf(outcome->name, sizeof outcome->name, "%.15s", reading->sensor->name);
-    outcome->time_us = now_us(NULL);
+    outcome->time_us = now_us();
     outcome->status = reading->status;
     assert_ptr_equal(reading->sensor, rig.loop.site.sensors[reading->sensor->number]);
 }
@@ -125,8 +93,7 @@ static uint32_t tick(void *ctx)
 {
     enum { AGAIN_US = 500 };
     site_t old;
-    if (!rig.is_changing && rig.changed != rig.change_count &&
-        now_us(NULL) >= rig.changes[rig.changed].at_us) {
+    if (!rig.is_changing && rig.changed != rig.change_count && now_us() >= rig.changes[rig.changed].at_us) {
         set(&rig.next, rig.changes[rig.changed].words);
         rig.is_changing = true;
     }
@@ -134,7 +101,7 @@ static uint32_t tick(void *ctx)
         site_free(&old);
         rig.is_changing = false;
         rig.changed++;
-        rig.changed_us = now_us(NULL);
+        rig.changed_us = now_us();
     }
     return AGAIN_US;
 }
@@ -148,7 +115,7 @@ static void change(uint64_t at_us, const char *words)
 static void run(const char *words, uint64_t end_us)
 {
     static const sink_t sink = {take_reading, take_notice, tick};
-    rig.end_us = end_us;
+    bench.tool.ctrl_c_us = end_us;
     loop_init(&rig.loop, &rig.host, &sink, NULL);
     set(&rig.loop.site, words);
     assert_true(loop_open(&rig.loop));
@@ -163,16 +130,9 @@ static void begin(void)
 {
     bench_begin();
     memset(&rig, 0, sizeof rig);
-    rig.last_us = bench.clock.now_us;
-    rig.host = (host_t){.open = open_port,
-                        .close = close_port,
-                        .now_us = now_us,
-                        .utc_us = now_us,
-                        .has_ended = has_ended,
-                        .is_output_gone = is_output_gone,
-                        .wait = wait_for,
-                        .loop = {.now_us = now_us, .sleep = sleep_for},
-                        .attend = attend};
+    rig.inner = rig.host = tool_host(&bench.tool);
+    rig.host.open = open_port;
+    rig.host.close = close_port;
     bench_a16((fathom_sim_a16_config_t){0});
     bench_hps167s((fathom_sim_hps167s_config_t){.address = 7});
     fathom_sim_hps167s_init(
@@ -206,7 +166,7 @@ static void expect_no_gap(const char *name, uint64_t longest_us)
                      (unsigned)(outcome->time_us - before_us));
         before_us = outcome->time_us;
     }
-    assert_true(rig.end_us - before_us <= longest_us);
+    assert_true(bench.tool.ctrl_c_us - before_us <= longest_us);
 }
 
 TEST(a_line_with_the_same_text_goes_on_and_stays_open)

@@ -267,26 +267,32 @@ static int split(char *text, char *argv[WORDS])
     return count;
 }
 
+static machine_t machine; /* of the present run */
+
+host_t tool_host(const tool_line_t *line)
+{
+    machine = (machine_t){.line = line, .last_us = line->clock.now_us(line->clock.ctx)};
+    return (host_t){.open = open_port,
+                    .close = close_port,
+                    .open_pins = open_pins,
+                    .close_pins = close_pins,
+                    .now_us = now_us,
+                    .utc_us = utc_us,
+                    .begin = begin,
+                    .has_ended = has_ended,
+                    .is_output_gone = is_output_gone,
+                    .wait = wait_for,
+                    .loop = {.now_us = now_us, .sleep = sleep_for, .ctx = &machine},
+                    .attend = attend,
+                    .ctx = &machine};
+}
+
 const tool_run_t *tool_run(const tool_line_t *line, const char *format, ...)
 {
     static tool_run_t run;
     static char *out;
     static char *err;
-    static machine_t machine; /* too large for a small stack */
-    machine = (machine_t){.line = line, .last_us = line->clock.now_us(line->clock.ctx)};
-    const host_t host = {.open = open_port,
-                         .close = close_port,
-                         .open_pins = open_pins,
-                         .close_pins = close_pins,
-                         .now_us = now_us,
-                         .utc_us = utc_us,
-                         .begin = begin,
-                         .has_ended = has_ended,
-                         .is_output_gone = is_output_gone,
-                         .wait = wait_for,
-                         .loop = {.now_us = now_us, .sleep = sleep_for, .ctx = &machine},
-                         .attend = attend,
-                         .ctx = &machine};
+    const host_t host = tool_host(line);
     static char text[TEXT];
     char *argv[WORDS];
     size_t out_size;

@@ -68,4 +68,7 @@ typedef struct {
 const tool_run_t *tool_run(const tool_line_t *line, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
+/* The host of a new run, whose time begins at 0, for a test that calls an inner part of the tool. */
+host_t tool_host(const tool_line_t *line);
+
 #endif
