@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* fathom set, get and info: every setting that a device accepts is made, and what is said of it is so. */
+/* fathom set, get, info and reset: every setting that a device accepts is made, and what is said of it is so. */
 #include "tool_bench.h"
 
 #include <stdio.h>
@@ -15,163 +15,280 @@ static int set_up(void **state)
 
 static const suite_t suite = {.set_up = set_up};
 
-static fathom_sim_fault_t faults;
+/* ---- what is on the line ---- */
 
 static const fathom_sim_hps167s_config_t any_hps167s;
 static const fathom_sim_a16_config_t any_a16;
+static const fathom_sim_a05_config_t any_a05;
 
-static const fathom_sim_counters_t *counters(void) { return &bench.hps167s.device.counters; }
+static void nothing(void) {}
+static void a16(void) { bench_a16(any_a16); }
+static void a16_auto(void) { bench_a16((fathom_sim_a16_config_t){.mode = FATHOM_SIM_A16_AUTO}); }
+static void a05(void) { bench_a05(any_a05); }
+static void a05_dyp(void) { bench_a05((fathom_sim_a05_config_t){.mode = FATHOM_SIM_A05_DYP}); }
+static void hps(void) { bench_hps167s(any_hps167s); }
+static void hps_7(void) { bench_hps167s((fathom_sim_hps167s_config_t){.address = 7}); }
+static void offset_adds(void) { bench_hps167s((fathom_sim_hps167s_config_t){.offset_adds = true}); }
+static void crowded(void) { bench_hps167s((fathom_sim_hps167s_config_t){.unasked_us = 12000}); }
 
-/* Runs it: it ends so, and says this on its standard output or error. */
-static void says(int status, const char *text, const char *line)
+static void a05_beside_an_a16(void)
 {
-    const tool_run_t *const run = tool_run(&bench.tool, "%s --port line", line);
-    if (run->status != status || (strstr(run->out, text) == NULL && strstr(run->err, text) == NULL))
-        fail_msg("%s: exit status %d\n%s%s", line, run->status, run->out, run->err);
-    assert_null(strstr(run->err, "cannot be a distance"));
+    a05();
+    bench_a16((fathom_sim_a16_config_t){.address = 5});
 }
 
-/* The factory's HPS-167S, to whose frames from this one to the last `kind` happens. */
-static void faulty(uint8_t kind, uint32_t first, uint32_t last)
+/* Table 12 has no encoding of the rate, and the reconnect time that #2 tells may be any. */
+static void odd(void)
 {
-    bench_begin();
-    bench_hps167s(any_hps167s);
+    bench_hps167s((fathom_sim_hps167s_config_t){.reconnect_ms = 1000, .no_baud_code = true});
+}
+
+/* #9 holds from the next power-on here, and #2 tells nothing of it. */
+static void baud_later(void)
+{
+    bench_hps167s((fathom_sim_hps167s_config_t){.no_baud_code = true, .baud_at_power_on = true});
+}
+
+/* This happens to the frames of a sensor from this one to the last. */
+static void faulty(fathom_sim_device_t *device, uint8_t kind, uint32_t first, uint32_t last)
+{
+    static fathom_sim_fault_t faults;
     fathom_sim_fault_init(&faults, 1);
-    fathom_sim_fault_attach(&faults, &bench.line, &bench.hps167s.device);
+    fathom_sim_fault_attach(&faults, &bench.line, device);
     fathom_sim_fault_rule_t *const rule =
         fathom_sim_fault_add(&faults, kind, FATHOM_SIM_FAULT_ALWAYS_PPM, first);
     assert_non_null(rule);
     rule->run = last - first + 1;
 }
 
-/* Table 12 has no encoding of the rate, and the reconnect time that #2 tells may be any. */
-TEST(an_hps167s_with_another_reconnect_time_and_baud_code_can_be_set)
+static void faulty_hps(uint8_t kind, uint32_t first, uint32_t last)
 {
-    static const char *const settings[] = {"warm-up 0",          "warm-up 3",  "measure-after-power-on off",
-                                           "termination off",    "address 7",  "reconnect-time 36",
-                                           "distance-offset 10", "baud 115200"};
-    for (size_t i = 0; i != sizeof settings / sizeof settings[0]; i++) {
-        char line[80];
-        bench_begin();
-        bench_hps167s(
-            (fathom_sim_hps167s_config_t){.reconnect_ms = 1000, .no_baud_code = true, .warm_up_s = 5});
-        (void)snprintf(line, sizeof line, "set hps167s %s", settings[i]);
-        bench.clock.now_us += 6000000;
-        says(0, "", line);
-        assert_int_equal(counters()->writes, 1);
-    }
-    bench_begin();
-    bench_hps167s((fathom_sim_hps167s_config_t){.reconnect_ms = 1000, .no_baud_code = true});
-    says(0, "\nbaud-code                  0\n", "info hps167s");
-    says(0, "\nreconnect-time             1000 ms\n", "info hps167s");
-}
-
-TEST(what_it_had_is_unchanged)
-{
-    bench_hps167s(any_hps167s);
-    says(0, "termination is on: unchanged\n", "set hps167s termination on");
-    says(0, "\"written\":false,\"confirmed\":true,\"status\":\"unchanged\"",
-         "set hps167s termination on --format json");
-    assert_int_equal(counters()->flash_writes, 0);
-}
-
-TEST(without_a_response_nothing_was_written)
-{
-    says(1, "termination off: not written: no response", "set hps167s termination off");
-    says(1, "\"written\":false,\"confirmed\":false,\"status\":\"not_written\"",
-         "set hps167s termination off --format json");
-    says(1, "filter-sensitivity 5: not written: no response", "set hps167s filter-sensitivity 5");
-}
-
-/* A faulted sensor that sends by itself: nothing can be made out between its packets at 54 Hz. */
-TEST(of_a_setting_that_was_refused_nothing_is_claimed)
-{
-    faulty(FATHOM_SIM_FAULT_FUNCTION, 1, 60);
-    says(1, "not written: ", "set hps167s termination off");
-    assert_int_equal(counters()->writes, 0);
+    hps();
+    faulty(&bench.hps167s.device, kind, first, last);
 }
 
 /* Frames 1 and 2 answer #2 for the user, 3 and 4 for the driver; 5 acknowledges. */
-TEST(what_cannot_be_read_afterwards_is_not_confirmed)
+static void silent_from_2(void) { faulty_hps(FATHOM_SIM_FAULT_SILENCE, 2, 60); }
+static void silent_from_4(void) { faulty_hps(FATHOM_SIM_FAULT_SILENCE, 4, 60); }
+static void silent_from_5(void) { faulty_hps(FATHOM_SIM_FAULT_SILENCE, 5, 60); }
+static void refusing(void) { faulty_hps(FATHOM_SIM_FAULT_EXCEPTION, 5, 6); }
+static void other_function(void) { faulty_hps(FATHOM_SIM_FAULT_FUNCTION, 1, 60); }
+
+static void hps_7_silent_from_3(void)
 {
-    faulty(FATHOM_SIM_FAULT_SILENCE, 5, 60);
-    says(1, "termination off: not confirmed: no acknowledgement was received. The value may be set or not",
-         "set hps167s termination off");
-    assert_false(bench.hps167s.termination);
+    hps_7();
+    faulty(&bench.hps167s.device, FATHOM_SIM_FAULT_SILENCE, 3, 30);
+}
+
+/* Of an A16 frame 1 answers the user, 2 the driver; 3 acknowledges, 4 reads back. */
+static void a16_silent(uint32_t first, uint32_t last)
+{
+    a16();
+    faulty(&bench.a16.device, FATHOM_SIM_FAULT_SILENCE, first, last);
+}
+
+static void a16_silent_at_3(void) { a16_silent(3, 3); }
+static void a16_silent_at_3_and_4(void) { a16_silent(3, 4); }
+static void a16_silent_from_3(void) { a16_silent(3, 20); }
+
+/* ---- what a command says and writes ---- */
+
+typedef struct {
+    void (*begin)(void);
+    const char *line;
+    int status;
+    unsigned writes;
+    const char *text; /* on standard output or error */
+    const char *also; /* the same; NULL: none */
+} row_t;
+
+static unsigned writes(void)
+{
+    return bench.hps167s.device.counters.writes + bench.a16.device.counters.writes +
+           bench.a05.device.counters.writes;
+}
+
+static bool is_said(const tool_run_t *run, const char *text)
+{
+    return text == NULL || strstr(run->out, text) != NULL || strstr(run->err, text) != NULL;
+}
+
+static void run_row(const row_t *row)
+{
+    bench_begin();
+    row->begin();
+    const tool_run_t *const run = tool_run(&bench.tool, "%s --port line", row->line);
+    if (run->status != row->status || writes() != row->writes || !is_said(run, row->text) ||
+        !is_said(run, row->also) || strstr(run->err, "cannot be a distance") != NULL)
+        fail_msg("%s: exit status %d, %u writes\n%s%s", row->line, run->status, writes(), run->out, run->err);
+}
+
+/* A test of the rows above it. */
+#define TEST_ROWS(name, rows)                                                                                \
+    TEST(name)                                                                                               \
+    {                                                                                                        \
+        for (size_t i = 0; i != sizeof(rows) / sizeof(rows)[0]; i++) run_row(&(rows)[i]);                    \
+    }
+
+static const row_t shown[] = {
+    /* the examples of #3; a temperature of 77 degrees Fahrenheit is (77 - 32) * 5 / 9 = 25.0 */
+    {hps_7, "info hps167s:7 --format json", 0, 0,
+     "{\"name\":\"hps167s:7\",\"model\":\"hps167s\",\"mode\":\"modbus\",\"address\":7,\"line\":\"19200 "
+     "8E1\",\"interface_version\":\"2.1.0 of 2020-09-27\",\"sensor_version\":\"3.9 of "
+     "2019-09-23\",\"uuid\":\"00390025423457142034383501060705\",\"temperature\":25.0,\"baud\":19200,\"baud_"
+     "code\":1,\"warm_up\":0,\"measure_after_power_on\":true,\"termination\":true,\"reconnect_time\":180}\n",
+     NULL},
+    {a16, "info a16 --format json", 0, 0,
+     "{\"name\":\"a16:1\",\"model\":\"a16\",\"mode\":\"modbus\",\"line\":\"9600 "
+     "8N1\",\"address\":1,\"switch_polarity\":\"positive\",\"switch_threshold\":1000,\"automatic_value\":"
+     "\"processed\",\"distance\":1234,\"real_time_distance\":1234}\n",
+     NULL},
+    {a05, "info a05 --format json", 0, 0, "\"distances\":\"1234, 1234, 1234, 1234\"}\n", NULL},
+    {odd, "info hps167s", 0, 0, "\nbaud-code                  0\n", "\nreconnect-time             1000 ms\n"},
+    {hps, "info hps167s", 0, 0, "\ntermination                on\n", "in all but the last with 'fathom set"},
+    {hps, "get hps167s", 0, 0, "\ndistance-offset            - (write-only)\n",
+     "\nbaud                       19200\n"},
+    {hps_7, "get hps167s:7 --format json", 0, 0,
+     "\"line\":\"19200 8E1\",\"address\":7,\"baud\":19200,\"warm_up\":0,", NULL},
+    {hps_7, "get hps167s:7 address", 0, 0, "\naddress                    7\n", NULL},
+    {hps_7, "get hps167s:7 address --format json", 0, 0, "\"address\":7}\n", NULL},
+    {hps_7, "get hps167s:8 address", 1, 0, "no response from hps167s:8", NULL},
+    {hps, "get hps167s reconnect-time", 0, 0, "\nreconnect-time             180 ms\n", NULL},
+    {crowded, "info hps167s", 1, 0, "the sensor sends measurements without a request",
+     "setserial line low_latency"},
+    {silent_from_4, "info hps167s", 1, 0, "fathom: hps167s:1: 7 of 10 values could not be read.\n", NULL},
+};
+TEST_ROWS(info_and_get_print_what_a_sensor_has_and_write_nothing, shown)
+
+static const row_t written[] = {
+    {a16, "set a16 switch-polarity negative", 0, 1, "switch-polarity is negative (was positive)\n", NULL},
+    {a16, "set a16 switch-threshold 2000", 0, 1, "switch-threshold is 2000 mm (was 1000)\n", NULL},
+    {a16, "set a16 automatic-value real-time", 0, 1, "automatic-value is real-time (was processed)\n", NULL},
+    {a16, "set a16 address 5", 0, 1, "address is 5 (was 1)\n",
+     "from now on: fathom read a16:5:modbus --port line\n"},
+    {a05, "set a05 address 5", 0, 1, "address is 5 (was 1)\n",
+     "from now on: fathom read a05:5:modbus --port line\n"},
+    {a05_dyp, "set a05 every-address 9", 0, 1, "every-address is 9\n", "fathom read a05:9:dyp --port line\n"},
+    {odd, "set hps167s warm-up 3", 0, 1, "warm-up is 3 s (was 0)\n", NULL},
+    {odd, "set hps167s measure-after-power-on off", 0, 1, "measure-after-power-on is off (was on)\n", NULL},
+    {odd, "set hps167s termination off --format json", 0, 1,
+     "\"value\":false,\"was\":true,\"written\":true,\"confirmed\":true,\"status\":\"written\"", NULL},
+    {odd, "set hps167s reconnect-time 36", 0, 1, "reconnect-time is 36 ms (was 1000)\n", NULL},
+    {odd, "set hps167s address 7", 0, 1, "address is 7\n",
+     "from now on: fathom read hps167s:7:modbus --port line\n"},
+    {odd, "set hps167s baud 115200", 0, 1, "baud is 115200 (was 19200)\n",
+     "from now on: fathom read hps167s:1:modbus --port line --baud 115200\n"},
+};
+TEST_ROWS(each_setting_that_can_be_read_is_written_once_and_read_back, written)
+
+static const row_t unchanged[] = {
+    {hps, "set hps167s termination on", 0, 0, "termination is on: unchanged\n", NULL},
+    {hps, "set hps167s termination on --format json", 0, 0,
+     "\"written\":false,\"confirmed\":true,\"status\":\"unchanged\"", NULL},
+    {a16, "set a16 switch-threshold 1000", 0, 0, "switch-threshold is 1000 mm: unchanged\n", NULL},
+    {a05, "set a05 address 1", 0, 0, "address is 1: unchanged\n", NULL},
+};
+TEST_ROWS(what_it_had_is_unchanged, unchanged)
+
+static const row_t acknowledged[] = {
+    {hps, "set hps167s filter-sensitivity 50", 0, 1,
+     "hps167s:1: filter-sensitivity: 50 was written and acknowledged; the setting cannot be read back\n",
+     NULL},
+    {hps, "set hps167s load-settings user", 0, 1, "cannot be read back", NULL},
+    {a16, "set a16 operating-mode controlled", 0, 1, "acknowledged", NULL},
+    {offset_adds, "set hps167s distance-offset -15", 0, 1,
+     "distance-offset: a sensor that has an offset already may add the new one to it. To check, measure ",
+     "hps167s:1: distance-offset: -15 mm was written and acknowledged; the setting cannot be read back\n"},
+    {a16_auto, "set a16 automatic-output on", 0, 1, "frames are heard\n", NULL},
+    {a16, "set a16 automatic-output on", 1, 1,
+     "no frame was heard in 10 s; only the RS232 variant sends by itself", NULL},
+};
+TEST_ROWS(what_cannot_be_read_back_is_said_to_be_acknowledged, acknowledged)
+
+static const row_t not_written[] = {
+    {nothing, "set hps167s termination off", 1, 0, "termination off: not written: no response", NULL},
+    {nothing, "set hps167s termination off --format json", 1, 0,
+     "\"written\":false,\"confirmed\":false,\"status\":\"not_written\"", NULL},
+    {nothing, "set hps167s filter-sensitivity 5", 1, 0, "filter-sensitivity 5: not written: no response",
+     NULL},
+    /* A faulted sensor that sends by itself: nothing can be made out between its packets at 54 Hz. */
+    {other_function, "set hps167s termination off", 1, 0, "not written: ", NULL},
+    {a05_beside_an_a16, "set a05 address 5", 1, 0, "not written: a sensor responds at address 5 already",
+     NULL},
+};
+TEST_ROWS(without_a_response_nothing_was_written, not_written)
+
+static const row_t not_confirmed[] = {
+    {silent_from_5, "set hps167s termination off", 1, 1,
+     "termination off: not confirmed: no acknowledgement was received. The value may be set or not", NULL},
     /* #1 is read before what is write-only */
-    faulty(FATHOM_SIM_FAULT_SILENCE, 2, 60);
-    says(1, "not confirmed: no acknowledgement was received", "set hps167s filter-sensitivity 5");
-}
+    {silent_from_2, "set hps167s filter-sensitivity 5", 1, 1,
+     "not confirmed: no acknowledgement was received", NULL},
+    {silent_from_5, "set hps167s baud 115200", 1, 1,
+     "The sensor is at 19200 or at 115200 baud, perhaps from its next power-on",
+     "'fathom scan --port line --baud 19200,115200'"},
+    {a16_silent_from_3, "set a16 address 5", 1, 1, "The sensor is at address 1 or at address 5", NULL},
+    {a16_silent_at_3, "set a16 switch-threshold 2000", 0, 1, "2000 mm (was 1000)", NULL},
+    {a16_silent_at_3_and_4, "set a16 switch-threshold 2000", 1, 1, "The value may be set or not", NULL},
+    {refusing, "set hps167s termination off", 1, 1,
+     "termination off: refused: hps167s:1 at line (19200 8E1) refused the request: exception ", NULL},
+    {baud_later, "set hps167s baud 115200", 1, 1,
+     "baud 115200: differs: the sensor acknowledged the write, but it reads back another value", NULL},
+};
+TEST_ROWS(what_is_not_confirmed_is_said_to_be_so, not_confirmed)
 
-/* #9 holds from the next power-on here, and #2 tells nothing of it. */
-TEST(what_was_acknowledged_and_reads_otherwise_is_said_to_be_so)
-{
-    bench_hps167s((fathom_sim_hps167s_config_t){.no_baud_code = true, .baud_at_power_on = true});
-    says(1, "baud 115200: differs: the sensor acknowledged the write, but it reads back another value",
-         "set hps167s baud 115200");
-    assert_int_equal(counters()->writes, 1);
-}
+static const row_t resets[] = {
+    {hps_7, "reset hps167s:7 interface --yes", 0, 0, "address 1, 19200 8E1, termination on", NULL},
+    {hps, "reset hps167s sensor --yes", 0, 1, "acknowledged", NULL},
+    {hps_7_silent_from_3, "reset hps167s:7 interface --yes", 1, 0,
+     "It is at address 1, 19200 8E1, or still at address 7, 19200 8E1", NULL},
+};
+TEST_ROWS(a_reset_is_confirmed_or_names_both_places, resets)
 
-TEST(an_offset_that_may_be_added_is_announced_and_not_claimed)
+TEST(an_address_of_0_needs_a_confirmation_and_can_be_read_but_not_set)
 {
-    bench_hps167s((fathom_sim_hps167s_config_t){.offset_adds = true});
-    says(0,
-         "distance-offset: a sensor that has an offset already may add the new one to it. To check, measure ",
-         "set hps167s distance-offset -15");
-    says(0,
-         "hps167s:1: distance-offset: -15 mm was written and acknowledged; the setting cannot be read back\n",
-         "set hps167s distance-offset -15");
-    assert_int_equal(bench.hps167s.user.offset_mm, -30);
-}
-
-TEST(the_address_of_an_hps167s_is_the_one_at_which_it_responds)
-{
-    bench_hps167s((fathom_sim_hps167s_config_t){.address = 9});
-    says(0, "\naddress                    9\n", "get hps167s:9 address");
-    says(0, "\"address\":9}\n", "get hps167s:9 address --format json");
-    says(1, "no response from hps167s:8", "get hps167s:8 address");
-}
-
-TEST(a_refusal_is_a_refusal)
-{
-    faulty(FATHOM_SIM_FAULT_EXCEPTION, 5, 6);
-    says(1, "termination off: refused: hps167s:1 at line (19200 8E1) refused the request: exception ",
-         "set hps167s termination off");
-}
-
-TEST(info_fails_when_it_could_not_read_all)
-{
-    faulty(FATHOM_SIM_FAULT_SILENCE, 4, 60); /* #1, #3 twice, and then nothing */
-    says(1, "fathom: hps167s:1: 7 of 10 values could not be read.\n", "info hps167s");
+    for (int is_a05 = 0; is_a05 != 2; is_a05++) {
+        const char *const sensor = is_a05 != 0 ? "a05" : "a16";
+        bench_begin();
+        (is_a05 != 0 ? a05 : a16)();
+        ASSERT_RUN(2, "set %s --port line address 0", sensor);
+        ASSERT_RUN(0, "set %s --port line address 0 --may-not-be-found-again", sensor);
+        const tool_run_t *run = tool_run(&bench.tool, "info %s:0 --port line", sensor);
+        assert_non_null(strstr(run->out, "\naddress                    0\n"));
+        ASSERT_RUN(0, "read %s:0 --port line --count 1", sensor);
+        run = tool_run(&bench.tool, "scan --address 0 --baud 9600 --listen 1 --timeout 1000 --port line");
+        assert_memory_equal(run->out, sensor, 3);
+        assert_non_null(strstr(run->out, " address 0 "));
+        ASSERT_RUN(2, "set %s:0 --port line address 1", sensor);
+        assert_int_equal(writes(), 1);
+    }
 }
 
 /* ---- blind ---- */
 
-TEST(what_is_written_blind_is_written_once_and_not_confirmed)
-{
-    bench_hps167s(any_hps167s);
-    says(0, "termination off: not confirmed\n", "set hps167s termination off --blind");
-    assert_false(bench.hps167s.termination);
-    assert_int_equal(counters()->requests, 1);
-    says(0, "\"written\":true,\"confirmed\":false,\"status\":\"not_confirmed\"",
-         "set hps167s termination on --blind --format json");
-    bench_begin();
-    bench_a16(any_a16);
-    says(0, "not confirmed", "set a16 switch-threshold 2000 --blind");
-    assert_int_equal(bench.a16.device.counters.requests, 1);
-    bench_begin(); /* of a dead line that is not all that there is to say */
-    says(1, "not confirmed: no acknowledgement was received", "set hps167s termination off --blind");
-}
+static const row_t blind[] = {
+    {hps, "set hps167s termination off --blind", 0, 1, "hps167s:1: termination off: not confirmed\n", NULL},
+    {hps, "set hps167s termination on --blind --format json", 0, 1,
+     "\"written\":true,\"confirmed\":false,\"status\":\"not_confirmed\"", NULL},
+    {a16, "set a16 switch-threshold 2000 --blind", 0, 1, "not confirmed", NULL},
+    /* of a dead line that is not all that there is to say */
+    {nothing, "set hps167s termination off --blind", 1, 0, "not confirmed: no acknowledgement was received",
+     NULL},
+    {hps, "set hps167s distance-offset 5 --blind", 2, 0,
+     "distance-offset must be read before or after it is written.", NULL},
+    {a16, "set a16 address 5 --blind", 2, 0, "address must be read before or after it is written.", NULL},
+    {a05, "set a05 address 5 --blind", 2, 0, "address must be read before or after it is written.", NULL},
+    {a05, "set a05 every-address 5 --blind", 2, 0,
+     "every-address must be read before or after it is written.", NULL},
+};
+TEST_ROWS(what_is_written_blind_is_written_once_and_not_confirmed, blind)
 
-TEST(what_has_to_be_read_is_not_written_blind)
+TEST(a_blind_setting_is_one_request)
 {
-    bench_hps167s(any_hps167s);
-    says(2, "distance-offset must be read before or after it is written.",
-         "set hps167s distance-offset 5 --blind");
-    says(2, "address must be read before or after it is written.", "set a16 address 5 --blind");
-    says(2, "address must be read before or after it is written.", "set a05 address 5 --blind");
-    says(2, "every-address must be read before or after it is written.", "set a05 every-address 5 --blind");
-    assert_int_equal(counters()->requests, 0);
+    hps();
+    ASSERT_RUN(0, "set hps167s termination off --blind --port line");
+    assert_false(bench.hps167s.termination);
+    assert_int_equal(bench.hps167s.device.counters.requests, 1);
 }
 
 /* ---- all units ---- */
@@ -185,17 +302,25 @@ TEST(all_units_are_told_once_and_only_with_yes)
                                           "set hps167s termination off --blind --all-units --yes",
                                           "set a16 switch-threshold 5 --all-units --yes"};
     bench_hps167s((fathom_sim_hps167s_config_t){.address = 9});
-    for (size_t i = 0; i != sizeof refused / sizeof refused[0]; i++) says(2, "--all-units", refused[i]);
-    assert_int_equal(counters()->requests, 0);
-    says(0, "all units: termination off: sent\n", "set hps167s termination off --all-units --yes");
+    const fathom_sim_counters_t *const counters = &bench.hps167s.device.counters;
+    for (size_t i = 0; i != sizeof refused / sizeof refused[0]; i++) {
+        const tool_run_t *const run = tool_run(&bench.tool, "%s --port line", refused[i]);
+        assert_int_equal(run->status, 2);
+        assert_non_null(strstr(run->err, "--all-units"));
+    }
+    assert_int_equal(counters->requests, 0);
+    const tool_run_t *run =
+        tool_run(&bench.tool, "set hps167s termination off --all-units --yes --port line");
+    assert_string_equal(run->out, "all units: termination off: sent\n");
     assert_false(bench.hps167s.termination);
-    says(0,
-         "\"address\":0,\"setting\":\"measure-after-power-on\",\"value\":false,\"was\":null,\"written\":true,"
-         "\"confirmed\":false,\"status\":\"sent\"",
-         "set hps167s measure-after-power-on off --all-units --yes --format json");
+    run = tool_run(&bench.tool,
+                   "set hps167s measure-after-power-on off --all-units --yes --format json --port line");
+    assert_non_null(strstr(run->out,
+                           "\"address\":0,\"setting\":\"measure-after-power-on\",\"value\":false,"
+                           "\"was\":null,\"written\":true,\"confirmed\":false,\"status\":\"sent\""));
     assert_false(bench.hps167s.auto_output);
-    assert_int_equal(counters()->requests, 2);
-    assert_int_equal(counters()->answered, 0);
+    assert_int_equal(counters->requests, 2);
+    assert_int_equal(counters->answered, 0);
 }
 
 static int (*inner_write)(void *ctx, const uint8_t *bytes, size_t length);
@@ -212,41 +337,43 @@ static int spy(void *ctx, const uint8_t *bytes, size_t length)
 /* All that the tool ever sends to unit 0; unit/test_broadcast.c has the same of the drivers. */
 TEST(two_settings_are_all_that_the_tool_ever_sends_to_all_units)
 {
-    static const char *const commands[] = {"info hps167s",
-                                           "info a16",
-                                           "info a05",
-                                           "info a05:1:dyp",
-                                           "read hps167s --count 1",
-                                           "read a16:1:modbus --count 1",
-                                           "read a05:1:modbus --count 1",
-                                           "read a05:1:dyp --count 1",
-                                           "scan --address 1-2 --listen 1",
-                                           "watch hps167s --duration 1",
-                                           "set hps167s address 5",
-                                           "set hps167s baud 57600",
-                                           "set hps167s warm-up 1",
-                                           "set hps167s measure-after-power-on off",
-                                           "set hps167s termination off",
-                                           "set hps167s reconnect-time 36",
-                                           "set hps167s distance-offset 5",
-                                           "set hps167s filter-sensitivity 5",
-                                           "calibrate hps167s --known 2000",
-                                           "set hps167s load-settings user",
-                                           "set hps167s termination off --blind",
-                                           "set hps167s measure-after-power-on off --all-units --yes",
-                                           "set hps167s measure-after-power-on on --all-units --yes",
-                                           "set hps167s termination off --all-units --yes",
-                                           "set hps167s termination on --all-units --yes",
-                                           "set a16 address 5",
-                                           "set a16 switch-threshold 5",
-                                           "set a16 switch-polarity negative",
-                                           "set a16 automatic-value real-time",
-                                           "set a16 automatic-output on",
-                                           "set a16 operating-mode controlled",
-                                           "set a05 address 5",
-                                           "set a05 every-address 5",
-                                           "reset hps167s --yes-restore-factory-settings",
-                                           "reset hps167s --yes-load-factory-sensor-settings"};
+    static const char *const commands[] = {
+        "info hps167s",
+        "info a16",
+        "info a05",
+        "info a05:1:dyp",
+        "read hps167s --count 1",
+        "read a16:1:modbus --count 1",
+        "read a05:1:modbus --count 1",
+        "read a05:1:dyp --count 1",
+        "scan --address 1-2 --listen 1",
+        "watch hps167s --duration 1",
+        "set hps167s address 5",
+        "set hps167s baud 57600",
+        "set hps167s warm-up 1",
+        "set hps167s measure-after-power-on off",
+        "set hps167s termination off",
+        "set hps167s reconnect-time 36",
+        "set hps167s distance-offset 5",
+        "set hps167s filter-sensitivity 5",
+        "calibrate hps167s --known 2000",
+        "set hps167s load-settings user",
+        "set hps167s termination off --blind",
+        "set hps167s measure-after-power-on off --all-units --yes",
+        "set hps167s measure-after-power-on on --all-units --yes",
+        "set hps167s termination off --all-units --yes",
+        "set hps167s termination on --all-units --yes",
+        "set a16 address 5",
+        "set a16 switch-threshold 5",
+        "set a16 switch-polarity negative",
+        "set a16 automatic-value real-time",
+        "set a16 automatic-output on",
+        "set a16 operating-mode controlled",
+        "set a05 address 5",
+        "set a05 every-address 5",
+        "reset hps167s --yes-restore-factory-settings",
+        "reset hps167s --yes-load-factory-sensor-settings",
+    };
     /* #10 and #11, tables 27 and 29 */
     static const uint8_t allowed[4][6] = {{0, 6, 0, 0x12, 0, 0x00},
                                           {0, 6, 0, 0x12, 0, 0xFF},
@@ -255,10 +382,9 @@ TEST(two_settings_are_all_that_the_tool_ever_sends_to_all_units)
     sent_count = 0;
     for (size_t i = 0; i != sizeof commands / sizeof commands[0]; i++) {
         bench_begin();
-        if (strstr(commands[i], "hps167s") != NULL) bench_hps167s(any_hps167s);
-        if (strstr(commands[i], "a16") != NULL) bench_a16(any_a16);
-        if (strstr(commands[i], "a05") != NULL)
-            bench_a05((fathom_sim_a05_config_t){.mode = FATHOM_SIM_A05_DYP});
+        if (strstr(commands[i], "hps167s") != NULL) hps();
+        if (strstr(commands[i], "a16") != NULL) a16();
+        if (strstr(commands[i], "a05") != NULL) a05_dyp();
         inner_write = bench.tool.uart.write;
         bench.tool.uart.write = spy;
         const tool_run_t *const run = tool_run(&bench.tool, "%s --port line", commands[i]);
