@@ -26,12 +26,20 @@ static bool is_over_time(const loop_t *loop)
     return loop->site.duration_us != 0 && loop_time_us(loop) >= loop->site.duration_us;
 }
 
-/* Returns true if nothing is left to read, or if the loop has to end. */
+/* Returns true if the loop has to end, whatever is left to read. */
 static bool is_over(const loop_t *loop)
 {
     const host_t *const host = loop->host;
     return loop->is_stopped || host->has_ended(host->ctx) || host->is_output_gone(host->ctx) ||
-           loop->lines_left == 0 || is_over_time(loop);
+           is_over_time(loop);
+}
+
+/* Returns true if a line is read, or will be. */
+static bool has_lines(const loop_t *loop)
+{
+    const line_t *line = loop->site.lines;
+    while (line != NULL && line->state >= LINE_ENDING) line = line->next;
+    return line != NULL;
 }
 
 /* ---- what the sink gets ---- */
@@ -255,12 +263,6 @@ static const line_t *const_line_of(const fathom_loop_source_t *source) { return 
 
 static bool is_open(const line_t *line) { return line->state == LINE_READING || line->state == LINE_ENDING; }
 
-static void set_state(line_t *line, line_state_t state)
-{
-    if (line->state < LINE_ENDING && state >= LINE_ENDING) line->loop->lines_left--;
-    line->state = state;
-}
-
 /* The first sensor gets what the line and the port have counted; the sums are right nevertheless. */
 static void take_counters(line_t *line)
 {
@@ -272,7 +274,7 @@ static void take_counters(line_t *line)
 static void give_up(line_t *line)
 {
     line->loop->has_failed = true;
-    set_state(line, LINE_LEFT);
+    line->state = LINE_LEFT;
 }
 
 /* ---- opening it ---- */
@@ -333,7 +335,7 @@ static bool start_reading(line_t *line)
                     line->was_open ? "it is back; reading goes on" : "it is there; reading begins");
     line->is_lost = false;
     line->was_open = true;
-    set_state(line, LINE_READING);
+    line->state = LINE_READING;
     return true;
 }
 
@@ -348,7 +350,7 @@ static void miss(line_t *line)
     if (site->reconnect && may_come) {
         (void)snprintf(text, sizeof text, "%s; waiting until it is there", line->port.error_text);
         notify(line->loop, NOTICE_WAITING, NULL, text);
-        set_state(line, LINE_WAITING);
+        line->state = LINE_WAITING;
     } else {
         notify(line->loop, NOTICE_GIVEN_UP, NULL, line->port.error_text);
         give_up(line);
@@ -366,7 +368,7 @@ static void fail_to_open(line_t *line)
 {
     if (!line->is_lost) miss(line);
     if (line->state == LINE_LEFT) return;
-    set_state(line, LINE_WAITING);
+    line->state = LINE_WAITING;
     for (sensor_t *sensor = line->sensors; sensor != NULL; sensor = sensor->next)
         if (!is_finished(line->loop, sensor, 0))
             report_failure(line->loop, sensor, NULL, (size_t)-FATHOM_ERR_PORT, 0);
@@ -381,7 +383,7 @@ static bool take_port(line_t *line, fathom_status_t status)
 {
     if (status == FATHOM_OK) return start_reading(line);
     if (status == FATHOM_PENDING)
-        set_state(line, LINE_CONNECTING);
+        line->state = LINE_CONNECTING;
     else
         fail_to_open(line);
     return status == FATHOM_PENDING;
@@ -409,7 +411,7 @@ static void lose(line_t *line)
     bool is_known = false;
     for (const sensor_t *sensor = line->sensors; sensor != NULL; sensor = sensor->next)
         if (!is_finished(loop, sensor, 1)) has_more = true;
-    set_state(line, loop->site.reconnect && has_more ? LINE_WAITING : LINE_LEFT);
+    line->state = loop->site.reconnect && has_more ? LINE_WAITING : LINE_LEFT;
     for (sensor_t *sensor = line->sensors; sensor != NULL; sensor = sensor->next) {
         if (is_finished(loop, sensor, 0)) continue;
         (void)counters_take(&sensor->counters, &line->counts, &line->port, sensor->reader);
@@ -458,7 +460,7 @@ static bool poll_sensors(line_t *line)
         if (poll_sensor(line, sensor)) has_outcome = true;
         if (!is_finished(line->loop, sensor, 0)) is_done = false;
     }
-    if (is_done) set_state(line, LINE_ENDING);
+    if (is_done) line->state = LINE_ENDING;
     return has_outcome;
 }
 
@@ -487,7 +489,7 @@ static bool poll_line(fathom_loop_source_t *source)
     }
     if (line->state != LINE_ENDING || !end_sensors(line)) return true;
     take_counters(line);
-    set_state(line, LINE_LEFT);
+    line->state = LINE_LEFT;
     return false;
 }
 
@@ -529,9 +531,6 @@ static void start_lines(loop_t *loop)
     loop->has_alarms = false;
     for (size_t i = 0; i != loop->site.sensor_count; i++)
         if (loop->site.sensors[i]->processing.has_alarm) loop->has_alarms = true;
-    loop->lines_left = 0;
-    for (line_t *line = loop->site.lines; line != NULL; line = line->next)
-        if (line->state < LINE_ENDING) loop->lines_left++;
     for (line_t *line = loop->site.lines; line != NULL && !host->has_ended(host->ctx); line = line->next)
         if (line->state == LINE_NEW) start_line(loop, line);
 }
@@ -562,7 +561,7 @@ static uint32_t sleep_us(loop_t *loop)
 
 void loop_run(loop_t *loop)
 {
-    while (!is_over(loop)) {
+    while (!is_over(loop) && has_lines(loop)) {
         const uint32_t longest_us = sleep_us(loop);
         if (!loop->is_stopped) fathom_loop_step(&loop->sources, longest_us);
     }
@@ -586,7 +585,7 @@ bool loop_open(loop_t *loop)
     }
     host->attend(host->ctx, &loop->sources);
     start_lines(loop);
-    return loop->lines_left != 0;
+    return has_lines(loop);
 }
 
 /* Waits until the sensors have left their devices as they were, at most TIMES. */

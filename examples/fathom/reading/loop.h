@@ -53,7 +53,6 @@ typedef struct loop {
     const sink_t *sink;
     void *ctx;
     fathom_loop_t sources; /* the ports, and what else ends a sleep */
-    size_t lines_left;     /* that are read, or will be */
     uint64_t start_us;     /* of the program */
     uint64_t reconnects;
     bool has_alarms;

@@ -183,12 +183,10 @@ static void name_file(run_t *run, uint64_t utc_us)
     const char *const base = slash != NULL ? slash + 1 : path;
     const char *const dot = strrchr(base, '.');
     const int stem = (int)(dot != NULL && dot != base ? (size_t)(dot - path) : strlen(path));
-    char utc[UTC_TEXT];
-    if (run->options->is_by_day)
-        (void)snprintf(run->name, sizeof run->name, "%.*s-%.*s%s", stem, path, (int)DAY,
-                       utc_text(utc_us, utc), path + stem);
-    else
-        (void)snprintf(run->name, sizeof run->name, "%s", path);
+    char utc[UTC_TEXT] = "";
+    if (run->options->is_by_day) (void)utc_text(utc_us, utc);
+    (void)snprintf(run->name, sizeof run->name, "%.*s%s%.*s%s", stem, path, utc[0] != '\0' ? "-" : "",
+                   (int)DAY, utc, path + stem);
 }
 
 /* Puts the file in the place of the standard output. Returns its length, 0 for a pipe, or -1 with errno. */
