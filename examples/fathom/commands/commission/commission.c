@@ -166,11 +166,6 @@ static bool has_output(void)
     return false;
 }
 
-static void print_number(FILE *to, const char *before, const record_unit_t *unit)
-{
-    if (run.has_numbers) (void)fprintf(to, "%s%s", before, unit->number);
-}
-
 static presence_t look(uint8_t address, unsigned times)
 {
     return presence_ask(&session, address, &session.sensor->line, times);
@@ -318,16 +313,6 @@ static void print_done(const record_unit_t *unit, const proof_t *proof)
         (void)puts(proof->sample.kind == FATHOM_NO_TARGET ? "no_target" : "a value without a known meaning");
 }
 
-static void print_open(const record_unit_t *unit)
-{
-    (void)printf("address %u is not done: the sensor", unit->address);
-    print_number(stdout, " with UUID ", unit);
-    if (unit->address == FACTORY_ADDRESS)
-        (void)puts(" is not verified");
-    else
-        (void)printf(" is at this address, not verified, or still at address %d\n", FACTORY_ADDRESS);
-}
-
 /* ---- writing to one sensor ---- */
 
 static bool announce(const change_t *change)
@@ -419,8 +404,8 @@ static end_t commission(record_unit_t unit, uint8_t at)
     const bool was_known = line->model != NULL;
     const end_t places = check_places(&unit, at);
     if (places != DONE) return places;
-    (void)fprintf(run.text, "%s at address %u", run.model->name, at);
-    print_number(run.text, ", UUID ", &unit);
+    (void)fprintf(run.text, "%s at address %u%s%s", run.model->name, at, run.has_numbers ? ", UUID " : "",
+                  run.has_numbers ? unit.number : "");
     if (at == unit.address)
         (void)fputs(": verifying\n", run.text);
     else
@@ -452,16 +437,13 @@ static bool has_open(void)
 /* Finishes a planned sensor, which is at its address or still at address 1. */
 static end_t resume(const record_unit_t *unit)
 {
-    presence_t presence = look_until_clear(unit->address);
-    if (is_of(&presence, unit)) return commission(*unit, unit->address);
-    if (presence.what == PRESENT_NONE) {
-        presence = look(FACTORY_ADDRESS, 2);
-        if (is_of(&presence, unit)) return commission(*unit, FACTORY_ADDRESS);
-    }
+    uint8_t at = unit->address;
+    presence_t presence = look_until_clear(at);
+    if (presence.what == PRESENT_NONE) presence = look(at = FACTORY_ADDRESS, 2);
+    if (is_of(&presence, unit)) return commission(*unit, at);
     if (presence.what == PRESENT_STOPPED) return STOPPED;
-    (void)fprintf(run.text, "address %u stays reserved: its sensor", unit->address);
-    print_number(run.text, " ", unit);
-    (void)fputs(" was not found\n", run.text);
+    (void)fprintf(run.text, "address %u stays reserved: its sensor%s%s was not found\n", unit->address,
+                  run.has_numbers ? " " : "", run.has_numbers ? unit->number : "");
     return LATER;
 }
 
@@ -560,7 +542,11 @@ static int finish(void)
         if (is_open(unit) && session.is_json)
             print_json(unit, NULL);
         else if (is_open(unit))
-            print_open(unit);
+            (void)printf("address %u is not done: the sensor%s%s is %s\n", unit->address,
+                         run.has_numbers ? " with UUID " : "", run.has_numbers ? unit->number : "",
+                         unit->address == FACTORY_ADDRESS
+                             ? "not verified"
+                             : "at this address, not verified, or still at address 1");
         else if (unit->model != NULL && is_listed(unit->address))
             done++;
     }

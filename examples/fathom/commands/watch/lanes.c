@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "commands/watch/lanes.h"
 
-#include <stdlib.h>
 #include <string.h>
+
+#include "output/words.h"
 
 /* A step lasts as long as the user's interval, but not shorter than an eye can follow. A distance is shown for as long as
  * the last gap and half of it, at most LONGEST_HOLD steps. The rate is a mean of RATE_US. */
@@ -38,17 +39,15 @@ static void init_lane(lanes_t *lanes, const sensor_t *sensor, uint8_t probe)
     if (length > lanes->name_width) lanes->name_width = length < MOST_NAME ? length : MOST_NAME;
 }
 
-bool lanes_init(lanes_t *lanes, const site_t *site)
+void lanes_init(lanes_t *lanes, const site_t *site)
 {
     const uint32_t interval_us = site->sensors[0]->settings.period_us; /* of all sensors */
     lanes->step_us = interval_us > LEAST_STEP_US ? interval_us : LEAST_STEP_US;
     lanes->name_width = LEAST_NAME;
-    lanes->lane = calloc(site->sensor_count * FATHOM_DYP_PROBES, sizeof *lanes->lane);
-    if (lanes->lane == NULL) return false;
+    lanes->lane = allocate(site->sensor_count * FATHOM_DYP_PROBES * sizeof *lanes->lane);
     for (size_t i = 0; i != site->sensor_count; i++)
         for (uint8_t probe = 1; probe <= FATHOM_DYP_PROBES; probe++)
             if (sensor_has_probe(site->sensors[i], probe)) init_lane(lanes, site->sensors[i], probe);
-    return true;
 }
 
 static uint64_t number_now(const lanes_t *lanes) { return lanes->now_us / lanes->step_us; }

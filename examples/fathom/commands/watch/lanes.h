@@ -68,8 +68,8 @@ typedef struct {
     uint32_t step_us;
 } lanes_t;
 
-/* Allocates lanes->lane, which the caller frees. False: no memory left. */
-bool lanes_init(lanes_t *lanes, const site_t *site);
+/* Allocates lanes->lane, which the caller frees. */
+void lanes_init(lanes_t *lanes, const site_t *site);
 
 /* Advances the time since the start. */
 void lanes_pass(lanes_t *lanes, uint64_t now_us);

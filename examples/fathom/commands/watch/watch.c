@@ -247,7 +247,6 @@ static int print_row(FILE *to, int row, bool has_colours, bool is_utf8)
  */
 static struct {
     struct termios before;
-    bool is_open;
     bool has_input; /* `before` is set */
 } terminal;
 
@@ -309,7 +308,6 @@ static void terminal_open(void)
         quiet.c_cc[VTIME] = 0;
         (void)tcsetattr(STDIN_FILENO, TCSADRAIN, &quiet);
     }
-    terminal.is_open = true;
     shown.rows = 0;
     /* Another screen, no cursor, no wrap at the right edge, nothing on the screen. */
     (void)write_all("\x1B[?1049h\x1B[?25l\x1B[?7l\x1B[2J");
@@ -318,8 +316,6 @@ static void terminal_open(void)
 /* Restores the terminal. False: a signal ended the command, and the terminal is stuck. */
 static bool terminal_close(void)
 {
-    if (!terminal.is_open) return true;
-    terminal.is_open = false;
     const bool is_restored = write_all("\x1B[0m\x1B[?7h\x1B[?25h\x1B[?1049l") != EINTR;
     /* What was typed is dropped. TCSAFLUSH would wait for output that a stuck terminal does not accept. */
     if (terminal.has_input)
@@ -510,43 +506,34 @@ static uint32_t tick(void *ctx)
     else
         print_line(now_us);
     if (watch.output_error != 0) loop_stop(&watch.loop);
-    watch.next_us += every_us;
-    if (watch.next_us <= now_us) watch.next_us = now_us + every_us;
+    watch.next_us = now_us - now_us % every_us + every_us;
     return (uint32_t)(watch.next_us - now_us);
 }
 
 /* ---- the command ---- */
 
-/* On the screen that has just gone, this stood last. */
-static void print_loss(void)
+/* is_open: the loop ran. Returns the exit status. */
+static int finish(const host_t *host, bool is_open)
 {
-    if (watch.draws) (void)fprintf(stderr, "fathom: %s\n", watch.loss);
-}
-
-static int finish(void)
-{
-    const host_t *const host = watch.loop.host;
     account_t account;
-    if (!terminal_close()) return STATUS_FAILED;
     if (watch.output_error == EINTR && host->has_ended(host->ctx)) watch.output_error = 0;
     if (watch.output_error == EPIPE || host->is_output_gone(host->ctx)) return STATUS_FAILED;
     if (watch.output_error != 0)
         (void)fprintf(stderr, "fathom: the picture cannot be written: %s\n", strerror(watch.output_error));
-    if (loop_is_lost(&watch.loop) || watch.loop.has_failed) print_loss();
+    /* On the screen that has just gone, this stood last. */
+    if (watch.draws && (!is_open || loop_is_lost(&watch.loop) || watch.loop.has_failed))
+        (void)fprintf(stderr, "fathom: %s\n", watch.loss);
+    if (!is_open) return STATUS_FAILED;
     loop_account(&watch.loop, &account);
     stats_print_short(&account, stderr);
-    return !loop_is_good(&watch.loop) || watch.output_error != 0 ? STATUS_FAILED : STATUS_OK;
+    return loop_is_good(&watch.loop) && watch.output_error == 0 ? STATUS_OK : STATUS_FAILED;
 }
 
 static int watch_site(const host_t *host)
 {
     static const fathom_loop_kind_t kind = {.fd = keys_fd, .poll = poll_keys};
     fathom_loop_source_t keys = {.kind = &kind};
-    int status = STATUS_FAILED;
-    if (!lanes_init(&watch.lanes, &watch.loop.site)) {
-        (void)fprintf(stderr, "fathom: no memory left.\n");
-        return STATUS_FAILED;
-    }
+    lanes_init(&watch.lanes, &watch.loop.site);
     if (!host->begin(host->ctx)) return STATUS_FAILED;
     watch.draws = terminal_can_draw();
     if (watch.draws) {
@@ -554,13 +541,10 @@ static int watch_site(const host_t *host)
         terminal_open();
     }
     read_window();
-    if (loop_open(&watch.loop)) {
-        if (watch.draws && terminal.has_input) fathom_loop_add(&watch.loop.sources, &keys);
-        loop_run(&watch.loop);
-        status = finish();
-    } else if (terminal_close()) {
-        print_loss();
-    }
+    const bool is_open = loop_open(&watch.loop);
+    if (is_open && terminal.has_input) fathom_loop_add(&watch.loop.sources, &keys);
+    if (is_open) loop_run(&watch.loop);
+    const int status = !watch.draws || terminal_close() ? finish(host, is_open) : STATUS_FAILED;
     loop_close(&watch.loop);
     return status;
 }
