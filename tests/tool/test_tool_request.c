@@ -101,13 +101,13 @@ static void far_answers(const char *answer)
 static void far_run(int status, const char *out, const char *err, const char *line)
 {
     const tool_run_t *const run = tool_run(&far.tool, "request %s --port line", line);
-    const char *const said = strstr(run->out, "sent      ");
+    const char *const printed = strstr(run->out, "sent      ");
     uint8_t sent[MOST];
     if (run->status != status || strstr(run->out, out) == NULL || strstr(run->err, err) == NULL)
         fail_msg("%s: exit status %d\n%s%s", line, run->status, run->out, run->err);
     assert_in_range(far.writes, 0, 1);
-    if (said == NULL) return;
-    assert_int_equal(bytes_of(said + 10, sent), far.sent_length);
+    if (printed == NULL) return;
+    assert_int_equal(bytes_of(printed + 10, sent), far.sent_length);
     assert_memory_equal(sent, far.sent, far.sent_length);
 }
 
@@ -117,9 +117,9 @@ typedef struct {
     int status;
     const char *out;
     const char *err;
-} exchange_t;
+} transaction_t;
 
-static void exchange(const exchange_t *rows, size_t count, bool echoes, uint32_t delay_us)
+static void transact(const transaction_t *rows, size_t count, bool echoes, uint32_t delay_us)
 {
     for (size_t i = 0; i != count; i++) {
         far_answers(rows[i].answer);
@@ -131,13 +131,13 @@ static void exchange(const exchange_t *rows, size_t count, bool echoes, uint32_t
 }
 
 /* Nothing is kept from one row to the next. */
-#define EXCHANGES_AT(name, echoes, delay_us, ...)                                                            \
+#define TRANSACTIONS_AT(name, echoes, delay_us, ...)                                                         \
     TEST(name)                                                                                               \
     {                                                                                                        \
-        static const exchange_t rows[] = {__VA_ARGS__};                                                      \
-        exchange(rows, sizeof rows / sizeof rows[0], echoes, delay_us);                                      \
+        static const transaction_t rows[] = {__VA_ARGS__};                                                   \
+        transact(rows, sizeof rows / sizeof rows[0], echoes, delay_us);                                      \
     }
-#define EXCHANGES(name, ...) EXCHANGES_AT(name, false, 20000, __VA_ARGS__)
+#define TRANSACTIONS(name, ...) TRANSACTIONS_AT(name, false, 20000, __VA_ARGS__)
 
 static int set_up(void **state)
 {
@@ -247,40 +247,40 @@ TEST(an_a16_that_sends_by_itself_is_asked_between_its_frames)
 
 #define ASKS   "Nothing was sent yet. To confirm that, add --yes."
 #define RESETS "a read of 0x0009 resets"
-EXCHANGES(without_yes_nothing_dangerous_leaves, {"1 6 0x0200 5", "", 2, "", ASKS},
-          {"1 6 0x0200 5", "", 2, "", "the request writes"},
-          {"1 16 0x0205 1 2", "", 2, "", "the request writes"},
-          {"1 5 00 00 ff 00", "", 2, "",
-           "function 5 (0x05) is in none of the datasheets; its effect is unknown"},
-          {"1 0x2b 0e 01 00", "", 2, "", "function 43 (0x2B) is in none of the datasheets"},
-          {"1 23 00 00 00 01 00 00 00 01 02 00 00", "", 2, "", "function 23 (0x17) is in none"},
-          {"1 10 02 05 00 01 02 00 00", "", 2, "", "in hex: 0x10, which is 16"},
-          {"1 6 0x0015 0xFF", "", 2, "", "hps167s: resets the device's settings"}, /* HPS-167S #13 */
-          {"1 3 0x0009", "", 2, "", RESETS}, {"1 3 8 2", "", 2, "", RESETS}, {"1 3 0 10", "", 2, "", RESETS},
-          {"1 4 9 1", "", 2, "", RESETS}, {"1 4 8 4", "", 2, "", RESETS}, {"1 3 8 3", "", 2, "", RESETS},
-          {"1 3 3 12", "", 2, "", RESETS}, {"1 3 3 12", "", 2, "", ASKS},
-          {"0 3 0x0101", "", 2, "", "unit 0 is all units, or an A16 or A05"},
-          {"0 6 0x0200 5", "", 2, "", "unit 0 is all units: all obey"}, {"0 3 0x0101", "", 2, "", ASKS},
-          {"255 3 0x0101", "", 2, "", "unit 255: each A16 and A05 obeys"}, {"255 3 0x0101", "", 2, "", ASKS})
+TRANSACTIONS(
+    without_yes_nothing_dangerous_leaves, {"1 6 0x0200 5", "", 2, "", ASKS},
+    {"1 6 0x0200 5", "", 2, "", "the request writes"}, {"1 16 0x0205 1 2", "", 2, "", "the request writes"},
+    {"1 5 00 00 ff 00", "", 2, "", "function 5 (0x05) is in none of the datasheets; its effect is unknown"},
+    {"1 0x2b 0e 01 00", "", 2, "", "function 43 (0x2B) is in none of the datasheets"},
+    {"1 23 00 00 00 01 00 00 00 01 02 00 00", "", 2, "", "function 23 (0x17) is in none"},
+    {"1 10 02 05 00 01 02 00 00", "", 2, "", "in hex: 0x10, which is 16"},
+    {"1 6 0x0015 0xFF", "", 2, "", "hps167s: resets the device's settings"}, /* HPS-167S #13 */
+    {"1 3 0x0009", "", 2, "", RESETS}, {"1 3 8 2", "", 2, "", RESETS}, {"1 3 0 10", "", 2, "", RESETS},
+    {"1 4 9 1", "", 2, "", RESETS}, {"1 4 8 4", "", 2, "", RESETS}, {"1 3 8 3", "", 2, "", RESETS},
+    {"1 3 3 12", "", 2, "", RESETS}, {"1 3 3 12", "", 2, "", ASKS},
+    {"0 3 0x0101", "", 2, "", "unit 0 is all units, or an A16 or A05"},
+    {"0 6 0x0200 5", "", 2, "", "unit 0 is all units: all obey"}, {"0 3 0x0101", "", 2, "", ASKS},
+    {"255 3 0x0101", "", 2, "", "unit 255: each A16 and A05 obeys"}, {"255 3 0x0101", "", 2, "", ASKS})
 
 /* Those of HPS-167S #5 and #3 go over it, and are none of it. */
 #define SILENCE "no byte was received"
-EXCHANGES(a_read_beside_0x0009_needs_no_yes, {"1 3 0 9", "", 1, "", SILENCE}, {"1 3 8 4", "", 1, "", SILENCE},
-          {"1 3 3 11", "", 1, "", SILENCE}, {"1 3 10 1", "", 1, "", SILENCE}, {"1 3 8 1", "", 1, "", SILENCE},
-          {"1 4 0x0101", "", 1, "", SILENCE}, {"1 1 00 09 00 01", "", 1, "", SILENCE},
-          {"1 2 00 09 00 01", "", 1, "", SILENCE})
+TRANSACTIONS(a_read_beside_0x0009_needs_no_yes, {"1 3 0 9", "", 1, "", SILENCE},
+             {"1 3 8 4", "", 1, "", SILENCE}, {"1 3 3 11", "", 1, "", SILENCE},
+             {"1 3 10 1", "", 1, "", SILENCE}, {"1 3 8 1", "", 1, "", SILENCE},
+             {"1 4 0x0101", "", 1, "", SILENCE}, {"1 1 00 09 00 01", "", 1, "", SILENCE},
+             {"1 2 00 09 00 01", "", 1, "", SILENCE})
 
 #define NONE "no response from unit 1 at "
-EXCHANGES(numbers_are_decimal_or_hex_and_bytes_are_hex,
-          {"1 3 257", "", 1, "sent      01 03 01 01 00 01 D4 36\n", NONE},
-          {"0x1 0x03 0x0101 0x2", "", 1, "sent      01 03 01 01 00 02 94 37\n", NONE},
-          {"1 4 0x0101", "", 1, "sent      01 04 01 01 00 01 61 F6\n", NONE},
-          /* real 200, measured 215 (HPS-167S #12) */
-          {"1 06 0x0014 -15 --yes", "", 1, "sent      01 06 00 14 FF F1 49 BA\n", NONE},
-          {"1 0x10 0x20 0 180 --yes", "", 1, "sent      01 10 00 20 00 02 04 00 00 00 B4 F1 C0\n", NONE},
-          {"1 43 0x0e 1 0 --yes", "", 1, "sent      01 2B 0E 01 00 70 77\n", NONE},
-          {"1 1 00 00 00 08", "", 1, "sent      01 01 00 00 00 08 3D CC\n", NONE},
-          {"1 3 0x0009 1 --yes", "", 1, "sent      01 03 00 09 00 01 54 08\n", NONE}) /* HPS-167S #6 */
+TRANSACTIONS(numbers_are_decimal_or_hex_and_bytes_are_hex,
+             {"1 3 257", "", 1, "sent      01 03 01 01 00 01 D4 36\n", NONE},
+             {"0x1 0x03 0x0101 0x2", "", 1, "sent      01 03 01 01 00 02 94 37\n", NONE},
+             {"1 4 0x0101", "", 1, "sent      01 04 01 01 00 01 61 F6\n", NONE},
+             /* real 200, measured 215 (HPS-167S #12) */
+             {"1 06 0x0014 -15 --yes", "", 1, "sent      01 06 00 14 FF F1 49 BA\n", NONE},
+             {"1 0x10 0x20 0 180 --yes", "", 1, "sent      01 10 00 20 00 02 04 00 00 00 B4 F1 C0\n", NONE},
+             {"1 43 0x0e 1 0 --yes", "", 1, "sent      01 2B 0E 01 00 70 77\n", NONE},
+             {"1 1 00 00 00 08", "", 1, "sent      01 01 00 00 00 08 3D CC\n", NONE},
+             {"1 3 0x0009 1 --yes", "", 1, "sent      01 03 00 09 00 01 54 08\n", NONE}) /* HPS-167S #6 */
 
 #define UNIT     "UNIT is from 0 to 255, in decimal or as 0x in hex, not "
 #define FUNCTION "FUNCTION is from 1 to 127"
@@ -325,60 +325,60 @@ TEST(more_than_a_frame_holds_is_refused)
 
 /* ---- what comes back ---- */
 
-EXCHANGES(registers_are_unsigned_signed_hex_and_text,
-          /* 0xFA24 is 64036, and 64036 - 65536 = -1500 */
-          {"1 3 0x0101 2", "01 03 04 41 42 FA 24 0C A0", 0,
-           "0x0101    unsigned 16706  signed  16706  hex 4142  ascii \"AB\"\n"
-           "0x0102    unsigned 64036  signed  -1500  hex FA24\n",
-           ""},
-          {"1 3 0x0101 2", "01 03 04 80 00 7F FF B3 83", 0,
-           "unsigned 32768  signed -32768  hex 8000\n0x0102    unsigned 32767  signed  32767  hex 7FFF\n",
-           ""},
-          /* A05 3(4)1, example 3 */
-          {"1 3 0x0107 3", "01 03 06 00 FA 02 93 09 7A 8F 47", 0,
-           "sent      01 03 01 07 00 03 B5 F6\n"
-           "received  01 03 06 00 FA 02 93 09 7A 8F 47\n"
-           "0x0107    unsigned   250  signed    250  hex 00FA\n"
-           "0x0108    unsigned   659  signed    659  hex 0293\n"
-           "0x0109    unsigned  2426  signed   2426  hex 097A\n",
-           ""},
-          /* a quote and a backslash */
-          {"1 3 0x0101 --format json", "01 03 02 22 5C A0 DD", 0, "\"ascii\":\"\\\"\\\\\"}", ""})
+TRANSACTIONS(registers_are_unsigned_signed_hex_and_text,
+             /* 0xFA24 is 64036, and 64036 - 65536 = -1500 */
+             {"1 3 0x0101 2", "01 03 04 41 42 FA 24 0C A0", 0,
+              "0x0101    unsigned 16706  signed  16706  hex 4142  ascii \"AB\"\n"
+              "0x0102    unsigned 64036  signed  -1500  hex FA24\n",
+              ""},
+             {"1 3 0x0101 2", "01 03 04 80 00 7F FF B3 83", 0,
+              "unsigned 32768  signed -32768  hex 8000\n0x0102    unsigned 32767  signed  32767  hex 7FFF\n",
+              ""},
+             /* A05 3(4)1, example 3 */
+             {"1 3 0x0107 3", "01 03 06 00 FA 02 93 09 7A 8F 47", 0,
+              "sent      01 03 01 07 00 03 B5 F6\n"
+              "received  01 03 06 00 FA 02 93 09 7A 8F 47\n"
+              "0x0107    unsigned   250  signed    250  hex 00FA\n"
+              "0x0108    unsigned   659  signed    659  hex 0293\n"
+              "0x0109    unsigned  2426  signed   2426  hex 097A\n",
+              ""},
+             /* a quote and a backslash */
+             {"1 3 0x0101 --format json", "01 03 02 22 5C A0 DD", 0, "\"ascii\":\"\\\"\\\\\"}", ""})
 
-EXCHANGES(what_comes_back_is_told,
-          {"1 4 0x0101", "01 04 02 02 EF F9 DC", 0, "0x0101    unsigned   751  signed    751  hex 02EF\n",
-           ""},
-          {"1 1 00 00 00 08", "01 01 01 55 91 B7", 0, "received  01 01 01 55 91 B7\n", ""},
-          {"1 0x2b 0e 01 00 --yes", "01 2B 0E 01 01 00 00 01 00 03 41 42 43 2D 63", 0,
-           "received  01 2B 0E 01 01 00 00 01 00 03 41 42 43 2D 63\n", ""},
-          /* addresses with a meaning of their own */
-          {"255 3 0x0101 --yes", "05 03 02 02 EF 09 68", 0, "received  05 03 02 02 EF 09 68\n", ""},
-          {"0 3 0x0101 --yes", "00 03 02 02 EF C5 68", 0, "received  00 03 02 02 EF C5 68\n", ""},
-          {"0 6 0x0205 1 --yes", "00 06 02 05 00 01 58 62", 0, "", "sent to all units"},
-          /* noise before it, and more behind it */
-          {"1 3 0x0101", "55 FE 80 01 03 02 02 EF F8 A8", 0, "received  01 03 02 02 EF F8 A8\n",
-           "3 bytes arrived in addition to the response.\n"},
-          {"1 3 0x0101", "01 03 02 02 EF F8 A8 01 03 02 02 EF F8 A8", 0, "received  01 03 02 02 EF F8 A8\n",
-           "7 bytes arrived in addition to the response: two units may have this address.\n"},
-          {"1 3 0x0101", "01 03 02 02 EF F8 A8 02 03 02 02 EF BC A8", 0, "received  01 03 02 02 EF F8 A8\n",
-           "7 bytes arrived in addition to the response: another unit responded also.\n"})
+TRANSACTIONS(
+    what_comes_back_is_told,
+    {"1 4 0x0101", "01 04 02 02 EF F9 DC", 0, "0x0101    unsigned   751  signed    751  hex 02EF\n", ""},
+    {"1 1 00 00 00 08", "01 01 01 55 91 B7", 0, "received  01 01 01 55 91 B7\n", ""},
+    {"1 0x2b 0e 01 00 --yes", "01 2B 0E 01 01 00 00 01 00 03 41 42 43 2D 63", 0,
+     "received  01 2B 0E 01 01 00 00 01 00 03 41 42 43 2D 63\n", ""},
+    /* addresses with a meaning of their own */
+    {"255 3 0x0101 --yes", "05 03 02 02 EF 09 68", 0, "received  05 03 02 02 EF 09 68\n", ""},
+    {"0 3 0x0101 --yes", "00 03 02 02 EF C5 68", 0, "received  00 03 02 02 EF C5 68\n", ""},
+    {"0 6 0x0205 1 --yes", "00 06 02 05 00 01 58 62", 0, "", "sent to all units"},
+    /* noise before it, and more behind it */
+    {"1 3 0x0101", "55 FE 80 01 03 02 02 EF F8 A8", 0, "received  01 03 02 02 EF F8 A8\n",
+     "3 bytes arrived in addition to the response.\n"},
+    {"1 3 0x0101", "01 03 02 02 EF F8 A8 01 03 02 02 EF F8 A8", 0, "received  01 03 02 02 EF F8 A8\n",
+     "7 bytes arrived in addition to the response: two units may have this address.\n"},
+    {"1 3 0x0101", "01 03 02 02 EF F8 A8 02 03 02 02 EF BC A8", 0, "received  01 03 02 02 EF F8 A8\n",
+     "7 bytes arrived in addition to the response: another unit responded also.\n"})
 
-EXCHANGES(a_refusal_is_explained,
-          {"1 3 0x0101", "01 83 02 C0 F1", 1, "received  01 83 02 C0 F1\n",
-           "unit 1 refused: exception 02 (illegal data address): the sensor has no such register\n"},
-          {"1 3 0x0101 --sensor hps167s", "01 83 02 C0 F1", 1, "",
-           "the sensor has no such register; HPS table 39: illegal start address or register address\n"},
-          {"1 3 0x0101 --sensor a16", "01 83 02 C0 F1", 1, "", "the datasheet of a16 has no exceptions\n"},
-          {"1 6 0x0200 5 --yes", "01 86 04 43 A3", 1, "", "exception 04 (server device failure): "},
-          {"1 0x2b 0e 01 00 --yes", "01 AB 01 9E F0", 1, "", "exception 01 (illegal function): "},
-          {"1 3 0x0101 --format json", "01 83 02 C0 F1", 1,
-           "\"status\":\"exception\",\"sent\":\"01 03 01 01 00 01 D4 36\",\"received\":\"01 83 02 C0 F1\","
-           "\"exception\":{\"code\":2,\"name\":\"illegal data address\"}",
-           ""})
+TRANSACTIONS(a_refusal_is_explained,
+             {"1 3 0x0101", "01 83 02 C0 F1", 1, "received  01 83 02 C0 F1\n",
+              "unit 1 refused: exception 02 (illegal data address): the sensor has no such register\n"},
+             {"1 3 0x0101 --sensor hps167s", "01 83 02 C0 F1", 1, "",
+              "the sensor has no such register; HPS table 39: illegal start address or register address\n"},
+             {"1 3 0x0101 --sensor a16", "01 83 02 C0 F1", 1, "", "the datasheet of a16 has no exceptions\n"},
+             {"1 6 0x0200 5 --yes", "01 86 04 43 A3", 1, "", "exception 04 (server device failure): "},
+             {"1 0x2b 0e 01 00 --yes", "01 AB 01 9E F0", 1, "", "exception 01 (illegal function): "},
+             {"1 3 0x0101 --format json", "01 83 02 C0 F1", 1,
+              "\"status\":\"exception\",\"sent\":\"01 03 01 01 00 01 D4 36\",\"received\":\"01 83 02 C0 F1\","
+              "\"exception\":{\"code\":2,\"name\":\"illegal data address\"}",
+              ""})
 
 #define DAMAGED "damaged response from unit 1 at "
 #define UNFIT   "the response does not fit the request"
-EXCHANGES(
+TRANSACTIONS(
     what_is_no_response_is_told,
     /* damaged: a bit of the CRC, of the value; half a frame, which leaves open what is the rest */
     {"1 3 0x0101", "01 03 02 02 EF F8 A9", 1, "heard     01 03 02 02 EF F8 A9\n", DAMAGED},
@@ -403,13 +403,13 @@ EXCHANGES(
      "no byte was received. Check the power, whether A and B (or RX and TX) are swapped, UNIT, and --baud"},
     {"1 3 0x0101 --format json", "", 1, "\"status\":\"no_response\"", ""})
 
-EXCHANGES_AT(a_response_after_the_time_out_is_none, false, 301000,
-             {"1 3 0x0101 --timeout 300", "01 03 02 02 EF F8 A8", 1, "sent ", ""})
+TRANSACTIONS_AT(a_response_after_the_time_out_is_none, false, 301000,
+                {"1 3 0x0101 --timeout 300", "01 03 02 02 EF F8 A8", 1, "sent ", ""})
 
 TEST(only_the_sensor_that_was_named_and_could_be_there_is_guessed)
 {
     static const struct {
-        const char *line, *said, *not_said;
+        const char *line, *printed, *not_printed;
     } rows[] = {
         {"1 3 0x0200 --sensor a05", "a05      0x0200 address 5\n", "a16"},
         {"1 6 0x0200 5 --sensor a05", "if it is a05: set 0x0200", "if it is a16"},
@@ -420,8 +420,8 @@ TEST(only_the_sensor_that_was_named_and_could_be_there_is_guessed)
     for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
         far_answers("01 03 02 00 05 78 47");
         const tool_run_t *const run = tool_run(&far.tool, "request %s --port line", rows[i].line);
-        if ((strstr(run->out, rows[i].said) == NULL && strstr(run->err, rows[i].said) == NULL) ||
-            strstr(run->out, rows[i].not_said) != NULL || strstr(run->err, rows[i].not_said) != NULL)
+        if ((strstr(run->out, rows[i].printed) == NULL && strstr(run->err, rows[i].printed) == NULL) ||
+            strstr(run->out, rows[i].not_printed) != NULL || strstr(run->err, rows[i].not_printed) != NULL)
             fail_msg("%s:\n%s%s", rows[i].line, run->out, run->err);
     }
 }
@@ -462,35 +462,37 @@ TEST(only_a_harmless_read_leaves_on_a_line_that_is_never_silent)
 
 /* ---- echo ---- */
 
-EXCHANGES_AT(behind_an_adapter_that_echoes_the_answer_is_the_second, true, 20000,
-             {"1 3 0x0101", "01 03 02 02 EF F8 A8", 0, "received  01 03 02 02 EF F8 A8\n0x0101 ", ""},
-             {"1 6 0x0200 5 --yes", "01 06 02 00 00 05 48 71", 0, "received  01 06 02 00 00 05 48 71\n", ""},
-             {"1 0x2b 0e 01 00 --yes", "01 2B 0E 01 01 00 00 01 00 03 41 42 43 2D 63", 0,
-              "received  01 2B 0E 01 01 00", ""})
+TRANSACTIONS_AT(behind_an_adapter_that_echoes_the_answer_is_the_second, true, 20000,
+                {"1 3 0x0101", "01 03 02 02 EF F8 A8", 0, "received  01 03 02 02 EF F8 A8\n0x0101 ", ""},
+                {"1 6 0x0200 5 --yes", "01 06 02 00 00 05 48 71", 0, "received  01 06 02 00 00 05 48 71\n",
+                 ""},
+                {"1 0x2b 0e 01 00 --yes", "01 2B 0E 01 01 00 00 01 00 03 41 42 43 2D 63", 0,
+                 "received  01 2B 0E 01 01 00", ""})
 
 #define OWN "only the tool's own request was received"
-EXCHANGES_AT(an_echo_alone_is_no_answer, true, 20000, {"1 3 0x0101", "", 1, "heard ", OWN},
-             {"1 6 0x0200 5 --yes", "", 1, "heard ", OWN}, {"1 16 0x0205 1 --yes", "", 1, "heard ", OWN},
-             {"1 8 00 00 12 34 --yes", "", 1, "heard ", OWN},
-             {"1 6 0x0200 5 --yes --echo on", "", 1, "heard ", OWN})
+TRANSACTIONS_AT(an_echo_alone_is_no_answer, true, 20000, {"1 3 0x0101", "", 1, "heard ", OWN},
+                {"1 6 0x0200 5 --yes", "", 1, "heard ", OWN}, {"1 16 0x0205 1 --yes", "", 1, "heard ", OWN},
+                {"1 8 00 00 12 34 --yes", "", 1, "heard ", OWN},
+                {"1 6 0x0200 5 --yes --echo on", "", 1, "heard ", OWN})
 
 /* Whenever it comes: only what acknowledges 5 and 6, and perhaps another function, equals its request. The last one has
  * the shape of a response, of three bytes. */
-EXCHANGES(a_copy_of_what_is_acknowledged_otherwise_is_an_echo,
-          {"1 3 0x0101", "01 03 01 01 00 01 D4 36", 1, "heard ", OWN},
-          {"1 16 0x0205 1 --yes", "01 10 02 05 00 01 02 00 01 44 05", 1, "heard ", OWN},
-          {"1 3 0x0301", "01 03 03 01 00 01 D5 8E", 1, "heard ", OWN})
+TRANSACTIONS(a_copy_of_what_is_acknowledged_otherwise_is_an_echo,
+             {"1 3 0x0101", "01 03 01 01 00 01 D4 36", 1, "heard ", OWN},
+             {"1 16 0x0205 1 --yes", "01 10 02 05 00 01 02 00 01 44 05", 1, "heard ", OWN},
+             {"1 3 0x0301", "01 03 03 01 00 01 D5 8E", 1, "heard ", OWN})
 
 /* A copy is an acknowledgement or an echo. 8 characters leave in 8.3 ms; an adapter holds their echo back for up to
  * 60 ms; an acknowledgement comes 3.5 + 8 characters, 12.0 ms, after that at the earliest. */
 #define WRITES "1 6 0x0200 5 --yes "
 #define COPY   "01 06 02 00 00 05 48 71"
-EXCHANGES_AT(a_copy_after_1_ms_is_an_echo, false, 1000, {WRITES, COPY, 1, "heard ", OWN})
-EXCHANGES_AT(a_copy_after_5_ms_may_be_both, false, 5000,
-             {WRITES, COPY, 0, "heard ", "unit 1 acknowledged the request, unless the adapter returned it"},
-             {WRITES "--echo off", COPY, 0, "received  " COPY "\n", ""})
-EXCHANGES_AT(a_copy_after_40_ms_may_be_both, false, 40000,
-             {WRITES "--format json", COPY, 0, "\"status\":\"answered_or_echo\"",
-              "acknowledged the request, unless"})
-EXCHANGES_AT(a_copy_after_60_ms_is_an_acknowledgement, false, 60000,
-             {WRITES, COPY, 0, "received  " COPY "\n", ""})
+TRANSACTIONS_AT(a_copy_after_1_ms_is_an_echo, false, 1000, {WRITES, COPY, 1, "heard ", OWN})
+TRANSACTIONS_AT(a_copy_after_5_ms_may_be_both, false, 5000,
+                {WRITES, COPY, 0, "heard ",
+                 "unit 1 acknowledged the request, unless the adapter returned it"},
+                {WRITES "--echo off", COPY, 0, "received  " COPY "\n", ""})
+TRANSACTIONS_AT(a_copy_after_40_ms_may_be_both, false, 40000,
+                {WRITES "--format json", COPY, 0, "\"status\":\"answered_or_echo\"",
+                 "acknowledged the request, unless"})
+TRANSACTIONS_AT(a_copy_after_60_ms_is_an_acknowledgement, false, 60000,
+                {WRITES, COPY, 0, "received  " COPY "\n", ""})
