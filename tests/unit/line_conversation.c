@@ -81,6 +81,14 @@ void play_send(const step_t *step)
     run((uint32_t)(length * BYTE_US / 100 * 100 + 100));
 }
 
+void play_pass(const step_t *step) { bench.fake.now_us += step->us; }
+
+void play_break(const step_t *step)
+{
+    const fathom_status_t status = fathom_line_break(&bench.line, step->which != 0);
+    EXPECT_THAT(status == step->value, "%s", fathom_status_name(status));
+}
+
 void play_jam(const step_t *step)
 {
     for (uint32_t us = 0; us < step->us; us += BYTE_US) {
@@ -132,6 +140,11 @@ void play_sent(const step_t *step)
 void play_due(const step_t *step)
 {
     EXPECT_THAT(due() == step->us, "due in %lu us, not %lu", (unsigned long)due(), (unsigned long)step->us);
+}
+
+void play_in_break(const step_t *step)
+{
+    EXPECT_THAT(bench.fake.in_break == (step->which != 0), "in a break or not");
 }
 
 void play_idle(const step_t *step)

@@ -57,7 +57,10 @@ enum { A, B };
 #define ARRIVE(text)             STEP(arrive, .hex = (text)) /* no poll */
 #define SEND(text)               STEP(send, .hex = (text)) /* a device, byte by byte until the last one has arrived */
 #define RESPONSE(from, mm)       STEP(response, .unit = (from), .value = (mm))
-#define JAM(for_us)              STEP(jam, .us = (for_us)) /* a byte 00 in each character time */
+#define HOLD(low)                BREAK(low, FATHOM_OK) /* TX is low, or not any more */
+#define BREAK(low, status)       STEP(break, .which = (low), .value = (status))
+#define PASS(for_us)             STEP(pass, .us = (for_us)) /* no poll */
+#define JAM(for_us)              STEP(jam, .us = (for_us))  /* a byte 00 in each character time */
 #define ECHO(known)              STEP(echo, .value = FATHOM_LINE_ECHO_##known)
 #define LISTEN(gap)              STEP(listen, .us = (gap))
 #define FLUSH                    STEP(flush, .which = 0)
@@ -74,6 +77,7 @@ enum { A, B };
 #define REQUEST_TO(n, id)   STEP(request_to, .value = (n), .unit = (id)) /* the n-th request, from 0 on */
 #define SENT(after, within) STEP(sent, .us = (after), .value = (within))
 #define DUE(in_us)          STEP(due, .us = (in_us))
+#define IN_BREAK(is_so)     STEP(in_break, .which = (is_so))
 #define IDLE(is_idle)       STEP(idle, .which = (is_idle))
 #define COUNT(counter, n)   STEP(count, .which = FATHOM_LINE_##counter, .value = (n))
 #define HEARD(text, pauses) STEP(heard, .hex = (text), .which = (pauses)) /* by the listener, with gaps */
@@ -82,9 +86,10 @@ enum { A, B };
 
 typedef void play_step_t(const step_t *step);
 play_step_t play_queue, play_ask, play_write, play_cancel, play_wait, play_poll_after, play_receive,
-    play_arrive, play_send, play_gap_at, play_lost_at, play_response, play_jam, play_echo, play_listen,
-    play_flush, play_break_port, play_refuse, play_never_sent, play_fails, play_ends, play_reads,
-    play_written, play_request_to, play_sent, play_due, play_idle, play_count, play_heard;
+    play_break, play_pass, play_in_break, play_arrive, play_send, play_gap_at, play_lost_at, play_response,
+    play_jam, play_echo, play_listen, play_flush, play_break_port, play_refuse, play_never_sent, play_fails,
+    play_ends, play_reads, play_written, play_request_to, play_sent, play_due, play_idle, play_count,
+    play_heard;
 
 /* Plays the row in *state on a line that `begin` sets up, such as set_up. */
 void play_conversation(void **state, int (*begin)(void **state));

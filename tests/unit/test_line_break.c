@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "line_bench.h"
+#include "line_conversation.h"
 
 /* A break of the line: TX as the trigger or the mode select of a module. */
 
@@ -9,119 +9,55 @@ static void hold(bool low) { assert_int_equal(fathom_line_break(&bench.line, low
 
 static const suite_t suite = {.set_up = set_up};
 
-TEST(a_break_holds_tx_low_until_it_is_ended)
-{
-    hold(true);
-    assert_true(bench.fake.in_break);
-    hold(true);
-    run(100000);
-    assert_true(bench.fake.in_break);
-    hold(false);
-    assert_false(bench.fake.in_break);
-}
+#define RESPONDS "01 03 02 02 F2 38 A1" /* 754 mm */
 
-TEST(nothing_is_sent_in_a_break_and_the_silence_is_kept_after_it)
-{
-    run(100000);
-    hold(true);
-    ask_1(0);
-    run(FATHOM_LINE_DEFAULT_BUSY_US - 1000);
-    expect_written(0);
-    expect(FATHOM_PENDING);
-    hold(false);
-    expect_due(T3_5_US);
-    expect_sent(T3_5_US - 100, 200);
-    run(8 * BYTE_US);
-    response_1(111);
-}
-
-/* line.h, rule 3: each of them waits for `busy_us`, and then the next one. */
-TEST(a_transaction_ends_unsent_if_the_break_lasts_too_long)
-{
-    run(100000);
-    hold(true);
-    ask_1(2);
-    expect_due(0); /* The next poll begins the wait. */
-    run(FATHOM_LINE_DEFAULT_BUSY_US - 1000);
-    expect(FATHOM_PENDING);
-    expect_due(1100); /* The wait began with the poll after the request, 100 us later. */
-    run(1200);
-    expect(FATHOM_ERR_LINE_BUSY);
-    expect_written(0);
-    assert_true(bench.fake.in_break);
-    expect_due(FATHOM_NO_DEADLINE);
-}
-
-TEST(with_a_transaction_on_the_wire_it_is_busy_and_nothing_changes)
-{
-    ask_1(0);
-    expect_written_after(T3_5_US + 100, 1);
-    assert_int_equal(hold_low(), FATHOM_ERR_BUSY); /* it is leaving */
-    run(8 * BYTE_US);
-    assert_int_equal(hold_low(), FATHOM_ERR_BUSY); /* the response may come */
-    assert_int_equal(bench.fake.breaks, 0);
-    response_1(111);
-    hold(true);
-    assert_int_equal(bench.fake.breaks, 1);
-}
-
-TEST(while_bytes_of_the_port_leave_it_is_pending)
-{
-    bench.fake.never_sent = true;
-    assert_int_equal(hold_low(), FATHOM_PENDING);
-    assert_false(bench.fake.in_break);
-    ask_1(0);
-    expect_written_after(T3_5_US + 100, 1); /* so there was no break */
-}
-
-/* The port was busy with a request; after the break it gets its time anew. */
-TEST(a_request_that_the_port_refused_waits_for_the_end_of_the_break)
-{
-    bench.fake.write_busy = true;
-    ask_1(0);
-    run(T3_5_US + 900000);
-    hold(true);
-    run(500000);
-    hold(false);
-    expect_after(T3_5_US + 500000, FATHOM_PENDING);
-    bench.fake.write_busy = false;
-    expect_written_after(1000, 1);
-}
-
-/* A module that is triggered by the break responses in frames that begin after a silence. */
-TEST(the_end_of_a_break_does_not_hide_a_silence_from_the_listener)
-{
-    for (unsigned silent_us = 4900; silent_us <= 5000; silent_us += 100) {
-        set_up(state);
-        listen_for(5000);
-        hold(true);
-        run(silent_us);
-        hold(false);
-        assert_int_equal(bench_listener.length, 0);
-        deliver(response_1_754, 7);
-        assert_int_equal(bench_listener.length, 7);
-        assert_int_equal(bench_listener.gaps, silent_us == 5000);
-    }
-}
-
-/* Unit 1 is still quarantined; of its late response a part has come, right behind a byte of noise. */
-TEST(the_end_of_a_break_is_no_gap_within_what_has_come)
-{
-    listen_for(500);
-    ask_1_and_send(0);
-    expect_after(TIMEOUT_US + 1000, FATHOM_ERR_NO_RESPONSE);
-    assert_int_equal(bench_listener.length, 0);
-    receive_hex("55 01 03 02");
-    run(1000);
-    assert_int_equal(bench.line.received_count, 3);
-    assert_int_equal(bench_listener.length, 1);
-    assert_int_equal(bench_listener.gaps, 1);
-    hold(true);
-    hold(false);
-    run(GAP_US + 1000);
-    assert_int_equal(bench_listener.length, 4);
-    assert_int_equal(bench_listener.gaps, 1);
-}
+static const conversation_t conversations[] = {
+    {"a_break_holds_tx_low_until_it_is_ended",
+     {HOLD(true), IN_BREAK(true), HOLD(true), WAIT(100000), IN_BREAK(true), HOLD(false), IN_BREAK(false)},
+     {0}},
+    {"nothing_is_sent_in_a_break_and_the_silence_is_kept_after_it",
+     {WAIT(100000), HOLD(true), QUEUE(A, 1), WAIT(FATHOM_LINE_DEFAULT_BUSY_US - 1000), WRITTEN(0), PENDS(A),
+      HOLD(false), DUE(T3_5_US), SENT(T3_5_US - 100, 200), WAIT(8 * BYTE_US), RESPONSE(1, 111),
+      READS(A, 111)},
+     {.responses = 1}},
+    /* it begins where the break ends, not where the poll before that was */
+    {"after_a_break_the_silence_is_kept_in_a_slow_loop",
+     {HOLD(true), QUEUE(A, 1), PASS(20000), HOLD(false), DUE(T3_5_US), SENT(T3_5_US - 100, 200)},
+     {0}},
+    /* rule 3: a transaction waits for `busy_us`, from the poll after its request on, which is 100 us later */
+    {"a_transaction_ends_unsent_if_the_break_lasts_too_long",
+     {WAIT(100000), HOLD(true), QUEUE_TWICE(A, 1), DUE(0), WAIT(FATHOM_LINE_DEFAULT_BUSY_US - 1000), PENDS(A),
+      DUE(1100), WAIT(1200), FAILS(A, LINE_BUSY), WRITTEN(0), IN_BREAK(true), DUE(FATHOM_NO_DEADLINE)},
+     {.busy = 1}},
+    /* the request leaves, and then its response may come */
+    {"with_a_transaction_on_the_wire_a_break_is_busy_and_nothing_changes",
+     {QUEUE(A, 1), SENT(0, T3_5_US + 100), BREAK(true, FATHOM_ERR_BUSY), WAIT(8 * BYTE_US),
+      BREAK(true, FATHOM_ERR_BUSY), IN_BREAK(false), RESPONSE(1, 111), READS(A, 111), HOLD(true),
+      IN_BREAK(true)},
+     {.responses = 1}},
+    {"while_bytes_of_the_port_leave_a_break_is_pending",
+     {NEVER_SENT(true), BREAK(true, FATHOM_PENDING), IN_BREAK(false), QUEUE(A, 1), SENT(0, T3_5_US + 100)},
+     {0}},
+    /* after the break the port has the whole time again to accept the request */
+    {"a_request_that_the_port_refused_waits_for_the_end_of_the_break",
+     {PORT_REFUSES(true), QUEUE(A, 1), WAIT(T3_5_US + 900000), HOLD(true), WAIT(500000), HOLD(false),
+      WAIT(T3_5_US + 500000), PENDS(A), PORT_REFUSES(false), SENT(0, 1000)},
+     {0}},
+    /* a sensor that is triggered by the break responds in frames that begin after a silence */
+    {"the_end_of_a_break_does_not_hide_a_silence_from_the_listener",
+     {LISTEN(5000), HOLD(true), WAIT(5000), HOLD(false), HEARD("", 0), RECEIVE(RESPONDS), HEARD(RESPONDS, 1)},
+     {0}},
+    {"the_end_of_a_break_is_no_silence_for_the_listener",
+     {LISTEN(5000), HOLD(true), WAIT(4900), HOLD(false), HEARD("", 0), RECEIVE(RESPONDS), HEARD(RESPONDS, 0)},
+     {0}},
+    /* unit 1 is still quarantined; of its late response a part has come, right behind a byte of noise */
+    {"the_end_of_a_break_is_no_gap_within_what_has_come",
+     {LISTEN(500), ASK(A, 1), WAIT(TIMEOUT_US + 1000), FAILS(A, NO_RESPONSE), HEARD("", 0),
+      ARRIVE("55 01 03 02"), WAIT(1000), HEARD("55", 1), HOLD(true), HOLD(false), WAIT(GAP_US + 1000),
+      HEARD("55 01 03 02", 1)},
+     {.no_responses = 1}},
+};
+CONVERSATIONS(set_up, conversations)
 
 /* ---- a port that refuses ---- */
 
@@ -253,14 +189,4 @@ TEST(where_there_is_no_break_a_refused_end_changes_nothing)
     refuse(1, -1); /* with a request on the wire the port is not even asked */
     hold(false);
     assert_int_equal(bench.fake.refusals, 1);
-}
-
-/* It begins where the break ends, not where the poll before that was. */
-TEST(after_a_break_the_silence_is_kept_in_a_slow_loop)
-{
-    hold_and_ask();
-    bench.fake.now_us += 20000;
-    hold(false);
-    expect_due(T3_5_US);
-    expect_sent(T3_5_US - 100, 200);
 }
