@@ -136,11 +136,7 @@ static fathom_status_t poll_selection(void *ctx, fathom_sample_t *sample)
 static uint32_t due_us_selection(void *ctx)
 {
     const reader_t *const reader = ctx;
-    const driver_selection_t *const selection = &reader->selection;
-    const uint32_t passed_us = fathom_elapsed_us(driver_now_us(reader), selection->heard_us);
-    const uint32_t listening_us = fathom_due_us(&selection->listening, 1);
-    if (selection->has_been_off || passed_us >= OFF_US) return listening_us;
-    return OFF_US - passed_us < listening_us ? OFF_US - passed_us : listening_us;
+    return fathom_due_us(&reader->selection.listening, 1);
 }
 
 static fathom_status_t end_selection(reader_t *reader)
@@ -310,13 +306,11 @@ const model_mode_t a05_modes[MODEL_MODES] = {
 void a16_simulate(device_t *device, const device_settings_t *settings, uint8_t simulated_as)
 {
     const fathom_sim_a16_config_t config = {SIMULATED(settings, simulated_as)};
-    fathom_sim_a16_init(&device->simulator.a16, &config);
-    device->base = &device->simulator.a16.device;
+    fathom_sim_a16_init(&device->a16, &config);
 }
 
 void a05_simulate(device_t *device, const device_settings_t *settings, uint8_t simulated_as)
 {
     const fathom_sim_a05_config_t config = {SIMULATED(settings, simulated_as)};
-    fathom_sim_a05_init(&device->simulator.a05, &config);
-    device->base = &device->simulator.a05.device;
+    fathom_sim_a05_init(&device->a05, &config);
 }

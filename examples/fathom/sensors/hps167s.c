@@ -213,6 +213,5 @@ void hps167s_simulate(device_t *device, const device_settings_t *settings, uint8
         .number = settings->number,
         .seed = settings->seed,
         .scene = settings->scene};
-    fathom_sim_hps167s_init(&device->simulator.hps167s, &config);
-    device->base = &device->simulator.hps167s.device;
+    fathom_sim_hps167s_init(&device->hps167s, &config);
 }

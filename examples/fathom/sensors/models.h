@@ -201,13 +201,11 @@ typedef struct {
 } device_settings_t;
 
 /* Any simulated sensor. */
-typedef struct {
-    fathom_sim_device_t *base; /* for fathom_sim_attach */
-    union {
-        fathom_sim_a16_t a16;
-        fathom_sim_a05_t a05;
-        fathom_sim_hps167s_t hps167s;
-    } simulator;
+typedef union {
+    fathom_sim_device_t base; /* the first member of each */
+    fathom_sim_a16_t a16;
+    fathom_sim_a05_t a05;
+    fathom_sim_hps167s_t hps167s;
 } device_t;
 
 /* ---- models ---- */

@@ -126,7 +126,7 @@ static bool has_fault(const simulated_t *sensor, size_t n)
     device_t device;
     if (fault_name(n) == NULL) return false;
     sensor->model->simulate(&device, &settings, sensor->mode->simulated_as);
-    return fathom_sim_fault_applies((uint8_t)(n + 1), device.base);
+    return fathom_sim_fault_applies((uint8_t)(n + 1), &device.base);
 }
 
 /* ---- the values of keys ---- */
@@ -436,8 +436,8 @@ static void connect_sensor(simulation_t *simulation, uint32_t now_us)
     simulated_t *const sensor = &simulation->sensors[simulation->connected++];
     sensor->settings.baud = sensor->line.baud;
     sensor->model->simulate(&sensor->device, &sensor->settings, sensor->mode->simulated_as);
-    fathom_sim_fault_attach(&sensor->fault, &simulation->line, sensor->device.base);
-    fathom_sim_attach(&simulation->line, sensor->device.base, now_us);
+    fathom_sim_fault_attach(&sensor->fault, &simulation->line, &sensor->device.base);
+    fathom_sim_attach(&simulation->line, &sensor->device.base, now_us);
 }
 
 /* ---- what the command prints ---- */
@@ -507,7 +507,7 @@ static bool announce(const simulation_t *simulation)
 static void print_counters(const simulation_t *simulation, uint32_t i)
 {
     const simulated_t *const sensor = &simulation->sensors[i];
-    const fathom_sim_device_t *const device = sensor->device.base;
+    const fathom_sim_device_t *const device = &sensor->device.base;
     const fathom_sim_counters_t *const counters = &device->counters;
     const struct {
         const char *name;
@@ -599,7 +599,7 @@ static uint32_t connect_next(simulation_t *simulation, uint32_t due_us)
 {
     enum { CONNECT_US = 1000000 };
     const simulated_t *const last = &simulation->sensors[simulation->connected - 1];
-    if (simulation->connected == simulation->count || last->device.base->address == last->settings.address)
+    if (simulation->connected == simulation->count || last->device.base.address == last->settings.address)
         return due_us;
     const uint32_t now_us = fathom_sim_pty_now_us();
     if (!simulation->has_left) simulation->left_us = now_us;
@@ -619,7 +619,7 @@ static int serve(simulation_t *simulation, const host_t *host)
     while (!host->has_ended(host->ctx)) {
         if (host_had_signal()) {
             for (uint32_t i = 0; i != simulation->connected; i++)
-                fathom_sim_power_cycle(&simulation->line, simulation->sensors[i].device.base, POWER_OFF_US,
+                fathom_sim_power_cycle(&simulation->line, &simulation->sensors[i].device.base, POWER_OFF_US,
                                        fathom_sim_pty_now_us());
             (void)fprintf(stderr, "fathom: power off for a second.\n");
         }
