@@ -9,7 +9,7 @@
 #include "cli/rows.h"
 #include "device/session.h"
 #include "fathom/version.h"
-#include "ports/port_options.h"
+#include "ports/port.h"
 #include "reading/fields.h"
 
 static const command_t *const commands[] = {

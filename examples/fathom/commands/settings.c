@@ -5,7 +5,7 @@
 #include "cli/rows.h"
 #include "commands/commands.h"
 #include "device/session.h"
-#include "ports/port_options.h"
+#include "ports/port.h"
 
 /* fathom info and get print values of a sensor, set changes one of them, and reset discards settings of an HPS-167S. */
 

@@ -34,7 +34,6 @@ bool session_open(session_t *session, const host_t *host)
     }
     progress_init(&session->progress, stderr, host->now_us(host->ctx), 0);
     session->doing = NULL;
-    counters_begin_port(&session->port_counts, &session->port);
     if (!start(session)) {
         port_close(&session->port);
         return false;
@@ -168,7 +167,7 @@ void session_explain(session_t *session, fathom_status_t status)
                          .line = &sensor->line,
                          .address = sensor->address,
                          .is_setting = true};
-    (void)counters_take(&sensor->counters, &session->port_counts, &session->port, sensor->reader);
+    (void)counters_take(&sensor->counters, &session->port, sensor->reader);
     listener_judge(&session->port.listener, sensor->address, &failure.evidence);
     advice_print(stderr, &failure);
 }

@@ -14,7 +14,6 @@ typedef struct {
     sensor_t *sensor; /* of the site; a command that takes several sets one after another */
     bool has_begun;   /* host_t.begin was called */
     port_t port;
-    port_counts_t port_counts;
     progress_t progress;
     const char *doing; /* shown while the calls of a longer task wait; NULL: each call is a task of its own */
     bool is_json;

@@ -44,6 +44,7 @@ typedef struct {
     uint64_t port[PORT_COUNTERS];
 } counts_t;
 
+/* Invariant: from `total` to `time_sum_us`, all members are uint64_t. counters_add() adds them. */
 typedef struct {
     counts_t attempt; /* since counters_begin_attempt */
     counts_t total;
@@ -58,17 +59,8 @@ typedef struct {
     uint32_t time_max_us;
 } counters_t;
 
-/* The counters of the port's driver. */
-typedef struct {
-    fathom_posix_line_errors_t at; /* at the last look */
-    bool is_there;                 /* the driver counts */
-} port_counts_t;
-
-/* A port has been opened: the driver's counters begin here. */
-void counters_begin_port(port_counts_t *counts, port_t *port);
-
 /* Moves the counters of the line, the sensor and the port. Returns those of the sensor. */
-reader_counters_t counters_take(counters_t *counters, port_counts_t *counts, port_t *port, reader_t *reader);
+reader_counters_t counters_take(counters_t *counters, port_t *port, reader_t *reader);
 
 /* Takes the line's late responses alone: they are this sensor's. */
 void counters_take_late(counters_t *counters, port_t *port);

@@ -9,7 +9,23 @@
 #include "fathom_gpio.h"
 #include "fathom_loop.h"
 #include "fathom_posix.h"
-#include "ports/port_options.h"
+
+/* The level of `in` that means that something is near. */
+typedef enum {
+    PINS_NEAR_USUAL = 0, /* with factory settings */
+    PINS_NEAR_LOW = 1,
+    PINS_NEAR_HIGH = 2
+} pins_near_t;
+
+/* Lines of a GPIO chip by their numbers; -1: none. */
+typedef struct {
+    int32_t trigger; /* to the sensor's RX; an output */
+    uint32_t chip;   /* of a serial port: 1 + the number of the chip that has the trigger; 0: no trigger */
+    int32_t echo;    /* from the sensor's TX: pulses */
+    int32_t in;      /* a switch, or the contact of a relay */
+    uint8_t bias;    /* of the inputs; fathom_gpio_bias_t */
+    uint8_t near;    /* pins_near_t */
+} pin_options_t;
 
 /* The lines of a GPIO chip that were named, open. A reader uses what the host has set. */
 enum { PINS_LINES = 3 };

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "ports/listener.h"
+#include "ports/port.h"
 
 #include <string.h>
 

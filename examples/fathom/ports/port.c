@@ -121,6 +121,7 @@ static fathom_status_t open_serial(port_t *port)
         return FATHOM_ERR_PORT;
     }
     port->has_wire = !port->serial.is_pty;
+    port->counts_errors = fathom_posix_line_errors(&port->serial, &port->errors) == FATHOM_POSIX_OK;
     port->parts.silence_us = fathom_silence_us(&options->line);
     port->parts.gap_us = PORT_RESPONSE_GAP_US;
     port->parts.echo = options->echo;
@@ -259,6 +260,7 @@ fathom_status_t port_open(port_t *port, const host_t *host, const port_options_t
     port->error = PORT_OK;
     port->error_text[0] = '\0';
     port->has_wire = true;
+    port->counts_errors = false;
     port->gateway_exception = NULL;
     port->fd = -1;
     port->events = POLLIN;

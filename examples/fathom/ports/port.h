@@ -3,6 +3,7 @@
 #define PORT_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include "fathom/engine/dyp_client.h"
@@ -11,8 +12,142 @@
 #include "fathom_loop.h"
 #include "ports/adapter.h"
 #include "ports/host.h"
-#include "ports/listener.h"
-#include "ports/port_options.h"
+
+/* A port as a user names it, with its settings. */
+
+typedef enum {
+    PORT_SERIAL,
+    PORT_GATEWAY, /* tcp:HOST[:PORT], a Modbus TCP server */
+    PORT_PINS     /* lines of a GPIO chip: the last part of the path begins with gpiochip */
+} port_kind_t;
+
+port_kind_t port_kind(const char *path);
+
+/* The parts of tcp:HOST[:PORT]. An IPv6 address stands in brackets. */
+typedef struct {
+    char host[256]; /* DNS allows no longer name */
+    char service[6];
+} tcp_address_t;
+
+/* Parses the path of a gateway. Returns NULL, or what is wrong with it. */
+const char *tcp_parse(const char *path, tcp_address_t *address);
+
+/* Returns the part of a path behind its last slash. */
+const char *port_last_part(const char *path);
+
+/* Returns true if both paths lead to the same port, as a link and its target do. A port that does not exist is known by
+ * its path only. */
+bool port_is_same(const char *one, const char *other);
+
+/* ---- what can be set for a port ---- */
+
+typedef enum {
+    /* of a serial port */
+    KEY_BAUD,
+    KEY_PARITY, /* FATHOM_PARITY_... */
+    KEY_STOP_BITS,
+    KEY_RS485, /* 0 or 1: the kernel's driver switches the transceiver */
+    KEY_ECHO,  /* fathom_line_parts_t.echo */
+    /* of a GPIO chip: lines, by their number on it */
+    KEY_TRIGGER, /* of a serial port also, with the number of its chip in the upper 16 bits */
+    KEY_PULSE,   /* written echo= */
+    KEY_IN,
+    KEY_BIAS, /* fathom_gpio_bias_t */
+    KEY_NEAR, /* pins_near_t */
+    PORT_KEYS
+} port_key_t;
+
+typedef struct {
+    uint32_t value[PORT_KEYS]; /* 0 unless the user set this key */
+    bool has[PORT_KEYS];
+} port_keys_t;
+
+/* A port, and the line behind it. port_open() needs the path and, for a serial port, the line. */
+typedef struct {
+    const char *path;
+    fathom_line_settings_t line; /* with which it is opened: those of its slowest sensor */
+    bool has_mixed_lines;        /* its sensors have different ones */
+    size_t station_count;        /* sensors at it */
+    port_keys_t keys;            /* that stand behind it */
+    /* port_options_take() sets the rest. */
+    port_kind_t kind;
+    bool rs485;
+    uint8_t echo;
+    pin_options_t pins;
+} port_options_t;
+
+/* Sets what follows from the path and the keys. A serial port uses the defaults of the keys that it does not have. */
+void port_options_take(port_options_t *port, const port_keys_t *defaults);
+
+/* Changes the line settings of one of its sensors in the same way. */
+void port_options_line(const port_options_t *port, const port_keys_t *defaults, fathom_line_settings_t *line);
+
+/* ---- the settings of a line in words ---- */
+
+/* The rates that a port can have, and the names of FATHOM_PARITY_NONE, _EVEN and _ODD, as word_find() searches them. */
+#define PORT_BAUDS    "9600 19200 38400 57600 115200 230400"
+#define PORT_PARITIES "none even odd"
+
+/* Writes "9600 8N1". Returns text. */
+enum { LINE_TEXT = 24 };
+const char *line_text(const fathom_line_settings_t *settings, char text[LINE_TEXT]);
+
+/* Returns "none", "even" or "odd". */
+const char *parity_name(uint8_t parity);
+
+/* ---- what passes ---- */
+
+/*
+ * What passed between a line and its port in an attempt: the evidence from which a failure is explained. An attempt
+ * begins with listener_forget().
+ */
+enum { LISTENER_WINDOW = 512, LISTENER_REQUEST = 255 };
+
+typedef struct listener listener_t;
+struct listener {
+    /* Of a port at which several sensors are asked: returns the listener of the sensor whose request is about to leave,
+     * which stores what passes until the next request. NULL: the port's own listener stores all. */
+    listener_t *(*whose)(void *ctx);
+    void *ctx;
+    listener_t *now; /* the listener that stores at present; NULL: the port's own */
+
+    uint8_t window[LISTENER_WINDOW];   /* the first bytes that were received in this attempt */
+    uint16_t have;                     /* bytes in `window` */
+    uint32_t bytes;                    /* received in this attempt */
+    uint32_t slowest_us;               /* the longest time in this attempt from a request to a later byte */
+    uint8_t request[LISTENER_REQUEST]; /* the newest one */
+    uint8_t request_length;            /* 0: none was sent */
+    uint32_t asked_us;                 /* the time of the newest request */
+    uint64_t requests;                 /* since the start */
+};
+
+/* What the window holds. A frame counts if its checksum is right. */
+typedef struct {
+    uint32_t bytes;          /* received, also those that the window had no place for */
+    uint32_t echoes;         /* copies of the newest request */
+    uint32_t rest;           /* bytes of the window that are neither echo nor frame */
+    uint32_t own;            /* responses of the unit that was asked, ... */
+    uint32_t fitting;        /* ... and those of them whose length fits the request */
+    uint32_t foreign;        /* frames of other units, ... */
+    uint8_t foreign_address; /* ... and the first of these units */
+    uint32_t masters;        /* requests of another master, ... */
+    uint8_t masters_address; /* ... and the unit that the first of them asked */
+    uint32_t streamed_a16;   /* frames FF..SUM, at least two in a row, of a sensor that sends by itself */
+    uint32_t streamed_a05;
+    uint32_t slowest_us;
+} evidence_t;
+
+/* Starts an attempt: discards what was received. */
+void listener_forget(listener_t *listener);
+
+/* Stores a request, and received bytes. */
+void listener_sent(listener_t *listener, const uint8_t *request, uint8_t length, uint32_t now_us);
+void listener_received(listener_t *listener, const uint8_t *bytes, uint32_t count, uint32_t now_us);
+
+/* address: of the unit that is asked; 0: none is asked. */
+void listener_judge(const listener_t *listener, uint8_t address, evidence_t *evidence);
+
+/* ---- an open port ---- */
 
 /* An open port. A tty and a connection to a Modbus TCP server have a line and a Modbus client. */
 
@@ -52,6 +187,8 @@ typedef struct port {
     bool watches_output;        /* port_wait() also ends when the reader of the standard output goes away */
     uint8_t *gateway_exception; /* 10 or 11, since the newest request, or 0; NULL: no gateway */
     fathom_posix_uart_t serial;
+    bool counts_errors;                /* the driver counts them, ... */
+    fathom_posix_line_errors_t errors; /* ... and had counted these when they were taken */
     /* private */
     const port_driver_t *driver;
     fathom_loop_source_t *source;

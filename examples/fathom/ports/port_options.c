@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "ports/port_options.h"
+#include "ports/port.h"
 
 #include <inttypes.h>
 #include <stdio.h>

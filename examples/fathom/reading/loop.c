@@ -237,7 +237,7 @@ static void take_outcome(line_t *line, sensor_t *sensor, fathom_status_t status,
     loop_t *const loop = line->loop;
     const bool is_good = status == FATHOM_OK;
     const reader_counters_t counted =
-        counters_take(&sensor->counters, &line->counts, &line->port, sensor->reader);
+        counters_take(&sensor->counters, &line->port, sensor->reader);
     sensor->noises = counted.noises;
     if (sensor->mode->has_pulses) pulses_add(&sensor->pulses, &counted, is_good ? sample : NULL);
     if (status != FATHOM_ERR_PORT && is_early(loop, sensor, status)) return;
@@ -268,7 +268,7 @@ static void take_counters(line_t *line)
 {
     for (sensor_t *sensor = line->sensors; sensor != NULL; sensor = sensor->next)
         if (sensor->reader != NULL)
-            (void)counters_take(&sensor->counters, &line->counts, &line->port, sensor->reader);
+            (void)counters_take(&sensor->counters, &line->port, sensor->reader);
 }
 
 static void give_up(line_t *line)
@@ -328,7 +328,6 @@ static bool start_reading(line_t *line)
     }
     line->port.listener.whose = is_shared(line) ? find_listener : NULL;
     line->port.listener.ctx = line;
-    counters_begin_port(&line->counts, &line->port);
     if (line->is_lost && line->was_open) line->loop->reconnects++;
     if (line->is_lost)
         notify_port(line, NOTICE_OPEN, line->port.name,
@@ -414,7 +413,7 @@ static void lose(line_t *line)
     line->state = loop->site.reconnect && has_more ? LINE_WAITING : LINE_LEFT;
     for (sensor_t *sensor = line->sensors; sensor != NULL; sensor = sensor->next) {
         if (is_finished(loop, sensor, 0)) continue;
-        (void)counters_take(&sensor->counters, &line->counts, &line->port, sensor->reader);
+        (void)counters_take(&sensor->counters, &line->port, sensor->reader);
         fail(line, sensor, FATHOM_ERR_PORT, false, is_known);
         end_attempt(loop, sensor);
         is_known = true;
@@ -659,5 +658,5 @@ void loop_account(loop_t *loop, account_t *account)
     account->time_us = (int64_t)loop_time_us(loop);
     account->reconnects = (int64_t)loop->reconnects;
     for (const line_t *line = loop->site.lines; line != NULL; line = line->next)
-        if (line->counts.is_there) account->has_port = true;
+        if (line->port.counts_errors) account->has_port = true;
 }

@@ -9,7 +9,6 @@
 #include "fathom_loop.h"
 #include "output/record.h"
 #include "ports/port.h"
-#include "ports/port_options.h"
 #include "sensors/models.h"
 
 /* All sensors that a command reads, and the lines that they share. */
@@ -128,7 +127,6 @@ struct line {
     char *text;
     struct loop *loop;
     port_t port;
-    port_counts_t counts;
     line_state_t state;
     bool was_open;
     bool is_lost; /* the port, since it was open; or it was never there */

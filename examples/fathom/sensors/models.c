@@ -4,7 +4,7 @@
 #include <inttypes.h>
 #include <string.h>
 
-#include "ports/port_options.h"
+#include "ports/port.h"
 #include "sensors/decoding.h"
 #include "sensors/driver.h"
 

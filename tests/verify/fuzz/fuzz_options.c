@@ -7,7 +7,7 @@
 #include "commands/commands.h"
 #include "device/session.h"
 #include "output/words.h"
-#include "ports/port_options.h"
+#include "ports/port.h"
 
 /*
  * What a user writes: whole command lines, a word a line, of every command; and the parsers of numbers, places, ports,

@@ -548,13 +548,11 @@ static const option_table_t tables[] = {{rows, 0}, {port_rows, 0}, {NULL, 0}};
 /* Sends the request on the open port and reports its outcome. Returns the exit status. */
 static int ask(request_t *request, port_t *port, bool is_json)
 {
-    port_counts_t port_counts;
     counters_t counters = {0};
     decode_frame_t frame = {.meanings = 0};
     decode_piece_t piece;
-    counters_begin_port(&port_counts, port);
     send_request(request, port);
-    (void)counters_take(&counters, &port_counts, port, NULL);
+    (void)counters_take(&counters, port, NULL);
     errno = 0;
     if (request->model != NULL && request->status == FATHOM_OK && request->response_length != 0)
         decode(&frame, &piece, request, true);

@@ -12,7 +12,7 @@
 #include "output/record.h"
 #include "output/words.h"
 #include "ports/host.h"
-#include "ports/port_options.h"
+#include "ports/port.h"
 #include "sensors/models.h"
 #include "sim/fault.h"
 #include "sim/pty.h"
