@@ -150,7 +150,7 @@ bool option_reject_unknown(const option_table_t *tables, const char *what, const
 /* ---- values ---- */
 
 /* Stores a number in a member of `size` bytes; a negative one in two's complement. */
-static bool store(char *member, size_t size, int64_t number)
+static bool store(void *member, size_t size, int64_t number)
 {
     if (size == sizeof(uint8_t))
         *(uint8_t *)member = (uint8_t)number;
