@@ -238,7 +238,7 @@ TEST(a_sensor_is_away_after_three_failures_and_at_once_without_its_port)
 
 TEST(each_start_has_a_number_of_its_own)
 {
-    char boot[BOOT];
+    char boot[sizeof publisher.boot];
     (void)strcpy(boot, publisher.boot);
     assert_int_equal(strspn(boot, "0123456789abcdef"), 16);
     publisher_deinit(&publisher);

@@ -50,12 +50,11 @@ static void lose_tls(broker_t *broker)
 {
     const char *const path = broker->settings.path;
     const unsigned line = broker->settings.broker.tls_line;
-    const char *const reason = tls_reason(broker->tls_error);
-    if (reason[0] != '\0')
+    if (broker->tls_error != 0)
         lose(broker,
              "%s:%u: tls: its certificate is not accepted: %s; the broker needs another one, or ca-file: the "
              "authority that has signed it, or host: the name that it is for",
-             path, line, reason);
+             path, line, tls_reason(broker->tls_error));
     else
         lose(broker, "%s:%u: tls: no secure connection: %s", path, line,
              broker->log[0] != '\0' ? broker->log : "the broker has ended it; does this port speak TLS?");

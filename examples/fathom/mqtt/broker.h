@@ -92,7 +92,7 @@ void broker_end(broker_t *broker);
 bool tls_set(struct mosquitto *mosq, const broker_settings_t *settings, int *error, char *reason,
              size_t capacity);
 
-/* In words; "" if unknown. */
+/* What is wrong, in words. */
 const char *tls_reason(int error);
 
 #endif

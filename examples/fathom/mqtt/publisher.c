@@ -21,7 +21,7 @@ static uint64_t now_us(const publisher_t *publisher) { return publisher->host->n
 /* ---- topics ---- */
 
 /* Marks a topic as wanted, a new one if needed. */
-static topic_t *want_topic(publisher_t *publisher, topic_kind_t kind, const sensor_t *sensor, uint8_t probe)
+static topic_t *want_topic(publisher_t *publisher, topic_kind_t kind, sensor_t *sensor, uint8_t probe)
 {
     char name[TOPIC_NAME];
     topic_t **at = &publisher->topics;
@@ -40,7 +40,7 @@ static topic_t *want_topic(publisher_t *publisher, topic_kind_t kind, const sens
 /* All topics of a probe, or of a sensor (probe 0), or of the publisher (of NULL). */
 static void want_topics(publisher_t *publisher, publisher_sensor_t *of, uint8_t probe)
 {
-    const sensor_t *const sensor = of != NULL ? of->sensor : NULL;
+    sensor_t *const sensor = of != NULL ? of->sensor : NULL;
     for (topic_kind_t kind = 0; kind != TOPICS; kind++) {
         if (!topic_is_there(publisher->settings, kind, sensor, probe)) continue;
         topic_t *const topic = want_topic(publisher, kind, sensor, probe);
@@ -141,31 +141,31 @@ static const char *end_payload(publisher_t *publisher)
 /* The present state under a retained topic. */
 static const char *payload_of(publisher_t *publisher, const topic_t *topic)
 {
-    const publisher_sensor_t *const sensor =
-        topic->sensor != NULL ? &publisher->sensors[topic->sensor->number] : NULL;
+    const bool is_entity = topic_is_entity(topic->kind);
     char utc[UTC_TEXT];
     json_t json = begin_payload(publisher);
-    if (topic->kind == TOPIC_STATUS) {
-        (void)fputs(publisher->is_ending ? "offline" : "online", json.to);
-    } else if (topic->kind == TOPIC_AVAILABILITY) {
-        (void)fputs(sensor->presence == SENSOR_AVAILABLE ? "online" : "offline", json.to);
-    } else {
-        json_begin(&json, NULL, '{');
-        if (topic_is_entity(topic->kind))
-            topic_json_entity(&json, publisher->settings, topic->kind, topic->sensor, topic->probe);
-        else
-            json_string(&json, "utc", utc_text(publisher->host->utc_us(publisher->host->ctx), utc));
-        if (topic->kind == TOPIC_PUBLISHER) json_string(&json, "version", FATHOM_VERSION_STRING);
-        if (!topic_is_entity(topic->kind)) json_string(&json, "boot", publisher->boot);
-        if (topic->kind == TOPIC_COUNTERS) stats_json_of_sensor(&json, sensor->sensor);
-        if (topic->kind == TOPIC_PUBLISHER) {
-            json_value(&json, "uptime_s", "%" PRIu64, (now_us(publisher) - publisher->start_us) / 1000000);
-            json_value(&json, "sensors", "%zu", publisher->sensor_count);
-            json_value(&json, "queued", "%" PRIu32, publisher->queue.count);
-            json_value(&json, "dropped", "%" PRIu64, publisher->queue.dropped);
-        }
-        json_end(&json, '}');
+    if (topic->kind == TOPIC_STATUS || topic->kind == TOPIC_AVAILABILITY) {
+        const bool is_online = topic->kind == TOPIC_STATUS
+                                   ? !publisher->is_ending
+                                   : publisher->sensors[topic->sensor->number].presence == SENSOR_AVAILABLE;
+        (void)fputs(is_online ? "online" : "offline", json.to);
+        return end_payload(publisher);
     }
+    json_begin(&json, NULL, '{');
+    if (is_entity)
+        topic_json_entity(&json, publisher->settings, topic->kind, topic->sensor, topic->probe);
+    else
+        json_string(&json, "utc", utc_text(publisher->host->utc_us(publisher->host->ctx), utc));
+    if (topic->kind == TOPIC_PUBLISHER) json_string(&json, "version", FATHOM_VERSION_STRING);
+    if (!is_entity) json_string(&json, "boot", publisher->boot);
+    if (topic->kind == TOPIC_COUNTERS) stats_json_of_sensor(&json, topic->sensor);
+    if (topic->kind == TOPIC_PUBLISHER) {
+        json_value(&json, "uptime_s", "%" PRIu64, (now_us(publisher) - publisher->start_us) / 1000000);
+        json_value(&json, "sensors", "%zu", publisher->sensor_count);
+        json_value(&json, "queued", "%" PRIu32, publisher->queue.count);
+        json_value(&json, "dropped", "%" PRIu64, publisher->queue.dropped);
+    }
+    json_end(&json, '}');
     return end_payload(publisher);
 }
 
@@ -295,7 +295,7 @@ void publisher_init(publisher_t *publisher, const host_t *host, fathom_loop_t *l
     publisher->settings = settings;
     publisher->start_us = publisher->counted_us = start_us;
     if (getentropy(&random, sizeof random) != 0) random = start_us;
-    (void)snprintf(publisher->boot, BOOT, "%016" PRIx64, random);
+    (void)snprintf(publisher->boot, sizeof publisher->boot, "%016" PRIx64, random);
     publisher->to = open_memstream(&publisher->payload, &publisher->payload_size);
     if (publisher->to == NULL) end_without_memory();
     (void)__fsetlocking(publisher->to, FSETLOCKING_BYCALLER); /* no other thread has it */

@@ -17,13 +17,13 @@ typedef struct topic topic_t;
 struct topic {
     topic_t *next;
     topic_kind_t kind;
-    const sensor_t *sensor; /* while is_wanted; NULL: of the publisher */
-    uint8_t probe;          /* 0: of the sensor */
-    uint64_t seq;           /* of the last reading; 0: none yet */
-    uint64_t dropped;       /* messages */
-    bool is_wanted;         /* a sensor has the topic, or the publisher */
-    bool is_due;            /* the broker does not know the present state */
-    bool is_known;          /* the broker may have a retained message */
+    sensor_t *sensor; /* while is_wanted; NULL: of the publisher */
+    uint8_t probe;    /* 0: of the sensor */
+    uint64_t seq;     /* of the last reading; 0: none yet */
+    uint64_t dropped; /* messages */
+    bool is_wanted;   /* a sensor has the topic, or the publisher */
+    bool is_due;      /* the broker does not know the present state */
+    bool is_known;    /* the broker may have a retained message */
     char name[];
 };
 
@@ -57,8 +57,6 @@ typedef struct {
     presence_t presence;
 } publisher_sensor_t;
 
-enum { BOOT = 17 };
-
 typedef struct {
     const publish_settings_t *settings;
     const host_t *host;
@@ -66,7 +64,7 @@ typedef struct {
     broker_t broker;
     queue_t queue;
     topic_t *topics;             /* in the order in which they were named */
-    char boot[BOOT];             /* a random number for each start of the program, in hexadecimal digits */
+    char boot[17];               /* a random number for each start of the program, in hexadecimal digits */
     publisher_sensor_t *sensors; /* by sensor_t.number */
     size_t sensor_count;
     /* A stream in memory for payloads. It is kept, since to open one takes longer than to write a payload. */

@@ -56,4 +56,4 @@ bool tls_set(struct mosquitto *mosq, const broker_settings_t *settings, int *err
     return what == NULL;
 }
 
-const char *tls_reason(int error) { return error != X509_V_OK ? X509_verify_cert_error_string(error) : ""; }
+const char *tls_reason(int error) { return X509_verify_cert_error_string(error); }

@@ -18,7 +18,6 @@ typedef enum { OF_SITE, OF_SENSOR, OF_PROBE } scope_t;
 static const struct {
     const char *word; /* the last level of the topic, or the name of the entity */
     scope_t scope;
-    bool is_retained;
     unsigned columns; /* of a reading */
     topic_kind_t value;
     const char *component; /* NULL: this is no entity */
@@ -26,29 +25,29 @@ static const struct {
     const char *unit;
     const char *template;
 } rows[TOPICS] = {
-    [TOPIC_STATUS] = {"status", OF_SITE, true},
-    [TOPIC_PUBLISHER] = {"publisher", OF_SITE, true},
-    [TOPIC_AVAILABILITY] = {"availability", OF_SENSOR, true},
-    [TOPIC_COUNTERS] = {"counters", OF_SENSOR, true},
-    [TOPIC_STATE] = {"state", OF_PROBE, false, COLUMNS_READING | COLUMNS_DISTANCE | COLUMNS_TEMPERATURE},
-    [TOPIC_LEVEL] = {"level", OF_PROBE, false, COLUMNS_READING | COLUMNS_LEVEL},
-    [TOPIC_ALARM] = {"alarm", OF_PROBE, true, COLUMNS_ALARM | COLUMNS_DISTANCE},
-    [ENTITY_DISTANCE] = {"distance", OF_PROBE, true, 0, TOPIC_STATE, "sensor", "distance", "mm",
+    [TOPIC_STATUS] = {.word = "status", .scope = OF_SITE},
+    [TOPIC_PUBLISHER] = {.word = "publisher", .scope = OF_SITE},
+    [TOPIC_AVAILABILITY] = {.word = "availability", .scope = OF_SENSOR},
+    [TOPIC_COUNTERS] = {.word = "counters", .scope = OF_SENSOR},
+    [TOPIC_STATE] = {"state", OF_PROBE, .columns = COLUMNS_READING | COLUMNS_DISTANCE | COLUMNS_TEMPERATURE},
+    [TOPIC_LEVEL] = {"level", OF_PROBE, .columns = COLUMNS_READING | COLUMNS_LEVEL},
+    [TOPIC_ALARM] = {"alarm", OF_PROBE, .columns = COLUMNS_ALARM | COLUMNS_DISTANCE},
+    [ENTITY_DISTANCE] = {"distance", OF_PROBE, 0, TOPIC_STATE, "sensor", "distance", "mm",
                          "{{ value_json.distance_mm }}"},
-    [ENTITY_TEMPERATURE] = {"temperature", OF_PROBE, true, 0, TOPIC_STATE, "sensor", "temperature", DEGREES,
+    [ENTITY_TEMPERATURE] = {"temperature", OF_PROBE, 0, TOPIC_STATE, "sensor", "temperature", DEGREES,
                             "{{ value_json.temperature_degc }}"},
-    [ENTITY_LEVEL] = {"level", OF_PROBE, true, 0, TOPIC_LEVEL, "sensor", "distance", "mm",
+    [ENTITY_LEVEL] = {"level", OF_PROBE, 0, TOPIC_LEVEL, "sensor", "distance", "mm",
                       "{{ value_json.level_mm }}"},
     [ENTITY_FILLED] =
-        {"filled", OF_PROBE, true, 0, TOPIC_LEVEL, "sensor", NULL, "%",
+        {"filled", OF_PROBE, 0, TOPIC_LEVEL, "sensor", NULL, "%",
          "{{ value_json.level_per_mille / 10 if value_json.level_per_mille is number else 'None' }}"},
-    [ENTITY_ALARM] = {"alarm", OF_PROBE, true, 0, TOPIC_ALARM, "binary_sensor", "problem", NULL,
+    [ENTITY_ALARM] = {"alarm", OF_PROBE, 0, TOPIC_ALARM, "binary_sensor", "problem", NULL,
                       "{{ 'ON' if value_json.is_on else 'OFF' }}"},
 };
 
 bool topic_is_entity(topic_kind_t kind) { return rows[kind].component != NULL; }
 
-bool topic_is_retained(topic_kind_t kind) { return rows[kind].is_retained; }
+bool topic_is_retained(topic_kind_t kind) { return (rows[kind].columns & COLUMNS_READING) == 0; }
 
 bool topic_has_probes(const sensor_t *sensor)
 {

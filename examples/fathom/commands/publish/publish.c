@@ -89,8 +89,8 @@ static uint32_t report_status(uint64_t now_us)
     const bool is_watched = publish.watchdog_us != 0;
     const uint32_t period_us =
         is_watched && publish.watchdog_us < STATUS_US ? publish.watchdog_us : STATUS_US;
-    char status[STATUS_TEXT];
     if (publish.reported_us == 0 || now_us - publish.reported_us >= period_us) {
+        char status[STATUS_TEXT];
         publish.reported_us = now_us;
         publisher_status(&publish.publisher, status, sizeof status);
         if (is_watched || strcmp(status, publish.status) != 0)
