@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): putc_unlocked */
+#define _GNU_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): fputs_unlocked */
 #include "output/record.h"
 
 #include <inttypes.h>
@@ -33,8 +33,9 @@ static void put_key(json_t *json, const char *key)
     if (json->has_member) (void)putc_unlocked(',', json->to);
     json->has_member = true;
     if (key == NULL) return;
-    put_string(json->to, key);
-    (void)putc_unlocked(':', json->to);
+    (void)putc_unlocked('"', json->to);
+    (void)fputs_unlocked(key, json->to); /* keys need no escapes */
+    (void)fputs_unlocked("\":", json->to);
 }
 
 void json_begin(json_t *json, const char *key, char bracket)
@@ -113,7 +114,7 @@ void record_json(json_t *json, const field_t *fields, const void *record, unsign
             json_string(json, fields->key, value);
         } else {
             put_key(json, fields->key);
-            (void)fputs(value != NULL ? value : "null", json->to);
+            (void)fputs_unlocked(value != NULL ? value : "null", json->to);
         }
     }
 }

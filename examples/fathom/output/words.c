@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): gmtime_r */
+#define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): gmtime_r, stpcpy */
 #include "output/words.h"
 
 #include <inttypes.h>
@@ -103,12 +103,15 @@ const char *utc_text(uint64_t utc_us, char text[UTC_TEXT])
 {
     static char whole[24];
     static time_t whole_s = -1;
+    char fraction[DECIMAL_TEXT]; /* seven digits, of which the first becomes the point */
     const time_t seconds = (time_t)(utc_us / 1000000u);
     struct tm parts;
     if (seconds != whole_s && gmtime_r(&seconds, &parts) != NULL)
         (void)strftime(whole, sizeof whole, "%Y-%m-%dT%H:%M:%S", &parts);
     whole_s = seconds;
-    (void)snprintf(text, UTC_TEXT, "%s.%06uZ", whole, (unsigned)(utc_us % 1000000u));
+    decimal_text(fraction, (int64_t)(1000000u + utc_us % 1000000u), 0);
+    fraction[0] = '.';
+    (void)stpcpy(stpcpy(stpcpy(text, whole), fraction), "Z");
     return text;
 }
 
