@@ -172,7 +172,7 @@ enum { WHY = 200 };
 /* Reads a batch. If it is not usable, `why` is the reason. Returns false after printing why a sample cannot be read. */
 static bool read_batch(const calibrate_settings_t *settings, batch_t *batch, char why[WHY])
 {
-    int distances[MOST_SAMPLES];
+    int distances[MOST_SAMPLES] = {0};
     const size_t count = settings->samples;
     batch->is_usable = false;
     for (size_t i = 0; i != count; i++) {

@@ -169,8 +169,8 @@ static int draw_lanes(int end)
             draw_plot(lane, row + 1, height - 1, GUTTER);
         row += height;
     }
-    if (count > drawn && picture.columns > 24)
-        (void)put_text(0, picture.columns - 18, LOSS, "%4d more: enlarge", count - drawn);
+    if (count > space && picture.columns > 24)
+        (void)put_text(0, picture.columns - 18, LOSS, "%4d more: enlarge", count - space);
     return count >= space ? narrow : GUTTER;
 }
 
