@@ -188,8 +188,10 @@ bool session_fail(session_t *session, fathom_status_t status, const char *format
     va_start(arguments, format);
     (void)vfprintf(stderr, format, arguments);
     va_end(arguments);
-    if (status != FATHOM_OK) (void)fputs(": ", stderr);
-    if (status != FATHOM_OK) session_explain(session, status);
+    if (status != FATHOM_OK) {
+        (void)fputs(": ", stderr);
+        session_explain(session, status);
+    }
     (void)fputs("\n", stderr);
     return false;
 }
