@@ -18,7 +18,7 @@ typedef struct {
     publish_settings_t settings;
     char credential[SETTINGS_NAME]; /* of systemd; "": none */
     reader_settings_t reader;       /* of sensors without their own */
-    const yaml_node_t *lines;       /* a list */
+    const void *lines;              /* a node: a list */
 } top_t;
 
 static bool is_topic(const char *text, void *member)
@@ -119,7 +119,7 @@ static const option_table_t top_tables[] = {{top_keys, 0},
 typedef struct {
     const char *port;
     port_keys_t keys;
-    const yaml_node_t *sensors; /* a list */
+    const void *sensors; /* a node: a list */
 } line_keys_t;
 
 /* Without the keys of its port. */
@@ -335,7 +335,8 @@ static bool read_value(config_t *config, const option_t *row, const yaml_node_t 
     const bool is_map = node->type == YAML_MAPPING_NODE;
     char *const text = text_of(node);
     if (row->kind == KIND_NODE && node->type == YAML_SEQUENCE_NODE) {
-        memcpy(structure + row->at, &node, sizeof node);
+        const void *const list = node;
+        memcpy(structure + row->at, &list, sizeof list);
         return true;
     }
     if (is_map && (row->kind == KIND_MAP || row->kind == KIND_KEYS)) {

@@ -71,11 +71,11 @@ static void label_of(const option_t *row, char *label, size_t capacity)
 static void print_option(FILE *to, const option_t *row, bool is_man)
 {
     const char letter = option_letter(row->name);
-    char before[] = "    ";
     char label[80];
     char line[LINE];
     label_of(row, label, sizeof label);
     if (!is_man) {
+        char before[] = "    ";
         if (letter != '\0') (void)snprintf(before, sizeof before, "-%c, ", letter);
         (void)snprintf(line, sizeof line, "  %s%-16s  %s", before, label, row->help);
         print_line(to, line, strlen(line), false);
