@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-#define _GNU_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): getline */
+#define _GNU_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): asprintf, getline, fsync, lstat */
 #include <errno.h>
+#include <fcntl.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "device/session.h"
 #include "fathom/version.h"
@@ -270,16 +273,15 @@ static int parse_line(parser_t *parser, char *line)
     return wrong(parser, "'%s' is no setting that 'fathom save' prints for an %s", name, model->name);
 }
 
+/* Returns a status; with STATUS_FAILED, errno has the reason. */
 static int parse(parser_t *parser, FILE *from)
 {
     enum { LINE = 250 };
     char *line = NULL;
     size_t capacity = 0;
+    ssize_t length;
     int status = STATUS_OK;
-    errno = 0;
-    while (status == STATUS_OK) {
-        ssize_t length = getline(&line, &capacity, from);
-        if (length < 0) break;
+    while (status == STATUS_OK && (length = getline(&line, &capacity, from)) >= 0) {
         parser->line++;
         if (line[length - 1] == '\n') line[--length] = '\0';
         if (length > LINE)
@@ -289,17 +291,8 @@ static int parse(parser_t *parser, FILE *from)
         else
             status = parse_line(parser, line);
     }
-    const int error = errno;
     free(line);
-    if (status != STATUS_OK) return status;
-    parser->line = 0;
-    if (feof(from) == 0) {
-        (void)wrong(parser, "%s", strerror(error));
-        return STATUS_FAILED;
-    }
-    if (parser->has_sensor) return STATUS_OK;
-    return wrong(parser, "the line 'sensor = %s' is missing. Is this a file of 'fathom save'?",
-                 parser->file->model->name);
+    return status == STATUS_OK && feof(from) == 0 ? STATUS_FAILED : status;
 }
 
 int backup_parse(const char *path, const model_t *model, bool moves, values_t *file)
@@ -307,11 +300,82 @@ int backup_parse(const char *path, const model_t *model, bool moves, values_t *f
     parser_t parser = {.path = path, .file = file, .moves = moves};
     values_begin(file, model, is_kept);
     FILE *const from = fopen(path, "r");
-    if (from == NULL) {
+    int status = from != NULL ? parse(&parser, from) : STATUS_FAILED;
+    if (status != STATUS_USAGE) parser.line = 0;
+    if (status == STATUS_FAILED)
         (void)wrong(&parser, "%s", strerror(errno));
-        return STATUS_FAILED;
-    }
-    const int status = parse(&parser, from);
-    (void)fclose(from);
+    else if (status == STATUS_OK && !parser.has_sensor)
+        status = wrong(&parser, "the line 'sensor = %s' is missing. Is this a file of 'fathom save'?",
+                       model->name);
+    if (from != NULL) (void)fclose(from);
     return status;
+}
+
+/* ---- a file that is complete or not there ---- */
+
+static bool fail_file(const char *path, int error)
+{
+    if (error == EEXIST)
+        (void)fprintf(
+            stderr, "fathom: %s exists and is not overwritten. Use another name, or move the file.\n", path);
+    else
+        (void)fprintf(stderr, "fathom: cannot write %s: %s\n", path, strerror(error));
+    return false;
+}
+
+bool file_is_free(const char *path)
+{
+    struct stat is;
+    return lstat(path, &is) != 0 || fail_file(path, EEXIST);
+}
+
+/* Writes a new file to the disk. Returns 0, or errno. */
+static int write_new(const char *path, file_print_t print, const void *ctx)
+{
+    FILE *const file = fopen(path, "wx");
+    if (file == NULL) return errno;
+    errno = 0;
+    print(file, ctx);
+    const bool is_good = ferror(file) == 0 && fflush(file) == 0 && fsync(fileno(file)) == 0;
+    const int error = is_good ? 0 : errno != 0 ? errno : EIO;
+    return fclose(file) == 0 || error != 0 ? error : errno;
+}
+
+/* Creates the name, which only one program can, before the file is renamed to it. Needs no hard links, which a USB stick
+ * does not have. Returns 0, or errno. */
+static int set_name(const char *from, const char *to, bool replaces)
+{
+    FILE *const file = replaces ? NULL : fopen(to, "wx");
+    if (file == NULL && !replaces) return errno;
+    if (file != NULL) (void)fclose(file);
+    if (rename(from, to) == 0) return 0;
+    const int error = errno;
+    if (!replaces) (void)unlink(to);
+    return error;
+}
+
+/* The new name is on the disk only when its folder is. Not every file system supports this. */
+static void sync_folder(const char *path)
+{
+    const char *const slash = strrchr(path, '/');
+    char *const folder = slash != NULL ? strndup(path, (size_t)(slash - path) + 1) : strdup(".");
+    const int fd = folder != NULL ? open(folder, O_RDONLY) : -1;
+    free(folder);
+    if (fd < 0) return;
+    (void)fsync(fd);
+    (void)close(fd);
+}
+
+bool file_write(const char *path, bool replaces, file_print_t print, const void *ctx)
+{
+    char *fresh = NULL;
+    if (asprintf(&fresh, "%s.%ld.part", path, (long)getpid()) < 0) return fail_file(path, ENOMEM);
+    int error = write_new(fresh, print, ctx);
+    if (error == 0) error = set_name(fresh, path, replaces);
+    if (error == 0)
+        sync_folder(path);
+    else
+        (void)unlink(fresh);
+    free(fresh);
+    return error == 0 || fail_file(path, error);
 }

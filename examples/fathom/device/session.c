@@ -4,6 +4,63 @@
 
 #include "device/session.h"
 
+/* ---- messages ---- */
+
+void session_begin_task(session_t *session, const char *doing) { session->doing = doing; }
+
+void session_end_task(session_t *session)
+{
+    progress_clear(&session->progress);
+    session->doing = NULL;
+}
+
+const char *session_line_text(const session_t *session, char text[LINE_TEXT])
+{
+    return session->port.kind == PORT_GATEWAY ? "Modbus TCP" : line_text(&session->sensor->line, text);
+}
+
+/* Prints why the last call failed and what to try. */
+static void explain(session_t *session, fathom_status_t status)
+{
+    sensor_t *const sensor = session->sensor;
+    failure_t failure = {.status = status,
+                         .model = sensor->model,
+                         .mode = sensor->mode,
+                         .reader = sensor->reader,
+                         .port = &session->port,
+                         .counters = &sensor->counters,
+                         .line = &sensor->line,
+                         .address = sensor->address,
+                         .is_setting = true};
+    (void)counters_take(&sensor->counters, &session->port, sensor->reader);
+    listener_judge(&session->port.listener, sensor->address, &failure.evidence);
+    advice_print(stderr, &failure);
+}
+
+bool session_flush(void)
+{
+    if (fflush(stdout) == 0 && ferror(stdout) == 0) return true;
+    (void)fputs("fathom: cannot write the output.\n", stderr);
+    return false;
+}
+
+bool session_fail(session_t *session, fathom_status_t status, const char *format, ...)
+{
+    va_list arguments;
+    session_end_task(session);
+    (void)fflush(stdout);
+    (void)fprintf(stderr, "fathom: %s: ", session->sensor->name);
+    va_start(arguments, format);
+    (void)vfprintf(stderr, format, arguments);
+    va_end(arguments);
+    if (status != FATHOM_OK) {
+        (void)fputs(": ", stderr);
+        explain(session, status);
+    }
+    (void)fputs("\n", stderr);
+    return false;
+}
+
 /* ---- opening and closing ---- */
 
 /* Starts the driver of the sensor. */
@@ -14,10 +71,8 @@ static bool start(session_t *session)
     settings.line = &sensor->line;
     settings.backoff_us = READER_BACKOFF_US;
     settings.address = sensor->address;
-    if (!reader_open(&sensor->reader, sensor->mode, &session->port, &settings)) {
-        (void)fprintf(stderr, "fathom: %s: %s\n", sensor->name, reader_refusal(sensor->reader));
-        return false;
-    }
+    if (!reader_open(&sensor->reader, sensor->mode, &session->port, &settings))
+        return session_fail(session, FATHOM_OK, "%s", reader_refusal(sensor->reader));
     if (session->port.kind == PORT_SERIAL) reader_listen_unasked(sensor->reader);
     return true;
 }
@@ -60,14 +115,6 @@ void session_close(session_t *session)
 }
 
 /* ---- calls ---- */
-
-void session_begin_task(session_t *session, const char *doing) { session->doing = doing; }
-
-void session_end_task(session_t *session)
-{
-    progress_clear(&session->progress);
-    session->doing = NULL;
-}
 
 fathom_status_t session_call(session_t *session, session_call_t call, void *ctx)
 {
@@ -137,8 +184,6 @@ fathom_status_t session_set(session_t *session, const setting_t *setting, int32_
     return call_again(session, (operand_t){session->sensor->model, setting, .value = value});
 }
 
-/* ---- messages ---- */
-
 static fathom_status_t call_measure(reader_t *reader, void *ctx)
 {
     fathom_sample_t *const sample = ctx;
@@ -148,52 +193,6 @@ static fathom_status_t call_measure(reader_t *reader, void *ctx)
 fathom_status_t session_measure(session_t *session, fathom_sample_t *sample)
 {
     return session_call(session, call_measure, sample);
-}
-
-const char *session_line_text(const session_t *session, char text[LINE_TEXT])
-{
-    return session->port.kind == PORT_GATEWAY ? "Modbus TCP" : line_text(&session->sensor->line, text);
-}
-
-void session_explain(session_t *session, fathom_status_t status)
-{
-    sensor_t *const sensor = session->sensor;
-    failure_t failure = {.status = status,
-                         .model = sensor->model,
-                         .mode = sensor->mode,
-                         .reader = sensor->reader,
-                         .port = &session->port,
-                         .counters = &sensor->counters,
-                         .line = &sensor->line,
-                         .address = sensor->address,
-                         .is_setting = true};
-    (void)counters_take(&sensor->counters, &session->port, sensor->reader);
-    listener_judge(&session->port.listener, sensor->address, &failure.evidence);
-    advice_print(stderr, &failure);
-}
-
-bool session_flush(void)
-{
-    if (fflush(stdout) == 0 && ferror(stdout) == 0) return true;
-    (void)fputs("fathom: cannot write the output.\n", stderr);
-    return false;
-}
-
-bool session_fail(session_t *session, fathom_status_t status, const char *format, ...)
-{
-    va_list arguments;
-    session_end_task(session);
-    (void)fflush(stdout);
-    (void)fprintf(stderr, "fathom: %s: ", session->sensor->name);
-    va_start(arguments, format);
-    (void)vfprintf(stderr, format, arguments);
-    va_end(arguments);
-    if (status != FATHOM_OK) {
-        (void)fputs(": ", stderr);
-        session_explain(session, status);
-    }
-    (void)fputs("\n", stderr);
-    return false;
 }
 
 /* ---- which sensor responds at an address ---- */
@@ -271,5 +270,5 @@ void presence_explain(session_t *session, const presence_t *presence)
     if (presence->is_two)
         (void)fprintf(stderr, "two sensors respond at address %u", session->sensor->address);
     else
-        session_explain(session, presence->status);
+        explain(session, presence->status);
 }

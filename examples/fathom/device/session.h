@@ -43,14 +43,11 @@ void session_end_task(session_t *session);
 fathom_status_t session_get(session_t *session, const setting_t *setting, char text[SETTING_TEXT]);
 fathom_status_t session_set(session_t *session, const setting_t *setting, int32_t value);
 
-/* Measures once: a sample of a probe. */
+/* Returns a sample of a probe. */
 fathom_status_t session_measure(session_t *session, fathom_sample_t *sample);
 
 /* The line settings of the sensor, "9600 8N1". Behind a gateway "Modbus TCP". */
 const char *session_line_text(const session_t *session, char text[LINE_TEXT]);
-
-/* Prints why the last call failed and what to try, without a line feed. */
-void session_explain(session_t *session, fathom_status_t status);
 
 /* Returns true if all that was printed on stdout is written. Otherwise prints that it is not. */
 bool session_flush(void);
@@ -201,7 +198,7 @@ void backup_print(FILE *to, const values_t *unit, const char *place, const char 
  * STATUS_FAILED if the file cannot be read, or STATUS_USAGE if a line is wrong. */
 int backup_parse(const char *path, const model_t *model, bool moves, values_t *file);
 
-/* ---- a file that is complete or not there (file.c) ---- */
+/* ---- a file that is complete or not there (backup.c) ---- */
 
 /* Returns true if no file has this name. Returns false after printing that one has it. */
 bool file_is_free(const char *path);
