@@ -98,39 +98,43 @@ static bool read_usb(usb_t *usb, const char *tty)
 
 /* ---- twins ---- */
 
-static usb_t *present; /* the adapters that are plugged in */
-static size_t present_count;
-static char **shared; /* identities that two adapters had at the same time */
-static size_t shared_count;
+typedef struct {
+    usb_t *all;
+    size_t count;
+} list_t;
+
+static list_t present;        /* the adapters that are plugged in */
+static list_t shared;         /* those whose identity another one had at the same time */
 static unsigned unknown_ttys; /* that have appeared, and about which nothing is known; one may be a twin */
 
-static void *grown(void *array, size_t count, size_t size)
+static void append(list_t *list, const usb_t *usb)
 {
-    void *const larger = realloc(array, (count + 1) * size);
-    if (larger != NULL) return larger;
-    (void)fputs("fathom: no memory is left.\n", stderr);
-    exit(EXIT_FAILURE); /* NOLINT(concurrency-mt-unsafe): one thread */
+    usb_t *const all = realloc(list->all, (list->count + 1) * sizeof *all);
+    if (all == NULL) {
+        (void)fputs("fathom: no memory is left.\n", stderr);
+        exit(EXIT_FAILURE); /* NOLINT(concurrency-mt-unsafe): one thread */
+    }
+    list->all = all;
+    list->all[list->count++] = *usb;
+}
+
+static bool is_twin(const usb_t *usb, const usb_t *other)
+{
+    return strcmp(usb->identity, other->identity) == 0 && strcmp(usb->socket, other->socket) != 0;
 }
 
 static bool is_shared(const usb_t *usb)
 {
-    for (size_t i = 0; i != shared_count; i++)
-        if (strcmp(shared[i], usb->identity) == 0) return true;
+    for (size_t i = 0; i != shared.count; i++)
+        if (strcmp(shared.all[i].identity, usb->identity) == 0) return true;
     return false;
 }
 
 static void add_present(const usb_t *usb)
 {
-    for (size_t i = 0; i != present_count; i++) {
-        const usb_t *const other = &present[i];
-        if (strcmp(other->identity, usb->identity) != 0 || strcmp(other->socket, usb->socket) == 0) continue;
-        if (is_shared(usb)) break;
-        shared = grown(shared, shared_count, sizeof *shared);
-        shared[shared_count] = grown(NULL, strlen(usb->identity), 1);
-        (void)strcpy(shared[shared_count++], usb->identity);
-    }
-    present = grown(present, present_count, sizeof *present);
-    present[present_count++] = *usb;
+    for (size_t i = 0; i != present.count; i++)
+        if (is_twin(&present.all[i], usb) && !is_shared(usb)) append(&shared, usb);
+    append(&present, usb);
 }
 
 static void list_present(void)
@@ -139,7 +143,7 @@ static void list_present(void)
     (void)snprintf(folder, sizeof folder, "%s/class/tty", adapter_sysfs);
     DIR *const ttys = opendir(folder);
     const struct dirent *entry = NULL;
-    present_count = 0;
+    present.count = 0;
     while (ttys != NULL && (entry = readdir(ttys)) != NULL) { /* NOLINT(concurrency-mt-unsafe): one thread */
         usb_t usb;
         if (read_usb(&usb, entry->d_name)) add_present(&usb);
@@ -152,9 +156,10 @@ int adapter_fd(void)
     static int fd = -1;
     if (fd >= 0) return fd;
     fd = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
-    if (fd < 0 || inotify_add_watch(fd, adapter_dev, IN_CREATE) >= 0) return fd;
-    (void)close(fd);
-    fd = -1;
+    if (fd >= 0 && inotify_add_watch(fd, adapter_dev, IN_CREATE) < 0) {
+        (void)close(fd);
+        fd = -1;
+    }
     return fd;
 }
 
@@ -247,11 +252,11 @@ static const char *find_again(adapter_t *adapter)
     adapter_look();
     const char *const doubt = adapter_doubt(adapter);
     if (doubt != NULL) return doubt;
-    for (size_t i = 0; i != present_count; i++) {
-        if (strcmp(present[i].identity, known->identity) != 0) continue;
-        const bool is_in_socket = strcmp(present[i].socket, known->socket) == 0;
-        if (is_in_socket || advice_for(adapter) == NULL) adapter->found = present[i];
-        if (is_in_socket) break;
+    for (size_t i = 0; i != present.count; i++) {
+        const usb_t *const usb = &present.all[i];
+        if (strcmp(usb->identity, known->identity) != 0) continue;
+        if (!is_twin(usb, known) || advice_for(adapter) == NULL) adapter->found = *usb;
+        if (!is_twin(usb, known)) break;
     }
     return adapter->found.tty[0] != '\0' ? NULL : "";
 }
@@ -273,10 +278,9 @@ bool adapter_open(adapter_t *adapter)
     if (adapter->found.tty[0] == '\0') return true;
     adapter_look();
     if (!read_usb(&now, adapter->found.tty) || strcmp(now.identity, adapter->found.identity) != 0 ||
-        strcmp(now.socket, adapter->found.socket) != 0)
+        is_twin(&now, &adapter->found))
         return false;
-    if (adapter->known.tty[0] != '\0' && strcmp(adapter->known.socket, now.socket) != 0)
-        adapter->is_moved = true;
+    if (is_twin(&now, &adapter->known)) adapter->is_moved = true;
     adapter->known = now;
     adapter->unknown_ttys = unknown_ttys;
     adapter->advice = NULL;

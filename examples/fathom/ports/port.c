@@ -7,6 +7,125 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+
+#include "output/words.h"
+
+/* ---- paths ---- */
+
+static const char tcp_prefix[] = "tcp:";
+
+const char *port_last_part(const char *path)
+{
+    const char *const slash = strrchr(path, '/');
+    return slash != NULL ? slash + 1 : path;
+}
+
+port_kind_t port_kind(const char *path)
+{
+    if (strncmp(path, tcp_prefix, strlen(tcp_prefix)) == 0) return PORT_GATEWAY;
+    return strncmp(port_last_part(path), "gpiochip", strlen("gpiochip")) == 0 ? PORT_PINS : PORT_SERIAL;
+}
+
+bool port_is_same(const char *one, const char *other)
+{
+    struct stat first;
+    struct stat second;
+    if (strcmp(one, other) == 0) return true;
+    return stat(one, &first) == 0 && stat(other, &second) == 0 && first.st_dev == second.st_dev &&
+           first.st_ino == second.st_ino;
+}
+
+const char *tcp_parse(const char *path, tcp_address_t *address)
+{
+    const char *const usual_port = "502"; /* MODBUS Messaging on TCP/IP V1.0b, 4.2.1 */
+    const char *host = path + strlen(tcp_prefix);
+    const char *const colon = strchr(host, ':');
+    const char *end = colon != NULL ? colon : host + strlen(host);
+    const char *service = end;
+    uint32_t number = 0;
+    if (*host == '[') {
+        end = strchr(++host, ']');
+        if (end == NULL) return "the bracket behind the IPv6 address is missing";
+        service = end + 1;
+    } else if (colon != NULL && strchr(colon + 1, ':') != NULL) {
+        return "an IPv6 address stands in brackets, such as in tcp:[fd00::20]:502";
+    }
+    if (end == host) return "the host is missing, such as in tcp:192.168.1.20";
+    if ((size_t)(end - host) >= sizeof address->host) return "the host's name is too long";
+    (void)snprintf(address->host, sizeof address->host, "%.*s", (int)(end - host), host);
+    if (*service == '\0')
+        service = usual_port;
+    else if (*service++ != ':' || !number_parse(service, 1, UINT16_MAX, &number) ||
+             strlen(service) >= sizeof address->service)
+        return "the port is a number from 1 to 65535, such as in tcp:192.168.1.20:502";
+    (void)strcpy(address->service, service);
+    return NULL;
+}
+
+/* ---- keys ---- */
+
+/* Leaves *value unchanged if neither has the key. */
+static bool get(const port_keys_t *keys, const port_keys_t *defaults, port_key_t key, uint32_t *value)
+{
+    const port_keys_t *const from = keys->has[key] ? keys : defaults;
+    if (from->has[key]) *value = from->value[key];
+    return from->has[key];
+}
+
+static int32_t pin(const port_keys_t *keys, port_key_t key)
+{
+    return keys->has[key] ? (int32_t)(keys->value[key] & UINT16_MAX) : -1;
+}
+
+void port_options_take(port_options_t *port, const port_keys_t *defaults)
+{
+    const port_keys_t *const keys = &port->keys;
+    uint32_t rs485 = 0;
+    uint32_t echo = 0;
+    port->kind = port_kind(port->path);
+    if (port->kind != PORT_SERIAL) defaults = keys;
+    (void)get(keys, defaults, KEY_RS485, &rs485);
+    (void)get(keys, defaults, KEY_ECHO, &echo);
+    port->rs485 = rs485 != 0;
+    port->echo = (uint8_t)echo;
+    port->pins = (pin_options_t){.trigger = pin(keys, KEY_TRIGGER),
+                                 .chip = keys->has[KEY_TRIGGER] ? (keys->value[KEY_TRIGGER] >> 16) + 1 : 0,
+                                 .echo = pin(keys, KEY_PULSE),
+                                 .in = pin(keys, KEY_IN),
+                                 .bias = (uint8_t)keys->value[KEY_BIAS],
+                                 .near = (uint8_t)keys->value[KEY_NEAR]};
+}
+
+void port_options_line(const port_options_t *port, const port_keys_t *defaults, fathom_line_settings_t *line)
+{
+    uint32_t value = 0;
+    if (get(&port->keys, defaults, KEY_BAUD, &value)) line->baud = value;
+    if (get(&port->keys, defaults, KEY_STOP_BITS, &value)) {
+        line->stop_bits = (uint8_t)value;
+        /* Two of them take the place of the parity bit: a character has 11 bits either way (HPS-167S 2.2.2). */
+        if (value == 2) line->parity = FATHOM_PARITY_NONE;
+    }
+    if (get(&port->keys, defaults, KEY_PARITY, &value)) line->parity = (uint8_t)value;
+}
+
+/* ---- the settings of a line in words ---- */
+
+const char *parity_name(uint8_t parity)
+{
+    static const char *const names[] = {
+        [FATHOM_PARITY_NONE] = "none", [FATHOM_PARITY_EVEN] = "even", [FATHOM_PARITY_ODD] = "odd"};
+    return names[parity];
+}
+
+const char *line_text(const fathom_line_settings_t *settings, char text[LINE_TEXT])
+{
+    (void)snprintf(text, LINE_TEXT, "%" PRIu32 " 8%c%u", settings->baud, "NEO"[settings->parity],
+                   settings -> stop_bits);
+    return text;
+}
+
+/* ---- errors ---- */
 
 /* A user who set FATHOM_PORT long ago needs to know why it is this port. */
 fathom_status_t port_fail(port_t *port, port_error_t error, const char *format, ...)
@@ -24,15 +143,17 @@ fathom_status_t port_fail(port_t *port, port_error_t error, const char *format, 
     return FATHOM_ERR_PORT;
 }
 
+static fathom_status_t fail_by(port_t *port, bool is_lost, bool is_absent, const char *text)
+{
+    return port_fail(port, is_lost ? PORT_LOST : is_absent ? PORT_ABSENT : PORT_FAILED, "%s", text);
+}
+
 /* ---- lines of a GPIO chip ---- */
 
 static fathom_status_t fail_pins(port_t *port, const fathom_gpio_t *line)
 {
-    return port_fail(port,
-                     line->error == FATHOM_GPIO_ERR_LOST        ? PORT_LOST
-                     : line->error == FATHOM_GPIO_ERR_NOT_FOUND ? PORT_ABSENT
-                                                                : PORT_FAILED,
-                     "%s", line->text);
+    return fail_by(port, line->error == FATHOM_GPIO_ERR_LOST, line->error == FATHOM_GPIO_ERR_NOT_FOUND,
+                   line->text);
 }
 
 static fathom_status_t open_pins(port_t *port, const char *chip)
@@ -60,28 +181,13 @@ static fathom_status_t poll_pins(port_t *port)
 
 static void close_pins(port_t *port) { port->host->close_pins(port->host->ctx, &port->pins); }
 
-static const port_driver_t driver_of_pins = {open_chip, poll_pins, close_pins, NULL};
-
 /* ---- a tty ---- */
 
 static fathom_status_t fail_serial(port_t *port)
 {
     const fathom_posix_status_t error = fathom_posix_error(&port->serial);
-    return port_fail(port,
-                     error == FATHOM_POSIX_ERR_LOST        ? PORT_LOST
-                     : error == FATHOM_POSIX_ERR_NOT_FOUND ? PORT_ABSENT
-                                                           : PORT_FAILED,
-                     "%s", fathom_posix_error_text(&port->serial));
-}
-
-static bool is_serial_lost(const port_t *port)
-{
-    return fathom_posix_error(&port->serial) == FATHOM_POSIX_ERR_LOST;
-}
-
-static void lose_serial(port_t *port)
-{
-    if (is_serial_lost(port)) (void)fail_serial(port);
+    return fail_by(port, error == FATHOM_POSIX_ERR_LOST, error == FATHOM_POSIX_ERR_NOT_FOUND,
+                   fathom_posix_error_text(&port->serial));
 }
 
 static bool has_trigger(const port_t *port) { return port->options.pins.chip != 0; }
@@ -134,11 +240,9 @@ static fathom_status_t poll_serial(port_t *port)
 {
     const char *const doubt = adapter_doubt(&port->adapter);
     if (doubt != NULL) return port_fail(port, PORT_LOST, "%s: %s", port->name, doubt);
-    if (is_serial_lost(port)) return fail_serial(port);
+    if (fathom_posix_error(&port->serial) == FATHOM_POSIX_ERR_LOST) return fail_serial(port);
     return has_trigger(port) ? poll_pins(port) : FATHOM_OK;
 }
-
-static const port_driver_t driver_of_serial = {open_serial, poll_serial, close_serial, lose_serial};
 
 /* ---- the listener, between the line and the driver ---- */
 
@@ -147,7 +251,7 @@ static int listen_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *
     port_t *const port = ctx;
     listener_t *const listener = port->listener.now != NULL ? port->listener.now : &port->listener;
     const int n = port->inner.read(port->inner.ctx, bytes, capacity, rx);
-    if (n < 0) port->driver->fail(port);
+    if (n < 0) (void)port->driver->poll(port);
     if (n > 0) listener_received(listener, bytes, (uint32_t)n, port->clock.now_us(port));
     return n;
 }
@@ -158,7 +262,7 @@ static int listen_write(void *ctx, const uint8_t *bytes, size_t length)
     listener_t *const own = &port->listener;
     const uint32_t asked_us = port->clock.now_us(port); /* a response may be there before the write returns */
     const int n = port->inner.write(port->inner.ctx, bytes, length);
-    if (n < 0) port->driver->fail(port);
+    if (n < 0) (void)port->driver->poll(port);
     if (n <= 0 || length > LISTENER_REQUEST) return n;
     if (port->gateway_exception != NULL) *port->gateway_exception = 0;
     if (own->whose != NULL) own->now = own->whose(own->ctx);
@@ -246,8 +350,10 @@ static fathom_status_t note_opening(port_t *port, fathom_status_t status)
 fathom_status_t port_open(port_t *port, const host_t *host, const port_options_t *options,
                           fathom_loop_source_t *source)
 {
+    static const port_driver_t serial = {open_serial, poll_serial, close_serial};
+    static const port_driver_t chip = {open_chip, poll_pins, close_pins};
     static const port_driver_t *const drivers[] = {
-        [PORT_SERIAL] = &driver_of_serial, [PORT_GATEWAY] = &port_tcp, [PORT_PINS] = &driver_of_pins};
+        [PORT_SERIAL] = &serial, [PORT_GATEWAY] = &port_tcp, [PORT_PINS] = &chip};
     if (port->options.path == NULL || strcmp(port->options.path, options->path) != 0)
         memset(&port->adapter, 0, sizeof port->adapter);
     port->host = host;

@@ -147,9 +147,7 @@ void listener_received(listener_t *listener, const uint8_t *bytes, uint32_t coun
 /* address: of the unit that is asked; 0: none is asked. */
 void listener_judge(const listener_t *listener, uint8_t address, evidence_t *evidence);
 
-/* ---- an open port ---- */
-
-/* An open port. A tty and a connection to a Modbus TCP server have a line and a Modbus client. */
+/* ---- an open port: a tty and a connection to a Modbus TCP server have a line and a Modbus client ---- */
 
 /* Why a port is not open. */
 typedef enum {
@@ -247,9 +245,8 @@ fathom_status_t port_listen(port_t *port, uint32_t for_us);
 
 struct port_driver {
     fathom_status_t (*open)(port_t *port); /* as port_open(); sets inner, name, and the parts that differ */
-    fathom_status_t (*poll)(port_t *port);
+    fathom_status_t (*poll)(port_t *port); /* as port_poll(), also after a read or a write has failed */
     void (*close)(port_t *port);
-    void (*fail)(port_t *port); /* after a read or a write has failed: stores the error if the port is lost */
 };
 extern const port_driver_t port_tcp;
 

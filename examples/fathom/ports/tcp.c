@@ -42,24 +42,25 @@ static void close_tcp(port_t *port)
 /* ---- a connection ---- */
 
 /* Explains why the server is lost. Some servers serve one program at a time. */
-static void lose(port_t *port)
+static fathom_status_t lose(port_t *port)
 {
-    static const char alone[] = "; some serve one program at a time: is another one connected?";
-    const fathom_libmodbus_t *const libmodbus = &port->tcp->libmodbus;
-    const fathom_libmodbus_error_t error = fathom_libmodbus_error(libmodbus);
-    const char *reason = "the server closed the connection";
-    if (port->error == PORT_LOST) return;
-    if (error == FATHOM_LIBMODBUS_ERR_NONSENSE)
-        reason = "the received bytes are not Modbus TCP. Check the port number (usually 502) and the server";
-    else if (error == FATHOM_LIBMODBUS_ERR_TRUNCATED)
-        reason = "the system accepted only a part of a request";
-    else if (error == FATHOM_LIBMODBUS_ERR_SYSTEM &&
-             (libmodbus->system_error == ECONNRESET || libmodbus->system_error == EPIPE))
-        reason = "the server reset the connection";
-    else if (error == FATHOM_LIBMODBUS_ERR_SYSTEM)
-        reason = strerror(libmodbus->system_error); /* NOLINT(concurrency-mt-unsafe): one thread */
-    (void)port_fail(port, PORT_LOST, "%s: %s%s", port->name, reason,
-                    strncmp(reason, "the server ", 11) == 0 ? alone : "");
+    static const char alone[] = "some serve one program at a time: is another one connected?";
+    const int error = port->tcp->libmodbus.system_error;
+    switch (fathom_libmodbus_error(&port->tcp->libmodbus)) {
+    case FATHOM_LIBMODBUS_ERR_NONSENSE:
+        return port_fail(
+            port, PORT_LOST,
+            "%s: the received bytes are not Modbus TCP. Check the port number (usually 502) and the server",
+            port->name);
+    case FATHOM_LIBMODBUS_ERR_TRUNCATED:
+        return port_fail(port, PORT_LOST, "%s: the system accepted only a part of a request", port->name);
+    case FATHOM_LIBMODBUS_ERR_SYSTEM:
+        if (error != ECONNRESET && error != EPIPE)
+            return port_fail(port, PORT_LOST, "%s: %s", port->name, strerror(error));
+        return port_fail(port, PORT_LOST, "%s: the server reset the connection; %s", port->name, alone);
+    default:
+        return port_fail(port, PORT_LOST, "%s: the server closed the connection; %s", port->name, alone);
+    }
 }
 
 /* The connection is established: the line on it. Responses arrive whole, and need no silence between them. The server
@@ -142,7 +143,9 @@ static int connect_error(int fd)
 static fathom_status_t poll_tcp(port_t *port)
 {
     tcp_t *const tcp = port->tcp;
-    if (tcp->modbus != NULL) return port->error == PORT_OK ? FATHOM_OK : FATHOM_ERR_PORT;
+    if (port->error != PORT_OK) return FATHOM_ERR_PORT;
+    if (tcp->modbus != NULL)
+        return fathom_libmodbus_error(&tcp->libmodbus) == FATHOM_LIBMODBUS_OK ? FATHOM_OK : lose(port);
     int error = connect_error(port->fd);
     if (error == EINPROGRESS && fathom_posix_now_us() < tcp->deadline_us) return FATHOM_PENDING;
     if (error == EINPROGRESS) error = ETIMEDOUT;
@@ -176,4 +179,4 @@ static fathom_status_t open_tcp(port_t *port)
     return status;
 }
 
-const port_driver_t port_tcp = {open_tcp, poll_tcp, close_tcp, lose};
+const port_driver_t port_tcp = {open_tcp, poll_tcp, close_tcp};
