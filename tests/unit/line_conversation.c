@@ -98,7 +98,12 @@ void play_jam(const step_t *step)
 }
 
 void play_echo(const step_t *step) { set_up_echo((uint8_t)step->value); }
-void play_listen(const step_t *step) { listen_for((uint16_t)step->us); }
+void play_listen(const step_t *step)
+{
+    listen_for((uint16_t)step->us);
+    bench_listener.base.stale_us = (uint32_t)step->value;
+}
+
 void play_flush(const step_t *step) { fathom_line_flush(&bench.line); }
 void play_break_port(const step_t *step) { break_port(); }
 void play_refuse(const step_t *step) { bench.fake.write_busy = step->which != 0; }

@@ -43,30 +43,31 @@ enum { A, B };
     }
 
 /* Actions. QUEUE submits a read; ASK also runs until its last bit has left. WRITE submits set_address_5 to a unit. */
-#define QUEUE(x, to)             STEP(queue, .which = (x), .unit = (to), .us = TIMEOUT_US)
-#define QUEUE_TWICE(x, to)       STEP(queue, .which = (x), .unit = (to), .us = TIMEOUT_US, .value = 1)
-#define ASK(x, to)               STEP(ask, .which = (x), .unit = (to), .us = TIMEOUT_US)
-#define ASK_TWICE(x, to)         STEP(ask, .which = (x), .unit = (to), .us = TIMEOUT_US, .value = 1)
-#define ASK_FOR(x, to, for_us)   STEP(ask, .which = (x), .unit = (to), .us = (for_us))
-#define WRITE(x, to)             STEP(write, .which = (x), .unit = (to))
-#define CANCEL(x)                STEP(cancel, .which = (x))
-#define WAIT(for_us)             STEP(wait, .us = (for_us))
-#define POLL_AFTER(in_us)        STEP(poll_after, .us = (in_us)) /* one poll */
-#define RECEIVE(text)            STEP(receive, .hex = (text))
-#define RECEIVE_WITH(flag, text) STEP(receive, .hex = (text), .which = FATHOM_RX_##flag)
-#define ARRIVE(text)             STEP(arrive, .hex = (text)) /* no poll */
-#define SEND(text)               STEP(send, .hex = (text)) /* a device, byte by byte until the last one has arrived */
-#define RESPONSE(from, mm)       STEP(response, .unit = (from), .value = (mm))
-#define HOLD(low)                BREAK(low, FATHOM_OK) /* TX is low, or not any more */
-#define BREAK(low, status)       STEP(break, .which = (low), .value = (status))
-#define PASS(for_us)             STEP(pass, .us = (for_us)) /* no poll */
-#define JAM(for_us)              STEP(jam, .us = (for_us))  /* a byte 00 in each character time */
-#define ECHO(known)              STEP(echo, .value = FATHOM_LINE_ECHO_##known)
-#define LISTEN(gap)              STEP(listen, .us = (gap))
-#define FLUSH                    STEP(flush, .which = 0)
-#define BREAK_PORT               STEP(break_port, .which = 0)
-#define PORT_REFUSES(on)         STEP(refuse, .which = (on))
-#define NEVER_SENT(on)           STEP(never_sent, .which = (on))
+#define QUEUE(x, to)               STEP(queue, .which = (x), .unit = (to), .us = TIMEOUT_US)
+#define QUEUE_TWICE(x, to)         STEP(queue, .which = (x), .unit = (to), .us = TIMEOUT_US, .value = 1)
+#define ASK(x, to)                 STEP(ask, .which = (x), .unit = (to), .us = TIMEOUT_US)
+#define ASK_TWICE(x, to)           STEP(ask, .which = (x), .unit = (to), .us = TIMEOUT_US, .value = 1)
+#define ASK_FOR(x, to, for_us)     STEP(ask, .which = (x), .unit = (to), .us = (for_us))
+#define WRITE(x, to)               STEP(write, .which = (x), .unit = (to))
+#define CANCEL(x)                  STEP(cancel, .which = (x))
+#define WAIT(for_us)               STEP(wait, .us = (for_us))
+#define POLL_AFTER(in_us)          STEP(poll_after, .us = (in_us)) /* one poll */
+#define RECEIVE(text)              STEP(receive, .hex = (text))
+#define RECEIVE_WITH(flag, text)   STEP(receive, .hex = (text), .which = FATHOM_RX_##flag)
+#define ARRIVE(text)               STEP(arrive, .hex = (text)) /* no poll */
+#define SEND(text)                 STEP(send, .hex = (text)) /* a device, byte by byte until the last one has arrived */
+#define RESPONSE(from, mm)         STEP(response, .unit = (from), .value = (mm))
+#define HOLD(low)                  BREAK(low, FATHOM_OK) /* TX is low, or not any more */
+#define BREAK(low, status)         STEP(break, .which = (low), .value = (status))
+#define PASS(for_us)               STEP(pass, .us = (for_us)) /* no poll */
+#define JAM(for_us)                STEP(jam, .us = (for_us))  /* a byte 00 in each character time */
+#define ECHO(known)                STEP(echo, .value = FATHOM_LINE_ECHO_##known)
+#define LISTEN(gap)                STEP(listen, .us = (gap))
+#define LISTEN_FOR_NEW(gap, stale) STEP(listen, .us = (gap), .value = (stale)) /* what is older is stale */
+#define FLUSH                      STEP(flush, .which = 0)
+#define BREAK_PORT                 STEP(break_port, .which = 0)
+#define PORT_REFUSES(on)           STEP(refuse, .which = (on))
+#define NEVER_SENT(on)             STEP(never_sent, .which = (on))
 
 /* Expectations. SENT: no request leaves for `after`, and one leaves within `within` after that. */
 #define FAILS(x, status)    STEP(fails, .which = (x), .value = FATHOM_ERR_##status)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "line_bench.h"
+#include "line_conversation.h"
 
 /* line.h, rule 14: after a pause between two polls the line drops bytes that may be too old. */
 
@@ -7,93 +7,57 @@ static const suite_t suite = {.set_up = set_up};
 
 enum { STALE_US = 20000 };
 
-static void listen_stale(void)
-{
-    listen_for(GAP_US);
-    bench_listener.base.stale_us = STALE_US;
-}
+#define FRAME "FF 07 A1 A7" /* of an A16 that sends by itself */
 
-/* The program does not poll for `us`, and these bytes arrive meanwhile. */
-static void pause_with(const uint8_t *bytes, size_t length, uint32_t us)
-{
-    receive(bytes, length);
-    bench.fake.now_us += us;
-    (void)poll_line();
-}
-
-TEST(a_late_response_is_dropped_if_the_pause_exceeds_the_time_out_by_more_than_half_a_second)
-{
-    for (unsigned is_longer = 0; is_longer != 2; is_longer++) {
-        set_up(state);
-        ask_1_and_send(1);
-        run(TIMEOUT_US); /* now the unit is in quarantine, and the transaction waits for its retry */
-        expect(FATHOM_PENDING);
-        pause_with(response_1_754, 7, TIMEOUT_US + FATHOM_LINE_LATE_US + is_longer);
-        expect_count(FATHOM_LINE_OLD_BYTES, is_longer != 0 ? 7 : 0);
-    }
-}
-
-TEST(a_pause_is_measured_against_the_listener_s_limit)
-{
-    for (unsigned is_longer = 0; is_longer != 2; is_longer++) {
-        set_up(state);
-        listen_stale();
-        pause_with(auto_frame, 4, STALE_US + FATHOM_LINE_LATE_US + is_longer);
-        expect_count(FATHOM_LINE_OLD_BYTES, is_longer != 0 ? 4 : 0);
-        assert_int_equal(bench_listener.length, is_longer != 0 ? 0 : 4);
-    }
-}
-
-TEST(a_pause_without_bytes_is_no_loss_for_the_listener)
-{
-    listen_stale();
-    pause_with(auto_frame, 0, 1000000);
-    deliver(auto_frame, 4);
-    expect_heard(auto_frame, 4, auto_frame, 0);
-    assert_int_equal(bench_listener.losses, 0);
-}
-
-TEST(dropped_bytes_are_a_loss_that_the_listener_receives_once_with_the_next_bytes)
-{
-    listen_stale();
-    deliver(auto_frame, 2);
-    pause_with(auto_frame, 4, 1000000);
-    run(100);
-    assert_int_equal(bench_listener.losses, 0);
-    deliver(auto_frame, 4);
-    deliver(auto_frame, 4);
-    assert_int_equal(bench_listener.length, 10);
-    assert_int_equal(bench_listener.losses, 1);
-    assert_int_equal(bench_listener.lost_at, 2);
-    expect_count(FATHOM_LINE_OLD_BYTES, 4);
-}
-
-/* Rule 11: four bytes show that a device sends by itself. Then a request leaves behind its next frame, or after 65 ms. */
-TEST(dropped_bytes_still_show_that_a_device_sends_by_itself)
-{
-    for (unsigned length = 3; length != 5; length++) {
-        set_up(state);
-        listen_stale();
-        pause_with(auto_frame, length, 1000000);
-        run(10000); /* a request could have left in this silence */
-        ask_1(0);
-        expect_written_after(20000, length == 4 ? 0 : 1);
-        expect_written_after(40000, 1);
-    }
-}
-
-/* A line without a listener counts the bytes as old, not as dropped. */
-TEST(a_flush_drops_what_the_port_holds)
-{
-    receive(auto_frame, 4);
-    fathom_line_flush(&bench.line);
-    run(100);
-    expect_count(FATHOM_LINE_OLD_BYTES, 4);
-    expect_count(FATHOM_LINE_DROPPED_BYTES, 0);
-    listen_for(GAP_US);
-    deliver(auto_frame, 4);
-    assert_int_equal(bench_listener.length, 4);
-}
+/* POLL_AFTER: the program does not poll for so long, and the bytes arrive meanwhile. */
+static const conversation_t conversations[] = {
+    {"bytes_are_not_too_old_if_the_pause_exceeds_the_time_out_by_half_a_second",
+     {ASK_TWICE(A, 1), WAIT(TIMEOUT_US), PENDS(A), ARRIVE("01 03 02 02 F2 38 A1"),
+      POLL_AFTER(TIMEOUT_US + FATHOM_LINE_LATE_US), PENDS(A)},
+     {.no_responses = 1, .strays = 1, .dropped = 7}},
+    {"a_late_response_is_dropped_if_the_pause_exceeds_the_time_out_by_more_than_half_a_second",
+     {ASK_TWICE(A, 1), WAIT(TIMEOUT_US), PENDS(A), ARRIVE("01 03 02 02 F2 38 A1"),
+      POLL_AFTER(TIMEOUT_US + FATHOM_LINE_LATE_US + 1), PENDS(A)},
+     {.no_responses = 1, .old = 7}},
+    {"a_listener_gets_bytes_that_are_as_old_as_its_limit",
+     {LISTEN_FOR_NEW(GAP_US, STALE_US), ARRIVE(FRAME), POLL_AFTER(STALE_US + FATHOM_LINE_LATE_US),
+      HEARD(FRAME, 0)},
+     {0}},
+    {"a_listener_gets_no_bytes_that_may_be_older_than_its_limit",
+     {LISTEN_FOR_NEW(GAP_US, STALE_US), ARRIVE(FRAME), POLL_AFTER(STALE_US + FATHOM_LINE_LATE_US + 1),
+      HEARD("", 0)},
+     {.old = 4}},
+    {"a_pause_without_bytes_is_no_loss_for_the_listener",
+     {LISTEN_FOR_NEW(GAP_US, STALE_US), POLL_AFTER(1000000), RECEIVE(FRAME), HEARD(FRAME, 1), LOST_AT(0, 0)},
+     {0}},
+    {"dropped_bytes_are_a_loss_that_the_listener_receives_once_with_the_next_bytes",
+     {LISTEN_FOR_NEW(GAP_US, STALE_US), RECEIVE("FF 07"), ARRIVE(FRAME), POLL_AFTER(1000000), WAIT(100),
+      LOST_AT(0, 0), RECEIVE(FRAME), RECEIVE(FRAME), HEARD("FF 07 " FRAME " " FRAME, 0), LOST_AT(2, 1)},
+     {.old = 4}},
+    /* rule 11: four bytes show that a device sends by itself. Then a request leaves behind its next frame, or after 65 ms.
+     * It could leave in the silence before */
+    {"dropped_bytes_still_show_that_a_device_sends_by_itself",
+     {LISTEN_FOR_NEW(GAP_US, STALE_US), ARRIVE(FRAME), POLL_AFTER(1000000), WAIT(10000), QUEUE(A, 1),
+      SENT(20000, 40000)},
+     {.old = 4}},
+    {"three_dropped_bytes_show_no_device_that_sends_by_itself",
+     {LISTEN_FOR_NEW(GAP_US, STALE_US), ARRIVE("FF 07 A1"), POLL_AFTER(1000000), WAIT(10000), QUEUE(A, 1),
+      SENT(0, 20000)},
+     {.old = 3}},
+    /* a line without a listener counts the bytes as old, not as dropped */
+    {"a_flush_drops_what_the_port_holds",
+     {ARRIVE(FRAME), FLUSH, WAIT(100), COUNT(OLD_BYTES, 4), LISTEN(GAP_US), RECEIVE(FRAME), HEARD(FRAME, 0)},
+     {.old = 4}},
+    {"a_flush_is_a_loss_for_the_listener_at_once",
+     {LISTEN(GAP_US), RECEIVE("FF 07"), FLUSH, LOST_AT(2, 1)},
+     {0}},
+    /* rule 15: nothing that was learnt before the error remains valid */
+    {"bytes_before_and_after_an_error_of_the_port_do_not_add_up_to_a_device_that_sends_by_itself",
+     {RECEIVE("00 00 00"), BREAK_PORT, WAIT(100), RECEIVE("00"), WAIT(T3_5_US + 1000), QUEUE(A, 1),
+      SENT(0, 1000)},
+     {.port_errors = 1, .dropped = 4}},
+};
+CONVERSATIONS(set_up, conversations)
 
 /* The silence before the next request begins with the error. */
 TEST(after_an_error_of_the_port_during_a_request_the_whole_silence_is_kept)
@@ -111,7 +75,8 @@ TEST(bytes_that_the_port_dates_are_as_old_as_their_time_stamp)
 {
     for (unsigned is_older = 0; is_older != 2; is_older++) {
         set_up(state);
-        listen_stale();
+        listen_for(GAP_US);
+        bench_listener.base.stale_us = STALE_US;
         bench.fake.now_us += 1000000;
         const uint32_t age_us = STALE_US + FATHOM_LINE_LATE_US + is_older;
         fake_receive_rx(&bench.fake, 0, auto_frame, 4,
@@ -122,31 +87,10 @@ TEST(bytes_that_the_port_dates_are_as_old_as_their_time_stamp)
     }
 }
 
-TEST(a_flush_is_a_loss_for_the_listener_at_once)
-{
-    listen_for(GAP_US);
-    deliver(auto_frame, 2);
-    fathom_line_flush(&bench.line);
-    assert_int_equal(bench_listener.losses, 1);
-    assert_int_equal(bench_listener.lost_at, 2);
-}
-
 TEST(a_flush_before_the_port_was_seen_empty_drops_its_bytes_too)
 {
     assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_OK);
     fathom_line_flush(&bench.line);
     deliver(auto_frame, 4);
     expect_count(FATHOM_LINE_OLD_BYTES, 4);
-}
-
-/* Rule 15: nothing that was learnt before the error remains valid. */
-TEST(bytes_before_and_after_an_error_of_the_port_do_not_add_up_to_a_device_that_sends_by_itself)
-{
-    deliver_hex("00 00 00");
-    break_port();
-    run(100);
-    deliver_hex("00");
-    run(T3_5_US + 1000);
-    ask_1(0);
-    expect_written_after(1000, 1);
 }
