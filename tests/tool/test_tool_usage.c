@@ -27,6 +27,7 @@ static const refused_t wrong[] = {
      "unknown option '--inter'. Did you mean "}, /* options cannot be abbreviated */
     {"read a16 -p x -x", "unknown option '-x'."},
     {"read a16 -p", "--port needs a value: PORT."},
+    {"sim a16 -p x", "unknown option '-p'."},
     {"read a16 -p x -p y", "--port is given twice."},
     {"read a16 -p x --reconnect=1", "--reconnect takes no value."},
     {"read a16 -p x --count 0", "--count is '0'. It takes a whole number from 1 to 1000000000."},
@@ -140,6 +141,7 @@ TEST(a_negative_value_may_stand_between_options)
 TEST(each_help_fits_80_columns_and_that_of_a_command_60_lines)
 {
     char overview[4096];
+    char page[8192];
     unsigned pages = 0;
     (void)snprintf(overview, sizeof overview, "%s", tool_run(&bench.tool, "help")->out);
     for (const char *line = overview; line != NULL; line = strchr(line + 1, '\n')) {
@@ -157,6 +159,8 @@ TEST(each_help_fits_80_columns_and_that_of_a_command_60_lines)
             at += length + 1;
         }
         if (is_command && lines > 60) fail_msg("%s: %u lines", name, lines);
+        (void)snprintf(page, sizeof page, "%s", run->out);
+        if (is_command) assert_string_equal(tool_run(&bench.tool, "%s -h", name)->out, page);
     }
     assert_int_equal(pages, 15 + 22);
 }

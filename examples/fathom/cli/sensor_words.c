@@ -403,15 +403,6 @@ static bool suits_line(const site_t *site, size_t i, const origin_t *origin)
 
 /* ---- names ---- */
 
-static bool has_namesake(const site_t *site, size_t count, const sensor_t *sensor, bool elsewhere)
-{
-    for (size_t i = 0; i != count; i++) {
-        if (elsewhere && site->sensors[i]->port == sensor->port) continue;
-        if (strcmp(site->sensors[i]->name, sensor->name) == 0) return true;
-    }
-    return false;
-}
-
 /* Adds the port to a name that the user did not choose. Characters that JSON or CSV would have to quote become "_". */
 static void add_port(sensor_t *sensor)
 {
@@ -422,25 +413,26 @@ static void add_port(sensor_t *sensor)
         if (strchr("\"\\,", *at) != NULL || (unsigned char)*at < ' ') *at = '_';
 }
 
-/* Gives sensors with the same name others by their ports. */
+/* Sensors at different ports with the same name, which the user did not choose, get their ports as a part of it. */
 static bool set_names(const site_t *site, const sensor_word_t *words)
 {
-    bool is_ambiguous[MAX_SENSORS];
-    const size_t count = site->sensor_count;
-    for (size_t i = 0; i != count; i++)
-        is_ambiguous[i] =
-            !site->sensors[i]->has_own_name && has_namesake(site, count, site->sensors[i], true);
-    for (size_t i = 0; i != count; i++)
-        if (is_ambiguous[i]) add_port(site->sensors[i]);
-    for (size_t i = 0; i != count; i++) {
-        const sensor_t *const sensor = site->sensors[i];
-        const origin_t *const origin = &words[i].origin;
-        if (!has_namesake(site, i, sensor, false)) continue;
-        if (origin->file != NULL)
-            return reject(origin, "two sensors have the name %s. Change name: of one of them.", sensor->name);
-        return reject(origin, "two sensors have the name %s. Give each its own name, such as one=%s.",
-                      sensor->name, sensor->model->name);
-    }
+    bool is_ambiguous[MAX_SENSORS] = {false};
+    sensor_t *const *const sensors = site->sensors;
+    for (size_t i = 0; i != site->sensor_count; i++)
+        for (size_t j = 0; j != site->sensor_count && !sensors[i]->has_own_name; j++)
+            if (sensors[i]->port != sensors[j]->port && strcmp(sensors[i]->name, sensors[j]->name) == 0)
+                is_ambiguous[i] = true;
+    for (size_t i = 0; i != site->sensor_count; i++)
+        if (is_ambiguous[i]) add_port(sensors[i]);
+    for (size_t i = 0; i != site->sensor_count; i++)
+        for (size_t j = 0; j != i; j++) {
+            const sensor_t *const sensor = sensors[i];
+            const bool is_of_file = words[i].origin.file != NULL;
+            if (strcmp(sensors[j]->name, sensor->name) != 0) continue;
+            return reject(&words[i].origin, "two sensors have the name %s. %s%s.", sensor->name,
+                          is_of_file ? "Change name: of one of them" : "Give each its own name, such as one=",
+                          is_of_file ? "" : sensor->model->name);
+        }
     return true;
 }
 

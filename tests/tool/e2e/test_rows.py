@@ -3,7 +3,6 @@
 """fathom read as a log: a row for each attempt, handed over whole; files by day; and how little is said beside it."""
 import csv
 import os
-import re
 import socket
 
 import e2e
@@ -258,18 +257,6 @@ class Port(e2e.Case):
 
     def test_an_empty_one_is_none(self):
         self.ends('read a16', 2, '--port is missing', env={**os.environ, 'FATHOM_PORT': ''})
-
-
-class Help(e2e.Case):
-    @e2e.each(*((command,) for command in ('read', 'watch', 'scan', 'get', 'set', 'info', 'save', 'restore', 'reset',
-                                           'calibrate', 'commission', 'sim', 'decode')))
-    def short(self, command):
-        """-h of all commands, -p of those that have a port."""
-        done = self.ends(f'{command} -h', 0)
-        self.assertEqual(done.out, self.ends(f'{command} --help', 0).out)
-        has_port = re.search('^  -p, --port', done.out, re.M) is not None
-        self.assertEqual(has_port, command not in ('sim', 'decode'))
-        self.ends(f'{command} -p', 2, '--port needs a value' if has_port else "unknown option '-p'")
 
 
 if __name__ == '__main__':
