@@ -30,15 +30,16 @@ static uint32_t left_us(const driver_temperature_t *temperature, driver_turn_t t
     return temperature->has_begun[turn] && passed_us < period_us ? period_us - passed_us : 0;
 }
 
-/* Alternately if both are due: a sensor that does not respond to #4 is measured all the same. */
-static void begin_turn(driver_temperature_t *temperature, uint32_t now)
+/* Alternately if both are due: a sensor that does not respond to #4 is measured all the same. Returns false if none is. */
+static bool begin_turn(driver_temperature_t *temperature, uint32_t now)
 {
     driver_turn_t turn = temperature->last == TURN_TEMPERATURE ? TURN_MEASUREMENT : TURN_TEMPERATURE;
     if (left_us(temperature, turn, now) != 0) turn = temperature->last;
-    if (left_us(temperature, turn, now) != 0) return;
+    if (left_us(temperature, turn, now) != 0) return false;
     temperature->turn = temperature->last = (uint8_t)turn;
     temperature->began_us[turn] = now;
     temperature->has_begun[turn] = true;
+    return true;
 }
 
 static void read_temperature(reader_t *reader, uint32_t now)
@@ -68,8 +69,8 @@ static fathom_status_t poll_turns(void *ctx, fathom_sample_t *sample)
     if (fathom_elapsed_us(now, temperature->read_us) >
         PERIODS_SHOWN * temperature->period_us[TURN_TEMPERATURE])
         temperature->is_known = false;
-    if (temperature->turn == TURN_NONE) begin_turn(temperature, now);
-    if (temperature->turn == TURN_NONE) fathom_modbus_unit_poll(reader->unit);
+    if (temperature->turn == TURN_NONE && !begin_turn(temperature, now))
+        fathom_modbus_unit_poll(reader->unit);
     if (temperature->turn == TURN_TEMPERATURE) read_temperature(reader, now);
     if (temperature->turn != TURN_MEASUREMENT) return FATHOM_PENDING;
     const fathom_status_t status = fathom_poll(&temperature->measuring, sample);

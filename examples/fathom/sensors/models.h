@@ -35,8 +35,7 @@ typedef struct {
     setting_kind_t kind;
 
     /* ---- in the frames of the sensor ---- */
-    uint16_t
-        read_at; /* register whose response has the value, perhaps with those of other rows; 0: write-only */
+    uint16_t read_at;    /* register whose response has the value, or several; 0: write-only */
     uint16_t write_at;   /* register that sets it; 0: none */
     uint8_t byte;        /* position in the response */
     uint8_t size;        /* bytes; 0: a register of two bytes */
