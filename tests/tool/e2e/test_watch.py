@@ -221,7 +221,7 @@ class End(Case):
         return sim, it
 
     @e2e.each(ctrl_c='some keys, of which nothing is seen, and then \x03', q='q',
-              a_big_q_among_others='some keys and Q and more')
+              a_big_q_among_others='some keys and Q and more', ctrl_z_and_ctrl_backslash_do_nothing='\x1a\x1c\x03')
     def key(self, keys):
         _, it = self.begin()
         it.wait(lambda screen: 'q or Ctrl-C ends' in screen.line(0))
@@ -249,13 +249,6 @@ class End(Case):
         self.assertTrue(e2e.is_ready(it.pidfd, 5))
         self.assertEqual(termios.tcgetattr(it.slave), it.before)
         self.assertEqual(it.finish(), 1)
-
-    def test_ctrl_z_and_ctrl_backslash_do_nothing(self):
-        _, it = self.begin()
-        it.type(b'\x1a\x1c')
-        it.changes()
-        it.type(b'\x03')
-        self.ends(it)
 
     def test_the_time_that_was_asked_for(self):
         self.ends(self.begin('--duration 2')[1])
