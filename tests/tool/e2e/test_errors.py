@@ -55,7 +55,7 @@ class Silence(e2e.Case):
         self.assertEqual(len(lines), attempts, done.err)
         for number, line in enumerate(lines, 1):
             self.assertTrue(line.startswith(f'fathom: attempt {number}: '), line)
-            self.assertIn(words, line)
+            self.assertIn(words if number == 1 else f': the same cause as before, {number} times in a row', line)
         self.assertIn(f'fathom: attempts {attempts}, failed {attempts}, readings 0\n', done.err)
         self.assertTrue(at_least <= done.elapsed < under, done.elapsed)
         return done
