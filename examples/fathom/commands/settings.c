@@ -112,11 +112,12 @@ static int start_info(const host_t *host, const arguments_t *arguments)
 }
 
 /* Lists the settings of a sensor without a port. */
-static int list(const char *word, const origin_t *origin)
+static int list(const arguments_t *arguments)
 {
+    const char *const word = arguments->words[0];
     char name[16];
     (void)snprintf(name, sizeof name, "%.*s", (int)strcspn(word, ":"), word);
-    const model_t *const model = model_word(name, origin);
+    const model_t *const model = model_word(name, &arguments->origin);
     if (model == NULL) return STATUS_USAGE;
     (void)printf("%s, %s, has these settings. Add --port PORT to read their values.\n\n", model->name,
                  model->what);
@@ -127,16 +128,15 @@ static int list(const char *word, const origin_t *origin)
 static int start_get(const host_t *host, const arguments_t *arguments)
 {
     const session_settings_t *const settings = arguments->settings;
-    const origin_t origin = {.command = arguments->command->name};
     if (arguments->count == 1 && settings->sensors.defaults.path == NULL &&
         strchr(arguments->words[0], '@') == NULL)
-        return list(arguments->words[0], &origin);
+        return list(arguments);
     if (!session_read(&session, arguments, 1, 1)) return STATUS_USAGE;
     if (arguments->count == 1) return show(host, is_settable);
     shown = setting_named(&session, arguments->words[1], arguments);
     if (shown == NULL) return STATUS_USAGE;
     if (shown->read_at == 0 && !is_address(shown)) {
-        (void)reject(&origin, "%s is write-only. The sensor does not report it.", shown->name);
+        (void)reject(&arguments->origin, "%s is write-only. The sensor does not report it.", shown->name);
         return STATUS_USAGE;
     }
     if (!session_set_mode(&session, arguments, model_mode_of(session.sensor->model, shown)))
@@ -212,17 +212,17 @@ static bool set(change_t *change)
     return change_report(change, session_set(&session, setting, change->value));
 }
 
-static bool suits(const change_t *change, const arguments_t *arguments, const origin_t *origin)
+static bool suits(const change_t *change, const arguments_t *arguments)
 {
     const setting_t *const setting = change->setting;
     const set_settings_t *const settings = arguments->settings;
     if (change->is_blind && change->is_for_all)
-        return reject(origin, "--all-units reads nothing anyway. Leave --blind out.");
+        return reject(&arguments->origin, "--all-units reads nothing anyway. Leave --blind out.");
     if (change->is_blind && setting->is_never_blind)
-        return reject(origin, "%s must be read before or after it is written. Leave --blind out.",
+        return reject(&arguments->origin, "%s must be read before or after it is written. Leave --blind out.",
                       setting->name);
     if (change->is_for_all && !setting->has_broadcast)
-        return reject(origin,
+        return reject(&arguments->origin,
                       "%s belongs to one unit. --all-units is for termination and "
                       "measure-after-power-on of an hps167s.",
                       setting->name);
@@ -232,13 +232,13 @@ static bool suits(const change_t *change, const arguments_t *arguments, const or
 }
 
 /* Stores the value. Returns false after rejecting it. */
-static bool read_value(change_t *change, const arguments_t *arguments, const origin_t *origin)
+static bool read_value(change_t *change, const arguments_t *arguments)
 {
     const setting_t *const setting = change->setting;
     const set_settings_t *const settings = arguments->settings;
     char text[SETTING_VALUES];
     if (!setting_value(setting, arguments->words[2], &change->value))
-        return reject(origin, "%s is '%s'. It takes %s.", setting->name, arguments->words[2],
+        return reject(&arguments->origin, "%s is '%s'. It takes %s.", setting->name, arguments->words[2],
                       setting_values_text(setting, text));
     return !setting->has_zero || change->value != 0 ||
            confirm(arguments, settings->session.is_confirmed,
@@ -247,22 +247,21 @@ static bool read_value(change_t *change, const arguments_t *arguments, const ori
 
 static bool set_up_change(change_t *change, const arguments_t *arguments)
 {
-    const origin_t origin = {.command = arguments->command->name};
     if (!session_read(&session, arguments, 1, 2)) return false;
     if (arguments->count == 2 && strchr(arguments->words[1], '=') != NULL) {
         const int length = (int)strcspn(arguments->words[1], "=");
-        return reject(&origin, "the setting and its value are two words. Write: %.*s %s.", length,
+        return reject(&arguments->origin, "the setting and its value are two words. Write: %.*s %s.", length,
                       arguments->words[1], arguments->words[1] + length + 1);
     }
     if (arguments->count < 3)
-        return reject(&origin, "the %s is missing. 'fathom get %s' lists the settings.",
+        return reject(&arguments->origin, "the %s is missing. 'fathom get %s' lists the settings.",
                       arguments->count == 1 ? "setting" : "value", session.sensor->model->name);
     change->setting = setting_named(&session, arguments->words[1], arguments);
     if (change->setting == NULL) return false;
-    if (change->setting->effect == NULL) return reject(&origin, "%s is read-only.", change->setting->name);
+    if (change->setting->effect == NULL)
+        return reject(&arguments->origin, "%s is read-only.", change->setting->name);
     return session_set_mode(&session, arguments, model_mode_of(session.sensor->model, change->setting)) &&
-           session_can_set(&session, arguments) && read_value(change, arguments, &origin) &&
-           suits(change, arguments, &origin);
+           session_can_set(&session, arguments) && read_value(change, arguments) && suits(change, arguments);
 }
 
 static int start_set(const host_t *host, const arguments_t *arguments)
@@ -363,20 +362,20 @@ static bool fail_reset(bool is_interface, fathom_status_t status)
 static bool set_up_reset(const arguments_t *arguments, bool *is_interface)
 {
     const reset_settings_t *const settings = arguments->settings;
-    const origin_t origin = {.command = arguments->command->name};
     if (!session_read(&session, arguments, 1, 1)) return false;
     if (session.sensor->model->reset_interface == NULL)
-        return reject(&origin, "%s cannot be reset. Only an hps167s can.", session.sensor->model->name);
+        return reject(&arguments->origin, "%s cannot be reset. Only an hps167s can.",
+                      session.sensor->model->name);
     const char *const word = arguments->count == 2    ? arguments->words[1]
                              : settings->is_interface ? "interface"
                              : settings->is_sensor    ? "sensor"
                                                       : "";
-    if (word[0] == '\0') return reject(&origin, "say what to reset: interface or sensor.");
+    if (word[0] == '\0') return reject(&arguments->origin, "say what to reset: interface or sensor.");
     *is_interface = strcmp(word, "interface") == 0;
     if (!*is_interface && strcmp(word, "sensor") != 0)
-        return reject(&origin, "what is to be reset is '%s'. Write interface or sensor.", word);
+        return reject(&arguments->origin, "what is to be reset is '%s'. Write interface or sensor.", word);
     if (settings->is_interface && settings->is_sensor)
-        return reject(&origin, "only one of interface and sensor can be reset at a time.");
+        return reject(&arguments->origin, "only one of interface and sensor can be reset at a time.");
     return confirm(arguments, settings->session.is_confirmed || settings->is_interface || settings->is_sensor,
                    *is_interface ? "This sets %s to address 1, 19200 8E1, and termination on."
                                  : "This overwrites the filter and the distance offset of %s.",
