@@ -67,7 +67,7 @@ static bool is_same(const record_unit_t *one, const record_unit_t *other)
 {
     return one->model == other->model && strcmp(one->number, other->number) == 0 &&
            strcmp(one->when, other->when) == 0 && one->address == other->address &&
-           one->state == other->state;
+           one->is_done == other->is_done;
 }
 
 static void record(const uint8_t *bytes, size_t size)

@@ -236,31 +236,29 @@ static bool read_termination(uint8_t address, proof_t *proof)
     return true;
 }
 
-/* Measures once, at all probes. Prefers a sample with a distance: an A05 may have fewer than four probes. */
-static fathom_status_t measure(fathom_sample_t *best)
-{
-    fathom_status_t found = FATHOM_ERR_MALFORMED;
-    do {
-        fathom_sample_t sample;
-        const fathom_status_t status = session_measure(&session, &sample);
-        if (status != FATHOM_OK && status != FATHOM_ERR_MALFORMED) return status;
-        if (status == FATHOM_OK && (found != FATHOM_OK || best->kind != FATHOM_TARGET)) *best = sample;
-        if (status == FATHOM_OK) found = FATHOM_OK;
-    } while (reader_has_more(session.sensor->reader));
-    return found;
-}
-
-static bool measures(fathom_sample_t *sample)
+/* Measures until a sample is no fault. Prefers a sample with a distance: an A05 may have fewer than four probes. */
+static bool measures(fathom_sample_t *best)
 {
     const uint64_t end_us = now_us() + MEASURED_WITHIN_US;
     fathom_status_t status = FATHOM_PENDING;
+    bool has_sample = false;
     do {
-        status = measure(sample);
-        if (status == FATHOM_OK && sample->kind != FATHOM_FAULT) return true;
+        has_sample = false;
+        do {
+            fathom_sample_t sample;
+            status = session_measure(&session, &sample);
+            if (status == FATHOM_OK && (!has_sample || best->kind != FATHOM_TARGET)) {
+                *best = sample;
+                has_sample = true;
+            }
+        } while ((status == FATHOM_OK || status == FATHOM_ERR_MALFORMED) &&
+                 reader_has_more(session.sensor->reader));
+        if (has_sample && best->kind != FATHOM_FAULT) return true;
     } while (status != FATHOM_ERR_PORT && !has_ended() && now_us() < end_us);
-    if (status == FATHOM_OK)
-        return session_fail(&session, FATHOM_OK, "the address is set, but the sensor reports a fault");
-    return session_fail(&session, status, "the address is set, but the sensor does not measure");
+    if (has_sample) status = FATHOM_OK;
+    return session_fail(&session, status,
+                        has_sample ? "the address is set, but the sensor reports a fault"
+                                   : "the address is set, but the sensor does not measure");
 }
 
 /* At address 1, there may be the next sensor, but none with this UUID. */
@@ -289,7 +287,7 @@ static void print_json(const record_unit_t *unit, const proof_t *proof)
         json_flag(&json, "termination", strcmp(proof->termination, "on") == 0);
     if (proof != NULL && proof->sample.kind == FATHOM_TARGET)
         json_value(&json, "distance_mm", "%u", proof->sample.distance_mm);
-    json_string(&json, "status", record_states[unit->state]);
+    json_string(&json, "status", unit->is_done ? "done" : "planned");
     json_string(&json, "utc", unit->when);
     json_end(&json, '}');
     (void)fputc('\n', stdout);
@@ -367,7 +365,7 @@ static end_t set_up(const record_unit_t *unit, uint8_t at)
         !has_left(unit))
         return STOPPED;
     record_unit_t done = *unit;
-    if (proof.is_complete) done.state = RECORD_DONE;
+    done.is_done = proof.is_complete;
     if (!store(&done)) return STOPPED;
     run.unwritten_count = 0;
     run.prompt[0] = '\0';
@@ -410,7 +408,7 @@ static end_t commission(record_unit_t unit, uint8_t at)
         (void)fputs(": verifying\n", run.text);
     else
         (void)fprintf(run.text, ": gets address %u\n", unit.address);
-    unit.state = RECORD_PLANNED;
+    unit.is_done = false;
     run.is_written = false;
     if (!store(&unit) || !has_output()) return STOPPED;
     const end_t end = set_up(&unit, at);
@@ -422,10 +420,7 @@ static end_t commission(record_unit_t unit, uint8_t at)
 
 /* ---- resuming ---- */
 
-static bool is_open(const record_unit_t *unit)
-{
-    return unit->model == run.model && unit->state != RECORD_DONE;
-}
+static bool is_open(const record_unit_t *unit) { return unit->model == run.model && !unit->is_done; }
 
 static bool has_open(void)
 {
@@ -470,8 +465,7 @@ static bool resume_all(void)
 {
     const record_unit_t *const units = run.record.units;
     for (size_t i = 0; i != RECORD_UNITS && !run.has_numbers; i++)
-        if (units[i].model == run.model && units[i].state == RECORD_DONE && !is_present(&units[i]))
-            return false;
+        if (units[i].model == run.model && units[i].is_done && !is_present(&units[i])) return false;
     for (size_t i = 0; i != RECORD_UNITS; i++)
         if (is_open(&units[i]) && resume(&units[i]) == STOPPED) return false;
     return true;
@@ -498,7 +492,7 @@ static end_t try_next(uint8_t address)
         record_unit_t unit = {.model = run.model, .address = address};
         const record_unit_t *const known = record_of(&run.record, run.model, presence.number);
         (void)snprintf(unit.number, sizeof unit.number, "%s", presence.number);
-        if (known != NULL && known->state == RECORD_DONE)
+        if (known != NULL && known->is_done)
             prompt("the sensor at address 1 was at address %u and gets this address again", known->address);
         return commission(known != NULL ? *known : unit, FACTORY_ADDRESS);
     }

@@ -13,8 +13,6 @@ static const char title[] = "# fathom commission: which unit has which address, 
 static const char columns[] =
     "# sensor, address, UUID (- if it has none), planned or done, time of the last change\n";
 
-const char *const record_states[] = {"planned", "done"};
-
 bool record_has_numbers(const model_t *model) { return setting_of(model->settings, "uuid") != NULL; }
 
 const record_unit_t *record_of(const record_t *record, const model_t *model, const char *number)
@@ -72,8 +70,8 @@ static const char *parse_line(record_t *record, const char *text)
     if (!number_parse(address, 1, unit.model->max_address, &number))
         return "this sensor cannot have this address";
     if (!is_number(unit.model, unit.number)) return "invalid UUID";
-    for (unit.state = RECORD_PLANNED; strcmp(state, record_states[unit.state]) != 0; unit.state++)
-        if (unit.state == RECORD_DONE) return "the state is neither planned nor done";
+    unit.is_done = strcmp(state, "done") == 0;
+    if (!unit.is_done && strcmp(state, "planned") != 0) return "the state is neither planned nor done";
     if (!is_time(unit.when)) return "invalid time";
     unit.address = (uint8_t)number;
     if (record->units[unit.address].model != NULL) return "this address is in the record twice";
@@ -126,7 +124,7 @@ static void print_all(FILE *to, const void *ctx)
         const record_unit_t *const unit = &record->units[i];
         if (unit->model == NULL) continue;
         (void)fprintf(to, "%s %u %s %s %s\n", unit->model->name, unit->address, unit->number,
-                      record_states[unit->state], unit->when);
+                      unit->is_done ? "done" : "planned", unit->when);
     }
 }
 

@@ -10,18 +10,13 @@
  */
 enum { RECORD_UNITS = 255, RECORD_NUMBER = 64, RECORD_TIME = 24 };
 
-typedef enum {
-    RECORD_PLANNED, /* the sensor is at its address, or still at address 1 */
-    RECORD_DONE     /* the sensor is at its address and verified */
-} record_state_t;
-extern const char *const record_states[]; /* as words */
-
 typedef struct {
     const model_t *model;       /* NULL: no sensor has or gets this address */
     char number[RECORD_NUMBER]; /* the UUID; "-" if the model has none */
     char when[RECORD_TIME];     /* time of the last change, UTC */
     uint8_t address;
-    record_state_t state;
+    bool
+        is_done; /* the sensor is at its address and verified. Otherwise it is there, or still at address 1 */
 } record_unit_t;
 
 typedef struct {
