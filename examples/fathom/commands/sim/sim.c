@@ -120,12 +120,12 @@ static const char *fault_name(size_t n)
     return n + 1 < FATHOM_SIM_FAULT_CLOCK_JUMP ? fathom_sim_fault_name((uint8_t)(n + 1)) : NULL;
 }
 
-static bool has_fault(const simulated_t *sensor, size_t n)
+static bool has_fault(const model_t *model, const model_mode_t *mode, size_t n)
 {
     const device_settings_t settings = {.address = FACTORY_ADDRESS};
     device_t device;
     if (fault_name(n) == NULL) return false;
-    sensor->model->simulate(&device, &settings, sensor->mode->simulated_as);
+    model->simulate(&device, &settings, mode->simulated_as);
     return fathom_sim_fault_applies((uint8_t)(n + 1), &device.base);
 }
 
@@ -140,7 +140,7 @@ static bool reject_name(const simulated_t *sensor, bool is_fault, const char *te
     nearest_t nearest = {.word = name};
     (void)next_word(text, '=', name, sizeof name);
     for (size_t n = 0; name_of(n) != NULL; n++) {
-        if (is_fault ? !has_fault(sensor, n) : !has_trait(sensor->model, n)) continue;
+        if (is_fault ? !has_fault(sensor->model, sensor->mode, n) : !has_trait(sensor->model, n)) continue;
         nearest_try(&nearest, name_of(n));
     }
     (void)snprintf(what, sizeof what, "%s of %s%s%s", is_fault ? "fault" : "trait", sensor->model->name,
@@ -200,7 +200,8 @@ static bool add_fault(simulated_t *sensor, const char *text, const origin_t *ori
     const uint8_t kind = fathom_sim_fault_find(name);
     uint32_t chance_ppm = FATHOM_SIM_FAULT_ALWAYS_PPM;
     uint32_t at_frame = 0;
-    if (kind == 0 || !has_fault(sensor, kind - 1u)) return reject_name(sensor, true, text, origin);
+    if (kind == 0 || !has_fault(sensor->model, sensor->mode, kind - 1u))
+        return reject_name(sensor, true, text, origin);
     if (chance != NULL && !parse_chance(chance, &chance_ppm, &at_frame))
         return reject(
             origin, "fault is '%s'. It takes KIND[=P[@N]], P from 0.000001 to 1 or as 5%%, N from 1.", text);
@@ -208,7 +209,7 @@ static bool add_fault(simulated_t *sensor, const char *text, const origin_t *ori
            reject(origin, "a sensor has at most %u faults.", FATHOM_SIM_FAULT_RULES);
 }
 
-/* What a sensor may report instead of a distance, if it can have the fault of the same name. */
+/* What a sensor may report instead of a distance, if in its first mode it can have the fault of this name. */
 static const struct {
     uint8_t fault;
     int32_t value;
@@ -224,7 +225,7 @@ static bool parse_distance(const simulated_t *sensor, const char *word, int32_t 
     uint32_t mm = 0;
     for (size_t i = 0; i != CONDITIONS; i++) {
         const char *const name = fathom_sim_fault_name(conditions[i].fault);
-        if (!has_fault(sensor, conditions[i].fault - 1u)) continue;
+        if (!has_fault(sensor->model, sensor->model->modes, conditions[i].fault - 1u)) continue;
         *value = conditions[i].value;
         if (strcmp(word, name) == 0) return true;
         list_add(words, sizeof words, name);
