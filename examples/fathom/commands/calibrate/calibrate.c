@@ -144,16 +144,6 @@ static bool read_sample(fathom_sample_t *sample)
     return session_fail(&session, status, "cannot measure");
 }
 
-static bool discard_samples(uint32_t for_us)
-{
-    const host_t *const host = session.port.host;
-    const uint64_t end_us = host->now_us(host->ctx) + for_us;
-    fathom_sample_t sample;
-    while (host->now_us(host->ctx) < end_us)
-        if (!read_sample(&sample)) return false;
-    return true;
-}
-
 static int compare(const void *one, const void *other) { return *(const int *)one - *(const int *)other; }
 
 /* Returns why a sample is no distance; NULL: it is one. */
@@ -203,13 +193,18 @@ static bool read_batch(const calibrate_settings_t *settings, batch_t *batch, cha
  */
 static bool measure(const calibration_t *run, const calibrate_settings_t *settings, batch_t *result)
 {
+    const host_t *const host = session.port.host;
     char why[WHY] = "";
     batch_t last = {.is_usable = false};
     uint32_t rest_us = run->writes != 0 ? AFTER_WRITE_US : 0;
     session_begin_task(&session, "measuring");
     for (unsigned i = 0; i != MOST_BATCHES; i++, rest_us = REST_US) {
+        const uint64_t end_us = host->now_us(host->ctx) + rest_us;
+        fathom_sample_t discarded;
         batch_t batch;
-        if (!discard_samples(rest_us) || !read_batch(settings, &batch, why)) return false;
+        while (host->now_us(host->ctx) < end_us)
+            if (!read_sample(&discarded)) return false;
+        if (!read_batch(settings, &batch, why)) return false;
         if (batch.is_usable && last.is_usable) {
             *result = batch;
             if (last.spread_mm > batch.spread_mm) result->spread_mm = last.spread_mm;
@@ -225,14 +220,6 @@ static bool measure(const calibration_t *run, const calibrate_settings_t *settin
 }
 
 /* ---- writing ---- */
-
-/* Returns true if the sensor itself refused the write. Any other exception leaves the result open: the sensor failed (4),
- * or a gateway lost the request or the response (10, 11). */
-static bool is_refusal(uint8_t exception)
-{
-    return exception == FATHOM_MODBUS_ILLEGAL_FUNCTION || exception == FATHOM_MODBUS_ILLEGAL_DATA_ADDRESS ||
-           exception == FATHOM_MODBUS_ILLEGAL_DATA_VALUE;
-}
 
 /* Announces the write: with JSON on stderr. Returns false if the output failed. */
 static bool announce(const calibration_t *run)
@@ -253,7 +240,10 @@ static bool write_offset(calibration_t *run)
     if (!announce(run)) return false;
     const fathom_status_t status = session_set(&session, setting, run->offset_mm);
     const reader_facts_t facts = reader_facts(session.sensor->reader);
-    const bool is_refused = status == FATHOM_ERR_EXCEPTION && is_refusal(facts.exception);
+    /* The sensor itself refused the write (1 to 3). Any other exception leaves the result open: the sensor failed (4), or a
+     * gateway lost the request or the response (10, 11). */
+    const bool is_refused =
+        status == FATHOM_ERR_EXCEPTION && facts.exception <= FATHOM_MODBUS_ILLEGAL_DATA_VALUE;
     if (status == FATHOM_OK || (facts.is_written && !is_refused)) {
         calibrate_wrote(run, status == FATHOM_OK);
         return true;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "commands/watch/lanes.h"
 
+#include <inttypes.h>
 #include <string.h>
 
 #include "output/words.h"
@@ -156,7 +157,7 @@ const step_t *lane_step(const lanes_t *lanes, const lane_t *lane, int ago)
     return &lane->steps[(number_now(lanes) - (uint64_t)ago) % LANE_STEPS];
 }
 
-uint32_t lane_rate_tenths(const lanes_t *lanes, const lane_t *lane)
+const char *lane_rate(const lanes_t *lanes, const lane_t *lane, char text[LANE_TEXT])
 {
     const uint64_t now = number_now(lanes);
     uint64_t steps = RATE_US / lanes->step_us + 1;
@@ -164,12 +165,14 @@ uint32_t lane_rate_tenths(const lanes_t *lanes, const lane_t *lane)
     if (steps > now + 1) steps = now + 1;
     for (int ago = 0; ago != (int)steps; ago++) readings += lane_step(lanes, lane, ago)->readings;
     const uint64_t over_us = (steps - 1) * lanes->step_us + lanes->now_us % lanes->step_us;
-    return over_us != 0 ? (uint32_t)(readings * 10000000u / over_us) : 0;
+    const uint32_t tenths = over_us != 0 ? (uint32_t)(readings * 10000000u / over_us) : 0;
+    (void)snprintf(text, LANE_TEXT, "%" PRIu32 ".%" PRIu32 "/s", tenths / 10, tenths % 10);
+    return text;
 }
 
-const char *lane_value(const lane_t *lane, char text[LANE_VALUE])
+const char *lane_value(const lane_t *lane, char text[LANE_TEXT])
 {
     if (lane->mark != MARK_NONE) return marks[lane->mark].name;
-    (void)snprintf(text, LANE_VALUE, "%u.%03u m", lane->distance_mm / 1000u, lane->distance_mm % 1000u);
+    (void)snprintf(text, LANE_TEXT, "%u.%03u m", lane->distance_mm / 1000u, lane->distance_mm % 1000u);
     return text;
 }

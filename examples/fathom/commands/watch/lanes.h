@@ -80,11 +80,9 @@ void lanes_add(lanes_t *lanes, const reading_t *reading);
 /* Returns the step `ago` steps before the present one, less than LANE_STEPS. */
 const step_t *lane_step(const lanes_t *lanes, const lane_t *lane, int ago);
 
-/* Readings in ten seconds, as a mean of the last few. */
-uint32_t lane_rate_tenths(const lanes_t *lanes, const lane_t *lane);
-
-/* "1.234 m", "no response", "waiting" */
-enum { LANE_VALUE = 24 };
-const char *lane_value(const lane_t *lane, char text[LANE_VALUE]);
+/* Returns the value, "1.234 m", "no response" or "waiting", and the rate as a mean of the last few seconds, "9.5/s". */
+enum { LANE_TEXT = 24 };
+const char *lane_value(const lane_t *lane, char text[LANE_TEXT]);
+const char *lane_rate(const lanes_t *lanes, const lane_t *lane, char text[LANE_TEXT]);
 
 #endif

@@ -139,12 +139,11 @@ static void draw_plot(const lane_t *lane, int first_row, int height, int first_c
 static void draw_words(const lane_t *lane, int row, bool is_short)
 {
     const uint32_t left_s = reader_facts(lane->sensor->reader).backoff_left_us / 1000000;
-    const uint32_t rate = lane_rate_tenths(&watch.lanes, lane);
     const int longer = watch.lanes.name_width - LEAST_NAME;
-    char value[LANE_VALUE];
+    char text[LANE_TEXT];
     (void)put_text(row, 0, BOLD, "%.*s", watch.lanes.name_width, lane->name);
-    (void)put_text(row, 15 + longer, colour_of(lane->mark), "%s", lane_value(lane, value));
-    (void)put_text(row, 27 + longer, PLAIN, "%4" PRIu32 ".%" PRIu32 "/s", rate / 10, rate % 10);
+    (void)put_text(row, 15 + longer, colour_of(lane->mark), "%s", lane_value(lane, text));
+    (void)put_text(row, 27 + longer, PLAIN, "%8s", lane_rate(&watch.lanes, lane, text));
     if (is_short) return;
     const int end = put_text(row, 38 + longer, lane->lost != 0 ? LOSS : PLAIN, "lost %" PRIu64 " of %" PRIu64,
                              lane->lost, lane->outcomes);
@@ -271,25 +270,19 @@ static bool terminal_is_utf8(void)
     return strcasestr(locale, "utf-8") != NULL || strcasestr(locale, "utf8") != NULL;
 }
 
-/* Returns true if the terminal accepts nothing, as after Ctrl-S. */
-static bool is_stuck(void)
+/* A signal that ends the command also ends a write to a terminal that accepts nothing, as after Ctrl-S. Returns 0, or
+ * errno. */
+static int write_all(const char *text)
 {
     enum { STUCK_MS = 200 };
     struct pollfd entry = {STDOUT_FILENO, POLLOUT, 0};
-    return poll(&entry, 1, STUCK_MS) == 0;
-}
-
-/* A signal that ends the command also ends a write to a terminal that is stuck. Returns 0, or errno. */
-static int write_all(const char *text)
-{
-    size_t left = strlen(text);
-    while (left != 0) {
-        if (host_posix.has_ended(NULL) && is_stuck()) return EINTR;
-        const ssize_t n = write(STDOUT_FILENO, text, left);
-        if (n < 0 && (errno != EINTR || host_posix.has_ended(NULL))) return errno;
-        if (n < 0) continue;
-        text += n;
-        left -= (size_t)n;
+    while (text[0] != '\0') {
+        if (host_posix.has_ended(NULL) && poll(&entry, 1, STUCK_MS) == 0) return EINTR;
+        const ssize_t n = write(STDOUT_FILENO, text, strlen(text));
+        if (n >= 0)
+            text += n;
+        else if (errno != EINTR || host_posix.has_ended(NULL))
+            return errno;
     }
     return 0;
 }
@@ -424,10 +417,9 @@ static void print_line(uint64_t now_us)
     (void)printf("%6" PRIu64 ".%" PRIu64 " s", now_us / 1000000u, now_us / 100000u % 10);
     for (int i = 0; i != watch.lanes.count; i++) {
         const lane_t *const lane = &watch.lanes.lane[i];
-        const uint32_t rate = lane_rate_tenths(&watch.lanes, lane);
-        char value[LANE_VALUE];
-        (void)printf("  %s %s %" PRIu32 ".%" PRIu32 "/s", lane->name, lane_value(lane, value), rate / 10,
-                     rate % 10);
+        char value[LANE_TEXT];
+        char rate[LANE_TEXT];
+        (void)printf("  %s %s %s", lane->name, lane_value(lane, value), lane_rate(&watch.lanes, lane, rate));
         if (lane->lost != 0) (void)printf(" lost %" PRIu64 " of %" PRIu64, lane->lost, lane->outcomes);
     }
     (void)puts("");
