@@ -236,8 +236,7 @@ static void take_outcome(line_t *line, sensor_t *sensor, fathom_status_t status,
 {
     loop_t *const loop = line->loop;
     const bool is_good = status == FATHOM_OK;
-    const reader_counters_t counted =
-        counters_take(&sensor->counters, &line->port, sensor->reader);
+    const reader_counters_t counted = counters_take(&sensor->counters, &line->port, sensor->reader);
     sensor->noises = counted.noises;
     if (sensor->mode->has_pulses) pulses_add(&sensor->pulses, &counted, is_good ? sample : NULL);
     if (status != FATHOM_ERR_PORT && is_early(loop, sensor, status)) return;
@@ -267,8 +266,7 @@ static bool is_open(const line_t *line) { return line->state == LINE_READING || 
 static void take_counters(line_t *line)
 {
     for (sensor_t *sensor = line->sensors; sensor != NULL; sensor = sensor->next)
-        if (sensor->reader != NULL)
-            (void)counters_take(&sensor->counters, &line->port, sensor->reader);
+        if (sensor->reader != NULL) (void)counters_take(&sensor->counters, &line->port, sensor->reader);
 }
 
 static void give_up(line_t *line)
