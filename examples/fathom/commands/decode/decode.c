@@ -459,10 +459,10 @@ const command_t decode_command = {
     .name = "decode",
     .summary = "Explain bytes that were seen on the wire",
     .usage = "[OPTIONS] HEX...\n[OPTIONS] [FILE]",
-    .about = "HEX is bytes such as 01 03, 0103 or 0x01,0x03. FILE has such bytes; without\n"
-             "FILE, or with -, they are read from standard input. A # begins a comment. A\n"
-             "response behind its request is explained by it. A sum of 8 bits proves little:\n"
-             "a stream that begins inside a frame may be read out of step.\n",
+    .about =
+        "HEX is bytes such as 01 03, 0103 or 0x01,0x03. FILE has such bytes; without FILE, or with -, they "
+        "are read from standard input. A # begins a comment. A response behind its request is explained by "
+        "it. A sum of 8 bits proves little: a stream that begins inside a frame may be read out of step.\n",
     .tables = tables,
     .common = "sensor protocol format raw",
     .examples = "  fathom decode 01 03 01 00 00 01 85 F6  01 03 02 02 F2 38 A1\n"

@@ -610,20 +610,19 @@ const command_t request_command = {
              "UNIT 6 REGISTER VALUE [OPTIONS]\n"
              "UNIT 16 REGISTER VALUE... [OPTIONS]\n"
              "UNIT FUNCTION [BYTE...] [OPTIONS]",
-    .about = "Numbers are decimal, or hex behind 0x; BYTE is hex. REGISTER is the address on\n"
-             "the wire, as the datasheets print it (0x0101). VALUE may be negative. The CRC\n"
-             "is added. Nothing is repeated. Unit 0 is all units, which do not respond.\n"
-             "What can change something is printed first, and must be confirmed: writes,\n"
-             "functions other than 1 to 4, units 0 and 255, and reads of 0x0009, which\n"
-             "reset an hps167s. Any request stops the automatic output of an A16 or A05.\n",
+    .about = "Numbers are decimal, or hex behind 0x; BYTE is hex. REGISTER is the address on the wire, as "
+             "the datasheets print it (0x0101). VALUE may be negative. The CRC is added. Nothing is "
+             "repeated. Unit 0 is all units, which do not respond. What can change something is printed "
+             "first, and must be confirmed: writes, functions other than 1 to 4, units 0 and 255, and reads "
+             "of 0x0009, which reset an hps167s. Any request stops the automatic output of an A16 or A05.\n",
     .tables = tables,
     .common = "port sensor yes timeout format",
     .examples = "  fathom request 1 3 0x0101 --port /dev/ttyUSB0 --sensor a16\n"
                 "  fathom request 7 3 0x0008 4 --port /dev/ttyUSB0 --sensor hps167s\n"
                 "  fathom request 1 6 0x0206 2000 --port /dev/ttyUSB0 --yes\n"
                 "  fathom request 1 0x2b 0e 01 00 --port /dev/ttyUSB0 --yes\n",
-    .status = "Exit status: 0 a response or an echo, or sent to all units; 1 no or a damaged\n"
-              "response, or an exception; 2 wrong usage, or not confirmed.\n",
+    .status = "Exit status: 0 a response or an echo, or sent to all units; 1 no or a damaged response, or an "
+              "exception; 2 wrong usage, or not confirmed.\n",
     .topics = "requests, ports",
     .settings_size = sizeof(settings_t),
     .start = start,

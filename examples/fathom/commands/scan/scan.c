@@ -278,35 +278,26 @@ static void print_json(const scan_finding_t *finding, const char *port)
     free(row.next);
 }
 
-static void print_value(const scan_finding_t *finding)
-{
-    int64_t distance_mm = 0;
-    const char *const status = model_value_status(finding->model, finding->value, &distance_mm);
-    if (finding->model->probes > 1) (void)printf("probe 1: ");
-    if (distance_mm != NO_VALUE)
-        (void)printf("%" PRId64 " mm", distance_mm);
-    else
-        (void)printf("%s (value %u)", status, finding->value);
-}
-
-static void print_versions(const scan_finding_t *finding)
-{
-    const bool has_interface = finding->interface_version[0] != '\0';
-    const bool has_sensor = finding->sensor_version[0] != '\0';
-    if (!has_interface && !has_sensor) (void)printf("sends unsolicited responses");
-    if (has_interface) (void)printf("interface %s", finding->interface_version);
-    if (has_sensor) (void)printf("%ssensor %s", has_interface ? ", " : "", finding->sensor_version);
-    if (finding->termination[0] != '\0') (void)printf(", termination %s", finding->termination);
-}
-
 static void print_sensor(const scan_finding_t *finding)
 {
-    if (finding->mode == SCAN_AUTO)
+    const bool has_interface = finding->interface_version[0] != '\0';
+    const bool has_version = finding->sensor_version[0] != '\0';
+    int64_t distance_mm = 0;
+    if (finding->mode == SCAN_AUTO) {
         (void)printf("sends without requests");
-    else if (finding->has_value)
-        print_value(finding);
-    else if (finding->model->has_optics)
-        print_versions(finding);
+    } else if (finding->has_value) {
+        const char *const status = model_value_status(finding->model, finding->value, &distance_mm);
+        if (finding->model->probes > 1) (void)printf("probe 1: ");
+        if (distance_mm != NO_VALUE)
+            (void)printf("%" PRId64 " mm", distance_mm);
+        else
+            (void)printf("%s (value %u)", status, finding->value);
+    } else if (finding->model->has_optics) {
+        if (!has_interface && !has_version) (void)printf("sends unsolicited responses");
+        if (has_interface) (void)printf("interface %s", finding->interface_version);
+        if (has_version) (void)printf("%ssensor %s", has_interface ? ", " : "", finding->sensor_version);
+        if (finding->termination[0] != '\0') (void)printf(", termination %s", finding->termination);
+    }
 }
 
 /* Prints a finding in a line, with the command to type next. */
@@ -543,10 +534,9 @@ const command_t scan_command = {
     .tables = tables,
     .common = "port address baud wake format",
     .own_group = "Scan",
-    .about = "It only reads: no request can change a setting. But even a read ends the\n"
-             "automatic output of an A16 or A05, so the scan listens first, and sends nothing\n"
-             "if a sensor sends. At an address where a device responds, other parities of the\n"
-             "same rate are not tried.\n",
+    .about = "It only reads: no request can change a setting. But even a read ends the automatic output of "
+             "an A16 or A05, so the scan listens first, and sends nothing if a sensor sends. At an address "
+             "where a device responds, other parities of the same rate are not tried.\n",
     .examples = "  fathom scan --port /dev/ttyUSB0\n"
                 "  fathom scan --port /dev/ttyUSB0 --address 1-254 --baud all --parity all\n"
                 "  fathom scan --port /dev/ttyUSB0 --baud 57600,115200 --format json\n",

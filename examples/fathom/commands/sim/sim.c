@@ -513,27 +513,25 @@ static void print_counters(const simulation_t *simulation, uint32_t i)
     const struct {
         const char *name;
         uint32_t value;
-    } fields[] = {
-        {"address", device->address},
-        {"baud", device->settings.baud},
-        {"requests", counters->requests},
-        {"answered", counters->answered},
-        {"exceptions", counters->exceptions},
-        {"unserved", counters->unserved},
-        {"others", counters->others},
-        {"crc_errors", counters->crc_errors},
-        {"truncated", counters->truncated},
-        {"unheard", counters->unheard},
-        {"wrong_settings", counters->wrong_settings},
-        {"automatic", counters->automatic},
-        {"writes", counters->writes},
-        {"writes_refused", counters->writes_refused},
-        {"flash_writes", counters->flash_writes},
-        {"resets", counters->resets},
-        {"resets_refused", counters->resets_refused},
-        {"measurements", counters->measurements},
-        {"line_collisions", simulation->line.counters.collisions},
-    };
+    } fields[] = {{"address", device->address},
+                  {"baud", device->settings.baud},
+                  {"requests", counters->requests},
+                  {"answered", counters->answered},
+                  {"exceptions", counters->exceptions},
+                  {"unserved", counters->unserved},
+                  {"others", counters->others},
+                  {"crc_errors", counters->crc_errors},
+                  {"truncated", counters->truncated},
+                  {"unheard", counters->unheard},
+                  {"wrong_settings", counters->wrong_settings},
+                  {"automatic", counters->automatic},
+                  {"writes", counters->writes},
+                  {"writes_refused", counters->writes_refused},
+                  {"flash_writes", counters->flash_writes},
+                  {"resets", counters->resets},
+                  {"resets_refused", counters->resets_refused},
+                  {"measurements", counters->measurements},
+                  {"line_collisions", simulation->line.counters.collisions}};
     json_t json = {.to = stderr};
     json_begin(&json, NULL, '{');
     json_value(&json, "device", "%" PRIu32, i + 1);
@@ -656,10 +654,10 @@ const command_t sim_command = {
     .tables = tables,
     .common = "link distance fault counters",
     .own_group = "Simulation",
-    .about = "It prints the path of a pseudo terminal, which any program can open like a\n"
-             "serial port. Write an option of one sensor behind it:\n"
-             "a05:2,distance=1500,fault=drop=5%. An option without a sensor applies to all\n"
-             "sensors that can have it. SIGUSR1 cuts the power of all sensors for a second.\n",
+    .about =
+        "It prints the path of a pseudo terminal, which any program can open like a serial port. Write an "
+        "option of one sensor behind it: a05:2,distance=1500,fault=drop=5%. An option without a sensor "
+        "applies to all sensors that can have it. SIGUSR1 cuts the power of all sensors for a second.\n",
     .examples = "  fathom sim a16 --link ./tank\n"
                 "  fathom sim a05::modbus --link ./bumper --distance 1000,2000,1953,no-target\n"
                 "  fathom sim a16:1:modbus a05:2:modbus hps167s:7,distance=2083 --link ./bus\n",
