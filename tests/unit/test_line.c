@@ -16,24 +16,6 @@ static const suite_t quarantined = {.set_up = set_up_quarantined};
 
 /* ---- setting up ---- */
 
-TEST(a_config_without_uart_clock_or_frame_is_refused)
-{
-    const fathom_line_parts_t good = bench.config;
-    bench.config.uart = NULL;
-    assert_int_equal(init(), FATHOM_ERR_ARGUMENT);
-    bench.config = good;
-    bench.config.clock = NULL;
-    assert_int_equal(init(), FATHOM_ERR_ARGUMENT);
-    bench.config = good;
-    bench.config.frame = NULL;
-    assert_int_equal(init(), FATHOM_ERR_ARGUMENT);
-    bench.config = good;
-    bench.config.frame_size = 7;
-    assert_int_equal(init(), FATHOM_ERR_ARGUMENT);
-    bench.config.frame_size = 8;
-    assert_int_equal(init(), FATHOM_OK);
-}
-
 TEST(t3_5_is_three_and_a_half_characters_up_to_19200_baud_and_1750_us_above)
 {
     assert_int_equal(FATHOM_T3_5_US(9600, 10), 3646);  /* 35 bits / 9600 = 3645.8 us */
@@ -42,16 +24,10 @@ TEST(t3_5_is_three_and_a_half_characters_up_to_19200_baud_and_1750_us_above)
     assert_int_equal(FATHOM_T3_5_US(230400, 11), 1750);
 }
 
-TEST(zero_in_the_config_means_the_default_silence_and_gap)
+TEST(zero_in_the_config_means_the_default_gap)
 {
-    bench.config.silence_us = 0;
     bench.config.gap_us = 0;
-    ask_1(0);
-    run_in_steps(4010, 10);
-    expect_written(0);
-    run_in_steps(10, 10);
-    expect_written(1);
-    run(8 * BYTE_US);
+    ask_1_and_send(0);
     receive(response_1_754, 4);
     run_in_steps(4990, 10);
     assert_int_equal(bench.line.received_count, 4); /* the gap has not passed yet */
@@ -69,6 +45,15 @@ static const conversation_t conversations[] = {
      {QUEUE(A, 1), QUEUE(B, 2), WAIT(T3_5_US + 9 * BYTE_US), REQUEST_TO(0, 1), RESPONSE(1, 111),
       WAIT(T3_5_US + 9 * BYTE_US), REQUEST_TO(1, 2), RESPONSE(2, 222), READS(B, 222), READS(A, 111)},
      {.responses = 2}},
+    {"received_bytes_put_the_silence_off",
+     {QUEUE(A, 1), WAIT(3000), RECEIVE("01"), POLL_AFTER(T3_5_US - 1), WRITTEN(0), POLL_AFTER(1), WRITTEN(1)},
+     {.dropped = 1}},
+    {"a_response_that_began_in_time_may_end_after_the_time_out",
+     {ASK(A, 1), WAIT(TIMEOUT_US - 2000), SEND("01 03 02 02 F2 38 A1"), READS(A, 754)},
+     {.responses = 1}},
+    {"a_late_poll_finds_the_response_before_it_looks_at_the_time",
+     {ASK(A, 1), ARRIVE("01 03 02 02 F2 38 A1"), POLL_AFTER(3 * TIMEOUT_US), READS(A, 754)},
+     {.responses = 1}},
     /* up to 400 us have passed since the last bit */
     {"no_response_is_said_when_the_time_out_has_passed_since_the_request_left",
      {ASK(A, 1), WAIT(TIMEOUT_US - 500), PENDS(A), WAIT(700), FAILS(A, NO_RESPONSE)},
@@ -145,17 +130,6 @@ TEST(a_request_is_sent_after_the_silence_and_not_before)
     expect_bytes(0, ask_1_processed, sizeof ask_1_processed);
 }
 
-TEST(received_bytes_put_the_silence_off)
-{
-    ask_1(0);
-    run_in_steps(3000, 10);
-    receive(response_1_754, 1);
-    run_in_steps(T3_5_US - 6, 10);
-    expect_written(0);
-    run_in_steps(30, 10);
-    expect_written(1);
-}
-
 TEST_IN(asked, the_response_is_ready_in_the_poll_that_brings_its_last_byte)
 {
     receive_all(response_1_754);
@@ -221,14 +195,6 @@ TEST_IN(asked, a_transaction_may_be_submitted_again_when_it_has_ended_and_not_be
 
 /* ---- time ---- */
 
-TEST_IN(asked, a_response_that_began_in_time_may_end_after_the_time_out)
-{
-    run(TIMEOUT_US - 2000);
-    fake_trickle(&bench.fake, 0, BYTE_US, response_1_754, sizeof response_1_754);
-    run(8 * BYTE_US);
-    expect_mm(754);
-}
-
 TEST(a_flood_of_noise_does_not_keep_a_transaction_for_ever)
 {
     static const uint8_t noise[] = {0x01, 0x03, 0x02, 0x11, 0x22, 0x33, 0x44, 0x99};
@@ -267,13 +233,6 @@ TEST(a_single_poll_across_the_wrap_sees_all_the_time_that_passed)
     run_in_steps(TIMEOUT_US, TIMEOUT_US);
     assert_true(bench.fake.now_us < 0x80000000u);
     expect(FATHOM_ERR_NO_RESPONSE);
-}
-
-TEST_IN(asked, a_late_poll_finds_the_response_before_it_looks_at_the_time)
-{
-    receive_all(response_1_754);
-    run_in_steps(3 * TIMEOUT_US, 3 * TIMEOUT_US);
-    expect(FATHOM_OK);
 }
 
 /* ---- cancel ---- */
@@ -376,14 +335,6 @@ TEST(counters_stop_at_their_end)
     }
     expect_count(FATHOM_LINE_RESPONSES, 65535);
     expect_count(FATHOM_LINE_DROPPED_BYTES, 65535);
-}
-
-TEST(a_poll_reads_the_port_a_bounded_number_of_times)
-{
-    for (int i = 0; i != 100; i++) receive(response_1_754, 1);
-    poll_line();
-    assert_int_equal(bench.fake.reads, 16);
-    assert_false(fake_drained(&bench.fake));
 }
 
 TEST_IN(quarantined, what_only_waits_for_a_quarantine_is_due_when_that_ends)

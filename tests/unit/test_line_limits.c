@@ -154,25 +154,6 @@ static void add_crc(uint8_t *frame, size_t length)
     frame[length + 1] = (uint8_t)(crc >> 8);
 }
 
-/* 125 registers: 3 + 250 + 2 bytes. One read of the port may bring so many: no flag is made of the count. */
-TEST(the_longest_response_may_come_in_one_read)
-{
-    static uint8_t response[255] = {1, 0x03, 250};
-    set_up_long();
-    for (unsigned i = 0; i != 250; i++) response[3 + i] = (uint8_t)i;
-    add_crc(response, 253);
-    fathom_modbus_read_holding_registers(&bench.request.message, 1, 0x0000, 125, registers);
-    assert_int_equal(fathom_modbus_client_submit(&bench.line, &bench.request), FATHOM_PENDING);
-    after(T3_5_US);
-    after(8 * BYTE_US);
-    receive(response, sizeof response);
-    after(100);
-    expect(FATHOM_OK);
-    assert_int_equal(registers[0], 0x0001);
-    assert_int_equal(registers[124], 0xF8F9); /* bytes 248 and 249 */
-    assert_int_equal(counter(FATHOM_LINE_BAD_BYTES), 0);
-}
-
 /* 60 registers: 9 + 120 = 129 bytes; 123 registers: 9 + 246 = 255. hal.h: write returns the length, which is an int. */
 static void write_many(uint8_t count, size_t length)
 {

@@ -49,6 +49,9 @@ TEST(a_config_that_misses_what_its_line_needs_is_refused)
 {
     static const fathom_clock_t no_time = {0};
     fathom_uart_t uart = bench.fake.uart;
+    expect_refused(uart, NULL);
+    expect_refused(clock, NULL);
+    expect_refused(frame, NULL);
     uart.read = NULL;
     expect_refused(uart, &uart);
     uart = bench.fake.uart;
@@ -60,6 +63,7 @@ TEST(a_config_that_misses_what_its_line_needs_is_refused)
     expect_refused(clock, &no_time);
     expect_refused(counters, NULL);
     expect_refused(frame_size, 7);
+    expect_accepted(frame_size, 8);
     expect_refused(echo, FATHOM_LINE_ECHO_ON + 1);
     bench.config.find_echo = NULL;
     expect_refused(echo, FATHOM_LINE_ECHO_AUTO);
