@@ -342,9 +342,9 @@ static void miss(line_t *line)
 {
     const site_t *const site = &line->loop->site;
     const bool may_come = line->port.error == PORT_ABSENT || site->line_count > 1 || site->persists;
-    char text[TEXT];
     line->is_lost = true;
     if (site->reconnect && may_come) {
+        char text[TEXT];
         (void)snprintf(text, sizeof text, "%s; waiting until it is there", line->port.error_text);
         notify(line->loop, NOTICE_WAITING, NULL, text);
         line->state = LINE_WAITING;

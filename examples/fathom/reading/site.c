@@ -11,8 +11,9 @@ sensor_t *site_add_sensor(site_t *site)
     site->sensors = sensors;
     sensor_t *const sensor = calloc(1, sizeof *sensor);
     if (sensor == NULL) return NULL;
-    sensor->number = site->sensor_count;
-    return sensors[site->sensor_count++] = sensor;
+    sensor->number = site->sensor_count++;
+    sensors[sensor->number] = sensor;
+    return sensor;
 }
 
 line_t *site_add_line(site_t *site, const char *path)

@@ -209,11 +209,14 @@ static void check_header(run_t *run)
     char *header = NULL;
     char *line = NULL;
     size_t size = 0;
+    size_t capacity = 0;
     FILE *const to = open_memstream(&header, &size);
     FILE *const from = fopen(run->name, "r");
-    if (to != NULL) reading_csv_header(to, run->columns);
-    if (to != NULL) (void)fclose(to);
-    if (header != NULL && from != NULL && getline(&line, &size, from) > 0 &&
+    if (to != NULL) {
+        reading_csv_header(to, run->columns);
+        (void)fclose(to);
+    }
+    if (header != NULL && from != NULL && getline(&line, &capacity, from) > 0 &&
         strncmp(line, header, strcspn(header, ",") + 1) == 0) {
         if (run->options->format != FORMAT_CSV)
             run->unsuited =
