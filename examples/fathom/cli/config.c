@@ -232,23 +232,17 @@ static bool is_last(const config_t *config, yaml_parser_t *parser)
            reject(&origin, "a second document begins. Write all into one, without a line of ---.");
 }
 
-/* In UTF-8, which libyaml has checked: C0, DEL, and C1, U+0080 to U+009F. */
-static bool is_printable(const unsigned char *text, size_t length)
-{
-    for (size_t i = 0; i != length; i++)
-        if (text[i] < ' ' || text[i] == 0x7F || (text[i] == 0xC2 && text[i + 1] < 0xA0)) return false;
-    return true;
-}
-
-/* Messages print texts of the file, which may not drive a terminal. */
+/* Messages print texts of the file, which may not drive a terminal. In UTF-8, which libyaml has checked, it is driven by
+ * C0, DEL, and C1, which is U+0080 to U+009F. */
 static bool are_printable(const config_t *config)
 {
     for (const yaml_node_t *node = config->document.nodes.start; node != config->document.nodes.top; node++) {
         const origin_t origin = at_node(config, node);
-        if (node->type == YAML_SCALAR_NODE &&
-            !is_printable(node->data.scalar.value, node->data.scalar.length))
-            return reject(&origin,
-                          "a text has a character that cannot be printed, such as a tab. Leave it out.");
+        const unsigned char *const text = node->data.scalar.value;
+        for (size_t i = 0; node->type == YAML_SCALAR_NODE && i != node->data.scalar.length; i++)
+            if (text[i] < ' ' || text[i] == 0x7F || (text[i] == 0xC2 && text[i + 1] < 0xA0))
+                return reject(&origin,
+                              "a text has a character that cannot be printed, such as a tab. Leave it out.");
     }
     return true;
 }
@@ -258,12 +252,9 @@ static bool parse_file(config_t *config, FILE *stream)
     yaml_parser_t parser;
     if (!yaml_parser_initialize(&parser)) return reject_memory(&config->origin);
     yaml_parser_set_input_file(&parser, stream);
-    bool is_good = yaml_parser_load(&parser, &config->document) || reject_yaml(config, &parser);
-    if (is_good && yaml_document_get_root_node(&config->document) != NULL &&
-        !(is_last(config, &parser) && are_printable(config))) {
-        yaml_document_delete(&config->document);
-        is_good = false;
-    }
+    const bool is_good = (yaml_parser_load(&parser, &config->document) || reject_yaml(config, &parser)) &&
+                         (yaml_document_get_root_node(&config->document) == NULL ||
+                          (is_last(config, &parser) && are_printable(config)));
     yaml_parser_delete(&parser);
     return is_good;
 }
@@ -564,18 +555,15 @@ bool config_load(publish_settings_t *settings, site_t *site, const char *command
     if (stream == NULL) return reject(&origin, "cannot read %s: %s.", path, strerror(errno));
     config_t *const config = calloc(1, sizeof *config);
     bool is_good = config != NULL || reject_memory(&origin);
-    if (is_good) {
+    if (config != NULL) {
         config->origin = (origin_t){.command = command, .file = path, .line = 1};
-        is_good = parse_file(config, stream);
-    }
-    (void)fclose(stream);
-    if (is_good) {
-        is_good = read_file(config, site);
-        yaml_document_delete(&config->document);
+        is_good = parse_file(config, stream) && read_file(config, site);
         if (!is_good) site_free(site);
         *settings = config->top.settings;
         (void)snprintf(settings->path, sizeof settings->path, "%s", path);
+        yaml_document_delete(&config->document);
     }
+    (void)fclose(stream);
     free(config);
     return is_good;
 }
