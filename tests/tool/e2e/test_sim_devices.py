@@ -148,15 +148,13 @@ class Several(Case):
         self.assertEqual([one[9] for one in told[:2]], [21, 21])
         self.assertGreaterEqual(told[0][10], 1)
 
-    def test_an_option_applies_to_all_and_a_key_behind_a_sensor_to_that_sensor(self):
+    def test_options_apply_to_all_and_a_key_behind_a_sensor_to_that_sensor(self):
         sim = self.sim('a16:1:modbus a05:2:modbus,distance=1500 hps167s:7,fault=silence --distance 700')
         self.assertEqual([self.mm(sim, sensor) for sensor in (A16, A05)], [700, 1500])
         self.fails(sim, HPS)
-
-    def test_a_fault_for_all_hits_each(self):
         sim = self.sim('a16:1:modbus hps167s:7 --fault silence --counters')
-        self.fails(sim, A16)
-        self.fails(sim, HPS)
+        for sensor in (A16, HPS):
+            self.fails(sim, sensor)
         self.assertEqual(self.counters(sim, 'requests', 'answered'), [(1, 1)] * 2)
 
     def test_two_units_with_one_address_answer_into_each_other(self):
@@ -202,43 +200,21 @@ class Several(Case):
         self.assertIn(bytes.fromhex('FF 02 F2 F3'), self.open(sim).read(12))  # FF + 02 + F2 = 1F3
 
 
-class Power(Case):
-    def cut(self, sim):
-        """Power off; returns at once, and when it began."""
-        began = time.monotonic()
-        sim.send(signal.SIGUSR1)
-        sim.expect('power off for a second', 'err')
-        return began
-
-    def asks_until(self, port, request, length, is_right, baud):
-        """Again and again."""
-        began = time.monotonic()
-        port.timeout = 0.2
-        while not is_right(self.ask(port, request, length, baud)):
-            self.assertLess(time.monotonic() - began, e2e.PATIENCE)
-        port.timeout = e2e.PATIENCE
-
     def test_nothing_answers_without_power_and_what_is_kept_is_there_afterwards(self):
         sim = self.sim('a16:1:modbus hps167s:7 --distance 754 --counters')
         port = self.open(sim)
         for request, baud in ((e2e.adu(1, 6, 2, 0, 0, 5), 9600), (e2e.adu(7, 6, 0, 0x10, 0, 9), 19200)):
             self.assertEqual(self.ask(port, request, 8, baud), request)
-        began = self.cut(sim)
-        self.asks_until(port, e2e.adu(5, 3, 2, 0, 0, 1), 7, lambda said: said == e2e.registers(5, 5), 9600)
+        began = time.monotonic()
+        sim.send(signal.SIGUSR1)
+        sim.expect('power off for a second', 'err')
+        port.timeout = 0.2
+        while self.ask(port, e2e.adu(5, 3, 2, 0, 0, 1), 7, 9600) != e2e.registers(5, 5):
+            self.assertLess(time.monotonic() - began, e2e.PATIENCE)
         self.assertGreater(time.monotonic() - began, 1)
+        port.timeout = e2e.PATIENCE
         self.assertEqual(self.ask(port, e2e.adu(9, 3, 0, 8, 0, 4), 13, 19200)[:5], bytes((9, 3, 8, 2, 0xF2)))
         self.assertEqual(self.counters(sim, 'address', 'writes', 'flash_writes'), [(5, 1, 1), (9, 1, 1)])
-
-    @e2e.each(a_new_rate_acts_at_once=('', 115200),
-              a_new_rate_acts_at_once_or_after_the_next_power_on=('--with baud-later', 19200))
-    def rate(self, options, rate):
-        sim = self.sim(f'hps167s {options}')
-        port = self.open(sim)
-        request = e2e.adu(1, 6, 0, 0x11, 0, 3)
-        self.assertEqual(self.ask(port, request, 8), request)
-        self.assertEqual(len(self.ask(port, ASK_HPS, 13, rate)), 13)
-        self.cut(sim)
-        self.asks_until(port, ASK_HPS, 13, lambda said: len(said) == 13, 115200)
 
 
 THE_A05S = e2e.adu(1, 3, 1, 7, 0, 3), bytes.fromhex('01 03 06 00 FA 02 93 09 7A 8F 47')
@@ -246,8 +222,12 @@ NO_SUCH_REGISTER, WRONG_LENGTH = e2e.adu(1, 3, 3, 0, 0, 1), e2e.adu(1, 3, 0, 8, 
 BROADCAST, DATA_TYPE = e2e.adu(255, 3, 2, 0, 0, 1), e2e.adu(1, 3, 2, 7, 0, 1)
 NEW_ADDRESS, NEW_ADDRESS_OF_HPS = e2e.adu(1, 6, 2, 0, 0, 5), e2e.adu(1, 6, 0, 0x10, 0, 5)
 CONFIGURATION = e2e.adu(1, 3, 0, 2, 0, 4)  # termination, output; warm-up, 180 ms in 32 bits, baud code
-MEASURES = e2e.registers(1, 754, 0xDCB2, 0x0701, 0)
+OFFSET, RATE = e2e.adu(1, 6, 0, 0x14, 0, 10), e2e.adu(1, 6, 0, 0x11, 0, 3)
 WARM = 'hps167s --with warm-up=255'  # s: longer than anything here takes
+
+
+def measured(mm):
+    return e2e.registers(1, mm, 0xDCB2, 0x0701, 0)
 
 
 class Bytes(Case):
@@ -276,14 +256,14 @@ class Bytes(Case):
         a_new_address_of_an_hps167s_is_acknowledged_by_the_old_or_the_new=(
             NEW_ADDRESS_OF_HPS, ('hps167s', NEW_ADDRESS_OF_HPS),
             ('hps167s --with new-address', e2e.adu(5, 6, 0, 0x10, 0, 5))),
-        the_warm_up_of_an_hps167s=(ASK_HPS, ('hps167s', MEASURES), (WARM, b''),
+        the_warm_up_of_an_hps167s=(ASK_HPS, ('hps167s', measured(754)), (WARM, b''),
                                    (f'{WARM} --with warm-up-04', e2e.adu(1, 0x83, 4)),
                                    (f'{WARM} --with warm-up-ff', e2e.registers(1, 0xFFFF, 0, 0xFF, 0xFFFF))),
         what_the_configuration_says=(
             CONFIGURATION, ('hps167s', e2e.registers(1, 0xFFFF, 0, 0, 0xB401)),
             ('hps167s --with output-off', e2e.registers(1, 0xFF00, 0, 0, 0xB401)),
             ('hps167s --with termination-off --with warm-up=7', e2e.registers(1, 0x00FF, 0x0700, 0, 0xB401))),
-        unasked_measurements=(b'', ('hps167s', b''), ('hps167s --with unasked=100', MEASURES)),
+        unasked_measurements=(b'', ('hps167s', b''), ('hps167s --with unasked=100', measured(754))),
         a_wrong_length_is_refused_by_02_or_03=(WRONG_LENGTH, ('hps167s', e2e.adu(1, 0x83, 2)),
                                                ('hps167s --with count-03', e2e.adu(1, 0x83, 3))))
     def said(self, request, *rows):
@@ -297,12 +277,16 @@ class Bytes(Case):
             else:
                 self.assertEqual(self.ask(port, request, len(response) or 1), response, device)
 
-    @e2e.each(an_offset_replaces=('', 764), an_offset_replaces_or_adds=('--with offset-adds', 774))
-    def offset(self, options, distance):
+    @e2e.each(an_offset_replaces=('', (OFFSET, OFFSET, 19200), (OFFSET, OFFSET, 19200), (ASK_HPS, measured(764), 19200)),
+              an_offset_replaces_or_adds=('--with offset-adds', (OFFSET, OFFSET, 19200), (OFFSET, OFFSET, 19200),
+                                          (ASK_HPS, measured(774), 19200)),
+              a_new_rate_acts_at_once=('', (RATE, RATE, 19200), (ASK_HPS, measured(754), 115200)),
+              a_new_rate_acts_at_once_or_after_the_next_power_on=('--with baud-later', (RATE, RATE, 19200),
+                                                                  (ASK_HPS, measured(754), 19200)))
+    def talk(self, options, *steps):
         port = self.open(self.sim(f'hps167s --distance 754 {options}'))
-        for _ in range(2):
-            self.ask(port, e2e.adu(1, 6, 0, 0x14, 0, 10), 8)
-        self.assertEqual(self.ask(port, ASK_HPS, 13)[3:5], distance.to_bytes(2, 'big'))
+        for request, response, baud in steps:
+            self.assertEqual(self.ask(port, request, len(response), baud), response)
 
     def test_an_option_applies_to_the_sensors_that_can_have_it_and_keys_add_to_it(self):
         port = self.open(self.sim(f'{BUS},with=count-03 --with exceptions'))
