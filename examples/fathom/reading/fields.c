@@ -51,12 +51,11 @@ static const field_t fields[] = {
 
 unsigned sensor_columns(const sensor_t *sensor)
 {
-    const results_config_t *const processing = &sensor->processing;
-    const unsigned row = COLUMNS_ROW | COLUMNS_DISTANCE | (processing->has_level ? COLUMNS_LEVEL : 0);
-    if (processing->has_alarm) return COLUMNS_ALARM | row;
     const bool has_temperature =
         sensor->settings.temperature_us != 0 && (sensor->mode->takes & READER_TAKES_TEMPERATURE) != 0;
-    return COLUMNS_READING | row | (sensor->model->has_optics ? COLUMNS_OPTICS : 0) |
+    const unsigned row = COLUMNS_ROW | COLUMNS_DISTANCE | (sensor->processing.has_level ? COLUMNS_LEVEL : 0);
+    if (sensor->processing.has_alarm) return row | COLUMNS_ALARM;
+    return row | COLUMNS_READING | (sensor->model->has_optics ? COLUMNS_OPTICS : 0) |
            (has_temperature ? COLUMNS_TEMPERATURE : 0);
 }
 
@@ -72,55 +71,50 @@ const char *reading_status(const reading_t *reading)
 }
 
 /* Values of a failed attempt are null. */
-static void fill_sample(row_t *row, const reading_t *reading)
+static row_t row_of(const reading_t *reading, char utc[UTC_TEXT])
 {
-    const fathom_sample_t *const sample = &reading->result->sample;
-    const bool is_good = reading->failure == NULL;
-    const reader_facts_t facts = reader_facts(reading->sensor->reader);
-    row->sequence = is_good ? sample->sequence : NO_VALUE;
-    row->interference = is_good ? sample->interference : NO_VALUE;
-    row->distance_mm = is_good && sample->kind == FATHOM_TARGET ? sample->distance_mm : NO_VALUE;
-    row->raw = is_good ? sample->raw : NO_VALUE;
-    row->magnitude = is_good ? sample->magnitude : NO_VALUE;
-    row->ambient = is_good ? sample->ambient : NO_VALUE;
-    row->precision = is_good ? sample->precision : NO_VALUE;
-    row->temperature_dc = is_good && facts.has_temperature ? facts.temperature_dc : NO_VALUE;
-}
-
-static void fill(row_t *row, const reading_t *reading, char utc[UTC_TEXT])
-{
-    const fathom_sample_t *const sample = &reading->result->sample;
+    const sensor_t *const sensor = reading->sensor;
     const result_t *const result = reading->result;
-    const bool has_level = reading->failure == NULL && result->has_level;
-    row->sensor = reading->sensor->name;
-    row->model = reading->sensor->model->name;
-    row->mode = reading->sensor->mode->name;
-    row->utc = utc_text(reading->utc_us, utc);
-    row->alarm = alarm_word(result->alarm);
-    row->status = reading_status(reading);
-    row->address = reading->sensor->mode->has_address ? sample->address : NO_VALUE;
-    row->probe = sample->probe != 0 && reading_has_probe(reading) ? sample->probe : NO_VALUE;
-    row->time_us = (int64_t)reading->time_us;
-    row->is_on = result->is_on;
-    row->level_mm = has_level ? result->level.level_mm : NO_VALUE;
-    row->level_per_mille = has_level ? result->level.per_mille : NO_VALUE;
-    row->volume = has_level ? result->level.volume : NO_VALUE;
-    fill_sample(row, reading);
+    const fathom_sample_t *const sample = &result->sample;
+    const reader_facts_t facts = reader_facts(sensor->reader);
+    const bool is_good = reading->failure == NULL;
+    const bool has_level = is_good && result->has_level;
+    return (row_t){
+        .sensor = sensor->name,
+        .model = sensor->model->name,
+        .mode = sensor->mode->name,
+        .utc = utc_text(reading->utc_us, utc),
+        .alarm = alarm_word(result->alarm),
+        .status = reading_status(reading),
+        .address = sensor->mode->has_address ? sample->address : NO_VALUE,
+        .probe = sample->probe != 0 && reading_has_probe(reading) ? sample->probe : NO_VALUE,
+        .sequence = is_good ? sample->sequence : NO_VALUE,
+        .time_us = (int64_t)reading->time_us,
+        .is_on = result->is_on,
+        .interference = is_good ? sample->interference : NO_VALUE,
+        .distance_mm = is_good && sample->kind == FATHOM_TARGET ? sample->distance_mm : NO_VALUE,
+        .raw = is_good ? sample->raw : NO_VALUE,
+        .magnitude = is_good ? sample->magnitude : NO_VALUE,
+        .ambient = is_good ? sample->ambient : NO_VALUE,
+        .precision = is_good ? sample->precision : NO_VALUE,
+        .temperature_dc = is_good && facts.has_temperature ? facts.temperature_dc : NO_VALUE,
+        .level_mm = has_level ? result->level.level_mm : NO_VALUE,
+        .level_per_mille = has_level ? result->level.per_mille : NO_VALUE,
+        .volume = has_level ? result->level.volume : NO_VALUE,
+    };
 }
 
 void reading_json(json_t *json, const reading_t *reading, unsigned columns)
 {
     char utc[UTC_TEXT];
-    row_t row;
-    fill(&row, reading, utc);
+    const row_t row = row_of(reading, utc);
     record_json(json, fields, &row, columns);
 }
 
 void reading_json_line(FILE *to, const reading_t *reading)
 {
     char utc[UTC_TEXT];
-    row_t row;
-    fill(&row, reading, utc);
+    const row_t row = row_of(reading, utc);
     record_json_line(to, fields, &row, sensor_columns(reading->sensor));
 }
 
@@ -129,8 +123,7 @@ void reading_csv_header(FILE *to, unsigned columns) { record_csv(to, fields, NUL
 void reading_csv(FILE *to, const reading_t *reading, unsigned columns)
 {
     char utc[UTC_TEXT];
-    row_t row;
-    fill(&row, reading, utc);
+    const row_t row = row_of(reading, utc);
     record_csv(to, fields, &row, sensor_columns(reading->sensor), columns);
 }
 
