@@ -23,17 +23,12 @@ TEST(a_switch_says_near_and_far)
     assert_int_equal(chip.asked.echo, -1);
 }
 
-TEST(a_switch_repeats_its_state_at_the_interval)
+TEST(a_switch_repeats_its_state_and_has_no_distance)
 {
     with_a16(FATHOM_SIM_A16_SWITCH);
     see(3000);
     EXPECT(0, 5, "far", "read a16:switch@gpiochip0,in=6 --interval 1000 --count 5");
     assert_in_range(last->took_us, 4000000, 4200000);
-}
-
-TEST(a_switch_as_json_has_a_state_and_no_distance)
-{
-    with_a16(FATHOM_SIM_A16_SWITCH);
     EXPECT(0, 1, "\"status\":\"far\",\"interference\":false,\"distance_mm\":null",
            "read a16:switch@gpiochip0,in=6 --count 1 --format json");
     see(500);
@@ -65,34 +60,27 @@ static bool get_inverted(void *ctx)
     return !pin.get(pin.ctx);
 }
 
-/* The contact goes to the supply. */
-TEST(a_relay_at_an_input_that_is_pulled_down_is_near_when_it_is_high)
+/* The contact goes to ground or to the supply, is normally open or normally closed, and near= says which level is near.
+ * Register 0x0205 of a switch may be 0. */
+TEST(near_is_the_level_of_the_contact_unless_the_user_names_it)
 {
-    with_relay((fathom_sim_a05_config_t){0});
-    chip.in.get = get_inverted;
-    see(3000);
-    EXPECT(0, 1, "far", "read a05:relay@gpiochip0,in=5,bias=down --count 1");
-    see(500);
-    fathom_sim_clock_advance(&bench.clock, 5000000);
-    EXPECT(0, 1, "near", "read a05:relay@gpiochip0,in=5,bias=down --count 1");
-}
-
-/* The normally closed contact; and a switch of negative polarity (register 0x0205 is 0). */
-TEST(near_can_be_the_other_level)
-{
-    with_relay((fathom_sim_a05_config_t){.normally_closed = true});
-    see(500);
-    fathom_sim_clock_advance(&bench.clock, 5000000);
-    EXPECT(0, 1, "near", "read a05:relay@gpiochip0,in=5,bias=up,near=high --count 1");
-    EXPECT(0, 1, "far",
-           "read a05:relay@gpiochip0,in=5,bias=up,near=low --count 1"); /* the normally open one */
-    chip.in.get = get_inverted;
-    EXPECT(0, 1, "near", "read a05:relay@gpiochip0,in=5,bias=down,near=low --count 1");
-    EXPECT(0, 1, "far", "read a05:relay@gpiochip0,in=5,bias=down --count 1");
-}
-
-TEST(near_of_a_switch_is_high_unless_it_is_said)
-{
+    static const struct {
+        bool is_closed, is_inverted;
+        const char *seen, *keys;
+    } rows[] = {
+        {false, true, "near", "bias=down"},       {true, false, "near", "bias=up,near=high"},
+        {true, false, "far", "bias=up,near=low"}, {true, true, "near", "bias=down,near=low"},
+        {true, true, "far", "bias=down"},
+    };
+    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
+        (void)set_up(NULL);
+        with_relay((fathom_sim_a05_config_t){.normally_closed = rows[i].is_closed});
+        if (rows[i].is_inverted) chip.in.get = get_inverted;
+        see(500);
+        fathom_sim_clock_advance(&bench.clock, 5000000);
+        EXPECT(0, 1, rows[i].seen, "read a05:relay@gpiochip0,in=5,%s --count 1", rows[i].keys);
+    }
+    (void)set_up(NULL);
     with_a16(FATHOM_SIM_A16_SWITCH);
     see(500);
     fathom_sim_clock_advance(&bench.clock, 5000000);
@@ -128,17 +116,4 @@ TEST(watch_has_a_lane_of_near_and_far)
     assert_non_null(far);
     assert_true(far < near);
     assert_null(strstr(near, "far")); /* and so it stays */
-}
-
-static void lose(void) { chip.is_away = true; }
-
-TEST(a_contact_whose_chip_goes_is_lost_and_does_not_change)
-{
-    with_a16(FATHOM_SIM_A16_SWITCH);
-    see(500);
-    fathom_sim_clock_advance(&bench.clock, 5000000);
-    at_us = 1000000;
-    happens = lose;
-    EXPECT(1, 1, "near", "read a16:switch@gpiochip0,in=6");
-    expect_err("the chip has gone");
 }

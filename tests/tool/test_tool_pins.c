@@ -58,24 +58,16 @@ TEST(pwm_keeps_an_interval)
     assert_in_range(last->took_us, 2119000, 2135000);
 }
 
-TEST(pwm_as_json_has_the_width)
+TEST(pwm_reports_the_width_and_what_is_no_distance)
 {
     with_a16(FATHOM_SIM_A16_PWM);
     see(4000); /* 23000 us, by A16 1: 4000 mm * 23 / 4 */
     EXPECT(0, 1, "\"status\":\"target\"", "read " PWM " --count 1 --format json");
     assert_non_null(strstr(last->out, "\"mode\":\"pwm\""));
     assert_non_null(strstr(last->out, "\"distance_mm\":4000,\"raw\":23000"));
-}
-
-TEST(pwm_tells_nothing_in_range)
-{
     with_a16(FATHOM_SIM_A16_PWM);
     see(FATHOM_SIM_NO_TARGET);
     EXPECT(0, 1, "no_target", "read " PWM " --count 1");
-}
-
-TEST(a_line_that_stays_high_is_a_fault_with_a_cause)
-{
     with_a16(FATHOM_SIM_A16_PWM);
     fathom_sim_tx_wire(&pins, FATHOM_SIM_WIRE_HIGH);
     EXPECT(0, 1, "fault: the line stays high; check the wire of echo", "read " PWM " --count 1");
@@ -108,28 +100,10 @@ static void spike_of(uint32_t width_us)
 
 static void spike(void) { spike_of(99); }
 
-TEST(noise_is_rejected_and_counted)
-{
-    with_a16(FATHOM_SIM_A16_PWM);
-    at_us = 50000;
-    happens = spike;
-    EXPECT(0, 1, "1234 mm", "read " PWM " --count 1 --stats");
-    expect_err("noises 1, faults 0, missed_edges 0, lost_events 0");
-}
-
 static void cut_with_noise(void)
 {
     spike();
     fathom_sim_tx_wire(&pins, FATHOM_SIM_WIRE_LOW);
-}
-
-TEST(noise_alone_is_told_as_such)
-{
-    with_a16(FATHOM_SIM_A16_PWM);
-    at_us = 50000;
-    happens = cut_with_noise;
-    EXPECT(1, 0, "mm", "read " PWM " --count 1");
-    expect_err("no pulse of the sensor, but 1 shorter ones: noise");
 }
 
 static void cut_with_short_pulse(void)
@@ -138,13 +112,27 @@ static void cut_with_short_pulse(void)
     fathom_sim_tx_wire(&pins, FATHOM_SIM_WIRE_LOW);
 }
 
-TEST(a_pulse_that_is_too_short_is_unknown)
+TEST(noise_is_rejected_and_counted_and_a_short_pulse_is_unknown)
 {
-    with_a16(FATHOM_SIM_A16_PWM);
-    at_us = 50000;
-    happens = cut_with_short_pulse;
-    EXPECT(1, 1, "unknown: all pulses are too short for the sensor; the longest has 1500 us",
-           "read " PWM " --count 1");
+    static const struct {
+        void (*happens)(void);
+        int status;
+        unsigned lines;
+        const char *out, *err;
+    } rows[] = {
+        {spike, 0, 1, "1234 mm", "noises 1, faults 0, missed_edges 0, lost_events 0"},
+        {cut_with_noise, 1, 0, "mm", "no pulse of the sensor, but 1 shorter ones: noise"},
+        {cut_with_short_pulse, 1, 1,
+         "unknown: all pulses are too short for the sensor; the longest has 1500 us", "noises 1"},
+    };
+    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
+        (void)set_up(NULL);
+        with_a16(FATHOM_SIM_A16_PWM);
+        at_us = 50000;
+        happens = rows[i].happens;
+        EXPECT(rows[i].status, rows[i].lines, rows[i].out, "read " PWM " --count 1 --stats");
+        expect_err(rows[i].err);
+    }
 }
 
 /* ---- how exact they are ---- */
@@ -270,39 +258,37 @@ TEST(two_sensors_on_one_chip_are_read_in_one_command)
 
 /* ---- wrong usage ---- */
 
-static void expect_usage(const char *words, const char *text)
-{
-    EXPECT(2, 0, "mm", "read %s", words);
-    expect_err(text);
-    assert_int_equal(chip.opened, 0);
-}
-
 TEST(what_is_wrong_usage_says_what_to_write)
 {
+    static const char *const rows[][2] = {
+        {"a16:pwm@gpiochip0,trigger=17",
+         "a16 in mode pwm needs echo=, such as @gpiochip0,trigger=17,echo=27"},
+        {"a16:pwm@gpiochip0,echo=27", "a16 in mode pwm needs trigger=, such"},
+        {"a16:switch --port gpiochip0", "a16 in mode switch needs in=, such as @gpiochip0,in=5"},
+        {"a16:switch@gpiochip0,in=5,trigger=6", "a16 in mode switch has no trigger="},
+        {"a16:pwm@/dev/ttyUSB0",
+         "a16 in mode pwm needs GPIO lines, such as a16:pwm@gpiochip0,trigger=17,echo=27"},
+        {"a05:relay@/dev/ttyUSB0", "such as a05:relay@gpiochip0,in=5"},
+        {"a16:modbus@gpiochip0,in=5", "a16 in mode modbus needs a serial port, and gpiochip0 is a GPIO chip"},
+        {"a05:pwm@gpiochip0,in=5", "unknown mode of a05 'pwm'."},
+        {"a16:pwm@gpiochip0,trigger=17,echo=17",
+         "line 17 of gpiochip0 is used twice, as trigger= and as echo="},
+        {"a16:switch@gpiochip0,in=5,bias=sideways", "bias is 'sideways'. It takes as-is, up, down or off."},
+        {"a16:switch@gpiochip0,in=5,near=by", "near is 'by'. It takes low or high."},
+        {"a16:switch@gpiochip0,in=5,near=", "near is ''."},
+        {"a16:controlled@line,trigger=17", "It takes a chip and a line, such as gpiochip0/17."},
+        {"a16:controlled@line,trigger=gpiochip0/x", "such as gpiochip0/17."},
+        {"a16:auto@line,trigger=gpiochip0/17", "a16 in mode auto has no trigger=. Leave it out."},
+        {PWM ",near=high", "a16 in mode pwm reports distances and has no near="},
+        {PWM " --probes 1", "--probes"},
+        {PWM " --value real-time", "--value"},
+    };
     with_a16(FATHOM_SIM_A16_PWM);
-    expect_usage("a16:pwm@gpiochip0,trigger=17",
-                 "a16 in mode pwm needs echo=, such as @gpiochip0,trigger=17,echo=27");
-    expect_usage("a16:pwm@gpiochip0,echo=27", "a16 in mode pwm needs trigger=, such");
-    expect_usage("a16:switch --port gpiochip0", "a16 in mode switch needs in=, such as @gpiochip0,in=5");
-    expect_usage("a16:switch@gpiochip0,in=5,trigger=6", "a16 in mode switch has no trigger=");
-    expect_usage("a16:pwm@/dev/ttyUSB0",
-                 "a16 in mode pwm needs GPIO lines, such as a16:pwm@gpiochip0,trigger=17,echo=27");
-    expect_usage("a05:relay@/dev/ttyUSB0", "such as a05:relay@gpiochip0,in=5");
-    expect_usage("a16:modbus@gpiochip0,in=5",
-                 "a16 in mode modbus needs a serial port, and gpiochip0 is a GPIO chip");
-    expect_usage("a05:pwm@gpiochip0,in=5", "unknown mode of a05 'pwm'.");
-    expect_usage("a16:pwm@gpiochip0,trigger=17,echo=17",
-                 "line 17 of gpiochip0 is used twice, as trigger= and as echo=");
-    expect_usage("a16:switch@gpiochip0,in=5,bias=sideways",
-                 "bias is 'sideways'. It takes as-is, up, down or off.");
-    expect_usage("a16:switch@gpiochip0,in=5,near=by", "near is 'by'. It takes low or high.");
-    expect_usage("a16:switch@gpiochip0,in=5,near=", "near is ''.");
-    expect_usage("a16:controlled@line,trigger=17", "It takes a chip and a line, such as gpiochip0/17.");
-    expect_usage("a16:controlled@line,trigger=gpiochip0/x", "such as gpiochip0/17.");
-    expect_usage("a16:auto@line,trigger=gpiochip0/17", "a16 in mode auto has no trigger=. Leave it out.");
-    expect_usage(PWM ",near=high", "a16 in mode pwm reports distances and has no near=");
-    expect_usage(PWM " --probes 1", "--probes");
-    expect_usage(PWM " --value real-time", "--value");
+    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
+        EXPECT(2, 0, "mm", "read %s", rows[i][0]);
+        expect_err(rows[i][1]);
+        assert_int_equal(chip.opened, 0);
+    }
 }
 
 TEST(what_asks_and_what_simulates_has_no_pins)

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """fathom read of sensors that send by themselves and misbehave: whatever comes, no wrong reading is printed,
 the run ends in its time, and exit status and message say what it was. What is asked is in
-interop/test_servers_raw.py. It needs real time: CTest runs one such file at a time."""
+interop/test_servers_raw.py, frames out of step are in unit/test_stream_damage.c. It needs real time: CTest runs one such file at a time."""
 import random
 
 import e2e
@@ -46,35 +46,6 @@ class Sending(e2e.Case):
             done = self.stream(sensor, [corrupt(good)], count=1, timeout=500)
             self.assertEqual((self.shown(done, values), done.code), (0, 1), done)
             self.assertIn(': the bytes form no frame of', done.err)
-
-    @e2e.each(**{f'frames_that_come_shifted_by_some_bytes_{sensor}': (sensor, values)
-                 for sensor, values in VALUES.items()})
-    def shifted(self, sensor, values):
-        """Each write ends a frame and begins the next, so that the pauses are in the middle of frames. (Where
-        a shifted frame that is valid follows a pause, a receiver could not tell it from a right one.)"""
-        frame = e2e.frame(*values)
-        for shift in (1, len(frame) // 2, len(frame) - 1):
-            done = self.stream(sensor, [frame[shift:] + frame[:shift]], count=1, timeout=300)
-            self.assertEqual(done.code, 0 if self.shown(done, values) else 1)
-
-    @e2e.each(**{f'frames_without_pauses_of_which_the_beginning_was_missed_{values[-1]}': (sensor, values)
-                 for sensor,
-                 values in (('a05', (1000, 2000, 2047, 1339)), ('a16', (511,)), ('a16', (1953,)))})
-    def without_pauses(self, sensor, values):
-        """FF 03 E8 07 D0 07 FF 05 3B 07: six bytes further it is 1339 2047 1000 2000 with a right sum. And
-        511 mm is FF 01 FF FF, a byte further 65281. Neither may be shown as what it is not."""
-        frame = e2e.frame(*values)
-        for shift in range(len(frame)):
-            if (shift, len(frame)) == (6, 10):
-                continue  # a valid frame at the very beginning, which may be a pause
-            device, reader = self.beside(f'read {sensor} --count 1 --timeout 1000 --format csv')
-            self.assertFalse(reader.has_ended(0.1))  # bytes of before the first poll are dropped
-            device.write(frame[shift:] + frame * 12)
-            done = reader.finish()
-            is_shown = self.shown(done, values) > 0
-            self.assertTrue(is_shown or values != (1953,))
-            self.assertEqual(done.code, 0 if is_shown else 1)
-            self.assertNotIn('no byte was received', done.err)
 
     @e2e.each(**{f'a_stuck_line_{byte:02X}': byte for byte in (0x00, 0xFF, 0x55)})
     def stuck(self, byte):

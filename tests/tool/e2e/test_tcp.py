@@ -5,6 +5,7 @@ comes is late, cut, glued, another's or no Modbus at all. It needs real time: CT
 import os
 import re
 import socket
+import threading
 import time
 
 import e2e
@@ -13,6 +14,7 @@ from tcp_server import adu, registers
 
 SAID = (0x0823, 0xDCB2, 0x0701, 0)  # HPS-167S #5: 2083 mm
 OTHER = (0x03E8, 0xDCB2, 0x0701, 0)  # 1000 mm
+NONSENSE = 'the received bytes are not Modbus TCP. Check the port number (usually 502)'
 
 
 class Case(tcp_server.Case):
@@ -32,6 +34,18 @@ class Case(tcp_server.Case):
 
     def reads(self, reader, code, mm, *said):
         self.assertEqual(self.ends(reader, code, *said).mm, [str(one) for one in mm])
+
+    def meanwhile(self, work):
+        """Does this over and over, until it says that it is over or the connection is gone."""
+        def run():
+            try:
+                while work():
+                    pass
+            except (OSError, AssertionError):  # the tool has what it wanted
+                pass
+        worker = threading.Thread(target=run, daemon=True)
+        worker.start()
+        self.addCleanup(worker.join, e2e.PATIENCE)
 
 
 class NoConnection(Case):
@@ -194,6 +208,18 @@ class Responses(Case):
         self.assertIn(f'the gateway responds with exception {number} (gateway {name}). Check ', first)
         self.assertIn('the connection is open, but nothing was received', second)
 
+    @e2e.each(path_unavailable=(10, 'gateway path unavailable'),
+              target_silent=(11, 'gateway target device failed to respond'))
+    def requested(self, number, name):
+        """By fathom request."""
+        server = self.server()
+        request = self.fathom(f'request 1 3 0x0101 --timeout 500 --port {server}')
+        server.accept()
+        transaction, unit, rest = server.request()
+        self.assertEqual((unit, rest), (1, bytes((3, 1, 1, 0, 1))))
+        server.say(adu(transaction, 1, 0x83, number))
+        self.ends(request, 1, f'the gateway responds with exception {number} ({name}). Check UNIT')
+
     def test_a_silent_server(self):
         server, reader = self.reader('--count 3 --timeout 100')
         for _ in range(3):
@@ -256,8 +282,7 @@ class Broken(Case):
     def test_nonsense(self):
         for nonsense in (b'HTTP/1.1 400 Bad Request\r\n\r\n', b'SSH-2.0-x\r\n', bytes(5) + b'\1\0\0',
                          b'\xff' * 300):
-            self.breaks('the received bytes are not Modbus TCP. Check the port number (usually 502)',
-                        lambda _, nonsense=nonsense: nonsense)
+            self.breaks(NONSENSE, lambda _, nonsense=nonsense: nonsense)
 
     def test_with_reconnect_it_goes_on_at_the_next_connection(self):
         server, reader = self.reader('--reconnect --count 3')
@@ -277,6 +302,121 @@ class Broken(Case):
         again.accept()
         again.say(registers(self.asked(again), 1, *SAID))
         self.reads(reader, 0, [2083])
+
+
+class Hostile(Case):
+    """A server that means harm: the tool ends or goes on in its time, shows no reading that was not sent to it, says why, and
+    prints nothing that drives a terminal. Each server ends with its test."""
+    @e2e.each(**{f'a_header_that_says_{words}_bytes_follow': length for words, length in
+                 (('no', 0), ('one', 1), ('255', 255), ('65535', 65535))})
+    def length(self, length):
+        """Even with the right transaction and the right bytes behind it."""
+        server, reader = self.reader('--timeout 60000')
+        transaction = self.asked(server)
+        response = bytearray(registers(transaction, 1, *SAID))
+        response[4:6] = length.to_bytes(2, 'big')
+        server.say(response)
+        done = self.ends(reader, 1, f'attempt 1: {server}: {NONSENSE}')
+        self.assertEqual(done.mm, [])
+        self.needs_little(done)
+
+    def test_thousands_of_responses_to_other_requests_do_not_hide_the_right_one(self):
+        server, reader = self.reader('--count 1 --timeout 15000')
+        transaction = self.asked(server)
+        server.say(*(registers(transaction ^ (1 + number), 1, *OTHER) for number in range(30000)))
+        server.say(registers(transaction, 1, *SAID))
+        done = self.ends(reader, 0)
+        self.assertEqual(done.mm, ['2083'])
+        self.assertLess(done.cpu, 2)
+
+    @e2e.each(to_other_requests=lambda asked: registers(asked ^ 1, 1, *OTHER),
+              of_other_units=lambda asked: registers(asked, 9, *OTHER),
+              of_other_functions=lambda asked: adu(asked, 1, 4, 2, 3, 0xE8),
+              of_other_lengths=lambda asked: registers(asked, 1, *OTHER[:3]),
+              to_nothing=lambda asked: registers(0, 1, *OTHER))
+    def flood(self, response):
+        """Responses as fast as the connection takes them, without end. They cost processor time, and no more: it
+        ends in 20 s. If requests cannot leave, it gives up after 10 s."""
+        server, reader = self.reader('--count 2 --timeout 700')
+        transaction = self.asked(server)
+        flood = bytes(response(transaction)) * 500
+        self.meanwhile(lambda: server.say(flood) is None)
+        done = self.ends(reader, 1, 'attempt 1: ', 'attempt 2: ')
+        self.assertEqual(done.mm, [])
+        for words in ('wiring', 'resistor', '--baud'):  # of which a connection has none
+            self.assertNotIn(words, done.err)
+
+    def test_a_byte_a_second_of_a_long_response_is_none_and_costs_no_time_of_the_processor(self):
+        server, reader = self.reader('--count 2 --timeout 1500')
+        transaction = self.asked(server)
+        drip = iter(adu(transaction, 1, 3, 250, *bytes(250)))
+        self.meanwhile(lambda: server.say((next(drip),)) is None and not reader.process.poll() and
+                       not time.sleep(1))
+        done = self.ends(reader, 1, 'attempt 2: no response from hps167s:1 ')
+        self.assertEqual(done.mm, [])
+        self.needs_little(done)
+
+    def test_what_came_before_the_request_is_no_response(self):
+        server, reader = self.reader('--count 2 --timeout 1000')
+        transaction = self.asked(server)
+        server.say(registers(transaction, 1, *SAID), *(registers(number, 1, *OTHER) for number in range(3000)))
+        server.request()
+        self.assertEqual(self.ends(reader, 1).mm, ['2083'])
+
+    def test_a_connection_that_ends_after_each_byte_is_tried_again_ever_more_seldom(self):
+        server, reader = self.reader('--reconnect --duration 6')
+        connections = 1
+        while True:
+            server.request()
+            server.say(b'\x00')
+            server.hang_up()
+            if not e2e.is_ready(server.socket, 7) or reader.has_ended():
+                break
+            server.accept()
+            connections += 1
+        done = self.ends(reader, 1, 'the server closed the connection')
+        self.needs_little(done)
+        self.assertLess(connections, 16)
+        self.assertEqual(done.mm, [])
+
+
+class Terminal(Case):
+    """What it says is made of the bytes by which terminals are driven."""
+    HARM = bytes((0x1B, 0x5B, 0x9B, 0x07, 0x0D, 0x08, 0x22, 0x5C, 0xC2, 0x9D, 0x00, 0xFF, 0x1B, 0x63, 0x7F, 0x0A))
+
+    def answers(self, server, offset):
+        """One connection."""
+        said = self.HARM[offset:] + self.HARM[:offset]
+
+        def answer():
+            transaction, unit, (function, *rest) = server.request()
+            if function == 3:
+                size = 2 * rest[3]
+                server.say(adu(transaction, unit, 3, size, *(said * 20)[:size]))
+            else:
+                server.say(adu(transaction, unit, function | 0x80, self.HARM[offset % 16]))
+            return True
+
+        def serve():
+            server.accept()
+            while answer():
+                pass
+        self.meanwhile(serve)
+
+    @e2e.each(**{command.split()[0] + ('_json' if 'json' in command else ''): command for command in (
+        'info hps167s', 'info a16 --format json', 'read hps167s --count 3',
+        'read hps167s --count 3 --format json', 'request 1 3 0x0100 120 --sensor hps167s',
+        'request 1 3 0x0100 120 --format json', 'get a16 address', 'set a16 switch-threshold 900')})
+    def harm(self, command):
+        for offset in (0, 11):
+            server = self.server()
+            self.answers(server, offset)
+            done = self.run_fathom(f'{command} --port {server} --timeout 300')
+            self.assertNotIn(done.code, (2, -6, -11), done)
+            self.assertNotEqual(done.out + done.err, '')
+            self.assertRegex(done.out + done.err, r'\A[\n -~]*\Z')
+            if '--format json' in command:
+                self.assertTrue(done.all_json or done.code)
 
 
 if __name__ == '__main__':
