@@ -210,3 +210,16 @@ TEST(the_transport_does_what_the_functions_do)
     bench.fake.read_fails = true;
     assert_int_equal(fathom_line_poll(transport.line), FATHOM_ERR_PORT);
 }
+
+/* dyp_client.h: FATHOM_ERR_BUSY; line.h: "it is queued already; nothing changed". */
+TEST(a_refused_set_address_changes_neither_the_retry_nor_the_response_of_a_read_in_progress)
+{
+    bench.request.transaction.retries = 1;
+    ask_four();
+    expect_set_address(5, FATHOM_ERR_BUSY);
+    expect_written_after(2 * TIMEOUT_US + REQUEST_US, 2);
+    expect_bytes(1, bench.fake.writes[0].bytes, 5);
+    expect_set_address(5, FATHOM_ERR_BUSY);
+    deliver_all(dyp_four);
+    expect(FATHOM_OK);
+}

@@ -110,3 +110,16 @@ TEST_IN(asked, a_poll_ends_though_the_port_has_ever_more)
     assert_int_equal(bench.fake.reads - before, 16);
     assert_false(fake_drained(&bench.fake));
 }
+
+/* FATHOM_LINE_SEND_US: "how long a port may ... take to send it, before it counts as broken". */
+TEST(a_port_that_never_sends_is_broken_on_a_noisy_line_too)
+{
+    bench.fake.never_sent = true;
+    ask_1(0);
+    expect_written_after(T3_5_US + 200, 1);
+    for (unsigned i = 0; i != 60; i++) {
+        receive_hex("00");
+        run_in_steps(20000, 20000);
+    }
+    expect(FATHOM_ERR_PORT);
+}

@@ -37,6 +37,10 @@ static const conversation_t conversations[] = {
     {"a_listener_gets_the_bytes_after_an_overrun_and_is_told_of_it_before",
      {LISTEN(5000), ARRIVE("FF"), RECEIVE_WITH(OVERRUN, "A1 A7"), HEARD("FF A1 A7", 0), LOST_AT(1, 1)},
      {.bad = 1}},
+    /* bytes were lost between the silence and these */
+    {"bytes_after_an_overrun_are_not_the_first_after_a_silence",
+     {LISTEN(5000), WAIT(10000), RECEIVE_WITH(OVERRUN, "A1 A7"), HEARD("A1 A7", 0), LOST_AT(0, 1)},
+     {.bad = 1}},
     /* what waited as the possible beginning of a response comes before the loss, in the order in which it came */
     {"what_a_transaction_held_back_goes_to_the_listener_before_the_loss",
      {LISTEN(5000), ASK(A, 1), RECEIVE("01 03 02 02"), HEARD("", 0), RECEIVE_WITH(OVERRUN, FRAME),

@@ -68,3 +68,17 @@ TEST(a_cancelled_request_to_unit_255_quarantines_all)
     ask_other(77);
     expect_sent(2 * TIMEOUT_US - 1000, 2000);
 }
+
+/* Two A05 respond to FF, the second one 10 ms later (A05 2(3)1: 65..75 ms). */
+TEST(the_second_response_to_unit_255_is_not_the_next_requests)
+{
+    ask_any();
+    run(65000);
+    receive_first_probe(5, 0xA1, 7);
+    expect_after(100, FATHOM_OK);
+    ask_dyp(&bench.other, 254, 1, &bench.other_value);
+    run(10000);
+    receive_first_probe(254, 0xA1, 7);
+    run(100);
+    assert_int_equal(bench.other_value, 0xDEAD);
+}
