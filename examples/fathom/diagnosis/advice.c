@@ -114,12 +114,10 @@ static uint64_t fact(const failure_t *failure, const char *name, size_t length)
         {"max", facts.max_mm},
         {"whole", failure->is_whole},
     };
-    size_t i = 0;
-    while (strncmp(rows[i].name, name, length) != 0 || rows[i].name[length] != '\0') {
-        i++;
-        assert(i != sizeof rows / sizeof rows[0]); /* the names stand in this file alone */
-    }
-    return rows[i].value;
+    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++)
+        if (strncmp(rows[i].name, name, length) == 0 && rows[i].name[length] == '\0') return rows[i].value;
+    assert(false); /* the names stand in this file alone */
+    return 0;
 }
 
 /* ---- causes ---- */
@@ -187,6 +185,17 @@ static const row_t causes[] = {
     {CHECKSUM, "triggered", "the bytes after the trigger form no frame",
      "Check {settings}, and look for noise"},
 
+    {NO_RESPONSE, "asked late", "the response arrived after the time-out[took: (it took {took} ms)]",
+     "Try a longer --timeout[took:, such as --timeout {timeout}]"},
+    {NO_MATCH, "asked masters", "another master sends requests on this line (to address {asked-address})",
+     NO_MASTER},
+    {NO_MATCH, "asked foreign impossible",
+     "the line works, but address {foreign-address} responds, which no {model} can have",
+     "Check which sensor is connected"},
+    {NO_MATCH, "asked foreign", "the line works, but address {foreign-address} responds", "Try {other}"},
+    {NO_MATCH | STALE, "stream", "frames of {streamed} in automatic mode were received",
+     "Try 'fathom read {streamed} --mode auto'"},
+
     {STALE | CHECKSUM, "listened silence worked", "no byte was received. Earlier readings were good",
      "Check the power and the wires of the sensor"},
     {STALE | CHECKSUM, "listened silence addressed", "no byte was received",
@@ -195,8 +204,6 @@ static const row_t causes[] = {
     {STALE | CHECKSUM, "listened silence", "no byte was received",
      "Check the power and the wire of the sensor's TX. If the sensor does not send automatically, use --mode "
      "modbus. If it has an address, name it with its address, such as {model}:7; 'fathom scan' finds it"},
-    {STALE | CHECKSUM, "listened stream", "frames of {streamed} in automatic mode were received",
-     "Try 'fathom read {streamed} --mode auto'"},
     {STALE | CHECKSUM, "listened addressed foreign", "the line works, but address {foreign-address} sends",
      "Try {other}"},
     {STALE | CHECKSUM, "listened modbus", "Modbus frames were received, but no measurement of {sensor}",
@@ -216,16 +223,6 @@ static const row_t causes[] = {
 
     {EXCEPTION, "", "exception {exception}", NULL},
 
-    {NO_RESPONSE, "asked late", "the response arrived after the time-out[took: (it took {took} ms)]",
-     "Try a longer --timeout[took:, such as --timeout {timeout}]"},
-    {NO_MATCH, "asked masters", "another master sends requests on this line (to address {asked-address})",
-     NO_MASTER},
-    {NO_MATCH, "asked foreign impossible",
-     "the line works, but address {foreign-address} responds, which no {model} can have",
-     "Check which sensor is connected"},
-    {NO_MATCH, "asked foreign", "the line works, but address {foreign-address} responds", "Try {other}"},
-    {NO_MATCH, "asked stream", "frames of {streamed} in automatic mode were received",
-     "Try 'fathom read {streamed} --mode auto'"},
     {NO_MATCH | MALFORMED, "asked crowded",
      "the sensor sends measurements without a request ({own} received), and a request has to fit between two "
      "of them",
