@@ -99,14 +99,14 @@ TEST(a_port_s_own_keys_win_over_the_options)
     SET("hps167s@x,baud=57600,rs485=off,echo=off hps167s@y hps167s@tcp:h", KEY(KEY_BAUD, 115200),
         KEY(KEY_PARITY, FATHOM_PARITY_ODD), KEY(KEY_ECHO, 2), KEY(KEY_RS485, 1));
     expect_line(&site.sensors[0]->line, 57600, FATHOM_PARITY_ODD, 1);
-    assert_false(port(0)->rs485);
-    assert_int_equal(port(0)->echo, 1);
+    assert_false(port(0)->keys.value[KEY_RS485]);
+    assert_int_equal(port(0)->keys.value[KEY_ECHO], 1);
     expect_line(&site.sensors[1]->line, 115200, FATHOM_PARITY_ODD, 1);
-    assert_true(port(1)->rs485);
-    assert_int_equal(port(1)->echo, 2);
+    assert_true(port(1)->keys.value[KEY_RS485]);
+    assert_int_equal(port(1)->keys.value[KEY_ECHO], 2);
     /* of no serial port */
-    assert_false(port(2)->rs485);
-    assert_int_equal(port(2)->echo, 0);
+    assert_false(port(2)->keys.value[KEY_RS485]);
+    assert_int_equal(port(2)->keys.value[KEY_ECHO], 0);
 }
 
 /* HPS-167S 2.2.2: a character has 11 bits. */
@@ -125,7 +125,7 @@ TEST(keys_behind_one_sensor_go_for_all_at_the_port)
     SET("hps167s:1@x hps167s:2@x,baud=57600 hps167s:3@x,baud=57600,echo=on", .path = NULL);
     for (size_t i = 0; i != 3; i++) expect_line(&site.sensors[i]->line, 57600, FATHOM_PARITY_EVEN, 1);
     assert_false(port(0)->has_mixed_lines);
-    assert_int_equal(port(0)->echo, 2);
+    assert_int_equal(port(0)->keys.value[KEY_ECHO], 2);
 }
 
 /* ---- fathom info ---- */

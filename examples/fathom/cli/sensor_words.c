@@ -303,15 +303,15 @@ static bool suit_pins(const port_options_t *port, const port_options_t *other, c
 /* Takes the keys and the options of each port. A line is opened at the settings of its slowest sensor. */
 static bool set_lines(const site_t *site, const sensor_defaults_t *defaults, const sensor_word_t *words)
 {
+    for (line_t *line = site->lines; line != NULL; line = line->next)
+        port_options_take(&line->settings, &defaults->keys);
     for (size_t i = 0; i != site->sensor_count; i++) {
         sensor_t *const sensor = site->sensors[i];
         port_options_t *const port = sensor->port;
         sensor->line = sensor->model->line;
-        port_options_line(port, &defaults->keys, &sensor->line);
+        port_options_line(port, &sensor->line);
         if (port->line.baud == 0 || sensor->line.baud < port->line.baud) port->line = sensor->line;
     }
-    for (line_t *line = site->lines; line != NULL; line = line->next)
-        port_options_take(&line->settings, &defaults->keys);
     for (size_t i = 0; i != site->sensor_count; i++) {
         const fathom_line_settings_t *const its = &site->sensors[i]->line;
         port_options_t *const port = site->sensors[i]->port;

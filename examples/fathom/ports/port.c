@@ -65,14 +65,6 @@ const char *tcp_parse(const char *path, tcp_address_t *address)
 
 /* ---- keys ---- */
 
-/* Leaves *value unchanged if neither has the key. */
-static bool get(const port_keys_t *keys, const port_keys_t *defaults, port_key_t key, uint32_t *value)
-{
-    const port_keys_t *const from = keys->has[key] ? keys : defaults;
-    if (from->has[key]) *value = from->value[key];
-    return from->has[key];
-}
-
 static int32_t pin(const port_keys_t *keys, port_key_t key)
 {
     return keys->has[key] ? (int32_t)(keys->value[key] & UINT16_MAX) : -1;
@@ -80,15 +72,13 @@ static int32_t pin(const port_keys_t *keys, port_key_t key)
 
 void port_options_take(port_options_t *port, const port_keys_t *defaults)
 {
-    const port_keys_t *const keys = &port->keys;
-    uint32_t rs485 = 0;
-    uint32_t echo = 0;
+    port_keys_t *const keys = &port->keys;
     port->kind = port_kind(port->path);
-    if (port->kind != PORT_SERIAL) defaults = keys;
-    (void)get(keys, defaults, KEY_RS485, &rs485);
-    (void)get(keys, defaults, KEY_ECHO, &echo);
-    port->rs485 = rs485 != 0;
-    port->echo = (uint8_t)echo;
+    for (int key = 0; port->kind == PORT_SERIAL && key != PORT_KEYS; key++) {
+        if (keys->has[key] || !defaults->has[key]) continue;
+        keys->has[key] = true;
+        keys->value[key] = defaults->value[key];
+    }
     port->pins = (pin_options_t){.trigger = pin(keys, KEY_TRIGGER),
                                  .chip = keys->has[KEY_TRIGGER] ? (keys->value[KEY_TRIGGER] >> 16) + 1 : 0,
                                  .echo = pin(keys, KEY_PULSE),
@@ -97,16 +87,14 @@ void port_options_take(port_options_t *port, const port_keys_t *defaults)
                                  .near = (uint8_t)keys->value[KEY_NEAR]};
 }
 
-void port_options_line(const port_options_t *port, const port_keys_t *defaults, fathom_line_settings_t *line)
+/* Two stop bits take the place of the parity bit: a character has 11 bits either way (HPS-167S 2.2.2). */
+void port_options_line(const port_options_t *port, fathom_line_settings_t *line)
 {
-    uint32_t value = 0;
-    if (get(&port->keys, defaults, KEY_BAUD, &value)) line->baud = value;
-    if (get(&port->keys, defaults, KEY_STOP_BITS, &value)) {
-        line->stop_bits = (uint8_t)value;
-        /* Two of them take the place of the parity bit: a character has 11 bits either way (HPS-167S 2.2.2). */
-        if (value == 2) line->parity = FATHOM_PARITY_NONE;
-    }
-    if (get(&port->keys, defaults, KEY_PARITY, &value)) line->parity = (uint8_t)value;
+    const port_keys_t *const keys = &port->keys;
+    if (keys->has[KEY_BAUD]) line->baud = keys->value[KEY_BAUD];
+    if (keys->has[KEY_STOP_BITS]) line->stop_bits = (uint8_t)keys->value[KEY_STOP_BITS];
+    if (keys->value[KEY_STOP_BITS] == 2) line->parity = FATHOM_PARITY_NONE;
+    if (keys->has[KEY_PARITY]) line->parity = (uint8_t)keys->value[KEY_PARITY];
 }
 
 /* ---- the settings of a line in words ---- */
@@ -120,8 +108,9 @@ const char *parity_name(uint8_t parity)
 
 const char *line_text(const fathom_line_settings_t *settings, char text[LINE_TEXT])
 {
-    (void)snprintf(text, LINE_TEXT, "%" PRIu32 " 8%c%u", settings->baud, "NEO"[settings->parity],
-                   settings -> stop_bits);
+    static const char parities[] = "NEO";
+    (void)snprintf(text, LINE_TEXT, "%" PRIu32 " 8%c%u", settings->baud, parities[settings->parity],
+                   settings->stop_bits);
     return text;
 }
 
@@ -204,7 +193,7 @@ static fathom_status_t set_up_serial(port_t *port)
     char chip[sizeof "gpiochip4294967295"];
     if (!adapter_open(&port->adapter))
         return port_fail(port, PORT_ABSENT, "%s: another adapter took this path", port->name);
-    if (port->options.rs485 &&
+    if (port->options.keys.value[KEY_RS485] != 0 &&
         fathom_posix_set_rs485(&port->serial, &(fathom_posix_rs485_t){0}) != FATHOM_POSIX_OK)
         return fail_serial(port);
     (void)snprintf(chip, sizeof chip, "gpiochip%" PRIu32, port->options.pins.chip - 1);
@@ -230,7 +219,7 @@ static fathom_status_t open_serial(port_t *port)
     port->counts_errors = fathom_posix_line_errors(&port->serial, &port->errors) == FATHOM_POSIX_OK;
     port->parts.silence_us = fathom_silence_us(&options->line);
     port->parts.gap_us = PORT_RESPONSE_GAP_US;
-    port->parts.echo = options->echo;
+    port->parts.echo = (uint8_t)options->keys.value[KEY_ECHO];
     port->parts.senders = &fathom_line_senders;
     port->parts.masters = &fathom_line_masters;
     return FATHOM_OK;

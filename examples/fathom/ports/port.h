@@ -68,19 +68,16 @@ typedef struct {
     fathom_line_settings_t line; /* with which it is opened: those of its slowest sensor */
     bool has_mixed_lines;        /* its sensors have different ones */
     size_t station_count;        /* sensors at it */
-    port_keys_t keys;            /* that stand behind it */
-    /* port_options_take() sets the rest. */
+    port_keys_t keys; /* that stand behind it; port_options_take() adds the defaults, and sets the rest */
     port_kind_t kind;
-    bool rs485;
-    uint8_t echo;
     pin_options_t pins;
 } port_options_t;
 
-/* Sets what follows from the path and the keys. A serial port uses the defaults of the keys that it does not have. */
+/* Sets what follows from the path and the keys. A serial port uses the defaults for the keys that it does not have. */
 void port_options_take(port_options_t *port, const port_keys_t *defaults);
 
-/* Changes the line settings of one of its sensors in the same way. */
-void port_options_line(const port_options_t *port, const port_keys_t *defaults, fathom_line_settings_t *line);
+/* Then changes the line settings of one of its sensors by the keys. */
+void port_options_line(const port_options_t *port, fathom_line_settings_t *line);
 
 /* ---- the settings of a line in words ---- */
 

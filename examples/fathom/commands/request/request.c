@@ -585,7 +585,7 @@ static int start(const host_t *host, const arguments_t *arguments)
         return STATUS_USAGE;
     }
     port_options_take(&options, &options.keys);
-    port_options_line(&options, &options.keys, &request.line);
+    port_options_line(&options, &request.line);
     options.line = request.line;
     request.transaction.timeout_us = is_broadcast(&request)      ? TURNAROUND_US
                                      : settings->timeout_us != 0 ? settings->timeout_us
