@@ -4,12 +4,12 @@
 
 /* Reading and simulating the HPS-167S. */
 
-/* Returns the limits of the user; NULL: none. */
+/* The limits of the user; those that are 0 become the driver's. */
 static fathom_hps167s_limits_t *limits_of(reader_t *reader, const reader_settings_t *settings)
 {
     reader->limits.min_mm = settings->window.min_mm;
     reader->limits.max_mm = settings->window.max_mm;
-    return settings->window.max_mm != 0 ? &reader->limits : NULL;
+    return &reader->limits;
 }
 
 /*
@@ -106,9 +106,9 @@ static bool read_modbus(reader_t *reader, port_t *port, const reader_settings_t 
     fathom_hps167s_config_t config = {.modbus = driver_config(port, settings)};
     /* The pace of the driver applies to the temperature as well. */
     if (settings->temperature_us != 0) config.modbus.period_us = 0;
-    fathom_hps167s_limits_t *const limits = limits_of(reader, settings);
-    if (fathom_hps167s_init(driver, &port->modbus, &config) != FATHOM_OK) return false;
-    if (limits != NULL && fathom_hps167s_set_limits(driver, limits) != FATHOM_OK) return false;
+    if (fathom_hps167s_init(driver, &port->modbus, &config) != FATHOM_OK ||
+        fathom_hps167s_set_limits(driver, limits_of(reader, settings)) != FATHOM_OK)
+        return false;
     reader->sensor = fathom_hps167s_sensor(driver);
     reader->unit = &driver->unit;
     reader->next_baud = &driver->next_baud;
@@ -164,9 +164,9 @@ static bool read_auto(reader_t *reader, port_t *port, const reader_settings_t *s
     fathom_hps167s_auto_t *const driver = &reader->unasked;
     const fathom_hps167s_auto_config_t config = {.stale_us = settings->timeout_us,
                                                  .address = settings->address};
-    fathom_hps167s_limits_t *const limits = limits_of(reader, settings);
-    if (fathom_hps167s_auto_init(driver, &port->line, &config) != FATHOM_OK) return false;
-    if (limits != NULL && fathom_hps167s_auto_set_limits(driver, limits) != FATHOM_OK) return false;
+    if (fathom_hps167s_auto_init(driver, &port->line, &config) != FATHOM_OK ||
+        fathom_hps167s_auto_set_limits(driver, limits_of(reader, settings)) != FATHOM_OK)
+        return false;
     reader->sensor = (fathom_sensor_t){poll_auto, due_us_auto, reader};
     reader->frames = reader->unasked_frames;
     reader->sequence = &driver->sequence;
