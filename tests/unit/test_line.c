@@ -16,6 +16,32 @@ static const suite_t quarantined = {.set_up = set_up_quarantined};
 
 /* ---- setting up ---- */
 
+/* Unit 16 is the unit whose bit is the lowest. No unit is quarantined, so each request is due after the silence, before
+ * any poll too. */
+TEST(a_new_line_knows_of_nothing_whatever_its_memory_held)
+{
+    static const uint8_t fills[] = {0, 0xA5, 0xFF};
+    static const uint8_t units[] = {1, 15, 16};
+    for (size_t i = 0; i != sizeof fills * sizeof units; i++) {
+        set_up(state);
+        bench.config.echo = FATHOM_LINE_ECHO_AUTO;
+        memset(&bench.line, fills[i % sizeof fills], sizeof bench.line);
+        assert_int_equal(init(), FATHOM_OK);
+        for (unsigned c = 0; c != FATHOM_LINE_COUNTERS; c++) assert_int_equal(counter(c), 0);
+        assert_true(fathom_line_is_idle(&bench.line));
+        assert_false(fathom_line_is_queued(&bench.line, &bench.request.transaction));
+        assert_int_equal(fathom_line_get_echo(&bench.line), FATHOM_LINE_ECHO_AUTO);
+        assert_int_equal(fathom_line_last_byte_us(&bench.line), bench.fake.now_us);
+        expect_due(FATHOM_NO_DEADLINE);
+        ask(&bench.request, units[i / sizeof fills], &bench.value, 0);
+        expect_due(T3_5_US);
+        run_in_steps(T3_5_US - 1, T3_5_US - 1);
+        expect_written(0);
+        run_in_steps(1, 1);
+        expect_written(1);
+    }
+}
+
 TEST(t3_5_is_three_and_a_half_characters_up_to_19200_baud_and_1750_us_above)
 {
     assert_int_equal(FATHOM_T3_5_US(9600, 10), 3646);  /* 35 bits / 9600 = 3645.8 us */

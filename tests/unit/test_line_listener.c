@@ -18,6 +18,12 @@ static const conversation_t conversations[] = {
      {LISTEN(5000), ASK(A, 1), RECEIVE("01 03 02 02"), RECEIVE_WITH(SILENCE, RESPONDS), READS(A, 754),
       HEARD("01 03 02 02", 0)},
      {.responses = 1}},
+    {"the_first_bytes_are_after_a_gap_if_it_was_seen",
+     {LISTEN(GAP_US), POLL_AFTER(GAP_US), ARRIVE("01 02"), POLL_AFTER(1), HEARD("01 02", 1)},
+     {0}},
+    {"the_first_bytes_are_after_no_gap_if_it_was_not_seen",
+     {LISTEN(GAP_US), POLL_AFTER(GAP_US - 1), ARRIVE("01 02"), POLL_AFTER(1), HEARD("01 02", 0)},
+     {0}},
     /* the last two bytes may have followed at once: the line was not polled */
     {"a_pause_between_polls_is_no_gap",
      {LISTEN(5000), ARRIVE("FF 07"), POLL_AFTER(20000), ARRIVE("A1 A7"), POLL_AFTER(20000), HEARD(FRAME, 0)},
