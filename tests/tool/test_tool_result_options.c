@@ -26,6 +26,9 @@ static bool set(const char *name, const char *text, results_config_t *config)
 }
 
 #define TANK "mounting=2300,height=2000"
+#define POINTS_32                                                                                            \
+    "0:0/1:1/2:2/3:3/4:4/5:5/6:6/7:7/8:8/9:9/10:10/11:11/12:12/13:13/14:14/15:15/"                           \
+    "16:16/17:17/18:18/19:19/20:20/21:21/22:22/23:23/24:24/25:25/26:26/27:27/28:28/29:29/30:30/31:31"
 
 TEST(a_level_may_be_so)
 {
@@ -43,10 +46,7 @@ TEST(a_level_may_be_so)
          {fathom_tank_horizontal_cylinder, NULL, 0, 5000, 2300, 2000, 0}},
         {TANK ",shape=table,points=0:0/2000:4294967295", {fathom_tank_table, NULL, 2, 0, 2300, 2000, 0}},
         {TANK ",points=65535:70000,shape=table", {fathom_tank_table, NULL, 1, 0, 2300, 2000, 0}},
-        {TANK
-         ",shape=table,points=0:0/1:1/2:2/3:3/4:4/5:5/6:6/7:7/8:8/9:9/10:10/11:11/12:12/13:13/14:14/15:15/"
-         "16:16/17:17/18:18/19:19/20:20/21:21/22:22/23:23/24:24/25:25/26:26/27:27/28:28/29:29/30:30/31:31",
-         {fathom_tank_table, NULL, 32, 0, 2300, 2000, 0}},
+        {TANK ",shape=table,points=" POINTS_32, {fathom_tank_table, NULL, 32, 0, 2300, 2000, 0}},
     };
     for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
         results_config_t config = {0};
@@ -130,46 +130,42 @@ REFUSES(a_median_may_not_be_so, "read a16 --port line",
 #define GROW   ". Level and volume grow from point to point, and the full tank has a volume."
 #define SHAPE  "--level: shape=table takes points= and no capacity=. The last point is the full tank."
 
-REFUSES(
-    a_level_may_not_be_so, "read a16 --port line --level",
-    {"mounting=2300,hight=2000", "--level: unknown key 'hight'. Did you mean height?"},
-    {"2300", "--level: unknown key '2300'. It is one of mounting, height, capacity, shape, points, offset."},
-    {TANK ",capacity=5000,", "--level: unknown key ''"},
-
-    {TANK ",capacity=0", "--level: capacity is '0'. It takes a whole number from 1 to 4294967295."},
-    {TANK ",capacity=4294967296", "capacity is '4294967296'"},
-    {"height=2000,capacity=5000",
-     "--level: mounting is missing. It takes a whole number from 1 to 65535 mm."},
-    {"mounting=2300,capacity=5000",
-     "--level: height is missing. It takes a whole number from 1 to 65535 mm."},
-    {"mounting=0,height=2000,capacity=5000", "--level: mounting is '0'."},
-    {"mounting=65536,height=2000,capacity=5000", "mounting is '65536'"},
-    {"mounting=2300mm,height=2000,capacity=5000", "mounting is '2300mm'"},
-
-    {TANK, "--level: capacity is missing."},
-    {TANK ",capacity=5000,points=500:400", "--level: points= is for shape=table."},
-    {TANK ",capacity=5000,shape=round",
-     "--level: shape is 'round'. It takes upright, horizontal-cylinder or table."},
-    {TANK ",shape=table", SHAPE}, {TANK ",shape=table,points=500:400,capacity=5000", SHAPE},
-    {TANK ",shape=table,points=",
-     POINTS "'. It takes at most 32 of LEVEL:VOLUME, such as 500:400/1500:4000."},
-    {TANK ",shape=table,points=500", POINTS "500'"}, {TANK ",shape=table,points=500:", POINTS "500:'"},
-    {TANK ",shape=table,points=500:400/", POINTS "500:400/'"},
-    {TANK ",shape=table,points=500:4:5", POINTS "500:4:5'"},
-    {TANK ",shape=table,points=65536:1", POINTS "65536:1'"},
-    {TANK ",shape=table,points=1:4294967296", POINTS "1:4294967296'"},
-    {TANK ",shape=table,points=0:0/1:1/2:2/3:3/4:4/5:5/6:6/7:7/8:8/9:9/10:10/11:11/12:12/13:13/14:14/15:15/"
-          "16:16/17:17/18:18/19:19/20:20/21:21/22:22/23:23/24:24/25:25/26:26/27:27/28:28/29:29/30:30/31:31/"
-          "32:32",
-     POINTS "0:0/1:1"},
-    {TANK ",shape=table,points=500:400/500:500/2000:600", "--level: points is wrong at 500:500" GROW},
-    {TANK ",shape=table,points=500:400/600:400/2000:500", "--level: points is wrong at 600:400" GROW},
-    {TANK ",shape=table,points=500:400/600:500/2000:499", "--level: points is wrong at 2000:499" GROW},
-    {TANK ",shape=table,points=2000:0", "--level: points is wrong at 2000:0" GROW},
-    {TANK ",capacity=5000,offset=-32768",
-     "--level: offset is '-32768'. It takes a whole number from -32767 to 32767 mm."},
-    {TANK ",capacity=5000,offset=32768", "offset is '32768'"},
-    {TANK ",capacity=5000,offset=--3", "offset is '--3'"}, {TANK ",capacity=5000,offset=-", "offset is '-'"})
+REFUSES(a_level_may_not_be_so, "read a16 --port line --level",
+        {"mounting=2300,hight=2000", "--level: unknown key 'hight'. Did you mean height?"},
+        {"2300",
+         "--level: unknown key '2300'. It is one of mounting, height, capacity, shape, points, offset."},
+        {TANK ",capacity=5000,", "--level: unknown key ''"},
+        {TANK ",capacity=0", "--level: capacity is '0'. It takes a whole number from 1 to 4294967295."},
+        {TANK ",capacity=4294967296", "capacity is '4294967296'"},
+        {"height=2000,capacity=5000",
+         "--level: mounting is missing. It takes a whole number from 1 to 65535 mm."},
+        {"mounting=2300,capacity=5000",
+         "--level: height is missing. It takes a whole number from 1 to 65535 mm."},
+        {"mounting=0,height=2000,capacity=5000", "--level: mounting is '0'."},
+        {"mounting=65536,height=2000,capacity=5000", "mounting is '65536'"},
+        {"mounting=2300mm,height=2000,capacity=5000", "mounting is '2300mm'"},
+        {TANK, "--level: capacity is missing."},
+        {TANK ",capacity=5000,points=500:400", "--level: points= is for shape=table."},
+        {TANK ",capacity=5000,shape=round",
+         "--level: shape is 'round'. It takes upright, horizontal-cylinder or table."},
+        {TANK ",shape=table", SHAPE}, {TANK ",shape=table,points=500:400,capacity=5000", SHAPE},
+        {TANK ",shape=table,points=",
+         POINTS "'. It takes at most 32 of LEVEL:VOLUME, such as 500:400/1500:4000."},
+        {TANK ",shape=table,points=500", POINTS "500'"}, {TANK ",shape=table,points=500:", POINTS "500:'"},
+        {TANK ",shape=table,points=500:400/", POINTS "500:400/'"},
+        {TANK ",shape=table,points=500:4:5", POINTS "500:4:5'"},
+        {TANK ",shape=table,points=65536:1", POINTS "65536:1'"},
+        {TANK ",shape=table,points=1:4294967296", POINTS "1:4294967296'"},
+        {TANK ",shape=table,points=" POINTS_32 "/32:32", POINTS "0:0/1:1"},
+        {TANK ",shape=table,points=500:400/500:500/2000:600", "--level: points is wrong at 500:500" GROW},
+        {TANK ",shape=table,points=500:400/600:400/2000:500", "--level: points is wrong at 600:400" GROW},
+        {TANK ",shape=table,points=500:400/600:500/2000:499", "--level: points is wrong at 2000:499" GROW},
+        {TANK ",shape=table,points=2000:0", "--level: points is wrong at 2000:0" GROW},
+        {TANK ",capacity=5000,offset=-32768",
+         "--level: offset is '-32768'. It takes a whole number from -32767 to 32767 mm."},
+        {TANK ",capacity=5000,offset=32768", "offset is '32768'"},
+        {TANK ",capacity=5000,offset=--3", "offset is '--3'"},
+        {TANK ",capacity=5000,offset=-", "offset is '-'"})
 
 #define WHEN "--alarm: when is '"
 #define SAFE ",unknown=on,no-response=on"
@@ -190,7 +186,6 @@ REFUSES(an_alarm_may_not_be_so, "read a16 --port line --alarm",
         {"near<500,no-response=on", "--alarm: unknown is missing. It takes on or off."},
         {"near<500,unknown=on", "--alarm: no-response is missing. It takes on or off."},
         {"near<500,unknown=yes,no-response=on", "--alarm: unknown is 'yes'. It takes on or off."},
-
         {"near<500,holds=1" SAFE, "--alarm: unknown key 'holds'. Did you mean hold?"},
         {"near<500,hold=2000001" SAFE, "--alarm: hold is '2000001'. It takes MS/MS, from 0 to 2000000."},
         {"near<500,hold=1/2000001" SAFE, "hold is '1/2000001'"}, {"near<500,hold=1/" SAFE, "hold is '1/'"},
