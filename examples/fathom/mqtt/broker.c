@@ -5,6 +5,8 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <netdb.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <poll.h>
 #include <signal.h>
 #include <stdarg.h>
@@ -24,7 +26,6 @@ enum {
     GREETING_US = 20000000,
     LOOK_US = 1000000,
     READS = 16,
-    PASSWORD = 1024,
     QOS = 1
 };
 
@@ -50,11 +51,11 @@ static void lose_tls(broker_t *broker)
 {
     const char *const path = broker->settings.path;
     const unsigned line = broker->settings.broker.tls_line;
-    if (broker->tls_error != 0)
+    if (broker->tls_reason != NULL)
         lose(broker,
              "%s:%u: tls: its certificate is not accepted: %s; the broker needs another one, or ca-file: the "
              "authority that has signed it, or host: the name that it is for",
-             path, line, tls_reason(broker->tls_error));
+             path, line, broker->tls_reason);
     else
         lose(broker, "%s:%u: tls: no secure connection: %s", path, line,
              broker->log[0] != '\0' ? broker->log : "the broker has ended it; does this port speak TLS?");
@@ -80,12 +81,11 @@ static bool check(broker_t *broker, int result, int error)
     return false;
 }
 
-/* Of the return code of MQTT 3.1.1 with which the broker refused the client. */
+/* Of the return code of MQTT 3.1.1 with which the broker refused the client. 4 and 5 are about the login. */
 static void lose_refused(broker_t *broker, int code)
 {
-    enum { BAD_LOGIN = 4, NOT_AUTHORIZED = 5 };
     const broker_settings_t *const settings = &broker->settings.broker;
-    if (code != BAD_LOGIN && code != NOT_AUTHORIZED)
+    if (code != 4 && code != 5)
         lose(broker, "it refuses the client %s: %s", settings->client_id, mosquitto_connack_string(code));
     else if (settings->user[0] == '\0')
         lose(broker, "%s:%u: it refuses a client without a name; write user: and password-file:",
@@ -220,6 +220,13 @@ bool broker_send(broker_t *broker, const char *topic, const char *payload, bool 
     return true;
 }
 
+void broker_hold(broker_t *broker, bool is_held)
+{
+    const int value = is_held;
+    if (broker->phase == BROKER_READY)
+        (void)setsockopt(broker->fd, IPPROTO_TCP, TCP_CORK, &value, sizeof value);
+}
+
 static void start_sending(broker_t *broker)
 {
     const broker_settings_t *const settings = &broker->settings.broker;
@@ -240,7 +247,7 @@ static void set_login(broker_t *broker)
 {
     const broker_settings_t *const settings = &broker->settings.broker;
     const char *const path = settings->password_file;
-    char password[PASSWORD] = "";
+    char password[1024] = "";
     if (settings->user[0] == '\0') return;
     if (path[0] != '\0') {
         FILE *const file = fopen(path, "r");
@@ -275,17 +282,14 @@ static void make_client(broker_t *broker)
     char reason[BROKER_TEXT / 2];
     end_client(broker);
     broker->mosq = mosquitto_new(settings->client_id, true, broker);
-    if (broker->mosq == NULL) {
-        lose(broker, "%s", strerror(errno));
-        return;
-    }
+    if (broker->mosq == NULL) end_without_memory();
     mosquitto_connect_callback_set(broker->mosq, on_connect);
     mosquitto_publish_callback_set(broker->mosq, on_publish);
     mosquitto_log_callback_set(broker->mosq, on_log);
     (void)mosquitto_int_option(broker->mosq, MOSQ_OPT_TCP_NODELAY, 1);
     topic_name(&broker->settings, TOPIC_STATUS, NULL, 0, will);
     (void)mosquitto_will_set(broker->mosq, will, sizeof offline - 1, offline, QOS, true);
-    if (!settings->has_tls || tls_set(broker->mosq, settings, &broker->tls_error, reason, sizeof reason))
+    if (!settings->has_tls || tls_set(broker->mosq, settings, &broker->tls_reason, reason, sizeof reason))
         return;
     lose(broker, "%s:%u: tls: %s", broker->settings.path, settings->tls_line, reason);
     end_client(broker);
@@ -312,7 +316,7 @@ static void start_connecting(broker_t *broker)
     sigset_t before;
     broker->settings = *broker->wanted;
     broker->log[0] = '\0';
-    broker->tls_error = 0;
+    broker->tls_reason = NULL;
     if (broker->mosq == NULL || broker->has_changed) make_client(broker);
     if (broker->phase != BROKER_LOST) set_login(broker);
     if (broker->phase == BROKER_LOST) return;
@@ -371,7 +375,7 @@ uint32_t broker_tick(broker_t *broker)
     }
     if (broker->phase == BROKER_LOST) pause_connecting(broker);
     if (broker->phase == BROKER_PAUSE) return broker->until_us > now ? (uint32_t)(broker->until_us - now) : 0;
-    return broker->phase == BROKER_CONNECTING ? FATHOM_NO_DEADLINE : LOOK_US;
+    return LOOK_US;
 }
 
 /* ---- start and end ---- */

@@ -32,14 +32,13 @@ typedef enum {
 } broker_phase_t;
 
 /* An unacknowledged message, for another client. */
-typedef struct broker_sent broker_sent_t;
-struct broker_sent {
-    broker_sent_t *next;
+typedef struct broker_sent {
+    struct broker_sent *next;
     const char *topic;
     bool is_retained;
     int number; /* of libmosquitto; 0: the client does not know the message */
     char payload[];
-};
+} broker_sent_t;
 
 typedef struct {
     fathom_loop_source_t source; /* first: the loop passes it */
@@ -60,7 +59,7 @@ typedef struct {
     broker_sent_t *sent; /* the oldest first */
     unsigned sent_count;
     bool has_changed;           /* the settings: a new client is needed */
-    int tls_error;              /* of OpenSSL, about the broker's certificate; 0: none */
+    const char *tls_reason;     /* why the broker's certificate is not accepted; NULL: unknown */
     char reason[BROKER_TEXT];   /* why the broker is away, */
     char reported[BROKER_TEXT]; /* as the user knows it; "": the user knows of none */
     char log[BROKER_TEXT];      /* the latest error of libmosquitto */
@@ -82,17 +81,17 @@ bool broker_is_free(const broker_t *broker);
 /* Sends a message; `topic` must stay valid. False: libmosquitto does not accept the message. */
 bool broker_send(broker_t *broker, const char *topic, const char *payload, bool is_retained);
 
+/* While they are held, messages wait for others, with which they leave in one segment. */
+void broker_hold(broker_t *broker, bool is_held);
+
 /* Goes on without the loop until something happened, at most max_us. False: the broker is not connected. */
 bool broker_wait(broker_t *broker, uint32_t max_us);
 
 /* Ends the connection; the broker does not publish the will. */
 void broker_end(broker_t *broker);
 
-/* Secures the client. *error gets what is wrong with the broker's certificate, also later. False: the files are wrong. */
-bool tls_set(struct mosquitto *mosq, const broker_settings_t *settings, int *error, char *reason,
+/* Secures the client. *reason gets what is wrong with the broker's certificate, also later. False: `text` says why not. */
+bool tls_set(struct mosquitto *mosq, const broker_settings_t *settings, const char **reason, char *text,
              size_t capacity);
-
-/* What is wrong, in words. */
-const char *tls_reason(int error);
 
 #endif

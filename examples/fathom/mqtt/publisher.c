@@ -100,10 +100,9 @@ static void remove_message(queue_t *queue, bool is_dropped)
 /* Drops the oldest messages, so that `count` more of `size` bytes keep the bounds. */
 static void make_room(publisher_t *publisher, uint32_t count, size_t size)
 {
-    const publish_settings_t *const settings = publisher->settings;
     queue_t *const queue = &publisher->queue;
-    while (queue->count != 0 &&
-           (queue->count + count > settings->queue_messages || queue->bytes + size > settings->queue_bytes))
+    while (queue->count != 0 && (queue->count + count > publisher->settings->queue_messages ||
+                                 queue->bytes + size > publisher->settings->queue_bytes))
         remove_message(queue, true);
 }
 
@@ -141,8 +140,6 @@ static const char *end_payload(publisher_t *publisher)
 /* The present state under a retained topic. */
 static const char *payload_of(publisher_t *publisher, const topic_t *topic)
 {
-    const bool is_entity = topic_is_entity(topic->kind);
-    char utc[UTC_TEXT];
     json_t json = begin_payload(publisher);
     if (topic->kind == TOPIC_STATUS || topic->kind == TOPIC_AVAILABILITY) {
         const bool is_online = topic->kind == TOPIC_STATUS
@@ -152,12 +149,14 @@ static const char *payload_of(publisher_t *publisher, const topic_t *topic)
         return end_payload(publisher);
     }
     json_begin(&json, NULL, '{');
-    if (is_entity)
+    if (topic_is_entity(topic->kind)) {
         topic_json_entity(&json, publisher->settings, topic->kind, topic->sensor, topic->probe);
-    else
+    } else {
+        char utc[UTC_TEXT];
         json_string(&json, "utc", utc_text(publisher->host->utc_us(publisher->host->ctx), utc));
-    if (topic->kind == TOPIC_PUBLISHER) json_string(&json, "version", FATHOM_VERSION_STRING);
-    if (!is_entity) json_string(&json, "boot", publisher->boot);
+        if (topic->kind == TOPIC_PUBLISHER) json_string(&json, "version", FATHOM_VERSION_STRING);
+        json_string(&json, "boot", publisher->boot);
+    }
     if (topic->kind == TOPIC_COUNTERS) stats_json_of_sensor(&json, topic->sensor);
     if (topic->kind == TOPIC_PUBLISHER) {
         json_value(&json, "uptime_s", "%" PRIu64, (now_us(publisher) - publisher->start_us) / 1000000);
@@ -228,8 +227,11 @@ static bool send_message(publisher_t *publisher)
 /* As many as the broker accepts. */
 static void send_next(publisher_t *publisher)
 {
+    const bool has_several = publisher->has_due || publisher->queue.count > 1;
+    if (has_several) broker_hold(&publisher->broker, true);
     while (broker_is_free(&publisher->broker) && (send_retained(publisher) || send_message(publisher))) {
     }
+    if (has_several) broker_hold(&publisher->broker, false);
 }
 
 /* ---- readings ---- */
@@ -328,13 +330,13 @@ uint32_t publisher_tick(publisher_t *publisher)
 
 void publisher_status(const publisher_t *publisher, char *text, size_t capacity)
 {
-    const broker_t *const broker = &publisher->broker;
+    const bool is_connected = publisher->broker.phase == BROKER_READY;
     size_t away = 0;
     for (size_t i = 0; i != publisher->sensor_count; i++)
         if (publisher->sensors[i].presence == SENSOR_AWAY) away++;
     (void)snprintf(text, capacity, "%zu sensors, %zu away; broker %s %s; dropped %" PRIu64,
                    publisher->sensor_count, away, publisher->settings->broker.host,
-                   broker->phase == BROKER_READY ? "connected" : "away", publisher->queue.dropped);
+                   is_connected ? "connected" : "away", publisher->queue.dropped);
 }
 
 /* Waits for the acknowledgement of all that was sent. Sends what still waits, too, unless that is the last message. */

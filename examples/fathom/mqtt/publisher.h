@@ -13,9 +13,8 @@
 
 /* Everything that is published under one topic since the start of the program. A topic stays until the end, also while no
  * sensor has it: a sensor that is named again goes on with its numbers. */
-typedef struct topic topic_t;
-struct topic {
-    topic_t *next;
+typedef struct topic {
+    struct topic *next;
     topic_kind_t kind;
     sensor_t *sensor; /* while is_wanted; NULL: of the publisher */
     uint8_t probe;    /* 0: of the sensor */
@@ -25,18 +24,17 @@ struct topic {
     bool is_due;      /* the broker does not know the present state */
     bool is_known;    /* the broker may have a retained message */
     char name[];
-};
+} topic_t;
 
 /* A reading that waits: the beginning of a JSON object. The age of the reading, and the number of messages of its topic that
  * were dropped before it, are added when it is sent. */
-typedef struct message message_t;
-struct message {
-    message_t *next;
+typedef struct message {
+    struct message *next;
     topic_t *topic;
     uint64_t time_us; /* of the reading, by the host's clock */
     size_t size;      /* of the message with its text */
     char text[];
-};
+} message_t;
 
 /* The oldest message first. If one more exceeds the bounds of the settings, the oldest ones are dropped. */
 typedef struct {

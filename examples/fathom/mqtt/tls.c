@@ -7,11 +7,12 @@
 
 /* An own context, because libmosquitto 2.0 reports that a certificate was not accepted, and not why. */
 
-/* Verifies as OpenSSL does, and stores the error. It may run in the thread that connects. */
+/* Verifies as OpenSSL does, and stores what is wrong. It may run in the thread that connects. */
 static int verify(X509_STORE_CTX *certificate, void *ctx)
 {
     const int result = X509_verify_cert(certificate);
-    if (result <= 0) *(int *)ctx = X509_STORE_CTX_get_error(certificate);
+    if (result <= 0)
+        *(const char **)ctx = X509_verify_cert_error_string(X509_STORE_CTX_get_error(certificate));
     return result;
 }
 
@@ -36,7 +37,7 @@ static const char *set_up(SSL_CTX *ssl, const broker_settings_t *settings)
     return NULL;
 }
 
-bool tls_set(struct mosquitto *mosq, const broker_settings_t *settings, int *error, char *reason,
+bool tls_set(struct mosquitto *mosq, const broker_settings_t *settings, const char **reason, char *text,
              size_t capacity)
 {
     SSL_CTX *const ssl = SSL_CTX_new(TLS_client_method());
@@ -44,16 +45,14 @@ bool tls_set(struct mosquitto *mosq, const broker_settings_t *settings, int *err
     const char *const why = ERR_reason_error_string(ERR_peek_last_error());
     if (what == NULL) {
         SSL_CTX_set_verify(ssl, SSL_VERIFY_PEER, NULL);
-        SSL_CTX_set_cert_verify_callback(ssl, verify, error);
+        SSL_CTX_set_cert_verify_callback(ssl, verify, reason);
         (void)mosquitto_int_option(mosq, MOSQ_OPT_SSL_CTX_WITH_DEFAULTS, 0);
         (void)mosquitto_void_option(mosq, MOSQ_OPT_SSL_CTX, ssl);
     } else {
-        (void)snprintf(reason, capacity, "%s cannot be used: %s", what,
+        (void)snprintf(text, capacity, "%s cannot be used: %s", what,
                        why != NULL ? why : "no reason is given");
     }
     ERR_clear_error();
     SSL_CTX_free(ssl); /* libmosquitto keeps a reference */
     return what == NULL;
 }
-
-const char *tls_reason(int error) { return X509_verify_cert_error_string(error); }

@@ -18,8 +18,6 @@
 
 static const char command[] = "publish";
 
-enum { STATUS_TEXT = 256 };
-
 typedef struct {
     bool check;
 } publish_options_t;
@@ -37,9 +35,9 @@ static struct {
     publish_settings_t settings;
     loop_t loop;
     publisher_t publisher;
-    char status[STATUS_TEXT]; /* that the service manager has, */
-    uint64_t reported_us;     /* since when */
-    uint32_t watchdog_us;     /* from one message to its watchdog to the next; 0: it has none */
+    char status[256];     /* that the service manager has, */
+    uint64_t reported_us; /* since when */
+    uint32_t watchdog_us; /* from one message to its watchdog to the next; 0: it has none */
     /* A file that was read again, while requests on the lines that change are pending. */
     publish_settings_t next_settings;
     site_t next;
@@ -90,7 +88,7 @@ static uint32_t report_status(uint64_t now_us)
     const uint32_t period_us =
         is_watched && publish.watchdog_us < STATUS_US ? publish.watchdog_us : STATUS_US;
     if (publish.reported_us == 0 || now_us - publish.reported_us >= period_us) {
-        char status[STATUS_TEXT];
+        char status[sizeof publish.status];
         publish.reported_us = now_us;
         publisher_status(&publish.publisher, status, sizeof status);
         if (is_watched || strcmp(status, publish.status) != 0)
@@ -231,17 +229,16 @@ static int start(const host_t *host, const arguments_t *arguments)
     const publish_options_t *const options = arguments->settings;
     const origin_t *const origin = &arguments->origin;
     loop_t *const loop = &publish.loop;
-    int status = STATUS_USAGE;
     if (arguments->count == 0)
         (void)reject(origin, "FILE is missing, such as /etc/fathom/site.yaml.");
     else if (arguments->count != 1)
         (void)reject(origin, "%d files are named. Name one.", arguments->count);
-    if (arguments->count != 1) return status;
+    if (arguments->count != 1) return STATUS_USAGE;
     memset(&publish, 0, sizeof publish);
     loop_init(loop, host, &sink, NULL);
-    if (!config_load(&publish.settings, &loop->site, command, arguments->words[0])) return status;
+    if (!config_load(&publish.settings, &loop->site, command, arguments->words[0])) return STATUS_USAGE;
     publisher_init(&publish.publisher, host, &loop->sources, &publish.settings, &loop->site, loop->start_us);
-    status = options->check ? explain() : publish_site(host);
+    const int status = options->check ? explain() : publish_site(host);
     publisher_deinit(&publish.publisher);
     loop_deinit(loop);
     return status;
