@@ -275,7 +275,6 @@ static void decode_modbus(decode_frame_t *frame, context_t *context)
 static void decode_frame(decode_frame_t *frame, context_t *context, const decode_finder_t *finder,
                          const decode_piece_t *piece)
 {
-    char why[DECODE_TEXT] = "";
     frame->piece = piece;
     frame->bytes = finder->input->bytes + piece->offset;
     frame->unit = frame->code = -1;
@@ -284,6 +283,7 @@ static void decode_frame(decode_frame_t *frame, context_t *context, const decode
     frame->is_sure = context->only != NULL;
     frame->meanings = frame->notes = 0;
     if (piece->protocol == 0) {
+        char why[DECODE_TEXT];
         const char *const text = decode_guess(finder, piece, why);
         if (text[0] != '\0') decode_note(frame, "%s", text);
     } else if (piece->protocol == DECODE_MODBUS) {

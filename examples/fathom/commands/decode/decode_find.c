@@ -182,9 +182,10 @@ const char *decode_guess(const decode_finder_t *finder, const decode_piece_t *pi
 {
     const decode_input_t *const input = finder->input;
     const uint8_t *const bytes = input->bytes + piece->offset;
-    const uint8_t have = (uint8_t)(piece->length < 255 ? piece->length : 255);
     const bool may_be_modbus = (finder->protocols & DECODE_MODBUS) != 0;
     const size_t next = piece->offset + piece->length;
+    uint8_t have = 255;
+    if (piece->length < have) have = (uint8_t)piece->length;
     if (have == 1 && bytes[0] == FATHOM_DYP_START && next != input->count &&
         input->bytes[next] == FATHOM_DYP_START)
         return "an FF too many: a frame begins with one, though A16 2(3) prints two";

@@ -154,11 +154,11 @@ static void print_plan(FILE *to, const scan_settings_t *plan)
 static int print_estimate(const scan_settings_t *plan)
 {
     const uint64_t all_us = scan_plan_us(plan);
-    char duration[DURATION_TEXT];
     if (plan->is_json) {
         (void)printf("{\"settings\":%u,\"addresses\":%u,\"duration_s\":%" PRIu64 "}\n", plan->line_count,
                      plan->addresses.last - plan->addresses.first + 1u, (all_us + 999999u) / 1000000u);
     } else {
+        char duration[DURATION_TEXT];
         print_plan(stdout, plan);
         (void)printf(": about %s, and a second for each sensor\n", duration_text(all_us, duration));
     }
@@ -329,11 +329,11 @@ static void print_advice(const scan_finding_t *finding)
         finding->is_double
             ? "a request had two responses: do two sensors have this address? Connect one at a time."
             : kinds[finding->kind].advice;
-    char line[LINE_TEXT];
     char address[32] = "";
+    char line[LINE_TEXT];
+    if (advice == NULL) return;
     if (finding->address != 0) (void)snprintf(address, sizeof address, "address %u at ", finding->address);
-    if (advice != NULL)
-        (void)fprintf(stderr, "fathom: %s%s: %s\n", address, line_text(&finding->line, line), advice);
+    (void)fprintf(stderr, "fathom: %s%s: %s\n", address, line_text(&finding->line, line), advice);
 }
 
 void scan_report(scan_t *scan, const scan_finding_t *finding)
