@@ -128,8 +128,9 @@ static bool print_identity(const values_t *one, const char *one_is, const values
             continue;
         }
         (void)printf("%s %s\n", value_is_same(a, b) ? "the same" : "another", is_unit ? "sensor" : "version");
-        if (is_unit) is_known = true;
-        if (is_unit) is_same = value_is_same(a, b);
+        if (!is_unit) continue;
+        is_known = true;
+        is_same = value_is_same(a, b);
     }
     if (!is_known) (void)puts("unknown whether it is the same sensor: it has no number to compare");
     return is_same;

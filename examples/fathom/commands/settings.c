@@ -236,10 +236,11 @@ static bool read_value(change_t *change, const arguments_t *arguments)
 {
     const setting_t *const setting = change->setting;
     const set_settings_t *const settings = arguments->settings;
-    char text[SETTING_VALUES];
-    if (!setting_value(setting, arguments->words[2], &change->value))
+    if (!setting_value(setting, arguments->words[2], &change->value)) {
+        char text[SETTING_VALUES];
         return reject(&arguments->origin, "%s is '%s'. It takes %s.", setting->name, arguments->words[2],
                       setting_values_text(setting, text));
+    }
     return !setting->has_zero || change->value != 0 ||
            confirm(arguments, settings->session.is_confirmed,
                    "A unit at address 0 may not be found again, and none of its settings can be changed.");
@@ -342,12 +343,13 @@ static void print_reset(bool is_interface)
 static bool fail_reset(bool is_interface, fathom_status_t status)
 {
     const sensor_t *const sensor = session.sensor;
-    char line[LINE_TEXT];
-    if (status == FATHOM_ERR_UNCONFIRMED && is_interface)
+    if (status == FATHOM_ERR_UNCONFIRMED && is_interface) {
+        char line[LINE_TEXT];
         return session_fail(&session, FATHOM_OK,
                             "the reset was sent, but then the sensor could not be read. It is at address 1, "
                             "19200 8E1, or still at address %u, %s. Run 'fathom scan --port %s'",
                             sensor->address, line_text(&sensor->line, line), sensor->port->path);
+    }
     if (status == FATHOM_ERR_UNCONFIRMED)
         return session_fail(&session, FATHOM_OK,
                             "the reset was sent, and no acknowledgement was received. The sensor may have "

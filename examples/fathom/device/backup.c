@@ -160,12 +160,13 @@ static void print_line(FILE *to, const char *name, const char *value, const char
 static void print_row(FILE *to, const value_t *value)
 {
     const setting_t *const setting = value->setting;
-    char text[SETTING_VALUES];
     print_line(to, setting->name, value_text(value), setting->unit, setting->what);
     if (value->held == HELD_NOT_THERE) (void)fprintf(to, "; %s", setting_reason(value->status));
-    if (value->held == HELD_NOT_SETTABLE)
+    if (value->held == HELD_NOT_SETTABLE) {
+        char text[SETTING_VALUES];
         (void)fprintf(to, "; it has %s, which cannot be set: %s", value->text,
                       setting_values_text(setting, text));
+    }
     (void)fputs("\n", to);
 }
 
@@ -223,16 +224,17 @@ static char *trim(char *text)
 static int parse_value(const parser_t *parser, value_t *value, const char *text)
 {
     const setting_t *const setting = value->setting;
-    char values[SETTING_VALUES];
     if (strlen(text) >= sizeof value->text)
         return wrong(parser, "the value of %s is too long", setting->name);
     if (value->line != 0) return wrong(parser, "%s occurs in line %u already", setting->name, value->line);
     value->line = parser->line;
     for (value->held = HELD_NOT_READABLE; value->held <= HELD_NOT_SETTABLE; value->held++)
         if (strcmp(text, words[value->held]) == 0) return STATUS_OK;
-    if (!store(value, text))
+    if (!store(value, text)) {
+        char values[SETTING_VALUES];
         return wrong(parser, "%s takes %s, not '%s'", setting->name, setting_values_text(setting, values),
                      text);
+    }
     if (parser->moves && setting->has_zero && strcmp(value->text, "0") == 0)
         return wrong(parser, "with --as-new no sensor gets address 0. 'fathom set' can do that");
     return STATUS_OK;

@@ -79,7 +79,8 @@ void setting_json(json_t *json, const char *key, const setting_t *setting, const
 {
     char name[SETTING_TEXT];
     const bool can_be_number = setting->kind != SETTING_VERSION && setting->kind != SETTING_IDENTITY;
-    if (key == NULL) key = json_word(setting->name, name);
+    (void)json_word(setting->name, name);
+    if (key == NULL) key = name;
     if (text != NULL && (strcmp(text, "on") == 0 || strcmp(text, "off") == 0))
         json_flag(json, key, strcmp(text, "on") == 0);
     else if (text != NULL && text[0] != '\0' && can_be_number && strspn(text, "-0123456789.") == strlen(text))
@@ -105,13 +106,14 @@ const char *setting_reason(fathom_status_t status)
 void settings_print(FILE *to, const setting_t *settings)
 {
     for (const setting_t *setting = settings; setting->name != NULL; setting++) {
-        char values[SETTING_VALUES];
         (void)fprintf(to, "  %s%s\n      %s", setting->name, setting->read_at == 0 ? " (write-only)" : "",
                       setting->what);
-        if (setting->effect == NULL)
+        if (setting->effect == NULL) {
             (void)fputs("; cannot be set\n", to);
-        else
+        } else {
+            char values[SETTING_VALUES];
             (void)fprintf(to, ": %s\n      %s\n", setting_values_text(setting, values), setting->effect);
+        }
     }
 }
 
@@ -180,22 +182,23 @@ void change_explain(const change_t *change, change_outcome_t outcome, fathom_sta
     const bool is_acknowledged = !facts.is_setting && facts.acknowledgement == FATHOM_OK;
     const char *const response =
         is_acknowledged ? "the sensor acknowledged the write" : "no acknowledgement was received";
-    char text[UNKNOWN_TEXT];
     char why[2 * UNKNOWN_TEXT] = "";
-    if (outcome == CHANGE_UNCONFIRMED)
+    if (outcome == CHANGE_UNCONFIRMED) {
+        char text[UNKNOWN_TEXT];
         (void)snprintf(why, sizeof why, ": %s. %s", response, unknown_text(change, text));
-    else if (outcome == CHANGE_DIFFERS)
+    } else if (outcome == CHANGE_DIFFERS) {
         (void)snprintf(why, sizeof why,
                        ": %s, but it reads back another value. Perhaps this variant does not have it",
                        response);
-    else if (status == FATHOM_ERR_IN_USE)
+    } else if (status == FATHOM_ERR_IN_USE) {
         (void)snprintf(why, sizeof why,
                        ": a sensor responds at address %s already. Two sensors at one address would respond "
                        "at the same time",
                        change->wanted);
-    else if (status == FATHOM_ERR_ARGUMENT || status == FATHOM_ERR_UNSUPPORTED)
+    } else if (status == FATHOM_ERR_ARGUMENT || status == FATHOM_ERR_UNSUPPORTED) {
         /* the value is in range, so the driver does not know the settings of the line */
         (void)snprintf(why, sizeof why, ": the settings of this port's line cannot be changed");
+    }
     (void)session_fail(change->session, why[0] != '\0' ? FATHOM_OK : status, "%s %s: %s%s",
                        change->setting->name, change->wanted, words[outcome], why);
 }
