@@ -439,7 +439,7 @@ static int start(const host_t *host, const arguments_t *arguments)
     const uint8_t wanted = sets[settings->protocol] & (only != NULL ? only->protocols : DECODE_ALL);
     (void)host; /* it opens no port */
     if (settings->sensor != NULL && only == NULL) return STATUS_USAGE;
-    if (wanted == 0) {
+    if (only != NULL && wanted == 0) {
         (void)reject(&arguments->origin, "%s has no frames of this --protocol.", only->name);
         return STATUS_USAGE;
     }
