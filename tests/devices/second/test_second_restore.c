@@ -106,21 +106,18 @@ static void change(const wish_t *wishes, size_t count)
 {
     static char text[DESK_TEXT];
     static char changed[DESK_TEXT];
-    size_t length = 0;
     (void)desk_read("unit", text);
-    for (char *line = strtok(text, "\n"); line != NULL; line = strtok(NULL, "\n")) {
-        for (size_t i = 0; i < count; i++) {
-            const size_t name = strlen(wishes[i].name);
-            if (strncmp(line, wishes[i].name, name) != 0 || strncmp(line + name, " = ", 3) != 0) continue;
-            if (strncmp(line + name + 3, "not ", 4) == 0) continue;
-            length += (size_t)snprintf(changed + length, sizeof changed - length, "%s = %s\n", wishes[i].name,
-                                       wishes[i].value);
-            line = "# changed";
-        }
-        length += (size_t)snprintf(changed + length, sizeof changed - length, "%s\n", line);
+    for (size_t i = 0; i < count; i++) {
+        char key[48];
+        (void)snprintf(key, sizeof key, "\n%s = ", wishes[i].name);
+        const char *const at = strstr(text, key);
+        if (at == NULL || strncmp(at + strlen(key), "not ", 4) == 0) continue;
+        const int length = snprintf(changed, sizeof changed, "%.*s%s%s%s", (int)(at - text), text, key,
+                                    wishes[i].value, strchr(at + 1, '\n'));
+        assert_in_range(length, 1, sizeof changed - 1);
+        memcpy(text, changed, sizeof text);
     }
-    assert_true(length < sizeof changed - 1);
-    desk_write("unit", changed);
+    desk_write("unit", text);
 }
 
 /* ---- restore ---- */
