@@ -346,7 +346,7 @@ static char *entity(size_t number, topic_kind_t kind)
 
 #define ORIGIN "\"origin\":{\"name\":\"fathom\",\"sw_version\":\""
 
-/* The keys: tests/tool/e2e/test_publish_discovery.py. 3 intervals of 2 s, and 30 s. An alarm does not expire; a contact has
+/* The keys: tests/tool/e2e/test_publish.py. 3 intervals of 2 s, and 30 s. An alarm does not expire; a contact has
  * a word and no unit. */
 static const struct {
     size_t sensor;

@@ -8,7 +8,46 @@ import signal
 import e2e
 import mqtt
 
-ONLINE = ('online', 'offline')
+MQTT = 'https://www.home-assistant.io/integrations/mqtt/'
+SENSOR = 'https://www.home-assistant.io/integrations/sensor.mqtt/'
+BINARY = 'https://www.home-assistant.io/integrations/binary_sensor.mqtt/'
+SENSOR_CLASSES = 'https://www.home-assistant.io/integrations/sensor/#device-class'
+BINARY_CLASSES = 'https://www.home-assistant.io/integrations/binary_sensor/#device-class'
+
+# What may stand there: the key, the page that has it in its list of configuration variables, and its type there.
+OF_ALL = {
+    'availability': list,
+    'availability_mode': str,
+    'device': dict,
+    'device_class': str,
+    'expire_after': int,
+    'name': str,
+    'qos': int,
+    'state_topic': str,
+    'unique_id': str,
+    'value_template': str,
+}
+DOCUMENTED = {
+    'sensor': (SENSOR, {**OF_ALL, 'state_class': str, 'unit_of_measurement': str}),
+    'binary_sensor': (BINARY, OF_ALL),
+    'availability': (SENSOR, {'topic': str}),
+    'device': (SENSOR, {'identifiers': list, 'name': str, 'model': str}),
+}
+REQUIRED = {'sensor': {'state_topic'}, 'binary_sensor': {'state_topic'}, 'availability': {'topic'}}
+# "It is recommended to add information about the origin": #discovery-payload
+ORIGIN = (MQTT + '#discovery-payload', {'name': str, 'sw_version': str})
+# <discovery_prefix>/<component>/[<node_id>/]<object_id>/config, of these characters; "Best practice for entities with a unique_id
+# is to set <object_id> to unique_id and omit the <node_id>": #discovery-topic
+TOPIC = (MQTT + '#discovery-topic', re.compile(r'^homeassistant/(sensor|binary_sensor)/([a-zA-Z0-9_-]+)/config$'))
+# The classes that are sent, and the units that their page allows for them.
+CLASSES = {
+    'sensor': (SENSOR_CLASSES, {'distance': {'km', 'm', 'cm', 'mm', 'mi', 'nmi', 'yd', 'in'},
+                                'temperature': {'°C', '°F', 'K'}}),
+    'binary_sensor': (BINARY_CLASSES, {'problem': {None}}),
+}
+# Of `fathom help publishing`.
+ROW = r'^  ([a-zA-Z/]+)  +(\S.*(?:\n {21}\S.*)*)'
+MEMBER = r'^  (\w+)  +((?:all|state|level|alarm)(?:, \w+)*)  +\S'
 
 
 def is_target(message):
@@ -39,36 +78,6 @@ class States(mqtt.Case):
         self.assertEqual([state['seq'] for state in states], [1, 2, 3])
         self.assertEqual(len({state['boot'] for state in states}), 1)
         self.assertFalse(any(one.is_retained for one in got))
-
-    def test_the_median_the_level_and_the_alarm_of_a_sensor_are_its_own(self):
-        # 2300 - 1500 = 800 mm of 2000, 400 of 1000 per mille, of 5000
-        subscriber, _ = self.begin(
-            'tank a16:1:modbus median: 3, level: {mounting: 2300, height: 2000, capacity: 5000}',
-            'gate hps167s:7 alarm: {when: near<1600/1700, unknown: on, no-response: on}, interval: 100',
-            sim='a16:1:modbus hps167s:7 --distance 1500', top='interval: 250')
-        level = mqtt.states(self.wait_for(subscriber, '/tank/level'))[0]
-        self.assertEqual(list(level), ['utc', 'status', 'level_mm', 'level_per_mille', 'volume', 'boot', 'seq', 'age_ms',
-                                       'dropped'])
-        self.assertEqual((level['level_mm'], level['level_per_mille'], level['volume']), (800, 400, 2000))
-        alarm = mqtt.states(self.wait_for(subscriber, '/gate/alarm'))[0]
-        self.assertEqual(list(alarm), ['utc', 'alarm', 'is_on', 'distance_mm', 'boot', 'seq', 'age_ms', 'dropped'])
-        self.assertEqual((alarm['alarm'], alarm['is_on'], alarm['distance_mm']), ('on', True, 1500))
-        self.wait_for(subscriber, '/gate/state', count=2)
-        topics = {one.topic for one in self.messages(subscriber)}
-        self.assertNotIn('fathom/mill/gate/level', topics)
-        self.assertNotIn('fathom/mill/tank/alarm', topics)
-
-    def test_each_probe_of_an_a05_has_its_topic(self):
-        subscriber, _ = self.begin('bumper a05:2:modbus probes: "1,3"', sim='a05:2:modbus --distance 900')
-        for probe in (1, 3):
-            self.assertEqual(mqtt.states(self.wait_for(subscriber, f'/bumper/{probe}/state'))[0]['distance_mm'], 900)
-        self.wait_for(subscriber, '/bumper/3/state', count=2)
-        self.assertEqual({one.topic for one in self.messages(subscriber, '/state')},
-                         {'fathom/mill/bumper/1/state', 'fathom/mill/bumper/3/state'})
-
-    def test_a_temperature_stands_in_the_state(self):
-        subscriber, _ = self.begin('gate hps167s:7 temperature: 1, interval: 200', sim='hps167s:7')
-        self.wait_for(subscriber, '/gate/state', lambda one: isinstance(one.json['temperature_degc'], float))
 
     def test_a_sensor_that_does_not_answer_is_told_with_each_attempt_and_not_available_after_three(self):
         subscriber, _ = self.begin('ghost a16:9:modbus timeout: 100', 'tank a16:1:modbus', top='interval: 200')
@@ -150,6 +159,87 @@ class Alone(mqtt.Case):
         said = broker.said['err'].decode()
         self.assertEqual(re.findall(r'Received SUBSCRIBE from (?!sub\d)\S+', said), [])
         self.assertEqual(re.findall(r'Sending PUBLISH to fathom-mill', said), [])
+
+
+class Discovery(mqtt.Case):
+    """Each key is one that Home Assistant documents, with the type that it documents, and what it names is there."""
+
+    def check_keys(self, what, has, page, documented):
+        for key, value in has.items():
+            self.assertIn(key, documented, f'{what}: {page} has no such key')
+            self.assertIs(type(value), documented[key], f'{what}: {key}: see {page}')
+
+    def check_entity(self, one, topics):
+        page, pattern = TOPIC
+        found = pattern.match(one.topic)
+        self.assertTrue(found, f'{one.topic}: see {page}')
+        self.assertEqual(found[2], one.json['unique_id'], page)
+        page, documented = DOCUMENTED[found[1]]
+        self.check_keys(one, one.json, page, {**documented, 'origin': dict})
+        self.assertLessEqual(REQUIRED[found[1]], set(one.json), page)
+        self.check_keys(one, one.json['device'], *DOCUMENTED['device'])
+        self.check_keys(one, one.json['origin'], *ORIGIN)
+        self.assertEqual(one.json['availability_mode'], 'all')
+        for entry in one.json['availability']:
+            self.check_keys(one, entry, *DOCUMENTED['availability'])
+            self.assertEqual(topics[entry['topic']].payload, 'online')
+        page, classes = CLASSES[found[1]]
+        if 'device_class' in one.json:
+            self.assertIn(one.json.get('unit_of_measurement'), classes[one.json['device_class']], page)
+        for member in re.findall(r'value_json\.(\w+)', one.json['value_template']):
+            self.assertIn(member, topics[one.json['state_topic']].json, one)
+
+    def test_each_entity_is_documented_retained_and_names_topics_that_have_what_it_wants(self):
+        self.broker()
+        link = self.path('bus')
+        self.sim(f'a16:1:modbus hps167s:7 a05:2:modbus --distance 1500 --link {link}')
+        subscriber = self.subscribe('#')
+        self.publish(self.config(self.line(
+            link, 'tank a16:1:modbus level: {mounting: 2300, height: 2000, capacity: 5000}',
+            'gate hps167s:7 temperature: 1, alarm: {when: near<1600, unknown: on, no-response: on}',
+            'bumper.1 a05:2:modbus probes: "1,2"'), top='interval: 250'))
+        self.wait_for(subscriber, '/bumper.1/2/state')
+        self.wait_for(subscriber, '/gate/alarm')
+        topics = {one.topic: one for one in self.messages(subscriber)}
+        entities = [one for one in topics.values() if one.topic.startswith('homeassistant/')]
+        self.assertEqual(len(entities), 8)
+        for one in entities:
+            self.check_entity(one, topics)
+        late = self.subscribe('homeassistant/#')
+        self.assertTrue(late.hear(lambda: len(self.messages(late)) == len(entities)))
+        self.assertTrue(all(one.is_retained for one in self.messages(late)))
+
+
+class Manual(mqtt.Case):
+    """`fathom help publishing`: its topics and their members are those that a subscriber receives."""
+
+    def test_the_topics_and_their_members_are_those_that_arrive(self):
+        page = self.run_fathom('help publishing').out
+        topics = {name: ' '.join(text.split()) for name, text in re.findall(ROW, page[:page.index('An a05')], re.M)}
+        members = re.findall(MEMBER, page[page.index('  member'):], re.M)
+        self.assertEqual(len(members), 13, members)
+        self.broker()
+        subscriber = self.subscribe()
+        self.sim(f'hps167s:7 --link {self.path("bus")}')
+        level, alarm = 'level: {mounting: 9000, height: 9000, capacity: 1}', 'alarm: {when: near<99, unknown: on, no-response: on}'
+        self.publish(self.config(self.line(self.path('bus'), f'gate hps167s:7 temperature: 1, {level}, {alarm}')))
+        for topic in ('gate/state', 'gate/level', 'gate/alarm', 'gate/availability', 'gate/counters', 'mill/publisher'):
+            self.wait_for(subscriber, topic)
+        received = self.messages(subscriber)
+        self.assertTrue(all(one.json for one in received if one.payload.startswith('{')))  # each is a record of schema.json
+        self.assertEqual({name.replace('NAME', 'gate') for name in topics},
+                         {one.topic.removeprefix('fathom/mill/') for one in received})
+        for topic in ('state', 'level', 'alarm'):
+            documented = [name for name, where in members if where == 'all' or topic in where.split(', ')]
+            message = next(one for one in received if one.topic.endswith(f'gate/{topic}')).json
+            self.assertEqual(sorted(documented), sorted(message), topic)
+        publisher = next(one for one in received if one.topic.endswith('/publisher')).json
+        self.assertEqual(topics['publisher'].split(':')[0], ', '.join(publisher))
+        late = self.subscribe()
+        self.wait_for(late, 'gate/state')
+        self.assertEqual({one.topic.removeprefix('fathom/mill/').replace('gate', 'NAME')
+                          for one in self.messages(late) if one.is_retained},
+                         {name for name, text in topics.items() if 'retained' in text})
 
 
 if __name__ == '__main__':
