@@ -5,34 +5,145 @@
     broker.py [--kills 100] [--seed N]     three minutes; --kills 8 is the quick form, 20 s
     broker.py --self-test                  takes a message out of a record, and sees that it is lost
 
-FATHOM is the tool, as for tests/tool/e2e; Mosquitto and its mosquitto_sub have to be there. mqtt_between.py records all that the tool
+FATHOM is the tool, as for tests/tool/e2e; Mosquitto and its mosquitto_sub have to be there. Between records all that the tool
 has sent, and what each broker has acknowledged. At the end: what was acknowledged has come to the subscriber; nothing that was
 sent is missing but what a kill has left unacknowledged, 16 messages at most; the order is kept; and what is missing in the numbers
 is what was counted as dropped, and published. The last line is "N passed, M failed"."""
 import argparse
 import collections
+import contextlib
 import json
 import os
 import random
+import select
 import signal
+import socket
 import sys
+import threading
 import time
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path[:0] = [HERE, os.path.join(os.path.dirname(HERE), 'e2e')]
 import e2e  # noqa: E402: from there
 import mqtt  # noqa: E402
-import mqtt_between  # noqa: E402
 
 LINES, INTERVAL_MS, QUEUE = 4, 40, 50  # of the queue: a quarter of a second of all lines' messages
 UNDER_WAY = 16  # messages that are not acknowledged yet, at most
 LONGEST_PAUSE_S = 70  # 60, and what a busy machine takes
 TOLD_S = 1.2  # so soon the tool tells that more was dropped
+PUBLISH, PUBACK = 3, 4
 
 
 class Wrong(Exception):
     pass
 
+
+# ---- between the publisher and its broker ----
+
+class Sent:
+    """A message that a publisher has sent to a broker: the broker's number, whether it has acknowledged it, and when it was
+    sent, in seconds."""
+
+    def __init__(self, topic, payload, broker, at):
+        self.topic, self.payload, self.broker, self.is_acknowledged, self.at = topic, payload, broker, False, at
+
+    def __repr__(self):
+        return f'{self.topic} {self.payload}{" acknowledged" if self.is_acknowledged else ""}'
+
+
+def packets(data):
+    """The whole packets at its begin, (type, body), and the rest. MQTT 3.1.1, 2.2."""
+    found = []
+    while True:
+        length, at = 0, 1
+        while at < len(data) and at < 5:
+            length |= (data[at] & 127) << 7 * (at - 1)
+            at += 1
+            if not data[at - 1] & 128:
+                break
+        else:
+            return found, data
+        if len(data) < at + length:
+            return found, data
+        found.append((data[0], data[at:at + length]))
+        data = data[at + length:]
+
+
+class Between:
+    """Lets through what a publisher and its broker say, and records what is published and what the broker acknowledges. The
+    connection can be cut at any moment, and the broker be another one after that."""
+
+    def __init__(self):
+        self.listener = socket.socket()
+        self.listener.bind(('127.0.0.1', 0))
+        self.listener.listen()
+        self.number = self.listener.getsockname()[1]
+        self.sent = []  # each time that it was: again too
+        self.target = None  # (the broker's number, its port); None: a client that comes is sent away
+        self.lock = threading.Lock()
+        self.is_over = False
+        self.sockets = ()
+        threading.Thread(target=self._serve, daemon=True).start()
+
+    def end(self):
+        self.is_over = True
+        self.cut()
+        with contextlib.suppress(OSError):
+            self.listener.shutdown(socket.SHUT_RDWR)
+        self.listener.close()
+
+    def cut(self):
+        for one in self.sockets:
+            with contextlib.suppress(OSError):
+                one.shutdown(socket.SHUT_RDWR)
+
+    def count(self):
+        with self.lock:
+            return len(self.sent)
+
+    def _serve(self):
+        while not self.is_over:
+            try:
+                client, _ = self.listener.accept()
+            except OSError:
+                return
+            target = self.target
+            with contextlib.suppress(OSError), client:
+                if target is not None:
+                    with socket.create_connection(('127.0.0.1', target[1])) as broker:
+                        for one in (client, broker):
+                            one.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+                        self.sockets = (client, broker)
+                        self._pass(client, broker, target[0])
+
+    def _pass(self, client, broker, number):
+        rest = {client: b'', broker: b''}
+        waiting = {}  # by packet identifier
+        while True:
+            for one in select.select([client, broker], [], [])[0]:
+                data = one.recv(65536)
+                if not data:
+                    return
+                found, rest[one] = packets(rest[one] + data)
+                for first, body in found:
+                    if one is client and first >> 4 == PUBLISH:
+                        self._note(first, body, number, waiting)
+                    if one is broker and first >> 4 == PUBACK:
+                        with self.lock:
+                            waiting.pop(body[:2]).is_acknowledged = True
+                # Recorded before the other one has it: what has reached a subscriber stands there.
+                (broker if one is client else client).sendall(data)
+
+    def _note(self, first, body, number, waiting):
+        end = 2 + int.from_bytes(body[:2], 'big')
+        assert first >> 1 & 3 == 1, 'QoS 1'
+        one = Sent(body[2:end].decode(), body[end + 2:].decode(), number, time.monotonic())
+        waiting[body[end:end + 2]] = one
+        with self.lock:
+            self.sent.append(one)
+
+
+# ---- what is right ----
 
 def state_of(payload):
     """Of a message with a number: what it says. Else None."""
@@ -52,15 +163,22 @@ def firsts(messages):
     return streams
 
 
-def check_order_and_gaps(messages, what):
-    for (_, topic), states in firsts(messages).items():
+def check_order(messages, what):
+    """Returns the streams."""
+    streams = firsts(messages)
+    for (_, topic), states in streams.items():
         numbers = [state['seq'] for state in states]
         if numbers != sorted(numbers):
             raise Wrong(f'{what}: {topic}: not in order: {numbers}')
-        try:
-            mqtt.check_gaps(states)
-        except AssertionError as why:
-            raise Wrong(f'{what}: {topic}: {why}') from None
+    return streams
+
+
+def check_gaps(streams):
+    """What is missing in the numbers of a topic and a start is what each state says was dropped before it."""
+    for (_, topic), states in streams.items():
+        for number, state in enumerate(states, 1):
+            if state['seq'] != number + state['dropped']:
+                raise Wrong(f'{topic}: message {number} has the number {state["seq"]}, {state["dropped"]} were dropped')
 
 
 def check_acknowledged(sent):
@@ -117,16 +235,9 @@ def check_counters(sent):
 
 def check(sent, received):
     """(messages acknowledged, starts whose counters could be compared, messages dropped)"""
-    check_order_and_gaps([(one.topic, one.payload) for one in sent], 'sent')
+    check_gaps(check_order([(one.topic, one.payload) for one in sent], 'sent'))
     for number, messages in received.items():
-        numbers = collections.defaultdict(list)
-        for topic, payload in messages:
-            state = state_of(payload)
-            if state is not None and state['seq'] not in numbers[state['boot'], topic]:
-                numbers[state['boot'], topic].append(state['seq'])
-        for (_, topic), its in numbers.items():
-            if its != sorted(its):
-                raise Wrong(f'broker {number}: {topic} has come out of order: {its}')
+        check_order(messages, f'received from broker {number}')
     check_acknowledged(sent)
     return (check_received(sent, {number: set(messages) for number, messages in received.items()}), *check_counters(sent))
 
@@ -195,7 +306,7 @@ class Run(mqtt.Case):
                 raise Wrong(f'it does not publish again: {self.tool.said}')
 
     def runTest(self):
-        self.between = mqtt_between.Between()
+        self.between = Between()
         self.addCleanup(self.between.end)
         lines = []
         for line in range(LINES):
@@ -221,10 +332,10 @@ class Run(mqtt.Case):
 
 def records(count=UNDER_WAY + 6, boot='b'):
     """What is right."""
-    sent = [mqtt_between.Sent('fathom/mill/publisher', json.dumps({'boot': boot, 'dropped': 2}), 1, 0)]
+    sent = [Sent('fathom/mill/publisher', json.dumps({'boot': boot, 'dropped': 2}), 1, 0)]
     for seq in range(1, count + 1):
         one = {'boot': boot, 'seq': seq if seq < 3 else seq + 2, 'dropped': 0 if seq < 3 else 2}
-        sent.append(mqtt_between.Sent('fathom/mill/gate/state', json.dumps(one), 1, seq))
+        sent.append(Sent('fathom/mill/gate/state', json.dumps(one), 1, seq))
     for one in sent:
         one.is_acknowledged = True
     return sent

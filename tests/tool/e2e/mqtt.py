@@ -118,13 +118,6 @@ def states(messages):
     return [one.json for one in messages]
 
 
-def check_gaps(states):
-    """Of one topic and one start: what is missing in the numbers is what each state says was dropped before it."""
-    for number, state in enumerate(states, 1):
-        assert state['seq'] == number + state['dropped'], f'message {number} has the number {state["seq"]}, ' \
-            f'{state["dropped"]} were dropped'
-
-
 def certificates(folder, *, days='365', name='localhost', ca='ca'):
     """An authority and a broker's certificate, by openssl: the paths of the authority's, the certificate and its key."""
     def openssl(*words):
