@@ -9,11 +9,10 @@
 #include "reading/fields.h"
 
 /*
- * TURNS: the most polls of the sensors of a line in a row, so that no line keeps the others waiting.
  * ALARM_US: the latest time at which the loop notices that an alarm had no distance for too long.
  * AGAIN_US, CONNECTION_US: when a sensor that ends, and a connection that is not established yet, are polled again.
  */
-enum { TURNS = 16, ALARM_US = 100000, AGAIN_US = 1000, CONNECTION_US = 500000, TEXT = 512 };
+enum { ALARM_US = 100000, AGAIN_US = 1000, CONNECTION_US = 500000, TEXT = 512 };
 
 uint64_t loop_now_us(const loop_t *loop) { return loop->host->now_us(loop->host->ctx); }
 
@@ -429,8 +428,7 @@ static short line_events(const fathom_loop_source_t *source)
     return port_events(&const_line_of(source)->port);
 }
 
-/* True: the sensor had an outcome, or the port is lost. */
-static bool poll_sensor(line_t *line, sensor_t *sensor)
+static void poll_sensor(line_t *line, sensor_t *sensor)
 {
     do {
         fathom_sample_t sample;
@@ -440,25 +438,21 @@ static bool poll_sensor(line_t *line, sensor_t *sensor)
         count_late(line);
         /* Between two requests a driver does not report a lost port, and waiting for the port would return at once. */
         line->is_lost = port_poll(&line->port) == FATHOM_ERR_PORT;
-        if (line->is_lost && (status == FATHOM_PENDING || status == FATHOM_ERR_PORT)) return true;
-        if (status == FATHOM_PENDING) return false;
+        if (status == FATHOM_PENDING || (line->is_lost && status == FATHOM_ERR_PORT)) return;
         take_outcome(line, sensor, status, &sample);
     } while (reader_has_more(sensor->reader));
-    return true;
 }
 
-/* A sensor that had all its attempts is not polled, and sends no more requests. True: a sensor had an outcome. */
-static bool poll_sensors(line_t *line)
+/* A sensor that had all its attempts is not polled, and sends no more requests. */
+static void poll_sensors(line_t *line)
 {
-    bool has_outcome = false;
     bool is_done = true;
     for (sensor_t *sensor = line->sensors; sensor != NULL && !line->is_lost; sensor = sensor->next) {
         if (is_finished(line->loop, sensor, 0)) continue;
-        if (poll_sensor(line, sensor)) has_outcome = true;
+        poll_sensor(line, sensor);
         if (!is_finished(line->loop, sensor, 0)) is_done = false;
     }
     if (is_done) line->state = LINE_ENDING;
-    return has_outcome;
 }
 
 /* Lets the sensors leave their devices as they were before: the driver of some adapters does not end a break when the port
@@ -474,13 +468,10 @@ static bool end_sensors(line_t *line)
 static bool poll_line(fathom_loop_source_t *source)
 {
     line_t *const line = line_of(source);
-    bool has_outcome = true;
     if (line->state == LINE_CONNECTING && !take_port(line, port_poll(&line->port))) return false;
     if (line->state == LINE_CONNECTING) source->is_readable = false; /* nothing is read yet */
-    for (unsigned turn = 0; turn != TURNS && has_outcome; turn++) {
-        if (line->state != LINE_READING || is_over(line->loop)) break;
-        has_outcome = poll_sensors(line);
-        if (!line->is_lost) continue;
+    if (line->state == LINE_READING && !is_over(line->loop)) poll_sensors(line);
+    if (line->is_lost && is_open(line)) {
         lose(line);
         return false;
     }
