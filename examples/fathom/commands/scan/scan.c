@@ -442,7 +442,7 @@ static void print_result(const scan_t *scan)
             scan->terminations, scan->terminated->name, scan->settings->port);
     if (scan->sensors == 0) print_nothing(scan);
     (void)fprintf(stderr, "fathom: sensors found: %" PRIu32 ", after %s\n", scan->sensors,
-                  duration_text(scan_now_us(scan) - scan->start_us, duration));
+                  duration_text(scan_now_us(scan) - scan->progress.start_us, duration));
 }
 
 /* ---- the command ---- */
@@ -496,8 +496,7 @@ static int run(scan_t *scan, const host_t *host)
     print_plan(stderr, settings);
     (void)fprintf(stderr, " takes about %s, and a second for each sensor\n",
                   duration_text(scan_plan_us(settings), duration));
-    scan->start_us = scan_now_us(scan);
-    progress_init(&scan->progress, stderr, scan->start_us, scan_plan_us(settings));
+    progress_init(&scan->progress, stderr, scan_now_us(scan), scan_plan_us(settings));
     scan_listen(scan);
     if (scan->sender.kind == 0 || settings->wake) scan_walk(scan);
     const int status = finish(scan);

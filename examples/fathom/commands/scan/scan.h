@@ -55,7 +55,6 @@ typedef struct {
     const scan_settings_t *settings;
     port_t port;
     progress_t progress;
-    uint64_t start_us;
     uint64_t done_us;       /* part of scan_plan_us() that is done */
     fathom_status_t status; /* FATHOM_OK, or why no further request is sent */
     int output_error;       /* errno */

@@ -66,14 +66,14 @@ uint64_t scan_now_us(const scan_t *scan) { return scan->port.host->now_us(scan->
 static void show_progress(scan_t *scan)
 {
     const uint64_t now_us = scan_now_us(scan);
+    uint64_t done_us = now_us - scan->progress.start_us;
     char doing[LINE_TEXT + 16] = "listens";
-    char line[LINE_TEXT];
-    if (scan->line == NULL) {
-        progress_show(&scan->progress, now_us, now_us - scan->start_us, doing);
-        return;
+    if (scan->line != NULL) {
+        char line[LINE_TEXT];
+        (void)snprintf(doing, sizeof doing, "%s address %u", line_text(scan->line, line), scan->read.address);
+        done_us = scan->done_us;
     }
-    (void)snprintf(doing, sizeof doing, "%s address %u", line_text(scan->line, line), scan->read.address);
-    progress_show(&scan->progress, now_us, scan->settings->listen_us + scan->done_us, doing);
+    progress_show(&scan->progress, now_us, done_us, doing);
 }
 
 /* ---- listening ---- */
@@ -446,6 +446,7 @@ void scan_walk(scan_t *scan)
 {
     const scan_settings_t *const settings = scan->settings;
     char line[LINE_TEXT];
+    scan->done_us = settings->listen_us;
     for (uint8_t i = 0; i != settings->line_count && scan->status == FATHOM_OK; i++) {
         const uint64_t began_us = scan->done_us;
         scan->line = &settings->lines[i];
