@@ -269,8 +269,12 @@ static bool has_known_length(uint8_t function)
     return (function >= READ_COILS && function <= WRITE) || function == WRITE_COILS || function == WRITE_MANY;
 }
 
-static uint8_t known_length_with_zero(const uint8_t *frame, uint8_t have)
+/* Noise has many zeros, so a frame from unit 0 counts only if unit 0 may respond. */
+static bool accepts_zero;
+
+static uint8_t known_length(const uint8_t *frame, uint8_t have)
 {
+    if (frame[UNIT] == 0 && !accepts_zero) return 0;
     if (have <= SIZE) return SIZE + 1;
     const uint8_t function = frame[FUNCTION] & (uint8_t)~FATHOM_MODBUS_EXCEPTION;
     if (!has_known_length(function)) return 0;
@@ -281,23 +285,13 @@ static uint8_t known_length_with_zero(const uint8_t *frame, uint8_t have)
 }
 
 /* A response of another function ends where its CRC is right. */
-static uint8_t any_length_with_zero(const uint8_t *frame, uint8_t have)
+static uint8_t any_length(const uint8_t *frame, uint8_t have)
 {
+    if (frame[UNIT] == 0 && !accepts_zero) return 0;
     for (uint8_t length = LEAST_LENGTH; length <= have && length != 0; length++)
         if (fathom_crc16(frame, length) == 0) return length;
     if (have < LEAST_LENGTH) return LEAST_LENGTH;
     return have < MAX_LENGTH ? (uint8_t)(have + 1) : 0;
-}
-
-/* Noise has many zeros, so a frame from unit 0 counts only if unit 0 may respond. */
-static uint8_t known_length(const uint8_t *frame, uint8_t have)
-{
-    return frame[0] != 0 ? known_length_with_zero(frame, have) : 0;
-}
-
-static uint8_t any_length(const uint8_t *frame, uint8_t have)
-{
-    return frame[0] != 0 ? any_length_with_zero(frame, have) : 0;
 }
 
 /* Returns true if a response of the same function can be that to the request. */
@@ -346,19 +340,17 @@ static fathom_status_t judge_copy(const request_t *request, const port_t *port)
 /* Sends the request once on the open port and waits for its outcome. */
 static void send_request(request_t *request, port_t *port)
 {
-    typedef uint8_t length_t(const uint8_t *frame, uint8_t have);
-    static length_t *const lengths[2][2] = {{any_length, any_length_with_zero},
-                                            {known_length, known_length_with_zero}};
     const uint8_t unit = request->frame[UNIT];
-    const bool has_zero =
+    accepts_zero =
         unit == FATHOM_MODBUS_ANY_UNIT || (unit == FATHOM_MODBUS_BROADCAST && !is_broadcast(request));
     const fathom_protocol_t protocol = {.encode = encode,
-                                        .length = lengths[has_known_length(function_of(request))][has_zero],
+                                        .length = has_known_length(function_of(request)) ? known_length
+                                                                                         : any_length,
                                         .check = fathom_crc16,
                                         .is_request = is_request,
                                         .parse_response = parse_response,
                                         .may_collide = may_collide,
-                                        .is_unit_0_ordinary = has_zero};
+                                        .is_unit_0_ordinary = accepts_zero};
     request->transaction.protocol = &protocol;
     request->transaction.address = unit;
     if (port->kind == PORT_SERIAL) port_listen(port, PORT_LISTEN_US);
