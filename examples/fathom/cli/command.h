@@ -89,25 +89,25 @@ struct option_row {
     size_t has;  /* 1 + the offset of a bool that becomes true when the option is given; 0: there is none */
     uint32_t min;
     uint32_t max;
-    uint32_t scale;                /* 0: 1 */
+    uint32_t scale; /* 0: 1 */
+    uint16_t fits;  /* SUITS_... of a sensor's mode; 0: every mode */
+    char separator;
+    bool is_path;                  /* the value is a file: completion offers files */
     const char *words;             /* "text json csv"; of a text, what completion offers */
     const uint8_t *numbers;        /* of `words`; NULL: their places */
     const char *(*list)(size_t n); /* completion: name n; NULL: there are no more */
-    bool is_path;                  /* the value is a file: completion offers files */
     const char *otherwise;         /* the value of an option whose value was left out */
     const char *takes; /* what values there are, as an object: "MIN-MAX in mm". NULL: follows from the kind */
     const option_t *keys;
     bool (*parse)(const char *text, void *member);
     /* Of KIND_KEYS and KIND_MAP: are the keys consistent? Rejects what is not. */
     bool (*check)(void *structure, const origin_t *origin);
-    const char *needs; /* another option without which this one has no effect */
-    uint16_t fits;     /* SUITS_... of a sensor's mode; 0: every mode */
-    char separator;
+    const char *needs;   /* another option without which this one has no effect */
+    const char *instead; /* of a hidden row that has no effect: the option that the user looks for */
     bool is_required;    /* of a key */
     bool is_once;        /* a second one is an error, and does not replace the first */
     bool is_first;       /* of a key: "value" at the beginning of the list means "key=value" */
     bool is_hidden;      /* an old name that still works */
-    const char *instead; /* of a hidden row that has no effect: the option that the user looks for */
 };
 
 /* Members of a row. NOLINTBEGIN(bugprone-macro-parentheses) */

@@ -416,6 +416,7 @@ static bool set_broker(config_t *config, const yaml_node_t *top)
     enum { PORT = 1883, PORT_WITH_TLS = 8883 };
     broker_settings_t *const broker = &config->top.settings.broker;
     const yaml_node_t *const map = find(config, top, "broker");
+    if (map == NULL) return false; /* read_map() has rejected that */
     const yaml_node_t *const tls = find(config, map, "tls");
     const origin_t origin = at_key(config, map, "password-credential", "password-file");
     broker->line = at_key(config, map, "user", "host").line;
@@ -475,10 +476,10 @@ static bool read_line(config_t *config, const yaml_node_t *map)
     option_given_t given = {{0}};
     if (!read_map(config, map, tables, &line, "lines", &given)) return false;
     const origin_t origin = at_key(config, map, "port", "port");
-    if (strchr(line.port, ',') != NULL)
-        return reject(&origin, "port is '%s'. Write keys in lines of their own, such as baud: 9600.",
-                      line.port);
+    if (strchr(port, ',') != NULL)
+        return reject(&origin, "port is '%s'. Write keys in lines of their own, such as baud: 9600.", port);
     const yaml_node_t *const list = line.sensors;
+    /* NOLINTNEXTLINE(clang-analyzer-core.NullDereference): the key is required */
     for (const int *item = list->data.sequence.items.start; item != list->data.sequence.items.top; item++)
         if (!read_sensor(config, &line, map, node_at(config, *item))) return false;
     return true;

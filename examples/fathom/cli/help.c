@@ -339,9 +339,10 @@ static void complete_command(offer_t it, const command_t *command, char **words,
     }
     const char *const equals = row == NULL && strncmp(it.word, "--", 2) == 0 ? strchr(it.word, '=') : NULL;
     if (equals != NULL) {
-        (void)snprintf(option, sizeof option - 1, "%.*s", (int)(equals - it.word), it.word);
+        const int length = (int)(equals - it.word);
+        (void)snprintf(option, sizeof option, "%.*s", length, it.word);
         row = valued(command, option);
-        (void)strcat(option, "=");
+        (void)snprintf(option, sizeof option, "%.*s=", length, it.word);
         it.before = option;
         it.word = equals + 1;
     }

@@ -349,6 +349,7 @@ static bool set_sensor(sensor_t *sensor, const sensor_word_t *word, const sensor
         return reject(origin, "'%s' has an address already. Leave --address out.", word->word);
     if (word->mode != NULL && defaults->mode != NULL)
         return reject(origin, "'%s' has a mode already. Leave --mode out.", word->word);
+    if (model == NULL) return false; /* sensor_word_parse() has rejected the word */
     sensor->model = model;
     if (!set_mode(sensor, word, defaults->mode, sends_requests)) return false;
     const uint8_t least = model_least_address(model, sensor->mode);
