@@ -359,10 +359,10 @@ static bool read_option(arguments_t *arguments, int argc, char **argv, int *i)
     const origin_t *const origin = &arguments->origin;
     char *const word = argv[*i];
     const bool is_long = word[1] == '-';
-    char *value = is_long ? strchr(word, '=') : word + 2;
+    char *value = is_long ? strchr(word, '=') : NULL;
     option_walk_t walk;
-    if (is_long && value != NULL) *value++ = '\0';
-    if (!is_long && *value == '\0') value = NULL;
+    if (value != NULL) *value++ = '\0';
+    if (!is_long && word[2] != '\0') value = word + 2;
     if (!option_find_word(&walk, tables, word))
         return is_long ? option_reject_unknown(tables, "option", word + 2, origin)
                        : reject(origin, "unknown option '%.2s'.", word);
