@@ -99,11 +99,10 @@ static const char *trait_name(size_t n) { return n < DEVICE_TRAITS ? traits[n].n
 /* Returns the number of the trait that stands before '='; DEVICE_TRAITS: there is none. */
 static size_t find_trait(const char *text)
 {
-    const size_t length = strcspn(text, "=");
+    char name[WORD_TEXT];
     size_t n = 0;
-    while (n != DEVICE_TRAITS &&
-           (strlen(traits[n].name) != length || memcmp(traits[n].name, text, length) != 0))
-        n++;
+    (void)next_word(text, '=', name, sizeof name);
+    while (n != DEVICE_TRAITS && strcmp(traits[n].name, name) != 0) n++;
     return n;
 }
 
@@ -395,9 +394,8 @@ static bool parse_sensor(simulated_t *sensor, char *text, const origin_t *origin
 /* Reads the words of the sensors with their keys. */
 static bool parse_sensors(simulation_t *simulation, const arguments_t *arguments)
 {
-    enum {
-        SEED_STEP = 1000003
-    }; /* two sensors with neighbouring seeds would do everything at the same time */
+    /* Two sensors with neighbouring seeds would do everything at the same time. */
+    enum { SEED_STEP = 1000003 };
     const settings_t *const settings = arguments->settings;
     const origin_t *const origin = &arguments->origin;
     const uint32_t now_us = fathom_sim_pty_now_us();
