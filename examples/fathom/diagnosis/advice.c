@@ -339,10 +339,11 @@ static const row_t *find(const row_t *row, const failure_t *failure)
 
 static void print_place(FILE *to, const failure_t *failure)
 {
-    char text[LINE_TEXT];
     (void)fprintf(to, " at %s", failure->port->name);
-    if (failure->line != NULL && failure->port->kind == PORT_SERIAL)
+    if (failure->line != NULL && failure->port->kind == PORT_SERIAL) {
+        char text[LINE_TEXT];
         (void)fprintf(to, " (%s)", line_text(failure->line, text));
+    }
 }
 
 /* "--baud and --parity (now 9600 8N1; ...)" */
