@@ -26,6 +26,14 @@ TEST(a_response_that_has_begun_when_its_time_is_over_is_waited_for_until_the_gap
     expect_mm(754);
 }
 
+TEST(a_response_that_has_broken_off_when_its_time_is_over_ends_when_it_is_due)
+{
+    receive_half_in_time();
+    const uint32_t due_us = due();
+    run_in_steps(due_us, due_us);
+    expect(FATHOM_ERR_CHECKSUM);
+}
+
 TEST(where_nothing_is_due_no_time_that_passes_brings_it_nearer)
 {
     poll_line();
@@ -168,21 +176,26 @@ TEST(with_a_part_of_a_late_response_the_next_request_is_due_after_the_gap)
 }
 
 /* sensor.h: "how long from now until any of the sensors has something to do": a frame that waits cannot be given while
- * the line holds back what came behind it, which may begin the response. This is an A16 that sends by itself, which has
- * sent two frames and four such bytes. */
-static fathom_sensor_t held(uint32_t stale_us)
+ * the line holds back what came behind it, which may begin the response. This is an A16 that sends by itself. */
+static fathom_a16_auto_t automatic;
+
+static fathom_sensor_t listening(uint32_t stale_us, const char *hex)
 {
-    static const uint8_t came[] = {0xFF, 0x07, 0xA1, 0xA7, 0xFF, 0x07, 0xA1, 0xA7, 0x01, 0x03, 0x02, 0x02};
-    static fathom_a16_auto_t automatic;
     const fathom_a16_auto_config_t config = {.stale_us = stale_us};
     fathom_sample_t sample;
     send();
     assert_int_equal(fathom_a16_auto_init(&automatic, &bench.line, &config), FATHOM_OK);
     const fathom_sensor_t sensor = fathom_a16_auto_sensor(&automatic);
     run_in_steps(10000, 10000);
-    receive(came, sizeof came);
+    receive_hex(hex);
     assert_int_equal(fathom_poll(&sensor, &sample), FATHOM_PENDING);
     return sensor;
+}
+
+/* Two frames and four such bytes. */
+static fathom_sensor_t held(uint32_t stale_us)
+{
+    return listening(stale_us, "FF 07 A1 A7 FF 07 A1 A7 01 03 02 02");
 }
 
 TEST(a_frame_that_waits_behind_bytes_that_are_held_is_due_with_their_gap)
@@ -200,4 +213,51 @@ TEST(a_frame_that_waits_beyond_its_deadline_is_due_with_the_gap_too)
 {
     const fathom_sensor_t sensor = held(5000);
     assert_int_equal(fathom_due_us(&sensor, 1), GAP_US);
+}
+
+TEST(a_silence_behind_a_frame_gives_it_also_with_an_open_transaction)
+{
+    const fathom_sensor_t sensor = listening(0, "FF 02 EF F0");
+    fathom_sample_t sample;
+    assert_int_equal(fathom_due_us(&sensor, 1), GAP_US);
+    bench.fake.now_us += GAP_US;
+    assert_int_equal(fathom_poll(&sensor, &sample), FATHOM_OK);
+    assert_int_equal(sample.distance_mm, 751);
+}
+
+/* A frame, and 3 ms behind its two bytes more one that the line holds back too, so that the frame's own gap is over. */
+static fathom_sensor_t held_later(void)
+{
+    const fathom_sensor_t sensor = listening(0, "FF 02 EF F0 01 03");
+    fathom_sample_t sample;
+    bench.fake.now_us += 3000;
+    receive_hex("02");
+    assert_int_equal(fathom_poll(&sensor, &sample), FATHOM_PENDING);
+    assert_int_equal(bench.line.received_count, 3);
+    bench.fake.now_us += 2000;
+    assert_int_equal(fathom_poll(&sensor, &sample), FATHOM_PENDING);
+    assert_int_equal(fathom_due_us(&sensor, 1), GAP_US - 2000);
+    return sensor;
+}
+
+TEST(bytes_that_the_line_holds_back_are_no_silence_behind_a_frame)
+{
+    const fathom_sensor_t sensor = held_later();
+    fathom_sample_t sample;
+    bench.fake.now_us += GAP_US - 2000; /* it was no response */
+    assert_int_equal(fathom_poll(&sensor, &sample), FATHOM_PENDING);
+    assert_int_equal(automatic.base.stream.counters[FATHOM_STREAM_FRAMES], 0);
+    assert_int_equal(automatic.base.stream.counters[FATHOM_STREAM_UNSURE], 1);
+}
+
+TEST(a_response_right_behind_a_frame_delays_it_and_no_more)
+{
+    const fathom_sensor_t sensor = held_later();
+    fathom_sample_t sample;
+    bench.fake.now_us += 1000;
+    receive_hex("02 F2 38 A1"); /* 754 mm */
+    poll_line();
+    expect_mm(754);
+    assert_int_equal(fathom_poll(&sensor, &sample), FATHOM_OK);
+    assert_int_equal(sample.distance_mm, 751);
 }

@@ -106,7 +106,7 @@ static void with_fault(const job_t *job, uint8_t kind, uint32_t frame, uint32_t 
 }
 
 /* Two starts are enough: each takes the loops and echoes another way round, and the wrap has a test of its own
- * (test_commission_claims.c). */
+ * (test_commission_interrupted.c). */
 static const suite_t suite = {BENCH_TWO_ROUNDS};
 
 TEST(no_fault_at_any_frame_makes_an_outcome_untrue)

@@ -112,3 +112,17 @@ TEST(whatever_interrupts_a_command_it_ends_as_it_says_and_works_again)
     start++;
     assert_int_equal(problems, 0);
 }
+
+TEST(the_clock_may_wrap_at_any_step)
+{
+    const uint32_t start_us = bench_start_us;
+    for (unsigned j = 0; j != jobs_count; j++)
+        for (uint32_t before_us = 0; before_us < 3 * SECOND; before_us += 61 * MS + 7) {
+            bench_start_us = (uint32_t)(0u - before_us);
+            set_up_for(&jobs[j], loops_us[(before_us & 1) == 0], FATHOM_LINE_ECHO_AUTO);
+            assert_int_equal(carry_out(jobs[j].call), FATHOM_OK);
+            assert_int_equal(jobs[j].has(), jobs[j].wanted);
+            assert_true(recovers());
+        }
+    bench_start_us = start_us;
+}
