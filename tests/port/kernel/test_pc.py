@@ -9,7 +9,7 @@ import guest
 
 class Pc(guest.Guest):
     def __init__(self):
-        super().__init__('amd64', 'gcc', ['pc', 'pc_port', 'pc_sensor', 'tty'],
+        super().__init__('amd64', 'gcc', ['pc', 'tty'],
                          ['qemu-system-x86_64', '-m', '128'], 'console=ttyS0')
         cable = self.path('cable')
         self.command += ['-serial', 'chardev:console', '-chardev', f'socket,id=near,path={cable},server=on,wait=off',

@@ -25,7 +25,7 @@ ECHO, TRIGGER = 5, 6  # lines of the PL061
 
 class Virt(guest.Guest):
     def __init__(self):
-        super().__init__('arm64', 'aarch64-linux-gnu-gcc', ['virt', 'virt_uart', 'virt_pins', 'tty'],
+        super().__init__('arm64', 'aarch64-linux-gnu-gcc', ['virt_uart', 'virt_pins', 'tty'],
                          ['qemu-system-aarch64', '-M', 'virt', '-cpu', 'cortex-a53', '-m', '256'], 'console=ttyS0')
         self.command += ['-device', 'pci-serial,chardev=console', '-serial', 'chardev:wire',
                          '-chardev', f'socket,id=wire,path={self.path("wire")},server=on,wait=off',

@@ -137,7 +137,16 @@ static void run_case(const guest_case_t *one)
         printf("FAILED %s: ended with %d\n", one->name, WEXITSTATUS(status));
 }
 
-void guest_begin(void)
+static guest_case_t *cases;
+static guest_case_t **last = &cases;
+
+void guest_add(guest_case_t *one)
+{
+    *last = one;
+    last = &one->next;
+}
+
+int main(void)
 {
     struct termios console;
     (void)mount("dev", "/dev", "devtmpfs", 0, NULL); /* it may be there */
@@ -148,15 +157,7 @@ void guest_begin(void)
         console.c_lflag &= ~(tcflag_t)ECHO;
         (void)tcsetattr(STDIN_FILENO, TCSANOW, &console);
     }
-}
-
-void guest_run(const guest_case_t *cases, size_t count)
-{
-    for (size_t i = 0; i != count; i++) run_case(&cases[i]);
-}
-
-void guest_end(void)
-{
+    for (const guest_case_t *one = cases; one != NULL; one = one->next) run_case(one);
     printf("end\n");
     (void)tcdrain(STDOUT_FILENO);
     (void)reboot(RB_POWER_OFF);

@@ -10,20 +10,23 @@
  * The first program of a machine in QEMU: it runs cases, each in a process of its own, tells on the console what came
  * of them, and turns the machine off. guest.py is at the other end of the console.
  */
-typedef struct {
+typedef struct guest_case {
     const char *name;
     void (*run)(void);
+    struct guest_case *next;
 } guest_case_t;
-#define GUEST_CASE(function)                                                                                 \
-    {                                                                                                        \
-        .name = #function, .run = (function)                                                                 \
-    }
+void guest_add(guest_case_t *one);
 
-/* Before the first case; after the last, which turns the machine off; and each table of them. What is printed besides
- * is for the log. */
-void guest_begin(void);
-void guest_end(void);
-void guest_run(const guest_case_t *cases, size_t count);
+/* GUEST_CASE(a_sentence) {...} defines a case. They run in the order of the files and in these; what is printed besides is
+ * for the log. */
+#define GUEST_CASE(its_name)                                                                                 \
+    static void its_name(void);                                                                              \
+    __attribute__((constructor)) static void add_##its_name(void)                                            \
+    {                                                                                                        \
+        static guest_case_t one = {.name = #its_name, .run = (its_name)};                                    \
+        guest_add(&one);                                                                                     \
+    }                                                                                                        \
+    static void its_name(void)
 
 /* Ends the case. */
 void guest_fail(const char *file, int line, const char *format, ...)

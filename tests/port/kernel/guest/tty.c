@@ -44,6 +44,25 @@ void tty_has(const char *path, tcflag_t cflag, speed_t speed)
     (void)close(fd);
 }
 
+void tty_takes_each(const char *path, const tty_settings_t *rows, size_t count)
+{
+    static const struct {
+        tcflag_t cflag;
+        char letter;
+    } parities[] = {[FATHOM_PARITY_NONE] = {0, 'N'},
+                    [FATHOM_PARITY_EVEN] = {PARENB, 'E'},
+                    [FATHOM_PARITY_ODD] = {PARENB | PARODD, 'O'}};
+    (void)tty_open(path, 38400, FATHOM_PARITY_NONE, 1);
+    for (const tty_settings_t *row = rows; row != rows + count; row++) {
+        const fathom_line_settings_t settings = {row->baud, (uint8_t)row->parity, row->stop_bits};
+        CHECK_INT(fathom_posix_set_line(&tty_port, &settings), FATHOM_POSIX_OK);
+        tty_has(path, parities[row->parity].cflag | (row->stop_bits == 2 ? CSTOPB : 0), row->speed);
+        CHECK_INT(guest_ask("chip %lu %c %d", (unsigned long)row->baud, parities[row->parity].letter,
+                            row->stop_bits),
+                  1);
+    }
+}
+
 void tty_write(const fathom_uart_t *uart, const void *bytes, size_t length)
 {
     CHECK_INT(uart->write(uart->ctx, bytes, length), length);

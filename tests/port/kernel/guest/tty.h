@@ -23,6 +23,15 @@ int tty_raw(const char *path, speed_t speed, tcflag_t cflag);
 /* What the driver has in c_cflag and its rate, read through a descriptor of one's own. */
 void tty_has(const char *path, tcflag_t cflag, speed_t speed);
 
+/* Opens the port, and changes it to each of these settings: the driver and the chip have them then. */
+typedef struct {
+    uint32_t baud;
+    speed_t speed;
+    fathom_parity_t parity;
+    uint8_t stop_bits;
+} tty_settings_t;
+void tty_takes_each(const char *path, const tty_settings_t *rows, size_t count);
+
 /* Writes all of it, calling sent meanwhile. */
 void tty_write(const fathom_uart_t *uart, const void *bytes, size_t length);
 

@@ -8,7 +8,7 @@
 #include "fathom_gpio.h"
 #include "fathom_loop.h"
 #include "fathom_posix.h"
-#include "virt.h"
+#include "guest.h"
 
 /* port/gpio on a PL061 of 8 lines, whose levels test_virt.py sets and sees. */
 
@@ -39,7 +39,7 @@ static bool is_readable(const fathom_gpio_t *gpio, int ms)
 
 /* ---- levels ---- */
 
-static void an_output_has_its_level_from_the_beginning(void)
+GUEST_CASE(an_output_has_its_level_from_the_beginning)
 {
     fathom_pin_t pin = open_output(&trigger, TRIGGER, true);
     CHECK_INT(guest_ask("level %d", TRIGGER), 1);
@@ -52,7 +52,7 @@ static void an_output_has_its_level_from_the_beginning(void)
     CHECK_INT(guest_ask("level %d", TRIGGER), 0);
 }
 
-static void an_input_has_the_level_of_the_wire(void)
+GUEST_CASE(an_input_has_the_level_of_the_wire)
 {
     static fathom_gpio_t input;
     CHECK_INT(fathom_gpio_open_input(&input, CHIP, CONTACT, FATHOM_GPIO_BIAS_AS_IS), FATHOM_GPIO_OK);
@@ -63,7 +63,7 @@ static void an_input_has_the_level_of_the_wire(void)
     }
 }
 
-static void an_edge_wakes_a_program_that_sleeps(void)
+GUEST_CASE(an_edge_wakes_a_program_that_sleeps)
 {
     const fathom_pin_t pin = open_edges(&echo, ECHO);
     CHECK(!is_readable(&echo, 20));
@@ -85,7 +85,7 @@ static int open_it(void *ctx)
     return -(int)fathom_gpio_open_input(&other, CHIP, CONTACT, FATHOM_GPIO_BIAS_AS_IS);
 }
 
-static void a_line_is_had_by_one_program(void)
+GUEST_CASE(a_line_is_had_by_one_program)
 {
     static fathom_gpio_t second;
     (void)open_edges(&echo, CONTACT);
@@ -97,7 +97,7 @@ static void a_line_is_had_by_one_program(void)
     CHECK_INT(guest_other_process(0, open_it, NULL), 0);
 }
 
-static void what_is_not_there_is_told_apart(void)
+GUEST_CASE(what_is_not_there_is_told_apart)
 {
     CHECK_INT(fathom_gpio_open_input(&echo, CHIP, LINES, FATHOM_GPIO_BIAS_AS_IS), FATHOM_GPIO_ERR_NO_LINE);
     CHECK_SAYS(fathom_gpio_error_text(&echo), "the lines 0 to 7");
@@ -169,7 +169,7 @@ static long difference_us(const fathom_sensor_t *sensor, fathom_status_t allowed
     return off[1];
 }
 
-static void an_a16_is_triggered_and_measured(void)
+GUEST_CASE(an_a16_is_triggered_and_measured)
 {
     const fathom_sensor_t sensor = begin_tank();
     (void)guest_ask("a16 pulse 20");
@@ -181,7 +181,7 @@ static void an_a16_is_triggered_and_measured(void)
     CHECK_INT(guest_ask("level %d", TRIGGER), 1);
 }
 
-static void a_pulse_whose_edges_bounce_is_measured(void)
+GUEST_CASE(a_pulse_whose_edges_bounce_is_measured)
 {
     const fathom_sensor_t sensor = begin_tank();
     (void)guest_ask("a16 bounce 20");
@@ -191,7 +191,7 @@ static void a_pulse_whose_edges_bounce_is_measured(void)
     CHECK_WITHIN(tank.meter.noises, 5, 100);
 }
 
-static void a_line_that_stays_high_is_a_fault(void)
+GUEST_CASE(a_line_that_stays_high_is_a_fault)
 {
     fathom_sample_t sample;
     const fathom_sensor_t sensor = begin_tank();
@@ -210,7 +210,7 @@ static void a_line_that_stays_high_is_a_fault(void)
     CHECK_INT(sample.kind, FATHOM_TARGET);
 }
 
-static void no_pulse_is_no_response(void)
+GUEST_CASE(no_pulse_is_no_response)
 {
     fathom_sample_t sample;
     const fathom_sensor_t sensor = begin_tank();
@@ -218,7 +218,7 @@ static void no_pulse_is_no_response(void)
     for (int i = 0; i != 2; i++) CHECK_INT(wait_for(&sensor, &sample), FATHOM_ERR_NO_RESPONSE);
 }
 
-static void edges_that_the_queue_dropped_are_counted_and_make_no_pulse(void)
+GUEST_CASE(edges_that_the_queue_dropped_are_counted_and_make_no_pulse)
 {
     fathom_pulse_t pulse;
     unsigned pulses = 0;
@@ -274,7 +274,7 @@ static void take(void *ctx, fathom_status_t status, const fathom_sample_t *sampl
     if (rig.readings == 3) fathom_loop_stop(&rig.loop);
 }
 
-static void the_loop_reads_a_pin(void)
+GUEST_CASE(the_loop_reads_a_pin)
 {
     CHECK_INT(fathom_loop_init(&rig.loop, NULL), FATHOM_POSIX_OK);
     rig.sensor.sensor = begin_tank();
@@ -291,7 +291,7 @@ static void the_loop_reads_a_pin(void)
 
 /* ---- contacts ---- */
 
-static void a_switch_is_read(void)
+GUEST_CASE(a_switch_is_read)
 {
     static fathom_a16_switch_t level;
     fathom_sample_t sample;
@@ -307,7 +307,7 @@ static void a_switch_is_read(void)
     CHECK_INT(sample.kind, FATHOM_FAR);
 }
 
-static void a_relay_is_read(void)
+GUEST_CASE(a_relay_is_read)
 {
     static fathom_a05_relay_t relay;
     fathom_sample_t sample;
@@ -325,7 +325,7 @@ static void a_relay_is_read(void)
 
 /* ---- the tool ---- */
 
-static void the_tool_reads_pins(void)
+GUEST_CASE(the_tool_reads_pins)
 {
     static char out[4000];
     (void)guest_ask("a16 pulse 20");
@@ -339,21 +339,3 @@ static void the_tool_reads_pins(void)
     CHECK_INT(guest_tool("read a16:switch@" CHIP ",in=4 --count 1 --format csv", out, sizeof out), 1);
     CHECK_SAYS(out, "in use by \"fathom\"");
 }
-
-const guest_case_t virt_pins_cases[] = {
-    GUEST_CASE(an_output_has_its_level_from_the_beginning),
-    GUEST_CASE(an_input_has_the_level_of_the_wire),
-    GUEST_CASE(an_edge_wakes_a_program_that_sleeps),
-    GUEST_CASE(a_line_is_had_by_one_program),
-    GUEST_CASE(what_is_not_there_is_told_apart),
-    GUEST_CASE(an_a16_is_triggered_and_measured),
-    GUEST_CASE(a_pulse_whose_edges_bounce_is_measured),
-    GUEST_CASE(a_line_that_stays_high_is_a_fault),
-    GUEST_CASE(no_pulse_is_no_response),
-    GUEST_CASE(edges_that_the_queue_dropped_are_counted_and_make_no_pulse),
-    GUEST_CASE(the_loop_reads_a_pin),
-    GUEST_CASE(a_switch_is_read),
-    GUEST_CASE(a_relay_is_read),
-    GUEST_CASE(the_tool_reads_pins),
-};
-const size_t virt_pins_case_count = sizeof virt_pins_cases / sizeof virt_pins_cases[0];

@@ -7,40 +7,22 @@
 #include <unistd.h>
 
 #include "tty.h"
-#include "virt.h"
 
 /* port/posix on a PL011, whose other end is test_virt.py's. */
 
 #define PORT "/dev/ttyAMA0"
 
-static void every_setting_is_what_the_chip_has(void)
+GUEST_CASE(every_setting_is_what_the_chip_has)
 {
-    static const struct {
-        uint32_t baud;
-        speed_t speed;
-        fathom_parity_t parity;
-        uint8_t stop_bits;
-        tcflag_t cflag;
-        char letter;
-    } rows[] = {{1200, B1200, FATHOM_PARITY_NONE, 1, 0, 'N'},
-                {9600, B9600, FATHOM_PARITY_NONE, 2, CSTOPB, 'N'},
-                {19200, B19200, FATHOM_PARITY_EVEN, 1, PARENB, 'E'},
-                {57600, B57600, FATHOM_PARITY_ODD, 1, PARENB | PARODD, 'O'},
-                {115200, B115200, FATHOM_PARITY_EVEN, 2, PARENB | CSTOPB, 'E'},
-                {230400, B230400, FATHOM_PARITY_NONE, 1, 0, 'N'},
-                {460800, B460800, FATHOM_PARITY_EVEN, 1, PARENB, 'E'},
-                {921600, B921600, FATHOM_PARITY_ODD, 1, PARENB | PARODD, 'O'}};
-    (void)tty_open(PORT, 38400, FATHOM_PARITY_NONE, 1);
-    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
-        const fathom_line_settings_t settings = {rows[i].baud, (uint8_t)rows[i].parity, rows[i].stop_bits};
-        CHECK_INT(fathom_posix_set_line(&tty_port, &settings), FATHOM_POSIX_OK);
-        tty_has(PORT, rows[i].cflag, rows[i].speed);
-        CHECK_INT(guest_ask("chip %lu %c %d", (unsigned long)rows[i].baud, rows[i].letter, rows[i].stop_bits),
-                  1);
-    }
+    static const tty_settings_t rows[] = {
+        {1200, B1200, FATHOM_PARITY_NONE, 1},     {9600, B9600, FATHOM_PARITY_NONE, 2},
+        {19200, B19200, FATHOM_PARITY_EVEN, 1},   {57600, B57600, FATHOM_PARITY_ODD, 1},
+        {115200, B115200, FATHOM_PARITY_EVEN, 2}, {230400, B230400, FATHOM_PARITY_NONE, 1},
+        {460800, B460800, FATHOM_PARITY_EVEN, 1}, {921600, B921600, FATHOM_PARITY_ODD, 1}};
+    tty_takes_each(PORT, rows, sizeof rows / sizeof rows[0]);
 }
 
-static void a_break_holds_the_wire_low_until_it_ends(void)
+GUEST_CASE(a_break_holds_the_wire_low_until_it_ends)
 {
     const fathom_uart_t uart = tty_open(PORT, 9600, FATHOM_PARITY_NONE, 1);
     CHECK_INT(guest_ask("is_in_break"), 0);
@@ -48,20 +30,6 @@ static void a_break_holds_the_wire_low_until_it_ends(void)
     CHECK_INT(guest_ask("is_in_break"), 1);
     CHECK_INT(uart.set_break(uart.ctx, false), 1);
     CHECK_INT(guest_ask("is_in_break"), 0);
-}
-
-static void a_break_that_arrives_is_counted_and_read_as_zero(void)
-{
-    fathom_posix_line_errors_t before;
-    fathom_posix_line_errors_t after;
-    uint8_t byte = 0xA5;
-    (void)tty_open(PORT, 9600, FATHOM_PARITY_NONE, 1);
-    CHECK_INT(fathom_posix_line_errors(&tty_port, &before), FATHOM_POSIX_OK);
-    (void)guest_ask("break wire");
-    CHECK_INT(tty_receive(fathom_posix_fd(&tty_port), &byte, 1, 500), 1);
-    CHECK_INT(byte, 0);
-    CHECK_INT(fathom_posix_line_errors(&tty_port, &after), FATHOM_POSIX_OK);
-    CHECK_INT(after.breaks - before.breaks, 1);
 }
 
 /* ---- RS-485 ---- */
@@ -87,7 +55,7 @@ static void turns_round(const fathom_uart_t *uart, const char *level, unsigned b
     (void)guest_ask("turned %s %u %u", level, before_ms, after_ms);
 }
 
-static void rs485_is_set_and_read_back(void)
+GUEST_CASE(rs485_is_set_and_read_back)
 {
     const fathom_uart_t uart = tty_open(PORT, 19200, FATHOM_PARITY_EVEN, 1);
     const fathom_posix_rs485_t rs485 = {.before_ms = 20, .after_ms = 40};
@@ -105,7 +73,7 @@ static void rs485_is_set_and_read_back(void)
     driver_has(0, 0, 0);
 }
 
-static void rs485_is_set_the_other_way_round(void)
+GUEST_CASE(rs485_is_set_the_other_way_round)
 {
     const fathom_uart_t uart = tty_open(PORT, 19200, FATHOM_PARITY_EVEN, 1);
     const fathom_posix_rs485_t rs485 = {.rts_off_to_send = true, .before_ms = 10};
@@ -115,7 +83,7 @@ static void rs485_is_set_the_other_way_round(void)
     CHECK_INT(fathom_posix_set_rs485(&tty_port, NULL), FATHOM_POSIX_OK);
 }
 
-static void a_delay_that_the_kernel_cuts_is_refused(void)
+GUEST_CASE(a_delay_that_the_kernel_cuts_is_refused)
 {
     (void)tty_open(PORT, 19200, FATHOM_PARITY_EVEN, 1);
     const fathom_posix_rs485_t good = {.before_ms = 1, .after_ms = 2};
@@ -130,13 +98,7 @@ static void a_delay_that_the_kernel_cuts_is_refused(void)
 
 /* ---- a sensor at the other end ---- */
 
-static void a_sensor_is_read(void)
-{
-    const fathom_uart_t uart = tty_open(PORT, 19200, FATHOM_PARITY_EVEN, 1);
-    for (int i = 0; i != 5; i++) tty_reads_2083(&uart);
-}
-
-static void a_sensor_is_read_with_rs485(void)
+GUEST_CASE(a_sensor_is_read_with_rs485)
 {
     const fathom_uart_t uart = tty_open(PORT, 19200, FATHOM_PARITY_EVEN, 1);
     const fathom_posix_rs485_t rs485 = {0};
@@ -146,7 +108,7 @@ static void a_sensor_is_read_with_rs485(void)
     CHECK_INT(fathom_posix_set_rs485(&tty_port, NULL), FATHOM_POSIX_OK);
 }
 
-static void the_tool_reads_it_with_rs485(void)
+GUEST_CASE(the_tool_reads_it_with_rs485)
 {
     static char out[2000];
     CHECK_INT(guest_tool("read hps167s --port " PORT " --rs485 --count 3 --format csv", out, sizeof out), 0);
@@ -155,16 +117,3 @@ static void the_tool_reads_it_with_rs485(void)
     (void)tty_open(PORT, 19200, FATHOM_PARITY_EVEN, 1);
     CHECK_INT(fathom_posix_set_rs485(&tty_port, NULL), FATHOM_POSIX_OK);
 }
-
-const guest_case_t virt_uart_cases[] = {
-    GUEST_CASE(every_setting_is_what_the_chip_has),
-    GUEST_CASE(a_break_holds_the_wire_low_until_it_ends),
-    GUEST_CASE(a_break_that_arrives_is_counted_and_read_as_zero),
-    GUEST_CASE(rs485_is_set_and_read_back),
-    GUEST_CASE(rs485_is_set_the_other_way_round),
-    GUEST_CASE(a_delay_that_the_kernel_cuts_is_refused),
-    GUEST_CASE(a_sensor_is_read),
-    GUEST_CASE(a_sensor_is_read_with_rs485),
-    GUEST_CASE(the_tool_reads_it_with_rs485),
-};
-const size_t virt_uart_case_count = sizeof virt_uart_cases / sizeof virt_uart_cases[0];
