@@ -82,11 +82,8 @@ TEST(what_came_before_it_was_opened_is_thrown_away)
     posix_pty_send(&rig.pty, (const uint8_t *)"old", 3);
     assert_true(posix_wait_for(slave, POLLIN));
 
-    fathom_rx_t rx = {0, 0};
-    uint8_t bytes[4];
     assert_int_equal(open_with(&usual), FATHOM_POSIX_OK);
-    const fathom_uart_t uart = fathom_posix_uart(&rig.port);
-    assert_int_equal(uart.read(uart.ctx, bytes, sizeof bytes, &rx), 0);
+    assert_int_equal(port_rig_read_one(), 0);
     fathom_posix_close(&rig.port);
     assert_int_equal(close(slave), 0);
 }
@@ -166,6 +163,7 @@ TEST(a_program_that_was_killed_does_not_keep_the_port)
 
 TEST(arguments_outside_the_contract_are_refused)
 {
+    fathom_posix_line_errors_t errors;
     const unsigned before = posix_count_fds();
     const struct {
         fathom_line_settings_t settings;
@@ -188,6 +186,8 @@ TEST(arguments_outside_the_contract_are_refused)
     for (size_t i = 0; i != sizeof wrong / sizeof wrong[0]; i++)
         assert_int_equal(fathom_posix_set_line(&rig.port, &wrong[i].settings), FATHOM_POSIX_ERR_ARGUMENT);
     assert_int_equal(fathom_posix_set_line(&rig.port, NULL), FATHOM_POSIX_ERR_ARGUMENT);
+    assert_int_equal(fathom_posix_set_line(NULL, &usual), FATHOM_POSIX_ERR_ARGUMENT);
+    assert_int_equal(fathom_posix_line_errors(NULL, &errors), FATHOM_POSIX_ERR_ARGUMENT);
     assert_int_equal(fathom_posix_line_errors(&rig.port, NULL), FATHOM_POSIX_ERR_ARGUMENT);
     check_seen(B9600, FATHOM_PARITY_NONE, 1);
     fathom_posix_close(&rig.port);

@@ -4,7 +4,8 @@
 #include "posix_driver.h"
 #include "posix_rig.h"
 
-/* fathom_posix_set_rs485: the kernel's driver turns the transceiver round. The driver here is posix_driver.h's. */
+/* What the driver does to the wire. fathom_posix_set_rs485: it turns the transceiver round. set_break: the trigger of
+ * modules whose RX pin is our TX. The driver here is posix_driver.h's. */
 
 /* linux/serial.h, as numbers: enabled, RTS on while sending, RTS on otherwise. */
 enum { ENABLED = 1, ON_SEND = 2, AFTER_SEND = 4, RX_DURING_TX = 16 };
@@ -187,6 +188,85 @@ TEST(a_pseudo_terminal_has_none)
 {
     assert_int_equal(open_with(&usual), FATHOM_POSIX_OK);
     set_fails(&with_delays, FATHOM_POSIX_ERR_UNSUPPORTED);
+}
+
+/* ---- breaks ---- */
+
+static int set_break(bool on) { return rig.uart.set_break(rig.uart.ctx, on); }
+
+TEST(a_break_begins_and_ends_when_it_is_told_to)
+{
+    open_wire();
+    assert_int_equal(set_break(true), 1);
+    assert_int_equal(driver.breaks, 1);
+    assert_int_equal(set_break(false), 1);
+    assert_int_equal(driver.breaks, 0);
+}
+
+TEST(bytes_that_are_leaving_come_before_a_break)
+{
+    open_wire();
+    driver.queued = 3;
+    assert_int_equal(set_break(true), 0);
+    assert_int_equal(driver.break_calls, 0);
+    driver.queued = 0;
+    assert_int_equal(set_break(true), 1);
+}
+
+TEST(a_break_of_a_device_that_has_gone_is_a_lost_port)
+{
+    open_wire();
+    driver.break_error = EIO;
+    assert_int_equal(set_break(true), -1);
+    assert_int_equal(fathom_posix_error(&rig.port), FATHOM_POSIX_ERR_LOST);
+    driver.break_error = 0;
+    assert_int_equal(set_break(true), -1); /* until it is opened again */
+    assert_int_equal(driver.break_calls, 1);
+}
+
+/* The usb-serial core of Linux returns ENOTTY for an adapter whose driver has no break_ctl. */
+TEST(a_driver_without_breaks_is_not_a_lost_port)
+{
+    static const int errors[] = {ENOTTY, EINVAL, EOPNOTSUPP, ENOSYS};
+    for (size_t i = 0; i != sizeof errors / sizeof *errors; i++) {
+        open_wire();
+        driver.break_error = errors[i];
+        assert_int_equal(set_break(true), -1);
+        assert_int_equal(fathom_posix_error(&rig.port), FATHOM_POSIX_ERR_UNSUPPORTED);
+        port_rig_says("break");
+        assert_int_equal(port_rig_read_one(), 0);
+        assert_int_equal(port_rig_write_one(), 1);
+        fathom_posix_close(&rig.port);
+    }
+}
+
+TEST(a_break_that_fails_once_is_not_a_lost_port)
+{
+    open_wire();
+    driver.break_error = ETIMEDOUT;
+    assert_int_equal(set_break(true), -1);
+    assert_int_equal(fathom_posix_error(&rig.port), FATHOM_POSIX_ERR_SYSTEM);
+    driver.break_error = 0;
+    assert_int_equal(set_break(true), 1);
+}
+
+TEST(a_port_that_is_closed_has_no_break)
+{
+    open_wire();
+    fathom_posix_close(&rig.port);
+    assert_int_equal(set_break(true), -1);
+}
+
+TEST(on_a_pseudo_terminal_a_zero_stands_for_a_break)
+{
+    uint8_t bytes[4] = {0xA5, 0xA5, 0xA5, 0xA5};
+    assert_int_equal(open_with(&usual), FATHOM_POSIX_OK);
+    assert_int_equal(set_break(true), 1);
+    assert_int_equal(posix_pty_receive(&rig.pty, bytes, sizeof bytes), 1);
+    assert_int_equal(bytes[0], 0);
+    while (!port_rig_sent()) continue;
+    assert_int_equal(set_break(false), 1);
+    assert_int_equal(driver.break_calls, 0);
 }
 
 EACH_BEGINS((posix_driver_reset(), (void)port_rig_set_up(state)))
