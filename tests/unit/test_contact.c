@@ -1,9 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 #include "contact_rig.h"
-#include "fathom/engine/contact.h"
+#include "fathom/engine/line_pins.h"
+#include "fathom/engine/wait.h"
+#include "fathom/sensor/a05_relay.h"
+#include "fathom/sensor/a16_switch.h"
 
 #define MS ((int32_t)1000) /* an int may have 16 bits */
 enum { START_US = 1000, SETTLE_US = 20000 };
+#define SECOND ((uint32_t)1000000)
 
 #define COUNT_OF(array) (sizeof(array) / sizeof *(array))
 
@@ -14,38 +18,67 @@ static const uint32_t steps_us[] = {50, 1000, 7000, 20000, 33000};
 static const uint32_t starts_us[] = {START_US, UINT32_MAX - 10000, UINT32_MAX - 60000, UINT32_MAX - 200000};
 
 static fathom_contact_timing_t timing;
-static bool near_is_high;
 static fathom_contact_t contact;
+static uint32_t seed;
+static bool is_guard_clear;
+static fathom_status_t guard_status;
+
+static fathom_status_t guard_poll(void *ctx) { return (void)ctx, guard_status; }
+static bool guard_is_clear(void *ctx, uint32_t now_us) { return (void)ctx, (void)now_us, is_guard_clear; }
+static uint32_t guard_due_us(void *ctx) { return (void)ctx, FATHOM_NO_DEADLINE; }
+static const fathom_contact_guard_t guard = {guard_poll, guard_is_clear, guard_due_us, NULL};
 
 #define expect_init(status) assert_int_equal(fathom_contact_init(&contact, &timing), status)
 
-static void start_at(uint32_t now_us, bool level)
+static void init_on(uint8_t fill, const fathom_contact_guard_t *with)
 {
-    pins_start(now_us);
-    pins.level = level;
-    memset(&contact, 0x5A, sizeof contact);
+    memset(&contact, fill, sizeof contact);
     contact.pin = &pins.pin;
     contact.clock = &pins.fake.clock;
-    contact.guard = NULL;
-    contact.near_is_high = near_is_high;
+    contact.guard = with;
+    contact.near_is_high = true;
     contact.model = FATHOM_A05;
     contact.address = 7;
     expect_init(FATHOM_OK);
     pins.sensor = fathom_contact_sensor(&contact);
 }
 
+static void start_at(uint32_t now_us, bool level)
+{
+    pins_start(now_us);
+    pins.level = level;
+    init_on(0x5A, NULL);
+}
+
 static void start(void) { start_at(START_US, false); }
+
+static int set_up_default(void **state)
+{
+    (void)state;
+    memset(&timing, 0, sizeof timing);
+    seed = 1;
+    is_guard_clear = true;
+    guard_status = FATHOM_PENDING;
+    start();
+    return 0;
+}
 
 static int set_up(void **state)
 {
-    memset(&timing, 0, sizeof timing);
+    set_up_default(state);
     timing.period_us = FATHOM_MAX_DURATION_US; /* changes alone */
-    near_is_high = true;
     start();
     return 0;
 }
 
 static const suite_t suite = {.set_up = set_up};
+static const suite_t by_default = {.set_up = set_up_default};
+
+static fathom_status_t poll_after(uint32_t us)
+{
+    pins.fake.now_us += us;
+    return pins_poll();
+}
 
 static void run(uint32_t ms) { pins_run(ms * MS, 1000); }
 
@@ -65,6 +98,7 @@ static void expect_next(uint32_t ms, uint8_t kind)
 
 TEST(the_first_level_is_a_sample_when_it_has_stood_for_20_ms)
 {
+    const bool no = false; /* the rig hands over a sample full of A5 */
     assert_int_equal(pins_poll(), FATHOM_PENDING);
     pins.fake.now_us += SETTLE_US - 1;
     assert_int_equal(pins_poll(), FATHOM_PENDING);
@@ -77,8 +111,10 @@ TEST(the_first_level_is_a_sample_when_it_has_stood_for_20_ms)
     assert_int_equal(pins.sample.address, 7);
     assert_int_equal(pins.sample.probe, 1);
     assert_int_equal(pins.sample.distance_mm, 0);
-    assert_int_equal(pins.sample.magnitude + pins.sample.precision + pins.sample.ambient, 0);
-    assert_false(pins.sample.interference);
+    assert_int_equal(pins.sample.magnitude, 0);
+    assert_int_equal(pins.sample.precision, 0);
+    assert_int_equal(pins.sample.ambient, 0);
+    assert_memory_equal(&pins.sample.interference, &no, sizeof no);
     assert_int_equal(pins_poll(), FATHOM_PENDING);
     pins_run(60000 * MS, 20000);
     pins_expect(1, FATHOM_FAR);
@@ -125,11 +161,16 @@ TEST(a_contact_that_bounces_is_one_change)
 
 /* ---- the meaning changes ---- */
 
-TEST(a_level_that_stays_when_the_meaning_turns_is_a_change_after_it_has_settled)
+/* fathom_contact_set_near_is_high(): "The level has to settle anew". */
+TEST(a_level_settles_anew_when_it_means_something_else)
 {
-    run(50);
+    assert_int_equal(poll_after(20000), FATHOM_OK);
+    pins_expect(1, FATHOM_FAR);
     fathom_contact_set_near_is_high(&contact, false);
-    expect_next(20, FATHOM_NEAR);
+    assert_int_equal(poll_after(19999), FATHOM_PENDING);
+    assert_int_equal(poll_after(1), FATHOM_OK);
+    pins_expect(2, FATHOM_NEAR);
+    assert_int_equal(pins.sample.time_us, START_US + 20000);
 }
 
 /* ---- repeated ---- */
@@ -209,20 +250,16 @@ TEST(if_an_interrupt_wakes_the_program_only_the_period_is_due_while_the_level_st
 /* ---- init ---- */
 
 static void expect_refused(const fathom_pin_t *pin, const fathom_clock_t *clock,
-                           const fathom_contact_guard_t *guard)
+                           const fathom_contact_guard_t *with)
 {
     const fathom_contact_t zeroed = {0};
     memset(&contact, 0x5A, sizeof contact);
     contact.pin = pin;
     contact.clock = clock;
-    contact.guard = guard;
+    contact.guard = with;
     expect_init(FATHOM_ERR_ARGUMENT);
     assert_memory_equal(&contact, &zeroed, sizeof zeroed);
 }
-
-static fathom_status_t guard_poll(void *ctx) { return (void)ctx, FATHOM_PENDING; }
-static bool guard_is_clear(void *ctx, uint32_t now_us) { return (void)ctx, (void)now_us, true; }
-static uint32_t guard_due_us(void *ctx) { return (void)ctx, FATHOM_NO_DEADLINE; }
 
 TEST(init_refuses_what_it_cannot_read_and_leaves_the_contact_zeroed)
 {
@@ -286,4 +323,227 @@ TEST(a_contact_is_polled_without_a_sensor_too)
     for (unsigned ms = 0; ms != 25 && fathom_contact_poll(&contact, &sample) == FATHOM_PENDING; ms++)
         pins.fake.now_us += 1000;
     assert_int_equal(sample.address, 7);
+}
+
+/* ---- the limits, to the microsecond ---- */
+
+/* "stale_us ... 0: 2 s": "no level has counted for so long ... or it is held". */
+TEST_IN(by_default, without_a_level_that_counts_it_is_stale_after_2_s)
+{
+    fathom_contact_set_hold(&contact, true);
+    assert_int_equal(poll_after(1999999), FATHOM_PENDING);
+    assert_int_equal(poll_after(1), FATHOM_ERR_STALE);
+}
+
+/* "FATHOM_OK: a sample: the first level that counts", whatever the memory held: of a sample that was FATHOM_NEAR,
+ * too. */
+TEST_IN(by_default, the_first_level_is_told_whatever_stood_in_the_memory)
+{
+    static const uint8_t fills[] = {FATHOM_NEAR, FATHOM_FAR, 0xFF, true}; /* held, too */
+    for (unsigned level = 0; level != 2; level++)
+        for (unsigned i = 0; i != sizeof fills; i++) {
+            pins_start(START_US);
+            pins.level = level != 0;
+            init_on(fills[i], NULL);
+            poll_after(10000);
+            assert_int_equal(poll_after(10000), FATHOM_OK);
+            pins_expect(1, level != 0 ? FATHOM_NEAR : FATHOM_FAR);
+        }
+}
+
+/* "The longest that due_us advises between looks". */
+TEST_IN(by_default, the_next_look_is_due_look_us_after_the_last_one)
+{
+    timing.interval_us = 100000;
+    init_on(0, NULL);
+    assert_int_equal(poll_after(20000), FATHOM_OK);
+    expect_due(100000);
+    pins.fake.now_us += 70000;
+    expect_due(30000);
+    pins.fake.now_us += 30001;
+    expect_due(0);
+}
+
+/* "the level is not looked at ... until 5 ms after the last byte". The first look at which it is looked at is at 5000
+ * us, and with a settle_us of 1 the next look 1 us later is enough. */
+TEST_IN(by_default, a_level_counts_again_5_ms_after_the_last_byte_on_its_line)
+{
+    static const uint8_t byte[] = {0x00};
+    static uint8_t frame[8];
+    static fathom_line_parts_t config;
+    static fathom_line_t line;
+    const fathom_contact_guard_t of_line = fathom_contact_line_guard(&line);
+    config = (fathom_line_parts_t){.uart = &pins.fake.uart,
+                                   .clock = &pins.fake.clock,
+                                   .frame = frame,
+                                   .frame_size = sizeof frame,
+                                   .echo = FATHOM_LINE_ECHO_OFF,
+                                   .marks = fathom_line_marks};
+    assert_int_equal(fathom_line_init(&line, &config), FATHOM_OK);
+    timing.settle_us = 1;
+    init_on(0, &of_line);
+    fake_receive(&pins.fake, 100, byte, 1);
+    assert_int_equal(poll_after(100), FATHOM_PENDING);
+    assert_int_equal(poll_after(4999), FATHOM_PENDING);
+    assert_int_equal(poll_after(1), FATHOM_PENDING);
+    assert_int_equal(poll_after(1), FATHOM_OK);
+    assert_int_equal(pins.sample.time_us, START_US + 100 + 5000);
+}
+
+/*
+ * contact.h: a program that polls gets a sample or an error within the bound of the header, whatever the pin, the guard
+ * and the clock do, and no sample is of a level that was read earlier.
+ */
+
+/* ---- a contact that never changes ---- */
+
+TEST_IN(by_default, by_default_a_level_that_does_not_change_is_a_sample_each_second)
+{
+    pins_run(20 * MS, 1 * MS);
+    pins_expect(1, FATHOM_FAR);
+    for (unsigned n = 2; n != 12; n++) {
+        pins_run(999 * MS, 1 * MS);
+        pins_expect(n - 1, FATHOM_FAR);
+        pins_run(1 * MS, 1 * MS);
+        pins_expect(n, FATHOM_FAR);
+        assert_int_equal(pins.sample.time_us, pins.fake.now_us);
+    }
+    assert_int_equal(pins.stales, 0);
+}
+
+/* ---- a level that does not count ---- */
+
+TEST_IN(by_default, the_error_of_a_guard_is_returned_if_there_is_nothing_else)
+{
+    guard_status = FATHOM_ERR_PORT;
+    init_on(0x5A, &guard);
+    for (unsigned n = 0; n != 3; n++) assert_int_equal(poll_after(1 * MS), FATHOM_ERR_PORT);
+    /* The first look found the guard clear, and 2 ms have passed since. */
+    assert_int_equal(poll_after(18 * MS - 1), FATHOM_ERR_PORT);
+    assert_int_equal(poll_after(1), FATHOM_OK);
+}
+
+TEST_IN(by_default, a_hold_that_does_not_end_is_stale_every_2_s)
+{
+    pins_run(20 * MS, 1 * MS);
+    fathom_contact_set_hold(&contact, true);
+    pins_run(10 * SECOND, 1 * MS);
+    assert_int_equal(pins.stales, 4); /* the level counted until the look before the hold */
+    assert_int_equal(pins.samples, 1);
+}
+
+/* ---- age ---- */
+
+/* 300 s lie between the first look that saw the level and the look at which it counts. */
+TEST_IN(by_default, a_level_that_counts_after_a_sleep_is_of_now)
+{
+    pins_run(20 * MS, 1 * MS);
+    pins_expect(1, FATHOM_FAR);
+    pins.level = true;
+    pins_run(1 * MS, 1 * MS);
+    assert_int_equal(poll_after(300 * SECOND), FATHOM_OK);
+    pins_expect(2, FATHOM_NEAR);
+    assert_int_equal(pins.sample.time_us, pins.fake.now_us);
+}
+
+/* "if ... that look was at most stale_us ago" */
+TEST_IN(by_default, the_first_look_is_the_time_of_a_sample_for_up_to_2_s)
+{
+    for (uint32_t late_us = 0; late_us != 2; late_us++) {
+        start();
+        assert_int_equal(poll_after(2 * SECOND + late_us), FATHOM_OK);
+        assert_int_equal(pins.sample.time_us, late_us == 0 ? START_US : pins.fake.now_us);
+    }
+}
+
+/* ---- any of it ---- */
+
+static uint32_t below(uint32_t limit)
+{
+    seed = seed * 1664525u + 1013904223u; /* Numerical Recipes */
+    return (uint32_t)(((uint64_t)seed * limit) >> 32);
+}
+
+/* "period_us + stale_us + 2 * P", by the clock and without its jumps. */
+static void run_world(uint32_t world)
+{
+    static const uint32_t any_steps_us[] = {100, 3000, 30000, 300000, 3000000, 600000000};
+    memset(&timing, 0, sizeof timing);
+    if (below(2) == 0) timing.settle_us = 1 + below(100000);
+    if (below(2) == 0) timing.stale_us = 100001 + below(5000000);
+    if (below(2) == 0) timing.period_us = 1 + below(5000000);
+    const fathom_contact_guard_t *const with = below(2) == 0 ? &guard : NULL;
+    pins_start(below(UINT32_MAX));
+    init_on(0x5A, with);
+    const uint32_t bound_us = contact.timing.period_us + contact.timing.stale_us;
+    uint32_t longest_us = 0;
+    uint32_t since_us = 0;
+    bool is_held = false;
+    for (unsigned polls = 0; polls != 500; polls++) {
+        const uint32_t step_us = 1 + below(any_steps_us[world % COUNT_OF(any_steps_us)]);
+        if (step_us > longest_us) longest_us = step_us;
+        pins.fake.now_us += step_us;
+        since_us += step_us;
+        if (below(20) == 0) {
+            const uint32_t back_us = below(100001);
+            pins.fake.now_us -= back_us;
+            since_us = since_us > back_us ? since_us - back_us : 0;
+        }
+        if (below(world % 7 + 1) == 0) pins.level = !pins.level;
+        if (below(20) == 0) is_guard_clear = !is_guard_clear;
+        if (below(50) == 0) fathom_contact_set_hold(&contact, is_held = !is_held);
+        if (pins_poll() != FATHOM_PENDING) since_us = 0;
+        if (pins.samples != 0 && since_us == 0) assert_true(pins.sample.raw <= 1);
+        if (since_us > bound_us + 2 * longest_us)
+            fail_msg("world %lu: nothing in %lu us", (unsigned long)world, (unsigned long)since_us);
+    }
+}
+
+TEST_IN(by_default, any_levels_any_guard_any_polls_and_any_clock_have_an_outcome_within_the_bound)
+{
+    const uint32_t worlds = suite_is_long ? 100000 : 1000;
+    for (uint32_t world = 0; world != worlds; world++) run_world(world);
+}
+
+/* ---- fathom_wait ---- */
+
+static fathom_status_t wait_for(void (*idle)(void *ctx, uint32_t max_us))
+{
+    fathom_sample_t sample;
+    return fathom_wait(&pins.sensor, &sample, idle, NULL);
+}
+
+static void stand_still(void *ctx, uint32_t max_us) { (void)ctx, pins.fake.now_us += max_us; }
+
+TEST_IN(by_default, wait_returns_for_a_contact_that_never_changes)
+{
+    timing.interval_us = FATHOM_NO_DEADLINE;
+    timing.period_us = FATHOM_MAX_DURATION_US;
+    start();
+    for (unsigned n = 0; n != 5; n++) assert_int_equal(wait_for(stand_still), FATHOM_OK);
+    /* 20 ms and 4 times 35 minutes */
+    assert_true(pins.fake.now_us == (uint32_t)(START_US + 20 * MS + 4ull * FATHOM_MAX_DURATION_US));
+}
+
+/* ---- zeroed memory ---- */
+
+TEST_IN(by_default, a_contact_without_init_has_an_error_in_each_poll_and_no_function_is_called)
+{
+    fathom_sample_t sample;
+    memset(&contact, 0, sizeof contact);
+    assert_int_equal(pins_poll(), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_due_us(&pins.sensor, 1), 0);
+    contact.pin = &pins.pin; /* and without the clock that it would read */
+    assert_int_equal(pins_poll(), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_due_us(&pins.sensor, 1), 0);
+    fathom_contact_set_hold(&contact, true);
+    fathom_contact_set_near_is_high(&contact, true);
+    static fathom_a05_relay_t relay;
+    static fathom_a16_switch_t switch_of_a16;
+    const fathom_sensor_t sensors[] = {
+        fathom_a05_relay_sensor(&relay), fathom_a16_switch_sensor(&switch_of_a16), {NULL, NULL, NULL}};
+    for (unsigned i = 0; i != COUNT_OF(sensors); i++) {
+        assert_int_equal(fathom_poll(&sensors[i], &sample), FATHOM_ERR_ARGUMENT);
+        assert_int_equal(fathom_due_us(&sensors[i], 1), 0);
+    }
 }

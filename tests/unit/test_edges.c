@@ -14,11 +14,16 @@ static bool get(void *ctx) { return *(const bool *)ctx; }
 
 static const fathom_pin_t pin = {NULL, get, &level};
 
-static int set_up(void **state)
+static void init_on(uint8_t fill)
 {
-    memset(&edges, 0x5A, sizeof edges);
+    memset(&edges, fill, sizeof edges);
     fathom_edges_init(&edges, NULL);
     capture = fathom_edges_capture(&edges);
+}
+
+static int set_up(void **state)
+{
+    init_on(0x5A);
     capture.arm(capture.ctx);
     return 0;
 }
@@ -43,6 +48,23 @@ static void assert_pulse(uint32_t width_us, uint32_t end_us)
     assert_int_equal(take(), 1);
     assert_int_equal(pulse.width_us, width_us);
     assert_int_equal(pulse.end_us, end_us);
+}
+
+/* "the line is taken as low until the first edge": a fall is the end of nothing. */
+TEST(new_edges_hold_no_pulse_and_a_fall_makes_none_whatever_the_memory_held)
+{
+    static const uint8_t fills[] = {0x00, 0x01, 0xA5, 0xFF};
+    for (unsigned i = 0; i != sizeof fills; i++) {
+        init_on(fills[i]);
+        expect_none();
+        assert_false(pulse.is_high);
+        assert_int_equal(edges.lost, 0);
+        assert_int_equal(edges.missed, 0);
+        assert_int_equal(edges.same_us, FATHOM_EDGES_DEFAULT_SAME_US);
+        init_on(fills[i]);
+        fall(5000);
+        expect_none();
+    }
 }
 
 TEST(a_rise_and_a_fall_are_a_pulse)

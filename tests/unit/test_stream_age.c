@@ -60,17 +60,6 @@ TEST(a_frame_of_300_s_ago_is_stale_and_the_next_one_is_read)
     assert_int_equal(stream.time_us, start_us + 300100000);
 }
 
-/* "Call fathom_stream_feed() with a `count` of 0": else FF 07 of before and A1 A7 of after would be 1953 mm of now. */
-TEST(a_loss_that_the_caller_reports_keeps_the_halves_of_a_frame_apart)
-{
-    feed(mm_1953, 2, true, 10);
-    feed(NULL, 0, false, 300000000);
-    feed(mm_1953 + 2, 2, false, 300000000);
-    expect(300005000, FATHOM_ERR_CHECKSUM);
-    assert_int_equal(stream.counters[FATHOM_STREAM_FRAMES], 0);
-    assert_int_equal(stream.counters[FATHOM_STREAM_DAMAGED], 1);
-}
-
 /* Less than 100 ms: the clock stands still, and nothing is old or stale for that. */
 TEST(a_clock_that_was_set_back_a_little_costs_no_frame)
 {

@@ -49,10 +49,17 @@ static const struct {
     {"| FF 07 A1 A7 | 55 | FF 07 A1 A7 |", 2, 1, 0, 0, 1}, /* a byte alone is less than a frame */
     {"| FF 07 A1 A7 FF 06 A1 A7 |", 1, 1, 0, 0, 4},
     {"| FF 07 A1 A7 x FF 07 A1 A7 |", 0, 0, 2, 0, 8}, /* neither what follows nor what precedes is known */
-    {"| FF 07 x A1 A7 |", 0, 1, 0, 0, 4},             /* of the second half the place is not known */
-    {"A1 A7 | FF 07 A1 A7 |", 1, 0, 0, 0, 2},         /* nor that of the first bytes of all */
+    {"FF 07 A1 A7 FF 07 A1 A7 x FF", 0, 0, 2, 0,
+     9},                                      /* the second is believed if FF follows, which is not known */
+    {"| FF 07 x A1 A7 |", 0, 1, 0, 0, 4},     /* of the second half the place is not known */
+    {"A1 A7 | FF 07 A1 A7 |", 1, 0, 0, 0, 2}, /* nor that of the first bytes of all */
     {"FF 07 A1 A7 FF 07 A1 A7 |", 1, 0, 1, 0, 4},
     {"FF 01 FF FF FF 01 FF FF |", 0, 0, 1, 2, 8},
+    /* 4321 mm is FF 10 E1 F0. Without its third byte the next frame's FF is a right sum, FF + 10 + F0 = 1FF, and
+     * the next frame itself overlaps a valid one */
+    {"| FF 10 F0 FF 10 E1 F0 |", 0, 0, 1, 1, 7},
+    /* with 9B too many before the A1, the A1 is a right sum: FF + 07 + 9B = 1A1 */
+    {"| FF 07 9B A1 A7 |", 0, 0, 1, 0, 5},
     {"| FF 06 A1 A7 FF 06 A1 A7 FF 06 A1 A7 |", 0, 1, 0, 0, 12}, /* only the first place is known */
 };
 
