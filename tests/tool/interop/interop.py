@@ -80,17 +80,7 @@ class Case(e2e.Case):
         return done.out.splitlines()
 
 
-class AtRates:
-    """For a client. The sensor has got another rate, at which it is asked from now on."""
-
-    def at_rate(self, sim, baud):
-        client = sim.__dict__.pop('client', None)  # what is open stands at the old one
-        if client is not None:
-            client.close()
-        sim.line = (baud, sim.line[1])
-
-
-class Libmodbus(AtRates):
+class Libmodbus:
     """For a Case."""
     most_unit = 247  # that it takes
 
@@ -99,7 +89,7 @@ class Libmodbus(AtRates):
         return self.tell('libmodbus_client', sim, sim.line, seconds, f'unit:{unit}', *steps)
 
 
-class Mbpoll(AtRates):
+class Mbpoll:
     """For a Case. It is a program of one step; what it has to say is on stdout and on stderr."""
     most_unit = 247
     types = {'read': '4:hex', 'input': '3:hex', 'coils': '0', 'write': '4', 'many': '4'}
@@ -146,7 +136,7 @@ def make_other(port):
         os.close(terminal)
 
 
-class Pymodbus(AtRates):
+class Pymodbus:
     """For a Case. Closes the port when the test ends."""
     most_unit = 254
 
@@ -169,14 +159,6 @@ class Pymodbus(AtRates):
     def ask(self, sim, unit, *steps, seconds=SOON):
         client = self.connect(sim, seconds)
         return [self.step(client, unit, *step.split(':')) for step in steps]
-
-    def stop(self, sim):
-        """Ends automatic output, of which a frame may still come; the port."""
-        self.ask(sim, 5, 'read:0x0200:1')  # whatever comes: frames and the response may be side by side
-        port = self.connect(sim).socket
-        port.timeout = 0.4  # more than the period of either sensor
-        self.assertIn(b'', (port.read(64) for _ in range(4)), 'it does not stop')
-        return port
 
     @staticmethod
     def step(client, unit, kind, first='0', last=''):
