@@ -66,19 +66,6 @@ class Lost(Case):
         self.assertGreaterEqual(len(between), 20)
         self.assertEqual(done.err.count('Waiting until'), 1)
 
-    def test_a_port_that_is_away_takes_next_to_no_cpu(self):
-        reader = self.fathom('read', [self.sensor('one'), f'a16@{self.path("nowhere")}'],
-                             '--interval 1000 --reconnect --duration 4')
-        self.needs_little(self.ends(reader, 0, 'nowhere: no such device'))
-
-    def test_an_output_without_a_reader_ends_it(self):
-        out, pipe = os.pipe()
-        reader = self.fathom('read', [self.sensor('one'), self.sensor('two')], '--interval 60000', stdout=pipe)
-        os.close(pipe)
-        self.assertIn(b' s  ', os.read(out, 4000))
-        os.close(out)
-        self.ends(reader, 1)
-
 
 class Paths(Case):
     """One serial port by two names, such as /dev/ttyUSB0 and what stands for it in /dev/serial/by-id."""

@@ -111,15 +111,6 @@ class Plug(PlugCase):
         self.assertEqual(device.rest(), b'')
         self.assertEqual(self.rows(done), [(1, 1111)])
 
-    def test_a_loss_in_the_last_attempt_is_not_waited_out(self):
-        self.assertNotIn('aiting', self.ends(self.lose('--count 1'), 1).err)
-
-    def test_a_port_that_is_not_there_yet_is_waited_for(self):
-        reader = self.begin('--count 1')
-        reader.expect('port: no such device.*; waiting until it is there$', 'err')
-        self.answer(self.plug_in(), 1111)
-        self.assertEqual(self.rows(self.ends(reader, 0, ': it is there; reading begins\n')), [(1, 1111)])
-
     def test_what_is_no_port_is_not_waited_for(self):
         with open(self.port, 'w', encoding='ascii'):
             pass
@@ -147,13 +138,6 @@ class Plug(PlugCase):
         done = reader.end()
         self.needs_little(done)
         self.assertEqual(done.err.count(LOST), 4)
-
-    def test_without_it_a_lost_port_ends_the_run(self):
-        device = self.plug_in()
-        reader = self.fathom(f'read a16 --mode modbus --port {self.port}')
-        device.asked(e2e.ASK_A16)
-        self.pull(device, reader)
-        self.ends(reader, 1, 'Connect it again and start again. With --reconnect, fathom waits for it', out='')
 
     def test_a_port_in_use_when_it_comes_back_is_waited_for_and_told(self):
         reader = self.lose('--count 3', 1111)
@@ -234,22 +218,6 @@ class Adapters(PlugCase):
         self.lose_tank(tank, reader)
         reader.expect(f'fathom: /dev/ttyUSB0: {reason}{self.SAME_SOCKET}', 'err')
         self.ends_with_tank(reader, 'ttyUSB0', serial, twin)
-
-    def test_a_twin_that_was_plugged_in_for_a_moment_is_not_read_later(self):
-        tank, reader = self.begin_tank('0002')
-        self.answer(tank, 1500)
-        self.unplug('ttyUSB1', '1-1.3', self.plug('ttyUSB1', '1-1.3', '0002'))
-        self.answer(tank, 1500)
-        self.lose_tank(tank, reader)
-        reader.expect(f'another adapter has, or may have had, the same serial number{self.SAME_SOCKET}', 'err')
-        self.ends_with_tank(reader, 'ttyUSB1', '0002', self.plug('ttyUSB0', '1-1.3', '0002'))
-
-    def test_a_twin_with_a_counted_number_that_comes_under_the_old_name_is_not_read(self):
-        tank, reader = self.begin_tank('0001')
-        self.answer(tank, 1500)
-        self.lose_tank(tank, reader)
-        reader.expect(f'other adapters may have the same serial number{self.SAME_SOCKET}', 'err')
-        self.ends_with_tank(reader, 'ttyUSB1', '0001', self.plug('ttyUSB0', '1-1.3', '0001'))
 
     def test_an_adapter_with_its_own_number_is_read_in_another_socket(self):
         tank, reader = self.begin_tank('0002')
