@@ -182,7 +182,19 @@ STEPS(a_command_that_waits_for_the_pace_comes_before_the_repeated_request, TAKEN
       IS(FATHOM_ERR_BUSY, 0, details, 1),          /* another one must not overtake it */
       P(0, version, 2))
 
+/* An outcome of the repeated request may be replaced by a newer one: once it has given way it is not handed over. */
+STEPS(an_outcome_that_gave_way_to_a_command_is_not_handed_over, ON_WIRE(measure, 1), ANSWERED,
+      P(0, version, 1), /* within the pace */
+      P(0, measure, 1), P(PACE_US, version, 2))
+
 /* ---- due ---- */
+
+/* "how long until something can happen": to take the outcome is something. */
+TEST(the_outcome_of_a_command_is_due_at_once_within_the_pace)
+{
+    GO(ON_WIRE(version, 1), ANSWERED, P(0, measure, 1)); /* in which the command ends */
+    assert_int_equal(due(), 0);
+}
 
 /* Several drivers share a transport, so that one driver's poll may end another's request. */
 TEST(it_is_due_at_once_when_anothers_poll_has_ended_its_request)

@@ -178,3 +178,18 @@ TEST(a_command_waits_for_the_pace_and_not_for_the_back_off)
     PENDS(read_after(1, &version));
     assert_int_equal(fake.submits, before + 1);
 }
+
+/* modbus_unit.h: "what was asked is forgotten": the silences of a device without power too. */
+TEST(after_power_on_three_time_outs_in_a_row_are_needed_again)
+{
+    ask_first();
+    for (unsigned times = 0; times != 2; times++) {
+        for (unsigned n = 0; n != 3; n++) {
+            silence();
+            if (n != 2) assert_paused_for(0);
+        }
+        assert_int_equal(fathom_modbus_unit_due_us(&unit), TIMEOUT_US); /* it is left alone */
+        fathom_modbus_unit_power_on(&unit, 0);
+        assert_paused_for(0);
+    }
+}
