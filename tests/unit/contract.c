@@ -116,7 +116,8 @@ static const contract_kind_t on_transport = {desk_begin,   desk_poll,    desk_ha
         .deinit = d##_deinit, .command = d##_command, .cancel = d##_cancel, .exception = d##_exception,      \
         .unit = d##_unit, .address = &d##_config.modbus.address, .retries = &d##_config.modbus.retries,      \
         .period_us = &d##_config.modbus.period_us, .timeout_us = &d##_config.modbus.timeout_us,              \
-        .command_timeout_us = &d##_config.modbus.command_timeout_us
+        .command_timeout_us = &d##_config.modbus.command_timeout_us,                                         \
+        .backoff_us = &d##_config.modbus.backoff_us
 
 #define COUNTS(of) .sequence = &(of).sequence, .implausible = &(of).implausible
 #define DYP(d, its_response, most, its_model, its_unit)                                                      \

@@ -60,7 +60,7 @@ struct contract_driver {
 
     /* Members of the config. */
     uint8_t *address, *retries;
-    uint32_t *period_us, *timeout_us, *command_timeout_us, *start_us, *stale_us;
+    uint32_t *period_us, *timeout_us, *command_timeout_us, *backoff_us, *start_us, *stale_us;
     fathom_dyp_window_t *window;
     fathom_contact_timing_t *timing;
     uint16_t *gap_us;

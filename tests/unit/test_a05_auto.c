@@ -232,10 +232,20 @@ TEST(rx_is_low_for_a_second_and_a_half_for_real_time_values)
         rig_run(LOW_US - 1000, 1000);
         assert_true(is_low());
         assert_int_equal(fathom_due_us(&rig.sensor, 1), 1000);
-        rig_run(1000, 1000);
+        rig.fake.now_us += 700; /* after the last poll */
+        assert_int_equal(fathom_due_us(&rig.sensor, 1), 300);
+        rig.fake.now_us += i == 0 ? 300 : 301;
+        assert_int_equal(fathom_due_us(&rig.sensor, 1), 0);
+        PENDS(rig_poll());
         assert_false(is_low());
         assert_true(fathom_due_us(&rig.sensor, 1) > 1000);
     }
+}
+
+/* "FATHOM_ERR_ARGUMENT: no such value": not 256 either, where an enumeration can hold it at all. */
+TEST(a_value_of_256_is_refused)
+{
+    if (sizeof(fathom_dyp_value_t) != 1) power_on((fathom_dyp_value_t)256, FATHOM_ERR_ARGUMENT);
 }
 
 TEST(rx_is_high_for_processed_values)

@@ -156,3 +156,27 @@ TEST(an_a05_that_has_moved_measures_at_its_new_address)
         assert_int_equal(desk.sample.address, 5);
     }
 }
+
+/* a05_modbus.h: "what was under way is forgotten": the other three probes of a response too. */
+TEST(after_power_on_no_sample_of_before_is_handed_over)
+{
+    start();
+    IS_TOLD(1000, 2000, 3000, 4000);
+    assert_int_equal(desk_poll(), FATHOM_OK);
+    assert_int_equal(desk.sample.distance_mm, 1000);
+    fathom_a05_modbus_power_on(&a05);
+    desk_waits(0);
+    assert_int_equal(fake.submits, 2);
+}
+
+static uint8_t address;
+static fathom_status_t get_address(void) { return fathom_a05_modbus_get_address(&a05, &address); }
+
+/* "FATHOM_ERR_MALFORMED, where the register says more than 255". */
+TEST(an_address_register_says_up_to_255)
+{
+    start();
+    PLAY(get_address, FATHOM_OK, READ(1, 0x0200, FATHOM_OK, 255));
+    PLAY(get_address, FATHOM_ERR_MALFORMED, READ(1, 0x0200, FATHOM_OK, 256));
+    assert_int_equal(address, 255);
+}

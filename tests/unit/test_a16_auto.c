@@ -9,6 +9,15 @@
 static fathom_a16_auto_config_t config;
 static fathom_a16_auto_t a16;
 static fake_pin_t pin;
+static fathom_uart_t uart; /* of the line; it counts what is done to its TX */
+static unsigned set_breaks;
+static uint8_t memory; /* of the driver, before init */
+
+static int counted_set_break(void *ctx, bool on)
+{
+    set_breaks++;
+    return rig.fake.uart.set_break(ctx, on);
+}
 
 /* A16 2(4): 1953 mm. */
 static const uint8_t mm_1953[] = {0xFF, 0x07, 0xA1, 0xA7};
@@ -17,7 +26,11 @@ static void start_at(uint32_t now_us)
 {
     rig_start(now_us);
     fake_pin_init(&pin, &rig.fake);
-    memset(&a16, 0x5A, sizeof a16);
+    uart = rig.fake.uart;
+    uart.set_break = counted_set_break;
+    rig.line_parts.uart = &uart;
+    set_breaks = 0;
+    memset(&a16, memory, sizeof a16);
     assert_int_equal(fathom_a16_auto_init(&a16, &rig.line, &config), FATHOM_OK);
     rig.sensor = fathom_a16_auto_sensor(&a16);
 }
@@ -27,6 +40,7 @@ static void start(void) { start_at(RIG_START_US); }
 static int set_up(void **state)
 {
     memset(&config, 0, sizeof config);
+    memory = 0x5A;
     start();
     return 0;
 }
@@ -95,11 +109,23 @@ static void selects(fathom_dyp_value_t value, fathom_status_t status)
 
 TEST(by_default_nothing_is_driven)
 {
-    rig.fake.uart.set_break = NULL;
+    uart.set_break = NULL;
     inits(FATHOM_OK);
     fathom_a16_auto_deinit(&a16);
-    assert_int_equal(rig.fake.breaks, 0);
     assert_int_equal(pin.sets, 0);
+}
+
+/* deinit "ends a break that selected": whatever the memory held, there was none. */
+TEST(without_a_selection_tx_is_left_alone)
+{
+    static const uint8_t fills[] = {0x00, 0x5A, 0xFF};
+    config.select = fathom_output_line_break(&rig.line);
+    for (unsigned i = 0; i != sizeof fills; i++) {
+        memory = fills[i];
+        start();
+        fathom_a16_auto_deinit(&a16);
+        assert_int_equal(set_breaks, 0);
+    }
 }
 
 TEST(a_break_selects_until_deinit)
@@ -111,9 +137,26 @@ TEST(a_break_selects_until_deinit)
     selects(FATHOM_PROCESSED, FATHOM_OK);
     assert_false(rig.fake.in_break);
     selects(FATHOM_REAL_TIME, FATHOM_OK);
+    set_breaks = 0;
     fathom_a16_auto_deinit(&a16);
     assert_false(rig.fake.in_break);
+    assert_int_equal(set_breaks, 1); /* it is ended once */
     assert_null(rig.line.listener);
+}
+
+/* A pin stays as it is: the module goes on with the value that was selected. */
+TEST(a_pin_that_selected_is_left_as_it_is)
+{
+    config.select = fathom_output_pin(&pin.trigger);
+    for (unsigned value = FATHOM_PROCESSED; value != 2; value++) {
+        start();
+        selects((fathom_dyp_value_t)value, FATHOM_OK);
+        const unsigned sets = pin.sets;
+        fathom_a16_auto_deinit(&a16);
+        assert_int_equal(pin.sets, sets);
+        assert_int_equal(pin.level, value == FATHOM_PROCESSED);
+        assert_int_equal(set_breaks, 0);
+    }
 }
 
 TEST(a_port_that_cannot_is_said_by_init_and_nothing_listens)
@@ -124,7 +167,7 @@ TEST(a_port_that_cannot_is_said_by_init_and_nothing_listens)
     rig.fake.never_sent = true;
     inits(FATHOM_ERR_BUSY);
     assert_null(rig.line.listener);
-    rig.fake.uart.set_break = NULL;
+    uart.set_break = NULL;
     inits(FATHOM_ERR_UNSUPPORTED);
     assert_null(rig.line.listener);
     config.value = FATHOM_PROCESSED;

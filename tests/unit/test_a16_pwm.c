@@ -106,6 +106,18 @@ TEST(a_window_of_the_users_own_is_kept_and_refusals_are_counted)
     assert_int_equal(a16.implausible, UINT16_MAX);
 }
 
+/* "window: ... 0: 1 and ...". width * 4 / 23: 2 us are 0.35 mm, 3 us 0.52; 572 us are 99.48 mm, 573 us 99.65. */
+TEST(distances_from_1_mm_are_believed_and_the_nearest_is_an_option)
+{
+    config.pulse.noise_us = 1; /* or short pulses would be none */
+    measures(2, FATHOM_ERR_MALFORMED);
+    assert_int_equal(a16.implausible, 1);
+    reads(3, FATHOM_TARGET, 1);
+    config.window.min_mm = 100;
+    measures(572, FATHOM_ERR_MALFORMED);
+    reads(573, FATHOM_TARGET, 100);
+}
+
 TEST(the_whole_range_is_in_the_default_windows)
 {
     config.pulse.no_target_us = 94000;

@@ -121,6 +121,8 @@ TEST(a_value_that_a_register_cannot_have_is_refused)
         PLAY(rows[i].get, FATHOM_ERR_MALFORMED, READ(1, rows[i].address, OK, rows[i].impossible));
         assert_untouched_but(GETS);
     }
+    PLAY(get_polarity, FATHOM_ERR_MALFORMED, READ(1, 0x0205, OK, 0x0100)); /* its low byte is 0 */
+    assert_untouched_but(GETS);
 }
 
 TEST(a_command_that_is_busy_leaves_it_alone)
@@ -154,6 +156,9 @@ TEST(what_is_out_of_range_is_not_sent)
         assert_int_equal(rows[i].set(), FATHOM_ERR_ARGUMENT);
         desk.argument = (int32_t)rows[i].least - 1;
         if (rows[i].least != 0) assert_int_equal(rows[i].set(), FATHOM_ERR_ARGUMENT);
+        desk.argument = 256; /* where an enumeration can hold it at all */
+        if (rows[i].most == 1 && sizeof(fathom_dyp_value_t) != 1)
+            assert_int_equal(rows[i].set(), FATHOM_ERR_ARGUMENT);
         assert_int_equal(fake.submits, 0);
         desk.argument = rows[i].most;
         PENDS(rows[i].set());
@@ -261,8 +266,9 @@ TEST(either_distance_can_be_asked_once)
         assert_int_equal(desk.sample.distance_mm, distances[i]);
         assert_int_equal(desk.sample.address, 1);
     }
-    desk.argument = 2;
-    assert_int_equal(measure(), FATHOM_ERR_ARGUMENT);
+    for (desk.argument = 2; desk.argument <= 256; desk.argument += 254)
+        if (desk.argument == 2 || sizeof(fathom_dyp_value_t) != 1)
+            assert_int_equal(measure(), FATHOM_ERR_ARGUMENT);
     desk.argument = 0;
     PLAY(measure, FATHOM_ERR_MALFORMED, READ(1, 0x0100, OK, 16351)); /* refused like any other */
 }
@@ -275,4 +281,18 @@ TEST(a_distance_asked_once_is_not_mixed_up_with_the_repeated_one)
     PLAY(measure, OK, READ(1, 0x0100, OK, 1111), /* to the repeated request, which is not taken */
          READ(1, 0x0100, OK, 2222));
     assert_int_equal(desk.sample.distance_mm, 2222);
+}
+
+/* dyp_modbus.h: "of registers that differ in their bits 0 to 3, 8 or 9"; one is under way, and the other has to wait. */
+TEST(commands_of_two_registers_are_told_apart)
+{
+    static const uint16_t registers[] = {0x0010, 0x0011, 0x0110, 0x0210};
+    uint16_t value = 0;
+    for (unsigned i = 0; i != 4; i++)
+        for (unsigned j = 0; j != 4; j++) {
+            set_up(state);
+            PENDS(fathom_dyp_modbus_get_register(&a16.base, registers[i], &value));
+            assert_int_equal(fathom_dyp_modbus_get_register(&a16.base, registers[j], &value),
+                             i == j ? FATHOM_PENDING : FATHOM_ERR_BUSY);
+        }
 }

@@ -409,6 +409,22 @@ CONTRACT(a_command_has_its_own_time_out_and_can_be_cancelled, TRANSPORT)
     }
 }
 
+/* Four silences, each 2 s after its request: the pause is two time-outs then, or what the config says. */
+CONTRACT(a_dead_device_is_left_alone_no_longer_than_its_config_says, TRANSPORT)
+{
+    *driver->backoff_us = 123456;
+    start();
+    for (unsigned n = 0; n != 4; n++) {
+        if (n != 0) *kind->now_us += fathom_due_us(kind->sensor, 1);
+        PENDS(kind->poll());
+        fake_modbus_send(&fake);
+        PENDS(kind->poll());
+        fake_modbus_fail(&fake, FATHOM_ERR_NO_RESPONSE);
+        assert_int_equal(poll_after(2000000), FATHOM_ERR_NO_RESPONSE);
+    }
+    assert_int_equal(fathom_due_us(kind->sensor, 1), 123456);
+}
+
 #define STARTED(promise) OF(promise, a05_modbus) OF(promise, a16_modbus)
 
 /* What was under way is forgotten; silence is no error for 1.5 s, or as long as the config says. */
