@@ -35,6 +35,9 @@ TEST(a_pin_triggers_instead_of_the_break)
     controlled.trigger = fathom_output_pin(&controlled.pin.trigger);
     controlled_start();
     assert_true(controlled.pin.level);
+    fathom_a16_controlled_deinit(&controlled.a16);
+    assert_int_equal(controlled.pin.sets, 1); /* a pin that is high is not set again */
+    controlled_start();
     rig_run(2 * MS, 100);
     assert_false(controlled.pin.level);
     assert_int_equal(controlled.pin.falls, 1);
@@ -163,21 +166,77 @@ TEST(a_second_frame_to_one_trigger_is_late)
     assert_int_equal(controlled.a16.late, 1);
 }
 
-/* Stamped at 131 ms, read at 139 ms, when the poll before was at 119 ms: it may have come in time but for the stamp. */
+/* "earliest_us; 0: 80 ms", "latest_us; 0: 130 ms", to the microsecond. At 131 ms it is read at 139 ms, when the poll before
+ * was at 119 ms: it may have come in time but for the stamp. */
 TEST(the_ports_time_stamps_decide_where_there_are_any)
 {
-    for (uint32_t came_us = 129 * MS; came_us <= 131 * MS; came_us += MS) {
-        const bool in_time = came_us <= 130 * MS;
+    static const uint32_t came_us[] = {79999, 80000, 129000, 130000, 130001, 131000};
+    for (unsigned i = 0; i != COUNT(came_us); i++) {
+        const bool in_time = came_us[i] >= 80000 && came_us[i] <= 130000;
         controlled_start();
         controlled_run_to_break(1, 100);
         const uint32_t edge_us = rig.fake.now_us;
-        rig_run(119 * MS, 1 * MS);
+        rig_run(i < 2 ? 79 * MS : 119 * MS, 1 * MS);
         fake_receive_rx(&rig.fake, 20 * MS, controlled_1953, 4,
-                        (fathom_rx_t){edge_us + came_us, FATHOM_RX_TIMED});
+                        (fathom_rx_t){edge_us + came_us[i], FATHOM_RX_TIMED});
         assert_int_equal(controlled_outcome(20 * MS), in_time ? FATHOM_OK : FATHOM_ERR_NO_RESPONSE);
-        if (in_time) assert_int_equal(rig.sample.time_us, edge_us + came_us);
+        if (in_time) assert_int_equal(rig.sample.time_us, edge_us + came_us[i]);
         assert_int_equal(controlled.a16.late, !in_time);
     }
+}
+
+/* FATHOM_ERR_ARGUMENT: "earliest_us over latest_us". */
+TEST(earliest_and_latest_may_be_the_same)
+{
+    controlled.config.earliest_us = controlled.config.latest_us = 100000;
+    assert_int_equal(controlled_init(), FATHOM_OK);
+    controlled.config.latest_us = 99999;
+    assert_int_equal(controlled_init(), FATHOM_ERR_ARGUMENT);
+}
+
+/* ---- when it is due ---- */
+
+static fathom_status_t poll_after(uint32_t us)
+{
+    rig.fake.now_us += us;
+    return rig_poll();
+}
+
+static void expect_due(uint32_t us) { assert_int_equal(fathom_due_us(&rig.sensor, 1), us); }
+
+/* After the response the next trigger is due, however long the period is: the stream's own deadline means nothing. */
+TEST(between_two_triggers_it_is_due_at_the_next_one)
+{
+    static const uint8_t fills[] = {0x00, 0xFF};
+    controlled.config.period_us = 20000 * MS;
+    for (unsigned i = 0; i != sizeof fills; i++) {
+        rig_start(RIG_START_US);
+        memset(&controlled.a16, fills[i], sizeof controlled.a16);
+        assert_int_equal(controlled_init(), FATHOM_OK);
+        rig.sensor = fathom_a16_controlled_sensor(&controlled.a16);
+        controlled_run_to_break(1, 2 * MS);
+        PENDS(poll_after(2 * MS));
+        assert_int_equal(poll_after(128 * MS), FATHOM_ERR_NO_RESPONSE);
+        expect_due(19870 * MS);
+        rig.fake.now_us += 70 * MS;
+        expect_due(19800 * MS);
+        rig.fake.now_us += 19801 * MS;
+        expect_due(0);
+    }
+}
+
+/* line.h: "Several users of one line may each call" its poll; FF begins another frame and so ends this one. */
+TEST(a_frame_that_a_poll_of_the_line_has_brought_is_due_at_once)
+{
+    static const uint8_t and_more[] = {0xFF, 0x07, 0xA1, 0xA7, 0xFF};
+    controlled_run_to_break(1, 2 * MS);
+    PENDS(poll_after(2 * MS));
+    PENDS(poll_after(8 * MS));
+    fake_receive(&rig.fake, 90 * MS, and_more, 5);
+    rig.fake.now_us += 90 * MS;
+    PENDS(fathom_line_poll(&rig.line));
+    expect_due(0);
+    assert_int_equal(rig_poll(), FATHOM_OK);
 }
 
 /* ---- loops and the clock ---- */
