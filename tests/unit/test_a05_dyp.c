@@ -14,11 +14,15 @@ static const uint16_t four_mm[] = {1000, 2000, 1953, 3562};
 
 static fathom_a05_dyp_config_t config;
 static fathom_a05_dyp_t a05;
+static uint16_t counters[FATHOM_LINE_COUNTERS];
 
 static void set_up_at(uint32_t now_us)
 {
     rig_start(now_us);
     rig.line_parts.echo = FATHOM_LINE_ECHO_OFF;
+    rig.line_parts.count = fathom_line_count;
+    rig.line_parts.counters = counters;
+    memset(counters, 0, sizeof counters);
     rig.fake.byte_us = RIG_BYTE_US;
     assert_int_equal(fathom_line_init(&rig.line, &rig.line_parts), FATHOM_OK);
     config = (fathom_a05_dyp_config_t){0};
@@ -172,7 +176,97 @@ TEST(a_value_that_cannot_be_is_refused_alone)
     nothing_for(1000);
 }
 
-/* ---- time ---- */
+/* ---- time: time-outs and paces, by default and as the config says, to the microsecond ---- */
+
+static fathom_status_t after(uint32_t us, fathom_status_t (*call)(void))
+{
+    rig.fake.now_us += us;
+    return call();
+}
+
+/* Runs until the next request is on the wire, and then until it has left. */
+static void is_sent(fathom_status_t (*call)(void))
+{
+    const size_t before = rig.fake.written;
+    for (unsigned i = 0; rig.fake.written == before; i++) {
+        assert_true(i < 20000);
+        PENDS(after(100, call));
+    }
+    PENDS(after(REQUEST_US, call));
+}
+
+/* It fails so long after it has left, and not before. */
+static void is_silent_for(uint32_t us, fathom_status_t (*call)(void))
+{
+    PENDS(after(us - 1, call));
+    assert_int_equal(after(1, call), FATHOM_ERR_NO_RESPONSE);
+}
+
+static fathom_status_t set_7(void) { return fathom_a05_dyp_broadcast_address(&a05, 7); }
+
+/* "timeout_us; 0: 500 ms for all probes, 200 ms for one"; "command_timeout_us: of whatever else is asked; 0: 1 s". The
+ * first request of a setting is one. */
+TEST(all_probes_have_500_ms_and_one_has_200_and_a_command_has_1_s_or_as_the_config_says)
+{
+    static const struct {
+        uint8_t probes;
+        uint32_t timeout_us, command_timeout_us, is_us;
+    } rows[] = {{0, 0, 345678, 500000}, {4, 0, 345678, 200000}, {0, 123456, 0, 123456}};
+    for (unsigned i = 0; i != COUNT(rows); i++)
+        for (unsigned is_command = 0; is_command != 2; is_command++) {
+            start_with(rows[i].probes, 0, rows[i].timeout_us);
+            config.modbus.command_timeout_us = rows[i].command_timeout_us;
+            start();
+            is_sent(is_command != 0 ? set_7 : rig_poll);
+            if (is_command != 0)
+                is_silent_for(i == 2 ? 1000000 : 345678, set_7);
+            else
+                is_silent_for(rows[i].is_us, rig_poll);
+        }
+}
+
+/* 1953 mm of probe 1: FF + 01 + 10 + 07 + A1 = 1B8. */
+static const uint8_t first_1953[] = {0x55, 0xAA, 0x01, 0x10, 0x07, 0xA1, 0xB8};
+
+/* FATHOM_A05_DYP_ALL_PROBES_US, FATHOM_A05_DYP_ONE_PROBE_US: "from one command to the next, at least", and no longer.
+ * The pace counts from the poll in which the request went out. */
+TEST(all_probes_are_asked_every_250_ms_and_one_every_100)
+{
+    for (uint8_t probes = 0; probes != 2; probes++) {
+        start_with(probes, 0, 0);
+        is_sent(rig_poll);
+        receive(probes == 0 ? four : first_1953, probes == 0 ? sizeof four : sizeof first_1953);
+        assert_int_equal(rig_poll(), FATHOM_OK);
+        while (rig_poll() == FATHOM_OK) {
+        }
+        /* what one call submits the line sends in the next */
+        PENDS(after((probes == 0 ? 250000 : 100000) - REQUEST_US - 1, rig_poll));
+        PENDS(rig_poll());
+        assert_int_equal(rig.fake.written, 1);
+        PENDS(after(1, rig_poll));
+        PENDS(rig_poll());
+        assert_int_equal(rig.fake.written, 2);
+    }
+}
+
+/* The command itself is acknowledged at once or not at all: the time of one probe is enough. Address 1 answers with
+ * 1953 mm, 7 does not, and then 7 is set. FF + 07 + 03 = 109. */
+TEST(setting_the_address_is_waited_for_as_one_probe_is)
+{
+    static const uint8_t set_to_7[] = {0x55, 0xAA, 0x07, 0x03, 0x09};
+    config.modbus.command_timeout_us = 300000;
+    start();
+    is_sent(set_7);
+    receive(first_1953, sizeof first_1953);
+    is_sent(set_7); /* 7 is asked */
+    PENDS(after(300000, set_7));
+    is_sent(set_7);
+    assert_memory_equal(rig.fake.writes[2].bytes, set_to_7, sizeof set_to_7);
+    PENDS(after(199999, set_7));
+    assert_int_equal(counters[FATHOM_LINE_NO_RESPONSES], 1);
+    PENDS(after(1, set_7));
+    assert_int_equal(counters[FATHOM_LINE_NO_RESPONSES], 2);
+}
 
 /* 1.5 s, or as the config says, and then a time-out and a quarantine. */
 TEST(after_power_on_silence_is_warming_up)
@@ -272,6 +366,15 @@ TEST_IN(finding, it_can_be_given_up)
     finds(2, from_5, 5);
 }
 
+TEST_IN(finding, it_ends_if_the_line_is_initialised_again)
+{
+    is_sent(find);
+    assert_int_equal(fathom_line_init(&rig.line, &rig.line_parts), FATHOM_OK);
+    assert_int_equal(find(), FATHOM_ERR_CANCELLED);
+    is_sent(find); /* again */
+    is_silent_for(200000, find);
+}
+
 TEST_IN(finding, a_broken_port_ends_it)
 {
     until_asked(1);
@@ -302,8 +405,6 @@ static void assert_refused(void)
     assert_false(fathom_line_is_queued(&rig.line, &other.transaction));
     assert_int_equal(rig.fake.written, written);
 }
-
-static fathom_status_t set_7(void) { return fathom_a05_dyp_broadcast_address(&a05, 7); }
 
 /* 55 AA 01 10 and 0x75B mm: 55 + AA + 01 + 10 + 07 + 5B = 172, so that the sum is 72; and at address 7: 78. 55 + AA +
  * 07 + 03 = 109. */
