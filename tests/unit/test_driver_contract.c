@@ -553,6 +553,7 @@ CONTRACT(it_is_stale_in_time_or_as_the_config_says_and_once_each_time, LISTENERS
         for (unsigned n = 1; n <= 3; n++) {
             rig_run(stale_us - step_us, step_us);
             assert_int_equal(rig.stales, n - 1);
+            assert_int_equal(fathom_due_us(kind->sensor, 1), step_us);
             rig_run(step_us, step_us);
             assert_int_equal(rig.stales, n);
         }

@@ -127,6 +127,55 @@ TEST(of_several_frames_the_newest_is_told_and_the_others_are_counted)
     assert_int_equal(hps.missed, 65535);
 }
 
+/* A line whose buffer holds no frame is refused. */
+TEST(the_buffer_of_the_line_holds_13_bytes)
+{
+    for (uint8_t size = 12; size != 14; size++) {
+        rig.line_parts.frame_size = size;
+        assert_int_equal(fathom_hps167s_auto_init(&hps, &rig.line, &config),
+                         size == 12 ? FATHOM_ERR_ARGUMENT : FATHOM_OK);
+    }
+}
+
+static void receives(const uint8_t *bytes, size_t length, fathom_status_t status)
+{
+    fake_receive(&rig.fake, 0, bytes, length);
+    rig.fake.now_us += 100;
+    assert_int_equal(rig_poll(), status);
+}
+
+static void counts(unsigned dropped_bytes, unsigned damaged)
+{
+    assert_int_equal(hps.dropped_bytes, dropped_bytes);
+    assert_int_equal(hps.damaged, damaged);
+}
+
+/* 12 bytes of a frame without the first: none can be in a frame, but the last 01 may begin one; a wrong CRC: 41 for 42.
+ * Each byte ends in a frame, is dropped, or is held. */
+TEST(dropped_bytes_and_damaged_frames_are_counted)
+{
+    uint8_t wrong[LENGTH];
+    memcpy(wrong, example, LENGTH);
+    wrong[LENGTH - 1] = 0x42;
+    receives(example, LENGTH, FATHOM_OK);
+    counts(0, 0);
+    receives(example + 1, LENGTH - 1, FATHOM_PENDING);
+    counts(12, 0);
+    for (unsigned i = 1; i <= 3; i++) {
+        receives(wrong, LENGTH, FATHOM_PENDING);
+        counts(12 + 13 * i, i);
+    }
+    receives(example, 5, FATHOM_PENDING);
+    counts(12 + 13 * 3, 3); /* 5 are held */
+    fake_receive_rx(&rig.fake, 0, example, LENGTH, (fathom_rx_t){0, FATHOM_RX_OVERRUN});
+    rig.fake.now_us += 100;
+    assert_int_equal(rig_poll(), FATHOM_OK);
+    counts(12 + 13 * 3 + 5, 3);
+    hps.dropped_bytes = hps.damaged = UINT16_MAX;
+    receives(wrong, LENGTH, FATHOM_PENDING);
+    counts(UINT16_MAX, UINT16_MAX);
+}
+
 /* ---- time ---- */
 
 TEST(frames_that_are_no_samples_do_not_postpone_the_error)
@@ -218,37 +267,26 @@ TEST(what_was_told_last_is_no_measurement_at_any_time)
     hears(FATHOM_OK, 1, 0x00FF, 0x0500, 0x0000, 0xB402);
 }
 
-/* A target that stays at 255 mm, with figures that stay as well, sent every 100 ms while #2 is asked. */
-TEST(a_held_value_is_never_taken_for_the_configuration)
+/* A target that stays at 255 mm, with figures that stay as well; and command #5: "If a sensor failure occurs during
+ * continuous measurement, an abnormal data packet will be returned". Each is sent every 100 ms while #2 is asked. */
+TEST(a_held_value_or_a_fault_is_never_taken_for_the_configuration)
 {
-    uint8_t frame[LENGTH];
-    fathom_status_t status = FATHOM_PENDING;
-    ask_too();
-    hears(FATHOM_OK, 1, LOOKS_LIKE_2);
-    rig_hps_frame(frame, 1, LOOKS_LIKE_2);
-    for (unsigned i = 0; i != 60 && status == FATHOM_PENDING; i++) {
-        fake_trickle(&rig.fake, 60000, RIG_BYTE_US, frame, LENGTH);
-        status = run_both(100000, ask_2);
+    static const uint16_t held[][4] = {{LOOKS_LIKE_2}, {0xFFFF, 0x0000, 0x00FF, 0xFFFF}};
+    for (unsigned n = 0; n != 2; n++) {
+        uint8_t frame[LENGTH];
+        fathom_status_t status = FATHOM_PENDING;
+        (void)set_up(state);
+        ask_too();
+        if (n == 0) hears(FATHOM_OK, 1, LOOKS_LIKE_2);
+        rig_hps_frame(frame, 1, held[n][0], held[n][1], held[n][2], held[n][3]);
+        for (unsigned i = 0; i != 60 && status == FATHOM_PENDING; i++) {
+            fake_trickle(&rig.fake, 60000, RIG_BYTE_US, frame, LENGTH);
+            status = run_both(100000, ask_2);
+        }
+        assert_int_equal(status, FATHOM_ERR_MALFORMED);
+        assert_int_equal(fathom_modbus_unit_responses(fathom_hps167s_unit(&driver)),
+                         32); /* hps167s_info.c: the most. */
     }
-    assert_int_equal(status, FATHOM_ERR_MALFORMED);
-    assert_int_equal(fathom_modbus_unit_responses(fathom_hps167s_unit(&driver)),
-                     32); /* hps167s_info.c: the most. */
-}
-
-/* Command #5: "If a sensor failure occurs during continuous measurement, an abnormal data packet will be returned". */
-TEST(a_faulted_sensor_that_sends_never_yields_a_configuration)
-{
-    uint8_t frame[LENGTH];
-    fathom_status_t status = FATHOM_PENDING;
-    ask_too();
-    rig_hps_frame(frame, 1, 0xFFFF, 0x0000, 0x00FF, 0xFFFF);
-    for (unsigned i = 0; i != 60 && status == FATHOM_PENDING; i++) {
-        fake_trickle(&rig.fake, 60000, RIG_BYTE_US, frame, LENGTH);
-        status = run_both(100000, ask_2);
-    }
-    assert_int_equal(status, FATHOM_ERR_MALFORMED);
-    assert_int_equal(fathom_modbus_unit_responses(fathom_hps167s_unit(&driver)),
-                     32); /* hps167s_info.c: the most. */
 }
 
 TEST(commands_are_answered_while_frames_arrive)

@@ -83,8 +83,8 @@ TEST(every_temperature_is_exact_to_half_a_tenth_or_refused)
     static const struct {
         uint8_t steps;
         unsigned refused; /* of 65536 */
-    } rows[] = {{1, 65536 - 11797}, {2, 65536 - 23593}, {10, 0}, {100, 0}, {255, 0}};
-    for (unsigned i = 0; i != 5; i++) {
+    } rows[] = {{1, 65536 - 11797}, {2, 65536 - 23593}, {4, 65536 - 47186}, {10, 0}, {100, 0}, {255, 0}};
+    for (unsigned i = 0; i != 6; i++) {
         const long steps = rows[i].steps;
         unsigned refused = 0;
         start(rows[i].steps);

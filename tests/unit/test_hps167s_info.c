@@ -33,6 +33,8 @@ static fathom_status_t read_temperature(void)
 #define RATE_2   0xFF00, 0x0500, 0x0000, 0xB402
 #define MEASURES 0x0823, 0xDCB2, 0x0701, 0x0000 /* the example of #5 */
 
+static const uint16_t rate_1[4] = {RATE_1};
+
 HPS_SUITE;
 
 /* ---- #2 ---- */
@@ -77,21 +79,20 @@ TEST(every_member_of_the_configuration_is_its_own_bytes)
 /* The same bytes by themselves and as a response: 255 mm that hold, or a response that comes late. */
 TEST(what_is_heard_unasked_between_two_responses_takes_away_their_agreement)
 {
-    static const uint16_t registers[4] = {RATE_1};
     PART(configuration, HPS_2(1, OK, 0, RATE_1));
     PENDS(configuration());
-    assert_false(fathom_hps167s_accept_unsolicited(&hps, registers, fake.now_us));
+    assert_false(fathom_hps167s_accept_unsolicited(&hps, rate_1, fake.now_us));
     PLAY(configuration, OK, TELLS(RATE_1), HPS_2(1, OK, 0, RATE_1));
     /* but not the one response that is still to come, where a measurement was taken for it */
     PART(configuration, HPS_2(1, OK, 0, RATE_1), HPS_2(1, OK, 0, MEASURES));
     PENDS(configuration());
-    assert_false(fathom_hps167s_accept_unsolicited(&hps, registers, fake.now_us));
+    assert_false(fathom_hps167s_accept_unsolicited(&hps, rate_1, fake.now_us));
     PLAY(configuration, OK, TELLS(RATE_1));
     /* and only one: what comes after it takes it away */
     PART(configuration, HPS_2(1, OK, 0, RATE_1), HPS_2(1, OK, 0, MEASURES));
     PENDS(configuration());
     for (unsigned i = 0; i != 2; i++)
-        assert_false(fathom_hps167s_accept_unsolicited(&hps, registers, fake.now_us));
+        assert_false(fathom_hps167s_accept_unsolicited(&hps, rate_1, fake.now_us));
     PLAY(configuration, OK, TELLS(RATE_1), HPS_2(1, OK, 0, RATE_1));
 }
 
@@ -213,6 +214,71 @@ TEST(the_responses_of_an_abandoned_configuration_do_not_count)
     PLAY(configuration, OK, TELLS(RATE_2));
 }
 
+/* 01000008 hexadecimal = 16777224. */
+TEST(the_first_configuration_is_believed_whatever_stood_in_the_memory)
+{
+    static const uint16_t first[4] = {0x0000, 0x0101, 0x0000, 0x0801};
+    memcpy(hps.last_measurement, first, sizeof first);
+    hps_start();
+    PLAY(configuration, OK, TELLS(0x0000, 0x0101, 0x0000, 0x0801));
+    assert_int_equal(is.warm_up_s, 1);
+    assert_int_equal(is.reconnect_time_ms, 16777224);
+}
+
+/* ---- how often it is asked ---- */
+
+static uint32_t due_us(void) { return desk.sensor.due_us(desk.sensor.ctx); }
+
+/* Calls until the next request is under way. */
+static void asks(fathom_status_t (*command)(void))
+{
+    for (unsigned i = 0; fake.request == NULL || fake.ends != FATHOM_PENDING; i++) {
+        assert_true(i < 1000);
+        PENDS(command());
+        if (fake.request == NULL) fake.now_us += 1000;
+    }
+}
+
+/* hps167s_info.h: the requests come at irregular intervals, or a slow loop could keep step with the device. Of 31
+ * intervals, at least one is in each eighth of the device's period. */
+TEST(after_a_measurement_in_the_place_of_a_response_the_intervals_keep_no_step_with_the_device)
+{
+    enum { PARTS = 8, READS = 31 };
+    unsigned in_part[PARTS] = {0};
+    for (uint32_t n = 0; n != READS; n++) {
+        asks(configuration);
+        fake_modbus_response(&fake, hps_measured, 4);
+        PENDS(configuration());
+        assert_in_range(due_us(), FATHOM_HPS167S_MIN_PERIOD_US,
+                        FATHOM_HPS167S_MIN_PERIOD_US + 131070); /* 2 * 65535 */
+        in_part[due_us() % FATHOM_HPS167S_MIN_PERIOD_US * PARTS / FATHOM_HPS167S_MIN_PERIOD_US]++;
+        fake.submits = 0;
+    }
+    for (unsigned i = 0; i != PARTS; i++) assert_true(in_part[i] != 0);
+}
+
+TEST(among_measured_frames_that_were_heard_it_is_asked_out_of_step_from_the_first_response_on)
+{
+    assert_true(fathom_hps167s_accept_unsolicited(&hps, hps_measured, fake.now_us));
+    asks(configuration);
+    fake_modbus_response(&fake, rate_1, 4);
+    PENDS(configuration());
+    assert_in_range(due_us(), FATHOM_HPS167S_MIN_PERIOD_US + 1, FATHOM_HPS167S_MIN_PERIOD_US + 131070);
+}
+
+static fathom_status_t set_termination(void) { return fathom_hps167s_set_termination(&hps, false); }
+
+/* FATHOM_ERR_BUSY: "another command or setting is not finished": that one does not notice. */
+TEST(who_is_told_busy_costs_a_setting_no_response)
+{
+    asks(set_termination);
+    fake_modbus_response(&fake, rate_1, 4);
+    PENDS(set_termination()); /* one of two */
+    assert_int_equal(configuration(), FATHOM_ERR_BUSY);
+    PLAY(set_termination, OK, HPS_2(1, OK, 0, RATE_1), {{1, 6, 0, 0x13, 0, 0}, OK, {0}, 0},
+         TELLS(0x0000, 0x0500, 0x0000, 0xB401));
+}
+
 /* ---- its options ---- */
 
 TEST(how_many_responses_have_to_agree_is_an_option)
@@ -279,7 +345,6 @@ TEST(the_temperature_can_count_in_finer_steps)
 TEST(after_an_unsolicited_frame_three_responses_have_to_agree_for_2_s)
 {
     static const row_t four[] = {TELLS(RATE_1), TELLS(RATE_1)};
-    static const uint16_t frame[4] = {MEASURES};
     static const struct {
         uint32_t after_us;
         uint8_t same_responses, needed;
@@ -288,8 +353,20 @@ TEST(after_an_unsolicited_frame_three_responses_have_to_agree_for_2_s)
         hps_set_up(NULL);
         hps_config.same_responses = rows[i].same_responses;
         hps_start();
-        assert_true(fathom_hps167s_accept_unsolicited(&hps, frame, fake.now_us));
+        assert_true(fathom_hps167s_accept_unsolicited(&hps, hps_measured, fake.now_us));
         fake.now_us += rows[i].after_us;
         assert_int_equal(desk_play(configuration, four, rows[i].needed), OK);
+    }
+}
+
+TEST(the_2_s_are_exact)
+{
+    hps_config.same_responses = 1;
+    for (uint32_t before_us = 1999999; before_us <= 2000000; before_us++) {
+        hps_start();
+        assert_true(fathom_hps167s_accept_unsolicited(&hps, hps_measured, fake.now_us - before_us));
+        asks(configuration);
+        fake_modbus_response(&fake, rate_1, 4);
+        assert_int_equal(configuration(), before_us == 1999999 ? FATHOM_PENDING : OK);
     }
 }

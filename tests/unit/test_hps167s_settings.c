@@ -55,6 +55,16 @@ static const struct {
 
 HPS_SUITE;
 
+TEST(a_new_driver_has_written_nothing_and_had_no_response_to_a_reset_whatever_stood_in_the_memory)
+{
+    hps.unit.is_written = true;
+    hps.reset_response = 0;
+    hps_start();
+    assert_false(fathom_hps167s_is_written(&hps));
+    assert_int_equal(hps.reset_response, FATHOM_HPS167S_NO_RESET_RESPONSE);
+    assert_int_equal(hps.reset_response, 0xFFFF);
+}
+
 TEST(what_is_so_already_is_not_written)
 {
     for (unsigned i = 0; i != COUNT(changes); i++) {
