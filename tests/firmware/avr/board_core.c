@@ -4,10 +4,11 @@
 #include <simavr/sim_core.h>
 
 #include "board_inside.h"
-#include "trace.h"
 
 /* ATmega328P 36, in data space. */
 enum { TIFR1 = 0x36, EIFR = 0x3C, EIMSK = 0x3D, TIMSK1 = 0x6F };
+
+bool board_executed[BOARD_WORDS];
 
 /* ---- interrupts ---- */
 
@@ -43,8 +44,8 @@ static void run(avr_t *avr)
     const bool asleep = avr->state == cpu_Sleeping;
     avr_flashaddr_t next = avr->pc;
     if (avr->state == cpu_Running) {
+        if (avr->pc / 2 < BOARD_WORDS) board_executed[avr->pc / 2] = true;
         next = avr_run_one(avr);
-        trace_step(avr->pc, next);
     }
     const avr_cycle_count_t left_cycles = avr_cycle_timer_process(avr);
     avr->pc = next;

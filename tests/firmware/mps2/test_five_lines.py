@@ -52,7 +52,7 @@ class FiveLines(interop.PymodbusServer, qemu.Case):
         self.check_said(done.out, SAID, 6)
         # The simulated sensors answer at their own rate only, which a pseudo terminal keeps; the servers at any.
         # 25 MHz / 1302 is 19201.2.
-        self.assertEqual(re.findall(r'params set to (.*)$', done.err, re.M),
+        self.assertEqual(re.findall(r'params set to (.*)$', self.traced(done), re.M),
                          ['9600 8N1', '9600 8N1', '19201 8N1', '9600 8N1', '9600 8N1'])
 
     def test_more_responses_than_an_index_of_the_ring_can_count(self):

@@ -7,6 +7,7 @@ nothing here is judged by how long it takes, and an attempt may fail for that; w
 import os
 import re
 import sys
+import time
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 TESTS = os.path.dirname(os.path.dirname(HERE))
@@ -29,6 +30,7 @@ DATASHEET = ('0x0823', '0xDCB2', '0x0701', '0x0000')  # HPS-167S #5: 2083 mm, 72
 
 class Case(interop.Case):
     machine = os.path.basename(os.path.dirname(os.path.abspath(sys.argv[0])))
+    log = None
 
     def boot(self, image, *ports, words=(), traces=(), shift=None):
         """Starts an image. ports: what its UARTs are connected to, in QEMU's order; None: nothing. words: for the
@@ -45,11 +47,20 @@ class Case(interop.Case):
                 options += ['-chardev', f'serial,id=uart{number},path={port}', '-serial', f'chardev:uart{number}']
         for trace in traces:
             options += ['-trace', trace]
-        if 'FATHOM_TRACE' in os.environ:  # for tests/verify/coverage, which builds the plugin
-            options += ['-plugin', f'{os.environ["FATHOM_TRACE_PLUGIN"]},image={path}']
+        if 'FATHOM_TRACE' in os.environ:  # for tests/verify/coverage: QEMU logs each block of code that it translates
+            name = f'qemu-{time.monotonic_ns()}-{path.replace("/", "~")}'
+            self.log = os.path.join(os.environ['FATHOM_TRACE'], name)
+            options += ['-d', 'in_asm', '-D', self.log]
         if shift is not None:
             options += ['-serial', 'null', '-icount', f'shift={shift},sleep=off', '-rtc', 'clock=vm']
         return self.start([*MACHINES[self.machine], *options])
+
+    def traced(self, done):
+        """The traces of QEMU: on its stderr, or in its log if it has one."""
+        if self.log is None:
+            return done.err
+        with open(self.log, encoding='utf-8') as file:
+            return file.read()
 
     def end_well(self, program):
         done = program.finish(PATIENCE)

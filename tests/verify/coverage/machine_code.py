@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Finds which functions of the ports for microcontrollers the firmware tests execute, by the traces that the simulators
-write (tests/firmware/avr/trace.h)."""
+"""Finds which functions of the ports for microcontrollers the firmware tests execute, by the addresses that the
+simulators write into the folder FATHOM_TRACE."""
 import collections
 import glob
 import json
@@ -81,12 +81,15 @@ def measure(root, build, folder):
 
 
 def traces(folder):
-    """Returns {image: {address of an executed instruction, ...}}."""
+    """Returns {image: {address of an executed instruction, ...}}. The first line of a trace is the image. QEMU writes
+    the code that it translates, right before it executes it; the name of the file has the image."""
     result = {}
-    for path in glob.glob(os.path.join(folder, '*.trace')):
+    for path in glob.glob(os.path.join(folder, '*')):
         with open(path, encoding='utf-8') as file:
-            executed = result.setdefault(os.path.realpath(file.readline().strip()), set())
-            executed.update(int(line.split()[0], 16) for line in file)
+            of_qemu = re.match(r'qemu-\d+-(.*)', os.path.basename(path))
+            image = of_qemu[1].replace('~', '/') if of_qemu else file.readline().strip()
+            found = re.findall(r'^0x(\w+):' if of_qemu else r'^\w+$', file.read(), re.M)
+        result.setdefault(os.path.realpath(image), set()).update(int(address, 16) for address in found)
     return result
 
 
@@ -94,9 +97,7 @@ def record(root, build, folder, jobs):
     """Runs the firmware tests, and writes their traces into the folder."""
     shutil.rmtree(folder, ignore_errors=True)
     os.makedirs(folder)
-    plugin = os.path.join(folder, 'trace.so')
-    output('gcc', '-shared', '-fPIC', '-O2', '-o', plugin, os.path.join(root, 'tests', 'firmware', 'qemu', 'trace.c'))
-    environment = dict(os.environ, FATHOM_TRACE=folder, FATHOM_TRACE_PLUGIN=plugin)
+    environment = dict(os.environ, FATHOM_TRACE=folder)
     # Traces make the longest tests longer, and a machine that has other work may make them too long.
     code, said = run(['ctest', '--test-dir', build, '--parallel', str(jobs), '--no-tests=error', '--output-on-failure',
                       '--repeat', 'after-timeout:3', '--tests-regex', TESTS], env=environment)
