@@ -57,16 +57,6 @@ static void is_after(uint32_t us, fathom_status_t (*call)(void), fathom_status_t
     assert_int_equal(after(us, call), status);
 }
 
-static void assert_version(void)
-{
-    assert_int_equal(version.year, 2020);
-    assert_int_equal(version.month, 9);
-    assert_int_equal(version.day, 27);
-    assert_int_equal(version.major, 2);
-    assert_int_equal(version.minor, 1);
-    assert_int_equal(version.revision, 0);
-}
-
 /* ---- measurements ---- */
 
 TEST(the_least_period_is_at_most_54_a_second) { assert_true(54 * FATHOM_HPS167S_MIN_PERIOD_US >= 1000000); }
@@ -90,30 +80,6 @@ TEST(the_abnormal_packet_is_a_fault)
 }
 
 /* ---- commands ---- */
-
-TEST(the_interface_version_is_read_byte_by_byte)
-{
-    PLAY(ask_version, OK, HPS_1(1, OK, 0));
-    assert_version();
-}
-
-/* Command #3 reads 13 09 17 as "19/09/27" and 03 09 as "Ver. 2.1"; the bytes say 2019-09-23 and 3.9. */
-TEST(the_details_are_what_the_bytes_say_and_not_the_text)
-{
-    static const uint8_t uuid[16] = {0x00, 0x39, 0x00, 0x25, 0x42, 0x34, 0x57, 0x14,
-                                     0x20, 0x34, 0x38, 0x35, 0x01, 0x06, 0x07, 0x05};
-    PENDS(ask_details());
-    fake_modbus_assert_asked(&fake, 1, 1, 0x0003, 11);
-    assert_int_equal(fake.request->transaction.timeout_us, 1000000);
-    fake_modbus_response(&fake, detailed, 11);
-    is_after(9000, ask_details, OK);
-    assert_memory_equal(details.uuid, uuid, 16);
-    assert_int_equal(details.year, 2019);
-    assert_int_equal(details.month, 9);
-    assert_int_equal(details.day, 23);
-    assert_int_equal(details.major, 3);
-    assert_int_equal(details.minor, 9);
-}
 
 TEST(details_with_any_other_ack_byte_are_malformed)
 {
@@ -141,12 +107,14 @@ static void start_line(void)
     rig.sensor = desk.sensor;
 }
 
-TEST(commands_3_and_5_go_over_a_line_byte_for_byte)
+TEST(commands_1_3_and_5_go_over_a_line_byte_for_byte)
 {
     static const uint8_t ask_5[] = {0x01, 0x03, 0x00, 0x08, 0x00, 0x04, 0xC5, 0xCB}; /* table 17 */
     static const uint8_t say_5[] = {0x01, 0x03, 0x08, 0x08, 0x23, 0xDC, 0xB2,
                                     0x07, 0x01, 0x00, 0x00, 0xFD, 0x41};
     static const uint8_t ask_3[] = {0x01, 0x03, 0x00, 0x03, 0x00, 0x0B, 0xF4, 0x0D}; /* table 13 */
+    static const uint8_t ask_1[] = {0x01, 0x03, 0x00, 0x01, 0x00, 0x03, 0x54, 0x0B}; /* table 9 */
+    static const uint8_t say_1[] = {0x01, 0x03, 0x06, 0x14, 0x09, 0x1B, 0x02, 0x01, 0x00, 0x58, 0xD4};
     static const uint8_t say_3[] = {0x01, 0x03, 0x16, 0xB0, 0x00, 0x39, 0x00, 0x25, 0x42,
                                     0x34, 0x57, 0x14, 0x20, 0x34, 0x38, 0x35, 0x01, 0x06,
                                     0x07, 0x05, 0x13, 0x09, 0x17, 0x03, 0x09, 0x1A, 0xDC};
@@ -156,6 +124,9 @@ TEST(commands_3_and_5_go_over_a_line_byte_for_byte)
     assert_int_equal(rig.sample.magnitude, 7231744);
     assert_int_equal(rig_transaction(ask_details, ask_3, 8, say_3, sizeof say_3), OK);
     assert_int_equal(details.year, 2019);
+    assert_int_equal(rig_transaction(ask_version, ask_1, 8, say_1, sizeof say_1), OK);
+    assert_int_equal(version.year, 2020);
+    assert_int_equal(version.revision, 0);
 }
 
 /* 27 bytes for the details (hps167s.h), 13 for a measurement. */

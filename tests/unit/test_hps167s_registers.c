@@ -1,13 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include <string.h>
-
-#include "suite.h"
-
+#include "drivers.h"
 #include "fathom/codec/hps167s_registers.h"
 
-/* The commands and figures of the datasheet, section 3; test_hps167s_decode.c has those of #5. */
-
-enum { GUARD = 0xA5 };
+/* The commands and figures of the datasheet, section 3. */
 
 /* The requests of tables 9 to 19: initial address and number of registers. */
 TEST(the_commands_that_read_are_where_their_tables_say)
@@ -20,7 +15,7 @@ TEST(the_commands_that_read_are_where_their_tables_say)
         {FATHOM_HPS167S_MEASUREMENT, 0x0008, FATHOM_HPS167S_MEASUREMENT_COUNT, 4},
         {FATHOM_HPS167S_RESET, 0x0009, 1, 1},
     };
-    for (unsigned i = 0; i != sizeof printed / sizeof printed[0]; i++) {
+    for (unsigned i = 0; i != COUNT(printed); i++) {
         assert_int_equal(printed[i][0], printed[i][1]);
         assert_int_equal(printed[i][2], printed[i][3]);
     }
@@ -37,8 +32,7 @@ TEST(the_commands_that_write_are_where_their_tables_say)
         {FATHOM_HPS167S_LOAD, 0x0015},        {FATHOM_HPS167S_FILTER, 0x0016},
         {FATHOM_HPS167S_RECONNECT, 0x0020},   {FATHOM_HPS167S_RECONNECT_COUNT, 2},
     };
-    for (unsigned i = 0; i != sizeof printed / sizeof printed[0]; i++)
-        assert_int_equal(printed[i][0], printed[i][1]);
+    for (unsigned i = 0; i != COUNT(printed); i++) assert_int_equal(printed[i][0], printed[i][1]);
 }
 
 /* #10, #11: "0x00 means not enabled and 0xFF means enabled"; #13; table 20; #7: 5 seconds; 2.2.1: 1 to 32. */
@@ -107,7 +101,7 @@ TEST(a_response_to_2_has_two_switches_and_is_not_the_abnormal_packet)
         {{0xFF00, 0x0500, 0x0000, 0xB401}, false, true},  {{0x01FF, 0x0500, 0x0000, 0xB401}, false, false},
         {{0xFF01, 0x0500, 0x0000, 0xB401}, false, false}, {{0x0823, 0xDCB2, 0x0701, 0x0000}, false, false},
     };
-    for (unsigned i = 0; i != sizeof rows / sizeof rows[0]; i++) {
+    for (unsigned i = 0; i != COUNT(rows); i++) {
         assert_int_equal(fathom_hps167s_is_abnormal(rows[i].registers), rows[i].is_abnormal);
         assert_int_equal(fathom_hps167s_may_be_configuration(rows[i].registers),
                          rows[i].may_be_configuration);
@@ -131,7 +125,8 @@ TEST(the_reconnect_time_goes_as_two_words_either_way_round)
     assert_int_equal(fathom_hps167s_decode_reconnect_time(words[0], words[1], true), 0x00010012);
 }
 
-/* The example of #3: B0, the UUID, 13 09 17, 03 09. */
+/* The example of #3: B0, the UUID, 13 09 17, 03 09, which it reads as "19/09/27" and "Ver. 2.1"; the bytes say 2019-09-23
+ * and 3.9. */
 TEST(the_details_are_those_of_the_example)
 {
     static const uint8_t uuid[] = {0x00, 0x39, 0x00, 0x25, 0x42, 0x34, 0x57, 0x14,
@@ -164,6 +159,80 @@ TEST(limits_that_are_out_of_order_are_refused)
 {
     fathom_hps167s_limits_t wrong[] = {{0, 65535, 0}, {0, 30000, 0}, {65530, 0, 0},
                                        {100, 100, 0}, {0, 0, 30001}, {79, 0, 0}};
-    for (unsigned i = 0; i != sizeof wrong / sizeof wrong[0]; i++)
+    for (unsigned i = 0; i != COUNT(wrong); i++)
         assert_int_equal(fathom_hps167s_complete_limits(&wrong[i]), FATHOM_ERR_ARGUMENT);
+}
+
+/* ---- #5 ---- */
+
+static fathom_sample_t sample;
+
+/* Command #5: 08 23, DC B2, 07, 01, 00 00. */
+static const uint16_t measured[4] = {0x0823, 0xDCB2, 0x0701, 0x0000};
+
+/* The rule, stated apart: 80..30000 a distance, below that it is below its range, 65530..65534 nothing in range; else,
+ * and these are figures of no abnormal packet, it cannot be. */
+static int kind_of(uint32_t raw)
+{
+    if (raw == 65535) return 0;
+    if (raw / 10 == 6553) return FATHOM_NO_TARGET; /* 65530..65534, 65535 is gone */
+    if (raw == 0) return 0;
+    if (raw < 80) return FATHOM_UNKNOWN;
+    return raw <= 30000 ? FATHOM_TARGET : 0;
+}
+
+TEST(every_distance_is_what_the_rule_says)
+{
+    unsigned counted[7] = {0};
+    for (uint32_t raw = 0; raw != 65536; raw++) {
+        const uint16_t registers[4] = {(uint16_t)raw, 0xDCB2, 0x0742, 0x1234};
+        const int kind = kind_of(raw);
+        memset(&sample, GUARD, sizeof sample);
+        counted[kind]++;
+        assert_int_equal(fathom_hps167s_decode(registers, &sample),
+                         kind == 0 ? FATHOM_ERR_MALFORMED : FATHOM_OK);
+        if (kind == 0) {
+            assert_guard(&sample, sizeof sample);
+            continue;
+        }
+        assert_int_equal(sample.kind, kind);
+        assert_int_equal(sample.raw, raw);
+        assert_int_equal(sample.distance_mm, kind == FATHOM_TARGET ? raw : 0);
+        assert_int_equal(sample.ambient, 0x42);
+        assert_int_equal(sample.precision, 0x1234);
+        assert_false(sample.interference);
+        assert_int_equal(sample.magnitude, 7231744);
+    }
+    assert_int_equal(counted[FATHOM_TARGET], 29921);
+    assert_int_equal(counted[FATHOM_UNKNOWN], 79);
+    assert_int_equal(counted[FATHOM_NO_TARGET], 5);
+}
+
+TEST(decode_leaves_the_members_that_are_not_the_devices)
+{
+    memset(&sample, GUARD, sizeof sample);
+    assert_int_equal(fathom_hps167s_decode(measured, &sample), FATHOM_OK);
+    assert_int_equal(sample.time_us, 0xA5A5A5A5);
+    assert_int_equal(sample.sequence, 0xA5A5);
+    assert_int_equal(sample.model, GUARD);
+    assert_int_equal(sample.address, GUARD);
+    assert_int_equal(sample.probe, GUARD);
+}
+
+TEST(the_magnitude_is_exact_up_to_an_exponent_of_16_and_refused_beyond)
+{
+    for (unsigned exponent = 0; exponent != 256; exponent++) {
+        const uint16_t registers[4] = {2083, 0xFFFF, (uint16_t)(exponent * 256), 0};
+        const uint16_t over_range[4] = {65530, 0, (uint16_t)(exponent * 256), 0};
+        const fathom_status_t expected = exponent <= 16 ? FATHOM_OK : FATHOM_ERR_MALFORMED;
+        uint32_t magnitude = 65535;
+        for (unsigned i = 0; i != exponent && i != 16; i++) magnitude *= 2;
+        memset(&sample, GUARD, sizeof sample);
+        assert_int_equal(fathom_hps167s_decode(registers, &sample), expected);
+        if (exponent <= 16)
+            assert_true(sample.magnitude == magnitude);
+        else
+            assert_guard(&sample, sizeof sample);
+        assert_int_equal(fathom_hps167s_decode(over_range, &sample), expected);
+    }
 }
