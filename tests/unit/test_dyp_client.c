@@ -25,8 +25,9 @@ static void expect_set_address(uint8_t address, fathom_status_t expected)
 
 static void send_request(void)
 {
+    const size_t before = bench.fake.written;
     expect_submitted(FATHOM_PENDING);
-    expect_written_after(REQUEST_US - 3 * BYTE_US, 1);
+    expect_written_after(REQUEST_US - 3 * BYTE_US, before + 1);
 }
 
 static void ask_four(void)
@@ -222,4 +223,78 @@ TEST(a_refused_set_address_changes_neither_the_retry_nor_the_response_of_a_read_
     expect_set_address(5, FATHOM_ERR_BUSY);
     deliver_all(dyp_four);
     expect(FATHOM_OK);
+}
+
+/* ---- on a line that does not know whether it echoes ---- */
+
+static int set_up_auto(void **state)
+{
+    set_up(state);
+    set_up_echo(FATHOM_LINE_ECHO_AUTO);
+    return 0;
+}
+
+static const suite_t auto_echo = {.set_up = set_up_auto};
+
+/* Another master asks the unit for its first probe: a response of 7 bytes could begin like that, but not this
+ * request. */
+TEST_IN(auto_echo, another_masters_request_to_the_unit_is_no_echo)
+{
+    static const uint8_t others[] = {0x55, 0xAA, 0x01, 0x10, 0x10};
+    ask_four();
+    receive(others, sizeof others);
+    run(2 * GAP_US);
+    assert_int_equal(fathom_line_get_echo(&bench.line), FATHOM_LINE_ECHO_AUTO);
+    expect(FATHOM_ERR_CHECKSUM);
+}
+
+/* 0101, 0202, 0303, 0404 mm: FF + 01 + 01 + 2 * (1 + 2 + 3 + 4) = 115 hexadecimal. What follows the first five bytes
+ * stands in the line's memory when the same response comes again and breaks off; fathom_protocol_t: "on a response it
+ * writes the results ..., and only then". */
+TEST_IN(auto_echo, a_response_that_breaks_off_writes_nothing_though_the_same_came_before)
+{
+    static const uint8_t four[] = {0x55, 0xAA, 0x01, 0x01, 0x01, 0x01, 0x02,
+                                   0x02, 0x03, 0x03, 0x04, 0x04, 0x15};
+    for (size_t length = 4; length != sizeof four; length++) {
+        set_up_auto(state);
+        ask_four();
+        receive(four, sizeof four);
+        run(100);
+        expect(FATHOM_OK);
+        assert_int_equal(values[3], 0x0404);
+        ask_four();
+        receive(four, length);
+        run(2 * GAP_US);
+        expect_untouched(0);
+        run(TIMEOUT_US);
+        /* five bytes of it are the request, which no response follows */
+        expect(length < 5 ? FATHOM_ERR_CHECKSUM : FATHOM_ERR_NO_RESPONSE);
+    }
+}
+
+/* line.h: "the first transaction whose response cannot equal its request, a read, shows the echo". A write does not,
+ * though both copies may come in one read. */
+TEST_IN(auto_echo, two_copies_of_a_set_address_in_one_read_show_no_echo)
+{
+    static const uint8_t copies[] = {0x55, 0xAA, 0x05, 0x03, 0x07, 0x55, 0xAA, 0x05, 0x03, 0x07};
+    expect_set_address(5, FATHOM_PENDING);
+    run(T3_5_US + 200);
+    run(5 * BYTE_US);
+    receive(copies, sizeof copies);
+    run(100);
+    expect(FATHOM_OK);
+    assert_int_equal(fathom_line_get_echo(&bench.line), FATHOM_LINE_ECHO_AUTO);
+}
+
+/* Behind five bytes that are the request 55 AA begins another frame; behind others it is the first probe's low and the
+ * second one's high byte. 0355, AA00, 0000, 0000 hexadecimal: FF + 01 + 01 + 03 + 55 + AA = 203. */
+TEST_IN(auto_echo, a_response_that_does_not_begin_as_its_request_is_taken_whatever_it_says)
+{
+    static const uint8_t four[] = {0x55, 0xAA, 0x01, 0x01, 0x03, 0x55, 0xAA, 0, 0, 0, 0, 0, 0x03};
+    ask_four();
+    receive(four, sizeof four);
+    run(100);
+    expect(FATHOM_OK);
+    assert_int_equal(values[0], 0x0355);
+    assert_int_equal(values[1], 0xAA00);
 }
