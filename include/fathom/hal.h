@@ -77,7 +77,10 @@ enum {
     FATHOM_RX_PARITY = 4, /**< A byte of this read has a wrong parity. All bytes of the read count as bad. */
     FATHOM_RX_FRAMING =
         8, /**< A byte has no stop bit (break, noise, other baud rate). All bytes of the read count as bad. */
-    FATHOM_RX_OVERRUN = 16 /**< Bytes were lost directly before the first byte of this read. */
+    FATHOM_RX_OVERRUN = 16, /**< Bytes were lost directly before the first byte of this read. */
+    /** No response to the newest request will arrive: a gateway reported that. The bytes of this read are no part of a
+     * frame; the port returns at least one. A line uses this flag only if its parts name fathom_line_refusals(). */
+    FATHOM_RX_NO_RESPONSE = 32
 };
 
 /** @brief What a port reports about the bytes of one read. Fathom clears the struct before each read. */

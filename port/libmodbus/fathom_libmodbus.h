@@ -7,6 +7,7 @@
 #include <stdint.h>
 
 #include "fathom/engine/line.h"
+#include "fathom/engine/line_turns.h"
 #include "fathom/engine/modbus.h"
 #include "fathom/engine/wait.h"
 
@@ -53,18 +54,30 @@ extern "C" {
  * What is different on TCP:
  *
  * 6. **Matching.** Each request has a transaction identifier of its own. The port accepts only a response to the newest
- *    request, from the unit of that request. It drops any response to an earlier request and counts it
- *    (`late_responses`), whatever the response contains. A unit that did not respond in time gets no request until
- *    twice the time-out has passed; other units do. Its response still counts if it arrives in that time and no other
- *    unit got a request meanwhile.
+ *    request, from the unit of that request. It drops and counts every other one, whatever it contains: a response to
+ *    an earlier request (`late_responses`), with an identifier that this port has not sent (`foreign_responses`), and
+ *    from another unit (`other_units`). A unit that did not respond in time gets no request until twice the time-out
+ *    has passed. Its response still counts if it arrives in that time and no other request was sent meanwhile.
  *
  * 7. **Whole responses.** The port processes a response when it has arrived completely. Until then the port keeps the
  *    part that has arrived, and SO_RCVLOWAT of the socket keeps poll(2) from waking for less than the rest.
  *
- * 8. **Gateways.** The exceptions 0x0A (path unavailable) and 0x0B (target silent) of a gateway are no response of the
- *    unit: the request ends with FATHOM_ERR_NO_RESPONSE after its time-out. `gateway_exception` has the newest one. On
- *    RTU they are exceptions like any other. Choose time-outs longer than that of the gateway, which is often 1 s: a
- *    gateway that still waits for a dead unit does not serve other units either.
+ * 8. **Gateways.** A gateway that waits for a dead unit serves no other unit, often for several seconds. So while the
+ *    response to the newest request is pending, the port sends no other one, for at most `hold_us`, even if the time-out
+ *    of the request has passed:
+ *
+ *        request      |unit 9|                                    |unit 1|
+ *        gateway             |--- tries unit 9 again --->[0x0B]          [response]
+ *        attempt             |-- timeout_us -->| failed
+ *        no request          |-- at most hold_us ------->|
+ *
+ *    A server that has let `hold_us` pass without a word is not waited for again until a late response shows that it
+ *    does respond late. `response_us` is the time that the newest response took: choose longer time-outs.
+ *
+ *    The exceptions 0x0A (path unavailable) and 0x0B (target silent) are the gateway's final word, and so is any
+ *    exception that the gateway sends as unit 0 or 255, such as 0x06 (busy). The attempt ends at once with
+ *    FATHOM_ERR_NO_RESPONSE, because the unit may have executed a write. `gateway_exception` and `gateway_unit` have the
+ *    newest one. On RTU they are exceptions like any other.
  *
  * For both:
  *
@@ -81,8 +94,8 @@ extern "C" {
  *     use the modbus_t itself (modbus_read_registers() and so on, which wait).
  */
 
-/** @brief Configuration of a port. A member that is 0 takes its default. On TCP only the clock is used. Read only by
- * fathom_libmodbus_init(). */
+/** @brief Configuration of a port. A member that is 0 takes its default. On TCP only the clock and `hold_us` are used.
+ * Read only by fathom_libmodbus_init(). */
 typedef struct {
     /** @brief The clock. It must stay valid as long as the port is used. NULL selects CLOCK_MONOTONIC. */
     const fathom_clock_t *clock;
@@ -96,7 +109,14 @@ typedef struct {
 
     /** @brief Silence that ends a frame, in microseconds. 0: 25000, because USB adapters hold bytes back for 16 ms. */
     uint16_t gap_us;
+
+    /** @brief TCP: the longest time for which a response may be pending before the port sends the next request, in
+     * microseconds, at most 2^31 - 1 (rule 8). 0: 5 s. */
+    uint32_t hold_us;
 } fathom_libmodbus_config_t;
+
+/** @brief The number of requests for which a port remembers when it has sent them: a power of 2. */
+#define FATHOM_LIBMODBUS_DATED 8u
 
 /** @brief Why the connection is broken. */
 typedef enum {
@@ -130,15 +150,34 @@ typedef struct {
     /** @brief The errno of FATHOM_LIBMODBUS_ERR_SYSTEM. */
     int system_error;
 
-    /** @brief TCP: responses to another transaction than the newest. Stops at 65535. The caller may set it to 0. */
+    /** @brief TCP: responses to an earlier request than the newest. Stops at 65535. The caller may set it to 0. */
     uint16_t late_responses;
-    /** @brief TCP: exceptions 0x0A and 0x0B. Stops at 65535. The caller may set it to 0. */
+    /** @brief TCP: responses with an identifier that this port has not sent. Stops at 65535. The caller may set it to 0. */
+    uint16_t foreign_responses;
+    /** @brief TCP: responses to the newest request, from another unit. Stops at 65535. The caller may set it to 0. */
+    uint16_t other_units;
+    /** @brief TCP: final words of a gateway (rule 8). Stops at 65535. The caller may set it to 0. */
     uint16_t gateway_refusals;
-    /** @brief TCP: the newest of these exceptions. 0: none yet. */
+    /** @brief TCP: the exception of the newest final word. 0 after a response of `gateway_unit`, and before the first. */
     uint8_t gateway_exception;
+    /** @brief TCP: the unit whose request that exception ended. */
+    uint8_t gateway_unit;
+    /** @brief TCP: the unit of the newest response that was counted in `other_units`. */
+    uint8_t other_unit;
+    /** @brief TCP: the time from the newest request that was answered until its response or final word, in
+     * microseconds, if that time is known. 0: none yet. */
+    uint32_t response_us;
 
     /* private */
-    uint16_t transaction; /* of the request that was sent last */
+    fathom_line_turns_t turns; /* holds requests back (rule 8) */
+    uint16_t transaction;      /* of the request that was sent last */
+    uint8_t unit;              /* of that request */
+    bool is_response_pending;  /* the server has not responded to it */
+    bool never_responds_late;  /* the server has let hold_us pass without a word */
+    uint32_t hold_us;
+    uint16_t sent_count; /* requests so far; stops at 32768 */
+    uint32_t
+        sent_us[FATHOM_LIBMODBUS_DATED]; /* when request `transaction` % FATHOM_LIBMODBUS_DATED was sent */
     /* Count of bytes of the next response in adu. Not 0 only if the line has read all of the last response. */
     uint16_t have;
     uint64_t connection; /* the connection that these bytes came from (SO_COOKIE, Linux 4.12) */
@@ -175,6 +214,8 @@ fathom_status_t fathom_libmodbus_init(fathom_libmodbus_t *port, modbus_t *modbus
  * - **read** returns a negative number when the connection is broken. It never returns a part of a TCP response that
  *   has not arrived completely.
  * - **write** accepts a whole RTU frame with its CRC. libmodbus computes the CRC again on RTU; on TCP it is left out.
+ * - **On TCP**, name fathom_line_refusals() as `marks` in the parts of the line, and call fathom_libmodbus_hold() after
+ *   fathom_line_init(). Otherwise rule 8 does not apply.
  * - **sent**: on RTU, true if the queue of the kernel is empty; the UART may still hold a few characters. On TCP, true.
  * - **set_line**, **set_break** and **leaves_in_us** are NULL. `sent` is true too soon for a sleep to be useful.
  *
@@ -182,6 +223,14 @@ fathom_status_t fathom_libmodbus_init(fathom_libmodbus_t *port, modbus_t *modbus
  * @return The functions, by value.
  */
 fathom_uart_t fathom_libmodbus_uart(fathom_libmodbus_t *port);
+
+/**
+ * @brief Holds requests back while a response is pending (rule 8). For a line of the program's own, on TCP.
+ *
+ * @param port  The port, initialised.
+ * @param line  The line on its UART, after fathom_line_init(). It has no other policy (line_turns.h).
+ */
+void fathom_libmodbus_hold(fathom_libmodbus_t *port, fathom_line_t *line);
 
 /** @brief Returns why the connection is broken: the first failure since bytes were last sent or received. */
 fathom_libmodbus_error_t fathom_libmodbus_error(const fathom_libmodbus_t *port);

@@ -26,7 +26,8 @@ enum {
     TCP_SILENCE_US = 100,
     /* This is far from the first number of libmodbus for requests of the program, so a late response to such a request
      * is not mistaken for a response to a request of this port. */
-    FIRST_TRANSACTION = 0xF000
+    FIRST_TRANSACTION = 0xF000,
+    HOLD_US = 5000000
 };
 
 /* modbus_set_slave() knows which units are allowed. The call changes the unit that the program has set, so that unit is
@@ -59,14 +60,15 @@ fathom_status_t fathom_libmodbus_init(fathom_libmodbus_t *port, modbus_t *modbus
 {
     static const fathom_clock_t monotonic = {.now_us = monotonic_us};
     const fathom_libmodbus_config_t defaults = {0};
-    if (port == NULL || modbus == NULL) return FATHOM_ERR_ARGUMENT;
     if (config == NULL) config = &defaults;
+    if (port == NULL || modbus == NULL || config->hold_us > INT32_MAX) return FATHOM_ERR_ARGUMENT;
     memset(port, 0, sizeof *port);
     port->handle = modbus;
     port->is_tcp = modbus_get_header_length(modbus) != RTU_HEADER_LENGTH;
     if (!port->is_tcp && modbus_rtu_get_rts(modbus) != MODBUS_RTU_RTS_NONE) return FATHOM_ERR_UNSUPPORTED;
     (void)modbus_set_error_recovery(modbus, MODBUS_ERROR_RECOVERY_NONE);
     port->transaction = FIRST_TRANSACTION;
+    port->hold_us = config->hold_us != 0 ? config->hold_us : HOLD_US;
     port->uart = fathom_libmodbus_uart(port);
     port->parts.uart = &port->uart;
     port->parts.clock = config->clock != NULL ? config->clock : &monotonic;
@@ -76,6 +78,7 @@ fathom_status_t fathom_libmodbus_init(fathom_libmodbus_t *port, modbus_t *modbus
         port->parts.echo = FATHOM_LINE_ECHO_OFF;
         port->parts.silence_us = TCP_SILENCE_US;
         port->parts.gap_us = TCP_GAP_US;
+        port->parts.marks = fathom_line_refusals;
     } else {
         port->parts.echo = config->echo;
         port->parts.silence_us = config->silence_us;
@@ -87,7 +90,9 @@ fathom_status_t fathom_libmodbus_init(fathom_libmodbus_t *port, modbus_t *modbus
     port->parts.count = fathom_line_count;
     port->parts.counters = port->counters;
     port->modbus = (fathom_modbus_t){&port->line, submit};
-    return fathom_line_init(&port->line, &port->parts);
+    const fathom_status_t status = fathom_line_init(&port->line, &port->parts);
+    if (status == FATHOM_OK && port->is_tcp) fathom_libmodbus_hold(port, &port->line);
+    return status;
 }
 
 fathom_uart_t fathom_libmodbus_uart(fathom_libmodbus_t *port)

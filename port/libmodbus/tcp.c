@@ -28,7 +28,8 @@ enum {
     EXCEPTION_LENGTH = 3,
     GATEWAY_PATH_UNAVAILABLE = 0x0A,
     GATEWAY_TARGET_SILENT = 0x0B,
-    MAX_DROPPED = 16 /* frames in one call */
+    MAX_DROPPED = 16, /* frames in one call */
+    MOST_SENT = 0x8000
 };
 
 static uint16_t word_at(const uint8_t *bytes) { return (uint16_t)(bytes[0] << 8 | bytes[1]); }
@@ -107,32 +108,79 @@ static int take(fathom_libmodbus_t *port)
     return 1;
 }
 
-/* Returns true if the bytes in adu are a response for the line. */
-static bool is_response(fathom_libmodbus_t *port)
+/* ---- What a response is ---- */
+
+/* Measures how long the server took for the request `back` requests before the newest. */
+static void measure(fathom_libmodbus_t *port, uint16_t back)
+{
+    const uint16_t transaction = (uint16_t)(port->transaction - back);
+    if (back < FATHOM_LIBMODBUS_DATED)
+        port->response_us =
+            fathom_libmodbus_now_us(port) - port->sent_us[transaction % FATHOM_LIBMODBUS_DATED];
+}
+
+/* What a received frame is to the line. */
+typedef enum { NOTHING, RESPONSE, FINAL_WORD } word_t;
+
+/* Counts the frame in adu, which has another identifier than the newest request. */
+static void count_other(fathom_libmodbus_t *port)
+{
+    const uint16_t back = (uint16_t)(port->transaction - word_at(port->adu + TRANSACTION));
+    if (back < port->sent_count) {
+        count(&port->late_responses);
+        measure(port, back);
+        port->never_responds_late = false;
+    } else {
+        /* The server makes up identifiers, so this is the response to the newest request. */
+        count(&port->foreign_responses);
+        port->is_response_pending = false;
+    }
+}
+
+/* Returns what the frame in adu is, and counts it. */
+static word_t judge(fathom_libmodbus_t *port)
 {
     const uint8_t *const adu = port->adu;
-    if (word_at(adu + TRANSACTION) != port->transaction) {
-        count(&port->late_responses);
-        return false;
+    if (port->sent_count == 0 || word_at(adu + TRANSACTION) != port->transaction) {
+        count_other(port);
+        return NOTHING;
     }
-    if (word_at(adu + LENGTH) == EXCEPTION_LENGTH && (adu[FUNCTION] & FATHOM_MODBUS_EXCEPTION) != 0 &&
-        (adu[EXCEPTION] == GATEWAY_PATH_UNAVAILABLE || adu[EXCEPTION] == GATEWAY_TARGET_SILENT)) {
+    const bool is_exception =
+        word_at(adu + LENGTH) == EXCEPTION_LENGTH && (adu[FUNCTION] & FATHOM_MODBUS_EXCEPTION) != 0;
+    const bool is_other = adu[UNIT] != port->unit && port->unit != FATHOM_MODBUS_ANY_UNIT;
+    const bool is_gateway = adu[UNIT] == 0 || adu[UNIT] == FATHOM_MODBUS_ANY_UNIT;
+    if (port->is_response_pending) measure(port, 0);
+    port->is_response_pending = false;
+    if (is_other) {
+        count(&port->other_units);
+        port->other_unit = adu[UNIT];
+    }
+    if (is_exception && ((is_other && is_gateway) || adu[EXCEPTION] == GATEWAY_PATH_UNAVAILABLE ||
+                         adu[EXCEPTION] == GATEWAY_TARGET_SILENT)) {
         port->gateway_exception = adu[EXCEPTION];
+        port->gateway_unit = port->unit;
         count(&port->gateway_refusals);
-        return false;
+        return FINAL_WORD;
     }
-    return true;
+    if (is_other) return FINAL_WORD;
+    if (port->unit == port->gateway_unit) port->gateway_exception = 0;
+    return RESPONSE;
 }
 
 int fathom_libmodbus_tcp_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
 {
     fathom_libmodbus_t *const port = ctx;
-    (void)rx; /* Nothing is known about single bytes. */
     for (uint8_t left = MAX_DROPPED; port->at == port->end; left--) {
         const int taken = left != 0 ? take(port) : 0;
         port->at = port->end;
         if (taken <= 0) return taken;
-        if (!is_response(port)) continue;
+        const word_t word = judge(port);
+        if (word == FINAL_WORD) {
+            rx->flags |= FATHOM_RX_NO_RESPONSE;
+            bytes[0] = port->adu[UNIT];
+            return 1;
+        }
+        if (word == NOTHING) continue;
         const uint16_t crc = fathom_crc16(port->adu + UNIT, (uint8_t)(port->end - UNIT));
         port->adu[port->end++] = (uint8_t)(crc & 0xFF);
         port->adu[port->end++] = (uint8_t)(crc >> 8);
@@ -161,6 +209,10 @@ int fathom_libmodbus_tcp_write(void *ctx, const uint8_t *bytes, size_t length)
     if (n < 0) return fathom_libmodbus_failed(port);
     if (n != UNIT + rest) return out_of_step(port, FATHOM_LIBMODBUS_ERR_TRUNCATED);
     port->transaction = transaction;
+    port->unit = bytes[0];
+    port->is_response_pending = port->unit != 0; /* No unit responds to a broadcast. */
+    port->sent_us[transaction % FATHOM_LIBMODBUS_DATED] = fathom_libmodbus_now_us(port);
+    if (port->sent_count < MOST_SENT) port->sent_count++;
     fathom_libmodbus_works(port);
     return (int)length;
 }

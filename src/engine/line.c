@@ -46,7 +46,7 @@ static bool is_usable(const fathom_line_parts_t *parts)
         return false;
     if ((parts->count != NULL) && (parts->counters == NULL)) return false;
     if ((parts->gap_us != 0u) && (parts->gap_us < MIN_GAP_US)) return false;
-    return is_silence(parts->gap_us) && is_silence(parts->silence_us);
+    return is_silence(parts->silence_us);
 }
 
 fathom_status_t fathom_line_begin(fathom_line_t *line, const fathom_line_parts_t *parts,
@@ -128,7 +128,9 @@ void fathom_line_pass(fathom_line_t *line, uint8_t from, uint8_t length)
 
 uint32_t fathom_line_gap_left_us(const fathom_line_t *line)
 {
-    return rest_us(or_default(line->parts->gap_us, FATHOM_LINE_DEFAULT_GAP_US), line->silent_us);
+    const uint32_t gap_us = or_default(line->parts->gap_us, FATHOM_LINE_DEFAULT_GAP_US);
+    if ((gap_us == FATHOM_LINE_NO_GAP) && (line->phase == FATHOM_LINE_WAITING)) return line->phase_left_us;
+    return rest_us(gap_us, line->silent_us);
 }
 
 uint32_t fathom_line_silence_left_us(const fathom_line_t *line)

@@ -9,8 +9,8 @@
 
 static uint8_t gateway_exception(const failure_t *failure)
 {
-    const uint8_t *const exception = failure->port->gateway_exception;
-    return exception != NULL ? *exception : 0;
+    const gateway_t *const gateway = &failure->port->gateway;
+    return gateway->exception_unit == failure->address ? gateway->exception : 0;
 }
 
 static bool is_asked(const failure_t *failure)
@@ -84,7 +84,8 @@ static uint64_t fact(const failure_t *failure, const char *name, size_t length)
         /* what was received */
         {"silence", heard->bytes == 0},
         {"bytes", heard->bytes},
-        {"late", line[FATHOM_LINE_LATE_RESPONSES]},
+        /* A line over TCP assigns no response to an earlier request. */
+        {"late", line[FATHOM_LINE_LATE_RESPONSES] + (port->kind == PORT_GATEWAY ? heard->fitting : 0u)},
         {"took", heard->slowest_us / 1000u},
         {"timeout", (heard->slowest_us / 500u + 99u) / 100u * 100u}, /* twice the time, in steps of 100 ms */
         {"masters", heard->masters},                                 /* requests of another master, ... */
@@ -104,6 +105,9 @@ static uint64_t fact(const failure_t *failure, const char *name, size_t length)
         {"only-echo", is_only_echo(heard)},
         {"old", line[FATHOM_LINE_OLD_BYTES]}, /* of unknown age */
         {"gateway", gateway_exception(failure)},
+        {"other-unit", port->gateway.has_other_unit}, /* responded instead of the unit that was asked */
+        {"unit", port->gateway.other_unit},
+        {"other-identifier", port->gateway.has_other_identifier},
         /* the refused response */
         {"unexpected", facts.is_unexpected}, /* it does not fit the request */
         {"refused", facts.refused_probe},    /* a value of it was refused */
@@ -230,6 +234,11 @@ static const row_t causes[] = {
 
     {NO_RESPONSE, "asked gateway", "the gateway responds with exception {exception}",
      "Check {option}, and the line and the supply behind the gateway"},
+    {NO_RESPONSE, "asked other-unit", "the server responds as unit {unit}, and not as unit {address}",
+     "If the sensor is unit {unit}, read it with this address. Else check which units the gateway serves"},
+    {NO_RESPONSE, "asked other-identifier",
+     "the server responds with another transaction identifier than that of the request",
+     "Restart the gateway, and look for a newer firmware of it"},
     {NO_RESPONSE, "asked tcp bytes", "the response does not fit the request",
      "Check that the server speaks Modbus TCP"},
     {NO_RESPONSE, "asked tcp", "the connection is open, but nothing was received",
@@ -498,6 +507,7 @@ void advice_print_new(FILE *to, const failure_t *failure, reported_t *reported)
                              failure->evidence.foreign_address,
                              failure->evidence.masters_address,
                              gateway_exception(failure),
+                             failure->port->gateway.other_unit,
                              facts.exception,
                              facts.refused_probe,
                              port[PORT_FRAMING] != 0  ? 1

@@ -241,6 +241,7 @@ static int listen_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *
     listener_t *const listener = port->listener.now != NULL ? port->listener.now : &port->listener;
     const int n = port->inner.read(port->inner.ctx, bytes, capacity, rx);
     if (n < 0) (void)port->driver->poll(port);
+    if (port->driver->note_read != NULL) port->driver->note_read(port);
     if (n > 0) listener_received(listener, bytes, (uint32_t)n, port->clock.now_us(port));
     return n;
 }
@@ -253,7 +254,7 @@ static int listen_write(void *ctx, const uint8_t *bytes, size_t length)
     const int n = port->inner.write(port->inner.ctx, bytes, length);
     if (n < 0) (void)port->driver->poll(port);
     if (n <= 0 || length > LISTENER_REQUEST) return n;
-    if (port->gateway_exception != NULL) *port->gateway_exception = 0;
+    if (port->driver->note_sent != NULL) port->driver->note_sent(port);
     if (own->whose != NULL) own->now = own->whose(own->ctx);
     listener_sent(own->now != NULL ? own->now : own, bytes, (uint8_t)length, asked_us);
     return n;
@@ -319,6 +320,7 @@ static void start_line(port_t *port)
     port->parts.count = fathom_line_count;
     port->parts.counters = port->counters;
     (void)fathom_line_init(&port->line, &port->parts); /* all of it is there */
+    if (port->driver->start_line != NULL) port->driver->start_line(port);
     port->modbus = fathom_modbus_client_with_zero(&port->line);
 }
 
@@ -339,8 +341,8 @@ static fathom_status_t note_opening(port_t *port, fathom_status_t status)
 fathom_status_t port_open(port_t *port, const host_t *host, const port_options_t *options,
                           fathom_loop_source_t *source)
 {
-    static const port_driver_t serial = {open_serial, poll_serial, close_serial};
-    static const port_driver_t chip = {open_chip, poll_pins, close_pins};
+    static const port_driver_t serial = {.open = open_serial, .poll = poll_serial, .close = close_serial};
+    static const port_driver_t chip = {.open = open_chip, .poll = poll_pins, .close = close_pins};
     static const port_driver_t *const drivers[] = {
         [PORT_SERIAL] = &serial, [PORT_GATEWAY] = &port_tcp, [PORT_PINS] = &chip};
     if (port->options.path == NULL || strcmp(port->options.path, options->path) != 0)
@@ -356,7 +358,7 @@ fathom_status_t port_open(port_t *port, const host_t *host, const port_options_t
     port->error_text[0] = '\0';
     port->has_wire = true;
     port->counts_errors = false;
-    port->gateway_exception = NULL;
+    port->gateway = (gateway_t){0};
     port->fd = -1;
     port->events = POLLIN;
     return note_opening(port, port->driver->open(port));

@@ -160,6 +160,15 @@ enum { PORT_TRIES = 3 };
 
 typedef struct port_driver port_driver_t;
 
+/* What a Modbus TCP server has shown; all zeros for other ports. */
+typedef struct {
+    uint8_t exception;         /* the final word about a request, as that the unit does not respond; 0: none */
+    uint8_t exception_unit;    /* the unit of that request */
+    uint8_t other_unit;        /* which responded to the newest request, ... */
+    bool has_other_unit;       /* ... if that is not the unit that was asked */
+    bool has_other_identifier; /* the server responded to the newest request with another transaction identifier */
+} gateway_t;
+
 /* All zeros before the first port_open(). It may be opened again after port_close(); do not move it. */
 typedef struct port {
     const host_t *host;
@@ -180,7 +189,7 @@ typedef struct port {
     fathom_uart_t uart;         /* that the line uses */
     bool has_wire;              /* a byte takes its time; a pseudo terminal has no wire */
     bool watches_output;        /* port_wait() also ends when the reader of the standard output goes away */
-    uint8_t *gateway_exception; /* 10 or 11, since the newest request, or 0; NULL: no gateway */
+    gateway_t gateway;
     fathom_posix_uart_t serial;
     bool counts_errors;                /* the driver counts them, ... */
     fathom_posix_line_errors_t errors; /* ... and had counted these when they were taken */
@@ -244,6 +253,9 @@ struct port_driver {
     fathom_status_t (*open)(port_t *port); /* as port_open(); sets inner, name, and the parts that differ */
     fathom_status_t (*poll)(port_t *port); /* as port_poll(), also after a read or a write has failed */
     void (*close)(port_t *port);
+    void (*start_line)(port_t *port); /* called when the line is initialised; NULL: there is nothing to do */
+    void (*note_sent)(port_t *port);  /* called when a request was sent, ... */
+    void (*note_read)(port_t *port);  /* ... and after each read; NULL as well */
 };
 extern const port_driver_t port_tcp;
 

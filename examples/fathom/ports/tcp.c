@@ -32,7 +32,6 @@ static void close_tcp(port_t *port)
     if (port->fd >= 0) (void)close(port->fd);
     port->fd = -1;
     port->tcp = NULL;
-    port->gateway_exception = NULL;
     if (tcp == NULL) return;
     if (tcp->addresses != NULL) freeaddrinfo(tcp->addresses);
     if (tcp->modbus != NULL) modbus_free(tcp->modbus);
@@ -74,7 +73,6 @@ static fathom_status_t start(port_t *port)
     (void)modbus_set_socket(tcp->modbus, port->fd);
     (void)fathom_libmodbus_init(&tcp->libmodbus, tcp->modbus, &config); /* all of it is there */
     port->inner = fathom_libmodbus_uart(&tcp->libmodbus);
-    port->gateway_exception = &tcp->libmodbus.gateway_exception;
     port->events = POLLIN;
     port->parts.silence_us = 100; /* the least (line.h) */
     port->parts.gap_us = 1000;
@@ -82,6 +80,30 @@ static fathom_status_t start(port_t *port)
     port->parts.senders = NULL;
     port->parts.masters = NULL;
     return FATHOM_OK;
+}
+
+static void start_line(port_t *port)
+{
+    port->parts.marks = fathom_line_refusals;
+    fathom_libmodbus_hold(&port->tcp->libmodbus, &port->line);
+}
+
+static void note_sent(port_t *port)
+{
+    fathom_libmodbus_t *const libmodbus = &port->tcp->libmodbus;
+    libmodbus->other_units = 0;
+    libmodbus->foreign_responses = 0;
+}
+
+static void note_read(port_t *port)
+{
+    if (port->tcp == NULL) return;
+    const fathom_libmodbus_t *const libmodbus = &port->tcp->libmodbus;
+    port->gateway = (gateway_t){.exception = libmodbus->gateway_exception,
+                                .exception_unit = libmodbus->gateway_unit,
+                                .other_unit = libmodbus->other_unit,
+                                .has_other_unit = libmodbus->other_units != 0,
+                                .has_other_identifier = libmodbus->foreign_responses != 0};
 }
 
 /* ---- connecting ---- */
@@ -179,4 +201,4 @@ static fathom_status_t open_tcp(port_t *port)
     return status;
 }
 
-const port_driver_t port_tcp = {open_tcp, poll_tcp, close_tcp};
+const port_driver_t port_tcp = {open_tcp, poll_tcp, close_tcp, start_line, note_sent, note_read};

@@ -138,6 +138,9 @@ extern "C" {
 /** @brief Default of fathom_line_parts_t::gap_us, in microseconds. */
 #define FATHOM_LINE_DEFAULT_GAP_US 5000
 
+/** @brief Value of fathom_line_parts_t::gap_us: no silence ends a response before its time-out. */
+#define FATHOM_LINE_NO_GAP 65535u
+
 /** @brief Default of fathom_line_parts_t::busy_us, in microseconds. */
 #define FATHOM_LINE_DEFAULT_BUSY_US 1000000u
 
@@ -283,11 +286,15 @@ typedef struct {
     uint16_t silence_us;
 
     /**
-     * @brief Silence that ends an incomplete frame, in microseconds, 100 to 65534. 0 selects
+     * @brief Silence that ends an incomplete frame, in microseconds, 100 to 65534, or FATHOM_LINE_NO_GAP. 0 selects
      * FATHOM_LINE_DEFAULT_GAP_US.
      *
      * Choose at least 1.5 characters, and more than the pauses of a slow sender or port. Behind an operating system
      * choose 25000, because USB adapters hold bytes back for 16 ms.
+     *
+     * Behind a network or another program, a response may arrive in pieces with any pauses between them. Choose
+     * FATHOM_LINE_NO_GAP: while a response may arrive, pieces with a right checksum are that response. A damaged one
+     * then ends the attempt at the time-out.
      */
     uint16_t gap_us;
 
@@ -301,7 +308,7 @@ typedef struct {
      * @brief fathom_line_marks to use what the port reports about the bytes (fathom_rx_t); else NULL.
      *
      * The port can report silence before the bytes, parity errors, framing errors and overruns. The line uses the time
-     * stamps of the port in any case.
+     * stamps of the port in any case. Behind a gateway, name fathom_line_refusals instead.
      */
     uint8_t (*marks)(fathom_line_t *line, const fathom_rx_t *rx, uint8_t count);
 
@@ -423,6 +430,20 @@ void fathom_line_find_echo(fathom_line_t *line, uint8_t echo);
  * @return Number of the new bytes that remain; 0 if the port marked the bytes as bad.
  */
 uint8_t fathom_line_marks(fathom_line_t *line, const fathom_rx_t *rx, uint8_t count);
+
+/**
+ * @brief Ends an attempt as soon as the port reports FATHOM_RX_NO_RESPONSE (hal.h). Name it in
+ * fathom_line_parts_t::marks; only the line calls it.
+ *
+ * The attempt ends as after its time-out, with FATHOM_ERR_NO_RESPONSE or the error of what arrived before. Its unit is
+ * not quarantined, because no late response can arrive, so a retry leaves at once.
+ *
+ * @param line   The line.
+ * @param rx     The port's report on these bytes. Only FATHOM_RX_NO_RESPONSE is used.
+ * @param count  Number of new bytes.
+ * @return `count`, or 0 if the flag is set: the line drops the bytes.
+ */
+uint8_t fathom_line_refusals(fathom_line_t *line, const fathom_rx_t *rx, uint8_t count);
 
 /**
  * @brief Counts an event. Name it in fathom_line_parts_t::count; only the line calls it.

@@ -14,6 +14,9 @@ int fathom_libmodbus_tcp_read(void *ctx, uint8_t *bytes, size_t capacity, fathom
 int fathom_libmodbus_tcp_write(void *ctx, const uint8_t *bytes, size_t length);
 bool fathom_libmodbus_tcp_sent(void *ctx);
 
+/* hold.c: the clock of the port, in microseconds. */
+uint32_t fathom_libmodbus_now_us(const fathom_libmodbus_t *port);
+
 /* error.c: stores the first reason and returns -1. */
 int fathom_libmodbus_broken(fathom_libmodbus_t *port, fathom_libmodbus_error_t error);
 

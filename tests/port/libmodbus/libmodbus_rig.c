@@ -22,7 +22,8 @@ void rig_connect(void)
 
 static int set_up(modbus_t *modbus)
 {
-    const fathom_libmodbus_config_t config = {.clock = &rig.fake.clock};
+    /* The unit's quarantine holds a request back as long as this. */
+    const fathom_libmodbus_config_t config = {.clock = &rig.fake.clock, .hold_us = RIG_TIMEOUT_US};
     (void)alarm(RIG_ALARM_S);
     memset(&rig, 0, sizeof rig);
     fake_init(&rig.fake);

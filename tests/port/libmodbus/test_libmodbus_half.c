@@ -135,7 +135,7 @@ TEST(half_a_response_behind_a_flood_does_not_stop_the_connection)
         (void)fathom_line_poll(rig.transport.line);
     }
     rig_expect_three();
-    assert_int_equal(rig.port.late_responses, FLOOD);
+    assert_int_equal(rig.port.foreign_responses, FLOOD);
 }
 
 /* A program connects again by itself, though the port was not broken. */

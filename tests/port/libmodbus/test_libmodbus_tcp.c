@@ -105,21 +105,21 @@ TEST(responses_glued_together_are_told_apart)
     rig_say(glued, sizeof glued);
     rig_run_fine(FINE_US);
     rig_expect_three();
-    assert_int_equal(rig.port.late_responses, 2);
+    assert_int_equal(rig.port.foreign_responses, 2);
     rig_run_fine(2000);
     /* A second response to the same: unit, PDU (8 bytes) and the CRC that it was given. */
     assert_int_equal(rig.port.counters[FATHOM_LINE_DROPPED_BYTES], 11);
     rig_expect_three();
 }
 
-TEST(many_late_responses_at_once_do_not_hide_the_right_one)
+TEST(many_foreign_responses_at_once_do_not_hide_the_right_one)
 {
     rig_ask(0);
     for (int i = 0; i != 100; i++) rig_say((const uint8_t[]){OTHER(0)}, sizeof other_1);
     rig_say_response(1);
     rig_run_fine(10 * FINE_US);
     rig_expect_three();
-    assert_int_equal(rig.port.late_responses, 100);
+    assert_int_equal(rig.port.foreign_responses, 100);
 }
 
 TEST(a_late_response_serves_the_retry_that_waits)
@@ -156,14 +156,6 @@ static void expect_outcome(const uint8_t *instead, size_t length, uint32_t in_us
     assert_int_equal(status(), outcome);
     assert_int_equal(rig.port.gateway_exception, 0);
     rig_expect_none();
-}
-
-/* Unit 2 does not hide behind the right transaction. */
-TEST(another_units_response_is_not_taken)
-{
-    static const uint8_t wrong[] = {0xF0, 1, 0, 0, 0, 9, 2, 0x03, 6, 0x00, 0xFA, 0x02, 0x93, 0x09, 0x7A};
-    expect_outcome(wrong, sizeof wrong, RIG_TIMEOUT_US + 1000, FATHOM_ERR_NO_RESPONSE);
-    assert_int_equal(rig.port.counters[FATHOM_LINE_STRAYS], 1);
 }
 
 TEST(another_function_is_malformed)
@@ -220,44 +212,21 @@ TEST(exceptions_have_their_numbers)
     }
 }
 
-TEST(a_gateways_exceptions_are_no_response)
-{
-    for (uint8_t number = 0x0A; number <= 0x0B; number++) {
-        rig_again(number == 0x0A);
-        rig_ask(1);
-        rig_say((const uint8_t[]){REFUSAL(1, number)}, 9);
-        rig_run_fine(2 * RIG_TIMEOUT_US + 1000);
-        assert_int_equal(status(), FATHOM_PENDING);
-        rig_expect_request(2); /* as after silence */
-        rig_say((const uint8_t[]){REFUSAL(2, number)}, 9);
-        rig_run_fine(RIG_TIMEOUT_US + 1000);
-        assert_int_equal(status(), FATHOM_ERR_NO_RESPONSE);
-        assert_int_equal(rig.request.message.exception, 0);
-        assert_int_equal(rig.port.gateway_exception, number);
-        assert_int_equal(rig.port.gateway_refusals, 2);
-        rig_expect_none();
-    }
-}
-
-TEST(a_late_gateways_exception_is_late)
-{
-    rig_ask(0);
-    rig_say((const uint8_t[]){REFUSAL(0, 0x0B), RESPONSE(1)}, 9 + sizeof response_1);
-    rig_run_fine(FINE_US);
-    rig_expect_three();
-    assert_int_equal(rig.port.gateway_exception, 0);
-    assert_int_equal(rig.port.late_responses, 1);
-}
-
 TEST(counters_stop_at_65535)
 {
-    rig.port.late_responses = UINT16_MAX;
-    rig.port.gateway_refusals = UINT16_MAX;
+    static const uint8_t other_unit[] = {0xF0, 1, 0, 0, 0, 3, 2, 0x83, 2};
+    rig.port.late_responses = rig.port.foreign_responses = UINT16_MAX;
+    rig.port.other_units = rig.port.gateway_refusals = UINT16_MAX;
     rig_ask(0);
-    rig_say((const uint8_t[]){OTHER(0), REFUSAL(1, 0x0A)}, sizeof other_1 + 9);
+    rig_answered(1);
+    ask_second();
+    rig_say((const uint8_t[]){OTHER(1), OTHER(7), REFUSAL(2, 0x0A)}, 2 * sizeof other_1 + 9);
+    rig_run_fine(FINE_US);
+    rig_say(other_unit, sizeof other_unit);
     rig_run_fine(FINE_US);
     assert_int_equal(rig.port.gateway_exception, 0x0A);
     assert_int_equal(rig.port.late_responses, UINT16_MAX);
+    assert_int_equal(rig.port.foreign_responses, UINT16_MAX);
     assert_int_equal(rig.port.gateway_refusals, UINT16_MAX);
 }
 

@@ -178,7 +178,7 @@ class Responses(Case):
         a_wrong_transaction_is_no_response=(lambda asked: registers(asked ^ 1, 1, *OTHER),
                                           'attempt 1: no response'),
         another_unit=(lambda asked: registers(asked, 9, *OTHER),
-                      'the line works, but address 9 responds. Try --address 9'),
+                      'the server responds as unit 9, and not as unit 1'),
         fewer_registers_than_were_asked_for=(lambda asked: registers(asked, 1, *OTHER[:3]),
                                              'the response does not fit the request'),
         a_byte_count_that_is_not_the_headers=(
@@ -200,13 +200,14 @@ class Responses(Case):
                  name in
                  ((10, 'path unavailable'), (11, 'target device failed to respond'))})
     def gateway(self, number, name):
-        server, reader = self.reader('--count 2 --timeout 700')
+        server, reader = self.reader('--count 2 --timeout 60000')
         server.say(adu(self.asked(server), 1, 0x83, number))
-        self.asked(server)  # about which the gateway says nothing
+        server.say(adu(self.asked(server), 1, 0x83, number))
         self.reads(reader, 1, [])
         first, second = re.findall(r'attempt \d: .*', reader.done.err)
         self.assertIn(f'the gateway responds with exception {number} (gateway {name}). Check ', first)
-        self.assertIn('the connection is open, but nothing was received', second)
+        self.assertIn('the same cause as before, 2 times in a row', second)
+        self.assertLess(reader.done.elapsed, 10)  # each attempt ended with the word and not with its time-out
 
     @e2e.each(path_unavailable=(10, 'gateway path unavailable'),
               target_silent=(11, 'gateway target device failed to respond'))
@@ -219,6 +220,44 @@ class Responses(Case):
         self.assertEqual((unit, rest), (1, bytes((3, 1, 1, 0, 1))))
         server.say(adu(transaction, 1, 0x83, number))
         self.ends(request, 1, f'the gateway responds with exception {number} ({name}). Check UNIT')
+
+    @e2e.each(
+        another_identifier=(lambda asked: registers(asked + 1, 1, *SAID),
+                            'the server responds with another transaction identifier'),
+        unit_0=(lambda asked: registers(asked, 0, *SAID), 'the server responds as unit 0, and not as unit 1'),
+        unit_255=(lambda asked: registers(asked, 255, *SAID), 'the server responds as unit 255, and not as'),
+        busy_as_unit_255=(lambda asked: adu(asked, 255, 0x83, 6),
+                          'the gateway responds with exception 06 (server device busy)'))
+    def foreign(self, response, words):
+        server, reader = self.reader('--count 1 --timeout 1000')
+        server.say(response(self.asked(server)))
+        self.reads(reader, 1, [], words)
+
+    def test_a_gateway_that_tries_a_dead_unit_again_serves_the_others_meanwhile(self):
+        """Its word about unit 9 arrives 2 s after the request, and a request to unit 1 waits for it."""
+        server = self.server()
+        reader = self.fathom(f'read hps167s:1 hps167s:9 --port {server} --count 3 --interval 100 --format csv')
+        server.accept()
+        readings = 0
+        while readings < 3:
+            transaction, unit, _ = server.request()
+            if unit == 9:
+                time.sleep(2)
+                server.say(adu(transaction, 9, 0x83, 11))
+            else:
+                server.say(registers(transaction, 1, *SAID))
+                readings += 1
+        self.meanwhile(lambda: server.say(adu(server.request()[0], 9, 0x83, 11)) or True)
+        self.reads(reader, 1, [2083] * 3, 'hps167s:9: attempt 2: no response from hps167s:9 at ',
+                   'the gateway responds with exception 11')
+
+    def test_a_response_after_the_time_out_is_measured(self):
+        server, reader = self.reader('--count 2 --timeout 500')
+        transaction = self.asked(server)
+        time.sleep(1.5)
+        server.say(registers(transaction, 1, *SAID))
+        self.asked(server)
+        self.reads(reader, 1, [], re.compile(r'arrived after the time-out \(it took 1[5-9]\d\d ms\)'))
 
     def test_a_silent_server(self):
         server, reader = self.reader('--count 3 --timeout 100')

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * proves: src/engine/line.c src/engine/line_attempt.c src/engine/line_masters.c src/engine/line_options.c
- *          src/engine/line_request.c src/engine/line_response.c src/engine/line_due.c src/engine/line_echo.c src/engine/line_round.c src/engine/line_senders.c
+ *          src/engine/line_request.c src/engine/line_response.c src/engine/line_due.c src/engine/line_echo.c src/engine/line_refusals.c src/engine/line_round.c src/engine/line_senders.c
  * with:   src/codec/dyp_55aa.c src/codec/dyp_stream.c
  * options: -eva-precision 0 -eva-auto-loop-unroll 128
  *          -eva-slevel-function fathom_line_begin:100,fathom_line_init:20,can_send:20,is_usable:20,main:5,fathom_line_poll:3,fathom_line_marks:30
@@ -267,7 +267,7 @@ void main(void)
     config.silence_us = any_16();
     config.gap_us = any_16();
     config.find_echo = any_bool() ? fathom_line_find_echo : NULL;
-    config.marks = any_bool() ? fathom_line_marks : NULL;
+    if (any_bool()) config.marks = any_bool() ? fathom_line_marks : fathom_line_refusals;
     config.count = any_bool() ? fathom_line_count : NULL;
     config.counters = counters;
     config.busy_us = any_32();
