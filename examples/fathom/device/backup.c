@@ -72,6 +72,20 @@ static const setting_t *first_readable(const session_t *session)
     return NULL;
 }
 
+/* Fills in a setting that cannot be read. Of these, the address is known: the sensor responds there. */
+static void hold_unread(const session_t *session, value_t *value)
+{
+    const setting_t *const setting = value->setting;
+    value->held = setting->moves && setting->mode == NULL ? HELD_VALUE : HELD_NOT_READABLE;
+    if (value->held == HELD_VALUE) setting_print_value(setting, session->sensor->address, value->text);
+}
+
+/* Returns true if a setting may be absent. A backup without a setting that each sensor has would be wrong. */
+static bool may_be_absent(const setting_t *setting, bool is_backup, bool is_other_known)
+{
+    return is_backup ? setting->is_of_variant || setting->effect == NULL : is_other_known;
+}
+
 /* Reads the values until it is uncertain that the sensor responds. Returns the setting that shows this, or NULL. */
 static const setting_t *read_rows(session_t *session, values_t *values, bool is_backup,
                                   fathom_status_t *status)
@@ -82,10 +96,8 @@ static const setting_t *read_rows(session_t *session, values_t *values, bool is_
     char text[SETTING_TEXT];
     for (value_t *value = values->rows; value->setting != NULL; value++) {
         const setting_t *const setting = value->setting;
-        if (setting->read_at == 0) { /* of these, the address is known: the sensor responds there */
-            value->held = setting->moves && setting->mode == NULL ? HELD_VALUE : HELD_NOT_READABLE;
-            if (value->held == HELD_VALUE)
-                setting_print_value(setting, session->sensor->address, value->text);
+        if (setting->read_at == 0) {
+            hold_unread(session, value);
             continue;
         }
         *status = failed != NULL && setting->read_at == failed->setting->read_at
@@ -97,9 +109,8 @@ static const setting_t *read_rows(session_t *session, values_t *values, bool is_
             values->is_known = true;
             continue;
         }
-        /* a backup without a setting that each sensor has would be wrong */
-        const bool may_fail = is_backup ? setting->is_of_variant || setting->effect == NULL : known != NULL;
-        if (!may_fail || setting_reason(*status) == NULL) return setting;
+        if (!may_be_absent(setting, is_backup, known != NULL) || setting_reason(*status) == NULL)
+            return setting;
         value->held = HELD_NOT_THERE;
         value->status = *status;
         failed = value;
