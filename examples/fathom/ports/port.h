@@ -162,11 +162,12 @@ typedef struct port_driver port_driver_t;
 
 /* What a Modbus TCP server has shown; all zeros for other ports. */
 typedef struct {
-    uint8_t exception;         /* the final word about a request, as that the unit does not respond; 0: none */
-    uint8_t exception_unit;    /* the unit of that request */
-    uint8_t other_unit;        /* which responded to the newest request, ... */
-    bool has_other_unit;       /* ... if that is not the unit that was asked */
-    bool has_other_identifier; /* the server responded to the newest request with another transaction identifier */
+    uint8_t exception;      /* the final word about a request, as that the unit does not respond; 0: none */
+    uint8_t exception_unit; /* the unit of that request */
+    uint8_t other_unit;     /* which responded to the newest request, ... */
+    bool has_other_unit;    /* ... if that is not the unit that was asked */
+    bool
+        has_other_identifier; /* the server responded to the newest request with another transaction identifier */
 } gateway_t;
 
 /* All zeros before the first port_open(). It may be opened again after port_close(); do not move it. */
@@ -185,10 +186,10 @@ typedef struct port {
     uint16_t counters[FATHOM_LINE_COUNTERS];
     fathom_line_t line;
     fathom_modbus_t modbus;
-    pins_t pins;                /* of a GPIO chip */
-    fathom_uart_t uart;         /* that the line uses */
-    bool has_wire;              /* a byte takes its time; a pseudo terminal has no wire */
-    bool watches_output;        /* port_wait() also ends when the reader of the standard output goes away */
+    pins_t pins;         /* of a GPIO chip */
+    fathom_uart_t uart;  /* that the line uses */
+    bool has_wire;       /* a byte takes its time; a pseudo terminal has no wire */
+    bool watches_output; /* port_wait() also ends when the reader of the standard output goes away */
     gateway_t gateway;
     fathom_posix_uart_t serial;
     bool counts_errors;                /* the driver counts them, ... */

@@ -292,9 +292,8 @@ typedef struct {
      * Choose at least 1.5 characters, and more than the pauses of a slow sender or port. Behind an operating system
      * choose 25000, because USB adapters hold bytes back for 16 ms.
      *
-     * Behind a network or another program, a response may arrive in pieces with any pauses between them. Choose
-     * FATHOM_LINE_NO_GAP: while a response may arrive, pieces with a right checksum are that response. A damaged one
-     * then ends the attempt at the time-out.
+     * Through a network or another program, a response may arrive in pieces with any pauses. FATHOM_LINE_NO_GAP
+     * accepts them; a damaged response then ends the attempt at the time-out.
      */
     uint16_t gap_us;
 
@@ -307,8 +306,8 @@ typedef struct {
     /**
      * @brief fathom_line_marks to use what the port reports about the bytes (fathom_rx_t); else NULL.
      *
-     * The port can report silence before the bytes, parity errors, framing errors and overruns. The line uses the time
-     * stamps of the port in any case. Behind a gateway, name fathom_line_refusals instead.
+     * The port can report silence, parity errors, framing errors and overruns. The line uses its time stamps in any
+     * case. Behind a gateway, name fathom_line_refusals.
      */
     uint8_t (*marks)(fathom_line_t *line, const fathom_rx_t *rx, uint8_t count);
 
@@ -432,11 +431,9 @@ void fathom_line_find_echo(fathom_line_t *line, uint8_t echo);
 uint8_t fathom_line_marks(fathom_line_t *line, const fathom_rx_t *rx, uint8_t count);
 
 /**
- * @brief Ends an attempt as soon as the port reports FATHOM_RX_NO_RESPONSE (hal.h). Name it in
- * fathom_line_parts_t::marks; only the line calls it.
+ * @brief Ends an attempt when the port reports FATHOM_RX_NO_RESPONSE. Name it in `marks`; only the line calls it.
  *
- * The attempt ends as after its time-out, with FATHOM_ERR_NO_RESPONSE or the error of what arrived before. Its unit is
- * not quarantined, because no late response can arrive, so a retry leaves at once.
+ * The attempt ends as after its time-out. Its unit is not quarantined, so a retry leaves at once.
  *
  * @param line   The line.
  * @param rx     The port's report on these bytes. Only FATHOM_RX_NO_RESPONSE is used.
