@@ -2,13 +2,70 @@
 #ifndef FATHOM_TESTS_LOOP_LINE_RIG_H
 #define FATHOM_TESTS_LOOP_LINE_RIG_H
 
+#include <poll.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include "suite.h"
 
 #include "fathom/sensor/hps167s.h"
 #include "fathom_loop.h"
-#include "loop_far_end.h"
+#include "posix_pty.h"
 
-/* Lines on pseudo terminals, an HPS-167S on each, in one loop. A far end responds in less than a millisecond on an idle
+/* ---- the far end: an HPS-167S of address 1 behind each pseudo terminal, in a process of its own, whose calls are not
+ * counted. It answers each request with 2083 mm, after late_ms, and does nothing else meanwhile. ---- */
+
+enum { FAR_END_MM = 2083, FAR_END_MOST = 64 };
+enum { REQUEST = 8, FAR_END_S = 60 };
+
+/* HPS-167S table 18: 2083 mm and what stands beside it; the CRC by hand. */
+static const uint8_t far_end_response[] = {0x01, 0x03, 0x08, 0x08, 0x23, 0xDC, 0xB2,
+                                           0x07, 0x01, 0x00, 0x00, 0xFD, 0x41};
+
+static inline void far_end_serve(const posix_pty_t *ptys, unsigned count, unsigned late_ms)
+{
+    static struct pollfd entries[FAR_END_MOST];
+    static size_t have[FAR_END_MOST];
+    uint8_t bytes[REQUEST];
+    for (unsigned i = 0; i != count; i++) entries[i] = (struct pollfd){ptys[i].master, POLLIN, 0};
+    for (;;) {
+        if (poll(entries, count, -1) <= 0) continue;
+        for (unsigned i = 0; i != count; i++) {
+            const ssize_t n = entries[i].revents != 0 ? read(entries[i].fd, bytes, REQUEST - have[i]) : 0;
+            have[i] += n > 0 ? (size_t)n : 0;
+            if (have[i] != REQUEST) continue;
+            have[i] = 0;
+            if (late_ms != 0) (void)poll(NULL, 0, (int)late_ms);
+            if (write(entries[i].fd, far_end_response, sizeof far_end_response) !=
+                (ssize_t)sizeof far_end_response)
+                _exit(1);
+        }
+    }
+}
+
+static inline pid_t far_end_begin(const posix_pty_t *ptys, unsigned count, unsigned late_ms)
+{
+    const pid_t child = fork();
+    assert_true(child >= 0);
+    if (child == 0) {
+        (void)alarm(FAR_END_S); /* a child does not inherit it */
+        far_end_serve(ptys, count, late_ms);
+    }
+    return child;
+}
+
+static inline void far_end_end(pid_t child)
+{
+    int status = 0;
+    assert_int_equal(kill(child, SIGTERM), 0);
+    assert_int_equal(waitpid(child, &status, 0), child);
+    assert_true(WIFSIGNALED(status) && WTERMSIG(status) == SIGTERM);
+}
+
+/* ---- the lines ---- */
+
+/* Include this file after _DEFAULT_SOURCE. Lines on pseudo terminals, an HPS-167S on each, in one loop. A far end responds in less than a millisecond on an idle
  * machine, so a time-out of 1 s is long. A unit whose port broke is quarantined for twice the time-out. */
 typedef struct {
     fathom_loop_t loop;
