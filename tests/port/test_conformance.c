@@ -17,51 +17,51 @@
 /* The kit on simulated wires that keep everything, with one fault, which one item and no other finds; and on a pseudo
  * terminal. */
 
-typedef enum {
-    NO_FAULT,
-    NO_WIRE,
-    CLOCK_STANDS,
-    CLOCK_OF_26_BITS,
-    CLOCK_AT_DOUBLE_SPEED,
-    CLOCK_GOES_BACK,
-    WRITE_PARTIAL,
-    WRITE_SENDS_WHAT_IT_REFUSED,
-    WRITE_KEEPS_THE_POINTER,
-    WRITE_LOSES_THE_LAST,
-    WRITE_WAITS,
-    WRITE_PAUSES,
-    WRITE_REFUSES_WHEN_FULL,
-    SENT_AT_ONCE,
-    SENT_A_CHARACTER_EARLY,
-    SENT_NEVER,
-    LEAVES_AFTERWARDS,
-    LEAVES_IN_AN_HOUR,
-    DRIVER_NEVER_ON,
-    DRIVER_ALWAYS_ON,
-    DRIVER_OFF_EARLY,
-    DRIVER_OFF_LATE,
-    READ_SWAPS,
-    READ_LOSES,
-    READ_BEYOND,
-    READ_SPANS_SILENCE,
-    READ_MAKES_SILENCE,
-    STAMP_OF_THE_READ,
-    STAMP_OF_BEFORE,
-    STAMP_OF_THE_READ_AFTER_A_PAUSE,
-    READ_NOTHING_AFTER_A_PAUSE,
-    PARITY_UNTOLD,
-    PARITY_ON_ALL,
-    FRAMING_UNTOLD,
-    FRAMING_SPANNED,
-    OVERRUN_UNTOLD,
-    OVERRUN_ALWAYS,
-    LINE_UNCHANGED,
-    LINE_AT_ONCE,
-    LINE_FORGETS,
-    LINE_OF_ANY_RATE,
-    BREAK_AT_ONCE,
-    FAULTS
-} fault_t;
+/* Each fault, and the item that finds it. */
+#define EACH_FAULT(X)                                                                                        \
+    X(CLOCK_STANDS, "clock_runs")                                                                            \
+    X(CLOCK_OF_26_BITS, "clock_wrap")                                                                        \
+    X(CLOCK_AT_DOUBLE_SPEED, "clock_us")                                                                     \
+    X(CLOCK_GOES_BACK, "clock_forward")                                                                      \
+    X(WRITE_PARTIAL, "write_whole")                                                                          \
+    X(WRITE_SENDS_WHAT_IT_REFUSED, "write_whole")                                                            \
+    X(WRITE_KEEPS_THE_POINTER, "write_copy")                                                                 \
+    X(WRITE_LOSES_THE_LAST, "read_order")                                                                    \
+    X(WRITE_WAITS, "write_at_once")                                                                          \
+    X(WRITE_PAUSES, "write_no_gap")                                                                          \
+    X(WRITE_REFUSES_WHEN_FULL, "write_when_full")                                                            \
+    X(SENT_AT_ONCE, "sent_not_early")                                                                        \
+    X(SENT_A_CHARACTER_EARLY, "sent_not_early")                                                              \
+    X(SENT_NEVER, "sent_comes")                                                                              \
+    X(LEAVES_AFTERWARDS, "leaves_in_us")                                                                     \
+    X(LEAVES_IN_AN_HOUR, "leaves_in_us")                                                                     \
+    X(DRIVER_NEVER_ON, "driver")                                                                             \
+    X(DRIVER_ALWAYS_ON, "driver")                                                                            \
+    X(DRIVER_OFF_EARLY, "driver")                                                                            \
+    X(DRIVER_OFF_LATE, "driver")                                                                             \
+    X(READ_SWAPS, "read_order")                                                                              \
+    X(READ_LOSES, "read_order")                                                                              \
+    X(READ_BEYOND, "read_bounds")                                                                            \
+    X(READ_SPANS_SILENCE, "read_silence")                                                                    \
+    X(READ_MAKES_SILENCE, "read_silence")                                                                    \
+    X(STAMP_OF_THE_READ, "read_stamp")                                                                       \
+    X(STAMP_OF_BEFORE, "read_stamp")                                                                         \
+    X(STAMP_OF_THE_READ_AFTER_A_PAUSE, "read_age")                                                           \
+    X(READ_NOTHING_AFTER_A_PAUSE, "read_age")                                                                \
+    X(PARITY_UNTOLD, "mark_parity")                                                                          \
+    X(PARITY_ON_ALL, "mark_parity")                                                                          \
+    X(FRAMING_UNTOLD, "mark_framing")                                                                        \
+    X(FRAMING_SPANNED, "mark_framing")                                                                       \
+    X(OVERRUN_UNTOLD, "read_overrun")                                                                        \
+    X(OVERRUN_ALWAYS, "read_overrun")                                                                        \
+    X(LINE_UNCHANGED, "set_line_holds")                                                                      \
+    X(LINE_AT_ONCE, "set_line_waits")                                                                        \
+    X(LINE_FORGETS, "set_line_keeps")                                                                        \
+    X(LINE_OF_ANY_RATE, "set_line_refuses")                                                                  \
+    X(BREAK_AT_ONCE, "set_break")
+
+#define ITS_NAME(name, item) name,
+typedef enum { NO_FAULT, NO_WIRE, EACH_FAULT(ITS_NAME) FAULTS } fault_t;
 
 enum { LONG_PAUSE_US = 500000, CHARACTER_US = 573, NAMES = 4 }; /* 19200 8E1: 11 bits of 52.08 us */
 
@@ -383,46 +383,8 @@ TEST(where_nothing_comes_back_nothing_is_held_against_the_port)
 
 TEST(each_fault_is_found_by_one_item_and_no_other)
 {
-    static const char *const found_by[FAULTS] = {[CLOCK_STANDS] = "clock_runs",
-                                                 [CLOCK_OF_26_BITS] = "clock_wrap",
-                                                 [CLOCK_AT_DOUBLE_SPEED] = "clock_us",
-                                                 [CLOCK_GOES_BACK] = "clock_forward",
-                                                 [WRITE_PARTIAL] = "write_whole",
-                                                 [WRITE_SENDS_WHAT_IT_REFUSED] = "write_whole",
-                                                 [WRITE_KEEPS_THE_POINTER] = "write_copy",
-                                                 [WRITE_LOSES_THE_LAST] = "read_order",
-                                                 [WRITE_WAITS] = "write_at_once",
-                                                 [WRITE_PAUSES] = "write_no_gap",
-                                                 [WRITE_REFUSES_WHEN_FULL] = "write_when_full",
-                                                 [SENT_AT_ONCE] = "sent_not_early",
-                                                 [SENT_A_CHARACTER_EARLY] = "sent_not_early",
-                                                 [SENT_NEVER] = "sent_comes",
-                                                 [LEAVES_AFTERWARDS] = "leaves_in_us",
-                                                 [LEAVES_IN_AN_HOUR] = "leaves_in_us",
-                                                 [DRIVER_NEVER_ON] = "driver",
-                                                 [DRIVER_ALWAYS_ON] = "driver",
-                                                 [DRIVER_OFF_EARLY] = "driver",
-                                                 [DRIVER_OFF_LATE] = "driver",
-                                                 [READ_SWAPS] = "read_order",
-                                                 [READ_LOSES] = "read_order",
-                                                 [READ_BEYOND] = "read_bounds",
-                                                 [READ_SPANS_SILENCE] = "read_silence",
-                                                 [READ_MAKES_SILENCE] = "read_silence",
-                                                 [STAMP_OF_THE_READ] = "read_stamp",
-                                                 [STAMP_OF_BEFORE] = "read_stamp",
-                                                 [STAMP_OF_THE_READ_AFTER_A_PAUSE] = "read_age",
-                                                 [READ_NOTHING_AFTER_A_PAUSE] = "read_age",
-                                                 [PARITY_UNTOLD] = "mark_parity",
-                                                 [PARITY_ON_ALL] = "mark_parity",
-                                                 [FRAMING_UNTOLD] = "mark_framing",
-                                                 [FRAMING_SPANNED] = "mark_framing",
-                                                 [OVERRUN_UNTOLD] = "read_overrun",
-                                                 [OVERRUN_ALWAYS] = "read_overrun",
-                                                 [LINE_UNCHANGED] = "set_line_holds",
-                                                 [LINE_AT_ONCE] = "set_line_waits",
-                                                 [LINE_FORGETS] = "set_line_keeps",
-                                                 [LINE_OF_ANY_RATE] = "set_line_refuses",
-                                                 [BREAK_AT_ONCE] = "set_break"};
+#define ITS_ITEM(name, item) [name] = (item),
+    static const char *const found_by[FAULTS] = {EACH_FAULT(ITS_ITEM)};
     unsigned missed = 0;
     for (unsigned fault = NO_WIRE + 1; fault != FAULTS; fault++) {
         run((fault_t)fault);

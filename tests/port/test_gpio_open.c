@@ -186,13 +186,6 @@ TEST(a_pin_that_is_closed_leaves_the_others_alone)
     fathom_gpio_close(&next);
 }
 
-TEST(a_line_whose_reads_would_wait_is_given_back)
-{
-    chip.is_rigid = true;
-    expect_failure(EDGES, "gpiochip0", 27, FATHOM_GPIO_ERR_SYSTEM,
-                   "making its reads return at once: Bad file descriptor");
-}
-
 TEST(a_call_that_was_interrupted_is_repeated)
 {
     chip.interrupts = 3;
@@ -201,104 +194,87 @@ TEST(a_call_that_was_interrupted_is_repeated)
     assert_int_equal(chip.opened, 1);
 }
 
-TEST(what_is_no_chip_is_told_as_such)
-{
-    char file[] = "/tmp/fathom-test-XXXXXX";
-    const int fd = mkstemp(file);
-    assert_true(fd >= 0);
-    assert_int_equal(close(fd), 0);
-    expect_failure(INPUT, file, 1, FATHOM_GPIO_ERR_NOT_A_CHIP, "not a GPIO chip; ls /dev/gpiochip* lists");
-    assert_int_equal(unlink(file), 0);
-    expect_failure(INPUT, "/dev/null", 1, FATHOM_GPIO_ERR_NOT_A_CHIP, "/dev/null, line 1: not a GPIO chip");
-    expect_failure(INPUT, "/", 1, FATHOM_GPIO_ERR_NOT_A_CHIP, "/, line 1: not a GPIO chip");
-    expect_failure(INPUT, "/tmp", 1, FATHOM_GPIO_ERR_NOT_A_CHIP, "not a GPIO chip");
-    expect_failure(INPUT, "null", 1, FATHOM_GPIO_ERR_NOT_A_CHIP, "/dev/null, line 1: ");
-    chip.chip_error = EINVAL; /* a character device that takes no such call */
-    expect_failure(INPUT, "gpiochip0", 1, FATHOM_GPIO_ERR_NOT_A_CHIP, "not a GPIO chip");
-}
+enum {
+    ARGUMENT = FATHOM_GPIO_ERR_ARGUMENT,
+    NOT_FOUND = FATHOM_GPIO_ERR_NOT_FOUND,
+    NOT_A_CHIP = FATHOM_GPIO_ERR_NOT_A_CHIP,
+    NO_LINE = FATHOM_GPIO_ERR_NO_LINE,
+    IN_USE = FATHOM_GPIO_ERR_IN_USE,
+    PERMISSION = FATHOM_GPIO_ERR_PERMISSION,
+    UNSUPPORTED = FATHOM_GPIO_ERR_UNSUPPORTED,
+    SYSTEM = FATHOM_GPIO_ERR_SYSTEM
+};
 
-TEST(a_missing_chip_is_told_as_such)
+TEST(whatever_fails_is_an_error_with_its_reason)
 {
-    expect_failure(OUTPUT, "gpiochip77", 1, FATHOM_GPIO_ERR_NOT_FOUND,
-                   "/dev/gpiochip77, line 1: no such chip; ls ");
-    expect_failure(OUTPUT, "/dev/null/gpiochip0", 1, FATHOM_GPIO_ERR_NOT_FOUND, "no such chip");
-    static const int gone[] = {ENODEV, ENXIO};
-    for (unsigned i = 0; i != 2; i++) {
-        chip.open_error = gone[i]; /* it was pulled out a moment ago */
-        expect_failure(OUTPUT, "gpiochip0", 1, FATHOM_GPIO_ERR_NOT_FOUND, "no chip behind this name");
+    static const char of_32[] = "xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx"; /* the zero is not in the answer */
+    static const struct {
+        int kind;
+        uint32_t line;
+        int error;
+        const char *text;
+        struct {
+            const char *name;              /* NULL: gpiochip0 */
+            int open, chip, info, request; /* the errors of its calls */
+            bool is_rigid;
+            const char *consumer;
+        } has;
+    } rows[] = {
+        /* names */
+        {INPUT, 1, ARGUMENT, "no chip was named", {.name = ""}},
+        {INPUT, 1, NOT_A_CHIP, "/dev/null, line 1: not a GPIO chip", {.name = "/dev/null"}},
+        {INPUT, 1, NOT_A_CHIP, "/, line 1: not a GPIO chip", {.name = "/"}},
+        {INPUT, 1, NOT_A_CHIP, "not a GPIO chip; ls /dev/gpiochip* lists", {.name = "/tmp"}},
+        {INPUT, 1, NOT_A_CHIP, "/dev/null, line 1: ", {.name = "null"}},
+        {INPUT, 1, NOT_A_CHIP, "not a GPIO chip", {.chip = EINVAL}},
+        {OUTPUT, 1, NOT_FOUND, "/dev/gpiochip77, line 1: no such chip; ls ", {.name = "gpiochip77"}},
+        {OUTPUT, 1, NOT_FOUND, "no such chip", {.name = "/dev/null/gpiochip0"}},
+        {OUTPUT, 1, NOT_FOUND, "no chip behind this name", {.open = ENODEV}},
+        {OUTPUT, 1, NOT_FOUND, "no chip behind this name", {.open = ENXIO}},
+        {OUTPUT, 1, NOT_FOUND, "no chip behind this name", {.chip = ENODEV}},
+        {OUTPUT, 1, SYSTEM, "opening it: Too many open files", {.open = EMFILE}},
+        {OUTPUT, 17, PERMISSION, "line 17: permission denied", {.open = EPERM}},
+        {OUTPUT, 17, PERMISSION, "line 17: permission denied", {.open = EACCES}},
+        /* lines */
+        {INPUT, 54, NO_LINE, "line 54: the chip has the lines 0 to 53", {0}},
+        {OUTPUT, 4000000000u, NO_LINE, "line 4000000000: the chip has", {0}},
+        {OUTPUT, 8, IN_USE, "in use by another program or by a driver", {.request = EBUSY}},
+        {OUTPUT, 8, IN_USE, "in use by \"spi0 CS0\"; ", {.request = EBUSY, .consumer = "spi0 CS0"}},
+        {OUTPUT, 8, IN_USE, "in use by \"y\"; end that program", {.request = EBUSY, .consumer = "y"}},
+        {OUTPUT, 8, IN_USE, "xxx\"; end that program", {.request = EBUSY, .consumer = of_32}},
+        {OUTPUT, 17, PERMISSION, "this line is not for programs", {.request = EPERM}},
+        {OUTPUT, 17, PERMISSION, "this line is not for programs", {.request = EACCES}},
+        {OUTPUT, 17, SYSTEM, "taking it: Cannot allocate memory", {.request = ENOMEM}},
+        {EDGES, 27, SYSTEM, "making its reads return at once: Bad file descriptor", {.is_rigid = true}},
+        /* a kernel with version 1 only */
+        {INPUT, 5, UNSUPPORTED, "version 1 of the GPIO interface only; Linux 5.10", {.info = EINVAL}},
+        {EDGES, 5, UNSUPPORTED, "version 1 ", {.info = ENOTTY}},
+        {INPUT, 5, NOT_FOUND, "no chip behind this name", {.info = ENODEV}},
+        /* gpiolib, edge_detector_setup(): the line has no interrupt; EIO: the chip has no such direction */
+        {EDGES, 27, UNSUPPORTED, "no interrupt for it, so edges are not told", {.request = ENODEV}},
+        {INPUT, 27, NOT_FOUND, "no chip behind this name", {.request = ENODEV}},
+        {EDGES, 27, UNSUPPORTED, "no interrupt for it", {.request = ENXIO}},
+        {OUTPUT, 17, UNSUPPORTED, "it cannot be an output", {.request = EIO}},
+        {INPUT, 17, UNSUPPORTED, "it cannot be an input", {.request = EIO}},
+    };
+    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
+        chip_reset();
+        chip.open_error = rows[i].has.open;
+        chip.chip_error = rows[i].has.chip;
+        chip.info_error = rows[i].has.info;
+        chip.request_error = rows[i].has.request;
+        chip.is_rigid = rows[i].has.is_rigid;
+        if (rows[i].has.consumer != NULL)
+            memcpy(chip.consumer, rows[i].has.consumer, strlen(rows[i].has.consumer));
+        expect_failure(rows[i].kind, rows[i].has.name != NULL ? rows[i].has.name : "gpiochip0", rows[i].line,
+                       (fathom_gpio_status_t)rows[i].error, rows[i].text);
+        assert_int_equal(chip.refused, rows[i].has.request != 0);
+        assert_int_equal(chip.opened, rows[i].has.is_rigid);
     }
-    chip.open_error = EMFILE;
-    expect_failure(OUTPUT, "gpiochip0", 1, FATHOM_GPIO_ERR_SYSTEM, "opening it: Too many open files");
-    chip.open_error = 0;
-    chip.chip_error = ENODEV;
-    expect_failure(OUTPUT, "gpiochip0", 1, FATHOM_GPIO_ERR_NOT_FOUND, "no chip behind this name");
 }
 
-TEST(wrong_arguments_are_told_as_such)
+TEST(what_the_chip_cannot_do_is_told_for_each_kind_of_pin)
 {
-    char path[300] = "/dev/";
-    memset(path + 5, 'x', 294);
-    assert_int_equal(fathom_gpio_open_input(NULL, "gpiochip0", 1, FATHOM_GPIO_BIAS_AS_IS),
-                     FATHOM_GPIO_ERR_ARGUMENT);
-    expect_failure(INPUT, NULL, 1, FATHOM_GPIO_ERR_ARGUMENT, "pin, line 1: no chip was named");
-    expect_failure(INPUT, "", 1, FATHOM_GPIO_ERR_ARGUMENT, "no chip was named");
-    expect_failure(INPUT, path, 1, FATHOM_GPIO_ERR_ARGUMENT, "a path has 127 characters at most");
-    path[139] = '\0';
-    expect_failure(INPUT, path, 1, FATHOM_GPIO_ERR_ARGUMENT, "a path has 127 characters at most");
-    path[128] = '\0';
-    expect_failure(INPUT, path, 1, FATHOM_GPIO_ERR_ARGUMENT, "a path has 127 characters at most");
-    path[127] = '\0';
-    expect_failure(INPUT, path, 1, FATHOM_GPIO_ERR_NOT_FOUND, "no such chip");
-    fathom_gpio_close(NULL);
-}
-
-TEST(a_line_that_the_chip_has_not_is_told_with_those_that_it_has)
-{
-    expect_failure(INPUT, "gpiochip0", 54, FATHOM_GPIO_ERR_NO_LINE,
-                   "line 54: the chip has the lines 0 to 53");
-    expect_failure(OUTPUT, "gpiochip0", 4000000000u, FATHOM_GPIO_ERR_NO_LINE,
-                   "line 4000000000: the chip has");
-    assert_int_equal(chip.refused + chip.opened, 0);
-    assert_int_equal(open_as(INPUT, "gpiochip0", 53), FATHOM_GPIO_OK);
-}
-
-TEST(a_line_in_use_is_told_with_its_user)
-{
-    chip.request_error = EBUSY;
-    expect_failure(OUTPUT, "gpiochip0", 8, FATHOM_GPIO_ERR_IN_USE,
-                   "in use by another program or by a driver");
-    (void)snprintf(chip.consumer, sizeof chip.consumer, "spi0 CS0");
-    expect_failure(OUTPUT, "gpiochip0", 8, FATHOM_GPIO_ERR_IN_USE,
-                   "in use by \"spi0 CS0\"; end that program");
-    (void)snprintf(chip.consumer, sizeof chip.consumer, "y");
-    expect_failure(OUTPUT, "gpiochip0", 8, FATHOM_GPIO_ERR_IN_USE, "in use by \"y\"; end that program");
-    memset(chip.consumer, 'x', sizeof chip.consumer); /* not ended by a zero */
-    expect_failure(OUTPUT, "gpiochip0", 8, FATHOM_GPIO_ERR_IN_USE, "xxx\"; end that program");
-}
-
-TEST(a_kernel_with_version_1_only_is_told_as_such)
-{
-    chip.info_error = EINVAL;
-    expect_failure(INPUT, "gpiochip0", 5, FATHOM_GPIO_ERR_UNSUPPORTED,
-                   "version 1 of the GPIO interface only; Linux 5.10");
-    chip.info_error = ENOTTY;
-    expect_failure(EDGES, "gpiochip0", 5, FATHOM_GPIO_ERR_UNSUPPORTED, "version 1 ");
-    assert_int_equal(chip.refused, 0);
-    chip.info_error = ENODEV;
-    expect_failure(INPUT, "gpiochip0", 5, FATHOM_GPIO_ERR_NOT_FOUND, "no chip behind this name");
-}
-
-TEST(what_the_chip_cannot_do_is_told)
-{
-    chip.request_error = ENODEV; /* gpiolib, edge_detector_setup(): the line has no interrupt */
-    expect_failure(EDGES, "gpiochip0", 27, FATHOM_GPIO_ERR_UNSUPPORTED,
-                   "no interrupt for it, so edges are not told");
-    expect_failure(INPUT, "gpiochip0", 27, FATHOM_GPIO_ERR_NOT_FOUND, "no chip behind this name");
-    chip.request_error = ENXIO;
-    expect_failure(EDGES, "gpiochip0", 27, FATHOM_GPIO_ERR_UNSUPPORTED, "no interrupt for it");
-    chip.request_error = EIO; /* gpiolib: the chip has no such direction */
-    expect_failure(OUTPUT, "gpiochip0", 17, FATHOM_GPIO_ERR_UNSUPPORTED, "it cannot be an output");
-    expect_failure(INPUT, "gpiochip0", 17, FATHOM_GPIO_ERR_UNSUPPORTED, "it cannot be an input");
     static const int refusals[] = {EINVAL, EOPNOTSUPP, 524 /* ENOTSUPP, the kernel's own */};
     for (unsigned i = 0; i != 3; i++) {
         chip.request_error = refusals[i];
@@ -309,13 +285,23 @@ TEST(what_the_chip_cannot_do_is_told)
         expect_failure(OUTPUT, "gpiochip0", 17, FATHOM_GPIO_ERR_UNSUPPORTED,
                        "refuses an output like this; take");
     }
-    static const int denials[] = {EPERM, EACCES};
-    for (unsigned i = 0; i != 2; i++) {
-        chip.request_error = denials[i];
-        expect_failure(OUTPUT, "gpiochip0", 17, FATHOM_GPIO_ERR_PERMISSION, "this line is not for programs");
+}
+
+TEST(a_path_is_there_and_has_127_characters_at_most)
+{
+    static const unsigned lengths[] = {299, 139, 128};
+    char path[300] = "/dev/";
+    memset(path + 5, 'x', 294);
+    for (unsigned i = 0; i != 3; i++) {
+        path[lengths[i]] = '\0';
+        expect_failure(INPUT, path, 1, FATHOM_GPIO_ERR_ARGUMENT, "a path has 127 characters at most");
     }
-    chip.request_error = ENOMEM;
-    expect_failure(OUTPUT, "gpiochip0", 17, FATHOM_GPIO_ERR_SYSTEM, "taking it: Cannot allocate memory");
+    expect_failure(INPUT, NULL, 1, FATHOM_GPIO_ERR_ARGUMENT, "pin, line 1: no chip was named");
+    path[127] = '\0';
+    expect_failure(INPUT, path, 1, FATHOM_GPIO_ERR_NOT_FOUND, "no such chip");
+    assert_int_equal(fathom_gpio_open_input(NULL, path, 1, FATHOM_GPIO_BIAS_AS_IS), FATHOM_GPIO_ERR_ARGUMENT);
+    fathom_gpio_close(NULL);
+    assert_int_equal(open_as(INPUT, "gpiochip0", 53), FATHOM_GPIO_OK); /* its last line */
 }
 
 static int open_is_denied(void *path)
@@ -329,21 +315,13 @@ static int open_is_denied(void *path)
                : 2;
 }
 
-TEST(a_denied_permission_has_two_numbers)
-{
-    static const int denials[] = {EPERM, EACCES};
-    for (unsigned i = 0; i != 2; i++) {
-        chip.open_error = denials[i];
-        expect_failure(OUTPUT, "gpiochip0", 17, FATHOM_GPIO_ERR_PERMISSION, "line 17: permission denied");
-    }
-}
-
-/* As Debian has it: root's alone. */
-TEST(a_denied_permission_names_the_group_and_the_rule)
+/* Permissions as Debian has them: root's alone. */
+TEST(a_file_is_no_chip_and_if_denied_named_with_its_group_and_the_rule)
 {
     char file[] = "/tmp/fathom-test-XXXXXX";
     const int fd = mkstemp(file);
     assert_true(fd >= 0);
+    expect_failure(INPUT, file, 1, FATHOM_GPIO_ERR_NOT_A_CHIP, "not a GPIO chip; ls /dev/gpiochip* lists");
     assert_int_equal(fchmod(fd, 0), 0);
     assert_int_equal(close(fd), 0);
     assert_int_equal(posix_run_unprivileged(open_is_denied, file), 0);

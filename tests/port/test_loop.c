@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "loop_three.h"
-#include "suite.h"
 
 /* When fathom_loop.h polls what, in simulated time: pauses and what is told of them are in test_loop_lost.c. */
 
@@ -13,50 +12,39 @@ static const suite_t plain = {.tear_down = tear_down_none};
 
 TEST(a_source_is_polled_once_it_is_open_and_then_when_it_is_due)
 {
-    one.due_us = 250000;
-    add(&one);
+    add_due(&one, 250000);
     assert_int_equal(one.polls, 0);
-    step();
+    step_to(0);
     assert_int_equal(one.polls, 1);
-    assert_int_equal(fake_elapsed_us(), 0);
-    step();
+    step_to(250000);
     assert_int_equal(one.polls, 2);
-    assert_int_equal(fake_elapsed_us(), 250000);
     fake_pass(10000000);
     assert_int_equal(one.polls, 2 + 40);
 }
 
 TEST(nothing_else_is_polled)
 {
-    one.due_us = 1000;
-    two.due_us = 1000000;
-    add(&one);
-    add(&two);
+    add_due(&one, 1000);
+    add_due(&two, 1000000);
     fake_pass(1000000 - 1);
-    assert_int_equal(one.polls, 1000);
-    assert_int_equal(two.polls, 1);
+    expect_polls(1000, 1);
     assert_int_equal(fake.loop.polls, 1001);
 }
 
 TEST(the_first_of_the_sensors_on_a_source_says_when_it_is_due)
 {
     one.due_us = FATHOM_NO_DEADLINE;
-    add(&one);
-    fake_sensor(&first, &one);
-    fake_sensor(&second, &one);
+    add_with_sensors();
     first.due_us = 7000;
     second.due_us = 5000;
     step();
     first.due_us = 3000;
-    step();
-    assert_int_equal(fake_elapsed_us(), 5000);
+    step_to(5000);
     assert_int_equal(first.polls, 2);
     assert_int_equal(second.polls, 2);
     one.due_us = 2000;
-    step();
-    assert_int_equal(fake_elapsed_us(), 5000 + 3000);
-    step();
-    assert_int_equal(fake_elapsed_us(), 8000 + 2000);
+    step_to(5000 + 3000);
+    step_to(8000 + 2000);
 }
 
 TEST(what_has_come_is_polled_before_it_is_due_and_then_its_time_begins_anew)
@@ -64,22 +52,17 @@ TEST(what_has_come_is_polled_before_it_is_due_and_then_its_time_begins_anew)
     add(&one);
     step();
     fake_wake_in(&one, 1000);
-    step();
+    step_to(1000);
     assert_int_equal(one.polls, 2);
-    assert_int_equal(fake_elapsed_us(), 1000);
-    step();
+    step_to(1001000);
     assert_int_equal(one.polls, 3);
-    assert_int_equal(fake_elapsed_us(), 1001000);
 }
 
 TEST(they_are_polled_in_the_order_in_which_they_are_due)
 {
-    one.due_us = 3000;
-    two.due_us = 2000;
-    three.due_us = 1000;
-    add(&one);
-    add(&two);
-    add(&three);
+    add_due(&one, 3000);
+    add_due(&two, 2000);
+    add_due(&three, 1000);
     step();
     fake.now_us += 500000; /* the machine was suspended: all are due */
     step();
@@ -92,12 +75,10 @@ TEST(they_are_polled_in_the_order_in_which_they_are_due)
 /* The step polls each that is due once, whatever that says. */
 TEST(one_that_is_due_again_at_once_keeps_no_other_waiting)
 {
-    one.due_us = 0;
-    add(&one);
+    add_due(&one, 0);
     add(&two);
     step();
-    assert_int_equal(one.polls, 1);
-    assert_int_equal(two.polls, 1);
+    expect_polls(1, 1);
     two.due_us = 100;
     fake_wake_in(&two, 0);
     for (unsigned i = 0; i != 10; i++) step();
@@ -119,8 +100,7 @@ static void spins_no_longer(void)
 
 TEST(one_that_is_due_at_once_without_end_does_not_spin)
 {
-    one.due_us = 0;
-    add(&one);
+    add_due(&one, 0);
     spins_no_longer();
     one.due_us = 100000; /* and once that is over it begins anew */
     fake_pass(200000);
@@ -131,11 +111,9 @@ TEST(one_that_is_due_at_once_without_end_does_not_spin)
 
 TEST(one_that_was_away_may_be_due_at_once_as_often_again)
 {
-    one.due_us = 0;
-    add(&one);
+    add_due(&one, 0);
     spins_no_longer();
-    one.is_lost = true;
-    step();
+    lose_one();
     one.is_lost = false;
     step(); /* open again */
     spins_no_longer();
@@ -144,10 +122,8 @@ TEST(one_that_was_away_may_be_due_at_once_as_often_again)
 /* hal.h: whatever is polled is polled at least every 71 minutes, 4294 s. */
 TEST(a_source_that_waits_for_ever_is_polled_before_the_clock_has_wrapped)
 {
-    one.due_us = FATHOM_NO_DEADLINE;
-    two.due_us = 4294000000u;
-    add(&one);
-    add(&two);
+    add_due(&one, FATHOM_NO_DEADLINE);
+    add_due(&two, 4294000000u);
     step();
     for (unsigned hours = 0; hours != 10; hours++) {
         const unsigned before[] = {one.polls, two.polls};
@@ -191,15 +167,6 @@ TEST(what_is_overdue_is_due_in_no_time)
     assert_int_equal(one.polls, 2);
 }
 
-TEST(the_counters_count)
-{
-    add(&one);
-    add(&two);
-    step();
-    assert_int_equal(fake.loop.sleeps, 1);
-    assert_int_equal(fake.loop.polls, 2);
-}
-
 /* ---- adding and removing ---- */
 
 TEST(a_source_that_is_removed_is_closed_and_not_polled_any_more)
@@ -210,8 +177,7 @@ TEST(a_source_that_is_removed_is_closed_and_not_polled_any_more)
     fathom_loop_remove(&one.source);
     assert_int_equal(one.closes, 1);
     fake_pass(5000000);
-    assert_int_equal(one.polls, 1);
-    assert_int_equal(two.polls, 6);
+    expect_polls(1, 6);
 }
 
 TEST(what_is_added_twice_is_there_once)

@@ -2,12 +2,10 @@
 #include <poll.h>
 
 #include "loop_three.h"
-#include "suite.h"
 
 /* What fathom_loop.h does with a source that cannot be opened, or is lost, in simulated time. */
 
 static const suite_t suite = {.set_up = set_up, .tear_down = fake_tear_down};
-static const suite_t plain = {.tear_down = fake_tear_down};
 
 /* What was told, one after the other: so long after the beginning it was open, or not. */
 static void assert_news(unsigned n, uint64_t at_us, bool is_open)
@@ -17,17 +15,53 @@ static void assert_news(unsigned n, uint64_t at_us, bool is_open)
     assert_int_equal(fake.news[n].is_open, is_open);
 }
 
-TEST(one_that_cannot_be_opened_is_tried_after_500_ms_and_each_pause_is_twice_the_one_before_up_to_8_s)
+/* A source that cannot be opened is tried at these times. */
+typedef struct {
+    uint32_t first_pause_us, longest_pause_us;
+    unsigned count;
+    uint64_t at_us[8];
+} pauses_t;
+
+static void begin_closed(uint32_t first_pause_us, uint32_t longest_pause_us)
 {
-    static const uint64_t at_ms[] = {0, 500, 1500, 3500, 7500, 15500, 23500, 31500};
+    (void)fake_tear_down(NULL);
+    fake_begin(first_pause_us, longest_pause_us);
     one.cannot_open = true;
     add(&one);
-    fake_pass(31500001);
-    assert_int_equal(one.opens, sizeof at_ms / sizeof at_ms[0]);
-    assert_int_equal(fake.count, one.opens); /* once a pause */
-    for (unsigned n = 0; n != fake.count; n++) assert_news(n, at_ms[n] * 1000, false);
+}
+
+static void is_tried(void **state)
+{
+    const pauses_t *const row = *state;
+    begin_closed(row->first_pause_us, row->longest_pause_us);
+    fake_pass(row->at_us[row->count - 1] + 1);
+    assert_int_equal(one.opens, row->count);
+    assert_int_equal(fake.count, row->count); /* once a pause */
+    for (unsigned n = 0; n != fake.count; n++) assert_news(n, row->at_us[n], false);
     assert_int_equal(one.polls, 0);
     assert_int_equal(one.closes, 0);
+}
+
+static const pauses_t usual = {0, 0, 8, {0, 500000, 1500000, 3500000, 7500000, 15500000, 23500000, 31500000}};
+static const pauses_t configs = {10000, 25000, 6, {0, 10000, 30000, 55000, 80000, 105000}};
+/* 3e9 us twice is more than 32 bits have. */
+static const pauses_t longer = {3000000000u, 4000000000u, 4, {0, 3000000000u, 7000000000u, 11000000000u}};
+static const pauses_t cut_to_8_s = {9000000, 0, 2, {0, 8000000}}; /* the default */
+TEST_ROW(one_that_cannot_be_opened_is_tried_after_500_ms_and_then_each_pause_is_twice_as_long_up_to_8_s,
+         is_tried, &usual)
+TEST_ROW(the_pauses_are_the_configs, is_tried, &configs)
+TEST_ROW(long_pauses_do_not_wrap, is_tried, &longer)
+TEST_ROW(a_first_pause_over_the_longest_is_the_longest, is_tried, &cut_to_8_s)
+
+/* 2^32 - 1 us would be FATHOM_NO_DEADLINE: nothing is due at all. */
+TEST(the_longest_pause_of_all_is_a_time_all_the_same)
+{
+    begin_closed(UINT32_MAX, UINT32_MAX);
+    assert_int_equal(fathom_loop_due_us(&fake.loop), UINT32_MAX - 1u);
+    step();
+    assert_int_equal(one.opens, 1);
+    step();
+    assert_int_equal(one.opens, 2);
 }
 
 TEST(once_it_can_be_opened_that_is_told_and_it_is_polled)
@@ -47,8 +81,7 @@ TEST(one_that_is_lost_is_closed_and_opened_again_after_the_first_pause)
 {
     add(&one);
     fake_pass(2500000);
-    one.is_lost = true;
-    step(); /* 3 s */
+    lose_one(); /* 3 s */
     one.is_lost = false;
     assert_int_equal(one.closes, 1);
     assert_news(1, 3000000, false);
@@ -67,79 +100,31 @@ TEST(one_that_was_open_for_less_than_a_second_gets_a_longer_pause)
     step(); /* lost at once: 500 ms */
     one.is_lost = false;
     step();
-    step(); /* open at 500 ms, polled, and next a microsecond before 1.5 s */
-    one.is_lost = true;
-    step(); /* 1 s */
+    step();     /* open at 500 ms, polled, and next a microsecond before 1.5 s */
+    lose_one(); /* 1 s */
     assert_news(3, 1499999, false);
     one.is_lost = false;
     one.due_us = 1000000;
     step();
     assert_news(4, 2499999, true);
     step();
-    one.is_lost = true;
-    step(); /* after 1 s: 500 ms again */
+    lose_one(); /* after 1 s: 500 ms again */
     assert_news(5, 3499999, false);
     step();
     assert_news(6, 3999999, true);
 }
 
-TEST_IN(plain, the_pauses_are_the_configs)
-{
-    fake_begin(10000, 25000);
-    fake_source(&one);
-    one.cannot_open = true;
-    add(&one);
-    fake_pass(100000);
-    static const uint64_t at_us[] = {0, 10000, 30000, 55000, 80000};
-    assert_int_equal(fake.count, 5);
-    for (unsigned n = 0; n != 5; n++) assert_news(n, at_us[n], false);
-}
-
-/* 3e9 us twice is more than 32 bits have. */
-TEST_IN(plain, long_pauses_do_not_wrap)
-{
-    fake_begin(3000000000u, 4000000000u);
-    fake_source(&one);
-    one.cannot_open = true;
-    add(&one);
-    fake_pass(11000000001u);
-    static const uint64_t at_us[] = {0, 3000000000u, 7000000000u, 11000000000u};
-    assert_int_equal(fake.count, 4);
-    for (unsigned n = 0; n != 4; n++) assert_news(n, at_us[n], false);
-}
-
-/* 2^32 - 1 us would be FATHOM_NO_DEADLINE: nothing is due at all. */
-TEST_IN(plain, the_longest_pause_of_all_is_a_time_all_the_same)
-{
-    fake_begin(UINT32_MAX, UINT32_MAX);
-    fake_source(&one);
-    one.cannot_open = true;
-    add(&one);
-    assert_int_equal(fathom_loop_due_us(&fake.loop), UINT32_MAX - 1u);
-    fathom_loop_step(&fake.loop, FATHOM_NO_DEADLINE);
-    assert_int_equal(one.opens, 1);
-    fathom_loop_step(&fake.loop, FATHOM_NO_DEADLINE);
-    assert_int_equal(one.opens, 2);
-}
-
-TEST_IN(plain, a_first_pause_over_the_longest_is_the_longest)
-{
-    fake_begin(9000000, 0); /* 8 s from the default */
-    fake_source(&one);
-    one.cannot_open = true;
-    add(&one);
-    fake_pass(8000001);
-    assert_int_equal(fake.count, 2);
-    assert_news(1, 8000000, false);
-}
-
 /* ---- its sensors ---- */
+
+static void expect_port_errors(unsigned of_first, unsigned of_second)
+{
+    assert_int_equal(first.port_errors, of_first);
+    assert_int_equal(second.port_errors, of_second);
+}
 
 TEST(each_sensor_is_told_once_and_then_not_polled_until_it_is_back)
 {
-    add(&one);
-    fake_sensor(&first, &one);
-    fake_sensor(&second, &one);
+    add_with_sensors();
     fake_pass(1500000);
     one.is_lost = one.cannot_open = true;
     fake_pass(1);
@@ -148,8 +133,7 @@ TEST(each_sensor_is_told_once_and_then_not_polled_until_it_is_back)
     fake_pass(600000); /* it is tried in vain */
     const unsigned polls = first.polls;
     fake_pass(60000000);
-    assert_int_equal(first.port_errors, 1);
-    assert_int_equal(second.port_errors, 1);
+    expect_port_errors(1, 1);
     assert_int_equal(first.polls, polls);
     one.is_lost = one.cannot_open = false;
     fake_pass(9000000);
@@ -159,13 +143,11 @@ TEST(each_sensor_is_told_once_and_then_not_polled_until_it_is_back)
 
 TEST(a_reading_that_it_still_had_comes_first)
 {
-    add(&one);
-    fake_sensor(&first, &one);
+    add_with_sensor();
     step();
     memcpy(first.script, (fathom_status_t[]){FATHOM_OK, FATHOM_OK, FATHOM_ERR_PORT},
            3 * sizeof first.script[0]);
-    one.is_lost = true;
-    step();
+    lose_one();
     assert_int_equal(first.readings, 2);
     assert_int_equal(first.errors, 0);
     assert_int_equal(first.port_errors, 1);
@@ -173,12 +155,10 @@ TEST(a_reading_that_it_still_had_comes_first)
 
 TEST(readings_without_end_do_not_put_the_loss_off)
 {
-    add(&one);
-    fake_sensor(&first, &one);
+    add_with_sensor();
     step();
     first.for_ever = FATHOM_OK;
-    one.is_lost = true;
-    step();
+    lose_one();
     assert_int_equal(first.port_errors, 1);
     assert_int_equal(first.readings, 16);
 }
@@ -186,14 +166,11 @@ TEST(readings_without_end_do_not_put_the_loss_off)
 /* The sensor found it: a pin has nothing else that could. */
 TEST(what_a_sensor_says_is_lost_is_lost_and_all_hear_it_once)
 {
-    add(&one);
-    fake_sensor(&first, &one);
-    fake_sensor(&second, &one);
+    add_with_sensors();
     step();
     second.script[0] = FATHOM_ERR_PORT;
     step();
-    assert_int_equal(first.port_errors, 1);
-    assert_int_equal(second.port_errors, 1);
+    expect_port_errors(1, 1);
     assert_int_equal(fake_failures(&one), 1);
 }
 
@@ -201,14 +178,11 @@ TEST(what_a_sensor_says_is_lost_is_lost_and_all_hear_it_once)
  * minute, one a pause; each sensor has one for all of it. */
 TEST(a_sensor_that_says_so_without_end_is_an_error_a_pause_and_no_spin)
 {
-    add(&one);
-    fake_sensor(&first, &one);
-    fake_sensor(&second, &one);
+    add_with_sensors();
     first.for_ever = FATHOM_ERR_PORT;
     first.due_us = 0;
     fake_pass(60000000);
-    assert_int_equal(first.port_errors, 1);
-    assert_int_equal(second.port_errors, 1);
+    expect_port_errors(1, 1);
     assert_in_range(fake_failures(&one), 9, 11);
     assert_int_equal(fake.count, fake_failures(&one) + 1); /* open at first */
     assert_in_range(first.polls, 9, 50);
@@ -232,8 +206,7 @@ TEST(a_port_that_opens_and_fails_at_once_is_one_error_a_pause)
 /* "Nothing for half a second" is no news of a sensor whose port was away. */
 TEST(what_they_have_to_say_of_the_time_away_is_dropped)
 {
-    add(&one);
-    fake_sensor(&first, &one);
+    add_with_sensor();
     fake_pass(1500000);
     one.is_lost = true;
     fake_wake_in(&one, 0);
@@ -278,12 +251,10 @@ static void add_two(fathom_status_t status)
 
 TEST(a_callback_of_a_loss_may_add_to_the_loop)
 {
-    add(&one);
-    fake_sensor(&first, &one);
+    add_with_sensor();
     first.when_taken = add_two;
     step();
-    one.is_lost = true;
-    step();
+    lose_one();
     step();
     assert_int_equal(two.polls, 1);
 }
@@ -292,12 +263,10 @@ static void wake_one(fathom_status_t status) { fathom_loop_wake(&one.source); }
 
 TEST(a_wake_of_what_is_being_lost_does_not_shorten_the_pause)
 {
-    add(&one);
-    fake_sensor(&first, &one);
+    add_with_sensor();
     first.when_taken = wake_one;
     step();
-    one.is_lost = true;
-    step();
+    lose_one();
     one.is_lost = false;
     const uint64_t lost_us = fake_elapsed_us();
     step();
@@ -328,8 +297,7 @@ static void remember(fathom_status_t status)
 
 TEST(the_reason_is_there_for_the_sensors_too)
 {
-    add(&one);
-    fake_sensor(&first, &one);
+    add_with_sensor();
     first.when_taken = remember;
     step();
     assert_string_equal(fathom_loop_error_text(&one.source), "");
@@ -338,16 +306,10 @@ TEST(the_reason_is_there_for_the_sensors_too)
     step();
     assert_int_equal(seen_status, FATHOM_ERR_PORT);
     assert_string_equal(seen_text, "it was unplugged");
-}
-
-TEST(where_there_is_no_reason_it_is_lost_all_the_same)
-{
-    add(&one);
-    fake_sensor(&first, &one);
-    first.when_taken = remember;
+    one.is_lost = false;
+    one.text = "";
     step();
-    one.is_lost = true;
-    step();
+    lose_one();
     assert_string_equal(seen_text, "it is lost");
 }
 
