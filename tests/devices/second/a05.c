@@ -355,9 +355,19 @@ static void read_registers(second_device_t *d, const job_t *job)
     copy_seen(second_slave_response(d, job, frame, len, SECOND_EVENT_MEASUREMENT), &seen);
 }
 
-static void on_job(second_device_t *d, const job_t *job)
+static void write_register(second_device_t *d, const job_t *job)
 {
     uint16_t reg = word_at(job->bytes + 2);
+    if (reg == ADDRESS)
+        second_slave_write_address(d, job, word_at(job->bytes + 4), chosen(d, CHOICE_a05_address_zero));
+    else if (first_probe(d, reg) < SECOND_PROBES)
+        second_slave_refuse(d, job, chosen(d, CHOICE_mb_read_only_write));
+    else
+        second_slave_refuse(d, job, chosen(d, CHOICE_mb_unknown_register));
+}
+
+static void on_job(second_device_t *d, const job_t *job)
+{
     if (job->protocol == PROTOCOL_DYP) {
         if (job->bytes[3] == SET_ADDRESS)
             dyp_set_address(d, job);
@@ -365,34 +375,9 @@ static void on_job(second_device_t *d, const job_t *job)
             dyp_measure(d, job);
         return;
     }
-    if (job->bytes[1] != 0x03 && job->bytes[1] != 0x06)
-        second_slave_refuse(d, job, chosen(d, CHOICE_mb_illegal_function));
-    else if (job->len != 8)
-        second_slave_refuse(d, job, chosen(d, CHOICE_mb_bad_length));
-    else if (job->bytes[1] == 0x03)
-        read_registers(d, job);
-    else if (reg == ADDRESS)
-        second_slave_write_address(d, job, word_at(job->bytes + 4), chosen(d, CHOICE_a05_address_zero));
-    else if (first_probe(d, reg) < SECOND_PROBES)
-        second_slave_refuse(d, job, chosen(d, CHOICE_mb_read_only_write));
-    else
-        second_slave_refuse(d, job, chosen(d, CHOICE_mb_unknown_register));
+    second_slave_job(d, job, read_registers, write_register);
     if (d->config.kind == SECOND_A05_UART) go_back_later(d);
 }
-
-static void on_pulse(second_device_t *d, const input_t *byte)
-{
-    (void)d;
-    (void)byte;
-}
-
-static void on_fault(second_device_t *d, bool failed)
-{
-    (void)d;
-    (void)failed;
-}
-
-static bool hears(const second_device_t *d, second_line_t line) { return second_wire_same(line, d->line); }
 
 const hooks_t second_a05_hooks = {
     .init = on_init,
@@ -400,12 +385,9 @@ const hooks_t second_a05_hooks = {
     .alive = on_alive,
     .byte = on_byte,
     .frame = on_frame,
-    .pulse = on_pulse,
     .job = on_job,
     .timer = on_timer,
     .level = on_level,
-    .fault = on_fault,
     .unasked = unasked,
-    .hears = hears,
     .silence_us = second_slave_silence_us,
 };

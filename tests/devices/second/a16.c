@@ -353,23 +353,9 @@ static void on_job(second_device_t *d, const job_t *job)
 {
     if (job->protocol == PROTOCOL_TRIGGER)
         triggered(d, job);
-    else if (job->bytes[1] != 0x03 && job->bytes[1] != 0x06)
-        second_slave_refuse(d, job, chosen(d, CHOICE_mb_illegal_function));
-    else if (job->len != 8)
-        second_slave_refuse(d, job, chosen(d, CHOICE_mb_bad_length));
-    else if (job->bytes[1] == 0x03)
-        read_registers(d, job);
     else
-        write_register(d, job);
+        second_slave_job(d, job, read_registers, write_register);
 }
-
-static void on_fault(second_device_t *d, bool failed)
-{
-    (void)d;
-    (void)failed;
-}
-
-static bool hears(const second_device_t *d, second_line_t line) { return second_wire_same(line, d->line); }
 
 const hooks_t second_a16_hooks = {
     .init = on_init,
@@ -381,8 +367,6 @@ const hooks_t second_a16_hooks = {
     .job = on_job,
     .timer = on_timer,
     .level = on_level,
-    .fault = on_fault,
     .unasked = unasked,
-    .hears = hears,
     .silence_us = second_slave_silence_us,
 };

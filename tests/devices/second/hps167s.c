@@ -243,29 +243,13 @@ static bool hears(const second_device_t *d, second_line_t line)
     return second_wire_same(line, d->line);
 }
 
-static void on_byte(second_device_t *d) { (void)d; }
-static void on_level(second_device_t *d, bool low)
-{
-    (void)d;
-    (void)low;
-}
-
-static void on_pulse(second_device_t *d, const input_t *byte)
-{
-    (void)d;
-    (void)byte;
-}
-
 const hooks_t second_hps_hooks = {
     .init = on_init,
     .power_on = on_power_on,
     .alive = on_alive,
-    .byte = on_byte,
     .frame = on_frame,
-    .pulse = on_pulse,
     .job = second_hps_job,
     .timer = on_timer,
-    .level = on_level,
     .fault = on_fault,
     .unasked = unasked,
     .hears = hears,

@@ -3,7 +3,6 @@
 
 #include "second_why.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 #include "suite.h"
@@ -201,18 +200,6 @@ static unsigned unmarked_bytes(void)
     return (unsigned)(judge.rig->received_count - at.first_bytes) - judge.rig->marked_count;
 }
 
-static void print(damage_counted_t c)
-{
-    const damage_heard_t *h = &damage_heard;
-    print_message("kind %d seed %u loop %d: frames: %u clean, %u damaged, %u to count, %u unseen; counted: "
-                  "%u frames, %u "
-                  "damaged, %u bytes; %u readings, %u unseen, %u errors, %u stale\n",
-                  (int)kind(), (unsigned)judge.rig->device.config.seed, (int)judge.rig->loop,
-                  h->frames[FRAME_CLEAN], h->frames[FRAME_DAMAGED], h->countable, h->frames[FRAME_UNSEEN],
-                  c.frames, c.damaged, c.dropped_bytes, h->readings, h->unseen_readings, h->damage_errors,
-                  h->stale_errors);
-}
-
 /*
  * Each byte is in an accepted frame, counted as dropped, or one of at most `length` bytes that are not decided yet. A
  * loop of 20 ms may see no silence. Then a stream does not know where a frame should stand (stream.h).
@@ -225,7 +212,6 @@ void damage_end(damage_counted_t c)
     /* The end of the life cuts one frame off. A frame directly before or behind the zeros may be refused. */
     const unsigned refused = judge.rig->zeros_until_us == 0 ? 1 : 2;
     const unsigned rest = unmarked_bytes() - length * c.frames;
-    if (getenv("FATHOM_TABLE") != NULL) print(c);
     if (c.frames > good) judge_finding("more frames than arrived", (int)c.frames);
     if (c.dropped_bytes > rest || c.dropped_bytes + length < rest)
         judge_finding("the dropped bytes are not those in no frame", (int)c.dropped_bytes);

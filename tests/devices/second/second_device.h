@@ -82,6 +82,7 @@ typedef struct {
     uint8_t nearer, farther; /* in a row */
 } levels_t;
 
+/* A kind leaves out what it does nothing of; without `hears` it hears its own line settings. */
 struct second_device;
 typedef struct {
     void (*init)(struct second_device *device);
@@ -176,6 +177,9 @@ second_event_t *second_slave_response(second_device_t *d, const job_t *job, uint
                                       second_event_kind_t kind);
 second_event_t *second_slave_echo(second_device_t *d, const job_t *job);
 void second_slave_refuse(second_device_t *d, const job_t *job, int64_t how); /* silence, exception or echo */
+/* Function 03 or 06 of 8 bytes is served; the others are refused. */
+typedef void (*serve_t)(second_device_t *d, const job_t *job);
+void second_slave_job(second_device_t *d, const job_t *job, serve_t read, serve_t write);
 void second_slave_setting(second_device_t *d, uint16_t reg, int64_t old_value, int64_t new_value, bool flash);
 /* A Modbus frame in rx: true if the job is to be served. Ends the automatic output. */
 bool second_slave_frame(second_device_t *d, job_t *job);

@@ -3,21 +3,10 @@
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "suite.h"
 
 judge_t judge;
-
-static judge_row_t *row(void)
-{
-    for (size_t i = 0; i < judge.row_count; i++) {
-        if (strcmp(judge.rows[i].name, judge.name) == 0) return &judge.rows[i];
-    }
-    assert_true(judge.row_count < JUDGE_ROWS);
-    judge.rows[judge.row_count].name = judge.name;
-    return &judge.rows[judge.row_count++];
-}
 
 void judge_begin_again(void)
 {
@@ -32,11 +21,9 @@ void judge_begin(const char *name)
     judge_begin_again();
 }
 
-static bool is_table(void) { return getenv("FATHOM_TABLE") != NULL; }
-
 void judge_finding(const char *what, int status)
 {
-    if (is_table())
+    if (getenv("FATHOM_SEED") != NULL)
         print_message("kind %d seed %u at %u ms: %s: status %d: %s\n", kind(),
                       (unsigned)judge.rig->device.config.seed, (unsigned)(judge.rig->now_us / 1000),
                       judge.name, status, what);
@@ -45,15 +32,14 @@ void judge_finding(const char *what, int status)
 
 static void count(reason_t reason, fathom_status_t status)
 {
-    row()->runs++;
-    row()->because[reason]++;
+    judge.runs++;
     if (reason == BECAUSE_NOTHING) judge_finding("nothing explains it", status);
 }
 
 static void good(void)
 {
-    row()->runs++;
-    row()->good++;
+    judge.runs++;
+    judge.good++;
 }
 
 void judge_read(fathom_status_t status, bool is_right)
@@ -201,32 +187,10 @@ void judge_done(bool is_good, bool is_right)
     if (!is_right && !is_good) judge_finding("it told something else than the device has", 1);
 }
 
-static void print(void)
-{
-    for (int r = 0; r < REASONS; r++) print_message("%2d %s\n", r, judge_wording[r]);
-    print_message("%-34s %8s %8s", "command", "runs", "good");
-    for (int r = 0; r < REASONS; r++) print_message(" %6d", r);
-    print_message("\n");
-    for (size_t i = 0; i < judge.row_count; i++) {
-        const judge_row_t *at = &judge.rows[i];
-        print_message("%-34s %8u %8u", at->name, at->runs, at->good);
-        for (int r = 0; r < REASONS; r++) print_message(" %6u", at->because[r]);
-        print_message("\n");
-    }
-    print_message("%u readings, %u with what the device itself calls a distance, %u findings\n",
-                  judge.readings, judge.from_device, judge.wrong);
-}
-
 void judge_end(unsigned good_of_100)
 {
-    unsigned runs = 0, goods = 0;
-    if (is_table()) print();
-    for (size_t i = 0; i < judge.row_count; i++) {
-        runs += judge.rows[i].runs;
-        goods += judge.rows[i].good;
-    }
-    print_message("%u commands and measurements, %u came to what was wanted, %u wrong\n", runs, goods,
-                  judge.wrong);
+    print_message("%u commands and measurements, %u came to what was wanted, %u wrong\n", judge.runs,
+                  judge.good, judge.wrong);
     assert_int_equal(judge.wrong, 0);
-    assert_true(goods * 100 >= runs * good_of_100);
+    assert_true(judge.good * 100 >= judge.runs * good_of_100);
 }

@@ -32,16 +32,8 @@ typedef enum {
     BECAUSE_FULL,
     BECAUSE_QUEUED,
     BECAUSE_MISPRINT,
-    BECAUSE_NOTHING, /* none of these: the driver is wrong */
-    REASONS
+    BECAUSE_NOTHING /* none of these: the driver is wrong */
 } reason_t;
-
-enum { JUDGE_ROWS = 80 };
-
-typedef struct {
-    const char *name;
-    unsigned runs, good, because[REASONS];
-} judge_row_t;
 
 typedef struct {
     rig_t *rig;
@@ -49,10 +41,7 @@ typedef struct {
     uint64_t log_begin; /* of the command */
     uint64_t begin_us;
     uint32_t writes_begin;
-    judge_row_t rows[JUDGE_ROWS];
-    size_t row_count;
-    unsigned readings, from_device,
-        wrong; /* from_device: the device itself called something else a distance */
+    unsigned runs, good, wrong;
 } judge_t;
 
 extern judge_t judge;
@@ -103,8 +92,22 @@ unsigned judge_poll(const char *name, const fathom_sensor_t *sensor, unsigned ou
             rig_pass(judge.rig, fathom_due_us(&(sensor), 1));                                                \
     } while (0)
 
-/* Asserts that nothing was wrong, and that so many in a hundred came to what was wanted. With FATHOM_TABLE in the
- * environment all is printed. */
+#define JUDGE_READ(name, sensor, call, is_right)                                                             \
+    do {                                                                                                     \
+        fathom_status_t read_status;                                                                         \
+        judge_begin(name);                                                                                   \
+        JUDGE_RUN(read_status, sensor, call);                                                                \
+        judge_read(read_status, is_right);                                                                   \
+    } while (0)
+#define JUDGE_SET(name, sensor, call, is_written, wanted)                                                    \
+    do {                                                                                                     \
+        fathom_status_t set_status;                                                                          \
+        judge_begin(name);                                                                                   \
+        JUDGE_RUN(set_status, sensor, call);                                                                 \
+        judge_set(set_status, is_written, wanted);                                                           \
+    } while (0)
+
+/* Asserts that nothing was wrong, and that so many in a hundred came to what was wanted. */
 void judge_end(unsigned good_of_100);
 
 #endif

@@ -26,14 +26,11 @@ static fathom_sensor_t begin_modbus(rig_t *rig, fathom_a05_modbus_t *sensor, uin
 static void commands(rig_t *rig, fathom_a05_modbus_t *sensor)
 {
     fathom_sensor_t any = fathom_a05_modbus_sensor(sensor);
-    fathom_status_t status;
     uint8_t address = 0, wanted = rig->device.address == 7 ? 1 : 7;
-    judge_begin("a05_modbus_address");
-    JUDGE_RUN(status, any, fathom_a05_modbus_get_address(sensor, &address));
-    judge_read(status, address == rig->device.address);
-    judge_begin("a05_modbus_set_address");
-    JUDGE_RUN(status, any, fathom_a05_modbus_set_address(sensor, wanted));
-    judge_set(status, fathom_a05_modbus_is_written(sensor), HOLDS(0x0200, wanted));
+    JUDGE_READ("a05_modbus_address", any, fathom_a05_modbus_get_address(sensor, &address),
+               address == rig->device.address);
+    JUDGE_SET("a05_modbus_set_address", any, fathom_a05_modbus_set_address(sensor, wanted),
+              fathom_a05_modbus_is_written(sensor), HOLDS(0x0200, wanted));
 }
 
 /* Measures with all ways to choose probes: those that are fitted, one of them, by either registers. */
@@ -57,17 +54,15 @@ void life_a05_uart(rig_t *rig)
 {
     fathom_a05_auto_t automatic;
     fathom_a05_modbus_t sensor;
-    fathom_status_t status;
     fathom_a05_auto_config_t config = {.gap_us = rig->line_parts.gap_us};
     config.select = fathom_output_line_break(&rig->line);
     config.probes = rig->device.config.fitted;
     config.stale_us = rig->device.config.seed % 2 == 0 ? 0 : 4 * SECOND_US;
     assert_int_equal(fathom_a05_auto_init(&automatic, &rig->line, &config), FATHOM_OK);
     fathom_sensor_t by_itself = fathom_a05_auto_sensor(&automatic);
-    judge_begin("a05_auto_power_on");
-    JUDGE_RUN(status, by_itself,
-              fathom_a05_auto_select(&automatic, (fathom_dyp_value_t)(rig->device.config.seed / 2 % 2)));
-    judge_read(status, true);
+    JUDGE_READ("a05_auto_power_on", by_itself,
+               fathom_a05_auto_select(&automatic, (fathom_dyp_value_t)(rig->device.config.seed / 2 % 2)),
+               true);
     rig_power(rig, true);
     for (size_t i = 0; i < THERE; i++) {
         show(rig, i);
@@ -94,7 +89,6 @@ static void restart(rig_t *rig)
 void life_a05_rs485(rig_t *rig)
 {
     fathom_a05_modbus_t sensor;
-    fathom_status_t status;
     fathom_sensor_t any = begin_modbus(rig, &sensor, rig->device.config.fitted, 0);
     show(rig, 0);
     rig_power(rig, true);
@@ -108,9 +102,8 @@ void life_a05_rs485(rig_t *rig)
     measure(rig);
     any = begin_modbus(rig, &sensor, rig->device.config.fitted, 0);
     find_by_modbus(rig, &any);
-    judge_begin("a05_modbus_set_address_to_0");
-    JUDGE_RUN(status, any, fathom_a05_modbus_set_address_0(&sensor));
-    judge_set(status, fathom_a05_modbus_is_written(&sensor), HOLDS(0x0200, 0));
+    JUDGE_SET("a05_modbus_set_address_to_0", any, fathom_a05_modbus_set_address_0(&sensor),
+              fathom_a05_modbus_is_written(&sensor), HOLDS(0x0200, 0));
     judge_poll("a05_modbus", &any, 3, SETTLED_US);
     fathom_a05_modbus_deinit(&sensor);
 }
@@ -126,7 +119,6 @@ void life_a05_dyp(rig_t *rig)
 {
     fathom_a05_dyp_t sensor;
     fathom_a05_dyp_find_t find = {0};
-    fathom_status_t status;
     uint8_t fitted = rig->device.config.fitted, found = 0;
     fathom_sensor_t any = begin_dyp(rig, &sensor, fitted);
     show(rig, 0);
@@ -137,12 +129,10 @@ void life_a05_dyp(rig_t *rig)
     any = begin_dyp(rig, &sensor, (uint8_t)(fitted & -fitted));
     show(rig, 2);
     judge_poll("a05_dyp one probe", &any, 6, SETTLED_US);
-    judge_begin("a05_dyp_find");
-    JUDGE_RUN(status, any, fathom_a05_dyp_find(&find, &rig->line, &found));
-    judge_read(status, found == rig->device.address || found == 255);
-    judge_begin("a05_dyp_set_every_address");
-    JUDGE_RUN(status, any, fathom_a05_dyp_broadcast_address(&sensor, 9));
-    judge_set(status, fathom_a05_dyp_is_written(&sensor), HOLDS(0xAA03, 9));
+    JUDGE_READ("a05_dyp_find", any, fathom_a05_dyp_find(&find, &rig->line, &found),
+               found == rig->device.address || found == 255);
+    JUDGE_SET("a05_dyp_set_every_address", any, fathom_a05_dyp_broadcast_address(&sensor, 9),
+              fathom_a05_dyp_is_written(&sensor), HOLDS(0xAA03, 9));
     fathom_a05_dyp_deinit(&sensor);
     restart(rig);
     any = begin_dyp(rig, &sensor, fitted);

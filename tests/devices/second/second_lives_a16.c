@@ -79,55 +79,46 @@ static void ask_all(rig_t *rig, fathom_a16_modbus_t *sensor)
         JUDGE_RUN(status, any, fathom_a16_modbus_measure(sensor, (fathom_dyp_value_t)v, &sample));
         judge_measured(status, &sample);
     }
-    judge_begin("a16_address");
-    JUDGE_RUN(status, any, fathom_a16_modbus_get_address(sensor, &address));
-    judge_read(status, address == rig->device.address);
-    judge_begin("a16_switch_polarity");
-    JUDGE_RUN(status, any, fathom_a16_modbus_get_switch_polarity(sensor, &polarity));
-    judge_read(status, polarity == judge_held(0x0205));
-    judge_begin("a16_switch_threshold_mm");
-    JUDGE_RUN(status, any, fathom_a16_modbus_get_switch_threshold_mm(sensor, &threshold_mm));
-    judge_read(status, threshold_mm == judge_held(0x0206));
-    judge_begin("a16_automatic_value");
-    JUDGE_RUN(status, any, fathom_a16_modbus_get_automatic_value(sensor, &value));
-    judge_read(status, value == judge_held(0x0207));
+    JUDGE_READ("a16_address", any, fathom_a16_modbus_get_address(sensor, &address),
+               address == rig->device.address);
+    JUDGE_READ("a16_switch_polarity", any, fathom_a16_modbus_get_switch_polarity(sensor, &polarity),
+               polarity == judge_held(0x0205));
+    JUDGE_READ("a16_switch_threshold_mm", any,
+               fathom_a16_modbus_get_switch_threshold_mm(sensor, &threshold_mm),
+               threshold_mm == judge_held(0x0206));
+    JUDGE_READ("a16_automatic_value", any, fathom_a16_modbus_get_automatic_value(sensor, &value),
+               value == judge_held(0x0207));
 }
 
 static void set_all(rig_t *rig, fathom_a16_modbus_t *sensor)
 {
     fathom_sensor_t any = fathom_a16_modbus_sensor(sensor);
-    fathom_status_t status;
     uint8_t address = rig->device.address == 5 ? 1 : 5;
     for (uint16_t v = 0; v < 2; v++) {
-        judge_begin("a16_set_switch_polarity");
-        JUDGE_RUN(status, any, fathom_a16_modbus_set_switch_polarity(sensor, (fathom_a16_polarity_t)v));
-        judge_set(status, fathom_a16_modbus_is_written(sensor), HOLDS(0x0205, v));
-        judge_begin("a16_set_switch_threshold_mm");
-        JUDGE_RUN(status, any, fathom_a16_modbus_set_switch_threshold_mm(sensor, 2000));
-        judge_set(status, fathom_a16_modbus_is_written(sensor), HOLDS(0x0206, 2000));
-        judge_begin("a16_set_automatic_value");
-        JUDGE_RUN(status, any, fathom_a16_modbus_set_automatic_value(sensor, (fathom_dyp_value_t)v));
-        judge_set(status, fathom_a16_modbus_is_written(sensor), HOLDS(0x0207, v));
+        JUDGE_SET("a16_set_switch_polarity", any,
+                  fathom_a16_modbus_set_switch_polarity(sensor, (fathom_a16_polarity_t)v),
+                  fathom_a16_modbus_is_written(sensor), HOLDS(0x0205, v));
+        JUDGE_SET("a16_set_switch_threshold_mm", any, fathom_a16_modbus_set_switch_threshold_mm(sensor, 2000),
+                  fathom_a16_modbus_is_written(sensor), HOLDS(0x0206, 2000));
+        JUDGE_SET("a16_set_automatic_value", any,
+                  fathom_a16_modbus_set_automatic_value(sensor, (fathom_dyp_value_t)v),
+                  fathom_a16_modbus_is_written(sensor), HOLDS(0x0207, v));
     }
-    judge_begin("a16_set_address");
-    JUDGE_RUN(status, any, fathom_a16_modbus_set_address(sensor, address));
-    judge_set(status, fathom_a16_modbus_is_written(sensor), HOLDS(0x0200, address));
+    JUDGE_SET("a16_set_address", any, fathom_a16_modbus_set_address(sensor, address),
+              fathom_a16_modbus_is_written(sensor), HOLDS(0x0200, address));
 }
 
 void find_by_modbus(rig_t *rig, const fathom_sensor_t *any)
 {
     fathom_dyp_modbus_find_t find = {0};
-    fathom_status_t status;
     uint8_t address = 0;
-    judge_begin("dyp_modbus_find");
-    JUDGE_RUN(status, *any, fathom_dyp_modbus_find(&find, &rig->modbus, &address));
-    judge_read(status, address == rig->device.address);
+    JUDGE_READ("dyp_modbus_find", *any, fathom_dyp_modbus_find(&find, &rig->modbus, &address),
+               address == rig->device.address);
 }
 
 void life_a16_rs485(rig_t *rig)
 {
     fathom_a16_modbus_t sensor;
-    fathom_status_t status;
     fathom_sensor_t any = begin_modbus(rig, &sensor, rig->device.config.seed % 2);
     rig_power(rig, true);
     fathom_a16_modbus_power_on(&sensor);
@@ -138,9 +129,9 @@ void life_a16_rs485(rig_t *rig)
     ask_all(rig, &sensor);
     set_all(rig, &sensor);
     judge_poll("a16_modbus", &any, 4, SETTLED_US);
-    judge_begin("a16_set_operating_mode");
-    JUDGE_RUN(status, any, fathom_a16_modbus_set_operating_mode(&sensor, FATHOM_A16_AUTOMATIC));
-    judge_set(status, fathom_a16_modbus_is_written(&sensor), ACKNOWLEDGED(0x0202, 1));
+    JUDGE_SET("a16_set_operating_mode", any,
+              fathom_a16_modbus_set_operating_mode(&sensor, FATHOM_A16_AUTOMATIC),
+              fathom_a16_modbus_is_written(&sensor), ACKNOWLEDGED(0x0202, 1));
     fathom_a16_modbus_deinit(&sensor);
     rig_power(rig, false);
     rig_wait(rig, SECOND_US);
@@ -150,9 +141,8 @@ void life_a16_rs485(rig_t *rig)
     judge_poll("a16_modbus", &any, 4, SETTLED_US);
     ask_all(rig, &sensor);
     find_by_modbus(rig, &any);
-    judge_begin("a16_set_address_to_0");
-    JUDGE_RUN(status, any, fathom_a16_modbus_set_address_0(&sensor));
-    judge_set(status, fathom_a16_modbus_is_written(&sensor), HOLDS(0x0200, 0));
+    JUDGE_SET("a16_set_address_to_0", any, fathom_a16_modbus_set_address_0(&sensor),
+              fathom_a16_modbus_is_written(&sensor), HOLDS(0x0200, 0));
     judge_poll("a16_modbus", &any, 3, SETTLED_US);
     fathom_a16_modbus_deinit(&sensor);
 }

@@ -36,41 +36,40 @@ static void find(rig_t *rig)
     begin(rig);
 }
 
+#define READ(name, call, is_right)                                                                           \
+    do {                                                                                                     \
+        fathom_status_t status;                                                                              \
+        judge_begin(name);                                                                                   \
+        JUDGE_RUN(status, h.any, call);                                                                      \
+        if (status == FATHOM_PENDING) fathom_hps167s_cancel(&h.sensor);                                      \
+        judge_read(status, is_right);                                                                        \
+    } while (0)
+
 static void info(rig_t *rig)
 {
-    fathom_status_t status;
     fathom_hps167s_version_t version = {0};
     fathom_hps167s_configuration_t c = {0};
     fathom_hps167s_details_t details = {0};
     fathom_hps167s_temperature_t t = {0};
     const hps_t *d = &rig->device.hps;
     static const uint32_t rates[] = {19200, 19200, 57600, 115200, 230400};
-    judge_begin("hps167s_interface_version");
-    JUDGE_RUN(status, h.any, fathom_hps167s_get_interface_version(&h.sensor, &version));
-    if (status == FATHOM_PENDING) fathom_hps167s_cancel(&h.sensor);
-    judge_read(status, version.year == 2000 + d->version[0] && version.month == d->version[1] &&
-                           version.day == d->version[2] && version.major == d->version[3] &&
-                           version.minor == d->version[4] && version.revision == d->version[5]);
-    judge_begin("hps167s_configuration");
-    JUDGE_RUN(status, h.any, fathom_hps167s_get_configuration(&h.sensor, &c));
-    if (status == FATHOM_PENDING) fathom_hps167s_cancel(&h.sensor);
+    READ("hps167s_interface_version", fathom_hps167s_get_interface_version(&h.sensor, &version),
+         version.year == 2000 + d->version[0] && version.month == d->version[1] &&
+             version.day == d->version[2] && version.major == d->version[3] &&
+             version.minor == d->version[4] && version.revision == d->version[5]);
     const hps_settings_t *reported =
         second_choice(&rig->device, CHOICE_hps_reported) == 0 ? &d->set : &d->used;
     uint32_t ms = reported->reconnect_ms;
     if (second_choice(&rig->device, CHOICE_hps_reconnect_order) == 1) ms = __builtin_bswap32(ms);
-    judge_read(status, c.baud == rates[reported->baud_code < 5 ? reported->baud_code : 0] &&
-                           c.warm_up_s == reported->warm_s && c.termination == (reported->termination != 0) &&
-                           c.reconnect_time_ms == ms &&
-                           c.measures_after_power_on == (reported->auto_out != 0));
-    judge_begin("hps167s_details");
-    JUDGE_RUN(status, h.any, fathom_hps167s_get_details(&h.sensor, &details));
-    if (status == FATHOM_PENDING) fathom_hps167s_cancel(&h.sensor);
-    judge_read(status, details.uuid[0] == d->details[1] && details.uuid[15] == d->details[16] &&
-                           details.year == 2000 + d->details[17]);
-    judge_begin("hps167s_temperature");
-    JUDGE_RUN(status, h.any, fathom_hps167s_get_temperature(&h.sensor, &t));
-    if (status == FATHOM_PENDING) fathom_hps167s_cancel(&h.sensor);
-    judge_read(status, t.fahrenheit == (int16_t)second_choice(&rig->device, CHOICE_hps_temperature));
+    READ("hps167s_configuration", fathom_hps167s_get_configuration(&h.sensor, &c),
+         c.baud == rates[reported->baud_code < 5 ? reported->baud_code : 0] &&
+             c.warm_up_s == reported->warm_s && c.termination == (reported->termination != 0) &&
+             c.reconnect_time_ms == ms && c.measures_after_power_on == (reported->auto_out != 0));
+    READ("hps167s_details", fathom_hps167s_get_details(&h.sensor, &details),
+         details.uuid[0] == d->details[1] && details.uuid[15] == d->details[16] &&
+             details.year == 2000 + d->details[17]);
+    READ("hps167s_temperature", fathom_hps167s_get_temperature(&h.sensor, &t),
+         t.fahrenheit == (int16_t)second_choice(&rig->device, CHOICE_hps_temperature));
 }
 
 #define SET(name, call, wanted)                                                                              \
@@ -107,18 +106,11 @@ static void set_all(rig_t *rig)
     rig_wait(rig, 20000);
     find(rig);
     assert_int_equal(fathom_hps167s_write_next_unchecked(s), FATHOM_OK);
-    judge_begin("hps167s_next_is_blind");
-    JUDGE_RUN(status, h.any, fathom_hps167s_set_termination(s, false));
-    if (status == FATHOM_PENDING) fathom_hps167s_cancel(s);
-    judge_set(status, fathom_hps167s_is_written(s), SENT(0x13, 0));
-    judge_begin("hps167s_set_termination_of_all_units");
-    JUDGE_RUN(status, h.any, fathom_hps167s_broadcast_termination(s, true));
-    if (status == FATHOM_PENDING) fathom_hps167s_cancel(s);
-    judge_set(status, fathom_hps167s_is_written(s), SENT(0x13, 0xFF));
-    judge_begin("hps167s_set_measures_..._of_all_units");
-    JUDGE_RUN(status, h.any, fathom_hps167s_broadcast_measures_after_power_on(s, true));
-    if (status == FATHOM_PENDING) fathom_hps167s_cancel(s);
-    judge_set(status, fathom_hps167s_is_written(s), SENT(0x12, 0xFF));
+    SET("hps167s_next_is_blind", fathom_hps167s_set_termination(s, false), SENT(0x13, 0));
+    SET("hps167s_set_termination_of_all_units", fathom_hps167s_broadcast_termination(s, true),
+        SENT(0x13, 0xFF));
+    SET("hps167s_set_measures_..._of_all_units", fathom_hps167s_broadcast_measures_after_power_on(s, true),
+        SENT(0x12, 0xFF));
     SET("hps167s_set_address", fathom_hps167s_set_address(s, 12), HOLDS(0x10, 12));
     if (status != FATHOM_OK) find(rig);
     judge_poll("hps167s", &h.any, 4, SETTLED_US);
@@ -138,7 +130,6 @@ static void restart(rig_t *rig)
 
 void life_hps167s(rig_t *rig)
 {
-    fathom_status_t status;
     begin(rig);
     rig_power(rig, true);
     fathom_hps167s_power_on(&h.sensor);
@@ -156,9 +147,8 @@ void life_hps167s(rig_t *rig)
     judge_poll("hps167s failed", &h.any, 10, SETTLED_US);
     info(rig);
     second_fault(&rig->device, false, rig->now_us);
-    judge_begin("hps167s_restore_factory_settings");
-    JUDGE_RUN(status, h.any, fathom_hps167s_restore_factory_settings(&h.sensor));
-    judge_set(status, fathom_hps167s_is_written(&h.sensor), HOLDS(0x10, 1));
+    JUDGE_SET("hps167s_restore_factory_settings", h.any, fathom_hps167s_restore_factory_settings(&h.sensor),
+              fathom_hps167s_is_written(&h.sensor), HOLDS(0x10, 1));
     fathom_hps167s_deinit(&h.sensor);
 }
 

@@ -43,9 +43,8 @@ static const char *wrong_ultrasonic(const fathom_sample_t *s, const second_event
     case FATHOM_TARGET:
         if (s->distance_mm != s->raw) return "another distance than was sent";
         if (mm == s->distance_mm) return NULL;
-        if (mm != SECOND_NOTHING && !e->not_ready) return "another distance than is true";
-        judge.from_device++; /* the value for nothing looks like a distance */
-        return NULL;
+        /* the value for nothing may look like a distance */
+        return mm != SECOND_NOTHING && !e->not_ready ? "another distance than is true" : NULL;
     case FATHOM_NO_TARGET:
         if (s->raw != 0xFFFD && s->raw != 0xFFFE) return "no target, and the device does not say so";
         return mm == SECOND_NOTHING || e->not_ready ? NULL : "no target, and there is one";
@@ -109,7 +108,6 @@ static const char *wrong_level(const fathom_sample_t *s)
 
 void judge_sample(const fathom_sample_t *sample)
 {
-    judge.readings++;
     if (kind() >= SECOND_TALKERS) {
         const char *wrong = wrong_level(sample);
         if (wrong != NULL) judge_finding(wrong, (int)sample->raw);

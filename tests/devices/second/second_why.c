@@ -1,28 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "second_why.h"
 
-const char *const judge_wording[REASONS] = {
-    [BECAUSE_EXCEPTION] = "it answers with an exception",
-    [BECAUSE_SILENT] = "it does not answer such a request",
-    [BECAUSE_WARM_UP] = "it does not measure while it warms up",
-    [BECAUSE_STARTING] = "it has just got power",
-    [BECAUSE_SWITCHED] = "its first command only ends the automatic output",
-    [BECAUSE_LATER] = "the new value counts from the next power-on",
-    [BECAUSE_ECHOED] = "it acknowledges a value and does not take it",
-    [BECAUSE_OTHER_VALUE] = "it takes another value than the one that was sent",
-    [BECAUSE_OLD_TOLD] = "it tells the value in use and not the one that was set",
-    [BECAUSE_HIT] = "an unsolicited frame ran into the request, or came for the response",
-    [BECAUSE_NO_DISTANCE] = "its value is no distance, or no temperature",
-    [BECAUSE_RARE] = "its frames are farther apart than the deadline",
-    [BECAUSE_FAILED] = "it has failed",
-    [BECAUSE_STRENGTH] = "its strength of light has an exponent over 16",
-    [BECAUSE_FEWER] = "it answers with fewer values than were asked for",
-    [BECAUSE_FULL] = "what it sends unasked leaves no room for a request",
-    [BECAUSE_QUEUED] = "it serves a trigger that came too early when its cycle is over",
-    [BECAUSE_MISPRINT] = "it does what is most likely a misprint",
-    [BECAUSE_NOTHING] = "UNEXPLAINED",
-};
-
 static bool is_odd(uint16_t value)
 {
     if (is_hps()) return value > 30000 ? value < 65530 || value == 65535 : value == 0;

@@ -20,7 +20,6 @@ typedef struct {
 
 facts_t judge_facts(void);
 
-extern const char *const judge_wording[REASONS];
 /* Why it did not answer, or not so that it could be understood. */
 reason_t judge_why(fathom_status_t status);
 /* Does the new value of this register count from the next power-on? */

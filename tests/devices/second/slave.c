@@ -81,6 +81,18 @@ void second_slave_refuse(second_device_t *d, const job_t *job, int64_t how)
     second_slave_response(d, job, frame, 3, SECOND_EVENT_RESPONSE);
 }
 
+void second_slave_job(second_device_t *d, const job_t *job, serve_t read, serve_t write)
+{
+    if (job->bytes[1] != 0x03 && job->bytes[1] != 0x06)
+        second_slave_refuse(d, job, chosen(d, CHOICE_mb_illegal_function));
+    else if (job->len != 8)
+        second_slave_refuse(d, job, chosen(d, CHOICE_mb_bad_length));
+    else if (job->bytes[1] == 0x03)
+        read(d, job);
+    else
+        write(d, job);
+}
+
 void second_slave_setting(second_device_t *d, uint16_t reg, int64_t old_value, int64_t new_value, bool flash)
 {
     if (flash) d->flash_writes++;

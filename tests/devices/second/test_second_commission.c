@@ -98,11 +98,8 @@ static void live(second_kind_t kind, const char *sensor, unsigned good_of_100, u
             is_done = is_commissioned(sensor, 0);
         }
         done += is_done;
-        if (!is_done && getenv("FATHOM_TABLE") != NULL)
-            print_message("seed %u is not done\n", (unsigned)seed);
     }
     (void)unlink(record);
-    if (getenv("FATHOM_TABLE") != NULL) print_message("%u at once, %u done\n", first, done);
     assert_int_equal(judge.wrong, 0);
     if (from != NULL) return;
     assert_in_range(first, at_once * 2, 200);

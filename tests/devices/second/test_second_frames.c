@@ -1,8 +1,108 @@
 /* SPDX-License-Identifier: MIT */
-/* Every frame that the datasheets print comes out of the devices, with the choices at the printed example. */
-#include "second_host.h"
-
+/* The simulation itself: every frame that the datasheets print comes out of the devices, with the choices at the printed
+ * example; and what holds for all seeds. */
 #include "second_device.h" /* the check codes */
+
+#include <string.h>
+
+#include "suite.h"
+
+/* A host on the wire of one device. */
+static struct {
+    second_device_t device;
+    uint64_t now_us;
+    second_line_t line;
+    second_byte_t got[262144];
+    size_t got_len, read_len;
+} host;
+
+static void host_hears(void *context, const second_byte_t *byte)
+{
+    (void)context;
+    assert_true(host.got_len < sizeof host.got / sizeof host.got[0]);
+    host.got[host.got_len++] = *byte;
+}
+
+static void host_run(uint64_t for_us)
+{
+    host.now_us += for_us;
+    second_run(&host.device, host.now_us, host_hears, NULL);
+}
+
+static void host_power(bool on)
+{
+    second_power(&host.device, on, host.now_us);
+    host_run(1);
+}
+
+/* The device has had power for that long. */
+static void host_open(const second_config_t *config, uint64_t powered_us)
+{
+    host.now_us = 0;
+    host.got_len = host.read_len = 0;
+    assert_true(second_init(&host.device, config));
+    host.line = second_state(&host.device).line;
+    host_power(true);
+    host_run(powered_us);
+}
+
+/* Sends and runs up to the end of the last byte. */
+static void host_send(const uint8_t *bytes, size_t len)
+{
+    uint64_t bits = 9U + (host.line.parity != 'N' ? 1U : 0U) + host.line.stop_bits;
+    uint64_t begin_us = host.now_us + 1;
+    for (size_t i = 0; i < len; i++)
+        second_host_byte(&host.device, bytes[i], begin_us + i * bits * 1000000 / host.line.baud,
+                         begin_us + (i + 1) * bits * 1000000 / host.line.baud, host.line);
+    host.read_len = host.got_len;
+    host_run(1 + len * bits * 1000000 / host.line.baud);
+}
+
+static size_t from_hex(const char *hex, uint8_t *bytes)
+{
+    size_t len = 0;
+    unsigned value;
+    int used;
+    while (sscanf(hex, " %2x%n", &value, &used) == 1) {
+        bytes[len++] = (uint8_t)value;
+        hex += used;
+    }
+    return len;
+}
+
+static void host_send_hex(const char *hex)
+{
+    uint8_t bytes[64];
+    host_send(bytes, from_hex(hex, bytes));
+}
+
+/* Adds the CRC of a Modbus frame; bit by bit, as HPS-167S 2.2.5 tells. */
+static void host_request(const char *hex)
+{
+    uint8_t bytes[64];
+    size_t len = from_hex(hex, bytes);
+    uint16_t crc = 0xFFFF;
+    for (size_t i = 0; i < len; i++) {
+        crc ^= bytes[i];
+        for (int bit = 0; bit < 8; bit++) crc = (uint16_t)((crc & 1) != 0 ? (crc >> 1) ^ 0xA001 : crc >> 1);
+    }
+    bytes[len++] = (uint8_t)(crc & 0xFF);
+    bytes[len++] = (uint8_t)(crc >> 8);
+    host_send(bytes, len);
+}
+
+/* What came since the last request, as hex; waits first. */
+static const char *host_response(uint64_t wait_us)
+{
+    static char hex[3 * 256];
+    host_run(wait_us);
+    hex[0] = '\0';
+    size_t used = 0;
+    for (size_t i = host.read_len; i < host.got_len && used + 4 < sizeof hex; i++)
+        used +=
+            (size_t)snprintf(hex + used, sizeof hex - used, used == 0 ? "%02X" : " %02X", host.got[i].value);
+    return hex;
+}
 
 typedef struct {
     const char *name;
@@ -87,16 +187,14 @@ TEST(requests_get_the_printed_responses)
         const second_override_t slow[] = {{"a16_period_us", 3000000}, {"a05_period_us", 3000000}};
         second_config_t config = {
             .kind = row->kind, .scene = row->scene, .overrides = slow, .override_count = 2};
-        host_open(&host, &config);
-        host_power(&host, true);
-        host_run(&host, 12000000);
+        host_open(&config, 12000000);
         /* Two requests are printed without their CRC, or not at all. */
         bool no_crc = strcmp(row->name, "HPS #15") == 0 || strcmp(row->name, "HPS abnormal") == 0;
         if (no_crc)
-            host_request(&host, row->request);
+            host_request(row->request);
         else
-            host_send_hex(&host, row->request);
-        const char *response = host_response(&host, 450000);
+            host_send_hex(row->request);
+        const char *response = host_response(450000);
         if (strstr(row->response, "..") != NULL)
             check_unprinted(response, row->response);
         else
@@ -117,20 +215,18 @@ TEST(frames_without_a_request)
                 {SECOND_A05_UART, FOUR, "FF 03 E8 07 D0 07 A1 0D EA 60"}};
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
         second_config_t config = {.kind = rows[i].kind, .scene = rows[i].scene};
-        host_open(&host, &config);
-        host_power(&host, true);
-        host_run(&host, 10000000);
+        host_open(&config, 10000000);
         if (rows[i].kind == SECOND_A16_CONTROLLED) {
             assert_int_equal(host.got_len, 0);
-            second_rx_level(&host.device[0], true, host.now_us);
-            second_rx_level(&host.device[0], false, host.now_us + 100);
-            host_run(&host, host.now_us + 200000);
+            second_rx_level(&host.device, true, host.now_us);
+            second_rx_level(&host.device, false, host.now_us + 100);
+            host_run(200000);
             host.read_len = 0;
         } else {
             assert_true(host.got_len > strlen(rows[i].frame) / 3 + 1);
             host.read_len = host.got_len - (strlen(rows[i].frame) + 1) / 3;
         }
-        assert_string_equal(host_response(&host, 0), rows[i].frame);
+        assert_string_equal(host_response(0), rows[i].frame);
     }
 }
 
@@ -139,11 +235,9 @@ TEST(the_misprinted_sum)
 {
     const second_override_t forced = {"a05_all_sum", 1};
     second_config_t config = {.kind = A05_BUS, .scene = FOUR, .overrides = &forced, .override_count = 1};
-    host_open(&host, &config);
-    host_power(&host, true);
-    host_run(&host, 3000000);
-    host_send_hex(&host, "55 AA 01 01 01");
-    assert_string_equal(host_response(&host, 300000), "55 AA 01 01 03 E8 07 D0 07 A1 0D EA 60");
+    host_open(&config, 3000000);
+    host_send_hex("55 AA 01 01 01");
+    assert_string_equal(host_response(300000), "55 AA 01 01 03 E8 07 D0 07 A1 0D EA 60");
 }
 
 TEST(printed_check_codes)
@@ -163,4 +257,78 @@ TEST(printed_check_codes)
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
         assert_int_equal(second_wire_crc16(bytes, from_hex(rows[i].bytes, bytes)), rows[i].crc);
     assert_int_equal(second_wire_sum8(bytes, from_hex("FF 07 A1", bytes)), 0xA7);
+}
+
+/* ---- all seeds ---- */
+
+static bool checked_frame(const second_event_t *event, bool odd_sum)
+{
+    if (event->raw[0] == 0xFF && event->raw_len != 0 && event->function == 0) { /* an automatic frame */
+        size_t skip = event->raw[1] == 0xFF && event->raw_len == 5 ? 1 : 0;
+        size_t sum = (size_t)event->raw_len - 1;
+        return second_wire_sum8(event->raw + skip, sum - skip) == event->raw[sum];
+    }
+    if (event->raw[0] == 0x55 && event->raw[1] == 0xAA)
+        return odd_sum || second_wire_sum8(event->raw, event->raw_len - 1U) == event->raw[event->raw_len - 1];
+    return second_wire_crc16(event->raw, event->raw_len) == 0;
+}
+
+static const char *request_of(second_kind_t kind)
+{
+    static const char *const requests[SECOND_KINDS] = {
+        [SECOND_A16_RS232] = "01 03 01 01 00 01", [SECOND_A16_RS485] = "01 03 01 00 00 01",
+        [SECOND_A05_UART] = "01 03 01 06 00 04",  [SECOND_A05_RS485] = "01 03 01 06 00 04",
+        [SECOND_HPS167S] = "01 03 00 08 00 04",
+    };
+    return requests[kind];
+}
+
+static void live(second_kind_t kind, uint64_t seed)
+{
+    const second_config_t config = {
+        .kind = kind, .seed = seed, .fitted = (uint8_t)(1 + seed % 15), .scene = {{1500, 2500, 3500, 4500}}};
+    const second_scene_t scene = {{SECOND_NOTHING, 700, 90000, 40}};
+    host_open(&config, 9000000);
+    for (int i = 0; i < 4; i++) {
+        if (request_of(kind) != NULL) {
+            host_request(request_of(kind));
+        } else {
+            second_rx_level(&host.device, true, host.now_us + 10);
+            second_rx_level(&host.device, false, host.now_us + 2000);
+        }
+        host_run(600000);
+        if (i == 2) second_scene(&host.device, &scene, host.now_us);
+    }
+    host_power(false);
+    host_run(100000);
+}
+
+/* Bytes follow each other, frames carry the right check codes, the log tells what was on the wire. */
+TEST(all_seeds_keep_the_wire_in_order)
+{
+    for (int kind = 0; kind < SECOND_TALKERS; kind++) {
+        size_t frames = 0;
+        for (uint64_t seed = 1; seed <= 300; seed++) {
+            live((second_kind_t)kind, seed);
+            const second_device_t *d = &host.device;
+            for (size_t i = 1; i < host.got_len; i++) {
+                assert_true(host.got[i].start_us >= host.got[i - 1].end_us);
+                assert_true(host.got[i].end_us > host.got[i].start_us);
+            }
+            size_t at = 0;
+            bool odd_sum = second_choice(d, CHOICE_a05_all_sum) != 0;
+            for (uint64_t i = 0; i < second_log_count(d); i++) {
+                const second_event_t *event = second_log_at(d, i);
+                bool sent = event->kind == SECOND_EVENT_MEASUREMENT || event->kind == SECOND_EVENT_RESPONSE;
+                if (!sent || event->end_us > second_log_at(d, second_log_count(d) - 1)->time_us) continue;
+                assert_true(checked_frame(event, odd_sum));
+                while (at < host.got_len && host.got[at].start_us < event->start_us) at++;
+                for (size_t k = 0; k < event->raw_len; k++)
+                    assert_int_equal(host.got[at + k].value, event->raw[k]);
+                frames++;
+            }
+            assert_int_equal(second_state(d).lost, 0);
+        }
+        assert_true(frames > 300);
+    }
 }

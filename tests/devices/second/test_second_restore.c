@@ -36,8 +36,6 @@ static bool is_confirmed[ROWS]; /* by a run before */
 
 static void idle(void *ctx, uint32_t max_us) { rig_pass(ctx, max_us); }
 
-static bool is_loud(void) { return getenv("FATHOM_SEED") != NULL || getenv("FATHOM_TABLE") != NULL; }
-
 /* Where the device is now. */
 static void tool(const char *command, const char *sensor, const char *more)
 {
@@ -53,7 +51,7 @@ static void tool(const char *command, const char *sensor, const char *more)
 
 static void finding(const char *what, const char *name)
 {
-    if (is_loud())
+    if (getenv("FATHOM_SEED") != NULL)
         print_message("kind %d seed %u: %s: %s\n%s%s\n", (int)rig.device.config.kind,
                       (unsigned)rig.device.config.seed, name, what, run->out, run->err);
     sums.wrong++;

@@ -141,14 +141,15 @@ static void receive(second_device_t *d, const input_t *input)
         noise(d, (uint8_t)second_truth_random(d, 256), input, chosen(d, CHOICE_any_heard_while_sending) != 0);
         return;
     }
-    if (!d->hooks->hears(d, input->line)) {
+    if (d->hooks->hears != NULL ? !d->hooks->hears(d, input->line)
+                                : !second_wire_same(input->line, d->line)) {
         noise(d, (uint8_t)second_truth_random(d, 256), input, chosen(d, CHOICE_any_wrong_line) != 0);
         return;
     }
     if (breaks_silence_rules(d, input)) d->rx_bad = true;
     d->rx_line = input->line;
     append(d, input->value, input->start_us, input->time_us);
-    d->hooks->byte(d);
+    if (d->hooks->byte != NULL) d->hooks->byte(d);
 }
 
 static void level(second_device_t *d, const input_t *input)
@@ -159,7 +160,7 @@ static void level(second_device_t *d, const input_t *input)
     if (was_low == input->on) return;
     d->level_since_us = input->time_us;
     if (!d->powered) return;
-    d->hooks->level(d, input->on);
+    if (d->hooks->level != NULL) d->hooks->level(d, input->on);
     bool hears_bytes = d->config.kind != SECOND_A16_AUTO && d->config.kind != SECOND_A16_CONTROLLED &&
                        d->config.kind < SECOND_TALKERS;
     uint64_t character_us = second_wire_bits_ns(d->line, second_wire_character_bits(d->line)) / 1000;
