@@ -27,7 +27,7 @@ from targets import TARGETS
 FULL = 10 ** 8
 SEED = 20261123
 # The planted fault: a target, a file, the old text and the new text, and the promise that breaks.
-FAULT = ('dyp', 'src/codec/dyp_55aa.c', ': (COMMAND + 1);', ': COMMAND;', 'more are needed to know')
+FAULT = ('dyp', 'src/engine/stream.c', 'if (byte == FATHOM_DYP_START)', 'if (byte != 0u)', 'where it has ended')
 FAULT_S = 20
 
 

@@ -33,12 +33,12 @@ def of(name, text):
 
 @makes('dyp')
 def dyp(frames):
-    """The codecs' frames; and of the engine three in a row after a silence, each fed whole."""
-    found = [b'\0\1\1' + frame for frame in frames['dyp']]
+    """Three frames in a row, each after a silence and fed whole."""
+    found = []
     for frame in frames['stream']:
         four = 4 if len(frame) == 10 else 0
         fed = bytes([(len(frame) - 1) << 4 | 8]) + frame
-        found += [bytes([1 | four]) + frame, bytes([2 | four, 0, 0]) + (b'\x05\xff' + fed + b'\2') * 3]
+        found += [bytes([2 | four, 0, 0]) + (b'\x05\xff' + fed + b'\2') * 3]
         found += [bytes([2 | four, 0, 0]) + b'\x05\xff' + fed + fed + fed + b'\2\2']
     return found
 

@@ -41,7 +41,7 @@ PUBLISH = ('-lmosquitto', '-lyaml', '-lssl', '-lcrypto')
 TOOL_SOURCES = ('tests/verify/fuzz/tool.c',)
 
 TARGETS = [
-    Target('dyp', (build.core,), 5000, 200, 105, 128),
+    Target('dyp', (build.core,), 5000, 136, 105, 128),
     Target('line', (build.core,), 1500, 620, 40, 96, more=('tests/verify/fuzz/wire.c',)),
     Target('drivers', (build.core,), 500, 1270, 20, 128, more=('tests/verify/fuzz/wire.c',)),
     Target('tcp', (build.core, build.libmodbus), 1000, 500, 25, 160,
