@@ -68,14 +68,14 @@ class Case(e2e.Case):
         self.serve(server, line, unit, first, values)
         return client
 
-    client = 'fathom_client'
+    transport = 'posix'
 
     def fathom_client(self, port, line, *steps, seconds=SOON):
         """The same steps by our own client; for the tests against servers."""
-        return self.tell(self.client, port, line, seconds, *steps)
+        return self.tell(['fathom_client', self.transport], port, line, seconds, *steps)
 
-    def tell(self, name, port, line, seconds, *steps):
-        done = self.start([program(name), port, *line, round(seconds * 1000), *steps]).finish()
+    def tell(self, client, port, line, seconds, *steps):
+        done = self.start([program(client[0]), *client[1:], port, *line, round(seconds * 1000), *steps]).finish()
         self.assertEqual((done.code, done.err), (0, ''), done)
         return done.out.splitlines()
 
@@ -86,7 +86,7 @@ class Libmodbus:
 
     def ask(self, sim, unit, *steps, seconds=SOON):
         steps = ['raw:0x2B,0x0E,1,0' if step == 'identify' else step for step in steps]
-        return self.tell('libmodbus_client', sim, sim.line, seconds, f'unit:{unit}', *steps)
+        return self.tell(['libmodbus_client'], sim, sim.line, seconds, f'unit:{unit}', *steps)
 
 
 class Mbpoll:
@@ -253,7 +253,7 @@ class PymodbusServer:
 
 class Tcp:
     """For a Case with a server, before it: the same server over TCP, at a port that the system has chosen."""
-    client = 'fathom_libmodbus_client'
+    transport = 'libmodbus'
 
     def served(self, line, unit, first, values):
         return f'tcp:127.0.0.1:{self.serve("tcp", line, unit, first, values)}'

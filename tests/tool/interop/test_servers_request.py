@@ -84,5 +84,21 @@ class LibmodbusRtu(interop.LibmodbusServer, Rtu, interop.Case):
     pass
 
 
+class Tcp(Servers):
+    def test_a_function_that_no_server_has_is_exception_01(self):
+        """Over RTU neither server knows where such a request ends, and both are silent."""
+        port = self.served(LINE, 1, FIRST, [1])
+        found = self.ask(port, '1 0x41 12 34 --yes', 1, 'unit 1 refused: exception 01 (illegal function)')
+        self.assertEqual(found['received'], e2e.adu(1, 0xC1, 1).hex(' ').upper())
+
+
+class PymodbusTcp(interop.Tcp, interop.PymodbusServer, Tcp, interop.Case):
+    pass
+
+
+class LibmodbusTcp(interop.Tcp, interop.LibmodbusServer, Tcp, interop.Case):
+    pass
+
+
 if __name__ == '__main__':
     interop.main()
