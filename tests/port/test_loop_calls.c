@@ -289,7 +289,7 @@ TEST_ROW(a_hundred_that_are_ready_at_once_are_all_polled, more_than_a_sleep_tell
 TEST_ROW(a_hundred_are_so_without_epoll_pwait2_too, more_than_a_sleep_tells_of, &no_such_call)
 
 /* Each loss is of another pseudo terminal. */
-TEST(a_thousand_losses_leave_no_descriptor_behind)
+TEST(a_line_that_is_lost_says_why_and_comes_back_and_a_thousand_losses_leave_no_descriptor)
 {
     line_rig_end();
     line_rig_begin(&(fathom_loop_config_t){.first_pause_us = 1, .longest_pause_us = 1});
@@ -298,15 +298,19 @@ TEST(a_thousand_losses_leave_no_descriptor_behind)
     line_rig_until(&rig.opened, 1);
     const unsigned before = posix_count_fds();
     for (unsigned n = 1; n != 1001; n++) {
+        const posix_pty_t lost = rig.ptys[0];
         posix_pty_close(&rig.ptys[0]);
         line_rig_until(&rig.port_errors[0], n);
+        assert_non_null(strstr(fathom_loop_error_text(&rig.lines[0].source), lost.path));
         posix_pty_open(&rig.ptys[0]); /* whose path is in the same place */
         line_rig_until(&rig.opened, n + 1);
         assert_string_equal(fathom_loop_error_text(&rig.lines[0].source), "");
     }
     assert_int_equal(posix_count_fds(), before);
     far_end = far_end_begin(rig.ptys, 1, 0);
-    line_rig_until(&rig.readings[0], 1);
+    line_rig_until(&rig.readings[0], 2);
+    assert_int_equal(rig.port_errors[0], 1000);
+    assert_int_equal(rig.errors[0], 0);
 }
 
 TEST(a_loop_that_cannot_watch_its_own_end_is_an_error_and_leaves_no_descriptor)
@@ -322,13 +326,17 @@ TEST(a_loop_that_cannot_watch_its_own_end_is_an_error_and_leaves_no_descriptor)
 /* A descriptor that epoll refuses is none of its own: it may be another source's, which a change would take away. */
 static void leaves_in_parts(void **state)
 {
+    uint8_t request[8];
     calls.control_error = *(const int *)*state;
     calls.write_most = 1; /* so that it waits for room too */
     posix_pty_open(&rig.ptys[0]);
     line_rig_add(115200);
-    while (calls.writes < 8) fathom_loop_step(&rig.loop, 10000); /* a request has 8 bytes */
+    while (calls.writes < sizeof request) fathom_loop_step(&rig.loop, 10000);
     assert_true(calls.adds > 0);
     assert_int_equal(calls.changes > 0, calls.control_error == 0);
+    fathom_loop_step(&rig.loop, 10000);
+    assert_int_equal(rig.lines[0].source.events, POLLIN); /* all of it has left */
+    posix_pty_receive_all(&rig.ptys[0], request, sizeof request);
 }
 
 TEST_ROW(a_line_whose_request_leaves_in_parts_waits_for_room, leaves_in_parts, &no_error)

@@ -226,6 +226,8 @@ TEST(a_line_finds_out_about_echo_waits_25_ms_and_counts)
     assert_int_equal(fathom_loop_add_line(&fake.loop, &line, "/nowhere", &settings), FATHOM_POSIX_OK);
     assert_true(line.bus.parts.find_echo == fathom_line_find_echo);
     assert_int_equal(line.bus.parts.gap_us, 25000);
+    assert_ptr_equal(line.bus.parts.senders, &fathom_line_senders);
+    assert_ptr_equal(line.bus.parts.masters, &fathom_line_masters);
     assert_true(line.bus.parts.count == fathom_line_count);
     assert_int_equal(line.bus.parts.echo, FATHOM_LINE_ECHO_AUTO);
     assert_ptr_equal(line.bus.parts.uart, &line.bus.uart);

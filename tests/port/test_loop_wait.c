@@ -187,22 +187,6 @@ TEST(a_descriptor_of_two_pins_wakes_one_and_the_other_is_polled)
     assert_int_equal(first.polls, 2);
 }
 
-/* If the chip of a line goes away, the kernel reports EPOLLHUP and EPOLLERR; a level would stay as it was. The loop tries
- * again after pauses of 5, 10, 20, 40 and 80 ms, and 80 ms from then on: at 5, 15, 35, 75, 155, 235, 315 and 395 ms. */
-TEST(a_pin_whose_chip_has_gone_is_lost_and_said_once_a_pause)
-{
-    line_rig_end();
-    line_rig_begin(&(fathom_loop_config_t){.first_pause_us = 5000, .longest_pause_us = 80000});
-    add_pin(&pin, &first, ends[0]);
-    (void)pass(1000);
-    ends_close(1);
-    assert_int_equal(pass(400000), 1 + 8 + 1); /* the loss, each try, and the rest of the time */
-    assert_int_equal(first.port_errors, 1);
-    assert_int_equal(rig.failed, 1 + 8);
-    assert_int_equal(rig.opened, 1);
-    assert_string_equal(fathom_loop_error_text(&pin.source), "it is lost");
-}
-
 /* ---- bytes ---- */
 
 TEST(what_one_read_does_not_bring_the_next_ones_do)
@@ -227,39 +211,6 @@ TEST(a_hang_up_right_behind_the_last_bytes_is_seen)
 
 /* ---- lines ---- */
 
-static size_t write_all(void)
-{
-    static const uint8_t bytes[251];
-    const fathom_uart_t *const uart = &rig.lines[0].bus.uart;
-    size_t total = 0;
-    while (uart->write(uart->ctx, bytes, sizeof bytes) > 0) total += sizeof bytes;
-    return total;
-}
-
-TEST(the_rest_of_a_request_leaves_when_the_kernel_has_room_again)
-{
-    uint8_t got[777];
-    posix_time_begin(false); /* the kernel moves the bytes when it finds time */
-    posix_pty_open(&rig.ptys[0]);
-    line_rig_add(921600);
-    (void)pass(1000);
-    size_t total = 0, have = 0;
-    const uint64_t begin_us = fathom_posix_now_us();
-    while (rig.lines[0].source.events != (POLLIN | POLLOUT)) { /* the kernel's buffers fill behind its back */
-        total += write_all();
-        fathom_loop_wake(&rig.lines[0].source);
-        (void)pass(5000);
-        assert_true(fathom_posix_now_us() - begin_us < LONG_US);
-    }
-    while (have < total) {
-        have += posix_pty_receive(&rig.ptys[0], got, sizeof got);
-        fathom_loop_step(&rig.loop, 1000);
-        assert_true(fathom_posix_now_us() - begin_us < LONG_US);
-    }
-    (void)pass(1000);
-    assert_int_equal(rig.lines[0].source.events, POLLIN);
-}
-
 TEST(a_line_that_is_added_twice_is_refused)
 {
     posix_pty_open(&rig.ptys[0]);
@@ -268,26 +219,6 @@ TEST(a_line_that_is_added_twice_is_refused)
     assert_int_equal(fathom_loop_add_line(&rig.loop, &rig.lines[0], rig.ptys[0].path, &settings),
                      FATHOM_POSIX_ERR_ARGUMENT);
     assert_true(rig.lines[0].source.is_open);
-}
-
-TEST(a_line_that_is_lost_says_why_and_comes_back)
-{
-    line_rig_end();
-    posix_time_begin(false);
-    line_rig_begin(&(fathom_loop_config_t){.first_pause_us = 1000, .longest_pause_us = 1000});
-    posix_pty_open(&rig.ptys[0]);
-    line_rig_add(115200);
-    (void)pass(1000);
-    const posix_pty_t lost = rig.ptys[0];
-    posix_pty_close(&rig.ptys[0]);
-    line_rig_until(&rig.port_errors[0], 1);
-    assert_non_null(strstr(fathom_loop_error_text(&rig.lines[0].source), lost.path));
-    posix_pty_open(&rig.ptys[0]);
-    const pid_t far_end = far_end_begin(rig.ptys, 1, 0);
-    line_rig_until(&rig.readings[0], 2);
-    far_end_end(far_end);
-    assert_int_equal(rig.port_errors[0], 1);
-    assert_int_equal(rig.errors[0], 0);
 }
 
 /* ---- stop, signals, and loops of another kind ---- */
@@ -483,7 +414,8 @@ TEST(a_stream_that_cannot_be_waited_for_is_read_every_10_ms)
 
 /* ---- what has gone and comes back ---- */
 
-TEST(a_pin_whose_chip_is_back_is_waited_for_again)
+/* If the chip of a line goes away, the kernel reports EPOLLHUP and EPOLLERR; a level would stay as it was. */
+TEST(a_pin_whose_chip_has_gone_is_lost_and_waited_for_again_once_it_is_back)
 {
     line_rig_end();
     line_rig_begin(&(fathom_loop_config_t){.first_pause_us = 5000, .longest_pause_us = 5000});
@@ -491,6 +423,7 @@ TEST(a_pin_whose_chip_is_back_is_waited_for_again)
     (void)pass(1000);
     ends_close(1);
     line_rig_until(&first.port_errors, 1);
+    assert_string_equal(fathom_loop_error_text(&pin.source), "it is lost");
     const int lost = ends[0];
     ends_open();
     assert_int_equal(dup2(ends[0], lost), lost); /* the pin's descriptor is of a chip again */

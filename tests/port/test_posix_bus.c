@@ -64,12 +64,18 @@ static void respond(const char *hex)
     posix_pty_send(&pty, bytes, hex_parse(hex, bytes));
 }
 
-TEST(a_driver_with_the_bus_reads_its_sensor)
+/* The far end sends two pieces, `pause_us` apart; then the driver has the reading. */
+static void reads_pieces(const char *piece, uint32_t pause_us, const char *next)
 {
     fathom_sample_t sample = {0};
     const fathom_sensor_t sensor = gate_sensor();
     expect_request(&sensor, "01 03 00 08 00 04 C5 CB");
-    respond("01 03 08 08 23 DC B2 07 01 00 00 FD 41");
+    respond(piece);
+    for (const uint64_t since_us = fathom_posix_now_us(); fathom_posix_now_us() - since_us < pause_us;) {
+        assert_int_equal(fathom_poll(&sensor, &sample), FATHOM_PENDING);
+        fathom_posix_wait(&bus.port, 1000);
+    }
+    respond(next);
     assert_int_equal(fathom_posix_bus_read(&bus, sensor, &sample), FATHOM_OK);
     assert_int_equal(sample.kind, FATHOM_TARGET);
     assert_int_equal(sample.distance_mm, 2083);
@@ -78,39 +84,13 @@ TEST(a_driver_with_the_bus_reads_its_sensor)
 
 TEST(a_response_in_two_pieces_is_whole_as_an_ftdi_chip_holds_bytes_back_for_16_ms)
 {
-    fathom_sample_t sample = {0};
-    const fathom_sensor_t sensor = gate_sensor();
-    expect_request(&sensor, "01 03 00 08 00 04 C5 CB");
-    respond("01 03 08 08 23 DC");
-    for (const uint64_t since_us = fathom_posix_now_us(); fathom_posix_now_us() - since_us < 16000;) {
-        assert_int_equal(fathom_poll(&sensor, &sample), FATHOM_PENDING);
-        fathom_posix_wait(&bus.port, 1000);
-    }
-    respond("B2 07 01 00 00 FD 41");
-    assert_int_equal(fathom_posix_bus_read(&bus, sensor, &sample), FATHOM_OK);
-    assert_int_equal(sample.distance_mm, 2083);
+    reads_pieces("01 03 08 08 23 DC", 16000, "B2 07 01 00 00 FD 41");
 }
 
 /* Some adapters echo: the request comes back first. */
 TEST(an_echo_is_no_response)
 {
-    fathom_sample_t sample = {0};
-    const fathom_sensor_t sensor = gate_sensor();
-    expect_request(&sensor, "01 03 00 08 00 04 C5 CB");
-    respond("01 03 00 08 00 04 C5 CB");
-    respond("01 03 08 08 23 DC B2 07 01 00 00 FD 41");
-    assert_int_equal(fathom_posix_bus_read(&bus, sensor, &sample), FATHOM_OK);
-    assert_int_equal(sample.distance_mm, 2083);
-}
-
-TEST(the_parts_suit_a_tty_and_an_unknown_adapter)
-{
-    assert_ptr_equal(bus.parts.senders, &fathom_line_senders);
-    assert_ptr_equal(bus.parts.masters, &fathom_line_masters);
-    assert_true(bus.parts.find_echo == fathom_line_find_echo);
-    assert_int_equal(bus.parts.echo, FATHOM_LINE_ECHO_AUTO);
-    assert_int_equal(bus.parts.silence_us, 2006); /* 3.5 characters of 11 bits at 19200 baud: 2005.2 us */
-    assert_int_equal(bus.parts.gap_us, 25000);
+    reads_pieces("01 03 00 08 00 04 C5 CB", 0, "01 03 08 08 23 DC B2 07 01 00 00 FD 41");
 }
 
 TEST(a_silent_sensor_is_an_error)

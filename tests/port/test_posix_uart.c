@@ -65,14 +65,6 @@ TEST(after_a_hang_up_every_read_and_write_fails)
     assert_int_equal(fathom_posix_set_line(&rig.port, &port_rig_fast), FATHOM_POSIX_ERR_LOST);
 }
 
-TEST(a_write_finds_the_hang_up_too)
-{
-    posix_pty_close(&rig.pty);
-    assert_true(port_rig_write_one() < 0);
-    assert_true(port_rig_read_one() < 0);
-    assert_int_equal(fathom_posix_error(&rig.port), FATHOM_POSIX_ERR_LOST);
-}
-
 TEST(a_lost_port_works_again_once_it_is_reopened)
 {
     posix_pty_close(&rig.pty);
@@ -168,15 +160,6 @@ static void until_sent(void)
         assert_true(ms < POSIX_LIMIT_MS);
         fathom_posix_wait(&rig.port, 1000);
     }
-}
-
-TEST(a_change_of_the_line_keeps_what_was_received)
-{
-    uint8_t byte = 0;
-    come("x");
-    assert_int_equal(fathom_posix_set_line(&rig.port, &usual), FATHOM_POSIX_OK);
-    assert_int_equal(port_rig_read(&byte, 1), 1);
-    assert_int_equal(byte, 'x');
 }
 
 /* hal.h: 1 they hold, 0 bytes are still leaving, < 0 it cannot. */

@@ -6,7 +6,6 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "fathom/engine/modbus_client.h"
 #include "posix_rig.h"
 #include "posix_time.h"
 
@@ -152,34 +151,6 @@ TEST(a_signal_ends_the_wait_and_does_no_harm_to_the_port)
     assert_int_equal(fathom_posix_error(&rig.port), FATHOM_POSIX_OK);
 }
 
-TEST(the_wait_alone_moves_the_rest_of_a_request_along)
-{
-    uint8_t bytes[251] = {0};
-    size_t total = 0;
-    int n = 0;
-    uint64_t start_us = fathom_posix_now_us();
-    uint64_t took_us = 0;
-    do { /* the kernel moves bytes to the far end when it finds time, until the far end is full too */
-        while ((n = port_rig_write(bytes, sizeof bytes)) > 0) total += (size_t)n;
-        assert_int_equal(n, 0);
-        took_us = timed_wait_us(10000);
-        assert_true(fathom_posix_now_us() - start_us < LONG_US);
-    } while (took_us < 10000 || fathom_posix_poll_events(&rig.port) != (POLLIN | POLLOUT));
-
-    start_us = fathom_posix_now_us();
-    size_t have = 0;
-    while (fathom_posix_poll_events(&rig.port) != POLLIN) {
-        assert_true(fathom_posix_now_us() - start_us < LONG_US);
-        have += posix_pty_receive(&rig.pty, bytes, sizeof bytes);
-        fathom_posix_wait(&rig.port, 10000);
-    }
-    while (have < total) {
-        assert_true(posix_wait_for(rig.pty.master, POLLIN));
-        have += posix_pty_receive(&rig.pty, bytes, sizeof bytes);
-    }
-    assert_int_equal(have, total);
-}
-
 TEST(a_poll_of_ones_own_sees_what_the_wait_sees)
 {
     struct pollfd entry = {fathom_posix_fd(&rig.port), fathom_posix_poll_events(&rig.port), 0};
@@ -224,52 +195,4 @@ TEST_IN(plain, the_short_clock_is_the_low_half_of_the_long_one)
     const uint32_t between_us = clock.now_us(clock.ctx);
     const uint64_t after_us = fathom_posix_now_us();
     assert_true(fathom_elapsed_us(between_us, (uint32_t)before_us) <= after_us - before_us);
-}
-
-/* ---- a program that sleeps as long as fathom_line_due_us says ---- */
-
-/* A16 6(4) example 1. */
-static const uint8_t response[] = {0x01, 0x03, 0x02, 0x02, 0xF2, 0x38, 0xA1};
-
-static void *response_once(void *arg)
-{
-    uint8_t request[8];
-    struct pollfd entry = {rig.pty.master, POLLIN, 0};
-    if (poll(&entry, 1, POSIX_LIMIT_MS) != 1) return arg;
-    if (read(rig.pty.master, request, sizeof request) != sizeof request) return arg;
-    pass_a_while();
-    return write(rig.pty.master, response, sizeof response) == sizeof response ? NULL : arg;
-}
-
-/* Once for the silence before the request, once for its last stop bit, once for the response, which may come in two
- * parts. At 9600 baud the request leaves for 8.3 ms; hal.h: leaves_in_us. */
-TEST(a_transaction_wakes_the_program_four_times_at_most)
-{
-    static uint8_t frame[16];
-    const fathom_clock_t clock = fathom_posix_clock();
-    const fathom_line_parts_t config = {.uart = &rig.uart,
-                                        .clock = &clock,
-                                        .frame = frame,
-                                        .frame_size = sizeof frame,
-                                        .echo = FATHOM_LINE_ECHO_OFF};
-    fathom_line_t line;
-    fathom_modbus_request_t request = {.transaction = {.timeout_us = LONG_US}};
-    uint16_t mm = 0;
-    unsigned wakes = 0;
-    pthread_t thread;
-    assert_int_equal(fathom_posix_set_line(&rig.port, &usual), FATHOM_POSIX_OK);
-    assert_int_equal(fathom_line_init(&line, &config), FATHOM_OK);
-    fathom_modbus_read_holding_registers(&request.message, 1, 0x0100, 1, &mm);
-    assert_int_equal(fathom_modbus_client_submit(&line, &request), FATHOM_PENDING);
-    assert_int_equal(pthread_create(&thread, NULL, response_once, &line), 0);
-    while (request.transaction.status == FATHOM_PENDING) {
-        (void)fathom_line_poll(&line);
-        if (request.transaction.status != FATHOM_PENDING) break;
-        fathom_posix_wait(&rig.port, fathom_line_due_us(&line));
-        wakes++;
-    }
-    assert_int_equal(pthread_join(thread, NULL), 0);
-    assert_int_equal(request.transaction.status, FATHOM_OK);
-    assert_int_equal(mm, 754);
-    assert_in_range(wakes, 1, 4);
 }
