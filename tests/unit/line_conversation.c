@@ -13,7 +13,7 @@ static unsigned number; /* of the step in progress, for the report of a failure 
         }                                                                                                    \
     } while (0)
 
-static fathom_modbus_request_t *request_of(const step_t *step)
+fathom_modbus_request_t *request_of(const step_t *step)
 {
     return step->which == A ? &bench.request : &bench.other;
 }
@@ -58,6 +58,7 @@ void play_cancel(const step_t *step)
 }
 
 void play_wait(const step_t *step) { run(step->us); }
+void play_poll(const step_t *step) { (void)poll_line(); }
 void play_poll_after(const step_t *step) { run_in_steps(step->us, step->us); }
 void play_response(const step_t *step) { deliver_response(step->unit, (uint16_t)step->value); }
 
@@ -108,6 +109,13 @@ void play_flush(const step_t *step) { fathom_line_flush(&bench.line); }
 void play_break_port(const step_t *step) { break_port(); }
 void play_refuse(const step_t *step) { bench.fake.write_busy = step->which != 0; }
 void play_never_sent(const step_t *step) { bench.fake.never_sent = step->which != 0; }
+void play_silence(const step_t *step) { bench.config.silence_us = (uint16_t)step->us; }
+
+void play_leaves_in(const step_t *step)
+{
+    bench.fake.uart.leaves_in_us = fake_leaves_in_us;
+    bench.fake.leaves_in_us = step->us;
+}
 
 /* ---- expectations ---- */
 
@@ -123,6 +131,11 @@ void play_reads(const step_t *step)
 {
     expect_status(step, FATHOM_OK);
     EXPECT_THAT(*value_of(step) == (uint16_t)step->value, "%u mm", *value_of(step));
+}
+
+void play_attempts(const step_t *step)
+{
+    assert_int_equal(request_of(step)->transaction.attempts, step->value);
 }
 
 void play_written(const step_t *step) { expect_requests((size_t)step->value); }
@@ -156,6 +169,8 @@ void play_idle(const step_t *step)
 {
     EXPECT_THAT(fathom_line_is_idle(&bench.line) == (step->which != 0), "idle or not");
 }
+
+void play_echo_is(const step_t *step) { assert_int_equal(fathom_line_get_echo(&bench.line), step->value); }
 
 void play_count(const step_t *step)
 {

@@ -51,6 +51,7 @@ enum { A, B };
 #define WRITE(x, to)               STEP(write, .which = (x), .unit = (to))
 #define CANCEL(x)                  STEP(cancel, .which = (x))
 #define WAIT(for_us)               STEP(wait, .us = (for_us))
+#define POLL                       STEP(poll, .which = 0)
 #define POLL_AFTER(in_us)          STEP(poll_after, .us = (in_us)) /* one poll */
 #define RECEIVE(text)              STEP(receive, .hex = (text))
 #define RECEIVE_WITH(flag, text)   STEP(receive, .hex = (text), .which = FATHOM_RX_##flag)
@@ -68,11 +69,14 @@ enum { A, B };
 #define BREAK_PORT                 STEP(break_port, .which = 0)
 #define PORT_REFUSES(on)           STEP(refuse, .which = (on))
 #define NEVER_SENT(on)             STEP(never_sent, .which = (on))
+#define LEAVES_IN(in_us)           STEP(leaves_in, .us = (in_us)) /* what the port says of its bytes */
+#define SILENCE(new_us)            STEP(silence, .us = (new_us))  /* of the config */
 
 /* Expectations. SENT: no request leaves for `after`, and one leaves within `within` after that. */
 #define FAILS(x, status)    STEP(fails, .which = (x), .value = FATHOM_ERR_##status)
 #define PENDS(x)            STEP(fails, .which = (x), .value = FATHOM_PENDING)
 #define ENDS(x, status)     STEP(ends, .which = (x), .value = (status)) /* of a write */
+#define ATTEMPTS(x, n)      STEP(attempts, .which = (x), .value = (n))
 #define READS(x, mm)        STEP(reads, .which = (x), .value = (mm))
 #define WRITTEN(n)          STEP(written, .value = (n))
 #define REQUEST_TO(n, id)   STEP(request_to, .value = (n), .unit = (id)) /* the n-th request, from 0 on */
@@ -80,6 +84,7 @@ enum { A, B };
 #define DUE(in_us)          STEP(due, .us = (in_us))
 #define IN_BREAK(is_so)     STEP(in_break, .which = (is_so))
 #define IDLE(is_idle)       STEP(idle, .which = (is_idle))
+#define ECHO_IS(known)      STEP(echo_is, .value = FATHOM_LINE_ECHO_##known)
 #define COUNT(counter, n)   STEP(count, .which = FATHOM_LINE_##counter, .value = (n))
 #define HEARD(text, pauses) STEP(heard, .hex = (text), .which = (pauses)) /* by the listener, with gaps */
 #define GAP_AT(n)           STEP(gap_at, .value = (n))                    /* the last gap, behind n bytes */
@@ -90,7 +95,9 @@ play_step_t play_queue, play_ask, play_write, play_cancel, play_wait, play_poll_
     play_break, play_pass, play_in_break, play_arrive, play_send, play_gap_at, play_lost_at, play_response,
     play_jam, play_echo, play_listen, play_flush, play_break_port, play_refuse, play_never_sent, play_fails,
     play_ends, play_reads, play_written, play_request_to, play_sent, play_due, play_idle, play_count,
-    play_heard;
+    play_heard, play_poll, play_leaves_in, play_silence, play_attempts, play_echo_is;
+
+fathom_modbus_request_t *request_of(const step_t *step);
 
 /* Plays the row in *state on a line that `begin` sets up, such as set_up. */
 void play_conversation(void **state, int (*begin)(void **state));

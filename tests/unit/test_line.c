@@ -63,7 +63,51 @@ TEST(zero_in_the_config_means_the_default_gap)
 
 /* ---- asking, cancelling, idle ---- */
 
+#define REFUSED(x, status) STEP(refused, .which = (x), .value = (status)) /* it is not submitted */
+#define LEAVES             STEP(leaves, .which = 0)
+static void play_refused(const step_t *step)
+{
+    assert_int_equal(fathom_modbus_client_submit(&bench.line, request_of(step)), step->value);
+}
+
+/* Until the port has the request, and no poll more. */
+static void play_leaves(const step_t *step)
+{
+    while (bench.fake.written == 0) run(100);
+}
+
+#define HAS_LEFT STEP(has_left, .which = 0)
+static void play_has_left(const step_t *step) { bench.fake.busy_until_us = bench.fake.now_us; }
+
+#define REQUEST_1 STEP(request_1, .which = 0)
+static void play_request_1(const step_t *step) { expect_bytes(0, ask_1_processed, sizeof ask_1_processed); }
+
 static const conversation_t conversations[] = {
+    /* T3_5_US is 3646 */
+    {"a_request_is_sent_after_the_silence_and_not_before",
+     {QUEUE(A, 1), POLL_AFTER(T3_5_US - 1), WRITTEN(0), POLL_AFTER(1), WRITTEN(1), REQUEST_1},
+     {0}},
+    {"the_response_is_ready_in_the_poll_that_brings_its_last_byte",
+     {ASK(A, 1), ARRIVE("01 03 02 02 F2 38 A1"), PENDS(A), POLL, READS(A, 754)},
+     {.responses = 1}},
+    {"a_transaction_may_be_submitted_again_when_it_has_ended_and_not_before",
+     {ASK(A, 1), REFUSED(A, FATHOM_ERR_BUSY), RESPONSE(1, 111), READS(A, 111), QUEUE(A, 1), WAIT(20000),
+      WRITTEN(2), RESPONSE(1, 112), READS(A, 112)},
+     {.responses = 2}},
+    /* the poll that finds the port broken is the first after the request was handed over */
+    {"a_silence_comes_before_the_next_request_where_the_port_broke_while_one_left",
+     {QUEUE(A, 1), LEAVES, BREAK_PORT, FAILS(A, PORT), HAS_LEFT, QUEUE(B, 2), SENT(T3_5_US - 400, 1000)},
+     {.port_errors = 1}},
+    /* 1000: the request leaves; GAP_US: the rest of the frame, or its end; then the unit is quarantined */
+    {"due_says_when_something_can_happen_without_new_bytes",
+     {POLL, DUE(FATHOM_NO_DEADLINE), QUEUE(A, 1), DUE(T3_5_US), PASS(646), DUE(3000), POLL_AFTER(3000),
+      WRITTEN(1), DUE(1000), POLL_AFTER(9000), DUE(TIMEOUT_US), ARRIVE("01 03 02 02"), POLL, DUE(GAP_US),
+      POLL_AFTER(GAP_US), FAILS(A, CHECKSUM), DUE(FATHOM_NO_DEADLINE)},
+     {.damaged = 1, .dropped = 4}},
+    {"a_request_to_a_quarantined_unit_is_due_when_the_quarantine_ends",
+     {QUEUE(A, 1), POLL_AFTER(T3_5_US), POLL_AFTER(9000), ARRIVE("01 03 02 02"), POLL, POLL_AFTER(GAP_US),
+      FAILS(A, CHECKSUM), QUEUE(A, 1), DUE(2 * TIMEOUT_US - GAP_US), PASS(2 * TIMEOUT_US), DUE(0)},
+     {.damaged = 1, .dropped = 4}},
     {"a_write_is_acknowledged_by_its_own_words",
      {WRITE(A, 1), WAIT(20000), RECEIVE("01 06 02 00 00 05 48 71"), ENDS(A, FATHOM_OK)},
      {.responses = 1}},
@@ -146,35 +190,6 @@ static const conversation_t conversations[] = {
 };
 CONVERSATIONS(set_up, conversations)
 
-TEST(a_request_is_sent_after_the_silence_and_not_before)
-{
-    ask_1(0);
-    run_in_steps(T3_5_US - 6, 10); /* 3640 */
-    expect_written(0);
-    run_in_steps(10, 10);
-    expect_written(1);
-    expect_bytes(0, ask_1_processed, sizeof ask_1_processed);
-}
-
-TEST_IN(asked, the_response_is_ready_in_the_poll_that_brings_its_last_byte)
-{
-    receive_all(response_1_754);
-    expect(FATHOM_PENDING);
-    poll_line();
-    expect_mm(754);
-    expect_count(FATHOM_LINE_RESPONSES, 1);
-}
-
-TEST_IN(asked, a_response_that_comes_a_byte_at_a_time_is_complete_with_the_last)
-{
-    for (size_t i = 0; i != sizeof response_1_754; i++) {
-        expect_failed(FATHOM_PENDING);
-        receive(response_1_754 + i, 1);
-        run(BYTE_US);
-    }
-    expect_mm(754);
-}
-
 TEST(every_cut_of_a_response_into_two_reads_is_put_together)
 {
     for (size_t cut = 1; cut != sizeof response_1_754; cut++) {
@@ -208,15 +223,6 @@ TEST(an_exception_ends_the_transaction_and_keeps_its_number)
     assert_int_equal(bench.request.message.exception, 2);
     assert_int_equal(bench.value, 0xDEAD);
     expect_count(FATHOM_LINE_EXCEPTIONS, 1);
-}
-
-TEST_IN(asked, a_transaction_may_be_submitted_again_when_it_has_ended_and_not_before)
-{
-    assert_int_equal(fathom_modbus_client_submit(&bench.line, &bench.request), FATHOM_ERR_BUSY);
-    response_1(111);
-    ask_1(0);
-    expect_written_after(20000, 2);
-    response_1(112);
 }
 
 /* ---- time ---- */
@@ -287,44 +293,7 @@ TEST_IN(asked, a_transaction_cancelled_in_flight_leaves_a_response_that_is_not_t
     response_other(1, 751);
 }
 
-/* The poll that finds the port broken is the first after the request was handed over. */
-TEST(a_silence_comes_before_the_next_request_where_the_port_broke_while_one_left)
-{
-    ask_1(0);
-    while (bench.fake.written == 0) run(100);
-    break_port();
-    expect(FATHOM_ERR_PORT);
-    bench.fake.busy_until_us = bench.fake.now_us;
-    ask_other(2);
-    expect_sent(T3_5_US - 400, 1000);
-}
-
 /* ---- due ---- */
-
-TEST(due_says_when_something_can_happen_without_new_bytes)
-{
-    poll_line();
-    expect_due(FATHOM_NO_DEADLINE);
-    ask_1(0);
-    expect_due(T3_5_US);
-    bench.fake.now_us += 646;
-    expect_due(3000);
-    run_in_steps(3000, 3000);
-    expect_written(1);
-    expect_due(1000); /* sending */
-    run_in_steps(9000, 9000);
-    expect_due(TIMEOUT_US);
-    receive(response_1_754, 4);
-    poll_line();
-    expect_due(GAP_US); /* the rest of the frame, or its end */
-    run_in_steps(GAP_US, GAP_US);
-    expect(FATHOM_ERR_CHECKSUM);
-    expect_due(FATHOM_NO_DEADLINE);
-    ask_1(0);
-    expect_due(2 * TIMEOUT_US - GAP_US); /* quarantined */
-    bench.fake.now_us += 2 * TIMEOUT_US;
-    expect_due(0);
-}
 
 /* Sleeping as long as due says, and no longer, must never miss anything: every outcome comes at the same time
  * as with polling all the time. */

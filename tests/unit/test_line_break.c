@@ -11,6 +11,21 @@ static const suite_t suite = {.set_up = set_up};
 
 #define RESPONDS "01 03 02 02 F2 38 A1" /* 754 mm */
 
+enum { FOR_EVER = -1 };
+
+static void refuse(int times, int how)
+{
+    bench.fake.refusals = times;
+    bench.fake.refusal = how;
+}
+
+#define REFUSES(times, how) STEP(refuses, .value = (times), .which = ((how) < 0)) /* 0: busy; -1: broken */
+#define REFUSES_BEGIN       STEP(refuses_begin, .which = 0)
+static void play_refuses(const step_t *step) { refuse((int)step->value, -(int)step->which); }
+#define REFUSALS(left) STEP(refusals, .value = (left))
+static void play_refusals(const step_t *step) { assert_int_equal(bench.fake.refusals, step->value); }
+static void play_refuses_begin(const step_t *step) { bench.fake.refuses_begin = true; }
+
 static const conversation_t conversations[] = {
     {"a_break_holds_tx_low_until_it_is_ended",
      {HOLD(true), IN_BREAK(true), HOLD(true), WAIT(100000), IN_BREAK(true), HOLD(false), IN_BREAK(false)},
@@ -56,18 +71,24 @@ static const conversation_t conversations[] = {
       ARRIVE("55 01 03 02"), WAIT(1000), HEARD("55", 1), HOLD(true), HOLD(false), WAIT(GAP_US + 1000),
       HEARD("55 01 03 02", 1)},
      {.no_responses = 1}},
+    {"a_break_that_cannot_begin_once_more_goes_on_and_what_waits_goes_on_waiting",
+     {HOLD(true), QUEUE(A, 1), REFUSES_BEGIN, REFUSES(1, -1), BREAK(true, FATHOM_ERR_PORT),
+      COUNT(PORT_ERRORS, 0), WAIT(T3_5_US + 200), WRITTEN(0), PENDS(A)},
+     {0}},
+    /* with a request on the wire the port is not even asked */
+    {"where_there_is_no_break_a_refused_end_changes_nothing",
+     {QUEUE(A, 1), REFUSES(1, 0), BREAK(false, FATHOM_PENDING), REFUSES(1, -1), BREAK(false, FATHOM_ERR_PORT),
+      SENT(0, T3_5_US + 200), REFUSES(1, -1), HOLD(false), REFUSALS(1)},
+     {0}},
+    {"a_break_that_begins_anew_gives_its_end_a_second_anew",
+     {HOLD(true), REFUSES(FOR_EVER, 0), BREAK(false, FATHOM_PENDING), HOLD(true), WAIT(2000000),
+      BREAK(false, FATHOM_PENDING), PASS(999999), BREAK(false, FATHOM_PENDING), PASS(1),
+      BREAK(false, FATHOM_ERR_PORT)},
+     {.port_errors = 1}},
 };
 CONVERSATIONS(set_up, conversations)
 
 /* ---- a port that refuses ---- */
-
-enum { FOR_EVER = -1 };
-
-static void refuse(int times, int how)
-{
-    bench.fake.refusals = times;
-    bench.fake.refusal = how;
-}
 
 static fathom_status_t end(void) { return fathom_line_break(&bench.line, false); }
 
@@ -87,17 +108,6 @@ TEST(a_port_that_cannot_or_is_broken_says_so)
     assert_int_equal(hold_low(), FATHOM_ERR_UNSUPPORTED);
     ask_1(0);
     expect_written_after(T3_5_US + 100, 1);
-}
-
-TEST(a_break_that_cannot_begin_once_more_goes_on_and_what_waits_goes_on_waiting)
-{
-    hold_and_ask();
-    bench.fake.refuses_begin = true;
-    refuse(1, -1);
-    assert_int_equal(hold_low(), FATHOM_ERR_PORT);
-    expect_count(FATHOM_LINE_PORT_ERRORS, 0);
-    expect_written_after(T3_5_US + 200, 0);
-    expect(FATHOM_PENDING);
 }
 
 TEST(the_end_of_a_break_is_asked_for_until_the_port_takes_it)
@@ -139,20 +149,6 @@ TEST(a_break_that_the_port_does_not_end_in_a_second_is_an_error_of_all_that_wait
     expect_written(0);
 }
 
-TEST(a_break_that_begins_anew_gives_its_end_a_second_anew)
-{
-    hold(true);
-    refuse(FOR_EVER, 0);
-    assert_int_equal(end(), FATHOM_PENDING);
-    hold(true);
-    run_in_steps(2000000, 1000);
-    assert_int_equal(end(), FATHOM_PENDING);
-    bench.fake.now_us += 999999;
-    assert_int_equal(end(), FATHOM_PENDING);
-    bench.fake.now_us++;
-    assert_int_equal(end(), FATHOM_ERR_PORT);
-}
-
 /* A USB adapter may have failed for a moment, and holds TX low still: in a read, or when the break was to end. */
 TEST(no_request_is_written_into_a_break_in_which_the_port_failed)
 {
@@ -175,18 +171,4 @@ TEST(no_request_is_written_into_a_break_in_which_the_port_failed)
         hold(false);
         expect_sent(T3_5_US - 100, 200);
     }
-}
-
-TEST(where_there_is_no_break_a_refused_end_changes_nothing)
-{
-    ask_1(0);
-    refuse(1, 0);
-    assert_int_equal(end(), FATHOM_PENDING);
-    refuse(1, -1);
-    assert_int_equal(end(), FATHOM_ERR_PORT);
-    expect_count(FATHOM_LINE_PORT_ERRORS, 0);
-    expect_written_after(T3_5_US + 200, 1);
-    refuse(1, -1); /* with a request on the wire the port is not even asked */
-    hold(false);
-    assert_int_equal(bench.fake.refusals, 1);
 }

@@ -1,26 +1,19 @@
 /* SPDX-License-Identifier: MIT */
-#include "line_bench.h"
-
 #include "fathom/sensor/a16_auto.h"
+#include "line_conversation.h"
 
 /* A program that sleeps for as long as fathom_line_due_us says makes progress with every sleep. */
-
-/* Half of the response came in time, and its time is over. */
-static void receive_half_in_time(void)
-{
-    ask_1_and_send(0);
-    run(TIMEOUT_US - 2000);
-    receive(response_1_754, 4);
-    run_in_steps(3000, 1000);
-    expect(FATHOM_PENDING);
-}
 
 static const suite_t suite = {.set_up = set_up};
 
 /* Of a response that began in time half has come when the time-out is over: what is next is a byte, or the gap. */
 TEST(a_response_that_has_begun_when_its_time_is_over_is_waited_for_until_the_gap)
 {
-    receive_half_in_time();
+    ask_1_and_send(0);
+    run(TIMEOUT_US - 2000);
+    receive(response_1_754, 4);
+    run_in_steps(3000, 1000);
+    expect(FATHOM_PENDING);
     assert_in_range(due(), 1, GAP_US);
     deliver(response_1_754 + 4, 3);
     expect_mm(754);
@@ -28,7 +21,11 @@ TEST(a_response_that_has_begun_when_its_time_is_over_is_waited_for_until_the_gap
 
 TEST(a_response_that_has_broken_off_when_its_time_is_over_ends_when_it_is_due)
 {
-    receive_half_in_time();
+    ask_1_and_send(0);
+    run(TIMEOUT_US - 2000);
+    receive(response_1_754, 4);
+    run_in_steps(3000, 1000);
+    expect(FATHOM_PENDING);
     const uint32_t due_us = due();
     run_in_steps(due_us, due_us);
     expect(FATHOM_ERR_CHECKSUM);
@@ -61,71 +58,48 @@ TEST(without_a_time_out_it_is_due_at_once)
 
 /* ---- while the request leaves; hal.h: leaves_in_us ---- */
 
-/* It has been taken at most 100 us ago, and the port says how long it takes. */
-static void begin_to_send(void)
-{
-    bench.fake.uart.leaves_in_us = fake_leaves_in_us;
-    bench.fake.leaves_in_us = 8 * BYTE_US;
-    ask_1(0);
-    expect_written_after(T3_5_US + 200, 1);
-}
+#define BEGINS_TO_SEND(in_us) LEAVES_IN(in_us), QUEUE(A, 1), SENT(0, T3_5_US + 200)
 
-static int set_up_leaving(void **state)
-{
-    set_up(state);
-    begin_to_send();
-    return 0;
-}
-
-static const suite_t leaving = {.set_up = set_up_leaving};
-
-/* "from now": also where much time has passed since the last poll. */
-TEST_IN(leaving, a_port_that_says_when_the_request_has_left_is_asked_again_right_then)
-{
-    expect_due(8 * BYTE_US);
-    bench.fake.now_us += 3 * BYTE_US;
-    bench.fake.leaves_in_us = 5 * BYTE_US;
-    expect_due(5 * BYTE_US);
-    run_in_steps(5 * BYTE_US, 5 * BYTE_US);
-    expect_due(TIMEOUT_US); /* it has seen that the request has left */
-}
-
-/* 255 bytes of 11 bits at 9600 baud are 292 ms. */
-TEST_IN(leaving, a_long_request_may_take_longer_than_65_ms)
-{
-    bench.fake.leaves_in_us = 292188;
-    expect_due(292188);
-}
-
-TEST_IN(leaving, one_that_does_not_know_is_asked_each_millisecond)
-{
-    bench.fake.uart.leaves_in_us = NULL;
-    poll_line();
-    expect_due(1000);
-    bench.fake.now_us += 400;
-    expect_due(600);
-}
-
-/* "0: they have left, or should have; as long as `sent` is false all the same, the line looks each millisecond": a
- * microsecond that was rounded away is no busy loop. */
-TEST_IN(leaving, one_that_says_0_while_it_sends_all_the_same_is_asked_each_millisecond)
-{
-    bench.fake.leaves_in_us = 0;
-    bench.fake.never_sent = true;
-    for (int i = 0; i != 3; i++) {
-        run_in_steps(1000, 1000);
-        expect_due(1000);
-    }
-    bench.fake.never_sent = false;
-    run_in_steps(8 * BYTE_US, 8 * BYTE_US);
-    expect_due(TIMEOUT_US);
-}
+static const conversation_t conversations[] = {
+    /* "from now": also where much time has passed since the last poll; then the line has seen that the request has left */
+    {"a_port_that_says_when_the_request_has_left_is_asked_again_right_then",
+     {BEGINS_TO_SEND(8 * BYTE_US), DUE(8 * BYTE_US), PASS(3 * BYTE_US), LEAVES_IN(5 * BYTE_US),
+      DUE(5 * BYTE_US), POLL_AFTER(5 * BYTE_US), DUE(TIMEOUT_US)},
+     {0}},
+    /* 255 bytes of 11 bits at 9600 baud are 292 ms */
+    {"a_long_request_may_take_longer_than_65_ms",
+     {BEGINS_TO_SEND(8 * BYTE_US), LEAVES_IN(292188), DUE(292188)},
+     {0}},
+    {"a_port_that_does_not_know_when_the_request_has_left_is_asked_each_millisecond",
+     {QUEUE(A, 1), SENT(0, T3_5_US + 200), POLL, DUE(1000), PASS(400), DUE(600)},
+     {0}},
+    /* "0: they have left, or should have; as long as `sent` is false all the same, the line looks each millisecond": a
+     * microsecond that was rounded away is no busy loop */
+    {"a_port_that_says_0_while_it_sends_all_the_same_is_asked_each_millisecond",
+     {BEGINS_TO_SEND(0), NEVER_SENT(true), POLL_AFTER(1000), DUE(1000), POLL_AFTER(1000), DUE(1000),
+      POLL_AFTER(1000), DUE(1000), NEVER_SENT(false), POLL_AFTER(8 * BYTE_US), DUE(TIMEOUT_US)},
+     {0}},
+    /* bytes of the port may keep it from taking the request */
+    {"a_port_that_takes_no_request_is_asked_again_when_it_has_sent",
+     {LEAVES_IN(3 * BYTE_US), PORT_REFUSES(true), QUEUE(A, 1), WAIT(T3_5_US + 200), DUE(3 * BYTE_US),
+      PORT_REFUSES(false), POLL_AFTER(3 * BYTE_US), WRITTEN(1)},
+     {0}},
+    /* the next request needs a silence of 3646 us, and an empty frame */
+    {"with_a_part_of_a_late_response_the_next_request_is_due_after_the_gap",
+     {QUEUE(A, 1), POLL_AFTER(T3_5_US), POLL_AFTER(8 * BYTE_US), DUE(TIMEOUT_US), POLL_AFTER(TIMEOUT_US),
+      FAILS(A, NO_RESPONSE), ARRIVE("01 03 02 02"), POLL, QUEUE(B, 2), DUE(GAP_US), POLL_AFTER(GAP_US - 1),
+      WRITTEN(1), POLL_AFTER(1), WRITTEN(2)},
+     {.no_responses = 1, .dropped = 4}},
+};
+CONVERSATIONS(set_up, conversations)
 
 /* The clock turns to 0 while the request leaves: it stands 256 us before that when it has begun. */
 TEST(when_the_request_has_left_is_right_across_the_wrap_of_the_clock)
 {
     bench.fake.now_us = (uint32_t)0 - (T3_5_US + 200) - 256;
-    begin_to_send();
+    play_leaves_in(&(step_t){.us = 8 * BYTE_US});
+    ask_1(0);
+    expect_written_after(T3_5_US + 200, 1);
     expect_due(8 * BYTE_US);
     bench.fake.now_us += 2 * BYTE_US;
     assert_in_range(bench.fake.now_us, 0, 2 * BYTE_US);
@@ -134,46 +108,7 @@ TEST(when_the_request_has_left_is_right_across_the_wrap_of_the_clock)
     expect_due(TIMEOUT_US);
 }
 
-/* What keeps it from taking this request may be bytes of its own that leave. */
-TEST(a_port_that_takes_no_request_is_asked_again_when_it_has_sent)
-{
-    bench.fake.uart.leaves_in_us = fake_leaves_in_us;
-    bench.fake.leaves_in_us = 3 * BYTE_US;
-    bench.fake.write_busy = true;
-    ask_1(0);
-    run(T3_5_US + 200);
-    expect_due(3 * BYTE_US);
-    bench.fake.write_busy = false;
-    run_in_steps(3 * BYTE_US, 3 * BYTE_US);
-    expect_written(1);
-}
-
 /* ---- bytes that wait ---- */
-
-/* Asks unit 1; the request leaves with the last poll. */
-static void send(void)
-{
-    ask_1(0);
-    run_in_steps(T3_5_US, T3_5_US);
-    run_in_steps(8 * BYTE_US, 8 * BYTE_US);
-    expect_due(TIMEOUT_US);
-}
-
-/* The same of a late response, while another request waits: that needs a silence of 3646 us, and an empty frame. */
-TEST(with_a_part_of_a_late_response_the_next_request_is_due_after_the_gap)
-{
-    send();
-    run_in_steps(TIMEOUT_US, TIMEOUT_US);
-    expect(FATHOM_ERR_NO_RESPONSE);
-    receive(response_1_754, 4);
-    poll_line();
-    ask_other(2);
-    expect_due(GAP_US);
-    run_in_steps(GAP_US - 1, GAP_US - 1);
-    expect_written(1);
-    run_in_steps(1, 1);
-    expect_written(2);
-}
 
 /* sensor.h: "how long from now until any of the sensors has something to do": a frame that waits cannot be given while
  * the line holds back what came behind it, which may begin the response. This is an A16 that sends by itself. */
@@ -183,7 +118,10 @@ static fathom_sensor_t listening(uint32_t stale_us, const char *hex)
 {
     const fathom_a16_auto_config_t config = {.stale_us = stale_us};
     fathom_sample_t sample;
-    send();
+    ask_1(0);
+    run_in_steps(T3_5_US, T3_5_US);
+    run_in_steps(8 * BYTE_US, 8 * BYTE_US);
+    expect_due(TIMEOUT_US); /* the request has left with the last poll */
     assert_int_equal(fathom_a16_auto_init(&automatic, &bench.line, &config), FATHOM_OK);
     const fathom_sensor_t sensor = fathom_a16_auto_sensor(&automatic);
     run_in_steps(10000, 10000);

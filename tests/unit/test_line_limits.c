@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "line_bench.h"
+#include "line_conversation.h"
 
 /* The figures of line.h and hal.h, to the microsecond and to the byte. */
 
@@ -12,57 +12,40 @@ static fathom_status_t after(uint32_t us)
     return fathom_line_poll(&bench.line);
 }
 
-/* fathom_line_parts_t: "silence_us ... 0: 4011". */
-TEST(the_default_silence_is_4011_us)
+#define GAP(new_us)        STEP(gap, .us = (new_us)) /* of the config */
+#define WRITE_WITHOUT_TIME STEP(write_without_time, .which = A)
+
+static void play_gap(const step_t *step) { bench.config.gap_us = (uint16_t)step->us; }
+
+/* A write to all units that waits for nothing. */
+static void play_write_without_time(const step_t *step)
 {
-    bench.config.silence_us = 0;
-    ask_1(0);
-    after(4010);
-    expect_written(0);
-    after(1);
-    expect_written(1);
+    fathom_modbus_write_single_register(&request_of(step)->message, 0, 0x0200, 5);
+    request_of(step)->transaction.timeout_us = 0;
+    assert_int_equal(fathom_modbus_client_submit(&bench.line, request_of(step)), FATHOM_PENDING);
 }
 
-/* silent_us stops at 65535, which is the longest silence that a config can name. */
-TEST(the_longest_silence_of_a_config_is_kept_and_over)
-{
-    bench.config.silence_us = 65535;
-    ask_1(0);
-    after(65534);
-    expect_written(0);
-    after(1);
-    expect_written(1);
-}
-
-/* fathom_line_parts_t: "more than a slow sender or a slow port pauses: 25000 behind an operating system". */
-TEST(a_pause_shorter_than_the_gap_of_the_config_does_not_end_a_response)
-{
-    bench.config.gap_us = 25000;
-    ask_1_and_send(0);
-    receive(response_1_754, 4);
-    after(100);
-    after(24999);
-    receive(response_1_754 + 4, 3);
-    after(0);
-    expect(FATHOM_OK);
-}
-
-/* The silence counts from the poll that finds the request sent, also where nothing is to be waited for. */
-TEST(the_silence_after_a_broadcast_is_kept_to_its_end)
-{
-    fathom_modbus_write_single_register(&bench.request.message, 0, 0x0200, 5);
-    bench.request.transaction.timeout_us = 0;
-    assert_int_equal(fathom_modbus_client_submit(&bench.line, &bench.request), FATHOM_PENDING);
-    ask_other(2);
-    after(T3_5_US);
-    expect_written(1);
-    after(8 * BYTE_US); /* sent */
-    after(T3_5_US - 1);
-    expect(FATHOM_OK);
-    expect_written(1);
-    after(1);
-    expect_written(2);
-}
+static const conversation_t conversations[] = {
+    /* fathom_line_parts_t: "silence_us ... 0: 4011" */
+    {"the_default_silence_is_4011_us",
+     {SILENCE(0), QUEUE(A, 1), POLL_AFTER(4010), WRITTEN(0), POLL_AFTER(1), WRITTEN(1)},
+     {0}},
+    /* silent_us stops at 65535, which is the longest silence that a config can name */
+    {"the_longest_silence_of_a_config_is_kept_and_over",
+     {SILENCE(65535), QUEUE(A, 1), POLL_AFTER(65534), WRITTEN(0), POLL_AFTER(1), WRITTEN(1)},
+     {0}},
+    /* fathom_line_parts_t: "more than a slow sender or a slow port pauses: 25000 behind an operating system" */
+    {"a_pause_shorter_than_the_gap_of_the_config_does_not_end_a_response",
+     {GAP(25000), ASK(A, 1), ARRIVE("01 03 02 02"), POLL_AFTER(100), POLL_AFTER(24999), ARRIVE("F2 38 A1"),
+      POLL, READS(A, 754)},
+     {.responses = 1}},
+    /* the silence counts from the poll that finds the request sent, also where nothing is to be waited for */
+    {"the_silence_after_a_broadcast_is_kept_to_its_end",
+     {WRITE_WITHOUT_TIME, QUEUE(B, 2), POLL_AFTER(T3_5_US), WRITTEN(1), POLL_AFTER(8 * BYTE_US),
+      POLL_AFTER(T3_5_US - 1), ENDS(A, FATHOM_OK), WRITTEN(1), POLL_AFTER(1), WRITTEN(2)},
+     {0}},
+};
+CONVERSATIONS(set_up, conversations)
 
 /* FATHOM_LINE_SEND_US: "how long a port may refuse a request, or take to send it, before it counts as broken"; and
  * fathom_line_poll: "FATHOM_ERR_PORT: the port is broken", in that very call. */
@@ -132,46 +115,24 @@ TEST(a_time_out_over_the_longest_is_refused_and_not_cut)
 
 /* ---- long frames ---- */
 
-static uint8_t long_frame[255];
-static uint16_t registers[125];
-
-static void set_up_long(void)
+/* 123 registers: 9 + 246 = 255. hal.h: write returns the length, which is an int. The CRC of the response was worked out
+ * apart, bit by bit. */
+TEST(a_request_of_255_bytes_goes_out_and_is_acknowledged)
 {
+    static uint8_t long_frame[255];
+    static uint16_t registers[123];
     bench.config.frame = long_frame;
     bench.config.frame_size = sizeof long_frame;
-    bench.request.transaction.timeout_us = TIMEOUT_US;
-}
-
-static void add_crc(uint8_t *frame, size_t length)
-{
-    uint16_t crc = 0xFFFF;
-    for (size_t i = 0; i != length; i++) {
-        crc ^= frame[i];
-        for (unsigned bit = 0; bit != 8; bit++)
-            crc = (uint16_t)((crc & 1) != 0 ? crc >> 1 ^ 0xA001 : crc >> 1);
-    }
-    frame[length] = (uint8_t)crc;
-    frame[length + 1] = (uint8_t)(crc >> 8);
-}
-
-/* 60 registers: 9 + 120 = 129 bytes; 123 registers: 9 + 246 = 255. hal.h: write returns the length, which is an int. */
-static void write_many(uint8_t count, size_t length)
-{
-    uint8_t acknowledged[8] = {1, 0x10, 0x01, 0x00, 0x00, count};
-    set_up_long();
-    add_crc(acknowledged, 6);
-    fathom_modbus_write_multiple_registers(&bench.request.message, 1, 0x0100, count, registers);
-    assert_int_equal(fathom_modbus_client_submit(&bench.line, &bench.request), FATHOM_PENDING);
+    fathom_modbus_write_multiple_registers(&bench.request.message, 1, 0x0100, 123, registers);
+    submit(&bench.request);
     assert_int_equal(after(T3_5_US), FATHOM_PENDING);
     expect_written(1);
-    assert_int_equal(bench.fake.writes[0].length, length);
-    after((uint32_t)length * BYTE_US);
-    receive(acknowledged, sizeof acknowledged);
+    assert_int_equal(bench.fake.writes[0].length, 255);
+    after(255 * BYTE_US);
+    receive_hex("01 10 01 00 00 7B 81 D6");
     after(100);
     expect(FATHOM_OK);
 }
-
-TEST(a_request_of_255_bytes_goes_out_and_is_acknowledged) { write_many(123, 255); }
 
 /* ---- a port of the test's own ---- */
 

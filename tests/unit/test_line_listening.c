@@ -31,12 +31,21 @@ static int set_up_bare(void **state)
     return 0;
 }
 
-static const suite_t suite = {.set_up = set_up_listening};
-static const suite_t bare = {.set_up = set_up_bare};
+static const suite_t suite = {.set_up = set_up_bare};
 
 #define FRAME "FF 07 A1 A7" /* of an A16 that sends by itself */
 
+#define MARKS STEP(marks, .which = 0)
+static void play_marks(const step_t *step) { bench.config.marks = fathom_line_marks; }
+
 static const conversation_t listening[] = {
+    {"a_line_that_only_listens_hands_over_what_comes_with_the_silence_before_it",
+     {LISTEN(5000), WAIT(6000), RECEIVE(FRAME), RECEIVE("01 83 02 C0 F1"), HEARD(FRAME " 01 83 02 C0 F1", 1),
+      GAP_AT(0), IDLE(true)},
+     {0}},
+    {"a_line_that_only_listens_tells_of_lost_bytes_once",
+     {MARKS, LISTEN(5000), RECEIVE_WITH(FRAMING, FRAME), HEARD("", 0), LOST_AT(0, 1)},
+     {0}},
     {"a_line_that_only_listens_hands_over_each_byte_as_it_comes",
      {LISTEN(5000), RECEIVE("FF"), HEARD("FF", 0)},
      {0}},
@@ -53,6 +62,11 @@ static const conversation_t listening[] = {
 CONVERSATIONS(set_up_listening, listening)
 
 static const conversation_t without_parts[] = {
+    /* here an echo where there was to be none */
+    {"what_is_told_of_an_echo_stays",
+     {ASK(A, 1), ARRIVE("01 03 01 00 00 01 85 F6"), RECEIVE("01 03 02 02 F2 38 A1"), READS(A, 754),
+      ECHO_IS(OFF), BREAK_PORT, ECHO_IS(OFF)},
+     {0}},
     {"without_its_parts_a_line_ends_a_transaction_by_an_exception",
      {ASK(A, 1), RECEIVE("01 83 02 C0 F1"), FAILS(A, EXCEPTION)},
      {0}},
@@ -65,31 +79,8 @@ static const conversation_t without_parts[] = {
 };
 CONVERSATIONS(set_up_bare, without_parts)
 
-TEST(a_line_that_only_listens_hands_over_what_comes_with_the_silence_before_it)
-{
-    listen_for(5000);
-    run(6000);
-    deliver_all(auto_frame);
-    deliver_all(exception_1_2);
-    expect_heard(auto_frame, sizeof auto_frame, exception_1_2, sizeof exception_1_2);
-    assert_int_equal(bench_listener.gaps, 1);
-    assert_int_equal(bench_listener.gap_at, 0);
-    assert_int_equal(bench_listener.time_us, bench.fake.now_us);
-    assert_true(fathom_line_is_idle(&bench.line));
-}
-
-TEST(a_line_that_only_listens_tells_of_lost_bytes_once)
-{
-    bench.config.marks = fathom_line_marks;
-    listen_for(5000);
-    receive_rx(auto_frame, sizeof auto_frame, FATHOM_RX_FRAMING);
-    run(100);
-    assert_int_equal(bench_listener.calls, 1);
-    assert_int_equal(bench_listener.losses, 1);
-}
-
 /* Marks of the port count where they are named: the bytes are the CRC's to judge. */
-TEST_IN(bare, without_marks_the_bytes_that_the_port_marks_are_as_any_other)
+TEST(without_marks_the_bytes_that_the_port_marks_are_as_any_other)
 {
     static const uint8_t flags[] = {FATHOM_RX_PARITY, FATHOM_RX_FRAMING, FATHOM_RX_OVERRUN,
                                     FATHOM_RX_SILENCE};
@@ -103,20 +94,8 @@ TEST_IN(bare, without_marks_the_bytes_that_the_port_marks_are_as_any_other)
     }
 }
 
-/* A line that is told stays told, whatever comes: here an echo where there was to be none. */
-TEST_IN(bare, what_is_told_of_an_echo_stays)
-{
-    ask_1_and_send(0);
-    receive_all(ask_1_processed);
-    deliver_all(response_1_754);
-    expect_mm(754);
-    assert_int_equal(fathom_line_get_echo(&bench.line), FATHOM_LINE_ECHO_OFF);
-    break_port();
-    assert_int_equal(fathom_line_get_echo(&bench.line), FATHOM_LINE_ECHO_OFF);
-}
-
 /* fathom_modbus_client_submit: "A read of unit 0: FATHOM_ERR_UNSUPPORTED". */
-TEST_IN(bare, a_client_without_unit_0_does_not_read_it)
+TEST(a_client_without_unit_0_does_not_read_it)
 {
     fathom_modbus_read_holding_registers(&bench.request.message, 0, 0x0100, 1, &bench.value);
     assert_int_equal(fathom_modbus_client_submit(&bench.line, &bench.request), FATHOM_ERR_UNSUPPORTED);
@@ -126,7 +105,7 @@ TEST_IN(bare, a_client_without_unit_0_does_not_read_it)
 
 /* A 55 AA frame of unit 1, which is quarantined after a request in Modbus: it is late, and not that response, though
  * it is one to a read of the same register. */
-TEST_IN(bare, a_late_frame_of_another_protocol_is_not_the_response)
+TEST(a_late_frame_of_another_protocol_is_not_the_response)
 {
     ask_dyp(&bench.other, 1, 1, &bench.other_value);
     run(REQUEST_US + TIMEOUT_US);

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-#include "line_bench.h"
-
 #include "fathom/engine/line_turns.h"
+#include "line_conversation.h"
 
 /* A program's own policy: the highest unit goes first, and unit 1 not before it is let go. */
 
@@ -17,6 +16,7 @@ static struct {
     uint32_t ms; /* from the start */
 } calls[8];
 static size_t call_count;
+static size_t looked_at;
 
 static void tell(char what, uint8_t unit, uint32_t at_us)
 {
@@ -25,18 +25,6 @@ static void tell(char what, uint8_t unit, uint32_t at_us)
     calls[call_count].unit = unit;
     calls[call_count++].ms = (at_us - start_us) / 1000;
 }
-
-/* The next thing that it was told. */
-static size_t looked_at;
-static void expect_call(char what, uint8_t unit, uint32_t ms)
-{
-    assert_true(looked_at != call_count);
-    assert_int_equal(calls[looked_at].what, what);
-    assert_int_equal(calls[looked_at].unit, unit);
-    assert_int_equal(calls[looked_at++].ms, ms);
-}
-
-#define expect_no_more() assert_int_equal(looked_at, call_count)
 
 static void asked(fathom_line_turns_t *policy, uint8_t unit, uint32_t at_us)
 {
@@ -78,86 +66,59 @@ static int begin(void **state)
 
 static const suite_t suite = {.set_up = begin};
 
-TEST(the_policy_says_who_goes_next_and_hears_who_asked_and_who_has_ended)
+/* The next thing that the policy was told; and there was nothing else. */
+#define CALLED(what, id, at_ms) STEP(called, .which = (what), .unit = (id), .us = (at_ms))
+#define NO_MORE                 STEP(no_more, .which = 0)
+#define HOLDS_1(on)             STEP(holds_1, .which = (on))
+#define DUE_AFTER_QUARANTINE    STEP(due_after_quarantine, .which = 0)
+#define BUSY_US(new_us)         STEP(busy_us, .us = (new_us))
+
+static void play_called(const step_t *step)
 {
-    ask_1(0);
-    ask_other(9);
-    run(REQUEST_US);
-    expect_unit(0, 9);
-    run(17900 - REQUEST_US);
-    response_other(9, 222);
-    run(REQUEST_US);
-    expect_unit(1, 1);
-    response_1(754);
-    expect_call(ASKED, 1, 0);
-    expect_call(ASKED, 9, 0);
-    expect_call(ENDED, 9, 18);
-    expect_call(ENDED, 1, 30); /* 3.6 ms of silence and 8.3 of request later */
-    expect_no_more();
+    assert_true(looked_at != call_count);
+    assert_int_equal(calls[looked_at].what, step->which);
+    assert_int_equal(calls[looked_at].unit, step->unit);
+    assert_int_equal(calls[looked_at++].ms, step->us);
 }
 
-TEST(what_it_holds_back_is_due_when_it_says)
-{
-    holds_1 = true;
-    ask_1(0);
-    run(50000);
-    expect_written(0);
-    expect_due(12345);
-    ask_other(9);
-    expect_due(0);
-    poll_line();
-    expect_unit(0, 9);
-    holds_1 = false;
-    run(8 * BYTE_US);
-    response_other(9, 222);
-    run(REQUEST_US);
-    expect_unit(1, 1);
-}
+static void play_no_more(const step_t *step) { assert_int_equal(looked_at, call_count); }
+static void play_holds_1(const step_t *step) { holds_1 = step->which != 0; }
+static void play_due_after_quarantine(const step_t *step) { expect_due(bench.line.quarantine_left_us); }
+static void play_busy_us(const step_t *step) { bench.config.busy_us = step->us; }
 
-TEST(an_attempt_that_ends_and_is_tried_again_has_ended_too)
-{
-    ask_1_and_send(1);
-    run(TIMEOUT_US + 200);
-    expect(FATHOM_PENDING);
-    expect_call(ASKED, 1, 0);
-    expect_call(ENDED, 1, 112);
-    expect_no_more();
-    expect_due(bench.line.quarantine_left_us);
-    run(TIMEOUT_US + REQUEST_US);
-    expect_written(2);
-    break_port();
-    expect(FATHOM_ERR_PORT);
-    poll_line();
-    expect_call(ENDED, 1, 225); /* where the port was seen to be broken: 112.5 and 112.4 ms */
-    expect_no_more();
-}
-
-TEST(what_is_cancelled_on_the_wire_has_ended_and_what_only_waits_has_not)
-{
-    ask_1_and_send(0);
-    ask_other(9);
-    cancel(&bench.other);
-    poll_line();
-    expect_call(ASKED, 1, 0);
-    expect_no_more();
-    cancel(&bench.request);
-    poll_line();
-    expect_call(ENDED, 1, 12);
-    expect_no_more();
-}
-
-TEST(a_request_that_is_cancelled_before_the_next_poll_has_been_on_the_wire)
-{
-    ask_1(0);
-    bench.fake.now_us += T3_5_US;
-    poll_line();
-    expect_written(1);
-    cancel(&bench.request);
-    poll_line();
-    expect_call(ASKED, 1, 0);
-    expect_call(ENDED, 1, 3);
-    expect_no_more();
-}
+static const conversation_t conversations[] = {
+    /* 3.6 ms of silence and 8.3 of request lie between 18 and 30 ms */
+    {"the_policy_says_who_goes_next_and_hears_who_asked_and_who_has_ended",
+     {QUEUE(A, 1), QUEUE(B, 9), WAIT(REQUEST_US), REQUEST_TO(0, 9), WAIT(17900 - REQUEST_US),
+      RESPONSE(9, 222), READS(B, 222), WAIT(REQUEST_US), REQUEST_TO(1, 1), RESPONSE(1, 754), READS(A, 754),
+      CALLED(ASKED, 1, 0), CALLED(ASKED, 9, 0), CALLED(ENDED, 9, 18), CALLED(ENDED, 1, 30), NO_MORE},
+     {.responses = 2}},
+    {"what_it_holds_back_is_due_when_it_says",
+     {HOLDS_1(true), QUEUE(A, 1), WAIT(50000), WRITTEN(0), DUE(12345), QUEUE(B, 9), DUE(0), POLL,
+      REQUEST_TO(0, 9), HOLDS_1(false), WAIT(8 * BYTE_US), RESPONSE(9, 222), READS(B, 222), WAIT(REQUEST_US),
+      REQUEST_TO(1, 1)},
+     {.responses = 1}},
+    /* the port was seen to be broken after 112.5 and 112.4 ms */
+    {"an_attempt_that_ends_and_is_tried_again_has_ended_too",
+     {ASK_TWICE(A, 1), WAIT(TIMEOUT_US + 200), PENDS(A), CALLED(ASKED, 1, 0), CALLED(ENDED, 1, 112), NO_MORE,
+      DUE_AFTER_QUARANTINE, WAIT(TIMEOUT_US + REQUEST_US), WRITTEN(2), BREAK_PORT, FAILS(A, PORT), POLL,
+      CALLED(ENDED, 1, 225), NO_MORE},
+     {.no_responses = 1, .port_errors = 1}},
+    {"what_is_cancelled_on_the_wire_has_ended_and_what_only_waits_has_not",
+     {ASK(A, 1), QUEUE(B, 9), CANCEL(B), POLL, CALLED(ASKED, 1, 0), NO_MORE, CANCEL(A), POLL,
+      CALLED(ENDED, 1, 12), NO_MORE},
+     {0}},
+    {"a_request_that_is_cancelled_before_the_next_poll_has_been_on_the_wire",
+     {QUEUE(A, 1), PASS(T3_5_US), POLL, WRITTEN(1), CANCEL(A), POLL, CALLED(ASKED, 1, 0), CALLED(ENDED, 1, 3),
+      NO_MORE},
+     {0}},
+    /* the policy lets it go, and it waits for its silence; then the policy holds it back, for 12345 us */
+    {"a_transaction_that_waited_for_silence_is_due_when_its_policy_or_busy_us_says_so",
+     {QUEUE(A, 1), WAIT(100), HOLDS_1(true), DUE(12345), BUSY_US(12000), CANCEL(A), HOLDS_1(false),
+      QUEUE(A, 1), WAIT(100), HOLDS_1(true), DUE(12000)},
+     {0}},
+};
+CONVERSATIONS(begin, conversations)
 
 /* Modulo 16 these are 14, 15 and 0. */
 TEST(each_that_asks_is_told_once)
@@ -169,25 +130,6 @@ TEST(each_that_asks_is_told_once)
     ask_other(15);
     ask(&third, 16, &value, 0);
     run(T3_5_US + 1000);
-    expect_call(ASKED, 14, 0);
-    expect_call(ASKED, 15, 0);
-    expect_call(ASKED, 16, 0);
-    expect_no_more();
-}
-
-/* A transaction that the policy lets go waits for its silence; then the policy holds it back, for 12345 us. */
-TEST(a_transaction_that_waited_for_silence_is_due_when_its_policy_or_busy_us_says_so)
-{
-    holds_1 = false;
-    ask_1(0);
-    run(100);
-    holds_1 = true;
-    expect_due(12345);
-    bench.config.busy_us = 12000;
-    cancel(&bench.request);
-    holds_1 = false;
-    ask_1(0);
-    run(100);
-    holds_1 = true;
-    expect_due(12000);
+    for (uint8_t unit = 14; unit <= 16; unit++) play_called(&(step_t){.which = ASKED, .unit = unit});
+    assert_int_equal(looked_at, call_count);
 }
