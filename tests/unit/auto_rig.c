@@ -5,12 +5,23 @@ enum { T3_5_US = 3646, GAP_US = 5000 };
 
 rig_t rig;
 
+static bool get_level(void *ctx)
+{
+    (void)ctx;
+    while (rig.edge != rig.edges && (int32_t)(rig.fake.now_us - rig.edges_us[rig.edge]) >= 0) {
+        rig.level = !rig.level;
+        rig.edge++;
+    }
+    return rig.level;
+}
+
 void rig_start(uint32_t now_us)
 {
     memset(&rig, 0, sizeof rig);
     fake_init(&rig.fake);
     rig.fake.now_us = now_us;
     rig.fake.busy_until_us = now_us;
+    rig.pin.get = get_level;
     rig.line_parts = (fathom_line_parts_t){.uart = &rig.fake.uart,
                                            .clock = &rig.fake.clock,
                                            .frame = rig.frame,
@@ -22,6 +33,19 @@ void rig_start(uint32_t now_us)
                                            .marks = fathom_line_marks,
                                            .senders = &fathom_line_senders};
     assert_int_equal(fathom_line_init(&rig.line, &rig.line_parts), FATHOM_OK);
+}
+
+void rig_turn(uint32_t in_us)
+{
+    assert_true(rig.edges < RIG_EDGES);
+    rig.edges_us[rig.edges++] = rig.fake.now_us + in_us;
+}
+
+void rig_expect(unsigned samples, uint8_t kind)
+{
+    assert_int_equal(rig.samples, samples);
+    assert_int_equal(rig.sample.kind, kind);
+    assert_int_equal(rig.sample.sequence, (uint16_t)samples);
 }
 
 fathom_status_t rig_poll(void)
@@ -113,4 +137,60 @@ void rig_hps_frame(uint8_t *frame, uint8_t address, uint16_t a, uint16_t b, uint
         frame[4 + 2 * i] = LOW(values[i]);
     }
     rig_hps_seal(frame);
+}
+
+controlled_t controlled;
+
+const uint8_t controlled_1953[4] = {0xFF, 0x07, 0xA1, 0xA7};
+const uint8_t controlled_511[4] = {0xFF, 0x01, 0xFF, 0xFF};
+
+fathom_status_t controlled_init(void)
+{
+    return fathom_a16_controlled_init(&controlled.a16, &rig.line, &controlled.trigger, &controlled.config);
+}
+
+void controlled_start_at(uint32_t now_us)
+{
+    rig_start(now_us);
+    fake_pin_init(&controlled.pin, &rig.fake);
+    memset(&controlled.a16, 0x5A, sizeof controlled.a16);
+    assert_int_equal(controlled_init(), FATHOM_OK);
+    rig.sensor = fathom_a16_controlled_sensor(&controlled.a16);
+}
+
+void controlled_start(void) { controlled_start_at(RIG_START_US); }
+
+int controlled_set_up(void **state)
+{
+    memset(&controlled.config, 0, sizeof controlled.config);
+    controlled.trigger = fathom_output_line_break(&rig.line);
+    controlled_start();
+    return 0;
+}
+
+void controlled_run_to_break(unsigned breaks, uint32_t step_us)
+{
+    for (unsigned polls = 0; rig.fake.breaks != breaks; polls++) {
+        assert_true(polls < 20000);
+        rig.fake.now_us += step_us;
+        rig_poll();
+    }
+}
+
+void controlled_response(const uint8_t frame[4], uint32_t after_us)
+{
+    fake_trickle(&rig.fake, after_us - FRAME_US, RIG_BYTE_US, frame, 4);
+}
+
+fathom_status_t controlled_outcome(uint32_t step_us)
+{
+    const unsigned breaks = rig.fake.breaks;
+    for (unsigned polls = 0; polls < 20000; polls++) {
+        rig.fake.now_us += step_us;
+        const fathom_status_t status = rig_poll();
+        if (status != FATHOM_PENDING) return status;
+        assert_int_equal(rig.fake.breaks, breaks);
+    }
+    fail_msg("nothing came of the trigger");
+    return FATHOM_PENDING;
 }

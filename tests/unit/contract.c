@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "contract.h"
 
-#include "contact_rig.h"
-#include "controlled_rig.h"
+#include "auto_rig.h"
 #include "desk.h"
 #include "fathom/sensor/a05_auto.h"
 #include "fathom/sensor/a05_dyp.h"
@@ -406,30 +405,30 @@ const contract_driver_t contract_a16_pwm = {
 static fathom_status_t has_turned(const contract_driver_t *driver, uint16_t value)
 {
     fathom_status_t status = FATHOM_PENDING;
-    pins.level = value != 0;
-    contract_came_us = pins.fake.now_us + 1000;
+    rig.level = value != 0;
+    contract_came_us = rig.fake.now_us + 1000;
     contract_slack_us = 0;
     for (unsigned ms = 0; status == FATHOM_PENDING && ms != 200; ms++) {
-        pins.fake.now_us += 1000;
-        status = pins_poll();
+        rig.fake.now_us += 1000;
+        status = rig_poll();
     }
     return status;
 }
 
 static bool pin_is_used(void) { return false; }
 
-static const contract_kind_t contact = {.begin = pins_start,
-                                        .poll = pins_poll,
+static const contract_kind_t contact = {.begin = rig_start,
+                                        .poll = rig_poll,
                                         .says = has_turned,
                                         .is_used = pin_is_used,
-                                        .sensor = &pins.sensor,
-                                        .sample = &pins.sample,
-                                        .now_us = &pins.fake.now_us};
+                                        .sensor = &rig.sensor,
+                                        .sample = &rig.sample,
+                                        .now_us = &rig.fake.now_us};
 
 static void prepare_pin(void)
 {
-    pin = &pins.pin;
-    its_clock = &pins.fake.clock;
+    pin = &rig.pin;
+    its_clock = &rig.fake.clock;
 }
 
 DRIVER(a16_switch, (pin, its_clock), prepare_pin(), .address = 5)

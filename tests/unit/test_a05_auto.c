@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "auto_rig.h"
-#include "fake_pin.h"
-#include "fathom/engine/line_pins.h"
 #include "fathom/sensor/a05_auto.h"
 
 /* Its four probes, and power-on; test_driver_contract.c has what every listener promises. */

@@ -1,7 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include "auto_rig.h"
-#include "fake_pin.h"
-#include "fathom/engine/line_pins.h"
 #include "fathom/sensor/a16_auto.h"
 
 /* What test_driver_contract.c does not ask of every listener. */

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "controlled_rig.h"
+#include "auto_rig.h"
 
 /* The trigger, and when a response is one; test_driver_contract.c has the rest. */
 

@@ -1,14 +1,12 @@
 /* SPDX-License-Identifier: MIT */
-#include "contact_rig.h"
-#include "drivers.h"
+#include "auto_rig.h"
 #include "fake_modbus.h"
-#include "fathom/engine/line_pins.h"
 #include "fathom/engine/modbus_client.h"
 #include "fathom/sensor/a16_switch.h"
 
 /* What its levels mean, and Modbus on the same pins; test_driver_contract.c has the rest. */
 
-enum { START_US = 1000, BIT_US = 104, BYTE_US = 1042, TIMEOUT_US = 300000 };
+enum { BIT_US = 104, BYTE_US = RIG_BYTE_US, TIMEOUT_US = 300000 };
 
 /* A16 6(4), the last two examples: threshold to 2000 mm, polarity to negative. The responses equal the requests. */
 static const uint8_t threshold_2000[8] = {0x01, 0x06, 0x02, 0x06, 0x07, 0xD0, 0x6B, 0xDF};
@@ -17,40 +15,26 @@ static const uint8_t nothing = 0;
 
 static fathom_a16_switch_config_t config;
 static fathom_a16_switch_t a16;
-static uint8_t frame[13];
-static fathom_line_parts_t line_parts;
-static uint16_t counters[FATHOM_LINE_COUNTERS];
-static fathom_line_t line;
 static fathom_contact_guard_t guard;
 static fathom_modbus_request_t request;
 
 static void start_at(uint32_t now_us, bool level)
 {
-    pins_start(now_us);
-    pins.level = level;
-    pins.fake.byte_us = BYTE_US;
-    memset(counters, 0, sizeof counters);
-    line_parts = (fathom_line_parts_t){.uart = &pins.fake.uart,
-                                       .clock = &pins.fake.clock,
-                                       .frame = frame,
-                                       .frame_size = sizeof frame,
-                                       .echo = FATHOM_LINE_ECHO_OFF,
-                                       .silence_us = 3646,
-                                       .gap_us = 5000,
-                                       .marks = fathom_line_marks,
-                                       .count = fathom_line_count,
-                                       .counters = counters};
-    assert_int_equal(fathom_line_init(&line, &line_parts), FATHOM_OK);
+    rig_start(now_us);
+    rig.level = level;
+    rig.fake.byte_us = BYTE_US;
+    rig.line_parts.echo = FATHOM_LINE_ECHO_OFF;
+    assert_int_equal(fathom_line_init(&rig.line, &rig.line_parts), FATHOM_OK);
     memset(&a16, 0x5A, sizeof a16);
-    assert_int_equal(fathom_a16_switch_init(&a16, &pins.pin, &pins.fake.clock, &config), FATHOM_OK);
-    pins.sensor = fathom_a16_switch_sensor(&a16);
+    assert_int_equal(fathom_a16_switch_init(&a16, &rig.pin, &rig.fake.clock, &config), FATHOM_OK);
+    rig.sensor = fathom_a16_switch_sensor(&a16);
 }
 
-static void start(bool level) { start_at(START_US, level); }
+static void start(bool level) { start_at(RIG_START_US, level); }
 
 static int set_up(void **state)
 {
-    guard = fathom_contact_line_guard(&line);
+    guard = fathom_contact_line_guard(&rig.line);
     config = (fathom_a16_switch_config_t){.guard = &guard};
     start(false);
     return 0;
@@ -61,8 +45,8 @@ static const suite_t suite = {.set_up = set_up};
 /* So much later there are so many samples, the last of this kind. */
 static void after_ms(uint32_t ms, unsigned samples, uint8_t kind)
 {
-    pins_run(ms * 1000, 1000);
-    pins_expect(samples, kind);
+    rig_run(ms * 1000, 1000);
+    rig_expect(samples, kind);
 }
 
 /* The level stands, and is the sample. */
@@ -75,36 +59,36 @@ static void submit(const uint8_t *example)
     request.transaction.timeout_us = TIMEOUT_US;
     fathom_modbus_write_single_register(&request.message, 1, (uint16_t)(example[2] << 8 | example[3]),
                                         (uint16_t)(example[4] << 8 | example[5]));
-    assert_int_equal(fathom_modbus_client_submit(&line, &request), FATHOM_PENDING);
+    assert_int_equal(fathom_modbus_client_submit(&rig.line, &request), FATHOM_PENDING);
 }
 
 /* At rest, and then asked; the request has left. */
 static void asks(const uint8_t *example)
 {
-    pins_run(60 * MS, 1000);
+    rig_run(60 * MS, 1000);
     submit(example);
-    pins_run(10 * MS, 1000);
-    assert_int_equal(pins.fake.written, 1);
-    assert_memory_equal(pins.fake.writes[0].bytes, example, 8);
+    rig_run(10 * MS, 1000);
+    assert_int_equal(rig.fake.written, 1);
+    assert_memory_equal(rig.fake.writes[0].bytes, example, 8);
 }
 
 static int8_t status(void) { return request.transaction.status; }
 
 static void until_ended(void)
 {
-    while (status() == FATHOM_PENDING) pins_run(1 * MS, 1000);
+    while (status() == FATHOM_PENDING) rig_run(1 * MS, 1000);
 }
 
 /* The bits of a response on the pin, whose level is `level` before and after it, and the bytes at the UART. */
 static void response(uint32_t in_us, bool level, const uint8_t *bytes)
 {
     bool now = level;
-    fake_trickle(&pins.fake, in_us, BYTE_US, bytes, 8);
+    fake_trickle(&rig.fake, in_us, BYTE_US, bytes, 8);
     for (uint32_t n = 0; n <= 80; n++) {
         const uint32_t bit = n % 10;
         bool high = bit == 9 || (bit != 0 && (bytes[n / 10 % 8] >> (bit - 1) & 1) != 0);
         if (n == 80) high = level;
-        if (high != now) pins_turn(in_us + n / 10 * BYTE_US + bit * BIT_US);
+        if (high != now) rig_turn(in_us + n / 10 * BYTE_US + bit * BIT_US);
         now = high;
     }
 }
@@ -117,7 +101,7 @@ TEST(high_is_near_from_the_factory_and_polarity_is_an_option)
         config.negative = i / 2 != 0;
         start(i % 2 != 0);
         stands_as(i == 1 || i == 2 ? FATHOM_NEAR : FATHOM_FAR);
-        assert_int_equal(pins.sample.raw, i % 2);
+        assert_int_equal(rig.sample.raw, i % 2);
     }
 }
 
@@ -125,9 +109,9 @@ TEST(without_a_line_the_level_alone_counts)
 {
     config.guard = NULL;
     start(true);
-    pins_run(20 * MS, 20000);
-    pins_expect(1, FATHOM_NEAR);
-    assert_int_equal(pins.fake.reads, 0);
+    rig_run(20 * MS, 20000);
+    rig_expect(1, FATHOM_NEAR);
+    assert_int_equal(rig.fake.reads, 0);
 }
 
 /* ---- Modbus on the same pins ---- */
@@ -141,15 +125,15 @@ TEST(a_response_on_the_pin_is_no_change_in_any_loop)
             for (unsigned level = 0; level != 2; level++) {
                 const uint32_t step_us = steps_us[s];
                 start_at(UINT32_MAX - 150 * MS, level != 0);
-                pins_run(60 * MS, step_us);
-                pins_expect(1, level != 0 ? FATHOM_NEAR : FATHOM_FAR);
+                rig_run(60 * MS, step_us);
+                rig_expect(1, level != 0 ? FATHOM_NEAR : FATHOM_FAR);
                 submit(threshold_2000);
-                while (pins.fake.written == 0) pins_run(step_us, step_us);
+                while (rig.fake.written == 0) rig_run(step_us, step_us);
                 response(30 * MS + offset_us, level != 0, threshold_2000);
-                pins_run(200 * MS, step_us);
+                rig_run(200 * MS, step_us);
                 assert_int_equal(status(), FATHOM_OK);
-                assert_int_equal(pins.samples, 1);
-                assert_int_equal(pins.stales, 0);
+                assert_int_equal(rig.samples, 1);
+                assert_int_equal(rig.stales, 0);
             }
         }
     }
@@ -158,11 +142,11 @@ TEST(a_response_on_the_pin_is_no_change_in_any_loop)
 TEST(a_level_that_has_all_but_settled_when_a_request_leaves_waits)
 {
     stands_as(FATHOM_FAR);
-    pins_turn(1 * MS);
-    pins_run(20 * MS, 1000); /* seen for 19 ms */
+    rig_turn(1 * MS);
+    rig_run(20 * MS, 1000); /* seen for 19 ms */
     submit(threshold_2000);
-    pins_run(1 * MS, 1000);
-    assert_int_equal(pins.fake.written, 1);
+    rig_run(1 * MS, 1000);
+    assert_int_equal(rig.fake.written, 1);
     after_ms(100, 1, FATHOM_FAR);
 }
 
@@ -172,43 +156,43 @@ TEST(a_request_that_waits_does_not_hide_the_level)
     asks(threshold_2000);
     until_ended();
     submit(threshold_2000);
-    pins_turn(0);
-    pins_run(50 * MS, 1000);
-    assert_int_equal(pins.fake.written, 1);
-    pins_expect(2, FATHOM_NEAR);
+    rig_turn(0);
+    rig_run(50 * MS, 1000);
+    assert_int_equal(rig.fake.written, 1);
+    rig_expect(2, FATHOM_NEAR);
 }
 
 TEST(bytes_that_never_end_make_it_stale)
 {
     for (unsigned i = 0; i != 4200; i++) {
-        fake_receive(&pins.fake, 0, &nothing, 1);
-        pins_run(1 * MS, 1000);
+        fake_receive(&rig.fake, 0, &nothing, 1);
+        rig_run(1 * MS, 1000);
     }
-    assert_int_equal(pins.samples, 0);
-    assert_int_equal(pins.stales, 2);
+    assert_int_equal(rig.samples, 0);
+    assert_int_equal(rig.stales, 2);
     after_ms(26, 1, FATHOM_FAR);
 }
 
 TEST(while_the_line_is_busy_a_look_is_due_in_5_ms)
 {
     stands_as(FATHOM_FAR);
-    assert_int_equal(fathom_due_us(&pins.sensor, 1), 10000);
+    assert_int_equal(fathom_due_us(&rig.sensor, 1), 10000);
     submit(threshold_2000);
-    assert_int_equal(fathom_due_us(&pins.sensor, 1), 0); /* the line's: send it */
-    pins_run(1 * MS, 1000);
-    assert_int_equal(fathom_due_us(&pins.sensor, 1), 1000); /* the line's: has it left? */
-    pins_run(20 * MS, 1000);
-    assert_int_equal(fathom_due_us(&pins.sensor, 1), 5000);
-    pins.fake.now_us += 2000;
-    assert_int_equal(fathom_due_us(&pins.sensor, 1), 3000);
+    assert_int_equal(fathom_due_us(&rig.sensor, 1), 0); /* the line's: send it */
+    rig_run(1 * MS, 1000);
+    assert_int_equal(fathom_due_us(&rig.sensor, 1), 1000); /* the line's: has it left? */
+    rig_run(20 * MS, 1000);
+    assert_int_equal(fathom_due_us(&rig.sensor, 1), 5000);
+    rig.fake.now_us += 2000;
+    assert_int_equal(fathom_due_us(&rig.sensor, 1), 3000);
 }
 
 TEST(a_broken_port_is_said_but_does_not_hide_the_level)
 {
-    pins.fake.read_fails = true;
+    rig.fake.read_fails = true;
     after_ms(100, 1, FATHOM_FAR);
-    assert_int_equal(pins.ports, 99);
-    pins_turn(0);
+    assert_int_equal(rig.ports, 100); /* each poll but the one of the sample */
+    rig_turn(0);
     after_ms(22, 2, FATHOM_NEAR);
 }
 
@@ -221,12 +205,12 @@ TEST(polarity_that_is_set_and_told_is_no_change)
         const uint8_t after = level != 0 ? FATHOM_FAR : FATHOM_NEAR;
         start(level != 0);
         asks(negative);
-        fake_trickle(&pins.fake, 30 * MS, BYTE_US, negative, 8);
+        fake_trickle(&rig.fake, 30 * MS, BYTE_US, negative, 8);
         until_ended();
         fathom_a16_switch_note_polarity(&a16, FATHOM_A16_NEGATIVE);
-        pins_turn(10 * MS);
+        rig_turn(10 * MS);
         after_ms(200, 1, before);
-        pins_turn(0);
+        rig_turn(0);
         after_ms(50, 2, after);
         fathom_a16_switch_note_polarity(&a16, FATHOM_A16_POSITIVE);
         after_ms(50, 3, before);
@@ -241,9 +225,9 @@ static fathom_status_t set_polarity(fathom_a16_polarity_t polarity, uint16_t hel
     fathom_status_t result;
     fake_modbus_init(&fake);
     assert_int_equal(fathom_a16_modbus_init(&modbus, &fake.modbus, NULL), FATHOM_OK);
-    pins_turn(0);
+    rig_turn(0);
     while ((result = fathom_a16_switch_set_polarity(&a16, &modbus, polarity)) == FATHOM_PENDING) {
-        pins_run(50 * MS, 1000);
+        rig_run(50 * MS, 1000);
         fake.now_us += 50 * MS;
         if (fake.request == NULL) continue;
         if (ends != FATHOM_OK) {
@@ -263,9 +247,9 @@ TEST(while_the_polarity_is_set_no_level_counts_and_then_it_has_its_new_meaning)
     start(true);
     stands_as(FATHOM_NEAR);
     assert_int_equal(set_polarity(FATHOM_A16_NEGATIVE, 1, FATHOM_OK), FATHOM_OK);
-    pins_expect(1, FATHOM_NEAR);
+    rig_expect(1, FATHOM_NEAR);
     after_ms(60, 1, FATHOM_NEAR); /* it is low now, and still near */
-    pins_turn(0);
+    rig_turn(0);
     after_ms(60, 2, FATHOM_FAR);
 }
 
@@ -274,6 +258,6 @@ TEST(after_a_polarity_that_could_not_be_set_the_level_has_its_previous_meaning)
     start(true);
     stands_as(FATHOM_NEAR);
     assert_int_equal(set_polarity(FATHOM_A16_NEGATIVE, 1, FATHOM_ERR_NO_RESPONSE), FATHOM_ERR_NO_RESPONSE);
-    pins_expect(1, FATHOM_NEAR);
+    rig_expect(1, FATHOM_NEAR);
     after_ms(60, 2, FATHOM_FAR);
 }

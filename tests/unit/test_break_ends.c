@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "controlled_rig.h"
+#include "auto_rig.h"
 #include "fathom/sensor/a05_auto.h"
 #include "fathom/sensor/a16_auto.h"
 #include "pulse_rig.h"

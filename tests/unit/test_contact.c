@@ -1,15 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-#include "contact_rig.h"
-#include "fathom/engine/line_pins.h"
+#include "auto_rig.h"
 #include "fathom/engine/wait.h"
 #include "fathom/sensor/a05_relay.h"
 #include "fathom/sensor/a16_switch.h"
 
-#define MS ((int32_t)1000) /* an int may have 16 bits */
 enum { START_US = 1000, SETTLE_US = 20000 };
 #define SECOND ((uint32_t)1000000)
-
-#define COUNT_OF(array) (sizeof(array) / sizeof *(array))
 
 /* A fine loop, one of 20 ms, and what lies between and beyond. */
 static const uint32_t steps_us[] = {50, 1000, 7000, 20000, 33000};
@@ -33,20 +29,20 @@ static const fathom_contact_guard_t guard = {guard_poll, guard_is_clear, guard_d
 static void init_on(uint8_t fill, const fathom_contact_guard_t *with)
 {
     memset(&contact, fill, sizeof contact);
-    contact.pin = &pins.pin;
-    contact.clock = &pins.fake.clock;
+    contact.pin = &rig.pin;
+    contact.clock = &rig.fake.clock;
     contact.guard = with;
     contact.near_is_high = true;
     contact.model = FATHOM_A05;
     contact.address = 7;
     expect_init(FATHOM_OK);
-    pins.sensor = fathom_contact_sensor(&contact);
+    rig.sensor = fathom_contact_sensor(&contact);
 }
 
 static void start_at(uint32_t now_us, bool level)
 {
-    pins_start(now_us);
-    pins.level = level;
+    rig_start(now_us);
+    rig.level = level;
     init_on(0x5A, NULL);
 }
 
@@ -76,86 +72,86 @@ static const suite_t by_default = {.set_up = set_up_default};
 
 static fathom_status_t poll_after(uint32_t us)
 {
-    pins.fake.now_us += us;
-    return pins_poll();
+    rig.fake.now_us += us;
+    return rig_poll();
 }
 
-static void run(uint32_t ms) { pins_run(ms * MS, 1000); }
+static void run(uint32_t ms) { rig_run(ms * MS, 1000); }
 
 /* The next sample comes after so many ms and not before. */
 static void expect_next(uint32_t ms, uint8_t kind)
 {
-    const unsigned samples = pins.samples;
+    const unsigned samples = rig.samples;
     run(ms - 1);
-    assert_int_equal(pins.samples, samples);
+    assert_int_equal(rig.samples, samples);
     run(1);
-    pins_expect(samples + 1, kind);
+    rig_expect(samples + 1, kind);
 }
 
-#define expect_due(us) assert_int_equal(fathom_due_us(&pins.sensor, 1), us)
+#define expect_due(us) assert_int_equal(fathom_due_us(&rig.sensor, 1), us)
 
 /* ---- readings ---- */
 
 TEST(the_first_level_is_a_sample_when_it_has_stood_for_20_ms)
 {
     const bool no = false; /* the rig hands over a sample full of A5 */
-    assert_int_equal(pins_poll(), FATHOM_PENDING);
-    pins.fake.now_us += SETTLE_US - 1;
-    assert_int_equal(pins_poll(), FATHOM_PENDING);
-    pins.fake.now_us += 1;
-    assert_int_equal(pins_poll(), FATHOM_OK);
-    assert_int_equal(pins.sample.kind, FATHOM_FAR);
-    assert_int_equal(pins.sample.raw, 0);
-    assert_int_equal(pins.sample.time_us, START_US);
-    assert_int_equal(pins.sample.model, FATHOM_A05);
-    assert_int_equal(pins.sample.address, 7);
-    assert_int_equal(pins.sample.probe, 1);
-    assert_int_equal(pins.sample.distance_mm, 0);
-    assert_int_equal(pins.sample.magnitude, 0);
-    assert_int_equal(pins.sample.precision, 0);
-    assert_int_equal(pins.sample.ambient, 0);
-    assert_memory_equal(&pins.sample.interference, &no, sizeof no);
-    assert_int_equal(pins_poll(), FATHOM_PENDING);
-    pins_run(60000 * MS, 20000);
-    pins_expect(1, FATHOM_FAR);
-    assert_int_equal(pins.stales, 0);
+    assert_int_equal(rig_poll(), FATHOM_PENDING);
+    rig.fake.now_us += SETTLE_US - 1;
+    assert_int_equal(rig_poll(), FATHOM_PENDING);
+    rig.fake.now_us += 1;
+    assert_int_equal(rig_poll(), FATHOM_OK);
+    assert_int_equal(rig.sample.kind, FATHOM_FAR);
+    assert_int_equal(rig.sample.raw, 0);
+    assert_int_equal(rig.sample.time_us, START_US);
+    assert_int_equal(rig.sample.model, FATHOM_A05);
+    assert_int_equal(rig.sample.address, 7);
+    assert_int_equal(rig.sample.probe, 1);
+    assert_int_equal(rig.sample.distance_mm, 0);
+    assert_int_equal(rig.sample.magnitude, 0);
+    assert_int_equal(rig.sample.precision, 0);
+    assert_int_equal(rig.sample.ambient, 0);
+    assert_memory_equal(&rig.sample.interference, &no, sizeof no);
+    assert_int_equal(rig_poll(), FATHOM_PENDING);
+    rig_run(60000 * MS, 20000);
+    rig_expect(1, FATHOM_FAR);
+    assert_int_equal(rig.stales, 0);
 }
 
 TEST(each_new_level_is_one_sample_in_any_loop_and_across_the_wrap)
 {
-    for (unsigned s = 0; s != COUNT_OF(steps_us); s++) {
-        for (unsigned at = 0; at != COUNT_OF(starts_us); at++) {
+    for (unsigned s = 0; s != COUNT(steps_us); s++) {
+        for (unsigned at = 0; at != COUNT(starts_us); at++) {
             const uint32_t step_us = steps_us[s];
             start_at(starts_us[at], true);
-            pins_run(100 * MS, step_us);
-            pins_expect(1, FATHOM_NEAR);
+            rig_run(100 * MS, step_us);
+            rig_expect(1, FATHOM_NEAR);
             for (unsigned n = 2; n != 12; n++) {
-                const uint32_t turned_us = pins.fake.now_us + 1;
-                pins_turn(1);
-                pins_run(SETTLE_US + 2 * step_us, step_us);
-                pins_expect(n, n % 2 == 0 ? FATHOM_FAR : FATHOM_NEAR);
-                assert_int_equal(pins.sample.raw, n % 2);
+                const uint32_t turned_us = rig.fake.now_us + 1;
+                rig_turn(1);
+                rig_run(SETTLE_US + 2 * step_us, step_us);
+                rig_expect(n, n % 2 == 0 ? FATHOM_FAR : FATHOM_NEAR);
+                assert_int_equal(rig.sample.raw, n % 2);
                 /* seen by the next look after it */
-                assert_true(fathom_elapsed_us(pins.sample.time_us, turned_us) < step_us);
+                assert_true(fathom_elapsed_us(rig.sample.time_us, turned_us) < step_us);
             }
-            pins_run(200 * MS, step_us);
-            assert_int_equal(pins.samples, 11);
-            assert_int_equal(pins.stales, 0);
+            rig_run(200 * MS, step_us);
+            assert_int_equal(rig.samples, 11);
+            assert_int_equal(rig.stales, 0);
         }
     }
 }
 
 TEST(a_contact_that_bounces_is_one_change)
 {
-    for (unsigned s = 0; s != COUNT_OF(steps_us); s++) {
+    for (unsigned s = 0; s != COUNT(steps_us); s++) {
         start();
-        pins_run(100 * MS, steps_us[s]);
-        const uint32_t from_us = pins.fake.now_us;
+        rig_run(100 * MS, steps_us[s]);
+        const uint32_t from_us = rig.fake.now_us;
         /* 13 edges within 9.1 ms */
-        for (uint32_t i = 0; i != 13; i++) pins_turn(i * 700 + i % 3 * 100 + 1);
-        pins_run(200 * MS, steps_us[s]);
-        pins_expect(2, FATHOM_NEAR);
-        assert_true(fathom_elapsed_us(pins.sample.time_us, from_us) < 9100 + steps_us[s]);
+        for (uint32_t i = 0; i != 13; i++) rig_turn(i * 700 + i % 3 * 100 + 1);
+        rig_run(200 * MS, steps_us[s]);
+        rig_expect(2, FATHOM_NEAR);
+        assert_true(fathom_elapsed_us(rig.sample.time_us, from_us) < 9100 + steps_us[s]);
     }
 }
 
@@ -165,30 +161,30 @@ TEST(a_contact_that_bounces_is_one_change)
 TEST(a_level_settles_anew_when_it_means_something_else)
 {
     assert_int_equal(poll_after(20000), FATHOM_OK);
-    pins_expect(1, FATHOM_FAR);
+    rig_expect(1, FATHOM_FAR);
     fathom_contact_set_near_is_high(&contact, false);
     assert_int_equal(poll_after(19999), FATHOM_PENDING);
     assert_int_equal(poll_after(1), FATHOM_OK);
-    pins_expect(2, FATHOM_NEAR);
-    assert_int_equal(pins.sample.time_us, START_US + 20000);
+    rig_expect(2, FATHOM_NEAR);
+    assert_int_equal(rig.sample.time_us, START_US + 20000);
 }
 
 /* ---- repeated ---- */
 
 TEST(with_a_period_the_level_is_repeated)
 {
-    for (unsigned at = 0; at != COUNT_OF(starts_us); at++) {
+    for (unsigned at = 0; at != COUNT(starts_us); at++) {
         timing.period_us = 50000;
         start_at(starts_us[at], true);
         run(20);
-        pins_expect(1, FATHOM_NEAR);
+        rig_expect(1, FATHOM_NEAR);
         expect_next(50, FATHOM_NEAR);
-        assert_int_equal(pins.sample.time_us, pins.fake.now_us); /* it is so now */
+        assert_int_equal(rig.sample.time_us, rig.fake.now_us); /* it is so now */
         run(500);
-        pins_expect(12, FATHOM_NEAR);
-        pins_turn(10 * MS);
+        rig_expect(12, FATHOM_NEAR);
+        rig_turn(10 * MS);
         run(30);
-        pins_expect(13, FATHOM_FAR); /* a change does not wait for the period, and begins it anew */
+        rig_expect(13, FATHOM_FAR); /* a change does not wait for the period, and begins it anew */
         expect_next(50, FATHOM_FAR);
     }
 }
@@ -198,17 +194,17 @@ TEST(with_a_period_the_level_is_repeated)
 TEST(a_level_that_never_stands_still_is_stale_every_2_s)
 {
     run(50);
-    pins_expect(1, FATHOM_FAR);
+    rig_expect(1, FATHOM_FAR);
     for (unsigned i = 0; i != 5900; i++) {
-        pins.level = !pins.level;
+        rig.level = !rig.level;
         run(1);
-        assert_int_equal(pins.stales, i / 2000);
+        assert_int_equal(rig.stales, i / 2000);
     }
-    pins_expect(1, FATHOM_FAR);
+    rig_expect(1, FATHOM_FAR);
     run(100);
-    pins.level = !pins.level;
+    rig.level = !rig.level;
     run(2000);
-    assert_int_equal(pins.stales, 2);
+    assert_int_equal(rig.stales, 2);
 }
 
 /* ---- when to look ---- */
@@ -216,15 +212,15 @@ TEST(a_level_that_never_stands_still_is_stale_every_2_s)
 TEST(the_next_look_is_due_in_10_ms_or_when_the_level_has_settled)
 {
     expect_due(10000);
-    pins_run(14 * MS, 7000);
+    rig_run(14 * MS, 7000);
     expect_due(6000);
-    pins.fake.now_us += 2000;
+    rig.fake.now_us += 2000;
     expect_due(4000);
-    pins.fake.now_us += 5000;
+    rig.fake.now_us += 5000;
     expect_due(0);
-    assert_int_equal(pins_poll(), FATHOM_OK);
+    assert_int_equal(rig_poll(), FATHOM_OK);
     expect_due(10000);
-    pins.fake.now_us += 20000;
+    rig.fake.now_us += 20000;
     expect_due(0);
 }
 
@@ -233,17 +229,17 @@ TEST(if_an_interrupt_wakes_the_program_only_the_period_is_due_while_the_level_st
     timing.interval_us = FATHOM_NO_DEADLINE;
     start();
     expect_due(20000);
-    pins_run(20 * MS, 20000);
-    assert_int_equal(pins.samples, 1);
+    rig_run(20 * MS, 20000);
+    assert_int_equal(rig.samples, 1);
     expect_due(FATHOM_MAX_DURATION_US);
-    pins_turn(0);
-    pins_poll();
+    rig_turn(0);
+    rig_poll();
     expect_due(20000);
-    pins_run(20 * MS, 20000);
-    assert_int_equal(pins.samples, 2);
+    rig_run(20 * MS, 20000);
+    assert_int_equal(rig.samples, 2);
     timing.period_us = 500000;
     start();
-    pins_run(20 * MS, 20000);
+    rig_run(20 * MS, 20000);
     expect_due(500000);
 }
 
@@ -270,11 +266,11 @@ TEST(init_refuses_what_it_cannot_read_and_leaves_the_contact_zeroed)
         {guard_poll, NULL, guard_due_us, NULL},
         {guard_poll, guard_is_clear, NULL, NULL},
     };
-    expect_refused(NULL, &pins.fake.clock, NULL);
-    expect_refused(&output, &pins.fake.clock, NULL);
-    expect_refused(&pins.pin, NULL, NULL);
-    expect_refused(&pins.pin, &still, NULL);
-    for (unsigned i = 0; i != COUNT_OF(guards); i++) expect_refused(&pins.pin, &pins.fake.clock, &guards[i]);
+    expect_refused(NULL, &rig.fake.clock, NULL);
+    expect_refused(&output, &rig.fake.clock, NULL);
+    expect_refused(&rig.pin, NULL, NULL);
+    expect_refused(&rig.pin, &still, NULL);
+    for (unsigned i = 0; i != COUNT(guards); i++) expect_refused(&rig.pin, &rig.fake.clock, &guards[i]);
 }
 
 /* ---- everything, against a slow reference ---- */
@@ -298,16 +294,16 @@ static uint8_t refer(unsigned levels, unsigned n, uint32_t step_us)
 
 TEST(every_sequence_of_levels_at_14_looks_is_right)
 {
-    for (unsigned s = 0; s != COUNT_OF(steps_us); s++) {
+    for (unsigned s = 0; s != COUNT(steps_us); s++) {
         const uint32_t step_us = steps_us[s];
         for (unsigned levels = 0; levels != 1u << LOOKS; levels++) {
             start_at(UINT32_MAX - 3 * step_us, (levels & 1) != 0); /* init is the first look */
             for (unsigned n = 1; n != LOOKS; n++) {
-                pins.level = (levels >> n & 1) != 0;
-                pins.fake.now_us += step_us;
+                rig.level = (levels >> n & 1) != 0;
+                rig.fake.now_us += step_us;
                 const uint8_t kind = refer(levels, n, step_us);
-                if (pins_poll() != (kind != 0 ? FATHOM_OK : FATHOM_PENDING)) fail();
-                if (kind != 0 && pins.sample.kind != kind) fail();
+                if (rig_poll() != (kind != 0 ? FATHOM_OK : FATHOM_PENDING)) fail();
+                if (kind != 0 && rig.sample.kind != kind) fail();
             }
         }
     }
@@ -319,9 +315,9 @@ TEST(a_contact_is_polled_without_a_sensor_too)
     fathom_sample_t sample;
     start_at(START_US, true);
     assert_int_equal(fathom_contact_poll(&contact, &sample), FATHOM_PENDING);
-    assert_int_equal(fathom_contact_due_us(&contact), fathom_due_us(&pins.sensor, 1));
+    assert_int_equal(fathom_contact_due_us(&contact), fathom_due_us(&rig.sensor, 1));
     for (unsigned ms = 0; ms != 25 && fathom_contact_poll(&contact, &sample) == FATHOM_PENDING; ms++)
-        pins.fake.now_us += 1000;
+        rig.fake.now_us += 1000;
     assert_int_equal(sample.address, 7);
 }
 
@@ -342,12 +338,12 @@ TEST_IN(by_default, the_first_level_is_told_whatever_stood_in_the_memory)
     static const uint8_t fills[] = {FATHOM_NEAR, FATHOM_FAR, 0xFF, true}; /* held, too */
     for (unsigned level = 0; level != 2; level++)
         for (unsigned i = 0; i != sizeof fills; i++) {
-            pins_start(START_US);
-            pins.level = level != 0;
+            rig_start(START_US);
+            rig.level = level != 0;
             init_on(fills[i], NULL);
             poll_after(10000);
             assert_int_equal(poll_after(10000), FATHOM_OK);
-            pins_expect(1, level != 0 ? FATHOM_NEAR : FATHOM_FAR);
+            rig_expect(1, level != 0 ? FATHOM_NEAR : FATHOM_FAR);
         }
 }
 
@@ -358,9 +354,9 @@ TEST_IN(by_default, the_next_look_is_due_look_us_after_the_last_one)
     init_on(0, NULL);
     assert_int_equal(poll_after(20000), FATHOM_OK);
     expect_due(100000);
-    pins.fake.now_us += 70000;
+    rig.fake.now_us += 70000;
     expect_due(30000);
-    pins.fake.now_us += 30001;
+    rig.fake.now_us += 30001;
     expect_due(0);
 }
 
@@ -369,25 +365,17 @@ TEST_IN(by_default, the_next_look_is_due_look_us_after_the_last_one)
 TEST_IN(by_default, a_level_counts_again_5_ms_after_the_last_byte_on_its_line)
 {
     static const uint8_t byte[] = {0x00};
-    static uint8_t frame[8];
-    static fathom_line_parts_t config;
-    static fathom_line_t line;
-    const fathom_contact_guard_t of_line = fathom_contact_line_guard(&line);
-    config = (fathom_line_parts_t){.uart = &pins.fake.uart,
-                                   .clock = &pins.fake.clock,
-                                   .frame = frame,
-                                   .frame_size = sizeof frame,
-                                   .echo = FATHOM_LINE_ECHO_OFF,
-                                   .marks = fathom_line_marks};
-    assert_int_equal(fathom_line_init(&line, &config), FATHOM_OK);
+    const fathom_contact_guard_t of_line = fathom_contact_line_guard(&rig.line);
+    rig.line_parts.echo = FATHOM_LINE_ECHO_OFF;
+    assert_int_equal(fathom_line_init(&rig.line, &rig.line_parts), FATHOM_OK);
     timing.settle_us = 1;
     init_on(0, &of_line);
-    fake_receive(&pins.fake, 100, byte, 1);
+    fake_receive(&rig.fake, 100, byte, 1);
     assert_int_equal(poll_after(100), FATHOM_PENDING);
     assert_int_equal(poll_after(4999), FATHOM_PENDING);
     assert_int_equal(poll_after(1), FATHOM_PENDING);
     assert_int_equal(poll_after(1), FATHOM_OK);
-    assert_int_equal(pins.sample.time_us, START_US + 100 + 5000);
+    assert_int_equal(rig.sample.time_us, START_US + 100 + 5000);
 }
 
 /*
@@ -399,16 +387,16 @@ TEST_IN(by_default, a_level_counts_again_5_ms_after_the_last_byte_on_its_line)
 
 TEST_IN(by_default, by_default_a_level_that_does_not_change_is_a_sample_each_second)
 {
-    pins_run(20 * MS, 1 * MS);
-    pins_expect(1, FATHOM_FAR);
+    rig_run(20 * MS, 1 * MS);
+    rig_expect(1, FATHOM_FAR);
     for (unsigned n = 2; n != 12; n++) {
-        pins_run(999 * MS, 1 * MS);
-        pins_expect(n - 1, FATHOM_FAR);
-        pins_run(1 * MS, 1 * MS);
-        pins_expect(n, FATHOM_FAR);
-        assert_int_equal(pins.sample.time_us, pins.fake.now_us);
+        rig_run(999 * MS, 1 * MS);
+        rig_expect(n - 1, FATHOM_FAR);
+        rig_run(1 * MS, 1 * MS);
+        rig_expect(n, FATHOM_FAR);
+        assert_int_equal(rig.sample.time_us, rig.fake.now_us);
     }
-    assert_int_equal(pins.stales, 0);
+    assert_int_equal(rig.stales, 0);
 }
 
 /* ---- a level that does not count ---- */
@@ -425,11 +413,11 @@ TEST_IN(by_default, the_error_of_a_guard_is_returned_if_there_is_nothing_else)
 
 TEST_IN(by_default, a_hold_that_does_not_end_is_stale_every_2_s)
 {
-    pins_run(20 * MS, 1 * MS);
+    rig_run(20 * MS, 1 * MS);
     fathom_contact_set_hold(&contact, true);
-    pins_run(10 * SECOND, 1 * MS);
-    assert_int_equal(pins.stales, 4); /* the level counted until the look before the hold */
-    assert_int_equal(pins.samples, 1);
+    rig_run(10 * SECOND, 1 * MS);
+    assert_int_equal(rig.stales, 4); /* the level counted until the look before the hold */
+    assert_int_equal(rig.samples, 1);
 }
 
 /* ---- age ---- */
@@ -437,13 +425,13 @@ TEST_IN(by_default, a_hold_that_does_not_end_is_stale_every_2_s)
 /* 300 s lie between the first look that saw the level and the look at which it counts. */
 TEST_IN(by_default, a_level_that_counts_after_a_sleep_is_of_now)
 {
-    pins_run(20 * MS, 1 * MS);
-    pins_expect(1, FATHOM_FAR);
-    pins.level = true;
-    pins_run(1 * MS, 1 * MS);
+    rig_run(20 * MS, 1 * MS);
+    rig_expect(1, FATHOM_FAR);
+    rig.level = true;
+    rig_run(1 * MS, 1 * MS);
     assert_int_equal(poll_after(300 * SECOND), FATHOM_OK);
-    pins_expect(2, FATHOM_NEAR);
-    assert_int_equal(pins.sample.time_us, pins.fake.now_us);
+    rig_expect(2, FATHOM_NEAR);
+    assert_int_equal(rig.sample.time_us, rig.fake.now_us);
 }
 
 /* "if ... that look was at most stale_us ago" */
@@ -452,7 +440,7 @@ TEST_IN(by_default, the_first_look_is_the_time_of_a_sample_for_up_to_2_s)
     for (uint32_t late_us = 0; late_us != 2; late_us++) {
         start();
         assert_int_equal(poll_after(2 * SECOND + late_us), FATHOM_OK);
-        assert_int_equal(pins.sample.time_us, late_us == 0 ? START_US : pins.fake.now_us);
+        assert_int_equal(rig.sample.time_us, late_us == 0 ? START_US : rig.fake.now_us);
     }
 }
 
@@ -473,27 +461,27 @@ static void run_world(uint32_t world)
     if (below(2) == 0) timing.stale_us = 100001 + below(5000000);
     if (below(2) == 0) timing.period_us = 1 + below(5000000);
     const fathom_contact_guard_t *const with = below(2) == 0 ? &guard : NULL;
-    pins_start(below(UINT32_MAX));
+    rig_start(below(UINT32_MAX));
     init_on(0x5A, with);
     const uint32_t bound_us = contact.timing.period_us + contact.timing.stale_us;
     uint32_t longest_us = 0;
     uint32_t since_us = 0;
     bool is_held = false;
     for (unsigned polls = 0; polls != 500; polls++) {
-        const uint32_t step_us = 1 + below(any_steps_us[world % COUNT_OF(any_steps_us)]);
+        const uint32_t step_us = 1 + below(any_steps_us[world % COUNT(any_steps_us)]);
         if (step_us > longest_us) longest_us = step_us;
-        pins.fake.now_us += step_us;
+        rig.fake.now_us += step_us;
         since_us += step_us;
         if (below(20) == 0) {
             const uint32_t back_us = below(100001);
-            pins.fake.now_us -= back_us;
+            rig.fake.now_us -= back_us;
             since_us = since_us > back_us ? since_us - back_us : 0;
         }
-        if (below(world % 7 + 1) == 0) pins.level = !pins.level;
+        if (below(world % 7 + 1) == 0) rig.level = !rig.level;
         if (below(20) == 0) is_guard_clear = !is_guard_clear;
         if (below(50) == 0) fathom_contact_set_hold(&contact, is_held = !is_held);
-        if (pins_poll() != FATHOM_PENDING) since_us = 0;
-        if (pins.samples != 0 && since_us == 0) assert_true(pins.sample.raw <= 1);
+        if (rig_poll() != FATHOM_PENDING) since_us = 0;
+        if (rig.samples != 0 && since_us == 0) assert_true(rig.sample.raw <= 1);
         if (since_us > bound_us + 2 * longest_us)
             fail_msg("world %lu: nothing in %lu us", (unsigned long)world, (unsigned long)since_us);
     }
@@ -510,10 +498,10 @@ TEST_IN(by_default, any_levels_any_guard_any_polls_and_any_clock_have_an_outcome
 static fathom_status_t wait_for(void (*idle)(void *ctx, uint32_t max_us))
 {
     fathom_sample_t sample;
-    return fathom_wait(&pins.sensor, &sample, idle, NULL);
+    return fathom_wait(&rig.sensor, &sample, idle, NULL);
 }
 
-static void stand_still(void *ctx, uint32_t max_us) { (void)ctx, pins.fake.now_us += max_us; }
+static void stand_still(void *ctx, uint32_t max_us) { (void)ctx, rig.fake.now_us += max_us; }
 
 TEST_IN(by_default, wait_returns_for_a_contact_that_never_changes)
 {
@@ -522,7 +510,7 @@ TEST_IN(by_default, wait_returns_for_a_contact_that_never_changes)
     start();
     for (unsigned n = 0; n != 5; n++) assert_int_equal(wait_for(stand_still), FATHOM_OK);
     /* 20 ms and 4 times 35 minutes */
-    assert_true(pins.fake.now_us == (uint32_t)(START_US + 20 * MS + 4ull * FATHOM_MAX_DURATION_US));
+    assert_true(rig.fake.now_us == (uint32_t)(START_US + 20 * MS + 4ull * FATHOM_MAX_DURATION_US));
 }
 
 /* ---- zeroed memory ---- */
@@ -531,18 +519,18 @@ TEST_IN(by_default, a_contact_without_init_has_an_error_in_each_poll_and_no_func
 {
     fathom_sample_t sample;
     memset(&contact, 0, sizeof contact);
-    assert_int_equal(pins_poll(), FATHOM_ERR_ARGUMENT);
-    assert_int_equal(fathom_due_us(&pins.sensor, 1), 0);
-    contact.pin = &pins.pin; /* and without the clock that it would read */
-    assert_int_equal(pins_poll(), FATHOM_ERR_ARGUMENT);
-    assert_int_equal(fathom_due_us(&pins.sensor, 1), 0);
+    assert_int_equal(rig_poll(), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_due_us(&rig.sensor, 1), 0);
+    contact.pin = &rig.pin; /* and without the clock that it would read */
+    assert_int_equal(rig_poll(), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_due_us(&rig.sensor, 1), 0);
     fathom_contact_set_hold(&contact, true);
     fathom_contact_set_near_is_high(&contact, true);
     static fathom_a05_relay_t relay;
     static fathom_a16_switch_t switch_of_a16;
     const fathom_sensor_t sensors[] = {
         fathom_a05_relay_sensor(&relay), fathom_a16_switch_sensor(&switch_of_a16), {NULL, NULL, NULL}};
-    for (unsigned i = 0; i != COUNT_OF(sensors); i++) {
+    for (unsigned i = 0; i != COUNT(sensors); i++) {
         assert_int_equal(fathom_poll(&sensors[i], &sample), FATHOM_ERR_ARGUMENT);
         assert_int_equal(fathom_due_us(&sensors[i], 1), 0);
     }

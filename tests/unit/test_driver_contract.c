@@ -2,7 +2,6 @@
 #include "contract.h"
 
 #include "auto_rig.h"
-#include "contact_rig.h"
 #include "desk.h"
 #include "fake_modbus.h"
 
@@ -625,20 +624,20 @@ CONTRACT(a_refused_frame_begins_the_deadline_too, BY_SUM)
 CONTRACT(the_times_are_options, CONTACTS)
 {
     *driver->timing = (fathom_contact_timing_t){30000, 400000, 3000, 60000};
-    pins.level = true;
+    rig.level = true;
     start();
-    assert_int_equal(fathom_due_us(&pins.sensor, 1), 3000);
-    pins_run(29 * MS, 1000);
-    assert_int_equal(pins.samples, 0);
-    pins_run(1 * MS, 1000);
-    assert_int_equal(pins.samples, 1);
-    pins_run(399 * MS, 1000);
-    assert_int_equal(pins.samples, 1);
-    pins_run(1 * MS, 1000);
-    pins_expect(2, driver->sample.kind);
-    for (uint32_t i = 0; i != 100; i++) pins_turn((i + 1) * MS);
-    pins_run(60 * MS, 1000);
-    assert_int_equal(pins.stales, 0);
-    pins_run(1 * MS, 1000);
-    assert_int_equal(pins.stales, 1);
+    assert_int_equal(fathom_due_us(&rig.sensor, 1), 3000);
+    rig_run(29 * MS, 1000);
+    assert_int_equal(rig.samples, 0);
+    rig_run(1 * MS, 1000);
+    assert_int_equal(rig.samples, 1);
+    rig_run(399 * MS, 1000);
+    assert_int_equal(rig.samples, 1);
+    rig_run(1 * MS, 1000);
+    rig_expect(2, driver->sample.kind);
+    for (uint32_t i = 0; i != 100; i++) rig_turn((i + 1) * MS);
+    rig_run(60 * MS, 1000);
+    assert_int_equal(rig.stales, 0);
+    rig_run(1 * MS, 1000);
+    assert_int_equal(rig.stales, 1);
 }
