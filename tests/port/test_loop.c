@@ -204,16 +204,6 @@ TEST(removing_what_is_not_there_does_nothing)
     assert_int_equal(one.closes, 1);
 }
 
-TEST(what_was_removed_can_be_added_again)
-{
-    add(&one);
-    fathom_loop_remove(&one.source);
-    fake_source(&one);
-    add(&one);
-    step();
-    assert_int_equal(one.polls, 1);
-}
-
 TEST(a_wake_of_what_is_not_open_does_nothing)
 {
     one.cannot_open = true;

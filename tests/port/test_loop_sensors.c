@@ -211,11 +211,3 @@ TEST(a_stop_ends_the_run_and_the_loop_can_be_run_again)
         assert_int_equal(first.readings, n);
     }
 }
-
-TEST(a_stop_before_the_run_ends_it_at_once)
-{
-    add(&one);
-    fathom_loop_stop(&fake.loop);
-    fathom_loop_run(&fake.loop);
-    assert_int_equal(fake.loop.sleeps, 0);
-}

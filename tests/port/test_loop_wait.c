@@ -224,14 +224,13 @@ TEST(a_line_that_is_added_twice_is_refused)
 /* ---- stop, signals, and loops of another kind ---- */
 
 static void on_signal(int number) { fathom_loop_stop(&rig.loop); }
-static void on_other_signal(int number) { (void)number; }
 
-static void signal_soon(void (*handler)(int))
+static void signal_soon(void)
 {
     struct sigaction action;
     const struct itimerval soon = {{0, SOON_US}, {0, SOON_US}}; /* again and again: one comes in the sleep */
     memset(&action, 0, sizeof action);
-    action.sa_handler = handler;
+    action.sa_handler = on_signal;
     action.sa_flags = SA_RESTART; /* even so */
     assert_int_equal(sigaction(SIGALRM, &action, NULL), 0);
     assert_int_equal(setitimer(ITIMER_REAL, &soon, NULL), 0);
@@ -248,7 +247,7 @@ static void no_more_signals(void)
 /* Nothing is on the loop, so it sleeps until it is stopped. */
 TEST(a_signal_handler_stops_the_run)
 {
-    signal_soon(on_signal);
+    signal_soon();
     do fathom_loop_run(&rig.loop);
     while (rig.loop.sleeps == 0); /* a busy machine may stop the loop before it sleeps, but not every time */
     no_more_signals();
@@ -264,16 +263,6 @@ TEST(a_stop_leaves_errno_alone)
     assert_int_equal(errno, 300);
     fathom_loop_run(&rig.loop);
     assert_int_equal(rig.loop.sleeps, 0);
-}
-
-TEST(a_signal_ends_the_sleep_of_a_step)
-{
-    posix_time_begin(false);
-    signal_soon(on_other_signal);
-    const uint64_t begin_us = fathom_posix_now_us();
-    fathom_loop_step(&rig.loop, FATHOM_NO_DEADLINE);
-    assert_true(fathom_posix_now_us() - begin_us < LONG_US);
-    no_more_signals();
 }
 
 static void *stop_soon(void *arg)
