@@ -1,10 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "pulse_rig.h"
 
-#include <string.h>
-
-enum { GUARD = 0xA5 };
-
 pulse_rig_t stand;
 
 fathom_status_t init_meter(void)
@@ -48,15 +44,13 @@ int set_up_meter(void **state)
 fathom_status_t poll_meter(void)
 {
     fathom_pulse_reading_t reading;
-    uint8_t untouched[sizeof reading];
     memset(&reading, GUARD, sizeof reading);
-    memset(untouched, GUARD, sizeof untouched);
     const fathom_status_t status = fathom_pulse_poll(&stand.meter, &reading);
     if (status == FATHOM_OK) {
         stand.last = reading;
         stand.readings++;
     } else {
-        assert_memory_equal(&reading, untouched, sizeof untouched);
+        assert_guard(&reading, sizeof reading);
     }
     stand.no_responses += status == FATHOM_ERR_NO_RESPONSE;
     stand.port_errors += status == FATHOM_ERR_PORT;

@@ -2,16 +2,11 @@
 #ifndef FATHOM_TESTS_PULSE_RIG_H
 #define FATHOM_TESTS_PULSE_RIG_H
 
-#include "suite.h"
-
+#include "drivers.h"
 #include "fake_pin.h"
 #include "fathom/engine/pulse.h"
 
-#define COUNT_OF(array) (sizeof(array) / sizeof *(array))
-
 /* A meter on fake pins, with what its polls said. */
-#define MS ((int32_t)1000) /* an int may have 16 bits */
-
 typedef struct {
     fake_t fake;
     fake_pin_t pin;

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-#include "drivers.h"
+#include "auto_rig.h"
+#include "fathom/sensor/a05_relay.h"
 #include "fathom/sensor/a05_relay_rule.h"
 
 enum { HALF_S = 500000, NONE = 0 };
@@ -195,6 +196,32 @@ TEST(a_config_without_sense_is_refused)
     assert_int_equal(fathom_a05_relay_rule_init(&rule, &config), FATHOM_OK);
     config.equal = FATHOM_EQUAL_IS_FAR + 1;
     assert_int_equal(fathom_a05_relay_rule_init(&rule, &config), FATHOM_ERR_ARGUMENT);
+}
+
+/* ---- what the levels of the relay mean; test_driver_contract.c has the rest ---- */
+
+enum { CLOSED = FATHOM_A05_RELAY_NORMALLY_CLOSED, HIGH_CONDUCTS = FATHOM_A05_RELAY_CONDUCTS_HIGH };
+
+static void read_as(uint8_t wiring, uint8_t conducts, uint8_t low, uint8_t high)
+{
+    static fathom_a05_relay_t relay;
+    const fathom_a05_relay_config_t relay_config = {.wiring = wiring, .level = conducts};
+    for (unsigned level = 0; level != 2; level++) {
+        rig_start(RIG_START_US);
+        rig.level = level != 0;
+        memset(&relay, 0x5A, sizeof relay);
+        assert_int_equal(fathom_a05_relay_init(&relay, &rig.pin, &rig.fake.clock, &relay_config), FATHOM_OK);
+        rig.sensor = fathom_a05_relay_sensor(&relay);
+        rig_run(20 * MS, 1000);
+        rig_expect(1, level != 0 ? high : low);
+        assert_int_equal(rig.sample.raw, level);
+    }
+}
+
+TEST(a_normally_closed_contact_that_conducts_is_far)
+{
+    read_as(CLOSED, 0, FATHOM_FAR, FATHOM_NEAR);
+    read_as(CLOSED, HIGH_CONDUCTS, FATHOM_NEAR, FATHOM_FAR);
 }
 
 /* ---- everything, against a slow reference ---- */

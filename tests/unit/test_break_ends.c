@@ -80,7 +80,7 @@ static fathom_status_t said_of(int how) { return how == 0 ? FATHOM_PENDING : FAT
 
 TEST(deinit_tells_whether_rx_is_high)
 {
-    for (unsigned i = 0; i != 2 * COUNT_OF(sensors); i++) {
+    for (unsigned i = 0; i != 2 * COUNT(sensors); i++) {
         fake_t *const fake = sensors[i / 2].fake;
         const int how = -(int)(i % 2);
         sensors[i / 2].hold();

@@ -104,8 +104,8 @@ TEST(every_cycle_is_one_reading_in_loops_from_50_us_to_200_ms_and_across_the_wra
                                          UINT32_MAX - 130000,
                                          UINT32_MAX - 300000,
                                          UINT32_C(0x7FFFF000)};
-    for (unsigned s = 0; s != COUNT_OF(steps_us); s++) {
-        for (unsigned n = 0; n != COUNT_OF(starts_us); n++) {
+    for (unsigned s = 0; s != COUNT(steps_us); s++) {
+        for (unsigned n = 0; n != COUNT(starts_us); n++) {
             start_meter_at(starts_us[n]);
             stand.pin.response_after_us = 110 * MS;
             for (uint32_t cycle = 1; cycle <= 5; cycle++) {
@@ -144,7 +144,7 @@ TEST(the_period_of_a_trigger_is_longer_than_its_low_time)
                 {30001, FATHOM_OK},
                 {FATHOM_MAX_DURATION_US, FATHOM_OK},
                 {FATHOM_MAX_DURATION_US + 1, FATHOM_ERR_ARGUMENT}};
-    for (unsigned i = 0; i != COUNT_OF(rows); i++) {
+    for (unsigned i = 0; i != COUNT(rows); i++) {
         fathom_trigger_t trigger = {.output = fathom_output_pin(&stand.pin.trigger),
                                     .clock = &stand.fake.clock,
                                     .period_us = rows[i].period_us,

@@ -154,7 +154,7 @@ TEST(noise_faster_than_polls_take_it_does_not_hold_up_the_outcome)
 {
     static const uint32_t steps_us[] = {1000, 20000, 600 * SECOND};
     stand.pin.capture.take = always_noise;
-    for (unsigned i = 0; i != COUNT_OF(steps_us); i++) {
+    for (unsigned i = 0; i != COUNT(steps_us); i++) {
         start_meter();
         stand.pin.capture.take = always_noise;
         noise_us = 50;
@@ -170,7 +170,7 @@ TEST(noise_faster_than_polls_take_it_does_not_hold_up_the_outcome)
 TEST_IN(with_uart, a_port_that_never_begins_the_break_is_an_error_once_a_second)
 {
     static const uint32_t steps_us[] = {1000, 20000, 600 * SECOND};
-    for (unsigned i = 0; i != COUNT_OF(steps_us); i++) {
+    for (unsigned i = 0; i != COUNT(steps_us); i++) {
         start_meter();
         stand.fake.refuses_begin = true;
         stand.fake.refusals = -1;
@@ -185,7 +185,7 @@ TEST_IN(with_uart, a_port_that_never_begins_the_break_is_an_error_once_a_second)
 TEST_IN(with_uart, a_port_that_never_ends_the_break_is_an_error_once_a_second)
 {
     static const uint32_t steps_us[] = {1000, 20000, 600 * SECOND};
-    for (unsigned i = 0; i != COUNT_OF(steps_us); i++) {
+    for (unsigned i = 0; i != COUNT(steps_us); i++) {
         start_meter();
         while (!stand.meter.trigger.low) run_meter_in_steps(steps_us[i], steps_us[i]);
         stand.fake.refusals = -1;
@@ -289,7 +289,7 @@ TEST(a_clock_that_is_set_back_by_100_ms_does_not_shorten_the_cycle)
 static uint32_t step_of(uint32_t world)
 {
     static const uint32_t steps_us[] = {500, 3000, 20000, 300000, 3000000, 600000000};
-    return 1 + below(steps_us[world % COUNT_OF(steps_us)]);
+    return 1 + below(steps_us[world % COUNT(steps_us)]);
 }
 
 /* Everything that a cycle can meet, at random. The time between two outcomes is the clock's, without its jumps. */
