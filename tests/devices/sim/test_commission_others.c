@@ -116,19 +116,52 @@ TEST(an_address_is_set_in_one_protocol_while_the_other_measures)
     }
 }
 
-/* True: OK. */
-static bool among_unasked(const job_t *job, uint32_t unasked_us, uint32_t loop_us)
+/* ---- an HPS-167S that sends by itself ---- */
+
+static fathom_sensor_t listener;
+static unsigned heard;
+
+static void set_up_among(const job_t *job, uint32_t unasked_us, uint32_t loop_us)
 {
-    fathom_hps167s_auto_t listener;
+    static fathom_hps167s_auto_t automatic;
     set_up_for(job, loop_us, FATHOM_LINE_ECHO_AUTO);
     fathom_sim_detach(&bench.line, bench.device, s.clock.now_us);
     add_hps((hps_config_t){.address = job->unit, .unasked_us = unasked_us});
-    assert_int_equal(fathom_hps167s_auto_init(&listener, &s.line, NULL), FATHOM_OK);
-    fathom_hps167s_auto_follow(&listener, &s.driver.hps);
-    const fathom_sensor_t heard = fathom_hps167s_auto_sensor(&listener);
+    assert_int_equal(fathom_hps167s_auto_init(&automatic, &s.line, NULL), FATHOM_OK);
+    fathom_hps167s_auto_follow(&automatic, &s.driver.hps);
+    listener = fathom_hps167s_auto_sensor(&automatic);
+    heard = 0;
+}
+
+static void listen(void)
+{
+    if (fathom_poll(&listener, &s.sample) != FATHOM_OK) return;
+    assert_int_equal(s.sample.kind, FATHOM_TARGET);
+    assert_int_equal(s.sample.distance_mm, bench.fixed.value[0]);
+    heard++;
+}
+
+/* The command until its end, with the listener alone. */
+static fathom_status_t carry_out_among(const job_t *job)
+{
+    const fathom_sensor_t both[] = {listener, s.sensor};
+    const uint32_t start_us = s.clock.now_us;
+    for (unsigned steps = 0;; steps++) {
+        const fathom_status_t status = job->call();
+        if (status != FATHOM_PENDING) return status;
+        assert_true(since_us(start_us) < 30 * SECOND);
+        assert_true(steps < 100000); /* to be told to sleep for no time is no progress */
+        listen();
+        pass_until(fathom_due_us(both, 2));
+    }
+}
+
+/* True: OK. */
+static bool among_unasked(const job_t *job, uint32_t unasked_us, uint32_t loop_us)
+{
+    set_up_among(job, unasked_us, loop_us);
     fathom_status_t status;
-    while ((status = round_of(job->call)) == FATHOM_PENDING)
-        if (fathom_poll(&heard, &s.sample) == FATHOM_OK) assert_int_equal(s.sample.distance_mm, 1234);
+    while ((status = round_of(job->call)) == FATHOM_PENDING) listen();
     const uint32_t has = job->has();
     assert_true(kept_commands() <= 1);
     assert_true(has == job->before || has == job->wanted);
@@ -146,6 +179,47 @@ TEST(unasked_measurements_are_no_responses)
             for (unsigned l = 0; l != 3 && jobs[j].model == HPS; l++, all++)
                 if (among_unasked(&jobs[j], unasked_us, loops_us[l])) ready++;
     assert_true(ready > all / 2); /* they collide with responses and requests, as on a real pair */
+}
+
+/* 54 measurements a second: a request has 11 ms between two frames, and the response the next place that is free. */
+TEST(every_command_works_at_once_between_frames_every_18_5_ms)
+{
+    static const uint32_t replies_us[] = {2500, 500, 1500, 3500};
+    for (const job_t *job = jobs; job != jobs + jobs_count; job++)
+        for (unsigned n = 0; n != 2 * 4 * 6 && job->model == HPS; n++) {
+            set_up_among(job, 18500, n % 2 == 0 ? 0 : 1 * MS);
+            s.config.silence_us = FATHOM_T3_5_US(19200, 11);
+            bench.hps.reply_us = replies_us[n / 2 % 4];
+            while (since_us(bench_start_us) < 65 * MS) { /* as line.h says */
+                listen();
+                pass_until(fathom_due_us(&listener, 1));
+            }
+            pass_us(n / 8 * 3 * MS);
+            const fathom_status_t status = carry_out_among(job);
+            if (status != FATHOM_OK) fail_msg("%s in run %u: %s", job->name, n, fathom_status_name(status));
+            assert_int_equal(job->has(), job->wanted);
+            assert_int_equal(bench.line.counters.collisions, 0);
+        }
+}
+
+/* Whatever is measured, and however long it stays: the configuration is the device's or there is none. */
+TEST(no_held_distance_passes_for_the_configuration)
+{
+    /* 00FF is the one distance with the shape of #2; the optics make the rest of the frame fit too: 00FF 0500 0000 B401
+     * is what #2 says with these settings but for the termination, and B402 says 57600. */
+    static const fathom_sim_optics_t like_2 = {0x0500, 0x00, 0x00, 0xB402};
+    const job_t *job = jobs;
+    while (strcmp(job->name, "HPS #2") != 0) job++; /* which looks at the termination and at the rate */
+    unsigned told_it = 0;
+    for (uint32_t at_us = 0; at_us < 40 * MS; at_us += 1 * MS) {
+        set_up_among(job, 40 * MS, at_us % 2 == 0 ? 0 : 20 * MS);
+        bench.hps.optics = &like_2;
+        bench.fixed.value[0] = 255;
+        for (; heard == 0; pass_until(fathom_due_us(&listener, 1))) listen();
+        pass_us(at_us);
+        for (unsigned i = 0; i != 5; i++) told_it += carry_out_among(job) == FATHOM_OK;
+    }
+    assert_true(told_it > 50);
 }
 
 static fathom_status_t set_230400(void) { return fathom_hps167s_set_baud(&s.driver.hps, 230400); }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "bench.h"
+#include "sim_bench.h"
 
 static const fathom_line_settings_t fast = {230400, FATHOM_PARITY_EVEN, 1};
 static const fathom_line_settings_t slow = {1200, FATHOM_PARITY_ODD, 2};
