@@ -53,9 +53,6 @@ static void through_obstacle(bool *obstacle, bool for_streams)
             (void)open_user((user_kind_t)kind, turns_us[t]);
             expect_readings();
             poll_through(obstacle);
-            DESK_REPORT("%s, turns of %u ms: longest without an outcome %.2f s, %u ready, %u errors\n",
-                        user_name((user_kind_t)kind), (unsigned)(turns_us[t] / 1000),
-                        (double)users[0].longest_us / 1e6, users[0].ready, users[0].failed);
         }
     }
 }

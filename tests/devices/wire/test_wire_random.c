@@ -19,7 +19,6 @@ enum {
 
 /* Drivers that share a line. */
 typedef struct {
-    const char *name;
     user_kind_t kinds[3];
     unsigned count;
     /* False: the line is the driver's own, whose trigger is a break. It cannot know more than when it was polled. */
@@ -30,17 +29,17 @@ typedef struct {
 } site_t;
 
 static const site_t sites[] = {
-    {"HPS-167S", {USER_HPS167S}, 1, true, true},
-    {"two HPS-167S", {USER_HPS167S, USER_HPS167S}, 2, true, true},
-    {"HPS-167S, another one that sends by itself", {USER_HPS167S, USER_HPS167S_AUTO}, 2, true, true},
-    {"A16 and A05 Modbus", {USER_A16_MODBUS, USER_A05_MODBUS}, 2, true, true},
-    {"A05 55 AA", {USER_A05_DYP}, 1, true, true},
-    {"A05 55 AA and Modbus", {USER_A05_DYP, USER_A16_MODBUS}, 2, true, true},
-    {"A16 auto", {USER_A16_AUTO}, 1, true, true},
-    {"A05 auto", {USER_A05_AUTO}, 1, true, true},
-    {"A16 auto beside Modbus", {USER_A16_AUTO, USER_A16_MODBUS}, 2, true, true},
-    {"A16 controlled", {USER_A16_CONTROLLED}, 1, false, true},
-    {"HPS-167S auto", {USER_HPS167S_AUTO}, 1, true, true},
+    {{USER_HPS167S}, 1, true, true},                     /* HPS-167S */
+    {{USER_HPS167S, USER_HPS167S}, 2, true, true},       /* two HPS-167S */
+    {{USER_HPS167S, USER_HPS167S_AUTO}, 2, true, true},  /* HPS-167S, another one that sends by itself */
+    {{USER_A16_MODBUS, USER_A05_MODBUS}, 2, true, true}, /* A16 and A05 Modbus */
+    {{USER_A05_DYP}, 1, true, true},                     /* A05 55 AA */
+    {{USER_A05_DYP, USER_A16_MODBUS}, 2, true, true},    /* A05 55 AA and Modbus */
+    {{USER_A16_AUTO}, 1, true, true},                    /* A16 auto */
+    {{USER_A05_AUTO}, 1, true, true},                    /* A05 auto */
+    {{USER_A16_AUTO, USER_A16_MODBUS}, 2, true, true},   /* A16 auto beside Modbus */
+    {{USER_A16_CONTROLLED}, 1, false, true},             /* A16 controlled */
+    {{USER_HPS167S_AUTO}, 1, true, true},                /* HPS-167S auto */
 };
 enum { SITES = sizeof sites / sizeof *sites };
 
@@ -294,27 +293,16 @@ TEST(by_chance_every_driver_has_outcomes_and_no_reading_is_wrong)
 {
     /* 22 000 000 polls in full */
     enum { PROGRAMS = SITES * 100, POLLS = 20000, SHARE_PROGRAMS = SITES * 12, SHARE_POLLS = 6000 };
-    unsigned ready[SITES] = {0}, failed[SITES] = {0}, chances[SITES] = {0};
-    wire_us_t longest_us[SITES] = {0};
+    unsigned ready[SITES] = {0};
     /* FATHOM_SEED=7 runs one program alone. */
     const char *const seed = getenv("FATHOM_SEED");
     const unsigned first = seed != NULL ? (unsigned)strtoul(seed, NULL, 10) : 0;
     const unsigned count = seed != NULL ? 1 : (unsigned)DESK_SHARE(PROGRAMS, SHARE_PROGRAMS);
     for (unsigned run = first; run != first + count; run++) {
         run_program(run, DESK_SHARE(POLLS, SHARE_POLLS));
-        for (unsigned i = 0; i != user_count; i++) {
-            ready[run % SITES] += users[i].ready;
-            failed[run % SITES] += users[i].failed;
-            chances[run % SITES] += users[i].chances;
-            if (longest_us[run % SITES] < users[i].longest_us) longest_us[run % SITES] = users[i].longest_us;
-        }
+        for (unsigned i = 0; i != user_count; i++) ready[run % SITES] += users[i].ready;
     }
-    for (unsigned i = 0; i != SITES; i++) {
-        DESK_REPORT(
-            "%s: %u readings, %u errors, %u values made by chance; longest without an outcome %.2f s\n",
-            sites[i].name, ready[i], failed[i], chances[i], (double)longest_us[i] / 1e6);
-        assert_true(ready[i] != 0 || seed != NULL);
-    }
+    for (unsigned i = 0; i != SITES; i++) assert_true(ready[i] != 0 || seed != NULL);
 }
 
 TEST(the_phases_of_the_line_change_as_the_table_of_the_engine_states) { phases_expect_table(); }

@@ -14,6 +14,12 @@ enum { SECOND_US = 1000000, NEVER_US = 120 * SECOND_US };
 /* Loops in which 95 of 100 phases set command #10 within 30 s. */
 enum { LOOPS_WITH_COMMAND_10_PERCENT = 85 };
 
+/* Prints figures if suite_is_long. */
+#define REPORT(...)                                                                                          \
+    do {                                                                                                     \
+        if (suite_is_long) print_message(__VA_ARGS__);                                                       \
+    } while (0)
+
 static fathom_hps167s_t sensor;
 
 /* What the datasheet leaves open. */
@@ -92,16 +98,16 @@ static result_t measure(fathom_status_t (*command)(void), uint32_t timeout_us, w
         result.within_10_s += time_us <= 10 * SECOND_US;
         result.within_30_s += time_us <= 30 * SECOND_US;
         result.loops++;
-        DESK_REPORT("loop %2u ms, time-out %4u ms: half of the phases %6.2f s, %u of them %6.2f s\n", loop_ms,
-                    timeout_us / 1000, (double)times[PHASES / 2 - 1] / 1e6, wanted, (double)time_us / 1e6);
+        REPORT("loop %2u ms, time-out %4u ms: half of the phases %6.2f s, %u of them %6.2f s\n", loop_ms,
+               timeout_us / 1000, (double)times[PHASES / 2 - 1] / 1e6, wanted, (double)time_us / 1e6);
     }
-    DESK_REPORT("time-out %u ms, deaf for %u us, %s: %u of %u phases within %.2f s (loop of %u ms), %u "
-                "loops in 10 s, "
-                "%u in 30 s, of %u\n",
-                timeout_us / 1000, (unsigned)ways.deaf_us,
-                ways.keeps_schedule ? "fixed schedule" : "shifted schedule", wanted, PHASES,
-                (double)result.worst_us / 1e6, result.worst_loop_ms, result.within_10_s, result.within_30_s,
-                result.loops);
+    REPORT("time-out %u ms, deaf for %u us, %s: %u of %u phases within %.2f s (loop of %u ms), %u "
+           "loops in 10 s, "
+           "%u in 30 s, of %u\n",
+           timeout_us / 1000, (unsigned)ways.deaf_us,
+           ways.keeps_schedule ? "fixed schedule" : "shifted schedule", wanted, PHASES,
+           (double)result.worst_us / 1e6, result.worst_loop_ms, result.within_10_s, result.within_30_s,
+           result.loops);
     return result;
 }
 
@@ -161,8 +167,8 @@ TEST(every_loop_has_readings)
         }
         if (readings < fewest) fewest = readings;
         assert_true(readings - ours <= desk_count(FATHOM_LINE_MAYBE_UNSOLICITED));
-        DESK_REPORT("loop %2u ms: %u readings in 10 minutes, %u of them responses, %u failures\n", loop_ms,
-                    readings, ours, failures);
+        REPORT("loop %2u ms: %u readings in 10 minutes, %u of them responses, %u failures\n", loop_ms,
+               readings, ours, failures);
     }
     assert_true(fewest >= 2600);
 }

@@ -62,12 +62,6 @@ fathom_status_t desk_status(const desk_request_t *request);
 /* Turns until the request has an outcome, at most for a time. Returns the outcome, or FATHOM_PENDING. */
 fathom_status_t desk_wait(const desk_request_t *request, wire_us_t at_most_us);
 
-/* Prints figures if suite_is_long. */
-#define DESK_REPORT(...)                                                                                     \
-    do {                                                                                                     \
-        if (suite_is_long) print_message(__VA_ARGS__);                                                       \
-    } while (0)
-
 /* In a share of the tests, `share` of them; all if suite_is_long. */
 #define DESK_SHARE(all, share) (suite_is_long ? (all) : (share))
 

@@ -15,7 +15,7 @@ static const char *const names[] = {
 };
 enum { PHASES = sizeof names / sizeof *names, CELL = 160 };
 
-static unsigned seen[PHASES][PHASES];
+static bool seen[PHASES][PHASES];
 static bool is_in_table[PHASES][PHASES];
 static uint8_t phase;
 
@@ -30,7 +30,7 @@ void phases_sample(void)
     const uint8_t now = desk.line.phase;
     assert_true(now < PHASES);
     if (now == phase) return;
-    seen[phase][now]++;
+    seen[phase][now] = true;
     phase = now;
 }
 
@@ -80,7 +80,7 @@ static unsigned for_each(const char *cell, uint8_t to, unsigned (*with)(uint8_t 
 static unsigned expect_seen(uint8_t from, uint8_t to)
 {
     is_in_table[from][to] = true;
-    if (seen[from][to] != 0) return 0;
+    if (seen[from][to]) return 0;
     print_message("never seen: %s to %s\n", names[from], names[to]);
     return 1;
 }
@@ -118,9 +118,7 @@ void phases_expect_table(void)
     (void)fclose(file);
     for (uint8_t from = 0; from != PHASES; from++)
         for (uint8_t to = 0; to != PHASES; to++) {
-            if (seen[from][to] != 0)
-                DESK_REPORT("%s to %s: %u times\n", names[from], names[to], seen[from][to]);
-            if (seen[from][to] == 0 || is_in_table[from][to]) continue;
+            if (!seen[from][to] || is_in_table[from][to]) continue;
             print_message("not in the table: %s to %s\n", names[from], names[to]);
             unknown++;
         }

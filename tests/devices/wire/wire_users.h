@@ -26,11 +26,9 @@ typedef struct {
     uint8_t retries;
     bool is_stream;
 
-    wire_us_t since_us; /* the last outcome */
-    wire_us_t slack_us; /* the program did not poll for this time since then */
-    wire_us_t longest_us;
-    unsigned ready, failed, chances; /* chances: values that noise made, which no checksum detects */
-    unsigned errors[20];             /* by -status */
+    wire_us_t since_us;      /* the last outcome */
+    wire_us_t slack_us;      /* the program did not poll for this time since then */
+    unsigned ready, chances; /* chances: values that noise made, which no checksum detects */
 } user_t;
 
 enum { USERS = 4 };
