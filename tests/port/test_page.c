@@ -265,14 +265,6 @@ TEST(the_clock_is_right_wherever_the_timer_wraps_while_it_is_read)
                 }
 }
 
-TEST(the_clock_wraps_at_2_to_the_32)
-{
-    begin_at(UINT32_MAX - 2);
-    assert_int_equal(now(), UINT32_MAX - 2);
-    tick(5);
-    assert_int_equal(now(), 2);
-}
-
 static int read_port(uint8_t *bytes, size_t capacity, uint8_t *flags)
 {
     fathom_rx_t rx = {0, 0};

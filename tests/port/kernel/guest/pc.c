@@ -2,7 +2,6 @@
 #define _DEFAULT_SOURCE 1 /* the tty's flags, and what Linux has besides */
 #include <errno.h>
 #include <fcntl.h>
-#include <poll.h>
 #include <string.h>
 #include <sys/ioctl.h>
 #include <sys/resource.h>
@@ -76,16 +75,7 @@ static int open_past_the_port(void *ctx)
     return open(NEAR, O_RDWR | O_NOCTTY | O_NONBLOCK) >= 0 ? 0 : errno;
 }
 
-enum { ROOT = 0, USER = 1000 };
-
-GUEST_CASE(another_process_is_kept_out_by_the_lock)
-{
-    (void)tty_open(NEAR, 9600, FATHOM_PARITY_NONE, 1);
-    CHECK_INT(guest_other_process(ROOT, open_past_the_port, NULL), 0); /* TIOCEXCL does not stop root */
-    CHECK_INT(guest_other_process(ROOT, open_it, NULL), -FATHOM_POSIX_ERR_IN_USE);
-    fathom_posix_close(&tty_port);
-    CHECK_INT(guest_other_process(ROOT, open_it, NULL), 0);
-}
+enum { USER = 1000 };
 
 GUEST_CASE(a_user_is_kept_out_by_tiocexcl_alone)
 {
@@ -122,35 +112,6 @@ GUEST_CASE(sent_waits_for_the_last_stop_bit)
     char bytes[12];
     CHECK_INT(tty_receive(far, bytes, sizeof bytes, 500), 12);
     CHECK_INT(memcmp(bytes, "twelve bytes", 12), 0);
-}
-
-GUEST_CASE(what_the_kernels_queue_does_not_hold_follows)
-{
-    static uint8_t block[250], got[64 * sizeof block];
-    const fathom_uart_t uart = tty_open(NEAR, 115200, FATHOM_PARITY_NONE, 1);
-    const int far = tty_raw(FAR, B115200, 0);
-    size_t accepted = 0;
-    CHECK_INT(tcflow(fathom_posix_fd(&tty_port), TCOOFF),
-              0); /* the tty is stopped, its queue of 4 KiB fills */
-    for (int n = (int)sizeof block; n > 0; accepted += (size_t)n) {
-        for (size_t i = 0; i != sizeof block; i++) block[i] = (uint8_t)((accepted + i) % 251);
-        CHECK(accepted < sizeof got - sizeof block);
-        n = uart.write(uart.ctx, block, sizeof block);
-        CHECK(n == 0 || n == (int)sizeof block);
-    }
-    CHECK_WITHIN(accepted, 3000, 6000);
-    CHECK_INT(fathom_posix_poll_events(&tty_port), POLLIN | POLLOUT); /* the rest of one is kept */
-    CHECK(!uart.sent(uart.ctx));
-    CHECK_INT(tcflow(fathom_posix_fd(&tty_port), TCOON), 0);
-    size_t count = 0;
-    for (int tries = 0; tries != 300 && count != accepted; tries++) {
-        (void)uart.sent(uart.ctx); /* hands over the rest */
-        count += tty_receive(far, got + count, accepted - count, 20);
-    }
-    CHECK_INT(count, accepted);
-    for (size_t i = 0; i != count; i++) CHECK_INT(got[i], i % 251);
-    CHECK_INT(tty_receive(far, got, 1, 50), 0);
-    CHECK_INT(fathom_posix_poll_events(&tty_port), POLLIN);
 }
 
 GUEST_CASE(line_errors_are_counted_by_the_driver)
