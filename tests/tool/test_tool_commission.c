@@ -102,38 +102,24 @@ static void add_hps_units(size_t count)
     connect_next();
 }
 
-static void add_a16_units(size_t count)
-{
-    for (; site.count != count; site.count++) {
-        fathom_sim_a16_t *const a16 = &site.unit[site.count].a16;
-        fathom_sim_a16_init(a16, &(fathom_sim_a16_config_t){.mode = FATHOM_SIM_A16_MODBUS,
-                                                            .seed = (uint32_t)site.count,
-                                                            .scene = fathom_sim_fixed(&bench.scene)});
-        site.device[site.count] = &a16->device;
+#define ADD_UNITS(name, model, MODEL)                                                                        \
+    static void name(size_t count)                                                                           \
+    {                                                                                                        \
+        for (; site.count != count; site.count++) {                                                          \
+            fathom_sim_##model##_t *const unit = &site.unit[site.count].model;                               \
+            const fathom_sim_##model##_config_t config = {.mode = FATHOM_SIM_##MODEL##_MODBUS,               \
+                                                          .seed = (uint32_t)site.count,                      \
+                                                          .scene = fathom_sim_fixed(&bench.scene)};          \
+            fathom_sim_##model##_init(unit, &config);                                                        \
+            site.device[site.count] = &unit->device;                                                         \
+        }                                                                                                    \
+        connect_next();                                                                                      \
     }
-    connect_next();
-}
 
-static void add_a05_units(size_t count)
-{
-    for (; site.count != count; site.count++) {
-        fathom_sim_a05_t *const a05 = &site.unit[site.count].a05;
-        fathom_sim_a05_init(a05, &(fathom_sim_a05_config_t){.mode = FATHOM_SIM_A05_MODBUS,
-                                                            .seed = (uint32_t)site.count,
-                                                            .scene = fathom_sim_fixed(&bench.scene)});
-        site.device[site.count] = &a05->device;
-    }
-    connect_next();
-}
+ADD_UNITS(add_a16_units, a16, A16)
+ADD_UNITS(add_a05_units, a05, A05)
 
 /* ---- runs ---- */
-
-static unsigned count_of(const char *text, const char *what)
-{
-    unsigned count = 0;
-    for (const char *at = strstr(text, what); at != NULL; at = strstr(at + 1, what)) count++;
-    return count;
-}
 
 /* Runs the command with the record. `more`: sensor, addresses, options. After each run no two of the connected units have
  * the same address, and no more was written than was announced. */

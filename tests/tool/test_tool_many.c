@@ -103,13 +103,6 @@ static readings_t readings_of(const tool_run_t *run, const char *name)
     return readings;
 }
 
-static unsigned times(const char *text, const char *words)
-{
-    unsigned count = 0;
-    for (; (text = strstr(text, words)) != NULL; text++) count++;
-    return count;
-}
-
 #define RUN(exit_status, ...)                                                                                \
     const tool_run_t *const run = tool_run(&many.tool, __VA_ARGS__);                                         \
     if (run->status != (exit_status)) fail_msg("exit status %d\n%s%s", run->status, run->out, run->err)
@@ -142,10 +135,10 @@ TEST(one_is_lost_and_comes_back_one_is_silent_and_the_third_does_not_pause)
     expect_err(run, "fathom: lost: attempts 15, failed 1, readings 14,");
     expect_err(run, "fathom: mute: attempts 20, failed 20, readings 0");
     expect_err(run, "fathom: fine: attempts 20, failed 0, readings 20,");
-    assert_int_equal(times(run->err, "p0: unplugged. Waiting until it is back\n"), 1);
-    assert_int_equal(times(run->err, "fathom: p0: it is back; reading goes on\n"), 1);
-    assert_int_equal(times(run->err, "p0: "), 2);
-    assert_int_equal(times(run->err, "p2"), 0);
+    assert_int_equal(count_of(run->err, "p0: unplugged. Waiting until it is back\n"), 1);
+    assert_int_equal(count_of(run->err, "fathom: p0: it is back; reading goes on\n"), 1);
+    assert_int_equal(count_of(run->err, "p0: "), 2);
+    assert_int_equal(count_of(run->err, "p2"), 0);
     expect_err(run, "fathom: mute: attempt 20: no response from hps167s:1");
 }
 
@@ -172,7 +165,7 @@ TEST(an_outage_is_rows_and_a_quiet_one_is_no_more)
     assert_int_equal(rows_of(run, "both,", ",port,"), 3);
     assert_int_equal(rows_of(run, "mute,", ",no_response,"), 20);
     assert_int_equal(rows_of(run, "fine,", ",target,"), 20);
-    assert_int_equal(times(run->out, "\n"), 1 + 14 + 3 + 14 + 3 + 20 + 20);
+    assert_int_equal(count_of(run->out, "\n"), 1 + 14 + 3 + 14 + 3 + 20 + 20);
     assert_string_equal(run->err, "");
 }
 
@@ -253,7 +246,7 @@ TEST(both_sensors_of_a_lost_port_fail_and_it_is_told_once)
     expect_err(run, "fathom: hps167s:2: attempts 6, failed 1, readings 5");
     expect_err(run, "fathom: fine: attempts 6, failed 0, readings 6");
     expect_err(run, "fathom: failures: port 2\n");
-    assert_int_equal(times(run->err, "unplugged"), 1);
+    assert_int_equal(count_of(run->err, "unplugged"), 1);
 }
 
 /* ---- of several kinds ---- */
@@ -273,8 +266,8 @@ TEST(each_port_has_its_own_settings_and_its_own_stations)
     /* Of those that are asked and of the one that is not. */
     expect_err(run, "fathom: requests 9\n");
     expect_err(run, "fathom: stream: frames 3, bytes ");
-    assert_int_equal(times(run->err, ", responses 3, response_min_us "), 3);
-    assert_int_equal(times(run->err, "response_min_us"), 3);
+    assert_int_equal(count_of(run->err, ", responses 3, response_min_us "), 3);
+    assert_int_equal(count_of(run->err, "response_min_us"), 3);
 }
 
 /* One request leaves every 33 ms, and another one always waits behind it. */

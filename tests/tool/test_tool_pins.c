@@ -1,6 +1,86 @@
 /* SPDX-License-Identifier: MIT */
-/* a16:pwm on the lines of a GPIO chip, and how exact --stats says it is; the chip itself; wrong usage. */
-#include "pins_bench.h"
+/* Sensors on the lines of a GPIO chip: a16:pwm, and how exact --stats says it is; a16:switch and a05:relay; the chip itself;
+ * wrong usage. */
+#include "sim/pin.h"
+#include "tool_bench.h"
+
+#define PWM "a16:pwm@gpiochip0,trigger=17,echo=27"
+
+static fathom_sim_pins_t pins;
+static tool_chip_t chip;
+static const tool_run_t *last; /* of EXPECT */
+
+/* What happens so long after the begin; 0: nothing does. */
+static uint64_t passed_us;
+static uint64_t at_us;
+static void (*happens)(void);
+static uint64_t until_us; /* and when it is away: it comes back */
+
+static void pass(void *ctx, uint32_t max_us)
+{
+    const uint32_t began_us = bench.clock.now_us;
+    fathom_sim_clock_idle(ctx, max_us < 1000 ? max_us : 1000);
+    passed_us += bench.clock.now_us - began_us;
+    if (at_us != 0 && passed_us >= at_us) {
+        at_us = 0;
+        happens();
+    }
+    if (until_us != 0 && passed_us >= until_us) chip.is_away = false;
+}
+
+static void take_pins(fathom_sim_device_t *device)
+{
+    fathom_sim_pins_init(&pins, device, &bench.line, &bench.clock);
+    chip.trigger = fathom_sim_rx_pin(&pins);
+    chip.capture = fathom_sim_capture(&pins);
+    chip.in = fathom_sim_tx_pin(&pins);
+}
+
+static void with_a16(uint8_t mode)
+{
+    bench_a16((fathom_sim_a16_config_t){.mode = mode});
+    take_pins(&bench.a16.device);
+}
+
+static void with_relay(fathom_sim_a05_config_t config)
+{
+    config.mode = FATHOM_SIM_A05_RELAY;
+    bench_a05(config);
+    take_pins(&bench.a05.device);
+}
+
+static void see(int32_t mm)
+{
+    for (int i = 0; i != 4; i++) bench.scene.value[i] = mm;
+}
+
+static int set_up(void **state)
+{
+    bench_begin();
+    chip = (tool_chip_t){.path = "gpiochip0"};
+    passed_us = 0;
+    at_us = 0;
+    until_us = 0;
+    bench.tool.chip = &chip;
+    bench.tool.idle = pass;
+    return 0;
+}
+
+/* Runs it; `out` has this part so often and no other lines. */
+#define EXPECT(exit_status, times, part, ...)                                                                \
+    do {                                                                                                     \
+        const tool_run_t *const ran = tool_run(&bench.tool, __VA_ARGS__);                                    \
+        if (ran->status != (exit_status) || count_of(ran->out, part) != (times) ||                           \
+            count_of(ran->out, "\n") != (times))                                                             \
+            fail_msg("exit status %d, not %u times '%s':\n%s%s", ran->status, (unsigned)(times), part,       \
+                     ran->out, ran->err);                                                                    \
+        last = ran;                                                                                          \
+    } while (0)
+
+static void expect_err(const char *text)
+{
+    if (strstr(last->err, text) == NULL) fail_msg("'%s' is not in\n%s%s", text, last->out, last->err);
+}
 
 static const suite_t suite = {.set_up = set_up};
 
@@ -204,6 +284,120 @@ TEST(stats_each_second_begin_anew)
     expect_err("pulses: distances 4, min_us 20000, max_us 20000,");
 }
 
+/* ---- switch and relay ---- */
+
+static void come_near(void) { see(500); }
+
+TEST(a_switch_says_near_and_far)
+{
+    with_a16(FATHOM_SIM_A16_SWITCH);
+    see(3000);
+    at_us = 4000000;
+    happens = come_near;
+    EXPECT(0, 2, "s  a16  ", "read a16:switch@gpiochip0,in=6,bias=down --duration 10");
+    assert_non_null(strstr(last->out, "s  a16  far\n"));
+    assert_non_null(strstr(last->out, "s  a16  near\n"));
+    assert_int_equal(chip.asked.in, 6);
+    assert_int_equal(chip.asked.bias, FATHOM_GPIO_BIAS_PULL_DOWN);
+    assert_int_equal(chip.asked.trigger, -1);
+    assert_int_equal(chip.asked.echo, -1);
+}
+
+TEST(a_switch_repeats_its_state_and_has_no_distance)
+{
+    with_a16(FATHOM_SIM_A16_SWITCH);
+    see(3000);
+    EXPECT(0, 5, "far", "read a16:switch@gpiochip0,in=6 --interval 1000 --count 5");
+    assert_in_range(last->took_us, 4000000, 4200000);
+    EXPECT(0, 1, "\"status\":\"far\",\"interference\":false,\"distance_mm\":null",
+           "read a16:switch@gpiochip0,in=6 --count 1 --format json");
+    see(500);
+    fathom_sim_clock_advance(&bench.clock, 5000000);
+    EXPECT(0, 1, "\"status\":\"near\",\"interference\":false,\"distance_mm\":null,\"raw\":1",
+           "read a16:switch@gpiochip0,in=6 --count 1 --format json");
+}
+
+/* The contact goes to ground: it conducts, and the input is low, when something is near (A05 4). */
+TEST(a_relay_that_pulls_down_is_near_when_it_is_low)
+{
+    with_relay((fathom_sim_a05_config_t){.bounces = 10});
+    see(3000);
+    at_us = 4000000;
+    happens = come_near;
+    EXPECT(0, 2, "s  a05  ", "read a05:relay@gpiochip0,in=5,bias=up --duration 10");
+    assert_non_null(strstr(last->out, "s  a05  far\n"));
+    assert_non_null(strstr(last->out, "s  a05  near\n"));
+    assert_int_equal(chip.asked.in, 5);
+    assert_int_equal(chip.asked.bias, FATHOM_GPIO_BIAS_PULL_UP);
+    EXPECT(0, 1, "\"probe\":null", "read a05:relay@gpiochip0,in=5,bias=up --count 1 --format json");
+    assert_non_null(strstr(last->out, "\"status\":\"near\""));
+    assert_non_null(strstr(last->out, "\"raw\":0"));
+}
+
+static bool get_inverted(void *ctx)
+{
+    const fathom_pin_t pin = fathom_sim_tx_pin(&pins);
+    return !pin.get(pin.ctx);
+}
+
+/* The contact goes to ground or to the supply, is normally open or normally closed, and near= says which level is near.
+ * Register 0x0205 of a switch may be 0. */
+TEST(near_is_the_level_of_the_contact_unless_the_user_names_it)
+{
+    static const struct {
+        bool is_closed, is_inverted;
+        const char *seen, *keys;
+    } rows[] = {
+        {false, true, "near", "bias=down"},       {true, false, "near", "bias=up,near=high"},
+        {true, false, "far", "bias=up,near=low"}, {true, true, "near", "bias=down,near=low"},
+        {true, true, "far", "bias=down"},
+    };
+    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
+        (void)set_up(NULL);
+        with_relay((fathom_sim_a05_config_t){.normally_closed = rows[i].is_closed});
+        if (rows[i].is_inverted) chip.in.get = get_inverted;
+        see(500);
+        fathom_sim_clock_advance(&bench.clock, 5000000);
+        EXPECT(0, 1, rows[i].seen, "read a05:relay@gpiochip0,in=5,%s --count 1", rows[i].keys);
+    }
+    (void)set_up(NULL);
+    with_a16(FATHOM_SIM_A16_SWITCH);
+    see(500);
+    fathom_sim_clock_advance(&bench.clock, 5000000);
+    EXPECT(0, 1, "near", "read a16:switch@gpiochip0,in=6,near=high --count 1");
+    EXPECT(0, 1, "far", "read a16:switch@gpiochip0,in=6,near=low --count 1");
+}
+
+static bool get_noise(void *ctx) { return (bench.clock.now_us / 7000) % 2 != 0; }
+
+TEST(a_level_that_does_not_stand_still_says_what_to_check)
+{
+    with_relay((fathom_sim_a05_config_t){0});
+    chip.in.get = get_noise;
+    EXPECT(1, 0, "far", "read a05:relay@gpiochip0,in=5 --count 1");
+    expect_err(
+        "attempt 1: no reading from a05 at gpiochip0: the level is not stable. Check for a loose wire");
+    expect_err("bias=up, bias=down");
+}
+
+TEST(watch_has_a_lane_of_near_and_far)
+{
+    with_relay((fathom_sim_a05_config_t){0});
+    see(3000);
+    at_us = 4000000;
+    happens = come_near;
+    const tool_run_t *const run =
+        tool_run(&bench.tool, "watch a05:relay@gpiochip0,in=5,bias=up --duration 8");
+    assert_int_equal(run->status, 0);
+    assert_int_equal(count_of(run->out, "probe"), 0); /* it is all probes' */
+    const char *const near = strstr(run->out, "near");
+    const char *const far = strstr(run->out, "far");
+    assert_non_null(near);
+    assert_non_null(far);
+    assert_true(far < near);
+    assert_null(strstr(near, "far")); /* and so it stays */
+}
+
 /* ---- the chip ---- */
 
 static void lose(void) { chip.is_away = true; }
@@ -291,12 +485,6 @@ TEST(what_is_wrong_usage_says_what_to_write)
     }
 }
 
-TEST(what_asks_and_what_simulates_has_no_pins)
-{
-    with_a16(FATHOM_SIM_A16_PWM);
-    EXPECT(2, 0, "mm", "info " PWM);
-    expect_err("a16 in mode pwm receives no requests.");
-    EXPECT(2, 0, "mm", "get " PWM);
-    EXPECT(2, 0, "mm", "sim a16:pwm");
-    expect_err("a16 in mode pwm has pins and no line");
-}
+REFUSES(what_asks_and_what_simulates_has_no_pins, "", {"info " PWM, "a16 in mode pwm receives no requests."},
+        {"get " PWM, "a16 in mode pwm receives no requests."},
+        {"sim a16:pwm", "a16 in mode pwm has pins and no line"})

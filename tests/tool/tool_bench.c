@@ -43,6 +43,13 @@ void bench_hps167s(fathom_sim_hps167s_config_t config)
     fathom_sim_attach(&bench.line, &bench.hps167s.device, bench.clock.now_us);
 }
 
+unsigned count_of(const char *text, const char *part)
+{
+    unsigned count = 0;
+    for (const char *at = strstr(text, part); at != NULL; at = strstr(at + 1, part)) count++;
+    return count;
+}
+
 void assert_refused(const char *line, const char *text)
 {
     const tool_run_t *const run = tool_run(&bench.tool, "%s", line);

@@ -41,6 +41,9 @@ void bench_hps167s(fathom_sim_hps167s_config_t config);
             fail_msg("exit status %d\n%s%s", asserted->status, asserted->out, asserted->err);                \
     } while (0)
 
+/* Returns how often this part is in the text. */
+unsigned count_of(const char *text, const char *part);
+
 /* Runs a command that is refused: exit status 2, and one line on standard error, which has this text. */
 void assert_refused(const char *line, const char *text);
 
