@@ -454,8 +454,7 @@ void fathom_line_count(fathom_line_t *line, uint8_t which, uint8_t by);
 /**
  * @brief Initialises a line that sends requests.
  *
- * Any previous contents of `*line` are overwritten, and the line does not know what was in its queue before. End the
- * transactions of a line with fathom_line_cancel() before you initialise it a second time.
+ * Any contents of `*line` are overwritten. Before a second call, end its transactions with fathom_line_cancel().
  *
  * @param line    The line. Must stay valid until its last use.
  * @param parts   What the line is made of. Must stay valid as long as the line.
