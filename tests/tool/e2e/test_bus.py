@@ -1,13 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Several sensors on one pair: fathom read in one loop, also at different line settings; who is named, who is
-counted, who is left alone; and examples/bus.c. It needs real time: CTest runs one such file at a time."""
+"""Several sensors on one pair: fathom read in one loop, also at different line settings and over TCP; and
+examples/bus.c. (Who is left alone: test_tool_read.c.) It needs real time: CTest runs one such file at a time."""
 import collections
 import os
 import re
-import signal
 import termios
-import threading
 
 import e2e
 import tcp_server
@@ -23,11 +21,8 @@ def seen(objects, *names):
 
 
 class Read(e2e.Case):
-    def bus(self):
-        return self.sim(SEEN)
-
     def test_three_models_with_two_line_settings_are_read_in_one_loop(self):
-        done = self.ends(f'read {BUS} --port {self.bus()} --count 4 --format json', 0)
+        done = self.ends(f'read {BUS} --port {self.sim(SEEN)} --count 4 --format json', 0)
         got = collections.Counter((one['model'], one['mode'], one['address'], one['probe'], one['status'],
                                    one['distance_mm']) for one in done.json)
         self.assertEqual(got, {('a16', 'modbus', 1, 1, 'target', 1953): 4,
@@ -37,14 +32,6 @@ class Read(e2e.Case):
                                ('a05', 'modbus', 2, 4, 'target', 3562): 4,
                                ('hps167s', 'modbus', 7, 1, 'target', 2083): 4})
         self.assertEqual(done.err, '')
-
-    def test_a_table_has_the_columns_of_all(self):
-        done = self.ends(f'read a16:1 hps167s:7 --port {self.bus()} --count 1 --format csv', 0)
-        header, *rows = [line.split(',') for line in done.out.splitlines()]
-        self.assertEqual(header[-3:], ['magnitude', 'ambient', 'precision'])
-        self.assertEqual({row[1]: row[-3:] for row in rows},
-                         {'a16': ['', '', ''], 'hps167s': ['723.1744', '1', '0']})
-        self.assertEqual({len(row) for row in rows}, {len(header)})
 
     def test_each_request_leaves_at_the_rate_of_its_sensor(self):
         """Both have the factory's address, which is no conflict at two rates."""
@@ -65,74 +52,6 @@ class Read(e2e.Case):
             device.read(8)
             self.assertEqual(device.baud(), termios.B57600)
         self.ends(reader, 1)
-
-    def test_the_end_comes_after_so_many_seconds(self):
-        done = self.ends(f'read {BUS} --port {self.bus()} --duration 2', 0)
-        self.assertGreaterEqual(done.elapsed, 2)
-        self.assertGreaterEqual(len(done.out.splitlines()), 6)
-
-
-class Dead(e2e.Case):
-    """One of three does not answer."""
-
-    def answer(self, device, stop, requests):
-        """As an A16 at address 1 and an A05 at 3 do; no unit is at address 2."""
-        while not stop.is_set():
-            if device.is_silent(0.02):
-                continue
-            asked = device.read(8)
-            requests.append(asked[0])
-            if asked[0] != 2:
-                device.write(e2e.registers(asked[0], *[754] * asked[5]))
-
-    def read(self, options):
-        device = self.device()
-        requests = []
-        stop = threading.Event()
-        thread = threading.Thread(target=self.answer, args=(device, stop, requests))
-        thread.start()
-        try:
-            done = self.run_fathom(f'read a16:1 a16:2 a05:3 --port {device} {options}', seconds=60)
-        finally:
-            stop.set()
-            thread.join()
-        requests += device.rest()[::8]  # each is 8 bytes and begins with its address
-        return done, collections.Counter(requests)
-
-    def test_it_is_named_and_left_alone_and_the_others_are_read(self):
-        done, requests = self.read('--duration 12 --timeout 1000 --stats --format json')
-        for line in done.err.splitlines():
-            if 'attempt ' in line:
-                self.assertRegex(line, r'^fathom: a16:2: attempt \d+: no response from a16:2 at ')
-        # The first attempt may come before any unit has answered.
-        self.ends(done, 1, 'no byte was received, but other sensors on this line respond. Check the power')
-        stats, = done.told
-        self.assertEqual([(one['model'], one['mode'], one['address']) for one in stats['sensors']],
-                         [('a16', 'modbus', 1), ('a16', 'modbus', 2), ('a05', 'modbus', 3)])
-        units = {one['address']: one for one in stats['sensors']}
-        # After the third silence it is left alone for one time-out of 1 s, then for 2, 4 and 8 (modbus_unit.h). So it
-        # is asked at 0, 1, 2, 4, 7, 12 and 21 time-outs at the earliest, and 12 s are 12.
-        self.assertIn(requests[2], (3, 4, 5, 6))
-        dead = units[2]
-        self.assertEqual(dead['timeouts_in_row'], dead['failed_requests'])
-        self.assertEqual((dead['responses'], dead['readings'], dead['response_min_us']), (0, 0, None))
-        self.assertTrue(0 <= dead['backoff_left_us'] <= 8000000)
-        for address in (1, 3):
-            one = units[address]
-            self.assertEqual((one['timeouts_in_row'], one['backoff_left_us'], one['failed']), (0, 0, 0))
-            self.assertGreater(one['response_min_us'], 0)
-        # 120 ms and 400 ms are their periods; of 12 s the dead one took 6 s at most, so these are 50 and 15 on an
-        # idle machine.
-        self.assertGreaterEqual(requests[1], 4)
-        self.assertGreaterEqual(requests[3], 2)
-        self.assertEqual(stats['attempts'], sum(one['attempts'] for one in stats['sensors']))
-        self.assertEqual(stats['requests'], sum(requests.values()))
-
-    def test_the_only_one_on_a_line_is_asked_again_and_again(self):
-        _, reader = self.beside('read a16:2 --timeout 60 --count 8 --stats --format json')
-        one, = reader.finish().told[0]['sensors']
-        self.assertEqual((one['failed'], one['responses']), (8, 0))
-        self.assertLessEqual(one['backoff_left_us'], 1)
 
     def test_a_late_response_explains_the_failure_of_its_unit_alone(self):
         """Address 2 answers when its time is over, while address 3, where no unit is, is being asked."""
@@ -164,17 +83,6 @@ class Gateway(tcp_server.Case):
         self.assertEqual(sorted(asked), [(1, '01000001')] * 2 + [(7, '00080004')] * 2)
         self.assertEqual(seen(done.json, 'model', 'address', 'distance_mm'),
                          [('a16', 1, 754)] * 2 + [('hps167s', 7, 2083)] * 2)
-
-    def test_one_address_is_one_sensor_there(self):
-        self.ends('read a16:1 hps167s:1 --port tcp:127.0.0.1:1', 2,
-                  'a16:1 and hps167s:1 have the same address')
-
-
-class Port(e2e.Case):
-    def test_ctrl_c_ends_it_in_order(self):
-        reader = self.fathom(f'read {BUS} --port {self.sim(SEEN)}')
-        reader.expect('hps167s:7')
-        self.ends(reader.end(signal.SIGINT), 0)
 
 
 class Example(e2e.Case):

@@ -14,8 +14,8 @@ PROGRAMS = os.path.join(os.environ.get('FATHOM_BUILD', ''), 'examples')
 class Complete(e2e.Case):
     """examples/linux/first.c"""
 
-    def gate(self, *arguments, **options):
-        return self.start([os.path.join(PROGRAMS, 'example_first'), *arguments], **options)
+    def gate(self, *arguments):
+        return self.start([os.path.join(PROGRAMS, 'example_first'), *arguments])
 
     @e2e.each(a_distance=('--distance 2083', '2083 mm'), nothing_in_range=('--distance no-target', 'nothing in range'),
               a_device_that_has_failed=('--distance fault', 'no distance'),
@@ -31,25 +31,10 @@ class Complete(e2e.Case):
         gate.expect(r'^no reading \(NO_RESPONSE\)\. [A-Z].*\.$')
         gate.expect('^2083 mm$')
 
-    def test_it_ends_with_the_reason_when_its_port_is_lost(self):
-        sim = self.sim('hps167s --distance 2083')
-        gate = self.gate(sim)
-        gate.expect('^2083 mm$')
-        sim.end()
-        gate.expect(r'^no reading \(PORT\)\. [A-Z].*\.$')
-        self.ends(gate, 1, re.compile(f'^{re.escape(str(sim))}: \\S.*\n$'))
-
-    def test_a_port_that_is_not_there_is_reported(self):
-        self.ends(self.gate('/nowhere'), 1, '/nowhere', out='')
-
     def test_without_a_path_it_opens_the_first_usb_adapter(self):
         if os.path.exists('/dev/ttyUSB0'):
             self.skipTest('this machine has an adapter')
         self.ends(self.gate(), 1, '/dev/ttyUSB0', out='')
-
-    def test_it_ends_when_its_output_is_broken(self):
-        with open('/dev/full', 'w', encoding='utf-8') as full:
-            self.ends(self.gate(self.sim('hps167s --distance 2083'), stdout=full), 1)
 
 
 class Three(e2e.Case):
@@ -58,8 +43,8 @@ class Three(e2e.Case):
     LINES = {'A16: probe 1: 754 mm', 'A05: probe 1: 1000 mm', 'A05: probe 2: 2000 mm',
              'A05: probe 3: nothing in range', 'A05: probe 4: 3562 mm', 'HPS-167S: probe 1: 2083 mm'}
 
-    def three(self, *arguments, **options):
-        return self.start([os.path.join(PROGRAMS, 'example_three'), *arguments], **options)
+    def three(self, *arguments):
+        return self.start([os.path.join(PROGRAMS, 'example_three'), *arguments])
 
     def test_each_sensor_is_read_again_and_again_at_its_own_settings(self):
         three = self.three(self.sim(self.SEEN))
@@ -78,20 +63,21 @@ class Three(e2e.Case):
         self.assertEqual([line for line in three.lines() if not line.startswith('A05: no reading (NO_RESPONSE)') and
                           line not in self.LINES], [])
 
-    def test_it_ends_with_the_reason_when_its_port_is_lost(self):
-        sim = self.sim(self.SEEN)
-        three = self.three(sim)
-        three.expect('^A16: probe 1: 754 mm$')
-        sim.end()
-        three.expect(r'no reading \(PORT\)\. [A-Z].*\.$')
-        self.ends(three, 1, re.compile(f'^{re.escape(str(sim))}: \\S.*\n$'))
+class Ends(e2e.Case):
+    """examples/linux/first.c and three.c"""
 
-    def test_a_port_that_is_not_there_is_reported(self):
-        self.ends(self.three('/nowhere'), 1, '/nowhere', out='')
-
-    def test_it_ends_when_its_output_is_broken(self):
+    @e2e.each(the_first=('example_first', 'hps167s --distance 2083', '2083 mm'),
+              the_three=('example_three', Three.SEEN, 'A16: probe 1: 754 mm'))
+    def ends_with_the_reason(self, name, sensors, line):
+        program, sim = os.path.join(PROGRAMS, name), self.sim(sensors)
         with open('/dev/full', 'w', encoding='utf-8') as full:
-            self.ends(self.three(self.sim(self.SEEN), stdout=full), 1)
+            self.ends(self.start([program, sim], stdout=full), 1)
+        self.ends(self.start([program, '/nowhere']), 1, '/nowhere', out='')
+        running = self.start([program, sim])
+        running.expect(f'^{line}$')
+        sim.end()
+        running.expect(r'no reading \(PORT\)\. [A-Z].*\.$')
+        self.ends(running, 1, re.compile(f'^{re.escape(str(sim))}: \\S.*\n$'))
 
 
 class Modes(e2e.Case):

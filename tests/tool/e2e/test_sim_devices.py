@@ -15,7 +15,6 @@ from e2e import ASK_A16, ASK_HPS, SAYS_754, SAYS_2083
 
 BUS = 'a16:1:modbus a05:2:modbus hps167s:7'
 A16, A05, HPS = 'a16 --mode modbus', 'a05 --mode modbus --address 2', 'hps167s --address 7'
-FRAME = bytes.fromhex('FF 02 EF F0')  # 751 mm: FF + 02 + EF = 1F0
 
 
 class Case(e2e.Case):
@@ -294,31 +293,8 @@ class Bytes(Case):
         self.assertEqual(self.ask(port, e2e.adu(2, 3, 3, 0, 0, 1), 5, 9600), e2e.adu(2, 0x83, 2))
         self.assertEqual(self.ask(port, e2e.adu(7, 3, 0, 8, 0, 3), 5, 19200), e2e.adu(7, 0x83, 3))
 
-
-class FaultSeen(Case):
-    def port(self, line):
-        return self.open(self.sim(line))
-
-    def asked(self, port, request, response):
-        port.write(request)
-        self.assertEqual(port.read(len(response)), response)
-
-    def test_the_second_of_three_responses_is_damaged(self):
-        port = self.port('a16::modbus --distance 754 --fault trailing=1@2')
-        self.asked(port, ASK_A16, SAYS_754)
-        self.asked(port, ASK_A16, SAYS_754)
-        self.assertEqual(len(port.read(1)), 1)
-        port.timeout = 0.1
-        port.read(3)  # the rest, up to four bytes in all
-        port.timeout = e2e.PATIENCE
-        self.asked(port, ASK_A16, SAYS_754)
-
     def test_a_sensor_may_have_32_faults(self):
         self.assertEqual(self.sim('a16', '--fault drop=1% ' * 32).end().code, 0)
-
-    def test_a_byte_that_is_overrun_is_missing(self):
-        self.assertIn(self.port('a16 --distance 751 --fault overrun').read(3),
-                      [FRAME[:n] + FRAME[n + 1:] for n in range(4)])
 
 
 if __name__ == '__main__':
