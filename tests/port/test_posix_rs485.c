@@ -184,12 +184,6 @@ TEST(a_port_that_is_closed_or_none_is_not_set)
     assert_int_equal(driver.rs485_sets, 0);
 }
 
-TEST(a_pseudo_terminal_has_none)
-{
-    assert_int_equal(open_with(&usual), FATHOM_POSIX_OK);
-    set_fails(&with_delays, FATHOM_POSIX_ERR_UNSUPPORTED);
-}
-
 /* ---- breaks ---- */
 
 static int set_break(bool on) { return rig.uart.set_break(rig.uart.ctx, on); }
