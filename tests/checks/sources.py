@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """What the text of src/ and include/ may not contain: no heap, no stdio, no floating point, no #if but
-include guards and __cplusplus, no compiler extensions. What only the compiler sees is in objects.py."""
+include guards and __cplusplus, no compiler extensions, no state packed into bits, no cast that hides a comparison.
+What only the compiler sees is in objects.py."""
 import os
 import re
 
@@ -20,6 +21,34 @@ BANNED = [
     (r'\b_Pragma\b', 'pragma'),
 ]
 DIRECTIVE = re.compile(r'^\s*#\s*(if|ifdef|ifndef|elif|else|error|undef)\b\s*(.*?)\s*$')
+
+# Sets of units, settings or probes: each bit is a member, and all bits mean the same.
+SETS = ('quarantined_units', 'unconfirmed', 'waiting', 'left', 'missing', 'probes')
+# What a port reports about bytes (hal.h) is a word of flags.
+FLAGS = ('flags',)
+
+MEMBER = r'(?:\w+(?:->|\.))+(\w+)'
+PATTERNS = [  # pattern; the group that names the member, if any; what is wrong; what to use instead
+    (rf'{MEMBER}\s*\|=', 'sets a bit of a member', 'a bool for each fact'),
+    (rf'{MEMBER}\s*&=', 'clears bits of a member', 'a bool for each fact'),
+    (rf'{MEMBER}\s*=(?!=)\s*[^;]*(?<!\|)\|(?!\|)[^;]*;', 'stores combined bits in a member', 'a bool for each fact'),
+    (rf'{MEMBER}\s*&\s*(?:\([^()]*\)\s*)?~?[A-Za-z0-9]', 'reads bits of a member', 'an enum or a bool'),
+    (r'&\s*\(u?int(?:8|16|32)_t\)\s*~', 'clears bits by a mask', 'a bool for each fact'),
+    (r'(?<!- )\b0x1(?:00|0000)u?\b', 'encodes a second value above a byte or a word', 'a struct with both values'),
+    (r'\(u?int(?:8|16)_t\)\s*\([^()]*-[^()]*\)\s*(?:<|>|<=|>=)(?![<>])', 'compares a wrapped difference',
+     'a predicate with a name'),
+    (r'\breturn\s+(?:\([a-z0-9_]+\)\s*)?-\s*\w*(?:count|length)\w*\s*;', 'returns a negative count',
+     'an enum or a struct'),
+]
+
+
+def packed(path, code):
+    """State stands in enums and bools that a reader can name."""
+    for expression, wrong, instead in PATTERNS:
+        for found in re.finditer(expression, code):
+            if not found.groups() or found[1] not in SETS + FLAGS:
+                line = code.count('\n', 0, found.start()) + 1
+                yield f'{path}:{line}: {wrong}; use {instead}'
 
 
 def directives(path, lines):
@@ -46,7 +75,9 @@ def check(root, only):
         text = read(root, path)
         if not text.startswith('/* SPDX-License-Identifier: MIT */\n'):
             problems.append(f'{path}:1: the SPDX line is missing')
-        lines = code_of(text).split('\n')
+        code = code_of(text)
+        problems += packed(path, code)
+        lines = code.split('\n')
         for number, line in enumerate(lines, 1):
             for pattern, what in BANNED:
                 if re.search(pattern, line):

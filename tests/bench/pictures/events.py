@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What traces.c and avr_trace.c print: events in time."""
+"""What traces.c prints: events in time."""
 import csv
 from collections import namedtuple
 
