@@ -59,7 +59,6 @@ static void add(rig_t *rig, uint8_t value, uint8_t flags, uint64_t end_us)
     rig->bytes[at].flags = flags;
     rig->bytes[at].is_foreign = rig->bytes[at].is_wrong = false;
     rig->bytes[at].end_us = end_us;
-    rig->heard_us = end_us;
 }
 
 /* A byte of the device. A receiver of a pair is off while its own driver is on. */
@@ -67,7 +66,6 @@ static void receive(void *context, const second_byte_t *byte)
 {
     rig_t *rig = context;
     if (is_pair(rig) && byte->start_us < rig->sent_us) return;
-    if (rig->is_asleep && rig->count == RIG_BYTES) return; /* a ring that keeps its oldest bytes */
     if (byte->start_us < rig->zeros_until_us) return;
     if (rig->damage == RIG_LOSSES && is_drawn(rig)) return;
     uint32_t off =
@@ -175,9 +173,8 @@ void rig_open(rig_t *rig, const second_config_t *config)
 {
     static const uint32_t begins_us[] = {0, 4294000000u, 4200000000u, 2147483000u};
     assert_true(second_init(&rig->device, config));
-    rig->now_us = rig->sent_us = rig->heard_us = 0;
+    rig->now_us = rig->sent_us = 0;
     rig->in_break = false;
-    rig->is_asleep = false;
     rig->first = rig->count = rig->last_len = 0;
     rig->received_count = 0;
     rig->marked_count = 0;
@@ -287,29 +284,6 @@ void rig_zeros(rig_t *rig, uint64_t us)
 {
     rig->zero_us = rig->now_us + character_us(rig);
     rig->zeros_until_us = rig->now_us + us;
-}
-
-void rig_sleep(rig_t *rig, uint64_t us)
-{
-    rig->is_asleep = true;
-    run_to(rig, rig->now_us + us);
-    rig->is_asleep = false;
-}
-
-void rig_foreign_request(rig_t *rig, const uint8_t *bytes, size_t length)
-{
-    const uint64_t bits = 9U + (rig->set.parity != 'N' ? 1U : 0U) + rig->set.stop_bits;
-    enum { SILENCE_US = 4011 }; /* 3.5 characters at 9600 baud */
-    if (rig->now_us < rig->sent_us || rig->now_us < rig->heard_us + SILENCE_US) return;
-    for (size_t i = 0; i < length; i++) {
-        const second_byte_t byte = {.value = bytes[i],
-                                    .start_us = rig->now_us,
-                                    .end_us = rig->now_us + bits * 1000000 / rig->set.baud,
-                                    .line = rig->set};
-        second_host_byte(&rig->device, byte.value, byte.start_us, byte.end_us, rig->set);
-        run_to(rig, byte.end_us);
-        receive(rig, &byte);
-    }
 }
 
 void rig_wait(rig_t *rig, uint64_t us)

@@ -34,8 +34,6 @@ typedef struct {
     second_line_t set;    /* the host's UART */
     uint64_t sent_us;     /* when all that was written has left */
     bool in_break;
-    bool is_asleep;
-    uint64_t heard_us; /* when the last byte ended that the device sent */
     struct {
         uint8_t value, flags;
         bool is_foreign; /* the device did not send it */
@@ -74,10 +72,6 @@ void rig_scene(rig_t *rig, int32_t mm1, int32_t mm2, int32_t mm3, int32_t mm4);
 
 /* Time passes: once round the loop, of which something is due in due_us at the latest. */
 void rig_pass(rig_t *rig, uint32_t due_us);
-/* The host sleeps that long: nothing is polled, and the port keeps what fits into it. */
-void rig_sleep(rig_t *rig, uint64_t us);
-/* Another master on the wire sends this request, unless it hears that the wire is not silent. */
-void rig_foreign_request(rig_t *rig, const uint8_t *bytes, size_t length);
 /* Damages `of_1000` of 1000 frames or bytes from now on. */
 void rig_damage(rig_t *rig, rig_damage_t damage, uint32_t of_1000);
 /* Replaces the bytes of the device by zeros without a pause for `us`. */

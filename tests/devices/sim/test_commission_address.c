@@ -105,19 +105,6 @@ TEST(a_dead_device_does_not_look_like_success_where_the_line_echoes)
     }
 }
 
-TEST(every_a05_takes_the_address_of_55_aa_03_and_one_that_of_modbus)
-{
-    for (model_t model = A05; model <= A05_DYP; model++) {
-        set_up(model, OLD, 0, FATHOM_LINE_ECHO_AUTO);
-        const fathom_sim_device_t *const other = add_other(9);
-        const fathom_status_t status = carry_out(set_new);
-        /* in 55 AA what it reads from two devices at once cannot be known */
-        if (model == A05) assert_int_equal(status, FATHOM_OK);
-        assert_int_equal(bench.device->address, NEW);
-        assert_int_equal(other->address, model == A05 ? 9 : NEW);
-    }
-}
-
 TEST(what_waits_for_the_old_address_is_cancelled)
 {
     FOR_ALL_MODELS
@@ -143,27 +130,6 @@ TEST(what_waits_for_the_old_address_is_cancelled)
     }
 }
 
-static uint8_t told_address;
-static fathom_status_t ask_address(void)
-{
-    return fathom_a05_modbus_get_address(&s.driver.a05, &told_address);
-}
-
-TEST(what_is_given_up_leaves_driver_and_device_at_the_old_address_or_unknown)
-{
-    FOR_ALL_MODELS
-    {
-        if (n % 4 != 0) continue;
-        assert_int_equal(set_new(), FATHOM_PENDING);
-        cancel();
-        assert_measures(OLD, 1234);
-        if (s.model != A05) continue;
-        while (fathom_poll(&s.sensor, &s.sample) == FATHOM_OK) continue; /* the other probes */
-        assert_int_equal(carry_out(ask_address), FATHOM_OK);
-        assert_int_equal(told_address, OLD);
-    }
-}
-
 TEST(addresses_of_everybody_are_refused)
 {
     FOR_ALL_MODELS
@@ -171,19 +137,6 @@ TEST(addresses_of_everybody_are_refused)
         assert_int_equal(set_address(0), FATHOM_ERR_ARGUMENT);
         assert_int_equal(set_address(255), FATHOM_ERR_ARGUMENT);
         assert_null(s.line.head);
-    }
-}
-
-TEST(after_power_on_an_a05_that_is_silent_warms_up)
-{
-    for (model_t model = A05; model <= A05_DYP; model++) {
-        set_up(model, OLD, 0, FATHOM_LINE_ECHO_AUTO);
-        fathom_sim_detach(&bench.line, bench.device, s.clock.now_us);
-        power_on();
-        const uint32_t start_us = s.clock.now_us;
-        while (measure() == FATHOM_ERR_WARMING_UP) continue;
-        assert_in_range(since_us(start_us), 1500 * MS, 2500 * MS);
-        assert_int_equal(measure(), FATHOM_ERR_NO_RESPONSE);
     }
 }
 
