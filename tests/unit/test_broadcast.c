@@ -22,81 +22,51 @@ static union {
     fathom_dyp_value_t value;
 } out;
 
-#define COMMAND(name, call)                                                                                  \
+/* Behind them `allowed` has what they send to unit 0, in this order. */
+#define COMMANDS(X)                                                                                          \
+    X(hps_version, fathom_hps167s_get_interface_version(&hps, &out.version))                                 \
+    X(hps_configuration, fathom_hps167s_get_configuration(&hps, &out.configuration))                         \
+    X(hps_details, fathom_hps167s_get_details(&hps, &out.details))                                           \
+    X(hps_temperature, fathom_hps167s_get_temperature(&hps, &out.temperature))                               \
+    X(hps_reset, fathom_hps167s_restore_factory_settings(&hps))                                              \
+    X(hps_warm_up, fathom_hps167s_set_warm_up_s(&hps, 9))                                                    \
+    X(hps_address, fathom_hps167s_set_address(&hps, 5))                                                      \
+    X(hps_no_address, fathom_hps167s_set_address(&hps, 0))                                                   \
+    X(hps_baud, fathom_hps167s_set_baud(&hps, 115200))                                                       \
+    X(hps_measures, fathom_hps167s_set_measures_after_power_on(&hps, false))                                 \
+    X(hps_termination, fathom_hps167s_set_termination(&hps, false))                                          \
+    X(hps_offset, fathom_hps167s_set_distance_offset_mm(&hps, -15))                                          \
+    X(hps_user, fathom_hps167s_load_user_settings(&hps))                                                     \
+    X(hps_factory_settings, fathom_hps167s_load_factory_settings(&hps))                                      \
+    X(hps_filter, fathom_hps167s_set_filter_sensitivity(&hps, 7))                                            \
+    X(hps_reconnect, fathom_hps167s_set_reconnect_time_ms(&hps, 18))                                         \
+    X(hps_measures_all, fathom_hps167s_broadcast_measures_after_power_on(&hps, false))                       \
+    X(a16_measure, fathom_a16_modbus_measure(&a16, FATHOM_REAL_TIME, &out.sample))                           \
+    X(a16_address, fathom_a16_modbus_get_address(&a16, &out.byte))                                           \
+    X(hps_measures_all_on, fathom_hps167s_broadcast_measures_after_power_on(&hps, true))                     \
+    X(a16_set_address, fathom_a16_modbus_set_address(&a16, 5))                                               \
+    X(a16_no_address, fathom_a16_modbus_set_address(&a16, 0))                                                \
+    X(a16_mode, fathom_a16_modbus_set_operating_mode(&a16, FATHOM_A16_AUTOMATIC))                            \
+    X(a16_polarity, fathom_a16_modbus_get_switch_polarity(&a16, &out.polarity))                              \
+    X(hps_termination_all, fathom_hps167s_broadcast_termination(&hps, false))                                \
+    X(a16_set_polarity, fathom_a16_modbus_set_switch_polarity(&a16, FATHOM_A16_NEGATIVE))                    \
+    X(a16_threshold, fathom_a16_modbus_get_switch_threshold_mm(&a16, &out.word))                             \
+    X(a16_set_threshold, fathom_a16_modbus_set_switch_threshold_mm(&a16, 2000))                              \
+    X(a16_value, fathom_a16_modbus_get_automatic_value(&a16, &out.value))                                    \
+    X(hps_termination_all_on, fathom_hps167s_broadcast_termination(&hps, true))                              \
+    X(a16_set_value, fathom_a16_modbus_set_automatic_value(&a16, FATHOM_PROCESSED))                          \
+    X(a05_address, fathom_a05_modbus_get_address(&a05, &out.byte))                                           \
+    X(a05_set_address, fathom_a05_modbus_set_address(&a05, 5))                                               \
+    X(a05_no_address, fathom_a05_modbus_set_address(&a05, 0))
+
+#define DEFINE(name, call)                                                                                   \
     static fathom_status_t name(void) { return call; }
+#define NAME(name, call) name,
 
-COMMAND(hps_version, fathom_hps167s_get_interface_version(&hps, &out.version))
-COMMAND(hps_configuration, fathom_hps167s_get_configuration(&hps, &out.configuration))
-COMMAND(hps_details, fathom_hps167s_get_details(&hps, &out.details))
-COMMAND(hps_temperature, fathom_hps167s_get_temperature(&hps, &out.temperature))
-COMMAND(hps_reset, fathom_hps167s_restore_factory_settings(&hps))
-COMMAND(hps_warm_up, fathom_hps167s_set_warm_up_s(&hps, 9))
-COMMAND(hps_address, fathom_hps167s_set_address(&hps, 5))
-COMMAND(hps_no_address, fathom_hps167s_set_address(&hps, 0))
-COMMAND(hps_baud, fathom_hps167s_set_baud(&hps, 115200))
-COMMAND(hps_measures, fathom_hps167s_set_measures_after_power_on(&hps, false))
-COMMAND(hps_termination, fathom_hps167s_set_termination(&hps, false))
-COMMAND(hps_offset, fathom_hps167s_set_distance_offset_mm(&hps, -15))
-COMMAND(hps_user, fathom_hps167s_load_user_settings(&hps))
-COMMAND(hps_factory_settings, fathom_hps167s_load_factory_settings(&hps))
-COMMAND(hps_filter, fathom_hps167s_set_filter_sensitivity(&hps, 7))
-COMMAND(hps_reconnect, fathom_hps167s_set_reconnect_time_ms(&hps, 18))
-COMMAND(hps_measures_all, fathom_hps167s_broadcast_measures_after_power_on(&hps, false))
-COMMAND(hps_measures_all_on, fathom_hps167s_broadcast_measures_after_power_on(&hps, true))
-COMMAND(hps_termination_all, fathom_hps167s_broadcast_termination(&hps, false))
-COMMAND(hps_termination_all_on, fathom_hps167s_broadcast_termination(&hps, true))
-COMMAND(a16_measure, fathom_a16_modbus_measure(&a16, FATHOM_REAL_TIME, &out.sample))
-COMMAND(a16_address, fathom_a16_modbus_get_address(&a16, &out.byte))
-COMMAND(a16_set_address, fathom_a16_modbus_set_address(&a16, 5))
-COMMAND(a16_no_address, fathom_a16_modbus_set_address(&a16, 0))
-COMMAND(a16_mode, fathom_a16_modbus_set_operating_mode(&a16, FATHOM_A16_AUTOMATIC))
-COMMAND(a16_polarity, fathom_a16_modbus_get_switch_polarity(&a16, &out.polarity))
-COMMAND(a16_set_polarity, fathom_a16_modbus_set_switch_polarity(&a16, FATHOM_A16_NEGATIVE))
-COMMAND(a16_threshold, fathom_a16_modbus_get_switch_threshold_mm(&a16, &out.word))
-COMMAND(a16_set_threshold, fathom_a16_modbus_set_switch_threshold_mm(&a16, 2000))
-COMMAND(a16_value, fathom_a16_modbus_get_automatic_value(&a16, &out.value))
-COMMAND(a16_set_value, fathom_a16_modbus_set_automatic_value(&a16, FATHOM_PROCESSED))
-COMMAND(a05_address, fathom_a05_modbus_get_address(&a05, &out.byte))
-COMMAND(a05_set_address, fathom_a05_modbus_set_address(&a05, 5))
-COMMAND(a05_no_address, fathom_a05_modbus_set_address(&a05, 0))
+COMMANDS(DEFINE)
+static fathom_status_t (*const commands[])(void) = {desk_poll, COMMANDS(NAME)};
 
-static fathom_status_t (*const commands[])(void) = {desk_poll,
-                                                    hps_version,
-                                                    hps_configuration,
-                                                    hps_details,
-                                                    hps_temperature,
-                                                    hps_reset,
-                                                    hps_warm_up,
-                                                    hps_address,
-                                                    hps_no_address,
-                                                    hps_baud,
-                                                    hps_measures,
-                                                    hps_termination,
-                                                    hps_offset,
-                                                    hps_user,
-                                                    hps_factory_settings,
-                                                    hps_filter,
-                                                    hps_reconnect,
-                                                    hps_measures_all,
-                                                    a16_measure,
-                                                    a16_address,
-                                                    hps_measures_all_on,
-                                                    a16_set_address,
-                                                    a16_no_address,
-                                                    a16_mode,
-                                                    a16_polarity,
-                                                    hps_termination_all,
-                                                    a16_set_polarity,
-                                                    a16_threshold,
-                                                    a16_set_threshold,
-                                                    a16_value,
-                                                    hps_termination_all_on,
-                                                    a16_set_value,
-                                                    a05_address,
-                                                    a05_set_address,
-                                                    a05_no_address};
-
-/* #10 and #11 (tables 27 and 29), and in which order the list above has them. */
+/* #10 and #11 (tables 27 and 29). */
 static const uint8_t allowed[4][6] = {
     {0, 6, 0, 0x12, 0, 0x00}, {0, 6, 0, 0x12, 0, 0xFF}, {0, 6, 0, 0x13, 0, 0x00}, {0, 6, 0, 0x13, 0, 0xFF}};
 

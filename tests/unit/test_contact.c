@@ -3,6 +3,7 @@
 #include "fathom/engine/wait.h"
 #include "fathom/sensor/a05_relay.h"
 #include "fathom/sensor/a16_switch.h"
+#include "stream_rig.h"
 
 enum { START_US = 1000, SETTLE_US = 20000 };
 #define SECOND ((uint32_t)1000000)
@@ -15,7 +16,6 @@ static const uint32_t starts_us[] = {START_US, UINT32_MAX - 10000, UINT32_MAX - 
 
 static fathom_contact_timing_t timing;
 static fathom_contact_t contact;
-static uint32_t seed;
 static bool is_guard_clear;
 static fathom_status_t guard_status;
 
@@ -52,7 +52,7 @@ static int set_up_default(void **state)
 {
     (void)state;
     memset(&timing, 0, sizeof timing);
-    seed = 1;
+    rig_seed(1);
     is_guard_clear = true;
     guard_status = FATHOM_PENDING;
     start();
@@ -446,40 +446,34 @@ TEST_IN(by_default, the_first_look_is_the_time_of_a_sample_for_up_to_2_s)
 
 /* ---- any of it ---- */
 
-static uint32_t below(uint32_t limit)
-{
-    seed = seed * 1664525u + 1013904223u; /* Numerical Recipes */
-    return (uint32_t)(((uint64_t)seed * limit) >> 32);
-}
-
 /* "period_us + stale_us + 2 * P", by the clock and without its jumps. */
 static void run_world(uint32_t world)
 {
     static const uint32_t any_steps_us[] = {100, 3000, 30000, 300000, 3000000, 600000000};
     memset(&timing, 0, sizeof timing);
-    if (below(2) == 0) timing.settle_us = 1 + below(100000);
-    if (below(2) == 0) timing.stale_us = 100001 + below(5000000);
-    if (below(2) == 0) timing.period_us = 1 + below(5000000);
-    const fathom_contact_guard_t *const with = below(2) == 0 ? &guard : NULL;
-    rig_start(below(UINT32_MAX));
+    if (rig_random_below(2) == 0) timing.settle_us = 1 + rig_random_below(100000);
+    if (rig_random_below(2) == 0) timing.stale_us = 100001 + rig_random_below(5000000);
+    if (rig_random_below(2) == 0) timing.period_us = 1 + rig_random_below(5000000);
+    const fathom_contact_guard_t *const with = rig_random_below(2) == 0 ? &guard : NULL;
+    rig_start(rig_random_below(UINT32_MAX));
     init_on(0x5A, with);
     const uint32_t bound_us = contact.timing.period_us + contact.timing.stale_us;
     uint32_t longest_us = 0;
     uint32_t since_us = 0;
     bool is_held = false;
     for (unsigned polls = 0; polls != 500; polls++) {
-        const uint32_t step_us = 1 + below(any_steps_us[world % COUNT(any_steps_us)]);
+        const uint32_t step_us = 1 + rig_random_below(any_steps_us[world % COUNT(any_steps_us)]);
         if (step_us > longest_us) longest_us = step_us;
         rig.fake.now_us += step_us;
         since_us += step_us;
-        if (below(20) == 0) {
-            const uint32_t back_us = below(100001);
+        if (rig_random_below(20) == 0) {
+            const uint32_t back_us = rig_random_below(100001);
             rig.fake.now_us -= back_us;
             since_us = since_us > back_us ? since_us - back_us : 0;
         }
-        if (below(world % 7 + 1) == 0) rig.level = !rig.level;
-        if (below(20) == 0) is_guard_clear = !is_guard_clear;
-        if (below(50) == 0) fathom_contact_set_hold(&contact, is_held = !is_held);
+        if (rig_random_below(world % 7 + 1) == 0) rig.level = !rig.level;
+        if (rig_random_below(20) == 0) is_guard_clear = !is_guard_clear;
+        if (rig_random_below(50) == 0) fathom_contact_set_hold(&contact, is_held = !is_held);
         if (rig_poll() != FATHOM_PENDING) since_us = 0;
         if (rig.samples != 0 && since_us == 0) assert_true(rig.sample.raw <= 1);
         if (since_us > bound_us + 2 * longest_us)

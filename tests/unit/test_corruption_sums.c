@@ -209,5 +209,3 @@ TEST(five_wrong_bytes_make_a_response_a_request_and_three_of_them_are_one_bit)
     };
     expect_taken(3, 5, VECTOR_RESPONSE, RESPONSE_BYTES, hears_a_request, list);
 }
-
-/* ---- two wrong bytes ---- */

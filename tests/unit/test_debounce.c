@@ -59,27 +59,22 @@ static void expect_changes(const char *words)
     }
 }
 
-TEST(three_nearer_in_a_row_make_near_and_five_farther_far)
+/* By default three nearer in a row make near, five farther make far, and equality holds the level. */
+TEST(rows_of_measurements_change_the_level_and_equality_counts_as_the_config_says)
 {
-    expect_changes("nnNnffffFfnnN");
-    assert_int_equal(gate.level, FATHOM_NEAR);
-}
-
-/* ---- Decision: equality holds the level ---- */
-
-TEST(equality_can_be_made_near)
-{
-    config.equal = FATHOM_EQUAL_IS_NEAR;
-    start();
-    expect_changes("enEffffef");
-}
-
-TEST(equality_can_be_made_far)
-{
-    config.equal = FATHOM_EQUAL_IS_FAR;
-    start();
-    expect_changes("nneneefeE");
-    assert_int_equal(gate.level, FATHOM_FAR);
+    static const struct {
+        uint8_t equal;
+        uint8_t level;
+        const char *words;
+    } rows[] = {{0, FATHOM_NEAR, "nnNnffffFfnnN"},
+                {FATHOM_EQUAL_IS_NEAR, FATHOM_NEAR, "enEffffef"},
+                {FATHOM_EQUAL_IS_FAR, FATHOM_FAR, "nneneefeE"}};
+    for (unsigned i = 0; i != sizeof rows / sizeof *rows; i++) {
+        config.equal = rows[i].equal;
+        start();
+        expect_changes(rows[i].words);
+        assert_int_equal(gate.level, rows[i].level);
+    }
 }
 
 TEST(a_config_without_sense_is_refused)

@@ -78,24 +78,6 @@ TEST(per_mille_are_to_the_nearest)
     expect_per_mille(65535, 65535, 1000);
 }
 
-static void expect_refused(void)
-{
-    fathom_level_t level, before;
-    memset(&level, 0xA5, sizeof level);
-    memset(&before, 0xA5, sizeof before);
-    assert_int_equal(fathom_level_from_distance(&tank, 600, &level), FATHOM_ERR_ARGUMENT);
-    assert_memory_equal(&level, &before, sizeof level);
-}
-
-TEST(without_a_shape_or_a_height_nothing_is_written)
-{
-    tank.volume = NULL;
-    expect_refused();
-    set_up(NULL);
-    tank.height_mm = 0;
-    expect_refused();
-}
-
 static uint32_t of_own(const fathom_level_config_t *config, uint16_t level_mm)
 {
     assert_ptr_equal(config, &tank);
@@ -109,8 +91,6 @@ TEST(a_shape_may_be_the_callers_own_and_gets_levels_within_the_tank)
     expect_level(600, 1500, 750, 7001500);
     expect_level(0, 2100, 1000, 7002000);
 }
-
-/* ---- upright ---- */
 
 static uint32_t volume_of(fathom_tank_volume_t volume, uint32_t capacity, uint16_t height_mm,
                           uint16_t level_mm)
@@ -238,23 +218,6 @@ TEST(a_tables_products_do_not_wrap)
 
 static void expect_checked(fathom_status_t status) { assert_int_equal(fathom_level_check(&tank), status); }
 
-TEST(a_config_without_a_shape_a_mounting_a_height_or_a_volume_is_refused)
-{
-    tank.volume = NULL;
-    expect_checked(FATHOM_ERR_ARGUMENT);
-    set_up(NULL);
-    tank.mounting_mm = 0;
-    expect_checked(FATHOM_ERR_ARGUMENT);
-    set_up(NULL);
-    tank.height_mm = 0;
-    expect_checked(FATHOM_ERR_ARGUMENT);
-    set_up(NULL);
-    tank.capacity = 0;
-    expect_checked(FATHOM_ERR_ARGUMENT);
-    tank.volume = fathom_tank_horizontal_cylinder;
-    expect_checked(FATHOM_ERR_ARGUMENT);
-}
-
 static void expect_points(fathom_status_t status, fathom_level_point_t a, fathom_level_point_t b,
                           fathom_level_point_t c)
 {
@@ -282,15 +245,39 @@ TEST(points_whose_levels_or_volumes_do_not_grow_are_refused)
     expect_points(FATHOM_ERR_ARGUMENT, a, b, (p){19, 300});
 }
 
-TEST(a_table_without_points_or_without_a_volume_is_refused)
+static const fathom_level_point_t without_volume[] = {{0, 100}};
+
+static const fathom_level_config_t refused[] = {
+    {.volume = NULL, .mounting_mm = 2100, .height_mm = 2000, .capacity = 5000},
+    {.volume = fathom_tank_upright, .mounting_mm = 2100, .height_mm = 0, .capacity = 5000},
+    {.volume = fathom_tank_upright, .mounting_mm = 0, .height_mm = 2000, .capacity = 5000},
+    {.volume = fathom_tank_upright, .mounting_mm = 2100, .height_mm = 2000},
+    {.volume = fathom_tank_horizontal_cylinder, .mounting_mm = 2100, .height_mm = 2000},
+    {.volume = fathom_tank_table, .mounting_mm = 2100, .height_mm = 2000},
+    {.volume = fathom_tank_table, .mounting_mm = 2100, .height_mm = 2000, .point_count = 1},
+    {.volume = fathom_tank_table, .mounting_mm = 2100, .height_mm = 2000, .points = cone},
+    {.volume = fathom_tank_table,
+     .mounting_mm = 2100,
+     .height_mm = 2000,
+     .points = without_volume,
+     .point_count = 1},
+};
+
+TEST(a_config_without_a_shape_a_mounting_a_height_a_volume_or_points_is_refused)
 {
-    static const fathom_level_point_t nothing[] = {{0, 100}};
-    use_points(NULL, 0);
-    expect_checked(FATHOM_ERR_ARGUMENT);
-    use_points(NULL, 1);
-    expect_checked(FATHOM_ERR_ARGUMENT);
-    use_points(cone, 0);
-    expect_checked(FATHOM_ERR_ARGUMENT);
-    use_points(nothing, 1);
-    expect_checked(FATHOM_ERR_ARGUMENT);
+    for (unsigned i = 0; i != sizeof refused / sizeof *refused; i++) {
+        tank = refused[i];
+        expect_checked(FATHOM_ERR_ARGUMENT);
+    }
+}
+
+TEST(without_a_shape_or_a_height_no_level_is_written)
+{
+    for (unsigned i = 0; i != 2; i++) {
+        fathom_level_t level, before;
+        memset(&level, 0xA5, sizeof level);
+        memset(&before, 0xA5, sizeof before);
+        assert_int_equal(fathom_level_from_distance(&refused[i], 600, &level), FATHOM_ERR_ARGUMENT);
+        assert_memory_equal(&level, &before, sizeof level);
+    }
 }

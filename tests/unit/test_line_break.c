@@ -71,6 +71,11 @@ static const conversation_t conversations[] = {
       ARRIVE("55 01 03 02"), WAIT(1000), HEARD("55", 1), HOLD(true), HOLD(false), WAIT(GAP_US + 1000),
       HEARD("55 01 03 02", 1)},
      {.no_responses = 1}},
+    /* the port has FATHOM_LINE_SEND_US to release TX */
+    {"a_line_whose_port_does_not_release_tx_is_due_when_the_port_counts_as_broken",
+     {WAIT(100000), HOLD(true), QUEUE(A, 1), REFUSES(FOR_EVER, 0), BREAK(false, FATHOM_PENDING),
+      DUE(FATHOM_LINE_SEND_US)},
+     {0}},
     {"a_break_that_cannot_begin_once_more_goes_on_and_what_waits_goes_on_waiting",
      {HOLD(true), QUEUE(A, 1), REFUSES_BEGIN, REFUSES(1, -1), BREAK(true, FATHOM_ERR_PORT),
       COUNT(PORT_ERRORS, 0), WAIT(T3_5_US + 200), WRITTEN(0), PENDS(A)},

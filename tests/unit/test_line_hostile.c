@@ -122,3 +122,36 @@ TEST(a_port_that_cannot_write_or_tears_a_request_ends_the_transaction)
     ask_while(state, &bench.fake.write_too_short, 5000);
     expect(FATHOM_ERR_PORT);
 }
+
+/* ---- fathom_modbus_client_submit() ---- */
+
+TEST(a_count_of_registers_out_of_range_is_refused)
+{
+    static const uint8_t reads[] = {0, 126};
+    uint16_t values[4] = {0};
+    for (size_t i = 0; i != 3; i++) {
+        if (i != 2)
+            fathom_modbus_read_holding_registers(&bench.request.message, 1, 0x0106, reads[i], values);
+        else
+            fathom_modbus_write_multiple_registers(&bench.request.message, 1, 0, 124, values);
+        assert_int_equal(fathom_modbus_client_submit(&bench.line, &bench.request), FATHOM_ERR_ARGUMENT);
+        assert_null(bench.line.head);
+    }
+}
+
+TEST(every_byte_of_an_acknowledgement_counts)
+{
+    uint16_t values[5] = {0};
+    for (size_t i = 1; i != 6; i++) {
+        set_up(state);
+        fathom_modbus_write_single_register(&bench.request.message, 1, 0x0200, 5);
+        bench.request.message.head[i] ^=
+            i == 1 ? 0x16 : 1; /* asks for something else: function 10, or one bit */
+        bench.request.message.values = values;
+        submit(&bench.request);
+        run(40000);
+        receive_all(set_address_5);
+        expect_after(200, FATHOM_PENDING);
+        expect_after(TIMEOUT_US, FATHOM_ERR_MALFORMED);
+    }
+}

@@ -7,7 +7,59 @@ static const suite_t asked = {.set_up = set_up_asked};
 #define FRAME    "FF 07 A1 A7"          /* of an A16 that sends by itself */
 #define RESPONDS "01 03 02 02 F2 38 A1" /* 754 mm */
 
+#define HOLDS(is_so)       STEP(holds, .which = (is_so))
+#define CALLS(n)           STEP(calls, .value = (n))     /* of the listener */
+#define TIME_IS_NOW        STEP(time_is_now, .which = 0) /* of its last bytes */
+#define LISTEN_NULL        STEP(listen_null, .which = 0)
+#define UNLISTEN(is_other) STEP(unlisten, .which = (is_other))
+
+static fathom_listener_t other;
+
+static void play_holds(const step_t *step)
+{
+    assert_int_equal(fathom_line_holds_bytes(&bench.line), step->which != 0);
+}
+
+static void play_calls(const step_t *step) { assert_int_equal(bench_listener.calls, step->value); }
+static void play_time_is_now(const step_t *step)
+{
+    assert_int_equal(bench_listener.time_us, bench.fake.now_us);
+}
+
+static void play_listen_null(const step_t *step)
+{
+    assert_int_equal(fathom_line_listen(&bench.line, NULL), FATHOM_OK);
+}
+
+static void play_unlisten(const step_t *step)
+{
+    fathom_line_unlisten(&bench.line, step->which != 0 ? &other : &bench_listener.base);
+}
+
 static const conversation_t conversations[] = {
+    /* 2 ms of silence have been seen before the first bytes */
+    {"a_listener_gets_unsolicited_bytes_with_the_gaps_that_were_seen",
+     {LISTEN(5000), WAIT(2000), ARRIVE("FF 07"), WAIT(1000), HEARD("FF 07", 0), ARRIVE("A1 A7"), WAIT(6000),
+      RECEIVE(FRAME), HEARD(FRAME " " FRAME, 1), GAP_AT(4), TIME_IS_NOW},
+     {0}},
+    /* 222 mm of unit 2 */
+    {"whole_foreign_frames_go_to_the_listener",
+     {LISTEN(5000), ASK(A, 1), RESPONSE(2, 222), WAIT(100), HEARD("02 03 02 00 DE 7C 1C", 0), CALLS(1),
+      LISTEN_NULL, RESPONSE(2, 222), WAIT(100), CALLS(1)},
+     {.strays = 2, .dropped = 7}},
+    {"only_the_listener_of_the_line_can_be_removed",
+     {LISTEN(5000), UNLISTEN(true), RECEIVE(FRAME), HEARD(FRAME, 0), UNLISTEN(false), RECEIVE(FRAME),
+      HEARD(FRAME, 0)},
+     {.dropped = 4}},
+    {"listening_with_null_removes_the_listener",
+     {LISTEN(5000), LISTEN_NULL, RECEIVE(FRAME), HEARD("", 0)},
+     {.dropped = 4}},
+    /* after the response none is expected: the frame buffer has the bytes, and the listener too */
+    {"the_line_holds_bytes_that_may_begin_a_response_until_it_knows",
+     {LISTEN(5000), ASK(A, 1), ARRIVE("01 03 02"), WAIT(200), HOLDS(true), HEARD("", 0),
+      ARRIVE("02 F2 38 A1"), WAIT(200), READS(A, 754), HOLDS(false), WAIT(2 * GAP_US), ARRIVE("01 03 02"),
+      WAIT(200), HOLDS(false), HEARD("01 03 02", 1)},
+     {.responses = 1}},
     {"a_silence_that_the_port_saw_ends_a_frame",
      {ASK(A, 1), ARRIVE("01 03 02 02"), RECEIVE_WITH(SILENCE, RESPONDS), READS(A, 754)},
      {.responses = 1, .dropped = 4}},
@@ -84,80 +136,6 @@ TEST_IN(asked, with_time_stamps_the_next_request_need_not_wait_for_the_loop)
 }
 
 /* ---- the listener ---- */
-
-TEST(a_listener_gets_unsolicited_bytes_with_the_gaps_that_were_seen)
-{
-    listen_for(5000);
-    run(2000);
-    receive(auto_frame, 2); /* only 2 ms of silence have been seen */
-    run(1000);
-    assert_int_equal(bench_listener.gaps, 0);
-    receive(auto_frame + 2, 2);
-    run(6000);
-    deliver(auto_frame, 4);
-    expect_heard(auto_frame, 4, auto_frame, 4);
-    assert_int_equal(bench_listener.gaps, 1);
-    assert_int_equal(bench_listener.gap_at, 4);
-    assert_int_equal(bench_listener.time_us, bench.fake.now_us);
-    expect_count(FATHOM_LINE_DROPPED_BYTES, 0);
-}
-
-TEST(whole_foreign_frames_go_to_the_listener)
-{
-    listen_for(5000);
-    ask_1_and_send(0);
-    receive_response(2, 222);
-    run(200);
-    assert_int_equal(bench_listener.length, 7);
-    assert_int_equal(bench_listener.calls, 1);
-    (void)fathom_line_replace_listener(&bench.line, NULL);
-    receive_response(2, 222);
-    run(200);
-    assert_int_equal(bench_listener.length, 7);
-    expect_count(FATHOM_LINE_DROPPED_BYTES, 7);
-}
-
-TEST(only_the_listener_of_the_line_can_be_removed)
-{
-    fathom_listener_t other = bench_listener.base;
-    listen_for(5000);
-    fathom_line_unlisten(&bench.line, &other);
-    deliver(auto_frame, 4);
-    assert_int_equal(bench_listener.length, 4);
-    fathom_line_unlisten(&bench.line, &bench_listener.base);
-    deliver(auto_frame, 4);
-    assert_int_equal(bench_listener.length, 4);
-    expect_count(FATHOM_LINE_DROPPED_BYTES, 4);
-    assert_int_equal(fathom_line_listen(&bench.line, &other), FATHOM_OK);
-}
-
-TEST(listening_with_null_removes_the_listener)
-{
-    listen_for(5000);
-    assert_int_equal(fathom_line_listen(&bench.line, NULL), FATHOM_OK);
-    deliver(auto_frame, 4);
-    assert_int_equal(bench_listener.length, 0);
-    expect_count(FATHOM_LINE_DROPPED_BYTES, 4);
-}
-
-TEST(the_line_holds_bytes_that_may_begin_a_response_until_it_knows)
-{
-    listen_for(5000);
-    ask_1_and_send(0);
-    receive(response_1_754, 3);
-    run(200);
-    assert_true(fathom_line_holds_bytes(&bench.line));
-    assert_int_equal(bench_listener.length, 0);
-    receive(response_1_754 + 3, sizeof response_1_754 - 3);
-    expect_after(200, FATHOM_OK);
-    assert_false(fathom_line_holds_bytes(&bench.line));
-    run(2 * GAP_US);
-    receive(response_1_754,
-            3); /* No response is expected: the frame buffer has the bytes, and the listener too. */
-    run(200);
-    assert_false(fathom_line_holds_bytes(&bench.line));
-    assert_int_equal(bench_listener.length, 3);
-}
 
 /* ---- bytes that the port knows to be wrong or missing ---- */
 

@@ -80,17 +80,3 @@ TEST(nothing_is_submitted_to_a_line_that_only_listens)
     run(100000);
     expect_written(0);
 }
-
-/* fathom_line_init: "The config says whether it echoes, or names what finds that out". */
-TEST(a_line_that_asks_is_told_of_its_echo_or_finds_it_out)
-{
-    for (unsigned echo = 0; echo != 3; echo++)
-        for (unsigned finds = 0; finds != 2; finds++) {
-            bench.config.echo = (uint8_t)echo;
-            bench.config.find_echo = finds != 0 ? fathom_line_find_echo : NULL;
-            const bool is_right = echo != FATHOM_LINE_ECHO_AUTO || finds != 0;
-            assert_int_equal(fathom_line_init(&bench.line, &bench.config),
-                             is_right ? FATHOM_OK : FATHOM_ERR_ARGUMENT);
-            if (is_right) assert_int_equal(fathom_line_get_echo(&bench.line), echo);
-        }
-}

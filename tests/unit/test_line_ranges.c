@@ -64,8 +64,13 @@ TEST(a_config_that_misses_what_its_line_needs_is_refused)
     expect_refused(frame_size, 7);
     expect_accepted(frame_size, 8);
     expect_refused(echo, FATHOM_LINE_ECHO_ON + 1);
+    expect_accepted(echo, FATHOM_LINE_ECHO_AUTO);
     bench.config.find_echo = NULL;
     expect_refused(echo, FATHOM_LINE_ECHO_AUTO);
+    for (uint8_t told = FATHOM_LINE_ECHO_OFF; told <= FATHOM_LINE_ECHO_ON; told++) {
+        bench.config.find_echo = NULL;
+        expect_accepted(echo, told);
+    }
 }
 
 TEST(without_its_function_the_counters_are_not_needed)
@@ -93,17 +98,6 @@ TEST(a_transaction_has_at_most_254_retries)
     cancel(&bench.request);
     bench.request.transaction.retries = 255;
     assert_int_equal(fathom_line_submit(&bench.line, &bench.request.transaction), FATHOM_ERR_ARGUMENT);
-}
-
-/* The port has FATHOM_LINE_SEND_US to release TX. */
-TEST(a_line_whose_port_does_not_release_tx_is_due_when_the_port_counts_as_broken)
-{
-    run(100000);
-    assert_int_equal(fathom_line_break(&bench.line, true), FATHOM_OK);
-    ask_1(0);
-    bench.fake.refusals = -1;
-    assert_int_equal(fathom_line_break(&bench.line, false), FATHOM_PENDING);
-    expect_due(FATHOM_LINE_SEND_US);
 }
 
 /* A read that changes something in the unit, as the A16's reads of a measured value do not. */

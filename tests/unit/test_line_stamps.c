@@ -165,34 +165,18 @@ TEST(a_frame_is_not_split_where_its_first_bytes_came_after_the_look_at_the_clock
     }
 }
 
-static unsigned heard;
-static unsigned gaps;
-static uint32_t heard_us;
-
-static void hear(fathom_listener_t *listener, const uint8_t *bytes, uint8_t count, bool after_gap,
-                 uint32_t time_us)
-{
-    (void)listener;
-    (void)bytes;
-    heard += count;
-    gaps += after_gap;
-    heard_us = time_us;
-}
-
 TEST(a_listener_is_told_the_stamp_and_of_no_silence_that_was_not)
 {
-    fathom_listener_t listener = {.receive = hear, .gap_us = 5000};
-    (void)fathom_line_replace_listener(&bench.line, &listener);
-    heard = gaps = 0;
+    listen_for(5000);
     between_us = 2 * GAP_US;
     poll_with(response_1_754);
-    assert_int_equal(heard, 1);
-    assert_int_equal(heard_us, stamp_us);
+    assert_int_equal(bench_listener.length, 1);
+    assert_int_equal(bench_listener.time_us, stamp_us);
     between_us = 0;
     run(1000);
     poll_with(response_1_754 + 1);
-    assert_int_equal(heard, 2);
-    assert_int_equal(gaps, 0);
+    assert_int_equal(bench_listener.length, 2);
+    assert_int_equal(bench_listener.gaps, 0);
 }
 
 /* Every read of noise takes half of the time. */

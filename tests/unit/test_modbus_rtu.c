@@ -53,8 +53,6 @@ static void assert_values_untouched_from(size_t from)
     assert_int_equal(fathom_modbus_rtu_parse_response(&message, bytes), status)
 #define expect_request(bytes, most, status)                                                                  \
     assert_int_equal(fathom_modbus_rtu_parse_request(&message, bytes, most), status)
-#define expect_alike(bytes, have, is)                                                                        \
-    assert_int_equal(fathom_modbus_rtu_is_request(&message, bytes, have), is)
 
 static void ask(uint8_t function, uint8_t count)
 {
@@ -302,11 +300,3 @@ TEST(the_refusal_of_a_read_of_0_registers_fits_in_8_bytes)
     assert_int_equal(fathom_modbus_rtu_encode_response(&message, frame), 5);
     assert_untouched_from(frame, 8, CAPACITY);
 }
-
-/* ---- which bytes begin like the request itself? ---- */
-
-/* A16 6(4) examples 1 and 3; HPS-167S #15, table 37, with 36 ms; 123 registers have 255 bytes. */
-typedef struct {
-    uint8_t length;
-    uint8_t bytes[13];
-} request_t;

@@ -2,6 +2,7 @@
 #include "fathom/engine/wait.h"
 #include "fathom/sensor/a16_pwm.h"
 #include "pulse_rig.h"
+#include "stream_rig.h"
 
 #include <string.h>
 
@@ -14,11 +15,10 @@
 #define SECOND   ((uint32_t)1000000)
 
 static fathom_uart_t uart;
-static uint32_t seed;
 
 static int set_up_pin(void **state)
 {
-    seed = 1;
+    rig_seed(1);
     return set_up_meter(state);
 }
 
@@ -33,12 +33,6 @@ static int set_up_uart(void **state)
 
 static const suite_t suite = {.set_up = set_up_pin};
 static const suite_t with_uart = {.set_up = set_up_uart};
-
-static uint32_t below(uint32_t limit)
-{
-    seed = seed * 1664525u + 1013904223u; /* Numerical Recipes */
-    return (uint32_t)(((uint64_t)seed * limit) >> 32);
-}
 
 /* Polls every step_us until there is an outcome. Returns the time since the call, or fails beyond the bound. */
 static uint32_t outcome_within(uint32_t bound_us, uint32_t step_us)
@@ -76,44 +70,41 @@ TEST(a_cycle_with_only_short_pulses_is_unknown_with_the_longest_width)
     expect_no_responses(0);
 }
 
-TEST(a_valid_pulse_later_in_the_cycle_wins)
-{
-    run_to_trigger();
-    pulse_in(10 * MS, 2000);
-    pulse_in(110 * MS, 10 * MS);
-    run_meter(222 * MS);
-    expect_readings(1);
-    expect_last(FATHOM_TARGET, 10 * MS);
-}
+/* One cycle with up to two pulses, which rise 10 and 110 ms after the trigger; the next one has none. */
+static const struct {
+    uint32_t widths_us[2];
+    bool is_high_then; /* the line, from the first pulse to the end */
+    uint8_t kind;      /* of the reading; 0: no response */
+    uint32_t width_us;
+    uint8_t next_kind;
+} cycles[] = {
+    {{2000, 10000}, false, FATHOM_TARGET, 10000, 0}, /* a valid pulse later in the cycle wins */
+    {{99, 99}, false, 0, 0, 0},
+    {{2000, 0}, false, FATHOM_UNKNOWN, 2000, 0}, /* it says nothing about the next cycle */
+    {{2000, 0}, true, FATHOM_UNKNOWN, 2000, FATHOM_FAULT},
+};
 
-TEST(pulses_below_100_us_are_no_response)
+static void expect_cycle(uint8_t kind, uint32_t width_us)
 {
-    run_to_trigger();
-    for (uint32_t i = 0; i != 10; i++) pulse_in(10 * MS + i * MS, 99);
-    run_meter(222 * MS);
-    expect_readings(0);
-    expect_no_responses(1);
-}
-
-TEST(the_short_pulses_of_one_cycle_say_nothing_about_the_next)
-{
-    run_to_trigger();
-    pulse_in(10 * MS, 2000);
-    run_meter(2 * 222 * MS);
-    expect_readings(1);
-    expect_last(FATHOM_UNKNOWN, 2000);
-    expect_no_responses(1);
-}
-
-TEST(a_line_that_is_high_at_the_end_after_short_pulses_is_unknown)
-{
-    run_to_trigger();
-    pulse_in(10 * MS, 2000);
-    stand.pin.stuck_high = true;
+    const unsigned readings = stand.readings, no_responses = stand.no_responses;
     run_meter(CYCLE_US);
-    expect_last(FATHOM_UNKNOWN, 2000);
-    run_meter(CYCLE_US);
-    expect_last(FATHOM_FAULT, 0);
+    expect_readings(readings + (kind != 0));
+    expect_no_responses(no_responses + (kind == 0));
+    if (kind != 0) expect_last(kind, width_us);
+}
+
+TEST(the_short_pulses_of_a_cycle_are_its_outcome_if_nothing_else_is)
+{
+    for (unsigned i = 0; i != COUNT(cycles); i++) {
+        (void)set_up_pin(state);
+        run_to_trigger();
+        for (unsigned n = 0; n != 2; n++)
+            if (cycles[i].widths_us[n] != 0) pulse_in((n != 0 ? 110 : 10) * MS, cycles[i].widths_us[n]);
+        stand.pin.stuck_high = cycles[i].is_high_then;
+        expect_cycle(cycles[i].kind, cycles[i].width_us);
+        run_meter(2 * MS); /* the next trigger */
+        expect_cycle(cycles[i].next_kind, 0);
+    }
 }
 
 /* A short pulse is a sample of the driver, without a distance. */
@@ -289,13 +280,13 @@ TEST(a_clock_that_is_set_back_by_100_ms_does_not_shorten_the_cycle)
 static uint32_t step_of(uint32_t world)
 {
     static const uint32_t steps_us[] = {500, 3000, 20000, 300000, 3000000, 600000000};
-    return 1 + below(steps_us[world % COUNT(steps_us)]);
+    return 1 + rig_random_below(steps_us[world % COUNT(steps_us)]);
 }
 
 /* Everything that a cycle can meet, at random. The time between two outcomes is the clock's, without its jumps. */
 static void run_world(uint32_t world, bool is_break)
 {
-    start_meter_at(below(UINT32_MAX));
+    start_meter_at(rig_random_below(UINT32_MAX));
     uint32_t longest_us = 0;
     uint32_t since_us = 0;
     for (unsigned polls = 0; polls != 400; polls++) {
@@ -303,16 +294,17 @@ static void run_world(uint32_t world, bool is_break)
         if (step_us > longest_us) longest_us = step_us;
         stand.fake.now_us += step_us;
         since_us += step_us;
-        if (below(20) == 0) {
-            const uint32_t back_us = below(100001);
+        if (rig_random_below(20) == 0) {
+            const uint32_t back_us = rig_random_below(100001);
             stand.fake.now_us -= back_us;
             since_us = since_us > back_us ? since_us - back_us : 0;
         }
-        if (below(10) == 0) stand.pin.stuck_high = below(2) != 0;
-        if (below(10) == 0) stand.pin.take_fails = below(4) == 0;
-        if (below(10) == 0) response_with(below(250000), below(3) == 0 ? 0 : below(110000));
-        if (is_break && below(10) == 0) stand.fake.refuses_begin = below(2) != 0;
-        if (is_break && below(10) == 0) stand.fake.refusals = below(2) != 0 ? -1 : 0;
+        if (rig_random_below(10) == 0) stand.pin.stuck_high = rig_random_below(2) != 0;
+        if (rig_random_below(10) == 0) stand.pin.take_fails = rig_random_below(4) == 0;
+        if (rig_random_below(10) == 0)
+            response_with(rig_random_below(250000), rig_random_below(3) == 0 ? 0 : rig_random_below(110000));
+        if (is_break && rig_random_below(10) == 0) stand.fake.refuses_begin = rig_random_below(2) != 0;
+        if (is_break && rig_random_below(10) == 0) stand.fake.refusals = rig_random_below(2) != 0 ? -1 : 0;
         if (stand.pin.last - stand.pin.first > FAKE_PULSES / 2) stand.pin.first = stand.pin.last;
         if (poll_meter() != FATHOM_PENDING) {
             since_us = 0;

@@ -219,25 +219,27 @@ static counts_t damage_all(damage_each_t *each, unsigned which, bool gaps)
 /* How many bytes the runs of one length have. */
 static unsigned bytes_of(unsigned which) { return run_count() * RUN * lengths[which]; }
 
-TEST(with_gaps_seen_a_lost_byte_costs_its_frame_and_shows_nothing_else)
+/* Each byte that is lost or changed, of both lengths. */
+static void expect_none_wrong(bool gaps)
 {
-    for (unsigned which = 0; which != LENGTHS; which++) {
-        const counts_t counts = damage_all(lose_each, which, true);
+    for (unsigned i = 0; i != 2 * LENGTHS; i++) {
+        const unsigned which = i / 2, bytes = bytes_of(which);
+        const counts_t counts = damage_all(i % 2 == 0 ? lose_each : change_each, which, gaps);
         assert_int_equal(counts.wrong, 0);
-        assert_int_equal(counts.runs, bytes_of(which));
-        assert_int_equal(counts.right, counts.runs * (RUN - 1));
+        assert_int_equal(counts.runs, i % 2 == 0 ? bytes : 255 * bytes);
+        if (gaps)
+            assert_int_equal(counts.right, counts.runs * (RUN - 1));
+        else
+            assert_true(counts.right > counts.runs / 2);
     }
 }
 
-TEST(with_gaps_seen_a_changed_byte_costs_its_frame_and_shows_nothing_else)
+TEST(with_gaps_seen_a_lost_or_changed_byte_costs_its_frame_and_shows_nothing_else)
 {
-    for (unsigned which = 0; which != LENGTHS; which++) {
-        const counts_t counts = damage_all(change_each, which, true);
-        assert_int_equal(counts.wrong, 0);
-        assert_int_equal(counts.runs, 255 * bytes_of(which));
-        assert_int_equal(counts.right, counts.runs * (RUN - 1));
-    }
+    expect_none_wrong(true);
 }
+
+TEST(without_gaps_no_lost_or_changed_byte_shows_a_wrong_reading) { expect_none_wrong(false); }
 
 /* None but of the frames that end in FF: L - 2 of the 256 (L + 1) ways of such a frame, and FF in front of the start.
  * There are four of them at least, of 511 mm, FF 01 FF FF: in front of the start and behind it FF makes it FF FF 01 FF,
@@ -258,19 +260,6 @@ TEST(with_gaps_seen_an_added_byte_passes_only_where_the_sum_is_FF)
         assert_in_range(counts.wrong, which == OF_FOUR ? 2 * RUN : 0, ends_in_FF * (lengths[which] - 1u));
         assert_int_equal(counts.runs, 256 * frames * (lengths[which] + 1u));
         assert_in_range(counts.right, counts.runs * (RUN - 1), counts.runs * RUN);
-    }
-}
-
-/* In each of four frames the same. FF 07 A1 A7 and FF 03 E8 07 D0 07 A1 0D EA 60 do not end in FF. */
-TEST(of_the_bytes_added_to_the_examples_of_the_datasheets_none_passes)
-{
-    for (unsigned which = 0; which != LENGTHS; which++) {
-        uint8_t sent[RUN * FATHOM_DYP_A05_LENGTH];
-        counts_t added = {0, 0, 0, 0};
-        make_run(sent, lengths[which], 0);
-        add_each(&added, &(run_t){sent, lengths[which], true});
-        assert_int_equal(added.wrong, 0);
-        assert_int_equal(added.runs, RUN * 256 * (lengths[which] + 1));
     }
 }
 
@@ -313,20 +302,6 @@ TEST(of_the_bytes_added_to_four_probes_with_a_sum_of_FF_8_pass)
     add_each(&counts, &(run_t){sent, 10, true});
     assert_int_equal(counts.runs, RUN * 11 * 256);
     assert_int_equal(counts.wrong, RUN * 8);
-}
-
-TEST(without_gaps_no_lost_or_changed_byte_shows_a_wrong_reading)
-{
-    for (unsigned which = 0; which != LENGTHS; which++) {
-        counts_t counts = damage_all(lose_each, which, false);
-        assert_int_equal(counts.wrong, 0);
-        assert_int_equal(counts.runs, bytes_of(which));
-        assert_true(counts.right > counts.runs / 2);
-        counts = damage_all(change_each, which, false);
-        assert_int_equal(counts.wrong, 0);
-        assert_int_equal(counts.runs, 255 * bytes_of(which));
-        assert_true(counts.right > counts.runs / 2);
-    }
 }
 
 /*

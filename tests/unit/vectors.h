@@ -15,7 +15,7 @@ enum { VECTOR_REQUEST = 1, VECTOR_RESPONSE = 2, VECTOR_BOTH = VECTOR_REQUEST | V
 enum { VECTOR_BYTES = 27, VECTOR_VALUES = 11 };
 
 /* How many rows there are: none can be lost unseen. */
-enum { AUTO_ROWS = 2, MODBUS_ROWS = 31, DYP_ROWS = 5, CRC_ROWS = 8, PRINTED_TABLE_ENTRIES = 197 };
+enum { AUTO_ROWS = 2, MODBUS_ROWS = 31, DYP_ROWS = 5, CRC_ROWS = 8 };
 
 typedef struct {
     const char *source;
@@ -69,8 +69,5 @@ extern auto_vector_t auto_vectors[AUTO_ROWS];
 extern dyp_vector_t dyp_vectors[DYP_ROWS];
 extern modbus_vector_t modbus_vectors[MODBUS_ROWS];
 extern crc_vector_t crc_vectors[CRC_ROWS];
-
-/* auchCRCHi just as the appendix of the HPS-167S prints it. */
-extern const uint8_t printed_auchCRCHi[PRINTED_TABLE_ENTRIES];
 
 #endif
