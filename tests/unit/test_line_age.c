@@ -56,20 +56,12 @@ static const conversation_t conversations[] = {
      {RECEIVE("00 00 00"), BREAK_PORT, WAIT(100), RECEIVE("00"), WAIT(T3_5_US + 1000), QUEUE(A, 1),
       SENT(0, 1000)},
      {.port_errors = 1, .dropped = 4}},
+    /* the silence before the next request begins with the error */
+    {"after_an_error_of_the_port_during_a_request_the_whole_silence_is_kept",
+     {ASK(A, 1), WAIT(T3_5_US), BREAK_PORT, QUEUE(B, 2), DUE(T3_5_US)},
+     {.port_errors = 1}},
 };
 CONVERSATIONS(set_up, conversations)
-
-/* The silence before the next request begins with the error. */
-TEST(after_an_error_of_the_port_during_a_request_the_whole_silence_is_kept)
-{
-    ask_1_and_send(0);
-    run(T3_5_US);
-    bench.fake.read_fails = true;
-    assert_int_equal(poll_line(), FATHOM_ERR_PORT);
-    bench.fake.read_fails = false;
-    ask_other(2);
-    expect_due(T3_5_US);
-}
 
 TEST(bytes_that_the_port_dates_are_as_old_as_their_time_stamp)
 {

@@ -67,9 +67,9 @@ TEST(a_config_that_misses_what_its_line_needs_is_refused)
     expect_accepted(echo, FATHOM_LINE_ECHO_AUTO);
     bench.config.find_echo = NULL;
     expect_refused(echo, FATHOM_LINE_ECHO_AUTO);
-    for (uint8_t told = FATHOM_LINE_ECHO_OFF; told <= FATHOM_LINE_ECHO_ON; told++) {
+    for (uint8_t known = FATHOM_LINE_ECHO_OFF; known <= FATHOM_LINE_ECHO_ON; known++) {
         bench.config.find_echo = NULL;
-        expect_accepted(echo, told);
+        expect_accepted(echo, known);
     }
 }
 
