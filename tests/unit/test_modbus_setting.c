@@ -276,3 +276,222 @@ TEST(what_is_under_way_cannot_become_blind)
     assert_int_equal(fathom_modbus_write_next_unchecked(&unit), FATHOM_ERR_BUSY);
     SETS(OK, HERE, PUT(OK), IS(HERE, NEW));
 }
+
+/* ---- a command or setting that its caller begins and never calls again (modbus_unit.h, rules 5 and 6) ---- */
+
+enum { TIMEOUT_US = 300000, ABANDONED_US = 5000000, STEP_US = 100000 };
+
+static const fathom_modbus_unit_request_t details = {&found, 0x0003, 1, 3, 0x83};
+static const fathom_modbus_setting_t move = {read_it, &unit, {NULL, 0x0200, THERE, 6, 0xC8},
+                                             THERE,   NULL,  THERE};
+static const fathom_modbus_setting_t other_setting = {read_it, &unit, {NULL, 0x0201, 1, 6, 0xC9}, 1, NULL, 0};
+
+static int set_up_slow(void **state)
+{
+    set_up(state);
+    assert_int_equal(
+        init_unit(&unit, &fake.modbus, &(fathom_modbus_config_t){.address = HERE}, TIMEOUT_US, 0), OK);
+    return 0;
+}
+
+static const suite_t abandoned = {.set_up = set_up_slow};
+
+static fathom_status_t calls(const fathom_modbus_unit_request_t *request)
+{
+    fake.submits = 0;
+    return asks(request);
+}
+
+static fathom_status_t sets(const fathom_modbus_setting_t *of)
+{
+    fake.submits = 0;
+    fathom_modbus_unit_poll(&unit);
+    return fathom_modbus_set(&unit, of);
+}
+
+static void responds(uint16_t with) { fake_modbus_response(&fake, &with, 1); }
+
+/* Measures every STEP_US until the measurement is on the wire, and returns how long that took. */
+static uint32_t until_measuring(void)
+{
+    uint32_t took_us = 0;
+    for (; fake.request == NULL || unit.current != measure.id; took_us += STEP_US) {
+        assert_true(took_us < 2 * ABANDONED_US);
+        fake.now_us += STEP_US;
+        PENDS(calls(&measure));
+    }
+    return took_us;
+}
+
+/* Until one more call of another function finds the command abandoned. */
+static void others_call(void)
+{
+    for (unsigned i = 1; i != ABANDONED_US / STEP_US; i++) {
+        fake.now_us += STEP_US;
+        PENDS(calls(&measure));
+    }
+    fake.now_us += STEP_US;
+    fathom_modbus_unit_poll(&unit);
+}
+
+static void measures(void)
+{
+    responds(754);
+    assert_int_equal(calls(&measure), OK);
+}
+
+TEST_IN(abandoned, an_abandoned_setting_gives_way_and_the_driver_stays_where_it_was)
+{
+    PENDS(sets(&move));
+    responds(HERE); /* it has another value: the new address is probed next */
+    PENDS(sets(&move));
+    assert_int_equal(unit.address, THERE);
+    assert_int_equal(until_measuring(), ABANDONED_US);
+    assert_int_equal(fake.request->message.head[0], HERE);
+    measures();
+}
+
+TEST_IN(abandoned, the_setting_after_an_abandoned_blind_setting_is_not_blind)
+{
+    assert_int_equal(fathom_modbus_write_next_unchecked(&unit), OK);
+    PENDS(sets(&other_setting));
+    assert_int_equal(fake.request->message.head[1], 6);
+    others_call();
+    PENDS(sets(&move));
+    assert_int_equal(fake.request->message.head[1], 3); /* its present value is read first */
+}
+
+TEST_IN(abandoned, a_setting_that_begins_behind_an_abandoned_command_is_carried_out_whole)
+{
+    PENDS(calls(&details));
+    responds(8);
+    for (unsigned i = 0; i != ABANDONED_US / STEP_US; i++) {
+        fake.now_us += STEP_US;
+        PENDS(calls(&measure));
+        if (unit.current == measure.id) break;
+    }
+    /* Abandoned again: this time the setting is the next to call. */
+    responds(754);
+    assert_int_equal(calls(&measure), OK);
+    PENDS(calls(&details));
+    responds(8);
+    fathom_modbus_unit_poll(&unit);
+    unit.kept_us = (uint32_t)(fake.now_us - FATHOM_MODBUS_ABANDONED_US);
+    unit.calls_left = 0;
+    PENDS(sets(&other_setting));
+    assert_int_equal(unit.setting, other_setting.write.id);
+    responds(0);
+    PENDS(sets(&other_setting)); /* the write */
+    assert_true(unit.is_written);
+    fake_modbus_acknowledge(&fake);
+    PENDS(sets(&other_setting)); /* the read back */
+    responds(1);
+    assert_int_equal(sets(&other_setting), OK);
+}
+
+/* modbus_unit.h, fathom_modbus_unit_due_us(): a program that sleeps for it is not kept out longer than another. */
+TEST_IN(abandoned, a_program_that_sleeps_until_it_is_due_meets_the_limit)
+{
+    uint32_t slept_us = 0;
+    fake.due_us = 1000;
+    PENDS(calls(&look));
+    responds(7);
+    for (unsigned polls = 0; fake.request == NULL || unit.current != measure.id; polls++) {
+        assert_true(polls < 40000);
+        const uint32_t due_us = fathom_modbus_unit_due_us(&unit);
+        assert_true(due_us <= ABANDONED_US);
+        fake.now_us += due_us + 100; /* a poll takes its time */
+        slept_us += due_us + 100;
+        PENDS(calls(&measure));
+    }
+    assert_in_range(slept_us, ABANDONED_US, ABANDONED_US + 2200);
+}
+
+/* Halfway to the limit a poll is due after 1 ms at least, and after a sixteenth of the limit at most. */
+TEST_IN(abandoned, while_an_abandoned_command_is_on_the_wire_a_poll_is_due_when_the_line_is)
+{
+    static const struct {
+        uint32_t line_us, due_us;
+    } rows[] = {{0, 1000}, {1000, 1000}, {1001, 1001}, {312500, 312500}, {312501, 312500}};
+    PENDS(calls(&look));
+    for (unsigned i = 0; i != 25; i++) {
+        fake.now_us += STEP_US;
+        PENDS(calls(&measure));
+    }
+    fake.due_us = 312501;
+    assert_int_equal(fathom_modbus_unit_due_us(&unit), 312501); /* 2.5 s are left */
+    fake.now_us += 1;
+    PENDS(calls(&measure));
+    for (unsigned i = 0; i != sizeof rows / sizeof rows[0]; i++) {
+        fake.due_us = rows[i].line_us;
+        assert_int_equal(fathom_modbus_unit_due_us(&unit), rows[i].due_us);
+    }
+}
+
+TEST_IN(abandoned, a_command_that_has_ended_delays_no_poll)
+{
+    PENDS(calls(&look));
+    responds(7);
+    assert_int_equal(calls(&look), OK);
+    for (unsigned i = 0; i != 30; i++) {
+        fake.now_us += STEP_US;
+        fathom_modbus_unit_poll(&unit);
+        assert_int_equal(fathom_modbus_unit_due_us(&unit), 0);
+    }
+}
+
+TEST_IN(abandoned, a_request_that_the_line_has_forgotten_is_cancelled_within_65_ms_and_the_next_one_follows)
+{
+    PENDS(calls(&measure));
+    for (unsigned i = 0; i != 100; i++) {
+        fake.now_us += 1000;
+        PENDS(calls(&measure));
+    }
+    fake_modbus_forget(&fake);
+    fathom_status_t status = FATHOM_PENDING;
+    for (unsigned ms = 0; status == FATHOM_PENDING; ms++) {
+        assert_true(ms <= 65);
+        fake.now_us += 1000;
+        status = calls(&measure);
+    }
+    assert_int_equal(status, FATHOM_ERR_CANCELLED);
+    PENDS(calls(&measure));
+    assert_int_equal(fake.submits, 1);
+    measures();
+}
+
+/* The program initialised the line again, and fathom_line_init() refused the new parts. */
+TEST_IN(abandoned,
+        a_line_that_is_not_initialised_any_more_is_reported_and_serves_the_unit_again_after_its_next_init)
+{
+    PENDS(calls(&measure));
+    fake_modbus_forget(&fake);
+    fake.line.parts = NULL;
+    fake.now_us += 1000;
+    fake.polls = 0;
+    assert_int_equal(calls(&measure), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(calls(&look), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_modbus_unit_due_us(&unit), 0);
+    fathom_modbus_unit_power_on(&unit, 1000);
+    fathom_modbus_unit_cancel(&unit);
+    assert_int_equal(fake.submits + fake.polls + fake.cancels, 0);
+    fake.line.parts = &fake.parts;
+    fake.now_us += TIMEOUT_US;
+    PENDS(calls(&measure));
+    measures();
+}
+
+TEST_IN(abandoned, an_abandoned_setting_gives_way_to_a_blind_setting)
+{
+    PENDS(sets(&move));
+    responds(HERE);
+    PENDS(sets(&move));
+    assert_int_equal(fathom_modbus_write_next_unchecked(&unit), FATHOM_ERR_BUSY);
+    others_call();
+    assert_int_equal(fathom_modbus_write_next_unchecked(&unit), OK);
+    assert_int_equal(unit.address, HERE);
+    PENDS(sets(&other_setting)); /* the write at once */
+    assert_int_equal(fake.request->message.head[1], 6);
+    fake_modbus_acknowledge(&fake);
+    assert_int_equal(sets(&other_setting), FATHOM_ERR_UNCONFIRMED);
+}
