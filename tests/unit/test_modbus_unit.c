@@ -2,7 +2,7 @@
 #include "desk.h"
 #include "fathom/engine/internal/modbus_unit.h"
 
-enum { UNIT = 9, PACE_US = 100000, TIMEOUT_US = 300000, GUARD16 = 0xA5A5 };
+enum { UNIT = 9, PACE_US = 100000, TIMEOUT_US = 300000 };
 
 static fathom_modbus_unit_t unit;
 static uint16_t values[11];
