@@ -1,8 +1,38 @@
 /* SPDX-License-Identifier: MIT */
 /* The sketches a05_auto, a16_auto and a16_controlled, which receive by SoftwareSerial and print. */
+#include <stddef.h>
+
 #include "suite.h"
 
-#include "soft.h"
+#include "board.h"
+
+/* A sensor that sends to the SoftwareSerial of the sketches, bit by bit, 8N1: to pin 10 (PB2) at 9600 baud. */
+enum { SOFT_BIT_CYCLES = BOARD_HZ / 9600, SOFT_CHARACTER_BITS = 10 };
+
+static struct {
+    uint8_t bytes[16];
+    size_t length;
+    unsigned bit; /* of all of them */
+} soft_sent;
+
+static avr_cycle_count_t soft_next_bit(avr_t *avr, avr_cycle_count_t when, void *param)
+{
+    if (soft_sent.bit == soft_sent.length * SOFT_CHARACTER_BITS) return 0;
+    const unsigned at = soft_sent.bit % SOFT_CHARACTER_BITS;
+    const uint8_t byte = soft_sent.bytes[soft_sent.bit++ / SOFT_CHARACTER_BITS];
+    board_drive('B', 2, at == 9 || (at != 0 && (byte >> (at - 1) & 1) != 0));
+    return when + SOFT_BIT_CYCLES;
+}
+
+/* Sends bytes without a gap, `in_us` from now. */
+static void soft_send(const uint8_t *bytes, size_t length, uint32_t in_us)
+{
+    assert_true(length <= sizeof soft_sent.bytes);
+    memcpy(soft_sent.bytes, bytes, length);
+    soft_sent.length = length;
+    soft_sent.bit = 0;
+    avr_cycle_timer_register(board.avr, in_us * BOARD_CYCLES_PER_US + SOFT_BIT_CYCLES, soft_next_bit, NULL);
+}
 
 /* A05 1(3): 1000, 2000, 1953, 3562 mm. */
 static const uint8_t frame[] = {0xFF, 0x03, 0xE8, 0x07, 0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x60};

@@ -4,7 +4,7 @@
 
 #include "suite.h"
 
-#include "soft.h"
+#include "console.h"
 #include "wire.h"
 
 /* 19200 8E1: 11 bits of 104 cycles of 8, the divider that UBRR0 = 103 with U2X0 makes (ATmega328P 20.3.1, 20.10). */
@@ -190,7 +190,7 @@ TEST(the_wrap_of_micros_disturbs_nothing)
 TEST(the_sketch_prints_and_loses_no_response)
 {
     begin_with("hps167s", 0, UNASKED_US);
-    console_join();
+    console_join('B', 3, 115200); /* pin 11 */
     for (int n = 0; n != 60; n++) assert_string_equal(console_line(A_SECOND_US), "500");
     assert_true(board.avr->cycle < 2 * (uint64_t)BOARD_HZ);
     assert_int_equal(board.usart.overruns, 0);

@@ -2,7 +2,7 @@
 /* The sketches for sensors on RS485 beside the HPS-167S, and for contacts. */
 #include "suite.h"
 
-#include "soft.h"
+#include "console.h"
 
 enum { A_SECOND_US = 1000000 };
 
@@ -21,7 +21,7 @@ static void begin(const char *image, fathom_sim_device_t *device)
     board_attach(&bench.line, device, false);
     board_join_line(&bench.line);
     board_join_driver('D', 2);
-    console_join();
+    console_join('B', 3, 115200); /* pin 11 */
 }
 
 static void begin_a05(const char *image, uint8_t mode)

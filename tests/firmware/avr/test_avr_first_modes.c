@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include "suite.h"
 
-#include "board.h"
+#include "console.h"
 
 /* examples/first/MODE.c on an ATmega328P: their text leaves at PB2, 9600 8N1, made by software. Not every mode runs here:
  * each kind of line and pin does. */
-enum { LEVELS = 8192, TEXT = 512, BAUD = 9600, BITS = 8, PATIENCE_US = 3000000 };
+enum { PATIENCE_US = 3000000 };
 
 static fathom_sim_line_t line;
 static fathom_sim_a16_t a16;
@@ -14,75 +14,13 @@ static fathom_sim_hps167s_t hps;
 static fathom_sim_pins_t pins;
 static fathom_sim_fixed_t scene;
 
-/* The levels of PB2 behind the line of text that was taken last. */
-static board_edge_t levels[LEVELS];
-static unsigned level_count;
-static char text[TEXT];
-
-static void changed(void *ctx, bool high)
-{
-    assert_true(level_count != LEVELS);
-    levels[level_count++] = (board_edge_t){board.avr->cycle, high};
-}
-
-static bool level_at(double cycle)
-{
-    bool high = true;
-    for (unsigned i = 0; i != level_count && (double)levels[i].cycle <= cycle; i++) high = levels[i].high;
-    return high;
-}
-
-/* Forgets the levels before a time. */
-static void forget(double cycle)
-{
-    unsigned first = 0;
-    while (first != level_count && (double)levels[first].cycle < cycle) first++;
-    level_count -= first;
-    memmove(levels, &levels[first], level_count * sizeof levels[0]);
-}
-
-/* Takes a line of text, without its end. NULL: there is no whole line yet. */
-static const char *take_line(void)
-{
-    const double bit = (double)BOARD_HZ / BAUD;
-    unsigned length = 0;
-    double next = 0;
-    for (unsigned i = 0; i != level_count; i++) {
-        if (levels[i].high || (double)levels[i].cycle < next) continue;
-        const double start = (double)levels[i].cycle;
-        if (start + 10 * bit > (double)board.avr->cycle) return NULL;
-        unsigned byte = 0;
-        for (int at = 0; at != BITS; at++) byte |= (unsigned)level_at(start + (1.5 + at) * bit) << at;
-        assert_true(level_at(start + 9.5 * bit)); /* the stop bit */
-        next = start + 9.5 * bit;
-        if (byte == '\n') {
-            text[length] = '\0';
-            forget(next);
-            return text;
-        }
-        assert_true(length != TEXT - 1);
-        if (byte != '\r') text[length++] = (char)byte;
-    }
-    return NULL;
-}
-
-/* The next line of text; "": none came. */
-static const char *next_line(void)
-{
-    for (uint32_t us = 0; us < PATIENCE_US; us += 5000) {
-        const char *const taken = take_line();
-        if (taken != NULL) return taken;
-        if (!board_run_us(5000)) break;
-    }
-    return "";
-}
+static const char *next_line(void) { return console_line(PATIENCE_US); }
 
 static void start(const char *image, fathom_sim_device_t *device, bool full_duplex)
 {
-    level_count = 0;
     board_start(image);
     board_attach(&line, device, full_duplex);
-    assert_non_null(board_watch('B', 2, true, changed, NULL));
+    console_join('B', 2, 9600);
 }
 
 static void start_a16(const char *image, fathom_sim_a16_mode_t mode)
