@@ -564,21 +564,18 @@ TEST(on_a_line_with_others_only_an_hps167s_has_a_temperature)
 /* After the third silence it is left alone for one time-out, then for 2 and 4 (modbus_unit.h); each silence takes two. */
 TEST(a_silent_unit_is_named_and_left_alone_and_the_others_are_read)
 {
+#define UNIT(model, address, counts)                                                                         \
+    "\"model\":\"" model "\",\"mode\":\"modbus\",\"address\":" address ",\"attempts\":" counts
     static const char *const parts[] = {
         "no byte was received, but other sensors on this line respond. Check the power",
-        "{\"time_us\":12000000,\"attempts\":21,\"failed\":4,\"readings\":41,\"requests\":22,",
-        "{\"name\":\"a16:1\",\"model\":\"a16\",\"mode\":\"modbus\",\"address\":1,\"attempts\":9,\"failed\":0,"
-        "\"readings\":9,"
-        "\"responses\":9,\"failed_requests\":0,\"timeouts_in_row\":0,\"backoff_left_us\":0,\"response_min_"
-        "us\":4",
-        "{\"name\":\"a16:2\",\"model\":\"a16\",\"mode\":\"modbus\",\"address\":2,\"attempts\":4,\"failed\":4,"
-        "\"readings\":0,"
-        "\"responses\":0,\"failed_requests\":4,\"timeouts_in_row\":4,\"backoff_left_us\":0,\"response_min_"
-        "us\":null,",
-        "{\"name\":\"a05:3\",\"model\":\"a05\",\"mode\":\"modbus\",\"address\":3,\"attempts\":8,\"failed\":0,"
-        "\"readings\":32,"
-        "\"responses\":8,\"failed_requests\":0,\"timeouts_in_row\":0,\"backoff_left_us\":0,\"response_min_"
-        "us\":3"};
+        "\"attempts\":21,\"failed\":4,\"readings\":41,\"requests\":22,",
+        UNIT("a16", "1",
+             "9,\"failed\":0,\"readings\":9,\"responses\":9,\"failed_requests\":0,\"timeouts_in_row\":0,"),
+        UNIT("a16", "2",
+             "4,\"failed\":4,\"readings\":0,\"responses\":0,\"failed_requests\":4,\"timeouts_in_row\":4,"),
+        UNIT("a05", "3",
+             "8,\"failed\":0,\"readings\":32,\"responses\":8,\"failed_requests\":0,\"timeouts_in_row\":0,"),
+        "\"timeouts_in_row\":4,\"backoff_left_us\":0,\"response_min_us\":null,"};
     bench_a16((fathom_sim_a16_config_t){.address = 1});
     bench_a05((fathom_sim_a05_config_t){.address = 3});
     const tool_run_t *run = tool_run(
@@ -587,6 +584,7 @@ TEST(a_silent_unit_is_named_and_left_alone_and_the_others_are_read)
     assert_int_equal(count_of(run->err, "attempt "), 4);
     assert_int_equal(count_of(run->err, "fathom: a16:2: attempt "), 4);
     for (size_t i = 0; i != sizeof parts / sizeof parts[0]; i++) expect_err(run, parts[i]);
+    assert_int_equal(count_of(run->err, "\"backoff_left_us\":0,"), 3);
     /* the only one on its line */
     run = tool_run(&bench.tool, "read a16:2:modbus --timeout 60 --count 8 --stats --format json --port line");
     expect_err(run, "\"failed\":8,\"readings\":0,\"responses\":0,\"failed_requests\":8,");

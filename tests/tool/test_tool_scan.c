@@ -107,31 +107,19 @@ static fathom_sim_device_t *attach(fathom_sim_device_t *device)
     return device;
 }
 
-static fathom_sim_device_t *add_a16(fathom_sim_a16_config_t config)
-{
-    assert_true(scans.a16_count < UNITS);
-    fathom_sim_a16_t *const a16 = &scans.a16[scans.a16_count++];
-    if (config.mode == 0) config.mode = FATHOM_SIM_A16_MODBUS;
-    fathom_sim_a16_init(a16, &config);
-    return attach(&a16->device);
-}
+#define ADD(model, set_mode)                                                                                 \
+    static fathom_sim_device_t *add_##model(fathom_sim_##model##_config_t config)                            \
+    {                                                                                                        \
+        assert_true(scans.model##_count < UNITS);                                                            \
+        fathom_sim_##model##_t *const unit = &scans.model[scans.model##_count++];                            \
+        set_mode;                                                                                            \
+        fathom_sim_##model##_init(unit, &config);                                                            \
+        return attach(&unit->device);                                                                        \
+    }
 
-static fathom_sim_device_t *add_a05(fathom_sim_a05_config_t config)
-{
-    assert_true(scans.a05_count < UNITS);
-    fathom_sim_a05_t *const a05 = &scans.a05[scans.a05_count++];
-    if (config.mode == 0) config.mode = FATHOM_SIM_A05_MODBUS;
-    fathom_sim_a05_init(a05, &config);
-    return attach(&a05->device);
-}
-
-static fathom_sim_device_t *add_hps167s(fathom_sim_hps167s_config_t config)
-{
-    assert_true(scans.hps167s_count < UNITS);
-    fathom_sim_hps167s_t *const hps167s = &scans.hps167s[scans.hps167s_count++];
-    fathom_sim_hps167s_init(hps167s, &config);
-    return attach(&hps167s->device);
-}
+ADD(a16, if (config.mode == 0) config.mode = FATHOM_SIM_A16_MODBUS)
+ADD(a05, if (config.mode == 0) config.mode = FATHOM_SIM_A05_MODBUS)
+ADD(hps167s, (void)0)
 
 /* Makes responses of a device fail: a kind of port/sim/fault.h, by chance (in millionths) or at one frame. */
 static const fathom_sim_fault_t *add_fault(fathom_sim_device_t *device, uint8_t kind, uint32_t chance_ppm,

@@ -79,6 +79,8 @@ static const refused_t wrong[] = {
     {"read a16:1 a05:1 -p x", "a16:1 and a05:1 have the same address, so both would respond at once."},
     {"read a05:1:modbus a05:2:dyp -p x",
      "a damaged response in mode dyp can change the address of another a05"},
+    {"read a16:1:controlled hps167s:7 -p x", "a16 in mode controlled"},
+    {"read a16:1:controlled -p tcp:x", "a16 in mode controlled needs a serial port"},
     {"read a16:1 hps167s:1 -p tcp:x", "a16:1 and hps167s:1 have the same address"},
     {"read t=a16@x t=a05@y", "two sensors have the name t. Give each its own name, such as one=a05."},
     {"read a16:3@x,baud=9600 a16:4@x,baud=19200", "a16:4@x: another sensor at this port has another baud=."},

@@ -52,12 +52,6 @@ class Controlled(e2e.Case):
     def test_an_interval_is_kept(self):
         self.assertGreater(self.read(1953, 4, '--interval 400')[1], 3 * 0.4)
 
-    def test_it_has_its_line_alone(self):
-        self.ends('read a16:1:controlled hps167s:7 --port /nowhere', 2)
-
-    def test_it_needs_a_serial_port(self):
-        self.ends('read a16:1:controlled --port tcp:127.0.0.1:1', 2, 'needs a serial port')
-
 
 if __name__ == '__main__':
     e2e.main()

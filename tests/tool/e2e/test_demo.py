@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""examples/demo.sh in a copy of the repository: it builds, reads all three sensors, ends by itself and leaves
-nothing behind. It builds without optimization, which is not what it is about."""
+"""examples/demo.sh and site.sh in a copy of the repository: demo.sh reads all three sensors, site.sh publishes eight lines;
+each ends by itself, leaves nothing behind, and names what is missing. They build without optimization, to be quick."""
 import os
 import re
 import shutil
@@ -58,6 +58,27 @@ class Demo(Case):
         done = self.run_script(os.path.join(self.copy, 'examples', 'demo.sh'), '/')
         self.ends(done, 1, '#error planted', 'demo: cmake failed')
         self.assertEqual(os.listdir(self.path('tmp')), [])
+
+
+class Site(Case):
+    def test_a_site_is_published_and_nothing_is_left_behind(self):
+        done = self.ends(self.run_script('examples/site.sh', self.copy), 0)
+        shown = done.out.partition('(40 messages)')[2]
+        self.assertEqual(len(re.findall('^fathom/mill/north/', shown, re.M)), 40 + 1, done)
+        for name in ('pit', 'bumper/1', 'dock/1', 'gate', 'bay1', 'bay2', 'bay3'):
+            self.assertRegex(shown, rf'(?m)^fathom/mill/north/{name}/state {{.*"status":"target"')
+        self.assertRegex(shown, r'(?m)^fathom/mill/north/gate/alarm {.*"is_on":true,')
+        self.assertRegex(shown, r'(?s)the retained status .*\nfathom/mill/north/status offline\n')
+        self.assertEqual(list(self.processes()), [])
+        self.assertEqual(os.listdir(self.path('tmp')), [])
+
+    def test_what_is_missing_is_told(self):
+        """Of all programs there is only one, and what /usr/sbin has."""
+        os.mkdir(self.path('bin'))
+        os.symlink(shutil.which('dirname'), self.path('bin/dirname'))
+        self.environment['PATH'] = self.path('bin')
+        done = self.start(['/bin/sh', 'examples/site.sh'], cwd=self.copy, env=self.environment).finish()
+        self.ends(done, 1, 'site: please install: gcc make cmake pkg-config libmosquitto-dev libyaml-dev ', 'mosquitto-clients')
 
 
 if __name__ == '__main__':

@@ -2,7 +2,6 @@
 # SPDX-License-Identifier: MIT
 """fathom read with sensors on several ports: one of them is killed and started again, or is a connection to nothing,
 and the others do not pause. It needs real time: CTest runs one such file at a time."""
-import os
 import re
 import signal
 
@@ -70,14 +69,10 @@ class Lost(Case):
 class Paths(Case):
     """One serial port by two names, such as /dev/ttyUSB0 and what stands for it in /dev/serial/by-id."""
 
-    def begin_bus(self):
+    def test_two_sensors_share_it(self):
         link = self.path('bus')
         sim = self.sim(f'hps167s:1 hps167s:7 --link {link}')
-        return link, str(sim)
-
-    def test_two_sensors_share_it(self):
-        link, port = self.begin_bus()
-        for other in (port, f'{self.folder}/./bus'):
+        for other in (sim, f'{self.folder}/./bus'):
             self.ends(['read', f'one=hps167s:1@{link}', f'seven=hps167s:7@{other}', '--count', '2', '--stats'], 0,
                       'one: attempts 2, failed 0', 'seven: attempts 2, failed 0')
 

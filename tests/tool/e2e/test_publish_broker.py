@@ -3,7 +3,6 @@
 """fathom publish and a broker that is away, comes back, refuses it, or is not the one that it should be."""
 import os
 import signal
-import unittest
 
 import e2e
 import mqtt

@@ -76,13 +76,6 @@ class Clients(e2e.Case):
             self.assertEqual(len(self.read_json(f'hps167s --address 3 --port {sim} --count 1')), 1)
         self.assertEqual(sim.end().code, 0)
 
-    def test_a_modbus_request_ends_the_automatic_output_of_an_a16(self):
-        sim = self.sim('a16 --distance 754')
-        self.assertEqual(self.read_json(f'a16 --port {sim} --count 1')[0]['mode'], 'auto')
-        asked, = self.read_json(f'a16 --mode modbus --port {sim} --count 1')
-        self.assertEqual((asked['mode'], asked['distance_mm']), ('modbus', 754))
-        self.assertEqual(self.read_json(f'a16 --port {sim} --count 1 --timeout 400', code=1), [])
-
     def test_settings_that_are_not_the_factorys_reach_the_port(self):
         device, _ = self.beside('read a16 --baud 115200 --parity odd --format csv')
         self.assertEqual(device.baud(), termios.B115200)

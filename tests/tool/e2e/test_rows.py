@@ -41,13 +41,6 @@ class Failures(e2e.Case):
         done = self.ends(self.ask('--format csv --median 3', [GOOD, b'', GOOD, GOOD]), 1)
         self.assertEqual([row['status'] for row in done.all_rows], ['no_response', 'target'])
 
-    def test_each_probe_that_was_refused_has_its_row_and_the_others_are_read(self):
-        sim = self.sim('a05:2:modbus --distance 1000,40000,1953,50000')
-        done = self.ends(f'read a05:2:modbus --port {sim} --count 1 --format csv', 1)
-        self.assertEqual([(row['probe'], row['status'], row['distance_mm']) for row in done.all_rows],
-                         [('1', 'target', '1000'), ('2', 'impossible_values', ''), ('3', 'target', '1953'),
-                          ('4', 'impossible_values', '')])
-
     def test_an_attempt_of_four_probes_that_fails_as_a_whole_is_one_row_of_none(self):
         done = self.ends(f'read a05:2:modbus --port {self.device()} --timeout 60 --count 2 --format json', 1)
         self.assertEqual([(one['name'], one['probe'], one['status']) for one in done.all_json],
@@ -57,12 +50,6 @@ class Failures(e2e.Case):
         done = self.ends(f'read a16 --port {self.device()} --timeout 60 --count 2 --format csv', 1)
         self.assertEqual([(row['name'], row['address'], row['status']) for row in done.all_rows],
                          [('a16', '', 'stale')] * 2)
-
-    def test_a_port_that_is_lost_is_a_row(self):
-        device, reader = self.beside('read a16:1 --format csv')
-        device.read(8)
-        device.hang_up()
-        self.assertEqual([row['status'] for row in self.ends(reader, 1, 'the device was unplugged').all_rows], ['port'])
 
 
 class Whole(e2e.Case):
