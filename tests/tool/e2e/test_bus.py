@@ -46,13 +46,6 @@ class Read(e2e.Case):
         self.assertEqual(seen(done.json, 'model', 'distance_mm'),
                          [('a16', 754)] * 3 + [('hps167s', 2083)] * 3)
 
-    def test_one_rate_for_all_if_that_is_asked_for(self):
-        device, reader = self.beside('read a16:1 hps167s:2 --baud 57600 --count 1 --timeout 50')
-        for _ in range(2):
-            device.read(8)
-            self.assertEqual(device.baud(), termios.B57600)
-        self.ends(reader, 1)
-
     def test_a_late_response_explains_the_failure_of_its_unit_alone(self):
         """Address 2 answers when its time is over, while address 3, where no unit is, is being asked."""
         device, reader = self.beside('read a16:2 a16:3 --timeout 400 --count 2')

@@ -66,10 +66,7 @@ class Pymodbus(interop.PymodbusServer, Servers, interop.Case):
 
 
 class Libmodbus(interop.LibmodbusServer, Servers, interop.Case):
-    @e2e.each(**{f'every_exception_that_libmodbus_can_send_has_its_number_{number:02}': number
-                 for number in NAMES})
-    def numbered(self, number):
-        self.refused('hps167s', 8, [f'!{number}', '0', '0', '0'], number)
+    pass
 
 
 class Tcp(interop.Tcp, Servers):
