@@ -78,14 +78,6 @@ void life_a05_uart(rig_t *rig)
     fathom_a05_auto_deinit(&automatic);
 }
 
-static void restart(rig_t *rig)
-{
-    rig_power(rig, false);
-    rig_wait(rig, SECOND_US);
-    rig_power(rig, true);
-    rig_wait(rig, 3 * SECOND_US);
-}
-
 void life_a05_rs485(rig_t *rig)
 {
     fathom_a05_modbus_t sensor;
@@ -98,7 +90,7 @@ void life_a05_rs485(rig_t *rig)
     judge_poll("a05_modbus", &any, 4, SETTLED_US);
     fathom_a05_modbus_deinit(&sensor);
     measure(rig);
-    restart(rig);
+    rig_restart(rig, SECOND_US, 3 * SECOND_US);
     measure(rig);
     any = begin_modbus(rig, &sensor, rig->device.config.fitted, 0);
     find_by_modbus(rig, &any);
@@ -134,7 +126,7 @@ void life_a05_dyp(rig_t *rig)
     JUDGE_SET("a05_dyp_set_every_address", any, fathom_a05_dyp_broadcast_address(&sensor, 9),
               fathom_a05_dyp_is_written(&sensor), HOLDS(0xAA03, 9));
     fathom_a05_dyp_deinit(&sensor);
-    restart(rig);
+    rig_restart(rig, SECOND_US, 3 * SECOND_US);
     any = begin_dyp(rig, &sensor, fitted);
     judge_poll("a05_dyp", &any, 4, SETTLED_US);
     fathom_a05_dyp_deinit(&sensor);

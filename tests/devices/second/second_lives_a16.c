@@ -133,10 +133,7 @@ void life_a16_rs485(rig_t *rig)
               fathom_a16_modbus_set_operating_mode(&sensor, FATHOM_A16_AUTOMATIC),
               fathom_a16_modbus_is_written(&sensor), ACKNOWLEDGED(0x0202, 1));
     fathom_a16_modbus_deinit(&sensor);
-    rig_power(rig, false);
-    rig_wait(rig, SECOND_US);
-    rig_power(rig, true);
-    rig_wait(rig, 3 * SECOND_US);
+    rig_restart(rig, SECOND_US, 3 * SECOND_US);
     any = begin_modbus(rig, &sensor, 0); /* where it is now */
     judge_poll("a16_modbus", &any, 4, SETTLED_US);
     ask_all(rig, &sensor);

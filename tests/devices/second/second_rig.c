@@ -269,6 +269,14 @@ void rig_power(rig_t *rig, bool on)
     run_to(rig, rig->now_us + 1);
 }
 
+void rig_restart(rig_t *rig, uint64_t off_us, uint64_t on_us)
+{
+    rig_power(rig, false);
+    rig_wait(rig, off_us);
+    rig_power(rig, true);
+    rig_wait(rig, on_us);
+}
+
 void rig_scene(rig_t *rig, int32_t mm1, int32_t mm2, int32_t mm3, int32_t mm4)
 {
     second_scene(&rig->device, &(second_scene_t){{mm1, mm2, mm3, mm4}}, rig->now_us);

@@ -68,6 +68,8 @@ typedef struct {
 /* A device on a wire, without power. The loop, the echo's being told and the clock's begin hang on the seed. */
 void rig_open(rig_t *rig, const second_config_t *config);
 void rig_power(rig_t *rig, bool on);
+/* Off for so long, and on for so long. */
+void rig_restart(rig_t *rig, uint64_t off_us, uint64_t on_us);
 void rig_scene(rig_t *rig, int32_t mm1, int32_t mm2, int32_t mm3, int32_t mm4);
 
 /* Time passes: once round the loop, of which something is due in due_us at the latest. */

@@ -50,13 +50,7 @@ static int64_t off(void)
 
 static bool has(const char *text) { return strstr(run->out, text) != NULL || strstr(run->err, text) != NULL; }
 
-static void cycle_power(void)
-{
-    rig_power(&rig, false);
-    rig_wait(&rig, 100000);
-    rig_power(&rig, true);
-    rig_wait(&rig, 12000000);
-}
+static void cycle_power(void) { rig_restart(&rig, 100000, 12000000); }
 
 /* Nothing is noisy here, so that the tolerance is 2 mm. */
 static bool is_right(void) { return off() >= -2 && off() <= 2; }

@@ -62,14 +62,6 @@ static bool is_commissioned(const char *sensor, uint64_t ctrl_c_us)
     return true;
 }
 
-static void cycle_power(void)
-{
-    rig_power(&rig, false);
-    rig_wait(&rig, SECOND);
-    rig_power(&rig, true);
-    rig_wait(&rig, 12 * SECOND);
-}
-
 /* good_of_100: so many are done in the end; at_once: without a power-on. */
 static void live(second_kind_t kind, const char *sensor, unsigned good_of_100, unsigned at_once)
 {
@@ -94,7 +86,7 @@ static void live(second_kind_t kind, const char *sensor, unsigned good_of_100, u
         if (!is_done && ctrl_c_us != 0) is_done = is_commissioned(sensor, 0);
         first += is_done;
         for (int i = 0; i != 2 && !is_done; i++) {
-            cycle_power();
+            rig_restart(&rig, SECOND, 12 * SECOND);
             is_done = is_commissioned(sensor, 0);
         }
         done += is_done;
