@@ -32,31 +32,19 @@ TEST(pieces_of_a_response_are_a_response_whatever_the_pauses)
         }
 }
 
-TEST(a_byte_each_100_ms_is_a_response)
+TEST(half_a_response_and_a_damaged_one_fail_with_the_time_out)
 {
-    for (size_t i = 0; i != sizeof response_1_754; i++) {
-        run(100000);
-        receive(response_1_754 + i, 1);
+    for (unsigned is_whole = 0; is_whole != 2; is_whole++) {
+        set_up_pieces(state);
+        if (is_whole != 0)
+            receive_damaged();
+        else
+            receive(response_1_754, 5);
+        run(100);
+        expect_after(LONG_US - 1000, FATHOM_PENDING);
+        run(FATHOM_LINE_FINISH_US + 2000); /* a response that has begun may go on */
+        expect_failed(FATHOM_ERR_CHECKSUM);
     }
-    run(100);
-    expect_mm(754);
-}
-
-TEST(a_response_without_its_end_fails_with_the_time_out)
-{
-    deliver(response_1_754, 5);
-    expect_after(LONG_US - 1000, FATHOM_PENDING);
-    run(FATHOM_LINE_FINISH_US + 2000); /* a response that has begun may go on */
-    expect_failed(FATHOM_ERR_CHECKSUM);
-}
-
-TEST(a_damaged_response_fails_with_the_time_out)
-{
-    receive_damaged();
-    run(100);
-    expect_after(LONG_US - 1000, FATHOM_PENDING);
-    run(FATHOM_LINE_FINISH_US + 2000);
-    expect_failed(FATHOM_ERR_CHECKSUM);
 }
 
 TEST(a_piece_that_arrives_between_two_requests_delays_the_next_by_65_ms_at_most)

@@ -71,11 +71,15 @@ TEST(no_request_leaves_while_a_response_is_pending)
     assert_in_range(rig.port.response_us, FINE_US, 2 * FINE_US);
 }
 
-TEST(a_request_is_held_back_for_5_s_at_most)
+TEST(a_request_is_held_back_for_5_s_at_most_also_if_the_other_one_is_cancelled)
 {
-    ask_9(0);
-    ask_1();
-    expect_held(HOLD_US, 2);
+    for (unsigned is_cancelled = 0; is_cancelled != 2; is_cancelled++) {
+        if (is_cancelled != 0) assert_int_equal(rig_tear_down(NULL) + set_up(state), 0);
+        ask_9(0);
+        if (is_cancelled != 0) fathom_line_cancel(rig.transport.line, &rig.request.transaction);
+        ask_1();
+        expect_held(HOLD_US, 2);
+    }
 }
 
 TEST(due_says_when_a_held_request_leaves)
@@ -134,14 +138,6 @@ TEST(a_late_response_shows_that_waiting_helps)
     ask_1();
     rig_run_fine(HOLD_US - SECOND_US);
     rig_expect_sent(NULL, 0);
-}
-
-TEST(a_cancelled_request_is_waited_for_too)
-{
-    ask_9(0);
-    fathom_line_cancel(rig.transport.line, &rig.request.transaction);
-    ask_1();
-    expect_held(HOLD_US, 2);
 }
 
 TEST(no_response_to_a_broadcast_is_waited_for)
