@@ -128,7 +128,7 @@ TEST(a_request_of_255_bytes_goes_out_and_is_acknowledged)
     assert_int_equal(after(T3_5_US), FATHOM_PENDING);
     expect_written(1);
     assert_int_equal(bench.fake.writes[0].length, 255);
-    after(255 * BYTE_US);
+    after(255uL * BYTE_US);
     receive_hex("01 10 01 00 00 7B 81 D6");
     after(100);
     expect(FATHOM_OK);

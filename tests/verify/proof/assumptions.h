@@ -70,7 +70,7 @@ static int assumed_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t 
     const uint8_t count = Frama_C_unsigned_char_interval(0, (uint8_t)capacity);
     any_bytes(bytes, count);
     rx->flags = any_8_in(0, FATHOM_RX_TIMED | FATHOM_RX_SILENCE | FATHOM_RX_PARITY | FATHOM_RX_FRAMING |
-                                FATHOM_RX_OVERRUN);
+                                FATHOM_RX_OVERRUN | FATHOM_RX_NO_RESPONSE);
     rx->last_us = any_32();
     return count;
 }

@@ -82,6 +82,7 @@ ARGUED = {
     ('src/engine/line_internal.h', 'may_collide_5', 'mem_access: \\valid_read(&protocol->may_collide)'): QUEUE,
     ('src/engine/line_internal.h', 'may_collide_6', 'mem_access: \\valid_read(&protocol->may_collide)'): QUEUE,
     ('src/engine/line_internal.h', 'may_collide_7', 'mem_access: \\valid_read(&protocol->may_collide)'): QUEUE,
+    ('src/engine/line_internal.h', 'may_collide_10', 'mem_access: \\valid_read(&protocol->may_collide)'): QUEUE,
     ('src/engine/line_internal.h', 'may_collide_9', 'mem_access: \\valid_read(&protocol->may_collide)'): QUEUE,
     ('src/engine/line_masters.c', 'is_ours', 'mem_access: \\valid_read(&(line_0->protocol)->is_request)'): PROTOCOL,
     ('src/engine/line_options.c', 'fathom_line_marks', 'mem_access: \\valid(frame_0 + i)'): BYTES,
