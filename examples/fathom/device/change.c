@@ -9,13 +9,6 @@
 
 /* ---- settings as text ---- */
 
-const setting_t *setting_of(const setting_t *settings, const char *name)
-{
-    for (const setting_t *setting = settings; setting->name != NULL; setting++)
-        if (strcmp(setting->name, name) == 0) return setting;
-    return NULL;
-}
-
 bool setting_value(const setting_t *setting, const char *text, int32_t *value)
 {
     char *end = NULL;

@@ -86,9 +86,6 @@ void presence_explain(session_t *session, const presence_t *presence);
 
 /* ---- settings as text (change.c) ---- */
 
-/* Returns the setting with this name; NULL: there is none. */
-const setting_t *setting_of(const setting_t *settings, const char *name);
-
 /* Stores the value. Returns false if the text is none. */
 bool setting_value(const setting_t *setting, const char *text, int32_t *value);
 

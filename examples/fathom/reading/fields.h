@@ -43,9 +43,6 @@ void reading_help(FILE *to);
 
 /* ---- counters (stats.c) ---- */
 
-/* Adds up the counters of these sensors. */
-account_t account_of(sensor_t *const *sensors, size_t count);
-
 /* Prints the sums in two lines, and a line for each of several sensors. Counters of the line that are 0 are left out. */
 void stats_print_short(const account_t *account, FILE *to);
 
@@ -55,8 +52,5 @@ void stats_print_json(const account_t *account, FILE *to);
 
 /* Writes the counters of one sensor as members of the open object. */
 void stats_json_of_sensor(json_t *json, sensor_t *sensor);
-
-/* An attempt of a sensor that has pulses has ended. sample: NULL unless the status is FATHOM_OK. */
-void pulses_add(pulses_t *pulses, const reader_counters_t *counted, const fathom_sample_t *sample);
 
 #endif

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "output/words.h"
-#include "reading/fields.h"
 
 /*
  * ALARM_US: the latest time at which the loop notices that an alarm had no distance for too long.
@@ -74,7 +73,7 @@ static void pass(const loop_t *loop, reading_t reading)
     loop->sink->reading(loop->ctx, &reading);
 }
 
-void loop_report(loop_t *loop, sensor_t *sensor, const result_t *result)
+static void report_sample(loop_t *loop, sensor_t *sensor, const result_t *result)
 {
     pass(loop, (reading_t){.sensor = sensor, .status = FATHOM_OK, .result = result});
 }
@@ -92,6 +91,96 @@ static void report_failure(const loop_t *loop, sensor_t *sensor, const failure_t
                            .failure = status_word_of_failure(kind),
                            .evidence = failure,
                            .result = &result});
+}
+
+/* ---- results: a median, then a level or an alarm ---- */
+
+/* Starts to compute results, before the first sample. The first state of an alarm is reported when a distance decides it,
+ * or unknown_us after the start. */
+static void results_start(sensor_t *sensor, uint32_t now_us)
+{
+    const results_config_t *const config = &sensor->processing;
+    for (size_t p = 0; p != FATHOM_DYP_PROBES; p++) {
+        result_probe_t *const probe = &sensor->probes[p];
+        const fathom_median_config_t median = {.window = probe->window,
+                                               .unknown_us = config->unknown_us,
+                                               .gate_mm = config->gate_mm,
+                                               .count = config->median};
+        memset(probe, 0, sizeof *probe);
+        if (config->median != 0) (void)fathom_median_init(&probe->median, &median);
+        if (!config->has_alarm) continue;
+        (void)fathom_alarm_init(&probe->alarm, &config->alarm);
+        (void)fathom_alarm_add_status(&probe->alarm, FATHOM_PENDING, now_us);
+        probe->began_us = now_us;
+    }
+}
+
+static void report_result(loop_t *loop, sensor_t *sensor, result_t *result)
+{
+    const results_config_t *const config = &sensor->processing;
+    const fathom_sample_t *const sample = &result->sample;
+    result->has_level =
+        config->has_level && sample->kind == FATHOM_TARGET &&
+        fathom_level_from_distance(&config->tank, sample->distance_mm, &result->level) == FATHOM_OK;
+    report_sample(loop, sensor, result);
+}
+
+static void report_change(loop_t *loop, sensor_t *sensor, result_t *result)
+{
+    result_probe_t *const probe = &sensor->probes[result->sample.probe - 1];
+    probe->is_known = true;
+    result->alarm = probe->alarm.state;
+    result->is_on = fathom_alarm_is_on(&probe->alarm);
+    report_result(loop, sensor, result);
+}
+
+/* Tells the alarm what was received at now_us instead of a distance. */
+static void add_status(loop_t *loop, sensor_t *sensor, uint8_t number, fathom_status_t status,
+                       uint32_t now_us)
+{
+    result_probe_t *const probe = &sensor->probes[number - 1];
+    result_t result = {.sample = {.time_us = now_us,
+                                  .kind = FATHOM_UNKNOWN,
+                                  .model = (uint8_t)sensor->model->id,
+                                  .address = sensor->address,
+                                  .probe = number}};
+    const bool has_changed = fathom_alarm_add_status(&probe->alarm, status, now_us);
+    const bool is_late =
+        !probe->is_known && fathom_elapsed_us(now_us, probe->began_us) > probe->alarm.config.unknown_us;
+    if (has_changed || is_late) report_change(loop, sensor, &result);
+}
+
+/* Computes the median. False: there is none yet. A sample that the median ignores stays as it is. */
+static bool add_to_median(result_probe_t *probe, fathom_sample_t *sample)
+{
+    if (sample->kind == FATHOM_UNKNOWN || sample->kind == FATHOM_FAULT) return true;
+    const bool has_median = fathom_median_add_sample(&probe->median, sample, sample);
+    probe->dropped += probe->median.dropped;
+    probe->median.dropped = 0;
+    return has_median;
+}
+
+static void results_sample(loop_t *loop, sensor_t *sensor, const fathom_sample_t *sample)
+{
+    const results_config_t *const config = &sensor->processing;
+    result_probe_t *const probe = &sensor->probes[sample->probe - 1];
+    result_t result = {.sample = *sample};
+    const bool has_result = config->median == 0 || add_to_median(probe, &result.sample);
+    if (has_result && (!config->has_alarm || config->has_readings)) report_result(loop, sensor, &result);
+    if (!config->has_alarm) return;
+    if (!has_result)
+        add_status(loop, sensor, sample->probe, FATHOM_OK, sample->time_us);
+    else if (fathom_alarm_add_sample(&probe->alarm, &result.sample))
+        report_change(loop, sensor, &result);
+}
+
+/* A response whose value of one probe was refused is a response of all probes. */
+static void results_status(loop_t *loop, sensor_t *sensor, fathom_status_t status)
+{
+    if (!sensor->processing.has_alarm) return;
+    const uint32_t now_us = (uint32_t)loop_now_us(loop);
+    for (uint8_t probe = 1; probe <= FATHOM_DYP_PROBES; probe++)
+        if (sensor_has_probe(sensor, probe)) add_status(loop, sensor, probe, status, now_us);
 }
 
 /* ---- what was received, and from whom ---- */
@@ -227,6 +316,24 @@ static void fail(line_t *line, sensor_t *sensor, fathom_status_t status, bool is
     report_failure(loop, sensor, &failure, kind,
                    status == FATHOM_ERR_MALFORMED ? reader_facts(reader).refused_probe : 0);
     results_status(loop, sensor, status);
+}
+
+/* An attempt of a sensor that has pulses has ended. sample: NULL unless the status is FATHOM_OK. */
+static void pulses_add(pulses_t *pulses, const reader_counters_t *counted, const fathom_sample_t *sample)
+{
+    pulses->noises += counted->noises;
+    pulses->missed_edges += counted->missed;
+    pulses->lost_events += counted->lost_events;
+    if (sample == NULL) return;
+    if (sample->kind == FATHOM_NO_TARGET) pulses->no_targets++;
+    if (sample->kind == FATHOM_FAULT) pulses->faults++;
+    if (sample->kind != FATHOM_TARGET) return;
+    if (pulses->distances++ == 0 || sample->raw < pulses->min_us) pulses->min_us = sample->raw;
+    if (sample->raw > pulses->max_us) pulses->max_us = sample->raw;
+    /* Welford's way, which no sum of large squares makes inexact. */
+    const double off_us = sample->raw - pulses->mean_us;
+    pulses->mean_us += off_us / (double)pulses->distances;
+    pulses->squares += off_us * (sample->raw - pulses->mean_us);
 }
 
 /* An outcome of the driver, which is not FATHOM_PENDING. */
@@ -638,6 +745,33 @@ bool loop_is_good(const loop_t *loop)
             if (!sensor->has_good && (!is_silent || (is_over_time(loop) && !line->is_lost))) return false;
         }
     return !loop->has_failed;
+}
+
+account_t account_of(sensor_t *const *sensors, size_t count)
+{
+    account_t account = {.sensors = sensors,
+                         .sensor_count = count,
+                         .response_min_us = NO_VALUE,
+                         .response_mean_us = NO_VALUE,
+                         .response_max_us = NO_VALUE};
+    counters_t *const sum = &account.sum;
+    for (size_t i = 0; i != count; i++) {
+        const sensor_t *const sensor = sensors[i];
+        const reader_facts_t facts = reader_facts(sensor->reader);
+        counters_add(sum, &sensor->counters);
+        if (sensor->listener != NULL) account.requests += (int64_t)sensor->listener->requests;
+        if (sensor->processing.median != 0) account.has_median = true;
+        if (!mode_is_asked(sensor->mode)) account.has_stream = true;
+        for (size_t p = 0; p != FATHOM_DYP_PROBES; p++)
+            account.dropped_spikes += (int64_t)sensor->probes[p].dropped;
+        account.timeouts_in_row = facts.timeouts_in_row;
+        account.backoff_left_us = facts.backoff_left_us;
+    }
+    if (sum->timed == 0) return account;
+    account.response_min_us = sum->time_min_us;
+    account.response_mean_us = (int64_t)(sum->time_sum_us / sum->timed);
+    account.response_max_us = sum->time_max_us;
+    return account;
 }
 
 void loop_account(loop_t *loop, account_t *account)

@@ -110,20 +110,10 @@ typedef struct {
     bool has_port;   /* the driver of a port counts errors */
 } account_t;
 
+/* Adds up the counters of these sensors. */
+account_t account_of(sensor_t *const *sensors, size_t count);
+
 /* Adds up all counters. */
 void loop_account(loop_t *loop, account_t *account);
-
-/* ---- within reading/ ---- */
-
-/* Passes a result to the sink. */
-void loop_report(loop_t *loop, sensor_t *sensor, const result_t *result);
-
-/* Starts to compute results, before the first sample. The first state of an alarm is reported when a distance decides it,
- * or unknown_us after the start. */
-void results_start(sensor_t *sensor, uint32_t now_us);
-
-/* For each sample, and for each failed attempt; from time to time with FATHOM_PENDING. */
-void results_sample(loop_t *loop, sensor_t *sensor, const fathom_sample_t *sample);
-void results_status(loop_t *loop, sensor_t *sensor, fathom_status_t status);
 
 #endif

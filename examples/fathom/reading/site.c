@@ -125,3 +125,9 @@ bool sensor_has_probe(const sensor_t *sensor, uint8_t probe)
     if (sensor->model->probes == 1 || sensor_is_contact(sensor)) return probe == 1;
     return probe <= sensor->model->probes && (wanted == 0 || (wanted >> (probe - 1) & 1) != 0);
 }
+
+void results_config_copy(results_config_t *to, const results_config_t *from)
+{
+    *to = *from;
+    if (from->tank.points != NULL) to->tank.points = to->points;
+}

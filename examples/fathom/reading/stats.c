@@ -7,23 +7,6 @@
 
 /* ---- pulses ---- */
 
-void pulses_add(pulses_t *pulses, const reader_counters_t *counted, const fathom_sample_t *sample)
-{
-    pulses->noises += counted->noises;
-    pulses->missed_edges += counted->missed;
-    pulses->lost_events += counted->lost_events;
-    if (sample == NULL) return;
-    if (sample->kind == FATHOM_NO_TARGET) pulses->no_targets++;
-    if (sample->kind == FATHOM_FAULT) pulses->faults++;
-    if (sample->kind != FATHOM_TARGET) return;
-    if (pulses->distances++ == 0 || sample->raw < pulses->min_us) pulses->min_us = sample->raw;
-    if (sample->raw > pulses->max_us) pulses->max_us = sample->raw;
-    /* Welford's way, which no sum of large squares makes inexact. */
-    const double off_us = sample->raw - pulses->mean_us;
-    pulses->mean_us += off_us / (double)pulses->distances;
-    pulses->squares += off_us * (sample->raw - pulses->mean_us);
-}
-
 /* Newton's way, which needs no further library; to a hundredth of what is measured. */
 static double root(double square)
 {
@@ -147,33 +130,6 @@ static const field_t *failure_fields(void)
 }
 
 /* ---- accounts ---- */
-
-account_t account_of(sensor_t *const *sensors, size_t count)
-{
-    account_t account = {.sensors = sensors,
-                         .sensor_count = count,
-                         .response_min_us = NO_VALUE,
-                         .response_mean_us = NO_VALUE,
-                         .response_max_us = NO_VALUE};
-    counters_t *const sum = &account.sum;
-    for (size_t i = 0; i != count; i++) {
-        const sensor_t *const sensor = sensors[i];
-        const reader_facts_t facts = reader_facts(sensor->reader);
-        counters_add(sum, &sensor->counters);
-        if (sensor->listener != NULL) account.requests += (int64_t)sensor->listener->requests;
-        if (sensor->processing.median != 0) account.has_median = true;
-        if (!mode_is_asked(sensor->mode)) account.has_stream = true;
-        for (size_t p = 0; p != FATHOM_DYP_PROBES; p++)
-            account.dropped_spikes += (int64_t)sensor->probes[p].dropped;
-        account.timeouts_in_row = facts.timeouts_in_row;
-        account.backoff_left_us = facts.backoff_left_us;
-    }
-    if (sum->timed == 0) return account;
-    account.response_min_us = sum->time_min_us;
-    account.response_mean_us = (int64_t)(sum->time_sum_us / sum->timed);
-    account.response_max_us = sum->time_max_us;
-    return account;
-}
 
 /* ---- text: counters that are 0 are left out ---- */
 

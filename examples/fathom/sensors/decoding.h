@@ -4,7 +4,7 @@
 
 #include "fathom/codec/hps167s_registers.h"
 #include "output/record.h"
-#include "sensors/models.h"
+#include "sensors/setting.h"
 
 /* A decoded frame, before it is printed as text or JSON. */
 

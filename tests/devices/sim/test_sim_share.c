@@ -37,7 +37,7 @@ static void shares(void **state)
     add_hps((hps_config_t){.address = 7});
     fathom_sim_device_t *const devices[SENSORS] = {&bench.a16.device, &bench.a05.device, &bench.hps.device};
     const fathom_a16_modbus_config_t a16_config = {
-        .modbus = {.line_settings = settings[IS_A16], .address = 1}, .value = row->value};
+        .modbus = {.line_settings = settings[IS_A16], .address = 1}, .value = (uint8_t)row->value};
     const fathom_a05_modbus_config_t a05_config = {
         .modbus = {.line_settings = settings[IS_A05], .address = 2}};
     const fathom_hps167s_config_t hps_config = {

@@ -3,6 +3,7 @@
 #define DECODE_H
 
 #include "sensors/decoding.h"
+#include "sensors/models.h"
 
 enum { DECODE_MAX_BYTES = 4 * 1024 * 1024 };
 

@@ -336,7 +336,7 @@ static void print_advice(const scan_finding_t *finding)
     (void)fprintf(stderr, "fathom: %s%s: %s\n", address, line_text(&finding->line, line), advice);
 }
 
-void scan_report(scan_t *scan, const scan_finding_t *finding)
+static void report(scan_t *scan, const scan_finding_t *finding)
 {
     progress_clear(&scan->progress);
     errno = 0;
@@ -455,7 +455,7 @@ static int finish(scan_t *scan)
     /* The reader of a pipe has read enough, as head does. That needs no message. */
     if (scan->output_error == EPIPE || host->is_output_gone(host->ctx)) return STATUS_FAILED;
     if (scan->status == FATHOM_OK && scan->sender.kind != 0 && scan->awakened == 0)
-        scan_report(scan, &scan->sender);
+        report(scan, &scan->sender);
     if (scan->output_error != 0) {
         (void)fprintf(stderr, "fathom: cannot write the output: %s\n", strerror(scan->output_error));
         return STATUS_FAILED;
@@ -510,7 +510,7 @@ static int start(const host_t *host, const arguments_t *arguments)
     static scan_t scan;
     scan_settings_t *const settings = arguments->settings;
     make_plan(settings);
-    scan = (scan_t){.settings = settings, .port.watches_output = true};
+    scan = (scan_t){.report = report, .settings = settings, .port.watches_output = true};
     if (arguments->count != 0 && settings->port == NULL)
         (void)reject(&origin, "scan takes options only. Use --port %s.", arguments->words[0]);
     else if (arguments->count != 0)

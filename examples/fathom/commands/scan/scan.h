@@ -50,7 +50,11 @@ typedef struct {
     evidence_t evidence; /* heard since the request */
 } scan_read_t;
 
-typedef struct {
+typedef struct scan scan_t;
+struct scan {
+    /* Prints a finding at once. If that fails, no further request is sent. */
+    void (*report)(scan_t *scan, const scan_finding_t *finding);
+
     inquiry_t inquiry; /* first, so that its function gets from it to the scan */
     const scan_settings_t *settings;
     port_t port;
@@ -81,7 +85,7 @@ typedef struct {
     uint16_t busy_in_row; /* addresses in a row that the scan could not ask */
     uint16_t garbled;     /* addresses whose responses were garbled */
     uint16_t asked;       /* addresses */
-} scan_t;
+};
 
 /* Returns the time of the whole plan if no unit responds. A device that responds adds at most 1.5 s. */
 uint64_t scan_plan_us(const scan_settings_t *settings);
@@ -110,9 +114,6 @@ void scan_walk(scan_t *scan);
  * factory reset of an HPS-167S (#6), with any count, and unit 0, the broadcast.
  */
 void scan_ask(scan_t *scan);
-
-/* Prints a finding at once. If that fails, no further request is sent. */
-void scan_report(scan_t *scan, const scan_finding_t *finding);
 
 /* Returns the time of the clock. */
 uint64_t scan_now_us(const scan_t *scan);

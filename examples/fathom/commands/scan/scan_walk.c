@@ -289,7 +289,7 @@ static void identify(scan_t *scan)
     if (scan->status != FATHOM_OK) return;
     scan->found_baud[address] = scan->line->baud;
     if (finding.model == model_with(DECODE_DYP)) scan->has_dyp = true;
-    scan_report(scan, &finding);
+    scan->report(scan, &finding);
 }
 
 /* ---- one address ---- */
@@ -380,7 +380,7 @@ static void visit(scan_t *scan, uint8_t address, uint32_t timeout_us)
 
 static void report_damaged(scan_t *scan, uint8_t kind, uint8_t address)
 {
-    scan_report(
+    scan->report(
         scan, &(scan_finding_t){.line = *scan->line, .kind = kind, .mode = SCAN_MODBUS, .address = address});
 }
 
@@ -411,13 +411,13 @@ static void ask_any_dyp(scan_t *scan)
     scan_ask(scan);
     if (is_of_line(scan->read.status)) scan->not_asked++;
     if (scan->read.status == FATHOM_OK)
-        scan_report(scan, &(scan_finding_t){.line = model->line,
-                                            .kind = SCAN_SENSOR,
-                                            .model = model,
-                                            .mode = SCAN_DYP,
-                                            .address = scan->read.responder,
-                                            .has_value = true,
-                                            .value = scan->read.values[0]});
+        scan->report(scan, &(scan_finding_t){.line = model->line,
+                                             .kind = SCAN_SENSOR,
+                                             .model = model,
+                                             .mode = SCAN_DYP,
+                                             .address = scan->read.responder,
+                                             .has_value = true,
+                                             .value = scan->read.values[0]});
 }
 
 /* Asks all addresses at scan->line. */
