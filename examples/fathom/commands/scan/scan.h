@@ -52,10 +52,9 @@ typedef struct {
 
 typedef struct scan scan_t;
 struct scan {
+    inquiry_t inquiry; /* first, so that its function gets from it to the scan */
     /* Prints a finding at once. If that fails, no further request is sent. */
     void (*report)(scan_t *scan, const scan_finding_t *finding);
-
-    inquiry_t inquiry; /* first, so that its function gets from it to the scan */
     const scan_settings_t *settings;
     port_t port;
     progress_t progress;
