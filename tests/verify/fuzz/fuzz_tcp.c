@@ -106,7 +106,8 @@ int __wrap_setsockopt(int fd, int level, int name, const void *value, socklen_t 
 
 /* ---- the second decoder ---- */
 
-/* The next response for the line: unit and PDU, NULL: none. What is no response is passed over. */
+/* The next response for the line: unit and PDU; NULL: none. length 0: no response will come. What is neither is passed
+ * over. */
 static const uint8_t *decode(const fathom_libmodbus_t *port, size_t *length, bool *is_nonsense)
 {
     *is_nonsense = false;
@@ -116,14 +117,16 @@ static const uint8_t *decode(const fathom_libmodbus_t *port, size_t *length, boo
         *is_nonsense = fuzz_word_at(adu + 2) != 0 || *length < 2 || *length > 254;
         if (*is_nonsense || far.sent - far.decoded < HEADER + *length) return NULL;
         far.decoded += HEADER + *length;
-        if (fuzz_word_at(adu) != port->transaction) {
+        if (far.requests == 0 || fuzz_word_at(adu) != port->transaction) {
             far.late++;
             continue;
         }
-        if (*length == 3 && adu[7] >= 0x80 && (adu[8] == 0x0A || adu[8] == 0x0B)) {
-            far.refused++;
-            continue;
-        }
+        const bool is_other = adu[6] != far.request[6] && far.request[6] != 255;
+        const bool is_gateways =
+            (is_other && (adu[6] == 0 || adu[6] == 255)) || adu[8] == 0x0A || adu[8] == 0x0B;
+        const bool is_word = *length == 3 && adu[7] >= 0x80 && is_gateways;
+        if (is_word) far.refused++;
+        if (is_word || is_other) *length = 0;
         return adu + HEADER;
     }
     return NULL;
@@ -199,6 +202,7 @@ static void check_reads(fathom_libmodbus_t *port, const fathom_uart_t *uart)
         const size_t capacity = 1 + fuzz_byte();
         uint8_t *const memory = fuzz_guarded(capacity);
         size_t have = 0;
+        rx = (fathom_rx_t){0, 0};
         int n = uart->read(uart->ctx, memory, capacity, &rx);
         size_t length;
         bool is_nonsense;
@@ -206,6 +210,11 @@ static void check_reads(fathom_libmodbus_t *port, const fathom_uart_t *uart)
             const uint8_t *const should = decode(port, &length, &is_nonsense);
             PROMISE(should != NULL && port->error == FATHOM_LIBMODBUS_OK,
                     "fathom_libmodbus.h: a response that was sent");
+            if (length == 0) {
+                PROMISE(n == 1 && rx.flags == FATHOM_RX_NO_RESPONSE, "hal.h: no response will arrive");
+                free(memory);
+                continue;
+            }
             for (;;) { /* never part of a response: the rest is there */
                 PROMISE(have + (size_t)n <= length + 2, "fathom_libmodbus.h: one response at a time");
                 memcpy(bytes + have, memory, (size_t)n);
