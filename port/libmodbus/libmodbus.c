@@ -91,7 +91,7 @@ fathom_status_t fathom_libmodbus_init(fathom_libmodbus_t *port, modbus_t *modbus
     port->parts.counters = port->counters;
     port->modbus = (fathom_modbus_t){&port->line, submit};
     const fathom_status_t status = fathom_line_init(&port->line, &port->parts);
-    if (status == FATHOM_OK && port->is_tcp) fathom_libmodbus_hold(port, &port->line);
+    if (port->is_tcp) fathom_libmodbus_hold(port, &port->line); /* status is FATHOM_OK: all of it is there */
     return status;
 }
 

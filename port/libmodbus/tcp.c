@@ -141,7 +141,7 @@ static void count_other(fathom_libmodbus_t *port)
 static word_t judge(fathom_libmodbus_t *port)
 {
     const uint8_t *const adu = port->adu;
-    if (port->sent_count == 0 || word_at(adu + TRANSACTION) != port->transaction) {
+    if (word_at(adu + TRANSACTION) != port->transaction) {
         count_other(port);
         return NOTHING;
     }

@@ -196,3 +196,9 @@ TEST(after_a_reset_that_was_refused_other_settings_can_be_made)
     PLAY(set_warm_up, OK, IS_OF(1, 5, 1, 0), HPS_WRITE(1, 0x0A, 200, OK, 0), IS_OF(1, 200, 1, 0));
     assert_warm_up(200);
 }
+
+TEST(an_address_is_not_set_while_another_setting_is_in_progress)
+{
+    assert_int_equal(fathom_hps167s_set_warm_up_s(&hps, 5), FATHOM_PENDING);
+    assert_int_equal(fathom_hps167s_set_address(&hps, 7), FATHOM_ERR_BUSY);
+}

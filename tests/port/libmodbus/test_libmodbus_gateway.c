@@ -227,6 +227,27 @@ TEST(data_of_another_unit_are_counted_and_end_the_attempt)
     }
 }
 
+TEST(an_exception_of_another_unit_is_no_word_of_the_gateway)
+{
+    ask_9(0);
+    say_exception(1, 2, 0x02);
+    rig_run_fine(FINE_US);
+    assert_int_equal(status(), FATHOM_ERR_NO_RESPONSE);
+    assert_int_equal(rig.port.gateway_refusals, 0);
+}
+
+TEST(a_response_to_an_old_request_is_late_and_not_measured)
+{
+    rig.port.sent_count = 0x8000; /* it stops there */
+    rig.port.transaction = 0xF0FF;
+    rig_ask_three(&rig.request, 1, 0);
+    rig_run_fine(FINE_US);
+    rig_say((const uint8_t[]){OTHER(9)}, 15);
+    rig_run_fine(FINE_US);
+    assert_int_equal(rig.port.late_responses, 1);
+    assert_int_equal(rig.port.response_us, 0);
+}
+
 /* Unit 255 stands for the unit that responds (modbus.h). */
 TEST(a_request_to_any_unit_is_answered_by_any)
 {

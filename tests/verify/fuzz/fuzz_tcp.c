@@ -117,7 +117,7 @@ static const uint8_t *decode(const fathom_libmodbus_t *port, size_t *length, boo
         *is_nonsense = fuzz_word_at(adu + 2) != 0 || *length < 2 || *length > 254;
         if (*is_nonsense || far.sent - far.decoded < HEADER + *length) return NULL;
         far.decoded += HEADER + *length;
-        if (far.requests == 0 || fuzz_word_at(adu) != port->transaction) {
+        if (fuzz_word_at(adu) != port->transaction) {
             far.late++;
             continue;
         }
