@@ -69,6 +69,11 @@ static void set_sensors(publisher_t *publisher, const site_t *site)
         for (uint8_t probe = 1; probe <= FATHOM_DYP_PROBES; probe++) want_topics(publisher, sensor, probe);
         want_topics(publisher, sensor, 0);
     }
+    for (topic_t *topic = publisher->topics; topic != NULL; topic = topic->next) {
+        if (topic->is_wanted) continue;
+        free(topic->kept);
+        topic->kept = NULL;
+    }
     free(before);
 }
 
@@ -83,18 +88,32 @@ static void make_due(publisher_t *publisher, topic_kind_t kind, const sensor_t *
 
 /* ---- the queue ---- */
 
-/* Frees the oldest message, which was sent or is dropped. */
-static void remove_message(queue_t *queue, bool is_dropped)
+static void free_message(queue_t *queue, message_t *message, bool is_dropped)
 {
-    message_t *const message = queue->first;
-    queue->first = message->next;
-    queue->bytes -= message->size;
-    queue->count--;
     if (is_dropped) {
         message->topic->dropped++;
         queue->dropped++;
     }
     free(message);
+}
+
+/* Takes the oldest message out of the queue; it was sent, is dropped, or is kept. */
+static void remove_message(publisher_t *publisher, bool is_dropped)
+{
+    queue_t *const queue = &publisher->queue;
+    message_t *const message = queue->first;
+    topic_t *const topic = message->topic;
+    queue->first = message->next;
+    queue->bytes -= message->size;
+    queue->count--;
+    if (!topic_is_retained(topic->kind) || !topic->is_wanted) {
+        free_message(queue, message, is_dropped);
+        return;
+    }
+    if (topic->kept != NULL) free_message(queue, topic->kept, !topic->kept->is_sent);
+    topic->kept = message;
+    topic->is_due = !message->is_sent;
+    publisher->has_due |= topic->is_due;
 }
 
 /* Drops the oldest messages, so that `count` more of `size` bytes keep the bounds. */
@@ -103,7 +122,7 @@ static void make_room(publisher_t *publisher, uint32_t count, size_t size)
     queue_t *const queue = &publisher->queue;
     while (queue->count != 0 && (queue->count + count > publisher->settings->queue_messages ||
                                  queue->bytes + size > publisher->settings->queue_bytes))
-        remove_message(queue, true);
+        remove_message(publisher, true);
 }
 
 static void put_message(publisher_t *publisher, topic_t *topic, uint64_t time_us, const char *text)
@@ -112,7 +131,7 @@ static void put_message(publisher_t *publisher, topic_t *topic, uint64_t time_us
     const size_t size = sizeof(message_t) + strlen(text) + 1;
     message_t *const message = allocate(size);
     make_room(publisher, 1, size);
-    *message = (message_t){.topic = topic, .time_us = time_us, .size = size};
+    *message = (message_t){.topic = topic, .time_us = time_us, .seq = topic->seq, .size = size};
     (void)strcpy(message->text, text);
     if (queue->first == NULL)
         queue->first = message;
@@ -137,6 +156,14 @@ static const char *end_payload(publisher_t *publisher)
     return fflush(publisher->to) == 0 ? publisher->payload : "";
 }
 
+/* Null if the clock was not set. */
+static void json_utc(const publisher_t *publisher, json_t *json, uint64_t age_us)
+{
+    const host_t *const host = publisher->host;
+    char utc[UTC_TEXT];
+    json_string(json, "utc", utc_text(utc_before(host->utc_us(host->ctx), age_us), utc));
+}
+
 /* The present state under a retained topic. */
 static const char *payload_of(publisher_t *publisher, const topic_t *topic)
 {
@@ -152,8 +179,7 @@ static const char *payload_of(publisher_t *publisher, const topic_t *topic)
     if (topic_is_entity(topic->kind)) {
         topic_json_entity(&json, publisher->settings, topic->kind, topic->sensor, topic->probe);
     } else {
-        char utc[UTC_TEXT];
-        json_string(&json, "utc", utc_text(publisher->host->utc_us(publisher->host->ctx), utc));
+        json_utc(publisher, &json, 0);
         if (topic->kind == TOPIC_PUBLISHER) json_string(&json, "version", FATHOM_VERSION_STRING);
         json_string(&json, "boot", publisher->boot);
     }
@@ -168,15 +194,29 @@ static const char *payload_of(publisher_t *publisher, const topic_t *topic)
     return end_payload(publisher);
 }
 
+static const char *payload_of_message(publisher_t *publisher, const message_t *message)
+{
+    const uint64_t age_us = now_us(publisher) - message->time_us;
+    json_t json = begin_payload(publisher);
+    json_begin(&json, NULL, '{');
+    json_utc(publisher, &json, age_us);
+    (void)fprintf(json.to, ",%s,\"age_ms\":%" PRIu64 ",\"dropped\":%" PRIu64 "}", message->text,
+                  age_us / 1000, message->topic->dropped);
+    return end_payload(publisher);
+}
+
 /* ---- one message after another ---- */
 
 /* The rank of a retained message that is due; TOPICS: none is. A topic that is not wanted any more is deleted as soon as the
- * publisher is online. */
+ * publisher is online. What was sent is not sent again if a newer message of its topic waits. */
 static topic_kind_t rank_of(const topic_t *topic)
 {
+    const message_t *const kept = topic->kept;
     if (!topic->is_wanted)
         return topic_is_retained(topic->kind) && topic->is_known ? TOPIC_STATUS + 1 : TOPICS;
-    return topic->is_due && topic->kind < TOPIC_STATE ? topic->kind : TOPICS;
+    if (!topic->is_due) return TOPICS;
+    if (topic->kind < TOPIC_STATE) return topic->kind;
+    return kept != NULL && (!kept->is_sent || kept->seq == topic->seq) ? topic->kind : TOPICS;
 }
 
 static void report_dropped(publisher_t *publisher)
@@ -199,8 +239,11 @@ static bool send_retained(publisher_t *publisher)
         if (rank_of(topic) < (first != NULL ? rank_of(first) : TOPICS)) first = topic;
     publisher->has_due = first != NULL;
     if (first == NULL) return false;
-    const char *const payload = first->is_wanted ? payload_of(publisher, first) : "";
+    const char *const payload = !first->is_wanted     ? ""
+                                : first->kept != NULL ? payload_of_message(publisher, first->kept)
+                                                      : payload_of(publisher, first);
     first->is_known = broker_send(&publisher->broker, first->name, payload, true) && first->is_wanted;
+    if (first->kept != NULL) first->kept->is_sent = true;
     first->is_due = false;
     if (first->kind == TOPIC_PUBLISHER && first->is_wanted) report_dropped(publisher);
     return true;
@@ -208,19 +251,16 @@ static bool send_retained(publisher_t *publisher)
 
 static bool send_message(publisher_t *publisher)
 {
-    const message_t *const message = publisher->queue.first;
+    message_t *const message = publisher->queue.first;
     if (message == NULL) return false;
     topic_t *const topic = message->topic;
     const bool is_retained = topic_is_retained(topic->kind);
-    const json_t json = begin_payload(publisher);
-    (void)fprintf(json.to, "%s,\"age_ms\":%" PRIu64 ",\"dropped\":%" PRIu64 "}", message->text,
-                  (now_us(publisher) - message->time_us) / 1000, topic->dropped);
     /* A deleted topic must not come back. */
     const bool is_obsolete = is_retained && !topic->is_wanted;
-    const bool is_sent =
-        !is_obsolete && broker_send(&publisher->broker, topic->name, end_payload(publisher), is_retained);
-    if (is_sent) topic->is_known = true;
-    remove_message(&publisher->queue, !is_sent && !is_obsolete);
+    message->is_sent = !is_obsolete && broker_send(&publisher->broker, topic->name,
+                                                   payload_of_message(publisher, message), is_retained);
+    if (message->is_sent) topic->is_known = true;
+    remove_message(publisher, !message->is_sent && !is_obsolete);
     return true;
 }
 
@@ -239,7 +279,6 @@ static void send_next(publisher_t *publisher)
 static void put(publisher_t *publisher, const reading_t *reading, topic_t *topic)
 {
     json_t json = begin_payload(publisher);
-    json_begin(&json, NULL, '{');
     reading_json(&json, reading, topic_columns(topic->kind, reading->sensor));
     json_string(&json, "boot", publisher->boot);
     json_value(&json, "seq", "%" PRIu64, ++topic->seq);
@@ -363,10 +402,11 @@ void publisher_end(publisher_t *publisher)
 
 void publisher_deinit(publisher_t *publisher)
 {
-    while (publisher->queue.first != NULL) remove_message(&publisher->queue, false);
+    while (publisher->queue.first != NULL) remove_message(publisher, false);
     while (publisher->topics != NULL) {
         topic_t *const topic = publisher->topics;
         publisher->topics = topic->next;
+        free(topic->kept);
         free(topic);
     }
     free(publisher->sensors);

@@ -20,19 +20,24 @@ typedef struct topic {
     uint8_t probe;    /* 0: of the sensor */
     uint64_t seq;     /* of the last reading; 0: none yet */
     uint64_t dropped; /* messages */
-    bool is_wanted;   /* a sensor has the topic, or the publisher */
-    bool is_due;      /* the broker does not know the present state */
-    bool is_known;    /* the broker may have a retained message */
+    /* The newest message that left the queue, if it is retained: it is sent again after each connect, and is not lost if the
+     * queue was full. NULL: none. */
+    struct message *kept;
+    bool is_wanted; /* a sensor has the topic, or the publisher */
+    bool is_due;    /* the broker does not know the present state */
+    bool is_known;  /* the broker may have a retained message */
     char name[];
 } topic_t;
 
-/* A reading that waits: the beginning of a JSON object. The age of the reading, and the number of messages of its topic that
- * were dropped before it, are added when it is sent. */
+/* A reading that waits: members of a JSON object. Its date, its age, and the number of messages of its topic that were
+ * dropped before it, are added when it is sent. So a clock that is set while it waits makes its date right. */
 typedef struct message {
     struct message *next;
     topic_t *topic;
     uint64_t time_us; /* of the reading, by the host's clock */
-    size_t size;      /* of the message with its text */
+    uint64_t seq;
+    size_t size; /* of the message with its text */
+    bool is_sent;
     char text[];
 } message_t;
 

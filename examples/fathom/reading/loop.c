@@ -69,7 +69,7 @@ static void pass(const loop_t *loop, reading_t reading)
     const uint64_t now_us = loop_now_us(loop);
     const uint64_t then_us = time_extend(now_us, reading.result->sample.time_us);
     reading.time_us = then_us - loop->start_us;
-    reading.utc_us = host->utc_us(host->ctx) - (now_us - then_us);
+    reading.utc_us = utc_before(host->utc_us(host->ctx), now_us - then_us);
     loop->sink->reading(loop->ctx, &reading);
 }
 
@@ -681,6 +681,20 @@ bool loop_open(loop_t *loop)
     host->attend(host->ctx, &loop->sources);
     start_lines(loop);
     return has_lines(loop);
+}
+
+void loop_check_clock(const loop_t *loop)
+{
+    const uint64_t utc_us = loop->host->utc_us(loop->host->ctx);
+    char utc[UTC_TEXT];
+    char text[TEXT];
+    if (utc_before(utc_us, 0) != 0) return;
+    (void)snprintf(
+        text, sizeof text,
+        "this machine's clock says %.10s. Until it is set, readings have no date (utc). Set it, for "
+        "example by NTP.",
+        utc_text(utc_us + 1, utc)); /* 0 has no text */
+    notify(loop, NOTICE_REMARK, NULL, text);
 }
 
 /* Waits until the sensors have left their devices as they were, at most TIMES. */

@@ -214,6 +214,7 @@ static int publish_site(const host_t *host)
     const bool is_open = loop_open(loop);
     if (is_open) {
         notify("READY=1");
+        loop_check_clock(loop);
         loop_run(loop);
         notify("STOPPING=1");
     }
