@@ -420,6 +420,15 @@ static bool start_sensor(line_t *line, sensor_t *sensor)
     return true;
 }
 
+/* Another program at the port is reported once, also if it opens and closes the port again and again. */
+static void notify_holder(line_t *line)
+{
+    char text[TEXT - 64];
+    const uint32_t holder = advice_at_opening(text, sizeof text, &line->port);
+    if (holder != 0 && holder != line->holder) notify_port(line, NOTICE_REMARK, line->port.name, text);
+    if (holder != 0) line->holder = holder;
+}
+
 /* False: a driver does not accept its settings. */
 static bool start_reading(line_t *line)
 {
@@ -436,6 +445,7 @@ static bool start_reading(line_t *line)
     if (line->is_lost)
         notify_port(line, NOTICE_OPEN, line->port.name,
                     line->was_open ? "it is back; reading goes on" : "it is there; reading begins");
+    notify_holder(line);
     line->is_lost = false;
     line->was_open = true;
     line->state = LINE_READING;

@@ -590,6 +590,7 @@ static int start(const host_t *host, const arguments_t *arguments)
         (void)fprintf(stderr, "fathom: %s\n", port.error_text);
         return STATUS_FAILED;
     }
+    advice_print_opening(&port);
     const int status = ask(&request, &port, settings->is_json);
     port_close(&port);
     return status;

@@ -487,6 +487,7 @@ static int run(scan_t *scan, const host_t *host)
         (void)fprintf(stderr, "fathom: %s\n", scan->port.error_text);
         return STATUS_FAILED;
     }
+    advice_print_opening(&scan->port);
     for (uint8_t i = 0; i != settings->line_count;
          i++) { /* a slower unit has to recognise the silence, too */
         const uint16_t silence_us = fathom_silence_us(&settings->lines[i]);
