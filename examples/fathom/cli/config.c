@@ -215,7 +215,7 @@ static bool reject_yaml(const config_t *config, const yaml_parser_t *parser)
 {
     const origin_t origin =
         at_mark(config, parser->error == YAML_READER_ERROR ? &parser->mark : &parser->problem_mark);
-    return reject(&origin, "this is no YAML: %s%s%s.",
+    return reject(&origin, "this is no YAML: %s%s%s. Check the indent (spaces, no tabs) and the quotes.",
                   parser->problem != NULL ? parser->problem : "no memory", parser->context != NULL ? " " : "",
                   parser->context != NULL ? parser->context : "");
 }

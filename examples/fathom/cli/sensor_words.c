@@ -76,7 +76,13 @@ const model_t *model_word(const char *name, const origin_t *origin)
         if (strcmp(name, models[i].name) == 0) return &models[i];
         nearest_try(&nearest, models[i].name);
     }
-    (void)reject_unknown(origin, "sensor", "", &nearest, true);
+    if (name[0] != '\0' && strspn(name, "0123456789") == strlen(name))
+        (void)reject(
+            origin,
+            "unknown sensor '%s'. An address stands behind its sensor and a colon, such as hps167s:%s.", name,
+            name);
+    else
+        (void)reject_unknown(origin, "sensor", "", &nearest, true);
     return NULL;
 }
 

@@ -234,11 +234,11 @@ static const row_t causes[] = {
      "Check the power and the wires of the sensor" UNSEEN},
     {STALE | CHECKSUM, "listened silence addressed", "no byte was received",
      "Check the power and whether A and B are swapped. If the sensor does not send automatically, use --mode "
-     "modbus. To find its address, run 'fathom scan'" UNSEEN},
+     "modbus. To find its address, run 'fathom scan --port {path}'" UNSEEN},
     {STALE | CHECKSUM, "listened silence", "no byte was received",
-     "Check the power and the wire of the sensor's TX. If the sensor does not send automatically, use --mode "
-     "modbus. If it has an address, name it with its address, such as {model}:7; 'fathom scan' finds "
-     "it" UNSEEN},
+     "Check the power and the wire of the sensor's TX. A Modbus request ends the automatic output: switch "
+     "the sensor off and on, or use --mode modbus. If it has an address, name it with its address, such as "
+     "{model}:7; 'fathom scan --port {path}' finds it" UNSEEN},
     {STALE | CHECKSUM, "listened addressed foreign", "the line works, but address {foreign-address} sends",
      "Try {other}"},
     {STALE | CHECKSUM, "listened modbus", "Modbus frames were received, but no measurement of {sensor}",
@@ -283,14 +283,16 @@ static const row_t causes[] = {
      "it",
      "Check the wires behind the adapter (A, B, ground), the supply, and {option}"},
     {NO_RESPONSE, "asked old", "{old} bytes of unknown age were received and dropped",
-     "The computer was busy or asleep, or the adapter delays bytes. Try again, or try a longer --timeout"},
+     "The computer was busy or asleep, the adapter delays bytes, or a device sends without a request. Try "
+     "again, or try a longer --timeout"},
     {NO_RESPONSE, "asked own", "frames of this address were received, but no response",
      "Check that no other master asks, and that only one sensor has this address"},
     {NO_RESPONSE, "asked bytes worked",
      "bytes were received, but no {protocol} frame. Earlier responses were good, so the settings are right",
      DISTURBANCE UNSEEN},
     {NO_RESPONSE, "asked bytes", "bytes were received, but no {protocol} frame",
-     "Check {settings}. " SAME_EFFECT UNSEEN},
+     "Check {settings}. Swapped wires A and B, noise and two sensors at one address have the same "
+     "effect" UNSEEN},
     {NO_RESPONSE, "asked worked",
      "no byte was received. Earlier responses were good, so the settings are right",
      "Check the power and the wires of the sensor" UNSEEN},
@@ -298,7 +300,7 @@ static const row_t causes[] = {
      "Check the power, the wires, the address and the settings of this sensor" UNSEEN},
     {NO_RESPONSE, "asked", "no byte was received",
      "Check the power, whether A and B (or RX and TX) are swapped, {option}, and --baud and "
-     "--parity[not-scan:, or run 'fathom scan']" UNSEEN},
+     "--parity[not-scan:, or run 'fathom scan --port {path}']" UNSEEN},
 
     {CHECKSUM, "asked worked",
      "earlier responses were good, so the settings are right and the line is disturbed[damaged: ({damaged} "

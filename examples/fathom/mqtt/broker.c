@@ -230,8 +230,7 @@ void broker_hold(broker_t *broker, bool is_held)
 static void start_sending(broker_t *broker)
 {
     const broker_settings_t *const settings = &broker->settings.broker;
-    if (broker->reported[0] != '\0')
-        (void)fprintf(stderr, "fathom: broker %s port %u: connected.\n", settings->host, settings->port);
+    (void)fprintf(stderr, "fathom: broker %s port %u: connected.\n", settings->host, settings->port);
     broker->reported[0] = '\0';
     for (broker_sent_t *sent = broker->sent; sent != NULL; sent = sent->next)
         if (sent->number == 0) (void)submit(broker, sent);

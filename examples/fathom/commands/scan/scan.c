@@ -344,6 +344,7 @@ static void report(scan_t *scan, const scan_finding_t *finding)
     scan->output_error = output_flush();
     if (scan->output_error != 0) scan->status = FATHOM_ERR_CANCELLED;
     print_advice(finding);
+    if (finding->kind == SCAN_DAMAGED) scan->has_damaged = true;
     if (finding->kind != SCAN_SENSOR) return;
     scan->sensors++;
     if (is_terminated(finding)) {
@@ -380,7 +381,7 @@ static void print_nothing(const scan_t *scan)
     failure_t failure = failure_of(scan, FATHOM_ERR_NO_RESPONSE);
     failure.evidence.masters = 0; /* print_others() has said it */
     (void)fputs("fathom: ", stderr);
-    if (scan->not_asked != 0)
+    if (scan->not_asked != 0 || scan->has_damaged)
         (void)fputs("no sensor was found", stderr);
     else
         advice_print(stderr, &failure);
@@ -426,12 +427,14 @@ static void print_result(const scan_t *scan)
         print_why_nothing_was_sent(sender);
         return;
     }
-    if (scan->awakened != 0 && sender->mode == SCAN_AUTO)
-        (void)fprintf(
-            stderr,
-            "fathom: the sensor sent automatically until the scan asked it. It sends again after a power "
-            "cycle%s.\n",
-            sender->model->automatic_again != NULL ? sender->model->automatic_again : "");
+    if (scan->awakened != 0 && sender->mode == SCAN_AUTO) {
+        (void)fprintf(stderr, "fathom: the sensor sent automatically until the first request. It sends again "
+                              "after a power cycle");
+        if (sender->model->automatic_again != NULL)
+            (void)fprintf(stderr, ", or after 'fathom set %s:ADDRESS --port %s %s'", sender->model->name,
+                          scan->settings->port, sender->model->automatic_again);
+        (void)fputs(".\n", stderr);
+    }
     print_others(scan);
     if (scan->terminations > 1)
         (void)fprintf(
@@ -493,9 +496,10 @@ static int run(scan_t *scan, const host_t *host)
         const uint16_t silence_us = fathom_silence_us(&settings->lines[i]);
         if (i == 0 || silence_us > scan->port.parts.silence_us) scan->port.parts.silence_us = silence_us;
     }
-    (void)fputs("fathom: asking ", stderr);
+    (void)fprintf(stderr, "fathom: listens for %s, and then sends requests to ",
+                  duration_text(settings->listen_us, duration));
     print_plan(stderr, settings);
-    (void)fprintf(stderr, " takes about %s, and a second for each sensor\n",
+    (void)fprintf(stderr, ": about %s in all, and a second for each sensor\n",
                   duration_text(scan_plan_us(settings), duration));
     progress_init(&scan->progress, stderr, scan_now_us(scan), scan_plan_us(settings));
     scan_listen(scan);

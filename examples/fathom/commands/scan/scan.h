@@ -69,6 +69,7 @@ struct scan {
     uint32_t terminations;               /* sensors whose termination resistor is on */
     const model_t *terminated;           /* model of these sensors */
     uint32_t awakened;                   /* sensors of the sender's model */
+    bool has_damaged;                    /* an address whose responses are damaged */
     bool has_dyp;                        /* a sensor that can have frames 55 AA */
     uint32_t found_baud[SCAN_ADDRESSES]; /* of the device at an address; 0: none */
     evidence_t heard;                    /* echoes, masters, and `bytes` of neither a frame nor an echo */
