@@ -416,6 +416,21 @@ FINDS(a_rate_that_the_port_does_not_have_is_left_out, "--baud 9600,230400,19200"
       "fathom: this port does not have 230400 8E1, so the scan leaves it out.\n", HPS167S(.address = 1),
       scans.refused_baud = 230400)
 
+FINDS(the_result_names_the_settings_that_were_left_out, "--baud 9600,230400,57600", "",
+      ". Not asked, since the port does not have them: 230400 8E1\n", scans.refused_baud = 230400)
+
+TEST(a_scan_that_left_out_every_setting_has_asked_nothing_and_concludes_nothing)
+{
+    scans.refused_baud = 230400;
+    const tool_run_t *const run = scan_finds("", "--baud 230400 --parity none,even");
+    assert_non_null(
+        strstr(run->err, "fathom: nothing was asked, because the port has none of these settings."));
+    assert_null(strstr(run->err, "no sensor was found"));
+    assert_null(strstr(run->err, "sensors found"));
+    assert_int_equal(run->status, 1);
+    assert_int_equal(scans.requests, 0);
+}
+
 TEST(an_a16_at_address_0_is_found_and_no_broadcast_is_sent)
 {
     A16(.address = 1);

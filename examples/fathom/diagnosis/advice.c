@@ -84,11 +84,13 @@ static uint64_t fact(const failure_t *failure, const char *name, size_t length)
         {"address", failure->address},
         {"others", failure->others_answer}, /* on this line */
         {"request", failure->is_request},
+        {"not-request", !failure->is_request},
         {"setting", failure->is_setting},
         {"scan", failure->is_scan},
         {"not-scan", !failure->is_scan},
         {"reads", !failure->is_scan && !failure->is_setting && !failure->is_request},
         {"damaged", counters->failures[-FATHOM_ERR_CHECKSUM]}, /* attempts */
+        {"share", failure->damaged},
         {"attempts", counters->attempts + 1},
         /* what was received */
         {"silence", heard->bytes == 0},
@@ -99,6 +101,7 @@ static uint64_t fact(const failure_t *failure, const char *name, size_t length)
         {"timeout", (heard->slowest_us / 500u + 99u) / 100u * 100u}, /* twice the time, in steps of 100 ms */
         {"masters", heard->masters},                                 /* requests of another master, ... */
         {"asked-address", heard->masters_address},                   /* ... to this unit */
+        {"headless", heard->headless},                               /* a response without its first bytes */
         {"foreign", heard->foreign},                                 /* frames of another address */
         {"foreign-address", heard->foreign_address},
         {"impossible", heard->foreign_address > model->max_address}, /* which the model cannot have */
@@ -145,6 +148,7 @@ typedef struct {
 
 #define AT(status) (1u << -(int)(status))
 enum {
+    GOOD = AT(FATHOM_OK),
     PORT = AT(FATHOM_ERR_PORT),
     UNSUPPORTED = AT(FATHOM_ERR_UNSUPPORTED),
     CANCELLED = AT(FATHOM_ERR_CANCELLED),
@@ -190,15 +194,20 @@ static const row_t causes[] = {
      "Choose other line settings or another adapter"},
     {CANCELLED, "", "the command ended before the response arrived", NULL},
 
-    {NO_MATCH | STALE | MALFORMED | OTHER_MASTER, "holder",
+    {GOOD | NO_MATCH | STALE | MALFORMED | OTHER_MASTER, "holder",
      "{holder} has {path} open too. Two programs at one port take each other's bytes",
      "{stop}, then try again"},
-    {NO_MATCH | STALE | MALFORMED | OTHER_MASTER, "changed",
+    {GOOD | NO_MATCH | STALE | MALFORMED | OTHER_MASTER, "changed",
      "another program has changed the settings of {path}",
      "Stop this program ('sudo fuser -v {path}' may name it), then start again"},
     {NO_MATCH | STALE | MALFORMED, "console bytes",
      "{path} is the console of the kernel, whose messages and login are on the same line",
      "Switch the console off; 'fathom help trouble' says how"},
+
+    {GOOD, "", "{share} of 100 frames are damaged. The others are right, so the baud rate is right",
+     "Check for a long cable at TTL level, a missing common ground and noise, and whether a microcontroller "
+     "passes "
+     "the bytes on that it receives by SoftwareSerial: use one of its UARTs" UNSEEN},
 
     {NO_RESPONSE, "pins noises",
      "no pulse of the sensor, but {noises} shorter ones: noise on the wire of echo",
@@ -221,6 +230,13 @@ static const row_t causes[] = {
 
     {NO_RESPONSE, "asked late", "the response arrived after the time-out[took: (it took {took} ms)]",
      "Try a longer --timeout[took:, such as --timeout {timeout}]"},
+    {NO_MATCH, "asked headless",
+     "the first bytes of the response are missing or damaged, and the others are right, so the settings are "
+     "right: the "
+     "adapter or the gateway switches from sending to receiving too late (driver enable, DE and RE)",
+     "[request:Try again][not-request:Try --retries 2], and use an adapter or a setting that releases the "
+     "line "
+     "sooner"},
     {NO_MATCH, "asked masters", "another master sends requests on this line (to address {asked-address})",
      NO_MASTER},
     {NO_MATCH, "asked foreign impossible",

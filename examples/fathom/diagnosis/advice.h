@@ -8,7 +8,7 @@
 #include "ports/holder.h"
 #include "sensors/models.h"
 
-/* A failed attempt, and the evidence from which its cause is judged. */
+/* A failed attempt, and the evidence from which its cause is judged. FATHOM_OK: frames between good ones are damaged. */
 typedef struct {
     fathom_status_t status;
     const model_t *model;
@@ -22,6 +22,7 @@ typedef struct {
     holder_t holder;                    /* set here: who else uses the port */
     uint32_t noises;                    /* pulses of this attempt that were too short */
     uint8_t address;
+    uint8_t damaged;    /* with FATHOM_OK: frames of a hundred */
     bool others_answer; /* other sensors on this line respond */
     bool waits;         /* the command waits for a lost port */
     bool is_told;       /* a failure of the same port was already reported for another sensor */

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): fmemopen */
 #include "reading/loop.h"
 
 #include <inttypes.h>
@@ -288,34 +289,55 @@ static bool has_probes(const sensor_t *sensor)
     return sensor->model->probes > 1 && (probes == 0 || (probes & (probes - 1)) != 0);
 }
 
-/* is_first: of the outcomes of this attempt. is_known: the user knows it from another sensor on the line. */
-static void fail(line_t *line, sensor_t *sensor, fathom_status_t status, bool is_first, bool is_known)
+static failure_t failure_of(const line_t *line, const sensor_t *sensor, fathom_status_t status)
 {
-    loop_t *const loop = line->loop;
-    reader_t *const reader = sensor->reader;
     failure_t failure = {
         .status = status,
         .model = sensor->model,
         .mode = sensor->mode,
-        .reader = reader,
+        .reader = sensor->reader,
         .port = &line->port,
         .counters = &sensor->counters,
         .line = &sensor->line,
-        .shared = loop->site.sensor_count > 1 ? sensor->name : NULL,
+        .shared = line->loop->site.sensor_count > 1 ? sensor->name : NULL,
         .noises = sensor->noises,
         .address = sensor->address,
         .others_answer = others_answer(line, sensor),
         .waits = line->state == LINE_WAITING,
-        .is_whole = is_first && !reader_has_more(reader) && has_probes(sensor),
-        .is_told = is_known,
     };
+    judge(line, sensor, &failure.evidence);
+    return failure;
+}
+
+/* is_first: of the outcomes of this attempt. is_known: the user knows it from another sensor on the line. */
+static void fail(line_t *line, sensor_t *sensor, fathom_status_t status, bool is_first, bool is_known)
+{
+    loop_t *const loop = line->loop;
+    const reader_t *const reader = sensor->reader;
+    failure_t failure = failure_of(line, sensor, status);
+    failure.is_whole = is_first && !reader_has_more(reader) && has_probes(sensor);
+    failure.is_told = is_known;
     const size_t kind = counters_failure_kind(status, reader);
     sensor->counters.failures[kind]++;
-    judge(line, sensor, &failure.evidence);
     sensor->has_failed = true;
     report_failure(loop, sensor, &failure, kind,
                    status == FATHOM_ERR_MALFORMED ? reader_facts(reader).refused_probe : 0);
     results_status(loop, sensor, status);
+}
+
+/* Good readings do not show that other frames are damaged. */
+static void remark_damage(const line_t *line, sensor_t *sensor)
+{
+    const unsigned share = counters_take_damage(&sensor->counters);
+    if (share == 0) return;
+    char text[2 * TEXT] = "";
+    failure_t failure = failure_of(line, sensor, FATHOM_OK);
+    FILE *const to = fmemopen(text, sizeof text - 1, "w");
+    if (to == NULL) return;
+    failure.damaged = (uint8_t)share;
+    advice_print_cause(to, &failure);
+    (void)fclose(to);
+    notify(line->loop, NOTICE_REMARK, sensor, text);
 }
 
 /* An attempt of a sensor that has pulses has ended. sample: NULL unless the status is FATHOM_OK. */
@@ -345,6 +367,7 @@ static void take_outcome(line_t *line, sensor_t *sensor, fathom_status_t status,
     const reader_counters_t counted = counters_take(&sensor->counters, &line->port, sensor->reader);
     sensor->noises = counted.noises;
     if (sensor->mode->has_pulses) pulses_add(&sensor->pulses, &counted, is_good ? sample : NULL);
+    if (!mode_is_asked(sensor->mode)) remark_damage(line, sensor);
     if (status != FATHOM_ERR_PORT && is_early(loop, sensor, status)) return;
     if (is_good && mode_is_asked(sensor->mode) && !sensor->answering)
         counters_time(&sensor->counters, fathom_elapsed_us(sample->time_us, sensor->listener->asked_us));

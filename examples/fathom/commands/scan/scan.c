@@ -423,6 +423,7 @@ static void print_result(const scan_t *scan)
 {
     const scan_finding_t *const sender = &scan->sender;
     char duration[DURATION_TEXT];
+    char line[LINE_TEXT];
     if (sender->kind != 0 && !scan->settings->wake) {
         print_why_nothing_was_sent(sender);
         return;
@@ -436,6 +437,13 @@ static void print_result(const scan_t *scan)
         (void)fputs(".\n", stderr);
     }
     print_others(scan);
+    if (scan->left_out_count == scan->settings->line_count) {
+        (void)fputs("fathom: nothing was asked, because the port has none of these settings. A scan with "
+                    "other settings "
+                    "or with another adapter can find a sensor.\n",
+                    stderr);
+        return;
+    }
     if (scan->terminations > 1)
         (void)fprintf(
             stderr,
@@ -444,8 +452,14 @@ static void print_result(const scan_t *scan)
             "--port %s termination off'.\n",
             scan->terminations, scan->terminated->name, scan->settings->port);
     if (scan->sensors == 0) print_nothing(scan);
-    (void)fprintf(stderr, "fathom: sensors found: %" PRIu32 ", after %s\n", scan->sensors,
+    (void)fprintf(stderr, "fathom: sensors found: %" PRIu32 ", after %s", scan->sensors,
                   duration_text(scan_now_us(scan) - scan->progress.start_us, duration));
+    for (uint8_t i = 0, listed = 0; i != scan->settings->line_count; i++)
+        if (scan->left_out[i])
+            (void)fprintf(stderr, "%s%s",
+                          listed++ == 0 ? ". Not asked, since the port does not have them: " : ", ",
+                          line_text(&scan->settings->lines[i], line));
+    (void)fputs("\n", stderr);
 }
 
 /* ---- the command ---- */

@@ -76,6 +76,8 @@ struct scan {
     uint8_t outside;                     /* an address beyond the plan that sent a frame; 0: none */
     uint32_t
         not_asked; /* addresses, counted at each line setting: the line was busy, or another master asked them */
+    bool left_out[SCAN_LINES]; /* line settings that the port does not have */
+    uint8_t left_out_count;
     bool has_other_master; /* another master asked one of these */
 
     /* At the present line setting. NULL: the scan listens. */
