@@ -160,10 +160,10 @@ static void listen(publisher_t *publisher, uint64_t now)
         if (!publisher->is_deaf_reported)
             (void)fprintf(stderr,
                           "fathom: broker %s port %u: it does not send back what this client published, so "
-                          "messages of earlier sensors stay there. Let the user read %s/%s/# and %s/#.\n",
+                          "messages of earlier sensors stay there. Let the user read %s/%s/# and the "
+                          "discovery messages.\n",
                           publisher->settings->broker.host, publisher->settings->broker.port,
-                          publisher->settings->prefix, publisher->settings->site,
-                          publisher->settings->discovery);
+                          publisher->settings->prefix, publisher->settings->site);
         publisher->is_deaf_reported = true;
     }
     if (publisher->is_subscribed && now - publisher->greeted_us >= LISTEN_US) subscribe(publisher, false);
