@@ -434,11 +434,14 @@ static bool set_names(const site_t *site, const sensor_word_t *words)
     for (size_t i = 0; i != site->sensor_count; i++)
         for (size_t j = 0; j != i; j++) {
             const sensor_t *const sensor = sensors[i];
-            const bool is_of_file = words[i].origin.file != NULL;
             if (strcmp(sensors[j]->name, sensor->name) != 0) continue;
-            return reject(&words[i].origin, "two sensors have the name %s. %s%s.", sensor->name,
-                          is_of_file ? "Change name: of one of them" : "Give each its own name, such as one=",
-                          is_of_file ? "" : sensor->model->name);
+            if (words[i].origin.file != NULL)
+                return reject(&words[i].origin,
+                              "two sensors have the name %s, in line %u too. Change name: of one of them.",
+                              sensor->name, words[j].origin.line);
+            return reject(&words[i].origin,
+                          "two sensors have the name %s. Give each its own name, such as one=%s.",
+                          sensor->name, sensor->model->name);
         }
     return true;
 }

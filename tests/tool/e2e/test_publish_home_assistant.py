@@ -1,19 +1,18 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Home Assistant's own schemas and templates take each discovery payload of fathom publish, and the states of its entities.
-home_assistant.txt pins the packages, which pip brings from PyPI into FATHOM_PACKAGES, once. Exit status 77: pip cannot."""
+home_assistant.txt pins the packages, which pip brings from PyPI into the build folder, once. Exit status 77: pip cannot."""
 import glob
 import json
 import os
 import subprocess
 import sys
-import tempfile
 import zipfile
 
 import e2e
 import mqtt
 
-PACKAGES = os.environ.get('FATHOM_PACKAGES') or os.path.join(tempfile.gettempdir(), 'fathom-home-assistant')
+PACKAGES = os.path.join(os.environ.get('FATHOM_BUILD') or os.path.join(e2e.ROOT, 'build'), 'tests', 'tool', 'home_assistant')
 LEVEL = 'level: {mounting: 9000, height: 9000, capacity: 1}'
 ALARM = 'alarm: {when: near<1600, unknown: on, no-response: off}'
 # Each mode, of which those of the bus respond. The others have no port: they are found all the same.

@@ -250,7 +250,7 @@ const command_t publish_command = {
     .summary = "Publish the readings of a site to an MQTT broker",
     .usage = "FILE [OPTIONS]",
     .about = "FILE is a YAML file with the broker, the lines and their sensors. The command\n"
-             "runs until a signal ends it. It writes to no sensor, and subscribes to nothing.\n"
+             "runs until a signal ends it. It writes to no sensor, and obeys no message.\n"
              "SIGHUP reads FILE again: lines that have not changed are read on.\n",
     .tables = tables,
     .common = "check",
