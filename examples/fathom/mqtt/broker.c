@@ -156,14 +156,14 @@ static short socket_events(const fathom_loop_source_t *source)
     return mosquitto_want_write(((const broker_t *)source)->mosq) ? POLLIN | POLLOUT : POLLIN;
 }
 
-/* Reads everything that was received, since the loop reports each event once. */
-static void read_all(broker_t *broker)
+/* Reads up to READS packets. The loop reports each event once, so broker_tick() has the rest read. */
+static void read_next(broker_t *broker)
 {
-    bool is_all = false;
-    for (unsigned turn = 0; turn != READS && !is_all && broker->phase != BROKER_LOST; turn++) {
+    broker->has_more = true;
+    for (unsigned turn = 0; turn != READS && broker->has_more && broker->phase != BROKER_LOST; turn++) {
         errno = 0;
         const int result = mosquitto_loop_read(broker->mosq, 1);
-        is_all = errno == EAGAIN || errno == EWOULDBLOCK;
+        broker->has_more = errno != EAGAIN && errno != EWOULDBLOCK;
         (void)check(broker, result, errno);
     }
 }
@@ -171,7 +171,7 @@ static void read_all(broker_t *broker)
 static bool poll_socket(fathom_loop_source_t *source)
 {
     broker_t *const broker = (broker_t *)source;
-    if (source->is_readable) read_all(broker);
+    if (source->is_readable) read_next(broker);
     if (broker->phase != BROKER_LOST && mosquitto_want_write(broker->mosq)) {
         const int result = mosquitto_loop_write(broker->mosq, 1);
         (void)check(broker, result, errno);
@@ -388,6 +388,7 @@ uint32_t broker_tick(broker_t *broker)
     if (broker->phase == BROKER_GREETING && now > broker->until_us)
         lose(broker, "it accepts the connection and does not respond; is it an MQTT broker?");
     if (broker->phase == BROKER_ACCEPTED) start_sending(broker);
+    if (broker->phase == BROKER_READY && broker->has_more) fathom_loop_wake(&broker->source);
     if (broker->phase == BROKER_READY) {
         const int result = mosquitto_loop_misc(broker->mosq); /* the keep-alive */
         (void)check(broker, result, errno);

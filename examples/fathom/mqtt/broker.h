@@ -62,6 +62,7 @@ typedef struct {
     uint32_t greetings;  /* how often the broker accepted the client */
     broker_sent_t *sent; /* the oldest first */
     unsigned sent_count;
+    bool has_more;              /* to read */
     bool has_changed;           /* the settings: a new client is needed */
     const char *tls_reason;     /* why the broker's certificate is not accepted; NULL: unknown */
     char reason[BROKER_TEXT];   /* why the broker is away, */

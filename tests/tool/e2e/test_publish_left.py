@@ -7,6 +7,7 @@ import os
 import random
 import shutil
 import signal
+import socket
 import tempfile
 
 import e2e
@@ -169,6 +170,29 @@ class Left(Case):
                 return found
             self.publisher.has_ended(0.2)
         return self.assertEqual(sorted(found), sorted(topics | set(FOREIGN)))
+
+    def test_thousands_of_messages_of_others_hide_none(self):
+        self.broker()
+        self.publisher = self.begin(TANK)
+        self.becomes(SITE | TANK_OWN | TANK_HA)
+        self.publisher.end()
+        with socket.create_connection(('127.0.0.1', self.number)) as other:
+            other.sendall(b'\x10\x0d\0\x04MQTT\x04\x02\0\0\0\x01o')  # MQTT 3.1.1, 3.1
+            for number in range(3000):
+                text = f'homeassistant/sensor/{number:04}/config{{"name":"x","state_topic":"door/{number:0400}"}}'.encode()
+                length = len(text) + 2
+                other.sendall(bytes([0x31, length & 127 | 128, length >> 7, 0, 32]) + text)  # retained: 3.3
+            other.sendall(b'\xe0\0')
+            self.assertEqual(other.recv(4), b'\x20\x02\0\0')
+            self.assertEqual(other.recv(1), b'')  # the broker has read all of it
+        self.publisher = self.begin(GATE)
+        late = self.subscribe()
+        self.wait_for(late, 'gate/availability', lambda one: one.payload == 'online')
+        self.wait_for(late, 'mill/status', lambda one: one.payload == 'online')
+        again = self.subscribe('fathom/mill/tank/#', 'homeassistant/sensor/fathom_mill_tank_distance/config',
+                               'homeassistant/sensor/2999/config')
+        self.wait_for(again, '2999/config')
+        self.assertEqual([one.topic for one in self.messages(again)], ['homeassistant/sensor/2999/config'])
 
     def test_the_ids_of_an_earlier_version_are_deleted_before_the_new_ones_come(self):
         """Home Assistant gives the new entity the name of the old one only if that is gone."""
