@@ -486,8 +486,16 @@ void publisher_change(publisher_t *publisher, const site_t *site, bool has_other
     if (has_other_broker) broker_change(&publisher->broker);
 }
 
+static bool has_available(const publisher_t *publisher)
+{
+    for (size_t i = 0; i != publisher->sensor_count; i++)
+        if (publisher->sensors[i].presence == SENSOR_AVAILABLE) return true;
+    return false;
+}
+
 uint32_t publisher_tick(publisher_t *publisher)
 {
+    if (publisher->broker.phase != BROKER_READY) publisher->broker.yields = !has_available(publisher);
     const uint32_t broker_us = broker_tick(&publisher->broker);
     const uint64_t now = now_us(publisher);
     if (publisher->greetings != publisher->broker.greetings) greet(publisher, now);
