@@ -416,6 +416,15 @@ FINDS(a_rate_that_the_port_does_not_have_is_left_out, "--baud 9600,230400,19200"
       "fathom: this port does not have 230400 8E1, so the scan leaves it out.\n", HPS167S(.address = 1),
       scans.refused_baud = 230400)
 
+TEST(a_port_that_does_not_have_the_settings_of_a_sensor_is_named_as_the_cause)
+{
+    A16(.address = 1);
+    scans.refused_baud = 19200;
+    assert_says(tool_run(&bench.tool, "read a16:1:modbus hps167s:7 --port line --count 1"),
+                ": the port does not support this, and nothing was sent. Choose other line settings or "
+                "another adapter");
+}
+
 FINDS(the_result_names_the_settings_that_were_left_out, "--baud 9600,230400,57600", "",
       ". Not asked, since the port does not have them: 230400 8E1\n", scans.refused_baud = 230400)
 
@@ -586,7 +595,7 @@ TEST(a_port_that_fails_ends_the_scan)
     scans.is_broken = true;
     const tool_run_t *run = scan_finds("", "");
     assert_int_equal(run->status, 1);
-    assert_says(run, "the port did not send the request. Check the adapter");
+    assert_says(run, "the port did not send the request in time. Check the adapter");
     bench.tool.ports = &port;
     bench.tool.port_count = 1;
     run = scan("");

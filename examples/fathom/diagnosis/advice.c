@@ -189,7 +189,8 @@ static const row_t causes[] = {
     {PORT, "lost tcp", "{port-error}", "Start again[reads:. With --reconnect, fathom connects again]"},
     {PORT, "lost", "{port-error}",
      "Connect it again and start again[reads:. With --reconnect, fathom waits for it]"},
-    {PORT, "", "{path}: the port did not send the request", "Check the adapter"},
+    {PORT, "", "{path}: the port did not send the request in time",
+     "Check the adapter, and whether the computer was asleep or too busy"},
     {UNSUPPORTED, "", "the port does not support this, and nothing was sent",
      "Choose other line settings or another adapter"},
     {CANCELLED, "", "the command ended before the response arrived", NULL},
@@ -221,12 +222,12 @@ static const row_t causes[] = {
      "Check for a loose wire or a worn contact, that something pulls the input to one side (bias=up, "
      "bias=down or a resistor), and that this is a line number of the chip (gpioinfo lists them)"},
 
-    {NO_RESPONSE, "triggered", "nothing followed the trigger",
+    {NO_RESPONSE | CHECKSUM, "triggered bytes", "the bytes after the trigger form no frame",
+     "Check {settings}, and look for noise" UNSEEN},
+    {NO_RESPONSE | CHECKSUM, "triggered", "nothing followed the trigger",
      "Check the supply, the wires from the adapter's TX (or the line trigger=) to the sensor's RX and back, "
      "that the adapter can send a break, and that the sensor is the UART controlled variant (if not: --mode "
      "auto or --mode modbus)" UNSEEN},
-    {CHECKSUM, "triggered", "the bytes after the trigger form no frame",
-     "Check {settings}, and look for noise" UNSEEN},
 
     {NO_RESPONSE, "asked late", "the response arrived after the time-out[took: (it took {took} ms)]",
      "Try a longer --timeout[took:, such as --timeout {timeout}]"},
