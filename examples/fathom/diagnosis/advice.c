@@ -24,7 +24,7 @@ static bool is_only_echo(const evidence_t *heard)
            heard->masters == 0;
 }
 
-/* Automatic frames of another model were received, or of any if the sensor is asked. */
+/* Returns true if automatic frames of another model were received, or of any model in a mode with requests. */
 static bool is_stream(const failure_t *failure)
 {
     const bool is_a05 = failure->evidence.streamed_a05 != 0;
@@ -42,7 +42,7 @@ static bool is_crowded(const failure_t *failure)
            failure->model->may_send_unasked && failure->evidence.own >= LEAST;
 }
 
-/* Returns a number that is known of a failure, by its name. 0: it is not so. */
+/* Returns the fact of a failure with this name, a number; 0: it is not true. */
 static uint64_t fact(const failure_t *failure, const char *name, size_t length)
 {
     const reader_facts_t facts = reader_facts(failure->reader);
@@ -117,7 +117,7 @@ static uint64_t fact(const failure_t *failure, const char *name, size_t length)
         {"only-echo", is_only_echo(heard)},
         {"old", line[FATHOM_LINE_OLD_BYTES]}, /* of unknown age */
         {"gateway", gateway_exception(failure)},
-        {"other-unit", port->gateway.has_other_unit}, /* responded instead of the unit that was asked */
+        {"other-unit", port->gateway.has_other_unit}, /* responded instead of the unit of the request */
         {"unit", port->gateway.other_unit},
         {"other-identifier", port->gateway.has_other_identifier},
         /* the refused response */

@@ -160,7 +160,7 @@ static void on_publish(struct mosquitto *mosq, void *ctx, int number)
     if (*at != NULL) forget(broker, at);
 }
 
-/* The payload has no end of its own. */
+/* The payload has no NUL at its end. */
 static void on_message(struct mosquitto *mosq, void *ctx, const struct mosquitto_message *message)
 {
     const broker_t *const broker = ctx;
@@ -236,7 +236,7 @@ static void disconnect(broker_t *broker)
 
 /* ---- messages ---- */
 
-/* False: libmosquitto does not accept the message. What it accepted it sends, and repeats, by itself. */
+/* Returns false if libmosquitto does not accept the message. Accepted messages it sends, and repeats, itself. */
 static bool submit(broker_t *broker, broker_sent_t *sent)
 {
     const int result = mosquitto_publish(broker->mosq, &sent->number, sent->topic, (int)strlen(sent->payload),

@@ -39,7 +39,7 @@ typedef enum {
     BROKER_GREETING,   /* connected; the broker must accept the client before until_us */
     BROKER_ACCEPTED,   /* the broker did */
     BROKER_READY,
-    BROKER_LOST /* `reason` says why; broker_tick() does the rest */
+    BROKER_LOST /* `reason` has the cause; broker_tick() does the rest */
 } broker_phase_t;
 
 /* An unacknowledged message, for another client. */

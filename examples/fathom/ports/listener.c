@@ -55,7 +55,7 @@ static void note(uint32_t *count, uint8_t *first, uint8_t address)
     if ((*count)++ == 0) *first = address;
 }
 
-/* Returns true if the length of a response of the unit that was asked fits the request. */
+/* Returns true if the length of a response of the unit of the request fits the request. */
 static bool is_fitting(const listener_t *listener, const uint8_t *response, uint8_t length)
 {
     enum { FUNCTION = 1, COUNT = 5, READ_REQUEST = 8, READ_RESPONSE = 5 };
