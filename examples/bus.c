@@ -62,7 +62,7 @@ static bool bus_init(bus_t *bus, const fathom_uart_t *uart, const fathom_clock_t
         .gap_us = 25000,
     };
     if (fathom_line_init(&bus->line, &bus->parts) != FATHOM_OK) return false;
-    /* With equal shares, the HPS-167S would get one request for each of the slow ones: twice a second. */
+    /* If the requests alternated, the HPS-167S would get one for each of the slow ones: twice a second. */
     fathom_fair_share(&bus->share, &bus->line);
     bus->modbus = fathom_modbus_client(&bus->line);
 
