@@ -82,7 +82,6 @@ static dev_t system_of(dev_t device, dev_t system) { return major(device) == PTY
 static void add_descriptor(int pid, int folder, const char *name)
 {
     struct statx status;
-    char text[TEXT];
     if (!isdigit((unsigned char)name[0]) ||
         statx(folder, name, AT_STATX_DONT_SYNC | AT_NO_AUTOMOUNT, STATX_TYPE, &status) != 0 ||
         !S_ISCHR(status.stx_mode) || status.stx_rdev_major == MEMORY_MAJOR)
@@ -93,6 +92,7 @@ static void add_descriptor(int pid, int folder, const char *name)
     use.system = system_of(use.device, makedev(status.stx_dev_major, status.stx_dev_minor));
     use.is_master = use.device == makedev(PTMX_MAJOR, PTMX_MINOR);
     if (use.is_master) {
+        char text[TEXT];
         (void)read_file(text, "%s/%d/fdinfo/%d", holder_proc, pid, use.fd);
         const char *const index = strstr(text, "tty-index:");
         if (index == NULL) return;
