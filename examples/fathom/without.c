@@ -5,10 +5,12 @@
 #include <string.h>
 
 #ifdef FATHOM_WITHOUT_LIBMODBUS
-#include "ports/port.h"
+#include "fathom/engine/line.h"
+#include "ports/connection.h"
 
 static fathom_status_t open_tcp(port_t *port)
 {
+    if (port->kind == PORT_RAW) return connection_open(port, &connection_raw);
     return port_fail(
         port, PORT_FAILED,
         "%s: this fathom was built without libmodbus, which tcp: needs; install libmodbus-dev and "
@@ -16,7 +18,13 @@ static fathom_status_t open_tcp(port_t *port)
         port->name);
 }
 
-const port_driver_t port_tcp = {.open = open_tcp};
+static void start_line(port_t *port) { port->parts.marks = fathom_line_refusals; }
+
+const port_driver_t port_tcp = {.open = open_tcp,
+                                .poll = connection_poll,
+                                .close = connection_close,
+                                .start_line = start_line,
+                                .due_us = connection_due_us};
 #endif
 
 #ifdef FATHOM_WITHOUT_GPIO

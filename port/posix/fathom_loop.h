@@ -114,7 +114,8 @@ typedef struct {
     /** @brief Closes an open source. NULL: there is nothing to close. */
     void (*close)(fathom_loop_source_t *source);
 
-    /** @brief Returns the descriptor of an open source. -1: only time wakes the source. */
+    /** @brief Returns the descriptor of an open source. Called after each poll. If the descriptor changes, its number has
+     * to change too. -1: only time wakes the source. */
     int (*fd)(const fathom_loop_source_t *source);
 
     /** @brief Returns the events of poll(2) to wait for. Called after each poll. NULL: POLLIN. */

@@ -175,7 +175,11 @@ void fathom_loop_turn(fathom_loop_source_t *source)
     /* Who reads without fathom_loop_uart has read all. */
     if (source->inner.read == NULL || !source->is_watched) source->is_readable = false;
     const short events = events_of(source);
-    if (events != source->events) {
+    if (source->kind->fd(source) != source->fd) {
+        if (source->is_watched)
+            (void)control(source, EPOLL_CTL_DEL); /* a closed one has left epoll already */
+        watch(source);
+    } else if (events != source->events) {
         source->events = events;
         if (source->is_watched) (void)control(source, EPOLL_CTL_MOD);
     }

@@ -122,6 +122,20 @@ TEST(where_a_short_read_has_brought_all_the_next_one_does_not_ask)
     }
 }
 
+/* As a connection has one: bytes may wait there since before the loop watched it. */
+TEST(another_descriptor_is_watched_and_read_at_once)
+{
+    add();
+    expect_read(8, 0, true);
+    expect_read(8, 0, false);
+    one.fd++;
+    fathom_loop_wake(&one.source);
+    fathom_loop_step(&fake.loop, 0);
+    assert_int_equal(one.source.fd, one.fd);
+    expect_read(8, 0, true);
+    expect_read(8, 0, false);
+}
+
 TEST(a_port_that_is_lost_or_closed_is_asked_and_says_so)
 {
     one.source.reads_all = true;

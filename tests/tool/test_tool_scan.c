@@ -552,7 +552,10 @@ TEST(an_address_has_150_ms_on_the_line_of_a16_and_a05_and_100_ms_elsewhere)
 REFUSES(a_scan_needs_a_serial_port, "scan", {"", "--port is missing"},
         {"--port /nowhere a16", "takes options only, not 'a16'"},
         {"--port tcp:127.0.0.1",
-         "scan needs a serial port. The rates behind 'tcp:127.0.0.1' are those of the gateway."},
+         "scan needs a serial port, or a converter that passes raw bytes (rtu-tcp:), not 'tcp:127.0.0.1'."},
+        {"--port rtu-tcp:127.0.0.1:1 --baud 9600",
+         "rtu-tcp:127.0.0.1:1 has no line settings: the converter has them. Leave --baud, --parity and "
+         "--stop-bits out."},
         {"--port /nowhere --port /elsewhere", "--port is given twice"})
 
 #define ADDRESSES "It takes an address from 1 to 254, a range such as 1-32, or 0."

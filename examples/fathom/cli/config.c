@@ -486,7 +486,8 @@ static bool read_line(config_t *config, const yaml_node_t *map)
     const option_t *const port_keys = port_kind(port) == PORT_PINS ? chip_keys : serial_keys;
     const option_table_t tables[] = {
         {line_keys, 0},
-        {port_kind(port) == PORT_GATEWAY ? none : port_keys, offsetof(line_keys_t, keys)},
+        {port_kind(port) == PORT_GATEWAY || port_kind(port) == PORT_RAW ? none : port_keys,
+         offsetof(line_keys_t, keys)},
         {NULL, 0}};
     line_keys_t line = {.port = NULL};
     option_given_t given = {{0}};

@@ -13,7 +13,7 @@
     HAS(sensor_defaults_t, keys.has[key])
 
 const option_t port_rows[] = {
-    {"port", "PORT", "Use PORT: a serial port, tcp:HOST[:PORT], or a GPIO chip (default: $FATHOM_PORT)",
+    {"port", "PORT", "Use PORT: serial, [rtu-]tcp:HOST:PORT or a GPIO chip (default: $FATHOM_PORT)",
      KIND_TEXT, GROUP_LINE, AT(sensor_defaults_t, path), .is_once = true, .is_path = true},
     {"baud", "N", "Set the baud rate (default: factory setting)", KIND_ONE_OF, GROUP_LINE,
      .words = PORT_BAUDS, KEY(KEY_BAUD)},
@@ -23,6 +23,8 @@ const option_t port_rows[] = {
      .max = 2, KEY(KEY_STOP_BITS)},
     {"echo", "E", "Expect the adapter's echo: auto, on or off", KIND_CHOICE, GROUP_LINE,
      .words = "auto off on", KEY(KEY_ECHO), .fits = SUITS_REQUESTS},
+    {"pieces", .help = "Accept responses in pieces: a network or Bluetooth port", .group = GROUP_LINE,
+     KEY(KEY_PIECES)},
     {"rs485", .help = "Let the kernel's driver switch the transceiver", .group = GROUP_LINE, KEY(KEY_RS485)},
     {.name = NULL},
 };

@@ -70,6 +70,9 @@ bool sensors_add(site_t *site, const sensor_defaults_t *defaults, const sensor_w
 
 /* ---- rows ---- */
 
+/* False: options of a serial port were given for a port over TCP, and the user knows it. */
+bool line_options_suit(const port_keys_t *options, const char *path, const origin_t *origin);
+
 /* Options that several commands have, and keys of a configuration file. */
 
 /* Capabilities of a mode beside READER_TAKES_...; an option that needs one of these has no effect without it, which is

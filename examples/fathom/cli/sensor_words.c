@@ -34,6 +34,7 @@ const option_t serial_keys[] = {
     {"rs485", "on|off", "Transceiver switched by the kernel's driver", KIND_CHOICE, .words = "off on",
      KEY(KEY_RS485)},
     {"echo", "E", "Echo of the adapter", KIND_CHOICE, .words = "auto off on", KEY(KEY_ECHO)},
+    {"pieces", "on|off", "Responses in pieces, with pauses", KIND_CHOICE, .words = "off on", KEY(KEY_PIECES)},
     {"trigger", "CHIP/LINE", "GPIO line to the sensor's RX, instead of a break", KIND_CUSTOM,
      .parse = parse_chip_line, .takes = "a chip and a line, such as gpiochip0/17", KEY(KEY_TRIGGER)},
     {.name = NULL},
@@ -144,7 +145,7 @@ static bool parse_port(sensor_word_t *sensor, char *port)
         return reject(&its, "%s names no port. Write the port behind @, such as @/dev/ttyUSB0.",
                       sensor->word);
     if (comma == NULL) return true;
-    if (port_kind(port) == PORT_GATEWAY)
+    if (port_kind(port) == PORT_GATEWAY || port_kind(port) == PORT_RAW)
         return reject(&its, "%s has keys, but a port over TCP has none. Set the line in the gateway.",
                       sensor->word);
     its.within = sensor->word;
@@ -270,13 +271,19 @@ static bool suits_port(const sensor_t *sensor, const origin_t *origin)
     const model_mode_t *const mode = sensor->mode;
     const char *const model = sensor->model->name;
     char example[PORT_EXAMPLE];
-    if (port_kind(port->path) == PORT_GATEWAY) {
+    if (port->kind == PORT_GATEWAY || port->kind == PORT_RAW) {
         tcp_address_t address;
         const char *const wrong = tcp_parse(port->path, &address);
         if (wrong != NULL) return reject(origin, "%s: %s.", port->path, wrong);
-        return mode->is_modbus ||
-               reject(origin, "%s in mode %s needs a serial port. Over TCP, use Modbus: %s:modbus.", model,
-                      mode->name, model);
+        if (port->kind == PORT_RAW && mode->is_triggered)
+            return reject(origin, "%s in mode %s needs a serial port, which can send a break.", model,
+                          mode->name);
+        return mode->is_modbus || (port->kind == PORT_RAW && mode->pins == 0) ||
+               reject(
+                   origin,
+                   "%s in mode %s needs a serial port. Over TCP, use Modbus: %s:modbus, or a converter that "
+                   "passes raw bytes: rtu-tcp:HOST:PORT.",
+                   model, mode->name, model);
     }
     const bool has_pins = pins_example(mode, "gpiochip0", example);
     if (port->kind != PORT_PINS && port->keys.has[KEY_TRIGGER] && (mode->may_pins & MODEL_PIN_TRIGGER) == 0)
@@ -306,11 +313,29 @@ static bool suit_pins(const port_options_t *port, const port_options_t *other, c
     return true;
 }
 
+bool line_options_suit(const port_keys_t *options, const char *path, const origin_t *origin)
+{
+    port_key_t key = 0;
+    if (port_kind(path) != PORT_GATEWAY && port_kind(path) != PORT_RAW) return true;
+    while (key != PORT_KEYS && !options->has[key]) key++;
+    return key == PORT_KEYS ||
+           reject(
+               origin,
+               "%s has no line settings: set the line in the gateway, and leave options of a serial port out "
+               "(--baud, --parity, --stop-bits, --rs485, --echo, --pieces).",
+               path);
+}
+
 /* Takes the keys and the options of each port. A line is opened at the settings of its slowest sensor. */
 static bool set_lines(const site_t *site, const sensor_defaults_t *defaults, const sensor_word_t *words)
 {
-    for (line_t *line = site->lines; line != NULL; line = line->next)
+    bool has_serial = false;
+    for (line_t *line = site->lines; line != NULL; line = line->next) {
         port_options_take(&line->settings, &defaults->keys);
+        if (line->settings.kind == PORT_SERIAL) has_serial = true;
+    }
+    if (!has_serial && !line_options_suit(&defaults->keys, site->lines->settings.path, &words[0].origin))
+        return false;
     for (size_t i = 0; i != site->sensor_count; i++) {
         sensor_t *const sensor = site->sensors[i];
         port_options_t *const port = sensor->port;
@@ -370,7 +395,7 @@ static bool set_sensor(sensor_t *sensor, const sensor_word_t *word, const sensor
     return true;
 }
 
-/* has_settings: each sensor is read at its own line settings; not so behind a gateway. */
+/* has_settings: each sensor is read at its own line settings; not so over TCP. */
 static bool suit_each_other(const sensor_t *one, const sensor_t *other, bool has_settings,
                             const origin_t *origin)
 {
@@ -403,7 +428,7 @@ static bool suits_line(const site_t *site, size_t i, const origin_t *origin)
                       model, sensor->mode->name, model, sensor->address);
     for (size_t j = 0; j != i; j++)
         if (site->sensors[j]->port == port &&
-            !suit_each_other(site->sensors[j], sensor, port_kind(port->path) != PORT_GATEWAY, origin))
+            !suit_each_other(site->sensors[j], sensor, port_has_settings(port->kind), origin))
             return false;
     return true;
 }

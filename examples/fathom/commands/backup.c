@@ -274,7 +274,7 @@ static bool restore(bool is_dry)
 {
     if (!backup_read(&session, &plan.unit)) return session_fail(&session, FATHOM_OK, "nothing was written.");
     plan.has_baud =
-        plan.is_new && session.port.kind == PORT_SERIAL; /* that of a gateway belongs to all sensors */
+        plan.is_new && port_has_settings(session.port.kind); /* that of a gateway belongs to all sensors */
     make_plan();
     print_plan();
     if (!session_flush()) return false; /* without the plan on stdout nothing is written */

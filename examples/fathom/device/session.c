@@ -16,7 +16,8 @@ void session_end_task(session_t *session)
 
 const char *session_line_text(const session_t *session, char text[LINE_TEXT])
 {
-    return session->port.kind == PORT_GATEWAY ? "Modbus TCP" : line_text(&session->sensor->line, text);
+    if (port_has_settings(session->port.kind)) return line_text(&session->sensor->line, text);
+    return port_has_bytes(session->port.kind) ? "RTU over TCP" : "Modbus TCP";
 }
 
 /* Prints why the last call failed and what to try. */
@@ -73,7 +74,7 @@ static bool start(session_t *session)
     settings.address = sensor->address;
     if (!reader_open(&sensor->reader, sensor->mode, &session->port, &settings))
         return session_fail(session, FATHOM_OK, "%s", reader_refusal(sensor->reader));
-    if (session->port.kind == PORT_SERIAL) reader_listen_unasked(sensor->reader);
+    if (port_has_bytes(session->port.kind)) reader_listen_unasked(sensor->reader);
     return true;
 }
 
@@ -95,7 +96,7 @@ bool session_open(session_t *session, const host_t *host)
         port_close(&session->port);
         return false;
     }
-    if (session->port.kind == PORT_SERIAL) port_listen(&session->port, PORT_LISTEN_US);
+    if (port_has_bytes(session->port.kind)) port_listen(&session->port, PORT_LISTEN_US);
     return true;
 }
 

@@ -38,7 +38,7 @@ static bool is_stream(const failure_t *failure)
 static bool is_crowded(const failure_t *failure)
 {
     enum { LEAST = 3 };
-    return failure->port->kind != PORT_GATEWAY && mode_is_asked(failure->mode) &&
+    return port_has_bytes(failure->port->kind) && mode_is_asked(failure->mode) &&
            failure->model->may_send_unasked && failure->evidence.own >= LEAST;
 }
 
@@ -65,6 +65,10 @@ static uint64_t fact(const failure_t *failure, const char *name, size_t length)
         {"pins", has_pins},                                                     /* lines of a GPIO chip */
         /* what is known */
         {"tcp", port->kind == PORT_GATEWAY},
+        {"converter", port->kind == PORT_RAW},
+        {"tty", port->kind == PORT_SERIAL},
+        {"network", port->connection != NULL},
+        {"connecting", port_due_us(port) != FATHOM_NO_DEADLINE},
         {"lost", port->error == PORT_LOST},
         {"waits", failure->waits}, /* for the lost port */
         {"ends", !failure->waits},
@@ -80,6 +84,8 @@ static uint64_t fact(const failure_t *failure, const char *name, size_t length)
         {"noises", failure->noises}, /* pulses that are too short */
         /* the sensor has responded in this run, so its settings are right */
         {"worked", counters->readings + counters->total.unit[UNIT_RESPONSES]},
+        {"unproven",
+         counters->readings + counters->total.unit[UNIT_RESPONSES] == 0 && !failure->others_answer},
         {"addressed", mode->has_address},
         {"address", failure->address},
         {"others", failure->others_answer}, /* on this line */
@@ -120,6 +126,11 @@ static uint64_t fact(const failure_t *failure, const char *name, size_t length)
         {"other-unit", port->gateway.has_other_unit}, /* responded instead of the unit of the request */
         {"unit", port->gateway.other_unit},
         {"other-identifier", port->gateway.has_other_identifier},
+        {"rtu", port->gateway.is_rtu},
+        {"closed", port->gateway.is_closed},
+        {"mbap", heard->is_mbap},
+        {"part", heard->part},
+        {"pieces", heard->pieces_us / 1000u},
         /* the refused response */
         {"unexpected", facts.is_unexpected}, /* it does not fit the request */
         {"refused", facts.refused_probe},    /* a value of it was refused */
@@ -186,9 +197,11 @@ static const row_t causes[] = {
     {PORT, "lost taken holder", TAKEN ". {holder} has it open", "{stop}" TAKEN_ADVICE},
     {PORT, "lost taken", TAKEN, "Stop this program ('sudo fuser -v {path}' may name it)" TAKEN_ADVICE},
     {PORT, "lost waits", "{port-error}", "Waiting until it is back"},
-    {PORT, "lost tcp", "{port-error}", "Start again[reads:. With --reconnect, fathom connects again]"},
+    {PORT, "lost network", "{port-error}", "Start again[reads:. With --reconnect, fathom connects again]"},
     {PORT, "lost", "{port-error}",
      "Connect it again and start again[reads:. With --reconnect, fathom waits for it]"},
+    {PORT, "connecting", "{path}: the far end closed the connection, and there is no new one after a second",
+     "Check the network and the far end"},
     {PORT, "", "{path}: the port did not send the request in time",
      "Check the adapter, and whether the computer was asleep or too busy"},
     {UNSUPPORTED, "", "the port does not support this, and nothing was sent",
@@ -231,6 +244,7 @@ static const row_t causes[] = {
 
     {NO_RESPONSE, "asked late", "the response arrived after the time-out[took: (it took {took} ms)]",
      "Try a longer --timeout[took:, such as --timeout {timeout}]"},
+    {NO_MATCH, "asked converter mbap", "the response has the header of Modbus TCP", "Use {modbus-tcp}"},
     {NO_MATCH, "asked headless",
      "the first bytes of the response are missing or damaged, and the others are right, so the settings are "
      "right: the "
@@ -278,8 +292,11 @@ static const row_t causes[] = {
     {NO_MATCH | MALFORMED, "asked crowded",
      "the sensor sends measurements without a request ({own} received), and a request has to fit between two "
      "of them",
-     "{delay}If an adapter delays bytes, run 'setserial {path} low_latency'. Else try again"},
+     "{delay}[tty:If an adapter delays bytes, run 'setserial {path} low_latency'. Else try][converter:Try] "
+     "again"},
 
+    {NO_RESPONSE, "asked closed", "the far end closed the connection before it responded",
+     "Try again. Some serve one program at a time, so check whether another one is connected"},
     {NO_RESPONSE, "asked gateway", "the gateway responds with exception {exception}",
      "Check {option}, and the line and the supply behind the gateway"},
     {NO_RESPONSE, "asked other-unit", "the server responds as unit {unit}, and not as unit {address}",
@@ -287,10 +304,14 @@ static const row_t causes[] = {
     {NO_RESPONSE, "asked other-identifier",
      "the server responds with another transaction identifier than that of the request",
      "Restart the gateway, and look for a newer firmware of it"},
+    {NO_RESPONSE, "asked rtu",
+     "the response is a frame of Modbus RTU without the header of Modbus TCP: the converter passes raw bytes",
+     "Use rtu-{path}, or switch the converter to Modbus TCP"},
     {NO_RESPONSE, "asked tcp bytes", "the response does not fit the request",
      "Check that the server speaks Modbus TCP"},
     {NO_RESPONSE, "asked tcp", "the connection is open, but nothing was received",
-     "Check {option} and the line and supply of the sensor, and try a --timeout longer than the gateway's"},
+     "Check {option} and the line and supply of the sensor, and try a --timeout longer than the gateway's"
+     "[unproven:. If the converter passes raw bytes, which is the factory setting of many, use rtu-{path}]"},
     {CHECKSUM, "asked tcp", "the response has a wrong length", "Check that the server speaks Modbus TCP"},
     {LINE_BUSY, "asked tcp", "the server sends without a pause",
      "Check that the server speaks Modbus TCP, and restart it"},
@@ -316,15 +337,19 @@ static const row_t causes[] = {
     {NO_RESPONSE, "asked others", "no byte was received, but other sensors on this line respond",
      "Check the power, the wires, the address and the settings of this sensor" UNSEEN},
     {NO_RESPONSE, "asked", "no byte was received",
-     "Check the power, whether A and B (or RX and TX) are swapped, {option}, and --baud and "
-     "--parity[not-scan:, or run 'fathom scan --port {path}']" UNSEEN},
+     "Check the power, whether A and B (or RX and TX) are swapped, {option}, and {rates}[not-scan:, or run "
+     "'fathom scan --port {path}'][converter:. If it speaks Modbus TCP, use {modbus-tcp}]" UNSEEN},
 
+    {CHECKSUM, "asked tty pieces", "the response came in pieces, {pieces} ms apart",
+     "Try --pieces, with which a response may arrive in pieces until its time-out"},
+    {CHECKSUM, "asked tty part", "the response broke off after {part} bytes",
+     "If the rest may come later, as over a network or Bluetooth, try --pieces. " DISTURBANCE},
     {CHECKSUM, "asked worked",
      "earlier responses were good, so the settings are right and the line is disturbed[damaged: ({damaged} "
      "of {attempts} attempts)]",
      DISTURBANCE UNSEEN},
     {CHECKSUM, "asked", "its checksum is wrong",
-     "Check --parity, the cable and its termination, and that no other sensor has this address" UNSEEN},
+     "Check {parity}, the cable and its termination, and that no other sensor has this address" UNSEEN},
 
     {LINE_BUSY, "asked own", "frames of this address fill the line", "Let the sensor send less often"},
     {LINE_BUSY, "asked worked", "the line was never silent", DISTURBANCE},
@@ -405,6 +430,13 @@ static void print_place(FILE *to, const failure_t *failure)
     }
 }
 
+/* Where the line settings are chosen. */
+static const char *rates_of(const failure_t *failure)
+{
+    return failure->port->kind == PORT_RAW ? "the baud rate and parity of the converter"
+                                           : "--baud and --parity";
+}
+
 /* "--baud and --parity (now 9600 8N1; ...)" */
 static void print_settings(FILE *to, const failure_t *failure)
 {
@@ -412,8 +444,10 @@ static void print_settings(FILE *to, const failure_t *failure)
     const fathom_line_settings_t *const factory = &failure->model->line;
     const uint64_t *const port = failure->counters->attempt.port;
     char text[LINE_TEXT];
-    (void)fputs("--baud and --parity", to);
-    if (now == NULL) return;
+    (void)fputs(rates_of(failure), to);
+    if (port_has_bytes(failure->port->kind) && !port_has_settings(failure->port->kind) && factory->baud != 0)
+        (void)fprintf(to, " (with factory settings %s)", line_text(factory, text));
+    if (now == NULL || !port_has_settings(failure->port->kind)) return;
     (void)fprintf(to, " (now %s", line_text(now, text));
     if (factory->baud != 0 && (now->baud != factory->baud || now->parity != factory->parity ||
                                now->stop_bits != factory->stop_bits))
@@ -484,6 +518,9 @@ static void print_word(FILE *to, const char *name, const failure_t *failure)
         {"path", failure->port->name, NULL},
         {"holder", failure->holder.who, NULL},
         {"stop", failure->holder.stop, NULL},
+        {"modbus-tcp", strstr(failure->port->name, "tcp:"), NULL},
+        {"rates", rates_of(failure), NULL},
+        {"parity", failure->port->kind == PORT_RAW ? "the parity of the converter" : "--parity", NULL},
         {"protocol", failure->mode->protocol, NULL},
         {"option", option, NULL},
         {"streamed", failure->evidence.streamed_a05 != 0 ? "a05" : "a16", NULL},

@@ -9,8 +9,44 @@
 #include "fathom/codec/modbus_rtu.h"
 #include "fathom/hal.h"
 
+/* Returns the bytes of a response that broke off at the end of the window: behind an echo, of the unit and the function of
+ * the request. */
+static uint16_t part_of(const listener_t *listener)
+{
+    const uint8_t *bytes = listener->window;
+    uint16_t have = listener->have;
+    const uint8_t request = listener->request_length;
+    if (request != 0 && have >= request && memcmp(bytes, listener->request, request) == 0) {
+        bytes += request;
+        have = (uint16_t)(have - request);
+    }
+    if (have < 2 || have > sizeof listener->piece || bytes[0] != listener->request[0] ||
+        (bytes[1] & 0x7F) != listener->request[1])
+        return 0;
+    return fathom_modbus_rtu_response_length(bytes, (uint8_t)have) > have ? have : 0;
+}
+
+/* Is this the rest of the response that broke off? */
+static void take_piece(listener_t *listener, const uint8_t *bytes, uint32_t count, uint32_t now_us)
+{
+    uint8_t *const piece = listener->piece;
+    const uint8_t have = listener->piece_length;
+    if (have == 0) return;
+    if (count > sizeof listener->piece - have) count = (uint32_t)sizeof listener->piece - have;
+    memcpy(piece + have, bytes, count);
+    listener->piece_length = (uint8_t)(have + count);
+    const uint8_t length = fathom_modbus_rtu_response_length(piece, listener->piece_length);
+    if (length > listener->piece_length) return;
+    listener->piece_length = 0;
+    if (length != 0 && fathom_crc16(piece, length) == 0)
+        listener->pieces_us = fathom_elapsed_us(now_us, listener->last_us);
+}
+
 void listener_forget(listener_t *listener)
 {
+    listener->piece_length = (uint8_t)part_of(listener);
+    memcpy(listener->piece, listener->window + listener->have - listener->piece_length,
+           listener->piece_length);
     listener->have = 0;
     listener->bytes = 0;
     listener->slowest_us = 0;
@@ -20,6 +56,7 @@ void listener_sent(listener_t *listener, const uint8_t *request, uint8_t length,
 {
     memcpy(listener->request, request, length);
     listener->request_length = length;
+    listener->piece_length = 0;
     listener->asked_us = now_us;
     listener->requests++;
 }
@@ -29,6 +66,8 @@ void listener_received(listener_t *listener, const uint8_t *bytes, uint32_t coun
     const uint32_t space = (uint32_t)sizeof listener->window - listener->have;
     const uint32_t kept = count < space ? count : space;
     const uint32_t took_us = fathom_elapsed_us(now_us, listener->asked_us);
+    take_piece(listener, bytes, count, now_us);
+    listener->last_us = now_us;
     memcpy(listener->window + listener->have, bytes, kept);
     listener->have = (uint16_t)(listener->have + kept);
     listener->bytes += count;
@@ -170,11 +209,26 @@ static bool has_tail(const listener_t *listener)
     return false;
 }
 
+/* Returns true if the window begins with a header of Modbus TCP: a transaction, protocol 0 or that of the request (the
+ * server took RTU for a header), and the length of what follows. */
+static bool is_mbap(const listener_t *listener)
+{
+    enum { PROTOCOL = 2, LENGTH = 4, HEADER = 6, LEAST = 3 };
+    const uint8_t *const bytes = listener->window;
+    const unsigned length = (unsigned)bytes[LENGTH] << 8 | bytes[LENGTH + 1];
+    if (listener->have < HEADER + LEAST || length < LEAST || listener->have != HEADER + length) return false;
+    return (bytes[PROTOCOL] == 0 && bytes[PROTOCOL + 1] == 0) ||
+           memcmp(bytes, listener->request, LENGTH) == 0;
+}
+
 void listener_judge(const listener_t *listener, uint8_t address, evidence_t *evidence)
 {
     memset(evidence, 0, sizeof *evidence);
     evidence->bytes = listener->bytes;
     evidence->slowest_us = listener->slowest_us;
+    evidence->is_mbap = is_mbap(listener);
+    evidence->part = part_of(listener);
+    evidence->pieces_us = listener->pieces_us;
     for (uint16_t at = 0; at < listener->have;) {
         const uint16_t length = account(listener, at, address, evidence);
         if (length == 0) evidence->rest++;

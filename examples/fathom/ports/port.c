@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/sysmacros.h>
 
 #include "output/words.h"
 #include "ports/holder.h"
@@ -15,6 +16,7 @@
 /* ---- paths ---- */
 
 static const char tcp_prefix[] = "tcp:";
+static const char raw_prefix[] = "rtu-tcp:";
 
 const char *port_last_part(const char *path)
 {
@@ -25,8 +27,13 @@ const char *port_last_part(const char *path)
 port_kind_t port_kind(const char *path)
 {
     if (strncmp(path, tcp_prefix, strlen(tcp_prefix)) == 0) return PORT_GATEWAY;
+    if (strncmp(path, raw_prefix, strlen(raw_prefix)) == 0) return PORT_RAW;
     return strncmp(port_last_part(path), "gpiochip", strlen("gpiochip")) == 0 ? PORT_PINS : PORT_SERIAL;
 }
+
+bool port_has_settings(port_kind_t kind) { return kind == PORT_SERIAL; }
+
+bool port_has_bytes(port_kind_t kind) { return kind == PORT_SERIAL || kind == PORT_RAW; }
 
 bool port_is_same(const char *one, const char *other)
 {
@@ -40,7 +47,8 @@ bool port_is_same(const char *one, const char *other)
 const char *tcp_parse(const char *path, tcp_address_t *address)
 {
     const char *const usual_port = "502"; /* MODBUS Messaging on TCP/IP V1.0b, 4.2.1 */
-    const char *host = path + strlen(tcp_prefix);
+    const bool is_raw = port_kind(path) == PORT_RAW;
+    const char *host = path + strlen(is_raw ? raw_prefix : tcp_prefix);
     const char *const colon = strchr(host, ':');
     const char *end = colon != NULL ? colon : host + strlen(host);
     const char *service = end;
@@ -55,6 +63,9 @@ const char *tcp_parse(const char *path, tcp_address_t *address)
     if (end == host) return "the host is missing, such as in tcp:192.168.1.20";
     if ((size_t)(end - host) >= sizeof address->host) return "the host's name is too long";
     (void)snprintf(address->host, sizeof address->host, "%.*s", (int)(end - host), host);
+    if (*service == '\0' && is_raw)
+        return "the port is missing, such as in rtu-tcp:192.168.1.20:8899. Each make of converter has "
+               "another one";
     if (*service == '\0')
         service = usual_port;
     else if (*service++ != ':' || !number_parse(service, 1, UINT16_MAX, &number) ||
@@ -206,6 +217,33 @@ static fathom_status_t set_up_serial(port_t *port)
     return has_trigger(port) ? open_pins(port, chip) : FATHOM_OK;
 }
 
+/* A tty of Bluetooth: Documentation/admin-guide/devices.txt of Linux. */
+static bool is_rfcomm(const port_t *port)
+{
+    enum { RFCOMM_MAJOR = 216 };
+    struct stat status;
+    return stat(port->name, &status) == 0 && S_ISCHR(status.st_mode) && major(status.st_rdev) == RFCOMM_MAJOR;
+}
+
+bool port_has_pieces(const port_t *port)
+{
+    return !port->has_wire || port->options.keys.value[KEY_PIECES] != 0 || is_rfcomm(port);
+}
+
+uint16_t port_stream_gap_us(const port_t *port)
+{
+    return port_has_pieces(port) ? PORT_PIECES_GAP_US : PORT_STREAM_GAP_US;
+}
+
+void port_set_line(port_t *port)
+{
+    port->parts.silence_us = fathom_silence_us(&port->options.line);
+    port->parts.gap_us = port_has_pieces(port) ? FATHOM_LINE_NO_GAP : PORT_RESPONSE_GAP_US;
+    port->parts.echo = (uint8_t)port->options.keys.value[KEY_ECHO];
+    port->parts.senders = &fathom_line_senders;
+    port->parts.masters = &fathom_line_masters;
+}
+
 static fathom_status_t open_serial(port_t *port)
 {
     const port_options_t *const options = &port->options;
@@ -223,11 +261,7 @@ static fathom_status_t open_serial(port_t *port)
     }
     port->has_wire = !port->serial.is_pty;
     port->counts_errors = fathom_posix_line_errors(&port->serial, &port->errors) == FATHOM_POSIX_OK;
-    port->parts.silence_us = fathom_silence_us(&options->line);
-    port->parts.gap_us = PORT_RESPONSE_GAP_US;
-    port->parts.echo = (uint8_t)options->keys.value[KEY_ECHO];
-    port->parts.senders = &fathom_line_senders;
-    port->parts.masters = &fathom_line_masters;
+    port_set_line(port);
     return FATHOM_OK;
 }
 
@@ -248,7 +282,8 @@ static int listen_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *
     const int n = port->inner.read(port->inner.ctx, bytes, capacity, rx);
     if (n < 0) (void)port->driver->poll(port);
     if (port->driver->note_read != NULL) port->driver->note_read(port);
-    if (n > 0) listener_received(listener, bytes, (uint32_t)n, port->clock.now_us(port));
+    if (n > 0 && (rx->flags & FATHOM_RX_NO_RESPONSE) == 0)
+        listener_received(listener, bytes, (uint32_t)n, port->clock.now_us(port));
     return n;
 }
 
@@ -350,7 +385,7 @@ fathom_status_t port_open(port_t *port, const host_t *host, const port_options_t
     static const port_driver_t serial = {.open = open_serial, .poll = poll_serial, .close = close_serial};
     static const port_driver_t chip = {.open = open_chip, .poll = poll_pins, .close = close_pins};
     static const port_driver_t *const drivers[] = {
-        [PORT_SERIAL] = &serial, [PORT_GATEWAY] = &port_tcp, [PORT_PINS] = &chip};
+        [PORT_SERIAL] = &serial, [PORT_GATEWAY] = &port_tcp, [PORT_RAW] = &port_tcp, [PORT_PINS] = &chip};
     if (port->options.path == NULL || strcmp(port->options.path, options->path) != 0)
         memset(&port->adapter, 0, sizeof port->adapter);
     port->host = host;
@@ -407,6 +442,11 @@ short port_events(const port_t *port)
     return port->kind == PORT_SERIAL ? fathom_posix_poll_events(&port->serial) : port->events;
 }
 
+uint32_t port_due_us(const port_t *port)
+{
+    return port->driver->due_us != NULL ? port->driver->due_us(port) : FATHOM_NO_DEADLINE;
+}
+
 /* ---- waiting ---- */
 
 static bool has_ended(const port_t *port)
@@ -418,7 +458,9 @@ static bool has_ended(const port_t *port)
 fathom_status_t port_wait(port_t *port, uint32_t max_us)
 {
     const host_t *const host = port->host;
+    const uint32_t due_us = port_due_us(port);
     if (port->error == PORT_LOST) return FATHOM_ERR_PORT;
+    if (due_us < max_us) max_us = due_us;
     if (!has_ended(port))
         host->wait(host->ctx, port_fd(port), port_events(port), max_us, port->watches_output);
     return has_ended(port) ? FATHOM_ERR_CANCELLED : FATHOM_OK; /* so that no request starts after a signal */

@@ -18,18 +18,25 @@
 typedef enum {
     PORT_SERIAL,
     PORT_GATEWAY, /* tcp:HOST[:PORT], a Modbus TCP server */
+    PORT_RAW,     /* rtu-tcp:HOST:PORT, a converter that passes the bytes of a serial line */
     PORT_PINS     /* lines of a GPIO chip: the last part of the path begins with gpiochip */
 } port_kind_t;
 
 port_kind_t port_kind(const char *path);
 
-/* The parts of tcp:HOST[:PORT]. An IPv6 address stands in brackets. */
+/* Returns true if a port of this kind has line settings: else the gateway or the converter has them. */
+bool port_has_settings(port_kind_t kind);
+
+/* Returns true if a port of this kind leads to a line, all bytes of which it passes on. */
+bool port_has_bytes(port_kind_t kind);
+
+/* The parts of tcp:HOST[:PORT] or rtu-tcp:HOST:PORT. An IPv6 address stands in brackets. */
 typedef struct {
     char host[256]; /* DNS allows no longer name */
     char service[6];
 } tcp_address_t;
 
-/* Parses the path of a gateway. Returns NULL, or what is wrong with it. */
+/* Parses the path of a gateway or a converter. Returns NULL, or what is wrong with it. */
 const char *tcp_parse(const char *path, tcp_address_t *address);
 
 /* Returns the part of a path behind its last slash. */
@@ -46,8 +53,9 @@ typedef enum {
     KEY_BAUD,
     KEY_PARITY, /* FATHOM_PARITY_... */
     KEY_STOP_BITS,
-    KEY_RS485, /* 0 or 1: the kernel's driver switches the transceiver */
-    KEY_ECHO,  /* fathom_line_parts_t.echo */
+    KEY_RS485,  /* 0 or 1: the kernel's driver switches the transceiver */
+    KEY_ECHO,   /* fathom_line_parts_t.echo */
+    KEY_PIECES, /* 0 or 1: a response may arrive in pieces, with pauses */
     /* of a GPIO chip: lines, by their number on it */
     KEY_TRIGGER, /* of a serial port also, with the number of its chip in the upper 16 bits */
     KEY_PULSE,   /* written echo= */
@@ -108,10 +116,14 @@ struct listener {
     void *ctx;
     listener_t *now; /* the listener that stores at present; NULL: the port's own */
 
-    uint8_t window[LISTENER_WINDOW];   /* the first bytes that were received in this attempt */
-    uint16_t have;                     /* bytes in `window` */
-    uint32_t bytes;                    /* received in this attempt */
-    uint32_t slowest_us;               /* the longest time in this attempt from a request to a later byte */
+    uint8_t window[LISTENER_WINDOW]; /* the first bytes that were received in this attempt */
+    uint16_t have;                   /* bytes in `window` */
+    uint8_t piece[64];               /* the beginning of a response that broke off in the previous attempt */
+    uint8_t piece_length;            /* 0: there is none, or a request was sent since */
+    uint32_t last_us;                /* the time of the newest byte */
+    uint32_t pieces_us;              /* the rest came this time after the beginning; 0: it did not */
+    uint32_t bytes;                  /* received in this attempt */
+    uint32_t slowest_us;             /* the longest time in this attempt from a request to a later byte */
     uint8_t request[LISTENER_REQUEST]; /* the newest one */
     uint8_t request_length;            /* 0: none was sent */
     uint32_t asked_us;                 /* the time of the newest request */
@@ -132,6 +144,9 @@ typedef struct {
     uint8_t masters_address; /* ... and the unit that the first of them asked */
     uint32_t streamed_a16;   /* frames FF..SUM, at least two in a row, of a sensor that sends automatically */
     uint32_t streamed_a05;
+    uint32_t part;      /* bytes of a response that broke off at the end of the window */
+    uint32_t pieces_us; /* the pause between such a beginning, in an earlier attempt, and its rest; 0: none */
+    bool is_mbap;       /* the window begins with a frame of Modbus TCP */
     uint32_t slowest_us;
 } evidence_t;
 
@@ -161,7 +176,7 @@ enum { PORT_TRIES = 3 };
 
 typedef struct port_driver port_driver_t;
 
-/* What a Modbus TCP server has shown; all zeros for other ports. */
+/* What the far end of a connection has shown; all zeros for other ports. */
 typedef struct {
     uint8_t exception;      /* the final word about a request, as that the unit does not respond; 0: none */
     uint8_t exception_unit; /* the unit of that request */
@@ -169,6 +184,8 @@ typedef struct {
     bool has_other_unit;    /* ... if that is not the unit of the request */
     bool
         has_other_identifier; /* the server responded to the newest request with another transaction identifier */
+    bool is_rtu;              /* what was received of the newest response begins as a frame of Modbus RTU */
+    bool is_closed;           /* the connection ended while the response to the newest request was pending */
 } gateway_t;
 
 /* All zeros before the first port_open(). It may be opened again after port_close(); do not move it. */
@@ -180,7 +197,10 @@ typedef struct port {
     port_error_t error;
     char error_text[384]; /* a line of text that names the port; "": it is open */
     uint32_t failures;    /* to open it, in a row and other than PORT_ABSENT */
-    adapter_t adapter;    /* behind a tty; it is kept while the port is closed */
+    uint32_t
+        reconnects; /* connections after the far end had closed an idle one; it is kept while the port is closed */
+    uint32_t barren;   /* connections in a row over which nothing was received; kept as well */
+    adapter_t adapter; /* behind a tty; it is kept while the port is closed */
     fathom_clock_t clock;
     listener_t listener; /* between the line and the port */
     fathom_line_parts_t parts;
@@ -199,7 +219,7 @@ typedef struct port {
     const port_driver_t *driver;
     fathom_loop_source_t *source;
     fathom_uart_t inner; /* of the driver */
-    struct tcp *tcp;     /* a connection */
+    struct connection *connection;
     bool is_connecting;
     int fd; /* of a connection or a chip */
     short events;
@@ -213,6 +233,14 @@ typedef struct port {
  * interrupts within a frame.
  */
 enum { PORT_STREAM_GAP_US = 25000, PORT_RESPONSE_GAP_US = 60000 };
+
+/* Through a network or another program, bytes come in pieces with pauses: a response until its time-out, and a frame of a
+ * sensor that sends by itself up to the longest gap that a listener has. */
+enum { PORT_PIECES_GAP_US = 65000 };
+bool port_has_pieces(const port_t *port);
+
+/* Returns PORT_STREAM_GAP_US or PORT_PIECES_GAP_US. */
+uint16_t port_stream_gap_us(const port_t *port);
 
 /* A command listens this long before its first request, so that the line knows the automatic frames (line.h). */
 enum { PORT_LISTEN_US = 66000 };
@@ -237,6 +265,9 @@ fathom_status_t port_poll(port_t *port);
 int port_fd(const port_t *port);
 short port_events(const port_t *port);
 
+/* Returns the time in us until port_poll() has to be called, whatever the line returns. FATHOM_NO_DEADLINE: none. */
+uint32_t port_due_us(const port_t *port);
+
 /* ---- waiting, for a command with one port ---- */
 
 /* Sleeps until the port is ready, at most max_us. FATHOM_OK; FATHOM_ERR_PORT: the port is lost; FATHOM_ERR_CANCELLED:
@@ -258,8 +289,12 @@ struct port_driver {
     void (*start_line)(port_t *port); /* called when the line is initialised; NULL: there is nothing to do */
     void (*note_sent)(port_t *port);  /* called when a request was sent, ... */
     void (*note_read)(port_t *port);  /* ... and after each read; NULL as well */
+    uint32_t (*due_us)(const port_t *port); /* as port_due_us(); NULL as well */
 };
-extern const port_driver_t port_tcp;
+extern const port_driver_t port_tcp; /* of a gateway and of a converter */
+
+/* Sets the parts of a line that passes all bytes. */
+void port_set_line(port_t *port);
 
 /* Stores why the port is not open, and returns FATHOM_ERR_PORT. The text names the port. */
 fathom_status_t port_fail(port_t *port, port_error_t error, const char *format, ...)

@@ -627,6 +627,7 @@ static uint32_t due_us(fathom_loop_source_t *source)
     uint32_t soonest_us = FATHOM_NO_DEADLINE;
     if (line->state == LINE_CONNECTING) return CONNECTION_US;
     if (line->state != LINE_READING) return AGAIN_US;
+    soonest_us = port_due_us(&line->port);
     for (sensor_t *sensor = line->sensors; sensor != NULL; sensor = sensor->next) {
         if (is_finished(line->loop, sensor, 0)) continue;
         const uint32_t this_us = reader_due_us(sensor->reader);
@@ -827,6 +828,8 @@ void loop_account(loop_t *loop, account_t *account)
     *account = account_of(loop->site.sensors, loop->site.sensor_count);
     account->time_us = (int64_t)loop_time_us(loop);
     account->reconnects = (int64_t)loop->reconnects;
-    for (const line_t *line = loop->site.lines; line != NULL; line = line->next)
+    for (const line_t *line = loop->site.lines; line != NULL; line = line->next) {
+        account->reconnects += line->port.reconnects;
         if (line->port.counts_errors) account->has_port = true;
+    }
 }

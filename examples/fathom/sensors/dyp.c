@@ -81,7 +81,7 @@ static bool a16_read_auto(reader_t *reader, port_t *port, const reader_settings_
 {
     fathom_a16_auto_t *const driver = &reader->driver.a16_auto;
     fathom_a16_auto_config_t config = {.stale_us = settings->timeout_us,
-                                       .gap_us = PORT_STREAM_GAP_US,
+                                       .gap_us = port_stream_gap_us(port),
                                        .window = settings->window,
                                        .value = settings->value};
     if (settings->has_value) {
@@ -167,7 +167,7 @@ static bool a05_read_auto(reader_t *reader, port_t *port, const reader_settings_
     fathom_a05_auto_t *const driver = &reader->driver.a05_auto;
     const fathom_a05_auto_config_t config = {.select = fathom_output_line_break(&port->line),
                                              .stale_us = settings->timeout_us,
-                                             .gap_us = PORT_STREAM_GAP_US,
+                                             .gap_us = port_stream_gap_us(port),
                                              .window = settings->window,
                                              .probes = settings->probes};
     if (fathom_a05_auto_init(driver, &port->line, &config) != FATHOM_OK) return false;
@@ -189,7 +189,7 @@ static bool a16_read_controlled(reader_t *reader, port_t *port, const reader_set
     const fathom_output_t trigger = port->options.pins.chip != 0 ? fathom_output_pin(&port->pins.trigger)
                                                                  : fathom_output_line_break(&port->line);
     const fathom_a16_controlled_config_t config = {
-        .period_us = settings->period_us, .gap_us = PORT_STREAM_GAP_US, .window = settings->window};
+        .period_us = settings->period_us, .gap_us = port_stream_gap_us(port), .window = settings->window};
     if (fathom_a16_controlled_init(driver, &port->line, &trigger, &config) != FATHOM_OK) return false;
     reader->end = end_controlled;
     reader->frames = driver->stream.counters;

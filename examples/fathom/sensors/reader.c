@@ -156,7 +156,7 @@ reader_facts_t reader_facts(const reader_t *reader)
 fathom_modbus_config_t driver_config(const port_t *port, const reader_settings_t *settings)
 {
     return (fathom_modbus_config_t){
-        .line_settings = port->kind == PORT_SERIAL ? settings->line : NULL, /* a connection has none */
+        .line_settings = port_has_settings(port->kind) ? settings->line : NULL,
         .period_us = settings->period_us,
         .timeout_us = settings->timeout_us,
         .backoff_us = settings->backoff_us,

@@ -1,7 +1,13 @@
 # SPDX-License-Identifier: MIT
 """A TCP server that says what the test says, byte for byte."""
+import os
+import select
 import socket
 import struct
+import termios
+import threading
+import time
+import tty
 
 import e2e
 
@@ -52,7 +58,78 @@ class Server:
         self.socket.close()
 
 
+class Gateway(threading.Thread):
+    """A Modbus TCP gateway before a line, the port of a `fathom sim`; is_raw: a converter that passes raw bytes, each
+    response of the line in two pieces that are `pieces` seconds apart. It serves one connection at a time, and closes
+    it after `frames` responses (0: never) or `idle` seconds without one; is_reset: by RST."""
+    def __init__(self, line, baud, is_raw=False, pieces=0, frames=0, idle=3600, is_reset=False):
+        super().__init__(daemon=True)
+        self.server, self.is_raw, self.pieces = Server(backlog=5), is_raw, pieces
+        self.frames, self.idle, self.is_reset = frames, idle, is_reset
+        self.connections, self.functions, self.ended = 0, [], False
+        self.line = os.open(str(line), os.O_RDWR | os.O_NOCTTY)
+        tty.setraw(self.line)
+        settings = termios.tcgetattr(self.line)
+        settings[4] = settings[5] = getattr(termios, f'B{baud}')
+        termios.tcsetattr(self.line, termios.TCSANOW, settings)
+        self.start()
+
+    def __str__(self):
+        return ('rtu-' if self.is_raw else '') + str(self.server)
+
+    def close(self):
+        self.ended = True
+        self.join(e2e.PATIENCE)
+        self.server.close()
+        os.close(self.line)
+
+    def run(self):
+        while not self.ended:
+            if not e2e.is_ready(self.server.socket, 0.05):
+                continue
+            self.server.accept()
+            self.connections += 1
+            try:
+                self.serve(self.server.client)
+            except OSError:  # the tool has ended
+                pass
+            (self.server.reset if self.is_reset else self.server.hang_up)()
+
+    def serve(self, client):
+        frames, heard, header, last = 0, b'', b'', time.monotonic()
+        while not self.ended and time.monotonic() - last < self.idle and not (self.frames and frames >= self.frames):
+            ready = select.select([client, self.line], [], [], 0.02)[0]
+            if client in ready:
+                request = client.recv(512)
+                if not request:
+                    return
+                last, heard = time.monotonic(), b''
+                if not self.is_raw:
+                    header, request = request[:4], request[6:]
+                    request += e2e.crc16(request)
+                self.functions.append(request[1])
+                os.write(self.line, request)
+            if self.line in ready:
+                time.sleep(0.01)  # the rest of the frame
+                part = os.read(self.line, 512)
+                heard += part
+                if self.is_raw:
+                    client.sendall(part[:3])
+                    time.sleep(self.pieces)
+                    client.sendall(part[3:])
+                    frames += 1
+                elif e2e.crc16(heard[:-2]) == heard[-2:]:
+                    client.sendall(header + struct.pack('>H', len(heard) - 2) + heard[:-2])
+                    frames += 1
+                last = time.monotonic()
+
+
 class Case(e2e.Case):
+    def gateway(self, sensors, baud=9600, **options):
+        gateway = Gateway(self.sim(sensors), baud, **options)
+        self.addCleanup(gateway.close)
+        return gateway
+
     def server(self, **options):
         server = Server(**options)
         self.addCleanup(server.close)

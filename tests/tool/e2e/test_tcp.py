@@ -103,7 +103,7 @@ class NoConnection(Case):
                  (('a16', 'auto'), ('a05', 'auto'), ('a05', 'dyp'))})
     def serial(self, sensor, mode):
         self.ends(f'read {sensor} --mode {mode} --port {self.server()}', 2,
-                  f'mode {mode} needs a serial port. Over TCP, use Modbus: {sensor}:modbus.', out='')
+                  f'mode {mode} needs a serial port. Over TCP, use Modbus: {sensor}:modbus, or a converter', out='')
 
 
 class Responses(Case):
@@ -260,25 +260,25 @@ class Responses(Case):
 
 
 class Broken(Case):
-    CLOSED = 'the server closed the connection; some serve one program at a time'
-
-    def breaks(self, words, response=lambda asked: b'', end=lambda server: None):
+    def breaks(self, words, response):
         server, reader = self.reader()
         server.say(response(self.asked(server)))
-        end(server)
         self.reads(reader, 1, [], f'fathom: attempt 1: {server}: {words}',
                    '. Start again. With --reconnect, fathom connects again')
         self.assertEqual(reader.done.err.count('attempt 1:'), 1, reader.done.err)
 
-    def test_reset_by_the_server(self):
-        self.breaks('the server reset the connection; some serve one program at a time',
-                    end=tcp_server.Server.reset)
-
-    def test_closed_by_the_server(self):
-        self.breaks(self.CLOSED, end=tcp_server.Server.hang_up)
-
-    def test_closed_in_the_middle_of_a_response(self):
-        self.breaks(self.CLOSED, lambda asked: registers(asked, 1, *SAID)[:10], tcp_server.Server.hang_up)
+    @e2e.each(closed=(b'', tcp_server.Server.hang_up), reset=(b'', tcp_server.Server.reset),
+              closed_in_the_middle_of_a_response=(registers(0, 1, *SAID)[2:10], tcp_server.Server.hang_up))
+    def each_connection(self, rest, end):
+        server, reader = self.reader()
+        for number in range(5):
+            server.say((self.asked(server).to_bytes(2, 'big') + rest)[:10 if rest else 0])
+            end(server)
+            if number != 4:
+                server.accept()
+        self.reads(reader, 1, [], f'fathom: attempt 1: {server}: the server closes each connection without a response; '
+                   'some serve one program at a time', '. Start again. With --reconnect, fathom connects again')
+        self.assertEqual(reader.done.err.count('attempt 1:'), 1, reader.done.err)
 
     def test_nonsense(self):
         for nonsense in (b'HTTP/1.1 400 Bad Request\r\n\r\n', b'SSH-2.0-x\r\n', bytes(5) + b'\1\0\0',
@@ -289,8 +289,9 @@ class Broken(Case):
         server, reader = self.reader('--reconnect --count 3')
         server.say(registers(self.asked(server), 1, *SAID))
         self.asked(server)
-        server.reset()
-        reader.expect('attempt 2: .*the server reset the connection.*. Waiting until it is back', 'err')
+        server.say(b'\xff' * 6)
+        server.hang_up()
+        reader.expect(f'attempt 2: .*{NONSENSE[:40]}.*. Waiting until it is back', 'err')
         server.accept()
         server.say(registers(self.asked(server), 1, *OTHER))
         self.reads(reader, 1, [2083, 1000], f'fathom: {server}: it is back; reading goes on')
@@ -375,7 +376,7 @@ class Hostile(Case):
                 break
             server.accept()
             connections += 1
-        done = self.ends(reader, 1, 'the server closed the connection')
+        done = self.ends(reader, 1, 'the server closes each connection')
         self.needs_little(done)
         self.assertLess(connections, 16)
         self.assertEqual(done.mm, [])

@@ -352,11 +352,11 @@ static void send_request(request_t *request, port_t *port)
                                         .is_unit_0_ordinary = accepts_zero};
     request->transaction.protocol = &protocol;
     request->transaction.address = unit;
-    if (port->kind == PORT_SERIAL) port_listen(port, PORT_LISTEN_US);
+    if (port_has_bytes(port->kind)) port_listen(port, PORT_LISTEN_US);
     listener_forget(&port->listener);
     request->status = fathom_line_submit(&port->line, &request->transaction);
     if (request->status == FATHOM_PENDING) request->status = port_finish(port, &request->transaction);
-    if (request->response_length != 0 && port->kind == PORT_SERIAL) port_listen(port, PORT_RESPONSE_GAP_US);
+    if (request->response_length != 0 && port_has_bytes(port->kind)) port_listen(port, PORT_RESPONSE_GAP_US);
     listener_judge(&port->listener, unit, &request->evidence);
     const uint32_t echo = fathom_line_get_echo(&port->line) == FATHOM_LINE_ECHO_ON ? request->length : 0;
     const uint32_t known = request->response_length + echo;
@@ -575,6 +575,7 @@ static int start(const host_t *host, const arguments_t *arguments)
                      "--port is missing, such as --port /dev/ttyUSB0. 'fathom help ports' explains ports.");
         return STATUS_USAGE;
     }
+    if (!line_options_suit(&options.keys, options.path, &arguments->origin)) return STATUS_USAGE;
     port_options_take(&options, &options.keys);
     port_options_line(&options, &request.line);
     options.line = request.line;

@@ -139,6 +139,9 @@ static void make_plan(scan_settings_t *plan)
     }
 }
 
+/* Returns true if the far end of the port has the line settings, which the scan cannot change. */
+static bool is_converters(const char *port) { return port != NULL && !port_has_settings(port_kind(port)); }
+
 /* Prints "addresses 1 to 32 at 9600 8N1, 19200 8E1". */
 static void print_plan(FILE *to, const scan_settings_t *plan)
 {
@@ -147,7 +150,8 @@ static void print_plan(FILE *to, const scan_settings_t *plan)
         (void)fprintf(to, "address %u at", plan->addresses.first);
     else
         (void)fprintf(to, "addresses %u to %u at", plan->addresses.first, plan->addresses.last);
-    for (uint8_t i = 0; i != plan->line_count; i++)
+    if (is_converters(plan->port)) (void)fputs(" the line settings of the converter", to);
+    for (uint8_t i = 0; !is_converters(plan->port) && i != plan->line_count; i++)
         (void)fprintf(to, "%s %s", i != 0 ? "," : "", line_text(&plan->lines[i], line));
 }
 
@@ -205,7 +209,13 @@ static bool has_address(const scan_finding_t *finding)
 static void print_next(FILE *to, const scan_finding_t *finding, const char *port)
 {
     read_command_print(to, finding->model, modes[finding->mode],
-                       finding->mode == SCAN_AUTO ? -1 : finding->address, &finding->line, port);
+                       finding->mode == SCAN_AUTO ? -1 : finding->address,
+                       is_converters(port) ? &finding->model->line : &finding->line, port);
+}
+
+static const char *settings_text(const scan_finding_t *finding, const char *port, char text[LINE_TEXT])
+{
+    return is_converters(port) ? "-" : line_text(&finding->line, text);
 }
 
 /* The fields below name the members by their offsets. */
@@ -224,7 +234,7 @@ static const field_t fields[] = {
     {"kind", "", "What was found: sensor, other_modbus, damaged, ...", FIELD_WORD, 0, FOUND(kind)},
     {"model", "", "Model; null unless it is one of the known sensors", FIELD_WORD, 0, FOUND(model)},
     {"address", "", "Address; null if there is none", FIELD_NUMBER, 0, FOUND(address)},
-    {"baud", "", "Baud rate", FIELD_NUMBER, 0, FOUND(baud)},
+    {"baud", "", "Baud rate; null behind a converter", FIELD_NUMBER, 0, FOUND(baud)},
     {"parity", "", "Parity", FIELD_WORD, 0, FOUND(parity)},
     {"stop_bits", "", "Stop bits", FIELD_NUMBER, 0, FOUND(stop_bits)},
     {"mode", "", "Mode in which the sensor can be read", FIELD_WORD, SENSOR, FOUND(mode)},
@@ -254,11 +264,11 @@ static void print_json(const scan_finding_t *finding, const char *port)
     const bool is_sensor = finding->kind == SCAN_SENSOR;
     row_t row = {.kind = kinds[finding->kind].name,
                  .model = is_sensor ? finding->model->name : NULL,
-                 .parity = parity_name(finding->line.parity),
+                 .parity = is_converters(port) ? NULL : parity_name(finding->line.parity),
                  .mode = is_sensor ? modes[finding->mode] : NULL,
                  .address = has_address(finding) ? finding->address : NO_VALUE,
-                 .baud = finding->line.baud,
-                 .stop_bits = finding->line.stop_bits,
+                 .baud = is_converters(port) ? NO_VALUE : finding->line.baud,
+                 .stop_bits = is_converters(port) ? NO_VALUE : finding->line.stop_bits,
                  .interface_version = word_of(finding->interface_version),
                  .sensor_version = word_of(finding->sensor_version),
                  .uuid = word_of(finding->uuid),
@@ -308,7 +318,7 @@ static void print_text(const scan_finding_t *finding, const char *port)
     char address[16] = "-";
     if (has_address(finding)) (void)snprintf(address, sizeof address, "address %u", finding->address);
     (void)printf("%-8s %-12s %-11s  ", is_sensor ? finding->model->name : "?", address,
-                 line_text(&finding->line, line));
+                 settings_text(finding, port, line));
     if (is_sensor)
         print_sensor(finding);
     else
@@ -323,7 +333,7 @@ static void print_text(const scan_finding_t *finding, const char *port)
 }
 
 /* Prints what to do about a finding; nothing for most. */
-static void print_advice(const scan_finding_t *finding)
+static void print_advice(const scan_finding_t *finding, const char *port)
 {
     const char *const advice =
         finding->is_double
@@ -333,7 +343,7 @@ static void print_advice(const scan_finding_t *finding)
     char line[LINE_TEXT];
     if (advice == NULL) return;
     if (finding->address != 0) (void)snprintf(address, sizeof address, "address %u at ", finding->address);
-    (void)fprintf(stderr, "fathom: %s%s: %s\n", address, line_text(&finding->line, line), advice);
+    (void)fprintf(stderr, "fathom: %s%s: %s\n", address, settings_text(finding, port, line), advice);
 }
 
 static void report(scan_t *scan, const scan_finding_t *finding)
@@ -343,7 +353,7 @@ static void report(scan_t *scan, const scan_finding_t *finding)
     (scan->settings->is_json ? print_json : print_text)(finding, scan->settings->port);
     scan->output_error = output_flush();
     if (scan->output_error != 0) scan->status = FATHOM_ERR_CANCELLED;
-    print_advice(finding);
+    print_advice(finding, scan->settings->port);
     if (finding->kind == SCAN_DAMAGED) scan->has_damaged = true;
     if (finding->kind != SCAN_SENSOR) return;
     scan->sensors++;
@@ -385,7 +395,12 @@ static void print_nothing(const scan_t *scan)
         (void)fputs("no sensor was found", stderr);
     else
         advice_print(stderr, &failure);
-    if (scan->settings->is_default)
+    if (is_converters(scan->settings->port))
+        (void)fputs(
+            ". The scan cannot change the settings of the converter: with factory settings, a16 and a05 "
+            "need 9600 8N1, and hps167s 19200 8E1",
+            stderr);
+    else if (scan->settings->is_default)
         (void)fprintf(stderr,
                       ". To find a sensor with other settings, run 'fathom scan --port %s --address 1-254 "
                       "--baud all --parity all' (about 7 minutes)",
@@ -527,6 +542,9 @@ static int start(const host_t *host, const arguments_t *arguments)
     static const origin_t origin = {.command = "scan"};
     static scan_t scan;
     scan_settings_t *const settings = arguments->settings;
+    const bool has_settings = settings->rates[0] != 0 || settings->parities != 0 || settings->stop_bits != 0;
+    /* At the rate of an HPS-167S, the first read identifies each model that responds to it. */
+    if (is_converters(settings->port) && !has_settings) (void)parse_rates("19200,9600", settings->rates);
     make_plan(settings);
     scan = (scan_t){.report = report, .settings = settings, .port.watches_output = true};
     if (arguments->count != 0 && settings->port == NULL)
@@ -536,9 +554,15 @@ static int start(const host_t *host, const arguments_t *arguments)
     else if (settings->port == NULL && !settings->estimate)
         (void)reject(&origin,
                      "--port is missing, such as --port /dev/ttyUSB0. 'fathom help ports' explains ports.");
-    else if (settings->port != NULL && port_kind(settings->port) != PORT_SERIAL)
-        (void)reject(&origin, "scan needs a serial port. The rates behind '%s' are those of the gateway.",
+    else if (settings->port != NULL && !port_has_bytes(port_kind(settings->port)))
+        (void)reject(&origin,
+                     "scan needs a serial port, or a converter that passes raw bytes (rtu-tcp:), not '%s'.",
                      settings->port);
+    else if (is_converters(settings->port) && has_settings)
+        (void)reject(
+            &origin,
+            "%s has no line settings: the converter has them. Leave --baud, --parity and --stop-bits out.",
+            settings->port);
     else
         return settings->estimate ? print_estimate(settings) : run(&scan, host);
     return STATUS_USAGE;

@@ -89,7 +89,10 @@ static fathom_status_t hear(scan_t *scan, const fathom_line_settings_t *line, ui
     int is_set = 0;
     fathom_status_t status = FATHOM_OK;
     while (status == FATHOM_OK && is_set == 0) {
-        is_set = uart->set_line != NULL ? uart->set_line(uart->ctx, line) : -1;
+        if (!port_has_settings(scan->port.kind) && line == &scan->port.options.line)
+            is_set = 1; /* those of the converter */
+        else
+            is_set = uart->set_line != NULL ? uart->set_line(uart->ctx, line) : -1;
         if (is_set == 0) status = port_wait(&scan->port, SET_LINE_POLL_US);
     }
     if (is_set < 0) return FATHOM_ERR_UNSUPPORTED;
@@ -173,7 +176,8 @@ void scan_ask(scan_t *scan)
     scan_read_t *const read = &scan->read;
     port_t *const port = &scan->port;
     fathom_modbus_request_t pending = {
-        .transaction = {.timeout_us = read->timeout_us, .line_settings = read->line}};
+        .transaction = {.timeout_us = read->timeout_us,
+                        .line_settings = port_has_settings(port->kind) ? read->line : NULL}};
     read->status = is_harmless(read) ? scan->status : FATHOM_ERR_ARGUMENT;
     if (read->status != FATHOM_OK) return;
     fathom_modbus_read_holding_registers(&pending.message, read->address, read->first, read->count,
@@ -431,9 +435,11 @@ static void walk_line(scan_t *scan)
     scan->asked = 0;
     for (unsigned address = settings->addresses.first; address <= last && scan->status == FATHOM_OK;
          address++) {
+        const uint32_t found = scan->found_baud[address];
         scan->read.address = (uint8_t)address;
         show_progress(scan);
-        if (scan->found_baud[address] != scan->line->baud) visit(scan, (uint8_t)address, timeout_us);
+        if (found == 0 || (port_has_settings(scan->port.kind) && found != scan->line->baud))
+            visit(scan, (uint8_t)address, timeout_us);
         scan->done_us += address_us(settings, scan->line);
     }
     for (unsigned address = 0; address <= last && scan->status == FATHOM_OK; address++)
