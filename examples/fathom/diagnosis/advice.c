@@ -245,6 +245,8 @@ static const row_t causes[] = {
     {NO_RESPONSE, "asked late", "the response arrived after the time-out[took: (it took {took} ms)]",
      "Try a longer --timeout[took:, such as --timeout {timeout}]"},
     {NO_MATCH, "asked converter mbap", "the response has the header of Modbus TCP", "Use {modbus-tcp}"},
+    {NO_MATCH, "asked tty pieces", "the response came in pieces, {pieces} ms apart",
+     "Try --pieces, with which a response may arrive in pieces until its time-out"},
     {NO_MATCH, "asked headless",
      "the first bytes of the response are missing or damaged, and the others are right, so the settings are "
      "right: the "
@@ -340,8 +342,6 @@ static const row_t causes[] = {
      "Check the power, whether A and B (or RX and TX) are swapped, {option}, and {rates}[not-scan:, or run "
      "'fathom scan --port {path}'][converter:. If it speaks Modbus TCP, use {modbus-tcp}]" UNSEEN},
 
-    {CHECKSUM, "asked tty pieces", "the response came in pieces, {pieces} ms apart",
-     "Try --pieces, with which a response may arrive in pieces until its time-out"},
     {CHECKSUM, "asked tty part", "the response broke off after {part} bytes",
      "If the rest may come later, as over a network or Bluetooth, try --pieces. " DISTURBANCE},
     {CHECKSUM, "asked worked",

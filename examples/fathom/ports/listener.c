@@ -44,6 +44,7 @@ static void take_piece(listener_t *listener, const uint8_t *bytes, uint32_t coun
 
 void listener_forget(listener_t *listener)
 {
+    listener->pieces_us = 0;
     listener->piece_length = (uint8_t)part_of(listener);
     memcpy(listener->piece, listener->window + listener->have - listener->piece_length,
            listener->piece_length);

@@ -96,7 +96,16 @@ class Idle(tcp_server.Case):
         self.assertLessEqual(connections, 10)
         self.needs_little(done)
 
-    def test_a_request_that_writes_is_never_sent_again(self):
+    def test_a_single_request_that_writes_is_never_sent_again(self):
+        server = self.server()
+        writer = self.fathom(f'request 1 6 0x0200 2 --yes --port {server}')
+        server.accept()
+        server.request()
+        server.hang_up()
+        self.ends(writer, 1, 'the far end closed the connection before it responded')
+        self.assertFalse(e2e.is_ready(server.socket, 0))
+
+    def test_a_setting_that_is_written_is_never_sent_again(self):
         """The connection ends with it. Whether the sensor has it is read over the next one."""
         server = self.server()
         writer = self.fathom(f'set a16 --port {server} switch-threshold 1200')
@@ -144,7 +153,7 @@ class EachResponse(tcp_server.Case):
         gateway = self.gateway('hps167s:3', 19200, is_raw=True, frames=1)
         done = self.ends(f'scan --port {gateway} --address 2-4 --listen 1', 0)
         self.assertRegex(done.out, rf'^hps167s  address 3    - .*->  fathom read hps167s:3:modbus --port {gateway}\n$')
-        self.assertIn('asking addresses 2 to 4 at the line settings of the converter', done.err)
+        self.assertIn('requests to addresses 2 to 4 at the line settings of the converter', done.err)
         nothing = self.ends(f'scan --port {gateway} --address 5 --listen 1 --format json', 1, out='')
         self.assertIn('The scan cannot change the settings of the converter: with factory settings, a16', nothing.err)
 
@@ -180,7 +189,8 @@ class Converter(tcp_server.Case):
         server.accept()
         server.request()
         server.say(bytes.fromhex(response))
-        self.ends(reader, 1, 'a frame of Modbus RTU without the header of Modbus TCP: the converter passes raw bytes. '
+        self.ends(reader, 1, 'the response is a frame of Modbus RTU without the header of Modbus TCP: the converter '
+                  'passes raw bytes. '
                   f'Use rtu-{server}')
 
     def test_silence_names_the_mode_unless_the_gateway_has_responded(self):
