@@ -123,6 +123,7 @@ static uint64_t fact(const failure_t *failure, const char *name, size_t length)
         {"only-echo", is_only_echo(heard)},
         {"old", line[FATHOM_LINE_OLD_BYTES]}, /* of unknown age */
         {"gateway", gateway_exception(failure)},
+        {"gateway-busy", gateway_exception(failure) == 5 || gateway_exception(failure) == 6},
         {"other-unit", port->gateway.has_other_unit}, /* responded instead of the unit of the request */
         {"unit", port->gateway.other_unit},
         {"other-identifier", port->gateway.has_other_identifier},
@@ -299,6 +300,9 @@ static const row_t causes[] = {
 
     {NO_RESPONSE, "asked closed", "the far end closed the connection before it responded",
      "Try again. Some serve one program at a time, so check whether another one is connected"},
+    {NO_RESPONSE, "asked gateway-busy", "the gateway responds with exception {exception}",
+     "It serves another request. Try --retries 2, and a longer --interval, also in other programs that use "
+     "it"},
     {NO_RESPONSE, "asked gateway", "the gateway responds with exception {exception}",
      "Check {option}, and the line and the supply behind the gateway"},
     {NO_RESPONSE, "asked other-unit", "the server responds as unit {unit}, and not as unit {address}",

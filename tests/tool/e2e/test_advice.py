@@ -55,7 +55,8 @@ ELSEWHERE = {
     **{f'{status}: pins{more}': 'test_tool_pins.c' for status, more in (
         ('NO_RESPONSE', ' noises'), ('NO_RESPONSE', ''), ('MALFORMED', ''), ('STALE', ''))},
     **{f'{status}: {facts}': 'e2e/test_tcp.py' for status, facts in (
-        ('NO_RESPONSE', 'asked gateway'), ('NO_RESPONSE', 'asked other-unit'),
+        ('NO_RESPONSE', 'asked gateway-busy'), ('NO_RESPONSE', 'asked gateway'),
+        ('NO_RESPONSE', 'asked other-unit'),
         ('NO_RESPONSE', 'asked other-identifier'), ('NO_RESPONSE', 'asked tcp bytes'), ('NO_RESPONSE', 'asked tcp'),
         ('CHECKSUM', 'asked tcp'))},
     **{f'{status}: {facts}': 'e2e/test_gateway.py' for status, facts in (

@@ -189,7 +189,8 @@ class Responses(Case):
         unit_0=(lambda asked: registers(asked, 0, *SAID), 'the server responds as unit 0, and not as unit 1'),
         unit_255=(lambda asked: registers(asked, 255, *SAID), 'the server responds as unit 255, and not as'),
         busy_as_unit_255=(lambda asked: adu(asked, 255, 0x83, 6),
-                          'the gateway responds with exception 06 (server device busy)'))
+                          'the gateway responds with exception 06 (server device busy). It serves another request. Try '
+                          '--retries 2'))
     def foreign(self, response, words):
         server, reader = self.reader('--count 1 --timeout 1000')
         server.say(response(self.asked(server)))
