@@ -16,8 +16,8 @@ extern "C" {
  * @brief What a driver knows about a model: the facts in which the relatives of the A16 and A05 differ.
  *
  * A driver takes a pointer to the facts of one model in its configuration. NULL selects the A16 or the A05 of the
- * datasheet. models.h names the facts of each known model; nobody has tried them with a real module unless the page of
- * models says so. A program can also change a copy:
+ * datasheet. models.h names the facts of each known model, none of which was tried with a real module unless the page of
+ * models (src/models/README.md) says so. A program can also change a copy:
  *
  * @code
  * static fathom_model_facts_t tank;                         // must stay valid as long as the driver
@@ -31,7 +31,7 @@ extern "C" {
 
 /** @brief The meaning of a value that is no distance: the kind of its sample. */
 typedef enum {
-    FATHOM_MEANS_DEFAULT = 0,                  /**< The default, which the members of fathom_model_facts_t name. */
+    FATHOM_MEANS_DEFAULT = 0,                  /**< The default of the member of fathom_model_facts_t. */
     FATHOM_MEANS_UNKNOWN = FATHOM_UNKNOWN,     /**< A sample FATHOM_UNKNOWN. */
     FATHOM_MEANS_NO_TARGET = FATHOM_NO_TARGET, /**< A sample FATHOM_NO_TARGET. */
     FATHOM_MEANS_TOO_NEAR = FATHOM_NEAR,       /**< A sample FATHOM_NEAR: a target is too near to measure. */
@@ -42,15 +42,16 @@ typedef enum {
 
 /** @brief What starts a measurement. The program chooses the output of the driver by it. */
 typedef enum {
-    FATHOM_STARTS_ALONE = 0,       /**< Nothing: the module measures at its own pace, or by a Modbus request. */
-    FATHOM_STARTS_FALLING = 1,     /**< A falling edge: fathom_output_pin(), or a break of the line. */
-    FATHOM_STARTS_BYTE = 2,        /**< The byte `trigger_byte`: fathom_output_line_byte(). */
-    FATHOM_STARTS_HIGH_PULSE = 3   /**< A high pulse of at least `trigger_us`: fathom_output_inverted_pin(). */
+    FATHOM_STARTS_ALONE = 0,     /**< Nothing: the module measures at its own pace, or by a Modbus request. */
+    FATHOM_STARTS_FALLING = 1,   /**< A falling edge: fathom_output_pin(), or a break of the line. */
+    FATHOM_STARTS_BYTE = 2,      /**< The byte `trigger_byte`: fathom_output_line_byte(). */
+    FATHOM_STARTS_HIGH_PULSE = 3 /**< A high pulse of at least `trigger_us`: fathom_output_inverted_pin(). */
 } fathom_model_start_t;
 
 /** @brief Bits of fathom_model_facts_t::registers: registers beside those of the A16. */
 enum {
-    FATHOM_HAS_TEMPERATURE = 1 /**< 0x0102: temperature of the air or water, signed, in tenths of a degree C. */
+    /** 0x0102: temperature of the air or water, signed, in tenths of a degree C. */
+    FATHOM_HAS_TEMPERATURE = 1
 };
 
 /**
