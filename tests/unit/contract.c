@@ -11,6 +11,7 @@
 #include "fathom/sensor/a16_pwm.h"
 #include "fathom/sensor/a16_settings.h"
 #include "fathom/sensor/a16_switch.h"
+#include "fathom/sensor/hps167_uart.h"
 #include "fathom/sensor/hps167s_auto.h"
 #include "fathom/sensor/hps167s_info.h"
 
@@ -284,10 +285,10 @@ const contract_driver_t contract_hps167s_auto = {
     .refused = 31000,      .sample = {HPS_FIGURES},
     COUNTS(hps167s_auto),  .wrong = {NONE(line), STALE(hps167s_auto), RANGE(hps167s_auto, address, 33, 255)}};
 
-/* It is asked with 55 AA; the response is there at once. */
+/* It is asked with frames of its own; the response is there at once. */
 static fathom_status_t is_asked(const contract_driver_t *driver, uint16_t value)
 {
-    uint8_t frame[RIG_HPS_LENGTH];
+    uint8_t frame[RIG_HPS167_LENGTH];
     for (unsigned polls = 0; rig.fake.written == 0; polls++) {
         assert_true(polls < 20000);
         rig.fake.now_us += 200;
@@ -325,6 +326,35 @@ const contract_driver_t contract_a05_dyp = {
     .frame = a05_dyp_stream,
     .wrong = {NONE(line), IS(a05_dyp, modbus.address, 255), IS(a05_dyp, modbus.address_zero, 1),
               RANGE(a05_dyp, probes, 16, 255), WINDOW(a05_dyp, 6000)}};
+
+static size_t hps167_frame(uint8_t *frame, uint16_t value)
+{
+    rig_hps167_frame(frame, value, 0xDCB2, 0x0701, 0x0000);
+    return RIG_HPS167_LENGTH;
+}
+
+DRIVER(hps167_uart, (line), line = &rig.line, 0)
+CAN(hps167_uart, deinit)
+CAN(hps167_uart, power_on)
+
+const contract_driver_t contract_hps167_uart = {
+    ITSELF(hps167_uart, asked_on_line),
+    .good = 2083,
+    .other = 511,
+    .refused = 31000,
+    .sample = {.raw = 2083,
+               .distance_mm = 2083,
+               .kind = FATHOM_TARGET,
+               .model = FATHOM_HPS167S,
+               .ambient = 1,
+               .magnitude = 7231744},
+    COUNTS(hps167_uart),
+    .deinit = hps167_uart_deinit,
+    .power_on = hps167_uart_power_on,
+    .start_us = &hps167_uart_config.start_us,
+    .frame = hps167_frame,
+    .wrong = {NONE(line), RANGE(hps167_uart, modbus.address, 1, 255), IS(hps167_uart, modbus.address_zero, 1),
+              STALE(hps167_uart)}};
 
 /* ---- triggered ---- */
 

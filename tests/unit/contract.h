@@ -80,6 +80,6 @@ struct contract_driver {
 
 extern const contract_driver_t contract_a05_auto, contract_a05_dyp, contract_a05_modbus, contract_a05_relay,
     contract_a16_auto, contract_a16_controlled, contract_a16_modbus, contract_a16_pwm, contract_a16_switch,
-    contract_hps167s, contract_hps167s_auto;
+    contract_hps167_uart, contract_hps167s, contract_hps167s_auto;
 
 #endif

@@ -10,6 +10,7 @@
 #include "fathom/sensor/a05_dyp.h"
 #include "fathom/sensor/a05_modbus.h"
 #include "fathom/sensor/a16_modbus.h"
+#include "fathom/sensor/hps167_uart.h"
 #include "fathom/sensor/hps167s.h"
 
 enum { ROWS = 24 };
@@ -83,6 +84,7 @@ static fathom_line_t *line;
 DRIVER(a16_modbus, transport, .window.min_mm = 500)
 DRIVER(a05_modbus, transport, .window.min_mm = 500)
 DRIVER(a05_dyp, line, .window.min_mm = 500)
+DRIVER(hps167_uart, line, .modbus.address = 0)
 DRIVER(hps167s, transport, .modbus.address = 0)
 
 static const driver_t of_a16_modbus = {
@@ -101,6 +103,11 @@ static const driver_t of_a05_dyp = {
     ITSELF(a05_dyp, 13), /* 55 AA, address, command, four distances, sum */
     .ranges = {MODBUS(a05_dyp, 254, {255, 255}), RANGE(a05_dyp, modbus.address_zero, 0, 0, {1, 1}),
                WINDOW(a05_dyp, 6000), RANGE(a05_dyp, probes, 0, 15, {16, 255})}};
+
+static const driver_t of_hps167_uart = {ITSELF(hps167_uart, 15), /* 0A 0D, 11 bytes, CRC */
+                                        .ranges = {MODBUS(hps167_uart, 0, {1, 255}),
+                                                   RANGE(hps167_uart, modbus.address_zero, 0, 0, {1, 1}),
+                                                   TIME(hps167_uart, start_us), TIME(hps167_uart, stale_us)}};
 
 static const driver_t of_hps167s = {
     ITSELF(hps167s, 13), /* four registers */
@@ -214,7 +221,9 @@ static void a_second_init_is_refused_while_a_request_is_queued(void **state)
 }
 
 #define OF(promise, name) TEST_ROW(promise##_of_##name, promise, (void *)&of_##name)
-#define ALL(promise)      OF(promise, a16_modbus) OF(promise, a05_modbus) OF(promise, a05_dyp) OF(promise, hps167s)
+#define ALL(promise)                                                                                         \
+    OF(promise, a16_modbus)                                                                                  \
+    OF(promise, a05_modbus) OF(promise, a05_dyp) OF(promise, hps167s) OF(promise, hps167_uart)
 
 ALL(each_member_has_its_range)
 ALL(the_greatest_times_work)

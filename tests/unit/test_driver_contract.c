@@ -44,7 +44,8 @@ static const suite_t suite = {.set_up = set_up};
     OF(promise, a05_modbus) OF(promise, a16_auto) OF(promise, a16_controlled) OF(promise, a16_modbus)
 #define MEASURING(promise)                                                                                   \
     TRANSPORT(promise)                                                                                       \
-    LISTENERS(promise) OF(promise, a05_dyp) OF(promise, a16_controlled) OF(promise, a16_pwm)
+    LISTENERS(promise)                                                                                       \
+    OF(promise, a05_dyp) OF(promise, hps167_uart) OF(promise, a16_controlled) OF(promise, a16_pwm)
 #define ALL(promise) MEASURING(promise) CONTACTS(promise)
 
 #define CONTRACT(promise, drivers)                                                                           \
