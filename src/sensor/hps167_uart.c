@@ -178,20 +178,23 @@ fathom_status_t fathom_hps167_uart_set_limits(fathom_hps167_uart_t *sensor, fath
 
 void fathom_hps167_uart_cancel(fathom_hps167_uart_t *sensor) { fathom_modbus_unit_cancel(&sensor->unit); }
 
-/* The request to stop belongs to the caller's memory, so it leaves with this poll of the line or not at all. A request
- * that was cancelled on the wire leaves completely. */
+/* Sends the command to stop without a transaction, whose memory would have to outlive the driver. It needs no silence,
+ * because the sensor has the two wires to itself. If the port is busy or broken, the command is lost. */
+static void send_stop(const fathom_line_t *line)
+{
+    const fathom_uart_t *const uart = line->parts->uart;
+    uint8_t frame[FATHOM_HPS167_REQUEST_LENGTH];
+    const uint8_t length = fathom_hps167_encode_request(frame, FATHOM_HPS167_STOP);
+    (void)uart->write(uart->ctx, frame, length);
+}
+
 void fathom_hps167_uart_deinit(fathom_hps167_uart_t *sensor)
 {
     fathom_line_t *const line = sensor->unit.transport.line;
     fathom_hps167_uart_cancel(sensor);
     if (line == NULL) return;
     fathom_line_unlisten(line, &sensor->listener);
-    if (sensor->is_started) {
-        sensor->unit.pause_us = 0;
-        (void)ask_once(sensor, FATHOM_HPS167_STOP);
-        (void)fathom_line_poll(line);
-        fathom_hps167_uart_cancel(sensor);
-    }
+    if (sensor->is_started) send_stop(line);
     forget_output(sensor);
 }
 

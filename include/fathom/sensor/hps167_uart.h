@@ -187,10 +187,10 @@ fathom_status_t fathom_hps167_uart_set_limits(fathom_hps167_uart_t *sensor, fath
 /**
  * @brief Cancels what is in progress and stops the continuous output. After this the memory is the caller's again.
  *
- * If the sensor sends by itself, the function sends the command to stop once, provided that the line may send at once:
- * no request is on the wire, and the last byte is at least `silence_us` of the line ago. The function does not wait for
- * the acknowledgement. To be sure that the output has stopped, call fathom_hps167_uart_stop() until its result differs
- * from FATHOM_PENDING, and then this function.
+ * If the output has started, the function sends the command to stop once, at once, and does not wait for the
+ * acknowledgement. If the port is busy or broken at that moment, the command is lost and the sensor goes on sending. To be
+ * sure that the output has stopped, call fathom_hps167_uart_stop() until its result differs from FATHOM_PENDING, and then
+ * this function.
  */
 void fathom_hps167_uart_deinit(fathom_hps167_uart_t *sensor);
 
