@@ -37,6 +37,7 @@ extern "C" {
  * | FATHOM_MODE_FREE_PULSE | a16_pwm.h with fathom_output_none() |
  * | FATHOM_MODE_MODBUS | a16_modbus.h, a05_modbus.h, hps167s.h |
  * | FATHOM_MODE_55AA | a05_dyp.h |
+ * | FATHOM_MODE_0A | hps167_uart.h |
  */
 
 /** @brief How a module sends its distances. */
@@ -47,7 +48,8 @@ typedef enum {
     FATHOM_MODE_PULSE = 3,      /**< One pulse for each trigger; its width is the time of flight. */
     FATHOM_MODE_FREE_PULSE = 4, /**< Pulses without a trigger. */
     FATHOM_MODE_MODBUS = 5,     /**< Modbus RTU. */
-    FATHOM_MODE_55AA = 6        /**< Frames 55 AA on request. */
+    FATHOM_MODE_55AA = 6,       /**< Frames 55 AA on request. */
+    FATHOM_MODE_0A = 7          /**< Frames 0A of an HPS-167 on request. */
 } fathom_model_mode_t;
 
 /** @brief One model in one mode, in words. Texts are ASCII and never NULL. */
@@ -239,6 +241,10 @@ extern const fathom_model_facts_t fathom_model_a05_rs485;
 extern const fathom_model_facts_t fathom_model_a05_modbus;
 /** @brief HPS-167S, Modbus: 80 to 18000 mm, 19200 8E1. */
 extern const fathom_model_facts_t fathom_model_hps167s;
+/** @brief HPS-167, 0A: 80 to 18000 mm, 115200 8N1. */
+extern const fathom_model_facts_t fathom_model_hps167;
+/** @brief HPS-166, 0A: 80 to 18000 mm, 115200 8N1. */
+extern const fathom_model_facts_t fathom_model_hps166;
 /* end */
 
 #ifdef __cplusplus

@@ -22,8 +22,8 @@ PLACES = {HEADER: BETWEEN.format(r'/\* models', r'\*/', r'/\* '), PAGE: BETWEEN.
 ROW = re.compile(r'^ *ROW\((\w+),', re.M)
 SOURCED = re.compile(r'\*/ \\\n *ROW\((\w+),')
 TITLES = {'a16_family': 'DYP', 'jsn_family': 'JSN-SR04T, AJ-SR04M, HC-SR04 and their like', 'a05_family': 'A05',
-          'hps_family': 'HPS-167S'}
-MODES = ('', 'automatic', 'controlled', 'pulse', 'free-running pulse', 'Modbus', '55 AA')
+          'hps_family': 'HPS-167S, HPS-167'}
+MODES = ('', 'automatic', 'controlled', 'pulse', 'free-running pulse', 'Modbus', '55 AA', '0A')
 SPECIAL = ('FFFB', 'FFFD', 'FFFE', 'FFFF', '0')
 MEANINGS = {2: 'no target', 3: 'fault', 4: 'too near', 6: 'unknown', 7: 'interference', 8: 'refused'}
 

@@ -63,6 +63,7 @@ static const struct {
     {"101991041", FATHOM_MODE_MODBUS, 9600, 280, 7500, 0, 0, 0, 0, 0, 0, 0, 0},
     {"A05LYU", FATHOM_MODE_AUTO, 9600, 250, 4500, 0, 0, 0, 0, 0, 0, 0, 0},
     {"hps167s", FATHOM_MODE_MODBUS, 19200, 80, 18000, 0, 0, 0, 0, 0, 0, 0, 0},
+    {"hps167", FATHOM_MODE_0A, 115200, 80, 18000, 20, 0, 0, 0, 0, 0, 0, 0},
 };
 
 TEST(a_known_module_has_the_figures_of_its_sources)
@@ -108,7 +109,7 @@ TEST(each_row_has_the_facts_of_its_mode_and_no_others)
         const bool is_controlled = row->mode == FATHOM_MODE_CONTROLLED;
         const bool is_triggered = is_controlled || row->mode == FATHOM_MODE_PULSE;
         const uint8_t start = facts->start;
-        must(row->mode > FATHOM_MODE_ANY && row->mode <= FATHOM_MODE_55AA, "mode");
+        must(row->mode > FATHOM_MODE_ANY && row->mode <= FATHOM_MODE_0A, "mode");
         must(row->family >= FATHOM_A16 && row->family <= FATHOM_HPS167S, "family");
         must(facts->min_mm != 0 && facts->min_mm < facts->max_mm && facts->max_mm < 0xFFFB, "range");
         must((facts->line_settings == NULL) == is_pulse, "line settings");
@@ -174,7 +175,11 @@ static void is_mine_alone(const char *name)
 
 TEST(each_name_finds_its_model_and_no_other)
 {
-    EACH_ROW(index) { each_name(is_mine_alone); }
+    EACH_ROW(index)
+    {
+        each_name(row->name, is_mine_alone);
+        each_name(row->aliases, is_mine_alone);
+    }
     assert_null(fathom_model_at(UINT16_MAX));
 }
 
