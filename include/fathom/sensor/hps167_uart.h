@@ -40,7 +40,8 @@ extern "C" {
  *    switched off and on needs nothing. If `continuous` is true, the driver requests the continuous measurement (24)
  *    once, and becomes the listener of the line. It requests it again if the output stops for `stale_us`, because the
  *    sensor is silent after power-on but for the text "Hypersen". A public driver notes that the precision is better
- *    in continuous mode; prefer it for that reason only, and see fathom_hps167_uart_deinit().
+ *    in continuous mode; prefer it for that reason only, and see fathom_hps167_uart_deinit(). Among the frames of the
+ *    output, commands and the next request wait for a silence (line.h, rule 11): poll more often than frames arrive.
  *
  * 2. **Samples** have the kinds of hps167s.h (rule 1): over range, 65.53 m, is FATHOM_NO_TARGET. `time_us` is the clock at
  *    the last byte of the frame, and `address` is 0. The driver accepts a frame only if its length is right and its CRC
