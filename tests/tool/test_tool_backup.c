@@ -239,8 +239,9 @@ TEST(each_setting_that_differs_is_written_once)
 {
     static const char *const rows[][3] = {
         {"warm-up = 0", "warm-up = 255", "warm-up is 255 s (was 0)\n"},
-        {"measure-after-power-on = on", "measure-after-power-on = off", "power-on is off (was on)\n"},
-        {"termination = on", "termination = off", "termination is off (was on)\n"},
+        {"measure-after-power-on = on", "measure-after-power-on = off",
+         "power-on is off from the next power-on (was on)\n"},
+        {"termination = on", "termination = off", "termination is off from the next power-on (was on)\n"},
         {"reconnect-time = 180", "reconnect-time = 1800", "reconnect-time is 1800 ms (was 180)\n"}};
     for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
         bench_begin();

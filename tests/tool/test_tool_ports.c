@@ -153,8 +153,11 @@ TEST(info_tells_one_sensor_after_the_other)
     assert_int_equal(run->status, 0);
     expect_begin(run->out, "gate: hps167s, infrared time of flight, asked at address 7, 19200 8E1\n");
     assert_non_null(strstr(run->out, "\n\na16:3: a16, one ultrasonic probe, asked at address 3, 9600 8N1\n"));
-    expect_begin(run->err,
-                 "fathom: gate: the termination resistor is on, as in every sensor from the factory; ");
+    expect_begin(
+        run->err,
+        "fathom: gate: the termination resistor is on, as in every sensor from the factory; on a line "
+        "with several, switch it off in all but the last with 'fathom set hps167s:7 --port here termination "
+        "off'\n");
 }
 
 TEST(info_goes_on_where_a_sensor_or_its_port_fails)

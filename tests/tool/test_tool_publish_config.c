@@ -107,6 +107,7 @@ TEST(a_line_may_be_otherwise)
         {2, "discovery: off", "discovery  off\n"},
         {2, "discovery: ha/x", "discovery  ha/x\n"},
         {2, "prefix: p", "a16:1:modbus@/dev/ttyUSB0, 1000 ms"}, /* without an interval */
+        {12, "      - name: 5", "5          a16:1:modbus@"},    /* no sensor has five probes */
         {6, "  tls: {}", "broker     mill.lan port 8883, TLS\n"},
     };
     for (size_t i = 0; i != sizeof lines / sizeof lines[0]; i++) {
@@ -154,7 +155,11 @@ static const struct {
     {14, "        probes: 1,2", 14, "probes has no effect on a16 (modbus)."},
     {17, "        sensor: a05:1:modbus", 17,
      "tank and bumper have the same address, so both would respond at once.\n"},
-    {16, "      - name: tank", 17, "two sensors have the name tank. Change name: of one of them.\n"},
+    {16, "      - name: tank", 17,
+     "two sensors have the name tank, in line 13 too. Change name: of one of them.\n"},
+    {12, "      - name: 4", 12,
+     "name is '4'. In fathom/mill/north it has the topics of a probe of another site's sensor. Take another "
+     "name, such as s4.\n"},
     {12, "      - name: a/b", 12, "name is 'a/b'. It takes at most 31 letters, digits, '-', '_' and '.'"},
     {1, "site: mill/#", 1, "site is 'mill/#'. " TOPICS "\n"},
     {14, "        sensor: a16", 14, "sensors: sensor is given twice, in line 13 too.\n"},

@@ -92,9 +92,9 @@ TEST(the_topics_are_those_of_the_sensors_their_probes_and_what_the_file_wants_of
         "fathom/mill/north/tank/level",
         "fathom/mill/north/tank/availability",
         "fathom/mill/north/tank/counters",
-        "homeassistant/sensor/fathom_mill_north_bumper_1_1_distance/config",
+        "homeassistant/sensor/fathom_mill_north_bumper__2e1_1_distance/config",
         "fathom/mill/north/bumper.1/1/state",
-        "homeassistant/sensor/fathom_mill_north_bumper_1_3_distance/config",
+        "homeassistant/sensor/fathom_mill_north_bumper__2e1_3_distance/config",
         "fathom/mill/north/bumper.1/3/state",
         "fathom/mill/north/bumper.1/availability",
         "fathom/mill/north/bumper.1/counters",
@@ -142,16 +142,133 @@ TEST(the_longest_topic_fits)
     assert_string_equal(name + strlen(name) - strlen(end), end);
 }
 
+/* ---- ids and what an earlier run left ---- */
+
+enum { LETTERS = 6, LONGEST = 5, IDS = 6180, ID = 80 };
+
+static int by_text(const void *one, const void *other) { return strcmp(one, other); }
+
+/* All sites of up to five of these letters without an empty level: of length n, e(n) end with / and o(n) with another one,
+ * o(n) = 5 * (o(n - 1) + e(n - 1)) and e(n) = o(n - 1): 5 + 25 + 150 + 875 + 5125. */
+TEST(no_two_names_have_one_id)
+{
+    static char ids[IDS][ID];
+    size_t count = 0;
+    unsigned codes = 1;
+    for (size_t length = 1; length <= LONGEST; length++) {
+        codes *= LETTERS;
+        for (unsigned code = 0; code != codes; code++) {
+            char name[TOPIC_NAME];
+            memset(settings.site, 0, sizeof settings.site);
+            for (unsigned i = 0, rest = code; i != length; i++, rest /= LETTERS)
+                settings.site[i] = "a5_.-/"[rest % LETTERS];
+            if (settings.site[0] == '/' || settings.site[length - 1] == '/' ||
+                strstr(settings.site, "//") != NULL)
+                continue;
+            topic_name(&settings, ENTITY_DISTANCE, sensor(TANK), 1, name);
+            assert_int_equal(strspn(name, "abcdefghijklmnopqrstuvwxyz0123456789_-/"), strlen(name));
+            assert_true(count != IDS);
+            (void)snprintf(ids[count++], ID, "%s", name);
+        }
+    }
+    assert_int_equal(count, IDS);
+    qsort(ids, count, ID, by_text);
+    for (size_t i = 1; i != count; i++) assert_string_not_equal(ids[i - 1], ids[i]);
+}
+
+#define BOOT "{\"utc\":null,\"boot\":\"0123456789abcdef\"}"
+#define ENTITY(site, program)                                                                                \
+    "{\"name\":\"x\",\"availability\":[{\"topic\":\"" site                                                   \
+    "/status\"},{\"topic\":\"x\"}],\"origin\":{\"name\":\"" program "\",\"sw_version\":\"0.5.0\"}}"
+
+static const struct {
+    const char *name;
+    const char *payload;
+    topic_kind_t kind;
+    const char *counters;
+} left[] = {
+    {"fathom/mill/north/old/counters", BOOT, TOPIC_COUNTERS, "fathom/mill/north/old/counters"},
+    {"fathom/mill/north/old/availability", "online", TOPIC_AVAILABILITY, "fathom/mill/north/old/counters"},
+    {"fathom/mill/north/old/availability", "offline", TOPIC_AVAILABILITY, "fathom/mill/north/old/counters"},
+    {"fathom/mill/north/old/alarm", BOOT, TOPIC_ALARM, "fathom/mill/north/old/counters"},
+    {"fathom/mill/north/old/4/alarm", BOOT, TOPIC_ALARM, "fathom/mill/north/old/counters"},
+    {"ha/x/sensor/any/config", ENTITY("fathom/mill/north", "fathom"), ENTITY_DISTANCE, ""},
+    {"ha/sensor/any/config", ENTITY("fathom/mill", "fathom"), TOPICS, ""},
+    {"ha/sensor/any/config", ENTITY("fathom/mill/north2", "fathom"), TOPICS, ""},
+    {"ha/sensor/any/config", ENTITY("fathom/mill/north", "other"), TOPICS, ""},
+    {"ha/sensor/any/config", "", TOPICS, ""},
+    {"fathom/mill/north/old/availability", "on", TOPICS, NULL},
+    {"fathom/mill/north/old/counters", "{}", TOPICS, NULL},
+    {"fathom/mill/north/old/state", BOOT, TOPICS, NULL},
+    {"fathom/mill/north/old/5/alarm", BOOT, TOPICS, NULL},
+    {"fathom/mill/north/old/a/alarm", BOOT, TOPICS, NULL},
+    {"fathom/mill/north/old/1/counters", BOOT, TOPICS, NULL},
+    {"fathom/mill/north/old/1/x/alarm", BOOT, TOPICS, NULL},
+    {"fathom/mill/north2/old/counters", BOOT, TOPICS, NULL},
+    {"fathom/mill/counters", BOOT, TOPICS, NULL},
+    {"counters", BOOT, TOPICS, NULL},
+};
+
+TEST(what_a_run_of_this_site_left_is_known_by_its_topic_and_its_payload)
+{
+    for (size_t i = 0; i != sizeof left / sizeof left[0]; i++) {
+        char counters[TOPIC_NAME] = "";
+        if (topic_of_site(&settings, left[i].name, left[i].payload, counters) != left[i].kind)
+            fail_msg("%s %s", left[i].name, left[i].payload);
+        if (left[i].counters != NULL) assert_string_equal(counters, left[i].counters);
+    }
+}
+
+/* Without counters of the sensor that sent it a message is another program's. */
+TEST(what_no_sensor_has_is_deleted_behind_the_counters_of_its_sensor)
+{
+    broker_t *const broker = &publisher.broker;
+    broker->received(broker->received_ctx, "fathom/mill/north/old/alarm", BOOT, true);
+    assert_ptr_equal(publisher.topics, topic_at("mill/north/status"));
+    broker->received(broker->received_ctx, "fathom/mill/north/old/counters", BOOT, true);
+    broker->received(broker->received_ctx, "fathom/mill/north/old/alarm", BOOT, true);
+    broker->received(broker->received_ctx, "fathom/mill/north/tank/alarm", BOOT, true);
+    broker->received(broker->received_ctx, "fathom/mill/north/tank/counters", BOOT, true);
+    assert_ptr_equal(publisher.topics, topic_at("tank/alarm"));
+    assert_ptr_equal(publisher.topics->next, topic_at("old/alarm"));
+    assert_ptr_equal(publisher.topics->next->next, topic_at("old/counters"));
+    assert_ptr_equal(publisher.topics->next->next->next, topic_at("mill/north/status"));
+    assert_false(topic_at("old/alarm")->is_wanted);
+    assert_true(topic_at("old/alarm")->is_known);
+    assert_false(publisher.is_heard);
+    broker->received(broker->received_ctx, "fathom/mill/north/tank/counters", BOOT, false);
+    assert_false(publisher.is_heard); /* another start's */
+    broker->received(broker->received_ctx, "fathom/mill/north/tank/counters", publisher.boot, false);
+    assert_true(publisher.is_heard);
+}
+
+/* unknown: on. */
+TEST(an_alarm_is_unknown_at_the_start_and_not_again_when_its_sensor_goes_on)
+{
+    static const char unknown[] = "\"alarm\":\"unknown\",\"is_on\":true,\"distance_mm\":null,\"boot\":";
+    const topic_t *const alarm = topic_at("gate/alarm");
+    const message_t *const first = publisher.queue.first;
+    assert_ptr_equal(first->topic, alarm);
+    assert_memory_equal(first->text, unknown, sizeof unknown - 1);
+    publisher_change(&publisher, &site, false);
+    assert_int_equal(alarm->seq, 1);
+    load(&next_settings, &next, file);
+    next.sensors[GATE]->probes[0].alarm = (fathom_alarm_t){.state = FATHOM_ALARM_OFF};
+    publisher_change(&publisher, &next, false);
+    assert_int_equal(alarm->seq, 2);
+    assert_non_null(strstr(publisher.queue.last->text, "\"alarm\":\"off\",\"is_on\":false"));
+}
+
 /* ---- messages ---- */
 
-/* 2026-11-23 09:43:12.345678 is 1795426992.345678 s after 1970: `date -u -d 2026-11-23T09:43:12 +%s`. */
+/* The date of a reading is not used: it would be wrong if the clock is set while the message waits. */
 static bool publish(size_t number, const char *failure, const result_t *result)
 {
     const reading_t reading = {.sensor = sensor(number),
                                .status = failure != NULL ? FATHOM_ERR_NO_RESPONSE : FATHOM_OK,
                                .failure = failure,
                                .result = result,
-                               .utc_us = UINT64_C(1795426992345678)};
+                               .utc_us = 1};
     return publisher_reading(&publisher, &reading);
 }
 
@@ -165,8 +282,7 @@ static const char *text_at(const char *end)
     return newest != NULL ? newest->text : "";
 }
 
-#define BEGIN  "{\"utc\":\"2026-11-23T09:43:12.345678Z\","
-#define STATUS BEGIN "\"status\":"
+#define STATUS "\"status\":"
 
 static const result_t target = {.sample = {.kind = FATHOM_TARGET, .distance_mm = 1500, .probe = 1}};
 static const result_t none = {.sample = {.kind = FATHOM_NO_TARGET, .distance_mm = 1500, .probe = 1}};
@@ -197,8 +313,8 @@ static const struct {
     {GATE, NULL, &target, "gate/state", STATUS "\"target\",\"distance_mm\":1500,\"temperature_degc\":-0.5"},
     {GATE, "no_response", &silent, "gate/state",
      STATUS "\"no_response\",\"distance_mm\":null,\"temperature_degc\":null"},
-    {GATE, NULL, &near, "gate/alarm", BEGIN "\"alarm\":\"on\",\"is_on\":true,\"distance_mm\":480"},
-    {GATE, NULL, &away, "gate/alarm", BEGIN "\"alarm\":\"no_response\",\"is_on\":false,\"distance_mm\":null"},
+    {GATE, NULL, &near, "gate/alarm", "\"alarm\":\"on\",\"is_on\":true,\"distance_mm\":480"},
+    {GATE, NULL, &away, "gate/alarm", "\"alarm\":\"no_response\",\"is_on\":false,\"distance_mm\":null"},
 };
 
 TEST(a_message_has_what_its_topic_tells_of_a_reading)
@@ -302,13 +418,33 @@ TEST(the_bytes_are_a_bound_too_and_other_bounds_keep_what_fits)
     (void)publish(PIT, NULL, &target);
     settings.queue_bytes = (uint32_t)publisher.queue.bytes;
     publisher_change(&publisher, &site, false);
-    expect_queue("gate 1 pit 1");
-    (void)publish(PIT, NULL, &target); /* it is shorter than gate's */
-    expect_queue("pit 1 pit 2");
+    expect_queue("gate 1 gate 1 pit 1"); /* of gate the alarm too, which is unknown */
+    (void)publish(PIT, NULL, &target);   /* it is shorter than gate's */
+    expect_queue("gate 1 pit 1 pit 2");
     settings.queue_bytes = (uint32_t)publisher.queue.bytes - 1;
     publisher_change(&publisher, &site, false);
-    expect_queue("pit 2");
-    assert_int_equal(publisher.queue.dropped, 2);
+    expect_queue("pit 1 pit 2");
+    assert_int_equal(publisher.queue.dropped, 1);
+}
+
+/* What an alarm is now is retained: a new message that the queue has no place for replaces the kept one alone. */
+TEST(the_newest_change_of_an_alarm_is_kept_beside_a_full_queue)
+{
+    topic_t *const topic = topic_at("gate/alarm");
+    (void)publish(GATE, NULL, &near);
+    for (int i = 0; i != 4; i++) (void)publish(PIT, NULL, &target);
+    expect_queue("pit 1 pit 2 pit 3 pit 4");
+    assert_non_null(topic->kept);
+    assert_int_equal(topic->kept->seq, 2); /* the first is that of the start */
+    assert_true(topic->is_due && !topic->kept->is_sent);
+    assert_int_equal(publisher.queue.dropped, 1);
+    (void)publish(GATE, NULL, &away);
+    for (int i = 0; i != 4; i++) (void)publish(PIT, NULL, &target);
+    assert_int_equal(topic->kept->seq, 3);
+    assert_int_equal(topic->dropped, 2);
+    assert_int_equal(publisher.queue.dropped, 2 + topic_at("pit/state")->dropped);
+    publisher_change(&publisher, &site, false);
+    assert_non_null(topic->kept);
 }
 
 /* ---- another file ---- */
@@ -367,7 +503,7 @@ static const struct {
      "\"state_topic\":\"fathom/mill/north/pit/state\",\"qos\":1,"
      "\"value_template\":\"{{ value_json.status }}\",\"expire_after\":33,"},
     {BUMPER, ENTITY_DISTANCE,
-     "{\"name\":\"distance 1\",\"unique_id\":\"fathom_mill_north_bumper_1_1_distance\","
+     "{\"name\":\"distance 1\",\"unique_id\":\"fathom_mill_north_bumper__2e1_1_distance\","
      "\"state_topic\":\"fathom/mill/north/bumper.1/1/state\",\"qos\":1,"
      "\"value_template\":\"{{ value_json.distance_mm }}\",\"device_class\":\"distance\","
      "\"unit_of_measurement\":\"mm\",\"state_class\":\"measurement\",\"expire_after\":33,"},

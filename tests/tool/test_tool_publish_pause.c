@@ -42,7 +42,7 @@ static int set_up(void **state)
     *state = &fd;
     time_us = 1000;
     assert_int_equal(fathom_loop_init(&loop, NULL), FATHOM_POSIX_OK);
-    broker_begin(&broker, &host, &loop, &settings);
+    broker_begin(&broker, &host, &loop, &settings, NULL, NULL);
     return 0;
 }
 

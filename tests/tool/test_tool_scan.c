@@ -416,6 +416,21 @@ FINDS(a_rate_that_the_port_does_not_have_is_left_out, "--baud 9600,230400,19200"
       "fathom: this port does not have 230400 8E1, so the scan leaves it out.\n", HPS167S(.address = 1),
       scans.refused_baud = 230400)
 
+FINDS(the_result_names_the_settings_that_were_left_out, "--baud 9600,230400,57600", "",
+      ". Not asked, since the port does not have them: 230400 8E1\n", scans.refused_baud = 230400)
+
+TEST(a_scan_that_left_out_every_setting_has_asked_nothing_and_concludes_nothing)
+{
+    scans.refused_baud = 230400;
+    const tool_run_t *const run = scan_finds("", "--baud 230400 --parity none,even");
+    assert_non_null(
+        strstr(run->err, "fathom: nothing was asked, because the port has none of these settings."));
+    assert_null(strstr(run->err, "no sensor was found"));
+    assert_null(strstr(run->err, "sensors found"));
+    assert_int_equal(run->status, 1);
+    assert_int_equal(scans.requests, 0);
+}
+
 TEST(an_a16_at_address_0_is_found_and_no_broadcast_is_sent)
 {
     A16(.address = 1);
@@ -502,7 +517,8 @@ TEST(a_silent_address_is_asked_again_as_often_as_the_user_says)
     assert_int_equal(scans.probed[0][FATHOM_PARITY_NONE], 4 * 3);
     assert_int_equal(scans.probed[1][FATHOM_PARITY_EVEN], 4 * 3);
     assert_true(run->took_us <= said_us);
-    assert_says(run, "fathom: asking addresses 1 to 4 at 9600 8N1, 19200 8E1 takes about 1");
+    assert_says(run, "fathom: listens for 8 s, and then sends requests to addresses 1 to 4 at 9600 8N1, "
+                     "19200 8E1: about 1");
 }
 
 TEST(an_address_has_150_ms_on_the_line_of_a16_and_a05_and_100_ms_elsewhere)
@@ -658,11 +674,10 @@ TEST(an_a16_and_an_a05_that_send_automatically_are_named_and_nothing_is_sent)
     }
 }
 
-FINDS(
-    a_sensor_that_sends_automatically_is_asked_if_the_user_says_so, "--wake", "a16 7 9600 8N1",
-    "the sensor sent automatically until the scan asked it. It sends again after a power cycle, or when 1 is "
-    "written to its register 0x0202",
-    bench.line.full_duplex = true, A16(.address = 7, .mode = FATHOM_SIM_A16_AUTO))
+FINDS(a_sensor_that_sends_automatically_is_asked_if_the_user_says_so, "--wake", "a16 7 9600 8N1",
+      "the sensor sent automatically until the first request. It sends again after a power cycle, or after "
+      "'fathom set a16:ADDRESS --port line automatic-output on'.",
+      bench.line.full_duplex = true, A16(.address = 7, .mode = FATHOM_SIM_A16_AUTO))
 
 TEST(a_sensor_that_hears_no_request_and_goes_on_sending_is_named)
 {
@@ -757,7 +772,9 @@ TEST(junk_from_one_address_of_two_is_damage_and_from_the_only_one_another_protoc
 {
     add_speaker(&dyp_line, 0, junk, sizeof junk)->address = 3;
     assert_says(scan_finds("? - 9600 8N1", "--address 3"), "a response that is not Modbus\n");
-    assert_says(scan_finds("? 3 9600 8N1", "--address 3-4"), "damaged responses");
+    const tool_run_t *const run = scan_finds("? 3 9600 8N1", "--address 3-4");
+    assert_says(run, "damaged responses");
+    assert_says(run, "fathom: no sensor was found. A sensor that was just switched on may need 5 s\n");
 }
 
 /* ---- other Modbus devices ---- */

@@ -31,9 +31,19 @@ typedef struct {
 
 typedef struct {
     const char *name;
+    counts_t counts; /* at the end */
     step_t steps[18];
-    counts_t counts;
 } conversation_t;
+
+/* A row of a table of conversations: TALK("what_is_so", COUNTS(.responses = 1), ASK(A, 1), ...). */
+#define COUNTS(...)                                                                                          \
+    {                                                                                                        \
+        __VA_ARGS__                                                                                          \
+    }
+#define TALK(its_name, its_counts, ...)                                                                      \
+    {                                                                                                        \
+        its_name, its_counts, { __VA_ARGS__ }                                                                \
+    }
 
 enum { A, B };
 

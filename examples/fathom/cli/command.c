@@ -69,12 +69,13 @@ static size_t distance(const char *one, const char *other)
     return d[n][m];
 }
 
-/* Suggests a name if about a third of the letters differs at most. */
+/* Suggests a name that contains the word, or one in which about a third of the letters differs at most. */
 void nearest_try(nearest_t *nearest, const char *name)
 {
     const size_t length = strlen(nearest->word);
     const bool is_begin = length > 1 && strncmp(nearest->word, name, length) == 0;
-    const size_t this_distance = is_begin ? 1 : distance(nearest->word, name);
+    const bool is_part = length > 3 && strstr(name, nearest->word) != NULL;
+    const size_t this_distance = is_begin ? 1 : is_part ? 2 : distance(nearest->word, name);
     const size_t limit = nearest->name != NULL ? nearest->distance : (length + 1) / 3 + 1;
     list_add(nearest->known, sizeof nearest->known, name);
     if (this_distance >= limit || this_distance >= strlen(name)) return;

@@ -215,7 +215,7 @@ static bool reject_yaml(const config_t *config, const yaml_parser_t *parser)
 {
     const origin_t origin =
         at_mark(config, parser->error == YAML_READER_ERROR ? &parser->mark : &parser->problem_mark);
-    return reject(&origin, "this is no YAML: %s%s%s.",
+    return reject(&origin, "this is no YAML: %s%s%s. Check the indent (spaces, no tabs) and the quotes.",
                   parser->problem != NULL ? parser->problem : "no memory", parser->context != NULL ? " " : "",
                   parser->context != NULL ? parser->context : "");
 }
@@ -437,6 +437,13 @@ static bool set_site(config_t *config)
 
 /* ---- lines and sensors ---- */
 
+/* Of a site a/b, b can be a sensor of a site a, and 1 to 4 a probe of that sensor. */
+static bool is_probe_elsewhere(const publish_settings_t *settings, const char *name)
+{
+    const bool has_levels = strchr(settings->prefix, '/') != NULL || strchr(settings->site, '/') != NULL;
+    return has_levels && name[0] >= '1' && name[0] <= '0' + FATHOM_DYP_PROBES && name[1] == '\0';
+}
+
 static bool read_sensor(config_t *config, const line_keys_t *line, const yaml_node_t *line_map,
                         const yaml_node_t *map)
 {
@@ -458,6 +465,11 @@ static bool read_sensor(config_t *config, const line_keys_t *line, const yaml_no
     origin = at_key(config, map, "name", "name");
     if (!sensor_name_is_good(sensor->name, strlen(sensor->name)))
         return reject(&origin, "name is '%s'. It takes %s.", sensor->name, sensor_keys[0].takes);
+    if (is_probe_elsewhere(&config->top.settings, sensor->name))
+        return reject(&origin,
+                      "name is '%s'. In %s/%s it has the topics of a probe of another site's sensor. Take "
+                      "another name, such as s%s.",
+                      sensor->name, config->top.settings.prefix, config->top.settings.site, sensor->name);
     (void)snprintf(word->name, sizeof word->name, "%s", sensor->name);
     return true;
 }

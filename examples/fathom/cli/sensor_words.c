@@ -76,7 +76,13 @@ const model_t *model_word(const char *name, const origin_t *origin)
         if (strcmp(name, models[i].name) == 0) return &models[i];
         nearest_try(&nearest, models[i].name);
     }
-    (void)reject_unknown(origin, "sensor", "", &nearest, true);
+    if (name[0] != '\0' && strspn(name, "0123456789") == strlen(name))
+        (void)reject(
+            origin,
+            "unknown sensor '%s'. An address stands behind its sensor and a colon, such as hps167s:%s.", name,
+            name);
+    else
+        (void)reject_unknown(origin, "sensor", "", &nearest, true);
     return NULL;
 }
 
@@ -428,11 +434,14 @@ static bool set_names(const site_t *site, const sensor_word_t *words)
     for (size_t i = 0; i != site->sensor_count; i++)
         for (size_t j = 0; j != i; j++) {
             const sensor_t *const sensor = sensors[i];
-            const bool is_of_file = words[i].origin.file != NULL;
             if (strcmp(sensors[j]->name, sensor->name) != 0) continue;
-            return reject(&words[i].origin, "two sensors have the name %s. %s%s.", sensor->name,
-                          is_of_file ? "Change name: of one of them" : "Give each its own name, such as one=",
-                          is_of_file ? "" : sensor->model->name);
+            if (words[i].origin.file != NULL)
+                return reject(&words[i].origin,
+                              "two sensors have the name %s, in line %u too. Change name: of one of them.",
+                              sensor->name, words[j].origin.line);
+            return reject(&words[i].origin,
+                          "two sensors have the name %s. Give each its own name, such as one=%s.",
+                          sensor->name, sensor->model->name);
         }
     return true;
 }

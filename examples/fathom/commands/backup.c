@@ -265,7 +265,9 @@ static bool is_still_same(void)
     (void)printf("%s: responds at the new place, %s\n", session.sensor->name,
                  session_line_text(&session, line));
     return print_identity(&plan.unit, "before", &now, "now") ||
-           session_fail(&session, FATHOM_OK, "another sensor responds at the new place. Run 'fathom scan'");
+           session_fail(&session, FATHOM_OK,
+                        "another sensor responds at the new place. Run 'fathom scan --port %s'",
+                        session.sensor->port->path);
 }
 
 static bool restore(bool is_dry)
@@ -338,7 +340,8 @@ const command_t save_command = {
 
 static const option_t restore_rows[] = {
     {"file", "FILE", "Read the settings from FILE, which 'fathom save' wrote", KIND_TEXT, GROUP_COMMAND,
-     AT(backup_settings_t, path), .is_path = true, .is_required = true, .takes = "the name of a file"},
+     AT(backup_settings_t, path), .is_path = true, .is_required = true,
+     .takes = "the name of a file, such as --file gate.txt"},
     {"dry-run", .help = "Print the differences and write nothing", .group = GROUP_COMMAND,
      AT(backup_settings_t, is_dry)},
     {"as-new", .help = "Also set the address and baud rate of the saved sensor", .group = GROUP_COMMAND,

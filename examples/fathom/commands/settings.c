@@ -69,7 +69,9 @@ static bool print_remarks(void)
         const setting_t *const setting = value->setting;
         if (!has_text(value) && value->held != HELD_NOT_READABLE) missing++;
         if (setting->remark != NULL && has_text(value) && strcmp(value->text, setting->words[1]) == 0)
-            (void)session_fail(&session, FATHOM_OK, "%s", setting->remark);
+            (void)session_fail(&session, FATHOM_OK, "%s with 'fathom set %s:%u --port %s %s %s'",
+                               setting->remark, session.sensor->model->name, session.sensor->address,
+                               session.sensor->port->path, setting->name, setting->words[0]);
     }
     if (values.is_known && missing != 0)
         (void)session_fail(&session, FATHOM_OK, "%zu of %zu values could not be read.", missing, all);

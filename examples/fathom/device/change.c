@@ -232,7 +232,7 @@ static void print_done(const change_t *change, change_outcome_t outcome)
     else if (outcome == CHANGE_UNCHANGED)
         (void)printf(": %s", words[outcome]);
     else if (setting->read_at != 0)
-        (void)printf(" (was %s)", change->was);
+        (void)printf("%s (was %s)", setting->is_later ? " from the next power-on" : "", change->was);
     else if (setting->confirmed != NULL)
         (void)printf(": %s", setting->confirmed);
     (void)puts("");

@@ -81,12 +81,14 @@ bool session_open(session_t *session, const host_t *host)
 {
     port_options_t options = *session->sensor->port;
     options.line = session->sensor->line;
-    if (!session->has_begun && !host->begin(host->ctx)) return false;
+    const bool is_first = !session->has_begun;
+    if (is_first && !host->begin(host->ctx)) return false;
     session->has_begun = true;
     if (!port_open_now(&session->port, host, &options)) {
         (void)fprintf(stderr, "fathom: %s\n", session->port.error_text);
         return false;
     }
+    if (is_first) advice_print_opening(&session->port);
     progress_init(&session->progress, stderr, host->now_us(host->ctx), 0);
     session->doing = NULL;
     if (!start(session)) {

@@ -67,6 +67,15 @@ static uint64_t fact(const failure_t *failure, const char *name, size_t length)
         {"tcp", port->kind == PORT_GATEWAY},
         {"lost", port->error == PORT_LOST},
         {"waits", failure->waits}, /* for the lost port */
+        {"ends", !failure->waits},
+        {"may-wait", !failure->waits && !failure->is_scan && !failure->is_setting && !failure->is_request},
+        /* another program at the port */
+        {"holder", failure->holder.program},
+        {"hidden", failure->holder.is_hidden},
+        {"console", failure->holder.is_console},
+        {"changed", failure->holder.is_changed},
+        {"hung-up", failure->holder.is_hung_up},
+        {"taken", failure->holder.is_hung_up || failure->holder.is_changed}, /* a lost port that is there */
         {"pulses", mode->has_pulses},
         {"noises", failure->noises}, /* pulses that are too short */
         /* the sensor has responded in this run, so its settings are right */
@@ -75,11 +84,13 @@ static uint64_t fact(const failure_t *failure, const char *name, size_t length)
         {"address", failure->address},
         {"others", failure->others_answer}, /* on this line */
         {"request", failure->is_request},
+        {"not-request", !failure->is_request},
         {"setting", failure->is_setting},
         {"scan", failure->is_scan},
         {"not-scan", !failure->is_scan},
         {"reads", !failure->is_scan && !failure->is_setting && !failure->is_request},
         {"damaged", counters->failures[-FATHOM_ERR_CHECKSUM]}, /* attempts */
+        {"share", failure->damaged},
         {"attempts", counters->attempts + 1},
         /* what was received */
         {"silence", heard->bytes == 0},
@@ -90,6 +101,7 @@ static uint64_t fact(const failure_t *failure, const char *name, size_t length)
         {"timeout", (heard->slowest_us / 500u + 99u) / 100u * 100u}, /* twice the time, in steps of 100 ms */
         {"masters", heard->masters},                                 /* requests of another master, ... */
         {"asked-address", heard->masters_address},                   /* ... to this unit */
+        {"headless", heard->headless},                               /* a response without its first bytes */
         {"foreign", heard->foreign},                                 /* frames of another address */
         {"foreign-address", heard->foreign_address},
         {"impossible", heard->foreign_address > model->max_address}, /* which the model cannot have */
@@ -136,6 +148,7 @@ typedef struct {
 
 #define AT(status) (1u << -(int)(status))
 enum {
+    GOOD = AT(FATHOM_OK),
     PORT = AT(FATHOM_ERR_PORT),
     UNSUPPORTED = AT(FATHOM_ERR_UNSUPPORTED),
     CANCELLED = AT(FATHOM_ERR_CANCELLED),
@@ -153,6 +166,15 @@ enum {
 #define SAME_EFFECT "Swapped wires A and B and noise have the same effect"
 #define DISTURBANCE                                                                                          \
     "Check the screw terminals, the cable, its termination and ground, and keep it away from motors"
+#define UNSEEN "[hidden:. To see whether another program has the port open, run 'sudo fuser -v {path}']"
+#define TAKEN                                                                                                \
+    "{path}: the device is there, but another program [hung-up:has hung up the port][changed:has changed "   \
+    "the "                                                                                                   \
+    "settings of the port]"
+#define TAKEN_ADVICE                                                                                         \
+    "[ends:, then start again][may-wait:. With --reconnect, fathom opens the port again][waits:. Waiting "   \
+    "until "                                                                                                 \
+    "the port can be opened]"
 #define NO_MASTER "Disconnect the other master or stop its program"
 #define PULSE_WIRES                                                                                          \
     "Check the supply and ground of the sensor, the wires from trigger to its RX and from its TX to echo, "  \
@@ -161,6 +183,8 @@ enum {
 
 /* The first row that fits is the cause. */
 static const row_t causes[] = {
+    {PORT, "lost taken holder", TAKEN ". {holder} has it open", "{stop}" TAKEN_ADVICE},
+    {PORT, "lost taken", TAKEN, "Stop this program ('sudo fuser -v {path}' may name it)" TAKEN_ADVICE},
     {PORT, "lost waits", "{port-error}", "Waiting until it is back"},
     {PORT, "lost tcp", "{port-error}", "Start again[reads:. With --reconnect, fathom connects again]"},
     {PORT, "lost", "{port-error}",
@@ -169,6 +193,21 @@ static const row_t causes[] = {
     {UNSUPPORTED, "", "the port does not support this, and nothing was sent",
      "Choose other line settings or another adapter"},
     {CANCELLED, "", "the command ended before the response arrived", NULL},
+
+    {GOOD | NO_MATCH | STALE | MALFORMED | OTHER_MASTER, "holder",
+     "{holder} has {path} open too. Two programs at one port take each other's bytes",
+     "{stop}, then try again"},
+    {GOOD | NO_MATCH | STALE | MALFORMED | OTHER_MASTER, "changed",
+     "another program has changed the settings of {path}",
+     "Stop this program ('sudo fuser -v {path}' may name it), then start again"},
+    {NO_MATCH | STALE | MALFORMED, "console bytes",
+     "{path} is the console of the kernel, whose messages and login are on the same line",
+     "Switch the console off; 'fathom help trouble' says how"},
+
+    {GOOD, "", "{share} of 100 frames are damaged. The others are right, so the baud rate is right",
+     "Check for a long cable at TTL level, a missing common ground and noise, and whether a microcontroller "
+     "passes "
+     "the bytes on that it receives by SoftwareSerial: use one of its UARTs" UNSEEN},
 
     {NO_RESPONSE, "pins noises",
      "no pulse of the sensor, but {noises} shorter ones: noise on the wire of echo",
@@ -185,12 +224,19 @@ static const row_t causes[] = {
     {NO_RESPONSE, "triggered", "nothing followed the trigger",
      "Check the supply, the wires from the adapter's TX (or the line trigger=) to the sensor's RX and back, "
      "that the adapter can send a break, and that the sensor is the UART controlled variant (if not: --mode "
-     "auto or --mode modbus)"},
+     "auto or --mode modbus)" UNSEEN},
     {CHECKSUM, "triggered", "the bytes after the trigger form no frame",
-     "Check {settings}, and look for noise"},
+     "Check {settings}, and look for noise" UNSEEN},
 
     {NO_RESPONSE, "asked late", "the response arrived after the time-out[took: (it took {took} ms)]",
      "Try a longer --timeout[took:, such as --timeout {timeout}]"},
+    {NO_MATCH, "asked headless",
+     "the first bytes of the response are missing or damaged, and the others are right, so the settings are "
+     "right: the "
+     "adapter or the gateway switches from sending to receiving too late (driver enable, DE and RE)",
+     "[request:Try again][not-request:Try --retries 2], and use an adapter or a setting that releases the "
+     "line "
+     "sooner"},
     {NO_MATCH, "asked masters", "another master sends requests on this line (to address {asked-address})",
      NO_MASTER},
     {NO_MATCH, "asked foreign impossible",
@@ -201,13 +247,14 @@ static const row_t causes[] = {
      "Try 'fathom read {streamed} --mode auto'"},
 
     {STALE | CHECKSUM, "listened silence worked", "no byte was received. Earlier readings were good",
-     "Check the power and the wires of the sensor"},
+     "Check the power and the wires of the sensor" UNSEEN},
     {STALE | CHECKSUM, "listened silence addressed", "no byte was received",
      "Check the power and whether A and B are swapped. If the sensor does not send automatically, use --mode "
-     "modbus. To find its address, run 'fathom scan'"},
+     "modbus. To find its address, run 'fathom scan --port {path}'" UNSEEN},
     {STALE | CHECKSUM, "listened silence", "no byte was received",
-     "Check the power and the wire of the sensor's TX. If the sensor does not send automatically, use --mode "
-     "modbus. If it has an address, name it with its address, such as {model}:7; 'fathom scan' finds it"},
+     "Check the power and the wire of the sensor's TX. A Modbus request ends the automatic output: switch "
+     "the sensor off and on, or use --mode modbus. If it has an address, name it with its address, such as "
+     "{model}:7; 'fathom scan --port {path}' finds it" UNSEEN},
     {STALE | CHECKSUM, "listened addressed foreign", "the line works, but address {foreign-address} sends",
      "Try {other}"},
     {STALE | CHECKSUM, "listened modbus", "Modbus frames were received, but no measurement of {sensor}",
@@ -219,11 +266,11 @@ static const row_t causes[] = {
     {STALE | CHECKSUM, "listened worked",
      "the bytes form no frame[dropped: (damaged frames: {damaged-frames}, bytes in no frame: {dropped})]. "
      "Earlier readings were good, so the settings are right",
-     DISTURBANCE},
+     DISTURBANCE UNSEEN},
     {STALE | CHECKSUM, "listened",
      "the bytes form no frame of {model}[dropped: (damaged frames: {damaged-frames}, bytes in no frame: "
      "{dropped})]",
-     "Check {settings}, and that the sensor is {model}. " SAME_EFFECT},
+     "Check {settings}, and that the sensor is {model}. " SAME_EFFECT UNSEEN},
 
     {EXCEPTION, "", "exception {exception}", NULL},
 
@@ -252,29 +299,31 @@ static const row_t causes[] = {
      "it",
      "Check the wires behind the adapter (A, B, ground), the supply, and {option}"},
     {NO_RESPONSE, "asked old", "{old} bytes of unknown age were received and dropped",
-     "The computer was busy or asleep, or the adapter delays bytes. Try again, or try a longer --timeout"},
+     "The computer was busy or asleep, the adapter delays bytes, or a device sends without a request. Try "
+     "again, or try a longer --timeout"},
     {NO_RESPONSE, "asked own", "frames of this address were received, but no response",
      "Check that no other master asks, and that only one sensor has this address"},
     {NO_RESPONSE, "asked bytes worked",
      "bytes were received, but no {protocol} frame. Earlier responses were good, so the settings are right",
-     DISTURBANCE},
+     DISTURBANCE UNSEEN},
     {NO_RESPONSE, "asked bytes", "bytes were received, but no {protocol} frame",
-     "Check {settings}. " SAME_EFFECT},
+     "Check {settings}. Swapped wires A and B, noise and two sensors at one address have the same "
+     "effect" UNSEEN},
     {NO_RESPONSE, "asked worked",
      "no byte was received. Earlier responses were good, so the settings are right",
-     "Check the power and the wires of the sensor"},
+     "Check the power and the wires of the sensor" UNSEEN},
     {NO_RESPONSE, "asked others", "no byte was received, but other sensors on this line respond",
-     "Check the power, the wires, the address and the settings of this sensor"},
+     "Check the power, the wires, the address and the settings of this sensor" UNSEEN},
     {NO_RESPONSE, "asked", "no byte was received",
      "Check the power, whether A and B (or RX and TX) are swapped, {option}, and --baud and "
-     "--parity[not-scan:, or run 'fathom scan']"},
+     "--parity[not-scan:, or run 'fathom scan --port {path}']" UNSEEN},
 
     {CHECKSUM, "asked worked",
      "earlier responses were good, so the settings are right and the line is disturbed[damaged: ({damaged} "
      "of {attempts} attempts)]",
-     DISTURBANCE},
+     DISTURBANCE UNSEEN},
     {CHECKSUM, "asked", "its checksum is wrong",
-     "Check --parity, the cable and its termination, and that no other sensor has this address"},
+     "Check --parity, the cable and its termination, and that no other sensor has this address" UNSEEN},
 
     {LINE_BUSY, "asked own", "frames of this address fill the line", "Let the sensor send less often"},
     {LINE_BUSY, "asked worked", "the line was never silent", DISTURBANCE},
@@ -432,6 +481,8 @@ static void print_word(FILE *to, const char *name, const failure_t *failure)
         {"hex", hex, NULL},
         {"model", model, NULL},
         {"path", failure->port->name, NULL},
+        {"holder", failure->holder.who, NULL},
+        {"stop", failure->holder.stop, NULL},
         {"protocol", failure->mode->protocol, NULL},
         {"option", option, NULL},
         {"streamed", failure->evidence.streamed_a05 != 0 ? "a05" : "a16", NULL},
@@ -484,7 +535,29 @@ failure_t failure_of_request(fathom_status_t status, const port_t *port)
     return (failure_t){.status = status, .model = &model, .mode = &mode, .port = port, .counters = &counters};
 }
 
-void advice_print_cause(FILE *to, const failure_t *failure)
+uint32_t advice_at_opening(char *text, size_t size, const port_t *port)
+{
+    holder_t holder;
+    holder_find(&holder, &port->serial, port->name);
+    if (holder.program != 0)
+        (void)snprintf(text, size, "%s has the port open too, and two programs take each other's bytes. %s",
+                       holder.who, holder.stop);
+    else if (holder.is_console)
+        (void)snprintf(
+            text, size,
+            "the port is the console of the kernel, whose messages and login disturb the sensor. Switch the "
+            "console off; 'fathom help trouble' says how");
+    return holder.program != 0 ? holder.program : holder.is_console;
+}
+
+void advice_print_opening(const port_t *port)
+{
+    char text[384];
+    if (advice_at_opening(text, sizeof text, port) != 0)
+        (void)fprintf(stderr, "fathom: %s: %s.\n", port->name, text);
+}
+
+static void print_cause(FILE *to, const failure_t *failure)
 {
     const row_t *const cause = find(causes, failure);
     print(to, cause->text, failure);
@@ -493,14 +566,29 @@ void advice_print_cause(FILE *to, const failure_t *failure)
     print(to, cause->advice, failure);
 }
 
+static failure_t with_holder(const failure_t *failure)
+{
+    failure_t whole = *failure;
+    holder_find(&whole.holder, &failure->port->serial, failure->port->name);
+    return whole;
+}
+
+void advice_print_cause(FILE *to, const failure_t *failure)
+{
+    const failure_t whole = with_holder(failure);
+    print_cause(to, &whole);
+}
+
 void advice_print(FILE *to, const failure_t *failure)
 {
     print(to, find(failures, failure)->text, failure);
     advice_print_cause(to, failure);
 }
 
-void advice_print_new(FILE *to, const failure_t *failure, reported_t *reported)
+void advice_print_new(FILE *to, const failure_t *shown, reported_t *reported)
 {
+    const failure_t whole = with_holder(shown);
+    const failure_t *const failure = &whole;
     const reader_facts_t facts = reader_facts(failure->reader);
     const uint64_t *const port = failure->counters->attempt.port;
     const uint8_t parts[] = {(uint8_t)(find(causes, failure) - causes),
@@ -515,12 +603,13 @@ void advice_print_new(FILE *to, const failure_t *failure, reported_t *reported)
                                                       : 0};
     uint64_t cause = facts.refused_probe != 0 && fact(failure, "code", 4) != 0 ? facts.refused_raw : 0;
     for (size_t i = 0; i != sizeof parts; i++) cause = cause * UINT64_C(1099511628211) + parts[i];
+    cause += failure->holder.program;
     const bool is_new =
         reported->times == 0 || reported->cause != cause || failure->status == FATHOM_ERR_PORT;
     *reported = (reported_t){cause, is_new ? 1 : reported->times + 1};
     print(to, find(failures, failure)->text, failure);
     if (is_new)
-        advice_print_cause(to, failure);
+        print_cause(to, failure);
     else
         (void)fprintf(to, "the same cause as before, %" PRIu64 " times in a row", reported->times);
 }

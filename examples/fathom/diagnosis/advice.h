@@ -5,9 +5,10 @@
 #include <stdio.h>
 
 #include "diagnosis/counters.h"
+#include "ports/holder.h"
 #include "sensors/models.h"
 
-/* A failed attempt, and the evidence from which its cause is judged. */
+/* A failed attempt, and the evidence from which its cause is judged. FATHOM_OK: frames between good ones are damaged. */
 typedef struct {
     fathom_status_t status;
     const model_t *model;
@@ -18,8 +19,10 @@ typedef struct {
     const fathom_line_settings_t *line; /* with which the sensor was asked; NULL: with several */
     const char *shared;                 /* name of the sensor among others; NULL: it is the only one */
     evidence_t evidence;                /* what was received in this attempt */
+    holder_t holder;                    /* set here: who else uses the port */
     uint32_t noises;                    /* pulses of this attempt that were too short */
     uint8_t address;
+    uint8_t damaged;    /* with FATHOM_OK: frames of a hundred */
     bool others_answer; /* other sensors on this line respond */
     bool waits;         /* the command waits for a lost port */
     bool is_told;       /* a failure of the same port was already reported for another sensor */
@@ -31,6 +34,12 @@ typedef struct {
 
 /* Returns a failed Modbus request to a sensor of unknown model. The caller adds the evidence. */
 failure_t failure_of_request(fathom_status_t status, const port_t *port);
+
+/* Writes which other program uses a port that was just opened. Returns a number for this program, 0: there is none. */
+uint32_t advice_at_opening(char *text, size_t size, const port_t *port);
+
+/* The same, printed on the standard error as a message. */
+void advice_print_opening(const port_t *port);
 
 /* Prints what failed, why, and what to try, without a line feed. After good readings the settings are right, so the cause
  * is the wiring, the power or a disturbance. */

@@ -117,6 +117,36 @@ void counters_time(counters_t *counters, uint32_t took_us)
     counters->time_sum_us += took_us;
 }
 
+/* A block is bad with 3 damaged frames of 50. Two bad blocks in a row with 12 damaged frames are reported, or four with 3
+ * each: if 2 in 100 frames are damaged at random, that takes days at ten frames a second. A burst is in one block. */
+unsigned counters_take_damage(counters_t *counters)
+{
+    enum { BLOCK = 50, BAD = 3, LEAST_BLOCKS = 2, LEAST_DAMAGED = 12, GOOD_BLOCKS = 12 };
+    damage_t *const damage = &counters->damage;
+    const uint64_t *const stream = counters->total.stream;
+    const uint32_t damaged = (uint32_t)(stream[FATHOM_STREAM_DAMAGED] - damage->damaged);
+    const uint32_t frames = (uint32_t)(stream[FATHOM_STREAM_FRAMES] - damage->frames) + damaged;
+    if (frames < BLOCK || counters->readings == 0) return 0;
+    damage->damaged = stream[FATHOM_STREAM_DAMAGED];
+    damage->frames = stream[FATHOM_STREAM_FRAMES];
+    if (damaged * BLOCK < BAD * frames) {
+        damage->bad_blocks = 0;
+        damage->bad_frames = damage->bad_damaged = 0;
+        if (damage->good_blocks != GOOD_BLOCKS && ++damage->good_blocks == GOOD_BLOCKS) damage->reported = 0;
+        return 0;
+    }
+    damage->good_blocks = 0;
+    damage->bad_frames += frames;
+    damage->bad_damaged += damaged;
+    if (++damage->bad_blocks < LEAST_BLOCKS || damage->bad_damaged < LEAST_DAMAGED) return 0;
+    const uint8_t share = (uint8_t)((uint64_t)damage->bad_damaged * 100 / damage->bad_frames);
+    damage->bad_blocks = 0;
+    damage->bad_frames = damage->bad_damaged = 0;
+    if (share < 2 * damage->reported) return 0;
+    damage->reported = share;
+    return share;
+}
+
 void counters_add(counters_t *sum, const counters_t *part)
 {
     const bool is_first = sum->timed == 0;

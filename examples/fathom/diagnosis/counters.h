@@ -44,6 +44,17 @@ typedef struct {
     uint64_t port[PORT_COUNTERS];
 } counts_t;
 
+/* The share of damaged frames of a sensor that sends automatically, in blocks of frames. */
+typedef struct {
+    uint64_t frames; /* of the stream, when the present block began */
+    uint64_t damaged;
+    uint32_t bad_frames; /* in the newest blocks in a row that have too many damaged frames, ... */
+    uint32_t bad_damaged;
+    uint8_t bad_blocks;
+    uint8_t good_blocks; /* ... and the number of the others in a row */
+    uint8_t reported;    /* the share that was reported, in percent; 0: none */
+} damage_t;
+
 /* Invariant: from `total` to `time_sum_us`, all members are uint64_t. counters_add() adds them. */
 typedef struct {
     counts_t attempt; /* since counters_begin_attempt */
@@ -57,6 +68,7 @@ typedef struct {
     uint64_t time_sum_us;
     uint32_t time_min_us;
     uint32_t time_max_us;
+    damage_t damage;
 } counters_t;
 
 /* Moves the counters of the line, the sensor and the port. Returns those of the sensor. */
@@ -71,6 +83,10 @@ void counters_begin_attempt(counters_t *counters);
 size_t counters_failure_kind(fathom_status_t status, const reader_t *reader);
 
 void counters_time(counters_t *counters, uint32_t took_us);
+
+/* Returns the share of damaged frames in percent, if more than a few in a hundred are damaged and the user does not know
+ * it: once, and again if the share has doubled or comes back after a minute. A burst does not count. Else 0. */
+unsigned counters_take_damage(counters_t *counters);
 
 /* Adds what one sensor has counted to the sums of all; the present attempt is left out. */
 void counters_add(counters_t *sum, const counters_t *part);

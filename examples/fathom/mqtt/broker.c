@@ -128,6 +128,17 @@ static void on_publish(struct mosquitto *mosq, void *ctx, int number)
     if (*at != NULL) forget(broker, at);
 }
 
+/* The payload has no end of its own. */
+static void on_message(struct mosquitto *mosq, void *ctx, const struct mosquitto_message *message)
+{
+    const broker_t *const broker = ctx;
+    char *const payload = allocate((size_t)message->payloadlen + 1);
+    (void)mosq;
+    if (message->payloadlen != 0) memcpy(payload, message->payload, (size_t)message->payloadlen);
+    broker->received(broker->received_ctx, message->topic, payload, message->retain);
+    free(payload);
+}
+
 static void on_log(struct mosquitto *mosq, void *ctx, int level, const char *text)
 {
     broker_t *const broker = ctx;
@@ -220,6 +231,14 @@ bool broker_send(broker_t *broker, const char *topic, const char *payload, bool 
     return true;
 }
 
+void broker_subscribe(broker_t *broker, const char *filter, bool is_wanted)
+{
+    if (is_wanted)
+        (void)mosquitto_subscribe(broker->mosq, NULL, filter, 0);
+    else
+        (void)mosquitto_unsubscribe(broker->mosq, NULL, filter);
+}
+
 void broker_hold(broker_t *broker, bool is_held)
 {
     const int value = is_held;
@@ -230,8 +249,7 @@ void broker_hold(broker_t *broker, bool is_held)
 static void start_sending(broker_t *broker)
 {
     const broker_settings_t *const settings = &broker->settings.broker;
-    if (broker->reported[0] != '\0')
-        (void)fprintf(stderr, "fathom: broker %s port %u: connected.\n", settings->host, settings->port);
+    (void)fprintf(stderr, "fathom: broker %s port %u: connected.\n", settings->host, settings->port);
     broker->reported[0] = '\0';
     for (broker_sent_t *sent = broker->sent; sent != NULL; sent = sent->next)
         if (sent->number == 0) (void)submit(broker, sent);
@@ -285,6 +303,7 @@ static void make_client(broker_t *broker)
     if (broker->mosq == NULL) end_without_memory();
     mosquitto_connect_callback_set(broker->mosq, on_connect);
     mosquitto_publish_callback_set(broker->mosq, on_publish);
+    mosquitto_message_callback_set(broker->mosq, on_message);
     mosquitto_log_callback_set(broker->mosq, on_log);
     (void)mosquitto_int_option(broker->mosq, MOSQ_OPT_TCP_NODELAY, 1);
     topic_name(&broker->settings, TOPIC_STATUS, NULL, 0, will);
@@ -381,12 +400,14 @@ uint32_t broker_tick(broker_t *broker)
 /* ---- start and end ---- */
 
 void broker_begin(broker_t *broker, const host_t *host, fathom_loop_t *loop,
-                  const publish_settings_t *settings)
+                  const publish_settings_t *settings, broker_received_t *received, void *ctx)
 {
     memset(broker, 0, sizeof *broker);
     broker->host = host;
     broker->loop = loop;
     broker->wanted = settings;
+    broker->received = received;
+    broker->received_ctx = ctx;
     (void)mosquitto_lib_init();
 }
 
@@ -400,8 +421,8 @@ void broker_change(broker_t *broker)
     broker->has_changed = true;
     broker->reported[0] = '\0';
     if (broker->phase == BROKER_CONNECTING) return;
+    broker->phase = BROKER_PAUSE; /* without a farewell, which would be the end of the will */
     disconnect(broker);
-    broker->phase = BROKER_PAUSE;
     broker->pause_us = 0;
     broker->until_us = 0;
 }

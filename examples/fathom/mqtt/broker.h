@@ -15,8 +15,7 @@
  * client, the client tries again after a pause that grows from 0.5 s to a minute, shortened by a random part.
  *
  * Up to BROKER_WINDOW messages with QoS 1 are unacknowledged. After a loss libmosquitto sends them again, in their order
- * and before any other message: the broker may get a message twice, but never for the first time after a later one. The
- * client subscribes to nothing.
+ * and before any other message: the broker may get a message twice, but never for the first time after a later one.
  */
 
 /* With a round trip of 30 ms the window allows 500 messages a second. libmosquitto sends up to 20. */
@@ -40,6 +39,9 @@ typedef struct broker_sent {
     char payload[];
 } broker_sent_t;
 
+/* A message that the client subscribed to. The texts are valid during the call. */
+typedef void broker_received_t(void *ctx, const char *topic, const char *payload, bool is_retained);
+
 typedef struct {
     fathom_loop_source_t source; /* first: the loop passes it */
     int fd;
@@ -47,6 +49,8 @@ typedef struct {
     const host_t *host;
     const publish_settings_t *wanted;
     publish_settings_t settings; /* of the present attempt */
+    broker_received_t *received;
+    void *received_ctx;
     struct mosquitto *mosq;
     pthread_t thread;
     bool thread_has_ended; /* atomic; with this result: */
@@ -65,14 +69,14 @@ typedef struct {
     char log[BROKER_TEXT];      /* the latest error of libmosquitto */
 } broker_t;
 
-/* The first broker_tick() connects. *settings must stay valid. When the client is lost, the broker publishes "offline" as the status. */
+/* The first broker_tick() connects. *settings must stay valid. `received` gets what the client subscribed to. When the client is lost, the broker publishes "offline" as the status. */
 void broker_begin(broker_t *broker, const host_t *host, fathom_loop_t *loop,
-                  const publish_settings_t *settings);
+                  const publish_settings_t *settings, broker_received_t *received, void *ctx);
 
 /* Call it before each sleep, outside of a step of the loop. Returns the longest time to sleep in us. */
 uint32_t broker_tick(broker_t *broker);
 
-/* Connects again, since *settings changed. */
+/* Connects again, since *settings changed. The broker that was connected publishes "offline" as the former status. */
 void broker_change(broker_t *broker);
 
 /* Returns true if the client is connected and one more message can be sent. */
@@ -80,6 +84,9 @@ bool broker_is_free(const broker_t *broker);
 
 /* Sends a message; `topic` must stay valid. False: libmosquitto does not accept the message. */
 bool broker_send(broker_t *broker, const char *topic, const char *payload, bool is_retained);
+
+/* Subscribes to a filter with QoS 0, or ends that. A subscription ends with its connection. */
+void broker_subscribe(broker_t *broker, const char *filter, bool is_wanted);
 
 /* While they are held, messages wait for others, with which they leave in one segment. */
 void broker_hold(broker_t *broker, bool is_held);

@@ -13,24 +13,38 @@
 #include "reading/fields.h"
 
 /* Failures in a row after which a sensor is away; the least time between two messages about dropped messages; the time from
- * one message with the counters of the sensors to the next. */
-enum { FAILURES = 3, NEWS_US = 1000000, COUNTERS_US = 60000000 };
+ * one message with the counters of the sensors to the next; after a connect, the longest time until the publisher's own
+ * message comes back, and until retained messages do, which a broker of several machines may send later. */
+enum { FAILURES = 3, NEWS_US = 1000000, COUNTERS_US = 60000000, HEAR_US = 2000000, LISTEN_US = 5000000 };
 
 static uint64_t now_us(const publisher_t *publisher) { return publisher->host->now_us(publisher->host->ctx); }
 
 /* ---- topics ---- */
 
+/* Where the topic of this name is, or where it belongs. */
+static topic_t **find_topic(publisher_t *publisher, const char *name)
+{
+    topic_t **at = &publisher->topics;
+    while (*at != NULL && strcmp((*at)->name, name) != 0) at = &(*at)->next;
+    return at;
+}
+
+static topic_t *add_topic(topic_t **at, topic_kind_t kind, const char *name)
+{
+    topic_t *const topic = *at != NULL ? *at : allocate(sizeof **at + strlen(name) + 1);
+    *at = topic;
+    (void)strcpy(topic->name, name);
+    topic->kind = kind;
+    return topic;
+}
+
 /* Marks a topic as wanted, a new one if needed. */
 static topic_t *want_topic(publisher_t *publisher, topic_kind_t kind, sensor_t *sensor, uint8_t probe)
 {
     char name[TOPIC_NAME];
-    topic_t **at = &publisher->topics;
     topic_name(publisher->settings, kind, sensor, probe, name);
-    while (*at != NULL && strcmp((*at)->name, name) != 0) at = &(*at)->next;
-    if (*at == NULL) *at = allocate(sizeof **at + strlen(name) + 1);
-    topic_t *const topic = *at;
-    (void)strcpy(topic->name, name);
-    topic->kind = kind;
+    topic_t *const topic = add_topic(find_topic(publisher, name), kind, name);
+    topic->has_other_sensor = topic->sensor != sensor;
     topic->sensor = sensor;
     topic->probe = probe;
     topic->is_wanted = topic->is_due = true;
@@ -47,6 +61,8 @@ static void want_topics(publisher_t *publisher, publisher_sensor_t *of, uint8_t 
         if (probe != 0 && kind >= TOPIC_STATE) of->topics[probe - 1][kind - TOPIC_STATE] = topic;
     }
 }
+
+static void put_alarm(publisher_t *publisher, topic_t *topic);
 
 /* Names all topics anew. Everything that is retained is due then. */
 static void set_sensors(publisher_t *publisher, const site_t *site)
@@ -69,32 +85,119 @@ static void set_sensors(publisher_t *publisher, const site_t *site)
         for (uint8_t probe = 1; probe <= FATHOM_DYP_PROBES; probe++) want_topics(publisher, sensor, probe);
         want_topics(publisher, sensor, 0);
     }
+    for (topic_t *topic = publisher->topics; topic != NULL; topic = topic->next) {
+        if (topic->is_wanted && topic->kind == TOPIC_ALARM && topic->has_other_sensor)
+            put_alarm(publisher, topic);
+        if (topic->is_wanted) continue;
+        free(topic->kept);
+        topic->kept = NULL;
+        topic->sensor = NULL;
+    }
     free(before);
 }
 
-/* All topics of this kind are due, or of TOPICS all kinds; sensor: those of this one alone. */
-static void make_due(publisher_t *publisher, topic_kind_t kind, const sensor_t *sensor)
+/* All topics of this kind are due, or of TOPICS all kinds; sensor: those of this one alone. They are sent as soon as `after`
+ * messages left the queue. */
+static void make_due(publisher_t *publisher, topic_kind_t kind, const sensor_t *sensor, uint64_t after)
 {
     publisher->has_due = true;
     for (topic_t *topic = publisher->topics; topic != NULL; topic = topic->next)
-        if ((kind == TOPICS || topic->kind == kind) && (sensor == NULL || topic->sensor == sensor))
+        if ((kind == TOPICS || topic->kind == kind) && (sensor == NULL || topic->sensor == sensor)) {
             topic->is_due = true;
+            topic->after = after;
+        }
+}
+
+/* ---- what an earlier run left ---- */
+
+/* Counters come first, and what is behind them is deleted in the opposite order: none is left without its counters. */
+static void on_received(void *ctx, const char *name, const char *payload, bool is_retained)
+{
+    publisher_t *const publisher = ctx;
+    char counters[TOPIC_NAME] = "";
+    if (!is_retained) {
+        if (strstr(payload, publisher->boot) != NULL) publisher->is_heard = true;
+        return;
+    }
+    const topic_kind_t kind = topic_of_site(publisher->settings, name, payload, counters);
+    if (kind == TOPICS) return;
+    const bool has_counters =
+        kind == TOPIC_COUNTERS || topic_is_entity(kind) || *find_topic(publisher, counters) != NULL;
+    topic_t *topic = *find_topic(publisher, name);
+    if (!has_counters || (topic != NULL && topic->is_wanted)) return;
+    if (topic == NULL) {
+        topic_t *const others = publisher->topics;
+        publisher->topics = NULL;
+        topic = add_topic(&publisher->topics, kind, name);
+        topic->next = others;
+    }
+    topic->is_known = publisher->has_due = true;
+}
+
+static void subscribe(publisher_t *publisher, bool is_wanted)
+{
+    char filter[TOPIC_NAME];
+    for (unsigned i = 0; topic_filter(publisher->settings, i, filter); i++)
+        broker_subscribe(&publisher->broker, filter, is_wanted);
+    publisher->is_subscribed = is_wanted;
+}
+
+/* The broker accepted the client, and can have what any earlier run sent. */
+static void greet(publisher_t *publisher, uint64_t now)
+{
+    publisher->greetings = publisher->broker.greetings;
+    publisher->greeted_us = now;
+    publisher->is_heard = false;
+    subscribe(publisher, true);
+    make_due(publisher, TOPICS, NULL, 0);
+    make_due(publisher, TOPIC_STATUS, NULL, publisher->queue.left + publisher->queue.count);
+}
+
+static void listen(publisher_t *publisher, uint64_t now)
+{
+    if (!publisher->is_heard && now - publisher->greeted_us >= HEAR_US) {
+        publisher->is_heard = true;
+        if (!publisher->is_deaf_reported)
+            (void)fprintf(stderr,
+                          "fathom: broker %s port %u: it does not send back what this client published, so "
+                          "messages of earlier sensors stay there. Let the user read %s/%s/# and the "
+                          "discovery messages.\n",
+                          publisher->settings->broker.host, publisher->settings->broker.port,
+                          publisher->settings->prefix, publisher->settings->site);
+        publisher->is_deaf_reported = true;
+    }
+    if (publisher->is_subscribed && now - publisher->greeted_us >= LISTEN_US) subscribe(publisher, false);
 }
 
 /* ---- the queue ---- */
 
-/* Frees the oldest message, which was sent or is dropped. */
-static void remove_message(queue_t *queue, bool is_dropped)
+static void free_message(queue_t *queue, message_t *message, bool is_dropped)
 {
-    message_t *const message = queue->first;
-    queue->first = message->next;
-    queue->bytes -= message->size;
-    queue->count--;
     if (is_dropped) {
         message->topic->dropped++;
         queue->dropped++;
     }
     free(message);
+}
+
+/* Takes the oldest message out of the queue; it was sent, is dropped, or is kept. */
+static void remove_message(publisher_t *publisher, bool is_dropped)
+{
+    queue_t *const queue = &publisher->queue;
+    message_t *const message = queue->first;
+    topic_t *const topic = message->topic;
+    queue->first = message->next;
+    queue->bytes -= message->size;
+    queue->count--;
+    queue->left++;
+    if (!topic_is_retained(topic->kind) || !topic->is_wanted) {
+        free_message(queue, message, is_dropped);
+        return;
+    }
+    if (topic->kept != NULL) free_message(queue, topic->kept, !topic->kept->is_sent);
+    topic->kept = message;
+    topic->is_due = !message->is_sent;
+    publisher->has_due |= topic->is_due;
 }
 
 /* Drops the oldest messages, so that `count` more of `size` bytes keep the bounds. */
@@ -103,7 +206,7 @@ static void make_room(publisher_t *publisher, uint32_t count, size_t size)
     queue_t *const queue = &publisher->queue;
     while (queue->count != 0 && (queue->count + count > publisher->settings->queue_messages ||
                                  queue->bytes + size > publisher->settings->queue_bytes))
-        remove_message(queue, true);
+        remove_message(publisher, true);
 }
 
 static void put_message(publisher_t *publisher, topic_t *topic, uint64_t time_us, const char *text)
@@ -112,7 +215,7 @@ static void put_message(publisher_t *publisher, topic_t *topic, uint64_t time_us
     const size_t size = sizeof(message_t) + strlen(text) + 1;
     message_t *const message = allocate(size);
     make_room(publisher, 1, size);
-    *message = (message_t){.topic = topic, .time_us = time_us, .size = size};
+    *message = (message_t){.topic = topic, .time_us = time_us, .seq = topic->seq, .size = size};
     (void)strcpy(message->text, text);
     if (queue->first == NULL)
         queue->first = message;
@@ -137,6 +240,14 @@ static const char *end_payload(publisher_t *publisher)
     return fflush(publisher->to) == 0 ? publisher->payload : "";
 }
 
+/* Null if the clock was not set. */
+static void json_utc(const publisher_t *publisher, json_t *json, uint64_t age_us)
+{
+    const host_t *const host = publisher->host;
+    char utc[UTC_TEXT];
+    json_string(json, "utc", utc_text(utc_before(host->utc_us(host->ctx), age_us), utc));
+}
+
 /* The present state under a retained topic. */
 static const char *payload_of(publisher_t *publisher, const topic_t *topic)
 {
@@ -152,8 +263,7 @@ static const char *payload_of(publisher_t *publisher, const topic_t *topic)
     if (topic_is_entity(topic->kind)) {
         topic_json_entity(&json, publisher->settings, topic->kind, topic->sensor, topic->probe);
     } else {
-        char utc[UTC_TEXT];
-        json_string(&json, "utc", utc_text(publisher->host->utc_us(publisher->host->ctx), utc));
+        json_utc(publisher, &json, 0);
         if (topic->kind == TOPIC_PUBLISHER) json_string(&json, "version", FATHOM_VERSION_STRING);
         json_string(&json, "boot", publisher->boot);
     }
@@ -168,15 +278,62 @@ static const char *payload_of(publisher_t *publisher, const topic_t *topic)
     return end_payload(publisher);
 }
 
+static const char *payload_of_message(publisher_t *publisher, const message_t *message)
+{
+    const uint64_t age_us = now_us(publisher) - message->time_us;
+    json_t json = begin_payload(publisher);
+    json_begin(&json, NULL, '{');
+    json_utc(publisher, &json, age_us);
+    (void)fprintf(json.to, ",%s,\"age_ms\":%" PRIu64 ",\"dropped\":%" PRIu64 "}", message->text,
+                  age_us / 1000, message->topic->dropped);
+    return end_payload(publisher);
+}
+
 /* ---- one message after another ---- */
 
-/* The rank of a retained message that is due; TOPICS: none is. A topic that is not wanted any more is deleted as soon as the
- * publisher is online. */
-static topic_kind_t rank_of(const topic_t *topic)
+/* The order after a connect. Counters are the first, so a broker that has any retained message of a sensor has its counters.
+ * The status makes all that is before it count. */
+enum { RANK_DELETED = 3, RANK_STATUS = 6, RANK_NONE = 8 };
+static const uint8_t ranks[TOPICS] = {
+    [TOPIC_COUNTERS] = 1,     [TOPIC_AVAILABILITY] = 2,  [ENTITY_DISTANCE] = 4,
+    [ENTITY_TEMPERATURE] = 4, [ENTITY_LEVEL] = 4,        [ENTITY_FILLED] = 4,
+    [ENTITY_ALARM] = 4,       [TOPIC_ALARM] = 5,         [TOPIC_STATUS] = RANK_STATUS,
+    [TOPIC_PUBLISHER] = 7,    [TOPIC_STATE] = RANK_NONE, [TOPIC_LEVEL] = RANK_NONE,
+};
+
+/* The rank of a retained message that is due; RANK_NONE: none is. What was sent is not sent again if a newer message of its
+ * topic waits. */
+static unsigned rank_of(const topic_t *topic)
 {
+    const message_t *const kept = topic->kept;
     if (!topic->is_wanted)
-        return topic_is_retained(topic->kind) && topic->is_known ? TOPIC_STATUS + 1 : TOPICS;
-    return topic->is_due && topic->kind < TOPIC_STATE ? topic->kind : TOPICS;
+        return topic_is_retained(topic->kind) && topic->is_known ? RANK_DELETED : RANK_NONE;
+    if (!topic->is_due) return RANK_NONE;
+    if (topic->kind == TOPIC_ALARM && (kept == NULL || (kept->is_sent && kept->seq != topic->seq)))
+        return RANK_NONE;
+    return ranks[topic->kind];
+}
+
+/* The first retained message that is due and may be sent; NULL: none may. While the availability of a sensor waits for
+ * messages in the queue, the status waits too. */
+static topic_t *next_due(publisher_t *publisher)
+{
+    topic_t *first = NULL;
+    unsigned bound = publisher->is_heard ? RANK_NONE : RANK_DELETED;
+    publisher->has_due = false;
+    for (topic_t *topic = publisher->topics; topic != NULL; topic = topic->next) {
+        const unsigned rank = rank_of(topic);
+        if (rank != RANK_NONE) publisher->has_due = true;
+        if (rank >= bound) continue;
+        if (topic->after <= publisher->queue.left) {
+            bound = rank;
+            first = topic;
+        } else if (bound >= RANK_STATUS) {
+            bound = RANK_STATUS;
+            first = NULL;
+        }
+    }
+    return first;
 }
 
 static void report_dropped(publisher_t *publisher)
@@ -191,36 +348,36 @@ static void report_dropped(publisher_t *publisher)
     publisher->sent_us = now_us(publisher);
 }
 
+static void send_topic(publisher_t *publisher, topic_t *topic)
+{
+    const char *const payload = !topic->is_wanted     ? ""
+                                : topic->kept != NULL ? payload_of_message(publisher, topic->kept)
+                                                      : payload_of(publisher, topic);
+    topic->is_known = broker_send(&publisher->broker, topic->name, payload, true) && topic->is_wanted;
+    if (topic->kept != NULL) topic->kept->is_sent = true;
+    topic->is_due = false;
+    if (topic->kind == TOPIC_PUBLISHER && topic->is_wanted) report_dropped(publisher);
+}
+
 static bool send_retained(publisher_t *publisher)
 {
-    topic_t *first = NULL;
-    if (!publisher->has_due) return false;
-    for (topic_t *topic = publisher->topics; topic != NULL; topic = topic->next)
-        if (rank_of(topic) < (first != NULL ? rank_of(first) : TOPICS)) first = topic;
-    publisher->has_due = first != NULL;
-    if (first == NULL) return false;
-    const char *const payload = first->is_wanted ? payload_of(publisher, first) : "";
-    first->is_known = broker_send(&publisher->broker, first->name, payload, true) && first->is_wanted;
-    first->is_due = false;
-    if (first->kind == TOPIC_PUBLISHER && first->is_wanted) report_dropped(publisher);
-    return true;
+    topic_t *const topic = publisher->has_due ? next_due(publisher) : NULL;
+    if (topic != NULL) send_topic(publisher, topic);
+    return topic != NULL;
 }
 
 static bool send_message(publisher_t *publisher)
 {
-    const message_t *const message = publisher->queue.first;
+    message_t *const message = publisher->queue.first;
     if (message == NULL) return false;
     topic_t *const topic = message->topic;
     const bool is_retained = topic_is_retained(topic->kind);
-    const json_t json = begin_payload(publisher);
-    (void)fprintf(json.to, "%s,\"age_ms\":%" PRIu64 ",\"dropped\":%" PRIu64 "}", message->text,
-                  (now_us(publisher) - message->time_us) / 1000, topic->dropped);
     /* A deleted topic must not come back. */
     const bool is_obsolete = is_retained && !topic->is_wanted;
-    const bool is_sent =
-        !is_obsolete && broker_send(&publisher->broker, topic->name, end_payload(publisher), is_retained);
-    if (is_sent) topic->is_known = true;
-    remove_message(&publisher->queue, !is_sent && !is_obsolete);
+    message->is_sent = !is_obsolete && broker_send(&publisher->broker, topic->name,
+                                                   payload_of_message(publisher, message), is_retained);
+    if (message->is_sent) topic->is_known = true;
+    remove_message(publisher, !message->is_sent && !is_obsolete);
     return true;
 }
 
@@ -239,20 +396,37 @@ static void send_next(publisher_t *publisher)
 static void put(publisher_t *publisher, const reading_t *reading, topic_t *topic)
 {
     json_t json = begin_payload(publisher);
-    json_begin(&json, NULL, '{');
     reading_json(&json, reading, topic_columns(topic->kind, reading->sensor));
     json_string(&json, "boot", publisher->boot);
     json_value(&json, "seq", "%" PRIu64, ++topic->seq);
     put_message(publisher, topic, publisher->start_us + reading->time_us, end_payload(publisher));
 }
 
-/* Returns true if that is new. */
+/* The present state of an alarm, of which the loop reports only changes. It is unknown before the first distance. */
+static void put_alarm(publisher_t *publisher, topic_t *topic)
+{
+    sensor_t *const sensor = topic->sensor;
+    const fathom_alarm_t *const alarm = &sensor->probes[topic->probe - 1].alarm;
+    const bool is_started = alarm->state != 0;
+    const result_t result = {.sample = {.kind = FATHOM_UNKNOWN, .probe = topic->probe},
+                             .alarm = is_started ? alarm->state : FATHOM_ALARM_UNKNOWN,
+                             .is_on = is_started ? fathom_alarm_is_on(alarm)
+                                                 : sensor->processing.alarm.if_unknown == FATHOM_ALARM_ON};
+    const reading_t reading = {
+        .sensor = sensor, .result = &result, .time_us = now_us(publisher) - publisher->start_us};
+    put(publisher, &reading, topic);
+}
+
+/* Returns true if that is new. A sensor is available behind its reading, and away at once. */
 static bool set_presence(publisher_t *publisher, publisher_sensor_t *sensor, presence_t presence)
 {
+    const queue_t *const queue = &publisher->queue;
+    const bool is_available = presence == SENSOR_AVAILABLE;
     const presence_t before = sensor->presence;
     sensor->presence = presence;
-    if ((before == SENSOR_AVAILABLE) != (presence == SENSOR_AVAILABLE))
-        make_due(publisher, TOPIC_AVAILABILITY, sensor->sensor);
+    if ((before == SENSOR_AVAILABLE) != is_available)
+        make_due(publisher, TOPIC_AVAILABILITY, sensor->sensor,
+                 is_available ? queue->left + queue->count : 0);
     return before != presence;
 }
 
@@ -273,16 +447,16 @@ bool publisher_reading(publisher_t *publisher, const reading_t *reading)
     if (is_failure && sensor->failures != FAILURES) sensor->failures++;
     if (is_failure && (is_grave(reading) || sensor->failures == FAILURES))
         is_newly_away = set_presence(publisher, sensor, SENSOR_AWAY);
-    if (!is_failure && !is_alarm) {
-        sensor->failures = 0;
-        (void)set_presence(publisher, sensor, SENSOR_AVAILABLE);
-    }
     for (size_t i = 0; i != FATHOM_DYP_PROBES; i++)
         for (topic_kind_t kind = TOPIC_STATE; kind != TOPICS; kind++) {
             topic_t *const topic = sensor->topics[i][kind - TOPIC_STATE];
             const bool is_meant = topic != NULL && (probe == 0 || probe == i + 1);
             if (is_meant && (kind == TOPIC_ALARM) == is_alarm) put(publisher, reading, topic);
         }
+    if (!is_failure && !is_alarm) {
+        sensor->failures = 0;
+        (void)set_presence(publisher, sensor, SENSOR_AVAILABLE);
+    }
     return is_newly_away;
 }
 
@@ -301,7 +475,7 @@ void publisher_init(publisher_t *publisher, const host_t *host, fathom_loop_t *l
     publisher->to = open_memstream(&publisher->payload, &publisher->payload_size);
     if (publisher->to == NULL) end_without_memory();
     (void)__fsetlocking(publisher->to, FSETLOCKING_BYCALLER); /* no other thread has it */
-    broker_begin(&publisher->broker, host, loop, settings);
+    broker_begin(&publisher->broker, host, loop, settings, on_received, publisher);
     set_sensors(publisher, site);
 }
 
@@ -316,13 +490,13 @@ uint32_t publisher_tick(publisher_t *publisher)
 {
     const uint32_t broker_us = broker_tick(&publisher->broker);
     const uint64_t now = now_us(publisher);
-    if (publisher->greetings != publisher->broker.greetings) make_due(publisher, TOPICS, NULL);
-    publisher->greetings = publisher->broker.greetings;
+    if (publisher->greetings != publisher->broker.greetings) greet(publisher, now);
+    if (publisher->broker.phase == BROKER_READY) listen(publisher, now);
     if (publisher->queue.dropped != publisher->sent_dropped && now - publisher->sent_us >= NEWS_US)
-        make_due(publisher, TOPIC_PUBLISHER, NULL);
+        make_due(publisher, TOPIC_PUBLISHER, NULL, 0);
     if (now - publisher->counted_us >= COUNTERS_US) {
         publisher->counted_us = now;
-        make_due(publisher, TOPIC_COUNTERS, NULL);
+        make_due(publisher, TOPIC_COUNTERS, NULL, 0);
     }
     send_next(publisher);
     return broker_us < NEWS_US ? broker_us : NEWS_US;
@@ -353,20 +527,22 @@ void publisher_end(publisher_t *publisher)
 {
     enum { END_US = 2000000 };
     const uint64_t until_us = now_us(publisher) + END_US;
+    char status[TOPIC_NAME];
     drain(publisher, until_us);
     publisher->is_ending = true;
-    make_due(publisher, TOPIC_STATUS, NULL);
-    if (publisher->broker.phase == BROKER_READY) (void)send_retained(publisher);
+    topic_name(publisher->settings, TOPIC_STATUS, NULL, 0, status);
+    if (publisher->broker.phase == BROKER_READY) send_topic(publisher, *find_topic(publisher, status));
     drain(publisher, until_us);
     broker_end(&publisher->broker);
 }
 
 void publisher_deinit(publisher_t *publisher)
 {
-    while (publisher->queue.first != NULL) remove_message(&publisher->queue, false);
+    while (publisher->queue.first != NULL) remove_message(publisher, false);
     while (publisher->topics != NULL) {
         topic_t *const topic = publisher->topics;
         publisher->topics = topic->next;
+        free(topic->kept);
         free(topic);
     }
     free(publisher->sensors);

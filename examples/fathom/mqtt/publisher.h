@@ -7,8 +7,13 @@
 #include "reading/loop.h"
 
 /*
- * What is sent to the broker, and in which order. First what is retained and due, of which only the last message counts:
- * topic_kind_t has the order. Then the readings, which wait in a queue while the broker is away.
+ * What is sent to the broker, and in which order. First what is retained and due, of which only the last message counts.
+ * Then the readings, which wait in a queue while the broker is away.
+ *
+ * After a connect the broker can have retained anything that an earlier run of this site sent. So the publisher subscribes
+ * to that, and sends counters and availability. When the first of them comes back, all that was retained is there; what no
+ * sensor has is deleted before entities are named. The status is online when no message waits that is older than the connect:
+ * none sees an old alarm, or an old reading, of what is available. For the same reason a sensor is available behind its reading.
  */
 
 /* Everything that is published under one topic since the start of the program. A topic stays until the end, also while no
@@ -20,19 +25,26 @@ typedef struct topic {
     uint8_t probe;    /* 0: of the sensor */
     uint64_t seq;     /* of the last reading; 0: none yet */
     uint64_t dropped; /* messages */
-    bool is_wanted;   /* a sensor has the topic, or the publisher */
-    bool is_due;      /* the broker does not know the present state */
-    bool is_known;    /* the broker may have a retained message */
+    uint64_t after;   /* it is not sent before this number of messages left the queue */
+    /* The newest message that left the queue, if it is retained: it is sent again after each connect, and is not lost if the
+     * queue was full. NULL: none. */
+    struct message *kept;
+    bool is_wanted;        /* a sensor has the topic, or the publisher */
+    bool is_due;           /* the broker does not know the present state */
+    bool is_known;         /* the broker may have a retained message */
+    bool has_other_sensor; /* than before the sensors were named */
     char name[];
 } topic_t;
 
-/* A reading that waits: the beginning of a JSON object. The age of the reading, and the number of messages of its topic that
- * were dropped before it, are added when it is sent. */
+/* A reading that waits: members of a JSON object. Its date, its age, and the number of messages of its topic that were
+ * dropped before it, are added when it is sent. So a clock that is set while it waits makes its date right. */
 typedef struct message {
     struct message *next;
     topic_t *topic;
     uint64_t time_us; /* of the reading, by the host's clock */
-    size_t size;      /* of the message with its text */
+    uint64_t seq;
+    size_t size; /* of the message with its text */
+    bool is_sent;
     char text[];
 } message_t;
 
@@ -43,6 +55,7 @@ typedef struct {
     size_t bytes;
     uint32_t count;
     uint64_t dropped; /* since the start */
+    uint64_t left;    /* messages that left it since the start */
 } queue_t;
 
 typedef enum { SENSOR_NEW, SENSOR_AVAILABLE, SENSOR_AWAY } presence_t;
@@ -70,6 +83,10 @@ typedef struct {
     char *payload;
     size_t payload_size;
     uint32_t greetings;    /* of the broker, as far as the publisher repeated all that is retained */
+    uint64_t greeted_us;   /* time of the last one */
+    bool is_subscribed;    /* to what an earlier run can have left */
+    bool is_heard;         /* its own message came back since then, or the publisher waits no longer */
+    bool is_deaf_reported; /* that none came back */
     uint64_t sent_dropped; /* in the last message about the publisher, ... */
     uint64_t sent_us;      /* ... and when it was sent */
     uint64_t counted_us;   /* when the counters of the sensors became due */

@@ -3,11 +3,12 @@
 
 #include <inttypes.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "fathom/version.h"
 #include "reading/fields.h"
 
-enum { PATH = 384 };
+enum { PATH = 256, ID = 4 * PATH };
 
 #define DEGREES "\xC2\xB0\x43" /* the sign for degrees in UTF-8, and C */
 
@@ -85,25 +86,85 @@ static const char *print_path(char path[PATH], const publish_settings_t *setting
     return path;
 }
 
-/* Makes an identifier of a path. Home Assistant allows letters, digits, - and _. */
-static const char *print_id(char id[PATH], const publish_settings_t *settings, const sensor_t *sensor,
+/* Makes an identifier of a path, of the characters that Home Assistant allows: letters, digits, - and _. Two paths have two
+ * identifiers: / becomes _, and any other character two of _ and its hexadecimal number. No level of a path is empty, so __
+ * stands for no other one, and of three of _ the first is a /. */
+static const char *print_id(char id[ID], const publish_settings_t *settings, const sensor_t *sensor,
                             uint8_t probe, const char *word)
 {
-    (void)print_path(id, settings, sensor, probe, word);
-    for (char *at = id; *at != '\0'; at++)
-        if (*at == '/' || *at == '.') *at = '_';
+    char path[PATH];
+    char *to = id;
+    (void)print_path(path, settings, sensor, probe, word);
+    for (const char *at = path; *at != '\0'; at++) {
+        if (*at == '/')
+            *to++ = '_';
+        else if (*at != '_' && *at != '.')
+            *to++ = *at;
+        else
+            to += snprintf(to, sizeof "__5f", "__%02x", (unsigned)*at);
+    }
+    *to = '\0';
     return id;
 }
 
 void topic_name(const publish_settings_t *settings, topic_kind_t kind, const sensor_t *sensor, uint8_t probe,
                 char name[TOPIC_NAME])
 {
-    char path[PATH];
+    char path[ID];
     if (topic_is_entity(kind))
         (void)snprintf(name, TOPIC_NAME, "%s/%s/%s/config", settings->discovery, rows[kind].component,
                        print_id(path, settings, sensor, probe, rows[kind].word));
     else
         (void)snprintf(name, TOPIC_NAME, "%s", print_path(path, settings, sensor, probe, rows[kind].word));
+}
+
+/* ---- what an earlier run left ---- */
+
+/* A discovery prefix of several levels has filters of its own; those of one level are all of the same. */
+bool topic_filter(const publish_settings_t *settings, unsigned number, char name[TOPIC_NAME])
+{
+    enum { OWN = 4, ENTITIES = 2 };
+    static const char *const filters[] = {"counters", "availability", "alarm",
+                                          "+/alarm",  "sensor",       "binary_sensor"};
+    const bool has_levels = strchr(settings->discovery, '/') != NULL;
+    if (number < OWN)
+        (void)snprintf(name, TOPIC_NAME, "%s/%s/+/%s", settings->prefix, settings->site, filters[number]);
+    else
+        (void)snprintf(name, TOPIC_NAME, "%s/%s/+/config",
+                       number < OWN + ENTITIES ? "+" : settings->discovery, filters[OWN + number % ENTITIES]);
+    return number < OWN + ENTITIES || (has_levels && number < OWN + 2 * ENTITIES);
+}
+
+/* An entity of this site has its status first. What stands behind it shows which program sent it. */
+static bool is_entity_of_site(const publish_settings_t *settings, const char *payload)
+{
+    char path[PATH];
+    char text[2 * PATH];
+    (void)snprintf(text, sizeof text, "\"availability\":[{\"topic\":\"%s\"}",
+                   print_path(path, settings, NULL, 0, rows[TOPIC_STATUS].word));
+    return strstr(payload, text) != NULL && strstr(payload, "\"origin\":{\"name\":\"fathom\"") != NULL;
+}
+
+topic_kind_t topic_of_site(const publish_settings_t *settings, const char *name, const char *payload,
+                           char counters[TOPIC_NAME])
+{
+    char path[PATH];
+    const char *const word = strrchr(name, '/');
+    const size_t site = strlen(print_path(path, settings, NULL, 0, NULL));
+    if (word == NULL) return TOPICS;
+    if (strcmp(word, "/config") == 0) return is_entity_of_site(settings, payload) ? ENTITY_DISTANCE : TOPICS;
+    if (strncmp(name, path, site) != 0 || name[site] != '/') return TOPICS;
+    const size_t sensor = site + 1 + strcspn(name + site + 1, "/");
+    const bool is_of_sensor = word == name + sensor;
+    const bool is_of_probe =
+        word == name + sensor + 2 && name[sensor + 1] >= '1' && name[sensor + 1] <= '0' + FATHOM_DYP_PROBES;
+    (void)snprintf(counters, TOPIC_NAME, "%.*s/%s", (int)sensor, name, rows[TOPIC_COUNTERS].word);
+    if (is_of_sensor && strcmp(word, "/availability") == 0)
+        return strcmp(payload, "online") == 0 || strcmp(payload, "offline") == 0 ? TOPIC_AVAILABILITY
+                                                                                 : TOPICS;
+    if (strstr(payload, "\"boot\":\"") == NULL) return TOPICS;
+    if (is_of_sensor && strcmp(word, "/counters") == 0) return TOPIC_COUNTERS;
+    return (is_of_sensor || is_of_probe) && strcmp(word, "/alarm") == 0 ? TOPIC_ALARM : TOPICS;
 }
 
 /* ---- discovery messages ---- */
@@ -131,7 +192,7 @@ static void add_availability(json_t *json, const publish_settings_t *settings, c
 
 static void add_device(json_t *json, const publish_settings_t *settings, const sensor_t *sensor)
 {
-    char text[PATH];
+    char text[ID];
     json_begin(json, "device", '{');
     json_begin(json, "identifiers", '[');
     json_string(json, NULL, print_id(text, settings, sensor, 0, NULL));
@@ -151,7 +212,7 @@ void topic_json_entity(json_t *json, const publish_settings_t *settings, topic_k
 {
     /* A contact reports near or far as words. */
     const bool is_word = kind == ENTITY_DISTANCE && sensor_is_contact(sensor);
-    char text[PATH];
+    char text[ID];
     (void)snprintf(text, sizeof text, topic_has_probes(sensor) ? "%s %u" : "%s",
                    is_word ? "contact" : rows[kind].word, probe);
     json_string(json, "name", text);

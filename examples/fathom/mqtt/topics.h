@@ -12,7 +12,6 @@
  * PREFIX/SITE/SENSOR/WORD or, of a sensor with several probes, PREFIX/SITE/SENSOR/PROBE/WORD.
  */
 
-/* In the order in which the messages are sent. */
 typedef enum {
     TOPIC_STATUS,    /* of the publisher: online or offline */
     TOPIC_PUBLISHER, /* how the publisher is */
@@ -29,7 +28,7 @@ typedef enum {
     TOPICS
 } topic_kind_t;
 
-enum { TOPIC_NAME = 512 };
+enum { TOPIC_NAME = 1152 };
 
 bool topic_is_entity(topic_kind_t kind);
 bool topic_is_retained(topic_kind_t kind);
@@ -44,6 +43,15 @@ bool topic_is_there(const publish_settings_t *settings, topic_kind_t kind, const
 /* Writes the topic of what is there. */
 void topic_name(const publish_settings_t *settings, topic_kind_t kind, const sensor_t *sensor, uint8_t probe,
                 char name[TOPIC_NAME]);
+
+/* Writes the filter `number`, from 0, of the topics under which an earlier run can have left messages. False: there are no
+ * more. */
+bool topic_filter(const publish_settings_t *settings, unsigned number, char name[TOPIC_NAME]);
+
+/* Returns the kind of a message that a run of this site has sent and that a broker retained, and writes the topic of the
+ * counters of its sensor; ENTITY_DISTANCE: of any entity. TOPICS: the message is another site's or another program's. */
+topic_kind_t topic_of_site(const publish_settings_t *settings, const char *name, const char *payload,
+                           char counters[TOPIC_NAME]);
 
 /* Returns the columns of a reading under TOPIC_STATE, TOPIC_LEVEL or TOPIC_ALARM. */
 unsigned topic_columns(topic_kind_t kind, const sensor_t *sensor);

@@ -98,6 +98,11 @@ uint64_t time_extend(uint64_t now_us, uint32_t then_us)
     return ago_us <= longest_us ? now_us - ago_us : now_us;
 }
 
+uint64_t utc_before(uint64_t utc_us, uint64_t age_us)
+{
+    return utc_us < UINT64_C(1735689600000000) ? 0 : utc_us - age_us; /* 2025-01-01 */
+}
+
 /* Most calls are within the second of the call before, whose text is kept. */
 const char *utc_text(uint64_t utc_us, char text[UTC_TEXT])
 {
@@ -106,6 +111,7 @@ const char *utc_text(uint64_t utc_us, char text[UTC_TEXT])
     char fraction[DECIMAL_TEXT]; /* seven digits, of which the first becomes the point */
     const time_t seconds = (time_t)(utc_us / 1000000u);
     struct tm parts;
+    if (utc_us == 0) return NULL;
     if (seconds != whole_s && gmtime_r(&seconds, &parts) != NULL)
         (void)strftime(whole, sizeof whole, "%Y-%m-%dT%H:%M:%S", &parts);
     whole_s = seconds;

@@ -49,7 +49,11 @@ bool word_find(const char *words, const char *text, uint32_t *n);
  * future, by another clock's stamp, is now. */
 uint64_t time_extend(uint64_t now_us, uint32_t then_us);
 
-/* Writes "2025-11-21T09:43:12.123456Z", and returns it. */
+/* Returns the moment that is age_us before utc_us, which a clock gave; 0: the clock was not set. A machine without a battery
+ * for its clock starts in 1970; a clock that is before 2025 is older than this program. */
+uint64_t utc_before(uint64_t utc_us, uint64_t age_us);
+
+/* Writes "2025-11-21T09:43:12.123456Z", and returns it. NULL: utc_us is 0. */
 enum { UTC_TEXT = 48 };
 const char *utc_text(uint64_t utc_us, char text[UTC_TEXT]);
 

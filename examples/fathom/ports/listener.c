@@ -122,6 +122,43 @@ static uint16_t account(const listener_t *listener, uint16_t at, uint8_t address
     return length != 0 ? length : streamed(listener, at, FATHOM_DYP_A16_LENGTH, &evidence->streamed_a16);
 }
 
+/* Returns true if bytes of the window are the values and the CRC of the response: the CRC fits them behind the three bytes
+ * that the request makes certain. 55 AA has a sum of one byte, so these bytes must be the last ones. */
+static bool has_tail(const listener_t *listener)
+{
+    enum {
+        FUNCTION = 1,
+        COUNT = 5,
+        COMMAND = 3,
+        READ_INPUT = 4,
+        READ_REQUEST = 8,
+        MODBUS_HEAD = 3,
+        CRC = 2,
+        DYP_HEAD = 4
+    };
+    const uint8_t *const request = listener->request;
+    uint8_t frame[UINT8_MAX] = {request[0], request[FUNCTION], (uint8_t)(2 * request[COUNT])};
+    const bool is_dyp = listener->request_length == FATHOM_DYP_REQUEST_LENGTH;
+    const bool is_read =
+        listener->request_length == READ_REQUEST &&
+        (request[FUNCTION] == FATHOM_MODBUS_READ_HOLDING_REGISTERS || request[FUNCTION] == READ_INPUT);
+    const size_t head = is_dyp ? DYP_HEAD : MODBUS_HEAD;
+    const size_t length = is_dyp    ? fathom_dyp_55aa_response_length(request[COMMAND])
+                          : is_read ? head + frame[2] + CRC
+                                    : 0;
+    if (is_dyp) memcpy(frame, request, head);
+    if (length <= head || length > sizeof frame) return false;
+    const size_t tail = length - head;
+    for (size_t at = is_dyp && listener->have > tail ? listener->have - tail : 0; at + tail <= listener->have;
+         at++) {
+        memcpy(frame + head, listener->window + at, tail);
+        if (is_dyp ? fathom_dyp_55aa_is_valid(frame, (uint8_t)length)
+                   : fathom_crc16(frame, (uint8_t)length) == 0)
+            return true;
+    }
+    return false;
+}
+
 void listener_judge(const listener_t *listener, uint8_t address, evidence_t *evidence)
 {
     memset(evidence, 0, sizeof *evidence);
@@ -132,4 +169,5 @@ void listener_judge(const listener_t *listener, uint8_t address, evidence_t *evi
         if (length == 0) evidence->rest++;
         at = (uint16_t)(at + (length != 0 ? length : 1));
     }
+    evidence->headless = address != 0 && evidence->rest != 0 && evidence->own == 0 && has_tail(listener);
 }

@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 
 #include "output/words.h"
+#include "ports/holder.h"
 
 /* ---- paths ---- */
 
@@ -175,6 +176,11 @@ static void close_pins(port_t *port) { port->host->close_pins(port->host->ctx, &
 static fathom_status_t fail_serial(port_t *port)
 {
     const fathom_posix_status_t error = fathom_posix_error(&port->serial);
+    holder_t holder = {.program = 0};
+    if (error == FATHOM_POSIX_ERR_IN_USE) holder_find(&holder, &port->serial, port->name);
+    if (holder.program != 0)
+        return port_fail(port, PORT_FAILED, "%s: in use by another program: %s. %s, then try again",
+                         port->name, holder.who, holder.stop);
     return fail_by(port, error == FATHOM_POSIX_ERR_LOST, error == FATHOM_POSIX_ERR_NOT_FOUND,
                    fathom_posix_error_text(&port->serial));
 }

@@ -120,12 +120,13 @@ struct listener {
 
 /* What the window holds. A frame counts if its checksum is right. */
 typedef struct {
-    uint32_t bytes;          /* received, also those that the window had no place for */
-    uint32_t echoes;         /* copies of the newest request */
-    uint32_t rest;           /* bytes of the window that are neither echo nor frame */
-    uint32_t own;            /* responses of the unit that was asked, ... */
-    uint32_t fitting;        /* ... and those of them whose length fits the request */
-    uint32_t foreign;        /* frames of other units, ... */
+    uint32_t bytes;   /* received, also those that the window had no place for */
+    uint32_t echoes;  /* copies of the newest request */
+    uint32_t rest;    /* bytes of the window that are neither echo nor frame */
+    uint32_t own;     /* responses of the unit that was asked, ... */
+    uint32_t fitting; /* ... and those of them whose length fits the request */
+    bool headless;    /* the window has a response whose first bytes are missing or wrong, and no whole one */
+    uint32_t foreign; /* frames of other units, ... */
     uint8_t foreign_address; /* ... and the first of these units */
     uint32_t masters;        /* requests of another master, ... */
     uint8_t masters_address; /* ... and the unit that the first of them asked */

@@ -27,7 +27,7 @@ static const field_t fields[] = {
     {"sequence", "", "Number of the response, the same for all its probes", FIELD_NUMBER, SAMPLE,
      AT(sequence)},
     {"time_us", "us", "Time since the start of the program", FIELD_NUMBER, ROW, AT(time_us)},
-    {"utc", "", "Date and time of the reading", FIELD_WORD, 0, AT(utc)},
+    {"utc", "", "Date and time; null if the clock was not set", FIELD_WORD, ROW, AT(utc)},
     {"alarm", "", "State of the alarm: on, off, unknown or no_response", FIELD_WORD, COLUMNS_ALARM,
      AT(alarm)},
     {"is_on", "", "Whether the alarm is on, also if it is unknown", FIELD_FLAG, COLUMNS_ALARM, AT(is_on)},

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): fmemopen */
 #include "reading/loop.h"
 
 #include <inttypes.h>
@@ -69,7 +70,7 @@ static void pass(const loop_t *loop, reading_t reading)
     const uint64_t now_us = loop_now_us(loop);
     const uint64_t then_us = time_extend(now_us, reading.result->sample.time_us);
     reading.time_us = then_us - loop->start_us;
-    reading.utc_us = host->utc_us(host->ctx) - (now_us - then_us);
+    reading.utc_us = utc_before(host->utc_us(host->ctx), now_us - then_us);
     loop->sink->reading(loop->ctx, &reading);
 }
 
@@ -288,34 +289,55 @@ static bool has_probes(const sensor_t *sensor)
     return sensor->model->probes > 1 && (probes == 0 || (probes & (probes - 1)) != 0);
 }
 
-/* is_first: of the outcomes of this attempt. is_known: the user knows it from another sensor on the line. */
-static void fail(line_t *line, sensor_t *sensor, fathom_status_t status, bool is_first, bool is_known)
+static failure_t failure_of(const line_t *line, const sensor_t *sensor, fathom_status_t status)
 {
-    loop_t *const loop = line->loop;
-    reader_t *const reader = sensor->reader;
     failure_t failure = {
         .status = status,
         .model = sensor->model,
         .mode = sensor->mode,
-        .reader = reader,
+        .reader = sensor->reader,
         .port = &line->port,
         .counters = &sensor->counters,
         .line = &sensor->line,
-        .shared = loop->site.sensor_count > 1 ? sensor->name : NULL,
+        .shared = line->loop->site.sensor_count > 1 ? sensor->name : NULL,
         .noises = sensor->noises,
         .address = sensor->address,
         .others_answer = others_answer(line, sensor),
         .waits = line->state == LINE_WAITING,
-        .is_whole = is_first && !reader_has_more(reader) && has_probes(sensor),
-        .is_told = is_known,
     };
+    judge(line, sensor, &failure.evidence);
+    return failure;
+}
+
+/* is_first: of the outcomes of this attempt. is_known: the user knows it from another sensor on the line. */
+static void fail(line_t *line, sensor_t *sensor, fathom_status_t status, bool is_first, bool is_known)
+{
+    loop_t *const loop = line->loop;
+    const reader_t *const reader = sensor->reader;
+    failure_t failure = failure_of(line, sensor, status);
+    failure.is_whole = is_first && !reader_has_more(reader) && has_probes(sensor);
+    failure.is_told = is_known;
     const size_t kind = counters_failure_kind(status, reader);
     sensor->counters.failures[kind]++;
-    judge(line, sensor, &failure.evidence);
     sensor->has_failed = true;
     report_failure(loop, sensor, &failure, kind,
                    status == FATHOM_ERR_MALFORMED ? reader_facts(reader).refused_probe : 0);
     results_status(loop, sensor, status);
+}
+
+/* Good readings do not show that other frames are damaged. */
+static void remark_damage(const line_t *line, sensor_t *sensor)
+{
+    const unsigned share = counters_take_damage(&sensor->counters);
+    if (share == 0) return;
+    char text[2 * TEXT] = "";
+    failure_t failure = failure_of(line, sensor, FATHOM_OK);
+    FILE *const to = fmemopen(text, sizeof text - 1, "w");
+    if (to == NULL) return;
+    failure.damaged = (uint8_t)share;
+    advice_print_cause(to, &failure);
+    (void)fclose(to);
+    notify(line->loop, NOTICE_REMARK, sensor, text);
 }
 
 /* An attempt of a sensor that has pulses has ended. sample: NULL unless the status is FATHOM_OK. */
@@ -345,6 +367,7 @@ static void take_outcome(line_t *line, sensor_t *sensor, fathom_status_t status,
     const reader_counters_t counted = counters_take(&sensor->counters, &line->port, sensor->reader);
     sensor->noises = counted.noises;
     if (sensor->mode->has_pulses) pulses_add(&sensor->pulses, &counted, is_good ? sample : NULL);
+    if (!mode_is_asked(sensor->mode)) remark_damage(line, sensor);
     if (status != FATHOM_ERR_PORT && is_early(loop, sensor, status)) return;
     if (is_good && mode_is_asked(sensor->mode) && !sensor->answering)
         counters_time(&sensor->counters, fathom_elapsed_us(sample->time_us, sensor->listener->asked_us));
@@ -420,6 +443,15 @@ static bool start_sensor(line_t *line, sensor_t *sensor)
     return true;
 }
 
+/* Another program at the port is reported once, also if it opens and closes the port again and again. */
+static void notify_holder(line_t *line)
+{
+    char text[TEXT - 64];
+    const uint32_t holder = advice_at_opening(text, sizeof text, &line->port);
+    if (holder != 0 && holder != line->holder) notify_port(line, NOTICE_REMARK, line->port.name, text);
+    if (holder != 0) line->holder = holder;
+}
+
 /* False: a driver does not accept its settings. */
 static bool start_reading(line_t *line)
 {
@@ -436,6 +468,7 @@ static bool start_reading(line_t *line)
     if (line->is_lost)
         notify_port(line, NOTICE_OPEN, line->port.name,
                     line->was_open ? "it is back; reading goes on" : "it is there; reading begins");
+    notify_holder(line);
     line->is_lost = false;
     line->was_open = true;
     line->state = LINE_READING;
@@ -681,6 +714,20 @@ bool loop_open(loop_t *loop)
     host->attend(host->ctx, &loop->sources);
     start_lines(loop);
     return has_lines(loop);
+}
+
+void loop_check_clock(const loop_t *loop)
+{
+    const uint64_t utc_us = loop->host->utc_us(loop->host->ctx);
+    char utc[UTC_TEXT];
+    char text[TEXT];
+    if (utc_before(utc_us, 0) != 0) return;
+    (void)snprintf(
+        text, sizeof text,
+        "this machine's clock says %.10s. Until it is set, readings have no date (utc). Set it, for "
+        "example by NTP.",
+        utc_text(utc_us + 1, utc)); /* 0 has no text */
+    notify(loop, NOTICE_REMARK, NULL, text);
 }
 
 /* Waits until the sensors have left their devices as they were, at most TIMES. */

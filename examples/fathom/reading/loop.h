@@ -19,7 +19,7 @@ typedef struct {
     const failure_t *evidence; /* of an attempt that failed; else NULL */
     const result_t *result;    /* of a failure: the time, the address, the probe if it is of one alone */
     uint64_t time_us;          /* since the start of the program; does not wrap */
-    uint64_t utc_us;           /* since 1970 */
+    uint64_t utc_us;           /* since 1970; 0: the clock was not set */
 } reading_t;
 
 typedef enum {
@@ -67,6 +67,9 @@ void loop_init(loop_t *loop, const host_t *host, const sink_t *sink, void *ctx);
 /* Starts to read the site in loop->site, which is the loop's from now on. False: the user knows why no port can be
  * opened or waited for. */
 bool loop_open(loop_t *loop);
+
+/* Reports to the sink if the clock was not set, so that readings have no date. */
+void loop_check_clock(const loop_t *loop);
 
 /*
  * Reads another site instead, between two steps of the loop: in tick. A line whose text is the same goes on. Any other line

@@ -129,8 +129,9 @@ struct line {
     port_t port;
     line_state_t state;
     bool was_open;
-    bool is_lost; /* the port, since it was open; or it was never there */
-    char path[];  /* of the port */
+    uint32_t holder; /* the program of holder_t that was reported newest */
+    bool is_lost;    /* the port, since it was open; or it was never there */
+    char path[];     /* of the port */
 };
 
 typedef struct {

@@ -28,7 +28,7 @@ const model_t models[] = {
      .near_mm = 500, .far_mm = 5000,
      .request_ends = "the automatic output of an A16 with RS232, until power-off or `fathom set a16 "
                      "automatic-output on`",
-     .automatic_again = ", or when 1 is written to its register 0x0202",
+     .automatic_again = "automatic-output on",
      .scan = {DYP_SCAN, .frame_length = FATHOM_DYP_A16_LENGTH, .own = FATHOM_A16_REGISTER_REAL_TIME,
               .slow_own = FATHOM_A16_REGISTER_PROCESSED},
      .protocols = DECODE_MODBUS | DECODE_STREAM_ONE, .register_source = "A16 6(3)",

@@ -184,7 +184,7 @@ struct model {
     uint8_t probes;
     uint16_t max_mm;             /* a greater value is no distance */
     uint32_t second_response_us; /* a second unit at the same address responds within this time */
-    const char *automatic_again; /* what restarts the automatic output, besides a power cycle */
+    const char *automatic_again; /* the setting that restarts the automatic output; NULL: none does */
 
     /* ---- its settings ---- */
     const setting_t *settings;

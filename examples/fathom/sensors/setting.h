@@ -47,11 +47,12 @@ typedef struct {
 
     /* ---- a change ---- */
     const char *effect;      /* when it takes effect, and how long; NULL: read-only */
+    bool is_later;           /* it takes effect from the next power-on */
     const char *mode;        /* name of the mode that it needs; NULL: the mode that uses Modbus */
     const char *risk;        /* of writing it to a unit whose value is not known; NULL: none */
     const char *confirmed;   /* if it is write-only: what shows its effect; NULL: the acknowledgement */
     const char *unconfirmed; /* the same if nothing does */
-    const char *remark;      /* a message for a value that is words[1]; NULL: none */
+    const char *remark;      /* a message for a value that is words[1], and that words[0] mends; NULL: none */
     bool moves;              /* it moves the unit to another address ... */
     bool is_baud;            /* ... or to another baud rate */
     bool is_never_blind;     /* it must be read before or after it is written */

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """A Mosquitto on the loopback interface, a subscriber that its makers wrote, and configuration files of fathom publish."""
+import datetime
 import json
 import os
 import re
@@ -112,6 +113,11 @@ class Case(e2e.Case):
 
     def publish(self, path, **options):
         return self.fathom('publish', [path], **options)
+
+
+def utc(text):
+    """In seconds since 1970."""
+    return datetime.datetime.fromisoformat(text.replace('Z', '+00:00')).timestamp()
 
 
 def states(messages):

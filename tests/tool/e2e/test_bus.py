@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Several sensors on one pair: fathom read in one loop, also at different line settings and over TCP; and
+"""Several sensors on one pair: fathom read in one loop, also at different line settings; and
 examples/bus.c. (Who is left alone: test_tool_read.c.) It needs real time: CTest runs one such file at a time."""
 import collections
 import os
@@ -8,16 +8,11 @@ import re
 import termios
 
 import e2e
-import tcp_server
 from e2e import ASK_A16, ASK_HPS, SAYS_754, SAYS_2083
 
 BUILD = os.environ.get('FATHOM_BUILD') or os.path.dirname(e2e.FATHOM)
 BUS = 'a16:1:modbus a05:2:modbus hps167s:7'
 SEEN = 'a16:1:modbus,distance=1953 a05:2:modbus,distance=1000,2000,no-target,3562 hps167s:7,distance=2083'
-
-
-def seen(objects, *names):
-    return sorted(tuple(one[name] for name in names) for one in objects)
 
 
 class Read(e2e.Case):
@@ -43,7 +38,7 @@ class Read(e2e.Case):
             device.write(SAYS_754 if asked == ASK_A16 else SAYS_2083)
         done = self.ends(reader, 0)
         self.assertEqual(rates, {ASK_A16: {termios.B9600}, ASK_HPS: {termios.B19200}})
-        self.assertEqual(seen(done.json, 'model', 'distance_mm'),
+        self.assertEqual(sorted((one['model'], one['distance_mm']) for one in done.json),
                          [('a16', 754)] * 3 + [('hps167s', 2083)] * 3)
 
     def test_a_late_response_explains_the_failure_of_its_unit_alone(self):
@@ -57,25 +52,6 @@ class Read(e2e.Case):
         self.assertRegex(err, 'a16:2: attempt 2: .*: the response arrived after the time-out')
         self.assertRegex(err, 'a16:3: attempt 2: no response from a16:3 at [^:]*: (?!the response arrived)')
         self.assertNotIn('address 2 responds', err)
-
-
-class Gateway(tcp_server.Case):
-    """Over TCP: the line and its settings are the gateway's."""
-
-    def test_several_sensors_behind_a_gateway_are_read_in_one_loop(self):
-        server = self.server()
-        reader = self.fathom(f'read a16:1 hps167s:7 --port {server} --count 2 --timeout 5000 --format json')
-        server.accept()
-        asked = []
-        for _ in range(4):
-            transaction, unit, request = server.request()
-            asked.append((unit, request[1:].hex()))  # first register and count
-            values = (754,) if unit == 1 else (0x0823, 0xDCB2, 0x0701, 0)  # HPS-167S table 18
-            server.say(tcp_server.registers(transaction, unit, *values))
-        done = self.ends(reader, 0)
-        self.assertEqual(sorted(asked), [(1, '01000001')] * 2 + [(7, '00080004')] * 2)
-        self.assertEqual(seen(done.json, 'model', 'address', 'distance_mm'),
-                         [('a16', 1, 754)] * 2 + [('hps167s', 7, 2083)] * 2)
 
 
 class Example(e2e.Case):

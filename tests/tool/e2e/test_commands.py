@@ -89,20 +89,6 @@ class Backup(e2e.Case):
     def writes(self, sim):
         return [one['writes'] for one in sim.end(signal.SIGINT).told]
 
-    def test_a_unit_is_saved_and_restored(self):
-        sim = self.sim('hps167s:7 --counters')
-        self.on('save', 'hps167s:7', sim)
-        self.assertEqual(os.listdir(self.folder), ['unit'])
-        self.assertIn('no differences', self.on('restore', 'hps167s:7', sim, '--dry-run'))
-        # the text goes to the standard output without --file; the time is in its third line
-        out = self.ends(f'save hps167s:7 --port {sim}', 0).out
-        before = self.change('warm-up = 0  ', 'warm-up = 12 ')
-        self.assertEqual(out.splitlines()[2:], before.splitlines()[2:])
-        self.assertIn('0 s            -> 12 s', self.on('restore', 'hps167s:7', sim, '--dry-run', 1))
-        self.assertIn('warm-up is 12 s (was 0)', self.on('restore', 'hps167s:7', sim))
-        self.assertIn('no differences', self.on('restore', 'hps167s:7', sim))
-        self.assertEqual(self.writes(sim), [1])
-
     def test_an_output_that_is_full_leaves_no_file_and_writes_nothing(self):
         sim = self.sim('a16:1:modbus --counters')
         with open('/dev/full', 'w', encoding='ascii') as full:
@@ -155,16 +141,6 @@ class Commission(e2e.Case):
         counters = self.counters(sim)
         self.assertEqual([one['address'] for one in counters], [2, 3, 4])
         self.assertEqual([one['flash_writes'] for one in counters], [2, 2, 1])
-
-
-class OneByOne(e2e.Case):
-    def test_the_next_device_is_connected_when_the_one_before_has_left_its_address(self):
-        sim = self.sim('a16:1:modbus,distance=1000 a16:1:modbus,distance=2000 --one-by-one')
-        self.assertEqual(self.read_json(f'a16:1:modbus --count 1 --port {sim}')[0]['distance_mm'], 1000)
-        self.ends(f'set a16:1 address 5 --port {sim}', 0)
-        sim.expect('fathom: sensor 2 is connected', 'err')
-        self.assertEqual(self.read_json(f'a16:1:modbus --count 1 --port {sim}')[0]['distance_mm'], 2000)
-        self.assertEqual(self.read_json(f'a16:5:modbus --count 1 --port {sim}')[0]['distance_mm'], 1000)
 
 
 class Calibrate(e2e.Case):

@@ -32,7 +32,7 @@ class Ports(e2e.Case):
         sim = self.sim('a16 --distance 754')
         first = self.fathom(f'read a16 --port {sim}')
         first.expect('754 mm')
-        self.refuses(sim, 'in use by another program')
+        self.refuses(sim, f'in use by another program: fathom (process {first.process.pid}). Stop it, then try again')
         first.expect('754 mm')
         self.assertEqual(first.end().code, 0)
 

@@ -86,20 +86,6 @@ class Connections(Case):
         self.ends(reader.end(signal.SIGINT), 0, 'one: attempts ')
         self.assertLess(self.longest(reader, 'one'), PAUSE)
 
-    def test_a_connection_is_read_beside_a_port_and_again_after_it_was_lost(self):
-        server = self.server()
-        reader = self.begin(self.sensor('one'), f'far=hps167s@{server}', options='--reconnect')
-        for mm in (1000, 2000):
-            server.accept()
-            transaction, unit, _ = server.request()
-            server.say(tcp_server.registers(transaction, unit, mm, 0xDCB2, 0x0701, 0))
-            reader.expect(f' far +{mm} mm')
-            server.reset()
-        reader.expect('Waiting until it is back', 'err')
-        self.has(reader, 'one', 10)
-        self.ends(reader.end(signal.SIGINT), 1, 'it is back; reading goes on')
-        self.assertLess(self.longest(reader, 'one'), PAUSE)
-
 
 class Cost(Case):
     def test_no_read_of_a_port_brings_nothing(self):

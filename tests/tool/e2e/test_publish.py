@@ -49,6 +49,9 @@ CLASSES = {
 ROW = r'^  ([a-zA-Z/]+)  +(\S.*(?:\n {21}\S.*)*)'
 MEMBER = r'^  (\w+)  +((?:all|state|level|alarm)(?:, \w+)*)  +\S'
 
+FILTERS = ('fathom/mill/+/counters', 'fathom/mill/+/availability', 'fathom/mill/+/alarm', 'fathom/mill/+/+/alarm',
+           '+/sensor/+/config', '+/binary_sensor/+/config')
+
 
 def is_target(message):
     return message.json['status'] == 'target'
@@ -140,9 +143,9 @@ class Availability(mqtt.Case):
 
 
 class Alone(mqtt.Case):
-    """It listens to none."""
+    """It obeys none."""
 
-    def test_what_others_write_into_its_topics_changes_nothing_and_nothing_is_subscribed_to(self):
+    def test_what_others_write_changes_nothing_and_only_what_it_can_have_left_is_subscribed_to_and_not_for_long(self):
         broker = self.broker('log_type all')
         for topic, text in (('fathom/mill/status', 'offline'), ('fathom/mill/tank/state', '{"seq":99}'),
                             ('fathom/mill/tank/availability', 'x'), ('fathom/mill/tank/set', 'reset')):
@@ -154,11 +157,16 @@ class Alone(mqtt.Case):
         self.assertEqual([one.json['seq'] for one in got if not one.is_retained], [1, 2, 3])
         self.wait_for(subscriber, 'fathom/mill/status', lambda one: not one.is_retained and one.payload == 'online')
         self.wait_for(subscriber, '/tank/availability', lambda one: not one.is_retained and one.payload == 'online')
-        broker.expect('Received PUBLISH from fathom-mill', 'err')
+        for filters in FILTERS:
+            broker.expect(rf'^\d+: \t{re.escape(filters)} \(QoS 0\)$', 'err')
+        for filters in FILTERS:
+            broker.expect(rf'^\d+: \t{re.escape(filters)}$', 'err') # the end of that
         broker.end()
         said = broker.said['err'].decode()
-        self.assertEqual(re.findall(r'Received SUBSCRIBE from (?!sub\d)\S+', said), [])
-        self.assertEqual(re.findall(r'Sending PUBLISH to fathom-mill', said), [])
+        self.assertEqual(len(re.findall(r'Received SUBSCRIBE from (?!sub\d)\S+', said)), len(FILTERS))
+        self.assertEqual(set(re.findall(r"Sending PUBLISH to fathom-mill .*'(\S+)'", said)) -
+                         {'fathom/mill/tank/availability', 'fathom/mill/tank/counters',
+                          'homeassistant/sensor/fathom_mill_tank_distance/config'}, set())
 
 
 class Discovery(mqtt.Case):
@@ -199,7 +207,10 @@ class Discovery(mqtt.Case):
             'gate hps167s:7 temperature: 1, alarm: {when: near<1600, unknown: on, no-response: on}',
             'bumper.1 a05:2:modbus probes: "1,2"'), top='interval: 250'))
         self.wait_for(subscriber, '/bumper.1/2/state')
-        self.wait_for(subscriber, '/gate/alarm')
+        for name in ('tank', 'gate', 'bumper.1'):
+            self.wait_for(subscriber, f'/{name}/availability', lambda one: one.payload == 'online')
+        self.wait_for(subscriber, 'mill/status')
+        self.wait_for(subscriber, '/gate/alarm', lambda one: one.json['alarm'] == 'on')
         topics = {one.topic: one for one in self.messages(subscriber)}
         entities = [one for one in topics.values() if one.topic.startswith('homeassistant/')]
         self.assertEqual(len(entities), 8)

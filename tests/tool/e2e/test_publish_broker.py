@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: MIT
 """fathom publish and a broker that is away, comes back, refuses it, or is not the one that it should be."""
 import os
+import re
 import signal
+import time
 
 import e2e
 import mqtt
@@ -10,7 +12,7 @@ import tcp_server
 
 
 class Case(mqtt.Case):
-    def begin(self, more='', broker='', top='interval: 100', **options):
+    def begin(self, more='', *, broker='', top='interval: 100', **options):
         self.sim(f'hps167s:7 --link {self.path("bus")}')
         return self.publish(self.config(self.line(self.path('bus'), 'gate hps167s:7 ' + more), broker=broker, top=top),
                             **options)
@@ -62,6 +64,37 @@ class Away(Case):
         self.assertEqual([state['seq'] for state in after], list(range(after[0]['seq'], after[-1]['seq'] + 1)))
         self.assertEqual({state['dropped'] for state in after}, {0})
 
+    def test_all_that_is_retained_comes_again_to_one_that_has_kept_nothing(self):
+        """Also a second time: without persistence, and no sensor changes meanwhile. An alarm keeps its number and its time."""
+        broker = self.broker()
+        subscriber = self.subscribe()
+        publisher = self.begin('alarm: {when: near<9000, unknown: on, no-response: on}, temperature: 1')
+        self.wait_for(subscriber, '/gate/alarm')
+        self.wait_for(subscriber, '/gate/availability', lambda one: one.payload == 'online')
+        before = self.retained()
+        self.assertEqual(len(before), 8, before)
+        for _ in range(2):
+            broker.end(signal.SIGKILL)
+            publisher.expect(r'the connection is lost', 'err')
+            broker = self.broker()
+            self.wait_for(self.subscribe(), '/gate/state', lambda one: one.json['age_ms'] < 50, 3)
+            after = self.retained()
+            self.assertEqual(sorted(before), sorted(after))
+            for topic, one in after.items():
+                if not topic.endswith(('/counters', '/publisher', '/alarm')):
+                    self.assertEqual(one.payload, before[topic].payload, topic)
+            alarm, old = (one['fathom/mill/gate/alarm'].json for one in (after, before))
+            self.assertGreater(alarm.pop('age_ms'), old.pop('age_ms'))
+            # By the clock when it is sent, which may be adjusted meanwhile.
+            self.assertLess(abs(mqtt.utc(alarm.pop('utc')) - mqtt.utc(old.pop('utc'))), 0.1)
+            self.assertEqual(alarm, old)
+
+    def retained(self):
+        """What a new subscriber gets, by topic."""
+        late = self.subscribe('#')
+        self.wait_for(late, '/gate/state')
+        return {one.topic: one for one in self.messages(late) if one.is_retained}
+
     def test_readings_are_not_late_while_it_says_nothing(self):
         """A host that takes a connection and is silent."""
         server = tcp_server.Server(number=self.number)
@@ -84,6 +117,50 @@ class Away(Case):
         with open(path, 'w', encoding='utf-8') as file:
             file.write(text.replace('host: 127.0.0.1', 'host: no-such-broker.invalid'))
         self.publish(path).expect(r'broker no-such-broker\.invalid port \d+: its name is not known: ', 'err')
+
+
+class Clock(Case):
+    """A machine whose clock says 1970 at first."""
+
+    NOTICE = r"this machine's clock says 1970-01-01\. Until it is set, readings have no date \(utc\)\."
+
+    def begin_unset(self, more='', **options):
+        with open(self.path('unset'), 'wb'):
+            pass
+        return self.begin(more, env=self.preload('clock_shim.c', UNSET_WHILE=self.path('unset')), **options)
+
+    def test_what_waits_gets_its_date_from_the_clock_that_was_set_before_it_is_sent(self):
+        publisher = self.begin_unset()
+        publisher.expect(self.NOTICE, 'err')
+        publisher.expect('Connection refused', 'err')
+        began = time.time()
+        os.remove(self.path('unset'))
+        self.broker()
+        got = mqtt.states(self.wait_for(self.subscribe(), '/gate/state', lambda one: one.json['age_ms'] < 50, 3))
+        self.assertLess(abs(mqtt.utc(got[0]['utc']) - began), e2e.PATIENCE)
+        times = [mqtt.utc(one['utc']) for one in got]
+        self.assertEqual(times, sorted(times))
+
+    def test_without_a_clock_there_is_no_date(self):
+        self.broker()
+        subscriber = self.subscribe()
+        publisher = self.begin_unset('alarm: {when: near<9000, unknown: on, no-response: on}')
+        for topic in ('state', 'alarm', 'counters'):
+            self.assertIsNone(self.wait_for(subscriber, f'/gate/{topic}')[0].json['utc'], topic)
+        self.assertIsNone(self.wait_for(subscriber, '/publisher')[0].json['utc'])
+        os.remove(self.path('unset'))
+        self.wait_for(subscriber, '/gate/state', lambda one: one.json['utc'] is not None)
+        self.assertEqual(publisher.end().err.count('Until it is set'), 1)
+
+    def test_rows_without_a_clock_have_no_date_and_that_is_told_once(self):
+        sim = self.sim('a16:1:modbus')
+        with open(self.path('unset'), 'wb'):
+            pass
+        for kind, row in (('csv', r'^a16:1,.*,\d+,,target,'), ('json', r'"time_us":\d+,"utc":null,"status":"target"')):
+            done = self.ends(f'read a16:1 --port {sim} --count 2 --format {kind}', 0,
+                             env=self.preload('clock_shim.c', UNSET_WHILE=self.path('unset')))
+            self.assertEqual(len(re.findall(row, done.out, re.M)), 2, done.out)
+            self.assertEqual(len(re.findall(self.NOTICE, done.err)), 1, done.err)
 
 
 class Login(Case):

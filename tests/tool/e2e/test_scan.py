@@ -35,7 +35,7 @@ class Case(e2e.Case):
     def test_the_plan_is_printed_before_the_first_request(self):
         device = self.device()
         program = self.fathom(f'scan --port {device} --address 1-2 --listen 1')
-        program.expect('^fathom: asking addresses 1 to 2 at 9600 8N1, 19200 8E1 takes about ', 'err')
+        program.expect('^fathom: listens for .*addresses 1 to 2 at 9600 8N1, 19200 8E1: about ', 'err')
         device.asked(e2e.adu(1, 3, 2, 0, 0, 1))  # A16 6: the address register, which measures nothing
         self.assertEqual(device.baud(), termios.B9600)
         self.ends(program, 1)

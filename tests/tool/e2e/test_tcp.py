@@ -117,21 +117,6 @@ class Responses(Case):
         server.say(registers(self.asked(server), 1, *SAID))
         self.reads(reader, 0, [2083])
 
-    def test_every_request_has_another_transaction(self):
-        server, reader = self.reader('--count 5')
-        seen = set()
-        for _ in range(5):
-            seen.add(self.asked(server))
-            server.say(registers(max(seen), 1, *SAID))
-        self.reads(reader, 0, [2083] * 5)
-        self.assertEqual(len(seen), 5)
-
-    def test_a_byte_at_a_time(self):
-        server, reader = self.reader('--count 1')
-        for byte in registers(self.asked(server), 1, *SAID):
-            server.say((byte,))
-        self.reads(reader, 0, [2083])
-
     def test_after_a_response_in_pieces_a_short_one_is_seen_at_once(self):
         """Meanwhile the system woke the tool for a whole response only."""
         server, reader = self.reader('--count 2 --timeout 60000')
@@ -150,29 +135,6 @@ class Responses(Case):
         self.reads(reader, 1, [],
                    ': the connection is open, but nothing was received. ')
         self.needs_little(reader.done)
-
-    def test_the_rest_of_a_response_that_came_too_late_does_not_disturb(self):
-        server, reader = self.reader('--count 2 --timeout 700')
-        late = registers(self.asked(server), 1, *OTHER)
-        server.say(late[:10])
-        transaction = self.asked(server)  # the next
-        server.say(late[10:], registers(transaction, 1, *SAID))
-        self.reads(reader, 1, [2083])
-
-    def test_a_late_response_is_not_taken_for_the_next(self):
-        server, reader = self.reader('--count 2 --timeout 700')
-        first, second = self.asked(server), self.asked(server)
-        self.assertNotEqual(first, second)
-        server.say(registers(first, 1, *OTHER))
-        server.say(registers(second, 1, *SAID))
-        self.reads(reader, 1, [2083])
-
-    def test_responses_glued_together(self):
-        server, reader = self.reader('--count 2')
-        first = self.asked(server)
-        server.say(registers(first - 1, 1, *OTHER), registers(first, 1, *SAID), registers(first, 1, *OTHER))
-        server.say(registers(self.asked(server), 1, *SAID))
-        self.reads(reader, 0, [2083] * 2)
 
     @e2e.each(
         a_wrong_transaction_is_no_response=(lambda asked: registers(asked ^ 1, 1, *OTHER),

@@ -214,6 +214,7 @@ static int publish_site(const host_t *host)
     const bool is_open = loop_open(loop);
     if (is_open) {
         notify("READY=1");
+        loop_check_clock(loop);
         loop_run(loop);
         notify("STOPPING=1");
     }
@@ -249,7 +250,7 @@ const command_t publish_command = {
     .summary = "Publish the readings of a site to an MQTT broker",
     .usage = "FILE [OPTIONS]",
     .about = "FILE is a YAML file with the broker, the lines and their sensors. The command\n"
-             "runs until a signal ends it. It writes to no sensor, and subscribes to nothing.\n"
+             "runs until a signal ends it. It writes to no sensor, and obeys no message.\n"
              "SIGHUP reads FILE again: lines that have not changed are read on.\n",
     .tables = tables,
     .common = "check",

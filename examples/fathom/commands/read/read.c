@@ -357,6 +357,7 @@ static int read_site(run_t *run)
     if (run->output_error != 0) return finish(run);
     if (loop_open(loop)) {
         begin_output(run, host->utc_us(host->ctx));
+        if (run->options->format != FORMAT_TEXT) loop_check_clock(loop);
         loop_run(loop);
         status = finish(run);
     }

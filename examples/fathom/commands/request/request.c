@@ -140,11 +140,10 @@ static bool read_words(request_t *request, const arguments_t *arguments)
     long function = 0;
     if (arguments->count == 0)
         return reject(origin, "the unit is missing. Write it and then the function, such as: 1 3 0x0101.");
+    if (!read_number("UNIT", words[0], 0, UINT8_MAX, &unit, origin)) return false;
     if (arguments->count == 1)
         return reject(origin, "the function is missing. It is 3, 4, 6, 16, or another one and its bytes.");
-    if (!read_number("UNIT", words[0], 0, UINT8_MAX, &unit, origin) ||
-        !read_number("FUNCTION", words[1], 1, MAX_FUNCTION, &function, origin))
-        return false;
+    if (!read_number("FUNCTION", words[1], 1, MAX_FUNCTION, &function, origin)) return false;
     put(request, unit);
     put(request, function);
     const bool has_registers = reads_registers(request) || function == WRITE || function == WRITE_MANY;
@@ -590,6 +589,7 @@ static int start(const host_t *host, const arguments_t *arguments)
         (void)fprintf(stderr, "fathom: %s\n", port.error_text);
         return STATUS_FAILED;
     }
+    advice_print_opening(&port);
     const int status = ask(&request, &port, settings->is_json);
     port_close(&port);
     return status;

@@ -344,6 +344,7 @@ static void report(scan_t *scan, const scan_finding_t *finding)
     scan->output_error = output_flush();
     if (scan->output_error != 0) scan->status = FATHOM_ERR_CANCELLED;
     print_advice(finding);
+    if (finding->kind == SCAN_DAMAGED) scan->has_damaged = true;
     if (finding->kind != SCAN_SENSOR) return;
     scan->sensors++;
     if (is_terminated(finding)) {
@@ -380,7 +381,7 @@ static void print_nothing(const scan_t *scan)
     failure_t failure = failure_of(scan, FATHOM_ERR_NO_RESPONSE);
     failure.evidence.masters = 0; /* print_others() has said it */
     (void)fputs("fathom: ", stderr);
-    if (scan->not_asked != 0)
+    if (scan->not_asked != 0 || scan->has_damaged)
         (void)fputs("no sensor was found", stderr);
     else
         advice_print(stderr, &failure);
@@ -422,17 +423,27 @@ static void print_result(const scan_t *scan)
 {
     const scan_finding_t *const sender = &scan->sender;
     char duration[DURATION_TEXT];
+    char line[LINE_TEXT];
     if (sender->kind != 0 && !scan->settings->wake) {
         print_why_nothing_was_sent(sender);
         return;
     }
-    if (scan->awakened != 0 && sender->mode == SCAN_AUTO)
-        (void)fprintf(
-            stderr,
-            "fathom: the sensor sent automatically until the scan asked it. It sends again after a power "
-            "cycle%s.\n",
-            sender->model->automatic_again != NULL ? sender->model->automatic_again : "");
+    if (scan->awakened != 0 && sender->mode == SCAN_AUTO) {
+        (void)fprintf(stderr, "fathom: the sensor sent automatically until the first request. It sends again "
+                              "after a power cycle");
+        if (sender->model->automatic_again != NULL)
+            (void)fprintf(stderr, ", or after 'fathom set %s:ADDRESS --port %s %s'", sender->model->name,
+                          scan->settings->port, sender->model->automatic_again);
+        (void)fputs(".\n", stderr);
+    }
     print_others(scan);
+    if (scan->left_out_count == scan->settings->line_count) {
+        (void)fputs("fathom: nothing was asked, because the port has none of these settings. A scan with "
+                    "other settings "
+                    "or with another adapter can find a sensor.\n",
+                    stderr);
+        return;
+    }
     if (scan->terminations > 1)
         (void)fprintf(
             stderr,
@@ -441,8 +452,14 @@ static void print_result(const scan_t *scan)
             "--port %s termination off'.\n",
             scan->terminations, scan->terminated->name, scan->settings->port);
     if (scan->sensors == 0) print_nothing(scan);
-    (void)fprintf(stderr, "fathom: sensors found: %" PRIu32 ", after %s\n", scan->sensors,
+    (void)fprintf(stderr, "fathom: sensors found: %" PRIu32 ", after %s", scan->sensors,
                   duration_text(scan_now_us(scan) - scan->progress.start_us, duration));
+    for (uint8_t i = 0, listed = 0; i != scan->settings->line_count; i++)
+        if (scan->left_out[i])
+            (void)fprintf(stderr, "%s%s",
+                          listed++ == 0 ? ". Not asked, since the port does not have them: " : ", ",
+                          line_text(&scan->settings->lines[i], line));
+    (void)fputs("\n", stderr);
 }
 
 /* ---- the command ---- */
@@ -487,14 +504,16 @@ static int run(scan_t *scan, const host_t *host)
         (void)fprintf(stderr, "fathom: %s\n", scan->port.error_text);
         return STATUS_FAILED;
     }
+    advice_print_opening(&scan->port);
     for (uint8_t i = 0; i != settings->line_count;
          i++) { /* a slower unit has to recognise the silence, too */
         const uint16_t silence_us = fathom_silence_us(&settings->lines[i]);
         if (i == 0 || silence_us > scan->port.parts.silence_us) scan->port.parts.silence_us = silence_us;
     }
-    (void)fputs("fathom: asking ", stderr);
+    (void)fprintf(stderr, "fathom: listens for %s, and then sends requests to ",
+                  duration_text(settings->listen_us, duration));
     print_plan(stderr, settings);
-    (void)fprintf(stderr, " takes about %s, and a second for each sensor\n",
+    (void)fprintf(stderr, ": about %s in all, and a second for each sensor\n",
                   duration_text(scan_plan_us(settings), duration));
     progress_init(&scan->progress, stderr, scan_now_us(scan), scan_plan_us(settings));
     scan_listen(scan);

@@ -69,12 +69,15 @@ struct scan {
     uint32_t terminations;               /* sensors whose termination resistor is on */
     const model_t *terminated;           /* model of these sensors */
     uint32_t awakened;                   /* sensors of the sender's model */
+    bool has_damaged;                    /* an address whose responses are damaged */
     bool has_dyp;                        /* a sensor that can have frames 55 AA */
     uint32_t found_baud[SCAN_ADDRESSES]; /* of the device at an address; 0: none */
     evidence_t heard;                    /* echoes, masters, and `bytes` of neither a frame nor an echo */
     uint8_t outside;                     /* an address beyond the plan that sent a frame; 0: none */
     uint32_t
         not_asked; /* addresses, counted at each line setting: the line was busy, or another master asked them */
+    bool left_out[SCAN_LINES]; /* line settings that the port does not have */
+    uint8_t left_out_count;
     bool has_other_master; /* another master asked one of these */
 
     /* At the present line setting. NULL: the scan listens. */

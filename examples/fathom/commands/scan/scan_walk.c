@@ -454,6 +454,8 @@ void scan_walk(scan_t *scan)
         scan->done_us = began_us + line_us(settings, scan->line);
         if (scan->status != FATHOM_ERR_UNSUPPORTED) continue;
         scan->status = FATHOM_OK;
+        scan->left_out[i] = true;
+        scan->left_out_count++;
         progress_clear(&scan->progress);
         (void)fprintf(stderr, "fathom: this port does not have %s, so the scan leaves it out.\n",
                       line_text(scan->line, line));
