@@ -30,11 +30,14 @@ TARGETS = [
      'riscv64-unknown-elf-', set()),
 ]
 # An AVR keeps const data in RAM: so many bytes, no more and no less. The CRC's, which is why an AVR has one of its own;
-# the functions of a line and of a protocol; what a switch becomes; and the names of statuses.
+# the functions of a line and of a protocol; what a switch becomes; the facts of a datasheet's sensor; and the names of
+# statuses.
 AVR_CONST = {'src/codec/crc16.c': 512, 'src/codec/crc16_small.c': 32, 'src/engine/line_request.c': 10,
              'src/engine/line_listening.c': 10, 'src/engine/line_senders.c': 6, 'src/engine/line_masters.c': 8,
              'src/engine/modbus_client.c': 14, 'src/engine/modbus_client_zero.c': 14, 'src/engine/modbus_command.c': 6,
-             'src/engine/dyp_client.c': 14, 'src/sensor/factory_line.c': 24, 'src/sensor/hps167_uart.c': 14,
+             'src/engine/dyp_client.c': 14, 'src/sensor/a05_auto.c': 23, 'src/sensor/a05_dyp.c': 23,
+             'src/sensor/a05_modbus.c': 23, 'src/sensor/a16_auto.c': 23, 'src/sensor/a16_controlled.c': 23,
+             'src/sensor/a16_modbus.c': 23, 'src/sensor/a16_pwm.c': 23, 'src/sensor/factory_line.c': 24, 'src/sensor/hps167_uart.c': 14,
              'src/status_name.c': 176, 'src/status_advice.c': 1694}
 MODELS = 'src/models/'  # tables, each row of which is linked alone: of any size
 AVR_ONLY = ['port/avr/crc16.c', 'port/avr/crc16_table.c']

@@ -182,7 +182,8 @@ void controlled_start(void) { controlled_start_at(RIG_START_US); }
 
 int controlled_set_up(void **state)
 {
-    memset(&controlled.config, 0, sizeof controlled.config);
+    controlled.model = fathom_a16_controlled_model;
+    controlled.config = (fathom_a16_controlled_config_t){.model = &controlled.model};
     controlled.trigger = fathom_output_line_break(&rig.line);
     controlled_start();
     return 0;

@@ -82,8 +82,10 @@ uint16_t rig_hps167_crc(const uint8_t *bytes, size_t length);
 /* ---- an A16 that is triggered, by the fake UART's break unless the config names the pin ---- */
 
 typedef struct {
-    fathom_output_t trigger; /* this and the config are the test's to change before it starts anew */
-    fathom_a16_controlled_config_t config;
+    fathom_output_t
+        trigger; /* this, the config and the model are the test's to change before it starts anew */
+    fathom_a16_controlled_config_t config; /* names `model` */
+    fathom_model_facts_t model;
     fathom_a16_controlled_t a16;
     fake_pin_t pin;
 } controlled_t;

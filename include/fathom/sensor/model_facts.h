@@ -63,24 +63,33 @@ typedef struct {
     /** @brief The line settings that the module has when it is new. NULL for pulses. Drivers do not set them. */
     const fathom_line_settings_t *line_settings;
 
-    /** @brief Least accepted distance in millimetres: the end of the blind zone, 0 to `max_mm`. */
+    /**
+     * @brief Least accepted distance in millimetres: the end of the blind zone, 0 to `max_mm`. 0: it is not known.
+     *
+     * 0 is never a distance, and nor are the values from FFFB on.
+     */
     uint16_t min_mm;
 
-    /** @brief Greatest accepted distance in millimetres, `min_mm` to 65535. */
+    /** @brief Greatest accepted distance in millimetres: `min_mm` to 65535, and at least 1. */
     uint16_t max_mm;
 
     /**
      * @brief Least time between two triggers or two requests, in milliseconds. 0: none is known.
+     *
+     * For an A05 with requests it is the time of one probe.
      *
      * With automatic output it is the time between two measurements. A frame that repeats the value sooner than three
      * quarters of this time after the last new value is the same measurement, and does not increment `sequence`.
      */
     uint16_t period_ms;
 
-    /** @brief Least time for which the trigger is low, or high (FATHOM_STARTS_HIGH_PULSE), in microseconds. */
+    /**
+     * @brief Least time for which the trigger is low, or high (FATHOM_STARTS_HIGH_PULSE), and for which it rests, in
+     * microseconds: 1 to 60000. 0 selects 2000.
+     */
     uint16_t trigger_us;
 
-    /** @brief Width of the pulse for each 100 mm, in microseconds: 575 for the A16. 0: the mode has no pulse. */
+    /** @brief Width of the pulse for each 100 mm, in microseconds: 1 to 6000, 575 for the A16. 0: there is no pulse. */
     uint16_t us_per_dm;
 
     /** @brief What starts a measurement: a fathom_model_start_t. */
@@ -92,10 +101,13 @@ typedef struct {
     /** @brief Earliest end of the response after the trigger, in milliseconds. */
     uint8_t earliest_ms;
 
-    /** @brief Latest end of the response after the trigger, in milliseconds: `earliest_ms` to 255. */
+    /** @brief Latest end of the response after the trigger, in milliseconds: `earliest_ms` to 255, and at least 1. */
     uint8_t latest_ms;
 
-    /** @brief Width of the pulse that means that nothing is in range, in milliseconds. 0: there is no such pulse. */
+    /**
+     * @brief Width of the pulse that means that nothing is in range, in milliseconds, at least 3. 0: there is no such
+     * pulse.
+     */
     uint8_t no_target_ms;
 
     /** @brief Meaning of FFFB: a fathom_meaning_t. 0 selects FATHOM_MEANS_REFUSED. */
