@@ -45,6 +45,7 @@
 #include "fathom/sensor/hps167_uart.h"  /* distances, single or continuous */
 
 /* All of them */
+#include "fathom/models.h" /* the facts of their relatives, such as A02YYUW, JSN-SR04T and HC-SR04 */
 #include "fathom/sensor/factory_line.h" /* the line settings with which they leave the factory */
 
 /* Processing of readings */
