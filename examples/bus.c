@@ -53,7 +53,7 @@ static bool bus_init(bus_t *bus, const fathom_uart_t *uart, const fathom_clock_t
         .frame = bus->frame,
         .frame_size = sizeof bus->frame,
         .find_echo = fathom_line_find_echo,
-        /* With factory settings an HPS-167S sends measurements unasked, and a Modbus master may share the pair. */
+        /* With factory settings an HPS-167S sends unsolicited measurements, and a Modbus master may share the pair. */
         .senders = &fathom_line_senders,
         .masters = &fathom_line_masters,
         /* The silence after which the slowest of the three recognises the end of a frame. */
@@ -62,7 +62,7 @@ static bool bus_init(bus_t *bus, const fathom_uart_t *uart, const fathom_clock_t
         .gap_us = 25000,
     };
     if (fathom_line_init(&bus->line, &bus->parts) != FATHOM_OK) return false;
-    /* In turns, the HPS-167S would be asked once for each request of the slow ones: twice a second. */
+    /* If the requests alternated, the HPS-167S would get one for each of the slow ones: twice a second. */
     fathom_fair_share(&bus->share, &bus->line);
     bus->modbus = fathom_modbus_client(&bus->line);
 
@@ -74,7 +74,7 @@ static bool bus_init(bus_t *bus, const fathom_uart_t *uart, const fathom_clock_t
     const fathom_a05_modbus_config_t a05 = {
         .modbus.line_settings = &ultrasonic,
         .modbus.address = 2,
-        /* When it is silent, it is asked every two seconds; the default is 16 time-outs, 9.6 s. */
+        /* If the sensor is silent, it gets a request every two seconds; the default is 16 time-outs, 9.6 s. */
         .modbus.backoff_us = 2000000,
     };
     const fathom_hps167s_config_t hps = {
@@ -108,8 +108,8 @@ static void use(uint32_t time_us, int i, fathom_status_t status, const fathom_sa
                      sample->kind == FATHOM_NO_TARGET ? "no target" : "no distance");
 }
 
-/* The main loop, until so long after the start. `idle` sleeps until bytes come, at most so long; a loop that has other
- * work needs none. */
+/* The main loop; ends `until_us` after the start. `idle` sleeps until bytes arrive or a driver is due; a loop with
+ * other work needs none. */
 static void read_bus(bus_t *bus, uint32_t until_us, fathom_idle_t idle, void *idle_ctx)
 {
     const fathom_clock_t *const clock = bus->parts.clock;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Stands for the sources whose libraries were not found: it says what is missing, and what to install. */
+/* Stands for the sources whose libraries were not found: it prints what is missing, and what to install. */
 #include <stddef.h>
 #include <stdio.h>
 #include <string.h>

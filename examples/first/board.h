@@ -11,7 +11,8 @@
  * is wired. `argc` and `argv` are those of main(), and only Linux reads them.
  */
 
-/* Opens the line for sensors that are asked. Returns false, after a message if the machine has a screen, if it fails. */
+/* Opens the line for sensors that get requests. Returns false, after a message if the machine has a screen, if it
+ * fails. */
 bool board_open(board_bus_t *bus, const fathom_line_settings_t *settings, int argc, char **argv);
 
 /* Opens the line for sensors that send by themselves. */

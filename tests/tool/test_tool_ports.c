@@ -151,8 +151,8 @@ TEST(info_tells_one_sensor_after_the_other)
 {
     const tool_run_t *const run = info("gate=hps167s:7@here a16:3@here");
     assert_int_equal(run->status, 0);
-    expect_begin(run->out, "gate: hps167s, infrared time of flight, asked at address 7, 19200 8E1\n");
-    assert_non_null(strstr(run->out, "\n\na16:3: a16, one ultrasonic probe, asked at address 3, 9600 8N1\n"));
+    expect_begin(run->out, "gate: hps167s, infrared time of flight, at address 7, 19200 8E1\n");
+    assert_non_null(strstr(run->out, "\n\na16:3: a16, one ultrasonic probe, at address 3, 9600 8N1\n"));
     expect_begin(
         run->err,
         "fathom: gate: the termination resistor is on, as in every sensor from the factory; on a line "
@@ -175,8 +175,8 @@ TEST(info_goes_on_where_a_sensor_or_its_port_fails)
 TEST(info_of_one_has_no_name_before_its_text_unless_the_user_has_given_one)
 {
     const tool_run_t *run = info("a16:3@here");
-    expect_begin(run->out, "a16, one ultrasonic probe, asked");
+    expect_begin(run->out, "a16, one ultrasonic probe, at address");
     bench_begin();
     run = info("t=a16:3 --port here");
-    expect_begin(run->out, "t: a16, one ultrasonic probe, asked");
+    expect_begin(run->out, "t: a16, one ultrasonic probe, at address");
 }

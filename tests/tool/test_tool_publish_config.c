@@ -69,6 +69,8 @@ TEST(check_prints_a_table_of_sensors_and_topics)
 {
     static const char expected[] = "broker     mill.lan port 1884\n"
                                    "client     fathom-mill-north, user reader\n"
+                                   "topics     fathom/mill/north/\n"
+                                   "           Only one computer may have this client id and these topics.\n"
                                    "queue      500 messages, 4194304 bytes\n"
                                    "discovery  homeassistant\n"
                                    "           fathom/mill/north/status\n"
@@ -106,6 +108,7 @@ TEST(a_line_may_be_otherwise)
         {24, "        alarm: near<500/600,unknown=on,no-response=off", ", alarm near<500/600\n"},
         {2, "discovery: off", "discovery  off\n"},
         {2, "discovery: ha/x", "discovery  ha/x\n"},
+        {1, "# no site", "/, from the name of this host\n"},
         {2, "prefix: p", "a16:1:modbus@/dev/ttyUSB0, 1000 ms"}, /* without an interval */
         {12, "      - name: 5", "5          a16:1:modbus@"},    /* no sensor has five probes */
         {6, "  tls: {}", "broker     mill.lan port 8883, TLS\n"},

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* fathom publish and a broker that is not there: how long it pauses before it tries again. The broker's port is a real one, on
- * which nothing listens; the time is the test's. */
+/* fathom publish and a broker that is not there, or that closes each connection: how long it pauses before it tries again. The
+ * broker's port is a real one, on which the test listens or nothing does; the time is the test's. */
 #include "suite.h"
 
 #include <arpa/inet.h>
@@ -15,6 +15,7 @@ static fathom_loop_t loop;
 static broker_t broker;
 static publish_settings_t settings;
 static uint64_t time_us;
+static int listener;
 
 static uint64_t now_us(void *ctx) { return time_us; }
 
@@ -33,13 +34,11 @@ static int refusing_socket(uint16_t *port)
 static int set_up(void **state)
 {
     static const host_t host = {.now_us = now_us};
-    static int fd;
     memset(&settings, 0, sizeof settings);
     (void)strcpy(settings.broker.host, "127.0.0.1");
     (void)strcpy(settings.broker.client_id, "test");
     settings.broker.keep_alive_s = 30;
-    fd = refusing_socket(&settings.broker.port);
-    *state = &fd;
+    listener = refusing_socket(&settings.broker.port);
     time_us = 1000;
     assert_int_equal(fathom_loop_init(&loop, NULL), FATHOM_POSIX_OK);
     broker_begin(&broker, &host, &loop, &settings, NULL, NULL);
@@ -50,7 +49,7 @@ static int tear_down(void **state)
 {
     broker_end(&broker);
     fathom_loop_deinit(&loop);
-    return close(*(int *)*state);
+    return close(listener);
 }
 
 static const suite_t suite = {.set_up = set_up, .tear_down = tear_down};
@@ -93,4 +92,85 @@ TEST(another_configuration_is_tried_at_once)
     (void)broker_tick(&broker);
     assert_int_equal(broker.phase, BROKER_CONNECTING);
     assert_in_range(pause_after_a_try(), 250000, 500000);
+}
+
+/* ---- another client has the same id ---- */
+
+static void step_until(broker_phase_t phase)
+{
+    for (unsigned turn = 0; broker.phase != phase; turn++) {
+        assert_true(turn != PATIENCE);
+        fathom_loop_step(&loop, 10000);
+        (void)broker_tick(&broker);
+    }
+}
+
+/* The broker accepts the client, and closes the connection after this time. Returns the pause. */
+static uint32_t pause_after_a_close(uint32_t lasts_us)
+{
+    static const uint8_t accepted[] = {0x20, 2, 0, 0}; /* CONNACK: MQTT 3.1.1, 3.2 */
+    uint8_t bytes[256];
+    (void)broker_tick(&broker);
+    const int fd = accept(listener, NULL, NULL);
+    assert_true(fd >= 0 && recv(fd, bytes, sizeof bytes, 0) > 0);
+    assert_int_equal(send(fd, accepted, sizeof accepted, 0), sizeof accepted);
+    step_until(BROKER_READY);
+    time_us += lasts_us;
+    (void)broker_tick(&broker);
+    (void)close(fd);
+    step_until(BROKER_PAUSE);
+    return (uint32_t)(broker.until_us - time_us);
+}
+
+static void sleep_for(uint32_t us) { time_us += us; }
+
+static void expect_contested(bool is_contested)
+{
+    assert_int_equal(strstr(broker.reason, "it accepts the client test and soon closes") != NULL,
+                     is_contested);
+}
+
+/* What the other client does: a connection lasts for the pause of the other one, up to a minute. */
+TEST(of_two_clients_with_one_id_each_pauses_longer_until_a_connection_lasts_for_two_minutes)
+{
+    static const uint32_t longest_ms[TRIES] = {0, 500, 1000, 2000, 4000, 8000, 16000, 32000, 60000, 60000};
+    assert_int_equal(listen(listener, 1), 0);
+    for (unsigned i = 0; i != TRIES; i++) {
+        const uint32_t pause_us = pause_after_a_close(i < 2 ? 9000000 : 60000000);
+        assert_in_range(pause_us, longest_ms[i] * 500, longest_ms[i] * 1000);
+        expect_contested(i >= 1);
+        time_us += pause_us;
+    }
+    assert_in_range(pause_after_a_close(120000000), 250000, 500000);
+    expect_contested(false);
+}
+
+/* A broker that was restarted accepts no client for some time. */
+TEST(a_broker_that_is_restarted_again_and_again_is_not_contested)
+{
+    const uint16_t port = settings.broker.port;
+    uint16_t refusing_port;
+    const int refusing = refusing_socket(&refusing_port);
+    assert_int_equal(listen(listener, 1), 0);
+    for (unsigned i = 0; i != 3; i++) {
+        settings.broker.port = port;
+        sleep_for(pause_after_a_close(1000000));
+        assert_int_equal(broker.closes, 1);
+        settings.broker.port = refusing_port;
+        sleep_for(pause_after_a_try());
+    }
+    (void)close(refusing);
+}
+
+TEST(a_client_without_a_sensor_leaves_a_contested_connection_to_the_other_one)
+{
+    assert_int_equal(listen(listener, 1), 0);
+    broker.yields = true;
+    sleep_for(pause_after_a_close(1000000));
+    sleep_for(pause_after_a_close(1000000));
+    sleep_for(3600000000);
+    assert_in_range(broker_tick(&broker), 1, 1000000);
+    assert_int_equal(broker.phase, BROKER_PAUSE);
+    broker.yields = false;
+    (void)pause_after_a_close(1000000); /* it connects */
 }

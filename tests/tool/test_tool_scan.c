@@ -416,6 +416,15 @@ FINDS(a_rate_that_the_port_does_not_have_is_left_out, "--baud 9600,230400,19200"
       "fathom: this port does not have 230400 8E1, so the scan leaves it out.\n", HPS167S(.address = 1),
       scans.refused_baud = 230400)
 
+TEST(a_port_that_does_not_have_the_settings_of_a_sensor_is_named_as_the_cause)
+{
+    A16(.address = 1);
+    scans.refused_baud = 19200;
+    assert_says(tool_run(&bench.tool, "read a16:1:modbus hps167s:7 --port line --count 1"),
+                ": the port does not support this, and nothing was sent. Choose other line settings or "
+                "another adapter");
+}
+
 FINDS(the_result_names_the_settings_that_were_left_out, "--baud 9600,230400,57600", "",
       ". Not asked, since the port does not have them: 230400 8E1\n", scans.refused_baud = 230400)
 
@@ -424,7 +433,7 @@ TEST(a_scan_that_left_out_every_setting_has_asked_nothing_and_concludes_nothing)
     scans.refused_baud = 230400;
     const tool_run_t *const run = scan_finds("", "--baud 230400 --parity none,even");
     assert_non_null(
-        strstr(run->err, "fathom: nothing was asked, because the port has none of these settings."));
+        strstr(run->err, "fathom: no request was sent, because the port has none of these settings."));
     assert_null(strstr(run->err, "no sensor was found"));
     assert_null(strstr(run->err, "sensors found"));
     assert_int_equal(run->status, 1);
@@ -575,7 +584,7 @@ TEST(ctrl_c_ends_the_scan_at_once_and_keeps_what_was_found)
         /* The signal ends a wait of the bench with its time-out, which is at most that for any A05. */
         assert_in_range(run->took_us, ms * 1000, ms * 1000 + 300000);
         assert_int_equal(run->status, run->out[0] != '\0' ? 0 : 1);
-        assert_says(run, "fathom: the scan ended before all addresses were asked. Sensors found: ");
+        assert_says(run, "fathom: the scan ended before its last address. Sensors found: ");
     }
 }
 
@@ -586,7 +595,7 @@ TEST(a_port_that_fails_ends_the_scan)
     scans.is_broken = true;
     const tool_run_t *run = scan_finds("", "");
     assert_int_equal(run->status, 1);
-    assert_says(run, "the port did not send the request. Check the adapter");
+    assert_says(run, "the port did not send the request in time. Check the adapter");
     bench.tool.ports = &port;
     bench.tool.port_count = 1;
     run = scan("");
@@ -827,7 +836,7 @@ TEST(a_unit_or_a_master_that_was_not_asked_is_mentioned)
 {
     (void)add_speaker(&dyp_line, 0, a16_response, sizeof a16_response);
     const tool_run_t *run = scan_finds("", "--address 2-4");
-    assert_says(run, "a frame from address 1 was heard, which the scan did not ask. Use --address 1.\n");
+    assert_says(run, "a frame from address 1 was received, which is not in the scan. Use --address 1.\n");
     assert_null(strstr(run->err, "another master"));
 
     scan_begin();
@@ -842,7 +851,7 @@ TEST(a_line_that_is_never_silent_proves_nothing_about_its_addresses)
 {
     (void)add_speaker(&dyp_line, 6000, junk, sizeof junk); /* 6.3 ms long */
     const tool_run_t *const run = scan_finds("? - 9600 8N1", "--wake --baud 9600 --address 1-8 --listen 1");
-    assert_says(run, "fathom: 9 addresses could not be asked: ");
+    assert_says(run, "fathom: 9 addresses got no request: ");
     assert_null(strstr(run->err, "nothing was heard"));
     assert_int_equal(scans.probed[0][FATHOM_PARITY_NONE], 4 * 3 + 4 * 2);
 }

@@ -185,9 +185,9 @@ static const row_t acknowledged[] = {
          "distance-offset: a sensor that has an offset already may add the new one to it. To check, measure ",
      .also = "hps167s:1: distance-offset: -15 mm was written and acknowledged; the setting cannot be read "
              "back\n"},
-    {a16_auto, "set a16 automatic-output on", 0, 1, .text = "frames are heard\n"},
+    {a16_auto, "set a16 automatic-output on", 0, 1, .text = "frames are received\n"},
     {a16, "set a16 automatic-output on", 1, 1,
-     .text = "no frame was heard in 10 s; only the RS232 variant sends by itself"},
+     .text = "no frame was received in 10 s; only the RS232 variant sends automatically"},
 };
 TEST_ROWS(what_cannot_be_read_back_is_said_to_be_acknowledged, acknowledged)
 

@@ -169,7 +169,7 @@ TEST(each_help_fits_80_columns_and_that_of_a_command_60_lines)
         (void)snprintf(page, sizeof page, "%s", run->out);
         if (is_command) assert_string_equal(tool_run(&bench.tool, "%s -h", name)->out, page);
     }
-    assert_int_equal(pages, 15 + 22);
+    assert_int_equal(pages, 15 + 23);
 }
 
 TEST(an_option_without_an_effect_is_a_notice)

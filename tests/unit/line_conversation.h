@@ -5,12 +5,11 @@
 #include "line_bench.h"
 
 /*
- * A conversation is one test of the line: its name, its steps in their order, and the counters at its end. A counter
+ * A conversation is one test of the line: its name, the counters at its end, and its steps in their order. A counter
  * that a row does not name must be 0. A is bench.request, and B is bench.other. Times are in microseconds.
  *
- *     {"a_late_response_is_counted_and_not_delivered",
- *      {ASK(A, 1), WAIT(TIMEOUT_US + 200), RESPONSE(1, 754), FAILS(A, NO_RESPONSE)},
- *      {.no_responses = 1, .late = 1, .dropped = 7}},
+ *     ROW("a_late_response_is_counted_and_not_delivered", COUNTS(.no_responses = 1, .late = 1, .dropped = 7),
+ *         ASK(A, 1), WAIT(TIMEOUT_US + 200), RESPONSE(1, 754), FAILS(A, NO_RESPONSE)),
  *
  * A test with a loop or a branch is a function.
  */
@@ -35,12 +34,11 @@ typedef struct {
     step_t steps[18];
 } conversation_t;
 
-/* A row of a table of conversations: TALK("what_is_so", COUNTS(.responses = 1), ASK(A, 1), ...). */
 #define COUNTS(...)                                                                                          \
     {                                                                                                        \
         __VA_ARGS__                                                                                          \
     }
-#define TALK(its_name, its_counts, ...)                                                                      \
+#define ROW(its_name, its_counts, ...)                                                                       \
     {                                                                                                        \
         its_name, its_counts, { __VA_ARGS__ }                                                                \
     }

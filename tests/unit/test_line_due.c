@@ -62,28 +62,28 @@ TEST(without_a_time_out_it_is_due_at_once)
 
 static const conversation_t conversations[] = {
     /* "from now": also where much time has passed since the last poll; then the line has seen that the request has left */
-    TALK("a_port_that_says_when_the_request_has_left_is_asked_again_right_then", COUNTS(0),
-         BEGINS_TO_SEND(8 * BYTE_US), DUE(8 * BYTE_US), PASS(3 * BYTE_US), LEAVES_IN(5 * BYTE_US),
-         DUE(5 * BYTE_US), POLL_AFTER(5 * BYTE_US), DUE(TIMEOUT_US)),
+    ROW("a_port_that_says_when_the_request_has_left_is_asked_again_right_then", COUNTS(0),
+        BEGINS_TO_SEND(8 * BYTE_US), DUE(8 * BYTE_US), PASS(3 * BYTE_US), LEAVES_IN(5 * BYTE_US),
+        DUE(5 * BYTE_US), POLL_AFTER(5 * BYTE_US), DUE(TIMEOUT_US)),
     /* 255 bytes of 11 bits at 9600 baud are 292 ms */
-    TALK("a_long_request_may_take_longer_than_65_ms", COUNTS(0), BEGINS_TO_SEND(8 * BYTE_US),
-         LEAVES_IN(292188), DUE(292188)),
-    TALK("a_port_that_does_not_know_when_the_request_has_left_is_asked_each_millisecond", COUNTS(0),
-         QUEUE(A, 1), SENT(0, T3_5_US + 200), POLL, DUE(1000), PASS(400), DUE(600)),
+    ROW("a_long_request_may_take_longer_than_65_ms", COUNTS(0), BEGINS_TO_SEND(8 * BYTE_US),
+        LEAVES_IN(292188), DUE(292188)),
+    ROW("a_port_that_does_not_know_when_the_request_has_left_is_asked_each_millisecond", COUNTS(0),
+        QUEUE(A, 1), SENT(0, T3_5_US + 200), POLL, DUE(1000), PASS(400), DUE(600)),
     /* "0: they have left, or should have; as long as `sent` is false all the same, the line looks each millisecond": a
      * microsecond that was rounded away is no busy loop */
-    TALK("a_port_that_says_0_while_it_sends_all_the_same_is_asked_each_millisecond", COUNTS(0),
-         BEGINS_TO_SEND(0), NEVER_SENT(true), POLL_AFTER(1000), DUE(1000), POLL_AFTER(1000), DUE(1000),
-         POLL_AFTER(1000), DUE(1000), NEVER_SENT(false), POLL_AFTER(8 * BYTE_US), DUE(TIMEOUT_US)),
+    ROW("a_port_that_says_0_while_it_sends_all_the_same_is_asked_each_millisecond", COUNTS(0),
+        BEGINS_TO_SEND(0), NEVER_SENT(true), POLL_AFTER(1000), DUE(1000), POLL_AFTER(1000), DUE(1000),
+        POLL_AFTER(1000), DUE(1000), NEVER_SENT(false), POLL_AFTER(8 * BYTE_US), DUE(TIMEOUT_US)),
     /* bytes of the port may keep it from taking the request */
-    TALK("a_port_that_takes_no_request_is_asked_again_when_it_has_sent", COUNTS(0), LEAVES_IN(3 * BYTE_US),
-         PORT_REFUSES(true), QUEUE(A, 1), WAIT(T3_5_US + 200), DUE(3 * BYTE_US), PORT_REFUSES(false),
-         POLL_AFTER(3 * BYTE_US), WRITTEN(1)),
+    ROW("a_port_that_takes_no_request_is_asked_again_when_it_has_sent", COUNTS(0), LEAVES_IN(3 * BYTE_US),
+        PORT_REFUSES(true), QUEUE(A, 1), WAIT(T3_5_US + 200), DUE(3 * BYTE_US), PORT_REFUSES(false),
+        POLL_AFTER(3 * BYTE_US), WRITTEN(1)),
     /* the next request needs a silence of 3646 us, and an empty frame */
-    TALK("with_a_part_of_a_late_response_the_next_request_is_due_after_the_gap",
-         COUNTS(.no_responses = 1, .dropped = 4), QUEUE(A, 1), POLL_AFTER(T3_5_US), POLL_AFTER(8 * BYTE_US),
-         DUE(TIMEOUT_US), POLL_AFTER(TIMEOUT_US), FAILS(A, NO_RESPONSE), ARRIVE("01 03 02 02"), POLL,
-         QUEUE(B, 2), DUE(GAP_US), POLL_AFTER(GAP_US - 1), WRITTEN(1), POLL_AFTER(1), WRITTEN(2)),
+    ROW("with_a_part_of_a_late_response_the_next_request_is_due_after_the_gap",
+        COUNTS(.no_responses = 1, .dropped = 4), QUEUE(A, 1), POLL_AFTER(T3_5_US), POLL_AFTER(8 * BYTE_US),
+        DUE(TIMEOUT_US), POLL_AFTER(TIMEOUT_US), FAILS(A, NO_RESPONSE), ARRIVE("01 03 02 02"), POLL,
+        QUEUE(B, 2), DUE(GAP_US), POLL_AFTER(GAP_US - 1), WRITTEN(1), POLL_AFTER(1), WRITTEN(2)),
 };
 CONVERSATIONS(set_up, conversations)
 

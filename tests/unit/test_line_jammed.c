@@ -9,19 +9,19 @@ enum { FRAME = sizeof bench.frame };
 
 /* busy_us is 1 s. Of 65 ms of silence, T3_5_US suffice. */
 static const conversation_t conversations[] = {
-    TALK("while_noise_leaves_no_silence_a_read_leaves_after_a_second_and_the_line_is_said_to_be_busy",
-         COUNTS(.busy = 1, .dropped = 1068), QUEUE(A, 1), JAM(1000000 - 2 * BYTE_US), PENDS(A), WRITTEN(0),
-         JAM(4 * BYTE_US), WRITTEN(1), JAM(8 * BYTE_US + TIMEOUT_US + 2 * BYTE_US), FAILS(A, LINE_BUSY)),
+    ROW("while_noise_leaves_no_silence_a_read_leaves_after_a_second_and_the_line_is_said_to_be_busy",
+        COUNTS(.busy = 1, .dropped = 1068), QUEUE(A, 1), JAM(1000000 - 2 * BYTE_US), PENDS(A), WRITTEN(0),
+        JAM(4 * BYTE_US), WRITTEN(1), JAM(8 * BYTE_US + TIMEOUT_US + 2 * BYTE_US), FAILS(A, LINE_BUSY)),
     /* the wait of the second write begins anew; now the line falls silent */
-    TALK("while_noise_leaves_no_silence_a_write_ends_after_a_second_and_was_not_sent",
-         COUNTS(.busy = 1, .dropped = 962), WRITE(A, 1), JAM(1000000 - 2 * BYTE_US), ENDS(A, FATHOM_PENDING),
-         JAM(4 * BYTE_US), ENDS(A, FATHOM_ERR_LINE_BUSY), WRITTEN(0), COUNT(BUSY_ATTEMPTS, 1), WRITE(A, 1),
-         SENT(0, T3_5_US + BYTE_US)),
+    ROW("while_noise_leaves_no_silence_a_write_ends_after_a_second_and_was_not_sent",
+        COUNTS(.busy = 1, .dropped = 962), WRITE(A, 1), JAM(1000000 - 2 * BYTE_US), ENDS(A, FATHOM_PENDING),
+        JAM(4 * BYTE_US), ENDS(A, FATHOM_ERR_LINE_BUSY), WRITTEN(0), COUNT(BUSY_ATTEMPTS, 1), WRITE(A, 1),
+        SENT(0, T3_5_US + BYTE_US)),
     /* the port has FATHOM_LINE_SEND_US, a second, for the request; the wait for silence is another second. A request may
      * leave at once here, so no wait for silence begins */
-    TALK("noise_does_not_prolong_the_time_of_a_busy_port", COUNTS(.port_errors = 1, .dropped = 482),
-         PORT_REFUSES(true), WAIT(10000), QUEUE(A, 1), WAIT(500000), JAM(500000 - 2 * BYTE_US), PENDS(A),
-         JAM(4 * BYTE_US), FAILS(A, PORT)),
+    ROW("noise_does_not_prolong_the_time_of_a_busy_port", COUNTS(.port_errors = 1, .dropped = 482),
+        PORT_REFUSES(true), WAIT(10000), QUEUE(A, 1), WAIT(500000), JAM(500000 - 2 * BYTE_US), PENDS(A),
+        JAM(4 * BYTE_US), FAILS(A, PORT)),
 };
 CONVERSATIONS(set_up, conversations)
 

@@ -27,19 +27,19 @@ static void play_write_without_time(const step_t *step)
 
 static const conversation_t conversations[] = {
     /* fathom_line_parts_t: "silence_us ... 0: 4011" */
-    TALK("the_default_silence_is_4011_us", COUNTS(0), SILENCE(0), QUEUE(A, 1), POLL_AFTER(4010), WRITTEN(0),
-         POLL_AFTER(1), WRITTEN(1)),
+    ROW("the_default_silence_is_4011_us", COUNTS(0), SILENCE(0), QUEUE(A, 1), POLL_AFTER(4010), WRITTEN(0),
+        POLL_AFTER(1), WRITTEN(1)),
     /* silent_us stops at 65535, which is the longest silence that a config can name */
-    TALK("the_longest_silence_of_a_config_is_kept_and_over", COUNTS(0), SILENCE(65535), QUEUE(A, 1),
-         POLL_AFTER(65534), WRITTEN(0), POLL_AFTER(1), WRITTEN(1)),
+    ROW("the_longest_silence_of_a_config_is_kept_and_over", COUNTS(0), SILENCE(65535), QUEUE(A, 1),
+        POLL_AFTER(65534), WRITTEN(0), POLL_AFTER(1), WRITTEN(1)),
     /* fathom_line_parts_t: "more than a slow sender or a slow port pauses: 25000 behind an operating system" */
-    TALK("a_pause_shorter_than_the_gap_of_the_config_does_not_end_a_response", COUNTS(.responses = 1),
-         GAP(25000), ASK(A, 1), ARRIVE("01 03 02 02"), POLL_AFTER(100), POLL_AFTER(24999), ARRIVE("F2 38 A1"),
-         POLL, READS(A, 754)),
+    ROW("a_pause_shorter_than_the_gap_of_the_config_does_not_end_a_response", COUNTS(.responses = 1),
+        GAP(25000), ASK(A, 1), ARRIVE("01 03 02 02"), POLL_AFTER(100), POLL_AFTER(24999), ARRIVE("F2 38 A1"),
+        POLL, READS(A, 754)),
     /* the silence counts from the poll that finds the request sent, also where nothing is to be waited for */
-    TALK("the_silence_after_a_broadcast_is_kept_to_its_end", COUNTS(0), WRITE_WITHOUT_TIME, QUEUE(B, 2),
-         POLL_AFTER(T3_5_US), WRITTEN(1), POLL_AFTER(8 * BYTE_US), POLL_AFTER(T3_5_US - 1),
-         ENDS(A, FATHOM_OK), WRITTEN(1), POLL_AFTER(1), WRITTEN(2)),
+    ROW("the_silence_after_a_broadcast_is_kept_to_its_end", COUNTS(0), WRITE_WITHOUT_TIME, QUEUE(B, 2),
+        POLL_AFTER(T3_5_US), WRITTEN(1), POLL_AFTER(8 * BYTE_US), POLL_AFTER(T3_5_US - 1), ENDS(A, FATHOM_OK),
+        WRITTEN(1), POLL_AFTER(1), WRITTEN(2)),
 };
 CONVERSATIONS(set_up, conversations)
 

@@ -39,33 +39,33 @@ static const suite_t suite = {.set_up = set_up_bare};
 static void play_marks(const step_t *step) { bench.config.marks = fathom_line_marks; }
 
 static const conversation_t listening[] = {
-    TALK("a_line_that_only_listens_hands_over_what_comes_with_the_silence_before_it", COUNTS(0), LISTEN(5000),
-         WAIT(6000), RECEIVE(FRAME), RECEIVE("01 83 02 C0 F1"), HEARD(FRAME " 01 83 02 C0 F1", 1), GAP_AT(0),
-         IDLE(true)),
-    TALK("a_line_that_only_listens_tells_of_lost_bytes_once", COUNTS(0), MARKS, LISTEN(5000),
-         RECEIVE_WITH(FRAMING, FRAME), HEARD("", 0), LOST_AT(0, 1)),
-    TALK("a_line_that_only_listens_hands_over_each_byte_as_it_comes", COUNTS(0), LISTEN(5000), RECEIVE("FF"),
-         HEARD("FF", 0)),
-    TALK("what_comes_to_no_listener_is_forgotten", COUNTS(0), RECEIVE(FRAME), LISTEN(500),
-         RECEIVE("01 83 02 C0 F1"), HEARD("01 83 02 C0 F1", 0)),
-    TALK("a_line_that_only_listens_is_due_when_the_silence_is_one_for_its_listener", COUNTS(0),
-         DUE(FATHOM_NO_DEADLINE), LISTEN(5000), RECEIVE(FRAME), DUE(5000), WAIT(5100),
-         DUE(FATHOM_NO_DEADLINE)),
-    TALK("a_line_that_only_listens_lives_through_a_broken_port", COUNTS(0), LISTEN(5000), BREAK_PORT,
-         RECEIVE(FRAME), HEARD(FRAME, 0)),
+    ROW("a_line_that_only_listens_hands_over_what_comes_with_the_silence_before_it", COUNTS(0), LISTEN(5000),
+        WAIT(6000), RECEIVE(FRAME), RECEIVE("01 83 02 C0 F1"), HEARD(FRAME " 01 83 02 C0 F1", 1), GAP_AT(0),
+        IDLE(true)),
+    ROW("a_line_that_only_listens_tells_of_lost_bytes_once", COUNTS(0), MARKS, LISTEN(5000),
+        RECEIVE_WITH(FRAMING, FRAME), HEARD("", 0), LOST_AT(0, 1)),
+    ROW("a_line_that_only_listens_hands_over_each_byte_as_it_comes", COUNTS(0), LISTEN(5000), RECEIVE("FF"),
+        HEARD("FF", 0)),
+    ROW("what_comes_to_no_listener_is_forgotten", COUNTS(0), RECEIVE(FRAME), LISTEN(500),
+        RECEIVE("01 83 02 C0 F1"), HEARD("01 83 02 C0 F1", 0)),
+    ROW("a_line_that_only_listens_is_due_when_the_silence_is_one_for_its_listener", COUNTS(0),
+        DUE(FATHOM_NO_DEADLINE), LISTEN(5000), RECEIVE(FRAME), DUE(5000), WAIT(5100),
+        DUE(FATHOM_NO_DEADLINE)),
+    ROW("a_line_that_only_listens_lives_through_a_broken_port", COUNTS(0), LISTEN(5000), BREAK_PORT,
+        RECEIVE(FRAME), HEARD(FRAME, 0)),
 };
 CONVERSATIONS(set_up_listening, listening)
 
 static const conversation_t without_parts[] = {
     /* here an echo where there was to be none */
-    TALK("what_is_told_of_an_echo_stays", COUNTS(0), ASK(A, 1), ARRIVE("01 03 01 00 00 01 85 F6"),
-         RECEIVE("01 03 02 02 F2 38 A1"), READS(A, 754), ECHO_IS(OFF), BREAK_PORT, ECHO_IS(OFF)),
-    TALK("without_its_parts_a_line_ends_a_transaction_by_an_exception", COUNTS(0), ASK(A, 1),
-         RECEIVE("01 83 02 C0 F1"), FAILS(A, EXCEPTION)),
-    TALK("without_its_parts_a_line_ends_a_transaction_by_a_damaged_response", COUNTS(0), ASK(A, 1),
-         RECEIVE("01 03 02 02 E2 38 A1"), WAIT(GAP_US + 200), FAILS(A, CHECKSUM)),
-    TALK("without_its_parts_a_line_accepts_a_late_response_to_the_retry", COUNTS(0), ASK_TWICE(A, 1),
-         WAIT(TIMEOUT_US + 200), RESPONSE(1, 754), READS(A, 754)),
+    ROW("what_is_told_of_an_echo_stays", COUNTS(0), ASK(A, 1), ARRIVE("01 03 01 00 00 01 85 F6"),
+        RECEIVE("01 03 02 02 F2 38 A1"), READS(A, 754), ECHO_IS(OFF), BREAK_PORT, ECHO_IS(OFF)),
+    ROW("without_its_parts_a_line_ends_a_transaction_by_an_exception", COUNTS(0), ASK(A, 1),
+        RECEIVE("01 83 02 C0 F1"), FAILS(A, EXCEPTION)),
+    ROW("without_its_parts_a_line_ends_a_transaction_by_a_damaged_response", COUNTS(0), ASK(A, 1),
+        RECEIVE("01 03 02 02 E2 38 A1"), WAIT(GAP_US + 200), FAILS(A, CHECKSUM)),
+    ROW("without_its_parts_a_line_accepts_a_late_response_to_the_retry", COUNTS(0), ASK_TWICE(A, 1),
+        WAIT(TIMEOUT_US + 200), RESPONSE(1, 754), READS(A, 754)),
 };
 CONVERSATIONS(set_up_bare, without_parts)
 

@@ -10,30 +10,30 @@ static const suite_t suite = {.set_up = set_up};
 #define UNASKED "01 03 08 08 23 DC B2 07 01 00 00 5B D8" /* the example of HPS-167S #5 */
 
 static const conversation_t conversations[] = {
-    TALK("a_request_that_waits_when_a_frame_ends_leaves_behind_it", COUNTS(.dropped = 13), SEND(UNASKED),
-         WAIT(T3_5_US / 2), QUEUE(A, 1), SENT(T3_5_US / 2 - 200, 400)),
-    TALK("a_request_that_waits_when_a_frame_ends_leaves_behind_it_if_a_listener_gets_the_frame", COUNTS(0),
-         LISTEN(500), SEND(UNASKED), WAIT(T3_5_US / 2), QUEUE(A, 1), SENT(T3_5_US / 2 - 200, 400)),
+    ROW("a_request_that_waits_when_a_frame_ends_leaves_behind_it", COUNTS(.dropped = 13), SEND(UNASKED),
+        WAIT(T3_5_US / 2), QUEUE(A, 1), SENT(T3_5_US / 2 - 200, 400)),
+    ROW("a_request_that_waits_when_a_frame_ends_leaves_behind_it_if_a_listener_gets_the_frame", COUNTS(0),
+        LISTEN(500), SEND(UNASKED), WAIT(T3_5_US / 2), QUEUE(A, 1), SENT(T3_5_US / 2 - 200, 400)),
     /* a frame may have waited for the response, and comes as soon as a request might */
-    TALK("behind_a_response_no_request_leaves_before_the_next_frame",
-         COUNTS(.responses = 1, .dropped = 26, .maybe_unsolicited = 1), SEND(UNASKED), QUEUE(A, 1),
-         WAIT(REQUEST_US), WRITTEN(1), RESPONSE(1, 111), READS(A, 111), QUEUE(A, 1), WAIT(20000), WRITTEN(1),
-         SEND(UNASKED), WRITTEN(1), SENT(T3_5_US - 200, 400)),
+    ROW("behind_a_response_no_request_leaves_before_the_next_frame",
+        COUNTS(.responses = 1, .dropped = 26, .maybe_unsolicited = 1), SEND(UNASKED), QUEUE(A, 1),
+        WAIT(REQUEST_US), WRITTEN(1), RESPONSE(1, 111), READS(A, 111), QUEUE(A, 1), WAIT(20000), WRITTEN(1),
+        SEND(UNASKED), WRITTEN(1), SENT(T3_5_US - 200, 400)),
     /* the CRC is F8 68. The unit is not quarantined for what comes later in the silence: the next request leaves as on any
      * line */
-    TALK("what_is_left_of_a_damaged_response_is_no_other_sender", COUNTS(.damaged = 1, .dropped = 7),
-         QUEUE(A, 1), WAIT(REQUEST_US), RECEIVE("01 03 02 00 6F 00 00"), WAIT(GAP_US + 100),
-         FAILS(A, CHECKSUM), QUEUE(B, 2), SENT(0, 200)),
+    ROW("what_is_left_of_a_damaged_response_is_no_other_sender", COUNTS(.damaged = 1, .dropped = 7),
+        QUEUE(A, 1), WAIT(REQUEST_US), RECEIVE("01 03 02 00 6F 00 00"), WAIT(GAP_US + 100),
+        FAILS(A, CHECKSUM), QUEUE(B, 2), SENT(0, 200)),
     /* the port marks each of its bytes, and their end is the end of a frame all the same */
-    TALK("a_device_that_has_gone_to_another_rate_holds_up_nothing", COUNTS(.dropped = 13, .bad = 13),
-         SEND(UNASKED), WAIT(T3_5_US + 200), QUEUE(A, 1), WAIT(20000), WRITTEN(0),
-         RECEIVE_WITH(FRAMING, UNASKED), SENT(T3_5_US - 200, 400)),
-    TALK("a_glitch_before_the_first_request_delays_nothing", COUNTS(.dropped = 3), RECEIVE("00"),
-         RECEIVE("00 00"), WAIT(T3_5_US + 1000), QUEUE(A, 1), SENT(0, 200)),
+    ROW("a_device_that_has_gone_to_another_rate_holds_up_nothing", COUNTS(.dropped = 13, .bad = 13),
+        SEND(UNASKED), WAIT(T3_5_US + 200), QUEUE(A, 1), WAIT(20000), WRITTEN(0),
+        RECEIVE_WITH(FRAMING, UNASKED), SENT(T3_5_US - 200, 400)),
+    ROW("a_glitch_before_the_first_request_delays_nothing", COUNTS(.dropped = 3), RECEIVE("00"),
+        RECEIVE("00 00"), WAIT(T3_5_US + 1000), QUEUE(A, 1), SENT(0, 200)),
     /* rule 11: the device that sends by itself may have sent the frame */
-    TALK("a_response_on_a_line_with_unsolicited_bytes_counts_once_as_perhaps_unsolicited",
-         COUNTS(.responses = 1, .dropped = 4, .maybe_unsolicited = 1), RECEIVE("FF 07 A1 A7"), ASK(A, 1),
-         RESPONSE(1, 754), READS(A, 754)),
+    ROW("a_response_on_a_line_with_unsolicited_bytes_counts_once_as_perhaps_unsolicited",
+        COUNTS(.responses = 1, .dropped = 4, .maybe_unsolicited = 1), RECEIVE("FF 07 A1 A7"), ASK(A, 1),
+        RESPONSE(1, 754), READS(A, 754)),
 };
 CONVERSATIONS(set_up, conversations)
 

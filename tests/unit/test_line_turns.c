@@ -88,27 +88,27 @@ static void play_busy_us(const step_t *step) { bench.config.busy_us = step->us; 
 
 static const conversation_t conversations[] = {
     /* 3.6 ms of silence and 8.3 of request lie between 18 and 30 ms */
-    TALK("the_policy_says_who_goes_next_and_hears_who_asked_and_who_has_ended", COUNTS(.responses = 2),
-         QUEUE(A, 1), QUEUE(B, 9), WAIT(REQUEST_US), REQUEST_TO(0, 9), WAIT(17900 - REQUEST_US),
-         RESPONSE(9, 222), READS(B, 222), WAIT(REQUEST_US), REQUEST_TO(1, 1), RESPONSE(1, 754), READS(A, 754),
-         CALLED(ASKED, 1, 0), CALLED(ASKED, 9, 0), CALLED(ENDED, 9, 18), CALLED(ENDED, 1, 30), NO_MORE),
-    TALK("what_it_holds_back_is_due_when_it_says", COUNTS(.responses = 1), HOLDS_1(true), QUEUE(A, 1),
-         WAIT(50000), WRITTEN(0), DUE(12345), QUEUE(B, 9), DUE(0), POLL, REQUEST_TO(0, 9), HOLDS_1(false),
-         WAIT(8 * BYTE_US), RESPONSE(9, 222), READS(B, 222), WAIT(REQUEST_US), REQUEST_TO(1, 1)),
+    ROW("the_policy_says_who_goes_next_and_hears_who_asked_and_who_has_ended", COUNTS(.responses = 2),
+        QUEUE(A, 1), QUEUE(B, 9), WAIT(REQUEST_US), REQUEST_TO(0, 9), WAIT(17900 - REQUEST_US),
+        RESPONSE(9, 222), READS(B, 222), WAIT(REQUEST_US), REQUEST_TO(1, 1), RESPONSE(1, 754), READS(A, 754),
+        CALLED(ASKED, 1, 0), CALLED(ASKED, 9, 0), CALLED(ENDED, 9, 18), CALLED(ENDED, 1, 30), NO_MORE),
+    ROW("what_it_holds_back_is_due_when_it_says", COUNTS(.responses = 1), HOLDS_1(true), QUEUE(A, 1),
+        WAIT(50000), WRITTEN(0), DUE(12345), QUEUE(B, 9), DUE(0), POLL, REQUEST_TO(0, 9), HOLDS_1(false),
+        WAIT(8 * BYTE_US), RESPONSE(9, 222), READS(B, 222), WAIT(REQUEST_US), REQUEST_TO(1, 1)),
     /* the port was seen to be broken after 112.5 and 112.4 ms */
-    TALK("an_attempt_that_ends_and_is_tried_again_has_ended_too", COUNTS(.no_responses = 1, .port_errors = 1),
-         ASK_TWICE(A, 1), WAIT(TIMEOUT_US + 200), PENDS(A), CALLED(ASKED, 1, 0), CALLED(ENDED, 1, 112),
-         NO_MORE, DUE_AFTER_QUARANTINE, WAIT(TIMEOUT_US + REQUEST_US), WRITTEN(2), BREAK_PORT, FAILS(A, PORT),
-         POLL, CALLED(ENDED, 1, 225), NO_MORE),
-    TALK("what_is_cancelled_on_the_wire_has_ended_and_what_only_waits_has_not", COUNTS(0), ASK(A, 1),
-         QUEUE(B, 9), CANCEL(B), POLL, CALLED(ASKED, 1, 0), NO_MORE, CANCEL(A), POLL, CALLED(ENDED, 1, 12),
-         NO_MORE),
-    TALK("a_request_that_is_cancelled_before_the_next_poll_has_been_on_the_wire", COUNTS(0), QUEUE(A, 1),
-         PASS(T3_5_US), POLL, WRITTEN(1), CANCEL(A), POLL, CALLED(ASKED, 1, 0), CALLED(ENDED, 1, 3), NO_MORE),
+    ROW("an_attempt_that_ends_and_is_tried_again_has_ended_too", COUNTS(.no_responses = 1, .port_errors = 1),
+        ASK_TWICE(A, 1), WAIT(TIMEOUT_US + 200), PENDS(A), CALLED(ASKED, 1, 0), CALLED(ENDED, 1, 112),
+        NO_MORE, DUE_AFTER_QUARANTINE, WAIT(TIMEOUT_US + REQUEST_US), WRITTEN(2), BREAK_PORT, FAILS(A, PORT),
+        POLL, CALLED(ENDED, 1, 225), NO_MORE),
+    ROW("what_is_cancelled_on_the_wire_has_ended_and_what_only_waits_has_not", COUNTS(0), ASK(A, 1),
+        QUEUE(B, 9), CANCEL(B), POLL, CALLED(ASKED, 1, 0), NO_MORE, CANCEL(A), POLL, CALLED(ENDED, 1, 12),
+        NO_MORE),
+    ROW("a_request_that_is_cancelled_before_the_next_poll_has_been_on_the_wire", COUNTS(0), QUEUE(A, 1),
+        PASS(T3_5_US), POLL, WRITTEN(1), CANCEL(A), POLL, CALLED(ASKED, 1, 0), CALLED(ENDED, 1, 3), NO_MORE),
     /* the policy lets it go, and it waits for its silence; then the policy holds it back, for 12345 us */
-    TALK("a_transaction_that_waited_for_silence_is_due_when_its_policy_or_busy_us_says_so", COUNTS(0),
-         QUEUE(A, 1), WAIT(100), HOLDS_1(true), DUE(12345), BUSY_US(12000), CANCEL(A), HOLDS_1(false),
-         QUEUE(A, 1), WAIT(100), HOLDS_1(true), DUE(12000)),
+    ROW("a_transaction_that_waited_for_silence_is_due_when_its_policy_or_busy_us_says_so", COUNTS(0),
+        QUEUE(A, 1), WAIT(100), HOLDS_1(true), DUE(12345), BUSY_US(12000), CANCEL(A), HOLDS_1(false),
+        QUEUE(A, 1), WAIT(100), HOLDS_1(true), DUE(12000)),
 };
 CONVERSATIONS(begin, conversations)
 

@@ -50,16 +50,16 @@ static void play_queue_dyp(const step_t *step) { ask_dyp(&bench.other, step->uni
 
 static const conversation_t conversations[] = {
     /* FF + 09 + 10 + 07 + A1 = 1C0 */
-    TALK("a_late_response_to_a_request_to_unit_255_is_no_other_requests",
-         COUNTS(.no_responses = 1, .late = 1, .dropped = 7), ASK_ANY, WAIT(TIMEOUT_US + 200), QUEUE_DYP(9),
-         WAIT(20000), RECEIVE("55 AA 09 10 07 A1 C0"), COUNT(LATE_RESPONSES, 1), PENDS(B)),
-    TALK("a_cancelled_request_to_unit_255_quarantines_all", COUNTS(0), ASK_ANY, CANCEL(A), QUEUE(B, 77),
-         SENT(2 * TIMEOUT_US - 1000, 2000)),
+    ROW("a_late_response_to_a_request_to_unit_255_is_no_other_requests",
+        COUNTS(.no_responses = 1, .late = 1, .dropped = 7), ASK_ANY, WAIT(TIMEOUT_US + 200), QUEUE_DYP(9),
+        WAIT(20000), RECEIVE("55 AA 09 10 07 A1 C0"), COUNT(LATE_RESPONSES, 1), PENDS(B)),
+    ROW("a_cancelled_request_to_unit_255_quarantines_all", COUNTS(0), ASK_ANY, CANCEL(A), QUEUE(B, 77),
+        SENT(2 * TIMEOUT_US - 1000, 2000)),
     /* two A05 respond to FF, the second one 10 ms later (A05 2(3)1: 65..75 ms); FF + FE + 10 + 07 + A1 = 2B5 */
-    TALK("the_second_response_to_unit_255_is_not_the_next_requests",
-         COUNTS(.responses = 1, .late = 1, .dropped = 7), ASK_ANY, WAIT(65000),
-         RECEIVE("55 AA 05 10 07 A1 BC"), READS(A, 1953), QUEUE_DYP(254), WAIT(10000),
-         RECEIVE("55 AA FE 10 07 A1 B5"), PENDS(B)),
+    ROW("the_second_response_to_unit_255_is_not_the_next_requests",
+        COUNTS(.responses = 1, .late = 1, .dropped = 7), ASK_ANY, WAIT(65000),
+        RECEIVE("55 AA 05 10 07 A1 BC"), READS(A, 1953), QUEUE_DYP(254), WAIT(10000),
+        RECEIVE("55 AA FE 10 07 A1 B5"), PENDS(B)),
 };
 CONVERSATIONS(set_up, conversations)
 

@@ -47,7 +47,7 @@ bool reject_unknown(const origin_t *origin, const char *what, const char *mark, 
 /*
  * ---- rows ----
  *
- * The rows of options and keys. One row says everything about an option: the parser, the help, the man page, the
+ * The rows of options and keys. One row defines an option: the parser, the help, the man page, the
  * completion and the reader of configuration files work from it.
  */
 

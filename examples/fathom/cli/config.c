@@ -401,7 +401,9 @@ static bool set_credential(const config_t *config, broker_settings_t *broker, co
                   reason, name);
 }
 
-/* A broker knows a client by its id: of two with the same id, each would end the connection of the other. */
+/* A broker ends the connection of a client when another one with its id comes. So the id is the same exactly if the topics are
+ * the same: with ids of their own, two computers would publish under one topic, and no message would say so. The id is the same
+ * after a restart, so that the broker then ends a connection that broke off, before this client is online. */
 static void set_client_id(publish_settings_t *settings)
 {
     char *const id = settings->broker.client_id;
@@ -420,6 +422,7 @@ static bool set_broker(config_t *config, const yaml_node_t *top)
     const yaml_node_t *const tls = find(config, map, "tls");
     const origin_t origin = at_key(config, map, "password-credential", "password-file");
     broker->line = at_key(config, map, "user", "host").line;
+    if (broker->client_id[0] != '\0') broker->id_line = at_key(config, map, "client-id", "client-id").line;
     if (tls != NULL) broker->tls_line = at_key(config, tls, "ca-file", "ca-file").line;
     if (broker->port == 0) broker->port = broker->has_tls ? PORT_WITH_TLS : PORT;
     set_client_id(&config->top.settings);
@@ -428,9 +431,10 @@ static bool set_broker(config_t *config, const yaml_node_t *top)
             reject(&origin, "there is a password, but no user beside it."));
 }
 
-static bool set_site(config_t *config)
+static bool set_site(config_t *config, const yaml_node_t *top)
 {
     char *const site = config->top.settings.site;
+    if (site[0] != '\0') config->top.settings.site_line = at_key(config, top, "site", "site").line;
     if (site[0] != '\0' || (gethostname(site, SETTINGS_NAME - 1) == 0 && is_topic(site, NULL))) return true;
     return reject(&config->origin, "site is missing, and the host's name '%s' cannot be used.", site);
 }
@@ -555,7 +559,8 @@ static bool read_file(config_t *config, site_t *site)
                                      .queue_messages = 10000,
                                      .queue_bytes = 4194304};
     config->top.reader.period_us = 1000000;
-    if (!read_map(config, top, top_tables, &config->top, NULL, &given) || !set_site(config)) return false;
+    if (!read_map(config, top, top_tables, &config->top, NULL, &given) || !set_site(config, top))
+        return false;
     if (strcmp(settings->discovery, "off") == 0) settings->discovery[0] = '\0';
     return set_broker(config, top) && read_sensors(config, site);
 }

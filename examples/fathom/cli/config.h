@@ -7,7 +7,7 @@
 #include "mqtt/settings.h"
 #include "reading/site.h"
 
-/* Reads a configuration file: what `fathom publish` does, and its sensors, each with a name of its own, into a site of
+/* Reads a configuration file: what `fathom publish` does, and its sensors, each with its own name, into a site of
  * zeros. Each line of the site has its text. False after printing what is wrong; then there is nothing to free. */
 bool config_load(publish_settings_t *settings, site_t *site, const char *command, const char *path);
 

@@ -65,7 +65,7 @@ static int start_save(const host_t *host, const arguments_t *arguments)
 
 /* ---- fathom restore: the plan ---- */
 
-/* What is done with a setting. Those that are written come in the order of writing: a setting that can be compared is
+/* The treatment of a setting. Those that are written come in the order of writing: a setting that can be compared is
  * written before one that cannot, which is then not written if the first one fails; what moves the sensor comes last. */
 typedef enum {
     STEP_NONE = 0,   /* the file does not have it, or has the same value */
@@ -219,8 +219,8 @@ static bool write_all(void)
 
 /* ---- fathom restore: the new place ---- */
 
-/* One response may be lost, so the place is asked twice. Bytes without a response do not occupy it: they may be frames of
- * this sensor, heard at another rate. */
+/* One response may be lost, so the place gets two requests. Bytes without a response do not occupy it: they may be
+ * frames of this sensor, received at another rate. */
 static bool is_free_at(uint8_t address, const fathom_line_settings_t *line)
 {
     char text[LINE_TEXT];

@@ -29,7 +29,7 @@ static void print_text(void)
     const bool has_name = session.site.sensor_count > 1 || sensor->has_own_name;
     char line[LINE_TEXT];
     char cell[SETTING_CELL];
-    (void)printf("%s%s%s%s, %s, asked at address %u, %s\n", sensor != session.site.sensors[0] ? "\n" : "",
+    (void)printf("%s%s%s%s, %s, at address %u, %s\n", sensor != session.site.sensors[0] ? "\n" : "",
                  has_name ? sensor->name : "", has_name ? ": " : "", sensor->model->name, sensor->model->what,
                  sensor->address, session_line_text(&session, line));
     for (const value_t *value = values.rows; value->setting != NULL; value++)

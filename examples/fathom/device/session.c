@@ -159,8 +159,8 @@ static bool is_of_line(fathom_status_t status)
     return status == FATHOM_ERR_LINE_BUSY || status == FATHOM_ERR_OTHER_MASTER;
 }
 
-/* Repeats a call that failed and wrote nothing. If the sensor sends by itself, one of its frames may have collided with
- * the request or the response. */
+/* Repeats a call that failed and wrote nothing. If the sensor sends automatically, one of its frames may have collided
+ * with the request or the response. */
 static fathom_status_t call_again(session_t *session, operand_t operand)
 {
     enum { TIMES = 4 };

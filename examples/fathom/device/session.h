@@ -19,8 +19,8 @@ typedef struct {
     bool is_json;
 } session_t;
 
-/* Opens the port of session->sensor, and listens long enough to know what the sensor sends by itself. Returns false after
- * printing why. */
+/* Opens the port of session->sensor, and listens long enough to receive its automatic or unsolicited frames. Returns
+ * false after printing why. */
 bool session_open(session_t *session, const host_t *host);
 void session_close(session_t *session);
 
@@ -52,7 +52,7 @@ const char *session_line_text(const session_t *session, char text[LINE_TEXT]);
 /* Returns true if all that was printed on stdout is written. Otherwise prints that it is not. */
 bool session_flush(void);
 
-/* Prints what failed in a line of its own on stderr and, unless the status is FATHOM_OK, why. Returns false. */
+/* Prints what failed as one line on stderr and, unless the status is FATHOM_OK, why. Returns false. */
 bool session_fail(session_t *session, fathom_status_t status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 

@@ -24,7 +24,7 @@ static bool is_only_echo(const evidence_t *heard)
            heard->masters == 0;
 }
 
-/* Automatic frames of another model were received, or of any if the sensor is asked. */
+/* Returns true if automatic frames of another model were received, or of any model in a mode with requests. */
 static bool is_stream(const failure_t *failure)
 {
     const bool is_a05 = failure->evidence.streamed_a05 != 0;
@@ -42,7 +42,7 @@ static bool is_crowded(const failure_t *failure)
            failure->model->may_send_unasked && failure->evidence.own >= LEAST;
 }
 
-/* Returns a number that is known of a failure, by its name. 0: it is not so. */
+/* Returns the fact of a failure with this name, a number; 0: it is not true. */
 static uint64_t fact(const failure_t *failure, const char *name, size_t length)
 {
     const reader_facts_t facts = reader_facts(failure->reader);
@@ -117,7 +117,7 @@ static uint64_t fact(const failure_t *failure, const char *name, size_t length)
         {"only-echo", is_only_echo(heard)},
         {"old", line[FATHOM_LINE_OLD_BYTES]}, /* of unknown age */
         {"gateway", gateway_exception(failure)},
-        {"other-unit", port->gateway.has_other_unit}, /* responded instead of the unit that was asked */
+        {"other-unit", port->gateway.has_other_unit}, /* responded instead of the unit of the request */
         {"unit", port->gateway.other_unit},
         {"other-identifier", port->gateway.has_other_identifier},
         /* the refused response */
@@ -189,7 +189,8 @@ static const row_t causes[] = {
     {PORT, "lost tcp", "{port-error}", "Start again[reads:. With --reconnect, fathom connects again]"},
     {PORT, "lost", "{port-error}",
      "Connect it again and start again[reads:. With --reconnect, fathom waits for it]"},
-    {PORT, "", "{path}: the port did not send the request", "Check the adapter"},
+    {PORT, "", "{path}: the port did not send the request in time",
+     "Check the adapter, and whether the computer was asleep or too busy"},
     {UNSUPPORTED, "", "the port does not support this, and nothing was sent",
      "Choose other line settings or another adapter"},
     {CANCELLED, "", "the command ended before the response arrived", NULL},
@@ -221,12 +222,12 @@ static const row_t causes[] = {
      "Check for a loose wire or a worn contact, that something pulls the input to one side (bias=up, "
      "bias=down or a resistor), and that this is a line number of the chip (gpioinfo lists them)"},
 
-    {NO_RESPONSE, "triggered", "nothing followed the trigger",
+    {NO_RESPONSE | CHECKSUM, "triggered bytes", "the bytes after the trigger form no frame",
+     "Check {settings}, and look for noise" UNSEEN},
+    {NO_RESPONSE | CHECKSUM, "triggered", "nothing followed the trigger",
      "Check the supply, the wires from the adapter's TX (or the line trigger=) to the sensor's RX and back, "
      "that the adapter can send a break, and that the sensor is the UART controlled variant (if not: --mode "
      "auto or --mode modbus)" UNSEEN},
-    {CHECKSUM, "triggered", "the bytes after the trigger form no frame",
-     "Check {settings}, and look for noise" UNSEEN},
 
     {NO_RESPONSE, "asked late", "the response arrived after the time-out[took: (it took {took} ms)]",
      "Try a longer --timeout[took:, such as --timeout {timeout}]"},

@@ -16,7 +16,7 @@ typedef struct {
     const reader_t *reader; /* NULL: a request without a driver */
     const port_t *port;
     const counters_t *counters;         /* of the attempt and of the whole run */
-    const fathom_line_settings_t *line; /* with which the sensor was asked; NULL: with several */
+    const fathom_line_settings_t *line; /* of the requests to the sensor; NULL: of several */
     const char *shared;                 /* name of the sensor among others; NULL: it is the only one */
     evidence_t evidence;                /* what was received in this attempt */
     holder_t holder;                    /* set here: who else uses the port */

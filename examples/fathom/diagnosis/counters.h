@@ -30,7 +30,7 @@ void status_words_help(FILE *to);
 /* What the port's driver counts, where it does. */
 enum { PORT_PARITY = 0, PORT_FRAMING = 1, PORT_OVERRUN = 2, PORT_BREAKS = 3, PORT_COUNTERS = 4 };
 
-/* What the driver of a sensor that is asked counts. */
+/* The counters of a driver that sends requests. */
 enum { UNIT_RESPONSES = 0, UNIT_FAILURES = 1, UNIT_COUNTERS = 2 };
 
 /*

@@ -23,6 +23,9 @@ enum {
     FIRST_PAUSE_US = 500000,
     LONGEST_PAUSE_US = 60000000,
     STEADY_US = 10000000,
+    /* Each of two clients with the same id lasts for the pause of the other one. */
+    STEADY_CONTESTED_US = 2 * LONGEST_PAUSE_US,
+    CLOSES = 2,
     GREETING_US = 20000000,
     LOOK_US = 1000000,
     READS = 16,
@@ -32,6 +35,8 @@ enum {
 static uint64_t now_us(const broker_t *broker) { return broker->host->now_us(broker->host->ctx); }
 
 /* ---- what is wrong ---- */
+
+static bool is_contested(const broker_t *broker) { return broker->closes >= CLOSES; }
 
 /* Ends the attempt or the connection. The first reason counts. */
 __attribute__((format(printf, 2, 3))) static void lose(broker_t *broker, const char *format, ...)
@@ -45,17 +50,42 @@ __attribute__((format(printf, 2, 3))) static void lose(broker_t *broker, const c
      * grow too. */
     if (broker->phase == BROKER_READY && now_us(broker) >= broker->until_us) broker->pause_us = 0;
     broker->phase = BROKER_LOST;
+    broker->closes = 0;
+}
+
+/* The broker closed the connection after it accepted the client. */
+static void lose_closed(broker_t *broker)
+{
+    const publish_settings_t *const settings = &broker->settings;
+    const broker_settings_t *const its = &settings->broker;
+    const bool has_id = its->id_line != 0;
+    const bool has_site = settings->site_line != 0;
+    const bool is_steady = broker->phase == BROKER_READY && now_us(broker) >= broker->until_us;
+    const unsigned closes = is_steady ? 0 : broker->closes + 1;
+    if (closes < CLOSES)
+        lose(broker, "the connection is lost");
+    else
+        lose(
+            broker,
+            "%s:%u: it accepts the client %s and soon closes the connection, again and again. Another client "
+            "probably has the same %s",
+            settings->path,
+            has_id     ? its->id_line
+            : has_site ? settings->site_line
+                       : its->line,
+            its->client_id,
+            has_id     ? "client-id; write another one"
+            : has_site ? "site, of which this id is made; each computer needs its own"
+                       : "host name, of which this id is made; rename one of the hosts, or write site:");
+    broker->closes = closes;
 }
 
 static void lose_tls(broker_t *broker)
 {
     const char *const path = broker->settings.path;
     const unsigned line = broker->settings.broker.tls_line;
-    if (broker->tls_reason != NULL)
-        lose(broker,
-             "%s:%u: tls: its certificate is not accepted: %s; the broker needs another one, or ca-file: the "
-             "authority that has signed it, or host: the name that it is for",
-             path, line, broker->tls_reason);
+    if (broker->tls.error != 0)
+        lose(broker, "%s:%u: tls: its certificate is not accepted: %s", path, line, broker->tls.text);
     else
         lose(broker, "%s:%u: tls: no secure connection: %s", path, line,
              broker->log[0] != '\0' ? broker->log : "the broker has ended it; does this port speak TLS?");
@@ -64,18 +94,20 @@ static void lose_tls(broker_t *broker)
 /* Of a result of libmosquitto, and errno. Returns true if all is well. */
 static bool check(broker_t *broker, int result, int error)
 {
-    const bool is_greeting = broker->phase == BROKER_GREETING;
+    const bool is_greeting = broker->phase != BROKER_ACCEPTED && broker->phase != BROKER_READY;
+    const bool is_closed = result == MOSQ_ERR_CONN_LOST || result == MOSQ_ERR_TLS ||
+                           (result == MOSQ_ERR_ERRNO && (error == ECONNRESET || error == EPIPE));
     if (result == MOSQ_ERR_SUCCESS) return true;
     if (result == MOSQ_ERR_EAI)
         lose(broker, "its name is not known: %s", gai_strerror(error));
+    else if (is_closed && !is_greeting)
+        lose_closed(broker);
     else if (result == MOSQ_ERR_TLS || (is_greeting && broker->settings.broker.has_tls))
         lose_tls(broker);
     else if (result == MOSQ_ERR_ERRNO)
         lose(broker, "%s", strerror(error));
-    else if (result == MOSQ_ERR_CONN_LOST && is_greeting)
-        lose(broker, "it ends the connection at once; does this port want tls: ?");
     else if (result == MOSQ_ERR_CONN_LOST)
-        lose(broker, "the connection is lost");
+        lose(broker, "it ends the connection at once; does this port want tls: ?");
     else
         lose(broker, "%s", mosquitto_strerror(result));
     return false;
@@ -128,7 +160,7 @@ static void on_publish(struct mosquitto *mosq, void *ctx, int number)
     if (*at != NULL) forget(broker, at);
 }
 
-/* The payload has no end of its own. */
+/* The payload has no NUL at its end. */
 static void on_message(struct mosquitto *mosq, void *ctx, const struct mosquitto_message *message)
 {
     const broker_t *const broker = ctx;
@@ -156,14 +188,14 @@ static short socket_events(const fathom_loop_source_t *source)
     return mosquitto_want_write(((const broker_t *)source)->mosq) ? POLLIN | POLLOUT : POLLIN;
 }
 
-/* Reads everything that was received, since the loop reports each event once. */
-static void read_all(broker_t *broker)
+/* Reads up to READS packets. The loop reports each event once, so broker_tick() has the rest read. */
+static void read_next(broker_t *broker)
 {
-    bool is_all = false;
-    for (unsigned turn = 0; turn != READS && !is_all && broker->phase != BROKER_LOST; turn++) {
+    broker->has_more = true;
+    for (unsigned turn = 0; turn != READS && broker->has_more && broker->phase != BROKER_LOST; turn++) {
         errno = 0;
         const int result = mosquitto_loop_read(broker->mosq, 1);
-        is_all = errno == EAGAIN || errno == EWOULDBLOCK;
+        broker->has_more = errno != EAGAIN && errno != EWOULDBLOCK;
         (void)check(broker, result, errno);
     }
 }
@@ -171,7 +203,7 @@ static void read_all(broker_t *broker)
 static bool poll_socket(fathom_loop_source_t *source)
 {
     broker_t *const broker = (broker_t *)source;
-    if (source->is_readable) read_all(broker);
+    if (source->is_readable) read_next(broker);
     if (broker->phase != BROKER_LOST && mosquitto_want_write(broker->mosq)) {
         const int result = mosquitto_loop_write(broker->mosq, 1);
         (void)check(broker, result, errno);
@@ -204,7 +236,7 @@ static void disconnect(broker_t *broker)
 
 /* ---- messages ---- */
 
-/* False: libmosquitto does not accept the message. What it accepted it sends, and repeats, by itself. */
+/* Returns false if libmosquitto does not accept the message. Accepted messages it sends, and repeats, itself. */
 static bool submit(broker_t *broker, broker_sent_t *sent)
 {
     const int result = mosquitto_publish(broker->mosq, &sent->number, sent->topic, (int)strlen(sent->payload),
@@ -248,14 +280,23 @@ void broker_hold(broker_t *broker, bool is_held)
 
 static void start_sending(broker_t *broker)
 {
-    const broker_settings_t *const settings = &broker->settings.broker;
-    (void)fprintf(stderr, "fathom: broker %s port %u: connected.\n", settings->host, settings->port);
-    broker->reported[0] = '\0';
     for (broker_sent_t *sent = broker->sent; sent != NULL; sent = sent->next)
         if (sent->number == 0) (void)submit(broker, sent);
     broker->phase = BROKER_READY;
-    broker->until_us = now_us(broker) + STEADY_US;
+    broker->until_us = now_us(broker) + (is_contested(broker) ? STEADY_CONTESTED_US : STEADY_US);
     broker->greetings++;
+    broker->is_new = true;
+}
+
+/* A contested connection is not reported before it is steady. */
+static void report_connected(broker_t *broker)
+{
+    const broker_settings_t *const settings = &broker->settings.broker;
+    if (now_us(broker) >= broker->until_us) broker->closes = 0;
+    if (!broker->is_new || is_contested(broker)) return;
+    broker->is_new = false;
+    broker->reported[0] = '\0';
+    (void)fprintf(stderr, "fathom: broker %s port %u: connected.\n", settings->host, settings->port);
 }
 
 /* ---- the client ---- */
@@ -308,8 +349,7 @@ static void make_client(broker_t *broker)
     (void)mosquitto_int_option(broker->mosq, MOSQ_OPT_TCP_NODELAY, 1);
     topic_name(&broker->settings, TOPIC_STATUS, NULL, 0, will);
     (void)mosquitto_will_set(broker->mosq, will, sizeof offline - 1, offline, QOS, true);
-    if (!settings->has_tls || tls_set(broker->mosq, settings, &broker->tls_reason, reason, sizeof reason))
-        return;
+    if (!settings->has_tls || tls_set(broker->mosq, settings, &broker->tls, reason, sizeof reason)) return;
     lose(broker, "%s:%u: tls: %s", broker->settings.path, settings->tls_line, reason);
     end_client(broker);
 }
@@ -335,7 +375,7 @@ static void start_connecting(broker_t *broker)
     sigset_t before;
     broker->settings = *broker->wanted;
     broker->log[0] = '\0';
-    broker->tls_reason = NULL;
+    broker->tls.error = 0;
     if (broker->mosq == NULL || broker->has_changed) make_client(broker);
     if (broker->phase != BROKER_LOST) set_login(broker);
     if (broker->phase == BROKER_LOST) return;
@@ -362,38 +402,48 @@ static void end_connecting(broker_t *broker)
         lose(broker, "%s", strerror(errno));
 }
 
-/* The pause is shortened by up to a half, so that the clients of a broker that is back do not connect all at once. */
+static bool is_yielding(const broker_t *broker) { return is_contested(broker) && broker->yields; }
+
+/* The pause is shortened by up to a half, so that the clients of a broker that is back do not connect all at once. After the first quick close there is none:
+ * a broker that was restarted does not accept a client at once, and one that accepted another client does. */
 static void pause_connecting(broker_t *broker)
 {
     const broker_settings_t *const settings = &broker->settings.broker;
     uint32_t random = 0;
     disconnect(broker);
-    broker->pause_us = broker->pause_us == 0 ? FIRST_PAUSE_US : broker->pause_us * 2;
-    if (broker->pause_us > LONGEST_PAUSE_US) broker->pause_us = LONGEST_PAUSE_US;
-    if (getentropy(&random, sizeof random) != 0) random = 0;
-    broker->until_us = now_us(broker) + broker->pause_us - ((uint64_t)random * (broker->pause_us / 2) >> 32);
     broker->phase = BROKER_PAUSE;
+    broker->until_us = now_us(broker);
+    if (broker->closes != 1) {
+        broker->pause_us = broker->pause_us == 0 ? FIRST_PAUSE_US : broker->pause_us * 2;
+        if (broker->pause_us > LONGEST_PAUSE_US) broker->pause_us = LONGEST_PAUSE_US;
+        if (getentropy(&random, sizeof random) != 0) random = 0;
+        broker->until_us += broker->pause_us - ((uint64_t)random * (broker->pause_us / 2) >> 32);
+    }
     if (strcmp(broker->reported, broker->reason) == 0) return;
     (void)strcpy(broker->reported, broker->reason);
-    (void)fprintf(stderr, "fathom: broker %s port %u: %s; it is tried again and again.\n", settings->host,
-                  settings->port, broker->reason);
+    (void)fprintf(stderr, "fathom: broker %s port %u: %s; it is tried again %s.\n", settings->host,
+                  settings->port, broker->reason,
+                  is_yielding(broker) ? "when a sensor responds" : "and again");
 }
 
 uint32_t broker_tick(broker_t *broker)
 {
     const uint64_t now = now_us(broker);
-    if (broker->phase == BROKER_PAUSE && now >= broker->until_us) start_connecting(broker);
+    if (broker->phase == BROKER_PAUSE && now >= broker->until_us && !is_yielding(broker))
+        start_connecting(broker);
     if (broker->phase == BROKER_CONNECTING && __atomic_load_n(&broker->thread_has_ended, __ATOMIC_ACQUIRE))
         end_connecting(broker);
     if (broker->phase == BROKER_GREETING && now > broker->until_us)
         lose(broker, "it accepts the connection and does not respond; is it an MQTT broker?");
     if (broker->phase == BROKER_ACCEPTED) start_sending(broker);
+    if (broker->phase == BROKER_READY && broker->has_more) fathom_loop_wake(&broker->source);
     if (broker->phase == BROKER_READY) {
         const int result = mosquitto_loop_misc(broker->mosq); /* the keep-alive */
-        (void)check(broker, result, errno);
+        if (check(broker, result, errno)) report_connected(broker);
     }
     if (broker->phase == BROKER_LOST) pause_connecting(broker);
-    if (broker->phase == BROKER_PAUSE) return broker->until_us > now ? (uint32_t)(broker->until_us - now) : 0;
+    if (broker->phase == BROKER_PAUSE && !is_yielding(broker))
+        return broker->until_us > now ? (uint32_t)(broker->until_us - now) : 0;
     return LOOK_US;
 }
 

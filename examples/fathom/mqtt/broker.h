@@ -14,9 +14,21 @@
  * libmosquitto's connect wait; afterwards the loop does everything. If the connection is lost, or the broker refuses the
  * client, the client tries again after a pause that grows from 0.5 s to a minute, shortened by a random part.
  *
+ * A broker closes the connection of a client when another one with its id comes. If it does that twice soon after it
+ * accepted the client, the connection is contested. The pause grows then until a connection lasts for two minutes, and a
+ * client that has nothing to publish does not connect. MQTT 3.1.1 has no message for this, and MQTT 5 is not spoken by each
+ * broker.
+ *
  * Up to BROKER_WINDOW messages with QoS 1 are unacknowledged. After a loss libmosquitto sends them again, in their order
  * and before any other message: the broker may get a message twice, but never for the first time after a later one.
  */
+
+/* Why the broker's certificate is not accepted. The text of an error stays until another one, so that it is reported once. */
+typedef struct {
+    int error; /* of OpenSSL, in the present attempt; 0: none */
+    int error_of_text;
+    char text[256];
+} tls_verdict_t;
 
 /* With a round trip of 30 ms the window allows 500 messages a second. libmosquitto sends up to 20. */
 enum { BROKER_WINDOW = 16, BROKER_TEXT = 512 };
@@ -27,7 +39,7 @@ typedef enum {
     BROKER_GREETING,   /* connected; the broker must accept the client before until_us */
     BROKER_ACCEPTED,   /* the broker did */
     BROKER_READY,
-    BROKER_LOST /* `reason` says why; broker_tick() does the rest */
+    BROKER_LOST /* `reason` has the cause; broker_tick() does the rest */
 } broker_phase_t;
 
 /* An unacknowledged message, for another client. */
@@ -59,11 +71,15 @@ typedef struct {
     broker_phase_t phase;
     uint64_t until_us;   /* BROKER_READY: when the connection is steady */
     uint32_t pause_us;   /* the latest one; 0: none yet */
+    unsigned closes;     /* soon after the broker accepted the client, in succession */
+    bool is_new;         /* the user does not know of the connection */
+    bool yields;         /* there is nothing to publish: do not contest the connection of another client */
     uint32_t greetings;  /* how often the broker accepted the client */
     broker_sent_t *sent; /* the oldest first */
     unsigned sent_count;
-    bool has_changed;           /* the settings: a new client is needed */
-    const char *tls_reason;     /* why the broker's certificate is not accepted; NULL: unknown */
+    bool has_more;    /* to read */
+    bool has_changed; /* the settings: a new client is needed */
+    tls_verdict_t tls;
     char reason[BROKER_TEXT];   /* why the broker is away, */
     char reported[BROKER_TEXT]; /* as the user knows it; "": the user knows of none */
     char log[BROKER_TEXT];      /* the latest error of libmosquitto */
@@ -97,8 +113,8 @@ bool broker_wait(broker_t *broker, uint32_t max_us);
 /* Ends the connection; the broker does not publish the will. */
 void broker_end(broker_t *broker);
 
-/* Secures the client. *reason gets what is wrong with the broker's certificate, also later. False: `text` says why not. */
-bool tls_set(struct mosquitto *mosq, const broker_settings_t *settings, const char **reason, char *text,
+/* Secures the client. *verdict gets what is wrong with the broker's certificate, also later. False: `text` says why not. */
+bool tls_set(struct mosquitto *mosq, const broker_settings_t *settings, tls_verdict_t *verdict, char *text,
              size_t capacity);
 
 #endif

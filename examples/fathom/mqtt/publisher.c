@@ -64,7 +64,7 @@ static void want_topics(publisher_t *publisher, publisher_sensor_t *of, uint8_t 
 
 static void put_alarm(publisher_t *publisher, topic_t *topic);
 
-/* Names all topics anew. Everything that is retained is due then. */
+/* Names all topics again. Then all retained messages are due. */
 static void set_sensors(publisher_t *publisher, const site_t *site)
 {
     publisher_sensor_t *const before = publisher->sensors;
@@ -430,7 +430,7 @@ static bool set_presence(publisher_t *publisher, publisher_sensor_t *sensor, pre
     return before != presence;
 }
 
-/* A sensor that sends by itself and whose frames are all damaged sent no reading within its time-out. */
+/* A sensor that sends automatically and whose frames are all damaged sent no reading within its time-out. */
 static bool is_grave(const reading_t *reading)
 {
     return reading->status == FATHOM_ERR_PORT || reading->status == FATHOM_ERR_STALE ||
@@ -486,8 +486,16 @@ void publisher_change(publisher_t *publisher, const site_t *site, bool has_other
     if (has_other_broker) broker_change(&publisher->broker);
 }
 
+static bool has_available(const publisher_t *publisher)
+{
+    for (size_t i = 0; i != publisher->sensor_count; i++)
+        if (publisher->sensors[i].presence == SENSOR_AVAILABLE) return true;
+    return false;
+}
+
 uint32_t publisher_tick(publisher_t *publisher)
 {
+    if (publisher->broker.phase != BROKER_READY) publisher->broker.yields = !has_available(publisher);
     const uint32_t broker_us = broker_tick(&publisher->broker);
     const uint64_t now = now_us(publisher);
     if (publisher->greetings != publisher->broker.greetings) greet(publisher, now);

@@ -17,8 +17,11 @@ typedef struct {
     char client_id[SETTINGS_NAME];
     char user[SETTINGS_NAME]; /* "": none */
     char password_file[SETTINGS_PATH];
-    unsigned line; /* of the file, for messages about what the broker refuses: of the user, or of the host, */
-    unsigned tls_line; /* and of `tls` */
+    /* Lines of the file, for messages about what the broker refuses: of the user, or of the host; of `tls`; of client-id
+     * (0: the id comes from the prefix and the site). */
+    unsigned line;
+    unsigned tls_line;
+    unsigned id_line;
     bool has_tls;
     char ca_file[SETTINGS_PATH]; /* "": the system's authorities */
     char certificate_file[SETTINGS_PATH];
@@ -28,6 +31,7 @@ typedef struct {
 typedef struct {
     char path[SETTINGS_PATH]; /* of the file */
     char site[SETTINGS_NAME];
+    unsigned site_line; /* 0: the site is the name of the host */
     char prefix[SETTINGS_NAME];
     char discovery[SETTINGS_NAME]; /* "": off */
     broker_settings_t broker;

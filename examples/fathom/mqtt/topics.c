@@ -120,7 +120,7 @@ void topic_name(const publish_settings_t *settings, topic_kind_t kind, const sen
 
 /* ---- what an earlier run left ---- */
 
-/* A discovery prefix of several levels has filters of its own; those of one level are all of the same. */
+/* A discovery prefix of several levels has its own filters; those of one level share one. */
 bool topic_filter(const publish_settings_t *settings, unsigned number, char name[TOPIC_NAME])
 {
     enum { OWN = 4, ENTITIES = 2 };

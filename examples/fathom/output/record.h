@@ -62,7 +62,7 @@ typedef struct {
     size_t at;      /* offset of the member */
 } field_t;
 
-/* Writes the fields as members of the open object, or as an object in a line of its own. `columns` are those of this
+/* Writes the fields as members of the open object, or as an object in its own line. `columns` are those of this
  * record. */
 void record_json(json_t *json, const field_t *fields, const void *record, unsigned columns);
 void record_json_line(FILE *to, const field_t *fields, const void *record, unsigned columns);

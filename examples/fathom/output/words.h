@@ -26,7 +26,7 @@ bool number_parse(const char *text, uint32_t min, uint32_t max, uint32_t *number
 /* A number, or two as in "2-9", the first not above the last. */
 bool range_parse(const char *text, uint32_t min, uint32_t max, uint32_t *first, uint32_t *last);
 
-/* A number with so many decimal places: -5 with one is -0.5. */
+/* Prints a number with `places` decimal places: -5 with one is -0.5. */
 enum { DECIMAL_TEXT = 32 };
 void decimal_text(char text[DECIMAL_TEXT], int64_t number, unsigned places);
 

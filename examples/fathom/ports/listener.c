@@ -55,7 +55,7 @@ static void note(uint32_t *count, uint8_t *first, uint8_t address)
     if ((*count)++ == 0) *first = address;
 }
 
-/* Returns true if the length of a response of the unit that was asked fits the request. */
+/* Returns true if the length of a response of the unit of the request fits the request. */
 static bool is_fitting(const listener_t *listener, const uint8_t *response, uint8_t length)
 {
     enum { FUNCTION = 1, COUNT = 5, READ_REQUEST = 8, READ_RESPONSE = 5 };
@@ -122,8 +122,19 @@ static uint16_t account(const listener_t *listener, uint16_t at, uint8_t address
     return length != 0 ? length : streamed(listener, at, FATHOM_DYP_A16_LENGTH, &evidence->streamed_a16);
 }
 
+/* Returns true if the first byte of a frame stands where it can have stood: damage begins behind it. */
+static bool has_start(const uint8_t *head, size_t length, const uint8_t *window, size_t at)
+{
+    size_t whole = 0; /* bytes of the head that stand before the tail */
+    while (whole < length && whole < at && window[at - whole - 1] == head[length - whole - 1]) whole++;
+    for (size_t back = whole + 1; back <= length && back <= at; back++)
+        if (window[at - back] == head[0]) return true;
+    return false;
+}
+
 /* Returns true if bytes of the window are the values and the CRC of the response: the CRC fits them behind the three bytes
- * that the request makes certain. 55 AA has a sum of one byte, so these bytes must be the last ones. */
+ * that the request makes certain, and the first of these three is missing or wrong. 55 AA has a sum of one byte, so the
+ * values must be the last bytes. */
 static bool has_tail(const listener_t *listener)
 {
     enum {
@@ -152,9 +163,9 @@ static bool has_tail(const listener_t *listener)
     for (size_t at = is_dyp && listener->have > tail ? listener->have - tail : 0; at + tail <= listener->have;
          at++) {
         memcpy(frame + head, listener->window + at, tail);
-        if (is_dyp ? fathom_dyp_55aa_is_valid(frame, (uint8_t)length)
-                   : fathom_crc16(frame, (uint8_t)length) == 0)
-            return true;
+        const bool is_whole = is_dyp ? fathom_dyp_55aa_is_valid(frame, (uint8_t)length)
+                                     : fathom_crc16(frame, (uint8_t)length) == 0;
+        if (is_whole && !has_start(frame, head, listener->window, at)) return true;
     }
     return false;
 }

@@ -102,8 +102,8 @@ enum { LISTENER_WINDOW = 512, LISTENER_REQUEST = 255 };
 
 typedef struct listener listener_t;
 struct listener {
-    /* Of a port at which several sensors are asked: returns the listener of the sensor whose request is about to leave,
-     * which stores what passes until the next request. NULL: the port's own listener stores all. */
+    /* Of a port with several sensors that get requests: returns the listener of the sensor whose request is about to
+     * leave, which stores what passes until the next request. NULL: the port's own listener stores all. */
     listener_t *(*whose)(void *ctx);
     void *ctx;
     listener_t *now; /* the listener that stores at present; NULL: the port's own */
@@ -123,14 +123,14 @@ typedef struct {
     uint32_t bytes;   /* received, also those that the window had no place for */
     uint32_t echoes;  /* copies of the newest request */
     uint32_t rest;    /* bytes of the window that are neither echo nor frame */
-    uint32_t own;     /* responses of the unit that was asked, ... */
+    uint32_t own;     /* responses of the unit of the request, ... */
     uint32_t fitting; /* ... and those of them whose length fits the request */
     bool headless;    /* the window has a response whose first bytes are missing or wrong, and no whole one */
     uint32_t foreign; /* frames of other units, ... */
     uint8_t foreign_address; /* ... and the first of these units */
     uint32_t masters;        /* requests of another master, ... */
     uint8_t masters_address; /* ... and the unit that the first of them asked */
-    uint32_t streamed_a16;   /* frames FF..SUM, at least two in a row, of a sensor that sends by itself */
+    uint32_t streamed_a16;   /* frames FF..SUM, at least two in a row, of a sensor that sends automatically */
     uint32_t streamed_a05;
     uint32_t slowest_us;
 } evidence_t;
@@ -142,7 +142,7 @@ void listener_forget(listener_t *listener);
 void listener_sent(listener_t *listener, const uint8_t *request, uint8_t length, uint32_t now_us);
 void listener_received(listener_t *listener, const uint8_t *bytes, uint32_t count, uint32_t now_us);
 
-/* address: of the unit that is asked; 0: none is asked. */
+/* Fills in the evidence. `address` is the unit of the request; 0: there was no request. */
 void listener_judge(const listener_t *listener, uint8_t address, evidence_t *evidence);
 
 /* ---- an open port: a tty and a connection to a Modbus TCP server have a line and a Modbus client ---- */
@@ -156,7 +156,7 @@ typedef enum {
 } port_error_t;
 
 /* When an adapter was just plugged in, the system needs a moment, and other programs (modem managers) try it first. So a
- * user hears of a port that is there when it could not be opened this often. */
+ * user gets a message about a present port when it could not be opened this often. */
 enum { PORT_TRIES = 3 };
 
 typedef struct port_driver port_driver_t;
@@ -166,7 +166,7 @@ typedef struct {
     uint8_t exception;      /* the final word about a request, as that the unit does not respond; 0: none */
     uint8_t exception_unit; /* the unit of that request */
     uint8_t other_unit;     /* which responded to the newest request, ... */
-    bool has_other_unit;    /* ... if that is not the unit that was asked */
+    bool has_other_unit;    /* ... if that is not the unit of the request */
     bool
         has_other_identifier; /* the server responded to the newest request with another transaction identifier */
 } gateway_t;
@@ -208,13 +208,13 @@ typedef struct port {
 
 /*
  * The silence that ends a frame. A USB adapter holds bytes back for up to 16 ms, and the system may be late too. The
- * gap of a stream is less than the pause between two frames of a sensor that sends by itself. If a sensor is asked, the
+ * gap of a stream is less than the pause between two frames of a sensor that sends automatically. After a request, the
  * gap decides only how soon a damaged response is given up, and the far end may be a program that a busy system
  * interrupts within a frame.
  */
 enum { PORT_STREAM_GAP_US = 25000, PORT_RESPONSE_GAP_US = 60000 };
 
-/* So long a command listens before its first request, so that the line knows what a sensor sends by itself (line.h). */
+/* A command listens this long before its first request, so that the line knows the automatic frames (line.h). */
 enum { PORT_LISTEN_US = 66000 };
 
 /*

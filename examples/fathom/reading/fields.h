@@ -31,7 +31,7 @@ bool reading_has_probe(const reading_t *reading);
 /* Writes these columns as members of the open object. */
 void reading_json(json_t *json, const reading_t *reading, unsigned columns);
 
-/* Writes the columns of the sensor as an object in a line of its own. */
+/* Writes the columns of the sensor as an object in its own line. */
 void reading_json_line(FILE *to, const reading_t *reading);
 
 /* Write a row with the columns of a table. */

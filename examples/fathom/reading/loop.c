@@ -240,7 +240,7 @@ static void judge(const line_t *line, const sensor_t *sensor, evidence_t *eviden
 
 /* ---- attempts ---- */
 
-/* Returns true if the sensor had all attempts that the user asked for, when it has had so many more. */
+/* Returns true if `more` further attempts are the last ones of the sensor (--count). */
 static bool is_finished(const loop_t *loop, const sensor_t *sensor, unsigned more)
 {
     return loop->site.count != 0 && sensor->counters.attempts + more >= loop->site.count;
@@ -266,8 +266,8 @@ static void end_attempt(const loop_t *loop, sensor_t *sensor)
 }
 
 /*
- * A sensor that sends by itself does not keep the user's interval: the responses between two attempts are dropped as a
- * whole. The driver of a sensor that is asked keeps the interval itself.
+ * A sensor that sends automatically does not keep the user's interval: the responses between two attempts are dropped as
+ * a whole. A driver that sends requests keeps the interval itself.
  */
 static bool is_early(const loop_t *loop, sensor_t *sensor, fathom_status_t status)
 {

@@ -109,7 +109,7 @@ typedef struct {
     int64_t timeouts_in_row, backoff_left_us;                   /* of one sensor */
     int64_t response_min_us, response_mean_us, response_max_us; /* from a request to its response */
     bool has_median;
-    bool has_stream; /* a sensor sends by itself */
+    bool has_stream; /* a sensor sends automatically */
     bool has_port;   /* the driver of a port counts errors */
 } account_t;
 

@@ -55,7 +55,7 @@ typedef struct {
 } result_probe_t;
 
 /* How exact pulses are measured on this board, since the last print: the widths of those that were distances, and what
- * was rejected. It says something of the board while the target stands still. */
+ * was rejected. It belongs to the board while the target stands still. */
 typedef struct {
     int64_t distances, min_us, max_us;
     int64_t no_targets;
@@ -77,7 +77,7 @@ struct sensor {
     /* What the user wants. */
     const model_t *model;
     const model_mode_t *mode;
-    fathom_line_settings_t line; /* at which the sensor is asked */
+    fathom_line_settings_t line; /* of the requests to the sensor */
     port_options_t *port;        /* of its line */
     reader_settings_t settings;  /* without line, backoff_us and address */
     results_config_t processing;
@@ -107,7 +107,7 @@ struct sensor {
 };
 
 /* A line waits while its port is lost, or was never there; then it connects or is read at once. It ends when all attempts
- * were made. A port that cannot be used or is lost for good ends it as well. */
+ * were made. A port that cannot be used or is lost permanently ends it as well. */
 typedef enum {
     LINE_NEW,        /* not part of the loop yet */
     LINE_WAITING,    /* the loop opens the port again after a pause */
@@ -141,7 +141,7 @@ typedef struct {
     size_t line_count;
     uint32_t count;       /* attempts of each sensor; 0: no limit */
     uint64_t duration_us; /* 0: no limit */
-    bool asks_all;        /* without a MODE each sensor is asked, also one that is alone on its line */
+    bool asks_all;        /* without a MODE each sensor gets requests, also one that is alone on its line */
     bool reconnect;       /* wait for a port that is lost */
     bool persists;        /* with reconnect: also for a port that exists and cannot be opened */
 } site_t;

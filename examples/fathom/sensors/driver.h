@@ -76,7 +76,7 @@ struct reader {
     } driver;
     driver_selection_t selection;
     /* of an HPS-167S */
-    fathom_hps167s_auto_t unasked; /* receives the measurements that come without a request */
+    fathom_hps167s_auto_t unasked; /* receives unsolicited measurements */
     uint16_t unasked_frames[FATHOM_STREAM_COUNTERS];
     fathom_hps167s_limits_t limits;
     driver_temperature_t temperature;

@@ -271,8 +271,8 @@ static bool a16_read_switch(reader_t *reader, port_t *port, const reader_setting
            open_contact(reader, &driver->base, fathom_a16_switch_sensor(driver));
 }
 
-/* The contact (A05 4) goes to where the input's resistor does not pull; it is the normally open one, unless the user says
- * that near is the other level. */
+/* The contact (A05 4) goes to where the input's resistor does not pull; it is the normally open one, unless the user
+ * sets that near is the other level. */
 static bool a05_read_relay(reader_t *reader, port_t *port, const reader_settings_t *settings)
 {
     fathom_a05_relay_t *const driver = &reader->driver.a05_relay;

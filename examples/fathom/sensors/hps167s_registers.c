@@ -157,7 +157,7 @@ fathom_status_t hps167s_get(reader_t *reader, const setting_t *setting, char tex
     const fathom_line_settings_t *const line = sensor->unit.line_settings;
     fathom_status_t status = read_command(sensor, setting->read_at);
     if (status == FATHOM_OK) status = setting_print(setting, sensor->values, text);
-    /* A code without a rate of its own shows nothing: the unit has the rate at which it responded. */
+    /* A code without its own rate shows nothing: the unit has the rate at which it responded. */
     if (status == FATHOM_OK && setting->is_baud && line != NULL &&
         note_baud_code(fathom_hps167s_get_byte(sensor->values, FATHOM_HPS167S_BAUD_BYTE)) != NULL)
         (void)snprintf(text, SETTING_TEXT, "%" PRIu32, line->baud);
@@ -415,7 +415,7 @@ const char *hps167s_read_changes(uint8_t function, uint16_t first, uint16_t coun
 
 /* ---- a scan: #1, #2 and #3 ---- */
 
-/* The response of #2 has the shape of a measurement (#5), which may come unasked: so two have to agree, and to differ
+/* The response of #2 has the shape of a measurement (#5), which may be unsolicited: so two have to agree, and to differ
  * from a measurement between them. */
 static bool ask_configuration(inquiry_t *inquiry)
 {

@@ -40,7 +40,7 @@ typedef struct model_mode {
     uint8_t simulated_as; /* for model_t.simulate; 0: `fathom sim` does not simulate it */
     /* Initialises the driver through an open port. Returns false if the driver refuses the settings. */
     bool (*read)(reader_t *reader, port_t *port, const reader_settings_t *settings);
-    /* As reader_listen_unasked(); NULL: the sensor sends nothing unasked. */
+    /* As reader_listen_unasked(); NULL: the sensor sends nothing unsolicited. */
     void (*listen_unasked)(reader_t *reader);
 } model_mode_t;
 
@@ -229,7 +229,7 @@ struct model {
     const char *(*exception_name)(uint8_t code);
 };
 
-/* The models. If several can be a device, a later one is tried first. A model with a driver of its own also needs a
+/* The models. If several can be a device, a later one is tried first. A model with its own driver also needs a
  * place in the union of driver.h and in that of device_t. */
 extern const model_t models[];
 extern const size_t model_count;
@@ -258,7 +258,7 @@ bool models_allow_read(uint8_t address, uint16_t first, uint16_t count);
 
 /* ---- texts ---- */
 
-/* What an exception of Modbus says. */
+/* A Modbus exception. */
 typedef struct {
     const char *name; /* the specification's */
     const char *meaning;

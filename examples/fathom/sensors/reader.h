@@ -40,7 +40,7 @@ typedef struct {
     uint8_t retries;
 } reader_settings_t;
 
-/* Of the only sensor on a line: less than any period. A sensor that does not respond is asked as often as one that
+/* Of the only sensor on a line: less than any period. A sensor that does not respond gets as many requests as one that
  * does, because its user may be looking for a loose wire. */
 enum { READER_BACKOFF_US = 1 };
 

@@ -1,18 +1,263 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""What fathom read advises, from what was heard on the line. Each case is one that a wrong cable, setting or
-device brings about; the device is scripted."""
+"""What the tool advises, from what was heard on the line. Each case is one that a wrong cable, setting, device or another
+program brings about; the device is scripted. Each row of the table of causes has a case."""
+import os
 import re
+import signal
+import subprocess
+import sys
+import termios
+import time
 
 import e2e
+import tcp_server
 
 GOOD = e2e.SAYS_754
 DAMAGED = bytes((*GOOD[:4], GOOD[4] ^ 0x10, *GOOD[5:]))
 NOISE = b'\x80\xF8\x00\x80'
+DAMAGED_FRAME = bytes((*e2e.frame(1953)[:3], 0))
 CAUSES = ('wiring', 'supply', '--baud', '--parity', '--address', '--timeout', 'termination', 'echo', 'master',
           'damaged', 'refused', 'check', 'try ')
 A16, HPS = 'a16 --mode modbus', 'hps167s'
 TO_A05 = e2e.frame(1000, 2000, 1953, 3562)
+
+# ---- the table of causes in diagnosis/advice.c ----
+
+STRING = r'"(?:\\.|[^"\\])*"'
+
+
+def parse_table():
+    """The rows, as 'STATUSES: facts': a pattern for the message, and how many characters of it stand in the table."""
+    with open(os.path.join(e2e.ROOT, 'examples/fathom/diagnosis/advice.c'), encoding='utf-8') as file:
+        text = re.sub(r'\\\n', ' ', file.read())
+    macros = dict(re.findall(rf'^#define (\w+) +((?:{STRING}|\w+|\s)+?)$', text, re.M))
+    rows = {}
+    text = text[text.index(' causes[] = {'):text.index(' failures[] = {')]
+    for statuses, facts, what, advice in re.findall(
+            rf'{{([A-Z_ |]+), "([^"]*)",\s+((?:{STRING}|[A-Z_]+|\s)+),\s+((?:{STRING}|[A-Z_]+|\s)+)}}', text):
+        def expand(words):
+            return ''.join(part[1:-1] if part[0] == '"' else expand(macros[part])
+                           for part in re.findall(rf'{STRING}|\w+', words))
+        whole = expand(what) + ('' if advice == 'NULL' else '. ' + expand(advice))
+        pattern = ''
+        for part in re.findall(r'\[[\w-]+:|\]|\{[\w-]+\}|[^\[\]{}]+', whole):
+            pattern += {'[': '(?:', ']': ')?', '{': '.*'}.get(part[0]) or re.escape(part)
+        rows[f'{statuses}: {facts}'] = (re.compile(pattern + '[.]?$'), len(re.sub(r'\[.*?\]|\{.*?\}', '', whole)), whole)
+    return rows
+
+
+ROWS = parse_table()
+# Rows whose evidence needs a clock, pins or a port that a test in C simulates, or a server: the file that expects the text.
+ELSEWHERE = {
+    'PORT: ': 'test_tool_scan.c',
+    'UNSUPPORTED: ': 'test_tool_scan.c',
+    **{f'{status}: pins{more}': 'test_tool_pins.c' for status, more in (
+        ('NO_RESPONSE', ' noises'), ('NO_RESPONSE', ''), ('MALFORMED', ''), ('STALE', ''))},
+    **{f'{status}: {facts}': 'e2e/test_tcp.py' for status, facts in (
+        ('NO_RESPONSE', 'asked gateway'), ('NO_RESPONSE', 'asked other-unit'),
+        ('NO_RESPONSE', 'asked other-identifier'), ('NO_RESPONSE', 'asked tcp bytes'), ('NO_RESPONSE', 'asked tcp'),
+        ('CHECKSUM', 'asked tcp'))},
+    'LINE_BUSY: asked': 'test_tool_request.c',
+    'OTHER_MASTER: request': 'test_tool_request.c',
+    'OTHER_MASTER: ': 'interop/test_servers_raw.py',
+}
+# No script brings these about: a pulse that no program read for 2.5 s, a frame of the unit that the line drops, floods that
+# leave no silence on a busy machine, and the end of the table, the library's words for what no row explains.
+UNEXPLAINED = {'STALE: pins pulses', 'NO_RESPONSE: asked own', 'LINE_BUSY: asked own', 'LINE_BUSY: asked worked',
+               'LINE_BUSY: asked tcp', 'ANY: '}
+AUTO, MODBUS = 'read a16 --format csv --timeout 400', 'read a16 --mode modbus --format csv --timeout 400'
+SENSOR = 'read hps167s --format csv --timeout 400'
+FRAME = e2e.frame(1953)
+TAKEN = 'PORT: lost taken'
+EVERYONE = 'GOOD | NO_MATCH | STALE | MALFORMED | OTHER_MASTER'
+
+
+def repeat(data, pause=0.04):
+    """Sends this again and again, until the expected message was printed."""
+    def step(test, device, reader):
+        os.set_blocking(device.master, False)
+        end = time.monotonic() + e2e.PATIENCE
+        seen = b''
+        while not reader.has_ended(pause) and time.monotonic() < end:
+            if seen != reader.said['err'] and test.has_named(reader):
+                break
+            seen = reader.said['err']
+            try:
+                device.write(data)
+            except BlockingIOError:
+                pass
+    return step
+
+
+def late(test, device, reader):
+    reader.expect('attempt 1', 'err')
+    device.write(GOOD)
+
+
+def asleep(test, device, reader):
+    """The computer was asleep when the response came."""
+    reader.until_asleep()
+    reader.send(signal.SIGSTOP)
+    device.write(GOOD)
+    time.sleep(3)
+    reader.send(signal.SIGCONT)
+
+
+def hold(test, device, reader):
+    """Another program opens the port and reads nothing."""
+    with open(device.port, 'rb', buffering=0) as port:
+        process = subprocess.Popen(['sleep', '60'], stdin=port)  # pylint: disable=consider-using-with
+    test.addCleanup(process.wait)
+    test.addCleanup(process.kill)
+
+
+def hang_up(test, device, reader):
+    """As getty does. Without the rights of root, a setting of the port is changed instead."""
+    if os.geteuid() != 0:
+        change(test, device, reader)
+        return
+    subprocess.run([sys.executable, '-c', 'import ctypes, fcntl, os, sys, termios; os.setsid(); '
+                    'fcntl.ioctl(os.open(sys.argv[1], os.O_RDWR), termios.TIOCSCTTY, 1); '
+                    'ctypes.CDLL(None).vhangup()', device.port], check=False)  # SIGHUP ends it
+
+
+def change(test, device, reader):
+    settings = termios.tcgetattr(device.slave)
+    settings[4] = settings[5] = termios.B115200
+    termios.tcsetattr(device.slave, termios.TCSANOW, settings)
+
+
+def reading(test, device, reader):
+    """Frames until one of them is a reading."""
+    while not reader.hear(lambda: b',1953,' in reader.said['out'], 0.06):
+        device.write(FRAME)
+
+
+def frames(*parts):
+    """A stream whose frames are these, in turns."""
+    def step(test, device, reader):
+        for part in parts * 60:
+            device.write(part)
+            reader.has_ended(0.01)
+    return step
+
+
+class Table(e2e.Case):
+    wanted = {}  # of the running cases, by program
+
+    def has_named(self, reader):
+        """The row of one of its messages is the expected one: of the rows that fit, the one with the longest text."""
+        for line in reader.lines('err'):
+            fits = [key for key, (pattern, _, _) in ROWS.items() if pattern.search(line)]
+            if max(fits, key=lambda key: ROWS[key][1], default=None) == self.wanted[reader]:
+                return True
+        return False
+
+    def shows(self, key, line, *steps, port=None, device=None, **options):
+        device = device or self.device()
+        reader = self.fathom(line, ['--port', port or device.port], **options)
+        self.wanted[reader] = key
+        if '--format csv' in line:
+            reader.expect('^name,')
+        for step in steps:
+            if callable(step):
+                step(self, device, reader)
+            elif isinstance(step, tuple):
+                device.asked(*step)
+            else:
+                device.write(step)
+        if not reader.hear(lambda: self.has_named(reader)):
+            reader.fail(f'{key} did not come')
+
+    ASKED, OF_HPS = e2e.ASK_A16, e2e.ASK_HPS
+    CASES = (
+        (TAKEN + ' holder' if os.geteuid() == 0 else f'{EVERYONE}: holder', AUTO, hold, hang_up),
+        (TAKEN if os.geteuid() == 0 else f'{EVERYONE}: changed', AUTO, hang_up),
+        ('PORT: lost waits', AUTO + ' --reconnect', lambda test, device, reader: device.hang_up()),
+        ('PORT: lost', AUTO, lambda test, device, reader: device.hang_up()),
+        ('CANCELLED: ', 'request 1 3 0x0101 1 --timeout 10000', (e2e.adu(1, 3, 1, 1, 0, 1),),
+         lambda test, device, reader: reader.send(signal.SIGINT)),
+        (f'{EVERYONE}: holder', AUTO, hold),
+        (f'{EVERYONE}: holder', MODBUS, hold, (ASKED, DAMAGED)),
+        (f'{EVERYONE}: changed', AUTO, change),
+        ('GOOD: ', AUTO, frames(FRAME, FRAME, DAMAGED_FRAME)),
+        ('NO_RESPONSE | CHECKSUM: triggered', AUTO + ' --mode controlled'),
+        ('NO_RESPONSE | CHECKSUM: triggered bytes', AUTO + ' --mode controlled', (b'\0', e2e.frame(1953)[:3] + b'\0')),
+        ('NO_RESPONSE: asked late', MODBUS, late),
+        ('NO_MATCH: asked headless', MODBUS, (ASKED, GOOD[1:])),
+        ('NO_MATCH: asked headless', MODBUS, (ASKED, GOOD), (ASKED, b'\xC5\x30' + GOOD[3:])),
+        ('NO_MATCH: asked headless', MODBUS, (ASKED, ASKED + b'\x80' + GOOD[1:])),
+        ('NO_MATCH: asked headless', 'read a05 --mode dyp --format csv --timeout 400',
+         (bytes.fromhex('55 AA 01 01 01'), bytes.fromhex('01 01 02 F2 02 F2 02 F2 02 F2 D1'))),
+        ('NO_MATCH: asked headless', 'request 0x15 4 0 1', (e2e.adu(21, 4, 0, 0, 0, 1), bytes.fromhex('C5 30 00 01 48 F3'))),
+        ('NO_MATCH: asked masters', MODBUS, (ASKED, e2e.adu(5, 3, 0, 8, 0, 4))),
+        ('NO_MATCH: asked foreign impossible', SENSOR, (OF_HPS, e2e.registers(200, 1, 2, 3, 4))),
+        ('NO_MATCH: asked foreign', MODBUS, (ASKED, e2e.registers(7, 754))),
+        ('NO_MATCH | STALE: stream', MODBUS, (ASKED, FRAME * 3)),
+        ('STALE | CHECKSUM: listened silence worked', AUTO, reading),
+        ('STALE | CHECKSUM: listened silence addressed', SENSOR + ' --mode auto'),
+        ('STALE | CHECKSUM: listened silence', AUTO),
+        ('STALE | CHECKSUM: listened addressed foreign', SENSOR + ' --mode auto', e2e.registers(5, 2083, 1, 2, 3)),
+        ('STALE | CHECKSUM: listened modbus', AUTO, e2e.ASK_A16),
+        ('STALE | CHECKSUM: listened ambiguous', AUTO, repeat(e2e.frame(511) * 50, 0)),
+        ('STALE | CHECKSUM: listened worked', AUTO, reading, repeat(NOISE)),
+        ('STALE | CHECKSUM: listened', AUTO, repeat(NOISE)),
+        ('EXCEPTION: ', MODBUS, (ASKED, e2e.adu(1, 0x83, 2))),
+        ('NO_MATCH | MALFORMED: asked crowded', SENSOR, (OF_HPS, e2e.registers(1, 1, 2) * 3)),
+        ('NO_RESPONSE: asked only-echo', MODBUS, (ASKED, ASKED)),
+        ('NO_RESPONSE: asked old', 'read a16 --mode modbus --format csv --timeout 2000', (ASKED,), asleep),
+        ('NO_RESPONSE: asked bytes worked', MODBUS, (ASKED, GOOD), (ASKED, NOISE)),
+        ('NO_RESPONSE: asked bytes', MODBUS, (ASKED, NOISE)),
+        ('NO_RESPONSE: asked worked', MODBUS, (ASKED, GOOD)),
+        ('NO_RESPONSE: asked others', 'read a16:1:modbus a16:2:modbus --format csv --timeout 400', (ASKED, GOOD)),
+        ('NO_RESPONSE: asked', MODBUS),
+        ('CHECKSUM: asked worked', MODBUS, (ASKED, GOOD), (ASKED, DAMAGED)),
+        ('CHECKSUM: asked', MODBUS, (ASKED, DAMAGED)),
+        ('MALFORMED: unexpected', MODBUS, (ASKED, e2e.registers(1, 754, 754))),
+        ('MALFORMED: setting', 'get a16:1 automatic-value --timeout 400', (e2e.adu(1, 3, 2, 7, 0, 1), e2e.registers(1, 9999))),
+        ('MALFORMED: refused code', MODBUS, (ASKED, e2e.registers(1, 0xFFFF))),
+        ('MALFORMED: refused', MODBUS, (ASKED, e2e.registers(1, 20000))),
+        ('MALFORMED: ', SENSOR + ' --window 80-5000', (OF_HPS, e2e.registers(1, 5001, 1, 2, 3))),
+    )
+
+    @e2e.each(*CASES)
+    def row(self, key, line, *steps):
+        self.shows(key, line, *steps)
+
+    def test_the_console_of_the_kernel_is_a_cause(self):
+        root = self.path('root')
+        os.makedirs(f'{root}/dev')
+        device = self.device()
+        os.symlink(device.port, f'{root}/dev/ttyUSB0')
+        os.makedirs(f'{root}/sys/class/tty/console')
+        with open(f'{root}/sys/class/tty/console/active', 'w', encoding='ascii') as file:
+            file.write('tty0 ttyUSB0\n')
+        self.shows('NO_MATCH | STALE | MALFORMED: console bytes', AUTO,
+                   lambda test, device, reader: reader.expect('ttyUSB0: the port is the console of the kernel', 'err'),
+                   repeat(NOISE), device=device, port='/dev/ttyUSB0', env=self.preload('usb_shim.c', USB_ROOT=root))
+
+    def test_a_connection_that_is_lost_is_a_cause(self):
+        server = tcp_server.Server()
+        self.addCleanup(server.close)
+
+        def leave(test, device, reader):
+            server.accept()
+            server.request()
+            server.close()
+        self.shows('PORT: lost tcp', 'read a16::modbus --timeout 400', leave, port=str(server))
+
+    def test_every_row_has_a_case(self):
+        cases = {case[0] for case in self.CASES} | set(ELSEWHERE) | UNEXPLAINED
+        cases |= {'NO_MATCH | STALE | MALFORMED: console bytes', 'PORT: lost tcp', TAKEN, TAKEN + ' holder'}
+        self.assertEqual(set(ROWS), cases)
+
+    def test_a_row_that_is_shown_elsewhere_is_expected_there(self):
+        for key, name in ELSEWHERE.items():
+            with open(os.path.join(e2e.ROOT, 'tests/tool', name), encoding='utf-8') as file:
+                text = re.sub(r'"\s*"|\'\s*f?\'', '', file.read())
+            parts = [part.strip(' (:.') for part in re.split(r'\[.*?\]|\{.*?\}', ROWS[key][2])]
+            self.assertTrue(any(part[:22] in text for part in parts if len(part) > 15), (key, name, parts))
 
 
 class Asked(e2e.Case):

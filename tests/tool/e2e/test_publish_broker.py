@@ -163,6 +163,67 @@ class Clock(Case):
             self.assertEqual(len(re.findall(self.NOTICE, done.err)), 1, done.err)
 
 
+class Two(Case):
+    """Publishers of one site."""
+
+    def other(self, *, host='127.0.0.1', **options):
+        """One without its port. With another host it is one of another computer, as far as this one can tell."""
+        path = self.config(self.line(self.path('none'), 'gate hps167s:7'), name='other.yaml', **options)
+        with open(path, encoding='utf-8') as file:
+            text = file.read()
+        with open(path, 'w', encoding='utf-8') as file:
+            file.write(text.replace('host: 127.0.0.1', f'host: {host}'))
+        return self.publish(path)
+
+    def test_the_second_one_of_a_computer_is_refused_and_names_the_first(self):
+        self.broker()
+        first = self.begin()
+        self.wait_for(self.subscribe(), '/gate/state')
+        for _ in range(2):
+            self.ends(self.other(), 1, f'fathom: process {first.process.pid} publishes the site mill to broker 127.0.0.1 port '
+                      f'{self.number} already. End that process, or write another site: into {self.path("other.yaml")}.\n')
+        second = self.other(top='prefix: another')
+        second.expect('no such device', 'err')
+        with open(self.path('other.yaml'), encoding='utf-8') as file:
+            text = file.read()
+        with open(self.path('other.yaml'), 'w', encoding='utf-8') as file:
+            file.write(text.replace('prefix: another', ''))
+        second.send(signal.SIGHUP)
+        second.expect(f'process {first.process.pid} publishes the site mill .* already', 'err')
+        second.expect(r'nothing has changed\.', 'err')
+        first.end(signal.SIGKILL)
+        self.assertIsNone(second.done)
+        self.other().expect('no such device', 'err')
+
+    def test_that_of_another_computer_is_named_and_leaves_the_broker_to_the_one_that_has_sensors(self):
+        self.broker()
+        subscriber = self.subscribe()
+        first = self.begin()
+        self.wait_for(subscriber, '/gate/availability', lambda one: one.payload == 'online')
+        second = self.other(host='localhost')
+        second.expect(r'broker localhost port \d+: .*/other\.yaml:1: it accepts the client fathom-mill and soon closes the '
+                      r'connection, again and again\. Another client probably has the same site, of which this id is made; each '
+                      r'computer needs its own; it is tried again when a sensor responds\.$', 'err')
+        self.wait_for(subscriber, '/gate/state', lambda one: one.json['age_ms'] < 50, 20)
+        late = self.subscribe()
+        for topic in ('/mill/status', '/gate/availability'):
+            self.assertEqual([one.payload for one in self.wait_for(late, topic)], ['online'])
+        self.assertLessEqual(len(self.messages(subscriber, 'mill/status')), 10)
+        self.assertLessEqual(second.end().err.count('port '), 6)
+        self.assertIsNone(first.done)
+
+    @e2e.each(a_client_id_of_two_is_named=('client-id: own', r'site\.yaml:6: it accepts the client own .* has the same client-id; write another one'),
+              a_site_of_two_is_named=('', r'site\.yaml:1: it accepts the client fathom-mill .* has the same site, of which this id is made'))
+    def what_to_change(self, broker, words):
+        self.broker()
+        first = self.begin(broker=broker)
+        self.wait_for(self.subscribe(), '/gate/state')
+        second = self.other(host='localhost', broker=broker)
+        first.expect(words, 'err')
+        second.expect(words.replace('site', 'other', 1), 'err')
+        self.assertEqual(first.said['err'].count(b'it accepts the client'), 1)
+
+
 class Login(Case):
     def passwords(self):
         path = self.path('passwords')
@@ -207,6 +268,7 @@ class Login(Case):
 
 class Secure(Case):
     def secure(self, **options):
+        """Returns the path of the authority's certificate."""
         ca, certificate, key = mqtt.certificates(self.folder, **options)
         self.broker(f'certfile {certificate}', f'keyfile {key}')
         return ca
@@ -228,7 +290,29 @@ class Secure(Case):
 
     def test_an_expired_certificate(self):
         self.refused(self.secure(name='127.0.0.1', days='-1'),
-                     'its certificate is not accepted: certificate has expired; the broker needs another one')
+                     r'its certificate is not accepted: certificate has expired: it is valid until [-0-9]+ [0-9:]+, and this '
+                     r"machine's clock says [-0-9]+ [0-9:]+ \(UTC\)\. Set the clock; if it is right, the broker needs another")
+
+    def test_a_clock_that_was_not_set_is_named_once_until_it_is(self):
+        ca = self.secure(name='127.0.0.1')
+        with open(self.path('unset'), 'wb'):
+            pass
+        publisher = self.begin(broker=f'tls: {{ca-file: {ca}}}', env=self.preload('clock_shim.c', UNSET_WHILE=self.path('unset')))
+        day = time.strftime('%Y-%m-%d', time.gmtime())
+        publisher.expect(rf'tls: its certificate is not accepted: certificate is not yet valid: it is valid from {day} [0-9:]+, and '
+                         r"this machine's clock says 1970-01-01 00:00 \(UTC\)\. Set the clock; .* tried again and again\.$", 'err')
+        publisher.has_ended(1)
+        os.remove(self.path('unset'))
+        self.wait_for(self.subscribe(options=['--cafile', ca]), '/gate/state', count=3)
+        self.assertEqual(publisher.end().err.count('not yet valid'), 1)
+
+    def test_a_broker_that_is_killed_is_not_a_matter_of_tls(self):
+        ca, certificate, key = mqtt.certificates(self.folder, name='127.0.0.1')
+        broker = self.broker(f'certfile {certificate}', f'keyfile {key}')
+        publisher = self.begin_secure(ca)
+        self.wait_for(self.subscribe(options=['--cafile', ca]), '/gate/state')
+        broker.end(signal.SIGKILL)
+        publisher.expect(r'port \d+: the connection is lost; ', 'err')
 
     def test_an_authority_that_is_not_trusted(self):
         self.secure(name='127.0.0.1')

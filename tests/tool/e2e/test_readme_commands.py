@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: MIT
 """The commands that the pages show: the tool understands each, and those that need no real sensor work. The tool's own page
 names every command. The lines of README.md compile its two programs, which have their own tests."""
+import concurrent.futures
 import os
 import re
 import shlex
@@ -80,6 +81,39 @@ class Commands(e2e.Case):
         self.assertEqual(len(commands), 15, commands)
         for command in commands:
             self.assertIn(f'`fathom {command}`', page)
+
+
+class Symptoms(e2e.Case):
+    """The page of symptoms: the commands below a symptom print it."""
+
+    def test_each_symptom_is_reproduced_by_its_commands(self):
+        page = self.run_fathom('help symptoms').out
+        rows = re.findall(r'^  (\S.*)\n((?: {6}.*\n)+)', page, re.M)
+        self.assertGreaterEqual(len(rows), 12, page)
+        with concurrent.futures.ThreadPoolExecutor(4) as pool:
+            for symptom, shown in pool.map(self.reproduce, range(len(rows)), rows):
+                self.assertIn(symptom, shown)
+
+    def reproduce(self, number, row):
+        """The last command ends; those before it go on meanwhile."""
+        symptom, text = row
+        commands = re.findall(r'^ {8}((?:fathom|cat) .*)$', text, re.M)
+        self.assertTrue(commands, symptom)
+        programs = []
+        for command in commands:
+            words = re.sub(r'\./(line|other)', lambda name: self.path(f'{name[1]}{number}'), command)
+            if words.startswith('fathom sim'):
+                programs.append(self.sim(words.split(' ', 2)[2]))
+            elif words.startswith('cat '):
+                programs.append(self.start(['sh', '-c', 'echo started; exec ' + words]))
+                programs[-1].expect('started')
+            else:
+                programs.append(self.fathom(words.split(' ', 1)[1]))
+                programs[-1].until_asleep() if command != commands[-1] else programs[-1].finish(60)
+        done = programs[-1].done
+        for program in programs[:-1]:
+            program.end()
+        return symptom, done.out + done.err
 
 
 class Lines(e2e.Case):

@@ -126,7 +126,7 @@ class TcpSet:
 
     def test_no_line_settings_are_told_and_none_are_changed(self):
         port = self.served((9600, 'none'), 1, 0x0200, FACTORY)
-        self.assertIn('asked at address 1, Modbus TCP', self.ends(f'get a16 --port {port} {NAME}', 0).out)
+        self.assertIn(', at address 1, Modbus TCP', self.ends(f'get a16 --port {port} {NAME}', 0).out)
         # Its four registers of #2: termination and measuring on, warm-up 5 s, reconnect time 180 ms, 19200
         # baud.
         port = self.served((19200, 'even'), 1, 0x0002, (0xFFFF, 0x0500, 0x0000, 0xB401))

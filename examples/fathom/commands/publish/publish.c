@@ -14,6 +14,7 @@
 #include "cli/command.h"
 #include "cli/config.h"
 #include "commands/commands.h"
+#include "commands/publish/claim.h"
 #include "mqtt/publisher.h"
 
 static const char command[] = "publish";
@@ -35,6 +36,7 @@ static struct {
     publish_settings_t settings;
     loop_t loop;
     publisher_t publisher;
+    claim_t claim;
     char status[256];     /* that the service manager has, */
     uint64_t reported_us; /* since when */
     uint32_t watchdog_us; /* from one message to its watchdog to the next; 0: it has none */
@@ -90,6 +92,7 @@ static uint32_t report_status(uint64_t now_us)
     if (publish.reported_us == 0 || now_us - publish.reported_us >= period_us) {
         char status[sizeof publish.status];
         publish.reported_us = now_us;
+        claim_tick(&publish.claim);
         publisher_status(&publish.publisher, status, sizeof status);
         if (is_watched || strcmp(status, publish.status) != 0)
             notify("STATUS=%s%s", status, is_watched ? "\nWATCHDOG=1" : "");
@@ -131,7 +134,10 @@ static void load_again(uint64_t now_us)
     notify("RELOADING=1\nMONOTONIC_USEC=%" PRIu64, now_us);
     site_free(&publish.next); /* of an earlier file that is out of date */
     publish.changing_us = now_us;
-    if (config_load(&publish.next_settings, &publish.next, command, publish.settings.path)) return;
+    if (config_load(&publish.next_settings, &publish.next, command, publish.settings.path)) {
+        if (claim_site(&publish.claim, &publish.next_settings)) return;
+        site_free(&publish.next);
+    }
     publish.changing_us = 0;
     (void)fprintf(stderr, "fathom: nothing has changed.\n");
     notify("READY=1");
@@ -194,6 +200,9 @@ static int explain(void)
     (void)printf("broker     %s port %u%s\n", broker->host, broker->port, broker->has_tls ? ", TLS" : "");
     (void)printf("client     %s%s%s\n", broker->client_id, broker->user[0] != '\0' ? ", user " : "",
                  broker->user);
+    (void)printf("topics     %s/%s/%s\n", settings->prefix, settings->site,
+                 settings->site_line == 0 ? ", from the name of this host" : "");
+    (void)printf("           Only one computer may have this client id and these topics.\n");
     (void)printf("queue      %" PRIu32 " messages, %" PRIu32 " bytes\n", settings->queue_messages,
                  settings->queue_bytes);
     (void)printf("discovery  %s\n", settings->discovery[0] != '\0' ? settings->discovery : "off");
@@ -211,6 +220,7 @@ static int publish_site(const host_t *host)
     if (!host->begin(host->ctx)) return STATUS_FAILED;
     host_watch_signal(SIGHUP);
     publish.watchdog_us = watchdog_us();
+    if (!claim_site(&publish.claim, &publish.settings)) return STATUS_FAILED;
     const bool is_open = loop_open(loop);
     if (is_open) {
         notify("READY=1");
@@ -220,6 +230,7 @@ static int publish_site(const host_t *host)
     }
     publisher_end(&publish.publisher);
     loop_close(loop);
+    claim_end(&publish.claim);
     site_free(&publish.next);
     return is_open && host->has_ended(host->ctx) ? STATUS_OK : STATUS_FAILED;
 }

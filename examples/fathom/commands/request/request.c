@@ -38,7 +38,7 @@ typedef struct {
     uint8_t response[255];   /* with its CRC */
     uint8_t response_length; /* 0: there is no response */
     uint32_t more;           /* further bytes that arrived within 60 ms of the response */
-    evidence_t evidence;     /* heard since the request */
+    evidence_t evidence;     /* received since the request */
 } request_t;
 
 static uint8_t function_of(const request_t *request) { return request->frame[FUNCTION]; }

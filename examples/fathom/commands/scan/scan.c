@@ -379,7 +379,7 @@ static void print_why_nothing_was_sent(const scan_finding_t *sender)
 static void print_nothing(const scan_t *scan)
 {
     failure_t failure = failure_of(scan, FATHOM_ERR_NO_RESPONSE);
-    failure.evidence.masters = 0; /* print_others() has said it */
+    failure.evidence.masters = 0; /* print_others() has printed them */
     (void)fputs("fathom: ", stderr);
     if (scan->not_asked != 0 || scan->has_damaged)
         (void)fputs("no sensor was found", stderr);
@@ -393,7 +393,7 @@ static void print_nothing(const scan_t *scan)
     (void)fputs(". A sensor that was just switched on may need 5 s\n", stderr);
 }
 
-/* Prints why addresses could not be asked, or who disturbs. */
+/* Prints why addresses got no request, or which device disturbs. */
 static void print_cause(const scan_t *scan, fathom_status_t status)
 {
     const failure_t failure = failure_of(scan, status);
@@ -408,13 +408,13 @@ static void print_others(const scan_t *scan)
         print_cause(scan, FATHOM_ERR_LINE_BUSY);
     }
     if (scan->not_asked != 0) {
-        (void)fprintf(stderr, "fathom: %" PRIu32 " addresses could not be asked: ", scan->not_asked);
+        (void)fprintf(stderr, "fathom: %" PRIu32 " addresses got no request: ", scan->not_asked);
         print_cause(scan, scan->has_other_master ? FATHOM_ERR_OTHER_MASTER : FATHOM_ERR_LINE_BUSY);
     }
     if (scan->outside != 0)
         (void)fprintf(
             stderr,
-            "fathom: a frame from address %u was heard, which the scan did not ask. Use --address %u.\n",
+            "fathom: a frame from address %u was received, which is not in the scan. Use --address %u.\n",
             scan->outside, scan->outside);
 }
 
@@ -438,7 +438,7 @@ static void print_result(const scan_t *scan)
     }
     print_others(scan);
     if (scan->left_out_count == scan->settings->line_count) {
-        (void)fputs("fathom: nothing was asked, because the port has none of these settings. A scan with "
+        (void)fputs("fathom: no request was sent, because the port has none of these settings. A scan with "
                     "other settings "
                     "or with another adapter can find a sensor.\n",
                     stderr);
@@ -487,8 +487,7 @@ static int finish(scan_t *scan)
     if (scan->status == FATHOM_OK)
         print_result(scan);
     else
-        (void)fprintf(stderr,
-                      "fathom: the scan ended before all addresses were asked. Sensors found: %" PRIu32 ".\n",
+        (void)fprintf(stderr, "fathom: the scan ended before its last address. Sensors found: %" PRIu32 ".\n",
                       scan->sensors);
     return scan->sensors != 0 ? STATUS_OK : STATUS_FAILED;
 }

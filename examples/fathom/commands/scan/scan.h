@@ -47,7 +47,7 @@ typedef struct {
     fathom_status_t status; /* FATHOM_ERR_ARGUMENT: the scan may not send this request */
     uint8_t responder;      /* of FATHOM_OK */
     uint16_t values[SCAN_REGISTERS];
-    evidence_t evidence; /* heard since the request */
+    evidence_t evidence; /* received since the request */
 } scan_read_t;
 
 typedef struct scan scan_t;

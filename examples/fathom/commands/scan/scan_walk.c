@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* What a scan sends and hears. */
+/* Sends the requests of a scan, and evaluates the received bytes. */
 #include <string.h>
 
 #include "commands/scan/scan.h"
@@ -7,8 +7,8 @@
 /* ---- the time that it takes ---- */
 
 enum {
-    /* An HPS-167S needs 2.5 to 20 ms, and a USB adapter may delay bytes by 16 ms. A later response is heard while the next
-     * address is asked, and its sender is asked again. */
+    /* An HPS-167S needs 2.5 to 20 ms, and a USB adapter may delay bytes by 16 ms. A later response arrives during the
+     * request to the next address, and its sender gets another request. */
     TIMEOUT_US = 100000,
     ANY_TIMEOUT_US = 300000,   /* of the request to any A05 */
     LATE_TIMEOUT_US = 1000000, /* of an address that responded late */
@@ -35,7 +35,7 @@ static uint32_t timeout_of(const scan_settings_t *settings, const fathom_line_se
 }
 
 /* Returns the time for one silent address. The silence before the next request passes with the time-out. Before an address
- * is asked again, the scan waits as long again, since the address may still respond. */
+ * gets another request, the scan waits another time-out, since the address may still respond. */
 static uint32_t address_us(const scan_settings_t *settings, const fathom_line_settings_t *line)
 {
     const uint32_t wait_us = timeout_of(settings, line);
@@ -101,7 +101,7 @@ static fathom_status_t hear(scan_t *scan, const fathom_line_settings_t *line, ui
     return status;
 }
 
-/* Finds out who sent what was heard with these settings. Returns false if nothing of it has a name. */
+/* Identifies the sender of the bytes that were received with these settings. Returns false if it is unknown. */
 static bool understand(scan_t *scan, const fathom_line_settings_t *line)
 {
     evidence_t evidence;
@@ -294,10 +294,10 @@ static void identify(scan_t *scan)
 
 /* ---- one address ---- */
 
-/* What the scan knows of an address at the present settings. */
+/* The state of an address at the present settings. */
 enum { NOT_ASKED = 0, SILENT, ANSWERED, LATE, GARBLED, DAMAGED, BUSY };
 
-/* Notes what was heard of other units. */
+/* Stores the evidence of other units. */
 static void note(scan_t *scan, const evidence_t *evidence)
 {
     const uint8_t other = evidence->foreign_address;
