@@ -18,7 +18,7 @@ TEST(the_crc_has_the_check_value_of_its_catalogue_and_is_that_of_the_definition)
 {
     assert_int_equal(fathom_hps167_crc((const uint8_t *)"123456789", 9), 0x29B1);
     assert_int_equal(fathom_hps167_crc(measurement, 0), 0xFFFF);
-    for (uint32_t word = 0; word != 65536; word += suite_is_long ? 1 : 251) {
+    for (uint32_t word = 0; word < 65536; word += suite_is_long ? 1 : 251) {
         const uint8_t bytes[] = {HIGH(word), LOW(word), 0x5A};
         assert_int_equal(fathom_hps167_crc(bytes, 3), rig_hps167_crc(bytes, 3));
     }
@@ -130,7 +130,8 @@ TEST(a_response_begins_with_0A_and_one_of_three_lengths)
         *alone = (uint8_t)first;
         assert_int_equal(fathom_hps167_frame_length(alone, 1), first == 0x0A ? 2 : 0);
         free(alone);
-        for (unsigned second = 0; second != BYTES; second++) {
+        /* behind another first byte the second one is not looked at */
+        for (unsigned second = 0; second != BYTES; second += first == 0x0A || suite_is_long ? 1 : 64) {
             const uint8_t both[] = {(uint8_t)first, (uint8_t)second};
             const bool is_known = second == 13 || second == 4 || second == 3;
             assert_int_equal(fathom_hps167_frame_length(both, 2), first == 0x0A && is_known ? second + 2 : 0);

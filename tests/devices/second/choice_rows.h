@@ -226,8 +226,8 @@ LIST(hps_gap_before, K_HPS, "HPS 2.2.3", "3.5 characters between frames, also af
      {0, 1, "not needed"}, {1, 1, "a request without them is lost"})
 LIST(hps_other_parity, K_HPS, "HPS 2.2.2", "even is required and default; odd and none can also be used",
      {0, 2, "only even is heard"}, {1, 1, "heard, answered with even"}, {2, 1, "heard, answered alike"})
-LIST(hps_busy, K_HPS_VALUES, "HPS 2.2.1", "a request while one is being served: not printed", {0, 1, "ignored"},
-     {1, 1, "served afterwards"})
+LIST(hps_busy, K_HPS_VALUES, "HPS 2.2.1", "a request while one is being served: not printed",
+     {0, 1, "ignored"}, {1, 1, "served afterwards"})
 RANGE(hps_response_us, K_HPS, "HPS 2.2.3", "3.5 characters at least; the longest is not printed (6 Hz)", 2006,
       166667, 5000)
 RANGE(hps_measure_us, K_HPS_VALUES, "HPS table 1, #5", "6~54 Hz", 18519, 166667, 18519)
@@ -304,21 +304,22 @@ LIST(hps_over_magnitude, K_HPS_VALUES, "HPS #5", "signal too low; no magnitude p
      {16, 1, "0010, exponent 0"}, {-1, 1, "as with a target"})
 LIST(hps_over_precision, K_HPS_VALUES, "HPS #5", "out of range; no precision printed", {0, 1, "0"},
      {65535, 1, "FFFF"})
-RANGE(hps_far_mm, K_HPS_VALUES, "HPS table 1", "18 m with a white target, text speaks of more than 20 m", 18000,
-      60000, 18000)
+RANGE(hps_far_mm, K_HPS_VALUES, "HPS table 1", "18 m with a white target, text speaks of more than 20 m",
+      18000, 60000, 18000)
 LIST(hps_near, K_HPS_VALUES, "HPS table 1", "minimum 0.08 m; nearer: not printed", {0, 1, "true value"},
      {1, 1, "80"}, {2, 1, "0"}, {3, 1, "over-range"})
-RANGE(hps_deviation_mm, K_HPS_VALUES, "HPS #12", "inherent deviation of a sensor, 15 mm in the example", -20, 20, 0)
+RANGE(hps_deviation_mm, K_HPS_VALUES, "HPS #12", "inherent deviation of a sensor, 15 mm in the example", -20,
+      20, 0)
 LIST(hps_magnitude, K_HPS_VALUES, "HPS #5", "two bytes, no limit", {0xDCB2, 1, "as printed"}, {1, 1, ""},
      {65535, 1, ""})
-LIST(hps_magnitude_exp, K_HPS_VALUES, "HPS #5", "one byte, no limit", {7, 1, "as printed"}, {0, 1, ""}, {16, 1, ""},
-     {31, 1, ""}, {255, 1, ""})
-LIST(hps_ambient, K_HPS_VALUES, "HPS #5", "one byte, no limit", {1, 1, "as printed"}, {0, 1, ""}, {254, 1, ""},
-     {255, 1, ""})
-LIST(hps_precision, K_HPS_VALUES, "HPS #5", "two bytes, no limit", {0, 1, "as printed"}, {1, 1, ""}, {1000, 1, ""},
-     {65534, 1, ""})
-LIST(hps_abnormal_exp, K_HPS_VALUES, "HPS #5", "abnormal packet: Magnitude 0x00; exponent not printed", {0, 1, "00"},
-     {255, 1, "FF"})
+LIST(hps_magnitude_exp, K_HPS_VALUES, "HPS #5", "one byte, no limit", {7, 1, "as printed"}, {0, 1, ""},
+     {16, 1, ""}, {31, 1, ""}, {255, 1, ""})
+LIST(hps_ambient, K_HPS_VALUES, "HPS #5", "one byte, no limit", {1, 1, "as printed"}, {0, 1, ""},
+     {254, 1, ""}, {255, 1, ""})
+LIST(hps_precision, K_HPS_VALUES, "HPS #5", "two bytes, no limit", {0, 1, "as printed"}, {1, 1, ""},
+     {1000, 1, ""}, {65534, 1, ""})
+LIST(hps_abnormal_exp, K_HPS_VALUES, "HPS #5", "abnormal packet: Magnitude 0x00; exponent not printed",
+     {0, 1, "00"}, {255, 1, "FF"})
 LIST(hps_fault_single, K_HPS, "HPS #5, table 39", "failure: abnormal packet in continuous, 04 device failed",
      {7, 1, "abnormal packet"}, V_EXCEPTION(4), V_SILENCE)
 LIST(hps_fault_every, K_HPS_VALUES, "HPS #5", "how often measurements fail is not printed",
@@ -366,7 +367,7 @@ LIST(hps167_frame_end, K_HPS167, "requests of 10 bytes", "how a request ends is 
 RANGE(hps167_reply_us, K_HPS167, "stop, temperature", "programs wait 1 to 500 ms", 100, 100000, 2500)
 LIST(hps167_single_beside, K_HPS167, "single", "while it sends continuously: not known",
      {0, 1, "answered besides"}, {1, 1, "ends the output"}, {2, 1, "ignored"})
-LIST(hps167_text, K_HPS167, "power-on", "sends Hypersen; whether a line ends is not known", {8, 2, "Hypersen"},
-     {10, 1, "with CR LF"}, {0, 1, "nothing"})
+LIST(hps167_text, K_HPS167, "power-on", "sends Hypersen; whether a line ends is not known",
+     {8, 2, "Hypersen"}, {10, 1, "with CR LF"}, {0, 1, "nothing"})
 LIST(hps167_temperature, K_HPS167, "temperature", "two bytes, divided by 100 in one program", {2500, 1, ""},
      {0, 1, ""}, {65535, 1, ""}, {0x0A0D, 1, ""})
