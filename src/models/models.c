@@ -12,7 +12,7 @@ static bool is_digit(char character) { return (character >= '0') && (character <
 /* Returns the character in upper case if it is a digit or a letter, else 0. */
 static char plain(char character)
 {
-    if ((character >= 'a') && (character <= 'z')) return (char)(character - 'a' + 'A');
+    if ((character >= 'a') && (character <= 'z')) return (char)(character - ('a' - 'A'));
     return (is_digit(character) || ((character >= 'A') && (character <= 'Z'))) ? character : '\0';
 }
 
@@ -59,9 +59,9 @@ static bool has_name(const char *list, const char *name)
 
 const fathom_model_description_t *fathom_model_at(uint16_t index)
 {
-    static const fathom_model_table_t *const tables[] = {&fathom_models_a16, &fathom_models_jsn,
-                                                         &fathom_models_a05, &fathom_models_hps};
-    for (size_t table = 0; table != (sizeof tables / sizeof tables[0]); table++) {
+    static const fathom_model_table_t *const tables[4] = {&fathom_models_a16, &fathom_models_jsn,
+                                                          &fathom_models_a05, &fathom_models_hps};
+    for (uint8_t table = 0; table != (sizeof(tables) / sizeof(tables[0])); table++) {
         if (index < tables[table]->count) return &tables[table]->rows[index];
         index = (uint16_t)(index - tables[table]->count);
     }
@@ -75,10 +75,11 @@ bool fathom_model_is_called(const fathom_model_description_t *model, const char 
 
 const fathom_model_description_t *fathom_model_find(const char *name, uint8_t mode)
 {
-    const fathom_model_description_t *model = NULL;
-    for (uint16_t index = 0; (model = fathom_model_at(index)) != NULL; index++) {
+    const fathom_model_description_t *model = fathom_model_at(0);
+    for (uint16_t index = 1; model != NULL; index++) {
         const bool is_mode = (mode == FATHOM_MODE_ANY) || (model->mode == mode);
         if (is_mode && fathom_model_is_called(model, name)) break;
+        model = fathom_model_at(index);
     }
     return model;
 }

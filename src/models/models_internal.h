@@ -23,10 +23,11 @@ extern const fathom_model_table_t fathom_models_jsn;
 #define MODEL_FACTS(id, family, mode, certainty, name, aliases, maker, note, ...)                            \
     const fathom_model_facts_t fathom_model_##id = {__VA_ARGS__};
 #define MODEL_DESCRIPTION(id, family, mode, certainty, name, aliases, maker, note, ...)                      \
-    {name, aliases, maker, note, &fathom_model_##id, FATHOM_##family, FATHOM_MODE_##mode, (certainty) == H},
+    {(name),          (aliases),          (maker),         (note), &fathom_model_##id,                       \
+     FATHOM_##family, FATHOM_MODE_##mode, (certainty) == H},
 #define MODEL_TABLE(descriptions)                                                                            \
     {                                                                                                        \
-        descriptions, (uint8_t)(sizeof(descriptions) / sizeof((descriptions)[0]))                            \
+        (descriptions), (uint8_t)(sizeof(descriptions) / sizeof((descriptions)[0]))                          \
     }
 
 /* Facts that many rows have. */
