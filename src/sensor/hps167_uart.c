@@ -57,7 +57,7 @@ static const fathom_protocol_t protocol = {.encode = encode,
                                            .parse_response = parse_response,
                                            .may_collide = may_collide};
 
-static fathom_status_t submit(fathom_line_t *line, fathom_modbus_request_t *request)
+static fathom_status_t submit_frame(fathom_line_t *line, fathom_modbus_request_t *request)
 {
     request->transaction.protocol = &protocol;
     request->transaction.address = START;
@@ -140,7 +140,7 @@ static void forget_output(fathom_hps167_uart_t *sensor)
 
 /* ---- Initialisation ---- */
 
-static bool is_valid(const fathom_modbus_t *transport, const fathom_hps167_uart_config_t *config)
+static bool is_usable(const fathom_modbus_t *transport, const fathom_hps167_uart_config_t *config)
 {
     return (config->modbus.address == 0u) && !config->modbus.address_zero &&
            (config->start_us <= FATHOM_MAX_DURATION_US) && (config->stale_us <= FATHOM_MAX_DURATION_US) &&
@@ -150,13 +150,13 @@ static bool is_valid(const fathom_modbus_t *transport, const fathom_hps167_uart_
 fathom_status_t fathom_hps167_uart_init(fathom_hps167_uart_t *sensor, fathom_line_t *line,
                                         const fathom_hps167_uart_config_t *config)
 {
-    const fathom_modbus_t transport = {.line = line, .submit = submit};
+    const fathom_modbus_t transport = {.line = line, .submit = submit_frame};
     fathom_hps167_uart_config_t zeroed;
     fathom_status_t status = fathom_modbus_unit_begin(&sensor->unit, &transport, sensor, sizeof *sensor);
     if (status < 0) return status;
     fathom_line_unlisten(line, &sensor->listener); /* of a driver that was initialised again */
     config = config_or_zeroed(config, &zeroed, sizeof zeroed);
-    if (!is_valid(&transport, config)) return FATHOM_ERR_ARGUMENT;
+    if (!is_usable(&transport, config)) return FATHOM_ERR_ARGUMENT;
     status = fathom_modbus_unit_init(&sensor->unit, &transport, &config->modbus, MEASURE_TIMEOUT_US,
                                      FATHOM_HPS167_UART_PERIOD_US);
     sensor->listener.receive = receive;

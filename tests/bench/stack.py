@@ -17,7 +17,7 @@ SENSORS = ('a05_auto', 'a16_auto', 'a16_controlled', 'a16_pwm', 'contact', 'dyp_
 INDIRECT = {
     'transport.submit': ('modbus_client.c:fathom_modbus_client_submit', 'dyp_client.c:fathom_dyp_client_submit',
                           'modbus_client_zero.c:fathom_modbus_client_submit_with_zero', 'a05_dyp.c:submit_either',
-                          'hps167_uart.c:submit'),
+                          'hps167_uart.c:submit_frame'),
 }
 # The same for those that may also lead to the user's code, or nowhere; then nothing is added.
 PERHAPS = {
