@@ -6,7 +6,7 @@
 
 /* The A05 with its printed range. No other module with its frames is known. a16_family.c says what a row is. */
 
-#define A05_LINE .line_settings = &fathom_a05_factory_line
+#define A05_LINE .line_settings = (&fathom_a05_factory_line)
 
 /* clang-format off */
 #define ROWS(ROW) \

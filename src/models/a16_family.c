@@ -16,7 +16,7 @@
 
 static const fathom_line_settings_t fast_line = {115200, FATHOM_PARITY_NONE, 1};
 
-#define FAST        .line_settings = &fast_line
+#define FAST        .line_settings = (&fast_line)
 #define TEMPERATURE .registers = FATHOM_HAS_TEMPERATURE
 
 /* clang-format off */

@@ -36,6 +36,6 @@ extern const fathom_model_table_t fathom_models_jsn;
 #define FALLING(us)              .start = FATHOM_STARTS_FALLING, .trigger_us = (us)
 #define BYTE(value)              .start = FATHOM_STARTS_BYTE, .trigger_byte = (value)
 #define HIGH_PULSE(us)           .start = FATHOM_STARTS_HIGH_PULSE, .trigger_us = (us)
-#define SLOW                     .line_settings = &fathom_a16_factory_line
+#define SLOW                     .line_settings = (&fathom_a16_factory_line)
 
 #endif
