@@ -24,7 +24,8 @@ extern "C" {
  * The second byte of a response is the number of bytes behind it, and the CRC is over the bytes between this number and
  * the CRC. The CRC is CRC-16/CCITT-FALSE: polynomial 0x1021, initial value 0xFFFF, high byte first. `D D M M E A P P`
  * are the 8 bytes of command #5 of the HPS-167S (hps167s_registers.h). What the three bytes `r r r` mean is not certain;
- * a program of 2016 names them the interrupt flag, the interrupt mode and the zone mode. The functions accept any.
+ * a program of 2016 names them the interrupt flag, the interrupt mode and the zone mode. They are 01 01 01 in the example
+ * for the CRC that the datasheet of the HPS-167S prints, which has eleven such bytes. The functions accept any.
  *
  * @code
  * uint8_t frame[FATHOM_HPS167_MEASUREMENT_LENGTH];
