@@ -26,8 +26,8 @@ bool fathom_dyp_stream_is_valid(const uint8_t *frame, uint8_t length)
 
 void fathom_dyp_stream_decode(const uint8_t *frame, uint16_t *values, uint8_t probes)
 {
-    for (; probes != 0u; probes--) {
-        *values = fathom_dyp_stream_first(frame);
+    for (frame++; probes != 0u; probes--) {
+        *values = (uint16_t)((frame[0] * 256u) + frame[1]);
         frame += 2;
         values++;
     }

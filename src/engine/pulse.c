@@ -78,8 +78,8 @@ static bool is_valid(const fathom_pulse_meter_t *meter)
 {
     const fathom_capture_t *const capture = meter->capture;
     return (capture != NULL) && (capture->arm != NULL) && (capture->take != NULL) &&
-           (meter->noise_us != 0u) && (meter->noise_us < meter->no_target_us) &&
-           (meter->no_target_us <= meter->stuck_us) && (meter->stuck_us <= meter->trigger.period_us);
+           (meter->noise_us < meter->no_target_us) && (meter->no_target_us <= meter->stuck_us) &&
+           (meter->stuck_us <= meter->trigger.period_us);
 }
 
 fathom_status_t fathom_pulse_init(fathom_pulse_meter_t *meter)

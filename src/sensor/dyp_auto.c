@@ -2,7 +2,6 @@
 #include "fathom/sensor/internal/dyp_auto.h"
 
 #include "../common.h"
-#include "fathom/codec/dyp_stream.h"
 
 /*
  * The common part of a16_auto.c and a05_auto.c. A stream finds the frames; this file fetches the newest one
@@ -33,14 +32,15 @@ static bool is_followed(const fathom_dyp_auto_t *sensor)
     return (sensor->stream.candidate != FATHOM_STREAM_NOWHERE) && fathom_line_holds_bytes(sensor->line);
 }
 
-/* Stores the values of the newest frame. Returns 0 if all of them were stored already. */
+/* Stores the values of the newest frame. Returns 0 if all of them were stored already. fathom_dyp_stream_decode() would
+ * need room for the new values beside the old ones. */
 static unsigned store_values(const fathom_stream_t *stream, uint16_t *values)
 {
     const uint8_t *frame = fathom_stream_frame(stream);
     const uint8_t *const end = frame + stream->length - 2;
     unsigned changed = 0;
     for (; frame != end; frame += 2) {
-        const uint16_t value = fathom_dyp_stream_first(frame);
+        const uint16_t value = (uint16_t)((frame[1] * 256u) + frame[2]);
         changed |= (unsigned)*values ^ value;
         *values = value;
         values++;

@@ -167,7 +167,7 @@ typedef struct {
 static const range_t ranges[] = {
     RANGE(init_pulse, pulse.cycle_us, 105000, MAX_US, 104999, MAX_US + 1),
     RANGE(init_pulse, pulse.low_us, 1, 60000, 60001, UINT16_MAX),
-    RANGE(init_pulse, pulse.noise_us, 1, UINT16_MAX, 0, 0),
+    ANY(init_pulse, pulse.noise_us, UINT16_MAX),
     RANGE(init_pulse, pulse.no_target_us, 2701, 105000, 2700, 105001),
     RANGE(init_pulse, pulse.stuck_us, 92000, 221000, 91999, 221001),
     RANGE(init_pwm, pwm.period_us, 0, MAX_US, MAX_US + 1, UINT32_MAX),

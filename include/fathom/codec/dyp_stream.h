@@ -67,16 +67,6 @@ bool fathom_dyp_stream_is_valid(const uint8_t *frame, uint8_t length);
 void fathom_dyp_stream_decode(const uint8_t *frame, uint16_t *values, uint8_t probes);
 
 /**
- * @brief Returns the first value of a valid frame. Of a pointer to 2 bytes farther, it is the second value, and so on.
- *
- * @param frame  A frame of 4 or 10 bytes.
- */
-static inline uint16_t fathom_dyp_stream_first(const uint8_t *frame)
-{
-    return (uint16_t)((frame[1] * 256u) + frame[2]);
-}
-
-/**
  * @brief Encodes a frame.
  *
  * @param frame   Memory for 4 bytes (1 probe) or 10 bytes (4 probes). All are written.

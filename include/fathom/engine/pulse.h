@@ -86,7 +86,7 @@ typedef struct {
     uint32_t no_target_us;
     /** Longer pulses are a fault: no_target_us..trigger.period_us, in microseconds. */
     uint32_t stuck_us;
-    /** Shorter pulses are noise: 1..65535 us, below `no_target_us`. Less than the sensor's shortest pulse, by a margin for
+    /** Shorter pulses are noise: 0..65535 us, below `no_target_us`. Less than the sensor's shortest pulse, by a margin for
      * the clocks of both sides. */
     uint16_t noise_us;
 

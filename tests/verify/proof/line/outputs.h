@@ -5,10 +5,11 @@
 #include "any_line.h"
 #include "fathom/engine/line_pins.h"
 
-/* What may drive a module's RX pin, 0..4: a pin, a break of a UART that can and of one that cannot, a break of the
- * line, nothing. */
+/* What may drive a module's RX pin, 0..6: a pin, a break of a UART that can and of one that cannot, a break of the
+ * line, a byte on it, an output to nothing, no output. */
 static fathom_output_t output_of(uint8_t which)
 {
+    static fathom_line_byte_t any_byte;
     fathom_output_t output;
     output.set = NULL;
     output.ctx = NULL;
@@ -21,6 +22,12 @@ static fathom_output_t output_of(uint8_t which)
         return fathom_output_break(&assumed_bare_uart);
     case 3:
         return fathom_output_line_break(&any_line);
+    case 4:
+        any_byte.line = &any_line;
+        any_byte.byte = any_8();
+        return fathom_output_line_byte(&any_byte);
+    case 5:
+        return fathom_output_none();
     default:
         return output;
     }
