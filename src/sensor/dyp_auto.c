@@ -37,13 +37,13 @@ static bool is_followed(const fathom_dyp_auto_t *sensor)
 static unsigned store_values(const fathom_stream_t *stream, uint16_t *values)
 {
     const uint8_t *frame = fathom_stream_frame(stream);
-    const uint8_t *const end = frame + stream->length - 2;
     unsigned changed = 0;
-    for (; frame != end; frame += 2) {
+    for (uint8_t left = (uint8_t)((stream->length / 2u) - 1u); left != 0u; left--) {
         const uint16_t value = (uint16_t)((frame[1] * 256u) + frame[2]);
         changed |= (unsigned)*values ^ value;
         *values = value;
         values++;
+        frame += 2;
     }
     return changed;
 }

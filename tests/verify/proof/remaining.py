@@ -161,6 +161,5 @@ UNREACHED = {
     ('line/hps167s', 'is_valid_0'): (3, REFUSED_BEFORE + '; ' + HAS_ROOM),
     ('line/hps167s_auto', 'fathom_hps167s_auto_sensor_due_us'):
         (1, 'the harness polls before each due_us, and the poll takes the reading'),
-    ('pure/dyp', 'complete'): (2, 'each case of the switch returns, so nothing follows it'),
     ('line/line', 'fathom_line_submit'): (3, 'the line of the harness can send, so `fail_all` is not NULL'),
 }

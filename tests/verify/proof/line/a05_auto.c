@@ -41,7 +41,7 @@ static void run(void)
 void main(void)
 {
     fathom_a05_auto_config_t config;
-    const uint8_t which = any_8_in(0, 6);
+    const uint8_t which = any_8_in(0, 4);
     /*@ split which; */
     any_line_init();
     config.select = output_of(which);

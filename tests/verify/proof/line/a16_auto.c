@@ -6,6 +6,7 @@
  * options: -eva-precision 0
  *          -eva-slevel-function fathom_a16_auto_init:50,fathom_dyp_auto_init:20,main:30,output_of:10,take:40
  *          -eva-split-return-function fathom_a16_auto_init:0,fathom_dyp_auto_init:0
+ * unreached: fathom_output_set_line_byte
  * quick:   no
  *
  * The A16 that sends by itself: any calls in any order, any bytes.
@@ -38,7 +39,7 @@ static void any_call(const fathom_sensor_t *handle)
 void main(void)
 {
     fathom_a16_auto_config_t config;
-    const uint8_t which = any_8_in(0, 6);
+    const uint8_t which = any_8_in(0, 4);
     /*@ split which; */
     any_line_init();
     config.select = output_of(which);

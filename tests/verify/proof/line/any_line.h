@@ -198,7 +198,7 @@ static void any_modbus_config(fathom_modbus_config_t *config)
     config->retries = any_8();
 }
 
-/* Any facts of a model, or none. */
+/* Any facts of a model. A config of NULL selects those of the datasheet. */
 static const fathom_model_facts_t *any_facts(void)
 {
     static fathom_model_facts_t facts;
@@ -219,7 +219,7 @@ static const fathom_model_facts_t *any_facts(void)
     facts.value_ffff = any_8();
     facts.value_0 = any_8();
     facts.registers = any_8();
-    return any_bool() ? &facts : NULL;
+    return &facts;
 }
 
 /* Which probes an A05 has, as a mask; from 16 on they are refused. Those that begin at the same one stand together:

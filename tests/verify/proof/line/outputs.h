@@ -6,7 +6,7 @@
 #include "fathom/engine/line_pins.h"
 
 /* What may drive a module's RX pin, 0..6: a pin, a break of a UART that can and of one that cannot, a break of the
- * line, a byte on it, an output to nothing, no output. */
+ * line, no output; a trigger may be a byte on the line, or an output to nothing, too. */
 static fathom_output_t output_of(uint8_t which)
 {
     static fathom_line_byte_t any_byte;
@@ -23,13 +23,13 @@ static fathom_output_t output_of(uint8_t which)
     case 3:
         return fathom_output_line_break(&any_line);
     case 4:
+        return output;
+    case 5:
         any_byte.line = &any_line;
         any_byte.byte = any_8();
         return fathom_output_line_byte(&any_byte);
-    case 5:
-        return fathom_output_none();
     default:
-        return output;
+        return fathom_output_none();
     }
 }
 
