@@ -36,7 +36,9 @@ fathom_status_t fathom_a16_modbus_get_temperature(fathom_a16_modbus_t *sensor, i
     if ((facts->registers & FATHOM_HAS_TEMPERATURE) == 0u) return FATHOM_ERR_UNSUPPORTED;
     const fathom_status_t status =
         fathom_dyp_modbus_get_register(&sensor->base, FATHOM_A16_REGISTER_TEMPERATURE, &value);
-    if (status == FATHOM_OK) *temperature_dc = (int16_t)value;
+    if (status != FATHOM_OK) return status;
+    const int32_t dc = value; /* a two's complement of 16 bits */
+    *temperature_dc = (int16_t)((dc <= INT16_MAX) ? dc : (dc - 65536));
     return status;
 }
 
