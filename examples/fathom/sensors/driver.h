@@ -103,7 +103,9 @@ model_simulate_t a16_simulate, a05_simulate, hps167s_simulate;
 model_decode_t dyp_decode, hps167s_decode;
 
 void dyp_decode_sum(struct decode_frame *frame, const model_t *model);
+bool dyp_confirm(inquiry_t *inquiry, const model_t *model);
 bool hps167s_identify(inquiry_t *inquiry);
+bool hps167s_is_alike(const uint8_t *bytes, uint16_t count);
 const char *hps167s_read_changes(uint8_t function, uint16_t first, uint16_t count);
 const char *hps167s_exception_name(uint8_t code);
 
