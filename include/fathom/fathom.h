@@ -40,7 +40,12 @@
 #include "fathom/sensor/hps167s_info.h"     /* commands that read: #1 to #4 */
 #include "fathom/sensor/hps167s_settings.h" /* commands that set: #6 to #15 */
 
-/* All three */
+/* HPS-167 and HPS-166, the same with a UART and frames of their own */
+#include "fathom/codec/hps167_frames.h" /* the frames */
+#include "fathom/sensor/hps167_uart.h"  /* distances, single or continuous */
+
+/* All of them */
+#include "fathom/models.h" /* the facts of their relatives, such as A02YYUW, JSN-SR04T and HC-SR04 */
 #include "fathom/sensor/factory_line.h" /* the line settings with which they leave the factory */
 
 /* Processing of readings */

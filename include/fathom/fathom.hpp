@@ -534,6 +534,42 @@ class hps167s_auto : public newest
     fathom_line_t *line_;
 };
 
+/** @brief HPS-167 or HPS-166 with a UART (hps167_uart.h). */
+class hps167_uart : public newest
+{
+  public:
+    /**
+     * @brief Stores the address of the line.
+     * @param bus  The bus, with the member `line`. Must stay valid as long as this object.
+     */
+    template <class Bus> explicit hps167_uart(Bus &bus) : line_(&bus.line) {}
+
+    /**
+     * @brief Initialises the driver, as fathom_hps167_uart_init().
+     * @param config   The configuration, read only during the call. NULL: the defaults.
+     * @return As fathom_hps167_uart_init().
+     */
+    fathom_status_t begin(const fathom_hps167_uart_config_t *config = nullptr)
+    {
+        return begun(fathom_hps167_uart_init(&driver, line_, config));
+    }
+
+    /** @brief Returns the result of fathom_poll(), without waiting. fathom::newest has the newest one. */
+    fathom_status_t poll() { return keep(fathom_hps167_uart_poll(&driver, &sample_)); }
+
+    /** @brief Returns the sensor for fathom_due_us(), fathom_wait() and the read function of a bus. */
+    fathom_sensor_t sensor() { return fathom_hps167_uart_sensor(&driver); }
+
+    /** @brief Stops the continuous output, as fathom_hps167_uart_deinit(). */
+    void end() { fathom_hps167_uart_deinit(&driver); }
+
+    /** @brief The driver of C. */
+    fathom_hps167_uart_t driver;
+
+  private:
+    fathom_line_t *line_;
+};
+
 } // namespace fathom
 
 #endif

@@ -57,7 +57,8 @@ typedef struct {
  *            and it listens again before them. Pauses may stand between bytes, and bytes may have a mark.
  * Any may be NULL. They must not call into the line.
  */
-enum { FATHOM_SIM_STREAM = 1, FATHOM_SIM_MODBUS = 2, FATHOM_SIM_DYP = 4 }; /* protocols; sets of them */
+/* Protocols; sets of them. */
+enum { FATHOM_SIM_STREAM = 1, FATHOM_SIM_MODBUS = 2, FATHOM_SIM_DYP = 4, FATHOM_SIM_HPS167 = 8 };
 
 typedef struct {
     uint8_t *bytes;    /* room for FATHOM_SIM_MAX_FRAME */
@@ -125,7 +126,7 @@ typedef struct {
 
 enum { FATHOM_SIM_REGISTERS = 11 }; /* of the longest response: HPS-167S #3 */
 
-/* A protocol of requests and responses: modbus.c, dyp.c. */
+/* A protocol of requests and responses: modbus.c, dyp.c, hps167.c. */
 typedef struct {
     /* A whole frame was heard. False: it is none of this protocol, another one may look at it. */
     bool (*hear)(fathom_sim_device_t *device, const uint8_t *frame, uint8_t length, uint32_t now_us);
@@ -138,6 +139,7 @@ typedef struct {
 
 extern const fathom_sim_protocol_t fathom_sim_modbus;
 extern const fathom_sim_protocol_t fathom_sim_dyp;
+extern const fathom_sim_protocol_t fathom_sim_hps167;
 
 enum { FATHOM_SIM_PROTOCOLS = 2 };
 
@@ -201,7 +203,7 @@ struct fathom_sim_device {
     fathom_sim_sender_t sender;
     const fathom_sim_protocol_t *protocol; /* of the request that is being served */
     fathom_modbus_message_t message;       /* that request, in Modbus */
-    uint8_t command;                       /* that request, in 55 AA */
+    uint8_t command;                       /* that request, in 55 AA and of an HPS-167 */
     fathom_line_settings_t reply_settings;
     uint16_t values[FATHOM_SIM_REGISTERS];
     uint32_t heard_us;      /* end of the last byte */

@@ -4,7 +4,11 @@
 
 #include "internal/fault_parts.h"
 
-enum { ON_REQUEST = FATHOM_SIM_MODBUS | FATHOM_SIM_DYP, ANY = ON_REQUEST | FATHOM_SIM_STREAM };
+enum {
+    WITH_ADDRESS = FATHOM_SIM_MODBUS | FATHOM_SIM_DYP,
+    WITH_COUNT = WITH_ADDRESS | FATHOM_SIM_STREAM,
+    ANY = WITH_COUNT | FATHOM_SIM_HPS167
+};
 
 static const struct {
     const char *name;
@@ -15,9 +19,9 @@ static const struct {
     [FATHOM_SIM_FAULT_INTERFERENCE] = {"interference", "reports interference (a16, a05)", ANY},
     [FATHOM_SIM_FAULT_FAULT] = {"fault", "reports that it has failed (hps167s)", ANY},
     [FATHOM_SIM_FAULT_NO_TARGET] = {"no-target", "reports that there is no target", ANY},
-    [FATHOM_SIM_FAULT_UNIT] = {"unit", "from another unit, checksum right", ON_REQUEST},
-    [FATHOM_SIM_FAULT_FUNCTION] = {"function", "another function, checksum right", ON_REQUEST},
-    [FATHOM_SIM_FAULT_COUNT] = {"count", "a value less or more, checksum right", ANY},
+    [FATHOM_SIM_FAULT_UNIT] = {"unit", "from another unit, checksum right", WITH_ADDRESS},
+    [FATHOM_SIM_FAULT_FUNCTION] = {"function", "another function, checksum right", WITH_ADDRESS},
+    [FATHOM_SIM_FAULT_COUNT] = {"count", "a value less or more, checksum right", WITH_COUNT},
     [FATHOM_SIM_FAULT_EXCEPTION] = {"exception", "a Modbus exception, any of 1..255", FATHOM_SIM_MODBUS},
     [FATHOM_SIM_FAULT_FLIP_BIT] = {"flip-bit", "one bit is wrong", ANY},
     [FATHOM_SIM_FAULT_FLIP_BYTE] = {"flip-byte", "one byte is wrong", ANY},
@@ -37,7 +41,8 @@ static const struct {
     [FATHOM_SIM_FAULT_NOISE] = {"noise", "1..8 random bytes before or after it", ANY},
     [FATHOM_SIM_FAULT_UNASKED] = {"unasked", "an unsolicited frame besides", ANY},
     [FATHOM_SIM_FAULT_BREAK] = {"break", "a break before the frame", ANY},
-    [FATHOM_SIM_FAULT_ECHO] = {"echo", "the line repeats what the host sends", ON_REQUEST},
+    [FATHOM_SIM_FAULT_ECHO] = {"echo", "the line repeats what the host sends",
+                               WITH_ADDRESS | FATHOM_SIM_HPS167},
     [FATHOM_SIM_FAULT_CLOCK_JUMP] = {"clock-jump", "the host's clock jumps forward by 10 s", ANY},
 };
 

@@ -126,12 +126,9 @@ static uint16_t compensated(const fathom_sim_hps167s_t *hps, int32_t distance)
     return distance < over_range ? (uint16_t)distance : (uint16_t)(over_range - 1);
 }
 
-static void fill_measurement(fathom_sim_hps167s_t *hps, uint16_t *values, uint32_t now_us)
+void fathom_sim_hps167s_put(uint16_t *values, int32_t distance, const fathom_sim_optics_t *optics)
 {
-    const bool has_data = !hps->lost && !warming_up(hps);
-    const int32_t distance = has_data ? fathom_sim_device_measure(&hps->device, 1, now_us) : FATHOM_SIM_FAULT;
-    const fathom_sim_optics_t *const optics = hps->optics;
-    fathom_sim_device_set_alarm(&hps->device, FATHOM_SIM_ALARM_REST, now_us + hps->period_us);
+    if (optics == NULL) optics = &example_optics;
     if (distance == FATHOM_SIM_FAULT) { /* #5: "all 0xFF and the value of Magnitude is 0x00" */
         values[0] = 0xFFFF;
         values[1] = 0;
@@ -139,7 +136,7 @@ static void fill_measurement(fathom_sim_hps167s_t *hps, uint16_t *values, uint32
         values[3] = 0xFFFF;
         return;
     }
-    values[0] = compensated(hps, distance);
+    values[0] = (uint16_t)distance;
     values[1] = optics->magnitude;
     values[2] = pair(optics->exponent, optics->ambient);
     values[3] = optics->precision;
@@ -148,6 +145,14 @@ static void fill_measurement(fathom_sim_hps167s_t *hps, uint16_t *values, uint32
         values[1] = 0x0010;
         values[2] = pair(0, optics->ambient);
     }
+}
+
+static void fill_measurement(fathom_sim_hps167s_t *hps, uint16_t *values, uint32_t now_us)
+{
+    const bool has_data = !hps->lost && !warming_up(hps);
+    const int32_t distance = has_data ? fathom_sim_device_measure(&hps->device, 1, now_us) : FATHOM_SIM_FAULT;
+    fathom_sim_device_set_alarm(&hps->device, FATHOM_SIM_ALARM_REST, now_us + hps->period_us);
+    fathom_sim_hps167s_put(values, distance < 0 ? distance : compensated(hps, distance), hps->optics);
 }
 
 static void fill(fathom_sim_device_t *device, fathom_modbus_message_t *message, uint32_t now_us)
@@ -219,7 +224,7 @@ void fathom_sim_hps167s_init(fathom_sim_hps167s_t *hps, const fathom_sim_hps167s
     device->protocols[0] = &fathom_sim_modbus;
     device->listens = true;
     device->answers_from_new = config->answers_from_new;
-    hps->optics = config->optics != NULL ? config->optics : &example_optics;
+    hps->optics = config->optics;
     hps->number = config->number;
     hps->details = config->details != NULL ? config->details : example_details;
     hps->version = config->version != NULL ? config->version : default_version;

@@ -4,18 +4,22 @@
 /* The width of a pulse as a distance. Both functions calculate with whole numbers of at most 32 bits. */
 
 /* This width is more than 65535 mm at any temperature, and the products below stay within 32 bits. */
-#define LONGEST_US 500000uL
+#define LONGEST_IN_AIR_US 500000uL
 
-static uint32_t bounded_us(uint32_t width_us) { return (width_us < LONGEST_US) ? width_us : LONGEST_US; }
+/* This width is more than 65535 mm at 6000 us for each 100 mm, and 100 times it stays within 32 bits. */
+#define LONGEST_US 4000000uL
+
+static uint32_t least(uint32_t a, uint32_t b) { return (a < b) ? a : b; }
 
 static uint16_t bounded_mm(uint32_t mm)
 {
     return (mm < FATHOM_PULSE_WIDTH_MAX_MM) ? (uint16_t)mm : FATHOM_PULSE_WIDTH_MAX_MM;
 }
 
-uint16_t fathom_pulse_width_mm(uint32_t width_us)
+uint16_t fathom_pulse_width_mm(uint32_t width_us, uint16_t us_per_dm)
 {
-    return bounded_mm(((bounded_us(width_us) * 4u) + 11u) / 23u);
+    if (us_per_dm == 0u) return FATHOM_PULSE_WIDTH_MAX_MM;
+    return bounded_mm(((least(width_us, LONGEST_US) * 100u) + (us_per_dm / 2u)) / us_per_dm);
 }
 
 /*
@@ -27,7 +31,7 @@ uint16_t fathom_pulse_width_mm_in_air(uint32_t width_us, int16_t air_dc)
 {
     if (air_dc < FATHOM_PULSE_WIDTH_MIN_AIR_DC) air_dc = FATHOM_PULSE_WIDTH_MIN_AIR_DC;
     if (air_dc > FATHOM_PULSE_WIDTH_MAX_AIR_DC) air_dc = FATHOM_PULSE_WIDTH_MAX_AIR_DC;
-    const uint32_t us = bounded_us(width_us);
+    const uint32_t us = least(width_us, LONGEST_IN_AIR_US);
     const uint32_t v =
         UINT32_C(3070600) + (UINT32_C(606) * (uint16_t)(air_dc - FATHOM_PULSE_WIDTH_MIN_AIR_DC));
     const uint32_t high = us * (v / 1000u);

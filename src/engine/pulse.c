@@ -73,35 +73,23 @@ static fathom_status_t take(fathom_pulse_meter_t *meter, fathom_pulse_reading_t 
     return (meter->trigger.left_us != 0u) ? FATHOM_PENDING : end_cycle(meter, pulse.is_high, reading);
 }
 
-/* Copies the configuration. Returns true if each member is inside its range. */
-static bool configure(fathom_pulse_meter_t *meter, const fathom_pulse_config_t *config)
+/* Returns true if each member that the caller has set is inside its range. */
+static bool is_valid(const fathom_pulse_meter_t *meter)
 {
-    fathom_trigger_t *const trigger = &meter->trigger;
     const fathom_capture_t *const capture = meter->capture;
-    if (config != NULL) {
-        meter->no_target_us = config->no_target_us;
-        meter->stuck_us = config->stuck_us;
-        meter->noise_us = config->noise_us;
-        trigger->period_us = config->cycle_us;
-        trigger->low_us = config->low_us;
-    }
-    meter->no_target_us = or_default(meter->no_target_us, FATHOM_PULSE_DEFAULT_NO_TARGET_US);
-    meter->stuck_us = or_default(meter->stuck_us, FATHOM_PULSE_DEFAULT_STUCK_US);
-    meter->noise_us = (uint16_t)or_default(meter->noise_us, FATHOM_PULSE_DEFAULT_NOISE_US);
-    trigger->period_us = or_default(trigger->period_us, FATHOM_PULSE_DEFAULT_CYCLE_US);
     return (capture != NULL) && (capture->arm != NULL) && (capture->take != NULL) &&
-           (trigger->period_us >= FATHOM_PULSE_DEFAULT_CYCLE_US) && (meter->noise_us < meter->no_target_us) &&
-           (meter->no_target_us <= meter->stuck_us) && (meter->stuck_us <= trigger->period_us);
+           (meter->noise_us < meter->no_target_us) && (meter->no_target_us <= meter->stuck_us) &&
+           (meter->stuck_us <= meter->trigger.period_us);
 }
 
-fathom_status_t fathom_pulse_init(fathom_pulse_meter_t *meter, const fathom_pulse_config_t *config)
+fathom_status_t fathom_pulse_init(fathom_pulse_meter_t *meter)
 {
     fathom_status_t status = FATHOM_ERR_ARGUMENT;
     meter->short_us = 0;
     meter->noises = 0;
     meter->stales = 0;
     meter->is_waiting = false;
-    if (configure(meter, config)) status = fathom_trigger_init(&meter->trigger);
+    if (is_valid(meter)) status = fathom_trigger_init(&meter->trigger);
     if (status != FATHOM_OK) clear(meter, sizeof *meter);
     return status;
 }

@@ -12,6 +12,8 @@ enum { ALL_PROBES = 0x0F };
 /* Time until the next attempt to end the break, in microseconds. */
 enum { AGAIN_US = 1000 };
 
+const fathom_model_facts_t fathom_a05_auto_model = {.min_mm = 1, .max_mm = FATHOM_A05_MAX_MM};
+
 fathom_status_t fathom_a05_auto_init(fathom_a05_auto_t *sensor, fathom_line_t *line,
                                      const fathom_a05_auto_config_t *config)
 {
@@ -25,14 +27,14 @@ fathom_status_t fathom_a05_auto_init(fathom_a05_auto_t *sensor, fathom_line_t *l
     base->stream.storage = sensor->storage;
     base->stream.listener.stale_us = config->stale_us;
     base->measurement.values = sensor->values;
-    fathom_dyp_window_copy(&base->measurement.window, &config->window);
+    base->measurement.facts = fathom_dyp_facts_or(config->model, &fathom_a05_auto_model);
     base->measurement.model = FATHOM_A05;
     base->measurement.first = 1;
     base->line = line;
     sensor->probes = (uint8_t)or_default(config->probes, ALL_PROBES);
     sensor->was_odd = true; /* No good frame precedes the first one. */
     sensor->select = config->select;
-    if (config->probes <= ALL_PROBES) status = fathom_dyp_auto_init(base, FATHOM_A05_MAX_MM);
+    if (config->probes <= ALL_PROBES) status = fathom_dyp_auto_init(base);
     if (status != FATHOM_OK) {
         fathom_dyp_auto_deinit(base);
         clear(sensor, sizeof *sensor);
@@ -94,7 +96,7 @@ static uint8_t odd_probe(const fathom_a05_auto_t *sensor)
     const uint16_t *value = sensor->values;
     for (uint8_t bit = 1; bit <= sensor->probes; bit = (uint8_t)(bit << 1)) {
         if (((sensor->probes & bit) != 0u) &&
-            (fathom_dyp_meaning(&sensor->base.measurement.window, *value) == FATHOM_MEANS_REFUSED))
+            (fathom_dyp_meaning(sensor->base.measurement.facts, *value) == FATHOM_MEANS_REFUSED))
             return bit;
         value++;
     }

@@ -14,6 +14,10 @@
 
 enum { ALL_PROBES = 0x0F };
 
+const fathom_model_facts_t fathom_a05_dyp_model = {
+    .min_mm = 1, .max_mm = FATHOM_A05_MAX_MM, .period_ms = 100, /* A05 2(3)1 */
+};
+
 static bool is_one(uint8_t probes) { return (probes & (probes - 1u)) == 0u; }
 
 fathom_status_t fathom_a05_dyp_init(fathom_a05_dyp_t *sensor, fathom_line_t *line,
@@ -36,13 +40,15 @@ fathom_status_t fathom_a05_dyp_init(fathom_a05_dyp_t *sensor, fathom_line_t *lin
     base->count = is_single ? 1 : FATHOM_DYP_PROBES;
     base->measurement.values = sensor->values;
     base->start_us = config->start_us;
-    fathom_dyp_window_copy(&base->measurement.window, &config->window);
+    base->measurement.facts = fathom_dyp_facts_or(config->model, &fathom_a05_dyp_model);
     base->measurement.model = FATHOM_A05;
     base->measurement.first = first;
     base->probes = probes;
+    /* All probes take two and a half times as long as one. */
+    const uint32_t one_us = fathom_dyp_us(base->measurement.facts->period_ms);
     return fathom_dyp_modbus_init(base, &transport, &config->modbus,
                                   is_single ? ONE_PROBE_TIMEOUT_US : ALL_PROBES_TIMEOUT_US,
-                                  is_single ? FATHOM_A05_DYP_ONE_PROBE_US : FATHOM_A05_DYP_ALL_PROBES_US);
+                                  is_single ? one_us : ((one_us / 2u) * 5u));
 }
 
 void fathom_a05_dyp_deinit(fathom_a05_dyp_t *sensor) { fathom_dyp_modbus_deinit(&sensor->base); }

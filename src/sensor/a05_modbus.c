@@ -12,6 +12,10 @@
 
 enum { ALL_PROBES = 0x0F };
 
+const fathom_model_facts_t fathom_a05_modbus_model = {
+    .min_mm = 1, .max_mm = FATHOM_A05_MAX_MM, .period_ms = 100, /* A05 3(3) */
+};
+
 fathom_status_t fathom_a05_modbus_init(fathom_a05_modbus_t *sensor, const fathom_modbus_t *transport,
                                        const fathom_a05_modbus_config_t *config)
 {
@@ -30,20 +34,19 @@ fathom_status_t fathom_a05_modbus_init(fathom_a05_modbus_t *sensor, const fathom
     /* One request reads all registers from that of the first wanted probe to that of the last. */
     const uint8_t first = fathom_dyp_first_probe(probes);
     uint8_t count = 0;
-    uint32_t measuring_us = 0;
     for (uint8_t rest = (uint8_t)(probes >> (first - 1u)); rest != 0u; rest >>= 1) {
         count++;
-        measuring_us += FATHOM_A05_PROBE_US;
     }
 
     base->first = (uint16_t)(registers + first - 1u);
     base->count = count;
     base->measurement.values = sensor->values;
     base->start_us = config->start_us;
-    fathom_dyp_window_copy(&base->measurement.window, &config->window);
+    base->measurement.facts = fathom_dyp_facts_or(config->model, &fathom_a05_modbus_model);
     base->measurement.model = FATHOM_A05;
     base->measurement.first = first;
     base->probes = probes;
+    const uint32_t measuring_us = fathom_dyp_us(base->measurement.facts->period_ms) * count;
     return fathom_dyp_modbus_init(base, transport, &config->modbus, RESPONSE_TIMEOUT_US + measuring_us,
                                   measuring_us);
 }

@@ -8,6 +8,8 @@
  * the module sends.
  */
 
+const fathom_model_facts_t fathom_a16_auto_model = {.min_mm = 1, .max_mm = FATHOM_A16_MAX_MM};
+
 fathom_status_t fathom_a16_auto_init(fathom_a16_auto_t *sensor, fathom_line_t *line,
                                      const fathom_a16_auto_config_t *config)
 {
@@ -19,14 +21,14 @@ fathom_status_t fathom_a16_auto_init(fathom_a16_auto_t *sensor, fathom_line_t *l
     base->stream.listener.gap_us = config->gap_us;
     base->stream.storage = sensor->storage;
     base->stream.listener.stale_us = config->stale_us;
-    fathom_dyp_window_copy(&base->measurement.window, &config->window);
+    base->measurement.facts = fathom_dyp_facts_or(config->model, &fathom_a16_auto_model);
     base->measurement.values = sensor->values;
     base->measurement.model = FATHOM_A16;
     base->measurement.first = 1;
     base->line = line;
     sensor->select = config->select;
     sensor->value = FATHOM_PROCESSED;
-    fathom_status_t status = fathom_dyp_auto_init(base, FATHOM_A16_MAX_MM);
+    fathom_status_t status = fathom_dyp_auto_init(base);
     if ((status == FATHOM_OK) && ((sensor->select.set != NULL) || (config->value != FATHOM_PROCESSED)))
         status = fathom_a16_auto_select(sensor, (fathom_dyp_value_t)config->value);
     if (status != FATHOM_OK) {

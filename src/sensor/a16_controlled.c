@@ -8,8 +8,23 @@
  * file decides which frame is the response.
  */
 
+const fathom_model_facts_t fathom_a16_controlled_model = {
+    .min_mm = 1,
+    .max_mm = FATHOM_A16_MAX_MM,
+    .period_ms =
+        121, /* "must be greater than 120ms" (A16 3(2)), also by a clock that counts in milliseconds */
+    .start = FATHOM_STARTS_FALLING,
+    .earliest_ms = 80, /* A16 3(3): 90 to 110 ms, and a margin for the clocks and the frame */
+    .latest_ms = 130,
+};
+
 /* The greatest time from the trigger to a response that can be told from a time before the trigger. */
 #define MAX_RESPONSE_US FATHOM_MAX_DURATION_US
+
+static uint32_t latest_us(const fathom_a16_controlled_t *sensor)
+{
+    return fathom_dyp_us(sensor->measurement.facts->latest_ms);
+}
 
 /*
  * Returns true if bytes that arrived between `came_us` and `time_us` can be the response to the trigger.
@@ -23,8 +38,9 @@
 static bool is_in_time(const fathom_a16_controlled_t *sensor, uint32_t time_us)
 {
     const uint32_t after_us = fathom_elapsed_us(time_us, sensor->edge_us);
-    return sensor->waiting && (after_us >= sensor->earliest_us) && (after_us <= MAX_RESPONSE_US) &&
-           (fathom_elapsed_us(sensor->came_us, sensor->edge_us) <= sensor->latest_us);
+    return sensor->waiting && (after_us >= fathom_dyp_us(sensor->measurement.facts->earliest_ms)) &&
+           (after_us <= MAX_RESPONSE_US) &&
+           (fathom_elapsed_us(sensor->came_us, sensor->edge_us) <= latest_us(sensor));
 }
 
 static void receive(fathom_listener_t *listener, const uint8_t *bytes, uint8_t count, bool after_gap,
@@ -53,7 +69,7 @@ static fathom_status_t judge(fathom_a16_controlled_t *sensor, fathom_sample_t *s
 /* Returns the rest of the time in which the response may arrive, at the last update of the trigger. */
 static uint32_t response_left_us(const fathom_a16_controlled_t *sensor)
 {
-    return rest_us(sensor->latest_us, fathom_elapsed_us(sensor->trigger.polled_us, sensor->edge_us));
+    return rest_us(latest_us(sensor), fathom_elapsed_us(sensor->trigger.polled_us, sensor->edge_us));
 }
 
 fathom_status_t fathom_a16_controlled_sensor_poll(void *ctx, fathom_sample_t *sample)
@@ -108,24 +124,26 @@ static bool configure(fathom_a16_controlled_t *sensor, const fathom_a16_controll
     fathom_stream_t *const stream = &sensor->stream;
     fathom_trigger_t *const trigger = &sensor->trigger;
     fathom_dyp_measurement_t *const measurement = &sensor->measurement;
-    sensor->earliest_us = or_default(config->earliest_us, FATHOM_A16_CONTROLLED_DEFAULT_EARLIEST_US);
-    sensor->latest_us = or_default(config->latest_us, FATHOM_A16_CONTROLLED_DEFAULT_LATEST_US);
-    fathom_dyp_window_copy(&measurement->window, &config->window);
+    const fathom_model_facts_t *const facts =
+        fathom_dyp_facts_or(config->model, &fathom_a16_controlled_model);
+    measurement->facts = facts;
     measurement->values = sensor->values;
     measurement->model = FATHOM_A16;
     measurement->first = 1;
-    trigger->period_us = FATHOM_A16_CONTROLLED_DEFAULT_PERIOD_US;
+    /* Without a known period the next trigger follows the latest response. */
+    trigger->period_us = fathom_dyp_us((uint16_t)or_default(facts->period_ms, facts->latest_ms));
     if (config->period_us > trigger->period_us) trigger->period_us = config->period_us;
-    trigger->low_us = config->low_us;
+    trigger->low_us = facts->trigger_us;
     stream->length = FATHOM_DYP_A16_LENGTH;
     stream->listener.gap_us = config->gap_us;
     stream->storage = sensor->storage;
-    stream->listener.stale_us = sensor->latest_us; /* The line drops bytes that are older. */
+    stream->listener.stale_us = latest_us(sensor); /* The line drops bytes that are older. */
     if ((line == NULL) || (line->parts == NULL)) return false;
     fathom_dyp_choose_gap(&stream->listener, line);
     trigger->clock = line->parts->clock;
-    return (trigger->output.set != NULL) && (sensor->earliest_us <= sensor->latest_us) &&
-           (fathom_dyp_measurement_init(measurement, FATHOM_A16_MAX_MM) == FATHOM_OK) &&
+    return (trigger->output.set != NULL) && (facts->latest_ms != 0u) &&
+           (facts->earliest_ms <= facts->latest_ms) &&
+           (fathom_dyp_measurement_init(measurement) == FATHOM_OK) &&
            (fathom_stream_start(stream, clock_us(trigger->clock)) == FATHOM_OK);
 }
 

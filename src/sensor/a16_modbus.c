@@ -12,6 +12,10 @@
 #define PROCESSED_TIMEOUT_US 1000000uL
 #define REAL_TIME_TIMEOUT_US 300000uL
 
+const fathom_model_facts_t fathom_a16_modbus_model = {
+    .min_mm = 1, .max_mm = FATHOM_A16_MAX_MM, .period_ms = 120, /* A16 3(2) */
+};
+
 fathom_status_t fathom_a16_modbus_init(fathom_a16_modbus_t *sensor, const fathom_modbus_t *transport,
                                        const fathom_a16_modbus_config_t *config)
 {
@@ -26,13 +30,13 @@ fathom_status_t fathom_a16_modbus_init(fathom_a16_modbus_t *sensor, const fathom
     base->count = 1;
     base->measurement.values = sensor->values;
     base->start_us = config->start_us;
-    fathom_dyp_window_copy(&base->measurement.window, &config->window);
+    base->measurement.facts = fathom_dyp_facts_or(config->model, &fathom_a16_modbus_model);
     base->measurement.model = FATHOM_A16;
     base->measurement.first = 1;
     base->probes = 1;
     return fathom_dyp_modbus_init(base, transport, &config->modbus,
                                   is_real_time ? REAL_TIME_TIMEOUT_US : PROCESSED_TIMEOUT_US,
-                                  FATHOM_A16_MIN_PERIOD_US);
+                                  fathom_dyp_us(base->measurement.facts->period_ms));
 }
 
 void fathom_a16_modbus_deinit(fathom_a16_modbus_t *sensor) { fathom_dyp_modbus_deinit(&sensor->base); }

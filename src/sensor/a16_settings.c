@@ -28,6 +28,20 @@ fathom_status_t fathom_a16_modbus_measure(fathom_a16_modbus_t *sensor, fathom_dy
     return fathom_dyp_measurement_next(&sensor->base.measurement, sample);
 }
 
+fathom_status_t fathom_a16_modbus_get_temperature(fathom_a16_modbus_t *sensor, int16_t *temperature_dc)
+{
+    const fathom_model_facts_t *const facts = sensor->base.measurement.facts;
+    uint16_t value = 0;
+    if (facts == NULL) return FATHOM_ERR_ARGUMENT; /* init did not run, or failed */
+    if ((facts->registers & FATHOM_HAS_TEMPERATURE) == 0u) return FATHOM_ERR_UNSUPPORTED;
+    const fathom_status_t status =
+        fathom_dyp_modbus_get_register(&sensor->base, FATHOM_A16_REGISTER_TEMPERATURE, &value);
+    if (status != FATHOM_OK) return status;
+    const int32_t dc = value; /* a two's complement of 16 bits */
+    *temperature_dc = (int16_t)((dc <= INT16_MAX) ? dc : (dc - 65536));
+    return status;
+}
+
 fathom_status_t fathom_a16_modbus_get_address(fathom_a16_modbus_t *sensor, uint8_t *address)
 {
     return fathom_dyp_modbus_get_address(&sensor->base, address);

@@ -2,19 +2,18 @@
 #include "fathom/sensor/internal/dyp_auto.h"
 
 #include "../common.h"
-#include "fathom/codec/dyp_stream.h"
 
 /*
  * The common part of a16_auto.c and a05_auto.c. A stream finds the frames; this file fetches the newest one
  * and its errors.
  */
 
-fathom_status_t fathom_dyp_auto_init(fathom_dyp_auto_t *sensor, uint16_t default_max_mm)
+fathom_status_t fathom_dyp_auto_init(fathom_dyp_auto_t *sensor)
 {
     fathom_line_t *const line = sensor->line;
     if ((line == NULL) || (line->parts == NULL)) return FATHOM_ERR_ARGUMENT;
     fathom_dyp_choose_gap(&sensor->stream.listener, line);
-    if ((fathom_dyp_measurement_init(&sensor->measurement, default_max_mm) < 0) ||
+    if ((fathom_dyp_measurement_init(&sensor->measurement) < 0) ||
         (fathom_stream_start(&sensor->stream, clock_us(line->parts->clock)) < 0))
         return FATHOM_ERR_ARGUMENT;
     return fathom_line_listen(line, &sensor->stream.listener);
@@ -33,6 +32,25 @@ static bool is_followed(const fathom_dyp_auto_t *sensor)
     return (sensor->stream.candidate != FATHOM_STREAM_NOWHERE) && fathom_line_holds_bytes(sensor->line);
 }
 
+/* Stores the values of the newest frame. Returns 0 if all of them were stored already. fathom_dyp_stream_decode() would
+ * need room for the new values beside the old ones. */
+static unsigned store_values(const fathom_stream_t *stream, uint16_t *values)
+{
+    const uint8_t *frame = fathom_stream_frame(stream);
+    unsigned changed = 0;
+    for (uint8_t left = (uint8_t)((stream->length / 2u) - 1u); left != 0u; left--) {
+        const uint16_t value = (uint16_t)((frame[1] * 256u) + frame[2]);
+        changed |= (unsigned)*values ^ value;
+        *values = value;
+        values++;
+        frame += 2;
+    }
+    return changed;
+}
+
+/* Three quarters of the period between two measurements, in microseconds. */
+static uint32_t repeat_us(const fathom_model_facts_t *facts) { return facts->period_ms * UINT32_C(750); }
+
 fathom_status_t fathom_dyp_auto_take(fathom_dyp_auto_t *sensor)
 {
     fathom_stream_t *const stream = &sensor->stream;
@@ -42,9 +60,12 @@ fathom_status_t fathom_dyp_auto_take(fathom_dyp_auto_t *sensor)
     if ((status < 0) || is_followed(sensor)) return status;
     status = fathom_stream_poll(stream, sensor->line->polled_us);
     if (status != FATHOM_OK) return status;
-    fathom_dyp_stream_decode(fathom_stream_frame(stream), measurement->values,
-                             (uint8_t)((stream->length / 2u) - 1u));
-    fathom_dyp_measurement_set(measurement, 1, stream->time_us);
+    /* No frame precedes the first one, whose sequence is 0. */
+    if ((store_values(stream, measurement->values) == 0u) && (measurement->sequence != 0u) &&
+        (fathom_elapsed_us(stream->time_us, measurement->time_us) < repeat_us(measurement->facts)))
+        measurement->left = 1; /* the same measurement again */
+    else
+        fathom_dyp_measurement_set(measurement, 1, stream->time_us);
     return FATHOM_OK;
 }
 

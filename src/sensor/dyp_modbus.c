@@ -13,9 +13,8 @@ fathom_status_t fathom_dyp_modbus_init(fathom_dyp_modbus_t *sensor, const fathom
                                        uint32_t pace_us)
 {
     enum { OVERHEAD = 5 }; /* of a response: address, function, byte count and CRC */
-    const uint16_t max_mm = (sensor->measurement.model == FATHOM_A16) ? FATHOM_A16_MAX_MM : FATHOM_A05_MAX_MM;
     sensor->start_us = or_default(sensor->start_us, FATHOM_DYP_DEFAULT_START_US);
-    if ((fathom_dyp_measurement_init(&sensor->measurement, max_mm) == FATHOM_OK) &&
+    if ((fathom_dyp_measurement_init(&sensor->measurement) == FATHOM_OK) &&
         (sensor->start_us <= FATHOM_MAX_DURATION_US) &&
         fathom_modbus_unit_has_room(transport, (uint8_t)(OVERHEAD + (2u * sensor->count))) &&
         (fathom_modbus_unit_init(&sensor->unit, transport, config, timeout_us, pace_us) == FATHOM_OK))

@@ -15,8 +15,8 @@ from stack import Image
 from job import JOBS
 from tools import HERE, LIBRARY, MACHINES, Failed, here, run, source
 
-ALONE = ['crc16', 'crc16_small', 'modbus_rtu', 'dyp_stream', 'dyp_55aa', 'pulse_width', 'hps167s_registers', 'median',
-         'level', 'alarm']
+ALONE = ['crc16', 'crc16_small', 'modbus_rtu', 'dyp_stream', 'dyp_55aa', 'pulse_width', 'hps167s_registers',
+         'hps167_frames', 'median', 'level', 'alarm']
 FOLDER = os.path.join(HERE, 'sizes')
 HEAD = 'flash', 'ram', 'const', 'stack'
 

@@ -12,10 +12,12 @@ import re
 from tools import LIBRARY, ROOT, Failed, run
 
 # Where the indirect calls of src/ lead, by the text of the call: file:function of the library.
-SENSORS = ('a05_auto', 'a16_auto', 'a16_controlled', 'a16_pwm', 'contact', 'dyp_modbus', 'hps167s', 'hps167s_auto')
+SENSORS = ('a05_auto', 'a16_auto', 'a16_controlled', 'a16_pwm', 'contact', 'dyp_modbus', 'hps167s', 'hps167s_auto',
+           'hps167_uart')
 INDIRECT = {
     'transport.submit': ('modbus_client.c:fathom_modbus_client_submit', 'dyp_client.c:fathom_dyp_client_submit',
-                          'modbus_client_zero.c:fathom_modbus_client_submit_with_zero', 'a05_dyp.c:submit_either'),
+                          'modbus_client_zero.c:fathom_modbus_client_submit_with_zero', 'a05_dyp.c:submit_either',
+                          'hps167_uart.c:submit_frame'),
 }
 # The same for those that may also lead to the user's code, or nowhere; then nothing is added.
 PERHAPS = {
@@ -25,12 +27,16 @@ PERHAPS = {
     'kind->due_us': ('line_request.c:due_us', 'line_turns.c:due_us'),
     'plain->advance': ('line_request.c:advance',),
     'plain->due_us': ('line_request.c:due_us',),
-    'protocol->encode': ('modbus_client.c:fathom_modbus_client_encode', 'dyp_client.c:encode'),
+    'protocol->encode': ('modbus_client.c:fathom_modbus_client_encode', 'dyp_client.c:encode',
+                         'hps167_uart.c:encode'),
     'protocol->length': ('modbus_client.c:length', 'modbus_rtu.c:fathom_modbus_rtu_response_length',
-                         'dyp_55aa.c:fathom_dyp_55aa_frame_length'),
-    'protocol->check': ('crc16.c:fathom_crc16', 'crc16_small.c:fathom_crc16', 'dyp_client.c:check'),
-    'protocol->is_request': ('modbus_client.c:fathom_modbus_client_is_request', 'dyp_client.c:is_request'),
-    'protocol->parse_response': ('modbus_client.c:fathom_modbus_client_parse_response', 'dyp_client.c:parse_response'),
+                         'dyp_55aa.c:fathom_dyp_55aa_frame_length', 'hps167_frames.c:fathom_hps167_frame_length'),
+    'protocol->check': ('crc16.c:fathom_crc16', 'crc16_small.c:fathom_crc16', 'dyp_client.c:check',
+                        'hps167_uart.c:check'),
+    'protocol->is_request': ('modbus_client.c:fathom_modbus_client_is_request', 'dyp_client.c:is_request',
+                             'hps167_uart.c:is_request'),
+    'protocol->parse_response': ('modbus_client.c:fathom_modbus_client_parse_response', 'dyp_client.c:parse_response',
+                                 'hps167_uart.c:parse_response'),
     'kind->scan': ('line_response.c:fathom_line_scan', 'line_listening.c:scan'),
     'kind->advance': ('line_request.c:advance', 'line_turns.c:advance', 'line_listening.c:advance'),
     'senders->note': ('line_senders.c:note',),
@@ -40,13 +46,14 @@ PERHAPS = {
     'masters->take_answer': ('line_masters.c:take_answer',),
     'masters->note_unrequested': ('line_masters.c:note_unrequested',),
     'masters->note_lost_bytes': ('line_masters.c:note_lost_bytes',),
-    'protocol->may_collide': ('modbus_client.c:fathom_modbus_client_may_collide',),
+    'protocol->may_collide': ('modbus_client.c:fathom_modbus_client_may_collide', 'hps167_uart.c:may_collide'),
     'parts->find_echo': ('line_options.c:fathom_line_find_echo',),
     'parts->marks': ('line_options.c:fathom_line_marks',),
     'parts->count': ('line_options.c:fathom_line_count',),
     'sensor->poll': tuple(f'{name}.c:fathom_{name}_sensor_poll' for name in SENSORS),
     'sensors->due_us': tuple(f'{name}.c:fathom_{name}_sensor_due_us' for name in SENSORS),
-    'listener->receive': ('stream.c:fathom_stream_receive', 'a16_controlled.c:receive', 'hps167s_auto.c:receive'),
+    'listener->receive': ('stream.c:fathom_stream_receive', 'a16_controlled.c:receive', 'hps167s_auto.c:receive',
+                          'hps167_uart.c:receive'),
     **{f'commands->{name}': (f'modbus_command.c:{name}',) for name in ('is_occupied', 'forget', 'due_us')},
     'sensor->is_new': ('hps167s_info.c:is_new',),
     'sensor->follow': ('hps167s_settings.c:follow',),

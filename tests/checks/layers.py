@@ -10,9 +10,13 @@ from common import files, main, read
 # From the bottom up, in include/fathom/ and in src/ alike. A file may include files of its own folder and of the folders
 # before it; '' is the words that all share. No file includes fathom.h. Headers that only other headers need stand in a
 # folder internal/ of their layer.
-LAYERS = ('', 'codec', 'engine', 'processing', 'sensor')
+LAYERS = ('', 'codec', 'engine', 'processing', 'sensor', 'models')
 MAP = 'include/fathom/fathom.h'
 COMMON = 'src/common.h'  # what the sources of engine/ and sensor/ share
+# src/models/ has tables. All its sources are those of one header, and need no driver.
+MODELS = 'include/fathom/models.h'
+MODELS_NEED = {MODELS, 'include/fathom/sample.h', 'include/fathom/sensor/model_facts.h',
+               'include/fathom/sensor/factory_line.h'}
 # The same for the tool. commands/ stands on top: a file or a folder for each command, which includes no other command.
 TOOL = ('output', 'ports', 'sensors', 'diagnosis', 'reading', 'device', 'mqtt', 'cli', 'commands')
 TOOL_FOLDER = 'examples/fathom/'
@@ -30,13 +34,15 @@ LONGER = {'include/fathom/engine/line.h': 680}  # the manual of the line: 13 rul
 # Headers without a source of their own name, and why.
 # A formula; types and constants, whose functions line.h and the clients have.
 WITHOUT_SOURCE = ('include/fathom/engine/silence.h', 'include/fathom/engine/modbus.h',
-                  'include/fathom/engine/transaction.h')
+                  'include/fathom/engine/transaction.h', 'include/fathom/sensor/model_facts.h')
 
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*([<"])([^>"]+)[>"]', re.M)
 
 
 def room(path):
     """The folder of a file of the library; None: it stands where none may."""
+    if path == MODELS:
+        return 'models'
     found = re.fullmatch(r'(?:include/fathom/(?:(\w+)/(?:internal/)?)?|src/(?:(\w+)/)?)\w+\.[ch]', path)
     layer = found and (found[1] or found[2] or '')
     return layer if layer in LAYERS else None
@@ -67,6 +73,8 @@ def check_library(path, text, headers):
             yield f'{path}: includes "{target}", which is no public header of the library'
         elif public == path:
             yield f'{path}: includes itself'
+        elif room(path) == 'models' and public not in MODELS_NEED:
+            yield f'{path}: includes {target}; a table of models needs facts and line settings'
         elif path != MAP and (public == MAP or LAYERS.index(room(public)) > LAYERS.index(here)):
             yield f'{path}: an arrow that points up, to {target}'
 
@@ -123,12 +131,13 @@ def check(root, only):
             # Further sources of X.h are X_SOMETHING.c.
             names = [header for header in headers
                      if stem(header) == stem(path) or stem(path).startswith(stem(header) + '_')]
+            names = [MODELS] if room(path) == 'models' else names
             if not names:
                 folder = os.path.dirname('include/fathom/' + path[4:])
                 problems.append(f'{path}: there is no header of its name in {folder}')
             elif includes(text)[:1] != [('"', max(names, key=len)[8:])]:
                 problems.append(f'{path}: its own header comes first, which proves that it is complete')
-        elif path in headers and room(path) and f'src/{stem(path)}.c' not in sources and \
+        elif path in headers and path != MODELS and room(path) and f'src/{stem(path)}.c' not in sources and \
                 path not in WITHOUT_SOURCE:
             problems.append(f'{path}: there is no src/{path[15:-2]}.c')
     tool = files(root, 'examples/fathom')

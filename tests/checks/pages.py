@@ -23,7 +23,7 @@ COLUMNS, FIRST_PAGE = 120, 12 * 1024
 COMPLETE = {'examples/linux/first.c': 28, 'examples/avr/first.c': 35, 'examples/rp2040/first.c': 35,
             'examples/stm32f4/first.c': 35}
 LICENCE = '/* SPDX-License-Identifier: MIT */\n'
-FOLDERS = ('.', 'include', 'src', 'src/codec', 'src/engine', 'src/sensor', 'port', 'port/sim', 'examples',
+FOLDERS = ('.', 'include', 'src', 'src/codec', 'src/engine', 'src/models', 'src/sensor', 'port', 'port/sim', 'examples',
            'examples/fathom', 'tests', 'tests/unit', 'tests/devices', 'tests/port', 'tests/firmware', 'tests/tool',
            'tests/verify', 'tests/bench', 'tests/checks', 'tests/support')
 WARNINGS = ['-Wall', '-Wextra', '-Wpedantic', '-Werror']

@@ -10,7 +10,7 @@ from common import ROOT
 
 SCRIPTS = [f'tests/checks/{name}.py' for name in (
     'circles', 'count', 'datasheets', 'docs', 'file_lists', 'format', 'headers', 'layers', 'linked', 'lint',
-    'minimum', 'misra', 'names', 'objects', 'package', 'pages', 'registered', 'sources', 'words')]
+    'minimum', 'misra', 'models', 'names', 'objects', 'package', 'pages', 'registered', 'sources', 'words')]
 SCRIPTS += ['tests/bench/run.py', 'tests/bench/lines.py', 'tests/bench/publish.py', 'tests/bench/pictures/pictures.py',
             'tests/firmware/figures.py']
 

@@ -22,8 +22,8 @@ BANNED = [
 ]
 DIRECTIVE = re.compile(r'^\s*#\s*(if|ifdef|ifndef|elif|else|error|undef)\b\s*(.*?)\s*$')
 
-# Sets of units, settings or probes: each bit is a member, and all bits mean the same.
-SETS = ('quarantined_units', 'unconfirmed', 'waiting', 'left', 'missing', 'probes')
+# Sets of units, settings, probes or registers: each bit is a member, and all bits mean the same.
+SETS = ('quarantined_units', 'unconfirmed', 'waiting', 'left', 'missing', 'probes', 'registers')
 # What a port reports about bytes (hal.h) is a word of flags.
 FLAGS = ('flags',)
 

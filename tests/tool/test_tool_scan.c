@@ -32,15 +32,20 @@ static struct {
 static const tool_run_t *last;
 
 static const fathom_line_settings_t dyp_line = {9600, FATHOM_PARITY_NONE, 1};
+static const fathom_line_settings_t relatives_line = {115200, FATHOM_PARITY_NONE, 1};
 static const fathom_line_settings_t hps167s_line = {19200, FATHOM_PARITY_EVEN, 1};
 
-/* A scan may send function 03 of a register other than 0009 to one unit, or 55 AA FF 10, "probe 1 of any A05". An A16
- * and an A05 can have address 0, but no HPS-167S has their registers. */
+/* "Which address has the one unit of the line?" */
+static const uint8_t any_unit[8] = {0xFF, 0x03, 0x02, 0x00, 0x00, 0x01, 0x90, 0x6C};
+
+/* A scan may send function 03 of a register other than 0009 to one unit, 55 AA FF 10, "probe 1 of any A05", or any_unit.
+ * An A16 and an A05 can have address 0, but no HPS-167S has their registers. */
 static bool is_harmless(const uint8_t *bytes, size_t length)
 {
     static const uint8_t any[] = {0x55, 0xAA, 0xFF, 0x10, 0x0E}; /* 55 + AA + FF + 10 = 20E */
     if (bytes[0] == 0x55 && bytes[1] == 0xAA) return length == sizeof any && memcmp(bytes, any, length) == 0;
-    if (length != 8 || bytes[1] != 0x03 || bytes[0] == 0xFF) return false;
+    if (length != 8 || bytes[1] != 0x03) return false;
+    if (bytes[0] == 0xFF) return memcmp(bytes, any_unit, sizeof any_unit) == 0;
     return bytes[0] == 0 ? bytes[2] != 0 : bytes[2] != 0x00 || bytes[3] != 0x09;
 }
 
@@ -61,7 +66,8 @@ static int bench_write(void *ctx, const uint8_t *bytes, size_t length)
     if (scans.requests++ == 0) scans.first_us = fathom_elapsed_us(bench.clock.now_us, scans.start_us);
     if (!is_harmless(bytes, length)) scans.harmful++;
     /* The first request to an address reads 0001 or 0200. */
-    if ((bytes[2] == 0x00 && bytes[3] == 0x01) || (bytes[2] == 0x02 && bytes[3] == 0x00))
+    if (bytes[0] != 0xFF &&
+        ((bytes[2] == 0x00 && bytes[3] == 0x01) || (bytes[2] == 0x02 && bytes[3] == 0x00)))
         scans.probed[rate_index(line->baud)][line->parity]++;
     return n;
 }
@@ -141,8 +147,11 @@ typedef struct {
     uint16_t value;    /* of every register, ... */
     uint16_t version;  /* ... except from 0001 on, where an HPS-167S has its interface version (#1) */
     uint16_t address;  /* ... and in 0200 */
-    uint16_t only[2];  /* not 0: the only registers to which it responds */
-    uint8_t exception; /* not 0: it responds with this exception */
+    uint16_t only[3];  /* not 0: the only registers to which it responds */
+    uint16_t second;   /* not 0: the value of 0101 */
+    uint8_t exception; /* not 0: it responds with this exception, ... */
+    bool answers_any;  /* at address 255, from its own */
+    bool refuses;      /* ... but only to reads of other registers than `only` */
 } stranger_t;
 
 static stranger_t stranger;
@@ -155,9 +164,10 @@ static uint16_t first_of(const fathom_modbus_message_t *message)
 static uint32_t stranger_request(fathom_sim_device_t *device, fathom_modbus_message_t *message)
 {
     const uint16_t first = first_of(message);
-    if (stranger.only[0] != 0 && first != stranger.only[0] && first != stranger.only[1])
-        return FATHOM_NO_DEADLINE;
-    message->exception = stranger.exception;
+    const bool is_known = stranger.only[0] == 0 || first == stranger.only[0] || first == stranger.only[1] ||
+                          first == stranger.only[2];
+    if (!is_known && !stranger.refuses) return FATHOM_NO_DEADLINE;
+    if (!is_known || !stranger.refuses) message->exception = stranger.exception;
     return 5000;
 }
 
@@ -167,17 +177,20 @@ static void stranger_fill(fathom_sim_device_t *device, fathom_modbus_message_t *
     for (uint8_t i = 0; i != message->head[5]; i++)
         message->values[i] = first == 0x0001 ? stranger.version : stranger.value;
     if (first == 0x0200) message->values[0] = stranger.address;
+    if (first == 0x0101 && stranger.second != 0) message->values[0] = stranger.second;
 }
 
 static void add_stranger(uint8_t unit, stranger_t with, const fathom_line_settings_t *line)
 {
-    static const fathom_sim_model_t model = {.request = stranger_request, .fill = stranger_fill};
+    static const fathom_sim_model_t model = {
+        .request = stranger_request, .fill = stranger_fill, .broadcast = FATHOM_LINE_ANY_UNIT};
     static fathom_sim_device_t device;
     stranger = with;
     device = (fathom_sim_device_t){.model = &model,
                                    .settings = *line,
                                    .address = unit,
                                    .listens = true,
+                                   .answers_broadcast = with.answers_any,
                                    .protocols = {&fathom_sim_modbus}};
     attach(&device);
 }
@@ -477,18 +490,19 @@ TEST(every_address_at_every_rate_and_parity_takes_as_long_as_estimated_and_less_
     const uint64_t said_us = estimate_us(everything);
     const tool_run_t *const run = scan_finds("", everything);
     assert_true(said_us < UINT64_C(600000000));
-    assert_int_equal(scans.requests, 254 * 5 * 3 + 1); /* and one to any A05 */
+    assert_int_equal(scans.requests,
+                     254 * 5 * 3 + 3); /* and one to any A05, and two to any A16 or relative */
     for (unsigned rate = 0; rate != 5; rate++)
         for (unsigned parity = 0; parity != 3; parity++) assert_int_equal(scans.probed[rate][parity], 254);
     /* Simulated time has no late wake-ups, for which the estimate has 5 ms a request. It is a whole number of seconds. */
     assert_true(run->took_us <= said_us);
-    assert_true(run->took_us + 254u * 15u * 5000u + 1005000u >= said_us);
+    assert_true(run->took_us + 254u * 15u * 5000u + 1015000u >= said_us);
     add_eight();
     assert_true(scan_finds(EIGHT, everything)->took_us <= said_us + 8u * FOUND_US);
     assert_true(last->took_us < UINT64_C(600000000));
 }
 
-/* Options, and what `scan --estimate` then prints: 8 + 32 * (0.163 + 0.110) + 0.755 is 17.5. */
+/* Options, and what `scan --estimate` then prints: 8 + 32 * (0.163 + 0.110) + 0.755 + 0.313 is 17.8. */
 static void estimates(void **state)
 {
     const char *const *const row = *state;
@@ -514,7 +528,10 @@ ESTIMATES(two_stop_bits_replace_the_parity, "--stop-bits 2", "at 9600 8N2, 19200
 ESTIMATES(two_stop_bits_keep_a_given_parity, "--baud 19200 --parity even,none --stop-bits 2",
           "at 19200 8E2, 19200 8N2: about ")
 ESTIMATES(all_rates_are_those_of_the_sensors, "--baud all",
-          "at 9600 8N1, 19200 8E1, 57600 8E1, 115200 8E1, 230400 8E1: about ")
+          "at 9600 8N1, 19200 8E1, 57600 8E1, 115200 8E1, 115200 8N1, 230400 8E1: about ")
+ESTIMATES(relatives_have_115200_8n1_too, "--baud 115200", "at 115200 8E1, 115200 8N1: about ")
+ESTIMATES(relatives_have_one_stop_bit, "--baud 115200 --stop-bits 2", "at 115200 8N2: about ")
+ESTIMATES(relatives_have_no_other_parity, "--baud 115200 --parity even", "at 115200 8E1: about ")
 ESTIMATES(the_time_out_and_the_listening_count, "--address 5 --baud 19200 --timeout 2000 --listen 4",
           "about 7 s")
 ESTIMATES(retries_count, "--address 5 --baud 19200 --timeout 2000 --listen 4 --retries 1", "about 11 s")
@@ -532,13 +549,13 @@ TEST(a_silent_address_is_asked_again_as_often_as_the_user_says)
 
 TEST(an_address_has_150_ms_on_the_line_of_a16_and_a05_and_100_ms_elsewhere)
 {
-    /* 8 bytes of 10 bits, the time-out and as long again, in which the unit may still respond; 5 bytes and a time-out for
-     * any A05; elsewhere 8 bytes of 11 bits and the time-out */
+    /* The request to address 255 and that to address 1, each of 8 bytes of 10 bits, the time-out and as long again, in
+     * which the unit may still respond; 5 bytes and a time-out for any A05; elsewhere 8 bytes of 11 bits and the time-out */
     static const struct {
         const char *options;
         uint32_t us;
     } rows[] = {
-        {"--address 1 --baud 9600 --listen 1", 1000000 + 8333 + 2 * 150000 + 5208 + 300000},
+        {"--address 1 --baud 9600 --listen 1", 1000000 + 2 * (8333 + 2 * 150000) + 5208 + 300000},
         {"--address 1 --baud 9600 --parity odd --listen 1", 1000000 + 9167 + 100000},
         {"--address 1 --baud 19200 --listen 1", 1000000 + 4583 + 100000},
         {"--address 1 --baud 19200 --listen 1 --timeout 400", 1000000 + 4583 + 400000},
@@ -584,8 +601,8 @@ TEST(ctrl_c_ends_the_scan_at_once_and_keeps_what_was_found)
         add_eight();
         bench.tool.ctrl_c_us = ms * 1000;
         const tool_run_t *const run = scan("");
-        /* The signal ends a wait of the bench with its time-out, which is at most that for any A05. */
-        assert_in_range(run->took_us, ms * 1000, ms * 1000 + 300000);
+        /* The signal ends a wait of the bench with the response, of which that to 0100 takes longest (520 ms). */
+        assert_in_range(run->took_us, ms * 1000, ms * 1000 + 520000);
         assert_int_equal(run->status, run->out[0] != '\0' ? 0 : 1);
         assert_says(run, "fathom: the scan ended before its last address. Sensors found: ");
     }
@@ -675,12 +692,13 @@ TEST(an_a16_and_an_a05_that_send_automatically_are_named_and_nothing_is_sent)
             A16(.mode = FATHOM_SIM_A16_AUTO, .scene = scene);
             run = hears("a16 - 9600 8N1",
                         "even a read ends the automatic output of an A16 with RS232, until power-off or ");
-            assert_says(run, "sends without requests  ->  fathom read a16 --port line\n");
+            assert_says(run,
+                        "sends without requests: an A16 or a relative  ->  fathom read a16 --port line\n");
         } else {
             A05(.mode = FATHOM_SIM_A05_AUTO, .scene = scene);
             run = hears("a05 - 9600 8N1",
                         "even a read ends the automatic output of an A05 with UART, until power-off. ");
-            assert_says(run, "sends without requests  ->  fathom read a05 --port line\n");
+            assert_says(run, "sends without requests: an A05  ->  fathom read a05 --port line\n");
         }
         assert_int_equal(run->status, 0);
     }
@@ -709,6 +727,34 @@ TEST(an_hps167s_that_sends_unsolicited_frames_is_found_at_its_rate)
         assert_says(
             hears("hps167s 1 115200 8E1", "requests would collide with its unsolicited frames"),
             "sends unsolicited responses  ->  fathom read hps167s:1:modbus --port line --baud 115200\n");
+    }
+}
+
+TEST(a_relative_that_sends_at_115200_is_found_at_its_rate)
+{
+    static const uint8_t frame[4] = {0xFF, 0x07, 0xA1, 0xA7}; /* 1953 mm */
+    (void)add_speaker(&relatives_line, 100000, frame, sizeof frame);
+    assert_says(hears("a16 - 115200 8N1", "even a read ends the automatic output"),
+                "an A16 or a relative  ->  fathom read a16 --port line --baud 115200\n");
+}
+
+/* The example of a public driver: 1753 mm. */
+TEST(a_unit_that_speaks_like_an_hps167_is_named_and_no_more)
+{
+    static const uint8_t frame[15] = {0x0A, 0x0D, 0x01, 0x01, 0x01, 0x06, 0xD9, 0xFC,
+                                      0x8C, 0x02, 0x01, 0x00, 0x01, 0x9B, 0x94};
+    const fathom_line_settings_t *const lines[] = {&relatives_line, &dyp_line, &hps167s_line};
+    const char *const found[] = {"? - 115200 8N1", "? - 9600 8N1", "? - 19200 8E1"};
+    for (unsigned i = 0; i != 3; i++) {
+        scan_begin();
+        (void)add_speaker(lines[i], 100000, frame, sizeof frame);
+        const tool_run_t *const run =
+            hears(found[i], "a device sends without a request. To ask anyway, use --wake.");
+        assert_says(run, "speaks like an HPS-167; perhaps an HPS-167S of before 2020-09\n");
+        assert_int_equal(run->status, 1);
+        assert_non_null(strstr(scan("--listen 3 --format json")->out,
+                               "{\"kind\":\"hps167\",\"model\":null,\"address\":null,"));
+        assert_non_null(strstr(last->out, "\"perhaps\":\"an HPS-167S of before 2020-09\""));
     }
 }
 
@@ -797,8 +843,163 @@ static void is_other(stranger_t with, const fathom_line_settings_t *line)
     add_stranger(9, with, line);
     const tool_run_t *const run =
         scan_finds(line == &dyp_line ? "? 9 9600 8N1" : "? 9 19200 8E1", "--address 8-10");
-    assert_says(run, "a Modbus device that is none of the known sensors\n");
+    assert_says(run, "a Modbus device that is none of the known sensors");
     assert_int_equal(run->status, 1);
+}
+
+/* Devices that respond where an A16 has its distances, and refuse other registers or are silent there; and a gripper whose
+ * 0200 happens to be its address. */
+TEST(false_friends_are_no_sensors_and_are_named)
+{
+    static const struct {
+        stranger_t with;
+        const char *perhaps; /* NULL: it is a sensor */
+    } rows[] = {
+        {{.value = 9, .second = 2}, "a soil probe: 0x0100 is its address, and 0x0101 can be its baud code"},
+        {{.value = 1, .second = 50}, "a gripper: 0x0100 can be its start, and 0x0101 its force in percent"},
+        {{.value = 80, .second = 132},
+         "a solar charger: 0x0100 can be a charge in percent, and 0x0101 a voltage"},
+        {{.value = 1530, .second = 1},
+         "a fuel gauge (TENET UL212), a gripper or a charger, which respond at 0x0100 too"},
+    };
+    for (unsigned i = 0; i != 2 * sizeof rows / sizeof rows[0]; i++) {
+        stranger_t with = rows[i / 2].with;
+        char expected[200];
+        const bool is_json = i % 2 != 0;
+        (void)snprintf(expected, sizeof expected,
+                       is_json ? "\"perhaps\":\"%s\",\"is_double\":false,\"next\":null}\n"
+                               : "none of the known sensors; perhaps %s\n",
+                       rows[i / 2].perhaps);
+        with.only[0] = 0x0100;
+        with.only[1] = 0x0101;
+        with.refuses = true;
+        with.exception = FATHOM_MODBUS_ILLEGAL_DATA_ADDRESS;
+        scan_begin();
+        add_stranger(9, with, &dyp_line);
+        const tool_run_t *const run = scan(is_json ? "--address 9 --format json" : "--address 9");
+        assert_int_equal(run->status, 1);
+        assert_says(run, expected);
+    }
+}
+
+/* Returns the finding of a device with these two distances and its address in 0200. */
+static const char *with_distances(uint16_t processed, uint16_t real_time, const char *options)
+{
+    scan_begin();
+    add_stranger(
+        9,
+        (stranger_t){.value = processed, .second = real_time, .address = 9, .only = {0x0100, 0x0101, 0x0200}},
+        &dyp_line);
+    return scan(options)->out;
+}
+
+TEST(an_address_in_0200_and_two_distances_that_agree_are_an_a16_or_a_relative)
+{
+    static const struct {
+        uint16_t processed, real_time;
+        const char *says;
+    } rows[] = {
+        {754, 751, "751 mm, an A16 or a relative with Modbus  ->  fathom read a16:9:modbus --port line\n"},
+        {0xFFFD, 0xFFFE, ", an A16 or a relative with Modbus  ->"},
+        {15, 16, " 16 mm, an A16 or a relative with Modbus  ->"},
+        {754, 300, " 300 mm, probably an A16 or a relative with Modbus  ->"}, /* a moving target */
+        {0, 300, " 300 mm, probably an A16 or a relative with Modbus  ->"},
+        {14, 300, " 300 mm, probably an A16 or a relative with Modbus  ->"},
+        {9, 2, "none of the known sensors; perhaps a soil probe: "},
+        {1, 50, "none of the known sensors; perhaps a gripper: "},
+        {14, 3, "none of the known sensors; perhaps a fuel gauge (TENET UL212), "},
+        {40000, 40000, "none of the known sensors; perhaps a fuel gauge (TENET UL212), "},
+    };
+    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
+        (void)with_distances(rows[i].processed, rows[i].real_time, "--address 9");
+        assert_says(last, rows[i].says);
+        assert_int_equal(last->status, strstr(rows[i].says, "none") != NULL);
+    }
+    assert_non_null(strstr(with_distances(754, 751, "--address 9 --format json"), "\"is_certain\":true,"));
+    assert_non_null(strstr(with_distances(754, 300, "--address 9 --format json"), "\"is_certain\":false,"));
+}
+
+/* ---- the one device of a line ---- */
+
+/* RELATIVES: 01 03 02 00 01 79 84 */
+static const uint8_t from_1[7] = {0x01, 0x03, 0x02, 0x00, 0x01, 0x79, 0x84};
+
+TEST(a_unit_that_answers_at_address_255_is_found_first_at_any_address_and_the_walk_goes_on)
+{
+    A16(.address = 200, .answers_broadcast = true);
+    A16(.address = 3);
+    const tool_run_t *const run = scan_finds("a16 200 9600 8N1, a16 3 9600 8N1", "");
+    assert_says(run,
+                "address 200  9600 8N1     no_target (value 65533), an A16 or a relative with Modbus  ->  ");
+    assert_int_equal(scans.probed[0][FATHOM_PARITY_NONE], 1 + 32);
+    /* An address that the user excluded gets no request of its own. */
+    assert_says(scan_finds("a16 3 9600 8N1", "--address 1-4"),
+                "a frame from address 200 was received, which is");
+}
+
+TEST(with_one_the_first_sensor_ends_the_scan)
+{
+    A16(.address = 200, .answers_broadcast = true);
+    A16(.address = 3);
+    HPS167S(.address = 1);
+    const tool_run_t *run = scan_finds("a16 200 9600 8N1", "--one");
+    assert_int_equal(run->status, 0);
+    assert_int_equal(scans.probed[0][FATHOM_PARITY_NONE], 1);
+    assert_int_equal(scans.probed[1][FATHOM_PARITY_EVEN], 0);
+    assert_says(run, ". --one ended the scan, and other sensors may be on the line\n");
+
+    scan_begin(); /* those that do not answer at 255 are found by the walk */
+    A16(.address = 3);
+    A16(.address = 4);
+    (void)scan_finds("a16 3 9600 8N1", "--one");
+    scan_begin();
+    HPS167S(.address = 2);
+    HPS167S(.address = 3);
+    (void)scan_finds("hps167s 2 19200 8E1", "--one");
+    scan_begin();
+    A05(.address = 100, .mode = FATHOM_SIM_A05_DYP);
+    (void)scan_finds("a05 100 9600 8N1", "--one");
+}
+
+TEST(units_that_answer_at_address_255_at_once_are_found_by_the_walk)
+{
+    for (uint32_t seed = 0; seed != 4; seed++) {
+        scan_begin();
+        A16(.address = 2, .seed = seed, .answers_broadcast = true);
+        A16(.address = 5, .seed = seed + 100, .answers_broadcast = true);
+        A05(.address = 7, .seed = seed + 200, .answers_broadcast = true);
+        const tool_run_t *const run = scan("");
+        assert_says(run, "sensors found: 3");
+        assert_null(strstr(run->out, "?"));
+        assert_null(strstr(run->err, "no Modbus frame"));
+    }
+}
+
+/* It answers only there; a device that has none of the registers at its own address is not confirmed. */
+TEST(an_answer_at_address_255_that_its_own_address_does_not_confirm_is_no_sensor)
+{
+    add_speaker(&dyp_line, 0, from_1, sizeof from_1)->address = 0xFF;
+    (void)scan_finds("", "--address 1-3");
+    scan_begin();
+    add_stranger(0xFF, (stranger_t){.exception = 10 /* a gateway's */}, &dyp_line);
+    (void)scan_finds("", "--address 1-3");
+    scan_begin(); /* a charger that responds with any register; --one does not end with it */
+    add_stranger(9, (stranger_t){.value = 80, .second = 132, .address = 9, .answers_any = true}, &dyp_line);
+    A16(.address = 11);
+    HPS167S(.address = 12);
+    assert_says(scan_finds("? 9 9600 8N1, a16 11 9600 8N1", "--one"), "; perhaps a solar charger: ");
+}
+
+TEST(a_relative_at_115200_8n1_is_found_where_this_rate_is_asked)
+{
+    fathom_sim_device_t *const unit =
+        add_a16((fathom_sim_a16_config_t){.address = 40, .answers_broadcast = true});
+    unit->settings = relatives_line;
+    assert_says(scan_finds("a16 40 115200 8N1", "--baud 115200"),
+                "fathom read a16:40:modbus --port line --baud 115200\n");
+    (void)scan_finds("", "--baud 9600");
+    unit->answers_broadcast = false;
+    (void)scan_finds("a16 40 115200 8N1", "--baud 115200 --parity none --address 38-41");
 }
 
 TEST(a_device_that_responds_to_everything_or_nothing_is_another_modbus_device)
@@ -822,7 +1023,7 @@ TEST(a_device_with_another_address_in_0200_than_its_own_is_no_a16)
     scan_begin();
     with = (stranger_t){.value = 754, .address = 9, .only = {0x0200, 0x0100}};
     add_stranger(9, with, &dyp_line);
-    assert_says(scan_finds("a16 9 9600 8N1", ""), " 754 mm ");
+    assert_says(scan_finds("a16 9 9600 8N1", ""), " 754 mm, probably an A16 or a relative with Modbus  ->  ");
 }
 
 TEST(a_device_without_a_date_in_0001_or_with_zeros_elsewhere_is_no_hps167s)

@@ -139,6 +139,26 @@ void rig_hps_frame(uint8_t *frame, uint8_t address, uint16_t a, uint16_t b, uint
     rig_hps_seal(frame);
 }
 
+uint16_t rig_hps167_crc(const uint8_t *bytes, size_t length)
+{
+    uint32_t crc = 0xFFFF;
+    for (size_t i = 0; i != length * 8; i++) {
+        crc = crc << 1 ^ ((crc >> 15 ^ bytes[i / 8] >> (7 - i % 8)) % 2 != 0 ? 0x1021u : 0u);
+        crc %= 0x10000u;
+    }
+    return (uint16_t)crc;
+}
+
+void rig_hps167_frame(uint8_t *frame, uint16_t a, uint16_t b, uint16_t c, uint16_t d)
+{
+    const uint8_t bytes[] = {0x0A,    0x0D,   0x01,    0x01,   0x01,    HIGH(a), LOW(a),
+                             HIGH(b), LOW(b), HIGH(c), LOW(c), HIGH(d), LOW(d)};
+    const uint16_t crc = rig_hps167_crc(bytes + 2, 11);
+    memcpy(frame, bytes, sizeof bytes);
+    frame[13] = HIGH(crc);
+    frame[14] = LOW(crc);
+}
+
 controlled_t controlled;
 
 const uint8_t controlled_1953[4] = {0xFF, 0x07, 0xA1, 0xA7};
@@ -162,7 +182,8 @@ void controlled_start(void) { controlled_start_at(RIG_START_US); }
 
 int controlled_set_up(void **state)
 {
-    memset(&controlled.config, 0, sizeof controlled.config);
+    controlled.model = fathom_a16_controlled_model;
+    controlled.config = (fathom_a16_controlled_config_t){.model = &controlled.model};
     controlled.trigger = fathom_output_line_break(&rig.line);
     controlled_start();
     return 0;

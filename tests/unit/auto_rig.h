@@ -73,11 +73,19 @@ size_t rig_dyp_stream(uint8_t *frame, const uint16_t *values, unsigned count);
 void rig_hps_frame(uint8_t *frame, uint8_t address, uint16_t a, uint16_t b, uint16_t c, uint16_t d);
 void rig_hps_seal(uint8_t *frame);
 
+/* A measurement of an HPS-167 with these registers, 01 for each of the three unknown bytes, and its CRC bit by bit, from
+ * the definition of CRC-16/CCITT-FALSE. */
+enum { RIG_HPS167_LENGTH = 15 };
+void rig_hps167_frame(uint8_t *frame, uint16_t a, uint16_t b, uint16_t c, uint16_t d);
+uint16_t rig_hps167_crc(const uint8_t *bytes, size_t length);
+
 /* ---- an A16 that is triggered, by the fake UART's break unless the config names the pin ---- */
 
 typedef struct {
-    fathom_output_t trigger; /* this and the config are the test's to change before it starts anew */
-    fathom_a16_controlled_config_t config;
+    fathom_output_t
+        trigger; /* this, the config and the model are the test's to change before it starts anew */
+    fathom_a16_controlled_config_t config; /* names `model` */
+    fathom_model_facts_t model;
     fathom_a16_controlled_t a16;
     fake_pin_t pin;
 } controlled_t;

@@ -11,6 +11,7 @@
 #include "fathom/sensor/a16_pwm.h"
 #include "fathom/sensor/a16_settings.h"
 #include "fathom/sensor/a16_switch.h"
+#include "fathom/sensor/hps167_uart.h"
 #include "fathom/sensor/hps167s_auto.h"
 #include "fathom/sensor/hps167s_info.h"
 
@@ -28,6 +29,12 @@ static const fathom_clock_t *its_clock;
 static const fathom_pin_t *pin;
 
 #define PARAMETERS(...) __VA_ARGS__
+
+/* A driver that takes the facts of a model: its config names a copy of those that NULL selects. */
+#define DRIVER_OF_MODEL(name, parameters, prepares, ...)                                                     \
+    static fathom_model_facts_t name##_facts;                                                                \
+    DRIVER(name, parameters, (name##_facts = fathom_##name##_model, prepares), .model = &name##_facts,       \
+           __VA_ARGS__)
 
 /* The driver NAME with the parameters of its init, what prepares these, and the least config that its tests need. */
 #define DRIVER(name, parameters, prepares, ...)                                                              \
@@ -77,14 +84,18 @@ static const fathom_pin_t *pin;
     {                                                                                                        \
         .what = #its, .member = &(its), .size = sizeof(its)                                                  \
     }
-#define BOTH(d, its, value, other, other_value)                                                              \
+#define STALE(d)  IS(d, stale_us, 0x80000000), IS(d, stale_us, 0xFFFFFFFE)
+#define STREAM(d) STALE(d), IS(d, gap_us, 1), IS(d, gap_us, 1041) /* a character at 9600 8N1: 1041.7 us */
+
+/* A fact of the model that the config names. */
+#define FACT(d, its, value)                                                                                  \
     {                                                                                                        \
-        .what = #its, .member = &d##_config.its, .from = value, .to = value, .size = sizeof d##_config.its,  \
-        .also = &d##_config.other, .also_is = other_value                                                    \
+        .what = #its, .member = &d##_facts.its, .from = value, .to = value, .size = sizeof d##_facts.its,    \
+        .is_fact = true                                                                                      \
     }
-#define STALE(d)        IS(d, stale_us, 0x80000000), IS(d, stale_us, 0xFFFFFFFE)
-#define STREAM(d)       STALE(d), IS(d, gap_us, 1), IS(d, gap_us, 1041) /* a character at 9600 8N1: 1041.7 us */
-#define WINDOW(d, most) IS(d, window.min_mm, most + 1), BOTH(d, window.min_mm, 500, window.max_mm, 499)
+#define MODEL(d, most)                                                                                       \
+    FACT(d, min_mm, most + 1), FACT(d, max_mm, 0), FACT(d, value_fffb, 1), FACT(d, value_fffb, 9),           \
+        FACT(d, value_fffd, 5), FACT(d, value_0, 255)
 
 /* ---- on the transport of Modbus ---- */
 
@@ -120,12 +131,12 @@ static const contract_kind_t on_transport = {desk_begin,   desk_poll,    desk_ha
 
 #define COUNTS(of) .sequence = &(of).sequence, .implausible = &(of).implausible
 #define DYP(d, its_response, most, its_model, its_unit)                                                      \
-    .window = &d##_config.window, .max_mm = most, .good = 1953, .other = 511, .refused = (most) + 1,         \
+    .facts = &d##_facts, .max_mm = most, .good = 1953, .other = 511, .refused = (most) + 1,                  \
     COUNTS(its_response),                                                                                    \
     .sample = {                                                                                              \
         .raw = 1953, .distance_mm = 1953, .kind = FATHOM_TARGET, .model = its_model, .address = its_unit}
 
-DRIVER(a16_modbus, (transport), transport = &fake.modbus, 0)
+DRIVER_OF_MODEL(a16_modbus, (transport), transport = &fake.modbus, .value = FATHOM_PROCESSED)
 CAN(a16_modbus, deinit)
 CAN(a16_modbus, power_on)
 CAN(a16_modbus, cancel)
@@ -147,9 +158,9 @@ const contract_driver_t contract_a16_modbus = {
     .start_us = &a16_modbus_config.start_us,
     .power_on = a16_modbus_power_on,
     .wrong = {NONE(transport), IS(a16_modbus, modbus.address, 255), RANGE(a16_modbus, value, 2, 255),
-              WINDOW(a16_modbus, 16350)}};
+              MODEL(a16_modbus, 16350)}};
 
-DRIVER(a05_modbus, (transport), transport = &fake.modbus, .probes = 1)
+DRIVER_OF_MODEL(a05_modbus, (transport), transport = &fake.modbus, .probes = 1)
 CAN(a05_modbus, deinit)
 CAN(a05_modbus, power_on)
 CAN(a05_modbus, cancel)
@@ -171,7 +182,7 @@ const contract_driver_t contract_a05_modbus = {
     .start_us = &a05_modbus_config.start_us,
     .power_on = a05_modbus_power_on,
     .wrong = {NONE(transport), IS(a05_modbus, modbus.address, 255), RANGE(a05_modbus, probes, 16, 255),
-              WINDOW(a05_modbus, 6000), RANGE(a05_modbus, registers, 1, 0x000F),
+              MODEL(a05_modbus, 6000), RANGE(a05_modbus, registers, 1, 0x000F),
               RANGE(a05_modbus, registers, 0x0011, 0x0105), RANGE(a05_modbus, registers, 0x0107, 0x0200)}};
 
 DRIVER(hps167s, (transport), transport = &fake.modbus, 0)
@@ -259,21 +270,21 @@ static const contract_kind_t listening = LINE_KIND(has_sent, line_is_at_work);
 
 #define LISTENS(d) ITSELF(d, listening), .deinit = d##_deinit, .stale_us = &d##_config.stale_us
 
-DRIVER(a16_auto, (line), line = &rig.line, .value = FATHOM_PROCESSED)
+DRIVER_OF_MODEL(a16_auto, (line), line = &rig.line, .value = FATHOM_PROCESSED)
 CAN(a16_auto, deinit)
 
-const contract_driver_t contract_a16_auto = {
-    LISTENS(a16_auto), .gap_us = &a16_auto_config.gap_us,
-    DYP(a16_auto, a16_auto.base.measurement, 16350, FATHOM_A16, 0), .frame = a16_frame,
-    .wrong = {NONE(line), STREAM(a16_auto), WINDOW(a16_auto, 16350)}};
+const contract_driver_t contract_a16_auto = {LISTENS(a16_auto), .gap_us = &a16_auto_config.gap_us,
+                                             DYP(a16_auto, a16_auto.base.measurement, 16350, FATHOM_A16, 0),
+                                             .frame = a16_frame,
+                                             .wrong = {NONE(line), STREAM(a16_auto), MODEL(a16_auto, 16350)}};
 
-DRIVER(a05_auto, (line), line = &rig.line, .probes = 1)
+DRIVER_OF_MODEL(a05_auto, (line), line = &rig.line, .probes = 1)
 CAN(a05_auto, deinit)
 
 const contract_driver_t contract_a05_auto = {
     LISTENS(a05_auto), .gap_us = &a05_auto_config.gap_us,
     DYP(a05_auto, a05_auto.base.measurement, 6000, FATHOM_A05, 0), .frame = a05_frame,
-    .wrong = {NONE(line), STREAM(a05_auto), RANGE(a05_auto, probes, 16, 255), WINDOW(a05_auto, 6000)}};
+    .wrong = {NONE(line), STREAM(a05_auto), RANGE(a05_auto, probes, 16, 255), MODEL(a05_auto, 6000)}};
 
 DRIVER(hps167s_auto, (line), line = &rig.line, 0)
 CAN(hps167s_auto, deinit)
@@ -284,10 +295,10 @@ const contract_driver_t contract_hps167s_auto = {
     .refused = 31000,      .sample = {HPS_FIGURES},
     COUNTS(hps167s_auto),  .wrong = {NONE(line), STALE(hps167s_auto), RANGE(hps167s_auto, address, 33, 255)}};
 
-/* It is asked with 55 AA; the response is there at once. */
+/* It is asked with frames of its own; the response is there at once. */
 static fathom_status_t is_asked(const contract_driver_t *driver, uint16_t value)
 {
-    uint8_t frame[RIG_HPS_LENGTH];
+    uint8_t frame[RIG_HPS167_LENGTH];
     for (unsigned polls = 0; rig.fake.written == 0; polls++) {
         assert_true(polls < 20000);
         rig.fake.now_us += 200;
@@ -312,19 +323,48 @@ static size_t a05_dyp_stream(uint8_t *frame, uint16_t value)
 
 static const contract_kind_t asked_on_line = LINE_KIND(is_asked, line_is_at_work);
 
-DRIVER(a05_dyp, (line), line = &rig.line, .probes = 1)
+DRIVER_OF_MODEL(a05_dyp, (line), line = &rig.line, .probes = 1)
 CAN(a05_dyp, deinit)
 CAN(a05_dyp, power_on)
 
-const contract_driver_t contract_a05_dyp = {
-    ITSELF(a05_dyp, asked_on_line),
-    DYP(a05_dyp, a05_dyp.base.measurement, 6000, FATHOM_A05, 1),
-    .deinit = a05_dyp_deinit,
-    .power_on = a05_dyp_power_on,
-    .start_us = &a05_dyp_config.start_us,
-    .frame = a05_dyp_stream,
-    .wrong = {NONE(line), IS(a05_dyp, modbus.address, 255), IS(a05_dyp, modbus.address_zero, 1),
-              RANGE(a05_dyp, probes, 16, 255), WINDOW(a05_dyp, 6000)}};
+const contract_driver_t contract_a05_dyp = {ITSELF(a05_dyp, asked_on_line),
+                                            DYP(a05_dyp, a05_dyp.base.measurement, 6000, FATHOM_A05, 1),
+                                            .deinit = a05_dyp_deinit,
+                                            .power_on = a05_dyp_power_on,
+                                            .start_us = &a05_dyp_config.start_us,
+                                            .frame = a05_dyp_stream,
+                                            .wrong = {NONE(line), IS(a05_dyp, modbus.address, 255),
+                                                      IS(a05_dyp, modbus.address_zero, 1),
+                                                      RANGE(a05_dyp, probes, 16, 255), MODEL(a05_dyp, 6000)}};
+
+static size_t hps167_frame(uint8_t *frame, uint16_t value)
+{
+    rig_hps167_frame(frame, value, 0xDCB2, 0x0701, 0x0000);
+    return RIG_HPS167_LENGTH;
+}
+
+DRIVER(hps167_uart, (line), line = &rig.line, 0)
+CAN(hps167_uart, deinit)
+CAN(hps167_uart, power_on)
+
+const contract_driver_t contract_hps167_uart = {
+    ITSELF(hps167_uart, asked_on_line),
+    .good = 2083,
+    .other = 511,
+    .refused = 31000,
+    .sample = {.raw = 2083,
+               .distance_mm = 2083,
+               .kind = FATHOM_TARGET,
+               .model = FATHOM_HPS167S,
+               .ambient = 1,
+               .magnitude = 7231744},
+    COUNTS(hps167_uart),
+    .deinit = hps167_uart_deinit,
+    .power_on = hps167_uart_power_on,
+    .start_us = &hps167_uart_config.start_us,
+    .frame = hps167_frame,
+    .wrong = {NONE(line), RANGE(hps167_uart, modbus.address, 1, 255), IS(hps167_uart, modbus.address_zero, 1),
+              STALE(hps167_uart)}};
 
 /* ---- triggered ---- */
 
@@ -348,17 +388,16 @@ static void prepare_break(void)
     trigger = &output;
 }
 
-DRIVER(a16_controlled, (line, trigger), prepare_break(), 0)
+DRIVER_OF_MODEL(a16_controlled, (line, trigger), prepare_break(), .period_us = 0)
 CAN(a16_controlled, deinit)
 
 const contract_driver_t contract_a16_controlled = {
     ITSELF(a16_controlled, triggered), DYP(a16_controlled, a16_controlled.measurement, 16350, FATHOM_A16, 0),
     .deinit = a16_controlled_deinit, .frame = a16_frame,
-    .wrong = {NONE(line), NONE(trigger), NONE(output.set), IS(a16_controlled, earliest_us, 131 * MS),
-              IS(a16_controlled, latest_us, 79 * MS), IS(a16_controlled, latest_us, 0x80000000),
-              IS(a16_controlled, latest_us, 0xFFFFFFFE), IS(a16_controlled, period_us, 0x80000000),
-              IS(a16_controlled, gap_us, 1), IS(a16_controlled, gap_us, 1041),
-              WINDOW(a16_controlled, 16350)}};
+    .wrong = {NONE(line), NONE(trigger), NONE(output.set), FACT(a16_controlled, earliest_ms, 131),
+              FACT(a16_controlled, latest_ms, 79), FACT(a16_controlled, trigger_us, 60001),
+              IS(a16_controlled, period_us, 0x80000000), IS(a16_controlled, gap_us, 1),
+              IS(a16_controlled, gap_us, 1041), MODEL(a16_controlled, 16350)}};
 
 /* A pulse so wide, 110 ms after the trigger. */
 static fathom_status_t has_pulsed(const contract_driver_t *driver, uint16_t value)
@@ -388,7 +427,7 @@ static void prepare_pulse(void)
     trigger = &output;
 }
 
-DRIVER(a16_pwm, (capture, its_clock, trigger), prepare_pulse(), .in_air = false)
+DRIVER_OF_MODEL(a16_pwm, (capture, its_clock, trigger), prepare_pulse(), .in_air = false)
 CAN(a16_pwm, deinit)
 
 const contract_driver_t contract_a16_pwm = {
@@ -398,7 +437,10 @@ const contract_driver_t contract_a16_pwm = {
     /* A16 1(4): 173.9 cm */ .other = 20000,
     .sample = {.raw = 10000, .distance_mm = 1739, .kind = FATHOM_TARGET, .model = FATHOM_A16},
     COUNTS(a16_pwm),
-    .wrong = {NONE(its_clock), NONE(capture), NONE(trigger), NONE(output.set), WINDOW(a16_pwm, 16350)}};
+    .wrong = {NONE(its_clock), NONE(capture), NONE(trigger), NONE(output.set), FACT(a16_pwm, min_mm, 18001),
+              FACT(a16_pwm, max_mm, 0), FACT(a16_pwm, us_per_dm, 0), FACT(a16_pwm, trigger_us, 60001),
+              FACT(a16_pwm, no_target_ms, 1), FACT(a16_pwm, no_target_ms, 2),
+              FACT(a16_pwm, no_target_ms, 211), IS(a16_pwm, period_us, 0x80000000)}};
 
 /* ---- contacts ---- */
 

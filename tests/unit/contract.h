@@ -29,14 +29,13 @@ typedef struct {
 extern uint32_t contract_came_us;
 extern uint32_t contract_slack_us;
 
-/* A config that is refused: the member has any value from..to, and `also` another one. */
+/* A config that is refused: the member, or the fact of its model, has any value from..to. */
 typedef struct {
     const char *what;
     void *member;
     uint32_t from, to;
-    void *also;
-    uint16_t also_is;
     uint8_t size;
+    bool is_fact;
 } contract_wrong_t;
 
 struct contract_driver {
@@ -61,10 +60,10 @@ struct contract_driver {
     /* Members of the config. */
     uint8_t *address, *retries;
     uint32_t *period_us, *timeout_us, *command_timeout_us, *backoff_us, *start_us, *stale_us;
-    fathom_dyp_window_t *window;
+    fathom_model_facts_t *facts; /* of the config: a copy of the default */
     fathom_contact_timing_t *timing;
     uint16_t *gap_us;
-    contract_wrong_t wrong[16];
+    contract_wrong_t wrong[20];
 
     /* Of those that are asked: which registers, and the defaults. */
     uint16_t first;
@@ -80,6 +79,6 @@ struct contract_driver {
 
 extern const contract_driver_t contract_a05_auto, contract_a05_dyp, contract_a05_modbus, contract_a05_relay,
     contract_a16_auto, contract_a16_controlled, contract_a16_modbus, contract_a16_pwm, contract_a16_switch,
-    contract_hps167s, contract_hps167s_auto;
+    contract_hps167_uart, contract_hps167s, contract_hps167s_auto;
 
 #endif

@@ -8,7 +8,12 @@ fathom_status_t init_meter(void)
     stand.meter.capture = stand.capture;
     stand.meter.trigger.clock = stand.clock;
     stand.meter.trigger.output = stand.trigger;
-    return fathom_pulse_init(&stand.meter, &stand.config);
+    stand.meter.trigger.period_us = stand.config.cycle_us;
+    stand.meter.trigger.low_us = stand.config.low_us;
+    stand.meter.no_target_us = stand.config.no_target_us;
+    stand.meter.stuck_us = stand.config.stuck_us;
+    stand.meter.noise_us = stand.config.noise_us;
+    return fathom_pulse_init(&stand.meter);
 }
 
 void start_meter_at(uint32_t now_us)
@@ -35,7 +40,9 @@ void response_with(uint32_t after_us, uint32_t width_us)
 
 int set_up_meter(void **state)
 {
-    memset(&stand.config, 0, sizeof stand.config);
+    /* A16 1(2), 1(3): a period over 220 ms, a fixed pulse of about 94 ms, pulses from 3 ms on */
+    stand.config = (pulse_times_t){
+        .cycle_us = 221000, .no_target_us = 92000, .stuck_us = 105000, .low_us = 2000, .noise_us = 2700};
     stand.trigger = fathom_output_pin(&stand.pin.trigger);
     start_meter();
     return 0;

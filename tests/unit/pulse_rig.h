@@ -6,6 +6,15 @@
 #include "fake_pin.h"
 #include "fathom/engine/pulse.h"
 
+/* The times of a meter. */
+typedef struct {
+    uint32_t cycle_us;
+    uint32_t no_target_us;
+    uint32_t stuck_us;
+    uint16_t low_us;
+    uint16_t noise_us;
+} pulse_times_t;
+
 /* A meter on fake pins, with what its polls said. */
 typedef struct {
     fake_t fake;
@@ -14,7 +23,7 @@ typedef struct {
         *capture; /* this and the next members: the test's to change before it starts anew */
     const fathom_clock_t *clock;
     fathom_output_t trigger;
-    fathom_pulse_config_t config;
+    pulse_times_t config;
     fathom_pulse_meter_t meter;
     fathom_pulse_reading_t last;
     unsigned readings;
@@ -27,7 +36,7 @@ extern pulse_rig_t stand;
 /* Initialises the meter as it is, with the members of the rig. */
 fathom_status_t init_meter(void);
 
-/* For cmocka: the default config with a pin, at 1000 us. */
+/* For cmocka: the times of an A16 with a pin, at 1000 us. */
 int set_up_meter(void **state);
 
 /* All but the config begins anew, at this time; start_meter: at 1000 us. */

@@ -128,7 +128,8 @@ TEST(every_choice_of_probes_gives_samples_of_those_alone)
 
 TEST(between_silences_an_odd_probe_is_refused_alone_and_reported)
 {
-    config.window = (fathom_dyp_window_t){.min_mm = 250, .max_mm = 4500};
+    static const fathom_model_facts_t model = {.min_mm = 250, .max_mm = 4500};
+    config.model = &model;
     for (unsigned i = 0; i != 5; i++) {
         static const uint16_t odd[] = {249, 4501, 0xFFFF, 7000, 250};
         memory = i % 2 == 0 ? 0 : 0x5A;

@@ -166,7 +166,8 @@ TEST(a_value_that_cannot_be_is_refused_alone)
     assert_int_equal(rig_poll(), FATHOM_ERR_MALFORMED);
     assert_int_equal(a05.base.measurement.implausible, 1);
     nothing_for(1000);
-    config.window = (fathom_dyp_window_t){.min_mm = 1001, .max_mm = 2000};
+    static const fathom_model_facts_t model = {.min_mm = 1001, .max_mm = 2000};
+    config.model = &model;
     start();
     tell(1, four, sizeof four);
     assert_int_equal(rig_poll(), FATHOM_ERR_MALFORMED);
@@ -228,7 +229,7 @@ TEST(all_probes_have_500_ms_and_one_has_200_and_a_command_has_1_s_or_as_the_conf
 /* 1953 mm of probe 1: FF + 01 + 10 + 07 + A1 = 1B8. */
 static const uint8_t first_1953[] = {0x55, 0xAA, 0x01, 0x10, 0x07, 0xA1, 0xB8};
 
-/* FATHOM_A05_DYP_ALL_PROBES_US, FATHOM_A05_DYP_ONE_PROBE_US: "from one command to the next, at least", and no longer.
+/* fathom_a05_dyp_model: "the least time from one command to the next", and no longer.
  * The pace counts from the poll in which the request went out. */
 TEST(all_probes_are_asked_every_250_ms_and_one_every_100)
 {

@@ -55,13 +55,13 @@ TEST(period_and_low_time_are_options_and_a_shorter_period_is_not_kept)
 {
     controlled.trigger = fathom_output_pin(&controlled.pin.trigger);
     controlled.config.period_us = 300 * MS;
-    controlled.config.low_us = 10 * MS;
+    controlled.model.trigger_us = 10 * MS;
     controlled_start();
     rig_run(2000 * MS, 1 * MS);
     assert_int_equal(controlled.pin.least_us, 300 * MS);
     assert_int_equal(controlled.pin.low_us, 10 * MS);
     controlled.config.period_us = 120 * MS;
-    controlled.config.latest_us = 90 * MS;
+    controlled.model.latest_ms = 90;
     controlled_start();
     rig_run(2000 * MS, 1 * MS);
     assert_int_equal(controlled.pin.least_us, 121 * MS);
@@ -166,7 +166,7 @@ TEST(a_second_frame_to_one_trigger_is_late)
     assert_int_equal(controlled.a16.late, 1);
 }
 
-/* "earliest_us; 0: 80 ms", "latest_us; 0: 130 ms", to the microsecond. At 131 ms it is read at 139 ms, when the poll before
+/* "a response 80 to 130 ms after the edge", to the microsecond. At 131 ms it is read at 139 ms, when the poll before
  * was at 119 ms: it may have come in time but for the stamp. */
 TEST(the_ports_time_stamps_decide_where_there_are_any)
 {
@@ -185,12 +185,13 @@ TEST(the_ports_time_stamps_decide_where_there_are_any)
     }
 }
 
-/* FATHOM_ERR_ARGUMENT: "earliest_us over latest_us". */
 TEST(earliest_and_latest_may_be_the_same)
 {
-    controlled.config.earliest_us = controlled.config.latest_us = 100000;
+    controlled.model.earliest_ms = controlled.model.latest_ms = 100;
     assert_int_equal(controlled_init(), FATHOM_OK);
-    controlled.config.latest_us = 99999;
+    controlled.model.latest_ms = 99;
+    assert_int_equal(controlled_init(), FATHOM_ERR_ARGUMENT);
+    controlled.model.earliest_ms = controlled.model.latest_ms = 0;
     assert_int_equal(controlled_init(), FATHOM_ERR_ARGUMENT);
 }
 

@@ -138,7 +138,7 @@ TEST(a_command_that_is_busy_leaves_it_alone)
 {
     forget();
     for (unsigned i = 0; i != GETS; i++) {
-        fake.now_us += FATHOM_A16_MIN_PERIOD_US;
+        fake.now_us += 120000;
         PENDS(rows[i].get());
         for (unsigned other = 0; other != GETS; other++)
             if (other != i) assert_int_equal(rows[other].get(), FATHOM_ERR_BUSY);
@@ -172,7 +172,7 @@ TEST(what_is_out_of_range_is_not_sent)
         desk.argument = rows[i].most;
         PENDS(rows[i].set());
         fathom_a16_modbus_cancel(&a16);
-        fake.now_us += FATHOM_A16_MIN_PERIOD_US;
+        fake.now_us += 120000;
         desk.argument = rows[i].least;
         PENDS(rows[i].set());
         assert_int_equal(fake.submits, 2);

@@ -46,6 +46,7 @@ static void trigger_controlled(void)
 
 static void start_pulse(void)
 {
+    (void)set_up_meter(NULL);
     stand.trigger = fathom_output_break(&stand.fake.uart);
     start_meter();
 }

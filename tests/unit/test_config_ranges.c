@@ -10,6 +10,7 @@
 #include "fathom/sensor/a05_dyp.h"
 #include "fathom/sensor/a05_modbus.h"
 #include "fathom/sensor/a16_modbus.h"
+#include "fathom/sensor/hps167_uart.h"
 #include "fathom/sensor/hps167s.h"
 
 enum { ROWS = 24 };
@@ -73,34 +74,51 @@ static fathom_line_t *line;
         TIME(name, modbus.backoff_us), RANGE(name, modbus.retries, 0, 254, {255, 255}),                      \
         RANGE(name, modbus.address, 0, last_address, __VA_ARGS__)
 
-/* The prepared min_mm is 500. 1 and 5 are kinds of samples, and no meaning of a value that is no distance. */
-#define WINDOW(name, most)                                                                                   \
-    RANGE(name, window.min_mm, 0, most, {(most) + 1, 65535}),                                                \
-        RANGE(name, window.max_mm, 500, 65535, {499, 1}), RANGE(name, window.value_fffd, 0, 8, {9, 200}),    \
-        RANGE(name, window.value_fffe, 0, 8, {1, 255}), RANGE(name, window.value_ffff, 2, 4, {5, 200}),      \
-        RANGE(name, window.value_0, 6, 8, {1, 5}), TIME(name, start_us)
+#define FACT(name, its, from, to, ...)                                                                       \
+    {                                                                                                        \
+        .what = #its, .member = &name##_facts.its, .size = sizeof name##_facts.its, .least = from,           \
+        .greatest = to, .refused = __VA_ARGS__                                                               \
+    }
 
-DRIVER(a16_modbus, transport, .window.min_mm = 500)
-DRIVER(a05_modbus, transport, .window.min_mm = 500)
-DRIVER(a05_dyp, line, .window.min_mm = 500)
+/* The prepared min_mm is 500. 1 and 5 are kinds of samples, and no meaning of a value that is no distance. */
+#define MODEL(name, most)                                                                                    \
+    FACT(name, min_mm, 0, most, {(most) + 1, 65535}), FACT(name, max_mm, 500, 65535, {499, 0}),              \
+        FACT(name, value_fffb, 0, 8, {9, 1}), FACT(name, value_fffd, 0, 8, {9, 200}),                        \
+        FACT(name, value_fffe, 0, 8, {1, 255}), FACT(name, value_ffff, 2, 4, {5, 200}),                      \
+        FACT(name, value_0, 6, 8, {1, 5}), FACT(name, period_ms, 0, 65535, {0}), TIME(name, start_us)
+
+#define DRIVER_OF_MODEL(name, on)                                                                            \
+    static fathom_model_facts_t name##_facts;                                                                \
+    DRIVER(name, on,                                                                                         \
+           .model = (name##_facts = fathom_##name##_model, name##_facts.min_mm = 500, &name##_facts))
+
+DRIVER_OF_MODEL(a16_modbus, transport)
+DRIVER_OF_MODEL(a05_modbus, transport)
+DRIVER_OF_MODEL(a05_dyp, line)
+DRIVER(hps167_uart, line, .modbus.address = 0)
 DRIVER(hps167s, transport, .modbus.address = 0)
 
 static const driver_t of_a16_modbus = {
     ITSELF(a16_modbus, 7), /* address, function, count, one register, CRC */
     .ranges = {MODBUS(a16_modbus, 254, {255, 255}), RANGE(a16_modbus, modbus.address_zero, 0, 1, {0}),
-               WINDOW(a16_modbus, 16350), RANGE(a16_modbus, value, 0, 1, {2, 255})}};
+               MODEL(a16_modbus, 16350), RANGE(a16_modbus, value, 0, 1, {2, 255})}};
 
 static const driver_t of_a05_modbus = {
     ITSELF(a05_modbus, 13), /* four registers */
     .ranges = {MODBUS(a05_modbus, 254, {255, 255}), RANGE(a05_modbus, modbus.address_zero, 0, 1, {0}),
-               WINDOW(a05_modbus, 6000), RANGE(a05_modbus, registers, 0x0010, 0x0106, {0x0107, 0x0105}),
+               MODEL(a05_modbus, 6000), RANGE(a05_modbus, registers, 0x0010, 0x0106, {0x0107, 0x0105}),
                RANGE(a05_modbus, registers, 0, 0x0106, {0x000F, 0x0011}),
                RANGE(a05_modbus, probes, 0, 15, {16, 255})}};
 
 static const driver_t of_a05_dyp = {
     ITSELF(a05_dyp, 13), /* 55 AA, address, command, four distances, sum */
     .ranges = {MODBUS(a05_dyp, 254, {255, 255}), RANGE(a05_dyp, modbus.address_zero, 0, 0, {1, 1}),
-               WINDOW(a05_dyp, 6000), RANGE(a05_dyp, probes, 0, 15, {16, 255})}};
+               MODEL(a05_dyp, 6000), RANGE(a05_dyp, probes, 0, 15, {16, 255})}};
+
+static const driver_t of_hps167_uart = {ITSELF(hps167_uart, 15), /* 0A 0D, 11 bytes, CRC */
+                                        .ranges = {MODBUS(hps167_uart, 0, {1, 255}),
+                                                   RANGE(hps167_uart, modbus.address_zero, 0, 0, {1, 1}),
+                                                   TIME(hps167_uart, start_us), TIME(hps167_uart, stale_us)}};
 
 static const driver_t of_hps167s = {
     ITSELF(hps167s, 13), /* four registers */
@@ -214,7 +232,9 @@ static void a_second_init_is_refused_while_a_request_is_queued(void **state)
 }
 
 #define OF(promise, name) TEST_ROW(promise##_of_##name, promise, (void *)&of_##name)
-#define ALL(promise)      OF(promise, a16_modbus) OF(promise, a05_modbus) OF(promise, a05_dyp) OF(promise, hps167s)
+#define ALL(promise)                                                                                         \
+    OF(promise, a16_modbus)                                                                                  \
+    OF(promise, a05_modbus) OF(promise, a05_dyp) OF(promise, hps167s) OF(promise, hps167_uart)
 
 ALL(each_member_has_its_range)
 ALL(the_greatest_times_work)

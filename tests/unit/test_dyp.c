@@ -8,6 +8,7 @@
 enum { GUARD = 0xA5 };
 
 static uint16_t values[4];
+static fathom_model_facts_t facts;
 static fathom_dyp_measurement_t response;
 static fathom_sample_t sample;
 
@@ -21,7 +22,9 @@ static int set_up(void **state)
     response.model = FATHOM_A05;
     response.address = 7;
     response.first = 1;
-    assert_int_equal(fathom_dyp_measurement_init(&response, FATHOM_A05_MAX_MM), FATHOM_OK);
+    facts = (fathom_model_facts_t){.max_mm = FATHOM_A05_MAX_MM};
+    response.facts = &facts;
+    assert_int_equal(fathom_dyp_measurement_init(&response), FATHOM_OK);
     assert_int_equal(response.refused_raw | response.refused_probe, 0); /* none yet */
     return 0;
 }
@@ -42,16 +45,16 @@ static void expect_next(fathom_status_t status)
     if (status != FATHOM_OK) assert_sample_untouched();
 }
 
-/* The rule, stated apart: 0 is unknown, FFFD is no object, FFFE is no object and interference, FFFF is refused, the
- * window is a target, everything else is refused too. */
+/* The rule, stated apart: 0 is unknown, FFFD is no object, FFFE is no object and interference, all others from FFFB on are
+ * refused, the range is a target, everything else is refused too. */
 typedef enum { CANNOT_BE, TARGET, NOTHING, INTERFERENCE, UNKNOWN } meaning_t;
 
 static meaning_t meaning_of(uint32_t value, unsigned min_mm, unsigned max_mm)
 {
     if (value == 0) return UNKNOWN;
     if (value == 0xFFFD) return NOTHING;
-    if (value == 0xFFFF) return CANNOT_BE;
     if (value == 0xFFFE) return INTERFERENCE;
+    if (value >= 0xFFFB) return CANNOT_BE;
     return min_mm <= value && value <= max_mm ? TARGET : CANNOT_BE;
 }
 
@@ -77,49 +80,38 @@ static void assert_next_means(uint32_t value, meaning_t meaning)
     expect_next(FATHOM_PENDING);
 }
 
-typedef struct {
+/* Targets: max - min + 1, without 0 and without FFFB to FFFF. */
+static const struct {
     uint16_t min_mm;
     uint16_t max_mm;
-    uint16_t default_max_mm;
-    unsigned rule_min_mm;
-    unsigned rule_max_mm;
     unsigned targets;
-} window_case_t;
-
-/* Targets: max - min + 1, less those of FFFD, FFFE and FFFF that lie inside. */
-static const window_case_t windows[] = {
-    {0, 0, 16350, 1, 16350, 16350}, /* an A16 by default: 94 ms of A16 1(3) */
-    {0, 0, 6000, 1, 6000, 6000},    /* an A05 by default */
-    {500, 15000, 16350, 500, 15000, 14501},
-    {250, 0, 6000, 250, 6000, 5751},
-    {0, 4500, 6000, 1, 4500, 4500},
-    {1000, 1000, 6000, 1000, 1000, 1},
-    {1, 65535, 6000, 1, 65535, 65532},
-    {65535, 65535, 6000, 65535, 65535, 0},
+} ranges[] = {
+    {1, 16350, 16350}, /* an A16 by default: 94 ms of A16 1(3) */
+    {0, 6000, 6000},   {500, 15000, 14501}, {250, 6000, 5751}, {1000, 1000, 1},
+    {1, 65530, 65530}, {1, 65535, 65530},   {0, 1, 1},         {65535, 65535, 0},
 };
 
 TEST(every_value_means_what_the_rule_says)
 {
-    for (unsigned i = 0; i != sizeof windows / sizeof *windows; i++) {
-        const window_case_t *const w = &windows[i];
+    for (unsigned i = 0; i != sizeof ranges / sizeof *ranges; i++) {
         unsigned targets = 0;
-        response.window.min_mm = w->min_mm;
-        response.window.max_mm = w->max_mm;
-        assert_int_equal(fathom_dyp_measurement_init(&response, w->default_max_mm), FATHOM_OK);
+        facts.min_mm = ranges[i].min_mm;
+        facts.max_mm = ranges[i].max_mm;
+        assert_int_equal(fathom_dyp_measurement_init(&response), FATHOM_OK);
         for (uint32_t value = 0; value != 65536; value++) {
-            const meaning_t meaning = meaning_of(value, w->rule_min_mm, w->rule_max_mm);
+            const meaning_t meaning = meaning_of(value, facts.min_mm, facts.max_mm);
             assert_next_means(value, meaning);
             targets += meaning == TARGET;
         }
-        assert_int_equal(targets, w->targets);
+        assert_int_equal(targets, ranges[i].targets);
     }
 }
 
 /* ---- First contact 4: what a value means is the user's to say, one by one ---- */
 
-TEST(each_of_the_four_values_takes_each_meaning_and_no_other_value_does)
+TEST(each_of_the_five_values_takes_each_meaning_and_no_other_value_does)
 {
-    static const uint16_t four[] = {0, 0xFFFD, 0xFFFE, 0xFFFF};
+    static const uint16_t five[] = {0, 0xFFFB, 0xFFFD, 0xFFFE, 0xFFFF};
     static const struct {
         uint8_t meaning, kind;
     } meanings[] = {{FATHOM_MEANS_UNKNOWN, FATHOM_UNKNOWN},
@@ -128,33 +120,47 @@ TEST(each_of_the_four_values_takes_each_meaning_and_no_other_value_does)
                     {FATHOM_MEANS_TOO_NEAR, FATHOM_NEAR},
                     {FATHOM_MEANS_FAULT, FATHOM_FAULT},
                     {FATHOM_MEANS_REFUSED, 0}};
-    uint8_t *const members[] = {&response.window.value_0, &response.window.value_fffd,
-                                &response.window.value_fffe, &response.window.value_ffff};
-    for (unsigned v = 0; v != 4; v++) {
+    uint8_t *const members[] = {&facts.value_0, &facts.value_fffb, &facts.value_fffd, &facts.value_fffe,
+                                &facts.value_ffff};
+    for (unsigned v = 0; v != 5; v++) {
         for (unsigned m = 0; m != 6; m++) {
-            memset(&response.window, 0, sizeof response.window);
+            facts = (fathom_model_facts_t){.max_mm = 65535};
             *members[v] = meanings[m].meaning;
-            assert_int_equal(fathom_dyp_measurement_init(&response, 65535), FATHOM_OK);
-            for (unsigned other = 0; other != 4; other++) {
-                if (other != v) assert_next_means(four[other], meaning_of(four[other], 1, 65535));
+            assert_int_equal(fathom_dyp_measurement_init(&response), FATHOM_OK);
+            assert_next_means(0xFFFC, CANNOT_BE);
+            for (unsigned other = 0; other != 5; other++) {
+                if (other != v) assert_next_means(five[other], meaning_of(five[other], 1, 65535));
             }
-            values[0] = four[v];
+            values[0] = five[v];
             fathom_dyp_measurement_set(&response, 1, 123456);
             expect_next(meanings[m].kind != 0 ? FATHOM_OK : FATHOM_ERR_MALFORMED);
             if (meanings[m].kind == 0) continue;
             assert_int_equal(sample.kind, meanings[m].kind);
-            assert_int_equal(sample.raw, four[v]);
+            assert_int_equal(sample.raw, five[v]);
             assert_int_equal(sample.distance_mm, 0);
             assert_int_equal(sample.interference, meanings[m].meaning == FATHOM_MEANS_INTERFERENCE);
         }
     }
 }
 
-TEST(the_default_windows_are_16350_and_6000_mm)
+/* Kinds of samples that no value can have, and numbers that are no meaning. */
+TEST(facts_without_a_distance_or_with_another_meaning_are_refused)
 {
-    assert_int_equal(FATHOM_A16_MAX_MM, 16350);
-    assert_int_equal(FATHOM_A05_MAX_MM, 6000);
-    assert_int_equal(response.window.max_mm, 6000);
+    static const uint8_t none[] = {1, 5, 9, 10, 127, 255};
+    uint8_t *const members[] = {&facts.value_0, &facts.value_fffb, &facts.value_fffd, &facts.value_fffe,
+                                &facts.value_ffff};
+    for (unsigned v = 0; v != 5; v++) {
+        for (unsigned n = 0; n != sizeof none; n++) {
+            *members[v] = none[n];
+            assert_int_equal(fathom_dyp_measurement_init(&response), FATHOM_ERR_ARGUMENT);
+        }
+        *members[v] = 0;
+        assert_int_equal(fathom_dyp_measurement_init(&response), FATHOM_OK);
+    }
+    facts.min_mm = FATHOM_A05_MAX_MM + 1;
+    assert_int_equal(fathom_dyp_measurement_init(&response), FATHOM_ERR_ARGUMENT);
+    facts.min_mm = facts.max_mm = 0;
+    assert_int_equal(fathom_dyp_measurement_init(&response), FATHOM_ERR_ARGUMENT);
 }
 
 TEST(nothing_is_there_before_a_response) { expect_next(FATHOM_PENDING); }

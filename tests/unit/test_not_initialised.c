@@ -17,6 +17,7 @@
 #include "fathom/sensor/a16_rs232.h"
 #include "fathom/sensor/a16_settings.h"
 #include "fathom/sensor/a16_switch.h"
+#include "fathom/sensor/hps167_uart.h"
 #include "fathom/sensor/hps167s_auto.h"
 #include "fathom/sensor/hps167s_info.h"
 #include "fathom/sensor/hps167s_settings.h"
@@ -72,6 +73,7 @@ DRIVER(a16_controlled, (NULL, NULL))
 DRIVER(a16_modbus, (NULL))
 DRIVER(a16_pwm, (NULL, NULL, NULL))
 DRIVER(a16_switch, (NULL, NULL))
+DRIVER(hps167_uart, (NULL))
 DRIVER(hps167s, (NULL))
 DRIVER(hps167s_auto, (NULL))
 
@@ -98,6 +100,9 @@ COMMAND(a16_get_threshold, fathom_a16_modbus_get_switch_threshold_mm(&a16_modbus
 COMMAND(a16_put_threshold, fathom_a16_modbus_set_switch_threshold_mm(&a16_modbus, 500))
 COMMAND(a16_get_value, fathom_a16_modbus_get_automatic_value(&a16_modbus, &value))
 COMMAND(a16_put_value, fathom_a16_modbus_set_automatic_value(&a16_modbus, FATHOM_REAL_TIME))
+
+COMMAND(hps167_stop, fathom_hps167_uart_stop(&hps167_uart))
+COMMAND(hps167_temperature, fathom_hps167_uart_get_temperature(&hps167_uart, &word))
 
 COMMAND(hps_version, fathom_hps167s_get_interface_version(&hps167s, &version))
 COMMAND(hps_configuration, fathom_hps167s_get_configuration(&hps167s, &configuration))
@@ -133,6 +138,7 @@ static const driver_t of_a16_modbus = {
                                      a16_put_threshold, a16_get_value, a16_put_value}};
 static const driver_t of_a16_pwm = {ITSELF(a16_pwm)};
 static const driver_t of_a16_switch = {ITSELF(a16_switch)};
+static const driver_t of_hps167_uart = {ITSELF(hps167_uart), .commands = {hps167_stop, hps167_temperature}};
 static const driver_t of_hps167s = {
     ITSELF(hps167s),
     .commands = {hps_version, hps_configuration, hps_details, hps_temperature, hps_blind, hps_warm_up,
@@ -191,6 +197,7 @@ OF(a16_controlled)
 OF(a16_modbus)
 OF(a16_pwm)
 OF(a16_switch)
+OF(hps167_uart)
 OF(hps167s)
 OF(hps167s_auto)
 
@@ -201,6 +208,7 @@ TEST(power_on_cancel_and_deinit_of_a_zeroed_driver_do_nothing)
     memset(&a05_dyp, 0, sizeof a05_dyp);
     memset(&a05_modbus, 0, sizeof a05_modbus);
     memset(&a16_modbus, 0, sizeof a16_modbus);
+    memset(&hps167_uart, 0, sizeof hps167_uart);
     memset(&hps167s, 0, sizeof hps167s);
     fathom_a05_dyp_power_on(&a05_dyp);
     fathom_a05_dyp_cancel(&a05_dyp);
@@ -211,6 +219,9 @@ TEST(power_on_cancel_and_deinit_of_a_zeroed_driver_do_nothing)
     fathom_a16_modbus_power_on(&a16_modbus);
     fathom_a16_modbus_cancel(&a16_modbus);
     fathom_a16_modbus_deinit(&a16_modbus);
+    fathom_hps167_uart_power_on(&hps167_uart);
+    fathom_hps167_uart_cancel(&hps167_uart);
+    fathom_hps167_uart_deinit(&hps167_uart);
     fathom_hps167s_power_on(&hps167s);
     fathom_hps167s_cancel(&hps167s);
     fathom_hps167s_deinit(&hps167s);
@@ -219,6 +230,7 @@ TEST(power_on_cancel_and_deinit_of_a_zeroed_driver_do_nothing)
     refuses_everything(&of_a05_dyp);
     refuses_everything(&of_a05_modbus);
     refuses_everything(&of_a16_modbus);
+    refuses_everything(&of_hps167_uart);
     refuses_everything(&of_hps167s);
 }
 
@@ -231,4 +243,5 @@ TEST(a_transport_over_a_zeroed_line_is_refused)
     assert_int_equal(fathom_a16_modbus_init(&a16_modbus, &modbus, NULL), FATHOM_ERR_ARGUMENT);
     assert_int_equal(fathom_a05_modbus_init(&a05_modbus, &modbus, NULL), FATHOM_ERR_ARGUMENT);
     assert_int_equal(fathom_a05_dyp_init(&a05_dyp, &line, NULL), FATHOM_ERR_ARGUMENT);
+    assert_int_equal(fathom_hps167_uart_init(&hps167_uart, &line, NULL), FATHOM_ERR_ARGUMENT);
 }

@@ -111,11 +111,9 @@ TEST(the_short_pulses_of_a_cycle_are_its_outcome_if_nothing_else_is)
 TEST(an_a16_with_short_pulses_is_unknown)
 {
     static fathom_a16_pwm_t a16;
-    const fathom_a16_pwm_config_t config = {.pulse = stand.config};
     fathom_sample_t sample;
     response_with(110 * MS, 1500);
-    assert_int_equal(fathom_a16_pwm_init(&a16, stand.capture, stand.clock, &stand.trigger, &config),
-                     FATHOM_OK);
+    assert_int_equal(fathom_a16_pwm_init(&a16, stand.capture, stand.clock, &stand.trigger, NULL), FATHOM_OK);
     const fathom_sensor_t sensor = fathom_a16_pwm_sensor(&a16);
     fathom_status_t status = FATHOM_PENDING;
     for (unsigned polls = 0; polls != 1000 && status == FATHOM_PENDING; polls++) {
@@ -341,10 +339,8 @@ static void sleep_for(void *ctx, uint32_t max_us)
 static fathom_status_t wait_for_a16(uint8_t kind)
 {
     static fathom_a16_pwm_t a16;
-    const fathom_a16_pwm_config_t config = {.pulse = stand.config};
     fathom_sample_t sample;
-    assert_int_equal(fathom_a16_pwm_init(&a16, stand.capture, stand.clock, &stand.trigger, &config),
-                     FATHOM_OK);
+    assert_int_equal(fathom_a16_pwm_init(&a16, stand.capture, stand.clock, &stand.trigger, NULL), FATHOM_OK);
     const fathom_sensor_t sensor = fathom_a16_pwm_sensor(&a16);
     fathom_status_t status = FATHOM_PENDING;
     for (unsigned n = 0; n != 5; n++) status = fathom_wait(&sensor, &sample, sleep_for, NULL);

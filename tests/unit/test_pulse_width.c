@@ -21,11 +21,13 @@ static void assert_nearest_half_up(uint16_t mm, uint64_t n, uint64_t d)
 /* ---- the datasheet's formula ---- */
 
 /* A16 1(4): S = T / 57.5 in cm: 10 * T / 57.5 = 20 * T / 115 mm. */
-TEST(every_width_to_100_ms_is_the_nearest_mm_of_t_over_57_5)
+TEST(every_width_to_500_ms_is_the_nearest_mm_of_t_over_57_5)
 {
     unsigned ties = 0;
-    for (uint32_t us = 0; us <= 100000; us++) {
-        const uint16_t mm = fathom_pulse_width_mm(us);
+    for (uint32_t us = 0; us <= 500000; us++) {
+        const uint16_t mm = fathom_pulse_width_mm(us, 575);
+        if (us >= 376824) assert_int_equal(mm, 65535);
+        if (us >= 376824) continue;
         assert_nearest_half_up(mm, 20 * (uint64_t)us, 115);
         const int64_t off = twice_off(mm, 20 * (uint64_t)us, 115);
         ties += off == 115 || off == -115;
@@ -37,29 +39,48 @@ TEST(every_width_to_100_ms_is_the_nearest_mm_of_t_over_57_5)
  * 10000 / 57.5 = 173.9 cm; the example says 173.9. */
 TEST(the_example_of_a16_1_decides_between_348_m_per_s_and_57_5)
 {
-    assert_int_equal(fathom_pulse_width_mm(10000), 1739);
+    assert_int_equal(fathom_pulse_width_mm(10000, 575), 1739);
 }
 
 /* By hand, T * 4 / 23: 12000 / 23 = 521.7, 345000 / 23 = 15000, 376000 / 23 = 16347.8; 348 m/s would give 522, 15007.5
  * and 16356 mm. */
 TEST(widths_of_the_datasheet_by_hand)
 {
-    assert_int_equal(fathom_pulse_width_mm(0), 0);
-    assert_int_equal(fathom_pulse_width_mm(2), 0); /* 0.35 */
-    assert_int_equal(fathom_pulse_width_mm(3), 1); /* 0.52 */
-    assert_int_equal(fathom_pulse_width_mm(3000), 522);
-    assert_int_equal(fathom_pulse_width_mm(86250), 15000);
-    assert_int_equal(fathom_pulse_width_mm(94000), 16348);
+    assert_int_equal(fathom_pulse_width_mm(0, 575), 0);
+    assert_int_equal(fathom_pulse_width_mm(2, 575), 0); /* 0.35 */
+    assert_int_equal(fathom_pulse_width_mm(3, 575), 1); /* 0.52 */
+    assert_int_equal(fathom_pulse_width_mm(3000, 575), 522);
+    assert_int_equal(fathom_pulse_width_mm(86250, 575), 15000);
+    assert_int_equal(fathom_pulse_width_mm(94000, 575), 16348);
 }
 
 TEST(widths_beyond_65535_mm_give_65535)
 {
-    assert_int_equal(fathom_pulse_width_mm(376823), 65534); /* 1507292 / 23 = 65534.4 */
-    assert_int_equal(fathom_pulse_width_mm(376824), 65535); /* 1507296 / 23 = 65534.6 */
-    assert_int_equal(fathom_pulse_width_mm(376830), 65535); /* 65535.65 */
-    assert_int_equal(fathom_pulse_width_mm(500001), 65535);
-    assert_int_equal(fathom_pulse_width_mm(UINT32_C(0x40000000)), 65535);
-    assert_int_equal(fathom_pulse_width_mm(UINT32_MAX), 65535);
+    assert_int_equal(fathom_pulse_width_mm(376823, 575), 65534); /* 1507292 / 23 = 65534.4 */
+    assert_int_equal(fathom_pulse_width_mm(376824, 575), 65535); /* 1507296 / 23 = 65534.6 */
+    assert_int_equal(fathom_pulse_width_mm(376830, 575), 65535); /* 65535.65 */
+    assert_int_equal(fathom_pulse_width_mm(500001, 575), 65535);
+    assert_int_equal(fathom_pulse_width_mm(UINT32_C(0x40000000), 575), 65535);
+    assert_int_equal(fathom_pulse_width_mm(UINT32_MAX, 575), 65535);
+}
+
+/* Each scale with widths around its ends; a half goes upwards: 29 us at 580 are 5.0, 32 us at 640 are 5.0, 1 us at 200 is
+ * 0.5. */
+TEST(other_scales_are_the_nearest_mm_too)
+{
+    static const uint16_t scales[] = {1, 2, 100, 575, 580, 588, 5999, 6000};
+    for (unsigned i = 0; i != sizeof scales / sizeof *scales; i++) {
+        for (uint32_t us = 0; us <= 4100000; us += us < 70000 ? 1 : 997) {
+            const uint16_t mm = fathom_pulse_width_mm(us, scales[i]);
+            if (200 * (uint64_t)us + scales[i] >= UINT64_C(131070) * scales[i])
+                assert_int_equal(mm, 65535);
+            else
+                assert_nearest_half_up(mm, 100 * (uint64_t)us, scales[i]);
+        }
+        assert_int_equal(fathom_pulse_width_mm(UINT32_MAX, scales[i]), 65535);
+    }
+    assert_int_equal(fathom_pulse_width_mm(1, 200), 1);
+    assert_int_equal(fathom_pulse_width_mm(0, 0), 65535);
 }
 
 /* ---- with the temperature of the air ---- */
@@ -98,7 +119,7 @@ TEST(temperatures_by_hand)
 TEST(at_27_3_degrees_both_formulas_agree_to_1_mm)
 {
     for (uint32_t us = 0; us <= 105000; us++) {
-        const int plain = fathom_pulse_width_mm(us);
+        const int plain = fathom_pulse_width_mm(us, 575);
         const int in_air = fathom_pulse_width_mm_in_air(us, 273);
         assert_in_range(in_air - plain + 1, 0, 2);
     }

@@ -30,6 +30,7 @@ static fathom_output_t output;
 static const fathom_capture_t *capture;
 static const fathom_clock_t *clock_of_all;
 static fathom_a16_pwm_config_t pwm;
+static fathom_model_facts_t model;
 static fathom_a16_switch_config_t of_switch;
 static fathom_a05_relay_config_t relay;
 static fathom_debounce_config_t debounce;
@@ -53,13 +54,22 @@ static fathom_status_t init_pwm(void)
 {
     return fathom_a16_pwm_init(&driver.pwm, capture, clock_of_all, &output, &pwm);
 }
+static struct {
+    uint32_t cycle_us, no_target_us, stuck_us;
+    uint16_t low_us, noise_us;
+} pulse;
 static fathom_status_t init_pulse(void)
 {
     fathom_pulse_meter_t *const meter = &driver.pwm.meter;
     meter->capture = capture;
     meter->trigger.clock = clock_of_all;
     meter->trigger.output = output;
-    return fathom_pulse_init(meter, &pwm.pulse);
+    meter->trigger.period_us = pulse.cycle_us;
+    meter->trigger.low_us = pulse.low_us;
+    meter->no_target_us = pulse.no_target_us;
+    meter->stuck_us = pulse.stuck_us;
+    meter->noise_us = pulse.noise_us;
+    return fathom_pulse_init(meter);
 }
 static fathom_status_t init_switch(void)
 {
@@ -101,7 +111,13 @@ static int set_up(void **state)
     output = fathom_output_pin(&pin.trigger);
     capture = &pin.capture;
     clock_of_all = &fake.clock;
-    pwm = (fathom_a16_pwm_config_t){0};
+    model = fathom_a16_pwm_model;
+    pwm = (fathom_a16_pwm_config_t){.model = &model};
+    pulse.cycle_us = 221000;
+    pulse.low_us = 2000;
+    pulse.noise_us = 2700;
+    pulse.no_target_us = 92000;
+    pulse.stuck_us = 105000;
     of_switch = (fathom_a16_switch_config_t){0};
     relay = (fathom_a05_relay_config_t){0};
     debounce = (fathom_debounce_config_t){0};
@@ -149,14 +165,21 @@ typedef struct {
         RANGE(init, of.timing.stale_us, 20001, MAX_US, 20000, MAX_US + 1)
 
 static const range_t ranges[] = {
-    RANGE(init_pulse, pwm.pulse.cycle_us, 221000, MAX_US, 220999, MAX_US + 1),
-    RANGE(init_pulse, pwm.pulse.low_us, 1, 60000, 60001, UINT16_MAX),
-    ANY(init_pulse, pwm.pulse.noise_us, UINT16_MAX),
-    RANGE(init_pulse, pwm.pulse.no_target_us, 2701, 105000, 2700, 105001),
-    RANGE(init_pulse, pwm.pulse.stuck_us, 92000, 221000, 91999, 221001),
-    RANGE(init_pwm, pwm.pulse.cycle_us, 221000, MAX_US, 220999, MAX_US + 1),
-    RANGE(init_pwm, pwm.window.min_mm, 1, 16350, 16351, UINT16_MAX),
-    ANY(init_pwm, pwm.window.max_mm, UINT16_MAX),
+    RANGE(init_pulse, pulse.cycle_us, 105000, MAX_US, 104999, MAX_US + 1),
+    RANGE(init_pulse, pulse.low_us, 1, 60000, 60001, UINT16_MAX),
+    ANY(init_pulse, pulse.noise_us, UINT16_MAX),
+    RANGE(init_pulse, pulse.no_target_us, 2701, 105000, 2700, 105001),
+    RANGE(init_pulse, pulse.stuck_us, 92000, 221000, 91999, 221001),
+    RANGE(init_pwm, pwm.period_us, 0, MAX_US, MAX_US + 1, UINT32_MAX),
+    RANGE(init_pwm, model.min_mm, 0, 18000, 18001, UINT16_MAX),
+    RANGE(init_pwm, model.max_mm, 1, UINT16_MAX, 0, 0),
+    /* 105 ms is the longest pulse of 94 ms. 95 ms are 106 ms, 3 ms are 1 to 14 ms, and 210 ms are 208 to 221 ms. */
+    RANGE(init_pwm, model.period_ms, 105, UINT16_MAX, 104, 1),
+    RANGE(init_pwm, model.period_ms, 0, 0, 104, 1), /* 221 ms */
+    RANGE(init_pwm, model.no_target_ms, 5, 210, 4, 211),
+    ANY(init_pwm, model.no_target_ms, 0),
+    RANGE(init_pwm, model.trigger_us, 1, 60000, 60001, UINT16_MAX),
+    RANGE(init_pwm, model.us_per_dm, 1, UINT16_MAX, 0, 0),
     RANGE(init_pwm, pwm.air_dc, DC(-400), DC(850), DC(-401), DC(851)),
     CONTACT_TIMES(init_switch, of_switch),
     CONTACT_TIMES(init_relay, relay),

@@ -59,10 +59,10 @@ static const uint8_t meanings[] = {FATHOM_MEANS_UNKNOWN,  FATHOM_MEANS_NO_TARGET
 #define MEANING                                                                                              \
     KIND_CHOICE, .numbers = meanings, .words = "unknown no-target interference too-near fault refused"
 static const option_t meaning_keys[] = {
-    {"0", "MEANING", "Meaning of the value 0 (unknown)", MEANING, AT(fathom_dyp_window_t, value_0)},
-    {"fffd", "MEANING", "Meaning of FFFD (no-target)", MEANING, AT(fathom_dyp_window_t, value_fffd)},
-    {"fffe", "MEANING", "Meaning of FFFE (interference)", MEANING, AT(fathom_dyp_window_t, value_fffe)},
-    {"ffff", "MEANING", "Meaning of FFFF (refused)", MEANING, AT(fathom_dyp_window_t, value_ffff)},
+    {"0", "MEANING", "Meaning of the value 0 (unknown)", MEANING, AT(reader_window_t, value_0)},
+    {"fffd", "MEANING", "Meaning of FFFD (no-target)", MEANING, AT(reader_window_t, value_fffd)},
+    {"fffe", "MEANING", "Meaning of FFFE (interference)", MEANING, AT(reader_window_t, value_fffe)},
+    {"ffff", "MEANING", "Meaning of FFFF (refused)", MEANING, AT(reader_window_t, value_ffff)},
     {.name = NULL},
 };
 

@@ -49,7 +49,7 @@ struct reader {
     const uint16_t *values; /* the 16-bit values of the newest response */
     uint8_t value_count;
     fathom_dyp_measurement_t *response; /* of A16 and A05; NULL: a response is one sample */
-    const fathom_dyp_window_t *window;  /* the limits of a distance; NULL: the sensor has others */
+    const fathom_model_facts_t *window; /* the limits of a distance; NULL: the sensor has others */
     uint16_t *sequence;                 /* of the newest response; not NULL once the driver is initialised */
     fathom_dyp_modbus_t *dyp;           /* of an A16 or A05 that receives requests; NULL: of another */
     fathom_modbus_unit_t *unit;         /* NULL: the driver sends no requests */
@@ -58,6 +58,7 @@ struct reader {
     const uint32_t *period_us;          /* at which the driver asks; NULL: it keeps no period */
     fathom_pulse_meter_t *meter;        /* NULL: it measures no pulses */
     const pins_t *pins;                 /* with meter */
+    fathom_model_facts_t model;         /* of an A16 or A05: its facts with the settings of the user */
     const char *refusal;                /* why the reader could not be opened; NULL: the driver's */
     const char *remark;                 /* for the user, once */
     fathom_status_t (*end)(reader_t *reader); /* reader_close; NULL: there is nothing to restore */
@@ -102,7 +103,9 @@ model_simulate_t a16_simulate, a05_simulate, hps167s_simulate;
 model_decode_t dyp_decode, hps167s_decode;
 
 void dyp_decode_sum(struct decode_frame *frame, const model_t *model);
+bool dyp_confirm(inquiry_t *inquiry, const model_t *model);
 bool hps167s_identify(inquiry_t *inquiry);
+bool hps167s_is_alike(const uint8_t *bytes, uint16_t count);
 const char *hps167s_read_changes(uint8_t function, uint16_t first, uint16_t count);
 const char *hps167s_exception_name(uint8_t code);
 

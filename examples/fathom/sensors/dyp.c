@@ -10,9 +10,27 @@ static bool open_response(reader_t *reader, fathom_dyp_measurement_t *measuremen
     reader->values = measurement->values;
     reader->value_count = count;
     reader->response = measurement;
-    reader->window = &measurement->window;
+    reader->window = measurement->facts;
     reader->sequence = &measurement->sequence;
     return true;
+}
+
+/* Returns the facts of a sensor with the settings of the user. */
+static const fathom_model_facts_t *model_of(reader_t *reader, const reader_settings_t *settings,
+                                            const fathom_model_facts_t *datasheet)
+{
+    fathom_model_facts_t *const model = &reader->model;
+    const reader_window_t *const window = &settings->window;
+    *model = *datasheet;
+    if (window->max_mm != 0) {
+        model->min_mm = window->min_mm;
+        model->max_mm = window->max_mm;
+    }
+    if (window->value_0 != 0) model->value_0 = window->value_0;
+    if (window->value_fffd != 0) model->value_fffd = window->value_fffd;
+    if (window->value_fffe != 0) model->value_fffe = window->value_fffe;
+    if (window->value_ffff != 0) model->value_ffff = window->value_ffff;
+    return model;
 }
 
 /* ---- with requests ---- */
@@ -28,8 +46,9 @@ static bool open_asked(reader_t *reader, fathom_dyp_modbus_t *base, fathom_senso
 static bool a16_read_modbus(reader_t *reader, port_t *port, const reader_settings_t *settings)
 {
     fathom_a16_modbus_t *const driver = &reader->driver.a16_modbus;
-    const fathom_a16_modbus_config_t config = {
-        .modbus = driver_config(port, settings), .window = settings->window, .value = settings->value};
+    const fathom_a16_modbus_config_t config = {.modbus = driver_config(port, settings),
+                                               .model = model_of(reader, settings, &fathom_a16_modbus_model),
+                                               .value = settings->value};
     return fathom_a16_modbus_init(driver, &port->modbus, &config) == FATHOM_OK &&
            open_asked(reader, &driver->base, fathom_a16_modbus_sensor(driver));
 }
@@ -37,8 +56,9 @@ static bool a16_read_modbus(reader_t *reader, port_t *port, const reader_setting
 static bool a05_read_modbus(reader_t *reader, port_t *port, const reader_settings_t *settings)
 {
     fathom_a05_modbus_t *const driver = &reader->driver.a05_modbus;
-    const fathom_a05_modbus_config_t config = {
-        .modbus = driver_config(port, settings), .window = settings->window, .probes = settings->probes};
+    const fathom_a05_modbus_config_t config = {.modbus = driver_config(port, settings),
+                                               .model = model_of(reader, settings, &fathom_a05_modbus_model),
+                                               .probes = settings->probes};
     return fathom_a05_modbus_init(driver, &port->modbus, &config) == FATHOM_OK &&
            open_asked(reader, &driver->base, fathom_a05_modbus_sensor(driver));
 }
@@ -46,8 +66,9 @@ static bool a05_read_modbus(reader_t *reader, port_t *port, const reader_setting
 static bool a05_read_dyp(reader_t *reader, port_t *port, const reader_settings_t *settings)
 {
     fathom_a05_dyp_t *const driver = &reader->driver.a05_dyp;
-    const fathom_a05_dyp_config_t config = {
-        .modbus = driver_config(port, settings), .window = settings->window, .probes = settings->probes};
+    const fathom_a05_dyp_config_t config = {.modbus = driver_config(port, settings),
+                                            .model = model_of(reader, settings, &fathom_a05_dyp_model),
+                                            .probes = settings->probes};
     return fathom_a05_dyp_init(driver, &port->line, &config) == FATHOM_OK &&
            open_asked(reader, &driver->base, fathom_a05_dyp_sensor(driver));
 }
@@ -82,7 +103,7 @@ static bool a16_read_auto(reader_t *reader, port_t *port, const reader_settings_
     fathom_a16_auto_t *const driver = &reader->driver.a16_auto;
     fathom_a16_auto_config_t config = {.stale_us = settings->timeout_us,
                                        .gap_us = port_stream_gap_us(port),
-                                       .window = settings->window,
+                                       .model = model_of(reader, settings, &fathom_a16_auto_model),
                                        .value = settings->value};
     if (settings->has_value) {
         if (!can_select(reader, port, settings->value)) return false;
@@ -168,7 +189,7 @@ static bool a05_read_auto(reader_t *reader, port_t *port, const reader_settings_
     const fathom_a05_auto_config_t config = {.select = fathom_output_line_break(&port->line),
                                              .stale_us = settings->timeout_us,
                                              .gap_us = port_stream_gap_us(port),
-                                             .window = settings->window,
+                                             .model = model_of(reader, settings, &fathom_a05_auto_model),
                                              .probes = settings->probes};
     if (fathom_a05_auto_init(driver, &port->line, &config) != FATHOM_OK) return false;
     (void)open_stream(reader, &driver->base, fathom_a05_auto_sensor(driver));
@@ -189,7 +210,9 @@ static bool a16_read_controlled(reader_t *reader, port_t *port, const reader_set
     const fathom_output_t trigger = port->options.pins.chip != 0 ? fathom_output_pin(&port->pins.trigger)
                                                                  : fathom_output_line_break(&port->line);
     const fathom_a16_controlled_config_t config = {
-        .period_us = settings->period_us, .gap_us = port_stream_gap_us(port), .window = settings->window};
+        .period_us = settings->period_us,
+        .gap_us = port_stream_gap_us(port),
+        .model = model_of(reader, settings, &fathom_a16_controlled_model)};
     if (fathom_a16_controlled_init(driver, &port->line, &trigger, &config) != FATHOM_OK) return false;
     reader->end = end_controlled;
     reader->frames = driver->stream.counters;
@@ -204,9 +227,9 @@ static bool a16_read_pwm(reader_t *reader, port_t *port, const reader_settings_t
 {
     fathom_a16_pwm_t *const driver = &reader->driver.a16_pwm;
     const pins_t *const pins = &port->pins;
-    const uint32_t cycle_us = settings->period_us > FATHOM_PULSE_DEFAULT_CYCLE_US ? settings->period_us : 0;
     const fathom_output_t output = fathom_output_pin(&pins->trigger);
-    const fathom_a16_pwm_config_t config = {.pulse = {.cycle_us = cycle_us}, .window = settings->window};
+    const fathom_a16_pwm_config_t config = {.period_us = settings->period_us,
+                                            .model = model_of(reader, settings, &fathom_a16_pwm_model)};
     if (fathom_a16_pwm_init(driver, &pins->capture, &port->clock, &output, &config) != FATHOM_OK)
         return false;
     reader->sensor = fathom_a16_pwm_sensor(driver);
@@ -214,7 +237,7 @@ static bool a16_read_pwm(reader_t *reader, port_t *port, const reader_settings_t
     reader->sequence = &driver->sequence;
     reader->meter = &driver->meter;
     reader->pins = pins;
-    reader->window = &driver->window;
+    reader->window = driver->facts;
     reader->period_us = &driver->meter.trigger.period_us;
     return true;
 }

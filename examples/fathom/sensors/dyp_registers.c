@@ -180,6 +180,80 @@ fathom_status_t a05_set(reader_t *reader, const setting_t *setting, int32_t valu
                                   : fathom_a05_dyp_broadcast_address(&reader->driver.a05_dyp, (uint8_t)value);
 }
 
+/* ---- a scan: is it of the family? ---- */
+
+/* Devices of others that respond at 0x0100 and 0x0101, and their values there. */
+static const struct {
+    const char *what;
+    uint16_t least[2], most[2]; /* of 0x0100 and 0x0101 */
+    bool has_address;           /* 0x0100 is its address */
+    bool is_no_distance;        /* no sensor of the family sends both values */
+} others[] = {
+    {"a soil probe: 0x0100 is its address, and 0x0101 can be its baud code", {0, 0}, {254, 8}, true, true},
+    {"a gripper: 0x0100 can be its start, and 0x0101 its force in percent", {0, 20}, {1, 100}, false, true},
+    {"a solar charger: 0x0100 can be a charge in percent, and 0x0101 a voltage",
+     {1, 90},
+     {100, 600},
+     false,
+     false},
+};
+
+/* Returns what sends these values; NULL: not known. */
+static const char *other_of(uint8_t address, uint16_t first, uint16_t second, bool is_no_distance)
+{
+    for (size_t i = 0; i != sizeof others / sizeof others[0]; i++)
+        if (first >= others[i].least[0] && first <= others[i].most[0] && second >= others[i].least[1] &&
+            second <= others[i].most[1] && (first == address || !others[i].has_address) &&
+            (others[i].is_no_distance || !is_no_distance))
+            return others[i].what;
+    return NULL;
+}
+
+void models_name_other(inquiry_t *inquiry)
+{
+    scan_finding_t *const finding = inquiry->finding;
+    if (!inquiry->ask(inquiry, FATHOM_A16_REGISTER_PROCESSED, 1, INQUIRY_MEASURE_US, 1)) return;
+    const uint16_t first = inquiry->values[0];
+    if (inquiry->ask(inquiry, FATHOM_A16_REGISTER_REAL_TIME, 1, INQUIRY_MEASURE_US, 1))
+        finding->perhaps = other_of(finding->address, first, inquiry->values[0], false);
+    if (finding->perhaps == NULL)
+        finding->perhaps = "a fuel gauge (TENET UL212), a gripper or a charger, which respond at 0x0100 too";
+}
+
+/* FFFB to FFFF and 0 are values for no distance. The shortest distance that a relative measures is 15 mm. */
+enum { LEAST_CODE = 0xFFFB, LEAST_MM = 15 };
+
+static bool can_be_sent(const model_t *model, uint16_t value)
+{
+    return value == 0 || value >= LEAST_CODE || (value >= LEAST_MM && value <= model->max_mm);
+}
+
+/* Returns true if one scene can have both values: no distance, or distances that differ by a quarter at most. 0 is also
+ * what other devices send for a register that they do not use. */
+static bool agrees(uint16_t one, uint16_t other)
+{
+    const uint32_t longer = one > other ? one : other;
+    const uint32_t shorter = one > other ? other : one;
+    return shorter >= LEAST_CODE || (shorter != 0 && longer < LEAST_CODE && 4 * (longer - shorter) <= longer);
+}
+
+/* The device has its address in 0x0200 and a register of the model. It is certain if it also answered at address 255, or if
+ * two registers have the same distance. */
+bool dyp_confirm(inquiry_t *inquiry, const model_t *model)
+{
+    scan_finding_t *const finding = inquiry->finding;
+    const uint16_t second = model->scan.second;
+    if (finding->is_certain) return true;
+    if (inquiry->own == second || !inquiry->ask(inquiry, second, 1, INQUIRY_SLOW_US, 1))
+        return can_be_sent(model, finding->value);
+    const uint16_t value = inquiry->values[0];
+    if (second == FATHOM_A16_REGISTER_PROCESSED)
+        finding->perhaps = other_of(finding->address, value, finding->value, true);
+    const bool are_both = can_be_sent(model, value) && can_be_sent(model, finding->value);
+    finding->is_certain = are_both && agrees(value, finding->value);
+    return finding->perhaps == NULL && (can_be_sent(model, value) || can_be_sent(model, finding->value));
+}
+
 /* ---- decoding: values ---- */
 
 static const char *const probe_names[PROBES] = {"probe 1", "probe 2", "probe 3", "probe 4"};

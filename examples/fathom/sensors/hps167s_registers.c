@@ -2,6 +2,7 @@
 #include <inttypes.h>
 #include <string.h>
 
+#include "fathom/codec/hps167_frames.h"
 #include "fathom/codec/modbus_rtu.h"
 #include "fathom/sensor/hps167s_info.h"
 #include "fathom/sensor/hps167s_settings.h"
@@ -461,4 +462,20 @@ bool hps167s_identify(inquiry_t *inquiry)
     const bool has_details = ask_details(inquiry);
     const bool has_configuration = ask_configuration(inquiry);
     return has_version && (has_details || has_configuration);
+}
+
+/* ---- a scan: a unit that speaks like an HPS-167 with a UART ---- */
+
+/* A single frame can be chance. */
+bool hps167s_is_alike(const uint8_t *bytes, uint16_t count)
+{
+    enum { LEAST_FRAMES = 2, LENGTH = FATHOM_HPS167_MEASUREMENT_LENGTH };
+    unsigned frames = 0;
+    for (uint16_t at = 0; at + LENGTH <= count;) {
+        const bool is_frame = fathom_hps167_frame_length(bytes + at, LENGTH) == LENGTH &&
+                              fathom_hps167_is_valid(bytes + at, LENGTH);
+        frames += is_frame;
+        at = (uint16_t)(at + (is_frame ? LENGTH : 1));
+    }
+    return frames >= LEAST_FRAMES;
 }

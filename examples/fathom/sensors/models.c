@@ -13,11 +13,13 @@
  * 110 ms, A05 2(3): 210 ms). No time of the address register is printed: a module may finish a measurement before it
  * responds. */
 #define DYP                                                                                                  \
-    .line = {9600, FATHOM_PARITY_NONE, 1}, .max_address = DYP_MAX_ADDRESS, .has_address_zero = true,         \
-    .second_response_us = 250000, .decode = dyp_decode, .decode_sum = dyp_decode_sum,                        \
+    .line = {9600, FATHOM_PARITY_NONE, 1}, .relatives_line = {115200, FATHOM_PARITY_NONE, 1},                \
+    .max_address = DYP_MAX_ADDRESS, .has_address_zero = true, .second_response_us = 250000,                  \
+    .decode = dyp_decode, .decode_sum = dyp_decode_sum,                                                      \
     .traits = 1u << DEVICE_EXCEPTIONS | 1u << DEVICE_ANSWERS_BROADCAST | 1u << DEVICE_REAL_TIME |            \
               1u << DEVICE_ANSWERS_FROM_NEW
-#define DYP_SCAN .first = DYP_ADDRESS, .count = 1, .timeout_us = 150000
+#define DYP_SCAN                                                                                             \
+    .first = DYP_ADDRESS, .count = 1, .timeout_us = 150000, .has_any = true, .confirm = dyp_confirm
 
 /* #9 */
 static const uint32_t hps167s_rates[] = {19200, 57600, 115200, 230400, 0};
@@ -30,14 +32,16 @@ const model_t models[] = {
                      "automatic-output on`",
      .automatic_again = "automatic-output on",
      .scan = {DYP_SCAN, .frame_length = FATHOM_DYP_A16_LENGTH, .own = FATHOM_A16_REGISTER_REAL_TIME,
-              .slow_own = FATHOM_A16_REGISTER_PROCESSED},
+              .slow_own = FATHOM_A16_REGISTER_PROCESSED, .second = FATHOM_A16_REGISTER_PROCESSED,
+              .family = "an A16 or a relative"},
      .protocols = DECODE_MODBUS | DECODE_STREAM_ONE, .register_source = "A16 6(3)",
      .stream_source = "A16 2(3), 3(4), 5(3)"},
     {"a05", "four ultrasonic probes", FATHOM_A05, DYP, .modes = a05_modes, .settings = a05_settings,
      .get = a05_get, .set = a05_set, .simulate = a05_simulate, .probes = FATHOM_DYP_PROBES,
      .max_mm = FATHOM_A05_MAX_MM, .near_mm = 250, .far_mm = 4500,
      .request_ends = "the automatic output of an A05 with UART, until power-off",
-     .scan = {DYP_SCAN, .frame_length = FATHOM_DYP_A05_LENGTH, .own = FATHOM_A05_REGISTERS},
+     .scan = {DYP_SCAN, .frame_length = FATHOM_DYP_A05_LENGTH, .own = FATHOM_A05_REGISTERS,
+              .second = FATHOM_A05_REGISTERS_ALIAS, .family = "an A05"},
      .protocols = DECODE_MODBUS | DECODE_DYP | DECODE_STREAM_FOUR, .register_source = "A05 3(3)",
      .stream_source = "A05 1(2)", .probe_registers = {FATHOM_A05_REGISTERS, FATHOM_A05_REGISTERS_ALIAS}},
     {"hps167s",
@@ -69,7 +73,9 @@ const model_t models[] = {
                1u << DEVICE_RECONNECT | 1u << DEVICE_NO_BAUD_CODE | 1u << DEVICE_COUNT_EXCEPTION,
      .scan = {.first = FATHOM_HPS167S_VERSION,
               .count = FATHOM_HPS167S_VERSION_COUNT,
-              .is_it = hps167s_identify},
+              .is_it = hps167s_identify,
+              .is_alike = hps167s_is_alike,
+              .alike = "an HPS-167S of before 2020-09"},
      .protocols = DECODE_MODBUS,
      .decode = hps167s_decode,
      .exception_name = hps167s_exception_name,
@@ -88,6 +94,14 @@ bool model_has_rate(const model_t *model, uint32_t baud)
     for (const uint32_t *rate = model->rates; rate != NULL && *rate != 0; rate++)
         if (*rate == baud) return true;
     return false;
+}
+
+bool model_is_at(const model_t *model, const fathom_line_settings_t *line)
+{
+    const fathom_line_settings_t *const other = &model->relatives_line;
+    return (line->baud == model->line.baud && line->parity == model->line.parity) ||
+           (line->baud == other->baud && line->parity == other->parity &&
+            line->stop_bits == other->stop_bits);
 }
 
 uint8_t model_least_address(const model_t *model, const model_mode_t *mode)

@@ -62,6 +62,7 @@ typedef enum {
     SCAN_DAMAGED,    /* none of its responses was whole */
     SCAN_NOT_MODBUS, /* it responds at these line settings, but not in Modbus; it has no address */
     SCAN_SENDER,     /* it sends automatically, and is none of the models; it has no address */
+    SCAN_ALIKE,      /* it sends automatically, in a protocol that a model may have had; it has no address */
     SCAN_MASTER      /* another master sends requests to this address */
 } scan_kind_t;
 
@@ -75,10 +76,12 @@ typedef struct {
     uint8_t mode;              /* scan_mode_t, of a sensor */
     uint8_t address;           /* 0: none */
     bool is_double;            /* two responses to one request were received */
+    const char *perhaps;       /* of a device that is not confirmed: what it could be; NULL: not known */
 
     /* of an A16 or A05 that responded */
     bool has_value;
-    uint16_t value; /* of its first probe, as it was sent */
+    uint16_t value;  /* of its first probe, as it was sent */
+    bool is_certain; /* it has what only the sensors of this family have */
 
     /* of an HPS-167S: #1, #2 and #3; "" is not known */
     char interface_version[SETTING_TEXT];
@@ -94,8 +97,9 @@ struct inquiry {
      * silence_tries times. Returns true if status is FATHOM_OK. */
     bool (*ask)(inquiry_t *inquiry, uint16_t first, uint8_t count, uint32_t timeout_us,
                 uint8_t silence_tries);
-    fathom_status_t status;  /* of the newest response; at first of that to model_t.scan.first */
-    const uint16_t *values;  /* of that response */
+    fathom_status_t status; /* of the newest response; at first of that to model_t.scan.first */
+    const uint16_t *values; /* of that response */
+    uint16_t own; /* the register of its own by which the model was found: model_t.scan.own or .slow_own */
     scan_finding_t *finding; /* to fill in */
 };
 
@@ -174,8 +178,10 @@ struct model {
 
     /* ---- its line, and how it is read ---- */
     fathom_line_settings_t line; /* with factory settings */
-    const uint32_t *rates;       /* baud rates that can be set, ended by 0 */
-    const char *other_settings;  /* the same as options to try */
+    fathom_line_settings_t
+        relatives_line;         /* of relatives that have its registers and frames; baud 0: the same */
+    const uint32_t *rates;      /* baud rates that can be set, ended by 0 */
+    const char *other_settings; /* the same as options to try */
     const model_mode_t *modes; /* MODEL_MODES; the first one is the default, a row without a name ends them */
     uint8_t max_address;
     bool has_address_zero; /* 0 is an address as well, and all units obey 255 */
@@ -214,8 +220,17 @@ struct model {
         uint16_t own;         /* a register that no other model with the same first read has ... */
         uint16_t slow_own;    /* ... and one for INQUIRY_SLOW_US, if none of them responds to that */
         uint32_t timeout_us;  /* of the first read; 0: the default of a scan */
+        bool has_any;         /* the first read at address 255 is answered from the real address */
+        const char *family;   /* what a device that is found can be */
+        uint16_t second;      /* another register with the distance of `own` ... */
+        /* ... which this function compares with that. Returns false if the device is none of this family. */
+        bool (*confirm)(inquiry_t *inquiry, const model_t *model);
         /* Instead of `own`: identifies it by the response to the first read, and by further reads. */
         bool (*is_it)(inquiry_t *inquiry);
+        /* Returns true if the bytes have frames of a protocol that units of another age may have had; `alike` says what
+         * the sender can be. */
+        bool (*is_alike)(const uint8_t *bytes, uint16_t count);
+        const char *alike;
     } scan;
 
     /* ---- its frames ---- */
@@ -251,6 +266,12 @@ const model_t *model_with(uint8_t protocols);
 
 /* Returns what a value of an A16 or A05 means: "target", "no_target" or "unknown". Stores the distance, or NO_VALUE. */
 const char *model_value_status(const model_t *model, uint16_t value, int64_t *distance_mm);
+
+/* Returns true if units of this model, or relatives of them, have these line settings with factory settings. */
+bool model_is_at(const model_t *model, const fathom_line_settings_t *line);
+
+/* Reads what other devices have where an A16 has its distances, and stores in inquiry->finding what the device can be. */
+void models_name_other(inquiry_t *inquiry);
 
 /* Returns true if no model loses settings by this read. At address 0, which is a broadcast to some models, the register
  * must belong to a model that can have that address. */

@@ -18,6 +18,12 @@ enum {
     READER_TAKES_TEMPERATURE = 32
 };
 
+/* The limits and meanings of values of the user, in place of those of the model. */
+typedef struct {
+    uint16_t min_mm, max_mm;
+    uint8_t value_fffd, value_fffe, value_ffff, value_0; /* fathom_meaning_t */
+} reader_window_t;
+
 /* The settings of the user. A member that is 0 selects the driver's default. */
 typedef struct {
     uint32_t timeout_us; /* of a response; without requests: until the readings are stale */
@@ -25,7 +31,7 @@ typedef struct {
     uint32_t repeat_us;  /* of a contact without a period: between two samples of one state; 0: 35 minutes */
     const fathom_line_settings_t *line; /* of each request; NULL: the settings of the port */
     uint32_t backoff_us;                /* longest pause after requests without a response */
-    fathom_dyp_window_t window;         /* limits and meanings of values */
+    reader_window_t window;             /* limits and meanings of values */
     uint32_t temperature_us;            /* between two reads of the temperature; 0: it is not read */
     uint8_t probes;                     /* bit probe - 1 */
     uint8_t value;                      /* fathom_dyp_value_t if has_value; otherwise RX is not driven */

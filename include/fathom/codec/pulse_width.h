@@ -30,19 +30,23 @@ enum {
     FATHOM_PULSE_WIDTH_MAX_AIR_DC = 850   /**< Hottest air: 85 degrees C. */
 };
 
+/** @brief Scales of fathom_pulse_width_mm(). */
+enum { FATHOM_PULSE_WIDTH_A16_US_PER_DM = 575 /**< A16: 57.5 us for each centimetre (A16 1(4)). */ };
+
 /**
- * @brief Returns the distance in millimetres by the formula of the datasheet: width_us * 4 / 23, rounded to the
- * nearest.
+ * @brief Returns the distance in millimetres by the scale of a model: width_us * 100 / us_per_dm, rounded to the
+ * nearest (a half upwards).
  *
- * @param width_us  Width of the pulse in microseconds, any value. From 376830 us on the result is 65535.
+ * @param width_us   Width of the pulse in microseconds, any value. A distance above 65535 mm returns 65535.
+ * @param us_per_dm  Width for each 100 mm, in microseconds: 1 to 6000. 575 is the formula of the A16. 0 returns 65535.
  */
-uint16_t fathom_pulse_width_mm(uint32_t width_us);
+uint16_t fathom_pulse_width_mm(uint32_t width_us, uint16_t us_per_dm);
 
 /**
  * @brief Returns the distance in millimetres in air of a known temperature, rounded to the nearest (a half upwards).
  *
  * The speed of sound is 331.3 + 0.606 * t m/s at t degrees C; this formula is not in the datasheet. At 27.3 degrees C
- * the result differs from fathom_pulse_width_mm() by at most 1 mm.
+ * the result differs from the formula of the A16 by at most 1 mm.
  *
  * @param width_us  Width of the pulse in microseconds, any value. A distance above 65535 mm returns 65535.
  * @param air_dc    Temperature in tenths of a degree C, -400 to 850. A value outside counts as the nearer end.

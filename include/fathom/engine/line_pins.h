@@ -44,6 +44,40 @@ static inline fathom_output_t fathom_output_line_break(fathom_line_t *line)
     return output;
 }
 
+/** @brief A byte that triggers a module whose RX is the TX of a line. */
+typedef struct {
+    fathom_line_t *line; /**< The line, initialised. It must be able to send: its port has `write` (hal.h). */
+    uint8_t byte;        /**< The byte: `trigger_byte` of the model. */
+} fathom_line_byte_t;
+
+/**
+ * @brief The member `set` of an output that sends a byte.
+ *
+ * @param ctx    The fathom_line_byte_t.
+ * @param level  FATHOM_OUTPUT_... FATHOM_OUTPUT_LOW sends the byte. All other levels only check that the port has
+ *               `write`.
+ * @retval FATHOM_OK               The port has accepted the byte.
+ * @retval FATHOM_PENDING          The port is busy. Nothing was sent: call again.
+ * @retval FATHOM_ERR_BUSY         A transaction or a break uses the line. Nothing was sent: call again.
+ * @retval FATHOM_ERR_PORT         The port is broken.
+ * @retval FATHOM_ERR_UNSUPPORTED  The port has no `write`.
+ */
+fathom_status_t fathom_output_set_line_byte(const void *ctx, uint8_t level);
+
+/**
+ * @brief Returns the output that sends a byte where a pin would fall: the trigger of a model with FATHOM_STARTS_BYTE.
+ *
+ * The line does not count the byte as a request, so nothing else may be sent on it. `line_byte` must stay valid as long
+ * as the driver.
+ */
+static inline fathom_output_t fathom_output_line_byte(const fathom_line_byte_t *line_byte)
+{
+    fathom_output_t output;
+    output.set = fathom_output_set_line_byte;
+    output.ctx = line_byte;
+    return output;
+}
+
 /**
  * @brief Returns the guard of a contact on the RX of `line`.
  *

@@ -15,9 +15,9 @@ extern "C" {
  * @file
  * @brief An output that drives the RX pin of a module: its trigger or its mode select.
  *
- * The output is a pin, a break on the TX of a UART that has no other use, or a break of a line (line_pins.h). An output
- * has no state, so it may be copied, and drivers do so. No function waits. A program links only the kind of output that
- * it names.
+ * The output is a pin, an inverted pin, a break on the TX of a UART that has no other use, a break of a line or a byte on
+ * it (line_pins.h), or none. An output has no state, so it may be copied, and drivers do so. No function waits. A program
+ * links only the kind of output that it names.
  *
  * @code
  * const fathom_output_t trigger = fathom_output_pin(&pin);
@@ -63,6 +63,25 @@ typedef struct {
 fathom_status_t fathom_output_set_pin(const void *ctx, uint8_t level);
 
 /**
+ * @brief The member `set` of an output that is an inverted pin: low drives the pin high.
+ *
+ * @param ctx    The fathom_pin_t.
+ * @param level  FATHOM_OUTPUT_...
+ * @retval FATHOM_OK               The pin has the level.
+ * @retval FATHOM_ERR_UNSUPPORTED  `ctx` is NULL, or the pin has no `set`.
+ */
+fathom_status_t fathom_output_set_inverted_pin(const void *ctx, uint8_t level);
+
+/**
+ * @brief The member `set` of an output to nothing.
+ *
+ * @param ctx    Not used.
+ * @param level  Not used.
+ * @retval FATHOM_OK  Always.
+ */
+fathom_status_t fathom_output_set_none(const void *ctx, uint8_t level);
+
+/**
  * @brief The member `set` of an output that is a break on the TX of a UART that has no other use.
  *
  * @param ctx    The fathom_uart_t.
@@ -80,6 +99,29 @@ static inline fathom_output_t fathom_output_pin(const fathom_pin_t *pin)
     fathom_output_t output;
     output.set = fathom_output_set_pin;
     output.ctx = pin;
+    return output;
+}
+
+/**
+ * @brief Returns the output that drives `pin`, which must stay valid, with the opposite level.
+ *
+ * The trigger of a driver then makes high pulses, as JSN-SR04T and HC-SR04 require (FATHOM_STARTS_HIGH_PULSE), and the
+ * pin is low between them.
+ */
+static inline fathom_output_t fathom_output_inverted_pin(const fathom_pin_t *pin)
+{
+    fathom_output_t output;
+    output.set = fathom_output_set_inverted_pin;
+    output.ctx = pin;
+    return output;
+}
+
+/** @brief Returns the output to a module that has no trigger: one that sends pulses at its own pace. */
+static inline fathom_output_t fathom_output_none(void)
+{
+    fathom_output_t output;
+    output.set = fathom_output_set_none;
+    output.ctx = NULL;
     return output;
 }
 

@@ -22,12 +22,13 @@ extern "C" {
  * state is in the fathom_pulse_meter_t. Call all functions of one meter from one context. a16_pwm.h is built on this
  * file, and include/COST.md has its size.
  *
- * A cycle begins with the falling edge of the trigger. It has one outcome:
+ * A cycle begins with the falling edge of the trigger, and is `cycle_us` long, the period of the trigger. It has one
+ * outcome:
  *
  * | what the capture reports | outcome |
  * |---|---|
  * | a pulse of `noise_us` to below `no_target_us` | FATHOM_TARGET |
- * | a pulse of `no_target_us` to `stuck_us` | FATHOM_NO_TARGET: the datasheet has a fixed pulse of about 94 ms |
+ * | a pulse of `no_target_us` to `stuck_us` | FATHOM_NO_TARGET: the A16 has a fixed pulse of about 94 ms |
  * | a longer pulse | FATHOM_FAULT: no working sensor sends this |
  * | until the end of the cycle only shorter pulses, one of them 100 us or more | FATHOM_UNKNOWN: its longest width |
  * | until the end of the cycle no pulse of 100 us or more, and the line is high | FATHOM_FAULT: width 0, a stuck line |
@@ -42,7 +43,7 @@ extern "C" {
  *     2 * cycle_us + low_us + 3 * P                if a pin is the trigger
  *     2 * cycle_us + low_us + 2 s + 5 * P          if a break is the trigger
  *
- * by the clock of the configuration, whatever the output, the capture and the line do. If the clock stands still, the
+ * by the clock of the meter, whatever the output, the capture and the line do. If the clock stands still, the
  * time stands still with it. If the clock is set back by up to 100 ms, the bound grows by that amount.
  *
  * **Age.** A pulse that ended more than 2.5 s (FATHOM_PULSE_STALE_US) before the poll that takes it is no reading: the
@@ -54,37 +55,11 @@ extern "C" {
  * sensor.
  */
 
-/** Default and least `cycle_us`. */
-#define FATHOM_PULSE_DEFAULT_CYCLE_US 221000uL
-/** Default of `noise_us`. */
-#define FATHOM_PULSE_DEFAULT_NOISE_US 2700u
-/** Default of `no_target_us`. */
-#define FATHOM_PULSE_DEFAULT_NO_TARGET_US 92000uL
-/** Default of `stuck_us`. */
-#define FATHOM_PULSE_DEFAULT_STUCK_US 105000uL
-
 /** Shorter pulses are interference on the wire. From this width on, a pulse shows that a device responds. */
 #define FATHOM_PULSE_SHORT_US 100u
 
 /** A pulse that ended longer ago than this is no reading: 2 s, and half a second for a slow loop. */
 #define FATHOM_PULSE_STALE_US 2500000uL
-
-/** @brief The configuration of a meter: its times. A member that is 0 takes its default. */
-typedef struct {
-    /** Time between two falling edges, at least: 221000 us..FATHOM_MAX_DURATION_US; 0 selects 221000 us. The period
-     * "must be greater than 220ms" (A16 1(2)), and a clock may count in milliseconds. */
-    uint32_t cycle_us;
-    /** Time for which the trigger is low, and high before the next edge, at least: 1..60000 us; 0 selects 2000 us. */
-    uint16_t low_us;
-    /** Shorter pulses are noise: 1..65535 us, below `no_target_us`; 0 selects 2700 us. The shortest pulse of the sensor
-     * is 3 ms (A16 1(3)), less 10 % for the clocks of both sides. */
-    uint16_t noise_us;
-    /** Pulses from this width on mean that nothing is in range: noise_us + 1..stuck_us; 0 selects 92000 us, because the
-     * datasheet has "about 94ms" (A16 1(2)). */
-    uint32_t no_target_us;
-    /** Longer pulses are a fault: no_target_us..cycle_us; 0 selects 105000 us, 94 ms and a little over 10 %. */
-    uint32_t stuck_us;
-} fathom_pulse_config_t;
 
 /** @brief The reading of one cycle. */
 typedef struct {
@@ -96,41 +71,45 @@ typedef struct {
 } fathom_pulse_reading_t;
 
 /**
- * @brief A meter. The caller owns the memory, and sets `trigger.output`, `trigger.clock` and `capture` before
- * fathom_pulse_init(). Other members without a remark may be read only.
+ * @brief A meter. The caller owns the memory, and sets the members up to `noise_us` before fathom_pulse_init(). Other
+ * members without a remark may be read only.
  */
 typedef struct {
     /** Makes the edges. `trigger.output` drives the input of the sensor: a pin, or the break of a UART that has no other
-     * use. `trigger.clock` is the clock. What they point to must stay valid until fathom_pulse_deinit(). */
+     * use. `trigger.clock` is the clock. What they point to must stay valid until fathom_pulse_deinit(). The period of the
+     * trigger is the length of a cycle; trigger.h has the ranges of `trigger.period_us` and `trigger.low_us`. */
     fathom_trigger_t trigger;
     /** Captures the output of the sensor, with `arm` and `take`; not shared. Must stay valid until
      * fathom_pulse_deinit(). Invariant: NULL after an initialisation that failed. */
     const fathom_capture_t *capture;
-    uint32_t no_target_us; /**< As in the configuration, with the default filled in. */
-    uint32_t stuck_us;     /**< As in the configuration, with the default filled in. */
-    uint16_t noise_us;     /**< As in the configuration, with the default filled in. */
-    uint16_t short_us;     /**< Longest pulse of this cycle of 100 us..noise_us; 0: none. */
-    uint16_t noises;       /**< Pulses shorter than `noise_us`; stops at 65535. The caller may set it to 0. */
-    uint16_t stales;       /**< Pulses that were too old; stops at 65535. The caller may set it to 0. */
-    bool is_waiting;       /**< A cycle has no outcome yet. */
+    /** Pulses from this width on mean that nothing is in range: noise_us + 1..stuck_us, in microseconds. */
+    uint32_t no_target_us;
+    /** Longer pulses are a fault: no_target_us..trigger.period_us, in microseconds. */
+    uint32_t stuck_us;
+    /** Shorter pulses are noise: 0..65535 us, below `no_target_us`. Less than the sensor's shortest pulse, by a margin for
+     * the clocks of both sides. */
+    uint16_t noise_us;
+
+    /* Members of the meter. */
+    uint16_t short_us; /**< Longest pulse of this cycle of 100 us..noise_us; 0: none. */
+    uint16_t noises;   /**< Pulses shorter than `noise_us`; stops at 65535. The caller may set it to 0. */
+    uint16_t stales;   /**< Pulses that were too old; stops at 65535. The caller may set it to 0. */
+    bool is_waiting;   /**< A cycle has no outcome yet. */
 } fathom_pulse_meter_t;
 
 /**
- * @brief Initialises a meter and makes the trigger high. The first falling edge may come `low_us` later.
+ * @brief Initialises a meter and makes the trigger high. The first falling edge may come `trigger.low_us` later.
  *
- * If the function fails, the meter is zeroed: set its three members again before the next try. The function may be
- * called again at any time; it discards the cycle in progress.
+ * If the function fails, the meter is zeroed: set its members again before the next try. The function may be called
+ * again at any time; it discards the cycle in progress.
  *
- * @param meter   The meter, with its three members set and all others 0 before the first call. Must stay valid until
- *                fathom_pulse_deinit().
- * @param config  The times. Not used after the call. NULL keeps the times of the meter, which are the defaults if the
- *                meter has none.
+ * @param meter  The meter, with its members set. Must stay valid until fathom_pulse_deinit().
  * @retval FATHOM_OK               The meter is ready.
  * @retval FATHOM_ERR_ARGUMENT     The capture, the clock or the trigger, or one of their functions, is NULL, or a member
- *                                 of the configuration is outside its range.
+ *                                 is outside its range.
  * @retval FATHOM_ERR_UNSUPPORTED  The UART has no `set_break`, or the pin no `set`.
  */
-fathom_status_t fathom_pulse_init(fathom_pulse_meter_t *meter, const fathom_pulse_config_t *config);
+fathom_status_t fathom_pulse_init(fathom_pulse_meter_t *meter);
 
 /**
  * @brief Takes captured pulses, and triggers the next cycle if it is time to. A poll takes at most 16 pulses.

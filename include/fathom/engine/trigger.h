@@ -32,7 +32,7 @@ extern "C" {
 /** Default of `low_us`. The datasheet asks for an edge and names no time; no input misses 2 ms. */
 #define FATHOM_TRIGGER_DEFAULT_LOW_US 2000u
 
-/** Longest `low_us`: half of the shortest period, 120 ms (A16 3(2)). */
+/** Longest `low_us`: half of the A16's shortest period, 120 ms (A16 3(2)). */
 #define FATHOM_TRIGGER_MAX_LOW_US 60000u
 
 /** An output that refuses to begin or to end the low level for this time is reported with FATHOM_ERR_PORT. */

@@ -37,8 +37,8 @@ extern "C" {
  *    power-on decides which: high or open for processed, low for real-time. See fathom_a05_auto_select(). No frame says
  *    which values it has. The datasheet gives response times of 300 to 1500 ms and of about 300 ms (A05 1(1)).
  *
- * 2. **Samples.** `kind` is FATHOM_TARGET if the value is inside the window (1 to 6000 mm by default). The window of
- *    the config gives the values 0, FFFD, FFFE and FFFF their meaning (dyp.h). By default FFFD is FATHOM_NO_TARGET,
+ * 2. **Samples.** `kind` is FATHOM_TARGET if the value is inside the range (1 to 6000 mm by default). The facts of
+ *    the model give the values 0, FFFB, FFFD, FFFE and FFFF their meaning (dyp.h). By default FFFD is FATHOM_NO_TARGET,
  *    FFFE is FATHOM_NO_TARGET with `interference`, 0 is FATHOM_UNKNOWN, and FFFF is refused. A frame is returned when
  *    the line has been silent for `gap_us` behind it, or when the next frame begins.
  *
@@ -46,8 +46,9 @@ extern "C" {
  *    last byte of the frame. `sequence` increases by 1 with each frame that the driver evaluates, also with a refused
  *    one, and wraps after 65535. A new number is a new frame, not always a new measurement. The datasheet prints no
  *    period of the frames. A frame that is sent sooner than the module measures has the previous values: a processed
- *    value follows a change within 300 to 1500 ms, a real-time value within about 300 ms. The newest frame wins; older
- *    ones are counted in `base.stream.counters`.
+ *    value follows a change within 300 to 1500 ms, a real-time value within about 300 ms. If the facts of the model have
+ *    `period_ms`, a frame with the same values within three quarters of this period is the same measurement, and its
+ *    samples keep `sequence` and `time_us`. The newest frame wins; older ones are counted in `base.stream.counters`.
  *
  * 4. **Errors of fathom_poll().** The driver continues after each.
  *
@@ -64,7 +65,7 @@ extern "C" {
  *    |                      | returned once a second, and samples continue.                                       |
  *    | FATHOM_ERR_ARGUMENT  | The driver is not initialised.                                                      |
  *
- * 5. **Refused values.** A value outside the window, or FFFF, is no sample. The driver counts it in
+ * 5. **Refused values.** A value outside the range, or FFFF, is no sample. The driver counts it in
  *    `base.measurement.implausible` and stores it in `refused_raw` and `refused_probe` there. The other probes of the
  *    frame are returned only if the place of the frame is sure (stream.h, rule 4) and the frame before had a refused
  *    value too. Else the frame may be damaged or out of step, and all of it is refused. So a probe that continues to
@@ -73,6 +74,9 @@ extern "C" {
  * 6. **Bound.** On a line that carries no requests, fathom_poll() returns a sample or an error at the latest `stale_us`
  *    and one polling interval after the previous one.
  */
+
+/** @brief The facts that NULL selects: 1 to 6000 mm, the default meanings, and no period. */
+extern const fathom_model_facts_t fathom_a05_auto_model;
 
 /** @brief Configuration. Read only during fathom_a05_auto_init(). A member that is 0 takes its default. */
 typedef struct {
@@ -92,8 +96,12 @@ typedef struct {
      */
     uint16_t gap_us;
 
-    /** @brief Distances that are believed, and the meaning of other values (dyp.h). 0 selects 1 to 6000 mm. */
-    fathom_dyp_window_t window;
+    /**
+     * @brief The facts of the model (model_facts.h), such as those of models.h. NULL selects fathom_a05_auto_model.
+     *
+     * Must stay valid until fathom_a05_auto_deinit().
+     */
+    const fathom_model_facts_t *model;
 
     /**
      * @brief Fitted probes, bit (probe - 1): 1 to 15. 0 selects all four.

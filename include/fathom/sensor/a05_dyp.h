@@ -50,11 +50,11 @@ extern "C" {
  *    for all probes, 100 ms for one.
  */
 
-/** @brief Least time from one command for all probes to the next, in microseconds (A05 2(3)1). */
-#define FATHOM_A05_DYP_ALL_PROBES_US 250000uL
-
-/** @brief Least time from one command for one probe to the next, in microseconds (A05 2(3)1). */
-#define FATHOM_A05_DYP_ONE_PROBE_US 100000uL
+/**
+ * @brief The facts that NULL selects: 1 to 6000 mm, the default meanings, and the least time from one command to the
+ * next (A05 2(3)1): `period_ms` is 100 ms for one probe. For all probes the driver takes two and a half times as much.
+ */
+extern const fathom_model_facts_t fathom_a05_dyp_model;
 
 /** @brief Configuration. Read only during fathom_a05_dyp_init(). A member that is 0 takes its default. */
 typedef struct {
@@ -77,8 +77,12 @@ typedef struct {
      */
     uint32_t start_us;
 
-    /** @brief Distances that are believed, and the meaning of other values (dyp.h). 0 selects 1 to 6000 mm. */
-    fathom_dyp_window_t window;
+    /**
+     * @brief The facts of the model (model_facts.h), such as those of models.h. NULL selects fathom_a05_dyp_model.
+     *
+     * Must stay valid until fathom_a05_dyp_deinit().
+     */
+    const fathom_model_facts_t *model;
 
     /**
      * @brief Wanted probes, bit (probe - 1): 1 to 15. 0 selects all four.

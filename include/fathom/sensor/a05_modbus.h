@@ -32,8 +32,8 @@ extern "C" {
  *     if (near.kind == FATHOM_TARGET) use(near.distance_mm);
  * @endcode
  *
- * 1. **Samples.** `kind` is FATHOM_TARGET if the value is inside the window (1 to 6000 mm by default). The window of
- *    the config gives the values 0, FFFD, FFFE and FFFF their meaning (dyp.h). By default FFFD is FATHOM_NO_TARGET,
+ * 1. **Samples.** `kind` is FATHOM_TARGET if the value is inside the range (1 to 6000 mm by default). The facts of
+ *    the model give the values 0, FFFB, FFFD, FFFE and FFFF their meaning (dyp.h). By default FFFD is FATHOM_NO_TARGET,
  *    FFFE is FATHOM_NO_TARGET with `interference`, 0 is FATHOM_UNKNOWN, and FFFF is refused.
  *
  * 2. **Errors of fathom_poll().** Each is the result of one request after its retries (line.h, rule 8). A refused
@@ -55,15 +55,15 @@ extern "C" {
  *    | FATHOM_ERR_UNSUPPORTED  | `line_settings` cannot be set, or the line only listens.                  |
  *    | FATHOM_ERR_ARGUMENT     | The driver is not initialised.                                            |
  *
- * 3. **Refused values.** A value outside the window, or FFFF, is no sample. The driver counts it in
+ * 3. **Refused values.** A value outside the range, or FFFF, is no sample. The driver counts it in
  *    `base.measurement.implausible` and stores it in `refused_raw` and `refused_probe` there. The other probes of this
  *    response are returned, because the CRC vouches for their place.
  *
  * 4. **What `sequence` promises.** All samples of one response have one `sequence` and one `time_us`. `sequence`
  *    increases by 1 with each response and wraps after 65535. Each request starts a measurement of the probes that it
  *    reads, one after the other, about 100 ms each (A05 3(3)). So a new number is a new measurement. If requests
- *    came sooner, a module could send the previous value. So the driver waits 100 ms for each probe between two
- *    requests.
+ *    came sooner, a module could send the previous value. So the driver waits `period_ms` of the facts, 100 ms by
+ *    default, for each probe between two requests.
  *
  * 5. **Bound.** fathom_poll() returns a sample or an error at the latest after
  *
@@ -75,8 +75,8 @@ extern "C" {
  *    the rules of pace, back-off and abandoned commands.
  */
 
-/** @brief Least time from one request to the next, for each probe that it reads, in microseconds. */
-#define FATHOM_A05_PROBE_US 100000uL
+/** @brief The facts that NULL selects: 1 to 6000 mm, the default meanings, and 100 ms for each probe (rule 4). */
+extern const fathom_model_facts_t fathom_a05_modbus_model;
 
 /** @brief Register of the first probe. The same four distances stand in two places (A05 3(3), remark 2). */
 enum {
@@ -101,8 +101,12 @@ typedef struct {
      */
     uint32_t start_us;
 
-    /** @brief Distances that are believed, and the meaning of other values (dyp.h). 0 selects 1 to 6000 mm. */
-    fathom_dyp_window_t window;
+    /**
+     * @brief The facts of the model (model_facts.h), such as those of models.h. NULL selects fathom_a05_modbus_model.
+     *
+     * Must stay valid until fathom_a05_modbus_deinit().
+     */
+    const fathom_model_facts_t *model;
 
     /** @brief FATHOM_A05_REGISTERS or FATHOM_A05_REGISTERS_ALIAS. 0 selects the former. */
     uint16_t registers;

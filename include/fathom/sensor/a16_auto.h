@@ -26,8 +26,8 @@ extern "C" {
  *     if (fathom_poll(&sensor, &sample) == FATHOM_OK && sample.kind == FATHOM_TARGET) show_mm(sample.distance_mm);
  * @endcode
  *
- * 1. **Samples.** A distance is a sample of the kind FATHOM_TARGET. Other values have a meaning, which `window`
- *    changes. By default FFFD is FATHOM_NO_TARGET, FFFE is FATHOM_NO_TARGET with `interference`, 0 is FATHOM_UNKNOWN,
+ * 1. **Samples.** A distance is a sample of the kind FATHOM_TARGET. Other values have a meaning, which the facts of
+ *    the model change. By default FFFD is FATHOM_NO_TARGET, FFFE is FATHOM_NO_TARGET with `interference`, 0 is FATHOM_UNKNOWN,
  *    and the driver refuses FFFF. `distance_mm` is 0 unless the kind is FATHOM_TARGET. `time_us` is the arrival of the
  *    last byte of the frame. fathom_poll() returns the sample when the next frame begins, or when the line has been
  *    silent for `gap_us` after the frame.
@@ -35,8 +35,9 @@ extern "C" {
  * 2. **Sequence.** Each frame that fathom_poll() fetches increments `sequence`, a frame with a refused value too. If
  *    the program polls less often than the module sends, newer frames replace older ones. The replaced frames do not
  *    increment `sequence`; `base.stream.counters[FATHOM_STREAM_MISSED]` counts them. The datasheet prints no period of
- *    the frames. If the module sends faster than it measures, it repeats the old value, and neither the frame nor the
- *    sample shows this.
+ *    the frames. If a module sends faster than it measures, it repeats the old value. If its facts have `period_ms`, a
+ *    frame with the old value within three quarters of this period is the same measurement: the sample has the
+ *    `sequence` and the `time_us` of the first frame.
  *
  * 3. **Settling.** The processed value needs 2.5 to 7.5 s to follow a change, the real-time value about 500 ms
  *    (A16 2(2)).
@@ -49,13 +50,20 @@ extern "C" {
  * | FATHOM_ERR_STALE | the line was silent for `stale_us`: no wire, no supply, or another mode |
  * | FATHOM_ERR_STALE | the program paused for longer than `stale_us` and 0.5 s, and the port dates no newer bytes (hal.h) |
  * | FATHOM_ERR_CHECKSUM | bytes, but no valid frame, for `stale_us`: damage, noise, another rate or another device |
- * | FATHOM_ERR_MALFORMED | once for each frame with a refused value: outside the window, or FFFF by default |
+ * | FATHOM_ERR_MALFORMED | once for each frame with a refused value: outside the range, or FFFF by default |
  * | FATHOM_ERR_PORT | the port is broken; returned by every poll until the port can be read again |
  * | FATHOM_ERR_ARGUMENT | the initialisation failed; or it never ran, and the memory is zeroed |
  *
  * After FATHOM_ERR_CHECKSUM read `base.stream.counters[FATHOM_STREAM_FRAMES]`. If it is 0, suspect the rate or the
  * device; else suspect noise. After FATHOM_ERR_MALFORMED, `base.measurement.refused_raw` is the refused value.
  */
+
+/**
+ * @brief The facts that NULL selects: 1 to 16350 mm, the default meanings, and no period.
+ *
+ * A program that accepts other values changes a copy (model_facts.h).
+ */
+extern const fathom_model_facts_t fathom_a16_auto_model;
 
 /** @brief The configuration. A member that is 0 takes its default. */
 typedef struct {
@@ -84,8 +92,12 @@ typedef struct {
      */
     uint16_t gap_us;
 
-    /** @brief Accepted distances, and the meaning of the other values. 0 selects 1 to 16350 mm. */
-    fathom_dyp_window_t window;
+    /**
+     * @brief The facts of the model (model_facts.h), such as those of models.h. NULL selects fathom_a16_auto_model.
+     *
+     * Must stay valid until fathom_a16_auto_deinit().
+     */
+    const fathom_model_facts_t *model;
 
     /** @brief The value that is selected by the initialisation: a fathom_dyp_value_t. 0 selects FATHOM_PROCESSED. */
     uint8_t value;

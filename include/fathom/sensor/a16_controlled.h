@@ -21,8 +21,8 @@ extern "C" {
  *
  * Each falling edge at the RX pin of the module starts a measurement. The module sends one frame FF H L SUM, 90 to 110
  * ms after the edge, at 9600 8N1. A pin makes the edge, or a UART break of the line, so that a serial adapter suffices.
- * The driver triggers again and again, never sends a byte and never waits. include/COST.md has its size in the row
- * `a16_controlled`.
+ * A relative that waits for a byte gets it by fathom_output_line_byte() (line_pins.h); the byte counts as the edge. The
+ * driver triggers again and again and never waits. include/COST.md has its size in the row `a16_controlled`.
  *
  * @code
  * const fathom_output_t trigger = fathom_output_pin(&pin);
@@ -34,18 +34,17 @@ extern "C" {
  *
  * 1. **Samples.** There is one sample for each response. fathom_poll() returns it when the line has been silent for
  *    `gap_us` after the frame. `time_us` is the arrival of the last byte. The kind is FATHOM_TARGET, or the meaning of
- *    the values 0, FFFD, FFFE and FFFF (dyp.h).
+ *    a value that is no distance (dyp.h).
  *
  * 2. **Sequence.** Each response increments `sequence`, a response with a refused value too. Each response is a new
- *    measurement, because the period between two triggers is above the 120 ms that the module needs (A16 3(2)).
+ *    measurement, because the time between two triggers is at least the `period_ms` that the module needs (A16 3(2)).
  *
- * 3. **Which frame is the response.** A frame is the response if its last byte arrives `earliest_us` to `latest_us`
- *    after the edge. This is the time of the datasheet (A16 3(3)) with a margin for the clocks and for the 4 ms of the
- *    frame. If the port has no time stamps, a byte may have arrived at any time since the previous poll; both ends are
+ * 3. **Which frame is the response.** A frame is the response if its last byte arrives `earliest_ms` to `latest_ms`
+ *    after the edge, which are facts of the model. If the port has no time stamps, a byte may have arrived at any time since the previous poll; both ends are
  *    then wider by that time. The driver counts all other frames in `late` and drops them.
  *
  *        polls     |        |                                      |
- *        trigger            |edge  earliest_us      latest_us
+ *        trigger            |edge  earliest_ms      latest_ms
  *        wire      [frame]  |      |<-- [response] -->|
  *        result    `late`                                          one sample
  *
@@ -53,9 +52,9 @@ extern "C" {
  *    the edge, so that bytes that waited in the port are known to be too early.
  *
  * 5. **Limit.** The response to the previous trigger cannot be distinguished from the response to this one, if it
- *    arrives 200 ms or more after the previous trigger.
+ *    arrives `earliest_ms` or more after this one: 200 ms after the previous trigger, with the default facts.
  *
- * 6. **Pauses.** If the program does not poll for more than `latest_us` and FATHOM_LINE_LATE_US together, the line
+ * 6. **Pauses.** If the program does not poll for more than `latest_ms` and FATHOM_LINE_LATE_US together, the line
  *    drops the bytes that wait in the port (line.h, rule 14). The trigger then has no response.
  *
  * 7. **Errors.** Each error belongs to one trigger. The driver continues after each error.
@@ -64,40 +63,28 @@ extern "C" {
  * |---|---|
  * | FATHOM_ERR_NO_RESPONSE | no byte arrived in time: no supply, a cut wire, or another mode |
  * | FATHOM_ERR_CHECKSUM | bytes arrived in time, but no valid frame |
- * | FATHOM_ERR_MALFORMED | the frame has a refused value: outside the window, or FFFF; see `measurement` (dyp.h) |
+ * | FATHOM_ERR_MALFORMED | the frame has a refused value: outside the range, or FFFF; see `measurement` (dyp.h) |
  * | FATHOM_ERR_PORT | the port is broken; returned by every poll until the port works again |
  * | FATHOM_ERR_PORT | the port refused for 1 s to begin or to end the break; returned once a second (trigger.h) |
  * | FATHOM_ERR_ARGUMENT | the initialisation failed or never ran, and the memory is zeroed |
  */
 
-/** @brief Default and least fathom_a16_controlled_config_t::period_us, in microseconds. */
-#define FATHOM_A16_CONTROLLED_DEFAULT_PERIOD_US 121000uL
-/** @brief Default of fathom_a16_controlled_config_t::earliest_us, in microseconds. */
-#define FATHOM_A16_CONTROLLED_DEFAULT_EARLIEST_US 80000uL
-/** @brief Default of fathom_a16_controlled_config_t::latest_us, in microseconds. */
-#define FATHOM_A16_CONTROLLED_DEFAULT_LATEST_US 130000uL
+/**
+ * @brief The facts that NULL selects (A16 3): 1 to 16350 mm, the default meanings, a response 80 to 130 ms after the
+ * edge, and 121 ms between two triggers.
+ *
+ * The period "must be greater than 120ms" (A16 3(2)), also by a clock that counts in milliseconds. The response ends 90
+ * to 110 ms after the edge (A16 3(3)); the rest is a margin for the clocks and for the frame.
+ */
+extern const fathom_model_facts_t fathom_a16_controlled_model;
 
 /** @brief The configuration. A member that is 0 takes its default. */
 typedef struct {
     /**
-     * @brief Least time between two triggers, in microseconds, at most 2^31 - 1. 0 and all below 121000 select 121000.
-     *
-     * The period "must be greater than 120ms" (A16 3(2)), also by a clock that counts in milliseconds.
+     * @brief Least time between two triggers, in microseconds, at most 2^31 - 1. A shorter time selects `period_ms` of
+     * the model, which is the default; if that is 0, `latest_ms`.
      */
     uint32_t period_us;
-
-    /** @brief Earliest arrival of a response after the edge, in microseconds: 1 to `latest_us`. 0 selects 80000. */
-    uint32_t earliest_us;
-
-    /** @brief Latest arrival of a response, in microseconds: `earliest_us` to 2^31 - 1. 0 selects 130000. */
-    uint32_t latest_us;
-
-    /**
-     * @brief Least time for which the trigger is low, and high before it falls, in microseconds: 1 to 60000.
-     *
-     * 0 selects 2000 (trigger.h).
-     */
-    uint16_t low_us;
 
     /**
      * @brief Silence that ends a frame (stream.h), in microseconds: 1042 to 65535.
@@ -107,8 +94,12 @@ typedef struct {
      */
     uint16_t gap_us;
 
-    /** @brief Accepted distances, and the meaning of the other values. 0 selects 1 to 16350 mm. */
-    fathom_dyp_window_t window;
+    /**
+     * @brief The facts of the model (model_facts.h), such as those of models.h. NULL selects fathom_a16_controlled_model.
+     *
+     * Must stay valid until fathom_a16_controlled_deinit().
+     */
+    const fathom_model_facts_t *model;
 } fathom_a16_controlled_config_t;
 
 /** @brief The driver, in the caller's memory. Call fathom_a16_controlled_init() before use. */
@@ -124,12 +115,6 @@ typedef struct {
 
     /** @brief The newest response. `refused_raw` and `implausible` may be read. */
     fathom_dyp_measurement_t measurement;
-
-    /** @brief As in the configuration, with the default filled in. */
-    uint32_t earliest_us;
-
-    /** @brief As in the configuration, with the default filled in. */
-    uint32_t latest_us;
 
     /** @brief Clock at the last trigger, in microseconds. */
     uint32_t edge_us;
@@ -150,17 +135,17 @@ typedef struct {
 /**
  * @brief Initialises the driver, makes the trigger high and becomes the listener of the line.
  *
- * The first trigger comes `low_us` later. After an error the driver does not listen, and its memory is zeroed.
+ * The first trigger comes 2 ms later, or `trigger_us` of the model. After an error the driver does not listen, and its memory is zeroed.
  *
  * @param sensor   The driver. Must stay valid until fathom_a16_controlled_deinit().
  * @param line     The initialised line, which has no other sensor. The driver becomes its listener. Must stay valid
  *                 until fathom_a16_controlled_deinit().
- * @param trigger  Drives the RX pin of the module: a pin, or a break of the line (fathom_output_line_break()). Copied;
- *                 its `ctx` must stay valid until fathom_a16_controlled_deinit().
+ * @param trigger  Drives the RX pin of the module: a pin, a break of the line (fathom_output_line_break()), or a byte
+ *                 (fathom_output_line_byte()), as `start` of the model requires. Copied; its `ctx` must stay valid until fathom_a16_controlled_deinit().
  * @param config   The configuration. Not used after the call. NULL selects all defaults.
  * @retval FATHOM_OK               The driver listens. Next, call fathom_poll().
  * @retval FATHOM_ERR_ARGUMENT     `line`, `trigger` or `trigger->set` is NULL, the line is not initialised, or a member
- *                                 of the configuration is outside its range.
+ *                                 of the configuration or a fact is outside its range. `latest_ms` is at least 1.
  * @retval FATHOM_ERR_BUSY         The line has another listener, which stays. The trigger was not touched.
  * @retval FATHOM_ERR_UNSUPPORTED  The port has no `set_break`, or the pin no `set`.
  */

@@ -28,12 +28,13 @@ extern "C" {
  * 1. **RS232.** The first Modbus request stops the automatic output of an RS232 module. The output does not return
  *    without a power cycle or a write to register 0x0202 (A16 5). a16_rs232.h does this.
  *
- * 2. **Samples.** The kind is FATHOM_TARGET, or the meaning of the values 0, FFFD, FFFE and FFFF (dyp.h). `time_us` is
+ * 2. **Samples.** The kind is FATHOM_TARGET, or the meaning of a value that is no distance (dyp.h). `time_us` is
  *    the arrival of the last byte of the response.
  *
  * 3. **Sequence.** Each response increments `sequence`, a response with a refused value too. A value that is read
  *    sooner than the module measures is the old value; no response shows this. The datasheet prints no period for
- *    Modbus. It prints 120 ms for a triggered measurement (A16 3(2)), which is the least period of the driver.
+ *    Modbus. It prints 120 ms for a triggered measurement (A16 3(2)). The facts of the model have the least period of
+ *    the driver.
  *
  * 4. **Time.** The longest time until fathom_poll() returns a sample or an error is, in the terms of modbus_unit.h:
  *
@@ -51,7 +52,7 @@ extern "C" {
  * | FATHOM_ERR_NO_RESPONSE | the unit did not respond within `timeout_us`; the datasheet documents no exceptions |
  * | FATHOM_ERR_CHECKSUM | the response was damaged |
  * | FATHOM_ERR_EXCEPTION | the unit refused; fathom_a16_modbus_exception() returns the exception code |
- * | FATHOM_ERR_MALFORMED | the unit sent another frame, or a refused value: outside the window, or FFFF |
+ * | FATHOM_ERR_MALFORMED | the unit sent another frame, or a refused value: outside the range, or FFFF |
  * | FATHOM_ERR_WARMING_UP | no reading yet so soon after fathom_a16_modbus_power_on() |
  * | FATHOM_ERR_PORT | the port is broken; returned by every poll while it cannot be read |
  * | FATHOM_ERR_LINE_BUSY | the line was never silent; says nothing about the unit (status.h) |
@@ -64,14 +65,14 @@ extern "C" {
  * A refused value increments `base.measurement.implausible` and stands in `base.measurement.refused_raw` (dyp.h).
  */
 
-/** @brief Least time from one request to the next, in microseconds (rule 3). */
-#define FATHOM_A16_MIN_PERIOD_US 120000uL
-
 /** @brief Registers of the distances (A16 6(3)). The datasheet documents reads of one register only. */
 enum {
     FATHOM_A16_REGISTER_PROCESSED = 0x0100, /**< Processed distance, in millimetres. */
     FATHOM_A16_REGISTER_REAL_TIME = 0x0101  /**< Real-time distance, in millimetres. */
 };
+
+/** @brief The facts that NULL selects: 1 to 16350 mm, the default meanings, and 120 ms between two requests (rule 3). */
+extern const fathom_model_facts_t fathom_a16_modbus_model;
 
 /** @brief The configuration. A member that is 0 takes its default. */
 typedef struct {
@@ -79,7 +80,8 @@ typedef struct {
      * @brief Address and times (fathom_modbus_config_t).
      *
      * `timeout_us` 0 selects 1 s for the processed value and 300 ms for the real-time value. Sister models respond
-     * within 520 ms and 120 ms; the datasheet prints no time. `period_us` below 120 ms selects 120 ms.
+     * within 520 ms and 120 ms; the datasheet prints no time. A
+     * `period_us` below `period_ms` of the model selects that; with the default facts it is 120 ms.
      */
     fathom_modbus_config_t modbus;
 
@@ -90,8 +92,12 @@ typedef struct {
      */
     uint32_t start_us;
 
-    /** @brief Accepted distances, and the meaning of the other values. 0 selects 1 to 16350 mm. */
-    fathom_dyp_window_t window;
+    /**
+     * @brief The facts of the model (model_facts.h), such as those of models.h. NULL selects fathom_a16_modbus_model.
+     *
+     * Must stay valid until fathom_a16_modbus_deinit().
+     */
+    const fathom_model_facts_t *model;
 
     /** @brief The distance that the driver reads: a fathom_dyp_value_t. 0 selects FATHOM_PROCESSED. */
     uint8_t value;

@@ -63,6 +63,7 @@ extern "C" {
 
 /** @brief Registers (A16 6(3)). a16_modbus.h has the registers of the distances. */
 enum {
+    FATHOM_A16_REGISTER_TEMPERATURE = 0x0102,                  /**< Temperature; relatives only. */
     FATHOM_A16_REGISTER_ADDRESS = FATHOM_DYP_REGISTER_ADDRESS, /**< Address of the unit: 0x0200. */
     FATHOM_A16_REGISTER_OPERATING_MODE = 0x0202,               /**< Operating mode. WRITE-ONLY. */
     FATHOM_A16_REGISTER_SWITCH_POLARITY = 0x0205,              /**< Polarity of the switch output. */
@@ -102,6 +103,16 @@ void fathom_a16_modbus_cancel(fathom_a16_modbus_t *sensor);
  */
 fathom_status_t fathom_a16_modbus_measure(fathom_a16_modbus_t *sensor, fathom_dyp_value_t value,
                                           fathom_sample_t *sample);
+
+/**
+ * @brief Reads the temperature of the air or the water (0x0102), which relatives of the A16 measure.
+ *
+ * @param sensor          The driver. Its model has FATHOM_HAS_TEMPERATURE (model_facts.h); the A16 does not.
+ * @param temperature_dc  The temperature in tenths of a degree C, signed. Written with FATHOM_OK only.
+ * @retval FATHOM_ERR_UNSUPPORTED  The model does not have this register. Nothing was sent.
+ * @return All other values: as a read (rule 2).
+ */
+fathom_status_t fathom_a16_modbus_get_temperature(fathom_a16_modbus_t *sensor, int16_t *temperature_dc);
 
 /**
  * @brief Reads the address of the unit (0x0200).

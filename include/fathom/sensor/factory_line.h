@@ -23,6 +23,9 @@ extern "C" {
 /** @brief HPS-167S: 19200 baud, even parity, 1 stop bit (HPS-167S 2.3). A command sets the rate (#9). */
 extern const fathom_line_settings_t fathom_hps167s_factory_line;
 
+/** @brief HPS-167 and HPS-166 with a UART: 115200 baud, no parity, 1 stop bit (hps167_uart.h says how certain that is). */
+extern const fathom_line_settings_t fathom_hps167_factory_line;
+
 /** @brief A16: 9600 baud, no parity, 1 stop bit, in each mode with a UART (A16 2(2), 4(3), 5(2)). They are fixed. */
 extern const fathom_line_settings_t fathom_a16_factory_line;
 

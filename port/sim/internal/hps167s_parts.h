@@ -29,6 +29,9 @@ void fathom_sim_hps167s_write_many(fathom_sim_hps167s_t *hps, fathom_modbus_mess
 /* LOST lasts so long from now on. */
 void fathom_sim_hps167s_wait_for_data(fathom_sim_hps167s_t *hps, uint32_t now_us);
 
+/* The four registers of #5: a distance, or FATHOM_SIM_NO_TARGET and so on. optics: NULL: the datasheet's example. */
+void fathom_sim_hps167s_put(uint16_t *values, int32_t distance, const fathom_sim_optics_t *optics);
+
 /* The model's. */
 void fathom_sim_hps167s_power_on(fathom_sim_device_t *device, uint32_t now_us);
 

@@ -47,3 +47,14 @@ void hps167s_settings_use(const fathom_sample_t *sample)
 
 DRIVER(hps167s_auto, listening_begin(), &line, NULL)
 ONLY(hps167s_auto, distance_mm)
+
+DRIVER(hps167_uart, line_begin(), &line, NULL)
+
+void hps167_uart_use(const fathom_sample_t *sample)
+{
+    uint16_t temperature;
+    outcome = sample->distance_mm;
+    fathom_hps167_uart_power_on(&hps167_uart);
+    outcome = (uint16_t)fathom_hps167_uart_get_temperature(&hps167_uart, &temperature);
+    outcome = (uint16_t)fathom_hps167_uart_stop(&hps167_uart);
+}

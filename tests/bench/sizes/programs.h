@@ -74,7 +74,8 @@ extern volatile uint8_t level;
     X(hps167s)                                                                                               \
     X(hps167s_info)                                                                                          \
     X(hps167s_settings)                                                                                      \
-    X(hps167s_auto)
+    X(hps167s_auto)                                                                                          \
+    X(hps167_uart)
 
 #define DECLARE(program)                                                                                     \
     fathom_sensor_t program##_begin(void);                                                                   \

@@ -226,11 +226,11 @@ LIST(hps_gap_before, K_HPS, "HPS 2.2.3", "3.5 characters between frames, also af
      {0, 1, "not needed"}, {1, 1, "a request without them is lost"})
 LIST(hps_other_parity, K_HPS, "HPS 2.2.2", "even is required and default; odd and none can also be used",
      {0, 2, "only even is heard"}, {1, 1, "heard, answered with even"}, {2, 1, "heard, answered alike"})
-LIST(hps_busy, K_HPS, "HPS 2.2.1", "a request while one is being served: not printed", {0, 1, "ignored"},
-     {1, 1, "served afterwards"})
+LIST(hps_busy, K_HPS_VALUES, "HPS 2.2.1", "a request while one is being served: not printed",
+     {0, 1, "ignored"}, {1, 1, "served afterwards"})
 RANGE(hps_response_us, K_HPS, "HPS 2.2.3", "3.5 characters at least; the longest is not printed (6 Hz)", 2006,
       166667, 5000)
-RANGE(hps_measure_us, K_HPS, "HPS table 1, #5", "6~54 Hz", 18519, 166667, 18519)
+RANGE(hps_measure_us, K_HPS_VALUES, "HPS table 1, #5", "6~54 Hz", 18519, 166667, 18519)
 RANGE(hps_flash_us, K_HPS, "HPS #7", "time of a write to FLASH is not printed", 0, 100000, 5000)
 LIST(hps_illegal_function, K_HPS, "HPS table 39, 2.5", "01 illegal function code", {1, 3, "exception 01"},
      V_SILENCE)
@@ -297,31 +297,32 @@ LIST(hps_broadcast_reset, K_HPS, "HPS 2.2.1, #6", "broadcast for writes; the res
      {0, 1, "ignored"}, {1, 1, "done, not answered"})
 
 /* HPS-167S: values. */
-LIST(hps_sample_at, K_HPS, "HPS #5", "starts a measurement", {0, 1, "value of the request's time"},
+LIST(hps_sample_at, K_HPS_VALUES, "HPS #5", "starts a measurement", {0, 1, "value of the request's time"},
      {1, 1, "value of the response's time"})
-RANGE(hps_over_range, K_HPS, "HPS #5", "over-range indication of 65.53 meters", 65530, 65535, 65530)
-LIST(hps_over_magnitude, K_HPS, "HPS #5", "signal too low; no magnitude printed", {0, 1, "0"},
+RANGE(hps_over_range, K_HPS_VALUES, "HPS #5", "over-range indication of 65.53 meters", 65530, 65535, 65530)
+LIST(hps_over_magnitude, K_HPS_VALUES, "HPS #5", "signal too low; no magnitude printed", {0, 1, "0"},
      {16, 1, "0010, exponent 0"}, {-1, 1, "as with a target"})
-LIST(hps_over_precision, K_HPS, "HPS #5", "out of range; no precision printed", {0, 1, "0"},
+LIST(hps_over_precision, K_HPS_VALUES, "HPS #5", "out of range; no precision printed", {0, 1, "0"},
      {65535, 1, "FFFF"})
-RANGE(hps_far_mm, K_HPS, "HPS table 1", "18 m with a white target, text speaks of more than 20 m", 18000,
-      60000, 18000)
-LIST(hps_near, K_HPS, "HPS table 1", "minimum 0.08 m; nearer: not printed", {0, 1, "true value"},
+RANGE(hps_far_mm, K_HPS_VALUES, "HPS table 1", "18 m with a white target, text speaks of more than 20 m",
+      18000, 60000, 18000)
+LIST(hps_near, K_HPS_VALUES, "HPS table 1", "minimum 0.08 m; nearer: not printed", {0, 1, "true value"},
      {1, 1, "80"}, {2, 1, "0"}, {3, 1, "over-range"})
-RANGE(hps_deviation_mm, K_HPS, "HPS #12", "inherent deviation of a sensor, 15 mm in the example", -20, 20, 0)
-LIST(hps_magnitude, K_HPS, "HPS #5", "two bytes, no limit", {0xDCB2, 1, "as printed"}, {1, 1, ""},
+RANGE(hps_deviation_mm, K_HPS_VALUES, "HPS #12", "inherent deviation of a sensor, 15 mm in the example", -20,
+      20, 0)
+LIST(hps_magnitude, K_HPS_VALUES, "HPS #5", "two bytes, no limit", {0xDCB2, 1, "as printed"}, {1, 1, ""},
      {65535, 1, ""})
-LIST(hps_magnitude_exp, K_HPS, "HPS #5", "one byte, no limit", {7, 1, "as printed"}, {0, 1, ""}, {16, 1, ""},
-     {31, 1, ""}, {255, 1, ""})
-LIST(hps_ambient, K_HPS, "HPS #5", "one byte, no limit", {1, 1, "as printed"}, {0, 1, ""}, {254, 1, ""},
-     {255, 1, ""})
-LIST(hps_precision, K_HPS, "HPS #5", "two bytes, no limit", {0, 1, "as printed"}, {1, 1, ""}, {1000, 1, ""},
-     {65534, 1, ""})
-LIST(hps_abnormal_exp, K_HPS, "HPS #5", "abnormal packet: Magnitude 0x00; exponent not printed", {0, 1, "00"},
-     {255, 1, "FF"})
+LIST(hps_magnitude_exp, K_HPS_VALUES, "HPS #5", "one byte, no limit", {7, 1, "as printed"}, {0, 1, ""},
+     {16, 1, ""}, {31, 1, ""}, {255, 1, ""})
+LIST(hps_ambient, K_HPS_VALUES, "HPS #5", "one byte, no limit", {1, 1, "as printed"}, {0, 1, ""},
+     {254, 1, ""}, {255, 1, ""})
+LIST(hps_precision, K_HPS_VALUES, "HPS #5", "two bytes, no limit", {0, 1, "as printed"}, {1, 1, ""},
+     {1000, 1, ""}, {65534, 1, ""})
+LIST(hps_abnormal_exp, K_HPS_VALUES, "HPS #5", "abnormal packet: Magnitude 0x00; exponent not printed",
+     {0, 1, "00"}, {255, 1, "FF"})
 LIST(hps_fault_single, K_HPS, "HPS #5, table 39", "failure: abnormal packet in continuous, 04 device failed",
      {7, 1, "abnormal packet"}, V_EXCEPTION(4), V_SILENCE)
-LIST(hps_fault_every, K_HPS, "HPS #5", "how often measurements fail is not printed",
+LIST(hps_fault_every, K_HPS_VALUES, "HPS #5", "how often measurements fail is not printed",
      {0, 2, "never by itself"}, {20, 1, "one in 20"}, {100, 1, "one in 100"})
 LIST(hps_fault_packets, K_HPS, "HPS #15", "sends out abnormal data packets", {0, 1, "at every period"},
      {1, 1, "once a failure"})
@@ -340,7 +341,7 @@ LIST(hps_offset_effect, K_HPS, "HPS #12", "saved, and loaded each time the senso
      {0, 1, "at once"}, {1, 1, "at the next power-on or #13"})
 LIST(hps_offset_large, K_HPS, "HPS #12", "small-scale deviations; beyond 1000 mm: not printed", V_TAKEN,
      V_EXCEPTION(3), V_SILENCE)
-LIST(hps_below_zero, K_HPS, "HPS #12", "distance plus offset below 0: not printed", {0, 1, "0"},
+LIST(hps_below_zero, K_HPS_VALUES, "HPS #12", "distance plus offset below 0: not printed", {0, 1, "0"},
      {1, 1, "16 bits wrap around"})
 LIST(hps_load_scope, K_HPS, "HPS #13", "FF is the factory-set parameter; which ones is not printed",
      {0, 1, "offset and filter"}, {1, 1, "all but ID and rate"}, {2, 1, "all"})
@@ -357,3 +358,16 @@ LIST(hps_reset_scope, K_HPS, "HPS #6", "all settings of the RS485 interface firm
      {0, 1, "not offset and filter"}, {1, 1, "offset and filter too"})
 LIST(hps_reset_restart, K_HPS, "HPS #6", "what follows is not printed", {0, 1, "goes on"},
      {1, 1, "restarts, warms up again"})
+
+/* HPS-167 with a UART: no datasheet; the sections name what public programs do. */
+LIST(hps167_unknown, K_HPS167, "CRC of HPS", "three bytes before the distance: 01 01 01 in an example",
+     {1, 1, "01"}, {0, 1, "00"}, {0x0A, 1, "0A"}, {0x0D, 1, "0D"}, {-1, 2, "any bytes"})
+LIST(hps167_frame_end, K_HPS167, "requests of 10 bytes", "how a request ends is not known",
+     {0, 1, "with its length"}, {1, 1, "with a silence of 3.5 characters"})
+RANGE(hps167_reply_us, K_HPS167, "stop, temperature", "programs wait 1 to 500 ms", 100, 100000, 2500)
+LIST(hps167_single_beside, K_HPS167, "single", "while it sends continuously: not known",
+     {0, 1, "answered besides"}, {1, 1, "ends the output"}, {2, 1, "ignored"})
+LIST(hps167_text, K_HPS167, "power-on", "sends Hypersen; whether a line ends is not known",
+     {8, 2, "Hypersen"}, {10, 1, "with CR LF"}, {0, 1, "nothing"})
+LIST(hps167_temperature, K_HPS167, "temperature", "two bytes, divided by 100 in one program", {2500, 1, ""},
+     {0, 1, ""}, {65535, 1, ""}, {0x0A0D, 1, ""})

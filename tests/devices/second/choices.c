@@ -19,10 +19,12 @@
 #define K_A05            (K_A05_UART | K_A05_RS485)
 #define K_MODBUS         (K_A16_MODBUS | K_A05)
 #define K_HPS            KIND(HPS167S)
-#define K_HEARS          (K_MODBUS | K_HPS)
+#define K_HPS167         KIND(HPS167)
+#define K_HPS_VALUES     (K_HPS | K_HPS167)
+#define K_HEARS          (K_MODBUS | K_HPS_VALUES)
 #define K_RESPONSES      (K_HEARS | K_A16_CONTROLLED)
 #define K_PAIR           (K_A16_RS485 | K_A05_RS485 | K_HPS)
-#define K_ALL            (K_A16 | K_A05 | K_HPS)
+#define K_ALL            (K_A16 | K_A05 | K_HPS_VALUES)
 #define K_PWM            KIND(A16_PWM)
 #define K_TRIGGERED      (K_A16_CONTROLLED | K_PWM)
 #define K_SWITCH         KIND(A16_SWITCH)
@@ -147,6 +149,8 @@ static const hooks_t *hooks_of(second_kind_t kind)
         return &second_a05_hooks;
     case SECOND_HPS167S:
         return &second_hps_hooks;
+    case SECOND_HPS167:
+        return &second_hps167_hooks;
     case SECOND_A16_PWM:
     case SECOND_A16_SWITCH:
     case SECOND_A05_RELAY:

@@ -126,24 +126,33 @@ bool second_hps_fails(second_device_t *d)
     return every != 0 && second_truth_random(d, (uint32_t)every) == 0;
 }
 
+void second_hps_fill(second_device_t *d, uint64_t at_us, bool failed, uint8_t *data, second_event_t *seen)
+{
+    if (failed)
+        abnormal(d, data, seen);
+    else
+        measure(d, at_us, data, seen);
+}
+
+void second_hps_log(second_event_t *event, const second_event_t *seen, const job_t *job)
+{
+    event->asked = job->end_us != 0;
+    event->probes = seen->probes;
+    event->fault = seen->fault;
+    event->no_target = seen->no_target;
+    event->seen_from_us = seen->seen_from_us;
+    event->seen_to_us = seen->seen_to_us;
+    event->true_mm[0] = seen->true_mm[0];
+    event->sent[0] = seen->sent[0];
+}
+
 void second_hps_send(second_device_t *d, const job_t *job, bool failed)
 {
     uint8_t frame[16] = {job->reply_address, READ, 8};
     second_event_t seen = {0};
     bool at_request = job->end_us != 0 && chosen(d, CHOICE_hps_sample_at) == 0;
-    if (failed)
-        abnormal(d, frame + 3, &seen);
-    else
-        measure(d, at_request ? job->end_us : d->now_us, frame + 3, &seen);
-    second_event_t *event = second_slave_response(d, job, frame, 11, SECOND_EVENT_MEASUREMENT);
-    event->asked = job->end_us != 0;
-    event->probes = seen.probes;
-    event->fault = seen.fault;
-    event->no_target = seen.no_target;
-    event->seen_from_us = seen.seen_from_us;
-    event->seen_to_us = seen.seen_to_us;
-    event->true_mm[0] = seen.true_mm[0];
-    event->sent[0] = seen.sent[0];
+    second_hps_fill(d, at_request ? job->end_us : d->now_us, failed, frame + 3, &seen);
+    second_hps_log(second_slave_response(d, job, frame, 11, SECOND_EVENT_MEASUREMENT), &seen, job);
 }
 
 static void unasked(second_device_t *d)

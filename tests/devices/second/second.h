@@ -34,6 +34,7 @@ typedef enum {
     SECOND_A05_UART,       /* automatic until a Modbus command comes */
     SECOND_A05_RS485,      /* 55 AA frames and Modbus */
     SECOND_HPS167S,
+    SECOND_HPS167,  /* UART, frames of its own */
     SECOND_TALKERS, /* the ones before it send bytes, those from here on a level */
     SECOND_A16_PWM = SECOND_TALKERS,
     SECOND_A16_SWITCH,
@@ -47,7 +48,7 @@ typedef struct {
     uint8_t stop_bits;
 } second_line_t;
 
-/* Distance of the object in front of each probe, or SECOND_NOTHING. The A16 and the HPS-167S use mm[0]. */
+/* Distance of the object in front of each probe, or SECOND_NOTHING. All but the A05 use mm[0]. */
 typedef struct {
     int32_t mm[SECOND_PROBES];
 } second_scene_t;

@@ -47,7 +47,7 @@ typedef struct {
     second_line_t line; /* settings of the response */
     bool bad_crc;       /* HPS-167S: to be refused */
 } job_t;
-enum { PROTOCOL_MODBUS, PROTOCOL_DYP, PROTOCOL_TRIGGER };
+enum { PROTOCOL_MODBUS, PROTOCOL_DYP, PROTOCOL_TRIGGER, PROTOCOL_HPS167 };
 
 typedef struct {
     bool select_low;                          /* A16: the level that RX has long enough */
@@ -146,7 +146,8 @@ struct second_device {
     uint64_t log_count;
 };
 
-extern const hooks_t second_a16_hooks, second_a05_hooks, second_hps_hooks, second_level_hooks;
+extern const hooks_t second_a16_hooks, second_a05_hooks, second_hps_hooks, second_hps167_hooks,
+    second_level_hooks;
 
 /* wire.c */
 uint16_t second_wire_crc16(const uint8_t *bytes, size_t len);
@@ -195,8 +196,14 @@ second_line_t second_hps_line(uint8_t code);
 hps_settings_t second_hps_factory(const second_device_t *d);
 bool second_hps_warming_up(const second_device_t *d);
 bool second_hps_fails(second_device_t *d); /* this measurement, by itself */
+/* Writes the 8 bytes of a measurement, and what they stem from. */
+void second_hps_fill(second_device_t *d, uint64_t at_us, bool failed, uint8_t *data, second_event_t *seen);
+void second_hps_log(second_event_t *event, const second_event_t *seen, const job_t *job);
 void second_hps_send(second_device_t *d, const job_t *job, bool failed);
 void second_hps_job(second_device_t *d, const job_t *job);
+
+/* hps167.c */
+uint16_t second_hps167_crc(const uint8_t *bytes, size_t len);
 
 static inline int64_t chosen(const second_device_t *d, second_choice_t choice) { return d->choice[choice]; }
 static inline uint64_t chosen_us(const second_device_t *d, second_choice_t choice)

@@ -22,5 +22,7 @@ void life_a05_rs485(rig_t *rig);
 void life_a05_dyp(rig_t *rig);
 void life_hps167s(rig_t *rig);
 void life_hps167s_auto(rig_t *rig);
+void life_hps167(rig_t *rig);
+void life_hps167_continuous(rig_t *rig);
 
 #endif

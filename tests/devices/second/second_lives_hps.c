@@ -169,3 +169,39 @@ void life_hps167s_auto(rig_t *rig)
     fathom_hps167s_auto_deinit(&listener);
     fathom_hps167s_deinit(&h.sensor);
 }
+
+/* ---- HPS-167 with a UART ---- */
+
+static fathom_hps167_uart_t uart;
+
+#define READ_UART(name, call, is_right)                                                                      \
+    do {                                                                                                     \
+        fathom_status_t status;                                                                              \
+        judge_begin(name);                                                                                   \
+        JUDGE_RUN(status, any, call);                                                                        \
+        judge_read(status, is_right);                                                                        \
+    } while (0)
+
+static void live_uart(rig_t *rig, bool is_continuous, const char *name)
+{
+    const fathom_hps167_uart_config_t config = {.modbus.retries = 2, .continuous = is_continuous};
+    uint16_t temperature = 0;
+    assert_int_equal(fathom_hps167_uart_init(&uart, &rig->line, &config), FATHOM_OK);
+    const fathom_sensor_t any = fathom_hps167_uart_sensor(&uart);
+    rig_power(rig, true);
+    for (size_t i = 0; i < 2 * THERE; i++) {
+        rig_scene(rig, there_mm[i % THERE], 0, 0, 0);
+        judge_poll(name, &any, 20, SETTLED_US);
+        if (i % 4 == 3)
+            READ_UART("hps167_temperature", fathom_hps167_uart_get_temperature(&uart, &temperature),
+                      temperature == second_choice(&rig->device, CHOICE_hps167_temperature));
+        if (i == 4) rig_restart(rig, SECOND_US / 2, 0);
+        if (i == 9) READ_UART("hps167_stop", fathom_hps167_uart_stop(&uart), !rig->device.automatic);
+    }
+    fathom_hps167_uart_deinit(&uart);
+    rig_wait(rig, SECOND_US);
+    assert_false(rig->device.automatic);
+}
+
+void life_hps167(rig_t *rig) { live_uart(rig, false, "hps167"); }
+void life_hps167_continuous(rig_t *rig) { live_uart(rig, true, "hps167_continuous"); }

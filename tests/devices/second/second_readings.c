@@ -68,9 +68,10 @@ static const char *wrong_hps(const fathom_sample_t *s, const second_event_t *e)
         if (!e->no_target && e->true_mm[0] + off >= 0) return "no target, and there is one";
         return e->fault ? "no target, and it has failed" : NULL;
     case FATHOM_FAULT: /* the abnormal packet, or its very bytes */
-        for (size_t i = 3; i < 11; i++) {
-            uint8_t expected = i == 5 || i == 6 ? 0x00 : 0xFF;
-            if (i != 7 && e->raw[i] != expected) return "'failed', and the device does not say so";
+        for (size_t i = 0; i < 8; i++) {
+            uint8_t expected = i == 2 || i == 3 ? 0x00 : 0xFF;
+            if (i != 4 && e->raw[(kind() == SECOND_HPS167 ? 5 : 3) + i] != expected)
+                return "'failed', and the device does not say so";
         }
         return NULL;
     case FATHOM_UNKNOWN:

@@ -106,8 +106,10 @@ static int uart_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx
     return count;
 }
 
-static bool changes(const uint8_t *bytes, size_t length)
+static bool changes(const rig_t *rig, const uint8_t *bytes, size_t length)
 {
+    if (rig->device.config.kind == SECOND_HPS167)
+        return bytes[1] != 0x22 && bytes[1] != 0x24 && bytes[1] != 0x30 && bytes[1] != 0x3F;
     if (bytes[0] == 0x55 && bytes[1] == 0xAA) return bytes[3] == 0x03;
     return bytes[1] != 0x03 || (length == 8 && bytes[2] == 0 && bytes[3] == 0x09); /* HPS-167S #6 is a read */
 }
@@ -123,7 +125,7 @@ static int uart_write(void *ctx, const uint8_t *bytes, size_t length)
     rig->sent_us = rig->now_us + length * bits * 1000000 / rig->set.baud;
     memcpy(rig->last, bytes, length);
     rig->last_len = length;
-    if (changes(bytes, length)) {
+    if (changes(rig, bytes, length)) {
         bool is_dyp = bytes[0] == 0x55 && bytes[1] == 0xAA;
         rig->writes++;
         bool may = bytes[0] == 0 && bytes[1] == 6 && bytes[2] == 0 && (bytes[3] == 0x12 || bytes[3] == 0x13);
@@ -190,7 +192,8 @@ void rig_open(rig_t *rig, const second_config_t *config)
     /* A loop in step with what a device sends unasked may never see a silence to ask in (line.h). */
     bool is_slow = rig->loop == RIG_EVERY_20_MS;
     bool is_fast =
-        config->kind == SECOND_HPS167S && second_choice(&rig->device, CHOICE_hps_unasked_us) < 60000;
+        (config->kind == SECOND_HPS167S && second_choice(&rig->device, CHOICE_hps_unasked_us) < 60000) ||
+        (config->kind == SECOND_HPS167 && second_choice(&rig->device, CHOICE_hps_measure_us) < 60000);
     if (is_slow && (config->kind == SECOND_A16_RS232 || config->kind == SECOND_A05_UART))
         rig->loop = RIG_EVERY_7_MS;
     if (is_slow && is_fast) rig->loop = RIG_EVERY_1_MS;
@@ -198,6 +201,7 @@ void rig_open(rig_t *rig, const second_config_t *config)
     rig->clock_begins_us = begins_us[config->seed / 3 % 4];
     rig->set = (second_line_t){9600, 'N', 1};
     if (config->kind == SECOND_HPS167S) rig->set = (second_line_t){19200, 'E', 1};
+    if (config->kind == SECOND_HPS167) rig->set = (second_line_t){115200, 'N', 1};
     rig->clock = (fathom_clock_t){clock_now_us, rig};
     rig->uart = (fathom_uart_t){.read = uart_read,
                                 .write = uart_write,

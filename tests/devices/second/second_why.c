@@ -85,7 +85,7 @@ bool judge_is_later(uint16_t reg)
 static bool leaves_no_room(void)
 {
     int64_t character_us = 573, frame_us = 13 * character_us * (10 + chose(CHOICE_any_byte_gap_tenths)) / 10;
-    bool is_on = is_hps() && chose(CHOICE_hps_unasked) != 0;
+    bool is_on = kind() == SECOND_HPS167S && chose(CHOICE_hps_unasked) != 0;
     return is_on && frame_us + 15 * character_us > chose(CHOICE_hps_unasked_us);
 }
 
@@ -124,7 +124,7 @@ reason_t judge_why(fathom_status_t status)
     bool is_measured = status == FATHOM_ERR_MALFORMED || (status == FATHOM_ERR_STALE && f.unasked);
     if (is_measured && is_hps() && chose(CHOICE_hps_magnitude_exp) > 16) return BECAUSE_STRENGTH;
     if (is_measured && f.odd_values > 0) return BECAUSE_NO_DISTANCE;
-    bool is_temperature = is_hps() && judge.rig->last[3] == 0x04;
+    bool is_temperature = kind() == SECOND_HPS167S && judge.rig->last[3] == 0x04;
     if (status == FATHOM_ERR_MALFORMED && is_temperature &&
         (chose(CHOICE_hps_temperature) & 0x7FFF) % 0x7FFF == 0)
         return BECAUSE_NO_DISTANCE;
@@ -135,7 +135,8 @@ reason_t judge_why(fathom_status_t status)
     bool has_switched = !d->automatic && (kind() == SECOND_A16_RS232 || kind() == SECOND_A05_UART);
     if (status == FATHOM_ERR_STALE && has_switched) return BECAUSE_SWITCHED;
     /* stream.h, rule 5: bytes may have arrived meanwhile, as the first ones of the frame that comes too late. */
-    const bool is_stale = status == FATHOM_ERR_STALE || (status == FATHOM_ERR_CHECKSUM && !is_hps());
+    const bool is_stale =
+        status == FATHOM_ERR_STALE || (status == FATHOM_ERR_CHECKSUM && kind() != SECOND_HPS167S);
     if (is_stale && (d->automatic || is_hps()) && judge.rig->now_us >= f.unasked_us + 1900000)
         return early ? BECAUSE_STARTING : BECAUSE_RARE;
     if (status == FATHOM_ERR_NO_RESPONSE && (f.silent || is_unanswered())) {

@@ -8,7 +8,8 @@
 static inline int64_t chose(second_choice_t choice) { return second_choice(&judge.rig->device, choice); }
 static inline second_kind_t kind(void) { return judge.rig->device.config.kind; }
 static inline bool is_a05(void) { return kind() == SECOND_A05_UART || kind() == SECOND_A05_RS485; }
-static inline bool is_hps(void) { return kind() == SECOND_HPS167S; }
+/* Has the values of an HPS-167S. */
+static inline bool is_hps(void) { return kind() == SECOND_HPS167S || kind() == SECOND_HPS167; }
 
 /* What the log says of the time since the command began. */
 typedef struct {

@@ -66,3 +66,5 @@ TEST(a05_rs485) { live(SECOND_A05_RS485, life_a05_rs485, 70); }
 TEST(a05_dyp) { live(SECOND_A05_RS485, life_a05_dyp, 75); }
 TEST(hps167s) { live(SECOND_HPS167S, life_hps167s, 40); }
 TEST(hps167s_auto) { live(SECOND_HPS167S, life_hps167s_auto, 45); }
+TEST(hps167) { live(SECOND_HPS167, life_hps167, 50); }
+TEST(hps167_continuous) { live(SECOND_HPS167, life_hps167_continuous, 50); }

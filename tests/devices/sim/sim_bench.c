@@ -42,6 +42,13 @@ void add_hps(hps_config_t config)
     attach(bench.device = &bench.hps.device);
 }
 
+void add_hps167(hps167_config_t config)
+{
+    if (config.scene.distance == NULL) config.scene = fathom_sim_fixed(&bench.fixed);
+    fathom_sim_hps167_init(&bench.hps167, &config);
+    attach(bench.device = &bench.hps167.device);
+}
+
 void set_a16(uint8_t mode, int32_t mm, a16_config_t config)
 {
     bench_begin(&bench_9600, mode != FATHOM_SIM_A16_MODBUS);
@@ -61,6 +68,13 @@ void set_hps(int32_t mm, hps_config_t config)
     bench_begin(&bench_19200, false);
     bench.fixed = FIXED(mm);
     add_hps(config);
+}
+
+void set_hps167(int32_t mm, hps167_config_t config)
+{
+    bench_begin(&bench_115200, true);
+    bench.fixed = FIXED(mm);
+    add_hps167(config);
 }
 
 void cycle_power(uint32_t off_ms, uint32_t wait_for_ms)

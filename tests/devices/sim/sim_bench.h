@@ -11,12 +11,14 @@
 #include "sim/a05.h"
 #include "sim/a16.h"
 #include "sim/fault.h"
+#include "sim/hps167.h"
 #include "sim/hps167s.h"
 #include "sim/scene.h"
 #include "sim/sim.h"
 
 static const fathom_line_settings_t bench_9600 = {9600, FATHOM_PARITY_NONE, 1};
 static const fathom_line_settings_t bench_19200 = {19200, FATHOM_PARITY_EVEN, 1};
+static const fathom_line_settings_t bench_115200 = {115200, FATHOM_PARITY_NONE, 1};
 
 /* Where the clock starts: at nothing special; so that it wraps after 65 ms, 1 s, 3 ms; at the sign bit. */
 enum { BENCH_STARTS = 5 };
@@ -41,6 +43,7 @@ enum { MS = 1000, BENCH_ROOM = 4096 };
 typedef fathom_sim_a16_config_t a16_config_t;
 typedef fathom_sim_a05_config_t a05_config_t;
 typedef fathom_sim_hps167s_config_t hps_config_t;
+typedef fathom_sim_hps167_config_t hps167_config_t;
 
 typedef struct {
     fathom_sim_line_t line;
@@ -56,6 +59,7 @@ typedef struct {
     fathom_sim_a16_t a16;
     fathom_sim_a05_t a05;
     fathom_sim_hps167s_t hps;
+    fathom_sim_hps167_t hps167;
     fathom_sim_device_t *device; /* the one of them that was added last */
     fathom_sim_fault_t fault;    /* of that device, where a test has attached it */
 } bench_t;
@@ -79,11 +83,13 @@ void bench_begin(const fathom_line_settings_t *settings, bool full_duplex);
 void add_a16(uint8_t mode, a16_config_t config);
 void add_a05(uint8_t mode, a05_config_t config);
 void add_hps(hps_config_t config);
+void add_hps167(hps167_config_t config);
 
 /* Alone on a line that suits it. */
 void set_a16(uint8_t mode, int32_t mm, a16_config_t config);
 void set_a05(uint8_t mode, fathom_sim_fixed_t mm, a05_config_t config);
 void set_hps(int32_t mm, hps_config_t config);
+void set_hps167(int32_t mm, hps167_config_t config);
 
 /* Another one than the bench's own. */
 void attach(fathom_sim_device_t *device);

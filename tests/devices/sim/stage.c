@@ -60,7 +60,9 @@ void init_driver(driver_t *driver, model_t model, uint8_t unit, const fathom_lin
     const fathom_a05_modbus_config_t a05 = {.modbus.address = unit, .modbus.line_settings = settings};
     const fathom_a05_dyp_config_t dyp = {.modbus.address = unit, .modbus.line_settings = settings};
     const fathom_hps167s_config_t hps = {.modbus.address = unit, .modbus.line_settings = settings};
+    const fathom_hps167_uart_config_t hps167 = {.modbus.line_settings = settings};
     fathom_status_t status = FATHOM_PENDING;
+    if (model == HPS167) status = fathom_hps167_uart_init(&driver->hps167, &s.line, &hps167);
     if (model == HPS) status = fathom_hps167s_init(&driver->hps, &s.modbus, &hps);
     if (model == A16) status = fathom_a16_modbus_init(&driver->a16, &s.modbus, &a16);
     if (model == A05) status = fathom_a05_modbus_init(&driver->a05, &s.modbus, &a05);
@@ -71,6 +73,7 @@ void init_driver(driver_t *driver, model_t model, uint8_t unit, const fathom_lin
 fathom_sensor_t sensor_of(driver_t *driver, model_t model)
 {
     if (model == HPS) return fathom_hps167s_sensor(&driver->hps);
+    if (model == HPS167) return fathom_hps167_uart_sensor(&driver->hps167);
     if (model == A16) return fathom_a16_modbus_sensor(&driver->a16);
     return model == A05 ? fathom_a05_modbus_sensor(&driver->a05) : fathom_a05_dyp_sensor(&driver->dyp);
 }
@@ -85,7 +88,8 @@ void set_echo(uint8_t echo)
 
 void set_up(model_t model, uint8_t unit, uint32_t loop_us, uint8_t echo)
 {
-    stage_begin(model == HPS ? &bench_19200 : &bench_9600, false, loop_us);
+    const bool is_hps167 = model == HPS167;
+    stage_begin(is_hps167 ? &bench_115200 : model == HPS ? &bench_19200 : &bench_9600, is_hps167, loop_us);
     bench.fixed = FIXED(1234, 2000, 1953, 3562);
     set_echo(echo);
     bench.line.echo = echo == FATHOM_LINE_ECHO_ON;
@@ -93,6 +97,7 @@ void set_up(model_t model, uint8_t unit, uint32_t loop_us, uint8_t echo)
     init_driver(&s.driver, model, unit, &s.settings);
     s.sensor = sensor_of(&s.driver, model);
     if (model == HPS) add_hps((hps_config_t){.address = unit});
+    if (model == HPS167) add_hps167((hps167_config_t){.seed = 1});
     if (model == A16) add_a16(FATHOM_SIM_A16_MODBUS, (a16_config_t){.address = unit});
     if (model == A05) add_a05(FATHOM_SIM_A05_MODBUS, (a05_config_t){.address = unit});
     if (model == A05_DYP) add_a05(FATHOM_SIM_A05_DYP, (a05_config_t){.address = unit});
@@ -118,6 +123,7 @@ fathom_sim_device_t *add_other(uint8_t unit)
 fathom_modbus_unit_t *unit_of(void)
 {
     if (s.model == HPS) return &s.driver.hps.unit;
+    if (s.model == HPS167) return &s.driver.hps167.unit;
     if (s.model == A16) return &s.driver.a16.base.unit;
     return s.model == A05 ? &s.driver.a05.base.unit : &s.driver.dyp.base.unit;
 }
@@ -125,6 +131,7 @@ fathom_modbus_unit_t *unit_of(void)
 void cancel(void)
 {
     if (s.model == HPS) fathom_hps167s_cancel(&s.driver.hps);
+    if (s.model == HPS167) fathom_hps167_uart_cancel(&s.driver.hps167);
     if (s.model == A16) fathom_a16_modbus_cancel(&s.driver.a16);
     if (s.model == A05) fathom_a05_modbus_cancel(&s.driver.a05);
     if (s.model == A05_DYP) fathom_a05_dyp_cancel(&s.driver.dyp);
@@ -133,6 +140,7 @@ void cancel(void)
 void power_on(void)
 {
     if (s.model == HPS) fathom_hps167s_power_on(&s.driver.hps);
+    if (s.model == HPS167) fathom_hps167_uart_power_on(&s.driver.hps167);
     if (s.model == A16) fathom_a16_modbus_power_on(&s.driver.a16);
     if (s.model == A05) fathom_a05_modbus_power_on(&s.driver.a05);
     if (s.model == A05_DYP) fathom_a05_dyp_power_on(&s.driver.dyp);

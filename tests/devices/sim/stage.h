@@ -15,13 +15,14 @@
 enum { SECOND = 1000000, LOOPS = 4 };
 static const uint32_t loops_us[LOOPS] = {0, 20 * MS, 1 * MS, 300 * MS}; /* 0: it sleeps as long as it may */
 
-typedef enum { A16, A05, A05_DYP, HPS, MODELS } model_t;
+typedef enum { A16, A05, A05_DYP, HPS, ADDRESSED, HPS167 = ADDRESSED, MODELS } model_t;
 
 typedef union {
     fathom_a16_modbus_t a16;
     fathom_a05_modbus_t a05;
     fathom_a05_dyp_t dyp;
     fathom_hps167s_t hps;
+    fathom_hps167_uart_t hps167;
 } driver_t;
 
 typedef struct {

@@ -17,7 +17,7 @@ static fathom_status_t set_new(void) { return set_address(NEW); }
 
 /* Every model, in either loop, on a line without echo and on one with it. */
 #define FOR_ALL_MODELS                                                                                       \
-    for (unsigned n = 0; n != 4 * MODELS; n++)                                                               \
+    for (unsigned n = 0; n != 4 * ADDRESSED; n++)                                                            \
         if (set_up_one(n), true)
 
 static void set_up_one(unsigned n)

@@ -21,7 +21,7 @@ sys.path.insert(0, os.path.join(TESTS, 'checks'))
 from count import cases  # noqa: E402: it counts what the host's tests print, and these print the same
 
 # Lines of left_out.txt. Who makes one longer changes this too.
-LEFT_OUT = {'avr': 56, 'powerpc': 15}
+LEFT_OUT = {'avr': 57, 'powerpc': 15}
 # A target with fewer cases than this has lost some.
 AT_LEAST = {'avr': 700, 'powerpc': 1950}
 SECONDS = 500  # for one suite; a busy machine is slow, not wrong

@@ -23,6 +23,22 @@ class Case(e2e.Case):
         for one in done.json:
             self.assertEqual(self.read_json(one['next'][12:], '--count 1 --timeout 5000')[0]['distance_mm'], 1234)
 
+    def test_one_finds_the_unit_that_responds_at_address_255_and_stops(self):
+        sim = self.sim('a16:200:modbus,with=broadcast hps167s:1 --distance 1234')
+        one, = self.ends(f'scan --port {sim} --format json --one {PATIENT}', 0, '. --one ended the scan').json
+        self.assertEqual([one['address'], one['distance_mm'], one['is_certain']], [200, 1234, True])
+        self.assertEqual(self.read_json(one['next'][12:], '--count 1 --timeout 5000')[0]['distance_mm'], 1234)
+
+    def test_a_soil_probe_is_named_and_is_no_sensor(self):
+        device = self.device()
+        program = self.fathom(f'scan --port {device} --address 7 --baud 9600 --format json {PATIENT}')
+        device.asked(e2e.adu(255, 3, 2, 0, 0, 1))
+        for register, response in ((0x0200, (0x83, 2)), (0x0100, (3, 2, 0, 7)), (0x0101, (3, 2, 0, 2))):
+            device.asked(e2e.adu(7, 3, register >> 8, register & 255, 0, 1), e2e.adu(7, *response))
+        found, = self.ends(program, 1).json
+        self.assertEqual([found['kind'], found['address'], found['model']], ['other_modbus', 7, None])
+        self.assertTrue(found['perhaps'].startswith('a soil probe: '))
+
     def test_the_printed_command_quotes_the_port_for_a_shell(self):
         self.sim(['hps167s:7', '--link', self.path("it's here")])
         done = self.ends(['scan', '--port', self.path("it's here"),
@@ -36,7 +52,7 @@ class Case(e2e.Case):
         device = self.device()
         program = self.fathom(f'scan --port {device} --address 1-2 --listen 1')
         program.expect('^fathom: listens for .*addresses 1 to 2 at 9600 8N1, 19200 8E1: about ', 'err')
-        device.asked(e2e.adu(1, 3, 2, 0, 0, 1))  # A16 6: the address register, which measures nothing
+        device.asked(e2e.adu(255, 3, 2, 0, 0, 1))  # A16 6: the address register, which measures nothing
         self.assertEqual(device.baud(), termios.B9600)
         self.ends(program, 1)
 

@@ -214,6 +214,7 @@ TEST(after_a_begin_that_failed_each_poll_of_every_class_is_refused)
         ON_LINE(a05_modbus, true, modbus.address, 255)
         ON_LINE(a05_dyp, true, modbus.address, 255)
         ON_LINE(hps167s, true, modbus.address, 33)
+        ON_LINE(hps167_uart, true, modbus.address, 1)
     }
 
     const fathom_output_t none = {};
@@ -312,4 +313,5 @@ TEST(objects_cannot_be_copied_and_are_no_larger_than_their_parts)
     EACH(a05_relay)
     EACH(hps167s)
     EACH(hps167s_auto)
+    EACH(hps167_uart)
 }

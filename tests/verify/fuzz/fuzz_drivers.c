@@ -8,6 +8,7 @@
 #include "fathom/sensor/a16_auto.h"
 #include "fathom/sensor/a16_controlled.h"
 #include "fathom/sensor/a16_rs232.h"
+#include "fathom/sensor/hps167_uart.h"
 #include "fathom/sensor/hps167s_auto.h"
 #include "fathom/sensor/hps167s_info.h"
 #include "fathom/sensor/hps167s_settings.h"
@@ -29,6 +30,7 @@ static uint8_t only;  /* the address that a sample has; NONE: several are right 
 
 static fathom_hps167s_t hps;
 static fathom_hps167s_auto_t hps_auto;
+static fathom_hps167_uart_t hps167;
 static fathom_a16_modbus_t a16;
 static fathom_a16_auto_t a16_auto;
 static fathom_a16_rs232_t rs232;
@@ -118,6 +120,10 @@ COMMAND(dyp_set_address, fathom_a05_dyp_broadcast_address(&a05_dyp, x))
 COMMAND(dyp_finds, fathom_a05_dyp_find(&dyp_find, &line, &out.byte))
 static const command_t dyp_commands[] = {dyp_set_address, dyp_finds};
 
+COMMAND(hps167_temperature, fathom_hps167_uart_get_temperature(&hps167, &out.word))
+COMMAND(hps167_stop, fathom_hps167_uart_stop(&hps167))
+static const command_t hps167_commands[] = {hps167_temperature, hps167_stop};
+
 static const command_t *commands;
 static unsigned command_count;
 #define COMMANDS(table) (commands = (table), command_count = sizeof(table) / sizeof *(table))
@@ -162,6 +168,8 @@ static void cancel(uint8_t how)
     command = NULL;
     if (commands == hps_commands)
         (how & 1) != 0 ? fathom_hps167s_cancel(&hps) : fathom_hps167s_power_on(&hps);
+    if (commands == hps167_commands)
+        (how & 1) != 0 ? fathom_hps167_uart_cancel(&hps167) : fathom_hps167_uart_power_on(&hps167);
     if (commands == a16_commands) {
         if (count == 2) fathom_a16_rs232_cancel(&rs232);
         (how & 1) != 0 ? fathom_a16_modbus_cancel(&a16) : fathom_a16_modbus_power_on(&a16);
@@ -195,6 +203,7 @@ static void check_sample(const fathom_sample_t *sample)
         is_heard = is_heard || wire_heard_sum(0, 0xFF, sample->model == FATHOM_A16 ? 4 : 10, raw);
     if (sensors[0].ctx == &a05_dyp || sensors[0].ctx == &a05_dyp.base)
         is_heard = wire_heard_sum(0, 0x55, 13, raw) || wire_heard_sum(0, 0x55, 7, raw);
+    if (sensors[0].ctx == &hps167) is_heard = wire_heard_hps167(raw);
     PROMISE(is_heard, "a reading that was not heard");
     const uint16_t most_mm = sample->model == FATHOM_HPS167S ? 30000
                              : sample->model == FATHOM_A05   ? 6000
@@ -269,6 +278,14 @@ static void add_a16(bool is_rs232, uint8_t how, const fathom_modbus_config_t *mo
     fathom_a16_rs232_init(&rs232, &a16, &a16_auto);
 }
 
+static void add_hps167(bool is_continuous, const fathom_modbus_config_t *modbus)
+{
+    const fathom_hps167_uart_config_t of = {.modbus = *modbus, .continuous = is_continuous};
+    PROMISE(fathom_hps167_uart_init(&hps167, &line, &of) == FATHOM_OK, "hps167_uart.h: init");
+    add(fathom_hps167_uart_sensor(&hps167));
+    COMMANDS(hps167_commands);
+}
+
 static void add_controlled(uint8_t how)
 {
     const fathom_output_t trigger =
@@ -285,7 +302,7 @@ static void add_world(uint8_t world, uint8_t how)
     const fathom_a05_auto_config_t of_a05_auto = {.probes = how % 16};
     const fathom_a05_modbus_config_t of_a05 = {.modbus = modbus, .probes = how % 16};
     const fathom_a05_dyp_config_t of_dyp = {.modbus = modbus, .probes = how % 16};
-    is_asked = world < 6;
+    is_asked = world < 6 || world == 9;
     switch (world) {
     case 0:
     case 1:
@@ -313,8 +330,11 @@ static void add_world(uint8_t world, uint8_t how)
         PROMISE(fathom_hps167s_auto_init(&hps_auto, &line, NULL) == FATHOM_OK, "hps167s_auto.h: init");
         add(fathom_hps167s_auto_sensor(&hps_auto));
         break;
-    default:
+    case 8:
         add_controlled(how);
+        break;
+    default:
+        add_hps167(world == 10, &modbus);
     }
 }
 
@@ -339,7 +359,7 @@ static void begin(void)
     commands = NULL;
     memset(&dyp_find, 0, sizeof dyp_find);
     memset(&modbus_find, 0, sizeof modbus_find);
-    add_world(world % 16 % 9, how);
+    add_world(world % 16 % 11, how);
 }
 
 static uint32_t due(void)

@@ -59,13 +59,13 @@ def line(frames):
 def drivers(frames):
     """Each world: requests with their responses, frames that come by themselves, and each command twice."""
     found = []
-    for world in range(9):
+    for world in range(11):
         begin = bytes([world, 0x0f, 0, 0]) + b'\x0f\x0f\x0f'
         values = b'\x01\x02\x03\x04\x05\x06\x07\x08' * 2
         found.append(begin + (b'\x01' + values + b'\x0f') * 2)
         unasked = [b'\x08\x05' + bytes([4 | kind << 4]) + values[:11] + b'\x0f' for kind in (0, 1, 2)]
         found.append(begin + b''.join(unasked))
-        for command in range(15 if world < 2 else 12 if world < 4 else 3 if world < 6 else 0):
+        for command in range(15 if world < 2 else 12 if world < 4 else 3 if world < 6 else 2 if world > 8 else 0):
             found.append(begin + bytes([12, command, 5]) + (b'\x0f\x0f\x01' + values[:6]) * 4)
     return found
 

@@ -171,6 +171,30 @@ static void come(const uint8_t *bytes, unsigned count)
     wire.queued += count;
 }
 
+/* CRC-16/CCITT-FALSE, bit by bit. */
+static uint16_t crc_of_hps167(const uint8_t *bytes, unsigned count)
+{
+    uint32_t crc = 0xFFFF;
+    for (unsigned i = 0; i != count * 8u; i++) {
+        const uint32_t in = bytes[i / 8] >> (7 - i % 8) & 1u;
+        crc = (crc << 1 ^ ((crc >> 15 ^ in) % 2 != 0 ? 0x1021u : 0u)) % 65536u;
+    }
+    return (uint16_t)crc;
+}
+
+/* The response to a request of an HPS-167; returns its length. */
+static unsigned respond_as_hps167(uint8_t *frame)
+{
+    const unsigned count = frame[1] == 0x30 ? 1 : frame[1] == 0x3F ? 2 : 11;
+    for (unsigned i = 0; i != count; i++)
+        frame[2 + i] = count == 1 || i == 3 ? fuzz_byte() & 63 : fuzz_byte();
+    const uint16_t crc = crc_of_hps167(frame + 2, count);
+    frame[1] = (uint8_t)(count + 2);
+    frame[2 + count] = (uint8_t)(crc >> 8);
+    frame[3 + count] = (uint8_t)crc;
+    return count + 4;
+}
+
 /* What the last request asks for, with the input's values; how: bits. */
 static void respond(uint8_t how)
 {
@@ -184,6 +208,8 @@ static void respond(uint8_t how)
         for (unsigned i = 4; i + 1 < length; i++) frame[i] = i % 2 == 0 ? fuzz_byte() & 15 : fuzz_byte();
         if (asked[2] == 255) frame[2] = 3;
         frame[length - 1] = fuzz_sum(frame, length - 1);
+    } else if (asked[0] == 0x0A && wire.length == 10 && asked[1] >= 0x22) {
+        length = respond_as_hps167(frame);
     } else {
         if (asked[0] == 255) frame[0] = 2;
         if ((how & 2) != 0) {
@@ -343,6 +369,16 @@ bool wire_heard_sum(unsigned from, uint8_t start, uint8_t length, uint16_t value
         if (frame == NULL || frame[length - 1] != fuzz_sum(frame, length - 1u)) continue;
         for (unsigned i = start == 0xFF ? 1 : 4; i + 2u < length; i += 2)
             if (fuzz_word_at(frame + i) == value) return true;
+    }
+    return false;
+}
+
+bool wire_heard_hps167(uint16_t value)
+{
+    for (unsigned at = 0; at < wire.count; at++) {
+        const uint8_t *const frame = wire.heard[at] == 0x0A ? frame_at(at, 15) : NULL;
+        if (frame == NULL || frame[1] != 0x0D || fuzz_word_at(frame + 5) != value) continue;
+        if (fuzz_word_at(frame + 13) == crc_of_hps167(frame + 2, 11)) return true;
     }
     return false;
 }

@@ -71,5 +71,7 @@ bool wire_heard_exception(unsigned from, uint8_t unit, uint8_t function, uint8_t
 bool wire_heard_register(unsigned from, uint8_t unit, uint16_t value);
 /* The same of a frame that ends in its sum: one that begins with `start`, 55 or FF, of `length` bytes. */
 bool wire_heard_sum(unsigned from, uint8_t start, uint8_t length, uint16_t value);
+/* A measurement of an HPS-167 with this distance. */
+bool wire_heard_hps167(uint16_t value);
 
 #endif

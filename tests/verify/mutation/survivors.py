@@ -147,13 +147,6 @@ ROWS = [
      'src/sensor/a16_settings.c | get_choice | condition: status != FATHOM_OK -> 0 | if (status != FATHOM_OK)',
      'src/sensor/a16_settings.c | get_choice | jump dropped: it -> nothing | if (status != FATHOM_OK) return '
      'status'),
-    ('more than 65535 mm either way, which is what is said',
-     'src/codec/pulse_width.c | bounded_us | constant: LONGEST_US -> (LONGEST_US - 1) | return (width_us < '
-     'LONGEST_US) ? width_us : LONGEST_US',
-     'src/codec/pulse_width.c | bounded_us | constant: LONGEST_US -> (LONGEST_US + 1) | return (width_us < '
-     'LONGEST_US) ? width_us : LONGEST_US | 2',
-     'src/codec/pulse_width.c | bounded_us | constant: LONGEST_US -> (LONGEST_US - 1) | return (width_us < '
-     'LONGEST_US) ? width_us : LONGEST_US | 2'),
     ('what is not in mm is in the rest',
      'src/codec/pulse_width.c | fathom_pulse_width_mm_in_air | constant: 20000u -> 20001u | const uint32_t mm = '
      'high / 20000u'),

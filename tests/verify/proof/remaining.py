@@ -141,7 +141,6 @@ UNPROVED = ()
 NO_HIGH_BYTE = 'the number of registers in a read has 8 bits, so its high byte in the request, head[4], is 0'
 REFUSED_BEFORE = 'fathom_hps167s_init has refused `address_zero` and every address above 32 before'
 ONE_PROBE = 'an A16 has one probe, so no value is left when it is polled; line/a05_modbus reaches this'
-A16 = 'the sensor is an A16; line/a05_modbus reaches this'
 NO_RATE = 'a setting of an A16 changes no line settings; line/hps167s_settings reaches this'
 NO_FOLLOW = 'nothing is set, so `follow` is NULL; line/hps167s_settings reaches this'
 
@@ -150,7 +149,6 @@ ONE_REGISTER = 'a line has a buffer of 8 bytes or more, and the response of an A
 
 # Statements that no run of a harness reaches: {(harness, function): (their number, why)}.
 UNREACHED = {
-    ('line/a16_modbus', 'fathom_dyp_modbus_init'): (1, A16),
     ('line/a16_modbus', 'fathom_dyp_modbus_sensor_due_us'): (1, ONE_PROBE),
     ('line/a16_modbus', 'fathom_modbus_unit_has_room'): (1, ONE_REGISTER),
     ('line/a16_modbus', 'moves'): (1, NO_RATE),
@@ -161,6 +159,5 @@ UNREACHED = {
     ('line/hps167s', 'is_valid_0'): (3, REFUSED_BEFORE + '; ' + HAS_ROOM),
     ('line/hps167s_auto', 'fathom_hps167s_auto_sensor_due_us'):
         (1, 'the harness polls before each due_us, and the poll takes the reading'),
-    ('pure/dyp', 'complete'): (2, 'each case of the switch returns, so nothing follows it'),
     ('line/line', 'fathom_line_submit'): (3, 'the line of the harness can send, so `fail_all` is not NULL'),
 }

@@ -87,12 +87,14 @@ static const option_t rows[] = {
      .parse = parse_parities, AT(scan_settings_t, parities)},
     {"stop-bits", "N", "Set 1 or 2 stop bits; 2 implies no parity", KIND_NUMBER, GROUP_LINE, .min = 1,
      .max = 2, AT(scan_settings_t, stop_bits)},
-    {"timeout", "MS", "Wait MS for a response (150 at 9600 8N1, else 100)", KIND_NUMBER, GROUP_COMMAND,
+    {"timeout", "MS", "Wait MS for a response (A16 or A05 150, else 100)", KIND_NUMBER, GROUP_COMMAND,
      .min = 1, .max = 10000, .scale = 1000, AT(scan_settings_t, timeout_us)},
     {"retries", "N", "Ask a silent address N more times (default 0)", KIND_NUMBER, GROUP_COMMAND, .max = 9,
      AT(scan_settings_t, retries)},
     {"listen", "S", "Listen for S seconds before the first request (8)", KIND_NUMBER, GROUP_COMMAND, .min = 1,
      .max = 60, .scale = 1000000, AT(scan_settings_t, listen_us)},
+    {"one", .help = "Stop at the first sensor that is found", .group = GROUP_COMMAND,
+     AT(scan_settings_t, is_one)},
     {"wake", .help = "Send requests also if a sensor sends automatically", .group = GROUP_COMMAND,
      AT(scan_settings_t, wake)},
     {"estimate", .help = "Print how long the scan would take, and stop", .group = GROUP_COMMAND,
@@ -117,6 +119,13 @@ static uint8_t factory_parity(uint32_t baud)
     return models[i].line.parity;
 }
 
+/* Returns the parity of the relatives of a model at this rate as a bit. */
+static unsigned factory_parities(const model_t *model, uint32_t baud, uint8_t stop_bits)
+{
+    const fathom_line_settings_t *const line = &model->relatives_line;
+    return baud == line->baud && stop_bits == line->stop_bits ? 1u << line->parity : 0;
+}
+
 /* Fills in the defaults, and the line settings. The parity of the factory comes first: at an address where a device
  * responds, the others of this rate are left out. */
 static void make_plan(scan_settings_t *plan)
@@ -131,7 +140,9 @@ static void make_plan(scan_settings_t *plan)
     if (plan->rates[0] == 0) add_rates_of_models(plan->rates, false);
     for (const uint32_t *baud = plan->rates; *baud != 0; baud++) {
         const uint8_t factory = factory_parity(*baud);
-        const unsigned parities = plan->parities != 0 ? plan->parities : 1u << factory;
+        unsigned parities = plan->parities;
+        for (size_t i = 0; plan->parities == 0 && i != model_count; i++)
+            parities |= 1u << factory | factory_parities(&models[i], *baud, plan->stop_bits);
         const uint8_t order[] = {factory, FATHOM_PARITY_NONE, FATHOM_PARITY_EVEN, FATHOM_PARITY_ODD};
         for (size_t i = 0; i != sizeof order; i++)
             if ((parities >> order[i] & 1) != 0 && (i == 0 || order[i] != factory))
@@ -195,6 +206,7 @@ static const struct {
         {"sender", "sends without requests, but no frames of the known sensors", NULL,
          "a device sends without a request. An HPS-167S made before 2020-09 has another protocol. "
          "Another rate, swapped wires A and B and noise have the same effect"},
+    [SCAN_ALIKE] = {"hps167", "speaks like an HPS-167", NULL, "a device sends without a request"},
     [SCAN_MASTER] =
         {"master", "another master sends requests to this address", NULL,
          "another master sends requests on this line. Disconnect it or stop its program, and scan again"},
@@ -221,13 +233,13 @@ static const char *settings_text(const scan_finding_t *finding, const char *port
 /* The fields below name the members by their offsets. */
 typedef struct {
     /* cppcheck-suppress unusedStructMember */
-    const char *kind, *model, *parity, *mode, *interface_version, *sensor_version, *uuid, *status;
+    const char *kind, *model, *parity, *mode, *interface_version, *sensor_version, *uuid, *status, *perhaps;
     char *next;
     /* cppcheck-suppress unusedStructMember */
-    int64_t address, baud, stop_bits, termination, distance_mm, raw, is_double;
+    int64_t address, baud, stop_bits, termination, distance_mm, raw, is_certain, is_double;
 } row_t;
 
-enum { SENSOR = 1, OPTICS = 2, VALUE = 4 };
+enum { SENSOR = 1, OPTICS = 2, VALUE = 4, UNCONFIRMED = 8 };
 
 #define FOUND(member) offsetof(row_t, member)
 static const field_t fields[] = {
@@ -247,6 +259,9 @@ static const field_t fields[] = {
     {"status", "", "Kind of the first value", FIELD_WORD, VALUE, FOUND(status)},
     {"distance_mm", "mm", "Distance of the first probe", FIELD_NUMBER, VALUE, FOUND(distance_mm)},
     {"raw", "", "Value that the sensor sent", FIELD_NUMBER, VALUE, FOUND(raw)},
+    {"is_certain", "", "Whether only an a16, a05 or relative responds like this", FIELD_FLAG, VALUE,
+     FOUND(is_certain)},
+    {"perhaps", "", "What a device that is not confirmed could be", FIELD_WORD, UNCONFIRMED, FOUND(perhaps)},
     {"is_double", "", "Whether one request had two responses", FIELD_FLAG, 0, FOUND(is_double)},
     {"next", "", "Command to type next", FIELD_WORD, 0, FOUND(next)},
     {.key = NULL},
@@ -273,6 +288,8 @@ static void print_json(const scan_finding_t *finding, const char *port)
                  .sensor_version = word_of(finding->sensor_version),
                  .uuid = word_of(finding->uuid),
                  .termination = finding->termination[0] != '\0' ? is_terminated(finding) : NO_VALUE,
+                 .perhaps = finding->perhaps,
+                 .is_certain = finding->is_certain,
                  .raw = finding->has_value ? finding->value : NO_VALUE,
                  .is_double = finding->is_double};
     size_t size = 0;
@@ -284,7 +301,8 @@ static void print_json(const scan_finding_t *finding, const char *port)
     if (finding->has_value) row.status = model_value_status(finding->model, finding->value, &row.distance_mm);
     record_json_line(stdout, fields, &row,
                      (is_sensor ? SENSOR : 0u) | (is_sensor && finding->model->has_optics ? OPTICS : 0u) |
-                         (finding->has_value ? VALUE : 0u));
+                         (finding->has_value ? VALUE : 0u) |
+                         (finding->kind == SCAN_OTHER || finding->kind == SCAN_ALIKE ? UNCONFIRMED : 0u));
     free(row.next);
 }
 
@@ -294,7 +312,7 @@ static void print_sensor(const scan_finding_t *finding)
     const bool has_version = finding->sensor_version[0] != '\0';
     int64_t distance_mm = 0;
     if (finding->mode == SCAN_AUTO) {
-        (void)printf("sends without requests");
+        (void)printf("sends without requests: %s", finding->model->scan.family);
     } else if (finding->has_value) {
         const char *const status = model_value_status(finding->model, finding->value, &distance_mm);
         if (finding->model->probes > 1) (void)printf("probe 1: ");
@@ -302,6 +320,8 @@ static void print_sensor(const scan_finding_t *finding)
             (void)printf("%" PRId64 " mm", distance_mm);
         else
             (void)printf("%s (value %u)", status, finding->value);
+        (void)printf(", %s%s%s", finding->is_certain ? "" : "probably ", finding->model->scan.family,
+                     finding->mode == SCAN_MODBUS ? " with Modbus" : "");
     } else if (finding->model->has_optics) {
         if (!has_interface && !has_version) (void)printf("sends unsolicited responses");
         if (has_interface) (void)printf("interface %s", finding->interface_version);
@@ -322,7 +342,8 @@ static void print_text(const scan_finding_t *finding, const char *port)
     if (is_sensor)
         print_sensor(finding);
     else
-        (void)printf("%s", kinds[finding->kind].text);
+        (void)printf("%s%s%s", kinds[finding->kind].text, finding->perhaps != NULL ? "; perhaps " : "",
+                     finding->perhaps != NULL ? finding->perhaps : "");
     if (finding->is_double)
         (void)printf(", responds twice%s", is_sensor ? "" : ": two sensors with one address?");
     if (is_sensor) {
@@ -469,6 +490,8 @@ static void print_result(const scan_t *scan)
     if (scan->sensors == 0) print_nothing(scan);
     (void)fprintf(stderr, "fathom: sensors found: %" PRIu32 ", after %s", scan->sensors,
                   duration_text(scan_now_us(scan) - scan->progress.start_us, duration));
+    if (scan->sensors != 0 && scan->settings->is_one)
+        (void)fputs(". --one ended the scan, and other sensors may be on the line", stderr);
     for (uint8_t i = 0, listed = 0; i != scan->settings->line_count; i++)
         if (scan->left_out[i])
             (void)fprintf(stderr, "%s%s",
@@ -576,9 +599,12 @@ const command_t scan_command = {
     .common = "port address baud wake format",
     .own_group = "Scan",
     .about = "It only reads: no request can change a setting. But even a read ends the automatic output of "
-             "an A16 or A05, so the scan listens first, and sends nothing if a sensor sends. At an address "
-             "where a device responds, other parities of the same rate are not tried.\n",
+             "an A16 or A05, so the scan listens first, and sends nothing if a sensor sends. At the rates of "
+             "A16 and A05 it first reads the address at address 255, to which a unit that is alone responds "
+             "from its own. At an address where a device responds, other parities of the same rate are not "
+             "tried.\n",
     .examples = "  fathom scan --port /dev/ttyUSB0\n"
+                "  fathom scan --port /dev/ttyUSB0 --one\n"
                 "  fathom scan --port /dev/ttyUSB0 --address 1-254 --baud all --parity all\n"
                 "  fathom scan --port /dev/ttyUSB0 --baud 57600,115200 --format json\n",
     .status = "Exit status: 0 a sensor was found, 1 none was or the port failed, 2 wrong usage.\n",

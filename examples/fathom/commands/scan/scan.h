@@ -27,6 +27,7 @@ typedef struct {
     uint8_t retries;     /* of a request to a silent address */
     bool wake;
     bool estimate;
+    bool is_one; /* the first sensor ends the scan */
     bool is_json;
     bool is_default; /* the user chose neither the addresses nor the line settings */
     uint8_t line_count;
@@ -65,12 +66,13 @@ struct scan {
     /* What was found. */
     scan_finding_t
         sender; /* it sends without requests, so unsolicited bytes prove no other device; kind 0: none */
-    uint32_t sensors;                    /* found */
-    uint32_t terminations;               /* sensors whose termination resistor is on */
-    const model_t *terminated;           /* model of these sensors */
-    uint32_t awakened;                   /* sensors of the sender's model */
-    bool has_damaged;                    /* an address whose responses are damaged */
-    bool has_dyp;                        /* a sensor that can have frames 55 AA */
+    uint32_t sensors;          /* found */
+    uint32_t terminations;     /* sensors whose termination resistor is on */
+    const model_t *terminated; /* model of these sensors */
+    uint32_t awakened;         /* sensors of the sender's model */
+    bool has_damaged;          /* an address whose responses are damaged */
+    bool has_dyp;              /* a sensor that can have frames 55 AA */
+    int any; /* address of the unit that answered at address 255 at this line setting; -1: none */
     uint32_t found_baud[SCAN_ADDRESSES]; /* of the device at an address; 0: none */
     evidence_t heard;                    /* echoes, masters, and `bytes` of neither a frame nor an echo */
     uint8_t outside;                     /* an address beyond the plan that sent a frame; 0: none */
@@ -96,8 +98,12 @@ uint64_t scan_plan_us(const scan_settings_t *settings);
 void scan_listen(scan_t *scan);
 
 /*
- * Asks each address of the plan at each line setting of the plan, and identifies each device that responds.
+ * Asks each address of the plan at each line setting of the plan, and identifies each device that responds. With
+ * scan->settings->is_one, the first sensor ends the scan.
  *
+ *  - At the line settings of A16 and A05 and their relatives, the scan first reads the address at address 255. A whole
+ *    response is the address of one unit, which the scan identifies, unless it is not among those that the user named.
+ *    Others may have been silent.
  *  - A late response arrives while the scan asks another address. The scan asks its sender again with a long time-out.
  *  - After bytes that are no frame, or a damaged frame, the scan asks again. If each response is damaged, the address is
  *    SCAN_DAMAGED. If more than half of the addresses are, and no response was whole, the line is SCAN_NOT_MODBUS.

@@ -30,8 +30,14 @@ static uint32_t timeout_of(const scan_settings_t *settings, const fathom_line_se
 {
     uint32_t longest_us = TIMEOUT_US;
     for (size_t i = 0; i != model_count; i++)
-        if (is_of(&models[i], line)) longest_us = longer(longest_us, models[i].scan.timeout_us);
+        if (model_is_at(&models[i], line)) longest_us = longer(longest_us, models[i].scan.timeout_us);
     return settings->timeout_us != 0 ? settings->timeout_us : longest_us;
+}
+
+static uint32_t once_us(const fathom_line_settings_t *line, uint32_t wait_us)
+{
+    const uint32_t bits = REQUEST_BYTES * (uint32_t)fathom_character_bits(line);
+    return bits * 1000000u / line->baud + wait_us + LATENESS_US;
 }
 
 /* Returns the time for one silent address. The silence before the next request passes with the time-out. Before an address
@@ -39,18 +45,28 @@ static uint32_t timeout_of(const scan_settings_t *settings, const fathom_line_se
 static uint32_t address_us(const scan_settings_t *settings, const fathom_line_settings_t *line)
 {
     const uint32_t wait_us = timeout_of(settings, line);
-    const uint32_t bits = REQUEST_BYTES * (uint32_t)fathom_character_bits(line);
-    const uint32_t once_us = bits * 1000000u / line->baud + wait_us + LATENESS_US;
-    return once_us + settings->retries * (once_us + wait_us);
+    const uint32_t first_us = once_us(line, wait_us);
+    return first_us + settings->retries * (first_us + wait_us);
 }
 
-/* Returns the time for all addresses at these settings, and for any A05. The request to any A05 waits until no unit may
+/* Returns the model of which one unit answers at address 255 at these settings; NULL: none. */
+static const model_t *with_any(const fathom_line_settings_t *line)
+{
+    for (size_t i = 0; i != model_count; i++)
+        if (models[i].scan.has_any && model_is_at(&models[i], line)) return &models[i];
+    return NULL;
+}
+
+/* Returns the time for all addresses at these settings, for address 255, and for any A05. After the request to address 255
+ * any unit may respond late, so it takes two time-outs. The request to any A05 waits until no unit may
  * respond late, and after it any unit may, so it takes three time-outs. */
 static uint64_t line_us(const scan_settings_t *settings, const fathom_line_settings_t *line)
 {
     const uint32_t count = settings->addresses.last - settings->addresses.first + 1u;
     const bool has_any = is_of(model_with(DECODE_DYP), line);
+    const uint32_t wait_us = timeout_of(settings, line);
     return (uint64_t)count * address_us(settings, line) +
+           (with_any(line) != NULL ? once_us(line, wait_us) + wait_us : 0) +
            (has_any ? timeout_of(settings, line) + 2 * ANY_TIMEOUT_US + LATENESS_US : 0);
 }
 
@@ -112,6 +128,13 @@ static bool understand(scan_t *scan, const fathom_line_settings_t *line)
     listener_judge(&scan->port.listener, 0, &evidence);
     const bool is_a05 = evidence.streamed_a05 > evidence.streamed_a16;
     const uint8_t length = is_a05 ? FATHOM_DYP_A05_LENGTH : FATHOM_DYP_A16_LENGTH;
+    const listener_t *const listener = &scan->port.listener;
+    for (size_t i = 0; i != model_count; i++) {
+        if (models[i].scan.is_alike == NULL || !models[i].scan.is_alike(listener->window, listener->have))
+            continue;
+        scan->sender = (scan_finding_t){.kind = SCAN_ALIKE, .line = *line, .perhaps = models[i].scan.alike};
+        return true;
+    }
     for (size_t i = 0; i != model_count && evidence.streamed_a05 + evidence.streamed_a16 != 0; i++)
         if (models[i].scan.frame_length == length) sender.model = &models[i];
     if (sender.model == NULL && evidence.masters != 0) {
@@ -131,23 +154,27 @@ static bool understand(scan_t *scan, const fathom_line_settings_t *line)
     return true;
 }
 
+/* Listens with these settings, if the port has them. Returns true if the sender is known, or if the scan ends. */
+static bool hears(scan_t *scan, const fathom_line_settings_t *line)
+{
+    const fathom_status_t status = hear(scan, line, OTHER_RATE_US);
+    if (status != FATHOM_ERR_UNSUPPORTED) scan->status = status;
+    return status != FATHOM_ERR_UNSUPPORTED && (status != FATHOM_OK || understand(scan, line));
+}
+
 /* An A16 and an A05 send at 9600 8N1, with which the port was opened. Bytes that are not understood may have another
- * rate, so the scan then listens at each rate to which a sensor can be set. */
+ * rate, so the scan then listens at each rate to which a sensor can be set, and at that of the relatives. */
 void scan_listen(scan_t *scan)
 {
     const fathom_line_settings_t *const first = &scan->port.options.line;
     scan->status = hear(scan, first, scan->settings->listen_us);
     if (scan->status != FATHOM_OK || scan->port.listener.bytes < LEAST_BYTES || understand(scan, first))
         return;
-    for (size_t i = 0; i != model_count; i++) {
-        for (const uint32_t *rate = models[i].rates; rate != NULL && *rate != 0; rate++) {
-            const fathom_line_settings_t line = {*rate, models[i].line.parity, 1};
-            const fathom_status_t status = hear(scan, &line, OTHER_RATE_US);
-            if (status == FATHOM_ERR_UNSUPPORTED) continue;
-            scan->status = status;
-            if (status != FATHOM_OK || understand(scan, &line)) return;
-        }
+    for (size_t i = model_count; i-- != 0;) {
+        for (const uint32_t *rate = models[i].rates; rate != NULL && *rate != 0; rate++)
+            if (hears(scan, &(fathom_line_settings_t){*rate, models[i].line.parity, 1})) return;
     }
+    if (hears(scan, &model_with(DECODE_STREAM_ONE)->relatives_line)) return;
     scan->sender = (scan_finding_t){.kind = SCAN_SENDER, .line = *first};
 }
 
@@ -235,6 +262,7 @@ static const model_t *tell_apart(inquiry_t *inquiry, uint16_t first)
             if (model->scan.first != first || own == 0 || !ask(inquiry, own, 1, timeout_us, 1)) continue;
             inquiry->finding->value = inquiry->values[0];
             inquiry->finding->has_value = true;
+            inquiry->own = own;
             found = model;
             count++;
         }
@@ -246,6 +274,8 @@ static const model_t *tell_apart(inquiry_t *inquiry, uint16_t first)
  * a value, with an exception, or not at all. */
 static const model_t *likely(const fathom_line_settings_t *line, uint8_t address)
 {
+    const model_t *const any = with_any(line);
+    if (any != NULL) return any;
     for (size_t i = model_count; i-- != 0;)
         if (models[i].scan.count != 0 && model_has_rate(&models[i], line->baud) &&
             model_has_address(&models[i], address))
@@ -285,10 +315,18 @@ static void identify(scan_t *scan)
     scan_finding_t finding = {.line = *scan->line,
                               .address = address,
                               .mode = SCAN_MODBUS,
+                              .is_certain = scan->any == address,
                               .is_double = scan->read.evidence.fitting >= 2};
     scan->inquiry = (inquiry_t){
         .ask = ask, .status = scan->read.status, .values = scan->read.values, .finding = &finding};
     finding.model = find_model(scan);
+    if (finding.model != NULL && finding.model->scan.confirm != NULL &&
+        !finding.model->scan.confirm(&scan->inquiry, finding.model))
+        finding.model = NULL;
+    if (finding.model == NULL) {
+        finding.has_value = false;
+        if (finding.perhaps == NULL) models_name_other(&scan->inquiry);
+    }
     finding.kind = finding.model != NULL ? SCAN_SENSOR : SCAN_OTHER;
     if (scan->status != FATHOM_OK) return;
     scan->found_baud[address] = scan->line->baud;
@@ -421,7 +459,40 @@ static void ask_any_dyp(scan_t *scan)
                                              .mode = SCAN_DYP,
                                              .address = scan->read.responder,
                                              .has_value = true,
-                                             .value = scan->read.values[0]});
+                                             .value = scan->read.values[0],
+                                             .is_certain = true});
+}
+
+/* One unit answers a read of its address at address 255 from its real address. Several damage each other's responses. */
+static void ask_any(scan_t *scan, uint32_t timeout_us)
+{
+    const model_t *const model = with_any(scan->line);
+    scan->any = -1;
+    if (model == NULL) return;
+    scan->read = (scan_read_t){.line = scan->line,
+                               .timeout_us = timeout_us,
+                               .first = model->scan.first,
+                               .count = model->scan.count,
+                               .address = FATHOM_LINE_ANY_UNIT};
+    show_progress(scan);
+    scan_ask(scan);
+    scan->done_us += once_us(scan->line, timeout_us) + timeout_us;
+    if (scan->read.status != FATHOM_OK) return;
+    const uint16_t value = scan->read.values[0];
+    const uint16_t from = scan->read.responder != FATHOM_LINE_ANY_UNIT ? scan->read.responder : value;
+    if (from >= FATHOM_LINE_ANY_UNIT) return;
+    if (value == scan->read.responder) scan->any = from;
+    const scan_addresses_t *const plan = &scan->settings->addresses;
+    if (scan->settings->has_addresses && (from < plan->first || from > plan->last))
+        scan->outside = (uint8_t)from;
+    else
+        visit(scan, (uint8_t)from, timeout_us);
+}
+
+/* Returns true if no further request follows. */
+static bool has_ended(const scan_t *scan)
+{
+    return scan->status != FATHOM_OK || (scan->settings->is_one && scan->sensors != 0);
 }
 
 /* Asks all addresses at scan->line. */
@@ -433,18 +504,24 @@ static void walk_line(scan_t *scan)
     memset(scan->states, NOT_ASKED, sizeof scan->states);
     scan->garbled = 0;
     scan->asked = 0;
+<<<<<<< HEAD
     for (unsigned address = settings->addresses.first; address <= last && scan->status == FATHOM_OK;
          address++) {
         const uint32_t found = scan->found_baud[address];
+=======
+    ask_any(scan, timeout_us);
+    for (unsigned address = settings->addresses.first; address <= last && !has_ended(scan); address++) {
+>>>>>>> hub/models
         scan->read.address = (uint8_t)address;
         show_progress(scan);
         if (found == 0 || (port_has_settings(scan->port.kind) && found != scan->line->baud))
             visit(scan, (uint8_t)address, timeout_us);
         scan->done_us += address_us(settings, scan->line);
     }
-    for (unsigned address = 0; address <= last && scan->status == FATHOM_OK; address++)
+    for (unsigned address = 0; address <= last && !has_ended(scan); address++)
         if (scan->states[address] == LATE) visit(scan, (uint8_t)address, longer(timeout_us, LATE_TIMEOUT_US));
-    if (scan->status == FATHOM_OK) conclude(scan);
+    if (has_ended(scan)) return;
+    conclude(scan);
     if (!scan->has_dyp && is_of(model_with(DECODE_DYP), scan->line)) ask_any_dyp(scan);
 }
 
@@ -453,7 +530,7 @@ void scan_walk(scan_t *scan)
     const scan_settings_t *const settings = scan->settings;
     char line[LINE_TEXT];
     scan->done_us = settings->listen_us;
-    for (uint8_t i = 0; i != settings->line_count && scan->status == FATHOM_OK; i++) {
+    for (uint8_t i = 0; i != settings->line_count && !has_ended(scan); i++) {
         const uint64_t began_us = scan->done_us;
         scan->line = &settings->lines[i];
         walk_line(scan);

@@ -7,6 +7,7 @@
 
 #include "fathom/engine/line.h"
 #include "fathom/sample.h"
+#include "fathom/sensor/model_facts.h"
 #include "fathom/status.h"
 
 #ifdef __cplusplus
@@ -17,12 +18,14 @@ extern "C" {
  * @file
  * @brief The common part of the ultrasonic sensors A16 and A05: the meaning of their 16-bit values.
  *
- * A program needs of this header fathom_dyp_value_t, fathom_meaning_t and fathom_dyp_window_t, and for diagnosis the
- * refused values of fathom_dyp_measurement_t. The drivers use the rest.
+ * A program needs of this header fathom_dyp_value_t, and for diagnosis the refused values of fathom_dyp_measurement_t.
+ * The drivers use the rest.
  *
  * The datasheets print distances and no other value. Sister models use two more values: 0xFFFD for no object, and
  * 0xFFFE for interference by another unit of the same frequency. Users have seen 0 with nothing in range and with a
- * hand on the probe, so 0 has no meaning by default. The driver refuses all other values outside the window.
+ * hand on the probe, so 0 has no meaning by default. Under water, FFFB reports that the module is out of the water. The
+ * facts of a model (model_facts.h) give these values other meanings. 0 and all values from FFFB on are never distances.
+ * The driver refuses all other values outside the range of the model.
  */
 
 /** @brief The distance that a sensor sends, if the mode offers two. */
@@ -31,44 +34,7 @@ typedef enum {
     FATHOM_REAL_TIME = 1  /**< The distance of the last measurement. */
 } fathom_dyp_value_t;
 
-/** @brief The meaning of a value that is no distance: the kind of its sample. */
-typedef enum {
-    FATHOM_MEANS_DEFAULT = 0,                  /**< The default of fathom_dyp_window_t. */
-    FATHOM_MEANS_UNKNOWN = FATHOM_UNKNOWN,     /**< A sample FATHOM_UNKNOWN. */
-    FATHOM_MEANS_NO_TARGET = FATHOM_NO_TARGET, /**< A sample FATHOM_NO_TARGET. */
-    FATHOM_MEANS_TOO_NEAR = FATHOM_NEAR,       /**< A sample FATHOM_NEAR: a target is too near to measure. */
-    FATHOM_MEANS_FAULT = FATHOM_FAULT,         /**< A sample FATHOM_FAULT. */
-    FATHOM_MEANS_INTERFERENCE = 7,             /**< A sample FATHOM_NO_TARGET with `interference`. */
-    FATHOM_MEANS_REFUSED = 8                   /**< No sample: FATHOM_ERR_MALFORMED. */
-} fathom_meaning_t;
-
-/**
- * @brief The accepted distances, and the meaning of four values that are never distances: FFFD, FFFE, FFFF and 0.
- *
- * In a driver's config a member that is 0 takes its default. The init function returns FATHOM_ERR_ARGUMENT if `min_mm`
- * is above `max_mm`, or if a meaning is no fathom_meaning_t.
- */
-typedef struct {
-    /** @brief Least accepted distance in millimetres, 0 to `max_mm`. 0 accepts all from 1 mm. */
-    uint16_t min_mm;
-
-    /** @brief Greatest accepted distance in millimetres, `min_mm` to 65535. 0 selects 16350 (A16) or 6000 (A05). */
-    uint16_t max_mm;
-
-    /** @brief Meaning of FFFD: a fathom_meaning_t. 0 selects FATHOM_MEANS_NO_TARGET. */
-    uint8_t value_fffd;
-
-    /** @brief Meaning of FFFE: a fathom_meaning_t. 0 selects FATHOM_MEANS_INTERFERENCE. */
-    uint8_t value_fffe;
-
-    /** @brief Meaning of FFFF: a fathom_meaning_t. 0 selects FATHOM_MEANS_REFUSED. */
-    uint8_t value_ffff;
-
-    /** @brief Meaning of 0: a fathom_meaning_t. 0 selects FATHOM_MEANS_UNKNOWN. */
-    uint8_t value_0; /* The last of the four, because fathom_dyp_meaning() indexes them by value - FFFD. */
-} fathom_dyp_window_t;
-
-/** @brief The default of fathom_dyp_window_t::max_mm. */
+/** @brief The greatest distance that is accepted if the program names no model. */
 enum {
     FATHOM_A16_MAX_MM = 16350, /**< The longest pulse, 94 ms (A16 1(3)), in millimetres. */
     FATHOM_A05_MAX_MM = 6000   /**< One third above the range of 4.5 m, in millimetres. */
@@ -108,8 +74,8 @@ typedef struct {
     /** @brief Number of refused values. Stops at 65535. */
     uint16_t implausible;
 
-    /** @brief The window, with `max_mm` filled in. */
-    fathom_dyp_window_t window;
+    /** @brief The facts of the model: those of the configuration, or those of the datasheet's sensor. */
+    const fathom_model_facts_t *facts;
 
     /** @brief The values of probe `first` and the following probes, in the driver's memory. */
     uint16_t *values;
@@ -158,30 +124,46 @@ static inline uint8_t fathom_dyp_first_probe(uint8_t probes)
 }
 
 /**
- * @brief Copies a window byte by byte. Compilers replace an assignment of this size by a call of memcpy().
+ * @brief Initialises a response without values. `facts` is set before the call.
  *
- * @param to    The copy.
- * @param from  The window.
- */
-void fathom_dyp_window_copy(fathom_dyp_window_t *to, const fathom_dyp_window_t *from);
-
-/**
- * @brief Initialises a response without values. `window` is set before the call.
- *
- * @param measurement     The response.
- * @param default_max_mm  The `max_mm` that 0 selects, in millimetres.
+ * @param measurement  The response.
  * @retval FATHOM_OK            The response is empty.
- * @retval FATHOM_ERR_ARGUMENT  A member of `window` is outside its range.
+ * @retval FATHOM_ERR_ARGUMENT  A distance or a meaning of `facts` is outside its range.
  */
-fathom_status_t fathom_dyp_measurement_init(fathom_dyp_measurement_t *measurement, uint16_t default_max_mm);
+fathom_status_t fathom_dyp_measurement_init(fathom_dyp_measurement_t *measurement);
 
 /**
  * @brief Returns FATHOM_TARGET if a value is an accepted distance, else its fathom_meaning_t.
  *
- * @param window  The window, with `max_mm` filled in.
- * @param value   The value as the device sent it.
+ * @param facts  The facts of the model.
+ * @param value  The value as the device sent it.
  */
-uint8_t fathom_dyp_meaning(const fathom_dyp_window_t *window, uint16_t value);
+uint8_t fathom_dyp_meaning(const fathom_model_facts_t *facts, uint16_t value);
+
+/**
+ * @brief Returns true if the range of a model contains at least one distance.
+ *
+ * @param facts  The facts of the model.
+ */
+static inline bool fathom_dyp_has_range(const fathom_model_facts_t *facts)
+{
+    return (facts->min_mm <= facts->max_mm) && (facts->max_mm != 0u);
+}
+
+/**
+ * @brief Returns the facts that a configuration names, or those of the datasheet's sensor.
+ *
+ * @param facts      The facts that the configuration names, or NULL.
+ * @param datasheet  The facts of the datasheet's sensor.
+ */
+static inline const fathom_model_facts_t *fathom_dyp_facts_or(const fathom_model_facts_t *facts,
+                                                              const fathom_model_facts_t *datasheet)
+{
+    return (facts != NULL) ? facts : datasheet;
+}
+
+/** @brief Returns a time of the facts in microseconds. */
+static inline uint32_t fathom_dyp_us(uint16_t ms) { return ms * UINT32_C(1000); }
 
 /**
  * @brief Gives the listener of a driver the gap of its line, if the config left it open and the line's is longer.

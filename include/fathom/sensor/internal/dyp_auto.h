@@ -32,22 +32,24 @@ typedef struct {
 /**
  * @brief Initialises the common part and makes the stream the listener of the line.
  *
- * The driver first sets `line`, the members that fathom_stream_start() needs, and `values`, `window`, `model`,
+ * The driver first sets `line`, the members that fathom_stream_start() needs, and `values`, `facts`, `model`,
  * `address` and `first` of the measurement.
  *
- * @param sensor          The common part.
- * @param default_max_mm  The `max_mm` that a window of 0 selects, in millimetres.
+ * @param sensor  The common part.
  * @retval FATHOM_OK            The stream listens.
  * @retval FATHOM_ERR_ARGUMENT  `line` is NULL or not initialised, or a member is outside its range.
  * @retval FATHOM_ERR_BUSY      The line has another listener, which stays.
  */
-fathom_status_t fathom_dyp_auto_init(fathom_dyp_auto_t *sensor, uint16_t default_max_mm);
+fathom_status_t fathom_dyp_auto_init(fathom_dyp_auto_t *sensor);
 
 /** @brief Stops listening. If the stream is not the listener of the line, the present listener stays. */
 void fathom_dyp_auto_deinit(fathom_dyp_auto_t *sensor);
 
 /**
  * @brief Polls the line and fetches the newest frame.
+ *
+ * A frame that repeats the values of the measurement sooner than three quarters of `period_ms` of the facts after it is
+ * the same measurement: `sequence` and `time_us` stay.
  *
  * @param sensor  The common part.
  * @retval FATHOM_OK            The measurement has the values of a new frame. Probe 1 waits for

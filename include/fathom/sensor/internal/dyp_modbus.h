@@ -50,7 +50,7 @@ enum { FATHOM_DYP_REGISTER_ADDRESS = 0x0200 /**< The address (A05 3(3), A16 6(3)
  * @brief Initialises a driver after fathom_modbus_unit_begin().
  *
  * Before the call the driver sets `first`, `count`, `probes` and `start_us` (0 selects its default), and `values`,
- * `window`, `model` and `first` of `measurement`.
+ * `facts`, `model` and `first` of `measurement`.
  *
  * @param sensor      The driver.
  * @param transport   The transport, copied. Its line must stay valid as long as the driver.
@@ -58,7 +58,7 @@ enum { FATHOM_DYP_REGISTER_ADDRESS = 0x0200 /**< The address (A05 3(3), A16 6(3)
  * @param timeout_us  Default of the time-out, as in fathom_modbus_unit_init().
  * @param pace_us     Least time between two measurements, as in fathom_modbus_unit_init().
  * @retval FATHOM_OK            The driver can be used.
- * @retval FATHOM_ERR_ARGUMENT  As fathom_modbus_unit_init(), or the window or `start_us` is outside its range.
+ * @retval FATHOM_ERR_ARGUMENT  As fathom_modbus_unit_init(), or `start_us` or a fact is outside its range.
  */
 fathom_status_t fathom_dyp_modbus_init(fathom_dyp_modbus_t *sensor, const fathom_modbus_t *transport,
                                        const fathom_modbus_config_t *config, uint32_t timeout_us,

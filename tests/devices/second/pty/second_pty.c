@@ -34,11 +34,8 @@ static void on_signal(int number)
 static const struct {
     const char *name;
     second_kind_t kind;
-} kinds[] = {{"a16", SECOND_A16_RS485},
-             {"a16-rs232", SECOND_A16_RS232},
-             {"a05", SECOND_A05_RS485},
-             {"a05-uart", SECOND_A05_UART},
-             {"hps167s", SECOND_HPS167S}};
+} kinds[] = {{"a16", SECOND_A16_RS485},     {"a16-rs232", SECOND_A16_RS232}, {"a05", SECOND_A05_RS485},
+             {"a05-uart", SECOND_A05_UART}, {"hps167s", SECOND_HPS167S},     {"hps167", SECOND_HPS167}};
 
 static uint64_t now_us(void)
 {

@@ -4,8 +4,9 @@
  * with:   src/sensor/dyp.c src/engine/stream.c src/engine/output.c src/engine/sensor.c
  *          src/codec/dyp_stream.c
  * options: -eva-precision 0
- *          -eva-slevel-function fathom_a16_auto_init:50,fathom_dyp_auto_init:20,fathom_dyp_window_copy:40,main:30,output_of:10,take:40
+ *          -eva-slevel-function fathom_a16_auto_init:50,fathom_dyp_auto_init:20,main:30,output_of:10,take:40
  *          -eva-split-return-function fathom_a16_auto_init:0,fathom_dyp_auto_init:0
+ * unreached: fathom_output_set_line_byte
  * quick:   no
  *
  * The A16 that sends by itself: any calls in any order, any bytes.
@@ -45,7 +46,7 @@ void main(void)
     config.stale_us = any_32();
     config.gap_us = any_16();
     config.value = any_8();
-    any_window(&config.window);
+    config.model = any_facts();
     const fathom_sensor_t handle = fathom_a16_auto_sensor(&sensor);
     any_call(&handle); /* in zeroed memory */
     const fathom_status_t status = fathom_a16_auto_init(&sensor, &blank_line, &config);

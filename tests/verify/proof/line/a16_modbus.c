@@ -4,7 +4,7 @@
  *          src/engine/modbus_setting.c src/sensor/dyp_modbus.c
  * with:   src/sensor/dyp.c src/engine/sensor.c src/codec/modbus_rtu.c src/codec/crc16.c
  * options: -eva-precision 0
- *          -eva-slevel-function fathom_modbus_unit_init:400,is_valid:50,fathom_dyp_modbus_init:20,fathom_dyp_window_copy:40,main:5,fathom_a16_modbus_init:50
+ *          -eva-slevel-function fathom_modbus_unit_init:400,is_valid:50,fathom_dyp_modbus_init:20,main:5,fathom_a16_modbus_init:50
  *          -eva-split-return-function fathom_modbus_unit_init:0,is_valid:1,fathom_dyp_modbus_init:0,fathom_a16_modbus_init:0
  * quick:   yes
  *
@@ -21,8 +21,9 @@ static void read_or_set(void)
     uint16_t threshold_mm;
     fathom_a16_polarity_t polarity;
     fathom_dyp_value_t value;
+    int16_t temperature_dc;
     fathom_sample_t sample;
-    switch (any_8_in(0, 11)) {
+    switch (any_8_in(0, 12)) {
     case 0:
         (void)fathom_a16_modbus_get_address(&sensor, &address);
         break;
@@ -55,6 +56,9 @@ static void read_or_set(void)
         break;
     case 10:
         (void)fathom_a16_modbus_measure(&sensor, (fathom_dyp_value_t)any_8(), &sample);
+        break;
+    case 11:
+        (void)fathom_a16_modbus_get_temperature(&sensor, &temperature_dc);
         break;
     default:
         (void)fathom_a16_modbus_write_next_unchecked(&sensor);
@@ -108,7 +112,7 @@ void main(void)
     any_line_init();
     any_modbus_config(&config.modbus);
     config.start_us = any_32();
-    any_window(&config.window);
+    config.model = any_facts();
     config.value = any_8();
     const fathom_sensor_t handle = fathom_a16_modbus_sensor(&sensor);
     any_call(&handle); /* in zeroed memory */

@@ -5,7 +5,7 @@
  *          src/sensor/dyp_auto.c src/sensor/dyp.c src/engine/modbus_command.c src/engine/modbus_unit.c src/engine/modbus_setting.c
  *          src/engine/stream.c src/engine/output.c src/engine/sensor.c src/codec/dyp_stream.c src/codec/modbus_rtu.c
  * options: -eva-precision 0
- *          -eva-slevel-function fathom_modbus_unit_init:400,is_valid:50,fathom_dyp_modbus_init:20,fathom_dyp_window_copy:40,main:30,fathom_a16_modbus_init:50,fathom_a16_auto_init:50,fathom_dyp_auto_init:20,take:40
+ *          -eva-slevel-function fathom_modbus_unit_init:400,is_valid:50,fathom_dyp_modbus_init:20,main:30,fathom_a16_modbus_init:50,fathom_a16_auto_init:50,fathom_dyp_auto_init:20,take:40
  *          -eva-split-return-function fathom_modbus_unit_init:0,is_valid:1,fathom_dyp_modbus_init:0,fathom_a16_modbus_init:0,fathom_a16_auto_init:0,fathom_dyp_auto_init:0
  * quick:   no
  *
@@ -49,14 +49,14 @@ void main(void)
     any_line_init();
     any_modbus_config(&config.modbus);
     config.start_us = any_32();
-    any_window(&config.window);
+    config.model = any_facts();
     config.value = any_8();
     config_automatic.select.set = NULL;
     config_automatic.select.ctx = NULL;
     config_automatic.stale_us = any_32();
     config_automatic.gap_us = any_16();
     config_automatic.value = any_8();
-    any_window(&config_automatic.window);
+    config_automatic.model = any_facts();
     if (fathom_a16_modbus_init(&modbus, &assumed_transport, &config) != FATHOM_OK) return;
     if (fathom_a16_auto_init(&automatic, &any_line, &config_automatic) != FATHOM_OK) return;
     fathom_a16_rs232_init(&rs232, &modbus, &automatic);

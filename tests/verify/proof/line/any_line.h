@@ -198,14 +198,28 @@ static void any_modbus_config(fathom_modbus_config_t *config)
     config->retries = any_8();
 }
 
-static void any_window(fathom_dyp_window_t *window)
+/* Any facts of a model. A config of NULL selects those of the datasheet. */
+static const fathom_model_facts_t *any_facts(void)
 {
-    window->min_mm = any_16();
-    window->max_mm = any_16();
-    window->value_fffd = any_8();
-    window->value_fffe = any_8();
-    window->value_ffff = any_8();
-    window->value_0 = any_8();
+    static fathom_model_facts_t facts;
+    facts.line_settings = NULL;
+    facts.min_mm = any_16();
+    facts.max_mm = any_16();
+    facts.period_ms = any_16();
+    facts.trigger_us = any_16();
+    facts.us_per_dm = any_16();
+    facts.start = any_8();
+    facts.trigger_byte = any_8();
+    facts.earliest_ms = any_8();
+    facts.latest_ms = any_8();
+    facts.no_target_ms = any_8();
+    facts.value_fffb = any_8();
+    facts.value_fffd = any_8();
+    facts.value_fffe = any_8();
+    facts.value_ffff = any_8();
+    facts.value_0 = any_8();
+    facts.registers = any_8();
+    return &facts;
 }
 
 /* Which probes an A05 has, as a mask; from 16 on they are refused. Those that begin at the same one stand together:

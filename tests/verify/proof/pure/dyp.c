@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the 16 bits of A16 and A05 mean: any window with meanings that there are, any values of the probes that have come.
+ * What the 16 bits of A16 and A05 mean: any facts with meanings that there are, any values of the probes that have come.
  *
  * proves: src/sensor/dyp.c
  */
@@ -8,28 +8,27 @@
 #include "assumptions.h"
 #include "fathom/codec/dyp_stream.h"
 
-static uint8_t any_meaning(void) { return any_8(); }
-
 /* Values of the probes from `first` to `last`. */
 static void probes(uint8_t first, uint8_t last)
 {
     static fathom_dyp_measurement_t measurement;
     static uint16_t values[FATHOM_DYP_PROBES];
-    fathom_dyp_window_t window;
+    static fathom_model_facts_t facts;
     fathom_sample_t sample;
-    window.min_mm = any_16();
-    window.max_mm = any_16();
-    window.value_fffd = any_meaning();
-    window.value_fffe = any_meaning();
-    window.value_ffff = any_meaning();
-    window.value_0 = any_meaning();
-    fathom_dyp_window_copy(&measurement.window, &window);
+    facts.min_mm = any_16();
+    facts.max_mm = any_16();
+    facts.value_fffb = any_8();
+    facts.value_fffd = any_8();
+    facts.value_fffe = any_8();
+    facts.value_ffff = any_8();
+    facts.value_0 = any_8();
+    measurement.facts = &facts;
     any_memory(values, sizeof values);
     measurement.model = any_8();
     measurement.address = any_8();
     measurement.first = first;
     measurement.values = values + FATHOM_DYP_PROBES - (last - first + 1);
-    if (fathom_dyp_measurement_init(&measurement, any_16()) != FATHOM_OK) return;
+    if (fathom_dyp_measurement_init(&measurement) != FATHOM_OK) return;
     while (any_bool()) {
         if (any_bool()) {
             const unsigned all = (1u << last) - (1u << (first - 1u));

@@ -37,16 +37,20 @@ static void polls(fathom_a16_pwm_t *pwm)
 static void any_pwm(const fathom_clock_t *clock, const fathom_capture_t *capture, fathom_output_t output)
 {
     static fathom_a16_pwm_t pwm, blank;
+    static fathom_model_facts_t facts;
     const fathom_sensor_t none = fathom_a16_pwm_sensor(&blank);
     look(&none); /* in zeroed memory */
     fathom_a16_pwm_config_t config;
-    config.pulse.cycle_us = any_32();
-    config.pulse.low_us = any_16();
-    config.pulse.noise_us = any_16();
-    config.pulse.no_target_us = any_32();
-    config.pulse.stuck_us = any_32();
-    config.window.min_mm = any_16();
-    config.window.max_mm = any_16();
+    facts.line_settings = NULL;
+    facts.min_mm = any_16();
+    facts.max_mm = any_16();
+    facts.period_ms = any_16();
+    facts.trigger_us = any_16();
+    facts.us_per_dm = any_16();
+    facts.start = any_8();
+    facts.no_target_ms = any_8();
+    config.model = any_bool() ? &facts : NULL;
+    config.period_us = any_32();
     config.in_air = any_bool();
     config.air_dc = Frama_C_short_interval(INT16_MIN, INT16_MAX);
     if (fathom_a16_pwm_init(&pwm, capture, clock, &output, NULL) == FATHOM_OK)
@@ -108,6 +112,10 @@ int main(void)
     any_pwm(&assumed_clock, &assumed_capture, fathom_output_pin(&assumed_input));
     any_pwm(&assumed_clock, &assumed_capture, fathom_output_break(NULL));
     any_pwm(&assumed_clock, &assumed_capture, fathom_output_pin(&assumed_output));
+    any_pwm(&assumed_clock, &assumed_capture, fathom_output_inverted_pin(&assumed_output));
+    any_pwm(&assumed_clock, &assumed_capture, fathom_output_inverted_pin(&assumed_input));
+    any_pwm(&assumed_clock, &assumed_capture, fathom_output_inverted_pin(NULL));
+    any_pwm(&assumed_clock, &assumed_capture, fathom_output_none());
     any_pwm(&assumed_clock, &assumed_capture, fathom_output_break(&assumed_uart));
     any_pwm(&assumed_clock, &assumed_capture, fathom_output_break(&assumed_bare_uart));
     no_sensor();

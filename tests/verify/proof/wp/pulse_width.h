@@ -12,9 +12,9 @@
 */
 
 /*@ assigns \nothing;
-    ensures \result == (width_us < 500000 ? width_us : 500000);
+    ensures \result == (a < b ? a : b);
 */
-static uint32_t bounded_us(uint32_t width_us);
+static uint32_t least(uint32_t a, uint32_t b);
 
 /*@ assigns \nothing;
     ensures \result == up_to(mm);
@@ -22,11 +22,10 @@ static uint32_t bounded_us(uint32_t width_us);
 static uint16_t bounded_mm(uint32_t mm);
 
 /*@ assigns \nothing;
-    ensures nearest: \result < 65535 ==> -23 < 2 * (23 * \result - 4 * width_us) < 23;
-    ensures formula: \result == up_to((8 * width_us + 23) / 46);
-    ensures from: width_us >= 376830 ==> \result == 65535;
+    ensures formula: 1 <= us_per_dm <= 6000 ==> \result == up_to((100 * width_us + us_per_dm / 2) / us_per_dm);
+    ensures none: us_per_dm == 0 ==> \result == 65535;
 */
-uint16_t fathom_pulse_width_mm(uint32_t width_us);
+uint16_t fathom_pulse_width_mm(uint32_t width_us, uint16_t us_per_dm);
 
 /*@ assigns \nothing;
     ensures formula: \result == up_to((speed(air_dc) * width_us + 10000000) / 20000000);
