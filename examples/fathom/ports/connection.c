@@ -147,8 +147,9 @@ static bool is_pending(const port_t *port)
 static void connect_again(port_t *port)
 {
     connection_t *const connection = port->connection;
+    const unsigned pauses = port->barren > 1 ? 1u << (port->barren - 2) : 0;
     connection->state = CONNECTION_AGAIN;
-    connection->due_us = now_us(port) + (port->barren > 1 ? PAUSE_US << (port->barren - 2) : 0);
+    connection->due_us = now_us(port) + (uint64_t)pauses * PAUSE_US;
     if (port->barren <= 1) connection->until_us = connection->due_us + REFUSED_US;
 }
 

@@ -106,10 +106,11 @@ static void add_descriptor(int pid, int folder, const char *name)
 static void add_terminal(int pid)
 {
     char text[TEXT];
-    unsigned number = 0;
     (void)read_file(text, "%s/%d/stat", holder_proc, pid);
-    const char *const end = strrchr(text, ')');
-    if (end == NULL || sscanf(end + 1, " %*c %*d %*d %*d %u", &number) != 1 || number == 0) return;
+    const char *at = strrchr(text, ')');
+    for (unsigned field = 0; at != NULL && field != 5; field++) at = strchr(at + 1, ' ');
+    const unsigned number = at != NULL ? (unsigned)strtoul(at, NULL, 10) : 0;
+    if (number == 0) return;
     add_use((use_t){.device = makedev(number >> 8 & 0xFFFu, (number & 0xFFu) | (number >> 12 & 0xFFF00u)),
                     .pid = pid,
                     .fd = -1});
