@@ -171,6 +171,7 @@ struct fathom_loop_source {
     /* private */
     fathom_loop_source_t *next;
     fathom_uart_t inner; /* the UART that fathom_loop_uart() wraps */
+    uint64_t sampled_us; /* the time before the newest read of it */
     /* A heap of sources, by the time at which each is due. */
     uint64_t due_us;
     bool is_due;
@@ -235,6 +236,8 @@ struct fathom_loop {
     fathom_loop_source_t *sources;
     /** @brief Private: the source that is due first. */
     fathom_loop_source_t *due;
+    /** @brief Private: a time before the loop last asked the kernel for events. */
+    uint64_t sampled_us;
     /** @brief Number of sleeps since fathom_loop_init(). */
     uint64_t sleeps;
     /** @brief Number of polls of sources since fathom_loop_init(). */

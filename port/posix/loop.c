@@ -41,14 +41,19 @@ static int wait_for(fathom_loop_t *loop, struct epoll_event *events, uint32_t ma
 #endif
     const struct timespec limit = {(time_t)(max_us / 1000000u), (long)(max_us % 1000000u) * 1000};
     struct pollfd entry = {loop->epoll_fd, POLLIN, 0};
-    if (ppoll(&entry, 1, is_endless ? NULL : &limit, NULL) <= 0) return 0;
+    const int ready = ppoll(&entry, 1, is_endless ? NULL : &limit, NULL);
+    if (ready <= 0) return ready;
     return epoll_wait(loop->epoll_fd, events, EVENTS, 0);
 }
 
 static void sleep_for(fathom_loop_t *loop, uint32_t max_us)
 {
     struct epoll_event events[EVENTS];
+    loop->sampled_us = fathom_loop_now_us(loop);
     const int count = wait_for(loop, events, max_us);
+    /* After a signal the kernel looks for no events. */
+    if (count > 0) loop->sampled_us = fathom_loop_now_us(loop);
+    if (count == 0) loop->sampled_us += max_us;
     for (int i = 0; i < count; i++) {
         fathom_loop_source_t *const source = events[i].data.ptr;
         if (source != NULL) {
@@ -81,6 +86,7 @@ void fathom_loop_step(fathom_loop_t *loop, uint32_t max_us)
     else
         sleep_for(loop, max_us);
     const uint64_t now_us = fathom_loop_now_us(loop);
+    if (loop->config.sleep != NULL) loop->sampled_us = now_us;
     /* One that is due again at once waits for the next step, so that none keeps the others waiting. */
     fathom_loop_source_t *ready = NULL;
     fathom_loop_source_t **last = &ready;
@@ -173,6 +179,7 @@ fathom_posix_status_t fathom_loop_init(fathom_loop_t *loop, const fathom_loop_co
     if (config != NULL) loop->config = *config;
     if (loop->config.first_pause_us == 0) loop->config.first_pause_us = FIRST_PAUSE_US;
     if (loop->config.longest_pause_us == 0) loop->config.longest_pause_us = LONGEST_PAUSE_US;
+    loop->sampled_us = fathom_loop_now_us(loop);
     if (loop->config.sleep != NULL) return FATHOM_POSIX_OK;
     loop->epoll_fd = epoll_create1(EPOLL_CLOEXEC);
     loop->stop_fd = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);

@@ -7,10 +7,22 @@
 
 /* ---- a read that asks only where something has come ---- */
 
+/* The events of the loop are as old as its last look. A program that is stopped, or a computer that is busy or asleep, may
+ * read the clock much later, and bytes that wait in the port are no silence. */
+enum { OLD_US = 1000 };
+
+static bool is_known_empty(const fathom_loop_source_t *source, uint64_t now_us)
+{
+    return source->is_open && source->is_watched && !source->is_readable &&
+           (now_us - source->loop->sampled_us < OLD_US || now_us - source->sampled_us < OLD_US);
+}
+
 static int gated_read(void *ctx, uint8_t *bytes, size_t capacity, fathom_rx_t *rx)
 {
     fathom_loop_source_t *const source = ctx;
-    if (source->is_open && source->is_watched && !source->is_readable) return 0;
+    const uint64_t now_us = source->is_open ? fathom_loop_now_us(source->loop) : 0;
+    if (is_known_empty(source, now_us)) return 0;
+    source->sampled_us = now_us;
     const int n = source->inner.read(source->inner.ctx, bytes, capacity, rx);
     const bool is_last = source->reads_all && !source->is_hung_up; /* of which no event tells a second time */
     if (n == 0 || (n > 0 && (size_t)n < capacity && is_last)) source->is_readable = false;

@@ -103,6 +103,19 @@ TEST(a_read_asks_once_it_has_become_ready_until_it_brings_nothing)
     expect_read(8, 0, false);
 }
 
+TEST(a_read_asks_if_the_loop_looked_a_millisecond_ago)
+{
+    add();
+    expect_read(8, 0, true);
+    fake.now_us += 999;
+    expect_read(8, 0, false);
+    fake.now_us++;
+    port.bytes = 3;
+    expect_read(8, 3, true);
+    fathom_loop_step(&fake.loop, 0);
+    expect_read(8, 0, false);
+}
+
 /* reads_all, as ttys do: each row is a read of so many bytes, what it brings, and whether the next one asks. */
 TEST(where_a_short_read_has_brought_all_the_next_one_does_not_ask)
 {

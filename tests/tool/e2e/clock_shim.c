@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-/* A calendar, to be preloaded. With MIDNIGHT_IN_US it is midnight in UTC, of 2026-03-01, so long after the first look. With
- * UNSET_WHILE it is 1970 at the first look, and right as soon as the file of this name is deleted. */
+/* Clocks, to be preloaded. With MIDNIGHT_IN_US it is midnight in UTC, of 2026-03-01, so long after the first look. With
+ * UNSET_WHILE it is 1970 at the first look, and right as soon as the file of this name is deleted. With LATER_IF, as soon
+ * as the file of this name exists, 600 s have passed. */
 #define _GNU_SOURCE 1
 #include <stdint.h>
 #include <stdlib.h>
@@ -13,6 +14,11 @@ int clock_gettime(clockid_t clock, struct timespec *now)
     static uint64_t first_us;
     const char *const unset_while = getenv("UNSET_WHILE");
     const long result = syscall(SYS_clock_gettime, clock, now);
+    const char *const later_if = getenv("LATER_IF");
+    if (later_if != NULL) {
+        if (clock == CLOCK_MONOTONIC && access(later_if, F_OK) == 0) now->tv_sec += 600;
+        return (int)result;
+    }
     if (result != 0 || clock != CLOCK_REALTIME) return (int)result;
     const uint64_t real_us = (uint64_t)now->tv_sec * 1000000u + (uint64_t)now->tv_nsec / 1000u;
     if (first_us == 0) first_us = real_us;
