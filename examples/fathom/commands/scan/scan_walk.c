@@ -504,14 +504,9 @@ static void walk_line(scan_t *scan)
     memset(scan->states, NOT_ASKED, sizeof scan->states);
     scan->garbled = 0;
     scan->asked = 0;
-<<<<<<< HEAD
-    for (unsigned address = settings->addresses.first; address <= last && scan->status == FATHOM_OK;
-         address++) {
-        const uint32_t found = scan->found_baud[address];
-=======
     ask_any(scan, timeout_us);
     for (unsigned address = settings->addresses.first; address <= last && !has_ended(scan); address++) {
->>>>>>> hub/models
+        const uint32_t found = scan->found_baud[address];
         scan->read.address = (uint8_t)address;
         show_progress(scan);
         if (found == 0 || (port_has_settings(scan->port.kind) && found != scan->line->baud))
