@@ -902,13 +902,16 @@ TEST(an_address_in_0200_and_two_distances_that_agree_are_an_a16_or_a_relative)
         {754, 751, "751 mm, an A16 or a relative with Modbus  ->  fathom read a16:9:modbus --port line\n"},
         {0xFFFD, 0xFFFE, ", an A16 or a relative with Modbus  ->"},
         {15, 16, " 16 mm, an A16 or a relative with Modbus  ->"},
+        {752, 1003,
+         " 1003 mm, probably an A16 or a relative with Modbus  ->"}, /* 4 * 251 is more than 1003 */
+        {753, 1004, " 1004 mm, an A16 or a relative with Modbus  ->"},
         {754, 300, " 300 mm, probably an A16 or a relative with Modbus  ->"}, /* a moving target */
         {0, 300, " 300 mm, probably an A16 or a relative with Modbus  ->"},
         {14, 300, " 300 mm, probably an A16 or a relative with Modbus  ->"},
         {9, 2, "none of the known sensors; perhaps a soil probe: "},
         {1, 50, "none of the known sensors; perhaps a gripper: "},
-        {14, 3, "none of the known sensors; perhaps a fuel gauge (TENET UL212), "},
-        {40000, 40000, "none of the known sensors; perhaps a fuel gauge (TENET UL212), "},
+        {14, 14, " 14 mm, probably an A16 or a relative with Modbus  ->"},
+        {40000, 40000, "unknown (value 40000), probably an A16 or a relative with Modbus  ->"},
     };
     for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
         (void)with_distances(rows[i].processed, rows[i].real_time, "--address 9");

@@ -228,30 +228,30 @@ static bool can_be_sent(const model_t *model, uint16_t value)
     return value == 0 || value >= LEAST_CODE || (value >= LEAST_MM && value <= model->max_mm);
 }
 
-/* Returns true if one scene can have both values: no distance, or distances that differ by a quarter at most. 0 is also
- * what other devices send for a register that they do not use. */
+/* Returns true if one scene can have both values: no distance, or distances that differ by a quarter at most. 0 and FFFF are
+ * also what other devices send for a register that they do not use. */
 static bool agrees(uint16_t one, uint16_t other)
 {
     const uint32_t longer = one > other ? one : other;
     const uint32_t shorter = one > other ? other : one;
-    return shorter >= LEAST_CODE || (shorter != 0 && longer < LEAST_CODE && 4 * (longer - shorter) <= longer);
+    if (shorter >= LEAST_CODE) return shorter != UINT16_MAX;
+    return shorter != 0 && longer < LEAST_CODE && 4 * (longer - shorter) <= longer;
 }
 
 /* The device has its address in 0x0200 and a register of the model. It is certain if it also answered at address 255, or if
- * two registers have the same distance. */
+ * two registers have the same distance. It is none if it has the values of another device. */
 bool dyp_confirm(inquiry_t *inquiry, const model_t *model)
 {
     scan_finding_t *const finding = inquiry->finding;
     const uint16_t second = model->scan.second;
     if (finding->is_certain) return true;
-    if (inquiry->own == second || !inquiry->ask(inquiry, second, 1, INQUIRY_SLOW_US, 1))
-        return can_be_sent(model, finding->value);
+    if (inquiry->own == second || !inquiry->ask(inquiry, second, 1, INQUIRY_SLOW_US, 1)) return true;
     const uint16_t value = inquiry->values[0];
     if (second == FATHOM_A16_REGISTER_PROCESSED)
         finding->perhaps = other_of(finding->address, value, finding->value, true);
     const bool are_both = can_be_sent(model, value) && can_be_sent(model, finding->value);
     finding->is_certain = are_both && agrees(value, finding->value);
-    return finding->perhaps == NULL && (can_be_sent(model, value) || can_be_sent(model, finding->value));
+    return finding->perhaps == NULL;
 }
 
 /* ---- decoding: values ---- */

@@ -54,7 +54,7 @@ class Help(e2e.Case):
         self.assertEqual(self.told('read a17 --help'), self.told('read --help'))
 
     @e2e.each(each_example_of_the_help_is_right_usage=('read', 3),
-              each_example_of_the_help_of_scan_is_right_usage=('scan', 3),
+              each_example_of_the_help_of_scan_is_right_usage=('scan', 4),
               each_example_of_the_help_of_watch_is_right_usage=('watch', 3))
     def examples(self, command, count, *more_pages):
         """Each is run with the port replaced by one that is not there: then 1, not 2, is the exit status."""

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The mutants that mean the same as the code without them, so that no test can see them. A row: why it means the same,
 and the identities of those of which this is true, as run.py prints them; space does not count."""
-COUNT = 85
+COUNT = 86
 
 ROWS = [
     ('it costs time alone',
@@ -147,6 +147,15 @@ ROWS = [
      'src/sensor/a16_settings.c | get_choice | condition: status != FATHOM_OK -> 0 | if (status != FATHOM_OK)',
      'src/sensor/a16_settings.c | get_choice | jump dropped: it -> nothing | if (status != FATHOM_OK) return '
      'status'),
+    ('more than 65535 mm either way, which is what is said',
+     'src/codec/pulse_width.c | fathom_pulse_width_mm | constant: LONGEST_US -> (LONGEST_US - 1) | return '
+     'bounded_mm(((least(width_us, LONGEST_US) * 100u) + (us_per_dm / 2u)) / us_per_dm)',
+     'src/codec/pulse_width.c | fathom_pulse_width_mm | constant: LONGEST_US -> (LONGEST_US + 1) | return '
+     'bounded_mm(((least(width_us, LONGEST_US) * 100u) + (us_per_dm / 2u)) / us_per_dm)',
+     'src/codec/pulse_width.c | fathom_pulse_width_mm_in_air | constant: LONGEST_IN_AIR_US -> (LONGEST_IN_AIR_US - 1) '
+     '| const uint32_t us = least(width_us, LONGEST_IN_AIR_US)',
+     'src/codec/pulse_width.c | fathom_pulse_width_mm_in_air | constant: LONGEST_IN_AIR_US -> (LONGEST_IN_AIR_US + 1) '
+     '| const uint32_t us = least(width_us, LONGEST_IN_AIR_US)'),
     ('what is not in mm is in the rest',
      'src/codec/pulse_width.c | fathom_pulse_width_mm_in_air | constant: 20000u -> 20001u | const uint32_t mm = '
      'high / 20000u'),
