@@ -92,14 +92,14 @@ static const char authorities[] = "/etc/ssl/certs";
 static const char *or_null(const char *text) { return text[0] != '\0' ? text : NULL; }
 
 /* NOLINTNEXTLINE(readability-non-const-parameter): tls.c writes it */
-bool tls_set(struct mosquitto *mosq, const broker_settings_t *settings, const char **reason, char *text,
+bool tls_set(struct mosquitto *mosq, const broker_settings_t *settings, tls_verdict_t *verdict, char *text,
              size_t capacity)
 {
     const char *const ca_file = or_null(settings->ca_file);
     const int result =
         mosquitto_tls_set(mosq, ca_file, ca_file == NULL ? authorities : NULL,
                           or_null(settings->certificate_file), or_null(settings->key_file), NULL);
-    (void)reason;
+    (void)verdict;
     (void)snprintf(text, capacity, "%s",
                    result == MOSQ_ERR_INVAL ? "one of the files cannot be read" : mosquitto_strerror(result));
     return result == MOSQ_ERR_SUCCESS;
