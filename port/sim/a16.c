@@ -158,11 +158,10 @@ static void power_on(fathom_sim_device_t *device, uint32_t now_us)
     fathom_sim_device_set_level(device, fathom_sim_a16_of(device)->mode != FATHOM_SIM_A16_PWM, now_us);
 }
 
-static void edge(fathom_sim_device_t *device, bool high, uint32_t now_us)
+static void trigger(fathom_sim_device_t *device, uint32_t now_us)
 {
     fathom_sim_a16_t *const a16 = fathom_sim_a16_of(device);
     const bool is_pwm = a16->mode == FATHOM_SIM_A16_PWM;
-    if (high || (!is_pwm && a16->mode != FATHOM_SIM_A16_CONTROLLED)) return;
     if (device->alarms[FATHOM_SIM_ALARM_START].set || device->alarms[FATHOM_SIM_ALARM_REST].set) {
         device->counters.unserved++;
         return;
@@ -172,7 +171,23 @@ static void edge(fathom_sim_device_t *device, bool high, uint32_t now_us)
     /* "T2 = 90~110ms" (A16 3(3)) */
     fathom_sim_device_set_alarm(
         device, FATHOM_SIM_ALARM_PIN,
-        now_us + (is_pwm ? a16->pulse_us : fathom_sim_device_between_us(device, 90000, 110000)));
+        now_us +
+            (is_pwm ? a16->pulse_us : fathom_sim_device_between_us(device, a16->least_us, a16->most_us)));
+}
+
+static void edge(fathom_sim_device_t *device, bool high, uint32_t now_us)
+{
+    const fathom_sim_a16_t *const a16 = fathom_sim_a16_of(device);
+    const bool is_triggered = a16->mode == FATHOM_SIM_A16_PWM || a16->mode == FATHOM_SIM_A16_CONTROLLED;
+    if (!high && is_triggered && !a16->has_byte) trigger(device, now_us);
+}
+
+/* The trigger of a relative, which stands alone. */
+static bool hear_byte(fathom_sim_device_t *device, const uint8_t *frame, uint8_t length, uint32_t now_us)
+{
+    const bool is_it = length == 1 && frame[0] == fathom_sim_a16_of(device)->byte;
+    if (is_it) trigger(device, now_us);
+    return is_it;
 }
 
 /* S = T * V / 2, or S = T / 57.5 in cm (A16 1(4)); "T2 = 3~94ms" (A16 1(3)) */
@@ -228,7 +243,7 @@ void fathom_sim_a16_init(fathom_sim_a16_t *a16, const fathom_sim_a16_config_t *c
     device->faults = config->faults;
     device->scene = config->scene;
     device->processed = config->processed;
-    device->settings.baud = 9600; /* 8N1 (A16 2(2), 5(2)) */
+    device->settings.baud = fathom_sim_or_else(config->baud, 9600); /* 8N1 (A16 2(2), 5(2)) */
     device->settings.stop_bits = 1;
     device->start_us = config->start_us;
     device->random = config->seed;
@@ -237,6 +252,11 @@ void fathom_sim_a16_init(fathom_sim_a16_t *a16, const fathom_sim_a16_config_t *c
     device->protocols[0] = &fathom_sim_modbus;
     device->listens =
         config->mode == FATHOM_SIM_A16_AUTO || config->mode == FATHOM_SIM_A16_MODBUS || is_switch;
+    if (config->has_byte) {
+        static const fathom_sim_protocol_t byte_protocol = {.hear = hear_byte, .id = FATHOM_SIM_STREAM};
+        device->protocols[0] = &byte_protocol;
+        device->listens = true;
+    }
     device->answers_broadcast = config->answers_broadcast;
     device->answers_from_new = config->answers_from_new;
     if (config->mode == FATHOM_SIM_A16_AUTO || config->mode == FATHOM_SIM_A16_UART)
@@ -247,6 +267,10 @@ void fathom_sim_a16_init(fathom_sim_a16_t *a16, const fathom_sim_a16_config_t *c
     a16->settings_us = fathom_sim_or_else(config->settings_us, 20000);
     a16->threshold_mm = config->threshold_mm != 0 ? config->threshold_mm : 1000;
     a16->mode = config->mode;
+    a16->has_byte = config->has_byte;
+    a16->byte = config->byte;
+    a16->least_us = fathom_sim_or_else(config->least_us, 90000);
+    a16->most_us = fathom_sim_or_else(config->most_us, 110000);
     a16->cycle_us =
         fathom_sim_or_else(config->cycle_us, config->mode == FATHOM_SIM_A16_PWM ? 220000 : 120000);
     a16->pulse_us = fathom_sim_or_else(config->pulse_us, 110000);

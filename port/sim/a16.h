@@ -79,6 +79,13 @@ typedef struct {
     uint32_t pulse_us; /* PWM: from the edge to the pulse; 110 ms (A16 1(3)) */
     /* PWM: width of the pulse without a target, and of what would be longer; 94 ms (A16 1(2)). */
     uint32_t no_target_us;
+    /* In what relatives differ: the rate; default 9600. Controlled: the time from the trigger to the response, 90 to
+     * 110 ms, and the byte that is the trigger, if has_byte, in place of an edge. */
+    uint32_t baud;
+    uint32_t least_us;
+    uint32_t most_us;
+    bool has_byte;
+    uint8_t byte;
 } fathom_sim_a16_config_t;
 
 typedef struct {
@@ -89,6 +96,10 @@ typedef struct {
     uint32_t cycle_us;
     uint32_t pulse_us;
     uint32_t no_target_us;
+    uint32_t least_us;
+    uint32_t most_us;
+    bool has_byte;
+    uint8_t byte;
     uint8_t mode;
     uint16_t threshold_mm;
     uint8_t polarity;  /* 0x0205; 1 from the factory */

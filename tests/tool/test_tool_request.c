@@ -304,7 +304,8 @@ REFUSES(wrong_words_are_refused, "request --port line", {"", "the unit is missin
         {"1 43 xy", "function 43 takes bytes in hex, such as 0e, not 'xy'"})
 
 REFUSES(wrong_options_are_refused, "request 1 3 1", {"", "--port is missing"},
-        {"--sensor a17", "unknown sensor 'a17'. It is one of a16, a05, hps167s."},
+        {"--sensor b17",
+         "unknown sensor 'b17'. It is one of a16, a05, hps167s, or a name of 'fathom models'."},
         {"--baud 1200", "--baud is '1200'. It takes 9600,"},
         {"--parity mark", "--parity is 'mark'. It takes none, even or odd."},
         {"--stop-bits 3", "--stop-bits is '3'. It takes a whole number from 1 to 2"},

@@ -11,7 +11,7 @@ static const suite_t suite = {.set_up = begins};
 /* ---- sensors ---- */
 
 REFUSES(a_sensor_that_does_not_exist_is_refused, "sim", {"", "no sensor is named"},
-        {"a17", "unknown sensor 'a17'"}, {"a16:0", "from 1 to 254"}, {"a16:255", "255"}, {"a16:1x", "1x"},
+        {"b17", "unknown sensor 'b17'"}, {"a16:0", "from 1 to 254"}, {"a16:255", "255"}, {"a16:1x", "1x"},
         {"hps167s:33", "from 1 to 32"}, {"a16:1:wave", "wave"}, {"a16:1:auto:1", "auto:1"})
 
 REFUSES(a_sensor_that_the_line_cannot_carry_is_refused, "sim",

@@ -18,7 +18,7 @@ static const refused_t wrong[] = {
     {"--versoin", "unknown option '--versoin'."},
     {"help poort", "unknown command or topic 'poort'. Did you mean ports?"},
     {"help foo", "unknown command or topic 'foo'. See 'fathom --help'."},
-    {"read a01 -p x", "unknown sensor 'a01'. It is one of a16, a05, hps167s."},
+    {"read b17 -p x", "unknown sensor 'b17'. It is one of a16, a05, hps167s, or a name of 'fathom models'."},
     {"help read set", "help takes one command or topic."},
     /* options */
     {"read a16 -p x --fast", "unknown option '--fast'."},
@@ -64,6 +64,19 @@ static const refused_t wrong[] = {
     {"watch a16 -p x --count 3", "unknown option '--count'."},
     /* sensors */
     {"read", "no sensor is named."},
+    {"read a02yyu2 -p x", "unknown sensor 'a02yyu2'. Did you mean a02yyuw?"},
+    {"read colour -p x", "It is one of a16, a05, hps167s, or a name of 'fathom models'."},
+    {"read us-100 -p x", "a us-100 cannot be read: on a UART it sends two bytes without header and sum."},
+    {"read TFmini -p x", "a TFmini cannot be read: its frames are others. 'fathom models' lists what can."},
+    {"read a02yyuw:modbus -p x", "unknown mode of a02yyuw 'modbus'. It is one of auto."},
+    {"read SEN0311@tcp:h", "a02yyuw in mode auto needs a serial port or a converter"},
+    {"info a02yyuw -p x", "a02yyuw receives no requests, so it has no address and no settings"},
+    {"read hc-sr04 -p x", "hc-sr04 in mode pwm needs GPIO lines, such as "
+                          "hc-sr04:pwm@gpiochip0,trigger=17,echo=27."},
+    {"read jsn-sr04t:free", "Write them behind the sensor: jsn-sr04t:free@gpiochip0,echo=27."},
+    {"read aj-sr04m:controlled@x,trigger=gpiochip0/17", "aj-sr04m in mode controlled has no trigger=."},
+    {"models a16 a05", "models takes one name."},
+    {"models a02yyu2", "unknown sensor 'a02yyu2'. Did you mean a02yyuw?"},
     {"read a16", "--port is missing, such as --port /dev/ttyUSB0."},
     {"read hps167s -p x --mode dyp", "unknown mode of hps167s 'dyp'."},
     {"read a16:1: -p x", "unknown mode of a16 ''."},
@@ -177,7 +190,7 @@ TEST(each_help_fits_80_columns_and_that_of_a_command_60_lines)
         (void)snprintf(page, sizeof page, "%s", run->out);
         if (is_command) assert_string_equal(tool_run(&bench.tool, "%s -h", name)->out, page);
     }
-    assert_int_equal(pages, 15 + 23);
+    assert_int_equal(pages, 16 + 23);
 }
 
 TEST(an_option_without_an_effect_is_a_notice)
@@ -275,8 +288,8 @@ TEST(values_are_those_of_the_library)
 }
 
 REFUSES(wrong_words_are_rejected_with_what_they_take, "read --port x",
-        {"a17:1", "unknown sensor 'a17'. It is one of a16, a05, hps167s."}, {"tank=", "unknown sensor ''."},
-        {"a=b=a16", "unknown sensor 'b=a16'."},
+        {"b17:1", "unknown sensor 'b17'. It is one of a16, a05, hps167s, or a name of 'fathom models'."},
+        {"tank=", "unknown sensor ''."}, {"a=b=a16", "unknown sensor 'b=a16'."},
         {"hps167s1234567890123456789012345678901234567890:1", "unknown sensor 'hps167s1234567890"},
         {"=a16", "'' is no name of a sensor."},
         {".a=a16", "'.a' is no name of a sensor. A name has at most 31 letters, digits, '-', '_' and '.'"},

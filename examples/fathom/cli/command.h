@@ -169,6 +169,7 @@ const char *option_takes(const option_t *row);
 typedef enum {
     OPERANDS_NONE,
     OPERANDS_FILE,
+    OPERANDS_MODELS,       /* the name of a relative */
     OPERANDS_SENSORS,      /* several sensors */
     OPERANDS_ASKED,        /* several, in modes that send requests */
     OPERANDS_SIMULATED,    /* several, in modes that can be simulated */

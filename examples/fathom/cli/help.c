@@ -280,14 +280,31 @@ static void offer_sensors(const offer_t *it, operands_t operands)
     }
 }
 
+/* Names of relatives, of which there are many: those that begin like a word. */
+static void offer_relatives(const offer_t *it, operands_t operands)
+{
+    const char *name = NULL;
+    for (size_t n = 0; it->word[0] != '\0' && (name = model_relative(n)) != NULL; n++) {
+        const model_t *const model =
+            strncmp(name, it->word, strcspn(it->word, ":")) == 0 ? model_find(name) : NULL;
+        bool is_offered = operands == OPERANDS_MODELS;
+        for (size_t m = 0; model != NULL && m != MODEL_MODES && model->modes[m].name != NULL; m++) {
+            if (!takes_mode(operands, &model->modes[m])) continue;
+            is_offered = true;
+            if (operands != OPERANDS_MODELS && model->modes[1].name != NULL)
+                offer(it, model->what, "%s:%s", name, model->modes[m].name);
+        }
+        if (model != NULL && is_offered) offer(it, model->what, "%s", name);
+    }
+}
+
 /* The settings of the sensor in words[0], or the values of the setting in words[1]. */
 static void offer_settings(const offer_t *it, operands_t operands, char **words, int count)
 {
-    const size_t length = strcspn(words[0], ":@");
-    const setting_t *setting = NULL;
-    for (const model_t *model = models; model != models + model_count; model++)
-        if (strlen(model->name) == length && strncmp(model->name, words[0], length) == 0)
-            setting = model->settings;
+    char name[40];
+    (void)snprintf(name, sizeof name, "%.*s", (int)strcspn(words[0], ":@"), words[0]);
+    const model_t *const model = model_find(name);
+    const setting_t *setting = model != NULL ? model->settings : NULL;
     for (; setting != NULL && setting->name != NULL; setting++) {
         const bool is_it = operands == OPERANDS_SETTING ? setting->read_at != 0 : setting->effect != NULL;
         if (count == 1 && is_it) offer(it, setting->what, "%s", setting->name);
@@ -303,8 +320,10 @@ static void offer_operands(const offer_t *it, operands_t operands, char **words,
         (void)fputs(":files\n", it->to);
     else if (operands >= OPERANDS_SETTING && count != 0)
         offer_settings(it, operands, words, count);
-    else if (operands != OPERANDS_NONE && (operands < OPERANDS_ONE || count == 0))
-        offer_sensors(it, operands);
+    else if (operands != OPERANDS_NONE && (operands < OPERANDS_ONE || count == 0)) {
+        if (operands != OPERANDS_MODELS) offer_sensors(it, operands);
+        offer_relatives(it, operands);
+    }
 }
 
 static void offer_value(const offer_t *it, const option_t *row)

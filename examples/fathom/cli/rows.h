@@ -48,6 +48,10 @@ bool sensor_word_address(const sensor_word_t *word, const model_mode_t *mode, ui
 const model_t *model_word(const char *name, const origin_t *origin);
 const model_mode_t *mode_word(const model_t *model, const char *name, const origin_t *origin);
 
+/* The port of a mode on pins, as an example: "gpiochip0,in=5". False: the mode has no pins. */
+enum { PORT_EXAMPLE = 80 };
+bool pins_example(const model_mode_t *mode, const char *chip, char text[PORT_EXAMPLE]);
+
 /* What options set for the sensors of a command: for their ports, unless a key stands behind one, and for a single
  * sensor. */
 typedef struct {

@@ -73,10 +73,18 @@ static bool path_has_keys(const char *path)
 const model_t *model_word(const char *name, const origin_t *origin)
 {
     nearest_t nearest = {.word = name};
-    for (size_t i = 0; i != model_count; i++) {
-        if (strcmp(name, models[i].name) == 0) return &models[i];
-        nearest_try(&nearest, models[i].name);
+    const model_t *const model = model_find(name);
+    const char *other = NULL;
+    const char *const why = model_unreadable(name);
+    if (model != NULL) return model;
+    if (why != NULL) {
+        (void)reject(origin, "a %s cannot be read: %s. 'fathom models' lists what can.", name, why);
+        return NULL;
     }
+    for (size_t n = 0; (other = model_relative(n)) != NULL; n++) nearest_try(&nearest, other);
+    nearest.known[0] = '\0';
+    for (size_t i = 0; i != model_count; i++) nearest_try(&nearest, models[i].name);
+    list_add(nearest.known, sizeof nearest.known, "or a name of 'fathom models'");
     if (name[0] != '\0' && strspn(name, "0123456789") == strlen(name))
         (void)reject(
             origin,
@@ -185,9 +193,7 @@ bool sensor_word_address(const sensor_word_t *word, const model_mode_t *mode, ui
 
 /* ---- the port of a sensor ---- */
 
-/* The port of a mode on pins, as an example: "gpiochip0,in=5". False: the mode has no pins. */
-enum { PORT_EXAMPLE = 80 };
-static bool pins_example(const model_mode_t *mode, const char *chip, char text[PORT_EXAMPLE])
+bool pins_example(const model_mode_t *mode, const char *chip, char text[PORT_EXAMPLE])
 {
     static const uint8_t examples[] = {17, 27, 5};
     (void)snprintf(text, PORT_EXAMPLE, "%.20s", chip);
@@ -275,15 +281,20 @@ static bool suits_port(const sensor_t *sensor, const origin_t *origin)
         tcp_address_t address;
         const char *const wrong = tcp_parse(port->path, &address);
         if (wrong != NULL) return reject(origin, "%s: %s.", port->path, wrong);
-        if (port->kind == PORT_RAW && mode->is_triggered)
+        if (port->kind == PORT_RAW && mode->is_triggered && !mode_starts_by_byte(mode))
             return reject(origin, "%s in mode %s needs a serial port, which can send a break.", model,
                           mode->name);
-        return mode->is_modbus || (port->kind == PORT_RAW && mode->pins == 0) ||
-               reject(
-                   origin,
-                   "%s in mode %s needs a serial port. Over TCP, use Modbus: %s:modbus, or a converter that "
-                   "passes raw bytes: rtu-tcp:HOST:PORT.",
-                   model, mode->name, model);
+        if (mode->is_modbus || (port->kind == PORT_RAW && mode->pins == 0)) return true;
+        if (model_mode_of(sensor->model, NULL)->name == NULL)
+            return reject(origin, "%s in mode %s needs %s, and has no Modbus.", model, mode->name,
+                          mode->pins != 0 ? "GPIO lines"
+                                          : "a serial port or a converter that passes raw bytes, "
+                                            "rtu-tcp:HOST:PORT");
+        return reject(
+            origin,
+            "%s in mode %s needs a serial port. Over TCP, use Modbus: %s:modbus, or a converter that "
+            "passes raw bytes: rtu-tcp:HOST:PORT.",
+            model, mode->name, model);
     }
     const bool has_pins = pins_example(mode, "gpiochip0", example);
     if (port->kind != PORT_PINS && port->keys.has[KEY_TRIGGER] && (mode->may_pins & MODEL_PIN_TRIGGER) == 0)
@@ -367,8 +378,12 @@ static bool set_mode(sensor_t *sensor, const sensor_word_t *word, const char *mo
     if (mode != NULL)
         sensor->mode = mode_word(sensor->model, mode, &word->origin);
     else if (sends_requests || word->address != NULL)
-        while (!mode_is_asked(sensor->mode)) sensor->mode++;
-    return sensor->mode != NULL;
+        while (sensor->mode->name != NULL && !mode_is_asked(sensor->mode)) sensor->mode++;
+    if (sensor->mode == NULL || sensor->mode->name != NULL) return sensor->mode != NULL;
+    return reject(&word->origin,
+                  "%s receives no requests, so it has no address and no settings, and cannot share a line. "
+                  "Read it alone: fathom read %s.",
+                  sensor->model->name, sensor->model->name);
 }
 
 static bool set_sensor(sensor_t *sensor, const sensor_word_t *word, const sensor_defaults_t *defaults,

@@ -13,10 +13,10 @@
 #include "reading/fields.h"
 
 static const command_t *const commands[] = {
-    &scan_command,      &read_command,   &watch_command,   &publish_command,
-    &info_command,      &get_command,    &set_command,     &commission_command,
-    &calibrate_command, &save_command,   &restore_command, &reset_command,
-    &request_command,   &decode_command, &sim_command,     NULL,
+    &scan_command,    &read_command,  &watch_command,      &publish_command,   &info_command,
+    &get_command,     &set_command,   &commission_command, &calibrate_command, &save_command,
+    &restore_command, &reset_command, &request_command,    &decode_command,    &sim_command,
+    &models_command,  NULL,
 };
 
 /* ---- tables in topics ---- */

@@ -18,6 +18,7 @@ extern const command_t restore_command;
 extern const command_t reset_command;
 extern const command_t request_command;
 extern const command_t decode_command;
+extern const command_t models_command;
 extern const command_t sim_command;
 
 /* The tool: argv[1] names the command. Returns the exit status. */

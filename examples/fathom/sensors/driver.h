@@ -12,6 +12,7 @@
 #include "fathom/sensor/a16_modbus.h"
 #include "fathom/sensor/a16_pwm.h"
 #include "fathom/sensor/a16_switch.h"
+#include "fathom/sensor/hps167_uart.h"
 #include "fathom/sensor/hps167s.h"
 #include "fathom/sensor/hps167s_auto.h"
 #include "sensors/models.h"
@@ -59,6 +60,7 @@ struct reader {
     fathom_pulse_meter_t *meter;        /* NULL: it measures no pulses */
     const pins_t *pins;                 /* with meter */
     fathom_model_facts_t model;         /* of an A16 or A05: its facts with the settings of the user */
+    fathom_line_byte_t trigger_byte;    /* of a relative that starts by a byte */
     const char *refusal;                /* why the reader could not be opened; NULL: the driver's */
     const char *remark;                 /* for the user, once */
     fathom_status_t (*end)(reader_t *reader); /* reader_close; NULL: there is nothing to restore */
@@ -73,6 +75,7 @@ struct reader {
         fathom_a05_dyp_t a05_dyp;
         fathom_a05_relay_t a05_relay;
         fathom_hps167s_t hps167s;
+        fathom_hps167_uart_t hps167_uart;
     } driver;
     driver_selection_t selection;
     /* of an HPS-167S */
@@ -94,6 +97,7 @@ uint32_t driver_now_us(const reader_t *reader);
 enum { DYP_ADDRESS = 0x0200, DYP_MAX_ADDRESS = 0xFE };
 
 extern const model_mode_t a16_modes[MODEL_MODES], a05_modes[MODEL_MODES], hps167s_modes[MODEL_MODES];
+extern const model_mode_t dyp_free_mode, hps167_uart_mode; /* of relatives alone */
 extern const setting_t a16_settings[], a05_settings[], hps167s_settings[];
 
 model_get_t a16_get, a05_get, hps167s_get;

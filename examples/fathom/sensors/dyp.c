@@ -21,7 +21,7 @@ static const fathom_model_facts_t *model_of(reader_t *reader, const reader_setti
 {
     fathom_model_facts_t *const model = &reader->model;
     const reader_window_t *const window = &settings->window;
-    *model = *datasheet;
+    *model = reader->mode->row != NULL ? *reader->mode->row->facts : *datasheet;
     if (window->max_mm != 0) {
         model->min_mm = window->min_mm;
         model->max_mm = window->max_mm;
@@ -81,6 +81,14 @@ static bool open_stream(reader_t *reader, fathom_dyp_auto_t *base, fathom_sensor
     return open_response(reader, &base->measurement, (uint8_t)(base->stream.length / 2 - 1), sensor);
 }
 
+/* Without a time of the user: 2.5 periods of a sensor that sends seldom, else the driver's default. */
+static uint32_t stale_us(const fathom_model_facts_t *facts, const reader_settings_t *settings)
+{
+    enum { SELDOM_MS = 800 };
+    return settings->timeout_us == 0 && facts->period_ms > SELDOM_MS ? facts->period_ms * 2500u
+                                                                     : settings->timeout_us;
+}
+
 /* Lets the port's TX go high. For real-time values, returns false with a refusal if the port cannot hold it low. */
 static bool can_select(reader_t *reader, port_t *port, uint8_t value)
 {
@@ -101,9 +109,10 @@ static fathom_status_t end_a16_auto(reader_t *reader)
 static bool a16_read_auto(reader_t *reader, port_t *port, const reader_settings_t *settings)
 {
     fathom_a16_auto_t *const driver = &reader->driver.a16_auto;
-    fathom_a16_auto_config_t config = {.stale_us = settings->timeout_us,
+    const fathom_model_facts_t *const facts = model_of(reader, settings, &fathom_a16_auto_model);
+    fathom_a16_auto_config_t config = {.stale_us = stale_us(facts, settings),
                                        .gap_us = port_stream_gap_us(port),
-                                       .model = model_of(reader, settings, &fathom_a16_auto_model),
+                                       .model = facts,
                                        .value = settings->value};
     if (settings->has_value) {
         if (!can_select(reader, port, settings->value)) return false;
@@ -203,16 +212,25 @@ static fathom_status_t end_controlled(reader_t *reader)
     return fathom_a16_controlled_deinit(&reader->driver.a16_controlled);
 }
 
-/* The trigger is a GPIO line, or a break of the port, whose TX is the module's RX. */
+/* A GPIO line that falls, or rises, as the module wants it. */
+static fathom_output_t trigger_pin(const pins_t *pins, const fathom_model_facts_t *facts)
+{
+    return facts->start == FATHOM_STARTS_HIGH_PULSE ? fathom_output_inverted_pin(&pins->trigger)
+                                                    : fathom_output_pin(&pins->trigger);
+}
+
+/* The trigger is a GPIO line, or a break of the port or a byte, whose TX is the module's RX. */
 static bool a16_read_controlled(reader_t *reader, port_t *port, const reader_settings_t *settings)
 {
     fathom_a16_controlled_t *const driver = &reader->driver.a16_controlled;
-    const fathom_output_t trigger = port->options.pins.chip != 0 ? fathom_output_pin(&port->pins.trigger)
-                                                                 : fathom_output_line_break(&port->line);
+    const fathom_model_facts_t *const facts = model_of(reader, settings, &fathom_a16_controlled_model);
+    reader->trigger_byte = (fathom_line_byte_t){&port->line, facts->trigger_byte};
+    const fathom_output_t trigger = facts->start == FATHOM_STARTS_BYTE
+                                        ? fathom_output_line_byte(&reader->trigger_byte)
+                                    : port->options.pins.chip != 0 ? trigger_pin(&port->pins, facts)
+                                                                   : fathom_output_line_break(&port->line);
     const fathom_a16_controlled_config_t config = {
-        .period_us = settings->period_us,
-        .gap_us = port_stream_gap_us(port),
-        .model = model_of(reader, settings, &fathom_a16_controlled_model)};
+        .period_us = settings->period_us, .gap_us = port_stream_gap_us(port), .model = facts};
     if (fathom_a16_controlled_init(driver, &port->line, &trigger, &config) != FATHOM_OK) return false;
     reader->end = end_controlled;
     reader->frames = driver->stream.counters;
@@ -222,14 +240,15 @@ static bool a16_read_controlled(reader_t *reader, port_t *port, const reader_set
 
 static fathom_status_t end_pwm(reader_t *reader) { return fathom_a16_pwm_deinit(&reader->driver.a16_pwm); }
 
-/* Each trigger returns one pulse (A16 1). */
+/* Each trigger returns one pulse (A16 1), or pulses come without one. */
 static bool a16_read_pwm(reader_t *reader, port_t *port, const reader_settings_t *settings)
 {
     fathom_a16_pwm_t *const driver = &reader->driver.a16_pwm;
     const pins_t *const pins = &port->pins;
-    const fathom_output_t output = fathom_output_pin(&pins->trigger);
-    const fathom_a16_pwm_config_t config = {.period_us = settings->period_us,
-                                            .model = model_of(reader, settings, &fathom_a16_pwm_model)};
+    const fathom_model_facts_t *const facts = model_of(reader, settings, &fathom_a16_pwm_model);
+    const fathom_output_t output =
+        facts->start == FATHOM_STARTS_ALONE ? fathom_output_none() : trigger_pin(pins, facts);
+    const fathom_a16_pwm_config_t config = {.period_us = settings->period_us, .model = facts};
     if (fathom_a16_pwm_init(driver, &pins->capture, &port->clock, &output, &config) != FATHOM_OK)
         return false;
     reader->sensor = fathom_a16_pwm_sensor(driver);
@@ -293,24 +312,32 @@ static bool a05_read_relay(reader_t *reader, port_t *port, const reader_settings
 enum { TAKES = READER_TAKES_MEANINGS | READER_TAKES_WINDOW };
 
 const model_mode_t a16_modes[MODEL_MODES] = {
-    {"auto", "A16 2", .takes = TAKES | READER_TAKES_VALUE, .simulated_as = FATHOM_SIM_A16_AUTO,
-     .read = a16_read_auto},
-    {"modbus", "A16 6", "Modbus", .is_modbus = true, .has_address = true, .takes = TAKES | READER_TAKES_VALUE,
-     .simulated_as = FATHOM_SIM_A16_MODBUS, .read = a16_read_modbus},
-    {"controlled", "A16 3", .is_triggered = true, .takes = TAKES, .may_pins = MODEL_PIN_TRIGGER,
-     .simulated_as = FATHOM_SIM_A16_CONTROLLED, .read = a16_read_controlled},
-    {"pwm", "A16 1", .is_triggered = true, .has_pulses = true, .takes = READER_TAKES_WINDOW,
-     .pins = MODEL_PIN_TRIGGER | MODEL_PIN_ECHO, .read = a16_read_pwm},
+    {"auto", "A16 2", .reads = FATHOM_MODE_AUTO, .takes = TAKES | READER_TAKES_VALUE,
+     .simulated_as = FATHOM_SIM_A16_AUTO, .read = a16_read_auto},
+    {"modbus", "A16 6", "Modbus", .reads = FATHOM_MODE_MODBUS, .is_modbus = true, .has_address = true,
+     .takes = TAKES | READER_TAKES_VALUE, .simulated_as = FATHOM_SIM_A16_MODBUS, .read = a16_read_modbus},
+    {"controlled", "A16 3", .reads = FATHOM_MODE_CONTROLLED, .is_triggered = true, .takes = TAKES,
+     .may_pins = MODEL_PIN_TRIGGER, .simulated_as = FATHOM_SIM_A16_CONTROLLED, .read = a16_read_controlled},
+    {"pwm", "A16 1", .reads = FATHOM_MODE_PULSE, .is_triggered = true, .has_pulses = true,
+     .takes = READER_TAKES_WINDOW, .pins = MODEL_PIN_TRIGGER | MODEL_PIN_ECHO, .read = a16_read_pwm},
     {"switch", "A16 4", .is_contact = true, .pins = MODEL_PIN_IN, .read = a16_read_switch},
 };
 
+const model_mode_t dyp_free_mode = {"free",
+                                    "A16 1",
+                                    .reads = FATHOM_MODE_FREE_PULSE,
+                                    .has_pulses = true,
+                                    .takes = READER_TAKES_WINDOW,
+                                    .pins = MODEL_PIN_ECHO,
+                                    .read = a16_read_pwm};
+
 const model_mode_t a05_modes[MODEL_MODES] = {
-    {"auto", "A05 1", .takes = TAKES | READER_TAKES_PROBES | READER_TAKES_VALUE,
+    {"auto", "A05 1", .reads = FATHOM_MODE_AUTO, .takes = TAKES | READER_TAKES_PROBES | READER_TAKES_VALUE,
      .simulated_as = FATHOM_SIM_A05_AUTO, .read = a05_read_auto},
-    {"modbus", "A05 3", "Modbus", .is_modbus = true, .has_address = true,
+    {"modbus", "A05 3", "Modbus", .reads = FATHOM_MODE_MODBUS, .is_modbus = true, .has_address = true,
      .takes = TAKES | READER_TAKES_PROBES, .simulated_as = FATHOM_SIM_A05_MODBUS, .read = a05_read_modbus},
     /* One wrong bit turns a response into the command that sets the address. */
-    {"dyp", "A05 2", "55 AA", .has_address = true, .can_move_others = true,
+    {"dyp", "A05 2", "55 AA", .reads = FATHOM_MODE_55AA, .has_address = true, .can_move_others = true,
      .takes = TAKES | READER_TAKES_PROBES, .simulated_as = FATHOM_SIM_A05_DYP, .read = a05_read_dyp},
     {"relay", "A05 4", .is_contact = true, .pins = MODEL_PIN_IN, .read = a05_read_relay},
 };
@@ -326,9 +353,22 @@ const model_mode_t a05_modes[MODEL_MODES] = {
     .real_time = (settings)->traits[DEVICE_REAL_TIME] != 0, .seed = (settings)->seed,                        \
     .scene = (settings)->scene
 
+/* The response of a relative leaves in the middle of its times. */
 void a16_simulate(device_t *device, const device_settings_t *settings, uint8_t simulated_as)
 {
-    const fathom_sim_a16_config_t config = {SIMULATED(settings, simulated_as)};
+    static const fathom_model_facts_t datasheet;
+    const fathom_model_facts_t *const facts = settings->facts != NULL ? settings->facts : &datasheet;
+    const uint32_t period_us = facts->period_ms * 1000u;
+    const uint32_t middle_us = (facts->earliest_ms + facts->latest_ms) * 500u;
+    const fathom_sim_a16_config_t config = {SIMULATED(settings, simulated_as),
+                                            .baud =
+                                                facts->line_settings != NULL ? facts->line_settings->baud : 0,
+                                            .period_us = period_us,
+                                            .cycle_us = period_us - period_us / 16,
+                                            .least_us = middle_us,
+                                            .most_us = middle_us,
+                                            .has_byte = facts->start == FATHOM_STARTS_BYTE,
+                                            .byte = facts->trigger_byte};
     fathom_sim_a16_init(&device->a16, &config);
 }
 

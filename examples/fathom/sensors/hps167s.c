@@ -175,12 +175,49 @@ static bool read_auto(reader_t *reader, port_t *port, const reader_settings_t *s
     return true;
 }
 
+/* ---- an HPS-167 with a UART ---- */
+
+static fathom_status_t end_uart(reader_t *reader)
+{
+    fathom_hps167_uart_t *const driver = &reader->driver.hps167_uart;
+    const fathom_status_t status = fathom_hps167_uart_stop(driver);
+    if (status != FATHOM_PENDING && status != FATHOM_ERR_BUSY) fathom_hps167_uart_deinit(driver);
+    return status == FATHOM_ERR_BUSY ? FATHOM_PENDING : status;
+}
+
+/* It measures continuously, from one request on. */
+static bool read_uart(reader_t *reader, port_t *port, const reader_settings_t *settings)
+{
+    fathom_hps167_uart_t *const driver = &reader->driver.hps167_uart;
+    const fathom_hps167_uart_config_t config = {.stale_us = settings->timeout_us, .continuous = true};
+    if (fathom_hps167_uart_init(driver, &port->line, &config) != FATHOM_OK ||
+        fathom_hps167_uart_set_limits(driver, limits_of(reader, settings)) != FATHOM_OK)
+        return false;
+    reader->sensor = fathom_hps167_uart_sensor(driver);
+    reader->end = end_uart;
+    reader->sequence = &driver->sequence;
+    reader->values = driver->registers;
+    reader->value_count = FATHOM_HPS167S_MEASUREMENT_COUNT;
+    return true;
+}
+
 /* ---- the modes, and their simulation ---- */
 
-enum { SIMULATED_MODBUS = 1, SIMULATED_AUTO /* it sends each measurement without a request */ };
+enum {
+    SIMULATED_MODBUS = 1,
+    SIMULATED_AUTO, /* it sends each measurement without a request */
+    SIMULATED_UART
+};
+
+const model_mode_t hps167_uart_mode = {"uart",
+                                       "no datasheet",
+                                       .reads = FATHOM_MODE_0A,
+                                       .takes = READER_TAKES_WINDOW,
+                                       .simulated_as = SIMULATED_UART,
+                                       .read = read_uart};
 
 const model_mode_t hps167s_modes[MODEL_MODES] = {
-    {"modbus", "HPS 3", "Modbus", .is_modbus = true, .has_address = true,
+    {"modbus", "HPS 3", "Modbus", .reads = FATHOM_MODE_MODBUS, .is_modbus = true, .has_address = true,
      .takes = READER_TAKES_WINDOW | READER_TAKES_TEMPERATURE, .simulated_as = SIMULATED_MODBUS,
      .read = read_modbus, .listen_unasked = listen_unasked},
     {"auto", "HPS 3 #15", .has_address = true, .takes = READER_TAKES_WINDOW, .simulated_as = SIMULATED_AUTO,
@@ -214,5 +251,9 @@ void hps167s_simulate(device_t *device, const device_settings_t *settings, uint8
         .number = settings->number,
         .seed = settings->seed,
         .scene = settings->scene};
-    fathom_sim_hps167s_init(&device->hps167s, &config);
+    const fathom_sim_hps167_config_t uart_config = {.seed = settings->seed, .scene = settings->scene};
+    if (simulated_as == SIMULATED_UART)
+        fathom_sim_hps167_init(&device->hps167, &uart_config);
+    else
+        fathom_sim_hps167s_init(&device->hps167s, &config);
 }

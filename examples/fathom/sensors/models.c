@@ -1,9 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 #include "sensors/models.h"
 
+#include <ctype.h>
 #include <inttypes.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "output/words.h"
 #include "ports/port.h"
 #include "sensors/driver.h"
 
@@ -83,6 +86,143 @@ const model_t models[] = {
 };
 const size_t model_count = sizeof models / sizeof models[0];
 
+/* ---- relatives ---- */
+
+enum { NAME_TEXT = 32 };
+
+/* A relative that was named, one of a list that lives as long as the program. */
+typedef struct relative {
+    model_t model;
+    model_mode_t modes[MODEL_MODES + 1];
+    char name[NAME_TEXT];
+    const struct relative *next;
+} relative_t;
+
+static const model_mode_t *mode_that_reads(const model_t *family, uint8_t mode)
+{
+    for (const model_mode_t *its = family->modes; its != family->modes + MODEL_MODES; its++)
+        if (its->reads == mode) return its;
+    return mode == FATHOM_MODE_FREE_PULSE ? &dyp_free_mode
+           : mode == FATHOM_MODE_0A       ? &hps167_uart_mode
+                                          : NULL;
+}
+
+/* Adds the row as a mode. The line is that of the first row that has one. */
+static void add_mode(relative_t *relative, const model_t *family, const fathom_model_description_t *row)
+{
+    const model_mode_t *const its = mode_that_reads(family, row->mode);
+    const fathom_line_settings_t *const line = row->facts->line_settings;
+    model_mode_t *mode = relative->modes;
+    bool has_line = false;
+    if (its == NULL) return;
+    for (; mode->name != NULL && mode != relative->modes + MODEL_MODES; mode++)
+        has_line = has_line || mode->row->facts->line_settings != NULL;
+    if (mode == relative->modes + MODEL_MODES) return;
+    *mode = *its;
+    mode->row = row;
+    if (mode_starts_by_byte(mode)) mode->may_pins = 0;
+    if (line != NULL && !has_line) relative->model.line = *line;
+}
+
+static const model_t *new_relative(relative_t *relative, const fathom_model_description_t *first)
+{
+    const model_t *family = models;
+    const fathom_model_description_t *row = NULL;
+    while (family->id != first->family) family++;
+    relative->model = *family;
+    relative->model.name = relative->name;
+    relative->model.modes = relative->modes;
+    relative->model.max_mm = relative->model.far_mm = first->facts->max_mm;
+    relative->model.near_mm = first->facts->min_mm;
+    relative->model.rates = NULL;
+    relative->model.other_settings = NULL;
+    relative->model.may_send_unasked = false;
+    if (first->mode == FATHOM_MODE_0A) relative->model.traits = 0;
+    for (size_t i = 0; first->name[i] != '\0' && i != NAME_TEXT - 1; i++)
+        relative->name[i] = (char)tolower((unsigned char)first->name[i]);
+    for (uint16_t i = 0; (row = fathom_model_at(i)) != NULL; i++)
+        if (strcmp(row->name, first->name) == 0) add_mode(relative, family, row);
+    return &relative->model;
+}
+
+static bool is_base(const model_t *model) { return model >= models && model < models + model_count; }
+
+const model_t *model_find(const char *name)
+{
+    static const relative_t *known;
+    const fathom_model_description_t *const first = fathom_model_find(name, FATHOM_MODE_ANY);
+    for (const model_t *model = models; model != models + model_count; model++)
+        if (strcmp(name, model->name) == 0 || (first != NULL && fathom_model_is_called(first, model->name)))
+            return model;
+    if (first == NULL) return NULL;
+    for (const relative_t *relative = known; relative != NULL; relative = relative->next)
+        if (relative->modes[0].row == first) return &relative->model;
+    relative_t *const relative = calloc(1, sizeof *relative);
+    if (relative == NULL) return NULL;
+    relative->next = known;
+    known = relative;
+    return new_relative(relative, first);
+}
+
+const model_mode_t *model_mode_of_row(const model_t *model, const fathom_model_description_t *row)
+{
+    for (const model_mode_t *mode = model->modes; mode != model->modes + MODEL_MODES; mode++)
+        if (mode->row == row || (mode->row == NULL && mode->reads == row->mode)) return mode;
+    return NULL;
+}
+
+/* src/models/README.md has more of them. */
+const char *model_unreadable(const char *name)
+{
+    static const fathom_model_description_t others[] = {
+        {"US-100", "", "", "on a UART it sends two bytes without header and sum", NULL, 0, 0, false},
+        {"SEN0301", "", "", "its frames have 7 bytes, with an address and a temperature", NULL, 0, 0, false},
+        {"URM06", "URM07, SEN0149, SEN0150, SEN0153", "", "its frames 55 AA have a length byte", NULL, 0, 0,
+         false},
+        {"SEN0590", "A22YYCW, R01CW, SEN0304", "", "it has I2C, and no UART", NULL, 0, 0, false},
+        {"RCWL-1601", "RCWL-1605, RCWL-1670", "",
+         "its range is not known. It is said to be like an rcwl-1655, so read it as that, with --window",
+         NULL, 0, 0, false},
+        {"SEN0600", "SEN0601", "", "it is a soil probe that has another value at register 0100", NULL, 0, 0,
+         false},
+        {"UL212", "", "", "it is a fuel gauge with a height in other units", NULL, 0, 0, false},
+        {"URM12", "URM13, URM14, SEN0492", "", "its distance is in another register", NULL, 0, 0, false},
+        {"GY-US42", "URM37, TF-Luna, TFmini", "", "its frames are others", NULL, 0, 0, false},
+        {"SEN0307", "", "", "its output is a voltage", NULL, 0, 0, false},
+    };
+    for (size_t i = 0; i != sizeof others / sizeof others[0]; i++)
+        if (fathom_model_is_called(&others[i], name)) return others[i].note;
+    return NULL;
+}
+
+/* Adds the names of a list with ", " between them to `names`, from name `count` on. Returns how many there are then. */
+static size_t add_names(char (*names)[NAME_TEXT], size_t count, size_t most, const char *list)
+{
+    for (const char *rest = list; rest != NULL && *rest != '\0' && count != most; count++) {
+        rest = next_word(rest, ',', names[count], NAME_TEXT);
+        for (char *at = names[count]; *at != '\0'; at++) *at = (char)tolower((unsigned char)*at);
+        if (rest != NULL) rest += strspn(rest, " ");
+    }
+    return count;
+}
+
+const char *model_relative(size_t n)
+{
+    enum { MOST_NAMES = 400 };
+    static char names[MOST_NAMES][NAME_TEXT];
+    static size_t count;
+    const fathom_model_description_t *row = NULL;
+    for (uint16_t i = 0; count == 0 || i != 0; i++) {
+        row = fathom_model_at(i);
+        if (row == NULL) break;
+        if (fathom_model_find(row->name, FATHOM_MODE_ANY) != row || is_base(model_find(row->name)))
+            continue; /* another mode */
+        count = add_names(names, count, MOST_NAMES, row->name);
+        count = add_names(names, count, MOST_NAMES, row->aliases);
+    }
+    return n < count ? names[n] : NULL;
+}
+
 bool model_has_address(const model_t *model, uint8_t address)
 {
     return model->has_address_zero || (address != 0 && address <= model->max_address);
@@ -113,7 +253,7 @@ const model_mode_t *model_mode_of(const model_t *model, const setting_t *setting
 {
     const char *const name = setting != NULL ? setting->mode : NULL;
     const model_mode_t *mode = model->modes;
-    while (name != NULL ? strcmp(mode->name, name) != 0 : !mode->is_modbus) mode++;
+    while (mode->name != NULL && (name != NULL ? strcmp(mode->name, name) != 0 : !mode->is_modbus)) mode++;
     return mode;
 }
 

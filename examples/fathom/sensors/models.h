@@ -4,12 +4,14 @@
 
 #include <stdio.h>
 
+#include "fathom/models.h"
 #include "fathom/sample.h"
 #include "output/record.h"
 #include "sensors/reader.h"
 #include "sensors/setting.h"
 #include "sim/a05.h"
 #include "sim/a16.h"
+#include "sim/hps167.h"
 #include "sim/hps167s.h"
 
 /* All that the tool knows of the sensor models, as rows. */
@@ -38,6 +40,8 @@ typedef struct model_mode {
     uint8_t pins;         /* MODEL_PIN_...: those that it needs; 0: it has a serial line */
     uint8_t may_pins;     /* and those that it may have beside its serial line */
     uint8_t simulated_as; /* for model_t.simulate; 0: `fathom sim` does not simulate it */
+    uint8_t reads;        /* rows of src/models with this fathom_model_mode_t; 0: none */
+    const fathom_model_description_t *row; /* of a relative; NULL: the datasheet's sensor */
     /* Initialises the driver through an open port. Returns false if the driver refuses the settings. */
     bool (*read)(reader_t *reader, port_t *port, const reader_settings_t *settings);
     /* As reader_listen_unasked(); NULL: the sensor sends nothing unsolicited. */
@@ -51,6 +55,12 @@ static inline bool mode_is_asked(const model_mode_t *mode) { return mode->protoc
 static inline bool mode_is_automatic(const model_mode_t *mode)
 {
     return mode->protocol == NULL && !mode->is_triggered && !mode->is_contact;
+}
+
+/* Returns true if a byte triggers a measurement, in place of a level. */
+static inline bool mode_starts_by_byte(const model_mode_t *mode)
+{
+    return mode->row != NULL && mode->row->facts->start == FATHOM_STARTS_BYTE;
 }
 
 /* ---- a scan ---- */
@@ -135,6 +145,7 @@ typedef struct {
     uint32_t seed;
     uint8_t number; /* of the unit among those of its model that have a number of their own */
     uint32_t traits[DEVICE_TRAITS];
+    const fathom_model_facts_t *facts; /* of a relative; NULL: the datasheet's */
     fathom_sim_scene_t scene;
 } device_settings_t;
 
@@ -144,6 +155,7 @@ typedef union {
     fathom_sim_a16_t a16;
     fathom_sim_a05_t a05;
     fathom_sim_hps167s_t hps167s;
+    fathom_sim_hps167_t hps167;
 } device_t;
 
 /* ---- models ---- */
@@ -250,6 +262,22 @@ extern const model_t models[];
 extern const size_t model_count;
 
 enum { FACTORY_ADDRESS = 1 };
+
+/*
+ * Returns the model with this name: one of `models`, or a relative of one, which is a name or an alias of src/models. A
+ * relative is a copy of its family, with the name, the line and the range of its first row, and a mode for each row that
+ * the tool can read. NULL: there is none, or no memory. It stays valid.
+ */
+const model_t *model_find(const char *name);
+
+/* Returns the mode of the model that reads a row of its name. NULL: the tool has none. */
+const model_mode_t *model_mode_of_row(const model_t *model, const fathom_model_description_t *row);
+
+/* Returns why a near relative or a false friend of this name cannot be read. NULL: it is none. */
+const char *model_unreadable(const char *name);
+
+/* Returns name n of all relatives and their aliases, in lower case. NULL: there are no more. */
+const char *model_relative(size_t n);
 
 /* Returns true if a unit can have this address, or this baud rate. */
 bool model_has_address(const model_t *model, uint8_t address);

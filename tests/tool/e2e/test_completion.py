@@ -15,7 +15,10 @@ OFFERED = {
     'fathom re': 'read restore reset request',
     'fathom --ver': '--version',
     'fathom help al': 'alarm',
-    'fathom read hps': 'hps167s hps167s:modbus hps167s:auto',
+    'fathom read hps': 'hps167s hps167s:modbus hps167s:auto hps-167 hps-167u hps-166',
+    'fathom read sen031': 'sen0313 sen0311 sen0312',
+    'fathom read aj-sr04m:': 'aj-sr04m:auto aj-sr04m:controlled aj-sr04m:pwm',
+    'fathom models jsn-sr20': 'jsn-sr20-y1 jsn-sr20',
     'fathom read a16:1:modbus a05:re': 'a05:relay',  # several
     'fathom info a05:': 'a05:modbus a05:dyp',  # those in which it is asked
     'fathom calibrate ': 'hps167s',

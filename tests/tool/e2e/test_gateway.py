@@ -156,6 +156,10 @@ class EachResponse(tcp_server.Case):
         self.assertIn('requests to addresses 2 to 4 at the line settings of the converter', done.err)
         nothing = self.ends(f'scan --port {gateway} --address 5 --listen 1 --format json', 1, out='')
         self.assertIn('The scan cannot change the settings of the converter: with factory settings, a16', nothing.err)
+        # It responds to the first read of an HPS-167S by an exception, and later at address 255: one device.
+        gateway = self.gateway('a16:3:modbus,with=exceptions,with=broadcast', 9600, is_raw=True)
+        done = self.ends(f'scan --port {gateway} --listen 1', 0)
+        self.assertRegex(done.out, r'^a16      address 3    - [^\n]*\n$')
 
 
 class Converter(tcp_server.Case):

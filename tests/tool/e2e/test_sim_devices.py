@@ -288,6 +288,19 @@ class Bytes(Case):
         self.assertEqual(self.ask(port, e2e.adu(2, 3, 3, 0, 0, 1), 5, 9600), e2e.adu(2, 0x83, 2))
         self.assertEqual(self.ask(port, e2e.adu(7, 3, 0, 8, 0, 3), 5, 19200), e2e.adu(7, 0x83, 3))
 
+    def test_each_module_that_has_a_line_is_read_by_its_name(self):
+        rows = re.findall(r'^(\S+) +(\w+) +(\d+)-(\d+) +\d+ 8[NE]1 ', self.run_fathom('models').out, re.M)
+        self.assertGreater(len(rows), 45)
+        for name, mode, least, most in rows:
+            self.assertTrue(int(least) <= 1000 <= int(most), name)
+            sim = self.sim(f'{name}:1:{mode} --distance 1000')
+            # Of two readings one may fail on a busy machine.
+            done = self.run_fathom(f'read {name}:1:{mode} --port {sim} --count 2 --format json')
+            told = [one['distance_mm'] for one in done.json if one['status'] == 'target']
+            self.assertTrue(told and set(told) == {1000}, (name, mode, done))
+            self.assertEqual({one['model'] for one in done.json}, {name})
+            sim.end()
+
     def test_a_sensor_may_have_32_faults(self):
         self.assertEqual(self.sim('a16', '--fault drop=1% ' * 32).end().code, 0)
 

@@ -31,13 +31,6 @@ static bool fail(const record_t *record)
 
 /* ---- reading ---- */
 
-static const model_t *model_named(const char *name)
-{
-    for (size_t i = 0; i != model_count; i++)
-        if (strcmp(models[i].name, name) == 0) return &models[i];
-    return NULL;
-}
-
 static bool is_number(const model_t *model, const char *text)
 {
     enum { HEX = 32 };
@@ -65,7 +58,7 @@ static const char *parse_line(record_t *record, const char *text)
     if (sscanf(text, "%15s %15s %63s %15s %23s %1s", model, address, unit.number, state, unit.when, rest) !=
         5)
         return "a line has five words: sensor, address, UUID, planned or done, time";
-    unit.model = model_named(model);
+    unit.model = model_find(model);
     if (unit.model == NULL) return "unknown sensor";
     if (!number_parse(address, 1, unit.model->max_address, &number))
         return "this sensor cannot have this address";

@@ -463,6 +463,13 @@ static void ask_any_dyp(scan_t *scan)
                                              .is_certain = true});
 }
 
+/* Returns true if a device was found at this address at the present rate; behind a converter, at its only settings. */
+static bool is_found(const scan_t *scan, uint8_t address)
+{
+    const uint32_t found = scan->found_baud[address];
+    return found != 0 && (!port_has_settings(scan->port.kind) || found == scan->line->baud);
+}
+
 /* One unit answers a read of its address at address 255 from its real address. Several damage each other's responses. */
 static void ask_any(scan_t *scan, uint32_t timeout_us)
 {
@@ -485,7 +492,7 @@ static void ask_any(scan_t *scan, uint32_t timeout_us)
     const scan_addresses_t *const plan = &scan->settings->addresses;
     if (scan->settings->has_addresses && (from < plan->first || from > plan->last))
         scan->outside = (uint8_t)from;
-    else
+    else if (!is_found(scan, (uint8_t)from))
         visit(scan, (uint8_t)from, timeout_us);
 }
 
@@ -506,11 +513,9 @@ static void walk_line(scan_t *scan)
     scan->asked = 0;
     ask_any(scan, timeout_us);
     for (unsigned address = settings->addresses.first; address <= last && !has_ended(scan); address++) {
-        const uint32_t found = scan->found_baud[address];
         scan->read.address = (uint8_t)address;
         show_progress(scan);
-        if (found == 0 || (port_has_settings(scan->port.kind) && found != scan->line->baud))
-            visit(scan, (uint8_t)address, timeout_us);
+        if (!is_found(scan, (uint8_t)address)) visit(scan, (uint8_t)address, timeout_us);
         scan->done_us += address_us(settings, scan->line);
     }
     for (unsigned address = 0; address <= last && !has_ended(scan); address++)

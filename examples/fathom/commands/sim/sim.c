@@ -121,7 +121,8 @@ static const char *fault_name(size_t n)
 
 static bool has_fault(const model_t *model, const model_mode_t *mode, size_t n)
 {
-    const device_settings_t settings = {.address = FACTORY_ADDRESS};
+    const device_settings_t settings = {.address = FACTORY_ADDRESS,
+                                        .facts = mode->row != NULL ? mode->row->facts : NULL};
     device_t device;
     if (fault_name(n) == NULL) return false;
     model->simulate(&device, &settings, mode->simulated_as);
@@ -401,7 +402,8 @@ static bool parse_sensors(simulation_t *simulation, const arguments_t *arguments
     const uint32_t now_us = fathom_sim_pty_now_us();
     const simulated_t *sender = NULL;
     char *keys[MAX_SIMULATED];
-    if (arguments->count == 0) return reject(origin, "no sensor is named: a16, a05 or hps167s.");
+    if (arguments->count == 0)
+        return reject(origin, "no sensor is named: a16, a05, hps167s, or a name of 'fathom models'.");
     if (arguments->count > MAX_SIMULATED)
         return reject(origin, "a line has at most %d sensors, not %d.", MAX_SIMULATED, arguments->count);
     for (uint32_t i = 0; i != (uint32_t)arguments->count; i++, simulation->count++) {
@@ -434,6 +436,7 @@ static void connect_sensor(simulation_t *simulation, uint32_t now_us)
 {
     simulated_t *const sensor = &simulation->sensors[simulation->connected++];
     sensor->settings.baud = sensor->line.baud;
+    if (sensor->mode->row != NULL) sensor->settings.facts = sensor->mode->row->facts;
     sensor->model->simulate(&sensor->device, &sensor->settings, sensor->mode->simulated_as);
     fathom_sim_fault_attach(&sensor->fault, &simulation->line, &sensor->device.base);
     fathom_sim_attach(&simulation->line, &sensor->device.base, now_us);
