@@ -153,6 +153,28 @@ static void connect_again(port_t *port)
     if (port->barren <= 1) connection->until_us = connection->due_us + REFUSED_US;
 }
 
+/* False: so many connections in a row were of no use that the port is lost. */
+static bool note_barren(port_t *port)
+{
+    const char *const who = port->connection->kind->far_end;
+    if (++port->barren < MOST_BARREN) return true;
+    (void)port_fail(port, PORT_LOST,
+                    "%s: the %s closes each connection without a response%s; some serve one program at a "
+                    "time, so check whether another one is connected",
+                    port->name, who,
+                    port->kind == PORT_RAW ? " (one that expects Modbus TCP does this too: use tcp:)" : "");
+    return false;
+}
+
+/* A connection has ended before anything of a request left. False: the port is lost. */
+static bool end_unsent(port_t *port)
+{
+    if (port->connection->kind->judge(port) != FATHOM_OK || !note_barren(port)) return false;
+    close_socket(port);
+    connect_again(port);
+    return true;
+}
+
 /* There is a new connection. False: it cannot be used. */
 static bool take_connection(port_t *port)
 {
@@ -164,8 +186,9 @@ static bool take_connection(port_t *port)
     connection->opened_us = now_us(port);
     connection->is_used = false;
     if (is_again) port->reconnects++;
-    if (connection->sends_again && is_pending(port))
-        (void)connection->bytes.write(connection->bytes.ctx, connection->request, connection->length);
+    if (connection->sends_again && is_pending(port) &&
+        connection->bytes.write(connection->bytes.ctx, connection->request, connection->length) < 0)
+        return end_unsent(port);
     connection->sends_again = false;
     return true;
 }
@@ -203,19 +226,6 @@ static bool is_read(const connection_t *connection)
     if (request[0] == 0x55 && request[FUNCTION] == 0xAA)
         return fathom_dyp_55aa_value_count(request[COMMAND]) != 0;
     return request[FUNCTION] <= LAST_READ;
-}
-
-/* False: so many connections in a row were of no use that the port is lost. */
-static bool note_barren(port_t *port)
-{
-    const char *const who = port->connection->kind->far_end;
-    if (++port->barren < MOST_BARREN) return true;
-    (void)port_fail(port, PORT_LOST,
-                    "%s: the %s closes each connection without a response%s; some serve one program at a "
-                    "time, so check whether another one is connected",
-                    port->name, who,
-                    port->kind == PORT_RAW ? " (one that expects Modbus TCP does this too: use tcp:)" : "");
-    return false;
 }
 
 /* The connection ended while a response was pending. Returns as `read` of the UART. */
@@ -276,12 +286,7 @@ static int write_bytes(void *ctx, const uint8_t *bytes, size_t length)
     if (port->error != PORT_OK) return -1;
     if (connection->state != CONNECTION_OPEN) return 0;
     const int n = connection->bytes.write(connection->bytes.ctx, bytes, length);
-    if (n < 0) { /* nothing of it has left */
-        if (connection->kind->judge(port) != FATHOM_OK || !note_barren(port)) return -1;
-        close_socket(port);
-        connect_again(port);
-        return 0;
-    }
+    if (n < 0) return end_unsent(port) ? 0 : -1;
     if (n == 0 || length > sizeof connection->request) return n;
     memcpy(connection->request, bytes, length);
     connection->length = (uint8_t)length;
