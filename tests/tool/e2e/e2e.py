@@ -391,6 +391,18 @@ def each(*unnamed, **named):
     return Rows
 
 
+def download(pins, folder):
+    """The wheels that the file `pins` names, from PyPI into this folder. Returns why not, if pip cannot."""
+    pip = os.path.join(folder + '.venv', 'bin', 'pip')
+    try:
+        subprocess.run([sys.executable, '-m', 'venv', '--clear', folder + '.venv'], check=True)
+        subprocess.run([pip, '--quiet', '--disable-pip-version-check', 'download', '--retries', '1', '--no-deps', '--require-hashes',
+                        '--only-binary', ':all:', '-d', folder, '-r', pins], check=True, stderr=subprocess.PIPE, text=True)
+    except (OSError, subprocess.CalledProcessError) as why:
+        return (getattr(why, 'stderr', None) or str(why)).strip().splitlines()[-1]
+    return None
+
+
 def crc16(data):
     """By definition: polynomial 0xA001, from 0xFFFF; low byte first."""
     crc = 0xFFFF

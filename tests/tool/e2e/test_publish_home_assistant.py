@@ -5,7 +5,6 @@ home_assistant.txt pins the packages, which pip brings from PyPI into the build 
 import glob
 import json
 import os
-import subprocess
 import sys
 import zipfile
 
@@ -27,14 +26,9 @@ def bring():
     """Unpacks all packages but Home Assistant, which Python imports from its file. Returns why not, if pip cannot."""
     wheels, unpacked = os.path.join(PACKAGES, 'wheels'), os.path.join(PACKAGES, 'unpacked')
     if not os.path.isdir(unpacked):
-        pins = os.path.join(e2e.HERE, 'home_assistant.txt')
-        try:
-            subprocess.run([sys.executable, '-m', 'venv', '--clear', os.path.join(PACKAGES, 'venv')], check=True)
-            subprocess.run([os.path.join(PACKAGES, 'venv', 'bin', 'pip'), '--quiet', '--disable-pip-version-check', 'download',
-                            '--retries', '1', '--no-deps', '--require-hashes', '--only-binary', ':all:', '-d', wheels, '-r', pins],
-                           check=True, stderr=subprocess.PIPE, text=True)
-        except (OSError, subprocess.CalledProcessError) as why:
-            return (getattr(why, 'stderr', None) or str(why)).strip().splitlines()[-1]
+        why = e2e.download(os.path.join(e2e.HERE, 'home_assistant.txt'), wheels)
+        if why:
+            return why
         for wheel in glob.glob(os.path.join(wheels, '*.whl')):
             if not os.path.basename(wheel).startswith('homeassistant-'):
                 zipfile.ZipFile(wheel).extractall(unpacked + '.part')
