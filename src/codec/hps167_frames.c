@@ -33,7 +33,8 @@ uint8_t fathom_hps167_response_length(uint8_t command)
     if ((command == FATHOM_HPS167_SINGLE) || (command == FATHOM_HPS167_CONTINUOUS))
         return DATA + MEASUREMENT_SIZE;
     if (command == FATHOM_HPS167_STOP) return DATA + ACK_SIZE;
-    return (command == FATHOM_HPS167_TEMPERATURE) ? (DATA + TEMPERATURE_SIZE) : 0;
+    if (command == FATHOM_HPS167_TEMPERATURE) return DATA + TEMPERATURE_SIZE;
+    return 0;
 }
 
 /* Writes the CRC of the bytes from `from` up to `end` behind them. */
