@@ -84,6 +84,15 @@ static void expect_err(const char *text)
 
 static const suite_t suite = {.set_up = set_up};
 
+/* It starts with the fall of a high pulse. The simulated pulse of 1000 mm has 5750 us, which are 991 mm at 58 us/cm. */
+TEST(an_hc_sr04_is_read_with_its_own_scale)
+{
+    bench_a16((fathom_sim_a16_config_t){.mode = FATHOM_SIM_A16_PWM, .cycle_us = 50000, .pulse_us = 500});
+    take_pins(&bench.a16.device);
+    see(1000);
+    EXPECT(0, 2, "hc-sr04     991 mm", "read hc-sr04@gpiochip0,trigger=17,echo=27 --count 2");
+}
+
 /* ---- A16 controlled, its trigger on a GPIO line and its response on a serial port ---- */
 
 #define CONTROLLED "a16:controlled@line,trigger=gpiochip0/17"

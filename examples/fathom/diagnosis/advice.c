@@ -63,6 +63,7 @@ static uint64_t fact(const failure_t *failure, const char *name, size_t length)
         {"listened", !mode_is_asked(mode) && !mode->is_triggered && !has_pins}, /* it sends automatically */
         {"triggered", mode->is_triggered && !has_pins},                         /* by a break on TX */
         {"pins", has_pins},                                                     /* lines of a GPIO chip */
+        {"relative", mode->row != NULL}, /* its modes are those of its name alone */
         /* what is known */
         {"tcp", port->kind == PORT_GATEWAY},
         {"converter", port->kind == PORT_RAW},
@@ -238,6 +239,9 @@ static const row_t causes[] = {
 
     {NO_RESPONSE | CHECKSUM, "triggered bytes", "the bytes after the trigger form no frame",
      "Check {settings}, and look for noise" UNSEEN},
+    {NO_RESPONSE | CHECKSUM, "triggered relative", "no frame followed the trigger in time",
+     "Check the supply and the wires from the adapter's TX to the sensor's RX and back. If it sends without "
+     "a trigger, it is the automatic form (U), such as a02yyuw; 'fathom models' lists the forms" UNSEEN},
     {NO_RESPONSE | CHECKSUM, "triggered", "nothing followed the trigger",
      "Check the supply, the wires from the adapter's TX (or the line trigger=) to the sensor's RX and back, "
      "that the adapter can send a break, and that the sensor is the UART controlled variant (if not: --mode "
@@ -269,6 +273,9 @@ static const row_t causes[] = {
     {STALE | CHECKSUM, "listened silence addressed", "no byte was received",
      "Check the power and whether A and B are swapped. If the sensor does not send automatically, use --mode "
      "modbus. To find its address, run 'fathom scan --port {path}'" UNSEEN},
+    {STALE | CHECKSUM, "listened silence relative", "no byte was received",
+     "Check the power and the wire of the sensor's TX. If it waits for a trigger, it is the controlled form "
+     "(T), such as a02yytw, or its board has another resistor; 'fathom models' lists the forms" UNSEEN},
     {STALE | CHECKSUM, "listened silence", "no byte was received",
      "Check the power and the wire of the sensor's TX. A Modbus request ends the automatic output: switch "
      "the sensor off and on, or use --mode modbus. If it has an address, name it with its address, such as "
