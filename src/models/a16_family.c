@@ -17,6 +17,8 @@
 static const fathom_line_settings_t fast_line = {115200, FATHOM_PARITY_NONE, 1};
 
 #define FAST        .line_settings = (&fast_line)
+#define FAST_BUS    FAST, .period_ms = 120 /* no source has a period of the requests: the A16's */
+#define SLOW_BUS    SLOW, .period_ms = 120
 #define TEMPERATURE .registers = FATHOM_HAS_TEMPERATURE
 
 /* clang-format off */
@@ -122,36 +124,36 @@ static const fathom_line_settings_t fast_line = {115200, FATHOM_PARITY_NONE, 1};
 
 #define MODBUS_ROWS(ROW) \
     /* A16 datasheet 5 and 6, a test with a module. */ \
-    ROW(a16ny4w, A16, MODBUS, H, "A16NY4W", "", "DYP", "RS485", SLOW, RANGE(500, 15000)) \
+    ROW(a16ny4w, A16, MODBUS, H, "A16NY4W", "", "DYP", "RS485", SLOW_BUS, RANGE(500, 15000)) \
     /* A16 datasheet 5 and 6. */ \
-    ROW(a16ny2w, A16, MODBUS, H, "A16NY2W", "", "DYP", "RS232", SLOW, RANGE(500, 15000)) \
+    ROW(a16ny2w, A16, MODBUS, H, "A16NY2W", "", "DYP", "RS232", SLOW_BUS, RANGE(500, 15000)) \
     /* A guide of think-link. */ \
-    ROW(a02yy4w, A16, MODBUS, M, "A02YY4W", "", "DYP", "RS485", SLOW, RANGE(30, 4500), TEMPERATURE) \
+    ROW(a02yy4w, A16, MODBUS, M, "A02YY4W", "", "DYP", "RS485", SLOW_BUS, RANGE(30, 4500), TEMPERATURE) \
     /* boneIO's device file. The range is that of ESPHome's A12. */ \
-    ROW(a12_rs485, A16, MODBUS, M, "A12-RS485", "", "DYP", "RS485", SLOW, RANGE(250, 5000), TEMPERATURE) \
+    ROW(a12_rs485, A16, MODBUS, M, "A12-RS485", "", "DYP", "RS485", SLOW_BUS, RANGE(250, 5000), TEMPERATURE) \
     /* A guide of think-link. It has no baud rate: the A16's. */ \
-    ROW(a17ny4w, A16, MODBUS, M, "A17NY4W", "", "DYP", "RS485", SLOW, RANGE(250, 10000)) \
+    ROW(a17ny4w, A16, MODBUS, M, "A17NY4W", "", "DYP", "RS485", SLOW_BUS, RANGE(250, 10000)) \
     /* DFRobot SEN0592 page, a driver, a robot's node. A21AYY4W and A21BYY4W are names by the rule of the letters. */ \
     ROW(a21_rs485, A16, MODBUS, H, "A21-RS485", "SEN0592, A21AYY4W, A21BYY4W", "DYP", "RS485", \
-        FAST, RANGE(30, 5000), TEMPERATURE) \
+        FAST_BUS, RANGE(30, 5000), TEMPERATURE) \
     /* DFRobot SEN0591 page, a seller's sheet, a ROS driver. */ \
-    ROW(a22_rs485, A16, MODBUS, H, "A22-RS485", "SEN0591", "DYP", "RS485", FAST, RANGE(20, 3000), TEMPERATURE) \
+    ROW(a22_rs485, A16, MODBUS, H, "A22-RS485", "SEN0591", "DYP", "RS485", FAST_BUS, RANGE(20, 3000), TEMPERATURE) \
     /* Seller's sheet of the GL04. */ \
-    ROW(l041m4w, A16, MODBUS, M, "L041M4W", "GL041M4", "DYP", "RS485, under water", FAST, RANGE(50, 6000), TEMPERATURE) \
+    ROW(l041m4w, A16, MODBUS, M, "L041M4W", "GL041M4", "DYP", "RS485, under water", FAST_BUS, RANGE(50, 6000), TEMPERATURE) \
     /* Seller's sheet of the GL04, an Arduino reader. */ \
-    ROW(l042m4w, A16, MODBUS, H, "L042M4W", "GL042M4", "DYP", "RS485, under water", FAST, RANGE(20, 3000), TEMPERATURE) \
+    ROW(l042m4w, A16, MODBUS, H, "L042M4W", "GL042M4", "DYP", "RS485, under water", FAST_BUS, RANGE(20, 3000), TEMPERATURE) \
     /* Two programs, a robot's notes. FFFB is out of the water. */ \
     ROW(l08_rs485, A16, MODBUS, M, "L08-RS485", "", "DYP", "RS485, under water", \
-        FAST, RANGE(80, 3000), .value_fffb = FATHOM_MEANS_UNKNOWN) \
+        FAST_BUS, RANGE(80, 3000), .value_fffb = FATHOM_MEANS_UNKNOWN) \
     /* Seeed's wiki and the examples of its PDF in two projects. By its range an A01. */ \
     ROW(seeed_750, A16, MODBUS, H, "Seeed-101991041", "101991041", "Seeed", "RS485", \
-        SLOW, RANGE(280, 7500), TEMPERATURE) \
+        SLOW_BUS, RANGE(280, 7500), TEMPERATURE) \
     /* Seeed's wiki. Wiring and template are those of the 750 cm one; registers were not seen. */ \
-    ROW(seeed_500, A16, MODBUS, M, "Seeed-101991042", "101991042", "Seeed", "RS485", SLOW, RANGE(250, 5000)) \
+    ROW(seeed_500, A16, MODBUS, M, "Seeed-101991042", "101991042", "Seeed", "RS485", SLOW_BUS, RANGE(250, 5000)) \
     /* DFRobot SEN0754 page. Range: see sen0754. */ \
-    ROW(sen0754_modbus, A16, MODBUS, M, "SEN0754", "", "DFRobot", "UART", FAST, RANGE(1, 16350)) \
+    ROW(sen0754_modbus, A16, MODBUS, M, "SEN0754", "", "DFRobot", "UART", FAST_BUS, RANGE(1, 16350)) \
     /* A flood node's firmware, a block list. No range: the A16's 1 to 16350 mm. */ \
-    ROW(djlk_003ab, A16, MODBUS, M, "DJLK-003AB", "DJLK-003", "DJLK", "RS485", SLOW, RANGE(1, 16350))
+    ROW(djlk_003ab, A16, MODBUS, M, "DJLK-003AB", "DJLK-003", "DJLK", "RS485", SLOW_BUS, RANGE(1, 16350))
 /* clang-format on */
 
 UART_AUTO_ROWS(MODEL_FACTS)

@@ -160,7 +160,7 @@ def check(root, only):
 
 def update():
     wanted, problems = made(ROOT)
-    for path, text in wanted.items():
+    for path, text in wanted.items() if not problems else ():
         whole = re.sub(PLACES[path], lambda _, text=text: text, read(ROOT, path), count=1)
         with open(os.path.join(ROOT, path), 'w', encoding='utf-8') as file:
             file.write(whole)
