@@ -9,7 +9,7 @@
 
 /* The events of the loop are as old as its last look. A program that is stopped, or a computer that is busy or asleep, may
  * read the clock much later, and bytes that wait in the port are no silence. */
-enum { OLD_US = 1000 };
+enum { OLD_US = 5000 };
 
 static bool is_known_empty(const fathom_loop_source_t *source, uint64_t now_us)
 {

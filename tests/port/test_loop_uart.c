@@ -103,11 +103,11 @@ TEST(a_read_asks_once_it_has_become_ready_until_it_brings_nothing)
     expect_read(8, 0, false);
 }
 
-TEST(a_read_asks_if_the_loop_looked_a_millisecond_ago)
+TEST(a_read_asks_if_the_loop_looked_five_milliseconds_ago)
 {
     add();
     expect_read(8, 0, true);
-    fake.now_us += 999;
+    fake.now_us += 4999;
     expect_read(8, 0, false);
     fake.now_us++;
     port.bytes = 3;

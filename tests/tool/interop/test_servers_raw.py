@@ -22,6 +22,7 @@ OTHERS = SILENT + 'the line works, but address 2 responds. Try --address 2'
 NOBODYS = SILENT + 'the line works, but address 255 responds, which no '
 OTHER_MASTER = 'another master asked this sensor at the same time'
 NO_FRAME = SILENT + 'bytes were received, but no Modbus frame'
+BEGINNING = 'no response from .*: the first bytes of the response are missing or damaged'
 NOTHING = SILENT + 'no byte was received'
 
 
@@ -101,7 +102,7 @@ class Hps167s(OneDistance, Raw):
         an_exception_to_a_function_that_was_never_used=(lambda right: e2e.adu(1, 0x84, 2), NO_FRAME),
         a_crc_in_the_other_order=(lambda right: right[:-2] + right[:-3:-1], DAMAGED),
         a_response_without_its_end=(lambda right: right[:-1], DAMAGED),
-        a_response_without_its_beginning=(lambda right: right[1:], NO_FRAME),
+        a_response_without_its_beginning=(lambda right: right[1:], BEGINNING),
         # Unit 0 asks, and never answers.
         a_broadcast_response=(lambda right: e2e.registers(0, *SAID['hps167s']), NO_FRAME),
         a_response_to_everybody=(lambda right: e2e.registers(255, *SAID['hps167s']), NOBODYS))

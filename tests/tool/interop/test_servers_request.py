@@ -12,7 +12,8 @@ FIRST = 0x0200
 class Servers:
     def ask(self, port, line, code=0, *said):
         """The object that a request gives."""
-        done = self.ends(f'request {line} --echo off --format json --port {port}', code, *said)
+        echo = '' if port.startswith('tcp:') else '--echo off'
+        done = self.ends(f'request {line} {echo} --format json --port {port}', code, *said)
         return done.json[0]
 
     def registers(self, port):
