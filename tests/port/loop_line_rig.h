@@ -65,8 +65,9 @@ static inline void far_end_end(pid_t child)
 
 /* ---- the lines ---- */
 
-/* Include this file after _DEFAULT_SOURCE. Lines on pseudo terminals, an HPS-167S on each, in one loop. A far end responds in less than a millisecond on an idle
- * machine, so a time-out of 1 s is long. A unit whose port broke is quarantined for twice the time-out. */
+/* Include this file after _DEFAULT_SOURCE. Lines on pseudo terminals, an HPS-167S on each, in one loop. A far end
+ * responds in less than a millisecond on an idle machine, so a time-out of 1 s is long. A unit whose port broke is
+ * quarantined for twice the time-out. */
 typedef struct {
     fathom_loop_t loop;
     unsigned count;

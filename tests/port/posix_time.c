@@ -62,7 +62,7 @@ int __wrap_ppoll(struct pollfd *entries, nfds_t count, const struct timespec *li
         return -1;
     }
     if (!posix_time.is_simulated || limit == NULL) return __real_ppoll(entries, count, limit, mask);
-    const int ready = __real_ppoll(entries, count, &none, mask);
+    const int ready = __real_ppoll(entries, count, posix_time.waits ? limit : &none, mask);
     if (ready == 0) pass_time();
     return ready;
 }
@@ -85,7 +85,7 @@ long __wrap_syscall(long number, ...)
     }
     if (!posix_time.is_simulated || limit == NULL)
         return __real_syscall(number, a[0], a[1], a[2], a[3], a[4], a[5]);
-    const long ready = __real_syscall(number, a[0], a[1], a[2], &none, a[4], a[5]);
+    const long ready = __real_syscall(number, a[0], a[1], a[2], posix_time.waits ? limit : &none, a[4], a[5]);
     if (ready == 0) pass_time();
     return ready;
 }

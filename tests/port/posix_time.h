@@ -11,10 +11,11 @@
  *
  * A simulated clock stands still. A sleep that a ready descriptor ends takes no time. A sleep that nothing ends moves the
  * clock on by the time that was requested, and returns at once. So the tests are exact and a busy machine changes nothing.
- * If a test waits for another process, a thread or a signal, it uses the real clock.
+ * If a test waits for another process, a thread or a signal, it uses the real clock, or a simulated one with `waits`: the
+ * sleeps last, and the clock moves as described. So it never runs ahead of the process, and the test is exact too.
  */
 typedef struct {
-    bool is_simulated;
+    bool is_simulated, waits;
     uint64_t now_us;                   /* the simulated clock */
     unsigned epoll_count, ppoll_count; /* calls */
     int epoll_error, ppoll_error;      /* errno of each call; 0: the call succeeds */
