@@ -4,7 +4,7 @@
  * with:   src/sensor/dyp_auto.c src/sensor/dyp.c src/engine/stream.c src/engine/output.c src/engine/sensor.c
  *          src/codec/dyp_stream.c src/engine/line_pins.c
  * options: -eva-precision 0 -eva-ilevel 16
- *          -eva-slevel-function fathom_a05_auto_init:50,fathom_dyp_auto_init:20,main:200,run:1,odd_probe:20,fathom_dyp_measurement_next:20,output_of:10,take:40
+ *          -eva-slevel-function fathom_a05_auto_init:50,fathom_dyp_auto_init:20,main:200,run:1,odd_probe:20,fathom_dyp_measurement_next:20,fathom_dyp_first_probe:20,output_of:10,take:40
  *          -eva-split-return-function fathom_a05_auto_init:0,fathom_dyp_auto_init:0
  * unreached: due_us poll
  * quick:   no

@@ -5,7 +5,7 @@
  *          src/sensor/dyp_modbus.c src/sensor/dyp.c src/engine/modbus_command.c src/engine/modbus_unit.c src/engine/modbus_setting.c
  *          src/engine/sensor.c
  * options: -eva-precision 0 -eva-ilevel 16
- *          -eva-slevel-function fathom_modbus_unit_init:400,fathom_dyp_modbus_init:20,main:200,fathom_dyp_measurement_next:20,fathom_dyp_stream_decode:10,fathom_dyp_55aa_value_count:5,run:1,fathom_a05_dyp_init:50,fathom_line_submit:20
+ *          -eva-slevel-function fathom_modbus_unit_init:400,fathom_dyp_modbus_init:20,main:200,fathom_dyp_measurement_next:20,fathom_dyp_first_probe:20,fathom_dyp_stream_decode:10,fathom_dyp_55aa_value_count:5,run:1,fathom_a05_dyp_init:50,fathom_line_submit:20
  *          -eva-split-return-function fathom_modbus_unit_init:0,fathom_dyp_modbus_init:0,fathom_a05_dyp_init:0
  * quick:   no
  *
