@@ -4,7 +4,7 @@
  * with:   src/codec/modbus_rtu.c src/sensor/dyp_modbus.c src/sensor/dyp.c src/engine/modbus_command.c src/engine/modbus_unit.c src/engine/modbus_setting.c
  *          src/engine/sensor.c
  * options: -eva-precision 0 -eva-ilevel 16
- *          -eva-slevel-function fathom_modbus_unit_init:400,is_valid:50,fathom_dyp_modbus_init:20,main:200,any_probes:20,fathom_dyp_measurement_next:20,run:1,fathom_a05_modbus_init:50
+ *          -eva-slevel-function fathom_modbus_unit_init:400,is_valid:50,fathom_dyp_modbus_init:20,main:200,any_probes:20,fathom_dyp_measurement_next:20,fathom_dyp_first_probe:20,run:1,fathom_a05_modbus_init:50
  *          -eva-split-return-function fathom_modbus_unit_init:0,is_valid:1,fathom_dyp_modbus_init:0,fathom_a05_modbus_init:0
  * quick:   no
  *
