@@ -110,6 +110,9 @@ TEST(a_read_asks_if_the_loop_looked_five_milliseconds_ago)
     fake.now_us += 4999;
     expect_read(8, 0, false);
     fake.now_us++;
+    expect_read(8, 0, true);
+    expect_read(8, 0, false); /* the port itself was empty a moment ago */
+    fake.now_us += 5000;
     port.bytes = 3;
     expect_read(8, 3, true);
     fathom_loop_step(&fake.loop, 0);

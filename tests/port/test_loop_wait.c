@@ -169,6 +169,12 @@ TEST(a_descriptor_that_epoll_refuses_is_polled_all_the_same)
     add_pin(&pin, &first, file);
     assert_int_equal(pass(200000), 21);
     assert_int_equal(first.polls, 21); /* at 0, 10, ..., 200 ms */
+    pin.fd = ends[0];                  /* one that epoll waits for */
+    (void)pass(2 * SOON_US);
+    const unsigned polls = first.polls;
+    send_bytes(1);
+    assert_int_equal(pass(SOON_US), 2);
+    assert_int_equal(first.polls, polls + 1);
     fathom_loop_remove(&pin.source);
     (void)close(file);
 }

@@ -145,6 +145,7 @@ TEST(each_measurement_is_requested_and_read)
         assert_in_range(rig.fake.now_us - rig.sample.time_us, 0, STEP_US);
     }
     assert_int_equal(counters[FATHOM_LINE_RESPONSES], 3);
+    assert_int_equal(fathom_modbus_unit_responses(fathom_hps167_uart_unit(&hps)), 3);
 }
 
 TEST(over_range_is_no_target_and_what_cannot_be_is_refused)

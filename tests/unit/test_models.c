@@ -193,6 +193,7 @@ TEST(a_name_is_found_as_its_owner_writes_it)
         {"jsn-sr04t", "JSN-SR04T"},   {"JSNSR04TV2.0", "JSN-SR04T-2.0"},
         {"k02", "AJ-SR04M"},          {"A0221AM", "A02YYMW"},
         {"DYP-ME007Y-TX", "ME007TX"}, {"(HC-SR04)", "HC-SR04"},
+        {"{hc~sr04}", "HC-SR04"},
     };
     for (unsigned i = 0; i != COUNT(written); i++) {
         row = fathom_model_find(written[i][0], FATHOM_MODE_ANY);
