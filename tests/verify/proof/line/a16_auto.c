@@ -4,7 +4,7 @@
  * with:   src/sensor/dyp.c src/engine/stream.c src/engine/output.c src/engine/sensor.c
  *          src/codec/dyp_stream.c
  * options: -eva-precision 0
- *          -eva-slevel-function fathom_a16_auto_init:50,fathom_dyp_auto_init:20,main:30,output_of:10,take:40
+ *          -eva-slevel-function fathom_a16_auto_init:50,fathom_dyp_auto_init:20,main:30,run:1,output_of:10,take:40
  *          -eva-split-return-function fathom_a16_auto_init:0,fathom_dyp_auto_init:0
  * unreached: fathom_output_set_line_byte
  * quick:   no
@@ -36,6 +36,13 @@ static void any_call(const fathom_sensor_t *handle)
     }
 }
 
+/* The same loop for each that may drive the RX pin. */
+static void run(const fathom_sensor_t *handle)
+{
+    while (any_bool()) any_call(handle);
+    (void)fathom_a16_auto_deinit(&sensor);
+}
+
 void main(void)
 {
     fathom_a16_auto_config_t config;
@@ -53,7 +60,6 @@ void main(void)
     /*@ assert status == FATHOM_ERR_ARGUMENT; */
     fathom_line_t *const line = any_bool() ? &any_line : NULL;
     if (fathom_a16_auto_init(&sensor, line, &config) != FATHOM_OK) return;
-    while (any_bool()) any_call(&handle);
-    (void)fathom_a16_auto_deinit(&sensor);
+    run(&handle);
     (void)fathom_a16_auto_init(&sensor, line, NULL);
 }
