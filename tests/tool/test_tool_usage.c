@@ -73,6 +73,8 @@ static const refused_t wrong[] = {
     {"info a02yyuw -p x", "a02yyuw receives no requests, so it has no address and no settings"},
     {"read hc-sr04 -p x", "hc-sr04 in mode pwm needs GPIO lines, such as "
                           "hc-sr04:pwm@gpiochip0,trigger=17,echo=27."},
+    {"read hc-sr04",
+     "the GPIO lines are missing. Write them behind the sensor: hc-sr04@gpiochip0,trigger=17,echo=27."},
     {"read jsn-sr04t:free", "Write them behind the sensor: jsn-sr04t:free@gpiochip0,echo=27."},
     {"read aj-sr04m:controlled@x,trigger=gpiochip0/17", "aj-sr04m in mode controlled has no trigger=."},
     {"models a16 a05", "models takes one name."},

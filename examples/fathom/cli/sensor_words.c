@@ -211,7 +211,8 @@ static bool check_common_port(const sensor_word_t *word, const char *path)
 {
     char example[PORT_EXAMPLE];
     nearest_t nearest = {.word = word->mode};
-    const model_mode_t *const mode = word->mode != NULL ? find_mode(word->model, &nearest) : NULL;
+    const model_mode_t *const mode =
+        word->mode != NULL ? find_mode(word->model, &nearest) : word->model->modes;
     if (path != NULL && !path_has_keys(path)) return true;
     if (path != NULL)
         return reject(&word->origin, "--port takes no keys. Write them behind the sensor: %s@%s.", word->word,
