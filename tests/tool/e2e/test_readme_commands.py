@@ -78,7 +78,7 @@ class Commands(e2e.Case):
     def test_the_page_names_every_command(self):
         page = text_of('examples/fathom/README.md')
         commands = re.findall(r'^  (\w+) +\S', self.run_fathom('--help').out.split('Help:')[0].split('First steps:')[0], re.M)
-        self.assertEqual(len(commands), 15, commands)
+        self.assertEqual(len(commands), 16, commands)
         for command in commands:
             self.assertIn(f'`fathom {command}`', page)
 
