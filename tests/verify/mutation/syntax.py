@@ -9,7 +9,8 @@ from clang.cindex import CursorKind as Kind, Index, TranslationUnit, TypeKind
 from expressions import NARROWER, Expressions
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))))
-LAYERS = ['src/codec', 'src/engine', 'src/processing', 'src/sensor']  # what stands there includes headers beside it
+# What stands there includes headers beside it.
+LAYERS = ['src/codec', 'src/engine', 'src/models', 'src/processing', 'src/sensor']
 INCLUDE = ['include', 'src', *LAYERS, 'port', 'port/posix', 'port/gpio', 'port/libmodbus', '/usr/include/modbus']
 
 JUMPS = (Kind.RETURN_STMT, Kind.BREAK_STMT, Kind.CONTINUE_STMT)
