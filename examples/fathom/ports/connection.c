@@ -153,7 +153,7 @@ static void connect_again(port_t *port)
     if (port->barren <= 1) connection->until_us = connection->due_us + REFUSED_US;
 }
 
-/* False: so many connections in a row were of no use that the port is lost. */
+/* Returns false if the port is lost: several connections in a row ended without a response. */
 static bool note_barren(port_t *port)
 {
     const char *const who = port->connection->kind->far_end;

@@ -18,7 +18,7 @@ typedef struct {
     fathom_status_t (*judge)(port_t *port);
     void (*stop)(port_t *port); /* frees what start() has allocated; NULL: nothing */
     const char *far_end;
-    /* A connection that ends at most so long after a request has not passed it on. */
+    /* If a connection ends within this time after a request, the far end has not sent the request on. */
     uint32_t race_us;
 } connection_kind_t;
 
