@@ -114,8 +114,8 @@ typedef struct {
     /** @brief Closes an open source. NULL: there is nothing to close. */
     void (*close)(fathom_loop_source_t *source);
 
-    /** @brief Returns the descriptor of an open source. Called after each poll. If the descriptor changes, its number has
-     * to change too. -1: only time wakes the source. */
+    /** @brief Returns the descriptor of an open source. Called after each poll. -1: only time wakes the source. If the
+     * source closes its descriptor and opens another one, call fathom_loop_renew(). */
     int (*fd)(const fathom_loop_source_t *source);
 
     /** @brief Returns the events of poll(2) to wait for. Called after each poll. NULL: POLLIN. */
@@ -340,6 +340,14 @@ uint32_t fathom_loop_due_us(const fathom_loop_t *loop);
 /** @brief Makes the loop poll and read a source in its next step. For `sleep` of the configuration, and after a change
  * from outside, such as a new request. If the source is not open, nothing happens. */
 void fathom_loop_wake(fathom_loop_source_t *source);
+
+/**
+ * @brief Makes the loop wait for another descriptor from the end of this turn of the source on.
+ *
+ * The loop recognises another descriptor by its number, and the system often assigns the number of a closed one again. Call
+ * this after the old descriptor has been closed.
+ */
+void fathom_loop_renew(fathom_loop_source_t *source);
 
 /** @brief Returns why a source could not be opened or was lost, in one line. Returns "" if nothing has failed. */
 const char *fathom_loop_error_text(const fathom_loop_source_t *source);

@@ -74,6 +74,9 @@ void fathom_loop_wake(fathom_loop_source_t *source)
     fathom_loop_due_at(source, 0);
 }
 
+/* A closed descriptor has left epoll. */
+void fathom_loop_renew(fathom_loop_source_t *source) { source->fd = -1; }
+
 void fathom_loop_step(fathom_loop_t *loop, uint32_t max_us)
 {
     if (loop->is_in_step) return;

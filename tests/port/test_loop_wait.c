@@ -397,6 +397,25 @@ TEST(events_that_have_changed_are_waited_for_from_the_next_poll_on)
 /* ---- what cannot be waited for ---- */
 
 /* A pin has the descriptor already, epoll_ctl(2): EEXIST. One byte every 10 ms is 20 in 200 ms; 160 are there. */
+/* The system assigns the number of a closed descriptor again at once. */
+TEST(another_descriptor_with_the_same_number_is_waited_for)
+{
+    add_stream(64);
+    const int number = ends[0];
+    ends_close(0);
+    ends_close(1);
+    fathom_loop_renew(&stream.source);
+    ends_open();
+    assert_int_equal(ends[0], number);
+    fathom_loop_wake(&stream.source); /* a turn of the source */
+    (void)pass(1000);
+    assert_false(is_ready());
+    send_bytes(3);
+    assert_true(is_ready());
+    (void)pass(1000);
+    assert_int_equal(stream.bytes, 3);
+}
+
 TEST(a_stream_that_cannot_be_waited_for_is_read_every_10_ms)
 {
     add_pin(&pin, &first, ends[0]);

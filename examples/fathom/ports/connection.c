@@ -3,7 +3,6 @@
 #include "ports/connection.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <poll.h>
@@ -75,18 +74,8 @@ static void close_socket(port_t *port)
 {
     if (port->fd < 0) return;
     (void)close(port->fd);
-    port->connection->last_fd = port->fd;
     port->fd = -1;
-}
-
-/* A loop recognises a new socket by its number, which the system assigns again at once. */
-static int new_socket(const struct addrinfo *to, int last_fd)
-{
-    const int fd = socket(to->ai_family, to->ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, to->ai_protocol);
-    if (fd < 0 || fd != last_fd) return fd;
-    const int other = fcntl(fd, F_DUPFD_CLOEXEC, fd + 1);
-    (void)close(fd);
-    return other;
+    if (port->source != NULL) fathom_loop_renew(port->source);
 }
 
 /* Starts to connect to an address. Returns 0 or the error. */
@@ -95,7 +84,7 @@ static int start_connecting(port_t *port, const struct addrinfo *to)
     const int on = 1;
     const unsigned silent_ms = SILENT_MS;
     connection_t *const connection = port->connection;
-    port->fd = new_socket(to, connection->last_fd);
+    port->fd = socket(to->ai_family, to->ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, to->ai_protocol);
     if (port->fd < 0) return errno;
     port->events = POLLOUT;
     connection->present = to;
@@ -374,7 +363,6 @@ fathom_status_t connection_open(port_t *port, const connection_kind_t *kind)
     port->connection = calloc(1, sizeof *port->connection);
     if (port->connection == NULL) return port_fail(port, PORT_FAILED, "%s: %s", port->name, strerror(ENOMEM));
     port->connection->kind = kind;
-    port->connection->last_fd = -1;
     if (port->barren >= MOST_BARREN)
         port->barren = MOST_BARREN - 1; /* one more shows whether it is well again */
     const fathom_status_t status = look_up(port);

@@ -35,7 +35,6 @@ typedef struct connection {
     uint64_t until_us;              /* in CONNECTION_AGAIN: the end of all attempts that fail */
     uint64_t opened_us;
     bool is_used;              /* something was received */
-    int last_fd;               /* the newest descriptor that was closed */
     uint64_t sent_us;          /* the time of the newest request */
     uint8_t request[255];      /* the newest one */
     uint8_t length;            /* of the request; 0: none was sent */

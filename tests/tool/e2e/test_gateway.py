@@ -95,7 +95,7 @@ class Idle(tcp_server.Case):
         # A reset may come before the first connection is of use; that is another attempt.
         done = self.ends(reader, 1, re.compile(rf'attempt \d: {server}: {CLOSED}'), '. Waiting until it is back')
         self.assertEqual(done.mm, [])
-        self.assertLessEqual(connections, 10)
+        self.assertLessEqual(connections, 15)  # one that is reset while it is opened is one more after a pause
         self.needs_little(done)
 
     def test_a_single_request_that_writes_is_never_sent_again(self):

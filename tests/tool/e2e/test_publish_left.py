@@ -88,7 +88,7 @@ class Case(mqtt.Case):
         late = self.subscribe('#')
         self.post(mqtt.READY, 'y')
         late.expect(f'^0 {mqtt.READY} y')
-        late.end()
+        late.end(signal.SIGKILL)  # after SIGTERM some go on
         return {one.topic: one.payload for one in self.messages(late) if one.is_retained}
 
     def becomes(self, topics, seconds=e2e.PATIENCE):
