@@ -1,60 +1,40 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Draws the pictures of src/pictures, from traces of what the library does and from the modules here.
+"""Draws the pictures of src/pictures that show what happens on a wire, from traces of what the library does.
 
-    pictures.py [--sim PROGRAM]           draws the pictures
-    pictures.py --check [--sim PROGRAM]   fails if a picture is not the one that it would draw
-    pictures.py --self-test               changes a picture and sees that
+    pictures.py --sim PROGRAM           draws them
+    pictures.py --check --sim PROGRAM   fails if one of them is not what it would draw, or if a picture breaks a rule
 
-PROGRAM prints the traces. Without --sim the pictures of simulated lines are left out. transaction.svg is kept as it was
-traced once, because its times depend on the compiler; --check asks the rules for it, too.
-"""
+PROGRAM prints the traces. The other pictures are kept as they are; --check asks the rules for them, too."""
 import argparse
 import os
 import re
 import subprocess
 import sys
-import tempfile
 import xml.etree.ElementTree as ET
 
 sys.dont_write_bytecode = True
 import events
-import layers
 import quarantine
 import resync
 import svg
-import tool
-import wiring
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))))
 PICTURES = os.path.join(ROOT, 'src', 'pictures')
+TOOL = os.path.join(ROOT, 'examples', 'fathom')
 SIMULATED = ('quarantine', 'resync-silence', 'resync-none', 'resync-repeated')
-KEPT = 'transaction.svg'
 
 
-def load(path):
-    with open(path, encoding='utf-8') as file:
+def load(name):
+    with open(os.path.join(PICTURES, name), encoding='utf-8') as file:
         return file.read()
 
 
-def save(path, text):
-    os.makedirs(os.path.dirname(path), exist_ok=True)
-    with open(path, 'w', encoding='utf-8', newline='\n') as file:
-        file.write(text)
-
-
-def output_of(*command):
-    return subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout
-
-
-def draw_all(options):
-    """Returns {name: text} of all pictures that these programs have traces for."""
-    drawn = {**layers.draw({}), **tool.draw({}), **wiring.draw({})}
-    if options.sim:
-        traces = {name: events.read(output_of(options.sim, name)) for name in SIMULATED}
-        drawn.update(quarantine.draw(traces))
-        drawn.update(resync.draw(traces))
-    return drawn
+def draw_all(program):
+    """Returns {name: text} of the pictures that are drawn from traces."""
+    traces = {name: events.read(subprocess.run([program, name], check=True, stdout=subprocess.PIPE, text=True).stdout)
+              for name in SIMULATED}
+    return {**quarantine.draw(traces), **resync.draw(traces)}
 
 
 def broken_rules(name, text):
@@ -72,46 +52,41 @@ def broken_rules(name, text):
     return [f'src/pictures/{name}: {problem}' for problem in problems]
 
 
-def other_pictures(drawn, folder):
-    for name, text in drawn.items():
-        path = os.path.join(folder, name)
-        if not os.path.exists(path) or load(path) != text:
-            yield f'src/pictures/{name}: not what tests/bench/pictures/pictures.py draws'
+def other_names():
+    """What layers.svg and tool.svg name and is not there, and modules of the tool that tool.svg lacks."""
+    files = {file for _, _, names in os.walk(os.path.join(ROOT, 'include', 'fathom')) for file in names}
+    ports = os.listdir(os.path.join(ROOT, 'port'))
+    for names in re.findall(r'class="m">(.*)</text>', load('layers.svg')):
+        yield from (f'src/pictures/layers.svg: there is no {name}' for name in names.replace(', ...', '').split(', ')
+                    if name + '.h' not in files and name not in ports)
+    drawn = set(re.findall(r'font-weight="bold">([\w/]+)/</text>', load('tool.svg')))
+    yield from (f'src/pictures/tool.svg: there is no {name}' for name in sorted(drawn)
+                if not os.path.isdir(os.path.join(TOOL, name)))
+    modules = {os.path.relpath(here, TOOL).split(os.sep)[0] for here, _, names in os.walk(TOOL)
+               if any(name.endswith('.c') for name in names)}
+    yield from (f'src/pictures/tool.svg: lacks {name}' for name in sorted(modules - drawn - {'.'}))
 
 
-def check(options):
-    drawn = draw_all(options)
-    judged = {**drawn, KEPT: load(os.path.join(PICTURES, KEPT))}
-    problems = [problem for name, text in judged.items() for problem in broken_rules(name, text)]
-    problems += other_pictures(drawn, PICTURES)
-    print(*problems, f'{len(drawn)} pictures, {len(problems)} problems', sep='\n')
+def check(drawn):
+    problems = [problem for name in sorted(os.listdir(PICTURES)) for problem in broken_rules(name, load(name))]
+    problems += [f'src/pictures/{name}: not what tests/bench/pictures/pictures.py draws' for name, text in drawn.items()
+                 if load(name) != text]
+    problems += other_names()
+    print(*problems, f'{len(drawn)} pictures drawn, {len(problems)} problems', sep='\n')
     return bool(problems)
-
-
-def self_test(options):
-    drawn = draw_all(options)
-    with tempfile.TemporaryDirectory() as folder:
-        for name, text in drawn.items():
-            save(os.path.join(folder, name), text)
-        none = list(other_pictures(drawn, folder))
-        save(os.path.join(folder, 'layers.svg'), drawn['layers.svg'] + '<!-- changed -->')
-        is_found = not none and len(list(other_pictures(drawn, folder))) == 1
-    print(f'{int(is_found)} passed, {int(not is_found)} failed')
-    return not is_found
 
 
 def main():
     parser = argparse.ArgumentParser(usage=__doc__)
-    parser.add_argument('--sim')
-    for mode in ('--check', '--self-test'):
-        parser.add_argument(mode, action='store_true')
+    parser.add_argument('--sim', required=True)
+    parser.add_argument('--check', action='store_true')
     options = parser.parse_args()
-    if options.self_test:
-        return self_test(options)
+    drawn = draw_all(options.sim)
     if options.check:
-        return check(options)
-    for name, text in draw_all(options).items():
-        save(os.path.join(PICTURES, name), text)
+        return check(drawn)
+    for name, text in drawn.items():
+        with open(os.path.join(PICTURES, name), 'w', encoding='utf-8', newline='\n') as file:
+            file.write(text)
     return 0
 
 
