@@ -162,15 +162,12 @@ run_full() {
     stage 3600 'fuzzing: 10^8 executions' program fuzz_full $python tests/verify/fuzz/run.py --full
     stage 60 'fuzzing: planted fault' program fuzz_planted $python tests/verify/fuzz/run.py --self-test
     stage 600 'chaos: 1,000 rounds' program chaos_full env FATHOM=build-gcc/fathom $python tests/tool/chaos/run.py --rounds 1000
-    stage 240 'chaos: planted faults' program chaos_planted env FATHOM=build-gcc/fathom $python tests/tool/chaos/run.py --self-test
     stage 300 'publish: 100 kills' program broker_full env FATHOM=build-gcc/fathom $python tests/tool/chaos/broker.py
     stage 300 'publish: 100 restarts, renamed sensors' program publish_restarts env FATHOM=build-gcc/fathom FATHOM_ROUNDS=100 \
         $python tests/tool/e2e/test_publish_left.py Left
     stage 120 'publish: 256 lines' $python tests/bench/publish.py build-gcc
     stage 650 'publish: memory' $python tests/bench/publish.py build-gcc --soak 580
     stage 300 'Debian packages, in a clean system' program package_full $python tests/tool/package/run.py
-    stage 120 'checks: planted faults' program checks_planted $python tests/checks/planted.py
-    stage 420 'packages: planted faults' program package_planted $python tests/tool/package/run.py --self-test
     timeout=900
     stage 400 'second: 1000 seeds' run_tests gcc seeds --label-regex second
     stage 600 'firmware, exhaustive forms' run_tests gcc firmware --label-regex 'firmware|long'

@@ -5,7 +5,6 @@
     lines.py PROGRAM              prints the table, CPU time and system calls of a transaction: three minutes
     lines.py PROGRAM --update     for a release: also writes lines.csv and the table of include/COST.md
     lines.py PROGRAM --try        checks with two lines that every reading is right, and the names in the page's table
-    lines.py --self-test          plants a wrong reading
 
 PROGRAM is bench_lines (lines/main.c). Times depend on the machine and its load, so no time fails.
 """
@@ -178,25 +177,12 @@ def try_it(program):
     return not_in_page(report.read(report.PAGE), kept())
 
 
-def self_test():
-    try:
-        rows_of('lines,way,round,time_us,user_us,system_us,transactions,wrong\n2,loop,1,9,6,4,5,1\n')
-        is_found = False
-    except Failed:
-        is_found = True
-    print(f'{int(is_found)} passed, {int(not is_found)} failed')
-    return 0 if is_found else 1
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('program', metavar='PROGRAM', nargs='?')
     parser.add_argument('--update', action='store_true', help='write the figures of a release')
     parser.add_argument('--try', dest='is_tried', action='store_true', help='check the readings of two lines')
-    parser.add_argument('--self-test', action='store_true', help='show that a wrong reading is found')
     options = parser.parse_args()
-    if options.self_test:
-        return self_test()
     if options.program is None:
         parser.error('PROGRAM is missing: bench_lines of a build folder')
     try:

@@ -6,7 +6,6 @@
                                      tests/bench/bench_far_end
     publish.py BUILD --soak SECONDS  measures memory alone, with 64 lines that are read as fast as they can be
     publish.py BUILD --try           checks with 16 lines that no reading is lost; no figure can fail
-    publish.py --self-test           plants a missing reading
 
 The script measures while the broker is there; while the broker has stopped without a word; while its port refuses; and
 while it comes back and gets all messages that have waited. In each of them it measures the CPU time of one processor,
@@ -236,17 +235,6 @@ def rate_of(streams):
     return max(seconds.values())
 
 
-def self_test():
-    states = [{'seq': seq, 'status': 'target', 'distance_mm': FIRST_MM, 'dropped': 0} for seq in (1, 2, 4)]
-    try:
-        check_states({'s0': states}, 1)
-        is_found = False
-    except Failed as why:
-        is_found = 'instead of 3' in str(why)
-    print(f'{int(is_found)} passed, {int(not is_found)} failed')
-    return 0 if is_found else 1
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('build', metavar='BUILD', nargs='?')
@@ -255,10 +243,7 @@ def main():
     parser.add_argument('--soak', type=float, metavar='SECONDS', help='memory alone')
     parser.add_argument('--try', dest='is_tried', action='store_true',
                         help='check with 16 lines that no reading is lost')
-    parser.add_argument('--self-test', action='store_true', help='show that a missing reading is found')
     options = parser.parse_args()
-    if options.self_test:
-        return self_test()
     if options.build is None:
         parser.error('BUILD is missing: a build folder')
     if options.soak is not None:

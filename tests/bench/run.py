@@ -9,7 +9,6 @@
     run.py --csv FILE   also writes the figures as CSV
     run.py --functions  also prints what each function of the job costs
     run.py --chains     also prints the calls that lead to the worst stack of each row
-    run.py --self-test  plants a figure that is too large
 
 The first table is the job's (job.py). The second one has flash, RAM and stack of each part of the library on each
 microcontroller (sizes.py).
@@ -39,28 +38,15 @@ def measure(work):
     return figures, functions, *of_sizes
 
 
-def self_test():
-    now, compilers = report.kept_figures()
-    before = dict(now)
-    now['job.m0_flash_256'] += 1 + max(32, now['job.m0_flash_256'] // 100)
-    found = report.problems(now, before, compilers, compilers.copy().pop())
-    is_found = 'job.m0_flash_256 is over' in found
-    print(f'{int(is_found)} passed, {int(not is_found)} failed')
-    return 0 if is_found else 1
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('--check', action='store_true', help='fail if a figure is over that of the last release')
     parser.add_argument('--update', action='store_true', help='write the figures of a release')
     parser.add_argument('--functions', action='store_true', help='print which function costs what')
     parser.add_argument('--chains', action='store_true', help='print which calls take the worst stack')
-    parser.add_argument('--self-test', action='store_true', help='show that the comparison can fail')
     parser.add_argument('--csv', metavar='FILE', help='write the tables there as CSV')
     options = parser.parse_args()
 
-    if options.self_test:
-        return self_test()
     with tempfile.TemporaryDirectory() as work:
         figures, functions, sizes, variables, chains = measure(work)
     report.show(figures, sizes)

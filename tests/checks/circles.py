@@ -211,7 +211,7 @@ def calls(root, code):
     return graph, why, [f'{path}: does not compile:\n{said}' for path, (_, _, said) in objects.items() if said]
 
 
-def check(root, only):
+def check(root):
     paths = files(root, *FOLDERS, ends=ENDS)
     text = {path: read(root, path) for path in paths}
     code = {path: code_of(text[path]) for path in paths}
@@ -240,10 +240,5 @@ def check(root, only):
     return problems + [f'{place}: no circle there any more; take it out of KNOWN' for place in mended]
 
 
-FAULT = ('src/engine/line.c', None,
-         '\nvoid fathom_x(fathom_line_t *line);\nvoid fathom_x(fathom_line_t *line)\n{\n'
-         '    fathom_line_end_attempt(line);\n}\n',
-         'fathom_x of src/engine/line.c refers to fathom_line_end_attempt of src/engine/line_attempt.c')
-
 if __name__ == '__main__':
-    main(check, FAULT)
+    main(check)

@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""What the checks share: the tree, the compilers' flags, and a planted fault that shows that a check can fail."""
+"""What the checks share: the tree, the compilers' flags, and how a check reports."""
 import os
 import re
-import shutil
 import subprocess
 import sys
-import tempfile
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 
@@ -18,8 +16,6 @@ WARNINGS = [*CXX_WARNINGS, '-Wstrict-prototypes']
 TEST_PORTS = ('tests/firmware/mps2/port', 'tests/firmware/virt/port')
 
 LIBMODBUS = '-isystem/usr/include/modbus'  # what the port over libmodbus includes
-
-COPIED = ('include', 'src', 'port', 'examples', 'CMakeLists.txt', 'CMakePresets.json', '.clang-tidy', '.clang-format')
 
 
 def files(root, *folders, ends=('.c', '.h')):
@@ -51,44 +47,9 @@ def run(command, root):
     return done.returncode == 0, done.stdout
 
 
-def plant(root, path, old, new):
-    """Replaces the first `old` (None: the end) of a file, which is made if need be."""
-    target = os.path.join(root, path)
-    os.makedirs(os.path.dirname(target), exist_ok=True)
-    text = read(root, path) if os.path.exists(target) else ''
-    if old is None:
-        text += new
-    elif old in text:
-        text = text.replace(old, new, 1)
-    else:
-        raise SystemExit(f'self-test: {old!r} is not in {path}')
-    with open(target, 'w', encoding='utf-8') as file:
-        file.write(text)
-
-
-def self_test(check, fault):
-    """Returns 0 if the check finds the fault when it is planted in a copy of the tree."""
-    path, old, new, words = fault
-    with tempfile.TemporaryDirectory() as copy:
-        for name in COPIED:
-            source = os.path.join(ROOT, name)
-            if os.path.isdir(source):
-                shutil.copytree(source, os.path.join(copy, name))
-            elif os.path.exists(source):
-                shutil.copy(source, copy)
-        plant(copy, path, old, new)
-        is_found = any(words in problem and path in problem for problem in check(copy, [path]))
-    if not is_found:
-        print(f'not found: {new.strip()!r} in {path} ({words})')
-    print(f'{int(is_found)} passed, {int(not is_found)} failed')
-    return 0 if is_found else 1
-
-
-def main(check, fault):
-    """check(root, only): problems as text; `only` may narrow it to some paths, for speed."""
-    if sys.argv[1:] == ['--self-test']:
-        sys.exit(self_test(check, fault))
-    problems = check(ROOT, None)
+def main(check):
+    """check(root): problems as text."""
+    problems = check(ROOT)
     for problem in problems:
         print(problem)
     print(f'{len(problems)} problems')

@@ -5,7 +5,6 @@ mandatory rule or from a rule that is kept, and MISRA.md has the reason for each
 
     misra.py               compares the places with MISRA.md
     misra.py --list RULE   prints the places of a rule
-    misra.py --self-test   plants a deviation that MISRA.md does not name
 
 The addon runs on dumps of its own, since cppcheck shows only one finding of the addon in a line."""
 import json
@@ -18,7 +17,7 @@ import tempfile
 from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 
-from common import ROOT, files, plant, read
+from common import ROOT, files, read
 
 ADDON = '/usr/lib/x86_64-linux-gnu/cppcheck/addons/misra.py'
 PAGE = 'tests/checks/MISRA.md'
@@ -61,20 +60,19 @@ def look(job):
     return [finding for path in paths for finding in addon(root, [f'{path}.dump'])]
 
 
-def places(root, only=None):
-    """(rule, file, line, column) of each place. root is written to; only: these files alone."""
+def places(root):
+    """(rule, file, line, column) of each place. root is written to."""
     jobs = []
     for program in PROGRAMS:
-        paths = [path for path in files(root, program, ends='.c') if only is None or path in only]
+        paths = files(root, program, ends='.c')
         jobs += [(root, program, paths[at:at + BATCH]) for at in range(0, len(paths), BATCH)]
     if not jobs:
         raise SystemExit('misra.py: no file to look at')
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         found = [finding for said in pool.map(look, jobs) for finding in said]
-        if only is None:
-            names = [[path for path in files(root, program, ends='.ctu-info')] for program in PROGRAMS]
-            for said in pool.map(lambda paths: addon(root, paths), filter(None, names)):
-                found += said
+        names = [files(root, program, ends='.ctu-info') for program in PROGRAMS]
+        for said in pool.map(lambda paths: addon(root, paths), filter(None, names)):
+            found += said
     return sorted({(finding['errorId'].replace('c2012-', ''), os.path.normpath(finding['file']), finding['linenr'],
                     finding['column'])
                    for finding in found if 'errorId' in finding and JUDGED.match(os.path.normpath(finding['file']))})
@@ -103,20 +101,7 @@ def copied(folder):
         shutil.copytree(os.path.join(ROOT, name), os.path.join(folder, name))
 
 
-def self_test():
-    path = 'src/engine/line.c'
-    with tempfile.TemporaryDirectory() as copy:
-        copied(copy)
-        plant(copy, path, None, 'int fathom_x(int n);\nint fathom_x(int n) { goto end; end: return n; }\n')
-        is_found = any('rule 15.1, and MISRA.md has no reason' in problem
-                       for problem in compared(places(copy, [path]), read(ROOT, PAGE)))
-    print(f'{int(is_found)} passed, {int(not is_found)} failed')
-    return 0 if is_found else 1
-
-
 def main(arguments):
-    if arguments == ['--self-test']:
-        return self_test()
     with tempfile.TemporaryDirectory() as copy:
         copied(copy)
         found = places(copy)

@@ -10,7 +10,6 @@
     package.py ports BUILD           by add_subdirectory or FetchContent, with one port or another
     package.py outside BUILD         a port that stands elsewhere, on Fathom in both ways
     package.py version BUILD         the version comes from one place
-    package.py --self-test           shows that a fault in CMakeLists.txt is found
 
 BUILD is the build folder of the project, which has been built."""
 import contextlib
@@ -22,7 +21,7 @@ import subprocess
 import sys
 import tempfile
 
-from common import ROOT, files, plant, read
+from common import ROOT, files, read
 
 CONSUMER = os.path.join(ROOT, 'tests', 'checks', 'consumer')
 OUTSIDE = os.path.join(ROOT, 'tests', 'checks', 'outside')
@@ -278,6 +277,15 @@ def ports_that_cannot_be_built(build, work):
             expect('brought fathom_' + name.lower() in said, True)
 
 
+def plant(root, path, old, new):
+    """Replaces the first `old` (None: the end) of a file, which is made if need be."""
+    target = os.path.join(root, path)
+    os.makedirs(os.path.dirname(target), exist_ok=True)
+    text = read(root, path) if os.path.exists(target) else ''
+    with open(target, 'w', encoding='utf-8') as file:
+        file.write(text + new if old is None else text.replace(old, new, 1))
+
+
 def outside(build, work):
     prefix = installed(build, work)
     for number, way in enumerate(('-DCMAKE_PREFIX_PATH=' + prefix, '-DFATHOM_ROOT=' + ROOT)):
@@ -357,25 +365,8 @@ def version(build, work):
         expect('version.h says' in said, True)
 
 
-def self_test(work):
-    """The way `version` finds a CMakeLists.txt that accepts any version.h."""
-    copy = os.path.join(work, 'copy')
-    os.makedirs(copy)
-    for name in ('CMakeLists.txt', 'include', 'src', 'port', 'tests/checks'):
-        source = os.path.join(ROOT, name)
-        (shutil.copytree if os.path.isdir(source) else shutil.copy)(source, os.path.join(copy, name))
-    plant(copy, 'CMakeLists.txt', 'message(FATAL_ERROR "include/', 'message(STATUS "include/')
-    done = subprocess.run([sys.executable, os.path.join(copy, 'tests/checks/package.py'), 'version', work],
-                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
-    is_found = done.returncode != 0 and 'exit status 0' in done.stdout
-    print(f'{int(is_found)} passed, {int(not is_found)} failed')
-    return 0 if is_found else 1
-
-
 if __name__ == '__main__':
     with tempfile.TemporaryDirectory() as folder_of_all:
-        if sys.argv[1:] == ['--self-test']:
-            sys.exit(self_test(folder_of_all))
         {'find_package': find_package, 'pkg_config': pkg_config, 'layouts': layouts, 'libmodbus': libmodbus,
          'subproject': subproject, 'ports': ports, 'outside': outside,
          'version': version}[sys.argv[1]](os.path.abspath(sys.argv[2]), folder_of_all)

@@ -9,13 +9,10 @@ import re
 import sys
 import tempfile
 
-import common
 from common import ROOT, files, main, read, run
 
 sys.path.insert(0, os.path.join(ROOT, 'tests', 'support'))
 from cut import blocks  # noqa: E402: as the tests that run the programs cut them out
-
-common.COPIED = (*common.COPIED, '.github', 'tests', 'README.md', 'CHANGELOG.md', 'CMakeLists.txt', 'LICENSE')
 
 COLUMNS, FIRST_PAGE = 120, 12 * 1024
 # The complete first programs, and how many lines each may have without that of the licence. The first page has the
@@ -117,9 +114,9 @@ def first_programs(root):
         yield f'{page}: the table of first programs has no row of {mode}'
 
 
-def check(root, only):
+def check(root):
     problems, seen = [], {}
-    for path in (only if only and only[0] != 'README.md' else pages(root)):
+    for path in pages(root):
         text = read(root, path)
         problems += links(root, path, prose(text))
         for number, line in enumerate(prose(text).split('\n'), 1):
@@ -139,7 +136,5 @@ def check(root, only):
     return [*problems, *programs(root), *first_programs(root)]
 
 
-FAULT = ('README.md', '(src/README.md)', '(src/READER.md)', 'which is not there')
-
 if __name__ == '__main__':
-    main(check, FAULT)
+    main(check)

@@ -2,8 +2,7 @@
 # SPDX-License-Identifier: MIT
 """No test is lost unseen: each file tests/**/test_*.{c,py,js,sh} belongs to a test of CTest's, and each kind has tests.
 
-    registered.py BUILD        asks CTest which tests the build folder BUILD has
-    registered.py --self-test  takes one test away and sees that its file is found
+    registered.py BUILD    asks CTest which tests the build folder BUILD has
 
 A script is registered if a command contains its path. A C file is registered if a test's name or its command has the
 file's name without the ending as a word."""
@@ -48,17 +47,7 @@ def problems(paths, tests):
             yield f'tests/{kind}: CTest has no test of this kind'
 
 
-def self_test():
-    tests = {f'{kind}.a': 'tests/a/test_one.py' for kind in KINDS}
-    found = list(problems(['tests/a/test_one.py', 'tests/b/test_one.py'], tests))
-    is_found = found == ['tests/b/test_one.py: no test of CTest runs it']
-    print(f'{int(is_found)} passed, {int(not is_found)} failed')
-    return 0 if is_found else 1
-
-
 def main():
-    if sys.argv[1:] == ['--self-test']:
-        return self_test()
     paths, tests = test_files(ROOT), registered(sys.argv[1])
     found = list(problems(paths, tests))
     print(*found, f'{len(paths)} files, {len(tests)} tests, {len(found)} problems', sep='\n')

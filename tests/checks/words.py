@@ -95,10 +95,10 @@ def in_prose(line):
                 yield from ((word, found[0], instead) for found in expression.finditer(plain))
 
 
-def findings(root, only=None):
+def findings(root):
     """(path, line number, word, what was found, instead)"""
     for path in sorted(pages(root)):
-        if path in NOT_READ or path.endswith(LEFT_OUT) or (only and path not in only):
+        if path in NOT_READ or path.endswith(LEFT_OUT):
             continue
         try:
             text = read(root, path)
@@ -142,9 +142,9 @@ def renamed(root):
             yield f'{CHANGES}: {old} has become {new}, which is in no header'
 
 
-def check(root, only):
+def check(root):
     return [f'{path}:{number}: {found!r}: use {instead}' for path, number, _, found, instead
-            in findings(root, only)] + list(renamed(root))
+            in findings(root)] + list(renamed(root))
 
 
 def folder_of(path):
@@ -162,10 +162,8 @@ def print_list():
     print(f'{sum(sum(row.values()) for row in counts.values()):5} in all')
 
 
-FAULT = ('src/line.c', None, '/* It owes a planted response. */\n', "'owes': use quarantined")
-
 if __name__ == '__main__':
     if sys.argv[1:] == ['--list']:
         print_list()
         sys.exit(0)
-    main(check, FAULT)
+    main(check)

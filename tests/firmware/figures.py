@@ -8,7 +8,6 @@
                                  over its bound, or is not measured
     figures.py --update ...      for a release: also writes figures.csv; bounds stay, and are written there by hand
     figures.py --page            fails if the table of include/COST.md has other rows; with --update, writes the table
-    figures.py --self-test       plants a figure that is too large
 
 Less is better for all figures. The simulators are deterministic, so a figure is the same each time for one version of
 the compiler, which the file names. With another version the figures are printed and not compared. This script fails if
@@ -161,26 +160,15 @@ def update(found, group, compiler, compilers, rows):
         rows[name] = {'group': group, 'name': name, 'unit': unit, 'figure': figure, 'bound': bound}
 
 
-def self_test():
-    row = {'group': 'chip', 'name': 'chip_isr', 'unit': 'cycles', 'figure': '50', 'bound': ''}
-    found = problems({'chip_isr': ('83', 'cycles')}, 'chip', 'cc 1', {'chip': 'cc 1'}, {'chip_isr': row})
-    is_found = found == ['chip_isr is over the figure of the last release']
-    print(f'{int(is_found)} passed, {int(not is_found)} failed')
-    return 0 if is_found else 1
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument('--check', action='store_true', help='fail if a figure is over that of the last release')
     parser.add_argument('--update', action='store_true', help='write the figures of a release')
     parser.add_argument('--page', action='store_true', help='check only the table of include/COST.md')
-    parser.add_argument('--self-test', action='store_true', help='show that the comparison can fail')
     parser.add_argument('group', nargs='?')
     parser.add_argument('compiler', nargs='?')
     parser.add_argument('program', nargs=argparse.REMAINDER)
     options = parser.parse_args()
-    if options.self_test:
-        return self_test()
     if options.page:
         return page(options.update)
     if not options.program:

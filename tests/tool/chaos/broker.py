@@ -3,7 +3,6 @@
 """fathom publish under load, while its broker, its connection and it itself are killed and begun again.
 
     broker.py [--kills 100] [--seed N]     three minutes; --kills 8 is the quick form, 20 s
-    broker.py --self-test                  takes a message out of a record, and sees that it is lost
 
 FATHOM is the tool, as for tests/tool/e2e; Mosquitto and its mosquitto_sub have to be there. Between records all that the tool
 has sent, and what each broker has acknowledged. At the end: what was acknowledged has come to the subscriber; nothing that was
@@ -341,30 +340,11 @@ def records(count=UNDER_WAY + 6, boot='b'):
     return sent
 
 
-def self_test():
-    """Takes a message out of what a subscriber received. Returns 0 if check() sees that."""
-    sent = records()
-    received = {1: [(one.topic, one.payload) for one in sent]}
-    check(sent, received)
-    del received[1][3]
-    try:
-        check(sent, received)
-        is_seen = False
-    except Wrong as why:
-        is_seen = 'has not come' in str(why)
-    print(f'the lost message is {"seen" if is_seen else "NOT SEEN"}')
-    print(f'{int(is_seen)} passed, {int(not is_seen)} failed')
-    return int(not is_seen)
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__.split('\n\n')[0])
     parser.add_argument('--kills', type=int, default=100)
     parser.add_argument('--seed', default='1')
-    parser.add_argument('--self-test', action='store_true')
     options = parser.parse_args()
-    if options.self_test:
-        return self_test()
     run = Run(options.kills, options.seed)
     began = time.monotonic()
     wrong = e2e.run(run)

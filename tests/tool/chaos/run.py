@@ -4,7 +4,6 @@
 stalls or is closed, and the wall clock jumps.
 
     run.py [--rounds 30] [--seed N] [--at-once 4]     another seed, other rounds; one round: --only N
-    run.py --self-test                                plants a fault in a copy of the tool, and sees it
 
 FATHOM is the tool, as for tests/tool/e2e. Each round is a kind of output (OUTPUTS), which says how it has to end. In all of
 them: it does not hang, no reading is wrong or of a sensor that was gone, no row is half written, no descriptor is
@@ -20,9 +19,7 @@ import fcntl
 import json
 import os
 import random
-import shutil
 import signal
-import subprocess
 import sys
 import time
 
@@ -156,11 +153,11 @@ def descriptors(program):
 class Round(e2e.Case):
     """One of them; the name of its output is a method."""
 
-    def __init__(self, number, seed, tool=None):
+    def __init__(self, number, seed):
         super().__init__('runTest')
         self.random = random.Random(f'{seed}/{number}')
         self.kind = OUTPUTS[number % len(OUTPUTS)]
-        self.number, self.tool = number, tool or e2e.FATHOM
+        self.number, self.tool = number, e2e.FATHOM
         self.readings = 0
 
     def id(self):
@@ -320,45 +317,14 @@ OUTPUTS = ('pipe', 'file', 'file_while_the_wall_clock_jumps', 'pipe_that_is_clos
            'pipe_that_stalls', 'pipe', 'saved_settings')
 
 
-def play(numbers, seed, at_once, tool=None):
+def play(numbers, seed, at_once):
     """[(number, kind, what was wrong)] of the rounds."""
     def one(number):
-        case = Round(number, seed, tool)
+        case = Round(number, seed)
         wrong = e2e.run(case)
         return number, case.kind, ''.join(wrong), case.readings
     with concurrent.futures.ThreadPoolExecutor(at_once) as pool:
         return list(pool.map(one, numbers))
-
-
-# The planted fault: a port that is lost keeps its descriptor.
-PLANTED = ('port/posix/uart.c', '(void)close(port->fd); /* EINTR', '/* EINTR')
-PLANTED_ROUND, PLANTED_WORDS = 0, 'descriptors at first'
-
-
-def self_test(seed):
-    """Builds a copy with the planted fault. Returns 0 if a round fails because of it."""
-    tree = os.path.join(e2e.ROOT, 'build-chaos', 'source')
-    build = os.path.join(e2e.ROOT, 'build-chaos', 'build')
-    shutil.rmtree(tree, ignore_errors=True)
-    for name in ('include', 'src', 'port', 'examples', 'CMakeLists.txt', 'LICENSE', 'README.md'):
-        source = os.path.join(e2e.ROOT, name)
-        (shutil.copytree if os.path.isdir(source) else shutil.copy)(source, os.path.join(tree, name))
-    path, old, new = PLANTED
-    path = os.path.join(tree, path)
-    with open(path, encoding='utf-8') as file:
-        text = file.read()
-    if text.count(old) != 1:
-        sys.exit(f'{old!r} is not once in {path}')
-    with open(path, 'w', encoding='utf-8') as file:
-        file.write(text.replace(old, new))
-    for command in (['cmake', '-S', tree, '-B', build, '-DCMAKE_BUILD_TYPE=Release', '-DFATHOM_TESTS=OFF'],
-                    ['cmake', '--build', build, '--parallel', '2', '--target', 'fathom_tool']):
-        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
-    is_seen = any(PLANTED_WORDS in wrong for _, _, wrong, _ in
-                  play([PLANTED_ROUND], seed, 1, os.path.join(build, 'fathom')))
-    print(f'the planted fault is {"seen" if is_seen else "NOT SEEN"}')
-    print(f'{int(is_seen)} passed, {int(not is_seen)} failed')
-    return int(not is_seen)
 
 
 def main():
@@ -367,14 +333,11 @@ def main():
     parser.add_argument('--seed', default='1')
     parser.add_argument('--only', type=int)
     parser.add_argument('--at-once', type=int, default=4)
-    parser.add_argument('--self-test', action='store_true', help='plants a fault and sees it')
     options = parser.parse_args()
     e2e.follow_hang_up()
     for needed in (e2e.FATHOM, CLOCK):
         if not os.path.exists(needed):
             sys.exit(f'{needed} is not there')
-    if options.self_test:
-        return self_test(options.seed)
     numbers = range(options.rounds) if options.only is None else [options.only]
     done = {number: row for number, *row in play(numbers, options.seed, options.at_once)}
     for number, (kind, wrong, _) in list(done.items()):

@@ -5,7 +5,6 @@
     run.py                builds them by the documented command and checks them, and their figures against figures.csv
     run.py --quick        without the clean system, and without root
     run.py --update       keeps the figures
-    run.py --self-test    plants a fault in a package, and sees that it is found
 
 It needs root, for the clean system (sudo, if it is not), and the packages lintian, debootstrap, mandoc, groff, man-db,
 strace, dpkg-dev and systemd."""
@@ -105,24 +104,6 @@ def update(figures, found):
         rows.writerows(['lintian', *row, named.get(row, '')] for row in found)
 
 
-def self_test(packages):
-    """Plants a file of another mode in the package of the tool, and reports whether unpacked.places() sees it."""
-    folder, made = os.path.join(WORK, 'planted'), []
-    tree = os.path.join(folder, 'tree')
-    shutil.rmtree(folder, ignore_errors=True)
-    os.makedirs(folder)
-    for package in packages:
-        made.append(os.path.join(folder, os.path.basename(package)))
-        must(['dpkg-deb', '-R', package, tree])
-        if unpacked.name_of(package) == 'fathom':
-            os.chmod(os.path.join(tree, 'usr/share/bash-completion/completions/fathom'), 0o600)
-        must(['dpkg-deb', '--root-owner-group', '-b', tree, made[-1]])
-        shutil.rmtree(tree)
-    found = list(unpacked.places(made))
-    is_seen = len(found) == 1 and 'completions/fathom is -rw-------, not' in found[0]
-    report('the planted mode is seen', [] if is_seen else [f'found: {found}'], time.monotonic())
-
-
 def check(packages):
     root = extracted(packages, os.path.join(WORK, 'extracted'))
     began = time.monotonic()
@@ -165,10 +146,7 @@ def main():
     began = time.monotonic()
     packages = build()
     report('built', [], began)
-    if '--self-test' in sys.argv:
-        self_test(packages)
-    else:
-        check(packages)
+    check(packages)
     print(f'{passed} passed, {failed} failed')
     return 1 if failed or not passed else 0
 
