@@ -63,7 +63,8 @@ static uint64_t fact(const failure_t *failure, const char *name, size_t length)
         {"listened", !mode_is_asked(mode) && !mode->is_triggered && !has_pins}, /* it sends automatically */
         {"triggered", mode->is_triggered && !has_pins},                         /* by a break on TX */
         {"pins", has_pins},                                                     /* lines of a GPIO chip */
-        {"relative", mode->row != NULL}, /* its modes are those of its name alone */
+        {"relative", mode->row != NULL},        /* its modes are those of its name alone */
+        {"forms", model_form(mode, 0) != NULL}, /* of which others are known */
         /* what is known */
         {"tcp", port->kind == PORT_GATEWAY},
         {"converter", port->kind == PORT_RAW},
@@ -102,6 +103,8 @@ static uint64_t fact(const failure_t *failure, const char *name, size_t length)
         /* what was received */
         {"silence", heard->bytes == 0},
         {"bytes", heard->bytes},
+        {"zeros", heard->is_zeros && !is_asked(failure)}, /* bytes 00 and no others */
+        {"automatic", facts.is_automatic},                /* frames without a trigger */
         /* A line over TCP assigns no response to an earlier request. */
         {"late", line[FATHOM_LINE_LATE_RESPONSES] + (port->kind == PORT_GATEWAY ? heard->fitting : 0u)},
         {"took", heard->slowest_us / 1000u},
@@ -188,7 +191,8 @@ enum {
     "[ends:, then start again][may-wait:. With --reconnect, fathom opens the port again][waits:. Waiting "   \
     "until "                                                                                                 \
     "the port can be opened]"
-#define NO_MASTER "Disconnect the other master or stop its program"
+#define OTHER_FORM "[forms:. If the module is another form, read it as that: {forms}]"
+#define NO_MASTER  "Disconnect the other master or stop its program"
 #define PULSE_WIRES                                                                                          \
     "Check the supply and ground of the sensor, the wires from trigger to its RX and from its TX to echo, "  \
     "that these are line numbers of the chip (gpioinfo lists them) and not of the header's pins, and that "  \
@@ -237,11 +241,17 @@ static const row_t causes[] = {
      "Check for a loose wire or a worn contact, that something pulls the input to one side (bias=up, "
      "bias=down or a resistor), and that this is a line number of the chip (gpioinfo lists them)"},
 
+    {NO_RESPONSE | CHECKSUM, "triggered automatic",
+     "frames are received without a trigger, so the module is the automatic form ({automatic})",
+     "Try '{read-automatic}'" UNSEEN},
+    {NO_RESPONSE | CHECKSUM | STALE, "zeros",
+     "no byte but 00 was received: the line is low for a long time, as by the pulses of a module",
+     "If the module is the pulse form (M), read it at lines of a GPIO chip. Else check for the levels of "
+     "RS232, and whether TX and RX are swapped" OTHER_FORM UNSEEN},
     {NO_RESPONSE | CHECKSUM, "triggered bytes", "the bytes after the trigger form no frame",
      "Check {settings}, and look for noise" UNSEEN},
     {NO_RESPONSE | CHECKSUM, "triggered relative", "no frame followed the trigger in time",
-     "Check the supply and the wires from the adapter's TX to the sensor's RX and back. If it sends without "
-     "a trigger, it is the automatic form (U), such as a02yyuw; 'fathom models' lists the forms" UNSEEN},
+     "Check the supply and the wires from the adapter's TX to the sensor's RX and back" OTHER_FORM UNSEEN},
     {NO_RESPONSE | CHECKSUM, "triggered", "nothing followed the trigger",
      "Check the supply, the wires from the adapter's TX (or the line trigger=) to the sensor's RX and back, "
      "that the adapter can send a break, and that the sensor is the UART controlled variant (if not: --mode "
@@ -274,14 +284,16 @@ static const row_t causes[] = {
      "Check the power and whether A and B are swapped. If the sensor does not send automatically, use --mode "
      "modbus. To find its address, run 'fathom scan --port {path}'" UNSEEN},
     {STALE | CHECKSUM, "listened silence relative", "no byte was received",
-     "Check the power and the wire of the sensor's TX. If it waits for a trigger, it is the controlled form "
-     "(T), such as a02yytw, or its board has another resistor; 'fathom models' lists the forms" UNSEEN},
+     "Check the power and the wire of the sensor's TX" OTHER_FORM UNSEEN},
     {STALE | CHECKSUM, "listened silence", "no byte was received",
      "Check the power and the wire of the sensor's TX. A Modbus request ends the automatic output: switch "
      "the sensor off and on, or use --mode modbus. If it has an address, name it with its address, such as "
      "{model}:7; 'fathom scan --port {path}' finds it" UNSEEN},
     {STALE | CHECKSUM, "listened addressed foreign", "the line works, but address {foreign-address} sends",
      "Try {other}"},
+    {STALE | CHECKSUM, "listened modbus relative",
+     "Modbus frames were received, but no measurement of {sensor}",
+     "Check that the module is an automatic form (U)" OTHER_FORM},
     {STALE | CHECKSUM, "listened modbus", "Modbus frames were received, but no measurement of {sensor}",
      "If the sensor does not send automatically, use --mode modbus"},
     {STALE | CHECKSUM, "listened ambiguous",
@@ -497,6 +509,40 @@ static void print_delay(FILE *to, const failure_t *failure)
     if (ms != 0) (void)fprintf(to, "The adapter delays bytes by %u ms. ", ms);
 }
 
+/* "a02yytw (T, controlled), aj-sr04m::pwm (R19 open, or 300k)" */
+static void print_forms(FILE *to, const failure_t *failure)
+{
+    const fathom_model_description_t *form = NULL;
+    for (size_t n = 0; (form = model_form(failure->mode, n)) != NULL; n++) {
+        if (n != 0) (void)fputs(", ", to);
+        model_form_print(to, failure->mode, form);
+    }
+}
+
+/* Returns the automatic form of a module with a trigger; NULL: it is not known. */
+static const fathom_model_description_t *automatic_form(const failure_t *failure)
+{
+    const fathom_model_description_t *form = NULL;
+    for (size_t n = 0; (form = model_form(failure->mode, n)) != NULL && form->mode != FATHOM_MODE_AUTO;) n++;
+    return form;
+}
+
+/* Prints what selects the automatic form: the letter of its name, or the resistor of a board. */
+static void print_automatic(FILE *to, const failure_t *failure)
+{
+    const fathom_model_description_t *const form = automatic_form(failure);
+    const bool has_note = form != NULL && strcmp(form->name, failure->mode->row->name) == 0;
+    (void)fputs(has_note ? form->note : "U", to);
+}
+
+static void print_read_automatic(FILE *to, const failure_t *failure)
+{
+    const fathom_model_description_t *const form = automatic_form(failure);
+    const model_t *const model = form != NULL ? model_find(form->name) : model_with(DECODE_STREAM_ONE);
+    read_command_print(to, model, "auto", -1, failure->line != NULL ? failure->line : &model->line,
+                       failure->port->name);
+}
+
 static void print_word(FILE *to, const char *name, const failure_t *failure)
 {
     const char *const model = failure->model->name;
@@ -542,6 +588,9 @@ static void print_word(FILE *to, const char *name, const failure_t *failure)
         {"exception", NULL, print_exception},
         {"values", NULL, print_values},
         {"delay", NULL, print_delay},
+        {"forms", NULL, print_forms},
+        {"automatic", NULL, print_automatic},
+        {"read-automatic", NULL, print_read_automatic},
     };
     for (size_t i = 0; i != sizeof words / sizeof words[0]; i++) {
         if (strcmp(words[i].name, name) != 0) continue;

@@ -228,6 +228,9 @@ void listener_judge(const listener_t *listener, uint8_t address, evidence_t *evi
     evidence->bytes = listener->bytes;
     evidence->slowest_us = listener->slowest_us;
     evidence->is_mbap = is_mbap(listener);
+    evidence->is_zeros = listener->have != 0;
+    for (uint16_t at = 0; at != listener->have; at++)
+        if (listener->window[at] != 0) evidence->is_zeros = false;
     evidence->part = part_of(listener);
     evidence->pieces_us = listener->pieces_us;
     for (uint16_t at = 0; at < listener->have;) {

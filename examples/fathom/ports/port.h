@@ -134,6 +134,7 @@ struct listener {
 typedef struct {
     uint32_t bytes;   /* received, also those that the window had no place for */
     uint32_t echoes;  /* copies of the newest request */
+    bool is_zeros;    /* the window has bytes 00 and no others */
     uint32_t rest;    /* bytes of the window that are neither echo nor frame */
     uint32_t own;     /* responses of the unit of the request, ... */
     uint32_t fitting; /* ... and those of them whose length fits the request */

@@ -197,11 +197,11 @@ static listener_t *find_listener(void *ctx)
     return NULL;
 }
 
-/* The sensor with this address on the line; NULL: none. */
+/* Returns the sensor that sends with this address on the line; NULL: none. */
 static sensor_t *sensor_at(const line_t *line, uint8_t address)
 {
     for (sensor_t *sensor = line->sensors; sensor != NULL; sensor = sensor->next)
-        if (sensor->address == address) return sensor;
+        if (sensor->mode->has_address && sensor->address == address) return sensor;
     return NULL;
 }
 

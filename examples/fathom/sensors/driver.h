@@ -43,6 +43,17 @@ typedef struct {
     int16_t dc;                /* tenths of a degree Celsius */
 } driver_temperature_t;
 
+/* The check whether a module with a trigger sends without one. */
+typedef struct {
+    uint32_t period_us; /* between two triggers */
+    uint32_t edge_us;   /* the newest trigger */
+    uint16_t frames;    /* since that trigger */
+    bool has_frames;    /* a frame was received since the reader was opened */
+    bool is_held;       /* the present period is longer than period_us, without a trigger */
+    bool is_proven;     /* the module was silent while a trigger was held */
+    bool is_automatic;  /* the module sends without a trigger */
+} driver_check_t;
+
 struct reader {
     const model_mode_t *mode;
     fathom_line_t *line;
@@ -78,6 +89,7 @@ struct reader {
         fathom_hps167_uart_t hps167_uart;
     } driver;
     driver_selection_t selection;
+    driver_check_t check;
     /* of an HPS-167S */
     fathom_hps167s_auto_t unasked; /* receives unsolicited measurements */
     uint16_t unasked_frames[FATHOM_STREAM_COUNTERS];

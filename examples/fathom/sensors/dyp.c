@@ -207,6 +207,55 @@ static bool a05_read_auto(reader_t *reader, port_t *port, const reader_settings_
 
 /* ---- with a trigger ---- */
 
+/*
+ * Does the module send without a trigger? A module with a trigger sends one frame for each, and the frame for the trigger
+ * before may be late: at most two frames between two triggers. Three frames prove that the module sends automatically.
+ * If a trigger has no frame, or two, the next trigger is held once, for a time in which an automatic module sends three.
+ */
+enum {
+    MOST_FRAMES = 2,
+    /* The slowest automatic output of a form with a trigger is that of an A02, whose maker has 500 ms for processed values.
+     * In four of these times three frames are received, although the system delays one. */
+    HELD_US = 2000000
+};
+
+/* A trigger has begun: judges the frames since the trigger before. Directly after the edge the whole period is left. */
+static void check_frames(driver_check_t *check, fathom_trigger_t *trigger)
+{
+    const uint32_t held_us = check->period_us > HELD_US ? check->period_us : HELD_US;
+    if (check->frames > MOST_FRAMES) {
+        check->is_automatic = true;
+    } else if (check->is_held) {
+        check->is_automatic = false;
+        check->is_proven = true;
+    }
+    check->is_held = check->is_automatic || (check->has_frames && check->frames != 1 && !check->is_proven);
+    trigger->period_us = trigger->left_us = check->is_held ? held_us : check->period_us;
+    check->frames = 0;
+}
+
+/* A frame of a module that sends automatically is no response: it can be as old as the pause between two frames. */
+static fathom_status_t poll_controlled(void *ctx, fathom_sample_t *sample)
+{
+    reader_t *const reader = ctx;
+    fathom_a16_controlled_t *const driver = &reader->driver.a16_controlled;
+    driver_check_t *const check = &reader->check;
+    const fathom_status_t status = fathom_a16_controlled_poll(driver, sample);
+    const bool is_response = status == FATHOM_OK || status == FATHOM_ERR_MALFORMED;
+    check->frames = (uint16_t)(check->frames + driver->late + is_response);
+    driver->late = 0;
+    if (check->frames != 0) check->has_frames = true;
+    if (check->edge_us != driver->edge_us) check_frames(check, &driver->trigger);
+    check->edge_us = driver->edge_us;
+    return is_response && check->is_automatic ? FATHOM_ERR_NO_RESPONSE : status;
+}
+
+static uint32_t due_us_controlled(void *ctx)
+{
+    reader_t *const reader = ctx;
+    return fathom_a16_controlled_due_us(&reader->driver.a16_controlled);
+}
+
 static fathom_status_t end_controlled(reader_t *reader)
 {
     return fathom_a16_controlled_deinit(&reader->driver.a16_controlled);
@@ -234,8 +283,10 @@ static bool a16_read_controlled(reader_t *reader, port_t *port, const reader_set
     if (fathom_a16_controlled_init(driver, &port->line, &trigger, &config) != FATHOM_OK) return false;
     reader->end = end_controlled;
     reader->frames = driver->stream.counters;
-    reader->period_us = &driver->trigger.period_us;
-    return open_response(reader, &driver->measurement, 1, fathom_a16_controlled_sensor(driver));
+    reader->check = (driver_check_t){.period_us = driver->trigger.period_us, .edge_us = driver->edge_us};
+    reader->period_us = &reader->check.period_us;
+    return open_response(reader, &driver->measurement, 1,
+                         (fathom_sensor_t){poll_controlled, due_us_controlled, reader});
 }
 
 static fathom_status_t end_pwm(reader_t *reader) { return fathom_a16_pwm_deinit(&reader->driver.a16_pwm); }

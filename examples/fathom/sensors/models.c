@@ -171,6 +171,32 @@ const model_mode_t *model_mode_of_row(const model_t *model, const fathom_model_d
     return NULL;
 }
 
+/* Returns the letter of the output in a name such as A02YYUW: before a W or B, or the last one. NULL: there is none. */
+static const char *letter_of(const char *name)
+{
+    size_t length = strlen(name);
+    while (length > 1 && strchr("WB", name[length - 1]) != NULL) length--;
+    return strchr("UTM24", name[length - 1]) != NULL ? name + length - 1 : NULL;
+}
+
+static bool is_form(const fathom_model_description_t *row, const fathom_model_description_t *other)
+{
+    const char *const letter = letter_of(row->name);
+    const size_t length = letter != NULL ? (size_t)(letter - row->name) : 0;
+    if (strcmp(row->name, other->name) == 0) return other != row;
+    return length != 0 && strncmp(row->name, other->name, length) == 0 &&
+           letter_of(other->name) == other->name + length &&
+           fathom_model_find(other->name, FATHOM_MODE_ANY) == other;
+}
+
+const fathom_model_description_t *model_form(const model_mode_t *mode, size_t n)
+{
+    const fathom_model_description_t *row = NULL;
+    for (uint16_t i = 0; mode->row != NULL && (row = fathom_model_at(i)) != NULL; i++)
+        if (is_form(mode->row, row) && n-- == 0) return row;
+    return NULL;
+}
+
 /* src/models/README.md has more of them. */
 const char *model_unreadable(const char *name)
 {
@@ -315,6 +341,18 @@ static void print_word(FILE *to, const char *word)
     (void)fputc('\'', to);
     for (; *word != '\0'; word++) (void)fprintf(to, *word == '\'' ? "'\\''" : "%c", *word);
     (void)fputc('\'', to);
+}
+
+void model_form_print(FILE *to, const model_mode_t *mode, const fathom_model_description_t *form)
+{
+    const model_t *const model = model_find(form->name);
+    const model_mode_t *const its = model != NULL ? model_mode_of_row(model, form) : NULL;
+    if (its == NULL) return; /* no memory */
+    if (strcmp(form->name, mode->row->name) != 0)
+        (void)fprintf(to, "%s (%c, %s)", model->name, *letter_of(form->name), its->name);
+    else
+        (void)fprintf(to, "%s::%s%s%s%s", model->name, its->name, form->note[0] != 0 ? " (" : "", form->note,
+                      form->note[0] != 0 ? ")" : "");
 }
 
 void read_command_print(FILE *to, const model_t *model, const char *mode, int address,

@@ -273,6 +273,12 @@ const model_t *model_find(const char *name);
 /* Returns the mode of the model that reads a row of its name. NULL: the tool has none. */
 const model_mode_t *model_mode_of_row(const model_t *model, const fathom_model_description_t *row);
 
+/*
+ * Returns form n of the module that this mode reads: another row of its name, or a name that differs in the letter of the
+ * output alone, as A02YYTW from A02YYUW. NULL: there are no more.
+ */
+const fathom_model_description_t *model_form(const model_mode_t *mode, size_t n);
+
 /* Returns why a near relative or a false friend of this name cannot be read. NULL: it is none. */
 const char *model_unreadable(const char *name);
 
@@ -315,6 +321,9 @@ typedef struct {
 } modbus_exception_t;
 
 modbus_exception_t modbus_exception(uint8_t number);
+
+/* Writes the name of a form of this mode, and what selects it: "a02yytw (T, controlled)". */
+void model_form_print(FILE *to, const model_mode_t *mode, const fathom_model_description_t *form);
 
 /* Writes the command that reads a sensor: "fathom read hps167s:7:modbus --port './a port' --baud 57600". address: -1 if
  * the command needs none. The port is quoted for a shell. */

@@ -128,6 +128,7 @@ reader_facts_t reader_facts(const reader_t *reader)
         .is_unexpected = transaction->status == FATHOM_ERR_MALFORMED,
         .exception = fathom_modbus_unit_exception(unit),
         .has_unasked = reader->unasked.is_new || reader->unasked.implausible != 0,
+        .is_automatic = reader->check.is_automatic,
         .is_in_progress = transaction->status == FATHOM_PENDING && transaction->attempts != 0,
         .timeouts_in_row = unit->timeouts_in_row,
         .backoff_left_us = unit->backoff_left_us,

@@ -114,6 +114,7 @@ typedef struct {
     uint16_t max_mm;
     uint8_t exception;   /* the newest of Modbus; 0: none */
     bool has_unasked;    /* the sensor has sent a measurement without a request */
+    bool is_automatic;   /* a sensor with a trigger sends without one */
     bool is_in_progress; /* a request was sent, and its response is pending */
     unsigned timeouts_in_row;
     uint32_t backoff_left_us; /* until the next request, because of them */

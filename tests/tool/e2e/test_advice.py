@@ -179,6 +179,9 @@ class Table(e2e.Case):
         ('GOOD: ', AUTO, frames(FRAME, FRAME, DAMAGED_FRAME)),
         ('NO_RESPONSE | CHECKSUM: triggered', AUTO + ' --mode controlled'),
         ('NO_RESPONSE | CHECKSUM: triggered bytes', AUTO + ' --mode controlled', (b'\0', e2e.frame(1953)[:3] + b'\0')),
+        ('NO_RESPONSE | CHECKSUM: triggered automatic', 'read a02yytw --format csv', repeat(FRAME, 0.1)),
+        ('NO_RESPONSE | CHECKSUM | STALE: zeros', 'read a02yytw --format csv', repeat(b'\0', 0.1)),
+        ('NO_RESPONSE | CHECKSUM | STALE: zeros', 'read a02yyuw --format csv --timeout 400', repeat(b'\0', 0.1)),
         ('NO_RESPONSE | CHECKSUM: triggered relative', 'read a02yytw --format csv --timeout 400'),
         ('NO_RESPONSE: asked late', MODBUS, late),
         ('NO_MATCH: asked headless', MODBUS, (ASKED, GOOD[1:])),
@@ -196,7 +199,9 @@ class Table(e2e.Case):
         ('STALE | CHECKSUM: listened silence relative', 'read a02yyuw --format csv --timeout 400'),
         ('STALE | CHECKSUM: listened silence', AUTO),
         ('STALE | CHECKSUM: listened addressed foreign', SENSOR + ' --mode auto', e2e.registers(5, 2083, 1, 2, 3)),
+        ('STALE | CHECKSUM: listened modbus relative', 'read a02yyuw --format csv --timeout 400', repeat(e2e.ASK_A16 + GOOD)),
         ('STALE | CHECKSUM: listened modbus', AUTO, e2e.ASK_A16),
+        ('STALE | CHECKSUM: listened modbus', AUTO, repeat(GOOD)),
         ('STALE | CHECKSUM: listened ambiguous', AUTO, repeat(e2e.frame(511) * 50, 0)),
         ('STALE | CHECKSUM: listened worked', AUTO, reading, repeat(NOISE)),
         ('STALE | CHECKSUM: listened', AUTO, repeat(NOISE)),
@@ -382,6 +387,14 @@ class Asked(e2e.Case):
 class Sending(e2e.Case):
     @e2e.each(
         nothing_heard_is_wiring_and_supply=('a16', b'', 'no byte was received. Check the power and the wire .*--mode modbus'),
+        a_silent_module_names_its_other_forms_by_their_letters=(
+            'a02yyuw', b'', r'read it as that: a02yytw \(T, controlled\), a02yymw \(M, pwm\), a02yy4w \(4, modbus\)$'),
+        a_silent_board_names_its_other_forms_by_their_resistors=(
+            'aj-sr04m', b'', r'read it as that: aj-sr04m::controlled \(R19 = 47k\), aj-sr04m::pwm \(R19 open, or 300k\)$'),
+        a_silent_board_with_a_trigger_does_so_too=(
+            'jsn-sr04t::controlled', b'', r': jsn-sr04t::auto \(47k, or pad M1\), jsn-sr04t::pwm \(resistor open, or 360k\), '
+            r'jsn-sr04t::free \(200k\)$'),
+        a_silent_module_without_other_forms_names_none=('r01uw', b'', r"wire of the sensor's TX$"),
         bytes_without_a_frame_are_rate_or_parity=(
             'a05', NOISE * 6,
             r'the bytes form no frame of a05.*\. Check --baud and --parity \(now 9600 8N1\)'),

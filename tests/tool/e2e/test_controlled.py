@@ -2,7 +2,10 @@
 # SPDX-License-Identifier: MIT
 """fathom read a16 --mode controlled: an A16 that measures once for each break (A16 3). Through a pseudo
 terminal a byte 0 stands for the break. It needs real time: CTest runs one such file at a time."""
+import itertools
+import os
 import re
+import time
 
 import e2e
 
@@ -51,6 +54,70 @@ class Controlled(e2e.Case):
 
     def test_an_interval_is_kept(self):
         self.assertGreater(self.read(1953, 4, '--interval 400')[1], 3 * 0.4)
+
+
+class Streaming(e2e.Case):
+    """A module that sends without a trigger, read as one with a trigger. A trigger has one frame, and the frame for the
+    trigger before may be late; so three frames between two triggers prove it."""
+    NAMED = "frames are received without a trigger, so the module is the automatic form \\({}\\)[.] Try '{}'$"
+
+    def is_named(self, sensor, form, name, period, values, more=''):
+        """Its frames are sent until the message is there. From then on no frame is a reading."""
+        device, reader = self.beside(f'read {sensor} --format csv')
+        command = f'fathom read {name} --port {device}{more}'
+        named = re.compile(self.NAMED.format(re.escape(form), re.escape(command)), re.M)
+        value = itertools.cycle(values)
+        end = time.monotonic() + e2e.PATIENCE
+        while not reader.hear(lambda: named.search(reader.said['err'].decode()), period):
+            self.assertLess(time.monotonic(), end, reader.said)
+            device.write(e2e.frame(next(value)))
+        readings = [line for line in reader.lines() if ',target,' in line]
+        for _ in range(int(4 / period)):
+            device.write(e2e.frame(next(value)))
+            reader.has_ended(period)
+        self.assertEqual([line for line in reader.lines() if ',target,' in line], readings)
+
+    @e2e.each(
+        each_100_ms=('a02yytw', 'U', 'a02yyuw', 0.1, (1953,)),
+        each_300_ms_a_changing_value=('a02yytw', 'U', 'a02yyuw', 0.3, (1953, 1200, 800, 2400, 1100)),
+        each_500_ms=('a02yytw', 'U', 'a02yyuw', 0.5, (1953, 1953, 1200)),
+        each_100_ms_repeats=('aj-sr04m::controlled', 'R19 = 120k', 'aj-sr04m', 0.1, (800, 800, 800, 801)),
+        each_100_ms_special_values=('a02yytw', 'U', 'a02yyuw', 0.1, (0xFFFD, 0xFFFF, 0)),
+        of_the_datasheet=('a16::controlled', 'U', 'a16', 0.1, (1953, 1954)))
+    def streams(self, sensor, form, name, period, values):
+        self.is_named(sensor, form, name, period, values)
+
+    def test_a_module_without_a_known_automatic_form_is_read_as_an_a16_at_its_rate(self):
+        self.is_named('l081mtw', 'U', 'a16', 0.1, (1953,), ' --baud 115200')
+
+    def test_a_simulated_module_is_named_and_its_command_reads_it(self):
+        sim = self.sim('a02yyuw --distance 1953')
+        reader = self.fathom(f'read a02yytw --format csv --port {sim}')
+        command = reader.expect("frames are received without a trigger, .* Try 'fathom read (a02yyuw .*)'$", 'err')[1]
+        reader.end()
+        self.assertEqual(self.read_json(command, '--count 1')[0]['distance_mm'], 1953)
+
+    def answers(self, sensor, count, late, noise):
+        """A module with a trigger that responds once to each. A test that was delayed responds to the newest trigger."""
+        device, reader = self.beside(f'read {sensor} --count {count} --format csv')
+        number = 0
+        while not reader.has_ended():
+            if not e2e.is_ready(device.master, 0.01):
+                continue
+            os.read(device.master, 100)
+            reader.has_ended(0.15 if number in late else 0.05)
+            device.write(noise + e2e.frame(1000 + number))
+            number += 1
+        self.assertNotIn('without a trigger', reader.done.err)
+
+    @e2e.each(
+        responds_once=((), b''),
+        responds_late_once=((3,), b''),
+        responds_late_again_and_again=((2, 5, 6, 9), b''),
+        responds_on_a_noisy_line=((), b'\x80\xF8'),
+        responds_late_on_a_noisy_line=((3, 4), b'\x80\xF8'))
+    def a_module_that(self, late, noise):
+        self.answers('a02yytw', 15, late, noise)
 
 
 if __name__ == '__main__':
