@@ -71,7 +71,8 @@ fathom_posix_status_t fathom_posix_fail_open(fathom_posix_uart_t *port, const ch
     case ENOENT:
     case ENOTDIR:
         return fathom_posix_fail(port, FATHOM_POSIX_ERR_NOT_FOUND,
-                                 "no such device; is it plugged in? /dev/serial/by-id lists what is");
+                                 "no such device; is it plugged in? /dev/serial/by-id lists what is%s",
+                                 path[0] == '/' || path[0] == '.' ? "" : ", and a path begins with /dev/");
     case ENXIO:
     case ENODEV:
         return fathom_posix_fail(port, FATHOM_POSIX_ERR_NOT_FOUND, "there is no device behind this name");

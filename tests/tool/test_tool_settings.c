@@ -202,6 +202,12 @@ static const row_t not_written[] = {
      .first = 1, .last = 60},
     {a05_beside_an_a16, "set a05 address 5", 1, 0,
      .text = "not written: a sensor responds at address 5 already"},
+    /* The command was run before. */
+    {hps_7, "set hps167s address 7", 1, 0,
+     .text = "fathom: hps167s:7: it responds, and nothing responds at address 1"},
+    {hps_7, "set hps167s address 8", 1, 0, .text = "fathom: hps167s:1: address 8: not written: no response"},
+    {a16, "set a16:5 address 1", 1, 0,
+     .text = "fathom: a16:1: it responds, and nothing responds at address 5"},
 };
 TEST_ROWS(without_a_response_nothing_was_written, not_written)
 

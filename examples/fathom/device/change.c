@@ -169,9 +169,27 @@ static const char *unknown_text(const change_t *change, char text[UNKNOWN_TEXT])
     return text;
 }
 
+/* Returns true after printing that a sensor responds at the wanted address, and none at the present one: the user repeats
+ * a command that has moved the sensor. */
+static bool explain_moved(const change_t *change)
+{
+    session_t *const session = change->session;
+    const unsigned from = session->sensor->address;
+    const fathom_line_settings_t line = session->sensor->line;
+    if (!change->setting->moves || change->setting->is_baud) return false;
+    if (presence_ask(session, (uint8_t)change->value, &line, 1).what != PRESENT_ONE)
+        return !session_move(session, (uint8_t)from, &line);
+    return !session_fail(
+        session, FATHOM_OK,
+        "it responds, and nothing responds at address %u, so nothing was written. Perhaps it is the "
+        "same sensor, and has moved to address %s before",
+        from, change->wanted);
+}
+
 void change_explain(const change_t *change, change_outcome_t outcome, fathom_status_t status)
 {
     const reader_facts_t facts = facts_of(change);
+    if (outcome == CHANGE_NOT_WRITTEN && status == FATHOM_ERR_NO_RESPONSE && explain_moved(change)) return;
     const bool is_acknowledged = !facts.is_setting && facts.acknowledgement == FATHOM_OK;
     const char *const response =
         is_acknowledged ? "the sensor acknowledged the write" : "no acknowledgement was received";

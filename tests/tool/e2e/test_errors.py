@@ -15,7 +15,7 @@ FRAME = e2e.frame(1953)
 
 class Ports(e2e.Case):
     @e2e.each(
-        a_port_that_is_not_there=('nowhere', 'no such device; is it plugged in?'),
+        a_port_that_is_not_there=('nowhere', 'no such device; is it plugged in? /dev/serial/by-id lists what is\n'),
         a_file_is_no_port=('file', 'not a serial port'),
         a_folder_is_no_port=('', 'not a serial port'),
         the_null_device_is_no_port=('/dev/null', 'not a serial port'))

@@ -67,6 +67,9 @@ class Help(e2e.Case):
     def test_options_may_stand_before_and_after_the_sensor_and_the_last_one_counts(self):
         self.ends('read --interval 5 a16 --port /nowhere --interval 1', 1, '/nowhere: no such device')
 
+    def test_the_name_of_a_port_in_windows(self):
+        self.ends('read a16 --port COM3', 1, 'COM3: no such device', 'a path begins with /dev/')
+
     def lost(self, told, *page):
         """The words of a help or of a topic that its man page, as mandoc shows it in lines without end, does not have."""
         done = subprocess.run(['mandoc', '-T', 'ascii', '-O', 'width=999'], input=self.told(f'help --man {" ".join(page)}'),
