@@ -43,7 +43,7 @@ enum { UNREQUESTED_LIMIT = 2 };
 typedef struct {
     uint8_t length;         /* 0: no request begins here; above received_count: more bytes are needed. */
     uint8_t address_offset; /* Of the unit's address in the request. */
-    bool is_sum_right;      /* Meaningless unless the request is complete. */
+    bool is_sum_right;      /* False unless the request is complete. */
 } form_t;
 
 enum { DYP_START = 0x55, DYP_SECOND_START = 0xAA, DYP_ADDRESS = 2, DYP_COMMAND = 3 };
@@ -57,7 +57,7 @@ static bool is_read(uint8_t function)
 /*
  * Returns the length of a request to one unit; no unit responds to a broadcast. A read (03, 04) names 1 to 125 registers
  * and has 8 bytes, like a write of one register (06). A write of many (10) names 1 to 123 registers and carries twice
- * that number of bytes. The high byte of each number of registers is 0.
+ * that number of bytes.
  */
 static uint8_t modbus_length(const uint8_t *frame, uint8_t have)
 {
@@ -66,9 +66,8 @@ static uint8_t modbus_length(const uint8_t *frame, uint8_t have)
     const uint8_t function = frame[1];
     if (function == FATHOM_MODBUS_WRITE_SINGLE_REGISTER) return SHORT_REQUEST;
     if (!is_read(function) && (function != FATHOM_MODBUS_WRITE_MULTIPLE_REGISTERS)) return 0;
-    if ((have > 4u) && (frame[4] != 0u)) return 0;
     if (have < WRITE_HEAD) return WRITE_HEAD;
-    const uint8_t count = frame[5];
+    const uint16_t count = (uint16_t)((frame[4] * 256u) + frame[5]);
     if ((count == 0u) || (count > (is_read(function) ? FATHOM_MODBUS_MAX_READ : FATHOM_MODBUS_MAX_WRITE)))
         return 0;
     if (is_read(function)) return SHORT_REQUEST;
@@ -90,10 +89,9 @@ static form_t form_of(const uint8_t *frame, uint8_t have)
     const bool is_dyp = (frame[0] == DYP_START) && (have > 1u) && (frame[1] == DYP_SECOND_START);
     form.length = is_dyp ? dyp_length(frame, have) : modbus_length(frame, have);
     form.address_offset = is_dyp ? (uint8_t)DYP_ADDRESS : 0u;
-    form.is_sum_right = false;
-    if ((form.length != 0u) && (form.length <= have))
-        form.is_sum_right =
-            is_dyp ? fathom_dyp_55aa_is_valid(frame, form.length) : (fathom_crc16(frame, form.length) == 0u);
+    form.is_sum_right =
+        (form.length != 0u) && (form.length <= have) &&
+        (is_dyp ? fathom_dyp_55aa_is_valid(frame, form.length) : (fathom_crc16(frame, form.length) == 0u));
     return form;
 }
 
@@ -144,7 +142,7 @@ static uint8_t find_request(fathom_line_t *line, bool is_response)
         note_foreign_request(line, frame[form.address_offset]);
         return received_count;
     }
-    if ((form.length == 0u) || (form.length > received_count)) return form.length;
+    if (form.length > received_count) return form.length;
     if (!form.is_sum_right || is_ours(line, frame[form.address_offset], is_response)) return 0;
     note_foreign_request(line, frame[form.address_offset]);
     return form.length;
@@ -160,8 +158,7 @@ static void note_lost_bytes(fathom_line_t *line)
  * quarantine of the unit nor is it the response that another master waits for. */
 static bool is_ambiguous(const fathom_line_t *line)
 {
-    const form_t form = form_of(line->parts->frame, line->received_count);
-    return (form.length != 0u) && (form.length <= line->received_count) && form.is_sum_right;
+    return form_of(line->parts->frame, line->received_count).is_sum_right;
 }
 
 static void note_unrequested(fathom_line_t *line)

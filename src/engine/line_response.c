@@ -27,11 +27,8 @@ static void pass(fathom_line_t *line, uint8_t length)
 static uint8_t discard(fathom_line_t *line, uint8_t length)
 {
     pass(line, length);
-    if (!expects_response(line)) {
-        fathom_line_note_sender(line, SENDER_BYTES, length);
-        return length;
-    }
-    /* A complete frame hides no echo; single bytes may. */
+    if (!expects_response(line)) fathom_line_note_sender(line, SENDER_BYTES, length);
+    /* A complete frame hides no echo; single bytes may. Without a request on the wire none is due. */
     if ((length == 1u) && (line->attempt.copy == COPY_DUE)) line->attempt.copy = COPY_HIDDEN;
     if (is_overtime(line)) fathom_line_end_attempt(line);
     return length;
