@@ -12,6 +12,9 @@ static const conversation_t conversations[] = {
     ROW("while_noise_leaves_no_silence_a_read_leaves_after_a_second_and_the_line_is_said_to_be_busy",
         COUNTS(.busy = 1, .dropped = 1068), QUEUE(A, 1), JAM(1000000 - 2 * BYTE_US), PENDS(A), WRITTEN(0),
         JAM(4 * BYTE_US), WRITTEN(1), JAM(8 * BYTE_US + TIMEOUT_US + 2 * BYTE_US), FAILS(A, LINE_BUSY)),
+    ROW("a_frame_during_the_wait_keeps_a_read_out_of_the_noise",
+        COUNTS(.busy = 1, .strays = 1, .dropped = 969), QUEUE(A, 1), JAM(100000), RESPONSE(9, 754),
+        JAM(900000 - 2 * BYTE_US), PENDS(A), JAM(4 * BYTE_US), FAILS(A, LINE_BUSY), WRITTEN(0)),
     /* the wait of the second write begins anew; now the line falls silent */
     ROW("while_noise_leaves_no_silence_a_write_ends_after_a_second_and_was_not_sent",
         COUNTS(.busy = 1, .dropped = 962), WRITE(A, 1), JAM(1000000 - 2 * BYTE_US), ENDS(A, FATHOM_PENDING),

@@ -9,6 +9,9 @@ static const suite_t suite = {.set_up = set_up};
 
 #define UNASKED "01 03 08 08 23 DC B2 07 01 00 00 5B D8" /* the example of HPS-167S #5 */
 
+#define OF_9  "09 03 08 08 23 DC B2 07 01 00 00 D7 21" /* the same from unit 9 */
+#define BEGIN ASK(A, 1), RESPONSE(1, 754)              /* from now on the line recognises frames */
+
 static const conversation_t conversations[] = {
     ROW("a_request_that_waits_when_a_frame_ends_leaves_behind_it", COUNTS(.dropped = 13), SEND(UNASKED),
         WAIT(T3_5_US / 2), QUEUE(A, 1), SENT(T3_5_US / 2 - 200, 400)),
@@ -34,6 +37,21 @@ static const conversation_t conversations[] = {
     ROW("a_response_on_a_line_with_unsolicited_bytes_counts_once_as_perhaps_unsolicited",
         COUNTS(.responses = 1, .dropped = 4, .maybe_unsolicited = 1), RECEIVE("FF 07 A1 A7"), ASK(A, 1),
         RESPONSE(1, 754), READS(A, 754)),
+    /* A program is slow if it polls at 2 * 3646 us or later behind a frame while a request waits. Then the request leaves
+     * with the poll that reads the next frame. */
+    ROW("a_program_that_polls_at_twice_the_silence_sends_behind_the_next_frame",
+        COUNTS(.responses = 1, .strays = 2, .dropped = 26), BEGIN, QUEUE(A, 1), ARRIVE(OF_9), POLL,
+        ARRIVE(OF_9), POLL_AFTER(2 * T3_5_US), WRITTEN(2)),
+    ROW("a_program_that_polls_a_little_sooner_waits_for_the_silence",
+        COUNTS(.responses = 1, .strays = 2, .dropped = 26), BEGIN, QUEUE(A, 1), ARRIVE(OF_9), POLL,
+        ARRIVE(OF_9), POLL_AFTER(2 * T3_5_US - 1), WRITTEN(1), SENT(T3_5_US - 200, 400)),
+    ROW("a_long_pause_without_a_request_that_waits_shows_no_slow_program",
+        COUNTS(.responses = 1, .strays = 2, .dropped = 26), BEGIN, ARRIVE(OF_9), POLL, QUEUE(A, 1),
+        ARRIVE(OF_9), POLL_AFTER(10000), WRITTEN(1), SENT(T3_5_US - 200, 400)),
+    /* the frame arrives while unit 1 is waited for, so its bytes show no sender: B leaves as on any line */
+    ROW("a_foreign_frame_during_an_attempt_shows_no_device_that_sends_by_itself",
+        COUNTS(.responses = 1, .strays = 1, .dropped = 7), ASK(A, 1), QUEUE(B, 2), RESPONSE(9, 5), WAIT(1000),
+        RESPONSE(1, 754), READS(A, 754), SENT(T3_5_US - 200, 400)),
 };
 CONVERSATIONS(set_up, conversations)
 
@@ -102,4 +120,52 @@ TEST(bytes_that_belong_to_no_transaction_are_counted_without_coming_round)
     run(T3_5_US + 200);
     ask_1(0);
     expect_behind_the_next_frame(0);
+}
+
+/* The next frame of unit 9, which a poll reads 10 ms after the previous poll. */
+static void poll_slowly(void)
+{
+    play_arrive(&(step_t){.hex = OF_9});
+    run_in_steps(10000, 10000);
+}
+
+/* Requests something of unit 1. Returns how many frames pass until the request leaves, at most 100. */
+static unsigned frames_before_a_request(void)
+{
+    const size_t before = bench.fake.written;
+    unsigned count = 0;
+    ask_1(0);
+    while (bench.fake.written == before && count != 100) poll_slowly(), count++;
+    return count;
+}
+
+static void lose_a_request(void)
+{
+    for (unsigned i = 0; i != 24; i++)
+        poll_slowly();                   /* its time-out is 100 ms, and as long is the quarantine */
+    expect_failed(FATHOM_ERR_LINE_BUSY); /* it left without its silence */
+}
+
+/* The comment of line_senders.c: from the second loss in a row on, one slot in eight is drawn. */
+TEST(a_slow_program_that_lost_two_requests_in_a_row_draws_its_slots)
+{
+    unsigned sum = 0;
+    ask_1(0);
+    run(REQUEST_US);
+    response_1(111);
+    poll_slowly();
+    assert_int_equal(frames_before_a_request(), 2); /* the first one shows that the program is slow */
+    lose_a_request();
+    assert_int_equal(frames_before_a_request(), 1);
+    response_1(111);
+    expect_mm(111);
+    for (unsigned i = 0; i != 2; i++) {
+        assert_int_equal(frames_before_a_request(), 1); /* the response has ended the row */
+        lose_a_request();
+    }
+    for (unsigned i = 0; i != 16; i++) {
+        sum += frames_before_a_request();
+        lose_a_request();
+    }
+    assert_in_range(sum, 16 * 4, 16 * 16);
 }
