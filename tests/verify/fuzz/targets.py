@@ -47,7 +47,7 @@ TARGETS = [
     Target('tcp', (build.core, build.libmodbus), 1000, 500, 25, 160,
            link=(*wrap('recv', 'send', 'poll', 'shutdown', 'setsockopt'), *LIBMODBUS)),
     Target('libmodbus', (build.core,), 8000, 145, 190, 280, link=LIBMODBUS),
-    Target('decode', (build.core, build.tool), 500, 620, 10, 300, TOOL, TOOL_SOURCES, True),
+    Target('decode', (build.core, build.tool), 1000, 700, 36, 300, TOOL, TOOL_SOURCES, True),
     Target('options', (build.core, build.tool), 1500, 1200, 36, 300, TOOL, TOOL_SOURCES, True),
     Target('files', (build.core, build.tool), 1500, 200, 34, 1000, TOOL, TOOL_SOURCES, True),
     Target('site', (build.core, build.publish), 500, 130, 10, 1000, (*TOOL, *PUBLISH), TOOL_SOURCES, True),

@@ -433,6 +433,7 @@ static int start(const host_t *host, const arguments_t *arguments)
 {
     static const uint8_t sets[] = {DECODE_ALL, DECODE_MODBUS, DECODE_DYP,
                                    DECODE_STREAM_ONE | DECODE_STREAM_FOUR};
+    static decode_input_t input;
     const settings_t *const settings = arguments->settings;
     const model_t *const only =
         settings->sensor != NULL ? model_word(settings->sensor, &arguments->origin) : NULL;
@@ -443,16 +444,13 @@ static int start(const host_t *host, const arguments_t *arguments)
         (void)reject(&arguments->origin, "%s has no frames of this --protocol.", only->name);
         return STATUS_USAGE;
     }
-    decode_input_t input = {.bytes = allocate(DECODE_MAX_BYTES), .line_starts = allocate(DECODE_MAX_BYTES)};
+    input.count = 0;
     int status = read_input(&input, arguments, settings->is_raw);
     if (status == STATUS_OK && input.count == 0) {
         (void)fputs("fathom: there are no bytes to explain.\n", stderr);
         status = STATUS_FAILED;
     }
-    if (status == STATUS_OK) status = explain(&input, wanted, only, settings->is_json);
-    free(input.bytes);
-    free(input.line_starts);
-    return status;
+    return status == STATUS_OK ? explain(&input, wanted, only, settings->is_json) : status;
 }
 
 const command_t decode_command = {

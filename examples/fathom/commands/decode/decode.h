@@ -9,8 +9,8 @@ enum { DECODE_MAX_BYTES = 4 * 1024 * 1024 };
 
 /* Bytes to decode. People write a frame on a line, so the first byte of a line has a mark. */
 typedef struct {
-    uint8_t *bytes;
-    bool *line_starts; /* of each byte */
+    uint8_t bytes[DECODE_MAX_BYTES];
+    bool line_starts[DECODE_MAX_BYTES];
     size_t count;
 } decode_input_t;
 
