@@ -227,6 +227,21 @@ static void a05_auto(void)
         (fathom_sim_a05_config_t){.mode = FATHOM_SIM_A05_AUTO, .processed = fathom_sim_fixed(&processed)});
 }
 
+/* A DS1603L sends every 4 s, so 3 periods are 12 s. The A16 has the default of a16_auto.h, 2 s. */
+TEST(a_sensor_that_sends_seldom_is_stale_after_three_periods)
+{
+    const struct {
+        const char *words;
+        uint32_t stale_us;
+    } rows[] = {{"a16", 2000000}, {"ds1603l", 12000000}, {"ds1603l --timeout 500", 500000}};
+    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++) {
+        (void)set_up(NULL);
+        const tool_run_t *const run = tool_run(&bench.tool, "read %s --count 1 --port line", rows[i].words);
+        assert_int_equal(run->status, 1);
+        assert_in_range(run->took_us, rows[i].stale_us, rows[i].stale_us + 100000);
+    }
+}
+
 /* A16 6(3): 0x0100 processed, 0x0101 real-time. */
 TEST(an_a16_is_asked_for_the_value_that_is_wanted)
 {

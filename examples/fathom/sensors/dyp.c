@@ -81,12 +81,12 @@ static bool open_stream(reader_t *reader, fathom_dyp_auto_t *base, fathom_sensor
     return open_response(reader, &base->measurement, (uint8_t)(base->stream.length / 2 - 1), sensor);
 }
 
-/* Without a time of the user: 2.5 periods of a sensor that sends seldom, else the driver's default. */
+/* Without a time of the user: 3 periods of a sensor that sends seldom, else the driver's default. */
 static uint32_t stale_us(const fathom_model_facts_t *facts, const reader_settings_t *settings)
 {
-    enum { SELDOM_MS = 800 };
-    return settings->timeout_us == 0 && facts->period_ms > SELDOM_MS ? facts->period_ms * 2500u
-                                                                     : settings->timeout_us;
+    const uint32_t periods_us = facts->period_ms * 3000u;
+    return settings->timeout_us == 0 && periods_us > FATHOM_STREAM_DEFAULT_STALE_US ? periods_us
+                                                                                    : settings->timeout_us;
 }
 
 /* Lets the port's TX go high. For real-time values, returns false with a refusal if the port cannot hold it low. */
