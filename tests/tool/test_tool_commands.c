@@ -222,3 +222,27 @@ TEST(a_command_keeps_nothing_of_the_one_before)
         assert_string_equal(alone, after);
     }
 }
+
+/* Makers and users report 200 to 8000 mm, byte 01 with a resistor of 47k, and a high pulse without one. */
+TEST(models_are_json_with_line_trigger_and_command)
+{
+    static const char module[] =
+        "\"is_certain\":true,\"aliases\":\"K02, AJ-SR04M-T-X\",\"maker\":\"\",\"note\":";
+    static const char *const rows[][2] = {
+        {"\"auto\",\"min_mm\":200,\"max_mm\":8000,\"line\":\"9600 8N1\",\"trigger\":null,",
+         "\"R19 = 120k (47k is controlled)\",\"next\":\"fathom read aj-sr04m --port /dev/ttyUSB0\"}\n"},
+        {"\"controlled\",\"min_mm\":200,\"max_mm\":8000,\"line\":\"9600 8N1\",\"trigger\":\"byte\","
+         "\"trigger_byte\":1,",
+         "\"R19 = 47k (120k is automatic)\",\"next\":\"fathom read aj-sr04m::controlled --port "
+         "/dev/ttyUSB0\"}\n"},
+        {"\"pwm\",\"min_mm\":200,\"max_mm\":8000,\"line\":null,\"trigger\":\"high_pulse\",",
+         "\"R19 open, or 300k\",\"next\":\"fathom read aj-sr04m:pwm@gpiochip0,trigger=17,echo=27\"}\n"},
+    };
+    char expected[2000] = "";
+    for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++)
+        (void)snprintf(expected + strlen(expected), sizeof expected - strlen(expected),
+                       "{\"model\":\"aj-sr04m\",\"mode\":%s%s%s", rows[i][0], module, rows[i][1]);
+    const tool_run_t *const run = tool_run(&bench.tool, "models k02 --format json");
+    assert_int_equal(run->status, 0);
+    assert_string_equal(run->out, expected);
+}

@@ -289,10 +289,11 @@ class Bytes(Case):
         self.assertEqual(self.ask(port, e2e.adu(7, 3, 0, 8, 0, 3), 5, 19200), e2e.adu(7, 0x83, 3))
 
     def test_each_module_that_has_a_line_is_read_by_its_name(self):
-        rows = re.findall(r'^(\S+) +(\w+) +(\d+)-(\d+) +\d+ 8[NE]1 ', self.run_fathom('models').out, re.M)
+        rows = [row for row in self.run_fathom('models --format json').all_json if row['line']]
         self.assertGreater(len(rows), 45)
-        for name, mode, least, most in rows:
-            self.assertTrue(int(least) <= 1000 <= int(most), name)
+        for row in rows:
+            name, mode = row['model'], row['mode']
+            self.assertTrue(row['min_mm'] <= 1000 <= row['max_mm'], name)
             sim = self.sim(f'{name}:1:{mode} --distance 1000')
             # Of two readings one may fail on a busy machine.
             done = self.run_fathom(f'read {name}:1:{mode} --port {sim} --count 2 --format json')
