@@ -230,10 +230,10 @@ TEST(models_are_json_with_line_trigger_and_command)
         "\"is_certain\":true,\"aliases\":\"K02, AJ-SR04M-T-X\",\"maker\":\"\",\"note\":";
     static const char *const rows[][2] = {
         {"\"auto\",\"min_mm\":200,\"max_mm\":8000,\"line\":\"9600 8N1\",\"trigger\":null,",
-         "\"R19 = 120k (47k is controlled)\",\"next\":\"fathom read aj-sr04m --port /dev/ttyUSB0\"}\n"},
+         "\"R19 = 120k\",\"next\":\"fathom read aj-sr04m --port /dev/ttyUSB0\"}\n"},
         {"\"controlled\",\"min_mm\":200,\"max_mm\":8000,\"line\":\"9600 8N1\",\"trigger\":\"byte\","
          "\"trigger_byte\":1,",
-         "\"R19 = 47k (120k is automatic)\",\"next\":\"fathom read aj-sr04m::controlled --port "
+         "\"R19 = 47k\",\"next\":\"fathom read aj-sr04m::controlled --port "
          "/dev/ttyUSB0\"}\n"},
         {"\"pwm\",\"min_mm\":200,\"max_mm\":8000,\"line\":null,\"trigger\":\"high_pulse\",",
          "\"R19 open, or 300k\",\"next\":\"fathom read aj-sr04m:pwm@gpiochip0,trigger=17,echo=27\"}\n"},
