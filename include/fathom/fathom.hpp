@@ -154,6 +154,8 @@ class newest
 class a16_auto : public newest
 {
   public:
+    typedef fathom_a16_auto_config_t config_t; /**< The configuration. */
+
     /**
      * @brief Stores the address of the line.
      * @param bus  The bus, with the member `line`. Must stay valid as long as this object.
@@ -190,6 +192,8 @@ class a16_auto : public newest
 class a16_controlled : public newest
 {
   public:
+    typedef fathom_a16_controlled_config_t config_t; /**< The configuration. */
+
     /**
      * @brief Stores the address of the line.
      * @param bus  The bus, with the member `line`. Must stay valid as long as this object.
@@ -228,6 +232,8 @@ class a16_controlled : public newest
 class a16_pwm : public newest
 {
   public:
+    typedef fathom_a16_pwm_config_t config_t; /**< The configuration. */
+
     /** @brief Does nothing. */
     a16_pwm() {}
 
@@ -262,6 +268,8 @@ class a16_pwm : public newest
 class a16_modbus : public newest
 {
   public:
+    typedef fathom_a16_modbus_config_t config_t; /**< The configuration. */
+
     /**
      * @brief Stores the address of the transport.
      * @param bus  The bus, with the member `modbus`. Must stay valid as long as this object.
@@ -328,6 +336,8 @@ class a16_switch : public newest
 class a05_auto : public newest
 {
   public:
+    typedef fathom_a05_auto_config_t config_t; /**< The configuration. */
+
     /**
      * @brief Stores the address of the line.
      * @param bus  The bus, with the member `line`. Must stay valid as long as this object.
@@ -364,6 +374,8 @@ class a05_auto : public newest
 class a05_dyp : public newest
 {
   public:
+    typedef fathom_a05_dyp_config_t config_t; /**< The configuration. */
+
     /**
      * @brief Stores the address of the line.
      * @param bus  The bus, with the member `line`. Must stay valid as long as this object.
@@ -400,6 +412,8 @@ class a05_dyp : public newest
 class a05_modbus : public newest
 {
   public:
+    typedef fathom_a05_modbus_config_t config_t; /**< The configuration. */
+
     /**
      * @brief Stores the address of the transport.
      * @param bus  The bus, with the member `modbus`. Must stay valid as long as this object.

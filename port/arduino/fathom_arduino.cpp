@@ -67,13 +67,13 @@ bool can_reach(uint32_t baud)
 
 extern const fathom_clock_t clock = {read_micros, NULL};
 
-fathom_pin_t output(uint8_t pin)
+fathom_pin_t output(uint8_t pin, bool is_high)
 {
-    /* The level is set first, so that the pin of an AVR is never a low output. Some cores ignore a level before the
+    /* The level is set first, so that the pin of an AVR has no other one. Some cores ignore a level before the
      * mode, so it is set again. */
-    digitalWrite(pin, HIGH);
+    digitalWrite(pin, is_high ? HIGH : LOW);
     pinMode(pin, OUTPUT);
-    digitalWrite(pin, HIGH);
+    digitalWrite(pin, is_high ? HIGH : LOW);
     const fathom_pin_t made = {set_pin, NULL, ctx_of(pin)};
     return made;
 }
@@ -329,15 +329,23 @@ bool stream_bus::begin_listening(const fathom_line_settings_t &settings)
     return begin_port(settings) ? listen() : refuse();
 }
 
+fathom_output_t trigger_pin::begin(const fathom_model_facts_t *model)
+{
+    if (model != nullptr && model->start == FATHOM_STARTS_ALONE) return fathom_output_none();
+    const bool is_high_pulse = model != nullptr && model->start == FATHOM_STARTS_HIGH_PULSE;
+    pin_ = output(number_, !is_high_pulse);
+    return is_high_pulse ? fathom_output_inverted_pin(&pin_) : fathom_output_pin(&pin_);
+}
+
 fathom_status_t a16_pwm::begin(const fathom_a16_pwm_config_t *config)
 {
     if (!pulses.begin(pulse_pin_)) {
         driver = fathom_a16_pwm_t(); /* which every poll() refuses */
         return begun(FATHOM_ERR_UNSUPPORTED);
     }
-    trigger_ = output(trigger_pin_);
     capture_ = pulses.capture();
-    return fathom::a16_pwm::begin(capture_, clock, fathom_output_pin(&trigger_), config);
+    return fathom::a16_pwm::begin(capture_, clock,
+                                  trigger_.begin(config != nullptr ? config->model : nullptr), config);
 }
 
 } // namespace arduino

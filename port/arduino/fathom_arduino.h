@@ -60,13 +60,13 @@ extern const fathom_clock_t clock;
 /**
  * @brief Makes a pin an output and returns it. Call it in setup().
  *
- * The output starts high, which is the idle level of triggers and selects. Each `set` is one digitalWrite(), about 4 us
- * on an AVR.
+ * Each `set` is one digitalWrite(), about 4 us on an AVR.
  *
- * @param pin  Arduino number of the pin.
+ * @param pin      Arduino number of the pin.
+ * @param is_high  The level at which it starts. High is the idle level of the triggers and selects of an A16 and A05.
  * @return The pin for the HAL, by value. It points to no memory.
  */
-fathom_pin_t output(uint8_t pin);
+fathom_pin_t output(uint8_t pin, bool is_high = true);
 
 /**
  * @brief Makes a pin an input and returns it. Call it in setup().
@@ -435,18 +435,42 @@ class stream_bus : public bus_line
     bool begin_port(const fathom_line_settings_t &settings);
 };
 
-/** @brief fathom::a16_controlled whose trigger is a pin. */
+/** @brief A pin that triggers a module. */
+class trigger_pin
+{
+  public:
+    /**
+     * @brief Stores the number of the pin.
+     * @param pin  Arduino number of the pin to the module's RX or trigger input.
+     */
+    explicit trigger_pin(uint8_t pin) : number_(pin) {}
+
+    /**
+     * @brief Makes the pin an output with the level at which the module rests.
+     * @param model  The model: it decides whether the trigger is a low or a high pulse. NULL: an A16.
+     * @return The trigger for the driver. It is valid as long as this object.
+     */
+    fathom_output_t begin(const fathom_model_facts_t *model);
+
+  private:
+    uint8_t number_;
+    fathom_pin_t pin_;
+};
+
+/** @brief fathom::a16_controlled whose trigger is a pin, or a byte if the model requires one. */
 class a16_controlled : public fathom::a16_controlled
 {
   public:
     /**
      * @brief Stores the bus and the number of the pin.
      * @param bus          The bus, which only listens.
-     * @param trigger_pin  Arduino number of the pin to the module's RX.
+     * @param trigger_pin  Arduino number of the pin to the module's RX. Not used if the model starts by a byte: then
+     *                     the TX of the bus is connected to it.
      */
     template <class Bus>
-    a16_controlled(Bus &bus, uint8_t trigger_pin) : fathom::a16_controlled(bus), trigger_pin_(trigger_pin)
+    a16_controlled(Bus &bus, uint8_t trigger_pin) : fathom::a16_controlled(bus), pin_(trigger_pin)
     {
+        byte_.line = &bus.line;
     }
 
     /**
@@ -456,13 +480,16 @@ class a16_controlled : public fathom::a16_controlled
      */
     fathom_status_t begin(const fathom_a16_controlled_config_t *config = nullptr)
     {
-        trigger_ = output(trigger_pin_);
-        return fathom::a16_controlled::begin(fathom_output_pin(&trigger_), config);
+        const fathom_model_facts_t *const model = config != nullptr ? config->model : nullptr;
+        if (model == nullptr || model->start != FATHOM_STARTS_BYTE)
+            return fathom::a16_controlled::begin(pin_.begin(model), config);
+        byte_.byte = model->trigger_byte;
+        return fathom::a16_controlled::begin(fathom_output_line_byte(&byte_), config);
     }
 
   private:
-    uint8_t trigger_pin_;
-    fathom_pin_t trigger_;
+    trigger_pin pin_;
+    fathom_line_byte_t byte_;
 };
 
 /** @brief fathom::a16_pwm with its pins. */
@@ -474,7 +501,7 @@ class a16_pwm : public fathom::a16_pwm
      * @param pulse_pin    Arduino number of the pin to the module's TX: one with an interrupt (pulse_input).
      * @param trigger_pin  Arduino number of the pin to the module's RX.
      */
-    a16_pwm(uint8_t pulse_pin, uint8_t trigger_pin) : pulse_pin_(pulse_pin), trigger_pin_(trigger_pin) {}
+    a16_pwm(uint8_t pulse_pin, uint8_t trigger_pin) : pulse_pin_(pulse_pin), trigger_(trigger_pin) {}
 
     /**
      * @brief Sets up the pins and the interrupt, and initialises the driver, as fathom_a16_pwm_init().
@@ -488,8 +515,7 @@ class a16_pwm : public fathom::a16_pwm
 
   private:
     uint8_t pulse_pin_;
-    uint8_t trigger_pin_;
-    fathom_pin_t trigger_;
+    trigger_pin trigger_;
     fathom_capture_t capture_;
 };
 
@@ -599,6 +625,18 @@ template <class Sensor> class named : public Sensor
      * @return False after an error, which statusName() has until the first available().
      */
     template <class Config> bool begin(const Config &config) { return Sensor::begin(&config) == FATHOM_OK; }
+
+    /**
+     * @brief Initialises the driver of an A16 or A05 for a relative, with the other defaults.
+     * @param model  A row of models.h, such as fathom_model_a02yyuw. Must stay valid.
+     * @return False after an error, which statusName() has until the first available().
+     */
+    bool begin(const fathom_model_facts_t &model)
+    {
+        typename Sensor::config_t config = {};
+        config.model = &model;
+        return begin(config);
+    }
 
     /**
      * @brief Polls the sensor. Call it in each loop().

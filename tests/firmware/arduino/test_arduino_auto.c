@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The sketches a05_auto, a16_auto and a16_controlled, which receive by SoftwareSerial and print. */
+/* The sketches that receive by SoftwareSerial and print. */
 #include <stddef.h>
 
 #include "suite.h"
@@ -111,6 +111,16 @@ TEST(an_a16_is_printed_until_it_is_silent)
     assert_string_equal(board_line(2100000), "STALE");
 }
 
+/* The manual of the A02YYUW has this frame. */
+TEST(a_relative_is_printed_in_its_own_range)
+{
+    begin("a02yyuw");
+    soft_send((const uint8_t[]){0xFF, 0x07, 0xA1, 0xA7}, 4, 0);
+    expect_line("1953");
+    soft_send((const uint8_t[]){0xFF, 0x00, 0x1D, 0x1C}, 4, 100000); /* 29 mm, one below its range */
+    expect_line("MALFORMED");
+}
+
 static void on_trigger(void *ctx, bool high)
 {
     unsigned *const triggers = ctx;
@@ -127,4 +137,35 @@ TEST(an_a16_is_triggered_for_each_distance)
     board_watch('D', 7, true, on_trigger, &triggers);
     for (int n = 0; n != 8; n++) assert_string_equal(board_line(300000), "1953");
     assert_in_range(triggers, 8, 9);
+}
+
+/* ---- a trigger that is the byte 01 on TX, pin 11 (PB3): low, high, and low for seven bits ---- */
+
+static struct {
+    avr_cycle_count_t fell, begin;
+    unsigned triggers;
+} on_tx;
+
+static void on_bit(void *ctx, bool high)
+{
+    const avr_cycle_count_t now = board.avr->cycle;
+    if (!high) {
+        on_tx.fell = now;
+        if (now - on_tx.begin > 12 * SOFT_BIT_CYCLES) on_tx.begin = now;
+    } else if (now - on_tx.begin > 8 * SOFT_BIT_CYCLES) {
+        assert_in_range(now - on_tx.fell, 7 * SOFT_BIT_CYCLES - SOFT_BIT_CYCLES / 4,
+                        7 * SOFT_BIT_CYCLES + SOFT_BIT_CYCLES / 4);
+        on_tx.triggers++;
+        soft_send(mm_1953, sizeof mm_1953, 50000);
+    }
+}
+
+TEST(a_module_that_starts_by_a_byte_gets_it)
+{
+    memset(&on_tx, 0, sizeof on_tx);
+    board_start("aj_byte");
+    board_drive('B', 2, true);
+    board_watch('B', 3, true, on_bit, NULL);
+    for (int n = 0; n != 4; n++) assert_string_equal(board_line(300000), "1953");
+    assert_in_range(on_tx.triggers, 4, 5);
 }

@@ -15,8 +15,8 @@ import cases
 
 OUT = sys.argv[1]
 LIBRARY = build.arduino_library(OUT)
-EXAMPLES = ['a05_auto', 'a05_dyp', 'a05_modbus', 'a05_relay', 'a16_auto', 'a16_controlled', 'a16_modbus', 'a16_pwm',
-            'a16_switch', 'hps167s']
+EXAMPLES = ['a02yyuw', 'a05_auto', 'a05_dyp', 'a05_modbus', 'a05_relay', 'a16_auto', 'a16_controlled', 'a16_modbus', 'a16_pwm',
+            'a16_switch', 'hc_sr04', 'hps167s']
 SOURCES = ['fathom_arduino.cpp', 'fathom_arduino_driver_enable.cpp']
 WARNINGS = ['-Wall', '-Wextra', '-Wpedantic', '-Wconversion', '-Wsign-conversion', '-Wshadow',
             '-Wmissing-declarations']

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The sketch a16_pwm against a module that answers the trigger with pulses of known width (A16 1). */
+/* The sketches a16_pwm and hc_sr04 against a module that answers the trigger with pulses of known width (A16 1). */
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -198,4 +198,32 @@ TEST(a_pulse_across_the_wrap_of_micros_is_right)
     assert_true(bench.rise_count < wrap && bench.fall_count >= wrap);
     assert_int_equal(bench.triggers, 1);
     assert_true(magnitude(off_us()) <= BOUND_US);
+}
+
+/* ---- an HC-SR04: a high pulse of at least 10 us triggers it, and an echo of 5.8 us is a millimetre ---- */
+
+static void on_high_trigger(void *ctx, bool high)
+{
+    if (high) {
+        bench.low_cycle = board.avr->cycle;
+        return;
+    }
+    bench.triggers++;
+    assert_true(board.avr->cycle - bench.low_cycle >= 10 * BOARD_CYCLES_PER_US);
+    avr_cycle_timer_register(board.avr, 460 * BOARD_CYCLES_PER_US, rise, NULL);
+}
+
+TEST(a_module_whose_trigger_is_high_is_triggered_and_read)
+{
+    memset(&bench, 0, sizeof bench);
+    board_start("hc_sr04");
+    board_drive('D', 2, false);
+    board_watch('D', 7, false, on_high_trigger, NULL);
+    bench.width_cycles = 5800 * BOARD_CYCLES_PER_US;
+    assert_in_range(strtoul(line(), NULL, 10), 998, 1002);
+    bench.width_cycles = 580 * BOARD_CYCLES_PER_US;
+    assert_in_range(strtoul(line(), NULL, 10), 98, 102);
+    bench.width_cycles = 38000 * BOARD_CYCLES_PER_US;
+    assert_string_equal(line(), "NO_TARGET");
+    assert_in_range(bench.triggers, 3, 5);
 }
