@@ -3,6 +3,7 @@
 
 #include <ctype.h>
 #include <string.h>
+#include <strings.h>
 
 #include "output/words.h"
 
@@ -70,9 +71,25 @@ static bool path_has_keys(const char *path)
 
 /* ---- models and modes ---- */
 
+/* Lists the names that begin with this one, and no aliases, at most SIMILAR: "one of a02yyuw, a02yytw". */
+enum { SIMILAR = 6, SIMILAR_TEXT = 128 };
+static unsigned list_similar(char text[SIMILAR_TEXT], const char *begin)
+{
+    const char *other = NULL;
+    unsigned count = 0;
+    for (size_t n = 0; count != SIMILAR && (other = model_relative(n)) != NULL; n++) {
+        if (strncasecmp(other, begin, strlen(begin)) != 0 || strcmp(model_find(other)->name, other) != 0)
+            continue;
+        (void)snprintf(text + strlen(text), SIMILAR_TEXT - strlen(text), "%s%s",
+                       count++ != 0 ? ", " : "one of ", other);
+    }
+    return count;
+}
+
 const model_t *model_word(const char *name, const origin_t *origin)
 {
     nearest_t nearest = {.word = name};
+    char similar[SIMILAR_TEXT] = "";
     const model_t *const model = model_find(name);
     const char *other = NULL;
     const char *const why = model_unreadable(name);
@@ -82,6 +99,7 @@ const model_t *model_word(const char *name, const origin_t *origin)
         return NULL;
     }
     for (size_t n = 0; (other = model_relative(n)) != NULL; n++) nearest_try(&nearest, other);
+    if (name[0] != '\0' && list_similar(similar, name) > 1) nearest = (nearest_t){name, similar, 0, ""};
     nearest.known[0] = '\0';
     for (size_t i = 0; i != model_count; i++) nearest_try(&nearest, models[i].name);
     list_add(nearest.known, sizeof nearest.known, "or a name of 'fathom models'");
