@@ -30,6 +30,7 @@ static struct {
 } scans;
 
 static const tool_run_t *last;
+static uint32_t stranger_us; /* of the stranger below: time to its response; 0: 5 ms */
 
 static const fathom_line_settings_t dyp_line = {9600, FATHOM_PARITY_NONE, 1};
 static const fathom_line_settings_t relatives_line = {115200, FATHOM_PARITY_NONE, 1};
@@ -94,6 +95,7 @@ static void idle(void *ctx, uint32_t max_us)
 static void scan_begin(void)
 {
     memset(&scans, 0, sizeof scans);
+    stranger_us = 0;
     bench_begin();
     scans.inner = bench.tool.uart;
     bench.tool.uart.read = bench_read;
@@ -168,7 +170,7 @@ static uint32_t stranger_request(fathom_sim_device_t *device, fathom_modbus_mess
                           first == stranger.only[2];
     if (!is_known && !stranger.refuses) return FATHOM_NO_DEADLINE;
     if (!is_known || !stranger.refuses) message->exception = stranger.exception;
-    return 5000;
+    return stranger_us != 0 ? stranger_us : 5000;
 }
 
 static void stranger_fill(fathom_sim_device_t *device, fathom_modbus_message_t *message, uint32_t now_us)
@@ -490,19 +492,21 @@ TEST(every_address_at_every_rate_and_parity_takes_as_long_as_estimated_and_less_
     const uint64_t said_us = estimate_us(everything);
     const tool_run_t *const run = scan_finds("", everything);
     assert_true(said_us < UINT64_C(600000000));
-    assert_int_equal(scans.requests,
-                     254 * 5 * 3 + 3); /* and one to any A05, and two to any A16 or relative */
+    assert_int_equal(
+        scans.requests,
+        /* one to any A05, two to any A16 or relative, and each address once more at two settings */
+        254 * 5 * 3 + 3 + 2 * 254);
     for (unsigned rate = 0; rate != 5; rate++)
         for (unsigned parity = 0; parity != 3; parity++) assert_int_equal(scans.probed[rate][parity], 254);
     /* Simulated time has no late wake-ups, for which the estimate has 5 ms a request. It is a whole number of seconds. */
     assert_true(run->took_us <= said_us);
-    assert_true(run->took_us + 254u * 15u * 5000u + 1015000u >= said_us);
+    assert_true(run->took_us + 254u * 17u * 5000u + 1015000u >= said_us);
     add_eight();
     assert_true(scan_finds(EIGHT, everything)->took_us <= said_us + 8u * FOUND_US);
     assert_true(last->took_us < UINT64_C(600000000));
 }
 
-/* Options, and what `scan --estimate` then prints: 8 + 32 * (0.163 + 0.110) + 0.755 + 0.313 is 17.8. */
+/* Options, and what `scan --estimate` then prints: 8 + 32 * (0.163 + 0.113 + 0.110) + 0.755 + 0.313 is 21.4. */
 static void estimates(void **state)
 {
     const char *const *const row = *state;
@@ -515,9 +519,9 @@ static void estimates(void **state)
     static const char *const row_##name[] = {options, text};                                                 \
     TEST_ROW(name, estimates, row_##name)
 
-ESTIMATES(the_default_is_32_addresses_at_the_factory_settings_in_18_s, "",
-          "addresses 1 to 32 at 9600 8N1, 19200 8E1: about 18 s, and a second for each sensor\n")
-ESTIMATES(the_estimate_is_an_object, "--format json", "{\"settings\":2,\"addresses\":32,\"duration_s\":18}\n")
+ESTIMATES(the_default_is_32_addresses_at_the_factory_settings_in_22_s, "",
+          "addresses 1 to 32 at 9600 8N1, 19200 8E1: about 22 s, and a second for each sensor\n")
+ESTIMATES(the_estimate_is_an_object, "--format json", "{\"settings\":2,\"addresses\":32,\"duration_s\":22}\n")
 ESTIMATES(a_rate_counts_once_and_keeps_its_place, "--address 7 --baud 57600,9600,57600",
           "address 7 at 57600 8E1, 9600 8N1: about ")
 ESTIMATES(each_rate_has_each_parity, "--parity odd,none",
@@ -550,12 +554,14 @@ TEST(a_silent_address_is_asked_again_as_often_as_the_user_says)
 TEST(an_address_has_150_ms_on_the_line_of_a16_and_a05_and_100_ms_elsewhere)
 {
     /* The request to address 255 and that to address 1, each of 8 bytes of 10 bits, the time-out and as long again, in
-     * which the unit may still respond; 5 bytes and a time-out for any A05; elsewhere 8 bytes of 11 bits and the time-out */
+     * which the unit may still respond; the same for 0100, with 100 ms; 5 bytes and a time-out for any A05; elsewhere 8
+     * bytes of 11 bits and the time-out */
     static const struct {
         const char *options;
         uint32_t us;
     } rows[] = {
-        {"--address 1 --baud 9600 --listen 1", 1000000 + 2 * (8333 + 2 * 150000) + 5208 + 300000},
+        {"--address 1 --baud 9600 --listen 1",
+         1000000 + 2 * (8333 + 2 * 150000) + 8333 + 2 * 100000 + 5208 + 300000},
         {"--address 1 --baud 9600 --parity odd --listen 1", 1000000 + 9167 + 100000},
         {"--address 1 --baud 19200 --listen 1", 1000000 + 4583 + 100000},
         {"--address 1 --baud 19200 --listen 1 --timeout 400", 1000000 + 4583 + 400000},
@@ -631,7 +637,7 @@ TEST(a_line_without_a_sound_is_explained)
     assert_says(run, "sensors found: 0");
     assert_null(strstr(run->err, "--baud all")); /* the user chose the range */
     assert_says(scan(""),
-                "run 'fathom scan --port line --address 1-254 --baud all --parity all' (about 7 minutes)");
+                "run 'fathom scan --port line --address 1-254 --baud all --parity all' (about 8 minutes)");
 }
 
 TEST(neither_the_reset_nor_a_broadcast_can_be_sent)
@@ -754,7 +760,7 @@ TEST(a_unit_that_speaks_like_an_hps167_is_named_and_no_more)
         assert_int_equal(run->status, 1);
         assert_non_null(strstr(scan("--listen 3 --format json")->out,
                                "{\"kind\":\"hps167\",\"model\":null,\"address\":null,"));
-        assert_non_null(strstr(last->out, "\"perhaps\":\"an HPS-167S of before 2020-09\""));
+        assert_non_null(strstr(last->out, "\"perhaps\":\"perhaps an HPS-167S of before 2020-09\""));
     }
 }
 
@@ -853,33 +859,49 @@ TEST(false_friends_are_no_sensors_and_are_named)
 {
     static const struct {
         stranger_t with;
-        const char *perhaps; /* NULL: it is a sensor */
+        const char *perhaps;
     } rows[] = {
-        {{.value = 9, .second = 2}, "a soil probe: 0x0100 is its address, and 0x0101 can be its baud code"},
-        {{.value = 1, .second = 50}, "a gripper: 0x0100 can be its start, and 0x0101 its force in percent"},
+        {{.value = 9, .second = 2},
+         "probably a soil probe: 0x0100 is its address, and 0x0101 can be its baud code"},
+        {{.value = 1, .second = 50},
+         "probably a gripper: 0x0100 can be its start, and 0x0101 its force in percent"},
         {{.value = 80, .second = 132},
-         "a solar charger: 0x0100 can be a charge in percent, and 0x0101 a voltage"},
+         "perhaps a solar charger: 0x0100 can be a charge in percent, and 0x0101 a voltage"},
         {{.value = 1530, .second = 1},
-         "a fuel gauge (TENET UL212), a gripper or a charger, which respond at 0x0100 too"},
+         "perhaps a fuel gauge (TENET UL212), a gripper, a charger, or a relative"},
+        {{.value = 754, .second = 751}, "probably a relative without an address register"},
     };
-    for (unsigned i = 0; i != 2 * sizeof rows / sizeof rows[0]; i++) {
-        stranger_t with = rows[i / 2].with;
+    for (unsigned i = 0; i != 4 * sizeof rows / sizeof rows[0]; i++) {
+        stranger_t with = rows[i / 4].with;
         char expected[200];
         const bool is_json = i % 2 != 0;
         (void)snprintf(expected, sizeof expected,
-                       is_json ? "\"perhaps\":\"%s\",\"is_double\":false,\"next\":null}\n"
-                               : "none of the known sensors; perhaps %s\n",
-                       rows[i / 2].perhaps);
+                       is_json ? "\"perhaps\":\"%s" : "none of the known sensors; %s", rows[i / 4].perhaps);
         with.only[0] = 0x0100;
         with.only[1] = 0x0101;
-        with.refuses = true;
-        with.exception = FATHOM_MODBUS_ILLEGAL_DATA_ADDRESS;
+        with.refuses = i / 2 % 2 != 0;
+        if (with.refuses) with.exception = FATHOM_MODBUS_ILLEGAL_DATA_ADDRESS;
         scan_begin();
-        add_stranger(9, with, &dyp_line);
-        const tool_run_t *const run = scan(is_json ? "--address 9 --format json" : "--address 9");
+        add_stranger(9, with, i % 4 == 0 ? &relatives_line : &dyp_line);
+        const tool_run_t *const run =
+            scan(is_json ? "--address 9 --format json" : "--address 8-10 --baud 9600,115200");
         assert_int_equal(run->status, 1);
         assert_says(run, expected);
     }
+}
+
+/* Of two devices that are silent at 0200: one that responds at 0100 after the time-out, and one beside a sensor. */
+TEST(a_false_friend_that_is_silent_at_0200_is_found_between_sensors)
+{
+    A16(.address = 8);
+    A16(.address = 10, .settings_us = 250000);
+    add_stranger(9, (stranger_t){.value = 754, .only = {0x0100}}, &dyp_line);
+    assert_says(scan_finds("a16 8 9600 8N1, ? 9 9600 8N1, a16 10 9600 8N1", "--address 7-11"),
+                "; perhaps a fuel gauge (TENET UL212), ");
+    scan_begin();
+    stranger_us = 250000;
+    add_stranger(9, (stranger_t){.value = 754, .only = {0x0100}}, &dyp_line);
+    (void)scan_finds("? 9 9600 8N1", "--address 7-11");
 }
 
 /* Returns the finding of a device with these two distances and its address in 0200. */
@@ -908,8 +930,8 @@ TEST(an_address_in_0200_and_two_distances_that_agree_are_an_a16_or_a_relative)
         {754, 300, " 300 mm, probably an A16 or a relative with Modbus  ->"}, /* a moving target */
         {0, 300, " 300 mm, probably an A16 or a relative with Modbus  ->"},
         {14, 300, " 300 mm, probably an A16 or a relative with Modbus  ->"},
-        {9, 2, "none of the known sensors; perhaps a soil probe: "},
-        {1, 50, "none of the known sensors; perhaps a gripper: "},
+        {9, 2, "none of the known sensors; probably a soil probe: "},
+        {1, 50, "none of the known sensors; probably a gripper: "},
         {14, 14, " 14 mm, probably an A16 or a relative with Modbus  ->"},
         {40000, 40000, "unknown (value 40000), probably an A16 or a relative with Modbus  ->"},
     };

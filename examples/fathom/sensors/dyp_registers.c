@@ -182,6 +182,10 @@ fathom_status_t a05_set(reader_t *reader, const setting_t *setting, int32_t valu
 
 /* ---- a scan: is it of the family? ---- */
 
+/* FFFB to FFFF and 0 are values for no distance (src/models). The shortest distance of all known modules is
+ * the 15 mm of an L07AYYUW (ESPHome pull request 12761). */
+enum { LEAST_CODE = 0xFFFB, LEAST_MM = 15 };
+
 /* Devices of others that respond at 0x0100 and 0x0101, and their values there. */
 static const struct {
     const char *what;
@@ -189,10 +193,21 @@ static const struct {
     bool has_address;           /* 0x0100 is its address */
     bool is_no_distance;        /* no sensor of the family sends both values */
 } others[] = {
-    {"a soil probe: 0x0100 is its address, and 0x0101 can be its baud code", {0, 0}, {254, 8}, true, true},
-    {"a gripper: 0x0100 can be its start, and 0x0101 its force in percent", {0, 20}, {1, 100}, false, true},
-    {"a solar charger: 0x0100 can be a charge in percent, and 0x0101 a voltage",
-     {1, 90},
+    /* Public notes on an ES-SM-TH-01: address 1, code 2 for 9600 baud. A code is less than any distance. */
+    {"probably a soil probe: 0x0100 is its address, and 0x0101 can be its baud code",
+     {0, 0},
+     {254, LEAST_MM - 1},
+     true,
+     true},
+    /* Public descriptor of a DH AG-95: 1 starts it, and its force is 20 to 100 percent. */
+    {"probably a gripper: 0x0100 can be its start, and 0x0101 its force in percent",
+     {0, 20},
+     {1, 100},
+     false,
+     true},
+    /* Registers of a Renogy Rover: percent and tenths of a volt. An empty battery of 12 V has 9 V, a full one of 48 V 60. */
+    {"perhaps a solar charger: 0x0100 can be a charge in percent, and 0x0101 a voltage",
+     {0, 90},
      {100, 600},
      false,
      false},
@@ -209,33 +224,38 @@ static const char *other_of(uint8_t address, uint16_t first, uint16_t second, bo
     return NULL;
 }
 
+static bool can_be_sent(uint16_t max_mm, uint16_t value)
+{
+    return value == 0 || value >= LEAST_CODE || (value >= LEAST_MM && value <= max_mm);
+}
+
+/* Returns true if one scene can have both values: no distance, or distances that differ by a quarter at most. No source has
+ * a limit; the datasheet's examples are 754 and 751 mm. A pair that does not agree costs the word "probably" alone. 0 and
+ * FFFF are also what other devices send for a register that they do not use. */
+static bool agrees(uint16_t max_mm, uint16_t one, uint16_t other)
+{
+    const uint32_t longer = one > other ? one : other;
+    const uint32_t shorter = one > other ? other : one;
+    if (!can_be_sent(max_mm, one) || !can_be_sent(max_mm, other)) return false;
+    if (shorter >= LEAST_CODE) return shorter != UINT16_MAX;
+    return shorter != 0 && longer < LEAST_CODE && 4 * (longer - shorter) <= longer;
+}
+
 void models_name_other(inquiry_t *inquiry)
 {
     scan_finding_t *const finding = inquiry->finding;
     if (!inquiry->ask(inquiry, FATHOM_A16_REGISTER_PROCESSED, 1, INQUIRY_MEASURE_US, 1)) return;
     const uint16_t first = inquiry->values[0];
-    if (inquiry->ask(inquiry, FATHOM_A16_REGISTER_REAL_TIME, 1, INQUIRY_MEASURE_US, 1))
-        finding->perhaps = other_of(finding->address, first, inquiry->values[0], false);
-    if (finding->perhaps == NULL)
-        finding->perhaps = "a fuel gauge (TENET UL212), a gripper or a charger, which respond at 0x0100 too";
-}
-
-/* FFFB to FFFF and 0 are values for no distance. The shortest distance that a relative measures is 15 mm. */
-enum { LEAST_CODE = 0xFFFB, LEAST_MM = 15 };
-
-static bool can_be_sent(const model_t *model, uint16_t value)
-{
-    return value == 0 || value >= LEAST_CODE || (value >= LEAST_MM && value <= model->max_mm);
-}
-
-/* Returns true if one scene can have both values: no distance, or distances that differ by a quarter at most. 0 and FFFF are
- * also what other devices send for a register that they do not use. */
-static bool agrees(uint16_t one, uint16_t other)
-{
-    const uint32_t longer = one > other ? one : other;
-    const uint32_t shorter = one > other ? other : one;
-    if (shorter >= LEAST_CODE) return shorter != UINT16_MAX;
-    return shorter != 0 && longer < LEAST_CODE && 4 * (longer - shorter) <= longer;
+    finding->perhaps =
+        "perhaps a fuel gauge (TENET UL212), a gripper, a charger, or a relative without an address "
+        "register (djlk-003ab): all respond at 0x0100";
+    if (!inquiry->ask(inquiry, FATHOM_A16_REGISTER_REAL_TIME, 1, INQUIRY_MEASURE_US, 1)) return;
+    const char *const other = other_of(finding->address, first, inquiry->values[0], false);
+    if (other != NULL)
+        finding->perhaps = other;
+    else if (agrees(FATHOM_A16_MAX_MM, first, inquiry->values[0]))
+        finding->perhaps =
+            "probably a relative without an address register: 0x0100 and 0x0101 have one distance";
 }
 
 /* The device has its address in 0x0200 and a register of the model. It is certain if it also answered at address 255, or if
@@ -249,8 +269,7 @@ bool dyp_confirm(inquiry_t *inquiry, const model_t *model)
     const uint16_t value = inquiry->values[0];
     if (second == FATHOM_A16_REGISTER_PROCESSED)
         finding->perhaps = other_of(finding->address, value, finding->value, true);
-    const bool are_both = can_be_sent(model, value) && can_be_sent(model, finding->value);
-    finding->is_certain = are_both && agrees(value, finding->value);
+    finding->is_certain = agrees(model->max_mm, value, finding->value);
     return finding->perhaps == NULL;
 }
 

@@ -37,7 +37,19 @@ class Case(e2e.Case):
             device.asked(e2e.adu(7, 3, register >> 8, register & 255, 0, 1), e2e.adu(7, *response))
         found, = self.ends(program, 1).json
         self.assertEqual([found['kind'], found['address'], found['model']], ['other_modbus', 7, None])
-        self.assertTrue(found['perhaps'].startswith('a soil probe: '))
+        self.assertTrue(found['perhaps'].startswith('probably a soil probe: '))
+
+    def test_a_soil_probe_that_is_silent_at_0200_is_named_too(self):
+        """The response 01 03 04 00 01 00 02 2A 32 of a public soil probe, in two: address 1, code 2 for 9600 baud."""
+        device = self.device()
+        program = self.fathom(f'scan --port {device} --address 1 --baud 9600 --format json {PATIENT}')
+        device.asked(e2e.adu(255, 3, 2, 0, 0, 1))
+        device.asked(e2e.adu(1, 3, 2, 0, 0, 1))
+        for register, value in ((0x0100, 1), (0x0100, 1), (0x0101, 2)):
+            device.asked(e2e.adu(1, 3, register >> 8, register & 255, 0, 1), e2e.registers(1, value))
+        found, = self.ends(program, 1).json
+        self.assertEqual([found['kind'], found['address'], found['model']], ['other_modbus', 1, None])
+        self.assertTrue(found['perhaps'].startswith('probably a soil probe: '))
 
     def test_the_printed_command_quotes_the_port_for_a_shell(self):
         self.sim(['hps167s:7', '--link', self.path("it's here")])

@@ -261,7 +261,8 @@ static const field_t fields[] = {
     {"raw", "", "Value that the sensor sent", FIELD_NUMBER, VALUE, FOUND(raw)},
     {"is_certain", "", "Whether only an a16, a05 or relative responds like this", FIELD_FLAG, VALUE,
      FOUND(is_certain)},
-    {"perhaps", "", "What a device that is not confirmed could be", FIELD_WORD, UNCONFIRMED, FOUND(perhaps)},
+    {"perhaps", "", "What an unconfirmed device could be, and how sure that is", FIELD_WORD, UNCONFIRMED,
+     FOUND(perhaps)},
     {"is_double", "", "Whether one request had two responses", FIELD_FLAG, 0, FOUND(is_double)},
     {"next", "", "Command to type next", FIELD_WORD, 0, FOUND(next)},
     {.key = NULL},
@@ -342,7 +343,7 @@ static void print_text(const scan_finding_t *finding, const char *port)
     if (is_sensor)
         print_sensor(finding);
     else
-        (void)printf("%s%s%s", kinds[finding->kind].text, finding->perhaps != NULL ? "; perhaps " : "",
+        (void)printf("%s%s%s", kinds[finding->kind].text, finding->perhaps != NULL ? "; " : "",
                      finding->perhaps != NULL ? finding->perhaps : "");
     if (finding->is_double)
         (void)printf(", responds twice%s", is_sensor ? "" : ": two sensors with one address?");
@@ -424,7 +425,7 @@ static void print_nothing(const scan_t *scan)
     else if (scan->settings->is_default)
         (void)fprintf(stderr,
                       ". To find a sensor with other settings, run 'fathom scan --port %s --address 1-254 "
-                      "--baud all --parity all' (about 7 minutes)",
+                      "--baud all --parity all' (about 8 minutes)",
                       scan->settings->port);
     (void)fputs(". A sensor that was just switched on may need 5 s\n", stderr);
 }
@@ -601,8 +602,9 @@ const command_t scan_command = {
     .about = "It only reads: no request can change a setting. But even a read ends the automatic output of "
              "an A16 or A05, so the scan listens first, and sends nothing if a sensor sends. At the rates of "
              "A16 and A05 it first reads the address at address 255, to which a unit that is alone responds "
-             "from its own. At an address where a device responds, other parities of the same rate are not "
-             "tried.\n",
+             "from its own, and after the walk it reads 0x0100 at silent addresses, where other devices "
+             "respond. At "
+             "an address where a device responds, other parities of the same rate are not tried.\n",
     .examples = "  fathom scan --port /dev/ttyUSB0\n"
                 "  fathom scan --port /dev/ttyUSB0 --one\n"
                 "  fathom scan --port /dev/ttyUSB0 --address 1-254 --baud all --parity all\n"

@@ -104,6 +104,8 @@ void scan_listen(scan_t *scan);
  *  - At the line settings of A16 and A05 and their relatives, the scan first reads the address at address 255. A whole
  *    response is the address of one unit, which the scan identifies, unless it is not among those that the user named.
  *    Others may have been silent.
+ *  - Other devices may be silent there, but respond where an A16 has its distance. So the scan then reads this register at
+ *    each silent address. The device is SCAN_OTHER, with what it could be.
  *  - A late response arrives while the scan asks another address. The scan asks its sender again with a long time-out.
  *  - After bytes that are no frame, or a damaged frame, the scan asks again. If each response is damaged, the address is
  *    SCAN_DAMAGED. If more than half of the addresses are, and no response was whole, the line is SCAN_NOT_MODBUS.

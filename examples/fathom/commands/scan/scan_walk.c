@@ -57,6 +57,20 @@ static const model_t *with_any(const fathom_line_settings_t *line)
     return NULL;
 }
 
+/* Returns the register at which false friends respond to requests with these settings: that of a model's distance. 0:
+ * none. */
+static uint16_t false_friends_at(const fathom_line_settings_t *line)
+{
+    const model_t *const model = with_any(line);
+    return model != NULL ? model->scan.second : 0;
+}
+
+/* False friends are other makers' devices, as an HPS-167S is. */
+static uint32_t false_friends_us(const scan_settings_t *settings)
+{
+    return settings->timeout_us != 0 ? settings->timeout_us : TIMEOUT_US;
+}
+
 /* Returns the time for all addresses at these settings, for address 255, and for any A05. After the request to address 255
  * any unit may respond late, so it takes two time-outs. The request to any A05 waits until no unit may
  * respond late, and after it any unit may, so it takes three time-outs. */
@@ -67,6 +81,7 @@ static uint64_t line_us(const scan_settings_t *settings, const fathom_line_setti
     const uint32_t wait_us = timeout_of(settings, line);
     return (uint64_t)count * address_us(settings, line) +
            (with_any(line) != NULL ? once_us(line, wait_us) + wait_us : 0) +
+           (false_friends_at(line) != 0 ? (uint64_t)count * once_us(line, false_friends_us(settings)) : 0) +
            (has_any ? timeout_of(settings, line) + 2 * ANY_TIMEOUT_US + LATENESS_US : 0);
 }
 
@@ -308,8 +323,20 @@ static const model_t *find_model(scan_t *scan)
     return tell_apart(inquiry, model->scan.first);
 }
 
-/* Identifies and reports the device that responded to its first read. */
-static void identify(scan_t *scan)
+/* Reports a device that responded. */
+static void report_found(scan_t *scan, scan_finding_t *finding)
+{
+    finding->kind = finding->model != NULL ? SCAN_SENSOR : SCAN_OTHER;
+    if (finding->model == NULL) finding->has_value = false;
+    if (finding->model == NULL && finding->perhaps == NULL) models_name_other(&scan->inquiry);
+    if (scan->status != FATHOM_OK) return;
+    scan->found_baud[finding->address] = scan->line->baud;
+    if (finding->model == model_with(DECODE_DYP)) scan->has_dyp = true;
+    scan->report(scan, finding);
+}
+
+/* Identifies and reports the device that responded. has_first: to the first read of a model, and not to a later one. */
+static void identify(scan_t *scan, bool has_first)
 {
     const uint8_t address = scan->read.address;
     scan_finding_t finding = {.line = *scan->line,
@@ -319,19 +346,11 @@ static void identify(scan_t *scan)
                               .is_double = scan->read.evidence.fitting >= 2};
     scan->inquiry = (inquiry_t){
         .ask = ask, .status = scan->read.status, .values = scan->read.values, .finding = &finding};
-    finding.model = find_model(scan);
+    if (has_first) finding.model = find_model(scan);
     if (finding.model != NULL && finding.model->scan.confirm != NULL &&
         !finding.model->scan.confirm(&scan->inquiry, finding.model))
         finding.model = NULL;
-    if (finding.model == NULL) {
-        finding.has_value = false;
-        if (finding.perhaps == NULL) models_name_other(&scan->inquiry);
-    }
-    finding.kind = finding.model != NULL ? SCAN_SENSOR : SCAN_OTHER;
-    if (scan->status != FATHOM_OK) return;
-    scan->found_baud[address] = scan->line->baud;
-    if (finding.model == model_with(DECODE_DYP)) scan->has_dyp = true;
-    scan->report(scan, &finding);
+    report_found(scan, &finding);
 }
 
 /* ---- one address ---- */
@@ -403,7 +422,7 @@ static void visit(scan_t *scan, uint8_t address, uint32_t timeout_us)
         note(scan, &scan->read.evidence);
         if (is_answered(scan->read.status)) {
             *state = ANSWERED;
-            identify(scan);
+            identify(scan, true);
             return;
         }
     } while (count_failure(scan, &attempts));
@@ -416,6 +435,28 @@ static void visit(scan_t *scan, uint8_t address, uint32_t timeout_us)
         *state = attempts.has_checksum ? DAMAGED : GARBLED;
         if (*state == GARBLED) scan->garbled++;
     }
+}
+
+/* Returns true if a device was found at this address at the present rate; behind a converter, at its only settings. */
+static bool is_found(const scan_t *scan, uint8_t address)
+{
+    const uint32_t found = scan->found_baud[address];
+    return found != 0 && (!port_has_settings(scan->port.kind) || found == scan->line->baud);
+}
+
+/* Reads the register of false friends at an address that was silent at the first register of a model. */
+static void visit_again(scan_t *scan, uint8_t address, uint32_t timeout_us)
+{
+    const uint16_t first = false_friends_at(scan->line);
+    if (first == 0 || scan->states[address] != SILENT || is_found(scan, address)) return;
+    scan->read = (scan_read_t){
+        .line = scan->line, .timeout_us = timeout_us, .first = first, .count = 1, .address = address};
+    scan_ask(scan);
+    if (scan->status != FATHOM_OK) return;
+    note(scan, &scan->read.evidence);
+    if (!is_answered(scan->read.status)) return;
+    scan->states[address] = ANSWERED;
+    identify(scan, false);
 }
 
 /* ---- all addresses ---- */
@@ -463,13 +504,6 @@ static void ask_any_dyp(scan_t *scan)
                                              .is_certain = true});
 }
 
-/* Returns true if a device was found at this address at the present rate; behind a converter, at its only settings. */
-static bool is_found(const scan_t *scan, uint8_t address)
-{
-    const uint32_t found = scan->found_baud[address];
-    return found != 0 && (!port_has_settings(scan->port.kind) || found == scan->line->baud);
-}
-
 /* One unit answers a read of its address at address 255 from its real address. Several damage each other's responses. */
 static void ask_any(scan_t *scan, uint32_t timeout_us)
 {
@@ -507,6 +541,7 @@ static void walk_line(scan_t *scan)
 {
     const scan_settings_t *const settings = scan->settings;
     const uint32_t timeout_us = timeout_of(settings, scan->line);
+    const uint32_t again_us = false_friends_us(settings);
     const unsigned last = settings->addresses.last;
     memset(scan->states, NOT_ASKED, sizeof scan->states);
     scan->garbled = 0;
@@ -518,8 +553,17 @@ static void walk_line(scan_t *scan)
         if (!is_found(scan, (uint8_t)address)) visit(scan, (uint8_t)address, timeout_us);
         scan->done_us += address_us(settings, scan->line);
     }
-    for (unsigned address = 0; address <= last && !has_ended(scan); address++)
-        if (scan->states[address] == LATE) visit(scan, (uint8_t)address, longer(timeout_us, LATE_TIMEOUT_US));
+    for (unsigned address = settings->addresses.first; address <= last && !has_ended(scan); address++) {
+        scan->read.address = (uint8_t)address;
+        show_progress(scan);
+        visit_again(scan, (uint8_t)address, again_us);
+        if (false_friends_at(scan->line) != 0) scan->done_us += once_us(scan->line, again_us);
+    }
+    for (unsigned address = 0; address <= last && !has_ended(scan); address++) {
+        if (scan->states[address] != LATE) continue;
+        visit(scan, (uint8_t)address, longer(timeout_us, LATE_TIMEOUT_US));
+        if (!has_ended(scan)) visit_again(scan, (uint8_t)address, longer(timeout_us, LATE_TIMEOUT_US));
+    }
     if (has_ended(scan)) return;
     conclude(scan);
     if (!scan->has_dyp && is_of(model_with(DECODE_DYP), scan->line)) ask_any_dyp(scan);
