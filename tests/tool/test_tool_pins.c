@@ -93,6 +93,19 @@ TEST(an_hc_sr04_is_read_with_its_own_scale)
     EXPECT(0, 2, "hc-sr04     991 mm", "read hc-sr04@gpiochip0,trigger=17,echo=27 --count 2");
 }
 
+/* Its trigger rises, so a line that is opened high would start a measurement. That of an A16 falls. */
+TEST(the_trigger_is_opened_at_its_idle_level)
+{
+    static const char *const words[] = {"a16:pwm", "hc-sr04", "a02yymw"};
+    for (size_t i = 0; i != sizeof words / sizeof words[0]; i++) {
+        (void)set_up(NULL);
+        with_a16(FATHOM_SIM_A16_PWM);
+        (void)tool_run(&bench.tool, "read %s@gpiochip0,trigger=17,echo=27 --count 1", words[i]);
+        assert_int_equal(chip.opened, 1);
+        assert_int_equal(chip.asked.idles_low, i == 1);
+    }
+}
+
 /* ---- A16 controlled, its trigger on a GPIO line and its response on a serial port ---- */
 
 #define CONTROLLED "a16:controlled@line,trigger=gpiochip0/17"
@@ -248,6 +261,27 @@ static void with_widths(const uint32_t *list)
     is_armed = false;
     chip.capture = (fathom_capture_t){arm_widths, take_width, NULL};
 }
+
+/* 58.8 us for each cm (src/models): 5880 us are 1000 mm. 60 ms are no target. */
+TEST(free_running_pulses_are_read_without_a_trigger)
+{
+    static const uint32_t free_us[] = {5880, 60000, 11760, 0};
+    with_widths(free_us);
+    EXPECT(0, 3, "jsn-sr04t", "read jsn-sr04t:free@gpiochip0,echo=27 --count 3");
+    assert_int_equal(chip.asked.trigger, -1);
+    if (strstr(last->out, "1000 mm") == NULL || strstr(last->out, "no_target") == NULL ||
+        strstr(last->out, "2000 mm") == NULL)
+        fail_msg("%s%s", last->out, last->err);
+    assert_refused("read jsn-sr04t:free@gpiochip0,trigger=17,echo=27", "has no trigger=");
+}
+
+REFUSES(a_sensor_without_a_line_is_not_simulated, "sim",
+        {"hc-sr04",
+         "hc-sr04 in mode pwm has GPIO pins and no line to simulate. Connect a module and run 'fathom "
+         "read hc-sr04:pwm@gpiochip0,trigger=17,echo=27', or simulate"},
+        {"jsn-sr04t::free",
+         "jsn-sr04t in mode free has GPIO pins and no line to simulate. Connect a module and "
+         "run 'fathom read jsn-sr04t:free@gpiochip0,echo=27', or simulate"})
 
 /* The squares of -10, 0 and 10 by 2: 100, of which the root is 10 us; times 4 / 23 that is 1.74 mm. */
 TEST(stats_tell_the_spread_of_the_widths_and_what_was_rejected)
@@ -496,4 +530,4 @@ TEST(what_is_wrong_usage_says_what_to_write)
 
 REFUSES(what_asks_and_what_simulates_has_no_pins, "", {"info " PWM, "a16 in mode pwm receives no requests."},
         {"get " PWM, "a16 in mode pwm receives no requests."},
-        {"sim a16:pwm", "a16 in mode pwm has pins and no line"})
+        {"sim a16:pwm", "a16 in mode pwm has GPIO pins and no line"})

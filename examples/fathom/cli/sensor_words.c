@@ -371,6 +371,7 @@ static bool set_lines(const site_t *site, const sensor_defaults_t *defaults, con
         port_options_t *const port = sensor->port;
         sensor->line = sensor->model->line;
         port_options_line(port, &sensor->line);
+        port->pins.idles_low = mode_idles_low(sensor->mode);
         if (port->line.baud == 0 || sensor->line.baud < port->line.baud) port->line = sensor->line;
     }
     for (size_t i = 0; i != site->sensor_count; i++) {

@@ -25,12 +25,13 @@ typedef struct {
     int32_t in;      /* a switch, or the contact of a relay */
     uint8_t bias;    /* of the inputs; fathom_gpio_bias_t */
     uint8_t near;    /* pins_near_t */
+    bool idles_low;  /* a high pulse triggers: the line is opened low */
 } pin_options_t;
 
 /* The lines of a GPIO chip that were named, open. A reader uses what the host has set. */
 enum { PINS_LINES = 3 };
 typedef struct {
-    fathom_pin_t trigger;     /* high */
+    fathom_pin_t trigger;     /* at its idle level */
     fathom_capture_t capture; /* of echo */
     fathom_pin_t in;
     bool wakes; /* a change of `in` ends a sleep */

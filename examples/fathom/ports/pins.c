@@ -17,7 +17,7 @@ static fathom_gpio_status_t open_in(pins_t *pins, const char *chip, uint32_t num
                : status;
 }
 
-/* Nothing is driven before the inputs are open. */
+/* Nothing is driven before the inputs are open. The trigger is opened at its idle level, so that it triggers nothing. */
 static bool open_lines(pins_t *pins, const char *chip)
 {
     const pin_options_t *const wanted = &pins->wanted;
@@ -26,7 +26,7 @@ static bool open_lines(pins_t *pins, const char *chip)
            (wanted->echo < 0 || fathom_gpio_open_edges(&lines[ECHO], chip, (uint32_t)wanted->echo,
                                                        (fathom_gpio_bias_t)wanted->bias) == FATHOM_GPIO_OK) &&
            (wanted->trigger < 0 || fathom_gpio_open_output(&lines[TRIGGER], chip, (uint32_t)wanted->trigger,
-                                                           true) == FATHOM_GPIO_OK);
+                                                           !wanted->idles_low) == FATHOM_GPIO_OK);
 }
 
 bool pins_open(void *ctx, const char *chip, const pin_options_t *wanted, pins_t *pins)

@@ -63,6 +63,12 @@ static inline bool mode_starts_by_byte(const model_mode_t *mode)
     return mode->row != NULL && mode->row->facts->start == FATHOM_STARTS_BYTE;
 }
 
+/* Returns true if a high pulse at the sensor's trigger pin triggers a measurement. */
+static inline bool mode_idles_low(const model_mode_t *mode)
+{
+    return mode->row != NULL && mode->row->facts->start == FATHOM_STARTS_HIGH_PULSE;
+}
+
 /* ---- a scan ---- */
 
 /* The kind of a device that a scan found. */

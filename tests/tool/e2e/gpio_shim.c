@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A GPIO chip for test_loop_program.py, to be preloaded. The lines of /dev/gpiochip0 are one: its level is what the file
+ * A GPIO chip for test_loop_program.py and test_controlled.py, to be preloaded. The lines of /dev/gpiochip0 are one: its level is what the file
  * GPIO_LEVEL begins with, "0" or "1"; its events are what is written to the FIFO GPIO_EVENTS, a struct
- * gpio_v2_line_event each.
+ * gpio_v2_line_event each; each level of an output, also the first one, is added to the file GPIO_LOG.
  */
 #define _GNU_SOURCE 1
 #include <fcntl.h>
 #include <linux/gpio.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/syscall.h>
@@ -21,6 +22,14 @@ static int open_really(const char *path, int flags)
 int open(const char *path, int flags, ...)
 {
     return open_really(strcmp(path, "/dev/gpiochip0") == 0 ? "/dev/null" : path, flags);
+}
+
+static void log_level(bool high)
+{
+    const int file =
+        (int)syscall(SYS_openat, AT_FDCWD, getenv("GPIO_LOG"), O_WRONLY | O_CREAT | O_APPEND, 0600);
+    if (file < 0 || write(file, high ? "1" : "0", 1) != 1) abort();
+    close(file);
 }
 
 int ioctl(int fd, unsigned long request, ...)
@@ -38,6 +47,11 @@ int ioctl(int fd, unsigned long request, ...)
         return 0;
     case GPIO_V2_GET_LINE_IOCTL: /* writable, so that there is always a writer, and no hang-up */
         ((struct gpio_v2_line_request *)out)->fd = open_really(getenv("GPIO_EVENTS"), O_RDWR);
+        if ((((struct gpio_v2_line_request *)out)->config.flags & GPIO_V2_LINE_FLAG_OUTPUT) != 0)
+            log_level((((struct gpio_v2_line_request *)out)->config.attrs[0].attr.values & 1) != 0);
+        return 0;
+    case GPIO_V2_LINE_SET_VALUES_IOCTL:
+        log_level((((struct gpio_v2_line_values *)out)->bits & 1) != 0);
         return 0;
     case GPIO_V2_LINE_GET_VALUES_IOCTL: {
         char level = '0';

@@ -12,6 +12,20 @@ import e2e
 SENSOR = 'a16 --mode controlled'
 
 
+class Pin(e2e.Case):
+    @e2e.each(an_a16_is_triggered_by_a_fall=('a16:pwm', '^1+0+1'), an_hc_sr04_by_a_rise=('hc-sr04', '^0+1+0'))
+    def levels(self, sensor, levels):
+        """The line is opened at its idle level: another first level would be a trigger."""
+        os.mkfifo(self.path('events'))
+        with open(self.path('level'), 'w', encoding='ascii') as file:
+            file.write('0')
+        names = {f'GPIO_{name.upper()}': self.path(name) for name in ('events', 'level', 'log')}
+        self.ends(f'read {sensor}@gpiochip0,trigger=17,echo=27 --count 1', 1, 'no pulse was received',
+                  env=self.preload('gpio_shim.c', **names))
+        with open(self.path('log'), encoding='ascii') as file:
+            self.assertRegex(file.read(), levels)
+
+
 class Controlled(e2e.Case):
     def read(self, distance, count, options=''):
         """The readings, and how long it took. A response is one if it comes 80 to 130 ms after the trigger (A16 3(3)). On a

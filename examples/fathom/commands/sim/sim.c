@@ -388,8 +388,13 @@ static bool parse_sensor(simulated_t *sensor, char *text, const origin_t *origin
     if (sensor->mode == NULL) return false;
     if (sensor->mode->simulated_as != 0)
         return sensor_word_address(&word, sensor->mode, &sensor->settings.address);
-    return reject(origin, "%s in mode %s has pins and no line, and is not simulated here.", word.model->name,
-                  sensor->mode->name);
+    char example[PORT_EXAMPLE];
+    (void)pins_example(sensor->mode, "gpiochip0", example);
+    return reject(
+        origin,
+        "%s in mode %s has GPIO pins and no line to simulate. Connect a module and run 'fathom read "
+        "%s:%s@%s', or simulate a sensor with a line, such as 'fathom sim a16'.",
+        word.model->name, sensor->mode->name, word.model->name, sensor->mode->name, example);
 }
 
 /* Reads the words of the sensors with their keys. */
