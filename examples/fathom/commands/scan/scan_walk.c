@@ -351,6 +351,7 @@ static void identify(scan_t *scan, bool has_first)
         !finding.model->scan.confirm(&scan->inquiry, finding.model))
         finding.model = NULL;
     report_found(scan, &finding);
+    scan->inquiry.finding = NULL; /* it ends here */
 }
 
 /* ---- one address ---- */
