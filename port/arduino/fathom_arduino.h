@@ -5,6 +5,7 @@
 #include <Arduino.h>
 
 #include "fathom/fathom.hpp"
+#include "fathom/models.h"
 
 /**
  * @file

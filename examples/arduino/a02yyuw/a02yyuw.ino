@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A02YYUW (SEN0311): TX of the module to pin 10. Other relatives of the A16 are read with their own model.
 #include <SoftwareSerial.h>
-#include <fathom/models.h>
 #include <fathom_arduino.h>
 
 SoftwareSerial sensorPort(10, 11); // RX, TX

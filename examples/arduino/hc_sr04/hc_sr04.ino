@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // HC-SR04: Echo to pin 2, Trig to pin 7. Each module of src/models/README.md with pulses is read so.
-#include <fathom/models.h>
 #include <fathom_arduino.h>
 
 FathomA16Pwm tank(2, 7);

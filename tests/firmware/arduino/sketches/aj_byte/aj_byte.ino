@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // AJ-SR04M that measures when it receives a byte: TX of the module to pin 10, its RX to pin 11.
 #include <SoftwareSerial.h>
-#include <fathom/models.h>
 #include <fathom_arduino.h>
 
 SoftwareSerial sensorPort(10, 11); // RX, TX
