@@ -48,10 +48,11 @@ static const conversation_t conversations[] = {
     ROW("a_long_pause_without_a_request_that_waits_shows_no_slow_program",
         COUNTS(.responses = 1, .strays = 2, .dropped = 26), BEGIN, ARRIVE(OF_9), POLL, QUEUE(A, 1),
         ARRIVE(OF_9), POLL_AFTER(10000), WRITTEN(1), SENT(T3_5_US - 200, 400)),
-    /* the frame arrives while unit 1 is waited for, so its bytes show no sender: B leaves as on any line */
-    ROW("a_foreign_frame_during_an_attempt_shows_no_device_that_sends_by_itself",
-        COUNTS(.responses = 1, .strays = 1, .dropped = 7), ASK(A, 1), QUEUE(B, 2), RESPONSE(9, 5), WAIT(1000),
-        RESPONSE(1, 754), READS(A, 754), SENT(T3_5_US - 200, 400)),
+    /* the frame arrives with the time-out of A, so its bytes show no sender, and the response to B is no unsolicited frame */
+    ROW("a_frame_that_ends_an_attempt_shows_no_device_that_sends_by_itself",
+        COUNTS(.responses = 1, .no_responses = 1, .strays = 1, .dropped = 13), ASK(A, 1), QUEUE(B, 2),
+        PASS(2 * TIMEOUT_US), ARRIVE(OF_9), POLL, FAILS(A, NO_RESPONSE), WAIT(REQUEST_US), RESPONSE(2, 222),
+        READS(B, 222)),
 };
 CONVERSATIONS(set_up, conversations)
 
