@@ -159,6 +159,15 @@ TEST(a_value_that_was_written_and_did_not_show_is_taken_back_by_writing)
     was_written(false);
 }
 
+TEST(a_value_that_shows_behind_a_lost_write_of_another_one_is_written_again)
+{
+    SETS(FATHOM_ERR_DIFFERS, HERE, IS(HERE, OLD), PUT(OK), IS(HERE, OLD));
+    want(OLD);
+    SETS(FATHOM_ERR_UNCONFIRMED, HERE, IS(HERE, OLD), WRITE(HERE, REGISTER, OLD, SILENT));
+    want(NEW);
+    SETS(OK, HERE, IS(HERE, NEW), PUT(OK), IS(HERE, NEW));
+}
+
 TEST(a_lost_acknowledgement_is_no_failure_if_the_value_holds)
 {
     static const fathom_status_t errors[] = {SILENT, FATHOM_ERR_CHECKSUM, FATHOM_ERR_MALFORMED,
