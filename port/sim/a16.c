@@ -12,6 +12,7 @@ enum { AUTOMATIC = 1, POSITIVE = 1, REAL_TIME = 1 }; /* values of 0x0202, 0x0205
 enum {
     PROCESSED = 0x0100,
     REALTIME = 0x0101,
+    TEMPERATURE = 0x0102,
     ADDRESS = 0x0200,
     MODE = 0x0202,
     POLARITY = 0x0205,
@@ -27,6 +28,8 @@ static uint32_t read_us(const fathom_sim_a16_t *a16, uint16_t address)
         return a16->processed_us;
     case REALTIME:
         return a16->realtime_us;
+    case TEMPERATURE:
+        return a16->has_temperature ? a16->settings_us : 0;
     case ADDRESS:
     case POLARITY:
     case THRESHOLD:
@@ -123,6 +126,9 @@ static void fill(fathom_sim_device_t *device, fathom_modbus_message_t *message, 
     const fathom_sim_a16_t *const a16 = fathom_sim_a16_of(device);
     const uint16_t address = fathom_sim_get16(message->head + 2);
     switch (address) {
+    case TEMPERATURE:
+        message->values[0] = (uint16_t)a16->temperature_dc;
+        break;
     case ADDRESS:
         message->values[0] = device->address;
         break;
@@ -269,6 +275,8 @@ void fathom_sim_a16_init(fathom_sim_a16_t *a16, const fathom_sim_a16_config_t *c
     a16->mode = config->mode;
     a16->has_byte = config->has_byte;
     a16->byte = config->byte;
+    a16->has_temperature = config->has_temperature;
+    a16->temperature_dc = config->temperature_dc != 0 ? config->temperature_dc : 200;
     a16->least_us = fathom_sim_or_else(config->least_us, 90000);
     a16->most_us = fathom_sim_or_else(config->most_us, 110000);
     a16->cycle_us =

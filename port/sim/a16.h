@@ -86,6 +86,8 @@ typedef struct {
     uint32_t most_us;
     bool has_byte;
     uint8_t byte;
+    bool has_temperature;   /* it has register 0x0102 ... */
+    int16_t temperature_dc; /* ... with tenths of a degree Celsius; default 200 */
 } fathom_sim_a16_config_t;
 
 typedef struct {
@@ -100,6 +102,8 @@ typedef struct {
     uint32_t most_us;
     bool has_byte;
     uint8_t byte;
+    bool has_temperature;
+    int16_t temperature_dc;
     uint8_t mode;
     uint16_t threshold_mm;
     uint8_t polarity;  /* 0x0205; 1 from the factory */

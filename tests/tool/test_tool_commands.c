@@ -226,8 +226,8 @@ TEST(a_command_keeps_nothing_of_the_one_before)
 /* Makers and users report 200 to 8000 mm, byte 01 with a resistor of 47k, and a high pulse without one. */
 TEST(models_are_json_with_line_trigger_and_command)
 {
-    static const char module[] =
-        "\"is_certain\":true,\"aliases\":\"K02, AJ-SR04M-T-X\",\"maker\":\"\",\"note\":";
+    static const char module[] = "\"has_temperature\":false,\"is_certain\":true,\"aliases\":\"K02, "
+                                 "AJ-SR04M-T-X\",\"maker\":\"\",\"note\":";
     static const char *const rows[][2] = {
         {"\"auto\",\"min_mm\":200,\"max_mm\":8000,\"line\":\"9600 8N1\",\"trigger\":null,",
          "\"R19 = 120k\",\"next\":\"fathom read aj-sr04m --port /dev/ttyUSB0\"}\n"},
@@ -245,4 +245,13 @@ TEST(models_are_json_with_line_trigger_and_command)
     const tool_run_t *const run = tool_run(&bench.tool, "models k02 --format json");
     assert_int_equal(run->status, 0);
     assert_string_equal(run->out, expected);
+}
+
+TEST(models_say_which_have_a_temperature)
+{
+    assert_non_null(
+        strstr(tool_run(&bench.tool, "models a02yy4w")->out, "  temperature: read with --temperature\n"));
+    assert_null(strstr(tool_run(&bench.tool, "models a17ny4w")->out, "temperature"));
+    assert_non_null(
+        strstr(tool_run(&bench.tool, "models sen0591 --format json")->out, "\"has_temperature\":true,"));
 }

@@ -538,7 +538,7 @@ TEST(a_temperature_that_cannot_be_read_fails_nothing_and_is_told_once)
         readings(20, "\"distance_mm\":1234,", "hps167s --temperature=1 --count 20 --interval 500 --stats");
     expect_all(run, 20, ",\"temperature_degc\":null}");
     expect_err(run, "\"attempts\":20,\"failed\":0,\"readings\":20,");
-    assert_int_equal(count_of(run->err, "fathom: hps167s:1: its temperature (#4) could not be read"), 1);
+    assert_int_equal(count_of(run->err, "fathom: hps167s:1: its temperature could not be read"), 1);
 }
 
 static void fall_silent_at_4500_ms(void *ctx, uint32_t max_us)
@@ -559,6 +559,32 @@ TEST(a_temperature_of_more_than_three_times_its_period_ago_is_not_told)
     assert_in_range(count_of(run->out, ":25.0}"), 6, 8);
     assert_in_range(count_of(run->out, ":null}"), 5, 10);
     assert_null(strstr(strstr(run->out, ":null}"), ":25.0}"));
+}
+
+/* a22-rs485 and a02yy4w have register 0x0102 in src/models; it is signed, in tenths of a degree. */
+TEST(a_relative_with_the_register_has_a_temperature)
+{
+    bench_a16((fathom_sim_a16_config_t){.baud = 115200, .has_temperature = true, .temperature_dc = -105});
+    const tool_run_t *run = tool_run(
+        &bench.tool,
+        "read a22-rs485 --temperature=2 --count 10 --interval 500 --timeout 2000 --format json --port line");
+    assert_int_equal(run->status, 0);
+    expect_all(run, 10, ",\"temperature_degc\":-10.5}\n");
+    assert_int_equal(bench.a16.device.counters.requests, 10 + 3); /* the temperature at 0, 2 and 4 s */
+    run = tool_run(&bench.tool, "read a22-rs485 --temperature --count 1 --port line");
+    assert_non_null(strstr(run->out, "  -10.5 degC\n"));
+    run = tool_run(&bench.tool, "read a22-rs485 --count 1 --format json --port line");
+    assert_null(strstr(run->out, "temperature"));
+}
+
+/* A unit that is sold as an A02YY4W and has no such register does not respond to it. */
+TEST(a_relative_without_the_register_is_read_all_the_same)
+{
+    bench_a16((fathom_sim_a16_config_t){.baud = 9600});
+    const tool_run_t *const run =
+        readings(5, "\"distance_mm\":1234,", "a02yy4w --temperature=1 --count 5 --interval 500");
+    expect_all(run, 5, ",\"temperature_degc\":null}");
+    assert_int_equal(count_of(run->err, "fathom: a02yy4w:1: its temperature could not be read"), 1);
 }
 
 TEST(on_a_line_with_others_only_an_hps167s_has_a_temperature)
@@ -608,25 +634,29 @@ TEST(a_silent_unit_is_named_and_left_alone_and_the_others_are_read)
 
 /* ---- what has no effect ---- */
 
-REFUSES(an_option_that_no_sensor_takes_is_wrong_usage, "read --port line",
-        {"hps167s --value real-time",
-         "--value has no effect on hps167s (modbus). It is for a16 (auto, modbus), a05 (auto)."},
-        {"a16:1:controlled --value processed", "--value has no effect on a16 (controlled)."},
-        {"a05:1:dyp --value processed", "--value has no effect on a05 (dyp)."},
-        {"a05:1:modbus --value processed", "--value has no effect on a05 (modbus)."},
-        {"a16 --value fast", "--value is 'fast'. It takes processed or real-time."},
-        {"a16:1:modbus --probes 1",
-         "--probes has no effect on a16 (modbus). It is for a05 (auto, modbus, dyp)."},
-        {"hps167s --means 0=fault", "--means has no effect on hps167s (modbus). It is for a16 (auto, modbus, "
-                                    "controlled), a05 (auto, modbus, dyp)."},
-        {"a05 --first-register 0x0010", "unknown option '--first-register'."},
-        {"a16 --temperature", "--temperature has no effect on a16 (auto). It is for hps167s (modbus)."},
-        {"hps167s:1:auto --temperature", "--temperature has no effect on hps167s (auto)."},
-        {"hps167s --temperature=0", "--temperature is '0'. It takes a whole number from 1 to 1000 s."},
-        {"a16 --window 300", "--window is '300'. It takes MIN-MAX, from 1 to 65529."},
-        {"a16 --window 0-300", "--window is '0-300'."}, {"a16 --window 300-299", "--window is '300-299'."},
-        {"a16 --window 300-65530", "--window is '300-65530'."},
-        {"hps167s:1:auto a16:2", "hps167s in mode auto sends automatically and cannot share a line."})
+REFUSES(
+    an_option_that_no_sensor_takes_is_wrong_usage, "read --port line",
+    {"hps167s --value real-time",
+     "--value has no effect on hps167s (modbus). It is for a16 (auto, modbus), a05 (auto)."},
+    {"a16:1:controlled --value processed", "--value has no effect on a16 (controlled)."},
+    {"a05:1:dyp --value processed", "--value has no effect on a05 (dyp)."},
+    {"a05:1:modbus --value processed", "--value has no effect on a05 (modbus)."},
+    {"a16 --value fast", "--value is 'fast'. It takes processed or real-time."},
+    {"a16:1:modbus --probes 1", "--probes has no effect on a16 (modbus). It is for a05 (auto, modbus, dyp)."},
+    {"hps167s --means 0=fault", "--means has no effect on hps167s (modbus). It is for a16 (auto, modbus, "
+                                "controlled), a05 (auto, modbus, dyp)."},
+    {"a05 --first-register 0x0010", "unknown option '--first-register'."},
+    {"a16 --temperature",
+     "--temperature has no effect on a16 (auto). It is for hps167s (modbus), models with a temperature in"},
+    {"a16:1:modbus --temperature", "--temperature has no effect on a16 (modbus)."},
+    {"a02yyuw --temperature", "--temperature has no effect on a02yyuw (auto)."},
+    {"a17ny4w --temperature", "--temperature has no effect on a17ny4w (modbus)."},
+    {"hps167s:1:auto --temperature", "--temperature has no effect on hps167s (auto)."},
+    {"hps167s --temperature=0", "--temperature is '0'. It takes a whole number from 1 to 1000 s."},
+    {"a16 --window 300", "--window is '300'. It takes MIN-MAX, from 1 to 65529."},
+    {"a16 --window 0-300", "--window is '0-300'."}, {"a16 --window 300-299", "--window is '300-299'."},
+    {"a16 --window 300-65530", "--window is '300-65530'."},
+    {"hps167s:1:auto a16:2", "hps167s in mode auto sends automatically and cannot share a line."})
 
 TEST(watch_has_the_same_options)
 {

@@ -77,7 +77,7 @@ const option_t reading_rows[] = {
     {"value", "VALUE", "Read processed or real-time distances (a16, a05)", KIND_CHOICE, GROUP_SENSOR,
      .words = "processed real-time", AT(reader_settings_t, value), HAS(reader_settings_t, has_value),
      .fits = READER_TAKES_VALUE},
-    {"temperature", "[S]", "Read an hps167s's temperature every S seconds (10)", KIND_NUMBER, GROUP_SENSOR,
+    {"temperature", "[S]", "Read the temperature too, every S seconds (10)", KIND_NUMBER, GROUP_SENSOR,
      .min = 1, .max = 1000, .scale = 1000000, .otherwise = "10", AT(reader_settings_t, temperature_us),
      .fits = READER_TAKES_TEMPERATURE},
     {.name = NULL},
@@ -113,6 +113,8 @@ static void fitting_modes(uint16_t fits, char *list, size_t capacity)
         (void)snprintf(text, sizeof text, "%s (%s)", model->name, modes);
         list_add(list, capacity, text);
     }
+    if ((fits & READER_TAKES_TEMPERATURE) != 0)
+        list_add(list, capacity, "models with a temperature in 'fathom models NAME'");
 }
 
 bool options_suit(const option_table_t *tables, const option_given_t *given, sensor_t *const *stations,

@@ -52,6 +52,8 @@ static void print_more(const fathom_model_description_t *row, const model_t *mod
     if (row->facts->start == FATHOM_STARTS_FALLING) (void)printf("  trigger: a falling edge at its RX\n");
     if (row->facts->start == FATHOM_STARTS_HIGH_PULSE)
         (void)printf("  trigger: a high pulse at its trigger pin\n");
+    if ((mode->takes & READER_TAKES_TEMPERATURE) != 0)
+        (void)printf("  temperature: read with --temperature\n");
     (void)printf("  to read it: ");
     print_command(stdout, model, mode);
     (void)printf("\n");
@@ -79,6 +81,7 @@ static void print_json(const fathom_model_description_t *row, const model_t *mod
     json_string(&json, "line", facts->line_settings != NULL ? line_text(facts->line_settings, text) : NULL);
     json_string(&json, "trigger", triggers[facts->start]);
     if (facts->start == FATHOM_STARTS_BYTE) json_value(&json, "trigger_byte", "%u", facts->trigger_byte);
+    json_flag(&json, "has_temperature", (mode->takes & READER_TAKES_TEMPERATURE) != 0);
     json_flag(&json, "is_certain", row->is_certain);
     json_string(&json, "aliases", row->aliases);
     json_string(&json, "maker", row->maker);

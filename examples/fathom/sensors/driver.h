@@ -28,9 +28,13 @@ typedef struct {
     bool has_been_off;
 } driver_selection_t;
 
-/* The measurements and the temperature of an HPS-167S, which take turns. */
+/* Reads the temperature in tenths of a degree Celsius. Call until the result is not FATHOM_PENDING. */
+typedef fathom_status_t driver_get_temperature_t(reader_t *reader, int16_t *dc);
+
+/* The measurements and the temperature of a sensor, which take turns. */
 typedef enum { TURN_MEASUREMENT, TURN_TEMPERATURE, TURNS, TURN_NONE = TURNS } driver_turn_t;
 typedef struct {
+    driver_get_temperature_t *get;
     fathom_sensor_t measuring; /* the driver's */
     uint32_t period_us[TURNS]; /* from one start to the next */
     uint32_t began_us[TURNS];  /* clock at the newest start, ... */
@@ -90,15 +94,19 @@ struct reader {
     } driver;
     driver_selection_t selection;
     driver_check_t check;
+    driver_temperature_t temperature;
     /* of an HPS-167S */
     fathom_hps167s_auto_t unasked; /* receives unsolicited measurements */
     uint16_t unasked_frames[FATHOM_STREAM_COUNTERS];
     fathom_hps167s_limits_t limits;
-    driver_temperature_t temperature;
 };
 
 /* The configuration that all drivers with requests share. A driver refuses address 0 if its sensor cannot have it. */
 fathom_modbus_config_t driver_config(const port_t *port, const reader_settings_t *settings);
+
+/* Adds reads of the temperature to a driver that is initialised with no period (temperature.c). */
+void driver_add_temperature(reader_t *reader, const reader_settings_t *settings,
+                            driver_get_temperature_t *get);
 
 /* The clock of the line. */
 uint32_t driver_now_us(const reader_t *reader);

@@ -43,14 +43,24 @@ static bool open_asked(reader_t *reader, fathom_dyp_modbus_t *base, fathom_senso
     return open_response(reader, &base->measurement, base->count, sensor);
 }
 
+static fathom_status_t a16_get_temperature(reader_t *reader, int16_t *dc)
+{
+    return fathom_a16_modbus_get_temperature(&reader->driver.a16_modbus, dc);
+}
+
 static bool a16_read_modbus(reader_t *reader, port_t *port, const reader_settings_t *settings)
 {
     fathom_a16_modbus_t *const driver = &reader->driver.a16_modbus;
-    const fathom_a16_modbus_config_t config = {.modbus = driver_config(port, settings),
-                                               .model = model_of(reader, settings, &fathom_a16_modbus_model),
-                                               .value = settings->value};
-    return fathom_a16_modbus_init(driver, &port->modbus, &config) == FATHOM_OK &&
-           open_asked(reader, &driver->base, fathom_a16_modbus_sensor(driver));
+    const bool has_temperature =
+        settings->temperature_us != 0 && (reader->mode->takes & READER_TAKES_TEMPERATURE) != 0;
+    fathom_a16_modbus_config_t config = {.modbus = driver_config(port, settings),
+                                         .model = model_of(reader, settings, &fathom_a16_modbus_model),
+                                         .value = settings->value};
+    if (has_temperature) config.modbus.period_us = 0;
+    if (fathom_a16_modbus_init(driver, &port->modbus, &config) != FATHOM_OK) return false;
+    (void)open_asked(reader, &driver->base, fathom_a16_modbus_sensor(driver));
+    if (has_temperature) driver_add_temperature(reader, settings, a16_get_temperature);
+    return true;
 }
 
 static bool a05_read_modbus(reader_t *reader, port_t *port, const reader_settings_t *settings)
@@ -411,15 +421,16 @@ void a16_simulate(device_t *device, const device_settings_t *settings, uint8_t s
     const fathom_model_facts_t *const facts = settings->facts != NULL ? settings->facts : &datasheet;
     const uint32_t period_us = facts->period_ms * 1000u;
     const uint32_t middle_us = (facts->earliest_ms + facts->latest_ms) * 500u;
-    const fathom_sim_a16_config_t config = {SIMULATED(settings, simulated_as),
-                                            .baud =
-                                                facts->line_settings != NULL ? facts->line_settings->baud : 0,
-                                            .period_us = period_us,
-                                            .cycle_us = period_us - period_us / 16,
-                                            .least_us = middle_us,
-                                            .most_us = middle_us,
-                                            .has_byte = facts->start == FATHOM_STARTS_BYTE,
-                                            .byte = facts->trigger_byte};
+    const fathom_sim_a16_config_t config = {
+        SIMULATED(settings, simulated_as),
+        .has_temperature = (facts->registers & FATHOM_HAS_TEMPERATURE) != 0,
+        .baud = facts->line_settings != NULL ? facts->line_settings->baud : 0,
+        .period_us = period_us,
+        .cycle_us = period_us - period_us / 16,
+        .least_us = middle_us,
+        .most_us = middle_us,
+        .has_byte = facts->start == FATHOM_STARTS_BYTE,
+        .byte = facts->trigger_byte};
     fathom_sim_a16_init(&device->a16, &config);
 }
 

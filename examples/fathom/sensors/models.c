@@ -121,6 +121,7 @@ static void add_mode(relative_t *relative, const model_t *family, const fathom_m
     *mode = *its;
     mode->row = row;
     if (mode_starts_by_byte(mode)) mode->may_pins = 0;
+    if ((row->facts->registers & FATHOM_HAS_TEMPERATURE) != 0) mode->takes |= READER_TAKES_TEMPERATURE;
     if (line != NULL && !has_line) relative->model.line = *line;
 }
 
