@@ -48,8 +48,8 @@ static const fathom_line_settings_t fast_line = {115200, FATHOM_PARITY_NONE, 1};
     ROW(r01uw, A16, AUTO, H, "R01UW", "R01", "DYP", "laser", FAST, RANGE(20, 4000)) \
     /* DFRobot SEN0754 page. No range was seen: the A16's 1 to 16350 mm. */ \
     ROW(sen0754, A16, AUTO, H, "SEN0754", "", "DFRobot", "", FAST, RANGE(1, 16350), .period_ms = 100) \
-    /* ESPHome ds1603l. A frame every few seconds: 4 s. That is longer than the default of stale_us. */ \
-    ROW(ds1603l, A16, AUTO, H, "DS1603L", "", "", "liquid height through the bottom of a tank; `stale_us` 12 s", \
+    /* ESPHome ds1603l. A frame every few seconds: 4 s. */ \
+    ROW(ds1603l, A16, AUTO, H, "DS1603L", "", "", "liquid height through the bottom of a tank", \
         SLOW, RANGE(50, 2000), .period_ms = 4000) \
     /* ESPHome pull request 12761, a test program. */ \
     ROW(l023muw, A16, AUTO, M, "L023MUW", "", "DYP", "liquid height through the bottom of a tank", SLOW, RANGE(20, 2000)) \

@@ -142,8 +142,7 @@ static bool configure(fathom_a16_controlled_t *sensor, const fathom_a16_controll
     fathom_dyp_choose_gap(&stream->listener, line);
     trigger->clock = line->parts->clock;
     return (trigger->output.set != NULL) && (facts->latest_ms != 0u) &&
-           (facts->earliest_ms <= facts->latest_ms) &&
-           (fathom_dyp_measurement_init(measurement) == FATHOM_OK) &&
+           (facts->earliest_ms <= facts->latest_ms) && fathom_dyp_are_valid(facts) &&
            (fathom_stream_start(stream, clock_us(trigger->clock)) == FATHOM_OK);
 }
 

@@ -11,30 +11,23 @@ uint8_t fathom_dyp_meaning(const fathom_model_facts_t *facts, uint16_t value)
 {
     uint8_t meaning = FATHOM_MEANS_DEFAULT;
     uint8_t default_meaning = FATHOM_MEANS_REFUSED;
-    switch (value) {
-    case 0:
+    if (value == 0u) {
         meaning = facts->value_0;
         default_meaning = FATHOM_MEANS_UNKNOWN;
-        break;
-    case 0xFFFB:
+    } else if (value < 0xFFFBu) {
+        if ((value >= facts->min_mm) && (value <= facts->max_mm)) meaning = FATHOM_TARGET;
+    } else if (value == 0xFFFBu) {
         meaning = facts->value_fffb;
-        break;
-    case 0xFFFC:
-        break;
-    case 0xFFFD:
+    } else if (value == 0xFFFFu) {
+        meaning = facts->value_ffff;
+    } else if (value == 0xFFFDu) {
         meaning = facts->value_fffd;
         default_meaning = FATHOM_MEANS_NO_TARGET;
-        break;
-    case 0xFFFE:
+    } else if (value == 0xFFFEu) {
         meaning = facts->value_fffe;
         default_meaning = FATHOM_MEANS_INTERFERENCE;
-        break;
-    case 0xFFFF:
-        meaning = facts->value_ffff;
-        break;
-    default:
-        if ((value >= facts->min_mm) && (value <= facts->max_mm)) default_meaning = FATHOM_TARGET;
-        break;
+    } else {
+        /* FFFC has no other meaning. */
     }
     return (meaning != FATHOM_MEANS_DEFAULT) ? meaning : default_meaning;
 }
@@ -77,18 +70,11 @@ static bool is_meaning(uint8_t meaning)
     return (meaning > FATHOM_TARGET) && (meaning <= FATHOM_MEANS_REFUSED) && (meaning != FATHOM_FAR);
 }
 
-fathom_status_t fathom_dyp_measurement_init(fathom_dyp_measurement_t *measurement)
+bool fathom_dyp_are_valid(const fathom_model_facts_t *facts)
 {
-    const fathom_model_facts_t *const facts = measurement->facts;
-    measurement->left = 0;
-    measurement->sequence = 0;
-    measurement->implausible = 0;
-    measurement->refused_raw = 0;
-    measurement->refused_probe = 0;
-    if (!fathom_dyp_has_range(facts)) return FATHOM_ERR_ARGUMENT;
     /* The values that are never distances: FFFB to FFFF, and 0, which follows FFFF. */
     for (uint16_t value = 0xFFFB; value != 1u; value++) {
-        if (!is_meaning(fathom_dyp_meaning(facts, value))) return FATHOM_ERR_ARGUMENT;
+        if (!is_meaning(fathom_dyp_meaning(facts, value))) return false;
     }
-    return FATHOM_OK;
+    return fathom_dyp_has_range(facts);
 }

@@ -8,15 +8,21 @@
  * and its errors.
  */
 
+/* Four periods between two measurements, and a little more, in microseconds. A power of two needs no multiplication. */
+static uint32_t periods_us(const fathom_model_facts_t *facts) { return (uint32_t)facts->period_ms << 12; }
+
 fathom_status_t fathom_dyp_auto_init(fathom_dyp_auto_t *sensor)
 {
     fathom_line_t *const line = sensor->line;
+    fathom_listener_t *const listener = &sensor->stream.listener;
+    const fathom_model_facts_t *const facts = sensor->measurement.facts;
     if ((line == NULL) || (line->parts == NULL)) return FATHOM_ERR_ARGUMENT;
-    fathom_dyp_choose_gap(&sensor->stream.listener, line);
-    if ((fathom_dyp_measurement_init(&sensor->measurement) < 0) ||
+    fathom_dyp_choose_gap(listener, line);
+    if (listener->stale_us == 0u) listener->stale_us = FATHOM_STREAM_DEFAULT_STALE_US + periods_us(facts);
+    if (!fathom_dyp_are_valid(facts) ||
         (fathom_stream_start(&sensor->stream, clock_us(line->parts->clock)) < 0))
         return FATHOM_ERR_ARGUMENT;
-    return fathom_line_listen(line, &sensor->stream.listener);
+    return fathom_line_listen(line, listener);
 }
 
 void fathom_dyp_auto_deinit(fathom_dyp_auto_t *sensor)
@@ -38,7 +44,7 @@ static unsigned store_values(const fathom_stream_t *stream, uint16_t *values)
 {
     const uint8_t *frame = fathom_stream_frame(stream);
     unsigned changed = 0;
-    for (uint8_t left = (uint8_t)((stream->length / 2u) - 1u); left != 0u; left--) {
+    for (unsigned left = (stream->length / 2u) - 1u; left != 0u; left--) {
         const uint16_t value = (uint16_t)((frame[1] * 256u) + frame[2]);
         changed |= (unsigned)*values ^ value;
         *values = value;

@@ -14,8 +14,7 @@ fathom_status_t fathom_dyp_modbus_init(fathom_dyp_modbus_t *sensor, const fathom
 {
     enum { OVERHEAD = 5 }; /* of a response: address, function, byte count and CRC */
     sensor->start_us = or_default(sensor->start_us, FATHOM_DYP_DEFAULT_START_US);
-    if ((fathom_dyp_measurement_init(&sensor->measurement) == FATHOM_OK) &&
-        (sensor->start_us <= FATHOM_MAX_DURATION_US) &&
+    if (fathom_dyp_are_valid(sensor->measurement.facts) && (sensor->start_us <= FATHOM_MAX_DURATION_US) &&
         fathom_modbus_unit_has_room(transport, (uint8_t)(OVERHEAD + (2u * sensor->count))) &&
         (fathom_modbus_unit_init(&sensor->unit, transport, config, timeout_us, pace_us) == FATHOM_OK))
         return FATHOM_OK;

@@ -15,7 +15,7 @@ REFUSES(a_sensor_that_does_not_exist_is_refused, "sim", {"", "no sensor is named
         {"hps167s:33", "from 1 to 32"}, {"a16:1:wave", "wave"}, {"a16:1:auto:1", "auto:1"})
 
 REFUSES(a_sensor_that_the_line_cannot_carry_is_refused, "sim",
-        {"a16:pwm", "a16 in mode pwm has pins and no line"},
+        {"a16:pwm", "a16 in mode pwm has GPIO pins and no line"},
         {"a16 a05", "a16 and a05 would both send automatically"},
         {"a16 hps167s:2 a05", "a16 and a05 would both send automatically"})
 

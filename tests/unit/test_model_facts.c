@@ -67,6 +67,22 @@ TEST(the_old_value_within_three_quarters_of_the_period_is_the_same_measurement)
     assert_int_equal(rig.samples, 7);
 }
 
+/* A DS1603L sends every 4 s: 2 s and 4 * 4.096 s are 18.384 s. The A16 of the datasheet has no period. */
+TEST(a_model_that_sends_seldom_becomes_stale_later)
+{
+    static const struct {
+        uint16_t period_ms;
+        uint32_t stale_us;
+    } rows[] = {{0, 2000 * MS}, {100, 2409600}, {4000, 18384 * MS}};
+    for (unsigned i = 0; i != COUNT(rows); i++) {
+        listen(rows[i].period_ms);
+        rig.fake.now_us = rows[i].stale_us - 1;
+        PENDS(rig_poll());
+        rig.fake.now_us = rows[i].stale_us;
+        assert_int_equal(rig_poll(), FATHOM_ERR_STALE);
+    }
+}
+
 TEST(the_old_value_is_a_new_measurement_if_no_period_is_known)
 {
     listen(0);

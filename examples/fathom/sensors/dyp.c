@@ -91,14 +91,6 @@ static bool open_stream(reader_t *reader, fathom_dyp_auto_t *base, fathom_sensor
     return open_response(reader, &base->measurement, (uint8_t)(base->stream.length / 2 - 1), sensor);
 }
 
-/* Without a time of the user: 3 periods of a sensor that sends seldom, else the driver's default. */
-static uint32_t stale_us(const fathom_model_facts_t *facts, const reader_settings_t *settings)
-{
-    const uint32_t periods_us = facts->period_ms * 3000u;
-    return settings->timeout_us == 0 && periods_us > FATHOM_STREAM_DEFAULT_STALE_US ? periods_us
-                                                                                    : settings->timeout_us;
-}
-
 /* Lets the port's TX go high. For real-time values, returns false with a refusal if the port cannot hold it low. */
 static bool can_select(reader_t *reader, port_t *port, uint8_t value)
 {
@@ -119,10 +111,9 @@ static fathom_status_t end_a16_auto(reader_t *reader)
 static bool a16_read_auto(reader_t *reader, port_t *port, const reader_settings_t *settings)
 {
     fathom_a16_auto_t *const driver = &reader->driver.a16_auto;
-    const fathom_model_facts_t *const facts = model_of(reader, settings, &fathom_a16_auto_model);
-    fathom_a16_auto_config_t config = {.stale_us = stale_us(facts, settings),
+    fathom_a16_auto_config_t config = {.stale_us = settings->timeout_us,
                                        .gap_us = port_stream_gap_us(port),
-                                       .model = facts,
+                                       .model = model_of(reader, settings, &fathom_a16_auto_model),
                                        .value = settings->value};
     if (settings->has_value) {
         if (!can_select(reader, port, settings->value)) return false;

@@ -81,10 +81,10 @@ extern const fathom_model_facts_t fathom_a05_auto_model;
 /** @brief Configuration. Read only during fathom_a05_auto_init(). A member that is 0 takes its default. */
 typedef struct {
     /**
-     * @brief Time without a frame after which fathom_poll() returns an error, in microseconds: 1 to 2^31 - 1. 0 selects
-     * 2 s.
+     * @brief Time without a frame after which fathom_poll() returns an error, in microseconds: 1 to 2^31 - 1.
      *
-     * The datasheet prints no period of the frames. If a unit sends less often than every 2 s, choose more.
+     * 0 selects 2 s and at least four periods of the model. The datasheet prints no period of the frames. If the model
+     * has none (model_facts.h), and the unit sends less often than every 2 s, choose more.
      */
     uint32_t stale_us;
 

@@ -124,13 +124,11 @@ static inline uint8_t fathom_dyp_first_probe(uint8_t probes)
 }
 
 /**
- * @brief Initialises a response without values. `facts` is set before the call.
+ * @brief Returns true if the distances and the meanings of a model are inside their ranges.
  *
- * @param measurement  The response.
- * @retval FATHOM_OK            The response is empty.
- * @retval FATHOM_ERR_ARGUMENT  A distance or a meaning of `facts` is outside its range.
+ * @param facts  The facts of the model.
  */
-fathom_status_t fathom_dyp_measurement_init(fathom_dyp_measurement_t *measurement);
+bool fathom_dyp_are_valid(const fathom_model_facts_t *facts);
 
 /**
  * @brief Returns FATHOM_TARGET if a value is an accepted distance, else its fathom_meaning_t.

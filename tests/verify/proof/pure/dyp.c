@@ -22,13 +22,14 @@ static void probes(uint8_t first, uint8_t last)
     facts.value_fffe = any_8();
     facts.value_ffff = any_8();
     facts.value_0 = any_8();
+    measurement = (fathom_dyp_measurement_t){0};
     measurement.facts = &facts;
     any_memory(values, sizeof values);
     measurement.model = any_8();
     measurement.address = any_8();
     measurement.first = first;
     measurement.values = values + FATHOM_DYP_PROBES - (last - first + 1);
-    if (fathom_dyp_measurement_init(&measurement) != FATHOM_OK) return;
+    if (!fathom_dyp_are_valid(&facts)) return;
     while (any_bool()) {
         if (any_bool()) {
             const unsigned all = (1u << last) - (1u << (first - 1u));
