@@ -150,17 +150,10 @@ run_full() {
     for preset in clang gcc-sanitize; do build_and_test "$preset"; done
     stage 300 "clang's analyzer" $python tests/checks/lint.py --analyze
     stage 1800 'no run-time error: EVA, all machines' program proof_full $python tests/verify/proof/eva.py
-    stage 30 'EVA: planted fault' program proof_planted $python tests/verify/proof/eva.py --self-test
     stage 1800 'codecs: WP, both provers' program wp_full $python tests/verify/proof/wp.py
-    stage 30 'WP: planted fault' program wp_planted $python tests/verify/proof/wp.py --self-test
-    stage 300 'coverage of the machines' program coverage_machines $python tests/verify/coverage/run.py --machines
-    stage 120 'coverage: planted fault' program coverage_planted $python tests/verify/coverage/run.py --self-test
     stage 180 'states of larger lines' program states_full $python tests/verify/states/run.py
-    stage 30 'states: planted fault' program states_planted $python tests/verify/states/run.py --self-test
     stage 300 'interrupts, all pairs' program interrupts_full $python tests/firmware/interrupts/run.py
-    stage 60 'interrupts: planted faults' program interrupts_planted $python tests/firmware/interrupts/run.py --self-test
     stage 3600 'fuzzing: 10^8 executions' program fuzz_full $python tests/verify/fuzz/run.py --full
-    stage 60 'fuzzing: planted fault' program fuzz_planted $python tests/verify/fuzz/run.py --self-test
     stage 600 'chaos: 1,000 rounds' program chaos_full env FATHOM=build-gcc/fathom $python tests/tool/chaos/run.py --rounds 1000
     stage 300 'publish: 100 kills' program broker_full env FATHOM=build-gcc/fathom $python tests/tool/chaos/broker.py
     stage 300 'publish: 100 restarts, renamed sensors' program publish_restarts env FATHOM=build-gcc/fathom FATHOM_ROUNDS=100 \
@@ -173,7 +166,6 @@ run_full() {
     stage 600 'firmware, exhaustive forms' run_tests gcc firmware --label-regex 'firmware|long'
     unset FATHOM_LONG
     stage 2400 'mutants: all' mutants all --all
-    stage 60 'mutants: planted fault' mutants planted --self-test
     stage 1800 'mutants: a sample of the ports' mutants ports --ports
 }
 

@@ -87,7 +87,3 @@ def find(text, function, old):
     return all_tokens[found[0]].start, all_tokens[found[0] + len(wanted) - 1].end
 
 
-def replace(text, function, old, new):
-    """Returns the text with `new` in the place of the only `old` in `function`."""
-    start, end = find(text, function, old)
-    return text[:start] + new + text[end:]

@@ -4,7 +4,6 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <unistd.h>
 
 #include "suite.h"
 
@@ -13,7 +12,6 @@
 enum { GPIOR0 = 0x3E, GPIOR1 = 0x4A, GPIOR2 = 0x4B }; /* ATmega328P 36, in data space */
 
 board_t board;
-static char image_path[512];
 
 /* The simulation has to see the time now and then (sim.h). */
 static const uint32_t most_ahead_us = UINT32_C(60000000);
@@ -216,30 +214,11 @@ void board_start_from(const char *folder, const char *name)
     avr_register_io_write(avr, GPIOR2, report_exit, NULL);
     avr_irq_register_notify(avr_get_interrupt_irq(avr, AVR_INT_ANY) + AVR_INT_IRQ_RUNNING, on_interrupt,
                             NULL);
-    snprintf(image_path, sizeof image_path, "%s", path);
-    memset(board_executed, 0, sizeof board_executed);
     board_plan();
-}
-
-/* For tests/verify/coverage, which names a folder in FATHOM_TRACE: the image and the addresses that it executed. */
-static void write_trace(void)
-{
-    static unsigned runs;
-    char path[512];
-    const char *const folder = getenv("FATHOM_TRACE");
-    if (folder == NULL) return;
-    snprintf(path, sizeof path, "%s/avr-%ld-%u.trace", folder, (long)getpid(), runs++);
-    FILE *const file = fopen(path, "w");
-    if (file == NULL) board_give_up("%s cannot be written", path);
-    fprintf(file, "%s\n", image_path);
-    for (unsigned word = 0; word != BOARD_WORDS; word++)
-        if (board_executed[word]) fprintf(file, "%x\n", 2 * word);
-    fclose(file);
 }
 
 void board_end(void)
 {
-    write_trace();
     avr_terminate(board.avr);
     free(board.avr);
     board.avr = NULL;

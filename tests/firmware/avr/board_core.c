@@ -8,8 +8,6 @@
 /* ATmega328P 36, in data space. */
 enum { TIFR1 = 0x36, EIFR = 0x3C, EIMSK = 0x3D, TIMSK1 = 0x6F };
 
-bool board_executed[BOARD_WORDS];
-
 /* ---- interrupts ---- */
 
 /*
@@ -43,10 +41,7 @@ static void run(avr_t *avr)
 {
     const bool asleep = avr->state == cpu_Sleeping;
     avr_flashaddr_t next = avr->pc;
-    if (avr->state == cpu_Running) {
-        if (avr->pc / 2 < BOARD_WORDS) board_executed[avr->pc / 2] = true;
-        next = avr_run_one(avr);
-    }
+    if (avr->state == cpu_Running) next = avr_run_one(avr);
     const avr_cycle_count_t left_cycles = avr_cycle_timer_process(avr);
     avr->pc = next;
     if (avr->state == cpu_Sleeping && !avr->sreg[S_I]) avr->state = cpu_Done;

@@ -6,10 +6,6 @@
 
 /* What board.c, board_core.c and board_wires.c want of each other. */
 
-/* The words of the flash that were executed. */
-enum { BOARD_WORDS = 16384 };
-extern bool board_executed[BOARD_WORDS];
-
 /* Puts what is wrong in simavr's processor right. */
 void board_mend(avr_t *avr);
 

@@ -34,8 +34,6 @@ LEFT_OUT = {
 }
 # Instructions that no input can reach: (function, instruction): why.
 UNREACHED = {}
-# The planted fault: a scenario that detects it, the file, the old text and the new text.
-FAULT = ('now_carry', 'port/avr/clock.c', 'if (((TIFR1 & _BV(TOV1)) != 0) && (ticks < 0x8000)) us += PERIOD_US;', '')
 
 
 def build(run, tree, folder):

@@ -5,8 +5,6 @@ import os
 NAME = 'rp2040'
 PROGRAMS = ('cmake', 'node', 'npm', 'arm-none-eabi-gcc', 'arm-none-eabi-objdump', 'arm-none-eabi-nm')
 OBJDUMP, NM = 'arm-none-eabi-objdump', 'arm-none-eabi-nm'
-A_PROCESS = 8  # scenarios: to begin one takes as long as many a scenario
-
 A_PROCESS = 8  # scenarios: starting a process takes as long as several scenarios
 QUICK = {'now': 2, 'sent_leaving': 2, 'take_one': 2, 'pin_high': 2, 'idle_nothing': 2, 'serial_write_leaving': 2}
 PAIRS = 'now sent level arm arm_high pin_low idle_nothing'.split()
@@ -36,8 +34,6 @@ LEFT_OUT = {
 }
 # Instructions that no input can reach: (function, instruction): why.
 UNREACHED = {}
-# The planted fault: a scenario that detects it, the file, the old text and the new text.
-FAULT = ('idle', 'port/rp2040/idle.c', '    __asm__ volatile("cpsid i" ::: "memory");\n', '')
 
 
 def build(run, tree, folder):

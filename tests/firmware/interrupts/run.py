@@ -5,7 +5,6 @@
     run.py [MACHINE ...]                 every event alone and two together; in some scenarios all pairs of boundaries
     run.py --quick [MACHINE ...]         every event alone; in some scenarios more
     run.py --only NAME [--depth N]       the scenarios with NAME in their names: 1 alone, 2 together, 3 pairs
-    run.py --self-test                   finds the planted fault of each machine
 
 MACHINE is avr or rp2040. run.py builds into build-interrupts. The last line is "N passed, M failed"."""
 import argparse
@@ -25,7 +24,6 @@ ROOT = os.path.dirname(os.path.dirname(os.path.dirname(HERE)))
 BUILD = os.path.join(ROOT, 'build-interrupts')
 MACHINES = {machine.NAME: machine for machine in (machine_avr, machine_rp2040)}
 COLUMNS = ('boundaries', 'alone', 'deferred', 'together', 'pairs')
-COPIED = ('CMakeLists.txt', 'README.md', 'include', 'src', 'port', 'examples', 'tests/firmware', 'tests/support')
 SECONDS = 3600  # for one scenario
 
 
@@ -137,40 +135,9 @@ def check(machine, options):
     return passed, failed
 
 
-def copy_tree(tree):
-    os.makedirs(tree, exist_ok=True)
-    for name in COPIED:
-        source, target = os.path.join(ROOT, name), os.path.join(tree, name)
-        if os.path.isdir(source):
-            shutil.copytree(source, target, dirs_exist_ok=True)
-        else:
-            shutil.copy2(source, target)
-
-
-def self_test(machine):
-    """Plants the machine's fault in a copy of the tree, and finds it."""
-    scenario, file, old, new = machine.FAULT
-    folder, tree = os.path.join(BUILD, machine.NAME), os.path.join(BUILD, 'tree')
-    host = machine.build_host(run, ROOT, folder)
-    shutil.rmtree(tree, ignore_errors=True)
-    copy_tree(tree)
-    with open(os.path.join(tree, file), encoding='utf-8') as source:
-        text = source.read()
-    if text.count(old) != 1:
-        raise Bad(f'{file} does not have {old!r} exactly once')
-    with open(os.path.join(tree, file), 'w', encoding='utf-8') as source:
-        source.write(text.replace(old, new))
-    path = machine.build(run, tree, os.path.join(BUILD, f'planted_{machine.NAME}'))
-    image = disassembly.Image(machine, path)
-    seen = [named(image, line) for result in run_scenarios(machine, host, path, {scenario: 1}) for line in result.wrong]
-    print(f'{machine.NAME}: planted {new!r} in {file}: {seen[0] if seen else "FAILED: not found"}', flush=True)
-    return int(bool(seen)), int(not seen)
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('--quick', action='store_true')
-    parser.add_argument('--self-test', action='store_true')
     parser.add_argument('--only', default='', metavar='NAME')
     parser.add_argument('--depth', type=int, choices=(1, 2, 3))
     parser.add_argument('machines', nargs='*', metavar='MACHINE')
@@ -184,7 +151,7 @@ def main():
             missing = [program for program in machine.PROGRAMS if not shutil.which(program)]
             if missing:
                 raise Bad(f'{name} needs {" ".join(missing)}')
-            good, bad = self_test(machine) if options.self_test else check(machine, options)
+            good, bad = check(machine, options)
             passed, failed = passed + good, failed + bad
     except (Bad, OSError, subprocess.TimeoutExpired) as error:
         print(error)

@@ -6,7 +6,6 @@
 // the return (13), and misses in the cache before the flash, some 50 cycles each: true for code in RAM or in the cache.
 'use strict';
 const assert = require('assert');
-const fs = require('fs');
 const {Simulator} = require('rp2040js');
 const {readElf} = require('./elf.js');
 const {Pl011} = require('./pl011.js');
@@ -17,12 +16,6 @@ const US = 1000, MS = 1000000;
 const RESETS = 0x4000c, UARTS = [0x40034, 0x40038], RESET_OF_UART0 = 22;
 const WATCHDOG = 0x40058, TICK = 0x2c;
 const SCRATCH0 = 0x4005800c, SCRATCH1 = 0x40058010, ENDED = 0x454e4421; // examples/rp2040/board.h
-
-const traces = new Map(); // path of an image: addresses
-process.on('exit', () => [...traces].forEach(([path, executed], run) => {
-  const lines = [path, ...[...executed].map((address) => address.toString(16))];
-  fs.writeFileSync(`${process.env.FATHOM_TRACE}/rp2040-${process.pid}-${run}.trace`, `${lines.join('\n')}\n`);
-}));
 
 class Machine {
   // image: rp2040_IMAGE.elf. startUs: what TIMER shows at reset, up to 2^32. scratch: {number: value} of the watchdog's registers.
@@ -52,19 +45,6 @@ class Machine {
     this.interrupts = new Map(); // number: cycles of the longest one
     this.watchInterrupts();
     this.watched = new Map(); // address: what to call with the machine
-    if (process.env.FATHOM_TRACE !== undefined) this.trace(path);
-  }
-
-  // For tests/verify/coverage: the image and the addresses of the instructions that have run, in the folder FATHOM_TRACE.
-  trace(path) {
-    const {core} = this;
-    const execute = core.executeInstruction.bind(core);
-    if (!traces.has(path)) traces.set(path, new Set());
-    const executed = traces.get(path);
-    core.executeInstruction = () => {
-      executed.add(core.PC & ~1);
-      return execute();
-    };
   }
 
   // RESETS of rp2040js resets nothing. Here all UARTs begin in reset, as they do on the chip.

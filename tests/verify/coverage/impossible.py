@@ -26,20 +26,3 @@ IMPOSSIBLE = {
         'Linux has SO_COOKIE since 4.6',
 }
 
-# Of the ports for microcontrollers: (file, function): why no image executes it.
-QEMU = "QEMU's STM32F4 boards have no capture unit and no pins; tests/port/test_stm32f4.c runs it on memory"
-NO_ERROR = "QEMU's UARTs report no errors and lose no byte; tests/port/test_serial.c counts them"
-CAPTURE, PIN = 'port/stm32f4/capture.c', 'port/stm32f4/pin.c'
-UNREACHED = {
-    ('port/rp2040/idle.c', 'fathom_rp2040_idle_alarm'): 'fathom_rp2040_idle clears the alarm before interrupts are on',
-    (CAPTURE, 'fathom_stm32f4_capture_init'): QEMU,
-    (CAPTURE, 'fathom_stm32f4_tim2_interrupt'): QEMU,
-    (CAPTURE, 'feed'): QEMU,
-    (PIN, 'fathom_stm32f4_input'): QEMU,
-    (PIN, 'fathom_stm32f4_output'): QEMU,
-    (PIN, 'pin_get'): QEMU,
-    (PIN, 'pin_set'): QEMU,
-    ('port/stm32f4/usart.c', 'fathom_serial_count'): NO_ERROR,
-    ('tests/firmware/mps2/port/uart.c', 'fathom_serial_count'): NO_ERROR,
-    ('tests/firmware/virt/port/uart.c', 'fathom_serial_count'): NO_ERROR,
-}

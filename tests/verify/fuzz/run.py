@@ -4,7 +4,6 @@
 
     run.py [--seconds S] [TARGET ...]   each target for S (10) seconds, two at once
     run.py --full [--runs N]            N (10^8) executions over all targets
-    run.py --self-test                  finds the planted fault
     run.py --input FILE TARGET          one input: of found/ (hex), or what a crash has left in build-fuzz
 
 A target fails on a finding, on fewer executions a second than its least number, and on fewer edges (targets.py).
@@ -26,9 +25,6 @@ from targets import TARGETS
 
 FULL = 10 ** 8
 SEED = 20261123
-# The planted fault: a target, a file, the old text and the new text, and the promise that breaks.
-FAULT = ('dyp', 'src/engine/stream.c', 'if (byte == FATHOM_DYP_START)', 'if (byte != 0u)', 'where it has ended')
-FAULT_S = 20
 
 
 def named(names):
@@ -37,10 +33,6 @@ def named(names):
         if name not in known:
             sys.exit(f'there is no target {name!r}, only {", ".join(known)}')
     return [known[name] for name in names] or TARGETS
-
-
-def work_folder(target):
-    return os.path.join(build.FOLDER, 'work', target.name)
 
 
 def seed_folder(target, frames):
@@ -92,9 +84,9 @@ class Outcome:
         print(f'again: tests/verify/fuzz/run.py --input {os.path.relpath(crash[-1], build.ROOT)} {self.target.name}')
 
 
-def fuzz(target, program, folders, limit, limit_s, work=None):
+def fuzz(target, program, folders, limit, limit_s):
     """One run; limit: options of libFuzzer that end it."""
-    work = work or work_folder(target)
+    work = os.path.join(build.FOLDER, 'work', target.name)
     shutil.rmtree(work, ignore_errors=True)
     os.makedirs(work)
     began = time.monotonic()
@@ -176,28 +168,6 @@ def full(targets, frames, runs):
     return judge(run_all(targets, frames, lambda target: ([f'-runs={wanted(target)}'], 4 * 3600)), wanted)
 
 
-def self_test(frames):
-    """Plants FAULT in a copy of its source, and finds it."""
-    name, path, old, new, promise = FAULT
-    target, = named([name])
-    with tempfile.TemporaryDirectory(prefix='planted.', dir=build.FOLDER) as folder:
-        with open(os.path.join(build.ROOT, path), encoding='utf-8') as file:
-            text = file.read()
-        if text.count(old) != 1:
-            raise build.Failed(f'{path} does not have {old!r} exactly once')
-        copy = os.path.join(folder, os.path.basename(path))
-        with open(copy, 'w', encoding='utf-8') as file:
-            file.write(text.replace(old, new))
-        planted, program = os.path.join(folder, 'planted.o'), os.path.join(folder, 'fuzz')
-        build.compile_one(path, planted, copy)
-        build.link(target, [planted if one == path else build.object_of(one) for one in target.all_sources()], program)
-        outcome = fuzz(target, program, [seed_folder(target, frames)], [f'-max_total_time={FAULT_S}'], FAULT_S + 60,
-                       os.path.join(folder, 'work'))
-    is_found = not outcome.is_clean and promise in outcome.why()
-    print(f'planted {new!r} in {path}: {"" if is_found else "FAILED: not found, but: "}{outcome.why()}')
-    return int(is_found), int(not is_found)
-
-
 def one_input(path, target):
     with tempfile.NamedTemporaryFile() as file:
         with open(path, 'rb') as source:
@@ -212,22 +182,19 @@ def main():
     parser.add_argument('--seconds', type=int, default=10)
     parser.add_argument('--full', action='store_true')
     parser.add_argument('--runs', type=int, default=FULL)
-    parser.add_argument('--self-test', action='store_true')
     parser.add_argument('--input')
     parser.add_argument('targets', nargs='*')
     options = parser.parse_args()
     for program in ('clang-14', 'ld'):
         if not shutil.which(program):
             sys.exit(f'{program} is missing\n0 passed, 1 failed')
-    targets = named([FAULT[0]] if options.self_test else options.targets)
+    targets = named(options.targets)
     began = time.monotonic()
     try:
         frames = build.build(targets)
         print(f'built in {time.monotonic() - began:.0f} s', flush=True)
         if options.input:
             passed, failed = one_input(options.input, targets[0])
-        elif options.self_test:
-            passed, failed = self_test(frames)
         elif options.full:
             passed, failed = full(targets, frames, options.runs)
         else:

@@ -18,17 +18,16 @@ COPIED = ('CMakeLists.txt', 'LICENSE', 'README.md', 'examples', 'include', 'port
 CONFIGURE = ['-DCMAKE_BUILD_TYPE=Release', '-DFATHOM_TESTS=ALL', '-DFATHOM_FIRMWARE=ON', '-DFATHOM_STRICT=OFF',
              '-DFATHOM_CHECKS=OFF', '-DFATHOM_INSTALL=OFF']
 # What libclang calls what each compiler builds for.
-TARGETS = {'avr': 'avr', 'rp2040': 'arm-none-eabi', 'stm32f4': 'arm-none-eabi', 'mps2': 'arm-none-eabi',
-           'virt': 'riscv32'}
+TARGETS = {'avr': 'avr', 'rp2040': 'arm-none-eabi', 'stm32f4': 'arm-none-eabi', 'virt': 'riscv32'}
 # The folder of each port: what only a test machine has stands with the tests.
-FOLDERS = {'avr': 'port/avr', 'rp2040': 'port/rp2040', 'stm32f4': 'port/stm32f4', 'mps2': 'tests/firmware/mps2/port',
+FOLDERS = {'avr': 'port/avr', 'rp2040': 'port/rp2040', 'stm32f4': 'port/stm32f4',
            'virt': 'tests/firmware/virt/port'}
 LIMIT_S = 60
 MOST_OF_USUAL = 4
 
 
 def machine_of(test):
-    """Whose test of tests/firmware it is, by its name: test_avr_uart, mps2_alone."""
+    """Whose test of tests/firmware it is, by its name: test_avr_uart, virt_alone."""
     found = re.match(r'(?:test_)?([a-z0-9]+)_', test)
     return found[1] if found else ''
 

@@ -9,7 +9,6 @@
     run.py --only src/engine/line.c:220     the mutants of one line, or of one identity, with the test that kills each
     run.py --ports [N]               N mutants (10) of each port; survivors are printed and do not fail
     run.py --list [FILE ...]         only lists the mutants
-    run.py --self-test               shows that a mutant that no test detects fails
 
 A mutant is killed if a test that executes its line fails, crashes or takes several times its usual time. A mutant that
 compiles to the same optimised object is not counted, and neither is one that does not compile. A survivor fails, unless
@@ -36,7 +35,6 @@ from syntax import library
 from trial import KILLED, NOT_C, SAME_CODE, SURVIVED, Trial
 
 SHARE = 95  # percent of the mutants of src/ that a test can kill
-SELF_TEST = 'src/processing/debounce.c'  # survivors.py lists some of its mutants
 
 
 def processor_s():
@@ -184,27 +182,6 @@ def try_ports(options):
     return 0 if report.results else 1
 
 
-def self_test(options):
-    """Returns what try_them() would for one small file if survivors.py were empty: exactly the listed mutants must
-    fail."""
-    mutants = mutants_of(SELF_TEST)
-    listed = Listed([mutant for path in library() for mutant in mutants_of(path)])
-    report = Report(Listed([]))
-    bench = Bench(os.path.abspath(options.build), options.jobs)
-    bench.prepare()
-    report.trial = Trial(bench)
-    for result in report.trial.attempt_all(mutants):
-        report.add(result)
-    report.table()
-    expected = {mutant for mutant in mutants if mutant in listed}
-    seen = {result.mutant for result in report.unlisted}
-    for mutant in expected ^ seen:
-        print(f'{"no test detects" if mutant in seen else "this mutant does not fail:"} {mutant.identity}')
-    is_right = bool(expected) and expected == seen
-    print(f'{SELF_TEST}: {len(seen)} planted survivors fail\n{int(is_right)} passed, {int(not is_right)} failed')
-    return 0 if is_right else 1
-
-
 def try_them(options):
     paths = sorted(set(library()) | set(options.files))
     all_of_them = [mutant for path in paths for mutant in mutants_of(path)]
@@ -248,14 +225,13 @@ def main():
     parser.add_argument('--quick', action='store_true', help='without the slow tests, which may see what survives')
     parser.add_argument('--ports', type=int, metavar='N', nargs='?', const=10, default=0,
                         help='instead: a sample of so many a port')
-    parser.add_argument('--self-test', action='store_true', help='show that it can fail')
     parser.add_argument('--build', default=os.path.join(ROOT, 'build-mutation'), help='the build folder')
     parser.add_argument('-j', '--jobs', type=int, default=os.cpu_count() or 1)
     parser.add_argument('files', nargs='*', metavar='FILE')
     options = parser.parse_args()
     signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(f'ended by signal {number}'))  # and cleans up
     try:
-        return (self_test if options.self_test else try_ports if options.ports else try_them)(options)
+        return (try_ports if options.ports else try_them)(options)
     except Broken as error:
         print(f'{error}\n0 passed, 1 failed')
         return 1

@@ -3,7 +3,6 @@
 """Shows by Frama-C's EVA that no input causes a run-time error: runs each harness on each model of a machine.
 
     eva.py [--quick] [--machine NAME] [HARNESS ...]   all harnesses, or those with HARNESS in their names
-    eva.py --self-test                                finds the planted fault
     eva.py --list
 
 A harness is a file FOLDER/NAME.c whose main() calls the sources that it proves with any input. Its first comment has:
@@ -50,11 +49,6 @@ HEAD = re.compile(r'^ \* (proves|with|options|unreached|volatile|quick): *(.*(?:
 # stands beside the alarm whose one side it is
 DEAD = re.compile(r'^\[kernel\] .*: Warning: *\n +all target addresses were invalid.*\n', re.M)
 COVERED = re.compile(r'^ *(\w+): (\d+) stmts out of (\d+)', re.M)
-
-
-# The planted fault: the harness that detects it, and the file, the function, the old text and the new text.
-FAULT = ('pure/dyp_55aa', 'src/codec/dyp_55aa.c', 'fathom_dyp_55aa_value_count', 'return FATHOM_DYP_PROBES;',
-         'return FATHOM_DYP_PROBES + 1;')
 
 
 class Bad(Exception):
@@ -250,29 +244,10 @@ def prove(options):
     return failed
 
 
-def self_test():
-    """Plants FAULT in a copy of the sources, and finds it."""
-    harness, file, function, old, new = FAULT
-    root = os.path.join(FOLDER, 'planted')
-    shutil.rmtree(root, ignore_errors=True)
-    for part in ('include', 'src', 'tests/verify/proof'):
-        shutil.copytree(os.path.join(ROOT, part), os.path.join(root, part))
-    path = os.path.join(root, file)
-    text = c_text.replace(read(path), function, old, new)
-    with open(path, 'w', encoding='utf-8') as out:
-        out.write(text)
-    result = run(Harness(os.path.join(root, 'tests', 'verify', 'proof', harness + '.c'), root), MACHINES[0],
-                 os.path.join(root, 'build'))
-    seen = [] if result.is_broken else judge(result)
-    print(f'planted {new!r}: {seen[0] if seen else "FAILED: not found"}\n{bool(seen):d} passed, {not seen:d} failed')
-    return not seen
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('--quick', action='store_true')
     parser.add_argument('--machine', action='append', choices=MACHINES)
-    parser.add_argument('--self-test', action='store_true')
     parser.add_argument('--list', action='store_true')
     parser.add_argument('names', nargs='*')
     options = parser.parse_args()
@@ -282,8 +257,8 @@ def main():
         if options.list:
             print('\n'.join(each.name for each in harnesses()))
             return 0
-        return 1 if (self_test() if options.self_test else prove(options)) else 0
-    except (Bad, c_text.NotThere) as error:
+        return 1 if prove(options) else 0
+    except Bad as error:
         print(f'eva.py: {error}', file=sys.stderr)
         return 1
 

@@ -4,7 +4,6 @@
 
     wp.py [UNIT ...]          each goal by each prover, and that no contract contradicts itself; minutes
     wp.py --quick [UNIT ...]  some of the units, each goal by the first prover that can prove it
-    wp.py --self-test         finds the planted fault
 
 A unit is src/codec/UNIT.c with the contracts of wp/UNIT.h and the loop invariants of wp/loops.py. wp.py puts the
 invariants as comments into a copy, and checks that the tokens of the copy are those of the source. A prover's limit
@@ -35,9 +34,6 @@ TACTICS = {'bits': 'wp:range', 'words': 'wp:bitshift,wp:bitwised,wp:split,wp:ran
 # The units, each with the least number of its goals: nine tenths of today's.
 UNITS = {'bits': 12, 'words': 4, 'dyp_stream': 83, 'dyp_55aa': 107, 'pulse_width': 30, 'crc16': 19, 'crc16_small': 20,
          'modbus_rtu': 316, 'hps167s_registers': 303, 'round_dyp': 37, 'round_modbus': 78}
-# The planted fault: a unit, its file, the function whose goals detect it, the old text and the new text.
-FAULT = ('dyp_55aa', 'src/codec/dyp_55aa.c', 'fathom_dyp_55aa_value_count', 'return FATHOM_DYP_PROBES;',
-         'return FATHOM_DYP_PROBES + 1;')
 QUICK = {'dyp_55aa': '', 'pulse_width': 'fathom_pulse_width_mm_in_air', 'crc16': '',
          'crc16_small': ''}  # and the functions that are left out
 PROVERS = ('cvc4', 'z3')
@@ -220,29 +216,13 @@ def prove(options):
     return failed
 
 
-def self_test():
-    """Plants FAULT in a copy of the sources, and finds the goals that it leaves open."""
-    unit, file, function, old, new = FAULT
-    root = os.path.join(FOLDER, 'planted')
-    shutil.rmtree(root, ignore_errors=True)
-    for part in ('include', os.path.join('src', 'codec'), os.path.join('tests', 'verify', 'proof', 'wp')):
-        shutil.copytree(os.path.join(ROOT, part), os.path.join(root, part))
-    path = os.path.join(root, file)
-    write(path, c_text.replace(read(path), function, old, new))
-    goals = run(unit, PROVERS, os.path.join(root, 'build'), root, function)
-    seen = sorted(goal for goal, who in goals.items() if not who and (unit, goal) not in remaining.ARGUED)
-    print(f'planted {new!r}: {" ".join(seen[:3]) or "FAILED: not found"}\n{bool(seen):d} passed, {not seen:d} failed')
-    return not seen
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('--quick', action='store_true')
-    parser.add_argument('--self-test', action='store_true')
     parser.add_argument('names', nargs='*')
     options = parser.parse_args()
     try:
-        return 1 if (self_test() if options.self_test else prove(options)) else 0
+        return 1 if prove(options) else 0
     except (Bad, c_text.NotThere) as error:
         print(f'wp.py: {error}\n0 passed, 1 failed')
         return 1
