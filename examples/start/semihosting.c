@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "semihosting.h"
 
-enum { SYS_WRITE0 = 0x04, SYS_GET_CMDLINE = 0x15, SYS_EXIT_EXTENDED = 0x20 };
+enum { SYS_WRITE0 = 0x04, SYS_EXIT_EXTENDED = 0x20 };
 #define APPLICATION_EXIT 0x20026u
 
 /* The operation and its argument in the first two registers, the result in the first. */
@@ -29,13 +29,6 @@ static uintptr_t call(uintptr_t operation, const void *argument)
 }
 
 void semihosting_write(const char *text) { (void)call(SYS_WRITE0, text); }
-
-void semihosting_words(char *text, size_t size)
-{
-    uintptr_t block[2] = {(uintptr_t)text, size};
-    text[0] = '\0';
-    if (call(SYS_GET_CMDLINE, block) != 0) text[0] = '\0';
-}
 
 void semihosting_exit(int status)
 {

@@ -2,7 +2,6 @@
 #ifndef START_SEMIHOSTING_H
 #define START_SEMIHOSTING_H
 
-#include <stddef.h>
 #include <stdint.h>
 
 /*
@@ -13,9 +12,6 @@
 
 /* Text, 0 at its end. */
 void semihosting_write(const char *text);
-
-/* The words that QEMU was given by arg=, as one text, cut to size - 1 characters; "" if there are none. */
-void semihosting_words(char *text, size_t size);
 
 /* The simulator ends, with this exit status. Where it goes on, this returns. */
 void semihosting_exit(int status);

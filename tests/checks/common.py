@@ -12,8 +12,8 @@ CXX_WARNINGS = ['-Wall', '-Wextra', '-Wpedantic', '-Wconversion', '-Wsign-conver
                 '-Wmissing-declarations', '-Wcast-align', '-Wvla', '-Werror']
 WARNINGS = [*CXX_WARNINGS, '-Wstrict-prototypes']
 
-# The ports to machines that only tests have.
-TEST_PORTS = ('tests/firmware/mps2/port', 'tests/firmware/virt/port')
+# The port to the machine that only tests have.
+TEST_PORTS = ('tests/firmware/virt/port',)
 
 LIBMODBUS = '-isystem/usr/include/modbus'  # what the port over libmodbus includes
 

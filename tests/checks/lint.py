@@ -13,7 +13,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 from common import LIBMODBUS, ROOT, TEST_PORTS, WARNINGS, files, main, run
 
-# The machines that only tests have.
+# The machine that only tests have.
 TEST_MACHINES = tuple(os.path.dirname(port) for port in TEST_PORTS)
 FOLDERS = ('src', 'port', 'examples', *TEST_MACHINES)
 PORTS = sorted(entry.name for entry in os.scandir(os.path.join(ROOT, 'port')) if entry.is_dir())
@@ -45,7 +45,7 @@ def tidy(root, path):
 
 def compiler(path):
     machine = path.split('/')[2 if path.startswith(('tests/', 'examples/first/')) else 1]
-    if machine in ('rp2040', 'mps2', 'nrf51', 'stm32f4'):
+    if machine in ('rp2040', 'nrf51', 'stm32f4'):
         return ['arm-none-eabi-gcc', '-mcpu=cortex-m3', '-mthumb']
     if machine == 'virt':
         return ['riscv64-unknown-elf-gcc', '-march=rv32imac_zicsr', '-mabi=ilp32', '-ffreestanding']

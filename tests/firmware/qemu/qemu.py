@@ -7,7 +7,6 @@ nothing here is judged by how long it takes, and an attempt may fail for that; w
 import os
 import re
 import sys
-import time
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 TESTS = os.path.dirname(os.path.dirname(HERE))
@@ -18,8 +17,7 @@ from interop import e2e  # noqa: E402
 
 IMAGES = os.environ.get('FATHOM_IMAGES', '')
 PATIENCE = 60  # seconds; an image takes up to 5
-MACHINES = {'mps2': ('qemu-system-arm', '-M', 'mps2-an385'),
-            'stm32f4': ('qemu-system-arm', '-M', 'netduinoplus2'),
+MACHINES = {'stm32f4': ('qemu-system-arm', '-M', 'netduinoplus2'),
             'virt': ('qemu-system-riscv32', '-M', 'virt', '-bios', 'none')}
 # What a slow far end may cause: no response, one that broke off, a stream that was read out of step and refused, a stale
 # one.
@@ -30,16 +28,14 @@ DATASHEET = ('0x0823', '0xDCB2', '0x0701', '0x0000')  # HPS-167S #5: 2083 mm, 72
 
 class Case(interop.Case):
     machine = os.path.basename(os.path.dirname(os.path.abspath(sys.argv[0])))
-    log = None
 
-    def boot(self, image, *ports, words=(), traces=(), shift=None):
-        """Starts an image. ports: what its UARTs are connected to, in QEMU's order; None: nothing. words: for the
-        image. shift: simulated time, 2^shift ns an instruction, the same on every run."""
+    def boot(self, image, *ports, traces=(), shift=None):
+        """Starts an image. ports: what its UARTs are connected to, in QEMU's order; None: nothing.
+        shift: simulated time, 2^shift ns an instruction, the same on every run."""
         path = os.path.join(IMAGES, image + '.elf')
         self.assertTrue(os.access(path, os.R_OK), f'{path} is not there: FATHOM_IMAGES says where it is built')
-        arguments = ''.join(f',arg={word}' for word in (image, *words))
         options = ['-kernel', path, '-display', 'none', '-monitor', 'none', '-chardev', 'stdio,id=say,signal=off',
-                   '-semihosting-config', f'enable=on,target=native,chardev=say{arguments}']
+                   '-semihosting-config', 'enable=on,target=native,chardev=say']
         for number, port in enumerate(ports):
             if port is None:
                 options += ['-serial', 'null']
@@ -47,20 +43,9 @@ class Case(interop.Case):
                 options += ['-chardev', f'serial,id=uart{number},path={port}', '-serial', f'chardev:uart{number}']
         for trace in traces:
             options += ['-trace', trace]
-        if 'FATHOM_TRACE' in os.environ:  # for tests/verify/coverage: QEMU logs each block of code that it translates
-            name = f'qemu-{time.monotonic_ns()}-{path.replace("/", "~")}'
-            self.log = os.path.join(os.environ['FATHOM_TRACE'], name)
-            options += ['-d', 'in_asm', '-D', self.log]
         if shift is not None:
             options += ['-serial', 'null', '-icount', f'shift={shift},sleep=off', '-rtc', 'clock=vm']
         return self.start([*MACHINES[self.machine], *options])
-
-    def traced(self, done):
-        """The traces of QEMU: on its stderr, or in its log if it has one."""
-        if self.log is None:
-            return done.err
-        with open(self.log, encoding='utf-8') as file:
-            return file.read()
 
     def end_well(self, program):
         done = program.finish(PATIENCE)

@@ -13,7 +13,7 @@ class Transaction(qemu.Transaction, qemu.Case):
         self.assertEqual(self.readings(done.out, 'gate'), ['probe 1 2083 mm'] * 30)
         # QEMU's UART has 399193 baud to divide, of which 19009 is next to 19200. Each register that is written makes a
         # line; the last one is what holds.
-        self.assertEqual(re.findall(r'^serial_update_parameters (.*)$', self.traced(done), re.M)[-1],
+        self.assertEqual(re.findall(r'^serial_update_parameters (.*)$', done.err, re.M)[-1],
                          "baudrate=19009 parity='E' data=8 stop=1")
 
 
