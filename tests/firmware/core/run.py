@@ -20,8 +20,6 @@ TESTS = os.path.dirname(os.path.dirname(HERE))
 sys.path.insert(0, os.path.join(TESTS, 'checks'))
 from count import cases  # noqa: E402: it counts what the host's tests print, and these print the same
 
-# Lines of left_out.txt. Who makes one longer changes this too.
-LEFT_OUT = {'avr': 57, 'powerpc': 15}
 # A target with fewer cases than this has lost some.
 AT_LEAST = {'avr': 700, 'powerpc': 1950}
 SECONDS = 500  # for one suite; a busy machine is slow, not wrong
@@ -59,8 +57,6 @@ def main():
     target, images, command = sys.argv[1], sys.argv[2], sys.argv[3:]
     problems = []
     absent, lines = left_out(target)
-    if lines != LEFT_OUT[target]:
-        problems.append(f'left_out.txt has {lines} lines for {target}, not {LEFT_OUT[target]}')
     is_avr = target == 'avr'  # where each suite is a program
     kinds = {os.path.basename(path)[:-2]: os.path.basename(folder) for folder in ('unit', 'devices/sim')
              for path in glob.glob(os.path.join(TESTS, folder, 'test_*.c'))}
