@@ -29,7 +29,7 @@ INTERVAL_MS = 500
 SOAK_MS, SOAK_LINES = 20, 64
 GROWTH_KIB = 256
 CPU, MEMORY_KIB, LATE_MS = 0.10, 20 * 1024, INTERVAL_MS
-FIRST_MM, RESPONSES = 1000, 16  # of a line, as lines/lines.h has them
+FIRST_MM, RESPONSES = 1000, 16  # of a line, as publish/far_end.c has them
 WARM_S = 4
 DEADLINE_S = 60  # of each step that waits for another program; on an idle machine a step takes less than 2 s
 

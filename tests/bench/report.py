@@ -196,8 +196,8 @@ def tables(figures, sizes):
             first_page_table(figures, sizes))
 
 
-def pattern(name, keeper='run.py'):
-    return re.compile(rf'(?s)(?<=<!-- {name}: kept by tests/bench/{keeper} --update -->\n).*?(?=<!-- end -->)')
+def pattern(name):
+    return re.compile(rf'(?s)(?<=<!-- {name}: kept by tests/bench/run.py --update -->\n).*?(?=<!-- end -->)')
 
 
 def read(page):
