@@ -166,7 +166,6 @@ run_full() {
     stage 600 'firmware, exhaustive forms' run_tests gcc firmware --label-regex 'firmware|long'
     unset FATHOM_LONG
     stage 2400 'mutants: all' mutants all --all
-    stage 1800 'mutants: a sample of the ports' mutants ports --ports
 }
 
 # Runs the tests of KIND with this name: in one process, or as scripts that CTest starts.

@@ -43,18 +43,6 @@ class Test:
         return ' '.join([os.path.basename(self.program), *self.names])
 
 
-class Planted:
-    """A mutant's library, which the loader puts before the other."""
-
-    def __init__(self, library):
-        self.environment = {'LD_PRELOAD': library}
-
-    @staticmethod
-    def program(path):
-        """What to start in the place of a program of tests."""
-        return path
-
-
 def command(words, cwd=None, error='', env=None):
     done = subprocess.run(words, cwd=cwd, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False,
                           env=env)
@@ -75,8 +63,6 @@ def processor_s(pid):
 
 
 class Bench:
-    map_name = 'map.json'
-
     def __init__(self, folder, jobs):
         self.folder = folder
         self.jobs = jobs
@@ -95,11 +81,7 @@ class Bench:
         targets = sorted({os.path.basename(test.program) for test in self.tests})
         command(['cmake', '--build', self.folder, '-j', str(self.jobs), '--target', *targets], error='not built')
         say(f'{len(self.tests)} tests in {len(targets)} programs, built in {time.time() - began:.0f} s')
-        self.look()
         self.read_map(say)
-
-    def look(self):
-        """Finds out more about what was built."""
 
     def find_tests(self):
         """Returns the tests of KINDS, which are programs in C, from the files that ctest reads."""
@@ -133,7 +115,7 @@ class Bench:
         return digest.hexdigest()
 
     def read_map(self, say):
-        path, key = os.path.join(self.folder, self.map_name), self.key()
+        path, key = os.path.join(self.folder, 'map.json'), self.key()
         stored = {}
         if os.path.exists(path):
             with open(path, encoding='utf-8') as file:
@@ -162,12 +144,7 @@ class Bench:
                  '-o', os.path.join(root, os.path.basename(path)[:-2] + '.o')], cwd=root), sources))
             covered = os.path.join(root, 'covered.so')
             command([COMPILER, '-shared', '--coverage', '-o', covered, *glob.glob(os.path.join(root, '*.o'))])
-        return self.cover(root, Planted(covered))
-
-    def cover(self, root, planted):
-        """What the tests execute of what was built for coverage, with objects in root."""
-        with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
-            found = pool.map(lambda test: self.covered(test, root, planted), self.tests)
+            found = pool.map(lambda test: self.covered(test, root, covered), self.tests)
             return dict(zip(map(str, self.tests), found))
 
     def covered(self, test, root, planted):
@@ -250,10 +227,12 @@ class Bench:
                 found.append(file.read())
         return found
 
-    def plant(self, _mutant, objects, scratch):
-        library = os.path.join(scratch, 'mutant.so')
-        command(['ld', '-shared', '-o', library, *objects])
-        return Planted(library)
+    @staticmethod
+    def plant(objects, scratch):
+        """Returns the mutant's library, which the loader puts before the other."""
+        path = os.path.join(scratch, 'mutant.so')
+        command(['ld', '-shared', '-o', path, *objects])
+        return path
 
     def limits_s(self, test):
         """Of the processor, and of the clock; the machine may be busy with others."""
@@ -262,8 +241,8 @@ class Bench:
 
     def run(self, test, planted, processor_limit_s, wall_limit_s, environment=None):
         """(None when it passes, else how it fails; seconds of the processor, or of the clock for one in real time)"""
-        env = {**os.environ, 'FATHOM_FIRST_FAILURE': '1', **planted.environment, **(environment or {})}
-        program = planted.program(os.path.join(self.folder, test.program))
+        env = {**os.environ, 'FATHOM_FIRST_FAILURE': '1', 'LD_PRELOAD': planted, **(environment or {})}
+        program = os.path.join(self.folder, test.program)
         began = time.monotonic()
         process = subprocess.Popen([program, *test.names], env=env, stdin=subprocess.DEVNULL,
                                    cwd=os.path.join(self.folder, os.path.dirname(test.program)),

@@ -7,7 +7,6 @@
     run.py --sample 400              400 mutants of src/; with --changed, half of them of the changed files
     run.py FILE ...                  the mutants of these files
     run.py --only src/engine/line.c:220     the mutants of one line, or of one identity, with the test that kills each
-    run.py --ports [N]               N mutants (10) of each port; survivors are printed and do not fail
     run.py --list [FILE ...]         only lists the mutants
 
 A mutant is killed if a test that executes its line fails, crashes or takes several times its usual time. A mutant that
@@ -16,21 +15,17 @@ survivors.py lists it with the reason why it means the same; the slow tests do n
 prints its survivors, and fails if less than 95 % are killed."""
 import argparse
 import collections
-import concurrent.futures
 import difflib
 import os
 import random
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 
-import firmware
 from bench import ROOT, Bench, Broken
 from listed import Listed
 from mutants import mutants_of
-from ports import HOST, PortBench
 from syntax import library
 from trial import KILLED, NOT_C, SAME_CODE, SURVIVED, Trial
 
@@ -40,11 +35,6 @@ SHARE = 95  # percent of the mutants of src/ that a test can kill
 def processor_s():
     used = os.times()
     return used.children_user + used.children_system
-
-
-def module_of(mutant):
-    """Returns the file of the library, or the folder of the port."""
-    return mutant.file if mutant.file.startswith('src/') else os.path.dirname(mutant.file)
 
 
 def git(*words):
@@ -75,7 +65,7 @@ def diff(mutant, text):
 
 
 class Report:
-    """What came of each mutant, by module."""
+    """What came of each mutant, by file."""
 
     def __init__(self, listed):
         self.listed = listed
@@ -109,7 +99,7 @@ class Report:
         for result in self.results:
             if result.status == NOT_C:
                 continue
-            row = rows[module_of(result.mutant)]
+            row = rows[result.mutant.file]
             row[0] += 1
             row[1] += result.status == SAME_CODE
             row[2] += result.status == KILLED
@@ -153,35 +143,6 @@ def chosen(options, mutants, listed):
     return sorted(found, key=lambda mutant: (mutant.file, mutant.start))
 
 
-def try_ports(options):
-    """Tries some mutants of each port. Survivors do not fail."""
-    report = Report(Listed([]))
-    seed = seed_of(options)
-    print(f'{options.ports} mutants a port: --seed {seed}')
-
-    def sample(mutants):
-        return random.Random(seed).sample(mutants, min(options.ports, len(mutants)))
-    bench = PortBench(os.path.abspath(options.build), options.jobs)
-    bench.prepare()
-    report.trial = Trial(bench)
-    files = bench.files()
-    chosen_ones = [mutant for port in HOST for mutant in sample(
-        [mutant for path in files if path.startswith(port + '/') for mutant in mutants_of(path)])]
-    for result in report.trial.attempt_all(chosen_ones):
-        report.add(result)
-    with tempfile.TemporaryDirectory(prefix='fathom-firmware.') as folder, \
-            concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        of_machines = pool.map(lambda name: firmware.results(name, folder, sample), firmware.TARGETS)
-        for name, found in zip(firmware.TARGETS, of_machines):
-            if found is None:
-                print(f'{name}: left out, since no test of it passes; its tools may be missing')
-            for result in found or []:
-                report.add(result)
-    report.table()
-    print(f'{len(report.results)} passed, 0 failed')
-    return 0 if report.results else 1
-
-
 def try_them(options):
     paths = sorted(set(library()) | set(options.files))
     all_of_them = [mutant for path in paths for mutant in mutants_of(path)]
@@ -223,15 +184,13 @@ def main():
     parser.add_argument('--only', metavar='FILE:LINE', help='these, or the one of an identity, and what sees them')
     parser.add_argument('--list', action='store_true', help='only list them')
     parser.add_argument('--quick', action='store_true', help='without the slow tests, which may see what survives')
-    parser.add_argument('--ports', type=int, metavar='N', nargs='?', const=10, default=0,
-                        help='instead: a sample of so many a port')
     parser.add_argument('--build', default=os.path.join(ROOT, 'build-mutation'), help='the build folder')
     parser.add_argument('-j', '--jobs', type=int, default=os.cpu_count() or 1)
     parser.add_argument('files', nargs='*', metavar='FILE')
     options = parser.parse_args()
     signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(f'ended by signal {number}'))  # and cleans up
     try:
-        return (try_ports if options.ports else try_them)(options)
+        return try_them(options)
     except Broken as error:
         print(f'{error}\n0 passed, 1 failed')
         return 1

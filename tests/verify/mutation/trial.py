@@ -67,7 +67,7 @@ class Trial:
         objects = self.bench.compile(mutant, mutant.applied(self.text_of(mutant.file)), scratch, ['-O2'])
         if self.bench.contents(objects) == before:
             return True, None
-        return False, self.bench.plant(mutant, objects, scratch)
+        return False, self.bench.plant(objects, scratch)
 
     def kill(self, test, planted):
         how = self.bench.run(test, planted, *self.bench.limits_s(test))[0]
@@ -80,7 +80,7 @@ class Trial:
         objects = self.bench.compile(mutant, mutant.applied(self.text_of(mutant.file)), scratch, ['-O0'])
         if objects is None:
             return Result(mutant, NOT_C)
-        planted = self.bench.plant(mutant, objects, scratch)
+        planted = self.bench.plant(objects, scratch)
         tests = self.order(mutant, self.bench.reached_by(mutant))
         first = tests[:1] + [test for test in tests[1:] if self.is_quick(test)]
         rest = [] if self.is_brief(mutant) else [test for test in tests if test not in first]
