@@ -182,62 +182,47 @@ static void full_1(void) { full_and_high(1); }
 #define RECEIVED EVENT_BYTE, EVENT_FLAWED, EVENT_BEHIND
 #define TIMES    EVENT_OVERFLOW, EVENT_INT0, EVENT_ICP1
 
+/* What may come at each boundary, and what may come in pairs. */
+#define COMES(...)                                                                                           \
+    {                                                                                                        \
+        __VA_ARGS__                                                                                          \
+    }
+#define SENDING COMES(EVENT_LEFT, EVENT_LATE, EVENT_BYTE, TIMES)
 #define NOW(NAME, ZERO, MASKED)                                                                              \
     {                                                                                                        \
-        .name = NAME, .call = CALL_NOW, .zero_us = ZERO, .is_masked = MASKED, .events = {TIMES, EVENT_BYTE}, \
-        .pairs = {                                                                                           \
-            TIMES,                                                                                           \
-            EVENT_BYTE                                                                                       \
-        }                                                                                                    \
+        .name = NAME, .call = CALL_NOW, .zero_us = ZERO, .is_masked = MASKED,                                \
+        .events = COMES(TIMES, EVENT_BYTE), .pairs = COMES(TIMES, EVENT_BYTE)                                \
     }
 #define READ(NAME, PREPARE, CAPACITY)                                                                        \
     {                                                                                                        \
         .name = NAME, .call = CALL_READ, .prepare = PREPARE, .length = CAPACITY,                             \
-        .events = {RECEIVED, TIMES}, .pairs = {                                                              \
-            EVENT_BYTE,                                                                                      \
-            EVENT_FLAWED                                                                                     \
-        }                                                                                                    \
+        .events = COMES(RECEIVED, TIMES), .pairs = COMES(EVENT_BYTE, EVENT_FLAWED)                           \
     }
 #define WRITE(NAME, PREPARE, LENGTH)                                                                         \
     {                                                                                                        \
-        .name = NAME, .call = CALL_WRITE, .prepare = PREPARE, .length = LENGTH,                              \
-        .events = {EVENT_LEFT, EVENT_LATE, EVENT_BYTE, TIMES}, .pairs = {                                    \
-            EVENT_LEFT,                                                                                      \
-            EVENT_BYTE                                                                                       \
-        }                                                                                                    \
+        .name = NAME, .call = CALL_WRITE, .prepare = PREPARE, .length = LENGTH, .events = SENDING,           \
+        .pairs = COMES(EVENT_LEFT, EVENT_BYTE)                                                               \
     }
 #define LINE(NAME, CALL, PREPARE, FLAGS)                                                                     \
     {                                                                                                        \
-        .name = NAME, .call = CALL, .prepare = PREPARE, .flags = FLAGS,                                      \
-        .events = {EVENT_LEFT, EVENT_LATE, EVENT_BYTE, TIMES}, .pairs = {                                    \
-            EVENT_LEFT,                                                                                      \
-            EVENT_BYTE                                                                                       \
-        }                                                                                                    \
+        .name = NAME, .call = CALL, .prepare = PREPARE, .flags = FLAGS, .events = SENDING,                   \
+        .pairs = COMES(EVENT_LEFT, EVENT_BYTE)                                                               \
     }
 /* Long ones, which divide. */
 #define RATE(NAME, PREPARE, BAUD, PARITY, STOP_BITS)                                                         \
     {                                                                                                        \
         .name = NAME, .call = CALL_SET_LINE, .prepare = PREPARE, .baud = BAUD,                               \
-        .parity = FATHOM_PARITY_##PARITY, .stop_bits = STOP_BITS, .events = {                                \
-            EVENT_BYTE,                                                                                      \
-            EVENT_LEFT                                                                                       \
-        }                                                                                                    \
+        .parity = FATHOM_PARITY_##PARITY, .stop_bits = STOP_BITS, .events = COMES(EVENT_BYTE, EVENT_LEFT)    \
     }
 #define PULSE(NAME, CALL, WHICH, PREPARE, EDGE)                                                              \
     {                                                                                                        \
-        .name = NAME, .call = CALL, .which = WHICH, .prepare = PREPARE, .events = {TIMES, EVENT_BYTE},       \
-        .pairs = {                                                                                           \
-            EDGE,                                                                                            \
-            EVENT_OVERFLOW                                                                                   \
-        }                                                                                                    \
+        .name = NAME, .call = CALL, .which = WHICH, .prepare = PREPARE, .events = COMES(TIMES, EVENT_BYTE),  \
+        .pairs = COMES(EDGE, EVENT_OVERFLOW)                                                                 \
     }
 #define IDLE(NAME, PREPARE, MOST, GATHER, ...)                                                               \
     {                                                                                                        \
         .name = NAME, .call = CALL_IDLE, .prepare = PREPARE, .most_us = MOST, .gather_us = GATHER,           \
-        .events = {EVENT_BYTE, EVENT_LEFT, __VA_ARGS__}, .pairs = {                                          \
-            EVENT_BYTE,                                                                                      \
-            EVENT_INT0                                                                                       \
-        }                                                                                                    \
+        .events = COMES(EVENT_BYTE, EVENT_LEFT, __VA_ARGS__), .pairs = COMES(EVENT_BYTE, EVENT_INT0)         \
     }
 
 const scenario_t scenarios[] = {
