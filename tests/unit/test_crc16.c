@@ -74,39 +74,6 @@ TEST(the_definition_gives_the_published_examples)
     assert_int_equal(by_definition(data4, 3), 0x4523);
 }
 
-TEST(messages_of_two_bytes_reach_every_state)
-{
-    static uint8_t reached[65536 / 8]; /* a bit a state */
-    uint32_t states = 0;
-    memset(reached, 0, sizeof reached);
-    for (uint32_t message = 0; message != 65536; message++) {
-        const uint8_t bytes[] = {(uint8_t)(message >> 8), (uint8_t)message};
-        const uint16_t at = by_definition(bytes, 2);
-        const uint8_t bit = (uint8_t)(1u << at % 8);
-        states += (reached[at / 8] & bit) == 0;
-        reached[at / 8] |= bit;
-    }
-    assert_int_equal(states, 65536);
-}
-
-/* Two bytes reach every state, so a third makes every pair of a state and a byte: 2^24. */
-static void every_byte_in_every_state_does_what_the_definition_says(void **state)
-{
-    crc16_t *const crc16 = ((const source_t *)*state)->of;
-    unsigned wrong = 0;
-    for (uint32_t message = 0; message != 65536; message++) {
-        uint8_t bytes[] = {(uint8_t)(message >> 8), (uint8_t)message, 0};
-        const uint16_t at = by_definition(bytes, 2);
-        wrong += crc16(bytes, 1) != by_definition(bytes, 1);
-        wrong += crc16(bytes, 2) != at;
-        for (unsigned byte = 0; byte != 256; byte++) {
-            bytes[2] = (uint8_t)byte;
-            wrong += crc16(bytes, 3) != one_byte_more(at, bytes[2]);
-        }
-    }
-    assert_int_equal(wrong, 0);
-}
-
 static void every_length_to_255_does_what_the_definition_says(void **state)
 {
     crc16_t *const crc16 = ((const source_t *)*state)->of;
@@ -145,7 +112,6 @@ static void over_a_frame_and_its_crc_low_byte_first_it_is_0(void **state)
     TEST_ROW(name##_with_table_of_256, name, &table_of_256)                                                  \
     TEST_ROW(name##_with_table_of_16, name, &table_of_16)
 
-TEST_OF_BOTH(every_byte_in_every_state_does_what_the_definition_says)
 TEST_OF_BOTH(every_length_to_255_does_what_the_definition_says)
 TEST_OF_BOTH(no_byte_at_all_gives_FFFF)
 TEST_OF_BOTH(over_a_frame_and_its_crc_low_byte_first_it_is_0)

@@ -16,14 +16,6 @@ static uint8_t length_by_the_datasheet(unsigned command)
     return command >= 0x10 && command <= 0x13 ? 7 : 0;
 }
 
-/* The sum by the datasheet's formula, over whole numbers. */
-static uint8_t sum_of(const uint8_t *bytes, unsigned count)
-{
-    unsigned sum = 0;
-    while (count != 0) sum += bytes[--count];
-    return (uint8_t)(sum & 0x00FF);
-}
-
 /* A05 2(3)3 with the right sum, 2(3)5. The datasheet's frames both ways: tests/unit/test_frames.c. */
 static const uint8_t all_probes[] = {0x55, 0xAA, 0x01, 0x01, 0x03, 0xE8, 0x07,
                                      0xD0, 0x07, 0xA1, 0x0D, 0xEA, 0x62};
@@ -116,25 +108,6 @@ TEST(what_does_not_begin_with_55_AA_is_no_response_from_any_prefix)
     assert_int_equal(refused, 255 * 13 + 255 * 12);
 }
 
-/* ---- sums ---- */
-
-/* One length after the other, every last byte: just the one that the formula gives is right. */
-TEST(of_256_last_bytes_one_is_the_sum_at_every_length)
-{
-    for (uint8_t length = 1; length <= MOST; length++) {
-        uint8_t frame[MOST];
-        unsigned right = 0;
-        memcpy(frame, all_probes, MOST);
-        for (unsigned last = 0; last != BYTES; last++) {
-            frame[length - 1] = (uint8_t)last;
-            const bool is_valid = fathom_dyp_55aa_is_valid(frame, length);
-            assert_int_equal(is_valid, last == sum_of(frame, length - 1u));
-            right += is_valid;
-        }
-        assert_int_equal(right, 1);
-    }
-}
-
 TEST(what_lies_behind_a_frame_does_not_count)
 {
     uint8_t *const alone = malloc(sizeof address_5);
@@ -147,25 +120,5 @@ TEST(what_lies_behind_a_frame_does_not_count)
         memset(frame, (int)filling, sizeof frame);
         memcpy(frame, address_5, sizeof address_5);
         assert_true(fathom_dyp_55aa_is_valid(frame, sizeof address_5));
-    }
-}
-
-/* ---- responses ---- */
-
-/* SUM = 00 + 10 + H + L for address 1: 55 + AA + 01 is 100. */
-TEST(every_value_of_one_probe_goes_both_ways)
-{
-    for (uint32_t mm = 0; mm != 65536; mm++) {
-        const uint8_t high = (uint8_t)(mm / 256);
-        const uint8_t low = (uint8_t)(mm % 256);
-        const uint8_t expected[] = {0x55, 0xAA, 0x01, 0x10, high, low, (uint8_t)(0x10 + high + low)};
-        const uint16_t value = (uint16_t)mm;
-        uint16_t decoded = (uint16_t)~mm;
-        uint8_t frame[7];
-        assert_int_equal(fathom_dyp_55aa_encode_response(frame, 1, FATHOM_DYP_FIRST_PROBE, &value), 7);
-        assert_memory_equal(frame, expected, 7);
-        assert_true(fathom_dyp_55aa_is_valid(expected, 7));
-        fathom_dyp_55aa_decode(expected, &decoded);
-        assert_int_equal(decoded, mm);
     }
 }
