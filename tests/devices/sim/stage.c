@@ -105,21 +105,6 @@ void set_up(model_t model, uint8_t unit, uint32_t loop_us, uint8_t echo)
     bench.fault.clock = &s.clock;
 }
 
-fathom_sim_device_t *add_other(uint8_t unit)
-{
-    const fathom_sim_scene_t scene = fathom_sim_fixed(&bench.fixed);
-    const uint8_t mode = s.model == A05 ? FATHOM_SIM_A05_MODBUS : FATHOM_SIM_A05_DYP;
-    if (s.model == HPS)
-        fathom_sim_hps167s_init(&s.other.hps, &(hps_config_t){.address = unit, .scene = scene});
-    else if (s.model == A16)
-        fathom_sim_a16_init(&s.other.a16,
-                            &(a16_config_t){.mode = FATHOM_SIM_A16_MODBUS, .address = unit, .scene = scene});
-    else
-        fathom_sim_a05_init(&s.other.a05, &(a05_config_t){.mode = mode, .address = unit, .scene = scene});
-    attach(&s.other.a16.device); /* all have it first */
-    return &s.other.a16.device;
-}
-
 fathom_modbus_unit_t *unit_of(void)
 {
     if (s.model == HPS) return &s.driver.hps.unit;
@@ -155,14 +140,6 @@ fathom_status_t measure(void)
         assert_ends(start_us);
         pass();
     }
-}
-
-void assert_measures(uint8_t unit, uint16_t mm)
-{
-    assert_int_equal(measure(), FATHOM_OK);
-    assert_int_equal(s.sample.kind, FATHOM_TARGET);
-    assert_int_equal(s.sample.address, unit);
-    assert_int_equal(s.sample.distance_mm, mm);
 }
 
 bool recovers(void)

@@ -29,11 +29,6 @@ typedef struct {
     fathom_sim_clock_t clock;
     fathom_sim_uart_t port;
     fathom_sim_pins_t pins; /* of the bench's device, where a test has taken them */
-    union {
-        fathom_sim_a16_t a16;
-        fathom_sim_a05_t a05;
-        fathom_sim_hps167s_t hps;
-    } other; /* a second device */
     fathom_uart_t inner;
     fathom_uart_t uart; /* the same, and it can break */
     int broken;         /* what read and write return; 0: it works */
@@ -66,9 +61,6 @@ void set_up(model_t model, uint8_t unit, uint32_t loop_us, uint8_t echo);
 /* The line of the stage anew, told this of its echo; FATHOM_LINE_ECHO_AUTO: it finds out. Its listener stays. */
 void set_echo(uint8_t echo);
 
-/* A second device of that model. */
-fathom_sim_device_t *add_other(uint8_t unit);
-
 /* For the driver of the stage. */
 fathom_modbus_unit_t *unit_of(void);
 void cancel(void);
@@ -98,7 +90,6 @@ static inline void assert_ends(uint32_t start_us) { assert_true(since_us(start_u
 
 /* The next outcome of the sensor; its sample is s.sample. */
 fathom_status_t measure(void);
-void assert_measures(uint8_t unit, uint16_t mm);
 
 /* Until it measures again; false: it did not in a minute. */
 bool recovers(void);
@@ -115,9 +106,6 @@ uint32_t kept_commands(void);
 /* Something that is to be carried out, while an application measures in the same loop: until it has ended. */
 fathom_status_t carry_out(fathom_status_t (*command)(void));
 fathom_status_t round_of(fathom_status_t (*command)(void)); /* once round that loop */
-
-/* From its n-th frame on the device says nothing, for `run` frames. */
-static inline void silence_from(uint32_t frame, uint32_t run) { FAULT(SILENCE, ALWAYS, frame)->run = run; }
 
 /* ---- everything that can be set or asked ---- */
 

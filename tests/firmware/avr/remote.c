@@ -88,12 +88,6 @@ int remote_set_break(bool on)
     return run(REMOTE_SET_BREAK);
 }
 
-uint32_t remote_now_us(void)
-{
-    run(REMOTE_NOW);
-    return remote_of()->time_us;
-}
-
 void remote_idle(uint32_t max_us)
 {
     remote_of()->time_us = max_us;

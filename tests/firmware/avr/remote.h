@@ -20,7 +20,6 @@ bool remote_sent(void);
 uint32_t remote_leaves_in_us(void);
 int remote_set_line(const fathom_line_settings_t *line);
 int remote_set_break(bool on);
-uint32_t remote_now_us(void);
 void remote_idle(uint32_t max_us);
 
 /* Begins or ends to read the clock over and over, each time after `masked` * 1024 cycles with interrupts off (0: they

@@ -14,10 +14,8 @@ import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(HERE)))
-IMAGES = {'avr': 'hps167s_rs485', 'stm32f4': 'hps167s_rs485_qemu', 'hps167s': 'hps167s',
-          'hps_probe': 'hps_probe', 'hps_waits': 'hps_waits',
-          'timer0': 'timer0', 'alone': 'alone'}  # environment: image
-ARDUINO = ('hps167s', 'hps_probe', 'hps_waits', 'timer0')
+IMAGES = {'avr': 'hps167s_rs485', 'stm32f4': 'hps167s_rs485_qemu', 'hps167s': 'hps167s', 'timer0': 'timer0',
+          'alone': 'alone'}  # environment: image
 SCONS = '4.40801.0'  # as PlatformIO names SCons 4.8.1
 SOURCES = {
     'avr': ['examples/avr/hps167s_rs485.c'],
@@ -25,8 +23,6 @@ SOURCES = {
                 'examples/stm32f4/start.h', 'examples/stm32f4/stm32f4.ld', 'examples/start',
                 'tests/firmware/stm32f4/images/board_qemu.c'],
     'hps167s': ['examples/arduino/hps167s/hps167s.ino'],
-    'hps_probe': ['tests/firmware/arduino/sketches/hps_probe/hps_probe.ino'],
-    'hps_waits': ['tests/firmware/arduino/sketches/hps_waits/hps_waits.ino'],
     'timer0': ['tests/firmware/platformio/timer0.cpp'],
     'alone': ['tests/firmware/platformio/alone.c'],
     'unknown': ['tests/firmware/platformio/alone.c'],  # which is refused
@@ -74,7 +70,7 @@ def lay_project(environment, project, package):
         source = os.path.join(ROOT, path)
         (shutil.copytree(source, folder, dirs_exist_ok=True) if os.path.isdir(source) else shutil.copy(source, folder))
     with open(os.path.join(HERE, 'project.ini'), encoding='utf-8') as file:
-        text = file.read().replace('@HERE@', HERE).replace('@ROOT@', ROOT).replace('@PACKAGE@', package)
+        text = file.read().replace('@HERE@', HERE).replace('@PACKAGE@', package)
     with open(os.path.join(project, 'platformio.ini'), 'w', encoding='utf-8') as file:
         file.write(text)
 
@@ -83,7 +79,7 @@ def main(out):
     package = os.path.join(out, 'Fathom.tar.gz')
     for name in ('core', 'projects', 'images', 'said'):
         shutil.rmtree(os.path.join(out, name), ignore_errors=True)
-    for name in ('images/arduino', 'said'):
+    for name in ('images', 'said'):
         os.makedirs(os.path.join(out, name))
     lay_scons(out)
     good(pack(out, ROOT, package))
@@ -96,15 +92,12 @@ def main(out):
         if environment not in IMAGES:
             continue
         good((status, said))
-        image = IMAGES[environment] + '.elf'
         shutil.copy(os.path.join(project, '.pio/build', environment, 'program.elf'),
-                    os.path.join(out, 'images', 'arduino' if environment in ARDUINO else '', image))
+                    os.path.join(out, 'images', IMAGES[environment] + '.elf'))
     # What the bench of the AVR looks up.
-    for where, names in (('', ('hps167s_rs485',)), ('arduino', ARDUINO)):
-        for name in names:
-            elf = os.path.join(out, 'images', where, name)
-            with open(elf + '.sym', 'w', encoding='utf-8') as file:
-                subprocess.run(['avr-nm', elf + '.elf'], stdout=file, check=True)
+    elf = os.path.join(out, 'images', IMAGES['avr'])
+    with open(elf + '.sym', 'w', encoding='utf-8') as file:
+        subprocess.run(['avr-nm', elf + '.elf'], stdout=file, check=True)
 
 
 if __name__ == '__main__':

@@ -131,7 +131,6 @@ bool was_queued(int transaction);
 fathom_status_t world_submit(int transaction);
 void put(const uint8_t *bytes, uint8_t length);
 uint8_t response(int ticket, uint8_t *bytes);
-void world_long_pause(void);
 void fill_in(int transaction);
 
 /* ---- packed.c: a state as bytes; what differs in them behaves differently ---- */

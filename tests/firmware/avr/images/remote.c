@@ -74,9 +74,6 @@ static int16_t call(uint8_t what)
         return (int16_t)fathom_avr_usart0.set_line(NULL, &line);
     case REMOTE_SET_BREAK:
         return (int16_t)fathom_avr_usart0.set_break(NULL, remote.flags != 0);
-    case REMOTE_NOW:
-        remote.time_us = fathom_avr_clock.now_us(NULL);
-        return 0;
     case REMOTE_PIN:
         GPIOR1 = REMOTE_MARK;
         output.set(output.ctx, remote.flags != 0);
