@@ -10,7 +10,7 @@ const {Simulator} = require('rp2040js');
 const {readElf} = require('./elf.js');
 const {Pl011} = require('./pl011.js');
 
-const FLASH = 0x10000000, RAM = 0x20000000, RAM_SIZE = 0x40000;
+const FLASH = 0x10000000, RAM = 0x20000000;
 const CYCLE_NS = 8; // 125 MHz
 const US = 1000, MS = 1000000;
 const RESETS = 0x4000c, UARTS = [0x40034, 0x40038], RESET_OF_UART0 = 22;
@@ -41,7 +41,6 @@ class Machine {
     for (const [number, value] of Object.entries(scratch)) this.mcu.writeUint32(SCRATCH0 + 4 * number, value);
     this.core.VTOR = FLASH;
     this.core.reset();
-    this.lowestStack = this.core.SP;
     this.interrupts = new Map(); // number: cycles of the longest one
     this.watchInterrupts();
     this.watched = new Map(); // address: what to call with the machine
@@ -124,7 +123,6 @@ class Machine {
   get us() { return this.clock.nanos / US; }
   get ended() { return this.mcu.readUint32(SCRATCH1) === ENDED; }
   get status() { return this.mcu.readUint32(SCRATCH0); }
-  get deepestStack() { return RAM + RAM_SIZE - this.lowestStack; }
 
   after(us, callback) { this.clock.createAlarm(callback).schedule(us * US); }
 
@@ -143,7 +141,6 @@ class Machine {
       const at = watched.get(core.PC & ~1);
       if (at) at();
       clock.tick(core.executeInstruction() * CYCLE_NS);
-      if (core.SP < this.lowestStack) this.lowestStack = core.SP;
     }
   }
 

@@ -12,7 +12,7 @@ const {
 const EXAMPLE = 'hps167s_rs485';
 const BOTH = 'both';
 const DI = 4, RO = 5, DE = 6, TRIGGER = 2, ECHO = 3;
-const UART1_IRQ = 21, TIMER_IRQ_0 = 0;
+const UART1_IRQ = 21;
 const LOOPS = {fine: 0, coarse: 20000}; // us
 
 function start(image, responses, options) {
@@ -61,10 +61,8 @@ test('the datasheet\'s response becomes its reading, again and again', () => {
   assert.deepStrictEqual(lines(bench, 5), Array(5).fill(READING));
   assertNoGaps(bench);
   assertSilence(bench);
-  figure('rp2040_driver_too_long', (assertDriven(bench) / US).toFixed(1), 'us');
+  assertDriven(bench);
   figure('rp2040_uart_interrupt', bench.machine.interrupts.get(UART1_IRQ), 'cycles');
-  figure('rp2040_driver_alarm', bench.machine.interrupts.get(TIMER_IRQ_0), 'cycles');
-  figure('rp2040_hps167s_deepest_stack', bench.machine.deepestStack, 'bytes');
 });
 
 test('the line is 19200 8E1: divider, format and pins', () => {
@@ -125,13 +123,6 @@ for (const [loop, round] of Object.entries(LOOPS)) {
       if (result === 0) cost.ready = Math.max(cost.ready, cycles);
       else cost.idle.set(cycles, (cost.idle.get(cycles) || 0) + 1);
     });
-    const crc = {bytes: 0, cycles: 0};
-    let length = 0;
-    machine.watch('fathom_crc16', (_, __, cycles) => {
-      crc.bytes += length;
-      crc.cycles += cycles;
-    }, () => { length = machine.core.registers[1]; });
-
     const isPulse = (line) => !line.endsWith('raw 2083');
     machine.until(() => machine.ended || bench.terminal.lines.some(isPulse), 500);
     const said = bench.terminal.lines;
@@ -145,8 +136,6 @@ for (const [loop, round] of Object.entries(LOOPS)) {
     const [idle] = [...cost.idle].reduce((most, each) => (each[1] > most[1] ? each : most));
     figure('rp2040_poll_idle', idle, 'cycles');
     figure('rp2040_poll_with_response', cost.ready, 'cycles');
-    figure('rp2040_crc_byte', (crc.cycles / crc.bytes).toFixed(1), 'cycles');
-    figure('rp2040_both_deepest_stack', machine.deepestStack, 'bytes');
   });
 }
 

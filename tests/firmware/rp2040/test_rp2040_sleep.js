@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // examples/rp2040/hps167s_battery.c: power for one reading, then sleep, also for longer than the clock takes to wrap.
 'use strict';
-const {assert, test, figure} = require('./runner.js');
+const {assert, test} = require('./runner.js');
 const {Machine} = require('./machine.js');
 const {FE, BE} = require('./pl011.js');
 const {Hps167s, Terminal, MS, READING, MEASURING, NEVER, NO_RESPONSE, WRAP_NS} = require('./devices.js');
@@ -67,11 +67,7 @@ test('every ten minutes it gets power, warms up, is read once and loses power ag
 test('the core sleeps for more than 99.9 % of the time', () => {
   const bench = start(IMAGE, [MEASURING]);
   lines(bench, 3, 21);
-  const share = bench.machine.awake(0.001);
-  figure('rp2040_battery_cpu_share', (share * 100).toFixed(5), '%');
-  assert.ok(share > 0);
-  const [first] = powered(bench);
-  figure('rp2040_battery_power_on', (first.to - first.from).toFixed(0), 'ms');
+  assert.ok(bench.machine.awake(0.001) > 0);
 });
 
 test('a sensor that does not answer is an error, and it does not keep its power', () => {
