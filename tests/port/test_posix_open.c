@@ -220,6 +220,7 @@ TEST(a_missing_path_is_told_as_such)
 {
     check_failure("/dev/ttyNONE7", FATHOM_POSIX_ERR_NOT_FOUND, "no such device");
     check_failure("/dev/null/ttyUSB0", FATHOM_POSIX_ERR_NOT_FOUND, "no such device");
+    check_failure("./ttyNONE7", FATHOM_POSIX_ERR_NOT_FOUND, "no such device");
     check_failure("", FATHOM_POSIX_ERR_NOT_FOUND, "no such device");
     check_failure("/dev/a-path-that-is-longer-than-what-the-port-keeps-of-it-for-its-messages/ttyUSB0",
                   FATHOM_POSIX_ERR_NOT_FOUND, ": no such device");
