@@ -66,7 +66,7 @@
     /* SunFounder's page, ArduPilot. 50 ms or more: 60. With nothing in range 38 ms, or no pulse. */ \
     ROW(hc_sr04, A16, PULSE, H, "HC-SR04", "HY-SRF05, RCWL-9610A", "", "5 V: echo needs a divider at 3.3 V inputs", \
         RANGE(20, 4000), HIGH_PULSE(10), .period_ms = 60, .us_per_dm = 580, .no_target_ms = 38) \
-    /* A project, notes of a simulator. Times of the HC-SR04. RCWL-1601, 1605 and 1670 are said to be alike. */ \
+    /* A project, notes of a simulator. Times of the HC-SR04. Public notes liken RCWL-1601, 1605 and 1670 to it. */ \
     ROW(rcwl_1655, A16, PULSE, M, "RCWL-1655", "", "RCWL", "", \
         RANGE(200, 4500), HIGH_PULSE(10), .period_ms = 60, .us_per_dm = 580, .no_target_ms = 38)
 /* clang-format on */

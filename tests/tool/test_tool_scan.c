@@ -441,7 +441,7 @@ TEST(a_port_that_does_not_have_the_settings_of_a_sensor_is_named_as_the_cause)
 }
 
 FINDS(the_result_names_the_settings_that_were_left_out, "--baud 9600,230400,57600", "",
-      ". Not asked, since the port does not have them: 230400 8E1\n", scans.refused_baud = 230400)
+      ". Left out, since the port does not have them: 230400 8E1\n", scans.refused_baud = 230400)
 
 TEST(a_scan_that_left_out_every_setting_has_asked_nothing_and_concludes_nothing)
 {
@@ -573,7 +573,7 @@ TEST(an_address_has_150_ms_on_the_line_of_a16_and_a05_and_100_ms_elsewhere)
 /* ---- wrong usage ---- */
 
 REFUSES(a_scan_needs_a_serial_port, "scan", {"", "--port is missing"},
-        {"--port /nowhere a16", "takes options only, not 'a16'"},
+        {"--port /nowhere a16", "accepts options only, not 'a16'"},
         {"--port tcp:127.0.0.1",
          "scan needs a serial port, or a converter that passes raw bytes (rtu-tcp:), not 'tcp:127.0.0.1'."},
         {"--port rtu-tcp:127.0.0.1:1 --baud 9600",
@@ -755,7 +755,7 @@ TEST(a_unit_that_speaks_like_an_hps167_is_named_and_no_more)
         scan_begin();
         (void)add_speaker(lines[i], 100000, frame, sizeof frame);
         const tool_run_t *const run =
-            hears(found[i], "a device sends without a request. To ask anyway, use --wake.");
+            hears(found[i], "a device sends without a request. To send requests anyway, use --wake.");
         assert_says(run, "speaks like an HPS-167; perhaps an HPS-167S of before 2020-09\n");
         assert_int_equal(run->status, 1);
         assert_non_null(strstr(scan("--listen 3 --format json")->out,
@@ -1080,7 +1080,7 @@ TEST(a_line_that_is_never_silent_proves_nothing_about_its_addresses)
 {
     (void)add_speaker(&dyp_line, 6000, junk, sizeof junk); /* 6.3 ms long */
     const tool_run_t *const run = scan_finds("? - 9600 8N1", "--wake --baud 9600 --address 1-8 --listen 1");
-    assert_says(run, "fathom: 9 addresses got no request: ");
+    assert_says(run, "fathom: 9 addresses were sent no request: ");
     assert_null(strstr(run->err, "nothing was heard"));
     assert_int_equal(scans.probed[0][FATHOM_PARITY_NONE], 4 * 3 + 4 * 2);
 }

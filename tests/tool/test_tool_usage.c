@@ -137,7 +137,7 @@ static const refused_t wrong[] = {
     {"read hps167s 7 -p x",
      "unknown sensor '7'. An address stands behind its sensor and a colon, such as hps167s:7."},
     {"save a16 -p x --output a16.txt", "unknown option '--output'. Did you mean --file?"},
-    {"scan line1", "scan takes options only. Use --port line1."},
+    {"scan line1", "scan accepts options only. Use --port line1."},
     {"publish", "FILE is missing, such as /etc/fathom/site.yaml."},
     {"set a16 -p x address 255", "address is '255'. It takes 1 to 254."},
     {"set a16 -p x address 0", "A unit at address 0 may not be found again"},

@@ -64,7 +64,7 @@ static uint64_t fact(const failure_t *failure, const char *name, size_t length)
         {"triggered", mode->is_triggered && !has_pins},                         /* by a break on TX */
         {"pins", has_pins},                                                     /* lines of a GPIO chip */
         {"relative", mode->row != NULL},        /* its modes are those of its name alone */
-        {"forms", model_form(mode, 0) != NULL}, /* of which others are known */
+        {"forms", model_form(mode, 0) != NULL}, /* the table has other forms of it */
         /* what is known */
         {"tcp", port->kind == PORT_GATEWAY},
         {"converter", port->kind == PORT_RAW},
@@ -148,7 +148,7 @@ static uint64_t fact(const failure_t *failure, const char *name, size_t length)
     };
     for (size_t i = 0; i != sizeof rows / sizeof rows[0]; i++)
         if (strncmp(rows[i].name, name, length) == 0 && rows[i].name[length] == '\0') return rows[i].value;
-    assert(false); /* the names stand in this file alone */
+    assert(false); /* Only this file has names of facts. */
     return 0;
 }
 
@@ -215,7 +215,7 @@ static const row_t causes[] = {
     {CANCELLED, "", "the command ended before the response arrived", NULL},
 
     {GOOD | NO_MATCH | STALE | MALFORMED | OTHER_MASTER, "holder",
-     "{holder} has {path} open too. Two programs at one port take each other's bytes",
+     "{holder} has {path} open too. Two programs at one port lose bytes to each other",
      "{stop}, then try again"},
     {GOOD | NO_MATCH | STALE | MALFORMED | OTHER_MASTER, "changed",
      "another program has changed the settings of {path}",
@@ -234,7 +234,7 @@ static const row_t causes[] = {
      "Keep this wire away from motors and from the wire of trigger. " PULSE_WIRES},
     {NO_RESPONSE, "pins", "no pulse was received", PULSE_WIRES},
     {MALFORMED, "pins", "a pulse is no distance from {min} to {max} mm (--window)",
-     "Check for noise, and that nothing is nearer than 50 cm"},
+     "Check for noise, and that no target is nearer than 50 cm"},
     {STALE, "pins pulses", "the pulse was read more than 2.5 s after its end",
      "The computer is too busy, or it was asleep"},
     {STALE, "pins", "the level is not stable",
@@ -299,7 +299,7 @@ static const row_t causes[] = {
     {STALE | CHECKSUM, "listened ambiguous",
      "the bytes look like frames of {model}, but the start of a frame is not certain[dropped: (damaged "
      "frames: {damaged-frames}, bytes in no frame: {dropped})]",
-     "Check that nothing else sends on this line, and look for noise"},
+     "Check that no other device sends on this line, and look for noise"},
     {STALE | CHECKSUM, "listened worked",
      "the bytes form no frame[dropped: (damaged frames: {damaged-frames}, bytes in no frame: {dropped})]. "
      "Earlier readings were good, so the settings are right",
@@ -366,7 +366,7 @@ static const row_t causes[] = {
      "'fathom scan --port {path}'][converter:. If it speaks Modbus TCP, use {modbus-tcp}]" UNSEEN},
 
     {CHECKSUM, "asked tty part", "the response broke off after {part} bytes",
-     "If the rest may come later, as over a network or Bluetooth, try --pieces. " DISTURBANCE},
+     "If the rest may arrive later, as over a network or Bluetooth, try --pieces. " DISTURBANCE},
     {CHECKSUM, "asked worked",
      "earlier responses were good, so the settings are right and the line is disturbed[damaged: ({damaged} "
      "of {attempts} attempts)]",
@@ -638,7 +638,7 @@ uint32_t advice_at_opening(char *text, size_t size, const port_t *port)
     holder_t holder;
     holder_find(&holder, &port->serial, port->name);
     if (holder.program != 0)
-        (void)snprintf(text, size, "%s has the port open too, and two programs take each other's bytes. %s",
+        (void)snprintf(text, size, "%s has the port open too, and two programs lose bytes to each other. %s",
                        holder.who, holder.stop);
     else if (holder.is_console)
         (void)snprintf(

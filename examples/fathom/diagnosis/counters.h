@@ -34,7 +34,7 @@ enum { PORT_PARITY = 0, PORT_FRAMING = 1, PORT_OVERRUN = 2, PORT_BREAKS = 3, POR
 enum { UNIT_RESPONSES = 0, UNIT_FAILURES = 1, UNIT_COUNTERS = 2 };
 
 /*
- * The library's counters stop at 65535 and run from the beginning. Here they are taken out after each attempt:
+ * The library's counters stop at 65535 and count from the initialisation. The tool moves them here after each attempt:
  * so there are those of one attempt, from which its failure is explained, and the sums of all.
  */
 typedef struct {
@@ -62,7 +62,7 @@ typedef struct {
     uint64_t attempts;
     uint64_t failed;
     uint64_t readings;
-    uint64_t skipped;                 /* frames that came sooner than the interval */
+    uint64_t skipped;                 /* frames that arrived sooner than the interval */
     uint64_t failures[FAILURE_KINDS]; /* each is a line on stderr; four of an a05 may be one failed attempt */
     uint64_t timed; /* responses whose time is in the next three: from the request's start */
     uint64_t time_sum_us;
@@ -85,7 +85,7 @@ size_t counters_failure_kind(fathom_status_t status, const reader_t *reader);
 void counters_time(counters_t *counters, uint32_t took_us);
 
 /* Returns the share of damaged frames in percent, if more than a few in a hundred are damaged and the user does not know
- * it: once, and again if the share has doubled or comes back after a minute. A burst does not count. Else 0. */
+ * it: once, and again if the share has doubled or is reached again after a minute. A burst does not count. Else 0. */
 unsigned counters_take_damage(counters_t *counters);
 
 /* Adds what one sensor has counted to the sums of all; the present attempt is left out. */

@@ -46,8 +46,8 @@ __attribute__((format(printf, 2, 3))) static void lose(broker_t *broker, const c
     va_start(arguments, format);
     (void)vsnprintf(broker->reason, sizeof broker->reason, format, arguments);
     va_end(arguments);
-    /* A broker that accepts the client and ends the connection again, as with two clients of the same id, gets pauses that
-     * grow too. */
+    /* If the broker accepts the client and closes the connection again, as with two clients of the same id, the pauses grow
+     * too. */
     if (broker->phase == BROKER_READY && now_us(broker) >= broker->until_us) broker->pause_us = 0;
     broker->phase = BROKER_LOST;
     broker->closes = 0;
@@ -75,8 +75,8 @@ static void lose_closed(broker_t *broker)
                        : its->line,
             its->client_id,
             has_id     ? "client-id; write another one"
-            : has_site ? "site, of which this id is made; each computer needs its own"
-                       : "host name, of which this id is made; rename one of the hosts, or write site:");
+            : has_site ? "site, from which this id is made; each computer needs its own"
+                       : "host name, from which this id is made; rename one of the hosts, or write site:");
     broker->closes = closes;
 }
 
@@ -107,7 +107,7 @@ static bool check(broker_t *broker, int result, int error)
     else if (result == MOSQ_ERR_ERRNO)
         lose(broker, "%s", strerror(error));
     else if (result == MOSQ_ERR_CONN_LOST)
-        lose(broker, "it ends the connection at once; does this port want tls: ?");
+        lose(broker, "it closes the connection at once; does this port need tls: ?");
     else
         lose(broker, "%s", mosquitto_strerror(result));
     return false;

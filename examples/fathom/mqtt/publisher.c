@@ -13,8 +13,8 @@
 #include "reading/fields.h"
 
 /* Failures in a row after which a sensor is away; the least time between two messages about dropped messages; the time from
- * one message with the counters of the sensors to the next; after a connect, the longest time until the publisher's own
- * message comes back, and until retained messages do, which a broker of several machines may send later. */
+ * one message with the counters of the sensors to the next; after a connect, the longest time until the broker sends the
+ * publisher's own message back, and until it sends retained messages, which a broker of several machines may send later. */
 enum { FAILURES = 3, NEWS_US = 1000000, COUNTERS_US = 60000000, HEAR_US = 2000000, LISTEN_US = 5000000 };
 
 static uint64_t now_us(const publisher_t *publisher) { return publisher->host->now_us(publisher->host->ctx); }
@@ -38,7 +38,7 @@ static topic_t *add_topic(topic_t **at, topic_kind_t kind, const char *name)
     return topic;
 }
 
-/* Marks a topic as wanted, a new one if needed. */
+/* Marks a topic as wanted, and adds the topic if there is none. */
 static topic_t *want_topic(publisher_t *publisher, topic_kind_t kind, sensor_t *sensor, uint8_t probe)
 {
     char name[TOPIC_NAME];
@@ -110,7 +110,7 @@ static void make_due(publisher_t *publisher, topic_kind_t kind, const sensor_t *
 
 /* ---- what an earlier run left ---- */
 
-/* Counters come first, and what is behind them is deleted in the opposite order: none is left without its counters. */
+/* The counters of a sensor are sent first and deleted last. So no topic of a sensor remains without its counters. */
 static void on_received(void *ctx, const char *name, const char *payload, bool is_retained)
 {
     publisher_t *const publisher = ctx;
@@ -291,8 +291,8 @@ static const char *payload_of_message(publisher_t *publisher, const message_t *m
 
 /* ---- one message after another ---- */
 
-/* The order after a connect. Counters are the first, so a broker that has any retained message of a sensor has its counters.
- * The status makes all that is before it count. */
+/* The order of messages after a connect. Counters are the first, so a broker that has any retained message of a sensor has
+ * its counters. The status validates all messages before it. */
 enum { RANK_DELETED = 3, RANK_STATUS = 6, RANK_NONE = 8 };
 static const uint8_t ranks[TOPICS] = {
     [TOPIC_COUNTERS] = 1,     [TOPIC_AVAILABILITY] = 2,  [ENTITY_DISTANCE] = 4,
@@ -301,8 +301,8 @@ static const uint8_t ranks[TOPICS] = {
     [TOPIC_PUBLISHER] = 7,    [TOPIC_STATE] = RANK_NONE, [TOPIC_LEVEL] = RANK_NONE,
 };
 
-/* The rank of a retained message that is due; RANK_NONE: none is. What was sent is not sent again if a newer message of its
- * topic waits. */
+/* Returns the rank of the retained message of a topic. RANK_NONE: no message is due. A message is not sent again while a
+ * newer message of its topic waits. */
 static unsigned rank_of(const topic_t *topic)
 {
     const message_t *const kept = topic->kept;
@@ -372,7 +372,7 @@ static bool send_message(publisher_t *publisher)
     if (message == NULL) return false;
     topic_t *const topic = message->topic;
     const bool is_retained = topic_is_retained(topic->kind);
-    /* A deleted topic must not come back. */
+    /* A deleted topic must not be published again. */
     const bool is_obsolete = is_retained && !topic->is_wanted;
     message->is_sent = !is_obsolete && broker_send(&publisher->broker, topic->name,
                                                    payload_of_message(publisher, message), is_retained);

@@ -208,7 +208,7 @@ const char *model_unreadable(const char *name)
          false},
         {"SEN0590", "A22YYCW, R01CW, SEN0304", "", "it has I2C, and no UART", NULL, 0, 0, false},
         {"RCWL-1601", "RCWL-1605, RCWL-1670", "",
-         "its range is not known. It is said to be like an rcwl-1655, so read it as that, with --window",
+         "its range is not known. Public notes liken it to an rcwl-1655, so read it as that, with --window",
          NULL, 0, 0, false},
         {"SEN0600", "SEN0601", "", "it is a soil probe that has another value at register 0100", NULL, 0, 0,
          false},

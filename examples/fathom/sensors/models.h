@@ -14,11 +14,11 @@
 #include "sim/hps167.h"
 #include "sim/hps167s.h"
 
-/* All that the tool knows of the sensor models, as rows. */
+/* The sensor models, as rows. */
 
 /* ---- modes ---- */
 
-/* The lines of a GPIO chip on which a sensor hangs instead of a serial line: bits. */
+/* The lines of a GPIO chip to which a sensor is connected instead of a serial line: bits. */
 enum {
     MODEL_PIN_TRIGGER = 1, /* to its RX */
     MODEL_PIN_ECHO = 2,    /* pulses, from its TX */
@@ -32,7 +32,7 @@ typedef struct model_mode {
     const char *protocol; /* in which the tool sends requests: "Modbus", "55 AA"; NULL: it sends none */
     bool is_modbus;       /* of these: also through a gateway */
     bool is_triggered;    /* a level at the sensor's RX triggers a measurement */
-    bool is_contact;      /* a level is all that the sensor sends */
+    bool is_contact;      /* the sensor sends only a level */
     bool has_pulses;      /* the width of a pulse is the distance */
     bool has_address;     /* in the frames of the sensor */
     bool can_move_others; /* a damaged response can change the address of another sensor of this model */
@@ -92,7 +92,7 @@ typedef struct {
     uint8_t mode;              /* scan_mode_t, of a sensor */
     uint8_t address;           /* 0: none */
     bool is_double;            /* two responses to one request were received */
-    const char *perhaps;       /* of a device that is not confirmed: what it could be; NULL: not known */
+    const char *perhaps; /* what an unconfirmed device could be, and how sure that is; NULL: not known */
 
     /* of an A16 or A05 that responded */
     bool has_value;
@@ -113,9 +113,9 @@ struct inquiry {
      * silence_tries times. Returns true if status is FATHOM_OK. */
     bool (*ask)(inquiry_t *inquiry, uint16_t first, uint8_t count, uint32_t timeout_us,
                 uint8_t silence_tries);
-    fathom_status_t status; /* of the newest response; at first of that to model_t.scan.first */
-    const uint16_t *values; /* of that response */
-    uint16_t own; /* the register of its own by which the model was found: model_t.scan.own or .slow_own */
+    fathom_status_t status;  /* of the newest response; at first of that to model_t.scan.first */
+    const uint16_t *values;  /* of that response */
+    uint16_t own;            /* the register that identified the model: model_t.scan.own or .slow_own */
     scan_finding_t *finding; /* to fill in */
 };
 
@@ -238,15 +238,15 @@ struct model {
         uint16_t own;         /* a register that no other model with the same first read has ... */
         uint16_t slow_own;    /* ... and one for INQUIRY_SLOW_US, if none of them responds to that */
         uint32_t timeout_us;  /* of the first read; 0: the default of a scan */
-        bool has_any;         /* the first read at address 255 is answered from the real address */
+        bool has_any;         /* a unit responds to the first read at address 255, from its real address */
         const char *family;   /* what a device that is found can be */
         uint16_t second;      /* another register with the distance of `own` ... */
         /* ... which this function compares with that. Returns false if the device is none of this family. */
         bool (*confirm)(inquiry_t *inquiry, const model_t *model);
         /* Instead of `own`: identifies it by the response to the first read, and by further reads. */
         bool (*is_it)(inquiry_t *inquiry);
-        /* Returns true if the bytes have frames of a protocol that units of another age may have had; `alike` says what
-         * the sender can be. */
+        /* Returns true if the bytes have frames of a protocol that older units may have. `alike` is what the sender
+         * can be. */
         bool (*is_alike)(const uint8_t *bytes, uint16_t count);
         const char *alike;
     } scan;
@@ -262,7 +262,7 @@ struct model {
     const char *(*exception_name)(uint8_t code);
 };
 
-/* The models. If several can be a device, a later one is tried first. A model with its own driver also needs a
+/* The models. If a device can be several of them, a scan tries the later one first. A model with its own driver also needs a
  * place in the union of driver.h and in that of device_t. */
 extern const model_t models[];
 extern const size_t model_count;

@@ -202,7 +202,7 @@ class Two(Case):
         self.wait_for(subscriber, '/gate/availability', lambda one: one.payload == 'online')
         second = self.other(host='localhost')
         second.expect(r'broker localhost port \d+: .*/other\.yaml:1: it accepts the client fathom-mill and soon closes the '
-                      r'connection, again and again\. Another client probably has the same site, of which this id is made; each '
+                      r'connection, again and again\. Another client probably has the same site, from which this id is made; each '
                       r'computer needs its own; it is tried again when a sensor responds\.$', 'err')
         self.wait_for(subscriber, '/gate/state', lambda one: one.json['age_ms'] < 50, 20)
         late = self.subscribe()
@@ -213,7 +213,7 @@ class Two(Case):
         self.assertIsNone(first.done)
 
     @e2e.each(a_client_id_of_two_is_named=('client-id: own', r'site\.yaml:6: it accepts the client own .* has the same client-id; write another one'),
-              a_site_of_two_is_named=('', r'site\.yaml:1: it accepts the client fathom-mill .* has the same site, of which this id is made'))
+              a_site_of_two_is_named=('', r'site\.yaml:1: it accepts the client fathom-mill .* has the same site, from which this id is made'))
     def what_to_change(self, broker, words):
         self.broker()
         first = self.begin(broker=broker)

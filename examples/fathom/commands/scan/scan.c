@@ -62,7 +62,7 @@ static bool parse_parities(const char *text, void *member)
     return true;
 }
 
-/* Address 0 stands alone, since most units obey it as a broadcast. */
+/* Address 0 is in no range, since most units obey it as a broadcast. */
 static bool parse_addresses(const char *text, void *member)
 {
     scan_addresses_t *const addresses = member;
@@ -108,7 +108,7 @@ static const option_table_t tables[] = {{rows, 0}, {NULL, 0}};
 
 /* ---- the plan ---- */
 
-/* The datasheets print no period of the frames. A16 2(2) gives its value 7.5 s to settle. */
+/* The datasheets print no period of the frames. An A16 takes 7.5 s to settle (A16 2(2)). */
 enum { DEFAULT_LISTEN_US = 8000000 };
 
 /* Returns none at 9600 baud and even above, which an HPS-167S keeps at all its rates (HPS-167S 2.2.2). */
@@ -405,7 +405,7 @@ static void print_why_nothing_was_sent(const scan_finding_t *sender)
         (void)fputs(kinds[sender->kind].why, stderr);
     else
         (void)fputs("requests would collide with its unsolicited frames", stderr);
-    (void)fputs(". To ask anyway, use --wake.\n", stderr);
+    (void)fputs(". To send requests anyway, use --wake.\n", stderr);
 }
 
 static void print_nothing(const scan_t *scan)
@@ -430,7 +430,7 @@ static void print_nothing(const scan_t *scan)
     (void)fputs(". A sensor that was just switched on may need 5 s\n", stderr);
 }
 
-/* Prints why addresses got no request, or which device disturbs. */
+/* Prints why the scan sent addresses no request, or which device disturbs the line. */
 static void print_cause(const scan_t *scan, fathom_status_t status)
 {
     const failure_t failure = failure_of(scan, status);
@@ -445,7 +445,7 @@ static void print_others(const scan_t *scan)
         print_cause(scan, FATHOM_ERR_LINE_BUSY);
     }
     if (scan->not_asked != 0) {
-        (void)fprintf(stderr, "fathom: %" PRIu32 " addresses got no request: ", scan->not_asked);
+        (void)fprintf(stderr, "fathom: %" PRIu32 " addresses were sent no request: ", scan->not_asked);
         print_cause(scan, scan->has_other_master ? FATHOM_ERR_OTHER_MASTER : FATHOM_ERR_LINE_BUSY);
     }
     if (scan->outside != 0)
@@ -496,7 +496,7 @@ static void print_result(const scan_t *scan)
     for (uint8_t i = 0, listed = 0; i != scan->settings->line_count; i++)
         if (scan->left_out[i])
             (void)fprintf(stderr, "%s%s",
-                          listed++ == 0 ? ". Not asked, since the port does not have them: " : ", ",
+                          listed++ == 0 ? ". Left out, since the port does not have them: " : ", ",
                           line_text(&scan->settings->lines[i], line));
     (void)fputs("\n", stderr);
 }
@@ -572,9 +572,9 @@ static int start(const host_t *host, const arguments_t *arguments)
     make_plan(settings);
     scan = (scan_t){.report = report, .settings = settings, .port.watches_output = true};
     if (arguments->count != 0 && settings->port == NULL)
-        (void)reject(&origin, "scan takes options only. Use --port %s.", arguments->words[0]);
+        (void)reject(&origin, "scan accepts options only. Use --port %s.", arguments->words[0]);
     else if (arguments->count != 0)
-        (void)reject(&origin, "scan takes options only, not '%s'.", arguments->words[0]);
+        (void)reject(&origin, "scan accepts options only, not '%s'.", arguments->words[0]);
     else if (settings->port == NULL && !settings->estimate)
         (void)reject(&origin,
                      "--port is missing, such as --port /dev/ttyUSB0. 'fathom help ports' explains ports.");

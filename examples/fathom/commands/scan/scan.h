@@ -53,7 +53,7 @@ typedef struct {
 
 typedef struct scan scan_t;
 struct scan {
-    inquiry_t inquiry; /* first, so that its function gets from it to the scan */
+    inquiry_t inquiry; /* Invariant: the first member, so that its function finds the scan. */
     /* Prints a finding at once. If that fails, no further request is sent. */
     void (*report)(scan_t *scan, const scan_finding_t *finding);
     const scan_settings_t *settings;
@@ -72,7 +72,7 @@ struct scan {
     uint32_t awakened;         /* sensors of the sender's model */
     bool has_damaged;          /* an address whose responses are damaged */
     bool has_dyp;              /* a sensor that can have frames 55 AA */
-    int any; /* address of the unit that answered at address 255 at this line setting; -1: none */
+    int any; /* address of the unit that responded at address 255 with these settings; -1: none */
     uint32_t found_baud[SCAN_ADDRESSES]; /* of the device at an address; 0: none */
     evidence_t heard;                    /* echoes, masters, and `bytes` of neither a frame nor an echo */
     uint8_t outside;                     /* an address beyond the plan that sent a frame; 0: none */
@@ -80,13 +80,13 @@ struct scan {
         not_asked; /* addresses, counted at each line setting: the line was busy, or another master asked them */
     bool left_out[SCAN_LINES]; /* line settings that the port does not have */
     uint8_t left_out_count;
-    bool has_other_master; /* another master asked one of these */
+    bool has_other_master; /* another master sent one of these a request */
 
     /* At the present line setting. NULL: the scan listens. */
     const fathom_line_settings_t *line;
     scan_read_t read;
     uint8_t states[SCAN_ADDRESSES];
-    uint16_t busy_in_row; /* addresses in a row that the scan could not ask */
+    uint16_t busy_in_row; /* addresses in a row to which the scan could send no request */
     uint16_t garbled;     /* addresses whose responses were garbled */
     uint16_t asked;       /* addresses */
 };
@@ -106,13 +106,14 @@ void scan_listen(scan_t *scan);
  *    Others may have been silent.
  *  - Other devices may be silent there, but respond where an A16 has its distance. So the scan then reads this register at
  *    each silent address. The device is SCAN_OTHER, with what it could be.
- *  - A late response arrives while the scan asks another address. The scan asks its sender again with a long time-out.
- *  - After bytes that are no frame, or a damaged frame, the scan asks again. If each response is damaged, the address is
+ *  - A late response arrives during the request to another address. The scan sends its sender another request, with a
+ *    long time-out.
+ *  - After bytes that are no frame, or a damaged frame, the scan repeats the request. If each response is damaged, the address is
  *    SCAN_DAMAGED. If more than half of the addresses are, and no response was whole, the line is SCAN_NOT_MODBUS.
- *  - If a busy line or another master ends a request, the scan repeats it. If that goes on, nothing is known about the
- *    address.
+ *  - If a busy line or another master ends a request, the scan repeats it. If the repetitions fail too, nothing is known about
+ *    the address.
  *  - At an address where a device was found, other parities of the same rate are not tried.
- *  - On the line of A16 and A05, if no A05 was found, the scan asks any A05 by 55 AA. That finds an A05 with an address
+ *  - On the line of A16 and A05, if no A05 was found, the scan sends a request 55 AA to any A05. It finds an A05 with an address
  *    beyond the plan, if it is the only one.
  */
 void scan_walk(scan_t *scan);

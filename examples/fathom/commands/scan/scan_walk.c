@@ -4,11 +4,11 @@
 
 #include "commands/scan/scan.h"
 
-/* ---- the time that it takes ---- */
+/* ---- the time of a scan ---- */
 
 enum {
     /* An HPS-167S needs 2.5 to 20 ms, and a USB adapter may delay bytes by 16 ms. A later response arrives during the
-     * request to the next address, and its sender gets another request. */
+     * request to the next address, and the scan sends that unit another request. */
     TIMEOUT_US = 100000,
     ANY_TIMEOUT_US = 300000,   /* of the request to any A05 */
     LATE_TIMEOUT_US = 1000000, /* of an address that responded late */
@@ -49,7 +49,7 @@ static uint32_t address_us(const scan_settings_t *settings, const fathom_line_se
     return first_us + settings->retries * (first_us + wait_us);
 }
 
-/* Returns the model of which one unit answers at address 255 at these settings; NULL: none. */
+/* Returns the model of which a unit responds at address 255 with these settings; NULL: there is none. */
 static const model_t *with_any(const fathom_line_settings_t *line)
 {
     for (size_t i = 0; i != model_count; i++)
@@ -195,13 +195,13 @@ void scan_listen(scan_t *scan)
 
 /* ---- one request ---- */
 
-/* Returns true if a device responded, in whatever way. */
+/* Returns true if a device responded: with a value, an exception or a malformed frame. */
 static bool is_answered(fathom_status_t status)
 {
     return status == FATHOM_OK || status == FATHOM_ERR_EXCEPTION || status == FATHOM_ERR_MALFORMED;
 }
 
-/* Returns true if the line was busy or another master asked the same unit, which proves nothing about the unit. */
+/* Returns true if the line was busy or another master sent the same unit a request. Neither proves anything about the unit. */
 static bool is_of_line(fathom_status_t status)
 {
     return status == FATHOM_ERR_LINE_BUSY || status == FATHOM_ERR_OTHER_MASTER;
@@ -241,7 +241,7 @@ void scan_ask(scan_t *scan)
 
 /* ---- which model it is ---- */
 
-/* inquiry_t.ask */
+/* The function inquiry_t.ask. */
 static bool ask(inquiry_t *inquiry, uint16_t first, uint8_t count, uint32_t timeout_us, uint8_t silence_tries)
 {
     enum { DAMAGED_TRIES = 4 };
@@ -382,8 +382,8 @@ typedef struct {
     bool has_checksum;
 } attempts_t;
 
-/* Counts a request without a whole response. Returns true if the address gets another request: less often after addresses
- * with the same trouble. */
+/* Counts a request without a whole response. Returns true if the scan sends the address another request. After addresses
+ * with the same trouble, there are fewer of these. */
 static bool count_failure(scan_t *scan, attempts_t *attempts)
 {
     enum { DAMAGED_REPEATS = 3, FEW_GARBLED = 3, BUSY_REPEATS = 2, BUSY_LINE = 4 };
@@ -403,7 +403,7 @@ static bool count_failure(scan_t *scan, attempts_t *attempts)
     return attempts->timeouts + attempts->troubles <= repeats;
 }
 
-/* Asks an address until its state is known, and identifies the device there. */
+/* Sends an address requests until its state is known, and identifies the device there. */
 static void visit(scan_t *scan, uint8_t address, uint32_t timeout_us)
 {
     enum { LINGER_US = 40000 }; /* a second unit with the address responds within a few milliseconds */
@@ -505,7 +505,8 @@ static void ask_any_dyp(scan_t *scan)
                                              .is_certain = true});
 }
 
-/* One unit answers a read of its address at address 255 from its real address. Several damage each other's responses. */
+/* A single unit responds to a read of its address at address 255 from its real address. Several units damage each other's
+ * responses. */
 static void ask_any(scan_t *scan, uint32_t timeout_us)
 {
     const model_t *const model = with_any(scan->line);
