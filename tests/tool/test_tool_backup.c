@@ -79,8 +79,6 @@ static const char of_hps167s[] = MIDDLE
     "reconnect-time = 180                     # ms, after this time without data from its sensor it "
     "sends abnormal packets (#15)\n"
     "\n# What the unit does not tell. It is restored only if you fill it in, and then written each time.\n"
-    "load-settings = not readable             # loads the settings that the user has saved (#13); for "
-    "those of the factory: fathom reset\n"
     "distance-offset = not readable           # mm, added to what it measures; whether to an earlier "
     "offset too is not in the datasheet (#12)\n"
     "filter-sensitivity = not readable        # larger is steadier and slower; 0 from the factory, -100 to "
@@ -600,6 +598,13 @@ static void refuses(int status, const char *sensor, const char *words)
     assert_int_equal(bench.line.counters.from_host, 0);
 }
 
+TEST(a_file_of_an_earlier_version_has_the_command_load_settings)
+{
+    set_up_both();
+    desk_write("unit", HPS "load-settings = not readable\n");
+    says(0, "no differences", "restore hps167s");
+}
+
 /* ESC [ is how a terminal is told to do things, and so is 9B, in UTF-8 C2 9B, alone. */
 TEST(every_mistake_in_a_file_is_told_with_its_line_and_nothing_is_sent)
 {
@@ -625,6 +630,7 @@ TEST(every_mistake_in_a_file_is_told_with_its_line_and_nothing_is_sent)
         {HPS "= 5\n", "2: '' " NO_SETTING " hps167s"},
         {HPS "temperature = 25.0\n", "2: 'temperature' " NO_SETTING " hps167s"},
         {HPS "baud-code = 1\n", "2: 'baud-code' " NO_SETTING " hps167s"},
+        {HPS "load-settings = user\n", "2: 'load-settings' " NO_SETTING " hps167s"},
         {HPS "uuid = 0039002542345714203438350106070500390025423457142034383501060705\n",
          "2: the value of uuid is too long"},
         {HPS "uuid = 00\x1b[2J\n", UNPRINTABLE},

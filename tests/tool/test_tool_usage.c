@@ -62,6 +62,8 @@ static const refused_t wrong[] = {
     {"read a16 -p x --means FFFD=fault", "--means: unknown key 'FFFD'. Did you mean fffd?"},
     {"read a16 -p x --means 0=fault,", "--means: unknown key ''."},
     {"watch a16 -p x --count 3", "unknown option '--count'."},
+    {"watch a16 -p x --level mounting=2300",
+     "unknown option '--level'. Did you mean --level of 'fathom read'?"},
     /* sensors */
     {"read", "no sensor is named."},
     {"read a02yyu2 -p x", "unknown sensor 'a02yyu2'. Did you mean a02yyuw?"},

@@ -283,6 +283,9 @@ static int parse_line(parser_t *parser, char *line)
         return wrong(parser, "the line '%s' comes before the line 'sensor = %s'", name, model->name);
     for (value_t *value = parser->file->rows; value->setting != NULL; value++)
         if (strcmp(value->setting->name, name) == 0) return parse_value(parser, value, text);
+    /* fathom 0.6.0 saved load-settings, which is a command. */
+    if (setting_of(model->settings, name) != NULL && strcmp(text, words[HELD_NOT_READABLE]) == 0)
+        return STATUS_OK;
     return wrong(parser, "'%s' is no setting that 'fathom save' prints for an %s", name, model->name);
 }
 

@@ -84,7 +84,6 @@ static const char *const rates[] = {"19200", "57600", "115200", "230400",
                                     NULL}; /* in the order of their codes */
 static const char *const user[] = {"user", NULL};
 
-/* `fathom restore` writes them in this order: the settings that are loaded may have another offset and filter. */
 const setting_t hps167s_settings[] = {
     {"interface-version", "of the RS485 interface (#1)", SETTING_VERSION, .read_at = FATHOM_HPS167S_VERSION,
      .print = print_version},
@@ -121,8 +120,8 @@ const setting_t hps167s_settings[] = {
      .most = 2147483646 /* 18 * 119304647 */, .step = FATHOM_HPS167S_RECONNECT_STEP_MS},
     {"load-settings",
      "loads the settings that the user has saved (#13); for those of the factory: fathom reset",
-     .write_at = FATHOM_HPS167S_LOAD, .effect = "at once; kept over power-off", .words = user,
-     .note = note_load},
+     SETTING_PRESENT, .write_at = FATHOM_HPS167S_LOAD, .effect = "at once; kept over power-off",
+     .words = user, .note = note_load},
     {"distance-offset",
      "added to what it measures; whether to an earlier offset too is not in the datasheet (#12)",
      .write_at = FATHOM_HPS167S_OFFSET, .unit = "mm", .effect = KEPT, .least = INT16_MIN, .most = INT16_MAX,

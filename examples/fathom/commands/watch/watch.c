@@ -21,8 +21,17 @@
 
 /* fathom watch draws pictures of all lanes on a terminal, and prints lines into anything else. */
 
+/* The picture shows distances as they are read. */
+static const option_t elsewhere_rows[] = {
+    {"median", .is_hidden = true, .instead = "median of 'fathom read'"},
+    {"level", .is_hidden = true, .instead = "level of 'fathom read'"},
+    {"alarm", .is_hidden = true, .instead = "alarm of 'fathom read'"},
+    {.name = NULL},
+};
+
 #define SENSORS(member) offsetof(sensor_settings_t, member)
 static const option_table_t tables[] = {
+    {elsewhere_rows, 0},
     {word_rows, SENSORS(defaults)},
     {interval_rows, SENSORS(reader)},
     {request_rows, SENSORS(reader)},
@@ -380,8 +389,7 @@ static void name_ports(const site_t *site, char text[PORTS])
     size_t count = 0;
     text[0] = '\0';
     for (const line_t *line = site->lines; line != NULL && count++ != NAMED; line = line->next)
-        list_add(text, PORTS,
-                 site->line_count == 1 ? line->settings.path : port_last_part(line->settings.path));
+        list_add(text, PORTS, site->line_count == 1 ? line->settings.path : port_last_part(line->settings.path));
     const size_t length = strlen(text);
     if (site->line_count > NAMED)
         (void)snprintf(text + length, PORTS - length, " and %zu more", site->line_count - NAMED);
