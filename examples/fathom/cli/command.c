@@ -33,8 +33,6 @@ bool reject(const origin_t *origin, const char *format, ...)
     return false;
 }
 
-bool reject_memory(const origin_t *origin) { return reject(origin, "no memory is left."); }
-
 const char *origin_mark(const origin_t *origin)
 {
     return origin->within == NULL && origin->file == NULL ? "--" : "";

@@ -23,7 +23,6 @@ typedef struct {
 
 /* Prints one message to standard error: where, what is wrong, what to try. Returns false. */
 bool reject(const origin_t *origin, const char *format, ...) __attribute__((format(printf, 2, 3)));
-bool reject_memory(const origin_t *origin);
 
 /* What stands before the name of a row in messages: "--" for an option, "" for a key. */
 const char *origin_mark(const origin_t *origin);

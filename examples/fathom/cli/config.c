@@ -250,7 +250,7 @@ static bool are_printable(const config_t *config)
 static bool parse_file(config_t *config, FILE *stream)
 {
     yaml_parser_t parser;
-    if (!yaml_parser_initialize(&parser)) return reject_memory(&config->origin);
+    if (!yaml_parser_initialize(&parser)) end_without_memory();
     yaml_parser_set_input_file(&parser, stream);
     const bool is_good = (yaml_parser_load(&parser, &config->document) || reject_yaml(config, &parser)) &&
                          (yaml_document_get_root_node(&config->document) == NULL ||
@@ -504,21 +504,21 @@ static bool read_line(config_t *config, const yaml_node_t *map)
 
 /* The text of a line is everything that the file has for its sensors: of the line, of each sensor, and of all. Two lines
  * with the same text are the same. */
-static bool add_text(config_t *config, const sensor_t *sensor, const sensor_keys_t *from, line_t *line)
+static void add_text(config_t *config, const sensor_t *sensor, const sensor_keys_t *from, line_t *line)
 {
     char *text = NULL;
     size_t size = 0;
     FILE *const memory = open_memstream(&text, &size);
-    if (memory == NULL) return false;
+    if (memory == NULL) end_without_memory();
     while (&line->settings != sensor->port) line = line->next;
     (void)fprintf(memory, "%u %u %u ", (unsigned)from->reader.period_us, (unsigned)from->reader.timeout_us,
                   from->reader.retries);
     print_node(config, from->line, memory);
     print_node(config, from->map, memory);
     (void)fputc('\n', memory);
-    const bool is_added = fclose(memory) == 0 && line_add_text(line, text);
+    if (fclose(memory) != 0) end_without_memory();
+    line_add_text(line, text);
     free(text);
-    return is_added;
 }
 
 static bool read_sensors(config_t *config, site_t *site)
@@ -539,7 +539,7 @@ static bool read_sensors(config_t *config, site_t *site)
             !results_finish(&from->results, from->reader.period_us, its))
             return false;
         results_config_copy(&sensor->processing, &from->results);
-        if (!add_text(config, sensor, from, site->lines)) return reject_memory(its);
+        add_text(config, sensor, from, site->lines);
     }
     site->reconnect = true;
     site->persists = true;
@@ -572,16 +572,13 @@ bool config_load(publish_settings_t *settings, site_t *site, const char *command
     if (strlen(path) >= sizeof settings->path) return reject(&origin, "the path of the file is too long.");
     FILE *const stream = fopen(path, "rb");
     if (stream == NULL) return reject(&origin, "cannot read %s: %s.", path, strerror(errno));
-    config_t *const config = calloc(1, sizeof *config);
-    bool is_good = config != NULL || reject_memory(&origin);
-    if (config != NULL) {
-        config->origin = (origin_t){.command = command, .file = path, .line = 1};
-        is_good = parse_file(config, stream) && read_file(config, site);
-        if (!is_good) site_free(site);
-        *settings = config->top.settings;
-        (void)snprintf(settings->path, sizeof settings->path, "%s", path);
-        yaml_document_delete(&config->document);
-    }
+    config_t *const config = allocate(sizeof *config);
+    config->origin = (origin_t){.command = command, .file = path, .line = 1};
+    const bool is_good = parse_file(config, stream) && read_file(config, site);
+    if (!is_good) site_free(site);
+    *settings = config->top.settings;
+    (void)snprintf(settings->path, sizeof settings->path, "%s", path);
+    yaml_document_delete(&config->document);
     (void)fclose(stream);
     free(config);
     return is_good;

@@ -251,7 +251,6 @@ static bool set_port(site_t *site, sensor_t *sensor, const sensor_word_t *word, 
     line_t *line = site->lines;
     while (line != NULL && (has_pins || !port_is_same(line->settings.path, path))) line = line->next;
     if (line == NULL) line = site_add_line(site, path);
-    if (line == NULL) return reject_memory(&word->origin);
     line_add(line, sensor);
     port_keys_t *const keys = &line->settings.keys;
     for (port_key_t key = 0; key != PORT_KEYS; key++) {
@@ -380,7 +379,7 @@ static bool set_lines(const site_t *site, const sensor_defaults_t *defaults, con
         if (its->baud != port->line.baud || its->parity != port->line.parity) port->has_mixed_lines = true;
         for (const line_t *line = site->lines; port->kind == PORT_PINS && line != NULL; line = line->next)
             if (line->settings.kind == PORT_PINS &&
-                strcmp(port_last_part(port->path), port_last_part(line->settings.path)) == 0 &&
+                strcmp(last_part(port->path), last_part(line->settings.path)) == 0 &&
                 !suit_pins(port, &line->settings, &words[i].origin))
                 return false;
     }
@@ -475,7 +474,7 @@ static void add_port(sensor_t *sensor)
 {
     const size_t length = strlen(sensor->name);
     (void)snprintf(sensor->name + length, sizeof sensor->name - length, "@%s",
-                   port_last_part(sensor->port->path));
+                   last_part(sensor->port->path));
     for (char *at = sensor->name; *at != '\0'; at++)
         if (strchr("\"\\,", *at) != NULL || (unsigned char)*at < ' ') *at = '_';
 }
@@ -512,9 +511,7 @@ static bool set_names(const site_t *site, const sensor_word_t *words)
 bool sensors_add(site_t *site, const sensor_defaults_t *defaults, const sensor_word_t *words, int count)
 {
     for (int i = 0; i != count; i++)
-        if (site_add_sensor(site) == NULL) return reject_memory(&words[0].origin);
-    for (int i = 0; i != count; i++)
-        if (!set_port(site, site->sensors[i], &words[i], defaults->path)) return false;
+        if (!set_port(site, site_add_sensor(site), &words[i], defaults->path)) return false;
     for (int i = 0; i != count; i++) {
         sensor_t *const sensor = site->sensors[i];
         const bool sends_requests = site->asks_all || sensor->port->station_count > 1;

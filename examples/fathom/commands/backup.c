@@ -49,7 +49,7 @@ static bool save(const char *path)
         if (!file_write(path, false, print_unit, &unit)) return false;
         (void)printf("%s: the settings are in %s\n", session.sensor->name, path);
     }
-    return session_flush();
+    return is_output_written();
 }
 
 static int start_save(const host_t *host, const arguments_t *arguments)
@@ -277,7 +277,7 @@ static bool restore(bool is_dry)
         plan.is_new && port_has_settings(session.port.kind); /* that of a gateway belongs to all sensors */
     make_plan();
     print_plan();
-    if (!session_flush()) return false; /* without the plan on stdout nothing is written */
+    if (!is_output_written()) return false; /* without the plan on stdout nothing is written */
     if (is_dry) return plan.last < STEP_IMPOSSIBLE;
     if (plan.is_impossible)
         return session_fail(&session, FATHOM_OK,
@@ -286,7 +286,7 @@ static bool restore(bool is_dry)
                             plan.path);
     const bool moves = plan.last >= STEP_MOVE;
     if (moves && !is_place_free()) return false;
-    if (write_all() && (!moves || is_still_same())) return session_flush();
+    if (write_all() && (!moves || is_still_same())) return is_output_written();
     if (plan.unseen[0] != '\0')
         (void)session_fail(
             &session, FATHOM_OK,

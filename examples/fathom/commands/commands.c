@@ -79,13 +79,13 @@ static void print_table(FILE *to, const char *name)
 /* topics.txt, which the build has made a source of. */
 extern const char topics_text[];
 
-/* Returns the text with its tables. NULL: no memory is left. */
+/* Returns the text with its tables. */
 static char *full_text(void)
 {
     char *text = NULL;
     size_t size = 0;
     FILE *const to = open_memstream(&text, &size);
-    if (to == NULL) return NULL;
+    if (to == NULL) end_without_memory();
     for (const char *rest = topics_text; rest != NULL && *rest != '\0';) {
         char line[100];
         rest = next_word(rest, '\n', line, sizeof line);
@@ -94,7 +94,8 @@ static char *full_text(void)
         else
             (void)fprintf(to, "%s\n", line);
     }
-    return fclose(to) == 0 ? text : NULL;
+    (void)fclose(to);
+    return text;
 }
 
 /* Returns the topics, which a row without a name ends. Each begins with a line "@ NAME SUMMARY". */
@@ -170,7 +171,7 @@ static int reject_name(const char *what, const char *name, bool has_topics)
     return STATUS_USAGE;
 }
 
-static int finish(void) { return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED; }
+static int finish(void) { return is_output_written() ? STATUS_OK : STATUS_FAILED; }
 
 /* `fathom help --man [COMMAND]`, for the installation. */
 static bool print_installed(int argc, char **argv)
@@ -214,11 +215,7 @@ static int start(const host_t *host, const command_t *command, int argc, char **
 {
     arguments_t arguments;
     int status = STATUS_USAGE;
-    void *const settings = calloc(1, command->settings_size);
-    if (settings == NULL) {
-        (void)fputs("fathom: not enough memory.\n", stderr);
-        return STATUS_FAILED;
-    }
+    void *const settings = allocate(command->settings_size);
     if (arguments_parse(&arguments, command, argc, argv, settings)) {
         if (arguments.wants_help) help_print(stdout, command);
         status = arguments.wants_help ? finish() : command->start(host, &arguments);

@@ -95,7 +95,7 @@ static int show(const host_t *host, bool (*is_wanted)(const setting_t *setting))
     const bool is_read = values_read(&session, &values, false);
     if (values.is_known && session.is_json) print_json();
     if (values.is_known && !session.is_json) print_text();
-    const bool is_good = session_flush() && print_remarks() && is_read;
+    const bool is_good = is_output_written() && print_remarks() && is_read;
     session_close(&session);
     return is_good ? STATUS_OK : STATUS_FAILED;
 }
@@ -124,7 +124,7 @@ static int list(const arguments_t *arguments)
     (void)printf("%s, %s, has these settings. Add --port PORT to read their values.\n\n", model->name,
                  model->what);
     settings_print(stdout, model->settings);
-    return session_flush() ? STATUS_OK : STATUS_FAILED;
+    return is_output_written() ? STATUS_OK : STATUS_FAILED;
 }
 
 static int start_get(const host_t *host, const arguments_t *arguments)
@@ -393,7 +393,7 @@ static int start_reset(const host_t *host, const arguments_t *arguments)
     if (!session_open(&session, host)) return STATUS_FAILED;
     const fathom_status_t status = session_call(&session, call_reset, &is_interface);
     if (status == FATHOM_OK) print_reset(is_interface);
-    const bool is_reset = status == FATHOM_OK ? session_flush() : fail_reset(is_interface, status);
+    const bool is_reset = status == FATHOM_OK ? is_output_written() : fail_reset(is_interface, status);
     session_close(&session);
     return is_reset ? STATUS_OK : STATUS_FAILED;
 }

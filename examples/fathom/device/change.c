@@ -277,7 +277,7 @@ bool change_report(const change_t *change, fathom_status_t status)
                      change->setting->name, change->wanted, words[outcome]);
     else if (!change->session->is_json)
         print_done(change, outcome);
-    if (fflush(stdout) == 0 && ferror(stdout) == 0) return is_done;
-    (void)fprintf(stderr, "fathom: cannot write the output; the setting: %s\n", words[outcome]);
+    if (is_output_written()) return is_done;
+    (void)fprintf(stderr, "fathom: the setting: %s\n", words[outcome]);
     return false;
 }

@@ -38,13 +38,6 @@ static void explain(session_t *session, fathom_status_t status)
     advice_print(stderr, &failure);
 }
 
-bool session_flush(void)
-{
-    if (fflush(stdout) == 0 && ferror(stdout) == 0) return true;
-    (void)fputs("fathom: cannot write the output.\n", stderr);
-    return false;
-}
-
 bool session_fail(session_t *session, fathom_status_t status, const char *format, ...)
 {
     va_list arguments;

@@ -49,9 +49,6 @@ fathom_status_t session_measure(session_t *session, fathom_sample_t *sample);
 /* The line settings of the sensor, "9600 8N1". Behind a gateway "Modbus TCP". */
 const char *session_line_text(const session_t *session, char text[LINE_TEXT]);
 
-/* Returns true if all that was printed on stdout is written. Otherwise prints that it is not. */
-bool session_flush(void);
-
 /* Prints what failed as one line on stderr and, unless the status is FATHOM_OK, why. Returns false. */
 bool session_fail(session_t *session, fathom_status_t status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

@@ -2,6 +2,7 @@
 #define _DEFAULT_SOURCE 1 /* NOLINT(bugprone-reserved-identifier): gmtime_r, stpcpy */
 #include "output/words.h"
 
+#include <errno.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,6 +10,13 @@
 #include <time.h>
 
 #include "fathom/hal.h"
+
+bool is_output_written(void)
+{
+    if (fflush(stdout) == 0 && ferror(stdout) == 0) return true;
+    (void)fprintf(stderr, "fathom: cannot write the output: %s\n", strerror(errno));
+    return false;
+}
 
 void end_without_memory(void)
 {
@@ -21,6 +29,13 @@ void *allocate(size_t size)
     void *const memory = calloc(1, size);
     if (memory == NULL) end_without_memory();
     return memory;
+}
+
+void *reallocate(void *memory, size_t size)
+{
+    void *const all = realloc(memory, size);
+    if (all == NULL) end_without_memory();
+    return all;
 }
 
 /* ---- numbers and lists ---- */
@@ -57,6 +72,12 @@ bool word_find(const char *words, const char *text, uint32_t *n)
     for (*n = 0; (length = word_at(words, *n, &word)) != 0; ++*n)
         if (length == strlen(text) && strncmp(word, text, length) == 0) return true;
     return false;
+}
+
+const char *last_part(const char *path)
+{
+    const char *const slash = strrchr(path, '/');
+    return slash != NULL ? slash + 1 : path;
 }
 
 void list_add(char *list, size_t capacity, const char *word)

@@ -14,8 +14,13 @@ enum {
     STATUS_ALARM = 3 /* `fathom read --until-alarm` alone: an alarm is on */
 };
 
-/* Returns `size` bytes of zeros, for free(). If no memory is left, prints that and ends the tool. */
+/* Returns true if all that was printed on stdout is written. Otherwise prints that it is not. */
+bool is_output_written(void);
+
+/* Returns `size` bytes of zeros, or the bytes of `memory` in another size, for free(). If no memory is left, prints that
+ * and ends the tool. */
 void *allocate(size_t size);
+void *reallocate(void *memory, size_t size);
 void end_without_memory(void) __attribute__((noreturn));
 
 /* ---- numbers and lists ---- */
@@ -25,6 +30,9 @@ bool number_parse(const char *text, uint32_t min, uint32_t max, uint32_t *number
 
 /* A number, or two as in "2-9", the first not above the last. */
 bool range_parse(const char *text, uint32_t min, uint32_t max, uint32_t *first, uint32_t *last);
+
+/* Returns the part of a path behind its last slash. */
+const char *last_part(const char *path);
 
 /* Prints a number with `places` decimal places: -5 with one is -0.5. */
 enum { DECIMAL_TEXT = 32 };

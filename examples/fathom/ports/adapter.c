@@ -11,14 +11,10 @@
 #include <sys/inotify.h>
 #include <unistd.h>
 
+#include "output/words.h"
+
 const char *adapter_sysfs = "/sys";
 const char *adapter_dev = "/dev";
-
-static const char *last_name(const char *path)
-{
-    const char *const slash = strrchr(path, '/');
-    return slash != NULL ? slash + 1 : path;
-}
 
 /* ---- sysfs ---- */
 
@@ -48,7 +44,7 @@ unsigned adapter_latency_ms(const char *path)
     char real[PATH_MAX];
     char folder[PATH_MAX];
     char word[64];
-    if (realpath(path, real) == NULL || !tty_folder(last_name(real), folder)) return 0;
+    if (realpath(path, real) == NULL || !tty_folder(last_part(real), folder)) return 0;
     return read_attribute(folder, "latency_timer", word) ? (unsigned)strtoul(word, NULL, 10) : 0;
 }
 
@@ -59,7 +55,7 @@ unsigned adapter_latency_ms(const char *path)
  */
 static void name_socket(usb_t *usb, const char *folder)
 {
-    const char *const name = last_name(folder);
+    const char *const name = last_part(folder);
     const char *bus = strstr(folder, "/usb");
     while (bus != NULL && isdigit((unsigned char)bus[4]) == 0) bus = strstr(bus + 1, "/usb");
     if (bus == NULL) bus = name;
@@ -109,12 +105,7 @@ static unsigned unknown_ttys; /* that have appeared, and about which nothing is 
 
 static void append(list_t *list, const usb_t *usb)
 {
-    usb_t *const all = realloc(list->all, (list->count + 1) * sizeof *all);
-    if (all == NULL) {
-        (void)fputs("fathom: no memory is left.\n", stderr);
-        exit(EXIT_FAILURE); /* NOLINT(concurrency-mt-unsafe): one thread */
-    }
-    list->all = all;
+    list->all = reallocate(list->all, (list->count + 1) * sizeof *list->all);
     list->all[list->count++] = *usb;
 }
 
@@ -203,7 +194,7 @@ static bool is_counted(const char *serial)
 /* Returns why the identity does not find the adapter; NULL: it does, or there is none. */
 static const char *advice_for(const adapter_t *adapter)
 {
-    const char *const name = last_name(adapter->wanted);
+    const char *const name = last_part(adapter->wanted);
     const bool is_usb = strncmp(name, "ttyUSB", 6) == 0 || strncmp(name, "ttyACM", 6) == 0;
     if (adapter->known.tty[0] == '\0') return adapter->was_open && is_usb ? unknown_adapter : NULL;
     if (adapter->known.serial[0] == '\0') return "this adapter has no serial number";
@@ -238,7 +229,7 @@ static const char *find_first(adapter_t *adapter)
 {
     char real[PATH_MAX];
     char by_id[PATH_MAX];
-    if (realpath(adapter->wanted, real) == NULL || !read_usb(&adapter->found, last_name(real))) return NULL;
+    if (realpath(adapter->wanted, real) == NULL || !read_usb(&adapter->found, last_part(real))) return NULL;
     adapter_look();
     (void)snprintf(by_id, sizeof by_id, "%s/serial/by-id/", adapter_dev);
     if (is_shared(&adapter->found) && strncmp(adapter->wanted, by_id, strlen(by_id)) == 0)

@@ -17,6 +17,7 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include "output/words.h"
 #include "ports/adapter.h"
 
 const char *holder_proc = "/proc";
@@ -68,11 +69,7 @@ static bool has_hidden; /* processes whose descriptors this user cannot see */
 static void add_use(use_t use)
 {
     enum { CHUNK = 64 };
-    if (use_count % CHUNK == 0) {
-        use_t *const all = realloc(uses, (use_count + CHUNK) * sizeof *all);
-        if (all == NULL) return;
-        uses = all;
-    }
+    if (use_count % CHUNK == 0) uses = reallocate(uses, (use_count + CHUNK) * sizeof *uses);
     uses[use_count++] = use;
 }
 
@@ -256,12 +253,6 @@ static bool is_there(int fd, const char *path)
 }
 
 /* ---- what it means ---- */
-
-static const char *last_part(const char *path)
-{
-    const char *const slash = strrchr(path, '/');
-    return slash != NULL ? slash + 1 : path;
-}
 
 /* Sets the name of the device below /dev, by which systemd and the kernel know it: "ttyS0", "pts/3". */
 static void name_tty(char tty[TEXT], const char *path)

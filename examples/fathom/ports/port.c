@@ -18,17 +18,11 @@
 static const char tcp_prefix[] = "tcp:";
 static const char raw_prefix[] = "rtu-tcp:";
 
-const char *port_last_part(const char *path)
-{
-    const char *const slash = strrchr(path, '/');
-    return slash != NULL ? slash + 1 : path;
-}
-
 port_kind_t port_kind(const char *path)
 {
     if (strncmp(path, tcp_prefix, strlen(tcp_prefix)) == 0) return PORT_GATEWAY;
     if (strncmp(path, raw_prefix, strlen(raw_prefix)) == 0) return PORT_RAW;
-    return strncmp(port_last_part(path), "gpiochip", strlen("gpiochip")) == 0 ? PORT_PINS : PORT_SERIAL;
+    return strncmp(last_part(path), "gpiochip", strlen("gpiochip")) == 0 ? PORT_PINS : PORT_SERIAL;
 }
 
 bool port_has_settings(port_kind_t kind) { return kind == PORT_SERIAL; }

@@ -39,9 +39,6 @@ typedef struct {
 /* Parses the path of a gateway or a converter. Returns NULL, or what is wrong with it. */
 const char *tcp_parse(const char *path, tcp_address_t *address);
 
-/* Returns the part of a path behind its last slash. */
-const char *port_last_part(const char *path);
-
 /* Returns true if both paths lead to the same port, as a link and its target do. A port that does not exist is known by
  * its path only. */
 bool port_is_same(const char *one, const char *other);

@@ -434,7 +434,7 @@ static bool start_sensor(line_t *line, sensor_t *sensor)
     }
     remark_interval(line, sensor);
     if (is_shared(line) && sensor->own_listener == NULL)
-        sensor->own_listener = calloc(1, sizeof *sensor->own_listener);
+        sensor->own_listener = allocate(sizeof *sensor->own_listener);
     sensor->listener = sensor->own_listener != NULL ? sensor->own_listener : &line->port.listener;
     start_attempt(sensor);
     sensor->next_us = loop_now_us(line->loop);

@@ -4,15 +4,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "output/words.h"
+
 sensor_t *site_add_sensor(site_t *site)
 {
-    sensor_t **const sensors = realloc(site->sensors, (site->sensor_count + 1) * sizeof(sensor_t *));
-    if (sensors == NULL) return NULL;
-    site->sensors = sensors;
-    sensor_t *const sensor = calloc(1, sizeof *sensor);
-    if (sensor == NULL) return NULL;
+    sensor_t *const sensor = allocate(sizeof *sensor);
+    site->sensors = reallocate(site->sensors, (site->sensor_count + 1) * sizeof(sensor_t *));
     sensor->number = site->sensor_count++;
-    sensors[sensor->number] = sensor;
+    site->sensors[sensor->number] = sensor;
     return sensor;
 }
 
@@ -20,8 +19,7 @@ line_t *site_add_line(site_t *site, const char *path)
 {
     line_t **end = &site->lines;
     while (*end != NULL) end = &(*end)->next;
-    line_t *const line = calloc(1, sizeof *line + strlen(path) + 1);
-    if (line == NULL) return NULL;
+    line_t *const line = allocate(sizeof *line + strlen(path) + 1);
     line->settings.path = strcpy(line->path, path);
     *end = line;
     site->line_count++;
@@ -38,14 +36,11 @@ void line_add(line_t *line, sensor_t *sensor)
     line->settings.station_count++;
 }
 
-bool line_add_text(line_t *line, const char *text)
+void line_add_text(line_t *line, const char *text)
 {
     const size_t length = line->text != NULL ? strlen(line->text) : 0;
-    char *const longer = realloc(line->text, length + strlen(text) + 1);
-    if (longer == NULL) return false;
-    memcpy(longer + length, text, strlen(text) + 1);
-    line->text = longer;
-    return true;
+    line->text = reallocate(line->text, length + strlen(text) + 1);
+    (void)strcpy(line->text + length, text);
 }
 
 void site_free(site_t *site)

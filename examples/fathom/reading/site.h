@@ -146,17 +146,17 @@ typedef struct {
     bool persists;        /* with reconnect: also for a port that exists and cannot be opened */
 } site_t;
 
-/* Adds a sensor of zeros. NULL: no memory left. */
+/* Adds a sensor of zeros. */
 sensor_t *site_add_sensor(site_t *site);
 
-/* Adds a line for the port at `path`, which is copied. NULL: no memory left. */
+/* Adds a line for the port at `path`, which is copied. */
 line_t *site_add_line(site_t *site, const char *path);
 
 /* Puts a sensor on a line, behind the sensors that are there. */
 void line_add(line_t *line, sensor_t *sensor);
 
-/* Appends to line->text. False: no memory left. */
-bool line_add_text(line_t *line, const char *text);
+/* Appends to line->text. */
+void line_add_text(line_t *line, const char *text);
 
 /* Frees all sensors and lines; the site is empty then. */
 void site_free(site_t *site);

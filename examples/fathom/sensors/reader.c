@@ -5,14 +5,14 @@
 #include <string.h>
 
 #include "fathom/engine/internal/modbus_setting.h"
+#include "output/words.h"
 #include "sensors/driver.h"
 
 /* ---- open and close ---- */
 
 bool reader_open(reader_t **reader, const model_mode_t *mode, port_t *port, const reader_settings_t *settings)
 {
-    if (*reader == NULL) *reader = calloc(1, sizeof **reader);
-    if (*reader == NULL) return false;
+    if (*reader == NULL) *reader = allocate(sizeof **reader);
     const uint16_t sequence = (*reader)->sequence != NULL ? *(*reader)->sequence : 0;
     memset(*reader, 0, sizeof **reader);
     (*reader)->mode = mode;
@@ -24,7 +24,6 @@ bool reader_open(reader_t **reader, const model_mode_t *mode, port_t *port, cons
 
 const char *reader_refusal(const reader_t *reader)
 {
-    if (reader == NULL) return "there is no memory";
     return reader->refusal != NULL ? reader->refusal : "its driver does not take these settings";
 }
 

@@ -194,7 +194,7 @@ class Request(e2e.Case):
         with open('/dev/full', 'w', encoding='utf-8') as full:
             device, request = self.beside('request 1 3 0x0101', stdout=full)
             device.asked(READ, e2e.registers(1, 751))
-            self.ends(request, 1, 'the output cannot be written')
+            self.ends(request, 1, 'cannot write the output')
 
 
 class Alarm(e2e.Case):

@@ -159,13 +159,6 @@ static void prompt(const char *format, ...)
     (void)fflush(run.text);
 }
 
-static bool has_output(void)
-{
-    if (output_flush() == 0) return true;
-    (void)fputs("fathom: cannot write the output. The command ends.\n", stderr);
-    return false;
-}
-
 static presence_t look(uint8_t address, unsigned times)
 {
     return presence_ask(&session, address, &session.sensor->line, times);
@@ -319,7 +312,7 @@ static bool announce(const change_t *change)
     (void)fprintf(run.text, "  writes %s %s", change->setting->name, change->wanted);
     if (open != NULL) (void)fprintf(run.text, " %.*s", (int)strcspn(open, ")") + 1, open);
     (void)fputc('\n', run.text);
-    return has_output();
+    return is_output_written();
 }
 
 static end_t end_unset(const change_t *change, change_outcome_t outcome, fathom_status_t status)
@@ -373,7 +366,7 @@ static end_t set_up(const record_unit_t *unit, uint8_t at)
         print_json(&run.record.units[unit->address], &proof);
     else
         print_done(unit, &proof);
-    return has_output() ? DONE : STOPPED;
+    return is_output_written() ? DONE : STOPPED;
 }
 
 /* No sensor may respond at the new address, and the sensor must still be the one that was found. */
@@ -410,7 +403,7 @@ static end_t commission(record_unit_t unit, uint8_t at)
         (void)fprintf(run.text, ": gets address %u\n", unit.address);
     unit.is_done = false;
     run.is_written = false;
-    if (!store(&unit) || !has_output()) return STOPPED;
+    if (!store(&unit) || !is_output_written()) return STOPPED;
     const end_t end = set_up(&unit, at);
     if (end != LATER || was_known || run.is_written) return end;
     /* A sensor to which nothing was written is as good as a new one, and may be one. */
@@ -547,7 +540,7 @@ static int finish(void)
     const bool is_good = !has_open() && done == run.count;
     (void)fprintf(run.text, "%zu of %zu addresses are assigned and verified%s\n", done, run.count,
                   is_good ? "" : ". To continue, run the same command again");
-    return fflush(stdout) == 0 && ferror(stdout) == 0 && is_good ? STATUS_OK : STATUS_FAILED;
+    return is_output_written() && is_good ? STATUS_OK : STATUS_FAILED;
 }
 
 /* Compares the record with the list of addresses. */

@@ -424,9 +424,7 @@ static int explain(const decode_input_t *input, uint8_t wanted, const model_t *o
         (is_json ? print_json : print_text)(&frame);
     }
     free(finder.choices);
-    if (fflush(stdout) == 0 && ferror(stdout) == 0) return status;
-    (void)fprintf(stderr, "fathom: the output cannot be written: %s\n", strerror(errno));
-    return STATUS_FAILED;
+    return is_output_written() ? status : STATUS_FAILED;
 }
 
 static int start(const host_t *host, const arguments_t *arguments)

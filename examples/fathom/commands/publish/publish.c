@@ -211,7 +211,7 @@ static int explain(void)
         sensor = topic->sensor;
         if (!topic_is_entity(topic->kind)) (void)printf("           %s\n", topic->name);
     }
-    return fflush(stdout) == 0 ? STATUS_OK : STATUS_FAILED;
+    return is_output_written() ? STATUS_OK : STATUS_FAILED;
 }
 
 static int publish_site(const host_t *host)

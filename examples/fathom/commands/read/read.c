@@ -179,8 +179,7 @@ static void name_file(run_t *run, uint64_t utc_us)
 {
     enum { DAY = 10 }; /* "2026-11-23" of what utc_text makes */
     const char *const path = run->options->path;
-    const char *const slash = strrchr(path, '/');
-    const char *const base = slash != NULL ? slash + 1 : path;
+    const char *const base = last_part(path);
     const char *const dot = strrchr(base, '.');
     const int stem = (int)(dot != NULL && dot != base ? (size_t)(dot - path) : strlen(path));
     char utc[UTC_TEXT] = "";

@@ -1,6 +1,5 @@
 /* SPDX-License-Identifier: MIT */
 #include <ctype.h>
-#include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
@@ -544,15 +543,13 @@ static int ask(request_t *request, port_t *port, bool is_json)
     decode_piece_t piece;
     send_request(request, port);
     (void)counters_take(&counters, port, NULL);
-    errno = 0;
     if (request->model != NULL && request->status == FATHOM_OK && request->response_length != 0)
         decode(&frame, &piece, request, true);
     (is_json ? print_json : print_text)(request, port, &frame);
-    const int error = output_flush();
+    const bool is_written = is_output_written();
     print_problem(request, port, &counters);
-    if (error != 0) (void)fprintf(stderr, "fathom: the output cannot be written: %s\n", strerror(error));
     const bool is_good = request->status == FATHOM_OK || request->status == FATHOM_ERR_ECHO;
-    return error == 0 && is_good ? STATUS_OK : STATUS_FAILED;
+    return is_written && is_good ? STATUS_OK : STATUS_FAILED;
 }
 
 static int start(const host_t *host, const arguments_t *arguments)

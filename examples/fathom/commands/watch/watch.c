@@ -389,7 +389,7 @@ static void name_ports(const site_t *site, char text[PORTS])
     size_t count = 0;
     text[0] = '\0';
     for (const line_t *line = site->lines; line != NULL && count++ != NAMED; line = line->next)
-        list_add(text, PORTS, site->line_count == 1 ? line->settings.path : port_last_part(line->settings.path));
+        list_add(text, PORTS, site->line_count == 1 ? line->settings.path : last_part(line->settings.path));
     const size_t length = strlen(text);
     if (site->line_count > NAMED)
         (void)snprintf(text + length, PORTS - length, " and %zu more", site->line_count - NAMED);
