@@ -473,8 +473,7 @@ static bool suits_line(const site_t *site, size_t i, const origin_t *origin)
 static void add_port(sensor_t *sensor)
 {
     const size_t length = strlen(sensor->name);
-    (void)snprintf(sensor->name + length, sizeof sensor->name - length, "@%s",
-                   last_part(sensor->port->path));
+    (void)snprintf(sensor->name + length, sizeof sensor->name - length, "@%s", last_part(sensor->port->path));
     for (char *at = sensor->name; *at != '\0'; at++)
         if (strchr("\"\\,", *at) != NULL || (unsigned char)*at < ' ') *at = '_';
 }
