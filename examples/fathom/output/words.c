@@ -38,6 +38,12 @@ void *reallocate(void *memory, size_t size)
     return all;
 }
 
+const char *environment(const char *name)
+{
+    const char *const value = getenv(name); /* NOLINT(concurrency-mt-unsafe): no thread writes it */
+    return value != NULL ? value : "";
+}
+
 /* ---- numbers and lists ---- */
 
 bool number_parse(const char *text, uint32_t min, uint32_t max, uint32_t *number)

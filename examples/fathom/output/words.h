@@ -23,6 +23,9 @@ void *allocate(size_t size);
 void *reallocate(void *memory, size_t size);
 void end_without_memory(void) __attribute__((noreturn));
 
+/* Returns the value of a variable of the environment; "": it is not set. */
+const char *environment(const char *name);
+
 /* ---- numbers and lists ---- */
 
 /* All of `text` is a decimal number from min to max, of at most 10 digits. No sign, no space. */

@@ -192,20 +192,6 @@ static int find_process(dev_t device, dev_t system, unsigned *count)
 
 /* ---- other evidence ---- */
 
-/* Returns the process that has a lock file for this tty (Filesystem Hierarchy Standard 5.9); 0: none. If its
- * descriptors can be seen, and none is the tty, the lock is of an earlier process. */
-static int find_lock(const char *tty)
-{
-    char text[TEXT];
-    if (!read_file(text, "/var/lock/LCK..%s", tty) && !read_file(text, "/run/lock/LCK..%s", tty)) return 0;
-    const int pid = (int)strtol(text, NULL, 10);
-    if (pid <= 0 || pid == getpid()) return 0;
-    DIR *const descriptors = open_descriptors(pid);
-    if (descriptors == NULL) return errno == EACCES ? pid : 0;
-    (void)closedir(descriptors);
-    return 0;
-}
-
 /* Returns true if a word of the text is this tty. A word of the kernel's command line is console=ttyS0,115200. */
 static bool names_tty(const char *text, const char *before, const char *tty)
 {
@@ -331,8 +317,7 @@ void holder_find(holder_t *holder, const fathom_posix_uart_t *serial, const char
         holder->is_hung_up = is_there(fd, path);
     name_tty(tty, path);
     search_again();
-    int pid = find_process(status.st_rdev, system_of(status.st_rdev, status.st_dev), &count);
-    if (pid == 0) pid = find_lock(last_part(tty));
+    const int pid = find_process(status.st_rdev, system_of(status.st_rdev, status.st_dev), &count);
     if (pid != 0) name_program(holder, pid, count, tty);
     holder->is_hidden = has_hidden && holder->program == 0;
     holder->is_console = is_console(tty);

@@ -125,8 +125,7 @@ const char *line_text(const fathom_line_settings_t *settings, char text[LINE_TEX
 /* A user who set FATHOM_PORT long ago needs to know why it is this port. */
 fathom_status_t port_fail(port_t *port, port_error_t error, const char *format, ...)
 {
-    const char *const named = getenv("FATHOM_PORT"); /* NOLINT(concurrency-mt-unsafe): one thread */
-    const bool is_named = error != PORT_LOST && named != NULL && strcmp(named, port->options.path) == 0;
+    const bool is_named = error != PORT_LOST && strcmp(environment("FATHOM_PORT"), port->options.path) == 0;
     char text[sizeof port->error_text - 64];
     va_list arguments;
     va_start(arguments, format);

@@ -74,11 +74,6 @@ static void pass(const loop_t *loop, reading_t reading)
     loop->sink->reading(loop->ctx, &reading);
 }
 
-static void report_sample(loop_t *loop, sensor_t *sensor, const result_t *result)
-{
-    pass(loop, (reading_t){.sensor = sensor, .status = FATHOM_OK, .result = result});
-}
-
 /* failure: NULL if the port is waited for. probe: 0 if the failure is not of one alone. */
 static void report_failure(const loop_t *loop, sensor_t *sensor, const failure_t *failure, size_t kind,
                            uint8_t probe)
@@ -123,7 +118,7 @@ static void report_result(loop_t *loop, sensor_t *sensor, result_t *result)
     result->has_level =
         config->has_level && sample->kind == FATHOM_TARGET &&
         fathom_level_from_distance(&config->tank, sample->distance_mm, &result->level) == FATHOM_OK;
-    report_sample(loop, sensor, result);
+    pass(loop, (reading_t){.sensor = sensor, .status = FATHOM_OK, .result = result});
 }
 
 static void report_change(loop_t *loop, sensor_t *sensor, result_t *result)

@@ -1,19 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /* The counters of a run, and of a sensor. */
 #include <inttypes.h>
+#include <math.h>
 #include <stdlib.h>
 
 #include "reading/fields.h"
 
 /* ---- pulses ---- */
-
-/* Newton's way, which needs no further library; to a hundredth of what is measured. */
-static double root(double square)
-{
-    double guess = square > 1 ? square : 1;
-    for (unsigned steps = 0; steps != 64; steps++) guess = (guess + square / guess) / 2;
-    return guess;
-}
 
 static int64_t tenths(double value) { return (int64_t)(value * 10 + 0.5); }
 
@@ -22,7 +15,7 @@ static pulses_t take_pulses(sensor_t *sensor)
 {
     pulses_t pulses = sensor->pulses;
     const int64_t count = pulses.distances;
-    const double deviation_us = count > 1 ? root(pulses.squares / (double)(count - 1)) : 0;
+    const double deviation_us = count > 1 ? sqrt(pulses.squares / (double)(count - 1)) : 0;
     pulses.mean_dus = tenths(pulses.mean_us);
     pulses.deviation_dus = tenths(deviation_us);
     pulses.deviation_dmm = tenths(deviation_us * 4 / 23); /* A16 1: T / 57.5 cm */
@@ -128,8 +121,6 @@ static const field_t *failure_fields(void)
             *row++ = (field_t)COUNT(status_word_of_failure(kind), 0, sum.failures[kind]);
     return rows;
 }
-
-/* ---- accounts ---- */
 
 /* ---- text: counters that are 0 are left out ---- */
 

@@ -48,17 +48,11 @@ static struct {
 
 /* ---- the service manager ---- */
 
-static const char *variable(const char *name)
-{
-    const char *const value = getenv(name); /* NOLINT(concurrency-mt-unsafe): no thread writes it */
-    return value != NULL ? value : "";
-}
-
 /* Sends a datagram of sd_notify(3). Without a service manager nothing is sent. */
 __attribute__((format(printf, 1, 2))) static void notify(const char *format, ...)
 {
     struct sockaddr_un address = {.sun_family = AF_UNIX};
-    const char *const path = variable("NOTIFY_SOCKET");
+    const char *const path = environment("NOTIFY_SOCKET");
     const size_t length = strlen(path);
     va_list arguments;
     if ((path[0] != '/' && path[0] != '@') || length >= sizeof address.sun_path) return;
@@ -76,8 +70,8 @@ __attribute__((format(printf, 1, 2))) static void notify(const char *format, ...
 /* Half of the time that the watchdog waits for, as sd_watchdog_enabled(3) advises. */
 static uint32_t watchdog_us(void)
 {
-    const char *const pid = variable("WATCHDOG_PID");
-    const unsigned long long us = strtoull(variable("WATCHDOG_USEC"), NULL, 10) / 2;
+    const char *const pid = environment("WATCHDOG_PID");
+    const unsigned long long us = strtoull(environment("WATCHDOG_USEC"), NULL, 10) / 2;
     const bool is_ours = pid[0] == '\0' || strtol(pid, NULL, 10) == (long)getpid();
     return is_ours && us < FATHOM_NO_DEADLINE ? (uint32_t)us : 0;
 }

@@ -258,12 +258,6 @@ static struct {
     bool has_input; /* `before` is set */
 } terminal;
 
-static const char *environment(const char *name)
-{
-    const char *const text = getenv(name);
-    return text != NULL ? text : "";
-}
-
 static bool terminal_can_draw(void)
 {
     const char *const type = environment("TERM");
