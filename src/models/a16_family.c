@@ -78,10 +78,10 @@ static const fathom_line_settings_t fast_line = {115200, FATHOM_PARITY_NONE, 1};
     /* A driver made from DYP's A21 interface manual, an Arduino reader, ESPHome pull request 12761: 8 to 140 ms. */ \
     ROW(a21ayytw, A16, CONTROLLED, H, "A21AYYTW", "A21NYTW", "DYP", "", \
         FAST, RANGE(30, 5000), FALLING(2000), .period_ms = 150, WINDOW(5, 145)) \
-    /* ESPHome pull request 12761, a robot's firmware that triggers each 50 to 200 ms: the longer one. Window, FFFD and \
-     * FFFE by likeness with the A21. */ \
+    /* ESPHome pull request 12761, a robot's firmware that triggers each 50 to 200 ms: the longer one. No source has the \
+     * response: from the shortest frame to the latest response of an A21. FFFD and FFFE by likeness with the A21. */ \
     ROW(a22nytw, A16, CONTROLLED, M, "A22NYTW", "A22YYTW", "DYP", "", \
-        FAST, RANGE(20, 3000), FALLING(2000), .period_ms = 200, WINDOW(5, 145)) \
+        FAST, RANGE(20, 3000), FALLING(2000), .period_ms = 200, WINDOW(1, 145)) \
     /* Seller's sheet of the GL04, DFRobot SEN0599 page, ESPHome l04xmtw, ArduPilot: 13 to 14 ms. 0 is no echo, also out of \
      * the water; in one log over silt nearly all frames have it. */ \
     ROW(l041mtw, A16, CONTROLLED, H, "L041MTW", "GL041MT, SEN0599, 5AE0077", "DYP", "under water", \

@@ -53,9 +53,9 @@
      * two bytes without FF are reported too, and refused here. With the usual probe it reaches 6 m. */ \
     ROW(aj_sr04m_auto, A16, AUTO, H, "AJ-SR04M", AJ, "", "R19 = 120k", SLOW, RANGE(200, 8000)) \
     /* The same, ESPHome pull request 11992: byte 01. One driver in service sends 55: if a board is silent, try that in a \
-     * copy. It waits for 120 ms; the period is the A16's. 0 is no echo. */ \
+     * copy. It waits for 120 ms if there is no echo; 10 ms more are for the byte and the frame. 0 is no echo. */ \
     ROW(aj_sr04m_controlled, A16, CONTROLLED, H, "AJ-SR04M", AJ, "", "R19 = 47k", \
-        SLOW, RANGE(200, 8000), BYTE(0x01), .period_ms = 121, WINDOW(4, 120), .value_0 = FATHOM_MEANS_NO_TARGET) \
+        SLOW, RANGE(200, 8000), BYTE(0x01), .period_ms = 131, WINDOW(4, 130), .value_0 = FATHOM_MEANS_NO_TARGET) \
     /* Manual of the AJ-SR04M, a measurement: the echo begins 12 ms after the trigger. Modes 1 and 2; 2 needs 1 ms to wake. \
      * The manual has 50 ms, in which 12 ms and the 46 ms of 8 m have no place: 100 ms. */ \
     ROW(aj_sr04m_pulse, A16, PULSE, H, "AJ-SR04M", AJ, "", "R19 open, or 300k", \

@@ -177,45 +177,6 @@ static void start_l041(void)
     controlled_start();
 }
 
-/* Runs to the next trigger. */
-static void run_to_byte(void)
-{
-    const size_t written = rig.fake.written;
-    for (unsigned polls = 0; rig.fake.written == written; polls++) {
-        assert_true(polls < 20000);
-        rig.fake.now_us += 100;
-        (void)rig_poll();
-    }
-    assert_int_equal(rig.fake.writes[written].length, 1);
-    assert_int_equal(rig.fake.writes[written].bytes[0], line_byte.byte);
-}
-
-/* FF 07 A1 A7 is 1953 mm and FF 00 00 FF no echo; 5999 and 6001 mm are 176F and 1771: FF + 17 + 6F = 185. */
-TEST(a_byte_triggers_every_19_ms_and_each_response_is_a_sample)
-{
-    static const uint8_t frames[][4] = {{0xFF, 0x07, 0xA1, 0xA7},
-                                        {0xFF, 0x00, 0x00, 0xFF},
-                                        {0xFF, 0x17, 0x6F, 0x85},
-                                        {0xFF, 0x17, 0x71, 0x87}};
-    static const uint16_t distances_mm[] = {1953, 0, 5999, 5999};
-    start_l041();
-    run_to_byte();
-    for (unsigned n = 0; n != 40; n++) {
-        const uint32_t began_us = rig.fake.now_us;
-        const unsigned i = n % 4;
-        fake_receive(&rig.fake, 13 * MS, frames[i], 4);
-        run_to_byte();
-        assert_int_equal(rig.fake.now_us - began_us, 19 * MS);
-        assert_int_equal(rig.sample.distance_mm, distances_mm[i]);
-        assert_int_equal(rig.sample.kind, i == 1 ? FATHOM_NO_TARGET : FATHOM_TARGET);
-        assert_int_equal(rig.samples, n + 1 - (n + 1) / 4);
-        assert_int_equal(rig.malformed, (n + 1) / 4);
-        if (rig.fake.written == FAKE_WRITES - 1) rig.fake.written = 0;
-    }
-    assert_int_equal(rig.fake.breaks, 0);
-    assert_int_equal(controlled.a16.late, 0);
-}
-
 TEST(a_byte_that_the_port_does_not_take_is_tried_again_and_reported_after_a_second)
 {
     start_l041();

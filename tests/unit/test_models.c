@@ -2,7 +2,8 @@
 #include "drivers.h"
 #include "fathom/models.h"
 
-/* The rows of src/models: what must hold for each, the figures of well-known modules, and names. */
+/* The rows of src/models: what must hold for each, and names. Their figures are those of the second simulation, which
+ * tests/devices/second/test_second_relatives.c reads with them. */
 
 static const fathom_model_description_t *row;
 static const fathom_model_facts_t *facts;
@@ -19,84 +20,6 @@ static bool next_row(uint16_t index)
 static void must(bool holds, const char *what)
 {
     if (!holds) fail_msg("%s, mode %u: %s", row->name, row->mode, what);
-}
-
-/* ---- figures ---- */
-
-/* From the sources, not from the rows. Times of a response that were seen have to be inside the window; a period may be
- * longer than the printed one. 0: no source has it. */
-static const struct {
-    const char *name;
-    uint8_t mode;
-    uint32_t baud;
-    uint16_t min_mm, max_mm;
-    uint16_t period_ms; /* the printed one */
-    uint8_t start, byte;
-    uint8_t from_ms, to_ms; /* responses that were seen */
-    uint16_t trigger_us;    /* the printed least one */
-    uint16_t us_per_dm;
-    uint8_t no_target_ms;
-} printed[] = {
-    {"SEN0311", FATHOM_MODE_AUTO, 9600, 30, 4500, 100, 0, 0, 0, 0, 0, 0, 0},
-    {"a0221at", FATHOM_MODE_CONTROLLED, 9600, 30, 4500, 0, FATHOM_STARTS_FALLING, 0, 60, 60, 0, 0, 0},
-    {"DYP-A02YYMW-V2.0", FATHOM_MODE_PULSE, 0, 30, 4500, 0, FATHOM_STARTS_FALLING, 0, 0, 0, 5000, 575, 40},
-    {"SEN0313", FATHOM_MODE_AUTO, 9600, 280, 7500, 0, 0, 0, 0, 0, 0, 0, 0},
-    {"SEN0312", FATHOM_MODE_AUTO, 9600, 280, 4500, 100, 0, 0, 0, 0, 0, 0, 0},
-    {"A16NYTW", FATHOM_MODE_CONTROLLED, 9600, 500, 15000, 121, FATHOM_STARTS_FALLING, 0, 90, 114, 0, 0, 0},
-    {"A16NYMW", FATHOM_MODE_PULSE, 0, 500, 15000, 221, FATHOM_STARTS_FALLING, 0, 0, 0, 0, 575, 94},
-    {"SEN0207", FATHOM_MODE_AUTO, 9600, 230, 5000, 100, 0, 0, 0, 0, 0, 0, 0},
-    {"JSN-SR04T-V3.3", FATHOM_MODE_CONTROLLED, 9600, 230, 5000, 61, FATHOM_STARTS_BYTE, 0x55, 5, 99, 0, 0, 0},
-    {"jsn sr04t", FATHOM_MODE_PULSE, 0, 230, 5000, 0, FATHOM_STARTS_HIGH_PULSE, 0, 0, 0, 10, 588, 60},
-    {"JSN-SR04T", FATHOM_MODE_FREE_PULSE, 0, 230, 5000, 200, 0, 0, 0, 0, 0, 588, 60},
-    {"JSN-SR04T-V2.0", FATHOM_MODE_AUTO, 9600, 200, 6000, 100, 0, 0, 0, 0, 0, 0, 0},
-    {"AJ-SR04M", FATHOM_MODE_AUTO, 9600, 200, 8000, 0, 0, 0, 0, 0, 0, 0, 0},
-    {"AJ-SR04M", FATHOM_MODE_CONTROLLED, 9600, 200, 8000, 0, FATHOM_STARTS_BYTE, 0x01, 5, 120, 0, 0, 0},
-    {"AJ-SR04M", FATHOM_MODE_PULSE, 0, 200, 8000, 50, FATHOM_STARTS_HIGH_PULSE, 0, 0, 0, 1000, 580, 0},
-    {"HC-SR04", FATHOM_MODE_PULSE, 0, 20, 4000, 50, FATHOM_STARTS_HIGH_PULSE, 0, 0, 0, 10, 580, 38},
-    {"SEN0151", FATHOM_MODE_PULSE, 0, 200, 10000, 100, FATHOM_STARTS_FALLING, 0, 0, 0, 51, 100, 15},
-    {"A21AYYTW", FATHOM_MODE_CONTROLLED, 115200, 30, 5000, 150, FATHOM_STARTS_FALLING, 0, 8, 140, 0, 0, 0},
-    {"SEN0599", FATHOM_MODE_CONTROLLED, 115200, 50, 6000, 19, FATHOM_STARTS_FALLING, 0, 13, 14, 0, 0, 0},
-    {"SEN0598", FATHOM_MODE_CONTROLLED, 115200, 20, 3000, 19, FATHOM_STARTS_FALLING, 0, 9, 13, 0, 0, 0},
-    {"L081MTW", FATHOM_MODE_CONTROLLED, 115200, 50, 2000, 34, FATHOM_STARTS_BYTE, 0x01, 5, 18, 0, 0, 0},
-    {"L08B50TW", FATHOM_MODE_CONTROLLED, 115200, 80, 3000, 1000, FATHOM_STARTS_FALLING, 0, 1, 200, 100, 0, 0},
-    {"SEN0591", FATHOM_MODE_MODBUS, 115200, 20, 3000, 120, 0, 0, 0, 0, 0, 0, 0},
-    {"101991041", FATHOM_MODE_MODBUS, 9600, 280, 7500, 120, 0, 0, 0, 0, 0, 0, 0},
-    {"A05LYU", FATHOM_MODE_AUTO, 9600, 250, 4500, 0, 0, 0, 0, 0, 0, 0, 0},
-    {"hps167s", FATHOM_MODE_MODBUS, 19200, 80, 18000, 0, 0, 0, 0, 0, 0, 0, 0},
-    {"hps167", FATHOM_MODE_0A, 115200, 80, 18000, 20, 0, 0, 0, 0, 0, 0, 0},
-};
-
-TEST(a_known_module_has_the_figures_of_its_sources)
-{
-    for (unsigned i = 0; i != COUNT(printed); i++) {
-        row = fathom_model_find(printed[i].name, printed[i].mode);
-        if (row == NULL) fail_msg("%s is not found", printed[i].name);
-        facts = row->facts;
-        must((facts->line_settings != NULL ? facts->line_settings->baud : 0) == printed[i].baud, "baud rate");
-        must(facts->min_mm == printed[i].min_mm && facts->max_mm == printed[i].max_mm, "range");
-        must(facts->period_ms >= printed[i].period_ms, "period");
-        must(facts->start == printed[i].start && facts->trigger_byte == printed[i].byte, "start");
-        must(printed[i].from_ms == 0 || facts->earliest_ms <= printed[i].from_ms, "earliest response");
-        must(facts->latest_ms >= printed[i].to_ms, "latest response");
-        must(facts->trigger_us >= printed[i].trigger_us, "width of the trigger");
-        must(facts->us_per_dm == printed[i].us_per_dm, "scale");
-        must(facts->no_target_ms == printed[i].no_target_ms, "pulse without a target");
-    }
-}
-
-TEST(a_value_has_the_meaning_that_the_sources_have_seen)
-{
-    EACH_ROW(index)
-    {
-        const bool is_0 = fathom_model_is_called(row, "L041MTW") || fathom_model_is_called(row, "L042MTW") ||
-                          (fathom_model_is_called(row, "AJ-SR04M") && row->mode == FATHOM_MODE_CONTROLLED);
-        const bool is_fffb =
-            fathom_model_is_called(row, "L081MTW") || fathom_model_is_called(row, "L08-RS485");
-        must(facts->value_0 == (is_0 ? FATHOM_MEANS_NO_TARGET : FATHOM_MEANS_DEFAULT), "0");
-        must(facts->value_fffb == (is_fffb ? FATHOM_MEANS_UNKNOWN : FATHOM_MEANS_DEFAULT), "FFFB");
-        must(facts->value_fffd == FATHOM_MEANS_DEFAULT && facts->value_fffe == FATHOM_MEANS_DEFAULT, "FFFD");
-        must(facts->value_ffff == FATHOM_MEANS_DEFAULT, "FFFF");
-    }
 }
 
 /* ---- what holds for each row ---- */

@@ -155,6 +155,9 @@ static const hooks_t *hooks_of(second_kind_t kind)
     case SECOND_A16_SWITCH:
     case SECOND_A05_RELAY:
         return &second_level_hooks;
+    case SECOND_RELATIVE:
+    case SECOND_RELATIVE_PULSE:
+        return &second_relative_hooks;
     case SECOND_KINDS:
         break;
     }

@@ -34,11 +34,13 @@ typedef enum {
     SECOND_A05_UART,       /* automatic until a Modbus command comes */
     SECOND_A05_RS485,      /* 55 AA frames and Modbus */
     SECOND_HPS167S,
-    SECOND_HPS167,  /* UART, frames of its own */
-    SECOND_TALKERS, /* the ones before it send bytes, those from here on a level */
+    SECOND_HPS167,   /* UART, frames of its own */
+    SECOND_RELATIVE, /* frames, or Modbus, as a row of relatives.h says */
+    SECOND_TALKERS,  /* the ones before it send bytes, those from here on a level */
     SECOND_A16_PWM = SECOND_TALKERS,
     SECOND_A16_SWITCH,
     SECOND_A05_RELAY,
+    SECOND_RELATIVE_PULSE,
     SECOND_KINDS
 } second_kind_t;
 
@@ -58,6 +60,8 @@ typedef struct {
     int64_t value;
 } second_override_t;
 
+typedef struct second_relative second_relative_t;
+
 typedef struct {
     second_kind_t kind;
     uint64_t seed;   /* 0 draws nothing: every choice takes its usual value */
@@ -67,6 +71,8 @@ typedef struct {
     bool no_misprints; /* choices that stem from a likely misprint keep their usual value */
     const second_override_t *overrides;
     size_t override_count;
+    const second_relative_t *relative; /* of a relative */
+    bool is_late;                      /* a relative gives the later of two answers */
 } second_config_t;
 
 /* A byte that the device sent, handed out when its last stop bit is over. */

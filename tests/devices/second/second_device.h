@@ -147,7 +147,7 @@ struct second_device {
 };
 
 extern const hooks_t second_a16_hooks, second_a05_hooks, second_hps_hooks, second_hps167_hooks,
-    second_level_hooks;
+    second_level_hooks, second_relative_hooks;
 
 /* wire.c */
 uint16_t second_wire_crc16(const uint8_t *bytes, size_t len);

@@ -110,6 +110,7 @@ static bool changes(const rig_t *rig, const uint8_t *bytes, size_t length)
 {
     if (rig->device.config.kind == SECOND_HPS167)
         return bytes[1] != 0x22 && bytes[1] != 0x24 && bytes[1] != 0x30 && bytes[1] != 0x3F;
+    if (length == 1) return false; /* a trigger */
     if (bytes[0] == 0x55 && bytes[1] == 0xAA) return bytes[3] == 0x03;
     return bytes[1] != 0x03 || (length == 8 && bytes[2] == 0 && bytes[3] == 0x09); /* HPS-167S #6 is a read */
 }
