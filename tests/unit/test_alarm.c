@@ -329,3 +329,23 @@ TEST(it_is_on_by_the_state_or_by_the_side_that_was_chosen_for_it)
         assert_int_equal(fathom_alarm_is_on(&alarm), (i & 2) != 0);
     }
 }
+
+TEST(between_the_thresholds_with_nothing_before_it_is_as_chosen_for_unknown)
+{
+    static const uint8_t chosen[] = {ON, OFF};
+    for (unsigned i = 0; i != 2; i++) {
+        config.if_unknown = chosen[i];
+        start();
+        expect_mm(0, 550, chosen[i]);
+    }
+}
+
+TEST(a_time_before_the_distance_is_not_too_long)
+{
+    expect_mm(10 * S, 700, OFF);
+    expect_nothing(9 * S, OFF);
+    start();
+    expect_mm(0, 700, OFF);
+    expect_nothing(UINT32_MAX / 2 + 1, OFF);
+    expect_nothing(UINT32_MAX / 2, UNKNOWN);
+}

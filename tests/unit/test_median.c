@@ -336,3 +336,22 @@ TEST(a_time_up_to_half_a_turn_of_the_clock_empties_a_window_that_is_not_kept_for
         expect_time(2147483647, i == 0);
     }
 }
+
+TEST(the_median_may_be_the_last_of_the_window)
+{
+    for (uint16_t mm = 100; mm < 65000; mm = (uint16_t)(mm + 97)) {
+        start();
+        expect_none(FATHOM_TARGET, (uint16_t)(mm + 2));
+        expect_none(FATHOM_TARGET, mm);
+        expect_mm((uint16_t)(mm + 1), (uint16_t)(mm + 1));
+    }
+}
+
+TEST(a_sample_after_5_s_without_one_is_the_first_of_a_new_window)
+{
+    fill(1000, 2);
+    expect_mm(1000, 1000);
+    now_us += 5000000;
+    fill(2000, 2);
+    expect_mm(2000, 2000);
+}

@@ -69,6 +69,16 @@ TEST(temperatures_by_hand)
     assert_int_equal(fathom_pulse_width_mm_in_air(41087, 259), 7128);
 }
 
+/* Every temperature, and of each one width in eight, others at the next. The formula in whole numbers of 64 bits. */
+TEST(every_tenth_of_a_degree_gives_the_nearest_mm)
+{
+    for (int32_t dc = -400; dc <= 850; dc++)
+        for (uint32_t us = (uint32_t)(dc + 400) % 8; us <= 105000; us += 8) {
+            const uint64_t exact = (uint64_t)us * (uint64_t)(3313000 + 606 * dc);
+            assert_int_equal(fathom_pulse_width_mm_in_air(us, (int16_t)dc), (exact + 10000000) / 20000000);
+        }
+}
+
 TEST(beyond_the_ends_the_nearer_end_counts)
 {
     const uint16_t coldest = fathom_pulse_width_mm_in_air(94000, -400);
