@@ -8,8 +8,8 @@
  * and its errors.
  */
 
-/* Four periods between two measurements, and a little more, in microseconds. A power of two needs no multiplication. */
-static uint32_t periods_us(const fathom_model_facts_t *facts) { return (uint32_t)facts->period_ms << 12; }
+/* Four periods between two measurements, in microseconds. */
+static uint32_t periods_us(const fathom_model_facts_t *facts) { return facts->period_ms * UINT32_C(4000); }
 
 fathom_status_t fathom_dyp_auto_init(fathom_dyp_auto_t *sensor)
 {

@@ -73,7 +73,7 @@ TEST(a_model_that_sends_seldom_becomes_stale_later)
     static const struct {
         uint16_t period_ms;
         uint32_t stale_us;
-    } rows[] = {{0, 2000 * MS}, {100, 2409600}, {4000, 18384 * MS}};
+    } rows[] = {{0, 2000 * MS}, {100, 2400 * MS}, {4000, 18000 * MS}};
     for (unsigned i = 0; i != COUNT(rows); i++) {
         listen(rows[i].period_ms);
         rig.fake.now_us = rows[i].stale_us - 1;

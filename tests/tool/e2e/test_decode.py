@@ -171,7 +171,7 @@ class Input(Case):
         ('argument 1, character 1: a byte has two hex digits', '010'),
         ("argument 1, character 1: 'n' is no hex digit, and there is no file of that name", 'nowhere'),
         ("--protocol is 'rtu'. It takes auto, modbus, dyp or stream.", '--protocol rtu 01'),
-        ("unknown sensor 'a17'. Did you mean a17nyuw?", '--sensor a17 01'),
+        ("unknown sensor 'a17'. Did you mean one of a17nyuw, a17ny4w?", '--sensor a17 01'),
         ("--format is 'csv'. It takes text or json.", '--format csv 01'),
         ('a16 has no frames of this --protocol', '--sensor a16 --protocol dyp 01'),
         ('--raw takes one file', '--raw 01 02'),
