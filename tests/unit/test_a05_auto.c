@@ -257,6 +257,18 @@ TEST(rx_is_high_for_processed_values)
     assert_true(pin.level);
 }
 
+/* Processed values end a selection of real-time values at once; a busy port does not accept a break. */
+TEST(processed_values_end_a_selection_and_a_busy_port_is_said)
+{
+    power_on(FATHOM_REAL_TIME, FATHOM_OK);
+    assert_true(is_low());
+    power_on(FATHOM_PROCESSED, FATHOM_OK);
+    assert_false(is_low());
+    rig.fake.never_sent = true;
+    power_on(FATHOM_REAL_TIME, FATHOM_ERR_BUSY);
+    assert_false(is_low());
+}
+
 TEST(a_port_that_cannot_is_said_and_a_pin_helps)
 {
     rig.fake.uart.set_break = NULL;
