@@ -295,10 +295,12 @@ class Bytes(Case):
             name, mode = row['model'], row['mode']
             self.assertTrue(row['min_mm'] <= 1000 <= row['max_mm'], name)
             sim = self.sim(f'{name}:1:{mode} --distance 1000')
-            # Of two readings one may fail on a busy machine.
-            done = self.run_fathom(f'read {name}:1:{mode} --port {sim} --count 2 --format json')
-            told = [one['distance_mm'] for one in done.json if one['status'] == 'target']
-            self.assertTrue(told and set(told) == {1000}, (name, mode, done))
+            for _ in range(5):  # a response within 13 ms may be late on a busy machine, and not every time
+                done = self.run_fathom(f'read {name}:1:{mode} --port {sim} --count 2 --format json')
+                told = [one['distance_mm'] for one in done.json if one['status'] == 'target']
+                if told:
+                    break
+            self.assertEqual(set(told), {1000}, (name, mode, done))
             self.assertEqual({one['model'] for one in done.json}, {name})
             sim.end()
 
