@@ -13,8 +13,11 @@
 
 bool is_output_written(void)
 {
-    if (fflush(stdout) == 0 && ferror(stdout) == 0) return true;
-    (void)fprintf(stderr, "fathom: cannot write the output: %s\n", strerror(errno));
+    /* If an earlier write has failed, errno may since be that of another call. */
+    const bool is_flushed = fflush(stdout) == 0;
+    if (is_flushed && ferror(stdout) == 0) return true;
+    (void)fprintf(stderr, "fathom: cannot write the output%s%s\n", is_flushed ? "" : ": ",
+                  is_flushed ? "" : strerror(errno));
     return false;
 }
 

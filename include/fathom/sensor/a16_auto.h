@@ -80,7 +80,7 @@ typedef struct {
     /**
      * @brief Time without a frame after which fathom_poll() returns an error, in microseconds: 1 to 2^31 - 1.
      *
-     * 0 selects 2 s and at least four periods of the model. If the model has no period (model_facts.h), and the module
+     * 0 selects 2 s plus four periods of the model. If the model has no period (model_facts.h), and the module
      * sends less often than every 2 s, choose more.
      */
     uint32_t stale_us;
