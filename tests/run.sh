@@ -118,7 +118,7 @@ run_long() {
     stage 60 'coverage: each condition decides' program conditions $python tests/verify/coverage/run.py --quick
     stage 20 'states of a small line' program states $python tests/verify/states/run.py --quick
     stage 70 'interrupts at each instruction' program interrupts $python tests/firmware/interrupts/run.py --quick
-    stage 110 'fuzzing: 10 s a target' program fuzz $python tests/verify/fuzz/run.py
+    stage 110 'fuzzing: 1.5 million inputs' program fuzz $python tests/verify/fuzz/run.py
     stage 20 'chaos: 30 rounds' program chaos env FATHOM=build-gcc/fathom $python tests/tool/chaos/run.py
     stage 40 'publish: 8 kills' program broker env FATHOM=build-gcc/fathom $python tests/tool/chaos/broker.py --kills 8
     stage 40 'Debian packages' program package $python tests/tool/package/run.py --quick

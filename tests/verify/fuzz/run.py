@@ -2,14 +2,16 @@
 # SPDX-License-Identifier: MIT
 """Feeds the library, the port over libmodbus and the tool with inputs that no test has, by libFuzzer.
 
-    run.py [--seconds S] [TARGET ...]   each target for S (10) seconds, two at once
-    run.py --full [--runs N]            N (10^8) executions over all targets
-    run.py --input FILE TARGET          one input: of found/ (hex), or what a crash has left in build-fuzz
+    run.py [--times N] [TARGET ...]   N (1) times the executions that targets.py has for each target, two at once
+    run.py --full                     10^8 executions over all targets
+    run.py --input FILE TARGET        one input: of found/ (hex), or what a crash has left in build-fuzz
 
-A target fails on a finding, on fewer executions a second than its least number, and on fewer edges (targets.py).
+A target fails on a finding and on fewer edges than targets.py has. It runs a number of inputs, not for a time, so a slow
+machine tries as many.
 The last line is "N passed, M failed"."""
 import argparse
 import concurrent.futures
+import math
 import os
 import re
 import shutil
@@ -24,6 +26,7 @@ import seeds
 from targets import TARGETS
 
 FULL = 10 ** 8
+LIMIT_S = 4 * 3600
 SEED = 20261123
 
 
@@ -59,10 +62,6 @@ class Outcome:
         edges = re.findall(r' cov: (\d+)', text)
         self.runs = int(runs[-1]) if runs else 0
         self.edges = int(edges[-1]) if edges else 0
-        # The last line of `times`: of the children. A busy machine is slow, not idle.
-        spent = re.findall(r'^(\d+)m([\d.]+)s (\d+)m([\d.]+)s$', text, re.M) or [(0, 0, 0, 0)]
-        minutes, seconds, *system = map(float, spent[-1])
-        self.cpu = 60 * (minutes + system[0]) + seconds + system[1]
         self.is_clean = status == 0
 
     def why(self):
@@ -84,8 +83,8 @@ class Outcome:
         print(f'again: tests/verify/fuzz/run.py --input {os.path.relpath(crash[-1], build.ROOT)} {self.target.name}')
 
 
-def fuzz(target, program, folders, limit, limit_s):
-    """One run; limit: options of libFuzzer that end it."""
+def fuzz(target, program, folders, runs):
+    """One run of so many executions."""
     work = os.path.join(build.FOLDER, 'work', target.name)
     shutil.rmtree(work, ignore_errors=True)
     os.makedirs(work)
@@ -94,16 +93,15 @@ def fuzz(target, program, folders, limit, limit_s):
     with open(seeds_list, 'w', encoding='utf-8') as file:
         file.write(','.join(os.path.join(folder, name) for folder in folders for name in sorted(os.listdir(folder))))
     # Weights, where the target is slow, and no folder for what is found: else two thirds of the time go there.
-    command = ['sh', '-c', '"$@"; status=$?; times; exit $status', 'sh',
-               program, f'-seed={SEED}', f'-max_len={target.longest}', '-len_control=20', '-timeout=10',
+    command = [program, f'-runs={runs}', f'-seed={SEED}', f'-max_len={target.longest}', '-len_control=20', '-timeout=30',
                f'-entropic={int(target.is_weighted)}',
                '-rss_limit_mb=2048', '-print_final_stats=1', '-detect_leaks=0', f'-artifact_prefix={work}/',
-               f'-seed_inputs=@{seeds_list}', *limit]
+               f'-seed_inputs=@{seeds_list}']
     environment = {**os.environ, 'UBSAN_OPTIONS': 'print_stacktrace=1', 'ASAN_OPTIONS': 'detect_leaks=0'}
     with subprocess.Popen(command, cwd=work, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                           stderr=subprocess.STDOUT, start_new_session=True) as process:
         try:
-            text = process.communicate(timeout=limit_s)[0].decode(errors='replace')
+            text = process.communicate(timeout=LIMIT_S)[0].decode(errors='replace')
         except subprocess.TimeoutExpired:
             os.killpg(process.pid, signal.SIGKILL)
             text = process.communicate()[0].decode(errors='replace') + '\nit does not end'
@@ -124,48 +122,32 @@ def found_folder(target):
     return folder
 
 
-def run_all(targets, frames, limit_of):
-    """(target, outcome) as they end, two at once; the longest begin first."""
+def run_all(targets, frames, times):
+    """(target, outcome) as they end, two at once."""
     folders = {target.name: [seed_folder(target, frames), found_folder(target)] for target in targets}
     with concurrent.futures.ThreadPoolExecutor(build.JOBS) as pool:
-        begun = [pool.submit(fuzz, target, target.program(), folders[target.name], *limit_of(target))
+        begun = [pool.submit(fuzz, target, target.program(), folders[target.name], times * target.runs)
                  for target in targets]
         for future in concurrent.futures.as_completed(begun):
             yield future.result()
 
 
-def judge(outcomes, wanted=lambda target: 0):
-    """Returns how many of the outcomes passed and failed; `wanted` is the number of executions of a target."""
+def judge(outcomes):
+    """Returns how many of the outcomes passed and failed."""
     passed = failed = total = 0
     for outcome in outcomes:
         target, problem = outcome.target, ''
         if not outcome.is_clean:
             problem = 'a finding'
-        elif outcome.runs < wanted(target):
-            problem = f'FAILED: {wanted(target)} executions were wanted'
-        elif outcome.runs < target.least * outcome.cpu:
-            problem = f'FAILED: fewer than {target.least} executions a second'
         elif outcome.edges < target.edges:
             problem = f'FAILED: fewer than {target.edges} edges'
-        print(f'{target.name:12} {outcome.runs:10} executions {outcome.edges:6} edges {outcome.cpu:7.1f} s of a core '
-              f'{outcome.runs / max(outcome.cpu, 0.001):9.0f}/s  {problem}', flush=True)
+        print(f'{target.name:12} {outcome.runs:10} executions {outcome.edges:6} edges {outcome.seconds:7.1f} s  {problem}',
+              flush=True)
         if not outcome.is_clean:
             outcome.tell()
         passed, failed, total = passed + (not problem), failed + bool(problem), total + outcome.runs
     print(f'{total} executions over all')
     return passed, failed
-
-
-def quick(targets, frames, seconds):
-    return judge(run_all(targets, frames, lambda target: ([f'-max_total_time={seconds}'], seconds + 60)))
-
-
-def full(targets, frames, runs):
-    shares = sum(target.share for target in TARGETS)
-
-    def wanted(target):
-        return runs * target.share // shares
-    return judge(run_all(targets, frames, lambda target: ([f'-runs={wanted(target)}'], 4 * 3600)), wanted)
 
 
 def one_input(path, target):
@@ -179,9 +161,8 @@ def one_input(path, target):
 
 def main():
     parser = argparse.ArgumentParser(usage=__doc__)
-    parser.add_argument('--seconds', type=int, default=10)
+    parser.add_argument('--times', type=int, default=1)
     parser.add_argument('--full', action='store_true')
-    parser.add_argument('--runs', type=int, default=FULL)
     parser.add_argument('--input')
     parser.add_argument('targets', nargs='*')
     options = parser.parse_args()
@@ -195,10 +176,9 @@ def main():
         print(f'built in {time.monotonic() - began:.0f} s', flush=True)
         if options.input:
             passed, failed = one_input(options.input, targets[0])
-        elif options.full:
-            passed, failed = full(targets, frames, options.runs)
         else:
-            passed, failed = quick(targets, frames, options.seconds)
+            times = math.ceil(FULL / sum(target.runs for target in TARGETS)) if options.full else options.times
+            passed, failed = judge(run_all(targets, frames, times))
     except build.Failed as error:
         print(error)
         passed, failed = 0, 1
