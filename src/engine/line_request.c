@@ -111,7 +111,7 @@ static fathom_transaction_t *choose(fathom_line_t *line)
     fathom_transaction_t *const transaction = line->kind->next(line);
     if (take_slot(line, transaction) && (transaction != NULL)) return transaction;
 
-    if (transaction == NULL) { /* The queue is empty, all units in it are in quarantine, or the policy waits. */
+    if (transaction == NULL) { /* The queue is empty, all its units are in quarantine, or the policy waits. */
         line->wait = WAIT_NONE;
         if (line->phase == FATHOM_LINE_PORT_BUSY) line->phase = FATHOM_LINE_IDLE;
         return NULL;

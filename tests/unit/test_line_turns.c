@@ -111,9 +111,9 @@ static const conversation_t conversations[] = {
         QUEUE(A, 1), WAIT(100), HOLDS_1(true), DUE(12000)),
     /* the port has FATHOM_LINE_SEND_US, a second, to accept a request; the second begins anew with the second try */
     ROW("what_is_held_back_while_the_port_refuses_is_due_when_the_policy_says", COUNTS(.responses = 1),
-        PORT_REFUSES(true), QUEUE(A, 1), WAIT(600000), DUE(1000), HOLDS_1(true), POLL, DUE(12345), WAIT(600000),
-        HOLDS_1(false), WAIT(600000), PENDS(A), PORT_REFUSES(false), WAIT(REQUEST_US), REQUEST_TO(0, 1),
-        RESPONSE(1, 754), READS(A, 754)),
+        PORT_REFUSES(true), QUEUE(A, 1), WAIT(600000), DUE(1000), HOLDS_1(true), POLL, DUE(12345),
+        WAIT(600000), HOLDS_1(false), WAIT(600000), PENDS(A), PORT_REFUSES(false), WAIT(REQUEST_US),
+        REQUEST_TO(0, 1), RESPONSE(1, 754), READS(A, 754)),
 };
 CONVERSATIONS(begin, conversations)
 
