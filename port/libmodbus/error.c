@@ -7,7 +7,7 @@
 int fathom_libmodbus_broken(fathom_libmodbus_t *port, fathom_libmodbus_error_t error)
 {
     if (port->error == FATHOM_LIBMODBUS_OK) port->error = (int8_t)error;
-    port->is_response_pending = false;
+    fathom_libmodbus_note_broken(port);
     return -1;
 }
 

@@ -71,8 +71,11 @@ extern "C" {
  *        attempt             |-- timeout_us -->| failed
  *        no request          |-- at most hold_us ------->|
  *
- *    A server that has let `hold_us` pass without a word is not waited for again until a late response shows that it
- *    does respond late. `response_us` is the time that the newest response took: choose longer time-outs.
+ *    Many gateways report nothing about a dead unit. Once the server has let `hold_us` pass without a word, the port waits
+ *    only if two requests in a row have no response, and after a second time without a word not at all. A response
+ *    that is late then shows for how long the request before it kept the server busy. From then on the port waits that
+ *    long and a quarter more, at most `hold_us`. `response_us` is the time that the newest response took: choose longer
+ *    time-outs.
  *
  *    The exceptions 0x0A (path unavailable) and 0x0B (target silent) are the gateway's final word, and so is any
  *    exception that the gateway sends as unit 0 or 255, such as 0x06 (busy). The attempt ends at once with
@@ -172,9 +175,15 @@ typedef struct {
     fathom_line_turns_t turns; /* holds requests back (rule 8) */
     uint16_t transaction;      /* of the request that was sent last */
     uint8_t unit;              /* of that request */
-    bool is_response_pending;  /* the server has not responded to it */
-    bool never_responds_late;  /* the server has let hold_us pass without a word */
+    bool is_response_pending;  /* the server may still respond to it */
+    bool is_overdue;           /* the attempt has ended without it */
+    bool is_busy_us_known;
+    uint8_t silent_holds;     /* times that the server has let hold_us pass without a word; stops at 2 */
+    uint8_t unanswered_count; /* requests since the newest response; stops at 2 */
+    uint32_t unanswered_us;   /* when the first of them was sent */
     uint32_t hold_us;
+    uint32_t
+        busy_us; /* for how long a request without a response keeps the server busy; hold_us until it is known */
     uint16_t sent_count; /* requests so far; stops at 32768 */
     uint32_t
         sent_us[FATHOM_LIBMODBUS_DATED]; /* when request `transaction` % FATHOM_LIBMODBUS_DATED was sent */

@@ -69,6 +69,7 @@ fathom_status_t fathom_libmodbus_init(fathom_libmodbus_t *port, modbus_t *modbus
     (void)modbus_set_error_recovery(modbus, MODBUS_ERROR_RECOVERY_NONE);
     port->transaction = FIRST_TRANSACTION;
     port->hold_us = config->hold_us != 0 ? config->hold_us : HOLD_US;
+    port->busy_us = port->hold_us;
     port->uart = fathom_libmodbus_uart(port);
     port->parts.uart = &port->uart;
     port->parts.clock = config->clock != NULL ? config->clock : &monotonic;

@@ -129,11 +129,11 @@ static void count_other(fathom_libmodbus_t *port)
     if (back < port->sent_count) {
         count(&port->late_responses);
         measure(port, back);
-        port->never_responds_late = false;
+        fathom_libmodbus_note_response(port, false);
     } else {
         /* The server makes up identifiers, so this is the response to the newest request. */
         count(&port->foreign_responses);
-        port->is_response_pending = false;
+        fathom_libmodbus_note_response(port, true);
     }
 }
 
@@ -150,7 +150,7 @@ static word_t judge(fathom_libmodbus_t *port)
     const bool is_other = adu[UNIT] != port->unit && port->unit != FATHOM_MODBUS_ANY_UNIT;
     const bool is_gateway = adu[UNIT] == 0 || adu[UNIT] == FATHOM_MODBUS_ANY_UNIT;
     if (port->is_response_pending) measure(port, 0);
-    port->is_response_pending = false;
+    fathom_libmodbus_note_response(port, true);
     if (is_other) {
         count(&port->other_units);
         port->other_unit = adu[UNIT];
@@ -210,8 +210,7 @@ int fathom_libmodbus_tcp_write(void *ctx, const uint8_t *bytes, size_t length)
     if (n != UNIT + rest) return out_of_step(port, FATHOM_LIBMODBUS_ERR_TRUNCATED);
     port->transaction = transaction;
     port->unit = bytes[0];
-    port->is_response_pending = port->unit != 0; /* No unit responds to a broadcast. */
-    port->sent_us[transaction % FATHOM_LIBMODBUS_DATED] = fathom_libmodbus_now_us(port);
+    fathom_libmodbus_note_request(port, port->unit);
     if (port->sent_count < MOST_SENT) port->sent_count++;
     fathom_libmodbus_works(port);
     return (int)length;

@@ -334,6 +334,12 @@ static const row_t causes[] = {
      "Use rtu-{path}, or switch the converter to Modbus TCP"},
     {NO_RESPONSE, "asked tcp bytes", "the response does not fit the request",
      "Check that the server speaks Modbus TCP"},
+    {NO_RESPONSE, "asked tcp worked",
+     "the connection is open, but nothing was received. Earlier responses were good, so the settings are "
+     "right",
+     "Check the line and the supply of the sensor. A gateway that waits for another unit responds too late: "
+     "try a "
+     "longer --timeout"},
     {NO_RESPONSE, "asked tcp", "the connection is open, but nothing was received",
      "Check {option} and the line and supply of the sensor, and try a --timeout longer than the gateway's"
      "[unproven:. If the converter passes raw bytes, which is the factory setting of many, use rtu-{path}]"},

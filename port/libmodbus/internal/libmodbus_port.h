@@ -17,6 +17,11 @@ bool fathom_libmodbus_tcp_sent(void *ctx);
 /* hold.c: the clock of the port, in microseconds. */
 uint32_t fathom_libmodbus_now_us(const fathom_libmodbus_t *port);
 
+/* The newest request has left; a response to it or to an earlier one has arrived; no response can arrive any more. */
+void fathom_libmodbus_note_request(fathom_libmodbus_t *port, uint8_t unit);
+void fathom_libmodbus_note_response(fathom_libmodbus_t *port, bool is_to_newest);
+void fathom_libmodbus_note_broken(fathom_libmodbus_t *port);
+
 /* error.c: stores the first reason and returns -1. */
 int fathom_libmodbus_broken(fathom_libmodbus_t *port, fathom_libmodbus_error_t error);
 

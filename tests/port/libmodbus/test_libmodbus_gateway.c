@@ -122,6 +122,58 @@ TEST(a_server_that_reports_nothing_is_waited_for_only_once)
     expect_held(RIG_TIMEOUT_US, 4);
 }
 
+/* The gateway tries unit 9 for 3 s and reports nothing, so the response of unit 1 is late once. */
+TEST(how_long_a_dead_unit_keeps_the_gateway_busy_is_measured_once)
+{
+    static fathom_modbus_request_t third;
+    ask_9(0);
+    ask_1();
+    expect_held(HOLD_US, 2);
+    rig_say_response(2);
+    rig_run_fine(FINE_US);
+    rig_ask_three(&rig.request, 9, 0);
+    rig_run_fine(FINE_US);
+    expect_request_to(9, 3);
+    ask_1();
+    expect_held(RIG_TIMEOUT_US, 4);
+    rig_ask_three(&third, 2, 0);
+    rig_run_fine(3 * SECOND_US - RIG_TIMEOUT_US - 500);
+    rig_expect_sent(NULL, 0); /* two requests in a row have no response */
+    assert_int_equal(other.transaction.status, FATHOM_ERR_NO_RESPONSE);
+    rig_say_response(4);
+    rig_run_fine(2 * FINE_US);
+    expect_request_to(2, 5);
+    say_exception(5, 2, 0x02);
+    rig_run_fine(FINE_US);
+    for (uint8_t transaction = 6; transaction != 12; transaction += 2) {
+        rig_ask_three(&rig.request, 9, 0);
+        rig_run_fine(FINE_US);
+        expect_request_to(9, transaction);
+        ask_1();
+        expect_held(3750000, transaction + 1); /* 3 s and a quarter */
+        rig_say_response(transaction + 1);
+        rig_run_fine(FINE_US);
+        assert_int_equal(other.transaction.status, FATHOM_OK);
+    }
+}
+
+TEST(two_dead_units_are_waited_for_twice)
+{
+    ask_9(0);
+    rig_run_fine(RIG_TIMEOUT_US);
+    ask_1();
+    expect_held(HOLD_US - RIG_TIMEOUT_US, 2);
+    rig_run_fine(RIG_TIMEOUT_US);
+    assert_int_equal(other.transaction.status, FATHOM_ERR_NO_RESPONSE);
+    rig_ask_three(&rig.request, 9, 0);
+    rig_run_fine(HOLD_US - RIG_TIMEOUT_US - 1000);
+    rig_expect_sent(NULL, 0);
+    rig_run_fine(1000);
+    expect_request_to(9, 3);
+    ask_1();
+    expect_held(RIG_TIMEOUT_US, 4);
+}
+
 TEST(a_late_response_shows_that_waiting_helps)
 {
     ask_9(0);

@@ -232,6 +232,14 @@ class Responses(Case):
         self.assertIn('the same cause as before, 3 times in a row', reader.done.err)
         self.needs_little(reader.done)
 
+    def test_a_server_that_falls_silent(self):
+        """After a good response the address is right; a gateway may wait for another unit."""
+        server, reader = self.reader('--count 2 --timeout 100')
+        server.say(registers(self.asked(server), 1, *SAID))
+        self.asked(server)
+        self.reads(reader, 1, [2083], 'nothing was received. Earlier responses were good, so the settings are right. Check the line')
+        self.assertNotIn('--address', reader.done.err)
+
     def test_an_a05_behind_a_gateway(self):
         server = self.server()
         reader = self.fathom(f'read a05 --mode modbus --port {server} --count 1 --format csv')
