@@ -58,7 +58,7 @@ void play_cancel(const step_t *step)
 }
 
 void play_wait(const step_t *step) { run(step->us); }
-void play_poll(const step_t *step) { (void)poll_line(); }
+void play_poll(const step_t *step) { assert_int_equal(poll_line(), FATHOM_PENDING); }
 void play_poll_after(const step_t *step) { run_in_steps(step->us, step->us); }
 void play_response(const step_t *step) { deliver_response(step->unit, (uint16_t)step->value); }
 
@@ -110,6 +110,7 @@ void play_break_port(const step_t *step) { break_port(); }
 void play_refuse(const step_t *step) { bench.fake.write_busy = step->which != 0; }
 void play_never_sent(const step_t *step) { bench.fake.never_sent = step->which != 0; }
 void play_silence(const step_t *step) { bench.config.silence_us = (uint16_t)step->us; }
+void play_busy_us(const step_t *step) { bench.config.busy_us = step->us; }
 
 void play_leaves_in(const step_t *step)
 {

@@ -79,6 +79,7 @@ enum { A, B };
 #define NEVER_SENT(on)             STEP(never_sent, .which = (on))
 #define LEAVES_IN(in_us)           STEP(leaves_in, .us = (in_us)) /* what the port says of its bytes */
 #define SILENCE(new_us)            STEP(silence, .us = (new_us))  /* of the config */
+#define BUSY_US(new_us)            STEP(busy_us, .us = (new_us))  /* of the config */
 
 /* Expectations. SENT: no request leaves for `after`, and one leaves within `within` after that. */
 #define FAILS(x, status)    STEP(fails, .which = (x), .value = FATHOM_ERR_##status)
@@ -103,7 +104,7 @@ play_step_t play_queue, play_ask, play_write, play_cancel, play_wait, play_poll_
     play_break, play_pass, play_in_break, play_arrive, play_send, play_gap_at, play_lost_at, play_response,
     play_jam, play_echo, play_listen, play_flush, play_break_port, play_refuse, play_never_sent, play_fails,
     play_ends, play_reads, play_written, play_request_to, play_sent, play_due, play_idle, play_count,
-    play_heard, play_poll, play_leaves_in, play_silence, play_attempts, play_echo_is;
+    play_heard, play_poll, play_leaves_in, play_silence, play_busy_us, play_attempts, play_echo_is;
 
 fathom_modbus_request_t *request_of(const step_t *step);
 

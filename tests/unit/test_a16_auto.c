@@ -47,6 +47,19 @@ static const suite_t suite = {.set_up = set_up};
 
 /* ---- readings ---- */
 
+/* a16_auto.h: the gap of the line if that is longer than 5 ms. A USB adapter holds bytes back for up to 16 ms. */
+TEST(a_frame_in_two_parts_is_read_if_the_gap_of_the_line_is_longer)
+{
+    rig.line_parts.gap_us = 25000;
+    assert_int_equal(fathom_a16_auto_init(&a16, &rig.line, &config), FATHOM_OK);
+    rig_run(30000, 5000);
+    fake_receive(&rig.fake, 0, mm_1953, 2);
+    rig_run(16000, 4000);
+    fake_receive(&rig.fake, 0, mm_1953 + 2, 2);
+    rig_run(30000, 5000);
+    rig_expect(1, FATHOM_TARGET);
+}
+
 TEST(it_is_due_when_a_gap_is_seen_and_then_when_it_turns_stale)
 {
     assert_int_equal(fathom_due_us(&rig.sensor, 1), 5000);

@@ -130,6 +130,8 @@ static const conversation_t conversations[] = {
 
     ROW("a_transaction_cancelled_before_it_is_sent_is_never_sent", COUNTS(0), QUEUE(A, 1), QUEUE(B, 2),
         CANCEL(A), SENT(0, 20000), REQUEST_TO(0, 2)),
+    ROW("a_transaction_cancelled_before_it_is_sent_quarantines_none", COUNTS(0), QUEUE(A, 1), CANCEL(A),
+        QUEUE(B, 1), SENT(0, T3_5_US + 400)),
     /* the one that waits was never asked, and the other one has answered: no unit is in quarantine */
     ROW("one_that_waits_can_be_cancelled_without_harm_to_the_one_on_the_wire", COUNTS(.responses = 2),
         ASK(A, 1), QUEUE(B, 2), CANCEL(B), PENDS(A), RESPONSE(1, 754), READS(A, 754), QUEUE(B, 2),
@@ -141,6 +143,9 @@ static const conversation_t conversations[] = {
     /* the line keeps the silence from the last bit of the request that was cancelled */
     ROW("the_next_request_waits_until_a_cancelled_one_has_left_and_a_silence_more", COUNTS(0), QUEUE(A, 1),
         SENT(0, T3_5_US + 200), CANCEL(A), IDLE(false), QUEUE(B, 2), SENT(8 * BYTE_US + T3_5_US - 400, 1000)),
+    ROW("a_port_has_a_whole_second_to_send_a_request", COUNTS(.port_errors = 1), NEVER_SENT(true),
+        QUEUE(A, 1), POLL_AFTER(T3_5_US), WRITTEN(1), POLL_AFTER(FATHOM_LINE_SEND_US - 1), PENDS(A),
+        POLL_AFTER(1), FAILS(A, PORT)),
     ROW("a_cancelled_request_that_never_leaves_breaks_the_port_after_a_second", COUNTS(.port_errors = 13),
         /* each poll finds the port broken until it sends */ NEVER_SENT(true), QUEUE(A, 1),
         SENT(0, T3_5_US + 200), CANCEL(A), QUEUE(B, 2), WAIT(FATHOM_LINE_SEND_US - 1000), PENDS(B), DUE(1000),

@@ -65,6 +65,9 @@ static const conversation_t conversations[] = {
     ROW("a_port_that_says_when_the_request_has_left_is_asked_again_right_then", COUNTS(0),
         BEGINS_TO_SEND(8 * BYTE_US), DUE(8 * BYTE_US), PASS(3 * BYTE_US), LEAVES_IN(5 * BYTE_US),
         DUE(5 * BYTE_US), POLL_AFTER(5 * BYTE_US), DUE(TIMEOUT_US)),
+    /* the caller holds TX low, and what would end the wait is the other end of the break */
+    ROW("in_a_break_nothing_is_due_but_the_end_of_the_wait", COUNTS(0), HOLD(true), QUEUE(A, 1), DUE(0), POLL,
+        DUE(1000000)),
     /* 255 bytes of 11 bits at 9600 baud are 292 ms */
     ROW("a_long_request_may_take_longer_than_65_ms", COUNTS(0), BEGINS_TO_SEND(8 * BYTE_US),
         LEAVES_IN(292188), DUE(292188)),

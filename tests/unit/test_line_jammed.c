@@ -20,6 +20,11 @@ static const conversation_t conversations[] = {
         COUNTS(.busy = 1, .dropped = 962), WRITE(A, 1), JAM(1000000 - 2 * BYTE_US), ENDS(A, FATHOM_PENDING),
         JAM(4 * BYTE_US), ENDS(A, FATHOM_ERR_LINE_BUSY), WRITTEN(0), COUNT(BUSY_ATTEMPTS, 1), WRITE(A, 1),
         SENT(0, T3_5_US + BYTE_US)),
+    /* unit 1, at the head of the queue, is in quarantine from 100 to 200 ms after its request */
+    ROW("each_transaction_behind_one_in_quarantine_has_a_wait_of_its_own",
+        COUNTS(.no_responses = 1, .busy = 2, .dropped = 67), BUSY_US(30000), ASK_TWICE(A, 1),
+        WAIT(TIMEOUT_US + 200), WRITE(B, 2), JAM(34000), ENDS(B, FATHOM_ERR_LINE_BUSY), WRITE(B, 2),
+        JAM(20000), ENDS(B, FATHOM_PENDING), JAM(14000), ENDS(B, FATHOM_ERR_LINE_BUSY)),
     /* the port has FATHOM_LINE_SEND_US, a second, for the request; the wait for silence is another second. A request may
      * leave at once here, so no wait for silence begins */
     ROW("noise_does_not_prolong_the_time_of_a_busy_port", COUNTS(.port_errors = 1, .dropped = 482),

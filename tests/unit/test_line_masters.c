@@ -43,6 +43,10 @@ static const conversation_t conversations[] = {
     ROW("after_a_foreign_request_the_line_waits_for_a_frame_of_its_unit",
         COUNTS(.responses = 1, .foreign = 1, .strays = 2, .dropped = 22), BEGIN, FOREIGN, QUEUE(A, 1),
         WAIT(20000), RESPONSE(3, 5), WAIT(20000), WRITTEN(1), RESPONSE(2, 5), SENT(T3_5_US - 600, 800)),
+    /* busy_us, 1 s, after the foreign request; the line sees the end of that time 1 us before it */
+    ROW("the_end_of_the_wait_for_another_masters_response_is_due",
+        COUNTS(.responses = 1, .foreign = 1, .dropped = 8), BEGIN, FOREIGN, QUEUE(A, 1), POLL_AFTER(100000),
+        DUE(899999)),
     ROW("each_request_of_a_master_that_polls_has_its_response",
         COUNTS(.responses = 1, .foreign = 2, .strays = 2, .dropped = 30), BEGIN, FOREIGN, RESPONSE(2, 5),
         FOREIGN, RESPONSE(2, 5), SENT_AT_ONCE),
@@ -91,6 +95,8 @@ static const conversation_t conversations[] = {
     ROW("the_echo_of_a_cancelled_request_is_no_foreign_request_once", COUNTS(.foreign = 1, .dropped = 16),
         ECHO(ON), ASK(A, 1), CANCEL(A), RECEIVE(READ_OF_1), COUNT(FOREIGN_REQUESTS, 0), WAIT(10000),
         RECEIVE(READ_OF_1)),
+    ROW("after_a_gap_no_echo_of_a_cancelled_request_is_due", COUNTS(.foreign = 1, .dropped = 8), ECHO(ON),
+        ASK(A, 1), CANCEL(A), WAIT(2 * GAP_US), RECEIVE(READ_OF_1)),
     ROW("a_request_to_another_unit_is_no_echo_of_a_cancelled_request", COUNTS(.foreign = 1, .dropped = 8),
         ECHO(ON), ASK(A, 1), CANCEL(A), FOREIGN),
     /* 55 + AA + 11 + 01 = 111: the unit of our request is the third byte */

@@ -92,6 +92,18 @@ TEST(a_line_whose_config_was_refused_refuses_all_calls)
     fathom_line_flush(&bench.line);
 }
 
+/* Its UART can receive. */
+TEST(a_line_whose_uart_cannot_send_refuses_all_calls)
+{
+    static fathom_uart_t uart;
+    uart = bench.fake.uart;
+    uart.write = NULL;
+    bench.config.uart = &uart;
+    assert_int_equal(fathom_line_init(&bench.line, &bench.config), FATHOM_ERR_ARGUMENT);
+    assert_null(bench.line.parts);
+    assert_int_equal(fathom_line_poll(&bench.line), FATHOM_ERR_ARGUMENT);
+}
+
 TEST(a_transaction_has_at_most_254_retries)
 {
     ask_1(254);

@@ -71,7 +71,6 @@ static const suite_t suite = {.set_up = begin};
 #define NO_MORE                 STEP(no_more, .which = 0)
 #define HOLDS_1(on)             STEP(holds_1, .which = (on))
 #define DUE_AFTER_QUARANTINE    STEP(due_after_quarantine, .which = 0)
-#define BUSY_US(new_us)         STEP(busy_us, .us = (new_us))
 
 static void play_called(const step_t *step)
 {
@@ -84,7 +83,6 @@ static void play_called(const step_t *step)
 static void play_no_more(const step_t *step) { assert_int_equal(looked_at, call_count); }
 static void play_holds_1(const step_t *step) { holds_1 = step->which != 0; }
 static void play_due_after_quarantine(const step_t *step) { expect_due(bench.line.quarantine_left_us); }
-static void play_busy_us(const step_t *step) { bench.config.busy_us = step->us; }
 
 static const conversation_t conversations[] = {
     /* 3.6 ms of silence and 8.3 of request lie between 18 and 30 ms */
@@ -109,6 +107,10 @@ static const conversation_t conversations[] = {
     ROW("a_transaction_that_waited_for_silence_is_due_when_its_policy_or_busy_us_says_so", COUNTS(0),
         QUEUE(A, 1), WAIT(100), HOLDS_1(true), DUE(12345), BUSY_US(12000), CANCEL(A), HOLDS_1(false),
         QUEUE(A, 1), WAIT(100), HOLDS_1(true), DUE(12000)),
+    /* 20 ms of noise, of which the policy holds it back in the middle */
+    ROW("after_it_was_held_back_a_transaction_waits_anew_for_silence", COUNTS(.dropped = 49), BUSY_US(20000),
+        QUEUE(A, 1), JAM(15000), HOLDS_1(true), JAM(10000), HOLDS_1(false), JAM(18000), WRITTEN(0), JAM(6000),
+        WRITTEN(1)),
     /* the port has FATHOM_LINE_SEND_US, a second, to accept a request; the second begins anew with the second try */
     ROW("what_is_held_back_while_the_port_refuses_is_due_when_the_policy_says", COUNTS(.responses = 1),
         PORT_REFUSES(true), QUEUE(A, 1), WAIT(600000), DUE(1000), HOLDS_1(true), POLL, DUE(12345),

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The mutants that mean the same as the code without them, so that no test can see them. A row: why it means the same,
 and the identities of those of which this is true, as run.py prints them; space does not count."""
-COUNT = 86
+COUNT = 93
 
 ROWS = [
     ('it costs time alone',
@@ -33,7 +33,17 @@ ROWS = [
      'src/engine/line.c | fathom_line_is_old | constant: FATHOM_NO_DEADLINE -> (FATHOM_NO_DEADLINE - 1) | uint32_t '
      'limit_us = FATHOM_NO_DEADLINE'),
     ('each attempt sets `copy`, so after one no echo of a cancelled request is due',
-     'src/engine/line_request.c | advance | jump dropped: it -> nothing | case FATHOM_LINE_WAITING : break'),
+     'src/engine/line_request.c | advance | jump dropped: it -> nothing | case FATHOM_LINE_WAITING : break',
+     'src/engine/line_request.c | advance | logical: is_echo_due(line) && (fathom_line_gap_left_us(line) == 0u) -> '
+     '(fathom_line_gap_left_us(line) == 0u) | if (is_echo_due(line) && (fathom_line_gap_left_us(line) == 0u))'),
+    ('0 has returned in the line before',
+     'src/engine/line_request.c | send_next | relational: < -> <= | if (settings < 0)',
+     'src/engine/line_request.c | send_next | constant: 0 -> 1 | if (settings < 0)'),
+    ('fathom_line_poll returns FATHOM_PENDING or an error, never FATHOM_OK',
+     'src/sensor/dyp_auto.c | fathom_dyp_auto_take | relational: < -> <= | if ((status < 0) || is_followed(sensor))',
+     'src/sensor/dyp_auto.c | fathom_dyp_auto_take | constant: 0 -> 1 | if ((status < 0) || is_followed(sensor))'),
+    ('a frame has four values at most',
+     'src/sensor/dyp_auto.c | store_values | type: unsigned -> uint8_t | unsigned left = (stream->length / 2u) - 1u'),
     ('assigns what is there already',
      'src/engine/fair_share.c | count | relational: > -> >= | if (fathom_elapsed_us(now_us, share->since_us) > '
      'silence_us)',
@@ -58,6 +68,10 @@ ROWS = [
      'src/sensor/hps167s_info.c | be_wary | constant: NOTHING -> (NOTHING - 1) | sensor->last_measurement[0] = '
      'NOTHING'),
     ('symmetric',
+     'src/sensor/dyp_auto.c | fathom_dyp_auto_due_us | arguments: fathom_line_due_us(line), '
+     'rest_us(stream->listener.stale_us, passed_us) -> rest_us(stream->listener.stale_us, passed_us), '
+     'fathom_line_due_us(line) | return least_us(fathom_line_due_us(line), rest_us(stream->listener.stale_us, '
+     'passed_us))',
      'src/engine/line_due.c | fathom_line_due_us | arguments: phase_due_us(line, passed_us), '
      'fathom_line_frame_over_us(line) -> fathom_line_frame_over_us(line), phase_due_us(line, passed_us) | uint32_t '
      'due_us = least_us(phase_due_us(line, passed_us), fathom_line_frame_over_us(line))',
