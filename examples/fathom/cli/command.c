@@ -250,14 +250,32 @@ bool option_set(const option_t *row, char *text, void *structure, const origin_t
     return true;
 }
 
+/* Names all that is missing at once. False after rejecting it. */
+static bool check_required(const option_table_t *tables, const option_given_t *given, const origin_t *origin)
+{
+    const char *const mark = origin_mark(origin);
+    const option_t *missing = NULL;
+    char others[160] = "";
+    for (option_walk_t walk = {.table = tables}; option_next(&walk);) {
+        if (!walk.row->is_required || given->line[walk.number] != 0) continue;
+        const size_t length = strlen(others);
+        if (missing == NULL)
+            missing = walk.row;
+        else
+            (void)snprintf(others + length, sizeof others - length, " %s%s is missing too.", mark,
+                           walk.row->name);
+    }
+    return missing == NULL || reject(origin, "%s%s is missing. It takes %s.%s", mark, missing->name,
+                                     option_takes(missing), others);
+}
+
 bool option_check_given(const option_table_t *tables, const option_given_t *given, const origin_t *origin)
 {
     const char *const mark = origin_mark(origin);
+    if (!check_required(tables, given, origin)) return false;
     for (option_walk_t walk = {.table = tables}; option_next(&walk);) {
         const option_t *const row = walk.row;
         const unsigned line = given->line[walk.number];
-        if (line == 0 && row->is_required)
-            return reject(origin, "%s%s is missing. It takes %s.", mark, row->name, option_takes(row));
         if (line == 0 || row->needs == NULL || option_is_given(given, tables, row->needs)) continue;
         origin_t its = *origin;
         if (its.file != NULL) its.line = line;
