@@ -71,6 +71,8 @@ static const refused_t wrong[] = {
     {"read A12 -p x", "unknown sensor 'A12'. Did you mean one of a12bnytw, a12-rs485?"},
     {"models a0", "Did you mean one of a01anyub, a01cnyub, a02yyuw, a02yytw, a06blyt, a02yymw?"},
     {"read hc-sr -p x", "unknown sensor 'hc-sr'. Did you mean hc-sr04?"},
+    {"read SEN0208 -p x", "unknown sensor 'SEN0208'. It is one of a16, a05, hps167s, or a name of"},
+    {"read DYP-A12 -p x", "unknown sensor 'DYP-A12'. Did you mean one of a12bnytw, a12-rs485?"},
     {"read colour -p x", "It is one of a16, a05, hps167s, or a name of 'fathom models'."},
     {"read us-100 -p x", "a us-100 cannot be read: on a UART it sends two bytes without header and sum."},
     {"read TFmini -p x", "a TFmini cannot be read: its frames are others. 'fathom models' lists what can."},

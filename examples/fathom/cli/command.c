@@ -38,11 +38,22 @@ const char *origin_mark(const origin_t *origin)
     return origin->within == NULL && origin->file == NULL ? "--" : "";
 }
 
-/* Another number is another thing, not a misspelt one, so a digit differs by two letters. */
+/* Returns true if the names have the same number of digits, but others: another number is another thing, not a
+ * misspelt one. */
+static bool has_other_digits(const char *one, const char *other)
+{
+    bool differs = false;
+    for (;;) {
+        one += strcspn(one, "0123456789");
+        other += strcspn(other, "0123456789");
+        if (*one == '\0' || *other == '\0') return differs && *one == *other;
+        if (*one++ != *other++) differs = true;
+    }
+}
+
 static size_t difference(char one, char other)
 {
-    if (tolower((unsigned char)one) == tolower((unsigned char)other)) return 0;
-    return isdigit((unsigned char)one) && isdigit((unsigned char)other) ? 2 : 1;
+    return tolower((unsigned char)one) != tolower((unsigned char)other);
 }
 
 static size_t least(size_t one, size_t other) { return one < other ? one : other; }
@@ -77,6 +88,7 @@ void nearest_try(nearest_t *nearest, const char *name)
     const size_t limit = nearest->name != NULL ? nearest->distance : (length + 1) / 3 + 1;
     list_add(nearest->known, sizeof nearest->known, name);
     if (this_distance >= limit || this_distance >= strlen(name)) return;
+    if (has_other_digits(nearest->word, name)) return;
     nearest->name = name;
     nearest->distance = this_distance;
 }

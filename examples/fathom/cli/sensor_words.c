@@ -99,7 +99,8 @@ const model_t *model_word(const char *name, const origin_t *origin)
         return NULL;
     }
     for (size_t n = 0; (other = model_relative(n)) != NULL; n++) nearest_try(&nearest, other);
-    if (name[0] != '\0' && list_similar(similar, name) > 1) nearest = (nearest_t){name, similar, 0, ""};
+    const char *const begin = strncasecmp(name, "DYP-", 4) == 0 ? name + 4 : name; /* without the maker */
+    if (begin[0] != '\0' && list_similar(similar, begin) > 1) nearest = (nearest_t){name, similar, 0, ""};
     nearest.known[0] = '\0';
     for (size_t i = 0; i != model_count; i++) nearest_try(&nearest, models[i].name);
     list_add(nearest.known, sizeof nearest.known, "or a name of 'fathom models'");
