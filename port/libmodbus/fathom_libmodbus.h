@@ -77,6 +77,9 @@ extern "C" {
  *    long and a quarter more, at most `hold_us`. `response_us` is the time that the newest response took: choose longer
  *    time-outs.
  *
+ *    A request to a unit that did not respond to its newest request lets other units go first, at most 8 times in a
+ *    row. So a healthy unit waits for one dead unit and not for each of them.
+ *
  *    The exceptions 0x0A (path unavailable) and 0x0B (target silent) are the gateway's final word, and so is any
  *    exception that the gateway sends as unit 0 or 255, such as 0x06 (busy). The attempt ends at once with
  *    FATHOM_ERR_NO_RESPONSE, because the unit may have executed a write. `gateway_exception` and `gateway_unit` have the
@@ -155,7 +158,7 @@ typedef struct {
 
     /** @brief TCP: responses to an earlier request than the newest. Stops at 65535. The caller may set it to 0. */
     uint16_t late_responses;
-    /** @brief TCP: responses with an identifier that this port has not sent. Stops at 65535. The caller may set it to 0. */
+    /** @brief TCP: responses with an identifier that this port has not sent, or that the server has used. Stops at 65535. The caller may set it to 0. */
     uint16_t foreign_responses;
     /** @brief TCP: responses to the newest request, from another unit. Stops at 65535. The caller may set it to 0. */
     uint16_t other_units;
@@ -184,6 +187,9 @@ typedef struct {
     uint32_t hold_us;
     uint32_t
         busy_us; /* for how long a request without a response keeps the server busy; hold_us until it is known */
+    uint8_t overtaken;   /* requests to other units since the newest to one that had not responded */
+    uint8_t silent[32];  /* a bit for each unit that did not respond to its newest request */
+    uint8_t used;        /* a bit for each request in sent_us: it has its response */
     uint16_t sent_count; /* requests so far; stops at 32768 */
     uint32_t
         sent_us[FATHOM_LIBMODBUS_DATED]; /* when request `transaction` % FATHOM_LIBMODBUS_DATED was sent */

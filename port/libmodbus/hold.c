@@ -12,7 +12,20 @@ uint32_t fathom_libmodbus_now_us(const fathom_libmodbus_t *port)
     return port->parts.clock->now_us(port->parts.clock->ctx);
 }
 
-enum { MOST = 2 }; /* of silent_holds and unanswered_count */
+enum {
+    MOST = 2, /* of silent_holds and unanswered_count */
+    MOST_OVERTAKEN = 8
+};
+
+static bool is_silent(const fathom_libmodbus_t *port, uint8_t unit)
+{
+    return (port->silent[unit / 8] >> unit % 8 & 1) != 0;
+}
+
+void fathom_libmodbus_note_response_of(fathom_libmodbus_t *port, uint8_t unit)
+{
+    port->silent[unit / 8] &= (uint8_t) ~(1u << unit % 8);
+}
 
 /* Returns true if the server may be busy with a request that it has not responded to. */
 static bool may_be_busy(const fathom_libmodbus_t *port)
@@ -43,6 +56,11 @@ void fathom_libmodbus_note_request(fathom_libmodbus_t *port, uint8_t unit)
     if (unit == 0) return;
     if (port->unanswered_count == 0) port->unanswered_us = now_us;
     if (port->unanswered_count < MOST) port->unanswered_count++;
+    if (is_silent(port, unit))
+        port->overtaken = 0;
+    else if (port->overtaken != UINT8_MAX)
+        port->overtaken++;
+    port->silent[unit / 8] |= (uint8_t)(1u << unit % 8);
 }
 
 void fathom_libmodbus_note_broken(fathom_libmodbus_t *port)
@@ -72,13 +90,16 @@ static fathom_libmodbus_t *port_of(fathom_line_turns_t *turns)
 static fathom_transaction_t *next(fathom_line_turns_t *turns, const fathom_line_t *line)
 {
     fathom_libmodbus_t *const port = port_of(turns);
-    fathom_transaction_t *transaction = line->head;
+    fathom_transaction_t *first = NULL;
     turns->wait_us = hold_left_us(port);
     if (turns->wait_us != 0) return NULL;
-    while (transaction != NULL && fathom_line_is_quarantined(line, transaction->address))
-        transaction = transaction->link.next;
     turns->wait_us = line->quarantine_left_us;
-    return transaction;
+    for (fathom_transaction_t *at = line->head; at != NULL; at = at->link.next) {
+        if (fathom_line_is_quarantined(line, at->address)) continue;
+        if (first == NULL) first = at;
+        if (!is_silent(port, at->address)) return port->overtaken < MOST_OVERTAKEN ? at : first;
+    }
+    return first;
 }
 
 static void ignore(fathom_line_turns_t *turns, uint8_t address, uint32_t at_us)

@@ -119,6 +119,13 @@ static void measure(fathom_libmodbus_t *port, uint16_t back)
             fathom_libmodbus_now_us(port) - port->sent_us[transaction % FATHOM_LIBMODBUS_DATED];
 }
 
+/* Returns the bit of the request `back` requests before the newest in `used`; 0: it is too old. */
+static uint8_t bit_of(const fathom_libmodbus_t *port, uint16_t back)
+{
+    if (back >= FATHOM_LIBMODBUS_DATED) return 0;
+    return (uint8_t)(1u << (uint16_t)(port->transaction - back) % FATHOM_LIBMODBUS_DATED);
+}
+
 /* What a received frame is to the line. */
 typedef enum { NOTHING, RESPONSE, FINAL_WORD } word_t;
 
@@ -126,14 +133,18 @@ typedef enum { NOTHING, RESPONSE, FINAL_WORD } word_t;
 static void count_other(fathom_libmodbus_t *port)
 {
     const uint16_t back = (uint16_t)(port->transaction - word_at(port->adu + TRANSACTION));
-    if (back < port->sent_count) {
+    if (back < port->sent_count && (port->used & bit_of(port, back)) == 0) {
         count(&port->late_responses);
         measure(port, back);
         fathom_libmodbus_note_response(port, false);
+        if ((port->adu[FUNCTION] & FATHOM_MODBUS_EXCEPTION) == 0)
+            fathom_libmodbus_note_response_of(port, port->adu[UNIT]);
+        port->used |= bit_of(port, back);
     } else {
-        /* The server makes up identifiers, so this is the response to the newest request. */
+        /* The server makes up identifiers or repeats them, so this is the response to the newest request. */
         count(&port->foreign_responses);
         fathom_libmodbus_note_response(port, true);
+        port->used |= bit_of(port, 0);
     }
 }
 
@@ -151,6 +162,7 @@ static word_t judge(fathom_libmodbus_t *port)
     const bool is_gateway = adu[UNIT] == 0 || adu[UNIT] == FATHOM_MODBUS_ANY_UNIT;
     if (port->is_response_pending) measure(port, 0);
     fathom_libmodbus_note_response(port, true);
+    port->used |= bit_of(port, 0);
     if (is_other) {
         count(&port->other_units);
         port->other_unit = adu[UNIT];
@@ -164,6 +176,7 @@ static word_t judge(fathom_libmodbus_t *port)
     }
     if (is_other) return FINAL_WORD;
     if (port->unit == port->gateway_unit) port->gateway_exception = 0;
+    fathom_libmodbus_note_response_of(port, port->unit);
     return RESPONSE;
 }
 
@@ -211,6 +224,7 @@ int fathom_libmodbus_tcp_write(void *ctx, const uint8_t *bytes, size_t length)
     port->transaction = transaction;
     port->unit = bytes[0];
     fathom_libmodbus_note_request(port, port->unit);
+    port->used &= (uint8_t)~bit_of(port, 0);
     if (port->sent_count < MOST_SENT) port->sent_count++;
     fathom_libmodbus_works(port);
     return (int)length;

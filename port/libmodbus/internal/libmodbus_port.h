@@ -20,6 +20,7 @@ uint32_t fathom_libmodbus_now_us(const fathom_libmodbus_t *port);
 /* The newest request has left; a response to it or to an earlier one has arrived; no response can arrive any more. */
 void fathom_libmodbus_note_request(fathom_libmodbus_t *port, uint8_t unit);
 void fathom_libmodbus_note_response(fathom_libmodbus_t *port, bool is_to_newest);
+void fathom_libmodbus_note_response_of(fathom_libmodbus_t *port, uint8_t unit); /* it is not silent */
 void fathom_libmodbus_note_broken(fathom_libmodbus_t *port);
 
 /* error.c: stores the first reason and returns -1. */

@@ -192,6 +192,26 @@ TEST(a_late_response_shows_that_waiting_helps)
     rig_expect_sent(NULL, 0);
 }
 
+TEST(a_silent_unit_lets_others_go_first_8_times)
+{
+    enum { MOST = 8 };
+    static fathom_modbus_request_t healthy[MOST + 1];
+    ask_9(0);
+    rig_run_fine(HOLD_US);
+    rig_ask_three(&rig.request, 9, 0);
+    rig_run_fine(HOLD_US + 1000);
+    expect_request_to(9, 2);
+    rig_ask_three(&rig.request, 9, 0);
+    for (unsigned i = 0; i != MOST + 1; i++) rig_ask_three(&healthy[i], 1, 0);
+    for (uint8_t i = 0; i != MOST; i++) {
+        rig_run_fine(2 * FINE_US);
+        expect_request_to(1, 3 + i);
+        rig_say_response(3 + i);
+    }
+    rig_run_fine(2 * FINE_US);
+    expect_request_to(9, 3 + MOST);
+}
+
 TEST(no_response_to_a_broadcast_is_waited_for)
 {
     rig.request.transaction.timeout_us = RIG_TIMEOUT_US;
@@ -298,6 +318,23 @@ TEST(a_response_to_an_old_request_is_late_and_not_measured)
     rig_run_fine(FINE_US);
     assert_int_equal(rig.port.late_responses, 1);
     assert_int_equal(rig.port.response_us, 0);
+}
+
+/* Each response has the identifier of the request before. */
+TEST(an_identifier_that_the_server_has_used_is_made_up)
+{
+    rig_ask(0);
+    rig_say((const uint8_t[]){OTHER(0)}, 15);
+    rig_run_fine(RIG_TIMEOUT_US + 1000);
+    rig_expect_none();
+    rig_ask_three(&other, 2, 0);
+    rig_run_fine(FINE_US);
+    expect_request_to(2, 2);
+    rig_say((const uint8_t[]){OTHER(1)}, 15);
+    rig_run_fine(RIG_TIMEOUT_US + 1000);
+    assert_int_equal(other.transaction.status, FATHOM_ERR_NO_RESPONSE);
+    assert_int_equal(rig.port.foreign_responses, 2);
+    assert_int_equal(rig.port.late_responses, 0);
 }
 
 /* Unit 255 stands for the unit that responds (modbus.h). */
