@@ -7,12 +7,6 @@
 
 /* ---- facts ---- */
 
-static uint8_t gateway_exception(const failure_t *failure)
-{
-    const gateway_t *const gateway = &failure->port->gateway;
-    return gateway->exception_unit == failure->address ? gateway->exception : 0;
-}
-
 static bool is_asked(const failure_t *failure)
 {
     return mode_is_asked(failure->mode) && failure->port->kind != PORT_PINS;
@@ -126,12 +120,14 @@ static uint64_t fact(const failure_t *failure, const char *name, size_t length)
         {"crowded", is_crowded(failure)},
         {"only-echo", is_only_echo(heard)},
         {"old", line[FATHOM_LINE_OLD_BYTES]}, /* of unknown age */
-        {"gateway", gateway_exception(failure)},
-        {"gateway-busy", gateway_exception(failure) == 5 || gateway_exception(failure) == 6},
-        {"other-unit", port->gateway.has_other_unit}, /* responded instead of the unit of the request */
+        {"gateway", heard->word},
+        {"gateway-busy", heard->word == 5 || heard->word == 6},
+        /* responded instead of the unit of the request, and not to refuse it for that unit */
+        {"other-unit", port->gateway.has_other_unit && heard->word == 0},
         {"unit", port->gateway.other_unit},
         {"other-identifier", port->gateway.has_other_identifier},
         {"rtu", port->gateway.is_rtu},
+        {"incomplete", port->gateway.is_incomplete},
         {"closed", port->gateway.is_closed},
         {"mbap", heard->is_mbap},
         {"part", heard->part},
@@ -257,6 +253,8 @@ static const row_t causes[] = {
      "that the adapter can send a break, and that the sensor is the UART controlled variant (if not: --mode "
      "auto or --mode modbus)" UNSEEN},
 
+    {NO_RESPONSE, "asked other-unit", "the server responds as unit {unit}, and not as unit {address}",
+     "If the sensor is unit {unit}, read it with this address. Else check which units the gateway serves"},
     {NO_RESPONSE, "asked late", "the response arrived after the time-out[took: (it took {took} ms)]",
      "Try a longer --timeout[took:, such as --timeout {timeout}]"},
     {NO_MATCH, "asked converter mbap", "the response has the header of Modbus TCP", "Use {modbus-tcp}"},
@@ -324,14 +322,15 @@ static const row_t causes[] = {
      "it"},
     {NO_RESPONSE, "asked gateway", "the gateway responds with exception {exception}",
      "Check {option}, and the line and the supply behind the gateway"},
-    {NO_RESPONSE, "asked other-unit", "the server responds as unit {unit}, and not as unit {address}",
-     "If the sensor is unit {unit}, read it with this address. Else check which units the gateway serves"},
     {NO_RESPONSE, "asked other-identifier",
      "the server responds with another transaction identifier than that of the request",
      "Restart the gateway, and look for a newer firmware of it"},
     {NO_RESPONSE, "asked rtu",
      "the response is a frame of Modbus RTU without the header of Modbus TCP: the converter passes raw bytes",
      "Use rtu-{path}, or switch the converter to Modbus TCP"},
+    {NO_RESPONSE, "asked incomplete",
+     "only a part of a response was received: its header announces more bytes",
+     "Try a longer --timeout. If the rest never arrives, look for a newer firmware of the gateway"},
     {NO_RESPONSE, "asked tcp bytes", "the response does not fit the request",
      "Check that the server speaks Modbus TCP"},
     {NO_RESPONSE, "asked tcp worked",
@@ -492,7 +491,7 @@ static void print_settings(FILE *to, const failure_t *failure)
 
 static void print_exception(FILE *to, const failure_t *failure)
 {
-    const uint8_t gateway = gateway_exception(failure);
+    const uint8_t gateway = failure->evidence.word;
     const uint8_t number = gateway != 0 ? gateway : reader_facts(failure->reader).exception;
     const modbus_exception_t exception = modbus_exception(number);
     (void)fprintf(to, "%02u (%s)", number, exception.name);
@@ -698,7 +697,7 @@ void advice_print_new(FILE *to, const failure_t *shown, reported_t *reported)
     const uint8_t parts[] = {(uint8_t)(find(causes, failure) - causes),
                              failure->evidence.foreign_address,
                              failure->evidence.masters_address,
-                             gateway_exception(failure),
+                             failure->evidence.word,
                              failure->port->gateway.other_unit,
                              facts.exception,
                              facts.refused_probe,

@@ -51,6 +51,7 @@ void listener_forget(listener_t *listener)
     listener->have = 0;
     listener->bytes = 0;
     listener->slowest_us = 0;
+    listener->has_asked = false;
 }
 
 void listener_sent(listener_t *listener, const uint8_t *request, uint8_t length, uint32_t now_us)
@@ -59,7 +60,16 @@ void listener_sent(listener_t *listener, const uint8_t *request, uint8_t length,
     listener->request_length = length;
     listener->piece_length = 0;
     listener->asked_us = now_us;
+    if (!listener->has_asked && !listener->is_word_late) listener->word = 0;
+    if (!listener->has_asked) listener->is_word_late = false;
+    listener->has_asked = true;
     listener->requests++;
+}
+
+void listener_word(listener_t *listener, uint8_t exception)
+{
+    listener->word = exception;
+    listener->is_word_late = !listener->has_asked;
 }
 
 void listener_received(listener_t *listener, const uint8_t *bytes, uint32_t count, uint32_t now_us)
@@ -228,6 +238,7 @@ void listener_judge(const listener_t *listener, uint8_t address, evidence_t *evi
     evidence->bytes = listener->bytes;
     evidence->slowest_us = listener->slowest_us;
     evidence->is_mbap = is_mbap(listener);
+    evidence->word = listener->word;
     evidence->is_zeros = listener->have != 0;
     for (uint16_t at = 0; at != listener->have; at++)
         if (listener->window[at] != 0) evidence->is_zeros = false;

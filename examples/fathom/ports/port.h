@@ -124,7 +124,11 @@ struct listener {
     uint8_t request[LISTENER_REQUEST]; /* the newest one */
     uint8_t request_length;            /* 0: none was sent */
     uint32_t asked_us;                 /* the time of the newest request */
-    uint64_t requests;                 /* since the start */
+    bool has_asked;                    /* a request was sent in this attempt */
+    uint8_t
+        word; /* the exception that a gateway reported about this attempt, or after the previous one; 0: none */
+    bool is_word_late; /* it arrived after the previous attempt */
+    uint64_t requests; /* since the start */
 };
 
 /* What the window holds. A frame counts if its checksum is right. */
@@ -145,6 +149,7 @@ typedef struct {
     uint32_t part;      /* bytes of a response that broke off at the end of the window */
     uint32_t pieces_us; /* the pause between such a beginning, in an earlier attempt, and its rest; 0: none */
     bool is_mbap;       /* the window begins with a frame of Modbus TCP */
+    uint8_t word;       /* the exception of a gateway, such as that the unit does not respond; 0: none */
     uint32_t slowest_us;
 } evidence_t;
 
@@ -154,6 +159,9 @@ void listener_forget(listener_t *listener);
 /* Stores a request, and received bytes. */
 void listener_sent(listener_t *listener, const uint8_t *request, uint8_t length, uint32_t now_us);
 void listener_received(listener_t *listener, const uint8_t *bytes, uint32_t count, uint32_t now_us);
+
+/* Stores the final word of a gateway about the newest request. */
+void listener_word(listener_t *listener, uint8_t exception);
 
 /* Fills in the evidence. `address` is the unit of the request; 0: there was no request. */
 void listener_judge(const listener_t *listener, uint8_t address, evidence_t *evidence);
@@ -176,13 +184,12 @@ typedef struct port_driver port_driver_t;
 
 /* What the far end of a connection has shown; all zeros for other ports. */
 typedef struct {
-    uint8_t exception;      /* the final word about a request, as that the unit does not respond; 0: none */
-    uint8_t exception_unit; /* the unit of that request */
-    uint8_t other_unit;     /* which responded to the newest request, ... */
-    bool has_other_unit;    /* ... if that is not the unit of the request */
+    uint8_t other_unit;  /* which responded to the newest request, ... */
+    bool has_other_unit; /* ... if that is not the unit of the request */
     bool
         has_other_identifier; /* the server responded to the newest request with another transaction identifier */
     bool is_rtu;              /* what was received of the newest response begins as a frame of Modbus RTU */
+    bool is_incomplete;       /* ... but not as a whole response of Modbus TCP */
     bool is_closed;           /* the connection ended while the response to the newest request was pending */
 } gateway_t;
 

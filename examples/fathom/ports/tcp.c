@@ -107,13 +107,16 @@ static void note_sent(port_t *port)
 static void note_read(port_t *port)
 {
     if (port->connection == NULL || port->connection->modbus == NULL) return;
-    const fathom_libmodbus_t *const libmodbus = libmodbus_of(port);
-    port->gateway.exception = libmodbus->gateway_exception;
-    port->gateway.exception_unit = libmodbus->gateway_unit;
+    fathom_libmodbus_t *const libmodbus = libmodbus_of(port);
+    if (libmodbus->gateway_refusals != 0)
+        listener_word(port->listener.now != NULL ? port->listener.now : &port->listener,
+                      libmodbus->gateway_exception);
+    libmodbus->gateway_refusals = 0;
     port->gateway.other_unit = libmodbus->other_unit;
     port->gateway.has_other_unit = libmodbus->other_units != 0;
     port->gateway.has_other_identifier = libmodbus->foreign_responses != 0;
     port->gateway.is_rtu = is_rtu(port);
+    port->gateway.is_incomplete = libmodbus->have != 0;
 }
 
 const port_driver_t port_tcp = {open_tcp,  connection_poll, connection_close, start_line,

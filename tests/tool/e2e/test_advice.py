@@ -57,7 +57,8 @@ ELSEWHERE = {
     **{f'{status}: {facts}': 'e2e/test_tcp.py' for status, facts in (
         ('NO_RESPONSE', 'asked gateway-busy'), ('NO_RESPONSE', 'asked gateway'),
         ('NO_RESPONSE', 'asked other-unit'),
-        ('NO_RESPONSE', 'asked other-identifier'), ('NO_RESPONSE', 'asked tcp bytes'), ('NO_RESPONSE', 'asked tcp'),
+        ('NO_RESPONSE', 'asked other-identifier'), ('NO_RESPONSE', 'asked incomplete'),
+        ('NO_RESPONSE', 'asked tcp bytes'), ('NO_RESPONSE', 'asked tcp'),
         ('NO_RESPONSE', 'asked tcp worked'), ('CHECKSUM', 'asked tcp'))},
     **{f'{status}: {facts}': 'e2e/test_gateway.py' for status, facts in (
         ('NO_RESPONSE', 'asked closed'), ('NO_RESPONSE', 'asked rtu'), ('NO_MATCH', 'asked converter mbap'))},

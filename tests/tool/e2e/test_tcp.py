@@ -133,7 +133,7 @@ class Responses(Case):
         server, reader = self.reader('--count 1 --timeout 1500')
         server.say(registers(self.asked(server), 1, *SAID)[:11])
         self.reads(reader, 1, [],
-                   ': the connection is open, but nothing was received. ')
+                   ': only a part of a response was received: its header announces more bytes. Try a longer --timeout')
         self.needs_little(reader.done)
 
     @e2e.each(
@@ -171,6 +171,24 @@ class Responses(Case):
         self.assertIn('the same cause as before, 2 times in a row', second)
         self.assertLess(reader.done.elapsed, 10)  # each attempt ended with the word and not with its time-out
 
+    def test_silence_after_a_final_word_is_silence(self):
+        server, reader = self.reader('--count 2 --timeout 500')
+        server.say(adu(self.asked(server), 1, 0x83, 11))
+        self.asked(server)
+        self.reads(reader, 1, [], 'attempt 1: no response from hps167s:1 at ', 'the gateway responds with exception 11',
+                   re.compile('attempt 2: .*: the connection is open, but nothing was received'))
+
+    def test_each_final_word_after_the_time_out_is_that_of_its_unit(self):
+        server = self.server()
+        reader = self.fathom(f'read hps167s:8 hps167s:9 --port {server} --count 2 --timeout 100')
+        server.accept()
+        for _ in range(4):
+            transaction, unit, _ = server.request()
+            time.sleep(0.3)
+            server.say(adu(transaction, unit, 0x83, 11))
+        self.reads(reader, 1, [], *(re.compile(rf'hps167s:{unit}: attempt 2: .*: the gateway responds with exception 11')
+                                    for unit in (8, 9)))
+
     @e2e.each(path_unavailable=(10, 'gateway path unavailable'),
               target_silent=(11, 'gateway target device failed to respond'))
     def requested(self, number, name):
@@ -188,6 +206,8 @@ class Responses(Case):
                             'the server responds with another transaction identifier'),
         unit_0=(lambda asked: registers(asked, 0, *SAID), 'the server responds as unit 0, and not as unit 1'),
         unit_255=(lambda asked: registers(asked, 255, *SAID), 'the server responds as unit 255, and not as'),
+        another_unit_before_the_right_one=(lambda asked: registers(asked, 2, *OTHER) + registers(asked, 1, *SAID),
+                                           'the server responds as unit 2, and not as unit 1'),
         busy_as_unit_255=(lambda asked: adu(asked, 255, 0x83, 6),
                           'the gateway responds with exception 06 (server device busy). It serves another request. Try '
                           '--retries 2'))
