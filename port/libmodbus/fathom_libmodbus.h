@@ -71,11 +71,11 @@ extern "C" {
  *        attempt             |-- timeout_us -->| failed
  *        no request          |-- at most hold_us ------->|
  *
- *    Many gateways report nothing about a dead unit. Once the server has let `hold_us` pass without a word, the port waits
- *    only if two requests in a row have no response, and after a second time without a word not at all. A response
- *    that is late then shows for how long the request before it kept the server busy. From then on the port waits that
- *    long and a quarter more, at most `hold_us`. `response_us` is the time that the newest response took: choose longer
- *    time-outs.
+ *    Many gateways report nothing about a dead unit. Once the server has let `hold_us` pass without a word, the port lets
+ *    one more request leave while a response is pending. If that one has its response in time, the server is not busy
+ *    with dead units, and the port does not wait any more. If its response is late, it shows for how long the server was
+ *    busy, and the port waits that long and a quarter more from then on, at most `hold_us`. `response_us` is the time
+ *    that the newest response took: choose longer time-outs.
  *
  *    A request to a unit that did not respond to its newest request lets other units go first, at most 8 times in a
  *    row. So a healthy unit waits for one dead unit and not for each of them.
@@ -180,10 +180,12 @@ typedef struct {
     uint8_t unit;              /* of that request */
     bool is_response_pending;  /* the server may still respond to it */
     bool is_overdue;           /* the attempt has ended without it */
-    bool is_busy_us_known;
-    uint8_t silent_holds;     /* times that the server has let hold_us pass without a word; stops at 2 */
-    uint8_t unanswered_count; /* requests since the newest response; stops at 2 */
-    uint32_t unanswered_us;   /* when the first of them was sent */
+    bool has_held;             /* the server has let hold_us pass without a word */
+    bool is_never_busy;        /* a dead unit does not keep the server busy */
+    bool is_busy_us_known;     /* it does, for busy_us */
+    bool is_crowded;           /* the newest request was sent while another one was pending */
+    bool has_unanswered;       /* a request was sent since the newest response */
+    uint32_t unanswered_us;    /* when the first of them was sent */
     uint32_t hold_us;
     uint32_t
         busy_us; /* for how long a request without a response keeps the server busy; hold_us until it is known */

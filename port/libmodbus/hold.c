@@ -12,10 +12,7 @@ uint32_t fathom_libmodbus_now_us(const fathom_libmodbus_t *port)
     return port->parts.clock->now_us(port->parts.clock->ctx);
 }
 
-enum {
-    MOST = 2, /* of silent_holds and unanswered_count */
-    MOST_OVERTAKEN = 8
-};
+enum { MOST_OVERTAKEN = 8 };
 
 static bool is_silent(const fathom_libmodbus_t *port, uint8_t unit)
 {
@@ -31,8 +28,8 @@ void fathom_libmodbus_note_response_of(fathom_libmodbus_t *port, uint8_t unit)
 static bool may_be_busy(const fathom_libmodbus_t *port)
 {
     if (!port->is_response_pending) return false;
-    if (port->is_busy_us_known || port->silent_holds == 0) return true;
-    return port->silent_holds < MOST && port->unanswered_count == MOST;
+    if (port->is_busy_us_known) return true;
+    return !port->is_never_busy && (!port->has_held || port->is_crowded);
 }
 
 /* Returns the time for which the response to the newest request may still be pending, in microseconds. */
@@ -43,19 +40,21 @@ static uint32_t hold_left_us(fathom_libmodbus_t *port)
     const uint32_t passed_us = fathom_elapsed_us(fathom_libmodbus_now_us(port), sent_us);
     if (passed_us < port->busy_us) return port->busy_us - passed_us;
     port->is_response_pending = false;
-    if (!port->is_busy_us_known) port->silent_holds++;
+    port->has_held = true;
     return 0;
 }
 
 void fathom_libmodbus_note_request(fathom_libmodbus_t *port, uint8_t unit)
 {
     const uint32_t now_us = fathom_libmodbus_now_us(port);
+    const uint32_t last_us = port->sent_us[(port->transaction - 1u) % FATHOM_LIBMODBUS_DATED];
     port->sent_us[port->transaction % FATHOM_LIBMODBUS_DATED] = now_us;
+    port->is_crowded = port->has_unanswered && fathom_elapsed_us(now_us, last_us) < port->hold_us;
     port->is_response_pending = unit != 0; /* No unit responds to a broadcast. */
     port->is_overdue = false;
     if (unit == 0) return;
-    if (port->unanswered_count == 0) port->unanswered_us = now_us;
-    if (port->unanswered_count < MOST) port->unanswered_count++;
+    if (!port->has_unanswered) port->unanswered_us = now_us;
+    port->has_unanswered = true;
     if (is_silent(port, unit))
         port->overtaken = 0;
     else if (port->overtaken != UINT8_MAX)
@@ -66,15 +65,16 @@ void fathom_libmodbus_note_request(fathom_libmodbus_t *port, uint8_t unit)
 void fathom_libmodbus_note_broken(fathom_libmodbus_t *port)
 {
     port->is_response_pending = false;
-    port->unanswered_count = 0;
+    port->has_unanswered = false;
 }
 
 void fathom_libmodbus_note_response(fathom_libmodbus_t *port, bool is_to_newest)
 {
     const bool is_late = !is_to_newest || port->is_overdue;
-    const bool has_unanswered = port->unanswered_count != 0;
+    const bool has_unanswered = port->has_unanswered;
     if (is_to_newest) port->is_response_pending = false;
-    port->unanswered_count = 0;
+    port->has_unanswered = false;
+    if (!is_late && port->is_crowded && port->has_held) port->is_never_busy = true;
     if (!is_late || !has_unanswered) return;
     const uint32_t passed_us = fathom_elapsed_us(fathom_libmodbus_now_us(port), port->unanswered_us);
     const uint32_t busy_us = passed_us + passed_us / 4;
