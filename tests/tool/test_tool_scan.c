@@ -850,6 +850,7 @@ static void is_other(stranger_t with, const fathom_line_settings_t *line)
     const tool_run_t *const run =
         scan_finds(line == &dyp_line ? "? 9 9600 8N1" : "? 9 19200 8E1", "--address 8-10");
     assert_says(run, "a Modbus device that is none of the known sensors");
+    assert_says(run, "fathom: no sensor was found. A sensor that was just switched on may need 5 s\n");
     assert_int_equal(run->status, 1);
 }
 

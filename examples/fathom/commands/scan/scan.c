@@ -376,7 +376,7 @@ static void report(scan_t *scan, const scan_finding_t *finding)
     scan->output_error = output_flush();
     if (scan->output_error != 0) scan->status = FATHOM_ERR_CANCELLED;
     print_advice(finding, scan->settings->port);
-    if (finding->kind == SCAN_DAMAGED) scan->has_damaged = true;
+    if (finding->kind == SCAN_DAMAGED || finding->kind == SCAN_OTHER) scan->has_responses = true;
     if (finding->kind != SCAN_SENSOR) return;
     scan->sensors++;
     if (is_terminated(finding)) {
@@ -413,7 +413,7 @@ static void print_nothing(const scan_t *scan)
     failure_t failure = failure_of(scan, FATHOM_ERR_NO_RESPONSE);
     failure.evidence.masters = 0; /* print_others() has printed them */
     (void)fputs("fathom: ", stderr);
-    if (scan->not_asked != 0 || scan->has_damaged)
+    if (scan->not_asked != 0 || scan->has_responses)
         (void)fputs("no sensor was found", stderr);
     else
         advice_print(stderr, &failure);

@@ -70,7 +70,7 @@ struct scan {
     uint32_t terminations;     /* sensors whose termination resistor is on */
     const model_t *terminated; /* model of these sensors */
     uint32_t awakened;         /* sensors of the sender's model */
-    bool has_damaged;          /* an address whose responses are damaged */
+    bool has_responses;        /* of a device that was reported and is no sensor, so the line works */
     bool has_dyp;              /* a sensor that can have frames 55 AA */
     int any; /* address of the unit that responded at address 255 with these settings; -1: none */
     uint32_t found_baud[SCAN_ADDRESSES]; /* of the device at an address; 0: none */
