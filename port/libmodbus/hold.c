@@ -57,7 +57,7 @@ void fathom_libmodbus_note_request(fathom_libmodbus_t *port, uint8_t unit)
     port->has_unanswered = true;
     if (is_silent(port, unit))
         port->overtaken = 0;
-    else if (port->overtaken != UINT8_MAX)
+    else if (port->overtaken < MOST_OVERTAKEN)
         port->overtaken++;
     port->silent[unit / 8] |= (uint8_t)(1u << unit % 8);
 }
@@ -74,7 +74,7 @@ void fathom_libmodbus_note_response(fathom_libmodbus_t *port, bool is_to_newest)
     const bool has_unanswered = port->has_unanswered;
     if (is_to_newest) port->is_response_pending = false;
     port->has_unanswered = false;
-    if (!is_late && port->is_crowded && port->has_held) port->is_never_busy = true;
+    if (!is_late && port->is_crowded) port->is_never_busy = true;
     if (!is_late || !has_unanswered) return;
     const uint32_t passed_us = fathom_elapsed_us(fathom_libmodbus_now_us(port), port->unanswered_us);
     const uint32_t busy_us = passed_us + passed_us / 4;

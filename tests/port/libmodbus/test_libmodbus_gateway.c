@@ -227,6 +227,38 @@ TEST(a_silent_unit_lets_others_go_first_8_times)
     expect_request_to(9, 3 + MOST);
 }
 
+TEST(a_silent_unit_goes_in_its_turn_after_9_requests_to_others)
+{
+    ask_9(0);
+    rig_run_fine(HOLD_US);
+    for (uint8_t i = 0; i != 9; i++) {
+        ask_1();
+        rig_run_fine(2 * FINE_US);
+        expect_request_to(1, 2 + i);
+        rig_say_response(2 + i);
+        rig_run_fine(FINE_US);
+    }
+    rig_ask_three(&rig.request, 9, 0);
+    ask_1();
+    rig_run_fine(2 * FINE_US);
+    expect_request_to(9, 11);
+}
+
+/* The gateway responds to unit 1 at once, and gives unit 9 up after that. */
+TEST(a_late_response_behind_one_in_time_shows_nothing)
+{
+    ask_9(0);
+    ask_1();
+    expect_held(HOLD_US, 2);
+    rig_say_response(2);
+    say_exception(1, 9, 0x0B);
+    rig_run_fine(FINE_US);
+    assert_int_equal(rig.port.late_responses, 1);
+    ask_9_again(3);
+    ask_1();
+    expect_held(RIG_TIMEOUT_US, 4);
+}
+
 TEST(no_response_to_a_broadcast_is_waited_for)
 {
     rig.request.transaction.timeout_us = RIG_TIMEOUT_US;
